@@ -1,0 +1,117 @@
+!> Level 2. A planar mechanism and what is asked of it, as plain data: links, points, pairs, drives.
+!> `deck` builds it; everything else only reads it. Lengths are in the deck's unit, angles in radians.
+module mechanism
+   use kinds, only: wp, label_length, title_length
+   implicit none
+   private
+   public :: link_t, point_t, pair_t, term_t, drive_t, request_t, mechanism_t
+   public :: pair_revolute, pair_prismatic
+   public :: drive_angle, drive_x, drive_y, drive_relangle, drive_slide
+   public :: term_harmonic, term_power, term_table
+   public :: request_link, request_point, request_pair
+   public :: method_newton, method_matrix
+   public :: instant_count, instant
+
+   integer, parameter :: pair_revolute = 1   !< REVOLUTE: eq. (7), (8)
+   integer, parameter :: pair_prismatic = 2  !< PRISM: eq. (9), (10)
+
+   integer, parameter :: drive_angle = 1     !< ANGLE: phi of link `subject`
+   integer, parameter :: drive_x = 2         !< X: x of point `subject`
+   integer, parameter :: drive_y = 3         !< Y: y of point `subject`
+   integer, parameter :: drive_relangle = 4  !< RELANGLE: phi of link `second` less phi of link `subject`
+   integer, parameter :: drive_slide = 5     !< SLIDE: slide of prismatic pair `subject`
+
+   integer, parameter :: term_harmonic = 1   !< r(1) sin(r(2) t + r(3))
+   integer, parameter :: term_power = 2      !< r(1) t**r(2)
+   integer, parameter :: term_table = 3      !< the C2 spline through (knots, values)
+
+   integer, parameter :: request_link = 1, request_point = 2, request_pair = 3
+
+   integer, parameter :: method_newton = 1   !< Newton on the closure equations
+   integer, parameter :: method_matrix = 2   !< the iteration of 1987 with frozen c(phi), s(phi)
+
+   type :: link_t
+      character(label_length) :: name = ''
+      logical :: ground = .false.
+      real(wp) :: position(3) = 0.0_wp       !< x, y, phi: fixed (ground) or rough, chooses the assembly
+   end type link_t
+
+   type :: point_t
+      character(label_length) :: name = ''
+      integer :: link = 0
+      real(wp) :: offset(2) = 0.0_wp         !< xi, eta in the link's own axes
+   end type point_t
+
+   type :: pair_t
+      integer :: kind = pair_revolute
+      character(label_length) :: name = ''
+      integer :: point_i = 0, point_j = 0    !< P of link i and Q of link j
+      real(wp) :: alpha = 0.0_wp             !< prismatic: the guide's direction in link i
+      real(wp) :: offset = 0.0_wp            !< prismatic: h of eq. (9)
+      real(wp) :: beta = 0.0_wp              !< prismatic: phi_j - phi_i, eq. (10)
+   end type pair_t
+
+   !> One term added to a drive.
+   type :: term_t
+      integer :: kind = term_harmonic
+      real(wp) :: r(3) = 0.0_wp
+      real(wp), allocatable :: knots(:), values(:)  !< a table's rows, knots increasing
+   end type term_t
+
+   type :: drive_t
+      integer :: kind = drive_angle
+      integer :: subject = 0                 !< link, point or pair, as the kind says
+      integer :: second = 0                  !< second link of drive_relangle
+      real(wp) :: polynomial(3) = 0.0_wp     !< value at t = 0, rate, acceleration
+      type(term_t), allocatable :: terms(:)
+   end type drive_t
+
+   !> One row of the tables: a link, point or pair, at every `every`-th instant, the first and the last.
+   type :: request_t
+      integer :: kind = request_link
+      integer :: subject = 0
+      integer :: every = 1
+   end type request_t
+
+   type :: mechanism_t
+      integer :: set_number = 1
+      character(title_length) :: title = ''
+      character(label_length) :: length_unit = 'M', time_unit = 'S'
+      logical :: degrees = .false.           !< angles are printed in degrees
+      logical :: polish = .false.            !< headings are printed in Polish
+      integer :: method = method_newton
+      real(wp) :: tolerance = 0.0_wp         !< relative; 0 stands for the method's own
+      type(link_t), allocatable :: links(:)
+      type(point_t), allocatable :: points(:)
+      type(pair_t), allocatable :: pairs(:)
+      type(drive_t), allocatable :: drives(:)
+      type(request_t), allocatable :: requests(:)
+      integer :: steps = -1                  !< of the TIME card: steps + 1 instants from t0 to t1
+      real(wp) :: t0 = 0.0_wp, t1 = 0.0_wp
+      real(wp), allocatable :: at(:)         !< explicit instants, after those of TIME
+      character(120), allocatable :: echo(:) !< the set's cards as they were understood, for the listing
+   end type mechanism_t
+
+contains
+
+   !> Number of instants of a set of computations.
+   pure integer function instant_count(m)
+      type(mechanism_t), intent(in) :: m
+
+      instant_count = m%steps + 1 + size(m%at)
+   end function instant_count
+
+   !> Instant number k = 0, 1, ..., instant_count - 1. The last one of TIME is t1 exactly.
+   pure real(wp) function instant(m, k) result(t)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: k
+
+      if (k > m%steps) then
+         t = m%at(k - m%steps)
+      else if (k == m%steps) then
+         t = m%t1
+      else
+         t = m%t0 + (m%t1 - m%t0)*real(k, wp)/real(m%steps, wp)
+      end if
+   end function instant
+end module mechanism

@@ -1,0 +1,31 @@
+!> Level 3. The motion of every link at one instant: what the solvers fill and the writers print.
+module motion
+   use kinds, only: wp
+   implicit none
+   private
+   public :: motion_t, new_motion
+   public :: mark_none, mark_not_converged, mark_singular
+
+   integer, parameter :: mark_none = 0
+   integer, parameter :: mark_not_converged = 1  !< no position was found
+   integer, parameter :: mark_singular = 2       !< position found, Jacobian singular: no velocities
+
+   type :: motion_t
+      real(wp) :: t = 0.0_wp
+      integer :: mark = mark_none
+      !> How much of it exists: -1 nothing, 0 positions, 1 velocities too, 2 accelerations too.
+      integer :: known = -1
+      !> (3, links): x, y, phi and their first and second derivatives by time.
+      real(wp), allocatable :: position(:, :), velocity(:, :), acceleration(:, :)
+   end type motion_t
+
+contains
+
+   !> A motion of `n` links at rest at the origin.
+   pure function new_motion(n) result(m)
+      integer, intent(in) :: n
+      type(motion_t) :: m
+
+      allocate (m%position(3, n), m%velocity(3, n), m%acceleration(3, n), source=0.0_wp)
+   end function new_motion
+end module motion
