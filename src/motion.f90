@@ -4,11 +4,12 @@ module motion
    implicit none
    private
    public :: motion_t, new_motion
-   public :: mark_none, mark_not_converged, mark_singular
+   public :: mark_none, mark_not_converged, mark_singular, mark_overflow
 
    integer, parameter :: mark_none = 0
    integer, parameter :: mark_not_converged = 1  !< no position was found
    integer, parameter :: mark_singular = 2       !< position found, Jacobian singular: no velocities
+   integer, parameter :: mark_overflow = 3       !< a result beyond the range of the real kind
 
    type :: motion_t
       real(wp) :: t = 0.0_wp

@@ -1,0 +1,91 @@
+# KINMAT. make: build/kinmat    make run: the paper's example    make test: unit tests and make check
+SHELL := /bin/sh
+ifeq ($(origin FC),default)
+   FC := gfortran
+endif
+BUILD  ?= build
+PREFIX ?= /usr/local
+LIBS   ?= -llapack -lblas
+
+# No flag here changes a result: no fast-math, no contraction into fused multiply-add.
+# gfortran's "uninitialized" is wrong on every array allocated by assignment.
+COMMON  := -std=f2018 -Wall -Wextra -pedantic -Wno-uninitialized -Wno-maybe-uninitialized -ffp-contract=off
+RELEASE ?= -O2
+DEBUG   ?= -O0 -g -fbacktrace -fcheck=all -ffpe-trap=invalid,zero,overflow -finit-real=snan -finit-derived
+
+sources := $(sort $(wildcard src/*.f90))
+names   := $(sources:src/%.f90=%)
+modules := $(filter-out main,$(names))
+
+.PHONY: all run test check expected install clean
+all: $(BUILD)/kinmat
+
+run: $(BUILD)/kinmat
+	$(BUILD)/kinmat input/yoke.deck
+
+# Two builds of the same sources, each in its own directory: release for use, debug for the unit tests.
+define build_in
+$(BUILD)/$(1)/%.o: src/%.f90 | $(BUILD)/$(1)
+	$$(FC) $$(COMMON) $(2) -J$(BUILD)/$(1) -c -o $$@ $$<
+$(BUILD)/$(1)/libkinmat.a: $(modules:%=$(BUILD)/$(1)/%.o)
+	rm -f $$@
+	$$(AR) cr $$@ $$^
+$(BUILD)/$(1)/kinmat: $(BUILD)/$(1)/main.o $(BUILD)/$(1)/libkinmat.a
+	$$(FC) $$(COMMON) $(2) -o $$@ $$^ $$(LIBS)
+$(BUILD)/$(1):
+	mkdir -p $$@
+endef
+$(eval $(call build_in,release,$$(RELEASE)))
+$(eval $(call build_in,debug,$$(DEBUG)))
+
+$(BUILD)/kinmat: $(BUILD)/release/kinmat
+	cp $< $@
+
+# Who uses whom, read off the use statements.
+$(BUILD)/depends.mk: $(sources)
+	@mkdir -p $(BUILD)
+	@awk -v names='$(names)' -v build='$(BUILD)' ' \
+	   BEGIN { n = split(names, list, " "); for (i = 1; i <= n; i++) ours[list[i]] = 1 } \
+	   tolower($$1) == "use" { name = $$2; sub(/,.*/, "", name); \
+	      if (name in ours) { file = FILENAME; sub(/^.*\//, "", file); sub(/\.f90$$/, "", file); \
+	         print build "/release/" file ".o: " build "/release/" name ".o"; \
+	         print build "/debug/" file ".o: " build "/debug/" name ".o" } }' $(sources) > $@
+ifneq ($(MAKECMDGOALS),clean)
+include $(BUILD)/depends.mk
+endif
+
+# Closed forms in real128 print the listings that the program must print, byte for byte.
+forms := tests/quad_jet.f90 tests/closed_forms_dyads.f90 tests/closed_forms_linkages.f90 tests/closed_forms_sliders.f90
+decks := $(sort $(wildcard input/*.deck))
+references := $(decks:input/%.deck=$(BUILD)/expected/%.lst)
+
+$(BUILD)/print_expected: $(forms) tests/print_expected.f90 $(BUILD)/release/libkinmat.a
+	mkdir -p $(BUILD)/forms
+	$(FC) $(COMMON) $(RELEASE) -J$(BUILD)/forms -I$(BUILD)/release -o $@ $^ $(LIBS)
+
+$(BUILD)/expected/%.lst: input/%.deck $(BUILD)/print_expected
+	@mkdir -p $(BUILD)/expected
+	$(BUILD)/print_expected $< > $@.new && mv $@.new $@
+
+expected: $(references)
+	cp $(references) expected/
+
+check: $(BUILD)/kinmat $(references)
+	BUILD=$(BUILD) tests/check.sh
+
+TEST_LIB     := $(BUILD)/debug/libkinmat.a
+TEST_MODULES := $(BUILD)/debug
+TEST_FLAGS   := $(COMMON) $(DEBUG)
+TEST_LIBS    := $(LIBS)
+TEST_HELPERS := $(forms)
+include tests/tests.mk
+
+test: $(BUILD)/kinmat $(BUILD)/debug/kinmat $(references) $(BUILD)/tests$(if $(PFUNIT_DIR),/pfunit)/unit
+	BUILD=$(BUILD) MAKE='$(MAKE)' tests/run.sh
+
+install: $(BUILD)/kinmat
+	install -d $(DESTDIR)$(PREFIX)/bin
+	install -m 755 $(BUILD)/kinmat $(DESTDIR)$(PREFIX)/bin/kinmat
+
+clean:
+	rm -rf $(BUILD)

@@ -1,0 +1,176 @@
+!> Level 12. The command's words: what to read, what to write, which sets.
+module command_line
+   use failures, only: failure_t, fail, status_refused
+   implicit none
+   private
+   public :: options_t, read_command, help_text
+
+   type :: options_t
+      character(:), allocatable :: deck      !< '' is standard input
+      character(:), allocatable :: output    !< '' is standard output
+      character(:), allocatable :: csv       !< '' for none
+      character(:), allocatable :: log       !< '' for none
+      logical :: check = .false.             !< read and analyse only
+      integer :: share = 1, shares = 1       !< the share-th of so many shares of the deck's sets
+      !> What is printed instead of computing: 'HELP', 'VERSION', 'RULER' or ''.
+      character(:), allocatable :: show
+   end type options_t
+
+   character(*), parameter :: lines(*) = [character(72) :: &
+      'kinmat DECK            reads a card deck, prints the listing', &
+      'kinmat < DECK          the same', &
+      '  -o FILE              the listing to FILE', &
+      '  --csv FILE           the results with 17 digits, comma-separated', &
+      '  --log FILE           the protocol of the solver', &
+      '  --check              reads and analyses the deck, computes nothing', &
+      '  --sets K/N           the K-th of N shares of the sets of the deck', &
+      '  --ruler              prints an empty card with its columns', &
+      '  --help, --version', &
+      'Exit status: 0 every step solved; 1 deck or command refused;', &
+      '2 listing complete, at least one step marked; 3 file, memory or disk.']
+
+contains
+
+   !> The text of --help.
+   pure function help_text() result(text)
+      character(:), allocatable :: text
+      integer :: i
+
+      text = trim(lines(1))
+      do i = 2, size(lines)
+         text = text//new_line('a')//trim(lines(i))
+      end do
+   end function help_text
+
+   !> Reads the process's arguments.
+   subroutine read_command(options, failure)
+      type(options_t), intent(out) :: options
+      type(failure_t), allocatable, intent(out) :: failure
+      integer :: i
+      logical :: has_deck
+
+      options%deck = ''
+      options%output = ''
+      options%csv = ''
+      options%log = ''
+      options%show = ''
+      has_deck = .false.
+      i = 1
+      do while (i <= command_argument_count() .and. .not. allocated(failure))
+         select case (argument(i))
+         case ('-o')
+            call take_file(i, options%output, failure)
+         case ('--csv')
+            call take_file(i, options%csv, failure)
+         case ('--log')
+            call take_file(i, options%log, failure)
+         case ('--sets')
+            call take_share(i, options, failure)
+         case ('--check')
+            options%check = .true.
+         case ('--help', '-h')
+            options%show = 'HELP'
+         case ('--version')
+            options%show = 'VERSION'
+         case ('--ruler')
+            options%show = 'RULER'
+         case default
+            call take_deck(argument(i), has_deck, options%deck, failure)
+         end select
+         i = i + 1
+      end do
+      if (.not. allocated(failure)) call check_files(options, failure)
+   end subroutine read_command
+
+   subroutine take_deck(word, has_deck, deck, failure)
+      character(*), intent(in) :: word
+      logical, intent(inout) :: has_deck
+      character(:), allocatable, intent(inout) :: deck
+      type(failure_t), allocatable, intent(out) :: failure
+
+      if (has_deck) then
+         call fail(failure, status_refused, 'MORE THAN ONE DECK IS NAMED: '//deck//' AND '//word)
+      else if (len(word) == 0) then
+         call fail(failure, status_refused, 'AN EMPTY WORD IS NO DECK')
+      else if (word(1:1) == '-' .and. word /= '-') then
+         call fail(failure, status_refused, 'OPTION '//word//' IS UNKNOWN; SEE kinmat --help')
+      else
+         deck = word
+         if (word == '-') deck = ''
+         has_deck = .true.
+      end if
+   end subroutine take_deck
+
+   !> The file name after option number `i`.
+   subroutine take_file(i, path, failure)
+      integer, intent(inout) :: i
+      character(:), allocatable, intent(inout) :: path
+      type(failure_t), allocatable, intent(out) :: failure
+
+      if (i == command_argument_count()) then
+         call fail(failure, status_refused, 'OPTION '//argument(i)//' NEEDS A FILE NAME')
+      else if (len(path) > 0) then
+         call fail(failure, status_refused, 'OPTION '//argument(i)//' IS GIVEN TWICE')
+      else
+         path = argument(i + 1)
+         if (len(path) == 0) call fail(failure, status_refused, 'OPTION '//argument(i)//' NEEDS A FILE NAME')
+         i = i + 1
+      end if
+   end subroutine take_file
+
+   !> The K/N after option number `i`.
+   subroutine take_share(i, options, failure)
+      integer, intent(inout) :: i
+      type(options_t), intent(inout) :: options
+      type(failure_t), allocatable, intent(out) :: failure
+      character(:), allocatable :: word
+      integer :: slash
+
+      word = argument(i + 1)
+      i = i + 1
+      slash = index(word, '/')
+      options%share = 0
+      if (is_whole(word(:max(0, slash - 1))) .and. is_whole(word(slash + 1:))) then
+         read (word(:slash - 1), *) options%share
+         read (word(slash + 1:), *) options%shares
+      end if
+      if (options%share < 1 .or. options%share > options%shares) &
+         call fail(failure, status_refused, 'OPTION --sets NEEDS K/N WITH 1 <= K <= N, SUCH AS 1/4')
+   end subroutine take_share
+
+   pure logical function is_whole(word)
+      character(*), intent(in) :: word
+
+      is_whole = len(word) > 0 .and. len(word) < 9 .and. verify(word, '0123456789') == 0
+   end function is_whole
+
+   !> No file is both read and written, or written twice.
+   subroutine check_files(options, failure)
+      type(options_t), intent(in) :: options
+      type(failure_t), allocatable, intent(out) :: failure
+
+      if (same(options%output, options%csv) .or. same(options%output, options%log) &
+         .or. same(options%csv, options%log)) &
+         call fail(failure, status_refused, 'ONE FILE IS NAMED FOR TWO OUTPUTS')
+      if (same(options%deck, options%output) .or. same(options%deck, options%csv) &
+         .or. same(options%deck, options%log)) &
+         call fail(failure, status_refused, 'THE DECK '//options%deck//' WOULD BE OVERWRITTEN')
+   end subroutine check_files
+
+   pure logical function same(a, b)
+      character(*), intent(in) :: a, b
+
+      same = len(a) > 0 .and. len(a) == len(b) .and. a == b .and. a /= '/dev/null' .and. a /= '/dev/full'
+   end function same
+
+   !> Argument number `i`, '' where there is none.
+   function argument(i) result(word)
+      integer, intent(in) :: i
+      character(:), allocatable :: word
+      integer :: length
+
+      call get_command_argument(i, length=length)
+      allocate (character(length) :: word)
+      if (length > 0) call get_command_argument(i, word)
+   end function argument
+end module command_line

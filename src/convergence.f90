@@ -1,0 +1,43 @@
+!> Level 2. How an iteration for a position ended: the record that both methods give back.
+module convergence
+   use kinds, only: wp
+   implicit none
+   private
+   public :: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged
+   public :: ending, is_solved
+
+   integer, parameter :: ended_converged = 1   !< residual and step within the tolerance
+   integer, parameter :: ended_stalled = 2     !< residual at rounding level, steps shrink no more: solved
+   integer, parameter :: ended_singular = 3    !< the matrix has no inverse
+   integer, parameter :: ended_limit = 4       !< too many iterations
+   integer, parameter :: ended_diverged = 5    !< the residual left all bounds
+
+   type :: convergence_t
+      integer :: ended = ended_limit
+      integer :: iterations = 0
+      real(wp) :: residual = 0.0_wp            !< largest, over the size of the coordinates
+      real(wp) :: step = 0.0_wp                !< largest change of the last iteration, likewise
+      real(wp) :: rate = 0.0_wp                !< mean ratio of successive residuals
+      real(wp) :: reciprocal_condition = 0.0_wp !< of the Jacobian at the position found
+      integer :: determinant = 0               !< its sign
+      logical :: singular = .false.            !< position found where the Jacobian has no inverse
+   end type convergence_t
+
+contains
+
+   !> A position was found.
+   pure logical function is_solved(c)
+      type(convergence_t), intent(in) :: c
+
+      is_solved = c%ended == ended_converged .or. c%ended == ended_stalled
+   end function is_solved
+
+   !> The word for how it ended.
+   pure function ending(c) result(word)
+      type(convergence_t), intent(in) :: c
+      character(9) :: word
+      character(9), parameter :: words(5) = [character(9) :: 'CONVERGED', 'ROUNDING', 'SINGULAR', 'LIMIT', 'DIVERGED']
+
+      word = words(c%ended)
+   end function ending
+end module convergence

@@ -1,0 +1,66 @@
+!> Level 5. The results as comma-separated values with 17 digits: the deck's length unit, radians or degrees as the deck
+!> says. A value that does not exist is empty and `mark` says why.
+module csv
+   use kinds, only: wp
+   use constants, only: degree
+   use mechanism, only: mechanism_t, request_link, request_point
+   use motion, only: motion_t
+   use points, only: row_t, row_of, is_due
+   use text_output, only: output_t, put
+   use numerals, only: whole, full
+   implicit none
+   private
+   public :: csv_head, csv_instant
+
+   character(12), parameter :: marks(0:3) = [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE']
+   character(5), parameter :: kinds_of_row(3) = ['LINK ', 'POINT', 'PAIR ']
+
+contains
+
+   !> The names of the columns.
+   subroutine csv_head(o)
+      type(output_t), intent(inout) :: o
+
+      call put(o, 'set,step,t,kind,name,x,y,phi,vx,vy,vphi,ax,ay,aphi,mark')
+   end subroutine csv_head
+
+   !> The rows of instant number `step` (0, 1, ...) that the deck asks for there.
+   subroutine csv_instant(o, m, q, step)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      integer, intent(in) :: step
+      character(:), allocatable :: start
+      integer :: i
+
+      start = whole(m%set_number)//','//whole(step)//','//full(q%t)//','
+      do i = 1, size(m%requests)
+         if (is_due(m, m%requests(i), step)) &
+            call put(o, start//cells(row_of(m, q, m%requests(i)), q%known, m%degrees)//trim(marks(q%mark)))
+      end do
+   end subroutine csv_instant
+
+   !> Kind, name and nine values, a comma after each.
+   pure function cells(row, known, degrees) result(text)
+      type(row_t), intent(in) :: row
+      integer, intent(in) :: known
+      logical, intent(in) :: degrees
+      character(:), allocatable :: text
+      integer :: k, c
+
+      text = trim(kinds_of_row(row%kind))//','//trim(row%name)//','
+      do k = 0, 2
+         do c = 1, 3
+            if (k <= known .and. has_column(row%kind, c)) &
+               text = text//full(row%value(c, k)/merge(degree, 1.0_wp, degrees .and. (c == 3 .or. row%angular)))
+            text = text//','
+         end do
+      end do
+   end function cells
+
+   pure logical function has_column(kind, c)
+      integer, intent(in) :: kind, c
+
+      has_column = kind == request_link .or. c == 1 .or. (kind == request_point .and. c == 2)
+   end function has_column
+end module csv

@@ -1,0 +1,141 @@
+!> Level 13. One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later.
+module job
+   use failures, only: failure_t, fail, status_solved, status_refused, status_marked, status_machine
+   use mechanism, only: mechanism_t, instant_count, instant
+   use motion, only: motion_t, new_motion, mark_none
+   use structure, only: findings_t, count_freedoms
+   use deck, only: read_deck
+   use text_output, only: output_t, open_output, put, close_output
+   use numerals, only: whole
+   use listing, only: layout_t, new_layout, listing_head, listing_instant, listing_end
+   use csv, only: csv_head, csv_instant
+   use protocol, only: protocol_head, protocol_instant
+   use analysis, only: analysis_t, new_analysis, advance
+   use command_line, only: options_t
+   implicit none
+   private
+   public :: run_job
+
+   !> The job's outputs; csv and log only where asked for.
+   type :: outputs_t
+      type(output_t) :: listing, csv, log
+   end type outputs_t
+
+contains
+
+   !> Does what `options` say. `status`: the exit status; `message`: lines for standard error, '' for none.
+   subroutine run_job(options, status, message)
+      type(options_t), intent(in) :: options
+      integer, intent(out) :: status
+      character(:), allocatable, intent(out) :: message
+      type(mechanism_t), allocatable :: sets(:)
+      type(failure_t), allocatable :: failure
+      type(outputs_t) :: o
+
+      status = status_solved
+      call read_deck(options%deck, sets, message, failure)
+      if (.not. allocated(failure)) call check_freedoms(sets, failure)
+      if (.not. allocated(failure)) call open_all(options, o, failure)
+      if (.not. allocated(failure)) then
+         call run_sets(options, sets, o, status)
+         call close_all(options, o, failure)
+      end if
+      if (allocated(failure)) then
+         status = failure%status
+         if (len(message) == 0) message = ' *** '//failure%text
+      end if
+   end subroutine run_job
+
+   !> Every set has as many drives as freedoms, and at least one link that moves.
+   subroutine check_freedoms(sets, failure)
+      type(mechanism_t), intent(in) :: sets(:)
+      type(failure_t), allocatable, intent(out) :: failure
+      type(findings_t) :: f
+      integer :: i
+
+      do i = 1, size(sets)
+         f = count_freedoms(sets(i))
+         if (f%freedoms == f%drives) cycle
+         call fail(failure, status_refused, 'E101  SET '//whole(i)//': W = '//whole(f%coordinates) &
+            //' COORDINATES LESS R = '//whole(f%equations)//' EQUATIONS LEAVE S = '//whole(f%freedoms) &
+            //' FREEDOMS, BUT DRIVES ARE '//whole(f%drives))
+         return
+      end do
+   end subroutine check_freedoms
+
+   subroutine open_all(options, o, failure)
+      type(options_t), intent(in) :: options
+      type(outputs_t), intent(out) :: o
+      type(failure_t), allocatable, intent(out) :: failure
+
+      call open_output(o%listing, options%output, failure)
+      if (.not. allocated(failure) .and. len(options%csv) > 0) call open_output(o%csv, options%csv, failure)
+      if (.not. allocated(failure) .and. len(options%log) > 0) call open_output(o%log, options%log, failure)
+   end subroutine open_all
+
+   subroutine close_all(options, o, failure)
+      type(options_t), intent(in) :: options
+      type(outputs_t), intent(inout) :: o
+      type(failure_t), allocatable, intent(out) :: failure
+      type(failure_t), allocatable :: other
+
+      call close_output(o%listing, failure)
+      if (len(options%csv) > 0) call close_output(o%csv, other)
+      if (allocated(other)) call move_alloc(other, failure)
+      if (len(options%log) > 0) call close_output(o%log, other)
+      if (allocated(other)) call move_alloc(other, failure)
+   end subroutine close_all
+
+   !> The sets of this share, one after another: shares put together in their order are the whole.
+   subroutine run_sets(options, sets, o, status)
+      type(options_t), intent(in) :: options
+      type(mechanism_t), intent(in) :: sets(:)
+      type(outputs_t), intent(inout) :: o
+      integer, intent(inout) :: status
+      integer :: i, first, last
+
+      first = share_end(size(sets), options%share - 1, options%shares) + 1
+      last = share_end(size(sets), options%share, options%shares)
+      if (len(options%csv) > 0 .and. options%share == 1) call csv_head(o%csv)
+      do i = first, last
+         call run_set(options, sets(i), o, status)
+      end do
+   end subroutine run_sets
+
+   !> Last set of share `k` of `n` shares of `count` sets.
+   pure integer function share_end(count, k, n)
+      use, intrinsic :: iso_fortran_env, only: int64
+      integer, intent(in) :: count, k, n
+
+      share_end = int(int(count, int64)*k/n)
+   end function share_end
+
+   !> Solves and writes one set, instant by instant.
+   subroutine run_set(options, m, o, status)
+      type(options_t), intent(in) :: options
+      type(mechanism_t), intent(in) :: m
+      type(outputs_t), intent(inout) :: o
+      integer, intent(inout) :: status
+      type(layout_t) :: layout
+      type(analysis_t) :: a
+      type(motion_t) :: q
+      integer :: k, marked
+
+      layout = new_layout(m)
+      call listing_head(o%listing, layout, m, count_freedoms(m))
+      if (options%check) return
+      if (len(options%log) > 0) call protocol_head(o%log, m)
+      a = new_analysis(m)
+      q = new_motion(size(m%links))
+      marked = 0
+      do k = 0, instant_count(m) - 1
+         call advance(a, instant(m, k), q)
+         if (q%mark /= mark_none) marked = marked + 1
+         call listing_instant(o%listing, layout, m, q, k)
+         if (len(options%csv) > 0) call csv_instant(o%csv, m, q, k)
+         if (len(options%log) > 0) call protocol_instant(o%log, k, q%t, a%convergence)
+      end do
+      call listing_end(o%listing, m, instant_count(m) - marked, marked)
+      if (marked > 0) status = status_marked
+   end subroutine run_set
+end module job

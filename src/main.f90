@@ -1,0 +1,54 @@
+!> Level 14. The command kinmat: arguments, exit status; the only STOP.
+program main
+   use, intrinsic :: iso_fortran_env, only: error_unit
+   use, intrinsic :: iso_c_binding, only: c_int
+   use failures, only: failure_t
+   use command_line, only: options_t, read_command, help_text
+   use cards, only: ruler_card
+   use job, only: run_job
+   implicit none
+
+   interface
+      integer(c_int) function isatty(descriptor) bind(c)
+         import :: c_int
+         integer(c_int), value :: descriptor
+      end function isatty
+   end interface
+
+   character(*), parameter :: version = 'KINMAT 1.0'
+   type(options_t) :: options
+   type(failure_t), allocatable :: failure
+   character(:), allocatable :: message
+   integer :: status
+
+   call read_command(options, failure)
+   if (allocated(failure)) then
+      write (error_unit, '(a)') ' *** '//failure%text
+      call leave(failure%status)
+   end if
+   if (command_argument_count() == 0) then
+      if (isatty(0_c_int) /= 0) options%show = 'HELP'
+   end if
+   select case (options%show)
+   case ('HELP')
+      print '(a)', help_text()
+   case ('VERSION')
+      print '(a)', version
+   case ('RULER')
+      print '(a)', ruler_card()
+   case default
+      call run_job(options, status, message)
+      if (len(message) > 0) write (error_unit, '(a)') message
+      call leave(status)
+   end select
+
+contains
+
+   !> Ends the process with an exit status and no word of its own.
+   subroutine leave(status)
+      integer, intent(in) :: status
+
+      flush (error_unit)
+      stop status, quiet=.true.
+   end subroutine leave
+end program main

@@ -1,0 +1,69 @@
+!> Level 2. The words of the listing, English and Polish (without diacritics).
+module phrases
+   implicit none
+   private
+   public :: phrase_length, phrase
+   public :: say_program, say_set, say_title, say_data, say_structure, say_links, say_ground, say_revolute, &
+      say_prismatic, say_coordinates, say_equations, say_freedoms, say_drives, say_results, say_units, &
+      say_instant, say_link, say_point, say_pair, say_phi, say_value, say_rate, say_rate2, say_none, &
+      say_end, say_solved, say_marked, say_no_position, say_no_rates, say_overflow, say_card, say_default, &
+      say_in_units
+
+   integer, parameter :: phrase_length = 72
+
+   integer, parameter :: say_program = 1, say_set = 2, say_title = 3, say_data = 4, say_structure = 5, &
+      say_links = 6, say_ground = 7, say_revolute = 8, say_prismatic = 9, say_coordinates = 10, &
+      say_equations = 11, say_freedoms = 12, say_drives = 13, say_results = 14, say_units = 15, &
+      say_instant = 16, say_link = 17, say_point = 18, say_pair = 19, say_phi = 20, say_value = 21, &
+      say_rate = 22, say_rate2 = 23, say_none = 24, say_end = 25, say_solved = 26, say_marked = 27, &
+      say_no_position = 28, say_no_rates = 29, say_overflow = 30, say_card = 31, say_default = 32, &
+      say_in_units = 33
+
+   character(phrase_length), parameter :: words(2, 33) = reshape([character(phrase_length) :: &
+      'KINEMATICS OF PLANAR MECHANISMS IN MATRIX FORMULATION', &
+      'KINEMATYKA MECHANIZMOW PLASKICH W UJECIU MACIERZOWYM', &
+      'SET OF COMPUTATIONS NO.', 'KOMPLET OBLICZEN NR', &
+      'TITLE', 'TYTUL', &
+      'INPUT DATA', 'DANE', &
+      'STRUCTURE', 'STRUKTURA', &
+      'LINKS', 'OGNIWA', &
+      'OF THEM GROUND', 'W TYM OSTOJA', &
+      'REVOLUTE PAIRS', 'PARY OBROTOWE', &
+      'PRISMATIC PAIRS', 'PARY POSTEPOWE', &
+      'COORDINATES', 'WSPOLRZEDNE', &
+      'EQUATIONS', 'ROWNANIA', &
+      'FREEDOMS', 'STOPNIE SWOBODY', &
+      'DRIVES', 'NAPEDY', &
+      'RESULTS', 'WYNIKI', &
+      'UNITS', 'JEDNOSTKI', &
+      'INSTANT', 'CHWILA', &
+      'LINK', 'OGNIWO', &
+      'POINT', 'PUNKT', &
+      'PAIR', 'PARA', &
+      'PHI', 'FI', &
+      'VALUE', 'WARTOSC', &
+      'RATE', 'PREDKOSC', &
+      '2ND RATE', 'PRZYSP.', &
+      'NONE', 'BRAK', &
+      'END OF SET', 'KONIEC KOMPLETU', &
+      'INSTANTS SOLVED', 'CHWILE ROZWIAZANE', &
+      'MARKED', 'ZAZNACZONE', &
+      'NO POSITION FOUND', 'NIE ZNALEZIONO POLOZENIA', &
+      'JACOBIAN SINGULAR: VELOCITIES AND ACCELERATIONS DO NOT EXIST', &
+      'JAKOBIAN OSOBLIWY: PREDKOSCI I PRZYSPIESZENIA NIE ISTNIEJA', &
+      'THE RESULT IS TOO LARGE A NUMBER', 'WYNIK JEST ZBYT DUZA LICZBA', &
+      'CARD', 'KARTA', &
+      '(DEFAULT)', '(DOMYSLNE)', &
+      'UNIT', 'JEDNOSTKA'], [2, 33])
+
+contains
+
+   !> Phrase number `i`, without trailing blanks, in Polish or in English.
+   pure function phrase(i, polish) result(text)
+      integer, intent(in) :: i
+      logical, intent(in) :: polish
+      character(:), allocatable :: text
+
+      text = trim(words(merge(2, 1, polish), i))
+   end function phrase
+end module phrases

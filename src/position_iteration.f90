@@ -1,0 +1,90 @@
+!> Level 9. The iteration that both position methods are:
+!>
+!>    M(q_k) dq = -r(q_k),   q_(k+1) = q_k + dq
+!>
+!> with M the Jacobian (Newton) or, where the pose is in the frozen form, the paper's A: its A x_z = p - B x_n
+!> is the same step, since A x - p + B x_n at the old position is the residual there.
+!>
+!> It ends when the residual AND the step are within tolerance of the size of the coordinates, or when the
+!> residual is at the rounding level and the steps shrink no more: all the digits that the condition leaves.
+module position_iteration
+   use kinds, only: wp
+   use linear_solver, only: factors_t, factor, solve
+   use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, &
+      ended_diverged
+   use pose, only: system_t, pose_t, set_pose, add_to_links
+   use closure_equations, only: residual, jacobian
+   implicit none
+   private
+   public :: iterate, rounding_level
+
+   !> A residual is a sum of at most six terms of the size of the coordinates, each rounded; twice that for margin.
+   real(wp), parameter :: rounding_level = 12.0_wp*epsilon(1.0_wp)
+   !> A step this small leaves the Jacobian, and so the velocities, at the rounding level too.
+   real(wp), parameter :: step_tolerance = 16.0_wp*epsilon(1.0_wp)
+   !> A residual or step beyond this many sizes comes back from nowhere; well below overflow.
+   real(wp), parameter :: bound = 1.0e30_wp
+   !> An angle beyond this has fewer digits after the point than the listing prints.
+   real(wp), parameter :: angle_limit = 1.0e8_wp
+
+contains
+
+   !> Moves the links of `p` to a position where the drives have the values `driven` (drives). `tolerance`: relative,
+   !> 0 for the limit of rounding; `limit`: iterations allowed. `f`: room for n equations; leaves the factors of the
+   !> last matrix, taken one step of the tolerance's size before the position. `c` says how it ended.
+   subroutine iterate(s, driven, tolerance, limit, p, f, c)
+      type(system_t), intent(in) :: s
+      real(wp), intent(in) :: driven(:), tolerance
+      integer, intent(in) :: limit
+      type(pose_t), intent(inout) :: p
+      type(factors_t), intent(inout) :: f
+      type(convergence_t), intent(out) :: c
+      real(wp) :: r(s%n), before, first, highest
+      integer :: info
+
+      before = huge(before)
+      first = 0.0_wp
+      do while (c%iterations < limit)
+         c%iterations = c%iterations + 1
+         call residual(s, p, driven, r)
+         highest = max(1.0_wp, maxval(abs(p%q)))
+         c%residual = maxval(abs(r))/highest
+         if (c%iterations == 1) first = c%residual
+         call jacobian(s, p, f%a)
+         call factor(f, info)
+         if (info > 0) then
+            c%singular = c%residual <= max(rounding_level, tolerance)
+            c%ended = merge(ended_stalled, ended_singular, c%singular)
+            exit
+         end if
+         call solve(f, r)
+         c%step = maxval(abs(r))/highest
+         if (all(abs(r) <= bound)) call add_to_links(s, -r, p%q)
+         if (.not. (all(abs(r) <= bound) .and. all(abs(p%q(3, :)) <= angle_limit))) then
+            c%ended = ended_diverged
+            exit
+         end if
+         call set_pose(s, p)
+         if (is_at_end(c, before, tolerance)) exit
+         before = c%step
+      end do
+      if (c%iterations > 1 .and. first > 0.0_wp) &
+         c%rate = (c%residual/first)**(1.0_wp/real(c%iterations - 1, wp))
+   end subroutine iterate
+
+   !> Residual and step say that the position is reached; `before`: the step before. Sets how it ended.
+   logical function is_at_end(c, before, tolerance)
+      type(convergence_t), intent(inout) :: c
+      real(wp), intent(in) :: before, tolerance
+
+      is_at_end = c%residual <= max(rounding_level, tolerance)
+      if (.not. is_at_end) return
+      if (c%step <= max(step_tolerance, tolerance)) then
+         c%ended = ended_converged
+      else if (c%step > 0.5_wp*before) then
+         c%ended = ended_stalled
+      else
+         is_at_end = .false.
+      end if
+   end function is_at_end
+end module position_iteration

@@ -1,0 +1,38 @@
+!> Level 5. The solver's protocol (--log): how each position was found. It depends on the solver's path, which
+!> the listing never does.
+module protocol
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, method_matrix
+   use convergence, only: convergence_t, ending
+   use text_output, only: output_t, put
+   use numerals, only: whole, full
+   implicit none
+   private
+   public :: protocol_head, protocol_instant
+
+contains
+
+   !> The set's method and the columns.
+   subroutine protocol_head(o, m)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+
+      call put(o, ' SET '//whole(m%set_number)//'   METHOD '//trim(merge('MATRIX', 'NEWTON', m%method == method_matrix)))
+      call put(o, '    STEP                        T     ENDED  ITER   RESIDUAL       STEP       RATE' &
+         //'  RECIPROCAL CONDITION  SIGN OF DET')
+   end subroutine protocol_head
+
+   !> One line: instant number, time, how the iteration ended, its count, last residual and step (over the size of
+   !> the coordinates), mean ratio of successive residuals, reciprocal condition and sign of the determinant.
+   subroutine protocol_instant(o, step, t, c)
+      type(output_t), intent(inout) :: o
+      integer, intent(in) :: step
+      real(wp), intent(in) :: t
+      type(convergence_t), intent(in) :: c
+      character(140) :: line
+
+      write (line, '(i8,es25.16e3,a10,i6,3es11.3,es22.3,i13)') step, t, adjustr(ending(c)), c%iterations, &
+         c%residual, c%step, c%rate, c%reciprocal_condition, c%determinant
+      call put(o, trim(line))
+   end subroutine protocol_instant
+end module protocol

@@ -1,0 +1,98 @@
+!> Tests. The parts of which the closed forms are made: points, links and dyads, as jets in real128.
+!> Every formula is plane trigonometry; none of the program's equations or solvers is used.
+module closed_forms_dyads
+   use quad_jet, only: qp, jet_t, constant_jet, &
+      operator(+), operator(-), operator(*), operator(/), sqrt, sin, cos, atan2
+   implicit none
+   private
+   public :: place_t, body_t, fixed_place, body, place_on, polar, direction, third_corner, natural_spline_3
+
+   !> A point of the plane.
+   type :: place_t
+      type(jet_t) :: x, y
+   end type place_t
+
+   !> A link by its name in the deck: the origin of its axes and their angle (radians).
+   type :: body_t
+      character(8) :: name = ''
+      type(jet_t) :: x, y, phi
+   end type body_t
+
+contains
+
+   !> The point (x, y) of the ground.
+   pure type(place_t) function fixed_place(x, y) result(p)
+      real(qp), intent(in) :: x, y
+
+      p = place_t(constant_jet(x), constant_jet(y))
+   end function fixed_place
+
+   !> The link `name` with its origin at `origin` and its axes at `phi`.
+   pure type(body_t) function body(name, origin, phi) result(b)
+      character(*), intent(in) :: name
+      type(place_t), intent(in) :: origin
+      type(jet_t), intent(in) :: phi
+
+      b = body_t(name, origin%x, origin%y, phi)
+   end function body
+
+   !> The point (xi, eta) of a link.
+   pure type(place_t) function place_on(b, xi, eta) result(p)
+      type(body_t), intent(in) :: b
+      real(qp), intent(in) :: xi, eta
+
+      p%x = b%x + xi*cos(b%phi) - eta*sin(b%phi)
+      p%y = b%y + xi*sin(b%phi) + eta*cos(b%phi)
+   end function place_on
+
+   !> The point at the distance `length` from `p` in the direction `phi`.
+   pure type(place_t) function polar(p, length, phi) result(q)
+      type(place_t), intent(in) :: p
+      real(qp), intent(in) :: length
+      type(jet_t), intent(in) :: phi
+
+      q = place_t(p%x + length*cos(phi), p%y + length*sin(phi))
+   end function polar
+
+   !> The direction from `p` to `q`, in (-pi, pi].
+   pure type(jet_t) function direction(p, q) result(phi)
+      type(place_t), intent(in) :: p, q
+
+      phi = atan2(q%y - p%y, q%x - p%x)
+   end function direction
+
+   !> The corner C of the triangle A B C with the squares of AC and BC given; `side` is +1.0 when C lies to
+   !> the left of the way from A to B, -1.0 to the right. From |C - A|^2 and |C - B|^2 with C = A + u AB + v n:
+   !> u = (AB^2 + AC^2 - BC^2)/(2 AB^2), v^2 = AC^2/AB^2 - u^2, n = AB turned by a right angle.
+   pure type(place_t) function third_corner(a, b, ac_squared, bc_squared, side) result(c)
+      type(place_t), intent(in) :: a, b
+      type(jet_t), intent(in) :: ac_squared, bc_squared
+      real(qp), intent(in) :: side
+      type(jet_t) :: dx, dy, square, u, v
+
+      dx = b%x - a%x
+      dy = b%y - a%y
+      square = dx*dx + dy*dy
+      u = (square + ac_squared - bc_squared)/(2.0_qp*square)
+      v = side*sqrt(ac_squared/square - u*u)
+      c = place_t(a%x + u*dx - v*dy, a%y + u*dy + v*dx)
+   end function third_corner
+
+   !> The natural cubic spline through (0, y0), (h, y1), (2h, y2). Its second derivative is 0 at the ends and
+   !> m = 3 (y0 - 2 y1 + y2)/(2 h^2) in the middle, from the one equation (h/6)(0 + 4m + 0) = (y0 - 2 y1 + y2)/h.
+   pure type(jet_t) function natural_spline_3(h, y, t) result(s)
+      real(qp), intent(in) :: h, y(0:2)
+      type(jet_t), intent(in) :: t
+      real(qp) :: m
+      type(jet_t) :: u
+
+      m = 1.5_qp*(y(0) - 2.0_qp*y(1) + y(2))/h**2
+      if (t%v <= h) then
+         u = t
+         s = y(0) + (y(1) - y(0))/h*u + m/(6.0_qp*h)*(u*u*u - h**2*u)
+      else
+         u = 2.0_qp*h - t
+         s = y(2) + (y(1) - y(2))/h*u + m/(6.0_qp*h)*(u*u*u - h**2*u)
+      end if
+   end function natural_spline_3
+end module closed_forms_dyads

@@ -1,0 +1,134 @@
+!> Tests. Closed forms of the linkages with revolute pairs only. The lengths are those of the decks in input/,
+!> written out again by hand so that a deck read wrongly shows up as a difference.
+module closed_forms_linkages
+   use kinds, only: wp
+   use quad_jet, only: qp, jet_t, pi_q, degree_q, constant_jet, time_jet, &
+      operator(+), operator(-), operator(*), operator(/), sqrt, sin, cos, atan2
+   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, place_on, polar, direction, third_corner
+   implicit none
+   private
+   public :: four_bar, drag_link, peaucellier, five_bar, pantograph
+
+contains
+
+   !> Crank-rocker 1, 3.5, 3 on the base 4: set 1 open, set 2 crossed.
+   pure function four_bar(set, t) result(links)
+      integer, intent(in) :: set
+      real(qp), intent(in) :: t
+      type(body_t) :: links(4)
+      type(jet_t) :: phi, time
+      type(place_t) :: a0, b0, a, b
+      real(qp) :: side
+
+      time = time_jet(t)
+      if (set == 1) then
+         phi = 30.0_qp*degree_q*time
+         side = 1.0_qp
+      else
+         phi = 0.5_qp + time + 0.25_qp*sin(2.0_qp*time + 0.5_qp)
+         side = -1.0_qp
+      end if
+      a0 = fixed_place(0.0_qp, 0.0_qp)
+      b0 = fixed_place(4.0_qp, 0.0_qp)
+      a = polar(a0, 1.0_qp, phi)
+      b = third_corner(a, b0, constant_jet(3.5_qp**2), constant_jet(3.0_qp**2), side)
+      links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK', a0, phi), &
+               body('COUPLER', a, direction(a, b)), body('ROCKER', b0, direction(b0, b))]
+   end function four_bar
+
+   !> Double crank: base 1 at (1, 0.5) turned by 30 deg, crank 2, coupler sqrt(6) with its axes in its middle,
+   !> follower 2.5. The coupler's half length is the double that the deck's continuation card holds.
+   pure function drag_link(set, t) result(links)
+      integer, intent(in) :: set
+      real(qp), intent(in) :: t
+      type(body_t) :: links(4)
+      real(qp), parameter :: half = real(1.2247448713915890_wp, qp)
+      type(jet_t) :: phi, time
+      type(place_t) :: a0, b0, a, b, middle
+      type(body_t) :: base
+
+      time = time_jet(t)
+      phi = 0.5_qp*time*time*sqrt(time)
+      if (set == 1) phi = (90.0_qp + 24.0_qp*time)*degree_q
+      base = body('BASE', fixed_place(1.0_qp, 0.5_qp), constant_jet(30.0_qp*degree_q))
+      a0 = place_on(base, 0.0_qp, 0.0_qp)
+      b0 = place_on(base, 1.0_qp, 0.0_qp)
+      a = polar(a0, 2.0_qp, phi)
+      b = third_corner(a, b0, constant_jet((2.0_qp*half)**2), constant_jet(2.5_qp**2), 1.0_qp)
+      middle = place_t(0.5_qp*(a%x + b%x), 0.5_qp*(a%y + b%y))
+      links = [base, body('CRANK', a0, phi), body('COUPLER', middle, direction(a, b)), &
+               body('FOLLOWER', b0, direction(b0, b))]
+   end function drag_link
+
+   !> Peaucellier's cell, long arms 3, rhombus 1.5, pole O = (0, 0); C runs on the circle of radius 1 about (1, 0),
+   !> which passes through O. P is the inverse of C: OC OP = k = 3^2 - 1.5^2, so P = k C/|C|^2. With
+   !> C = (1 + cos phi, sin phi), |C|^2 = 2 (1 + cos phi): x_P = k/2 and y_P = (k/2) sin phi/(1 + cos phi).
+   pure function peaucellier(t) result(links)
+      real(qp), intent(in) :: t
+      type(body_t) :: links(8)
+      real(qp), parameter :: arm = 3.0_qp, bar = 1.5_qp, k = arm**2 - bar**2
+      type(jet_t) :: phi, arm2, bar2
+      type(place_t) :: o, m, a, b, c, p
+
+      phi = (-60.0_qp + 10.0_qp*time_jet(t))*degree_q
+      o = fixed_place(0.0_qp, 0.0_qp)
+      m = fixed_place(1.0_qp, 0.0_qp)
+      c = polar(m, 1.0_qp, phi)
+      p = place_t(constant_jet(0.5_qp*k), 0.5_qp*k*sin(phi)/(1.0_qp + cos(phi)))
+      arm2 = constant_jet(arm**2)
+      bar2 = constant_jet(bar**2)
+      a = third_corner(o, p, arm2, bar2, 1.0_qp)
+      b = third_corner(o, p, arm2, bar2, -1.0_qp)
+      links = [body('BASE', o, constant_jet(0.0_qp)), body('CRANK', m, phi), &
+               body('ARM-A', o, direction(o, a)), body('ARM-B', o, direction(o, b)), &
+               body('BAR-AC', a, direction(a, c)), body('BAR-BC', b, direction(b, c)), &
+               body('BAR-AP', a, direction(a, p)), body('BAR-BP', b, direction(b, p))]
+   end function peaucellier
+
+   !> Five-bar: cranks 1 at (0, 0) and (3, 0), couplers 3 and 3 that meet above. The left crank turns at 20 deg
+   !> a second; the right one is given against the left: 60 deg + 20 deg a second, so it turns twice as fast.
+   pure function five_bar(t) result(links)
+      real(qp), intent(in) :: t
+      type(body_t) :: links(5)
+      type(jet_t) :: left, right, square
+      type(place_t) :: a0, e0, a, e, c
+
+      left = 20.0_qp*degree_q*time_jet(t)
+      right = left + (60.0_qp + 20.0_qp*time_jet(t))*degree_q
+      a0 = fixed_place(0.0_qp, 0.0_qp)
+      e0 = fixed_place(3.0_qp, 0.0_qp)
+      a = polar(a0, 1.0_qp, left)
+      e = polar(e0, 1.0_qp, right)
+      square = constant_jet(3.0_qp**2)
+      c = third_corner(a, e, square, square, 1.0_qp)
+      links = [body('BASE', a0, constant_jet(0.0_qp)), body('LEFT', a0, left), body('RIGHT', e0, right), &
+               body('ROD-L', a, direction(a, c)), body('ROD-R', e, direction(e, c))]
+   end function five_bar
+
+   !> Pantograph 3:1 with its pole at (0, 0): arms 3 and 3, rods 1 and 2, a parallelogram A B C D.
+   !> D, whose x and y are driven, is a corner of the isosceles triangle O A D with OA = AD = 1; the arm B T is
+   !> parallel to A D and the rod C D to the arm O B; so T = 3 D.
+   pure function pantograph(set, t) result(links)
+      integer, intent(in) :: set
+      real(qp), intent(in) :: t
+      type(body_t) :: links(5)
+      type(jet_t) :: time, one, phi_arm, phi_rod
+      type(place_t) :: o, a, b, c, d
+
+      time = time_jet(t)
+      if (set == 1) then
+         d = place_t(1.2_qp + 0.3_qp*sin(time), 0.4_qp + 0.25_qp*sin(2.0_qp*time + 0.5_qp))
+      else
+         d = place_t(1.0_qp + 0.25_qp*time, 0.75_qp - 0.5_qp*time + 0.1_qp*time*time)
+      end if
+      o = fixed_place(0.0_qp, 0.0_qp)
+      one = constant_jet(1.0_qp)
+      a = third_corner(o, d, one, one, 1.0_qp)
+      phi_arm = direction(o, a)
+      phi_rod = direction(a, d)
+      b = polar(o, 3.0_qp, phi_arm)
+      c = polar(b, 1.0_qp, phi_rod)
+      links = [body('BASE', o, constant_jet(0.0_qp)), body('ARM-OB', o, phi_arm), body('ARM-BT', b, phi_rod), &
+               body('ROD-AD', a, phi_rod), body('ROD-CD', c, phi_arm + pi_q)]
+   end function pantograph
+end module closed_forms_linkages

@@ -1,0 +1,18 @@
+# To be sourced: counts checks and words what fails. The counts live in a file, since a check may end a pipe.
+counts=$BUILD/counts.$(basename "$0" .sh)
+mkdir -p "$BUILD" && : > "$counts" || exit 3
+pass() { echo passed >> "$counts"; }
+miss() { echo failed >> "$counts"; echo "FAILED: $*"; }
+
+# same NAME EXPECTED FOUND: the two files hold the same bytes
+same() { if diff -u "$2" "$3" > "$BUILD/diff.txt" 2>&1; then pass; else miss "$1"; head -n 20 "$BUILD/diff.txt"; fi; }
+
+# equal NAME EXPECTED FOUND: the two texts are the same
+equal() { if [ "$2" = "$3" ]; then pass; else miss "$1"; echo "  expected: $2"; echo "  found:    $3"; fi; }
+
+# conclude: the closing line; the status is that of the checks
+conclude() {
+   failed=$(grep -c failed "$counts")
+   echo "$(grep -c passed "$counts") passed, $failed failed"
+   [ "$failed" -eq 0 ]
+}

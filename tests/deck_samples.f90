@@ -1,0 +1,128 @@
+!> Small decks for the tests of the reader, and its words about them.
+module deck_samples
+   use mechanism, only: mechanism_t
+   use failures, only: failure_t
+   use deck, only: read_deck
+   implicit none
+   private
+   public :: row, sample, replaced, inserted, read_lines, read_bytes, sentences, set_of
+
+   !> The deck under test, beside the program; every reading deletes it.
+   character(*), parameter :: deck_file = 'unit_test_deck.tmp'
+
+contains
+
+   !> A card by its fields: name, labels A to C, reals 1 to 3 as texts.
+   pure function row(name, a, b, c, r1, r2, r3) result(line)
+      character(*), intent(in) :: name
+      character(*), intent(in), optional :: a, b, c, r1, r2, r3
+      character(80) :: line
+
+      line = name
+      if (present(a)) line(9:16) = a
+      if (present(b)) line(17:24) = b
+      if (present(c)) line(25:32) = c
+      if (present(r1)) line(33:48) = r1
+      if (present(r2)) line(49:64) = r2
+      if (present(r3)) line(65:80) = r3
+   end function row
+
+   !> A crank that turns about a fixed point: the shortest deck without an error, eight cards.
+   pure function sample() result(lines)
+      character(80) :: lines(8)
+
+      lines = [row('GROUND', 'BASE'), row('LINK', 'CRANK'), row('POINT', 'A0', 'BASE'), row('POINT', 'A1', 'CRANK'), &
+               row('REVOLUTE', 'A0', 'A1', 'O'), row('DRIVE', 'ANGLE', 'CRANK', r2='1.0'), &
+               row('TIME', '10', r1='0.0', r2='1.0'), row('END')]
+   end function sample
+
+   !> The sample with `line` in place of card `k`.
+   pure function replaced(k, line) result(lines)
+      integer, intent(in) :: k
+      character(*), intent(in) :: line
+      character(80) :: lines(8)
+
+      lines = sample()
+      lines(k) = line
+   end function replaced
+
+   !> The sample with `more` behind card `k`.
+   pure function inserted(k, more) result(lines)
+      integer, intent(in) :: k
+      character(80), intent(in) :: more(:)
+      character(80) :: lines(8 + size(more))
+      character(80) :: base(8)
+
+      base = sample()
+      lines = [base(1:k), more, base(k + 1:)]
+   end function inserted
+
+   !> `read_deck` on a file of these cards.
+   subroutine read_lines(lines, sets, report, failure)
+      character(*), intent(in) :: lines(:)
+      type(mechanism_t), allocatable, intent(out) :: sets(:)
+      character(:), allocatable, intent(out) :: report
+      type(failure_t), allocatable, intent(out) :: failure
+      character(:), allocatable :: bytes
+      integer :: i
+
+      bytes = ''
+      do i = 1, size(lines)
+         bytes = bytes//trim(lines(i))//achar(10)
+      end do
+      call read_bytes(bytes, sets, report, failure)
+   end subroutine read_lines
+
+   !> `read_deck` on a file of exactly these bytes.
+   subroutine read_bytes(bytes, sets, report, failure)
+      character(*), intent(in) :: bytes
+      type(mechanism_t), allocatable, intent(out) :: sets(:)
+      character(:), allocatable, intent(out) :: report
+      type(failure_t), allocatable, intent(out) :: failure
+      integer :: unit
+
+      open (newunit=unit, file=deck_file, access='stream', form='unformatted', status='replace')
+      write (unit) bytes
+      close (unit)
+      call read_deck(deck_file, sets, report, failure)
+      open (newunit=unit, file=deck_file, status='old')
+      close (unit, status='delete')
+   end subroutine read_bytes
+
+   !> The error sentences about a deck, from the code on, without the pictures; several joined by ' / '.
+   function sentences(lines) result(text)
+      character(*), intent(in) :: lines(:)
+      character(:), allocatable :: text
+      type(mechanism_t), allocatable :: sets(:)
+      type(failure_t), allocatable :: failure
+      character(:), allocatable :: report
+      character(*), parameter :: mark = ' *** '
+      integer :: first, last
+
+      call read_lines(lines, sets, report, failure)
+      text = ''
+      report = new_line('a')//report//new_line('a')
+      do
+         first = index(report, new_line('a')//mark)
+         if (first == 0) exit
+         report = report(first + 1 + len(mark):)
+         last = index(report, new_line('a')) - 1
+         if (text /= '') text = text//' / '
+         text = text//report(1:last)
+         report = report(last + 1:)
+      end do
+   end function sentences
+
+   !> The first set of a deck; its number is 0 if the deck was refused.
+   function set_of(lines) result(set)
+      character(*), intent(in) :: lines(:)
+      type(mechanism_t) :: set
+      type(mechanism_t), allocatable :: sets(:)
+      type(failure_t), allocatable :: failure
+      character(:), allocatable :: report
+
+      call read_lines(lines, sets, report, failure)
+      set%set_number = 0
+      if (size(sets) > 0) set = sets(1)
+   end function set_of
+end module deck_samples

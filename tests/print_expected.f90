@@ -1,0 +1,107 @@
+!> Tests. `print_expected DECK` prints, from the closed form in real128, the listing that `kinmat DECK` must print.
+!> The deck is read and the lines are laid out by the program's own modules; no solver is used.
+program print_expected
+   use, intrinsic :: iso_fortran_env, only: error_unit
+   use kinds, only: wp
+   use failures, only: failure_t
+   use mechanism, only: mechanism_t, instant_count, instant
+   use motion, only: motion_t, new_motion
+   use deck, only: read_deck
+   use text_output, only: output_t, open_output, close_output
+   use listing, only: layout_t, new_layout, listing_head, listing_instant, listing_end
+   use quad_jet, only: qp, pi_q
+   use closed_forms_dyads, only: body_t
+   use closed_forms, only: closed_form, hand_count
+   implicit none
+   character(500) :: path
+   character(:), allocatable :: name, report
+   type(mechanism_t), allocatable :: sets(:)
+   type(failure_t), allocatable :: failure
+   type(output_t) :: o
+   integer :: i
+
+   call get_command_argument(1, path)
+   name = base_name(trim(path))
+   if (size(closed_form(name, 1, 0.0_qp)) == 0) call give_up('NO CLOSED FORM FOR THE DECK '//trim(path))
+   call read_deck(trim(path), sets, report, failure)
+   if (allocated(failure)) call give_up(failure%text//new_line('a')//report)
+   call open_output(o, '', failure)
+   do i = 1, size(sets)
+      call print_set(o, name, sets(i))
+   end do
+   call close_output(o, failure)
+   if (allocated(failure)) call give_up(failure%text)
+
+contains
+
+   !> The listing of one set.
+   subroutine print_set(o, name, m)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: name
+      type(mechanism_t), intent(in) :: m
+      type(layout_t) :: layout
+      type(motion_t) :: q
+      integer :: k
+
+      layout = new_layout(m)
+      call listing_head(o, layout, m, hand_count(name))
+      q = new_motion(size(m%links))
+      do k = 1, size(m%links)
+         q%position(:, k) = m%links(k)%position
+      end do
+      do k = 0, instant_count(m) - 1
+         call move_to(name, m, instant(m, k), q)
+         call listing_instant(o, layout, m, q, k)
+      end do
+      call listing_end(o, m, instant_count(m), 0)
+   end subroutine print_set
+
+   !> The motion at `t`, its angles on the branch next to those of `q` as it comes: the instant before, at the
+   !> first instant the deck's rough ones.
+   subroutine move_to(name, m, t, q)
+      character(*), intent(in) :: name
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: t
+      type(motion_t), intent(inout) :: q
+      type(body_t), allocatable :: links(:)
+      integer :: k, i
+
+      allocate (links, source=closed_form(name, m%set_number, real(t, qp)))
+      if (size(links) /= size(m%links)) call give_up('THE CLOSED FORM AND THE DECK DIFFER IN THEIR LINKS')
+      do i = 1, size(links)
+         k = findloc(m%links%name == links(i)%name, .true., dim=1)
+         if (k == 0) call give_up('THE DECK HAS NO LINK '//links(i)%name)
+         associate (b => links(i))
+            q%position(:, k) = real([b%x%v, b%y%v, next_to(real(q%position(3, k), qp), b%phi%v)], wp)
+            q%velocity(:, k) = real([b%x%d, b%y%d, b%phi%d], wp)
+            q%acceleration(:, k) = real([b%x%dd, b%y%dd, b%phi%dd], wp)
+         end associate
+      end do
+      q%t = t
+      q%known = 2
+   end subroutine move_to
+
+   !> `phi` turned by whole turns until it is within half a turn of `before`.
+   pure real(qp) function next_to(before, phi)
+      real(qp), intent(in) :: before, phi
+
+      next_to = phi + 2.0_qp*pi_q*anint((before - phi)/(2.0_qp*pi_q))
+   end function next_to
+
+   !> The file's name without its folders and its last dot.
+   pure function base_name(path) result(base)
+      character(*), intent(in) :: path
+      character(:), allocatable :: base
+
+      base = path(scan(path, '/', back=.true.) + 1:)
+      if (scan(base, '.') > 0) base = base(:scan(base, '.', back=.true.) - 1)
+   end function base_name
+
+   !> Ends the program with a sentence and the status 1.
+   subroutine give_up(text)
+      character(*), intent(in) :: text
+
+      write (error_unit, '(a)') ' *** '//text
+      error stop 1, quiet=.true.
+   end subroutine give_up
+end program print_expected

@@ -1,0 +1,35 @@
+#!/bin/sh
+# make test: unit tests, the test of their stand-in, make check, and the command as a user calls it. The last line
+# adds all of them up.
+BUILD=${BUILD:-build}
+passed=0
+failed=0
+
+# part NAME COMMAND...: runs one part and adds its closing line "N passed, N failed" to the sums
+part() {
+   name=$1
+   shift
+   "$@" > "$BUILD/part.txt" 2>&1
+   status=$?
+   cat "$BUILD/part.txt"
+   last=$(grep -E '^[0-9]+ passed, [0-9]+ failed$' "$BUILD/part.txt" | tail -n 1)
+   if [ -z "$last" ]; then
+      echo "FAILED: $name gives no count"
+      failed=$((failed + 1))
+      return
+   fi
+   set -- $last
+   passed=$((passed + $1))
+   failed=$((failed + $3))
+   if [ "$status" -ne 0 ] && [ "$3" -eq 0 ]; then
+      echo "FAILED: $name ends with status $status"
+      failed=$((failed + 1))
+   fi
+}
+
+part 'unit tests' "$MAKE" --no-print-directory unit
+part 'the stand-in' "$MAKE" --no-print-directory unit-stand-in
+part 'make check' tests/check.sh
+part 'the command' tests/command.sh
+echo "$passed passed, $failed failed"
+[ "$failed" -eq 0 ]
