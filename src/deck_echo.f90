@@ -10,7 +10,7 @@ module deck_echo
    private
    public :: build_echo
 
-   integer, parameter :: line_length = 120, real_width = 25
+   integer, parameter :: line_length = 119, real_width = 25
    !> Column of the first label, of the first real, and the columns from one label to the next.
    integer, parameter :: label_column = 10, real_column = 37, label_step = 9
    character(*), parameter :: default_mark = '(DEFAULT)'

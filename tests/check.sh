@@ -11,7 +11,8 @@ for deck in input/*.deck; do
    equal "$name: standard error" '' "$(cat "$BUILD/$name.err")"
    same "$name: listing" "expected/$name.lst" "$BUILD/$name.lst"
    same "$name: closed form" "expected/$name.lst" "$BUILD/expected/$name.lst"
-   equal "$name: NaN, Inf or asterisks" '' "$(grep -nEi 'nan|infinity|[*]{4}|-0[.]0*( |$)' "$BUILD/$name.lst")"
+   equal "$name: NaN, Inf or asterisks" '' "$(grep -nEiw 'nan|inf|infinity|[*]{4,}' "$BUILD/$name.lst")"
+   equal "$name: negative zero" '' "$(grep -nE -e '-0[.]0*( |$)' "$BUILD/$name.lst")"
    equal "$name: lines over 120 columns" '' "$(awk 'length > 120' "$BUILD/$name.lst")"
 done
 for listing in expected/*.lst; do

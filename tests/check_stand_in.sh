@@ -247,6 +247,18 @@ contains
    end subroutine helper
 
    @test
+   subroutine not_all_true()
+      @assertTrue([.true., .false.], message='one of two')
+      count = count + 1
+   end subroutine not_all_true
+
+   @test
+   subroutine not_all_false()
+      @assertFalse([.true., .false.], message='two of two')
+      count = count + 1
+   end subroutine not_all_false
+
+   @test
    subroutine none_went_on()
       @assertEqual(1, count)
       @assertTrue(.false., message='after a continued annotation')
@@ -359,11 +371,19 @@ AssertEqual failure:
         Actual: <3>
     Difference: <1>
 
+Failure in: test_bad_suite.not_all_true
+  Location: [test_bad.pf:124]
+one of two
+
+Failure in: test_bad_suite.not_all_false
+  Location: [test_bad.pf:130]
+two of two
+
 Failure in: test_bad_suite.none_went_on
-  Location: [test_bad.pf:125]
+  Location: [test_bad.pf:137]
 after a continued annotation
 
-0 passed, 18 failed
+0 passed, 20 failed
 END
 
 # --- a program that ends early, by itself or by a trap, has not passed ---------------------------------------------
@@ -389,7 +409,7 @@ printf '   @assertEqual(1.0_8, 1.0_16)\n' | in_test | sed 's/test_wrong/test_typ
 
 run_all() {
    unit good "$@"; status_is 0; last_line "$work/good.out" '3 passed, 0 failed'
-   unit bad "$@"; status_is 2; last_line "$work/bad.out" '0 passed, 18 failed'
+   unit bad "$@"; status_is 2; last_line "$work/bad.out" '0 passed, 20 failed'
    unit stops "$@"; status_is 2; says "$work/stops.out" '0 of 2 tests were run to their end (exit status 0)'
    last_line "$work/stops.out" '0 passed, 2 failed'
    unit typed "$@"; status_is build
@@ -397,6 +417,20 @@ run_all() {
 
 run_all
 if cmp -s "$work/bad.out" "$work/bad.expected"; then pass; else miss 'reports:'; diff "$work/bad.expected" "$work/bad.out"; fi
+
+# The program itself says by its exit status what `unit` reads from its last line.
+"$work/good/build/tests/unit" > /dev/null && pass || miss 'the program ends badly after success'
+"$work/bad/build/tests/unit" > /dev/null && miss 'the program ends well after failures' || pass
+
+# A NaN equals nothing and does not trap (pFUnit traps).
+mkdir -p "$work/nan" && rm -rf "$work/nan/build"
+in_test << 'END' | sed 's/test_wrong/test_nan/' > "$work/nan/test_nan.pf"
+   use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan
+   double precision :: x
+   x = ieee_value(x, ieee_quiet_nan)
+   @assertEqual(x, x, tolerance=1.0d0)
+END
+unit nan; status_is 2; says "$work/nan.out" '  Location: [test_nan.pf:10]'; last_line "$work/nan.out" '0 passed, 1 failed'
 
 # A new test file is taken up and a removed one is forgotten, without cleaning.
 sed 's/test_good/test_more/' "$work/good/test_good.pf" > "$work/good/test_more.pf"
