@@ -24,6 +24,7 @@ module card_reader
       type(card_t) :: card
       integer :: form = 0                       !< 0: not known
       logical :: sound = .true.                 !< no complaint about it
+      logical :: names_sure = .true.            !< its form and labels are what was meant, sound or not
       character(label_length) :: label(3) = ''
       integer :: whole = 0
       logical :: whole_given = .false.
@@ -53,15 +54,18 @@ contains
       do i = 1, 3
          reading%label(i) = adjustl(card%text(label_fields(i)%first:label_fields(i)%last))
       end do
-      call check_characters(card, list)
-      if (complaint_count(list) == before) call read_name(card, reading%form, list)
-      reading%sound = complaint_count(list) == before
-      if (.not. reading%sound) then
-         if (reading%form == 0) reading%form = find_form(card%text(name_field%first:name_field%last))
-         return
+      call check_characters(card, reading%names_sure, list)
+      if (complaint_count(list) == before) then
+         call read_name(card, reading%form, list)
+      else
+         reading%form = find_form(card%text(name_field%first:name_field%last))
       end if
+      reading%names_sure = reading%names_sure .and. reading%form > 0
+      reading%sound = complaint_count(list) == before
+      if (.not. reading%sound) return
       if (reading%form /= form_title) then
          call find_cuts(card, card_fields, may_begin_number(reading%form), cut, list)
+         reading%names_sure = .not. any(cut(2:4))
          call read_labels(reading, cut, list)
          do i = 1, 3
             if (.not. cut(4 + i)) call read_real_field(reading, card, real_fields(i), i, list)
@@ -78,11 +82,12 @@ contains
       type(reading_t), intent(out) :: star
       type(complaints_t), intent(inout) :: list
       integer :: before
+      logical :: clean
 
       before = complaint_count(list)
       star%card = card
       star%form = form_star
-      call check_characters(card, list)
+      call check_characters(card, clean, list)
       if (complaint_count(list) > before) then
          continue
       else if (field_text(card, name_field) /= '*') then
@@ -105,12 +110,14 @@ contains
       taken = 0
       if (reading%form < 1 .or. reading%form > size(forms)) return
       taken = forms(reading%form)%reals
-      if (reading%form == form_add .and. (reading%label(1) == 'POWER' .or. reading%label(1) == 'TABLE')) taken = 2
+      if (reading%form == form_add .and. any(reading%label(1) == ['POWER', 'TABLE'])) taken = 2
    end function reals_taken
 
    !> Only printable ASCII and nothing past column 80: the first offence is told.
-   subroutine check_characters(card, list)
+   !> `clean`: the card itself is printable ASCII.
+   subroutine check_characters(card, clean, list)
       type(card_t), intent(in) :: card
+      logical, intent(out) :: clean
       type(complaints_t), intent(inout) :: list
       type(code_t) :: code
       type(field_t) :: field
@@ -119,9 +126,11 @@ contains
       do column = 1, card_columns
          if (card%text(column:column) < ' ' .or. card%text(column:column) > '~') exit
       end do
-      if (column > card_columns) then
+      clean = column > card_columns
+      if (clean) then
          if (card%overrun > 0) &
-            call complain(list, past_last_column, card, field_t('PAST-80', 81, 81), card%overrun, card%beyond, '')
+            call complain(list, past_last_column, card, field_t('PAST-80', 81, 81), card%overrun, &
+                          card%beyond, '')
          return
       end if
       select case (ichar(card%text(column:column)))
@@ -145,13 +154,15 @@ contains
       integer, intent(out) :: form
       type(complaints_t), intent(inout) :: list
       character(:), allocatable :: name
+      type(code_t) :: code
 
       form = find_form(card%text(name_field%first:name_field%last))
       if (form > 0) return
       name = field_text(card, name_field)
       form = find_form(capitals(name))
       if (form > 0) then
-         call complain_field(list, merge(card_indented, card_lower_case, card%text(1:1) == ' '), card, name_field, '')
+         code = merge(card_indented, card_lower_case, card%text(1:1) == ' ')
+         call complain_field(list, code, card, name_field, '')
       else if (name == '') then
          call complain(list, field_blank, card, name_field, name_field%first, '', '')
       else if (complaints_full(list)) then
@@ -174,8 +185,9 @@ contains
 
       associate (form => forms(reading%form))
          do i = 1, 3
-            if (cut(i + 1)) cycle
-            if (reading%label(i) == '') then
+            if (cut(i + 1)) then
+               reading%label(i) = ''
+            else if (reading%label(i) == '') then
                if (form%labels(i) == label_needed) &
                   call complain_field(list, field_blank, reading%card, label_fields(i), '')
             else if (form%labels(i) == label_unused) then
@@ -185,6 +197,7 @@ contains
                reading%whole_given = .true.
                if (flaw /= flaw_none) call complain_flaw(reading%card, label_fields(i), flaw, place, list)
             else if (index(trim(reading%label(i)), ' ') > 0) then
+               reading%names_sure = .false.
                call complain_field(list, label_blank_inside, reading%card, label_fields(i), '')
             end if
          end do

@@ -6,7 +6,8 @@ module deck
    use cards, only: card_t, name_field, is_passed_over
    use card_forms, only: form_end, form_star
    use card_reader, only: reading_t, read_card, read_star
-   use complaints, only: complaints_t, complain_field, complain_deck, complaint_count, complaints_report, whole_text
+   use complaints, only: complaints_t, complain_field, complain_deck, complaint_count, &
+                         complaints_report, whole_text
    use deck_bodies, only: build_bodies
    use deck_checks, only: check_missing, check_unused, check_instants
    use deck_codes, only: deck_empty, deck_long, end_missing, set_empty, star_first
@@ -89,6 +90,7 @@ contains
          call complain_deck(progress%list, deck_empty, '')
       else if (progress%draft%count > 0) then
          call complain_field(progress%list, end_missing, last, name_field, '')
+         progress%draft%names_sure = .false.
          call close_set(progress)
       end if
    end subroutine read_cards

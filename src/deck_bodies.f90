@@ -25,8 +25,8 @@ contains
       call build_pairs(draft, angle_unit, set, list)
    end subroutine build_bodies
 
-   !> The number in `table` of the name that label `i` of card `k` gives; 0 if it is blank (told already) or,
-   !> with a complaint, not known.
+   !> The number in `table` of the name that label `i` of card `k` gives; 0 if it is blank (told already) or
+   !> not known. That is told unless a card could not be read that may have defined it.
    subroutine find_label(draft, table, k, i, unknown, number, list)
       type(draft_t), intent(in) :: draft
       type(name_table_t), intent(in) :: table
@@ -38,7 +38,7 @@ contains
       number = 0
       if (draft%cards(k)%label(i) == '') return
       number = find_name(table, draft%cards(k)%label(i))
-      if (number == 0) call complain_label(list, unknown, draft, k, i, '')
+      if (number == 0 .and. draft%names_sure) call complain_label(list, unknown, draft, k, i, '')
    end subroutine find_label
 
    !> Enters the name that label `i` of card `k` gives.

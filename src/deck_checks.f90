@@ -17,13 +17,13 @@ module deck_checks
 contains
 
    !> A set needs a link that moves and an instant. `closing` is its END card. A card that could not be
-   !> recognized may have been the missing one.
+   !> read may have been the missing one.
    subroutine check_missing(draft, closing, list)
       type(draft_t), intent(in) :: draft
       type(card_t), intent(in) :: closing
       type(complaints_t), intent(inout) :: list
 
-      if (cards_of(draft, 0) > 0) return
+      if (.not. draft%names_sure) return
       if (cards_of(draft, form_link) == 0) call complain_field(list, link_missing, closing, name_field, '')
       if (cards_of(draft, form_time) + cards_of(draft, form_at) == 0) &
          call complain_field(list, time_missing, closing, name_field, '')
@@ -102,8 +102,8 @@ contains
       end do
    end subroutine check_instants
 
-   !> The term of card `k`. t**p exists for t < 0 if p is whole, and at t = 0 with two derivatives if p is 0, 1
-   !> or at least 2.
+   !> The term of card `k`. t**p exists for t < 0 if p is whole, and at t = 0 with two derivatives if p is
+   !> 0, 1 or at least 2.
    subroutine check_term(draft, k, set, term, list)
       type(draft_t), intent(in) :: draft
       integer, intent(in) :: k

@@ -1,8 +1,8 @@
 !> Level 3, step 6. The DRIVE and ADD cards of a set.
 module deck_drives
    use kinds, only: wp
-   use mechanism, only: mechanism_t, drive_t, term_t, drive_angle, drive_x, drive_y, drive_relangle, drive_slide, &
-                        term_harmonic, term_power, term_table, pair_revolute
+   use mechanism, only: mechanism_t, drive_t, term_t, drive_angle, drive_x, drive_y, drive_relangle, &
+                        drive_slide, term_harmonic, term_power, term_table, pair_revolute
    use card_forms, only: form_drive, form_add, form_end
    use complaints, only: complaints_t
    use deck_bodies, only: find_label
@@ -40,8 +40,9 @@ contains
             unit = merge(angle_unit, 1.0_wp, any(set%drives(n)%kind == [drive_angle, drive_relangle]))
             set%drives(n)%polynomial = draft%cards(k)%real*unit
             call build_terms(draft, k, unit, angle_unit, set%drives(n), list)
-         else if (draft%cards(k)%form == form_add .and. all(above /= [form_drive, form_add, unknown_form])) then
-            call complain_name(list, add_alone, draft, k, '')
+         else if (draft%cards(k)%form == form_add) then
+            if (all(above /= [form_drive, form_add, unknown_form])) &
+               call complain_name(list, add_alone, draft, k, '')
          end if
          above = draft%cards(k)%form
          k = next_reading(draft, k)
@@ -77,7 +78,8 @@ contains
          drive%kind = drive_slide
          call find_label(draft, draft%pairs, k, 2, pair_unknown, drive%subject, list)
          if (drive%subject == 0) return
-         if (set%pairs(drive%subject)%kind == pair_revolute) call complain_label(list, drive_revolute, draft, k, 2, '')
+         if (set%pairs(drive%subject)%kind == pair_revolute) &
+            call complain_label(list, drive_revolute, draft, k, 2, '')
       case default
          if (draft%cards(k)%sound) call complain_label(list, drive_kind, draft, k, 1, '')
       end select

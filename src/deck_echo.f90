@@ -30,7 +30,8 @@ contains
          n = n + 1
          set%echo(n) = card_line(draft, k, set)
       end do
-      call add_default(form_units, 'UNITS', [character(label_length) :: set%length_unit, 'RAD', set%time_unit])
+      call add_default(form_units, 'UNITS', &
+                       [character(label_length) :: set%length_unit, 'RAD', set%time_unit])
       call add_default(form_method, 'METHOD', [character(label_length) :: 'NEWTON', '', ''])
       call add_default(form_print, 'PRINT', [character(label_length) :: 'LINKS', '', '1'])
       set%echo = set%echo(1:n)
@@ -63,7 +64,9 @@ contains
          labels = card%label
          if (card%form == form_print .and. labels(3) == '') labels(3) = '1'
          if (card%form == form_units) then
-            labels = [character(label_length) :: set%length_unit, merge('DEG', 'RAD', set%degrees), set%time_unit]
+            labels(1) = set%length_unit
+            labels(2) = merge('DEG', 'RAD', set%degrees)
+            labels(3) = set%time_unit
          end if
          line = head_line(forms(card%form)%name, labels)
          do i = 1, reals_taken(card)

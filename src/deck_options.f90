@@ -13,8 +13,8 @@ module deck_options
    private
    public :: build_options
 
-   !> Steps of a TIME card.
-   integer, parameter :: most_steps = 100000000
+   !> Steps of a TIME card: what its field can hold.
+   integer, parameter :: most_steps = 99999999
    !> Relative tolerances allowed: above what rounding permits, below what would be no solution.
    real(wp), parameter :: least_tolerance = 1.0e-15_wp, most_tolerance = 1.0e-2_wp
 
@@ -64,7 +64,8 @@ contains
          if (first(form) == 0) then
             first(form) = k
          else
-            call complain_name(list, card_repeated, draft, k, whole_text(draft%cards(first(form))%card%number))
+            call complain_name(list, card_repeated, draft, k, &
+                               whole_text(draft%cards(first(form))%card%number))
          end if
       end do
    end subroutine check_repeats
@@ -117,7 +118,7 @@ contains
             call complain_label(list, number_range, draft, k, 1, '1 TO '//whole_text(most_steps))
          else if (.not. any(card%given(1:2))) then
             call complain_real(list, field_blank, draft, k, 2, '')
-         else if (.not. abs(card%real(1) - card%real(2)) > 0.0_wp) then
+         else if (.not. (card%real(1) < card%real(2) .or. card%real(1) > card%real(2))) then
             call complain_real(list, time_point, draft, k, 2, '')
          else if (maxval(abs(card%real(1:2))) > 0.25_wp*huge(1.0_wp)/card%whole) then
             call complain_real(list, time_long, draft, k, 2, '')

@@ -69,7 +69,8 @@ contains
          end if
          call put_name(seen(kind), card%label(2), k, earlier)
          if (earlier > 0) then
-            call complain_label(list, print_repeated, draft, k, 1, whole_text(draft%cards(earlier)%card%number))
+            call complain_label(list, print_repeated, draft, k, 1, &
+                                whole_text(draft%cards(earlier)%card%number))
          else if (kind > 1) then
             call ask_kind(draft, k, kinds_asked(kind - 1), every, set, asked, list)
          else if (card%label(2) /= '') then
@@ -91,7 +92,8 @@ contains
       integer :: subject
 
       if (draft%cards(k)%label(2) == '') then
-         if (subjects(set, kind) == 0) call complain_label(list, print_nothing, draft, k, 1, '')
+         if (subjects(set, kind) == 0 .and. draft%names_sure) &
+            call complain_label(list, print_nothing, draft, k, 1, '')
          call ask_all(set, kind, every, asked)
          return
       end if

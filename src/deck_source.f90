@@ -49,7 +49,8 @@ contains
       end if
       open (newunit=source%unit, file=path, status='old', action='read', form='formatted', &
             access='sequential', iostat=status, iomsg=reason)
-      if (status /= 0) call fail(failure, status_machine, source%name//' CANNOT BE OPENED ('//trim(reason)//')')
+      if (status /= 0) &
+         call fail(failure, status_machine, source%name//' CANNOT BE OPENED ('//trim(reason)//')')
    end subroutine open_source
 
    !> The next card, or `found` false at the end. Errors: status_machine.

@@ -16,6 +16,7 @@ module drafts
    type :: draft_t
       integer :: count = 0
       type(reading_t), allocatable :: cards(:)      !< (count), with room behind
+      logical :: names_sure = .true.                !< of every card: no missing name may be one misread
       type(name_table_t) :: links, points, pairs    !< name -> place in the mechanism's array
       integer, allocatable :: link_card(:), point_card(:), pair_card(:)  !< where each was defined
    end type draft_t
@@ -44,6 +45,7 @@ contains
       end if
       draft%count = draft%count + 1
       draft%cards(draft%count) = reading
+      draft%names_sure = draft%names_sure .and. reading%names_sure
    end subroutine add_reading
 
    !> Number of cards of one form.

@@ -203,8 +203,10 @@ contains
       if (literal%kept == 0) return
       digits = literal%digits(1:literal%kept)//repeat('0', len(digits))
       power = literal%magnitude - 1
-      if (power > largest_exponent .or. (power == largest_exponent .and. digits > largest)) flaw = flaw_overflow
-      if (power < smallest_exponent .or. (power == smallest_exponent .and. digits < smallest)) flaw = flaw_underflow
+      if (power > largest_exponent) flaw = flaw_overflow
+      if (power == largest_exponent .and. digits > largest) flaw = flaw_overflow
+      if (power < smallest_exponent) flaw = flaw_underflow
+      if (power == smallest_exponent .and. digits < smallest) flaw = flaw_underflow
    end subroutine check_range
 
    pure subroutine convert(text, literal, value)

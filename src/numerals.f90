@@ -27,7 +27,7 @@ contains
          long = adjustl(long)
          if (len_trim(long) < numeral_length) exit
       end do
-      if (len_trim(long) >= numeral_length) write (long, '(es11.4e3)') x
+      if (len_trim(long) >= numeral_length) write (long, merge('(es11.4e3)', '(es11.3e3)', x >= 0.0_wp)) x
       if (verify(trim(long), '-0.') == 0 .and. long(1:1) == '-') long = long(2:)
       text = adjustr(long(:numeral_length))
    end function fixed

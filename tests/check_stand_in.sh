@@ -259,6 +259,11 @@ contains
    end subroutine not_all_false
 
    @test
+   subroutine one_that_holds()
+      @assertTrue(.true.)
+   end subroutine one_that_holds
+
+   @test
    subroutine none_went_on()
       @assertEqual(1, count)
       @assertTrue(.false., message='after a continued annotation')
@@ -380,10 +385,10 @@ Failure in: test_bad_suite.not_all_false
 two of two
 
 Failure in: test_bad_suite.none_went_on
-  Location: [test_bad.pf:137]
+  Location: [test_bad.pf:142]
 after a continued annotation
 
-0 passed, 20 failed
+1 passed, 20 failed
 END
 
 # --- a program that ends early, by itself or by a trap, has not passed ---------------------------------------------
@@ -409,7 +414,7 @@ printf '   @assertEqual(1.0_8, 1.0_16)\n' | in_test | sed 's/test_wrong/test_typ
 
 run_all() {
    unit good "$@"; status_is 0; last_line "$work/good.out" '3 passed, 0 failed'
-   unit bad "$@"; status_is 2; last_line "$work/bad.out" '0 passed, 20 failed'
+   unit bad "$@"; status_is 2; last_line "$work/bad.out" '1 passed, 20 failed'
    unit stops "$@"; status_is 2; says "$work/stops.out" '0 of 2 tests were run to their end (exit status 0)'
    last_line "$work/stops.out" '0 passed, 2 failed'
    unit typed "$@"; status_is build

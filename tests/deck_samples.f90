@@ -54,7 +54,9 @@ contains
       character(80) :: base(8)
 
       base = sample()
-      lines = [base(1:k), more, base(k + 1:)]
+      lines(1:k) = base(1:k)
+      lines(k + 1:k + size(more)) = more
+      lines(k + 1 + size(more):) = base(k + 1:)
    end function inserted
 
    !> `read_deck` on a file of these cards.

@@ -29,6 +29,7 @@ part() {
 
 part 'unit tests' "$MAKE" --no-print-directory unit
 part 'the stand-in' "$MAKE" --no-print-directory unit-stand-in
+part 'the house' tests/house.sh
 part 'make check' tests/check.sh
 part 'the command' tests/command.sh
 echo "$passed passed, $failed failed"

@@ -28,7 +28,8 @@ unit_home  := $(patsubst %/,%,$(dir $(lastword $(MAKEFILE_LIST))))
 # Apart, since both bring a module of the name funit.
 unit_build := $(BUILD)/tests$(if $(PFUNIT_DIR),/pfunit)
 unit_names := $(basename $(notdir $(TESTS)))
-unit_flags  = $(TEST_FLAGS) -ffree-line-length-none -J$(unit_build) -I$(TEST_MODULES)
+# Without the report of array temporaries, which drowns the failures.
+unit_flags  = $(TEST_FLAGS) -fcheck=no-array-temps -ffree-line-length-none -J$(unit_build) -I$(TEST_MODULES)
 
 ifneq ($(PFUNIT_DIR),)
    unit_pfunit_mk := $(firstword $(wildcard $(PFUNIT_DIR)/include/PFUNIT.mk $(PFUNIT_DIR)/PFUNIT.mk \

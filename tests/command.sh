@@ -1,0 +1,391 @@
+#!/bin/sh
+# The command as a user calls it: where a deck comes from and where results go, exit statuses, the exact words of every
+# refusal, and that results do not depend on the build, the unit of length, the share or the linear algebra library.
+BUILD=${BUILD:-build}
+. tests/counting.sh
+
+case $BUILD in
+/*) kinmat=$BUILD/kinmat; debug=$BUILD/debug/kinmat ;;
+*) kinmat=$PWD/$BUILD/kinmat; debug=$PWD/$BUILD/debug/kinmat ;;
+esac
+w=$BUILD/command
+rm -rf "$w" && mkdir -p "$w" || exit 3
+
+# refused NAME STATUS SENTENCE ARGUMENT...: status and sentence of a call that prints no listing
+refused() {
+   name=$1; status=$2; sentence=$3
+   shift 3
+   "$kinmat" "$@" > "$w/out" 2> "$w/err"
+   equal "$name: status" "$status" $?
+   equal "$name: sentence" "$sentence" "$(head -n 2 "$w/err")"
+   equal "$name: standard output" '' "$(head -n 2 "$w/out")"
+}
+
+# card NAME A B C R1 R2 R3: one card of a deck
+card() { printf '%-8s%-8s%-8s%-8s%-16s%-16s%-16s\n' "$1" "$2" "$3" "$4" "$5" "$6" "$7" | sed 's/ *$//'; }
+
+# four_bar CRANK COUPLER ROCKER BASE PHI-CRANK PHI-COUPLER PHI-ROCKER: bodies and pairs of a four-bar linkage
+four_bar() {
+   card GROUND BASE '' '' 0.0 0.0 0.0
+   card LINK CRANK '' '' 0.0 0.0 "$5"
+   card LINK COUPLER '' '' "$1" 0.0 "$6"
+   card LINK ROCKER '' '' "$4" 0.0 "$7"
+   card POINT A0 BASE '' 0.0 0.0
+   card POINT B0 BASE '' "$4" 0.0
+   card POINT A0-CR CRANK '' 0.0 0.0
+   card POINT A-CR CRANK '' "$1" 0.0
+   card POINT A-CO COUPLER '' 0.0 0.0
+   card POINT B-CO COUPLER '' "$2" 0.0
+   card POINT B0-RO ROCKER '' 0.0 0.0
+   card POINT B-RO ROCKER '' "$3" 0.0
+   card REVOLUTE A0 A0-CR PAIR-A0
+   card REVOLUTE A-CR A-CO PAIR-A
+   card REVOLUTE B-CO B-RO PAIR-B
+   card REVOLUTE B0-RO B0 PAIR-B0
+}
+
+# deck UNIT LANGUAGE: two sets of computations of a crank-rocker
+deck() {
+   for kind in '' AT; do
+      card TITLE "TEST $kind"
+      card UNITS "$1" RAD S
+      card LANG "$2"
+      four_bar 1.0 3.5 3.0 4.0 0.25 0.9 1.9
+      card DRIVE ANGLE CRANK '' 0.25 1.0 0.1
+      if [ "$kind" = AT ]; then card AT '' '' '' 2.5 0.5 1.5; else card TIME 8 '' '' 0.0 4.0; fi
+      card PRINT ALL
+      card END
+   done
+}
+
+# one_set BODIES... : a set that is asked for the instants 0, 1, 2; PHI and RATE are those of the crank
+one_set() {
+   card TITLE 'ONE SET'
+   four_bar "$@"
+   card DRIVE ANGLE CRANK '' "$PHI" "$RATE" 0.0
+   card TIME 2 '' '' 0.0 2.0
+   card PRINT ALL
+}
+
+# tables LISTING: what stands after the heads of the sets; rows LISTING: the rows of numbers among that
+tables() { awk '/^ (INSTANT|CHWILA) 0 / { on = 1 } /^ (END OF SET|KONIEC KOMPLETU) / { on = 0 } on' "$1"; }
+rows() { tables "$1" | grep -E '^ [A-Z0-9-]+ +-?[0-9]+[.]'; }
+
+deck M EN > "$w/m.deck"
+
+# Where the deck comes from, where the listing goes.
+"$kinmat" "$w/m.deck" > "$w/m.lst" 2> "$w/err"
+equal 'deck by name: status' 0 $?
+equal 'deck by name: standard error' '' "$(cat "$w/err")"
+equal 'sets are numbered' \
+   ' SET OF COMPUTATIONS NO. 1   TITLE   TEST SET OF COMPUTATIONS NO. 2   TITLE   TEST AT' \
+   "$(grep 'SET OF COMPUTATIONS' "$w/m.lst" | tr -d '\n')"
+equal 'last lines of the sets' \
+   ' END OF SET 1:  INSTANTS SOLVED 9, MARKED 0 END OF SET 2:  INSTANTS SOLVED 3, MARKED 0' \
+   "$(grep 'END OF SET' "$w/m.lst" | tr -d '\n')"
+equal 'instants in the order wanted' 'T = 2.500000T = 0.500000T = 1.500000' \
+   "$(sed '1,/^ END OF SET 1/d' "$w/m.lst" | grep '^ INSTANT ' | sed 's/.*T/T/' | tr -d '\n')"
+"$kinmat" < "$w/m.deck" > "$w/out"
+same 'deck from standard input' "$w/m.lst" "$w/out"
+cat "$w/m.deck" | "$kinmat" > "$w/out"
+same 'deck from a pipe' "$w/m.lst" "$w/out"
+"$kinmat" - < "$w/m.deck" > "$w/out"
+same 'deck -' "$w/m.lst" "$w/out"
+echo 'an old and longer text' > "$w/o.lst"
+"$kinmat" -o "$w/o.lst" "$w/m.deck" > "$w/out"
+same '-o FILE' "$w/m.lst" "$w/o.lst"
+equal '-o FILE: standard output' '' "$(cat "$w/out")"
+echo kept > "$w/out"
+"$kinmat" "$w/m.deck" >> "$w/out"
+{ echo kept; cat "$w/m.lst"; } > "$w/wanted"
+same 'standard output is appended to where the shell says so' "$w/wanted" "$w/out"
+(cd "$w" && "$kinmat" m.deck) > "$w/out"
+same 'deck in the working directory' "$w/m.lst" "$w/out"
+mkdir -p "$w/a directory" && cp "$w/m.deck" "$w/a directory/a deck"
+"$kinmat" "$w/a directory/a deck" -o "$w/a directory/a listing"
+same 'names with blanks' "$w/m.lst" "$w/a directory/a listing"
+sed "s/\$/$(printf '\r')/" "$w/m.deck" > "$w/crlf.deck"
+"$kinmat" "$w/crlf.deck" > "$w/out"
+same 'CR-LF' "$w/m.lst" "$w/out"
+
+# --csv: form, 17 digits, and agreement with the listing.
+"$kinmat" "$w/m.deck" --csv "$w/m.csv" > "$w/out"
+same '--csv leaves the listing as it is' "$w/m.lst" "$w/out"
+equal '--csv: header' 'set,step,t,kind,name,x,y,phi,vx,vy,vphi,ax,ay,aphi,mark' "$(head -n 1 "$w/m.csv")"
+equal '--csv: one header' 1 "$(grep -c set "$w/m.csv")"
+equal '--csv: 15 columns' '' "$(awk -F, 'NF != 15' "$w/m.csv")"
+# PRINT ALL: 3 moving links, 8 points, 4 pairs at 9 + 3 instants.
+equal '--csv: rows' $((12 * (3 + 8 + 4) + 1)) "$(wc -l < "$w/m.csv" | tr -d ' ')"
+equal '--csv: kinds' 'LINK PAIR POINT ' "$(sed 1d "$w/m.csv" | cut -d, -f4 | sort -u | tr '\n' ' ')"
+equal '--csv: form of a number' '' \
+   "$(sed 1d "$w/m.csv" | cut -d, -f3,6-14 | tr ',' '\n' | grep -vE '^(-?[0-9][.][0-9]{16}E[-+][0-9]{3})?$')"
+equal '--csv: numbers read back as the same number' '' "$(sed 1d "$w/m.csv" | cut -d, -f3,6-14 | tr ',' '\n' \
+   | awk '$1 != "" { split($1, a, "E"); split(sprintf("%.16e", $1), b, "e"); if (a[1] != b[1] || a[2] + 0 != b[2] + 0) print }')"
+equal '--csv: a value that a kind does not have is empty' '' "$(sed 1d "$w/m.csv" \
+   | awk -F, '{ n = 0; for (i = 6; i <= 14; i++) n += ($i != ""); if (n != ($4 == "LINK" ? 9 : $4 == "POINT" ? 6 : 3)) print }')"
+# Half a unit of the last decimal shown; the factor allows for the difference of two decimal fractions in awk.
+cat > "$w/agree.awk" <<'AWK'
+FILENAME == ARGV[1] { if (FNR > 1) { rows++; name[rows] = $5; count[rows] = 0
+   for (i = 6; i <= 14; i++) if ($i != "") value[rows, ++count[rows]] = $i } next }
+FNR == 1 { FS = " "; $0 = $0 }
+/^ RESULTS$/ { tables = 1 }
+/^ END OF SET/ { tables = 0 }
+tables && NF > 1 && $NF ~ /^-?[0-9]+[.][0-9]*$/ && $1 != "INSTANT" {
+   row++
+   if ($1 != name[row] || NF - 1 != count[row]) { print "row " row ": " $0; next }
+   for (i = 2; i <= NF; i++) {
+      decimals = length($i) - index($i, ".")
+      difference = $i - value[row, i - 1]
+      if (difference < 0) difference = -difference
+      if (difference > 0.5000001 * 10^(-decimals)) print name[row] ": " $i " is not " value[row, i - 1]
+   }
+}
+END { if (row != rows) print row " rows of " rows }
+AWK
+equal '--csv agrees with the listing' '' "$(awk -F, -f "$w/agree.awk" "$w/m.csv" "$w/m.lst")"
+
+# --log
+"$kinmat" "$w/m.deck" --log "$w/m.log" > "$w/out"
+same '--log leaves the listing as it is' "$w/m.lst" "$w/out"
+equal '--log: heads' ' SET 1   METHOD NEWTON SET 2   METHOD NEWTON' "$(grep ' SET ' "$w/m.log" | tr -d '\n')"
+equal '--log: a line for each instant' 12 "$(grep -cE ' (CONVERGED|ROUNDING) ' "$w/m.log")"
+"$kinmat" "$w/m.deck" --csv "$w/three.csv" --log "$w/three.log" -o "$w/three.lst" > "$w/out"
+same 'three outputs: listing' "$w/m.lst" "$w/three.lst"
+same 'three outputs: csv' "$w/m.csv" "$w/three.csv"
+same 'three outputs: log' "$w/m.log" "$w/three.log"
+
+# --check: the heads of the sets, without one instant.
+"$kinmat" --check "$w/m.deck" > "$w/out" 2> "$w/err"
+equal '--check: status' 0 $?
+equal '--check: standard error' '' "$(cat "$w/err")"
+awk '/^ INSTANT 0 / { skip = 1 } !skip { if (held) print line; line = $0; held = 1 }
+   /^ END OF SET/ { skip = 0; held = 0; getline }' "$w/m.lst" > "$w/wanted"
+same '--check: the heads' "$w/wanted" "$w/out"
+
+# --sets: shares put together are the whole.
+for shares in 1 2 3; do
+   : > "$w/shares.lst"; : > "$w/shares.csv"
+   share=1
+   while [ $share -le $shares ]; do
+      "$kinmat" "$w/m.deck" --sets $share/$shares --csv "$w/share.csv" > "$w/share.lst"
+      equal "--sets $share/$shares: status" 0 $?
+      cat "$w/share.lst" >> "$w/shares.lst"
+      cat "$w/share.csv" >> "$w/shares.csv"
+      share=$((share + 1))
+   done
+   same "$shares shares: listing" "$w/m.lst" "$w/shares.lst"
+   same "$shares shares: csv" "$w/m.csv" "$w/shares.csv"
+done
+"$kinmat" "$w/m.deck" --sets 1/2 > "$w/share.lst"
+equal '--sets 1/2: its sets' 1 "$(grep -c 'SET OF COMPUTATIONS' "$w/share.lst")"
+for share in 0/2 3/2 x 1 1/ /2 1/2/3 -1/2 1/0 1.0/2 ''; do
+   refused "--sets '$share'" 1 ' *** OPTION --sets NEEDS K/N WITH 1 <= K <= N, SUCH AS 1/4' "$w/m.deck" --sets "$share"
+done
+refused '--sets without a word' 1 ' *** OPTION --sets NEEDS K/N WITH 1 <= K <= N, SUCH AS 1/4' "$w/m.deck" --sets
+
+# --help, --version, --ruler
+"$kinmat" --help > "$w/out" 2> "$w/err"
+equal '--help: status' 0 $?
+equal '--help: first line' 'kinmat DECK            reads a card deck, prints the listing' "$(head -n 1 "$w/out")"
+for option in -o --csv --log --check --sets --ruler --help --version; do
+   equal "--help tells of $option" found "$(grep -qe "$option" "$w/out" && echo found)"
+done
+equal '--version' 'KINMAT 1.0' "$("$kinmat" --version)"
+equal '--ruler' '$NAME---LABEL-A|LABEL-B|LABEL-C|REAL-1---------|REAL-2---------|REAL-3---------|' "$("$kinmat" --ruler)"
+
+# Refused commands: status 1 or 3, one sentence, no listing.
+refused 'unknown option' 1 ' *** OPTION --nope IS UNKNOWN; SEE kinmat --help' --nope "$w/m.deck"
+refused 'two decks' 1 ' *** MORE THAN ONE DECK IS NAMED: one AND two' one two
+refused 'empty word' 1 ' *** AN EMPTY WORD IS NO DECK' ''
+refused '-o without a file' 1 ' *** OPTION -o NEEDS A FILE NAME' "$w/m.deck" -o
+refused '--csv with an empty file name' 1 ' *** OPTION --csv NEEDS A FILE NAME' "$w/m.deck" --csv ''
+refused '--log twice' 1 ' *** OPTION --log IS GIVEN TWICE' "$w/m.deck" --log "$w/a" --log "$w/b"
+refused 'missing file' 3 " *** FILE $w/no.deck DOES NOT EXIST" "$w/no.deck"
+refused 'deck is a directory' 3 " *** FILE $w IS A DIRECTORY" "$w"
+"$kinmat" < "$w" > "$w/out" 2> "$w/err"
+equal 'standard input is a directory: status' 3 $?
+equal 'standard input is a directory: sentence' ' *** STANDARD INPUT IS A DIRECTORY' "$(cat "$w/err")"
+"$kinmat" < /dev/null > "$w/out" 2> "$w/err"
+equal 'empty deck: status' 1 $?
+equal 'empty deck: sentence' ' *** E001  THE DECK IS EMPTY' "$(cat "$w/err")"
+# To the superuser every file is readable.
+cp "$w/m.deck" "$w/secret.deck" && chmod 000 "$w/secret.deck"
+if [ -r "$w/secret.deck" ]; then
+   echo 'skipped: unreadable deck (the superuser reads it)'
+else
+   "$kinmat" "$w/secret.deck" > "$w/out" 2> "$w/err"
+   equal 'unreadable deck: status' 3 $?
+   equal 'unreadable deck: sentence' " *** FILE $w/secret.deck CANNOT BE OPENED" "$(sed 's/ (.*//' "$w/err")"
+fi
+chmod 600 "$w/secret.deck"
+
+# A deck with an error: nothing is computed, no file is touched.
+sed 's/^LINK    CRANK .*/LINK    CRANK                   O.0/' "$w/m.deck" > "$w/bad.deck"
+echo kept > "$w/kept"
+"$kinmat" "$w/bad.deck" -o "$w/kept" 2> "$w/err"
+equal 'deck with an error: status' 1 $?
+equal 'deck with an error: told for both sets' 2 "$(grep -c '^ \*\*\* E' "$w/err")"
+equal 'deck with an error: the output file is left alone' kept "$(cat "$w/kept")"
+
+# Files that cannot be written. Never a run-time error of the language.
+for option in -o --csv --log; do
+   "$kinmat" "$w/m.deck" $option /nonexistent/x > "$w/out" 2> "$w/err"
+   equal "$option cannot be opened: status" 3 $?
+   equal "$option cannot be opened: sentence" ' *** FILE /nonexistent/x CANNOT BE OPENED FOR WRITING' "$(cat "$w/err")"
+   "$kinmat" "$w/m.deck" $option "$w" > "$w/out" 2> "$w/err"
+   equal "$option is a directory: status" 3 $?
+   equal "$option is a directory: sentence" " *** FILE $w CANNOT BE OPENED FOR WRITING" "$(cat "$w/err")"
+   if [ -w /dev/full ]; then
+      "$kinmat" "$w/m.deck" $option /dev/full > "$w/out" 2> "$w/err"
+      equal "$option, disk full: status" 3 $?
+      equal "$option, disk full: sentence" ' *** WRITING /dev/full FAILED: NO SPACE LEFT, OR NO PERMISSION' "$(cat "$w/err")"
+   fi
+done
+full() { equal "$1, disk full: status" 3 "$2"
+   equal "$1, disk full: sentence" ' *** WRITING STANDARD OUTPUT FAILED: NO SPACE LEFT, OR NO PERMISSION' "$(cat "$w/err")"; }
+if [ -w /dev/full ]; then
+   "$kinmat" "$w/m.deck" > /dev/full 2> "$w/err"
+   full 'standard output' $?
+   "$debug" "$w/m.deck" > /dev/full 2> "$w/err.debug"
+   status=$?
+   grep -v 'array temporary\|^At line' "$w/err.debug" > "$w/err"
+   full 'standard output, debug build' $status
+   # More than one block of output.
+   sed 's/^TIME    8   /TIME    5000/' "$w/m.deck" > "$w/long.deck"
+   equal 'long listing: many blocks' yes "$("$kinmat" "$w/long.deck" | awk '{ n += length + 1 } END { print n > 1000000 ? "yes" : n }')"
+   "$kinmat" "$w/long.deck" > /dev/full 2> "$w/err"
+   full 'long listing' $?
+   for option in --help --version --ruler; do
+      "$kinmat" $option > /dev/full 2> "$w/err"
+      full "$option" $?
+   done
+fi
+"$kinmat" "$w/m.deck" >&- 2> "$w/err"
+full 'closed standard output' $?
+
+# The deck is never overwritten, by whatever name.
+ln -s own.deck "$w/link.deck"
+for option in -o --csv --log; do
+   for path in own.deck ./own.deck link.deck; do
+      cp "$w/m.deck" "$w/own.deck"
+      refused "$option $path, the deck" 1 " *** THE DECK $w/own.deck WOULD BE OVERWRITTEN" "$w/own.deck" $option "$w/$path"
+      same "$option $path, the deck is as it was" "$w/m.deck" "$w/own.deck"
+   done
+done
+refused 'one file for two outputs' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/m.deck" -o "$w/x" --csv "$w/x"
+refused 'one file for csv and log' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/m.deck" --log "$w/x" --csv "$w/x"
+equal 'one file for two outputs: not made' '' "$(ls "$w/x" 2> /dev/null)"
+: > "$w/x"
+refused 'one existing file by two paths' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/m.deck" -o "$w/x" --csv "$w/./x"
+"$kinmat" "$w/m.deck" -o /dev/null --csv /dev/null --log /dev/null 2> "$w/err"
+equal '/dev/null may serve for all' 0 $?
+
+# Drives and freedoms.
+{ card TITLE 'NO DRIVE'; four_bar 1.0 3.5 3.0 4.0 0.0 0.9 1.9; card TIME 2 '' '' 0.0 2.0; card END; } > "$w/few.deck"
+refused 'no drive' 1 ' *** E101  SET 1: W = 12 COORDINATES LESS R = 11 EQUATIONS LEAVE S = 1 FREEDOMS, BUT DRIVES ARE 0' \
+   "$w/few.deck"
+{ PHI=0.0 RATE=1.0; one_set 1.0 3.5 3.0 4.0 0.0 0.9 1.9; card DRIVE ANGLE ROCKER '' 0.5 1.0 0.0; card END; } > "$w/many.deck"
+{ cat "$w/m.deck"; cat "$w/many.deck"; } > "$w/third.deck"
+refused 'a drive too many, in the third set' 1 \
+   ' *** E101  SET 3: W = 12 COORDINATES LESS R = 11 EQUATIONS LEAVE S = 1 FREEDOMS, BUT DRIVES ARE 2' "$w/third.deck"
+
+# What cannot be assembled is marked: 1 + 1 + 1 < 4.
+{ PHI=0.0 RATE=1.0; one_set 1.0 1.0 1.0 4.0 0.0 0.9 1.9; card END; } > "$w/open.deck"
+"$kinmat" "$w/open.deck" --csv "$w/open.csv" --log "$w/open.log" > "$w/open.lst" 2> "$w/err"
+equal 'no assembly: status' 2 $?
+equal 'no assembly: standard error' '' "$(cat "$w/err")"
+equal 'no assembly: each instant is marked' 3 "$(grep -c '^ \*\*\* NO POSITION FOUND$' "$w/open.lst")"
+equal 'no assembly: last line' ' END OF SET 1:  INSTANTS SOLVED 0, MARKED 3' "$(grep 'END OF SET' "$w/open.lst")"
+equal 'no assembly: words for numbers' '        NONE        NONE        NONE' \
+   "$(grep -m 1 '^ CRANK   .*NONE' "$w/open.lst" | cut -c 10-45)"
+equal 'no assembly: NaN or asterisks' '' "$(grep -nEi 'nan|inf|[*]{4}' "$w/open.lst" "$w/open.csv" "$w/open.log")"
+equal 'no assembly: csv' '1,0,0.0000000000000000E+000,LINK,CRANK,,,,,,,,,,NO-POSITION' "$(grep -m 1 CRANK "$w/open.csv")"
+equal 'no assembly: 15 columns' '' "$(awk -F, 'NF != 15' "$w/open.csv")"
+equal 'no assembly: protocol' 3 "$(grep -cE ' (SINGULAR|LIMIT|DIVERGED) ' "$w/open.log")"
+
+# A parallelogram stretched on its base: the position exists, its velocity does not; 2 s later it is solved.
+{ PHI=0.0 RATE=0.5; one_set 2.0 4.0 2.0 4.0 0.0 0.0 0.0; card END; } > "$w/flat.deck"
+"$kinmat" "$w/flat.deck" --csv "$w/flat.csv" > "$w/flat.lst" 2> "$w/err"
+equal 'change point: status' 2 $?
+equal 'change point: sentence' ' *** JACOBIAN SINGULAR: VELOCITIES AND ACCELERATIONS DO NOT EXIST' \
+   "$(grep -m 1 '\*\*\*' "$w/flat.lst")"
+equal 'change point: csv' \
+   '1,0,0.0000000000000000E+000,LINK,COUPLER,2.0000000000000000E+000,0.0000000000000000E+000,0.0000000000000000E+000,,,,,,,NO-RATES' \
+   "$(grep -m 1 COUPLER "$w/flat.csv")"
+equal 'change point: listing' \
+   ' COUPLER     2.000000    0.000000    0.000000        NONE        NONE        NONE        NONE        NONE        NONE' \
+   "$(grep '^ COUPLER ' "$w/flat.lst" | head -n 1)"
+
+# A rough position in which rocker and coupler are at right angles to the one wanted: the frozen form runs in circles.
+{ PHI=0.3 RATE=0.0; one_set 1.0 2.0 2.0 2.8 0.3 0.5 3.9; card METHOD MATRIX; card END; } > "$w/matrix.deck"
+"$kinmat" "$w/matrix.deck" --log "$w/matrix.log" > "$w/matrix.lst" 2> "$w/err"
+equal 'MATRIX without convergence: status' 2 $?
+equal 'MATRIX without convergence: listing' 3 "$(grep -c '^ \*\*\* NO POSITION FOUND$' "$w/matrix.lst")"
+equal 'MATRIX without convergence: protocol head' ' SET 1   METHOD MATRIX' "$(head -n 1 "$w/matrix.log")"
+equal 'MATRIX without convergence: protocol' 3 "$(grep -cE ' (LIMIT|DIVERGED|SINGULAR) ' "$w/matrix.log")"
+sed 's/^METHOD  MATRIX/METHOD  NEWTON/' "$w/matrix.deck" > "$w/newton.deck"
+"$kinmat" "$w/newton.deck" > "$w/out"
+equal 'NEWTON converges there' 0 $?
+
+# Polish headings over the same numbers.
+deck M PL > "$w/pl.deck"
+"$kinmat" "$w/pl.deck" > "$w/pl.lst"
+equal 'Polish: status' 0 $?
+equal 'Polish: head' ' KOMPLET OBLICZEN NR 1   TYTUL   TEST' "$(grep -m 1 KOMPLET "$w/pl.lst")"
+equal 'Polish: last line' ' KONIEC KOMPLETU 2:  CHWILE ROZWIAZANE 3, ZAZNACZONE 0' "$(grep 'KOMPLETU 2' "$w/pl.lst")"
+equal 'Polish: columns' \
+   ' OGNIWO             X           Y          FI          VX          VY         VFI          AX          AY         AFI' \
+   "$(grep -m 1 '^ OGNIWO ' "$w/pl.lst")"
+equal 'Polish: no English headings' '' "$(tables "$w/pl.lst" | grep -E 'INSTANT|LINK|POINT|PAIR |VALUE|RATE|PHI')"
+rows "$w/m.lst" > "$w/wanted"
+rows "$w/pl.lst" > "$w/out"
+same 'Polish: the same numbers' "$w/wanted" "$w/out"
+equal 'ASCII only' '' "$(LC_ALL=C grep -n '[^ -~]' "$w/m.lst" "$w/pl.lst")"
+equal 'lines over 120 columns' '' "$(cat "$w/m.lst" "$w/pl.lst" "$w/open.lst" "$w/flat.lst" | awk 'length > 120')"
+
+# One mechanism in other units of length prints the same digits: compared without points and leading zeros.
+in_unit() {
+   awk -v unit="$1" -v factor="$2" '
+      /^UNITS / { printf "UNITS   %-8s%s\n", unit, substr($0, 17); next }
+      /^(GROUND|LINK|POINT) / { printf "%-32s%-16s%-16s%s\n", substr($0, 1, 32), number(33), number(49), substr($0, 65); next }
+      { print }
+      function number(first) { return sprintf("%.9f", substr($0, first, 16) * factor) }' "$w/m.deck"
+}
+digits() {
+   rows "$1" | awk '{ line = $1
+      for (i = 2; i <= NF; i++) { minus = $i ~ /^-/ ? "-" : ""; gsub(/[-.]/, "", $i); sub(/^0+/, "", $i); line = line " " minus $i }
+      print line }'
+}
+digits "$w/m.lst" > "$w/wanted"
+equal 'digits are compared' $((12 * (3 + 8 + 4))) "$(wc -l < "$w/wanted" | tr -d ' ')"
+for unit in 'MM 1000' 'KM 0.001'; do
+   in_unit $unit > "$w/unit.deck"
+   "$kinmat" "$w/unit.deck" > "$w/unit.lst"
+   equal "$unit: status" 0 $?
+   digits "$w/unit.lst" > "$w/out"
+   same "$unit: the same digits" "$w/wanted" "$w/out"
+done
+
+# The two builds, and two linear algebra libraries, print the same bytes.
+lapack=/usr/lib/x86_64-linux-gnu/lapack:/usr/lib/x86_64-linux-gnu/blas
+openblas=/usr/lib/x86_64-linux-gnu/openblas-pthread
+both=no
+if [ -e "${lapack%%:*}/liblapack.so.3" ] && [ -e "${lapack##*:}/libblas.so.3" ] && [ -e $openblas/libopenblas.so.0 ]; then
+   both=yes
+else
+   echo 'skipped: reference LAPACK against OpenBLAS (not both installed)'
+fi
+for deck in input/*.deck "$w/m.deck" "$w/open.deck" "$w/flat.deck"; do
+   "$kinmat" "$deck" > "$w/release.lst" 2> /dev/null
+   released=$?
+   "$debug" "$deck" > "$w/debug.lst" 2> "$w/err"
+   equal "$deck: debug build: status" $released $?
+   same "$deck: debug build" "$w/release.lst" "$w/debug.lst"
+   equal "$deck: debug build: run-time errors" '' "$(grep -iE 'runtime error|backtrace|SIGFPE' "$w/err")"
+   [ $both = yes ] || continue
+   LD_LIBRARY_PATH=$lapack "$kinmat" "$deck" > "$w/reference.lst"
+   same "$deck: reference LAPACK" "$w/release.lst" "$w/reference.lst"
+   LD_LIBRARY_PATH=$openblas "$kinmat" "$deck" > "$w/openblas.lst"
+   same "$deck: OpenBLAS" "$w/release.lst" "$w/openblas.lst"
+done
+conclude
