@@ -77,7 +77,7 @@ TEST_LIB     := $(BUILD)/debug/libkinmat.a
 TEST_MODULES := $(BUILD)/debug
 TEST_FLAGS   := $(COMMON) $(DEBUG)
 TEST_LIBS    := $(LIBS)
-TEST_HELPERS := $(forms) tests/sample_mechanisms.f90 tests/quad_closure.f90 tests/motion_errors.f90
+TEST_HELPERS := $(forms) tests/deck_samples.f90 tests/sample_mechanisms.f90 tests/quad_closure.f90 tests/motion_errors.f90
 include tests/tests.mk
 
 test: $(BUILD)/kinmat $(BUILD)/debug/kinmat $(references) $(BUILD)/tests$(if $(PFUNIT_DIR),/pfunit)/unit

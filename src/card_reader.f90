@@ -1,4 +1,4 @@
-!> Level 3, step 3. From a card to its labels, whole number and reals; every field is checked, none is
+!> Level 4. From a card to its labels, whole number and reals; every field is checked, none is
 !> understood.
 module card_reader
    use kinds, only: wp, label_length

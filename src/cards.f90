@@ -1,4 +1,4 @@
-!> Level 2. One card: 80 columns, and the fields by column. A field is declared here once and nowhere else.
+!> Level 1. One card: 80 columns, and the fields by column. A field is declared here once and nowhere else.
 module cards
    implicit none
    private

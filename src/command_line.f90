@@ -1,4 +1,4 @@
-!> Level 12. The command's words: what to read, what to write, which sets.
+!> Level 2. The command's words: what to read, what to write, which sets.
 module command_line
    use failures, only: failure_t, fail, status_refused
    implicit none

@@ -1,5 +1,5 @@
-!> Level 5. The results as comma-separated values with 17 digits: the deck's length unit, radians or degrees as the deck
-!> says. A value that does not exist is empty and `mark` says why.
+!> Level 4. The results as comma-separated values with 17 digits: the deck's length unit, radians or degrees as the deck
+!> says. A value that does not exist is empty and `mark` says why; a name with a comma is quoted.
 module csv
    use kinds, only: wp
    use constants, only: degree
@@ -48,7 +48,7 @@ contains
       character(:), allocatable :: text
       integer :: k, c
 
-      text = trim(kinds_of_row(row%kind))//','//trim(row%name)//','
+      text = trim(kinds_of_row(row%kind))//','//quoted(trim(row%name))//','
       do k = 0, 2
          do c = 1, 3
             if (k <= known .and. has_column(row%kind, c)) &
@@ -57,6 +57,22 @@ contains
          end do
       end do
    end function cells
+
+   !> A name as a cell: in quotes where it holds a comma or a quote.
+   pure function quoted(name) result(cell)
+      character(*), intent(in) :: name
+      character(:), allocatable :: cell
+      integer :: i
+
+      cell = name
+      if (scan(name, ',"') == 0) return
+      cell = '"'
+      do i = 1, len(name)
+         cell = cell//name(i:i)
+         if (name(i:i) == '"') cell = cell//'"'
+      end do
+      cell = cell//'"'
+   end function quoted
 
    pure logical function has_column(kind, c)
       integer, intent(in) :: kind, c

@@ -1,4 +1,4 @@
-!> Level 3, step 1. The deck's lines as cards, from a file or standard input, each line read once and in
+!> Level 2. The deck's lines as cards, from a file or standard input, each line read once and in
 !> bounded memory. Non-advancing formatted reading serves files, pipes and terminals alike; /dev/stdin
 !> opened by name does not (no permission after a change of user, and not on every system).
 module deck_source

@@ -1,4 +1,4 @@
-!> Level 5. The printed listing, in the form of the paper's Rys. 5: title, data, structure, then the tables. It takes
+!> Level 4. The printed listing, in the form of the paper's Rys. 5: title, data, structure, then the tables. It takes
 !> finished data and depends on nothing else: two correct programs print the same bytes.
 !>
 !> Digits: positions, velocities and accelerations are printed with the decimals, and where need be the power of ten,
@@ -80,7 +80,8 @@ contains
       associate (pl => m%polish)
          call put(o, ' KINMAT   '//phrase(say_program, pl))
          call put(o, '')
-         call put(o, ' '//phrase(say_set, pl)//' '//whole(m%set_number)//'   '//phrase(say_title, pl)//'   '//trim(m%title))
+         call put(o, ' '//phrase(say_set, pl)//' '//whole(m%set_number) &
+            //'   '//phrase(say_title, pl)//'   '//trim(m%title))
          call put(o, '')
          call put(o, ' '//phrase(say_data, pl))
          do i = 1, size(m%echo)
@@ -124,7 +125,8 @@ contains
          per = ''
          if (k == 1) per = '/'//trim(m%time_unit)
          if (k == 2) per = '/'//trim(m%time_unit)//'**2'
-         call put(o, ' '//trim(prefix(k))//'X, '//trim(prefix(k))//'Y '//unit_of(l%power(1, k), trim(m%length_unit)//per) &
+         call put(o, ' '//trim(prefix(k))//'X, '//trim(prefix(k))//'Y ' &
+            //unit_of(l%power(1, k), trim(m%length_unit)//per) &
             //'   '//trim(prefix(k))//phrase(say_phi, m%polish)//' '//unit_of(l%power(2, k), turn//per))
       end do
    end subroutine put_units

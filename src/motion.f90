@@ -1,4 +1,4 @@
-!> Level 3. The motion of every link at one instant: what the solvers fill and the writers print.
+!> Level 2. The motion of every link at one instant: what the solvers fill and the writers print.
 module motion
    use kinds, only: wp
    implicit none

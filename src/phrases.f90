@@ -1,4 +1,4 @@
-!> Level 2. The words of the listing, English and Polish (without diacritics).
+!> Level 1. The words of the listing, English and Polish (without diacritics).
 module phrases
    implicit none
    private

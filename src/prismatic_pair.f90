@@ -1,4 +1,4 @@
-!> Level 4. The prismatic pair: point P of link i and point Q of link j; the guide lies in link i.
+!> Level 2. The prismatic pair: point P of link i and point Q of link j; the guide lies in link i.
 !>
 !> The guide's direction e = (cos theta, sin theta), theta = phi_i + alpha, and its normal
 !> n = (-sin theta, cos theta) turn with link i. With d = P - Q:

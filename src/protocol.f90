@@ -1,4 +1,4 @@
-!> Level 5. The solver's protocol (--log): how each position was found. It depends on the solver's path, which
+!> Level 3. The solver's protocol (--log): how each position was found. It depends on the solver's path, which
 !> the listing never does.
 module protocol
    use kinds, only: wp
@@ -17,7 +17,8 @@ contains
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
 
-      call put(o, ' SET '//whole(m%set_number)//'   METHOD '//trim(merge('MATRIX', 'NEWTON', m%method == method_matrix)))
+      call put(o, ' SET '//whole(m%set_number)//'   METHOD ' &
+         //merge('MATRIX', 'NEWTON', m%method == method_matrix))
       call put(o, '    STEP                        T     ENDED  ITER   RESIDUAL       STEP       RATE' &
          //'  RECIPROCAL CONDITION  SIGN OF DET')
    end subroutine protocol_head

@@ -1,4 +1,4 @@
-!> Level 4. The revolute pair of links i and j: the joint is point P of link i and point Q of link j.
+!> Level 2. The revolute pair of links i and j: the joint is point P of link i and point Q of link j.
 !>
 !> With the arms u = R(phi_i) (xi_P, eta_P) and w = R(phi_j) (xi_Q, eta_Q) from each link's own origin:
 !>    x_i + u_x - x_j - w_x = 0        (7), there with u = a_i (cos phi_i, sin phi_i)
