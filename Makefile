@@ -11,7 +11,7 @@ LIBS   ?= -llapack -lblas
 # gfortran's "uninitialized" is wrong on every array allocated by assignment.
 COMMON  := -std=f2018 -Wall -Wextra -pedantic -Wno-uninitialized -Wno-maybe-uninitialized -ffp-contract=off
 RELEASE ?= -O2
-DEBUG   ?= -O0 -g -fbacktrace -fcheck=all -ffpe-trap=invalid,zero,overflow -finit-real=snan -finit-derived
+DEBUG   ?= -O0 -g -fbacktrace -fcheck=all,no-array-temps -ffpe-trap=invalid,zero,overflow -finit-real=snan -finit-derived
 
 sources := $(sort $(wildcard src/*.f90))
 names   := $(sources:src/%.f90=%)

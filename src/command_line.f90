@@ -1,5 +1,6 @@
 !> Level 2. The command's words: what to read, what to write, which sets.
 module command_line
+   use, intrinsic :: iso_c_binding, only: c_ptr, c_char, c_associated, c_null_char
    use failures, only: failure_t, fail, status_refused
    implicit none
    private
@@ -15,6 +16,17 @@ module command_line
       !> What is printed instead of computing: 'HELP', 'VERSION', 'RULER' or ''.
       character(:), allocatable :: show
    end type options_t
+
+   interface
+      type(c_ptr) function realpath(path, resolved) bind(c)
+         import :: c_ptr, c_char
+         character(kind=c_char), intent(in) :: path(*)
+         character(kind=c_char), intent(inout) :: resolved(*)
+      end function realpath
+   end interface
+
+   !> PATH_MAX, and more.
+   integer, parameter :: path_length = 65536
 
    character(*), parameter :: lines(*) = [character(72) :: &
       'kinmat DECK            reads a card deck, prints the listing', &
@@ -149,19 +161,45 @@ contains
       type(options_t), intent(in) :: options
       type(failure_t), allocatable, intent(out) :: failure
 
-      if (same(options%output, options%csv) .or. same(options%output, options%log) &
-         .or. same(options%csv, options%log)) &
+      if (any([same(options%output, options%csv), same(options%output, options%log), &
+         same(options%csv, options%log)])) &
          call fail(failure, status_refused, 'ONE FILE IS NAMED FOR TWO OUTPUTS')
-      if (same(options%deck, options%output) .or. same(options%deck, options%csv) &
-         .or. same(options%deck, options%log)) &
-         call fail(failure, status_refused, 'THE DECK '//options%deck//' WOULD BE OVERWRITTEN')
+      if (len(options%deck) > 0) then
+         if (is_output(options%deck, options)) &
+            call fail(failure, status_refused, 'THE DECK '//options%deck//' WOULD BE OVERWRITTEN')
+      else if (is_output('/dev/stdin', options)) then
+         call fail(failure, status_refused, 'THE DECK ON STANDARD INPUT WOULD BE OVERWRITTEN')
+      end if
    end subroutine check_files
 
-   pure logical function same(a, b)
-      character(*), intent(in) :: a, b
+   logical function is_output(path, options)
+      character(*), intent(in) :: path
+      type(options_t), intent(in) :: options
 
-      same = len(a) > 0 .and. len(a) == len(b) .and. a == b .and. a /= '/dev/null' .and. a /= '/dev/full'
+      is_output = any([same(path, options%output), same(path, options%csv), same(path, options%log)])
+   end function is_output
+
+   !> Two names of one file, links followed; devices such as /dev/null do not count.
+   logical function same(a, b)
+      character(*), intent(in) :: a, b
+      character(:), allocatable :: first, second
+
+      first = true_path(a)
+      second = true_path(b)
+      same = len(first) > 0 .and. len(first) == len(second) .and. first == second
+      same = same .and. index(first, '/dev/') /= 1
    end function same
+
+   !> The one absolute name of an existing file; any other name is left as it is.
+   function true_path(path) result(text)
+      character(*), intent(in) :: path
+      character(:), allocatable :: text
+      character(path_length) :: resolved
+
+      text = path
+      if (.not. c_associated(realpath(path//c_null_char, resolved))) return
+      text = resolved(:index(resolved, c_null_char) - 1)
+   end function true_path
 
    !> Argument number `i`, '' where there is none.
    function argument(i) result(word)

@@ -6,6 +6,7 @@ program main
    use command_line, only: options_t, read_command, help_text
    use cards, only: ruler_card
    use job, only: run_job
+   use text_output, only: output_t, open_output, put, close_output
    implicit none
 
    interface
@@ -31,11 +32,11 @@ program main
    end if
    select case (options%show)
    case ('HELP')
-      print '(a)', help_text()
+      call show(help_text())
    case ('VERSION')
-      print '(a)', version
+      call show(version)
    case ('RULER')
-      print '(a)', ruler_card()
+      call show(ruler_card())
    case default
       call run_job(options, status, message)
       if (len(message) > 0) write (error_unit, '(a)') message
@@ -43,6 +44,19 @@ program main
    end select
 
 contains
+
+   !> One text on standard output.
+   subroutine show(text)
+      character(*), intent(in) :: text
+      type(output_t) :: o
+
+      call open_output(o, '', failure)
+      call put(o, text)
+      call close_output(o, failure)
+      if (.not. allocated(failure)) return
+      write (error_unit, '(a)') ' *** '//failure%text
+      call leave(failure%status)
+   end subroutine show
 
    !> Ends the process with an exit status and no word of its own.
    subroutine leave(status)

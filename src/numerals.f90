@@ -27,10 +27,23 @@ contains
          long = adjustl(long)
          if (len_trim(long) < numeral_length) exit
       end do
-      if (len_trim(long) >= numeral_length) write (long, merge('(es11.4e3)', '(es11.3e3)', x >= 0.0_wp)) x
+      if (len_trim(long) >= numeral_length) long = with_exponent(x, power)
       if (verify(trim(long), '-0.') == 0 .and. long(1:1) == '-') long = long(2:)
       text = adjustr(long(:numeral_length))
    end function fixed
+
+   !> `x` 10**-power with as many digits as there is room for beside an exponent.
+   function with_exponent(x, power) result(text)
+      real(wp), intent(in) :: x
+      integer, intent(in) :: power
+      character(numeral_length - 1) :: text
+      integer :: e
+
+      write (text, merge('(es11.4e3)', '(es11.3e3)', x >= 0.0_wp)) x
+      ! The power changes the exponent only, so no digit is lost by it.
+      read (text(8:11), '(i4)') e
+      write (text(8:11), '(sp,i4.3)') e - power
+   end function with_exponent
 
    !> A whole number without blanks.
    pure function whole(i) result(text)

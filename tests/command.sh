@@ -246,13 +246,11 @@ full() { equal "$1, disk full: status" 3 "$2"
 if [ -w /dev/full ]; then
    "$kinmat" "$w/m.deck" > /dev/full 2> "$w/err"
    full 'standard output' $?
-   "$debug" "$w/m.deck" > /dev/full 2> "$w/err.debug"
-   status=$?
-   grep -v 'array temporary\|^At line' "$w/err.debug" > "$w/err"
-   full 'standard output, debug build' $status
+   "$debug" "$w/m.deck" > /dev/full 2> "$w/err"
+   full 'standard output, debug build' $?
    # More than one block of output.
    sed 's/^TIME    8   /TIME    5000/' "$w/m.deck" > "$w/long.deck"
-   equal 'long listing: many blocks' yes "$("$kinmat" "$w/long.deck" | awk '{ n += length + 1 } END { print n > 1000000 ? "yes" : n }')"
+   equal 'long listing: many blocks' yes "$("$kinmat" "$w/long.deck" | wc -c | awk '{ print ($1 > 1000000) ? "yes" : $1 }')"
    "$kinmat" "$w/long.deck" > /dev/full 2> "$w/err"
    full 'long listing' $?
    for option in --help --version --ruler; do
@@ -272,6 +270,11 @@ for option in -o --csv --log; do
       same "$option $path, the deck is as it was" "$w/m.deck" "$w/own.deck"
    done
 done
+cp "$w/m.deck" "$w/own.deck"
+"$kinmat" -o "$w/own.deck" < "$w/own.deck" > "$w/out" 2> "$w/err"
+equal 'the deck on standard input: status' 1 $?
+equal 'the deck on standard input: sentence' ' *** THE DECK ON STANDARD INPUT WOULD BE OVERWRITTEN' "$(head -n 2 "$w/err")"
+same 'the deck on standard input is as it was' "$w/m.deck" "$w/own.deck"
 refused 'one file for two outputs' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/m.deck" -o "$w/x" --csv "$w/x"
 refused 'one file for csv and log' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/m.deck" --log "$w/x" --csv "$w/x"
 equal 'one file for two outputs: not made' '' "$(ls "$w/x" 2> /dev/null)"
@@ -310,8 +313,8 @@ equal 'change point: status' 2 $?
 equal 'change point: sentence' ' *** JACOBIAN SINGULAR: VELOCITIES AND ACCELERATIONS DO NOT EXIST' \
    "$(grep -m 1 '\*\*\*' "$w/flat.lst")"
 equal 'change point: csv' \
-   '1,0,0.0000000000000000E+000,LINK,COUPLER,2.0000000000000000E+000,0.0000000000000000E+000,0.0000000000000000E+000,,,,,,,NO-RATES' \
-   "$(grep -m 1 COUPLER "$w/flat.csv")"
+   '1,0,LINK,COUPLER,2.0000000000000000E+000,0.0000000000000000E+000,0.0000000000000000E+000,,,,,,,NO-RATES' \
+   "$(grep -m 1 COUPLER "$w/flat.csv" | cut -d, -f1,2,4-)"
 equal 'change point: listing' \
    ' COUPLER     2.000000    0.000000    0.000000        NONE        NONE        NONE        NONE        NONE        NONE' \
    "$(grep '^ COUPLER ' "$w/flat.lst" | head -n 1)"
@@ -353,7 +356,9 @@ in_unit() {
 }
 digits() {
    rows "$1" | awk '{ line = $1
-      for (i = 2; i <= NF; i++) { minus = $i ~ /^-/ ? "-" : ""; gsub(/[-.]/, "", $i); sub(/^0+/, "", $i); line = line " " minus $i }
+      for (i = 2; i <= NF; i++) {
+         minus = $i ~ /^-/ ? "-" : ""; gsub(/[-.]/, "", $i); sub(/^0+/, "", $i); line = line " " minus $i
+      }
       print line }'
 }
 digits "$w/m.lst" > "$w/wanted"
@@ -381,7 +386,7 @@ for deck in input/*.deck "$w/m.deck" "$w/open.deck" "$w/flat.deck"; do
    "$debug" "$deck" > "$w/debug.lst" 2> "$w/err"
    equal "$deck: debug build: status" $released $?
    same "$deck: debug build" "$w/release.lst" "$w/debug.lst"
-   equal "$deck: debug build: run-time errors" '' "$(grep -iE 'runtime error|backtrace|SIGFPE' "$w/err")"
+   equal "$deck: debug build: standard error" '' "$(head -n 4 "$w/err")"
    [ $both = yes ] || continue
    LD_LIBRARY_PATH=$lapack "$kinmat" "$deck" > "$w/reference.lst"
    same "$deck: reference LAPACK" "$w/release.lst" "$w/reference.lst"
