@@ -80,8 +80,8 @@ contains
       associate (pl => m%polish)
          call put(o, ' KINMAT   '//phrase(say_program, pl))
          call put(o, '')
-         call put(o, ' '//phrase(say_set, pl)//' '//whole(m%set_number) &
-            //'   '//phrase(say_title, pl)//'   '//trim(m%title))
+         call put(o, trim(' '//phrase(say_set, pl)//' '//whole(m%set_number) &
+            //'   '//phrase(say_title, pl)//'   '//m%title))
          call put(o, '')
          call put(o, ' '//phrase(say_data, pl))
          do i = 1, size(m%echo)

@@ -19,4 +19,23 @@ for listing in expected/*.lst; do
    equal "$listing: its deck" "$(ls "input/$(basename "$listing" .lst).deck" 2> /dev/null)" \
       "input/$(basename "$listing" .lst).deck"
 done
+
+# The paper's own iteration prints the same tables as Newton.
+for name in yoke yoke_mirrored crank_slider; do
+   sed -e '/^METHOD/d' -e 's/^END.*/METHOD  MATRIX\n&/' "input/$name.deck" > "$BUILD/matrix.deck"
+   "$BUILD/kinmat" "$BUILD/matrix.deck" > "$BUILD/matrix.lst"
+   equal "$name by METHOD MATRIX: exit status" 0 $?
+   grep -v '^ METHOD' "$BUILD/matrix.lst" > "$BUILD/matrix.txt"
+   grep -v '^ METHOD' "expected/$name.lst" > "$BUILD/newton.txt"
+   same "$name by METHOD MATRIX" "$BUILD/newton.txt" "$BUILD/matrix.txt"
+done
+
+# The README's first deck: the tip of a crank of length 0.25 at 6.28 rad/s.
+sed -n '/^GROUND  BASE/,/^END/p' README.md > "$BUILD/first.deck"
+"$BUILD/kinmat" "$BUILD/first.deck" > "$BUILD/first.lst"
+equal "README, first deck: exit status" 0 $?
+equal "README, first deck: t = 0" \
+   ' TIP        0.2500000   0.0000000                0.000000    1.570000               -9.859600    0.000000' \
+   "$(grep '^ TIP' "$BUILD/first.lst" | head -n 1)"
+equal "README, first deck: instants" 11 "$(grep -c '^ TIP' "$BUILD/first.lst")"
 conclude
