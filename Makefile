@@ -55,7 +55,7 @@ include $(BUILD)/depends.mk
 endif
 
 # Closed forms in real128 print the listings that the program must print, byte for byte.
-forms := tests/quad_jet.f90 tests/closed_forms_dyads.f90 tests/closed_forms_linkages.f90 tests/closed_forms_sliders.f90 tests/closed_forms.f90
+forms := tests/quad_jet.f90 tests/closed_forms_dyads.f90 tests/closed_forms_linkages.f90 tests/closed_forms_sliders.f90 tests/closed_forms_legs.f90 tests/closed_forms.f90 tests/hand_groups.f90
 decks := $(sort $(wildcard input/*.deck))
 references := $(decks:input/%.deck=$(BUILD)/expected/%.lst)
 

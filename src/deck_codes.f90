@@ -88,7 +88,7 @@ module deck_codes
       time_long = code_t(86, 'THE TIMES ARE TOO LARGE TO BE DIVIDED INTO STEPS'), &
       lang_kind = code_t(90, 'IS NOT EN OR PL'), &
       units_angle = code_t(91, 'IS NOT RAD OR DEG'), &
-      method_kind = code_t(92, 'IS NOT NEWTON OR MATRIX'), &
+      method_kind = code_t(92, 'IS NOT NEWTON, DENSE OR MATRIX'), &
       tolerance_range = code_t(93, 'A TOLERANCE IS ABOVE 1E-15 AND AT MOST 1E-2'), &
       print_kind = code_t(94, 'IS NOT ALL, LINKS, POINTS OR PAIRS'), &
       print_all_name = code_t(95, 'PRINT ALL TAKES NO NAME'), &

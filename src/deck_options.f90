@@ -2,7 +2,7 @@
 module deck_options
    use kinds, only: wp
    use constants, only: degree
-   use mechanism, only: mechanism_t, method_newton, method_matrix
+   use mechanism, only: mechanism_t, method_newton, method_matrix, method_dense
    use cards, only: title_field
    use card_forms, only: forms, form_title, form_units, form_lang, form_time, form_at, form_method
    use complaints, only: complaints_t, whole_text
@@ -95,6 +95,8 @@ contains
       select case (draft%cards(k)%label(1))
       case ('NEWTON')
          set%method = method_newton
+      case ('DENSE')
+         set%method = method_dense
       case ('MATRIX')
          set%method = method_matrix
       case default

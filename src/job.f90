@@ -1,9 +1,9 @@
-!> Level 12. One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later.
+!> Level 13. One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later.
 module job
    use failures, only: failure_t, fail, status_solved, status_refused, status_marked, status_machine
    use mechanism, only: mechanism_t, instant_count, instant
    use motion, only: motion_t, new_motion, mark_none
-   use structure, only: findings_t, count_freedoms
+   use structure, only: findings_t, find_structure
    use deck, only: read_deck
    use text_output, only: output_t, open_output, put, close_output
    use numerals, only: whole
@@ -54,12 +54,16 @@ contains
       integer :: i
 
       do i = 1, size(sets)
-         f = count_freedoms(sets(i))
-         if (f%freedoms == f%drives) cycle
-         call fail(failure, status_refused, 'E101  SET '//whole(i)//': W = '//whole(f%coordinates) &
-            //' COORDINATES LESS R = '//whole(f%equations)//' EQUATIONS LEAVE S = '//whole(f%freedoms) &
-            //' FREEDOMS, BUT DRIVES ARE '//whole(f%drives))
-         return
+         f = find_structure(sets(i))
+         if (f%freedoms /= f%drives) then
+            call fail(failure, status_refused, 'E101  SET '//whole(i)//': W = '//whole(f%coordinates) &
+               //' COORDINATES LESS R = '//whole(f%equations)//' EQUATIONS LEAVE S = '//whole(f%freedoms) &
+               //' FREEDOMS, BUT DRIVES ARE '//whole(f%drives))
+         else if (.not. f%solvable) then
+            call fail(failure, status_refused, 'E102  SET '//whole(i)//': THE COUNT IS RIGHT, BUT SOME LINKS HAVE ' &
+               //'MORE EQUATIONS THAN THEY NEED, AND OTHERS ARE FREE')
+         end if
+         if (allocated(failure)) return
       end do
    end subroutine check_freedoms
 
@@ -122,7 +126,7 @@ contains
       integer :: k, marked
 
       layout = new_layout(m)
-      call listing_head(o%listing, layout, m, count_freedoms(m))
+      call listing_head(o%listing, layout, m, find_structure(m))
       if (options%check) return
       if (len(options%log) > 0) call protocol_head(o%log, m)
       a = new_analysis(m)

@@ -9,7 +9,7 @@ module mechanism
    public :: drive_angle, drive_x, drive_y, drive_relangle, drive_slide
    public :: term_harmonic, term_power, term_table
    public :: request_link, request_point, request_pair
-   public :: method_newton, method_matrix
+   public :: method_newton, method_matrix, method_dense
    public :: instant_count, instant
 
    integer, parameter :: pair_revolute = 1   !< REVOLUTE: eq. (7), (8)
@@ -29,6 +29,7 @@ module mechanism
 
    integer, parameter :: method_newton = 1   !< Newton on the closure equations
    integer, parameter :: method_matrix = 2   !< the iteration of 1987 with frozen c(phi), s(phi)
+   integer, parameter :: method_dense = 3    !< Newton on all closure equations at once: the reference
 
    type :: link_t
       character(label_length) :: name = ''

@@ -7,7 +7,7 @@ module phrases
       say_prismatic, say_coordinates, say_equations, say_freedoms, say_drives, say_results, say_units, &
       say_instant, say_link, say_point, say_pair, say_phi, say_value, say_rate, say_rate2, say_none, &
       say_end, say_solved, say_marked, say_no_position, say_no_rates, say_overflow, say_card, say_default, &
-      say_in_units
+      say_in_units, say_groups, say_driven, say_not_needed
 
    integer, parameter :: phrase_length = 72
 
@@ -17,9 +17,9 @@ module phrases
       say_instant = 16, say_link = 17, say_point = 18, say_pair = 19, say_phi = 20, say_value = 21, &
       say_rate = 22, say_rate2 = 23, say_none = 24, say_end = 25, say_solved = 26, say_marked = 27, &
       say_no_position = 28, say_no_rates = 29, say_overflow = 30, say_card = 31, say_default = 32, &
-      say_in_units = 33
+      say_in_units = 33, say_groups = 34, say_driven = 35, say_not_needed = 36
 
-   character(phrase_length), parameter :: words(2, 33) = reshape([character(phrase_length) :: &
+   character(phrase_length), parameter :: words(2, 36) = reshape([character(phrase_length) :: &
       'KINEMATICS OF PLANAR MECHANISMS IN MATRIX FORMULATION', &
       'KINEMATYKA MECHANIZMOW PLASKICH W UJECIU MACIERZOWYM', &
       'SET OF COMPUTATIONS NO.', 'KOMPLET OBLICZEN NR', &
@@ -54,7 +54,10 @@ module phrases
       'THE RESULT IS TOO LARGE A NUMBER', 'WYNIK JEST ZBYT DUZA LICZBA', &
       'CARD', 'KARTA', &
       '(DEFAULT)', '(DOMYSLNE)', &
-      'UNIT', 'JEDNOSTKA'], [2, 33])
+      'UNIT', 'JEDNOSTKA', &
+      'ASSUR GROUPS IN SOLVING ORDER', 'GRUPY ASSURA W KOLEJNOSCI ROZWIAZYWANIA', &
+      'DRIVEN', 'NAPEDZANA', &
+      'NOT NEEDED', 'ZBEDNA'], [2, 36])
 
 contains
 

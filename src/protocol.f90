@@ -1,11 +1,11 @@
-!> Level 3. The solver's protocol (--log): how each position was found. It depends on the solver's path, which
+!> Level 4. The solver's protocol (--log): how each position was found. It depends on the solver's path, which
 !> the listing never does.
 module protocol
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_matrix
+   use mechanism, only: mechanism_t, method_newton, method_dense, method_matrix
    use convergence, only: convergence_t, ending
    use text_output, only: output_t, put
-   use numerals, only: whole, full
+   use numerals, only: whole
    implicit none
    private
    public :: protocol_head, protocol_instant
@@ -17,8 +17,12 @@ contains
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
 
-      call put(o, ' SET '//whole(m%set_number)//'   METHOD ' &
-         //merge('MATRIX', 'NEWTON', m%method == method_matrix))
+      character(6) :: method
+
+      if (m%method == method_newton) method = 'NEWTON'
+      if (m%method == method_dense) method = 'DENSE'
+      if (m%method == method_matrix) method = 'MATRIX'
+      call put(o, ' SET '//whole(m%set_number)//'   METHOD '//trim(method))
       call put(o, '    STEP                        T     ENDED  ITER   RESIDUAL       STEP       RATE' &
          //'  RECIPROCAL CONDITION  SIGN OF DET')
    end subroutine protocol_head

@@ -1,12 +1,17 @@
-!> Level 3. What can be said of a mechanism from its links, pairs and drives alone, without geometry.
+!> Level 10. What can be said of a mechanism before anything is solved: its counts, and its Assur groups.
 !>
 !> (12)  r = 2 (n1 + n2) + 3 n3
 !> (13)  s = 3 n - r        (the print subtracts 2 n1 + n2 only)
 module structure
+   use kinds, only: wp
    use mechanism, only: mechanism_t, pair_revolute, pair_prismatic
+   use links_tree, only: tree_t, new_tree
+   use loop_equations, only: new_equations
+   use blocks, only: blocks_t, new_blocks
+   use assur_groups, only: group_t, groups_of
    implicit none
    private
-   public :: findings_t, count_freedoms
+   public :: findings_t, group_t, count_freedoms, find_structure
 
    type :: findings_t
       integer :: links = 0        !< n, ground links with them
@@ -17,6 +22,8 @@ module structure
       integer :: equations = 0    !< r
       integer :: freedoms = 0     !< s
       integer :: drives = 0
+      logical :: solvable = .false.             !< every unknown has an equation of its own
+      type(group_t), allocatable :: groups(:)   !< in solving order; none where it is not
    end type findings_t
 
 contains
@@ -34,5 +41,20 @@ contains
       f%equations = 2*(f%revolute + f%prismatic) + 3*f%ground
       f%freedoms = f%coordinates - f%equations
       f%drives = size(m%drives)
+      allocate (f%groups(0))
    end function count_freedoms
+
+   !> The counts of `m` and its groups.
+   function find_structure(m) result(f)
+      type(mechanism_t), intent(in) :: m
+      type(findings_t) :: f
+      type(tree_t) :: t
+      type(blocks_t) :: b
+
+      f = count_freedoms(m)
+      t = new_tree(m)
+      b = new_blocks(t, new_equations(m, t, 1.0_wp))
+      f%solvable = b%solvable
+      if (f%solvable) f%groups = groups_of(m, t, b)
+   end function find_structure
 end module structure

@@ -1,13 +1,13 @@
 !> Level 2. Lines to a file or to standard output, in large blocks; a full disk is noticed, never a crash.
 !>
-!> The system's own creat, write and close are called: the Fortran run-time library of GNU reports no error of a
-!> full disk, neither from WRITE nor from FLUSH nor from CLOSE.
+!> The system's own creat, write and close are called: the Fortran run-time library of GNU reports no error of
+!> a full disk, neither from WRITE nor from FLUSH nor from CLOSE.
 module text_output
    use, intrinsic :: iso_c_binding, only: c_int, c_size_t, c_char, c_null_char
    use failures, only: failure_t, fail, status_machine
    implicit none
    private
-   public :: output_t, open_output, put, close_output
+   public :: output_t, open_output, put, add, close_output
 
    integer, parameter :: block_length = 65536
    integer(c_int), parameter :: standard_output = 1
@@ -56,20 +56,34 @@ contains
       if (o%descriptor < 0) call fail(failure, status_machine, 'FILE '//path//' CANNOT BE OPENED FOR WRITING')
    end subroutine open_output
 
-   !> Appends one line.
+   !> Appends one line, or the rest of one that `add` began.
    subroutine put(o, line)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: line
 
-      if (o%used + len(line) + 1 > block_length) call write_block(o)
-      if (len(line) >= block_length) then
-         call write_text(o, line//new_line('a'))
+      if (len(line) >= block_length - o%used) then
+         call add(o, line)
+         call add(o, new_line('a'))
          return
       end if
       o%buffer(o%used + 1:o%used + len(line)) = line
       o%used = o%used + len(line) + 1
       o%buffer(o%used:o%used) = new_line('a')
    end subroutine put
+
+   !> Appends a part of a line.
+   subroutine add(o, text)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: text
+
+      if (len(text) > block_length - o%used) call write_block(o)
+      if (len(text) > block_length) then
+         call write_text(o, text)
+         return
+      end if
+      o%buffer(o%used + 1:o%used + len(text)) = text
+      o%used = o%used + len(text)
+   end subroutine add
 
    !> Writes what is left and closes; `failure` tells of any line that could not be written.
    subroutine close_output(o, failure)

@@ -6,6 +6,7 @@ module closed_forms
    use closed_forms_dyads, only: body_t
    use closed_forms_linkages, only: four_bar, drag_link, peaucellier, five_bar, pantograph
    use closed_forms_sliders, only: yoke, crank_slider, scotch_yoke, whitworth, cylinder, trammel
+   use closed_forms_legs, only: andrews, jansen
    implicit none
    private
    public :: closed_form, hand_count
@@ -16,11 +17,12 @@ module closed_forms
       integer :: links, revolute, prismatic, drives   !< links with the ground
    end type count_t
 
-   type(count_t), parameter :: counts(12) = [ &
+   type(count_t), parameter :: counts(14) = [ &
       count_t('yoke', 6, 5, 2, 1), count_t('yoke_mirrored', 6, 5, 2, 1), count_t('four_bar', 4, 4, 0, 1), &
       count_t('crank_slider', 4, 3, 1, 1), count_t('scotch_yoke', 4, 2, 2, 1), count_t('whitworth', 6, 5, 2, 1), &
       count_t('drag_link', 4, 4, 0, 1), count_t('cylinder', 4, 3, 1, 1), count_t('trammel', 4, 2, 2, 1), &
-      count_t('peaucellier', 8, 10, 0, 1), count_t('five_bar', 5, 5, 0, 2), count_t('pantograph', 5, 5, 0, 2)]
+      count_t('peaucellier', 8, 10, 0, 1), count_t('five_bar', 5, 5, 0, 2), count_t('pantograph', 5, 5, 0, 2), &
+      count_t('andrews', 8, 10, 0, 1), count_t('jansen', 8, 10, 0, 1)]
 
 contains
 
@@ -57,6 +59,10 @@ contains
          links = five_bar(t)
       case ('pantograph')
          links = pantograph(set, t)
+      case ('andrews')
+         links = andrews(set, t)
+      case ('jansen')
+         links = jansen(t)
       case default
          allocate (links(0))
       end select

@@ -6,6 +6,8 @@ program print_expected
    use failures, only: failure_t
    use mechanism, only: mechanism_t, instant_count, instant
    use motion, only: motion_t, new_motion
+   use structure, only: findings_t
+   use hand_groups, only: groups_by_hand
    use deck, only: read_deck
    use text_output, only: output_t, open_output, close_output
    use listing, only: layout_t, new_layout, listing_head, listing_instant, listing_end
@@ -41,10 +43,13 @@ contains
       type(mechanism_t), intent(in) :: m
       type(layout_t) :: layout
       type(motion_t) :: q
+      type(findings_t) :: findings
       integer :: k
 
       layout = new_layout(m)
-      call listing_head(o, layout, m, hand_count(name))
+      findings = hand_count(name)
+      findings%groups = groups_by_hand(name, m)
+      call listing_head(o, layout, m, findings)
       q = new_motion(size(m%links))
       do k = 1, size(m%links)
          q%position(:, k) = m%links(k)%position

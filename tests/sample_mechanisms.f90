@@ -3,7 +3,7 @@ module sample_mechanisms
    use kinds, only: wp
    use constants, only: degree
    use mechanism, only: mechanism_t, link_t, point_t, pair_t, drive_t, request_t, pair_revolute, pair_prismatic, &
-      drive_angle, drive_x, drive_y, drive_relangle, drive_slide
+      drive_angle, drive_x, drive_y, drive_relangle, drive_slide, request_link
    implicit none
    private
    public :: four_bar, yoke, crank_slider, in_line_slider, all_kinds, magnified, angle_drive
@@ -159,12 +159,13 @@ contains
       prismatic%beta = beta
    end function prismatic
 
-   !> What no test of the numeric modules needs, allocated as `deck` leaves it.
+   !> What the deck reader would add: the tables of all links, and no instants.
    subroutine finish(m)
       type(mechanism_t), intent(inout) :: m
       integer :: i
 
-      allocate (m%requests(0), m%at(0))
+      allocate (m%at(0))
+      m%requests = [(request_t(request_link, i, 1), i=1, size(m%links))]
       do i = 1, size(m%drives)
          if (.not. allocated(m%drives(i)%terms)) allocate (m%drives(i)%terms(0))
       end do

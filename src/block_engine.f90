@@ -1,0 +1,149 @@
+!> Level 11. A mechanism solved block by block, in the order of `blocks`: each knows all that it needs when its
+!> turn comes. Only blocks that a table needs are solved, and those that no drive moves only once.
+module block_engine
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, drive_x, drive_y, drive_slide
+   use motion, only: motion_t
+   use scales, only: characteristic_length, power_of_two
+   use links_tree, only: tree_t, new_tree
+   use loop_equations, only: new_equations
+   use rough_positions, only: rough_values
+   use drives, only: law_t, new_law, drive_motion
+   use convergence, only: convergence_t, is_solved, ended_converged
+   use predictor, only: history_t, new_history, remember, predict
+   use blocks, only: blocks_t, new_blocks
+   use block_needs, only: wanted_links, moving_blocks, needed_blocks
+   use block_state, only: state_t, new_state
+   use block_solver, only: workspace_t, new_workspace, solve_block
+   use link_motion, only: chain_t, new_chain, move_links
+   implicit none
+   private
+   public :: block_engine_t, new_block_engine, seek_blocks, keep_blocks, tell_blocks
+
+   !> Lengths in units of `length`, a power of two in the deck's unit.
+   type :: block_engine_t
+      real(wp) :: length = 1.0_wp, tolerance = 0.0_wp, t = 0.0_wp
+      type(blocks_t) :: blocks
+      type(state_t) :: state
+      type(history_t) :: history
+      type(workspace_t) :: work
+      type(chain_t) :: chain
+      type(law_t), allocatable :: laws(:)
+      real(wp), allocatable :: unit_of(:)               !< (drives) of the value: length or 1
+      real(wp), allocatable :: rough(:)                 !< (0:unknowns) from the deck's positions
+      integer, allocatable :: needed(:), moving(:)      !< blocks that are solved at first, and at every step
+      integer, allocatable :: sign_now(:), sign_of(:)   !< (blocks) of the determinant: found last, followed
+   end type block_engine_t
+
+contains
+
+   !> Ready for the first instant of `m`.
+   function new_block_engine(m) result(e)
+      type(mechanism_t), intent(in) :: m
+      type(block_engine_t) :: e
+      type(tree_t) :: t
+      integer :: i
+
+      e%length = power_of_two(characteristic_length(m))
+      e%tolerance = m%tolerance
+      t = new_tree(m)
+      e%blocks = new_blocks(t, new_equations(m, t, e%length))
+      if (.not. e%blocks%solvable) return
+      e%needed = needed_blocks(e%blocks, t, wanted_links(m))
+      e%moving = pack(e%needed, moving_blocks(e%blocks, e%needed))
+      e%state = new_state(e%blocks, size(m%drives))
+      e%history = new_history(e%blocks%unknowns)
+      e%work = new_workspace(e%blocks)
+      e%chain = new_chain(m, t, wanted_links(m), e%blocks%frames)
+      allocate (e%laws(size(m%drives)))
+      allocate (e%unit_of(size(m%drives)), source=1.0_wp)
+      do i = 1, size(m%drives)
+         e%laws(i) = new_law(m%drives(i))
+         if (any(m%drives(i)%kind == [drive_x, drive_y, drive_slide])) e%unit_of(i) = 1.0_wp/e%length
+      end do
+      allocate (e%sign_now(size(e%blocks%list)), e%sign_of(size(e%blocks%list)), source=1)
+      e%rough = rough_values(m, t, e%length, e%blocks%unknowns)
+   end function new_block_engine
+
+   !> Seeks the motion at `t`, from those kept (`follows`) or from the deck's. `c`: how the hardest block ended,
+   !> `correction`: the largest change of a predicted value, `same`: every block's determinant has kept its sign.
+   subroutine seek_blocks(e, t, follows, c, correction, same)
+      type(block_engine_t), intent(inout) :: e
+      real(wp), intent(in) :: t
+      logical, intent(in) :: follows
+      type(convergence_t), intent(out) :: c
+      real(wp), intent(out) :: correction
+      logical, intent(out) :: same
+      integer :: i
+
+      e%t = t
+      do i = 1, size(e%laws)
+         e%state%target(:, i) = drive_motion(e%laws(i), t)*e%unit_of(i)
+      end do
+      correction = 0.0_wp
+      c%ended = ended_converged
+      c%reciprocal_condition = 1.0_wp
+      c%determinant = 1
+      same = .true.
+      if (follows) then
+         call predict(e%history, t, e%state%u)
+         call seek_each(e, e%moving, follows, c, correction, same)
+      else
+         e%state%u%value = e%rough
+         call seek_each(e, e%needed, follows, c, correction, same)
+      end if
+   end subroutine seek_blocks
+
+   !> The blocks of `list`, one after another; a block without an end that others can build on ends the search.
+   subroutine seek_each(e, list, follows, c, correction, same)
+      type(block_engine_t), intent(inout) :: e
+      integer, intent(in) :: list(:)
+      logical, intent(in) :: follows
+      type(convergence_t), intent(inout) :: c
+      real(wp), intent(inout) :: correction
+      logical, intent(inout) :: same
+      type(convergence_t) :: one
+      integer :: k, i
+
+      do k = 1, size(list)
+         i = list(k)
+         call solve_block(e%blocks, i, e%tolerance, e%work, e%state, one, correction)
+         if (e%blocks%list(i)%direct) cycle
+         call gather(one, c)
+         if (.not. is_solved(one) .or. one%singular) return
+         e%sign_now(i) = one%determinant
+         if (follows) same = same .and. one%determinant == e%sign_of(i)
+      end do
+   end subroutine seek_each
+
+   !> The record of the whole: the largest of each count, the worst of each ending.
+   pure subroutine gather(one, c)
+      type(convergence_t), intent(in) :: one
+      type(convergence_t), intent(inout) :: c
+
+      if (one%ended /= ended_converged) c%ended = one%ended
+      c%iterations = max(c%iterations, one%iterations)
+      c%residual = max(c%residual, one%residual)
+      c%step = max(c%step, one%step)
+      c%reciprocal_condition = min(c%reciprocal_condition, one%reciprocal_condition)
+      c%determinant = c%determinant*one%determinant
+      c%singular = c%singular .or. one%singular
+   end subroutine gather
+
+   !> Makes the motion found last the one that is followed.
+   subroutine keep_blocks(e)
+      type(block_engine_t), intent(inout) :: e
+
+      call remember(e%history, e%t, e%state%u)
+      e%sign_of = e%sign_now
+   end subroutine keep_blocks
+
+   !> The motion found last of the links that are asked for, in the deck's units; `finite`: all of it is in range.
+   subroutine tell_blocks(e, found, finite)
+      type(block_engine_t), intent(in) :: e
+      type(motion_t), intent(inout) :: found
+      logical, intent(out) :: finite
+
+      call move_links(e%chain, e%state, e%length, found, finite)
+   end subroutine tell_blocks
+end module block_engine

@@ -1,0 +1,127 @@
+!> Level 11. All closure equations as one block, x, y, phi of every link its unknowns: the form of the paper, by Newton
+!> (METHOD DENSE) or by the iteration of 1987 (METHOD MATRIX). What the blocks are compared with.
+module dense_engine
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, method_matrix
+   use motion, only: motion_t, new_motion
+   use linear_solver, only: factors_t, new_factors, reciprocal_condition, determinant_sign
+   use convergence, only: convergence_t, is_solved
+   use pose, only: system_t, pose_t, new_system, new_pose
+   use drive_rows, only: drive_targets
+   use position_newton, only: solve_newton
+   use position_matrix, only: solve_matrix
+   use rates, only: solve_velocity, solve_acceleration
+   implicit none
+   private
+   public :: dense_t, new_dense, seek_dense, keep_dense, tell_dense
+
+   !> The position is known to eps/rcond, and so the Jacobian; below the root of eps no digit of a velocity is certain.
+   real(wp), parameter :: least_condition = 4.0_wp*sqrt(epsilon(1.0_wp))
+
+   !> Lengths in the system's unit.
+   type :: dense_t
+      type(system_t) :: system
+      type(pose_t) :: pose                       !< room for the position that is being sought
+      real(wp), allocatable :: rough(:, :)       !< (3, links) the deck's positions
+      real(wp), allocatable :: start(:, :)       !< (3, links) where the last search began
+      type(factors_t) :: factors
+      type(motion_t) :: now                      !< the motion sought last
+      type(motion_t) :: last                     !< the last one kept
+      integer :: determinant_now = 0, determinant = 0
+      real(wp), allocatable :: targets(:, :)     !< (3, drives) value, rate, second rate
+      integer :: method = 0
+      real(wp) :: tolerance = 0.0_wp
+   end type dense_t
+
+contains
+
+   !> Ready for the first instant of `m`, whose equations are as many as its unknowns.
+   function new_dense(m) result(e)
+      type(mechanism_t), intent(in) :: m
+      type(dense_t) :: e
+
+      e%system = new_system(m)
+      e%pose = new_pose(e%system, m)
+      e%rough = e%pose%q
+      e%start = e%rough
+      e%factors = new_factors(e%system%n)
+      e%now = new_motion(size(m%links))
+      e%last = e%now
+      allocate (e%targets(3, size(m%drives)))
+      e%method = m%method
+      e%tolerance = m%tolerance
+   end function new_dense
+
+   !> Seeks the motion at `t`, from the last one kept (`follows`) or from the deck's. `c`: how it ended,
+   !> `correction`: the largest change of the predicted coordinates, `same`: the determinant has kept its sign.
+   subroutine seek_dense(e, t, follows, c, correction, same)
+      type(dense_t), intent(inout) :: e
+      real(wp), intent(in) :: t
+      logical, intent(in) :: follows
+      type(convergence_t), intent(out) :: c
+      real(wp), intent(out) :: correction
+      logical, intent(out) :: same
+
+      e%now%t = t
+      e%start = e%rough
+      if (follows) e%start = continued(e%last, t)
+      e%pose%q = e%start
+      call drive_targets(e%system, t, e%targets)
+      if (e%method == method_matrix) then
+         call solve_matrix(e%system, e%targets(1, :), e%tolerance, e%pose, e%factors, c)
+      else
+         call solve_newton(e%system, e%targets(1, :), e%tolerance, e%pose, e%factors, c)
+      end if
+      correction = maxval(abs(e%pose%q - e%start))
+      same = .true.
+      if (.not. is_solved(c)) return
+      call solve_rates(e, c)
+      if (follows .and. .not. c%singular) same = e%determinant_now == e%determinant
+   end subroutine seek_dense
+
+   !> Velocities and accelerations at the position found, where the Jacobian has an inverse.
+   subroutine solve_rates(e, c)
+      type(dense_t), intent(inout) :: e
+      type(convergence_t), intent(inout) :: c
+
+      e%now%position = e%pose%q
+      if (c%singular) return
+      call reciprocal_condition(e%factors, c%reciprocal_condition)
+      c%determinant = determinant_sign(e%factors)
+      e%determinant_now = c%determinant
+      c%singular = c%reciprocal_condition <= least_condition
+      if (c%singular) return
+      call solve_velocity(e%system, e%factors, e%targets(2, :), e%now%velocity)
+      call solve_acceleration(e%system, e%factors, e%pose, e%targets(3, :), e%now%velocity, e%now%acceleration)
+   end subroutine solve_rates
+
+   !> Makes the motion found last the one that is followed.
+   pure subroutine keep_dense(e)
+      type(dense_t), intent(inout) :: e
+
+      e%last = e%now
+      e%determinant = e%determinant_now
+   end subroutine keep_dense
+
+   !> The motion found last, in the deck's units.
+   pure subroutine tell_dense(e, found)
+      type(dense_t), intent(in) :: e
+      type(motion_t), intent(inout) :: found
+
+      found%position = e%now%position
+      found%velocity = e%now%velocity
+      found%acceleration = e%now%acceleration
+      found%position(:2, :) = e%system%length*found%position(:2, :)
+      found%velocity(:2, :) = e%system%length*found%velocity(:2, :)
+      found%acceleration(:2, :) = e%system%length*found%acceleration(:2, :)
+   end subroutine tell_dense
+
+   !> The start at `t` (3, links): the state before, corrected through its velocity and acceleration.
+   pure function continued(last, t) result(q)
+      type(motion_t), intent(in) :: last
+      real(wp), intent(in) :: t
+      real(wp) :: q(3, size(last%position, 2))
+
+      q = last%position + (t - last%t)*(last%velocity + 0.5_wp*(t - last%t)*last%acceleration)
+   end function continued
+end module dense_engine

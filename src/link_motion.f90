@@ -1,0 +1,182 @@
+!> Level 9. From the motion of the unknowns to that of the links, by the tree: with u = R reach + s R e, in the axes of
+!> the frame above, and w = R arm in those of the link's own frame,
+!>
+!>    origin = origin above + u - w,   and so its velocity and acceleration.
+module link_motion
+   use kinds, only: wp
+   use mechanism, only: mechanism_t
+   use motion, only: motion_t
+   use links_tree, only: tree_t
+   use tree_places, only: place_t, place_on_tree
+   use block_state, only: state_t
+   implicit none
+   private
+   public :: chain_t, new_chain, move_links
+
+   !> A moving link: 0 stands for the ground, for no slide and for no root.
+   type :: hung_t
+      integer :: link = 0, above = 0, frame = 0, frame_above = 0
+      integer :: slide = 0                              !< its unknown
+      integer :: root = 0                               !< the unknown that is its x; y is the next
+      logical :: has_arm = .false.
+      real(wp) :: turn = 0.0_wp
+      type(place_t) :: place
+   end type hung_t
+
+   !> The links to be moved, what is above first, and those that stay.
+   type :: chain_t
+      type(hung_t), allocatable :: hung(:)
+      integer, allocatable :: ground(:)
+      real(wp), allocatable :: ground_position(:, :)    !< (3, ground links)
+   end type chain_t
+
+contains
+
+   !> The chain of those links of `m` that are `wanted` (links) and of those they hang on, in the deck's length unit.
+   !> `first_slide`: unknowns before the first slide.
+   function new_chain(m, t, wanted, first_slide) result(c)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      logical, intent(in) :: wanted(:)
+      integer, intent(in) :: first_slide
+      type(chain_t) :: c
+      logical :: needed(size(wanted))
+      integer, allocatable :: links(:)
+      integer :: i
+
+      needed = wanted
+      do i = size(t%order), 1, -1
+         if (needed(t%order(i)) .and. t%above(t%order(i)) > 0) needed(t%above(t%order(i))) = .true.
+      end do
+      links = pack(t%order, needed(t%order) .and. .not. m%links(t%order)%ground)
+      allocate (c%hung(size(links)))
+      do i = 1, size(links)
+         c%hung(i) = hung_on(m, t, links(i), first_slide)
+      end do
+      c%ground = pack([(i, i=1, size(wanted))], m%links%ground .and. wanted)
+      allocate (c%ground_position(3, size(c%ground)))
+      do i = 1, size(c%ground)
+         c%ground_position(:, i) = m%links(c%ground(i))%position
+      end do
+   end function new_chain
+
+   function hung_on(m, t, link, first_slide) result(h)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      integer, intent(in) :: link, first_slide
+      type(hung_t) :: h
+
+      h%link = link
+      h%frame = t%frame(link)
+      h%turn = t%turn(link)
+      if (t%above(link) == 0) then
+         h%root = first_slide + t%slides + 2*t%root(link) - 1
+         return
+      end if
+      h%place = place_on_tree(m, t, 1.0_wp, link)
+      h%has_arm = any(abs(h%place%arm) > 0.0_wp)
+      h%frame_above = t%frame(t%above(link))
+      if (h%place%slide > 0) h%slide = first_slide + h%place%slide
+      if (.not. m%links(t%above(link))%ground) h%above = t%above(link)
+   end function hung_on
+
+   !> Moves the links of the chain; `length`: the unit of the slides of `s` in the deck's unit. `finite`: no
+   !> number of theirs is out of range; false may be said of sums alone.
+   pure subroutine move_links(c, s, length, q, finite)
+      type(chain_t), intent(in) :: c
+      type(state_t), intent(in) :: s
+      real(wp), intent(in) :: length
+      type(motion_t), intent(inout) :: q
+      logical, intent(out) :: finite
+      real(wp) :: p(2), v(2), a(2), check
+      integer :: i
+
+      do i = 1, size(c%ground)
+         q%position(:, c%ground(i)) = c%ground_position(:, i)
+      end do
+      check = 0.0_wp
+      do i = 1, size(c%hung)
+         associate (h => c%hung(i), k => c%hung(i)%link, f => s%u(c%hung(i)%frame))
+            call place(h, s, p, v, a)
+            if (h%slide > 0) call add_slide(h, s, length, p, v, a)
+            if (h%root > 0) call add_root(h, s, length, p, v, a)
+            if (h%above > 0) then
+               p = p + q%position(:2, h%above)
+               v = v + q%velocity(:2, h%above)
+               a = a + q%acceleration(:2, h%above)
+            end if
+            q%position(:2, k) = p
+            q%velocity(:2, k) = v
+            q%acceleration(:2, k) = a
+            q%position(3, k) = f%value + h%turn
+            q%velocity(3, k) = f%rate
+            q%acceleration(3, k) = f%rate2
+            ! Zero, unless something in the sum is infinite or no number.
+            check = check + 0.0_wp*((p(1) + p(2)) + (v(1) + v(2)) + ((a(1) + a(2)) + f%rate2))
+         end associate
+      end do
+      finite = check <= 0.0_wp
+   end subroutine move_links
+
+   !> u - w with derivatives, but for a slide.
+   pure subroutine place(h, s, p, v, a)
+      type(hung_t), intent(in) :: h
+      type(state_t), intent(in) :: s
+      real(wp), intent(out) :: p(2), v(2), a(2)
+      real(wp) :: x, y, square
+
+      if (h%frame_above == 0) then
+         p = h%place%reach
+         v = 0.0_wp
+         a = 0.0_wp
+      else
+         associate (f => s%u(h%frame_above), d => h%place%reach)
+            p(1) = f%c*d(1) - f%s*d(2)
+            p(2) = f%s*d(1) + f%c*d(2)
+            square = f%rate*f%rate
+            v(1) = -f%rate*p(2)
+            v(2) = f%rate*p(1)
+            a(1) = -f%rate2*p(2) - square*p(1)
+            a(2) = f%rate2*p(1) - square*p(2)
+         end associate
+      end if
+      if (.not. h%has_arm) return
+      associate (f => s%u(h%frame), d => h%place%arm)
+         x = f%c*d(1) - f%s*d(2)
+         y = f%s*d(1) + f%c*d(2)
+         square = f%rate*f%rate
+         p = p - [x, y]
+         v = v - [-f%rate*y, f%rate*x]
+         a = a - [-f%rate2*y - square*x, f%rate2*x - square*y]
+      end associate
+   end subroutine place
+
+   !> The slide by which the link hangs.
+   pure subroutine add_slide(h, s, length, p, v, a)
+      type(hung_t), intent(in) :: h
+      type(state_t), intent(in) :: s
+      real(wp), intent(in) :: length
+      real(wp), intent(inout) :: p(2), v(2), a(2)
+      real(wp) :: e(2), turn(2)
+
+      associate (f => s%u(h%frame_above), u => s%u(h%slide), d => h%place%slide_arm)
+         e = length*[f%c*d(1) - f%s*d(2), f%s*d(1) + f%c*d(2)]
+         turn = [-e(2), e(1)]
+         p = p + u%value*e
+         v = v + u%rate*e + u%value*f%rate*turn
+         a = a + u%rate2*e + 2.0_wp*u%rate*f%rate*turn + u%value*(f%rate2*turn - f%rate**2*e)
+      end associate
+   end subroutine add_slide
+
+   !> A link that no pair joins to the ground has its own x and y.
+   pure subroutine add_root(h, s, length, p, v, a)
+      type(hung_t), intent(in) :: h
+      type(state_t), intent(in) :: s
+      real(wp), intent(in) :: length
+      real(wp), intent(out) :: p(2), v(2), a(2)
+
+      p = length*s%u(h%root:h%root + 1)%value
+      v = length*s%u(h%root:h%root + 1)%rate
+      a = length*s%u(h%root:h%root + 1)%rate2
+   end subroutine add_root
+end module link_motion

@@ -1,0 +1,78 @@
+!> Tests. The Assur groups of the decks in input/, stated by hand from the drawings: crank first, then dyad upon dyad. A
+!> star stands before a group that holds a drive, a minus before one that no table needs.
+module hand_groups
+   use mechanism, only: mechanism_t
+   use structure, only: group_t
+   implicit none
+   private
+   public :: groups_by_hand
+
+   !> Of all sets of a deck (0) or of one.
+   type :: statement_t
+      character(16) :: deck = ''
+      integer :: set = 0
+      character(80) :: groups = ''
+   end type statement_t
+
+   type(statement_t), parameter :: statements(16) = [ &
+      statement_t('yoke', 0, '*CRANK; BLOCK LEVER; ROD RAM'), &
+      statement_t('yoke_mirrored', 0, '*CRANK; BLOCK LEVER; ROD RAM'), &
+      statement_t('four_bar', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('crank_slider', 0, '*CRANK; ROD PISTON'), &
+      ! The block turns with the yoke, which does not turn: it hangs ready on the crank's pin.
+      statement_t('scotch_yoke', 1, '*CRANK BLOCK; YOKE'), &
+      statement_t('scotch_yoke', 2, '*YOKE; CRANK BLOCK'), &
+      statement_t('whitworth', 0, '*CRANK; BLOCK ARM; ROD RAM'), &
+      statement_t('drag_link', 0, '*CRANK; COUPLER FOLLOWER'), &
+      ! A cylinder is a drive between two links: boom, barrel and piston are found at once.
+      statement_t('cylinder', 0, '*BOOM BARREL PISTON'), &
+      statement_t('trammel', 1, '*BAR SHOE-A SHOE-B'), &
+      statement_t('trammel', 2, '*SHOE-A; BAR SHOE-B'), &
+      statement_t('peaucellier', 0, '*CRANK; ARM-A BAR-AC; ARM-B BAR-BC; BAR-AP BAR-BP'), &
+      statement_t('five_bar', 0, '*LEFT; *RIGHT; ROD-L ROD-R'), &
+      ! Both drives hold the pin of the first dyad.
+      statement_t('pantograph', 0, '*ARM-OB ROD-AD; ARM-BT ROD-CD'), &
+      statement_t('andrews', 0, '*K1; K2 K3; K4 K5; K6 K7'), &
+      statement_t('jansen', 0, '*CRANK; ROD-J UPPER; ROD-K ROD-C; ROD-F FOOT')]
+
+contains
+
+   !> The groups of set `m` of the deck called `name`; none where nothing is stated.
+   function groups_by_hand(name, m) result(groups)
+      character(*), intent(in) :: name
+      type(mechanism_t), intent(in) :: m
+      type(group_t), allocatable :: groups(:)
+      character(:), allocatable :: rest
+      integer :: i, last
+
+      allocate (groups(0))
+      do i = 1, size(statements)
+         if (statements(i)%deck /= name .or. all(statements(i)%set /= [0, m%set_number])) cycle
+         rest = trim(statements(i)%groups)//';'
+         do while (len(rest) > 0)
+            last = index(rest, ';')
+            groups = [groups, group(m, adjustl(rest(:last - 1)))]
+            rest = rest(last + 1:)
+         end do
+         return
+      end do
+   end function groups_by_hand
+
+   !> One group from its text.
+   function group(m, text) result(g)
+      type(mechanism_t), intent(in) :: m
+      character(*), intent(in) :: text
+      type(group_t) :: g
+      integer :: i, k, from
+      logical :: is_in(size(m%links))
+
+      g%driven = text(1:1) == '*'
+      g%needed = text(1:1) /= '-'
+      is_in = .false.
+      from = merge(2, 1, g%driven .or. .not. g%needed)
+      do k = 1, size(m%links)
+         is_in(k) = index(' '//text(from:)//' ', ' '//trim(m%links(k)%name)//' ') > 0
+      end do
+      g%links = pack([(i, i=1, size(m%links))], is_in)
+   end function group
+end module hand_groups
