@@ -17,7 +17,7 @@ sources := $(sort $(wildcard src/*.f90))
 names   := $(sources:src/%.f90=%)
 modules := $(filter-out main,$(names))
 
-.PHONY: all run test check expected install clean
+.PHONY: all run test check forms bench bench-short expected install clean
 all: $(BUILD)/kinmat
 
 run: $(BUILD)/kinmat
@@ -55,7 +55,9 @@ include $(BUILD)/depends.mk
 endif
 
 # Closed forms in real128 print the listings that the program must print, byte for byte.
-forms := tests/quad_jet.f90 tests/closed_forms_dyads.f90 tests/closed_forms_linkages.f90 tests/closed_forms_sliders.f90 tests/closed_forms_legs.f90 tests/closed_forms.f90 tests/hand_groups.f90
+forms := tests/quad_jet.f90 tests/closed_forms_dyads.f90 tests/closed_forms_linkages.f90 tests/closed_forms_sliders.f90 tests/closed_forms_legs.f90 tests/closed_forms_sixbars.f90 \
+   tests/closed_forms_robots.f90 tests/closed_forms_bars.f90 tests/closed_forms_slides.f90 \
+   tests/closed_forms_overconstrained.f90 tests/closed_forms_hard.f90 tests/closed_forms.f90 tests/hand_groups.f90
 decks := $(sort $(wildcard input/*.deck))
 references := $(decks:input/%.deck=$(BUILD)/expected/%.lst)
 
@@ -70,8 +72,30 @@ $(BUILD)/expected/%.lst: input/%.deck $(BUILD)/print_expected
 expected: $(references)
 	cp $(references) expected/
 
+# The closed forms against the decks: closure, velocities and accelerations of every pair and drive, in real128.
+$(BUILD)/check_forms: $(forms) tests/quad_decks.f90 tests/check_forms.f90 $(BUILD)/release/libkinmat.a
+	mkdir -p $(BUILD)/forms
+	$(FC) $(COMMON) $(RELEASE) -J$(BUILD)/forms -I$(BUILD)/release -o $@ $^ $(LIBS)
+
+forms: $(BUILD)/check_forms
+	$(BUILD)/check_forms $(decks)
+
 check: $(BUILD)/kinmat $(references)
 	BUILD=$(BUILD) tests/check.sh
+
+# Speed against the closed forms, and the results of the methods compared; bench-short looks at no clock.
+bench_parts := tests/fast_forms.f90 tests/bench_tools.f90 tests/bench_chains.f90 tests/bench_scenes.f90 \
+   tests/bench_timing.f90 tests/bench_results.f90 tests/bench_tables.f90 tests/bench_whole.f90 tests/bench.f90
+
+$(BUILD)/bench/bench: $(forms) $(bench_parts) $(BUILD)/release/libkinmat.a
+	mkdir -p $(BUILD)/bench
+	$(FC) $(COMMON) $(RELEASE) -J$(BUILD)/bench -I$(BUILD)/release -o $@ $^ $(LIBS)
+
+bench: $(BUILD)/kinmat $(BUILD)/bench/bench
+	BUILD=$(BUILD) tests/bench.sh
+
+bench-short: $(BUILD)/bench/bench
+	BUILD=$(BUILD) tests/bench.sh short
 
 TEST_LIB     := $(BUILD)/debug/libkinmat.a
 TEST_MODULES := $(BUILD)/debug
@@ -80,7 +104,7 @@ TEST_LIBS    := $(LIBS)
 TEST_HELPERS := $(forms) tests/deck_samples.f90 tests/sample_mechanisms.f90 tests/quad_closure.f90 tests/motion_errors.f90
 include tests/tests.mk
 
-test: $(BUILD)/kinmat $(BUILD)/debug/kinmat $(references) $(BUILD)/tests$(if $(PFUNIT_DIR),/pfunit)/unit
+test: $(BUILD)/kinmat $(BUILD)/debug/kinmat $(BUILD)/check_forms $(references) $(BUILD)/tests$(if $(PFUNIT_DIR),/pfunit)/unit
 	BUILD=$(BUILD) MAKE='$(MAKE)' tests/run.sh
 
 install: $(BUILD)/kinmat

@@ -1,11 +1,13 @@
-!> Level 9. The blocks as engineers know them: Assur groups, told by their links. A link belongs to the first block
-!> after which all of its position is known. Order: a group after those it builds on, within one depth by the
-!> deck's links; so the order is the mechanism's, whatever the blocks' own was.
+!> Level 4. The Assur groups of a mechanism, with the drives that move them: the least sets of links that can be solved
+!> one after another. Each coordinate is matched with a closure equation; a link waits for all links that
+!> stand in the equations of its coordinates, and links that wait for one another are a group.
+!>
+!> Order: a group after those it builds on, within one depth by the deck's links. So groups and order are the
+!> mechanism's own, whatever the matching.
 module assur_groups
    use mechanism, only: mechanism_t
-   use links_tree, only: tree_t
-   use blocks, only: blocks_t
-   use block_needs, only: wanted_links, needed_blocks, largest_known
+   use matching, only: incidence_t, find_blocks
+   use closure_incidence, only: closure_t
    implicit none
    private
    public :: group_t, groups_of
@@ -13,124 +15,142 @@ module assur_groups
    type :: group_t
       integer, allocatable :: links(:)
       logical :: driven = .false.         !< a drive is part of it
-      logical :: needed = .true.          !< some table names one of its links, or a later group's
+      logical :: needed = .true.          !< a table names one of its links, or one that builds on it
    end type group_t
 
 contains
 
-   !> The groups of `m` from its solvable blocks `b` on the tree `t`.
-   function groups_of(m, t, b) result(groups)
+   !> The groups of `m`. `unknown_of` (equations), `equation_of` (unknowns): a perfect matching of its closure
+   !> `c`; `wanted` (links): named by a table.
+   function groups_of(m, c, unknown_of, equation_of, wanted) result(groups)
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      type(blocks_t), intent(in) :: b
+      type(closure_t), intent(in) :: c
+      integer, intent(in) :: unknown_of(:), equation_of(:)
+      logical, intent(in) :: wanted(:)
       type(group_t), allocatable :: groups(:)
-      integer :: block_of(size(m%links)), owner(size(b%list)), number(size(b%list)), i
-      logical :: driven(size(b%list)), needed(size(b%list))
+      type(incidence_t) :: waits
+      integer, allocatable :: first(:), member(:), of_link(:), order(:)
+      integer :: i, e
 
-      call find_blocks_of_links(m, t, b, block_of, owner)
-      call number_groups(b, block_of, number)
-      allocate (groups(maxval([0, number])))
-      driven = .false.
-      needed = .false.
-      needed(needed_blocks(b, t, wanted_links(m))) = .true.
+      waits = waiting(m, c, equation_of)
+      call find_blocks(waits, [(i, i=1, size(m%links))], first, member)
+      of_link = member
+      do i = 1, size(first) - 1
+         of_link(member(first(i):first(i + 1) - 1)) = i
+      end do
+      order = numbers(m, waits, first, member, of_link)
+      allocate (groups(maxval([0, order])))
       do i = 1, size(groups)
          groups(i)%needed = .false.
       end do
-      do i = 1, size(b%list)
-         if (owner(i) == 0) cycle
-         associate (g => groups(number(owner(i))))
-            g%driven = g%driven .or. any(b%rows(b%list(i)%first:b%list(i)%last)%drive > 0)
-            g%needed = g%needed .or. needed(i)
-         end associate
+      call share_out_links(of_link, order, wanted, groups)
+      do e = 1, size(unknown_of)
+         if (c%drive(e) > 0) groups(order(of_link(c%link_of(unknown_of(e)))))%driven = .true.
       end do
-      call share_out_links(block_of, number, groups)
+      call spread_need(waits, of_link, order, groups)
    end function groups_of
 
-   !> `block_of` (links): the last block on the way from the ground to the link, 0 for ground links. `owner`
-   !> (blocks): the block of the first link that uses it.
-   subroutine find_blocks_of_links(m, t, b, block_of, owner)
+   !> For which links each link waits; a ground link for none.
+   function waiting(m, c, equation_of) result(w)
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      type(blocks_t), intent(in) :: b
-      integer, intent(out) :: block_of(:), owner(:)
-      integer :: uses(4), n, i, link
+      type(closure_t), intent(in) :: c
+      integer, intent(in) :: equation_of(:)
+      type(incidence_t) :: w
+      integer :: u, e, i, k, link, n
 
-      block_of = 0
-      owner = 0
-      do i = 1, size(t%order)
-         link = t%order(i)
-         if (m%links(link)%ground) cycle
-         n = 0
-         if (t%frame(link) > 0) call use_unknown(t%frame(link))
-         if (t%above(link) > 0) then
-            block_of(link) = block_of(t%above(link))
-            if (t%slide(t%hung_by(link)) > 0) call use_unknown(b%frames + t%slide(t%hung_by(link)))
-         else
-            call use_unknown(b%frames + t%slides + 2*t%root(link) - 1)
-            call use_unknown(b%frames + t%slides + 2*t%root(link))
-         end if
-         block_of(link) = maxval([block_of(link), uses(:n)])
-         where (owner(uses(:n)) == 0 .or. owner(uses(:n)) > block_of(link)) owner(uses(:n)) = block_of(link)
-      end do
-
-   contains
-
-      subroutine use_unknown(u)
-         integer, intent(in) :: u
-
+      w%equations = size(m%links)
+      w%unknowns = size(m%links)
+      allocate (w%first(size(m%links) + 1), w%unknown(size(m%links) + size(c%incidence%unknown)))
+      n = 0
+      u = 0
+      do link = 1, size(m%links)
+         w%first(link) = n + 1
          n = n + 1
-         uses(n) = b%block_of(u)
-      end subroutine use_unknown
-   end subroutine find_blocks_of_links
-
-   !> `number` (blocks): of the group that a block with links is, 0 for others.
-   subroutine number_groups(b, block_of, number)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: block_of(:)
-      integer, intent(out) :: number(:)
-      logical :: has_links(0:size(number))
-      integer :: depth(size(number)), depth_of(0:b%unknowns), first(size(number) + 2), i
-
-      has_links = .false.
-      has_links(block_of) = .true.
-      depth_of = 0
-      first = 0
-      do i = 1, size(number)
-         depth(i) = largest_known(b, i, depth_of) + merge(1, 0, has_links(i))
-         depth_of(b%unknown(b%list(i)%first:b%list(i)%last)) = depth(i)
-         if (has_links(i)) first(depth(i) + 2) = first(depth(i) + 2) + 1
+         w%unknown(n) = link
+         if (m%links(link)%ground) cycle
+         do i = 1, 3
+            u = u + 1
+            e = equation_of(u)
+            do k = c%incidence%first(e), c%incidence%first(e + 1) - 1
+               n = n + 1
+               w%unknown(n) = c%link_of(c%incidence%unknown(k))
+            end do
+         end do
       end do
-      do i = 2, size(first)
-         first(i) = first(i) + first(i - 1)
-      end do
-      number = 0
-      do i = 1, size(block_of)
-         if (block_of(i) == 0) cycle
-         if (number(block_of(i)) > 0) cycle
-         first(depth(block_of(i)) + 1) = first(depth(block_of(i)) + 1) + 1
-         number(block_of(i)) = first(depth(block_of(i)) + 1)
-      end do
-   end subroutine number_groups
+      w%first(size(m%links) + 1) = n + 1
+   end function waiting
 
-   subroutine share_out_links(block_of, number, groups)
-      integer, intent(in) :: block_of(:), number(:)
+   !> (components) The number of each component of links among the groups; 0 for ground links.
+   function numbers(m, waits, first, member, of_link) result(order)
+      type(mechanism_t), intent(in) :: m
+      type(incidence_t), intent(in) :: waits
+      integer, intent(in) :: first(:), member(:), of_link(:)
+      integer, allocatable :: order(:)
+      integer :: depth(size(first) - 1), before(size(first) + 1), i, k, n
+
+      depth = 0
+      before = 0
+      do i = 1, size(depth)
+         do k = first(i), first(i + 1) - 1
+            if (m%links(member(k))%ground) cycle
+            do n = waits%first(member(k)), waits%first(member(k) + 1) - 1
+               if (of_link(waits%unknown(n)) /= i) depth(i) = max(depth(i), depth(of_link(waits%unknown(n))))
+            end do
+         end do
+         if (m%links(member(first(i)))%ground) cycle
+         depth(i) = depth(i) + 1
+         before(depth(i) + 1) = before(depth(i) + 1) + 1
+      end do
+      do i = 2, size(before)
+         before(i) = before(i) + before(i - 1)
+      end do
+      allocate (order(size(depth)), source=0)
+      do i = 1, size(of_link)
+         if (order(of_link(i)) > 0 .or. m%links(i)%ground) cycle
+         before(depth(of_link(i))) = before(depth(of_link(i))) + 1
+         order(of_link(i)) = before(depth(of_link(i)))
+      end do
+   end function numbers
+
+   subroutine share_out_links(of_link, order, wanted, groups)
+      integer, intent(in) :: of_link(:), order(:)
+      logical, intent(in) :: wanted(:)
       type(group_t), intent(inout) :: groups(:)
-      integer :: members(size(groups)), i
+      integer :: members(size(groups)), i, g
 
       members = 0
-      do i = 1, size(block_of)
-         if (block_of(i) > 0) members(number(block_of(i))) = members(number(block_of(i))) + 1
+      do i = 1, size(of_link)
+         g = order(of_link(i))
+         if (g > 0) members(g) = members(g) + 1
       end do
-      do i = 1, size(groups)
-         allocate (groups(i)%links(members(i)))
+      do g = 1, size(groups)
+         allocate (groups(g)%links(members(g)))
       end do
       members = 0
-      do i = 1, size(block_of)
-         if (block_of(i) == 0) cycle
-         associate (g => number(block_of(i)))
-            members(g) = members(g) + 1
-            groups(g)%links(members(g)) = i
-         end associate
+      do i = 1, size(of_link)
+         g = order(of_link(i))
+         if (g == 0) cycle
+         members(g) = members(g) + 1
+         groups(g)%links(members(g)) = i
+         groups(g)%needed = groups(g)%needed .or. wanted(i)
       end do
    end subroutine share_out_links
+
+   !> What a needed group builds on is needed.
+   subroutine spread_need(waits, of_link, order, groups)
+      type(incidence_t), intent(in) :: waits
+      integer, intent(in) :: of_link(:), order(:)
+      type(group_t), intent(inout) :: groups(:)
+      integer :: g, i, n, other
+
+      do g = size(groups), 1, -1
+         if (.not. groups(g)%needed) cycle
+         do i = 1, size(groups(g)%links)
+            do n = waits%first(groups(g)%links(i)), waits%first(groups(g)%links(i) + 1) - 1
+               other = order(of_link(waits%unknown(n)))
+               if (other > 0) groups(other)%needed = .true.
+            end do
+         end do
+      end do
+   end subroutine spread_need
 end module assur_groups

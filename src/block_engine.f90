@@ -2,7 +2,7 @@
 !> turn comes. Only blocks that a table needs are solved, and those that no drive moves only once.
 module block_engine
    use kinds, only: wp
-   use mechanism, only: mechanism_t, drive_x, drive_y, drive_slide
+   use mechanism, only: mechanism_t, wanted_links, drive_x, drive_y, drive_slide
    use motion, only: motion_t
    use scales, only: characteristic_length, power_of_two
    use links_tree, only: tree_t, new_tree
@@ -12,7 +12,7 @@ module block_engine
    use convergence, only: convergence_t, is_solved, ended_converged
    use predictor, only: history_t, new_history, remember, predict
    use blocks, only: blocks_t, new_blocks
-   use block_needs, only: wanted_links, moving_blocks, needed_blocks
+   use block_needs, only: moving_blocks, needed_blocks
    use block_state, only: state_t, new_state
    use block_solver, only: workspace_t, new_workspace, solve_block
    use link_motion, only: chain_t, new_chain, move_links

@@ -1,36 +1,13 @@
 !> Level 8. Which blocks have to be solved: those whose unknowns move a link that a table names, those that they build
 !> on, and no other; and of these again and again only what a drive moves.
 module block_needs
-   use mechanism, only: mechanism_t, request_link, request_point
    use links_tree, only: tree_t
    use blocks, only: blocks_t
    implicit none
    private
-   public :: wanted_links, needed_blocks, moving_blocks, largest_known
+   public :: needed_blocks, moving_blocks, largest_known
 
 contains
-
-   !> The links (links) whose motion the deck's requests need.
-   pure function wanted_links(m) result(wanted)
-      type(mechanism_t), intent(in) :: m
-      logical :: wanted(size(m%links))
-      integer :: i
-
-      wanted = .false.
-      do i = 1, size(m%requests)
-         associate (k => m%requests(i)%subject)
-            select case (m%requests(i)%kind)
-            case (request_link)
-               wanted(k) = .true.
-            case (request_point)
-               wanted(m%points(k)%link) = .true.
-            case default
-               wanted(m%points(m%pairs(k)%point_i)%link) = .true.
-               wanted(m%points(m%pairs(k)%point_j)%link) = .true.
-            end select
-         end associate
-      end do
-   end function wanted_links
 
    !> The blocks, in solving order, that the links `wanted` (links) need.
    function needed_blocks(b, t, wanted) result(list)

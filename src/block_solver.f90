@@ -55,7 +55,7 @@ contains
          widest = max(widest, n)
          entries = max(entries, entries_of(n, b%list(i)%below, b%list(i)%above))
       end do
-      allocate (w%a(entries), w%r(2*widest), w%start(widest), w%work(3*widest), source=0.0_wp)
+      allocate (w%a(entries), w%r(2*widest), w%start(widest), w%work(4*widest), source=0.0_wp)
       allocate (w%pivots(widest), w%iwork(widest), source=0)
    end function new_workspace
 

@@ -13,7 +13,7 @@ module decimal_digits
    use kinds, only: wp
    implicit none
    private
-   public :: nearest_whole, leading_digits, put_digits, put_leading, significant
+   public :: nearest_whole, leading_digits, put_whole, put_with_point, put_digits, put_leading, significant
 
    !> Digits that tell any two reals apart: 17 for 53 bits.
    integer, parameter :: significant = 2 + int(digits(1.0_wp)*log10(2.0))
@@ -117,8 +117,7 @@ contains
       if (beyond > 0.0_wp .or. (.not. beyond < 0.0_wp .and. mod(n, 2_int64) == 1)) n = n + int(side)
    end subroutine round_sum
 
-   !> The 17 digits `n` and the exponent `e` of `x` >= 0: x is n 10**(e - 16), 10**16 <= n < 10**17; of 0 both
-   !> are 0.
+   !> The 17 digits `n` and the exponent `e` of `x` > 0: x is n 10**(e - 16), 10**16 <= n < 10**17.
    pure subroutine leading_digits(x, n, e, sure)
       real(wp), intent(in) :: x
       integer(int64), intent(out) :: n
@@ -127,8 +126,8 @@ contains
 
       n = 0
       e = 0
-      sure = able .and. x <= 0.0_wp
-      if (sure .or. .not. able) return
+      sure = .false.
+      if (.not. able) return
       if (.not. (x > high(significant - reach) .and. x < high(reach - 1))) return
       ! The exponent of the power of two below x times log10(2), rounded down: for 2**-2000 to 2**2000 this
       ! ratio gives the same whole numbers as log10(2). It is e or e - 1.
@@ -154,6 +153,50 @@ contains
       end do
       if (mod(len(text), 2) == 1) text(1:1) = achar(48 + int(rest - 10*(rest/10)))
    end subroutine put_digits
+
+   !> All digits of `n` >= 0 at the end of `text`, from place `first`.
+   pure subroutine put_whole(n, text, first)
+      integer(int64), intent(in) :: n
+      character(*), intent(inout) :: text
+      integer, intent(out) :: first
+      integer(int64) :: rest, next
+
+      rest = n
+      do first = len(text), 2, -1
+         next = rest/10
+         text(first:first) = achar(48 + int(rest - 10*next))
+         rest = next
+         if (rest == 0) return
+      end do
+      text(first:first) = achar(48 + int(rest))
+   end subroutine put_whole
+
+   !> `n` 10**-d with `d` >= 0 decimals, and a digit at least before the point, at the end of `text`, from
+   !> place `first`.
+   pure subroutine put_with_point(n, d, text, first)
+      integer(int64), intent(in) :: n
+      integer, intent(in) :: d
+      character(*), intent(inout) :: text
+      integer, intent(out) :: first
+      integer(int64) :: rest, next
+      integer :: point, i, pair
+
+      point = len(text) - d
+      rest = n
+      do i = len(text) - 1, point + 1, -2
+         next = rest/100
+         pair = 2*int(rest - 100*next)
+         text(i:i + 1) = pairs(pair + 1:pair + 2)
+         rest = next
+      end do
+      if (mod(d, 2) == 1) then
+         next = rest/10
+         text(point + 1:point + 1) = achar(48 + int(rest - 10*next))
+         rest = next
+      end if
+      text(point:point) = '.'
+      call put_whole(rest, text(:point - 1), first)
+   end subroutine put_with_point
 
    !> The 17 digits `n`, a point after the first.
    pure subroutine put_leading(n, text)

@@ -209,7 +209,7 @@ contains
    end subroutine pivot_range
 
    !> |A^-1| in the maximum norm, from the factors: exact for n <= 2, an estimate otherwise (DGECON, DGBCON).
-   !> `work` (3 n), `iwork` (n).
+   !> `work` (4 n), `iwork` (n).
    real(wp) function inverse_norm(n, below, above, a, pivots, work, iwork)
       integer, intent(in) :: n, below, above
       real(wp), intent(in) :: a(*)

@@ -9,7 +9,12 @@ module links_tree
    use mechanism, only: mechanism_t, pair_prismatic, pair_revolute
    implicit none
    private
-   public :: tree_t, new_tree
+   public :: tree_t, new_tree, other_link
+
+   !> Pairs by link: those of link i are pairs(first(i)), ..., pairs(first(i + 1) - 1).
+   type :: neighbours_t
+      integer, allocatable :: first(:), pairs(:)
+   end type neighbours_t
 
    type :: tree_t
       integer :: frames = 0                 !< angles that are unknown; frame 0 is the ground's
@@ -23,13 +28,9 @@ module links_tree
       integer, allocatable :: root(:)       !< (links) number of its part; 0: joined to the ground
       integer, allocatable :: order(:)      !< (links) from the ground outwards: what is above comes first
       integer, allocatable :: slide(:)      !< (pairs) number of its slide; 0: none
+      type(neighbours_t) :: near
       integer, allocatable :: surplus(:)    !< prismatic pairs whose angle other prismatic pairs already fix
    end type tree_t
-
-   !> Pairs by link: those of link i are pairs(first(i)), ..., pairs(first(i + 1) - 1).
-   type :: neighbours_t
-      integer, allocatable :: first(:), pairs(:)
-   end type neighbours_t
 
 contains
 
@@ -37,11 +38,10 @@ contains
    function new_tree(m) result(t)
       type(mechanism_t), intent(in) :: m
       type(tree_t) :: t
-      type(neighbours_t) :: near
 
-      near = neighbours(m)
-      call find_frames(m, near, t)
-      call grow(m, near, t)
+      t%near = neighbours(m)
+      call find_frames(m, t%near, t)
+      call grow(m, t%near, t)
    end function new_tree
 
    pure function neighbours(m) result(near)
@@ -79,13 +79,13 @@ contains
       link_of = m%points(merge(m%pairs(k)%point_i, m%pairs(k)%point_j, side == 1))%link
    end function link_of
 
-   !> The link at the other end of pair `k`.
-   pure integer function other(m, k, link)
+   !> The link at the other end of pair `k` of `link`.
+   pure integer function other_link(m, k, link) result(other)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k, link
 
       other = link_of(m, k, 1) + link_of(m, k, 2) - link
-   end function other
+   end function other_link
 
    !> Frames and turns: a walk over prismatic pairs alone, first from the ground links, then from every link not
    !> yet seen.
@@ -136,7 +136,7 @@ contains
             k = near%pairs(i)
             if (m%pairs(k)%kind /= pair_prismatic .or. used(k)) cycle
             used(k) = .true.
-            far = other(m, k, link)
+            far = other_link(m, k, link)
             if (t%frame(far) >= 0) then
                t%surplus = [t%surplus, k]
                cycle
@@ -201,8 +201,8 @@ contains
       do i = near%first(link), near%first(link + 1) - 1
          k = near%pairs(i)
          if (m%pairs(k)%kind /= kind) cycle
-         if (t%depth(other(m, k, link)) >= 0) cycle
-         call hang(t, last, other(m, k, link), link, k)
+         if (t%depth(other_link(m, k, link)) >= 0) cycle
+         call hang(t, last, other_link(m, k, link), link, k)
          hung = .true.
          if (kind == pair_revolute) cycle
          t%slides = t%slides + 1

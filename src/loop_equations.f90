@@ -6,6 +6,7 @@ module loop_equations
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
    use links_tree, only: tree_t
+   use tree_paths, only: search_t, new_search, find_path, find_way_down, close_pair
    use tree_places, only: guide
    use polygons, only: polygons_t, new_polygons, add_polygon
    use matching, only: incidence_t
@@ -46,31 +47,63 @@ contains
       type(tree_t), intent(in) :: t
       real(wp), intent(in) :: length
       type(equations_t) :: e
-      integer :: k
+      type(search_t) :: s
+      integer, allocatable :: pairs(:)
+      integer :: i
 
       allocate (e%list(2*size(m%pairs) + size(m%drives) + size(t%surplus)))
       e%polygons = new_polygons(m, t)
-      do k = 1, size(m%pairs)
-         if (.not. is_in_tree(m, t, k)) call add_pair(m, t, length, k, e)
+      s = new_search(m, t)
+      pairs = closing_pairs(m, t)
+      do i = 1, size(pairs)
+         call add_pair(m, t, length, pairs(i), s, e)
+         call close_pair(m, pairs(i), s)
       end do
-      do k = 1, size(t%surplus)
-         call add(e, equation_t(equation_angle, pair=t%surplus(k), constant=misfit(m, t, t%surplus(k))))
+      do i = 1, size(t%surplus)
+         call add(e, equation_t(equation_angle, pair=t%surplus(i), constant=misfit(m, t, t%surplus(i))))
       end do
-      do k = 1, size(m%drives)
-         call add_drive(m, t, length, k, e)
+      do i = 1, size(m%drives)
+         call add_drive(m, t, length, i, s, e)
       end do
    end function new_equations
 
+   !> The pairs that are not in the tree, those near the ground first.
+   function closing_pairs(m, t) result(pairs)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      integer, allocatable :: pairs(:)
+      integer :: fill(0:2*maxval(t%depth) + 1), k, sum_of
+
+      allocate (pairs(size(m%pairs)))
+      fill = 0
+      do k = 1, size(m%pairs)
+         sum_of = t%depth(m%points(m%pairs(k)%point_i)%link) + t%depth(m%points(m%pairs(k)%point_j)%link)
+         if (.not. is_in_tree(m, t, k)) fill(sum_of + 1) = fill(sum_of + 1) + 1
+      end do
+      do k = 1, ubound(fill, 1)
+         fill(k) = fill(k) + fill(k - 1)
+      end do
+      pairs = pairs(:fill(ubound(fill, 1)))
+      do k = 1, size(m%pairs)
+         if (is_in_tree(m, t, k)) cycle
+         sum_of = t%depth(m%points(m%pairs(k)%point_i)%link) + t%depth(m%points(m%pairs(k)%point_j)%link)
+         fill(sum_of) = fill(sum_of) + 1
+         pairs(fill(sum_of)) = k
+      end do
+   end function closing_pairs
+
    !> The equations of pair `k`, which closes a loop.
-   subroutine add_pair(m, t, length, k, e)
+   subroutine add_pair(m, t, length, k, s, e)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       real(wp), intent(in) :: length
       integer, intent(in) :: k
+      type(search_t), intent(inout) :: s
       type(equations_t), intent(inout) :: e
 
       associate (p => m%pairs(k), n => e%polygons%count)
-         call add_polygon(m, t, length, p%point_i, p%point_j, e%polygons)
+         call find_path(m, t, m%points(p%point_i)%link, m%points(p%point_j)%link, s)
+         call add_polygon(m, t, length, p%point_i, p%point_j, s, e%polygons)
          if (p%kind == pair_revolute) then
             call add(e, equation_t(equation_x, polygon=n, pair=k))
             call add(e, equation_t(equation_y, polygon=n, pair=k))
@@ -82,11 +115,12 @@ contains
    end subroutine add_pair
 
    !> The equation of drive `k`.
-   subroutine add_drive(m, t, length, k, e)
+   subroutine add_drive(m, t, length, k, s, e)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       real(wp), intent(in) :: length
       integer, intent(in) :: k
+      type(search_t), intent(inout) :: s
       type(equations_t), intent(inout) :: e
 
       associate (i => m%drives(k)%subject, j => m%drives(k)%second, n => e%polygons%count)
@@ -97,16 +131,20 @@ contains
             call add(e, equation_t(equation_angle, drive=k, frame=t%frame(j), less=t%frame(i), &
                constant=t%turn(i) - t%turn(j)))
          case (drive_x, drive_y)
-            call add_polygon(m, t, length, i, 0, e%polygons)
+            call find_way_down(t, m%points(i)%link, s)
+            call add_polygon(m, t, length, i, 0, s, e%polygons)
             call add(e, equation_t(merge(equation_x, equation_y, m%drives(k)%kind == drive_x), polygon=n, drive=k))
          case (drive_slide)
             if (t%slide(i) > 0) then
                call add(e, equation_t(equation_slide, drive=k, frame=t%slide(i)))
                return
             end if
-            call add_polygon(m, t, length, m%pairs(i)%point_i, m%pairs(i)%point_j, e%polygons)
-            call add(e, equation_t(equation_projection, polygon=n, drive=k, &
-               frame=t%frame(m%points(m%pairs(i)%point_i)%link), direction=-guide(m, t, i, across=.false.)))
+            associate (p => m%pairs(i)%point_i, q => m%pairs(i)%point_j)
+               call find_path(m, t, m%points(p)%link, m%points(q)%link, s)
+               call add_polygon(m, t, length, p, q, s, e%polygons)
+               call add(e, equation_t(equation_projection, polygon=n, drive=k, frame=t%frame(m%points(p)%link), &
+                  direction=-guide(m, t, i, across=.false.)))
+            end associate
          end select
       end associate
    end subroutine add_drive

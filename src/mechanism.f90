@@ -10,7 +10,7 @@ module mechanism
    public :: term_harmonic, term_power, term_table
    public :: request_link, request_point, request_pair
    public :: method_newton, method_matrix, method_dense
-   public :: instant_count, instant
+   public :: instant_count, instant, wanted_links
 
    integer, parameter :: pair_revolute = 1   !< REVOLUTE: eq. (7), (8)
    integer, parameter :: pair_prismatic = 2  !< PRISM: eq. (9), (10)
@@ -115,4 +115,26 @@ contains
          t = m%t0 + (m%t1 - m%t0)*real(k, wp)/real(m%steps, wp)
       end if
    end function instant
+
+   !> The links (links) whose motion the deck's requests need.
+   pure function wanted_links(m) result(wanted)
+      type(mechanism_t), intent(in) :: m
+      logical :: wanted(size(m%links))
+      integer :: i
+
+      wanted = .false.
+      do i = 1, size(m%requests)
+         associate (k => m%requests(i)%subject)
+            select case (m%requests(i)%kind)
+            case (request_link)
+               wanted(k) = .true.
+            case (request_point)
+               wanted(m%points(k)%link) = .true.
+            case default
+               wanted(m%points(m%pairs(k)%point_i)%link) = .true.
+               wanted(m%points(m%pairs(k)%point_j)%link) = .true.
+            end select
+         end associate
+      end do
+   end function wanted_links
 end module mechanism

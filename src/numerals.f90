@@ -5,7 +5,8 @@
 module numerals
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
-   use decimal_digits, only: nearest_whole, leading_digits, put_digits, put_leading, significant
+   use decimal_digits, only: nearest_whole, leading_digits, put_whole, put_with_point, put_digits, &
+      put_leading, significant
    implicit none
    private
    public :: fixed, put_fixed, whole, full, put_full, numeral_length, full_length
@@ -41,7 +42,7 @@ contains
       integer, intent(in) :: decimals, power
       character(numeral_length), intent(out) :: text
       integer(int64) :: n
-      integer :: d, room
+      integer :: d, room, first
       logical :: negative, sure
 
       negative = sign(1.0_wp, x) < 0.0_wp
@@ -51,50 +52,18 @@ contains
          call nearest_whole(abs(x), d - power, n, sure)
          if (.not. sure) n = nearest_by_format(abs(x), d - power)
          if (n >= tens(room)) cycle
-         call put_with_point(n, d, negative .and. n > 0, text)
+         text = ''
+         call put_with_point(n, d, text, first)
+         if (negative .and. n > 0) text(first - 1:first - 1) = '-'
          return
       end do
       text = with_exponent(x, power)
    end subroutine put_fixed
 
-   !> `n` 10**-d with `d` decimals.
-   pure subroutine put_with_point(n, d, negative, text)
-      integer(int64), intent(in) :: n
-      integer, intent(in) :: d
-      logical, intent(in) :: negative
-      character(numeral_length), intent(out) :: text
-      integer :: point, first
-
-      text = ''
-      point = numeral_length - d
-      call put_digits(n, text(point + 1:))
-      text(point:point) = '.'
-      first = point
-      call put_whole(n/tens(d), text, first)
-      if (negative) text(first - 1:first - 1) = '-'
-   end subroutine put_with_point
-
-   !> All digits of `n` >= 0 before place `first`, which moves to the first of them.
-   pure subroutine put_whole(n, text, first)
-      integer(int64), intent(in) :: n
-      character(*), intent(inout) :: text
-      integer, intent(inout) :: first
-      integer(int64) :: rest, next
-
-      rest = n
-      do
-         first = first - 1
-         next = rest/10
-         text(first:first) = achar(48 + int(rest - 10*next))
-         rest = next
-         if (rest == 0) exit
-      end do
-   end subroutine put_whole
-
    !> The whole number nearest to `x` 10**`k`, x >= 0, by formats, which round the decimal value of x; the
    !> largest of all where it has more than 12 digits. (The scale factor kP would do this at once, but under
-   !> gfortran's library it prints wrong digits from -21P down and writes beyond its own buffer from some
-   !> hundreds up.)
+   !> gfortran's library it prints wrong digits from -21P down, and in a narrow field with some hundreds of P
+   !> that library writes beyond its own buffer.)
    pure function nearest_by_format(x, k) result(n)
       real(wp), intent(in) :: x
       integer, intent(in) :: k
@@ -113,7 +82,7 @@ contains
       places = e + k + 1
       if (places > most_places) return
       n = 0
-      ! Below a tenth of a half; then up to one: a half itself goes down to 0, which is even.
+      ! Without a place x is below 1/10; with none left over, below 1, and a half goes to 0, which is even.
       if (places == 0 .and. line(:len(five)) > five) n = 1
       if (places <= 0) return
       line = scientific(x, places - 1)
@@ -168,7 +137,6 @@ contains
       character(12) :: field
       integer :: first
 
-      first = len(field) + 1
       call put_whole(abs(int(i, int64)), field, first)
       if (i < 0) then
          first = first - 1
@@ -194,28 +162,28 @@ contains
       character(full_length), intent(out) :: text
       integer, intent(out) :: length
       integer(int64) :: n
-      integer :: e, first
+      integer :: e
       logical :: sure
 
-      call leading_digits(abs(x), n, e, sure)
-      if (.not. sure) then
-         text = full_by_format(x)
-         length = len_trim(text)
-         return
-      end if
+      length = full_length - 1
+      if (sign(1.0_wp, x) < 0.0_wp) length = full_length
       text(1:1) = '-'
       text(full_length:) = ''
-      first = merge(2, 1, sign(1.0_wp, x) < 0.0_wp)
-      length = first + full_length - 2
-      if (n == 0) then
-         text(first:length) = full_zero
-         return
-      end if
-      associate (number => text(first:first + full_length - 2))
-         call put_leading(n, number(:significant + 1))
-         number(significant + 2:significant + 3) = merge('E-', 'E+', e < 0)
-         call put_digits(int(abs(e), int64), number(significant + 4:))
+      associate (number => text(length - full_length + 2:length))
+         if (abs(x) <= 0.0_wp) then
+            number = full_zero
+            return
+         end if
+         call leading_digits(abs(x), n, e, sure)
+         if (sure) then
+            call put_leading(n, number(:significant + 1))
+            number(significant + 2:significant + 3) = merge('E-', 'E+', e < 0)
+            call put_digits(int(abs(e), int64), number(significant + 4:))
+            return
+         end if
       end associate
+      text = full_by_format(x)
+      length = len_trim(text)
    end subroutine put_full
 
    pure function full_by_format(x) result(text)

@@ -1,13 +1,15 @@
-!> Level 5. Vector polygons along the tree: each is a sum of arms that turn with their frames, and of slides,
+!> Level 5. Vector polygons along short ways over the pairs: each is a sum of arms that turn with their frames,
+!> and of slides,
 !>
 !>    P - Q = d_0 + sum_k R(phi_k) d_k + sum_m s_m R(phi_k(m)) e_m.
 !>
 !> Arms of one frame in one polygon are added up, so each frame stands in it once. Lengths in units of `length`.
 module polygons
    use kinds, only: wp
-   use mechanism, only: mechanism_t
+   use mechanism, only: mechanism_t, pair_prismatic
    use links_tree, only: tree_t
-   use tree_places, only: place_t, place_on_tree, point_in_frame
+   use tree_paths, only: search_t
+   use tree_places, only: point_in_frame, guide
    implicit none
    private
    public :: polygons_t, new_polygons, add_polygon
@@ -51,98 +53,68 @@ contains
       end associate
    end function new_polygons
 
-   !> Adds to `polygons` the one from point `q` to point `p`; `q` = 0 is the origin of the plane.
-   subroutine add_polygon(m, t, length, p, q, polygons)
+   !> Adds to `polygons` the one from point `q` to point `p` by the way that `s` found last from p's link to q's;
+   !> `q` = 0 is the origin of the plane, and the way then leads to the ground or to a root.
+   subroutine add_polygon(m, t, length, p, q, s, polygons)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       real(wp), intent(in) :: length
       integer, intent(in) :: p, q
+      type(search_t), intent(in) :: s
       type(polygons_t), intent(inout) :: polygons
+      real(wp) :: v(2)
+      integer :: link, i
 
-      call trace(m, t, length, p, q, polygons%making)
+      link = m%points(p)%link
+      v = point_in_frame(m, t, length, p)
+      do i = 1, s%length
+         call cross(m, t, length, s%pairs(i), link, v, polygons%making)
+      end do
+      if (q > 0) then
+         v = v - point_in_frame(m, t, length, q)
+      else if (t%root(link) > 0) then
+         call add_slide(polygons%making, 0, t%slides + 2*t%root(link) - 1, [1.0_wp, 0.0_wp])
+         call add_slide(polygons%making, 0, t%slides + 2*t%root(link), [0.0_wp, 1.0_wp])
+      end if
+      call add_arm(polygons%making, t%frame(link), v)
       call store(polygons%making, polygons)
    end subroutine add_polygon
 
-   !> The polygon from point `q` to point `p` along the tree, up to the first link that both paths share; `q` = 0 is the
-   !> origin of the plane.
-   subroutine trace(m, t, length, p, q, b)
+   !> Goes from place `v` of `link` through `pair` to the link at its other end, which becomes `link`. Ground
+   !> links are one: the pair may be another one's than that of the ground link reached.
+   subroutine cross(m, t, length, pair, link, v, b)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       real(wp), intent(in) :: length
-      integer, intent(in) :: p, q
-      type(builder_t), intent(inout) :: b
-      real(wp) :: u(2), w(2)
-      integer :: i, j
-
-      i = m%points(p)%link
-      u = point_in_frame(m, t, length, p)
-      j = 0
-      w = 0.0_wp
-      if (q > 0) then
-         j = m%points(q)%link
-         w = point_in_frame(m, t, length, q)
-      end if
-      do while (i /= j .and. (is_above(t, i) .or. is_above(t, j)))
-         if (depth(t, i) >= depth(t, j)) then
-            call climb(m, t, length, i, u, 1.0_wp, b)
-         else
-            call climb(m, t, length, j, w, -1.0_wp, b)
-         end if
-      end do
-      if (i == j) then
-         call add_arm(b, t%frame(i), u - w)
-         return
-      end if
-      call finish(t, i, u, 1.0_wp, b)
-      call finish(t, j, w, -1.0_wp, b)
-   end subroutine trace
-
-   !> The last arm of a path that ends at a ground link or at a part's root, whose x and y are then unknown.
-   subroutine finish(t, link, v, sign_of, b)
-      type(tree_t), intent(in) :: t
-      integer, intent(in) :: link
-      real(wp), intent(in) :: v(2), sign_of
-      type(builder_t), intent(inout) :: b
-
-      if (link == 0) return
-      call add_arm(b, t%frame(link), sign_of*v)
-      if (t%root(link) == 0) return
-      call add_slide(b, 0, t%slides + 2*t%root(link) - 1, [sign_of, 0.0_wp])
-      call add_slide(b, 0, t%slides + 2*t%root(link), [0.0_wp, sign_of])
-   end subroutine finish
-
-   !> Goes from point `v` of `link` to the joint on the link above, which becomes `link`.
-   subroutine climb(m, t, length, link, v, sign_of, b)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      real(wp), intent(in) :: length, sign_of
+      integer, intent(in) :: pair
       integer, intent(inout) :: link
       real(wp), intent(inout) :: v(2)
       type(builder_t), intent(inout) :: b
-      type(place_t) :: p
+      integer :: exit_point, entry_point
+      logical :: forward
 
-      p = place_on_tree(m, t, length, link)
-      call add_arm(b, t%frame(link), sign_of*(v - p%arm))
-      link = t%above(link)
-      if (p%slide > 0) call add_slide(b, t%frame(link), p%slide, sign_of*p%slide_arm)
-      v = p%reach
-   end subroutine climb
+      associate (k => m%pairs(pair))
+         forward = is_on(m, k%point_i, link)
+         exit_point = merge(k%point_i, k%point_j, forward)
+         entry_point = merge(k%point_j, k%point_i, forward)
+         call add_arm(b, t%frame(link), v - point_in_frame(m, t, length, exit_point))
+         if (k%kind == pair_prismatic) then
+            ! P - Q = h n - s e, all in the frame that the two links share.
+            call add_slide(b, t%frame(link), t%slide(pair), merge(-1.0_wp, 1.0_wp, forward)*guide(m, t, pair, .false.))
+            call add_arm(b, t%frame(link), merge(1.0_wp, -1.0_wp, forward)*k%offset/length*guide(m, t, pair, .true.))
+         end if
+         link = m%points(entry_point)%link
+         v = point_in_frame(m, t, length, entry_point)
+      end associate
+   end subroutine cross
 
-   pure logical function is_above(t, link)
-      type(tree_t), intent(in) :: t
-      integer, intent(in) :: link
+   !> Point `i` is on `link`, or both belong to the ground.
+   pure logical function is_on(m, i, link)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i, link
 
-      is_above = .false.
-      if (link > 0) is_above = t%above(link) > 0
-   end function is_above
-
-   pure integer function depth(t, link)
-      type(tree_t), intent(in) :: t
-      integer, intent(in) :: link
-
-      depth = -1
-      if (link > 0) depth = t%depth(link)
-   end function depth
+      is_on = m%points(i)%link == link .or. (m%links(m%points(i)%link)%ground .and. m%links(link)%ground)
+   end function is_on
 
    subroutine add_arm(b, frame, d)
       type(builder_t), intent(inout) :: b

@@ -1,13 +1,11 @@
-!> Level 10. What can be said of a mechanism before anything is solved: its counts, and its Assur groups.
+!> Level 5. What can be said of a mechanism before anything is solved: its counts, and its Assur groups.
 !>
 !> (12)  r = 2 (n1 + n2) + 3 n3
 !> (13)  s = 3 n - r        (the print subtracts 2 n1 + n2 only)
 module structure
-   use kinds, only: wp
-   use mechanism, only: mechanism_t, pair_revolute, pair_prismatic
-   use links_tree, only: tree_t, new_tree
-   use loop_equations, only: new_equations
-   use blocks, only: blocks_t, new_blocks
+   use mechanism, only: mechanism_t, pair_revolute, pair_prismatic, wanted_links
+   use matching, only: match
+   use closure_incidence, only: closure_t, new_closure
    use assur_groups, only: group_t, groups_of
    implicit none
    private
@@ -48,13 +46,13 @@ contains
    function find_structure(m) result(f)
       type(mechanism_t), intent(in) :: m
       type(findings_t) :: f
-      type(tree_t) :: t
-      type(blocks_t) :: b
+      type(closure_t) :: c
+      integer, allocatable :: unknown_of(:), equation_of(:)
 
       f = count_freedoms(m)
-      t = new_tree(m)
-      b = new_blocks(t, new_equations(m, t, 1.0_wp))
-      f%solvable = b%solvable
-      if (f%solvable) f%groups = groups_of(m, t, b)
+      c = new_closure(m)
+      call match(c%incidence, unknown_of, equation_of)
+      f%solvable = all(unknown_of > 0) .and. all(equation_of > 0)
+      if (f%solvable) f%groups = groups_of(m, c, unknown_of, equation_of, wanted_links(m))
    end function find_structure
 end module structure

@@ -7,22 +7,45 @@ module closed_forms
    use closed_forms_linkages, only: four_bar, drag_link, peaucellier, five_bar, pantograph
    use closed_forms_sliders, only: yoke, crank_slider, scotch_yoke, whitworth, cylinder, trammel
    use closed_forms_legs, only: andrews, jansen
+   use closed_forms_sixbars, only: watt, stephenson, klann, grounds
+   use closed_forms_robots, only: three_rrr, excavator, xy_table, scissor
+   use closed_forms_bars, only: chebyshev, kite, antiparallelogram, hart, two_loops
+   use closed_forms_slides, only: crank_inline, inverted_slider, oldham
+   use closed_forms_overconstrained, only: parallel_cranks, double_parallelogram, two_guides, cognates, dixon
+   use closed_forms_hard, only: parallelogram, scott_russell, near_equal_rod, dead_point, far_small, many_turns
    implicit none
    private
    public :: closed_form, hand_count
 
    !> Counts of a mechanism made by eye from the drawing in its deck.
    type :: count_t
-      character(13) :: deck
+      character(24) :: deck
       integer :: links, revolute, prismatic, drives   !< links with the ground
+      integer :: ground = 1
+      integer :: redundant = 0                        !< pairs' equations that the others already hold
    end type count_t
 
-   type(count_t), parameter :: counts(14) = [ &
+   type(count_t), parameter :: counts(49) = [ &
       count_t('yoke', 6, 5, 2, 1), count_t('yoke_mirrored', 6, 5, 2, 1), count_t('four_bar', 4, 4, 0, 1), &
       count_t('crank_slider', 4, 3, 1, 1), count_t('scotch_yoke', 4, 2, 2, 1), count_t('whitworth', 6, 5, 2, 1), &
       count_t('drag_link', 4, 4, 0, 1), count_t('cylinder', 4, 3, 1, 1), count_t('trammel', 4, 2, 2, 1), &
       count_t('peaucellier', 8, 10, 0, 1), count_t('five_bar', 5, 5, 0, 2), count_t('pantograph', 5, 5, 0, 2), &
-      count_t('andrews', 8, 10, 0, 1), count_t('jansen', 8, 10, 0, 1)]
+      count_t('andrews', 8, 10, 0, 1), count_t('jansen', 8, 10, 0, 1), count_t('watt', 6, 7, 0, 1), &
+      count_t('stephenson', 6, 7, 0, 1), count_t('klann', 6, 7, 0, 1), count_t('grounds', 8, 6, 1, 1, ground=3), &
+      count_t('three_rrr', 8, 9, 0, 3), count_t('excavator', 12, 12, 3, 3), count_t('xy_table', 4, 1, 2, 3), &
+      count_t('scissor', 10, 11, 2, 1), count_t('chebyshev', 4, 4, 0, 1), count_t('kite', 4, 4, 0, 1), &
+      count_t('antiparallelogram', 4, 4, 0, 1), count_t('hart', 6, 7, 0, 1), count_t('two_loops', 7, 7, 1, 2), &
+      count_t('crank_inline', 4, 3, 1, 1), count_t('inverted_slider', 4, 3, 1, 1), count_t('oldham', 4, 2, 2, 1), &
+      count_t('parallel_cranks', 5, 6, 0, 1, redundant=1), count_t('double_parallelogram', 5, 6, 0, 1, redundant=1), &
+      count_t('two_guides', 4, 3, 2, 1, redundant=2), count_t('cognates', 10, 14, 0, 1, redundant=2), &
+      count_t('dixon', 9, 12, 0, 1, redundant=1), &
+      count_t('parallelogram', 4, 4, 0, 1), count_t('parallelogram_at', 4, 4, 0, 1), &
+      count_t('antiparallelogram_across', 4, 4, 0, 1), count_t('antiparallelogram_at', 4, 4, 0, 1), &
+      count_t('kite_across', 4, 4, 0, 1), count_t('kite_at', 4, 4, 0, 1), &
+      count_t('scott_russell', 4, 3, 1, 1), count_t('scott_russell_at', 4, 3, 1, 1), &
+      count_t('near_equal_rod', 4, 3, 1, 1), count_t('dead_point_6', 4, 3, 1, 1), &
+      count_t('dead_point_9', 4, 3, 1, 1), count_t('dead_point_12', 4, 3, 1, 1), &
+      count_t('far_small', 4, 4, 0, 1), count_t('many_turns', 4, 4, 0, 1)]
 
 contains
 
@@ -64,12 +87,92 @@ contains
       case ('jansen')
          links = jansen(t)
       case default
-         allocate (links(0))
+         links = closed_form_2(name, t)
       end select
    end function closed_form
 
-   !> What the listing must say of the structure of the mechanism `name`: one ground link, every link with three
-   !> coordinates, two equations for every pair and three for the ground.
+   pure function closed_form_2(name, t) result(links)
+      character(*), intent(in) :: name
+      real(qp), intent(in) :: t
+      type(body_t), allocatable :: links(:)
+
+      select case (name)
+      case ('watt')
+         links = watt(t)
+      case ('stephenson')
+         links = stephenson(t)
+      case ('klann')
+         links = klann(t)
+      case ('grounds')
+         links = grounds(t)
+      case ('three_rrr')
+         links = three_rrr(t)
+      case ('excavator')
+         links = excavator(t)
+      case ('xy_table')
+         links = xy_table(t)
+      case ('scissor')
+         links = scissor(t)
+      case ('chebyshev')
+         links = chebyshev(t)
+      case ('kite', 'kite_across', 'kite_at')
+         links = kite(t)
+      case ('antiparallelogram', 'antiparallelogram_across', 'antiparallelogram_at')
+         links = antiparallelogram(t)
+      case ('hart')
+         links = hart(t)
+      case ('two_loops')
+         links = two_loops(t)
+      case ('crank_inline')
+         links = crank_inline(t)
+      case ('inverted_slider')
+         links = inverted_slider(t)
+      case ('oldham')
+         links = oldham(t)
+      case default
+         links = closed_form_3(name, t)
+      end select
+   end function closed_form_2
+
+   pure function closed_form_3(name, t) result(links)
+      character(*), intent(in) :: name
+      real(qp), intent(in) :: t
+      type(body_t), allocatable :: links(:)
+
+      select case (name)
+      case ('parallel_cranks')
+         links = parallel_cranks(t)
+      case ('double_parallelogram')
+         links = double_parallelogram(t)
+      case ('two_guides')
+         links = two_guides(t)
+      case ('cognates')
+         links = cognates(t)
+      case ('dixon')
+         links = dixon(t)
+      case ('parallelogram', 'parallelogram_at')
+         links = parallelogram(t)
+      case ('scott_russell', 'scott_russell_at')
+         links = scott_russell(t)
+      case ('near_equal_rod')
+         links = near_equal_rod(t)
+      case ('dead_point_6')
+         links = dead_point(20, t)
+      case ('dead_point_9')
+         links = dead_point(30, t)
+      case ('dead_point_12')
+         links = dead_point(40, t)
+      case ('far_small')
+         links = far_small(t)
+      case ('many_turns')
+         links = many_turns(t)
+      case default
+         allocate (links(0))
+      end select
+   end function closed_form_3
+
+   !> What the listing must say of the structure of the mechanism `name`: every link with three coordinates, two
+   !> equations for every pair and three for every ground link.
    pure function hand_count(name) result(f)
       character(*), intent(in) :: name
       type(findings_t) :: f
@@ -78,14 +181,14 @@ contains
       do i = 1, size(counts)
          if (counts(i)%deck /= name) cycle
          f%links = counts(i)%links
-         f%ground = 1
+         f%ground = counts(i)%ground
          f%revolute = counts(i)%revolute
          f%prismatic = counts(i)%prismatic
          f%drives = counts(i)%drives
          f%coordinates = 3*f%links
-         f%equations = 2*(f%revolute + f%prismatic) + 3
-         ! In every one of these mechanisms the freedoms are driven one by one.
-         f%freedoms = f%drives
+         f%equations = 2*(f%revolute + f%prismatic) + 3*f%ground
+         ! In every one of these mechanisms the freedoms are driven one by one; (13) counts each equation.
+         f%freedoms = f%drives - counts(i)%redundant
       end do
    end function hand_count
 end module closed_forms

@@ -5,7 +5,8 @@ module closed_forms_dyads
       operator(+), operator(-), operator(*), operator(/), sqrt, sin, cos, atan2
    implicit none
    private
-   public :: place_t, body_t, fixed_place, body, place_on, polar, direction, third_corner, natural_spline_3
+   public :: place_t, body_t, fixed_place, body, place_on, polar, direction, distance_squared, third_corner, corner, mirrored, &
+      on_line, natural_spline_3
 
    !> A point of the plane.
    type :: place_t
@@ -77,6 +78,46 @@ contains
       v = side*sqrt(ac_squared/square - u*u)
       c = place_t(a%x + u*dx - v*dy, a%y + u*dy + v*dx)
    end function third_corner
+
+   !> Where a rod of length `r` from `p` and one of length `s` from `q` meet; `side` as in third_corner.
+   pure type(place_t) function corner(p, r, q, s, side)
+      type(place_t), intent(in) :: p, q
+      real(qp), intent(in) :: r, s, side
+
+      corner = third_corner(p, q, constant_jet(r**2), constant_jet(s**2), side)
+   end function corner
+
+   pure type(jet_t) function distance_squared(p, q) result(square)
+      type(place_t), intent(in) :: p, q
+
+      square = (q%x - p%x)*(q%x - p%x) + (q%y - p%y)*(q%y - p%y)
+   end function distance_squared
+
+   !> The mirror image of `p` in the line from `a` to `b`: p less twice its distance from the line. It has no square
+   !> root, so it passes where the triangle a b p is flat.
+   pure type(place_t) function mirrored(p, a, b) result(q)
+      type(place_t), intent(in) :: p, a, b
+      type(jet_t) :: dx, dy, across
+
+      dx = b%x - a%x
+      dy = b%y - a%y
+      across = 2.0_qp*(dx*(p%y - a%y) - dy*(p%x - a%x))/(dx*dx + dy*dy)
+      q = place_t(p%x + across*dy, p%y - across*dx)
+   end function mirrored
+
+   !> The far end of a rod of `length` from `p` to the line through `o` in the direction `phi`: `side` +1.0 for the end
+   !> farther on in that direction, -1.0 for the other.
+   pure type(place_t) function on_line(p, length, o, phi, side) result(q)
+      type(place_t), intent(in) :: p, o
+      real(qp), intent(in) :: length, side
+      type(jet_t), intent(in) :: phi
+      type(jet_t) :: along, across
+
+      along = (p%x - o%x)*cos(phi) + (p%y - o%y)*sin(phi)
+      across = (p%y - o%y)*cos(phi) - (p%x - o%x)*sin(phi)
+      along = along + side*sqrt(length**2 - across*across)
+      q = place_t(o%x + along*cos(phi), o%y + along*sin(phi))
+   end function on_line
 
    !> The natural cubic spline through (0, y0), (h, y1), (2h, y2). Its second derivative is 0 at the ends and
    !> m = 3 (y0 - 2 y1 + y2)/(2 h^2) in the middle, from the one equation (h/6)(0 + 4m + 0) = (y0 - 2 y1 + y2)/h.

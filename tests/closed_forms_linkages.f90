@@ -42,7 +42,7 @@ contains
       integer, intent(in) :: set
       real(qp), intent(in) :: t
       type(body_t) :: links(4)
-      real(qp), parameter :: half = real(1.2247448713915890_wp, qp)
+      real(qp), parameter :: half = real(real(sqrt(1.5_qp), wp), qp)
       type(jet_t) :: phi, time
       type(place_t) :: a0, b0, a, b, middle
       type(body_t) :: base

@@ -9,18 +9,17 @@ module hand_groups
 
    !> Of all sets of a deck (0) or of one.
    type :: statement_t
-      character(16) :: deck = ''
+      character(24) :: deck = ''
       integer :: set = 0
-      character(80) :: groups = ''
+      character(100) :: groups = ''
    end type statement_t
 
-   type(statement_t), parameter :: statements(16) = [ &
+   type(statement_t), parameter :: statements(46) = [ &
       statement_t('yoke', 0, '*CRANK; BLOCK LEVER; ROD RAM'), &
       statement_t('yoke_mirrored', 0, '*CRANK; BLOCK LEVER; ROD RAM'), &
       statement_t('four_bar', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('crank_slider', 0, '*CRANK; ROD PISTON'), &
-      ! The block turns with the yoke, which does not turn: it hangs ready on the crank's pin.
-      statement_t('scotch_yoke', 1, '*CRANK BLOCK; YOKE'), &
+      statement_t('scotch_yoke', 1, '*CRANK; BLOCK YOKE'), &
       statement_t('scotch_yoke', 2, '*YOKE; CRANK BLOCK'), &
       statement_t('whitworth', 0, '*CRANK; BLOCK ARM; ROD RAM'), &
       statement_t('drag_link', 0, '*CRANK; COUPLER FOLLOWER'), &
@@ -33,7 +32,37 @@ module hand_groups
       ! Both drives hold the pin of the first dyad.
       statement_t('pantograph', 0, '*ARM-OB ROD-AD; ARM-BT ROD-CD'), &
       statement_t('andrews', 0, '*K1; K2 K3; K4 K5; K6 K7'), &
-      statement_t('jansen', 0, '*CRANK; ROD-J UPPER; ROD-K ROD-C; ROD-F FOOT')]
+      statement_t('jansen', 0, '*CRANK; ROD-J UPPER; ROD-K ROD-C; ROD-F FOOT'), &
+      statement_t('watt', 0, '*CRANK; COUPLER ROCKER; ROD OUTPUT'), &
+      statement_t('stephenson', 0, '*CRANK; COUPLER ROCKER; ROD OUTPUT'), &
+      statement_t('klann', 0, '*CRANK; ROD LOWER; UPPER LEG'), &
+      statement_t('grounds', 0, '*CRANK; COUPLER ROCKER; ROD RAM'), &
+      statement_t('three_rrr', 0, '*PLATFORM; CRANK-1 ROD-1; CRANK-2 ROD-2; CRANK-3 ROD-3'), &
+      statement_t('excavator', 0, '*BOOM BARREL-1 PISTON-1; *STICK BARREL-2 PISTON-2; *ROCKER BARREL-3 PISTON-3; BUCKET TIE'), &
+      statement_t('xy_table', 0, '*SADDLE; *TABLE; *PLATE'), &
+      statement_t('scissor', 0, '*FOOT; BAR-A1 BAR-B1; BAR-A2 BAR-B2; BAR-A3 BAR-B3; PLATFORM SHOE'), &
+      statement_t('chebyshev', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('kite', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('antiparallelogram', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('hart', 0, '*CRANK; BAR-AB BAR-DA; BAR-BC BAR-CD'), &
+      statement_t('two_loops', 0, '*CRANK-1; *CRANK-2; COUPLER ROCKER; ROD PISTON'), &
+      statement_t('crank_inline', 0, '*CRANK; ROD PISTON'), &
+      statement_t('inverted_slider', 0, '*CRANK; LEVER BLOCK'), &
+      statement_t('oldham', 0, '*DISC-1; DISC-2 CROSS'), &
+      statement_t('near_equal_rod', 0, '*CRANK; ROD PISTON'), &
+      statement_t('many_turns', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('parallelogram', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('parallelogram_at', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('antiparallelogram_across', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('antiparallelogram_at', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('kite_across', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('kite_at', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('far_small', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('scott_russell', 0, '*CRANK; BAR SHOE'), &
+      statement_t('scott_russell_at', 0, '*CRANK; BAR SHOE'), &
+      statement_t('dead_point_6', 0, '*PISTON; CRANK ROD'), &
+      statement_t('dead_point_9', 0, '*PISTON; CRANK ROD'), &
+      statement_t('dead_point_12', 0, '*PISTON; CRANK ROD')]
 
 contains
 

@@ -30,7 +30,9 @@ part() {
 part 'unit tests' "$MAKE" --no-print-directory unit
 part 'the stand-in' "$MAKE" --no-print-directory unit-stand-in
 part 'the house' tests/house.sh
+part 'the closed forms' "$BUILD/check_forms" input/*.deck
 part 'make check' tests/check.sh
 part 'the command' tests/command.sh
+part 'results of the methods' "$MAKE" --no-print-directory bench-short
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -1,0 +1,37 @@
+!> Tests. The program of `make bench`, one table a call; tests/bench.sh makes the decks and calls it.
+!>
+!>    bench steps                        time a step of four mechanisms
+!>    bench chains DECKS                 time a step of the chains in the directory DECKS
+!>    bench reading [DECK]               time to read and analyse a deck, and memory; the table's head
+!>    bench process DECKS KINMAT         time of the whole command
+!>    bench results DECKS STEPS DECK...  results compared, no clock; exit status 1 if any differ
+program bench
+   use bench_results, only: judge_all
+   use bench_tables, only: steps_table, chains_table
+   use bench_whole, only: reading_head, reading_row, process_table
+   implicit none
+   character(200), allocatable :: arguments(:)
+   integer :: i, steps, failed
+
+   allocate (arguments(max(3, command_argument_count())))
+   do i = 1, size(arguments)
+      call get_command_argument(i, arguments(i))
+   end do
+   select case (arguments(1))
+   case ('steps')
+      call steps_table()
+   case ('chains')
+      call chains_table(trim(arguments(2)))
+   case ('reading')
+      if (arguments(2) == '') call reading_head()
+      if (arguments(2) /= '') call reading_row(trim(arguments(2)))
+   case ('process')
+      call process_table(trim(arguments(2)), trim(arguments(3)))
+   case ('results')
+      read (arguments(3), *) steps
+      call judge_all(arguments(4:), trim(arguments(2)), steps, failed)
+      if (failed > 0) stop 1, quiet=.true.
+   case default
+      error stop 'BENCH: WHICH TABLE?'
+   end select
+end program bench

@@ -1,0 +1,42 @@
+#!/bin/sh
+# make bench: times as ratios measured in one run, then results compared; the last line counts the comparisons.
+# make bench-short (bench.sh short): the comparisons alone, in few steps; no clock is looked at.
+BUILD=${BUILD:-build}
+decks=$BUILD/bench
+bench=$BUILD/bench/bench
+mkdir -p "$decks" || exit 3
+# OpenBLAS would start threads for matrices of three rows, and wait for them.
+OPENBLAS_NUM_THREADS=${OPENBLAS_NUM_THREADS:-1}
+export OPENBLAS_NUM_THREADS
+
+# chain KIND N: the deck KIND_N.deck, if it is not there yet
+chain() {
+   deck=$decks/$1_$2.deck
+   [ -s "$deck" ] && [ "$deck" -nt tests/make_deck ] && return
+   tests/make_deck "$1" "$2" > "$deck.new" && mv "$deck.new" "$deck" || exit 3
+}
+for n in 1 10 30 1000; do chain windows $n; done
+for n in 2 30 1000; do chain scissor $n; done
+for n in 10 60 1000; do chain arm $n; done
+for n in 3 5 7 15; do chain lattice $n; done
+if [ "$1" = short ]; then
+   exec "$bench" results "$decks" 24 input/*.deck
+fi
+
+for n in 100 5000 10000 50000; do chain windows $n; done
+for n in 10000 100000; do chain arm $n; done
+for n in 9 31; do chain lattice $n; done
+sed -e '/^END/q' -e '/^AT /d' -e 's/^TIME    36  /TIME    3600/' input/four_bar.deck > "$decks/s1.deck"
+# It counts which library factors the matrices of METHOD MATRIX, of dense and of wide blocks.
+libraries=$(ldd "$bench" 2> /dev/null | awk '/lapack|blas/ { print $3 }' | while read -r file; do
+   readlink -f "$file" | sed 's/.*-linux-gnu[/]//'
+done)
+echo " LIBRARIES:" $libraries
+"$bench" steps || exit 3
+"$bench" chains "$decks" || exit 3
+"$bench" reading || exit 3
+for name in windows_5000 arm_10000 windows_50000 arm_100000; do
+   "$bench" reading "$decks/$name.deck" || exit 3
+done
+"$bench" process "$decks" "$BUILD/kinmat" || exit 3
+"$bench" results "$decks" 360 input/*.deck

@@ -1,0 +1,166 @@
+!> Tests. The results that `make bench` and `make bench-short` judge: blocks against all equations at once, and both
+!> against closed forms; one line a comparison.
+module bench_results
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, method_newton
+   use failures, only: failure_t
+   use deck, only: read_deck
+   use bench_scenes, only: scene_t, new_scene, chain_scene, gap_t, gap_of, error_of, by_closed_form
+   implicit none
+   private
+   public :: judge_all
+
+   !> Rounding moves a position by eps/rcond at most, and moves each derivative by what it moved the one before, over
+   !> rcond again where it falls on the weakest direction. That worst case, eps/rcond**3 for an acceleration, would let
+   !> anything pass; asked for is `factor` eps/rcond times the derivative's own size, which holds away from change points.
+   real(wp), parameter :: factor = 64.0_wp
+
+   type :: tally_t
+      integer :: passed = 0, failed = 0
+   end type tally_t
+
+   type :: size_t
+      character(7) :: kind
+      integer :: n
+   end type size_t
+
+   !> Chains that are small enough for all equations at once.
+   type(size_t), parameter :: small(9) = [size_t('windows', 1), size_t('windows', 10), size_t('windows', 30), &
+      size_t('scissor', 2), size_t('scissor', 30), size_t('arm', 10), size_t('arm', 60), size_t('lattice', 3), &
+      size_t('lattice', 5)]
+   !> Chains for the blocks alone.
+   type(size_t), parameter :: large(4) = [size_t('windows', 1000), size_t('scissor', 1000), size_t('arm', 1000), &
+      size_t('lattice', 15)]
+
+contains
+
+   !> Compares on the decks `inputs`, all their sets, and on the chains in the directory `decks`, at `steps` instants;
+   !> prints the table and, last, the count.
+   subroutine judge_all(inputs, decks, steps, failed)
+      character(*), intent(in) :: inputs(:), decks
+      integer, intent(in) :: steps
+      integer, intent(out) :: failed
+      type(tally_t) :: tally
+      type(scene_t) :: s
+      integer :: i
+
+      print '(a)', '', ' RESULTS COMPARED: LARGEST DIFFERENCES IN THE CHARACTERISTIC LENGTH AND RATE', &
+         ' CONDITION: of all closure equations, the worst on the way; of large chains, from their number', &
+         ' PART: the largest difference in parts of 64 eps CONDITION times the size of the derivative, of rates times that', &
+         ' of the positions as well: a large angle is rounded coarsely', '', &
+         ' SCENE                COMPARED         STEPS  MARKED  CONDITION   POSITION   VELOCITY    ACCEL.     PART'
+      do i = 1, size(inputs)
+         call judge_deck(trim(inputs(i)), steps, tally)
+      end do
+      do i = 1, size(small)
+         s = chain_scene(decks, trim(small(i)%kind), small(i)%n)
+         call judge(s%name, 'BLOCKS, DENSE', gap_of(s, min(steps, 100)), tally)
+         call judge_exactly(s, small(i)%kind, min(steps, 100), tally)
+      end do
+      do i = 1, size(large)
+         s = chain_scene(decks, trim(large(i)%kind), large(i)%n)
+         call judge_exactly(s, large(i)%kind, min(steps, 10), tally)
+      end do
+      call judge_change_point(decks, tally)
+      failed = tally%failed
+      print '(i0, a, i0, a)', tally%passed, ' passed, ', tally%failed, ' failed'
+   end subroutine judge_all
+
+   !> Every set of a deck of input/, over the time that it asks for.
+   subroutine judge_deck(path, steps, tally)
+      character(*), intent(in) :: path
+      integer, intent(in) :: steps
+      type(tally_t), intent(inout) :: tally
+      type(mechanism_t), allocatable :: sets(:)
+      type(failure_t), allocatable :: failure
+      character(:), allocatable :: report, name
+      type(scene_t) :: s
+      type(gap_t) :: g, e
+      integer :: i
+
+      name = path(index(path, '/', back=.true.) + 1:len(path) - len('.deck'))
+      call read_deck(path, sets, report, failure)
+      do i = 1, size(sets)
+         s = new_scene(path, name, i)
+         s%t0 = s%m%t0
+         s%step = (s%m%t1 - s%m%t0)/steps
+         g = gap_of(s, steps)
+         call judge(name//' '//achar(iachar('0') + i), 'BLOCKS, DENSE', g, tally)
+         if (.not. associated(s%fast) .or. i > 1) cycle
+         e = error_of(s, by_closed_form, steps, 1)
+         e%condition = g%condition
+         call judge(name//' '//achar(iachar('0') + i), 'FAST, REAL128', e, tally)
+      end do
+   end subroutine judge_deck
+
+   !> Blocks and the fast closed form of a chain against what is known of the whole chain.
+   subroutine judge_exactly(s, kind, steps, tally)
+      type(scene_t), intent(in) :: s
+      character(*), intent(in) :: kind
+      integer, intent(in) :: steps
+      type(tally_t), intent(inout) :: tally
+      type(gap_t) :: g
+
+      g = error_of(s, method_newton, steps, 1)
+      g%condition = growth(s, kind)
+      call judge(s%name, 'BLOCKS, EXACT', g, tally)
+      if (kind == 'lattice') return
+      g = error_of(s, by_closed_form, steps, 1)
+      g%condition = growth(s, kind)
+      call judge(s%name, 'FAST, EXACT', g, tally)
+   end subroutine judge_exactly
+
+   !> By how much a chain can magnify a rounding: windows pass an angle on as it is; a scissor and an arm add up angles
+   !> and, once more, lengths; the lattice by the condition at small sizes, 160 to 500 times n**2.
+   pure real(wp) function growth(s, kind)
+      type(scene_t), intent(in) :: s
+      character(*), intent(in) :: kind
+
+      select case (kind)
+      case ('windows')
+         growth = 4.0_wp*s%chain%n
+      case ('lattice')
+         growth = 500.0_wp*real(s%chain%n, wp)**2
+      case default
+         growth = 4.0_wp*real(s%chain%n, wp)**2
+      end select
+   end function growth
+
+   !> Where all closure equations have no inverse the net can leave its motion; the lattice 7 comes there after 56
+   !> steps. What is beyond must be the same motion or be marked: an assembly is never changed in silence. Only positions
+   !> are judged, to what a condition of 1.0e7 leaves of them: another assembly is off by 1.0e-3 and more.
+   subroutine judge_change_point(decks, tally)
+      character(*), intent(in) :: decks
+      type(tally_t), intent(inout) :: tally
+      type(scene_t) :: s
+      type(gap_t) :: g
+
+      s = chain_scene(decks, 'lattice', 7)
+      g = error_of(s, method_newton, 100, 1)
+      g%condition = 1.0e7_wp
+      g%worst(2:) = 0.0_wp
+      ! Marks are right here.
+      g%marked = 0
+      call judge(s%name, 'CHANGE POINT', g, tally)
+   end subroutine judge_change_point
+
+   !> One line, and its verdict.
+   subroutine judge(name, what, g, tally)
+      character(*), intent(in) :: name, what
+      type(gap_t), intent(in) :: g
+      type(tally_t), intent(inout) :: tally
+      real(wp) :: part
+      logical :: good
+
+      ! A large angle is rounded coarsely, and the directions that the rates come from with it.
+      part = maxval(g%worst/(g%size*[1.0_wp, g%size(1), g%size(1)]))/(factor*epsilon(1.0_wp)*g%condition)
+      good = g%instants > 0 .and. g%marked == 0 .and. part <= 1.0_wp
+      print '(1x, a20, 1x, a14, i8, i8, 4es11.1, es9.1, a)', name//repeat(' ', 20), what//repeat(' ', 14), g%instants, &
+         g%marked, g%condition, g%worst, part, trim(merge('       ', ' FAILED', good))
+      if (good) then
+         tally%passed = tally%passed + 1
+      else
+         tally%failed = tally%failed + 1
+      end if
+   end subroutine judge
+end module bench_results

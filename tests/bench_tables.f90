@@ -1,0 +1,189 @@
+!> Tests. The tables of `make bench` for a step: ratios of what was measured in one repeat, then the middle and the ends
+!> of them.
+module bench_tables
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, method_newton, method_matrix, method_dense
+   use analysis, only: analysis_t, new_analysis
+   use bench_tools, only: seconds, spread_t, spread_of, slope, figure
+   use bench_scenes, only: scene_t, new_scene, chain_scene, gap_t, error_of, by_method, by_closed_form, steps_of_turn
+   use bench_timing, only: job_t, measure
+   implicit none
+   private
+   public :: steps_table, chains_table
+
+   integer, parameter :: repeats = 15
+   !> Seconds of one measurement, at least: many clock ticks, yet often less than what another process is given at once.
+   real(wp), parameter :: least = 0.003_wp
+   real(wp), parameter :: nano = 1.0e9_wp
+
+   type :: size_t
+      character(7) :: kind
+      integer :: n
+   end type size_t
+
+contains
+
+   !> One turn of four mechanisms in steps of 0.1 deg, by every method.
+   subroutine steps_table()
+      integer, parameter :: methods(4) = [by_closed_form, method_newton, method_dense, method_matrix]
+      character(8), parameter :: decks(4) = [character(8) :: 'four_bar', 'yoke', 'andrews', 'jansen']
+      type(scene_t) :: scenes(size(decks))
+      type(job_t) :: jobs(size(decks)*size(methods))
+      type(gap_t) :: errors(size(jobs))
+      real(wp) :: time(size(jobs), repeats)
+      integer :: i, k, m
+
+      do i = 1, size(decks)
+         scenes(i) = new_scene('input/'//trim(decks(i))//'.deck', trim(decks(i)), 1)
+         do m = 1, size(methods)
+            k = size(methods)*(i - 1) + m
+            jobs(k) = job_t(i, methods(m))
+            errors(k) = error_of(scenes(i), methods(m), steps_of_turn, 20)
+            if (errors(k)%marked > 0) jobs(k)%method = by_closed_form
+         end do
+      end do
+      time = measure(scenes, jobs, repeats, least)
+      call steps_head()
+      do k = 1, size(jobs)
+         m = mod(k - 1, size(methods)) + 1
+         call print_method(decks(jobs(k)%scene), methods(m), time(k, :), time(k - m + 1, :), errors(k))
+      end do
+   end subroutine steps_table
+
+   subroutine steps_head()
+      print '(a)', '', ' A STEP: POSITION, VELOCITY AND ACCELERATION OF ALL LINKS, 3600 STEPS A TURN', &
+         ' RATIO: time over that of the closed form in the same repeat; the middle, the least and the most of 15 repeats', &
+         ' BEST: the least time over the least of the closed form, where the machine is busy; NS: the middle time', &
+         ' POSITION, VELOCITY, ACCEL.: largest error against the closed form in real128, in the characteristic', &
+         ' length and rate; NONE: no result at any of the first steps', '', &
+         ' MECHANISM  METHOD        RATIO   LEAST    MOST    BEST      NS  POSITION  VELOCITY    ACCEL.'
+   end subroutine steps_head
+
+   subroutine print_method(deck, method, time, closed, e)
+      character(*), intent(in) :: deck
+      integer, intent(in) :: method
+      real(wp), intent(in) :: time(:), closed(:)
+      type(gap_t), intent(in) :: e
+      character(11), parameter :: names(0:3) = [character(11) :: 'CLOSED FORM', 'BLOCKS', 'MATRIX 1987', 'DENSE']
+      type(spread_t) :: ratio, own
+
+      ratio = spread_of(time/closed)
+      own = spread_of(time*nano)
+      if (e%marked > 0) then
+         print '(1x, a10, 1x, a11, a)', deck//'   ', names(method), '    NONE'
+      else
+         print '(1x, a10, 1x, a11, 5a8, 3es10.1)', deck//'   ', names(method), figure(ratio%median), figure(ratio%least), &
+            figure(ratio%most), figure(own%least/(nano*minval(closed))), figure(own%median), e%worst
+      end if
+   end subroutine print_method
+
+   !> The chains of tests/make_deck in the directory `decks`: closed form, blocks and, where they are small, dense.
+   subroutine chains_table(decks)
+      character(*), intent(in) :: decks
+      type(size_t), parameter :: windows(6) = [size_t('windows', 1), size_t('windows', 10), size_t('windows', 30), &
+         size_t('windows', 100), size_t('windows', 1000), size_t('windows', 10000)]
+      type(size_t), parameter :: others(2) = [size_t('scissor', 1000), size_t('arm', 1000)]
+      type(size_t), parameter :: nets(4) = [size_t('lattice', 3), size_t('lattice', 5), size_t('lattice', 9), &
+         size_t('lattice', 15)]
+      ! A lattice comes to change points: it is followed for 4 deg.
+      integer, parameter :: a_tenth = steps_of_turn/10, four_degrees = steps_of_turn/90
+      real(wp) :: time(size(windows), 0:1, repeats)
+
+      print '(a)', '', ' CHAINS: A STEP OF 0.1 DEG, ALL LINKS', &
+         ' CLOSED, BLOCKS: ns a step and link, the middle; CLOSED goes link after link (lattice: it is one translation)', &
+         ' RATIO: blocks over closed form in the same repeat, middle, least and most; BEST: of the least times', &
+         ' DENSE: dense over closed form, the middle', &
+         ' READY: ms from the mechanism to the first step; POSITION, ...: errors of the blocks, as above', '', &
+         ' CHAIN          LINKS  CLOSED  BLOCKS   RATIO   LEAST    MOST    BEST   DENSE   READY  POSITION  VELOCITY    ACCEL.'
+      call chain_rows(decks, windows, a_tenth, repeats, time)
+      call print_exponents(real(windows%n, wp), time)
+      call chain_rows(decks, others, a_tenth, repeats)
+      call chain_rows(decks, nets, four_degrees, repeats)
+      ! Seconds a step.
+      call chain_rows(decks, [size_t('lattice', 31)], 6, 2)
+   end subroutine chains_table
+
+   !> The rows of the chains `sizes`, measured together, `times` times over `steps` steps; `kept`: seconds a step
+   !> (sizes, closed form and blocks, times).
+   subroutine chain_rows(decks, sizes, steps, times, kept)
+      character(*), intent(in) :: decks
+      type(size_t), intent(in) :: sizes(:)
+      integer, intent(in) :: steps, times
+      real(wp), intent(out), optional :: kept(:, 0:, :)
+      !> More links would take a second or more a step by all equations at once.
+      integer, parameter :: most_links = 70
+      type(scene_t) :: scenes(size(sizes))
+      type(job_t) :: jobs(3*size(sizes))
+      real(wp) :: time(3*size(sizes), times)
+      integer :: i, k
+
+      do i = 1, size(sizes)
+         scenes(i) = chain_scene(decks, trim(sizes(i)%kind), sizes(i)%n)
+         scenes(i)%steps = steps
+         jobs(3*i - 2:3*i) = [job_t(i, by_closed_form), job_t(i, method_newton), job_t(i, method_dense)]
+         if (size(scenes(i)%m%links) > most_links) jobs(3*i)%method = by_closed_form
+      end do
+      time = measure(scenes, jobs, times, least)
+      do i = 1, size(sizes)
+         k = 3*i - 2
+         call print_chain(scenes(i), time(k, :), time(k + 1, :), time(k + 2, :), jobs(k + 2)%method == method_dense)
+         if (present(kept)) kept(i, :, :) = time(k:k + 1, :)
+      end do
+   end subroutine chain_rows
+
+   subroutine print_chain(s, closed, blocks, dense, has_dense)
+      type(scene_t), intent(in) :: s
+      real(wp), intent(in) :: closed(:), blocks(:), dense(:)
+      logical, intent(in) :: has_dense
+      type(spread_t) :: c, b, ratio, d
+      type(gap_t) :: e
+      integer :: n
+
+      n = size(s%m%links)
+      c = spread_of(closed*nano/n)
+      b = spread_of(blocks*nano/n)
+      ratio = spread_of(blocks/closed)
+      d = spread_of(dense/closed)
+      if (.not. has_dense) d%median = 0.0_wp
+      e = error_of(s, method_newton, min(10, s%steps), 1)
+      print '(1x, a13, i7, 8a8, 3es10.1)', s%name//repeat(' ', 13), n, figure(c%median), figure(b%median), &
+         figure(ratio%median), figure(ratio%least), figure(ratio%most), figure(b%least/c%least), figure(d%median), &
+         figure(1000.0_wp*time_ready(by_method(s, method_newton))), e%worst
+   end subroutine print_chain
+
+   !> Seconds from a mechanism to the readiness for its first step.
+   real(wp) function time_ready(m) result(time)
+      type(mechanism_t), intent(in) :: m
+      type(analysis_t) :: a
+      real(wp) :: begun, sample(5)
+      integer :: i
+
+      do i = 1, size(sample)
+         begun = seconds()
+         a = new_analysis(m)
+         sample(i) = seconds() - begun
+      end do
+      time = minval(sample)
+   end function time_ready
+
+   !> The exponents of the time a step against the number, from 10 windows on: of each repeat, and of the least times.
+   subroutine print_exponents(n, time)
+      real(wp), intent(in) :: n(:), time(:, 0:, :)
+      real(wp) :: p(0:1, size(time, 3)), best(0:1)
+      type(spread_t) :: closed, blocks
+      integer :: i, k
+
+      do k = 1, size(time, 3)
+         do i = 0, 1
+            p(i, k) = slope(pack(n, n >= 10.0_wp), pack(time(:, i, k), n >= 10.0_wp))
+         end do
+      end do
+      closed = spread_of(p(0, :))
+      blocks = spread_of(p(1, :))
+      do i = 0, 1
+         best(i) = slope(pack(n, n >= 10.0_wp), pack(minval(time(:, i, :), dim=2), n >= 10.0_wp))
+      end do
+      print '(a, 3f6.2, a, f6.3, a, 3f6.2, a, f6.3)', ' windows 10 to 10000 as N**p: blocks', blocks, '  BEST', best(1), &
+         ';  closed form', closed, '  BEST', best(0)
+   end subroutine print_exponents
+end module bench_tables

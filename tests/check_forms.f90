@@ -1,0 +1,283 @@
+!> Tests. `check_forms DECK...` checks the closed forms against the decks, with nothing of the solver: at every instant
+!> of every set the links of the closed form must satisfy the closure equations of all pairs, stand where the ground
+!> links stand, and move as the drives say; and so must their first and second derivatives, by jets in real128.
+!> The last line is `N passed, N failed`.
+program check_forms
+   use failures, only: failure_t
+   use mechanism, only: mechanism_t, pair_t, instant_count, instant, pair_revolute, drive_angle, drive_x, drive_y, &
+      drive_relangle, drive_slide
+   use scales, only: characteristic_length, characteristic_rate
+   use structure, only: findings_t, count_freedoms
+   use deck, only: read_deck
+   use quad_jet, only: qp, jet_t, pi_q, operator(+), operator(-), operator(*), sin, cos
+   use quad_decks, only: length, angle, law
+   use closed_forms_dyads, only: place_t, body_t, place_on
+   use closed_forms, only: closed_form, hand_count
+   implicit none
+   !> Relative; real128 rounds at 1e-34, and six digits are left for the roundings of a chain of dyads.
+   real(qp), parameter :: tolerance = 1.0e-28_qp
+   character(*), parameter :: order(0:2) = [character(18) :: 'positions', 'velocities', 'accelerations']
+   character(500) :: path
+   integer :: passed = 0, failed = 0, i
+
+   do i = 1, command_argument_count()
+      call get_command_argument(i, path)
+      call check_deck(trim(path))
+   end do
+   print '(i0,a,i0,a)', passed, ' passed, ', failed, ' failed'
+   if (failed > 0) stop 1, quiet=.true.
+
+contains
+
+   subroutine check_deck(path)
+      character(*), intent(in) :: path
+      character(:), allocatable :: name, report
+      type(mechanism_t), allocatable :: sets(:)
+      type(failure_t), allocatable :: failure
+      integer :: i
+
+      name = path(scan(path, '/', back=.true.) + 1:)
+      name = name(:scan(name//'.', '.') - 1)
+      call read_deck(path, sets, report, failure)
+      call count_one(.not. allocated(failure), path//': the deck is read')
+      if (allocated(failure)) return
+      do i = 1, size(sets)
+         call check_set(name, sets(i))
+      end do
+   end subroutine check_deck
+
+   subroutine check_set(name, m)
+      character(*), intent(in) :: name
+      type(mechanism_t), intent(in) :: m
+      type(body_t) :: links(size(m%links))
+      real(qp) :: pairs(0:2), grounds(0:2), driven(0:2), t
+      character(40) :: what
+      logical :: same
+      integer :: k
+
+      write (what, '(2a,i0,a)') name, ', set ', m%set_number, ': '
+      call count_one(agree(hand_count(name), count_freedoms(m)), trim(what)//' links and pairs as counted by hand')
+      pairs = 0.0_qp
+      grounds = 0.0_qp
+      driven = 0.0_qp
+      do k = 0, instant_count(m) - 1
+         t = real(instant(m, k), qp)
+         call sort_links(m, closed_form(name, m%set_number, t), links, same)
+         if (.not. same) exit
+         call check_pairs(m, links, pairs)
+         call check_grounds(m, links, grounds)
+         call check_drives(m, links, t, driven)
+      end do
+      call count_one(same, trim(what)//' links by name')
+      do k = 0, 2
+         call count_size(pairs(k), trim(what)//' pairs, '//order(k))
+         call count_size(grounds(k), trim(what)//' ground links, '//order(k))
+         call count_size(driven(k), trim(what)//' drives, '//order(k))
+      end do
+   end subroutine check_set
+
+   !> The links of a closed form in the deck's order; `same`: they are the deck's.
+   subroutine sort_links(m, form, links, same)
+      type(mechanism_t), intent(in) :: m
+      type(body_t), intent(in) :: form(:)
+      type(body_t), intent(out) :: links(:)
+      logical, intent(out) :: same
+      integer :: i, k
+
+      same = size(form) == size(links)
+      do i = 1, size(form)
+         if (.not. same) return
+         k = findloc(m%links%name == form(i)%name, .true., dim=1)
+         same = k > 0
+         if (same) links(k) = form(i)
+      end do
+   end subroutine sort_links
+
+   subroutine check_pairs(m, links, worst)
+      type(mechanism_t), intent(in) :: m
+      type(body_t), intent(in) :: links(:)
+      real(qp), intent(inout) :: worst(0:2)
+      type(place_t) :: p, q
+      type(jet_t) :: along, across, phi
+      integer :: k
+
+      do k = 1, size(m%pairs)
+         associate (pair => m%pairs(k))
+            p = place_of(m, links, pair%point_i)
+            q = place_of(m, links, pair%point_j)
+            if (pair%kind == pair_revolute) then
+               call enlarge(worst, p%x - q%x, size_of(m, links, pair%point_i, pair%point_j))
+               call enlarge(worst, p%y - q%y, size_of(m, links, pair%point_i, pair%point_j))
+            else
+               call in_guide(m, links, pair, along, across)
+               call enlarge(worst, across - length(pair%offset), guide_size(m, links, pair))
+               phi = links(m%points(pair%point_j)%link)%phi - links(m%points(pair%point_i)%link)%phi
+               call enlarge(worst, whole_turns_off(phi - angle(m, pair%beta)), turn_size(m, phi))
+            end if
+         end associate
+      end do
+   end subroutine check_pairs
+
+   subroutine check_grounds(m, links, worst)
+      type(mechanism_t), intent(in) :: m
+      type(body_t), intent(in) :: links(:)
+      real(qp), intent(inout) :: worst(0:2)
+      integer :: k
+      real(qp) :: one(0:2)
+
+      do k = 1, size(links)
+         if (.not. m%links(k)%ground) cycle
+         associate (b => links(k), there => m%links(k)%position)
+            one = max(real(characteristic_length(m), qp), abs(length(there(1))), abs(length(there(2))))
+            call enlarge(worst, b%x - length(there(1)), one)
+            call enlarge(worst, b%y - length(there(2)), one)
+            call enlarge(worst, whole_turns_off(b%phi - angle(m, there(3))), turn_size(m, b%phi))
+         end associate
+      end do
+   end subroutine check_grounds
+
+   subroutine check_drives(m, links, t, worst)
+      type(mechanism_t), intent(in) :: m
+      type(body_t), intent(in) :: links(:)
+      real(qp), intent(in) :: t
+      real(qp), intent(inout) :: worst(0:2)
+      type(place_t) :: p
+      type(jet_t) :: along, across, phi, f
+      integer :: k
+
+      do k = 1, size(m%drives)
+         associate (subject => m%drives(k)%subject)
+            f = law(m, m%drives(k), t)
+            select case (m%drives(k)%kind)
+            case (drive_angle, drive_relangle)
+               phi = links(subject)%phi
+               if (m%drives(k)%kind == drive_relangle) phi = links(m%drives(k)%second)%phi - phi
+               call enlarge(worst, whole_turns_off(phi - f), turn_size(m, f))
+            case (drive_x)
+               p = place_of(m, links, subject)
+               call enlarge(worst, p%x - f, size_of(m, links, subject, subject))
+            case (drive_y)
+               p = place_of(m, links, subject)
+               call enlarge(worst, p%y - f, size_of(m, links, subject, subject))
+            case (drive_slide)
+               call in_guide(m, links, m%pairs(subject), along, across)
+               call enlarge(worst, along - f, guide_size(m, links, m%pairs(subject)))
+            end select
+         end associate
+      end do
+   end subroutine check_drives
+
+   !> The place of Q along the guide of a prismatic pair, seen from P, and that of P across it, seen from Q.
+   subroutine in_guide(m, links, pair, along, across)
+      type(mechanism_t), intent(in) :: m
+      type(body_t), intent(in) :: links(:)
+      type(pair_t), intent(in) :: pair
+      type(jet_t), intent(out) :: along, across
+      type(place_t) :: p, q
+      type(jet_t) :: theta
+
+      p = place_of(m, links, pair%point_i)
+      q = place_of(m, links, pair%point_j)
+      theta = links(m%points(pair%point_i)%link)%phi + angle(m, pair%alpha)
+      along = (q%x - p%x)*cos(theta) + (q%y - p%y)*sin(theta)
+      across = (p%y - q%y)*cos(theta) - (p%x - q%x)*sin(theta)
+   end subroutine in_guide
+
+   type(place_t) function place_of(m, links, i) result(p)
+      type(mechanism_t), intent(in) :: m
+      type(body_t), intent(in) :: links(:)
+      integer, intent(in) :: i
+
+      p = place_on(links(m%points(i)%link), length(m%points(i)%offset(1)), length(m%points(i)%offset(2)))
+   end function place_of
+
+   !> An angle brought to the whole turn next to zero.
+   type(jet_t) function whole_turns_off(phi) result(rest)
+      type(jet_t), intent(in) :: phi
+
+      rest = phi - 2.0_qp*pi_q*anint(phi%v/(2.0_qp*pi_q))
+   end function whole_turns_off
+
+   !> What a difference of two points' places, velocities and accelerations is measured by: the largest term in it, or the
+   !> characteristic length and rate.
+   function size_of(m, links, i, j) result(one)
+      type(mechanism_t), intent(in) :: m
+      type(body_t), intent(in) :: links(:)
+      integer, intent(in) :: i, j
+      real(qp) :: one(0:2), arm
+      integer :: k, point
+
+      one = [(characteristic_length(m)*real(characteristic_rate(m, characteristic_length(m)), qp)**k, k=0, 2)]
+      do k = 1, 2
+         point = merge(i, j, k == 1)
+         arm = maxval(abs(m%points(point)%offset))
+         associate (b => links(m%points(point)%link))
+            one(0) = max(one(0), abs(b%x%v), abs(b%y%v), arm)
+            one(1) = max(one(1), abs(b%x%d), abs(b%y%d), arm*abs(b%phi%d))
+            one(2) = max(one(2), abs(b%x%dd), abs(b%y%dd), arm*b%phi%d**2, arm*abs(b%phi%dd))
+         end associate
+      end do
+   end function size_of
+
+   !> The same in a guide that turns.
+   function guide_size(m, links, pair) result(one)
+      type(mechanism_t), intent(in) :: m
+      type(body_t), intent(in) :: links(:)
+      type(pair_t), intent(in) :: pair
+      real(qp) :: one(0:2)
+
+      one = size_of(m, links, pair%point_i, pair%point_j)
+      associate (phi => links(m%points(pair%point_i)%link)%phi)
+         one(2) = one(2) + abs(phi%d)*one(1) + (phi%d**2 + abs(phi%dd))*one(0)
+         one(1) = one(1) + abs(phi%d)*one(0)
+      end associate
+   end function guide_size
+
+   function turn_size(m, phi) result(one)
+      type(mechanism_t), intent(in) :: m
+      type(jet_t), intent(in) :: phi
+      real(qp) :: one(0:2)
+      integer :: k
+
+      one = [(real(characteristic_rate(m, characteristic_length(m)), qp)**k, k=0, 2)]
+      one = max(one, abs([phi%v, phi%d, phi%dd]))
+   end function turn_size
+
+   subroutine enlarge(worst, residual, one)
+      real(qp), intent(inout) :: worst(0:2)
+      type(jet_t), intent(in) :: residual
+      real(qp), intent(in) :: one(0:2)
+
+      worst = max(worst, abs([residual%v, residual%d, residual%dd])/one)
+      ! max may pass over a NaN.
+      if (.not. all(abs([residual%v, residual%d, residual%dd]) <= huge(1.0_qp))) worst = huge(1.0_qp)
+   end subroutine enlarge
+
+   logical function agree(a, b)
+      type(findings_t), intent(in) :: a, b
+
+      agree = all([a%links, a%ground, a%revolute, a%prismatic, a%coordinates, a%equations, a%freedoms, a%drives] &
+         == [b%links, b%ground, b%revolute, b%prismatic, b%coordinates, b%equations, b%freedoms, b%drives])
+   end function agree
+
+   subroutine count_size(worst, what)
+      real(qp), intent(in) :: worst
+      character(*), intent(in) :: what
+      character(12) :: text
+
+      write (text, '(es12.2)') worst
+      call count_one(worst <= tolerance, trim(what)//': relative error'//text)
+   end subroutine count_size
+
+   subroutine count_one(right, what)
+      logical, intent(in) :: right
+      character(*), intent(in) :: what
+
+      if (right) then
+         passed = passed + 1
+      else
+         failed = failed + 1
+         print '(2a)', 'FAILED: ', what
+      end if
+   end subroutine count_one
+end program check_forms

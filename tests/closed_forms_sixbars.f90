@@ -1,0 +1,107 @@
+!> Tests. Closed forms of the six-bar linkages: a four-bar and a dyad hung on it. The lengths are those of the decks in
+!> input/, written out again by hand so that a deck read wrongly shows up as a difference.
+module closed_forms_sixbars
+   use quad_jet, only: qp, jet_t, degree_q, constant_jet, time_jet, &
+      operator(+), operator(-), operator(*), sin
+   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, place_on, polar, direction, corner, on_line
+   implicit none
+   private
+   public :: watt, stephenson, klann, grounds
+
+contains
+
+   !> Watt's second six-bar: crank-rocker 1, 3.5, 3 on A0 B0 = 4; the rocker's second arm ends in C = (1.2, -1.6) of its
+   !> axes; rod CD = 4, output D0 D = 3 about (9, 0).
+   pure function watt(t) result(links)
+      real(qp), intent(in) :: t
+      type(body_t) :: links(6), rocker
+      type(jet_t) :: phi
+      type(place_t) :: a0, b0, d0, a, b, c, d
+
+      phi = 40.0_qp*degree_q*time_jet(t)
+      a0 = fixed_place(0.0_qp, 0.0_qp)
+      b0 = fixed_place(4.0_qp, 0.0_qp)
+      d0 = fixed_place(9.0_qp, 0.0_qp)
+      a = polar(a0, 1.0_qp, phi)
+      b = corner(a, 3.5_qp, b0, 3.0_qp, 1.0_qp)
+      rocker = body('ROCKER', b0, direction(b0, b))
+      c = place_on(rocker, 1.2_qp, -1.6_qp)
+      d = corner(c, 4.0_qp, d0, 3.0_qp, 1.0_qp)
+      links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK', a0, phi), body('COUPLER', a, direction(a, b)), &
+               rocker, body('ROD', c, direction(c, d)), body('OUTPUT', d0, direction(d0, d))]
+   end function watt
+
+   !> Stephenson's third six-bar: crank-rocker 1, 2.5, 2.5 on A0 B0 = 3; the point C = (1.25, 1.5) of the coupler moves
+   !> the dyad CD = 4, D0 D = 3 about (5, 3). The crank turns with a wobble: 0.8 t + 0.2 sin(1.6 t).
+   pure function stephenson(t) result(links)
+      real(qp), intent(in) :: t
+      type(body_t) :: links(6), coupler
+      type(jet_t) :: phi, time
+      type(place_t) :: a0, b0, d0, a, b, c, d
+
+      time = time_jet(t)
+      phi = 0.8_qp*time + 0.2_qp*sin(1.6_qp*time)
+      a0 = fixed_place(0.0_qp, 0.0_qp)
+      b0 = fixed_place(3.0_qp, 0.0_qp)
+      d0 = fixed_place(5.0_qp, 3.0_qp)
+      a = polar(a0, 1.0_qp, phi)
+      b = corner(a, 2.5_qp, b0, 2.5_qp, 1.0_qp)
+      coupler = body('COUPLER', a, direction(a, b))
+      c = place_on(coupler, 1.25_qp, 1.5_qp)
+      d = corner(c, 4.0_qp, d0, 3.0_qp, 1.0_qp)
+      links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK', a0, phi), coupler, &
+               body('ROCKER', b0, direction(b0, b)), body('ROD', c, direction(c, d)), &
+               body('OUTPUT', d0, direction(d0, d))]
+   end function stephenson
+
+   !> Klann's leg, the joints of US patent 6,260,862: crank 0.268 about (1.599, 0.750), lower rocker 0.3206 about
+   !> (1.009, 0.574), upper rocker 0.5177 about (1.366, 1.366); the rod from the crank's pin over the elbow at 0.59 to
+   !> the knee; the leg from the knee to the hip, 0.8966, and to the foot. Elbow and hip: to the right of the way from
+   !> the pin to the lower rocker's axle, to the left of the way from the knee to the upper rocker's.
+   pure function klann(t) result(links)
+      real(qp), intent(in) :: t
+      type(body_t) :: links(6), rod
+      type(jet_t) :: phi
+      type(place_t) :: shaft, lower, upper, pin, elbow, knee, hip
+
+      phi = (180.0_qp + 30.0_qp*time_jet(t))*degree_q
+      shaft = fixed_place(1.599_qp, 0.75_qp)
+      lower = fixed_place(1.009_qp, 0.574_qp)
+      upper = fixed_place(1.366_qp, 1.366_qp)
+      pin = polar(shaft, 0.268_qp, phi)
+      elbow = corner(pin, 0.59_qp, lower, 0.3206_qp, -1.0_qp)
+      rod = body('ROD', pin, direction(pin, elbow))
+      knee = place_on(rod, 1.0990_qp, -0.1164_qp)
+      hip = corner(knee, 0.8966_qp, upper, 0.5177_qp, 1.0_qp)
+      links = [body('BASE', fixed_place(0.0_qp, 0.0_qp), constant_jet(0.0_qp)), body('CRANK', shaft, phi), rod, &
+               body('LOWER', lower, direction(lower, elbow)), body('UPPER', upper, direction(upper, hip)), &
+               body('LEG', knee, direction(knee, hip))]
+   end function klann
+
+   !> Three ground links: FLOOR at the origin with the crank's axle (0.5, 0.25); POST at (4, 1) turned by 90 deg with
+   !> the rocker's axle at 0.5 along it; WALL at (9, 0) turned by 60 deg with the guide through its point (1, 0.25), at
+   !> 30 deg to its axes: upright. Crank 1, coupler 4, rocker 3 and 4.5 to its tip, rod 10 down to the ram, which stands
+   !> at 45 deg to the wall.
+   pure function grounds(t) result(links)
+      real(qp), intent(in) :: t
+      type(body_t) :: links(8), low, post, wall
+      type(jet_t) :: phi, rocker
+      type(place_t) :: a0, b0, guide, a, b, tip, ram
+
+      phi = (10.0_qp + 60.0_qp*time_jet(t))*degree_q
+      low = body('FLOOR', fixed_place(0.0_qp, 0.0_qp), constant_jet(0.0_qp))
+      post = body('POST', fixed_place(4.0_qp, 1.0_qp), constant_jet(90.0_qp*degree_q))
+      wall = body('WALL', fixed_place(9.0_qp, 0.0_qp), constant_jet(60.0_qp*degree_q))
+      a0 = place_on(low, 0.5_qp, 0.25_qp)
+      b0 = place_on(post, 0.5_qp, 0.0_qp)
+      guide = place_on(wall, 1.0_qp, 0.25_qp)
+      a = polar(a0, 1.0_qp, phi)
+      b = corner(a, 4.0_qp, b0, 3.0_qp, 1.0_qp)
+      rocker = direction(b0, b)
+      tip = polar(b0, 4.5_qp, rocker)
+      ram = on_line(tip, 10.0_qp, guide, wall%phi + 30.0_qp*degree_q, -1.0_qp)
+      links = [low, post, wall, body('CRANK', a0, phi), body('COUPLER', a, direction(a, b)), &
+               body('ROCKER', b0, rocker), body('ROD', tip, direction(tip, ram)), &
+               body('RAM', ram, wall%phi + 45.0_qp*degree_q)]
+   end function grounds
+end module closed_forms_sixbars

@@ -1,0 +1,204 @@
+!> Tests. A CSV file of results read back and judged by its deck alone: every row that is due is there, every unmarked
+!> row is whole, and positions, velocities and accelerations satisfy the closure equations and the drives in real128.
+module csv_closure
+   use kinds, only: wp
+   use quad_jet, only: qp, jet_t, operator(-)
+   use mechanism, only: mechanism_t, instant_count, request_point, request_pair, pair_prismatic
+   use csv_rows, only: rows_t, read_instant, blame, whole_text, csv_head
+   use jet_closure, only: body_jet_t, closure_jets, place_jet, slide_jet, sizes_t, sizes_of, row_sizes
+   use jet_condition, only: condition
+   implicit none
+   private
+   public :: verdict_t, check_csv
+
+   !> Of the size of its numbers, in units of eps: a coordinate is a sum along a chain of up to 20 links, three rounded
+   !> terms each; the solver ends with steps of 32 eps.
+   real(qp), parameter :: rounding = 64.0_qp*epsilon(1.0_wp)
+   !> A deck's own tolerance is one on the last step, which the step itself then betters.
+   real(qp), parameter :: steps_of_tolerance = 4.0_qp
+   !> Beyond this a Jacobian counts as singular in double precision, and no rates are to be told.
+   real(qp), parameter :: worst_condition = 1.0e10_qp
+   !> Products of numbers near the end of the range lose digits: what is below tiny is nothing.
+   real(qp), parameter :: least_size = tiny(1.0_wp)/epsilon(1.0_wp)
+
+   type :: verdict_t
+      character(:), allocatable :: text         !< the first thing that is wrong; not allocated: nothing
+      integer :: instants = 0, closures = 0     !< instants seen; those with all links, whose closure was computed
+      integer :: ill = 0                        !< those whose rates were held to the condition
+      real(qp) :: worst(0:2) = 0.0_qp           !< largest residuals in units of what is allowed
+   end type verdict_t
+
+contains
+
+   !> Judges the file `path`, results of `sets`.
+   subroutine check_csv(path, sets, v)
+      character(*), intent(in) :: path
+      type(mechanism_t), intent(in) :: sets(:)
+      type(verdict_t), intent(out) :: v
+      type(rows_t) :: rows
+      character(600) :: line
+      integer :: unit, status, i, k
+
+      open (newunit=unit, file=path, status='old', action='read', iostat=status)
+      if (status == 0) read (unit, '(a)', iostat=status) line
+      if (status /= 0) call blame(v%text, 'NO CSV FILE')
+      if (status /= 0) return
+      if (line /= csv_head) call blame(v%text, 'CSV: ITS HEAD')
+      do i = 1, size(sets)
+         do k = 0, instant_count(sets(i)) - 1
+            call read_instant(unit, sets(i), k, rows, v%text)
+            if (.not. allocated(v%text)) call check_instant(sets(i), k, rows, v)
+            if (.not. allocated(v%text)) cycle
+            v%text = v%text//' (SET '//whole_text(i)//', STEP '//whole_text(k)//')'
+            close (unit)
+            return
+         end do
+      end do
+      read (unit, '(a)', iostat=status) line
+      if (status == 0) call blame(v%text, 'CSV: A ROW TOO MANY')
+      close (unit)
+   end subroutine check_csv
+
+   subroutine check_instant(m, k, rows, v)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: k
+      type(rows_t), intent(in) :: rows
+      type(verdict_t), intent(inout) :: v
+      type(body_jet_t) :: moving(size(m%links))
+
+      if (.not. any(rows%due)) return
+      v%instants = v%instants + 1
+      call check_time(m, k, rows%t, v)
+      if (rows%known < 0) return
+      moving = rows%body
+      if (all(rows%given)) call check_closure(m, rows, v)
+      call check_rows(m, rows, moving, v)
+   end subroutine check_instant
+
+   !> t_k = t0 + (t1 - t0) k/n, four roundings; the last and those of AT exactly.
+   subroutine check_time(m, k, t, v)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: k
+      real(wp), intent(in) :: t
+      type(verdict_t), intent(inout) :: v
+      real(qp) :: wanted, allowed
+
+      allowed = 0.0_qp
+      if (k > m%steps) then
+         wanted = m%at(k - m%steps)
+      else if (k == m%steps) then
+         wanted = m%t1
+      else
+         wanted = m%t0 + (real(m%t1, qp) - m%t0)*k/m%steps
+         allowed = 4.0_qp*epsilon(1.0_wp)*max(abs(m%t0), abs(m%t1)) + tiny(1.0_wp)
+      end if
+      if (.not. abs(t - wanted) <= allowed) call blame(v%text, 'TIME OF THE INSTANT')
+   end subroutine check_time
+
+   !> All equations, as far as derivatives are known.
+   subroutine check_closure(m, rows, v)
+      type(mechanism_t), intent(in) :: m
+      type(rows_t), intent(in) :: rows
+      type(verdict_t), intent(inout) :: v
+      type(jet_t) :: r(2*size(m%pairs) + size(m%drives))
+      real(qp) :: share(0:2, size(r)), allowed, t
+      integer :: k
+
+      v%closures = v%closures + 1
+      t = rows%t
+      r = closure_jets(m, rows%body, t)
+      share(0, :) = abs(r%v)
+      share(1, :) = abs(r%d)
+      share(2, :) = abs(r%dd)
+      allowed = max(rounding, steps_of_tolerance*m%tolerance)
+      share = share/(allowed*(row_sizes(m, sizes_of(m, rows%body), t) + least_size))
+      if (rows%known >= 1) then
+         if (any(share(1:rows%known, :) > 1.0_qp)) then
+            ! The position, and with it the Jacobian, is known to no better than eps times the condition.
+            v%ill = v%ill + 1
+            share(1:, :) = share(1:, :)/min(worst_condition, 1.0_qp + condition(m, rows%body, t))
+         end if
+      end if
+      do k = 0, rows%known
+         v%worst(k) = max(v%worst(k), maxval(share(k, :)))
+         if (all(share(k, :) <= 1.0_qp)) cycle
+         call blame(v%text, trim(what(k))//' OF '//equation(m, maxloc(share(k, :), 1))//': RESIDUAL '// &
+            scientific(maxval(share(k, :)))//' OF WHAT IS ALLOWED')
+      end do
+   end subroutine check_closure
+
+   pure function what(k) result(text)
+      integer, intent(in) :: k
+      character(12) :: text
+      character(12), parameter :: words(0:2) = [character(12) :: 'POSITION', 'VELOCITY', 'ACCELERATION']
+
+      text = words(k)
+   end function what
+
+   function equation(m, row) result(text)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: row
+      character(:), allocatable :: text
+
+      if (row <= 2*size(m%pairs)) then
+         text = 'PAIR '//trim(m%pairs((row + 1)/2)%name)
+      else
+         text = 'DRIVE '//whole_text(row - 2*size(m%pairs))
+      end if
+   end function equation
+
+   function scientific(x) result(text)
+      real(qp), intent(in) :: x
+      character(12) :: text
+
+      write (text, '(es12.3e4)') x
+   end function scientific
+
+   !> Rows of points and pairs against those of their links.
+   subroutine check_rows(m, rows, body, v)
+      type(mechanism_t), intent(in) :: m
+      type(rows_t), intent(in) :: rows
+      type(body_jet_t), intent(in) :: body(:)
+      type(verdict_t), intent(inout) :: v
+      type(sizes_t) :: s
+      type(jet_t) :: p(2)
+      integer :: i, j
+
+      s = sizes_of(m, body)
+      do i = 1, size(m%requests)
+         if (.not. rows%due(i)) cycle
+         associate (subject => m%requests(i)%subject)
+            if (m%requests(i)%kind == request_point) then
+               if (.not. rows%given(m%points(subject)%link)) cycle
+               p = place_jet(m, body, subject)
+               call compare(rows%value(:, i), p, s%length, rows%known, 'POINT '//m%points(subject)%name, v)
+            else if (m%requests(i)%kind == request_pair) then
+               if (.not. (rows%given(m%points(m%pairs(subject)%point_i)%link) .and. &
+                  rows%given(m%points(m%pairs(subject)%point_j)%link))) cycle
+               if (m%pairs(subject)%kind == pair_prismatic) then
+                  p(1) = slide_jet(m, body, subject)
+                  call compare(rows%value(:1, i), p(:1), s%length, rows%known, 'SLIDE '//m%pairs(subject)%name, v)
+               else
+                  j = m%points(m%pairs(subject)%point_j)%link
+                  p(1) = body(j)%phi - body(m%points(m%pairs(subject)%point_i)%link)%phi
+                  call compare(rows%value(:1, i), p(:1), s%angle, rows%known, 'ANGLE '//m%pairs(subject)%name, v)
+               end if
+            end if
+         end associate
+      end do
+   end subroutine check_rows
+
+   subroutine compare(found, wanted, sizes, known, name, v)
+      type(jet_t), intent(in) :: found(:), wanted(:)
+      real(qp), intent(in) :: sizes(0:2)
+      integer, intent(in) :: known
+      character(*), intent(in) :: name
+      type(verdict_t), intent(inout) :: v
+      real(qp) :: off(0:2)
+
+      off = [maxval(abs(found%v - wanted%v)), maxval(abs(found%d - wanted%d)), maxval(abs(found%dd - wanted%dd))]
+      off = off/(rounding*(sizes + least_size))
+      if (any(off(:known) > 1.0_qp)) call blame(v%text, 'ROW OF '//trim(name)//': '//scientific(maxval(off(:known)))// &
+         ' OF WHAT IS ALLOWED')
+   end subroutine compare
+end module csv_closure

@@ -1,0 +1,191 @@
+!> Tests. The rows of one instant read back from a CSV file of results, under the names and in the order that the deck
+!> asks for.
+module csv_rows
+   use kinds, only: wp
+   use quad_jet, only: qp, jet_t, degree_q, constant_jet
+   use mechanism, only: mechanism_t, instant_count, request_link, request_point, request_pair, pair_prismatic
+   use jet_closure, only: body_jet_t
+   implicit none
+   private
+   public :: rows_t, read_instant, blame, whole_text, csv_head
+
+   character(*), parameter :: csv_head = 'set,step,t,kind,name,x,y,phi,vx,vy,vphi,ax,ay,aphi,mark'
+   integer, parameter :: cells = 15
+
+   !> What one instant's rows give.
+   type :: rows_t
+      type(body_jet_t), allocatable :: body(:)  !< (links)
+      logical, allocatable :: given(:)          !< (links)
+      type(jet_t), allocatable :: value(:, :)   !< (2, requests) of points and pairs
+      logical, allocatable :: due(:)            !< (requests)
+      integer :: known = 2                      !< derivatives
+      real(wp) :: t = 0.0_wp
+      character(12) :: mark = ''
+   end type rows_t
+
+contains
+
+   !> The first thing that is wrong is kept.
+   subroutine blame(wrong, text)
+      character(:), allocatable, intent(inout) :: wrong
+      character(*), intent(in) :: text
+
+      if (.not. allocated(wrong)) wrong = text
+   end subroutine blame
+
+   function whole_text(i) result(text)
+      integer, intent(in) :: i
+      character(:), allocatable :: text
+      character(12) :: buffer
+
+      write (buffer, '(i0)') i
+      text = trim(buffer)
+   end function whole_text
+
+   !> The rows of instant `k`, which must be those that the deck asks for.
+   subroutine read_instant(unit, m, k, rows, wrong)
+      integer, intent(in) :: unit, k
+      type(mechanism_t), intent(in) :: m
+      type(rows_t), intent(out) :: rows
+      character(:), allocatable, intent(inout) :: wrong
+      integer :: i
+
+      rows%given = m%links%ground
+      allocate (rows%body(size(m%links)), rows%value(2, size(m%requests)), rows%due(size(m%requests)))
+      do i = 1, size(m%links)
+         associate (at => m%links(i)%position)
+            if (rows%given(i)) rows%body(i) = body_jet_t(constant_jet(real(at(1), qp)), constant_jet(real(at(2), qp)), &
+               constant_jet(real(at(3), qp)))
+         end associate
+      end do
+      do i = 1, size(m%requests)
+         rows%due(i) = mod(k, m%requests(i)%every) == 0 .or. k == instant_count(m) - 1
+         if (rows%due(i)) call read_row(unit, m, k, i, rows, wrong)
+         if (allocated(wrong)) return
+      end do
+   end subroutine read_instant
+
+   !> The row of request `i`.
+   subroutine read_row(unit, m, k, i, rows, wrong)
+      integer, intent(in) :: unit, k, i
+      type(mechanism_t), intent(in) :: m
+      type(rows_t), intent(inout) :: rows
+      character(:), allocatable, intent(inout) :: wrong
+      character(600) :: line
+      character(40) :: cell(cells)
+      type(jet_t) :: value(3)
+      integer :: status
+
+      read (unit, '(a)', iostat=status) line
+      if (status /= 0) call blame(wrong, 'CSV: A ROW IS MISSING')
+      if (status /= 0) return
+      call split(line, cell, status)
+      if (status /= cells) call blame(wrong, 'CSV: NUMBER OF CELLS: '//trim(line))
+      if (allocated(wrong)) return
+      if (cell(1) /= whole_text(m%set_number) .or. cell(2) /= whole_text(k)) call blame(wrong, 'CSV: SET OR STEP: '//trim(line))
+      read (cell(3), '(f40.0)', iostat=status) rows%t
+      if (status /= 0) call blame(wrong, 'CSV: TIME: '//trim(line))
+      rows%mark = cell(15)(:12)
+      if (all(rows%mark /= [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE'])) &
+         call blame(wrong, 'CSV: MARK: '//trim(line))
+      call read_values(m, i, cell(6:14), value, rows%known, wrong)
+      if ((rows%mark == '') .neqv. (rows%known == 2)) call blame(wrong, 'CSV: KNOWN VALUES AND MARK: '//trim(line))
+      if (allocated(wrong)) return
+      call keep_row(m, i, cell(4), cell(5), value, rows, wrong)
+   end subroutine read_row
+
+   !> A row under the name that it must have.
+   subroutine keep_row(m, i, kind, name, value, rows, wrong)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i
+      character(*), intent(in) :: kind, name
+      type(jet_t), intent(in) :: value(3)
+      type(rows_t), intent(inout) :: rows
+      character(:), allocatable, intent(inout) :: wrong
+      character(8) :: wanted(2)
+
+      associate (subject => m%requests(i)%subject)
+         select case (m%requests(i)%kind)
+         case (request_link)
+            wanted = [character(8) :: 'LINK', m%links(subject)%name]
+            rows%body(subject) = body_jet_t(value(1), value(2), value(3))
+            rows%given(subject) = rows%known >= 0
+         case (request_point)
+            wanted = [character(8) :: 'POINT', m%points(subject)%name]
+            rows%value(:, i) = value(:2)
+         case default
+            wanted = [character(8) :: 'PAIR', m%pairs(subject)%name]
+            rows%value(:, i) = value(:2)
+         end select
+      end associate
+      if (kind /= wanted(1) .or. name /= wanted(2)) call blame(wrong, 'CSV: '//trim(kind)//' '//trim(name)//' IS NOT '// &
+         trim(wanted(1))//' '//trim(wanted(2)))
+   end subroutine keep_row
+
+   !> The numbers of request `i` as jets, angles in radians; `known`: derivatives that are there, -1 for not even places.
+   subroutine read_values(m, i, cell, value, known, wrong)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i
+      character(*), intent(in) :: cell(9)
+      type(jet_t), intent(out) :: value(3)
+      integer, intent(out) :: known
+      character(:), allocatable, intent(inout) :: wrong
+      real(wp) :: x
+      real(qp) :: number(3, 0:2)
+      logical :: there(3, 0:2), angular
+      integer :: c, k, columns, status
+
+      columns = 3
+      if (m%requests(i)%kind == request_point) columns = 2
+      if (m%requests(i)%kind == request_pair) columns = 1
+      angular = .false.
+      if (columns == 1) angular = m%pairs(m%requests(i)%subject)%kind /= pair_prismatic
+      number = 0.0_qp
+      there = reshape(cell /= '', [3, 3])
+      do k = 0, 2
+         do c = 1, 3
+            if (.not. there(c, k)) cycle
+            read (cell(3*k + c), '(f40.0)', iostat=status) x
+            if (status /= 0 .or. verify(trim(cell(3*k + c)), '0123456789+-.E') > 0) &
+               call blame(wrong, 'CSV: "'//trim(cell(3*k + c))//'" IS NO NUMBER')
+            number(c, k) = x
+            if (m%degrees .and. (c == 3 .or. angular)) number(c, k) = degree_q*number(c, k)
+         end do
+      end do
+      known = count(there(1, :)) - 1
+      if (.not. all(there(:columns, :known)) .or. any(there(:, known + 1:)) &
+         .or. any(there(columns + 1:, :))) call blame(wrong, 'CSV: CELLS THAT ARE FULL')
+      value%v = number(:, 0)
+      value%d = number(:, 1)
+      value%dd = number(:, 2)
+   end subroutine read_values
+
+   !> The cells of a line, a name in quotes without them; `n`: how many.
+   subroutine split(line, cell, n)
+      character(*), intent(in) :: line
+      character(40), intent(out) :: cell(cells)
+      integer, intent(out) :: n
+      integer :: i, length
+      logical :: quoted
+
+      cell = ''
+      n = 1
+      length = 0
+      quoted = .false.
+      do i = 1, len_trim(line)
+         if (line(i:i) == '"') then
+            quoted = .not. quoted
+            ! The second of two quotes inside stands for itself.
+            if (.not. quoted .or. i == 1) cycle
+            if (line(i - 1:i - 1) /= '"') cycle
+         else if (line(i:i) == ',' .and. .not. quoted) then
+            n = n + 1
+            length = 0
+            if (n > cells) return
+            cycle
+         end if
+         length = min(length + 1, 40)
+         cell(n)(length:length) = line(i:i)
+      end do
+   end subroutine split
+end module csv_rows

@@ -1,0 +1,181 @@
+!> Tests. Changes of a deck that go to the limits of numbers and of structure, or damage its text; and the deck of a seed.
+module deck_damage
+   use kinds, only: wp
+   use dice, only: dice_t, new_dice, throw, chance
+   use deck_draft, only: draft_t, line_length, name_of, label, set_label, real_field, set_real, set_full, insert_line, &
+      drop_line, find_cards, add_note
+   use deck_changes, only: pick
+   use deck_mutations, only: prepare, change_gently, most_steps
+   implicit none
+   private
+   public :: deck_of_seed
+
+   character(16), parameter :: extremes(*) = [character(16) :: '0.0', '-0.0', '1.0E308', '-1.0E308', &
+      '1.797693134E308', '4.94066E-324', '1.0E-310', '2.22507385E-308', '1.0E-300', '-1.0E-160', '1.0E-20', '1.0E-9', &
+      '1.0E8', '1.0E9', '1.0E16', '-1.0E20', '1.0E100', '1.0E154', '1.0E155', '1.0E200', '1.0', '90.0', '180.0', &
+      '1.570796326794', '3.141592653589', '360.0', '0.5', '-1.0', '1.0E400', '1.0E-400', 'NAN', 'INF', '5', '-', '1.5-3']
+   character(8), parameter :: with_reals(*) = [character(8) :: 'GROUND', 'LINK', 'POINT', 'PRISM', 'DRIVE', 'ADD', 'TIME', &
+      'AT', 'METHOD']
+   character(8), parameter :: with_labels(*) = [character(8) :: 'GROUND', 'LINK', 'POINT', 'REVOLUTE', 'PRISM', 'DRIVE']
+   character(*), parameter :: bytes = 'AZ09.+-*$ ,"'//'|eE'//achar(9)//achar(13)//achar(0)//achar(127)//char(195)//char(255)
+
+contains
+
+   !> The deck of seed number `seed`, made from one of `sets`. Of ten decks seven are changed gently, two go to the limits,
+   !> one is damaged, by a mixture of everything.
+   function deck_of_seed(sets, seed) result(d)
+      type(draft_t), intent(in) :: sets(:)
+      integer, intent(in) :: seed
+      type(draft_t) :: d
+      type(dice_t) :: r
+      integer :: manner, i, n
+
+      r = new_dice(seed)
+      d = sets(throw(r, size(sets)))
+      call prepare(d, r)
+      manner = throw(r, 10)
+      n = merge(throw(r, 2), throw(r, 8), chance(r, 0.6_wp))
+      do i = 1, n
+         call change_gently(d, r)
+      end do
+      if (manner > 7) then
+         do i = 1, throw(r, 3)
+            call change_to_limits(d, r)
+         end do
+      end if
+      if (manner > 9) then
+         do i = 1, throw(r, 3)
+            if (size(d%line) > 0) call damage(d, r)
+         end do
+      end if
+      call limit_steps(d)
+      do while (len(d%notes) > 0)
+         i = scan(d%notes, new_line('a'), back=.true.)
+         call insert_line(d, 1, '$ '//d%notes(i + 1:))
+         d%notes = d%notes(:i - 1)
+      end do
+   end function deck_of_seed
+
+   !> A deck that asks for very many steps says nothing more than one that asks for some.
+   subroutine limit_steps(d)
+      type(draft_t), intent(inout) :: d
+      integer :: i, n, status
+
+      do i = 1, size(d%line)
+         if (index(d%line(i), 'TIME') == 0) cycle
+         read (d%line(i)(9:16), '(i8)', iostat=status) n
+         if (status == 0 .and. n > most_steps) write (d%line(i)(9:16), '(i0)') most_steps
+      end do
+   end subroutine limit_steps
+
+   !> One change to the limits of numbers or of structure.
+   subroutine change_to_limits(d, r)
+      type(draft_t), intent(inout) :: d
+      type(dice_t), intent(inout) :: r
+      integer :: i, j, k
+
+      select case (throw(r, 11))
+      case (1:4)
+         i = pick(r, find_cards(d, with_reals))
+         k = throw(r, 3)
+         if (i > 0) d%line(i)(16*k + 17:16*k + 32) = extremes(throw(r, size(extremes)))
+         if (i > 0) call add_note(d, 'EXTREME '//d%line(i)(1:16))
+      case (5)
+         i = pick(r, find_cards(d, with_labels))
+         j = pick(r, find_cards(d, with_labels))
+         if (i > 0) call set_label(d%line(i), throw(r, 3), label(d%line(j), throw(r, 3)))
+         call add_note(d, 'LABELS EXCHANGED')
+      case (6)
+         i = throw(r, size(d%line))
+         if (name_of(d%line(i)) /= 'END') call drop_line(d, i)
+         call add_note(d, 'CARD DROPPED')
+      case (7)
+         i = throw(r, size(d%line))
+         call insert_line(d, throw(r, i), d%line(i))
+         call add_note(d, 'CARD DOUBLED')
+      case (8)
+         i = pick(r, find_cards(d, ['POINT   ']))
+         j = pick(r, find_cards(d, ['POINT   ']))
+         if (i > 0) d%line(i)(33:) = d%line(j)(33:)
+         call add_note(d, 'EQUAL POINTS')
+      case (9)
+         i = pick(r, find_cards(d, ['POINT   ']))
+         if (i > 0) call empty_link(d, label(d%line(i), 2))
+      case (10)
+         i = pick(r, find_cards(d, ['UNITS   ']))
+         if (i > 0) call set_label(d%line(i), 2, trim(merge('RAD', 'DEG', chance(r, 0.5_wp))))
+         call add_note(d, 'UNITS')
+      case default
+         i = pick(r, find_cards(d, with_reals))
+         k = throw(r, 3)
+         if (i > 0) call set_full(d, i, k, 10.0_wp**(throw(r, 600) - 300))
+         if (i > 0) call add_note(d, 'MAGNITUDE OF '//d%line(i)(1:16))
+      end select
+   end subroutine change_to_limits
+
+   !> All points of one link at its origin: a link without length.
+   subroutine empty_link(d, link)
+      type(draft_t), intent(inout) :: d
+      character(*), intent(in) :: link
+      integer :: i
+
+      do i = 1, size(d%line)
+         if (name_of(d%line(i)) == 'POINT' .and. label(d%line(i), 2) == link) d%line(i)(33:) = ''
+      end do
+      call add_note(d, 'NO LENGTH '//link)
+   end subroutine empty_link
+
+   !> One damage of the text.
+   subroutine damage(d, r)
+      type(draft_t), intent(inout) :: d
+      type(dice_t), intent(inout) :: r
+      integer :: i, j, c, k
+      character(line_length) :: line
+
+      i = throw(r, size(d%line))
+      j = throw(r, size(d%line))
+      c = throw(r, 80)
+      k = throw(r, len(bytes))
+      line = d%line(i)
+      select case (throw(r, 12))
+      case (1)
+         d%line(i)(c:c) = bytes(k:k)
+      case (2)
+         d%line(i) = line(:c - 1)//line(c + 1:)
+      case (3)
+         d%line(i) = line(:c - 1)//bytes(k:k)//line(c:)
+      case (4)
+         d%line(i) = line(:c)
+      case (5)
+         d%line(i)(c + 60:) = 'PAST THE END'
+      case (6)
+         d%line([i, j]) = d%line([j, i])
+      case (7)
+         c = throw(r, 9)
+         c = merge(8*c - 7, 16*c - 47, c < 5)
+         d%line(i)(c:c + 15) = d%line(j)(c:c + 15)
+      case (8)
+         d%line(i)(1:8) = lower(line(1:8))
+      case (9)
+         d%line(i) = trim(line)//achar(13)
+      case (10)
+         d%line = d%line(:i)
+      case (11)
+         call insert_line(d, i, d%line(j))
+      case default
+         call drop_line(d, i)
+      end select
+      call add_note(d, 'TEXT DAMAGED')
+   end subroutine damage
+
+   pure function lower(text) result(small)
+      character(*), intent(in) :: text
+      character(len(text)) :: small
+      integer :: i
+
+      small = text
+      do i = 1, len(text)
+         if (text(i:i) >= 'A' .and. text(i:i) <= 'Z') small(i:i) = achar(iachar(text(i:i)) + 32)
+      end do
+   end function lower
+end module deck_damage

@@ -1,0 +1,173 @@
+!> Tests. A deck as lines that can be changed field by field, and the sets of computations of the decks of input/.
+module deck_draft
+   use kinds, only: wp
+   implicit none
+   private
+   public :: draft_t, line_length, read_sets, name_of, label, set_label, real_field, set_real, set_full
+   public :: insert_line, drop_line, find_cards, add_note, write_draft
+
+   integer, parameter :: line_length = 200
+
+   type :: draft_t
+      character(line_length), allocatable :: line(:)
+      character(:), allocatable :: notes         !< what was done to it, lines joined by new_line('a')
+   end type draft_t
+
+contains
+
+   !> Adds the sets of the deck in the file `path` to `sets`, without comments.
+   subroutine read_sets(path, sets)
+      character(*), intent(in) :: path
+      type(draft_t), allocatable, intent(inout) :: sets(:)
+      character(line_length) :: line
+      type(draft_t) :: one
+      integer :: unit, status
+
+      allocate (one%line(0))
+      open (newunit=unit, file=path, status='old', action='read')
+      do
+         read (unit, '(a)', iostat=status) line
+         if (status /= 0) exit
+         if (line(1:1) == '$') cycle
+         one%line = [one%line, line]
+         if (name_of(line) /= 'END') cycle
+         one%notes = path
+         sets = [sets, one]
+         one%line = one%line(1:0)
+      end do
+      close (unit)
+   end subroutine read_sets
+
+   pure function name_of(line) result(name)
+      character(*), intent(in) :: line
+      character(8) :: name
+
+      name = line(1:8)
+   end function name_of
+
+   !> Label field `k` (1 to 3).
+   pure function label(line, k)
+      character(*), intent(in) :: line
+      integer, intent(in) :: k
+      character(8) :: label
+
+      label = line(8*k + 1:8*k + 8)
+   end function label
+
+   subroutine set_label(line, k, text)
+      character(*), intent(inout) :: line
+      integer, intent(in) :: k
+      character(*), intent(in) :: text
+
+      line(8*k + 1:8*k + 8) = text
+   end subroutine set_label
+
+   !> Real field `k` (1 to 3) of card `i`, from the `*` card below it if that has it; 0 where there is no number.
+   real(wp) function real_field(d, i, k)
+      type(draft_t), intent(in) :: d
+      integer, intent(in) :: i, k
+      integer :: status
+
+      status = 1
+      real_field = 0.0_wp
+      if (has_star(d, i)) read (d%line(i + 1)(24*k - 15:24*k + 8), '(bn,f24.0)', iostat=status) real_field
+      if (status /= 0 .or. .not. has_star(d, i)) read (d%line(i)(16*k + 17:16*k + 32), '(bn,f16.0)', iostat=status) real_field
+      if (status /= 0) real_field = 0.0_wp
+      if (.not. abs(real_field) <= huge(real_field)) real_field = 0.0_wp
+   end function real_field
+
+   pure logical function has_star(d, i)
+      type(draft_t), intent(in) :: d
+      integer, intent(in) :: i
+
+      has_star = i < size(d%line)
+      if (has_star) has_star = d%line(i + 1)(1:1) == '*'
+   end function has_star
+
+   !> Real field `k` of card `i` becomes `x`, to the nine digits that its columns hold.
+   subroutine set_real(d, i, k, x)
+      type(draft_t), intent(inout) :: d
+      integer, intent(in) :: i, k
+      real(wp), intent(in) :: x
+      character(16) :: text
+
+      if (has_star(d, i)) then
+         call set_full(d, i, k, x)
+      else
+         write (text, '(es16.8e3)') x
+         d%line(i)(16*k + 17:16*k + 32) = adjustl(text)
+      end if
+   end subroutine set_real
+
+   !> The same with all digits, on a `*` card.
+   subroutine set_full(d, i, k, x)
+      type(draft_t), intent(inout) :: d
+      integer, intent(in) :: i, k
+      real(wp), intent(in) :: x
+      integer :: c
+      real(wp) :: others(3)
+      character(24) :: text
+
+      others = [(real_field(d, i, c), c=1, 3)]
+      others(k) = x
+      if (.not. has_star(d, i)) call insert_line(d, i + 1, '*')
+      d%line(i)(33:80) = ''
+      do c = 1, 3
+         if (.not. (abs(others(c)) > 0.0_wp .or. c == k)) cycle
+         write (text, '(es24.16e3)') others(c)
+         d%line(i + 1)(24*c - 15:24*c + 8) = adjustl(text)
+      end do
+   end subroutine set_full
+
+   !> `line` becomes line number `i`.
+   subroutine insert_line(d, i, line)
+      type(draft_t), intent(inout) :: d
+      integer, intent(in) :: i
+      character(*), intent(in) :: line
+      character(line_length) :: one
+
+      one = line
+      d%line = [d%line(:i - 1), one, d%line(i:)]
+   end subroutine insert_line
+
+   subroutine drop_line(d, i)
+      type(draft_t), intent(inout) :: d
+      integer, intent(in) :: i
+
+      d%line = [d%line(:i - 1), d%line(i + 1:)]
+   end subroutine drop_line
+
+   !> Numbers of the lines whose card has one of `names`.
+   pure function find_cards(d, names) result(found)
+      type(draft_t), intent(in) :: d
+      character(8), intent(in) :: names(:)
+      integer, allocatable :: found(:)
+      logical :: is_one(size(d%line))
+      integer :: i
+
+      do i = 1, size(d%line)
+         is_one(i) = any(names == name_of(d%line(i)))
+      end do
+      found = pack([(i, i=1, size(d%line))], is_one)
+   end function find_cards
+
+   subroutine add_note(d, text)
+      type(draft_t), intent(inout) :: d
+      character(*), intent(in) :: text
+
+      d%notes = d%notes//new_line('a')//text
+   end subroutine add_note
+
+   !> The lines of `d` to the file `path`, without blanks at their ends.
+   subroutine write_draft(d, path)
+      type(draft_t), intent(in) :: d
+      character(*), intent(in) :: path
+      integer :: unit, i
+
+      open (newunit=unit, file=path, access='stream', form='unformatted', status='replace', action='write')
+      do i = 1, size(d%line)
+         write (unit) trim(d%line(i))//new_line('a')
+      end do
+      close (unit)
+   end subroutine write_draft
+end module deck_draft

@@ -1,0 +1,231 @@
+!> Tests. Changes of a deck that leave it a deck: lengths, angles, order, scale, and those of `drive_mutations`. What comes
+!> of it may have no solution, but it goes through the solver.
+module deck_mutations
+   use kinds, only: wp
+   use dice, only: dice_t, throw, chance, between, magnitude
+   use deck_draft, only: draft_t, name_of, label, set_label, real_field, set_real, set_full, insert_line, drop_line, &
+      find_cards, add_note
+   use deck_changes, only: pick, near, put_real, is_degrees
+   use drive_mutations, only: change_drive, add_term, change_time, change_at, change_method, exchange_drive
+   implicit none
+   private
+   public :: prepare, change_gently, most_steps
+
+   !> So many steps of a TIME card at most: runs are to be short.
+   integer, parameter :: most_steps = 40
+   real(wp), parameter :: pi = 3.141592653589793_wp
+
+contains
+
+   !> Few instants, over the whole of the motion or with the steps as they were; mostly all rows in the tables.
+   subroutine prepare(d, r)
+      type(draft_t), intent(inout) :: d
+      type(dice_t), intent(inout) :: r
+      integer, allocatable :: cards(:)
+      integer :: i, n, before
+
+      cards = find_cards(d, ['TIME    '])
+      do i = 1, size(cards)
+         read (d%line(cards(i))(9:16), *) before
+         n = throw(r, merge(4, 10, chance(r, 0.7_wp)))
+         if (chance(r, 0.5_wp)) call set_real(d, cards(i), 2, real_field(d, cards(i), 1) &
+            + (real_field(d, cards(i), 2) - real_field(d, cards(i), 1))*n/before)
+         write (d%line(cards(i))(9:16), '(i0)') n
+      end do
+      if (chance(r, 0.1_wp)) return
+      cards = find_cards(d, ['PRINT   '])
+      do i = size(cards), 1, -1
+         call drop_line(d, cards(i))
+      end do
+      i = size(d%line)
+      if (chance(r, 0.9_wp)) then
+         call insert_line(d, i, 'PRINT   ALL')
+      else
+         call insert_line(d, i, 'PRINT   LINKS           3')
+      end if
+   end subroutine prepare
+
+   !> One change of one of the kinds below.
+   subroutine change_gently(d, r)
+      type(draft_t), intent(inout) :: d
+      type(dice_t), intent(inout) :: r
+
+      select case (throw(r, 24))
+      case (1:5)
+         call change_length(d, r)
+      case (6:7)
+         call change_rough(d, r)
+      case (8)
+         call change_real(d, r, ['GROUND  ', 'PRISM   '])
+      case (9:11)
+         call change_drive(d, r)
+      case (12:13)
+         call add_term(d, r)
+      case (14:15)
+         call change_time(d, r)
+      case (16)
+         call change_method(d, r)
+      case (17:18)
+         call exchange_drive(d, r)
+      case (19)
+         call scale_lengths(d, r)
+      case (20)
+         call copy_length(d, r)
+      case (21)
+         call swap_alike(d, r)
+      case (22)
+         call swap_ends(d, r)
+      case (23)
+         call make_prism(d, r)
+      case default
+         call change_at(d, r)
+      end select
+   end subroutine change_gently
+
+   subroutine change_real(d, r, names)
+      type(draft_t), intent(inout) :: d
+      type(dice_t), intent(inout) :: r
+      character(8), intent(in) :: names(:)
+      integer :: i, k
+
+      i = pick(r, find_cards(d, names))
+      if (i == 0) return
+      k = throw(r, 3)
+      call put_real(d, r, i, k, near(real_field(d, i, k), r))
+      call add_note(d, 'REAL OF '//d%line(i)(1:16))
+   end subroutine change_real
+
+   subroutine change_length(d, r)
+      type(draft_t), intent(inout) :: d
+      type(dice_t), intent(inout) :: r
+      integer :: i, k
+
+      i = pick(r, find_cards(d, ['POINT   ']))
+      if (i == 0) return
+      k = merge(1, 2, chance(r, 0.7_wp))
+      call put_real(d, r, i, k, near(real_field(d, i, k), r))
+      call add_note(d, 'LENGTH '//d%line(i)(9:16))
+   end subroutine change_length
+
+   subroutine change_rough(d, r)
+      type(draft_t), intent(inout) :: d
+      type(dice_t), intent(inout) :: r
+      integer :: i, k
+
+      i = pick(r, find_cards(d, ['LINK    ']))
+      if (i == 0) return
+      k = throw(r, 4)
+      if (k == 4) then
+         call put_real(d, r, i, 3, between(r, -360.0_wp, 360.0_wp)*merge(1.0_wp, pi/180.0_wp, is_degrees(d)))
+      else
+         call put_real(d, r, i, k, near(real_field(d, i, k), r))
+      end if
+      call add_note(d, 'ROUGH POSITION '//d%line(i)(9:16))
+   end subroutine change_rough
+
+   !> All lengths times one factor.
+   subroutine scale_lengths(d, r)
+      type(draft_t), intent(inout) :: d
+      type(dice_t), intent(inout) :: r
+      real(wp) :: factor
+      integer :: i
+      logical :: driven
+
+      factor = magnitude(r, merge(3, merge(12, 150, chance(r, 0.7_wp)), chance(r, 0.5_wp)))
+      driven = .false.
+      do i = size(d%line), 1, -1
+         select case (name_of(d%line(i)))
+         case ('POINT', 'GROUND', 'LINK')
+            call set_full(d, i, 1, factor*real_field(d, i, 1))
+            call set_full(d, i, 2, factor*real_field(d, i, 2))
+         case ('PRISM')
+            call set_full(d, i, 2, factor*real_field(d, i, 2))
+         case ('DRIVE')
+            driven = all(label(d%line(i), 1) /= ['ANGLE   ', 'RELANGLE'])
+            if (.not. driven) cycle
+            call set_full(d, i, 1, factor*real_field(d, i, 1))
+            call set_full(d, i, 2, factor*real_field(d, i, 2))
+            call set_full(d, i, 3, factor*real_field(d, i, 3))
+         case ('ADD')
+            if (.not. is_length_term(d, i)) cycle
+            call set_full(d, i, merge(2, 1, label(d%line(i), 1) == 'TABLE'), &
+               factor*real_field(d, i, merge(2, 1, label(d%line(i), 1) == 'TABLE')))
+         end select
+      end do
+      call add_note(d, 'ALL LENGTHS SCALED')
+   end subroutine scale_lengths
+
+   !> The ADD card on line `i` stands under a drive of a length.
+   logical function is_length_term(d, i)
+      type(draft_t), intent(in) :: d
+      integer, intent(in) :: i
+      integer :: k
+
+      do k = i, 1, -1
+         if (name_of(d%line(k)) == 'DRIVE') exit
+      end do
+      is_length_term = .false.
+      if (k > 0) is_length_term = all(label(d%line(k), 1) /= ['ANGLE   ', 'RELANGLE'])
+   end function is_length_term
+
+   !> Equal lengths: change points, parallelograms, links folded upon each other.
+   subroutine copy_length(d, r)
+      type(draft_t), intent(inout) :: d
+      type(dice_t), intent(inout) :: r
+      integer, allocatable :: cards(:)
+      integer :: i, j
+
+      cards = find_cards(d, ['POINT   '])
+      i = pick(r, cards)
+      j = pick(r, cards)
+      if (i == 0) return
+      call set_full(d, i, 1, real_field(d, j, 1))
+      call add_note(d, 'LENGTH '//d%line(i)(9:16)//' AS '//d%line(min(j, size(d%line)))(9:16))
+   end subroutine copy_length
+
+   !> Two cards of one kind change places.
+   subroutine swap_alike(d, r)
+      type(draft_t), intent(inout) :: d
+      type(dice_t), intent(inout) :: r
+      integer, allocatable :: cards(:)
+      integer :: i, j
+
+      cards = find_cards(d, ['LINK    ', 'POINT   ', 'REVOLUTE', 'PRISM   '])
+      i = pick(r, cards)
+      if (i == 0) return
+      j = pick(r, find_cards(d, [name_of(d%line(i))]))
+      if (any(d%line(min([i, j] + 1, size(d%line)))(1:1) == '*')) return
+      d%line([i, j]) = d%line([j, i])
+      call add_note(d, 'ORDER OF '//d%line(i)(1:16)//' '//d%line(j)(1:16))
+   end subroutine swap_alike
+
+   !> The two points of a pair change places.
+   subroutine swap_ends(d, r)
+      type(draft_t), intent(inout) :: d
+      type(dice_t), intent(inout) :: r
+      integer :: i
+      character(8) :: first
+
+      i = pick(r, find_cards(d, ['REVOLUTE', 'PRISM   ']))
+      if (i == 0) return
+      first = label(d%line(i), 1)
+      call set_label(d%line(i), 1, label(d%line(i), 2))
+      call set_label(d%line(i), 2, first)
+      call add_note(d, 'ENDS OF '//d%line(i)(1:32))
+   end subroutine swap_ends
+
+   !> A revolute pair becomes a prismatic one, with any numbers.
+   subroutine make_prism(d, r)
+      type(draft_t), intent(inout) :: d
+      type(dice_t), intent(inout) :: r
+      integer :: i, k
+
+      i = pick(r, find_cards(d, ['REVOLUTE']))
+      if (i == 0) return
+      d%line(i)(1:8) = 'PRISM'
+      do k = 1, 3
+         if (chance(r, 0.5_wp)) call set_real(d, i, k, between(r, -2.0_wp, 2.0_wp))
+      end do
+      call add_note(d, d%line(i)(1:32))
+   end subroutine make_prism
+end module deck_mutations

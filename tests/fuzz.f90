@@ -1,0 +1,219 @@
+!> Tests. Decks made by chance, each from the number of its seed, run through the program's own job; `tests/fuzz.sh` calls it.
+!>
+!>    fuzz FIRST LAST DIRECTORY DECK...     seeds FIRST to LAST, a line for each that fails, then a line of sums
+!>    fuzz --deck SEED FILE DECK...         writes the deck of a seed
+!>
+!> DIRECTORY/seed holds the seed that is being run and the sums before it, for a run that does not come back.
+program fuzz
+   use, intrinsic :: iso_fortran_env, only: output_unit
+   use, intrinsic :: iso_c_binding, only: c_int
+   use, intrinsic :: ieee_arithmetic, only: ieee_set_halting_mode, ieee_usual
+   use kinds, only: wp
+   use failures, only: failure_t
+   use mechanism, only: mechanism_t
+   use command_line, only: options_t
+   use deck, only: read_deck
+   use job, only: run_job
+   use deck_draft, only: draft_t, read_sets, write_draft, find_cards
+   use deck_damage, only: deck_of_seed
+   use csv_closure, only: verdict_t, check_csv
+   use csv_twice, only: compare_steps
+   use listing_check, only: check_listing, check_protocol
+   implicit none
+
+   !> Seconds that one deck may take; the slowest known take a tenth of it on this build.
+   integer(c_int), parameter :: patience = 20
+   !> Every so many-th deck that is solved is solved in twice as many steps too.
+   integer, parameter :: twice_every = 3
+
+   interface
+      !> After so many seconds the process is ended by the system; 0 takes it back.
+      integer(c_int) function alarm(seconds) bind(c)
+         import :: c_int
+         integer(c_int), value :: seconds
+      end function alarm
+   end interface
+
+   !> What has been run: decks, exit statuses, instants and closures seen, largest residuals.
+   type :: sums_t
+      integer :: passed = 0, failed = 0, ended(0:3) = 0, instants = 0, closures = 0, ill = 0
+      real(wp) :: worst(0:2) = 0.0_wp
+   end type sums_t
+
+   type(draft_t), allocatable :: sets(:)
+   integer :: i
+
+   call ieee_set_halting_mode(ieee_usual, .false.)
+   allocate (sets(0))
+   do i = 4, command_argument_count()
+      call read_sets(argument(i), sets)
+   end do
+   if (argument(1) == '--deck') then
+      call write_draft(deck_of_seed(sets, number(argument(2))), argument(3))
+   else
+      call run_seeds(number(argument(1)), number(argument(2)), argument(3))
+   end if
+   ! The sanitizer takes what the main program holds at its end for lost.
+   deallocate (sets)
+
+contains
+
+   function argument(i) result(text)
+      integer, intent(in) :: i
+      character(:), allocatable :: text
+      integer :: length
+
+      call get_command_argument(i, length=length)
+      allocate (character(length) :: text)
+      call get_command_argument(i, text)
+   end function argument
+
+   integer function number(text)
+      character(*), intent(in) :: text
+
+      read (text, *) number
+   end function number
+
+   subroutine run_seeds(first, last, directory)
+      integer, intent(in) :: first, last
+      character(*), intent(in) :: directory
+      character(:), allocatable :: wrong
+      type(verdict_t) :: v
+      type(sums_t) :: s
+      integer :: seed, status, unit
+
+      open (newunit=unit, file=directory//'/seed', access='stream', form='formatted', status='replace')
+      do seed = first, last
+         rewind (unit)
+         write (unit, '(i0)') seed
+         call write_sums(unit, s)
+         flush (unit)
+         call run_seed(seed, directory, status, wrong, v)
+         if (status >= 0 .and. status <= 3) s%ended(status) = s%ended(status) + 1
+         s%instants = s%instants + v%instants
+         s%closures = s%closures + v%closures
+         s%ill = s%ill + v%ill
+         if (wrong == '') then
+            s%passed = s%passed + 1
+            s%worst = max(s%worst, real(v%worst, wp))
+         else
+            s%failed = s%failed + 1
+            write (output_unit, '(a,i0,2a)') 'FAILED: SEED ', seed, ': ', wrong
+         end if
+         flush (output_unit)
+      end do
+      close (unit, status='delete')
+      call write_sums(output_unit, s)
+      flush (output_unit)
+   end subroutine run_seeds
+
+   subroutine write_sums(unit, s)
+      integer, intent(in) :: unit
+      type(sums_t), intent(in) :: s
+
+      write (unit, '(a,9(1x,i0),3f9.4)') 'SUMS', s%passed, s%failed, s%ended, s%instants, s%closures, s%ill, s%worst
+   end subroutine write_sums
+
+   !> Runs one deck and judges it; `wrong`: what is wrong, '' for nothing.
+   subroutine run_seed(seed, directory, status, wrong, v)
+      integer, intent(in) :: seed
+      character(*), intent(in) :: directory
+      integer, intent(out) :: status
+      character(:), allocatable, intent(out) :: wrong
+      type(verdict_t), intent(out) :: v
+      type(options_t) :: options
+      type(draft_t) :: d
+      character(:), allocatable :: message
+      integer :: marked
+      integer(c_int) :: left
+
+      options = options_in(directory)
+      d = deck_of_seed(sets, seed)
+      call write_draft(d, options%deck)
+      left = alarm(patience)
+      call run_trapped(options, status, message)
+      wrong = ''
+      select case (status)
+      case (0, 2)
+         call judge(options, v, wrong, marked)
+         if (wrong == '' .and. (marked > 0 .neqv. status == 2)) wrong = 'STATUS AND MARKS'
+         if (wrong == '' .and. message /= '') wrong = 'WORDS ON STANDARD ERROR: '//message
+         if (wrong == '' .and. status == 0 .and. mod(seed, twice_every) == 0) call run_twice(d, directory, wrong)
+      case (1)
+         if (index(message, ' *** E') == 0) wrong = 'REFUSED WITHOUT A WORD: '//message
+      case default
+         wrong = 'STATUS IS NOT 0, 1 OR 2: '//message
+      end select
+      left = alarm(0_c_int)
+   end subroutine run_seed
+
+   !> Where a deck and its results are.
+   function options_in(directory) result(options)
+      character(*), intent(in) :: directory
+      type(options_t) :: options
+
+      options%deck = directory//'/deck'
+      options%output = directory//'/listing'
+      options%csv = directory//'/csv'
+      options%log = directory//'/log'
+      options%show = ''
+   end function options_in
+
+   !> Runs the deck `d` in twice as many steps and compares.
+   subroutine run_twice(d, directory, wrong)
+      type(draft_t), intent(in) :: d
+      character(*), intent(in) :: directory
+      character(:), allocatable, intent(inout) :: wrong
+      type(draft_t) :: twice
+      type(options_t) :: options
+      type(mechanism_t), allocatable :: one(:)
+      type(failure_t), allocatable :: failure
+      character(:), allocatable :: message, found
+      integer, allocatable :: cards(:)
+      integer :: n, status
+
+      cards = find_cards(d, ['TIME    '])
+      if (size(cards) /= 1) return
+      options = options_in(directory)
+      call read_deck(options%deck, one, message, failure)
+      if (size(one) /= 1) return
+      if (one(1)%tolerance > 0.0_wp) return
+      twice = d
+      read (d%line(cards(1))(9:16), *) n
+      write (twice%line(cards(1))(9:16), '(i0)') 2*n
+      options%deck = directory//'/deck2'
+      options%csv = directory//'/csv2'
+      call write_draft(twice, options%deck)
+      call run_trapped(options, status, message)
+      if (status == 0) call compare_steps(one(1), directory//'/csv', options%csv, found)
+      if (allocated(found)) wrong = found
+   end subroutine run_twice
+
+   !> The job with the traps of the debug build.
+   subroutine run_trapped(options, status, message)
+      type(options_t), intent(in) :: options
+      integer, intent(out) :: status
+      character(:), allocatable, intent(out) :: message
+
+      call ieee_set_halting_mode(ieee_usual, .true.)
+      call run_job(options, status, message)
+      call ieee_set_halting_mode(ieee_usual, .false.)
+   end subroutine run_trapped
+
+   subroutine judge(options, v, wrong, marked)
+      type(options_t), intent(in) :: options
+      type(verdict_t), intent(out) :: v
+      character(:), allocatable, intent(out) :: wrong
+      integer, intent(out) :: marked
+      type(mechanism_t), allocatable :: read_sets(:)
+      type(failure_t), allocatable :: failure
+      character(:), allocatable :: report
+
+      call read_deck(options%deck, read_sets, report, failure)
+      call check_listing(options%output, size(read_sets), wrong, marked)
+      if (wrong == '') call check_protocol(options%log, wrong)
+      if (wrong /= '') return
+      call check_csv(options%csv, read_sets, v)
+      if (allocated(v%text)) wrong = v%text
+   end subroutine judge
+end program fuzz

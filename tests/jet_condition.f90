@@ -1,0 +1,87 @@
+!> Tests. The condition of the closure equations at a position, from the columns that unit velocities give.
+module jet_condition
+   use kinds, only: wp
+   use quad_jet, only: qp, jet_t, constant_jet
+   use mechanism, only: mechanism_t, drive_angle, drive_relangle, pair_prismatic
+   use jet_closure, only: body_jet_t, closure_jets
+   implicit none
+   private
+   public :: condition
+
+   interface
+      subroutine dgesvd(jobu, jobvt, m, n, a, lda, s, u, ldu, vt, ldvt, work, lwork, info)
+         import :: wp
+         character(1), intent(in) :: jobu, jobvt
+         integer, intent(in) :: m, n, lda, ldu, ldvt, lwork
+         real(wp), intent(inout) :: a(lda, *)
+         real(wp), intent(out) :: s(*), u(ldu, *), vt(ldvt, *), work(*)
+         integer, intent(out) :: info
+      end subroutine dgesvd
+   end interface
+
+contains
+
+   !> Largest over smallest singular value, the columns of x and y in units of the largest arm, rows brought to the
+   !> size 1 (a row's size says nothing about the position). `huge` where the smallest is zero.
+   function condition(m, b, t)
+      type(mechanism_t), intent(in) :: m
+      type(body_jet_t), intent(in) :: b(:)
+      real(qp), intent(in) :: t
+      real(qp) :: condition
+      type(body_jet_t) :: moving(size(b))
+      type(jet_t) :: r(2*size(m%pairs) + size(m%drives))
+      real(qp) :: column(size(r), size(r)), arm
+      real(wp) :: a(size(r), size(r)), s(size(r)), none(1, 1), nor(1, 1), work(8*size(r))
+      integer :: link, c, n, info
+
+      arm = longest_arm(m)
+      n = 0
+      do link = 1, size(b)
+         if (m%links(link)%ground) cycle
+         do c = 1, 3
+            moving = still(b)
+            if (c == 1) moving(link)%x%d = arm
+            if (c == 2) moving(link)%y%d = arm
+            if (c == 3) moving(link)%phi%d = 1.0_qp
+            n = n + 1
+            ! The drives' own rates are no part of the Jacobian.
+            r = closure_jets(m, moving, t)
+            column(:, n) = r%d
+            r = closure_jets(m, still(b), t)
+            column(:, n) = column(:, n) - r%d
+         end do
+      end do
+      do c = 1, n
+         a(c, :) = real(column(c, :)/max(maxval(abs(column(c, :))), tiny(1.0_wp)*1.0_qp), wp)
+      end do
+      call dgesvd('N', 'N', n, n, a, n, s, none, 1, nor, 1, work, size(work), info)
+      condition = huge(1.0_wp)
+      if (info == 0 .and. s(n) > 0.0_wp) condition = real(s(1), qp)/s(n)
+   end function condition
+
+   !> The positions of `b` at rest.
+   pure function still(b) result(s)
+      type(body_jet_t), intent(in) :: b(:)
+      type(body_jet_t) :: s(size(b))
+
+      s%x = constant_jet(b%x%v)
+      s%y = constant_jet(b%y%v)
+      s%phi = constant_jet(b%phi%v)
+   end function still
+
+   !> The largest offset of any point or pair; 1 where there is none.
+   pure function longest_arm(m) result(arm)
+      type(mechanism_t), intent(in) :: m
+      real(qp) :: arm
+      integer :: i
+
+      arm = 0.0_qp
+      do i = 1, size(m%points)
+         arm = max(arm, maxval(abs(real(m%points(i)%offset, qp))))
+      end do
+      do i = 1, size(m%pairs)
+         if (m%pairs(i)%kind == pair_prismatic) arm = max(arm, abs(real(m%pairs(i)%offset, qp)))
+      end do
+      if (.not. arm > 0.0_qp) arm = 1.0_qp
+   end function longest_arm
+end module jet_condition

@@ -1,0 +1,137 @@
+!> Tests. A listing read as a reader would: every place of a number holds a number or the word for none, nothing else.
+module listing_check
+   implicit none
+   private
+   public :: check_listing, check_protocol
+
+   integer, parameter :: width = 400
+   character(8), parameter :: heads(*) = [character(8) :: 'X', 'Y', 'PHI', 'FI', 'VX', 'VY', 'VPHI', 'VFI', 'AX', 'AY', &
+      'APHI', 'AFI', 'VALUE', 'WARTOSC', 'RATE', '2ND', 'PREDKOSC', 'PRZYSP.']
+   character(70), parameter :: marks(*) = [character(70) :: 'NO POSITION FOUND', 'NIE ZNALEZIONO POLOZENIA', &
+      'JACOBIAN SINGULAR: VELOCITIES AND ACCELERATIONS DO NOT EXIST', &
+      'JAKOBIAN OSOBLIWY: PREDKOSCI I PRZYSPIESZENIA NIE ISTNIEJA', &
+      'THE RESULT IS TOO LARGE A NUMBER', 'WYNIK JEST ZBYT DUZA LICZBA']
+
+contains
+
+   !> The first thing that is wrong with the listing in `path` of so many `sets`; '' for nothing. `marked`: steps.
+   subroutine check_listing(path, sets, wrong, marked)
+      character(*), intent(in) :: path
+      integer, intent(in) :: sets
+      character(:), allocatable, intent(out) :: wrong
+      integer, intent(out) :: marked
+      character(width) :: line
+      integer :: unit, status, ends
+      logical :: tables
+
+      wrong = ''
+      marked = 0
+      ends = 0
+      tables = .false.
+      open (newunit=unit, file=path, status='old', action='read', iostat=status)
+      do while (status == 0)
+         read (unit, '(a)', iostat=status) line
+         if (status /= 0) exit
+         if (starts(line, ' INSTANT ') .or. starts(line, ' CHWILA ')) tables = .true.
+         if (starts(line, ' END OF SET ') .or. starts(line, ' KONIEC KOMPLETU ')) then
+            tables = .false.
+            ends = ends + 1
+         end if
+         if (tables .and. starts(line, ' *** ')) marked = marked + 1
+         if (line_is_wrong(line, tables) .and. wrong == '') wrong = 'LISTING: '//trim(line)
+      end do
+      if (ends /= sets) wrong = 'LISTING: NOT ALL SETS COME TO THEIR END'
+      close (unit)
+   end subroutine check_listing
+
+   logical function line_is_wrong(line, tables) result(wrong)
+      character(*), intent(in) :: line
+      logical, intent(in) :: tables
+
+      wrong = len_trim(line) > 120 .or. index(line, 'NaN') > 0 .or. index(line, 'Infinity') > 0
+      if (wrong .or. line == '') return
+      if (.not. tables) then
+         wrong = index(line, '****') > 0
+      else if (starts(line, ' *** ')) then
+         wrong = all(marks /= line(6:75))
+      else if (starts(line, ' INSTANT ') .or. starts(line, ' CHWILA ')) then
+         wrong = .not. are_numbers(line(index(line, 'T =', back=.true.) + 3:))
+      else
+         wrong = .not. (are_numbers(line(10:)) .or. are_heads(line(10:)))
+      end if
+   end function line_is_wrong
+
+   pure logical function starts(line, text)
+      character(*), intent(in) :: line, text
+
+      starts = line(:len(text)) == text
+   end function starts
+
+   !> Only numbers, none of them a negative zero, and words for none.
+   pure logical function are_numbers(text)
+      character(*), intent(in) :: text
+      integer :: first, last
+
+      are_numbers = text /= ''
+      last = 0
+      do
+         call next_word(text, first, last)
+         if (first == 0) return
+         associate (word => text(first:last))
+            if (word == 'NONE' .or. word == 'BRAK') cycle
+            are_numbers = verify(word, '0123456789.E+-') == 0 .and. scan(word, '0123456789') > 0
+            if (word(1:1) == '-') are_numbers = are_numbers .and. verify(word, '-0.') > 0
+            if (.not. are_numbers) return
+         end associate
+      end do
+   end function are_numbers
+
+   pure logical function are_heads(text)
+      character(*), intent(in) :: text
+      integer :: first, last
+
+      are_heads = .true.
+      last = 0
+      do while (are_heads)
+         call next_word(text, first, last)
+         if (first == 0) return
+         are_heads = any(heads == text(first:last))
+      end do
+   end function are_heads
+
+   !> The word of `text` after column `last`; `first` is 0 where there is none.
+   pure subroutine next_word(text, first, last)
+      character(*), intent(in) :: text
+      integer, intent(out) :: first
+      integer, intent(inout) :: last
+      integer :: start, length
+
+      start = last + 1
+      first = 0
+      if (start > len(text)) return
+      first = verify(text(start:), ' ')
+      if (first == 0) return
+      first = start + first - 1
+      length = index(text(first:), ' ') - 1
+      if (length < 0) length = len(text) - first + 1
+      last = first + length - 1
+   end subroutine next_word
+
+   !> The same of a protocol: no number that is none.
+   subroutine check_protocol(path, wrong)
+      character(*), intent(in) :: path
+      character(:), allocatable, intent(out) :: wrong
+      character(width) :: line
+      integer :: unit, status
+
+      wrong = ''
+      open (newunit=unit, file=path, status='old', action='read', iostat=status)
+      do while (status == 0)
+         read (unit, '(a)', iostat=status) line
+         if (status /= 0) exit
+         if (index(line, 'NaN') + index(line, 'Infinity') + index(line, '***') > 0 .and. wrong == '') &
+            wrong = 'PROTOCOL: '//trim(line)
+      end do
+      close (unit)
+   end subroutine check_protocol
+end module listing_check
