@@ -17,7 +17,7 @@ sources := $(sort $(wildcard src/*.f90))
 names   := $(sources:src/%.f90=%)
 modules := $(filter-out main,$(names))
 
-.PHONY: all run test check forms bench bench-short expected install clean
+.PHONY: all run test check forms bench bench-short digits fuzz fuzz-short expected install clean
 all: $(BUILD)/kinmat
 
 run: $(BUILD)/kinmat
@@ -38,6 +38,10 @@ endef
 $(eval $(call build_in,release,$$(RELEASE)))
 $(eval $(call build_in,debug,$$(DEBUG)))
 
+# The debug build with the sanitizers, for `make fuzz`.
+SANITIZE ?= -O1 -fsanitize=address,undefined -fno-sanitize-recover=undefined
+$(eval $(call build_in,fuzz,$$(DEBUG) $$(SANITIZE)))
+
 $(BUILD)/kinmat: $(BUILD)/release/kinmat
 	cp $< $@
 
@@ -49,7 +53,8 @@ $(BUILD)/depends.mk: $(sources)
 	   tolower($$1) == "use" { name = $$2; sub(/,.*/, "", name); \
 	      if (name in ours) { file = FILENAME; sub(/^.*\//, "", file); sub(/\.f90$$/, "", file); \
 	         print build "/release/" file ".o: " build "/release/" name ".o"; \
-	         print build "/debug/" file ".o: " build "/debug/" name ".o" } }' $(sources) > $@
+	         print build "/debug/" file ".o: " build "/debug/" name ".o"; \
+	         print build "/fuzz/" file ".o: " build "/fuzz/" name ".o" } }' $(sources) > $@
 ifneq ($(MAKECMDGOALS),clean)
 include $(BUILD)/depends.mk
 endif
@@ -97,6 +102,30 @@ bench: $(BUILD)/kinmat $(BUILD)/bench/bench
 bench-short: $(BUILD)/bench/bench
 	BUILD=$(BUILD) tests/bench.sh short
 
+# Numbers as they are printed against the formats of the run-time library; make digits NUMBERS=... for more of them.
+NUMBERS ?= 20000000
+$(BUILD)/compare_digits: tests/compare_digits.f90 $(BUILD)/release/libkinmat.a
+	$(FC) $(COMMON) $(RELEASE) -I$(BUILD)/release -o $@ $^
+
+digits: $(BUILD)/compare_digits
+	$(BUILD)/compare_digits $(NUMBERS)
+
+# Decks made by chance: FUZZ of them, from seed FUZZ_FIRST on.
+FUZZ       ?= 100000
+FUZZ_FIRST ?= 1
+fuzz_sources := $(addprefix tests/,quad_jet.f90 dice.f90 deck_draft.f90 deck_changes.f90 drive_mutations.f90 \
+   deck_mutations.f90 deck_damage.f90 jet_drives.f90 jet_closure.f90 jet_condition.f90 csv_rows.f90 csv_closure.f90 \
+   csv_twice.f90 listing_check.f90 fuzz.f90)
+$(BUILD)/fuzz/fuzz: $(fuzz_sources) $(BUILD)/fuzz/libkinmat.a
+	mkdir -p $(BUILD)/fuzz/tests
+	$(FC) $(COMMON) $(DEBUG) $(SANITIZE) -J$(BUILD)/fuzz/tests -I$(BUILD)/fuzz -o $@ $^ $(LIBS)
+
+fuzz: $(BUILD)/fuzz/fuzz
+	BUILD=$(BUILD) tests/fuzz.sh $(FUZZ) $(FUZZ_FIRST)
+
+fuzz-short: $(BUILD)/fuzz/fuzz
+	BUILD=$(BUILD) tests/fuzz.sh 1000
+
 TEST_LIB     := $(BUILD)/debug/libkinmat.a
 TEST_MODULES := $(BUILD)/debug
 TEST_FLAGS   := $(COMMON) $(DEBUG)
@@ -104,7 +133,7 @@ TEST_LIBS    := $(LIBS)
 TEST_HELPERS := $(forms) tests/deck_samples.f90 tests/sample_mechanisms.f90 tests/quad_closure.f90 tests/motion_errors.f90
 include tests/tests.mk
 
-test: $(BUILD)/kinmat $(BUILD)/debug/kinmat $(BUILD)/check_forms $(references) $(BUILD)/tests$(if $(PFUNIT_DIR),/pfunit)/unit
+test: $(BUILD)/kinmat $(BUILD)/debug/kinmat $(BUILD)/check_forms $(BUILD)/compare_digits $(BUILD)/fuzz/fuzz $(references) $(BUILD)/tests$(if $(PFUNIT_DIR),/pfunit)/unit
 	BUILD=$(BUILD) MAKE='$(MAKE)' tests/run.sh
 
 install: $(BUILD)/kinmat

@@ -4,7 +4,9 @@ module analysis
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton
    use motion, only: motion_t, mark_none, mark_not_converged, mark_singular, mark_overflow
+   use scales, only: characteristic_length, largest_rate
    use convergence, only: convergence_t, is_solved
+   use predictor, only: largest_change
    use block_engine, only: block_engine_t, new_block_engine, seek_blocks, keep_blocks, tell_blocks
    use dense_engine, only: dense_t, new_dense, seek_dense, keep_dense, tell_dense
    implicit none
@@ -16,7 +18,7 @@ module analysis
    real(wp), parameter :: largest_correction = 0.1_wp
    !> A part of a step smaller than this is the end of the way; and so are that many parts.
    real(wp), parameter :: smallest_part = 1.0e-10_wp
-   integer, parameter :: most_parts = 2000
+   integer, parameter :: most_parts = 200000
 
    !> One of the two engines, and how far it has come.
    type :: analysis_t
@@ -25,6 +27,7 @@ module analysis
       type(convergence_t) :: convergence         !< of the last position sought
       logical :: follows = .false.               !< a regular motion is kept, found at `t`
       real(wp) :: t = 0.0_wp
+      real(wp) :: longest_part = huge(1.0_wp)    !< of a step: no drive moves by more than `largest_change` in it
    end type analysis_t
 
 contains
@@ -33,12 +36,15 @@ contains
    function new_analysis(m) result(a)
       type(mechanism_t), intent(in) :: m
       type(analysis_t) :: a
+      real(wp) :: rate
 
       if (m%method == method_newton) then
          a%blocks = new_block_engine(m)
       else
          a%dense = new_dense(m)
       end if
+      rate = largest_rate(m, characteristic_length(m))
+      if (rate > 0.0_wp) a%longest_part = largest_change/rate
    end function new_analysis
 
    !> Solves instant `t`; `found` is its motion in the deck's units, with what could not be found marked; of links that
@@ -53,6 +59,7 @@ contains
 
       part = t - a%t
       do parts = 1, most_parts
+         part = sign(min(abs(part), a%longest_part), part)
          arrived = .not. a%follows .or. abs(part) >= abs(t - a%t)
          here = merge(t, a%t + part, arrived)
          call attempt(a, here, accepted)

@@ -10,7 +10,7 @@ module block_engine
    use rough_positions, only: rough_values
    use drives, only: law_t, new_law, drive_motion
    use convergence, only: convergence_t, is_solved, ended_converged
-   use predictor, only: history_t, new_history, remember, predict
+   use predictor, only: history_t, new_history, remember, predict, largest_change
    use blocks, only: blocks_t, new_blocks
    use block_needs, only: moving_blocks, needed_blocks
    use block_state, only: state_t, new_state
@@ -52,7 +52,7 @@ contains
       e%needed = needed_blocks(e%blocks, t, wanted_links(m))
       e%moving = pack(e%needed, moving_blocks(e%blocks, e%needed))
       e%state = new_state(e%blocks, size(m%drives))
-      e%history = new_history(e%blocks%unknowns)
+      e%history = new_history(e%blocks%unknowns, sought_unknowns(e))
       e%work = new_workspace(e%blocks)
       e%chain = new_chain(m, t, wanted_links(m), e%blocks%frames)
       allocate (e%laws(size(m%drives)))
@@ -65,6 +65,22 @@ contains
       e%rough = rough_values(m, t, e%length, e%blocks%unknowns)
    end function new_block_engine
 
+   !> The unknowns of the moving blocks that iterate.
+   pure function sought_unknowns(e) result(list)
+      type(block_engine_t), intent(in) :: e
+      integer, allocatable :: list(:)
+      logical :: sought(0:e%blocks%unknowns)
+      integer :: k, u
+
+      sought = .false.
+      do k = 1, size(e%moving)
+         associate (block => e%blocks%list(e%moving(k)))
+            if (.not. block%direct) sought(e%blocks%unknown(block%first:block%last)) = .true.
+         end associate
+      end do
+      list = pack([(u, u=0, e%blocks%unknowns)], sought)
+   end function sought_unknowns
+
    !> Seeks the motion at `t`, from those kept (`follows`) or from the deck's. `c`: how the hardest block ended,
    !> `correction`: the largest change of a predicted value, `same`: every block's determinant has kept its sign.
    subroutine seek_blocks(e, t, follows, c, correction, same)
@@ -74,6 +90,7 @@ contains
       type(convergence_t), intent(out) :: c
       real(wp), intent(out) :: correction
       logical, intent(out) :: same
+      real(wp) :: change
       integer :: i
 
       e%t = t
@@ -86,8 +103,9 @@ contains
       c%determinant = 1
       same = .true.
       if (follows) then
-         call predict(e%history, t, e%state%u)
-         call seek_each(e, e%moving, follows, c, correction, same)
+         call predict(e%history, t, e%state%u, change)
+         same = change <= largest_change
+         if (same) call seek_each(e, e%moving, follows, c, correction, same)
       else
          e%state%u%value = e%rough
          call seek_each(e, e%needed, follows, c, correction, same)
@@ -110,7 +128,7 @@ contains
          call solve_block(e%blocks, i, e%tolerance, e%work, e%state, one, correction)
          if (e%blocks%list(i)%direct) cycle
          call gather(one, c)
-         if (.not. is_solved(one) .or. one%singular) return
+         if (.not. is_solved(one)) return
          e%sign_now(i) = one%determinant
          if (follows) same = same .and. one%determinant == e%sign_of(i)
       end do

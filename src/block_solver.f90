@@ -29,7 +29,6 @@ module block_solver
    real(wp), parameter :: suspicious_pivot = 1.0e-3_wp
    !> Relative error of the velocities, by what rounding leaves open in the position, from which on they are not told.
    real(wp), parameter :: largest_error = 0.05_wp
-   real(wp), parameter :: bound = 1.0e30_wp
    !> An angle beyond this has fewer digits after the point than the listing prints.
    real(wp), parameter :: angle_limit = 1.0e8_wp
    integer, parameter :: iteration_limit = 60
@@ -113,6 +112,10 @@ contains
       c%singular = .false.
       c%ended = ended_limit
       do iteration = 1, iteration_limit
+         if (.not. size_of <= angle_limit) then
+            c%ended = ended_diverged
+            return
+         end if
          c%iterations = iteration
          call assemble(b, i, n, s, a, r)
          c%residual = maxval(abs(r(:, 1)))
@@ -130,15 +133,13 @@ contains
             c%ended = merge(ended_stalled, ended_singular, c%singular)
             exit
          end if
-         call move(b, i, n, r, s, c%step, size_of)
-         if (.not. (c%step <= bound .and. size_of <= angle_limit)) then
-            c%ended = ended_diverged
-            return
-         end if
-         if (c%step <= max(step_tolerance*size_of, tolerance)) then
-            c%ended = ended_converged
-         else if (c%residual <= rounding_level*size_of .and. c%step > 0.5_wp*before) then
+         c%step = maxval(abs(r(:, 1)))
+         if (c%residual <= rounding_level*size_of .and. c%step > 0.5_wp*before) then
+            ! Rounding is all that is left to correct: the position stays.
             c%ended = ended_stalled
+         else
+            call move(b, i, n, r, s, c%step, size_of)
+            if (c%step <= max(step_tolerance*size_of, tolerance)) c%ended = ended_converged
          end if
          before = c%step
          if (c%ended == ended_limit) cycle
@@ -186,17 +187,17 @@ contains
       end associate
    end subroutine assemble
 
-   !> Applies the correction r(:, 1), the largest of which is `step`; `size_of`: the largest value, 1 at least.
+   !> Applies the correction r(:, 1), whose largest is `step`; `size_of`: the largest value, 1 at least.
    subroutine move(b, i, n, r, s, step, size_of)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, n
       real(wp), intent(in) :: r(n, 2)
       type(state_t), intent(inout) :: s
-      real(wp), intent(out) :: step, size_of
+      real(wp), intent(in) :: step
+      real(wp), intent(out) :: size_of
       integer :: k
 
       size_of = 1.0_wp
-      step = maxval(abs(r(:, 1)))
       do k = 1, n
          associate (u => b%unknown(b%list(i)%first + k - 1))
             s%u(u)%value = s%u(u)%value - r(k, 1)

@@ -30,7 +30,8 @@ contains
          if (cut(i) .or. card%text(border:border) == ' ' .or. card%text(border + 1:border + 1) == ' ') cycle
          start = fields(i)%first + index(card%text(fields(i)%first:border), ' ', back=.true.)
          finish = border + index(card%text(border + 1:fields(i + 1)%last)//' ', ' ') - 1
-         if (start == fields(i)%first) then
+         ! Two numbers, each in a field that it fills, may touch; the first may have a blank in the place of a plus.
+         if (start <= fields(i)%first + merge(1, 0, numeric(i))) then
             if (.not. numeric(i)) cycle
             if (.not. is_real(card%text(start:finish))) cycle
          end if

@@ -7,7 +7,7 @@ module card_reader
    use card_forms, only: forms, label_unused, label_needed, form_title, form_add, form_star, find_form, &
                          nearest_form, capitals
    use card_borders, only: find_cuts
-   use numbers, only: read_real, read_whole, flaw_none, flaw_count
+   use numbers, only: read_real, read_whole, flaw_none, flaw_overflow, flaw_underflow, flaw_count
    use deck_codes, only: code_t, card_unknown, card_lower_case, card_indented, past_last_column, &
                          tab_character, control_character, foreign_character, field_unused, field_blank, &
                          label_blank_inside, star_no_reals, star_second, star_twice, star_blank, &
@@ -32,6 +32,9 @@ module card_reader
       logical :: given(3) = .false.
       logical :: starred(3) = .false.           !< the next reading, a `*` card, gives this real
    end type reading_t
+
+   !> Decks hold lengths, angles, times: what lies beyond has no use, and its squares would leave the range of reals.
+   real(wp), parameter :: largest_real = 1.0e60_wp, least_real = 1.0e-60_wp
 
    !> The words for the flaws of `numbers`, in their order.
    type(code_t), parameter :: flaw_codes(flaw_count) = [ &
@@ -252,8 +255,18 @@ contains
       end if
       start = first_column(card, field)
       call read_real(trim(card%text(start:field%last)), reading%real(i), flaw, place)
+      if (flaw == flaw_none) flaw = flaw_of_size(reading%real(i))
       if (flaw /= flaw_none) call complain_flaw(card, field, flaw, place, list)
    end subroutine read_real_field
+
+   !> Squares and products of two numbers of a deck stay in the range of the real kind.
+   pure integer function flaw_of_size(x) result(flaw)
+      real(wp), intent(in) :: x
+
+      flaw = flaw_none
+      if (abs(x) > largest_real) flaw = flaw_overflow
+      if (abs(x) > 0.0_wp .and. abs(x) < least_real) flaw = flaw_underflow
+   end function flaw_of_size
 
    subroutine complain_flaw(card, field, flaw, place, list)
       type(card_t), intent(in) :: card

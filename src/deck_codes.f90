@@ -40,8 +40,8 @@ module deck_codes
       number_sign = code_t(25, 'IS NOT A NUMBER (SIGN INSIDE: EXPONENT WITHOUT E?)'), &
       number_nan = code_t(26, 'IS NOT A NUMBER (NAN)'), &
       number_inf = code_t(27, 'IS NOT A FINITE NUMBER'), &
-      number_overflow = code_t(28, 'IS TOO LARGE A NUMBER'), &
-      number_underflow = code_t(29, 'IS TOO SMALL A NUMBER: IT WOULD BECOME ZERO'), &
+      number_overflow = code_t(28, 'IS TOO LARGE A NUMBER: THE LARGEST IS 1E60'), &
+      number_underflow = code_t(29, 'IS TOO SMALL A NUMBER: THE LEAST BESIDE ZERO IS 1E-60'), &
       number_no_point = code_t(30, 'A REAL NUMBER NEEDS A POINT OR AN EXPONENT'), &
       number_point = code_t(31, 'A WHOLE NUMBER HAS NO POINT AND NO EXPONENT'), &
       number_no_digits = code_t(32, 'IS NOT A NUMBER (NO DIGITS)'), &
@@ -85,7 +85,6 @@ module deck_codes
    ! Times and options.
    type(code_t), parameter, public :: &
       time_point = code_t(85, 'T0 AND T1 ARE EQUAL'), &
-      time_long = code_t(86, 'THE TIMES ARE TOO LARGE TO BE DIVIDED INTO STEPS'), &
       lang_kind = code_t(90, 'IS NOT EN OR PL'), &
       units_angle = code_t(91, 'IS NOT RAD OR DEG'), &
       method_kind = code_t(92, 'IS NOT NEWTON, DENSE OR MATRIX'), &

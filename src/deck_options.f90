@@ -7,7 +7,7 @@ module deck_options
    use card_forms, only: forms, form_title, form_units, form_lang, form_time, form_at, form_method
    use complaints, only: complaints_t, whole_text
    use deck_codes, only: card_repeated, lang_kind, units_angle, method_kind, tolerance_range, time_point, &
-                         time_long, number_range, field_blank
+                         number_range, field_blank
    use drafts, only: draft_t, complain_name, complain_label, complain_real
    implicit none
    private
@@ -122,8 +122,6 @@ contains
             call complain_real(list, field_blank, draft, k, 2, '')
          else if (.not. (card%real(1) < card%real(2) .or. card%real(1) > card%real(2))) then
             call complain_real(list, time_point, draft, k, 2, '')
-         else if (maxval(abs(card%real(1:2))) > 0.25_wp*huge(1.0_wp)/card%whole) then
-            call complain_real(list, time_long, draft, k, 2, '')
          else
             set%steps = card%whole
             set%t0 = card%real(1)

@@ -6,6 +6,7 @@ module dense_engine
    use motion, only: motion_t, new_motion
    use linear_solver, only: factors_t, new_factors, reciprocal_condition, determinant_sign
    use convergence, only: convergence_t, is_solved
+   use predictor, only: largest_change
    use pose, only: system_t, pose_t, new_system, new_pose
    use drive_rows, only: drive_targets
    use position_newton, only: solve_newton
@@ -73,8 +74,8 @@ contains
          call solve_newton(e%system, e%targets(1, :), e%tolerance, e%pose, e%factors, c)
       end if
       correction = maxval(abs(e%pose%q - e%start))
-      same = .true.
-      if (.not. is_solved(c)) return
+      same = .not. follows .or. maxval(abs(e%start - e%last%position)) <= largest_change
+      if (.not. (same .and. is_solved(c))) return
       call solve_rates(e, c)
       if (follows .and. .not. c%singular) same = e%determinant_now == e%determinant
    end subroutine seek_dense

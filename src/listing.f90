@@ -1,4 +1,4 @@
-!> Level 7. The printed listing, in the form of the paper's Rys. 5: title, data, structure, then the tables.
+!> Level 10. The printed listing, in the form of the paper's Rys. 5: title, data, structure, then the tables.
 !> It takes finished data and depends on nothing else: two correct programs print the same bytes.
 module listing
    use kinds, only: wp

@@ -3,7 +3,7 @@
 !> From one instant:  x + h (v + h a/2), error h^3 x'''/6.
 !> From three at equal steps h, latest first: the integral over the next step of the quintic that has their velocities
 !> and accelerations (Hermite),
-!>    x_0 + h (-949 v_0 + 608 v_1 + 581 v_2)/240 + h^2 (637 a_0 + 1080 a_1 + 173 a_2)/240,  error 0.0068 h^7 x^(7).
+!>    x_0 + h (-949 v_0 + 608 v_1 + 581 v_2)/240 + h^2 (637 a_0 + 1080 a_1 + 173 a_2)/240,  error 0.0112 h^7 x^(7).
 !> Rejected: a polynomial through earlier positions as well. It gains an order, but brings their rounding back
 !> many times over, and a start that is wrong by rounding alone costs a second factorization.
 module predictor
@@ -11,8 +11,11 @@ module predictor
    use unknowns, only: unknown_t
    implicit none
    private
-   public :: history_t, new_history, remember, predict
+   public :: history_t, new_history, remember, predict, largest_change
 
+   !> The largest predicted change, in radians and in the unit of length, that one step may have: beyond it a
+   !> prediction that agrees with a position may do so by chance.
+   real(wp), parameter :: largest_change = 1.0_wp
    real(wp), parameter :: weight(0:2) = [-949.0_wp, 608.0_wp, 581.0_wp]/240.0_wp
    real(wp), parameter :: weight2(0:2) = [637.0_wp, 1080.0_wp, 173.0_wp]/240.0_wp
    !> Steps that differ by less, relatively, count as equal: instants are rounded too.
@@ -20,6 +23,7 @@ module predictor
 
    !> The last three motions; column place(0) is the latest.
    type :: history_t
+      integer, allocatable :: sought(:)                 !< unknowns that are predicted
       integer :: filled = 0
       integer :: place(0:2) = [0, 1, 2]
       real(wp) :: t(0:2) = 0.0_wp
@@ -29,11 +33,12 @@ module predictor
 
 contains
 
-   !> Room for `n` unknowns.
-   pure function new_history(n) result(h)
-      integer, intent(in) :: n
+   !> Room for `n` unknowns, of which those in the list `sought` are to be predicted.
+   pure function new_history(n, sought) result(h)
+      integer, intent(in) :: n, sought(:)
       type(history_t) :: h
 
+      h%sought = sought
       allocate (h%value(0:n), h%rate(0:n, 0:2), h%rate2(0:n, 0:2), source=0.0_wp)
    end function new_history
 
@@ -42,12 +47,13 @@ contains
       type(history_t), intent(inout) :: h
       real(wp), intent(in) :: t
       type(unknown_t), intent(in) :: u(0:)
-      integer :: i, latest
+      integer :: i, k, latest
 
       latest = h%place(2)
       h%place = [latest, h%place(0), h%place(1)]
       h%t(latest) = t
-      do i = 0, ubound(u, 1)
+      do k = 1, size(h%sought)
+         i = h%sought(k)
          h%value(i) = u(i)%value
          h%rate(i, latest) = u(i)%rate
          h%rate2(i, latest) = u(i)%rate2
@@ -55,26 +61,32 @@ contains
       h%filled = min(h%filled + 1, 3)
    end subroutine remember
 
-   !> Sets the values of `u` (0:unknowns) to those expected at `t`; at least one motion is remembered.
-   pure subroutine predict(h, t, u)
+   !> Sets the values of `u` (0:unknowns) to those expected at `t`; at least one motion is remembered. `change`: the
+   !> largest difference from the latest.
+   pure subroutine predict(h, t, u, change)
       type(history_t), intent(in) :: h
       real(wp), intent(in) :: t
       type(unknown_t), intent(inout) :: u(0:)
-      real(wp) :: step
-      integer :: i
+      real(wp), intent(out) :: change
+      real(wp) :: step, d
+      integer :: i, k
+      logical :: even
 
+      change = 0.0_wp
       associate (p => h%place(0), q => h%place(1), r => h%place(2), v => h%rate, a => h%rate2)
          step = t - h%t(p)
-         if (is_even(h, step)) then
-            do i = 0, ubound(u, 1)
-               u(i)%value = h%value(i) + step*(weight(0)*v(i, p) + weight(1)*v(i, q) + weight(2)*v(i, r) &
+         even = is_even(h, step)
+         do k = 1, size(h%sought)
+            i = h%sought(k)
+            if (even) then
+               d = step*(weight(0)*v(i, p) + weight(1)*v(i, q) + weight(2)*v(i, r) &
                   + step*(weight2(0)*a(i, p) + weight2(1)*a(i, q) + weight2(2)*a(i, r)))
-            end do
-         else
-            do i = 0, ubound(u, 1)
-               u(i)%value = h%value(i) + step*(v(i, p) + 0.5_wp*step*a(i, p))
-            end do
-         end if
+            else
+               d = step*(v(i, p) + 0.5_wp*step*a(i, p))
+            end if
+            u(i)%value = h%value(i) + d
+            change = max(change, abs(d))
+         end do
       end associate
    end subroutine predict
 

@@ -6,7 +6,7 @@ module scales
       term_power, term_table
    implicit none
    private
-   public :: characteristic_length, characteristic_rate, power_of_two
+   public :: characteristic_length, characteristic_rate, largest_rate, power_of_two
 
 contains
 
@@ -44,9 +44,18 @@ contains
       if (.not. (length > 0.0_wp .and. length <= huge(length))) length = 1.0_wp
    end function characteristic_length
 
-   !> The largest rate of any drive in the time asked for, in rad per time unit; rates of length are divided by
-   !> the characteristic `length`. 1 where nothing is driven. An upper estimate: it chooses digits, nothing else.
+   !> The largest rate, or 1 where nothing moves or no bound exists: it chooses digits, nothing else.
    pure real(wp) function characteristic_rate(m, length) result(rate)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: length
+
+      rate = largest_rate(m, length)
+      if (.not. (rate > 0.0_wp .and. rate <= huge(rate))) rate = 1.0_wp
+   end function characteristic_rate
+
+   !> The largest rate of any drive in the time asked for, in rad per time unit; rates of length are divided by the
+   !> characteristic `length`. An upper estimate.
+   pure real(wp) function largest_rate(m, length) result(rate)
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: length
       real(wp) :: t, one
@@ -60,8 +69,7 @@ contains
          if (is_length(m%drives(i))) one = one/length
          rate = max(rate, one)
       end do
-      if (.not. (rate > 0.0_wp .and. rate <= huge(rate))) rate = 1.0_wp
-   end function characteristic_rate
+   end function largest_rate
 
    !> The power of two next below `x`: dividing by it is exact.
    pure real(wp) function power_of_two(x) result(p)
