@@ -1,21 +1,26 @@
-!> Level 12. The analysis of one set of computations, instant by instant. The motion is followed from the last one
+!> Level 13. The analysis of one set of computations, instant by instant. The motion is followed from the last one
 !> found, in as many parts as that takes: an assembly is never changed in silence.
 module analysis
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton
-   use motion, only: motion_t, mark_none, mark_not_converged, mark_singular, mark_overflow
+   use motion, only: motion_t, mark_none, mark_not_converged, mark_singular, mark_overflow, mark_open
+   use remarks, only: remark_t, remark_open, remark_far
    use scales, only: characteristic_length, largest_rate
-   use convergence, only: convergence_t, is_solved
+   use convergence, only: convergence_t, is_solved, ended_open
    use predictor, only: largest_change
-   use block_engine, only: block_engine_t, new_block_engine, seek_blocks, keep_blocks, tell_blocks
-   use dense_engine, only: dense_t, new_dense, seek_dense, keep_dense, tell_dense
+   use block_engine, only: block_engine_t, new_block_engine, seek_blocks, keep_blocks, tell_blocks, &
+      mark_blocks, return_blocks
+   use block_remarks, only: first_remarks, limit_remark
+   use dense_engine, only: dense_t, new_dense, seek_dense, keep_dense, tell_dense, mark_dense, return_dense
    implicit none
    private
-   public :: analysis_t, new_analysis, advance
+   public :: analysis_t, new_analysis, advance, redundancy_gap
 
    !> The largest correction, in the characteristic length and in radians, of a predicted position that is still taken
    !> for the continuation of the motion; where the prediction is off by more, the step is divided.
    real(wp), parameter :: largest_correction = 0.1_wp
+   !> A rough angle that is off by more is worth a word: the assembly may not be the one that was meant.
+   real(wp), parameter :: far_angle = 1.0_wp
    !> A part of a step smaller than this is the end of the way; and so are that many parts.
    real(wp), parameter :: smallest_part = 1.0e-10_wp
    integer, parameter :: most_parts = 200000
@@ -27,6 +32,11 @@ module analysis
       type(convergence_t) :: convergence         !< of the last position sought
       logical :: follows = .false.               !< a regular motion is kept, found at `t`
       real(wp) :: t = 0.0_wp
+      real(wp) :: place = 0.0_wp                 !< where the step that was divided last began
+      logical :: has_begun = .false.             !< a motion was found
+      logical :: is_lost = .false.               !< the last one kept does not lead on
+      real(wp) :: largest_gap = 0.0_wp           !< of redundant equations, relative
+      real(wp), allocatable :: rough_angle(:)    !< (links) of the deck
       real(wp) :: longest_part = huge(1.0_wp)    !< of a step: no drive moves by more than `largest_change` in it
    end type analysis_t
 
@@ -43,6 +53,7 @@ contains
       else
          a%dense = new_dense(m)
       end if
+      a%rough_angle = m%links%position(3)
       rate = largest_rate(m, characteristic_length(m))
       if (rate > 0.0_wp) a%longest_part = largest_change/rate
    end function new_analysis
@@ -65,6 +76,7 @@ contains
          call attempt(a, here, accepted)
          arrived = arrived .and. accepted
          if (arrived) exit
+         if (parts == 1) call mark_place(a)
          accepted = accepted .and. .not. a%convergence%singular
          if (accepted) call keep(a, here)
          if (.not. a%follows) exit
@@ -72,11 +84,54 @@ contains
          if (abs(part) <= smallest_part*abs(t - a%t)) exit
       end do
       found%t = t
-      call cut(found, -1, mark_not_converged)
-      if (.not. arrived) return
-      call tell(a, found)
-      if (found%known == 2) call keep(a, t)
+      if (allocated(found%remarks)) deallocate (found%remarks)
+      if (arrived) then
+         call tell(a, found)
+         if (.not. a%has_begun) call remark_on_start(a, found)
+      else
+         call cut(found, -1, merge(mark_open, mark_not_converged, a%convergence%ended == ended_open))
+         call remark_on_end(a, t, found)
+      end if
+      if (found%known == 2) then
+         call keep(a, t)
+      else if (parts > 1) then
+         call return_to_place(a)
+      end if
+      a%is_lost = .not. arrived
    end subroutine advance
+
+   !> What there is to say of the first motion that was found.
+   subroutine remark_on_start(a, found)
+      type(analysis_t), intent(inout) :: a
+      type(motion_t), intent(inout) :: found
+      integer :: link
+
+      a%has_begun = .true.
+      if (.not. allocated(a%blocks)) return
+      found%remarks = first_remarks(a%blocks, a%convergence%singular)
+      link = maxloc(abs(found%position(3, :) - a%rough_angle), mask=a%blocks%is_found, dim=1)
+      if (link == 0) return
+      if (abs(found%position(3, link) - a%rough_angle(link)) > far_angle) found%remarks = [found%remarks, &
+         remark_t(kind=remark_far, links=[link, 0, 0, 0, 0, 0], is_angle=.true., &
+         value=found%position(3, link) - a%rough_angle(link))]
+   end subroutine remark_on_start
+
+   !> Why there is no motion at `t`: what stays open, or where the way ends; that is said once.
+   subroutine remark_on_end(a, t, found)
+      type(analysis_t), intent(in) :: a
+      real(wp), intent(in) :: t
+      type(motion_t), intent(inout) :: found
+      real(wp) :: unit
+
+      if (.not. allocated(a%blocks)) return
+      if (a%convergence%ended == ended_open .or. (.not. a%follows .and. a%convergence%gap > 0.0_wp)) then
+         unit = merge(1.0_wp, a%blocks%length, a%convergence%gap_is_angle)
+         found%remarks = [remark_t(kind=remark_open, pair=a%convergence%open_pair, drive=a%convergence%open_drive, &
+            is_angle=a%convergence%gap_is_angle, value=a%convergence%gap*unit)]
+      else if (a%follows .and. .not. a%is_lost) then
+         found%remarks = limit_remark(a%blocks, t)
+      end if
+   end subroutine remark_on_end
 
    !> Seeks the motion at `t`; `accepted`: it is the continuation of the one that is followed, or the first.
    subroutine attempt(a, t, accepted)
@@ -94,6 +149,31 @@ contains
       accepted = is_solved(a%convergence)
       if (a%follows) accepted = accepted .and. same .and. correction <= largest_correction
    end subroutine attempt
+
+   !> Notes the motion that is followed, before a step is divided.
+   subroutine mark_place(a)
+      type(analysis_t), intent(inout) :: a
+
+      a%place = a%t
+      if (allocated(a%blocks)) then
+         call mark_blocks(a%blocks)
+      else
+         call mark_dense(a%dense)
+      end if
+   end subroutine mark_place
+
+   !> Follows it again: what comes after an instant without a motion is as if that had not been asked for. From
+   !> close to a dead point no step back would be small enough.
+   subroutine return_to_place(a)
+      type(analysis_t), intent(inout) :: a
+
+      a%t = a%place
+      if (allocated(a%blocks)) then
+         call return_blocks(a%blocks)
+      else
+         call return_dense(a%dense)
+      end if
+   end subroutine return_to_place
 
    !> Makes the motion found last, at `t`, the one that is followed.
    subroutine keep(a, t)
@@ -121,6 +201,7 @@ contains
          call tell_dense(a%dense, found)
          finite = .false.
       end if
+      a%largest_gap = max(a%largest_gap, a%convergence%gap)
       call cut(found, 2, mark_none)
       if (a%convergence%singular) call cut(found, 0, mark_singular)
       if (.not. finite) call look_for_overflow(found)
@@ -134,6 +215,15 @@ contains
       if (found%known >= 1 .and. .not. all(abs(found%velocity) <= huge(1.0_wp))) call cut(found, 0, mark_overflow)
       if (.not. all(abs(found%position) <= huge(1.0_wp))) call cut(found, -1, mark_overflow)
    end subroutine look_for_overflow
+
+   !> By how much redundant equations have differed at most, in parts of the characteristic length; -1 where none are.
+   pure real(wp) function redundancy_gap(a)
+      type(analysis_t), intent(in) :: a
+
+      redundancy_gap = -1.0_wp
+      if (.not. allocated(a%blocks)) return
+      if (a%blocks%blocks%redundant > 0) redundancy_gap = a%largest_gap
+   end function redundancy_gap
 
    !> Only derivatives up to number `known` exist, and `mark` says why.
    pure subroutine cut(q, known, mark)

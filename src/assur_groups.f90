@@ -20,19 +20,20 @@ module assur_groups
 
 contains
 
-   !> The groups of `m`. `unknown_of` (equations), `equation_of` (unknowns): a perfect matching of its closure
-   !> `c`; `wanted` (links): named by a table.
-   function groups_of(m, c, unknown_of, equation_of, wanted) result(groups)
+   !> The groups of `m`. `unknown_of` (equations), `equation_of` (unknowns): a matching of its closure `c` in which each
+   !> unknown has an equation; `over` (equations): the part with too many equations, whose links are one group;
+   !> `wanted` (links): named by a table.
+   function groups_of(m, c, unknown_of, equation_of, over, wanted) result(groups)
       type(mechanism_t), intent(in) :: m
       type(closure_t), intent(in) :: c
       integer, intent(in) :: unknown_of(:), equation_of(:)
-      logical, intent(in) :: wanted(:)
+      logical, intent(in) :: over(:), wanted(:)
       type(group_t), allocatable :: groups(:)
       type(incidence_t) :: waits
       integer, allocatable :: first(:), member(:), of_link(:), order(:)
       integer :: i, e
 
-      waits = waiting(m, c, equation_of)
+      waits = waiting(m, c, equation_of, over)
       call find_blocks(waits, [(i, i=1, size(m%links))], first, member)
       of_link = member
       do i = 1, size(first) - 1
@@ -45,39 +46,61 @@ contains
       end do
       call share_out_links(of_link, order, wanted, groups)
       do e = 1, size(unknown_of)
-         if (c%drive(e) > 0) groups(order(of_link(c%link_of(unknown_of(e)))))%driven = .true.
+         if (c%drive(e) == 0 .or. c%incidence%first(e) == c%incidence%first(e + 1)) cycle
+         i = c%link_of(merge(c%incidence%unknown(c%incidence%first(e)), unknown_of(e), over(e)))
+         groups(order(of_link(i)))%driven = .true.
       end do
       call spread_need(waits, of_link, order, groups)
    end function groups_of
 
-   !> For which links each link waits; a ground link for none.
-   function waiting(m, c, equation_of) result(w)
+   !> For which links each link waits; a ground link for none. The links of the part `over` wait for its first
+   !> link, and that for all of them.
+   function waiting(m, c, equation_of, over) result(w)
       type(mechanism_t), intent(in) :: m
       type(closure_t), intent(in) :: c
       integer, intent(in) :: equation_of(:)
+      logical, intent(in) :: over(:)
       type(incidence_t) :: w
-      integer :: u, e, i, k, link, n
+      logical :: tied(size(m%links))
+      integer :: u, i, k, link, n
 
+      tied = .false.
+      do u = 1, size(equation_of)
+         if (over(equation_of(u))) tied(c%link_of(u)) = .true.
+      end do
       w%equations = size(m%links)
       w%unknowns = size(m%links)
-      allocate (w%first(size(m%links) + 1), w%unknown(size(m%links) + size(c%incidence%unknown)))
+      allocate (w%first(size(m%links) + 1), w%unknown(3*size(m%links) + size(c%incidence%unknown)))
       n = 0
       u = 0
       do link = 1, size(m%links)
          w%first(link) = n + 1
-         n = n + 1
-         w%unknown(n) = link
-         if (m%links(link)%ground) cycle
-         do i = 1, 3
-            u = u + 1
-            e = equation_of(u)
-            do k = c%incidence%first(e), c%incidence%first(e + 1) - 1
-               n = n + 1
-               w%unknown(n) = c%link_of(c%incidence%unknown(k))
+         call wait_for(link)
+         if (.not. m%links(link)%ground) then
+            do i = 1, 3
+               u = u + 1
+               do k = c%incidence%first(equation_of(u)), c%incidence%first(equation_of(u) + 1) - 1
+                  call wait_for(c%link_of(c%incidence%unknown(k)))
+               end do
             end do
+         end if
+         if (.not. tied(link)) cycle
+         call wait_for(findloc(tied, .true., dim=1))
+         if (any(tied(:link - 1))) cycle
+         do k = link + 1, size(tied)
+            if (tied(k)) call wait_for(k)
          end do
       end do
       w%first(size(m%links) + 1) = n + 1
+
+   contains
+
+      subroutine wait_for(other)
+         integer, intent(in) :: other
+
+         n = n + 1
+         w%unknown(n) = other
+      end subroutine wait_for
    end function waiting
 
    !> (components) The number of each component of links among the groups; 0 for ground links.

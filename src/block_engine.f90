@@ -1,4 +1,4 @@
-!> Level 11. A mechanism solved block by block, in the order of `blocks`: each knows all that it needs when its
+!> Level 10. A mechanism solved block by block, in the order of `blocks`: each knows all that it needs when its
 !> turn comes. Only blocks that a table needs are solved, and those that no drive moves only once.
 module block_engine
    use kinds, only: wp
@@ -9,30 +9,37 @@ module block_engine
    use loop_equations, only: new_equations
    use rough_positions, only: rough_values
    use drives, only: law_t, new_law, drive_motion
-   use convergence, only: convergence_t, is_solved, ended_converged
+   use convergence, only: convergence_t, is_solved, ended_converged, ended_singular
    use predictor, only: history_t, new_history, remember, predict, largest_change
-   use blocks, only: blocks_t, new_blocks
+   use blocks, only: blocks_t
+   use block_partition, only: new_blocks
    use block_needs, only: moving_blocks, needed_blocks
    use block_state, only: state_t, new_state
    use block_solver, only: workspace_t, new_workspace, solve_block
+   use first_position, only: solve_first_block
    use link_motion, only: chain_t, new_chain, move_links
    implicit none
    private
-   public :: block_engine_t, new_block_engine, seek_blocks, keep_blocks, tell_blocks
+   public :: block_engine_t, new_block_engine, seek_blocks, keep_blocks, tell_blocks, mark_blocks, return_blocks
 
    !> Lengths in units of `length`, a power of two in the deck's unit.
    type :: block_engine_t
       real(wp) :: length = 1.0_wp, tolerance = 0.0_wp, t = 0.0_wp
       type(blocks_t) :: blocks
       type(state_t) :: state
-      type(history_t) :: history
+      type(history_t) :: history                        !< the motions that are followed
+      type(history_t) :: marked                         !< those of a place to return to
       type(workspace_t) :: work
       type(chain_t) :: chain
       type(law_t), allocatable :: laws(:)
       real(wp), allocatable :: unit_of(:)               !< (drives) of the value: length or 1
+      logical, allocatable :: is_angle(:)               !< (drives)
+      integer, allocatable :: frame_of(:)               !< (links)
+      logical, allocatable :: is_found(:)               !< (links) that a table needs and whose angle no drive gives
       real(wp), allocatable :: rough(:)                 !< (0:unknowns) from the deck's positions
       integer, allocatable :: needed(:), moving(:)      !< blocks that are solved at first, and at every step
       integer, allocatable :: sign_now(:), sign_of(:)   !< (blocks) of the determinant: found last, followed
+      integer, allocatable :: sign_marked(:)
    end type block_engine_t
 
 contains
@@ -53,16 +60,29 @@ contains
       e%moving = pack(e%needed, moving_blocks(e%blocks, e%needed))
       e%state = new_state(e%blocks, size(m%drives))
       e%history = new_history(e%blocks%unknowns, sought_unknowns(e))
+      e%is_found = wanted_links(m)
+      do i = 1, size(m%links)
+         if (t%frame(i) == 0) then
+            e%is_found(i) = .false.
+         else if (e%blocks%list(e%blocks%block_of(t%frame(i)))%direct) then
+            e%is_found(i) = .false.
+         end if
+      end do
       e%work = new_workspace(e%blocks)
       e%chain = new_chain(m, t, wanted_links(m), e%blocks%frames)
       allocate (e%laws(size(m%drives)))
       allocate (e%unit_of(size(m%drives)), source=1.0_wp)
+      e%frame_of = t%frame
+      allocate (e%is_angle(size(m%drives)))
       do i = 1, size(m%drives)
          e%laws(i) = new_law(m%drives(i))
-         if (any(m%drives(i)%kind == [drive_x, drive_y, drive_slide])) e%unit_of(i) = 1.0_wp/e%length
+         e%is_angle(i) = all(m%drives(i)%kind /= [drive_x, drive_y, drive_slide])
+         if (.not. e%is_angle(i)) e%unit_of(i) = 1.0_wp/e%length
       end do
       allocate (e%sign_now(size(e%blocks%list)), e%sign_of(size(e%blocks%list)), source=1)
-      e%rough = rough_values(m, t, e%length, e%blocks%unknowns)
+      ! A function's result would bring its own lower bound.
+      allocate (e%rough(0:e%blocks%unknowns))
+      e%rough(:) = rough_values(m, t, e%length, e%blocks%unknowns)
    end function new_block_engine
 
    !> The unknowns of the moving blocks that iterate.
@@ -93,15 +113,17 @@ contains
       real(wp) :: change
       integer :: i
 
+      correction = 0.0_wp
+      same = .true.
+      c%ended = ended_singular
+      if (.not. e%blocks%solvable) return
       e%t = t
       do i = 1, size(e%laws)
          e%state%target(:, i) = drive_motion(e%laws(i), t)*e%unit_of(i)
       end do
-      correction = 0.0_wp
       c%ended = ended_converged
       c%reciprocal_condition = 1.0_wp
       c%determinant = 1
-      same = .true.
       if (follows) then
          call predict(e%history, t, e%state%u, change)
          same = change <= largest_change
@@ -125,7 +147,11 @@ contains
 
       do k = 1, size(list)
          i = list(k)
-         call solve_block(e%blocks, i, e%tolerance, e%work, e%state, one, correction)
+         if (follows) then
+            call solve_block(e%blocks, i, e%tolerance, e%work, e%state, one, correction)
+         else
+            call solve_first_block(e%blocks, i, e%tolerance, e%work, e%state, one)
+         end if
          if (e%blocks%list(i)%direct) cycle
          call gather(one, c)
          if (.not. is_solved(one)) return
@@ -145,6 +171,12 @@ contains
       c%step = max(c%step, one%step)
       c%reciprocal_condition = min(c%reciprocal_condition, one%reciprocal_condition)
       c%determinant = c%determinant*one%determinant
+      if (one%gap > c%gap) then
+         c%gap = one%gap
+         c%gap_is_angle = one%gap_is_angle
+         c%open_pair = one%open_pair
+         c%open_drive = one%open_drive
+      end if
       c%singular = c%singular .or. one%singular
    end subroutine gather
 
@@ -155,6 +187,20 @@ contains
       call remember(e%history, e%t, e%state%u)
       e%sign_of = e%sign_now
    end subroutine keep_blocks
+
+   subroutine mark_blocks(e)
+      type(block_engine_t), intent(inout) :: e
+
+      e%marked = e%history
+      e%sign_marked = e%sign_of
+   end subroutine mark_blocks
+
+   subroutine return_blocks(e)
+      type(block_engine_t), intent(inout) :: e
+
+      e%history = e%marked
+      e%sign_of = e%sign_marked
+   end subroutine return_blocks
 
    !> The motion found last of the links that are asked for, in the deck's units; `finite`: all of it is in range.
    subroutine tell_blocks(e, found, finite)

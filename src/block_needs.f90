@@ -1,4 +1,4 @@
-!> Level 8. Which blocks have to be solved: those whose unknowns move a link that a table names, those that they build
+!> Level 5. Which blocks have to be solved: those whose unknowns move a link that a table names, those that they build
 !> on, and no other; and of these again and again only what a drive moves.
 module block_needs
    use links_tree, only: tree_t
@@ -9,7 +9,8 @@ module block_needs
 
 contains
 
-   !> The blocks, in solving order, that the links `wanted` (links) need.
+   !> The blocks, in solving order, that the links `wanted` (links) need; equations that are too many are always
+   !> looked at.
    function needed_blocks(b, t, wanted) result(list)
       type(blocks_t), intent(in) :: b
       type(tree_t), intent(in) :: t
@@ -21,7 +22,8 @@ contains
       need = .false.
       call need_links(b, t, wanted, need)
       do i = size(b%list), 1, -1
-         needed(i) = any(need(b%unknown(b%list(i)%first:b%list(i)%last)))
+         needed(i) = any(need(b%unknown(b%list(i)%first:b%list(i)%last))) &
+            .or. b%list(i)%shape%rows > b%list(i)%shape%n
          if (needed(i)) call need_known(b, i, need)
       end do
       list = pack([(i, i=1, size(b%list))], needed)
@@ -57,7 +59,7 @@ contains
       logical, intent(inout) :: need(0:)
       integer :: m
 
-      need(b%rows(b%list(i)%first:b%list(i)%last)%other) = .true.
+      need(b%rows(b%list(i)%first_row:b%list(i)%last_row)%other) = .true.
       do m = b%list(i)%first_instance, b%list(i)%last_instance
          associate (g => b%instances(m))
             need(b%arms(g%first_arm:g%last_arm)%frame) = .true.
@@ -79,7 +81,7 @@ contains
       moves = 0
       do k = 1, size(list)
          associate (block => b%list(list(k)))
-            moving(k) = any(b%rows(block%first:block%last)%drive > 0) .or. largest_known(b, list(k), moves) > 0
+            moving(k) = any(b%rows(block%first_row:block%last_row)%drive > 0) .or. largest_known(b, list(k), moves) > 0
             moves(b%unknown(block%first:block%last)) = merge(1, 0, moving(k))
          end associate
       end do
@@ -91,7 +93,7 @@ contains
       integer, intent(in) :: i, mark(0:)
       integer :: m
 
-      largest = max(0, maxval(mark(b%rows(b%list(i)%first:b%list(i)%last)%other)))
+      largest = max(0, maxval(mark(b%rows(b%list(i)%first_row:b%list(i)%last_row)%other)))
       do m = b%list(i)%first_instance, b%list(i)%last_instance
          associate (g => b%instances(m))
             largest = max(largest, mark(g%frame), mark(g%less), &

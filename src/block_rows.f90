@@ -1,13 +1,31 @@
-!> Level 9. The equations of one block at a state: residual and Jacobian.
+!> Level 6. The equations of one block at a state: residual and Jacobian.
 module block_rows
    use kinds, only: wp
+   use block_matrix, only: shape_t, entries_of
    use blocks, only: blocks_t, instance_t, instance_components, instance_projection
    use block_state, only: state_t, slide_vector, turned, across
    implicit none
    private
-   public :: block_system
+   public :: block_system, assemble_block
 
 contains
+
+   !> Jacobian `a` and residual `r` (rows) of the block at the state.
+   subroutine assemble_block(b, i, shape, s, a, r)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(shape_t), intent(in) :: shape
+      type(state_t), intent(inout) :: s
+      real(wp), intent(inout) :: a(*), r(*)
+
+      a(:entries_of(shape)) = 0.0_wp
+      if (shape%below < 0) then
+         call block_system(b, i, -shape%rows, shape%rows, s, a, r)
+      else
+         ! DGBSV: entry (row, column) in row below + above + 1 + row - column of 2 below + above + 1.
+         call block_system(b, i, -shape%below, 2*shape%below + shape%above, s, a, r)
+      end if
+   end subroutine assemble_block
 
    !> Residual `r` (n) and Jacobian of block `i`; entry (row, column) of the Jacobian is a(place + row +
    !> column*stride), all of them zero before.
@@ -30,16 +48,28 @@ contains
                call projection_row(b, g, m, place, stride, s, a, r)
             case default
                r(g%row_x) = s%u(g%frame)%value - s%u(g%less)%value
-               if (g%frame_column > 0) a(place + g%row_x + g%frame_column*stride) = 1.0_wp
-               if (g%less_column > 0) a(place + g%row_x + g%less_column*stride) = -1.0_wp
+               call angle_entries(g, place, stride, a)
             end select
          end associate
       end do
-      do k = b%list(i)%first, b%list(i)%last
-         row = k - b%list(i)%first + 1
+      do k = b%list(i)%first_row, b%list(i)%last_row
+         row = k - b%list(i)%first_row + 1
          r(row) = r(row) - b%rows(k)%constant - s%target(0, b%rows(k)%drive)
       end do
    end subroutine block_system
+
+   !> The row of two angles, which may be those of one frame.
+   pure subroutine angle_entries(g, place, stride, a)
+      type(instance_t), intent(in) :: g
+      integer, intent(in) :: place, stride
+      real(wp), intent(inout) :: a(*)
+      integer :: at
+
+      at = place + g%row_x + g%frame_column*stride
+      if (g%frame_column > 0) a(at) = a(at) + 1.0_wp
+      at = place + g%row_x + g%less_column*stride
+      if (g%less_column > 0) a(at) = a(at) - 1.0_wp
+   end subroutine angle_entries
 
    !> The gap of polygon instance `m`, and the arms of the block's own frames.
    pure subroutine close_polygon(b, m, s)

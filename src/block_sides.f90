@@ -1,4 +1,4 @@
-!> Level 9. The right-hand sides of one block for velocities and accelerations: what its equations, derived once and
+!> Level 6. The right-hand sides of one block for velocities and accelerations: what its equations, derived once and
 !> twice by time, hold beside the unknowns of that order.
 module block_sides
    use kinds, only: wp
@@ -20,8 +20,8 @@ contains
       real(wp) :: g(2)
       integer :: k, m
 
-      do k = b%list(i)%first, b%list(i)%last
-         v(k - b%list(i)%first + 1) = s%target(order, b%rows(k)%drive)
+      do k = b%list(i)%first_row, b%list(i)%last_row
+         v(k - b%list(i)%first_row + 1) = s%target(order, b%rows(k)%drive)
       end do
       do m = b%list(i)%first_instance, b%list(i)%last_instance
          associate (instance => b%instances(m))

@@ -1,35 +1,40 @@
-!> Level 10. One block: its position by Newton's method, its velocities and accelerations from the factors of the same
+!> Level 7. One block: its position by Newton's method, its velocities and accelerations from the factors of the same
 !> Jacobian.
 !>
-!> A residual at the rounding level has nothing to correct, and DGESV then gives the velocities at once; a
-!> larger one gives a correction first, and where that is at the rounding level the velocities follow from its
-!> factors. So one assembly and one factorization a step are the rule, from a start that is right already. A
-!> Jacobian one correction d away leaves errors of order d in the rates: no larger d is accepted.
+!> A residual at the rounding level has nothing to correct, and DGESV then gives the velocities at once; a larger
+!> one gives a correction first, and where that is at the rounding level the velocities follow from its factors.
+!> So one assembly and one factorization a step are the rule, from a start that is right already. A Jacobian one
+!> correction d away leaves errors of order d in the rates: no larger d is accepted.
+!>
+!> Where equations are too many, all of them are kept, in the sense of least squares (Gauss and Newton): which of
+!> them could be spared changes on the way. What they contradict one another by is the gap.
 module block_solver
    use kinds, only: wp
-   use linear_solver, only: entries_of, solve_first, solve_again, pivot_range, inverse_norm
+   use block_matrix, only: shape_t, entries_of, work_length, solve_first, solve_again, pivot_range, inverse_norm
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, &
-      ended_diverged
+      ended_diverged, ended_open
    use blocks, only: blocks_t
    use block_state, only: state_t, set_direction, turn_direction, known_parts
-   use block_rows, only: block_system
+   use block_rows, only: assemble_block
    use block_sides, only: rate_side
    implicit none
    private
-   public :: workspace_t, new_workspace, solve_block
+   public :: workspace_t, new_workspace, solve_block, note_gap
 
    !> Residuals relative to the largest value. Below the first there is nothing to correct; above the second,
    !> rounding of angles and of their sines alone explains no residual.
    real(wp), parameter :: closed_level = 2.0_wp*epsilon(1.0_wp)
    real(wp), parameter :: rounding_level = 12.0_wp*epsilon(1.0_wp)
    real(wp), parameter :: step_tolerance = 32.0_wp*epsilon(1.0_wp)
+   !> Equations that are too many may contradict one another by this, as data of 11 digits do.
+   real(wp), parameter :: open_level = 1.0e-10_wp
    !> A change of direction below this is applied without a new sine and cosine: its square is lost in rounding.
    real(wp), parameter :: small_turn = 1.0e-9_wp
    !> A pivot this much smaller than the largest is worth an estimate of the inverse.
    real(wp), parameter :: suspicious_pivot = 1.0e-3_wp
    !> Relative error of the velocities, by what rounding leaves open in the position, from which on they are not told.
    real(wp), parameter :: largest_error = 0.05_wp
-   !> An angle beyond this has fewer digits after the point than the listing prints.
+   !> Angles beyond have few digits after the point.
    real(wp), parameter :: angle_limit = 1.0e8_wp
    integer, parameter :: iteration_limit = 60
 
@@ -45,17 +50,18 @@ contains
    pure function new_workspace(b) result(w)
       type(blocks_t), intent(in) :: b
       type(workspace_t) :: w
-      integer :: i, n, entries, widest
+      integer :: i, entries, rows, length
 
       entries = 0
-      widest = 0
+      rows = 0
+      length = 0
       do i = 1, size(b%list)
-         n = b%list(i)%last - b%list(i)%first + 1
-         widest = max(widest, n)
-         entries = max(entries, entries_of(n, b%list(i)%below, b%list(i)%above))
+         rows = max(rows, b%list(i)%shape%rows)
+         length = max(length, work_length(b%list(i)%shape))
+         entries = max(entries, entries_of(b%list(i)%shape))
       end do
-      allocate (w%a(entries), w%r(2*widest), w%start(widest), w%work(4*widest), source=0.0_wp)
-      allocate (w%pivots(widest), w%iwork(widest), source=0)
+      allocate (w%a(entries), w%r(2*rows), w%start(rows), w%work(length), source=0.0_wp)
+      allocate (w%pivots(rows), w%iwork(rows), source=0)
    end function new_workspace
 
    !> Solves block `i` for value, rate and second rate of its unknowns, the values starting from those of `s`.
@@ -70,36 +76,45 @@ contains
       real(wp), intent(inout) :: correction
 
       if (b%list(i)%direct) then
-         call solve_direct(b, b%list(i)%first, s)
+         call solve_direct(b, i, s)
          c%ended = ended_converged
          return
       end if
-      call seek(b, i, b%list(i)%last - b%list(i)%first + 1, tolerance, w%a, w%r, w%start, w%pivots, s, c, correction)
-      if (c%ended == ended_converged .or. c%ended == ended_stalled) &
-         call finish(b, i, b%list(i)%last - b%list(i)%first + 1, w, s, c)
+      call seek(b, i, b%list(i)%shape, tolerance, w%a, w%r, w%start, w%work, w%pivots, s, c, correction)
+      if (c%ended /= ended_converged .and. c%ended /= ended_stalled) return
+      if (b%list(i)%shape%rows > b%list(i)%shape%n .and. c%gap > open_level) then
+         c%ended = ended_open
+      else
+         call finish(b, i, b%list(i)%shape%n, w, s, c)
+      end if
    end subroutine solve_block
 
    !> A drive's own unknown: nothing to iterate.
-   pure subroutine solve_direct(b, k, s)
+   pure subroutine solve_direct(b, i, s)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: k
+      integer, intent(in) :: i
       type(state_t), intent(inout) :: s
+      integer :: d
 
-      associate (u => s%u(b%unknown(k)), other => s%u(b%rows(k)%other), row => b%rows(k), d => b%rows(k)%drive)
-         u%value = other%value + row%sign_of*(row%constant + s%target(0, d))
-         u%rate = other%rate + row%sign_of*s%target(1, d)
-         u%rate2 = other%rate2 + row%sign_of*s%target(2, d)
+      associate (u => s%u(b%unknown(b%list(i)%first)), row => b%rows(b%list(i)%first_row))
+         associate (other => s%u(row%other))
+            d = row%drive
+            u%value = other%value + row%sign_of*(row%constant + s%target(0, d))
+            u%rate = other%rate + row%sign_of*s%target(1, d)
+            u%rate2 = other%rate2 + row%sign_of*s%target(2, d)
+         end associate
       end associate
-      call set_direction(b, b%unknown(k), s)
+      call set_direction(b, b%unknown(b%list(i)%first), s)
    end subroutine solve_direct
 
    !> Newton's method; where it ends with a position, `r`(:, 2) holds the velocities and `a` the factors. Where the
    !> Jacobian there has no inverse, c%singular says so.
-   subroutine seek(b, i, n, tolerance, a, r, start, pivots, s, c, correction)
+   subroutine seek(b, i, shape, tolerance, a, r, start, work, pivots, s, c, correction)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i, n
+      integer, intent(in) :: i
+      type(shape_t), intent(in) :: shape
       real(wp), intent(in) :: tolerance
-      real(wp), intent(inout) :: a(*), r(n, 2), start(n)
+      real(wp), intent(inout) :: a(*), r(shape%rows, 2), start(shape%n), work(*)
       integer, intent(inout) :: pivots(*)
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
@@ -107,51 +122,81 @@ contains
       real(wp) :: before, size_of
       integer :: info, iteration
 
-      call begin(b, i, n, s, start, size_of)
+      call begin_block(b, i, shape%n, s, start, size_of)
       before = huge(before)
-      c%singular = .false.
-      c%ended = ended_limit
+      c = convergence_t(ended=ended_limit)
       do iteration = 1, iteration_limit
          if (.not. size_of <= angle_limit) then
             c%ended = ended_diverged
             return
          end if
          c%iterations = iteration
-         call assemble(b, i, n, s, a, r)
+         call assemble_block(b, i, shape, s, a, r)
          c%residual = maxval(abs(r(:, 1)))
+         if (shape%rows > shape%n) call note_gap(b, i, r, c)
          if (c%residual <= closed_level*size_of) then
             c%step = 0.0_wp
             c%ended = ended_converged
             call rate_side(b, i, 1, s, r(:, 2))
-            call solve_first(n, b%list(i)%below, b%list(i)%above, a, pivots, r(:, 2), info)
+            call solve_first(shape, a, pivots, work, r(:, 2), info)
             c%singular = info > 0
             exit
          end if
-         call solve_first(n, b%list(i)%below, b%list(i)%above, a, pivots, r, info)
+         call solve_first(shape, a, pivots, work, r, info)
          if (info > 0) then
             c%singular = c%residual <= max(rounding_level*size_of, tolerance)
             c%ended = merge(ended_stalled, ended_singular, c%singular)
             exit
          end if
-         c%step = maxval(abs(r(:, 1)))
-         if (c%residual <= rounding_level*size_of .and. c%step > 0.5_wp*before) then
-            ! Rounding is all that is left to correct: the position stays.
+         c%step = maxval(abs(r(:shape%n, 1)))
+         if (is_stalled(shape, c, before, size_of)) then
             c%ended = ended_stalled
          else
-            call move(b, i, n, r, s, c%step, size_of)
+            call move(b, i, shape%n, r, s, c%step, size_of)
             if (c%step <= max(step_tolerance*size_of, tolerance)) c%ended = ended_converged
          end if
          before = c%step
          if (c%ended == ended_limit) cycle
          call rate_side(b, i, 1, s, r(:, 2))
-         call solve_again(n, b%list(i)%below, b%list(i)%above, a, pivots, r(:, 2))
+         call solve_again(shape, a, pivots, work, r(:, 2))
          exit
       end do
-      correction = max(correction, largest_change(b, i, n, s, start))
+      correction = max(correction, largest_change(b, i, shape%n, s, start))
    end subroutine seek
 
-   !> Directions and known parts where the search begins, and what it begins from.
-   subroutine begin(b, i, n, s, start, size_of)
+   !> Rounding is all that is left to correct, and the position stays; among equations that contradict one another
+   !> it is their gap.
+   pure logical function is_stalled(shape, c, before, size_of)
+      type(shape_t), intent(in) :: shape
+      type(convergence_t), intent(in) :: c
+      real(wp), intent(in) :: before, size_of
+
+      is_stalled = c%step > 0.5_wp*before .and. c%residual <= rounding_level*size_of
+      if (shape%rows > shape%n) is_stalled = is_stalled .or. (c%step > 0.5_wp*before .and. c%step <= small_turn)
+   end function is_stalled
+
+   !> The equation that is open the most by the residuals `r`.
+   pure subroutine note_gap(b, i, r, c)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: r(*)
+      type(convergence_t), intent(inout) :: c
+      integer :: k, worst
+
+      worst = 1
+      do k = 2, b%list(i)%shape%rows
+         if (abs(r(k)) > abs(r(worst))) worst = k
+      end do
+      associate (row => b%rows(b%list(i)%first_row + worst - 1))
+         c%gap = abs(r(worst))
+         c%gap_is_angle = row%angular
+         c%open_pair = row%pair
+         c%open_drive = row%drive
+      end associate
+   end subroutine note_gap
+
+   !> Directions and known parts where the search begins, what it begins from, and the largest value, 1 at least.
+   subroutine begin_block(b, i, n, s, start, size_of)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, n
       type(state_t), intent(inout) :: s
@@ -167,31 +212,13 @@ contains
          end associate
       end do
       call known_parts(b, i, s)
-   end subroutine begin
+   end subroutine begin_block
 
-   !> Jacobian and residual of the block at the state.
-   subroutine assemble(b, i, n, s, a, r)
+   !> Applies the correction `d`, whose largest is `step`; `size_of`: the largest value, 1 at least.
+   subroutine move(b, i, n, d, s, step, size_of)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, n
-      type(state_t), intent(inout) :: s
-      real(wp), intent(inout) :: a(*), r(n, 2)
-
-      a(:entries_of(n, b%list(i)%below, b%list(i)%above)) = 0.0_wp
-      associate (below => b%list(i)%below, above => b%list(i)%above)
-         if (below < 0) then
-            call block_system(b, i, -n, n, s, a, r)
-         else
-            ! DGBSV: entry (row, column) in row below + above + 1 + row - column of 2 below + above + 1.
-            call block_system(b, i, -below, 2*below + above, s, a, r)
-         end if
-      end associate
-   end subroutine assemble
-
-   !> Applies the correction r(:, 1), whose largest is `step`; `size_of`: the largest value, 1 at least.
-   subroutine move(b, i, n, r, s, step, size_of)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i, n
-      real(wp), intent(in) :: r(n, 2)
+      real(wp), intent(in) :: d(*)
       type(state_t), intent(inout) :: s
       real(wp), intent(in) :: step
       real(wp), intent(out) :: size_of
@@ -200,10 +227,10 @@ contains
       size_of = 1.0_wp
       do k = 1, n
          associate (u => b%unknown(b%list(i)%first + k - 1))
-            s%u(u)%value = s%u(u)%value - r(k, 1)
+            s%u(u)%value = s%u(u)%value - d(k)
             size_of = max(size_of, abs(s%u(u)%value))
             if (step <= small_turn) then
-               call turn_direction(b, u, -r(k, 1), s)
+               call turn_direction(b, u, -d(k), s)
             else
                call set_direction(b, u, s)
             end if
@@ -236,18 +263,17 @@ contains
       if (.not. c%singular) call judge(b, i, n, w, s, c)
       if (c%singular) return
       do k = 1, n
-         s%u(b%unknown(b%list(i)%first + k - 1))%rate = w%r(n + k)
+         s%u(b%unknown(b%list(i)%first + k - 1))%rate = w%r(b%list(i)%shape%rows + k)
       end do
       call rate_side(b, i, 2, s, w%r)
-      call solve_again(n, b%list(i)%below, b%list(i)%above, w%a, w%pivots, w%r)
+      call solve_again(b%list(i)%shape, w%a, w%pivots, w%work, w%r)
       do k = 1, n
          s%u(b%unknown(b%list(i)%first + k - 1))%rate2 = w%r(k)
       end do
    end subroutine finish
 
-   !> Sign of the determinant, and whether rounding leaves the velocities open: with B = |J^-1| and the residual
-   !> known to h, the position is known to B h, the Jacobian to B h times its bend, the velocities to B times
-   !> that.
+   !> Sign of the determinant, and whether rounding leaves the velocities open: with B = |J^-1| and the residual known
+   !> to h, the position is known to B h, the Jacobian to B h times its bend, the velocities to B times that.
    subroutine judge(b, i, n, w, s, c)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, n
@@ -257,10 +283,12 @@ contains
       real(wp) :: least, largest, inverse, size_of
       integer :: k
 
-      call pivot_range(n, b%list(i)%below, b%list(i)%above, w%a, w%pivots, least, largest, c%determinant)
+      call pivot_range(b%list(i)%shape, w%a, w%pivots, least, largest, c%determinant)
+      c%reciprocal_condition = 1.0_wp
+      if (n == 0) return
       inverse = 1.0_wp/least
       if (n == 2 .or. (n > 2 .and. least < suspicious_pivot*largest)) &
-         inverse = inverse_norm(n, b%list(i)%below, b%list(i)%above, w%a, w%pivots, w%work, w%iwork)
+         inverse = inverse_norm(b%list(i)%shape, w%a, w%pivots, w%work, w%iwork)
       c%reciprocal_condition = min(1.0_wp, 1.0_wp/(inverse*merge(1.0_wp, largest, n == 1)))
       size_of = 1.0_wp
       do k = b%list(i)%first, b%list(i)%last

@@ -1,4 +1,4 @@
-!> Level 8. The motion of all unknowns at one instant, and what earlier blocks give to the polygons of one block.
+!> Level 5. The motion of all unknowns at one instant, and what earlier blocks give to the polygons of one block.
 !>
 !> With u_k = R(phi_k) d_k and u_k' its quarter turn, a polygon g = g_0 + sum_k u_k + sum_m s_m R e_m has
 !>    dg/dphi_k = u_k',  dg/ds_m = R e_m
@@ -11,7 +11,7 @@ module block_state
    use blocks, only: blocks_t
    implicit none
    private
-   public :: state_t, new_state, set_direction, turn_direction, known_parts, slide_vector, turned, across
+   public :: state_t, new_state, set_direction, turn_direction, set_values, known_parts, slide_vector, turned, across
 
    !> A polygon: its known part with derivatives (2, 0:2), and all of it.
    type :: part_t
@@ -49,7 +49,21 @@ contains
       s%u(u)%s = sin(s%u(u)%value)
    end subroutine set_direction
 
-   !> The same after a change `d` so small that its square is below rounding.
+   !> Gives the unknowns of block `i` the values `x`.
+   pure subroutine set_values(b, i, x, s)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: x(:)
+      type(state_t), intent(inout) :: s
+      integer :: k
+
+      do k = 1, size(x)
+         s%u(b%unknown(b%list(i)%first + k - 1))%value = x(k)
+         call set_direction(b, b%unknown(b%list(i)%first + k - 1), s)
+      end do
+   end subroutine set_values
+
+   !> New cosine and sine after a change `d` so small that its square is below rounding.
    pure subroutine turn_direction(b, u, d, s)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: u

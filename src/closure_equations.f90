@@ -1,4 +1,4 @@
-!> Level 8. The closure equations of a mechanism: residual, Jacobian and acceleration remainder.
+!> Level 9. The closure equations of a mechanism: residual, Jacobian and acceleration remainder.
 !>
 !> Equations: two of every pair, (7), (8) or (9), (10), then one of every drive. One assembly serves Newton and the
 !> paper's own iteration: where the pose is frozen, its slopes are the coefficients of (16) and the matrix is A of (20).

@@ -3,7 +3,8 @@ module convergence
    use kinds, only: wp
    implicit none
    private
-   public :: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged
+   public :: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
+      ended_open
    public :: ending, is_solved
 
    integer, parameter :: ended_converged = 1   !< residual and step within the tolerance
@@ -11,6 +12,7 @@ module convergence
    integer, parameter :: ended_singular = 3    !< the matrix has no inverse
    integer, parameter :: ended_limit = 4       !< too many iterations
    integer, parameter :: ended_diverged = 5    !< the residual left all bounds
+   integer, parameter :: ended_open = 6        !< too many equations, and they contradict one another
 
    type :: convergence_t
       integer :: ended = ended_limit
@@ -21,6 +23,9 @@ module convergence
       real(wp) :: reciprocal_condition = 0.0_wp !< of the Jacobian at the position found
       integer :: determinant = 0               !< its sign
       logical :: singular = .false.            !< position found where the Jacobian has no inverse
+      real(wp) :: gap = 0.0_wp                 !< of the equation that is open the most, in the unit of length or rad
+      logical :: gap_is_angle = .false.
+      integer :: open_pair = 0, open_drive = 0 !< whose equation that is; 0: none
    end type convergence_t
 
 contains
@@ -36,7 +41,8 @@ contains
    pure function ending(c) result(word)
       type(convergence_t), intent(in) :: c
       character(9) :: word
-      character(9), parameter :: words(5) = [character(9) :: 'CONVERGED', 'ROUNDING', 'SINGULAR', 'LIMIT', 'DIVERGED']
+      character(9), parameter :: words(6) = [character(9) :: 'CONVERGED', 'ROUNDING', 'SINGULAR', 'LIMIT', 'DIVERGED', &
+         'OPEN']
 
       word = words(c%ended)
    end function ending

@@ -1,4 +1,4 @@
-!> Level 4. The results as comma-separated values with 17 digits: the deck's length unit, radians or degrees
+!> Level 5. The results as comma-separated values with 17 digits: the deck's length unit, radians or degrees
 !> as the deck says. A value that does not exist is empty and `mark` says why; a name with a comma is quoted.
 module csv
    use kinds, only: wp
@@ -12,7 +12,7 @@ module csv
    private
    public :: csv_head, csv_instant
 
-   character(12), parameter :: marks(0:3) = [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE']
+   character(12), parameter :: marks(0:4) = [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE', 'OPEN']
    character(5), parameter :: kinds_of_row(3) = ['LINK ', 'POINT', 'PAIR ']
 
 contains

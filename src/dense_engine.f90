@@ -1,4 +1,4 @@
-!> Level 11. All closure equations as one block, x, y, phi of every link its unknowns: the form of the paper, by Newton
+!> Level 12. All closure equations as one block, x, y, phi of every link its unknowns: the form of the paper, by Newton
 !> (METHOD DENSE) or by the iteration of 1987 (METHOD MATRIX). What the blocks are compared with.
 module dense_engine
    use kinds, only: wp
@@ -14,7 +14,7 @@ module dense_engine
    use rates, only: solve_velocity, solve_acceleration
    implicit none
    private
-   public :: dense_t, new_dense, seek_dense, keep_dense, tell_dense
+   public :: dense_t, new_dense, seek_dense, keep_dense, tell_dense, mark_dense, return_dense
 
    !> The position is known to eps/rcond, and so the Jacobian; below the root of eps no digit of a velocity is certain.
    real(wp), parameter :: least_condition = 4.0_wp*sqrt(epsilon(1.0_wp))
@@ -27,8 +27,8 @@ module dense_engine
       real(wp), allocatable :: start(:, :)       !< (3, links) where the last search began
       type(factors_t) :: factors
       type(motion_t) :: now                      !< the motion sought last
-      type(motion_t) :: last                     !< the last one kept
-      integer :: determinant_now = 0, determinant = 0
+      type(motion_t) :: last, marked             !< the last one kept, and that at a place to return to
+      integer :: determinant_now = 0, determinant = 0, determinant_marked = 0
       real(wp), allocatable :: targets(:, :)     !< (3, drives) value, rate, second rate
       integer :: method = 0
       real(wp) :: tolerance = 0.0_wp
@@ -103,6 +103,20 @@ contains
       e%last = e%now
       e%determinant = e%determinant_now
    end subroutine keep_dense
+
+   subroutine mark_dense(e)
+      type(dense_t), intent(inout) :: e
+
+      e%marked = e%last
+      e%determinant_marked = e%determinant
+   end subroutine mark_dense
+
+   subroutine return_dense(e)
+      type(dense_t), intent(inout) :: e
+
+      e%last = e%marked
+      e%determinant = e%determinant_marked
+   end subroutine return_dense
 
    !> The motion found last, in the deck's units.
    pure subroutine tell_dense(e, found)

@@ -1,4 +1,4 @@
-!> Level 7. The equation of a drive: what it asks for, its residual, its row of the Jacobian, its acceleration
+!> Level 8. The equation of a drive: what it asks for, its residual, its row of the Jacobian, its acceleration
 !> remainder. The one place that knows the kinds of drives.
 module drive_rows
    use kinds, only: wp

@@ -1,4 +1,4 @@
-!> Level 4. The known motion of a drive: value, rate and second rate at t, always from t itself,
+!> Level 5. The known motion of a drive: value, rate and second rate at t, always from t itself,
 !> never accumulated from step to step.
 !>
 !>    f(t) = value + rate t + acceleration t**2/2 + the sum of the terms added

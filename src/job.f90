@@ -1,16 +1,17 @@
-!> Level 13. One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later.
+!> Level 14. One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later.
 module job
    use failures, only: failure_t, fail, status_solved, status_refused, status_marked, status_machine
    use mechanism, only: mechanism_t, instant_count, instant
    use motion, only: motion_t, new_motion, mark_none
-   use structure, only: findings_t, find_structure
+   use structure, only: find_structure
+   use structure_faults, only: faults_text
    use deck, only: read_deck
    use text_output, only: output_t, open_output, put, close_output
    use numerals, only: whole
    use listing, only: layout_t, new_layout, listing_head, listing_instant, listing_end
    use csv, only: csv_head, csv_instant
    use protocol, only: protocol_head, protocol_instant
-   use analysis, only: analysis_t, new_analysis, advance
+   use analysis, only: analysis_t, new_analysis, advance, redundancy_gap
    use command_line, only: options_t
    implicit none
    private
@@ -34,7 +35,7 @@ contains
 
       status = status_solved
       call read_deck(options%deck, sets, message, failure)
-      if (.not. allocated(failure)) call check_freedoms(sets, failure)
+      if (.not. allocated(failure)) call check_structure(sets, failure)
       if (.not. allocated(failure)) call open_all(options, o, failure)
       if (.not. allocated(failure)) then
          call run_sets(options, sets, o, status)
@@ -46,26 +47,20 @@ contains
       end if
    end subroutine run_job
 
-   !> Every set has as many drives as freedoms, and at least one link that moves.
-   subroutine check_freedoms(sets, failure)
+   !> Every link of every set can be found.
+   subroutine check_structure(sets, failure)
       type(mechanism_t), intent(in) :: sets(:)
       type(failure_t), allocatable, intent(out) :: failure
-      type(findings_t) :: f
+      character(:), allocatable :: text
       integer :: i
 
       do i = 1, size(sets)
-         f = find_structure(sets(i))
-         if (f%freedoms /= f%drives) then
-            call fail(failure, status_refused, 'E101  SET '//whole(i)//': W = '//whole(f%coordinates) &
-               //' COORDINATES LESS R = '//whole(f%equations)//' EQUATIONS LEAVE S = '//whole(f%freedoms) &
-               //' FREEDOMS, BUT DRIVES ARE '//whole(f%drives))
-         else if (.not. f%solvable) then
-            call fail(failure, status_refused, 'E102  SET '//whole(i)//': THE COUNT IS RIGHT, BUT SOME LINKS HAVE ' &
-               //'MORE EQUATIONS THAN THEY NEED, AND OTHERS ARE FREE')
-         end if
-         if (allocated(failure)) return
+         text = faults_text(sets(i), find_structure(sets(i)), i)
+         if (len(text) == 0) cycle
+         call fail(failure, status_refused, text)
+         return
       end do
-   end subroutine check_freedoms
+   end subroutine check_structure
 
    subroutine open_all(options, o, failure)
       type(options_t), intent(in) :: options
@@ -139,7 +134,7 @@ contains
          if (len(options%csv) > 0) call csv_instant(o%csv, m, q, k)
          if (len(options%log) > 0) call protocol_instant(o%log, k, q%t, a%convergence)
       end do
-      call listing_end(o%listing, m, instant_count(m) - marked, marked)
+      call listing_end(o%listing, m, instant_count(m) - marked, marked, redundancy_gap(a))
       if (marked > 0) status = status_marked
    end subroutine run_set
 end module job

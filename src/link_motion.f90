@@ -1,4 +1,4 @@
-!> Level 9. From the motion of the unknowns to that of the links, by the tree: with u = R reach + s R e, in the axes of
+!> Level 6. From the motion of the unknowns to that of the links, by the tree: with u = R reach + s R e, in the axes of
 !> the frame above, and w = R arm in those of the link's own frame,
 !>
 !>    origin = origin above + u - w,   and so its velocity and acceleration.

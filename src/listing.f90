@@ -1,17 +1,19 @@
-!> Level 10. The printed listing, in the form of the paper's Rys. 5: title, data, structure, then the tables.
+!> Level 11. The printed listing, in the form of the paper's Rys. 5: title, data, structure, then the tables.
 !> It takes finished data and depends on nothing else: two correct programs print the same bytes.
 module listing
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_point, request_pair
-   use motion, only: motion_t, mark_none, mark_not_converged, mark_singular, mark_overflow
+   use motion, only: motion_t, mark_none, mark_not_converged, mark_singular, mark_overflow, &
+      mark_open
    use structure, only: findings_t
    use listing_structure, only: put_structure
+   use listing_remarks, only: put_remarks, put_gap
    use points, only: row_t, row_of, is_due
    use text_output, only: output_t, put
    use numerals, only: fixed, put_fixed, whole, numeral_length
    use layout, only: layout_t, new_layout, name_length, row_length
    use phrases, only: phrase, say_program, say_set, say_title, say_data, say_results, say_phi, &
-      say_end, say_solved, say_marked, say_no_position, say_no_rates, say_overflow
+      say_end, say_solved, say_marked, say_no_position, say_no_rates, say_overflow, say_contradiction
    implicit none
    private
    public :: layout_t, new_layout, listing_head, listing_instant, listing_end
@@ -94,6 +96,7 @@ contains
       end do
       if (last_kind == 0 .and. q%mark /= mark_none) call put_instant(o, l, q, step)
       if (q%mark /= mark_none) call put(o, ' *** '//mark_text(q%mark, m%polish))
+      if (allocated(q%remarks)) call put_remarks(o, m, q%remarks)
    end subroutine listing_instant
 
    subroutine put_instant(o, l, q, step)
@@ -169,18 +172,26 @@ contains
          text = phrase(say_no_rates, pl)
       case (mark_overflow)
          text = phrase(say_overflow, pl)
+      case (mark_open)
+         text = phrase(say_contradiction, pl)
       case default
          text = ''
       end select
    end function mark_text
 
-   !> The last line of a set: how many instants were solved and how many are marked.
-   subroutine listing_end(o, m, solved, marked)
+   !> The last line of a set: how many instants were solved and how many are marked; before it, where equations
+   !> are redundant, by how much they differ (`gap`, in parts of the characteristic length; negative where none
+   !> are).
+   subroutine listing_end(o, m, solved, marked, gap)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: solved, marked
+      real(wp), intent(in), optional :: gap
 
       call put(o, '')
+      if (present(gap)) then
+         if (gap >= 0.0_wp) call put_gap(o, m, gap)
+      end if
       call put(o, ' '//phrase(say_end, m%polish)//' '//whole(m%set_number) &
          //':  '//phrase(say_solved, m%polish)//' '//whole(solved) &
          //', '//phrase(say_marked, m%polish)//' '//whole(marked))

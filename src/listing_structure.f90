@@ -1,4 +1,4 @@
-!> Level 9. What the listing says of a mechanism's structure: the counts (12) and (13), and its Assur groups.
+!> Level 10. What the listing says of a mechanism's structure: the counts (12) and (13), and its Assur groups.
 module listing_structure
    use mechanism, only: mechanism_t
    use structure, only: findings_t, group_t

@@ -7,7 +7,7 @@
 module matching
    implicit none
    private
-   public :: incidence_t, match, find_blocks
+   public :: incidence_t, match, find_blocks, overdetermined, underdetermined
 
    !> Unknowns of equation e: unknown(first(e)), ..., unknown(first(e + 1) - 1), each once.
    type :: incidence_t
@@ -128,14 +128,16 @@ contains
    !> The blocks of a perfect matching: equations `member`(first(b)), ..., member(first(b + 1) - 1) are block b,
    !> solved for the unknowns matched with them. A block needs unknowns of earlier blocks only. No equation: no
    !> block.
-   subroutine find_blocks(g, equation_of, first, member)
+   subroutine find_blocks(g, equation_of, first, member, skip)
       type(incidence_t), intent(in) :: g
       integer, intent(in) :: equation_of(:)
       integer, allocatable, intent(out) :: first(:), member(:)
+      logical, intent(in), optional :: skip(:)
       integer :: number(g%equations), low(g%equations), path(g%equations), next(g%equations)
       integer :: stack(g%equations), counter, depth, top, blocks, members, root, e, further
 
       number = 0
+      if (present(skip)) number = merge(huge(1), 0, skip)
       counter = 0
       top = 0
       blocks = 0
@@ -166,6 +168,7 @@ contains
          end do
       end do
       first = first(:blocks + 1)
+      member = member(:members)
 
    contains
 
@@ -209,4 +212,56 @@ contains
          first(blocks + 1) = members + 1
       end subroutine close_block
    end subroutine find_blocks
+
+   !> (equations) The part with too many equations, of a largest matching: those without an unknown, and all that
+   !> stand for unknowns of theirs, again and again (Dulmage and Mendelsohn, Can. J. Math. 10, 1958). It needs no
+   !> other unknowns.
+   function overdetermined(g, unknown_of, equation_of) result(over)
+      type(incidence_t), intent(in) :: g
+      integer, intent(in) :: unknown_of(:), equation_of(:)
+      logical :: over(g%equations)
+      integer :: queue(g%equations), last, next, i, e
+
+      over = unknown_of == 0
+      queue = 0
+      last = count(over)
+      queue(:last) = pack([(i, i=1, g%equations)], over)
+      next = 1
+      do while (next <= last)
+         do i = g%first(queue(next)), g%first(queue(next) + 1) - 1
+            e = equation_of(g%unknown(i))
+            if (over(e)) cycle
+            over(e) = .true.
+            last = last + 1
+            queue(last) = e
+         end do
+         next = next + 1
+      end do
+   end function overdetermined
+
+   !> (unknowns) The part with too few equations: 0 for what is determined; other unknowns have the number of the
+   !> free one from which they were reached first.
+   function underdetermined(g, unknown_of, equation_of) result(part)
+      type(incidence_t), intent(in) :: g
+      integer, intent(in) :: unknown_of(:), equation_of(:)
+      integer :: part(g%unknowns)
+      integer :: root(g%unknowns), e, i, u
+      logical :: grown
+
+      root = [(u, u=1, g%unknowns)]
+      part = merge(root, 0, equation_of == 0)
+      do
+         grown = .false.
+         do e = 1, g%equations
+            if (unknown_of(e) == 0) cycle
+            if (part(unknown_of(e)) > 0) cycle
+            do i = g%first(e), g%first(e + 1) - 1
+               if (part(g%unknown(i)) == 0) cycle
+               part(unknown_of(e)) = part(g%unknown(i))
+               grown = .true.
+            end do
+         end do
+         if (.not. grown) exit
+      end do
+   end function underdetermined
 end module matching

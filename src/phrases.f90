@@ -7,7 +7,9 @@ module phrases
       say_prismatic, say_coordinates, say_equations, say_freedoms, say_drives, say_results, say_units, &
       say_instant, say_link, say_point, say_pair, say_phi, say_value, say_rate, say_rate2, say_none, &
       say_end, say_solved, say_marked, say_no_position, say_no_rates, say_overflow, say_card, say_default, &
-      say_in_units, say_groups, say_driven, say_not_needed
+      say_in_units, say_groups, say_driven, say_not_needed, &
+      say_open_by, say_limit, say_in_line, say_off_by, say_second, say_redundant, say_gap, say_mobile, &
+      say_contradiction, say_drive, say_below, say_at_limit
 
    integer, parameter :: phrase_length = 72
 
@@ -17,9 +19,11 @@ module phrases
       say_instant = 16, say_link = 17, say_point = 18, say_pair = 19, say_phi = 20, say_value = 21, &
       say_rate = 22, say_rate2 = 23, say_none = 24, say_end = 25, say_solved = 26, say_marked = 27, &
       say_no_position = 28, say_no_rates = 29, say_overflow = 30, say_card = 31, say_default = 32, &
-      say_in_units = 33, say_groups = 34, say_driven = 35, say_not_needed = 36
+      say_in_units = 33, say_groups = 34, say_driven = 35, say_not_needed = 36, say_open_by = 37, &
+      say_limit = 38, say_in_line = 39, say_off_by = 40, say_second = 41, say_redundant = 42, say_gap = 43, &
+      say_mobile = 44, say_contradiction = 45, say_drive = 46, say_below = 47, say_at_limit = 48
 
-   character(phrase_length), parameter :: words(2, 36) = reshape([character(phrase_length) :: &
+   character(phrase_length), parameter :: words(2, 48) = reshape([character(phrase_length) :: &
       'KINEMATICS OF PLANAR MECHANISMS IN MATRIX FORMULATION', &
       'KINEMATYKA MECHANIZMOW PLASKICH W UJECIU MACIERZOWYM', &
       'SET OF COMPUTATIONS NO.', 'KOMPLET OBLICZEN NR', &
@@ -57,7 +61,21 @@ module phrases
       'UNIT', 'JEDNOSTKA', &
       'ASSUR GROUPS IN SOLVING ORDER', 'GRUPY ASSURA W KOLEJNOSCI ROZWIAZYWANIA', &
       'DRIVEN', 'NAPEDZANA', &
-      'NOT NEEDED', 'ZBEDNA'], [2, 36])
+      'NOT NEEDED', 'ZBEDNA', &
+      'STAYS OPEN BY', 'POZOSTAJE OTWARTA O', &
+      'LIMIT OF MOTION AT T =', 'KRES RUCHU W CHWILI T =', &
+      'AT THE LIMIT, IN LINE', 'NA KRESIE RUCHU, W JEDNEJ LINII', &
+      'ROUGH ANGLE WAS OFF BY', 'KAT PRZYBLIZONY ODBIEGAL O', &
+      'ANOTHER ASSEMBLY IS ABOUT AS NEAR TO THE ROUGH POSITIONS', &
+      'INNY MONTAZ JEST PODOBNIE BLISKI POLOZEN PRZYBLIZONYCH', &
+      'REDUNDANT EQUATION', 'ROWNANIE NADLICZBOWE', &
+      'LARGEST GAP OF REDUNDANT EQUATIONS, OF THE SIZE:', &
+      'NAJWIEKSZA NIEZGODNOSC ROWNAN NADLICZBOWYCH WZGLEDEM WYMIARU:', &
+      'CAN STILL MOVE, ADD A DRIVE', 'RUCH NIEOKRESLONY, DODAJ NAPED', &
+      'TOO MANY EQUATIONS, AND THEY CONTRADICT ONE ANOTHER', 'ZA DUZO ROWNAN I PRZECZA SOBIE NAWZAJEM', &
+      'DRIVE', 'NAPED', &
+      'BELOW', 'PONIZEJ', &
+      'AT THE LIMIT', 'NA KRESIE RUCHU'], [2, 48])
 
 contains
 

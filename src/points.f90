@@ -1,4 +1,4 @@
-!> Level 3. The motion of what the tables ask for: links, any point of any link, and pairs.
+!> Level 4. The motion of what the tables ask for: links, any point of any link, and pairs.
 module points
    use kinds, only: wp, label_length
    use mechanism, only: mechanism_t, request_t, pair_t, pair_prismatic, request_link, request_point, request_pair, &

@@ -71,7 +71,8 @@ contains
          call cross(m, t, length, s%pairs(i), link, v, polygons%making)
       end do
       if (q > 0) then
-         v = v - point_in_frame(m, t, length, q)
+         ! Not their difference: what is left of arms that cancel is told by the largest that was added.
+         call add_arm(polygons%making, t%frame(link), -point_in_frame(m, t, length, q))
       else if (t%root(link) > 0) then
          call add_slide(polygons%making, 0, t%slides + 2*t%root(link) - 1, [1.0_wp, 0.0_wp])
          call add_slide(polygons%making, 0, t%slides + 2*t%root(link), [0.0_wp, 1.0_wp])
@@ -97,7 +98,8 @@ contains
          forward = is_on(m, k%point_i, link)
          exit_point = merge(k%point_i, k%point_j, forward)
          entry_point = merge(k%point_j, k%point_i, forward)
-         call add_arm(b, t%frame(link), v - point_in_frame(m, t, length, exit_point))
+         call add_arm(b, t%frame(link), v)
+         call add_arm(b, t%frame(link), -point_in_frame(m, t, length, exit_point))
          if (k%kind == pair_prismatic) then
             ! P - Q = h n - s e, all in the frame that the two links share.
             call add_slide(b, t%frame(link), t%slide(pair), merge(-1.0_wp, 1.0_wp, forward)*guide(m, t, pair, .false.))

@@ -1,4 +1,4 @@
-!> Level 5. A mechanism made ready for its closure equations, and a position of all its links.
+!> Level 6. A mechanism made ready for its closure equations, and a position of all its links.
 !>
 !> Unknowns: x, y, phi of every moving link, in the deck's order. Lengths are divided by a power of two near the
 !> characteristic length, which loses no digit and makes all that follows the same in any unit.

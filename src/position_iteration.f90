@@ -1,4 +1,4 @@
-!> Level 9. The iteration that both position methods are:
+!> Level 10. The iteration that both position methods are:
 !>
 !>    M(q_k) dq = -r(q_k),   q_(k+1) = q_k + dq
 !>

@@ -1,4 +1,4 @@
-!> Level 10. The position of all links by the paper's own iteration (METHOD MATRIX): A x_z = p - B x_n (20) with the
+!> Level 11. The position of all links by the paper's own iteration (METHOD MATRIX): A x_z = p - B x_n (20) with the
 !> coefficients c(phi), s(phi) of the last iterate. It converges linearly, like G = I - A^-1 J, or not at all.
 !>
 !> The reference angles, one for each row of each link, are the zeros nearest to the position predicted, and are kept

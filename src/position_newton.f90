@@ -1,4 +1,4 @@
-!> Level 10. The position of all links by Newton's method: the paper's matrix form (20) with tangent reference angles,
+!> Level 11. The position of all links by Newton's method: the paper's matrix form (20) with tangent reference angles,
 !> phi_ref = phi + cot(phi) in cosine rows and phi - tan(phi) in sine rows, where A is the Jacobian itself.
 module position_newton
    use kinds, only: wp

@@ -1,4 +1,4 @@
-!> Level 9. Velocities, then accelerations, each from one linear solve with the factors of the same Jacobian:
+!> Level 10. Velocities, then accelerations, each from one linear solve with the factors of the same Jacobian:
 !>
 !>    J v = f'                       (21) with the dependence of A' on the unknown velocities moved to the left
 !>    J a = f'' - gamma(q, v)        (22) likewise

@@ -1,4 +1,4 @@
-!> Level 6. The projections of a prismatic pair in a pose: on the guide's normal for eq. (9), along it for the slide.
+!> Level 7. The projections of a prismatic pair in a pose: on the guide's normal for eq. (9), along it for the slide.
 module sliding
    use kinds, only: wp
    use pose, only: system_t, pose_t, turned

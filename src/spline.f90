@@ -1,4 +1,4 @@
-!> Level 3. The natural C2 cubic spline through the rows of a table.
+!> Level 4. The natural C2 cubic spline through the rows of a table.
 !>
 !> With h_i = x_(i+1) - x_i and M_i the second derivative at knot i (M = 0 at both ends):
 !>    h_(i-1) M_(i-1) + 2 (h_(i-1) + h_i) M_i + h_i M_(i+1) = 6 (d_i - d_(i-1)),  d_i = (y_(i+1) - y_i)/h_i

@@ -1,19 +1,26 @@
-!> Level 8. What can be said of a mechanism before anything is solved: its counts, and its Assur groups.
+!> Level 9. What can be said of a mechanism before anything is solved: its counts, and its Assur groups.
 !>
 !> (12)  r = 2 (n1 + n2) + 3 n3
 !> (13)  s = 3 n - r        (the print subtracts 2 n1 + n2 only)
 module structure
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_revolute, pair_prismatic, wanted_links
-   use matching, only: match
+   use matching, only: match, overdetermined, underdetermined
    use closure_incidence, only: closure_t, new_closure
    use assur_groups, only: group_t, groups_of
    use links_tree, only: tree_t, new_tree
    use loop_equations, only: new_equations
-   use blocks, only: blocks_t, new_blocks
+   use blocks, only: blocks_t
+   use block_partition, only: new_blocks
    implicit none
    private
-   public :: findings_t, group_t, count_freedoms, find_structure
+   public :: findings_t, group_t, part_t, count_freedoms, find_structure
+
+   !> Links that still can move, and the drives that they lack.
+   type :: part_t
+      integer, allocatable :: links(:)
+      integer :: freedoms = 0
+   end type part_t
 
    type :: findings_t
       integer :: links = 0        !< n, ground links with them
@@ -25,6 +32,9 @@ module structure
       integer :: freedoms = 0     !< s
       integer :: drives = 0
       logical :: solvable = .false.             !< every unknown has an equation of its own
+      type(part_t), allocatable :: lacking(:)   !< what still can move
+      integer :: redundant = 0                  !< equations that are too many, among those of
+      integer, allocatable :: many_pairs(:), many_drives(:)
       type(group_t), allocatable :: groups(:)   !< in solving order; none where it is not
    end type findings_t
 
@@ -46,7 +56,7 @@ contains
       allocate (f%groups(0))
    end function count_freedoms
 
-   !> The counts of `m` and its groups.
+   !> The counts of `m`, its groups, and what its structure lacks or has too much of.
    function find_structure(m) result(f)
       type(mechanism_t), intent(in) :: m
       type(findings_t) :: f
@@ -54,14 +64,83 @@ contains
       type(tree_t) :: t
       type(blocks_t) :: b
       integer, allocatable :: unknown_of(:), equation_of(:)
+      logical, allocatable :: over(:)
 
       f = count_freedoms(m)
       c = new_closure(m)
       call match(c%incidence, unknown_of, equation_of)
-      f%solvable = all(unknown_of > 0) .and. all(equation_of > 0)
+      over = overdetermined(c%incidence, unknown_of, equation_of)
+      f%redundant = count(unknown_of == 0)
+      f%many_pairs = pack(c%pair, over .and. c%pair > 0)
+      f%many_drives = pack(c%drive, over .and. c%drive > 0)
+      f%lacking = parts_that_lack(m, c%link_of, underdetermined(c%incidence, unknown_of, equation_of))
+      if (size(f%lacking) > 0) return
       t = new_tree(m)
       b = new_blocks(t, new_equations(m, t, 1.0_wp))
-      f%solvable = f%solvable .and. b%solvable
-      if (f%solvable) f%groups = groups_of(m, c, unknown_of, equation_of, wanted_links(m))
+      if (.not. b%solvable) f%lacking = parts_on_tree(m, t, b%free)
+      f%solvable = size(f%lacking) == 0
+      if (f%solvable) f%groups = groups_of(m, c, unknown_of, equation_of, over, wanted_links(m))
    end function find_structure
+
+   !> The parts of `m` that still can move. `part` (unknowns): the free unknown by which each is free, 0 for none;
+   !> parts with a link in common are one.
+   function parts_that_lack(m, link_of, part) result(parts)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: link_of(:), part(:)
+      type(part_t), allocatable :: parts(:)
+      type(part_t) :: one
+      integer :: of_link(size(m%links)), u, i
+      logical :: merged
+
+      of_link = 0
+      do u = 1, size(part)
+         if (part(u) > 0 .and. of_link(link_of(u)) == 0) of_link(link_of(u)) = part(u)
+      end do
+      do
+         merged = .false.
+         do u = 1, size(part)
+            if (part(u) == 0) cycle
+            if (of_link(link_of(u)) == of_link(link_of(part(u)))) cycle
+            where (of_link == of_link(link_of(u))) of_link = of_link(link_of(part(u)))
+            merged = .true.
+         end do
+         if (.not. merged) exit
+      end do
+      allocate (parts(0))
+      do i = 1, size(m%links)
+         if (of_link(i) == 0) cycle
+         if (any(of_link(:i - 1) == of_link(i))) cycle
+         one%links = pack([(u, u=1, size(m%links))], of_link == of_link(i))
+         one%freedoms = count(part == [(u, u=1, size(part))] .and. part > 0 .and. of_link(link_of) == of_link(i))
+         parts = [parts, one]
+      end do
+   end function parts_that_lack
+
+   !> The same by unknowns of the tree that found no equation: two links that a prismatic pair joins have one angle.
+   function parts_on_tree(m, t, free) result(parts)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      integer, intent(in) :: free(:)
+      type(part_t), allocatable :: parts(:)
+      type(part_t) :: one
+      integer :: i, k
+      logical :: is_free(size(m%links))
+
+      allocate (parts(0))
+      do k = 1, size(free)
+         if (free(k) <= t%frames) then
+            is_free = t%frame == free(k)
+         else if (free(k) <= t%frames + t%slides) then
+            do i = 1, size(m%links)
+               is_free(i) = .false.
+               if (t%hung_by(i) > 0) is_free(i) = t%slide(t%hung_by(i)) == free(k) - t%frames
+            end do
+         else
+            is_free = t%root == (free(k) - t%frames - t%slides + 1)/2
+         end if
+         one%links = pack([(i, i=1, size(m%links))], is_free)
+         one%freedoms = 1
+         parts = [parts, one]
+      end do
+   end function parts_on_tree
 end module structure

@@ -285,12 +285,15 @@ equal '/dev/null may serve for all' 0 $?
 
 # Drives and freedoms.
 { card TITLE 'NO DRIVE'; four_bar 1.0 3.5 3.0 4.0 0.0 0.9 1.9; card TIME 2 '' '' 0.0 2.0; card END; } > "$w/few.deck"
-refused 'no drive' 1 ' *** E101  SET 1: W = 12 COORDINATES LESS R = 11 EQUATIONS LEAVE S = 1 FREEDOMS, BUT DRIVES ARE 0' \
+refused 'no drive' 1 ' *** E101  SET 1: LINKS CRANK, COUPLER, ROCKER: 1 FREEDOM LEFT, ADD A DRIVE
+ *** E103  SET 1: W = 12 COORDINATES LESS R = 11 EQUATIONS LEAVE S = 1 FREEDOMS, DRIVES ARE 0' \
    "$w/few.deck"
 { PHI=0.0 RATE=1.0; one_set 1.0 3.5 3.0 4.0 0.0 0.9 1.9; card DRIVE ANGLE ROCKER '' 0.5 1.0 0.0; card END; } > "$w/many.deck"
 { cat "$w/m.deck"; cat "$w/many.deck"; } > "$w/third.deck"
-refused 'a drive too many, in the third set' 1 \
-   ' *** E101  SET 3: W = 12 COORDINATES LESS R = 11 EQUATIONS LEAVE S = 1 FREEDOMS, BUT DRIVES ARE 2' "$w/third.deck"
+"$kinmat" "$w/third.deck" > "$w/third.lst" 2> "$w/err"
+equal 'a drive too many, in the third set: status' 2 $?
+equal 'a drive too many, in the third set: the drives do not agree' ' *** TOO MANY EQUATIONS, AND THEY CONTRADICT ONE ANOTHER' \
+   "$(grep -m 1 'CONTRADICT' "$w/third.lst")"
 
 # What cannot be assembled is marked: 1 + 1 + 1 < 4.
 { PHI=0.0 RATE=1.0; one_set 1.0 1.0 1.0 4.0 0.0 0.9 1.9; card END; } > "$w/open.deck"

@@ -10,7 +10,15 @@ module listing_check
    character(70), parameter :: marks(*) = [character(70) :: 'NO POSITION FOUND', 'NIE ZNALEZIONO POLOZENIA', &
       'JACOBIAN SINGULAR: VELOCITIES AND ACCELERATIONS DO NOT EXIST', &
       'JAKOBIAN OSOBLIWY: PREDKOSCI I PRZYSPIESZENIA NIE ISTNIEJA', &
-      'THE RESULT IS TOO LARGE A NUMBER', 'WYNIK JEST ZBYT DUZA LICZBA']
+      'THE RESULT IS TOO LARGE A NUMBER', 'WYNIK JEST ZBYT DUZA LICZBA', &
+      'TOO MANY EQUATIONS, AND THEY CONTRADICT ONE ANOTHER', 'ZA DUZO ROWNAN I PRZECZA SOBIE NAWZAJEM']
+   !> What a remark holds, after three stars or three dashes.
+   character(60), parameter :: remarks(*) = [character(60) :: 'STAYS OPEN BY', 'POZOSTAJE OTWARTA O', &
+      'LIMIT OF MOTION AT T =', 'KRES RUCHU W CHWILI T =', 'AT THE LIMIT', 'NA KRESIE RUCHU', &
+      'CAN STILL MOVE, ADD A DRIVE', 'RUCH NIEOKRESLONY, DODAJ NAPED', &
+      'ROUGH ANGLE WAS OFF BY', 'KAT PRZYBLIZONY ODBIEGAL O', 'ANOTHER ASSEMBLY IS ABOUT AS NEAR TO THE ROUGH POSITIONS', &
+      'INNY MONTAZ JEST PODOBNIE BLISKI POLOZEN PRZYBLIZONYCH', 'REDUNDANT EQUATION', 'ROWNANIE NADLICZBOWE', &
+      'LARGEST GAP OF REDUNDANT EQUATIONS', 'NAJWIEKSZA NIEZGODNOSC ROWNAN NADLICZBOWYCH']
 
 contains
 
@@ -37,7 +45,7 @@ contains
             tables = .false.
             ends = ends + 1
          end if
-         if (tables .and. starts(line, ' *** ')) marked = marked + 1
+         if (tables .and. starts(line, ' *** ')) marked = marked + merge(0, 1, is_remark(line))
          if (line_is_wrong(line, tables) .and. wrong == '') wrong = 'LISTING: '//trim(line)
       end do
       if (ends /= sets) wrong = 'LISTING: NOT ALL SETS COME TO THEIR END'
@@ -53,13 +61,26 @@ contains
       if (.not. tables) then
          wrong = index(line, '****') > 0
       else if (starts(line, ' *** ')) then
-         wrong = all(marks /= line(6:75))
+         wrong = all(marks /= line(6:75)) .and. .not. is_remark(line)
+      else if (is_remark(line)) then
+         wrong = .false.
       else if (starts(line, ' INSTANT ') .or. starts(line, ' CHWILA ')) then
          wrong = .not. are_numbers(line(index(line, 'T =', back=.true.) + 3:))
       else
          wrong = .not. (are_numbers(line(10:)) .or. are_heads(line(10:)))
       end if
    end function line_is_wrong
+
+   !> The line holds the words of a remark.
+   pure logical function is_remark(line)
+      character(*), intent(in) :: line
+      integer :: i
+
+      is_remark = .false.
+      do i = 1, size(remarks)
+         is_remark = is_remark .or. index(line, trim(remarks(i))) > 0
+      end do
+   end function is_remark
 
    pure logical function starts(line, text)
       character(*), intent(in) :: line, text

@@ -1,0 +1,119 @@
+!> Level 11. What the block engine has to say of a motion beside its numbers.
+module block_remarks
+   use kinds, only: wp
+   use drives, only: drive_motion
+   use remarks, only: remark_t, new_remark, remark_limit, remark_second, remark_redundant, remark_mobile
+   use block_state, only: state_t
+   use block_rank, only: redundant_rows, moving_unknowns
+   use first_position, only: has_second_position
+   use block_engine, only: block_engine_t
+   implicit none
+   private
+   public :: first_remarks, limit_remark
+
+   !> A limit is told where it is no further than this part of the step that could not be made.
+   real(wp), parameter :: near_part = 1.0e-6_wp
+
+contains
+
+   !> Of the first motion found: which equations are redundant, what can still move where `singular` says that the
+   !> Jacobian has no inverse, and where the choice of an assembly was close.
+   function first_remarks(e, singular) result(list)
+      type(block_engine_t), intent(inout) :: e
+      logical, intent(in) :: singular
+      type(remark_t), allocatable :: list(:)
+      integer :: k
+
+      allocate (list(0))
+      if (e%blocks%redundant > 0) list = redundancies(e)
+      do k = 1, size(e%needed)
+         associate (block => e%blocks%list(e%needed(k)))
+            if (block%direct) cycle
+            if (singular) then
+               call add_mobility(e, e%needed(k), list)
+            else if (has_second_position(e%blocks, e%needed(k), e%tolerance, &
+               e%rough(e%blocks%unknown(block%first:block%last)), e%work, e%state)) then
+               list = [list, new_remark(remark_second, links_of(e, e%blocks%unknown(block%first:block%last)))]
+            end if
+         end associate
+      end do
+   end function first_remarks
+
+   !> Each pair and drive with redundant equations, once.
+   function redundancies(e) result(list)
+      type(block_engine_t), intent(inout) :: e
+      type(remark_t), allocatable :: list(:)
+      type(remark_t) :: r
+      integer, allocatable :: rows(:)
+      integer :: k
+
+      allocate (list(0))
+      rows = redundant_rows(e%blocks, 1, e%state)
+      do k = size(rows), 1, -1
+         r = remark_t(kind=remark_redundant, pair=e%blocks%rows(rows(k))%pair, drive=e%blocks%rows(rows(k))%drive)
+         if (any(list%pair == r%pair .and. list%drive == r%drive)) cycle
+         list = [list, r]
+      end do
+   end function redundancies
+
+   !> The links of block `i` that can move.
+   subroutine add_mobility(e, i, list)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i
+      type(remark_t), allocatable, intent(inout) :: list(:)
+      logical, allocatable :: moves(:)
+
+      moves = moving_unknowns(e%blocks, i, e%state)
+      if (.not. any(moves)) return
+      associate (block => e%blocks%list(i))
+         list = [list, new_remark(remark_mobile, links_of(e, pack(e%blocks%unknown(block%first:block%last), moves)))]
+      end associate
+   end subroutine add_mobility
+
+   !> (links) Those whose angle is among the `unknowns`.
+   pure function links_of(e, unknowns) result(chosen)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: unknowns(:)
+      logical :: chosen(size(e%frame_of))
+      integer :: k
+
+      chosen = .false.
+      do k = 1, size(unknowns)
+         chosen = chosen .or. (e%frame_of == unknowns(k) .and. e%frame_of > 0)
+      end do
+   end function links_of
+
+   !> Where the last motion kept comes to its end on the way to `t`, if it does. Close to a limit t* the fastest
+   !> unknown is x* + c sqrt(t* - t), so t* - t = -x'/(2 x''), with an error of higher order.
+   function limit_remark(e, t) result(list)
+      type(block_engine_t), intent(in) :: e
+      real(wp), intent(in) :: t
+      type(remark_t), allocatable :: list(:)
+      type(remark_t) :: r
+      real(wp) :: rest, f(3)
+      integer :: fastest, k
+
+      allocate (list(0))
+      if (size(e%history%sought) == 0) return
+      associate (h => e%history, p => e%history%place(0))
+         fastest = h%sought(maxloc(abs(h%rate2(h%sought, p)), dim=1))
+         if (abs(h%rate2(fastest, p)) <= 0.0_wp) return
+         rest = 0.5_wp*h%rate(fastest, p)/h%rate2(fastest, p)
+         if (rest*sign(1.0_wp, t - h%t(p)) <= 0.0_wp .or. abs(rest) > near_part*abs(t - h%t(p))) return
+         associate (block => e%blocks%list(e%blocks%block_of(fastest)))
+            r = new_remark(remark_limit, links_of(e, e%blocks%unknown(block%first:block%last)))
+            r%in_line = block%shape%n == 2 .and. count(r%links > 0) == 2
+         end associate
+         r%t = h%t(p) + rest
+      end associate
+      do k = 1, size(e%laws)
+         f = drive_motion(e%laws(k), r%t)
+         if (r%drive > 0 .and. abs(f(2)) <= 0.0_wp) cycle
+         r%drive = k
+         r%value = f(1)
+         r%is_angle = e%is_angle(k)
+         if (abs(f(2)) > 0.0_wp) exit
+      end do
+      list = [r]
+   end function limit_remark
+end module block_remarks

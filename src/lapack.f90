@@ -1,0 +1,112 @@
+!> Level 2. The routines of LAPACK that are used, and nothing else of it.
+module lapack
+   use kinds, only: wp
+   implicit none
+   private
+   public :: dgesv, dgetrf, dgetrs, dgecon, dgbsv, dgbtrs, dgbcon, dptsv
+   public :: dgeqrf, dormqr, dtrtrs, dtrcon, dgesvd
+
+   interface
+      subroutine dgetrf(m, n, a, lda, ipiv, info)
+         import :: wp
+         integer, intent(in) :: m, n, lda
+         real(wp), intent(inout) :: a(lda, *)
+         integer, intent(out) :: ipiv(*), info
+      end subroutine dgetrf
+      subroutine dgetrs(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
+         import :: wp
+         character(1), intent(in) :: trans
+         integer, intent(in) :: n, nrhs, lda, ldb, ipiv(*)
+         real(wp), intent(in) :: a(lda, *)
+         real(wp), intent(inout) :: b(ldb, *)
+         integer, intent(out) :: info
+      end subroutine dgetrs
+      subroutine dgecon(norm, n, a, lda, anorm, rcond, work, iwork, info)
+         import :: wp
+         character(1), intent(in) :: norm
+         integer, intent(in) :: n, lda
+         real(wp), intent(in) :: a(lda, *), anorm
+         real(wp), intent(out) :: rcond
+         real(wp), intent(inout) :: work(*)
+         integer, intent(inout) :: iwork(*)
+         integer, intent(out) :: info
+      end subroutine dgecon
+      subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
+         import :: wp
+         integer, intent(in) :: n, nrhs, lda, ldb
+         real(wp), intent(inout) :: a(lda, *), b(ldb, *)
+         integer, intent(out) :: ipiv(*), info
+      end subroutine dgesv
+      subroutine dgbsv(n, kl, ku, nrhs, ab, ldab, ipiv, b, ldb, info)
+         import :: wp
+         integer, intent(in) :: n, kl, ku, nrhs, ldab, ldb
+         real(wp), intent(inout) :: ab(ldab, *), b(ldb, *)
+         integer, intent(out) :: ipiv(*), info
+      end subroutine dgbsv
+      subroutine dgbcon(norm, n, kl, ku, ab, ldab, ipiv, anorm, rcond, work, iwork, info)
+         import :: wp
+         character(1), intent(in) :: norm
+         integer, intent(in) :: n, kl, ku, ldab, ipiv(*)
+         real(wp), intent(in) :: ab(ldab, *), anorm
+         real(wp), intent(out) :: rcond
+         real(wp), intent(inout) :: work(*)
+         integer, intent(inout) :: iwork(*)
+         integer, intent(out) :: info
+      end subroutine dgbcon
+      subroutine dgbtrs(trans, n, kl, ku, nrhs, ab, ldab, ipiv, b, ldb, info)
+         import :: wp
+         character(1), intent(in) :: trans
+         integer, intent(in) :: n, kl, ku, nrhs, ldab, ldb, ipiv(*)
+         real(wp), intent(in) :: ab(ldab, *)
+         real(wp), intent(inout) :: b(ldb, *)
+         integer, intent(out) :: info
+      end subroutine dgbtrs
+      subroutine dptsv(n, nrhs, d, e, b, ldb, info)
+         import :: wp
+         integer, intent(in) :: n, nrhs, ldb
+         real(wp), intent(inout) :: d(*), e(*), b(ldb, *)
+         integer, intent(out) :: info
+      end subroutine dptsv
+      subroutine dgeqrf(m, n, a, lda, tau, work, lwork, info)
+         import :: wp
+         integer, intent(in) :: m, n, lda, lwork
+         real(wp), intent(inout) :: a(lda, *), work(*)
+         real(wp), intent(out) :: tau(*)
+         integer, intent(out) :: info
+      end subroutine dgeqrf
+      subroutine dormqr(side, trans, m, n, k, a, lda, tau, c, ldc, work, lwork, info)
+         import :: wp
+         character(1), intent(in) :: side, trans
+         integer, intent(in) :: m, n, k, lda, ldc, lwork
+         real(wp), intent(in) :: a(lda, *), tau(*)
+         real(wp), intent(inout) :: c(ldc, *), work(*)
+         integer, intent(out) :: info
+      end subroutine dormqr
+      subroutine dtrtrs(uplo, trans, diag, n, nrhs, a, lda, b, ldb, info)
+         import :: wp
+         character(1), intent(in) :: uplo, trans, diag
+         integer, intent(in) :: n, nrhs, lda, ldb
+         real(wp), intent(in) :: a(lda, *)
+         real(wp), intent(inout) :: b(ldb, *)
+         integer, intent(out) :: info
+      end subroutine dtrtrs
+      subroutine dtrcon(norm, uplo, diag, n, a, lda, rcond, work, iwork, info)
+         import :: wp
+         character(1), intent(in) :: norm, uplo, diag
+         integer, intent(in) :: n, lda
+         real(wp), intent(in) :: a(lda, *)
+         real(wp), intent(out) :: rcond
+         real(wp), intent(inout) :: work(*)
+         integer, intent(inout) :: iwork(*)
+         integer, intent(out) :: info
+      end subroutine dtrcon
+      subroutine dgesvd(jobu, jobvt, m, n, a, lda, s, u, ldu, vt, ldvt, work, lwork, info)
+         import :: wp
+         character(1), intent(in) :: jobu, jobvt
+         integer, intent(in) :: m, n, lda, ldu, ldvt, lwork
+         real(wp), intent(inout) :: a(lda, *), work(*)
+         real(wp), intent(out) :: s(*), u(ldu, *), vt(ldvt, *)
+         integer, intent(out) :: info
+      end subroutine dgesvd
+   end interface
+end module lapack

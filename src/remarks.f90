@@ -1,0 +1,47 @@
+!> Level 2. What there is to say of an instant beside its numbers, as data: the writers find the words.
+module remarks
+   use kinds, only: wp
+   implicit none
+   private
+   public :: remark_t, new_remark, most_links
+   public :: remark_open, remark_limit, remark_far, remark_second, remark_redundant, remark_gap, remark_mobile
+
+   integer, parameter :: remark_open = 1       !< an equation of `pair` or `drive` stays open by `value`
+   integer, parameter :: remark_limit = 2      !< at `t`, where `drive` has `value`, the motion of `links` has its limit
+   integer, parameter :: remark_far = 3        !< the rough position of links(1) was off by the angle `value`
+   integer, parameter :: remark_second = 4     !< `links` could as well have been assembled in another way
+   integer, parameter :: remark_redundant = 5  !< an equation of `pair` or `drive` could be spared
+   integer, parameter :: remark_gap = 6        !< redundant equations differ by `value` at most
+   integer, parameter :: remark_mobile = 7     !< `links` can move although the drives stand still
+
+   integer, parameter :: most_links = 6
+
+   !> Lengths in the deck's unit, angles in radians; 0 stands for no pair, drive or link.
+   type :: remark_t
+      integer :: kind = 0
+      integer :: pair = 0, drive = 0
+      integer :: links(most_links) = 0
+      logical :: in_line = .false.             !< remark_limit: the two links are in line
+      logical :: is_angle = .false.            !< of `value`
+      real(wp) :: value = 0.0_wp, t = 0.0_wp
+   end type remark_t
+
+contains
+
+   !> A remark on those links that are `.true.` in `chosen`, as many as there is room for.
+   pure function new_remark(kind, chosen) result(r)
+      integer, intent(in) :: kind
+      logical, intent(in) :: chosen(:)
+      type(remark_t) :: r
+      integer :: i, n
+
+      r%kind = kind
+      n = 0
+      do i = 1, size(chosen)
+         if (.not. chosen(i)) cycle
+         n = n + 1
+         if (n > most_links) exit
+         r%links(n) = i
+      end do
+   end function new_remark
+end module remarks
