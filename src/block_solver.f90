@@ -161,7 +161,7 @@ contains
          call solve_again(shape, a, pivots, work, r(:, 2))
          exit
       end do
-      correction = max(correction, largest_change(b, i, shape%n, s, start))
+      if (c%iterations > 1 .or. c%step > 0.0_wp) correction = max(correction, largest_change(b, i, shape%n, s, start))
    end subroutine seek
 
    !> Rounding is all that is left to correct, and the position stays; among equations that contradict one another
@@ -286,10 +286,11 @@ contains
       call pivot_range(b%list(i)%shape, w%a, w%pivots, least, largest, c%determinant)
       c%reciprocal_condition = 1.0_wp
       if (n == 0) return
-      inverse = 1.0_wp/least
-      if (n == 2 .or. (n > 2 .and. least < suspicious_pivot*largest)) &
-         inverse = inverse_norm(b%list(i)%shape, w%a, w%pivots, w%work, w%iwork)
-      c%reciprocal_condition = min(1.0_wp, 1.0_wp/(inverse*merge(1.0_wp, largest, n == 1)))
+      if (n == 1) largest = max(1.0_wp, b%list(i)%bend)
+      c%reciprocal_condition = least/largest
+      if (c%reciprocal_condition >= suspicious_pivot) return
+      inverse = inverse_norm(b%list(i)%shape, w%a, w%pivots, w%work, w%iwork)
+      c%reciprocal_condition = min(1.0_wp, 1.0_wp/(inverse*largest))
       size_of = 1.0_wp
       do k = b%list(i)%first, b%list(i)%last
          size_of = max(size_of, abs(s%u(b%unknown(k))%value))
