@@ -287,8 +287,8 @@ contains
       c%reciprocal_condition = 1.0_wp
       if (n == 0) return
       if (n == 1) largest = max(1.0_wp, b%list(i)%bend)
-      c%reciprocal_condition = least/largest
-      if (c%reciprocal_condition >= suspicious_pivot) return
+      if (n > 1) c%reciprocal_condition = least/largest
+      if (least >= suspicious_pivot*largest) return
       inverse = inverse_norm(b%list(i)%shape, w%a, w%pivots, w%work, w%iwork)
       c%reciprocal_condition = min(1.0_wp, 1.0_wp/(inverse*largest))
       size_of = 1.0_wp
