@@ -3,18 +3,20 @@
 module hand_groups
    use mechanism, only: mechanism_t
    use structure, only: group_t
+   use remarks, only: remark_t, remark_redundant
    implicit none
    private
-   public :: groups_by_hand
+   public :: groups_by_hand, redundant_by_hand
 
    !> Of all sets of a deck (0) or of one.
    type :: statement_t
       character(24) :: deck = ''
       integer :: set = 0
       character(100) :: groups = ''
+      character(40) :: redundant = ''    !< pairs with equations that could be spared
    end type statement_t
 
-   type(statement_t), parameter :: statements(46) = [ &
+   type(statement_t), parameter :: statements(51) = [ &
       statement_t('yoke', 0, '*CRANK; BLOCK LEVER; ROD RAM'), &
       statement_t('yoke_mirrored', 0, '*CRANK; BLOCK LEVER; ROD RAM'), &
       statement_t('four_bar', 0, '*CRANK; COUPLER ROCKER'), &
@@ -62,7 +64,14 @@ module hand_groups
       statement_t('scott_russell_at', 0, '*CRANK; BAR SHOE'), &
       statement_t('dead_point_6', 0, '*PISTON; CRANK ROD'), &
       statement_t('dead_point_9', 0, '*PISTON; CRANK ROD'), &
-      statement_t('dead_point_12', 0, '*PISTON; CRANK ROD')]
+      statement_t('dead_point_12', 0, '*PISTON; CRANK ROD'), &
+      ! Links that equations too many tie together are one group. Which equation is too many is a matter of choice:
+      ! it is that of the last pair that closes a loop.
+      statement_t('parallel_cranks', 0, '*CRANK-1 CRANK-2 CRANK-3 COUPLER', 'PAIR-C'), &
+      statement_t('double_parallelogram', 0, '*CRANK-A CRANK-B LOWER UPPER', 'PAIR-B2'), &
+      statement_t('two_guides', 0, '*CRANK; ROD CARRIAGE', 'GUIDE-2'), &
+      statement_t('cognates', 0, '*CRANK COUPLER ROCKER CRANK-L COUP-L ROCKER-L CRANK-R COUP-R ROCKER-R', 'PAIR-PL PAIR-PR'), &
+      statement_t('dixon', 0, '*BAR-12 BAR-13 BAR-21 BAR-22 BAR-23 BAR-31 BAR-32 BAR-33', 'PAIR-A32')]
 
 contains
 
@@ -86,6 +95,23 @@ contains
          return
       end do
    end function groups_by_hand
+
+   !> What is to be said of the redundant equations of the deck called `name`.
+   function redundant_by_hand(name, m) result(list)
+      character(*), intent(in) :: name
+      type(mechanism_t), intent(in) :: m
+      type(remark_t), allocatable :: list(:)
+      integer :: i, k
+
+      allocate (list(0))
+      do i = 1, size(statements)
+         if (statements(i)%deck /= name) cycle
+         do k = 1, size(m%pairs)
+            if (index(' '//statements(i)%redundant, ' '//trim(m%pairs(k)%name)//' ') == 0) cycle
+            list = [list, remark_t(kind=remark_redundant, pair=k)]
+         end do
+      end do
+   end function redundant_by_hand
 
    !> One group from its text.
    function group(m, text) result(g)

@@ -7,7 +7,7 @@ program print_expected
    use mechanism, only: mechanism_t, instant_count, instant
    use motion, only: motion_t, new_motion
    use structure, only: findings_t
-   use hand_groups, only: groups_by_hand
+   use hand_groups, only: groups_by_hand, redundant_by_hand
    use deck, only: read_deck
    use text_output, only: output_t, open_output, close_output
    use listing, only: layout_t, new_layout, listing_head, listing_instant, listing_end
@@ -56,9 +56,15 @@ contains
       end do
       do k = 0, instant_count(m) - 1
          call move_to(name, m, instant(m, k), q)
+         if (k == 0) q%remarks = redundant_by_hand(name, m)
+         if (k > 0 .and. allocated(q%remarks)) deallocate (q%remarks)
          call listing_instant(o, layout, m, q, k)
       end do
-      call listing_end(o, m, instant_count(m), 0)
+      if (size(redundant_by_hand(name, m)) > 0) then
+         call listing_end(o, m, instant_count(m), 0, gap=0.0_wp)
+      else
+         call listing_end(o, m, instant_count(m), 0)
+      end if
    end subroutine print_set
 
    !> The motion at `t`, its angles on the branch next to those of `q` as it comes: the instant before, at the
