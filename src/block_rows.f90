@@ -127,12 +127,13 @@ contains
       type(blocks_t), intent(in) :: b
       type(instance_t), intent(in) :: g
       integer, intent(in) :: m, place, stride
-      type(state_t), intent(in) :: s
+      type(state_t), intent(inout) :: s
       real(wp), intent(inout) :: a(*), r(*)
       integer :: k, at
       real(wp) :: f(2)
 
       f = turned(s, g%frame, g%direction)
+      s%part(m)%f = f
       r(g%row_x) = s%part(m)%gap(1)*f(1) + s%part(m)%gap(2)*f(2)
       at = place + g%row_x
       do k = g%first_own, g%last_arm

@@ -3,7 +3,7 @@
 module block_sides
    use kinds, only: wp
    use blocks, only: blocks_t, instance_t, instance_components, instance_projection
-   use block_state, only: state_t, slide_vector, turned, across
+   use block_state, only: state_t, slide_vector, across
    implicit none
    private
    public :: rate_side
@@ -11,7 +11,8 @@ module block_sides
 contains
 
    !> Right-hand side `v` (n) for the velocities (`order` 1) or, once these are known, the accelerations (2) of
-   !> block `i`: the drives' rates less what is given. Gaps and own arms are those of the last `block_system`.
+   !> block `i`: the drives' rates less what is given. Gaps, directions and own arms are those of the last
+   !> `block_system`.
    pure subroutine rate_side(b, i, order, s, v)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, order
@@ -102,11 +103,11 @@ contains
       type(instance_t), intent(in) :: instance
       integer, intent(in) :: m, order
       type(state_t), intent(in) :: s
-      real(wp) :: f(2)
+      real(wp) :: g(2)
 
-      associate (c => s%u(instance%frame), gap => s%part(m)%gap)
-         f = turned(s, instance%frame, instance%direction)
-         v = dot_product(given_part(b, instance, m, order, s), f)
+      associate (c => s%u(instance%frame), gap => s%part(m)%gap, f => s%part(m)%f)
+         g = given_part(b, instance, m, order, s)
+         v = g(1)*f(1) + g(2)*f(2)
          if (instance%frame == 0) return
          if (order == 1) then
             if (instance%frame_column == 0) v = v + c%rate*across(gap, f)

@@ -17,6 +17,7 @@ module block_state
    type :: part_t
       real(wp) :: known(2, 0:2) = 0.0_wp
       real(wp) :: gap(2) = 0.0_wp
+      real(wp) :: f(2) = 0.0_wp                      !< the direction on which it is projected, if it is
    end type part_t
 
    type :: state_t

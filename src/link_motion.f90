@@ -8,6 +8,7 @@ module link_motion
    use motion, only: motion_t
    use links_tree, only: tree_t
    use tree_places, only: place_t, place_on_tree
+   use unknowns, only: unknown_t
    use block_state, only: state_t
    implicit none
    private
@@ -88,95 +89,122 @@ contains
       real(wp), intent(in) :: length
       type(motion_t), intent(inout) :: q
       logical, intent(out) :: finite
-      real(wp) :: p(2), v(2), a(2), check
       integer :: i
 
       do i = 1, size(c%ground)
          q%position(:, c%ground(i)) = c%ground_position(:, i)
       end do
+      call move_hung(size(c%hung), c%hung, s%u, length, q%position, q%velocity, q%acceleration, finite)
+   end subroutine move_links
+
+   !> The same on plain arrays, which cost no descriptors.
+   pure subroutine move_hung(n, hung, u, length, p, v, a, finite)
+      integer, intent(in) :: n
+      type(hung_t), intent(in) :: hung(n)
+      type(unknown_t), intent(in) :: u(0:*)
+      real(wp), intent(in) :: length
+      real(wp), intent(inout) :: p(3, *), v(3, *), a(3, *)
+      logical, intent(out) :: finite
+      real(wp) :: check
+      integer :: i, k
+
       check = 0.0_wp
-      do i = 1, size(c%hung)
-         associate (h => c%hung(i), k => c%hung(i)%link, f => s%u(c%hung(i)%frame))
-            call place(h, s, p, v, a)
-            if (h%slide > 0) call add_slide(h, s, length, p, v, a)
-            if (h%root > 0) call add_root(h, s, length, p, v, a)
+      do i = 1, n
+         associate (h => hung(i), f => u(hung(i)%frame))
+            k = h%link
+            call reach_out(h, u(h%frame_above), p(1, k), v(1, k), a(1, k))
+            if (h%has_arm) call draw_back(h, f, p(1, k), v(1, k), a(1, k))
+            if (h%slide > 0) call add_slide(h, u(h%frame_above), u(h%slide), length, p(1, k), v(1, k), a(1, k))
+            if (h%root > 0) call add_root(u(h%root), length, p(1, k), v(1, k), a(1, k))
             if (h%above > 0) then
-               p = p + q%position(:2, h%above)
-               v = v + q%velocity(:2, h%above)
-               a = a + q%acceleration(:2, h%above)
+               p(:2, k) = p(:2, k) + p(:2, h%above)
+               v(:2, k) = v(:2, k) + v(:2, h%above)
+               a(:2, k) = a(:2, k) + a(:2, h%above)
             end if
-            q%position(:2, k) = p
-            q%velocity(:2, k) = v
-            q%acceleration(:2, k) = a
-            q%position(3, k) = f%value + h%turn
-            q%velocity(3, k) = f%rate
-            q%acceleration(3, k) = f%rate2
+            p(3, k) = f%value + h%turn
+            v(3, k) = f%rate
+            a(3, k) = f%rate2
             ! Zero, unless something in the sum is infinite or no number.
-            check = check + 0.0_wp*((p(1) + p(2)) + (v(1) + v(2)) + ((a(1) + a(2)) + f%rate2))
+            check = check + 0.0_wp*((p(1, k) + p(2, k)) + (v(1, k) + v(2, k)) + ((a(1, k) + a(2, k)) + f%rate2))
          end associate
       end do
       finite = check <= 0.0_wp
-   end subroutine move_links
+   end subroutine move_hung
 
-   !> u - w with derivatives, but for a slide.
-   pure subroutine place(h, s, p, v, a)
+   !> u with derivatives, but for a slide.
+   pure subroutine reach_out(h, f, p, v, a)
       type(hung_t), intent(in) :: h
-      type(state_t), intent(in) :: s
-      real(wp), intent(out) :: p(2), v(2), a(2)
+      type(unknown_t), intent(in) :: f
+      real(wp), intent(inout) :: p(3), v(3), a(3)
       real(wp) :: x, y, square
 
       if (h%frame_above == 0) then
-         p = h%place%reach
-         v = 0.0_wp
-         a = 0.0_wp
-      else
-         associate (f => s%u(h%frame_above), d => h%place%reach)
-            p(1) = f%c*d(1) - f%s*d(2)
-            p(2) = f%s*d(1) + f%c*d(2)
-            square = f%rate*f%rate
-            v(1) = -f%rate*p(2)
-            v(2) = f%rate*p(1)
-            a(1) = -f%rate2*p(2) - square*p(1)
-            a(2) = f%rate2*p(1) - square*p(2)
-         end associate
+         p(1) = h%place%reach(1)
+         p(2) = h%place%reach(2)
+         v(1) = 0.0_wp
+         v(2) = 0.0_wp
+         a(1) = 0.0_wp
+         a(2) = 0.0_wp
+         return
       end if
-      if (.not. h%has_arm) return
-      associate (f => s%u(h%frame), d => h%place%arm)
+      associate (d => h%place%reach)
          x = f%c*d(1) - f%s*d(2)
          y = f%s*d(1) + f%c*d(2)
          square = f%rate*f%rate
-         p = p - [x, y]
-         v = v - [-f%rate*y, f%rate*x]
-         a = a - [-f%rate2*y - square*x, f%rate2*x - square*y]
+         p(1) = x
+         p(2) = y
+         v(1) = -f%rate*y
+         v(2) = f%rate*x
+         a(1) = -f%rate2*y - square*x
+         a(2) = f%rate2*x - square*y
       end associate
-   end subroutine place
+   end subroutine reach_out
+
+   !> Less w with derivatives.
+   pure subroutine draw_back(h, f, p, v, a)
+      type(hung_t), intent(in) :: h
+      type(unknown_t), intent(in) :: f
+      real(wp), intent(inout) :: p(3), v(3), a(3)
+      real(wp) :: x, y, square
+
+      associate (d => h%place%arm)
+         x = f%c*d(1) - f%s*d(2)
+         y = f%s*d(1) + f%c*d(2)
+         square = f%rate*f%rate
+         p(1) = p(1) - x
+         p(2) = p(2) - y
+         v(1) = v(1) + f%rate*y
+         v(2) = v(2) - f%rate*x
+         a(1) = a(1) + f%rate2*y + square*x
+         a(2) = a(2) - f%rate2*x + square*y
+      end associate
+   end subroutine draw_back
 
    !> The slide by which the link hangs.
-   pure subroutine add_slide(h, s, length, p, v, a)
+   pure subroutine add_slide(h, f, u, length, p, v, a)
       type(hung_t), intent(in) :: h
-      type(state_t), intent(in) :: s
+      type(unknown_t), intent(in) :: f, u
       real(wp), intent(in) :: length
-      real(wp), intent(inout) :: p(2), v(2), a(2)
+      real(wp), intent(inout) :: p(3), v(3), a(3)
       real(wp) :: e(2), turn(2)
 
-      associate (f => s%u(h%frame_above), u => s%u(h%slide), d => h%place%slide_arm)
+      associate (d => h%place%slide_arm)
          e = length*[f%c*d(1) - f%s*d(2), f%s*d(1) + f%c*d(2)]
          turn = [-e(2), e(1)]
-         p = p + u%value*e
-         v = v + u%rate*e + u%value*f%rate*turn
-         a = a + u%rate2*e + 2.0_wp*u%rate*f%rate*turn + u%value*(f%rate2*turn - f%rate**2*e)
+         p(:2) = p(:2) + u%value*e
+         v(:2) = v(:2) + u%rate*e + u%value*f%rate*turn
+         a(:2) = a(:2) + u%rate2*e + 2.0_wp*u%rate*f%rate*turn + u%value*(f%rate2*turn - f%rate**2*e)
       end associate
    end subroutine add_slide
 
    !> A link that no pair joins to the ground has its own x and y.
-   pure subroutine add_root(h, s, length, p, v, a)
-      type(hung_t), intent(in) :: h
-      type(state_t), intent(in) :: s
+   pure subroutine add_root(u, length, p, v, a)
+      type(unknown_t), intent(in) :: u(2)
       real(wp), intent(in) :: length
-      real(wp), intent(out) :: p(2), v(2), a(2)
+      real(wp), intent(inout) :: p(3), v(3), a(3)
 
-      p = length*s%u(h%root:h%root + 1)%value
-      v = length*s%u(h%root:h%root + 1)%rate
-      a = length*s%u(h%root:h%root + 1)%rate2
+      p(:2) = length*u%value
+      v(:2) = length*u%rate
+      a(:2) = length*u%rate2
    end subroutine add_root
 end module link_motion

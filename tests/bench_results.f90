@@ -5,6 +5,7 @@ module bench_results
    use mechanism, only: mechanism_t, method_newton
    use failures, only: failure_t
    use deck, only: read_deck
+   use structure, only: findings_t, find_structure
    use bench_scenes, only: scene_t, new_scene, chain_scene, gap_t, gap_of, error_of, by_closed_form
    implicit none
    private
@@ -76,11 +77,15 @@ contains
       character(:), allocatable :: report, name
       type(scene_t) :: s
       type(gap_t) :: g, e
+      type(findings_t) :: f
       integer :: i
 
       name = path(index(path, '/', back=.true.) + 1:len(path) - len('.deck'))
       call read_deck(path, sets, report, failure)
       do i = 1, size(sets)
+         ! All equations at once must be as many as the unknowns.
+         f = find_structure(sets(i))
+         if (f%redundant > 0) cycle
          s = new_scene(path, name, i)
          s%t0 = s%m%t0
          s%step = (s%m%t1 - s%m%t0)/steps

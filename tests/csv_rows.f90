@@ -86,7 +86,7 @@ contains
       read (cell(3), '(f40.0)', iostat=status) rows%t
       if (status /= 0) call blame(wrong, 'CSV: TIME: '//trim(line))
       rows%mark = cell(15)(:12)
-      if (all(rows%mark /= [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE'])) &
+      if (all(rows%mark /= [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE', 'OPEN'])) &
          call blame(wrong, 'CSV: MARK: '//trim(line))
       call read_values(m, i, cell(6:14), value, rows%known, wrong)
       if ((rows%mark == '') .neqv. (rows%known == 2)) call blame(wrong, 'CSV: KNOWN VALUES AND MARK: '//trim(line))
