@@ -10,7 +10,7 @@ module analysis
    use predictor, only: largest_change
    use block_engine, only: block_engine_t, new_block_engine, seek_blocks, keep_blocks, tell_blocks, &
       mark_blocks, return_blocks
-   use block_remarks, only: first_remarks, limit_remark
+   use block_remarks, only: first_remarks, limit_remark, crosses, change_remark
    use dense_engine, only: dense_t, new_dense, seek_dense, keep_dense, tell_dense, mark_dense, return_dense
    implicit none
    private
@@ -68,12 +68,13 @@ contains
       integer :: parts
       logical :: accepted, arrived
 
+      if (allocated(found%remarks)) deallocate (found%remarks)
       part = t - a%t
       do parts = 1, most_parts
          part = sign(min(abs(part), a%longest_part), part)
          arrived = .not. a%follows .or. abs(part) >= abs(t - a%t)
          here = merge(t, a%t + part, arrived)
-         call attempt(a, here, accepted)
+         call attempt(a, here, accepted, found)
          arrived = arrived .and. accepted
          if (arrived) exit
          if (parts == 1) call mark_place(a)
@@ -84,7 +85,6 @@ contains
          if (abs(part) <= smallest_part*abs(t - a%t)) exit
       end do
       found%t = t
-      if (allocated(found%remarks)) deallocate (found%remarks)
       if (arrived) then
          call tell(a, found)
          if (.not. a%has_begun) call remark_on_start(a, found)
@@ -104,16 +104,20 @@ contains
    subroutine remark_on_start(a, found)
       type(analysis_t), intent(inout) :: a
       type(motion_t), intent(inout) :: found
-      integer :: link
+      type(remark_t), allocatable :: list(:)
+      integer :: link, i
 
       a%has_begun = .true.
       if (.not. allocated(a%blocks)) return
-      found%remarks = first_remarks(a%blocks, a%convergence%singular)
+      list = first_remarks(a%blocks, a%convergence%singular)
+      do i = 1, size(list)
+         call add_remark(list(i), found)
+      end do
       link = maxloc(abs(found%position(3, :) - a%rough_angle), mask=a%blocks%is_found, dim=1)
       if (link == 0) return
-      if (abs(found%position(3, link) - a%rough_angle(link)) > far_angle) found%remarks = [found%remarks, &
+      if (abs(found%position(3, link) - a%rough_angle(link)) > far_angle) call add_remark( &
          remark_t(kind=remark_far, links=[link, 0, 0, 0, 0, 0], is_angle=.true., &
-         value=found%position(3, link) - a%rough_angle(link))]
+         value=found%position(3, link) - a%rough_angle(link)), found)
    end subroutine remark_on_start
 
    !> Why there is no motion at `t`: what stays open, or where the way ends; that is said once.
@@ -121,23 +125,27 @@ contains
       type(analysis_t), intent(in) :: a
       real(wp), intent(in) :: t
       type(motion_t), intent(inout) :: found
+      type(remark_t), allocatable :: list(:)
       real(wp) :: unit
 
       if (.not. allocated(a%blocks)) return
       if (a%convergence%ended == ended_open .or. (.not. a%follows .and. a%convergence%gap > 0.0_wp)) then
          unit = merge(1.0_wp, a%blocks%length, a%convergence%gap_is_angle)
-         found%remarks = [remark_t(kind=remark_open, pair=a%convergence%open_pair, drive=a%convergence%open_drive, &
-            is_angle=a%convergence%gap_is_angle, value=a%convergence%gap*unit)]
+         call add_remark(remark_t(kind=remark_open, pair=a%convergence%open_pair, drive=a%convergence%open_drive, &
+            is_angle=a%convergence%gap_is_angle, value=a%convergence%gap*unit), found)
       else if (a%follows .and. .not. a%is_lost) then
-         found%remarks = limit_remark(a%blocks, t)
+         list = limit_remark(a%blocks, t)
+         if (size(list) > 0) call add_remark(list(1), found)
       end if
    end subroutine remark_on_end
 
-   !> Seeks the motion at `t`; `accepted`: it is the continuation of the one that is followed, or the first.
-   subroutine attempt(a, t, accepted)
+   !> Seeks the motion at `t`; `accepted`: it is the continuation of the one that is followed, or the first. A change point on
+   !> the way is a remark of `found`.
+   subroutine attempt(a, t, accepted, found)
       type(analysis_t), intent(inout) :: a
       real(wp), intent(in) :: t
       logical, intent(out) :: accepted
+      type(motion_t), intent(inout) :: found
       real(wp) :: correction
       logical :: same
 
@@ -147,8 +155,21 @@ contains
          call seek_dense(a%dense, t, a%follows, a%convergence, correction, same)
       end if
       accepted = is_solved(a%convergence)
-      if (a%follows) accepted = accepted .and. same .and. correction <= largest_correction
+      if (.not. a%follows) return
+      if (accepted .and. .not. same .and. .not. a%convergence%singular .and. allocated(a%blocks)) then
+         same = crosses(a%blocks, correction)
+         if (same) call add_remark(change_remark(a%blocks, t), found)
+      end if
+      accepted = accepted .and. same .and. correction <= largest_correction
    end subroutine attempt
+
+   subroutine add_remark(r, found)
+      type(remark_t), intent(in) :: r
+      type(motion_t), intent(inout) :: found
+
+      if (.not. allocated(found%remarks)) allocate (found%remarks(0))
+      found%remarks = [found%remarks, r]
+   end subroutine add_remark
 
    !> Notes the motion that is followed, before a step is divided.
    subroutine mark_place(a)

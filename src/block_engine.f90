@@ -40,6 +40,9 @@ module block_engine
       integer, allocatable :: needed(:), moving(:)      !< blocks that are solved at first, and at every step
       integer, allocatable :: sign_now(:), sign_of(:)   !< (blocks) of the determinant: found last, followed
       integer, allocatable :: sign_marked(:)
+      real(wp), allocatable :: pivot_now(:), pivot_of(:) !< (blocks) the least: found last, followed
+      integer :: crossed = 0                            !< the block whose determinant has changed its sign; 0: none
+      real(wp) :: change = 0.0_wp                       !< the largest that was predicted
    end type block_engine_t
 
 contains
@@ -80,6 +83,7 @@ contains
          if (.not. e%is_angle(i)) e%unit_of(i) = 1.0_wp/e%length
       end do
       allocate (e%sign_now(size(e%blocks%list)), e%sign_of(size(e%blocks%list)), source=1)
+      allocate (e%pivot_now(size(e%blocks%list)), e%pivot_of(size(e%blocks%list)), source=1.0_wp)
       ! A function's result would bring its own lower bound.
       allocate (e%rough(0:e%blocks%unknowns))
       e%rough(:) = rough_values(m, t, e%length, e%blocks%unknowns)
@@ -110,9 +114,9 @@ contains
       type(convergence_t), intent(out) :: c
       real(wp), intent(out) :: correction
       logical, intent(out) :: same
-      real(wp) :: change
       integer :: i
 
+      e%crossed = 0
       correction = 0.0_wp
       same = .true.
       c%ended = ended_singular
@@ -125,8 +129,8 @@ contains
       c%reciprocal_condition = 1.0_wp
       c%determinant = 1
       if (follows) then
-         call predict(e%history, t, e%state%u, change)
-         same = change <= largest_change
+         call predict(e%history, t, e%state%u, e%change)
+         same = e%change <= largest_change
          if (same) call seek_each(e, e%moving, follows, c, correction, same)
       else
          e%state%u%value = e%rough
@@ -155,8 +159,13 @@ contains
          if (e%blocks%list(i)%direct) cycle
          call gather(one, c)
          if (.not. is_solved(one)) return
+         ! At a change point itself the sign is that of rounding.
+         if (one%singular) cycle
          e%sign_now(i) = one%determinant
-         if (follows) same = same .and. one%determinant == e%sign_of(i)
+         e%pivot_now(i) = one%least_pivot
+         if (.not. follows .or. one%determinant == e%sign_of(i)) cycle
+         same = .false.
+         e%crossed = i
       end do
    end subroutine seek_each
 
@@ -186,6 +195,7 @@ contains
 
       call remember(e%history, e%t, e%state%u)
       e%sign_of = e%sign_now
+      e%pivot_of = e%pivot_now
    end subroutine keep_blocks
 
    subroutine mark_blocks(e)

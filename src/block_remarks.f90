@@ -2,17 +2,22 @@
 module block_remarks
    use kinds, only: wp
    use drives, only: drive_motion
-   use remarks, only: remark_t, new_remark, remark_limit, remark_second, remark_redundant, remark_mobile
+   use remarks, only: remark_t, new_remark, remark_limit, remark_second, remark_redundant, remark_mobile, &
+      remark_change
    use block_state, only: state_t
    use block_rank, only: redundant_rows, moving_unknowns
    use first_position, only: has_second_position
    use block_engine, only: block_engine_t
    implicit none
    private
-   public :: first_remarks, limit_remark
+   public :: first_remarks, limit_remark, crosses, change_remark
 
    !> A limit is told where it is no further than this part of the step that could not be made.
    real(wp), parameter :: near_part = 1.0e-6_wp
+   !> Over a step this short, in radians and lengths, a determinant that changes its sign although the prediction was right to
+   !> so small a part of the step tells a change point. Circuits that pass each other at the distance d are told from one that
+   !> crosses another where d^2 is above the product of the two, 1E-14.
+   real(wp), parameter :: short_step = 1.0e-4_wp, right_part = 1.0e-6_wp
 
 contains
 
@@ -82,6 +87,27 @@ contains
          chosen = chosen .or. (e%frame_of == unknowns(k) .and. e%frame_of > 0)
       end do
    end function links_of
+
+   !> The motion found last lies beyond a change point, on the branch that goes on smoothly; `correction`: of its prediction.
+   pure logical function crosses(e, correction)
+      type(block_engine_t), intent(in) :: e
+      real(wp), intent(in) :: correction
+
+      crosses = e%crossed > 0 .and. e%change <= short_step .and. correction <= right_part*e%change
+   end function crosses
+
+   !> Where that was: the least pivot goes through zero in proportion.
+   function change_remark(e, t) result(r)
+      type(block_engine_t), intent(in) :: e
+      real(wp), intent(in) :: t
+      type(remark_t) :: r
+
+      associate (block => e%blocks%list(e%crossed), before => e%history%t(e%history%place(0)), &
+         a => e%pivot_of(e%crossed), b => e%pivot_now(e%crossed))
+         r = new_remark(remark_change, links_of(e, e%blocks%unknown(block%first:block%last)))
+         r%t = before + (t - before)*(a/(a + b))
+      end associate
+   end function change_remark
 
    !> Where the last motion kept comes to its end on the way to `t`, if it does. Close to a limit t* the fastest
    !> unknown is x* + c sqrt(t* - t), so t* - t = -x'/(2 x''), with an error of higher order.

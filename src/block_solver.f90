@@ -284,6 +284,7 @@ contains
       integer :: k
 
       call pivot_range(b%list(i)%shape, w%a, w%pivots, least, largest, c%determinant)
+      c%least_pivot = least
       c%reciprocal_condition = 1.0_wp
       if (n == 0) return
       if (n == 1) largest = max(1.0_wp, b%list(i)%bend)

@@ -22,6 +22,7 @@ module convergence
       real(wp) :: rate = 0.0_wp                !< mean ratio of successive residuals
       real(wp) :: reciprocal_condition = 0.0_wp !< of the Jacobian at the position found
       integer :: determinant = 0               !< its sign
+      real(wp) :: least_pivot = 0.0_wp         !< of its factors
       logical :: singular = .false.            !< position found where the Jacobian has no inverse
       real(wp) :: gap = 0.0_wp                 !< of the equation that is open the most, in the unit of length or rad
       logical :: gap_is_angle = .false.

@@ -3,11 +3,12 @@ module listing_remarks
    use kinds, only: wp
    use constants, only: degree
    use mechanism, only: mechanism_t
-   use remarks, only: remark_t, remark_open, remark_limit, remark_far, remark_second, remark_redundant, remark_mobile
+   use remarks, only: remark_t, remark_open, remark_limit, remark_far, remark_second, remark_redundant, remark_mobile, &
+      remark_change
    use naming, only: drive_name, listed
    use text_output, only: output_t, put
    use phrases, only: phrase, say_pair, say_drive, say_link, say_links, say_open_by, say_limit, say_in_line, &
-      say_at_limit, say_off_by, say_second, say_redundant, say_mobile, say_gap, say_below
+      say_at_limit, say_off_by, say_second, say_redundant, say_mobile, say_gap, say_below, say_change, say_smoothly
    implicit none
    private
    public :: put_remarks, put_gap
@@ -54,6 +55,9 @@ contains
          text = links(m, r)//': '//phrase(say_second, m%polish)
       case (remark_redundant)
          text = phrase(say_redundant, m%polish)//': '//owner(m, r)
+      case (remark_change)
+         text = phrase(say_change, m%polish)//' '//number(r%t, '(es13.5)')//', '//links(m, r)//': ' &
+            //phrase(say_smoothly, m%polish)
       case (remark_mobile)
          text = links(m, r)//' '//phrase(say_mobile, m%polish)
       end select

@@ -9,7 +9,7 @@ module phrases
       say_end, say_solved, say_marked, say_no_position, say_no_rates, say_overflow, say_card, say_default, &
       say_in_units, say_groups, say_driven, say_not_needed, &
       say_open_by, say_limit, say_in_line, say_off_by, say_second, say_redundant, say_gap, say_mobile, &
-      say_contradiction, say_drive, say_below, say_at_limit
+      say_contradiction, say_drive, say_below, say_at_limit, say_change, say_smoothly
 
    integer, parameter :: phrase_length = 72
 
@@ -21,9 +21,10 @@ module phrases
       say_no_position = 28, say_no_rates = 29, say_overflow = 30, say_card = 31, say_default = 32, &
       say_in_units = 33, say_groups = 34, say_driven = 35, say_not_needed = 36, say_open_by = 37, &
       say_limit = 38, say_in_line = 39, say_off_by = 40, say_second = 41, say_redundant = 42, say_gap = 43, &
-      say_mobile = 44, say_contradiction = 45, say_drive = 46, say_below = 47, say_at_limit = 48
+      say_mobile = 44, say_contradiction = 45, say_drive = 46, say_below = 47, say_at_limit = 48, say_change = 49, &
+      say_smoothly = 50
 
-   character(phrase_length), parameter :: words(2, 48) = reshape([character(phrase_length) :: &
+   character(phrase_length), parameter :: words(2, 50) = reshape([character(phrase_length) :: &
       'KINEMATICS OF PLANAR MECHANISMS IN MATRIX FORMULATION', &
       'KINEMATYKA MECHANIZMOW PLASKICH W UJECIU MACIERZOWYM', &
       'SET OF COMPUTATIONS NO.', 'KOMPLET OBLICZEN NR', &
@@ -75,7 +76,9 @@ module phrases
       'TOO MANY EQUATIONS, AND THEY CONTRADICT ONE ANOTHER', 'ZA DUZO ROWNAN I PRZECZA SOBIE NAWZAJEM', &
       'DRIVE', 'NAPED', &
       'BELOW', 'PONIZEJ', &
-      'AT THE LIMIT', 'NA KRESIE RUCHU'], [2, 48])
+      'AT THE LIMIT', 'NA KRESIE RUCHU', &
+      'CHANGE POINT AT T =', 'PUNKT ZMIANY W CHWILI T =', &
+      'GO ON SMOOTHLY', 'RUCH PRZECHODZI GLADKO'], [2, 50])
 
 contains
 

@@ -1,12 +1,28 @@
 !> Tests. The Assur groups of the decks in input/, stated by hand from the drawings: crank first, then dyad upon dyad. A
 !> star stands before a group that holds a drive, a minus before one that no table needs.
 module hand_groups
+   use kinds, only: wp
    use mechanism, only: mechanism_t
    use structure, only: group_t
-   use remarks, only: remark_t, remark_redundant
+   use remarks, only: remark_t, new_remark, remark_redundant, remark_change
    implicit none
    private
-   public :: groups_by_hand, redundant_by_hand
+   public :: groups_by_hand, redundant_by_hand, passages_by_hand
+
+   !> A change point that lies between two instants.
+   type :: passage_t
+      character(24) :: deck = ''
+      real(wp) :: t = 0.0_wp
+      character(24) :: links = ''
+   end type passage_t
+
+   ! Cranks at 180 and 360 deg, from 20 deg at 10 deg a second and from 15 deg at 12.5; at 90 and 270 deg from 30 deg at 12.
+   type(passage_t), parameter :: passages(8) = [ &
+      passage_t('parallelogram', 16.0_wp, 'COUPLER ROCKER'), passage_t('parallelogram', 34.0_wp, 'COUPLER ROCKER'), &
+      passage_t('kite_across', 16.0_wp, 'COUPLER ROCKER'), passage_t('kite_across', 34.0_wp, 'COUPLER ROCKER'), &
+      passage_t('antiparallelogram_across', 13.2_wp, 'COUPLER ROCKER'), &
+      passage_t('antiparallelogram_across', 27.6_wp, 'COUPLER ROCKER'), &
+      passage_t('scott_russell', 5.0_wp, 'BAR'), passage_t('scott_russell', 20.0_wp, 'BAR')]
 
    !> Of all sets of a deck (0) or of one.
    type :: statement_t
@@ -112,6 +128,24 @@ contains
          end do
       end do
    end function redundant_by_hand
+
+   !> The change points of the deck called `name` from `before` to `t`.
+   function passages_by_hand(name, m, before, t) result(list)
+      character(*), intent(in) :: name
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: before, t
+      type(remark_t), allocatable :: list(:)
+      type(remark_t) :: r
+      integer :: i, k
+
+      allocate (list(0))
+      do i = 1, size(passages)
+         if (passages(i)%deck /= name .or. passages(i)%t <= before .or. passages(i)%t > t) cycle
+         r = new_remark(remark_change, [(index(' '//passages(i)%links, ' '//trim(m%links(k)%name)//' ') > 0, k=1, size(m%links))])
+         r%t = passages(i)%t
+         list = [list, r]
+      end do
+   end function passages_by_hand
 
    !> One group from its text.
    function group(m, text) result(g)

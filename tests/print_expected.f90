@@ -7,7 +7,7 @@ program print_expected
    use mechanism, only: mechanism_t, instant_count, instant
    use motion, only: motion_t, new_motion
    use structure, only: findings_t
-   use hand_groups, only: groups_by_hand, redundant_by_hand
+   use hand_groups, only: groups_by_hand, redundant_by_hand, passages_by_hand
    use deck, only: read_deck
    use text_output, only: output_t, open_output, close_output
    use listing, only: layout_t, new_layout, listing_head, listing_instant, listing_end
@@ -57,7 +57,7 @@ contains
       do k = 0, instant_count(m) - 1
          call move_to(name, m, instant(m, k), q)
          if (k == 0) q%remarks = redundant_by_hand(name, m)
-         if (k > 0 .and. allocated(q%remarks)) deallocate (q%remarks)
+         if (k > 0) q%remarks = passages_by_hand(name, m, instant(m, k - 1), instant(m, k))
          call listing_instant(o, layout, m, q, k)
       end do
       if (size(redundant_by_hand(name, m)) > 0) then
