@@ -19,11 +19,18 @@ module analysis
    !> The largest correction, in the characteristic length and in radians, of a predicted position that is still taken
    !> for the continuation of the motion; where the prediction is off by more, the step is divided.
    real(wp), parameter :: largest_correction = 0.1_wp
+   !> The same over the distance of the next root, as the Jacobian and its bend tell it: near a change point
+   !> another branch passes close by, with the sign of the determinant that this one had before.
+   real(wp), parameter :: largest_doubt = 0.1_wp
    !> A rough angle that is off by more is worth a word: the assembly may not be the one that was meant.
    real(wp), parameter :: far_angle = 1.0_wp
    !> A part of a step smaller than this is the end of the way; and so are that many parts.
    real(wp), parameter :: smallest_part = 1.0e-10_wp
    integer, parameter :: most_parts = 200000
+   !> Near a limit a slow iteration creeps, and each part that fails costs all of its iterations: so many of them,
+   !> before the next thousandth of the way, end it too.
+   integer, parameter :: most_failures = 300
+   real(wp), parameter :: progress = 1.0e-3_wp
 
    !> One of the two engines, and how far it has come.
    type :: analysis_t
@@ -64,12 +71,14 @@ contains
       type(analysis_t), intent(inout) :: a
       real(wp), intent(in) :: t
       type(motion_t), intent(inout) :: found
-      real(wp) :: part, here
-      integer :: parts
+      real(wp) :: part, here, milestone
+      integer :: parts, failures
       logical :: accepted, arrived
 
       if (allocated(found%remarks)) deallocate (found%remarks)
       part = t - a%t
+      failures = 0
+      milestone = a%t
       do parts = 1, most_parts
          part = sign(min(abs(part), a%longest_part), part)
          arrived = .not. a%follows .or. abs(part) >= abs(t - a%t)
@@ -82,7 +91,12 @@ contains
          if (accepted) call keep(a, here)
          if (.not. a%follows) exit
          part = merge(1.5_wp, 0.5_wp, accepted)*part
-         if (abs(part) <= smallest_part*abs(t - a%t)) exit
+         failures = failures + merge(0, 1, accepted)
+         if (abs(a%t - milestone) > progress*abs(t - a%place)) then
+            milestone = a%t
+            failures = 0
+         end if
+         if (abs(part) <= smallest_part*abs(t - a%t) .or. failures > most_failures) exit
       end do
       found%t = t
       if (arrived) then
@@ -139,8 +153,8 @@ contains
       end if
    end subroutine remark_on_end
 
-   !> Seeks the motion at `t`; `accepted`: it is the continuation of the one that is followed, or the first. A change point on
-   !> the way is a remark of `found`.
+   !> Seeks the motion at `t`; `accepted`: it is the continuation of the one that is followed, or the first. A
+   !> change point on the way is a remark of `found`.
    subroutine attempt(a, t, accepted, found)
       type(analysis_t), intent(inout) :: a
       real(wp), intent(in) :: t
@@ -160,7 +174,7 @@ contains
          same = crosses(a%blocks, correction)
          if (same) call add_remark(change_remark(a%blocks, t), found)
       end if
-      accepted = accepted .and. same .and. correction <= largest_correction
+      accepted = accepted .and. same .and. correction <= largest_correction .and. a%convergence%doubt <= largest_doubt
    end subroutine attempt
 
    subroutine add_remark(r, found)
@@ -225,6 +239,7 @@ contains
       a%largest_gap = max(a%largest_gap, a%convergence%gap)
       call cut(found, 2, mark_none)
       if (a%convergence%singular) call cut(found, 0, mark_singular)
+      if (a%convergence%rates_open) call cut(found, 0, mark_open)
       if (.not. finite) call look_for_overflow(found)
    end subroutine tell
 

@@ -1,4 +1,4 @@
-!> Level 8. A block assembled from far: the sum of squares of its residuals made less and less (Levenberg 1944,
+!> Level 7. A block assembled from far: the sum of squares of its residuals made less and less (Levenberg 1944,
 !> Marquardt 1963), where Newton's method alone would leap elsewhere. What is left in the end is how far the block
 !> stays open.
 module block_assembly
@@ -8,7 +8,7 @@ module block_assembly
    use blocks, only: blocks_t
    use block_state, only: state_t, set_values, known_parts
    use block_rows, only: assemble_block
-   use block_solver, only: note_gap
+   use block_gaps, only: note_gap
    implicit none
    private
    public :: approach
@@ -17,6 +17,8 @@ module block_assembly
    real(wp), parameter :: near = 1.0e-6_wp
    !> No unknown goes further than this in one iteration: half a radian, half the characteristic length.
    real(wp), parameter :: longest_step = 0.5_wp
+   !> No steps of that length make a residual small that is beyond this; its square is well below overflow.
+   real(wp), parameter :: bound = 1.0e30_wp
    real(wp), parameter :: first_damping = 1.0e-2_wp, least_damping = 1.0e-12_wp, most_damping = 1.0e8_wp
    integer, parameter :: most_iterations = 200
    !> Starts: the rough position, then others around it, where that ends in a valley.
@@ -54,6 +56,7 @@ contains
          start = s%u(b%unknown(block%first:block%last))%value
       end associate
       call known_parts(b, i, s)
+      w%best = start
       least = huge(least)
       do k = 0, most_starts - 1
          call set_values(b, i, start + spread_start(k, size(start)), s)
@@ -105,7 +108,7 @@ contains
       call assemble_block(b, i, w%shape, s, w%a, w%r)
       do iteration = 1, most_iterations
          found = maxval(abs(w%r(:w%shape%rows)))
-         if (found <= near .or. damping > most_damping) exit
+         if (found <= near .or. damping > most_damping .or. .not. found <= bound) exit
          square = sum(w%r(:w%shape%rows)**2)
          w%x = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
          call damped_step(w, damping, step)

@@ -1,4 +1,4 @@
-!> Level 10. A mechanism solved block by block, in the order of `blocks`: each knows all that it needs when its
+!> Level 9. A mechanism solved block by block, in the order of `blocks`: each knows all that it needs when its
 !> turn comes. Only blocks that a table needs are solved, and those that no drive moves only once.
 module block_engine
    use kinds, only: wp
@@ -161,6 +161,7 @@ contains
          if (.not. is_solved(one)) return
          ! At a change point itself the sign is that of rounding.
          if (one%singular) cycle
+         c%doubt = max(c%doubt, one%doubt)
          e%sign_now(i) = one%determinant
          e%pivot_now(i) = one%least_pivot
          if (.not. follows .or. one%determinant == e%sign_of(i)) cycle
@@ -187,6 +188,7 @@ contains
          c%open_drive = one%open_drive
       end if
       c%singular = c%singular .or. one%singular
+      c%rates_open = c%rates_open .or. one%rates_open
    end subroutine gather
 
    !> Makes the motion found last the one that is followed.

@@ -2,7 +2,8 @@
 module block_instances
    use kinds, only: wp
    use polygons, only: polygons_t
-   use loop_equations, only: equations_t, equation_t, equation_x, equation_y, equation_projection
+   use loop_equations, only: equations_t, equation_t, equation_x, equation_y, equation_projection, &
+      equation_slide
    use blocks, only: blocks_t, block_t, arm_t, slide_t, instance_components, instance_projection, instance_angles
    implicit none
    private
@@ -67,7 +68,8 @@ contains
       associate (instance => b%instances(f%instances))
          instance%row_x = row
          instance%frame = equation%frame
-         instance%frame_column = f%column(equation%frame)
+         if (equation%kind == equation_slide) instance%frame = b%frames + equation%frame
+         instance%frame_column = f%column(instance%frame)
          instance%direction = equation%direction
          instance%less = equation%less
          instance%less_column = f%column(equation%less)

@@ -1,4 +1,4 @@
-!> Level 11. What the block engine has to say of a motion beside its numbers.
+!> Level 10. What the block engine has to say of a motion beside its numbers.
 module block_remarks
    use kinds, only: wp
    use drives, only: drive_motion
@@ -14,10 +14,11 @@ module block_remarks
 
    !> A limit is told where it is no further than this part of the step that could not be made.
    real(wp), parameter :: near_part = 1.0e-6_wp
-   !> Over a step this short, in radians and lengths, a determinant that changes its sign although the prediction was right to
-   !> so small a part of the step tells a change point. Circuits that pass each other at the distance d are told from one that
-   !> crosses another where d^2 is above the product of the two, 1E-14.
-   real(wp), parameter :: short_step = 1.0e-4_wp, right_part = 1.0e-6_wp
+   !> Over a step this short, in radians and lengths, a determinant that changes its sign although the prediction
+   !> was right to so small a part of the step tells a change point. Circuits that pass each other at the distance
+   !> d are told from one that crosses another where d^2 is above the product of the two, 1E-14.
+   real(wp), parameter :: short_step = 1.0e-4_wp, right_part = 1.0e-6_wp, most_wrong = 1.0e-2_wp
+   real(wp), parameter :: rounding = 500.0_wp*epsilon(1.0_wp)
 
 contains
 
@@ -88,12 +89,17 @@ contains
       end do
    end function links_of
 
-   !> The motion found last lies beyond a change point, on the branch that goes on smoothly; `correction`: of its prediction.
+   !> The motion found last lies beyond a change point, on the branch that goes on smoothly; `correction`: of its
+   !> prediction, which rounding has made wrong by bend/pivot^2, as it does the rates so close to it.
    pure logical function crosses(e, correction)
       type(block_engine_t), intent(in) :: e
       real(wp), intent(in) :: correction
+      real(wp) :: allowed
 
-      crosses = e%crossed > 0 .and. e%change <= short_step .and. correction <= right_part*e%change
+      crosses = .false.
+      if (e%crossed == 0 .or. e%change > short_step) return
+      allowed = right_part + rounding*e%blocks%list(e%crossed)%bend/e%pivot_of(e%crossed)**2
+      crosses = correction <= min(allowed, most_wrong)*e%change
    end function crosses
 
    !> Where that was: the least pivot goes through zero in proportion.

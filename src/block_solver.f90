@@ -17,17 +17,16 @@ module block_solver
    use block_state, only: state_t, set_direction, turn_direction, known_parts
    use block_rows, only: assemble_block
    use block_sides, only: rate_side
+   use block_gaps, only: note_gap, contradict, open_level
    implicit none
    private
-   public :: workspace_t, new_workspace, solve_block, note_gap
+   public :: workspace_t, new_workspace, solve_block
 
    !> Residuals relative to the largest value. Below the first there is nothing to correct; above the second,
    !> rounding of angles and of their sines alone explains no residual.
    real(wp), parameter :: closed_level = 2.0_wp*epsilon(1.0_wp)
    real(wp), parameter :: rounding_level = 12.0_wp*epsilon(1.0_wp)
    real(wp), parameter :: step_tolerance = 32.0_wp*epsilon(1.0_wp)
-   !> Equations that are too many may contradict one another by this, as data of 11 digits do.
-   real(wp), parameter :: open_level = 1.0e-10_wp
    !> A change of direction below this is applied without a new sine and cosine: its square is lost in rounding.
    real(wp), parameter :: small_turn = 1.0e-9_wp
    !> A pivot this much smaller than the largest is worth an estimate of the inverse.
@@ -161,7 +160,8 @@ contains
          call solve_again(shape, a, pivots, work, r(:, 2))
          exit
       end do
-      if (c%iterations > 1 .or. c%step > 0.0_wp) correction = max(correction, largest_change(b, i, shape%n, s, start))
+      if (c%iterations > 1 .or. c%step > 0.0_wp) c%change = largest_change(b, i, shape%n, s, start)
+      correction = max(correction, c%change)
    end subroutine seek
 
    !> Rounding is all that is left to correct, and the position stays; among equations that contradict one another
@@ -174,26 +174,6 @@ contains
       is_stalled = c%step > 0.5_wp*before .and. c%residual <= rounding_level*size_of
       if (shape%rows > shape%n) is_stalled = is_stalled .or. (c%step > 0.5_wp*before .and. c%step <= small_turn)
    end function is_stalled
-
-   !> The equation that is open the most by the residuals `r`.
-   pure subroutine note_gap(b, i, r, c)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      real(wp), intent(in) :: r(*)
-      type(convergence_t), intent(inout) :: c
-      integer :: k, worst
-
-      worst = 1
-      do k = 2, b%list(i)%shape%rows
-         if (abs(r(k)) > abs(r(worst))) worst = k
-      end do
-      associate (row => b%rows(b%list(i)%first_row + worst - 1))
-         c%gap = abs(r(worst))
-         c%gap_is_angle = row%angular
-         c%open_pair = row%pair
-         c%open_drive = row%drive
-      end associate
-   end subroutine note_gap
 
    !> Directions and known parts where the search begins, what it begins from, and the largest value, 1 at least.
    subroutine begin_block(b, i, n, s, start, size_of)
@@ -262,14 +242,18 @@ contains
 
       if (.not. c%singular) call judge(b, i, n, w, s, c)
       if (c%singular) return
-      do k = 1, n
-         s%u(b%unknown(b%list(i)%first + k - 1))%rate = w%r(b%list(i)%shape%rows + k)
-      end do
-      call rate_side(b, i, 2, s, w%r)
-      call solve_again(b%list(i)%shape, w%a, w%pivots, w%work, w%r)
-      do k = 1, n
-         s%u(b%unknown(b%list(i)%first + k - 1))%rate2 = w%r(k)
-      end do
+      associate (rows => b%list(i)%shape%rows)
+         do k = 1, n
+            s%u(b%unknown(b%list(i)%first + k - 1))%rate = w%r(rows + k)
+         end do
+         call rate_side(b, i, 2, s, w%r)
+         call solve_again(b%list(i)%shape, w%a, w%pivots, w%work, w%r)
+         do k = 1, n
+            s%u(b%unknown(b%list(i)%first + k - 1))%rate2 = w%r(k)
+         end do
+         if (rows > n) c%rates_open = contradict(w%r(rows + 1:2*rows), n, 0.0_wp) &
+            .or. contradict(w%r(:rows), n, norm2(w%r(rows + 1:rows + n))**2)
+      end associate
    end subroutine finish
 
    !> Sign of the determinant, and whether rounding leaves the velocities open: with B = |J^-1| and the residual known
@@ -285,6 +269,8 @@ contains
 
       call pivot_range(b%list(i)%shape, w%a, w%pivots, least, largest, c%determinant)
       c%least_pivot = least
+      ! Newton and Kantorovich: one root only where |J^-1| bend change is below 1/2.
+      c%doubt = c%change*b%list(i)%bend/max(least, tiny(least))
       c%reciprocal_condition = 1.0_wp
       if (n == 0) return
       if (n == 1) largest = max(1.0_wp, b%list(i)%bend)

@@ -23,9 +23,12 @@ module convergence
       real(wp) :: reciprocal_condition = 0.0_wp !< of the Jacobian at the position found
       integer :: determinant = 0               !< its sign
       real(wp) :: least_pivot = 0.0_wp         !< of its factors
+      real(wp) :: change = 0.0_wp              !< the largest of a value, from where the search began
+      real(wp) :: doubt = 0.0_wp               !< that change over the distance within which the root is the only one
       logical :: singular = .false.            !< position found where the Jacobian has no inverse
       real(wp) :: gap = 0.0_wp                 !< of the equation that is open the most, in the unit of length or rad
       logical :: gap_is_angle = .false.
+      logical :: rates_open = .false.          !< they agree in position, but not in its derivatives
       integer :: open_pair = 0, open_drive = 0 !< whose equation that is; 0: none
    end type convergence_t
 

@@ -1,4 +1,4 @@
-!> Level 9. The position of a block at the first instant, from the deck's rough one: Newton's method where that
+!> Level 8. The position of a block at the first instant, from the deck's rough one: Newton's method where that
 !> stays near; where it leaps or fails, the block is first brought near its closure. A good start is never made
 !> worse: what Newton's method alone has found stands where nothing nearer is found.
 module first_position

@@ -111,6 +111,8 @@ contains
       character(24) :: field
 
       write (field, form) x
+      ! An exponent of three digits would lose its E.
+      if (scan(field, 'E') == 0) write (field, '(es17.8e3)') x
       text = trim(adjustl(field))
    end function number
 

@@ -4,7 +4,8 @@ module remarks
    implicit none
    private
    public :: remark_t, new_remark, most_links
-   public :: remark_open, remark_limit, remark_far, remark_second, remark_redundant, remark_gap, remark_mobile, remark_change
+   public :: remark_open, remark_limit, remark_far, remark_second, remark_redundant, remark_gap, remark_mobile, &
+      remark_change
 
    integer, parameter :: remark_open = 1       !< an equation of `pair` or `drive` stays open by `value`
    integer, parameter :: remark_limit = 2      !< at `t`, where `drive` has `value`, the motion of `links` has its limit

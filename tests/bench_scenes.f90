@@ -174,10 +174,9 @@ contains
       do k = 0, steps
          call advance(blocks, instant_of(s, k), one)
          call advance(dense, instant_of(s, k), two)
-         if (one%mark /= mark_none .or. two%mark /= mark_none) then
-            g%marked = g%marked + 1
-            cycle
-         end if
+         if (one%mark /= mark_none) g%marked = g%marked + 1
+         ! The dense method ends at a change point.
+         if (one%mark /= mark_none .or. two%mark /= mark_none) cycle
          g%condition = max(g%condition, 1.0_wp/dense%convergence%reciprocal_condition)
          call widen(s, one, two, .false., g)
       end do
