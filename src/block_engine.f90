@@ -17,6 +17,7 @@ module block_engine
    use block_state, only: state_t, new_state
    use block_solver, only: workspace_t, new_workspace, solve_block
    use first_position, only: solve_first_block
+   use block_rank, only: jacobian_of, relative_side
    use link_motion, only: chain_t, new_chain, move_links
    implicit none
    private
@@ -40,6 +41,7 @@ module block_engine
       integer, allocatable :: needed(:), moving(:)      !< blocks that are solved at first, and at every step
       integer, allocatable :: sign_now(:), sign_of(:)   !< (blocks) of the determinant: found last, followed
       integer, allocatable :: sign_marked(:)
+      real(wp), allocatable :: side(:), side_marked(:)  !< Jacobian of the block with too many rows, followed
       real(wp), allocatable :: pivot_now(:), pivot_of(:) !< (blocks) the least: found last, followed
       integer :: crossed = 0                            !< the block whose determinant has changed its sign; 0: none
       real(wp) :: change = 0.0_wp                       !< the largest that was predicted
@@ -157,6 +159,8 @@ contains
             call solve_first_block(e%blocks, i, e%tolerance, e%work, e%state, one)
          end if
          if (e%blocks%list(i)%direct) cycle
+         if (follows .and. is_solved(one) .and. e%blocks%list(i)%shape%rows > e%blocks%list(i)%shape%n) &
+            one%determinant = e%sign_of(i)*relative_side(e%blocks, i, e%side, e%state)
          call gather(one, c)
          if (.not. is_solved(one)) return
          ! At a change point itself the sign is that of rounding.
@@ -197,6 +201,7 @@ contains
 
       call remember(e%history, e%t, e%state%u)
       e%sign_of = e%sign_now
+      if (e%blocks%redundant > 0) e%side = jacobian_of(e%blocks, 1, e%state)
       e%pivot_of = e%pivot_now
    end subroutine keep_blocks
 
@@ -205,6 +210,7 @@ contains
 
       e%marked = e%history
       e%sign_marked = e%sign_of
+      if (allocated(e%side)) e%side_marked = e%side
    end subroutine mark_blocks
 
    subroutine return_blocks(e)
@@ -212,6 +218,7 @@ contains
 
       e%history = e%marked
       e%sign_of = e%sign_marked
+      if (allocated(e%side_marked)) e%side = e%side_marked
    end subroutine return_blocks
 
    !> The motion found last of the links that are asked for, in the deck's units; `finite`: all of it is in range.

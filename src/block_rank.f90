@@ -2,14 +2,14 @@
 !> inverse, by the singular values (DGESVD).
 module block_rank
    use kinds, only: wp
-   use lapack, only: dgesvd
+   use lapack, only: dgesvd, dgetrf
    use block_matrix, only: shape_t
    use blocks, only: blocks_t
    use block_state, only: state_t, set_values
    use block_rows, only: assemble_block
    implicit none
    private
-   public :: redundant_rows, moving_unknowns
+   public :: redundant_rows, moving_unknowns, jacobian_of, relative_side
 
    !> Singular values below this part of the largest count as zero: the root of the rounding, since a position at which
    !> they vanish is itself known to no more.
@@ -112,6 +112,38 @@ contains
       if (far <= 1.0e-12_wp .and. norm2(direction) > 0.5_wp*trial) &
          moves = abs(direction) > 0.01_wp*maxval(abs(direction))
    end function moving_unknowns
+
+   !> (rows*n) The Jacobian of block `i`, column by column.
+   function jacobian_of(b, i, s) result(a)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(state_t), intent(inout) :: s
+      real(wp) :: a(b%list(i)%shape%rows*b%list(i)%shape%n), r(b%list(i)%shape%rows)
+
+      call assemble_block(b, i, shape_t(rows=b%list(i)%shape%rows, n=b%list(i)%shape%n), s, a, r)
+   end function jacobian_of
+
+   !> Whether block `i` with more rows than unknowns is on the side of its change points on which the Jacobian `before`
+   !> (rows*n) was: sign of the determinant of the product of that, transposed, and the present one. With as many rows
+   !> as unknowns it would be the product of the two signs.
+   integer function relative_side(b, i, before, s) result(side)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: before(:)
+      type(state_t), intent(inout) :: s
+      real(wp) :: product(b%list(i)%shape%n, b%list(i)%shape%n)
+      integer :: pivots(b%list(i)%shape%n), info, k
+
+      associate (rows => b%list(i)%shape%rows, n => b%list(i)%shape%n)
+         product = matmul(transpose(reshape(before, [rows, n])), reshape(jacobian_of(b, i, s), [rows, n]))
+         side = 1
+         if (n == 0) return
+         call dgetrf(n, n, product, n, pivots, info)
+         do k = 1, n
+            if ((product(k, k) < 0.0_wp) .neqv. (pivots(k) /= k)) side = -side
+         end do
+      end associate
+   end function relative_side
 
    !> One step of least length towards the equations (Gauss and Newton); `far`: the largest residual before it.
    subroutine pull_back(b, i, s, far)

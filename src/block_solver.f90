@@ -273,9 +273,10 @@ contains
       c%doubt = c%change*b%list(i)%bend/max(least, tiny(least))
       c%reciprocal_condition = 1.0_wp
       if (n == 0) return
-      if (n == 1) largest = max(1.0_wp, b%list(i)%bend)
       if (n > 1) c%reciprocal_condition = least/largest
-      if (least >= suspicious_pivot*largest) return
+      if (n == 1) largest = b%list(i)%bend
+      ! All pivots may be small, where links are much shorter than the mechanism.
+      if (least >= suspicious_pivot*max(largest, 1.0_wp)) return
       inverse = inverse_norm(b%list(i)%shape, w%a, w%pivots, w%work, w%iwork)
       c%reciprocal_condition = min(1.0_wp, 1.0_wp/(inverse*largest))
       size_of = 1.0_wp

@@ -8,7 +8,7 @@ module deck_checks
    use cards, only: card_t, name_field
    use complaints, only: complaints_t, complain_field
    use deck_codes, only: code_t, link_missing, time_missing, link_unused, point_unused, power_negative, &
-                         power_zero, table_range
+                         power_zero, power_large, table_range
    use drafts, only: draft_t, cards_of, next_reading, complain_label
    implicit none
    private
@@ -124,8 +124,24 @@ contains
                if (meets_zero(set)) call complain_instant(draft, k, power_zero, 0.0_wp, list)
             end if
          end associate
+         if (is_large(term, first)) call complain_instant(draft, k, power_large, first, list)
+         if (is_large(term, last)) call complain_instant(draft, k, power_large, last, list)
       end if
    end subroutine check_term
+
+   !> The power or a derivative of it comes near the end of the range of reals at `t`.
+   pure logical function is_large(term, t)
+      type(term_t), intent(in) :: term
+      real(wp), intent(in) :: t
+      real(wp), parameter :: largest_order = 120.0_wp
+
+      is_large = .false.
+      if (abs(t) <= 0.0_wp .or. abs(term%r(1)) <= 0.0_wp) return
+      associate (p => abs(term%r(2)))
+         is_large = log10(abs(term%r(1))) + 2.0_wp*log10(max(p, 1.0_wp)) &
+            + (p + 2.0_wp)*abs(log10(abs(t))) > largest_order
+      end associate
+   end function is_large
 
    pure subroutine range_of_instants(set, first, last)
       type(mechanism_t), intent(in) :: set

@@ -79,6 +79,7 @@ module deck_codes
       add_blank = code_t(78, 'GIVES NO NUMBERS'), &
       power_negative = code_t(79, 'THIS POWER DOES NOT EXIST AT THE INSTANT'), &
       power_zero = code_t(80, 'THIS POWER OR ITS DERIVATIVES DO NOT EXIST AT THE INSTANT'), &
+      power_large = code_t(84, 'THIS POWER IS TOO LARGE A NUMBER AT THE INSTANT'), &
       table_short = code_t(81, 'A TABLE NEEDS AT LEAST TWO ROWS'), &
       table_order = code_t(82, 'THE TIMES OF A TABLE MUST INCREASE'), &
       table_range = code_t(83, 'THIS TABLE DOES NOT REACH THE INSTANT')
