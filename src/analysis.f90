@@ -27,10 +27,10 @@ module analysis
    !> A part of a step smaller than this is the end of the way; and so are that many parts.
    real(wp), parameter :: smallest_part = 1.0e-10_wp
    integer, parameter :: most_parts = 200000
-   !> Near a limit a slow iteration creeps, and each part that fails costs all of its iterations: so many of them,
-   !> before the next thousandth of the way, end it too.
+   !> Near a limit a slow iteration creeps, and each part that fails costs all of its iterations: so many failures of parts
+   !> that are small already end the way too.
    integer, parameter :: most_failures = 300
-   real(wp), parameter :: progress = 1.0e-3_wp
+   real(wp), parameter :: small_part = 1.0e-3_wp
 
    !> One of the two engines, and how far it has come.
    type :: analysis_t
@@ -71,14 +71,14 @@ contains
       type(analysis_t), intent(inout) :: a
       real(wp), intent(in) :: t
       type(motion_t), intent(inout) :: found
-      real(wp) :: part, here, milestone
+      real(wp) :: part, here
       integer :: parts, failures
-      logical :: accepted, arrived
+      logical :: accepted, arrived, blocked
 
+      blocked = .false.
       if (allocated(found%remarks)) deallocate (found%remarks)
       part = t - a%t
       failures = 0
-      milestone = a%t
       do parts = 1, most_parts
          part = sign(min(abs(part), a%longest_part), part)
          arrived = .not. a%follows .or. abs(part) >= abs(t - a%t)
@@ -90,13 +90,10 @@ contains
          accepted = accepted .and. .not. a%convergence%singular
          if (accepted) call keep(a, here)
          if (.not. a%follows) exit
+         if (.not. accepted .and. abs(part) <= small_part*min(a%longest_part, abs(t - a%place))) failures = failures + 1
          part = merge(1.5_wp, 0.5_wp, accepted)*part
-         failures = failures + merge(0, 1, accepted)
-         if (abs(a%t - milestone) > progress*abs(t - a%place)) then
-            milestone = a%t
-            failures = 0
-         end if
-         if (abs(part) <= smallest_part*abs(t - a%t) .or. failures > most_failures) exit
+         blocked = abs(part) <= smallest_part*abs(t - a%t)
+         if (blocked .or. failures > most_failures) exit
       end do
       found%t = t
       if (arrived) then
@@ -104,7 +101,7 @@ contains
          if (.not. a%has_begun) call remark_on_start(a, found)
       else
          call cut(found, -1, merge(mark_open, mark_not_converged, a%convergence%ended == ended_open))
-         call remark_on_end(a, t, found)
+         call remark_on_end(a, t, blocked, found)
       end if
       if (found%known == 2) then
          call keep(a, t)
@@ -134,10 +131,11 @@ contains
          value=found%position(3, link) - a%rough_angle(link)), found)
    end subroutine remark_on_start
 
-   !> Why there is no motion at `t`: what stays open, or where the way ends; that is said once.
-   subroutine remark_on_end(a, t, found)
+   !> Why there is no motion at `t`: what stays open, or where the way is `blocked`; that is said once.
+   subroutine remark_on_end(a, t, blocked, found)
       type(analysis_t), intent(in) :: a
       real(wp), intent(in) :: t
+      logical, intent(in) :: blocked
       type(motion_t), intent(inout) :: found
       type(remark_t), allocatable :: list(:)
       real(wp) :: unit
@@ -147,7 +145,7 @@ contains
          unit = merge(1.0_wp, a%blocks%length, a%convergence%gap_is_angle)
          call add_remark(remark_t(kind=remark_open, pair=a%convergence%open_pair, drive=a%convergence%open_drive, &
             is_angle=a%convergence%gap_is_angle, value=a%convergence%gap*unit), found)
-      else if (a%follows .and. .not. a%is_lost) then
+      else if (blocked .and. .not. a%is_lost) then
          list = limit_remark(a%blocks, t)
          if (size(list) > 0) call add_remark(list(1), found)
       end if
