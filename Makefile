@@ -131,7 +131,7 @@ TEST_MODULES := $(BUILD)/debug
 TEST_FLAGS   := $(COMMON) $(DEBUG)
 TEST_LIBS    := $(LIBS)
 TEST_HELPERS := $(forms) $(addprefix tests/,deck_samples.f90 sample_mechanisms.f90 quad_closure.f90 motion_errors.f90 dice.f90 \
-   random_drafts.f90 random_mechanisms.f90 compare_engines.f90 quad_blocks.f90)
+   random_drafts.f90 random_mechanisms.f90 compare_engines.f90 quad_blocks.f90 sample_overconstrained.f90)
 include tests/tests.mk
 
 test: $(BUILD)/kinmat $(BUILD)/debug/kinmat $(BUILD)/check_forms $(BUILD)/compare_digits $(BUILD)/fuzz/fuzz $(references) $(BUILD)/tests$(if $(PFUNIT_DIR),/pfunit)/unit

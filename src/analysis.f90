@@ -24,11 +24,12 @@ module analysis
    real(wp), parameter :: largest_doubt = 0.1_wp
    !> A rough angle that is off by more is worth a word: the assembly may not be the one that was meant.
    real(wp), parameter :: far_angle = 1.0_wp
-   !> A part of a step smaller than this is the end of the way; and so are that many parts.
+   !> A part of a step smaller than this, of the longest or of what is left to go, is the end of the way; and so are
+   !> that many parts.
    real(wp), parameter :: smallest_part = 1.0e-10_wp
    integer, parameter :: most_parts = 200000
-   !> Near a limit a slow iteration creeps, and each part that fails costs all of its iterations: so many failures of parts
-   !> that are small already end the way too.
+   !> Near a limit a slow iteration creeps, and each part that fails costs all of its iterations: so many failures
+   !> of parts that are small already end the way too.
    integer, parameter :: most_failures = 300
    real(wp), parameter :: small_part = 1.0e-3_wp
 
@@ -40,7 +41,7 @@ module analysis
       logical :: follows = .false.               !< a regular motion is kept, found at `t`
       real(wp) :: t = 0.0_wp
       real(wp) :: place = 0.0_wp                 !< where the step that was divided last began
-      logical :: has_begun = .false.             !< a motion was found
+      logical :: has_begun = .false.             !< a position was found
       logical :: is_lost = .false.               !< the last one kept does not lead on
       real(wp) :: largest_gap = 0.0_wp           !< of redundant equations, relative
       real(wp), allocatable :: rough_angle(:)    !< (links) of the deck
@@ -71,13 +72,14 @@ contains
       type(analysis_t), intent(inout) :: a
       real(wp), intent(in) :: t
       type(motion_t), intent(inout) :: found
-      real(wp) :: part, here
+      real(wp) :: part, here, longest
       integer :: parts, failures
       logical :: accepted, arrived, blocked
 
       blocked = .false.
       if (allocated(found%remarks)) deallocate (found%remarks)
       part = t - a%t
+      longest = min(a%longest_part, abs(part))
       failures = 0
       do parts = 1, most_parts
          part = sign(min(abs(part), a%longest_part), part)
@@ -90,17 +92,19 @@ contains
          accepted = accepted .and. .not. a%convergence%singular
          if (accepted) call keep(a, here)
          if (.not. a%follows) exit
-         if (.not. accepted .and. abs(part) <= small_part*min(a%longest_part, abs(t - a%place))) failures = failures + 1
+         if (.not. accepted .and. abs(part) <= small_part*longest) failures = failures + 1
          part = merge(1.5_wp, 0.5_wp, accepted)*part
-         blocked = abs(part) <= smallest_part*abs(t - a%t)
+         blocked = abs(part) <= smallest_part*min(longest, abs(t - a%t))
          if (blocked .or. failures > most_failures) exit
       end do
       found%t = t
       if (arrived) then
          call tell(a, found)
-         if (.not. a%has_begun) call remark_on_start(a, found)
+         if (.not. a%has_begun .or. (.not. a%follows .and. found%known == 2)) call remark_on_start(a, found)
       else
+         if (parts > 1 .and. a%convergence%ended == ended_open) call measure_gap(a, t)
          call cut(found, -1, merge(mark_open, mark_not_converged, a%convergence%ended == ended_open))
+         if (a%convergence%ended == ended_open) a%largest_gap = max(a%largest_gap, a%convergence%gap)
          call remark_on_end(a, t, blocked, found)
       end if
       if (found%known == 2) then
@@ -110,6 +114,24 @@ contains
       end if
       a%is_lost = .not. arrived
    end subroutine advance
+
+   !> The gap at `t` itself, not where the last part of a step has ended: from the motion that is followed or, where
+   !> that is too far, from the deck's position.
+   subroutine measure_gap(a, t)
+      type(analysis_t), intent(inout) :: a
+      real(wp), intent(in) :: t
+      type(convergence_t) :: before
+      real(wp) :: correction
+      logical :: same
+
+      before = a%convergence
+      call seek_blocks(a%blocks, t, .true., a%convergence, correction, same)
+      if (a%convergence%ended == ended_open) return
+      call seek_blocks(a%blocks, t, .false., a%convergence, correction, same)
+      if (a%convergence%ended == ended_open) return
+      a%convergence = before
+      a%convergence%gap = 0.0_wp
+   end subroutine measure_gap
 
    !> What there is to say of the first motion that was found.
    subroutine remark_on_start(a, found)
@@ -141,7 +163,7 @@ contains
       real(wp) :: unit
 
       if (.not. allocated(a%blocks)) return
-      if (a%convergence%ended == ended_open .or. (.not. a%follows .and. a%convergence%gap > 0.0_wp)) then
+      if (a%convergence%gap > 0.0_wp .and. (a%convergence%ended == ended_open .or. .not. a%follows)) then
          unit = merge(1.0_wp, a%blocks%length, a%convergence%gap_is_angle)
          call add_remark(remark_t(kind=remark_open, pair=a%convergence%open_pair, drive=a%convergence%open_drive, &
             is_angle=a%convergence%gap_is_angle, value=a%convergence%gap*unit), found)

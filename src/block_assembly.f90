@@ -13,8 +13,6 @@ module block_assembly
    private
    public :: approach
 
-   !> A residual of this size is near enough for Newton's method.
-   real(wp), parameter :: near = 1.0e-6_wp
    !> No unknown goes further than this in one iteration: half a radian, half the characteristic length.
    real(wp), parameter :: longest_step = 0.5_wp
    !> No steps of that length make a residual small that is beyond this; its square is well below overflow.
@@ -36,11 +34,12 @@ module block_assembly
 
 contains
 
-   !> Brings block `i` from the values of `s` to where its residual is small; where that cannot be, to where it is
-   !> smallest, and `c` tells by how much which equation is open. `reached`: it is small.
-   subroutine approach(b, i, s, c, reached)
+   !> Brings block `i` from the values of `s` to where its residual is at most `near`; where that cannot be, to where
+   !> it is smallest, and `c` tells by how much which equation is open. `reached`: it is small.
+   subroutine approach(b, i, near, s, c, reached)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
+      real(wp), intent(in) :: near
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
       logical, intent(out) :: reached
@@ -60,7 +59,7 @@ contains
       least = huge(least)
       do k = 0, most_starts - 1
          call set_values(b, i, start + spread_start(k, size(start)), s)
-         call descend(b, i, w, s, found)
+         call descend(b, i, near, w, s, found)
          if (found < least) then
             least = found
             w%best = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
@@ -95,9 +94,10 @@ contains
    end function spread_start
 
    !> Goes down from the values of `s`; `found`: the largest residual at the end.
-   subroutine descend(b, i, w, s, found)
+   subroutine descend(b, i, near, w, s, found)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
+      real(wp), intent(in) :: near
       type(room_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       real(wp), intent(out) :: found

@@ -2,7 +2,7 @@
 !> turn comes. Only blocks that a table needs are solved, and those that no drive moves only once.
 module block_engine
    use kinds, only: wp
-   use mechanism, only: mechanism_t, wanted_links, drive_x, drive_y, drive_slide
+   use mechanism, only: mechanism_t, wanted_links, pair_revolute, drive_x, drive_y, drive_slide
    use motion, only: motion_t
    use scales, only: characteristic_length, power_of_two
    use links_tree, only: tree_t, new_tree
@@ -36,6 +36,7 @@ module block_engine
       real(wp), allocatable :: unit_of(:)               !< (drives) of the value: length or 1
       logical, allocatable :: is_angle(:)               !< (drives)
       integer, allocatable :: frame_of(:)               !< (links)
+      integer, allocatable :: joint(:, :)               !< (2, revolute pairs) the links of each
       logical, allocatable :: is_found(:)               !< (links) that a table needs and whose angle no drive gives
       real(wp), allocatable :: rough(:)                 !< (0:unknowns) from the deck's positions
       integer, allocatable :: needed(:), moving(:)      !< blocks that are solved at first, and at every step
@@ -78,6 +79,9 @@ contains
       allocate (e%laws(size(m%drives)))
       allocate (e%unit_of(size(m%drives)), source=1.0_wp)
       e%frame_of = t%frame
+      allocate (e%joint(2, count(m%pairs%kind == pair_revolute)))
+      e%joint(1, :) = m%points(pack(m%pairs%point_i, m%pairs%kind == pair_revolute))%link
+      e%joint(2, :) = m%points(pack(m%pairs%point_j, m%pairs%kind == pair_revolute))%link
       allocate (e%is_angle(size(m%drives)))
       do i = 1, size(m%drives)
          e%laws(i) = new_law(m%drives(i))

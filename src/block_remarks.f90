@@ -5,6 +5,7 @@ module block_remarks
    use remarks, only: remark_t, new_remark, remark_limit, remark_second, remark_redundant, remark_mobile, &
       remark_change
    use block_state, only: state_t
+   use block_needs, only: largest_known
    use block_rank, only: redundant_rows, moving_unknowns
    use first_position, only: has_second_position
    use block_engine, only: block_engine_t
@@ -14,6 +15,8 @@ module block_remarks
 
    !> A limit is told where it is no further than this part of the step that could not be made.
    real(wp), parameter :: near_part = 1.0e-6_wp
+   !> Arms with a smaller sine between them are in line: the last motion kept is the root of its distance in time away.
+   real(wp), parameter :: parallel = 1.0e-3_wp
    !> Over a step this short, in radians and lengths, a determinant that changes its sign although the prediction
    !> was right to so small a part of the step tells a change point. Circuits that pass each other at the distance
    !> d are told from one that crosses another where d^2 is above the product of the two, 1E-14.
@@ -62,18 +65,25 @@ contains
       end do
    end function redundancies
 
-   !> The links of block `i` that can move.
+   !> The links of block `i` that can move, and those that hang on them.
    subroutine add_mobility(e, i, list)
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: i
       type(remark_t), allocatable, intent(inout) :: list(:)
-      logical, allocatable :: moves(:)
+      logical, allocatable :: moves(:), moved(:)
+      integer :: k
 
       moves = moving_unknowns(e%blocks, i, e%state)
       if (.not. any(moves)) return
       associate (block => e%blocks%list(i))
-         list = [list, new_remark(remark_mobile, links_of(e, pack(e%blocks%unknown(block%first:block%last), moves)))]
+         moved = links_of(e, pack(e%blocks%unknown(block%first:block%last), moves))
       end associate
+      do k = 1, size(e%chain%hung)
+         associate (h => e%chain%hung(k))
+            if (h%above > 0) moved(h%link) = moved(h%link) .or. moved(h%above)
+         end associate
+      end do
+      list = [list, new_remark(remark_mobile, moved)]
    end subroutine add_mobility
 
    !> (links) Those whose angle is among the `unknowns`.
@@ -115,37 +125,112 @@ contains
       end associate
    end function change_remark
 
-   !> Where the last motion kept comes to its end on the way to `t`, if it does. Close to a limit t* the fastest
-   !> unknown is x* + c sqrt(t* - t), so t* - t = -x'/(2 x''), with an error of higher order.
+   !> Where the last motion kept comes to its end on the way to `t`, if it does: the first block, in solving order,
+   !> that comes to a limit; those that build on it do no less.
    function limit_remark(e, t) result(list)
       type(block_engine_t), intent(in) :: e
       real(wp), intent(in) :: t
       type(remark_t), allocatable :: list(:)
       type(remark_t) :: r
-      real(wp) :: rest, f(3)
-      integer :: fastest, k
+      real(wp) :: rest
+      integer :: k
 
       allocate (list(0))
-      if (size(e%history%sought) == 0) return
-      associate (h => e%history, p => e%history%place(0))
-         fastest = h%sought(maxloc(abs(h%rate2(h%sought, p)), dim=1))
+      if (e%history%filled == 0) return
+      do k = 1, size(e%moving)
+         if (e%blocks%list(e%moving(k))%direct) cycle
+         rest = way_left(e, e%moving(k), t)
+         if (abs(rest) <= 0.0_wp) cycle
+         associate (i => e%moving(k), block => e%blocks%list(e%moving(k)))
+            r = new_remark(remark_limit, links_of(e, e%blocks%unknown(block%first:block%last)))
+            r%in_line = is_in_line(e, i, r)
+            r%t = e%history%t(e%history%place(0)) + rest
+            call name_drive(e, i, r)
+         end associate
+         list = [r]
+         return
+      end do
+   end function limit_remark
+
+   !> From the last motion kept to the limit of block `i`, on the way to `t`; 0 where none is near. Close to a limit t*
+   !> the fastest unknown is x* + c sqrt(t* - t), so t* - t = x'/(2 x''), with an error of higher order.
+   pure real(wp) function way_left(e, i, t) result(rest)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i
+      real(wp), intent(in) :: t
+      integer :: fastest
+
+      rest = 0.0_wp
+      associate (h => e%history, p => e%history%place(0), &
+                 u => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
+         fastest = u(maxloc(abs(h%rate2(u, p)), dim=1))
          if (abs(h%rate2(fastest, p)) <= 0.0_wp) return
          rest = 0.5_wp*h%rate(fastest, p)/h%rate2(fastest, p)
-         if (rest*sign(1.0_wp, t - h%t(p)) <= 0.0_wp .or. abs(rest) > near_part*abs(t - h%t(p))) return
-         associate (block => e%blocks%list(e%blocks%block_of(fastest)))
-            r = new_remark(remark_limit, links_of(e, e%blocks%unknown(block%first:block%last)))
-            r%in_line = block%shape%n == 2 .and. count(r%links > 0) == 2
-         end associate
-         r%t = h%t(p) + rest
+         if (rest*sign(1.0_wp, t - h%t(p)) <= 0.0_wp .or. abs(rest) > near_part*abs(t - h%t(p))) rest = 0.0_wp
       end associate
-      do k = 1, size(e%laws)
-         f = drive_motion(e%laws(k), r%t)
-         if (r%drive > 0 .and. abs(f(2)) <= 0.0_wp) cycle
-         r%drive = k
-         r%value = f(1)
-         r%is_angle = e%is_angle(k)
-         if (abs(f(2)) > 0.0_wp) exit
+   end function way_left
+
+   !> The two links of `r`, all that block `i` moves, have a revolute pair in common, and all their arms are parallel.
+   pure logical function is_in_line(e, i, r)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i
+      type(remark_t), intent(in) :: r
+      real(wp) :: first, turn
+      integer :: m, k
+      logical :: has_first
+
+      is_in_line = .false.
+      if (count(r%links > 0) /= 2) return
+      do k = 1, size(e%joint, 2)
+         is_in_line = is_in_line .or. all(e%joint(:, k) == r%links(:2)) .or. all(e%joint(:, k) == r%links(2:1:-1))
       end do
-      list = [r]
-   end function limit_remark
+      has_first = .false.
+      do m = e%blocks%list(i)%first_instance, e%blocks%list(i)%last_instance
+         do k = e%blocks%instances(m)%first_own, e%blocks%instances(m)%last_arm
+            associate (arm => e%blocks%arms(k))
+               turn = e%history%value(arm%frame) + atan2(arm%y, arm%x)
+            end associate
+            if (.not. has_first) first = turn
+            has_first = .true.
+            is_in_line = is_in_line .and. abs(sin(turn - first)) <= parallel
+         end do
+      end do
+   end function is_in_line
+
+   !> The first drive that moves block `i` at r%t; where all stand still, the first that could.
+   subroutine name_drive(e, i, r)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i
+      type(remark_t), intent(inout) :: r
+      real(wp) :: f(3)
+      integer :: d
+
+      do d = 1, size(e%laws)
+         if (.not. is_moved_by(e, i, d)) cycle
+         f = drive_motion(e%laws(d), r%t)
+         if (r%drive > 0 .and. abs(f(2)) <= 0.0_wp) cycle
+         r%drive = d
+         r%value = f(1)
+         r%is_angle = e%is_angle(d)
+         if (abs(f(2)) > 0.0_wp) return
+      end do
+   end subroutine name_drive
+
+   !> Drive `d` is in block `i` or in one that it builds on.
+   pure logical function is_moved_by(e, i, d)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i, d
+      integer :: mark(0:e%blocks%unknowns), k
+
+      mark = 0
+      is_moved_by = .false.
+      do k = 1, size(e%moving)
+         associate (block => e%blocks%list(e%moving(k)))
+            is_moved_by = any(e%blocks%rows(block%first_row:block%last_row)%drive == d) &
+               .or. largest_known(e%blocks, e%moving(k), mark) > 0
+            if (e%moving(k) == i) return
+            mark(e%blocks%unknown(block%first:block%last)) = merge(1, 0, is_moved_by)
+         end associate
+      end do
+   end function is_moved_by
 end module block_remarks

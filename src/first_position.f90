@@ -14,6 +14,8 @@ module first_position
 
    !> A change of more than this, in radians or characteristic lengths, is a leap.
    real(wp), parameter :: leap = 0.5_wp
+   !> A residual of this size is near enough for Newton's method; below the other there is nothing to correct.
+   real(wp), parameter :: near = 1.0e-6_wp, closed = 1.0e-15_wp
    !> So far other starts are away from the rough position.
    real(wp), parameter :: aside = 0.8_wp
    !> A position that is this many times as far counts as about as near.
@@ -31,31 +33,112 @@ contains
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
-      type(convergence_t) :: nearest
       real(wp) :: change
-      real(wp), allocatable :: start(:), newton(:)
-      logical :: reached
+      real(wp), allocatable :: start(:), best(:)
 
-      start = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
+      start = values_of(b, i, s)
       change = 0.0_wp
       call solve_block(b, i, tolerance, w, s, c, change)
       if (b%list(i)%direct .or. (is_solved(c) .and. change <= leap)) return
-      if (is_solved(c)) newton = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
+      if (is_solved(c)) best = values_of(b, i, s)
       call set_values(b, i, start, s)
+      call come_near(b, i, tolerance, w, s, c)
+      call keep_nearer(b, i, start, s, c, best)
+      if (.not. allocated(best)) return
+      call look_aside(b, i, tolerance, start, w, s, best)
+      call set_values(b, i, best, s)
+      call solve_block(b, i, tolerance, w, s, c, change)
+   end subroutine solve_first_block
+
+   !> Solves block `i` from where it is nearly closed, or tells how far it stays open.
+   subroutine come_near(b, i, tolerance, w, s, c)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: tolerance
+      type(workspace_t), intent(inout) :: w
+      type(state_t), intent(inout) :: s
+      type(convergence_t), intent(inout) :: c
+      type(convergence_t) :: nearest
+      real(wp), allocatable :: brought(:)
+      real(wp) :: change
+      logical :: reached
+
+      change = 0.0_wp
       nearest = c
-      call approach(b, i, s, nearest, reached)
+      call approach(b, i, near, s, nearest, reached)
+      brought = values_of(b, i, s)
       call solve_block(b, i, tolerance, w, s, c, change)
       if (is_solved(c)) return
-      if (allocated(newton)) then
-         call set_values(b, i, newton, s)
+      if (reached) then
+         ! Close to a limit, and perhaps beyond it.
+         call set_values(b, i, brought, s)
+         call approach(b, i, closed, s, nearest, reached)
          call solve_block(b, i, tolerance, w, s, c, change)
-      else if (.not. reached) then
-         c%gap = nearest%gap
-         c%gap_is_angle = nearest%gap_is_angle
-         c%open_pair = nearest%open_pair
-         c%open_drive = nearest%open_drive
+         if (is_solved(c) .or. reached) return
       end if
-   end subroutine solve_first_block
+      c%gap = nearest%gap
+      c%gap_is_angle = nearest%gap_is_angle
+      c%open_pair = nearest%open_pair
+      c%open_drive = nearest%open_drive
+   end subroutine come_near
+
+   !> From a far start Newton's method and the descent may both pass the position that is the nearest: others are looked
+   !> for around the start.
+   subroutine look_aside(b, i, tolerance, start, w, s, best)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: tolerance, start(:)
+      type(workspace_t), intent(inout) :: w
+      type(state_t), intent(inout) :: s
+      real(wp), allocatable, intent(inout) :: best(:)
+      type(convergence_t) :: c
+      real(wp) :: change
+      integer :: k
+
+      if (size(start) > most_unknowns) return
+      do k = 1, 2*size(start)
+         call set_values(b, i, beside(start, k), s)
+         change = 0.0_wp
+         call solve_block(b, i, tolerance, w, s, c, change)
+         call keep_nearer(b, i, start, s, c, best)
+      end do
+   end subroutine look_aside
+
+   !> Start number `k` around `start`.
+   pure function beside(start, k) result(x)
+      real(wp), intent(in) :: start(:)
+      integer, intent(in) :: k
+      real(wp) :: x(size(start))
+
+      x = start
+      x((k + 1)/2) = x((k + 1)/2) + merge(aside, -aside, mod(k, 2) == 1)
+   end function beside
+
+   !> Makes a position that was found the `best` where it is nearer to `start`, by more than rounding.
+   subroutine keep_nearer(b, i, start, s, c, best)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: start(:)
+      type(state_t), intent(in) :: s
+      type(convergence_t), intent(in) :: c
+      real(wp), allocatable, intent(inout) :: best(:)
+
+      if (.not. is_solved(c)) return
+      if (.not. allocated(best)) then
+         best = values_of(b, i, s)
+      else if (norm2(values_of(b, i, s) - start) < 0.999_wp*norm2(best - start)) then
+         best = values_of(b, i, s)
+      end if
+   end subroutine keep_nearer
+
+   pure function values_of(b, i, s) result(x)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(state_t), intent(in) :: s
+      real(wp), allocatable :: x(:)
+
+      x = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
+   end function values_of
 
    !> Block `i`, solved in `s`, has another position that is hardly further from the rough one `start`.
    logical function has_second_position(b, i, tolerance, start, w, s) result(has)
@@ -75,9 +158,7 @@ contains
       if (maxval(abs(found - start)) < 0.1_wp) return
       other = s
       do k = 1, 2*size(start)
-         x = start
-         x((k + 1)/2) = x((k + 1)/2) + merge(aside, -aside, mod(k, 2) == 1)
-         call set_values(b, i, x, other)
+         call set_values(b, i, beside(start, k), other)
          change = 0.0_wp
          call solve_block(b, i, tolerance, w, other, c, change)
          if (.not. is_solved(c)) cycle

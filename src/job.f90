@@ -22,6 +22,9 @@ module job
       type(output_t) :: listing, csv, log
    end type outputs_t
 
+   !> Of so many sets it is told what is wrong with them.
+   integer, parameter :: most_sets = 10
+
 contains
 
    !> Does what `options` say. `status`: the exit status; `message`: lines for standard error, '' for none.
@@ -51,15 +54,20 @@ contains
    subroutine check_structure(sets, failure)
       type(mechanism_t), intent(in) :: sets(:)
       type(failure_t), allocatable, intent(out) :: failure
-      character(:), allocatable :: text
-      integer :: i
+      character(:), allocatable :: text, all_of_them
+      integer :: i, told
 
+      all_of_them = ''
+      told = 0
       do i = 1, size(sets)
          text = faults_text(sets(i), find_structure(sets(i)), i)
          if (len(text) == 0) cycle
-         call fail(failure, status_refused, text)
-         return
+         if (told > 0) all_of_them = all_of_them//new_line('a')//' *** '
+         all_of_them = all_of_them//text
+         told = told + 1
+         if (told == most_sets) exit
       end do
+      if (told > 0) call fail(failure, status_refused, all_of_them)
    end subroutine check_structure
 
    subroutine open_all(options, o, failure)

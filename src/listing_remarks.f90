@@ -6,6 +6,7 @@ module listing_remarks
    use remarks, only: remark_t, remark_open, remark_limit, remark_far, remark_second, remark_redundant, remark_mobile, &
       remark_change
    use naming, only: drive_name, listed
+   use numerals, only: whole
    use text_output, only: output_t, put
    use phrases, only: phrase, say_pair, say_drive, say_link, say_links, say_open_by, say_limit, say_in_line, &
       say_at_limit, say_off_by, say_second, say_redundant, say_mobile, say_gap, say_below, say_change, say_smoothly
@@ -86,6 +87,12 @@ contains
       n = count(r%links > 0)
       text = phrase(merge(say_link, say_links, n == 1), m%polish)
       if (n > 0) text = text//' '//listed(m%links(r%links(:n))%name)
+      if (r%more == 0) return
+      if (m%polish) then
+         text = text//' I '//whole(r%more)//' INNE'
+      else
+         text = text//' AND '//whole(r%more)//' MORE'
+      end if
    end function links
 
    !> The remark's value and its unit.

@@ -7,7 +7,7 @@
 module matching
    implicit none
    private
-   public :: incidence_t, match, find_blocks, overdetermined, underdetermined
+   public :: incidence_t, match, find_blocks, overdetermined
 
    !> Unknowns of equation e: unknown(first(e)), ..., unknown(first(e + 1) - 1), each once.
    type :: incidence_t
@@ -238,30 +238,4 @@ contains
          next = next + 1
       end do
    end function overdetermined
-
-   !> (unknowns) The part with too few equations: 0 for what is determined; other unknowns have the number of the
-   !> free one from which they were reached first.
-   function underdetermined(g, unknown_of, equation_of) result(part)
-      type(incidence_t), intent(in) :: g
-      integer, intent(in) :: unknown_of(:), equation_of(:)
-      integer :: part(g%unknowns)
-      integer :: root(g%unknowns), e, i, u
-      logical :: grown
-
-      root = [(u, u=1, g%unknowns)]
-      part = merge(root, 0, equation_of == 0)
-      do
-         grown = .false.
-         do e = 1, g%equations
-            if (unknown_of(e) == 0) cycle
-            if (part(unknown_of(e)) > 0) cycle
-            do i = g%first(e), g%first(e + 1) - 1
-               if (part(g%unknown(i)) == 0) cycle
-               part(unknown_of(e)) = part(g%unknown(i))
-               grown = .true.
-            end do
-         end do
-         if (.not. grown) exit
-      end do
-   end function underdetermined
 end module matching

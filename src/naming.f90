@@ -16,7 +16,7 @@ contains
    pure function drive_name(m, d) result(name)
       type(mechanism_t), intent(in) :: m
       type(drive_t), intent(in) :: d
-      character(3*label_length) :: name
+      character(3*label_length + 2) :: name
 
       select case (d%kind)
       case (drive_angle)

@@ -23,6 +23,7 @@ module remarks
       integer :: kind = 0
       integer :: pair = 0, drive = 0
       integer :: links(most_links) = 0
+      integer :: more = 0                      !< links for which there is no room
       logical :: in_line = .false.             !< remark_limit: the two links are in line
       logical :: is_angle = .false.            !< of `value`
       real(wp) :: value = 0.0_wp, t = 0.0_wp
@@ -42,8 +43,8 @@ contains
       do i = 1, size(chosen)
          if (.not. chosen(i)) cycle
          n = n + 1
-         if (n > most_links) exit
-         r%links(n) = i
+         if (n <= most_links) r%links(n) = i
       end do
+      r%more = max(0, n - most_links)
    end function new_remark
 end module remarks

@@ -5,7 +5,8 @@
 module structure
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_revolute, pair_prismatic, wanted_links
-   use matching, only: match, overdetermined, underdetermined
+   use matching, only: match, overdetermined
+   use loose_parts, only: underdetermined
    use closure_incidence, only: closure_t, new_closure
    use assur_groups, only: group_t, groups_of
    use links_tree, only: tree_t, new_tree
@@ -73,7 +74,8 @@ contains
       f%redundant = count(unknown_of == 0)
       f%many_pairs = pack(c%pair, over .and. c%pair > 0)
       f%many_drives = pack(c%drive, over .and. c%drive > 0)
-      f%lacking = parts_that_lack(m, c%link_of, underdetermined(c%incidence, unknown_of, equation_of))
+      f%lacking = parts_that_lack(m, c%link_of, underdetermined(c%incidence, unknown_of, equation_of), &
+         equation_of)
       if (size(f%lacking) > 0) return
       t = new_tree(m)
       b = new_blocks(t, new_equations(m, t, 1.0_wp))
@@ -82,39 +84,73 @@ contains
       if (f%solvable) f%groups = groups_of(m, c, unknown_of, equation_of, over, wanted_links(m))
    end function find_structure
 
-   !> The parts of `m` that still can move. `part` (unknowns): the free unknown by which each is free, 0 for none;
-   !> parts with a link in common are one.
-   function parts_that_lack(m, link_of, part) result(parts)
+   !> The parts of `m` that still can move. `part` (unknowns): the number of its part, 0 for what cannot move;
+   !> parts with a link in common are one. Time proportional to the unknowns.
+   function parts_that_lack(m, link_of, part, equation_of) result(parts)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: link_of(:), part(:)
+      integer, intent(in) :: link_of(:), part(:), equation_of(:)
       type(part_t), allocatable :: parts(:)
-      type(part_t) :: one
-      integer :: of_link(size(m%links)), u, i
-      logical :: merged
+      integer :: first(size(m%links)), above(size(part)), number(size(part)), u, i, n
+      integer, allocatable :: links(:)
 
-      of_link = 0
+      first = 0
+      above = [(u, u=1, size(part))]
       do u = 1, size(part)
-         if (part(u) > 0 .and. of_link(link_of(u)) == 0) of_link(link_of(u)) = part(u)
+         if (part(u) == 0) cycle
+         if (first(link_of(u)) == 0) first(link_of(u)) = part(u)
+         above(top(part(u))) = top(first(link_of(u)))
       end do
-      do
-         merged = .false.
-         do u = 1, size(part)
-            if (part(u) == 0) cycle
-            if (of_link(link_of(u)) == of_link(link_of(part(u)))) cycle
-            where (of_link == of_link(link_of(u))) of_link = of_link(link_of(part(u)))
-            merged = .true.
+      links = pack([(i, i=1, size(first))], first > 0)
+      number = 0
+      n = 0
+      do i = 1, size(links)
+         u = top(first(links(i)))
+         if (number(u) == 0) n = n + 1
+         if (number(u) == 0) number(u) = n
+         first(links(i)) = number(u)
+      end do
+      allocate (parts(n))
+      call share_out(links, first(links), parts)
+      do u = 1, size(part)
+         if (part(u) == 0 .or. equation_of(u) > 0) cycle
+         associate (p => parts(number(top(part(u)))))
+            p%freedoms = p%freedoms + 1
+         end associate
+      end do
+
+   contains
+
+      !> The part that stands for all that are one with part `k`.
+      integer function top(k)
+         integer, intent(in) :: k
+
+         top = k
+         do while (above(top) /= top)
+            above(top) = above(above(top))
+            top = above(top)
          end do
-         if (.not. merged) exit
-      end do
-      allocate (parts(0))
-      do i = 1, size(m%links)
-         if (of_link(i) == 0) cycle
-         if (any(of_link(:i - 1) == of_link(i))) cycle
-         one%links = pack([(u, u=1, size(m%links))], of_link == of_link(i))
-         one%freedoms = count(part == [(u, u=1, size(part))] .and. part > 0 .and. of_link(link_of) == of_link(i))
-         parts = [parts, one]
-      end do
+      end function top
    end function parts_that_lack
+
+   !> Gives each of the `links` to the part of its `number`.
+   pure subroutine share_out(links, number, parts)
+      integer, intent(in) :: links(:), number(:)
+      type(part_t), intent(inout) :: parts(:)
+      integer :: many(size(parts)), i
+
+      many = 0
+      do i = 1, size(links)
+         many(number(i)) = many(number(i)) + 1
+      end do
+      do i = 1, size(parts)
+         allocate (parts(i)%links(many(i)))
+      end do
+      many = 0
+      do i = 1, size(links)
+         many(number(i)) = many(number(i)) + 1
+         parts(number(i))%links(many(number(i))) = links(i)
+      end do
+   end subroutine share_out
 
    !> The same by unknowns of the tree that found no equation: two links that a prismatic pair joins have one angle.
    function parts_on_tree(m, t, free) result(parts)

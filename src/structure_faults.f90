@@ -9,6 +9,9 @@ module structure_faults
    private
    public :: faults_text
 
+   !> So many parts are told by name; of more, the number.
+   integer, parameter :: most_parts = 20
+
 contains
 
    !> A line for each fault of set number `set`, joined by new_line('a'); '' where there is none.
@@ -25,9 +28,11 @@ contains
             call add_line('E104  SET '//whole(set)//': ONLY METHOD NEWTON TAKES '//surplus(m, f))
          return
       end if
-      do i = 1, size(f%lacking)
+      do i = 1, min(size(f%lacking), most_parts)
          call add_line('E101  SET '//whole(set)//': '//lack(m, f%lacking(i)))
       end do
+      if (size(f%lacking) > most_parts) call add_line('E101  SET '//whole(set)//': AND ' &
+         //whole(size(f%lacking) - most_parts)//' MORE PARTS THAT CAN MOVE')
       if (f%redundant > 0) call add_line('E102  SET '//whole(set)//': '//surplus(m, f))
       call add_line('E103  SET '//whole(set)//': W = '//whole(f%coordinates)//' COORDINATES LESS R = ' &
          //whole(f%equations)//' EQUATIONS LEAVE S = '//whole(f%freedoms)//' FREEDOMS, DRIVES ARE '//whole(f%drives))
@@ -63,17 +68,20 @@ contains
       type(mechanism_t), intent(in) :: m
       type(findings_t), intent(in) :: f
       character(:), allocatable :: text
-      character(3*label_length) :: drives(size(f%many_drives))
+      character(3*label_length + 2) :: drives(size(f%many_drives))
       integer :: i
+      integer, allocatable :: pairs(:)
 
+      pairs = once(f%many_pairs)
       text = 'TOO MANY EQUATIONS BY '//whole(f%redundant)//' AMONG'
-      if (size(f%many_pairs) > 0) text = text//' PAIRS '//listed(m%pairs(once(f%many_pairs))%name)
-      if (size(f%many_drives) == 0) return
-      if (size(f%many_pairs) > 0) text = text//' AND'
+      if (size(pairs) > 0) text = text//trim(merge(' PAIR ', ' PAIRS', size(pairs) == 1))//' ' &
+         //listed(m%pairs(pairs)%name)
+      if (size(drives) == 0) return
+      if (size(pairs) > 0) text = text//' AND'
       do i = 1, size(drives)
          drives(i) = drive_name(m, m%drives(f%many_drives(i)))
       end do
-      text = text//' DRIVES '//listed(drives)
+      text = text//trim(merge(' DRIVE ', ' DRIVES', size(drives) == 1))//' '//listed(drives)
    end function surplus
 
    !> The first of each run of equal numbers.

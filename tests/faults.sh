@@ -85,7 +85,8 @@ small() { awk "BEGIN { pi = atan2(0, -1); printf \"%.2E\", $1 }"; }
 singular=' *** JACOBIAN SINGULAR: VELOCITIES AND ACCELERATIONS DO NOT EXIST'
 open=' *** TOO MANY EQUATIONS, AND THEY CONTRADICT ONE ANOTHER'
 none=' *** NO POSITION FOUND'
-below=' LARGEST GAP OF REDUNDANT EQUATIONS, OF THE SIZE: BELOW 1.E-13'
+largest=' LARGEST GAP OF REDUNDANT EQUATIONS, OF THE SIZE:'
+below="$largest BELOW 1.E-13"
 
 # Freedoms by structure: which links, how many drives, which equations.
 crank_rocker='0.0 1.0 3.5 3.0 4.0 14.0 50.0 110.0'
@@ -108,15 +109,37 @@ told 'two drives on one mechanism, none on the other' 1 \
    ' *** E101  SET 1: LINKS CRANK2, COUPL2, ROCK2: 1 FREEDOM LEFT, ADD A DRIVE
  *** E102  SET 1: TOO MANY EQUATIONS BY 1 AMONG PAIRS PA01, PA1, PB1, PB01 AND DRIVES ANGLE CRANK1, ANGLE ROCK1
  *** E103  SET 1: W = 21 COORDINATES LESS R = 19 EQUATIONS LEAVE S = 2 FREEDOMS, DRIVES ARE 2'
+{ head_of CHAIN; point P0 BASE
+   for i in 1 2 3 4 5 6 7 8 9 10; do
+      link "BAR-$i" 0.0 0.0 0.0; point "P$i" "BAR-$i"; point "Q$i" "BAR-$i" 1.0
+      if [ $i = 1 ]; then joint P0 P1 J1; else joint "Q$((i - 1))" "P$i" "J$i"; fi
+   done; card PRINT POINTS Q10; until_time 2 1.0; } > "$w/deck"
+told 'ten links hang free' 1 ' *** E101  SET 1: LINKS BAR-1, BAR-2, BAR-3, BAR-4, BAR-5, BAR-6, BAR-7, BAR-8 AND 2 MORE: 10 FREEDOMS LEFT, ADD DRIVES
+ *** E103  SET 1: W = 33 COORDINATES LESS R = 23 EQUATIONS LEAVE S = 10 FREEDOMS, DRIVES ARE 0'
+sed 's/^TIME /'"$(drive ANGLE BAR-5 '' 0.0)"'\n&/' "$w/deck" > "$w/one.deck" && mv "$w/one.deck" "$w/deck"
+told 'ten links, the fifth is driven' 1 ' *** E101  SET 1: LINKS BAR-1, BAR-2, BAR-3, BAR-4, BAR-5, BAR-6, BAR-7, BAR-8 AND 2 MORE: 9 FREEDOMS LEFT, ADD DRIVES
+ *** E103  SET 1: W = 33 COORDINATES LESS R = 23 EQUATIONS LEAVE S = 10 FREEDOMS, DRIVES ARE 1'
+pendulums() { head_of PENDULUMS; awk -v n="$1" 'BEGIN { print "POINT   O       BASE"; for (i = 1; i <= n; i++)
+   printf "LINK    L%d\nPOINT   P%-7dL%-7d        1.0\nREVOLUTEO       P%-7dR%d\n", i, i, i, i, i }'; until_time 2 1.0; }
+pendulums 22 > "$w/deck"
+told 'twenty-two pendulums' 1 "$(awk 'BEGIN { for (i = 1; i <= 20; i++)
+   print " *** E101  SET 1: LINK L" i ": 1 FREEDOM LEFT, ADD A DRIVE" }')
+ *** E101  SET 1: AND 2 MORE PARTS THAT CAN MOVE
+ *** E103  SET 1: W = 69 COORDINATES LESS R = 47 EQUATIONS LEAVE S = 22 FREEDOMS, DRIVES ARE 0"
+{ pendulums 1; pendulums 1; } > "$w/deck"
+told 'faults of every set' 1 ' *** E101  SET 1: LINK L1: 1 FREEDOM LEFT, ADD A DRIVE
+ *** E103  SET 1: W = 6 COORDINATES LESS R = 5 EQUATIONS LEAVE S = 1 FREEDOMS, DRIVES ARE 0
+ *** E101  SET 2: LINK L1: 1 FREEDOM LEFT, ADD A DRIVE
+ *** E103  SET 2: W = 6 COORDINATES LESS R = 5 EQUATIONS LEAVE S = 1 FREEDOMS, DRIVES ARE 0'
 block() { head_of BLOCK; link BLOCK 0.0 0.0 0.0; point O BASE; point O1 BLOCK; card PRISM O O1 GUIDE 0.0 0.0 0.0
    "$@"; until_time 2 1.0; }
 block drive ANGLE BLOCK '' 0.0 > "$w/deck"
 told 'an angle that a guide keeps is driven' 1 ' *** E101  SET 1: LINK BLOCK: 1 FREEDOM LEFT, ADD A DRIVE
- *** E102  SET 1: TOO MANY EQUATIONS BY 1 AMONG PAIRS GUIDE AND DRIVES ANGLE BLOCK
+ *** E102  SET 1: TOO MANY EQUATIONS BY 1 AMONG PAIR GUIDE AND DRIVE ANGLE BLOCK
  *** E103  SET 1: W = 6 COORDINATES LESS R = 5 EQUATIONS LEAVE S = 1 FREEDOMS, DRIVES ARE 1'
 { head_of PIVOT; four_bar '' $crank_rocker; drive X A1 '' 0.0; until_time 2 1.0; } > "$w/deck"
 told 'a drive on a fixed pivot moves nothing' 1 ' *** E101  SET 1: LINKS CRANK, COUPL, ROCK: 1 FREEDOM LEFT, ADD A DRIVE
- *** E102  SET 1: TOO MANY EQUATIONS BY 1 AMONG PAIRS PA0 AND DRIVES X A1
+ *** E102  SET 1: TOO MANY EQUATIONS BY 1 AMONG PAIR PA0 AND DRIVE X A1
  *** E103  SET 1: W = 12 COORDINATES LESS R = 11 EQUATIONS LEAVE S = 1 FREEDOMS, DRIVES ARE 1'
 { head_of MATRIX; four_bar '' $crank_rocker; drive ANGLE CRANK '' 14.0 9.0; drive RELANGLE CRANK COUPL 1.0; card METHOD MATRIX
    until_time 2 1.0; } > "$w/deck"
@@ -127,18 +150,18 @@ told 'too many equations for METHOD MATRIX' 1 \
 parallelogram() { head_of PARALLEL; four_bar '' 0.0 2.0 4.0 2.0 4.0 40.0 0.0 40.0; "$@"; until_time 1 1.0; }
 parallelogram drive ANGLE COUPL '' 0.0 > "$w/deck"
 told 'the coupler of a parallelogram is driven' 2 "0:$singular
-0: *** LINKS CRANK, ROCK CAN STILL MOVE, ADD A DRIVE
+0: *** LINKS CRANK, COUPL, ROCK CAN STILL MOVE, ADD A DRIVE
 1:$singular"
 scott_russell() { head_of 'SCOTT RUSSELL'; link CRANK 0.0 0.0 30.0; link BAR 0.87 0.5 -30.0; link BLOCK 1.73 0.0 0.0
    point O BASE; point O1 CRANK; point A1 CRANK 1.0; point A2 BAR; point B2 BAR 1.0; point C BAR -1.0; point B BLOCK
    joint O O1 PO; joint A1 A2 PA; joint B2 B PB; card PRISM O B GUIDE 0.0 0.0 0.0; "$@"; until_time 1 1.0; }
 scott_russell drive X C '' 0.0 > "$w/deck"
 told 'a drive across a straight line that the point cannot leave' 2 "0:$singular
-0: *** LINKS CRANK, BAR CAN STILL MOVE, ADD A DRIVE
+0: *** LINKS CRANK, BAR, BLOCK CAN STILL MOVE, ADD A DRIVE
 1:$singular"
 { head_of 'THIRD CRANK'; three_cranks 0.0 30.0; until_time 1 1.0; } > "$w/deck"
 told 'three cranks without a drive' 2 "0:$singular
-0: *** LINKS CRANK-1, CRANK-2, CRANK-3 CAN STILL MOVE, ADD A DRIVE
+0: *** LINKS CRANK-1, CRANK-2, CRANK-3, COUPLER CAN STILL MOVE, ADD A DRIVE
 1:$singular"
 
 # Redundant and consistent: of those that depend on one another, the last of the deck.
@@ -153,6 +176,87 @@ block drive SLIDE GUIDE '' 0.0 1.0 > "$w/slide.deck"
 sed 's/^TIME /'"$(drive Y O1 '' 0.0)"'\n&/' "$w/slide.deck" > "$w/deck"
 told 'a drive that asks for what is so anyway' 0 "0: --- REDUNDANT EQUATION: DRIVE Y O1
 $below"
+
+# swing DRIVE...: a pendulum of known angle on a block in a guide
+swing() { head_of SWING; link BLOCK 0.5 0.0 0.0; link BAR 0.5 0.0 -90.0; point O BASE; point O1 BLOCK; point P BAR
+   joint O1 P PIVOT; card PRISM O O1 GUIDE 0.0 0.0 0.0; drive ANGLE BAR '' -90.0 30.0; "$@"; until_time 1 1.0; }
+two_drives() { drive SLIDE GUIDE '' 0.5 0.25; drive "$@"; }
+swing two_drives SLIDE GUIDE '' 0.5 0.25 > "$w/deck"
+told 'one slide driven twice' 0 "0: --- REDUNDANT EQUATION: DRIVE SLIDE GUIDE
+$below"
+equal 'one slide driven twice: the pendulum' ' BAR        0.7500000   0.0000000  -60.000000   0.2500000   0.0000000    30.00000' \
+   "$(grep '^ BAR ' "$w/out" | tail -n 1 | cut -c 1-81)"
+swing two_drives X P '' 0.5 0.25 > "$w/deck"
+told 'a slide driven, and its point' 0 "0: --- REDUNDANT EQUATION: DRIVE X P
+$below"
+
+# Redundant and inconsistent. Least squares: two drives or guides that differ by e are open by e/2 each, the last is named.
+swing two_drives SLIDE GUIDE '' 0.51 0.25 > "$w/deck"
+told 'one slide driven to two places' 2 "0:$open
+0: *** DRIVE SLIDE GUIDE STAYS OPEN BY $(small 0.005) M
+1:$open
+1: *** DRIVE SLIDE GUIDE STAYS OPEN BY $(small 0.005) M
+$largest 1.E-02"
+# The second drive leaves the first by 0.2 t**3, which begins without velocity and acceleration.
+{ head_of PART; four_bar '' $crank_rocker; drive ANGLE CRANK '' 14.0 20.0; drive ANGLE CRANK '' 14.0 20.0
+   card ADD POWER '' '' 0.2 3.0; until_time 4 4.0; } > "$w/deck"
+told 'drives that part on the way' 2 "0: --- REDUNDANT EQUATION: DRIVE ANGLE CRANK
+1:$open
+1: *** DRIVE ANGLE CRANK STAYS OPEN BY $(small 0.1) DEG
+2:$open
+2: *** DRIVE ANGLE CRANK STAYS OPEN BY $(small 0.8) DEG
+3:$open
+3: *** DRIVE ANGLE CRANK STAYS OPEN BY $(small 2.7) DEG
+4:$open
+4: *** DRIVE ANGLE CRANK STAYS OPEN BY $(small 6.4) DEG
+$largest 1.E-01"
+{ head_of PART; four_bar '' $crank_rocker; drive ANGLE CRANK '' 14.0 20.0; drive ANGLE CRANK '' 14.0 22.0; until_time 1 1.0
+   } > "$w/deck"
+told 'drives that agree in position alone' 2 "0:$open
+0: --- REDUNDANT EQUATION: DRIVE ANGLE CRANK
+1:$open
+1: *** DRIVE ANGLE CRANK STAYS OPEN BY $(small 1) DEG
+$largest 2.E-02"
+# guides OFFSET BETA: a crank-slider whose carriage runs in two guides, parallel for 0.25 and 0.0
+guides() { head_of GUIDES; slider 1.0 3.0 30.0 0.5; point G2 BASE 1.0 -0.75; point B3 PISTON 0.25 -1.5
+   card PRISM G2 B3 GUIDE-2 0.0 "$1" "$2"; drive ANGLE CRANK '' 30.0 40.0; until_time 1 1.0; }
+guides 0.25 0.0 > "$w/deck"
+told 'two parallel guides' 0 "0: --- REDUNDANT EQUATION: PAIR GUIDE-2
+$below"
+guides 0.252 0.0 > "$w/deck"
+told 'two guides, one too far off' 2 "0:$open
+0: *** PAIR GUIDE-2 STAYS OPEN BY $(small 0.001) M
+1:$open
+1: *** PAIR GUIDE-2 STAYS OPEN BY $(small 0.001) M
+$largest 5.E-04"
+guides 0.25 0.001 > "$w/deck"
+told 'two guides that are not parallel' 2 "0:$open
+0: *** PAIR GUIDE-2 STAYS OPEN BY $(small 0.001) DEG
+1:$open
+1: *** PAIR GUIDE-2 STAYS OPEN BY $(small 0.001) DEG
+$largest 2.E-05"
+# With u the direction of the cranks, the left null vector of the loops through B and C is (a u, u), 4 a u_y = u_x - 2 u_y: of
+# an excess e the pair C keeps e/(1 + a**2).
+gap() { small "$1/(1 + ((cos($2*pi/180) - 2*sin($2*pi/180))/(4*sin($2*pi/180)))^2)"; }
+for excess in 1e-3 1e-6 1e-9; do
+   { head_of 'THIRD CRANK'; three_cranks $excess 30.0; drive ANGLE CRANK-1 '' 30.0 30.0; until_time 2 2.0; } > "$w/deck"
+   told "a third crank too long by $excess" 2 "0:$open
+0: *** PAIR PAIR-C STAYS OPEN BY $(gap $excess 30) M
+1:$open
+1: *** PAIR PAIR-C STAYS OPEN BY $(gap $excess 60) M
+2:$open
+2: *** PAIR PAIR-C STAYS OPEN BY $(gap $excess 90) M
+$largest $(awk "BEGIN { printf \"%.0E\", $(gap $excess 30)/4 }" | sed 's/E/.E/')"
+done
+{ head_of 'THIRD CRANK'; three_cranks 4e-12 30.0; drive ANGLE CRANK-1 '' 30.0 30.0; until_time 2 2.0; } > "$w/deck"
+told 'a third crank too long by 1e-12 of the size' 0 "0: --- REDUNDANT EQUATION: PAIR PAIR-C
+$largest 1.E-12"
+{ head_of TROJKAT; card LANG PL; three_cranks 1e-3 30.0; drive ANGLE CRANK-1 '' 30.0 30.0; until_time 1 1.0; } > "$w/deck"
+told 'in Polish: too long' 2 "0: *** ZA DUZO ROWNAN I PRZECZA SOBIE NAWZAJEM
+0: *** PARA PAIR-C POZOSTAJE OTWARTA O $(gap 1e-3 30) M
+1: *** ZA DUZO ROWNAN I PRZECZA SOBIE NAWZAJEM
+1: *** PARA PAIR-C POZOSTAJE OTWARTA O $(gap 1e-3 60) M
+ NAJWIEKSZA NIEZGODNOSC ROWNAN NADLICZBOWYCH WZGLEDEM WYMIARU: 2.E-04"
 
 # Lock-up: the limit by the cosine law, by crank and rod in line, by the rod across the guide.
 limit="acos((9.0 + 16.0 - 16.0)/24.0)*180/pi"
@@ -192,12 +296,74 @@ told 'the rod across its guide, in radians' 2 "2:$none
 2: *** LIMIT OF MOTION AT T = $(found pi/6/0.15), DRIVE ANGLE CRANK = $(found pi/6) RAD
 2: *** LINK ROD AT THE LIMIT"
 
+{ head_of TWO; four_bar 1 $crank_rocker; four_bar 2 10.0 3.0 2.0 2.0 4.0 0.0 30.0 120.0
+   drive ANGLE CRANK1 '' 14.0 30.0; drive ANGLE CRANK2 '' 0.0 20.0; until_time 2 4.0; } > "$w/deck"
+told 'the second of two mechanisms locks' 2 "2:$none
+2: *** LIMIT OF MOTION AT T = $(found "$limit/20"), DRIVE ANGLE CRANK2 = $(found "$limit") DEG
+2: *** LINKS COUPL2, ROCK2 AT THE LIMIT, IN LINE"
+# Bar A B = 1.2 on a crank of 1, B on the x axis, C at 2 beyond A: x_C = cos f - 2 cos b, sin b = sin f/1.2, has its maximum
+# where 1.44 cos b = 2 cos f, that is sin(f)**2 = 1.9264/2.56: crank and bar are not in line.
+{ scott_russell drive X C '' -0.95 0.02 | sed -e 's/^POINT   B2 .*/'"$(point B2 BAR 1.2)"'/' -e 's/^POINT   C .*/'"$(point C BAR -2.0)"'/' \
+   -e '/^TIME/d' -e '/^END/d'; until_time 2 12.0; } > "$w/deck"
+limit='(sqrt(0.6336/2.56) - 2*sqrt(1 - 1.9264/2.56/1.44))'
+told 'a limit that is no line' 2 "1:$none
+1: *** LIMIT OF MOTION AT T = $(found "($limit + 0.95)/0.02"), DRIVE X C = $(found "$limit") M
+1: *** LINKS CRANK, BAR AT THE LIMIT
+2:$none"
+# Coupler 4 driven, crank 2 and rocker 3 parallel at the limit: 16 + 16 - 32 cos p = 1.
+{ head_of PARALLEL; four_bar '' 0.0 2.0 4.0 3.0 4.0 60.0 10.0 90.0; drive ANGLE COUPL '' 20.0 -10.0; until_time 1 1.0; } > "$w/deck"
+limit='acos(31/32)*180/pi'
+told 'crank and rocker parallel' 2 "1:$none
+1: *** LIMIT OF MOTION AT T = $(found "(20 - $limit)/10"), DRIVE ANGLE COUPL = $(found "$limit") DEG
+1: *** LINKS CRANK, ROCK AT THE LIMIT"
+# A slider-crank on the rocker's arm, whose rod turns faster than what locks: the first that locks is named. The crank's
+# way to the limit, the rocker's direction there and the guide along it are those of the four-bar 3, 2, 2, 4.
+{ head_of BEHIND; four_bar '' 0.0 3.0 2.0 2.0 4.0 67.5 -38.0 130.0; link ROD 0.172 4.619 130.0; link SHOE -0.785 5.774 130.0
+   point Q ROCK 6.0; point Q1 ROD; point Q2 ROD 1.5; point S SHOE; point G BASE 0.172 4.619; joint Q Q1 PQ; joint Q2 S PS
+   card PRISM G S GUIDE 130.0 0.0 130.0; drive ANGLE CRANK '' 67.5 0.1; until_time 2 6.0; } > "$w/deck"
+limit="acos((9.0 + 16.0 - 16.0)/24.0)*180/pi"
+told 'what follows the link that locks' 2 "2:$none
+2: *** LIMIT OF MOTION AT T = $(found "($limit - 67.5)/0.1"), DRIVE ANGLE CRANK = $(found "$limit") DEG
+2: *** LINKS COUPL, ROCK AT THE LIMIT, IN LINE"
+{ head_of TLOK; card LANG PL; slider 1.0 3.0 60.0 0.0; drive X B '' 3.5 0.2; until_time 1 3.0; } > "$w/deck"
+told 'in Polish: a limit' 2 "1: *** NIE ZNALEZIONO POLOZENIA
+1: *** KRES RUCHU W CHWILI T = $(found 2.5), NAPED X B = $(found 4) M
+1: *** OGNIWA CRANK, ROD NA KRESIE RUCHU, W JEDNEJ LINII"
+
 # From the rough positions: what cannot be closed, by how much and where; what was far, and what was close.
 { head_of REACH; slider 1.0 3.0 60.0 0.0; drive X B '' 4.5 0.0; until_time 1 1.0; } > "$w/deck"
 told 'a piston beyond its reach from the start' 2 "0:$none
 0: *** DRIVE X B STAYS OPEN BY $(small 0.5) M
 1:$none
 1: *** DRIVE X B STAYS OPEN BY $(small 0.5) M"
+{ head_of REACH; slider 1.0 3.0 1.0 0.0; drive X B '' 4.000000001 0.0; until_time 1 1.0; } > "$w/deck"
+told 'a piston a little beyond its reach' 2 "0:$none
+0: *** DRIVE X B STAYS OPEN BY $(small 1e-9) M
+1:$none
+1: *** DRIVE X B STAYS OPEN BY $(small 1e-9) M"
+# 1 + 1 + 1 < 4: the loop of the four-bar closes but for 1.
+{ head_of SHORT; four_bar '' 0.0 1.0 1.0 1.0 4.0 0.0 50.0 110.0; drive ANGLE CRANK '' 0.0 0.0; until_time 1 1.0; } > "$w/deck"
+told 'bars that are too short' 2 "0:$none
+0: *** PAIR PB STAYS OPEN BY $(small 1) M
+1:$none
+1: *** PAIR PB STAYS OPEN BY $(small 1) M"
+# Rough angles with the coupler across: which assembly is the nearer one, by the cosine law.
+# assembled PHI-COUPLER PHI-ROCKER UNIT: the coupler's angle in degrees at crank 14
+assembled() { { head_of FAR; four_bar '' $3 1.0 3.5 3.0 4.0 14.0 "$1" "$2"; drive ANGLE CRANK '' 14.0 0.0; card AT '' '' '' 0.0
+   card END; } > "$w/deck"; "$kinmat" "$w/deck" --csv "$w/csv" > "$w/out" 2> "$w/err"; awk -F, '$5 == "COUPL" {
+   p = $8 - 360*int($8/360); if (p > 180) p -= 360; if (p < -180) p += 360; printf "%.6f", p }' "$w/csv"; }
+arm='x = 4 - cos(14*pi/180); y = -sin(14*pi/180); s = sqrt(x*x + y*y); k = (s*s + 12.25 - 9)/(7*s)'
+above=$(awk "BEGIN { pi = atan2(0, -1); $arm; printf \"%.6f\", (atan2(y, x) + atan2(sqrt(1 - k*k), k))*180/pi }")
+under=$(awk "BEGIN { pi = atan2(0, -1); $arm; printf \"%.6f\", (atan2(y, x) - atan2(sqrt(1 - k*k), k))*180/pi }")
+equal 'a good start' "$above" "$(assembled 45.0 100.0 0.0)"
+equal 'a good start below' "$under" "$(assembled -55.0 -100.0 0.0)"
+equal 'a good start is not worth a word' '' "$(said "$w/out")"
+equal 'off by 60 degrees' "$above" "$(assembled 105.0 50.0 0.0)"
+equal 'off by 60 degrees below' "$under" "$(assembled -115.0 -50.0 0.0)"
+equal 'off by 90 degrees is told' 1 "$(assembled -40.0 10.0 0.0 > /dev/null; said "$w/out" | grep -c 'OFF BY')"
+equal 'off by whole turns' "$above" "$(assembled 405.0 -620.0 0.0)"
+equal 'angles of zero: an assembly' yes "$(p=$(assembled 0.0 0.0 0.0); [ "$p" = "$above" ] || [ "$p" = "$under" ] && echo yes)"
+equal 'angles of zero: two are as near' 1 "$(said "$w/out" | grep -c 'ANOTHER ASSEMBLY')"
 
 # Decks that are no decks: refused in bounded time and memory, in few words, and nothing is computed.
 # refused NAME WORDS: the deck in $w/deck, in 20 s of computing and 1 GB; WORDS: the first sentence

@@ -33,6 +33,7 @@ part 'the house' tests/house.sh
 part 'the closed forms' "$BUILD/check_forms" input/*.deck
 part 'make check' tests/check.sh
 part 'the command' tests/command.sh
+part 'faults by name' tests/faults.sh
 part 'the digits' tests/digits.sh
 part 'decks made by chance' tests/fuzz.sh 1000
 part 'results of the methods' "$MAKE" --no-print-directory bench-short

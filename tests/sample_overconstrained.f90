@@ -1,0 +1,54 @@
+!> Tests. Mechanisms with too many equations, and one that a drive does not hold, built from the samples.
+module sample_overconstrained
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, link_t, point_t, pair_t, request_t, request_link, pair_revolute
+   use sample_mechanisms, only: four_bar, angle_drive
+   implicit none
+   private
+   public :: parallelogram, three_cranks
+
+contains
+
+   !> Cranks 2 at `phi`, coupler and base 4; the drive turns the crank at 1 rad a unit of time.
+   function parallelogram(phi) result(m)
+      real(wp), intent(in) :: phi
+      type(mechanism_t) :: m
+
+      m = four_bar()
+      m%points(4)%offset = [2.0_wp, 0.0_wp]
+      m%points(6)%offset = [4.0_wp, 0.0_wp]
+      m%points(8)%offset = [2.0_wp, 0.0_wp]
+      m%links(2)%position(3) = phi
+      m%links(3)%position(3) = 0.0_wp
+      m%links(4)%position(3) = phi
+      m%drives(1)%polynomial = [phi, 1.0_wp, 0.0_wp]
+      m%pairs%name = ['A0      ', 'A       ', 'B       ', 'B0      ']
+   end function parallelogram
+
+   !> The same with a third crank, from (1, 1) to the coupler's point (1, 1), longer than the others by `excess`.
+   function three_cranks(phi, excess) result(m)
+      real(wp), intent(in) :: phi, excess
+      type(mechanism_t) :: m
+      type(link_t) :: link
+      integer :: i
+
+      m = parallelogram(phi)
+      link%name = 'THIRD'
+      link%position = [1.0_wp, 1.0_wp, phi]
+      m%links = [m%links, link]
+      m%points = [m%points, point_t('C0', 1, [1.0_wp, 1.0_wp]), point_t('C', 3, [1.0_wp, 1.0_wp]), &
+                  point_t('C1', 5, [0.0_wp, 0.0_wp]), point_t('C2', 5, [2.0_wp + excess, 0.0_wp])]
+      m%pairs = [m%pairs, revolute('C0', 9, 11), revolute('C', 10, 12)]
+      m%requests = [(request_t(request_link, i, 1), i=1, size(m%links))]
+   end function three_cranks
+
+   type(pair_t) function revolute(name, i, j)
+      character(*), intent(in) :: name
+      integer, intent(in) :: i, j
+
+      revolute%name = name
+      revolute%kind = pair_revolute
+      revolute%point_i = i
+      revolute%point_j = j
+   end function revolute
+end module sample_overconstrained
