@@ -5,7 +5,7 @@ ifeq ($(origin FC),default)
 endif
 BUILD  ?= build
 PREFIX ?= /usr/local
-LIBS   ?= -llapack -lblas
+LIBS   ?= -lklu -llapack -lblas
 
 # No flag here changes a result: no fast-math, no contraction into fused multiply-add.
 # gfortran's "uninitialized" is wrong on every array allocated by assignment.

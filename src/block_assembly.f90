@@ -4,10 +4,11 @@
 module block_assembly
    use kinds, only: wp
    use block_matrix, only: shape_t, entries_of, work_length, solve_first
+   use klu, only: klu_t
    use convergence, only: convergence_t
    use blocks, only: blocks_t
    use block_state, only: state_t, set_values, known_parts
-   use block_rows, only: assemble_block
+   use block_rows, only: assemble_dense
    use block_gaps, only: note_gap
    implicit none
    private
@@ -30,6 +31,7 @@ module block_assembly
       type(shape_t) :: shape, damped
       real(wp), allocatable :: a(:), b(:), r(:), d(:), work(:), x(:), best(:)
       integer, allocatable :: pivots(:)
+      type(klu_t) :: sparse                       !< unused: the matrices are dense
    end type room_t
 
 contains
@@ -67,12 +69,12 @@ contains
          if (least <= near) exit
       end do
       call set_values(b, i, w%best, s)
-      call assemble_block(b, i, w%shape, s, w%a, w%r)
+      call assemble_dense(b, i, s, w%a, w%r)
       call note_gap(b, i, w%r, c)
       reached = least <= near
    end subroutine approach
 
-   pure function new_room(shape) result(w)
+   function new_room(shape) result(w)
       type(shape_t), intent(in) :: shape
       type(room_t) :: w
 
@@ -105,7 +107,7 @@ contains
       integer :: iteration
 
       damping = first_damping
-      call assemble_block(b, i, w%shape, s, w%a, w%r)
+      call assemble_dense(b, i, s, w%a, w%r)
       do iteration = 1, most_iterations
          found = maxval(abs(w%r(:w%shape%rows)))
          if (found <= near .or. damping > most_damping .or. .not. found <= bound) exit
@@ -113,14 +115,14 @@ contains
          w%x = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
          call damped_step(w, damping, step)
          call set_values(b, i, w%x - w%d(:w%shape%n), s)
-         call assemble_block(b, i, w%shape, s, w%a, w%r)
+         call assemble_dense(b, i, s, w%a, w%r)
          if (sum(w%r(:w%shape%rows)**2) < square) then
             damping = max(0.2_wp*damping, least_damping)
             if (step <= 1.0e-12_wp) exit
          else
             damping = 5.0_wp*damping
             call set_values(b, i, w%x, s)
-            call assemble_block(b, i, w%shape, s, w%a, w%r)
+            call assemble_dense(b, i, s, w%a, w%r)
          end if
       end do
       found = maxval(abs(w%r(:w%shape%rows)))
@@ -141,7 +143,7 @@ contains
          end do
          w%d(:m) = w%r(:m)
          w%d(m + 1:) = 0.0_wp
-         call solve_first(w%damped, w%b, w%pivots, w%work, w%d, info)
+         call solve_first(w%damped, w%b, w%sparse, w%pivots, w%work, w%d, info)
          step = maxval(abs(w%d(:n)))
          if (step > longest_step) w%d(:n) = w%d(:n)*(longest_step/step)
       end associate

@@ -99,8 +99,9 @@ contains
             end do
             do k = p%first_slide(i), p%first_slide(i + 1) - 1
                f%slides = f%slides + 1
-               b%slides(f%slides) = slide_t(p%slide_frame(k), f%column(p%slide_frame(k)), &
-                  b%frames + p%slide_number(k), f%column(b%frames + p%slide_number(k)), p%slide_arm(:, k))
+               b%slides(f%slides) = slide_t(frame=p%slide_frame(k), frame_column=f%column(p%slide_frame(k)), &
+                  unknown=b%frames + p%slide_number(k), column=f%column(b%frames + p%slide_number(k)), &
+                  arm=p%slide_arm(:, k))
             end do
          end if
          instance%last_slide = f%slides
@@ -119,7 +120,7 @@ contains
       do k = p%first_arm(i), p%first_arm(i + 1) - 1
          if (p%arm_frame(k) == 0 .or. (f%column(p%arm_frame(k)) > 0 .neqv. own)) cycle
          f%arms = f%arms + 1
-         b%arms(f%arms) = arm_t(p%arm_frame(k), f%column(p%arm_frame(k)), p%arm(1, k), p%arm(2, k))
+         b%arms(f%arms) = arm_t(frame=p%arm_frame(k), column=f%column(p%arm_frame(k)), x=p%arm(1, k), y=p%arm(2, k))
       end do
    end subroutine add_arms
 

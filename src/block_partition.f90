@@ -5,10 +5,10 @@ module block_partition
    use links_tree, only: tree_t
    use block_matrix, only: shape_t
    use matching, only: incidence_t, match, find_blocks, overdetermined
-   use band_order, only: order_block, band_of
    use loop_equations, only: equations_t, incidence, equation_angle, equation_slide
    use blocks, only: blocks_t, block_t
    use block_instances, only: fill_instances
+   use block_places, only: find_places
    implicit none
    private
    public :: new_blocks
@@ -42,8 +42,6 @@ contains
             block%last = first(i + 1) - 1
             block%shape%n = block%last - block%first + 1
             block%shape%rows = block%shape%n
-            call order_block(g, equation_of, member(block%first:block%last))
-            call band_of(g, equation_of, member(block%first:block%last), block%shape%below, block%shape%above)
          end associate
       end do
       b%list%first_row = b%list%first
@@ -56,6 +54,7 @@ contains
       end do
       call fill_rows(e, member, b)
       call fill_instances(e, member, b)
+      call find_places(b)
    end function new_blocks
 
    !> Puts the block of the equations that are `over` before the others: it needs nothing of them.

@@ -3,10 +3,9 @@
 module block_rank
    use kinds, only: wp
    use lapack, only: dgesvd, dgetrf
-   use block_matrix, only: shape_t
    use blocks, only: blocks_t
    use block_state, only: state_t, set_values
-   use block_rows, only: assemble_block
+   use block_rows, only: assemble_dense
    implicit none
    private
    public :: redundant_rows, moving_unknowns, jacobian_of, relative_side
@@ -120,7 +119,7 @@ contains
       type(state_t), intent(inout) :: s
       real(wp) :: a(b%list(i)%shape%rows*b%list(i)%shape%n), r(b%list(i)%shape%rows)
 
-      call assemble_block(b, i, shape_t(rows=b%list(i)%shape%rows, n=b%list(i)%shape%n), s, a, r)
+      call assemble_dense(b, i, s, a, r)
    end function jacobian_of
 
    !> Whether block `i` with more rows than unknowns is on the side of its change points on which the Jacobian `before`
@@ -156,7 +155,7 @@ contains
       integer :: k
 
       allocate (a(b%list(i)%shape%rows*b%list(i)%shape%n), r(b%list(i)%shape%rows))
-      call assemble_block(b, i, shape_t(rows=b%list(i)%shape%rows, n=b%list(i)%shape%n), s, a, r)
+      call assemble_dense(b, i, s, a, r)
       far = maxval(abs(r))
       v = decomposed(b, i, s)
       x = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
@@ -185,7 +184,7 @@ contains
          end do
          return
       end if
-      call assemble_block(b, i, shape_t(rows=v%rows, n=v%n), s, a, r)
+      call assemble_dense(b, i, s, a, r)
       call dgesvd('A', 'A', v%rows, v%n, a, v%rows, v%s, v%left, v%rows, v%right, v%n, work, size(work), info)
       v%rank = count(v%s > zero_level*max(v%s(1), tiny(1.0_wp)))
    end function decomposed

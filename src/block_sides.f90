@@ -12,7 +12,7 @@ contains
 
    !> Right-hand side `v` (n) for the velocities (`order` 1) or, once these are known, the accelerations (2) of
    !> block `i`: the drives' rates less what is given. Gaps, directions and own arms are those of the last
-   !> `block_system`.
+   !> `assemble_block`.
    pure subroutine rate_side(b, i, order, s, v)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, order

@@ -10,7 +10,8 @@
 !> them could be spared changes on the way. What they contradict one another by is the gap.
 module block_solver
    use kinds, only: wp
-   use block_matrix, only: shape_t, entries_of, work_length, solve_first, solve_again, pivot_range, inverse_norm
+   use klu, only: klu_t
+   use block_matrix, only: shape_t, solve_first, solve_again, pivot_range, inverse_norm
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, &
       ended_diverged, ended_open
    use blocks, only: blocks_t
@@ -18,6 +19,7 @@ module block_solver
    use block_rows, only: assemble_block
    use block_sides, only: rate_side
    use block_gaps, only: note_gap, contradict, open_level
+   use block_workspace, only: workspace_t, new_workspace
    implicit none
    private
    public :: workspace_t, new_workspace, solve_block
@@ -37,31 +39,7 @@ module block_solver
    real(wp), parameter :: angle_limit = 1.0e8_wp
    integer, parameter :: iteration_limit = 60
 
-   !> Room for the widest block.
-   type :: workspace_t
-      real(wp), allocatable :: a(:), r(:), start(:), work(:)
-      integer, allocatable :: pivots(:), iwork(:)
-   end type workspace_t
-
 contains
-
-   !> Room for every block of `b`.
-   pure function new_workspace(b) result(w)
-      type(blocks_t), intent(in) :: b
-      type(workspace_t) :: w
-      integer :: i, entries, rows, length
-
-      entries = 0
-      rows = 0
-      length = 0
-      do i = 1, size(b%list)
-         rows = max(rows, b%list(i)%shape%rows)
-         length = max(length, work_length(b%list(i)%shape))
-         entries = max(entries, entries_of(b%list(i)%shape))
-      end do
-      allocate (w%a(entries), w%r(2*rows), w%start(rows), w%work(length), source=0.0_wp)
-      allocate (w%pivots(rows), w%iwork(rows), source=0)
-   end function new_workspace
 
    !> Solves block `i` for value, rate and second rate of its unknowns, the values starting from those of `s`.
    !> `c`: how it ended; `correction`: the largest change of a value, where it is larger than before.
@@ -79,7 +57,8 @@ contains
          c%ended = ended_converged
          return
       end if
-      call seek(b, i, b%list(i)%shape, tolerance, w%a, w%r, w%start, w%work, w%pivots, s, c, correction)
+      call seek(b, i, b%list(i)%shape, tolerance, w%a, w%r, w%start, w%work, w%pivots, &
+         w%sparse(b%list(i)%shape%pattern), s, c, correction)
       if (c%ended /= ended_converged .and. c%ended /= ended_stalled) return
       if (b%list(i)%shape%rows > b%list(i)%shape%n .and. c%gap > open_level) then
          c%ended = ended_open
@@ -108,13 +87,14 @@ contains
 
    !> Newton's method; where it ends with a position, `r`(:, 2) holds the velocities and `a` the factors. Where the
    !> Jacobian there has no inverse, c%singular says so.
-   subroutine seek(b, i, shape, tolerance, a, r, start, work, pivots, s, c, correction)
+   subroutine seek(b, i, shape, tolerance, a, r, start, work, pivots, k, s, c, correction)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(shape_t), intent(in) :: shape
       real(wp), intent(in) :: tolerance
       real(wp), intent(inout) :: a(*), r(shape%rows, 2), start(shape%n), work(*)
       integer, intent(inout) :: pivots(*)
+      type(klu_t), intent(inout) :: k
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
       real(wp), intent(inout) :: correction
@@ -130,18 +110,18 @@ contains
             return
          end if
          c%iterations = iteration
-         call assemble_block(b, i, shape, s, a, r)
+         call assemble_block(b, i, s, a, r)
          c%residual = maxval(abs(r(:, 1)))
          if (shape%rows > shape%n) call note_gap(b, i, r, c)
          if (c%residual <= closed_level*size_of) then
             c%step = 0.0_wp
             c%ended = ended_converged
             call rate_side(b, i, 1, s, r(:, 2))
-            call solve_first(shape, a, pivots, work, r(:, 2), info)
+            call solve_first(shape, a, k, pivots, work, r(:, 2), info)
             c%singular = info > 0
             exit
          end if
-         call solve_first(shape, a, pivots, work, r, info)
+         call solve_first(shape, a, k, pivots, work, r, info)
          if (info > 0) then
             c%singular = c%residual <= max(rounding_level*size_of, tolerance)
             c%ended = merge(ended_stalled, ended_singular, c%singular)
@@ -157,7 +137,7 @@ contains
          before = c%step
          if (c%ended == ended_limit) cycle
          call rate_side(b, i, 1, s, r(:, 2))
-         call solve_again(shape, a, pivots, work, r(:, 2))
+         call solve_again(shape, a, k, pivots, work, r(:, 2))
          exit
       end do
       if (c%iterations > 1 .or. c%step > 0.0_wp) c%change = largest_change(b, i, shape%n, s, start)
@@ -247,7 +227,7 @@ contains
             s%u(b%unknown(b%list(i)%first + k - 1))%rate = w%r(rows + k)
          end do
          call rate_side(b, i, 2, s, w%r)
-         call solve_again(b%list(i)%shape, w%a, w%pivots, w%work, w%r)
+         call solve_again(b%list(i)%shape, w%a, w%sparse(b%list(i)%shape%pattern), w%pivots, w%work, w%r)
          do k = 1, n
             s%u(b%unknown(b%list(i)%first + k - 1))%rate2 = w%r(k)
          end do
@@ -267,7 +247,8 @@ contains
       real(wp) :: least, largest, inverse, size_of
       integer :: k
 
-      call pivot_range(b%list(i)%shape, w%a, w%pivots, least, largest, c%determinant)
+      k = b%list(i)%shape%pattern
+      call pivot_range(b%list(i)%shape, w%a, w%sparse(k), w%pivots, least, largest, c%determinant)
       c%least_pivot = least
       ! Newton and Kantorovich: one root only where |J^-1| bend change is below 1/2.
       c%doubt = c%change*b%list(i)%bend/max(least, tiny(least))
@@ -277,7 +258,7 @@ contains
       if (n == 1) largest = b%list(i)%bend
       ! All pivots may be small, where links are much shorter than the mechanism.
       if (least >= suspicious_pivot*max(largest, 1.0_wp)) return
-      inverse = inverse_norm(b%list(i)%shape, w%a, w%pivots, w%work, w%iwork)
+      inverse = inverse_norm(b%list(i)%shape, w%a, w%sparse(k), w%work, w%iwork)
       c%reciprocal_condition = min(1.0_wp, 1.0_wp/(inverse*largest))
       size_of = 1.0_wp
       do k = b%list(i)%first, b%list(i)%last

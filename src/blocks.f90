@@ -6,6 +6,7 @@
 !> exactly one block.
 module blocks
    use kinds, only: wp
+   use klu, only: pattern_t
    use block_matrix, only: shape_t
    implicit none
    private
@@ -42,18 +43,20 @@ module blocks
       integer :: first_arm = 1, first_own = 1, last_arm = 0, first_slide = 1, last_slide = 0
       integer :: frame = 0, frame_column = 0      !< projection: turns with it; angles: the first
       integer :: less = 0, less_column = 0        !< angles: the one subtracted
+      integer :: frame_at = 0, less_at = 0        !< where their entries stand in the Jacobian
       real(wp) :: direction(2) = 0.0_wp           !< projection: in its frame's axes
       real(wp) :: ground(2) = 0.0_wp              !< the polygon's fixed part
    end type instance_t
 
+   !> `at`: where its entries stand in the Jacobian of its block, for the rows row_x and row_y.
    type :: arm_t
-      integer :: frame = 0, column = 0
+      integer :: frame = 0, column = 0, at(2) = 0
       real(wp) :: x = 0.0_wp, y = 0.0_wp
    end type arm_t
 
-   !> Columns are 0 for what is known.
+   !> Columns are 0 for what is known; `at` as above, `frame_at` those of the frame's column.
    type :: slide_t
-      integer :: frame = 0, frame_column = 0, unknown = 0, column = 0
+      integer :: frame = 0, frame_column = 0, unknown = 0, column = 0, at(2) = 0, frame_at(2) = 0
       real(wp) :: arm(2) = 0.0_wp
    end type slide_t
 
@@ -69,5 +72,6 @@ module blocks
       type(instance_t), allocatable :: instances(:)
       type(arm_t), allocatable :: arms(:)
       type(slide_t), allocatable :: slides(:)
+      type(pattern_t), allocatable :: patterns(:) !< of the blocks with a sparse Jacobian
    end type blocks_t
 end module blocks

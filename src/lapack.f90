@@ -3,7 +3,7 @@ module lapack
    use kinds, only: wp
    implicit none
    private
-   public :: dgesv, dgetrf, dgetrs, dgecon, dgbsv, dgbtrs, dgbcon, dptsv
+   public :: dgesv, dgetrf, dgetrs, dgecon, dlacn2, dptsv
    public :: dgeqrf, dormqr, dtrtrs, dtrcon, dgesvd
 
    interface
@@ -37,30 +37,12 @@ module lapack
          real(wp), intent(inout) :: a(lda, *), b(ldb, *)
          integer, intent(out) :: ipiv(*), info
       end subroutine dgesv
-      subroutine dgbsv(n, kl, ku, nrhs, ab, ldab, ipiv, b, ldb, info)
+      subroutine dlacn2(n, v, x, isgn, est, kase, isave)
          import :: wp
-         integer, intent(in) :: n, kl, ku, nrhs, ldab, ldb
-         real(wp), intent(inout) :: ab(ldab, *), b(ldb, *)
-         integer, intent(out) :: ipiv(*), info
-      end subroutine dgbsv
-      subroutine dgbcon(norm, n, kl, ku, ab, ldab, ipiv, anorm, rcond, work, iwork, info)
-         import :: wp
-         character(1), intent(in) :: norm
-         integer, intent(in) :: n, kl, ku, ldab, ipiv(*)
-         real(wp), intent(in) :: ab(ldab, *), anorm
-         real(wp), intent(out) :: rcond
-         real(wp), intent(inout) :: work(*)
-         integer, intent(inout) :: iwork(*)
-         integer, intent(out) :: info
-      end subroutine dgbcon
-      subroutine dgbtrs(trans, n, kl, ku, nrhs, ab, ldab, ipiv, b, ldb, info)
-         import :: wp
-         character(1), intent(in) :: trans
-         integer, intent(in) :: n, kl, ku, nrhs, ldab, ldb, ipiv(*)
-         real(wp), intent(in) :: ab(ldab, *)
-         real(wp), intent(inout) :: b(ldb, *)
-         integer, intent(out) :: info
-      end subroutine dgbtrs
+         integer, intent(in) :: n
+         real(wp), intent(inout) :: v(*), x(*), est
+         integer, intent(inout) :: isgn(*), kase, isave(3)
+      end subroutine dlacn2
       subroutine dptsv(n, nrhs, d, e, b, ldb, info)
          import :: wp
          integer, intent(in) :: n, nrhs, ldb

@@ -3,7 +3,6 @@
 module quad_blocks
    use quad_jet, only: qp
    use matching, only: incidence_t, match, find_blocks
-   use band_order, only: order_block
    use loop_equations, only: equations_t, equation_t, incidence, equation_x, equation_y, equation_projection, &
       equation_angle
    use blocks, only: blocks_t
@@ -19,14 +18,10 @@ contains
       type(blocks_t), intent(in) :: b
       integer, allocatable :: member(:), unknown_of(:), equation_of(:), first(:)
       type(incidence_t) :: g
-      integer :: i
 
       g = incidence(e, b%frames, b%unknowns)
       call match(g, unknown_of, equation_of)
       call find_blocks(g, equation_of, first, member)
-      do i = 1, size(first) - 1
-         call order_block(g, equation_of, member(first(i):first(i + 1) - 1))
-      end do
    end function members
 
    !> What equation `i` says, less its constant, at the values `u` (0:unknowns).
