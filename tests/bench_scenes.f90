@@ -43,6 +43,7 @@ module bench_scenes
       real(wp) :: condition = 1.0_wp               !< of all closure equations, the worst on the way
       integer :: instants = 0                      !< compared
       integer :: marked = 0                        !< not compared: without a result
+      logical :: has_change_point = .false.        !< at which the dense method ends, and rates are what rounding leaves
    end type gap_t
 
 contains
@@ -175,7 +176,7 @@ contains
          call advance(blocks, instant_of(s, k), one)
          call advance(dense, instant_of(s, k), two)
          if (one%mark /= mark_none) g%marked = g%marked + 1
-         ! The dense method ends at a change point.
+         if (two%mark /= mark_none) g%has_change_point = .true.
          if (one%mark /= mark_none .or. two%mark /= mark_none) cycle
          g%condition = max(g%condition, 1.0_wp/dense%convergence%reciprocal_condition)
          call widen(s, one, two, .false., g)
