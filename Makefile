@@ -10,7 +10,7 @@ LIBS   ?= -lklu -llapack -lblas
 # No flag here changes a result: no fast-math, no contraction into fused multiply-add.
 # gfortran's "uninitialized" is wrong on every array allocated by assignment.
 COMMON  := -std=f2018 -Wall -Wextra -pedantic -Wno-uninitialized -Wno-maybe-uninitialized -ffp-contract=off
-RELEASE ?= -O2
+RELEASE ?= -O2 -flto=auto
 DEBUG   ?= -O0 -g -fbacktrace -fcheck=all,no-array-temps -ffpe-trap=invalid,zero,overflow -finit-real=snan -finit-derived
 
 sources := $(sort $(wildcard src/*.f90))

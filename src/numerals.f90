@@ -87,7 +87,7 @@ contains
       if (places <= 0) return
       line = scientific(x, places - 1)
       carried = exponent_of(line) - e
-      line(2:) = line(3:index(line, 'E') - 1)
+      line(2:) = line(3:min(index(line, 'E'), len(line)) - 1)
       read (line, '(i12)') n
       n = n*tens(carried)
    end function nearest_by_format

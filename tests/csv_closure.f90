@@ -14,8 +14,12 @@ module csv_closure
    !> Of the size of its numbers, in units of eps: a coordinate is a sum along a chain of up to 20 links, three rounded
    !> terms each; the solver ends with steps of 32 eps.
    real(qp), parameter :: rounding = 64.0_qp*epsilon(1.0_wp)
-   !> A deck's own tolerance is one on the last step, which the step itself then betters.
-   real(qp), parameter :: steps_of_tolerance = 4.0_qp
+   !> A deck's own tolerance is one on the last step, which the step itself then betters; METHOD MATRIX may not better it, and
+   !> the step may change residuals by as many times itself as a row has numbers.
+   real(qp), parameter :: steps_of_tolerance = 16.0_qp
+   !> Equations that are too many may contradict one another by this in positions, and by this in rates: so much the
+   !> program says that it allows them, and ten times as much for the norm that it measures rates in.
+   real(qp), parameter :: contradiction(0:2) = [1.0e-10_qp, 1.0e-7_qp, 1.0e-7_qp]
    !> Beyond this a Jacobian counts as singular in double precision, and no rates are to be told.
    real(qp), parameter :: worst_condition = 1.0e10_qp
    !> Products of numbers near the end of the range lose digits: what is below tiny is nothing.
@@ -101,7 +105,7 @@ contains
       type(rows_t), intent(in) :: rows
       type(verdict_t), intent(inout) :: v
       type(jet_t) :: r(2*size(m%pairs) + size(m%drives))
-      real(qp) :: share(0:2, size(r)), allowed, t
+      real(qp) :: share(0:2, size(r)), allowed(0:2), t
       integer :: k
 
       v%closures = v%closures + 1
@@ -111,7 +115,8 @@ contains
       share(1, :) = abs(r%d)
       share(2, :) = abs(r%dd)
       allowed = max(rounding, steps_of_tolerance*m%tolerance)
-      share = share/(allowed*(row_sizes(m, sizes_of(m, rows%body), t) + least_size))
+      if (size(r) > 3*count(.not. m%links%ground)) allowed = max(allowed, contradiction)
+      share = share/(spread(allowed, 2, size(r))*(row_sizes(m, sizes_of(m, rows%body), t) + least_size))
       if (rows%known >= 1) then
          if (any(share(1:rows%known, :) > 1.0_qp)) then
             ! The position, and with it the Jacobian, is known to no better than eps times the condition.

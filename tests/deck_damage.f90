@@ -4,7 +4,7 @@ module deck_damage
    use dice, only: dice_t, new_dice, throw, chance
    use deck_draft, only: draft_t, line_length, name_of, label, set_label, real_field, set_real, set_full, insert_line, &
       drop_line, find_cards, add_note
-   use deck_changes, only: pick
+   use deck_changes, only: pick, is_degrees
    use deck_mutations, only: prepare, change_gently, most_steps
    implicit none
    private
@@ -17,6 +17,8 @@ module deck_damage
    character(8), parameter :: with_reals(*) = [character(8) :: 'GROUND', 'LINK', 'POINT', 'PRISM', 'DRIVE', 'ADD', 'TIME', &
       'AT', 'METHOD']
    character(8), parameter :: with_labels(*) = [character(8) :: 'GROUND', 'LINK', 'POINT', 'REVOLUTE', 'PRISM', 'DRIVE']
+   !> Radians, or lengths: so far drives go in all.
+   real(wp), parameter :: longest_way = 2000.0_wp
    character(*), parameter :: bytes = 'AZ09.+-*$ ,"'//'|eE'//achar(9)//achar(13)//achar(0)//achar(127)//char(195)//char(255)
 
 contains
@@ -49,6 +51,7 @@ contains
          end do
       end if
       call limit_steps(d)
+      if (chance(r, 0.97_wp)) call limit_way(d)
       do while (len(d%notes) > 0)
          i = scan(d%notes, new_line('a'), back=.true.)
          call insert_line(d, 1, '$ '//d%notes(i + 1:))
@@ -67,6 +70,63 @@ contains
          if (status == 0 .and. n > most_steps) write (d%line(i)(9:16), '(i0)') most_steps
       end do
    end subroutine limit_steps
+
+   !> Nor one whose drives go very far, which takes seconds: its times are brought nearer to zero, mostly.
+   subroutine limit_way(d)
+      type(draft_t), intent(inout) :: d
+      integer, allocatable :: cards(:)
+      integer :: i, k
+      real(wp) :: t, rate, low, high
+
+      cards = find_cards(d, ['TIME    ', 'AT      '])
+      t = 0.0_wp
+      do i = 1, size(cards)
+         do k = 1, merge(2, 3, name_of(d%line(cards(i))) == 'TIME')
+            t = max(t, abs(real_field(d, cards(i), k)))
+         end do
+      end do
+      if (t > 1.0e60_wp) return
+      call find_fastest(d, t, rate)
+      if (rate*t <= longest_way) return
+      low = -60.0_wp
+      high = log10(t)
+      do i = 1, 40
+         call find_fastest(d, 10.0_wp**(0.5_wp*(low + high)), rate)
+         if (rate*10.0_wp**(0.5_wp*(low + high)) > longest_way) then
+            high = 0.5_wp*(low + high)
+         else
+            low = 0.5_wp*(low + high)
+         end if
+      end do
+      do i = size(cards), 1, -1
+         do k = 1, merge(2, 3, name_of(d%line(cards(i))) == 'TIME')
+            call set_real(d, cards(i), k, real_field(d, cards(i), k)*(10.0_wp**low/t))
+         end do
+      end do
+      call add_note(d, 'WAY SHORTENED')
+   end subroutine limit_way
+
+   !> About the largest rate of any drive up to the time `t`.
+   subroutine find_fastest(d, t, rate)
+      type(draft_t), intent(in) :: d
+      real(wp), intent(in) :: t
+      real(wp), intent(out) :: rate
+      integer :: i
+      real(wp) :: r(3), unit
+
+      unit = merge(0.02_wp, 1.0_wp, is_degrees(d))
+      rate = 0.0_wp
+      do i = 1, size(d%line)
+         r = min([abs(real_field(d, i, 1)), abs(real_field(d, i, 2)), abs(real_field(d, i, 3))], 1.0e60_wp)
+         if (name_of(d%line(i)) == 'DRIVE') then
+            rate = max(rate, unit*(r(2) + r(3)*t))
+         else if (name_of(d%line(i)) == 'ADD' .and. label(d%line(i), 1) == 'HARMONIC') then
+            rate = max(rate, unit*r(1)*r(2))
+         else if (name_of(d%line(i)) == 'ADD' .and. label(d%line(i), 1) == 'POWER' .and. t > 0.0_wp) then
+            rate = max(rate, unit*r(1)*r(2)*10.0_wp**min(60.0_wp, (r(2) - 1.0_wp)*log10(t)))
+         end if
+      end do
+   end subroutine find_fastest
 
    !> One change to the limits of numbers or of structure.
    subroutine change_to_limits(d, r)

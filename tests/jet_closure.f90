@@ -5,6 +5,7 @@ module jet_closure
    use quad_jet, only: qp, jet_t, constant_jet, sin, cos, operator(+), operator(-), operator(*)
    use mechanism, only: mechanism_t, pair_revolute, pair_prismatic, drive_angle, drive_x, drive_y, drive_relangle, &
       drive_slide
+   use scales, only: characteristic_length
    use jet_drives, only: drive_jet, drive_sizes
    implicit none
    private
@@ -103,7 +104,8 @@ contains
 
    !> Sizes of the motion `b` of mechanism `m`. An angle is known to one part in 2**53 of itself, a direction no better, so
    !> that arms count times 1 + |phi|; a velocity turns with every angular velocity, an acceleration likewise. One linear
-   !> solve gives lengths and angles: what rounding leaves in one, over the longest arm, it may leave in the other.
+   !> solve gives lengths and angles: what rounding leaves in one, over the longest arm, it may leave in the other. The
+   !> characteristic length counts as an arm: all coordinates may be zero, and lengths are computed in units of it.
    function sizes_of(m, b) result(s)
       type(mechanism_t), intent(in) :: m
       type(body_jet_t), intent(in) :: b(:)
@@ -113,7 +115,7 @@ contains
 
       s%angle = [1.0_qp + maxval(abs(b%phi%v)), maxval(abs(b%phi%d)), maxval(abs(b%phi%dd))]
       turn = s%angle(0)
-      arm = 0.0_qp
+      arm = characteristic_length(m)
       do i = 1, size(m%points)
          arm = max(arm, maxval(abs(real(m%points(i)%offset, qp))))
       end do

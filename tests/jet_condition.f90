@@ -22,7 +22,8 @@ module jet_condition
 contains
 
    !> Largest over smallest singular value, the columns of x and y in units of the largest arm, rows brought to the
-   !> size 1 (a row's size says nothing about the position). `huge` where the smallest is zero.
+   !> size 1 (a row's size says nothing about the position). `huge` where the smallest is zero. There may be more rows
+   !> than columns.
    function condition(m, b, t)
       type(mechanism_t), intent(in) :: m
       type(body_jet_t), intent(in) :: b(:)
@@ -30,8 +31,8 @@ contains
       real(qp) :: condition
       type(body_jet_t) :: moving(size(b))
       type(jet_t) :: r(2*size(m%pairs) + size(m%drives))
-      real(qp) :: column(size(r), size(r)), arm
-      real(wp) :: a(size(r), size(r)), s(size(r)), none(1, 1), nor(1, 1), work(8*size(r))
+      real(qp) :: column(size(r), 3*size(b)), arm
+      real(wp) :: a(size(r), 3*size(b)), s(3*size(b)), none(1, 1), nor(1, 1), work(8*(size(r) + 3*size(b)))
       integer :: link, c, n, info
 
       arm = longest_arm(m)
@@ -51,11 +52,12 @@ contains
             column(:, n) = column(:, n) - r%d
          end do
       end do
-      do c = 1, n
-         a(c, :) = real(column(c, :)/max(maxval(abs(column(c, :))), tiny(1.0_wp)*1.0_qp), wp)
-      end do
-      call dgesvd('N', 'N', n, n, a, n, s, none, 1, nor, 1, work, size(work), info)
       condition = huge(1.0_wp)
+      if (n == 0 .or. n > size(r)) return
+      do c = 1, size(r)
+         a(c, :n) = real(column(c, :n)/max(maxval(abs(column(c, :n))), tiny(1.0_wp)*1.0_qp), wp)
+      end do
+      call dgesvd('N', 'N', size(r), n, a, size(r), s, none, 1, nor, 1, work, size(work), info)
       if (info == 0 .and. s(n) > 0.0_wp) condition = real(s(1), qp)/s(n)
    end function condition
 

@@ -77,6 +77,9 @@ contains
       integer :: i
 
       is_remark = .false.
+      ! Rows of numbers are many, remarks are few.
+      if (.not. (starts(line, ' *** ') .or. starts(line, ' --- ') .or. starts(line, ' LARGEST ') .or. starts(line, ' NAJ'))) &
+         return
       do i = 1, size(remarks)
          is_remark = is_remark .or. index(line, trim(remarks(i))) > 0
       end do
