@@ -163,6 +163,7 @@ contains
       rest = 0.0_wp
       associate (h => e%history, p => e%history%place(0), &
                  u => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
+         if (size(u) == 0) return
          fastest = u(maxloc(abs(h%rate2(u, p)), dim=1))
          if (abs(h%rate2(fastest, p)) <= 0.0_wp) return
          rest = 0.5_wp*h%rate(fastest, p)/h%rate2(fastest, p)
