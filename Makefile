@@ -113,7 +113,7 @@ digits: $(BUILD)/compare_digits
 # Decks made by chance: FUZZ of them, from seed FUZZ_FIRST on.
 FUZZ       ?= 100000
 FUZZ_FIRST ?= 1
-fuzz_sources := $(addprefix tests/,quad_jet.f90 dice.f90 deck_draft.f90 deck_changes.f90 drive_mutations.f90 \
+fuzz_sources := $(addprefix tests/,quad_jet.f90 dice.f90 deck_draft.f90 deck_changes.f90 drive_mutations.f90 deck_surplus.f90 \
    deck_mutations.f90 deck_damage.f90 jet_drives.f90 jet_closure.f90 jet_condition.f90 csv_rows.f90 csv_closure.f90 \
    csv_twice.f90 listing_check.f90 fuzz.f90)
 $(BUILD)/fuzz/fuzz: $(fuzz_sources) $(BUILD)/fuzz/libkinmat.a

@@ -1,5 +1,5 @@
-!> Tests. Changes of a deck that leave it a deck: lengths, angles, order, scale, and those of `drive_mutations`. What comes
-!> of it may have no solution, but it goes through the solver.
+!> Tests. Changes of a deck that leave it a deck: lengths, angles, order, scale, and those of `drive_mutations`
+!> and `deck_surplus`. What comes of it may have no solution, but it goes through the solver.
 module deck_mutations
    use kinds, only: wp
    use dice, only: dice_t, throw, chance, between, magnitude
@@ -7,6 +7,7 @@ module deck_mutations
       find_cards, add_note
    use deck_changes, only: pick, near, put_real, is_degrees
    use drive_mutations, only: change_drive, add_term, change_time, change_at, change_method, exchange_drive
+   use deck_surplus, only: double_pair, weld_link, double_drive, extra_drive, far_rough, round_drive
    implicit none
    private
    public :: prepare, change_gently, most_steps
@@ -50,7 +51,7 @@ contains
       type(draft_t), intent(inout) :: d
       type(dice_t), intent(inout) :: r
 
-      select case (throw(r, 24))
+      select case (throw(r, 34))
       case (1:5)
          call change_length(d, r)
       case (6:7)
@@ -77,6 +78,18 @@ contains
          call swap_ends(d, r)
       case (23)
          call make_prism(d, r)
+      case (24:26)
+         call double_pair(d, r)
+      case (27)
+         call weld_link(d, r)
+      case (28:29)
+         call double_drive(d, r)
+      case (30)
+         call extra_drive(d, r)
+      case (31:32)
+         call far_rough(d, r)
+      case (33)
+         call round_drive(d, r)
       case default
          call change_at(d, r)
       end select
