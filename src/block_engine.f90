@@ -9,7 +9,7 @@ module block_engine
    use loop_equations, only: new_equations
    use rough_positions, only: rough_values
    use drives, only: law_t, new_law, drive_motion
-   use convergence, only: convergence_t, is_solved, ended_converged, ended_singular
+   use convergence, only: convergence_t, is_solved, take_gap, ended_converged, ended_singular
    use predictor, only: history_t, new_history, remember, predict, largest_change
    use blocks, only: blocks_t
    use block_partition, only: new_blocks
@@ -189,12 +189,7 @@ contains
       c%step = max(c%step, one%step)
       c%reciprocal_condition = min(c%reciprocal_condition, one%reciprocal_condition)
       c%determinant = c%determinant*one%determinant
-      if (one%gap > c%gap) then
-         c%gap = one%gap
-         c%gap_is_angle = one%gap_is_angle
-         c%open_pair = one%open_pair
-         c%open_drive = one%open_drive
-      end if
+      if (one%gap > c%gap) call take_gap(one, c)
       c%singular = c%singular .or. one%singular
       c%rates_open = c%rates_open .or. one%rates_open
    end subroutine gather

@@ -21,6 +21,7 @@ module block_rank
    type :: values_t
       integer :: rows = 0, n = 0, rank = 0
       real(wp), allocatable :: s(:), left(:, :), right(:, :)
+      real(wp), allocatable :: r(:)               !< the residual there
    end type values_t
 
 contains
@@ -151,16 +152,14 @@ contains
       type(state_t), intent(inout) :: s
       real(wp), intent(out) :: far
       type(values_t) :: v
-      real(wp), allocatable :: a(:), r(:), x(:)
+      real(wp), allocatable :: x(:)
       integer :: k
 
-      allocate (a(b%list(i)%shape%rows*b%list(i)%shape%n), r(b%list(i)%shape%rows))
-      call assemble_dense(b, i, s, a, r)
-      far = maxval(abs(r))
       v = decomposed(b, i, s)
+      far = maxval(abs(v%r))
       x = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
       do k = 1, v%rank
-         x = x - v%right(k, :)*(dot_product(v%left(:, k), r)/v%s(k))
+         x = x - v%right(k, :)*(dot_product(v%left(:, k), v%r)/v%s(k))
       end do
       call set_values(b, i, x, s)
    end subroutine pull_back
@@ -171,12 +170,12 @@ contains
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
       type(values_t) :: v
-      real(wp), allocatable :: a(:), r(:), work(:)
+      real(wp), allocatable :: a(:), work(:)
       integer :: info
 
       v%rows = b%list(i)%shape%rows
       v%n = b%list(i)%shape%n
-      allocate (a(v%rows*v%n), r(v%rows), work(8*(v%rows + v%n) + 64), v%s(min(v%rows, v%n)), source=0.0_wp)
+      allocate (a(v%rows*v%n), v%r(v%rows), work(8*(v%rows + v%n) + 64), v%s(min(v%rows, v%n)), source=0.0_wp)
       allocate (v%left(v%rows, v%rows), v%right(v%n, v%n), source=0.0_wp)
       if (v%n == 0) then
          do info = 1, v%rows
@@ -184,7 +183,7 @@ contains
          end do
          return
       end if
-      call assemble_dense(b, i, s, a, r)
+      call assemble_dense(b, i, s, a, v%r)
       call dgesvd('A', 'A', v%rows, v%n, a, v%rows, v%s, v%left, v%rows, v%right, v%n, work, size(work), info)
       v%rank = count(v%s > zero_level*max(v%s(1), tiny(1.0_wp)))
    end function decomposed

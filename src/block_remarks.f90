@@ -4,7 +4,6 @@ module block_remarks
    use drives, only: drive_motion
    use remarks, only: remark_t, new_remark, remark_limit, remark_second, remark_redundant, remark_mobile, &
       remark_change
-   use block_state, only: state_t
    use block_needs, only: largest_known
    use block_rank, only: redundant_rows, moving_unknowns
    use first_position, only: has_second_position

@@ -1,12 +1,12 @@
 !> Level 2. The kinds of cards: which fields each takes. The deck's table, declared once.
 module card_forms
    use kinds, only: label_length
+   use letters, only: capitals
    implicit none
    private
    public :: form_t, forms, label_unused, label_needed, label_optional, find_form, nearest_form
    public :: form_title, form_units, form_lang, form_ground, form_link, form_point, form_revolute, form_prism
    public :: form_drive, form_add, form_time, form_at, form_method, form_print, form_end, form_star
-   public :: capitals
 
    !> What a label field of a card is.
    integer, parameter :: label_unused = 0, label_needed = 1, label_optional = 2
@@ -88,15 +88,4 @@ contains
       end do
       edits = row(len(b))
    end function edits
-
-   pure function capitals(text) result(upper)
-      character(*), intent(in) :: text
-      character(len(text)) :: upper
-      integer :: i
-
-      upper = text
-      do i = 1, len(text)
-         if (text(i:i) >= 'a' .and. text(i:i) <= 'z') upper(i:i) = achar(iachar(text(i:i)) - 32)
-      end do
-   end function capitals
 end module card_forms

@@ -5,8 +5,9 @@ module card_reader
    use cards, only: card_t, field_t, name_field, label_fields, real_fields, wide_fields, card_fields, &
                     no_field, field_text, first_column, card_columns
    use card_forms, only: forms, label_unused, label_needed, form_title, form_add, form_star, find_form, &
-                         nearest_form, capitals
+                         nearest_form
    use card_borders, only: find_cuts
+   use letters, only: capitals
    use numbers, only: read_real, read_whole, flaw_none, flaw_overflow, flaw_underflow, flaw_count
    use deck_codes, only: code_t, card_unknown, card_lower_case, card_indented, past_last_column, &
                          tab_character, control_character, foreign_character, field_unused, field_blank, &

@@ -5,7 +5,7 @@ module convergence
    private
    public :: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
       ended_open
-   public :: ending, is_solved
+   public :: ending, is_solved, take_gap
 
    integer, parameter :: ended_converged = 1   !< residual and step within the tolerance
    integer, parameter :: ended_stalled = 2     !< residual at rounding level, steps shrink no more: solved
@@ -40,6 +40,17 @@ contains
 
       is_solved = c%ended == ended_converged .or. c%ended == ended_stalled
    end function is_solved
+
+   !> Makes the gap of `from` that of `c`, with what it belongs to.
+   pure subroutine take_gap(from, c)
+      type(convergence_t), intent(in) :: from
+      type(convergence_t), intent(inout) :: c
+
+      c%gap = from%gap
+      c%gap_is_angle = from%gap_is_angle
+      c%open_pair = from%open_pair
+      c%open_drive = from%open_drive
+   end subroutine take_gap
 
    !> The word for how it ended.
    pure function ending(c) result(word)

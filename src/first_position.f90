@@ -3,7 +3,7 @@
 !> worse: what Newton's method alone has found stands where nothing nearer is found.
 module first_position
    use kinds, only: wp
-   use convergence, only: convergence_t, is_solved
+   use convergence, only: convergence_t, is_solved, take_gap
    use blocks, only: blocks_t
    use block_state, only: state_t, set_values
    use block_solver, only: workspace_t, solve_block
@@ -76,10 +76,7 @@ contains
          call solve_block(b, i, tolerance, w, s, c, change)
          if (is_solved(c) .or. reached) return
       end if
-      c%gap = nearest%gap
-      c%gap_is_angle = nearest%gap_is_angle
-      c%open_pair = nearest%open_pair
-      c%open_drive = nearest%open_drive
+      call take_gap(nearest, c)
    end subroutine come_near
 
    !> From a far start Newton's method and the descent may both pass the position that is the nearest: others are looked

@@ -3,7 +3,7 @@ module job
    use failures, only: failure_t, fail, status_solved, status_refused, status_marked, status_machine
    use mechanism, only: mechanism_t, instant_count, instant
    use motion, only: motion_t, new_motion, mark_none
-   use structure, only: find_structure
+   use structure, only: findings_t, find_structure
    use structure_faults, only: faults_text
    use deck, only: read_deck
    use text_output, only: output_t, open_output, put, close_output
@@ -33,15 +33,16 @@ contains
       integer, intent(out) :: status
       character(:), allocatable, intent(out) :: message
       type(mechanism_t), allocatable :: sets(:)
+      type(findings_t), allocatable :: findings(:)
       type(failure_t), allocatable :: failure
       type(outputs_t) :: o
 
       status = status_solved
       call read_deck(options%deck, sets, message, failure)
-      if (.not. allocated(failure)) call check_structure(sets, failure)
+      if (.not. allocated(failure)) call check_structure(sets, findings, failure)
       if (.not. allocated(failure)) call open_all(options, o, failure)
       if (.not. allocated(failure)) then
-         call run_sets(options, sets, o, status)
+         call run_sets(options, sets, findings, o, status)
          call close_all(options, o, failure)
       end if
       if (allocated(failure)) then
@@ -50,17 +51,20 @@ contains
       end if
    end subroutine run_job
 
-   !> Every link of every set can be found.
-   subroutine check_structure(sets, failure)
+   !> Every link of every set can be found: `findings` (sets).
+   subroutine check_structure(sets, findings, failure)
       type(mechanism_t), intent(in) :: sets(:)
+      type(findings_t), allocatable, intent(out) :: findings(:)
       type(failure_t), allocatable, intent(out) :: failure
       character(:), allocatable :: text, all_of_them
       integer :: i, told
 
+      allocate (findings(size(sets)))
       all_of_them = ''
       told = 0
       do i = 1, size(sets)
-         text = faults_text(sets(i), find_structure(sets(i)), i)
+         findings(i) = find_structure(sets(i))
+         text = faults_text(sets(i), findings(i), i)
          if (len(text) == 0) cycle
          if (told > 0) all_of_them = all_of_them//new_line('a')//' *** '
          all_of_them = all_of_them//text
@@ -94,9 +98,10 @@ contains
    end subroutine close_all
 
    !> The sets of this share, one after another: shares put together in their order are the whole.
-   subroutine run_sets(options, sets, o, status)
+   subroutine run_sets(options, sets, findings, o, status)
       type(options_t), intent(in) :: options
       type(mechanism_t), intent(in) :: sets(:)
+      type(findings_t), intent(in) :: findings(:)
       type(outputs_t), intent(inout) :: o
       integer, intent(inout) :: status
       integer :: i, first, last
@@ -105,7 +110,7 @@ contains
       last = share_end(size(sets), options%share, options%shares)
       if (len(options%csv) > 0 .and. options%share == 1) call csv_head(o%csv)
       do i = first, last
-         call run_set(options, sets(i), o, status)
+         call run_set(options, sets(i), findings(i), o, status)
       end do
    end subroutine run_sets
 
@@ -118,9 +123,10 @@ contains
    end function share_end
 
    !> Solves and writes one set, instant by instant.
-   subroutine run_set(options, m, o, status)
+   subroutine run_set(options, m, findings, o, status)
       type(options_t), intent(in) :: options
       type(mechanism_t), intent(in) :: m
+      type(findings_t), intent(in) :: findings
       type(outputs_t), intent(inout) :: o
       integer, intent(inout) :: status
       type(layout_t) :: layout
@@ -129,7 +135,7 @@ contains
       integer :: k, marked
 
       layout = new_layout(m)
-      call listing_head(o%listing, layout, m, find_structure(m))
+      call listing_head(o%listing, layout, m, findings)
       if (options%check) return
       if (len(options%log) > 0) call protocol_head(o%log, m)
       a = new_analysis(m)

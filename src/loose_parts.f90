@@ -1,6 +1,6 @@
 !> Level 2. Unknowns that have too few equations, part by part.
 module loose_parts
-   use matching, only: incidence_t
+   use matching, only: incidence_t, overdetermined
    implicit none
    private
    public :: underdetermined
@@ -18,7 +18,8 @@ contains
       logical :: loose(g%unknowns)
 
       h = turned_round(g)
-      loose = reached(g, h, pack([(u, u=1, g%unknowns)], equation_of == 0), unknown_of)
+      ! Turned round, too few equations are too many: those that could be free in place of the free ones.
+      loose = overdetermined(h, equation_of, unknown_of)
       part = 0
       do u = 1, g%unknowns
          if (equation_of(u) == 0 .and. part(u) == 0) call spread(g, h, u, loose, part)
@@ -50,30 +51,6 @@ contains
          end do
       end do
    end function turned_round
-
-   !> The unknowns that could be free in place of those in the list `free`.
-   pure function reached(g, h, free, unknown_of) result(loose)
-      type(incidence_t), intent(in) :: g, h
-      integer, intent(in) :: free(:), unknown_of(:)
-      logical :: loose(g%unknowns)
-      integer :: queue(g%unknowns), last, next, i, u
-
-      loose = .false.
-      loose(free) = .true.
-      last = size(free)
-      queue(:last) = free
-      next = 1
-      do while (next <= last)
-         do i = h%first(queue(next)), h%first(queue(next) + 1) - 1
-            u = unknown_of(h%unknown(i))
-            if (loose(u)) cycle
-            loose(u) = .true.
-            last = last + 1
-            queue(last) = u
-         end do
-         next = next + 1
-      end do
-   end function reached
 
    !> Gives number `start` to all loose unknowns that equations join with it, one after another.
    pure subroutine spread(g, h, start, loose, part)

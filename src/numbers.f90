@@ -6,6 +6,7 @@
 module numbers
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
+   use letters, only: capitals
    implicit none
    private
    public :: read_real, read_whole
@@ -244,15 +245,4 @@ contains
 
       digit = iachar(c) - iachar('0')
    end function digit
-
-   pure function capitals(text) result(upper)
-      character(*), intent(in) :: text
-      character(len(text)) :: upper
-      integer :: i
-
-      upper = text
-      do i = 1, len(text)
-         if (text(i:i) >= 'a' .and. text(i:i) <= 'z') upper(i:i) = achar(iachar(text(i:i)) - 32)
-      end do
-   end function capitals
 end module numbers

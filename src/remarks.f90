@@ -4,7 +4,7 @@ module remarks
    implicit none
    private
    public :: remark_t, new_remark, most_links
-   public :: remark_open, remark_limit, remark_far, remark_second, remark_redundant, remark_gap, remark_mobile, &
+   public :: remark_open, remark_limit, remark_far, remark_second, remark_redundant, remark_mobile, &
       remark_change
 
    integer, parameter :: remark_open = 1       !< an equation of `pair` or `drive` stays open by `value`
@@ -12,9 +12,8 @@ module remarks
    integer, parameter :: remark_far = 3        !< the rough position of links(1) was off by the angle `value`
    integer, parameter :: remark_second = 4     !< `links` could as well have been assembled in another way
    integer, parameter :: remark_redundant = 5  !< an equation of `pair` or `drive` could be spared
-   integer, parameter :: remark_gap = 6        !< redundant equations differ by `value` at most
-   integer, parameter :: remark_mobile = 7     !< `links` can move although the drives stand still
-   integer, parameter :: remark_change = 8     !< at `t` two branches cross; `links` have gone on smoothly
+   integer, parameter :: remark_mobile = 6     !< `links` can move although the drives stand still
+   integer, parameter :: remark_change = 7     !< at `t` two branches cross; `links` have gone on smoothly
 
    integer, parameter :: most_links = 6
 
