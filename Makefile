@@ -17,7 +17,7 @@ sources := $(sort $(wildcard src/*.f90))
 names   := $(sources:src/%.f90=%)
 modules := $(filter-out main,$(names))
 
-.PHONY: all run test check forms bench bench-short digits fuzz fuzz-short expected install clean
+.PHONY: all run test check forms errors bench bench-short digits fuzz fuzz-short expected install clean
 all: $(BUILD)/kinmat
 
 run: $(BUILD)/kinmat
@@ -85,6 +85,14 @@ $(BUILD)/check_forms: $(forms) tests/quad_decks.f90 tests/check_forms.f90 $(BUIL
 forms: $(BUILD)/check_forms
 	$(BUILD)/check_forms $(decks)
 
+# The program's own estimates of its errors against the closed forms.
+$(BUILD)/error_estimates: $(forms) tests/error_estimates.f90 $(BUILD)/release/libkinmat.a
+	mkdir -p $(BUILD)/errors
+	$(FC) $(COMMON) $(RELEASE) -J$(BUILD)/errors -I$(BUILD)/release -o $@ $^ $(LIBS)
+
+errors: $(BUILD)/error_estimates
+	$(BUILD)/error_estimates $(decks)
+
 check: $(BUILD)/kinmat $(references)
 	BUILD=$(BUILD) tests/check.sh
 
@@ -134,7 +142,7 @@ TEST_HELPERS := $(forms) $(addprefix tests/,deck_samples.f90 sample_mechanisms.f
    random_drafts.f90 random_mechanisms.f90 compare_engines.f90 quad_blocks.f90 sample_overconstrained.f90)
 include tests/tests.mk
 
-test: $(BUILD)/kinmat $(BUILD)/debug/kinmat $(BUILD)/check_forms $(BUILD)/compare_digits $(BUILD)/fuzz/fuzz $(references) $(BUILD)/tests$(if $(PFUNIT_DIR),/pfunit)/unit
+test: $(BUILD)/kinmat $(BUILD)/debug/kinmat $(BUILD)/check_forms $(BUILD)/error_estimates $(BUILD)/compare_digits $(BUILD)/fuzz/fuzz $(references) $(BUILD)/tests$(if $(PFUNIT_DIR),/pfunit)/unit
 	BUILD=$(BUILD) MAKE='$(MAKE)' tests/run.sh
 
 install: $(BUILD)/kinmat

@@ -12,6 +12,7 @@ module command_line
       character(:), allocatable :: csv       !< '' for none
       character(:), allocatable :: log       !< '' for none
       logical :: check = .false.             !< read and analyse only
+      logical :: errors = .false.            !< CSV and protocol tell how far each number is known
       integer :: share = 1, shares = 1       !< the share-th of so many shares of the deck's sets
       !> What is printed instead of computing: 'HELP', 'VERSION', 'RULER' or ''.
       character(:), allocatable :: show
@@ -34,6 +35,7 @@ module command_line
       '  -o FILE              the listing to FILE', &
       '  --csv FILE           the results with 17 digits, comma-separated', &
       '  --log FILE           the protocol of the solver', &
+      '  --errors             how far each number is known, in CSV and protocol', &
       '  --check              reads and analyses the deck, computes nothing', &
       '  --sets K/N           the K-th of N shares of the sets of the deck', &
       '  --ruler              prints an empty card with its columns', &
@@ -78,6 +80,8 @@ contains
             call take_file(i, options%log, failure)
          case ('--sets')
             call take_share(i, options, failure)
+         case ('--errors')
+            options%errors = .true.
          case ('--check')
             options%check = .true.
          case ('--help', '-h')

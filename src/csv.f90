@@ -1,4 +1,4 @@
-!> Level 5. The results as comma-separated values with 17 digits: the deck's length unit, radians or degrees
+!> Level 6. The results as comma-separated values with 17 digits: the deck's length unit, radians or degrees
 !> as the deck says. A value that does not exist is empty and `mark` says why; a name with a comma is quoted.
 module csv
    use kinds, only: wp
@@ -6,6 +6,8 @@ module csv
    use mechanism, only: mechanism_t, request_link, request_point
    use motion, only: motion_t
    use points, only: row_t, row_of, is_due
+   use known_digits, only: nothing_known
+   use scatter, only: scatter_t, row_error
    use text_output, only: output_t, put, add
    use numerals, only: whole, full, put_full, full_length
    implicit none
@@ -17,33 +19,54 @@ module csv
 
 contains
 
-   !> The names of the columns.
-   subroutine csv_head(o)
+   !> The names of the columns; with `errors`, those of the errors' estimates after them.
+   subroutine csv_head(o, errors)
       type(output_t), intent(inout) :: o
+      logical, intent(in) :: errors
 
-      call put(o, 'set,step,t,kind,name,x,y,phi,vx,vy,vphi,ax,ay,aphi,mark')
+      call add(o, 'set,step,t,kind,name,x,y,phi,vx,vy,vphi,ax,ay,aphi,mark')
+      if (errors) call add(o, ',ex,ey,ephi,evx,evy,evphi,eax,eay,eaphi')
+      call put(o, '')
    end subroutine csv_head
 
-   !> The rows of instant number `step` (0, 1, ...) that the deck asks for there.
-   subroutine csv_instant(o, m, q, step)
+   !> The rows of instant number `step` (0, 1, ...) that the deck asks for there, with their errors as `doubt` has
+   !> them, where they are asked for.
+   subroutine csv_instant(o, m, q, step, doubt)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       integer, intent(in) :: step
+      type(scatter_t), intent(in) :: doubt
       character(:), allocatable :: start
+      type(row_t) :: row
       integer :: i
 
       start = whole(m%set_number)//','//whole(step)//','//full(q%t)//','
       do i = 1, size(m%requests)
          if (.not. is_due(m, m%requests(i), step)) cycle
          call add(o, start)
-         call add_cells(o, row_of(m, q, m%requests(i)), q%known, m%degrees)
-         call put(o, marks(q%mark)(:len_trim(marks(q%mark))))
+         row = row_of(m, q, m%requests(i))
+         call add_name(o, row)
+         call add_values(o, row, q%known, m%degrees)
+         call add(o, ',')
+         call add(o, marks(q%mark)(:len_trim(marks(q%mark))))
+         if (doubt%asked) call add_errors(o, row, row_error(m, doubt, q, m%requests(i)), q%known, m%degrees)
+         call put(o, '')
       end do
    end subroutine csv_instant
 
-   !> Kind, name and nine values, a comma after each.
-   subroutine add_cells(o, row, known, degrees)
+   !> Kind and name.
+   subroutine add_name(o, row)
+      type(output_t), intent(inout) :: o
+      type(row_t), intent(in) :: row
+
+      call add(o, kinds_of_row(row%kind)(:len_trim(kinds_of_row(row%kind))))
+      call add(o, ',')
+      call add_word(o, row%name(:len_trim(row%name)))
+   end subroutine add_name
+
+   !> Nine values, a comma before each.
+   subroutine add_values(o, row, known, degrees)
       type(output_t), intent(inout) :: o
       type(row_t), intent(in) :: row
       integer, intent(in) :: known
@@ -52,27 +75,43 @@ contains
       real(wp) :: unit
       integer :: k, c, used, length
 
-      call add(o, kinds_of_row(row%kind)(:len_trim(kinds_of_row(row%kind))))
-      call add(o, ',')
-      call add_name(o, row%name(:len_trim(row%name)))
       used = 0
       do k = 0, 2
          do c = 1, 3
+            used = used + 1
+            cells(used:used) = ','
             if (k <= known .and. has_column(row%kind, c)) then
                unit = merge(degree, 1.0_wp, degrees .and. (c == 3 .or. row%angular))
                call put_full(row%value(c, k)/unit, cells(used + 1:used + full_length), length)
                used = used + length
             end if
-            used = used + 1
-            cells(used:used) = ','
          end do
       end do
-      call add(o, ',')
       call add(o, cells(:used))
-   end subroutine add_cells
+   end subroutine add_values
+
+   !> The nine errors (3, 0:2) of `row`, those of numbers that exist; empty too where nothing is known.
+   subroutine add_errors(o, row, error, known, degrees)
+      type(output_t), intent(inout) :: o
+      type(row_t), intent(in) :: row
+      real(wp), intent(in) :: error(3, 0:2)
+      integer, intent(in) :: known
+      logical, intent(in) :: degrees
+      type(row_t) :: errors
+      integer :: k, last
+
+      last = -1
+      do k = 0, known
+         if (any(error(:, k) >= nothing_known)) exit
+         last = k
+      end do
+      errors = row
+      errors%value = error
+      call add_values(o, errors, last, degrees)
+   end subroutine add_errors
 
    !> A name as a cell: in quotes where it holds a comma or a quote.
-   subroutine add_name(o, name)
+   subroutine add_word(o, name)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: name
       integer :: i
@@ -87,7 +126,7 @@ contains
          call add(o, name(i:i))
       end do
       call add(o, '"')
-   end subroutine add_name
+   end subroutine add_word
 
    pure logical function has_column(kind, c)
       integer, intent(in) :: kind, c

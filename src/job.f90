@@ -12,6 +12,8 @@ module job
    use csv, only: csv_head, csv_instant
    use protocol, only: protocol_head, protocol_instant
    use analysis, only: analysis_t, new_analysis, advance, redundancy_gap
+   use scatter, only: scatter_t, largest_errors
+   use rounding_samples, only: samples_t, new_samples, take_samples
    use command_line, only: options_t
    implicit none
    private
@@ -108,7 +110,7 @@ contains
 
       first = share_end(size(sets), options%share - 1, options%shares) + 1
       last = share_end(size(sets), options%share, options%shares)
-      if (len(options%csv) > 0 .and. options%share == 1) call csv_head(o%csv)
+      if (len(options%csv) > 0 .and. options%share == 1) call csv_head(o%csv, options%errors)
       do i = first, last
          call run_set(options, sets(i), findings(i), o, status)
       end do
@@ -132,21 +134,31 @@ contains
       type(layout_t) :: layout
       type(analysis_t) :: a
       type(motion_t) :: q
+      type(samples_t) :: samples
+      type(scatter_t) :: doubt
       integer :: k, marked
 
       layout = new_layout(m)
       call listing_head(o%listing, layout, m, findings)
       if (options%check) return
-      if (len(options%log) > 0) call protocol_head(o%log, m)
+      if (len(options%log) > 0) call protocol_head(o%log, m, options%errors)
       a = new_analysis(m)
       q = new_motion(size(m%links))
+      samples = new_samples(m)
       marked = 0
       do k = 0, instant_count(m) - 1
          call advance(a, instant(m, k), q)
          if (q%mark /= mark_none) marked = marked + 1
-         call listing_instant(o%listing, layout, m, q, k)
-         if (len(options%csv) > 0) call csv_instant(o%csv, m, q, k)
-         if (len(options%log) > 0) call protocol_instant(o%log, k, q%t, a%convergence)
+         call take_samples(samples, a%blocks, q, options%errors, doubt)
+         call listing_instant(o%listing, layout, m, q, k, doubt)
+         if (len(options%csv) > 0) call csv_instant(o%csv, m, q, k, doubt)
+         if (len(options%log) == 0) cycle
+         if (options%errors) then
+            call protocol_instant(o%log, k, q%t, a%convergence, &
+               largest_errors(m, doubt, q, samples%length, samples%rate))
+         else
+            call protocol_instant(o%log, k, q%t, a%convergence)
+         end if
       end do
       call listing_end(o%listing, m, instant_count(m) - marked, marked, redundancy_gap(a))
       if (marked > 0) status = status_marked

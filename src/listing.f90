@@ -11,9 +11,12 @@ module listing
    use points, only: row_t, row_of, is_due
    use text_output, only: output_t, put
    use numerals, only: fixed, put_fixed, whole, numeral_length
+   use known_digits, only: put_known, unknown_digit
+   use scatter, only: scatter_t, row_scatter
    use layout, only: layout_t, new_layout, name_length, row_length
    use phrases, only: phrase, say_program, say_set, say_title, say_data, say_results, say_phi, &
-      say_end, say_solved, say_marked, say_no_position, say_no_rates, say_overflow, say_contradiction
+      say_end, say_solved, say_marked, say_no_position, say_no_rates, say_overflow, say_contradiction, &
+      say_unknown
    implicit none
    private
    public :: layout_t, new_layout, listing_head, listing_instant, listing_end
@@ -77,25 +80,37 @@ contains
       if (power /= 0) text = '[10**'//whole(power)//' '//unit//']'
    end function unit_of
 
-   !> The tables of instant number `step` (0, 1, ...), as far as the deck asks for them there.
-   subroutine listing_instant(o, l, m, q, step)
+   !> The tables of instant number `step` (0, 1, ...), as far as the deck asks for them there; digits that `doubt`
+   !> leaves open are masked.
+   subroutine listing_instant(o, l, m, q, step, doubt)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       integer, intent(in) :: step
+      type(scatter_t), intent(in), optional :: doubt
       integer :: i, last_kind
+      logical :: is_known, masked
 
       last_kind = 0
+      masked = .false.
+      is_known = .true.
+      if (present(doubt)) is_known = .not. doubt%taken
       do i = 1, size(m%requests)
          if (.not. is_due(m, m%requests(i), step)) cycle
          if (last_kind == 0) call put_instant(o, l, q, step)
          if (m%requests(i)%kind /= last_kind) call put_trimmed(o, l%heads(m%requests(i)%kind))
          last_kind = m%requests(i)%kind
-         call put_row(o, l, q%known, row_of(m, q, m%requests(i)))
+         if (is_known) then
+            call put_row(o, l, q%known, row_of(m, q, m%requests(i)))
+         else
+            call put_row(o, l, q%known, row_of(m, q, m%requests(i)), &
+               row_scatter(m, doubt, m%requests(i)), masked)
+         end if
       end do
       if (last_kind == 0 .and. q%mark /= mark_none) call put_instant(o, l, q, step)
       if (q%mark /= mark_none) call put(o, ' *** '//mark_text(q%mark, m%polish))
+      if (masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, m%polish))
       if (allocated(q%remarks)) call put_remarks(o, m, q%remarks)
    end subroutine listing_instant
 
@@ -111,27 +126,34 @@ contains
       call put(o, l%instant//whole(step)//'   T = '//trim(time))
    end subroutine put_instant
 
-   !> One row: what is not known is a word, what the row does not have is blank.
-   subroutine put_row(o, l, known, row)
+   !> One row: what is not known is a word, what the row does not have is blank. `error` (3, 0:2), where it is given, is
+   !> unknown of the numbers; `masked`: a digit is.
+   subroutine put_row(o, l, known, row, error, masked)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       integer, intent(in) :: known
       type(row_t), intent(in) :: row
+      real(wp), intent(in), optional :: error(3, 0:2)
+      logical, intent(inout), optional :: masked
       character(row_length) :: line
-      integer :: k, c, last, used
+      real(wp) :: size_of(2)
+      integer :: k, c, last, used, unit
 
+      size_of = [1.0_wp, l%angle]
       last = columns_of(row%kind)
       line(:name_length) = ' '//row%name
       used = name_length
       do k = 0, 2
          do c = 1, last
+            unit = merge(2, 1, c == 3 .or. row%angular)
             associate (field => line(used + 1:used + numeral_length))
                if (k > known) then
                   field = l%none
-               else if (c == 3 .or. row%angular) then
-                  call put_fixed(row%value(c, k)/l%angle, l%decimals(2, k), l%power(2, k), field)
+               else if (present(error)) then
+                  call put_known(row%value(c, k)/size_of(unit), error(c, k)/size_of(unit), l%decimals(unit, k), &
+                     l%power(unit, k), field)
                else
-                  call put_fixed(row%value(c, k), l%decimals(1, k), l%power(1, k), field)
+                  call put_fixed(row%value(c, k)/size_of(unit), l%decimals(unit, k), l%power(unit, k), field)
                end if
             end associate
             used = used + numeral_length
@@ -140,6 +162,7 @@ contains
          line(used + 1:used + (3 - last)*numeral_length) = ''
          used = used + (3 - last)*numeral_length
       end do
+      if (present(masked)) masked = masked .or. index(line(name_length + 1:used), unknown_digit) > 0
       call put(o, line(:used))
    end subroutine put_row
 

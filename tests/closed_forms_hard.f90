@@ -1,12 +1,13 @@
 !> Tests. Closed forms at positions that are hard to compute: change points, dead points, lengths far below the places,
 !> many turns. The lengths are those of the decks, written out again by hand.
 module closed_forms_hard
+   use mechanism, only: mechanism_t
    use quad_jet, only: qp, jet_t, degree_q, constant_jet, time_jet, operator(+), &
       operator(-), operator(*), operator(/), sqrt, cos
    use closed_forms_dyads, only: place_t, body_t, fixed_place, body, polar, direction, corner, on_line
    implicit none
    private
-   public :: parallelogram, scott_russell, near_equal_rod, dead_point, far_small, many_turns
+   public :: parallelogram, scott_russell, near_equal_rod, dead_point, pushed_slider, far_small, many_turns
 
 contains
 
@@ -75,6 +76,35 @@ contains
       links = [body('BASE', o, flat), body('CRANK', o, direction(o, pin)), &
                body('ROD', pin, direction(pin, piston)), body('PISTON', piston, flat)]
    end function dead_point
+
+   !> The same mechanism with the numbers of the deck `m`, whatever they are: the piston's point at x, on a guide that is
+   !> inclined by alpha; arms across their links' axes too.
+   function pushed_slider(m, t) result(links)
+      type(mechanism_t), intent(in) :: m
+      real(qp), intent(in) :: t
+      type(body_t) :: links(4)
+      type(jet_t) :: reach, x, across, flat
+      type(place_t) :: o, pin, eye
+      real(qp) :: crank(2), rod(2), c(3), slope(2), both, less
+
+      crank = real(m%points(findloc(m%points%name == 'PIN-CR', .true., dim=1))%offset, qp)
+      rod = real(m%points(findloc(m%points%name == 'EYE', .true., dim=1))%offset, qp)
+      associate (alpha => real(m%pairs(findloc(m%pairs%name == 'GUIDE', .true., dim=1))%alpha, qp))
+         slope = [cos(alpha), sin(alpha)]
+      end associate
+      c = real(m%drives(1)%polynomial, qp)
+      both = norm2(crank) + norm2(rod)
+      less = norm2(rod) - norm2(crank)
+      flat = constant_jet(0.0_qp)
+      o = fixed_place(0.0_qp, 0.0_qp)
+      reach = (c(1) + time_jet(t)*(c(2) + time_jet(t)*(c(3)/2.0_qp)))/slope(1)
+      eye = place_t(slope(1)*reach, slope(2)*reach)
+      x = (reach*reach - both*less)/(2.0_qp*reach)
+      across = sqrt((both + reach)*(both - reach)*(reach + less)*(reach - less))/(2.0_qp*reach)
+      pin = place_t(slope(1)*x - slope(2)*across, slope(2)*x + slope(1)*across)
+      links = [body('BASE', o, flat), body('CRANK', o, direction(o, pin) - atan2(crank(2), crank(1))), &
+               body('ROD', pin, direction(pin, eye) - atan2(rod(2), rod(1))), body('PISTON', eye, flat)]
+   end function pushed_slider
 
    !> Crank-rocker of 1, 3.5, 3 and 4 millionths on a base at (1200, 1600), where it is put after all is known.
    pure function far_small(t) result(links)

@@ -154,6 +154,18 @@ same 'three outputs: listing' "$w/m.lst" "$w/three.lst"
 same 'three outputs: csv' "$w/m.csv" "$w/three.csv"
 same 'three outputs: log' "$w/m.log" "$w/three.log"
 
+# --errors: nine more columns, as empty as the numbers they belong to; estimates of a four-bar are some roundings.
+"$kinmat" "$w/m.deck" --errors --csv "$w/e.csv" --log "$w/e.log" > "$w/out"
+same '--errors leaves the listing as it is' "$w/m.lst" "$w/out"
+cut -d, -f1-15 "$w/e.csv" > "$w/e15.csv"
+same '--errors leaves the other columns as they are' "$w/m.csv" "$w/e15.csv"
+equal '--errors: header' 'ex,ey,ephi,evx,evy,evphi,eax,eay,eaphi' "$(head -n 1 "$w/e.csv" | cut -d, -f16-)"
+equal '--errors: an error for each number' '' "$(awk -F, '
+   NR > 1 { for (i = 6; i < 15; i++) if (($i == "") != ($(i + 10) == "")) print }' "$w/e.csv")"
+equal '--errors: their size' '' "$(awk -F, '
+   NR > 1 { for (i = 16; i < 25; i++) if ($i != "" && ($i < 0 || $i > 1e-10)) print }' "$w/e.csv")"
+equal '--errors: the protocol' 36 "$(sed -n 2p "$w/e.log" | grep -o '  ERROR OF X  ERROR OF V  ERROR OF A$' | tr -d '\n' | wc -c | tr -d ' ')"
+
 # --check: the heads of the sets, without one instant.
 "$kinmat" --check "$w/m.deck" > "$w/out" 2> "$w/err"
 equal '--check: status' 0 $?
@@ -187,7 +199,7 @@ refused '--sets without a word' 1 ' *** OPTION --sets NEEDS K/N WITH 1 <= K <= N
 "$kinmat" --help > "$w/out" 2> "$w/err"
 equal '--help: status' 0 $?
 equal '--help: first line' 'kinmat DECK            reads a card deck, prints the listing' "$(head -n 1 "$w/out")"
-for option in -o --csv --log --check --sets --ruler --help --version; do
+for option in -o --csv --log --check --errors --sets --ruler --help --version; do
    equal "--help tells of $option" found "$(grep -qe "$option" "$w/out" && echo found)"
 done
 equal '--version' 'KINMAT 1.0' "$("$kinmat" --version)"

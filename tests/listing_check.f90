@@ -18,6 +18,7 @@ module listing_check
       'CHANGE POINT AT T =', 'PUNKT ZMIANY W CHWILI T =', 'CAN STILL MOVE, ADD A DRIVE', 'RUCH NIEOKRESLONY, DODAJ NAPED', &
       'ROUGH ANGLE WAS OFF BY', 'KAT PRZYBLIZONY ODBIEGAL O', 'ANOTHER ASSEMBLY IS ABOUT AS NEAR', &
       'INNY MONTAZ JEST PODOBNIE BLISKI', 'REDUNDANT EQUATION', 'ROWNANIE NADLICZBOWE', &
+      '?: DIGITS THAT ROUNDING LEAVES OPEN', '?: CYFRY NIEPEWNE Z POWODU ZAOKRAGLEN', &
       'LARGEST GAP OF REDUNDANT EQUATIONS', 'NAJWIEKSZA NIEZGODNOSC ROWNAN NADLICZBOWYCH']
 
 contains
@@ -103,8 +104,8 @@ contains
          if (first == 0) return
          associate (word => text(first:last))
             if (word == 'NONE' .or. word == 'BRAK') cycle
-            are_numbers = verify(word, '0123456789.E+-') == 0 .and. scan(word, '0123456789') > 0
-            if (word(1:1) == '-') are_numbers = are_numbers .and. verify(word, '-0.') > 0
+            are_numbers = verify(word, '0123456789.E+-?') == 0 .and. scan(word, '0123456789?') > 0
+            if (word(1:1) == '-') are_numbers = are_numbers .and. verify(word, '-0.?') > 0
             if (.not. are_numbers) return
          end associate
       end do

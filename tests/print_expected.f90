@@ -12,7 +12,11 @@ program print_expected
    use text_output, only: output_t, open_output, close_output
    use listing, only: layout_t, new_layout, listing_head, listing_instant, listing_end
    use quad_jet, only: qp, pi_q
+   use scales, only: characteristic_length
+   use scatter, only: scatter_t, find_noise
+   use perturbed_deck, only: perturbed, perturbed_instant, sample_count
    use closed_forms_dyads, only: body_t
+   use closed_forms_hard, only: pushed_slider
    use closed_forms, only: closed_form, hand_count
    implicit none
    character(500) :: path
@@ -44,6 +48,7 @@ contains
       type(layout_t) :: layout
       type(motion_t) :: q
       type(findings_t) :: findings
+      type(scatter_t) :: doubt
       integer :: k
 
       layout = new_layout(m)
@@ -55,10 +60,11 @@ contains
          q%position(:, k) = m%links(k)%position
       end do
       do k = 0, instant_count(m) - 1
-         call move_to(name, m, instant(m, k), q)
+         call move_to(m, closed_form(name, m%set_number, real(instant(m, k), qp)), instant(m, k), q)
          if (k == 0) q%remarks = redundant_by_hand(name, m)
          if (k > 0) q%remarks = passages_by_hand(name, m, instant(m, k - 1), instant(m, k))
-         call listing_instant(o, layout, m, q, k)
+         call doubt_by_hand(name, m, q, doubt)
+         call listing_instant(o, layout, m, q, k, doubt)
       end do
       if (size(redundant_by_hand(name, m)) > 0) then
          call listing_end(o, m, instant_count(m), 0, gap=0.0_wp)
@@ -67,17 +73,34 @@ contains
       end if
    end subroutine print_set
 
-   !> The motion at `t`, its angles on the branch next to those of `q` as it comes: the instant before, at the
-   !> first instant the deck's rough ones.
-   subroutine move_to(name, m, t, q)
+   !> How far the motion `q` is known, next to dead points, from the closed forms of decks whose numbers are a little off.
+   !> Elsewhere no digit is in doubt.
+   subroutine doubt_by_hand(name, m, q, doubt)
       character(*), intent(in) :: name
       type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      type(scatter_t), intent(inout) :: doubt
+      integer :: k
+
+      if (index(name, 'dead_point') /= 1) return
+      if (.not. allocated(doubt%samples)) allocate (doubt%samples(0:sample_count))
+      do k = 0, sample_count
+         doubt%samples(k) = q
+         call move_to(m, pushed_slider(perturbed(m, k), real(perturbed_instant(q%t, k), qp)), q%t, doubt%samples(k))
+      end do
+      call find_noise(m, characteristic_length(m), doubt)
+      doubt%taken = .true.
+   end subroutine doubt_by_hand
+
+   !> The motion `links` at `t`, its angles on the branch next to those of `q` as it comes: the instant before, at the
+   !> first instant the deck's rough ones.
+   subroutine move_to(m, links, t, q)
+      type(mechanism_t), intent(in) :: m
+      type(body_t), intent(in) :: links(:)
       real(wp), intent(in) :: t
       type(motion_t), intent(inout) :: q
-      type(body_t), allocatable :: links(:)
       integer :: k, i
 
-      allocate (links, source=closed_form(name, m%set_number, real(t, qp)))
       if (size(links) /= size(m%links)) call give_up('THE CLOSED FORM AND THE DECK DIFFER IN THEIR LINKS')
       do i = 1, size(links)
          k = findloc(m%links%name == links(i)%name, .true., dim=1)

@@ -32,6 +32,7 @@ part 'the stand-in' "$MAKE" --no-print-directory unit-stand-in
 part 'the house' tests/house.sh
 part 'the closed forms' "$BUILD/check_forms" input/*.deck
 part 'make check' tests/check.sh
+part 'estimates of errors' "$MAKE" --no-print-directory errors
 part 'the command' tests/command.sh
 part 'faults by name' tests/faults.sh
 part 'the digits' tests/digits.sh

@@ -1,0 +1,163 @@
+!> Level 10. How far a motion is known: the blocks solved again, from the deck as it is and from decks whose numbers are
+!> a little off, at instants where digits of the tables could be in doubt.
+module rounding_samples
+   use kinds, only: wp
+   use mechanism, only: mechanism_t
+   use motion, only: motion_t, new_motion
+   use scales, only: characteristic_length, characteristic_rate
+   use drives, only: drive_motion
+   use convergence, only: convergence_t, is_solved, ended_open
+   use block_solver, only: solve_block
+   use block_engine, only: block_engine_t, new_block_engine, tell_blocks
+   use perturbed_deck, only: sample_count, perturbed, perturbed_instant
+   use scatter, only: scatter_t, find_noise, unusable
+   implicit none
+   private
+   public :: samples_t, new_samples, take_samples
+
+   !> Errors are roundings times |J^-1|^2 times the bend times what is asked for; below this many, and with no number
+   !> larger than so many characteristic ones, all digits of a table are safe.
+   real(wp), parameter :: safe_growth = 1.0e4_wp, safe_size = 1.0e4_wp
+
+   !> From its own position a search would end at once, and tell nothing of the residual that is left there.
+   real(wp), parameter :: nudge = 1.0e-9_wp
+
+   !> Engines of the deck (0) and of its perturbed kin.
+   type :: samples_t
+      real(wp) :: length = 1.0_wp, rate = 1.0_wp
+      type(mechanism_t) :: deck
+      type(block_engine_t), allocatable :: engine(:)
+   end type samples_t
+
+contains
+
+   !> Samples of `m`; the engines are made when they are first asked for.
+   function new_samples(m) result(s)
+      type(mechanism_t), intent(in) :: m
+      type(samples_t) :: s
+
+      s%deck = m
+      s%length = characteristic_length(m)
+      s%rate = characteristic_rate(m, s%length)
+   end function new_samples
+
+   !> How far the motion `q` is known, which the blocks `e` have found (if it is they that have). `always`: also where
+   !> no digit of a table is in doubt.
+   subroutine take_samples(s, e, q, always, found)
+      type(samples_t), intent(inout) :: s
+      type(block_engine_t), allocatable, intent(in) :: e
+      type(motion_t), intent(in) :: q
+      logical, intent(in) :: always
+      type(scatter_t), intent(inout) :: found
+      integer :: k
+
+      found%taken = .false.
+      found%asked = always
+      if (q%known < 0) return
+      if (.not. (always .or. is_in_doubt(s, e, q))) return
+      if (.not. allocated(found%samples)) then
+         allocate (found%samples(0:sample_count))
+         found%samples(:) = new_motion(size(s%deck%links))
+      end if
+      call make_engines(s, e, q)
+      if (.not. s%engine(0)%blocks%solvable) return
+      do k = 0, sample_count
+         associate (u => s%engine(k)%state%u)
+            if (allocated(e)) then
+               u%value = e%state%u%value
+            else
+               u%value = s%engine(k)%rough
+            end if
+            u(2:)%value = u(2:)%value + nudge
+         end associate
+         call solve_again(s%engine(k), perturbed_instant(q%t, k), found%samples(k))
+      end do
+      found%taken = found%samples(0)%known /= unusable .and. any(found%samples(1:)%known /= unusable)
+      if (found%taken) call find_noise(s%deck, s%length, found)
+   end subroutine take_samples
+
+   !> Some digit could be in doubt: a pivot is small, or a number large.
+   pure logical function is_in_doubt(s, e, q)
+      type(samples_t), intent(in) :: s
+      type(block_engine_t), allocatable, intent(in) :: e
+      type(motion_t), intent(in) :: q
+      real(wp) :: size_of
+      integer :: k
+
+      is_in_doubt = q%known == 2
+      if (q%known < 2 .or. .not. allocated(e)) return
+      size_of = max(largest(q%position, s%length), largest(q%velocity, s%length)/s%rate, &
+         largest(q%acceleration, s%length)/s%rate**2)
+      is_in_doubt = size_of > safe_size
+      if (is_in_doubt) return
+      do k = 1, size(e%needed)
+         associate (i => e%needed(k))
+            if (.not. e%blocks%list(i)%direct) is_in_doubt = is_in_doubt .or. &
+               e%blocks%list(i)%bend*max(1.0_wp, size_of) > safe_growth*min(1.0_wp, e%pivot_now(i))**2
+         end associate
+      end do
+   end function is_in_doubt
+
+   !> The largest coordinate, lengths in units of `length`.
+   pure real(wp) function largest(x, length)
+      real(wp), intent(in) :: x(:, :), length
+
+      largest = max(maxval(abs(x(:2, :)))/length, maxval(abs(x(3, :))))
+   end function largest
+
+   !> The engines, for the angles and slides of `e`; without it they are those of the position `q`.
+   subroutine make_engines(s, e, q)
+      type(samples_t), intent(inout) :: s
+      type(block_engine_t), allocatable, intent(in) :: e
+      type(motion_t), intent(in) :: q
+      type(mechanism_t) :: m
+      integer :: k
+
+      if (allocated(e) .and. allocated(s%engine)) return
+      if (allocated(s%engine)) deallocate (s%engine)
+      allocate (s%engine(0:sample_count))
+      do k = 0, sample_count
+         m = perturbed(s%deck, k)
+         if (.not. allocated(e)) call place_links(q, m)
+         s%engine(k) = new_block_engine(m)
+      end do
+   end subroutine make_engines
+
+   !> Puts the moving links of `m` where `q` has them.
+   pure subroutine place_links(q, m)
+      type(motion_t), intent(in) :: q
+      type(mechanism_t), intent(inout) :: m
+      integer :: i
+
+      do i = 1, size(m%links)
+         if (.not. m%links(i)%ground) m%links(i)%position = q%position(:, i)
+      end do
+   end subroutine place_links
+
+   !> The motion of `e` at `t`, from where its unknowns are, to the limit of rounding.
+   subroutine solve_again(e, t, q)
+      type(block_engine_t), intent(inout) :: e
+      real(wp), intent(in) :: t
+      type(motion_t), intent(inout) :: q
+      type(convergence_t) :: c
+      real(wp) :: correction
+      logical :: finite
+      integer :: i
+
+      q%t = t
+      q%known = 2
+      do i = 1, size(e%laws)
+         e%state%target(:, i) = drive_motion(e%laws(i), t)*e%unit_of(i)
+      end do
+      correction = 0.0_wp
+      do i = 1, size(e%needed)
+         c = convergence_t()
+         call solve_block(e%blocks, e%needed(i), 0.0_wp, e%work, e%state, c, correction)
+         if (c%singular) q%known = 0
+         if (is_solved(c) .and. .not. c%rates_open) cycle
+         q%known = merge(unusable, -1, c%ended == ended_open .or. c%rates_open)
+         return
+      end do
+      call tell_blocks(e, q, finite)
+   end subroutine solve_again
+end module rounding_samples
