@@ -3,21 +3,24 @@ SHELL := /bin/sh
 ifeq ($(origin FC),default)
    FC := gfortran
 endif
-BUILD  ?= build
+# The kind of every real: double, single, or quad, a reference that needs no LAPACK. Each has a directory of its own:
+# make KIND=quad builds build/quad/kinmat.
+KIND   ?= double
+BUILD  ?= build$(if $(filter-out double,$(KIND)),/$(KIND))
 PREFIX ?= /usr/local
-LIBS   ?= -lklu -llapack -lblas
+LIBS   ?= -lklu $(if $(filter-out quad,$(KIND)),-llapack -lblas)
 
 # No flag here changes a result: no fast-math, no contraction into fused multiply-add.
 # gfortran's "uninitialized" is wrong on every array allocated by assignment.
 COMMON  := -std=f2018 -Wall -Wextra -pedantic -Wno-uninitialized -Wno-maybe-uninitialized -ffp-contract=off
-RELEASE ?= -O2 -flto=auto
+RELEASE ?= -O2 $(if $(filter double,$(KIND)),-flto=auto)
 DEBUG   ?= -O0 -g -fbacktrace -fcheck=all,no-array-temps -ffpe-trap=invalid,zero,overflow -finit-real=snan -finit-derived
 
-sources := $(sort $(wildcard src/*.f90))
-names   := $(sources:src/%.f90=%)
+sources := $(sort $(wildcard src/*.f90 src/$(KIND)/*.f90))
+names   := $(basename $(notdir $(sources)))
 modules := $(filter-out main,$(names))
 
-.PHONY: all run test check forms errors bench bench-short digits fuzz fuzz-short expected install clean
+.PHONY: all kinds run test check forms errors kind-check quad-check single-check bench bench-short digits fuzz fuzz-short expected install install-kinds clean
 all: $(BUILD)/kinmat
 
 run: $(BUILD)/kinmat
@@ -26,7 +29,10 @@ run: $(BUILD)/kinmat
 # Two builds of the same sources, each in its own directory: release for use, debug for the unit tests.
 define build_in
 $(BUILD)/$(1)/%.o: src/%.f90 | $(BUILD)/$(1)
+	$$(FC) $$(COMMON) $(2) -Isrc/$$(KIND) -J$(BUILD)/$(1) -c -o $$@ $$<
+$(BUILD)/$(1)/%.o: src/$(KIND)/%.f90 | $(BUILD)/$(1)
 	$$(FC) $$(COMMON) $(2) -J$(BUILD)/$(1) -c -o $$@ $$<
+$(BUILD)/$(1)/kinds.o: src/$(KIND)/wp.inc
 $(BUILD)/$(1)/libkinmat.a: $(modules:%=$(BUILD)/$(1)/%.o)
 	rm -f $$@
 	$$(AR) cr $$@ $$^
@@ -44,6 +50,14 @@ $(eval $(call build_in,fuzz,$$(DEBUG) $$(SANITIZE)))
 
 $(BUILD)/kinmat: $(BUILD)/release/kinmat
 	cp $< $@
+
+# Beside kinmat, in double precision, kinmat-quad and kinmat-single.
+kinds: $(BUILD)/kinmat $(BUILD)/kinmat-quad $(BUILD)/kinmat-single
+
+$(BUILD)/kinmat-quad $(BUILD)/kinmat-single: $(BUILD)/kinmat-%: always
+	$(MAKE) --no-print-directory KIND=$* BUILD=$(BUILD)/$* $(BUILD)/$*/kinmat
+	cmp -s $(BUILD)/$*/kinmat $@ || cp $(BUILD)/$*/kinmat $@
+.PHONY: always
 
 # Who uses whom, read off the use statements.
 $(BUILD)/depends.mk: $(sources)
@@ -95,6 +109,19 @@ errors: $(BUILD)/error_estimates
 
 check: $(BUILD)/kinmat $(references)
 	BUILD=$(BUILD) tests/check.sh
+
+# The results of a build against the closed forms in real128, at the level of its kind.
+kind_sources := $(addprefix tests/,jet_drives.f90 jet_closure.f90 jet_condition.f90 csv_rows.f90 csv_closure.f90 \
+   fifty_digits.f90 kind_errors.f90)
+$(BUILD)/kind_errors: $(forms) $(kind_sources) $(BUILD)/release/libkinmat.a
+	mkdir -p $(BUILD)/forms
+	$(FC) $(COMMON) $(RELEASE) -J$(BUILD)/forms -I$(BUILD)/release -o $@ $^ $(LIBS)
+
+kind-check: $(BUILD)/kinmat $(BUILD)/kind_errors
+	BUILD=$(BUILD) KIND=$(KIND) tests/kind.sh
+
+quad-check single-check: %-check:
+	$(MAKE) --no-print-directory KIND=$* BUILD=$(BUILD)/$* kind-check
 
 # Speed against the closed forms, and the results of the methods compared; bench-short looks at no clock.
 bench_parts := tests/fast_forms.f90 tests/bench_tools.f90 tests/bench_chains.f90 tests/bench_scenes.f90 \
@@ -148,6 +175,9 @@ test: $(BUILD)/kinmat $(BUILD)/debug/kinmat $(BUILD)/check_forms $(BUILD)/error_
 install: $(BUILD)/kinmat
 	install -d $(DESTDIR)$(PREFIX)/bin
 	install -m 755 $(BUILD)/kinmat $(DESTDIR)$(PREFIX)/bin/kinmat
+
+install-kinds: install kinds
+	install -m 755 $(BUILD)/kinmat-quad $(BUILD)/kinmat-single $(DESTDIR)$(PREFIX)/bin
 
 clean:
 	rm -rf $(BUILD)

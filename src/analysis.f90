@@ -26,7 +26,7 @@ module analysis
    real(wp), parameter :: far_angle = 1.0_wp
    !> A part of a step smaller than this, of the longest or of what is left to go, is the end of the way; and so are
    !> that many parts.
-   real(wp), parameter :: smallest_part = 1.0e-10_wp
+   real(wp), parameter :: smallest_part = max(1.0e-10_wp, 4.0_wp*epsilon(1.0_wp))
    integer, parameter :: most_parts = 200000
    !> Near a limit a slow iteration creeps, and each part that fails costs all of its iterations: so many failures
    !> of parts that are small already end the way too.

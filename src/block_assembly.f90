@@ -17,8 +17,10 @@ module block_assembly
    !> No unknown goes further than this in one iteration: half a radian, half the characteristic length.
    real(wp), parameter :: longest_step = 0.5_wp
    !> No steps of that length make a residual small that is beyond this; its square is well below overflow.
-   real(wp), parameter :: bound = 1.0e30_wp
+   real(wp), parameter :: bound = min(1.0e30_wp, sqrt(sqrt(huge(1.0_wp))))
    real(wp), parameter :: first_damping = 1.0e-2_wp, least_damping = 1.0e-12_wp, most_damping = 1.0e8_wp
+   !> Shorter ones are rounding.
+   real(wp), parameter :: least_step = max(1.0e-12_wp, 32.0_wp*epsilon(1.0_wp))
    integer, parameter :: most_iterations = 200
    !> Starts: the rough position, then others around it, where that ends in a valley.
    integer, parameter :: most_starts = 12
@@ -118,7 +120,7 @@ contains
          call assemble_dense(b, i, s, w%a, w%r)
          if (sum(w%r(:w%shape%rows)**2) < square) then
             damping = max(0.2_wp*damping, least_damping)
-            if (step <= 1.0e-12_wp) exit
+            if (step <= least_step) exit
          else
             damping = 5.0_wp*damping
             call set_values(b, i, w%x, s)

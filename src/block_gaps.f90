@@ -10,9 +10,9 @@ module block_gaps
    !> Gaps that differ by less than this part are alike.
    real(wp), parameter :: alike = 1.0e-4_wp
    !> Positions may contradict one another by this, in characteristic lengths and radians, as data of 11 digits do.
-   real(wp), parameter :: open_level = 1.0e-10_wp
+   real(wp), parameter :: open_level = max(1.0e-10_wp, 64.0_wp*epsilon(1.0_wp))
    !> Rates may by this part of them, which a condition makes larger.
-   real(wp), parameter :: open_rates = 1.0e-8_wp
+   real(wp), parameter :: open_rates = max(1.0e-8_wp, 4096.0_wp*epsilon(1.0_wp))
 
 contains
 

@@ -4,7 +4,7 @@
 !> One right-hand side a call: for more OpenBLAS starts threads, at ten times the cost of a small system.
 module block_matrix
    use kinds, only: wp
-   use lapack, only: dgesv, dgetrs, dgecon, dgeqrf, dormqr, dtrtrs, dtrcon, dlacn2
+   use lapack, only: gesv, getrs, gecon, geqrf, ormqr, trtrs, trcon, lacn2
    use klu, only: klu_t, klu_serves, factor, factor_likewise, solve, solve_transposed, pivots_of, multiply
    implicit none
    private
@@ -64,7 +64,7 @@ contains
       if (s%pattern > 0) then
          call solve_sparse(s%n, a, k, work, work(s%n + 1), work(2*s%n + 1), b, info)
       else if (s%rows > s%n) then
-         call dgeqrf(s%rows, s%n, a, s%rows, work, work(s%n + 1), s%n*panel, info)
+         call geqrf(s%rows, s%n, a, s%rows, work, work(s%n + 1), s%n*panel, info)
          do i = s%n, 1, -1
             pivots(i) = i
             if (abs(a((i - 1)*s%rows + i)) <= 0.0_wp) info = i
@@ -75,7 +75,7 @@ contains
          pivots(1) = 1
          if (info == 0) b(1) = b(1)/a(1)
       else
-         call dgesv(s%n, 1, a, s%n, pivots, b, s%n, info)
+         call gesv(s%n, 1, a, s%n, pivots, b, s%n, info)
       end if
    end subroutine solve_first
 
@@ -112,12 +112,12 @@ contains
       if (s%pattern > 0) then
          call solve(k, b)
       else if (s%rows > s%n) then
-         call dormqr('L', 'T', s%rows, 1, s%n, a, s%rows, work, b, s%rows, work(s%n + 1), s%n*panel, info)
-         call dtrtrs('U', 'N', 'N', s%n, 1, a, s%rows, b, s%rows, info)
+         call ormqr('L', 'T', s%rows, 1, s%n, a, s%rows, work, b, s%rows, work(s%n + 1), s%n*panel, info)
+         call trtrs('U', 'N', 'N', s%n, 1, a, s%rows, b, s%rows, info)
       else if (s%n == 1) then
          b(1) = b(1)/a(1)
       else
-         call dgetrs('N', s%n, 1, a, s%n, pivots, b, s%n, info)
+         call getrs('N', s%n, 1, a, s%n, pivots, b, s%n, info)
       end if
    end subroutine solve_again
 
@@ -167,7 +167,7 @@ contains
       if (s%pattern > 0) then
          inverse_norm = sparse_norm(s%n, k, work, work(s%n + 1), iwork)
       else if (s%rows > s%n) then
-         call dtrcon('I', 'U', 'N', s%n, a, s%rows, rcond, work(s%n + 1), iwork, info)
+         call trcon('I', 'U', 'N', s%n, a, s%rows, rcond, work(s%n + 1), iwork, info)
          inverse_norm = 1.0_wp/(max(rcond, tiny(rcond))*triangle_norm(s, a))
       else if (s%n == 1) then
          inverse_norm = 1.0_wp/abs(a(1))
@@ -175,7 +175,7 @@ contains
          ! The factors are l = a(2), u = a(1), a(3), a(4); columns are swapped by the pivots, row sums are not.
          inverse_norm = max(abs(a(4) + a(3)*a(2)) + abs(a(3)), abs(a(1)*a(2)) + abs(a(1)))/abs(a(1)*a(4))
       else
-         call dgecon('I', s%n, a, s%n, 1.0_wp, rcond, work, iwork, info)
+         call gecon('I', s%n, a, s%n, 1.0_wp, rcond, work, iwork, info)
          inverse_norm = 1.0_wp/max(rcond, tiny(rcond))
       end if
    end function inverse_norm
@@ -192,7 +192,7 @@ contains
       norm = 0.0_wp
       state = 0
       do
-         call dlacn2(n, v, x, signs, norm, asks, state)
+         call lacn2(n, v, x, signs, norm, asks, state)
          ! DLACN2 seeks the largest column sum: that of the transposed inverse.
          select case (asks)
          case (1)

@@ -2,7 +2,7 @@
 !> inverse, by the singular values (DGESVD).
 module block_rank
    use kinds, only: wp
-   use lapack, only: dgesvd, dgetrf
+   use lapack, only: gesvd, getrf
    use blocks, only: blocks_t
    use block_state, only: state_t, set_values
    use block_rows, only: assemble_dense
@@ -12,9 +12,11 @@ module block_rank
 
    !> Singular values below this part of the largest count as zero: the root of the rounding, since a position at which
    !> they vanish is itself known to no more.
-   real(wp), parameter :: zero_level = 1.0e-7_wp
+   real(wp), parameter :: zero_level = max(1.0e-7_wp, 4.0_wp*sqrt(epsilon(1.0_wp)))
    !> So far a mechanism with a freedom left is moved to see whether it follows.
    real(wp), parameter :: trial = 1.0e-3_wp
+   !> Residuals that have nothing to correct, and those that are a position's.
+   real(wp), parameter :: closed = max(1.0e-14_wp, 32.0_wp*epsilon(1.0_wp)), near = max(1.0e-12_wp, 100.0_wp*closed)
    !> The decomposition takes the cube of this many operations.
    integer, parameter :: most_rows = 1500
 
@@ -106,10 +108,10 @@ contains
       call set_values(b, i, start + trial*direction, trial_state)
       do k = 1, 20
          call pull_back(b, i, trial_state, far)
-         if (far <= 1.0e-14_wp) exit
+         if (far <= closed) exit
       end do
       direction = trial_state%u(b%unknown(b%list(i)%first:b%list(i)%last))%value - start
-      if (far <= 1.0e-12_wp .and. norm2(direction) > 0.5_wp*trial) &
+      if (far <= near .and. norm2(direction) > 0.5_wp*trial) &
          moves = abs(direction) > 0.01_wp*maxval(abs(direction))
    end function moving_unknowns
 
@@ -138,7 +140,7 @@ contains
          product = matmul(transpose(reshape(before, [rows, n])), reshape(jacobian_of(b, i, s), [rows, n]))
          side = 1
          if (n == 0) return
-         call dgetrf(n, n, product, n, pivots, info)
+         call getrf(n, n, product, n, pivots, info)
          do k = 1, n
             if ((product(k, k) < 0.0_wp) .neqv. (pivots(k) /= k)) side = -side
          end do
@@ -184,7 +186,7 @@ contains
          return
       end if
       call assemble_dense(b, i, s, a, v%r)
-      call dgesvd('A', 'A', v%rows, v%n, a, v%rows, v%s, v%left, v%rows, v%right, v%n, work, size(work), info)
+      call gesvd('A', 'A', v%rows, v%n, a, v%rows, v%s, v%left, v%rows, v%right, v%n, work, size(work), info)
       v%rank = count(v%s > zero_level*max(v%s(1), tiny(1.0_wp)))
    end function decomposed
 end module block_rank

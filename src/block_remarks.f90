@@ -13,13 +13,14 @@ module block_remarks
    public :: first_remarks, limit_remark, crosses, change_remark
 
    !> A limit is told where it is no further than this part of the step that could not be made.
-   real(wp), parameter :: near_part = 1.0e-6_wp
+   real(wp), parameter :: near_part = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
    !> Arms with a smaller sine between them are in line: the last motion kept is the root of its distance in time away.
    real(wp), parameter :: parallel = 1.0e-3_wp
    !> Over a step this short, in radians and lengths, a determinant that changes its sign although the prediction
    !> was right to so small a part of the step tells a change point. Circuits that pass each other at the distance
    !> d are told from one that crosses another where d^2 is above the product of the two, 1E-14.
-   real(wp), parameter :: short_step = 1.0e-4_wp, right_part = 1.0e-6_wp, most_wrong = 1.0e-2_wp
+   real(wp), parameter :: short_step = max(1.0e-4_wp, 0.75_wp*sqrt(sqrt(epsilon(1.0_wp))))
+   real(wp), parameter :: right_part = max(1.0e-6_wp, 0.7_wp*epsilon(1.0_wp)**0.375_wp), most_wrong = 1.0e-2_wp
    real(wp), parameter :: rounding = 500.0_wp*epsilon(1.0_wp)
 
 contains

@@ -30,13 +30,13 @@ module block_solver
    real(wp), parameter :: rounding_level = 12.0_wp*epsilon(1.0_wp)
    real(wp), parameter :: step_tolerance = 32.0_wp*epsilon(1.0_wp)
    !> A change of direction below this is applied without a new sine and cosine: its square is lost in rounding.
-   real(wp), parameter :: small_turn = 1.0e-9_wp
+   real(wp), parameter :: small_turn = 1.0e-9_wp*sqrt(epsilon(1.0_wp)*2.0_wp**52)
    !> A pivot this much smaller than the largest is worth an estimate of the inverse.
    real(wp), parameter :: suspicious_pivot = 1.0e-3_wp
    !> Relative error of the velocities, by what rounding leaves open in the position, from which on they are not told.
    real(wp), parameter :: largest_error = 0.05_wp
    !> Angles beyond have few digits after the point.
-   real(wp), parameter :: angle_limit = 1.0e8_wp
+   real(wp), parameter :: angle_limit = min(1.0e8_wp, 0.01_wp/epsilon(1.0_wp))
    integer, parameter :: iteration_limit = 60
 
 contains

@@ -35,7 +35,8 @@ module card_reader
    end type reading_t
 
    !> Decks hold lengths, angles, times: what lies beyond has no use, and its squares would leave the range of reals.
-   real(wp), parameter :: largest_real = 1.0e60_wp, least_real = 1.0e-60_wp
+   integer, parameter :: most_power = min(60, int(0.25*range(1.0_wp)))
+   real(wp), parameter :: largest_real = 10.0_wp**most_power, least_real = 10.0_wp**(-most_power)
 
    !> The words for the flaws of `numbers`, in their order.
    type(code_t), parameter :: flaw_codes(flaw_count) = [ &

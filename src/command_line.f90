@@ -1,6 +1,8 @@
-!> Level 2. The command's words: what to read, what to write, which sets.
+!> Level 3. The command's words: what to read, what to write, which sets.
 module command_line
    use, intrinsic :: iso_c_binding, only: c_ptr, c_char, c_associated, c_null_char
+   use kinds, only: wp_name
+   use decimal_digits, only: significant
    use failures, only: failure_t, fail, status_refused
    implicit none
    private
@@ -29,11 +31,13 @@ module command_line
    !> PATH_MAX, and more.
    integer, parameter :: path_length = 65536
 
+   character(*), parameter :: two_digits = achar(48 + significant/10)//achar(48 + mod(significant, 10))
+   character(*), parameter :: csv_digits = two_digits(merge(2, 1, significant < 10):)
    character(*), parameter :: lines(*) = [character(72) :: &
       'kinmat DECK            reads a card deck, prints the listing', &
       'kinmat < DECK          the same', &
       '  -o FILE              the listing to FILE', &
-      '  --csv FILE           the results with 17 digits, comma-separated', &
+      '  --csv FILE           the results with '//csv_digits//' digits, comma-separated', &
       '  --log FILE           the protocol of the solver', &
       '  --errors             how far each number is known, in CSV and protocol', &
       '  --check              reads and analyses the deck, computes nothing', &
@@ -41,7 +45,8 @@ module command_line
       '  --ruler              prints an empty card with its columns', &
       '  --help, --version', &
       'Exit status: 0 every step solved; 1 deck or command refused;', &
-      '2 listing complete, at least one step marked; 3 file, memory or disk.']
+      '2 listing complete, at least one step marked; 3 file, memory or disk.', &
+      'Real numbers: '//wp_name//'.']
 
 contains
 

@@ -16,7 +16,8 @@ module deck_options
    !> Steps of a TIME card: what its field can hold.
    integer, parameter :: most_steps = 99999999
    !> Relative tolerances allowed: above what rounding permits, below what would be no solution.
-   real(wp), parameter :: least_tolerance = 1.0e-15_wp, most_tolerance = 1.0e-2_wp
+   real(wp), parameter :: least_tolerance = min(1.0e-15_wp, 5.0_wp*epsilon(1.0_wp))
+   real(wp), parameter :: most_tolerance = 1.0e-2_wp
 
 contains
 

@@ -15,7 +15,8 @@ module first_position
    !> A change of more than this, in radians or characteristic lengths, is a leap.
    real(wp), parameter :: leap = 0.5_wp
    !> A residual of this size is near enough for Newton's method; below the other there is nothing to correct.
-   real(wp), parameter :: near = 1.0e-6_wp, closed = 1.0e-15_wp
+   real(wp), parameter :: near = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
+   real(wp), parameter :: closed = max(1.0e-15_wp, 4.0_wp*epsilon(1.0_wp))
    !> So far other starts are away from the rough position.
    real(wp), parameter :: aside = 0.8_wp
    !> A position that is this many times as far counts as about as near.

@@ -1,12 +1,12 @@
 !> Level 1. The one real kind of KINMAT and the sizes of its texts.
 module kinds
-   use, intrinsic :: iso_fortran_env, only: real64
    implicit none
    private
-   public :: wp, label_length, title_length
+   public :: wp, wp_name, label_length, title_length
 
-   !> Every real of the program.
-   integer, parameter :: wp = real64
+   !> The kind `wp` of every real of the program and its name `wp_name`: by KIND of the Makefile from src/single,
+   !> src/double or src/quad.
+   include 'wp.inc'
    !> Characters of a card's name and of a label.
    integer, parameter :: label_length = 8
    !> Characters of a title: columns 9 to 80.

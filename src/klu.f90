@@ -173,7 +173,7 @@ contains
 
       call c_f_pointer(k%numeric, numeric)
       call c_f_pointer(numeric%udiag, u, [order_of(k)])
-      diagonal = u
+      diagonal = real(u, wp)
    end function pivots_of
 
    !> `y` (n) = A `x`, and `size_of` (n) the sums of what it adds up, signs left aside.

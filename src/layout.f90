@@ -64,7 +64,7 @@ contains
       integer, intent(out) :: decimals, power
       integer :: k
       ! An order that is a whole number but for rounding counts as one.
-      real(wp), parameter :: margin = 1.0e-9_wp
+      real(wp), parameter :: margin = max(1.0e-9_wp, 32.0_wp*epsilon(1.0_wp))
 
       k = floor(order + margin)
       power = 0

@@ -2,7 +2,7 @@
 !> velocity and acceleration as well; and the tridiagonal system of a spline.
 module linear_solver
    use kinds, only: wp
-   use lapack, only: dgetrf, dgetrs, dgecon, dptsv
+   use lapack, only: getrf, getrs, gecon, ptsv
    implicit none
    private
    public :: factors_t, new_factors, factor, solve, reciprocal_condition, determinant_sign
@@ -42,7 +42,7 @@ contains
       do j = 1, f%n
          f%norm = max(f%norm, sum(abs(f%a(:, j))))
       end do
-      call dgetrf(f%n, f%n, f%a, f%n, f%pivots, info)
+      call getrf(f%n, f%n, f%a, f%n, f%pivots, info)
    end subroutine factor
 
    !> Replaces the right-hand side `b` (n) by the solution, from the factors.
@@ -52,7 +52,7 @@ contains
       integer :: info
 
       if (f%n == 0) return
-      call dgetrs('N', f%n, 1, f%a, f%n, f%pivots, b, f%n, info)
+      call getrs('N', f%n, 1, f%a, f%n, f%pivots, b, f%n, info)
    end subroutine solve
 
    !> Estimate of 1 / (|A| |A^-1|) in the 1-norm, from the factors (DGECON).
@@ -63,7 +63,7 @@ contains
 
       rcond = 1.0_wp
       if (f%n == 0) return
-      call dgecon('1', f%n, f%a, f%n, f%norm, rcond, f%work, f%iwork, info)
+      call gecon('1', f%n, f%a, f%n, f%norm, rcond, f%work, f%iwork, info)
    end subroutine reciprocal_condition
 
    !> Sign of the determinant, +1, -1 or 0, from the factors.
@@ -86,6 +86,6 @@ contains
       integer, intent(out) :: info
 
       info = 0
-      if (size(d) > 0) call dptsv(size(d), 1, d, e, b, size(d), info)
+      if (size(d) > 0) call ptsv(size(d), 1, d, e, b, size(d), info)
    end subroutine solve_tridiagonal
 end module linear_solver

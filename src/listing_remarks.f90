@@ -15,7 +15,7 @@ module listing_remarks
    public :: put_remarks, put_gap
 
    !> A gap below this, of the size, is rounding, and no two computers have the same.
-   real(wp), parameter :: least_gap = 1.0e-13_wp
+   real(wp), parameter :: least_gap = max(1.0e-13_wp, 400.0_wp*epsilon(1.0_wp))
 
 contains
 

@@ -2,6 +2,7 @@
 program main
    use, intrinsic :: iso_fortran_env, only: error_unit
    use, intrinsic :: iso_c_binding, only: c_int
+   use kinds, only: wp_name
    use failures, only: failure_t
    use command_line, only: options_t, read_command, help_text
    use cards, only: ruler_card
@@ -16,7 +17,7 @@ program main
       end function isatty
    end interface
 
-   character(*), parameter :: version = 'KINMAT 1.0'
+   character(*), parameter :: version = 'KINMAT 1.0, '//wp_name
    type(options_t) :: options
    type(failure_t), allocatable :: failure
    character(:), allocatable :: message

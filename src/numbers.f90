@@ -33,13 +33,20 @@ module numbers
 
    !> Significant digits kept: more than a card has columns.
    integer, parameter :: digits_kept = 80
-   !> Up to here digits and powers of ten are exact in `wp`, so one rounding gives the nearest double.
-   integer, parameter :: exact_digits = 15, exact_power = 22
+   !> Up to here digits (in int64) and powers of ten are exact in `wp`, so one rounding gives the nearest
+   !> real: 15 and 22 for 53 bits, 5**22 < 2**53.
+   integer, parameter :: exact_digits = min(precision(1.0_wp), 18)
+   integer, parameter :: exact_power = int(digits(1.0_wp)*(log10(2.0)/log10(5.0)))
    !> A literal above largest x 10**308 rounds to infinity, one below smallest x 10**-324 to zero:
-   !> 2**1024 - 2**970 and 2**-1075, first digits. No literal of fewer digits can equal them.
-   integer, parameter :: largest_exponent = 308, smallest_exponent = -324
-   character(*), parameter :: largest = '17976931348623158079372897140530341507993413271003'
-   character(*), parameter :: smallest = '24703282292062327208828439643411068618252990130716'
+   !> 2**1024 - 2**970 and 2**-1075, first digits. No literal of fewer digits can equal them. For other kinds
+   !> than double, the whole powers of ten in their range.
+   logical, parameter :: is_double = digits(1.0_wp) == 53
+   integer, parameter :: largest_exponent = merge(308, range(1.0_wp), is_double)
+   integer, parameter :: smallest_exponent = merge(-324, -range(1.0_wp), is_double)
+   character(*), parameter :: largest = &
+      merge('17976931348623158079372897140530341507993413271003', repeat('9', 50), is_double)
+   character(*), parameter :: smallest = &
+      merge('24703282292062327208828439643411068618252990130716', repeat('0', 50), is_double)
    !> Exponents are cut here: far past the range whatever the digits are.
    integer, parameter :: exponent_cap = 100000
 

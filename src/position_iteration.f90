@@ -23,9 +23,9 @@ module position_iteration
    !> A step this small leaves the Jacobian, and so the velocities, at the rounding level too.
    real(wp), parameter :: step_tolerance = 16.0_wp*epsilon(1.0_wp)
    !> A residual or step beyond this many sizes comes back from nowhere; well below overflow.
-   real(wp), parameter :: bound = 1.0e30_wp
+   real(wp), parameter :: bound = min(1.0e30_wp, sqrt(sqrt(huge(1.0_wp))))
    !> An angle beyond this has fewer digits after the point than the listing prints.
-   real(wp), parameter :: angle_limit = 1.0e8_wp
+   real(wp), parameter :: angle_limit = min(1.0e8_wp, 0.01_wp/epsilon(1.0_wp))
 
 contains
 

@@ -19,7 +19,7 @@ module predictor
    real(wp), parameter :: weight(0:2) = [-949.0_wp, 608.0_wp, 581.0_wp]/240.0_wp
    real(wp), parameter :: weight2(0:2) = [637.0_wp, 1080.0_wp, 173.0_wp]/240.0_wp
    !> Steps that differ by less, relatively, count as equal: instants are rounded too.
-   real(wp), parameter :: equal_step = 1.0e-6_wp
+   real(wp), parameter :: equal_step = max(1.0e-6_wp, 4096.0_wp*epsilon(1.0_wp))
 
    !> The last three motions; column place(0) is the latest.
    type :: history_t

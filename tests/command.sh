@@ -202,7 +202,7 @@ equal '--help: first line' 'kinmat DECK            reads a card deck, prints the
 for option in -o --csv --log --check --errors --sets --ruler --help --version; do
    equal "--help tells of $option" found "$(grep -qe "$option" "$w/out" && echo found)"
 done
-equal '--version' 'KINMAT 1.0' "$("$kinmat" --version)"
+equal '--version' 'KINMAT 1.0, REAL64' "$("$kinmat" --version)"
 equal '--ruler' '$NAME---LABEL-A|LABEL-B|LABEL-C|REAL-1---------|REAL-2---------|REAL-3---------|' "$("$kinmat" --ruler)"
 
 # Refused commands: status 1 or 3, one sentence, no listing.

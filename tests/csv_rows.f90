@@ -10,7 +10,7 @@ module csv_rows
    public :: rows_t, read_instant, blame, whole_text, csv_head
 
    character(*), parameter :: csv_head = 'set,step,t,kind,name,x,y,phi,vx,vy,vphi,ax,ay,aphi,mark'
-   integer, parameter :: cells = 15
+   integer, parameter :: cells = 15, cell_length = 48
 
    !> What one instant's rows give.
    type :: rows_t
@@ -72,7 +72,7 @@ contains
       type(rows_t), intent(inout) :: rows
       character(:), allocatable, intent(inout) :: wrong
       character(600) :: line
-      character(40) :: cell(cells)
+      character(cell_length) :: cell(cells)
       type(jet_t) :: value(3)
       integer :: status
 
@@ -83,7 +83,7 @@ contains
       if (status /= cells) call blame(wrong, 'CSV: NUMBER OF CELLS: '//trim(line))
       if (allocated(wrong)) return
       if (cell(1) /= whole_text(m%set_number) .or. cell(2) /= whole_text(k)) call blame(wrong, 'CSV: SET OR STEP: '//trim(line))
-      read (cell(3), '(f40.0)', iostat=status) rows%t
+      read (cell(3), '(f48.0)', iostat=status) rows%t
       if (status /= 0) call blame(wrong, 'CSV: TIME: '//trim(line))
       rows%mark = cell(15)(:12)
       if (all(rows%mark /= [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE', 'OPEN'])) &
@@ -145,7 +145,7 @@ contains
       do k = 0, 2
          do c = 1, 3
             if (.not. there(c, k)) cycle
-            read (cell(3*k + c), '(f40.0)', iostat=status) x
+            read (cell(3*k + c), '(f48.0)', iostat=status) x
             if (status /= 0 .or. verify(trim(cell(3*k + c)), '0123456789+-.E') > 0) &
                call blame(wrong, 'CSV: "'//trim(cell(3*k + c))//'" IS NO NUMBER')
             number(c, k) = x
@@ -163,7 +163,7 @@ contains
    !> The cells of a line, a name in quotes without them; `n`: how many.
    subroutine split(line, cell, n)
       character(*), intent(in) :: line
-      character(40), intent(out) :: cell(cells)
+      character(cell_length), intent(out) :: cell(cells)
       integer, intent(out) :: n
       integer :: i, length
       logical :: quoted
@@ -184,7 +184,7 @@ contains
             if (n > cells) return
             cycle
          end if
-         length = min(length + 1, 40)
+         length = min(length + 1, cell_length)
          cell(n)(length:length) = line(i:i)
       end do
    end subroutine split

@@ -4,20 +4,10 @@ module jet_condition
    use quad_jet, only: qp, jet_t, constant_jet
    use mechanism, only: mechanism_t, drive_angle, drive_relangle, pair_prismatic
    use jet_closure, only: body_jet_t, closure_jets
+   use lapack, only: gesvd
    implicit none
    private
    public :: condition
-
-   interface
-      subroutine dgesvd(jobu, jobvt, m, n, a, lda, s, u, ldu, vt, ldvt, work, lwork, info)
-         import :: wp
-         character(1), intent(in) :: jobu, jobvt
-         integer, intent(in) :: m, n, lda, ldu, ldvt, lwork
-         real(wp), intent(inout) :: a(lda, *)
-         real(wp), intent(out) :: s(*), u(ldu, *), vt(ldvt, *), work(*)
-         integer, intent(out) :: info
-      end subroutine dgesvd
-   end interface
 
 contains
 
@@ -32,7 +22,8 @@ contains
       type(body_jet_t) :: moving(size(b))
       type(jet_t) :: r(2*size(m%pairs) + size(m%drives))
       real(qp) :: column(size(r), 3*size(b)), arm
-      real(wp) :: a(size(r), 3*size(b)), s(3*size(b)), none(1, 1), nor(1, 1), work(8*(size(r) + 3*size(b)))
+      real(wp) :: a(size(r), 3*size(b)), s(3*size(b)), work(8*(size(r) + 3*size(b)))
+      real(wp) :: left(size(r), size(r)), right(3*size(b), 3*size(b))
       integer :: link, c, n, info
 
       arm = longest_arm(m)
@@ -57,7 +48,7 @@ contains
       do c = 1, size(r)
          a(c, :n) = real(column(c, :n)/max(maxval(abs(column(c, :n))), tiny(1.0_wp)*1.0_qp), wp)
       end do
-      call dgesvd('N', 'N', size(r), n, a, size(r), s, none, 1, nor, 1, work, size(work), info)
+      call gesvd('A', 'A', size(r), n, a, size(r), s, left, size(r), right, size(right, 1), work, size(work), info)
       if (info == 0 .and. s(n) > 0.0_wp) condition = real(s(1), qp)/s(n)
    end function condition
 

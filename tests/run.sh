@@ -34,6 +34,8 @@ part 'the closed forms' "$BUILD/check_forms" input/*.deck
 part 'make check' tests/check.sh
 part 'estimates of errors' "$MAKE" --no-print-directory errors
 part 'the command' tests/command.sh
+part 'real128' "$MAKE" --no-print-directory quad-check
+part 'single precision' "$MAKE" --no-print-directory single-check
 part 'faults by name' tests/faults.sh
 part 'the digits' tests/digits.sh
 part 'decks made by chance' tests/fuzz.sh 1000

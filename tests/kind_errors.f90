@@ -1,0 +1,215 @@
+!> Tests. `kind_errors DECK...`: how good the results of a build are, whatever kind of real it has. Beside each deck lies
+!> the CSV file that `kinmat --csv` wrote, with all links that move at all instants.
+!>
+!> The results must satisfy the equations of the deck as its reader understood it, derivatives included; and they must be
+!> those of the closed forms, and, where motions are known to 50 digits, those. Printed for each set: the largest errors
+!> of positions, velocities and accelerations, of lengths and of angles, relative to the largest such value of the set,
+!> or to what the deck's characteristic length and rate make of it where that is larger. The last line is
+!> `N passed, N failed`.
+program kind_errors
+   use kinds, only: wp
+   use failures, only: failure_t
+   use mechanism, only: mechanism_t, instant_count
+   use scales, only: characteristic_length, characteristic_rate
+   use deck, only: read_deck
+   use quad_jet, only: qp, pi_q, degree_q
+   use closed_forms_dyads, only: body_t
+   use closed_forms, only: closed_form
+   use csv_closure, only: verdict_t, check_csv
+   use fifty_digits, only: known
+   implicit none
+   !> Errors allowed: an equation is known to so many roundings of its six terms and of what is on the cards, a position to
+   !> |J^-1| times that, velocities and accelerations to |J^-1| more each. |J^-1| is below 10 in the unit of length, and
+   !> below 27 within 5 deg of a change point, where it has no inverse. For real128 this is 1e-32, 1e-31 and 1e-30.
+   real(qp), parameter :: roundings = 5.0_qp, inverse = 10.0_qp, inverse_close = 27.0_qp
+   character(*), parameter :: close_sets(4) = [character(27) :: 'antiparallelogram_across, 1', 'kite_across, 1', &
+      'parallelogram, 1', 'scott_russell, 1']
+   !> Sets whose cards hold pi/2, a root and the like in 16 or 17 digits, where the closed forms have the number itself:
+   !> real128 tells them apart. None of them multiplies that by more than a few.
+   character(*), parameter :: rounded_sets(7) = [character(14) :: 'andrews, 2', 'drag_link, 1', 'drag_link, 2', 'jansen, 1', &
+      'scotch_yoke, 2', 'trammel, 2', 'two_loops, 1']
+   real(qp), parameter :: rounded_data = 5.0e-16_qp
+   integer, parameter :: cells = 15, cell_length = 60
+
+   !> (x or y, angle; derivative): largest error and largest value.
+   type :: errors_t
+      real(qp) :: error(2, 0:2) = 0.0_qp, value(2, 0:2) = 0.0_qp
+      logical, allocatable :: seen(:, :)      !< (links, instants): compared
+      logical :: all_given = .true.           !< no row without a value
+   end type errors_t
+
+   character(500) :: path
+   integer :: passed = 0, failed = 0, hits = 0, i
+
+   print '(a,i0,a)', ' LARGEST RELATIVE ERRORS OF LENGTHS AND ANGLES, COMPUTED WITH ', digits(1.0_wp), ' BITS'
+   print '(a)', ' DECK, SET                     POSITION    VELOCITY  ACCELERAT.    LIMITS'
+   do i = 1, command_argument_count()
+      call get_command_argument(i, path)
+      call check_deck(trim(path))
+   end do
+   call count_one(hits == size(known), 'all motions known to 50 digits')
+   print '(i0,a,i0,a)', passed, ' passed, ', failed, ' failed'
+   if (failed > 0) stop 1, quiet=.true.
+
+contains
+
+   subroutine check_deck(path)
+      character(*), intent(in) :: path
+      character(:), allocatable :: name, report
+      character(1000) :: line
+      type(mechanism_t), allocatable :: sets(:)
+      type(failure_t), allocatable :: failure
+      type(errors_t), allocatable :: e(:)
+      type(verdict_t) :: v
+      integer :: i, unit, status
+
+      name = path(scan(path, '/', back=.true.) + 1:)
+      name = name(:scan(name//'.', '.') - 1)
+      call read_deck(path, sets, report, failure)
+      call count_one(.not. allocated(failure), path//': the deck is read')
+      if (allocated(failure)) return
+      associate (csv => path(:len(path) - len('deck'))//'csv')
+         call check_csv(csv, sets, v)
+         if (.not. allocated(v%text)) v%text = ''
+         call count_one(v%text == '', name//': equations: '//v%text)
+         open (newunit=unit, file=csv, status='old', action='read', iostat=status)
+      end associate
+      allocate (e(size(sets)))
+      do i = 1, size(sets)
+         allocate (e(i)%seen(size(sets(i)%links), 0:instant_count(sets(i)) - 1))
+         e(i)%seen = spread(sets(i)%links%ground, 2, instant_count(sets(i)))
+      end do
+      do while (status == 0)
+         read (unit, '(a)', iostat=status) line
+         if (status == 0) call compare_row(line, name, sets, e)
+      end do
+      close (unit)
+      do i = 1, size(sets)
+         call judge(name, sets(i), e(i))
+      end do
+   end subroutine check_deck
+
+   subroutine judge(name, m, e)
+      character(*), intent(in) :: name
+      type(mechanism_t), intent(in) :: m
+      type(errors_t), intent(inout) :: e
+      character(30) :: what
+      real(qp) :: limit(0:2), worst(0:2)
+      integer :: k
+
+      write (what, '(1x,2a,i0)') name, ', ', m%set_number
+      call count_one(e%all_given .and. all(e%seen), what//' all moving links at all instants')
+      do k = 0, 2
+         associate (rate => real(characteristic_rate(m, characteristic_length(m)), qp)**k)
+            e%value(:, k) = max(e%value(:, k), [characteristic_length(m)*rate, rate])
+         end associate
+         worst(k) = maxval(e%error(:, k)/e%value(:, k))
+      end do
+      limit = limits(inverse)
+      if (any(close_sets == what(2:))) limit = limits(inverse_close)
+      if (any(rounded_sets == what(2:))) limit = max(limit, rounded_data)
+      print '(a,3es12.2,2x,3es10.1)', what, worst, limit
+      call count_one(all(worst <= limit), what//' errors')
+   end subroutine judge
+
+   !> (derivative) Of a Jacobian with so large an inverse.
+   pure function limits(inverse)
+      real(qp), intent(in) :: inverse
+      real(qp) :: limits(0:2)
+
+      limits = roundings*epsilon(1.0_wp)*[inverse, inverse**2, inverse**3]
+   end function limits
+
+   !> One row of results, if it is a link's.
+   subroutine compare_row(line, name, sets, e)
+      character(*), intent(in) :: line, name
+      type(mechanism_t), intent(in) :: sets(:)
+      type(errors_t), intent(inout) :: e(:)
+      character(cell_length) :: cell(cells)
+      type(body_t), allocatable :: links(:)
+      real(qp) :: value(3, 0:2), t
+      integer :: i, k, link, at
+
+      call split(line, cell)
+      if (cell(4) /= 'LINK') return
+      read (cell(1:2), *) i, k
+      if (any(cell(6:14) == '') .or. cell(15) /= '') then
+         e(i)%all_given = .false.
+         return
+      end if
+      read (cell(3), *) t
+      read (cell(6:14), *) value
+      if (sets(i)%degrees) value(3, :) = value(3, :)*degree_q
+      links = closed_form(name, i, t)
+      link = findloc(sets(i)%links%name == cell(5), .true., dim=1)
+      at = findloc(links%name == cell(5), .true., dim=1)
+      if (at == 0) return
+      call compare(value, links(at), e(i))
+      e(i)%seen(link, k) = .true.
+      call compare_known(name, i, k, cell(5), value)
+   end subroutine compare_row
+
+   !> Against what is known to 50 digits, relative to the value or to 1.
+   subroutine compare_known(name, set, step, link, value)
+      character(*), intent(in) :: name, link
+      integer, intent(in) :: set, step
+      real(qp), intent(in) :: value(3, 0:2)
+      real(qp) :: off(3, 0:2), allowed(3, 0:2)
+      integer :: i
+
+      do i = 1, size(known)
+         if (known(i)%deck /= name .or. known(i)%link /= link) cycle
+         if (known(i)%set /= set .or. known(i)%step /= step) cycle
+         off = value - reshape(known(i)%value, [3, 3])
+         off(3, 0) = off(3, 0) - 2.0_qp*pi_q*anint(off(3, 0)/(2.0_qp*pi_q))
+         allowed = spread(limits(inverse), 1, 3)*max(1.0_qp, abs(reshape(known(i)%value, [3, 3])))
+         hits = hits + 1
+         call count_one(all(abs(off) <= allowed), name//': 50 digits')
+      end do
+   end subroutine compare_known
+
+   subroutine compare(value, exact, e)
+      real(qp), intent(in) :: value(3, 0:2)
+      type(body_t), intent(in) :: exact
+      type(errors_t), intent(inout) :: e
+      real(qp) :: right(3, 0:2), off(3, 0:2)
+
+      right(1, :) = [exact%x%v, exact%x%d, exact%x%dd]
+      right(2, :) = [exact%y%v, exact%y%d, exact%y%dd]
+      right(3, :) = [exact%phi%v, exact%phi%d, exact%phi%dd]
+      right(3, 0) = right(3, 0) + 2.0_qp*pi_q*anint((value(3, 0) - right(3, 0))/(2.0_qp*pi_q))
+      off = abs(value - right)
+      e%error(1, :) = max(e%error(1, :), off(1, :), off(2, :))
+      e%error(2, :) = max(e%error(2, :), off(3, :))
+      e%value(1, :) = max(e%value(1, :), abs(right(1, :)), abs(right(2, :)))
+      e%value(2, :) = max(e%value(2, :), abs(right(3, :)))
+   end subroutine compare
+
+   !> The cells of `line`; no name of a link in input/ holds a comma.
+   subroutine split(line, cell)
+      character(*), intent(in) :: line
+      character(cell_length), intent(out) :: cell(cells)
+      integer :: k, first, length
+
+      cell = ''
+      first = 1
+      do k = 1, cells
+         length = index(line(first:)//',', ',') - 1
+         cell(k) = line(first:first + length - 1)
+         first = first + length + 1
+         if (first > len_trim(line) + 1) exit
+      end do
+   end subroutine split
+
+   subroutine count_one(good, what)
+      logical, intent(in) :: good
+      character(*), intent(in) :: what
+
+      if (good) then
+         passed = passed + 1
+      else
+         failed = failed + 1
+         print '(2a)', 'FAILED: ', what
+      end if
+   end subroutine count_one
+end program kind_errors
