@@ -31,7 +31,7 @@ module command_line
    !> PATH_MAX, and more.
    integer, parameter :: path_length = 65536
 
-   character(*), parameter :: two_digits = achar(48 + significant/10)//achar(48 + mod(significant, 10))
+   character(*), parameter :: two_digits = achar(48 + int(0.1*significant))//achar(48 + mod(significant, 10))
    character(*), parameter :: csv_digits = two_digits(merge(2, 1, significant < 10):)
    character(*), parameter :: lines(*) = [character(72) :: &
       'kinmat DECK            reads a card deck, prints the listing', &

@@ -34,6 +34,15 @@ for deck in input/*.deck; do
    "$BUILD/kinmat" "$deck" > "$BUILD/$name.lst"
    same "$name: listing" "expected/$name.lst" "$BUILD/$name.lst"
 done
+# The other methods come to the same.
+for name in four_bar crank_slider; do
+   for method in DENSE MATRIX; do
+      deck=$BUILD/kind/$name.$method.deck
+      awk -v method=$method '/^METHOD/ { next } /^END/ { print "METHOD  " method } { print }' "$BUILD/kind/$name.deck" > "$deck"
+      "$BUILD/kinmat" --csv "${deck%deck}csv" "$deck" > "${deck%deck}lst"
+      equal "$name, METHOD $method: exit status" 0 $?
+   done
+done
 equal 'digits of the CSV' "$digits" \
    "$(awk -F, 'NR == 4 { sub(/E.*/, "", $8); gsub(/[^0-9]/, "", $8); print length($8) }' "$BUILD/kind/four_bar.csv")"
 "$BUILD/kind_errors" "$BUILD/kind"/*.deck > "$BUILD/kind_errors.txt"
