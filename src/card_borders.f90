@@ -1,4 +1,4 @@
-!> Level 3. Text that runs from one field of a card into the next.
+!> Level 4. Text that runs from one field of a card into the next.
 module card_borders
    use kinds, only: wp
    use cards, only: card_t, field_t

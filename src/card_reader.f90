@@ -1,4 +1,4 @@
-!> Level 4. From a card to its labels, whole number and reals; every field is checked, none is
+!> Level 5. From a card to its labels, whole number and reals; every field is checked, none is
 !> understood.
 module card_reader
    use kinds, only: wp, label_length
@@ -13,7 +13,7 @@ module card_reader
                          tab_character, control_character, foreign_character, field_unused, field_blank, &
                          label_blank_inside, star_no_reals, star_second, star_twice, star_blank, &
                          number_other, number_letter_o, number_letter_l, number_blank, number_comma, &
-                         number_sign, number_nan, number_inf, number_overflow, number_underflow, &
+                         number_sign, number_nan, number_inf, number_overflow, number_underflow, most_power, &
                          number_no_point, number_point, number_no_digits, number_exponent
    use complaints, only: complaints_t, complain, complain_field, complaint_count, complaints_full
    implicit none
@@ -35,7 +35,6 @@ module card_reader
    end type reading_t
 
    !> Decks hold lengths, angles, times: what lies beyond has no use, and its squares would leave the range of reals.
-   integer, parameter :: most_power = min(60, int(0.25*range(1.0_wp)))
    real(wp), parameter :: largest_real = 10.0_wp**most_power, least_real = 10.0_wp**(-most_power)
 
    !> The words for the flaws of `numbers`, in their order.

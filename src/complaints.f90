@@ -1,4 +1,4 @@
-!> Level 2. The errors of a deck: each with a picture of its card and a mark under the column.
+!> Level 3. The errors of a deck: each with a picture of its card and a mark under the column.
 module complaints
    use cards, only: card_t, field_t, card_columns, field_text, first_column
    use deck_codes, only: code_t

@@ -1,4 +1,4 @@
-!> Level 8. From a card deck to sets of computations. The whole deck is read and every error is told;
+!> Level 9. From a card deck to sets of computations. The whole deck is read and every error is told;
 !> nothing is computed from a deck that has one.
 module deck
    use kinds, only: wp

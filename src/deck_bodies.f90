@@ -1,4 +1,4 @@
-!> Level 6. The GROUND, LINK, POINT, REVOLUTE and PRISM cards of a set.
+!> Level 7. The GROUND, LINK, POINT, REVOLUTE and PRISM cards of a set.
 module deck_bodies
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_revolute, pair_prismatic

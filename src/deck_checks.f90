@@ -1,4 +1,4 @@
-!> Level 6. What can be said only at the END of a set: what is missing, what nothing uses, and whether
+!> Level 7. What can be said only at the END of a set: what is missing, what nothing uses, and whether
 !> every drive exists at every instant.
 module deck_checks
    use kinds, only: wp

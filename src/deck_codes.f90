@@ -1,6 +1,7 @@
-!> Level 1. The catalogue of what can be wrong with a deck: a code and its sentence, each declared once.
+!> Level 2. The catalogue of what can be wrong with a deck: a code and its sentence, each declared once.
 !> A complaint reads `"text" SENTENCE`, or only the sentence; some sentences are completed by the caller.
 module deck_codes
+   use kinds, only: wp
    implicit none
    private
    public :: code_t
@@ -30,7 +31,9 @@ module deck_codes
       foreign_character = code_t(17, 'IS OR HOLDS A CHARACTER THAT IS NOT ASCII'), &
       border_crossed = code_t(18, 'RUNS ACROSS THE BORDER OF COLUMNS'), &
       field_unused = code_t(19, 'THIS FIELD IS NOT USED BY THIS CARD')
-   ! Numbers.
+   ! Numbers: those whose squares are in range, and the squares of these.
+   integer, parameter, public :: most_power = min(60, range(1.0_wp)/4)
+   character(*), parameter :: power_text = trim(merge('60', '9 ', most_power == 60))
    type(code_t), parameter, public :: &
       number_other = code_t(20, 'IS NOT A NUMBER'), &
       number_letter_o = code_t(21, 'IS NOT A NUMBER (LETTER O)'), &
@@ -40,8 +43,8 @@ module deck_codes
       number_sign = code_t(25, 'IS NOT A NUMBER (SIGN INSIDE: EXPONENT WITHOUT E?)'), &
       number_nan = code_t(26, 'IS NOT A NUMBER (NAN)'), &
       number_inf = code_t(27, 'IS NOT A FINITE NUMBER'), &
-      number_overflow = code_t(28, 'IS TOO LARGE A NUMBER: THE LARGEST IS 1E60'), &
-      number_underflow = code_t(29, 'IS TOO SMALL A NUMBER: THE LEAST BESIDE ZERO IS 1E-60'), &
+      number_overflow = code_t(28, 'IS TOO LARGE A NUMBER: THE LARGEST IS 1E'//power_text), &
+      number_underflow = code_t(29, 'IS TOO SMALL A NUMBER: THE LEAST BESIDE ZERO IS 1E-'//power_text), &
       number_no_point = code_t(30, 'A REAL NUMBER NEEDS A POINT OR AN EXPONENT'), &
       number_point = code_t(31, 'A WHOLE NUMBER HAS NO POINT AND NO EXPONENT'), &
       number_no_digits = code_t(32, 'IS NOT A NUMBER (NO DIGITS)'), &

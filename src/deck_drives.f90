@@ -1,4 +1,4 @@
-!> Level 7. The DRIVE and ADD cards of a set.
+!> Level 8. The DRIVE and ADD cards of a set.
 module deck_drives
    use kinds, only: wp
    use mechanism, only: mechanism_t, drive_t, term_t, drive_angle, drive_x, drive_y, drive_relangle, &

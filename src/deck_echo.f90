@@ -1,4 +1,4 @@
-!> Level 6. The cards of a set as they were understood, with the values in use, for the listing.
+!> Level 7. The cards of a set as they were understood, with the values in use, for the listing.
 module deck_echo
    use mechanism, only: mechanism_t
    use cards, only: real_fields, wide_fields, field_text

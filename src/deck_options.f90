@@ -1,4 +1,4 @@
-!> Level 6. The TITLE, UNITS, LANG, METHOD, TIME and AT cards of a set.
+!> Level 7. The TITLE, UNITS, LANG, METHOD, TIME and AT cards of a set.
 module deck_options
    use kinds, only: wp
    use constants, only: degree

@@ -1,4 +1,4 @@
-!> Level 7. The PRINT cards of a set.
+!> Level 8. The PRINT cards of a set.
 module deck_requests
    use mechanism, only: mechanism_t, request_t, request_link, request_point, request_pair
    use card_forms, only: form_print

@@ -1,4 +1,4 @@
-!> Level 5. The cards of one set of computations as they were read, before END makes a mechanism
+!> Level 6. The cards of one set of computations as they were read, before END makes a mechanism
 !> of them: names may be used before the card that defines them.
 module drafts
    use cards, only: name_field, label_fields, real_fields, wide_fields

@@ -20,7 +20,7 @@ module rounding_samples
    real(wp), parameter :: safe_growth = 1.0e4_wp, safe_size = 1.0e4_wp
 
    !> From its own position a search would end at once, and tell nothing of the residual that is left there.
-   real(wp), parameter :: nudge = 1.0e-9_wp
+   real(wp), parameter :: nudge = 0.0625_wp*sqrt(epsilon(1.0_wp))
 
    !> Engines of the deck (0) and of its perturbed kin.
    type :: samples_t

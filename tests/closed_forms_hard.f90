@@ -56,11 +56,10 @@ contains
                body('PISTON', piston, flat)]
    end function near_equal_rod
 
-   !> Crank 1 and rod 3, driven by the piston: x = 4 - g (1 + t), the crank above. `bits`: g = 4/2^bits, so that the
-   !> deck's numbers are doubles without rounding. The triangle's height over x by Heron, where 4 - x is not a
-   !> difference: h = sqrt((4 + x)(4 - x)(x + 2)(x - 2))/(2 x).
-   pure function dead_point(bits, t) result(links)
-      integer, intent(in) :: bits
+   !> Crank 1 and rod 3, driven by the piston: x = 4 - g (1 + t), the crank above, g = 2.3/10^power. The triangle's height
+   !> over x by Heron, where 4 - x is not a difference: h = sqrt((4 + x)(4 - x)(x + 2)(x - 2))/(2 x).
+   pure function dead_point(power, t) result(links)
+      integer, intent(in) :: power
       real(qp), intent(in) :: t
       type(body_t) :: links(4)
       type(jet_t) :: gap, x, flat
@@ -68,7 +67,7 @@ contains
 
       flat = constant_jet(0.0_qp)
       o = fixed_place(0.0_qp, 0.0_qp)
-      gap = 4.0_qp/2.0_qp**bits*(1.0_qp + time_jet(t))
+      gap = 2.3_qp/10.0_qp**power*(1.0_qp + time_jet(t))
       x = 4.0_qp - gap
       piston = place_t(x, flat)
       pin = place_t((x*x - 8.0_qp)/(2.0_qp*x), &

@@ -20,8 +20,11 @@ program kind_errors
    implicit none
    !> Errors allowed: an equation is known to so many roundings of its six terms and of what is on the cards, a position to
    !> |J^-1| times that, velocities and accelerations to |J^-1| more each. |J^-1| is below 10 in the unit of length, and
-   !> below 27 within 5 deg of a change point, where it has no inverse. For real128 this is 1e-32, 1e-31 and 1e-30.
+   !> below 27 within 5 deg of a change point, where it has no inverse. For real128 this is 1e-32, 1e-31 and 1e-30. At the
+   !> distance g from a dead point, sqrt(g/3) of the crank's angle, it is of the order of 3/sqrt(g).
    real(qp), parameter :: roundings = 5.0_qp, inverse = 10.0_qp, inverse_close = 27.0_qp
+   character(*), parameter :: dead_sets(3) = [character(16) :: 'dead_point_6, 1', 'dead_point_9, 1', 'dead_point_12, 1']
+   real(qp), parameter :: inverse_dead(3) = [1.8e3_qp, 5.5e4_qp, 1.8e6_qp]
    character(*), parameter :: close_sets(4) = [character(27) :: 'antiparallelogram_across, 1', 'kite_across, 1', &
       'parallelogram, 1', 'scott_russell, 1']
    !> Sets whose cards hold pi/2, a root and the like in 16 or 17 digits, where the closed forms have the number itself:
@@ -107,6 +110,8 @@ contains
       end do
       limit = limits(inverse)
       if (any(close_sets == what(2:))) limit = limits(inverse_close)
+      k = findloc(dead_sets == what(2:), .true., dim=1)
+      if (k > 0) limit = limits(inverse_dead(k))
       if (any(rounded_sets == what(2:))) limit = max(limit, rounded_data)
       print '(a,3es12.2,2x,3es10.1)', what, worst, limit
       call count_one(all(worst <= limit), what//' errors')

@@ -10,12 +10,12 @@ module quad_decks
 
 contains
 
-   !> The number that the card holds: the decimal of at most 13 digits that the double stands for, or the double.
+   !> The number that the card holds: the decimal of at most 14 digits that the double stands for, or the double.
    real(qp) function length(x)
       real(wp), intent(in) :: x
       character(24) :: text
 
-      write (text, '(es24.12e3)') x
+      write (text, '(es24.13e3)') x
       read (text, *) length
       if (abs(real(length, wp) - x) > 0.0_wp) length = real(x, qp)
    end function length
@@ -27,7 +27,7 @@ contains
       real(qp), parameter :: few_roundings = 8.0_qp*epsilon(1.0_wp)
       character(24) :: text
 
-      write (text, '(es24.12e3)') real(x, qp)/degree_q
+      write (text, '(es24.13e3)') real(x, qp)/degree_q
       read (text, *) angle
       if (.not. m%degrees) angle = anint(angle)
       angle = angle*degree_q
