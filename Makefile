@@ -20,7 +20,7 @@ sources := $(sort $(wildcard src/*.f90 src/$(KIND)/*.f90))
 names   := $(basename $(notdir $(sources)))
 modules := $(filter-out main,$(names))
 
-.PHONY: all kinds run test check forms errors kind-check quad-check single-check bench bench-short digits fuzz fuzz-short expected install install-kinds clean
+.PHONY: all kinds run test check forms errors kind-check quad-check single-check bench bench-short study-1987 digits fuzz fuzz-short expected install install-kinds clean
 all: $(BUILD)/kinmat
 
 run: $(BUILD)/kinmat
@@ -137,6 +137,22 @@ bench: $(BUILD)/kinmat $(BUILD)/bench/bench
 bench-short: $(BUILD)/bench/bench
 	BUILD=$(BUILD) tests/bench.sh short
 
+# The method of 1987, measured: tables on standard output, pictures/matrix_1987.png drawn anew (gnuplot-nox).
+study_parts := tests/quad_closure.f90 tests/quad_matrices.f90 tests/quad_frozen.f90 tests/sample_mechanisms.f90 tests/scenes_1987.f90 \
+   tests/iteration_1987.f90 tests/rates_1987.f90 tests/fast_forms.f90 tests/bench_tools.f90 tests/bench_chains.f90 \
+   tests/bench_scenes.f90 tests/bench_timing.f90 tests/runs_1987.f90 tests/matrix_1987.f90
+
+$(BUILD)/study/matrix_1987: $(forms) $(study_parts) $(BUILD)/release/libkinmat.a
+	mkdir -p $(BUILD)/study
+	$(FC) $(COMMON) $(RELEASE) -J$(BUILD)/study -I$(BUILD)/release -o $@ $^ $(LIBS)
+
+study-1987: $(BUILD)/study/matrix_1987
+	$< tables
+	OPENBLAS_NUM_THREADS=1 $< times
+	$< picture > $(BUILD)/study/matrix_1987.txt
+	mkdir -p pictures
+	gnuplot -e "numbers='$(BUILD)/study/matrix_1987.txt'; picture='pictures/matrix_1987.png'" tests/matrix_1987.gp
+
 # Numbers as they are printed against the formats of the run-time library; make digits NUMBERS=... for more of them.
 NUMBERS ?= 20000000
 $(BUILD)/compare_digits: tests/compare_digits.f90 $(BUILD)/release/libkinmat.a
@@ -165,11 +181,11 @@ TEST_LIB     := $(BUILD)/debug/libkinmat.a
 TEST_MODULES := $(BUILD)/debug
 TEST_FLAGS   := $(COMMON) $(DEBUG)
 TEST_LIBS    := $(LIBS)
-TEST_HELPERS := $(forms) $(addprefix tests/,deck_samples.f90 sample_mechanisms.f90 quad_closure.f90 motion_errors.f90 dice.f90 \
+TEST_HELPERS := $(forms) $(addprefix tests/,deck_samples.f90 sample_mechanisms.f90 quad_closure.f90 quad_matrices.f90 quad_frozen.f90 motion_errors.f90 dice.f90 \
    random_drafts.f90 random_mechanisms.f90 compare_engines.f90 quad_blocks.f90 sample_overconstrained.f90)
 include tests/tests.mk
 
-test: $(BUILD)/kinmat $(BUILD)/debug/kinmat $(BUILD)/check_forms $(BUILD)/error_estimates $(BUILD)/compare_digits $(BUILD)/fuzz/fuzz $(references) $(BUILD)/tests$(if $(PFUNIT_DIR),/pfunit)/unit
+test: $(BUILD)/kinmat $(BUILD)/debug/kinmat $(BUILD)/check_forms $(BUILD)/error_estimates $(BUILD)/compare_digits $(BUILD)/fuzz/fuzz $(BUILD)/study/matrix_1987 $(references) $(BUILD)/tests$(if $(PFUNIT_DIR),/pfunit)/unit
 	BUILD=$(BUILD) MAKE='$(MAKE)' tests/run.sh
 
 install: $(BUILD)/kinmat

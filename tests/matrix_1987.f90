@@ -1,0 +1,33 @@
+!> Tests. The method of 1987, measured.
+!>
+!>    matrix_1987 tables    rates, basins, iterations, the decks
+!>    matrix_1987 times     the cost of a step, as ratios
+!>    matrix_1987 picture   the numbers of pictures/matrix_1987.png
+!>    matrix_1987 short     rates against the theory, judged; the last line is `N passed, N failed`
+program matrix_1987
+   use rates_1987, only: rates_table, constants_table, picture_numbers, judge_rates
+   use runs_1987, only: basins_table, counts_table, decks_table, times_table
+   implicit none
+   character(16) :: part
+   integer :: passed, failed
+
+   call get_command_argument(1, part)
+   select case (part)
+   case ('tables')
+      call rates_table()
+      call constants_table()
+      call basins_table()
+      call counts_table()
+      call decks_table()
+   case ('times')
+      call times_table()
+   case ('picture')
+      call picture_numbers()
+   case ('short')
+      call judge_rates(passed, failed)
+      print '(i0, a, i0, a)', passed, ' passed, ', failed, ' failed'
+      if (failed > 0) stop 1, quiet=.true.
+   case default
+      error stop 'MATRIX_1987: WHICH PART?'
+   end select
+end program matrix_1987
