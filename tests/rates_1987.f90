@@ -122,8 +122,8 @@ contains
       end associate
    end subroutine best_constants
 
-   !> For the picture, a block for each of the first five mechanisms: crank angle, then theory and measurement of printed, once and nearest;
-   !> last a block with the errors of the four-bar, iteration by iteration. '-' where there is none.
+   !> For the picture, a block for each of the first five mechanisms: crank angle, then theory and measurement of printed,
+   !> once and nearest; last a block with the errors of the four-bar, iteration by iteration. '-' where there is none.
    subroutine picture_numbers()
       type(scene_t) :: s
       type(run_t) :: runs(3)
