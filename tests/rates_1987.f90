@@ -22,8 +22,8 @@ contains
 
       print '(a)', ' THE ITERATION OF 1987: ITS RATE NEAR THE SOLUTION, AT EVERY SECOND DEGREE OF THE CRANK', &
          ' THEORY: spectral radius of I - A^-1 J at the closed form, in real128; MEASURED: mean factor of the error', &
-         ' over 400 iterations, the error brought back to 1E-6 after each; OFF: the largest difference of the two, relative or,', &
-         ' below 0.01, in parts of 0.01', &
+         ' over 400 iterations, the error brought back to 1E-6 after each; OFF: the largest difference of the two, relative', &
+         ' or, below 0.01, in parts of 0.01', &
          ' NO MATRIX: angles at which A is singular or c(0) infinite; CONVERGES: angles with a rate below 1, of 180', '', &
          ' MECHANISM         REFERENCES     THEORY              MEASURED          OFF     NO MATRIX  CONVERGES'
       do i = 1, size(scene_names)
