@@ -149,7 +149,7 @@ contains
       do k = 0, instant_count(m) - 1
          call advance(a, instant(m, k), q)
          if (q%mark /= mark_none) marked = marked + 1
-         call take_samples(samples, a%blocks, q, options%errors, doubt)
+         call take_samples(samples, a%blocks, a%convergence%reciprocal_condition, q, options%errors, doubt)
          call listing_instant(o%listing, layout, m, q, k, doubt)
          if (len(options%csv) > 0) call csv_instant(o%csv, m, q, k, doubt)
          if (len(options%log) == 0) cycle

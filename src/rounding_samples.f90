@@ -18,6 +18,8 @@ module rounding_samples
    !> Errors are roundings times |J^-1|^2 times the bend times what is asked for; below this many, and with no number
    !> larger than so many characteristic ones, all digits of a table are safe.
    real(wp), parameter :: safe_growth = 1.0e4_wp, safe_size = 1.0e4_wp
+   !> The same by the condition of all closure equations at once, whose pivots are no block's.
+   real(wp), parameter :: safe_condition = 1.0e-3_wp
 
    !> From its own position a search would end at once, and tell nothing of the residual that is left there.
    real(wp), parameter :: nudge = 0.0625_wp*sqrt(epsilon(1.0_wp))
@@ -41,11 +43,12 @@ contains
       s%rate = characteristic_rate(m, s%length)
    end function new_samples
 
-   !> How far the motion `q` is known, which the blocks `e` have found (if it is they that have). `always`: also where
-   !> no digit of a table is in doubt.
-   subroutine take_samples(s, e, q, always, found)
+   !> How far the motion `q` is known, which the blocks `e` have found or, where they are not allocated, another
+   !> method, by a matrix of the reciprocal condition `rcond`. `always`: also where no digit of a table is in doubt.
+   subroutine take_samples(s, e, rcond, q, always, found)
       type(samples_t), intent(inout) :: s
       type(block_engine_t), allocatable, intent(in) :: e
+      real(wp), intent(in) :: rcond
       type(motion_t), intent(in) :: q
       logical, intent(in) :: always
       type(scatter_t), intent(inout) :: found
@@ -54,7 +57,7 @@ contains
       found%taken = .false.
       found%asked = always
       if (q%known < 0) return
-      if (.not. (always .or. is_in_doubt(s, e, q))) return
+      if (.not. (always .or. is_in_doubt(s, e, rcond, q))) return
       if (.not. allocated(found%samples)) then
          allocate (found%samples(0:sample_count))
          found%samples(:) = new_motion(size(s%deck%links))
@@ -77,19 +80,21 @@ contains
    end subroutine take_samples
 
    !> Some digit could be in doubt: a pivot is small, or a number large.
-   pure logical function is_in_doubt(s, e, q)
+   pure logical function is_in_doubt(s, e, rcond, q)
       type(samples_t), intent(in) :: s
       type(block_engine_t), allocatable, intent(in) :: e
+      real(wp), intent(in) :: rcond
       type(motion_t), intent(in) :: q
       real(wp) :: size_of
       integer :: k
 
-      is_in_doubt = q%known == 2
-      if (q%known < 2 .or. .not. allocated(e)) return
+      is_in_doubt = .false.
+      if (q%known < 2) return
       size_of = max(largest(q%position, s%length), largest(q%velocity, s%length)/s%rate, &
          largest(q%acceleration, s%length)/s%rate**2)
       is_in_doubt = size_of > safe_size
-      if (is_in_doubt) return
+      if (.not. allocated(e)) is_in_doubt = is_in_doubt .or. rcond < safe_condition
+      if (is_in_doubt .or. .not. allocated(e)) return
       do k = 1, size(e%needed)
          associate (i => e%needed(k))
             if (.not. e%blocks%list(i)%direct) is_in_doubt = is_in_doubt .or. &
