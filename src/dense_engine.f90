@@ -123,6 +123,7 @@ contains
       type(dense_t), intent(in) :: e
       type(motion_t), intent(inout) :: found
 
+      found%origin = e%system%origin
       found%position = e%now%position
       found%velocity = e%now%velocity
       found%acceleration = e%now%acceleration

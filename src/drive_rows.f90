@@ -23,6 +23,8 @@ contains
 
       do i = 1, size(s%laws)
          f(:, i) = drive_motion(s%laws(i), t)
+         if (s%laws(i)%drive%kind == drive_x) f(1, i) = f(1, i) - s%origin(1)
+         if (s%laws(i)%drive%kind == drive_y) f(1, i) = f(1, i) - s%origin(2)
          if (any(s%laws(i)%drive%kind == [drive_x, drive_y, drive_slide])) f(:, i) = f(:, i)/s%length
       end do
    end subroutine drive_targets

@@ -29,6 +29,7 @@ module link_motion
       type(hung_t), allocatable :: hung(:)
       integer, allocatable :: ground(:)
       real(wp), allocatable :: ground_position(:, :)    !< (3, ground links)
+      real(wp) :: origin(2) = 0.0_wp                    !< what places are counted from
    end type chain_t
 
 contains
@@ -57,8 +58,9 @@ contains
       c%ground = pack([(i, i=1, size(wanted))], m%links%ground .and. wanted)
       allocate (c%ground_position(3, size(c%ground)))
       do i = 1, size(c%ground)
-         c%ground_position(:, i) = m%links(c%ground(i))%position
+         c%ground_position(:, i) = m%links(c%ground(i))%position - [t%origin, 0.0_wp]
       end do
+      c%origin = t%origin
    end function new_chain
 
    function hung_on(m, t, link, first_slide) result(h)
@@ -91,6 +93,7 @@ contains
       logical, intent(out) :: finite
       integer :: i
 
+      q%origin = c%origin
       do i = 1, size(c%ground)
          q%position(:, c%ground(i)) = c%ground_position(:, i)
       end do

@@ -6,7 +6,7 @@
 !> no unknown, one in the tree a slide. Of the numbers of the deck only constant angles are used here.
 module links_tree
    use kinds, only: wp
-   use mechanism, only: mechanism_t, pair_prismatic, pair_revolute
+   use mechanism, only: mechanism_t, pair_prismatic, pair_revolute, plane_origin
    implicit none
    private
    public :: tree_t, new_tree, other_link
@@ -20,6 +20,7 @@ module links_tree
       integer :: frames = 0                 !< angles that are unknown; frame 0 is the ground's
       integer :: slides = 0                 !< slides of prismatic pairs in the tree
       integer :: roots = 0                  !< parts that no pair joins to the ground
+      real(wp) :: origin(2) = 0.0_wp        !< what places are counted from
       integer, allocatable :: frame(:)      !< (links)
       real(wp), allocatable :: turn(:)      !< (links) phi of the link less the angle of its frame
       integer, allocatable :: hung_by(:)    !< (links) the pair to the link above; 0: ground or root
@@ -39,6 +40,7 @@ contains
       type(mechanism_t), intent(in) :: m
       type(tree_t) :: t
 
+      t%origin = plane_origin(m)
       t%near = neighbours(m)
       call find_frames(m, t%near, t)
       call grow(m, t%near, t)

@@ -122,6 +122,7 @@ contains
       integer, intent(in) :: k
       type(search_t), intent(inout) :: s
       type(equations_t), intent(inout) :: e
+      integer :: axis
 
       associate (i => m%drives(k)%subject, j => m%drives(k)%second, n => e%polygons%count)
          select case (m%drives(k)%kind)
@@ -133,7 +134,9 @@ contains
          case (drive_x, drive_y)
             call find_way_down(t, m%points(i)%link, s)
             call add_polygon(m, t, length, i, 0, s, e%polygons)
-            call add(e, equation_t(merge(equation_x, equation_y, m%drives(k)%kind == drive_x), polygon=n, drive=k))
+            axis = merge(1, 2, m%drives(k)%kind == drive_x)
+            call add(e, equation_t(merge(equation_x, equation_y, axis == 1), polygon=n, drive=k, &
+               constant=-t%origin(axis)/length))
          case (drive_slide)
             if (t%slide(i) > 0) then
                call add(e, equation_t(equation_slide, drive=k, frame=t%slide(i)))

@@ -10,7 +10,7 @@ module mechanism
    public :: term_harmonic, term_power, term_table
    public :: request_link, request_point, request_pair
    public :: method_newton, method_matrix, method_dense
-   public :: instant_count, instant, wanted_links
+   public :: instant_count, instant, wanted_links, plane_origin
 
    integer, parameter :: pair_revolute = 1   !< REVOLUTE: eq. (7), (8)
    integer, parameter :: pair_prismatic = 2  !< PRISM: eq. (9), (10)
@@ -115,6 +115,22 @@ contains
          t = m%t0 + (m%t1 - m%t0)*real(k, wp)/real(m%steps, wp)
       end if
    end function instant
+
+   !> Where (2) places are counted from in all that is computed, in the deck's unit: the first ground link. It is added
+   !> back when a row is written: far from the deck's own origin small lengths would otherwise be rounded with large
+   !> places.
+   pure function plane_origin(m) result(origin)
+      type(mechanism_t), intent(in) :: m
+      real(wp) :: origin(2)
+      integer :: i
+
+      origin = 0.0_wp
+      do i = 1, size(m%links)
+         if (.not. m%links(i)%ground) cycle
+         origin = m%links(i)%position(:2)
+         return
+      end do
+   end function plane_origin
 
    !> The links (links) whose motion the deck's requests need.
    pure function wanted_links(m) result(wanted)

@@ -19,6 +19,7 @@ module motion
       !> How much of it exists: -1 nothing, 0 positions, 1 velocities too, 2 accelerations too.
       integer :: known = -1
       type(remark_t), allocatable :: remarks(:)     !< what else there is to say; none: not allocated
+      real(wp) :: origin(2) = 0.0_wp                !< what x and y of `position` are counted from
       !> (3, links): x, y, phi and their first and second derivatives by time.
       real(wp), allocatable :: position(:, :), velocity(:, :), acceleration(:, :)
    end type motion_t

@@ -39,12 +39,13 @@ contains
          select case (request%kind)
          case (request_link)
             row%name = m%links(i)%name
-            row%value(:, 0) = q%position(:, i)
+            row%value(:, 0) = q%position(:, i) + [q%origin, 0.0_wp]
             row%value(:, 1) = q%velocity(:, i)
             row%value(:, 2) = q%acceleration(:, i)
          case (request_point)
             row%name = m%points(i)%name
             row%value(:2, :) = point_motion(m, q, i)
+            row%value(:2, 0) = row%value(:2, 0) + q%origin
          case (request_pair)
             row%name = m%pairs(i)%name
             row%angular = m%pairs(i)%kind /= pair_prismatic
@@ -53,7 +54,7 @@ contains
       end associate
    end function row_of
 
-   !> Place, velocity and acceleration (2, 0:2) of point number `i`; u is its arm:
+   !> Place from the motion's origin, velocity and acceleration (2, 0:2) of point number `i`; u is its arm:
    !> p = o + u,  p' = o' + phi' u_t,  p'' = o'' + phi'' u_t - phi'^2 u,  u_t = (-u_y, u_x).
    pure function point_motion(m, q, i) result(p)
       type(mechanism_t), intent(in) :: m

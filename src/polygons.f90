@@ -54,7 +54,7 @@ contains
    end function new_polygons
 
    !> Adds to `polygons` the one from point `q` to point `p` by the way that `s` found last from p's link to q's;
-   !> `q` = 0 is the origin of the plane, and the way then leads to the ground or to a root.
+   !> `q` = 0 is the origin of all places, and the way then leads to the ground or to a root.
    subroutine add_polygon(m, t, length, p, q, s, polygons)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t

@@ -5,7 +5,7 @@
 module pose
    use kinds, only: wp
    use constants, only: pi
-   use mechanism, only: mechanism_t, pair_t, drive_slide
+   use mechanism, only: mechanism_t, pair_t, drive_slide, plane_origin
    use scales, only: characteristic_length, power_of_two
    use drives, only: law_t, new_law
    use frozen_form, only: nearest_zeros, secants
@@ -17,6 +17,7 @@ module pose
    type :: system_t
       integer :: n = 0                            !< equations and unknowns
       real(wp) :: length = 1.0_wp                 !< a power of two, in the deck's unit
+      real(wp) :: origin(2) = 0.0_wp              !< what places are counted from, in the deck's unit
       integer, allocatable :: column(:)           !< (links) unknown that is the link's x; 0: ground
       integer, allocatable :: link_of(:)          !< (points)
       real(wp), allocatable :: offset(:, :)       !< (2, points) xi, eta
@@ -46,6 +47,7 @@ contains
       integer :: i
 
       s%length = power_of_two(characteristic_length(m))
+      s%origin = plane_origin(m)
       allocate (s%column(size(m%links)), source=0)
       do i = 1, size(m%links)
          if (m%links(i)%ground) cycle
@@ -78,7 +80,7 @@ contains
       allocate (p%arm(2, size(m%points)), p%slope(2, size(m%points)), p%zeros(2, size(m%points)))
       allocate (p%guide_zeros(2, size(m%pairs)), p%slide_zeros(2, size(m%drives)))
       do i = 1, size(m%links)
-         p%q(:, i) = [m%links(i)%position(:2)/s%length, m%links(i)%position(3)]
+         p%q(:, i) = [(m%links(i)%position(:2) - s%origin)/s%length, m%links(i)%position(3)]
       end do
       call set_pose(s, p)
    end function new_pose

@@ -23,7 +23,7 @@ contains
          if (t%frame(i) > 0) value(t%frame(i)) = m%links(i)%position(3) - t%turn(i)
          if (t%root(i) == 0 .or. t%above(i) > 0) cycle
          u = t%frames + t%slides + 2*t%root(i) - 1
-         value(u:u + 1) = m%links(i)%position(:2)/length
+         value(u:u + 1) = (m%links(i)%position(:2) - t%origin)/length
       end do
       do i = 1, size(m%pairs)
          if (t%slide(i) > 0) value(t%frames + t%slide(i)) = rough_slide(m, i)/length

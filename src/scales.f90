@@ -3,7 +3,7 @@
 module scales
    use kinds, only: wp
    use mechanism, only: mechanism_t, drive_t, term_t, pair_prismatic, drive_x, drive_y, drive_slide, term_harmonic, &
-      term_power, term_table
+      term_power, term_table, plane_origin
    implicit none
    private
    public :: characteristic_length, characteristic_rate, largest_rate, power_of_two
@@ -15,16 +15,17 @@ contains
    pure real(wp) function characteristic_length(m) result(length)
       type(mechanism_t), intent(in) :: m
       real(wp), allocatable :: low(:, :), high(:, :)
-      real(wp) :: place(2)
+      real(wp) :: place(2), origin(2), start
       integer :: i, k
 
+      origin = plane_origin(m)
       allocate (low(2, 0:size(m%links)), source=huge(1.0_wp))
       allocate (high(2, 0:size(m%links)), source=-huge(1.0_wp))
       do i = 1, size(m%points)
          k = m%points(i)%link
          place = m%points(i)%offset
          if (m%links(k)%ground) then
-            place = ground_place(m%links(k)%position, place)
+            place = ground_place(m%links(k)%position - [origin, 0.0_wp], place)
             k = 0
          else
             ! The link's own origin counts too: its rough place is where the mechanism is.
@@ -39,7 +40,11 @@ contains
          if (m%pairs(i)%kind == pair_prismatic) length = max(length, abs(m%pairs(i)%offset))
       end do
       do i = 1, size(m%drives)
-         if (is_length(m%drives(i))) length = max(length, abs(m%drives(i)%polynomial(1)))
+         if (.not. is_length(m%drives(i))) cycle
+         start = m%drives(i)%polynomial(1)
+         if (m%drives(i)%kind == drive_x) start = start - origin(1)
+         if (m%drives(i)%kind == drive_y) start = start - origin(2)
+         length = max(length, abs(start))
       end do
       if (.not. (length > 0.0_wp .and. length <= huge(length))) length = 1.0_wp
    end function characteristic_length

@@ -50,7 +50,8 @@ contains
       if (across) e = [-e(2), e(1)]
    end function guide
 
-   !> Point number `i` in the axes of its link's frame, from the link's origin; of a ground link, its place.
+   !> Point number `i` in the axes of its link's frame, from the link's origin; of a ground link, its place
+   !> from the origin of all places.
    pure function point_in_frame(m, t, length, i) result(v)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
@@ -60,7 +61,7 @@ contains
 
       associate (link => m%points(i)%link, offset => m%points(i)%offset)
          v = turned(offset, t%turn(link))/length
-         if (m%links(link)%ground) v = v + m%links(link)%position(:2)/length
+         if (m%links(link)%ground) v = v + (m%links(link)%position(:2) - t%origin)/length
       end associate
    end function point_in_frame
 

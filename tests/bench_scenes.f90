@@ -202,6 +202,7 @@ contains
 
       g%instants = g%instants + 1
       d = one%position - two%position
+      d(:2, :) = d(:2, :) + spread(one%origin - two%origin, 2, size(d, 2))
       if (whole_turns) d(3, :) = d(3, :) - turn*anint(d(3, :)/turn)
       g%worst(1) = max(g%worst(1), largest(s, d))
       g%worst(2) = max(g%worst(2), largest(s, one%velocity - two%velocity)/s%rate)

@@ -61,7 +61,7 @@ contains
       do i = 1, size(exact)
          turn = q%position(3, i) - exact(i)%phi%v
          turn = turn - 2.0_qp*pi_q*anint(turn/(2.0_qp*pi_q))
-         d(0) = max(d(0), real(maxval(abs([q%position(:2, i) - [exact(i)%x%v, exact(i)%y%v], turn])), wp))
+         d(0) = max(d(0), real(maxval(abs([q%origin + q%position(:2, i) - [exact(i)%x%v, exact(i)%y%v], turn])), wp))
          d(1) = max(d(1), real(maxval(abs(q%velocity(:, i) - [exact(i)%x%d, exact(i)%y%d, exact(i)%phi%d])), wp))
          d(2) = max(d(2), real(maxval(abs(q%acceleration(:, i) - [exact(i)%x%dd, exact(i)%y%dd, exact(i)%phi%dd])), wp))
       end do
