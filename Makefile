@@ -20,7 +20,7 @@ sources := $(sort $(wildcard src/*.f90 src/$(KIND)/*.f90))
 names   := $(basename $(notdir $(sources)))
 modules := $(filter-out main,$(names))
 
-.PHONY: all kinds run test check forms errors kind-check quad-check single-check bench bench-short study-1987 digits fuzz fuzz-short expected install install-kinds clean
+.PHONY: all kinds run test check forms errors kind-check quad-check single-check bench bench-short hard hard-short study-1987 digits fuzz fuzz-short expected install install-kinds clean
 all: $(BUILD)/kinmat
 
 run: $(BUILD)/kinmat
@@ -153,6 +153,19 @@ study-1987: $(BUILD)/study/matrix_1987
 	mkdir -p pictures
 	gnuplot -e "numbers='$(BUILD)/study/matrix_1987.txt'; picture='pictures/matrix_1987.png'" tests/matrix_1987.gp
 
+# Accuracy where it is hard to have, in units of what the condition allows; hard-short in fewer instants.
+hard_parts := tests/sample_mechanisms.f90 tests/jet_drives.f90 tests/jet_closure.f90 tests/hard_closure.f90 \
+   tests/hard_condition.f90 tests/hard_chain.f90 tests/hard_scenes.f90 tests/hard.f90
+$(BUILD)/hard/hard: $(forms) $(hard_parts) $(BUILD)/release/libkinmat.a
+	mkdir -p $(BUILD)/hard
+	$(FC) $(COMMON) $(RELEASE) -J$(BUILD)/hard -I$(BUILD)/release -o $@ $^ $(LIBS)
+
+hard: $(BUILD)/hard/hard
+	BUILD=$(BUILD) tests/hard.sh full
+
+hard-short: $(BUILD)/hard/hard
+	BUILD=$(BUILD) tests/hard.sh short
+
 # Numbers as they are printed against the formats of the run-time library; make digits NUMBERS=... for more of them.
 NUMBERS ?= 20000000
 $(BUILD)/compare_digits: tests/compare_digits.f90 $(BUILD)/release/libkinmat.a
@@ -182,10 +195,11 @@ TEST_MODULES := $(BUILD)/debug
 TEST_FLAGS   := $(COMMON) $(DEBUG)
 TEST_LIBS    := $(LIBS)
 TEST_HELPERS := $(forms) $(addprefix tests/,deck_samples.f90 sample_mechanisms.f90 quad_closure.f90 quad_matrices.f90 quad_frozen.f90 motion_errors.f90 dice.f90 \
-   random_drafts.f90 random_mechanisms.f90 compare_engines.f90 quad_blocks.f90 sample_overconstrained.f90)
+   random_drafts.f90 random_mechanisms.f90 compare_engines.f90 quad_blocks.f90 sample_overconstrained.f90 \
+   jet_drives.f90 jet_closure.f90 hard_closure.f90 hard_condition.f90)
 include tests/tests.mk
 
-test: $(BUILD)/kinmat $(BUILD)/debug/kinmat $(BUILD)/check_forms $(BUILD)/error_estimates $(BUILD)/compare_digits $(BUILD)/fuzz/fuzz $(BUILD)/study/matrix_1987 $(references) $(BUILD)/tests$(if $(PFUNIT_DIR),/pfunit)/unit
+test: $(BUILD)/kinmat $(BUILD)/debug/kinmat $(BUILD)/check_forms $(BUILD)/error_estimates $(BUILD)/compare_digits $(BUILD)/fuzz/fuzz $(BUILD)/hard/hard $(BUILD)/study/matrix_1987 $(references) $(BUILD)/tests$(if $(PFUNIT_DIR),/pfunit)/unit
 	BUILD=$(BUILD) MAKE='$(MAKE)' tests/run.sh
 
 install: $(BUILD)/kinmat

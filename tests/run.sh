@@ -40,6 +40,7 @@ part 'faults by name' tests/faults.sh
 part 'the digits' tests/digits.sh
 part 'decks made by chance' tests/fuzz.sh 1000
 part 'the method of 1987' "$BUILD/study/matrix_1987" short
+part 'what is hard to compute' tests/hard.sh short
 part 'results of the methods' "$MAKE" --no-print-directory bench-short
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]

@@ -1,0 +1,215 @@
+!> Tests. The condition of a position and of its derivatives: for each coordinate y of each link the sum over all numbers d
+!> of the deck, the drives' among them, of |dy/dd| |d|, and |y| itself. So much times eps is what a result computed in
+!> double precision cannot be asked to be better than: each number of the deck is rounded to eps of itself as it is
+!> read, and the result once more. Nothing in it is a norm or a bound, and nothing is the program's.
+!>
+!> The derivatives are differences in real128: one number is changed by `step` of itself, and Newton's method with the
+!> matrix of the position as it was leads from there to the new one, its velocities and its accelerations.
+module hard_condition
+   use quad_jet, only: qp, jet_t, constant_jet, operator(+), operator(-), operator(*)
+   use mechanism, only: mechanism_t
+   use scales, only: characteristic_length
+   use jet_closure, only: body_jet_t
+   use jet_drives, only: drive_jet
+   use hard_closure, only: numbers_of, set_grounds, residuals, drive_changes
+   implicit none
+   private
+   public :: condition_t, measure
+
+   !> Rounding leaves 1e-34 over this, and a bend this over the distance to a dead point: both below a hundredth at 1e-12.
+   real(qp), parameter :: step = 1.0e-20_qp
+   !> With a fixed matrix an error of 1e-16 shrinks at 1e-12 from a dead point by 1e-4 at a time.
+   integer, parameter :: few_steps = 6, many_steps = 14
+
+   type :: condition_t
+      logical :: exists = .false.                !< the position is not singular
+      real(qp), allocatable :: of(:, :, :)       !< (3, links, 0:2) x, y, phi and derivatives, in the deck's units
+   end type condition_t
+
+   !> A (rows, unknowns) in triangular factors; where rows are too many, the normal equations. Unknown lengths in units of
+   !> `arm`, each row divided by its largest number.
+   type :: matrix_t
+      logical :: regular = .false.
+      real(qp) :: arm = 1.0_qp
+      real(qp), allocatable :: row_size(:)
+      real(qp), allocatable :: rows(:, :), factors(:, :)
+      integer, allocatable :: pivot(:)
+   end type matrix_t
+
+contains
+
+   !> The condition at `t`, near which the closed form has the links `start`.
+   function measure(m, start, t) result(c)
+      type(mechanism_t), intent(in) :: m
+      type(body_jet_t), intent(in) :: start(:)
+      real(qp), intent(in) :: t
+      type(condition_t) :: c
+      type(body_jet_t) :: b(size(start)), moved(size(start))
+      type(jet_t) :: f(size(m%drives)), changed(size(m%drives))
+      type(jet_t), allocatable :: change(:)
+      real(qp), allocatable :: d(:), other(:)
+      type(matrix_t) :: a
+      integer :: i, k
+
+      allocate (c%of(3, size(start), 0:2))
+      d = numbers_of(m)
+      f = [(drive_jet(m%drives(k), t), k=1, size(m%drives))]
+      b = start
+      call set_grounds(m, d, b)
+      a = matrix_at(m, d, b)
+      c%exists = a%regular
+      if (.not. c%exists) return
+      call solve(m, d, f, a, many_steps, b)
+      c%of = abs(coordinates(b))
+      other = d
+      do i = 1, size(d)
+         if (.not. abs(d(i)) > 0.0_qp) cycle
+         other(i) = d(i)*(1.0_qp + step)
+         moved = b
+         call solve(m, other, f, a, few_steps, moved)
+         c%of = c%of + abs(coordinates(moved) - coordinates(b))/step
+         other(i) = d(i)
+      end do
+      changed = f
+      do k = 1, size(f)
+         change = drive_changes(m%drives(k), t)
+         do i = 1, size(change)
+            if (.not. max(abs(change(i)%v), abs(change(i)%d), abs(change(i)%dd)) > 0.0_qp) cycle
+            changed(k) = f(k) + step*change(i)
+            moved = b
+            call solve(m, d, changed, a, few_steps, moved)
+            c%of = c%of + abs(coordinates(moved) - coordinates(b))/step
+         end do
+         changed(k) = f(k)
+      end do
+   end function measure
+
+   !> x, y, phi of every link and their derivatives.
+   function coordinates(b) result(y)
+      type(body_jet_t), intent(in) :: b(:)
+      real(qp) :: y(3, size(b), 0:2)
+      integer :: i
+
+      do i = 1, size(b)
+         y(:, i, 0) = [b(i)%x%v, b(i)%y%v, b(i)%phi%v]
+         y(:, i, 1) = [b(i)%x%d, b(i)%y%d, b(i)%phi%d]
+         y(:, i, 2) = [b(i)%x%dd, b(i)%y%dd, b(i)%phi%dd]
+      end do
+   end function coordinates
+
+   !> Newton's steps for positions, velocities and accelerations at once, all with the matrix `a`.
+   subroutine solve(m, d, f, a, steps, b)
+      type(mechanism_t), intent(in) :: m
+      real(qp), intent(in) :: d(:)
+      type(jet_t), intent(in) :: f(:)
+      type(matrix_t), intent(in) :: a
+      integer, intent(in) :: steps
+      type(body_jet_t), intent(inout) :: b(:)
+      type(jet_t) :: r(size(a%rows, 1))
+      real(qp) :: x(size(a%rows, 2), 3)
+      integer :: k, i, n
+
+      call set_grounds(m, d, b)
+      do k = 1, steps
+         r = residuals(m, d, b, f)
+         x(:, 1) = solution(a, r%v)
+         x(:, 2) = solution(a, r%d)
+         x(:, 3) = solution(a, r%dd)
+         n = 0
+         do i = 1, size(b)
+            if (m%links(i)%ground) cycle
+            b(i)%x = b(i)%x - a%arm*jet_t(x(n + 1, 1), x(n + 1, 2), x(n + 1, 3))
+            b(i)%y = b(i)%y - a%arm*jet_t(x(n + 2, 1), x(n + 2, 2), x(n + 2, 3))
+            b(i)%phi = b(i)%phi - jet_t(x(n + 3, 1), x(n + 3, 2), x(n + 3, 3))
+            n = n + 3
+         end do
+      end do
+   end subroutine solve
+
+   !> The Jacobian at the position `b`, column by column from unit velocities, factored.
+   function matrix_at(m, d, b) result(a)
+      type(mechanism_t), intent(in) :: m
+      real(qp), intent(in) :: d(:)
+      type(body_jet_t), intent(in) :: b(:)
+      type(matrix_t) :: a
+      type(body_jet_t) :: still(size(b)), moving(size(b))
+      type(jet_t) :: r(2*size(m%pairs) + size(m%drives)), none(size(m%drives))
+      integer :: link, i, n
+
+      a%arm = characteristic_length(m)
+      still%x = constant_jet(b%x%v)
+      still%y = constant_jet(b%y%v)
+      still%phi = constant_jet(b%phi%v)
+      allocate (a%rows(size(r), 3*count(.not. m%links%ground)))
+      n = 0
+      do link = 1, size(b)
+         if (m%links(link)%ground) cycle
+         do i = 1, 3
+            moving = still
+            if (i == 1) moving(link)%x%d = a%arm
+            if (i == 2) moving(link)%y%d = a%arm
+            if (i == 3) moving(link)%phi%d = 1.0_qp
+            r = residuals(m, d, moving, none)
+            n = n + 1
+            a%rows(:, n) = r%d
+         end do
+      end do
+      a%row_size = maxval(abs(a%rows), dim=2)
+      a%rows = a%rows/spread(a%row_size, 2, n)
+      a%factors = a%rows
+      if (size(a%rows, 1) > n) a%factors = matmul(transpose(a%rows), a%rows)
+      call factorize(a)
+   end function matrix_at
+
+   !> Gauss, with the largest pivot of each column.
+   subroutine factorize(a)
+      type(matrix_t), intent(inout) :: a
+      real(qp) :: row(size(a%factors, 2)), largest(size(a%factors, 2))
+      integer :: k, i, n
+
+      n = size(a%factors, 2)
+      a%pivot = [(k, k=1, n)]
+      largest = maxval(abs(a%factors), dim=1)
+      do k = 1, n
+         i = k - 1 + maxloc(abs(a%factors(k:, k)), dim=1)
+         row = a%factors(i, :)
+         a%factors(i, :) = a%factors(k, :)
+         a%factors(k, :) = row
+         a%pivot(k) = i
+         a%regular = abs(a%factors(k, k)) > 1.0e-26_qp*largest(k)
+         if (.not. a%regular) return
+         a%factors(k + 1:, k) = a%factors(k + 1:, k)/a%factors(k, k)
+         do i = k + 1, n
+            if (abs(a%factors(k, i)) > 0.0_qp) &
+               a%factors(k + 1:, i) = a%factors(k + 1:, i) - a%factors(k, i)*a%factors(k + 1:, k)
+         end do
+      end do
+   end subroutine factorize
+
+   !> The solution of rows x = `right`, or the one with the least squares.
+   function solution(a, right) result(x)
+      type(matrix_t), intent(in) :: a
+      real(qp), intent(in) :: right(:)
+      real(qp) :: x(size(a%factors, 2)), one
+      integer :: k, n
+
+      n = size(x)
+      if (size(right) > n) then
+         x = matmul(right/a%row_size, a%rows)
+      else
+         x = right/a%row_size
+      end if
+      do k = 1, n
+         one = x(a%pivot(k))
+         x(a%pivot(k)) = x(k)
+         x(k) = one
+      end do
+      do k = 1, n
+         if (abs(x(k)) > 0.0_qp) x(k + 1:) = x(k + 1:) - x(k)*a%factors(k + 1:, k)
+      end do
+      do k = n, 1, -1
+         x(k) = x(k)/a%factors(k, k)
+         if (abs(x(k)) > 0.0_qp) x(:k - 1) = x(:k - 1) - x(k)*a%factors(:k - 1, k)
+      end do
+   end function solution
+end module hard_condition

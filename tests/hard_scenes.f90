@@ -1,0 +1,225 @@
+!> Tests. The scenes of `make hard`: a mechanism, the instants at which it is asked, and where its links are then by a
+!> closed form in real128. Those that are built here have their closed forms of the very doubles in them.
+module hard_scenes
+   use kinds, only: wp
+   use constants, only: pi, degree
+   use quad_jet, only: qp, jet_t, constant_jet, pi_q, operator(+), operator(-)
+   use failures, only: failure_t
+   use mechanism, only: mechanism_t, request_t, request_link, instant, instant_count, drive_x
+   use deck, only: read_deck
+   use jet_closure, only: body_jet_t
+   use jet_drives, only: drive_jet
+   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, polar, direction, corner, on_line
+   use closed_forms_hard, only: dead_point
+   use closed_forms, only: closed_form
+   use sample_mechanisms, only: four_bar, crank_slider, magnified
+   use hard_chain, only: rods_t, rods_of, scissor_form
+   implicit none
+   private
+   public :: scene_t, deck_scenes, jumps_of, four_bar_scene, slider_scene, dead_slider_scene, scissor_scene, exact_links
+
+   integer, parameter :: by_deck = 1, by_four_bar = 2, by_slider = 3, by_dead_slider = 4, by_scissor = 5
+
+   type :: scene_t
+      character(:), allocatable :: name
+      type(mechanism_t) :: m
+      real(wp), allocatable :: at(:)             !< instants
+      integer :: form = by_deck
+      character(:), allocatable :: deck          !< base name
+      integer :: set = 1, bits = 0
+      type(rods_t) :: rods                       !< of a scissor
+   end type scene_t
+
+contains
+
+   !> All sets of the deck `path` at the deck's own instants, at most `most` of them.
+   function deck_scenes(path, most) result(list)
+      character(*), intent(in) :: path
+      integer, intent(in) :: most
+      type(scene_t), allocatable :: list(:)
+      type(mechanism_t), allocatable :: sets(:)
+      type(failure_t), allocatable :: failure
+      character(:), allocatable :: report
+      integer :: i, k, every
+
+      call read_deck(path, sets, report, failure)
+      if (allocated(failure)) error stop 'A DECK IS REFUSED'
+      allocate (list(size(sets)))
+      do i = 1, size(sets)
+         associate (s => list(i))
+            s%deck = path(index(path, '/', back=.true.) + 1:len(path) - len('.deck'))
+            s%set = i
+            s%name = s%deck//' '//achar(iachar('0') + i)
+            s%m = sets(i)
+            s%m%requests = [(request_t(request_link, k, 1), k=1, size(s%m%links))]
+            every = max(1, (instant_count(s%m) + most - 1)/most)
+            s%at = [(instant(s%m, k), k=0, instant_count(s%m) - 1, every)]
+         end associate
+      end do
+   end function deck_scenes
+
+   !> The scene `s`, whose first drive turns evenly, in steps of 30 degrees and then in leaps forwards, backwards and over
+   !> many turns.
+   function jumps_of(s) result(j)
+      type(scene_t), intent(in) :: s
+      type(scene_t) :: j
+      real(wp) :: step
+      integer :: k
+      integer, parameter :: leaps(8) = [25, 7, -3, -370, 1207, 1201, 0, 12000]
+
+      j = s
+      j%name = s%name//' LEAPS'
+      step = 30.0_wp*degree/abs(s%m%drives(1)%polynomial(2))
+      j%at = [(k*step, k=0, 12), leaps*step]
+   end function jumps_of
+
+   !> Base, crank, coupler and rocker of these lengths, open; link `driven` (2: crank, 4: rocker) moves as phi = `law`.
+   function four_bar_scene(name, lengths, driven, law, at) result(s)
+      character(*), intent(in) :: name
+      real(wp), intent(in) :: lengths(4), law(3), at(:)
+      integer, intent(in) :: driven
+      type(scene_t) :: s
+
+      s%name = name
+      s%form = by_four_bar
+      s%m = four_bar()
+      s%m%points(2)%offset(1) = lengths(1)
+      s%m%points(4)%offset(1) = lengths(2)
+      s%m%points(6)%offset(1) = lengths(3)
+      s%m%points(8)%offset(1) = lengths(4)
+      s%m%drives(1)%subject = driven
+      s%m%drives(1)%polynomial = law
+      s%at = at
+      call place_roughly(s)
+   end function four_bar_scene
+
+   !> Crank 1, rod 3 on a line at 0.5, times `size`; the crank moves as phi = `law`.
+   function slider_scene(name, size_of_it, law, at) result(s)
+      character(*), intent(in) :: name
+      real(wp), intent(in) :: size_of_it, law(3), at(:)
+      type(scene_t) :: s
+
+      s%name = name
+      s%form = by_slider
+      s%m = magnified(crank_slider(0.5_wp), size_of_it)
+      s%m%drives(1)%polynomial = law
+      s%at = at
+      call place_roughly(s)
+   end function slider_scene
+
+   !> Crank 1, rod 3, driven by the piston from g = 4/2**bits before the dead point away from it.
+   function dead_slider_scene(name, bits) result(s)
+      character(*), intent(in) :: name
+      integer, intent(in) :: bits
+      type(scene_t) :: s
+      integer :: k
+
+      s%name = name
+      s%form = by_dead_slider
+      s%bits = bits
+      s%m = crank_slider(0.0_wp)
+      s%m%drives(1)%kind = drive_x
+      s%m%drives(1)%subject = 7
+      s%m%drives(1)%polynomial = [4.0_wp - scale(4.0_wp, -bits), -scale(4.0_wp, -bits), 0.0_wp]
+      s%at = [(0.5_wp*k, k=0, 8)]
+      call place_roughly(s)
+   end function dead_slider_scene
+
+   !> The lift of `n` links whose deck stands in the directory `decks`.
+   function scissor_scene(decks, n) result(s)
+      character(*), intent(in) :: decks
+      integer, intent(in) :: n
+      type(scene_t) :: s
+      type(scene_t), allocatable :: list(:)
+      character(8) :: number
+
+      write (number, '(i0)') n
+      list = deck_scenes(decks//'/scissor_'//trim(number)//'.deck', 1)
+      s = list(1)
+      s%name = 'SCISSOR LIFT '//trim(number)
+      s%form = by_scissor
+      s%rods = rods_of(s%m)
+      s%at = [0.0_wp, 0.25_wp, 0.75_wp]
+   end function scissor_scene
+
+   !> The links of `s` at `t` in the order of its mechanism.
+   function exact_links(s, t) result(b)
+      type(scene_t), intent(in) :: s
+      real(wp), intent(in) :: t
+      type(body_jet_t) :: b(size(s%m%links))
+      type(body_t), allocatable :: form(:)
+      integer :: i, k
+
+      select case (s%form)
+      case (by_deck)
+         form = closed_form(s%deck, s%set, real(t, qp))
+      case (by_four_bar)
+         form = four_bar_form(s%m, drive_jet(s%m%drives(1), real(t, qp)))
+      case (by_slider)
+         form = slider_form(s%m, drive_jet(s%m%drives(1), real(t, qp)))
+      case (by_dead_slider)
+         form = dead_point(s%bits, real(t, qp))
+      case default
+         form = scissor_form(s%rods, drive_jet(s%m%drives(1), real(t, qp)))
+      end select
+      if (size(form) /= size(b)) error stop 'A SCENE WITHOUT A CLOSED FORM'
+      do i = 1, size(form)
+         k = findloc(s%m%links%name == form(i)%name, .true., dim=1)
+         if (k == 0) error stop 'A LINK OF A CLOSED FORM IS NOT IN THE DECK'
+         b(k) = body_jet_t(form(i)%x, form(i)%y, form(i)%phi)
+      end do
+   end function exact_links
+
+   function four_bar_form(m, phi) result(links)
+      type(mechanism_t), intent(in) :: m
+      type(jet_t), intent(in) :: phi
+      type(body_t) :: links(4)
+      type(place_t) :: a0, b0, a, b
+      real(qp) :: r(4)
+
+      r = [m%points(2)%offset(1), m%points(4)%offset(1), m%points(6)%offset(1), m%points(8)%offset(1)]
+      a0 = fixed_place(0.0_qp, 0.0_qp)
+      b0 = fixed_place(r(1), 0.0_qp)
+      if (m%drives(1)%subject == 2) then
+         a = polar(a0, r(2), phi)
+         b = corner(a, r(3), b0, r(4), 1.0_qp)
+         links(2) = body('CRANK', a0, phi)
+         links(4) = body('ROCKER', b0, direction(b0, b))
+      else
+         b = polar(b0, r(4), phi)
+         a = corner(a0, r(2), b, r(3), 1.0_qp)
+         links(2) = body('CRANK', a0, direction(a0, a))
+         links(4) = body('ROCKER', b0, phi)
+      end if
+      links(1) = body('BASE', a0, constant_jet(0.0_qp))
+      links(3) = body('COUPLER', a, direction(a, b))
+   end function four_bar_form
+
+   function slider_form(m, phi) result(links)
+      type(mechanism_t), intent(in) :: m
+      type(jet_t), intent(in) :: phi
+      type(body_t) :: links(4)
+      type(jet_t) :: flat
+      type(place_t) :: o, pin, piston
+
+      flat = constant_jet(0.0_qp)
+      o = fixed_place(0.0_qp, 0.0_qp)
+      pin = polar(o, real(m%points(4)%offset(1), qp), phi)
+      piston = on_line(pin, real(m%points(6)%offset(1), qp), fixed_place(0.0_qp, real(m%points(2)%offset(2), qp)), flat, 1.0_qp)
+      links = [body('BASE', o, flat), body('CRANK', o, phi), body('ROD', pin, direction(pin, piston)), &
+               body('PISTON', piston, flat)]
+   end function slider_form
+
+   !> The deck's rough positions: the exact ones at the first instant, but for a thousandth.
+   subroutine place_roughly(s)
+      type(scene_t), intent(inout) :: s
+      type(body_jet_t) :: b(size(s%m%links))
+      integer :: i
+
+      b = exact_links(s, s%at(1))
+      do i = 1, size(b)
+         if (s%m%links(i)%ground) cycle
+         s%m%links(i)%position = real([1.001_qp*b(i)%x%v, 1.001_qp*b(i)%y%v, b(i)%phi%v + 0.001_qp], wp)
+      end do
+   end subroutine place_roughly
+end module hard_scenes
