@@ -36,6 +36,7 @@ part 'estimates of errors' "$MAKE" --no-print-directory errors
 part 'the command' tests/command.sh
 part 'real128' "$MAKE" --no-print-directory quad-check
 part 'single precision' "$MAKE" --no-print-directory single-check
+part 'units of length' tests/units.sh
 part 'faults by name' tests/faults.sh
 part 'the digits' tests/digits.sh
 part 'decks made by chance' tests/fuzz.sh 1000
