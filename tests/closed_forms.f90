@@ -7,8 +7,8 @@ module closed_forms
    use closed_forms_linkages, only: four_bar, drag_link, peaucellier, five_bar, pantograph
    use closed_forms_sliders, only: yoke, crank_slider, scotch_yoke, whitworth, cylinder, trammel
    use closed_forms_legs, only: andrews, jansen
-   use closed_forms_sixbars, only: watt, stephenson, klann, grounds
-   use closed_forms_robots, only: three_rrr, excavator, xy_table, scissor
+   use closed_forms_sixbars, only: watt, watt_output, stephenson, stephenson_output, klann, grounds
+   use closed_forms_robots, only: three_rrr, three_rrr_cranks, excavator, xy_table, scissor
    use closed_forms_bars, only: chebyshev, kite, antiparallelogram, hart, two_loops
    use closed_forms_slides, only: crank_inline, inverted_slider, oldham
    use closed_forms_overconstrained, only: parallel_cranks, double_parallelogram, two_guides, cognates, dixon
@@ -25,13 +25,15 @@ module closed_forms
       integer :: redundant = 0                        !< pairs' equations that the others already hold
    end type count_t
 
-   type(count_t), parameter :: counts(49) = [ &
+   type(count_t), parameter :: counts(52) = [ &
       count_t('yoke', 6, 5, 2, 1), count_t('yoke_mirrored', 6, 5, 2, 1), count_t('four_bar', 4, 4, 0, 1), &
       count_t('crank_slider', 4, 3, 1, 1), count_t('scotch_yoke', 4, 2, 2, 1), count_t('whitworth', 6, 5, 2, 1), &
       count_t('drag_link', 4, 4, 0, 1), count_t('cylinder', 4, 3, 1, 1), count_t('trammel', 4, 2, 2, 1), &
       count_t('peaucellier', 8, 10, 0, 1), count_t('five_bar', 5, 5, 0, 2), count_t('pantograph', 5, 5, 0, 2), &
       count_t('andrews', 8, 10, 0, 1), count_t('jansen', 8, 10, 0, 1), count_t('watt', 6, 7, 0, 1), &
-      count_t('stephenson', 6, 7, 0, 1), count_t('klann', 6, 7, 0, 1), count_t('grounds', 8, 6, 1, 1, ground=3), &
+      count_t('stephenson', 6, 7, 0, 1), &
+      count_t('watt_output', 6, 7, 0, 1), count_t('stephenson_output', 6, 7, 0, 1), count_t('three_rrr_cranks', 8, 9, 0, 3), &
+      count_t('klann', 6, 7, 0, 1), count_t('grounds', 8, 6, 1, 1, ground=3), &
       count_t('three_rrr', 8, 9, 0, 3), count_t('excavator', 12, 12, 3, 3), count_t('xy_table', 4, 1, 2, 3), &
       count_t('scissor', 10, 11, 2, 1), count_t('chebyshev', 4, 4, 0, 1), count_t('kite', 4, 4, 0, 1), &
       count_t('antiparallelogram', 4, 4, 0, 1), count_t('hart', 6, 7, 0, 1), count_t('two_loops', 7, 7, 1, 2), &
@@ -166,6 +168,12 @@ contains
          links = far_small(t)
       case ('many_turns')
          links = many_turns(t)
+      case ('watt_output')
+         links = watt_output(t)
+      case ('stephenson_output')
+         links = stephenson_output(t)
+      case ('three_rrr_cranks')
+         links = three_rrr_cranks(t)
       case default
          allocate (links(0))
       end select

@@ -2,11 +2,11 @@
 !> written out again by hand so that a deck read wrongly shows up as a difference.
 module closed_forms_robots
    use quad_jet, only: qp, jet_t, degree_q, constant_jet, time_jet, &
-      operator(+), operator(-), operator(*), sqrt, sin, cos, atan2
+      operator(+), operator(-), operator(*), operator(/), sqrt, sin, cos, atan2
    use closed_forms_dyads, only: place_t, body_t, fixed_place, body, place_on, polar, direction, third_corner, corner
    implicit none
    private
-   public :: three_rrr, excavator, xy_table, scissor
+   public :: three_rrr, three_rrr_cranks, excavator, xy_table, scissor
 
 contains
 
@@ -35,6 +35,72 @@ contains
          links(2*k + 2) = body('ROD-'//digit(k), elbow, direction(elbow, joint))
       end do
    end function three_rrr
+
+   !> The same robot led by its three cranks: 1 + 0.1 sin t, 3.1 + 0.15 sin(1.5 t), -0.8 - 0.02 t. Where its platform is
+   !> then has no formula (a polynomial of degree six): the three equations |P - E|^2 = 9 by Newton's method in real128.
+   pure function three_rrr_cranks(t) result(links)
+      real(qp), intent(in) :: t
+      type(body_t) :: links(8), platform
+      real(qp), parameter :: base(2, 3) = reshape([0.0_qp, 0.0_qp, 10.0_qp, 0.0_qp, 5.0_qp, 8.5_qp], [2, 3])
+      real(qp), parameter :: plate(2, 3) = reshape([-1.0_qp, -0.6_qp, 1.0_qp, -0.6_qp, 0.0_qp, 1.2_qp], [2, 3])
+      character(1), parameter :: digit(3) = ['1', '2', '3']
+      type(jet_t) :: time, crank(3)
+      type(place_t) :: foot, elbow(3)
+      integer :: k
+
+      time = time_jet(t)
+      crank = [1.0_qp + 0.1_qp*sin(time), 3.1_qp + 0.15_qp*sin(1.5_qp*time), -0.02_qp*time - 0.8_qp]
+      do k = 1, 3
+         elbow(k) = polar(fixed_place(base(1, k), base(2, k)), 3.0_qp, crank(k))
+      end do
+      platform = body('PLATFORM', fixed_place(5.0_qp, 3.0_qp), constant_jet(0.1_qp))
+      ! Digits double five times; a derivative follows when what it is the derivative of is there.
+      do k = 1, 12
+         call improve(elbow, plate, platform)
+      end do
+      links(1:2) = [body('BASE', fixed_place(0.0_qp, 0.0_qp), constant_jet(0.0_qp)), platform]
+      do k = 1, 3
+         foot = fixed_place(base(1, k), base(2, k))
+         links(2*k + 1) = body('CRANK-'//digit(k), foot, crank(k))
+         links(2*k + 2) = body('ROD-'//digit(k), elbow(k), direction(elbow(k), place_on(platform, plate(1, k), plate(2, k))))
+      end do
+   end function three_rrr_cranks
+
+   !> One step of Newton's method: the platform's joints `plate` (2, 3) at the distance 3 from `elbow`. The gradient of
+   !> |d|^2/2 by x, y and the angle is d and d x arm; Cramer's rule.
+   pure subroutine improve(elbow, plate, platform)
+      type(place_t), intent(in) :: elbow(3)
+      real(qp), intent(in) :: plate(2, 3)
+      type(body_t), intent(inout) :: platform
+      type(jet_t) :: r(3), x(3)
+      type(place_t) :: p
+      real(qp) :: a(3, 3), d(2)
+      integer :: k
+
+      do k = 1, 3
+         p = place_on(platform, plate(1, k), plate(2, k))
+         d = [p%x%v - elbow(k)%x%v, p%y%v - elbow(k)%y%v]
+         a(k, :) = [d, d(2)*(p%x%v - platform%x%v) - d(1)*(p%y%v - platform%y%v)]
+         r(k) = 0.5_qp*((p%x - elbow(k)%x)*(p%x - elbow(k)%x) + (p%y - elbow(k)%y)*(p%y - elbow(k)%y) - 9.0_qp)
+      end do
+      do k = 1, 3
+         associate (i => mod(k, 3) + 1, j => mod(k + 1, 3) + 1)
+            x(k) = (cofactor(2, 3, i, j)*r(1) + cofactor(3, 1, i, j)*r(2) + cofactor(1, 2, i, j)*r(3)) &
+               /(cofactor(2, 3, 2, 3)*a(1, 1) + cofactor(3, 1, 2, 3)*a(2, 1) + cofactor(1, 2, 2, 3)*a(3, 1))
+         end associate
+      end do
+      platform%x = platform%x - x(1)
+      platform%y = platform%y - x(2)
+      platform%phi = platform%phi - x(3)
+
+   contains
+
+      pure real(qp) function cofactor(row, next_row, column, next_column)
+         integer, intent(in) :: row, next_row, column, next_column
+
+         cofactor = a(row, column)*a(next_row, next_column) - a(row, next_column)*a(next_row, column)
+      end function cofactor
+   end subroutine improve
 
    !> Excavator arm: boom, stick and bucket, each moved by a cylinder whose slide is given. Every triangle has two
    !> sides on a link (or on the base) and the cylinder as its third; the last one moves the rocker, and a tie the bucket.

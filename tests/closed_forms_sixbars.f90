@@ -6,7 +6,7 @@ module closed_forms_sixbars
    use closed_forms_dyads, only: place_t, body_t, fixed_place, body, place_on, polar, direction, corner, on_line
    implicit none
    private
-   public :: watt, stephenson, klann, grounds
+   public :: watt, watt_output, stephenson, stephenson_output, klann, grounds
 
 contains
 
@@ -31,16 +31,75 @@ contains
                rocker, body('ROD', c, direction(c, d)), body('OUTPUT', d0, direction(d0, d))]
    end function watt
 
+   !> The same six-bar driven from its other side: the output swings by 6 deg about 100 deg. The rocker's second arm is 2
+   !> long; C lies to the right of the way from D to B0, the crank's pin to the left of that from A0 to B.
+   pure function watt_output(t) result(links)
+      real(qp), intent(in) :: t
+      type(body_t) :: links(6), rocker
+      type(jet_t) :: phi
+      type(place_t) :: a0, b0, d0, a, b, c, d
+
+      phi = (100.0_qp + 6.0_qp*sin(60.0_qp*degree_q*time_jet(t)))*degree_q
+      a0 = fixed_place(0.0_qp, 0.0_qp)
+      b0 = fixed_place(4.0_qp, 0.0_qp)
+      d0 = fixed_place(9.0_qp, 0.0_qp)
+      d = polar(d0, 3.0_qp, phi)
+      c = corner(d, 4.0_qp, b0, 2.0_qp, -1.0_qp)
+      rocker = body('ROCKER', b0, direction(b0, c) + atan2(1.6_qp, 1.2_qp))
+      b = place_on(rocker, 3.0_qp, 0.0_qp)
+      a = corner(a0, 1.0_qp, b, 3.5_qp, 1.0_qp)
+      links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK', a0, direction(a0, a)), &
+               body('COUPLER', a, direction(a, b)), rocker, body('ROD', c, direction(c, d)), body('OUTPUT', d0, phi)]
+   end function watt_output
+
    !> Stephenson's third six-bar: crank-rocker 1, 2.5, 2.5 on A0 B0 = 3; the point C = (1.25, 1.5) of the coupler moves
    !> the dyad CD = 4, D0 D = 3 about (5, 3). The crank turns with a wobble: 0.8 t + 0.2 sin(1.6 t).
    pure function stephenson(t) result(links)
       real(qp), intent(in) :: t
-      type(body_t) :: links(6), coupler
-      type(jet_t) :: phi, time
-      type(place_t) :: a0, b0, d0, a, b, c, d
+      type(body_t) :: links(6)
+      type(jet_t) :: time
 
       time = time_jet(t)
-      phi = 0.8_qp*time + 0.2_qp*sin(1.6_qp*time)
+      links = stephenson_at(0.8_qp*time + 0.2_qp*sin(1.6_qp*time))
+   end function stephenson
+
+   !> The same six-bar driven from its other side: the output moves as 2.55 + 0.3 sin(1.2 t). Four links are then found at
+   !> once, without a formula; but the output is known for each angle of the crank and grows with it from 1.5 to 4
+   !> rad: that function is inverted, by halves and then by Newton's method, and its derivatives with it.
+   pure function stephenson_output(t) result(links)
+      real(qp), intent(in) :: t
+      type(body_t) :: links(6)
+      type(jet_t) :: wanted, phi
+      real(qp) :: low, high
+      integer :: k
+
+      wanted = 2.55_qp + 0.3_qp*sin(1.2_qp*time_jet(t))
+      low = 1.5_qp
+      high = 4.0_qp
+      phi = time_jet(0.5_qp*(low + high))
+      do k = 1, 30
+         links = stephenson_at(phi)
+         if (k <= 20) then
+            if (links(6)%phi%v < wanted%v) low = phi%v
+            if (links(6)%phi%v >= wanted%v) high = phi%v
+            phi%v = 0.5_qp*(low + high)
+         else
+            phi%v = phi%v - (links(6)%phi%v - wanted%v)/links(6)%phi%d
+         end if
+      end do
+      associate (out => links(6)%phi)
+         phi%d = wanted%d/out%d
+         phi%dd = (wanted%dd - out%dd*phi%d**2)/out%d
+      end associate
+      links = stephenson_at(phi)
+   end function stephenson_output
+
+   !> Its links with the crank at `phi`.
+   pure function stephenson_at(phi) result(links)
+      type(jet_t), intent(in) :: phi
+      type(body_t) :: links(6), coupler
+      type(place_t) :: a0, b0, d0, a, b, c, d
+
       a0 = fixed_place(0.0_qp, 0.0_qp)
       b0 = fixed_place(3.0_qp, 0.0_qp)
       d0 = fixed_place(5.0_qp, 3.0_qp)
@@ -52,7 +111,7 @@ contains
       links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK', a0, phi), coupler, &
                body('ROCKER', b0, direction(b0, b)), body('ROD', c, direction(c, d)), &
                body('OUTPUT', d0, direction(d0, d))]
-   end function stephenson
+   end function stephenson_at
 
    !> Klann's leg, the joints of US patent 6,260,862: crank 0.268 about (1.599, 0.750), lower rocker 0.3206 about
    !> (1.009, 0.574), upper rocker 0.5177 about (1.366, 1.366); the rod from the crank's pin over the elbow at 0.59 to

@@ -32,7 +32,7 @@ module hand_groups
       character(40) :: redundant = ''    !< pairs with equations that could be spared
    end type statement_t
 
-   type(statement_t), parameter :: statements(51) = [ &
+   type(statement_t), parameter :: statements(54) = [ &
       statement_t('yoke', 0, '*CRANK; BLOCK LEVER; ROD RAM'), &
       statement_t('yoke_mirrored', 0, '*CRANK; BLOCK LEVER; ROD RAM'), &
       statement_t('four_bar', 0, '*CRANK; COUPLER ROCKER'), &
@@ -53,6 +53,10 @@ module hand_groups
       statement_t('jansen', 0, '*CRANK; ROD-J UPPER; ROD-K ROD-C; ROD-F FOOT'), &
       statement_t('watt', 0, '*CRANK; COUPLER ROCKER; ROD OUTPUT'), &
       statement_t('stephenson', 0, '*CRANK; COUPLER ROCKER; ROD OUTPUT'), &
+      statement_t('watt_output', 0, '*OUTPUT; ROCKER ROD; CRANK COUPLER'), &
+      ! Without a dyad: four links at once.
+      statement_t('stephenson_output', 0, '*OUTPUT; CRANK COUPLER ROCKER ROD'), &
+      statement_t('three_rrr_cranks', 0, '*CRANK-1; *CRANK-2; *CRANK-3; PLATFORM ROD-1 ROD-2 ROD-3'), &
       statement_t('klann', 0, '*CRANK; ROD LOWER; UPPER LEG'), &
       statement_t('grounds', 0, '*CRANK; COUPLER ROCKER; ROD RAM'), &
       statement_t('three_rrr', 0, '*PLATFORM; CRANK-1 ROD-1; CRANK-2 ROD-2; CRANK-3 ROD-3'), &

@@ -20,7 +20,8 @@ program hard
       exact_links
    implicit none
 
-   !> Each result comes from some tens of roundings of intermediate numbers, each of which may do what the deck's own do.
+   !> Each result comes from some tens of roundings of intermediate numbers, each of which may do what the deck's own do;
+   !> and a coordinate that the deck's numbers hardly move has those of its neighbours.
    real(qp), parameter :: bound = 100.0_qp
    !> What moves so much less than the rest of its kind counts as a constant.
    real(qp), parameter :: not_moved = 1.0e-7_qp
