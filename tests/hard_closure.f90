@@ -4,7 +4,7 @@ module hard_closure
    use kinds, only: wp
    use quad_jet, only: qp, jet_t, constant_jet, time_jet, sin, cos, operator(+), operator(-), operator(*)
    use mechanism, only: mechanism_t, drive_t, pair_revolute, drive_angle, drive_relangle, drive_slide, drive_x, &
-      term_harmonic
+      term_harmonic, term_table
    use jet_closure, only: body_jet_t
    use jet_drives, only: drive_jet
    implicit none
@@ -71,22 +71,36 @@ contains
          end associate
       end do
       do k = 1, size(m%drives)
-         associate (s => m%drives(k)%subject)
-            select case (m%drives(k)%kind)
-            case (drive_angle)
-               r(2*size(m%pairs) + k) = b(s)%phi - f(k)
-            case (drive_relangle)
-               r(2*size(m%pairs) + k) = b(m%drives(k)%second)%phi - b(s)%phi - f(k)
-            case (drive_slide)
-               gap = place(:, m%pairs(s)%point_j) - place(:, m%pairs(s)%point_i)
-               e = guide(b(m%points(m%pairs(s)%point_i)%link)%phi + d(n + 3*s - 2))
-               r(2*size(m%pairs) + k) = e(1)*gap(1) + e(2)*gap(2) - f(k)
-            case default
-               r(2*size(m%pairs) + k) = place(merge(1, 2, m%drives(k)%kind == drive_x), s) - f(k)
-            end select
-         end associate
+         r(2*size(m%pairs) + k) = driven(m, d, b, place, k) - f(k)
       end do
    end function residuals
+
+   !> What drive `k` moves.
+   type(jet_t) function driven(m, d, b, place, k) result(s)
+      type(mechanism_t), intent(in) :: m
+      real(qp), intent(in) :: d(:)
+      type(body_jet_t), intent(in) :: b(:)
+      type(jet_t), intent(in) :: place(:, :)
+      integer, intent(in) :: k
+      type(jet_t) :: gap(2), e(2)
+      integer :: n
+
+      associate (subject => m%drives(k)%subject)
+         select case (m%drives(k)%kind)
+         case (drive_angle)
+            s = b(subject)%phi
+         case (drive_relangle)
+            s = b(m%drives(k)%second)%phi - b(subject)%phi
+         case (drive_slide)
+            n = 3*size(m%links) + 2*size(m%points)
+            gap = place(:, m%pairs(subject)%point_j) - place(:, m%pairs(subject)%point_i)
+            e = guide(b(m%points(m%pairs(subject)%point_i)%link)%phi + d(n + 3*subject - 2))
+            s = e(1)*gap(1) + e(2)*gap(2)
+         case default
+            s = place(merge(1, 2, m%drives(k)%kind == drive_x), subject)
+         end select
+      end associate
+   end function driven
 
    function guide(theta) result(e)
       type(jet_t), intent(in) :: theta
@@ -128,28 +142,41 @@ contains
       do k = 1, 3
          one = alone(drive, 0)
          one%polynomial(k) = drive%polynomial(k)
-         c = [c, drive_jet(one, t)]
+         if (abs(drive%polynomial(k)) > 0.0_wp) c = [c, drive_jet(one, t)]
       end do
       do i = 1, size(drive%terms)
-         one = alone(drive, i)
-         if (allocated(one%terms(1)%values)) then
-            do k = 1, size(one%terms(1)%values)
-               one = alone(drive, i)
-               one%terms(1)%values = 0.0_wp
-               one%terms(1)%values(k) = drive%terms(i)%values(k)
-               c = [c, drive_jet(one, t)]
-            end do
-            cycle
-         end if
-         c = [c, drive_jet(one, t)]
-         if (one%terms(1)%kind /= term_harmonic) cycle
-         ! The derivative of a sine is the sine a quarter turn on.
-         associate (r => drive%terms(i)%r)
-            one%terms(1)%r(3) = r(3) + acos(0.0_wp)
-            c = [c, real(r(3), qp)*drive_jet(one, t), real(r(2), qp)*time_jet(t)*drive_jet(one, t)]
-         end associate
+         c = [c, term_changes(alone(drive, i), t)]
       end do
    end function drive_changes
+
+   !> The same of a drive that has one term alone.
+   function term_changes(drive, t) result(c)
+      type(drive_t), intent(in) :: drive
+      real(qp), intent(in) :: t
+      type(jet_t), allocatable :: c(:)
+      type(drive_t) :: one
+      integer :: k
+
+      one = drive
+      associate (term => one%terms(1))
+         if (term%kind == term_table) then
+            allocate (c(size(term%values)))
+            do k = 1, size(c)
+               term%values = 0.0_wp
+               term%values(k) = drive%terms(1)%values(k)
+               c(k) = drive_jet(one, t)
+            end do
+            return
+         end if
+         c = [drive_jet(one, t)]
+         if (term%kind /= term_harmonic) return
+         ! The derivative of a sine is the sine a quarter turn on.
+         term%r(3) = term%r(3) + acos(0.0_wp)
+         associate (r => drive%terms(1)%r)
+            c = [c, real(r(3), qp)*drive_jet(one, t), real(r(2), qp)*time_jet(t)*drive_jet(one, t)]
+         end associate
+      end associate
+   end function term_changes
 
    !> `drive` without its polynomial and with term `i` alone, 0: none.
    function alone(drive, i) result(one)

@@ -44,12 +44,11 @@ contains
       type(body_jet_t), intent(in) :: start(:)
       real(qp), intent(in) :: t
       type(condition_t) :: c
-      type(body_jet_t) :: b(size(start)), moved(size(start))
-      type(jet_t) :: f(size(m%drives)), changed(size(m%drives))
-      type(jet_t), allocatable :: change(:)
-      real(qp), allocatable :: d(:), other(:)
+      type(body_jet_t) :: b(size(start))
+      type(jet_t) :: f(size(m%drives))
+      real(qp), allocatable :: d(:)
       type(matrix_t) :: a
-      integer :: i, k
+      integer :: k
 
       allocate (c%of(3, size(start), 0:2))
       d = numbers_of(m)
@@ -61,28 +60,57 @@ contains
       if (.not. c%exists) return
       call solve(m, d, f, a, many_steps, b)
       c%of = abs(coordinates(b))
+      call add_numbers(m, d, f, a, b, c%of)
+      call add_drives(m, d, f, a, b, t, c%of)
+   end function measure
+
+   !> Adds what each of the numbers `d` does, the position being `b`.
+   subroutine add_numbers(m, d, f, a, b, sums)
+      type(mechanism_t), intent(in) :: m
+      real(qp), intent(in) :: d(:)
+      type(jet_t), intent(in) :: f(:)
+      type(matrix_t), intent(in) :: a
+      type(body_jet_t), intent(in) :: b(:)
+      real(qp), intent(inout) :: sums(:, :, 0:)
+      real(qp) :: other(size(d))
+      type(body_jet_t) :: moved(size(b))
+      integer :: i
+
       other = d
       do i = 1, size(d)
          if (.not. abs(d(i)) > 0.0_qp) cycle
          other(i) = d(i)*(1.0_qp + step)
          moved = b
          call solve(m, other, f, a, few_steps, moved)
-         c%of = c%of + abs(coordinates(moved) - coordinates(b))/step
+         sums = sums + abs(coordinates(moved) - coordinates(b))/step
          other(i) = d(i)
       end do
-      changed = f
+   end subroutine add_numbers
+
+   !> The same for each number of the drives.
+   subroutine add_drives(m, d, f, a, b, t, sums)
+      type(mechanism_t), intent(in) :: m
+      real(qp), intent(in) :: d(:), t
+      type(jet_t), intent(in) :: f(:)
+      type(matrix_t), intent(in) :: a
+      type(body_jet_t), intent(in) :: b(:)
+      real(qp), intent(inout) :: sums(:, :, 0:)
+      type(jet_t) :: other(size(f))
+      type(jet_t), allocatable :: change(:)
+      type(body_jet_t) :: moved(size(b))
+      integer :: i, k
+
       do k = 1, size(f)
          change = drive_changes(m%drives(k), t)
          do i = 1, size(change)
-            if (.not. max(abs(change(i)%v), abs(change(i)%d), abs(change(i)%dd)) > 0.0_qp) cycle
-            changed(k) = f(k) + step*change(i)
+            other = f
+            other(k) = f(k) + step*change(i)
             moved = b
-            call solve(m, d, changed, a, few_steps, moved)
-            c%of = c%of + abs(coordinates(moved) - coordinates(b))/step
+            call solve(m, d, other, a, few_steps, moved)
+            sums = sums + abs(coordinates(moved) - coordinates(b))/step
          end do
-         changed(k) = f(k)
       end do
-   end function measure
+   end subroutine add_drives
 
    !> x, y, phi of every link and their derivatives.
    function coordinates(b) result(y)

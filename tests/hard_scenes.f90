@@ -16,7 +16,7 @@ module hard_scenes
    use hard_chain, only: rods_t, rods_of, scissor_form
    implicit none
    private
-   public :: scene_t, deck_scenes, jumps_of, four_bar_scene, slider_scene, dead_slider_scene, scissor_scene, exact_links
+   public :: scene_t, deck_scenes, jumps_of, far_from, four_bar_scene, slider_scene, dead_slider_scene, scissor_scene, exact_links
 
    integer, parameter :: by_deck = 1, by_four_bar = 2, by_slider = 3, by_dead_slider = 4, by_scissor = 5
 
@@ -27,6 +27,7 @@ module hard_scenes
       integer :: form = by_deck
       character(:), allocatable :: deck          !< base name
       integer :: set = 1, bits = 0
+      real(wp) :: far(2) = 0.0_wp                !< by how much all ground stands elsewhere than in the deck
       type(rods_t) :: rods                       !< of a scissor
    end type scene_t
 
@@ -72,6 +73,20 @@ contains
       step = 30.0_wp*degree/abs(s%m%drives(1)%polynomial(2))
       j%at = [(k*step, k=0, 12), leaps*step]
    end function jumps_of
+
+   !> The scene `s` a thousand kilometres away.
+   function far_from(s) result(f)
+      type(scene_t), intent(in) :: s
+      type(scene_t) :: f
+      integer :: i
+
+      f = s
+      f%name = s%name//' FAR AWAY'
+      f%far = [2.0_wp**20, -2.0_wp**19]
+      do i = 1, size(f%m%links)
+         f%m%links(i)%position(:2) = f%m%links(i)%position(:2) + f%far
+      end do
+   end function far_from
 
    !> Base, crank, coupler and rocker of these lengths, open; link `driven` (2: crank, 4: rocker) moves as phi = `law`.
    function four_bar_scene(name, lengths, driven, law, at) result(s)
@@ -166,7 +181,7 @@ contains
       do i = 1, size(form)
          k = findloc(s%m%links%name == form(i)%name, .true., dim=1)
          if (k == 0) error stop 'A LINK OF A CLOSED FORM IS NOT IN THE DECK'
-         b(k) = body_jet_t(form(i)%x, form(i)%y, form(i)%phi)
+         b(k) = body_jet_t(form(i)%x + real(s%far(1), qp), form(i)%y + real(s%far(2), qp), form(i)%phi)
       end do
    end function exact_links
 
