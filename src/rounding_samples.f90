@@ -90,8 +90,9 @@ contains
 
       is_in_doubt = .false.
       if (q%known < 2) return
-      size_of = max(largest(q%position, s%length), largest(q%velocity, s%length)/s%rate, &
-         largest(q%acceleration, s%length)/s%rate**2)
+      ! Several ground links that stand far away are rounded as coarsely as far places are.
+      size_of = max(largest(q%position, s%length), maxval(abs(q%origin))/s%length, &
+         largest(q%velocity, s%length)/s%rate, largest(q%acceleration, s%length)/s%rate**2)
       is_in_doubt = size_of > safe_size
       if (.not. allocated(e)) is_in_doubt = is_in_doubt .or. rcond < safe_condition
       if (is_in_doubt .or. .not. allocated(e)) return
@@ -135,7 +136,7 @@ contains
       integer :: i
 
       do i = 1, size(m%links)
-         if (.not. m%links(i)%ground) m%links(i)%position = q%position(:, i)
+         if (.not. m%links(i)%ground) m%links(i)%position = q%position(:, i) + [q%origin, 0.0_wp]
       end do
    end subroutine place_links
 
