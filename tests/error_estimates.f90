@@ -114,7 +114,7 @@ contains
          end do
          most_told = max(most_told, reshape([maxval(told(:2, :), dim=1), told(3, :)], [2, 3], order=[2, 1]))
          most_true = max(most_true, reshape([maxval(true(:2, :), dim=1), true(3, :)], [2, 3], order=[2, 1]))
-         size_of(1, :) = max(size_of(1, :), [maxval(abs(q%position(:2, m%requests(i)%subject))), &
+         size_of(1, :) = max(size_of(1, :), [maxval(abs(q%position(:2, m%requests(i)%subject) + q%origin)), &
             maxval(abs(q%velocity(:2, m%requests(i)%subject))), maxval(abs(q%acceleration(:2, m%requests(i)%subject)))])
          size_of(2, :) = max(size_of(2, :), [abs(q%position(3, m%requests(i)%subject)), &
             abs(q%velocity(3, m%requests(i)%subject)), abs(q%acceleration(3, m%requests(i)%subject))])
@@ -137,7 +137,7 @@ contains
 
       turn = real(q%position(3, i), qp) - exact%phi%v
       turn = turn - 2.0_qp*pi_q*anint(turn/(2.0_qp*pi_q))
-      d(:, 0) = real(abs([q%position(1, i) - exact%x%v, q%position(2, i) - exact%y%v, turn]), wp)
+      d(:, 0) = real(abs([(q%position(:2, i) + q%origin) - [exact%x%v, exact%y%v], turn]), wp)
       d(:, 1) = real(abs(q%velocity(:, i) - [exact%x%d, exact%y%d, exact%phi%d]), wp)
       d(:, 2) = real(abs(q%acceleration(:, i) - [exact%x%dd, exact%y%dd, exact%phi%dd]), wp)
       where (d < reference_rounding) d = 0.0_wp

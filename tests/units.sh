@@ -42,7 +42,7 @@ enlarged() {
 # digits LISTING: its rows of numbers without points, leading zeros and powers of ten.
 digits() {
    awk '/^ RESULTS|^ WYNIKI/ { told = 1 } /^ SET OF |^ KOMPLET / { told = 0 }
-        told && NF > 1 && $NF ~ /^(-?[0-9.]+|NONE)$/ && $1 !~ /^(INSTANT|CHWILA|END|KONIEC)/ {
+        told && NF > 1 && $NF ~ /^(-?[0-9.?]+(E[-+][0-9]+)?|NONE)$/ && $1 !~ /^(INSTANT|CHWILA|END|KONIEC)/ {
       line = $1
       for (i = 2; i <= NF; i++) {
          minus = $i ~ /^-/ ? "-" : ""; gsub(/[-.]/, "", $i); sub(/^0+/, "", $i); line = line " " minus $i
@@ -55,8 +55,8 @@ for deck in input/*.deck; do
    digits "expected/$name.lst" > "$w/wanted"
    equal "$name: rows are compared" yes "$([ "$(wc -l < "$w/wanted")" -gt 10 ] && echo yes)"
    powers='-6 -3 -1 2 3 6'
-   # Its places take all the room of a column; in tenths and hundreds there is none for as many decimals.
-   [ "$name" = far_small ] && powers='-6 -3 3 6'
+   # Their largest numbers take all the room of a column; in tenths and hundreds there is none for as many decimals.
+   case $name in far_small|dead_point_*) powers='-6 -3 3 6' ;; esac
    for k in $powers; do
       enlarged $k "$deck" > "$w/deck"
       "$BUILD/kinmat" "$w/deck" > "$w/lst" 2> "$w/err"
