@@ -16,7 +16,7 @@ program hard
    use jet_closure, only: body_jet_t
    use hard_condition, only: condition_t, measure
    use hard_chain, only: scissor_condition
-   use hard_scenes, only: scene_t, deck_scenes, jumps_of, far_from, four_bar_scene, slider_scene, dead_slider_scene, &
+   use hard_scenes, only: scene_t, deck_scenes, jumps_of, far_from, four_bar_scene, slider_scene, &
       scissor_scene, exact_links
    implicit none
 
@@ -77,7 +77,7 @@ contains
       if (any(moved == list(1)%deck)) call judge(far_from(list(1)))
    end subroutine judge_deck
 
-   !> At 1e-6, 1e-9, 1e-12 from a dead point: a slider driven by its piston, a four-bar driven by its rocker.
+   !> At 1e-6, 1e-9, 1e-12 from a dead point: a four-bar driven by its rocker. Sliders are among the decks.
    subroutine judge_dead_points()
       integer :: k
       real(wp) :: angle, gap
@@ -86,7 +86,6 @@ contains
       angle = acos(-4.75_wp/24.0_wp)
       do k = 6, 12, 3
          gap = 10.0_wp**(-k)
-         call judge(dead_slider_scene('PISTON BEFORE ITS END '//power(k), nint(k/log10(2.0_wp))))
          call judge(four_bar_scene('ROCKER BEFORE ITS END '//power(k), [4.0_wp, 1.0_wp, 3.5_wp, 3.0_wp], 4, &
             [angle + gap, gap, 0.0_wp], [(0.5_wp*i, i=0, 8)]))
       end do

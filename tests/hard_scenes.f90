@@ -2,23 +2,22 @@
 !> closed form in real128. Those that are built here have their closed forms of the very doubles in them.
 module hard_scenes
    use kinds, only: wp
-   use constants, only: pi, degree
-   use quad_jet, only: qp, jet_t, constant_jet, pi_q, operator(+), operator(-)
+   use constants, only: degree
+   use quad_jet, only: qp, jet_t, constant_jet, operator(+)
    use failures, only: failure_t
-   use mechanism, only: mechanism_t, request_t, request_link, instant, instant_count, drive_x
+   use mechanism, only: mechanism_t, request_t, request_link, instant, instant_count
    use deck, only: read_deck
    use jet_closure, only: body_jet_t
    use jet_drives, only: drive_jet
    use closed_forms_dyads, only: place_t, body_t, fixed_place, body, polar, direction, corner, on_line
-   use closed_forms_hard, only: dead_point
    use closed_forms, only: closed_form
    use sample_mechanisms, only: four_bar, crank_slider, magnified
    use hard_chain, only: rods_t, rods_of, scissor_form
    implicit none
    private
-   public :: scene_t, deck_scenes, jumps_of, far_from, four_bar_scene, slider_scene, dead_slider_scene, scissor_scene, exact_links
+   public :: scene_t, deck_scenes, jumps_of, far_from, four_bar_scene, slider_scene, scissor_scene, exact_links
 
-   integer, parameter :: by_deck = 1, by_four_bar = 2, by_slider = 3, by_dead_slider = 4, by_scissor = 5
+   integer, parameter :: by_deck = 1, by_four_bar = 2, by_slider = 3, by_scissor = 4
 
    type :: scene_t
       character(:), allocatable :: name
@@ -26,7 +25,7 @@ module hard_scenes
       real(wp), allocatable :: at(:)             !< instants
       integer :: form = by_deck
       character(:), allocatable :: deck          !< base name
-      integer :: set = 1, bits = 0
+      integer :: set = 1
       real(wp) :: far(2) = 0.0_wp                !< by how much all ground stands elsewhere than in the deck
       type(rods_t) :: rods                       !< of a scissor
    end type scene_t
@@ -122,24 +121,6 @@ contains
       call place_roughly(s)
    end function slider_scene
 
-   !> Crank 1, rod 3, driven by the piston from g = 4/2**bits before the dead point away from it.
-   function dead_slider_scene(name, bits) result(s)
-      character(*), intent(in) :: name
-      integer, intent(in) :: bits
-      type(scene_t) :: s
-      integer :: k
-
-      s%name = name
-      s%form = by_dead_slider
-      s%bits = bits
-      s%m = crank_slider(0.0_wp)
-      s%m%drives(1)%kind = drive_x
-      s%m%drives(1)%subject = 7
-      s%m%drives(1)%polynomial = [4.0_wp - scale(4.0_wp, -bits), -scale(4.0_wp, -bits), 0.0_wp]
-      s%at = [(0.5_wp*k, k=0, 8)]
-      call place_roughly(s)
-   end function dead_slider_scene
-
    !> The lift of `n` links whose deck stands in the directory `decks`.
    function scissor_scene(decks, n) result(s)
       character(*), intent(in) :: decks
@@ -172,8 +153,6 @@ contains
          form = four_bar_form(s%m, drive_jet(s%m%drives(1), real(t, qp)))
       case (by_slider)
          form = slider_form(s%m, drive_jet(s%m%drives(1), real(t, qp)))
-      case (by_dead_slider)
-         form = dead_point(s%bits, real(t, qp))
       case default
          form = scissor_form(s%rods, drive_jet(s%m%drives(1), real(t, qp)))
       end select
