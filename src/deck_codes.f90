@@ -32,7 +32,7 @@ module deck_codes
       border_crossed = code_t(18, 'RUNS ACROSS THE BORDER OF COLUMNS'), &
       field_unused = code_t(19, 'THIS FIELD IS NOT USED BY THIS CARD')
    ! Numbers: those whose squares are in range, and the squares of these.
-   integer, parameter, public :: most_power = min(60, range(1.0_wp)/4)
+   integer, parameter, public :: most_power = min(60, int(0.25*range(1.0_wp)))
    character(*), parameter :: power_text = trim(merge('60', '9 ', most_power == 60))
    type(code_t), parameter, public :: &
       number_other = code_t(20, 'IS NOT A NUMBER'), &
