@@ -44,7 +44,7 @@ module block_engine
       integer, allocatable :: sign_marked(:)
       real(wp), allocatable :: side(:), side_marked(:)  !< Jacobian of the block with too many rows, followed
       real(wp), allocatable :: pivot_now(:), pivot_of(:) !< (blocks) the least: found last, followed
-      integer :: crossed = 0                            !< the block whose determinant has changed its sign; 0: none
+      logical, allocatable :: crossed(:)                !< (blocks) whose determinant has changed its sign
       real(wp) :: change = 0.0_wp                       !< the largest that was predicted
    end type block_engine_t
 
@@ -90,6 +90,7 @@ contains
       end do
       allocate (e%sign_now(size(e%blocks%list)), e%sign_of(size(e%blocks%list)), source=1)
       allocate (e%pivot_now(size(e%blocks%list)), e%pivot_of(size(e%blocks%list)), source=1.0_wp)
+      allocate (e%crossed(size(e%blocks%list)), source=.false.)
       ! A function's result would bring its own lower bound.
       allocate (e%rough(0:e%blocks%unknowns))
       e%rough(:) = rough_values(m, t, e%length, e%blocks%unknowns)
@@ -122,7 +123,7 @@ contains
       logical, intent(out) :: same
       integer :: i
 
-      e%crossed = 0
+      if (allocated(e%crossed)) e%crossed = .false.
       correction = 0.0_wp
       same = .true.
       c%ended = ended_singular
@@ -174,7 +175,7 @@ contains
          e%pivot_now(i) = one%least_pivot
          if (.not. follows .or. one%determinant == e%sign_of(i)) cycle
          same = .false.
-         e%crossed = i
+         e%crossed(i) = .true.
       end do
    end subroutine seek_each
 

@@ -10,7 +10,7 @@ module block_remarks
    use block_engine, only: block_engine_t
    implicit none
    private
-   public :: first_remarks, limit_remark, crosses, change_remark
+   public :: first_remarks, limit_remark, crosses, change_remarks
 
    !> A limit is told where it is no further than this part of the step that could not be made.
    real(wp), parameter :: near_part = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
@@ -99,31 +99,41 @@ contains
       end do
    end function links_of
 
-   !> The motion found last lies beyond a change point, on the branch that goes on smoothly; `correction`: of its
+   !> The motion found last lies beyond change points, on the branch that goes on smoothly; `correction`: of its
    !> prediction, which rounding has made wrong by bend/pivot^2, as it does the rates so close to it.
    pure logical function crosses(e, correction)
       type(block_engine_t), intent(in) :: e
       real(wp), intent(in) :: correction
       real(wp) :: allowed
+      integer :: i
 
-      crosses = .false.
-      if (e%crossed == 0 .or. e%change > short_step) return
-      allowed = right_part + rounding*e%blocks%list(e%crossed)%bend/e%pivot_of(e%crossed)**2
-      crosses = correction <= min(allowed, most_wrong)*e%change
+      crosses = e%change <= short_step
+      do i = 1, size(e%crossed)
+         if (.not. (e%crossed(i) .and. crosses)) cycle
+         allowed = right_part + rounding*e%blocks%list(i)%bend/e%pivot_of(i)**2
+         crosses = correction <= min(allowed, most_wrong)*e%change
+      end do
    end function crosses
 
-   !> Where that was: the least pivot goes through zero in proportion.
-   function change_remark(e, t) result(r)
+   !> Where they were: the least pivot goes through zero in proportion. A remark for each.
+   function change_remarks(e, t) result(list)
       type(block_engine_t), intent(in) :: e
       real(wp), intent(in) :: t
+      type(remark_t), allocatable :: list(:)
       type(remark_t) :: r
+      integer :: i
 
-      associate (block => e%blocks%list(e%crossed), before => e%history%t(e%history%place(0)), &
-         a => e%pivot_of(e%crossed), b => e%pivot_now(e%crossed))
-         r = new_remark(remark_change, links_of(e, e%blocks%unknown(block%first:block%last)))
-         r%t = before + (t - before)*(a/(a + b))
-      end associate
-   end function change_remark
+      allocate (list(0))
+      do i = 1, size(e%crossed)
+         if (.not. e%crossed(i)) cycle
+         associate (block => e%blocks%list(i), before => e%history%t(e%history%place(0)), &
+            a => e%pivot_of(i), b => e%pivot_now(i))
+            r = new_remark(remark_change, links_of(e, e%blocks%unknown(block%first:block%last)))
+            r%t = before + (t - before)*(a/(a + b))
+         end associate
+         list = [list, r]
+      end do
+   end function change_remarks
 
    !> Where the last motion kept comes to its end on the way to `t`, if it does: the first block, in solving order,
    !> that comes to a limit; those that build on it do no less.

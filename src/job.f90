@@ -1,4 +1,4 @@
-!> Level 14. One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later.
+!> Level 16. One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later.
 module job
    use failures, only: failure_t, fail, status_solved, status_refused, status_marked, status_machine
    use mechanism, only: mechanism_t, instant_count, instant
@@ -149,7 +149,7 @@ contains
       do k = 0, instant_count(m) - 1
          call advance(a, instant(m, k), q)
          if (q%mark /= mark_none) marked = marked + 1
-         call take_samples(samples, a%blocks, a%convergence%reciprocal_condition, q, options%errors, doubt)
+         call take_samples(samples, a%engine%blocks, a%convergence%reciprocal_condition, q, options%errors, doubt)
          call listing_instant(o%listing, layout, m, q, k, doubt)
          if (len(options%csv) > 0) call csv_instant(o%csv, m, q, k, doubt)
          if (len(options%log) == 0) cycle

@@ -4,12 +4,13 @@ module listing_remarks
    use constants, only: degree
    use mechanism, only: mechanism_t
    use remarks, only: remark_t, remark_open, remark_limit, remark_far, remark_second, remark_redundant, remark_mobile, &
-      remark_change
+      remark_change, remark_long
    use naming, only: drive_name, listed
    use numerals, only: whole
    use text_output, only: output_t, put
    use phrases, only: phrase, say_pair, say_drive, say_link, say_links, say_open_by, say_limit, say_in_line, &
-      say_at_limit, say_off_by, say_second, say_redundant, say_mobile, say_gap, say_below, say_change, say_smoothly
+      say_at_limit, say_off_by, say_second, say_redundant, say_mobile, say_gap, say_below, say_change, say_smoothly, &
+      say_way, say_too_long
    implicit none
    private
    public :: put_remarks, put_gap
@@ -28,7 +29,7 @@ contains
 
       do i = 1, size(list)
          select case (list(i)%kind)
-         case (remark_open, remark_limit, remark_mobile)
+         case (remark_open, remark_limit, remark_mobile, remark_long)
             call put(o, ' *** '//words_of(m, list(i)))
             if (list(i)%kind == remark_limit) call put(o, ' *** '//links(m, list(i))//' ' &
                //phrase(merge(say_in_line, say_at_limit, list(i)%in_line), m%polish))
@@ -59,6 +60,8 @@ contains
       case (remark_change)
          text = phrase(say_change, m%polish)//' '//number(r%t, '(es13.5)')//', '//links(m, r)//': ' &
             //phrase(say_smoothly, m%polish)
+      case (remark_long)
+         text = phrase(say_way, m%polish)//' '//number(r%t, '(es13.5)')//' '//phrase(say_too_long, m%polish)
       case (remark_mobile)
          text = links(m, r)//' '//phrase(say_mobile, m%polish)
       end select

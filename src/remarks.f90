@@ -5,7 +5,7 @@ module remarks
    private
    public :: remark_t, new_remark, most_links
    public :: remark_open, remark_limit, remark_far, remark_second, remark_redundant, remark_mobile, &
-      remark_change
+      remark_change, remark_long
 
    integer, parameter :: remark_open = 1       !< an equation of `pair` or `drive` stays open by `value`
    integer, parameter :: remark_limit = 2      !< at `t`, where `drive` has `value`, the motion of `links` has its limit
@@ -14,6 +14,7 @@ module remarks
    integer, parameter :: remark_redundant = 5  !< an equation of `pair` or `drive` could be spared
    integer, parameter :: remark_mobile = 6     !< `links` can move although the drives stand still
    integer, parameter :: remark_change = 7     !< at `t` two branches cross; `links` have gone on smoothly
+   integer, parameter :: remark_long = 8       !< the way from `t` would take too many parts
 
    integer, parameter :: most_links = 6
 

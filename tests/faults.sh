@@ -267,6 +267,26 @@ told 'coupler and rocker in line' 2 "4:$none
 5:$none
 6:$none"
 equal 'coupler and rocker in line: the steps before' 4 "$(grep -c '^ COUPL .*[0-9]$' "$w/out")"
+# What lies beyond a limit is known to be out of reach, in whatever order it is asked for; and is not sought again.
+ends="LIMIT OF MOTION AT T = $(found "$limit/20"), DRIVE ANGLE CRANK = $(found "$limit") DEG"
+locking() { head_of LIMIT; four_bar '' 0.0 3.0 2.0 2.0 4.0 0.0 30.0 120.0; drive ANGLE CRANK '' 0.0 20.0; "$@"; card END; }
+{ locking card AT '' '' '' 0.0 6.0 1.0 | sed /^END/d; card AT '' '' '' 5.0 4.0 3.0; card AT '' '' '' 8.0; card END; } > "$w/deck"
+told 'beyond a limit, to and fro' 2 "1:$none
+1: *** $ends
+1: *** LINKS COUPL, ROCK AT THE LIMIT, IN LINE
+3:$none
+3: *** $ends
+3: *** LINKS COUPL, ROCK AT THE LIMIT, IN LINE
+4:$none
+6:$none
+6: *** $ends
+6: *** LINKS COUPL, ROCK AT THE LIMIT, IN LINE"
+locking card TIME 40000 '' '' 0.0 400.0 > "$w/deck"
+(ulimit -t 4; exec "$kinmat" "$w/deck" --csv "$w/csv" > "$w/out")
+equal 'forty thousand instants beyond a limit: four seconds are enough' 2 $?
+equal 'forty thousand instants beyond a limit: those that are solved' \
+   "$(awk "BEGIN { pi = atan2(0, -1); print int(100*atan2(sqrt(1 - 0.375^2), 0.375)*180/pi/20) + 1 }")" \
+   "$(grep -c '^1,[0-9]*,[^,]*,LINK,COUPL,[^,]*[0-9],.*,$' "$w/csv")"
 { head_of PISTON; slider 1.0 3.0 60.0 0.0; drive X B '' 3.5 0.2; until_time 2 3.0; } > "$w/deck"
 told 'a piston beyond its reach' 2 "2:$none
 2: *** LIMIT OF MOTION AT T = $(found 2.5), DRIVE X B = $(found 4) M
@@ -329,6 +349,22 @@ told 'what follows the link that locks' 2 "2:$none
 told 'in Polish: a limit' 2 "1: *** NIE ZNALEZIONO POLOZENIA
 1: *** KRES RUCHU W CHWILI T = $(found 2.5), NAPED X B = $(found 4) M
 1: *** OGNIWA CRANK, ROD NA KRESIE RUCHU, W JEDNEJ LINII"
+
+# A way of more parts than are tried: 200000 times a drive's 1 rad. A crank alone is where its drive says.
+{ head_of FAR; four_bar '' $crank_rocker; drive ANGLE CRANK '' 14.0 9.0; card AT '' '' '' 0.0 1.5E6 2.0E6; card AT '' '' '' 2.0 -3.0E6
+   card END; } > "$w/deck"
+told 'instants too far apart' 2 "1:$none
+1: *** THE WAY FROM T = 0.00000E+00 IS TOO LONG, ASK FOR INSTANTS NEARER TO ONE ANOTHER
+2:$none
+4:$none
+4: *** THE WAY FROM T = 2.00000E+00 IS TOO LONG, ASK FOR INSTANTS NEARER TO ONE ANOTHER"
+{ head_of DALEKO; card LANG PL; four_bar '' $crank_rocker; drive ANGLE CRANK '' 14.0 9.0; card AT '' '' '' 0.0 1.5E6; card END; } > "$w/deck"
+told 'in Polish: instants too far apart' 2 "1: *** NIE ZNALEZIONO POLOZENIA
+1: *** DROGA OD CHWILI T = 0.00000E+00 JEST ZA DLUGA, PODAJ CHWILE BLIZSZE SIEBIE"
+{ head_of FAR; link CRANK 0.0 0.0 0.0; point O BASE; point O1 CRANK; joint O O1 PO; drive ANGLE CRANK '' 14.0 9.0
+   card AT '' '' '' 0.0 1.5E6; card END; } > "$w/deck"
+told 'a crank alone, far away' 0 ''
+equal 'a crank alone, far away: its angle' 1.3500014E+07 "$("$kinmat" "$w/deck" --csv "$w/csv" > "$w/out"; awk -F, '$2 == 1 && $5 == "CRANK" { printf "%.7E", $8 }' "$w/csv")"
 
 # From the rough positions: what cannot be closed, by how much and where; what was far, and what was close.
 { head_of REACH; slider 1.0 3.0 60.0 0.0; drive X B '' 4.5 0.0; until_time 1 1.0; } > "$w/deck"

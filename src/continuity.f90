@@ -1,0 +1,51 @@
+!> Level 2. On which branch an instant was found: what has been verified on the way to it.
+!>
+!> SAME: on every part of the way the prediction was off by less than a tenth of the distance within which there is one root only
+!> (Newton and Kantorovich), and the determinants of all blocks have kept their signs. CROSSED: the same, but for
+!> change points that were passed, each within a short step, and told.
+module continuity
+   use kinds, only: wp
+   implicit none
+   private
+   public :: branch_t, tally_t, count_in, branch_word, branch_none, branch_first, branch_same, branch_crossed
+
+   integer, parameter :: branch_none = 0      !< nothing is verified
+   integer, parameter :: branch_first = 1     !< chosen by the deck's rough position
+   integer, parameter :: branch_same = 2      !< that of the motion that is followed
+   integer, parameter :: branch_crossed = 3   !< the same, through change points
+
+   !> `parts` of the way that were kept; `doubt`: the largest of their corrections, over the distance within which the
+   !> root is the only one.
+   type :: branch_t
+      integer :: kind = branch_none
+      integer :: parts = 0
+      real(wp) :: doubt = 0.0_wp
+   end type branch_t
+
+   !> Instants with a position: followed, and found without that (but for the first); change points passed.
+   type :: tally_t
+      integer :: followed = 0, passed = 0, uncertain = 0
+   end type tally_t
+
+contains
+
+   !> Counts an instant found on the branch `b`, on the way to which so many change points were `passed`.
+   pure subroutine count_in(tally, b, passed)
+      type(tally_t), intent(inout) :: tally
+      type(branch_t), intent(in) :: b
+      integer, intent(in) :: passed
+
+      tally%passed = tally%passed + passed
+      if (b%kind == branch_none) tally%uncertain = tally%uncertain + 1
+      if (b%kind >= branch_same) tally%followed = tally%followed + 1
+   end subroutine count_in
+
+   !> For the protocol.
+   pure function branch_word(b) result(word)
+      type(branch_t), intent(in) :: b
+      character(7) :: word
+      character(7), parameter :: words(0:3) = [character(7) :: 'NONE', 'FIRST', 'SAME', 'CROSSED']
+
+      word = words(b%kind)
+   end function branch_word
+end module continuity

@@ -1,0 +1,99 @@
+!> Level 13. The engine of a set: blocks (METHOD NEWTON) or all equations at once (METHOD DENSE and MATRIX), asked in the
+!> same way.
+module engine
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, method_newton
+   use motion, only: motion_t
+   use convergence, only: convergence_t
+   use block_engine, only: block_engine_t, new_block_engine, seek_blocks, keep_blocks, tell_blocks, &
+      mark_blocks, return_blocks
+   use dense_engine, only: dense_t, new_dense, seek_dense, keep_dense, tell_dense, mark_dense, return_dense
+   implicit none
+   private
+   public :: engine_t, new_engine, seek, keep, mark_place, return_to_place, tell
+
+   !> One of the two.
+   type :: engine_t
+      type(block_engine_t), allocatable :: blocks
+      type(dense_t), allocatable :: dense
+   end type engine_t
+
+contains
+
+   !> Ready for the first instant of `m`, whose equations are as many as its unknowns.
+   function new_engine(m) result(e)
+      type(mechanism_t), intent(in) :: m
+      type(engine_t) :: e
+
+      if (m%method == method_newton) then
+         e%blocks = new_block_engine(m)
+      else
+         e%dense = new_dense(m)
+      end if
+   end function new_engine
+
+   !> Seeks the motion at `t`, from the last one kept (`follows`) or from the deck's. `c`: how it ended,
+   !> `correction`: the largest change of a predicted value, `same`: the determinants have kept their signs.
+   subroutine seek(e, t, follows, c, correction, same)
+      type(engine_t), intent(inout) :: e
+      real(wp), intent(in) :: t
+      logical, intent(in) :: follows
+      type(convergence_t), intent(out) :: c
+      real(wp), intent(out) :: correction
+      logical, intent(out) :: same
+
+      if (allocated(e%blocks)) then
+         call seek_blocks(e%blocks, t, follows, c, correction, same)
+      else
+         call seek_dense(e%dense, t, follows, c, correction, same)
+      end if
+   end subroutine seek
+
+   !> Makes the motion found last the one that is followed.
+   subroutine keep(e)
+      type(engine_t), intent(inout) :: e
+
+      if (allocated(e%blocks)) then
+         call keep_blocks(e%blocks)
+      else
+         call keep_dense(e%dense)
+      end if
+   end subroutine keep
+
+   !> Notes the motion that is followed, before a step is divided.
+   subroutine mark_place(e)
+      type(engine_t), intent(inout) :: e
+
+      if (allocated(e%blocks)) then
+         call mark_blocks(e%blocks)
+      else
+         call mark_dense(e%dense)
+      end if
+   end subroutine mark_place
+
+   !> Follows it again: what comes after an instant without a motion is as if that had not been asked for. From
+   !> close to a dead point no step back would be small enough.
+   subroutine return_to_place(e)
+      type(engine_t), intent(inout) :: e
+
+      if (allocated(e%blocks)) then
+         call return_blocks(e%blocks)
+      else
+         call return_dense(e%dense)
+      end if
+   end subroutine return_to_place
+
+   !> The motion found last, in the deck's units; `finite`: all of it is known to be in range.
+   subroutine tell(e, found, finite)
+      type(engine_t), intent(inout) :: e
+      type(motion_t), intent(inout) :: found
+      logical, intent(out) :: finite
+
+      if (allocated(e%blocks)) then
+         call tell_blocks(e%blocks, found, finite)
+      else
+         call tell_dense(e%dense, found)
+         finite = .false.
+      end if
+   end subroutine tell
+end module engine

@@ -1,0 +1,166 @@
+!> Level 14. The motion that is followed, and the way from it to another instant, in as many parts as that takes: an
+!> assembly is never changed in silence.
+module following
+   use kinds, only: wp
+   use mechanism, only: mechanism_t
+   use remarks, only: remark_t
+   use continuity, only: branch_t
+   use scales, only: characteristic_length, largest_rate
+   use convergence, only: convergence_t, is_solved
+   use predictor, only: largest_change
+   use block_remarks, only: crosses, change_remarks
+   use engine, only: engine_t, new_engine, seek, keep, mark_place, return_to_place
+   implicit none
+   private
+   public :: following_t, way_t, new_following, go_to, is_too_far, has_too_many_parts, go_on_from, go_back
+
+   !> The largest correction, in the characteristic length and in radians, of a predicted position that is still taken
+   !> for the continuation of the motion; where the prediction is off by more, the step is divided.
+   real(wp), parameter :: largest_correction = 0.1_wp
+   !> The same over the distance of the next root, as the Jacobian and its bend tell it: near a change point
+   !> another branch passes close by, with the sign of the determinant that this one had before.
+   real(wp), parameter :: largest_doubt = 0.1_wp
+   !> A part of a step smaller than this, of the longest or of what is left to go, is the end of the way; and so are
+   !> that many parts.
+   real(wp), parameter :: smallest_part = max(1.0e-10_wp, 4.0_wp*epsilon(1.0_wp))
+   integer, parameter :: most_parts = 200000
+   !> Near a limit a slow iteration creeps, and each part that fails costs all of its iterations: so many failures
+   !> of parts that are small already end the way too.
+   integer, parameter :: most_failures = 300
+   real(wp), parameter :: small_part = 1.0e-3_wp
+
+   !> The engine, and how far it has come.
+   type :: following_t
+      type(engine_t) :: engine
+      type(convergence_t) :: convergence         !< of the last position sought
+      logical :: follows = .false.               !< a regular motion is kept, found at `t`
+      real(wp) :: t = 0.0_wp
+      real(wp) :: place = 0.0_wp                 !< where the step that was divided last began
+      real(wp) :: longest_part = huge(1.0_wp)    !< of a step: no drive moves by more than `largest_change` in it
+   end type following_t
+
+   !> The way to an instant: whether it came there or to a place where no part of it could be made, how many parts were
+   !> tried, what was verified of those kept, the change points on it.
+   type :: way_t
+      logical :: arrived = .false., blocked = .false.
+      integer :: tries = 0
+      type(branch_t) :: branch
+      type(remark_t), allocatable :: passed(:)
+   end type way_t
+
+contains
+
+   !> Ready for the first instant of `m`, whose equations are as many as its unknowns.
+   function new_following(m) result(f)
+      type(mechanism_t), intent(in) :: m
+      type(following_t) :: f
+      real(wp) :: rate
+
+      f%engine = new_engine(m)
+      rate = largest_rate(m, characteristic_length(m))
+      if (rate > 0.0_wp .and. depends_on_before(f%engine)) f%longest_part = largest_change/rate
+   end function new_following
+
+   !> There is an unknown that is sought from where it was before.
+   pure logical function depends_on_before(e) result(depends)
+      type(engine_t), intent(in) :: e
+
+      depends = .true.
+      if (.not. allocated(e%blocks)) return
+      if (allocated(e%blocks%history%sought)) depends = size(e%blocks%history%sought) > 0
+   end function depends_on_before
+
+   !> Follows the motion to `t`, or seeks the first.
+   subroutine go_to(f, t, w)
+      type(following_t), intent(inout) :: f
+      real(wp), intent(in) :: t
+      type(way_t), intent(out) :: w
+      real(wp) :: part, here, longest
+      integer :: failures
+      logical :: accepted
+
+      allocate (w%passed(0))
+      part = t - f%t
+      longest = min(f%longest_part, abs(part))
+      failures = 0
+      do while (w%tries < most_parts)
+         w%tries = w%tries + 1
+         part = sign(min(abs(part), f%longest_part), part)
+         w%arrived = .not. f%follows .or. abs(part) >= abs(t - f%t)
+         here = merge(t, f%t + part, w%arrived)
+         call attempt(f, here, w, accepted)
+         w%arrived = w%arrived .and. accepted
+         if (w%arrived) exit
+         if (w%tries == 1) then
+            f%place = f%t
+            call mark_place(f%engine)
+         end if
+         accepted = accepted .and. .not. f%convergence%singular
+         if (accepted) call go_on_from(f, here)
+         if (.not. f%follows) exit
+         if (.not. accepted .and. abs(part) <= small_part*longest) failures = failures + 1
+         part = merge(1.5_wp, 0.5_wp, accepted)*part
+         w%blocked = abs(part) <= smallest_part*min(longest, abs(t - f%t))
+         if (w%blocked .or. failures > most_failures) exit
+      end do
+   end subroutine go_to
+
+   !> Seeks the motion at `t`; `accepted`: it is the continuation of the one that is followed, or the first.
+   subroutine attempt(f, t, w, accepted)
+      type(following_t), intent(inout) :: f
+      real(wp), intent(in) :: t
+      type(way_t), intent(inout) :: w
+      logical, intent(out) :: accepted
+      real(wp) :: correction
+      logical :: same
+
+      call seek(f%engine, t, f%follows, f%convergence, correction, same)
+      accepted = is_solved(f%convergence)
+      if (.not. f%follows) return
+      accepted = accepted .and. correction <= largest_correction .and. f%convergence%doubt <= largest_doubt
+      if (accepted .and. .not. same .and. .not. f%convergence%singular .and. allocated(f%engine%blocks)) then
+         same = crosses(f%engine%blocks, correction)
+         if (same) w%passed = [w%passed, change_remarks(f%engine%blocks, t)]
+      end if
+      accepted = accepted .and. same
+      if (.not. accepted) return
+      w%branch%parts = w%branch%parts + 1
+      w%branch%doubt = max(w%branch%doubt, f%convergence%doubt)
+   end subroutine attempt
+
+   !> The way to `t` would have more parts than are tried.
+   pure logical function is_too_far(f, t)
+      type(following_t), intent(in) :: f
+      real(wp), intent(in) :: t
+
+      is_too_far = f%follows .and. abs(t - f%t)/real(most_parts, wp) > f%longest_part
+   end function is_too_far
+
+   !> All parts that are tried were not enough for `w`.
+   pure logical function has_too_many_parts(w)
+      type(way_t), intent(in) :: w
+
+      has_too_many_parts = w%tries == most_parts .and. .not. w%arrived
+   end function has_too_many_parts
+
+   !> The motion found last, at `t`, is now the one that is followed.
+   subroutine go_on_from(f, t)
+      type(following_t), intent(inout) :: f
+      real(wp), intent(in) :: t
+
+      call keep(f%engine)
+      f%t = t
+      f%follows = .true.
+   end subroutine go_on_from
+
+   !> The motion at the place where the way `w` began is again the one that is followed: what comes after an instant
+   !> without a motion is as if that had not been asked for. From close to a dead point no step back would be small enough.
+   subroutine go_back(f, w)
+      type(following_t), intent(inout) :: f
+      type(way_t), intent(in) :: w
+
+      if (w%tries < 2) return
+      f%t = f%place
+      call return_to_place(f%engine)
+   end subroutine go_back
+end module following
