@@ -154,13 +154,13 @@ contains
          if (len(options%csv) > 0) call csv_instant(o%csv, m, q, k, doubt)
          if (len(options%log) == 0) cycle
          if (options%errors) then
-            call protocol_instant(o%log, k, q%t, a%convergence, &
+            call protocol_instant(o%log, k, q%t, a%convergence, a%branch, &
                largest_errors(m, doubt, q, samples%length, samples%rate))
          else
-            call protocol_instant(o%log, k, q%t, a%convergence)
+            call protocol_instant(o%log, k, q%t, a%convergence, a%branch)
          end if
       end do
-      call listing_end(o%listing, m, instant_count(m) - marked, marked, redundancy_gap(a))
+      call listing_end(o%listing, m, instant_count(m) - marked, marked, a%tally, redundancy_gap(a))
       if (marked > 0) status = status_marked
    end subroutine run_set
 end module job

@@ -6,6 +6,7 @@ module listing
    use motion, only: motion_t, mark_none, mark_not_converged, mark_singular, mark_overflow, &
       mark_open
    use structure, only: findings_t
+   use continuity, only: tally_t
    use listing_structure, only: put_structure
    use listing_remarks, only: put_remarks, put_gap
    use points, only: row_t, row_of, is_due
@@ -16,7 +17,7 @@ module listing
    use layout, only: layout_t, new_layout, name_length, row_length
    use phrases, only: phrase, say_program, say_set, say_title, say_data, say_results, say_phi, &
       say_end, say_solved, say_marked, say_no_position, say_no_rates, say_overflow, say_contradiction, &
-      say_unknown
+      say_unknown, say_branch, say_followed, say_passed, say_uncertain
    implicit none
    private
    public :: layout_t, new_layout, listing_head, listing_instant, listing_end
@@ -202,19 +203,23 @@ contains
       end select
    end function mark_text
 
-   !> The last line of a set: how many instants were solved and how many are marked; before it, where equations
-   !> are redundant, by how much they differ (`gap`, in parts of the characteristic length; negative where none
-   !> are).
-   subroutine listing_end(o, m, solved, marked, gap)
+   !> The last lines of a set: what is known of the branches on which its instants were found, then how many were solved
+   !> and how many are marked; before them, where equations are redundant, by how much they differ (`gap`, in parts
+   !> of the characteristic length; negative where none are).
+   subroutine listing_end(o, m, solved, marked, tally, gap)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: solved, marked
+      type(tally_t), intent(in) :: tally
       real(wp), intent(in), optional :: gap
 
       call put(o, '')
       if (present(gap)) then
          if (gap >= 0.0_wp) call put_gap(o, m, gap)
       end if
+      call put(o, ' '//phrase(say_branch, m%polish)//':  '//phrase(say_followed, m%polish)//' '//whole(tally%followed) &
+         //', '//phrase(say_passed, m%polish)//' '//whole(tally%passed) &
+         //', '//phrase(say_uncertain, m%polish)//' '//whole(tally%uncertain))
       call put(o, ' '//phrase(say_end, m%polish)//' '//whole(m%set_number) &
          //':  '//phrase(say_solved, m%polish)//' '//whole(solved) &
          //', '//phrase(say_marked, m%polish)//' '//whole(marked))

@@ -11,7 +11,7 @@ module phrases
       say_open_by, say_limit, say_in_line, say_off_by, say_second, say_redundant, say_gap, say_mobile, &
       say_contradiction, say_drive, say_below, say_at_limit, say_change, say_smoothly, &
       say_unknown, &
-      say_way, say_too_long
+      say_way, say_too_long, say_branch, say_followed, say_passed, say_uncertain
 
    integer, parameter :: phrase_length = 72
 
@@ -25,9 +25,10 @@ module phrases
       say_limit = 38, say_in_line = 39, say_off_by = 40, say_second = 41, say_redundant = 42, say_gap = 43, &
       say_mobile = 44, say_contradiction = 45, say_drive = 46, say_below = 47, say_at_limit = 48, say_change = 49, &
       say_smoothly = 50, say_unknown = 51, &
-      say_way = 52, say_too_long = 53
+      say_way = 52, say_too_long = 53, say_branch = 54, say_followed = 55, say_passed = 56, &
+      say_uncertain = 57
 
-   character(phrase_length), parameter :: words(2, 53) = reshape([character(phrase_length) :: &
+   character(phrase_length), parameter :: words(2, 57) = reshape([character(phrase_length) :: &
       'KINEMATICS OF PLANAR MECHANISMS IN MATRIX FORMULATION', &
       'KINEMATYKA MECHANIZMOW PLASKICH W UJECIU MACIERZOWYM', &
       'SET OF COMPUTATIONS NO.', 'KOMPLET OBLICZEN NR', &
@@ -83,7 +84,11 @@ module phrases
       'GO ON SMOOTHLY', 'RUCH PRZECHODZI GLADKO', &
       'DIGITS THAT ROUNDING LEAVES OPEN', 'CYFRY NIEPEWNE Z POWODU ZAOKRAGLEN', &
       'THE WAY FROM T =', 'DROGA OD CHWILI T =', &
-      'IS TOO LONG, ASK FOR INSTANTS NEARER TO ONE ANOTHER', 'JEST ZA DLUGA, PODAJ CHWILE BLIZSZE SIEBIE'], [2, 53])
+      'IS TOO LONG, ASK FOR INSTANTS NEARER TO ONE ANOTHER', 'JEST ZA DLUGA, PODAJ CHWILE BLIZSZE SIEBIE', &
+      'BRANCH', 'GALAZ', &
+      'INSTANTS FOLLOWED', 'CHWILE SLEDZONE', &
+      'CHANGE POINTS PASSED', 'PUNKTY ZMIANY', &
+      'WITHOUT CERTIFICATE', 'BEZ SWIADECTWA'], [2, 57])
 
 contains
 

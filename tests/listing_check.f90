@@ -19,7 +19,8 @@ module listing_check
       'ROUGH ANGLE WAS OFF BY', 'KAT PRZYBLIZONY ODBIEGAL O', 'ANOTHER ASSEMBLY IS ABOUT AS NEAR', &
       'INNY MONTAZ JEST PODOBNIE BLISKI', 'REDUNDANT EQUATION', 'ROWNANIE NADLICZBOWE', &
       '?: DIGITS THAT ROUNDING LEAVES OPEN', '?: CYFRY NIEPEWNE Z POWODU ZAOKRAGLEN', &
-      'LARGEST GAP OF REDUNDANT EQUATIONS', 'NAJWIEKSZA NIEZGODNOSC ROWNAN NADLICZBOWYCH']
+      'LARGEST GAP OF REDUNDANT EQUATIONS', 'NAJWIEKSZA NIEZGODNOSC ROWNAN NADLICZBOWYCH', &
+      'IS TOO LONG, ASK FOR INSTANTS NEARER TO ONE ANOTHER', 'JEST ZA DLUGA, PODAJ CHWILE BLIZSZE SIEBIE']
 
 contains
 
@@ -46,6 +47,7 @@ contains
             tables = .false.
             ends = ends + 1
          end if
+         if (starts(line, ' BRANCH: ') .or. starts(line, ' GALAZ: ')) tables = .false.
          if (tables .and. starts(line, ' *** ')) marked = marked + merge(0, 1, is_remark(line))
          if (line_is_wrong(line, tables) .and. wrong == '') wrong = 'LISTING: '//trim(line)
       end do

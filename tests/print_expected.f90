@@ -4,9 +4,10 @@ program print_expected
    use, intrinsic :: iso_fortran_env, only: error_unit
    use kinds, only: wp
    use failures, only: failure_t
-   use mechanism, only: mechanism_t, instant_count, instant
+   use mechanism, only: mechanism_t, instant_count, instant, method_newton
    use motion, only: motion_t, new_motion
    use structure, only: findings_t
+   use continuity, only: tally_t
    use hand_groups, only: groups_by_hand, redundant_by_hand, passages_by_hand
    use deck, only: read_deck
    use text_output, only: output_t, open_output, close_output
@@ -49,6 +50,7 @@ contains
       type(motion_t) :: q
       type(findings_t) :: findings
       type(scatter_t) :: doubt
+      type(tally_t) :: tally
       integer :: k
 
       layout = new_layout(m)
@@ -62,15 +64,20 @@ contains
       do k = 0, instant_count(m) - 1
          call move_to(m, closed_form(name, m%set_number, real(instant(m, k), qp)), instant(m, k), q)
          if (k == 0) q%remarks = redundant_by_hand(name, m)
-         if (k > 0) q%remarks = passages_by_hand(name, m, instant(m, k - 1), instant(m, k))
+         if (k > 0) then
+            q%remarks = passages_by_hand(name, m, instant(m, k - 1), instant(m, k))
+            tally%passed = tally%passed + size(q%remarks)
+         end if
          call doubt_by_hand(name, m, q, doubt)
          call listing_instant(o, layout, m, q, k, doubt)
       end do
-      if (size(redundant_by_hand(name, m)) > 0) then
-         call listing_end(o, m, instant_count(m), 0, gap=0.0_wp)
+      ! All of these motions are followed from their first instant on; METHOD DENSE and MATRIX cannot tell.
+      if (m%method == method_newton) then
+         tally%followed = instant_count(m) - 1
       else
-         call listing_end(o, m, instant_count(m), 0)
+         tally%uncertain = instant_count(m) - 1
       end if
+      call listing_end(o, m, instant_count(m), 0, tally, gap=merge(0.0_wp, -1.0_wp, size(redundant_by_hand(name, m)) > 0))
    end subroutine print_set
 
    !> How far the motion `q` is known, next to dead points, from the closed forms of decks whose numbers are a little off.
