@@ -6,6 +6,7 @@ module analysis
    use motion, only: motion_t, mark_none, mark_not_converged, mark_singular, mark_overflow, mark_open
    use remarks, only: remark_t, remark_open, remark_far, remark_long
    use continuity, only: branch_t, tally_t, count_in, branch_none, branch_first, branch_same, branch_crossed
+   use choices, only: unused
    use way_ends, only: way_ends_t, note_end, lies_beyond, told_of_end
    use convergence, only: convergence_t, ended_open, ended_unsought
    use block_engine, only: seek_blocks
@@ -14,7 +15,7 @@ module analysis
    use following, only: following_t, way_t, new_following, go_to, is_too_far, has_too_many_parts, go_on_from, go_back
    implicit none
    private
-   public :: analysis_t, new_analysis, advance, redundancy_gap
+   public :: analysis_t, new_analysis, advance, redundancy_gap, closing_remarks
 
    !> A rough angle that is off by more is worth a word: the assembly may not be the one that was meant.
    real(wp), parameter :: far_angle = 1.0_wp
@@ -184,6 +185,7 @@ contains
             list = limit_remark(a%engine%blocks, t)
          end if
       end if
+      if (size(w%dead_end) > 0) list = w%dead_end
       if (has_too_many_parts(w)) list = [remark_t(kind=remark_long, t=a%place)]
       if (size(list) > 0 .and. .not. a%is_lost) call add_remarks(list, found)
       if (a%follows .and. a%convergence%ended /= ended_open) call note_end(a%ends, a%place, a%t, t, w%blocked, list)
@@ -229,6 +231,14 @@ contains
       if (.not. allocated(a%engine%blocks)) return
       if (a%engine%blocks%blocks%redundant > 0) redundancy_gap = a%largest_gap
    end function redundancy_gap
+
+   !> What there is to say after the last instant: of BRANCH cards for which there was no change point.
+   pure function closing_remarks(a) result(list)
+      type(analysis_t), intent(in) :: a
+      type(remark_t), allocatable :: list(:)
+
+      list = unused(a%choices)
+   end function closing_remarks
 
    !> Only derivatives up to number `known` exist, and `mark` says why.
    pure subroutine cut(q, known, mark)

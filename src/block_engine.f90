@@ -21,7 +21,8 @@ module block_engine
    use link_motion, only: chain_t, new_chain, move_links
    implicit none
    private
-   public :: block_engine_t, new_block_engine, seek_blocks, keep_blocks, tell_blocks, mark_blocks, return_blocks
+   public :: block_engine_t, new_block_engine, seek_blocks, seek_again, keep_blocks, tell_blocks, mark_blocks, &
+      return_blocks
 
    !> Lengths in units of `length`, a power of two in the deck's unit.
    type :: block_engine_t
@@ -123,7 +124,6 @@ contains
       logical, intent(out) :: same
       integer :: i
 
-      if (allocated(e%crossed)) e%crossed = .false.
       correction = 0.0_wp
       same = .true.
       c%ended = ended_singular
@@ -132,9 +132,7 @@ contains
       do i = 1, size(e%laws)
          e%state%target(:, i) = drive_motion(e%laws(i), t)*e%unit_of(i)
       end do
-      c%ended = ended_converged
-      c%reciprocal_condition = 1.0_wp
-      c%determinant = 1
+      call begin_record(e, c)
       if (follows) then
          call predict(e%history, t, e%state%u, e%change)
          same = e%change <= largest_change
@@ -144,6 +142,29 @@ contains
          call seek_each(e, e%needed, follows, c, correction, same)
       end if
    end subroutine seek_blocks
+
+   !> The moving blocks once more, from where they are now.
+   subroutine seek_again(e, c, correction, same)
+      type(block_engine_t), intent(inout) :: e
+      type(convergence_t), intent(out) :: c
+      real(wp), intent(out) :: correction
+      logical, intent(out) :: same
+
+      correction = 0.0_wp
+      same = .true.
+      call begin_record(e, c)
+      call seek_each(e, e%moving, .true., c, correction, same)
+   end subroutine seek_again
+
+   subroutine begin_record(e, c)
+      type(block_engine_t), intent(inout) :: e
+      type(convergence_t), intent(inout) :: c
+
+      e%crossed = .false.
+      c%ended = ended_converged
+      c%reciprocal_condition = 1.0_wp
+      c%determinant = 1
+   end subroutine begin_record
 
    !> The blocks of `list`, one after another; a block without an end that others can build on ends the search.
    subroutine seek_each(e, list, follows, c, correction, same)

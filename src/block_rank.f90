@@ -8,7 +8,7 @@ module block_rank
    use block_rows, only: assemble_dense
    implicit none
    private
-   public :: redundant_rows, moving_unknowns, jacobian_of, relative_side
+   public :: redundant_rows, moving_unknowns, jacobian_of, relative_side, least_direction, residual_of
 
    !> Singular values below this part of the largest count as zero: the root of the rounding, since a position at which
    !> they vanish is itself known to no more.
@@ -146,6 +146,32 @@ contains
          end do
       end associate
    end function relative_side
+
+   !> The least singular value of the Jacobian of block `i` with its vectors `left` (rows) and `right` (n).
+   subroutine least_direction(b, i, s, least, left, right)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(state_t), intent(inout) :: s
+      real(wp), intent(out) :: least, left(:), right(:)
+      type(values_t) :: v
+
+      v = decomposed(b, i, s)
+      least = v%s(v%n)
+      left = v%left(:, v%n)
+      right = v%right(v%n, :)
+   end subroutine least_direction
+
+   !> (rows) What the equations of block `i` leave with the values `x` (n), which `s` has from then on.
+   function residual_of(b, i, x, s) result(r)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: x(:)
+      type(state_t), intent(inout) :: s
+      real(wp) :: r(b%list(i)%shape%rows), a(b%list(i)%shape%rows*b%list(i)%shape%n)
+
+      call set_values(b, i, x, s)
+      call assemble_dense(b, i, s, a, r)
+   end function residual_of
 
    !> One step of least length towards the equations (Gauss and Newton); `far`: the largest residual before it.
    subroutine pull_back(b, i, s, far)

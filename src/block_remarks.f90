@@ -2,26 +2,19 @@
 module block_remarks
    use kinds, only: wp
    use drives, only: drive_motion
-   use remarks, only: remark_t, new_remark, remark_limit, remark_second, remark_redundant, remark_mobile, &
-      remark_change
+   use remarks, only: remark_t, new_remark, remark_limit, remark_second, remark_redundant, remark_mobile
    use block_needs, only: largest_known
    use block_rank, only: redundant_rows, moving_unknowns
    use first_position, only: has_second_position
    use block_engine, only: block_engine_t
    implicit none
    private
-   public :: first_remarks, limit_remark, crosses, change_remarks
+   public :: first_remarks, limit_remark, links_of
 
    !> A limit is told where it is no further than this part of the step that could not be made.
    real(wp), parameter :: near_part = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
    !> Arms with a smaller sine between them are in line: the last motion kept is the root of its distance in time away.
    real(wp), parameter :: parallel = 1.0e-3_wp
-   !> Over a step this short, in radians and lengths, a determinant that changes its sign although the prediction
-   !> was right to so small a part of the step tells a change point. Circuits that pass each other at the distance
-   !> d are told from one that crosses another where d^2 is above the product of the two, 1E-14.
-   real(wp), parameter :: short_step = max(1.0e-4_wp, 0.75_wp*sqrt(sqrt(epsilon(1.0_wp))))
-   real(wp), parameter :: right_part = max(1.0e-6_wp, 0.7_wp*epsilon(1.0_wp)**0.375_wp), most_wrong = 1.0e-2_wp
-   real(wp), parameter :: rounding = 500.0_wp*epsilon(1.0_wp)
 
 contains
 
@@ -42,7 +35,7 @@ contains
                call add_mobility(e, e%needed(k), list)
             else if (has_second_position(e%blocks, e%needed(k), e%tolerance, &
                e%rough(e%blocks%unknown(block%first:block%last)), e%work, e%state)) then
-               list = [list, new_remark(remark_second, links_of(e, e%blocks%unknown(block%first:block%last)))]
+               list = [list, new_remark(remark_second, links_of(e, e%needed(k)))]
             end if
          end associate
       end do
@@ -76,7 +69,7 @@ contains
       moves = moving_unknowns(e%blocks, i, e%state)
       if (.not. any(moves)) return
       associate (block => e%blocks%list(i))
-         moved = links_of(e, pack(e%blocks%unknown(block%first:block%last), moves))
+         moved = links_with(e, pack(e%blocks%unknown(block%first:block%last), moves))
       end associate
       do k = 1, size(e%chain%hung)
          associate (h => e%chain%hung(k))
@@ -86,8 +79,17 @@ contains
       list = [list, new_remark(remark_mobile, moved)]
    end subroutine add_mobility
 
+   !> (links) Those whose angle block `i` seeks.
+   pure function links_of(e, i) result(chosen)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i
+      logical :: chosen(size(e%frame_of))
+
+      chosen = links_with(e, e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
+   end function links_of
+
    !> (links) Those whose angle is among the `unknowns`.
-   pure function links_of(e, unknowns) result(chosen)
+   pure function links_with(e, unknowns) result(chosen)
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: unknowns(:)
       logical :: chosen(size(e%frame_of))
@@ -97,43 +99,7 @@ contains
       do k = 1, size(unknowns)
          chosen = chosen .or. (e%frame_of == unknowns(k) .and. e%frame_of > 0)
       end do
-   end function links_of
-
-   !> The motion found last lies beyond change points, on the branch that goes on smoothly; `correction`: of its
-   !> prediction, which rounding has made wrong by bend/pivot^2, as it does the rates so close to it.
-   pure logical function crosses(e, correction)
-      type(block_engine_t), intent(in) :: e
-      real(wp), intent(in) :: correction
-      real(wp) :: allowed
-      integer :: i
-
-      crosses = e%change <= short_step
-      do i = 1, size(e%crossed)
-         if (.not. (e%crossed(i) .and. crosses)) cycle
-         allowed = right_part + rounding*e%blocks%list(i)%bend/e%pivot_of(i)**2
-         crosses = correction <= min(allowed, most_wrong)*e%change
-      end do
-   end function crosses
-
-   !> Where they were: the least pivot goes through zero in proportion. A remark for each.
-   function change_remarks(e, t) result(list)
-      type(block_engine_t), intent(in) :: e
-      real(wp), intent(in) :: t
-      type(remark_t), allocatable :: list(:)
-      type(remark_t) :: r
-      integer :: i
-
-      allocate (list(0))
-      do i = 1, size(e%crossed)
-         if (.not. e%crossed(i)) cycle
-         associate (block => e%blocks%list(i), before => e%history%t(e%history%place(0)), &
-            a => e%pivot_of(i), b => e%pivot_now(i))
-            r = new_remark(remark_change, links_of(e, e%blocks%unknown(block%first:block%last)))
-            r%t = before + (t - before)*(a/(a + b))
-         end associate
-         list = [list, r]
-      end do
-   end function change_remarks
+   end function links_with
 
    !> Where the last motion kept comes to its end on the way to `t`, if it does: the first block, in solving order,
    !> that comes to a limit; those that build on it do no less.
@@ -152,7 +118,7 @@ contains
          rest = way_left(e, e%moving(k), t)
          if (abs(rest) <= 0.0_wp) cycle
          associate (i => e%moving(k), block => e%blocks%list(e%moving(k)))
-            r = new_remark(remark_limit, links_of(e, e%blocks%unknown(block%first:block%last)))
+            r = new_remark(remark_limit, links_of(e, e%moving(k)))
             r%in_line = is_in_line(e, i, r)
             r%t = e%history%t(e%history%place(0)) + rest
             call name_drive(e, i, r)

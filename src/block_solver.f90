@@ -33,8 +33,8 @@ module block_solver
    real(wp), parameter :: small_turn = 1.0e-9_wp*sqrt(epsilon(1.0_wp)*2.0_wp**52)
    !> A pivot this much smaller than the largest is worth an estimate of the inverse.
    real(wp), parameter :: suspicious_pivot = 1.0e-3_wp
-   !> So is a doubt from here on, where 1 over the least pivot stands for |J^-1|: with more than two unknowns that is too
-   !> small, by 4 with 9 of them, by 2000 with 49 (lattices); doubts are of importance from 0.1 on.
+   !> So is a doubt from here on, where 1 over the least pivot stands for |J^-1|: with more than two unknowns that is
+   !> too small, by 4 with 9 of them, by 2000 with 49 (lattices); doubts are of importance from 0.1 on.
    real(wp), parameter :: small_doubt = 1.0e-6_wp
    !> Relative error of the velocities, by what rounding leaves open in the position, from which on they are not told.
    real(wp), parameter :: largest_error = 0.05_wp
@@ -239,9 +239,10 @@ contains
       end associate
    end subroutine finish
 
-   !> Sign of the determinant, how certain it is that the root is the one that was predicted, and whether rounding leaves
-   !> the velocities open: with B = |J^-1| and the residual known to h, the position is known to B h, the Jacobian to B h
-   !> times its bend, the velocities to B times that. Newton and Kantorovich: one root only where B bend change is below 1/2.
+   !> Sign of the determinant, how certain it is that the root is the one that was predicted, and whether rounding
+   !> leaves the velocities open: with B = |J^-1| and the residual known to h, the position is known to B h, the
+   !> Jacobian to B h times its bend, the velocities to B times that. Newton and Kantorovich: one root only where B
+   !> bend change is below 1/2.
    subroutine judge(b, i, n, w, s, c)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, n

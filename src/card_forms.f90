@@ -6,7 +6,7 @@ module card_forms
    private
    public :: form_t, forms, label_unused, label_needed, label_optional, find_form, nearest_form
    public :: form_title, form_units, form_lang, form_ground, form_link, form_point, form_revolute, form_prism
-   public :: form_drive, form_add, form_time, form_at, form_method, form_print, form_end, form_star
+   public :: form_drive, form_add, form_time, form_at, form_method, form_print, form_branch, form_end, form_star
 
    !> What a label field of a card is.
    integer, parameter :: label_unused = 0, label_needed = 1, label_optional = 2
@@ -21,14 +21,15 @@ module card_forms
 
    integer, parameter :: form_title = 1, form_units = 2, form_lang = 3, form_ground = 4, form_link = 5
    integer, parameter :: form_point = 6, form_revolute = 7, form_prism = 8, form_drive = 9, form_add = 10
-   integer, parameter :: form_time = 11, form_at = 12, form_method = 13, form_print = 14, form_end = 15
+   integer, parameter :: form_time = 11, form_at = 12, form_method = 13, form_print = 14, form_branch = 15
+   integer, parameter :: form_end = 16
    !> Not in the table: a `*` card continues the card above it.
-   integer, parameter :: form_star = 16
+   integer, parameter :: form_star = 17
 
    integer, parameter :: u = label_unused, n = label_needed, o = label_optional
 
    !> A card's form is its place here. TITLE's text is no label; ADD's third real depends on its label A.
-   type(form_t), parameter :: forms(15) = [ &
+   type(form_t), parameter :: forms(16) = [ &
       form_t('TITLE',    [u, u, u], 0, 0, .true.), &
       form_t('UNITS',    [o, o, o], 0, 0, .true.), &
       form_t('LANG',     [n, u, u], 0, 0, .true.), &
@@ -43,6 +44,7 @@ module card_forms
       form_t('AT',       [u, u, u], 0, 3, .false.), &
       form_t('METHOD',   [n, u, u], 0, 1, .true.), &
       form_t('PRINT',    [n, o, o], 3, 0, .false.), &
+      form_t('BRANCH',   [o, u, u], 0, 1, .false.), &
       form_t('END',      [u, u, u], 0, 0, .false.)]
 
 contains

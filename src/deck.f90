@@ -8,6 +8,7 @@ module deck
    use card_reader, only: reading_t, read_card, read_star
    use complaints, only: complaints_t, complain_field, complain_deck, complaint_count, &
                          complaints_report, whole_text
+   use deck_branches, only: build_branches
    use deck_bodies, only: build_bodies
    use deck_checks, only: check_missing, check_unused, check_instants
    use deck_codes, only: deck_empty, deck_long, end_missing, set_empty, star_first
@@ -146,6 +147,7 @@ contains
          call build_bodies(draft, angle_unit, set, list)
          call build_drives(draft, angle_unit, set, list)
          call build_requests(draft, set, list)
+         call build_branches(draft, set, list)
          if (complaint_count(list) == progress%complaints_before) then
             call check_unused(draft, set, list)
             call check_instants(draft, set, list)

@@ -89,6 +89,9 @@ module deck_codes
    ! Times and options.
    type(code_t), parameter, public :: &
       time_point = code_t(85, 'T0 AND T1 ARE EQUAL'), &
+      branch_ground = code_t(86, 'A GROUND LINK HAS NO OTHER BRANCH'), &
+      branch_method = code_t(87, 'ONLY METHOD NEWTON TAKES ANOTHER BRANCH'), &
+      branch_repeated = code_t(88, 'THIS BRANCH CARD IS REPEATED; FIRST ON CARD'), &
       lang_kind = code_t(90, 'IS NOT EN OR PL'), &
       units_angle = code_t(91, 'IS NOT RAD OR DEG'), &
       method_kind = code_t(92, 'IS NOT NEWTON, DENSE OR MATRIX'), &

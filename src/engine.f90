@@ -1,5 +1,5 @@
-!> Level 13. The engine of a set: blocks (METHOD NEWTON) or all equations at once (METHOD DENSE and MATRIX), asked in the
-!> same way.
+!> Level 13. The engine of a set: blocks (METHOD NEWTON) or all equations at once (METHOD DENSE and MATRIX), asked in
+!> the same way.
 module engine
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton

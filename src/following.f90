@@ -3,12 +3,13 @@
 module following
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use remarks, only: remark_t
+   use remarks, only: remark_t, remark_dead_end
    use continuity, only: branch_t
    use scales, only: characteristic_length, largest_rate
    use convergence, only: convergence_t, is_solved
    use predictor, only: largest_change
-   use block_remarks, only: crosses, change_remarks
+   use choices, only: choices_t, new_choices
+   use change_points, only: crosses, pass
    use engine, only: engine_t, new_engine, seek, keep, mark_place, return_to_place
    implicit none
    private
@@ -32,6 +33,7 @@ module following
    !> The engine, and how far it has come.
    type :: following_t
       type(engine_t) :: engine
+      type(choices_t) :: choices                 !< BRANCH cards, and change points passed
       type(convergence_t) :: convergence         !< of the last position sought
       logical :: follows = .false.               !< a regular motion is kept, found at `t`
       real(wp) :: t = 0.0_wp
@@ -45,7 +47,7 @@ module following
       logical :: arrived = .false., blocked = .false.
       integer :: tries = 0
       type(branch_t) :: branch
-      type(remark_t), allocatable :: passed(:)
+      type(remark_t), allocatable :: passed(:), dead_end(:)
    end type way_t
 
 contains
@@ -57,6 +59,7 @@ contains
       real(wp) :: rate
 
       f%engine = new_engine(m)
+      f%choices = new_choices(m)
       rate = largest_rate(m, characteristic_length(m))
       if (rate > 0.0_wp .and. depends_on_before(f%engine)) f%longest_part = largest_change/rate
    end function new_following
@@ -79,7 +82,7 @@ contains
       integer :: failures
       logical :: accepted
 
-      allocate (w%passed(0))
+      allocate (w%passed(0), w%dead_end(0))
       part = t - f%t
       longest = min(f%longest_part, abs(part))
       failures = 0
@@ -113,6 +116,7 @@ contains
       logical, intent(out) :: accepted
       real(wp) :: correction
       logical :: same
+      type(remark_t), allocatable :: list(:)
 
       call seek(f%engine, t, f%follows, f%convergence, correction, same)
       accepted = is_solved(f%convergence)
@@ -120,9 +124,13 @@ contains
       accepted = accepted .and. correction <= largest_correction .and. f%convergence%doubt <= largest_doubt
       if (accepted .and. .not. same .and. .not. f%convergence%singular .and. allocated(f%engine%blocks)) then
          same = crosses(f%engine%blocks, correction)
-         if (same) w%passed = [w%passed, change_remarks(f%engine%blocks, t)]
+         if (same) then
+            call pass(f%engine%blocks, t, f%choices, f%convergence, list, same)
+            if (same) w%passed = [w%passed, list]
+            if (.not. same) w%dead_end = pack(list, list%kind == remark_dead_end)
+         end if
       end if
-      accepted = accepted .and. same
+      accepted = accepted .and. same .and. f%convergence%doubt <= largest_doubt
       if (.not. accepted) return
       w%branch%parts = w%branch%parts + 1
       w%branch%doubt = max(w%branch%doubt, f%convergence%doubt)
@@ -154,7 +162,8 @@ contains
    end subroutine go_on_from
 
    !> The motion at the place where the way `w` began is again the one that is followed: what comes after an instant
-   !> without a motion is as if that had not been asked for. From close to a dead point no step back would be small enough.
+   !> without a motion is as if that had not been asked for. From close to a dead point no step back would be small
+   !> enough.
    subroutine go_back(f, w)
       type(following_t), intent(inout) :: f
       type(way_t), intent(in) :: w

@@ -11,7 +11,7 @@ module job
    use listing, only: layout_t, new_layout, listing_head, listing_instant, listing_end
    use csv, only: csv_head, csv_instant
    use protocol, only: protocol_head, protocol_instant
-   use analysis, only: analysis_t, new_analysis, advance, redundancy_gap
+   use analysis, only: analysis_t, new_analysis, advance, redundancy_gap, closing_remarks
    use scatter, only: scatter_t, largest_errors
    use rounding_samples, only: samples_t, new_samples, take_samples
    use command_line, only: options_t
@@ -160,7 +160,8 @@ contains
             call protocol_instant(o%log, k, q%t, a%convergence, a%branch)
          end if
       end do
-      call listing_end(o%listing, m, instant_count(m) - marked, marked, a%tally, redundancy_gap(a))
+      call listing_end(o%listing, m, instant_count(m) - marked, marked, a%tally, redundancy_gap(a), &
+         closing_remarks(a))
       if (marked > 0) status = status_marked
    end subroutine run_set
 end module job

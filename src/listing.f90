@@ -7,6 +7,7 @@ module listing
       mark_open
    use structure, only: findings_t
    use continuity, only: tally_t
+   use remarks, only: remark_t
    use listing_structure, only: put_structure
    use listing_remarks, only: put_remarks, put_gap
    use points, only: row_t, row_of, is_due
@@ -205,18 +206,20 @@ contains
 
    !> The last lines of a set: what is known of the branches on which its instants were found, then how many were solved
    !> and how many are marked; before them, where equations are redundant, by how much they differ (`gap`, in parts
-   !> of the characteristic length; negative where none are).
-   subroutine listing_end(o, m, solved, marked, tally, gap)
+   !> of the characteristic length; negative where none are); and other `remarks`.
+   subroutine listing_end(o, m, solved, marked, tally, gap, remarks)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: solved, marked
       type(tally_t), intent(in) :: tally
       real(wp), intent(in), optional :: gap
+      type(remark_t), intent(in), optional :: remarks(:)
 
       call put(o, '')
       if (present(gap)) then
          if (gap >= 0.0_wp) call put_gap(o, m, gap)
       end if
+      if (present(remarks)) call put_remarks(o, m, remarks)
       call put(o, ' '//phrase(say_branch, m%polish)//':  '//phrase(say_followed, m%polish)//' '//whole(tally%followed) &
          //', '//phrase(say_passed, m%polish)//' '//whole(tally%passed) &
          //', '//phrase(say_uncertain, m%polish)//' '//whole(tally%uncertain))

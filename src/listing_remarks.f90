@@ -4,13 +4,13 @@ module listing_remarks
    use constants, only: degree
    use mechanism, only: mechanism_t
    use remarks, only: remark_t, remark_open, remark_limit, remark_far, remark_second, remark_redundant, remark_mobile, &
-      remark_change, remark_long
+      remark_change, remark_long, remark_unused, remark_dead_end
    use naming, only: drive_name, listed
    use numerals, only: whole
    use text_output, only: output_t, put
    use phrases, only: phrase, say_pair, say_drive, say_link, say_links, say_open_by, say_limit, say_in_line, &
       say_at_limit, say_off_by, say_second, say_redundant, say_mobile, say_gap, say_below, say_change, say_smoothly, &
-      say_way, say_too_long
+      say_way, say_too_long, say_other, say_not_found, say_branch_from, say_no_change
    implicit none
    private
    public :: put_remarks, put_gap
@@ -29,7 +29,7 @@ contains
 
       do i = 1, size(list)
          select case (list(i)%kind)
-         case (remark_open, remark_limit, remark_mobile, remark_long)
+         case (remark_open, remark_limit, remark_mobile, remark_long, remark_unused, remark_dead_end)
             call put(o, ' *** '//words_of(m, list(i)))
             if (list(i)%kind == remark_limit) call put(o, ' *** '//links(m, list(i))//' ' &
                //phrase(merge(say_in_line, say_at_limit, list(i)%in_line), m%polish))
@@ -59,7 +59,15 @@ contains
          text = phrase(say_redundant, m%polish)//': '//owner(m, r)
       case (remark_change)
          text = phrase(say_change, m%polish)//' '//number(r%t, '(es13.5)')//', '//links(m, r)//': ' &
-            //phrase(say_smoothly, m%polish)
+            //phrase(merge(say_other, say_smoothly, r%other), m%polish)
+      case (remark_dead_end)
+         text = phrase(say_change, m%polish)//' '//number(r%t, '(es13.5)')//', '//links(m, r)//': ' &
+            //phrase(say_not_found, m%polish)
+      case (remark_unused)
+         text = 'BRANCH '
+         if (r%links(1) > 0) text = text//trim(m%links(r%links(1))%name)//' '
+         text = text//phrase(say_branch_from, m%polish)//' '//number(r%t, '(es13.5)')//': ' &
+            //phrase(say_no_change, m%polish)
       case (remark_long)
          text = phrase(say_way, m%polish)//' '//number(r%t, '(es13.5)')//' '//phrase(say_too_long, m%polish)
       case (remark_mobile)

@@ -5,7 +5,7 @@ module remarks
    private
    public :: remark_t, new_remark, most_links
    public :: remark_open, remark_limit, remark_far, remark_second, remark_redundant, remark_mobile, &
-      remark_change, remark_long
+      remark_change, remark_long, remark_unused, remark_dead_end
 
    integer, parameter :: remark_open = 1       !< an equation of `pair` or `drive` stays open by `value`
    integer, parameter :: remark_limit = 2      !< at `t`, where `drive` has `value`, the motion of `links` has its limit
@@ -13,8 +13,10 @@ module remarks
    integer, parameter :: remark_second = 4     !< `links` could as well have been assembled in another way
    integer, parameter :: remark_redundant = 5  !< an equation of `pair` or `drive` could be spared
    integer, parameter :: remark_mobile = 6     !< `links` can move although the drives stand still
-   integer, parameter :: remark_change = 7     !< at `t` two branches cross; `links` have gone on smoothly
+   integer, parameter :: remark_change = 7     !< at `t` two branches cross; `links` have gone on smoothly, or not
    integer, parameter :: remark_long = 8       !< the way from `t` would take too many parts
+   integer, parameter :: remark_unused = 9     !< no change point was passed after `t`, as a BRANCH card has it
+   integer, parameter :: remark_dead_end = 10  !< the other branch of `links` at `t` was not found
 
    integer, parameter :: most_links = 6
 
@@ -25,6 +27,7 @@ module remarks
       integer :: links(most_links) = 0
       integer :: more = 0                      !< links for which there is no room
       logical :: in_line = .false.             !< remark_limit: the two links are in line
+      logical :: other = .false.               !< remark_change: on the other branch
       logical :: is_angle = .false.            !< of `value`
       real(wp) :: value = 0.0_wp, t = 0.0_wp
    end type remark_t

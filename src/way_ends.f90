@@ -23,8 +23,8 @@ module way_ends
 
 contains
 
-   !> The way from `place` to `t` has ended at `reached`. `blocked`: no part of it could be made there; otherwise it is only
-   !> known that `t` was not reached. `remarks`: what there is to say of it.
+   !> The way from `place` to `t` has ended at `reached`. `blocked`: no part of it could be made there; otherwise it
+   !> is only known that `t` was not reached. `remarks`: what there is to say of it.
    pure subroutine note_end(ends, place, reached, t, blocked, remarks)
       type(way_ends_t), intent(inout) :: ends
       real(wp), intent(in) :: place, reached, t

@@ -12,6 +12,7 @@ module closed_forms
    use closed_forms_bars, only: chebyshev, kite, antiparallelogram, hart, two_loops
    use closed_forms_slides, only: crank_inline, inverted_slider, oldham
    use closed_forms_overconstrained, only: parallel_cranks, double_parallelogram, two_guides, cognates, dixon
+   use closed_forms_branches, only: parallelogram_branch, antiparallelogram_branch, kite_branch, scott_russell_branch
    use closed_forms_hard, only: parallelogram, scott_russell, near_equal_rod, dead_point, far_small, many_turns
    implicit none
    private
@@ -25,7 +26,7 @@ module closed_forms
       integer :: redundant = 0                        !< pairs' equations that the others already hold
    end type count_t
 
-   type(count_t), parameter :: counts(52) = [ &
+   type(count_t), parameter :: counts(56) = [ &
       count_t('yoke', 6, 5, 2, 1), count_t('yoke_mirrored', 6, 5, 2, 1), count_t('four_bar', 4, 4, 0, 1), &
       count_t('crank_slider', 4, 3, 1, 1), count_t('scotch_yoke', 4, 2, 2, 1), count_t('whitworth', 6, 5, 2, 1), &
       count_t('drag_link', 4, 4, 0, 1), count_t('cylinder', 4, 3, 1, 1), count_t('trammel', 4, 2, 2, 1), &
@@ -41,6 +42,8 @@ module closed_forms
       count_t('parallel_cranks', 5, 6, 0, 1, redundant=1), count_t('double_parallelogram', 5, 6, 0, 1, redundant=1), &
       count_t('two_guides', 4, 3, 2, 1, redundant=2), count_t('cognates', 10, 14, 0, 1, redundant=2), &
       count_t('dixon', 9, 12, 0, 1, redundant=1), &
+      count_t('parallelogram_branch', 4, 4, 0, 1), count_t('antiparallelogram_branch', 4, 4, 0, 1), &
+      count_t('kite_branch', 4, 4, 0, 1), count_t('scott_russell_branch', 4, 3, 1, 1), &
       count_t('parallelogram', 4, 4, 0, 1), count_t('parallelogram_at', 4, 4, 0, 1), &
       count_t('antiparallelogram_across', 4, 4, 0, 1), count_t('antiparallelogram_at', 4, 4, 0, 1), &
       count_t('kite_across', 4, 4, 0, 1), count_t('kite_at', 4, 4, 0, 1), &
@@ -156,6 +159,14 @@ contains
          links = parallelogram(t)
       case ('scott_russell', 'scott_russell_at')
          links = scott_russell(t)
+      case ('parallelogram_branch')
+         links = parallelogram_branch(t)
+      case ('antiparallelogram_branch')
+         links = antiparallelogram_branch(t)
+      case ('kite_branch')
+         links = kite_branch(t)
+      case ('scott_russell_branch')
+         links = scott_russell_branch(t)
       case ('near_equal_rod')
          links = near_equal_rod(t)
       case ('dead_point_6')

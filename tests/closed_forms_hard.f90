@@ -7,7 +7,7 @@ module closed_forms_hard
    use closed_forms_dyads, only: place_t, body_t, fixed_place, body, polar, direction, corner, on_line
    implicit none
    private
-   public :: parallelogram, scott_russell, near_equal_rod, dead_point, pushed_slider, far_small, many_turns
+   public :: parallelogram, parallelogram_links, scott_russell, near_equal_rod, dead_point, pushed_slider, far_small, many_turns
 
 contains
 
@@ -15,15 +15,21 @@ contains
    pure function parallelogram(t) result(links)
       real(qp), intent(in) :: t
       type(body_t) :: links(4)
-      type(jet_t) :: phi, flat
+
+      links = parallelogram_links((20.0_qp + 10.0_qp*time_jet(t))*degree_q)
+   end function parallelogram
+
+   pure function parallelogram_links(phi) result(links)
+      type(jet_t), intent(in) :: phi
+      type(body_t) :: links(4)
+      type(jet_t) :: flat
       type(place_t) :: a0
 
-      phi = (20.0_qp + 10.0_qp*time_jet(t))*degree_q
       flat = constant_jet(0.0_qp)
       a0 = fixed_place(0.0_qp, 0.0_qp)
       links = [body('BASE', a0, flat), body('CRANK', a0, phi), body('COUPLER', polar(a0, 2.0_qp, phi), flat), &
                body('ROCKER', fixed_place(4.0_qp, 0.0_qp), phi)]
-   end function parallelogram
+   end function parallelogram_links
 
    !> Scott-Russell with crank 1.5 and bar 3: its middle on the crank's pin, its end B on the x axis at 3 cos phi, its
    !> end C on the y axis at 3 sin phi. At 90 deg B is in the centre.

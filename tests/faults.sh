@@ -350,6 +350,56 @@ told 'in Polish: a limit' 2 "1: *** NIE ZNALEZIONO POLOZENIA
 1: *** KRES RUCHU W CHWILI T = $(found 2.5), NAPED X B = $(found 4) M
 1: *** OGNIWA CRANK, ROD NA KRESIE RUCHU, W JEDNEJ LINII"
 
+# Change points: a BRANCH card asks for the other branch. Crank 2 at 20 deg and 10 deg a second on a base of 4.
+crossing() { head_of CROSSING; four_bar '' 0.0 2.0 4.0 2.0 4.0 20.0 0.0 20.0; drive ANGLE CRANK '' 20.0 10.0; "$@"; until_time 4 20.0; }
+at16='CHANGE POINT AT T = 1.60000E+01, LINKS COUPL, ROCK'
+# rocker: its angle at the last instant; crossed, its corners A and B change with A0 and B0: tan(r/2) = -tan(p/2)*(4 + 2)/(4 - 2)
+rocker() { "$kinmat" "$w/deck" --csv "$w/csv" > "$w/out"; awk -F, '$5 == "ROCK" { p = $8 } END { printf "%.9f", p }' "$w/csv"; }
+crossed=$(awk 'BEGIN { pi = atan2(0, -1); p = 220*pi/180; a = atan2(6*sin(p/2), -2*cos(p/2))*360/pi; printf "%.9f", a }')
+crossing true > "$w/deck"
+told 'a change point without a card' 0 "4: --- $at16: GO ON SMOOTHLY"
+equal 'a change point without a card: the rocker' 220.000000000 "$(rocker)"
+crossing card BRANCH ROCK '' '' 16.0 > "$w/deck"
+told 'a change point with its card' 0 "4: --- $at16: TAKE THE OTHER BRANCH"
+equal 'a change point with its card: the rocker' "$crossed" "$(rocker)"
+crossing card BRANCH CRANK '' '' 1.0 > "$w/deck"
+told 'a card for a link that passes none' 0 "4: --- $at16: GO ON SMOOTHLY
+4: *** BRANCH CRANK FROM T = 1.00000E+00: NO CHANGE POINT WAS PASSED"
+crossing card BRANCH '' '' '' 17.0 > "$w/deck"
+told 'a card after the last change point' 0 "4: --- $at16: GO ON SMOOTHLY
+4: *** BRANCH FROM T = 1.70000E+01: NO CHANGE POINT WAS PASSED"
+{ crossing card BRANCH ROCK '' '' 16.0; } | sed 's/^TIME /'"$(drive ANGLE CRANK '' 20.0 10.0)"'\n&/' > "$w/deck"
+told 'a change point with its card, the drive given twice' 0 "0: --- REDUNDANT EQUATION: DRIVE ANGLE CRANK
+4: --- CHANGE POINT AT T = 1.60000E+01, LINKS COUPL, ROCK: TAKE THE OTHER BRANCH
+$below"
+equal 'a change point with its card, the drive given twice: the rocker' "$crossed" "$(rocker)"
+{ head_of RUSZT; card LANG PL; four_bar '' 0.0 2.0 4.0 2.0 4.0 20.0 0.0 20.0; drive ANGLE CRANK '' 20.0 10.0
+   card BRANCH COUPL '' '' 0.0; card BRANCH '' '' '' 50.0; until_time 1 20.0; } > "$w/deck"
+told 'in Polish: the other branch' 0 '1: --- PUNKT ZMIANY W CHWILI T = 1.60000E+01, OGNIWA COUPL, ROCK: RUCH PRZECHODZI NA DRUGA GALAZ
+1: *** BRANCH OD CHWILI T = 5.00000E+01: NIE BYLO PUNKTU ZMIANY'
+# The bar B C of a Scott-Russell may turn with the crank once B is in its centre; a second guide adds what is known. From then
+# on, 25 s at 12 deg a second from 30 deg, the bar has the angle of the crank less 180 deg.
+{ scott_russell drive ANGLE CRANK '' 30.0 12.0 | sed -e '/^TIME/d' -e '/^END/d' -e '/^POINT   C /d'; point G2 BASE 0.0 1.0; point S2 BLOCK 0.3 1.0
+   card PRISM G2 S2 GUIDE2 0.0 0.0 0.0; card BRANCH BAR '' '' 5.0; until_time 5 25.5; } > "$w/deck"
+told 'the other branch in spite of redundant equations' 0 "0: --- REDUNDANT EQUATION: PAIR GUIDE2
+1: --- CHANGE POINT AT T = 5.00000E+00, LINKS CRANK, BAR: TAKE THE OTHER BRANCH
+4: --- CHANGE POINT AT T = 2.00000E+01, LINKS CRANK, BAR: GO ON SMOOTHLY
+$below"
+equal 'the other branch in spite of redundant equations: the bar' 156.000000000 "$("$kinmat" "$w/deck" --csv "$w/csv" > "$w/out"
+   awk -F, '$5 == "BAR" { p = $8 } END { printf "%.9f", p }' "$w/csv")"
+# Three cranks on one line, too, can only go on: with the middle one there is no antiparallelogram.
+inline() { head_of INLINE; three_cranks 0.0 20.0 | sed -e 's/^\(POINT   C0 .*\)1.0$/\10.0/' -e 's/^\(POINT   C  .*\)1.0$/\10.0/' \
+   -e 's/^\(LINK    CRANK-3 .*\)1.0  /\10.0  /'; drive ANGLE CRANK-1 '' 20.0 10.0; "$@"; until_time 2 20.0; }
+inline true > "$w/deck"
+told 'three cranks on one line' 0 "0: --- REDUNDANT EQUATION: PAIR PAIR-C
+2: --- CHANGE POINT AT T = 1.60000E+01, LINKS CRANK-1, CRANK-2, CRANK-3, COUPLER: GO ON SMOOTHLY
+$below"
+inline card BRANCH '' '' '' 0.0 > "$w/deck"
+told 'three cranks on one line: no other branch' 2 "0: --- REDUNDANT EQUATION: PAIR PAIR-C
+2:$none
+2: *** CHANGE POINT AT T = 1.60000E+01, LINKS CRANK-1, CRANK-2, CRANK-3, COUPLER: OTHER BRANCH NOT FOUND
+$below"
+
 # A way of more parts than are tried: 200000 times a drive's 1 rad. A crank alone is where its drive says.
 { head_of FAR; four_bar '' $crank_rocker; drive ANGLE CRANK '' 14.0 9.0; card AT '' '' '' 0.0 1.5E6 2.0E6; card AT '' '' '' 2.0 -3.0E6
    card END; } > "$w/deck"

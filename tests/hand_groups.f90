@@ -14,15 +14,23 @@ module hand_groups
       character(24) :: deck = ''
       real(wp) :: t = 0.0_wp
       character(24) :: links = ''
+      logical :: other = .false.         !< as a BRANCH card asks for
    end type passage_t
 
    ! Cranks at 180 and 360 deg, from 20 deg at 10 deg a second and from 15 deg at 12.5; at 90 and 270 deg from 30 deg at 12.
-   type(passage_t), parameter :: passages(8) = [ &
+   type(passage_t), parameter :: passages(16) = [ &
       passage_t('parallelogram', 16.0_wp, 'COUPLER ROCKER'), passage_t('parallelogram', 34.0_wp, 'COUPLER ROCKER'), &
       passage_t('kite_across', 16.0_wp, 'COUPLER ROCKER'), passage_t('kite_across', 34.0_wp, 'COUPLER ROCKER'), &
       passage_t('antiparallelogram_across', 13.2_wp, 'COUPLER ROCKER'), &
       passage_t('antiparallelogram_across', 27.6_wp, 'COUPLER ROCKER'), &
-      passage_t('scott_russell', 5.0_wp, 'BAR'), passage_t('scott_russell', 20.0_wp, 'BAR')]
+      passage_t('scott_russell', 5.0_wp, 'BAR'), passage_t('scott_russell', 20.0_wp, 'BAR'), &
+      passage_t('parallelogram_branch', 16.0_wp, 'COUPLER ROCKER', .true.), &
+      passage_t('parallelogram_branch', 34.0_wp, 'COUPLER ROCKER', .true.), &
+      passage_t('antiparallelogram_branch', 27.6_wp, 'COUPLER ROCKER', .true.), &
+      passage_t('antiparallelogram_branch', 13.2_wp, 'COUPLER ROCKER'), &
+      passage_t('kite_branch', 16.0_wp, 'COUPLER ROCKER', .true.), &
+      passage_t('kite_branch', 34.0_wp, 'COUPLER ROCKER', .true.), &
+      passage_t('scott_russell_branch', 5.0_wp, 'BAR', .true.), passage_t('scott_russell_branch', 20.0_wp, 'BAR')]
 
    !> Of all sets of a deck (0) or of one.
    type :: statement_t
@@ -32,7 +40,7 @@ module hand_groups
       character(40) :: redundant = ''    !< pairs with equations that could be spared
    end type statement_t
 
-   type(statement_t), parameter :: statements(54) = [ &
+   type(statement_t), parameter :: statements(58) = [ &
       statement_t('yoke', 0, '*CRANK; BLOCK LEVER; ROD RAM'), &
       statement_t('yoke_mirrored', 0, '*CRANK; BLOCK LEVER; ROD RAM'), &
       statement_t('four_bar', 0, '*CRANK; COUPLER ROCKER'), &
@@ -73,6 +81,10 @@ module hand_groups
       statement_t('oldham', 0, '*DISC-1; DISC-2 CROSS'), &
       statement_t('near_equal_rod', 0, '*CRANK; ROD PISTON'), &
       statement_t('many_turns', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('parallelogram_branch', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('antiparallelogram_branch', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('kite_branch', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('scott_russell_branch', 0, '*CRANK; BAR SHOE'), &
       statement_t('parallelogram', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('parallelogram_at', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('antiparallelogram_across', 0, '*CRANK; COUPLER ROCKER'), &
@@ -144,9 +156,10 @@ contains
 
       allocate (list(0))
       do i = 1, size(passages)
-         if (passages(i)%deck /= name .or. passages(i)%t <= before .or. passages(i)%t > t) cycle
+         if (passages(i)%deck /= name .or. passages(i)%t <= min(before, t) .or. passages(i)%t > max(before, t)) cycle
          r = new_remark(remark_change, [(index(' '//passages(i)%links, ' '//trim(m%links(k)%name)//' ') > 0, k=1, size(m%links))])
          r%t = passages(i)%t
+         r%other = passages(i)%other
          list = [list, r]
       end do
    end function passages_by_hand
