@@ -1,4 +1,4 @@
-!> Level 15. The analysis of one set of computations, instant by instant: what is found, what is not, and what there is
+!> Level 16. The analysis of one set of computations, instant by instant: what is found, what is not, and what there is
 !> to say of it.
 module analysis
    use kinds, only: wp
@@ -12,6 +12,7 @@ module analysis
    use block_engine, only: seek_blocks
    use block_remarks, only: first_remarks, limit_remark
    use engine, only: tell
+   use standing, only: stand_on
    use following, only: following_t, way_t, new_following, go_to, is_too_far, has_too_many_parts, go_on_from, go_back
    implicit none
    private
@@ -64,7 +65,7 @@ contains
       end if
       if (found%known == 2) then
          call go_on_from(a%following_t, t)
-      else
+      else if (.not. w%stands) then
          call go_back(a%following_t, w)
       end if
       a%is_lost = .not. w%arrived
@@ -73,10 +74,16 @@ contains
    !> The motion found at the end of the way `w`.
    subroutine arrive(a, w, found)
       type(analysis_t), intent(inout) :: a
-      type(way_t), intent(in) :: w
+      type(way_t), intent(inout) :: w
       type(motion_t), intent(inout) :: found
+      type(remark_t), allocatable :: list(:)
 
       call tell_motion(a, found)
+      if (a%convergence%singular) then
+         call stand_on(a%following_t, found%t, w, list, w%stands)
+         if (w%stands) call tell_motion(a, found)
+         call add_remarks(list, found)
+      end if
       call judge_branch(a, w)
       if (.not. a%has_begun .or. (.not. a%follows .and. found%known == 2)) call remark_on_start(a, found)
    end subroutine arrive
@@ -124,7 +131,7 @@ contains
       a%branch = w%branch
       if (.not. a%follows) then
          a%branch%kind = branch_first
-      else if (a%convergence%singular .or. .not. allocated(a%engine%blocks)) then
+      else if ((a%convergence%singular .and. .not. w%stands) .or. .not. allocated(a%engine%blocks)) then
          a%branch%kind = branch_none
       else
          a%branch%kind = merge(branch_crossed, branch_same, size(w%passed) > 0)

@@ -21,8 +21,8 @@ module block_engine
    use link_motion, only: chain_t, new_chain, move_links
    implicit none
    private
-   public :: block_engine_t, new_block_engine, seek_blocks, seek_again, keep_blocks, tell_blocks, mark_blocks, &
-      return_blocks
+   public :: block_engine_t, new_block_engine, seek_blocks, seek_again, set_targets, keep_blocks, tell_blocks
+   public :: mark_blocks, return_blocks
 
    !> Lengths in units of `length`, a power of two in the deck's unit.
    type :: block_engine_t
@@ -122,16 +122,13 @@ contains
       type(convergence_t), intent(out) :: c
       real(wp), intent(out) :: correction
       logical, intent(out) :: same
-      integer :: i
 
       correction = 0.0_wp
       same = .true.
       c%ended = ended_singular
       if (.not. e%blocks%solvable) return
       e%t = t
-      do i = 1, size(e%laws)
-         e%state%target(:, i) = drive_motion(e%laws(i), t)*e%unit_of(i)
-      end do
+      call set_targets(e, t)
       call begin_record(e, c)
       if (follows) then
          call predict(e%history, t, e%state%u, e%change)
@@ -142,6 +139,17 @@ contains
          call seek_each(e, e%needed, follows, c, correction, same)
       end if
    end subroutine seek_blocks
+
+   !> What the drives ask for at `t`.
+   pure subroutine set_targets(e, t)
+      type(block_engine_t), intent(inout) :: e
+      real(wp), intent(in) :: t
+      integer :: i
+
+      do i = 1, size(e%laws)
+         e%state%target(:, i) = drive_motion(e%laws(i), t)*e%unit_of(i)
+      end do
+   end subroutine set_targets
 
    !> The moving blocks once more, from where they are now.
    subroutine seek_again(e, c, correction, same)

@@ -45,6 +45,7 @@ module following
    !> tried, what was verified of those kept, the change points on it.
    type :: way_t
       logical :: arrived = .false., blocked = .false.
+      logical :: stands = .false.                !< on a change point, from short before which it is followed
       integer :: tries = 0
       type(branch_t) :: branch
       type(remark_t), allocatable :: passed(:), dead_end(:)

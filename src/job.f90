@@ -1,4 +1,4 @@
-!> Level 16. One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later.
+!> Level 17. One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later.
 module job
    use failures, only: failure_t, fail, status_solved, status_refused, status_marked, status_machine
    use mechanism, only: mechanism_t, instant_count, instant

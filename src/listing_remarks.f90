@@ -10,7 +10,7 @@ module listing_remarks
    use text_output, only: output_t, put
    use phrases, only: phrase, say_pair, say_drive, say_link, say_links, say_open_by, say_limit, say_in_line, &
       say_at_limit, say_off_by, say_second, say_redundant, say_mobile, say_gap, say_below, say_change, say_smoothly, &
-      say_way, say_too_long, say_other, say_not_found, say_branch_from, say_no_change
+      say_way, say_too_long, say_other, say_here, say_not_found, say_branch_from, say_no_change
    implicit none
    private
    public :: put_remarks, put_gap
@@ -59,7 +59,7 @@ contains
          text = phrase(say_redundant, m%polish)//': '//owner(m, r)
       case (remark_change)
          text = phrase(say_change, m%polish)//' '//number(r%t, '(es13.5)')//', '//links(m, r)//': ' &
-            //phrase(merge(say_other, say_smoothly, r%other), m%polish)
+            //phrase(merge(say_here, merge(say_other, say_smoothly, r%other), r%here), m%polish)
       case (remark_dead_end)
          text = phrase(say_change, m%polish)//' '//number(r%t, '(es13.5)')//', '//links(m, r)//': ' &
             //phrase(say_not_found, m%polish)

@@ -12,7 +12,7 @@ module phrases
       say_contradiction, say_drive, say_below, say_at_limit, say_change, say_smoothly, &
       say_unknown, &
       say_way, say_too_long, say_branch, say_followed, say_passed, say_uncertain, say_other, &
-      say_not_found, say_branch_from, say_no_change
+      say_not_found, say_branch_from, say_no_change, say_here
 
    integer, parameter :: phrase_length = 72
 
@@ -27,9 +27,10 @@ module phrases
       say_mobile = 44, say_contradiction = 45, say_drive = 46, say_below = 47, say_at_limit = 48, say_change = 49, &
       say_smoothly = 50, say_unknown = 51, &
       say_way = 52, say_too_long = 53, say_branch = 54, say_followed = 55, say_passed = 56, &
-      say_uncertain = 57, say_other = 58, say_not_found = 59, say_branch_from = 60, say_no_change = 61
+      say_uncertain = 57, say_other = 58, say_not_found = 59, say_branch_from = 60, say_no_change = 61, &
+      say_here = 62
 
-   character(phrase_length), parameter :: words(2, 61) = reshape([character(phrase_length) :: &
+   character(phrase_length), parameter :: words(2, 62) = reshape([character(phrase_length) :: &
       'KINEMATICS OF PLANAR MECHANISMS IN MATRIX FORMULATION', &
       'KINEMATYKA MECHANIZMOW PLASKICH W UJECIU MACIERZOWYM', &
       'SET OF COMPUTATIONS NO.', 'KOMPLET OBLICZEN NR', &
@@ -93,7 +94,8 @@ module phrases
       'TAKE THE OTHER BRANCH', 'RUCH PRZECHODZI NA DRUGA GALAZ', &
       'OTHER BRANCH NOT FOUND', 'DRUGIEJ GALEZI NIE ZNALEZIONO', &
       'FROM T =', 'OD CHWILI T =', &
-      'NO CHANGE POINT WAS PASSED', 'NIE BYLO PUNKTU ZMIANY'], [2, 61])
+      'NO CHANGE POINT WAS PASSED', 'NIE BYLO PUNKTU ZMIANY', &
+      'THE INSTANT LIES ON IT', 'CHWILA LEZY W NIM'], [2, 62])
 
 contains
 

@@ -11,7 +11,7 @@ module predictor
    use unknowns, only: unknown_t
    implicit none
    private
-   public :: history_t, new_history, remember, predict, largest_change
+   public :: history_t, new_history, remember, predict, is_even, largest_change
 
    !> The largest predicted change, in radians and in the unit of length, that one step may have: beyond it a
    !> prediction that agrees with a position may do so by chance.

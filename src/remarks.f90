@@ -28,6 +28,7 @@ module remarks
       integer :: more = 0                      !< links for which there is no room
       logical :: in_line = .false.             !< remark_limit: the two links are in line
       logical :: other = .false.               !< remark_change: on the other branch
+      logical :: here = .false.                !< remark_change: the instant is the change point
       logical :: is_angle = .false.            !< of `value`
       real(wp) :: value = 0.0_wp, t = 0.0_wp
    end type remark_t

@@ -18,7 +18,7 @@ module hand_groups
    end type passage_t
 
    ! Cranks at 180 and 360 deg, from 20 deg at 10 deg a second and from 15 deg at 12.5; at 90 and 270 deg from 30 deg at 12.
-   type(passage_t), parameter :: passages(16) = [ &
+   type(passage_t), parameter :: passages(23) = [ &
       passage_t('parallelogram', 16.0_wp, 'COUPLER ROCKER'), passage_t('parallelogram', 34.0_wp, 'COUPLER ROCKER'), &
       passage_t('kite_across', 16.0_wp, 'COUPLER ROCKER'), passage_t('kite_across', 34.0_wp, 'COUPLER ROCKER'), &
       passage_t('antiparallelogram_across', 13.2_wp, 'COUPLER ROCKER'), &
@@ -30,7 +30,11 @@ module hand_groups
       passage_t('antiparallelogram_branch', 13.2_wp, 'COUPLER ROCKER'), &
       passage_t('kite_branch', 16.0_wp, 'COUPLER ROCKER', .true.), &
       passage_t('kite_branch', 34.0_wp, 'COUPLER ROCKER', .true.), &
-      passage_t('scott_russell_branch', 5.0_wp, 'BAR', .true.), passage_t('scott_russell_branch', 20.0_wp, 'BAR')]
+      passage_t('scott_russell_branch', 5.0_wp, 'BAR', .true.), passage_t('scott_russell_branch', 20.0_wp, 'BAR'), &
+      passage_t('parallelogram_at', 16.0_wp, 'COUPLER ROCKER'), passage_t('parallelogram_at', 34.0_wp, 'COUPLER ROCKER'), &
+      passage_t('antiparallelogram_at', 13.2_wp, 'COUPLER ROCKER'), &
+      passage_t('kite_at', 16.0_wp, 'COUPLER ROCKER'), passage_t('kite_at', 34.0_wp, 'COUPLER ROCKER'), &
+      passage_t('scott_russell_at', 5.0_wp, 'BAR'), passage_t('scott_russell_at', 20.0_wp, 'BAR')]
 
    !> Of all sets of a deck (0) or of one.
    type :: statement_t
@@ -145,7 +149,7 @@ contains
       end do
    end function redundant_by_hand
 
-   !> The change points of the deck called `name` from `before` to `t`.
+   !> The change points of the deck called `name` that are passed on the way from `before` to `t`, and those in which `t` lies.
    function passages_by_hand(name, m, before, t) result(list)
       character(*), intent(in) :: name
       type(mechanism_t), intent(in) :: m
@@ -156,10 +160,11 @@ contains
 
       allocate (list(0))
       do i = 1, size(passages)
-         if (passages(i)%deck /= name .or. passages(i)%t <= min(before, t) .or. passages(i)%t > max(before, t)) cycle
+         if (passages(i)%deck /= name .or. passages(i)%t < min(before, t) .or. passages(i)%t > max(before, t)) cycle
          r = new_remark(remark_change, [(index(' '//passages(i)%links, ' '//trim(m%links(k)%name)//' ') > 0, k=1, size(m%links))])
          r%t = passages(i)%t
          r%other = passages(i)%other
+         r%here = abs(passages(i)%t - t) <= 0.0_wp
          list = [list, r]
       end do
    end function passages_by_hand

@@ -5,7 +5,7 @@ program print_expected
    use kinds, only: wp
    use failures, only: failure_t
    use mechanism, only: mechanism_t, instant_count, instant, method_newton
-   use motion, only: motion_t, new_motion
+   use motion, only: motion_t, new_motion, mark_none, mark_singular
    use structure, only: findings_t
    use continuity, only: tally_t
    use hand_groups, only: groups_by_hand, redundant_by_hand, passages_by_hand
@@ -51,7 +51,7 @@ contains
       type(findings_t) :: findings
       type(scatter_t) :: doubt
       type(tally_t) :: tally
-      integer :: k
+      integer :: k, marked
 
       layout = new_layout(m)
       findings = hand_count(name)
@@ -61,12 +61,19 @@ contains
       do k = 1, size(m%links)
          q%position(:, k) = m%links(k)%position
       end do
+      marked = 0
       do k = 0, instant_count(m) - 1
          call move_to(m, closed_form(name, m%set_number, real(instant(m, k), qp)), instant(m, k), q)
          if (k == 0) q%remarks = redundant_by_hand(name, m)
          if (k > 0) then
             q%remarks = passages_by_hand(name, m, instant(m, k - 1), instant(m, k))
-            tally%passed = tally%passed + size(q%remarks)
+            tally%passed = tally%passed + count(.not. q%remarks%here)
+            ! Both branches have the position, each has velocities of its own.
+            if (any(q%remarks%here)) then
+               q%known = 0
+               q%mark = mark_singular
+               marked = marked + 1
+            end if
          end if
          call doubt_by_hand(name, m, q, doubt)
          call listing_instant(o, layout, m, q, k, doubt)
@@ -77,7 +84,8 @@ contains
       else
          tally%uncertain = instant_count(m) - 1
       end if
-      call listing_end(o, m, instant_count(m), 0, tally, gap=merge(0.0_wp, -1.0_wp, size(redundant_by_hand(name, m)) > 0))
+      call listing_end(o, m, instant_count(m) - marked, marked, tally, &
+         gap=merge(0.0_wp, -1.0_wp, size(redundant_by_hand(name, m)) > 0))
    end subroutine print_set
 
    !> How far the motion `q` is known, next to dead points, from the closed forms of decks whose numbers are a little off.
@@ -120,6 +128,7 @@ contains
       end do
       q%t = t
       q%known = 2
+      q%mark = mark_none
    end subroutine move_to
 
    !> `phi` turned by whole turns until it is within half a turn of `before`.
