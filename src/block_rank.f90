@@ -8,7 +8,7 @@ module block_rank
    use block_rows, only: assemble_dense
    implicit none
    private
-   public :: redundant_rows, moving_unknowns, jacobian_of, relative_side, least_direction, residual_of
+   public :: redundant_rows, moving_unknowns, jacobian_of, relative_side, least_direction, residual_of, pull_back
 
    !> Singular values below this part of the largest count as zero: the root of the rounding, since a position at which
    !> they vanish is itself known to no more.
@@ -173,7 +173,8 @@ contains
       call assemble_dense(b, i, s, a, r)
    end function residual_of
 
-   !> One step of least length towards the equations (Gauss and Newton); `far`: the largest residual before it.
+   !> One step of least length towards the equations of block `i` (Gauss and Newton), none along a direction that the
+   !> Jacobian leaves open; `far`: the largest residual before it.
    subroutine pull_back(b, i, s, far)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i

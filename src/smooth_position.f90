@@ -5,6 +5,7 @@ module smooth_position
    use convergence, only: convergence_t, is_solved
    use predictor, only: predict, is_even
    use block_state, only: set_values
+   use block_rank, only: pull_back
    use block_solver, only: solve_block
    use block_engine, only: block_engine_t, set_targets
    implicit none
@@ -24,7 +25,7 @@ contains
       logical, intent(out) :: singular(:), smooth
       type(convergence_t) :: c
       real(wp), allocatable :: x(:)
-      real(wp) :: change
+      real(wp) :: change, far
       integer :: k
 
       singular = .false.
@@ -41,7 +42,9 @@ contains
             if (e%blocks%list(i)%direct .or. .not. c%singular) cycle
             singular(i) = .true.
             smooth = maxval(abs(e%state%u(u(e%blocks%list(i)%first:e%blocks%list(i)%last))%value - x)) <= same_place
+            ! Off the direction that the equations leave open they are exact.
             call set_values(e%blocks, i, x, e%state)
+            call pull_back(e%blocks, i, e%state, far)
          end associate
       end do
       smooth = smooth .and. any(singular)
