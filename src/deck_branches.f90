@@ -1,4 +1,4 @@
-!> Level 7. The BRANCH cards of a set.
+!> Level 8. The BRANCH cards of a set.
 module deck_branches
    use kinds, only: wp
    use mechanism, only: mechanism_t, choice_t, method_newton
