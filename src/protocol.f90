@@ -30,10 +30,10 @@ contains
          merge('  ERROR OF X  ERROR OF V  ERROR OF A', repeat(' ', 36), errors)))
    end subroutine protocol_head
 
-   !> One line: instant number, time, how the iteration ended, its count, last residual and step (over the size of the
-   !> coordinates), mean ratio of successive residuals, reciprocal condition and sign of the determinant; the branch `b`, and
-   !> what was verified of it; where `errors` (0:2) are given, the largest of positions, velocities and accelerations, in
-   !> the characteristic length and rate.
+   !> One line: instant number, time, how the iteration ended, its count, last residual and step (over the size of
+   !> the coordinates), mean ratio of successive residuals, reciprocal condition and sign of the determinant; the
+   !> branch `b`, and what was verified of it; where `errors` (0:2) are given, the largest of positions, velocities
+   !> and accelerations, in the characteristic length and rate.
    subroutine protocol_instant(o, step, t, c, b, errors)
       type(output_t), intent(inout) :: o
       integer, intent(in) :: step
