@@ -105,7 +105,7 @@ contains
       type(rows_t), intent(in) :: rows
       type(verdict_t), intent(inout) :: v
       type(jet_t) :: r(2*size(m%pairs) + size(m%drives))
-      real(qp) :: share(0:2, size(r)), allowed(0:2), t
+      real(qp) :: share(0:2, size(r)), sizes(0:2, size(r)), allowed(0:2), t
       integer :: k
 
       v%closures = v%closures + 1
@@ -115,8 +115,13 @@ contains
       share(1, :) = abs(r%d)
       share(2, :) = abs(r%dd)
       allowed = max(rounding, steps_of_tolerance*m%tolerance)
-      if (size(r) > 3*count(.not. m%links%ground)) allowed = max(allowed, contradiction)
-      share = share/(spread(allowed, 2, size(r))*(row_sizes(m, sizes_of(m, rows%body), t) + least_size))
+      sizes = row_sizes(m, sizes_of(m, rows%body), t)
+      if (size(r) > 3*count(.not. m%links%ground)) then
+         allowed = max(allowed, contradiction)
+         ! Two drives that ask for accelerations next to none are told apart by what their rates are worth.
+         sizes(2, :) = max(sizes(2, :), sizes(1, :)**2/(sizes(0, :) + least_size))
+      end if
+      share = share/(spread(allowed, 2, size(r))*(sizes + least_size))
       if (rows%known >= 1) then
          if (any(share(1:rows%known, :) > 1.0_qp)) then
             ! The position, and with it the Jacobian, is known to no better than eps times the condition.

@@ -70,11 +70,27 @@ contains
 
       status = 1
       real_field = 0.0_wp
-      if (has_star(d, i)) read (d%line(i + 1)(24*k - 15:24*k + 8), '(bn,f24.0)', iostat=status) real_field
-      if (status /= 0 .or. .not. has_star(d, i)) read (d%line(i)(16*k + 17:16*k + 32), '(bn,f16.0)', iostat=status) real_field
+      if (has_star(d, i)) call take(d%line(i + 1)(24*k - 15:24*k + 8), real_field, status)
+      if (status /= 0) call take(d%line(i)(16*k + 17:16*k + 32), real_field, status)
       if (status /= 0) real_field = 0.0_wp
       if (.not. abs(real_field) <= huge(real_field)) real_field = 0.0_wp
    end function real_field
+
+   !> The number in `text`. An exponent without a digit before it ends gfortran's programs, `iostat` or not.
+   subroutine take(text, x, status)
+      character(*), intent(in) :: text
+      real(wp), intent(out) :: x
+      integer, intent(out) :: status
+      integer :: exponent
+
+      x = 0.0_wp
+      status = 1
+      exponent = scan(text, 'EeDdQq')
+      if (exponent > 0) then
+         if (scan(text(:exponent), '0123456789') == 0) return
+      end if
+      read (text, '(bn,f40.0)', iostat=status) x
+   end subroutine take
 
    pure logical function has_star(d, i)
       type(draft_t), intent(in) :: d
