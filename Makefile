@@ -74,9 +74,10 @@ include $(BUILD)/depends.mk
 endif
 
 # Closed forms in real128 print the listings that the program must print, byte for byte.
-forms := tests/quad_jet.f90 tests/closed_forms_dyads.f90 tests/closed_forms_linkages.f90 tests/closed_forms_sliders.f90 tests/closed_forms_legs.f90 tests/closed_forms_sixbars.f90 \
-   tests/closed_forms_robots.f90 tests/closed_forms_bars.f90 tests/closed_forms_slides.f90 \
-   tests/closed_forms_overconstrained.f90 tests/closed_forms_hard.f90 tests/closed_forms_branches.f90 tests/closed_forms.f90 tests/hand_groups.f90
+forms := $(addprefix tests/,deck_tally.f90 quad_jet.f90 closed_forms_dyads.f90 closed_forms_linkages.f90 \
+   closed_forms_sliders.f90 closed_forms_legs.f90 closed_forms_sixbars.f90 closed_forms_robots.f90 closed_forms_bars.f90 \
+   closed_forms_slides.f90 closed_forms_overconstrained.f90 closed_forms_hard.f90 closed_forms_branches.f90 \
+   closed_forms.f90 hand_groups.f90)
 decks := $(sort $(wildcard input/*.deck))
 references := $(decks:input/%.deck=$(BUILD)/expected/%.lst)
 

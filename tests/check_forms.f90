@@ -12,20 +12,21 @@ program check_forms
    use quad_jet, only: qp, jet_t, pi_q, operator(+), operator(-), operator(*), sin, cos
    use quad_decks, only: length, angle, law
    use closed_forms_dyads, only: place_t, body_t, place_on
+   use deck_tally, only: tally_t, count_one, conclude, deck_name
    use closed_forms, only: closed_form, hand_count
    implicit none
    !> Relative; real128 rounds at 1e-34, and six digits are left for the roundings of a chain of dyads.
    real(qp), parameter :: tolerance = 1.0e-28_qp
    character(*), parameter :: order(0:2) = [character(18) :: 'positions', 'velocities', 'accelerations']
    character(500) :: path
-   integer :: passed = 0, failed = 0, i
+   type(tally_t) :: tally
+   integer :: i
 
    do i = 1, command_argument_count()
       call get_command_argument(i, path)
       call check_deck(trim(path))
    end do
-   print '(i0,a,i0,a)', passed, ' passed, ', failed, ' failed'
-   if (failed > 0) stop 1, quiet=.true.
+   call conclude(tally)
 
 contains
 
@@ -36,10 +37,9 @@ contains
       type(failure_t), allocatable :: failure
       integer :: i
 
-      name = path(scan(path, '/', back=.true.) + 1:)
-      name = name(:scan(name//'.', '.') - 1)
+      name = deck_name(path)
       call read_deck(path, sets, report, failure)
-      call count_one(.not. allocated(failure), path//': the deck is read')
+      call count_one(tally, .not. allocated(failure), path//': the deck is read')
       if (allocated(failure)) return
       do i = 1, size(sets)
          call check_set(name, sets(i))
@@ -56,7 +56,7 @@ contains
       integer :: k
 
       write (what, '(2a,i0,a)') name, ', set ', m%set_number, ': '
-      call count_one(agree(hand_count(name), count_freedoms(m)), trim(what)//' links and pairs as counted by hand')
+      call count_one(tally, agree(hand_count(name), count_freedoms(m)), trim(what)//' links and pairs as counted by hand')
       pairs = 0.0_qp
       grounds = 0.0_qp
       driven = 0.0_qp
@@ -68,7 +68,7 @@ contains
          call check_grounds(m, links, grounds)
          call check_drives(m, links, t, driven)
       end do
-      call count_one(same, trim(what)//' links by name')
+      call count_one(tally, same, trim(what)//' links by name')
       do k = 0, 2
          call count_size(pairs(k), trim(what)//' pairs, '//order(k))
          call count_size(grounds(k), trim(what)//' ground links, '//order(k))
@@ -266,18 +266,6 @@ contains
       character(12) :: text
 
       write (text, '(es12.2)') worst
-      call count_one(worst <= tolerance, trim(what)//': relative error'//text)
+      call count_one(tally, worst <= tolerance, trim(what)//': relative error'//text)
    end subroutine count_size
-
-   subroutine count_one(right, what)
-      logical, intent(in) :: right
-      character(*), intent(in) :: what
-
-      if (right) then
-         passed = passed + 1
-      else
-         failed = failed + 1
-         print '(2a)', 'FAILED: ', what
-      end if
-   end subroutine count_one
 end program check_forms

@@ -14,6 +14,7 @@ program error_estimates
    use rounding_samples, only: samples_t, new_samples, take_samples
    use quad_jet, only: qp, pi_q
    use closed_forms_dyads, only: body_t
+   use deck_tally, only: deck_name
    use closed_forms, only: closed_form
    implicit none
    real(wp), parameter :: most_above = 30.0_wp
@@ -40,7 +41,7 @@ program error_estimates
       call get_command_argument(i, path)
       one = tally_t()
       call weigh_deck(trim(path), one)
-      call tell(base_name(trim(path)), one)
+      call tell(deck_name(trim(path)), one)
       if (one%below > 0) failed = failed + 1
       call add(one, all_of_them)
    end do
@@ -62,7 +63,7 @@ contains
       call read_deck(path, sets, report, failure)
       if (allocated(failure)) error stop 'A DECK IS NOT READ'
       do i = 1, size(sets)
-         call weigh_set(base_name(path), sets(i), tally)
+         call weigh_set(deck_name(path), sets(i), tally)
       end do
    end subroutine weigh_deck
 
@@ -164,13 +165,4 @@ contains
       sum_of%worst = max(sum_of%worst, one%worst)
       sum_of%ratio = sum_of%ratio + one%ratio
    end subroutine add
-
-   !> The file's name without its folders and its last dot.
-   pure function base_name(path) result(base)
-      character(*), intent(in) :: path
-      character(:), allocatable :: base
-
-      base = path(scan(path, '/', back=.true.) + 1:)
-      if (scan(base, '.') > 0) base = base(:scan(base, '.', back=.true.) - 1)
-   end function base_name
 end program error_estimates

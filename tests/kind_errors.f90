@@ -14,6 +14,7 @@ program kind_errors
    use deck, only: read_deck
    use quad_jet, only: qp, pi_q, degree_q
    use closed_forms_dyads, only: body_t
+   use deck_tally, only: tally_t, count_one, conclude, deck_name
    use closed_forms, only: closed_form
    use csv_closure, only: verdict_t, check_csv
    use fifty_digits, only: known
@@ -49,7 +50,8 @@ program kind_errors
    end type errors_t
 
    character(500) :: path
-   integer :: passed = 0, failed = 0, hits = 0, i
+   type(tally_t) :: tally
+   integer :: hits = 0, i
 
    print '(a,i0,a)', ' LARGEST RELATIVE ERRORS OF LENGTHS AND ANGLES, COMPUTED WITH ', digits(1.0_wp), ' BITS'
    print '(a)', ' DECK, SET                     POSITION    VELOCITY  ACCELERAT.    LIMITS'
@@ -57,9 +59,8 @@ program kind_errors
       call get_command_argument(i, path)
       call check_deck(trim(path))
    end do
-   call count_one(hits == size(known), 'all motions known to 50 digits')
-   print '(i0,a,i0,a)', passed, ' passed, ', failed, ' failed'
-   if (failed > 0) stop 1, quiet=.true.
+   call count_one(tally, hits == size(known), 'all motions known to 50 digits')
+   call conclude(tally)
 
 contains
 
@@ -73,15 +74,14 @@ contains
       type(verdict_t) :: v
       integer :: i, unit, status
 
-      name = path(scan(path, '/', back=.true.) + 1:)
-      name = name(:scan(name//'.', '.') - 1)
+      name = deck_name(path)
       call read_deck(path, sets, report, failure)
-      call count_one(.not. allocated(failure), path//': the deck is read')
+      call count_one(tally, .not. allocated(failure), path//': the deck is read')
       if (allocated(failure)) return
       associate (csv => path(:len(path) - len('deck'))//'csv')
          call check_csv(csv, sets, v)
          if (.not. allocated(v%text)) v%text = ''
-         call count_one(v%text == '', name//': equations: '//v%text)
+         call count_one(tally, v%text == '', name//': equations: '//v%text)
          open (newunit=unit, file=csv, status='old', action='read', iostat=status)
       end associate
       allocate (e(size(sets)))
@@ -108,7 +108,7 @@ contains
       integer :: k
 
       write (what, '(1x,2a,i0)') name, ', ', m%set_number
-      call count_one(e%all_given .and. all(e%seen), what//' all moving links at all instants')
+      call count_one(tally, e%all_given .and. all(e%seen), what//' all moving links at all instants')
       do k = 0, 2
          associate (rate => real(characteristic_rate(m, characteristic_length(m)), qp)**k)
             e%value(:, k) = max(e%value(:, k), [characteristic_length(m)*rate, rate])
@@ -121,10 +121,10 @@ contains
       if (k > 0) limit = limits(inverse_dead(k))
       if (any(rounded_sets == what(2:))) limit = max(limit, rounded_data)
       print '(a,3es12.2,2x,3es10.1)', what, worst, limit
-      call count_one(all(worst <= limit), what//' errors')
+      call count_one(tally, all(worst <= limit), what//' errors')
       if (all(at_change /= name)) return
       print '(a,es12.2,26x,es10.1)', what, e%there, roundings_there*epsilon(1.0_wp)*maxval(e%value(:, 0))
-      call count_one(e%there <= roundings_there*epsilon(1.0_wp)*maxval(e%value(:, 0)), what//' errors at change points')
+      call count_one(tally, e%there <= roundings_there*epsilon(1.0_wp)*maxval(e%value(:, 0)), what//' errors at change points')
    end subroutine judge
 
    !> (derivative) Of a Jacobian with so large an inverse.
@@ -184,7 +184,7 @@ contains
          off(3, 0) = off(3, 0) - 2.0_qp*pi_q*anint(off(3, 0)/(2.0_qp*pi_q))
          allowed = spread(limits(inverse), 1, 3)*max(1.0_qp, abs(reshape(known(i)%value, [3, 3])))
          hits = hits + 1
-         call count_one(all(abs(off) <= allowed), name//': 50 digits')
+         call count_one(tally, all(abs(off) <= allowed), name//': 50 digits')
       end do
    end subroutine compare_known
 
@@ -232,16 +232,4 @@ contains
          if (first > len_trim(line) + 1) exit
       end do
    end subroutine split
-
-   subroutine count_one(good, what)
-      logical, intent(in) :: good
-      character(*), intent(in) :: what
-
-      if (good) then
-         passed = passed + 1
-      else
-         failed = failed + 1
-         print '(2a)', 'FAILED: ', what
-      end if
-   end subroutine count_one
 end program kind_errors

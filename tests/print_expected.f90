@@ -18,6 +18,7 @@ program print_expected
    use perturbed_deck, only: perturbed, perturbed_instant, sample_count
    use closed_forms_dyads, only: body_t
    use closed_forms_hard, only: pushed_slider
+   use deck_tally, only: deck_name
    use closed_forms, only: closed_form, hand_count
    implicit none
    character(500) :: path
@@ -28,7 +29,7 @@ program print_expected
    integer :: i
 
    call get_command_argument(1, path)
-   name = base_name(trim(path))
+   name = deck_name(trim(path))
    if (size(closed_form(name, 1, 0.0_qp)) == 0) call give_up('NO CLOSED FORM FOR THE DECK '//trim(path))
    call read_deck(trim(path), sets, report, failure)
    if (allocated(failure)) call give_up(failure%text//new_line('a')//report)
@@ -137,15 +138,6 @@ contains
 
       next_to = phi + 2.0_qp*pi_q*anint((before - phi)/(2.0_qp*pi_q))
    end function next_to
-
-   !> The file's name without its folders and its last dot.
-   pure function base_name(path) result(base)
-      character(*), intent(in) :: path
-      character(:), allocatable :: base
-
-      base = path(scan(path, '/', back=.true.) + 1:)
-      if (scan(base, '.') > 0) base = base(:scan(base, '.', back=.true.) - 1)
-   end function base_name
 
    !> Ends the program with a sentence and the status 1.
    subroutine give_up(text)

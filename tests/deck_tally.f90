@@ -1,0 +1,42 @@
+!> Tests. What the programs that run over decks have in common: the name of a deck, and a count of what was right.
+module deck_tally
+   implicit none
+   private
+   public :: tally_t, count_one, conclude, deck_name
+
+   type :: tally_t
+      integer :: passed = 0, failed = 0
+   end type tally_t
+
+contains
+
+   subroutine count_one(tally, good, what)
+      type(tally_t), intent(inout) :: tally
+      logical, intent(in) :: good
+      character(*), intent(in) :: what
+
+      if (good) then
+         tally%passed = tally%passed + 1
+      else
+         tally%failed = tally%failed + 1
+         print '(2a)', 'FAILED: ', what
+      end if
+   end subroutine count_one
+
+   !> Prints the last line; the program ends with status 1 where something was wrong.
+   subroutine conclude(tally)
+      type(tally_t), intent(in) :: tally
+
+      print '(i0,a,i0,a)', tally%passed, ' passed, ', tally%failed, ' failed'
+      if (tally%failed > 0) stop 1, quiet=.true.
+   end subroutine conclude
+
+   !> The file's name without its folders and what follows a dot.
+   pure function deck_name(path) result(name)
+      character(*), intent(in) :: path
+      character(:), allocatable :: name
+
+      name = path(scan(path, '/', back=.true.) + 1:)
+      name = name(:scan(name//'.', '.') - 1)
+   end function deck_name
+end module deck_tally
