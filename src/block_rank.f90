@@ -214,6 +214,7 @@ contains
       end if
       call assemble_dense(b, i, s, a, v%r)
       call gesvd('A', 'A', v%rows, v%n, a, v%rows, v%s, v%left, v%rows, v%right, v%n, work, size(work), info)
-      v%rank = count(v%s > zero_level*max(v%s(1), tiny(1.0_wp)))
+      ! A block of one unknown has nothing but its own arms to be compared with.
+      v%rank = count(v%s > zero_level*max(v%s(1), b%list(i)%bend, tiny(1.0_wp)))
    end function decomposed
 end module block_rank

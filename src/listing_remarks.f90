@@ -15,6 +15,7 @@ module listing_remarks
    private
    public :: put_remarks, put_gap
 
+   integer, parameter :: line_length = 120
    !> A gap below this, of the size, is rounding, and no two computers have the same.
    real(wp), parameter :: least_gap = max(1.0e-13_wp, 400.0_wp*epsilon(1.0_wp))
 
@@ -30,14 +31,26 @@ contains
       do i = 1, size(list)
          select case (list(i)%kind)
          case (remark_open, remark_limit, remark_mobile, remark_long, remark_unused, remark_dead_end)
-            call put(o, ' *** '//words_of(m, list(i)))
+            call put_broken(o, ' *** ', words_of(m, list(i)))
             if (list(i)%kind == remark_limit) call put(o, ' *** '//links(m, list(i))//' ' &
                //phrase(merge(say_in_line, say_at_limit, list(i)%in_line), m%polish))
          case default
-            call put(o, ' --- '//words_of(m, list(i)))
+            call put_broken(o, ' --- ', words_of(m, list(i)))
          end select
       end do
    end subroutine put_remarks
+
+   !> `text` in one line or, where names are many and long, in two; each begins with `mark`.
+   subroutine put_broken(o, mark, text)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: mark, text
+      integer :: last
+
+      last = len(text)
+      if (len(mark) + last > line_length) last = index(text(:line_length - len(mark) + 1), ' ', back=.true.) - 1
+      call put(o, mark//text(:last))
+      if (last < len(text)) call put(o, mark//text(last + 2:))
+   end subroutine put_broken
 
    function words_of(m, r) result(text)
       type(mechanism_t), intent(in) :: m

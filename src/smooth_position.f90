@@ -41,10 +41,13 @@ contains
             if (.not. smooth) return
             if (e%blocks%list(i)%direct .or. .not. c%singular) cycle
             singular(i) = .true.
-            smooth = maxval(abs(e%state%u(u(e%blocks%list(i)%first:e%blocks%list(i)%last))%value - x)) <= same_place
-            ! Off the direction that the equations leave open they are exact.
-            call set_values(e%blocks, i, x, e%state)
-            call pull_back(e%blocks, i, e%state, far)
+            associate (found => e%state%u(u(e%blocks%list(i)%first:e%blocks%list(i)%last)))
+               smooth = maxval(abs(found%value - x)) <= same_place
+               ! Off the direction that the equations leave open they are exact.
+               call set_values(e%blocks, i, x, e%state)
+               call pull_back(e%blocks, i, e%state, far)
+               smooth = smooth .and. maxval(abs(found%value - x)) <= same_place
+            end associate
          end associate
       end do
       smooth = smooth .and. any(singular)

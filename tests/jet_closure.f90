@@ -11,6 +11,8 @@ module jet_closure
    private
    public :: body_jet_t, closure_jets, place_jet, slide_jet, sizes_t, sizes_of, row_sizes
 
+   real(qp), parameter :: many_roundings = 16.0_qp
+
    type :: body_jet_t
       type(jet_t) :: x, y, phi
    end type body_jet_t
@@ -140,7 +142,9 @@ contains
 
       do k = 1, size(m%pairs)
          rows(:, 2*k - 1) = s%length
-         rows(:, 2*k) = s%length
+         ! Arms of many turns: 64 roundings of a length are one of the angle in its direction.
+         rows(0, 2*k - 1) = s%length(0)*max(1.0_qp, s%angle(0)/many_roundings)
+         rows(:, 2*k) = rows(:, 2*k - 1)
          if (m%pairs(k)%kind /= pair_prismatic) cycle
          rows(:, 2*k) = s%angle
          rows(0, 2*k) = max(rows(0, 2*k), abs(real(m%pairs(k)%beta, qp)))
