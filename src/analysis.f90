@@ -6,6 +6,7 @@ module analysis
    use motion, only: motion_t, mark_none, mark_not_converged, mark_singular, mark_overflow, mark_open
    use remarks, only: remark_t, remark_open, remark_far, remark_long
    use continuity, only: branch_t, tally_t, count_in, branch_none, branch_first, branch_same, branch_crossed
+   use whole_turns, only: without_turns
    use choices, only: unused
    use way_ends, only: way_ends_t, note_end, lies_beyond, told_of_end
    use convergence, only: convergence_t, ended_open, ended_unsought
@@ -161,16 +162,17 @@ contains
    subroutine remark_on_start(a, found)
       type(analysis_t), intent(inout) :: a
       type(motion_t), intent(inout) :: found
+      real(wp) :: off(size(a%rough_angle))
       integer :: link
 
       a%has_begun = .true.
       if (.not. allocated(a%engine%blocks)) return
       call add_remarks(first_remarks(a%engine%blocks, a%convergence%singular), found)
-      link = maxloc(abs(found%position(3, :) - a%rough_angle), mask=a%engine%blocks%is_found, dim=1)
+      off = without_turns(found%position(3, :) - a%rough_angle)
+      link = maxloc(abs(off), mask=a%engine%blocks%is_found, dim=1)
       if (link == 0) return
-      if (abs(found%position(3, link) - a%rough_angle(link)) > far_angle) call add_remarks( &
-         [remark_t(kind=remark_far, links=[link, 0, 0, 0, 0, 0], is_angle=.true., &
-         value=found%position(3, link) - a%rough_angle(link))], found)
+      if (abs(off(link)) > far_angle) call add_remarks( &
+         [remark_t(kind=remark_far, links=[link, 0, 0, 0, 0, 0], is_angle=.true., value=off(link))], found)
    end subroutine remark_on_start
 
    !> Why there is no motion at `t`: what stays open, or where the way `w` has ended; that is said once.

@@ -16,7 +16,7 @@ module block_engine
    use block_needs, only: moving_blocks, needed_blocks
    use block_state, only: state_t, new_state
    use block_solver, only: workspace_t, new_workspace, solve_block
-   use first_position, only: solve_first_block
+   use first_position, only: solve_first_block, turn_starts
    use block_rank, only: jacobian_of, relative_side
    use link_motion, only: chain_t, new_chain, move_links
    implicit none
@@ -135,6 +135,7 @@ contains
          same = e%change <= largest_change
          if (same) call seek_each(e, e%moving, follows, c, correction, same)
       else
+         call turn_starts(e%blocks, e%needed, e%state%target(0, :), e%rough)
          e%state%u%value = e%rough
          call seek_each(e, e%needed, follows, c, correction, same)
       end if

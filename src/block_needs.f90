@@ -5,7 +5,7 @@ module block_needs
    use blocks, only: blocks_t
    implicit none
    private
-   public :: needed_blocks, moving_blocks, largest_known
+   public :: needed_blocks, moving_blocks, blocks_below, largest_known
 
 contains
 
@@ -28,6 +28,22 @@ contains
       end do
       list = pack([(i, i=1, size(b%list))], needed)
    end function needed_blocks
+
+   !> Block `i` and those that it builds on, in solving order.
+   function blocks_below(b, i) result(list)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      integer, allocatable :: list(:)
+      logical :: need(0:b%unknowns), below(i)
+      integer :: k
+
+      need = .false.
+      do k = i, 1, -1
+         below(k) = k == i .or. any(need(b%unknown(b%list(k)%first:b%list(k)%last)))
+         if (below(k)) call need_known(b, k, need)
+      end do
+      list = pack([(k, k=1, i)], below)
+   end function blocks_below
 
    !> Angles and slides of the wanted links and of those they hang on.
    subroutine need_links(b, t, wanted, need)

@@ -8,7 +8,8 @@ module block_rank
    use block_rows, only: assemble_dense
    implicit none
    private
-   public :: redundant_rows, moving_unknowns, jacobian_of, relative_side, least_direction, residual_of, pull_back
+   public :: redundant_rows, moving_unknowns, jacobian_of, relative_side, least_direction, residual_of, pull_back, &
+      zero_level
 
    !> Singular values below this part of the largest count as zero: the root of the rounding, since a position at which
    !> they vanish is itself known to no more.
@@ -87,11 +88,12 @@ contains
 
    !> (unknowns of block `i`) Those that move although everything the block builds on stands still: it is moved a
    !> little along a direction that the Jacobian leaves open, and comes back to its equations elsewhere. Where it
-   !> comes back to where it was, at a dead point, none.
-   function moving_unknowns(b, i, s) result(moves)
+   !> comes back to where it was, at a dead point, none. `moved`: the state there.
+   function moving_unknowns(b, i, s, moved) result(moves)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(state_t), intent(in) :: s
+      type(state_t), intent(inout), optional :: moved
       logical :: moves(b%list(i)%last - b%list(i)%first + 1)
       type(state_t) :: trial_state
       type(values_t) :: v
@@ -113,6 +115,7 @@ contains
       direction = trial_state%u(b%unknown(b%list(i)%first:b%list(i)%last))%value - start
       if (far <= near .and. norm2(direction) > 0.5_wp*trial) &
          moves = abs(direction) > 0.01_wp*maxval(abs(direction))
+      if (present(moved)) moved = trial_state
    end function moving_unknowns
 
    !> (rows*n) The Jacobian of block `i`, column by column.

@@ -2,9 +2,12 @@
 module block_remarks
    use kinds, only: wp
    use drives, only: drive_motion
-   use remarks, only: remark_t, new_remark, remark_limit, remark_second, remark_redundant, remark_mobile
-   use block_needs, only: largest_known
+   use remarks, only: remark_t, new_remark, remark_limit, remark_second, remark_redundant, remark_mobile, remark_idle, &
+      remark_repeated
+   use block_needs, only: largest_known, blocks_below
    use block_rank, only: redundant_rows, moving_unknowns
+   use block_state, only: state_t
+   use drive_rank, only: judge_drives
    use first_position, only: has_second_position
    use block_engine, only: block_engine_t
    implicit none
@@ -41,20 +44,27 @@ contains
       end do
    end function first_remarks
 
-   !> Each pair and drive with redundant equations, once.
+   !> Each pair and drive with redundant equations, once, and how many it has.
    function redundancies(e) result(list)
       type(block_engine_t), intent(inout) :: e
       type(remark_t), allocatable :: list(:)
       type(remark_t) :: r
       integer, allocatable :: rows(:)
-      integer :: k
+      integer :: k, i, found
 
       allocate (list(0))
       rows = redundant_rows(e%blocks, 1, e%state)
       do k = size(rows), 1, -1
          r = remark_t(kind=remark_redundant, pair=e%blocks%rows(rows(k))%pair, drive=e%blocks%rows(rows(k))%drive)
-         if (any(list%pair == r%pair .and. list%drive == r%drive)) cycle
-         list = [list, r]
+         found = 0
+         do i = 1, size(list)
+            if (list(i)%pair == r%pair .and. list(i)%drive == r%drive) found = i
+         end do
+         if (found > 0) then
+            list(found)%equations = list(found)%equations + 1
+         else
+            list = [list, r]
+         end if
       end do
    end function redundancies
 
@@ -63,10 +73,11 @@ contains
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: i
       type(remark_t), allocatable, intent(inout) :: list(:)
+      type(state_t) :: aside
       logical, allocatable :: moves(:), moved(:)
       integer :: k
 
-      moves = moving_unknowns(e%blocks, i, e%state)
+      moves = moving_unknowns(e%blocks, i, e%state, aside)
       if (.not. any(moves)) return
       associate (block => e%blocks%list(i))
          moved = links_with(e, pack(e%blocks%unknown(block%first:block%last), moves))
@@ -77,7 +88,27 @@ contains
          end associate
       end do
       list = [list, new_remark(remark_mobile, moved)]
+      call add_idle_drives(e, i, aside, list)
    end subroutine add_mobility
+
+   !> The drives of block `i`, and of those it builds on, that hold nothing, both at the position found and `aside`,
+   !> where its links can move to: at one alone it may be a dead point.
+   subroutine add_idle_drives(e, i, aside, list)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i
+      type(state_t), intent(in) :: aside
+      type(remark_t), allocatable, intent(inout) :: list(:)
+      logical, dimension(size(e%laws)) :: idle, repeated, idle_aside, repeated_aside
+      integer :: d
+
+      call judge_drives(e%blocks, blocks_below(e%blocks, i), e%state, idle, repeated)
+      call judge_drives(e%blocks, blocks_below(e%blocks, i), aside, idle_aside, repeated_aside)
+      do d = 1, size(idle)
+         if (any(list%drive == d .and. (list%kind == remark_idle .or. list%kind == remark_repeated))) cycle
+         if (idle(d) .and. idle_aside(d)) list = [list, remark_t(kind=remark_idle, drive=d)]
+         if (repeated(d) .and. repeated_aside(d)) list = [list, remark_t(kind=remark_repeated, drive=d)]
+      end do
+   end subroutine add_idle_drives
 
    !> (links) Those whose angle block `i` seeks.
    pure function links_of(e, i) result(chosen)

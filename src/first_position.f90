@@ -4,13 +4,14 @@
 module first_position
    use kinds, only: wp
    use convergence, only: convergence_t, is_solved, take_gap
-   use blocks, only: blocks_t
+   use whole_turns, only: without_turns
+   use blocks, only: blocks_t, instance_angles
    use block_state, only: state_t, set_values
    use block_solver, only: workspace_t, solve_block
    use block_assembly, only: approach
    implicit none
    private
-   public :: solve_first_block, has_second_position
+   public :: solve_first_block, turn_starts, has_second_position
 
    !> A change of more than this, in radians or characteristic lengths, is a leap.
    real(wp), parameter :: leap = 0.5_wp
@@ -50,6 +51,30 @@ contains
       call set_values(b, i, best, s)
       call solve_block(b, i, tolerance, w, s, c, change)
    end subroutine solve_first_block
+
+   !> Takes whole turns off the rough values of angles that the blocks `list` seek, where a drive with one of the values
+   !> `target` (0:drives) asks for them: they close nothing, and would be a way to go.
+   pure subroutine turn_starts(b, list, target, rough)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: list(:)
+      real(wp), intent(in) :: target(0:)
+      real(wp), intent(inout) :: rough(0:)
+      real(wp) :: off
+      integer :: k, m
+
+      do k = 1, size(list)
+         associate (block => b%list(list(k)))
+            if (block%direct) cycle
+            do m = block%first_instance, block%last_instance
+               if (b%instances(m)%kind /= instance_angles .or. b%instances(m)%frame > b%frames) cycle
+               associate (g => b%instances(m), row => b%rows(block%first_row + b%instances(m)%row_x - 1))
+                  off = rough(g%frame) - rough(g%less) - row%constant - target(row%drive)
+                  if (g%frame_column > 0) rough(g%frame) = rough(g%frame) - (off - without_turns(off))
+               end associate
+            end do
+         end associate
+      end do
+   end subroutine turn_starts
 
    !> Solves block `i` from where it is nearly closed, or tells how far it stays open.
    subroutine come_near(b, i, tolerance, w, s, c)

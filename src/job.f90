@@ -1,4 +1,4 @@
-!> Level 17. One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later.
+!> Level 18. One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later.
 module job
    use failures, only: failure_t, fail, status_solved, status_refused, status_marked, status_machine
    use mechanism, only: mechanism_t, instant_count, instant
@@ -12,6 +12,7 @@ module job
    use csv, only: csv_head, csv_instant
    use protocol, only: protocol_head, protocol_instant
    use analysis, only: analysis_t, new_analysis, advance, redundancy_gap, closing_remarks
+   use second_opinion, only: opinion_t, ask_blocks
    use scatter, only: scatter_t, largest_errors
    use rounding_samples, only: samples_t, new_samples, take_samples
    use command_line, only: options_t
@@ -133,6 +134,7 @@ contains
       integer, intent(inout) :: status
       type(layout_t) :: layout
       type(analysis_t) :: a
+      type(opinion_t) :: opinion
       type(motion_t) :: q
       type(samples_t) :: samples
       type(scatter_t) :: doubt
@@ -148,6 +150,7 @@ contains
       marked = 0
       do k = 0, instant_count(m) - 1
          call advance(a, instant(m, k), q)
+         call ask_blocks(m, a, opinion, q)
          if (q%mark /= mark_none) marked = marked + 1
          call take_samples(samples, a%engine%blocks, a%convergence%reciprocal_condition, q, options%errors, doubt)
          call listing_instant(o%listing, layout, m, q, k, doubt)

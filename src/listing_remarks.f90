@@ -4,13 +4,15 @@ module listing_remarks
    use constants, only: degree
    use mechanism, only: mechanism_t
    use remarks, only: remark_t, remark_open, remark_limit, remark_far, remark_second, remark_redundant, remark_mobile, &
-      remark_change, remark_long, remark_unused, remark_dead_end
+      remark_change, remark_long, remark_unused, remark_dead_end, remark_idle, remark_repeated, &
+      remark_method
    use naming, only: drive_name, listed
    use numerals, only: whole
    use text_output, only: output_t, put
    use phrases, only: phrase, say_pair, say_drive, say_link, say_links, say_open_by, say_limit, say_in_line, &
       say_at_limit, say_off_by, say_second, say_redundant, say_mobile, say_gap, say_below, say_change, say_smoothly, &
-      say_way, say_too_long, say_other, say_here, say_not_found, say_branch_from, say_no_change
+      say_way, say_too_long, say_other, say_here, say_not_found, say_branch_from, say_no_change, &
+      say_idle, say_repeated, say_redundant_many, say_of_pair, say_method
    implicit none
    private
    public :: put_remarks, put_gap
@@ -30,7 +32,8 @@ contains
 
       do i = 1, size(list)
          select case (list(i)%kind)
-         case (remark_open, remark_limit, remark_mobile, remark_long, remark_unused, remark_dead_end)
+         case (remark_open, remark_limit, remark_mobile, remark_long, remark_unused, remark_dead_end, &
+            remark_idle, remark_repeated)
             call put_broken(o, ' *** ', words_of(m, list(i)))
             if (list(i)%kind == remark_limit) call put(o, ' *** '//links(m, list(i))//' ' &
                //phrase(merge(say_in_line, say_at_limit, list(i)%in_line), m%polish))
@@ -70,6 +73,8 @@ contains
          text = links(m, r)//': '//phrase(say_second, m%polish)
       case (remark_redundant)
          text = phrase(say_redundant, m%polish)//': '//owner(m, r)
+         if (r%equations > 1) text = phrase(say_redundant_many, m%polish)//': '//whole(r%equations)//' ' &
+            //phrase(say_of_pair, m%polish)//' '//trim(m%pairs(r%pair)%name)
       case (remark_change)
          text = phrase(say_change, m%polish)//' '//number(r%t, '(es13.5)')//', '//links(m, r)//': ' &
             //phrase(merge(say_here, merge(say_other, say_smoothly, r%other), r%here), m%polish)
@@ -83,6 +88,12 @@ contains
             //phrase(say_no_change, m%polish)
       case (remark_long)
          text = phrase(say_way, m%polish)//' '//number(r%t, '(es13.5)')//' '//phrase(say_too_long, m%polish)
+      case (remark_idle)
+         text = owner(m, r)//' '//phrase(say_idle, m%polish)
+      case (remark_repeated)
+         text = owner(m, r)//' '//phrase(say_repeated, m%polish)
+      case (remark_method)
+         text = phrase(say_method, m%polish)
       case (remark_mobile)
          text = links(m, r)//' '//phrase(say_mobile, m%polish)
       end select

@@ -4,6 +4,7 @@
 !> drive SLIDE the projection along the guide.
 module loop_equations
    use kinds, only: wp
+   use whole_turns, only: without_turns
    use mechanism, only: mechanism_t, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
    use links_tree, only: tree_t
    use tree_paths, only: search_t, new_search, find_path, find_way_down, close_pair
@@ -162,7 +163,8 @@ contains
          .or. t%hung_by(m%points(m%pairs(k)%point_j)%link) == k
    end function is_in_tree
 
-   !> By how much prismatic pair `k` differs from the angle that other prismatic pairs give its links.
+   !> By how much prismatic pair `k` differs from the angle that other prismatic pairs give its links; whole turns are
+   !> no difference.
    pure real(wp) function misfit(m, t, k)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
@@ -170,6 +172,7 @@ contains
 
       misfit = m%pairs(k)%beta + t%turn(m%points(m%pairs(k)%point_i)%link) &
          - t%turn(m%points(m%pairs(k)%point_j)%link)
+      misfit = without_turns(misfit)
    end function misfit
 
    subroutine add(e, equation)

@@ -12,7 +12,8 @@ module phrases
       say_contradiction, say_drive, say_below, say_at_limit, say_change, say_smoothly, &
       say_unknown, &
       say_way, say_too_long, say_branch, say_followed, say_passed, say_uncertain, say_other, &
-      say_not_found, say_branch_from, say_no_change, say_here
+      say_not_found, say_branch_from, say_no_change, say_here, say_idle, say_repeated, say_redundant_many, &
+      say_of_pair, say_method
 
    integer, parameter :: phrase_length = 72
 
@@ -28,9 +29,10 @@ module phrases
       say_smoothly = 50, say_unknown = 51, &
       say_way = 52, say_too_long = 53, say_branch = 54, say_followed = 55, say_passed = 56, &
       say_uncertain = 57, say_other = 58, say_not_found = 59, say_branch_from = 60, say_no_change = 61, &
-      say_here = 62
+      say_here = 62, say_idle = 63, say_repeated = 64, say_redundant_many = 65, say_of_pair = 66, &
+      say_method = 67
 
-   character(phrase_length), parameter :: words(2, 62) = reshape([character(phrase_length) :: &
+   character(phrase_length), parameter :: words(2, 67) = reshape([character(phrase_length) :: &
       'KINEMATICS OF PLANAR MECHANISMS IN MATRIX FORMULATION', &
       'KINEMATYKA MECHANIZMOW PLASKICH W UJECIU MACIERZOWYM', &
       'SET OF COMPUTATIONS NO.', 'KOMPLET OBLICZEN NR', &
@@ -95,7 +97,12 @@ module phrases
       'OTHER BRANCH NOT FOUND', 'DRUGIEJ GALEZI NIE ZNALEZIONO', &
       'FROM T =', 'OD CHWILI T =', &
       'NO CHANGE POINT WAS PASSED', 'NIE BYLO PUNKTU ZMIANY', &
-      'THE INSTANT LIES ON IT', 'CHWILA LEZY W NIM'], [2, 62])
+      'THE INSTANT LIES ON IT', 'CHWILA LEZY W NIM', &
+      'MOVES NOTHING', 'NICZEGO NIE PORUSZA', &
+      'ADDS NOTHING TO THE OTHER DRIVES', 'NIE WNOSI NIC PONAD INNE NAPEDY', &
+      'REDUNDANT EQUATIONS', 'ROWNANIA NADLICZBOWE', &
+      'OF PAIR', 'PARY', &
+      'METHOD NEWTON FINDS A POSITION', 'METODA NEWTON ZNAJDUJE POLOZENIE'], [2, 67])
 
 contains
 

@@ -5,7 +5,8 @@ module remarks
    private
    public :: remark_t, new_remark, most_links
    public :: remark_open, remark_limit, remark_far, remark_second, remark_redundant, remark_mobile, &
-      remark_change, remark_long, remark_unused, remark_dead_end
+      remark_change, remark_long, remark_unused, remark_dead_end, &
+      remark_idle, remark_repeated, remark_method
 
    integer, parameter :: remark_open = 1       !< an equation of `pair` or `drive` stays open by `value`
    integer, parameter :: remark_limit = 2      !< at `t`, where `drive` has `value`, the motion of `links` has its limit
@@ -17,6 +18,9 @@ module remarks
    integer, parameter :: remark_long = 8       !< the way from `t` would take too many parts
    integer, parameter :: remark_unused = 9     !< no change point was passed after `t`, as a BRANCH card has it
    integer, parameter :: remark_dead_end = 10  !< the other branch of `links` at `t` was not found
+   integer, parameter :: remark_idle = 11      !< `drive` asks for what the pairs fix anyway
+   integer, parameter :: remark_repeated = 12  !< `drive` asks for what others give already
+   integer, parameter :: remark_method = 13    !< another method finds a position
 
    integer, parameter :: most_links = 6
 
@@ -26,6 +30,7 @@ module remarks
       integer :: pair = 0, drive = 0
       integer :: links(most_links) = 0
       integer :: more = 0                      !< links for which there is no room
+      integer :: equations = 1                 !< remark_redundant: how many of them
       logical :: in_line = .false.             !< remark_limit: the two links are in line
       logical :: other = .false.               !< remark_change: on the other branch
       logical :: here = .false.                !< remark_change: the instant is the change point

@@ -151,6 +151,12 @@ parallelogram() { head_of PARALLEL; four_bar '' 0.0 2.0 4.0 2.0 4.0 40.0 0.0 40.
 parallelogram drive ANGLE COUPL '' 0.0 > "$w/deck"
 told 'the coupler of a parallelogram is driven' 2 "0:$singular
 0: *** LINKS CRANK, COUPL, ROCK CAN STILL MOVE, ADD A DRIVE
+0: *** DRIVE ANGLE COUPL MOVES NOTHING
+1:$singular"
+parallelogram drive RELANGLE CRANK ROCK 0.0 > "$w/deck"
+told 'the cranks of a parallelogram by their difference' 2 "0:$singular
+0: *** LINKS CRANK, COUPL, ROCK CAN STILL MOVE, ADD A DRIVE
+0: *** DRIVE RELANGLE CRANK ROCK MOVES NOTHING
 1:$singular"
 scott_russell() { head_of 'SCOTT RUSSELL'; link CRANK 0.0 0.0 30.0; link BAR 0.87 0.5 -30.0; link BLOCK 1.73 0.0 0.0
    point O BASE; point O1 CRANK; point A1 CRANK 1.0; point A2 BAR; point B2 BAR 1.0; point C BAR -1.0; point B BLOCK
@@ -158,7 +164,55 @@ scott_russell() { head_of 'SCOTT RUSSELL'; link CRANK 0.0 0.0 30.0; link BAR 0.8
 scott_russell drive X C '' 0.0 > "$w/deck"
 told 'a drive across a straight line that the point cannot leave' 2 "0:$singular
 0: *** LINKS CRANK, BAR, BLOCK CAN STILL MOVE, ADD A DRIVE
+0: *** DRIVE X C MOVES NOTHING
 1:$singular"
+# Inverse points of the cell, 3**2 - 1.5**2 = 6.75 over the diameter 2 of the crank's circle: P stays on x = 3.375.
+sed -e '/^DRIVE /d' -e '/^TIME /d' -e '/^END/d' input/peaucellier.deck > "$w/deck"
+{ drive X P '' 3.375; until_time 1 1.0; } >> "$w/deck"
+# Where on its way it stands rounding decides: no bytes are compared.
+"$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
+equal "across Peaucellier's line" "0:$singular
+0: *** LINKS CRANK, ARM-A, ARM-B, BAR-AC, BAR-BC, BAR-AP AND 1 MORE CAN STILL MOVE, ADD A DRIVE
+0: *** DRIVE X P MOVES NOTHING
+1:$singular" "$(said "$w/out")"
+# Crank and lever turn about points of the same place: the block stays where it is on the lever.
+{ head_of TOGETHER; link CRANK 0.0 0.0 30.0; link LEVER 0.0 0.0 30.0; link BLOCK 0.87 0.5 30.0
+   point O BASE; point Q BASE; point O1 CRANK; point A1 CRANK 1.0; point Q2 LEVER; point B BLOCK
+   joint O O1 PO; joint Q Q2 PQ; joint A1 B PA; card PRISM Q2 B GUIDE 0.0 0.0 0.0; drive SLIDE GUIDE '' 1.0
+   until_time 1 1.0; } > "$w/deck"
+told 'a slide that cannot change' 2 "0:$singular
+0: *** LINKS CRANK, LEVER, BLOCK CAN STILL MOVE, ADD A DRIVE
+0: *** DRIVE SLIDE GUIDE MOVES NOTHING
+1:$singular"
+# Scott Russell's mechanism on the coupler of a parallelogram: the x of its point C is that of the coupler.
+on_coupler() { head_of 'TWO DRIVES'; four_bar '' 0.0 2.0 4.0 2.0 4.0 60.0 0.0 60.0
+   link CRANK-S 1.0 1.73 30.0; link BAR 1.87 2.23 -30.0; link BLOCK 2.73 1.73 0.0
+   point O COUPL; point O1 CRANK-S; point A3 CRANK-S 1.0; point A4 BAR; point B4 BAR 1.0; point C BAR -1.0; point B BLOCK
+   joint O O1 PS; joint A3 A4 PS1; joint B4 B PS2; card PRISM O B GUIDE 0.0 0.0 0.0; "$@"; until_time 1 1.0; }
+angle_first() { drive ANGLE CRANK '' 60.0; drive X C '' 1.0; }
+angle_last() { drive X C '' 1.0; drive ANGLE CRANK '' 60.0; }
+on_coupler angle_first > "$w/deck"
+told 'two drives for one freedom, none for the other' 2 "0:$singular
+0: *** LINKS CRANK-S, BAR, BLOCK CAN STILL MOVE, ADD A DRIVE
+0: *** DRIVE X C ADDS NOTHING TO THE OTHER DRIVES
+1:$singular"
+on_coupler angle_last > "$w/deck"
+told 'the same in another order' 2 "0:$singular
+0: *** LINKS CRANK-S, BAR, BLOCK CAN STILL MOVE, ADD A DRIVE
+0: *** DRIVE ANGLE CRANK ADDS NOTHING TO THE OTHER DRIVES
+1:$singular"
+# A dead point is no idle drive: the piston that is as far as it goes is not named.
+{ head_of TWO; four_bar 1 0.0 2.0 4.0 2.0 4.0 40.0 0.0 40.0; drive ANGLE COUPL1 '' 0.0
+   slider 1.0 3.0 0.0 0.0 | sed 's/-10.0$/0.0/'; drive X B '' 4.0; until_time 1 1.0; } > "$w/deck"
+told 'an idle drive, and one at a dead point' 2 "0:$singular
+0: *** LINKS CRANK1, COUPL1, ROCK1 CAN STILL MOVE, ADD A DRIVE
+0: *** DRIVE ANGLE COUPL1 MOVES NOTHING
+1:$singular"
+{ head_of NAPED; card LANG PL; four_bar '' 0.0 2.0 4.0 2.0 4.0 40.0 0.0 40.0; drive ANGLE COUPL '' 0.0; until_time 1 1.0; } > "$w/deck"
+told 'in Polish: a drive that moves nothing' 2 '0: *** JAKOBIAN OSOBLIWY: PREDKOSCI I PRZYSPIESZENIA NIE ISTNIEJA
+0: *** OGNIWA CRANK, COUPL, ROCK RUCH NIEOKRESLONY, DODAJ NAPED
+0: *** NAPED ANGLE COUPL NICZEGO NIE PORUSZA
+1: *** JAKOBIAN OSOBLIWY: PREDKOSCI I PRZYSPIESZENIA NIE ISTNIEJA'
 { head_of 'THIRD CRANK'; three_cranks 0.0 30.0; until_time 1 1.0; } > "$w/deck"
 told 'three cranks without a drive' 2 "0:$singular
 0: *** LINKS CRANK-1, CRANK-2, CRANK-3, COUPLER CAN STILL MOVE, ADD A DRIVE
@@ -172,6 +226,19 @@ $below"
 { head_of 'THIRD CRANK'; three_cranks 0.0 30.0; drive ANGLE CRANK-1 '' 30.0 30.0; until_time 1 2.0; } > "$w/deck"
 told 'three cranks' 0 "0: --- REDUNDANT EQUATION: PAIR PAIR-C
 $below"
+{ head_of 'ONE PIN'; four_bar '' $crank_rocker; joint C2 R2 AGAIN; drive ANGLE CRANK '' 14.0 9.0; until_time 1 1.0; } > "$w/deck"
+told 'one pin as two pairs' 0 "0: --- REDUNDANT EQUATIONS: 2 OF PAIR AGAIN
+$below"
+# A drive's value is the angle, however many turns away the rough one is.
+sed 's/\(LINK    CRANK .*\)14.0$/\11094.0/' "$w/deck" > "$w/turned.deck"
+equal 'one pin as two pairs: the rough angle' 1 "$(grep -c 1094.0 "$w/turned.deck")"
+"$kinmat" "$w/turned.deck" > "$w/turned.out"
+equal 'one pin as two pairs, three turns off' "$(said "$w/out")" "$(said "$w/turned.out")"
+equal 'one pin as two pairs, three turns off: the tables' "$(grep '^ CRANK  ' "$w/out")" "$(grep '^ CRANK  ' "$w/turned.out")"
+{ head_of 'JEDEN CZOP'; card LANG PL; four_bar '' $crank_rocker; joint C2 R2 AGAIN; drive ANGLE CRANK '' 14.0 9.0
+   until_time 1 1.0; } > "$w/deck"
+told 'in Polish: one pin as two pairs' 0 '0: --- ROWNANIA NADLICZBOWE: 2 PARY AGAIN
+ NAJWIEKSZA NIEZGODNOSC ROWNAN NADLICZBOWYCH WZGLEDEM WYMIARU: PONIZEJ 1.E-13'
 block drive SLIDE GUIDE '' 0.0 1.0 > "$w/slide.deck"
 sed 's/^TIME /'"$(drive Y O1 '' 0.0)"'\n&/' "$w/slide.deck" > "$w/deck"
 told 'a drive that asks for what is so anyway' 0 "0: --- REDUNDANT EQUATION: DRIVE Y O1
@@ -221,7 +288,10 @@ $largest 2.E-02"
 guides() { head_of GUIDES; slider 1.0 3.0 30.0 0.5; point G2 BASE 1.0 -0.75; point B3 PISTON 0.25 -1.5
    card PRISM G2 B3 GUIDE-2 0.0 "$1" "$2"; drive ANGLE CRANK '' 30.0 40.0; until_time 1 1.0; }
 guides 0.25 0.0 > "$w/deck"
-told 'two parallel guides' 0 "0: --- REDUNDANT EQUATION: PAIR GUIDE-2
+told 'two parallel guides' 0 "0: --- REDUNDANT EQUATIONS: 2 OF PAIR GUIDE-2
+$below"
+guides 0.25 -360.0 > "$w/deck"
+told 'two parallel guides, one a whole turn on' 0 "0: --- REDUNDANT EQUATIONS: 2 OF PAIR GUIDE-2
 $below"
 guides 0.252 0.0 > "$w/deck"
 told 'two guides, one too far off' 2 "0:$open
@@ -381,7 +451,7 @@ told 'in Polish: the other branch' 0 '1: --- PUNKT ZMIANY W CHWILI T = 1.60000E+
 # on, 25 s at 12 deg a second from 30 deg, the bar has the angle of the crank less 180 deg.
 { scott_russell drive ANGLE CRANK '' 30.0 12.0 | sed -e '/^TIME/d' -e '/^END/d' -e '/^POINT   C /d'; point G2 BASE 0.0 1.0; point S2 BLOCK 0.3 1.0
    card PRISM G2 S2 GUIDE2 0.0 0.0 0.0; card BRANCH BAR '' '' 5.0; until_time 5 25.5; } > "$w/deck"
-told 'the other branch in spite of redundant equations' 0 "0: --- REDUNDANT EQUATION: PAIR GUIDE2
+told 'the other branch in spite of redundant equations' 0 "0: --- REDUNDANT EQUATIONS: 2 OF PAIR GUIDE2
 1: --- CHANGE POINT AT T = 5.00000E+00, LINKS CRANK, BAR: TAKE THE OTHER BRANCH
 4: --- CHANGE POINT AT T = 2.00000E+01, LINKS CRANK, BAR: GO ON SMOOTHLY
 $below"
@@ -448,8 +518,62 @@ equal 'off by 60 degrees' "$above" "$(assembled 105.0 50.0 0.0)"
 equal 'off by 60 degrees below' "$under" "$(assembled -115.0 -50.0 0.0)"
 equal 'off by 90 degrees is told' 1 "$(assembled -40.0 10.0 0.0 > /dev/null; said "$w/out" | grep -c 'OFF BY')"
 equal 'off by whole turns' "$above" "$(assembled 405.0 -620.0 0.0)"
+equal 'off by whole turns is not worth a word' '' "$(said "$w/out")"
+# turned FILE LINK TURNS: the deck with that link's rough angle so many turns on
+turned() { awk -v link="$2" -v turns="$3" '$1 == "LINK" && $2 == link { $0 = sprintf("%-64s%.6f", substr($0, 1, 64),
+   substr($0, 65) + 360*turns) } { print }' "$1"; }
+for one in 'whitworth ARM' 'cylinder PISTON' 'inverted_slider BLOCK' 'parallel_cranks CRANK-1' 'double_parallelogram CRANK-B' \
+   'cognates ROCKER-R'; do
+   turned "input/${one% *}.deck" "${one#* }" -2 > "$w/deck"
+   "$kinmat" "input/${one% *}.deck" > "$w/once"
+   "$kinmat" "$w/deck" > "$w/out"
+   equal "${one% *}: the rough angle of ${one#* } was changed" 1 "$(diff "input/${one% *}.deck" "$w/deck" | grep -c '^>')"
+   equal "${one% *}: words where ${one#* } is two turns back" "$(said "$w/once")" "$(said "$w/out")"
+done
 equal 'angles of zero: an assembly' yes "$(p=$(assembled 0.0 0.0 0.0); [ "$p" = "$above" ] || [ "$p" = "$under" ] && echo yes)"
 equal 'angles of zero: two are as near' 1 "$(said "$w/out" | grep -c 'ANOTHER ASSEMBLY')"
+
+# The other methods say the same of the mechanism, whatever the way of their iterations; and of themselves, where it is
+# they that find nothing.
+for method in DENSE MATRIX; do
+   { head_of PISTON; slider 1.0 3.0 60.0 0.0; drive X B '' 3.5 0.2; card METHOD "$method"; until_time 3 4.5; } > "$w/deck"
+   told "METHOD $method: a piston beyond its reach" 2 "2:$none
+2: *** LIMIT OF MOTION AT T = $(found 2.5), DRIVE X B = $(found 4) M
+2: *** LINKS CRANK, ROD AT THE LIMIT, IN LINE
+3:$none"
+   { head_of REACH; slider 1.0 3.0 60.0 0.0; drive X B '' 4.5 0.0; card METHOD "$method"; until_time 1 1.0; } > "$w/deck"
+   told "METHOD $method: a piston beyond its reach from the start" 2 "0:$none
+0: *** DRIVE X B STAYS OPEN BY $(small 0.5) M
+1:$none
+1: *** DRIVE X B STAYS OPEN BY $(small 0.5) M"
+   { head_of SHORT; four_bar '' 0.0 1.0 1.0 1.0 4.0 0.0 50.0 110.0; drive ANGLE CRANK '' 0.0 0.0; card METHOD "$method"
+      until_time 1 1.0; } > "$w/deck"
+   told "METHOD $method: bars that are too short" 2 "0:$none
+0: *** PAIR PB STAYS OPEN BY $(small 1) M
+1:$none
+1: *** PAIR PB STAYS OPEN BY $(small 1) M"
+   { head_of NAPED; card LANG PL; slider 1.0 3.0 60.0 0.0; drive X B '' 3.5 0.2; card METHOD "$method"; until_time 1 3.0; } > "$w/deck"
+   told "METHOD $method, in Polish: a limit" 2 "1: *** NIE ZNALEZIONO POLOZENIA
+1: *** KRES RUCHU W CHWILI T = $(found 2.5), NAPED X B = $(found 4) M
+1: *** OGNIWA CRANK, ROD NA KRESIE RUCHU, W JEDNEJ LINII"
+   parallelogram drive ANGLE COUPL '' 0.0 | sed 's/^TIME /METHOD  '"$method"'\n&/' > "$w/deck"
+   "$kinmat" "$w/deck" > "$w/out"
+   equal "METHOD $method: the coupler of a parallelogram is driven" ' *** LINKS CRANK, COUPL, ROCK CAN STILL MOVE, ADD A DRIVE
+ *** DRIVE ANGLE COUPL MOVES NOTHING' "$(grep -E 'MOVE|FINDS' "$w/out")"
+done
+{ head_of LIMIT; four_bar '' 0.0 3.0 2.0 2.0 4.0 0.0 30.0 120.0; drive ANGLE CRANK '' 0.0 20.0; card METHOD DENSE
+   until_time 6 6.0; } > "$w/deck"
+told 'METHOD DENSE: coupler and rocker in line' 2 "4:$none
+4: *** LIMIT OF MOTION AT T = $(found "$limit/20"), DRIVE ANGLE CRANK = $(found "$limit") DEG
+4: *** LINKS COUPL, ROCK AT THE LIMIT, IN LINE
+5:$none
+6:$none"
+# At crank angle 0 the rate of the iteration of 1987 is above 1 on Andrews' mechanism (make study-1987).
+sed -e '/^METHOD/d' -e 's/^TIME .*/METHOD  MATRIX\nAT                              0.0/' input/andrews.deck > "$w/deck"
+told 'a method that does not converge' 2 "0:$none
+0: --- METHOD NEWTON FINDS A POSITION
+0:$none
+0: --- METHOD NEWTON FINDS A POSITION"
 
 # Decks that are no decks: refused in bounded time and memory, in few words, and nothing is computed.
 # refused NAME WORDS: the deck in $w/deck, in 20 s of computing and 1 GB; WORDS: the first sentence

@@ -41,7 +41,7 @@ module hand_groups
       character(24) :: deck = ''
       integer :: set = 0
       character(100) :: groups = ''
-      character(40) :: redundant = ''    !< pairs with equations that could be spared
+      character(40) :: redundant = ''    !< pairs with equations that could be spared, one a name
    end type statement_t
 
    type(statement_t), parameter :: statements(58) = [ &
@@ -105,7 +105,7 @@ module hand_groups
       ! it is that of the last pair that closes a loop.
       statement_t('parallel_cranks', 0, '*CRANK-1 CRANK-2 CRANK-3 COUPLER', 'PAIR-C'), &
       statement_t('double_parallelogram', 0, '*CRANK-A CRANK-B LOWER UPPER', 'PAIR-B2'), &
-      statement_t('two_guides', 0, '*CRANK; ROD CARRIAGE', 'GUIDE-2'), &
+      statement_t('two_guides', 0, '*CRANK; ROD CARRIAGE', 'GUIDE-2 GUIDE-2'), &
       statement_t('cognates', 0, '*CRANK COUPLER ROCKER CRANK-L COUP-L ROCKER-L CRANK-R COUP-R ROCKER-R', 'PAIR-PL PAIR-PR'), &
       statement_t('dixon', 0, '*BAR-12 BAR-13 BAR-21 BAR-22 BAR-23 BAR-31 BAR-32 BAR-33', 'PAIR-A32')]
 
@@ -137,17 +137,25 @@ contains
       character(*), intent(in) :: name
       type(mechanism_t), intent(in) :: m
       type(remark_t), allocatable :: list(:)
-      integer :: i, k
+      integer :: i, k, n
 
       allocate (list(0))
       do i = 1, size(statements)
          if (statements(i)%deck /= name) cycle
          do k = 1, size(m%pairs)
-            if (index(' '//statements(i)%redundant, ' '//trim(m%pairs(k)%name)//' ') == 0) cycle
-            list = [list, remark_t(kind=remark_redundant, pair=k)]
+            n = mentions(' '//statements(i)%redundant, ' '//trim(m%pairs(k)%name)//' ')
+            if (n > 0) list = [list, remark_t(kind=remark_redundant, pair=k, equations=n)]
          end do
       end do
    end function redundant_by_hand
+
+   !> How often `word`, a blank before and behind it, is in `text`.
+   pure integer function mentions(text, word)
+      character(*), intent(in) :: text, word
+      integer :: k
+
+      mentions = count([(text(k:k + len(word) - 1) == word, k=1, len(text) - len(word) + 1)])
+   end function mentions
 
    !> The change points of the deck called `name` that are passed on the way from `before` to `t`, and those in which `t` lies.
    function passages_by_hand(name, m, before, t) result(list)
