@@ -530,6 +530,24 @@ for one in 'whitworth ARM' 'cylinder PISTON' 'inverted_slider BLOCK' 'parallel_c
    equal "${one% *}: the rough angle of ${one#* } was changed" 1 "$(diff "input/${one% *}.deck" "$w/deck" | grep -c '^>')"
    equal "${one% *}: words where ${one#* } is two turns back" "$(said "$w/once")" "$(said "$w/out")"
 done
+# All angles wrong, x and y right: the same assembly, the same tables, and a word that it was so. At zero, and a quarter of a
+# turn off.
+tables() { awk '/^ (INSTANT|CHWILA) / { p = 1 } /^ (---|\*\*\*)/ { next } p' "$1"; }
+for one in watt whitworth scissor grounds stephenson_output watt_output crank_inline; do
+   awk '$1 == "LINK" { $0 = sprintf("%-64s0.0", substr($0, 1, 64)) } { print }' "input/$one.deck" > "$w/deck"
+   "$kinmat" "$w/deck" > "$w/out"
+   tables "expected/$one.lst" > "$w/tables.expected"
+   tables "$w/out" > "$w/tables.out"
+   same "$one: angles of zero" "$w/tables.expected" "$w/tables.out"
+   [ $one = watt ] || equal "$one: angles of zero are told" 1 "$(said "$w/out" | grep -c 'OFF BY')"
+done
+for one in crank_slider yoke hart whitworth; do
+   awk '$1 == "LINK" { $0 = sprintf("%-64s%.6f", substr($0, 1, 64), substr($0, 65) + 90) } { print }' "input/$one.deck" > "$w/deck"
+   "$kinmat" "$w/deck" > "$w/out"
+   tables "expected/$one.lst" | sed -n '/^ END OF SET/q;/^ KONIEC/q;p' > "$w/tables.expected"
+   tables "$w/out" | sed -n '/^ END OF SET/q;/^ KONIEC/q;p' > "$w/tables.out"
+   same "$one: angles a quarter off" "$w/tables.expected" "$w/tables.out"
+done
 equal 'angles of zero: an assembly' yes "$(p=$(assembled 0.0 0.0 0.0); [ "$p" = "$above" ] || [ "$p" = "$under" ] && echo yes)"
 equal 'angles of zero: two are as near' 1 "$(said "$w/out" | grep -c 'ANOTHER ASSEMBLY')"
 
