@@ -67,6 +67,7 @@ contains
       e%moving = pack(e%needed, moving_blocks(e%blocks, e%needed))
       e%state = new_state(e%blocks, size(m%drives))
       e%history = new_history(e%blocks%unknowns, sought_unknowns(e))
+      e%history%order = m%predictor
       e%is_found = wanted_links(m)
       do i = 1, size(m%links)
          if (t%frame(i) == 0) then

@@ -15,6 +15,8 @@ module command_line
       character(:), allocatable :: log       !< '' for none
       logical :: check = .false.             !< read and analyse only
       logical :: errors = .false.            !< CSV and protocol tell how far each number is known
+      logical :: study = .false.             !< speed against error, in the place of the listing
+      character(:), allocatable :: trials    !< what --study asks another kind of this program for; '' for nothing
       integer :: share = 1, shares = 1       !< the share-th of so many shares of the deck's sets
       !> What is printed instead of computing: 'HELP', 'VERSION', 'RULER' or ''.
       character(:), allocatable :: show
@@ -42,6 +44,9 @@ module command_line
       '  --errors             how far each number is known, in CSV and protocol', &
       '  --check              reads and analyses the deck, computes nothing', &
       '  --sets K/N           the K-th of N shares of the sets of the deck', &
+      '  --study              speed against error, in place of the listing', &
+      '                       (needs kinmat-quad, kinmat-single: make kinds)', &
+      '  --trials WORDS       what --study asks these two for', &
       '  --ruler              prints an empty card with its columns', &
       '  --help, --version', &
       'Exit status: 0 every step solved; 1 deck or command refused;', &
@@ -72,6 +77,7 @@ contains
       options%output = ''
       options%csv = ''
       options%log = ''
+      options%trials = ''
       options%show = ''
       has_deck = .false.
       i = 1
@@ -87,6 +93,10 @@ contains
             call take_share(i, options, failure)
          case ('--errors')
             options%errors = .true.
+         case ('--study')
+            options%study = .true.
+         case ('--trials')
+            call take_file(i, options%trials, failure)
          case ('--check')
             options%check = .true.
          case ('--help', '-h')
@@ -100,8 +110,26 @@ contains
          end select
          i = i + 1
       end do
+      if (.not. allocated(failure)) call check_study(options, failure)
       if (.not. allocated(failure)) call check_files(options, failure)
    end subroutine read_command
+
+   !> A study prints no listing, and reads its deck more than once.
+   subroutine check_study(options, failure)
+      type(options_t), intent(in) :: options
+      type(failure_t), allocatable, intent(out) :: failure
+
+      if (.not. options%study .and. len(options%trials) == 0) return
+      if (len(options%show) > 0) return
+      if (options%study .and. len(options%trials) > 0) then
+         call fail(failure, status_refused, 'OPTION --study DOES NOT GO WITH --trials')
+      else if (len(options%csv) > 0 .or. len(options%log) > 0 .or. options%errors .or. options%check &
+         .or. options%shares > 1) then
+         call fail(failure, status_refused, 'OPTION --study GOES WITH NO OTHER OPTION BUT -o')
+      else if (len(options%deck) == 0 .or. options%deck == '/dev/stdin') then
+         call fail(failure, status_refused, 'OPTION --study NEEDS THE DECK AS A FILE')
+      end if
+   end subroutine check_study
 
    subroutine take_deck(word, has_deck, deck, failure)
       character(*), intent(in) :: word

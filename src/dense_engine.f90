@@ -2,11 +2,11 @@
 !> (METHOD DENSE) or by the iteration of 1987 (METHOD MATRIX). What the blocks are compared with.
 module dense_engine
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_matrix
+   use mechanism, only: mechanism_t, method_matrix, own_predictor
    use motion, only: motion_t, new_motion
    use linear_solver, only: factors_t, new_factors, reciprocal_condition, determinant_sign
    use convergence, only: convergence_t, is_solved
-   use predictor, only: largest_change
+   use predictor, only: largest_change, order_weights
    use pose, only: system_t, pose_t, new_system, new_pose
    use drive_rows, only: drive_targets
    use position_newton, only: solve_newton
@@ -28,9 +28,10 @@ module dense_engine
       type(factors_t) :: factors
       type(motion_t) :: now                      !< the motion sought last
       type(motion_t) :: last, marked             !< the last one kept, and that at a place to return to
+      type(motion_t) :: before                   !< the one kept before, where the order is 3
       integer :: determinant_now = 0, determinant = 0, determinant_marked = 0
       real(wp), allocatable :: targets(:, :)     !< (3, drives) value, rate, second rate
-      integer :: method = 0
+      integer :: method = 0, order = own_predictor
       real(wp) :: tolerance = 0.0_wp
    end type dense_t
 
@@ -48,8 +49,10 @@ contains
       e%factors = new_factors(e%system%n)
       e%now = new_motion(size(m%links))
       e%last = e%now
+      e%before = e%now
       allocate (e%targets(3, size(m%drives)))
       e%method = m%method
+      e%order = m%predictor
       e%tolerance = m%tolerance
    end function new_dense
 
@@ -65,7 +68,7 @@ contains
 
       e%now%t = t
       e%start = e%rough
-      if (follows) e%start = continued(e%last, t)
+      if (follows) e%start = continued(e, t)
       e%pose%q = e%start
       call drive_targets(e%system, t, e%targets)
       if (e%method == method_matrix) then
@@ -100,6 +103,10 @@ contains
    pure subroutine keep_dense(e)
       type(dense_t), intent(inout) :: e
 
+      if (e%order == 3 .and. e%determinant /= 0) then
+         e%before = e%last
+         e%before%known = 2
+      end if
       e%last = e%now
       e%determinant = e%determinant_now
    end subroutine keep_dense
@@ -132,12 +139,20 @@ contains
       found%acceleration(:2, :) = e%system%length*found%acceleration(:2, :)
    end subroutine tell_dense
 
-   !> The start at `t` (3, links): the state before, corrected through its velocity and acceleration.
-   pure function continued(last, t) result(q)
-      type(motion_t), intent(in) :: last
+   !> The start at `t` (3, links): the state before, corrected through its velocity and acceleration, or by the order asked
+   !> for.
+   pure function continued(e, t) result(q)
+      type(dense_t), intent(in) :: e
       real(wp), intent(in) :: t
-      real(wp) :: q(3, size(last%position, 2))
+      real(wp) :: q(3, size(e%last%position, 2)), w(3)
 
-      q = last%position + (t - last%t)*(last%velocity + 0.5_wp*(t - last%t)*last%acceleration)
+      associate (last => e%last, before => e%before)
+         if (e%order == own_predictor) then
+            q = last%position + (t - last%t)*(last%velocity + 0.5_wp*(t - last%t)*last%acceleration)
+         else
+            w = order_weights(e%order, t - last%t, merge(last%t - before%t, 0.0_wp, before%known == 2))
+            q = last%position + w(1)*last%velocity + w(2)*last%acceleration + w(3)*(last%acceleration - before%acceleration)
+         end if
+      end associate
    end function continued
 end module dense_engine

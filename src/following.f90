@@ -35,6 +35,7 @@ module following
       type(engine_t) :: engine
       type(choices_t) :: choices                 !< BRANCH cards, and change points passed
       type(convergence_t) :: convergence         !< of the last position sought
+      integer :: iterations = 0                  !< of all positions sought so far
       logical :: follows = .false.               !< a regular motion is kept, found at `t`
       real(wp) :: t = 0.0_wp
       real(wp) :: place = 0.0_wp                 !< where the step that was divided last began
@@ -120,6 +121,7 @@ contains
       type(remark_t), allocatable :: list(:)
 
       call seek(f%engine, t, f%follows, f%convergence, correction, same)
+      f%iterations = f%iterations + f%convergence%iterations
       accepted = is_solved(f%convergence)
       if (.not. f%follows) return
       accepted = accepted .and. correction <= largest_correction .and. f%convergence%doubt <= largest_doubt

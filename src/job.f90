@@ -18,7 +18,7 @@ module job
    use command_line, only: options_t
    implicit none
    private
-   public :: run_job
+   public :: run_job, check_structure
 
    !> The job's outputs; csv and log only where asked for.
    type :: outputs_t

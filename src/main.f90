@@ -7,6 +7,8 @@ program main
    use command_line, only: options_t, read_command, help_text
    use cards, only: ruler_card
    use job, only: run_job
+   use study, only: run_study
+   use trials_job, only: run_trials
    use text_output, only: output_t, open_output, put, close_output
    implicit none
 
@@ -39,7 +41,13 @@ program main
    case ('RULER')
       call show(ruler_card())
    case default
-      call run_job(options, status, message)
+      if (options%study) then
+         call run_study(options%deck, options%output, status, message)
+      else if (len(options%trials) > 0) then
+         call run_trials(options%trials, options%deck, options%output, status, message)
+      else
+         call run_job(options, status, message)
+      end if
       if (len(message) > 0) write (error_unit, '(a)') message
       call leave(status)
    end select

@@ -9,7 +9,7 @@ module mechanism
    public :: drive_angle, drive_x, drive_y, drive_relangle, drive_slide
    public :: term_harmonic, term_power, term_table
    public :: request_link, request_point, request_pair
-   public :: method_newton, method_matrix, method_dense
+   public :: method_newton, method_matrix, method_dense, own_predictor
    public :: instant_count, instant, wanted_links, plane_origin
 
    integer, parameter :: pair_revolute = 1   !< REVOLUTE: eq. (7), (8)
@@ -30,6 +30,8 @@ module mechanism
    integer, parameter :: method_newton = 1   !< Newton on the closure equations
    integer, parameter :: method_matrix = 2   !< the iteration of 1987 with frozen c(phi), s(phi)
    integer, parameter :: method_dense = 3    !< Newton on all closure equations at once: the reference
+
+   integer, parameter :: own_predictor = -1  !< the method's own
 
    type :: link_t
       character(label_length) :: name = ''
@@ -88,6 +90,8 @@ module mechanism
       logical :: polish = .false.            !< headings are printed in Polish
       integer :: method = method_newton
       real(wp) :: tolerance = 0.0_wp         !< relative; 0 stands for the method's own
+      integer :: predictor = own_predictor   !< order of the start of a step, 0 to 3; no card asks for it
+      logical :: keeps_references = .false.  !< method_matrix: those of the first instant, for good; no card asks for it
       type(link_t), allocatable :: links(:)
       type(point_t), allocatable :: points(:)
       type(pair_t), allocatable :: pairs(:)

@@ -33,6 +33,8 @@ module pose
       real(wp), allocatable :: arm(:, :)          !< (2, points) from the link's origin to the point
       real(wp), allocatable :: slope(:, :)        !< (2, points) derivative of the arm by phi, or its frozen form
       logical :: frozen = .false.                 !< slopes and gradients are those of the frozen form
+      logical :: keeps = .false.                  !< references, once chosen, are never chosen again
+      logical :: has_chosen = .false.
       real(wp), allocatable :: zeros(:, :)        !< (2, points) reference angles of the arms' rows
       real(wp), allocatable :: guide_zeros(:, :)  !< (2, pairs) of the slot rows
       real(wp), allocatable :: slide_zeros(:, :)  !< (2, drives) of the SLIDE rows
@@ -82,6 +84,7 @@ contains
       do i = 1, size(m%links)
          p%q(:, i) = [(m%links(i)%position(:2) - s%origin)/s%length, m%links(i)%position(3)]
       end do
+      p%keeps = m%keeps_references
       call set_pose(s, p)
    end function new_pose
 
@@ -104,13 +107,23 @@ contains
       end do
    end subroutine set_pose
 
-   !> Puts `p` into the frozen form of (16), its angles counted from the zeros nearest to where they are now.
+   !> Puts `p` into the frozen form of (16), its angles counted from the zeros nearest to where they are now or, if it
+   !> keeps its references, to where they were at the first call.
    pure subroutine choose_references(s, p)
+      type(system_t), intent(in) :: s
+      type(pose_t), intent(inout) :: p
+
+      p%frozen = .true.
+      if (.not. (p%keeps .and. p%has_chosen)) call take_nearest_zeros(s, p)
+      p%has_chosen = .true.
+      call set_pose(s, p)
+   end subroutine choose_references
+
+   pure subroutine take_nearest_zeros(s, p)
       type(system_t), intent(in) :: s
       type(pose_t), intent(inout) :: p
       integer :: i
 
-      p%frozen = .true.
       do i = 1, size(s%link_of)
          p%zeros(:, i) = nearest_zeros(arm_angle(s, p, i))
       end do
@@ -121,8 +134,7 @@ contains
          if (s%laws(i)%drive%kind == drive_slide) &
             p%slide_zeros(:, i) = nearest_zeros(normal_angle(s, p, s%laws(i)%drive%subject) + pi/2.0_wp)
       end do
-      call set_pose(s, p)
-   end subroutine choose_references
+   end subroutine take_nearest_zeros
 
    !> Adds the unknowns' vector `x` (n) to the coordinates `q` (3, links); ground links stay as they are.
    pure subroutine add_to_links(s, x, q)

@@ -6,12 +6,16 @@
 !>    x_0 + h (-949 v_0 + 608 v_1 + 581 v_2)/240 + h^2 (637 a_0 + 1080 a_1 + 173 a_2)/240,  error 0.0112 h^7 x^(7).
 !> Rejected: a polynomial through earlier positions as well. It gains an order, but brings their rounding back
 !> many times over, and a start that is wrong by rounding alone costs a second factorization.
+!>
+!> For comparison (--study) the order can be given: x_0 alone, with its velocity, with its acceleration as well, and with the
+!> third derivative as the difference of two accelerations.
 module predictor
    use kinds, only: wp
+   use mechanism, only: own_predictor
    use unknowns, only: unknown_t
    implicit none
    private
-   public :: history_t, new_history, remember, predict, is_even, largest_change
+   public :: history_t, new_history, remember, predict, is_even, largest_change, order_weights
 
    !> The largest predicted change, in radians and in the unit of length, that one step may have: beyond it a
    !> prediction that agrees with a position may do so by chance.
@@ -24,6 +28,7 @@ module predictor
    !> The last three motions; column place(0) is the latest.
    type :: history_t
       integer, allocatable :: sought(:)                 !< unknowns that are predicted
+      integer :: order = own_predictor                  !< 0 to 3, or as above
       integer :: filled = 0
       integer :: place(0:2) = [0, 1, 2]
       real(wp) :: t(0:2) = 0.0_wp
@@ -68,7 +73,7 @@ contains
       real(wp), intent(in) :: t
       type(unknown_t), intent(inout) :: u(0:)
       real(wp), intent(out) :: change
-      real(wp) :: step, d
+      real(wp) :: step, d, w(3)
       integer :: i, k
       logical :: even
 
@@ -76,9 +81,12 @@ contains
       associate (p => h%place(0), q => h%place(1), r => h%place(2), v => h%rate, a => h%rate2)
          step = t - h%t(p)
          even = is_even(h, step)
+         if (h%order /= own_predictor) w = order_weights(h%order, step, merge(h%t(p) - h%t(q), 0.0_wp, h%filled > 1))
          do k = 1, size(h%sought)
             i = h%sought(k)
-            if (even) then
+            if (h%order /= own_predictor) then
+               d = w(1)*v(i, p) + w(2)*a(i, p) + w(3)*(a(i, p) - a(i, q))
+            else if (even) then
                d = step*(weight(0)*v(i, p) + weight(1)*v(i, q) + weight(2)*v(i, r) &
                   + step*(weight2(0)*a(i, p) + weight2(1)*a(i, q) + weight2(2)*a(i, r)))
             else
@@ -89,6 +97,19 @@ contains
          end do
       end associate
    end subroutine predict
+
+   !> Weights (3) of the velocity, the acceleration and the last change of the acceleration in a start of the given `order`,
+   !> 0 to 3, `step` after the latest motion; `before`: the step that led to it, 0.0 where there was none.
+   pure function order_weights(order, step, before) result(w)
+      integer, intent(in) :: order
+      real(wp), intent(in) :: step, before
+      real(wp) :: w(3)
+
+      w = 0.0_wp
+      if (order >= 1) w(1) = step
+      if (order >= 2) w(2) = 0.5_wp*step**2
+      if (order >= 3 .and. abs(before) > 0.0_wp) w(3) = step**3/(6.0_wp*before)
+   end function order_weights
 
    !> Three motions are remembered, and the next comes after the same step.
    pure logical function is_even(h, step)

@@ -1,0 +1,215 @@
+!> Level 10. What --study tries on one set of computations: how many steps, which instants are compared, which ways.
+module study_plan
+   use, intrinsic :: iso_fortran_env, only: dp => real64, int64
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, instant_count, method_newton, method_dense, method_matrix, own_predictor
+   use block_engine, only: block_engine_t, new_block_engine
+   use trial_forms, only: trial_t
+   implicit none
+   private
+   public :: plan_t, way_t, new_plan, plan_ways, truth_trial, default_trial
+   public :: kind_single, kind_double, kind_quad
+   public :: section_tolerance, section_steps, section_predictor, section_kinds
+
+   integer, parameter :: kind_single = 1, kind_double = 2, kind_quad = 3
+   integer, parameter :: section_tolerance = 1, section_steps = 2, section_predictor = 3, section_kinds = 4
+
+   !> Coordinates of links at instants: of so many the truth is kept, of so many a finer march is made, so many are
+   !> solved at all.
+   integer, parameter :: most_kept = 50000, most_fine = 60000, most_solved = 1000000
+   !> Equations that are solved all at once.
+   integer, parameter :: most_equations = 130
+   !> Microseconds of real128: all, a link, and the cube of a block's width.
+   real(dp), parameter :: most_time = 1.5e7_dp, link_time = 20.0_dp, cube_time = 0.2_dp
+   integer, parameter :: fewest_truths = 4
+   integer, parameter :: times = 9
+
+   type :: plan_t
+      integer :: set = 1, steps = 0, last = 0    !< of the deck; 0 steps: those between the instants of its AT cards
+      integer :: finer = 1                       !< the finest march makes so many steps of one
+      integer :: coarser = 1                     !< the coarsest makes one of so many
+      integer :: skip = 1                        !< of the finest steps, those that are compared
+      integer :: widest = 0                      !< block, unknowns
+      integer :: equations = 0                   !< at once
+      logical :: possible = .true.               !< for a program in real128
+      logical :: has_dense = .true.              !< all equations at once are not too many
+   end type plan_t
+
+   type :: way_t
+      integer :: section = 0, kind = kind_double
+      type(trial_t) :: trial
+   end type way_t
+
+contains
+
+   !> The plan of set `set`; `redundant`: it has equations too many.
+   function new_plan(m, set, redundant) result(p)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: set
+      logical, intent(in) :: redundant
+      type(plan_t) :: p
+      integer :: links
+
+      links = size(m%links)
+      p%set = set
+      p%equations = 3*count(.not. m%links%ground)
+      p%has_dense = p%equations <= most_equations .and. .not. redundant
+      if (m%steps > 0) then
+         p%steps = m%steps
+         p%last = min(m%steps, max(8, most_solved/links))
+      else
+         p%last = min(instant_count(m) - 1, max(8, most_solved/links))
+      end if
+      if (p%last < p%steps) p%last = p%last - mod(p%last, 4)
+      call limit_truth(m, p)
+      if (p%steps == 0) return
+      if (mod(p%steps, 4) == 0 .and. mod(p%last, 4) == 0 .and. p%last >= 8) p%coarser = 4
+      do while (p%finer < 16 .and. int(4*p%finer, int64)*p%last*links <= most_fine)
+         p%finer = 4*p%finer
+      end do
+      do while (mod(p%steps*p%finer, 2*p%skip) == 0 .and. int(p%last, int64)*p%finer/p%skip*links > most_kept)
+         p%skip = 2*p%skip
+      end do
+   end function new_plan
+
+   !> As many instants as a program in real128 solves in a short time: it knows no sparse matrices.
+   subroutine limit_truth(m, p)
+      type(mechanism_t), intent(in) :: m
+      type(plan_t), intent(inout) :: p
+      type(block_engine_t) :: e
+      real(dp) :: time
+      integer :: i, most
+
+      e = new_block_engine(m)
+      time = link_time*size(m%links)
+      do i = 1, size(e%needed)
+         associate (n => e%blocks%list(e%needed(i))%shape%n)
+            p%widest = max(p%widest, n)
+            time = time + cube_time*real(n, dp)**3
+         end associate
+      end do
+      most = int(min(most_time/time, 1.0e9_dp))
+      p%possible = most >= fewest_truths
+      if (most >= 16) most = most - mod(most, 4)
+      p%last = min(p%last, max(most, fewest_truths))
+   end subroutine limit_truth
+
+   !> The trial that is the truth: real128, to the limit of rounding, at all instants that are compared.
+   pure type(trial_t) function truth_trial(p) result(t)
+      type(plan_t), intent(in) :: p
+
+      t = trial_t(set=p%set, steps=p%steps*p%finer/p%skip, last=p%last*p%finer/p%skip)
+   end function truth_trial
+
+   !> METHOD NEWTON to the limit of rounding at the deck's steps.
+   pure type(trial_t) function default_trial(p) result(t)
+      type(plan_t), intent(in) :: p
+
+      t = at_steps(p, trial_t(), 1, 1)
+   end function default_trial
+
+   !> `t` in steps of which `finer` are `coarser` of the deck's.
+   pure type(trial_t) function at_steps(p, t, finer, coarser) result(one)
+      type(plan_t), intent(in) :: p
+      type(trial_t), intent(in) :: t
+      integer, intent(in) :: finer, coarser
+
+      one = t
+      one%set = p%set
+      one%steps = p%steps*finer/coarser
+      one%last = p%last*finer/coarser
+      one%stride = max(1, p%skip*finer/(p%finer*coarser))
+      one%repeats = times
+   end function at_steps
+
+   !> All ways, section by section.
+   function plan_ways(p) result(ways)
+      type(plan_t), intent(in) :: p
+      type(way_t), allocatable :: ways(:)
+      real(dp), parameter :: tolerances(10) = [1.0e-2_dp, 1.0e-3_dp, 1.0e-4_dp, 1.0e-6_dp, 1.0e-8_dp, 1.0e-10_dp, &
+         1.0e-12_dp, 1.0e-14_dp, 1.0e-15_dp, 0.0_dp]
+      type(trial_t), allocatable :: methods(:)
+      integer :: i, k
+
+      methods = [trial_t(), trial_t(method=method_dense), trial_t(method=method_matrix), &
+         trial_t(method=method_matrix, keeps=.true.)]
+      if (.not. p%has_dense) methods = methods(:1)
+      allocate (ways(0))
+      do i = 1, size(methods)
+         do k = 1, size(tolerances)
+            call add(section_tolerance, kind_double, with(methods(i), tolerances(k)), 1, 1)
+         end do
+         if (i > 1 .or. p%finer == 1) cycle
+         do k = 1, size(tolerances)
+            call add(section_tolerance, kind_double, with(methods(i), tolerances(k)), p%finer, 1)
+         end do
+      end do
+      do i = 1, size(methods)
+         if (p%coarser > 1) call add(section_steps, kind_double, methods(i), 1, p%coarser)
+         call add(section_steps, kind_double, methods(i), 1, 1)
+         k = 4
+         do while (k <= p%finer)
+            call add(section_steps, kind_double, methods(i), k, 1)
+            k = 4*k
+         end do
+      end do
+      call add_predictors(methods)
+      call add_kinds()
+
+   contains
+
+      subroutine add(section, kind, t, finer, coarser)
+         integer, intent(in) :: section, kind, finer, coarser
+         type(trial_t), intent(in) :: t
+
+         ways = [ways, way_t(section, kind, at_steps(p, t, finer, coarser))]
+      end subroutine add
+
+      !> Orders 0 to 3 and the method's own.
+      subroutine add_predictors(methods)
+         type(trial_t), intent(in) :: methods(:)
+         type(trial_t) :: t
+         integer :: i, order, finer
+
+         do i = 1, min(3, size(methods))
+            finer = 1
+            do
+               do order = 0, 4
+                  t = methods(i)
+                  t%predictor = merge(own_predictor, order, order == 4)
+                  call add(section_predictor, kind_double, t, finer, 1)
+                  if (i == 1) call add(section_predictor, kind_double, with(t, 1.0e-6_dp), finer, 1)
+               end do
+               if (finer == p%finer .or. i == 3) exit
+               finer = p%finer
+            end do
+         end do
+      end subroutine add_predictors
+
+      !> Single, double and real128.
+      subroutine add_kinds()
+         real(dp), parameter :: few(4) = [1.0e-2_dp, 1.0e-4_dp, 1.0e-6_dp, 0.0_dp]
+         real(dp), parameter :: many(6) = [1.0e-2_dp, 1.0e-8_dp, 1.0e-15_dp, 1.0e-20_dp, 1.0e-30_dp, 0.0_dp]
+         integer :: i
+
+         do i = 1, size(few)
+            call add(section_kinds, kind_single, with(trial_t(), few(i)), 1, 1)
+         end do
+         if (p%has_dense) call add(section_kinds, kind_single, trial_t(method=method_dense), 1, 1)
+         call add(section_kinds, kind_double, trial_t(), 1, 1)
+         if (p%has_dense) call add(section_kinds, kind_double, trial_t(method=method_dense), 1, 1)
+         do i = merge(1, size(many), p%finer > 1 .or. p%steps == 0), size(many)
+            call add(section_kinds, kind_quad, with(trial_t(), many(i)), 1, 1)
+         end do
+         if (p%has_dense .and. p%equations < 40) call add(section_kinds, kind_quad, trial_t(method=method_dense), 1, 1)
+      end subroutine add_kinds
+   end function plan_ways
+
+   pure type(trial_t) function with(t, tolerance)
+      type(trial_t), intent(in) :: t
+      real(dp), intent(in) :: tolerance
+
+      with = t
+      with%tolerance = tolerance
+   end function with
+end module study_plan
