@@ -20,7 +20,7 @@ sources := $(sort $(wildcard src/*.f90 src/$(KIND)/*.f90))
 names   := $(basename $(notdir $(sources)))
 modules := $(filter-out main,$(names))
 
-.PHONY: all kinds run test check forms errors kind-check quad-check single-check bench bench-short hard hard-short study-1987 digits fuzz fuzz-short expected install install-kinds clean
+.PHONY: all kinds run test check forms errors kind-check quad-check single-check bench bench-short hard hard-short study study-short study-1987 digits fuzz fuzz-short expected install install-kinds clean
 all: $(BUILD)/kinmat
 
 run: $(BUILD)/kinmat
@@ -166,6 +166,20 @@ hard: $(BUILD)/hard/hard
 
 hard-short: $(BUILD)/hard/hard
 	BUILD=$(BUILD) tests/hard.sh short
+
+# Speed against error of six scenes: kinmat --study for each, times beside the closed forms where there are such, and
+# pictures/speed_against_error.png and .svg drawn anew (gnuplot-nox).
+$(BUILD)/study/study_ratio: $(forms) tests/fast_forms.f90 tests/bench_tools.f90 tests/bench_chains.f90 tests/bench_scenes.f90 \
+   tests/bench_timing.f90 tests/study_ratio.f90 $(BUILD)/release/libkinmat.a
+	mkdir -p $(BUILD)/study
+	$(FC) $(COMMON) $(RELEASE) -J$(BUILD)/study -I$(BUILD)/release -o $@ $^ $(LIBS)
+
+study: kinds $(BUILD)/study/study_ratio
+	BUILD=$(BUILD) tests/study.sh
+
+# Speed against error of one small deck: what must be so whatever the clock says.
+study-short: kinds $(BUILD)/debug/kinmat
+	OPENBLAS_NUM_THREADS=1 BUILD=$(BUILD) tests/study_short.sh
 
 # Numbers as they are printed against the formats of the run-time library; make digits NUMBERS=... for more of them.
 NUMBERS ?= 20000000

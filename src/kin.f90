@@ -3,7 +3,6 @@ module kin
    use, intrinsic :: iso_c_binding, only: c_ptr, c_int, c_size_t, c_char, c_loc, c_associated, c_null_char
    use, intrinsic :: iso_fortran_env, only: dp => real64, qp => real128
    use failures, only: failure_t, fail, status_machine, status_refused
-   use numerals, only: whole
    use trial_forms, only: trial_t, outcome_t, word_of, samples_of
    use trial_records, only: head_length, is_head, make_room, parts_of
    implicit none
@@ -68,8 +67,8 @@ contains
       else if (status == not_found) then
          call fail(failure, status_machine, '--study NEEDS '//program//' BESIDE THIS PROGRAM OR IN PATH: make kinds')
       else if (.not. complete) then
-         call fail(failure, status_machine, program//' HAS GIVEN NO RESULTS; ITS EXIT STATUS: '//whole(status) &
-            //' (IS IT OF ANOTHER VERSION? make kinds)')
+         call fail(failure, status_machine, program &
+            //' HAS GIVEN NO RESULTS, OR NOT THOSE ASKED FOR (IS IT OF ANOTHER VERSION? make kinds)')
       end if
    end subroutine ask_kin
 

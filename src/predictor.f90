@@ -111,12 +111,12 @@ contains
       if (order >= 3 .and. abs(before) > 0.0_wp) w(3) = step**3/(6.0_wp*before)
    end function order_weights
 
-   !> Three motions are remembered, and the next comes after the same step.
+   !> Three motions are remembered, and the next comes after the same step; no other order is asked for.
    pure logical function is_even(h, step)
       type(history_t), intent(in) :: h
       real(wp), intent(in) :: step
 
-      is_even = h%filled == 3
+      is_even = h%filled == 3 .and. h%order == own_predictor
       if (.not. is_even) return
       associate (t => h%t, p => h%place)
          is_even = abs(t(p(0)) - t(p(1)) - step) <= equal_step*abs(step) &

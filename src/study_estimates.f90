@@ -1,4 +1,4 @@
-!> Level 16. The errors that the program tells of its own results (--errors) beside the true ones.
+!> Level 19. The errors that the program tells of its own results (--errors) beside the true ones.
 module study_estimates
    use, intrinsic :: iso_fortran_env, only: dp => real64, qp => real128
    use kinds, only: wp
@@ -88,7 +88,7 @@ contains
          if (mod(k, every) /= 0 .or. q%known < 2) cycle
          there = true_sample(truth, t, k)
          if (truth%motion%known(there) < 2) cycle
-         call take_samples(samples, a%blocks, a%convergence%reciprocal_condition, q, .true., doubt)
+         call take_samples(samples, a%engine%blocks, a%convergence%reciprocal_condition, q, .true., doubt)
          call add_instant(truth, there, q, largest_errors(one, doubt, q, samples%length, samples%rate), tally)
       end do
    end subroutine compare

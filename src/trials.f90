@@ -1,4 +1,4 @@
-!> Level 14. A set of computations solved in one way, in this program's own kind of reals: its motion, and its time.
+!> Level 17. A set of computations solved in one way, in this program's own kind of reals: its motion, and its time.
 !>
 !> The instants are those of a double-precision program, t0 + (t1 - t0) k/n in its arithmetic, in every kind: a kind of
 !> fewer digits rounds them, and that is a part of its error, as is the rounding of the deck's numbers. With twice the

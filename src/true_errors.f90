@@ -1,4 +1,4 @@
-!> Level 15. The errors of a trial against the truth, the motion in real128.
+!> Level 18. The errors of a trial against the truth, the motion in real128.
 !>
 !> Differences are in the characteristic length and rate, angles to a whole turn; where the largest position, velocity or
 !> acceleration of the truth is more than 1 of these, they are parts of it.

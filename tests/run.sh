@@ -42,6 +42,7 @@ part 'the digits' tests/digits.sh
 part 'decks made by chance' tests/fuzz.sh 1000
 part 'the method of 1987' "$BUILD/study/matrix_1987" short
 part 'what is hard to compute' tests/hard.sh short
+part 'speed against error' "$MAKE" --no-print-directory study-short
 part 'results of the methods' "$MAKE" --no-print-directory bench-short
 echo "$passed passed, $failed failed"
 [ "$failed" -eq 0 ]
