@@ -139,8 +139,8 @@ contains
       found%acceleration(:2, :) = e%system%length*found%acceleration(:2, :)
    end subroutine tell_dense
 
-   !> The start at `t` (3, links): the state before, corrected through its velocity and acceleration, or by the order asked
-   !> for.
+   !> The start at `t` (3, links): the state before, corrected through its velocity and acceleration, or by the order
+   !> that is asked for.
    pure function continued(e, t) result(q)
       type(dense_t), intent(in) :: e
       real(wp), intent(in) :: t
@@ -151,7 +151,8 @@ contains
             q = last%position + (t - last%t)*(last%velocity + 0.5_wp*(t - last%t)*last%acceleration)
          else
             w = order_weights(e%order, t - last%t, merge(last%t - before%t, 0.0_wp, before%known == 2))
-            q = last%position + w(1)*last%velocity + w(2)*last%acceleration + w(3)*(last%acceleration - before%acceleration)
+            q = last%position + w(1)*last%velocity + w(2)*last%acceleration &
+               + w(3)*(last%acceleration - before%acceleration)
          end if
       end associate
    end function continued

@@ -30,9 +30,9 @@ module kin
 
 contains
 
-   !> Lets `program` (kinmat-quad or kinmat-single), whose kind has so many binary `digits`, try the `trials` on the deck
-   !> in the file `deck`; `links` (trials): of their sets. `outcomes` (trials): what came of them. Errors: status_refused,
-   !> the deck holds numbers that are none in that kind; status_machine.
+   !> Lets `program` (kinmat-quad or kinmat-single), whose kind has so many binary `digits`, try the `trials` on the
+   !> deck in the file `deck`; `links` (trials): of their sets. `outcomes` (trials): what came of them. Errors:
+   !> status_refused, the deck holds numbers that are none in that kind; status_machine.
    subroutine ask_kin(program, digits, deck, trials, links, outcomes, failure)
       character(*), intent(in) :: program, deck
       integer, intent(in) :: digits, links(:)

@@ -7,8 +7,8 @@
 !> Rejected: a polynomial through earlier positions as well. It gains an order, but brings their rounding back
 !> many times over, and a start that is wrong by rounding alone costs a second factorization.
 !>
-!> For comparison (--study) the order can be given: x_0 alone, with its velocity, with its acceleration as well, and with the
-!> third derivative as the difference of two accelerations.
+!> For comparison (--study) the order can be given: x_0 alone, with its velocity, with its acceleration as well, and
+!> with the third derivative as the difference of two accelerations.
 module predictor
    use kinds, only: wp
    use mechanism, only: own_predictor
@@ -98,8 +98,8 @@ contains
       end associate
    end subroutine predict
 
-   !> Weights (3) of the velocity, the acceleration and the last change of the acceleration in a start of the given `order`,
-   !> 0 to 3, `step` after the latest motion; `before`: the step that led to it, 0.0 where there was none.
+   !> Weights (3) of the velocity, the acceleration and the last change of the acceleration in a start of the given
+   !> `order`, 0 to 3, `step` after the latest motion; `before`: the step that led to it, 0.0 where there was none.
    pure function order_weights(order, step, before) result(w)
       integer, intent(in) :: order
       real(wp), intent(in) :: step, before

@@ -4,7 +4,7 @@ module study
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
    use failures, only: failure_t, fail, status_solved, status_refused
-   use mechanism, only: mechanism_t, instant_count
+   use mechanism, only: mechanism_t
    use structure, only: findings_t
    use deck, only: read_deck
    use job, only: check_structure
@@ -14,9 +14,10 @@ module study
    use trials, only: try, measure, can_be_timed
    use kin, only: ask_kin
    use true_errors, only: truth_t, new_truth, errors_of
-   use study_plan, only: plan_t, way_t, new_plan, plan_ways, truth_trial, default_trial, kind_single, kind_double, kind_quad, &
-      section_tolerance, section_steps, section_predictor, section_kinds
-   use study_table, only: row_t, put_section, put_row, put_cheapest, error_text
+   use study_plan, only: plan_t, way_t, new_plan, plan_ways, truth_trial, default_trial, kind_single, kind_double, &
+      kind_quad, section_tolerance, section_kinds
+   use study_head, only: put_head, put_refusal
+   use study_table, only: row_t, put_section, put_row, put_cheapest
    use study_estimates, only: put_estimates
    implicit none
    private
@@ -77,11 +78,8 @@ contains
       p = new_plan(m, set, redundant)
       if (set > 1) call put(o, '')
       call put(o, ' SPEED AGAINST ERROR   SET '//whole(set)//'   '//trim(m%title))
-      if (.not. p%possible) then
-         call put(o, ' NOT STUDIED: A BLOCK OF '//whole(p%widest)//' UNKNOWNS IS TOO WIDE FOR kinmat-quad, WHICH KNOWS THE TRUTH')
-         return
-      else if (p%last == 0) then
-         call put(o, ' NOT STUDIED: THE DECK ASKS FOR ONE INSTANT, AND NO STEP LEADS TO IT')
+      if (.not. p%possible .or. p%last == 0) then
+         call put_refusal(o, p)
          return
       end if
       ways = plan_ways(p)
@@ -198,46 +196,13 @@ contains
       end do
    end function truth_doubt
 
-   subroutine put_head(o, m, p, truth)
-      type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(plan_t), intent(in) :: p
-      type(truth_t), intent(in) :: truth
-      integer :: known
-
-      known = count(truth%motion%known == 2)
-      call put(o, ' '//whole(p%last)//' STEPS, '//whole(size(m%links))//' LINKS; THE TRUTH: kinmat-quad (REAL128), ' &
-         //whole(known)//' OF '//whole(size(truth%motion%known))//' INSTANTS COMPARED')
-      if (p%last < p%steps .or. (p%steps == 0 .and. p%last < instant_count(m) - 1)) &
-         call put(o, ' SHORTENED: THE FIRST '//whole(p%last)//' STEPS OF '//whole(max(p%steps, instant_count(m) - 1)))
-      if (p%steps > 0 .and. size(m%at) > 0) call put(o, ' THE INSTANTS OF AT CARDS ARE LEFT OUT')
-      if (redundant_or_wide(p)) call put(o, ' METHODS DENSE AND MATRIX ARE NOT TRIED: '//whole(p%equations) &
-         //' UNKNOWNS AT ONCE, OR EQUATIONS TOO MANY')
-      if (known == 0) call put(o, ' NOT STUDIED: NO MOTION IS FOUND IN REAL128')
-      call put(o, '')
-      call put(o, ' Errors: of all links at all steps compared, the largest and the root of the mean square, against the truth at')
-      call put(o, ' the same instants; in the characteristic length and rate or, where the largest value is more, in parts of it.')
-      call put(o, ' The truth reads the deck''s decimals with 34 digits: that others round them is a part of their errors.')
-      call put(o, ' TIME: a step with velocities and accelerations of all links, the first instant left out: median, least and')
-      call put(o, ' most of 9 measurements. RATIO: to BLOCKS, OWN order, to the limit of ROUNDING: the default. ITER: iterations')
-      call put(o, ' a step. ORDER of the start of a step: 0 the position before, 1 with its velocity, 2 with its acceleration,')
-      call put(o, ' 3 with the change of it; OWN: 2 or, BLOCKS, from three instants. SP, QP: kinmat-single, kinmat-quad.')
-      call put(o, ' MATRIX: reference angles chosen at each step; FIXED: at the first. <: below what the truth can tell.')
-   end subroutine put_head
-
-   pure logical function redundant_or_wide(p)
-      type(plan_t), intent(in) :: p
-
-      redundant_or_wide = .not. p%has_dense
-   end function redundant_or_wide
-
    subroutine put_rows(o, p, rows, finest)
       type(output_t), intent(inout) :: o
       type(plan_t), intent(in) :: p
       type(row_t), intent(in) :: rows(:)
       real(dp), intent(in) :: finest(0:2)
-      character(*), parameter :: titles(4) = [character(40) :: '1  TOLERANCE', '2  NUMBER OF STEPS', '3  START OF A STEP', &
-         '4  PRECISION']
+      character(*), parameter :: titles(4) = [character(20) :: '1  TOLERANCE', '2  NUMBER OF STEPS', &
+         '3  START OF A STEP', '4  PRECISION']
       type(trial_t) :: t
       real(dp), allocatable :: standard(:)
       integer :: i, section

@@ -44,8 +44,9 @@ contains
       integer :: i, k
 
       call put(o, '')
-      call put(o, ' WHAT --errors TELLS, AGAINST THE TRUE ERROR: blocks, the deck''s steps; of each instant the largest number,')
-      call put(o, ' in the characteristic length and rate. TRUE, TOLD: the largest of all instants; LEAST, MEAN: told over true')
+      call put(o, ' WHAT --errors TELLS, AGAINST THE TRUE ERROR: blocks, the deck''s steps; of each instant the')
+      call put(o, ' largest number, in the characteristic length and rate. TRUE, TOLD: the largest of all')
+      call put(o, ' instants; LEAST, MEAN: told over true')
       call put(o, '')
       call put(o, ' TOLERANCE INSTANTS   POSITION'//repeat(' ', 24)//'VELOCITY'//repeat(' ', 24)//'ACCELERATION')
       call put(o, repeat(' ', 19)//repeat('    TRUE    TOLD   LEAST    MEAN', 3))

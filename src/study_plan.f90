@@ -32,6 +32,7 @@ module study_plan
       integer :: widest = 0                      !< block, unknowns
       integer :: equations = 0                   !< at once
       logical :: possible = .true.               !< for a program in real128
+      logical :: redundant = .false.             !< there are equations too many
       logical :: has_dense = .true.              !< all equations at once are not too many
    end type plan_t
 
@@ -53,6 +54,7 @@ contains
       links = size(m%links)
       p%set = set
       p%equations = 3*count(.not. m%links%ground)
+      p%redundant = redundant
       p%has_dense = p%equations <= most_equations .and. .not. redundant
       if (m%steps > 0) then
          p%steps = m%steps

@@ -76,8 +76,8 @@ contains
       if (.not. w%trial%tolerance > 0.0_dp) text(19:28) = '  ROUNDING'
    end function way_text
 
-   !> One row; `steps`: the whole number of them; `standard` (repeats): seconds a step of the default; `finest` (0:2): the
-   !> smallest error that the truth can tell.
+   !> One row; `standard` (repeats): seconds a step of the default; `finest` (0:2): the smallest error that the truth
+   !> can tell.
    subroutine put_row(o, r, standard, finest)
       type(output_t), intent(inout) :: o
       type(row_t), intent(in) :: r

@@ -25,7 +25,7 @@ module trial_forms
       real(dp) :: iterations = 0.0_dp            !< a step, those of divided steps included
       integer, allocatable :: known(:)           !< (samples) -1: no position; 2: accelerations too
       real(qp), allocatable :: value(:, :, :, :) !< (3, links, 0:2, samples)
-      real(dp), allocatable :: time(:)           !< (repeats) seconds a step, the first instant left out; none: not timed
+      real(dp), allocatable :: time(:)           !< (repeats) seconds a step but the first instant; none: not timed
    end type outcome_t
 
    character(*), parameter :: form = '(i0,"/",i0,"/",es23.16e3,"/",i0,"/",l1,4("/",i0))'
@@ -69,7 +69,8 @@ contains
       end do
       good = slashes == 8 .and. verify(word, '0123456789/+-.ETF') == 0
       if (.not. good) return
-      read (line, *, iostat=status) t%set, t%method, t%tolerance, t%predictor, t%keeps, t%steps, t%last, t%stride, t%repeats
+      read (line, *, iostat=status) t%set, t%method, t%tolerance, t%predictor, t%keeps, t%steps, t%last, t%stride, &
+         t%repeats
       good = status == 0
       if (.not. good) return
       good = t%set > 0 .and. t%method >= method_newton .and. t%method <= method_dense .and. t%tolerance >= 0.0_dp &

@@ -1,5 +1,5 @@
-!> Level 18. What --study asks its kin for (--trials): trials of the sets of a deck, their outcomes as records on standard
-!> output.
+!> Level 18. What --study asks its kin for (--trials): trials of the sets of a deck, their outcomes as records on
+!> standard output.
 module trials_job
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use failures, only: failure_t, fail, status_solved, status_refused

@@ -1,7 +1,7 @@
 !> Level 18. The errors of a trial against the truth, the motion in real128.
 !>
-!> Differences are in the characteristic length and rate, angles to a whole turn; where the largest position, velocity or
-!> acceleration of the truth is more than 1 of these, they are parts of it.
+!> Differences are in the characteristic length and rate, angles to a whole turn; where the largest position, velocity
+!> or acceleration of the truth is more than 1 of these, they are parts of it.
 module true_errors
    use, intrinsic :: iso_fortran_env, only: dp => real64, qp => real128
    use kinds, only: wp
