@@ -192,7 +192,7 @@ contains
       doubt = 0.0_dp
       do i = 1, size(rows)
          if (rows(i)%way%kind /= kind_quad .or. rows(i)%way%trial%tolerance > 0.0_dp) cycle
-         if (rows(i)%errors%unsolved == 0) doubt = max(doubt, rows(i)%errors%most)
+         if (rows(i)%errors%compared > 0) doubt = max(doubt, rows(i)%errors%most)
       end do
    end function truth_doubt
 

@@ -93,21 +93,31 @@ contains
          line(36:) = repeat('       -', 3)//'      -'
       end if
       write (line(67:72), '(f6.1)') min(r%iterations, 9999.0_dp)
-      if (r%errors%compared == 0) then
-         line(73:) = '  DID NOT CONVERGE AT ANY INSTANT'
-         if (r%errors%unsolved == 0) line(67:) = repeat(' ', 8)//'REFUSES NUMBERS OF THE DECK'
-      else
+      if (r%errors%compared > 0) then
          do k = 0, 2
             line(73 + 16*k:) = error_text(r%errors%most(k), finest(k))//error_text(r%errors%rms(k), finest(k))
          end do
+      else if (r%errors%unsolved + r%errors%rateless == 0) then
+         line(67:) = repeat(' ', 8)//'REFUSES NUMBERS OF THE DECK'
+      else
+         line(73:) = merge('  NO VELOCITIES AT ANY INSTANT   ', '  DID NOT CONVERGE AT ANY INSTANT', r%errors%rateless > 0)
       end if
       call put(o, trim(line))
-      k = r%errors%compared + r%errors%unsolved
-      if (r%errors%compared > 0 .and. r%errors%unsolved > 0) call put(o, '    DID NOT CONVERGE AT ' &
-         //whole(r%errors%unsolved)//' OF '//whole(k)//' INSTANTS')
-      if (r%errors%elsewhere > 0) call put(o, '    CONVERGED TO ANOTHER POSITION, WHICH CLOSES AS WELL, AT ' &
-         //whole(r%errors%elsewhere)//' OF '//whole(k)//' INSTANTS')
+      call put_failures(o, r%errors)
    end subroutine put_row
+
+   !> Where a way has failed, and how.
+   subroutine put_failures(o, e)
+      type(output_t), intent(inout) :: o
+      type(errors_t), intent(in) :: e
+      character(:), allocatable :: of_all
+
+      of_all = ' OF '//whole(e%compared + e%unsolved + e%rateless)//' INSTANTS'
+      if (e%compared > 0 .and. e%unsolved > 0) call put(o, '    DID NOT CONVERGE AT '//whole(e%unsolved)//of_all)
+      if (e%compared > 0 .and. e%rateless > 0) call put(o, '    NO VELOCITIES AT '//whole(e%rateless)//of_all)
+      if (e%elsewhere > 0) call put(o, &
+         '    CONVERGED TO ANOTHER POSITION, WHICH CLOSES AS WELL, AT '//whole(e%elsewhere)//of_all)
+   end subroutine put_failures
 
    !> Measurements that alternate are compared one by one: what disturbs the machine disturbs both.
    pure real(dp) function ratio_of(time, standard) result(ratio)
@@ -179,7 +189,7 @@ contains
          best = 0
          do k = 1, size(rows)
             if (rows(k)%way%trial%last /= last .or. size(rows(k)%time) == 0) cycle
-            if (rows(k)%errors%unsolved > 0 .or. rows(k)%errors%compared == 0) cycle
+            if (rows(k)%errors%unsolved + rows(k)%errors%rateless > 0 .or. rows(k)%errors%compared == 0) cycle
             if (.not. maxval(rows(k)%errors%most) < levels(i)) cycle
             if (best == 0) then
                best = k

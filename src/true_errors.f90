@@ -31,7 +31,8 @@ module true_errors
    type :: errors_t
       real(dp) :: most(0:2) = 0.0_dp, rms(0:2) = 0.0_dp
       integer :: compared = 0                    !< instants
-      integer :: unsolved = 0                    !< of which the truth is known, the trial's motion not
+      integer :: unsolved = 0                    !< of which the truth is known, the trial's position not
+      integer :: rateless = 0                    !< likewise with a position, but no velocities
       integer :: elsewhere = 0                   !< at which another position was found, which closes as well
    end type errors_t
 
@@ -111,10 +112,9 @@ contains
       do i = 1, size(o%known)
          there = true_sample(truth, t, (i - 1)*t%stride)
          if (truth%motion%known(there) < 2) cycle
-         if (o%known(i) < 2) then
-            e%unsolved = e%unsolved + 1
-            cycle
-         end if
+         if (o%known(i) < 0) e%unsolved = e%unsolved + 1
+         if (o%known(i) == 0 .or. o%known(i) == 1) e%rateless = e%rateless + 1
+         if (o%known(i) < 2) cycle
          e%compared = e%compared + 1
          do k = 0, 2
             d = differences(truth, there, k, o%value(:, :, k, i))/truth%size_of(k)
