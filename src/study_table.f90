@@ -100,7 +100,8 @@ contains
       else if (r%errors%unsolved + r%errors%rateless == 0) then
          line(67:) = repeat(' ', 8)//'REFUSES NUMBERS OF THE DECK'
       else
-         line(73:) = merge('  NO VELOCITIES AT ANY INSTANT   ', '  DID NOT CONVERGE AT ANY INSTANT', r%errors%rateless > 0)
+         line(73:) = '  DID NOT CONVERGE AT ANY INSTANT'
+         if (r%errors%rateless > 0) line(73:) = '  NO VELOCITIES AT ANY INSTANT'
       end if
       call put(o, trim(line))
       call put_failures(o, r%errors)
