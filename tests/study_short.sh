@@ -100,6 +100,17 @@ equal 'debug build: the same errors' '' "$(paste -d '\n' "$w/wanted" "$w/out" | 
 equal 'Andrews: status' 0 $?
 equal 'Andrews: the matrices at small tolerances' 1 "$(grep -A1 '^ MATRIX  .* ROUNDING' "$w/andrews.txt" | grep -c 'DID NOT CONVERGE' | awk '{ print ($1 > 4) }')"
 
+if [ -c /dev/full ]; then
+   "$kinmat" --study "$w/four_bar.deck" > /dev/full 2> "$w/err"
+   equal 'disk full: status' 3 $?
+fi
+# Found in PATH, and a name that a shell would take apart.
+cp "$w/four_bar.deck" "$w/it's a deck.deck"
+PATH=$(dirname "$kinmat"):$PATH sh -c 'kinmat --study "$1"' sh "$w/it's a deck.deck" > "$w/named.txt" 2> "$w/err"
+equal 'in PATH: status' 0 $?
+without_clock "$w/named.txt" > "$w/out"
+same 'in PATH: the same but for the clock' "$w/wanted" "$w/out"
+
 # What is refused.
 only=' *** OPTION --study GOES WITH NO OTHER OPTION BUT -o'
 deck=$w/four_bar.deck
@@ -125,8 +136,4 @@ kinmat=$alone refused 'alone' 3 ' *** --study NEEDS kinmat-quad BESIDE THIS PROG
 cp "$BUILD/kinmat" "$w/alone/kinmat-quad"
 kinmat=$alone refused 'another program' 3 \
    ' *** kinmat-quad HAS GIVEN NO RESULTS, OR NOT THOSE ASKED FOR (IS IT OF ANOTHER VERSION? make kinds)' --study "$deck"
-if [ -c /dev/full ]; then
-   "$kinmat" --study "$deck" > /dev/full 2> "$w/err"
-   equal 'disk full: status' 3 $?
-fi
 conclude
