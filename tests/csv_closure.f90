@@ -2,7 +2,7 @@
 !> row is whole, and positions, velocities and accelerations satisfy the closure equations and the drives in real128.
 module csv_closure
    use kinds, only: wp
-   use quad_jet, only: qp, jet_t, operator(-)
+   use quad_jet, only: qp, pi_q, jet_t, operator(-)
    use mechanism, only: mechanism_t, instant_count, request_point, request_pair, pair_prismatic
    use csv_rows, only: rows_t, read_instant, blame, whole_text, csv_head
    use jet_closure, only: body_jet_t, closure_jets, place_jet, slide_jet, sizes_t, sizes_of, row_sizes
@@ -118,6 +118,11 @@ contains
       sizes = row_sizes(m, sizes_of(m, rows%body), t)
       if (size(r) > 3*count(.not. m%links%ground)) then
          allowed = max(allowed, contradiction)
+         ! Two guides that ask for angles a whole turn apart ask for the same.
+         do k = 1, size(m%pairs)
+            if (m%pairs(k)%kind == pair_prismatic) &
+               share(0, 2*k) = abs(r(2*k)%v - 2.0_qp*pi_q*anint(r(2*k)%v/(2.0_qp*pi_q)))
+         end do
          ! Two drives that ask for accelerations next to none are told apart by what their rates are worth.
          sizes(2, :) = max(sizes(2, :), sizes(1, :)**2/(sizes(0, :) + least_size))
       end if
