@@ -58,7 +58,7 @@ contains
          return
       end if
       call go_to(a%following_t, t, w)
-      call add_remarks(w%passed, found)
+      if (allocated(w%passed)) call add_remarks(w%passed, found)
       if (w%arrived) then
          call arrive(a, w, found)
       else
@@ -128,16 +128,19 @@ contains
    subroutine judge_branch(a, w)
       type(analysis_t), intent(inout) :: a
       type(way_t), intent(in) :: w
+      integer :: passed
 
+      passed = 0
+      if (allocated(w%passed)) passed = size(w%passed)
       a%branch = w%branch
       if (.not. a%follows) then
          a%branch%kind = branch_first
       else if ((a%convergence%singular .and. .not. w%stands) .or. .not. allocated(a%engine%blocks)) then
          a%branch%kind = branch_none
       else
-         a%branch%kind = merge(branch_crossed, branch_same, size(w%passed) > 0)
+         a%branch%kind = merge(branch_crossed, branch_same, passed > 0)
       end if
-      call count_in(a%tally, a%branch, size(w%passed))
+      call count_in(a%tally, a%branch, passed)
    end subroutine judge_branch
 
    !> The gap at `t` itself, not where the last part of a step has ended: from the motion that is followed or, where
@@ -194,7 +197,9 @@ contains
             list = limit_remark(a%engine%blocks, t)
          end if
       end if
-      if (size(w%dead_end) > 0) list = w%dead_end
+      if (allocated(w%dead_end)) then
+         if (size(w%dead_end) > 0) list = w%dead_end
+      end if
       if (has_too_many_parts(w)) list = [remark_t(kind=remark_long, t=a%place)]
       if (size(list) > 0 .and. .not. a%is_lost) call add_remarks(list, found)
       if (a%follows .and. a%convergence%ended /= ended_open) call note_end(a%ends, a%place, a%t, t, w%blocked, list)

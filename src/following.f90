@@ -49,7 +49,7 @@ module following
       logical :: stands = .false.                !< on a change point, from short before which it is followed
       integer :: tries = 0
       type(branch_t) :: branch
-      type(remark_t), allocatable :: passed(:), dead_end(:)
+      type(remark_t), allocatable :: passed(:), dead_end(:)   !< not allocated: none
    end type way_t
 
 contains
@@ -84,7 +84,6 @@ contains
       integer :: failures
       logical :: accepted
 
-      allocate (w%passed(0), w%dead_end(0))
       part = t - f%t
       longest = min(f%longest_part, abs(part))
       failures = 0
@@ -129,8 +128,13 @@ contains
          same = crosses(f%engine%blocks, correction)
          if (same) then
             call pass(f%engine%blocks, t, f%choices, f%convergence, list, same)
-            if (same) w%passed = [w%passed, list]
-            if (.not. same) w%dead_end = pack(list, list%kind == remark_dead_end)
+            if (.not. same) then
+               w%dead_end = pack(list, list%kind == remark_dead_end)
+            else if (allocated(w%passed)) then
+               w%passed = [w%passed, list]
+            else
+               call move_alloc(list, w%passed)
+            end if
          end if
       end if
       accepted = accepted .and. same .and. f%convergence%doubt <= largest_doubt
