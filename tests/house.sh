@@ -25,6 +25,12 @@ equal 'stop or print outside main' '' \
    "$(grep -nE '^ *((error +)?stop( |$)|print +[^=]*$|write *[(] *[*])' src/*.f90 src/*/*.f90 | grep -v '^src/main.f90')"
 equal 'files over 300 lines' '' "$(for file in src/*.f90 src/*/*.f90; do awk 'END { if (NR > 300) print FILENAME }' "$file"; done)"
 equal 'tabs' '' "$(grep -ln "$(printf '\t')" src/*.f90 src/*/*.f90)"
+# pFUnit writes procedures and variables of these names around every suite.
+equal 'names that hide those of pFUnit' '' "$(awk '
+   FNR == 1 { inside = 0 }
+   /^contains/ { inside = 1 }
+   /(subroutine|function) (run|test|suite|initialize|finalize|throw) *[(]/ && !/^ *(!|end)/ { print FILENAME ":" FNR }
+   !inside && /parameter ::.*[ ,]t = / { print FILENAME ":" FNR }' tests/test_*.pf)"
 for file in src/*.f90 src/*/*.f90; do
    equal "$file: module of that name" "$(basename "$file" .f90)" \
       "$(sed -n 's/^\(module\|program\) \([a-z_0-9]*\)$/\2/p' "$file" | head -n 1)"
