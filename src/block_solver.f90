@@ -103,6 +103,7 @@ contains
       real(wp), intent(inout) :: correction
       real(wp) :: before, size_of
       integer :: info, iteration
+      logical :: is_right
 
       call begin_block(b, i, shape%n, s, start, size_of)
       before = huge(before)
@@ -134,8 +135,8 @@ contains
          if (is_stalled(shape, c, before, size_of)) then
             c%ended = ended_stalled
          else
-            call move(b, i, shape%n, r, s, c%step, size_of)
-            if (c%step <= max(step_tolerance*size_of, tolerance)) c%ended = ended_converged
+            call move(b, i, shape%n, r, s, c%step, tolerance, size_of, is_right)
+            if (is_right) c%ended = ended_converged
          end if
          before = c%step
          if (c%ended == ended_limit) cycle
@@ -177,21 +178,27 @@ contains
       call known_parts(b, i, s)
    end subroutine begin_block
 
-   !> Applies the correction `d`, whose largest is `step`; `size_of`: the largest value, 1 at least.
-   subroutine move(b, i, n, d, s, step, size_of)
+   !> Applies the correction `d`, whose largest is `step`; `size_of`: the largest value, 1 at least. `is_right`: each
+   !> was at the rounding level of its own value, or within the `tolerance`: beside a long slide an angle is not.
+   subroutine move(b, i, n, d, s, step, tolerance, size_of, is_right)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, n
       real(wp), intent(in) :: d(*)
       type(state_t), intent(inout) :: s
-      real(wp), intent(in) :: step
+      real(wp), intent(in) :: step, tolerance
       real(wp), intent(out) :: size_of
+      logical, intent(out) :: is_right
+      real(wp) :: own
       integer :: k
 
       size_of = 1.0_wp
+      is_right = .true.
       do k = 1, n
          associate (u => b%unknown(b%list(i)%first + k - 1))
             s%u(u)%value = s%u(u)%value - d(k)
-            size_of = max(size_of, abs(s%u(u)%value))
+            own = max(1.0_wp, abs(s%u(u)%value))
+            size_of = max(size_of, own)
+            is_right = is_right .and. abs(d(k)) <= max(step_tolerance*own, tolerance)
             if (step <= small_turn) then
                call turn_direction(b, u, -d(k), s)
             else
