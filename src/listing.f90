@@ -97,7 +97,7 @@ contains
       last_kind = 0
       masked = .false.
       is_known = .true.
-      if (present(doubt)) is_known = .not. doubt%taken
+      if (present(doubt)) is_known = .not. (doubt%taken .and. doubt%in_doubt)
       do i = 1, size(m%requests)
          if (.not. is_due(m, m%requests(i), step)) cycle
          if (last_kind == 0) call put_instant(o, l, q, step)

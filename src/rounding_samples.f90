@@ -56,8 +56,8 @@ contains
 
       found%taken = .false.
       found%asked = always
-      if (q%known < 0) return
-      if (.not. (always .or. is_in_doubt(s, e, rcond, q))) return
+      found%in_doubt = is_in_doubt(s, e, rcond, q)
+      if (q%known < 0 .or. .not. (always .or. found%in_doubt)) return
       if (.not. allocated(found%samples)) then
          allocate (found%samples(0:sample_count))
          found%samples(:) = new_motion(size(s%deck%links))

@@ -21,10 +21,10 @@ module scatter
    !> itself.
    integer, parameter :: unusable = -2
 
-   !> Motions at one instant; samples(0) is that of the deck itself. Not `taken`: no digit of a table is in doubt, or
-   !> there is no position. `asked`: the errors are to be told.
+   !> Motions at one instant; samples(0) is that of the deck itself. They are `taken` where digits of the tables could
+   !> be `in_doubt`, which are masked then, or where the errors are `asked` for, if there is a position.
    type :: scatter_t
-      logical :: taken = .false., asked = .false.
+      logical :: taken = .false., asked = .false., in_doubt = .false.
       !> (length or angle, derivative) What a sum of numbers as large as the largest of the rows is rounded by.
       real(wp) :: noise(2, 0:2) = 0.0_wp
       type(motion_t), allocatable :: samples(:)

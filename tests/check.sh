@@ -11,6 +11,8 @@ for deck in input/*.deck; do
    equal "$name: exit status" "$(grep -qE ' (MARKED|ZAZNACZONE) [1-9]' "expected/$name.lst" && echo 2 || echo 0)" $status
    equal "$name: standard error" '' "$(cat "$BUILD/$name.err")"
    same "$name: listing" "expected/$name.lst" "$BUILD/$name.lst"
+   "$BUILD/kinmat" --errors "$deck" > "$BUILD/$name.errors.lst" 2> /dev/null
+   same "$name: listing, with --errors" "expected/$name.lst" "$BUILD/$name.errors.lst"
    same "$name: closed form" "expected/$name.lst" "$BUILD/expected/$name.lst"
    equal "$name: NaN, Inf or asterisks" '' "$(grep -nEiw 'nan|inf|infinity|[*]{4,}' "$BUILD/$name.lst")"
    equal "$name: negative zero" '' "$(grep -nE -e '-0[.]0*( |$)' "$BUILD/$name.lst")"

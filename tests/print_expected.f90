@@ -106,6 +106,7 @@ contains
       end do
       call find_noise(m, characteristic_length(m), doubt)
       doubt%taken = .true.
+      doubt%in_doubt = .true.
    end subroutine doubt_by_hand
 
    !> The motion `links` at `t`, its angles on the branch next to those of `q` as it comes: the instant before, at the
