@@ -152,7 +152,7 @@ contains
          call advance(a, instant(m, k), q)
          call ask_blocks(m, a, opinion, q)
          if (q%mark /= mark_none) marked = marked + 1
-         call take_samples(samples, a%engine%blocks, a%convergence%reciprocal_condition, q, options%errors, doubt)
+         call take_samples(samples, m, a%engine%blocks, a%convergence%reciprocal_condition, q, options%errors, doubt)
          call listing_instant(o%listing, layout, m, q, k, doubt)
          if (len(options%csv) > 0) call csv_instant(o%csv, m, q, k, doubt)
          if (len(options%log) == 0) cycle

@@ -10,7 +10,7 @@ module mechanism
    public :: term_harmonic, term_power, term_table
    public :: request_link, request_point, request_pair
    public :: method_newton, method_matrix, method_dense, own_predictor
-   public :: instant_count, instant, wanted_links, plane_origin
+   public :: instant_count, instant, wanted_links, plane_origin, place_links
 
    integer, parameter :: pair_revolute = 1   !< REVOLUTE: eq. (7), (8)
    integer, parameter :: pair_prismatic = 2  !< PRISM: eq. (9), (10)
@@ -142,6 +142,19 @@ contains
          return
       end do
    end function plane_origin
+
+   !> Puts the moving links where `position` (3, links) has them, places counted from the origin of the plane.
+   pure subroutine place_links(m, position)
+      type(mechanism_t), intent(inout) :: m
+      real(wp), intent(in) :: position(:, :)
+      real(wp) :: origin(3)
+      integer :: i
+
+      origin = [plane_origin(m), 0.0_wp]
+      do i = 1, size(m%links)
+         if (.not. m%links(i)%ground) m%links(i)%position = position(:, i) + origin
+      end do
+   end subroutine place_links
 
    !> The links (links) whose motion the deck's requests need.
    pure function wanted_links(m) result(wanted)

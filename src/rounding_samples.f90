@@ -2,13 +2,12 @@
 !> a little off, at instants where digits of the tables could be in doubt.
 module rounding_samples
    use kinds, only: wp
-   use mechanism, only: mechanism_t
+   use mechanism, only: mechanism_t, place_links
    use motion, only: motion_t, new_motion
    use scales, only: characteristic_length, characteristic_rate
-   use drives, only: drive_motion
    use convergence, only: convergence_t, is_solved, ended_open
    use block_solver, only: solve_block
-   use block_engine, only: block_engine_t, new_block_engine, tell_blocks
+   use block_engine, only: block_engine_t, new_block_engine, set_targets, tell_blocks
    use perturbed_deck, only: sample_count, perturbed, perturbed_instant
    use scatter, only: scatter_t, find_noise, unusable
    implicit none
@@ -27,7 +26,6 @@ module rounding_samples
    !> Engines of the deck (0) and of its perturbed kin.
    type :: samples_t
       real(wp) :: length = 1.0_wp, rate = 1.0_wp
-      type(mechanism_t) :: deck
       type(block_engine_t), allocatable :: engine(:)
    end type samples_t
 
@@ -38,15 +36,15 @@ contains
       type(mechanism_t), intent(in) :: m
       type(samples_t) :: s
 
-      s%deck = m
       s%length = characteristic_length(m)
       s%rate = characteristic_rate(m, s%length)
    end function new_samples
 
-   !> How far the motion `q` is known, which the blocks `e` have found or, where they are not allocated, another
+   !> How far the motion `q` of `m` is known, which the blocks `e` have found or, where they are not allocated, another
    !> method, by a matrix of the reciprocal condition `rcond`. `always`: also where no digit of a table is in doubt.
-   subroutine take_samples(s, e, rcond, q, always, found)
+   subroutine take_samples(s, m, e, rcond, q, always, found)
       type(samples_t), intent(inout) :: s
+      type(mechanism_t), intent(in) :: m
       type(block_engine_t), allocatable, intent(in) :: e
       real(wp), intent(in) :: rcond
       type(motion_t), intent(in) :: q
@@ -60,9 +58,9 @@ contains
       if (q%known < 0 .or. .not. (always .or. found%in_doubt)) return
       if (.not. allocated(found%samples)) then
          allocate (found%samples(0:sample_count))
-         found%samples(:) = new_motion(size(s%deck%links))
+         found%samples(:) = new_motion(size(m%links))
       end if
-      call make_engines(s, e, q)
+      call make_engines(s, m, e, q)
       if (.not. s%engine(0)%blocks%solvable) return
       do k = 0, sample_count
          associate (u => s%engine(k)%state%u)
@@ -76,7 +74,7 @@ contains
          call solve_again(s%engine(k), perturbed_instant(q%t, k), found%samples(k))
       end do
       found%taken = found%samples(0)%known /= unusable .and. any(found%samples(1:)%known /= unusable)
-      if (found%taken) call find_noise(s%deck, s%length, found)
+      if (found%taken) call find_noise(m, s%length, found)
    end subroutine take_samples
 
    !> Some digit could be in doubt: a pivot is small, or a number large.
@@ -111,34 +109,24 @@ contains
       largest = max(maxval(abs(x(:2, :)))/length, maxval(abs(x(3, :))))
    end function largest
 
-   !> The engines, for the angles and slides of `e`; without it they are those of the position `q`.
-   subroutine make_engines(s, e, q)
+   !> The engines of `m`, for the angles and slides of `e`; without it they are those of the position `q`.
+   subroutine make_engines(s, m, e, q)
       type(samples_t), intent(inout) :: s
+      type(mechanism_t), intent(in) :: m
       type(block_engine_t), allocatable, intent(in) :: e
       type(motion_t), intent(in) :: q
-      type(mechanism_t) :: m
+      type(mechanism_t) :: deck
       integer :: k
 
       if (allocated(e) .and. allocated(s%engine)) return
       if (allocated(s%engine)) deallocate (s%engine)
       allocate (s%engine(0:sample_count))
+      deck = m
+      if (.not. allocated(e)) call place_links(deck, q%position)
       do k = 0, sample_count
-         m = perturbed(s%deck, k)
-         if (.not. allocated(e)) call place_links(q, m)
-         s%engine(k) = new_block_engine(m)
+         s%engine(k) = new_block_engine(perturbed(deck, k))
       end do
    end subroutine make_engines
-
-   !> Puts the moving links of `m` where `q` has them.
-   pure subroutine place_links(q, m)
-      type(motion_t), intent(in) :: q
-      type(mechanism_t), intent(inout) :: m
-      integer :: i
-
-      do i = 1, size(m%links)
-         if (.not. m%links(i)%ground) m%links(i)%position = q%position(:, i) + [q%origin, 0.0_wp]
-      end do
-   end subroutine place_links
 
    !> The motion of `e` at `t`, from where its unknowns are, to the limit of rounding.
    subroutine solve_again(e, t, q)
@@ -152,9 +140,7 @@ contains
 
       q%t = t
       q%known = 2
-      do i = 1, size(e%laws)
-         e%state%target(:, i) = drive_motion(e%laws(i), t)*e%unit_of(i)
-      end do
+      call set_targets(e, t)
       correction = 0.0_wp
       do i = 1, size(e%needed)
          c = convergence_t()

@@ -2,7 +2,7 @@
 !> numbers are a little off.
 module scatter
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_t, request_pair, pair_prismatic
+   use mechanism, only: mechanism_t, request_t
    use motion, only: motion_t
    use points, only: row_t, row_of
    use known_digits, only: nothing_known
@@ -62,7 +62,7 @@ contains
          known = min(known, s%samples(k)%known)
       end do
       ! A coordinate of what stands still is zero without a sum.
-      error = merge(0.0_wp, scale*error + noise_of(m, s, request), zero)
+      error = merge(0.0_wp, scale*error + noise_of(s, middle%angular), zero)
       error(:, known + 1:) = nothing_known
    end function row_scatter
 
@@ -90,15 +90,14 @@ contains
       s%noise = noise_roundings*epsilon(1.0_wp)*size_of
    end subroutine find_noise
 
-   !> The noise of a row (3, 0:2).
-   pure function noise_of(m, s, request) result(noise)
-      type(mechanism_t), intent(in) :: m
+   !> The noise of a row (3, 0:2); `angular`: of a pair whose value is an angle.
+   pure function noise_of(s, angular) result(noise)
       type(scatter_t), intent(in) :: s
-      type(request_t), intent(in) :: request
+      logical, intent(in) :: angular
       real(wp) :: noise(3, 0:2)
 
       noise = s%noise([1, 1, 2], :)
-      if (is_angular(m, request)) noise(1, :) = s%noise(2, :)
+      if (angular) noise(1, :) = s%noise(2, :)
    end function noise_of
 
    !> The error of the row of `q`, estimated: the scatter, and how far it is from the
@@ -126,13 +125,15 @@ contains
       type(motion_t), intent(in) :: q
       real(wp), intent(in) :: length, rate
       real(wp) :: largest(0:2), error(3, 0:2), unit(3)
+      type(row_t) :: row
       integer :: i, k
 
       largest = 0.0_wp
       do i = 1, size(m%requests)
          error = row_error(m, s, q, m%requests(i))
          unit = [length, length, 1.0_wp]
-         if (is_angular(m, m%requests(i))) unit(1) = 1.0_wp
+         row = row_of(m, q, m%requests(i))
+         if (row%angular) unit(1) = 1.0_wp
          do k = 0, 2
             if (any(error(:, k) >= nothing_known)) then
                largest(k) = nothing_known
@@ -142,13 +143,4 @@ contains
          end do
       end do
    end function largest_errors
-
-   !> The row is that of a pair whose value is an angle.
-   pure logical function is_angular(m, request)
-      type(mechanism_t), intent(in) :: m
-      type(request_t), intent(in) :: request
-
-      is_angular = request%kind == request_pair
-      if (is_angular) is_angular = m%pairs(request%subject)%kind /= pair_prismatic
-   end function is_angular
 end module scatter

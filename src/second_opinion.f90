@@ -3,7 +3,7 @@
 !> position, and what they say of the mechanism does not depend on the way of an iteration.
 module second_opinion
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_t, request_link, method_newton
+   use mechanism, only: mechanism_t, request_t, request_link, method_newton, place_links
    use motion, only: motion_t, new_motion, mark_not_converged, mark_singular
    use remarks, only: remark_t, remark_open, remark_limit, remark_mobile, remark_idle, remark_repeated, remark_method
    use analysis, only: analysis_t, new_analysis, advance
@@ -47,7 +47,9 @@ contains
 
       q = new_motion(size(m%links))
       if (a%follows) then
-         b = new_analysis(by_blocks(m, a%engine%dense%last%position, a%engine%dense%system%length))
+         associate (last => a%engine%dense%last%position, unit => a%engine%dense%system%length)
+            b = new_analysis(by_blocks(m, last*spread([unit, unit, 1.0_wp], 2, size(last, 2))))
+         end associate
          call advance(b, a%t, q)
          if (q%known < 2) return
       else
@@ -71,15 +73,15 @@ contains
       type(motion_t) :: q
 
       q = new_motion(size(m%links))
-      b = new_analysis(by_blocks(m, found%position, 1.0_wp))
+      b = new_analysis(by_blocks(m, found%position))
       call advance(b, found%t, q)
       call pass_on(q, [remark_mobile, remark_idle, remark_repeated], found)
    end subroutine say_what_moves
 
-   !> `m` with all its links, from the positions `q` (3, links), lengths in units of `length`, if they are there.
-   function by_blocks(m, q, length) result(d)
+   !> `m` with all its links, from the `position` (3, links), as the origin of the plane counts it, if there is one.
+   function by_blocks(m, position) result(d)
       type(mechanism_t), intent(in) :: m
-      real(wp), intent(in), optional :: q(:, :), length
+      real(wp), intent(in), optional :: position(:, :)
       type(mechanism_t) :: d
       integer :: i
 
@@ -87,10 +89,7 @@ contains
       d%method = method_newton
       d%tolerance = 0.0_wp
       d%requests = [(request_t(request_link, i, 1), i=1, size(m%links))]
-      if (.not. present(q)) return
-      do i = 1, size(m%links)
-         if (.not. m%links(i)%ground) d%links(i)%position = [q(:2, i)*length, q(3, i)]
-      end do
+      if (present(position)) call place_links(d, position)
    end function by_blocks
 
    !> Adds the remarks of `q` that are of one of the `kinds` to those of `found`.

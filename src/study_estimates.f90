@@ -89,7 +89,8 @@ contains
          if (mod(k, every) /= 0 .or. q%known < 2) cycle
          there = true_sample(truth, t, k)
          if (truth%motion%known(there) < 2) cycle
-         call take_samples(samples, a%engine%blocks, a%convergence%reciprocal_condition, q, .true., doubt)
+         call take_samples(samples, one, a%engine%blocks, a%convergence%reciprocal_condition, q, &
+            .true., doubt)
          call add_instant(truth, there, q, largest_errors(one, doubt, q, samples%length, samples%rate), tally)
       end do
    end subroutine compare

@@ -4,12 +4,13 @@ module study_table
    use mechanism, only: method_newton, method_dense, own_predictor
    use text_output, only: output_t, put
    use numerals, only: whole
+   use timing, only: median
    use trial_forms, only: trial_t
    use true_errors, only: errors_t
    use study_plan, only: way_t, kind_single, kind_double
    implicit none
    private
-   public :: row_t, put_section, put_row, put_cheapest, median, error_text
+   public :: row_t, put_section, put_row, put_cheapest, error_text
 
    !> A way and what came of it.
    type :: row_t
@@ -22,27 +23,6 @@ module study_table
    real(dp), parameter :: micro = 1.0e6_dp
 
 contains
-
-   !> The middle of a sample, 0 where there is none.
-   pure real(dp) function median(x)
-      real(dp), intent(in) :: x(:)
-      real(dp) :: sorted(size(x)), one
-      integer :: i, k
-
-      median = 0.0_dp
-      if (size(x) == 0) return
-      sorted = x
-      do i = 2, size(x)
-         one = sorted(i)
-         do k = i - 1, 1, -1
-            if (sorted(k) <= one) exit
-            sorted(k + 1) = sorted(k)
-         end do
-         sorted(k + 1) = one
-      end do
-      i = (size(x) + 1)/2
-      median = 0.5_dp*(sorted(i) + sorted(size(x) + 1 - i))
-   end function median
 
    subroutine put_section(o, title)
       type(output_t), intent(inout) :: o

@@ -4,12 +4,13 @@
 !> fewer digits rounds them, and that is a part of its error, as is the rounding of the deck's numbers. With twice the
 !> steps every second instant is the same one, to the last digit.
 module trials
-   use, intrinsic :: iso_fortran_env, only: dp => real64, qp => real128, int64
+   use, intrinsic :: iso_fortran_env, only: dp => real64, qp => real128
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_t, request_link, instant
    use motion, only: motion_t, new_motion, mark_none
    use analysis, only: analysis_t, new_analysis, advance
    use trial_forms, only: trial_t, outcome_t, samples_of
+   use timing, only: seconds
    implicit none
    private
    public :: try, measure, tried, instant_of, can_be_timed
@@ -132,12 +133,4 @@ contains
       end do
       time = time/(real(passes, dp)*last)
    end function measure
-
-   !> The clock, in seconds from some instant.
-   real(dp) function seconds()
-      integer(int64) :: ticks, per_second
-
-      call system_clock(ticks, per_second)
-      seconds = real(ticks, dp)/real(per_second, dp)
-   end function seconds
 end module trials

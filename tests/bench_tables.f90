@@ -4,7 +4,8 @@ module bench_tables
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton, method_matrix, method_dense
    use analysis, only: analysis_t, new_analysis
-   use bench_tools, only: seconds, spread_t, spread_of, slope, figure
+   use timing, only: seconds
+   use bench_tools, only: spread_t, spread_of, slope, figure
    use bench_scenes, only: scene_t, new_scene, chain_scene, gap_t, error_of, by_method, by_closed_form, steps_of_turn
    use bench_timing, only: job_t, measure
    implicit none

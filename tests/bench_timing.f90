@@ -5,7 +5,7 @@ module bench_timing
    use motion, only: motion_t, new_motion
    use analysis, only: analysis_t, new_analysis, advance
    use bench_scenes, only: scene_t, by_method, move_fast, instant_of, by_closed_form
-   use bench_tools, only: seconds
+   use timing, only: seconds
    implicit none
    private
    public :: job_t, measure

@@ -1,10 +1,11 @@
-!> Tests. What a measurement needs: a clock, the middle of a sample, the slope of a line, the memory taken.
+!> Tests. What a measurement needs beside a clock: the spread of a sample, the slope of a line, the memory taken.
 module bench_tools
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
+   use timing, only: median, seconds
    implicit none
    private
-   public :: seconds, spread_t, spread_of, slope, memory_peak, plain_reading, figure
+   public :: spread_t, spread_of, slope, memory_peak, plain_reading, figure
 
    !> The middle of a sample, and its ends.
    type :: spread_t
@@ -13,31 +14,11 @@ module bench_tools
 
 contains
 
-   !> The clock, in seconds from some instant.
-   real(wp) function seconds()
-      integer(int64) :: ticks, per_second
-
-      call system_clock(ticks, per_second)
-      seconds = real(ticks, wp)/real(per_second, wp)
-   end function seconds
-
    !> The spread of the sample `x`.
    pure type(spread_t) function spread_of(x) result(s)
       real(wp), intent(in) :: x(:)
-      real(wp) :: sorted(size(x)), one
-      integer :: i, k
 
-      sorted = x
-      do i = 2, size(x)
-         one = sorted(i)
-         do k = i - 1, 1, -1
-            if (sorted(k) <= one) exit
-            sorted(k + 1) = sorted(k)
-         end do
-         sorted(k + 1) = one
-      end do
-      i = (size(x) + 1)/2
-      s = spread_t(0.5_wp*(sorted(i) + sorted(size(x) + 1 - i)), sorted(1), sorted(size(x)))
+      s = spread_t(median(x), minval(x), maxval(x))
    end function spread_of
 
    !> Least squares: the slope of log `y` over log `x`.

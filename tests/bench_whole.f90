@@ -7,7 +7,8 @@ module bench_whole
    use failures, only: failure_t
    use deck, only: read_deck
    use analysis, only: analysis_t, new_analysis, advance
-   use bench_tools, only: seconds, spread_t, spread_of, memory_peak, plain_reading, figure
+   use timing, only: seconds
+   use bench_tools, only: spread_t, spread_of, memory_peak, plain_reading, figure
    use bench_scenes, only: scene_t, new_scene, instant_of
    implicit none
    private
