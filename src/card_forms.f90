@@ -17,6 +17,7 @@ module card_forms
       integer :: whole = 0           !< the label field that holds a whole number; 0: none
       integer :: reals = 0           !< the first so many real fields are taken
       logical :: once = .false.      !< at most one in a set
+      character(78) :: layout = ''   !< what its fields hold, each in its columns
    end type form_t
 
    integer, parameter :: form_title = 1, form_units = 2, form_lang = 3, form_ground = 4, form_link = 5
@@ -30,22 +31,38 @@ module card_forms
 
    !> A card's form is its place here. TITLE's text is no label; ADD's third real depends on its label A.
    type(form_t), parameter :: forms(16) = [ &
-      form_t('TITLE',    [u, u, u], 0, 0, .true.), &
-      form_t('UNITS',    [o, o, o], 0, 0, .true.), &
-      form_t('LANG',     [n, u, u], 0, 0, .true.), &
-      form_t('GROUND',   [n, u, u], 0, 3, .false.), &
-      form_t('LINK',     [n, u, u], 0, 3, .false.), &
-      form_t('POINT',    [n, n, u], 0, 2, .false.), &
-      form_t('REVOLUTE', [n, n, n], 0, 0, .false.), &
-      form_t('PRISM',    [n, n, n], 0, 3, .false.), &
-      form_t('DRIVE',    [n, n, o], 0, 3, .false.), &
-      form_t('ADD',      [n, u, u], 0, 3, .false.), &
-      form_t('TIME',     [n, u, u], 1, 2, .true.), &
-      form_t('AT',       [u, u, u], 0, 3, .false.), &
-      form_t('METHOD',   [n, u, u], 0, 1, .true.), &
-      form_t('PRINT',    [n, o, o], 3, 0, .false.), &
-      form_t('BRANCH',   [o, u, u], 0, 1, .false.), &
-      form_t('END',      [u, u, u], 0, 0, .false.)]
+      form_t('TITLE',    [u, u, u], 0, 0, .true., &
+         'TITLE   TEXT, COLUMNS 9 TO 80'), &
+      form_t('UNITS',    [o, o, o], 0, 0, .true., &
+         'UNITS   LENGTH  RAD/DEG TIME'), &
+      form_t('LANG',     [n, u, u], 0, 0, .true., &
+         'LANG    EN/PL'), &
+      form_t('GROUND',   [n, u, u], 0, 3, .false., &
+         'GROUND  LINK                    X               Y               PHI'), &
+      form_t('LINK',     [n, u, u], 0, 3, .false., &
+         'LINK    LINK                    X               Y               PHI'), &
+      form_t('POINT',    [n, n, u], 0, 2, .false., &
+         'POINT   POINT   LINK            XI              ETA'), &
+      form_t('REVOLUTE', [n, n, n], 0, 0, .false., &
+         'REVOLUTEPOINT-I POINT-J PAIR'), &
+      form_t('PRISM',    [n, n, n], 0, 3, .false., &
+         'PRISM   POINT-I POINT-J PAIR    ALPHA           H               BETA'), &
+      form_t('DRIVE',    [n, n, o], 0, 3, .false., &
+         'DRIVE   KIND    DRIVEN  LINK    VALUE AT 0.0    RATE            ACCELERATION'), &
+      form_t('ADD',      [n, u, u], 0, 3, .false., &
+         'ADD     KIND                    R1              R2              R3'), &
+      form_t('TIME',     [n, u, u], 1, 2, .true., &
+         'TIME    STEPS                   T0              T1'), &
+      form_t('AT',       [u, u, u], 0, 3, .false., &
+         'AT                              T               T               T'), &
+      form_t('METHOD',   [n, u, u], 0, 1, .true., &
+         'METHOD  METHOD                  TOLERANCE'), &
+      form_t('PRINT',    [n, o, o], 3, 0, .false., &
+         'PRINT   KIND    NAME    EVERY'), &
+      form_t('BRANCH',   [o, u, u], 0, 1, .false., &
+         'BRANCH  LINK                    T'), &
+      form_t('END',      [u, u, u], 0, 0, .false., &
+         'END')]
 
 contains
 

@@ -4,7 +4,7 @@ module complaints
    use deck_codes, only: code_t
    implicit none
    private
-   public :: complaints_t, complain, complain_field, complain_deck
+   public :: complaints_t, complain, complain_field, complain_deck, show_layout
    public :: complaint_count, complaints_full, complaints_report, whole_text
 
    !> As many are told in full; of the rest only the number.
@@ -58,6 +58,14 @@ contains
       list%count = list%count + 1
       if (list%count <= told_at_most) call add_line(list, message_head(code)//' '//sentence(code, more))
    end subroutine complain_deck
+
+   !> Below a complaint in full: what the fields of such a card hold, under its picture.
+   subroutine show_layout(list, layout)
+      type(complaints_t), intent(inout) :: list
+      character(*), intent(in) :: layout
+
+      if (list%count <= told_at_most) call add_line(list, ' LAYOUT    |'//trim(layout))
+   end subroutine show_layout
 
    pure integer function complaint_count(list)
       type(complaints_t), intent(in) :: list

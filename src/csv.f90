@@ -2,7 +2,7 @@
 !> as the deck says. A value that does not exist is empty and `mark` says why; a name with a comma is quoted.
 module csv
    use kinds, only: wp
-   use constants, only: degree
+   use constants, only: in_degrees
    use mechanism, only: mechanism_t, request_link, request_point
    use motion, only: motion_t
    use points, only: row_t, row_of, is_due
@@ -72,7 +72,7 @@ contains
       integer, intent(in) :: known
       logical, intent(in) :: degrees
       character(9*(full_length + 1)) :: cells
-      real(wp) :: unit
+      real(wp) :: value
       integer :: k, c, used, length
 
       used = 0
@@ -81,8 +81,9 @@ contains
             used = used + 1
             cells(used:used) = ','
             if (k <= known .and. has_column(row%kind, c)) then
-               unit = merge(degree, 1.0_wp, degrees .and. (c == 3 .or. row%angular))
-               call put_full(row%value(c, k)/unit, cells(used + 1:used + full_length), length)
+               value = row%value(c, k)
+               if (degrees .and. (c == 3 .or. row%angular)) value = in_degrees(value)
+               call put_full(value, cells(used + 1:used + full_length), length)
                used = used + length
             end if
          end do

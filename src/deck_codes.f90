@@ -94,6 +94,7 @@ module deck_codes
       branch_repeated = code_t(88, 'THIS BRANCH CARD IS REPEATED; FIRST ON CARD'), &
       lang_kind = code_t(90, 'IS NOT EN OR PL'), &
       units_angle = code_t(91, 'IS NOT RAD OR DEG'), &
+      units_place = code_t(89, 'IS A UNIT OF ANGLES, WHICH STANDS IN COLUMNS 17-24 (LABEL-B)'), &
       method_kind = code_t(92, 'IS NOT NEWTON, DENSE OR MATRIX'), &
       tolerance_range = code_t(93, 'A TOLERANCE IS ABOVE 1E-15 AND AT MOST 1E-2'), &
       print_kind = code_t(94, 'IS NOT ALL, LINKS, POINTS OR PAIRS'), &

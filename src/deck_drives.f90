@@ -9,7 +9,7 @@ module deck_drives
    use deck_codes, only: link_unknown, point_unknown, pair_unknown, drive_kind, drive_ground, &
                          drive_ground_point, drive_grounds, drive_one_link, drive_revolute, field_blank, &
                          field_unused, add_alone, add_kind, add_blank, table_short, table_order
-   use drafts, only: draft_t, cards_of, next_reading, complain_name, complain_label, complain_real
+   use drafts, only: draft_t, cards_of, next_reading, complain_name, complain_label, complain_choice, complain_real
    implicit none
    private
    public :: build_drives
@@ -81,7 +81,7 @@ contains
          if (set%pairs(drive%subject)%kind == pair_revolute) &
             call complain_label(list, drive_revolute, draft, k, 2, '')
       case default
-         if (draft%cards(k)%sound) call complain_label(list, drive_kind, draft, k, 1, '')
+         if (draft%cards(k)%sound) call complain_choice(list, drive_kind, draft, k, 1)
       end select
    end subroutine build_drive
 
@@ -173,7 +173,7 @@ contains
             call build_table(draft, k, rows, unit, term, list)
             return
          case default
-            if (card%sound) call complain_label(list, add_kind, draft, k, 1, '')
+            if (card%sound) call complain_choice(list, add_kind, draft, k, 1)
          end select
          if (card%sound .and. .not. any(card%given)) call complain_name(list, add_blank, draft, k, '')
       end associate

@@ -6,9 +6,9 @@ module deck_options
    use cards, only: title_field
    use card_forms, only: forms, form_title, form_units, form_lang, form_time, form_at, form_method
    use complaints, only: complaints_t, whole_text
-   use deck_codes, only: card_repeated, lang_kind, units_angle, method_kind, tolerance_range, time_point, &
+   use deck_codes, only: card_repeated, lang_kind, units_angle, units_place, method_kind, tolerance_range, time_point, &
                          number_range, field_blank
-   use drafts, only: draft_t, complain_name, complain_label, complain_real
+   use drafts, only: draft_t, complain_name, complain_label, complain_choice, complain_real
    implicit none
    private
    public :: build_options
@@ -18,6 +18,9 @@ module deck_options
    !> Relative tolerances allowed: above what rounding permits, below what would be no solution.
    real(wp), parameter :: least_tolerance = min(1.0e-15_wp, 5.0_wp*epsilon(1.0_wp))
    real(wp), parameter :: most_tolerance = 1.0e-2_wp
+   !> Words that can only be meant as a unit of angles.
+   character(7), parameter :: angle_words(*) = [character(7) :: 'DEG', 'RAD', 'GRAD', 'DEGREE', 'DEGREES', 'RADIAN', &
+      'RADIANS']
 
 contains
 
@@ -40,7 +43,7 @@ contains
          case (form_lang)
             set%polish = draft%cards(k)%label(1) == 'PL'
             if (draft%cards(k)%sound .and. all(draft%cards(k)%label(1) /= ['EN', 'PL'])) &
-               call complain_label(list, lang_kind, draft, k, 1, '')
+               call complain_choice(list, lang_kind, draft, k, 1)
          case (form_method)
             call read_method(draft, k, set, list)
          case (form_time)
@@ -77,12 +80,18 @@ contains
       type(mechanism_t), intent(inout) :: set
       type(complaints_t), intent(inout) :: list
 
+      integer :: i
+
       associate (label => draft%cards(k)%label)
          if (label(1) /= '') set%length_unit = label(1)
          if (label(3) /= '') set%time_unit = label(3)
          set%degrees = label(2) == 'DEG'
-         if (draft%cards(k)%sound .and. all(label(2) /= ['   ', 'RAD', 'DEG'])) &
-            call complain_label(list, units_angle, draft, k, 2, '')
+         if (.not. draft%cards(k)%sound) return
+         ! Taken for a length, DEG would leave all angles in radians.
+         do i = 1, 3, 2
+            if (any(label(i) == angle_words)) call complain_choice(list, units_place, draft, k, i)
+         end do
+         if (all(label(2) /= [character(3) :: '', 'RAD', 'DEG'])) call complain_choice(list, units_angle, draft, k, 2)
       end associate
    end subroutine read_units
 
@@ -101,7 +110,7 @@ contains
       case ('MATRIX')
          set%method = method_matrix
       case default
-         call complain_label(list, method_kind, draft, k, 1, '')
+         call complain_choice(list, method_kind, draft, k, 1)
       end select
       set%tolerance = draft%cards(k)%real(1)
       if (set%tolerance < 0.0_wp .or. set%tolerance > most_tolerance .or. &

@@ -6,7 +6,7 @@ module deck_requests
    use deck_bodies, only: find_label
    use deck_codes, only: link_unknown, point_unknown, pair_unknown, print_kind, print_all_name, &
                          print_repeated, print_nothing, number_range
-   use drafts, only: draft_t, cards_of, complain_label
+   use drafts, only: draft_t, cards_of, complain_label, complain_choice
    use names, only: name_table_t, put_name
    implicit none
    private
@@ -64,7 +64,7 @@ contains
             if (card%label(1) == words(i)) kind = i
          end do
          if (kind == 0) then
-            call complain_label(list, print_kind, draft, k, 1, '')
+            call complain_choice(list, print_kind, draft, k, 1)
             return
          end if
          call put_name(seen(kind), card%label(2), k, earlier)

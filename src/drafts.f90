@@ -2,16 +2,16 @@
 !> of them: names may be used before the card that defines them.
 module drafts
    use cards, only: name_field, label_fields, real_fields, wide_fields
-   use card_forms, only: form_star
+   use card_forms, only: form_star, forms
    use card_reader, only: reading_t
-   use complaints, only: complaints_t, complain_field
+   use complaints, only: complaints_t, complain_field, show_layout
    use deck_codes, only: code_t
    use failures, only: failure_t, fail, status_machine
    use names, only: name_table_t
    implicit none
    private
    public :: draft_t, add_reading, cards_of, next_reading
-   public :: complain_name, complain_label, complain_real
+   public :: complain_name, complain_label, complain_choice, complain_real
 
    type :: draft_t
       integer :: count = 0
@@ -91,6 +91,17 @@ contains
 
       call complain_field(list, code, draft%cards(k)%card, label_fields(i), more)
    end subroutine complain_label
+
+   !> The same about a word that has to be one of a few, or in another field: the card's layout is shown below.
+   subroutine complain_choice(list, code, draft, k, i)
+      type(complaints_t), intent(inout) :: list
+      type(code_t), intent(in) :: code
+      type(draft_t), intent(in) :: draft
+      integer, intent(in) :: k, i
+
+      call complain_label(list, code, draft, k, i, '')
+      call show_layout(list, forms(draft%cards(k)%form)%layout)
+   end subroutine complain_choice
 
    !> A complaint about real `i` of card `k`, wherever it stands.
    subroutine complain_real(list, code, draft, k, i, more)

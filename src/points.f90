@@ -40,6 +40,8 @@ contains
          case (request_link)
             row%name = m%links(i)%name
             row%value(:, 0) = q%position(:, i) + [q%origin, 0.0_wp]
+            ! As its card has it, to the last digit.
+            if (m%links(i)%ground) row%value(:, 0) = m%links(i)%position
             row%value(:, 1) = q%velocity(:, i)
             row%value(:, 2) = q%acceleration(:, i)
          case (request_point)
