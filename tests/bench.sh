@@ -3,7 +3,8 @@
 # make bench-short (bench.sh short): the comparisons alone, in few steps; no clock is looked at.
 BUILD=${BUILD:-build}
 decks=$BUILD/bench
-bench=$BUILD/bench/bench
+mkdir -p "$decks" || exit 3
+bench=$BUILD/release/bench
 mkdir -p "$decks" || exit 3
 # OpenBLAS would start threads for matrices of three rows, and wait for them.
 OPENBLAS_NUM_THREADS=${OPENBLAS_NUM_THREADS:-1}

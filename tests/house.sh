@@ -1,38 +1,36 @@
 #!/bin/sh
 # The house of src/: the level in each file's first line is one above the highest level that the file uses, so that a
-# file uses only lower levels; only main stops or prints; lines, procedures and files keep their size. The folders of
-# src/ hold what differs by kind of real: the same for each, at the same level.
+# file uses only lower levels; only main stops or prints; lines, procedures and files keep their size.
 BUILD=${BUILD:-build}
 . tests/counting.sh
 
-for kind in single double quad; do
-   awk '
-      FNR == 1 { file = FILENAME; sub(/^.*\//, "", file); sub(/\.f90$/, "", file); files[++n] = file
-         if ($0 ~ /^!> Level [0-9]+\. /) { level[file] = $3 + 0 } }
-      tolower($1) == "use" { used = $2; sub(/,.*/, "", used); uses[file] = uses[file] " " used }
-      END {
-         for (i = 1; i <= n; i++) {
-            file = files[i]; highest = 0
-            count = split(uses[file], list, " ")
-            for (j = 1; j <= count; j++) if (level[list[j]] > highest) highest = level[list[j]]
-            if (level[file] != highest + 1) print file ": level " level[file] ", uses level " highest
-         }
-      }' src/*.f90 src/$kind/*.f90 > "$BUILD/levels.txt"
-   equal "levels, $kind" '' "$(cat "$BUILD/levels.txt")"
-done
-equal 'lines over 120 columns' '' "$(awk 'length > 120 { print FILENAME ":" FNR }' src/*.f90 src/*/*.f90)"
+sources=$(find src -name '*.f90' -o -name '*.F90' | LC_ALL=C sort)
+awk '
+   FNR == 1 { file = FILENAME; sub(/^.*\//, "", file); sub(/\.[fF]90$/, "", file); files[++n] = file
+      if ($0 ~ /^!> Level [0-9]+\. /) { level[file] = $3 + 0 } }
+   tolower($1) == "use" { used = $2; sub(/,.*/, "", used); uses[file] = uses[file] " " used }
+   END {
+      for (i = 1; i <= n; i++) {
+         file = files[i]; highest = 0
+         count = split(uses[file], list, " ")
+         for (j = 1; j <= count; j++) if (level[list[j]] > highest) highest = level[list[j]]
+         if (level[file] != highest + 1) print file ": level " level[file] ", uses level " highest
+      }
+   }' $sources > "$BUILD/levels.txt"
+equal 'levels' '' "$(cat "$BUILD/levels.txt")"
+equal 'lines over 120 columns' '' "$(awk 'length > 120 { print FILENAME ":" FNR }' $sources)"
 equal 'stop or print outside main' '' \
-   "$(grep -nE '^ *((error +)?stop( |$)|print +[^=]*$|write *[(] *[*])' src/*.f90 src/*/*.f90 | grep -v '^src/main.f90')"
-equal 'files over 300 lines' '' "$(for file in src/*.f90 src/*/*.f90; do awk 'END { if (NR > 300) print FILENAME }' "$file"; done)"
-equal 'tabs' '' "$(grep -ln "$(printf '\t')" src/*.f90 src/*/*.f90)"
+   "$(grep -nE '^ *((error +)?stop( |$)|print +[^=]*$|write *[(] *[*])' $sources | grep -v '^src/main.f90')"
+equal 'files over 300 lines' '' "$(for file in $sources; do awk 'END { if (NR > 300) print FILENAME }' "$file"; done)"
+equal 'tabs' '' "$(grep -ln "$(printf '\t')" $sources)"
 # pFUnit writes procedures and variables of these names around every suite.
 equal 'names that hide those of pFUnit' '' "$(awk '
    FNR == 1 { inside = 0 }
    /^contains/ { inside = 1 }
    /(subroutine|function) (run|test|suite|initialize|finalize|throw) *[(]/ && !/^ *(!|end)/ { print FILENAME ":" FNR }
    !inside && /parameter ::.*[ ,]t = / { print FILENAME ":" FNR }' tests/test_*.pf)"
-for file in src/*.f90 src/*/*.f90; do
-   equal "$file: module of that name" "$(basename "$file" .f90)" \
+for file in $sources; do
+   equal "$file: module of that name" "$(basename "${file%.?90}")" \
       "$(sed -n 's/^\(module\|program\) \([a-z_0-9]*\)$/\2/p' "$file" | head -n 1)"
 done
 conclude

@@ -54,7 +54,7 @@ for name in four_bar crank_slider; do
 done
 equal 'digits of the CSV' "$digits" \
    "$(awk -F, 'NR == 4 { sub(/E.*/, "", $8); gsub(/[^0-9]/, "", $8); print length($8) }' "$BUILD/kind/four_bar.csv")"
-"$BUILD/kind_errors" "$BUILD/kind"/*.deck > "$BUILD/kind_errors.txt"
+"$BUILD/release/kind_errors" "$BUILD/kind"/*.deck > "$BUILD/kind_errors.txt"
 cat "$BUILD/kind_errors.txt"
 equal 'results against the closed forms' ', 0 failed' "$(sed -n '$s/.* passed//p' "$BUILD/kind_errors.txt")"
 conclude

@@ -30,7 +30,7 @@ part() {
 part 'unit tests' "$MAKE" --no-print-directory unit
 part 'the stand-in' "$MAKE" --no-print-directory unit-stand-in
 part 'the house' tests/house.sh
-part 'the closed forms' "$BUILD/check_forms" input/*.deck
+part 'the closed forms' "$BUILD/release/check_forms" input/*.deck
 part 'make check' tests/check.sh
 part 'estimates of errors' "$MAKE" --no-print-directory errors
 part 'the command' tests/command.sh
@@ -40,7 +40,7 @@ part 'units of length' tests/units.sh
 part 'faults by name' tests/faults.sh
 part 'the digits' tests/digits.sh
 part 'decks made by chance' tests/fuzz.sh 1000
-part 'the method of 1987' "$BUILD/study/matrix_1987" short
+part 'the method of 1987' "$BUILD/release/matrix_1987" short
 part 'what is hard to compute' tests/hard.sh short
 part 'speed against error' "$MAKE" --no-print-directory study-short
 part 'results of the methods' "$MAKE" --no-print-directory bench-short

@@ -6,7 +6,7 @@
 #   TEST_MODULES  directory of their .mod files                                 ($(BUILD))
 #   TEST_FLAGS    compiler flags: checks, traps, signalling-NaN fill            (below)
 #   TEST_LIBS     libraries to link                                             (-llapack -lblas)
-#   TEST_HELPERS  helper modules of the tests, in the order of compilation      (none)
+#   TEST_HELPERS  objects of modules that the tests use beside it               (none)
 #   TEST_DIR      where the .pf files are                                       (tests)
 #   TESTS         the .pf files                                                 (test_*.pf of TEST_DIR)
 #   PFUNIT_DIR    directory of an installed pFUnit 4; without it the stand-in beside this file serves
@@ -46,7 +46,6 @@ else
    unit_link      :=
 endif
 
-unit_helpers := $(patsubst %.f90,$(unit_build)/%.o,$(notdir $(TEST_HELPERS)))
 unit_objects := $(unit_names:%=$(unit_build)/%.o)
 
 .PHONY: unit unit-build unit-stand-in unit-force
@@ -74,7 +73,7 @@ unit: $(unit_build)/unit
 	      exit (status || failed || !passed) \
 	   }' $(unit_build)/unit.log
 
-$(unit_build)/unit: $(unit_build)/unit_driver.o $(unit_objects) $(unit_helpers) $(unit_framework) $(TEST_LIB)
+$(unit_build)/unit: $(unit_build)/unit_driver.o $(unit_objects) $(TEST_HELPERS) $(unit_framework) $(TEST_LIB)
 	$(FC) $(TEST_FLAGS) -o $@ $^ $(unit_link) $(TEST_LIBS)
 
 # The list of suites, touched only when it changes: a test file that comes or goes makes the driver anew.
@@ -82,16 +81,8 @@ $(unit_build)/suites: unit-force
 	@mkdir -p $(@D)
 	@echo '$(unit_names)' | cmp -s - $@ || echo '$(unit_names)' > $@
 
-$(unit_objects): $(unit_build)/%.o: $(unit_build)/%.F90 $(unit_helpers) $(unit_framework) $(TEST_LIB)
+$(unit_objects): $(unit_build)/%.o: $(unit_build)/%.F90 $(TEST_HELPERS) $(unit_framework) $(TEST_LIB)
 	$(FC) $(unit_flags) -c -o $@ $<
-
-define unit_helper_rule
-$(unit_build)/$(basename $(notdir $(1))).o: $(1) $(unit_framework) $(TEST_LIB) $(unit_earlier) | $(unit_build)/suites
-	$$(FC) $$(unit_flags) -c -o $$@ $$<
-unit_earlier += $(unit_build)/$(basename $(notdir $(1))).o
-endef
-unit_earlier :=
-$(foreach helper,$(TEST_HELPERS),$(eval $(call unit_helper_rule,$(helper))))
 
 ifneq ($(PFUNIT_DIR),)
 # pFUnit reads a copy in the build directory: its preprocessor writes beside the file and reads one line for an annotation.

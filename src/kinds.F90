@@ -1,12 +1,13 @@
 !> Level 1. The one real kind of KINMAT and the sizes of its texts.
 module kinds
+   ! KIND of the Makefile says which of the three: single, double or quad.
+   use, intrinsic :: iso_fortran_env, only: wp => REAL_KIND, real32, real64
    implicit none
    private
    public :: wp, wp_name, label_length, title_length
 
-   !> The kind `wp` of every real of the program and its name `wp_name`: by KIND of the Makefile from src/single,
-   !> src/double or src/quad.
-   include 'wp.inc'
+   !> The name of the kind `wp` of every real of the program.
+   character(*), parameter :: wp_name = trim(merge('REAL32 ', merge('REAL64 ', 'REAL128', wp == real64), wp == real32))
    !> Characters of a card's name and of a label.
    integer, parameter :: label_length = 8
    !> Characters of a title: columns 9 to 80.

@@ -1,0 +1,38 @@
+# Which object needs which, from the use statements of sources and tests, as rules of make for the directories `builds` under
+# `build`; the names of the programs of tests/ with the modules of tests/ that each needs; and those that the unit tests
+# (*.pf) need, as `unit_helpers`.
+function reach(name,  list, n, i) {
+   if (seen[name]++) return
+   n = split(uses[name], list, " ")
+   for (i = 1; i <= n; i++) if (list[i] in helper) reach(list[i])
+   if (name in helper) found = found " " name
+}
+FNR == 1 {
+   name = FILENAME; sub(/^.*\//, "", name); kind = name; sub(/\.[^.]*$/, "", name); sub(/^.*\./, "", kind)
+   names[++count] = name
+   if (kind == "pf") suite[name] = 1
+   else if (FILENAME ~ /^tests\//) helper[name] = 1
+   else ours[name] = 1
+}
+tolower($1) == "use" { used = $2; sub(/,.*/, "", used); uses[name] = uses[name] " " used }
+tolower($1) == "program" && name in helper { program[name] = 1 }
+END {
+   directories = split(builds, directory, " ")
+   for (i = 1; i <= count; i++) {
+      name = names[i]
+      if (name in suite) { reach(name); continue }
+      m = split(uses[name], list, " ")
+      for (j = 1; j <= m; j++) if (list[j] in ours || list[j] in helper)
+         for (d = 1; d <= directories; d++)
+            print build "/" directory[d] "/" name ".o: " build "/" directory[d] "/" list[j] ".o"
+   }
+   print "unit_helpers :=" found
+   for (i = 1; i <= count; i++) if (names[i] in program) {
+      all = all " " names[i]
+      split("", seen); found = ""; reach(names[i]); sub(" " names[i] "$", "", found)
+      m = split(found, list, " ")
+      for (j = 1; j <= m; j++) for (d = 1; d <= directories; d++)
+         print build "/" directory[d] "/" names[i] ": " build "/" directory[d] "/" list[j] ".o"
+   }
+   print "programs :=" all
+}
