@@ -112,13 +112,13 @@ bench: $(BUILD)/kinmat $(BUILD)/release/bench
 bench-short: $(BUILD)/release/bench
 	BUILD=$(BUILD) tests/bench.sh short
 
-# The method of 1987, measured: tables on standard output, pictures/matrix_1987.png drawn anew (gnuplot-nox).
+# The method of 1987, measured: tables on standard output, docs/matrix_1987.png drawn anew (gnuplot-nox).
 study-1987: $(BUILD)/release/matrix_1987
 	$< tables
 	OPENBLAS_NUM_THREADS=1 $< times
 	$< picture > $(BUILD)/matrix_1987.txt
-	mkdir -p pictures
-	gnuplot -e "numbers='$(BUILD)/matrix_1987.txt'; picture='pictures/matrix_1987.png'" tests/matrix_1987.gp
+	mkdir -p docs
+	gnuplot -e "numbers='$(BUILD)/matrix_1987.txt'; picture='docs/matrix_1987.png'" tests/matrix_1987.gp
 
 # Accuracy where it is hard to have, in units of what the condition allows; hard-short in fewer instants.
 hard: $(BUILD)/release/hard
@@ -128,7 +128,7 @@ hard-short: $(BUILD)/release/hard
 	BUILD=$(BUILD) tests/hard.sh short
 
 # Speed against error of six scenes: kinmat --study for each, times beside the closed forms where there are such, and
-# pictures/speed_against_error.png and .svg drawn anew (gnuplot-nox).
+# docs/speed_against_error.png and .svg drawn anew (gnuplot-nox).
 study: kinds $(BUILD)/release/study_ratio
 	BUILD=$(BUILD) tests/study.sh
 

@@ -2,7 +2,7 @@
 !>
 !>    matrix_1987 tables    rates, basins, iterations, the decks
 !>    matrix_1987 times     the cost of a step, as ratios
-!>    matrix_1987 picture   the numbers of pictures/matrix_1987.png
+!>    matrix_1987 picture   the numbers of docs/matrix_1987.png
 !>    matrix_1987 short     rates against the theory, judged; the last line is `N passed, N failed`
 program matrix_1987
    use rates_1987, only: rates_table, constants_table, picture_numbers, judge_rates

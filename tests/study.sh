@@ -4,7 +4,7 @@
 # $BUILD/study/speed.txt, a scene a block of blocks, read by tests/study.gp.
 BUILD=${BUILD:-build}
 out=$BUILD/study
-mkdir -p "$out" pictures || exit 3
+mkdir -p "$out" docs || exit 3
 OPENBLAS_NUM_THREADS=${OPENBLAS_NUM_THREADS:-1}
 export OPENBLAS_NUM_THREADS
 
@@ -64,10 +64,10 @@ done
 draw() {
    gnuplot -e "form='$1'; numbers='$out/speed.txt'; scenes='$out/scenes.txt'; picture='$2'" tests/study.gp || exit 3
 }
-draw png pictures/speed_against_error.png
+draw png docs/speed_against_error.png
 draw svg "$out/speed.svg"
 # Half of what gnuplot writes: without empty groups and attributes that say what is so anyway.
 awk '/^<g .*>$/ { if (held != "") print held; held = $0; next }
    /^<\/g>/ && held != "" { held = ""; next }
    { if (held != "") print held; held = ""; sub(/^\t+/, ""); print }' "$out/speed.svg" \
-   | sed 's/ stroke-linecap="butt" stroke-linejoin="miter"//' > pictures/speed_against_error.svg
+   | sed 's/ stroke-linecap="butt" stroke-linejoin="miter"//' > docs/speed_against_error.svg
