@@ -33,12 +33,12 @@ for name in yoke yoke_mirrored crank_slider far_small; do
    same "$name by METHOD MATRIX" "$BUILD/newton.txt" "$BUILD/matrix.txt"
 done
 
-# The README's first deck: the tip of a crank of length 0.25 at 6.28 rad/s.
-sed -n '/^GROUND  BASE/,/^END/p' README.md > "$BUILD/first.deck"
+# The manual's first deck: the tip of a crank of length 0.25 at 6.28 rad/s.
+sed -n '/^GROUND  BASE/,/^END/p' docs/manual.md > "$BUILD/first.deck"
 "$BUILD/kinmat" "$BUILD/first.deck" > "$BUILD/first.lst"
-equal "README, first deck: exit status" 0 $?
-equal "README, first deck: t = 0" \
+equal "the manual, first deck: exit status" 0 $?
+equal "the manual, first deck: t = 0" \
    ' TIP        0.2500000   0.0000000                0.000000    1.570000               -9.859600    0.000000' \
    "$(grep '^ TIP' "$BUILD/first.lst" | head -n 1)"
-equal "README, first deck: instants" 11 "$(grep -c '^ TIP' "$BUILD/first.lst")"
+equal "the manual, first deck: instants" 11 "$(grep -c '^ TIP' "$BUILD/first.lst")"
 conclude

@@ -32,6 +32,7 @@ part 'the stand-in' "$MAKE" --no-print-directory unit-stand-in
 part 'the house' tests/house.sh
 part 'the closed forms' "$BUILD/release/check_forms" input/*.deck
 part 'make check' tests/check.sh
+part 'the documents' tests/documents.sh
 part 'estimates of errors' "$MAKE" --no-print-directory errors
 part 'the command' tests/command.sh
 part 'real128' "$MAKE" --no-print-directory quad-check
