@@ -27,7 +27,7 @@ modules := $(filter-out main,$(basename $(notdir $(sources))))
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))
 vpath %.F90 $(sort $(dir $(sources)))
 
-.PHONY: all kinds run test check forms errors kind-check quad-check single-check bench bench-short hard hard-short study study-short study-1987 digits fuzz fuzz-short expected install install-kinds clean
+.PHONY: all kinds run test check forms errors kind-check quad-check single-check bench bench-short bench-against hard hard-short study study-short study-1987 digits fuzz fuzz-short expected install install-kinds clean
 all: $(BUILD)/kinmat
 
 run: $(BUILD)/kinmat
@@ -111,6 +111,10 @@ bench: $(BUILD)/kinmat $(BUILD)/release/bench
 
 bench-short: $(BUILD)/release/bench
 	BUILD=$(BUILD) tests/bench.sh short
+
+# Whole runs of this program against the program at the commit REF: make bench-against REF=HEAD~1
+bench-against: $(BUILD)/kinmat
+	BUILD=$(BUILD) REF='$(REF)' tests/bench_against.sh
 
 # The method of 1987, measured: tables on standard output, docs/matrix_1987.png drawn anew (gnuplot-nox).
 study-1987: $(BUILD)/release/matrix_1987
