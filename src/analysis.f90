@@ -12,7 +12,7 @@ module analysis
    use convergence, only: convergence_t, ended_open, ended_unsought
    use block_engine, only: seek_blocks
    use block_remarks, only: first_remarks, limit_remark
-   use engine, only: tell
+   use engine, only: tell, is_certified
    use standing, only: stand_on
    use following, only: following_t, way_t, new_following, go_to, is_too_far, has_too_many_parts, go_on_from, go_back
    implicit none
@@ -135,7 +135,7 @@ contains
       a%branch = w%branch
       if (.not. a%follows) then
          a%branch%kind = branch_first
-      else if ((a%convergence%singular .and. .not. w%stands) .or. .not. allocated(a%engine%blocks)) then
+      else if ((a%convergence%singular .and. .not. w%stands) .or. .not. is_certified(a%engine)) then
          a%branch%kind = branch_none
       else
          a%branch%kind = merge(branch_crossed, branch_same, passed > 0)

@@ -4,7 +4,7 @@ module convergence
    implicit none
    private
    public :: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
-      ended_open, ended_unsought
+      ended_open, ended_unsought, ended_elsewhere
    public :: ending, is_solved, take_gap
 
    integer, parameter :: ended_converged = 1   !< residual and step within the tolerance
@@ -14,6 +14,7 @@ module convergence
    integer, parameter :: ended_diverged = 5    !< the residual left all bounds
    integer, parameter :: ended_open = 6        !< too many equations, and they contradict one another
    integer, parameter :: ended_unsought = 7    !< known before to be out of reach
+   integer, parameter :: ended_elsewhere = 8   !< at another assembly than the estimated one
 
    type :: convergence_t
       integer :: ended = ended_limit
@@ -57,8 +58,8 @@ contains
    pure function ending(c) result(word)
       type(convergence_t), intent(in) :: c
       character(9) :: word
-      character(9), parameter :: words(7) = [character(9) :: 'CONVERGED', 'ROUNDING', 'SINGULAR', 'LIMIT', 'DIVERGED', &
-         'OPEN', 'UNSOUGHT']
+      character(9), parameter :: words(8) = [character(9) :: 'CONVERGED', 'ROUNDING', 'SINGULAR', 'LIMIT', 'DIVERGED', &
+         'OPEN', 'UNSOUGHT', 'ELSEWHERE']
 
       word = words(c%ended)
    end function ending

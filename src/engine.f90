@@ -2,7 +2,7 @@
 !> the same way.
 module engine
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton
+   use mechanism, only: mechanism_t, method_newton, method_dense
    use motion, only: motion_t
    use convergence, only: convergence_t
    use block_engine, only: block_engine_t, new_block_engine, seek_blocks, keep_blocks, tell_blocks, &
@@ -10,7 +10,7 @@ module engine
    use dense_engine, only: dense_t, new_dense, seek_dense, keep_dense, tell_dense, mark_dense, return_dense
    implicit none
    private
-   public :: engine_t, new_engine, seek, keep, mark_place, return_to_place, tell
+   public :: engine_t, new_engine, seek, keep, mark_place, return_to_place, tell, is_certified
 
    !> One of the two.
    type :: engine_t
@@ -96,4 +96,13 @@ contains
          finite = .false.
       end if
    end subroutine tell
+
+   !> Positions that are followed carry the certificate of `continuity`. METHOD MATRIX has the same guard but counts none: its
+   !> iteration arrives at some instants of a motion and not at others.
+   pure logical function is_certified(e)
+      type(engine_t), intent(in) :: e
+
+      is_certified = allocated(e%blocks)
+      if (allocated(e%dense)) is_certified = e%dense%method == method_dense
+   end function is_certified
 end module engine

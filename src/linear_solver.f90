@@ -5,7 +5,7 @@ module linear_solver
    use lapack, only: getrf, getrs, gecon, ptsv
    implicit none
    private
-   public :: factors_t, new_factors, factor, solve, reciprocal_condition, determinant_sign
+   public :: factors_t, new_factors, factor, solve, solve_transposed, reciprocal_condition, determinant_sign
    public :: solve_tridiagonal
 
    !> A square matrix, before and after its factorization P L U.
@@ -54,6 +54,16 @@ contains
       if (f%n == 0) return
       call getrs('N', f%n, 1, f%a, f%n, f%pivots, b, f%n, info)
    end subroutine solve
+
+   !> Replaces the columns of `b` (n, any number) by the solutions with the matrix transposed, from the factors.
+   subroutine solve_transposed(f, b)
+      type(factors_t), intent(in) :: f
+      real(wp), intent(inout) :: b(:, :)
+      integer :: info
+
+      if (f%n == 0 .or. size(b, 2) == 0) return
+      call getrs('T', f%n, size(b, 2), f%a, f%n, f%pivots, b, f%n, info)
+   end subroutine solve_transposed
 
    !> Estimate of 1 / (|A| |A^-1|) in the 1-norm, from the factors (DGECON).
    subroutine reciprocal_condition(f, rcond)

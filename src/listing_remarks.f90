@@ -12,7 +12,8 @@ module listing_remarks
    use phrases, only: phrase, say_pair, say_drive, say_link, say_links, say_open_by, say_limit, say_in_line, &
       say_at_limit, say_off_by, say_second, say_redundant, say_mobile, say_gap, say_below, say_change, say_smoothly, &
       say_way, say_too_long, say_other, say_here, say_not_found, say_branch_from, say_no_change, &
-      say_idle, say_repeated, say_redundant_many, say_of_pair, say_method
+      say_idle, say_repeated, say_redundant_many, say_of_pair, say_method, &
+      say_elsewhere
    implicit none
    private
    public :: put_remarks, put_gap
@@ -94,6 +95,7 @@ contains
          text = owner(m, r)//' '//phrase(say_repeated, m%polish)
       case (remark_method)
          text = phrase(say_method, m%polish)
+         if (r%other) text = phrase(say_elsewhere, m%polish)//': '//text
       case (remark_mobile)
          text = links(m, r)//' '//phrase(say_mobile, m%polish)
       end select

@@ -31,17 +31,22 @@ contains
 
    !> Moves the links of `p` to a position where the drives have the values `driven` (drives). `tolerance`: relative,
    !> 0 for the limit of rounding; `limit`: iterations allowed. `f`: room for n equations; leaves the factors of the
-   !> last matrix, taken one step of the tolerance's size before the position. `c` says how it ended.
-   subroutine iterate(s, driven, tolerance, limit, p, f, c)
+   !> last matrix, taken one step of the tolerance's size before the position. `c` says how it ended. `reach`: an angle
+   !> that goes further than this from where it began, in radians, will come back by chance alone: diverged.
+   subroutine iterate(s, driven, tolerance, limit, p, f, c, reach)
       type(system_t), intent(in) :: s
       real(wp), intent(in) :: driven(:), tolerance
       integer, intent(in) :: limit
       type(pose_t), intent(inout) :: p
       type(factors_t), intent(inout) :: f
       type(convergence_t), intent(out) :: c
-      real(wp) :: r(s%n), before, first, highest
+      real(wp), intent(in), optional :: reach
+      real(wp) :: r(s%n), start(size(p%q, 2)), before, first, highest, furthest
       integer :: info
 
+      start = p%q(3, :)
+      furthest = huge(furthest)
+      if (present(reach)) furthest = reach
       before = huge(before)
       first = 0.0_wp
       do while (c%iterations < limit)
@@ -65,7 +70,8 @@ contains
             exit
          end if
          if (all(abs(r) <= bound)) call add_to_links(s, -r, p%q)
-         if (.not. (all(abs(r) <= bound) .and. all(abs(p%q(3, :)) <= angle_limit))) then
+         if (.not. (all(abs(r) <= bound) .and. all(abs(p%q(3, :)) <= angle_limit) &
+            .and. all(abs(p%q(3, :) - start) <= furthest))) then
             c%ended = ended_diverged
             exit
          end if

@@ -21,17 +21,18 @@ contains
 
    !> Moves the links of `p` to where the drives have the values `driven` (drives); see `iterate`. The factors left in
    !> `f` are the Jacobian's at the position found, for the velocities of (21) and the accelerations of (22).
-   subroutine solve_matrix(s, driven, tolerance, p, f, c)
+   subroutine solve_matrix(s, driven, tolerance, p, f, c, reach)
       type(system_t), intent(in) :: s
       real(wp), intent(in) :: driven(:), tolerance
       type(pose_t), intent(inout) :: p
       type(factors_t), intent(inout) :: f
       type(convergence_t), intent(out) :: c
+      real(wp), intent(in), optional :: reach
       integer :: info
 
       call set_pose(s, p)
       call choose_references(s, p)
-      call iterate(s, driven, tolerance, iteration_limit, p, f, c)
+      call iterate(s, driven, tolerance, iteration_limit, p, f, c, reach)
       p%frozen = .false.
       call set_pose(s, p)
       if (.not. is_solved(c)) return

@@ -16,14 +16,15 @@ contains
 
    !> Moves the links of `p` to where the drives have the values `driven` (drives); see `iterate`. The factors left in
    !> `f` are the Jacobian's.
-   subroutine solve_newton(s, driven, tolerance, p, f, c)
+   subroutine solve_newton(s, driven, tolerance, p, f, c, reach)
       type(system_t), intent(in) :: s
       real(wp), intent(in) :: driven(:), tolerance
       type(pose_t), intent(inout) :: p
       type(factors_t), intent(inout) :: f
       type(convergence_t), intent(out) :: c
+      real(wp), intent(in), optional :: reach
 
       call set_pose(s, p)
-      call iterate(s, driven, tolerance, iteration_limit, p, f, c)
+      call iterate(s, driven, tolerance, iteration_limit, p, f, c, reach)
    end subroutine solve_newton
 end module position_newton

@@ -43,7 +43,8 @@ contains
       end do
    end subroutine getrf
 
-   !> Solves for the columns of `b` (n, nrhs) by the factors; `trans` is N.
+   !> Solves for the columns of `b` (n, nrhs) by the factors, or (`trans` is T, not N) with the matrix
+   !> transposed.
    pure subroutine getrs(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
       character(1), intent(in) :: trans
       integer, intent(in) :: n, nrhs, lda, ldb, ipiv(*)
@@ -52,9 +53,13 @@ contains
       integer, intent(out) :: info
       integer :: j, k
 
-      info = merge(0, -1, trans == 'N')
+      info = merge(0, -1, any(trans == ['N', 'T']))
       if (info < 0) return
       do j = 1, nrhs
+         if (trans == 'T') then
+            call solve_transposed(n, a, lda, ipiv, b(1:n, j))
+            cycle
+         end if
          do k = 1, n
             if (ipiv(k) /= k) b([k, ipiv(k)], j) = b([ipiv(k), k], j)
          end do
@@ -67,6 +72,23 @@ contains
          end do
       end do
    end subroutine getrs
+
+   pure subroutine solve_transposed(n, a, lda, ipiv, b)
+      integer, intent(in) :: n, lda, ipiv(*)
+      real(qp), intent(in) :: a(lda, *)
+      real(qp), intent(inout) :: b(n)
+      integer :: k
+
+      do k = 1, n
+         b(k) = (b(k) - dot_product(a(:k - 1, k), b(:k - 1)))/a(k, k)
+      end do
+      do k = n, 1, -1
+         b(k) = b(k) - dot_product(a(k + 1:n, k), b(k + 1:))
+      end do
+      do k = n, 1, -1
+         if (ipiv(k) /= k) b([k, ipiv(k)]) = b([ipiv(k), k])
+      end do
+   end subroutine solve_transposed
 
    !> 1/(`anorm` |A^-1|), exactly, from the factors: column by column of the inverse. `norm`: I for the
    !> maximum norm, otherwise the 1-norm. The inverse of P^T L U has the columns of that of L U in another

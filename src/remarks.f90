@@ -32,7 +32,7 @@ module remarks
       integer :: more = 0                      !< links for which there is no room
       integer :: equations = 1                 !< remark_redundant: how many of them
       logical :: in_line = .false.             !< remark_limit: the two links are in line
-      logical :: other = .false.               !< remark_change: on the other branch
+      logical :: other = .false.               !< remark_change: on the other branch; remark_method: at another assembly
       logical :: here = .false.                !< remark_change: the instant is the change point
       logical :: is_angle = .false.            !< of `value`
       real(wp) :: value = 0.0_wp, t = 0.0_wp

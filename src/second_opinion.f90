@@ -3,13 +3,19 @@
 !> position, and what they say of the mechanism does not depend on the way of an iteration.
 module second_opinion
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_t, request_link, method_newton, place_links
+   use mechanism, only: mechanism_t, place_links, wanted_links
    use motion, only: motion_t, new_motion, mark_not_converged, mark_singular
-   use remarks, only: remark_t, remark_open, remark_limit, remark_mobile, remark_idle, remark_repeated, remark_method
+   use remarks, only: remark_t, remark_open, remark_limit, remark_far, remark_second, remark_mobile, remark_idle, &
+      remark_repeated, remark_method
+   use convergence, only: ended_elsewhere
+   use dense_start, only: by_blocks
    use analysis, only: analysis_t, new_analysis, advance
    implicit none
    private
    public :: opinion_t, ask_blocks
+
+   !> Angles that differ by less, in radians, are those of one assembly.
+   real(wp), parameter :: alike = 1.0e-3_wp
 
    !> What has been said: limits once, and of the first motion.
    type :: opinion_t
@@ -18,8 +24,8 @@ module second_opinion
 
 contains
 
-   !> Adds to the remarks of `found`, which `a` has found last of `m`: the limit of the motion, what stays open, what
-   !> can still move; or that METHOD NEWTON finds a position.
+   !> Adds to the remarks of `found`, which `a` has found last of `m`: how far the estimate was off; the limit of the motion,
+   !> what stays open, what can still move; or that METHOD NEWTON finds a position.
    subroutine ask_blocks(m, a, o, found)
       type(mechanism_t), intent(in) :: m
       type(analysis_t), intent(in) :: a
@@ -31,6 +37,8 @@ contains
          if (.not. (a%follows .and. o%is_lost)) call say_why(m, a, o%is_lost, found)
       else if (found%mark == mark_singular .and. .not. o%has_begun) then
          call say_what_moves(m, found)
+      else if (.not. o%has_begun) then
+         call say_how_far(m, found)
       end if
       o%is_lost = a%is_lost
       o%has_begun = a%has_begun
@@ -48,7 +56,7 @@ contains
       q = new_motion(size(m%links))
       if (a%follows) then
          associate (last => a%engine%dense%last%position, unit => a%engine%dense%system%length)
-            b = new_analysis(by_blocks(m, last*spread([unit, unit, 1.0_wp], 2, size(last, 2))))
+            b = new_analysis(placed(m, last*spread([unit, unit, 1.0_wp], 2, size(last, 2))))
          end associate
          call advance(b, a%t, q)
          if (q%known < 2) return
@@ -62,8 +70,26 @@ contains
       if (allocated(found%remarks)) then
          if (size(found%remarks) > 0) return
       end if
-      found%remarks = [remark_t(kind=remark_method)]
+      found%remarks = [remark_t(kind=remark_method, other=a%convergence%ended == ended_elsewhere)]
    end subroutine say_why
+
+   !> How far the estimate was from the first motion, and whether it means another as well.
+   subroutine say_how_far(m, found)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(inout) :: found
+      type(mechanism_t) :: d
+      type(analysis_t) :: b
+      type(motion_t) :: q
+
+      d = by_blocks(m)
+      d%requests = m%requests
+      q = new_motion(size(m%links))
+      b = new_analysis(d)
+      call advance(b, found%t, q)
+      if (q%known < 0) return
+      if (any(abs(q%position(3, :) - found%position(3, :)) > alike .and. wanted_links(d))) return
+      call pass_on(q, [remark_far, remark_second], found)
+   end subroutine say_how_far
 
    !> What can move where the Jacobian has no inverse.
    subroutine say_what_moves(m, found)
@@ -73,24 +99,20 @@ contains
       type(motion_t) :: q
 
       q = new_motion(size(m%links))
-      b = new_analysis(by_blocks(m, found%position))
+      b = new_analysis(placed(m, found%position))
       call advance(b, found%t, q)
       call pass_on(q, [remark_mobile, remark_idle, remark_repeated], found)
    end subroutine say_what_moves
 
-   !> `m` with all its links, from the `position` (3, links), as the origin of the plane counts it, if there is one.
-   function by_blocks(m, position) result(d)
+   !> `m` for the blocks, from the `position` (3, links), as the origin of the plane counts it.
+   pure function placed(m, position) result(d)
       type(mechanism_t), intent(in) :: m
-      real(wp), intent(in), optional :: position(:, :)
+      real(wp), intent(in) :: position(:, :)
       type(mechanism_t) :: d
-      integer :: i
 
-      d = m
-      d%method = method_newton
-      d%tolerance = 0.0_wp
-      d%requests = [(request_t(request_link, i, 1), i=1, size(m%links))]
-      if (present(position)) call place_links(d, position)
-   end function by_blocks
+      d = by_blocks(m)
+      call place_links(d, position)
+   end function placed
 
    !> Adds the remarks of `q` that are of one of the `kinds` to those of `found`.
    subroutine pass_on(q, kinds, found)
