@@ -1,8 +1,8 @@
 !> Level 2. On which branch an instant was found: what has been verified on the way to it.
 !>
 !> SAME: on every part of the way the prediction was off by less than a tenth of the distance within which there is
-!> one root only (Newton and Kantorovich), and the determinants of all blocks, or that of all equations at once, have kept
-!> their signs.
+!> one root only (Newton and Kantorovich), and the determinants of all blocks, or that of all equations at once, have
+!> kept their signs.
 !> CROSSED: the same, but for change points that were passed, each within a short step, and told.
 module continuity
    use kinds, only: wp

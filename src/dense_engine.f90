@@ -141,13 +141,15 @@ contains
       c%doubt = c%change*k
    end subroutine judge
 
-   !> More than the doubt, from the condition alone: no row sum of the inverse is more than n times its largest column sum, of
-   !> which DGECON tells a third or more, and a slot has two rows.
+   !> More than the doubt, from the condition alone: no row sum of the inverse is more than n times its largest column
+   !> sum, of which DGECON tells a third or more, and a slot has two rows.
    real(wp) function bound_of_doubt(e, c) result(doubt)
       type(dense_t), intent(in) :: e
       type(convergence_t), intent(in) :: c
 
-      doubt = 6.0_wp*c%change*real(e%system%n, wp)*maxval([0.0_wp, jacobian_lipschitz(e%system, e%coordinates, e%pose)]) &
+      doubt = 0.0_wp
+      if (c%change <= 0.0_wp) return
+      doubt = 6.0_wp*c%change*real(e%system%n, wp)*maxval(jacobian_lipschitz(e%system, e%coordinates, e%pose)) &
          /(c%reciprocal_condition*e%factors%norm)
    end function bound_of_doubt
 

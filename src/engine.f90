@@ -97,8 +97,8 @@ contains
       end if
    end subroutine tell
 
-   !> Positions that are followed carry the certificate of `continuity`. METHOD MATRIX has the same guard but counts none: its
-   !> iteration arrives at some instants of a motion and not at others.
+   !> Positions that are followed carry the certificate of `continuity`. METHOD MATRIX has the same guard but counts
+   !> none: its iteration arrives at some instants of a motion and not at others.
    pure logical function is_certified(e)
       type(engine_t), intent(in) :: e
 

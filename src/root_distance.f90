@@ -1,8 +1,8 @@
 !> Level 7. How far the next root of the closure equations is from a position found: the guard of continuity of METHOD
 !> DENSE and METHOD MATRIX, as the blocks have theirs.
 !>
-!> Newton and Kantorovich, row by row. Two positions z and z + d with the same values of the drives have J d = -R, with J
-!> the Jacobian at z and R_k what row k holds beyond its linear part, at most L_k |d|^2/2. Rows of angles alone are
+!> Newton and Kantorovich, row by row. Two positions z and z + d with the same values of the drives have J d = -R, with
+!> J the Jacobian at z and R_k what row k holds beyond its linear part, at most L_k |d|^2/2. Rows of angles alone are
 !> linear: R is 0 there, and links that they tie together turn by the same angle. So
 !>    revolute pair        L = |u| + |w|      arms of the links whose angle is free
 !>    X, Y drive           L = |u|
@@ -81,8 +81,8 @@ contains
       end do
    end function distance
 
-   !> Bounds (n) of what the rows hold beyond their linear part at pose `p`: L_k of above. The two rows of a revolute pair
-   !> have one bound of their vector.
+   !> Bounds (n) of what the rows hold beyond their linear part at pose `p`: L_k of above. The two rows of a revolute
+   !> pair have one bound, that of their vector.
    pure function jacobian_lipschitz(s, c, p) result(bound)
       type(system_t), intent(in) :: s
       type(coordinates_t), intent(in) :: c

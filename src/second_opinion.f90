@@ -24,8 +24,8 @@ module second_opinion
 
 contains
 
-   !> Adds to the remarks of `found`, which `a` has found last of `m`: how far the estimate was off; the limit of the motion,
-   !> what stays open, what can still move; or that METHOD NEWTON finds a position.
+   !> Adds to the remarks of `found`, which `a` has found last of `m`: how far the estimate was off; the limit of the
+   !> motion, what stays open, what can still move; or that METHOD NEWTON finds a position.
    subroutine ask_blocks(m, a, o, found)
       type(mechanism_t), intent(in) :: m
       type(analysis_t), intent(in) :: a

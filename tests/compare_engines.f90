@@ -20,11 +20,12 @@ module compare_engines
 
 contains
 
-   !> `m` at the instants `t`; at none but the first where that has no motion, at none where the
-   !> structure has no solution.
-   function compare(m, t) result(c)
+   !> `m` at the instants `t`, all at once by `method` (METHOD DENSE); at none but the first where that has no motion, at none
+   !> where the structure has no solution.
+   function compare(m, t, method) result(c)
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: t(:)
+      integer, intent(in), optional :: method
       type(comparison_t) :: c
       type(mechanism_t) :: all_at_once
       type(analysis_t) :: blocks, dense
@@ -37,6 +38,7 @@ contains
       if (.not. f%solvable) return
       all_at_once = m
       all_at_once%method = method_dense
+      if (present(method)) all_at_once%method = method
       blocks = new_analysis(m)
       dense = new_analysis(all_at_once)
       q = new_motion(size(m%links))

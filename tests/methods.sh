@@ -1,0 +1,88 @@
+#!/bin/sh
+# METHOD DENSE and METHOD MATRIX against METHOD NEWTON: each instant is that of the blocks, turns included, or marked. With
+# both linear algebra libraries: the same instants are marked.
+BUILD=${BUILD:-build}
+. tests/counting.sh
+
+kinmat=$BUILD/kinmat
+w=$BUILD/methods
+rm -rf "$w" && mkdir -p "$w" || exit 3
+lapack=/usr/lib/x86_64-linux-gnu/lapack:/usr/lib/x86_64-linux-gnu/blas
+openblas=/usr/lib/x86_64-linux-gnu/openblas-pthread
+
+# by METHOD DECK [LIBRARY]: the rows of DECK by METHOD, links alone, in $w/METHOD.csv
+by() {
+   sed -e '/^METHOD/d' -e "s/^END.*/METHOD  $1\n&/" "$2" > "$w/$1.deck"
+   LD_LIBRARY_PATH=$3 "$kinmat" "$w/$1.deck" -o "$w/$1.lst" --csv "$w/$1.all"
+   grep ',LINK,' "$w/$1.all" > "$w/$1.csv"
+}
+
+# against METHOD: rows of METHOD that differ from NEWTON's by more than 1E-6 of the largest, and are not marked; instants that
+# it has, and that NEWTON has
+against() {
+   paste -d, "$w/NEWTON.csv" "$w/$1.csv" | LC_ALL=C awk -F, '
+      function far(a, b, unit) { return a - b > 1e-6*unit || b - a > 1e-6*unit }
+      { for (i = 6; i <= 8; i++) { v = $i < 0 ? -$i : $i + 0; if (v > size && i < 8) size = v } row[NR] = $0 }
+      END { for (k = 1; k <= NR; k++) {
+            $0 = row[k]
+            if ($15 == "") newton++
+            if ($30 != "") continue
+            has++
+            if ($15 != "" || far($6, $21, size) || far($7, $22, size) || far($8, $23, 1)) wrong++ }
+         print wrong + 0, has + 0, newton + 0 }'
+}
+
+# A limit, and five instants beyond it in the steps of the deck at which another assembly is not far.
+by NEWTON tests/decks/dense_passes_limit.deck
+by DENSE tests/decks/dense_passes_limit.deck
+equal 'a limit between two instants: rows of another assembly, rows found, rows of NEWTON' '0 19 19' "$(against DENSE)"
+equal 'the limit is told' "$(grep LIMIT "$w/NEWTON.lst")" "$(grep LIMIT "$w/DENSE.lst")"
+
+# An estimate 3 degrees off, from which Newton's iteration for all equations falls a thousand radians away.
+for library in $lapack $openblas; do
+   [ -d "${library%%:*}" ] || continue
+   by NEWTON tests/decks/dense_first_instant_chaotic.deck "$library"
+   by DENSE tests/decks/dense_first_instant_chaotic.deck "$library"
+   found=$(against DENSE)
+   equal "a far iteration, ${library##*/}: rows of another assembly" 0 "${found%% *}"
+   equal "a far iteration, ${library##*/}: rows as many as NEWTON's" "${found##* }" "$(echo "$found" | cut -d' ' -f2)"
+   tr -d '0-9.E+-' < "$w/DENSE.csv" > "$w/marks.${library##*/}"
+done
+[ -e "$w/marks.blas" ] && [ -e "$w/marks.openblas-pthread" ] \
+   && same 'a far iteration: the same instants by both libraries' "$w/marks.blas" "$w/marks.openblas-pthread"
+
+# guide ANGLE SIDE: a crank of 2, its pin's block on a guide that a lever of 4 carries across its end, pivoted 6 away, by the
+# closed form to ten decimals: (6 - x) cos r - y sin r + 4 = 0 with (x, y) the pin
+guide() {
+   LC_ALL=C awk -v a="$1" -v side="$2" 'BEGIN {
+      pi = atan2(0, -1); x = 2*cos(a*pi/180); y = 2*sin(a*pi/180); far = sqrt((6 - x)^2 + y^2); c = -4/far
+      r = (atan2(-y, 6 - x) + side*atan2(sqrt(1 - c*c), c))*180/pi
+      print "UNITS   IN      DEG     S\nGROUND  FRAME\nPOINT   O2      FRAME\nPOINT   O4      FRAME           6.0"
+      form = "LINK    %-24s%-16.10f%-16.10f%.10f\n"
+      printf form form form, "CRANK", 0, 0, a, "BLOCK", x, y, r + 90, "ROCKER", 6, 0, r
+      print "POINT   A0      CRANK\nPOINT   A       CRANK           2.0\nPOINT   A3      BLOCK"
+      print "POINT   B0      ROCKER\nPOINT   B       ROCKER          4.0"
+      print "REVOLUTEO2      A0      JO2\nREVOLUTEA       A3      JA\nREVOLUTEO4      B0      JO4"
+      print "PRISM   B       A3      SLOT    90.0            0.0             90.0"
+      printf "DRIVE   ANGLE   CRANK           %-16.10f0.0\nAT                              0.0\nEND\n", a }'
+}
+
+# From estimates exact to 1E-10 the iteration of 1987 is repelled at 30 of 70 positions (at 0 is a dead point), and goes to
+# the other assembly from 19 of them: it finds the estimated one or says so. METHOD DENSE finds all.
+wrong=0; found=0; told=0
+for side in 1 -1; do
+   for angle in $(seq 10 10 350); do
+      guide "$angle" $side > "$w/deck"
+      by NEWTON "$w/deck"
+      by DENSE "$w/deck"
+      by MATRIX "$w/deck"
+      set -- $(against MATRIX)
+      wrong=$((wrong + $1)); found=$((found + $2))
+      if [ "$2" -eq 0 ]; then grep -q 'METHOD NEWTON FINDS A POSITION' "$w/MATRIX.lst" && told=$((told + 1)); fi
+      set -- $(against DENSE)
+      wrong=$((wrong + $1 + 3 - $2))
+   done
+done
+equal 'a turning guide: rows of another assembly, or lost by METHOD DENSE' 0 $wrong
+equal 'a turning guide: METHOD MATRIX finds, or says that NEWTON does' 70 $((told + found/3))
+conclude
