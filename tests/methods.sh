@@ -68,7 +68,7 @@ guide() {
 }
 
 # From estimates exact to 1E-10 the iteration of 1987 is repelled at 30 of 70 positions (at 0 is a dead point), and goes to
-# the other assembly from 19 of them: it finds the estimated one or says so. METHOD DENSE finds all.
+# the other assembly from 18 of them: it finds the estimated one or says so. METHOD DENSE finds all.
 wrong=0; found=0; told=0
 for side in 1 -1; do
    for angle in $(seq 10 10 350); do
