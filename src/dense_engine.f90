@@ -34,7 +34,7 @@ module dense_engine
    !> An iteration that goes further than this on its way wanders, and where it ends up is up to rounding.
    real(wp), parameter :: reach = largest_change
    !> Where the Jacobian has no inverse a position is known to the root of eps; a root this near is that position.
-   real(wp), parameter :: same_place = 1.0e4_wp*sqrt(epsilon(1.0_wp))
+   real(wp), parameter :: same_place = min(1.0e4_wp*sqrt(epsilon(1.0_wp)), 1.0e-2_wp)
 
    !> Lengths in the system's unit.
    type :: dense_t
