@@ -12,7 +12,7 @@ module block_assembly
    use block_gaps, only: note_gap
    implicit none
    private
-   public :: approach
+   public :: approach, approach_held
 
    !> No unknown goes further than this in one iteration: half a radian, half the characteristic length.
    real(wp), parameter :: longest_step = 0.5_wp
@@ -22,12 +22,17 @@ module block_assembly
    !> Shorter ones are rounding.
    real(wp), parameter :: least_step = max(1.0e-12_wp, 32.0_wp*epsilon(1.0_wp))
    integer, parameter :: most_iterations = 200
+   !> The tie to the initial estimate: what it begins with, by how much it grows less, when it is none.
+   real(wp), parameter :: first_tie = 1.0_wp, looser = 0.25_wp, last_tie = 1.0e-8_wp
+   integer, parameter :: rounds_a_tie = 3
    !> Starts: the rough position, then others around it, where that ends in a valley.
    integer, parameter :: most_starts = 12
    !> Multiples of it, less their whole part, fill an interval evenly.
    real(wp), parameter :: golden = 0.61803398874989485_wp
    !> The matrices are dense: larger blocks are left as they are.
    integer, parameter :: most_unknowns = 600
+   !> The tied approach is a help among others, and not worth minutes.
+   integer, parameter :: most_held = 150
 
    type :: room_t
       type(shape_t) :: shape, damped
@@ -76,6 +81,40 @@ contains
       reached = least <= near
    end subroutine approach
 
+   !> Brings block `i` from the values of `s`, the initial estimate x0, towards the position that is nearest to it: the
+   !> least of |r|^2 + tie |x - x0|^2, with a tie that grows less and less (iterated regularization of Tikhonov). No
+   !> unknown goes far where the Jacobian does little.
+   subroutine approach_held(b, i, near, s)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: near
+      type(state_t), intent(inout) :: s
+      type(room_t) :: w
+      real(wp), allocatable :: start(:)
+      real(wp) :: tie, step
+      integer :: k
+
+      associate (block => b%list(i))
+         if (block%shape%n == 0 .or. block%shape%n > most_held) return
+         w = new_room(block%shape)
+         start = s%u(b%unknown(block%first:block%last))%value
+      end associate
+      call known_parts(b, i, s)
+      tie = first_tie
+      do while (tie > last_tie)
+         do k = 1, rounds_a_tie
+            call assemble_dense(b, i, s, w%a, w%r)
+            if (.not. maxval(abs(w%r(:w%shape%rows))) <= bound) return
+            if (maxval(abs(w%r(:w%shape%rows))) <= near) return
+            w%x = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
+            call damped_step(w, tie, w%x - start, step)
+            call set_values(b, i, w%x - w%d(:w%shape%n), s)
+            if (step <= 0.01_wp*longest_step) exit
+         end do
+         tie = looser*tie
+      end do
+   end subroutine approach_held
+
    function new_room(shape) result(w)
       type(shape_t), intent(in) :: shape
       type(room_t) :: w
@@ -115,7 +154,7 @@ contains
          if (found <= near .or. damping > most_damping .or. .not. found <= bound) exit
          square = sum(w%r(:w%shape%rows)**2)
          w%x = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
-         call damped_step(w, damping, step)
+         call damped_step(w, damping, spread(0.0_wp, 1, w%shape%n), step)
          call set_values(b, i, w%x - w%d(:w%shape%n), s)
          call assemble_dense(b, i, s, w%a, w%r)
          if (sum(w%r(:w%shape%rows)**2) < square) then
@@ -130,10 +169,10 @@ contains
       found = maxval(abs(w%r(:w%shape%rows)))
    end subroutine descend
 
-   !> Least squares of J d = r and sqrt(damping) d = 0 together, cut to the longest step.
-   subroutine damped_step(w, damping, step)
+   !> Least squares of J d = r and sqrt(damping) d = sqrt(damping) `aim` (n) together, cut to the longest step.
+   subroutine damped_step(w, damping, aim, step)
       type(room_t), intent(inout) :: w
-      real(wp), intent(in) :: damping
+      real(wp), intent(in) :: damping, aim(:)
       real(wp), intent(out) :: step
       integer :: k, info
 
@@ -144,7 +183,7 @@ contains
             w%b((k - 1)*(m + n) + m + k) = sqrt(damping)
          end do
          w%d(:m) = w%r(:m)
-         w%d(m + 1:) = 0.0_wp
+         w%d(m + 1:) = sqrt(damping)*aim
          call solve_first(w%damped, w%b, w%sparse, w%pivots, w%work, w%d, info)
          step = maxval(abs(w%d(:n)))
          if (step > longest_step) w%d(:n) = w%d(:n)*(longest_step/step)

@@ -21,8 +21,13 @@ module block_engine
    use link_motion, only: chain_t, new_chain, move_links
    implicit none
    private
-   public :: block_engine_t, new_block_engine, seek_blocks, seek_again, set_targets, keep_blocks, tell_blocks
-   public :: mark_blocks, return_blocks
+   public :: block_engine_t, positions_t, new_block_engine, seek_blocks, seek_again, seek_each, begin_record
+   public :: set_targets, keep_blocks, tell_blocks, mark_blocks, return_blocks
+
+   !> Positions of one block (unknowns, any number).
+   type :: positions_t
+      real(wp), allocatable :: x(:, :)
+   end type positions_t
 
    !> Lengths in units of `length`, a power of two in the deck's unit.
    type :: block_engine_t
@@ -32,7 +37,8 @@ module block_engine
       type(history_t) :: history                        !< the motions that are followed
       type(history_t) :: marked                         !< those of a place to return to
       type(workspace_t) :: work
-      type(chain_t) :: chain
+      type(chain_t) :: chain                            !< of the links that are asked for
+      type(chain_t) :: whole                            !< of all links
       type(law_t), allocatable :: laws(:)
       real(wp), allocatable :: unit_of(:)               !< (drives) of the value: length or 1
       logical, allocatable :: is_angle(:)               !< (drives)
@@ -40,6 +46,10 @@ module block_engine
       integer, allocatable :: joint(:, :)               !< (2, revolute pairs) the links of each
       logical, allocatable :: is_found(:)               !< (links) that a table needs and whose angle no drive gives
       real(wp), allocatable :: rough(:)                 !< (0:unknowns) from the deck's positions
+      real(wp), allocatable :: estimate(:, :)           !< (3, links) places from `chain%origin` and angles of the deck
+      real(wp) :: span = 1.0_wp                         !< the characteristic length
+      type(positions_t), allocatable :: others(:)       !< (blocks) what else was found at first
+      logical, allocatable :: is_close(:)               !< (blocks) another assembly is about as near to the estimate
       integer, allocatable :: needed(:), moving(:)      !< blocks that are solved at first, and at every step
       integer, allocatable :: sign_now(:), sign_of(:)   !< (blocks) of the determinant: found last, followed
       integer, allocatable :: sign_marked(:)
@@ -58,7 +68,8 @@ contains
       type(tree_t) :: t
       integer :: i
 
-      e%length = power_of_two(characteristic_length(m))
+      e%span = characteristic_length(m)
+      e%length = power_of_two(e%span)
       e%tolerance = m%tolerance
       t = new_tree(m)
       e%blocks = new_blocks(t, new_equations(m, t, e%length))
@@ -78,6 +89,7 @@ contains
       end do
       e%work = new_workspace(e%blocks)
       e%chain = new_chain(m, t, wanted_links(m), e%blocks%frames)
+      e%whole = new_chain(m, t, spread(.true., 1, size(m%links)), e%blocks%frames)
       allocate (e%laws(size(m%drives)))
       allocate (e%unit_of(size(m%drives)), source=1.0_wp)
       e%frame_of = t%frame
@@ -92,7 +104,11 @@ contains
       end do
       allocate (e%sign_now(size(e%blocks%list)), e%sign_of(size(e%blocks%list)), source=1)
       allocate (e%pivot_now(size(e%blocks%list)), e%pivot_of(size(e%blocks%list)), source=1.0_wp)
-      allocate (e%crossed(size(e%blocks%list)), source=.false.)
+      allocate (e%crossed(size(e%blocks%list)), e%is_close(size(e%blocks%list)), source=.false.)
+      allocate (e%others(size(e%blocks%list)), e%estimate(3, size(m%links)))
+      do i = 1, size(m%links)
+         e%estimate(:, i) = m%links(i)%position - [e%chain%origin, 0.0_wp]
+      end do
       ! A function's result would bring its own lower bound.
       allocate (e%rough(0:e%blocks%unknowns))
       e%rough(:) = rough_values(m, t, e%length, e%blocks%unknowns)
@@ -192,7 +208,7 @@ contains
          if (follows) then
             call solve_block(e%blocks, i, e%tolerance, e%work, e%state, one, correction)
          else
-            call solve_first_block(e%blocks, i, e%tolerance, e%work, e%state, one)
+            call solve_first_block(e%blocks, i, e%tolerance, e%work, e%state, one, e%others(i)%x)
          end if
          if (e%blocks%list(i)%direct) cycle
          if (follows .and. is_solved(one) .and. e%blocks%list(i)%shape%rows > e%blocks%list(i)%shape%n) &

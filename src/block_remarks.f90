@@ -28,6 +28,7 @@ contains
       logical, intent(in) :: singular
       type(remark_t), allocatable :: list(:)
       integer :: k
+      logical :: second
 
       allocate (list(0))
       if (e%blocks%redundant > 0) list = redundancies(e)
@@ -36,10 +37,12 @@ contains
             if (block%direct) cycle
             if (singular) then
                call add_mobility(e, e%needed(k), list)
-            else if (has_second_position(e%blocks, e%needed(k), e%tolerance, &
-               e%rough(e%blocks%unknown(block%first:block%last)), e%work, e%state)) then
-               list = [list, new_remark(remark_second, links_of(e, e%needed(k)))]
+               cycle
             end if
+            second = e%is_close(e%needed(k))
+            if (.not. second) second = has_second_position(e%blocks, e%needed(k), e%tolerance, &
+               e%rough(e%blocks%unknown(block%first:block%last)), e%work, e%state)
+            if (second) list = [list, new_remark(remark_second, links_of(e, e%needed(k)))]
          end associate
       end do
    end function first_remarks

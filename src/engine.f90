@@ -7,6 +7,7 @@ module engine
    use convergence, only: convergence_t
    use block_engine, only: block_engine_t, new_block_engine, seek_blocks, keep_blocks, tell_blocks, &
       mark_blocks, return_blocks
+   use assembly_choice, only: seek_first
    use dense_engine, only: dense_t, new_dense, seek_dense, keep_dense, tell_dense, mark_dense, return_dense
    implicit none
    private
@@ -42,8 +43,10 @@ contains
       real(wp), intent(out) :: correction
       logical, intent(out) :: same
 
-      if (allocated(e%blocks)) then
+      if (allocated(e%blocks) .and. follows) then
          call seek_blocks(e%blocks, t, follows, c, correction, same)
+      else if (allocated(e%blocks)) then
+         call seek_first(e%blocks, t, c, correction, same)
       else
          call seek_dense(e%dense, t, follows, c, correction, same)
       end if
