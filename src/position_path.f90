@@ -55,7 +55,7 @@ contains
          call solve(b, i, w, tangent, info)
          length = maxval(abs(tangent(:size(x))))
          if (info > 0 .or. .not. length <= huge(length)) return
-         share = min(share, 1.0_wp - p, max_step/max(length, tiny(length)))
+         share = min(share, 1.0_wp - p, max_step/max(length, epsilon(length)))
          do
             call set_values(b, i, x - share*tangent(:size(x)), s)
             call correct(b, i, first*(1.0_wp - p - share), share*length, w, s, is_close)
