@@ -1,6 +1,5 @@
 !> Level 3. The command's words: what to read, what to write, which sets.
 module command_line
-   use, intrinsic :: iso_c_binding, only: c_ptr, c_char, c_associated, c_null_char
    use kinds, only: wp_name
    use decimal_digits, only: significant
    use failures, only: failure_t, fail, status_refused
@@ -21,17 +20,6 @@ module command_line
       !> What is printed instead of computing: 'HELP', 'VERSION', 'RULER' or ''.
       character(:), allocatable :: show
    end type options_t
-
-   interface
-      type(c_ptr) function realpath(path, resolved) bind(c)
-         import :: c_ptr, c_char
-         character(kind=c_char), intent(in) :: path(*)
-         character(kind=c_char), intent(inout) :: resolved(*)
-      end function realpath
-   end interface
-
-   !> PATH_MAX, and more.
-   integer, parameter :: path_length = 65536
 
    character(*), parameter :: two_digits = achar(48 + int(0.1*significant))//achar(48 + mod(significant, 10))
    character(*), parameter :: csv_digits = two_digits(merge(2, 1, significant < 10):)
@@ -111,7 +99,6 @@ contains
          i = i + 1
       end do
       if (.not. allocated(failure)) call check_study(options, failure)
-      if (.not. allocated(failure)) call check_files(options, failure)
    end subroutine read_command
 
    !> A study prints no listing, and reads its deck more than once.
@@ -192,51 +179,6 @@ contains
 
       is_whole = len(word) > 0 .and. len(word) < 9 .and. verify(word, '0123456789') == 0
    end function is_whole
-
-   !> No file is both read and written, or written twice.
-   subroutine check_files(options, failure)
-      type(options_t), intent(in) :: options
-      type(failure_t), allocatable, intent(out) :: failure
-
-      if (any([same(options%output, options%csv), same(options%output, options%log), &
-         same(options%csv, options%log)])) &
-         call fail(failure, status_refused, 'ONE FILE IS NAMED FOR TWO OUTPUTS')
-      if (len(options%deck) > 0) then
-         if (is_output(options%deck, options)) &
-            call fail(failure, status_refused, 'THE DECK '//options%deck//' WOULD BE OVERWRITTEN')
-      else if (is_output('/dev/stdin', options)) then
-         call fail(failure, status_refused, 'THE DECK ON STANDARD INPUT WOULD BE OVERWRITTEN')
-      end if
-   end subroutine check_files
-
-   logical function is_output(path, options)
-      character(*), intent(in) :: path
-      type(options_t), intent(in) :: options
-
-      is_output = any([same(path, options%output), same(path, options%csv), same(path, options%log)])
-   end function is_output
-
-   !> Two names of one file, links followed; devices such as /dev/null do not count.
-   logical function same(a, b)
-      character(*), intent(in) :: a, b
-      character(:), allocatable :: first, second
-
-      first = true_path(a)
-      second = true_path(b)
-      same = len(first) > 0 .and. len(first) == len(second) .and. first == second
-      same = same .and. index(first, '/dev/') /= 1
-   end function same
-
-   !> The one absolute name of an existing file; any other name is left as it is.
-   function true_path(path) result(text)
-      character(*), intent(in) :: path
-      character(:), allocatable :: text
-      character(path_length) :: resolved
-
-      text = path
-      if (.not. c_associated(realpath(path//c_null_char, resolved))) return
-      text = resolved(:index(resolved, c_null_char) - 1)
-   end function true_path
 
    !> Argument number `i`, '' where there is none.
    function argument(i) result(word)

@@ -1,14 +1,15 @@
 !> Level 18. One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later.
 module job
-   use failures, only: failure_t, fail, status_solved, status_refused, status_marked, status_machine
+   use failures, only: failure_t, fail, status_solved, status_refused, status_marked, status_signal
    use mechanism, only: mechanism_t, instant_count, instant
    use motion, only: motion_t, new_motion, mark_none
    use structure, only: findings_t, find_structure
    use structure_faults, only: faults_text
    use deck, only: read_deck
-   use text_output, only: output_t, open_output, put, close_output
-   use numerals, only: whole
-   use listing, only: layout_t, new_layout, listing_head, listing_instant, listing_end
+   use text_output, only: output_t, open_output, check_apart, flush_output, close_output, abandon_output, has_failed, &
+      has_broken_pipe
+   use interrupts, only: watch_signals, signal_received, broken_pipe_kills, signal_pipe
+   use listing, only: layout_t, new_layout, listing_head, listing_instant, listing_end, listing_broken_off
    use csv, only: csv_head, csv_instant
    use protocol, only: protocol_head, protocol_instant
    use analysis, only: analysis_t, new_analysis, advance, redundancy_gap, closing_remarks
@@ -45,6 +46,7 @@ contains
       if (.not. allocated(failure)) call check_structure(sets, findings, failure)
       if (.not. allocated(failure)) call open_all(options, o, failure)
       if (.not. allocated(failure)) then
+         call watch_signals
          call run_sets(options, sets, findings, o, status)
          call close_all(options, o, failure)
       end if
@@ -52,7 +54,24 @@ contains
          status = failure%status
          if (len(message) == 0) message = ' *** '//failure%text
       end if
+      call look_at_signals(options, o, status, message)
    end subroutine run_job
+
+   !> A run that a signal has ended ends by that signal; so does one whose reader has gone (kinmat DECK | head), and
+   !> without a word, unless other outputs were asked for, which end there too.
+   subroutine look_at_signals(options, o, status, message)
+      type(options_t), intent(in) :: options
+      type(outputs_t), intent(in) :: o
+      integer, intent(inout) :: status
+      character(:), allocatable, intent(inout) :: message
+
+      if (signal_received() > 0) then
+         status = status_signal + signal_received()
+      else if (broken_pipe_kills() .and. any(has_broken_pipe([o%listing, o%csv, o%log]))) then
+         status = status_signal + signal_pipe
+         if (len(options%csv) == 0 .and. len(options%log) == 0) message = ''
+      end if
+   end subroutine look_at_signals
 
    !> Every link of every set can be found: `findings` (sets).
    subroutine check_structure(sets, findings, failure)
@@ -85,7 +104,22 @@ contains
       call open_output(o%listing, options%output, failure)
       if (.not. allocated(failure) .and. len(options%csv) > 0) call open_output(o%csv, options%csv, failure)
       if (.not. allocated(failure) .and. len(options%log) > 0) call open_output(o%log, options%log, failure)
+      if (.not. allocated(failure)) call check_apart([o%listing, o%csv, o%log], options%deck, failure)
+      if (.not. allocated(failure)) return
+      call abandon_output(o%listing)
+      call abandon_output(o%csv)
+      call abandon_output(o%log)
    end subroutine open_all
+
+   !> Writes the heads at once, so that an output that takes nothing is known before anything is computed.
+   subroutine flush_all(options, o)
+      type(options_t), intent(in) :: options
+      type(outputs_t), intent(inout) :: o
+
+      call flush_output(o%listing)
+      if (len(options%csv) > 0) call flush_output(o%csv)
+      if (len(options%log) > 0) call flush_output(o%log)
+   end subroutine flush_all
 
    subroutine close_all(options, o, failure)
       type(options_t), intent(in) :: options
@@ -99,6 +133,13 @@ contains
       if (len(options%log) > 0) call close_output(o%log, other)
       if (allocated(other)) call move_alloc(other, failure)
    end subroutine close_all
+
+   !> What follows need not be computed: a write has failed, or a signal has come.
+   logical function is_over(o)
+      type(outputs_t), intent(in) :: o
+
+      is_over = has_failed(o%listing) .or. has_failed(o%csv) .or. has_failed(o%log) .or. signal_received() > 0
+   end function is_over
 
    !> The sets of this share, one after another: shares put together in their order are the whole.
    subroutine run_sets(options, sets, findings, o, status)
@@ -114,6 +155,7 @@ contains
       if (len(options%csv) > 0 .and. options%share == 1) call csv_head(o%csv, options%errors)
       do i = first, last
          call run_set(options, sets(i), findings(i), o, status)
+         if (is_over(o)) exit
       end do
    end subroutine run_sets
 
@@ -144,6 +186,8 @@ contains
       call listing_head(o%listing, layout, m, findings)
       if (options%check) return
       if (len(options%log) > 0) call protocol_head(o%log, m, options%errors)
+      call flush_all(options, o)
+      if (is_over(o)) return
       a = new_analysis(m)
       q = new_motion(size(m%links))
       samples = new_samples(m)
@@ -155,13 +199,15 @@ contains
          call take_samples(samples, m, a%engine%blocks, a%convergence%reciprocal_condition, q, options%errors, doubt)
          call listing_instant(o%listing, layout, m, q, k, doubt)
          if (len(options%csv) > 0) call csv_instant(o%csv, m, q, k, doubt)
-         if (len(options%log) == 0) cycle
-         if (options%errors) then
+         if (len(options%log) > 0 .and. options%errors) then
             call protocol_instant(o%log, k, q%t, a%convergence, a%branch, &
                largest_errors(m, doubt, q, samples%length, samples%rate))
-         else
+         else if (len(options%log) > 0) then
             call protocol_instant(o%log, k, q%t, a%convergence, a%branch)
          end if
+         if (.not. is_over(o)) cycle
+         call listing_broken_off(o%listing, m, k)
+         return
       end do
       call listing_end(o%listing, m, instant_count(m) - marked, marked, a%tally, redundancy_gap(a), &
          closing_remarks(a))

@@ -18,10 +18,10 @@ module listing
    use layout, only: layout_t, new_layout, name_length, row_length
    use phrases, only: phrase, say_program, say_set, say_title, say_data, say_results, say_phi, &
       say_end, say_solved, say_marked, say_no_position, say_no_rates, say_overflow, say_contradiction, &
-      say_unknown, say_branch, say_followed, say_passed, say_uncertain
+      say_unknown, say_branch, say_followed, say_passed, say_uncertain, say_broken_off
    implicit none
    private
-   public :: layout_t, new_layout, listing_head, listing_instant, listing_end
+   public :: layout_t, new_layout, listing_head, listing_instant, listing_end, listing_broken_off
 
 contains
 
@@ -228,4 +228,14 @@ contains
          //', '//phrase(say_marked, m%polish)//' '//whole(marked))
       call put(o, '')
    end subroutine listing_end
+
+   !> The line in the place of what follows instant number `step`, where a run ends before its time.
+   subroutine listing_broken_off(o, m, step)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: step
+
+      call put(o, '')
+      call put(o, ' *** '//phrase(say_broken_off, m%polish)//' '//whole(step))
+   end subroutine listing_broken_off
 end module listing

@@ -3,7 +3,9 @@ program main
    use, intrinsic :: iso_fortran_env, only: error_unit
    use, intrinsic :: iso_c_binding, only: c_int
    use kinds, only: wp_name
-   use failures, only: failure_t
+   use failures, only: failure_t, status_signal
+   use system_calls, only: occupy_standard_descriptors
+   use interrupts, only: end_by_signal
    use command_line, only: options_t, read_command, help_text
    use cards, only: ruler_card
    use job, only: run_job
@@ -25,11 +27,9 @@ program main
    character(:), allocatable :: message
    integer :: status
 
+   call occupy_standard_descriptors
    call read_command(options, failure)
-   if (allocated(failure)) then
-      write (error_unit, '(a)') ' *** '//failure%text
-      call leave(failure%status)
-   end if
+   if (allocated(failure)) call leave(failure%status, ' *** '//failure%text)
    if (command_argument_count() == 0) then
       if (isatty(0_c_int) /= 0) options%show = 'HELP'
    end if
@@ -48,8 +48,7 @@ program main
       else
          call run_job(options, status, message)
       end if
-      if (len(message) > 0) write (error_unit, '(a)') message
-      call leave(status)
+      call leave(status, message)
    end select
 
 contains
@@ -60,18 +59,22 @@ contains
       type(output_t) :: o
 
       call open_output(o, '', failure)
-      call put(o, text)
-      call close_output(o, failure)
-      if (.not. allocated(failure)) return
-      write (error_unit, '(a)') ' *** '//failure%text
-      call leave(failure%status)
+      if (.not. allocated(failure)) then
+         call put(o, text)
+         call close_output(o, failure)
+      end if
+      if (allocated(failure)) call leave(failure%status, ' *** '//failure%text)
    end subroutine show
 
-   !> Ends the process with an exit status and no word of its own.
-   subroutine leave(status)
+   !> Ends the process with an exit status, or by the signal that the status stands for; `message`: for standard error.
+   subroutine leave(status, message)
       integer, intent(in) :: status
+      character(*), intent(in) :: message
+      integer :: ignored
 
-      flush (error_unit)
+      if (len(message) > 0) write (error_unit, '(a)', iostat=ignored) message
+      flush (error_unit, iostat=ignored)
+      if (status > status_signal) call end_by_signal(status - status_signal)
       stop status, quiet=.true.
    end subroutine leave
 end program main

@@ -13,7 +13,7 @@ module phrases
       say_unknown, &
       say_way, say_too_long, say_branch, say_followed, say_passed, say_uncertain, say_other, &
       say_not_found, say_branch_from, say_no_change, say_here, say_idle, say_repeated, say_redundant_many, &
-      say_of_pair, say_method, say_elsewhere
+      say_of_pair, say_method, say_elsewhere, say_broken_off
 
    integer, parameter :: phrase_length = 72
 
@@ -30,9 +30,9 @@ module phrases
       say_way = 52, say_too_long = 53, say_branch = 54, say_followed = 55, say_passed = 56, &
       say_uncertain = 57, say_other = 58, say_not_found = 59, say_branch_from = 60, say_no_change = 61, &
       say_here = 62, say_idle = 63, say_repeated = 64, say_redundant_many = 65, say_of_pair = 66, &
-      say_method = 67, say_elsewhere = 68
+      say_method = 67, say_elsewhere = 68, say_broken_off = 69
 
-   character(phrase_length), parameter :: words(2, 68) = reshape([character(phrase_length) :: &
+   character(phrase_length), parameter :: words(2, 69) = reshape([character(phrase_length) :: &
       'KINEMATICS OF PLANAR MECHANISMS IN MATRIX FORMULATION', &
       'KINEMATYKA MECHANIZMOW PLASKICH W UJECIU MACIERZOWYM', &
       'SET OF COMPUTATIONS NO.', 'KOMPLET OBLICZEN NR', &
@@ -103,7 +103,8 @@ module phrases
       'REDUNDANT EQUATIONS', 'ROWNANIA NADLICZBOWE', &
       'OF PAIR', 'PARY', &
       'METHOD NEWTON FINDS A POSITION', 'METODA NEWTON ZNAJDUJE POLOZENIE', &
-      'THE ITERATION ENDS AT ANOTHER ASSEMBLY', 'ITERACJA KONCZY SIE W INNYM MONTAZU'], [2, 68])
+      'THE ITERATION ENDS AT ANOTHER ASSEMBLY', 'ITERACJA KONCZY SIE W INNYM MONTAZU', &
+      'THE RUN WAS BROKEN OFF AFTER INSTANT', 'OBLICZENIA PRZERWANO PO CHWILI'], [2, 69])
 
 contains
 

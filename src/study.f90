@@ -8,7 +8,8 @@ module study
    use structure, only: findings_t
    use deck, only: read_deck
    use job, only: check_structure
-   use text_output, only: output_t, open_output, put, close_output
+   use text_output, only: output_t, open_output, check_apart, put, flush_output, close_output, abandon_output, &
+      has_failed
    use numerals, only: whole
    use trial_forms, only: trial_t, outcome_t
    use trials, only: try, measure, can_be_timed
@@ -50,10 +51,14 @@ contains
       end if
       if (.not. allocated(failure)) call check_structure(sets, findings, failure)
       if (.not. allocated(failure)) call open_output(o, output, failure)
-      if (.not. allocated(failure)) then
+      if (.not. allocated(failure)) call check_apart([o], path, failure)
+      if (allocated(failure)) then
+         call abandon_output(o)
+      else
          do i = 1, size(sets)
             call study_set(o, path, sets(i), i, findings(i)%redundant > 0, failure)
-            if (allocated(failure)) exit
+            call flush_output(o)
+            if (allocated(failure) .or. has_failed(o)) exit
          end do
          if (.not. allocated(failure)) call close_output(o, failure)
       end if

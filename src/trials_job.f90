@@ -5,7 +5,7 @@ module trials_job
    use failures, only: failure_t, fail, status_solved, status_refused
    use mechanism, only: mechanism_t, instant_count
    use deck, only: read_deck
-   use text_output, only: output_t, open_output, close_output
+   use text_output, only: output_t, open_output, check_apart, close_output, abandon_output, has_failed
    use trial_forms, only: trial_t, outcome_t, read_trial
    use trial_records, only: put_record
    use trials, only: try, measure, can_be_timed
@@ -31,9 +31,13 @@ contains
       call read_deck(path, sets, message, failure)
       if (.not. allocated(failure)) call read_words(words, sets, list, failure)
       if (.not. allocated(failure)) call open_output(o, output, failure)
-      if (.not. allocated(failure)) then
+      if (.not. allocated(failure)) call check_apart([o], path, failure)
+      if (allocated(failure)) then
+         call abandon_output(o)
+      else
          do i = 1, size(list)
             call run_trial(sets(list(i)%set), list(i), o)
+            if (has_failed(o)) exit
          end do
          call close_output(o, failure)
       end if

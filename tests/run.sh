@@ -35,6 +35,7 @@ part 'make check' tests/check.sh
 part 'the documents' tests/documents.sh
 part 'estimates of errors' "$MAKE" --no-print-directory errors
 part 'the command' tests/command.sh
+part 'what is printed arrives' tests/output.sh
 part 'real128' "$MAKE" --no-print-directory quad-check
 part 'single precision' "$MAKE" --no-print-directory single-check
 part 'units of length' tests/units.sh

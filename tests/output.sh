@@ -1,0 +1,194 @@
+#!/bin/sh
+# What is printed arrives, or it is said that it does not: closed descriptors, one file under two names, writes that fail,
+# signals, broken pipes, decks that cannot be read.
+BUILD=${BUILD:-build}
+. tests/counting.sh
+
+case $BUILD in
+/*) kinmat=$BUILD/kinmat; debug=$BUILD/debug/kinmat ;;
+*) kinmat=$PWD/$BUILD/kinmat; debug=$PWD/$BUILD/debug/kinmat ;;
+esac
+home=$PWD
+rm -rf "$BUILD/output" && mkdir -p "$BUILD/output" && cd "$BUILD/output" || exit 3
+case $counts in /*) ;; *) counts=$home/$counts ;; esac
+case $BUILD in /*) ;; *) BUILD=$home/$BUILD ;; esac
+
+cp "$home/input/four_bar.deck" deck
+# A run of some minutes, whose listing is long.
+sed -e 's/^TIME    36  /TIME    9000000/' deck > long
+"$kinmat" deck --csv whole.csv --log whole.log > whole.lst
+
+# told NAME STATUS SENTENCE: the status before, and what is on standard error
+told() { equal "$1: status" "$2" "$3"; equal "$1: sentence" "$4" "$(cat err)"; }
+
+# Descriptors that are closed. What is printed goes nowhere else.
+"$kinmat" deck >&- 2> err
+told 'closed standard output' 3 $? ' *** STANDARD OUTPUT IS CLOSED'
+"$debug" deck >&- 2> err
+told 'closed standard output, debug build' 3 $? ' *** STANDARD OUTPUT IS CLOSED'
+"$kinmat" deck --csv new.csv --log new.log >&- 2> err
+told 'closed standard output, with --csv' 3 $? ' *** STANDARD OUTPUT IS CLOSED'
+equal 'closed standard output: no file is made' '' "$(ls new.* 2> /dev/null)"
+"$kinmat" deck > out 1< deck 2> err
+told 'standard output that is open for reading' 3 $? ' *** STANDARD OUTPUT IS CLOSED'
+"$kinmat" deck -o out --csv csv --log log >&- 2> err
+told 'closed standard output, -o' 0 $? ''
+"$kinmat" deck -o out.3 --csv csv.3 --log log.3 <&- >&- 2>&-
+equal 'all three closed: status' 0 $?
+for name in out out.3; do same "closed: listing $name" whole.lst $name; done
+for name in csv csv.3; do same "closed: csv $name" whole.csv $name; done
+for name in log log.3; do same "closed: log $name" whole.log $name; done
+"$kinmat" <&- > out 2> err
+told 'closed standard input' 3 $? ' *** STANDARD INPUT CANNOT BE READ (BAD FILE DESCRIPTOR)'
+"$kinmat" -o out <&- >&- 2> err
+told 'closed standard input and output' 3 $? ' *** STANDARD INPUT CANNOT BE READ (BAD FILE DESCRIPTOR)'
+"$kinmat" nothing --csv csv > out 2>&-
+equal 'closed standard error: status' 3 $?
+equal 'closed standard error: standard output' '' "$(cat out)"
+for option in --help --version --ruler; do
+   "$kinmat" $option >&- 2> err
+   told "$option, closed standard output" 3 $? ' *** STANDARD OUTPUT IS CLOSED'
+done
+
+# One file under two names: by its path, by links, under /dev/shm, through standard output. Nothing is made or emptied.
+twice=' *** ONE FILE IS NAMED FOR TWO OUTPUTS'
+ln -s target link
+"$kinmat" deck -o x1 --csv ./x1 2> err
+told 'a file that is not there, two paths' 1 $? "$twice"
+"$kinmat" deck --log ../output/x1 --csv "$PWD/x1" > out 2> err
+told 'a file that is not there, three paths' 1 $? "$twice"
+"$kinmat" deck -o link --csv target 2> err
+told 'a link to a file that is not there' 1 $? "$twice"
+"$kinmat" deck -o target --log link 2> err
+told 'a file that is not there, and a link to it' 1 $? "$twice"
+equal 'refused outputs are not made' '' "$(ls x1 target 2> /dev/null)"
+equal 'a link to a refused output stays' target "$(readlink link)"
+"$kinmat" deck -o x1 --csv /nonexistent/x 2> err
+told 'the second output cannot be opened' 3 $? ' *** FILE /nonexistent/x CANNOT BE OPENED FOR WRITING (NO SUCH FILE OR DIRECTORY)'
+equal 'the first output is not made then' '' "$(ls x1 2> /dev/null)"
+echo kept > old
+"$kinmat" deck -o old --csv /nonexistent/x 2> err
+equal 'nor emptied' kept "$(cat old)"
+ln old hard
+"$kinmat" deck -o old --csv hard 2> err
+told 'a hard link' 1 $? "$twice"
+equal 'a hard link: nothing is emptied' kept "$(cat old)"
+echo before > both
+"$kinmat" deck --csv both >> both 2> err
+told 'standard output is the CSV' 1 $? "$twice"
+equal 'standard output is the CSV: nothing is emptied' before "$(cat both)"
+"$kinmat" deck --csv /dev/stdout > both 2> err
+told 'the CSV by the name of standard output' 1 $? "$twice"
+"$kinmat" deck --csv /dev/stdout 2> err | cat > both
+equal 'a pipe may serve twice' 2 "$(grep -cE '^ END OF SET|^set,step' both | awk '{ print ($1 >= 2) ? 2 : $1 }')"
+
+# kept NAME SENTENCE: the deck is as it was, and that was said
+kept() { equal "$1: status" 1 "$status"; equal "$1: sentence" "$2" "$(cat err)"; same "$1: the deck" deck "$3"; }
+cp deck own; ln own own.hard; ln -s own own.link
+for option in -o --csv --log; do
+   for path in own own.hard own.link; do
+      "$kinmat" own $option $path > out 2> err; status=$?
+      kept "$option $path" ' *** THE DECK own WOULD BE OVERWRITTEN' own
+      "$kinmat" $option $path < own > out 2> err; status=$?
+      kept "$option $path, deck on standard input" ' *** THE DECK ON STANDARD INPUT WOULD BE OVERWRITTEN' own
+   done
+done
+"$kinmat" own >> own 2> err; status=$?
+kept 'standard output is the deck' ' *** THE DECK own WOULD BE OVERWRITTEN' own
+"$kinmat" < own >> own.hard 2> err; status=$?
+kept 'standard output is the deck on standard input' ' *** THE DECK ON STANDARD INPUT WOULD BE OVERWRITTEN' own
+"$kinmat" --study own -o own.hard > out 2> err; status=$?
+kept '--study' ' *** THE DECK own WOULD BE OVERWRITTEN' own
+"$kinmat" --trials 1/1/0.0/-1/F/8/8/1/0 own -o own.hard > out 2> err; status=$?
+kept '--trials' ' *** THE DECK own WOULD BE OVERWRITTEN' own
+if memory=$(mktemp /dev/shm/kinmat.XXXXXX 2> /dev/null); then
+   cp deck "$memory"
+   "$kinmat" "$memory" -o "$memory" > out 2> err; status=$?
+   kept 'a deck under /dev/shm' " *** THE DECK $memory WOULD BE OVERWRITTEN" "$memory"
+   rm -f "$memory"
+fi
+equal 'no file is left of all these' '' "$(ls x1 target new.* 2> /dev/null)"
+
+# A write that fails ends the run, in seconds not minutes; the other outputs end with whole lines.
+# short NAME COMMAND...: the command, which has 20 s
+short() { ran=$1; shift; timeout -k 1 20 env --default-signal=INT,TERM,PIPE "$@" 2> err; }
+# whole NAME FILE: ends with the end of a line
+whole() { equal "$1: ends with a whole line" '' "$(tail -c 1 "$2")"; }
+# columns FILE: lines of the CSV that are none
+columns() { equal "$1: whole lines" '' "$(awk -F, 'NF != 15' "$2")"; }
+if [ -w /dev/full ]; then
+   short 'full' "$kinmat" long > /dev/full
+   told 'a full disk' 3 $? ' *** WRITING STANDARD OUTPUT FAILED (NO SPACE LEFT ON DEVICE)'
+   for option in --csv --log; do
+      short 'full' "$kinmat" long -o out $option /dev/full
+      told "a full disk, $option" 3 $? ' *** WRITING /dev/full FAILED (NO SPACE LEFT ON DEVICE)'
+      whole "a full disk, $option" out
+   done
+fi
+# A limit on the size of files: after so many blocks of 512 bytes.
+(ulimit -f 400; exec timeout -k 1 20 "$kinmat" long -o limited --csv limited.csv 2> err)
+told 'a file that may not grow' 3 $? ' *** WRITING limited.csv FAILED (FILE TOO LARGE)'
+whole 'a file that may not grow: listing' limited
+equal 'a file that may not grow: the listing says so' 1 "$(tail -n 1 limited | grep -c '^ \*\*\* THE RUN WAS BROKEN OFF AFTER INSTANT [0-9]*$')"
+
+# A reader that goes: quietly, with the status of a broken pipe; a sentence where other outputs end with it, or where
+# a broken pipe is not to end a process.
+piped() { { short piped "$kinmat" long "$@"; echo $? > status; } | head -n 1 > out; told_pipe=$(cat status); }
+piped
+told 'kinmat | head' 141 "$told_pipe" ''
+piped --csv pipe.csv
+told 'kinmat --csv | head' 141 "$told_pipe" ' *** WRITING STANDARD OUTPUT FAILED (BROKEN PIPE)'
+whole 'kinmat --csv | head' pipe.csv
+columns 'kinmat --csv | head' pipe.csv
+{ (trap '' PIPE; exec timeout -k 1 20 "$kinmat" long 2> err); echo $? > status; } | head -n 1 > out
+told 'a broken pipe that is ignored' 3 "$(cat status)" ' *** WRITING STANDARD OUTPUT FAILED (BROKEN PIPE)'
+
+# SIGINT and SIGTERM: whole lines, a line that says so, the signal's status. In both languages.
+# stopped SIGNAL DECK: a run that has begun is sent the signal
+stopped() {
+   rm -f stop.lst
+   env --default-signal=INT,TERM "$kinmat" "$2" -o stop.lst --csv stop.csv --log stop.log 2> err &
+   pid=$!
+   waited=0
+   until [ -s stop.csv ] && [ "$(wc -l < stop.csv)" -gt 10 ] || [ $waited -ge 200 ]; do sleep 0.05; waited=$((waited + 1)); done
+   kill -"$1" $pid
+   # One that does not end is ended.
+   (sleep 20; kill -KILL $pid) > /dev/null 2>&1 &
+   killer=$!
+   wait $pid
+   status=$?
+   kill $killer 2> /dev/null
+}
+{ sed '/^LANG/d' long | awk '{ print } /^TITLE/ && !told { print "LANG    PL"; told = 1 }'; } > polish
+rm -f stop.*
+for one in 'INT 130 long' 'TERM 143 long' 'TERM 143 polish'; do
+   set -- $one
+   stopped "$1" "$3"
+   told "SIG$1, $3" "$2" $status ''
+   case $3 in polish) words='OBLICZENIA PRZERWANO PO CHWILI' ;; *) words='THE RUN WAS BROKEN OFF AFTER INSTANT' ;; esac
+   last=$(tail -n 1 stop.log | awk '{ print $1 }')
+   equal "SIG$1, $3: last line of the listing" " *** $words $last" "$(tail -n 1 stop.lst)"
+   equal "SIG$1, $3: the last instant of the CSV" "1,$last" "$(tail -n 1 stop.csv | cut -d, -f1,2)"
+   for name in lst csv log; do whole "SIG$1, $3: $name" stop.$name; done
+   columns "SIG$1, $3" stop.csv
+   rm -f stop.*
+done
+
+# Decks that cannot be read.
+"$kinmat" /proc/self/mem > out 2> err
+told 'a read error' 3 $? ' *** FILE /proc/self/mem CANNOT BE READ (INPUT/OUTPUT ERROR)'
+ln -s loop.a loop.b; ln -s loop.b loop.a
+"$kinmat" loop.a > out 2> err
+told 'links in a loop' 3 $? ' *** FILE loop.a CANNOT BE OPENED (TOO MANY LEVELS OF SYMBOLIC LINKS)'
+"$kinmat" deck -o loop.a > out 2> err
+told '-o, links in a loop' 3 $? ' *** FILE loop.a CANNOT BE OPENED FOR WRITING (TOO MANY LEVELS OF SYMBOLIC LINKS)'
+"$kinmat" deck/deck > out 2> err
+told 'a file in the place of a directory' 3 $? ' *** FILE deck/deck CANNOT BE OPENED (NOT A DIRECTORY)'
+# A deck that comes in pieces, with ends of lines of three kinds.
+{ head -c 100 deck; sleep 0.2; tail -c +101 deck; } | "$kinmat" > out
+same 'a deck in pieces' whole.lst out
+tr '\n' '\r' < deck > return.deck
+"$kinmat" return.deck > out
+same 'lines that end with a carriage return' whole.lst out
+cd "$home" || exit 3
+conclude
