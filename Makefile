@@ -8,6 +8,16 @@ endif
 KIND   ?= double
 BUILD  ?= build$(if $(filter-out double,$(KIND)),/$(KIND))
 PREFIX ?= /usr/local
+# The tools that tests use read, sort and print numbers with a point.
+export LC_ALL := C
+# GNU make takes a blank for the end of a name. A relative BUILD does whatever the path of this directory holds.
+ifneq ($(words $(BUILD)),1)
+   $(error BUILD='$(BUILD)' holds blanks, which make cannot have in names: give one without, or relative to this directory)
+endif
+# All processors, where the command says nothing of them; a make below another one shares what that has.
+ifeq ($(MAKELEVEL),0)
+   MAKEFLAGS += -j$(shell nproc 2> /dev/null || echo 1)
+endif
 LIBS   ?= -lklu $(if $(filter-out quad,$(KIND)),-llapack -lblas)
 
 # No flag here changes a result: no fast-math, no contraction into fused multiply-add.
@@ -76,6 +86,9 @@ $(BUILD)/kinmat-quad $(BUILD)/kinmat-single: $(BUILD)/kinmat-%: always
 	$(MAKE) --no-print-directory KIND=$* BUILD=$(BUILD)/$* $(BUILD)/$*/kinmat
 	cmp -s $(BUILD)/$*/kinmat $@ || cp $(BUILD)/$*/kinmat $@
 .PHONY: always
+
+$(BUILD)/quad/release/kind_errors $(BUILD)/single/release/kind_errors: $(BUILD)/%/release/kind_errors: $(BUILD)/kinmat-% always
+	$(MAKE) --no-print-directory KIND=$* BUILD=$(BUILD)/$* $@
 
 # Closed forms in real128 print the listings that the program must print, byte for byte.
 decks      := $(sort $(wildcard input/*.deck))
@@ -161,8 +174,10 @@ TEST_LIBS    := $(LIBS)
 TEST_HELPERS := $(unit_helpers:%=$(BUILD)/debug/%.o)
 include tests/tests.mk
 
-checkers := check_forms error_estimates compare_digits hard matrix_1987
-test: $(BUILD)/kinmat $(BUILD)/debug/kinmat $(checkers:%=$(BUILD)/release/%) $(BUILD)/fuzz/fuzz $(references) $(BUILD)/tests$(if $(PFUNIT_DIR),/pfunit)/unit
+# What the parts of `make test` need is made beforehand, many at a time; the parts run one after another.
+checkers := check_forms error_estimates compare_digits hard matrix_1987 bench
+test: $(addprefix $(BUILD)/,kinmat debug/kinmat $(checkers:%=release/%) fuzz/fuzz kinmat-quad kinmat-single \
+   quad/release/kind_errors single/release/kind_errors tests$(if $(PFUNIT_DIR),/pfunit)/unit) $(references)
 	BUILD=$(BUILD) MAKE='$(MAKE)' tests/run.sh
 
 install: $(BUILD)/kinmat

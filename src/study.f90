@@ -57,8 +57,9 @@ contains
       else
          do i = 1, size(sets)
             call study_set(o, path, sets(i), i, findings(i)%redundant > 0, failure)
+            if (allocated(failure)) exit
             call flush_output(o)
-            if (allocated(failure) .or. has_failed(o)) exit
+            if (has_failed(o)) exit
          end do
          if (.not. allocated(failure)) call close_output(o, failure)
       end if

@@ -1,4 +1,7 @@
-# To be sourced: counts checks and words what fails. The counts live in a file, since a check may end a pipe.
+# To be sourced: counts checks and words what fails. The counts live in a file, since a check may end a pipe. Numbers have
+# a point, whatever the user's language.
+LC_ALL=C
+export LC_ALL
 counts=$BUILD/counts.$(basename "$0" .sh)
 mkdir -p "$BUILD" && : > "$counts" || exit 3
 pass() { echo passed >> "$counts"; }

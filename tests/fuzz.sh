@@ -5,6 +5,7 @@
 #    tests/fuzz.sh COUNT [FIRST]     runs them
 #    tests/fuzz.sh --seed SEED       writes the deck of one seed to $BUILD/fuzz/SEED.deck and runs it alone
 #    tests/fuzz.sh --chunk FIRST LAST      what the two at a time are
+export LC_ALL=C
 BUILD=${BUILD:-build}
 driver=$BUILD/fuzz/fuzz
 chunk=${FUZZ_CHUNK:-500}

@@ -29,6 +29,16 @@ equal 'names that hide those of pFUnit' '' "$(awk '
    /^contains/ { inside = 1 }
    /(subroutine|function) (run|test|suite|initialize|finalize|throw) *[(]/ && !/^ *(!|end)/ { print FILENAME ":" FNR }
    !inside && /parameter ::.*[ ,]t = / { print FILENAME ":" FNR }' tests/test_*.pf)"
+# make in a directory whose name holds blanks; where it cannot be, it is said. Without the variables of the make above.
+plain_make() { env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL make --no-print-directory "$@"; }
+blanks="$BUILD/with a blank"
+rm -rf "$blanks"
+mkdir -p "$blanks" && cp -R Makefile src tests input "$blanks/" && chmod -R u+w "$blanks" || exit 3
+(cd "$blanks" && plain_make -s FC="${FC:-gfortran}" BUILD=built built/debug/cards.o) > "$BUILD/blanks.txt" 2>&1
+equal 'make below a directory with blanks: status' 0 $?
+equal 'make below a directory with blanks: its object' yes "$([ -s "$blanks/built/debug/cards.o" ] && echo yes)"
+equal 'a build directory with blanks is refused' 1 "$(plain_make -n BUILD="$PWD/a b" all 2>&1 | grep -c ' holds blanks')"
+rm -rf "$blanks"
 for file in $sources; do
    equal "$file: module of that name" "$(basename "${file%.?90}")" \
       "$(sed -n 's/^\(module\|program\) \([a-z_0-9]*\)$/\2/p' "$file" | head -n 1)"

@@ -23,14 +23,12 @@ for deck in input/*.deck; do
       { print }' "$deck" > "$BUILD/kind/$name.deck"
    "$BUILD/kinmat" --csv "$BUILD/kind/$name.csv" "$BUILD/kind/$name.deck" > "$BUILD/kind/$name.lst" 2> "$BUILD/kind/$name.err"
    status=$?
-   # By 24 bits it is not to be told which way leads on from the kite's change points, and from one of the antiparallelogram's:
-   # later instants are marked.
-   if [ "$KIND $name" = 'single kite_across' ] || [ "$KIND $name" = 'single kite_at' ] || \
-      [ "$KIND $name" = 'single parallelogram_branch' ]; then
-      equal "$name: exit status" 2 "$status"
-      rm "$BUILD/kind/$name.deck"
+   # Whether 24 bits tell which way leads on from a change point is a matter of the last bit: of the processor and of LAPACK.
+   # Where they do not, instants are marked; the results that there are must be right all the same (kind_errors).
+   case "$KIND $name" in 'single '*_across|'single '*_at|'single '*_branch)
+      equal "$name: exit status 0 or 2" yes "$(case $status in 0|2) echo yes ;; *) echo "$status" ;; esac)"
       continue
-   fi
+   esac
    # A gap of 1E-6 and less beside 4 is next to none in 24 bits.
    case "$KIND $name" in 'single dead_point'*)
       rm "$BUILD/kind/$name.deck"

@@ -190,5 +190,14 @@ same 'a deck in pieces' whole.lst out
 tr '\n' '\r' < deck > return.deck
 "$kinmat" return.deck > out
 same 'lines that end with a carriage return' whole.lst out
+# The language of the user changes no number and no word (where it is installed).
+for language in pl_PL.UTF-8 de_DE.UTF-8; do
+   LC_ALL=$language LANGUAGE=${language%%_*} "$kinmat" deck --errors --csv errors.csv > out 2> err
+   same "$language: listing" whole.lst out
+   cut -d, -f1-15 errors.csv > csv
+   same "$language: csv" whole.csv csv
+   LC_ALL=$language "$kinmat" nothing > out 2> err
+   told "$language: a refusal" 3 $? ' *** FILE nothing DOES NOT EXIST'
+done
 cd "$home" || exit 3
 conclude

@@ -18,6 +18,11 @@ part() {
       failed=$((failed + 1))
       return
    fi
+   if [ "$last" = '0 passed, 0 failed' ]; then
+      echo "FAILED: $name has looked at nothing"
+      failed=$((failed + 1))
+      return
+   fi
    set -- $last
    passed=$((passed + $1))
    failed=$((failed + $3))

@@ -51,10 +51,11 @@ unit_objects := $(unit_names:%=$(unit_build)/%.o)
 .PHONY: unit unit-build unit-stand-in unit-force
 unit-build: $(unit_build)/unit
 
+# The tests write their files where the program is: the sources may lie where nothing can be written.
 # The program's word is checked, not only its exit status: pFUnit before 4.13 ends with 0 after failures, and a program
 # that stops half-way may too. Every @test must have been run.
 unit: $(unit_build)/unit
-	@status=0; $(unit_build)/unit > $(unit_build)/unit.log 2>&1 || status=$$?; \
+	@status=0; (cd $(unit_build) && exec ./unit) > $(unit_build)/unit.log 2>&1 || status=$$?; \
 	expected=`cat $(TESTS) | grep -ci '^[[:blank:]]*@test[[:blank:]]*$$'`; \
 	awk -v status=$$status -v expected="$$expected" ' \
 	   { print } \
