@@ -4,7 +4,7 @@
 !> CLOSE, and takes a failed read for the end of a file.
 module system_calls
    use, intrinsic :: iso_c_binding, only: c_int, c_int16_t, c_int32_t, c_int64_t, c_long, c_size_t, c_char, c_ptr, &
-      c_null_char, c_f_pointer
+      c_null_char, c_f_pointer, c_associated
    implicit none
    private
    public :: identity_t, identity_of_path, identity_of_descriptor, same_file
@@ -193,7 +193,7 @@ contains
       integer(c_int) :: status
 
       place = realpath(path//c_null_char, resolved)
-      status = unlink(resolved(:index(resolved, c_null_char)))
+      if (c_associated(place)) status = unlink(resolved(:index(resolved, c_null_char)))
    end subroutine remove_file
 
    !> Standard input, output and error that are closed are opened so that reading or writing fails. The next file opened

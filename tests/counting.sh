@@ -1,7 +1,9 @@
 # To be sourced: counts checks and words what fails. The counts live in a file, since a check may end a pipe. Numbers have
 # a point, whatever the user's language.
 LC_ALL=C
-export LC_ALL
+# One thread for a BLAS that would take all, with room and time of its own for each.
+OPENBLAS_NUM_THREADS=1
+export LC_ALL OPENBLAS_NUM_THREADS
 counts=$BUILD/counts.$(basename "$0" .sh)
 mkdir -p "$BUILD" && : > "$counts" || exit 3
 pass() { echo passed >> "$counts"; }

@@ -161,8 +161,9 @@ stopped() {
 }
 { sed '/^LANG/d' long | awk '{ print } /^TITLE/ && !told { print "LANG    PL"; told = 1 }'; } > polish
 rm -f stop.*
-for one in 'INT 130 long' 'TERM 143 long' 'TERM 143 polish'; do
+for one in 'INT 130 long' 'TERM 143 long' 'TERM 143 polish' 'INT 130 polish debug'; do
    set -- $one
+   if [ -n "$4" ]; then kinmat=$debug; fi
    stopped "$1" "$3"
    told "SIG$1, $3" "$2" $status ''
    case $3 in polish) words='OBLICZENIA PRZERWANO PO CHWILI' ;; *) words='THE RUN WAS BROKEN OFF AFTER INSTANT' ;; esac
