@@ -445,7 +445,7 @@ unit good; status_is 0; last_line "$work/good.out" '6 passed, 0 failed'
 rm "$work/good/test_more.pf"
 unit good; status_is 0; last_line "$work/good.out" '3 passed, 0 failed'
 
-# A helper module comes before the tests, in parallel too.
+# Objects of helper modules, made elsewhere, are linked; their modules are found beside those under test.
 mkdir -p "$work/helped" && rm -rf "$work/helped/build"
 printf 'module first_helper\n   implicit none\n   integer, parameter :: one = 1\nend module first_helper\n' \
    > "$work/helped/first_helper.f90"
@@ -454,7 +454,10 @@ printf 'module another\n   use first_helper, only: one\n   implicit none\n   int
 printf '   @assertEqual(2, two)\n' | in_test |
    sed 's/test_wrong/test_helped/; s/use funit/use funit; use another/; /subroutine one$/s/one/two_is_two/' \
    > "$work/helped/test_helped.pf"
-unit helped -j4 TEST_HELPERS="$work/helped/first_helper.f90 $work/helped/another.f90"
+for helper in first_helper another; do
+   "${FC:-gfortran}" -J"$work/helped" -c -o "$work/helped/$helper.o" "$work/helped/$helper.f90" || miss "$helper does not compile"
+done
+unit helped -j4 TEST_HELPERS="$work/helped/first_helper.o $work/helped/another.o"
 status_is 0; last_line "$work/helped.out" '1 passed, 0 failed'
 
 # No test at all is no success.
