@@ -1,4 +1,4 @@
-!> Level 10. Where METHOD DENSE and METHOD MATRIX begin at the first instant: the deck's estimate as the blocks take it,
+!> Level 11. Where METHOD DENSE and METHOD MATRIX begin at the first instant: the deck's estimate as the blocks take it,
 !> and the assembly that the blocks find from there. So all methods mean the same assembly, and the same turns of its
 !> angles.
 module dense_start
@@ -8,7 +8,8 @@ module dense_start
    use convergence, only: convergence_t, is_solved
    use block_state, only: set_values
    use block_solver, only: solve_block
-   use block_engine, only: block_engine_t, new_block_engine, seek_blocks, tell_blocks
+   use block_engine, only: block_engine_t, new_block_engine, tell_blocks
+   use assembly_choice, only: seek_first
    implicit none
    private
    public :: by_blocks, find_start
@@ -45,7 +46,7 @@ contains
 
       q = new_motion(size(m%links))
       e = new_block_engine(m)
-      call seek_blocks(e, t, .false., c, correction, unused)
+      call seek_first(e, t, c, correction, unused)
       is_found = e%blocks%solvable .and. is_solved(c)
       assembly = estimate
       if (.not. e%blocks%solvable) return
