@@ -1,6 +1,7 @@
 !> Level 7. What can be said only at the END of a set: what is missing, what nothing uses, and whether
 !> every drive exists at every instant.
 module deck_checks
+   use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
    use mechanism, only: mechanism_t, term_t, instant, drive_angle, drive_x, drive_y, drive_relangle, &
                         term_power, term_table, request_point
@@ -114,8 +115,10 @@ contains
 
       call range_of_instants(set, first, last)
       if (term%kind == term_table) then
-         if (first < term%knots(1)) call complain_instant(draft, k, table_range, first, list)
-         if (last > term%knots(size(term%knots))) call complain_instant(draft, k, table_range, last, list)
+         ! As doubles: in real128 a double may lie its rounding outside.
+         if (real(first, dp) < real(term%knots(1), dp)) call complain_instant(draft, k, table_range, first, list)
+         if (real(last, dp) > real(term%knots(size(term%knots)), dp)) &
+            call complain_instant(draft, k, table_range, last, list)
       else if (term%kind == term_power) then
          associate (p => term%r(2))
             if (first < 0.0_wp .and. abs(p - anint(p)) > 0.0_wp) then

@@ -3,8 +3,11 @@
 !>
 !>     real  = [sign] digits-and-one-point [E|D [sign] digits]     with a point or an exponent, or both
 !>     whole = [sign] digits
+!>
+!> An exponent D makes the number that of double precision in every kind of reals, as in Fortran: 0.1D0 is the double
+!> nearest to 0.1, and programs in real64 and real128 that read it read the same number.
 module numbers
-   use, intrinsic :: iso_fortran_env, only: int64
+   use, intrinsic :: iso_fortran_env, only: int64, dp => real64
    use kinds, only: wp
    use letters, only: capitals
    implicit none
@@ -223,10 +226,14 @@ contains
       real(wp), intent(out) :: value
       integer(int64) :: mantissa
       integer :: i, power
+      real(dp) :: double
 
       power = literal%magnitude - literal%kept
       if (literal%kept == 0) then
          value = 0.0_wp
+      else if (scan(text, 'Dd') > 0 .and. abs(literal%magnitude) < range(double)) then
+         read (text, '(f80.0)') double
+         value = real(double, wp)
       else if (literal%kept <= exact_digits .and. abs(power) <= exact_power) then
          mantissa = 0_int64
          do i = 1, literal%kept
