@@ -15,7 +15,7 @@ module command_line
       logical :: check = .false.             !< read and analyse only
       logical :: errors = .false.            !< CSV and protocol tell how far each number is known
       logical :: study = .false.             !< speed against error, in the place of the listing
-      character(:), allocatable :: trials    !< what --study asks another kind of this program for; '' for nothing
+      logical :: time = .false.              !< the time of a step, in the place of the listing
       integer :: share = 1, shares = 1       !< the share-th of so many shares of the deck's sets
       !> What is printed instead of computing: 'HELP', 'VERSION', 'RULER' or ''.
       character(:), allocatable :: show
@@ -34,7 +34,7 @@ module command_line
       '  --sets K/N           the K-th of N shares of the sets of the deck', &
       '  --study              speed against error, in place of the listing', &
       '                       (needs kinmat-quad, kinmat-single: make kinds)', &
-      '  --trials WORDS       what --study asks these two for', &
+      '  --time               the time of a step, in place of the listing', &
       '  --ruler              prints an empty card with its columns', &
       '  --help, --version', &
       'Exit status: 0 every step solved; 1 deck or command refused;', &
@@ -65,7 +65,6 @@ contains
       options%output = ''
       options%csv = ''
       options%log = ''
-      options%trials = ''
       options%show = ''
       has_deck = .false.
       i = 1
@@ -83,8 +82,8 @@ contains
             options%errors = .true.
          case ('--study')
             options%study = .true.
-         case ('--trials')
-            call take_file(i, options%trials, failure)
+         case ('--time')
+            options%time = .true.
          case ('--check')
             options%check = .true.
          case ('--help', '-h')
@@ -101,19 +100,17 @@ contains
       if (.not. allocated(failure)) call check_study(options, failure)
    end subroutine read_command
 
-   !> A study prints no listing, and reads its deck more than once.
+   !> A study and times are no listing; a study reads its deck more than once.
    subroutine check_study(options, failure)
       type(options_t), intent(in) :: options
       type(failure_t), allocatable, intent(out) :: failure
 
-      if (.not. options%study .and. len(options%trials) == 0) return
-      if (len(options%show) > 0) return
-      if (options%study .and. len(options%trials) > 0) then
-         call fail(failure, status_refused, 'OPTION --study DOES NOT GO WITH --trials')
-      else if (len(options%csv) > 0 .or. len(options%log) > 0 .or. options%errors .or. options%check &
-         .or. options%shares > 1) then
-         call fail(failure, status_refused, 'OPTION --study GOES WITH NO OTHER OPTION BUT -o')
-      else if (len(options%deck) == 0 .or. options%deck == '/dev/stdin') then
+      if (.not. (options%study .or. options%time) .or. len(options%show) > 0) return
+      if (len(options%csv) > 0 .or. len(options%log) > 0 .or. options%errors .or. options%check &
+         .or. options%shares > 1 .or. (options%study .and. options%time)) then
+         call fail(failure, status_refused, 'OPTION '//trim(merge('--study', '--time ', options%study)) &
+            //' GOES WITH NO OTHER OPTION BUT -o')
+      else if (options%study .and. (len(options%deck) == 0 .or. options%deck == '/dev/stdin')) then
          call fail(failure, status_refused, 'OPTION --study NEEDS THE DECK AS A FILE')
       end if
    end subroutine check_study

@@ -3,8 +3,8 @@ module job
    use failures, only: failure_t, fail, status_solved, status_refused, status_marked, status_signal
    use mechanism, only: mechanism_t, instant_count, instant
    use motion, only: motion_t, new_motion, mark_none
-   use structure, only: findings_t, find_structure
-   use structure_faults, only: faults_text
+   use structure, only: findings_t
+   use structure_faults, only: check_structure
    use deck, only: read_deck
    use text_output, only: output_t, open_output, check_apart, flush_output, close_output, abandon_output, has_failed, &
       has_broken_pipe
@@ -19,15 +19,12 @@ module job
    use command_line, only: options_t
    implicit none
    private
-   public :: run_job, check_structure
+   public :: run_job
 
    !> The job's outputs; csv and log only where asked for.
    type :: outputs_t
       type(output_t) :: listing, csv, log
    end type outputs_t
-
-   !> Of so many sets it is told what is wrong with them.
-   integer, parameter :: most_sets = 10
 
 contains
 
@@ -72,29 +69,6 @@ contains
          if (len(options%csv) == 0 .and. len(options%log) == 0) message = ''
       end if
    end subroutine look_at_signals
-
-   !> Every link of every set can be found: `findings` (sets).
-   subroutine check_structure(sets, findings, failure)
-      type(mechanism_t), intent(in) :: sets(:)
-      type(findings_t), allocatable, intent(out) :: findings(:)
-      type(failure_t), allocatable, intent(out) :: failure
-      character(:), allocatable :: text, all_of_them
-      integer :: i, told
-
-      allocate (findings(size(sets)))
-      all_of_them = ''
-      told = 0
-      do i = 1, size(sets)
-         findings(i) = find_structure(sets(i))
-         text = faults_text(sets(i), findings(i), i)
-         if (len(text) == 0) cycle
-         if (told > 0) all_of_them = all_of_them//new_line('a')//' *** '
-         all_of_them = all_of_them//text
-         told = told + 1
-         if (told == most_sets) exit
-      end do
-      if (told > 0) call fail(failure, status_refused, all_of_them)
-   end subroutine check_structure
 
    subroutine open_all(options, o, failure)
       type(options_t), intent(in) :: options

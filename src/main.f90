@@ -10,7 +10,6 @@ program main
    use cards, only: ruler_card
    use job, only: run_job
    use study, only: run_study
-   use trials_job, only: run_trials
    use text_output, only: output_t, open_output, put, close_output
    implicit none
 
@@ -41,10 +40,8 @@ program main
    case ('RULER')
       call show(ruler_card())
    case default
-      if (options%study) then
-         call run_study(options%deck, options%output, status, message)
-      else if (len(options%trials) > 0) then
-         call run_trials(options%trials, options%deck, options%output, status, message)
+      if (options%study .or. options%time) then
+         call run_study(options%deck, options%output, options%time, status, message)
       else
          call run_job(options, status, message)
       end if

@@ -2,17 +2,44 @@
 module structure_faults
    use kinds, only: label_length
    use mechanism, only: mechanism_t, method_newton
-   use structure, only: findings_t, part_t
+   use failures, only: failure_t, fail, status_refused
+   use structure, only: findings_t, part_t, find_structure
    use numerals, only: whole
    use naming, only: drive_name, listed
    implicit none
    private
-   public :: faults_text
+   public :: check_structure, faults_text
 
    !> So many parts are told by name; of more, the number.
    integer, parameter :: most_parts = 20
 
+   !> Of so many sets it is told what is wrong with them.
+   integer, parameter :: max_sets = 10
+
 contains
+
+   !> Every link of every set can be found: `findings` (sets).
+   subroutine check_structure(sets, findings, failure)
+      type(mechanism_t), intent(in) :: sets(:)
+      type(findings_t), allocatable, intent(out) :: findings(:)
+      type(failure_t), allocatable, intent(out) :: failure
+      character(:), allocatable :: text, all_of_them
+      integer :: i, told
+
+      allocate (findings(size(sets)))
+      all_of_them = ''
+      told = 0
+      do i = 1, size(sets)
+         findings(i) = find_structure(sets(i))
+         text = faults_text(sets(i), findings(i), i)
+         if (len(text) == 0) cycle
+         if (told > 0) all_of_them = all_of_them//new_line('a')//' *** '
+         all_of_them = all_of_them//text
+         told = told + 1
+         if (told == max_sets) exit
+      end do
+      if (told > 0) call fail(failure, status_refused, all_of_them)
+   end subroutine check_structure
 
    !> A line for each fault of set number `set`, joined by new_line('a'); '' where there is none.
    function faults_text(m, f, set) result(text)

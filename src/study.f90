@@ -1,39 +1,38 @@
 !> Level 20. Speed against error (--study): every way of solving a deck is timed and compared with the truth, the
-!> motion by the same program in real128.
+!> motion by the same program in real128. The time alone (--time), in any kind.
 module study
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
-   use failures, only: failure_t, fail, status_solved, status_refused
-   use mechanism, only: mechanism_t
+   use failures, only: failure_t, fail, status_solved, status_refused, status_marked
+   use mechanism, only: mechanism_t, instant_count, instant
    use structure, only: findings_t
+   use structure_faults, only: check_structure
    use deck, only: read_deck
-   use job, only: check_structure
    use text_output, only: output_t, open_output, check_apart, put, flush_output, close_output, abandon_output, &
       has_failed
    use numerals, only: whole
-   use trial_forms, only: trial_t, outcome_t
-   use trials, only: try, measure, can_be_timed
-   use kin, only: ask_kin
+   use timing, only: median
+   use trials, only: outcome_t, kind_single, kind_double, kind_quad, repeats, trial_mechanism, &
+      trial_instants, march, can_be_timed, step_time
+   use companion, only: ask_companion
    use true_errors, only: truth_t, new_truth, errors_of
-   use study_plan, only: plan_t, way_t, new_plan, plan_ways, truth_trial, default_trial, kind_single, kind_double, &
-      kind_quad, section_tolerance, section_kinds
-   use study_head, only: put_head, put_refusal
-   use study_table, only: row_t, put_section, put_row, put_cheapest
+   use study_plan, only: plan_t, new_plan, plan_trials, truth_trial
+   use study_table, only: row_t, new_rows, put_head, put_refusal, put_rows
    use study_estimates, only: put_estimates
    implicit none
    private
    public :: run_study
 
-   integer, parameter :: digits_double = 53, digits_quad = 113, digits_single = 24
-   !> What the truth can tell at best, and how far below an error its own must be.
-   real(dp), parameter :: best = 1.0e-30_dp, margin = 10.0_dp
+   integer, parameter :: digits_double = 53
+   real(dp), parameter :: micro = 1.0e6_dp
 
 contains
 
-   !> The study of the deck in the file `path`, to `output`, '' for standard output. `message`: lines for standard
-   !> error, '' for none.
-   subroutine run_study(path, output, status, message)
+   !> The study of the deck in the file `path`, to `output`, '' for standard output; with `only_times` the time of a
+   !> step of each set, of the deck '' on standard input too. `message`: lines for standard error, '' for none.
+   subroutine run_study(path, output, only_times, status, message)
       character(*), intent(in) :: path, output
+      logical, intent(in) :: only_times
       integer, intent(out) :: status
       character(:), allocatable, intent(out) :: message
       type(mechanism_t), allocatable :: sets(:)
@@ -44,7 +43,7 @@ contains
 
       status = status_solved
       message = ''
-      if (digits(1.0_wp) /= digits_double) then
+      if (digits(1.0_wp) /= digits_double .and. .not. only_times) then
          call fail(failure, status_refused, '--study IS FOR kinmat IN REAL64, WHICH ASKS THIS PROGRAM FOR ITS PART')
       else
          call read_deck(path, sets, message, failure)
@@ -55,8 +54,13 @@ contains
       if (allocated(failure)) then
          call abandon_output(o)
       else
+         if (only_times) call put(o, '  SET     STEPS ITERATIONS   MEDIAN US/STEP            MIN            MAX')
          do i = 1, size(sets)
-            call study_set(o, path, sets(i), i, findings(i)%redundant > 0, failure)
+            if (only_times) then
+               call put_times(o, sets(i), status)
+            else
+               call study_set(o, path, sets(i), findings(i)%redundant > 0, failure)
+            end if
             if (allocated(failure)) exit
             call flush_output(o)
             if (has_failed(o)) exit
@@ -68,167 +72,124 @@ contains
       if (len(message) == 0) message = ' *** '//failure%text
    end subroutine run_study
 
-   subroutine study_set(o, path, m, set, redundant, failure)
+   !> Iterations and time of a step of `m`, as the deck asks for it. `status`: status_marked where a position is not
+   !> found.
+   subroutine put_times(o, m, status)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      integer, intent(inout) :: status
+      real(wp) :: instants(0:instant_count(m) - 1)
+      type(outcome_t) :: one
+      real(dp) :: seconds, time(repeats)
+      character(80) :: line
+      integer :: k, last
+
+      last = ubound(instants, 1)
+      instants = [(instant(m, k), k=0, last)]
+      call march(m, instants, last + 1, one, seconds)
+      write (line, '(i5, i10, f11.2)') m%set_number, last, one%iterations
+      if (can_be_timed(one, last)) then
+         do k = 1, repeats
+            time(k) = step_time(m, instants, seconds)*micro
+         end do
+         write (line(27:), '(3f15.4)') median(time), minval(time), maxval(time)
+      else if (.not. one%found) then
+         line(27:) = '   NOT TIMED: A POSITION IS NOT FOUND'
+         status = status_marked
+      else
+         line(27:) = '   NOT TIMED: ONE INSTANT'
+      end if
+      call put(o, trim(line))
+   end subroutine put_times
+
+   !> The study of `m`, a set of the deck in the file `path`; `redundant`: it has equations too many.
+   subroutine study_set(o, path, m, redundant, failure)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: path
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: set
       logical, intent(in) :: redundant
       type(failure_t), allocatable, intent(out) :: failure
       type(plan_t) :: p
-      type(way_t), allocatable :: ways(:)
       type(row_t), allocatable :: rows(:)
       type(truth_t) :: truth
-      real(dp) :: finest(0:2)
+      type(outcome_t), allocatable :: outcomes(:)
 
-      p = new_plan(m, set, redundant)
-      if (set > 1) call put(o, '')
-      call put(o, ' SPEED AGAINST ERROR   SET '//whole(set)//'   '//trim(m%title))
+      p = new_plan(m, redundant)
+      if (m%set_number > 1) call put(o, '')
+      call put(o, ' SPEED AGAINST ERROR   SET '//whole(m%set_number)//'   '//trim(m%title))
       if (.not. p%possible .or. p%last == 0) then
          call put_refusal(o, p)
          return
       end if
-      ways = plan_ways(p)
-      allocate (rows(size(ways)))
-      rows%way = ways
-      call ask_quad(path, m, p, truth, rows, failure)
-      if (.not. allocated(failure)) call ask_single(path, m, truth, rows, failure)
+      rows = new_rows(plan_trials(p))
+      call ask_companion('kinmat-quad', 'REAL128', path, m, [truth_trial(p)], .false., outcomes, failure)
       if (allocated(failure)) return
+      truth = new_truth(m, truth_trial(p), outcomes(1))
       call put_head(o, m, p, truth)
       if (.not. any(truth%motion%known == 2)) return
-      call try_all(m, truth, rows)
-      finest = max(best, margin*truth_doubt(rows))
-      call put_rows(o, p, rows, finest)
+      call ask('kinmat-quad', 'REAL128', kind_quad)
+      if (.not. allocated(failure)) call ask('kinmat-single', 'REAL32', kind_single)
+      if (allocated(failure)) return
+      call solve_rows(m, truth, rows)
+      call put_rows(o, p, rows)
       call put_estimates(o, m, p, truth)
+
+   contains
+
+      !> The rows of one kind, by its program. For kinmat-single a deck of which it cannot read the numbers is none.
+      subroutine ask(program, kind_name, kind)
+         character(*), intent(in) :: program, kind_name
+         integer, intent(in) :: kind
+         integer, allocatable :: chosen(:)
+         integer :: i
+
+         chosen = pack([(i, i=1, size(rows))], rows%trial%kind == kind)
+         call ask_companion(program, kind_name, path, m, rows(chosen)%trial, .true., outcomes, failure)
+         if (allocated(failure)) then
+            if (kind == kind_single .and. failure%status == status_refused) deallocate (failure)
+            return
+         end if
+         do i = 1, size(chosen)
+            call take_outcome(m, truth, outcomes(i), rows(chosen(i)))
+         end do
+      end subroutine ask
    end subroutine study_set
 
-   !> The truth, and the rows in real128.
-   subroutine ask_quad(path, m, p, truth, rows, failure)
-      character(*), intent(in) :: path
-      type(mechanism_t), intent(in) :: m
-      type(plan_t), intent(in) :: p
-      type(truth_t), intent(out) :: truth
-      type(row_t), intent(inout) :: rows(:)
-      type(failure_t), allocatable, intent(out) :: failure
-      type(trial_t), allocatable :: list(:)
-      type(outcome_t), allocatable :: outcomes(:)
-      integer :: i
-
-      list = [truth_trial(p), pack(rows%way%trial, rows%way%kind == kind_quad)]
-      call ask_kin('kinmat-quad', digits_quad, path, list, [(size(m%links), i=1, size(list))], outcomes, failure)
-      if (allocated(failure)) return
-      truth = new_truth(m, list(1), outcomes(1))
-      call take_outcomes(m, truth, kind_quad, outcomes(2:), rows)
-   end subroutine ask_quad
-
-   !> The rows in single precision; a deck of which it cannot read the numbers is none for it.
-   subroutine ask_single(path, m, truth, rows, failure)
-      character(*), intent(in) :: path
+   subroutine take_outcome(m, truth, one, row)
       type(mechanism_t), intent(in) :: m
       type(truth_t), intent(in) :: truth
-      type(row_t), intent(inout) :: rows(:)
-      type(failure_t), allocatable, intent(out) :: failure
-      type(trial_t), allocatable :: list(:)
-      type(outcome_t), allocatable :: outcomes(:)
-      integer :: i
+      type(outcome_t), intent(in) :: one
+      type(row_t), intent(inout) :: row
 
-      list = pack(rows%way%trial, rows%way%kind == kind_single)
-      call ask_kin('kinmat-single', digits_single, path, list, [(size(m%links), i=1, size(list))], outcomes, failure)
-      if (.not. allocated(failure)) then
-         call take_outcomes(m, truth, kind_single, outcomes, rows)
-      else if (failure%status == status_refused) then
-         deallocate (failure)
-         do i = 1, size(rows)
-            if (rows(i)%way%kind == kind_single) allocate (rows(i)%time(0))
-         end do
-      end if
-   end subroutine ask_single
-
-   !> Fills the rows of one kind, in their order.
-   subroutine take_outcomes(m, truth, kind, outcomes, rows)
-      type(mechanism_t), intent(in) :: m
-      type(truth_t), intent(in) :: truth
-      integer, intent(in) :: kind
-      type(outcome_t), intent(in) :: outcomes(:)
-      type(row_t), intent(inout) :: rows(:)
-      integer :: i, k
-
-      k = 0
-      do i = 1, size(rows)
-         if (rows(i)%way%kind /= kind) cycle
-         k = k + 1
-         rows(i)%errors = errors_of(truth, m, rows(i)%way%trial, outcomes(k))
-         rows(i)%iterations = outcomes(k)%iterations
-         rows(i)%time = outcomes(k)%time
-      end do
-   end subroutine take_outcomes
+      row%errors = errors_of(truth, m, row%trial, one)
+      row%iterations = one%iterations
+      if (allocated(one%time)) row%time = one%time
+   end subroutine take_outcome
 
    !> The rows in double precision. What is measured is measured in turn, repeat by repeat.
-   subroutine try_all(m, truth, rows)
+   subroutine solve_rows(m, truth, rows)
       type(mechanism_t), intent(in) :: m
       type(truth_t), intent(in) :: truth
       type(row_t), intent(inout) :: rows(:)
       type(outcome_t) :: one
-      real(dp) :: whole_time(size(rows))
+      real(dp) :: seconds(size(rows))
       integer :: i, k
 
       do i = 1, size(rows)
-         if (rows(i)%way%kind /= kind_double) cycle
-         associate (t => rows(i)%way%trial)
-            call try(m, t, one, whole_time(i))
-            rows(i)%errors = errors_of(truth, m, t, one)
-            rows(i)%iterations = one%iterations
-            allocate (rows(i)%time(merge(t%repeats, 0, can_be_timed(t, one))))
+         associate (t => rows(i)%trial)
+            if (t%kind /= kind_double) cycle
+            call march(trial_mechanism(m, t), real(trial_instants(m, t), wp), t%stride, one, seconds(i))
+            call take_outcome(m, truth, one, rows(i))
+            rows(i)%time = spread(0.0_dp, 1, merge(repeats, 0, can_be_timed(one, t%last)))
          end associate
       end do
-      do k = 1, maxval(rows%way%trial%repeats)
+      do k = 1, repeats
          do i = 1, size(rows)
-            if (rows(i)%way%kind /= kind_double) cycle
-            if (k <= size(rows(i)%time)) rows(i)%time(k) = measure(m, rows(i)%way%trial, whole_time(i))
+            associate (t => rows(i)%trial)
+               if (t%kind == kind_double .and. k <= size(rows(i)%time)) rows(i)%time(k) = &
+                  step_time(trial_mechanism(m, t), real(trial_instants(m, t), wp), seconds(i))
+            end associate
          end do
       end do
-   end subroutine try_all
-
-   !> What two marches in real128 differ by (0:2), to the limit of rounding.
-   pure function truth_doubt(rows) result(doubt)
-      type(row_t), intent(in) :: rows(:)
-      real(dp) :: doubt(0:2)
-      integer :: i
-
-      doubt = 0.0_dp
-      do i = 1, size(rows)
-         if (rows(i)%way%kind /= kind_quad .or. rows(i)%way%trial%tolerance > 0.0_dp) cycle
-         if (rows(i)%errors%compared > 0) doubt = max(doubt, rows(i)%errors%most)
-      end do
-   end function truth_doubt
-
-   subroutine put_rows(o, p, rows, finest)
-      type(output_t), intent(inout) :: o
-      type(plan_t), intent(in) :: p
-      type(row_t), intent(in) :: rows(:)
-      real(dp), intent(in) :: finest(0:2)
-      character(*), parameter :: titles(4) = [character(20) :: '1  TOLERANCE', '2  NUMBER OF STEPS', &
-         '3  START OF A STEP', '4  PRECISION']
-      type(trial_t) :: t
-      real(dp), allocatable :: standard(:)
-      integer :: i, section
-
-      t = default_trial(p)
-      allocate (standard(0))
-      do i = size(rows), 1, -1
-         associate (w => rows(i)%way)
-            if (w%section == section_kinds .and. w%kind == kind_double .and. w%trial%method == t%method) &
-               standard = rows(i)%time
-         end associate
-      end do
-      do section = section_tolerance, section_kinds
-         if (.not. any(rows%way%section == section)) cycle
-         call put_section(o, trim(titles(section)))
-         do i = 1, size(rows)
-            if (rows(i)%way%section == section) call put_row(o, rows(i), standard, finest)
-         end do
-      end do
-      call put_cheapest(o, rows, p%last, standard)
-      if (p%finer > 1) call put_cheapest(o, rows, p%last*p%finer, standard)
-   end subroutine put_rows
+   end subroutine solve_rows
 end module study

@@ -10,8 +10,7 @@ module study_estimates
    use known_digits, only: nothing_known
    use text_output, only: output_t, put
    use numerals, only: whole
-   use trial_forms, only: trial_t
-   use trials, only: tried, instant_of
+   use trials, only: trial_t, trial_mechanism, trial_instants
    use true_errors, only: truth_t, true_sample, differences
    use study_plan, only: plan_t, default_trial
    implicit none
@@ -19,15 +18,15 @@ module study_estimates
    public :: put_estimates
 
    !> Instants at which errors are estimated, about.
-   integer, parameter :: enough = 40
+   integer, parameter :: max_compared = 40
 
    !> (position, velocity, acceleration)
-   type :: tally_t
-      real(dp) :: true(0:2) = 0.0_dp, told(0:2) = 0.0_dp   !< the largest
-      real(dp) :: logarithms(0:2) = 0.0_dp                 !< of told over true, summed up
-      real(dp) :: least(0:2) = huge(1.0_dp)                !< told over true
-      integer :: instants = 0, open = 0
-   end type tally_t
+   type :: comparison_t
+      real(dp) :: true(0:2) = 0.0_dp, estimate(0:2) = 0.0_dp !< the largest
+      real(dp) :: logarithms(0:2) = 0.0_dp                   !< of the ratio, estimate over true, summed up
+      real(dp) :: min_ratio(0:2) = huge(1.0_dp)
+      integer :: instants = 0, unknown = 0
+   end type comparison_t
 
 contains
 
@@ -38,84 +37,87 @@ contains
       type(plan_t), intent(in) :: p
       type(truth_t), intent(in) :: truth
       real(dp), parameter :: tolerances(4) = [1.0e-2_dp, 1.0e-4_dp, 1.0e-8_dp, 0.0_dp]
-      type(tally_t) :: tally
+      type(comparison_t) :: c
       type(trial_t) :: t
       character(120) :: line
       integer :: i, k
 
       call put(o, '')
-      call put(o, ' WHAT --errors TELLS, AGAINST THE TRUE ERROR: blocks, the deck''s steps; of each instant the')
-      call put(o, ' largest number, in the characteristic length and rate. TRUE, TOLD: the largest of all')
-      call put(o, ' instants; LEAST, MEAN: told over true')
+      call put(o, ' ERROR ESTIMATES OF --errors AGAINST THE TRUE ERRORS: BLOCKS, at the deck''s steps; of each')
+      call put(o, ' instant the largest number, in the characteristic length and rate. TRUE, ESTIM: the largest')
+      call put(o, ' of all instants; MIN, MEAN: of the estimate over the true error')
       call put(o, '')
       call put(o, ' TOLERANCE INSTANTS   POSITION'//repeat(' ', 24)//'VELOCITY'//repeat(' ', 24)//'ACCELERATION')
-      call put(o, repeat(' ', 19)//repeat('    TRUE    TOLD   LEAST    MEAN', 3))
+      call put(o, repeat(' ', 19)//repeat('    TRUE   ESTIM     MIN    MEAN', 3))
       do i = 1, size(tolerances)
          t = default_trial(p)
          t%tolerance = tolerances(i)
-         call compare(m, t, truth, tally)
-         write (line, '(es10.0, i9)') tolerances(i), tally%instants
+         call compare(m, t, truth, c)
+         write (line, '(es10.0, i9)') tolerances(i), c%instants
          if (.not. tolerances(i) > 0.0_dp) line(:10) = '  ROUNDING'
-         if (tally%instants > 0) then
+         if (c%instants > 0) then
             do k = 0, 2
-               write (line(20 + 32*k:), '(4es8.1)') tally%true(k), tally%told(k), tally%least(k), &
-                  exp(tally%logarithms(k)/tally%instants)
+               write (line(20 + 32*k:), '(4es8.1)') c%true(k), c%estimate(k), c%min_ratio(k), &
+                  exp(c%logarithms(k)/c%instants)
             end do
          end if
          call put(o, trim(line))
-         if (tally%open > 0) call put(o, '    TOLD TO BE WITHOUT A KNOWN DIGIT: '//whole(tally%open)//' INSTANTS')
+         if (c%unknown > 0) call put(o, '    ESTIMATED TO BE WITHOUT A KNOWN DIGIT: '//whole(c%unknown)//' INSTANTS')
       end do
    end subroutine put_estimates
 
-   subroutine compare(m, t, truth, tally)
+   subroutine compare(m, t, truth, c)
       type(mechanism_t), intent(in) :: m
       type(trial_t), intent(in) :: t
       type(truth_t), intent(in) :: truth
-      type(tally_t), intent(out) :: tally
+      type(comparison_t), intent(out) :: c
       type(mechanism_t) :: one
       type(analysis_t) :: a
       type(motion_t) :: q
       type(samples_t) :: samples
       type(scatter_t) :: doubt
+      real(wp) :: instants(0:t%last)
       integer :: k, there, every
 
-      one = tried(m, t)
+      one = trial_mechanism(m, t)
+      instants = real(trial_instants(m, t), wp)
       a = new_analysis(one)
       q = new_motion(size(m%links))
       samples = new_samples(one)
-      every = t%stride*max(1, (t%last/t%stride)/enough)
+      every = t%stride*max(1, (t%last/t%stride)/max_compared)
       do k = 0, t%last
-         call advance(a, real(instant_of(m, t, k), wp), q)
+         call advance(a, instants(k), q)
          if (mod(k, every) /= 0 .or. q%known < 2) cycle
          there = true_sample(truth, t, k)
          if (truth%motion%known(there) < 2) cycle
          call take_samples(samples, one, a%engine%blocks, a%convergence%reciprocal_condition, q, &
             .true., doubt)
-         call add_instant(truth, there, q, largest_errors(one, doubt, q, samples%length, samples%rate), tally)
+         call add_instant(truth, there, q, largest_errors(one, doubt, q, samples%length, samples%rate), c)
       end do
    end subroutine compare
 
-   subroutine add_instant(truth, there, q, told, tally)
+   !> Counts the errors of `q` and their `estimate` (0:2), at sample `there` of the truth.
+   subroutine add_instant(truth, there, q, estimate, c)
       type(truth_t), intent(in) :: truth
       integer, intent(in) :: there
       type(motion_t), intent(in) :: q
-      real(wp), intent(in) :: told(0:2)
-      type(tally_t), intent(inout) :: tally
+      real(wp), intent(in) :: estimate(0:2)
+      type(comparison_t), intent(inout) :: c
       real(dp) :: true(0:2), ratio(0:2)
 
-      if (any(told >= nothing_known)) then
-         tally%open = tally%open + 1
+      if (any(estimate >= nothing_known)) then
+         c%unknown = c%unknown + 1
          return
       end if
       true = [maxval(differences(truth, there, 0, real(q%position, qp))), &
          maxval(differences(truth, there, 1, real(q%velocity, qp))), &
          maxval(differences(truth, there, 2, real(q%acceleration, qp)))]
       ! By chance an error may be small: one below a rounding counts as that.
-      ratio = real(told, dp)/max(true, real(epsilon(1.0_wp), dp))
-      tally%instants = tally%instants + 1
-      tally%true = max(tally%true, true)
-      tally%told = max(tally%told, real(told, dp))
-      tally%least = min(tally%least, ratio)
-      tally%logarithms = tally%logarithms + log(max(ratio, tiny(1.0_dp)))
+      ratio = real(estimate, dp)/max(true, real(epsilon(1.0_wp), dp))
+      c%instants = c%instants + 1
+      c%true = max(c%true, true)
+      c%estimate = max(c%estimate, real(estimate, dp))
+      c%min_ratio = min(c%min_ratio, ratio)
+      c%logarithms = c%logarithms + log(max(ratio, tiny(1.0_dp)))
    end subroutine add_instant
 end module study_estimates

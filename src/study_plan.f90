@@ -1,31 +1,28 @@
-!> Level 10. What --study tries on one set of computations: how many steps, which instants are compared, which ways.
+!> Level 18. What --study tries on one set of computations: how many steps, which instants are compared, which trials.
 module study_plan
    use, intrinsic :: iso_fortran_env, only: dp => real64, int64
    use kinds, only: wp
    use mechanism, only: mechanism_t, instant_count, method_newton, method_dense, method_matrix, own_predictor
    use block_engine, only: block_engine_t, new_block_engine
-   use trial_forms, only: trial_t
+   use trials, only: trial_t, kind_single, kind_double, kind_quad
    implicit none
    private
-   public :: plan_t, way_t, new_plan, plan_ways, truth_trial, default_trial
-   public :: kind_single, kind_double, kind_quad
+   public :: plan_t, new_plan, plan_trials, truth_trial, default_trial
    public :: section_tolerance, section_steps, section_predictor, section_kinds
 
-   integer, parameter :: kind_single = 1, kind_double = 2, kind_quad = 3
    integer, parameter :: section_tolerance = 1, section_steps = 2, section_predictor = 3, section_kinds = 4
 
    !> Coordinates of links at instants: of so many the truth is kept, of so many a finer march is made, so many are
    !> solved at all.
-   integer, parameter :: most_kept = 50000, most_fine = 60000, most_solved = 1000000
-   !> Equations that are solved all at once.
-   integer, parameter :: most_equations = 130
+   integer, parameter :: max_kept = 50000, max_fine = 60000, max_solved = 1000000
+   !> Equations that are solved all at once; by real128 too.
+   integer, parameter :: max_equations = 130, max_quad_equations = 39
    !> Microseconds of real128: all, a link, and the cube of a block's width.
-   real(dp), parameter :: most_time = 1.5e7_dp, link_time = 20.0_dp, cube_time = 0.2_dp
-   integer, parameter :: fewest_truths = 4
-   integer, parameter :: times = 9
+   real(dp), parameter :: max_time = 1.5e7_dp, link_time = 20.0_dp, cube_time = 0.2_dp
+   integer, parameter :: min_truths = 4
 
    type :: plan_t
-      integer :: set = 1, steps = 0, last = 0    !< of the deck; 0 steps: those between the instants of its AT cards
+      integer :: steps = 0, last = 0             !< of the deck; 0 steps: those between the instants of its AT cards
       integer :: finer = 1                       !< the finest march makes so many steps of one
       integer :: coarser = 1                     !< the coarsest makes one of so many
       integer :: skip = 1                        !< of the finest steps, those that are compared
@@ -36,40 +33,33 @@ module study_plan
       logical :: has_dense = .true.              !< all equations at once are not too many
    end type plan_t
 
-   type :: way_t
-      integer :: section = 0, kind = kind_double
-      type(trial_t) :: trial
-   end type way_t
-
 contains
 
-   !> The plan of set `set`; `redundant`: it has equations too many.
-   function new_plan(m, set, redundant) result(p)
+   !> The plan of `m`; `redundant`: it has equations too many.
+   function new_plan(m, redundant) result(p)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: set
       logical, intent(in) :: redundant
       type(plan_t) :: p
       integer :: links
 
       links = size(m%links)
-      p%set = set
       p%equations = 3*count(.not. m%links%ground)
       p%redundant = redundant
-      p%has_dense = p%equations <= most_equations .and. .not. redundant
+      p%has_dense = p%equations <= max_equations .and. .not. redundant
       if (m%steps > 0) then
          p%steps = m%steps
-         p%last = min(m%steps, max(8, most_solved/links))
+         p%last = min(m%steps, max(8, max_solved/links))
       else
-         p%last = min(instant_count(m) - 1, max(8, most_solved/links))
+         p%last = min(instant_count(m) - 1, max(8, max_solved/links))
       end if
       if (p%last < p%steps) p%last = p%last - mod(p%last, 4)
       call limit_truth(m, p)
       if (p%steps == 0) return
       if (mod(p%steps, 4) == 0 .and. mod(p%last, 4) == 0 .and. p%last >= 8) p%coarser = 4
-      do while (p%finer < 16 .and. int(4*p%finer, int64)*p%last*links <= most_fine)
+      do while (p%finer < 16 .and. int(4*p%finer, int64)*p%last*links <= max_fine)
          p%finer = 4*p%finer
       end do
-      do while (mod(p%steps*p%finer, 2*p%skip) == 0 .and. int(p%last, int64)*p%finer/p%skip*links > most_kept)
+      do while (mod(p%steps*p%finer, 2*p%skip) == 0 .and. int(p%last, int64)*p%finer/p%skip*links > max_kept)
          p%skip = 2*p%skip
       end do
    end function new_plan
@@ -80,7 +70,7 @@ contains
       type(plan_t), intent(inout) :: p
       type(block_engine_t) :: e
       real(dp) :: time
-      integer :: i, most
+      integer :: i, possible
 
       e = new_block_engine(m)
       time = link_time*size(m%links)
@@ -90,17 +80,17 @@ contains
             time = time + cube_time*real(n, dp)**3
          end associate
       end do
-      most = int(min(most_time/time, 1.0e9_dp))
-      p%possible = most >= fewest_truths
-      if (most >= 16) most = most - mod(most, 4)
-      p%last = min(p%last, max(most, fewest_truths))
+      possible = int(min(max_time/time, 1.0e9_dp))
+      p%possible = possible >= min_truths
+      if (possible >= 16) possible = possible - mod(possible, 4)
+      p%last = min(p%last, max(possible, min_truths))
    end subroutine limit_truth
 
    !> The trial that is the truth: real128, to the limit of rounding, at all instants that are compared.
    pure type(trial_t) function truth_trial(p) result(t)
       type(plan_t), intent(in) :: p
 
-      t = trial_t(set=p%set, steps=p%steps*p%finer/p%skip, last=p%last*p%finer/p%skip)
+      t = trial_t(kind=kind_quad, steps=p%steps*p%finer/p%skip, last=p%last*p%finer/p%skip)
    end function truth_trial
 
    !> METHOD NEWTON to the limit of rounding at the deck's steps.
@@ -117,17 +107,15 @@ contains
       integer, intent(in) :: finer, coarser
 
       one = t
-      one%set = p%set
       one%steps = p%steps*finer/coarser
       one%last = p%last*finer/coarser
       one%stride = max(1, p%skip*finer/(p%finer*coarser))
-      one%repeats = times
    end function at_steps
 
-   !> All ways, section by section.
-   function plan_ways(p) result(ways)
+   !> All trials, section by section.
+   function plan_trials(p) result(trials)
       type(plan_t), intent(in) :: p
-      type(way_t), allocatable :: ways(:)
+      type(trial_t), allocatable :: trials(:)
       real(dp), parameter :: tolerances(10) = [1.0e-2_dp, 1.0e-3_dp, 1.0e-4_dp, 1.0e-6_dp, 1.0e-8_dp, 1.0e-10_dp, &
          1.0e-12_dp, 1.0e-14_dp, 1.0e-15_dp, 0.0_dp]
       type(trial_t), allocatable :: methods(:)
@@ -136,82 +124,72 @@ contains
       methods = [trial_t(), trial_t(method=method_dense), trial_t(method=method_matrix), &
          trial_t(method=method_matrix, keeps=.true.)]
       if (.not. p%has_dense) methods = methods(:1)
-      allocate (ways(0))
+      allocate (trials(0))
       do i = 1, size(methods)
-         do k = 1, size(tolerances)
-            call add(section_tolerance, kind_double, with(methods(i), tolerances(k)), 1, 1)
-         end do
-         if (i > 1 .or. p%finer == 1) cycle
-         do k = 1, size(tolerances)
-            call add(section_tolerance, kind_double, with(methods(i), tolerances(k)), p%finer, 1)
-         end do
+         call add(section_tolerance, methods(i), tolerances, 1, 1)
+         if (i == 1 .and. p%finer > 1) call add(section_tolerance, methods(i), tolerances, p%finer, 1)
       end do
       do i = 1, size(methods)
-         if (p%coarser > 1) call add(section_steps, kind_double, methods(i), 1, p%coarser)
-         call add(section_steps, kind_double, methods(i), 1, 1)
-         k = 4
+         if (p%coarser > 1) call add(section_steps, methods(i), [0.0_dp], 1, p%coarser)
+         k = 1
          do while (k <= p%finer)
-            call add(section_steps, kind_double, methods(i), k, 1)
+            call add(section_steps, methods(i), [0.0_dp], k, 1)
             k = 4*k
          end do
       end do
-      call add_predictors(methods)
+      do i = 1, min(3, size(methods))
+         call add_predictors(methods(i), merge(1, 2, i > 1), 1)
+         if (p%finer > 1 .and. i < 3) call add_predictors(methods(i), merge(1, 2, i > 1), p%finer)
+      end do
       call add_kinds()
 
    contains
 
-      subroutine add(section, kind, t, finer, coarser)
-         integer, intent(in) :: section, kind, finer, coarser
+      !> Trial `t` in one section, for each of some tolerances.
+      subroutine add(section, t, tolerances, finer, coarser)
+         integer, intent(in) :: section, finer, coarser
          type(trial_t), intent(in) :: t
+         real(dp), intent(in) :: tolerances(:)
+         type(trial_t) :: one
+         integer :: k
 
-         ways = [ways, way_t(section, kind, at_steps(p, t, finer, coarser))]
+         one = at_steps(p, t, finer, coarser)
+         one%section = section
+         do k = 1, size(tolerances)
+            one%tolerance = tolerances(k)
+            trials = [trials, one]
+         end do
       end subroutine add
 
-      !> Orders 0 to 3 and the method's own.
-      subroutine add_predictors(methods)
-         type(trial_t), intent(in) :: methods(:)
-         type(trial_t) :: t
-         integer :: i, order, finer
+      !> Predictors of orders 0 to 3 and the method's own, for one tolerance or two.
+      subroutine add_predictors(t, count, finer)
+         type(trial_t), intent(in) :: t
+         integer, intent(in) :: count, finer
+         real(dp), parameter :: tolerances(2) = [0.0_dp, 1.0e-6_dp]
+         type(trial_t) :: one
+         integer :: order
 
-         do i = 1, min(3, size(methods))
-            finer = 1
-            do
-               do order = 0, 4
-                  t = methods(i)
-                  t%predictor = merge(own_predictor, order, order == 4)
-                  call add(section_predictor, kind_double, t, finer, 1)
-                  if (i == 1) call add(section_predictor, kind_double, with(t, 1.0e-6_dp), finer, 1)
-               end do
-               if (finer == p%finer .or. i == 3) exit
-               finer = p%finer
-            end do
+         one = t
+         do order = 0, 4
+            one%predictor = merge(own_predictor, order, order == 4)
+            call add(section_predictor, one, tolerances(:count), finer, 1)
          end do
       end subroutine add_predictors
 
-      !> Single, double and real128.
+      !> Single, double and real128. The first one in double is the default.
       subroutine add_kinds()
          real(dp), parameter :: few(4) = [1.0e-2_dp, 1.0e-4_dp, 1.0e-6_dp, 0.0_dp]
          real(dp), parameter :: many(6) = [1.0e-2_dp, 1.0e-8_dp, 1.0e-15_dp, 1.0e-20_dp, 1.0e-30_dp, 0.0_dp]
-         integer :: i
+         integer :: kind
 
-         do i = 1, size(few)
-            call add(section_kinds, kind_single, with(trial_t(), few(i)), 1, 1)
+         do kind = kind_single, kind_quad
+            if (kind == kind_single) call add(section_kinds, trial_t(kind=kind), few, 1, 1)
+            if (kind == kind_double) call add(section_kinds, trial_t(kind=kind), [0.0_dp], 1, 1)
+            if (kind == kind_quad) call add(section_kinds, trial_t(kind=kind), &
+               many(merge(1, size(many), p%finer > 1 .or. p%steps == 0):), 1, 1)
+            if (p%has_dense .and. (kind /= kind_quad .or. p%equations <= max_quad_equations)) &
+               call add(section_kinds, trial_t(kind=kind, method=method_dense), [0.0_dp], 1, 1)
          end do
-         if (p%has_dense) call add(section_kinds, kind_single, trial_t(method=method_dense), 1, 1)
-         call add(section_kinds, kind_double, trial_t(), 1, 1)
-         if (p%has_dense) call add(section_kinds, kind_double, trial_t(method=method_dense), 1, 1)
-         do i = merge(1, size(many), p%finer > 1 .or. p%steps == 0), size(many)
-            call add(section_kinds, kind_quad, with(trial_t(), many(i)), 1, 1)
-         end do
-         if (p%has_dense .and. p%equations < 40) call add(section_kinds, kind_quad, trial_t(method=method_dense), 1, 1)
       end subroutine add_kinds
-   end function plan_ways
-
-   pure type(trial_t) function with(t, tolerance)
-      type(trial_t), intent(in) :: t
-      real(dp), intent(in) :: tolerance
-
-      with = t
-      with%tolerance = tolerance
-   end function with
+   end function plan_trials
 end module study_plan

@@ -5,12 +5,11 @@
 module true_errors
    use, intrinsic :: iso_fortran_env, only: dp => real64, qp => real128
    use kinds, only: wp
-   use mechanism, only: mechanism_t
+   use mechanism, only: mechanism_t, place_links
    use motion, only: motion_t, new_motion, mark_none
    use scales, only: characteristic_length, characteristic_rate
    use analysis, only: analysis_t, new_analysis, advance
-   use trial_forms, only: trial_t, outcome_t
-   use trials, only: tried, instant_of
+   use trials, only: trial_t, outcome_t, trial_mechanism, trial_instants
    implicit none
    private
    public :: truth_t, errors_t, new_truth, errors_of, true_sample, differences
@@ -29,11 +28,11 @@ module true_errors
 
    !> (position, velocity, acceleration)
    type :: errors_t
-      real(dp) :: most(0:2) = 0.0_dp, rms(0:2) = 0.0_dp
+      real(dp) :: largest(0:2) = 0.0_dp, rms(0:2) = 0.0_dp
       integer :: compared = 0                    !< instants
       integer :: unsolved = 0                    !< of which the truth is known, the trial's position not
-      integer :: rateless = 0                    !< likewise with a position, but no velocities
-      integer :: elsewhere = 0                   !< at which another position was found, which closes as well
+      integer :: no_velocity = 0                 !< likewise with a position, but no velocities
+      integer :: other_assembly = 0              !< at which another position was found, which closes as well
    end type errors_t
 
 contains
@@ -113,26 +112,26 @@ contains
          there = true_sample(truth, t, (i - 1)*t%stride)
          if (truth%motion%known(there) < 2) cycle
          if (o%known(i) < 0) e%unsolved = e%unsolved + 1
-         if (o%known(i) == 0 .or. o%known(i) == 1) e%rateless = e%rateless + 1
+         if (o%known(i) == 0 .or. o%known(i) == 1) e%no_velocity = e%no_velocity + 1
          if (o%known(i) < 2) cycle
          e%compared = e%compared + 1
          do k = 0, 2
             d = differences(truth, there, k, o%value(:, :, k, i))/truth%size_of(k)
             if (k == 0) position(i) = maxval(d)
-            e%most(k) = max(e%most(k), maxval(d))
+            e%largest(k) = max(e%largest(k), maxval(d))
             sums(k) = sums(k) + sum(d**2)
          end do
       end do
       e%rms = sqrt(sums/max(1, 3*count(truth%moves)*e%compared))
       i = maxloc(position, dim=1)
       if (position(i) > suspicious) then
-         if (is_elsewhere(truth, m, t, o, i)) e%elsewhere = count(position > 0.5_dp*position(i))
+         if (is_other_assembly(truth, m, t, o, i)) e%other_assembly = count(position > 0.5_dp*position(i))
       end if
    end function errors_of
 
    !> From the position of sample `i` Newton's method does not come to the truth, but stays where it is: that is
    !> another solution of the equations.
-   logical function is_elsewhere(truth, m, t, o, i)
+   logical function is_other_assembly(truth, m, t, o, i)
       type(truth_t), intent(in) :: truth
       type(mechanism_t), intent(in) :: m
       type(trial_t), intent(in) :: t
@@ -141,22 +140,21 @@ contains
       type(mechanism_t) :: there
       type(analysis_t) :: a
       type(motion_t) :: q
-      real(dp) :: before, after
+      real(dp) :: before, after, instants(0:t%last)
       integer :: k, sample
 
-      there = tried(m, trial_t(set=t%set))
-      do k = 1, size(there%links)
-         if (.not. there%links(k)%ground) there%links(k)%position = real(o%value(:, k, 0, i), wp)
-      end do
+      there = trial_mechanism(m, trial_t())
+      call place_links(there, real(o%value(:, :, 0, i), wp))
       q = new_motion(size(m%links))
       a = new_analysis(there)
       k = (i - 1)*t%stride
-      call advance(a, real(instant_of(m, t, k), wp), q)
-      is_elsewhere = q%mark == mark_none
-      if (.not. is_elsewhere) return
+      instants = trial_instants(m, t)
+      call advance(a, real(instants(k), wp), q)
+      is_other_assembly = q%mark == mark_none
+      if (.not. is_other_assembly) return
       sample = true_sample(truth, t, k)
       before = maxval(differences(truth, sample, 0, o%value(:, :, 0, i)))
       after = maxval(differences(truth, sample, 0, real(q%position, qp)))
-      is_elsewhere = after > 0.5_dp*before
-   end function is_elsewhere
+      is_other_assembly = after > 0.5_dp*before
+   end function is_other_assembly
 end module true_errors

@@ -1,6 +1,6 @@
 #!/bin/sh
 # make study: kinmat --study for six scenes, its tables on standard output and in $BUILD/study/, each with the time of the
-# default method beside the closed form where there is one; then the pictures. Error and time of every way:
+# default method beside the closed form where there is one; then the pictures. Error and time of every trial:
 # $BUILD/study/speed.txt, a scene a block of blocks, read by tests/study.gp.
 BUILD=${BUILD:-build}
 out=$BUILD/study

@@ -11,6 +11,9 @@ esac
 w=$BUILD/study_short
 rm -rf "$w" && mkdir -p "$w" || exit 3
 awk '{ print } /^END/ { exit }' input/four_bar.deck > "$w/four_bar.deck"
+mkdir "$w/tmp"
+TMPDIR=$w/tmp
+export TMPDIR
 
 # refused NAME STATUS SENTENCE ARGUMENT...: status and sentence of a call that prints no table
 refused() {
@@ -36,11 +39,11 @@ awk '/^ [1-4]  [A-Z]/ { section = $1 }
       print section, method, substr($0, 14, 6), substr($0, 20, 10), substr($0, 30, 6), substr($0, 36, 8), substr($0, 60, 7),
          substr($0, 67, 6), substr($0, 73, 8), substr($0, 89, 8), substr($0, 105, 8)
    }' "$w/study.txt" > "$w/rows"
-equal 'ways tried' 'BLOCKS BLOCKSQP BLOCKSSP DENSE DENSEQP DENSESP MATRIX MATRIXFIXED' \
+equal 'trials made' 'BLOCKS BLOCKSQP BLOCKSSP DENSE DENSEQP DENSESP MATRIX MATRIXFIXED' \
    "$(awk '{ print $2 }' "$w/rows" | sort -u | tr '\n' ' ' | sed 's/ $//')"
 equal 'tolerances of each method' '10 10 10 10' \
    "$(for m in BLOCKS DENSE MATRIX MATRIXFIXED; do awk -v m=$m '$1 == 1 && $2 == m && $5 == 36' "$w/rows" | wc -l; done | tr -d ' ' | tr '\n' ' ' | sed 's/ $//')"
-equal 'ways without a time' '' "$(awk '!($6 > 0 && $7 > 0)' "$w/rows")"
+equal 'trials without a time' '' "$(awk '!($6 > 0 && $7 > 0)' "$w/rows")"
 
 # all NAME CONDITION: every row that CONDITION selects does what it says, and there is one at least
 all() { equal "$1" 'some, all' "$(awk "$2" "$w/rows")"; }
@@ -70,18 +73,18 @@ all 'a better start takes fewer iterations' '$1 == 3 && $4 == "ROUNDING" { key =
 all 'shorter steps take fewer iterations' '$1 == 2 { if ($2 == m) { n++; if ($8 > last) bad = bad " " $0 } m = $2; last = $8 } '"$told"
 all 'the default is the measure' '$1 == 4 && $2 == "BLOCKS" { n++; if ($7 != 1) bad = bad " " $0 } '"$told"
 
-# The cheapest ways: below their level, and no cheaper for a smaller error.
-awk '/^ CHEAPEST/ { on = 1; last = 0 } /^ WHAT/ { on = 0 } on && /^ +1.E/ && !/NONE/ {
+# The cheapest trials: below their level, and no cheaper for a smaller error.
+awk '/^ CHEAPEST/ { on = 1; last = 0 } /^ ERROR EST/ { on = 0 } on && /^ +1.E/ && !/NONE/ {
    n++; if (!($NF < $1)) print "not below " $0; if ($(NF - 1) < last) print "cheaper " $0; last = $(NF - 1) }
    END { if (n < 7) print "only " n }' "$w/study.txt" > "$w/out"
-equal 'the cheapest ways' '' "$(cat "$w/out")"
-# The estimates are never below the true errors; LEAST is printed with two digits.
-awk '/^ WHAT/ { on = 1 } on && (/^ +1.E/ || /^ +ROUND/) { n++; for (k = 5; k <= 13; k += 4) if (!($k >= 1)) print $0 }
+equal 'the cheapest trials' '' "$(cat "$w/out")"
+# The estimates are never below the true errors; MIN is printed with two digits.
+awk '/^ ERROR EST/ { on = 1 } on && (/^ +1.E/ || /^ +ROUND/) { n++; for (k = 5; k <= 13; k += 4) if (!($k >= 1)) print $0 }
    END { if (n != 4) print n " rows" }' "$w/study.txt" > "$w/out"
-equal 'what --errors tells' '' "$(cat "$w/out")"
+equal 'the estimates of --errors' '' "$(cat "$w/out")"
 
 # Twice the same, but for the clock; into a file; by the debug build with its checks.
-without_clock() { awk '/^ CHEAPEST/ { off = 1 } /^ WHAT/ { off = 0 } !off { print substr($0, 1, 35) substr($0, 67) }' "$1"; }
+without_clock() { awk '/^ CHEAPEST/ { off = 1 } /^ ERROR EST/ { off = 0 } !off { print substr($0, 1, 35) substr($0, 67) }' "$1"; }
 "$kinmat" --study -o "$w/again.txt" "$w/four_bar.deck" > "$w/out" 2> "$w/err"
 equal 'again: status' 0 $?
 equal 'again: standard output' '' "$(cat "$w/out" "$w/err")"
@@ -119,17 +122,49 @@ refused '--log' 1 "$only" --study --log "$w/x.log" "$deck"
 refused '--errors' 1 "$only" --study --errors "$deck"
 refused '--check' 1 "$only" --check --study "$deck"
 refused '--sets' 1 "$only" --study --sets 1/2 "$deck"
-refused '--trials' 1 ' *** OPTION --study DOES NOT GO WITH --trials' --study --trials 1/1/0.0/-1/F/8/8/1/0 "$deck"
+refused '--time' 1 "$only" --study --time "$deck"
+refused '--time and --csv' 1 ' *** OPTION --time GOES WITH NO OTHER OPTION BUT -o' --time --csv "$w/x.csv" "$deck"
 refused 'no deck' 1 ' *** OPTION --study NEEDS THE DECK AS A FILE' --study
 refused 'its own deck' 1 " *** THE DECK $deck WOULD BE OVERWRITTEN" --study -o "$deck" "$deck"
 sed 's/^END/EMD/' "$deck" > "$w/bad.deck"
 refused 'a bad deck' 1 "$("$kinmat" "$w/bad.deck" 2>&1 > "$w/out" | tail -n 1)" --study "$w/bad.deck"
 sed '/^DRIVE/d' "$deck" > "$w/loose.deck"
 refused 'a loose deck' 1 "$("$kinmat" "$w/loose.deck" 2>&1 > "$w/out" | tail -n 1)" --study "$w/loose.deck"
-refused 'no trial' 1 ' *** OPTION --trials: "1/1" IS NO TRIAL OF THIS DECK' --trials 1/1 "$deck"
-refused 'no such set' 1 ' *** OPTION --trials: "9/1/0.0/-1/F/8/8/1/0" IS NO TRIAL OF THIS DECK' --trials 9/1/0.0/-1/F/8/8/1/0 "$deck"
-refused 'too many steps' 1 ' *** OPTION --trials: "1/1/0.0/-1/F/8/9/1/0" IS NO TRIAL OF THIS DECK' --trials 1/1/0.0/-1/F/8/9/1/0 "$deck"
 kinmat=$BUILD/kinmat-quad refused 'kinmat-quad' 1 ' *** --study IS FOR kinmat IN REAL64, WHICH ASKS THIS PROGRAM FOR ITS PART' --study "$deck"
+# A decimal with the exponent D is the double in every kind, and no other number; a table that ends at that decimal reaches it.
+awk -v t='0.1D0' '/^TIME/ { next } /^AT/ { $0 = sprintf("AT%30s%s", "", t) } { print }' "$deck" > "$w/at_double.deck"
+sed 's/0[.]1D0/0.1/' "$w/at_double.deck" > "$w/at_decimal.deck"
+instant_of() { "$1" --csv /dev/stdout -o /dev/null "$2" | awk -F, 'NR == 2 { print $3 }'; }
+equal '0.1D0 in real128' 1.000000000000000055511151231257827E-0001 "$(instant_of "$BUILD/kinmat-quad" "$w/at_double.deck" | sed 's/\(.\{35\}\)[0-9]*E/\1E/')"
+equal '0.1 in real128' 1.000000000000000000000000000000000E-0001 "$(instant_of "$BUILD/kinmat-quad" "$w/at_decimal.deck" | sed 's/\(.\{35\}\)[0-9]*E/\1E/')"
+equal '0.1D0 in real64' "$(instant_of "$kinmat" "$w/at_decimal.deck")" "$(instant_of "$kinmat" "$w/at_double.deck")"
+cat > "$w/table.deck" << 'END_OF_DECK'
+GROUND  BASE
+LINK    CRANK
+POINT   O       BASE
+POINT   C       CRANK
+POINT   TIP     CRANK           1.0
+REVOLUTEO       C       PIVOT
+DRIVE   ANGLE   CRANK
+ADD     TABLE                   0.3             0.0
+ADD     TABLE                   0.5             1.0
+ADD     TABLE                   0.7             3.0
+TIME    8                       0.3             0.7
+PRINT   POINTS  TIP
+END
+END_OF_DECK
+"$kinmat" --study "$w/table.deck" > "$w/table.txt" 2> "$w/err"
+equal 'a table to the last instant' '0 ' "$? $(cat "$w/err")"
+equal 'a table to the last instant: compared' ' 8 STEPS, 2 LINKS; THE TRUTH: kinmat-quad (REAL128), 129 OF 129 INSTANTS COMPARED' "$(sed -n 2p "$w/table.txt")"
+
+# The time of a step, of any kind, from standard input too; a set that has none.
+for k in kinmat kinmat-quad kinmat-single; do
+   "$BUILD/$k" --time < "$deck" > "$w/times"
+   equal "$k --time" '0 2 1 38 yes' "$? $(awk 'END { print NR, $1, $2, ($5 > 0 && $4 >= $5 && $6 >= $4 && $3 >= 1 ? "yes" : $0) }' "$w/times")"
+done
+"$kinmat" --time "$w/at_decimal.deck" > "$w/times"
+equal '--time: one instant' '0     1         0       0.00   NOT TIMED: ONE INSTANT' "$? $(tail -n 1 "$w/times")"
+equal 'files left behind' '' "$(ls "$w/tmp")"
 mkdir -p "$w/alone" && cp "$BUILD/kinmat" "$w/alone/"
 alone=$w/alone/kinmat
 kinmat=$alone refused 'alone' 3 ' *** --study NEEDS kinmat-quad BESIDE THIS PROGRAM OR IN PATH: make kinds' --study "$deck"
