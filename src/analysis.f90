@@ -14,10 +14,10 @@ module analysis
    use block_remarks, only: first_remarks, limit_remark
    use engine, only: tell, is_certified
    use standing, only: stand_on
-   use following, only: following_t, way_t, new_following, go_to, is_too_far, has_too_many_parts, go_on_from, go_back
+   use following, only: following_t, way_t, make_following, go_to, is_too_far, has_too_many_parts, go_on_from, go_back
    implicit none
    private
-   public :: analysis_t, new_analysis, advance, redundancy_gap, closing_remarks
+   public :: analysis_t, make_analysis, advance, redundancy_gap, closing_remarks
 
    !> A rough angle that is off by more is worth a word: the assembly may not be the one that was meant.
    real(wp), parameter :: far_angle = 1.0_wp
@@ -35,13 +35,13 @@ module analysis
 contains
 
    !> Ready for the first instant of `m`, whose equations are as many as its unknowns.
-   function new_analysis(m) result(a)
+   subroutine make_analysis(a, m)
+      type(analysis_t), intent(out) :: a
       type(mechanism_t), intent(in) :: m
-      type(analysis_t) :: a
 
-      a%following_t = new_following(m)
+      call make_following(a%following_t, m)
       a%rough_angle = m%links%position(3)
-   end function new_analysis
+   end subroutine make_analysis
 
    !> Solves instant `t`; `found` is its motion in the deck's units, with what could not be found marked; of links that
    !> no request needs it is not told.
@@ -200,9 +200,9 @@ contains
       if (allocated(w%dead_end)) then
          if (size(w%dead_end) > 0) list = w%dead_end
       end if
-      if (has_too_many_parts(w)) list = [remark_t(kind=remark_long, t=a%place)]
+      if (has_too_many_parts(w)) list = [remark_t(kind=remark_long, t=a%place%t)]
       if (size(list) > 0 .and. .not. a%is_lost) call add_remarks(list, found)
-      if (a%follows .and. a%convergence%ended /= ended_open) call note_end(a%ends, a%place, a%t, t, w%blocked, list)
+      if (a%follows .and. a%convergence%ended /= ended_open) call note_end(a%ends, a%place%t, a%t, t, w%blocked, list)
    end subroutine remark_on_end
 
    subroutine add_remarks(list, found)

@@ -60,7 +60,7 @@ contains
       reached = .false.
       associate (block => b%list(i))
          if (block%shape%n == 0 .or. block%shape%n > most_unknowns) return
-         w = new_room(block%shape)
+         call make_room(w, block%shape)
          start = s%u(b%unknown(block%first:block%last))%value
       end associate
       call known_parts(b, i, s)
@@ -96,7 +96,7 @@ contains
 
       associate (block => b%list(i))
          if (block%shape%n == 0 .or. block%shape%n > most_held) return
-         w = new_room(block%shape)
+         call make_room(w, block%shape)
          start = s%u(b%unknown(block%first:block%last))%value
       end associate
       call known_parts(b, i, s)
@@ -115,15 +115,15 @@ contains
       end do
    end subroutine approach_held
 
-   function new_room(shape) result(w)
+   subroutine make_room(w, shape)
+      type(room_t), intent(out) :: w
       type(shape_t), intent(in) :: shape
-      type(room_t) :: w
 
       w%shape = shape_t(rows=shape%rows, n=shape%n)
       w%damped = shape_t(rows=shape%rows + shape%n, n=shape%n)
       allocate (w%a(entries_of(w%shape)), w%b(entries_of(w%damped)), w%work(work_length(w%damped)))
       allocate (w%r(w%damped%rows), w%d(w%damped%rows), w%x(shape%n), w%best(shape%n), w%pivots(shape%n))
-   end function new_room
+   end subroutine make_room
 
    !> By how much start number `k` is off: nothing at first, then more and more, up to half a turn.
    pure function spread_start(k, n) result(d)

@@ -15,14 +15,15 @@ module block_engine
    use block_partition, only: new_blocks
    use block_needs, only: moving_blocks, needed_blocks
    use block_state, only: state_t, new_state
-   use block_solver, only: workspace_t, new_workspace, solve_block
+   use block_solver, only: workspace_t, make_workspace, solve_block
    use first_position, only: solve_first_block, turn_starts
    use block_rank, only: jacobian_of, relative_side
    use link_motion, only: chain_t, new_chain, move_links
    implicit none
    private
-   public :: block_engine_t, positions_t, new_block_engine, seek_blocks, seek_again, seek_each, begin_record
-   public :: set_targets, keep_blocks, tell_blocks, mark_blocks, return_blocks
+   public :: block_engine_t, positions_t, make_block_engine, seek_blocks, seek_again, seek_each, begin_record
+   public :: set_targets, keep_blocks, tell_blocks
+   public :: block_checkpoint_t, checkpoint_blocks, restore_blocks
 
    !> Positions of one block (unknowns, any number).
    type :: positions_t
@@ -35,7 +36,6 @@ module block_engine
       type(blocks_t) :: blocks
       type(state_t) :: state
       type(history_t) :: history                        !< the motions that are followed
-      type(history_t) :: marked                         !< those of a place to return to
       type(workspace_t) :: work
       type(chain_t) :: chain                            !< of the links that are asked for
       type(chain_t) :: whole                            !< of all links
@@ -52,19 +52,29 @@ module block_engine
       logical, allocatable :: is_close(:)               !< (blocks) another assembly is about as near to the estimate
       integer, allocatable :: needed(:), moving(:)      !< blocks that are solved at first, and at every step
       integer, allocatable :: sign_now(:), sign_of(:)   !< (blocks) of the determinant: found last, followed
-      integer, allocatable :: sign_marked(:)
-      real(wp), allocatable :: side(:), side_marked(:)  !< Jacobian of the block with too many rows, followed
+      real(wp), allocatable :: side(:)                  !< Jacobian of the block with too many rows, followed
       real(wp), allocatable :: pivot_now(:), pivot_of(:) !< (blocks) the least: found last, followed
       logical, allocatable :: crossed(:)                !< (blocks) whose determinant has changed its sign
       real(wp) :: change = 0.0_wp                       !< the largest that was predicted
    end type block_engine_t
 
+   !> All that depends on the way so far: the motions that are followed, with the signs and pivots of their
+   !> Jacobians, and the motion found last. No workspace.
+   type :: block_checkpoint_t
+      type(history_t) :: history
+      integer, allocatable :: sign_of(:), sign_now(:)
+      real(wp), allocatable :: pivot_of(:), pivot_now(:), side(:)
+      logical, allocatable :: crossed(:)
+      type(state_t) :: state
+      real(wp) :: t = 0.0_wp, change = 0.0_wp
+   end type block_checkpoint_t
+
 contains
 
    !> Ready for the first instant of `m`.
-   function new_block_engine(m) result(e)
+   subroutine make_block_engine(e, m)
+      type(block_engine_t), intent(out) :: e
       type(mechanism_t), intent(in) :: m
-      type(block_engine_t) :: e
       type(tree_t) :: t
       integer :: i
 
@@ -87,7 +97,7 @@ contains
             e%is_found(i) = .false.
          end if
       end do
-      e%work = new_workspace(e%blocks)
+      call make_workspace(e%work, e%blocks)
       e%chain = new_chain(m, t, wanted_links(m), e%blocks%frames)
       e%whole = new_chain(m, t, spread(.true., 1, size(m%links)), e%blocks%frames)
       allocate (e%laws(size(m%drives)))
@@ -112,7 +122,7 @@ contains
       ! A function's result would bring its own lower bound.
       allocate (e%rough(0:e%blocks%unknowns))
       e%rough(:) = rough_values(m, t, e%length, e%blocks%unknowns)
-   end function new_block_engine
+   end subroutine make_block_engine
 
    !> The unknowns of the moving blocks that iterate.
    pure function sought_unknowns(e) result(list)
@@ -252,21 +262,42 @@ contains
       e%pivot_of = e%pivot_now
    end subroutine keep_blocks
 
-   subroutine mark_blocks(e)
+   !> Notes in `c` all that depends on the way so far.
+   pure subroutine checkpoint_blocks(e, c)
+      type(block_engine_t), intent(in) :: e
+      type(block_checkpoint_t), intent(inout) :: c
+
+      c%history = e%history
+      c%sign_of = e%sign_of
+      c%pivot_of = e%pivot_of
+      if (allocated(e%side)) c%side = e%side
+      c%state = e%state
+      c%sign_now = e%sign_now
+      c%pivot_now = e%pivot_now
+      c%crossed = e%crossed
+      c%t = e%t
+      c%change = e%change
+   end subroutine checkpoint_blocks
+
+   !> Makes the motion that was followed at the checkpoint `c` the one that is followed, and what was found last there
+   !> what was found last; `keeps_found`: that stays as it is now.
+   pure subroutine restore_blocks(e, c, keeps_found)
       type(block_engine_t), intent(inout) :: e
+      type(block_checkpoint_t), intent(in) :: c
+      logical, intent(in) :: keeps_found
 
-      e%marked = e%history
-      e%sign_marked = e%sign_of
-      if (allocated(e%side)) e%side_marked = e%side
-   end subroutine mark_blocks
-
-   subroutine return_blocks(e)
-      type(block_engine_t), intent(inout) :: e
-
-      e%history = e%marked
-      e%sign_of = e%sign_marked
-      if (allocated(e%side_marked)) e%side = e%side_marked
-   end subroutine return_blocks
+      e%history = c%history
+      e%sign_of = c%sign_of
+      e%pivot_of = c%pivot_of
+      if (allocated(c%side)) e%side = c%side
+      if (keeps_found) return
+      e%state = c%state
+      e%sign_now = c%sign_now
+      e%pivot_now = c%pivot_now
+      e%crossed = c%crossed
+      e%t = c%t
+      e%change = c%change
+   end subroutine restore_blocks
 
    !> The motion found last of the links that are asked for, in the deck's units; `finite`: all of it is in range.
    subroutine tell_blocks(e, found, finite)

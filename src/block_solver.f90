@@ -19,10 +19,10 @@ module block_solver
    use block_rows, only: assemble_block
    use block_sides, only: rate_side
    use block_gaps, only: note_gap, contradict, open_level
-   use block_workspace, only: workspace_t, new_workspace
+   use block_workspace, only: workspace_t, make_workspace
    implicit none
    private
-   public :: workspace_t, new_workspace, solve_block
+   public :: workspace_t, make_workspace, solve_block
 
    !> Residuals relative to the largest value. Below the first there is nothing to correct; above the second,
    !> rounding of angles and of their sines alone explains no residual.

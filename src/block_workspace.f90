@@ -6,9 +6,9 @@ module block_workspace
    use blocks, only: blocks_t
    implicit none
    private
-   public :: workspace_t, new_workspace
+   public :: workspace_t, make_workspace
 
-   !> Room for the widest block, and the factors of each sparse one. No copies once a block has been solved: see klu_t.
+   !> Room for the widest block, and the factors of each sparse one. Never copied: see klu_t.
    type :: workspace_t
       real(wp), allocatable :: a(:), r(:), start(:), work(:)
       integer, allocatable :: pivots(:), iwork(:)
@@ -18,9 +18,9 @@ module block_workspace
 contains
 
    !> Room for every block of `b`.
-   function new_workspace(b) result(w)
+   subroutine make_workspace(w, b)
+      type(workspace_t), intent(out) :: w
       type(blocks_t), intent(in) :: b
-      type(workspace_t) :: w
       integer :: i, entries, rows, length
 
       entries = 0
@@ -37,5 +37,5 @@ contains
       do i = 1, size(b%patterns)
          w%sparse(i)%pattern = b%patterns(i)
       end do
-   end function new_workspace
+   end subroutine make_workspace
 end module block_workspace

@@ -21,7 +21,8 @@ module dense_engine
    use whole_turns, only: without_turns
    implicit none
    private
-   public :: dense_t, new_dense, seek_dense, keep_dense, tell_dense, mark_dense, return_dense
+   public :: dense_t, new_dense, seek_dense, keep_dense, tell_dense
+   public :: dense_checkpoint_t, checkpoint_dense, restore_dense
 
    !> The position is known to eps/rcond, and so the Jacobian; below the root of eps no digit of a velocity is certain.
    real(wp), parameter :: least_condition = 4.0_wp*sqrt(epsilon(1.0_wp))
@@ -46,14 +47,20 @@ module dense_engine
       real(wp), allocatable :: start(:, :)       !< (3, links) where the last search began
       type(factors_t) :: factors
       type(motion_t) :: now                      !< the motion sought last
-      type(motion_t) :: last, marked             !< the last one kept, and that at a place to return to
+      type(motion_t) :: last                     !< the last one kept
       type(motion_t) :: before                   !< the one kept before, where the order is 3
-      integer :: determinant_now = 0, determinant = 0, determinant_marked = 0
+      integer :: determinant_now = 0, determinant = 0
       real(wp), allocatable :: targets(:, :)     !< (3, drives) value, rate, second rate
       logical :: has_missed = .false.            !< the assembly meant at an earlier instant was not found
       integer :: method = 0, order = own_predictor
       real(wp) :: tolerance = 0.0_wp
    end type dense_t
+
+   !> All that depends on the way so far: the motion that is followed, and that found last. No workspace.
+   type :: dense_checkpoint_t
+      type(motion_t) :: last, before, now
+      integer :: determinant = 0, determinant_now = 0
+   end type dense_checkpoint_t
 
 contains
 
@@ -218,19 +225,32 @@ contains
       e%determinant = e%determinant_now
    end subroutine keep_dense
 
-   subroutine mark_dense(e)
+   !> Notes in `c` all that depends on the way so far.
+   pure subroutine checkpoint_dense(e, c)
+      type(dense_t), intent(in) :: e
+      type(dense_checkpoint_t), intent(inout) :: c
+
+      c%last = e%last
+      c%before = e%before
+      c%determinant = e%determinant
+      c%now = e%now
+      c%determinant_now = e%determinant_now
+   end subroutine checkpoint_dense
+
+   !> Makes the motion that was followed at the checkpoint `c` the one that is followed, and what was found last there
+   !> what was found last; `keeps_found`: that stays as it is now.
+   pure subroutine restore_dense(e, c, keeps_found)
       type(dense_t), intent(inout) :: e
+      type(dense_checkpoint_t), intent(in) :: c
+      logical, intent(in) :: keeps_found
 
-      e%marked = e%last
-      e%determinant_marked = e%determinant
-   end subroutine mark_dense
-
-   subroutine return_dense(e)
-      type(dense_t), intent(inout) :: e
-
-      e%last = e%marked
-      e%determinant = e%determinant_marked
-   end subroutine return_dense
+      e%last = c%last
+      e%before = c%before
+      e%determinant = c%determinant
+      if (keeps_found) return
+      e%now = c%now
+      e%determinant_now = c%determinant_now
+   end subroutine restore_dense
 
    !> The motion found last, in the deck's units.
    pure subroutine tell_dense(e, found)

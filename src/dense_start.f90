@@ -8,7 +8,7 @@ module dense_start
    use convergence, only: convergence_t, is_solved
    use block_state, only: set_values
    use block_solver, only: solve_block
-   use block_engine, only: block_engine_t, new_block_engine, tell_blocks
+   use block_engine, only: block_engine_t, make_block_engine, tell_blocks
    use assembly_choice, only: seek_first
    implicit none
    private
@@ -45,7 +45,7 @@ contains
       logical :: unused
 
       q = new_motion(size(m%links))
-      e = new_block_engine(m)
+      call make_block_engine(e, m)
       call seek_first(e, t, c, correction, unused)
       is_found = e%blocks%solvable .and. is_solved(c)
       assembly = estimate

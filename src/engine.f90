@@ -5,13 +5,14 @@ module engine
    use mechanism, only: mechanism_t, method_newton, method_dense
    use motion, only: motion_t
    use convergence, only: convergence_t
-   use block_engine, only: block_engine_t, new_block_engine, seek_blocks, keep_blocks, tell_blocks, &
-      mark_blocks, return_blocks
+   use block_engine, only: block_engine_t, make_block_engine, seek_blocks, keep_blocks, tell_blocks, &
+      block_checkpoint_t, checkpoint_blocks, restore_blocks
    use assembly_choice, only: seek_first
-   use dense_engine, only: dense_t, new_dense, seek_dense, keep_dense, tell_dense, mark_dense, return_dense
+   use dense_engine, only: dense_t, new_dense, seek_dense, keep_dense, tell_dense, &
+      dense_checkpoint_t, checkpoint_dense, restore_dense
    implicit none
    private
-   public :: engine_t, new_engine, seek, keep, mark_place, return_to_place, tell, is_certified
+   public :: engine_t, engine_checkpoint_t, make_engine, seek, keep, checkpoint, restore, tell, is_certified
 
    !> One of the two.
    type :: engine_t
@@ -19,19 +20,27 @@ module engine
       type(dense_t), allocatable :: dense
    end type engine_t
 
+   !> Values, history, signs and pivots of the engine: what its further way depends on. An engine itself is never
+   !> copied, since its workspace holds handles of KLU.
+   type :: engine_checkpoint_t
+      type(block_checkpoint_t) :: blocks
+      type(dense_checkpoint_t) :: dense
+   end type engine_checkpoint_t
+
 contains
 
    !> Ready for the first instant of `m`, whose equations are as many as its unknowns.
-   function new_engine(m) result(e)
+   subroutine make_engine(e, m)
+      type(engine_t), intent(out) :: e
       type(mechanism_t), intent(in) :: m
-      type(engine_t) :: e
 
       if (m%method == method_newton) then
-         e%blocks = new_block_engine(m)
+         allocate (e%blocks)
+         call make_block_engine(e%blocks, m)
       else
          e%dense = new_dense(m)
       end if
-   end function new_engine
+   end subroutine make_engine
 
    !> Seeks the motion at `t`, from the last one kept (`follows`) or from the deck's. `c`: how it ended,
    !> `correction`: the largest change of a predicted value, `same`: the determinants have kept their signs.
@@ -63,28 +72,31 @@ contains
       end if
    end subroutine keep
 
-   !> Notes the motion that is followed, before a step is divided.
-   subroutine mark_place(e)
-      type(engine_t), intent(inout) :: e
+   !> Notes in `c` the motion that is followed and that found last.
+   pure subroutine checkpoint(e, c)
+      type(engine_t), intent(in) :: e
+      type(engine_checkpoint_t), intent(inout) :: c
 
       if (allocated(e%blocks)) then
-         call mark_blocks(e%blocks)
+         call checkpoint_blocks(e%blocks, c%blocks)
       else
-         call mark_dense(e%dense)
+         call checkpoint_dense(e%dense, c%dense)
       end if
-   end subroutine mark_place
+   end subroutine checkpoint
 
-   !> Follows it again: what comes after an instant without a motion is as if that had not been asked for. From
-   !> close to a dead point no step back would be small enough.
-   subroutine return_to_place(e)
+   !> Follows again what was followed at the checkpoint `c`, as if nothing had been sought since; `keeps_found`: the
+   !> motion found last stays what it is, to be told.
+   pure subroutine restore(e, c, keeps_found)
       type(engine_t), intent(inout) :: e
+      type(engine_checkpoint_t), intent(in) :: c
+      logical, intent(in) :: keeps_found
 
       if (allocated(e%blocks)) then
-         call return_blocks(e%blocks)
+         call restore_blocks(e%blocks, c%blocks, keeps_found)
       else
-         call return_dense(e%dense)
+         call restore_dense(e%dense, c%dense, keeps_found)
       end if
-   end subroutine return_to_place
+   end subroutine restore
 
    !> The motion found last, in the deck's units; `finite`: all of it is known to be in range.
    subroutine tell(e, found, finite)

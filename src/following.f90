@@ -10,10 +10,11 @@ module following
    use predictor, only: largest_change
    use choices, only: choices_t, new_choices
    use change_points, only: crosses, pass
-   use engine, only: engine_t, new_engine, seek, keep, mark_place, return_to_place
+   use engine, only: engine_t, engine_checkpoint_t, make_engine, seek, keep, checkpoint, restore
    implicit none
    private
-   public :: following_t, way_t, new_following, go_to, is_too_far, has_too_many_parts, go_on_from, go_back
+   public :: following_t, way_t, make_following, go_to, is_too_far, has_too_many_parts, go_on_from, go_back
+   public :: place_t, note_place, return_to
 
    !> The largest correction, in the characteristic length and in radians, of a predicted position that is still taken
    !> for the continuation of the motion; where the prediction is off by more, the step is divided.
@@ -30,6 +31,12 @@ module following
    integer, parameter :: most_failures = 300
    real(wp), parameter :: small_part = 1.0e-3_wp
 
+   !> A place of the motion that is followed: all that its further way depends on.
+   type :: place_t
+      real(wp) :: t = 0.0_wp
+      type(engine_checkpoint_t) :: engine
+   end type place_t
+
    !> The engine, and how far it has come.
    type :: following_t
       type(engine_t) :: engine
@@ -38,7 +45,7 @@ module following
       integer :: iterations = 0                  !< of all positions sought so far
       logical :: follows = .false.               !< a regular motion is kept, found at `t`
       real(wp) :: t = 0.0_wp
-      real(wp) :: place = 0.0_wp                 !< where the step that was divided last began
+      type(place_t) :: place                     !< where the step that was divided last began
       real(wp) :: longest_part = huge(1.0_wp)    !< of a step: no drive moves by more than `largest_change` in it
    end type following_t
 
@@ -55,16 +62,16 @@ module following
 contains
 
    !> Ready for the first instant of `m`, whose equations are as many as its unknowns.
-   function new_following(m) result(f)
+   subroutine make_following(f, m)
+      type(following_t), intent(out) :: f
       type(mechanism_t), intent(in) :: m
-      type(following_t) :: f
       real(wp) :: rate
 
-      f%engine = new_engine(m)
+      call make_engine(f%engine, m)
       f%choices = new_choices(m)
       rate = largest_rate(m, characteristic_length(m))
       if (rate > 0.0_wp .and. depends_on_before(f%engine)) f%longest_part = largest_change/rate
-   end function new_following
+   end subroutine make_following
 
    !> There is an unknown that is sought from where it was before.
    pure logical function depends_on_before(e) result(depends)
@@ -95,10 +102,7 @@ contains
          call attempt(f, here, w, accepted)
          w%arrived = w%arrived .and. accepted
          if (w%arrived) exit
-         if (w%tries == 1) then
-            f%place = f%t
-            call mark_place(f%engine)
-         end if
+         if (w%tries == 1) call note_place(f, f%place)
          accepted = accepted .and. .not. f%convergence%singular
          if (accepted) call go_on_from(f, here)
          if (.not. f%follows) exit
@@ -176,7 +180,26 @@ contains
       type(way_t), intent(in) :: w
 
       if (w%tries < 2) return
-      f%t = f%place
-      call return_to_place(f%engine)
+      f%t = f%place%t
+      call restore(f%engine, f%place%engine, keeps_found=.true.)
    end subroutine go_back
+
+   !> Notes in `p` where the motion is followed.
+   subroutine note_place(f, p)
+      type(following_t), intent(in) :: f
+      type(place_t), intent(inout) :: p
+
+      p%t = f%t
+      call checkpoint(f%engine, p%engine)
+   end subroutine note_place
+
+   !> Follows the motion again from the place `p`, which a way may start from and come back to.
+   subroutine return_to(f, p)
+      type(following_t), intent(inout) :: f
+      type(place_t), intent(in) :: p
+
+      f%t = p%t
+      f%place = p
+      call restore(f%engine, p%engine, keeps_found=.false.)
+   end subroutine return_to
 end module following

@@ -12,10 +12,10 @@ module job
    use listing, only: layout_t, new_layout, listing_head, listing_instant, listing_end, listing_broken_off
    use csv, only: csv_head, csv_instant
    use protocol, only: protocol_head, protocol_instant
-   use analysis, only: analysis_t, new_analysis, advance, redundancy_gap, closing_remarks
+   use analysis, only: analysis_t, make_analysis, advance, redundancy_gap, closing_remarks
    use second_opinion, only: opinion_t, ask_blocks
    use scatter, only: scatter_t, largest_errors
-   use rounding_samples, only: samples_t, new_samples, take_samples
+   use rounding_samples, only: samples_t, make_samples, take_samples
    use command_line, only: options_t
    implicit none
    private
@@ -162,9 +162,9 @@ contains
       if (len(options%log) > 0) call protocol_head(o%log, m, options%errors)
       call flush_all(options, o)
       if (is_over(o)) return
-      a = new_analysis(m)
+      call make_analysis(a, m)
       q = new_motion(size(m%links))
-      samples = new_samples(m)
+      call make_samples(samples, m)
       marked = 0
       do k = 0, instant_count(m) - 1
          call advance(a, instant(m, k), q)

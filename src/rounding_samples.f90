@@ -7,12 +7,12 @@ module rounding_samples
    use scales, only: characteristic_length, characteristic_rate
    use convergence, only: convergence_t, is_solved, ended_open
    use block_solver, only: solve_block
-   use block_engine, only: block_engine_t, new_block_engine, set_targets, tell_blocks
+   use block_engine, only: block_engine_t, make_block_engine, set_targets, tell_blocks
    use perturbed_deck, only: sample_count, perturbed, perturbed_instant
    use scatter, only: scatter_t, find_noise, unusable
    implicit none
    private
-   public :: samples_t, new_samples, take_samples
+   public :: samples_t, make_samples, take_samples
 
    !> Errors are roundings times |J^-1|^2 times the bend times what is asked for; below this many, and with no number
    !> larger than so many characteristic ones, all digits of a table are safe.
@@ -32,13 +32,13 @@ module rounding_samples
 contains
 
    !> Samples of `m`; the engines are made when they are first asked for.
-   function new_samples(m) result(s)
+   subroutine make_samples(s, m)
+      type(samples_t), intent(out) :: s
       type(mechanism_t), intent(in) :: m
-      type(samples_t) :: s
 
       s%length = characteristic_length(m)
       s%rate = characteristic_rate(m, s%length)
-   end function new_samples
+   end subroutine make_samples
 
    !> How far the motion `q` of `m` is known, which the blocks `e` have found or, where they are not allocated, another
    !> method, by a matrix of the reciprocal condition `rcond`. `always`: also where no digit of a table is in doubt.
@@ -124,7 +124,7 @@ contains
       deck = m
       if (.not. allocated(e)) call place_links(deck, q%position)
       do k = 0, sample_count
-         s%engine(k) = new_block_engine(perturbed(deck, k))
+         call make_block_engine(s%engine(k), perturbed(deck, k))
       end do
    end subroutine make_engines
 

@@ -9,7 +9,7 @@ module second_opinion
       remark_repeated, remark_method
    use convergence, only: ended_elsewhere
    use dense_start, only: by_blocks
-   use analysis, only: analysis_t, new_analysis, advance
+   use analysis, only: analysis_t, make_analysis, advance
    implicit none
    private
    public :: opinion_t, ask_blocks
@@ -56,12 +56,12 @@ contains
       q = new_motion(size(m%links))
       if (a%follows) then
          associate (last => a%engine%dense%last%position, unit => a%engine%dense%system%length)
-            b = new_analysis(placed(m, last*spread([unit, unit, 1.0_wp], 2, size(last, 2))))
+            call make_analysis(b, placed(m, last*spread([unit, unit, 1.0_wp], 2, size(last, 2))))
          end associate
          call advance(b, a%t, q)
          if (q%known < 2) return
       else
-         b = new_analysis(by_blocks(m))
+         call make_analysis(b, by_blocks(m))
       end if
       call advance(b, found%t, q)
       call pass_on(q, [remark_open, remark_limit], found)
@@ -84,7 +84,7 @@ contains
       d = by_blocks(m)
       d%requests = m%requests
       q = new_motion(size(m%links))
-      b = new_analysis(d)
+      call make_analysis(b, d)
       call advance(b, found%t, q)
       if (q%known < 0) return
       if (any(abs(q%position(3, :) - found%position(3, :)) > alike .and. wanted_links(d))) return
@@ -99,7 +99,7 @@ contains
       type(motion_t) :: q
 
       q = new_motion(size(m%links))
-      b = new_analysis(placed(m, found%position))
+      call make_analysis(b, placed(m, found%position))
       call advance(b, found%t, q)
       call pass_on(q, [remark_mobile, remark_idle, remark_repeated], found)
    end subroutine say_what_moves

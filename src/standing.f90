@@ -5,7 +5,9 @@ module standing
    use remarks, only: remark_t, new_remark, remark_change
    use smooth_position, only: extrapolate
    use block_remarks, only: links_of
-   use following, only: following_t, way_t, go_to, go_on_from, go_back
+   use choices, only: choices_t
+   use convergence, only: convergence_t
+   use following, only: following_t, way_t, place_t, go_to, go_on_from, go_back, note_place, return_to
    implicit none
    private
    public :: stand_on
@@ -25,7 +27,9 @@ contains
       type(way_t), intent(in) :: w
       type(remark_t), allocatable, intent(out) :: list(:)
       logical, intent(out) :: stands
-      type(following_t) :: before
+      type(place_t) :: before
+      type(choices_t) :: choices
+      type(convergence_t) :: found
       logical, allocatable :: singular(:)
       integer :: i
 
@@ -33,17 +37,20 @@ contains
       stands = .false.
       if (.not. (f%follows .and. allocated(f%engine%blocks))) return
       call go_back(f, w)
-      before = f
+      call note_place(f, before)
+      choices = f%choices
+      found = f%convergence
       call come_near(f, t, stands)
       if (stands) then
          allocate (singular(size(f%engine%blocks%blocks%list)))
          call extrapolate(f%engine%blocks, t, singular, stands)
       end if
+      f%convergence = found
       if (.not. stands) then
-         f = before
+         call return_to(f, before)
+         f%choices = choices
          return
       end if
-      f%convergence = before%convergence
       do i = 1, size(singular)
          if (.not. singular(i)) cycle
          list = [list, new_remark(remark_change, links_of(f%engine%blocks, i))]

@@ -4,9 +4,9 @@ module study_estimates
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use motion, only: motion_t, new_motion
-   use analysis, only: analysis_t, new_analysis, advance
+   use analysis, only: analysis_t, make_analysis, advance
    use scatter, only: scatter_t, largest_errors
-   use rounding_samples, only: samples_t, new_samples, take_samples
+   use rounding_samples, only: samples_t, make_samples, take_samples
    use known_digits, only: nothing_known
    use text_output, only: output_t, put
    use numerals, only: whole
@@ -81,9 +81,9 @@ contains
 
       one = trial_mechanism(m, t)
       instants = real(trial_instants(m, t), wp)
-      a = new_analysis(one)
+      call make_analysis(a, one)
       q = new_motion(size(m%links))
-      samples = new_samples(one)
+      call make_samples(samples, one)
       every = t%stride*max(1, (t%last/t%stride)/max_compared)
       do k = 0, t%last
          call advance(a, instants(k), q)

@@ -3,7 +3,7 @@ module study_plan
    use, intrinsic :: iso_fortran_env, only: dp => real64, int64
    use kinds, only: wp
    use mechanism, only: mechanism_t, instant_count, method_newton, method_dense, method_matrix, own_predictor
-   use block_engine, only: block_engine_t, new_block_engine
+   use block_engine, only: block_engine_t, make_block_engine
    use trials, only: trial_t, kind_single, kind_double, kind_quad
    implicit none
    private
@@ -72,7 +72,7 @@ contains
       real(dp) :: time
       integer :: i, possible
 
-      e = new_block_engine(m)
+      call make_block_engine(e, m)
       time = link_time*size(m%links)
       do i = 1, size(e%needed)
          associate (n => e%blocks%list(e%needed(i))%shape%n)

@@ -9,7 +9,7 @@ module trials
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_t, request_link, instant, method_newton, own_predictor
    use motion, only: motion_t, new_motion, mark_none
-   use analysis, only: analysis_t, new_analysis, advance
+   use analysis, only: analysis_t, make_analysis, advance
    use timing, only: seconds
    implicit none
    private
@@ -111,7 +111,7 @@ contains
       allocate (o%value(3, size(m%links), 0:2, size(o%known)), source=0.0_qp)
       o%found = .true.
       q = new_motion(size(m%links))
-      a = new_analysis(m)
+      call make_analysis(a, m)
       begun = seconds()
       failures = 0
       do k = 0, ubound(instants, 1)
@@ -157,7 +157,7 @@ contains
       q = new_motion(size(m%links))
       time = 0.0_dp
       do i = 1, passes
-         a = new_analysis(m)
+         call make_analysis(a, m)
          call advance(a, instants(0), q)
          begun = seconds()
          do k = 1, last

@@ -8,7 +8,7 @@ module true_errors
    use mechanism, only: mechanism_t, place_links
    use motion, only: motion_t, new_motion, mark_none
    use scales, only: characteristic_length, characteristic_rate
-   use analysis, only: analysis_t, new_analysis, advance
+   use analysis, only: analysis_t, make_analysis, advance
    use trials, only: trial_t, outcome_t, trial_mechanism, trial_instants
    implicit none
    private
@@ -146,7 +146,7 @@ contains
       there = trial_mechanism(m, trial_t())
       call place_links(there, real(o%value(:, :, 0, i), wp))
       q = new_motion(size(m%links))
-      a = new_analysis(there)
+      call make_analysis(a, there)
       k = (i - 1)*t%stride
       instants = trial_instants(m, t)
       call advance(a, real(instants(k), wp), q)

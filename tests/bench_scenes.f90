@@ -7,7 +7,7 @@ module bench_scenes
    use motion, only: motion_t, new_motion, mark_none
    use deck, only: read_deck
    use scales, only: characteristic_length, characteristic_rate
-   use analysis, only: analysis_t, new_analysis, advance
+   use analysis, only: analysis_t, make_analysis, advance
    use constants, only: degree
    use quad_jet, only: qp
    use closed_forms_dyads, only: body_t
@@ -147,7 +147,7 @@ contains
 
       found = new_motion(size(s%m%links))
       exact = found
-      if (method /= by_closed_form) a = new_analysis(by_method(s, method))
+      if (method /= by_closed_form) call make_analysis(a, by_method(s, method))
       do k = 0, steps
          if (method /= by_closed_form) call advance(a, instant_of(s, k), found)
          if (mod(k, every) /= 0) cycle
@@ -170,8 +170,8 @@ contains
 
       one = new_motion(size(s%m%links))
       two = one
-      blocks = new_analysis(by_method(s, method_newton))
-      dense = new_analysis(by_method(s, method_dense))
+      call make_analysis(blocks, by_method(s, method_newton))
+      call make_analysis(dense, by_method(s, method_dense))
       do k = 0, steps
          call advance(blocks, instant_of(s, k), one)
          call advance(dense, instant_of(s, k), two)

@@ -3,7 +3,7 @@
 module bench_timing
    use kinds, only: wp
    use motion, only: motion_t, new_motion
-   use analysis, only: analysis_t, new_analysis, advance
+   use analysis, only: analysis_t, make_analysis, advance
    use bench_scenes, only: scene_t, by_method, move_fast, instant_of, by_closed_form
    use timing, only: seconds
    implicit none
@@ -110,7 +110,7 @@ contains
       real(wp) :: begun
       integer :: k
 
-      a = new_analysis(by_method(s, method))
+      call make_analysis(a, by_method(s, method))
       do k = 0, warm
          call advance(a, t(k), q)
       end do

@@ -6,7 +6,7 @@ module bench_whole
    use motion, only: motion_t, new_motion
    use failures, only: failure_t
    use deck, only: read_deck
-   use analysis, only: analysis_t, new_analysis, advance
+   use analysis, only: analysis_t, make_analysis, advance
    use timing, only: seconds
    use bench_tools, only: spread_t, spread_of, memory_peak, plain_reading, figure
    use bench_scenes, only: scene_t, new_scene, instant_of
@@ -62,7 +62,7 @@ contains
       if (allocated(failure)) error stop 'A DECK OF THE BENCH IS REFUSED'
       ready = seconds()
       read = ready - read
-      a = new_analysis(sets(1))
+      call make_analysis(a, sets(1))
       step = seconds()
       ready = step - ready
       q = new_motion(size(sets(1)%links))
@@ -121,7 +121,7 @@ contains
 
       q = new_motion(size(s%m%links))
       time = seconds()
-      a = new_analysis(s%m)
+      call make_analysis(a, s%m)
       do k = 0, s%steps
          call advance(a, instant_of(s, k), q)
       end do

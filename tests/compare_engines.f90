@@ -4,7 +4,7 @@ module compare_engines
    use mechanism, only: mechanism_t, method_dense, wanted_links
    use motion, only: motion_t, new_motion, mark_none
    use structure, only: findings_t, find_structure
-   use analysis, only: analysis_t, new_analysis, advance
+   use analysis, only: analysis_t, make_analysis, advance
    implicit none
    private
    public :: comparison_t, compare
@@ -39,8 +39,8 @@ contains
       all_at_once = m
       all_at_once%method = method_dense
       if (present(method)) all_at_once%method = method
-      blocks = new_analysis(m)
-      dense = new_analysis(all_at_once)
+      call make_analysis(blocks, m)
+      call make_analysis(dense, all_at_once)
       q = new_motion(size(m%links))
       r = q
       do k = 1, size(t)

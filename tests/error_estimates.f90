@@ -9,9 +9,9 @@ program error_estimates
    use mechanism, only: mechanism_t, instant_count, instant, request_link
    use motion, only: motion_t, new_motion
    use deck, only: read_deck
-   use analysis, only: analysis_t, new_analysis, advance
+   use analysis, only: analysis_t, make_analysis, advance
    use scatter, only: scatter_t, row_error
-   use rounding_samples, only: samples_t, new_samples, take_samples
+   use rounding_samples, only: samples_t, make_samples, take_samples
    use quad_jet, only: qp, pi_q
    use closed_forms_dyads, only: body_t
    use deck_tally, only: deck_name
@@ -77,9 +77,9 @@ contains
       type(scatter_t) :: doubt
       integer :: k
 
-      a = new_analysis(m)
+      call make_analysis(a, m)
       q = new_motion(size(m%links))
-      samples = new_samples(m)
+      call make_samples(samples, m)
       do k = 0, instant_count(m) - 1
          call advance(a, instant(m, k), q)
          call take_samples(samples, m, a%engine%blocks, a%convergence%reciprocal_condition, q, .true., doubt)

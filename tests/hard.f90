@@ -12,7 +12,7 @@ program hard
    use mechanism, only: method_matrix, method_dense
    use motion, only: motion_t, new_motion, mark_none
    use scales, only: characteristic_length
-   use analysis, only: analysis_t, new_analysis, advance
+   use analysis, only: analysis_t, make_analysis, advance
    use jet_closure, only: body_jet_t
    use hard_condition, only: condition_t, measure
    use hard_chain, only: scissor_condition
@@ -155,7 +155,7 @@ contains
       real(wp) :: before(size(s%m%links))
       integer :: k
 
-      a = new_analysis(s%m)
+      call make_analysis(a, s%m)
       q = new_motion(size(s%m%links))
       do k = 1, size(s%at)
          before = q%position(3, :)

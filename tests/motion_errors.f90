@@ -4,7 +4,7 @@ module motion_errors
    use quad_jet, only: qp, pi_q
    use mechanism, only: mechanism_t
    use motion, only: motion_t, new_motion, mark_none
-   use analysis, only: analysis_t, new_analysis, advance
+   use analysis, only: analysis_t, make_analysis, advance
    use closed_forms_dyads, only: body_t
    use closed_forms, only: closed_form
    implicit none
@@ -32,7 +32,7 @@ contains
       real(wp) :: one(0:2), t
       integer :: k
 
-      a = new_analysis(m)
+      call make_analysis(a, m)
       q = new_motion(size(m%links))
       do k = 0, steps
          t = t1*real(k, wp)/real(steps, wp)

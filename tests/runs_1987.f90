@@ -3,7 +3,7 @@ module runs_1987
    use kinds, only: wp
    use mechanism, only: instant_count, instant, method_newton, method_dense, method_matrix
    use motion, only: motion_t, new_motion, mark_none
-   use analysis, only: analysis_t, new_analysis, advance
+   use analysis, only: analysis_t, make_analysis, advance
    use bench_scenes, only: bench_t => scene_t, new_bench => new_scene, by_method, by_closed_form, move_exactly, steps_of_turn
    use bench_timing, only: job_t, measure
    use bench_tools, only: figure
@@ -111,7 +111,7 @@ contains
       integer :: k
 
       s = new_bench('input/'//deck//'.deck', deck, set)
-      a = new_analysis(by_method(s, method))
+      call make_analysis(a, by_method(s, method))
       found = new_motion(size(s%m%links))
       there = found
       error = 0.0_wp
