@@ -23,7 +23,6 @@ module block_engine
    private
    public :: block_engine_t, positions_t, make_block_engine, seek_blocks, seek_again, seek_each, begin_record
    public :: set_targets, keep_blocks, tell_blocks
-   public :: block_checkpoint_t, checkpoint_blocks, restore_blocks
 
    !> Positions of one block (unknowns, any number).
    type :: positions_t
@@ -54,20 +53,10 @@ module block_engine
       integer, allocatable :: sign_now(:), sign_of(:)   !< (blocks) of the determinant: found last, followed
       real(wp), allocatable :: side(:)                  !< Jacobian of the block with too many rows, followed
       real(wp), allocatable :: pivot_now(:), pivot_of(:) !< (blocks) the least: found last, followed
+      real(wp), allocatable :: inverse_now(:), inverse_of(:) !< (blocks) |J^-1| likewise
       logical, allocatable :: crossed(:)                !< (blocks) whose determinant has changed its sign
       real(wp) :: change = 0.0_wp                       !< the largest that was predicted
    end type block_engine_t
-
-   !> All that depends on the way so far: the motions that are followed, with the signs and pivots of their
-   !> Jacobians, and the motion found last. No workspace.
-   type :: block_checkpoint_t
-      type(history_t) :: history
-      integer, allocatable :: sign_of(:), sign_now(:)
-      real(wp), allocatable :: pivot_of(:), pivot_now(:), side(:)
-      logical, allocatable :: crossed(:)
-      type(state_t) :: state
-      real(wp) :: t = 0.0_wp, change = 0.0_wp
-   end type block_checkpoint_t
 
 contains
 
@@ -119,6 +108,7 @@ contains
       do i = 1, size(m%links)
          e%estimate(:, i) = m%links(i)%position - [e%chain%origin, 0.0_wp]
       end do
+      allocate (e%inverse_now(size(e%blocks%list)), e%inverse_of(size(e%blocks%list)), source=0.0_wp)
       ! A function's result would bring its own lower bound.
       allocate (e%rough(0:e%blocks%unknowns))
       e%rough(:) = rough_values(m, t, e%length, e%blocks%unknowns)
@@ -228,6 +218,9 @@ contains
          ! At a change point itself the sign is that of rounding.
          if (one%singular) cycle
          c%doubt = max(c%doubt, one%doubt)
+         if (e%state%excursion > 0.0_wp) &
+            c%growth = max(c%growth, e%blocks%list(i)%bend*max(one%inverse, e%inverse_of(i))**2)
+         e%inverse_now(i) = one%inverse
          e%sign_now(i) = one%determinant
          e%pivot_now(i) = one%least_pivot
          if (.not. follows .or. one%determinant == e%sign_of(i)) cycle
@@ -257,47 +250,12 @@ contains
       type(block_engine_t), intent(inout) :: e
 
       call remember(e%history, e%t, e%state%u)
-      e%sign_of = e%sign_now
+      ! As sections: an assignment to the whole would ask for its shape first.
+      e%sign_of(:) = e%sign_now(:)
       if (e%blocks%redundant > 0) e%side = jacobian_of(e%blocks, 1, e%state)
-      e%pivot_of = e%pivot_now
+      e%pivot_of(:) = e%pivot_now(:)
+      e%inverse_of(:) = e%inverse_now(:)
    end subroutine keep_blocks
-
-   !> Notes in `c` all that depends on the way so far.
-   pure subroutine checkpoint_blocks(e, c)
-      type(block_engine_t), intent(in) :: e
-      type(block_checkpoint_t), intent(inout) :: c
-
-      c%history = e%history
-      c%sign_of = e%sign_of
-      c%pivot_of = e%pivot_of
-      if (allocated(e%side)) c%side = e%side
-      c%state = e%state
-      c%sign_now = e%sign_now
-      c%pivot_now = e%pivot_now
-      c%crossed = e%crossed
-      c%t = e%t
-      c%change = e%change
-   end subroutine checkpoint_blocks
-
-   !> Makes the motion that was followed at the checkpoint `c` the one that is followed, and what was found last there
-   !> what was found last; `keeps_found`: that stays as it is now.
-   pure subroutine restore_blocks(e, c, keeps_found)
-      type(block_engine_t), intent(inout) :: e
-      type(block_checkpoint_t), intent(in) :: c
-      logical, intent(in) :: keeps_found
-
-      e%history = c%history
-      e%sign_of = c%sign_of
-      e%pivot_of = c%pivot_of
-      if (allocated(c%side)) e%side = c%side
-      if (keeps_found) return
-      e%state = c%state
-      e%sign_now = c%sign_now
-      e%pivot_now = c%pivot_now
-      e%crossed = c%crossed
-      e%t = c%t
-      e%change = c%change
-   end subroutine restore_blocks
 
    !> The motion found last of the links that are asked for, in the deck's units; `finite`: all of it is in range.
    subroutine tell_blocks(e, found, finite)

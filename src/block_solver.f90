@@ -35,12 +35,15 @@ module block_solver
    real(wp), parameter :: suspicious_pivot = 1.0e-3_wp
    !> So is a doubt from here on, where 1 over the least pivot stands for |J^-1|: with more than two unknowns that is
    !> too small, by 4 with 9 of them, by 2000 with 49 (lattices); doubts are of importance from 0.1 on.
-   real(wp), parameter :: small_doubt = 1.0e-6_wp
+   !> What the drives' excursions add goes with its square, and with 0.1 over the fourth power of their number.
+   real(wp), parameter :: small_doubt = 1.0e-6_wp, small_growth = 0.1_wp
    !> Relative error of the velocities, by what rounding leaves open in the position, from which on they are not told.
    real(wp), parameter :: largest_error = 0.05_wp
    !> Angles beyond have few digits after the point.
    real(wp), parameter :: angle_limit = min(1.0e8_wp, 0.01_wp/epsilon(1.0_wp))
    integer, parameter :: iteration_limit = 60
+   !> 1 over this squared is within the range of reals.
+   real(wp), parameter :: least_inverse = epsilon(1.0_wp)**2
 
 contains
 
@@ -265,13 +268,16 @@ contains
       c%least_pivot = least
       c%reciprocal_condition = 1.0_wp
       if (n == 0) return
-      c%doubt = c%change*b%list(i)%bend/max(least, tiny(least))
+      c%inverse = 1.0_wp/max(least, least_inverse)
+      c%doubt = c%change*b%list(i)%bend*c%inverse
       if (n > 1) c%reciprocal_condition = least/largest
       if (n == 1) largest = b%list(i)%bend
       ! All pivots may be small, where links are much shorter than the mechanism.
       suspicious = least < suspicious_pivot*max(largest, 1.0_wp)
-      if (n > 2 .and. .not. suspicious .and. c%doubt <= small_doubt) return
+      if (n > 2 .and. .not. suspicious .and. c%doubt <= small_doubt .and. &
+         s%excursion*b%list(i)%bend*c%inverse**2*real(n, wp)**4 <= small_growth) return
       inverse = inverse_norm(b%list(i)%shape, w%a, w%sparse(k), w%work, w%iwork)
+      c%inverse = min(inverse, 1.0_wp/least_inverse)
       c%doubt = c%change*b%list(i)%bend*inverse
       if (.not. suspicious) return
       c%reciprocal_condition = min(1.0_wp, 1.0_wp/(inverse*largest))

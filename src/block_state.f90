@@ -25,6 +25,7 @@ module block_state
       type(part_t), allocatable :: part(:)           !< (instances)
       real(wp), allocatable :: own(:, :)             !< (2, arms) u of the block's own frames
       real(wp), allocatable :: target(:, :)          !< (0:2, 0:drives) what the drives ask for
+      real(wp) :: excursion = 0.0_wp                 !< how far they are off the straight way to that, at most
    end type state_t
 
 contains

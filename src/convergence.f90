@@ -27,6 +27,8 @@ module convergence
       real(wp) :: least_pivot = 0.0_wp         !< of its factors
       real(wp) :: change = 0.0_wp              !< the largest of a value, from where the search began
       real(wp) :: doubt = 0.0_wp               !< that change over the distance within which the root is the only one
+      real(wp) :: inverse = 0.0_wp             !< |J^-1| there
+      real(wp) :: growth = 0.0_wp              !< of the doubt with what the drives are off their straight way
       logical :: singular = .false.            !< position found where the Jacobian has no inverse
       real(wp) :: gap = 0.0_wp                 !< of the equation that is open the most, in the unit of length or rad
       logical :: gap_is_angle = .false.

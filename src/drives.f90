@@ -8,7 +8,7 @@ module drives
    use spline, only: spline_t, new_spline, spline_value
    implicit none
    private
-   public :: law_t, new_law, drive_motion
+   public :: law_t, new_law, drive_motion, monomial
 
    !> A drive made ready for evaluation.
    type :: law_t

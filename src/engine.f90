@@ -5,8 +5,8 @@ module engine
    use mechanism, only: mechanism_t, method_newton, method_dense
    use motion, only: motion_t
    use convergence, only: convergence_t
-   use block_engine, only: block_engine_t, make_block_engine, seek_blocks, keep_blocks, tell_blocks, &
-      block_checkpoint_t, checkpoint_blocks, restore_blocks
+   use block_engine, only: block_engine_t, make_block_engine, seek_blocks, keep_blocks, tell_blocks
+   use block_checkpoint, only: block_checkpoint_t, checkpoint_blocks, restore_blocks
    use assembly_choice, only: seek_first
    use dense_engine, only: dense_t, new_dense, seek_dense, keep_dense, tell_dense, &
       dense_checkpoint_t, checkpoint_dense, restore_dense

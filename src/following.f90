@@ -5,9 +5,8 @@ module following
    use mechanism, only: mechanism_t
    use remarks, only: remark_t, remark_dead_end
    use continuity, only: branch_t
-   use scales, only: characteristic_length, largest_rate
+   use drive_path, only: drive_path_t, new_drive_path, part_allowed, likely_excursion, excursion, steps_at_least
    use convergence, only: convergence_t, is_solved
-   use predictor, only: largest_change
    use choices, only: choices_t, new_choices
    use change_points, only: crosses, pass
    use engine, only: engine_t, engine_checkpoint_t, make_engine, seek, keep, checkpoint, restore
@@ -46,7 +45,7 @@ module following
       logical :: follows = .false.               !< a regular motion is kept, found at `t`
       real(wp) :: t = 0.0_wp
       type(place_t) :: place                     !< where the step that was divided last began
-      real(wp) :: longest_part = huge(1.0_wp)    !< of a step: no drive moves by more than `largest_change` in it
+      type(drive_path_t) :: drives               !< their way through time
    end type following_t
 
    !> The way to an instant: whether it came there or to a place where no part of it could be made, how many parts were
@@ -65,12 +64,9 @@ contains
    subroutine make_following(f, m)
       type(following_t), intent(out) :: f
       type(mechanism_t), intent(in) :: m
-      real(wp) :: rate
-
       call make_engine(f%engine, m)
       f%choices = new_choices(m)
-      rate = largest_rate(m, characteristic_length(m))
-      if (rate > 0.0_wp .and. depends_on_before(f%engine)) f%longest_part = largest_change/rate
+      f%drives = new_drive_path(m, depends_on_before(f%engine))
    end subroutine make_following
 
    !> There is an unknown that is sought from where it was before.
@@ -87,17 +83,24 @@ contains
       type(following_t), intent(inout) :: f
       real(wp), intent(in) :: t
       type(way_t), intent(out) :: w
-      real(wp) :: part, here, longest
+      real(wp) :: part, here, longest, allowed, shortest
       integer :: failures
       logical :: accepted
 
       part = t - f%t
-      longest = min(f%longest_part, abs(part))
+      longest = abs(part)
+      shortest = smallest_part*longest
       failures = 0
       do while (w%tries < most_parts)
          w%tries = w%tries + 1
-         part = sign(min(abs(part), f%longest_part), part)
-         w%arrived = .not. f%follows .or. abs(part) >= abs(t - f%t)
+         w%arrived = .not. f%follows
+         if (f%follows) then
+            part = sign(min(abs(part), abs(t - f%t)), part)
+            allowed = part_allowed(f%drives, f%t, part)
+            if (abs(allowed) < abs(part)) longest = max(abs(allowed), shortest)
+            part = allowed
+            w%arrived = abs(part) >= abs(t - f%t)
+         end if
          here = merge(t, f%t + part, w%arrived)
          call attempt(f, here, w, accepted)
          w%arrived = w%arrived .and. accepted
@@ -119,15 +122,22 @@ contains
       real(wp), intent(in) :: t
       type(way_t), intent(inout) :: w
       logical, intent(out) :: accepted
-      real(wp) :: correction
+      real(wp) :: correction, away
       logical :: same
       type(remark_t), allocatable :: list(:)
 
+      away = 0.0_wp
+      if (f%follows) then
+         away = likely_excursion(f%drives, f%t, t)
+         if (allocated(f%engine%blocks)) f%engine%blocks%state%excursion = away
+      end if
       call seek(f%engine, t, f%follows, f%convergence, correction, same)
       f%iterations = f%iterations + f%convergence%iterations
       accepted = is_solved(f%convergence)
       if (.not. f%follows) return
-      accepted = accepted .and. correction <= largest_correction .and. f%convergence%doubt <= largest_doubt
+      accepted = accepted .and. correction <= largest_correction
+      if (accepted .and. away > 0.0_wp) call add_excursion(f, t, away)
+      accepted = accepted .and. f%convergence%doubt <= largest_doubt
       if (accepted .and. .not. same .and. .not. f%convergence%singular .and. allocated(f%engine%blocks)) then
          same = crosses(f%engine%blocks, correction)
          if (same) then
@@ -147,12 +157,27 @@ contains
       w%branch%doubt = max(w%branch%doubt, f%convergence%doubt)
    end subroutine attempt
 
+   !> Adds to the doubt of the motion found last at `t` what the drives leave open that on the way there are `away` at
+   !> most from the straight way. A bound at hardly any cost is enough mostly.
+   subroutine add_excursion(f, t, away)
+      type(following_t), intent(inout) :: f
+      real(wp), intent(in) :: t, away
+      real(wp) :: doubt
+
+      associate (c => f%convergence)
+         doubt = c%doubt + c%growth*away
+         if (doubt > largest_doubt) doubt = c%doubt + c%growth*excursion(f%drives, f%t, t)
+         c%doubt = doubt
+      end associate
+   end subroutine add_excursion
+
    !> The way to `t` would have more parts than are tried.
    pure logical function is_too_far(f, t)
       type(following_t), intent(in) :: f
       real(wp), intent(in) :: t
 
-      is_too_far = f%follows .and. abs(t - f%t)/real(most_parts, wp) > f%longest_part
+      is_too_far = f%follows .and. abs(t - f%t) > f%drives%longest
+      if (is_too_far) is_too_far = steps_at_least(f%drives, f%t, t) > real(most_parts, wp)
    end function is_too_far
 
    !> All parts that are tried were not enough for `w`.

@@ -6,7 +6,7 @@ module scales
       term_power, term_table, plane_origin
    implicit none
    private
-   public :: characteristic_length, characteristic_rate, largest_rate, power_of_two
+   public :: characteristic_length, characteristic_rate, power_of_two, is_length
 
 contains
 
@@ -59,7 +59,7 @@ contains
    end function characteristic_rate
 
    !> The largest rate of any drive in the time asked for, in rad per time unit; rates of length are divided by the
-   !> characteristic `length`. An upper estimate.
+   !> characteristic `length`. An estimate: `law_bounds` has true bounds.
    pure real(wp) function largest_rate(m, length) result(rate)
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: length

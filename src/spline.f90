@@ -8,7 +8,7 @@ module spline
    use linear_solver, only: solve_tridiagonal
    implicit none
    private
-   public :: spline_t, new_spline, spline_value
+   public :: spline_t, new_spline, spline_value, piece_at, piece_value
 
    type :: spline_t
       real(wp), allocatable :: x(:), y(:), m(:)   !< knots (increasing), values, second derivatives
@@ -41,10 +41,18 @@ contains
       type(spline_t), intent(in) :: s
       real(wp), intent(in) :: t
       real(wp) :: f(3)
-      real(wp) :: h, u, w
-      integer :: i
 
-      i = interval(s%x, t)
+      f = piece_value(s, piece_at(s, t), t)
+   end function spline_value
+
+   !> The same of the cubic between the knots `i` and `i` + 1.
+   pure function piece_value(s, i, t) result(f)
+      type(spline_t), intent(in) :: s
+      integer, intent(in) :: i
+      real(wp), intent(in) :: t
+      real(wp) :: f(3)
+      real(wp) :: h, u, w
+
       h = s%x(i + 1) - s%x(i)
       u = t - s%x(i)
       w = s%x(i + 1) - t
@@ -54,22 +62,23 @@ contains
       f(2) = (s%m(i + 1)*u**2 - s%m(i)*w**2)/(2.0_wp*h) &
          + (s%y(i + 1) - s%y(i))/h - (s%m(i + 1) - s%m(i))*h/6.0_wp
       f(3) = (s%m(i)*w + s%m(i + 1)*u)/h
-   end function spline_value
+   end function piece_value
 
-   !> The i with x(i) <= t <= x(i + 1), by bisection.
-   pure integer function interval(x, t) result(low)
-      real(wp), intent(in) :: x(:), t
+   !> The i with x(i) <= t <= x(i + 1), by bisection; the first or the last where `t` lies beyond the table.
+   pure integer function piece_at(s, t) result(low)
+      type(spline_t), intent(in) :: s
+      real(wp), intent(in) :: t
       integer :: high, middle
 
       low = 1
-      high = size(x)
+      high = size(s%x)
       do while (high - low > 1)
          middle = (low + high)/2
-         if (x(middle) <= t) then
+         if (s%x(middle) <= t) then
             low = middle
          else
             high = middle
          end if
       end do
-   end function interval
+   end function piece_at
 end module spline

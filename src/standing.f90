@@ -2,6 +2,7 @@
 !> exist, since each of the two branches has its own.
 module standing
    use kinds, only: wp
+   use drive_path, only: largest_rate
    use remarks, only: remark_t, new_remark, remark_change
    use smooth_position, only: extrapolate
    use block_remarks, only: links_of
@@ -71,7 +72,8 @@ contains
       associate (history => f%engine%blocks%history)
          fastest = maxval(abs(history%rate(history%sought, history%place(0))))
       end associate
-      h = min(abs(t - f%t)/3.0_wp, step*f%longest_part)
+      h = abs(t - f%t)/3.0_wp
+      fastest = max(fastest, min(largest_rate(f%drives, f%t, t), sqrt(huge(1.0_wp))))
       if (h*fastest > step) h = step/fastest
       h = sign(h, t - f%t)
       arrived = abs(h) > 0.0_wp
