@@ -20,7 +20,7 @@ module drive_path
    !> less, and is asked of its Jacobian; this bounds what links far down a chain make of it.
    real(wp), parameter :: largest_excursion = 0.03_wp
    !> The least factor by which a part is made shorter at once: its bounds get closer as it does.
-   real(wp), parameter :: least_factor = 1.0e-3_wp
+   real(wp), parameter :: least_factor = 1.0e-3_wp, a_little_less = 0.98_wp
 
    type :: drive_path_t
       type(law_t), allocatable :: laws(:)
@@ -70,7 +70,8 @@ contains
    pure real(wp) function part_allowed(p, t, part) result(allowed)
       type(drive_path_t), intent(in) :: p
       real(wp), intent(in) :: t, part
-      real(wp) :: change, away, factor
+      real(wp) :: change, away
+      logical :: inside
 
       allowed = part
       if (is_within(p, t, t + part) .and. abs(part) <= p%longest .and. p%curve < huge(1.0_wp)) then
@@ -78,15 +79,15 @@ contains
       end if
       do while (abs((t + allowed) - t) > 0.0_wp)
          call examine(p, t, t + allowed, change, away)
-         ! Rounding in the bounds of a uniform motion.
-         if (is_within(p, t, t + allowed) .and. abs(allowed) <= p%longest) change = 0.0_wp
-         if (change <= largest_change .and. away <= largest_excursion) return
-         factor = 1.0_wp
-         if (change > largest_change) factor = max(least_factor, largest_change/change)
-         if (away > largest_excursion) factor = min(factor, 0.5_wp)
-         if (is_within(p, t, t + allowed) .and. abs(allowed) > p%longest) &
-            factor = max(factor, min(1.0_wp, p%longest/abs(allowed)))
-         allowed = allowed*min(factor, 1.0_wp - epsilon(1.0_wp))
+         inside = is_within(p, t, t + allowed)
+         if (change > largest_change .and. .not. (inside .and. abs(allowed) <= p%longest)) then
+            allowed = allowed*max(least_factor, a_little_less*largest_change/change)
+            if (inside) allowed = sign(max(abs(allowed), p%longest), part)
+         else if (away > largest_excursion) then
+            allowed = 0.5_wp*allowed
+         else
+            return
+         end if
       end do
    end function part_allowed
 

@@ -48,6 +48,7 @@ part 'faults by name' tests/faults.sh
 part 'the methods against one another' tests/methods.sh
 part 'the digits' tests/digits.sh
 part 'wide blocks' tests/wide.sh
+part 'drives between instants' tests/drives.sh
 part 'decks made by chance' tests/fuzz.sh 1000
 part 'the method of 1987' "$BUILD/release/matrix_1987" short
 part 'what is hard to compute' tests/hard.sh short

@@ -1,0 +1,82 @@
+#!/bin/sh
+# What drives do between two instants: decks in few steps, compared at their instants with the same deck in fifty times
+# as many. A law that goes out and comes back within a step must be followed out and back.
+BUILD=${BUILD:-build}
+. tests/counting.sh
+kin=$BUILD/kinmat
+work=$BUILD/drives
+mkdir -p "$work"
+
+# four_bar CRANK COUPLER ROCKER BASE PHI: a crank-driven four-bar whose crank begins at PHI, without its drive
+four_bar() {
+   LC_ALL=C awk -v a="$1" -v b="$2" -v d="$3" -v g="$4" -v phi="$5" '
+   function put(card, l, m, x, y, z) { printf "%-8s%-8s%s\n%-8s%-24.16E%-24.16E%.16E\n", card, l, m, "*", x, y, z }
+   BEGIN { x = a*cos(phi); y = a*sin(phi); e = sqrt((x - g)^2 + y^2)
+      c = (d*d + e*e - b*b)/(2*d*e); psi = atan2(y, x - g) - atan2(sqrt(1 - c*c), c)
+      print "TITLE   FOUR-BAR"
+      put("GROUND", "BASE", "", 0, 0, 0); put("LINK", "CRANK", "", 0, 0, phi)
+      put("LINK", "COUPLER", "", x, y, atan2(d*sin(psi) - y, g + d*cos(psi) - x)); put("LINK", "ROCKER", "", g, 0, psi)
+      put("POINT", "A0", "BASE", 0, 0, 0); put("POINT", "B0", "BASE", g, 0, 0)
+      put("POINT", "A0C", "CRANK", 0, 0, 0); put("POINT", "AC", "CRANK", a, 0, 0)
+      put("POINT", "AK", "COUPLER", 0, 0, 0); put("POINT", "BK", "COUPLER", b, 0, 0)
+      put("POINT", "B0R", "ROCKER", 0, 0, 0); put("POINT", "BR", "ROCKER", d, 0, 0)
+      print "REVOLUTEA0      A0C     J1\nREVOLUTEAC      AK      J2\nREVOLUTEBK      BR      J3\nREVOLUTEB0R     B0      J4"
+   }' | awk '/^POINT/ { point = 1 } /^\*/ && point { $0 = substr($0, 1, 56); point = 0 } 1'
+}
+# angle VALUE: the drive of the crank, to be followed by what is added
+angle() { printf 'DRIVE   ANGLE   CRANK\n*       %s\n' "$1"; }
+# cam RISE: in each unit of time from 0 to 4 a rise and a return, between a fifth and four fifths of it
+cam() {
+   LC_ALL=C awk -v rise="$1" 'BEGIN { pi = atan2(0, -1)
+      for (k = 0; k <= 160; k++) { u = k % 40/40; v = u > 0.2 && u < 0.8 ? rise*(0.5 - 0.5*cos(2*pi*(u - 0.2)/0.6)) : 0
+         printf "ADD     TABLE\n*       %-24.16E%.16E\n", k/40, v } }'
+}
+# added FORM R1 R2 R3
+added() { LC_ALL=C printf 'ADD     %s\n*       %-24s%-24s%s\n' "$1" "$2" "$3" "$4"; }
+# ends STEPS FROM TO
+ends() { LC_ALL=C printf 'TIME    %s\n*       %-24s%s\nEND\n' "$1" "$2" "$3"; }
+
+# compare NAME FROM TO STEPS FLAGGED: the deck NAME.part in STEPS steps and in fifty times as many; so many instants of
+# the first are without a position, and wherever both have one it is the same
+compare() {
+   { cat "$work/$1.part"; ends "$4" "$2" "$3"; } > "$work/$1.deck"
+   { cat "$work/$1.part"; ends $(($4*50)) "$2" "$3"; } > "$work/$1.fine.deck"
+   for deck in "$1" "$1.fine"; do
+      "$kin" "$work/$deck.deck" -o "$work/$deck.lst" --csv "$work/$deck.csv" 2> "$work/$deck.err"
+      echo $? >> "$work/$deck.err"
+   done
+   equal "$1: flagged" "$5" "$(sed -n 's/^ END OF SET.*MARKED //p' "$work/$1.lst")"
+   equal "$1: other than in small steps" '' "$(LC_ALL=C awk -F, 'FNR == NR { if (FNR > 1) fine[$2 "," $5] = $0; next }
+      FNR > 1 { split(fine[$2*50 "," $5], other, ",")
+         if (($6 == "") != (other[6] == "")) { print; next }
+         for (i = 6; i <= 8; i++) if ($i != "" && ($i - other[i])^2 > 1e-14*(1 + $i^2)) { print; next } }' \
+      "$work/$1.fine.csv" "$work/$1.csv" | head -n 4)"
+}
+
+# A four-bar whose crank, from 0.7, can rise to 0.8127: cams below and beyond that, by one step a cam.
+{ four_bar 2 1.5 1.5 4 0.7; angle 0.7; cam 0.10; } > "$work/cam_below.part"
+compare cam_below 0.0 4.0 4 0
+{ four_bar 2 1.5 1.5 4 0.7; angle 0.7; cam 0.14; } > "$work/cam_beyond.part"
+compare cam_beyond 0.0 4.0 4 4
+equal 'cam_beyond: its limit' 1 "$(grep -c 'LIMIT OF MOTION AT T = 4.12745' "$work/cam_beyond.lst")"
+# A harmonic of exactly one period a step, on the same four-bar and on one whose crank turns fully.
+{ four_bar 2 1.5 1.5 4 0.7; angle 0.7; added HARMONIC -0.10 6.2831853071795862 0.0; } > "$work/period_below.part"
+compare period_below 0.0 4.0 4 0
+{ four_bar 2 1.5 1.5 4 0.7; angle 0.7; added HARMONIC 0.14 6.2831853071795862 0.0; } > "$work/period_beyond.part"
+compare period_beyond 0.0 4.0 4 4
+{ four_bar 1 3.5 3 4 0.5; angle 0.5; added HARMONIC 30.0 6.2831853071795862 0.0; } > "$work/period_turning.part"
+compare period_turning 0.0 4.0 4 0
+# 0.001/t^2 turns the crank by a thousand radians at first, and then hardly any more.
+{ four_bar 1 3.5 3 4 1000.5; angle 0.5; added POWER 1.0E-3 -2.0; } > "$work/power.part"
+compare power 0.001 10.001 10 0
+# A root rises most steeply where it begins.
+{ four_bar 1 3.5 3 4 0.5; angle 0.5; added POWER 20.0 0.5; } > "$work/root.part"
+compare root 0.000001 4.0 4 0
+
+# Three cylinders go round a cusp between t = 0 and 1, each by little: the assembly at t = 1 is the other one. Later a
+# limit is met.
+sed '/^TIME/,$d' tests/decks/cusp.deck > "$work/cusp.part"
+echo 'PRINT   LINKS   PLAT' >> "$work/cusp.part"
+compare cusp 0.0 2.0 2 1
+equal 'cusp: the other assembly' 1 "$(grep -c '^ PLAT *8\.85715 *-8\.19202 ' "$work/cusp.lst")"
+conclude
