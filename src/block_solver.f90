@@ -268,14 +268,16 @@ contains
       c%least_pivot = least
       c%reciprocal_condition = 1.0_wp
       if (n == 0) return
-      c%inverse = 1.0_wp/max(least, least_inverse)
-      c%doubt = c%change*b%list(i)%bend*c%inverse
       if (n > 1) c%reciprocal_condition = least/largest
       if (n == 1) largest = b%list(i)%bend
       ! All pivots may be small, where links are much shorter than the mechanism.
       suspicious = least < suspicious_pivot*max(largest, 1.0_wp)
-      if (n > 2 .and. .not. suspicious .and. c%doubt <= small_doubt .and. &
-         s%excursion*b%list(i)%bend*c%inverse**2*real(n, wp)**4 <= small_growth) return
+      if (n > 2) then
+         c%inverse = 1.0_wp/max(least, least_inverse)
+         c%doubt = c%change*b%list(i)%bend*c%inverse
+         if (.not. suspicious .and. c%doubt <= small_doubt .and. &
+            s%excursion*b%list(i)%bend*c%inverse**2*real(n, wp)**4 <= small_growth) return
+      end if
       inverse = inverse_norm(b%list(i)%shape, w%a, w%sparse(k), w%work, w%iwork)
       c%inverse = min(inverse, 1.0_wp/least_inverse)
       c%doubt = c%change*b%list(i)%bend*inverse
