@@ -40,23 +40,19 @@ module klu
    end type numeric_t
 
    !> A pattern and, from the first factorization on, the factors of the last matrix of that pattern, which it frees
-   !> when it ends. No object that holds one is copied (tests/house.sh). A copy would be harmless all the same: the
-   !> factors belong to the object that stands at `owner`, as long as those of that `number` are there; a copy has none.
-   !> Rejected: an assignment of its own, which gfortran 12 does not call for allocatable components.
+   !> when it ends. No object that holds one is ever copied, since both would free them: objects are made by subroutines
+   !> (tests/copies.awk looks for any other way). Rejected: an assignment of the type's own, which gfortran 12 does not
+   !> call for allocatable components.
    type :: klu_t
       type(pattern_t) :: pattern
       type(common_t) :: common
-      type(c_ptr) :: symbolic = c_null_ptr, numeric = c_null_ptr, owner = c_null_ptr
-      integer :: number = 0
+      type(c_ptr) :: symbolic = c_null_ptr, numeric = c_null_ptr
       integer :: exchanges = 1                    !< the sign of both permutations together
    contains
       final :: free_factors
    end type klu_t
 
    integer(c_int), parameter :: colamd = 1, unscaled = -1
-
-   !> Of all factors made so far: they have not been freed yet.
-   logical, allocatable :: is_there(:)
 
    interface
       integer(c_int) function klu_defaults(common) bind(c)
@@ -116,14 +112,13 @@ contains
 
    !> Factors the matrix `a` (entries of the pattern, column by column). `info` > 0: exactly singular, no factors.
    subroutine factor(k, a, info)
-      type(klu_t), intent(inout), target :: k
+      type(klu_t), intent(inout) :: k
       real(wp), intent(in), target :: a(*)
       integer, intent(out) :: info
       integer(c_int) :: done
 
       info = 1
-      if (.not. owns_factors(k)) then
-         k%numeric = c_null_ptr
+      if (.not. c_associated(k%symbolic)) then
          done = klu_defaults(k%common)
          k%common%ordering = colamd
          k%common%tol = 1.0_c_double
@@ -132,7 +127,6 @@ contains
          k%common%btf = 0
          k%symbolic = klu_analyze(order_of(k), k%pattern%first, k%pattern%row, k%common)
          if (.not. c_associated(k%symbolic)) return
-         call make_owner(k)
       end if
       if (c_associated(k%numeric)) done = klu_free_numeric(k%numeric, k%common)
       k%numeric = klu_factor(k%pattern%first, k%pattern%row, c_loc(a), k%symbolic, k%common)
@@ -144,12 +138,11 @@ contains
    !> Factors `a` with the pivots that the matrix before had, in a third of the time. `info` > 0: there are no such
    !> factors, or a pivot is zero now.
    subroutine factor_likewise(k, a, info)
-      type(klu_t), intent(inout), target :: k
+      type(klu_t), intent(inout) :: k
       real(wp), intent(in), target :: a(*)
       integer, intent(out) :: info
 
       info = 1
-      if (.not. owns_factors(k)) return
       if (.not. c_associated(k%numeric)) return
       if (klu_refactor(k%pattern%first, k%pattern%row, c_loc(a), k%symbolic, k%numeric, k%common) == 0) return
       if (k%common%status == 0) info = 0
@@ -238,30 +231,10 @@ contains
    end function sign_of
 
    impure elemental subroutine free_factors(k)
-      type(klu_t), intent(inout), target :: k
+      type(klu_t), intent(inout) :: k
       integer(c_int) :: done
 
-      if (.not. owns_factors(k)) return
       if (c_associated(k%numeric)) done = klu_free_numeric(k%numeric, k%common)
       if (c_associated(k%symbolic)) done = klu_free_symbolic(k%symbolic, k%common)
-      is_there(k%number) = .false.
    end subroutine free_factors
-
-   !> `k` has factors, or the order in which to make them, and they are not another's, of which it is a copy.
-   logical function owns_factors(k)
-      type(klu_t), intent(in), target :: k
-
-      owns_factors = k%number > 0
-      if (owns_factors) owns_factors = is_there(k%number)
-      if (owns_factors) owns_factors = c_associated(k%owner, c_loc(k))
-   end function owns_factors
-
-   subroutine make_owner(k)
-      type(klu_t), intent(inout), target :: k
-
-      if (.not. allocated(is_there)) allocate (is_there(0))
-      is_there = [is_there, .true.]
-      k%number = size(is_there)
-      k%owner = c_loc(k)
-   end subroutine make_owner
 end module klu
