@@ -3,7 +3,7 @@
 module block_engine
    use kinds, only: wp
    use mechanism, only: mechanism_t, wanted_links, pair_revolute, drive_x, drive_y, drive_slide
-   use motion, only: motion_t
+   use motion, only: motion_t, mark_none, mark_singular, mark_open
    use scales, only: characteristic_length, power_of_two
    use links_tree, only: tree_t, new_tree
    use loop_equations, only: new_equations
@@ -45,6 +45,7 @@ module block_engine
       integer, allocatable :: sign_marked(:)
       real(wp), allocatable :: side(:), side_marked(:)  !< Jacobian of the block with too many rows, followed
       real(wp), allocatable :: pivot_now(:), pivot_of(:) !< (blocks) the least: found last, followed
+      integer, allocatable :: mark_now(:)               !< (blocks) why there are no velocities; mark_none: there are
       logical, allocatable :: crossed(:)                !< (blocks) whose determinant has changed its sign
       real(wp) :: change = 0.0_wp                       !< the largest that was predicted
    end type block_engine_t
@@ -92,6 +93,7 @@ contains
       end do
       allocate (e%sign_now(size(e%blocks%list)), e%sign_of(size(e%blocks%list)), source=1)
       allocate (e%pivot_now(size(e%blocks%list)), e%pivot_of(size(e%blocks%list)), source=1.0_wp)
+      allocate (e%mark_now(size(e%blocks%list)), source=mark_none)
       allocate (e%crossed(size(e%blocks%list)), source=.false.)
       ! A function's result would bring its own lower bound.
       allocate (e%rough(0:e%blocks%unknowns))
@@ -199,6 +201,9 @@ contains
             one%determinant = e%sign_of(i)*relative_side(e%blocks, i, e%side, e%state)
          call gather(one, c)
          if (.not. is_solved(one)) return
+         e%mark_now(i) = mark_none
+         if (one%singular) e%mark_now(i) = mark_singular
+         if (one%rates_open) e%mark_now(i) = mark_open
          ! At a change point itself the sign is that of rounding.
          if (one%singular) cycle
          c%doubt = max(c%doubt, one%doubt)

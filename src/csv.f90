@@ -47,10 +47,10 @@ contains
          call add(o, start)
          row = row_of(m, q, m%requests(i))
          call add_name(o, row)
-         call add_values(o, row, q%known, m%degrees)
+         call add_values(o, row, row%known, m%degrees)
          call add(o, ',')
-         call add(o, marks(q%mark)(:len_trim(marks(q%mark))))
-         if (doubt%asked) call add_errors(o, row, row_error(m, doubt, q, m%requests(i)), q%known, m%degrees)
+         call add(o, marks(row%mark)(:len_trim(marks(row%mark))))
+         if (doubt%asked) call add_errors(o, row, row_error(m, doubt, q, m%requests(i)), row%known, m%degrees)
          call put(o, '')
       end do
    end subroutine csv_instant

@@ -8,9 +8,10 @@ module engine
    use block_engine, only: block_engine_t, new_block_engine, seek_blocks, keep_blocks, tell_blocks, &
       mark_blocks, return_blocks
    use dense_engine, only: dense_t, new_dense, seek_dense, keep_dense, tell_dense, mark_dense, return_dense
+   use link_knowledge, only: know_links, tell_driven
    implicit none
    private
-   public :: engine_t, new_engine, seek, keep, mark_place, return_to_place, tell, is_certified
+   public :: engine_t, new_engine, seek, keep, mark_place, return_to_place, tell, tell_links, tell_certain, is_certified
 
    !> One of the two.
    type :: engine_t
@@ -105,4 +106,21 @@ contains
       is_certified = allocated(e%blocks)
       if (allocated(e%dense)) is_certified = e%dense%method == method_dense
    end function is_certified
+
+   !> Of which links the motion found last is known in full although it is not as a whole.
+   subroutine tell_links(e, found)
+      type(engine_t), intent(in) :: e
+      type(motion_t), intent(inout) :: found
+
+      if (allocated(e%blocks)) call know_links(e%blocks, found)
+   end subroutine tell_links
+
+   !> What is certain at `t`, where no position was found: the links that drives alone move.
+   subroutine tell_certain(e, t, found)
+      type(engine_t), intent(inout) :: e
+      real(wp), intent(in) :: t
+      type(motion_t), intent(inout) :: found
+
+      if (allocated(e%blocks)) call tell_driven(e%blocks, t, found)
+   end subroutine tell_certain
 end module engine

@@ -104,9 +104,9 @@ contains
          if (m%requests(i)%kind /= last_kind) call put_trimmed(o, l%heads(m%requests(i)%kind))
          last_kind = m%requests(i)%kind
          if (is_known) then
-            call put_row(o, l, q%known, row_of(m, q, m%requests(i)))
+            call put_row(o, l, row_of(m, q, m%requests(i)))
          else
-            call put_row(o, l, q%known, row_of(m, q, m%requests(i)), &
+            call put_row(o, l, row_of(m, q, m%requests(i)), &
                row_scatter(m, doubt, m%requests(i)), masked)
          end if
       end do
@@ -130,10 +130,9 @@ contains
 
    !> One row: what is not known is a word, what the row does not have is blank. `error` (3, 0:2), where it is given, is
    !> unknown of the numbers; `masked`: a digit is.
-   subroutine put_row(o, l, known, row, error, masked)
+   subroutine put_row(o, l, row, error, masked)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      integer, intent(in) :: known
       type(row_t), intent(in) :: row
       real(wp), intent(in), optional :: error(3, 0:2)
       logical, intent(inout), optional :: masked
@@ -149,7 +148,7 @@ contains
          do c = 1, last
             unit = merge(2, 1, c == 3 .or. row%angular)
             associate (field => line(used + 1:used + numeral_length))
-               if (k > known) then
+               if (k > row%known) then
                   field = l%none
                else if (present(error)) then
                   call put_known(row%value(c, k)/size_of(unit), error(c, k)/size_of(unit), l%decimals(unit, k), &

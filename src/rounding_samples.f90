@@ -1,12 +1,13 @@
-!> Level 10. How far a motion is known: the blocks solved again, from the deck as it is and from decks whose numbers are
+!> Level 11. How far a motion is known: the blocks solved again, from the deck as it is and from decks whose numbers are
 !> a little off, at instants where digits of the tables could be in doubt.
 module rounding_samples
    use kinds, only: wp
    use mechanism, only: mechanism_t, place_links
-   use motion, only: motion_t, new_motion
+   use motion, only: motion_t, new_motion, forget_links, mark_none, mark_singular
    use scales, only: characteristic_length, characteristic_rate
    use convergence, only: convergence_t, is_solved, ended_open
    use block_solver, only: solve_block
+   use link_knowledge, only: know_links
    use block_engine, only: block_engine_t, new_block_engine, set_targets, tell_blocks
    use perturbed_deck, only: sample_count, perturbed, perturbed_instant
    use scatter, only: scatter_t, find_noise, unusable
@@ -140,16 +141,19 @@ contains
 
       q%t = t
       q%known = 2
+      call forget_links(q)
       call set_targets(e, t)
       correction = 0.0_wp
       do i = 1, size(e%needed)
          c = convergence_t()
          call solve_block(e%blocks, e%needed(i), 0.0_wp, e%work, e%state, c, correction)
          if (c%singular) q%known = 0
+         e%mark_now(e%needed(i)) = merge(mark_singular, mark_none, c%singular)
          if (is_solved(c) .and. .not. c%rates_open) cycle
          q%known = merge(unusable, -1, c%ended == ended_open .or. c%rates_open)
          return
       end do
       call tell_blocks(e, q, finite)
+      if (q%known == 0) call know_links(e, q)
    end subroutine solve_again
 end module rounding_samples

@@ -48,18 +48,18 @@ contains
       if (.not. s%taken) return
       error = 0.0_wp
       middle = row_of(m, s%samples(0), request)
-      known = s%samples(0)%known
+      known = middle%known
       zero = abs(middle%value) <= 0.0_wp
       ! Where the Jacobian has no inverse, a position changes with the root of what the deck changes by.
       scale = caution/merge(roundings, sqrt(roundings), known > 0)
       do k = 1, ubound(s%samples, 1)
          if (s%samples(k)%known == unusable) cycle
          ! Half of the kin of a mechanism at its limit cannot go so far.
-         if (s%samples(k)%known < 0 .and. known == 0) cycle
          one = row_of(m, s%samples(k), request)
+         if (one%known < 0 .and. known == 0) cycle
          error = max(error, abs(one%value - middle%value))
          zero = zero .and. abs(one%value) <= 0.0_wp
-         known = min(known, s%samples(k)%known)
+         known = min(known, one%known)
       end do
       ! A coordinate of what stands still is zero without a sum.
       error = merge(0.0_wp, scale*error + noise_of(s, middle%angular), zero)
