@@ -9,7 +9,7 @@ module block_engine
    use loop_equations, only: new_equations
    use rough_positions, only: rough_values
    use drives, only: law_t, new_law, drive_motion
-   use convergence, only: convergence_t, is_solved, take_gap, ended_converged, ended_singular
+   use convergence, only: convergence_t, is_solved, gather, ended_converged, ended_singular
    use predictor, only: history_t, new_history, remember, predict, largest_change
    use blocks, only: blocks_t
    use block_partition, only: new_blocks
@@ -214,22 +214,6 @@ contains
          e%crossed(i) = .true.
       end do
    end subroutine seek_each
-
-   !> The record of the whole: the largest of each count, the worst of each ending.
-   pure subroutine gather(one, c)
-      type(convergence_t), intent(in) :: one
-      type(convergence_t), intent(inout) :: c
-
-      if (one%ended /= ended_converged) c%ended = one%ended
-      c%iterations = max(c%iterations, one%iterations)
-      c%residual = max(c%residual, one%residual)
-      c%step = max(c%step, one%step)
-      c%reciprocal_condition = min(c%reciprocal_condition, one%reciprocal_condition)
-      c%determinant = c%determinant*one%determinant
-      if (one%gap > c%gap) call take_gap(one, c)
-      c%singular = c%singular .or. one%singular
-      c%rates_open = c%rates_open .or. one%rates_open
-   end subroutine gather
 
    !> Makes the motion found last the one that is followed.
    subroutine keep_blocks(e)

@@ -6,7 +6,7 @@ module points
    use motion, only: motion_t, known_of, mark_of, mark_none
    implicit none
    private
-   public :: row_t, row_of, is_due, point_motion, pair_motion
+   public :: row_t, row_of, is_due, is_fixed, point_motion, pair_motion
 
    !> One row of a table, in the deck's length unit and radians.
    type :: row_t
@@ -68,6 +68,21 @@ contains
          end select
       end associate
    end function row_of
+
+   !> What `request` asks for belongs to the ground.
+   pure logical function is_fixed(m, request)
+      type(mechanism_t), intent(in) :: m
+      type(request_t), intent(in) :: request
+
+      select case (request%kind)
+      case (request_link)
+         is_fixed = m%links(request%subject)%ground
+      case (request_point)
+         is_fixed = m%links(m%points(request%subject)%link)%ground
+      case default
+         is_fixed = .false.
+      end select
+   end function is_fixed
 
    !> Of `row` no more is known than of `link`.
    pure subroutine note_known(m, q, link, row)

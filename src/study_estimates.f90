@@ -1,12 +1,11 @@
-!> Level 19. The errors that the program tells of its own results (--errors) beside the true ones.
+!> Level 21. The errors that the program tells of its own results (--errors) beside the true ones.
 module study_estimates
    use, intrinsic :: iso_fortran_env, only: dp => real64, qp => real128
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use motion, only: motion_t, new_motion
-   use analysis, only: analysis_t, new_analysis, advance
-   use scatter, only: scatter_t, largest_errors
-   use rounding_samples, only: samples_t, new_samples, take_samples
+   use set_motion, only: put_together
+   use set_analysis, only: set_analysis_t, new_set_analysis, advance_set, sample_set, set_errors
    use known_digits, only: nothing_known
    use text_output, only: output_t, put
    use numerals, only: whole
@@ -73,25 +72,23 @@ contains
       type(truth_t), intent(in) :: truth
       type(tally_t), intent(out) :: tally
       type(mechanism_t) :: one
-      type(analysis_t) :: a
+      type(set_analysis_t) :: a
       type(motion_t) :: q
-      type(samples_t) :: samples
-      type(scatter_t) :: doubt
       integer :: k, there, every
 
       one = tried(m, t)
-      a = new_analysis(one)
+      call new_set_analysis(one, a)
       q = new_motion(size(m%links))
-      samples = new_samples(one)
       every = t%stride*max(1, (t%last/t%stride)/enough)
       do k = 0, t%last
-         call advance(a, real(instant_of(m, t, k), wp), q)
-         if (mod(k, every) /= 0 .or. q%known < 2) cycle
+         call advance_set(a, one, real(instant_of(m, t, k), wp))
+         if (mod(k, every) /= 0) cycle
+         call put_together(a%now, q)
+         if (q%known < 2) cycle
          there = true_sample(truth, t, k)
          if (truth%motion%known(there) < 2) cycle
-         call take_samples(samples, one, a%engine%blocks, a%convergence%reciprocal_condition, q, &
-            .true., doubt)
-         call add_instant(truth, there, q, largest_errors(one, doubt, q, samples%length, samples%rate), tally)
+         call sample_set(a, one, .true.)
+         call add_instant(truth, there, q, set_errors(a, one), tally)
       end do
    end subroutine compare
 

@@ -1,4 +1,4 @@
-!> Level 19. The head of a study: what is compared with what, and how its numbers are meant.
+!> Level 21. The head of a study: what is compared with what, and how its numbers are meant.
 module study_head
    use mechanism, only: mechanism_t, instant_count
    use text_output, only: output_t, put

@@ -1,4 +1,4 @@
-!> Level 19. The lines of --study: a way, its time, its errors; the cheapest ways.
+!> Level 21. The lines of --study: a way, its time, its errors; the cheapest ways.
 module study_table
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use mechanism, only: method_newton, method_dense, own_predictor

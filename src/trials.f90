@@ -1,4 +1,4 @@
-!> Level 17. A set of computations solved in one way, in this program's own kind of reals: its motion, and its time.
+!> Level 19. A set of computations solved in one way, in this program's own kind of reals: its motion, and its time.
 !>
 !> The instants are those of a double-precision program, t0 + (t1 - t0) k/n in its arithmetic, in every kind: a kind of
 !> fewer digits rounds them, and that is a part of its error, as is the rounding of the deck's numbers. With twice the
@@ -7,8 +7,9 @@ module trials
    use, intrinsic :: iso_fortran_env, only: dp => real64, qp => real128
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_t, request_link, instant
-   use motion, only: motion_t, new_motion, mark_none
-   use analysis, only: analysis_t, new_analysis, advance
+   use motion, only: motion_t, new_motion
+   use set_motion, only: put_together, is_flagged
+   use set_analysis, only: set_analysis_t, new_set_analysis, advance_set, iterations_of
    use trial_forms, only: trial_t, outcome_t, samples_of
    use timing, only: seconds
    implicit none
@@ -63,7 +64,8 @@ contains
       type(trial_t), intent(in) :: t
       type(outcome_t), intent(out) :: o
       real(dp), intent(out) :: seconds_taken
-      type(analysis_t) :: a
+      type(mechanism_t) :: one
+      type(set_analysis_t) :: a
       type(motion_t) :: q
       real(dp) :: begun
       integer :: k, i, marked, done
@@ -72,26 +74,28 @@ contains
       allocate (o%known(samples_of(t)), source=-1)
       allocate (o%value(3, size(m%links), 0:2, samples_of(t)), source=0.0_qp)
       q = new_motion(size(m%links))
-      a = new_analysis(tried(m, t))
+      one = tried(m, t)
+      call new_set_analysis(one, a)
       begun = seconds()
       seconds_taken = 0.0_dp
       marked = 0
       done = 0
       do k = 0, t%last
-         call advance(a, real(instant_of(m, t, k), wp), q)
-         if (q%mark /= mark_none) marked = marked + 1
+         call advance_set(a, one, real(instant_of(m, t, k), wp))
+         if (is_flagged(a%now)) marked = marked + 1
          seconds_taken = seconds() - begun
-         if (k == 0) done = a%iterations
+         if (k == 0) done = iterations_of(a)
          if (marked == k + 1 .and. marked == patience) exit
          if (marked > 0 .and. seconds_taken > long) exit
          if (mod(k, t%stride) /= 0) cycle
          i = k/t%stride + 1
+         call put_together(a%now, q)
          o%known(i) = q%known
          o%value(:, :, 0, i) = q%position
          o%value(:, :, 1, i) = q%velocity
          o%value(:, :, 2, i) = q%acceleration
       end do
-      o%iterations = real(a%iterations - done, dp)/max(1, min(k, t%last))
+      o%iterations = real(iterations_of(a) - done, dp)/max(1, min(k, t%last))
    end subroutine try
 
    !> A time a step has a meaning: every position was found.
@@ -109,8 +113,7 @@ contains
       type(trial_t), intent(in) :: t
       real(dp), intent(in) :: whole
       type(mechanism_t) :: one
-      type(analysis_t) :: a
-      type(motion_t) :: q
+      type(set_analysis_t) :: a
       real(wp), allocatable :: instants(:)
       real(dp) :: begun
       integer :: i, k, passes, last
@@ -120,14 +123,13 @@ contains
       passes = max(1, min(1000, ceiling(least/max(whole, 1.0e-6_dp))))
       instants = [(real(instant_of(m, t, k), wp), k=0, last)]
       one = tried(m, t)
-      q = new_motion(size(m%links))
       time = 0.0_dp
       do i = 1, passes
-         a = new_analysis(one)
-         call advance(a, instants(1), q)
+         call new_set_analysis(one, a)
+         call advance_set(a, one, instants(1))
          begun = seconds()
          do k = 1, last
-            call advance(a, instants(k + 1), q)
+            call advance_set(a, one, instants(k + 1))
          end do
          time = time + (seconds() - begun)
       end do

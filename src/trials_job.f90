@@ -1,4 +1,4 @@
-!> Level 18. What --study asks its kin for (--trials): trials of the sets of a deck, their outcomes as records on
+!> Level 20. What --study asks its kin for (--trials): trials of the sets of a deck, their outcomes as records on
 !> standard output.
 module trials_job
    use, intrinsic :: iso_fortran_env, only: dp => real64

@@ -1,4 +1,4 @@
-!> Level 18. The errors of a trial against the truth, the motion in real128.
+!> Level 20. The errors of a trial against the truth, the motion in real128.
 !>
 !> Differences are in the characteristic length and rate, angles to a whole turn; where the largest position, velocity
 !> or acceleration of the truth is more than 1 of these, they are parts of it.
@@ -8,7 +8,8 @@ module true_errors
    use mechanism, only: mechanism_t
    use motion, only: motion_t, new_motion, mark_none
    use scales, only: characteristic_length, characteristic_rate
-   use analysis, only: analysis_t, new_analysis, advance
+   use set_motion, only: put_together
+   use set_analysis, only: set_analysis_t, new_set_analysis, advance_set
    use trial_forms, only: trial_t, outcome_t
    use trials, only: tried, instant_of
    implicit none
@@ -139,7 +140,7 @@ contains
       type(outcome_t), intent(in) :: o
       integer, intent(in) :: i
       type(mechanism_t) :: there
-      type(analysis_t) :: a
+      type(set_analysis_t) :: a
       type(motion_t) :: q
       real(dp) :: before, after
       integer :: k, sample
@@ -149,9 +150,10 @@ contains
          if (.not. there%links(k)%ground) there%links(k)%position = real(o%value(:, k, 0, i), wp)
       end do
       q = new_motion(size(m%links))
-      a = new_analysis(there)
+      call new_set_analysis(there, a)
       k = (i - 1)*t%stride
-      call advance(a, real(instant_of(m, t, k), wp), q)
+      call advance_set(a, there, real(instant_of(m, t, k), wp))
+      call put_together(a%now, q)
       is_elsewhere = q%mark == mark_none
       if (.not. is_elsewhere) return
       sample = true_sample(truth, t, k)
