@@ -193,7 +193,7 @@ contains
       allocate (list(0))
       if (allocated(a%engine%blocks)) then
          if (a%convergence%gap > 0.0_wp .and. (a%convergence%ended == ended_open .or. .not. a%follows)) then
-            unit = merge(1.0_wp, a%engine%blocks%length, a%convergence%gap_is_angle)
+            unit = merge(1.0_wp, a%engine%blocks%length*a%convergence%gap_unit, a%convergence%gap_is_angle)
             call add_remarks([remark_t(kind=remark_open, pair=a%convergence%open_pair, drive=a%convergence%open_drive, &
                is_angle=a%convergence%gap_is_angle, value=a%convergence%gap*unit)], found)
          else if (w%blocked) then

@@ -4,7 +4,7 @@ module block_engine
    use kinds, only: wp
    use mechanism, only: mechanism_t, wanted_links, pair_revolute, drive_x, drive_y, drive_slide
    use motion, only: motion_t, mark_none, mark_singular, mark_open
-   use scales, only: characteristic_length, power_of_two
+   use scales, only: solver_length, power_of_two
    use links_tree, only: tree_t, new_tree
    use loop_equations, only: new_equations
    use rough_positions, only: rough_values
@@ -13,6 +13,7 @@ module block_engine
    use predictor, only: history_t, new_history, remember, predict, largest_change
    use blocks, only: blocks_t
    use block_partition, only: new_blocks
+   use block_units, only: find_units
    use block_needs, only: moving_blocks, needed_blocks
    use block_state, only: state_t, new_state
    use block_solver, only: workspace_t, new_workspace, solve_block
@@ -59,11 +60,12 @@ contains
       type(tree_t) :: t
       integer :: i
 
-      e%length = power_of_two(characteristic_length(m))
+      e%length = power_of_two(solver_length(m))
       e%tolerance = m%tolerance
       t = new_tree(m)
       e%blocks = new_blocks(t, new_equations(m, t, e%length))
       if (.not. e%blocks%solvable) return
+      call find_units(e%blocks)
       e%needed = needed_blocks(e%blocks, t, wanted_links(m))
       e%moving = pack(e%needed, moving_blocks(e%blocks, e%needed))
       e%state = new_state(e%blocks, size(m%drives))
@@ -78,7 +80,7 @@ contains
          end if
       end do
       e%work = new_workspace(e%blocks)
-      e%chain = new_chain(m, t, wanted_links(m), e%blocks%frames)
+      e%chain = new_chain(m, t, wanted_links(m), e%blocks%frames, e%blocks%unit)
       allocate (e%laws(size(m%drives)))
       allocate (e%unit_of(size(m%drives)), source=1.0_wp)
       e%frame_of = t%frame
@@ -91,13 +93,18 @@ contains
          e%is_angle(i) = all(m%drives(i)%kind /= [drive_x, drive_y, drive_slide])
          if (.not. e%is_angle(i)) e%unit_of(i) = 1.0_wp/e%length
       end do
+      do i = 1, size(e%blocks%rows)
+         associate (d => e%blocks%rows(i)%drive)
+            if (d > 0) e%unit_of(d) = e%unit_of(d)/e%blocks%rows(i)%unit
+         end associate
+      end do
       allocate (e%sign_now(size(e%blocks%list)), e%sign_of(size(e%blocks%list)), source=1)
       allocate (e%pivot_now(size(e%blocks%list)), e%pivot_of(size(e%blocks%list)), source=1.0_wp)
       allocate (e%mark_now(size(e%blocks%list)), source=mark_none)
       allocate (e%crossed(size(e%blocks%list)), source=.false.)
       ! A function's result would bring its own lower bound.
       allocate (e%rough(0:e%blocks%unknowns))
-      e%rough(:) = rough_values(m, t, e%length, e%blocks%unknowns)
+      e%rough(:) = rough_values(m, t, e%length, e%blocks%unknowns)/e%blocks%unit
    end function new_block_engine
 
    !> The unknowns of the moving blocks that iterate.

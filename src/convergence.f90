@@ -30,6 +30,8 @@ module convergence
       logical :: singular = .false.            !< position found where the Jacobian has no inverse
       real(wp) :: gap = 0.0_wp                 !< of the equation that is open the most, in the unit of length or rad
       logical :: gap_is_angle = .false.
+      real(wp) :: gap_unit = 1.0_wp            !< that unit of length, in the one of the mechanism
+      real(wp) :: gap_level = 1.0_wp           !< how many times as coarse as usual its rows are rounded, 1 at least
       logical :: rates_open = .false.          !< they agree in position, but not in its derivatives
       integer :: open_pair = 0, open_drive = 0 !< whose equation that is; 0: none
    end type convergence_t
@@ -50,6 +52,8 @@ contains
 
       c%gap = from%gap
       c%gap_is_angle = from%gap_is_angle
+      c%gap_unit = from%gap_unit
+      c%gap_level = from%gap_level
       c%open_pair = from%open_pair
       c%open_drive = from%open_drive
    end subroutine take_gap

@@ -5,7 +5,7 @@ module following
    use mechanism, only: mechanism_t
    use remarks, only: remark_t, remark_dead_end
    use continuity, only: branch_t
-   use scales, only: characteristic_length, largest_rate
+   use scales, only: solver_length, largest_rate
    use convergence, only: convergence_t, is_solved
    use predictor, only: largest_change
    use choices, only: choices_t, new_choices
@@ -62,7 +62,7 @@ contains
 
       f%engine = new_engine(m)
       f%choices = new_choices(m)
-      rate = largest_rate(m, characteristic_length(m))
+      rate = largest_rate(m, solver_length(m))
       if (rate > 0.0_wp .and. depends_on_before(f%engine)) f%longest_part = largest_change/rate
    end function new_following
 

@@ -66,7 +66,8 @@ contains
       do k = 0, sample_count
          associate (u => s%engine(k)%state%u)
             if (allocated(e)) then
-               u%value = e%state%u%value
+               ! The perturbed deck's unit may be the next power of two.
+               u%value = e%state%u%value*(slide_units(e)/slide_units(s%engine(k)))
             else
                u%value = s%engine(k)%rough
             end if
@@ -77,6 +78,15 @@ contains
       found%taken = found%samples(0)%known /= unusable .and. any(found%samples(1:)%known /= unusable)
       if (found%taken) call find_noise(m, s%length, found)
    end subroutine take_samples
+
+   !> (0:unknowns) The unit of each slide in the deck's; 1 of an angle.
+   pure function slide_units(e) result(unit)
+      type(block_engine_t), intent(in) :: e
+      real(wp) :: unit(0:e%blocks%unknowns)
+
+      unit = e%blocks%unit
+      unit(e%blocks%frames + 1:) = unit(e%blocks%frames + 1:)*e%length
+   end function slide_units
 
    !> Some digit could be in doubt: a pivot is small, or a number large.
    pure logical function is_in_doubt(s, e, rcond, q)

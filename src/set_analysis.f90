@@ -63,14 +63,16 @@ contains
       type(branch_t) :: branch
       integer :: c, passed
 
+      if (s%now%parts%count == 1) then
+         call advance(s%list(1), t, s%now%motions(1))
+         call ask_blocks(m, s%list(1), s%opinions(1), s%now%motions(1))
+         s%tally = s%list(1)%tally
+         return
+      end if
       passed = sum(s%list%tally%passed)
       do c = 1, s%now%parts%count
          call advance(s%list(c), t, s%now%motions(c))
-         if (size(s%now%own) == 0) then
-            call ask_blocks(m, s%list(c), s%opinions(c), s%now%motions(c))
-         else
-            call ask_blocks(s%now%own(c), s%list(c), s%opinions(c), s%now%motions(c))
-         end if
+         call ask_blocks(s%now%own(c), s%list(c), s%opinions(c), s%now%motions(c))
       end do
       passed = sum(s%list%tally%passed) - passed
       branch = worst_branch(s%list%branch)

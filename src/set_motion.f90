@@ -38,8 +38,13 @@ contains
    !> Some part has not all of its motion.
    pure logical function is_flagged(s)
       type(set_motion_t), intent(in) :: s
+      integer :: c
 
-      is_flagged = any(s%motions%mark /= mark_none)
+      is_flagged = .true.
+      do c = 1, size(s%motions)
+         if (s%motions(c)%mark /= mark_none) return
+      end do
+      is_flagged = .false.
    end function is_flagged
 
    !> The motion `q` of all links of the set, known as far as that of every part is; places are counted from where each

@@ -40,6 +40,7 @@ part 'single precision' "$MAKE" --no-print-directory single-check
 part 'units of length' tests/units.sh
 part 'faults by name' tests/faults.sh
 part 'the methods against one another' tests/methods.sh
+part 'independent mechanisms' tests/independent.sh
 part 'the digits' tests/digits.sh
 part 'decks made by chance' tests/fuzz.sh 1000
 part 'the method of 1987' "$BUILD/release/matrix_1987" short
