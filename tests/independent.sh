@@ -94,12 +94,56 @@ beside() {
 }
 
 method=NEWTON
-for kind in four_bar limit change branch at_start redundant contradiction slider dead_point; do
-   for k in -12 -6 6 12; do beside $kind $k; done
-done
-for method in DENSE MATRIX; do
-   for k in -12 -6 6 12; do beside four_bar $k; done
-   beside limit -6
-done
+for k in -12 -6 6 12; do beside four_bar $k; done
+for kind in limit change redundant; do beside $kind -12; beside $kind 6; done
+for kind in branch at_start contradiction slider dead_point; do beside $kind -6; done
+for method in DENSE MATRIX; do beside four_bar -12; beside limit 6; done
 method=NEWTON
+
+# The listing: each has its own power of ten, so that the small one has its seven digits too.
+printf '%s\n' 'four_bar a 0' 'four_bar b -12' | deck > "$w/two.deck"; run "$w/two"
+equal 'the large one of two' ' ROa         4.000000' "$(grep -m 1 '^ ROa ' "$w/two.lst" | cut -c 1-21)"
+equal 'the small one of two' ' ROb         4.000000' "$(grep -m 1 '^ ROb ' "$w/two.lst" | cut -c 1-21)"
+equal 'its power of ten' '              10**-12     10**-12                 10**-12     10**-12                 10**-12     10**-12' \
+   "$(grep -m 1 '10[*][*]' "$w/two.lst")"
+equal 'lines over 120 columns' '' "$(awk 'length > 120' "$w/two.lst")"
+
+# One that is at its limit, or that contradicts itself, flags the instant, and not the rows of the other.
+printf '%s\n' 'four_bar a 0' 'contradiction b -10' | deck > "$w/gap.deck"; run "$w/gap"
+equal 'a contradiction in a small mechanism: status' 2 "$("$kinmat" "$w/gap.deck" -o "$w/gap.lst"; echo $?)"
+equal 'a contradiction in a small mechanism: marks' '11 OPEN' \
+   "$(rows "$w/gap.csv" b | awk -F, '$5 == "CO" { n[$15]++ } END { for (k in n) print n[k], k }')"
+equal 'a contradiction in a small mechanism: the other' '11 ' \
+   "$(rows "$w/gap.csv" a | awk -F, '$5 == "CO" { n[$15]++ } END { for (k in n) print n[k], k }')"
+
+# Redundant cranks a millionth as large on a link of a large mechanism: a tenth too long is open, and by nothing is not.
+# on_a_large_link LENGTH: three cranks on the coupler of a four-bar linkage
+on_a_large_link() {
+   card TITLE 'SMALL ON LARGE'
+   mark=; unit=3; four_bar
+   mark=s; unit=-3
+   link CR 0.0 0.0 0.9; link R2 0.0 0.0 0.9; link R3 0.0 0.0 0.9; link CO 0.0 0.0 0.4
+   card POINT A0s CO; card POINT B0s CO '' 0.004 0.0; card POINT C0s CO '' 0.002 0.001
+   point A1 CR; point A2 CR 1.5; point B1 R2; point B2 R2 1.5; point C1 R3; point C2 R3 "$1"
+   point A CO; point B CO 4.0; point C CO 2.0 1.0
+   joint A0 A1 PA0; joint B0 B1 PB0; joint C0 C1 PC0; joint A2 A PA; joint B2 B PB; joint C2 C PC
+   card DRIVE RELANGLE CO CRs 0.5 1.0
+   card TIME 2 '' '' 0.0 1.0
+   card PRINT ALL
+   card END
+}
+on_a_large_link 1.5 > "$w/fits.deck"; run "$w/fits"
+equal 'small cranks on a large link: solved' ' END OF SET 1:  INSTANTS SOLVED 3, MARKED 0' "$(grep 'END OF SET' "$w/fits.lst")"
+on_a_large_link 1.65 > "$w/open.deck"; run "$w/open"
+equal 'small cranks on a large link, one too long' ' *** TOO MANY EQUATIONS, AND THEY CONTRADICT ONE ANOTHER' \
+   "$(grep -m 1 'CONTRADICT' "$w/open.lst")"
+
+# A point in no pair changes no digit of the links.
+{ card TITLE 'FAR POINT'; mark=a; unit=0; four_bar; card TIME 10 '' '' 0.0 2.0; } > "$w/set"
+{ cat "$w/set"; card PRINT LINKS; card PRINT POINTS Pa; card END; } > "$w/near.deck"; "$kinmat" "$w/near.deck" --csv "$w/near.csv" > "$w/out"
+{ sed 's/^\(POINT   Pa .*\)1.70000000E0 /\14.70000000E2 /' "$w/set"; card PRINT LINKS; card PRINT POINTS Pa; card END; } > "$w/far.deck"
+"$kinmat" "$w/far.deck" --csv "$w/far.csv" > "$w/out"
+grep LINK "$w/near.csv" > "$w/near.rows"; grep LINK "$w/far.csv" > "$w/far.rows"
+same 'a point far away, in no pair' "$w/near.rows" "$w/far.rows"
+equal 'a point far away: it is far' 11 "$(grep -c 'POINT,Pa,[-0-9.]*E+002' "$w/far.csv")"
 conclude
