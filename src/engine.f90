@@ -121,6 +121,13 @@ contains
       real(wp), intent(in) :: t
       type(motion_t), intent(inout) :: found
 
-      if (allocated(e%blocks)) call tell_driven(e%blocks, t, found)
+      type(block_engine_t) :: blocks
+
+      if (allocated(e%blocks)) then
+         call tell_driven(e%blocks, t, found)
+      else
+         blocks = new_block_engine(e%dense%blocks)
+         call tell_driven(blocks, t, found)
+      end if
    end subroutine tell_certain
 end module engine
