@@ -3,7 +3,8 @@
 module analysis
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use motion, only: motion_t, mark_none, mark_not_converged, mark_singular, mark_overflow, mark_open
+   use motion, only: motion_t, forget_links, known_of, mark_none, mark_not_converged, mark_singular, mark_overflow, &
+      mark_open
    use remarks, only: remark_t, remark_open, remark_far, remark_long
    use continuity, only: branch_t, tally_t, count_in, branch_none, branch_first, branch_same, branch_crossed
    use whole_turns, only: without_turns
@@ -12,7 +13,7 @@ module analysis
    use convergence, only: convergence_t, ended_open, ended_unsought
    use block_engine, only: seek_blocks
    use block_remarks, only: first_remarks, limit_remark
-   use engine, only: tell, is_certified
+   use engine, only: tell, tell_links, tell_certain, is_certified
    use standing, only: stand_on
    use following, only: following_t, way_t, make_following, go_to, is_too_far, has_too_many_parts, go_on_from, go_back
    implicit none
@@ -102,6 +103,7 @@ contains
       if (w%tries > 1 .and. open) call measure_gap(a, t)
       open = a%convergence%ended == ended_open
       call cut(found, -1, merge(mark_open, mark_not_converged, open))
+      call tell_certain(a%engine, t, found)
       if (open) a%largest_gap = max(a%largest_gap, a%convergence%gap)
       call remark_on_end(a, t, w, found)
    end subroutine stay
@@ -114,6 +116,7 @@ contains
       type(remark_t), allocatable :: list(:)
 
       call cut(found, -1, mark_not_converged)
+      call tell_certain(a%engine, t, found)
       a%convergence = convergence_t(ended=ended_unsought)
       a%branch = branch_t()
       if (.not. a%is_lost) then
@@ -190,7 +193,7 @@ contains
       allocate (list(0))
       if (allocated(a%engine%blocks)) then
          if (a%convergence%gap > 0.0_wp .and. (a%convergence%ended == ended_open .or. .not. a%follows)) then
-            unit = merge(1.0_wp, a%engine%blocks%length, a%convergence%gap_is_angle)
+            unit = merge(1.0_wp, a%engine%blocks%length*a%convergence%gap_unit, a%convergence%gap_is_angle)
             call add_remarks([remark_t(kind=remark_open, pair=a%convergence%open_pair, drive=a%convergence%open_drive, &
                is_angle=a%convergence%gap_is_angle, value=a%convergence%gap*unit)], found)
          else if (w%blocked) then
@@ -225,17 +228,39 @@ contains
       call cut(found, 2, mark_none)
       if (a%convergence%singular) call cut(found, 0, mark_singular)
       if (a%convergence%rates_open) call cut(found, 0, mark_open)
+      if (found%known < 2) call tell_links(a%engine, found)
       if (.not. finite) call look_for_overflow(found)
    end subroutine tell_motion
 
    !> What is out of the range of the real kind is not known.
    pure subroutine look_for_overflow(found)
       type(motion_t), intent(inout) :: found
+      integer :: link, last
 
-      if (found%known == 2 .and. .not. all(abs(found%acceleration) <= huge(1.0_wp))) call cut(found, 1, mark_overflow)
-      if (found%known >= 1 .and. .not. all(abs(found%velocity) <= huge(1.0_wp))) call cut(found, 0, mark_overflow)
-      if (.not. all(abs(found%position) <= huge(1.0_wp))) call cut(found, -1, mark_overflow)
+      do link = 1, size(found%position, 2)
+         last = known_of(found, link)
+         if (last == 2 .and. .not. all(abs(found%acceleration(:, link)) <= huge(1.0_wp))) last = 1
+         if (last >= 1 .and. .not. all(abs(found%velocity(:, link)) <= huge(1.0_wp))) last = 0
+         if (.not. all(abs(found%position(:, link)) <= huge(1.0_wp))) last = -1
+         if (last < known_of(found, link)) call cut_link(found, link, last)
+      end do
    end subroutine look_for_overflow
+
+   !> Of `link` only derivatives up to number `known` are in range.
+   pure subroutine cut_link(q, link, known)
+      type(motion_t), intent(inout) :: q
+      integer, intent(in) :: link, known
+
+      if (.not. allocated(q%link_known)) then
+         allocate (q%link_known(size(q%position, 2)), source=q%known)
+         allocate (q%link_mark(size(q%position, 2)), source=q%mark)
+      end if
+      q%link_known(link) = known
+      q%link_mark(link) = mark_overflow
+      if (known >= q%known) return
+      q%known = known
+      q%mark = mark_overflow
+   end subroutine cut_link
 
    !> By how much redundant equations have differed at most, in parts of the characteristic length; -1 where none are.
    pure real(wp) function redundancy_gap(a)
@@ -259,6 +284,7 @@ contains
       type(motion_t), intent(inout) :: q
       integer, intent(in) :: known, mark
 
+      call forget_links(q)
       q%known = known
       q%mark = mark
    end subroutine cut

@@ -3,16 +3,17 @@
 module block_engine
    use kinds, only: wp
    use mechanism, only: mechanism_t, wanted_links, pair_revolute, drive_x, drive_y, drive_slide
-   use motion, only: motion_t
-   use scales, only: characteristic_length, power_of_two
+   use motion, only: motion_t, mark_none, mark_singular, mark_open
+   use scales, only: solver_length, power_of_two
    use links_tree, only: tree_t, new_tree
    use loop_equations, only: new_equations
    use rough_positions, only: rough_values
    use drives, only: law_t, new_law, drive_motion
-   use convergence, only: convergence_t, is_solved, take_gap, ended_converged, ended_singular
+   use convergence, only: convergence_t, is_solved, gather, ended_converged, ended_singular
    use predictor, only: history_t, new_history, remember, predict, largest_change
    use blocks, only: blocks_t
    use block_partition, only: new_blocks
+   use block_units, only: find_units
    use block_needs, only: moving_blocks, needed_blocks
    use block_state, only: state_t, new_state
    use block_solver, only: workspace_t, make_workspace, solve_block
@@ -54,6 +55,7 @@ module block_engine
       real(wp), allocatable :: side(:)                  !< Jacobian of the block with too many rows, followed
       real(wp), allocatable :: pivot_now(:), pivot_of(:) !< (blocks) the least: found last, followed
       real(wp), allocatable :: inverse_now(:), inverse_of(:) !< (blocks) |J^-1| likewise
+      integer, allocatable :: mark_now(:)               !< (blocks) why there are no velocities; mark_none: there are
       logical, allocatable :: crossed(:)                !< (blocks) whose determinant has changed its sign
       real(wp) :: change = 0.0_wp                       !< the largest that was predicted
    end type block_engine_t
@@ -67,12 +69,13 @@ contains
       type(tree_t) :: t
       integer :: i
 
-      e%span = characteristic_length(m)
+      e%span = solver_length(m)
       e%length = power_of_two(e%span)
       e%tolerance = m%tolerance
       t = new_tree(m)
       e%blocks = new_blocks(t, new_equations(m, t, e%length))
       if (.not. e%blocks%solvable) return
+      call find_units(e%blocks)
       e%needed = needed_blocks(e%blocks, t, wanted_links(m))
       e%moving = pack(e%needed, moving_blocks(e%blocks, e%needed))
       e%state = new_state(e%blocks, size(m%drives))
@@ -87,8 +90,8 @@ contains
          end if
       end do
       call make_workspace(e%work, e%blocks)
-      e%chain = new_chain(m, t, wanted_links(m), e%blocks%frames)
-      e%whole = new_chain(m, t, spread(.true., 1, size(m%links)), e%blocks%frames)
+      e%chain = new_chain(m, t, wanted_links(m), e%blocks%frames, e%blocks%unit)
+      e%whole = new_chain(m, t, spread(.true., 1, size(m%links)), e%blocks%frames, e%blocks%unit)
       allocate (e%laws(size(m%drives)))
       allocate (e%unit_of(size(m%drives)), source=1.0_wp)
       e%frame_of = t%frame
@@ -101,6 +104,11 @@ contains
          e%is_angle(i) = all(m%drives(i)%kind /= [drive_x, drive_y, drive_slide])
          if (.not. e%is_angle(i)) e%unit_of(i) = 1.0_wp/e%length
       end do
+      do i = 1, size(e%blocks%rows)
+         associate (d => e%blocks%rows(i)%drive)
+            if (d > 0) e%unit_of(d) = e%unit_of(d)/e%blocks%rows(i)%unit
+         end associate
+      end do
       allocate (e%sign_now(size(e%blocks%list)), e%sign_of(size(e%blocks%list)), source=1)
       allocate (e%pivot_now(size(e%blocks%list)), e%pivot_of(size(e%blocks%list)), source=1.0_wp)
       allocate (e%crossed(size(e%blocks%list)), e%is_close(size(e%blocks%list)), source=.false.)
@@ -109,9 +117,10 @@ contains
          e%estimate(:, i) = m%links(i)%position - [e%chain%origin, 0.0_wp]
       end do
       allocate (e%inverse_now(size(e%blocks%list)), e%inverse_of(size(e%blocks%list)), source=0.0_wp)
+      allocate (e%mark_now(size(e%blocks%list)), source=mark_none)
       ! A function's result would bring its own lower bound.
       allocate (e%rough(0:e%blocks%unknowns))
-      e%rough(:) = rough_values(m, t, e%length, e%blocks%unknowns)
+      e%rough(:) = rough_values(m, t, e%length, e%blocks%unknowns)/e%blocks%unit
    end subroutine make_block_engine
 
    !> The unknowns of the moving blocks that iterate.
@@ -215,6 +224,9 @@ contains
             one%determinant = e%sign_of(i)*relative_side(e%blocks, i, e%side, e%state)
          call gather(one, c)
          if (.not. is_solved(one)) return
+         e%mark_now(i) = mark_none
+         if (one%singular) e%mark_now(i) = mark_singular
+         if (one%rates_open) e%mark_now(i) = mark_open
          ! At a change point itself the sign is that of rounding.
          if (one%singular) cycle
          c%doubt = max(c%doubt, one%doubt)
@@ -228,22 +240,6 @@ contains
          e%crossed(i) = .true.
       end do
    end subroutine seek_each
-
-   !> The record of the whole: the largest of each count, the worst of each ending.
-   pure subroutine gather(one, c)
-      type(convergence_t), intent(in) :: one
-      type(convergence_t), intent(inout) :: c
-
-      if (one%ended /= ended_converged) c%ended = one%ended
-      c%iterations = max(c%iterations, one%iterations)
-      c%residual = max(c%residual, one%residual)
-      c%step = max(c%step, one%step)
-      c%reciprocal_condition = min(c%reciprocal_condition, one%reciprocal_condition)
-      c%determinant = c%determinant*one%determinant
-      if (one%gap > c%gap) call take_gap(one, c)
-      c%singular = c%singular .or. one%singular
-      c%rates_open = c%rates_open .or. one%rates_open
-   end subroutine gather
 
    !> Makes the motion found last the one that is followed.
    subroutine keep_blocks(e)

@@ -7,7 +7,7 @@ module block_instances
    use blocks, only: blocks_t, block_t, arm_t, slide_t, instance_components, instance_projection, instance_angles
    implicit none
    private
-   public :: fill_instances
+   public :: fill_instances, bend_of
 
    !> What has been filled, and the columns of the block being filled; 0: not its own.
    type :: filling_t
@@ -125,7 +125,7 @@ contains
    end subroutine add_arms
 
    !> A bound of |J(x) - J(z)|/|x - z| in the maximum norm: for a row, the sum of its second derivatives. Slides count
-   !> with the length 1; a projection turns once more with its own frame.
+   !> with the length of their unit; a projection turns once more with its own frame.
    pure real(wp) function bend_of(b, block) result(bend)
       type(blocks_t), intent(in) :: b
       type(block_t), intent(in) :: block
@@ -136,7 +136,8 @@ contains
       do m = block%first_instance, block%last_instance
          associate (g => b%instances(m))
             row = sum(hypot(b%arms(g%first_own:g%last_arm)%x, b%arms(g%first_own:g%last_arm)%y)) &
-               + 2.0_wp*real(g%last_slide - g%first_slide + 1, wp)
+               + 2.0_wp*sum(hypot(b%slides(g%first_slide:g%last_slide)%arm(1), &
+               b%slides(g%first_slide:g%last_slide)%arm(2)))
             if (g%frame_column > 0 .and. g%kind == instance_projection) row = 3.0_wp*row + norm2(g%ground) &
                + sum(hypot(b%arms(g%first_arm:g%first_own - 1)%x, b%arms(g%first_arm:g%first_own - 1)%y))
             bend = max(bend, row)

@@ -54,6 +54,7 @@ contains
       end do
       call fill_rows(e, member, b)
       call fill_instances(e, member, b)
+      allocate (b%unit(0:b%unknowns), source=1.0_wp)
       call find_places(b)
    end function new_blocks
 

@@ -18,7 +18,7 @@ module block_solver
    use block_state, only: state_t, set_direction, turn_direction, known_parts
    use block_rows, only: assemble_block
    use block_sides, only: rate_side
-   use block_gaps, only: note_gap, contradict, open_level
+   use block_gaps, only: note_gap, is_open, contradict
    use block_workspace, only: workspace_t, make_workspace
    implicit none
    private
@@ -66,7 +66,7 @@ contains
       call seek(b, i, b%list(i)%shape, tolerance, w%a, w%r, w%start, w%work, w%pivots, &
          w%sparse(b%list(i)%shape%pattern), s, c, correction)
       if (c%ended /= ended_converged .and. c%ended /= ended_stalled) return
-      if (b%list(i)%shape%rows > b%list(i)%shape%n .and. c%gap > open_level) then
+      if (b%list(i)%shape%rows > b%list(i)%shape%n .and. is_open(c)) then
          c%ended = ended_open
       else
          call finish(b, i, b%list(i)%shape%n, w, s, c)
@@ -104,12 +104,13 @@ contains
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
       real(wp), intent(inout) :: correction
-      real(wp) :: before, size_of
+      real(wp) :: before, size_of, coarse
       integer :: info, iteration
       logical :: is_right
 
       call begin_block(b, i, shape%n, s, start, size_of)
       before = huge(before)
+      coarse = b%list(i)%coarse
       c = convergence_t(ended=ended_limit)
       do iteration = 1, iteration_limit
          if (.not. size_of <= angle_limit) then
@@ -120,7 +121,7 @@ contains
          call assemble_block(b, i, s, a, r)
          c%residual = maxval(abs(r(:, 1)))
          if (shape%rows > shape%n) call note_gap(b, i, r, c)
-         if (c%residual <= closed_level*size_of) then
+         if (c%residual <= closed_level*max(size_of, coarse)) then
             c%step = 0.0_wp
             c%ended = ended_converged
             call rate_side(b, i, 1, s, r(:, 2))
@@ -130,12 +131,12 @@ contains
          end if
          call solve_first(shape, a, k, pivots, work, r, info)
          if (info > 0) then
-            c%singular = c%residual <= max(rounding_level*size_of, tolerance)
+            c%singular = c%residual <= max(rounding_level*max(size_of, coarse), tolerance)
             c%ended = merge(ended_stalled, ended_singular, c%singular)
             exit
          end if
          c%step = maxval(abs(r(:shape%n, 1)))
-         if (is_stalled(shape, c, before, size_of)) then
+         if (is_stalled(shape, c, before, max(size_of, coarse))) then
             c%ended = ended_stalled
          else
             call move(b, i, shape%n, r, s, c%step, tolerance, size_of, is_right)
@@ -201,7 +202,7 @@ contains
             s%u(u)%value = s%u(u)%value - d(k)
             own = max(1.0_wp, abs(s%u(u)%value))
             size_of = max(size_of, own)
-            is_right = is_right .and. abs(d(k)) <= max(step_tolerance*own, tolerance)
+            is_right = is_right .and. abs(d(k)) <= max(step_tolerance*max(own, b%list(i)%coarse), tolerance)
             if (step <= small_turn) then
                call turn_direction(b, u, -d(k), s)
             else
@@ -244,8 +245,8 @@ contains
          do k = 1, n
             s%u(b%unknown(b%list(i)%first + k - 1))%rate2 = w%r(k)
          end do
-         if (rows > n) c%rates_open = contradict(w%r(rows + 1:2*rows), n, 0.0_wp) &
-            .or. contradict(w%r(:rows), n, norm2(w%r(rows + 1:rows + n))**2)
+         if (rows > n) c%rates_open = contradict(w%r(rows + 1:2*rows), n, 0.0_wp, b%list(i)%coarse) &
+            .or. contradict(w%r(:rows), n, norm2(w%r(rows + 1:rows + n))**2, b%list(i)%coarse)
       end associate
    end subroutine finish
 
@@ -283,7 +284,7 @@ contains
       c%doubt = c%change*b%list(i)%bend*inverse
       if (.not. suspicious) return
       c%reciprocal_condition = min(1.0_wp, 1.0_wp/(inverse*largest))
-      size_of = 1.0_wp
+      size_of = b%list(i)%coarse
       do k = b%list(i)%first, b%list(i)%last
          size_of = max(size_of, abs(s%u(b%unknown(k))%value))
       end do

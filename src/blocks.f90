@@ -25,6 +25,7 @@ module blocks
       integer :: first_instance = 1, last_instance = 0
       type(shape_t) :: shape                      !< of its Jacobian
       logical :: direct = .false.                 !< one equation that is linear with coefficient 1
+      real(wp) :: coarse = 1.0_wp                 !< the largest of its instances'
       real(wp) :: bend = 0.0_wp                   !< bounds the change of its Jacobian over that of its unknowns
    end type block_t
 
@@ -34,6 +35,7 @@ module blocks
       integer :: pair = 0                         !< 0: a drive's equation
       logical :: angular = .false.
       real(wp) :: constant = 0.0_wp, sign_of = 1.0_wp
+      real(wp) :: unit = 1.0_wp                   !< of its lengths, in that of the mechanism
    end type row_t
 
    !> A polygon as one block sees it: rows (0: none), the known arms first, then those of the block's own frames.
@@ -46,6 +48,8 @@ module blocks
       integer :: frame_at = 0, less_at = 0        !< where their entries stand in the Jacobian
       real(wp) :: direction(2) = 0.0_wp           !< projection: in its frame's axes
       real(wp) :: ground(2) = 0.0_wp              !< the polygon's fixed part
+      real(wp) :: unit = 1.0_wp                   !< of its lengths: see block_units
+      real(wp) :: coarse = 1.0_wp                 !< what is known over the unit, 1 at least
    end type instance_t
 
    !> `at`: where its entries stand in the Jacobian of its block, for the rows row_x and row_y.
@@ -68,6 +72,7 @@ module blocks
       type(block_t), allocatable :: list(:)
       integer, allocatable :: unknown(:)          !< by block
       integer, allocatable :: block_of(:)         !< (unknowns)
+      real(wp), allocatable :: unit(:)            !< (0:unknowns) of a slide; 1 of an angle
       type(row_t), allocatable :: rows(:)
       type(instance_t), allocatable :: instances(:)
       type(arm_t), allocatable :: arms(:)

@@ -1,4 +1,4 @@
-!> Level 18. A companion process: this program in another kind of reals, kinmat-quad or kinmat-single. It is asked as
+!> Level 20. A companion process: this program in another kind of reals, kinmat-quad or kinmat-single. It is asked as
 !> anybody may ask it, by a deck, which holds each trial as a set of computations, for the CSV and for the times of
 !> --time.
 !>

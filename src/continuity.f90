@@ -8,7 +8,8 @@ module continuity
    use kinds, only: wp
    implicit none
    private
-   public :: branch_t, tally_t, count_in, branch_word, branch_none, branch_first, branch_same, branch_crossed
+   public :: branch_t, tally_t, count_in, worst_branch, branch_word
+   public :: branch_none, branch_first, branch_same, branch_crossed
 
    integer, parameter :: branch_none = 0      !< nothing is verified
    integer, parameter :: branch_first = 1     !< chosen by the deck's rough position
@@ -40,6 +41,17 @@ contains
       if (b%kind == branch_none) tally%uncertain = tally%uncertain + 1
       if (b%kind >= branch_same) tally%followed = tally%followed + 1
    end subroutine count_in
+
+   !> What is verified of several independent motions together, each found on one of the branches `b`.
+   pure type(branch_t) function worst_branch(b) result(worst)
+      type(branch_t), intent(in) :: b(:)
+
+      worst%kind = maxval(b%kind)
+      if (any(b%kind == branch_first)) worst%kind = branch_first
+      if (any(b%kind == branch_none)) worst%kind = branch_none
+      worst%parts = maxval(b%parts)
+      worst%doubt = maxval(b%doubt)
+   end function worst_branch
 
    !> For the protocol.
    pure function branch_word(b) result(word)

@@ -5,7 +5,7 @@ module convergence
    private
    public :: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
       ended_open, ended_unsought, ended_elsewhere
-   public :: ending, is_solved, take_gap
+   public :: ending, is_solved, take_gap, gather
 
    integer, parameter :: ended_converged = 1   !< residual and step within the tolerance
    integer, parameter :: ended_stalled = 2     !< residual at rounding level, steps shrink no more: solved
@@ -32,6 +32,8 @@ module convergence
       logical :: singular = .false.            !< position found where the Jacobian has no inverse
       real(wp) :: gap = 0.0_wp                 !< of the equation that is open the most, in the unit of length or rad
       logical :: gap_is_angle = .false.
+      real(wp) :: gap_unit = 1.0_wp            !< that unit of length, in the one of the mechanism
+      real(wp) :: gap_level = 1.0_wp           !< how many times as coarse as usual its rows are rounded, 1 at least
       logical :: rates_open = .false.          !< they agree in position, but not in its derivatives
       integer :: open_pair = 0, open_drive = 0 !< whose equation that is; 0: none
    end type convergence_t
@@ -52,9 +54,27 @@ contains
 
       c%gap = from%gap
       c%gap_is_angle = from%gap_is_angle
+      c%gap_unit = from%gap_unit
+      c%gap_level = from%gap_level
       c%open_pair = from%open_pair
       c%open_drive = from%open_drive
    end subroutine take_gap
+
+   !> The record of the whole: the largest of each count, the worst of each ending.
+   pure subroutine gather(one, c)
+      type(convergence_t), intent(in) :: one
+      type(convergence_t), intent(inout) :: c
+
+      if (one%ended /= ended_converged) c%ended = one%ended
+      c%iterations = max(c%iterations, one%iterations)
+      c%residual = max(c%residual, one%residual)
+      c%step = max(c%step, one%step)
+      c%reciprocal_condition = min(c%reciprocal_condition, one%reciprocal_condition)
+      c%determinant = c%determinant*one%determinant
+      if (one%gap > c%gap) call take_gap(one, c)
+      c%singular = c%singular .or. one%singular
+      c%rates_open = c%rates_open .or. one%rates_open
+   end subroutine gather
 
    !> The word for how it ended.
    pure function ending(c) result(word)

@@ -8,7 +8,7 @@
 module drive_path
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use scales, only: characteristic_length, is_length
+   use scales, only: solver_length, is_length
    use predictor, only: largest_change
    use drives, only: law_t, new_law, drive_motion
    use law_bounds, only: bounds_t, bounds_of
@@ -41,7 +41,7 @@ contains
       integer :: i, n
 
       n = merge(size(m%drives), 0, depends)
-      length = characteristic_length(m)
+      length = solver_length(m)
       allocate (p%laws(n))
       allocate (p%unit(n), source=1.0_wp)
       do i = 1, n

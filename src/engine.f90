@@ -10,9 +10,11 @@ module engine
    use assembly_choice, only: seek_first
    use dense_engine, only: dense_t, new_dense, seek_dense, keep_dense, tell_dense, &
       dense_checkpoint_t, checkpoint_dense, restore_dense
+   use link_knowledge, only: know_links, tell_driven
    implicit none
    private
-   public :: engine_t, engine_checkpoint_t, make_engine, seek, keep, checkpoint, restore, tell, is_certified
+   public :: engine_t, engine_checkpoint_t, make_engine, seek, keep, checkpoint, restore, tell, tell_links, &
+      tell_certain, is_certified
 
    !> One of the two.
    type :: engine_t
@@ -120,4 +122,28 @@ contains
       is_certified = allocated(e%blocks)
       if (allocated(e%dense)) is_certified = e%dense%method == method_dense
    end function is_certified
+
+   !> Of which links the motion found last is known in full although it is not as a whole.
+   subroutine tell_links(e, found)
+      type(engine_t), intent(in) :: e
+      type(motion_t), intent(inout) :: found
+
+      if (allocated(e%blocks)) call know_links(e%blocks, found)
+   end subroutine tell_links
+
+   !> What is certain at `t`, where no position was found: the links that drives alone move.
+   subroutine tell_certain(e, t, found)
+      type(engine_t), intent(inout) :: e
+      real(wp), intent(in) :: t
+      type(motion_t), intent(inout) :: found
+
+      type(block_engine_t) :: blocks
+
+      if (allocated(e%blocks)) then
+         call tell_driven(e%blocks, t, found)
+      else
+         call make_block_engine(blocks, e%dense%blocks)
+         call tell_driven(blocks, t, found)
+      end if
+   end subroutine tell_certain
 end module engine

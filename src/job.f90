@@ -1,21 +1,21 @@
-!> Level 18. One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later.
+!> Level 19. One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later.
 module job
    use failures, only: failure_t, fail, status_solved, status_refused, status_marked, status_signal
    use mechanism, only: mechanism_t, instant_count, instant
-   use motion, only: motion_t, new_motion, mark_none
    use structure, only: findings_t
    use structure_faults, only: check_structure
    use deck, only: read_deck
    use text_output, only: output_t, open_output, check_apart, flush_output, close_output, abandon_output, has_failed, &
       has_broken_pipe
    use interrupts, only: watch_signals, signal_received, broken_pipe_kills, signal_pipe
-   use listing, only: layout_t, new_layout, listing_head, listing_instant, listing_end, listing_broken_off
-   use csv, only: csv_head, csv_instant
+   use listing, only: layout_t, new_layout, listing_head, listing_set_instant, listing_end, listing_broken_off
+   use csv, only: csv_head, csv_set_instant
    use protocol, only: protocol_head, protocol_instant
-   use analysis, only: analysis_t, make_analysis, advance, redundancy_gap, closing_remarks
-   use second_opinion, only: opinion_t, ask_blocks
-   use scatter, only: scatter_t, largest_errors
-   use rounding_samples, only: samples_t, make_samples, take_samples
+   use convergence, only: convergence_t
+   use continuity, only: branch_t
+   use set_motion, only: is_flagged
+   use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set, set_record, set_errors, &
+      set_gap, set_closing_remarks
    use command_line, only: options_t
    implicit none
    private
@@ -149,11 +149,7 @@ contains
       type(outputs_t), intent(inout) :: o
       integer, intent(inout) :: status
       type(layout_t) :: layout
-      type(analysis_t) :: a
-      type(opinion_t) :: opinion
-      type(motion_t) :: q
-      type(samples_t) :: samples
-      type(scatter_t) :: doubt
+      type(set_analysis_t) :: a
       integer :: k, marked
 
       layout = new_layout(m)
@@ -162,29 +158,38 @@ contains
       if (len(options%log) > 0) call protocol_head(o%log, m, options%errors)
       call flush_all(options, o)
       if (is_over(o)) return
-      call make_analysis(a, m)
-      q = new_motion(size(m%links))
-      call make_samples(samples, m)
+      call make_set_analysis(m, a)
       marked = 0
       do k = 0, instant_count(m) - 1
-         call advance(a, instant(m, k), q)
-         call ask_blocks(m, a, opinion, q)
-         if (q%mark /= mark_none) marked = marked + 1
-         call take_samples(samples, m, a%engine%blocks, a%convergence%reciprocal_condition, q, options%errors, doubt)
-         call listing_instant(o%listing, layout, m, q, k, doubt)
-         if (len(options%csv) > 0) call csv_instant(o%csv, m, q, k, doubt)
-         if (len(options%log) > 0 .and. options%errors) then
-            call protocol_instant(o%log, k, q%t, a%convergence, a%branch, &
-               largest_errors(m, doubt, q, samples%length, samples%rate))
-         else if (len(options%log) > 0) then
-            call protocol_instant(o%log, k, q%t, a%convergence, a%branch)
-         end if
+         call advance_set(a, m, instant(m, k))
+         if (is_flagged(a%now)) marked = marked + 1
+         call sample_set(a, m, options%errors)
+         call listing_set_instant(o%listing, layout, m, a%now, k)
+         if (len(options%csv) > 0) call csv_set_instant(o%csv, m, a%now, k)
+         if (len(options%log) > 0) call log_instant(o%log, options, m, a, k)
          if (.not. is_over(o)) cycle
          call listing_broken_off(o%listing, m, k)
          return
       end do
-      call listing_end(o%listing, m, instant_count(m) - marked, marked, a%tally, redundancy_gap(a), &
-         closing_remarks(a))
+      call listing_end(o%listing, m, instant_count(m) - marked, marked, a%tally, set_gap(a), set_closing_remarks(a, m))
       if (marked > 0) status = status_marked
    end subroutine run_set
+
+   !> The line of instant number `k` in the protocol.
+   subroutine log_instant(log, options, m, a, k)
+      type(output_t), intent(inout) :: log
+      type(options_t), intent(in) :: options
+      type(mechanism_t), intent(in) :: m
+      type(set_analysis_t), intent(in) :: a
+      integer, intent(in) :: k
+      type(convergence_t) :: record
+      type(branch_t) :: branch
+
+      call set_record(a, record, branch)
+      if (options%errors) then
+         call protocol_instant(log, k, instant(m, k), record, branch, set_errors(a, m))
+      else
+         call protocol_instant(log, k, instant(m, k), record, branch)
+      end if
+   end subroutine log_instant
 end module job

@@ -19,6 +19,7 @@ module link_motion
       integer :: link = 0, above = 0, frame = 0, frame_above = 0
       integer :: slide = 0                              !< its unknown
       integer :: root = 0                               !< the unknown that is its x; y is the next
+      real(wp) :: root_unit(2) = 1.0_wp
       logical :: has_arm = .false.
       real(wp) :: turn = 0.0_wp
       type(place_t) :: place
@@ -35,12 +36,14 @@ module link_motion
 contains
 
    !> The chain of those links of `m` that are `wanted` (links) and of those they hang on, in the deck's length unit.
-   !> `first_slide`: unknowns before the first slide.
-   function new_chain(m, t, wanted, first_slide) result(c)
+   !> `first_slide`: unknowns before the first slide; `unit` (0:unknowns): that of each in the unit of the slides, 1
+   !> where it is not given.
+   function new_chain(m, t, wanted, first_slide, unit) result(c)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       logical, intent(in) :: wanted(:)
       integer, intent(in) :: first_slide
+      real(wp), intent(in), optional :: unit(0:)
       type(chain_t) :: c
       logical :: needed(size(wanted))
       integer, allocatable :: links(:)
@@ -54,6 +57,11 @@ contains
       allocate (c%hung(size(links)))
       do i = 1, size(links)
          c%hung(i) = hung_on(m, t, links(i), first_slide)
+         if (.not. present(unit)) cycle
+         associate (h => c%hung(i))
+            if (h%slide > 0) h%place%slide_arm = unit(h%slide)*h%place%slide_arm
+            if (h%root > 0) h%root_unit = unit(h%root:h%root + 1)
+         end associate
       end do
       c%ground = pack([(i, i=1, size(wanted))], m%links%ground .and. wanted)
       allocate (c%ground_position(3, size(c%ground)))
@@ -118,7 +126,7 @@ contains
             call reach_out(h, u(h%frame_above), p(1, k), v(1, k), a(1, k))
             if (h%has_arm) call draw_back(h, f, p(1, k), v(1, k), a(1, k))
             if (h%slide > 0) call add_slide(h, u(h%frame_above), u(h%slide), length, p(1, k), v(1, k), a(1, k))
-            if (h%root > 0) call add_root(u(h%root), length, p(1, k), v(1, k), a(1, k))
+            if (h%root > 0) call add_root(u(h%root), length*h%root_unit, p(1, k), v(1, k), a(1, k))
             if (h%above > 0) then
                p(:2, k) = p(:2, k) + p(:2, h%above)
                v(:2, k) = v(:2, k) + v(:2, h%above)
@@ -203,7 +211,7 @@ contains
    !> A link that no pair joins to the ground has its own x and y.
    pure subroutine add_root(u, length, p, v, a)
       type(unknown_t), intent(in) :: u(2)
-      real(wp), intent(in) :: length
+      real(wp), intent(in) :: length(2)
       real(wp), intent(inout) :: p(3), v(3), a(3)
 
       p(:2) = length*u%value

@@ -3,16 +3,18 @@ module points
    use kinds, only: wp, label_length
    use mechanism, only: mechanism_t, request_t, pair_t, pair_prismatic, request_link, request_point, request_pair, &
       instant_count
-   use motion, only: motion_t
+   use motion, only: motion_t, known_of, mark_of, mark_none
    implicit none
    private
-   public :: row_t, row_of, is_due, point_motion, pair_motion
+   public :: row_t, row_of, is_due, is_fixed, point_motion, pair_motion
 
    !> One row of a table, in the deck's length unit and radians.
    type :: row_t
       integer :: kind = request_link
       character(label_length) :: name = ''
       logical :: angular = .false.          !< a pair whose value is an angle
+      integer :: known = 2                  !< how much of it exists: as in `motion_t`
+      integer :: mark = mark_none           !< why no more of it does
       real(wp) :: value(3, 0:2) = 0.0_wp    !< x, y, phi (a pair: its value first) and their derivatives
    end type row_t
 
@@ -27,7 +29,8 @@ contains
       is_due = mod(k, request%every) == 0 .or. k == instant_count(m) - 1
    end function is_due
 
-   !> The row that `request` asks for, of as much of the motion `q` as is known.
+   !> The row that `request` asks for, of as much of the motion `q` as is known. What belongs to the ground is known at
+   !> any instant, by the deck alone.
    pure function row_of(m, q, request) result(row)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
@@ -39,22 +42,71 @@ contains
          select case (request%kind)
          case (request_link)
             row%name = m%links(i)%name
+            call note_known(m, q, i, row)
+            if (m%links(i)%ground) then
+               row%value(:, 0) = m%links(i)%position
+               return
+            end if
             row%value(:, 0) = q%position(:, i) + [q%origin, 0.0_wp]
-            ! As its card has it, to the last digit.
-            if (m%links(i)%ground) row%value(:, 0) = m%links(i)%position
             row%value(:, 1) = q%velocity(:, i)
             row%value(:, 2) = q%acceleration(:, i)
          case (request_point)
             row%name = m%points(i)%name
+            call note_known(m, q, m%points(i)%link, row)
+            if (m%links(m%points(i)%link)%ground) then
+               row%value(:2, 0) = fixed_place(m, i)
+               return
+            end if
             row%value(:2, :) = point_motion(m, q, i)
             row%value(:2, 0) = row%value(:2, 0) + q%origin
          case (request_pair)
             row%name = m%pairs(i)%name
             row%angular = m%pairs(i)%kind /= pair_prismatic
+            call note_known(m, q, m%points(m%pairs(i)%point_i)%link, row)
+            call note_known(m, q, m%points(m%pairs(i)%point_j)%link, row)
             row%value(1, :) = pair_motion(m, q, m%pairs(i))
          end select
       end associate
    end function row_of
+
+   !> What `request` asks for belongs to the ground.
+   pure logical function is_fixed(m, request)
+      type(mechanism_t), intent(in) :: m
+      type(request_t), intent(in) :: request
+
+      select case (request%kind)
+      case (request_link)
+         is_fixed = m%links(request%subject)%ground
+      case (request_point)
+         is_fixed = m%links(m%points(request%subject)%link)%ground
+      case default
+         is_fixed = .false.
+      end select
+   end function is_fixed
+
+   !> Of `row` no more is known than of `link`.
+   pure subroutine note_known(m, q, link, row)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      integer, intent(in) :: link
+      type(row_t), intent(inout) :: row
+
+      if (m%links(link)%ground) return
+      if (known_of(q, link) >= row%known) return
+      row%known = known_of(q, link)
+      row%mark = mark_of(q, link)
+   end subroutine note_known
+
+   !> Where point number `i` of a ground link is.
+   pure function fixed_place(m, i) result(place)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i
+      real(wp) :: place(2)
+
+      associate (p => m%links(m%points(i)%link)%position, u => m%points(i)%offset)
+         place = p(:2) + [u(1)*cos(p(3)) - u(2)*sin(p(3)), u(1)*sin(p(3)) + u(2)*cos(p(3))]
+      end associate
+   end function fixed_place
 
    !> Place from the motion's origin, velocity and acceleration (2, 0:2) of point number `i`; u is its arm:
    !> p = o + u,  p' = o' + phi' u_t,  p'' = o'' + phi'' u_t - phi'^2 u,  u_t = (-u_y, u_x).

@@ -6,7 +6,7 @@ module pose
    use kinds, only: wp
    use constants, only: pi
    use mechanism, only: mechanism_t, pair_t, drive_slide, plane_origin
-   use scales, only: characteristic_length, power_of_two
+   use scales, only: solver_length, power_of_two
    use drives, only: law_t, new_law
    use frozen_form, only: nearest_zeros, secants
    implicit none
@@ -48,7 +48,7 @@ contains
       type(system_t) :: s
       integer :: i
 
-      s%length = power_of_two(characteristic_length(m))
+      s%length = power_of_two(solver_length(m))
       s%origin = plane_origin(m)
       allocate (s%column(size(m%links)), source=0)
       do i = 1, size(m%links)

@@ -10,7 +10,7 @@ module rough_angles
    use kinds, only: wp
    use constants, only: pi
    use mechanism, only: mechanism_t, pair_revolute
-   use scales, only: characteristic_length
+   use scales, only: solver_length
    use links_tree, only: tree_t
    use whole_turns, only: without_turns
    implicit none
@@ -46,7 +46,7 @@ contains
       do i = size(m%links), 1, -1
          if (t%frame(i) > 0) u(t%frame(i)) = phi(i) - t%turn(i)
       end do
-      length = characteristic_length(m)
+      length = solver_length(m)
       allocate (placed(size(m%points)))
       placed = m%links(m%points%link)%ground .or. hypot(m%points%offset(1), m%points%offset(2)) <= short_part*length
       if (largest_opening(m, t, u, spread(.true., 1, size(m%points))) <= good_part*length) return

@@ -1,12 +1,13 @@
-!> Level 10. How far a motion is known: the blocks solved again, from the deck as it is and from decks whose numbers are
+!> Level 11. How far a motion is known: the blocks solved again, from the deck as it is and from decks whose numbers are
 !> a little off, at instants where digits of the tables could be in doubt.
 module rounding_samples
    use kinds, only: wp
    use mechanism, only: mechanism_t, place_links
-   use motion, only: motion_t, new_motion
+   use motion, only: motion_t, new_motion, forget_links, mark_none, mark_singular
    use scales, only: characteristic_length, characteristic_rate
    use convergence, only: convergence_t, is_solved, ended_open
    use block_solver, only: solve_block
+   use link_knowledge, only: know_links
    use block_engine, only: block_engine_t, make_block_engine, set_targets, tell_blocks
    use perturbed_deck, only: sample_count, perturbed, perturbed_instant
    use scatter, only: scatter_t, find_noise, unusable
@@ -65,7 +66,8 @@ contains
       do k = 0, sample_count
          associate (u => s%engine(k)%state%u)
             if (allocated(e)) then
-               u%value = e%state%u%value
+               ! The perturbed deck's unit may be the next power of two.
+               u%value = e%state%u%value*(slide_units(e)/slide_units(s%engine(k)))
             else
                u%value = s%engine(k)%rough
             end if
@@ -76,6 +78,15 @@ contains
       found%taken = found%samples(0)%known /= unusable .and. any(found%samples(1:)%known /= unusable)
       if (found%taken) call find_noise(m, s%length, found)
    end subroutine take_samples
+
+   !> (0:unknowns) The unit of each slide in the deck's; 1 of an angle.
+   pure function slide_units(e) result(unit)
+      type(block_engine_t), intent(in) :: e
+      real(wp) :: unit(0:e%blocks%unknowns)
+
+      unit = e%blocks%unit
+      unit(e%blocks%frames + 1:) = unit(e%blocks%frames + 1:)*e%length
+   end function slide_units
 
    !> Some digit could be in doubt: a pivot is small, or a number large.
    pure logical function is_in_doubt(s, e, rcond, q)
@@ -140,16 +151,19 @@ contains
 
       q%t = t
       q%known = 2
+      call forget_links(q)
       call set_targets(e, t)
       correction = 0.0_wp
       do i = 1, size(e%needed)
          c = convergence_t()
          call solve_block(e%blocks, e%needed(i), 0.0_wp, e%work, e%state, c, correction)
          if (c%singular) q%known = 0
+         e%mark_now(e%needed(i)) = merge(mark_singular, mark_none, c%singular)
          if (is_solved(c) .and. .not. c%rates_open) cycle
          q%known = merge(unusable, -1, c%ended == ended_open .or. c%rates_open)
          return
       end do
       call tell_blocks(e, q, finite)
+      if (q%known == 0) call know_links(e, q)
    end subroutine solve_again
 end module rounding_samples

@@ -6,7 +6,7 @@ module scales
       term_power, term_table, plane_origin
    implicit none
    private
-   public :: characteristic_length, characteristic_rate, power_of_two, is_length
+   public :: characteristic_length, solver_length, characteristic_rate, power_of_two, is_length
 
 contains
 
@@ -14,6 +14,29 @@ contains
    !> of length; 1 where the deck holds no length at all. In the deck's unit; places do not count, only distances.
    pure real(wp) function characteristic_length(m) result(length)
       type(mechanism_t), intent(in) :: m
+
+      length = largest_length(m, spread(.true., 1, size(m%points)))
+   end function characteristic_length
+
+   !> The same for what is solved: points that are in no pair and that no drive moves do not count.
+   pure real(wp) function solver_length(m) result(length)
+      type(mechanism_t), intent(in) :: m
+      logical :: counts(size(m%points))
+      integer :: i
+
+      counts = .false.
+      counts(m%pairs%point_i) = .true.
+      counts(m%pairs%point_j) = .true.
+      do i = 1, size(m%drives)
+         if (any(m%drives(i)%kind == [drive_x, drive_y])) counts(m%drives(i)%subject) = .true.
+      end do
+      length = largest_length(m, counts)
+   end function solver_length
+
+   !> The largest length of `m`, of its points those that `counts` (points).
+   pure real(wp) function largest_length(m, counts) result(length)
+      type(mechanism_t), intent(in) :: m
+      logical, intent(in) :: counts(:)
       real(wp), allocatable :: low(:, :), high(:, :)
       real(wp) :: place(2), origin(2), start
       integer :: i, k
@@ -22,6 +45,7 @@ contains
       allocate (low(2, 0:size(m%links)), source=huge(1.0_wp))
       allocate (high(2, 0:size(m%links)), source=-huge(1.0_wp))
       do i = 1, size(m%points)
+         if (.not. counts(i)) cycle
          k = m%points(i)%link
          place = m%points(i)%offset
          if (m%links(k)%ground) then
@@ -47,7 +71,7 @@ contains
          length = max(length, abs(start))
       end do
       if (.not. (length > 0.0_wp .and. length <= huge(length))) length = 1.0_wp
-   end function characteristic_length
+   end function largest_length
 
    !> The largest rate, or 1 where nothing moves or no bound exists: it chooses digits, nothing else.
    pure real(wp) function characteristic_rate(m, length) result(rate)

@@ -2,9 +2,9 @@
 !> numbers are a little off.
 module scatter
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_t
+   use mechanism, only: mechanism_t, request_t, request_point
    use motion, only: motion_t
-   use points, only: row_t, row_of
+   use points, only: row_t, row_of, is_fixed
    use known_digits, only: nothing_known
    use perturbed_deck, only: perturbation
    implicit none
@@ -44,27 +44,48 @@ contains
       integer :: k, known
 
       error = 0.0_wp
+      if (is_fixed(m, request)) then
+         error(:, 0) = fixed_error(m, request)
+         return
+      end if
       if (s%asked) error = nothing_known
       if (.not. s%taken) return
       error = 0.0_wp
       middle = row_of(m, s%samples(0), request)
-      known = s%samples(0)%known
+      known = middle%known
       zero = abs(middle%value) <= 0.0_wp
       ! Where the Jacobian has no inverse, a position changes with the root of what the deck changes by.
       scale = caution/merge(roundings, sqrt(roundings), known > 0)
       do k = 1, ubound(s%samples, 1)
          if (s%samples(k)%known == unusable) cycle
          ! Half of the kin of a mechanism at its limit cannot go so far.
-         if (s%samples(k)%known < 0 .and. known == 0) cycle
          one = row_of(m, s%samples(k), request)
+         if (one%known < 0 .and. known == 0) cycle
          error = max(error, abs(one%value - middle%value))
          zero = zero .and. abs(one%value) <= 0.0_wp
-         known = min(known, s%samples(k)%known)
+         known = min(known, one%known)
       end do
       ! A coordinate of what stands still is zero without a sum.
       error = merge(0.0_wp, scale*error + noise_of(s, middle%angular), zero)
       error(:, known + 1:) = nothing_known
    end function row_scatter
+
+   !> What rounding leaves open of the place (3) of a ground link or of a point on one: a sum of numbers of cards.
+   pure function fixed_error(m, request) result(error)
+      type(mechanism_t), intent(in) :: m
+      type(request_t), intent(in) :: request
+      real(wp) :: error(3)
+      type(row_t) :: row
+
+      row = row_of(m, motion_t(), request)
+      error = abs(row%value(:, 0))
+      if (request%kind == request_point) then
+         associate (p => m%points(request%subject))
+            error = max(error, norm2(p%offset), norm2(m%links(p%link)%position(:2)))
+         end associate
+      end if
+      error = merge(noise_roundings*epsilon(1.0_wp)*error, 0.0_wp, abs(row%value(:, 0)) > 0.0_wp)
+   end function fixed_error
 
    !> To be called when `s` has its samples; `length`: the characteristic one. What is summed up to a velocity is no
    !> smaller than an angular velocity times a length, what is summed up to an acceleration has the square of one.
@@ -111,7 +132,7 @@ contains
       type(row_t) :: row, solved
 
       error = row_scatter(m, s, request)
-      if (.not. s%taken) return
+      if (.not. s%taken .or. is_fixed(m, request)) return
       row = row_of(m, q, request)
       solved = row_of(m, s%samples(0), request)
       where (error < nothing_known) error = error + abs(row%value - solved%value)

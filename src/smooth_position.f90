@@ -2,6 +2,7 @@
 !> the branch that is followed goes through it smoothly, so that three motions before it give it in full.
 module smooth_position
    use kinds, only: wp
+   use motion, only: mark_none, mark_singular
    use convergence, only: convergence_t, is_solved
    use predictor, only: predict, is_even
    use block_state, only: set_values
@@ -39,7 +40,9 @@ contains
             call solve_block(e%blocks, i, e%tolerance, e%work, e%state, c, change)
             smooth = smooth .and. is_solved(c)
             if (.not. smooth) return
-            if (e%blocks%list(i)%direct .or. .not. c%singular) cycle
+            if (e%blocks%list(i)%direct) cycle
+            e%mark_now(i) = merge(mark_singular, mark_none, c%singular)
+            if (.not. c%singular) cycle
             singular(i) = .true.
             associate (found => e%state%u(u(e%blocks%list(i)%first:e%blocks%list(i)%last)))
                smooth = maxval(abs(found%value - x)) <= same_place

@@ -1,4 +1,4 @@
-!> Level 20. Speed against error (--study): every way of solving a deck is timed and compared with the truth, the
+!> Level 22. Speed against error (--study): every way of solving a deck is timed and compared with the truth, the
 !> motion by the same program in real128. The time alone (--time), in any kind.
 module study
    use, intrinsic :: iso_fortran_env, only: dp => real64

@@ -1,12 +1,11 @@
-!> Level 19. The errors that the program tells of its own results (--errors) beside the true ones.
+!> Level 21. The errors that the program tells of its own results (--errors) beside the true ones.
 module study_estimates
    use, intrinsic :: iso_fortran_env, only: dp => real64, qp => real128
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use motion, only: motion_t, new_motion
-   use analysis, only: analysis_t, make_analysis, advance
-   use scatter, only: scatter_t, largest_errors
-   use rounding_samples, only: samples_t, make_samples, take_samples
+   use set_motion, only: put_together
+   use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set, set_errors
    use known_digits, only: nothing_known
    use text_output, only: output_t, put
    use numerals, only: whole
@@ -72,27 +71,25 @@ contains
       type(truth_t), intent(in) :: truth
       type(comparison_t), intent(out) :: c
       type(mechanism_t) :: one
-      type(analysis_t) :: a
+      type(set_analysis_t) :: a
       type(motion_t) :: q
-      type(samples_t) :: samples
-      type(scatter_t) :: doubt
       real(wp) :: instants(0:t%last)
       integer :: k, there, every
 
       one = trial_mechanism(m, t)
       instants = real(trial_instants(m, t), wp)
-      call make_analysis(a, one)
+      call make_set_analysis(one, a)
       q = new_motion(size(m%links))
-      call make_samples(samples, one)
       every = t%stride*max(1, (t%last/t%stride)/max_compared)
       do k = 0, t%last
-         call advance(a, instants(k), q)
-         if (mod(k, every) /= 0 .or. q%known < 2) cycle
+         call advance_set(a, one, instants(k))
+         if (mod(k, every) /= 0) cycle
+         call put_together(a%now, q)
+         if (q%known < 2) cycle
          there = true_sample(truth, t, k)
          if (truth%motion%known(there) < 2) cycle
-         call take_samples(samples, one, a%engine%blocks, a%convergence%reciprocal_condition, q, &
-            .true., doubt)
-         call add_instant(truth, there, q, largest_errors(one, doubt, q, samples%length, samples%rate), c)
+         call sample_set(a, one, .true.)
+         call add_instant(truth, there, q, set_errors(a, one), c)
       end do
    end subroutine compare
 

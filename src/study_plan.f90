@@ -1,4 +1,4 @@
-!> Level 18. What --study tries on one set of computations: how many steps, which instants are compared, which trials.
+!> Level 20. What --study tries on one set of computations: how many steps, which instants are compared, which trials.
 module study_plan
    use, intrinsic :: iso_fortran_env, only: dp => real64, int64
    use kinds, only: wp

@@ -1,4 +1,4 @@
-!> Level 19. The text of a study: its head, the table of its trials with times and errors, and the
+!> Level 21. The text of a study: its head, the table of its trials with times and errors, and the
 !> cheapest of them.
 module study_table
    use, intrinsic :: iso_fortran_env, only: dp => real64

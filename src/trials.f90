@@ -1,4 +1,4 @@
-!> Level 17. A trial: one way of solving a set of computations, and what comes of it in this program's own kind of
+!> Level 19. A trial: one way of solving a set of computations, and what comes of it in this program's own kind of
 !> reals: the motion, the iterations, the time of a step.
 !>
 !> The instants are those of a double-precision program, t0 + (t1 - t0) k/n in its arithmetic, in every kind: a kind of
@@ -8,8 +8,9 @@ module trials
    use, intrinsic :: iso_fortran_env, only: dp => real64, qp => real128
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_t, request_link, instant, method_newton, own_predictor
-   use motion, only: motion_t, new_motion, mark_none
-   use analysis, only: analysis_t, make_analysis, advance
+   use motion, only: motion_t, new_motion
+   use set_motion, only: put_together, is_flagged
+   use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, iterations_of
    use timing, only: seconds
    implicit none
    private
@@ -102,7 +103,7 @@ contains
       integer, intent(in) :: stride
       type(outcome_t), intent(out) :: o
       real(dp), intent(out) :: seconds_taken
-      type(analysis_t) :: a
+      type(set_analysis_t) :: a
       type(motion_t) :: q
       real(dp) :: begun
       integer :: k, i, failures, at_first
@@ -111,15 +112,16 @@ contains
       allocate (o%value(3, size(m%links), 0:2, size(o%known)), source=0.0_qp)
       o%found = .true.
       q = new_motion(size(m%links))
-      call make_analysis(a, m)
+      call make_set_analysis(m, a)
       begun = seconds()
       failures = 0
       do k = 0, ubound(instants, 1)
-         call advance(a, instants(k), q)
-         if (k == 0) at_first = a%iterations
-         if (q%mark /= mark_none) failures = failures + 1
-         o%found = o%found .and. q%known >= 0
+         call advance_set(a, m, instants(k))
+         if (k == 0) at_first = iterations_of(a)
+         if (is_flagged(a%now)) failures = failures + 1
          seconds_taken = seconds() - begun
+         call put_together(a%now, q)
+         o%found = o%found .and. q%known >= 0
          if (failures > 0 .and. (failures == k + 1 .and. failures == patience .or. seconds_taken > long)) exit
          if (mod(k, stride) /= 0) cycle
          i = k/stride + 1
@@ -129,7 +131,7 @@ contains
          o%value(:, :, 2, i) = q%acceleration
       end do
       o%found = o%found .and. k > ubound(instants, 1)
-      o%iterations = real(a%iterations - at_first, dp)/max(1, min(k, ubound(instants, 1)))
+      o%iterations = real(iterations_of(a) - at_first, dp)/max(1, min(k, ubound(instants, 1)))
    end subroutine march
 
    !> A time a step of so many `steps` has a meaning: there are steps, and every position was found.
@@ -146,22 +148,20 @@ contains
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: instants(0:)
       real(dp), intent(in) :: whole
-      type(analysis_t) :: a
-      type(motion_t) :: q
+      type(set_analysis_t) :: a
       real(dp) :: begun
       integer :: i, k, passes, last
 
       last = ubound(instants, 1)
       if (whole > max_seconds) last = min(last, max(min_steps, int(last*max_seconds/whole)))
       passes = max(1, min(1000, ceiling(min_seconds/max(whole, 1.0e-6_dp))))
-      q = new_motion(size(m%links))
       time = 0.0_dp
       do i = 1, passes
-         call make_analysis(a, m)
-         call advance(a, instants(0), q)
+         call make_set_analysis(m, a)
+         call advance_set(a, m, instants(0))
          begun = seconds()
          do k = 1, last
-            call advance(a, instants(k), q)
+            call advance_set(a, m, instants(k))
          end do
          time = time + (seconds() - begun)
       end do

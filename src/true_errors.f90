@@ -1,4 +1,4 @@
-!> Level 18. The errors of a trial against the truth, the motion in real128.
+!> Level 20. The errors of a trial against the truth, the motion in real128.
 !>
 !> Differences are in the characteristic length and rate, angles to a whole turn; where the largest position, velocity
 !> or acceleration of the truth is more than 1 of these, they are parts of it.
@@ -8,7 +8,8 @@ module true_errors
    use mechanism, only: mechanism_t, place_links
    use motion, only: motion_t, new_motion, mark_none
    use scales, only: characteristic_length, characteristic_rate
-   use analysis, only: analysis_t, make_analysis, advance
+   use set_motion, only: put_together
+   use set_analysis, only: set_analysis_t, make_set_analysis, advance_set
    use trials, only: trial_t, outcome_t, trial_mechanism, trial_instants
    implicit none
    private
@@ -138,7 +139,7 @@ contains
       type(outcome_t), intent(in) :: o
       integer, intent(in) :: i
       type(mechanism_t) :: there
-      type(analysis_t) :: a
+      type(set_analysis_t) :: a
       type(motion_t) :: q
       real(dp) :: before, after, instants(0:t%last)
       integer :: k, sample
@@ -146,10 +147,11 @@ contains
       there = trial_mechanism(m, trial_t())
       call place_links(there, real(o%value(:, :, 0, i), wp))
       q = new_motion(size(m%links))
-      call make_analysis(a, there)
+      call make_set_analysis(there, a)
       k = (i - 1)*t%stride
       instants = trial_instants(m, t)
-      call advance(a, real(instants(k), wp), q)
+      call advance_set(a, there, real(instants(k), wp))
+      call put_together(a%now, q)
       is_other_assembly = q%mark == mark_none
       if (.not. is_other_assembly) return
       sample = true_sample(truth, t, k)

@@ -313,9 +313,11 @@ equal 'no assembly: standard error' '' "$(cat "$w/err")"
 equal 'no assembly: each instant is marked' 3 "$(grep -c '^ \*\*\* NO POSITION FOUND$' "$w/open.lst")"
 equal 'no assembly: last line' ' END OF SET 1:  INSTANTS SOLVED 0, MARKED 3' "$(grep 'END OF SET' "$w/open.lst")"
 equal 'no assembly: words for numbers' '        NONE        NONE        NONE' \
-   "$(grep -m 1 '^ CRANK   .*NONE' "$w/open.lst" | cut -c 10-45)"
+   "$(grep -m 1 '^ COUPLER .*NONE' "$w/open.lst" | cut -c 10-45)"
+equal 'no assembly: the driven crank' 3 "$(grep -c '^ CRANK       0.000000    0.000000    .*    1.000000' "$w/open.lst")"
 equal 'no assembly: NaN or asterisks' '' "$(grep -nEi 'nan|inf|[*]{4}' "$w/open.lst" "$w/open.csv" "$w/open.log")"
-equal 'no assembly: csv' '1,0,0.0000000000000000E+000,LINK,CRANK,,,,,,,,,,NO-POSITION' "$(grep -m 1 CRANK "$w/open.csv")"
+equal 'no assembly: csv' '1,0,0.0000000000000000E+000,LINK,COUPLER,,,,,,,,,,NO-POSITION' \
+   "$(grep -m 1 COUPLER "$w/open.csv")"
 equal 'no assembly: 15 columns' '' "$(awk -F, 'NF != 15' "$w/open.csv")"
 equal 'no assembly: protocol' 3 "$(grep -cE ' (SINGULAR|LIMIT|DIVERGED) ' "$w/open.log")"
 

@@ -99,8 +99,8 @@ kept 'standard output is the deck' ' *** THE DECK own WOULD BE OVERWRITTEN' own
 kept 'standard output is the deck on standard input' ' *** THE DECK ON STANDARD INPUT WOULD BE OVERWRITTEN' own
 "$kinmat" --study own -o own.hard > out 2> err; status=$?
 kept '--study' ' *** THE DECK own WOULD BE OVERWRITTEN' own
-"$kinmat" --trials 1/1/0.0/-1/F/8/8/1/0 own -o own.hard > out 2> err; status=$?
-kept '--trials' ' *** THE DECK own WOULD BE OVERWRITTEN' own
+"$kinmat" --time own -o own.hard > out 2> err; status=$?
+kept '--time' ' *** THE DECK own WOULD BE OVERWRITTEN' own
 if memory=$(mktemp /dev/shm/kinmat.XXXXXX 2> /dev/null); then
    cp deck "$memory"
    "$kinmat" "$memory" -o "$memory" > out 2> err; status=$?

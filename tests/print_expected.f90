@@ -4,8 +4,8 @@ program print_expected
    use, intrinsic :: iso_fortran_env, only: error_unit
    use kinds, only: wp
    use failures, only: failure_t
-   use mechanism, only: mechanism_t, instant_count, instant, method_newton
-   use motion, only: motion_t, new_motion, mark_none, mark_singular
+   use mechanism, only: mechanism_t, instant_count, instant, method_newton, drive_angle
+   use motion, only: motion_t, new_motion, forget_links, mark_none, mark_singular
    use structure, only: findings_t
    use continuity, only: tally_t
    use hand_groups, only: groups_by_hand, redundant_by_hand, passages_by_hand
@@ -69,10 +69,8 @@ contains
          if (k > 0) then
             q%remarks = passages_by_hand(name, m, instant(m, k - 1), instant(m, k))
             tally%passed = tally%passed + count(.not. q%remarks%here)
-            ! Both branches have the position, each has velocities of its own.
             if (any(q%remarks%here)) then
-               q%known = 0
-               q%mark = mark_singular
+               call stop_all_but_driven(m, q)
                marked = marked + 1
             end if
          end if
@@ -88,6 +86,23 @@ contains
       call listing_end(o, m, instant_count(m) - marked, marked, tally, &
          gap=merge(0.0_wp, -1.0_wp, size(redundant_by_hand(name, m)) > 0))
    end subroutine print_set
+
+   !> Both branches have the position of `q`, each has velocities of its own, but for the links whose angle is driven.
+   subroutine stop_all_but_driven(m, q)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(inout) :: q
+      integer :: i
+
+      q%known = 0
+      q%mark = mark_singular
+      allocate (q%link_known(size(m%links)), source=0)
+      allocate (q%link_mark(size(m%links)), source=mark_singular)
+      do i = 1, size(m%drives)
+         if (m%drives(i)%kind /= drive_angle) cycle
+         q%link_known(m%drives(i)%subject) = 2
+         q%link_mark(m%drives(i)%subject) = mark_none
+      end do
+   end subroutine stop_all_but_driven
 
    !> How far the motion `q` is known, next to dead points, from the closed forms of decks whose numbers are a little off.
    !> Elsewhere no digit is in doubt.
@@ -128,6 +143,7 @@ contains
             q%acceleration(:, k) = real([b%x%dd, b%y%dd, b%phi%dd], wp)
          end associate
       end do
+      call forget_links(q)
       q%t = t
       q%known = 2
       q%mark = mark_none

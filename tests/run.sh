@@ -46,6 +46,7 @@ part 'single precision' "$MAKE" --no-print-directory single-check
 part 'units of length' tests/units.sh
 part 'faults by name' tests/faults.sh
 part 'the methods against one another' tests/methods.sh
+part 'independent mechanisms' tests/independent.sh
 part 'the digits' tests/digits.sh
 part 'wide blocks' tests/wide.sh
 part 'drives between instants' tests/drives.sh
