@@ -103,7 +103,8 @@ contains
       if (w%tries > 1 .and. open) call measure_gap(a, t)
       open = a%convergence%ended == ended_open
       call cut(found, -1, merge(mark_open, mark_not_converged, open))
-      call tell_certain(a%engine, t, found)
+      ! Of equations that contradict one another a drive is one: not even its own link has a place then.
+      if (.not. open) call tell_certain(a%engine, t, found)
       if (open) a%largest_gap = max(a%largest_gap, a%convergence%gap)
       call remark_on_end(a, t, w, found)
    end subroutine stay

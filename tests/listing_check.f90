@@ -126,7 +126,7 @@ contains
       do while (are_heads)
          call next_word(text, first, last)
          if (first == 0) return
-         are_heads = any(heads == text(first:last))
+         are_heads = any(heads == text(first:last)) .or. text(first:min(first + 3, last)) == '10**'
       end do
    end function are_heads
 
