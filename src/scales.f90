@@ -16,9 +16,11 @@ contains
       type(mechanism_t), intent(in) :: m
 
       length = largest_length(m, spread(.true., 1, size(m%points)))
+      if (.not. is_usable(length)) length = 1.0_wp
    end function characteristic_length
 
-   !> The same for what is solved: points that are in no pair and that no drive moves do not count.
+   !> The same for what is solved: points that are in no pair and that no drive moves do not count, unless there is no
+   !> other length.
    pure real(wp) function solver_length(m) result(length)
       type(mechanism_t), intent(in) :: m
       logical :: counts(size(m%points))
@@ -31,9 +33,16 @@ contains
          if (any(m%drives(i)%kind == [drive_x, drive_y])) counts(m%drives(i)%subject) = .true.
       end do
       length = largest_length(m, counts)
+      if (.not. is_usable(length)) length = characteristic_length(m)
    end function solver_length
 
-   !> The largest length of `m`, of its points those that `counts` (points).
+   pure logical function is_usable(length)
+      real(wp), intent(in) :: length
+
+      is_usable = length > 0.0_wp .and. length <= huge(length)
+   end function is_usable
+
+   !> The largest length of `m`, of its points those that `counts` (points); 0 where there is none.
    pure real(wp) function largest_length(m, counts) result(length)
       type(mechanism_t), intent(in) :: m
       logical, intent(in) :: counts(:)
@@ -70,7 +79,6 @@ contains
          if (m%drives(i)%kind == drive_y) start = start - origin(2)
          length = max(length, abs(start))
       end do
-      if (.not. (length > 0.0_wp .and. length <= huge(length))) length = 1.0_wp
    end function largest_length
 
    !> The largest rate, or 1 where nothing moves or no bound exists: it chooses digits, nothing else.

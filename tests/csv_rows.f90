@@ -18,7 +18,7 @@ module csv_rows
       logical, allocatable :: given(:)          !< (links)
       type(jet_t), allocatable :: value(:, :)   !< (2, requests) of points and pairs
       logical, allocatable :: due(:)            !< (requests)
-      integer :: known = 2                      !< derivatives
+      integer :: known = 2                      !< derivatives that every row has
       real(wp) :: t = 0.0_wp
       character(12) :: mark = ''
    end type rows_t
@@ -74,7 +74,7 @@ contains
       character(600) :: line
       character(cell_length) :: cell(cells)
       type(jet_t) :: value(3)
-      integer :: status
+      integer :: status, known
 
       read (unit, '(a)', iostat=status) line
       if (status /= 0) call blame(wrong, 'CSV: A ROW IS MISSING')
@@ -88,16 +88,17 @@ contains
       rows%mark = cell(15)(:12)
       if (all(rows%mark /= [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE', 'OPEN'])) &
          call blame(wrong, 'CSV: MARK: '//trim(line))
-      call read_values(m, i, cell(6:14), value, rows%known, wrong)
-      if ((rows%mark == '') .neqv. (rows%known == 2)) call blame(wrong, 'CSV: KNOWN VALUES AND MARK: '//trim(line))
+      call read_values(m, i, cell(6:14), value, known, wrong)
+      rows%known = min(rows%known, known)
+      if ((rows%mark == '') .neqv. (known == 2)) call blame(wrong, 'CSV: KNOWN VALUES AND MARK: '//trim(line))
       if (allocated(wrong)) return
-      call keep_row(m, i, cell(4), cell(5), value, rows, wrong)
+      call keep_row(m, i, cell(4), cell(5), value, known, rows, wrong)
    end subroutine read_row
 
-   !> A row under the name that it must have.
-   subroutine keep_row(m, i, kind, name, value, rows, wrong)
+   !> A row, of so many derivatives `known`, under the name that it must have.
+   subroutine keep_row(m, i, kind, name, value, known, rows, wrong)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i
+      integer, intent(in) :: i, known
       character(*), intent(in) :: kind, name
       type(jet_t), intent(in) :: value(3)
       type(rows_t), intent(inout) :: rows
@@ -109,7 +110,7 @@ contains
          case (request_link)
             wanted = [character(8) :: 'LINK', m%links(subject)%name]
             rows%body(subject) = body_jet_t(value(1), value(2), value(3))
-            rows%given(subject) = rows%known >= 0
+            rows%given(subject) = known >= 0
          case (request_point)
             wanted = [character(8) :: 'POINT', m%points(subject)%name]
             rows%value(:, i) = value(:2)
