@@ -229,7 +229,8 @@ contains
       call cut(found, 2, mark_none)
       if (a%convergence%singular) call cut(found, 0, mark_singular)
       if (a%convergence%rates_open) call cut(found, 0, mark_open)
-      if (found%known < 2) call tell_links(a%engine, found)
+      ! Where rates contradict one another no link has any.
+      if (found%mark == mark_singular) call tell_links(a%engine, found)
       if (.not. finite) call look_for_overflow(found)
    end subroutine tell_motion
 

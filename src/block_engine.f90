@@ -3,7 +3,7 @@
 module block_engine
    use kinds, only: wp
    use mechanism, only: mechanism_t, wanted_links, pair_revolute, drive_x, drive_y, drive_slide
-   use motion, only: motion_t, mark_none, mark_singular, mark_open
+   use motion, only: motion_t
    use scales, only: solver_length, power_of_two
    use links_tree, only: tree_t, new_tree
    use loop_equations, only: new_equations
@@ -55,7 +55,7 @@ module block_engine
       real(wp), allocatable :: side(:)                  !< Jacobian of the block with too many rows, followed
       real(wp), allocatable :: pivot_now(:), pivot_of(:) !< (blocks) the least: found last, followed
       real(wp), allocatable :: inverse_now(:), inverse_of(:) !< (blocks) |J^-1| likewise
-      integer, allocatable :: mark_now(:)               !< (blocks) why there are no velocities; mark_none: there are
+      logical, allocatable :: is_singular(:)            !< (blocks) found last without velocities
       logical, allocatable :: crossed(:)                !< (blocks) whose determinant has changed its sign
       real(wp) :: change = 0.0_wp                       !< the largest that was predicted
    end type block_engine_t
@@ -117,7 +117,7 @@ contains
          e%estimate(:, i) = m%links(i)%position - [e%chain%origin, 0.0_wp]
       end do
       allocate (e%inverse_now(size(e%blocks%list)), e%inverse_of(size(e%blocks%list)), source=0.0_wp)
-      allocate (e%mark_now(size(e%blocks%list)), source=mark_none)
+      allocate (e%is_singular(size(e%blocks%list)), source=.false.)
       ! A function's result would bring its own lower bound.
       allocate (e%rough(0:e%blocks%unknowns))
       e%rough(:) = rough_values(m, t, e%length, e%blocks%unknowns)/e%blocks%unit
@@ -224,9 +224,7 @@ contains
             one%determinant = e%sign_of(i)*relative_side(e%blocks, i, e%side, e%state)
          call gather(one, c)
          if (.not. is_solved(one)) return
-         e%mark_now(i) = mark_none
-         if (one%singular) e%mark_now(i) = mark_singular
-         if (one%rates_open) e%mark_now(i) = mark_open
+         e%is_singular(i) = one%singular
          ! At a change point itself the sign is that of rounding.
          if (one%singular) cycle
          c%doubt = max(c%doubt, one%doubt)

@@ -2,7 +2,7 @@
 !> known as far as all the blocks are that it builds on.
 module link_knowledge
    use kinds, only: wp
-   use motion, only: motion_t, mark_none, mark_not_converged, mark_singular, mark_open
+   use motion, only: motion_t, mark_none, mark_not_converged, mark_singular
    use block_needs, only: largest_known
    use block_solver, only: solve_block
    use block_engine, only: block_engine_t, set_targets
@@ -13,7 +13,7 @@ module link_knowledge
    public :: know_links, tell_driven
 
    !> What is missing, the worst last: nothing, what is derived by time, the position.
-   integer, parameter :: nothing = 0, singular_rates = 1, open_rates = 2, all_of_it = 3
+   integer, parameter :: nothing = 0, singular_rates = 1, all_of_it = 2
 
 contains
 
@@ -25,9 +25,7 @@ contains
 
       missing = nothing
       do k = 1, size(e%needed)
-         own = nothing
-         if (e%mark_now(e%needed(k)) == mark_singular) own = singular_rates
-         if (e%mark_now(e%needed(k)) == mark_open) own = open_rates
+         own = merge(singular_rates, nothing, e%is_singular(e%needed(k)))
          call note_block(e, e%needed(k), own, missing)
       end do
       call fill_links(e, missing, found)
@@ -97,10 +95,10 @@ contains
             found%link_mark(k) = mark_none
          case (all_of_it)
             found%link_known(k) = -1
-            found%link_mark(k) = merge(found%mark, mark_not_converged, found%mark == mark_open)
+            found%link_mark(k) = mark_not_converged
          case default
             found%link_known(k) = 0
-            found%link_mark(k) = merge(mark_singular, mark_open, of_link(k) == singular_rates)
+            found%link_mark(k) = mark_singular
          end select
       end do
    end subroutine fill_links

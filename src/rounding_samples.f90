@@ -3,7 +3,7 @@
 module rounding_samples
    use kinds, only: wp
    use mechanism, only: mechanism_t, place_links
-   use motion, only: motion_t, new_motion, forget_links, mark_none, mark_singular
+   use motion, only: motion_t, new_motion, forget_links
    use scales, only: characteristic_length, characteristic_rate
    use convergence, only: convergence_t, is_solved, ended_open
    use block_solver, only: solve_block
@@ -158,7 +158,7 @@ contains
          c = convergence_t()
          call solve_block(e%blocks, e%needed(i), 0.0_wp, e%work, e%state, c, correction)
          if (c%singular) q%known = 0
-         e%mark_now(e%needed(i)) = merge(mark_singular, mark_none, c%singular)
+         e%is_singular(e%needed(i)) = c%singular
          if (is_solved(c) .and. .not. c%rates_open) cycle
          q%known = merge(unusable, -1, c%ended == ended_open .or. c%rates_open)
          return

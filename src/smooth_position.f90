@@ -2,7 +2,6 @@
 !> the branch that is followed goes through it smoothly, so that three motions before it give it in full.
 module smooth_position
    use kinds, only: wp
-   use motion, only: mark_none, mark_singular
    use convergence, only: convergence_t, is_solved
    use predictor, only: predict, is_even
    use block_state, only: set_values
@@ -41,7 +40,7 @@ contains
             smooth = smooth .and. is_solved(c)
             if (.not. smooth) return
             if (e%blocks%list(i)%direct) cycle
-            e%mark_now(i) = merge(mark_singular, mark_none, c%singular)
+            e%is_singular(i) = c%singular
             if (.not. c%singular) cycle
             singular(i) = .true.
             associate (found => e%state%u(u(e%blocks%list(i)%first:e%blocks%list(i)%last)))
