@@ -4,8 +4,7 @@
 module deck_source
    use, intrinsic :: iso_c_binding, only: c_int
    use failures, only: failure_t, fail, status_machine
-   use letters, only: capitals
-   use cards, only: card_t, card_columns
+   use cards, only: card_t, card_columns, capitals
    use system_calls, only: open_to_read, read_bytes, close_descriptor, last_error, reason_of, &
       no_such_file, is_a_directory
    implicit none
