@@ -66,7 +66,7 @@ contains
       parsed%valid = error_count(errors) == before
    end subroutine read_card
 
-   !> Reads the `*` card `card`, which gives reals of the card `above` it. Errors go to `errors`.
+   !> Reads the `*` card `card`, which gives reals of the card `above` it, to `above`. Errors go to `errors`.
    subroutine read_star(card, above, errors)
       type(card_t), intent(in) :: card
       type(parsed_card_t), intent(inout) :: above
@@ -206,7 +206,7 @@ contains
             else if (scan(taken, 'Ww') > 0) then
                parsed%whole_given = .true.
                call read_whole(trim(label), parsed%whole, error, place)
-               call add_number_error(error, parsed%card, field, place, errors)
+               if (error%number > 0) call add_field_error(errors, error, parsed%card, field, place=place)
             else if (index(trim(label), ' ') > 0) then
                parsed%names_certain = .false.
                call add_field_error(errors, label_blank_inside, parsed%card, field)
@@ -258,18 +258,6 @@ contains
       call read_real(trim(card%text(first_column(card, field):field%last)), parsed%real(i), error, place)
       if (abs(parsed%real(i)) > max_real) error = number_overflow
       if (abs(parsed%real(i)) > 0.0_wp .and. abs(parsed%real(i)) < min_real) error = number_underflow
-      call add_number_error(error, card, field, place, errors)
+      if (error%number > 0) call add_field_error(errors, error, card, field, place=place)
    end subroutine read_real_field
-
-   !> The error of a number in `field`, if there is one, at its character `place`.
-   subroutine add_number_error(error, card, field, place, errors)
-      type(error_code_t), intent(in) :: error
-      type(card_t), intent(in) :: card
-      type(field_t), intent(in) :: field
-      integer, intent(in) :: place
-      type(input_errors_t), intent(inout) :: errors
-
-      if (error%number == 0) return
-      call add_error(errors, error, card, field, first_column(card, field) + place - 1, field_text(card, field))
-   end subroutine add_number_error
 end module card_reader

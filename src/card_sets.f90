@@ -12,8 +12,7 @@ module card_sets
    use numerals, only: whole
    implicit none
    private
-   public :: named_t, card_set_t, begin_set, append_card, cards_of, define_name, look_up, match_word, &
-      add_card_error
+   public :: card_set_t, begin_set, append_card, cards_of, define_name, look_up, match_word, add_card_error
 
    !> The links, the points or the pairs of a set.
    type :: named_t

@@ -97,19 +97,19 @@ module input_errors
       add_blank = error_code_t(78, 'GIVES NO NUMBERS'), &
       power_negative = error_code_t(79, 'THIS POWER DOES NOT EXIST AT THE INSTANT'), &
       power_zero = error_code_t(80, 'THIS POWER OR ITS DERIVATIVES DO NOT EXIST AT THE INSTANT'), &
-      power_large = error_code_t(84, 'THIS POWER IS TOO LARGE A NUMBER AT THE INSTANT'), &
       table_short = error_code_t(81, 'A TABLE NEEDS AT LEAST TWO ROWS'), &
       table_order = error_code_t(82, 'THE TIMES OF A TABLE MUST INCREASE'), &
-      table_range = error_code_t(83, 'THIS TABLE DOES NOT REACH THE INSTANT')
+      table_range = error_code_t(83, 'THIS TABLE DOES NOT REACH THE INSTANT'), &
+      power_large = error_code_t(84, 'THIS POWER IS TOO LARGE A NUMBER AT THE INSTANT')
    ! Times and options.
    type(error_code_t), parameter, public :: &
       time_point = error_code_t(85, 'T0 AND T1 ARE EQUAL'), &
       branch_ground = error_code_t(86, 'A GROUND LINK HAS NO OTHER BRANCH'), &
       branch_method = error_code_t(87, 'ONLY METHOD NEWTON TAKES ANOTHER BRANCH'), &
       branch_repeated = error_code_t(88, 'THIS BRANCH CARD IS REPEATED; FIRST ON CARD'), &
+      units_place = error_code_t(89, 'IS A UNIT OF ANGLES, WHICH STANDS IN COLUMNS 17-24 (LABEL-B)', .true.), &
       lang_kind = error_code_t(90, 'IS NOT EN OR PL', .true.), &
       units_angle = error_code_t(91, 'IS NOT RAD OR DEG', .true.), &
-      units_place = error_code_t(89, 'IS A UNIT OF ANGLES, WHICH STANDS IN COLUMNS 17-24 (LABEL-B)', .true.), &
       method_kind = error_code_t(92, 'IS NOT NEWTON, DENSE OR MATRIX', .true.), &
       tolerance_range = error_code_t(93, 'A TOLERANCE IS ABOVE 1E-15 AND AT MOST 1E-2'), &
       print_kind = error_code_t(94, 'IS NOT ALL, LINKS, POINTS OR PAIRS', .true.), &
@@ -143,15 +143,20 @@ contains
       if (code%shows_layout .and. form > 0) call add_line(errors, ' LAYOUT    |'//trim(forms(form)%layout))
    end subroutine add_error
 
-   !> Adds the error `code` about all that stands in `field` of `card`. `more` ends the sentence.
-   subroutine add_field_error(errors, code, card, field, more)
+   !> Adds the error `code` about all that stands in `field` of `card`. `more` ends the sentence. `place`: the character
+   !> of that text which the mark is for, if not the first.
+   subroutine add_field_error(errors, code, card, field, more, place)
       type(input_errors_t), intent(inout) :: errors
       type(error_code_t), intent(in) :: code
       type(card_t), intent(in) :: card
       type(field_t), intent(in) :: field
       character(*), intent(in), optional :: more
+      integer, intent(in), optional :: place
+      integer :: column
 
-      call add_error(errors, code, card, field, first_column(card, field), field_text(card, field), more)
+      column = first_column(card, field)
+      if (present(place)) column = column + place - 1
+      call add_error(errors, code, card, field, column, field_text(card, field), more)
    end subroutine add_field_error
 
    !> Adds the error `code` about the deck as a whole. `more` ends the sentence.
