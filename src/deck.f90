@@ -143,6 +143,7 @@ contains
       call begin_set(progress%set, progress%closed + 1)
    end subroutine close_set
 
+   !> Adds the mechanism of the open set to the sets that are closed.
    subroutine keep_set(progress)
       type(progress_t), intent(inout) :: progress
       type(mechanism_t), allocatable :: larger(:)

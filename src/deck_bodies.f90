@@ -22,6 +22,7 @@ contains
       call build_pairs(set)
    end subroutine build_bodies
 
+   !> Links: the GROUND and LINK cards in their order.
    subroutine build_links(set)
       type(card_set_t), intent(inout) :: set
       integer :: n
@@ -37,6 +38,7 @@ contains
       end do
    end subroutine build_links
 
+   !> Points. Their links are there.
    subroutine build_points(set)
       type(card_set_t), intent(inout) :: set
       integer :: k, n, link
@@ -51,6 +53,7 @@ contains
       end do
    end subroutine build_points
 
+   !> Pairs: the REVOLUTE and PRISM cards in their order. Their points are there.
    subroutine build_pairs(set)
       type(card_set_t), intent(inout) :: set
       integer :: k, n, i, j

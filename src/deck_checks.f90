@@ -111,6 +111,7 @@ contains
 
    contains
 
+      !> The error `code` about the instant `t`.
       subroutine add_instant_error(code, t)
          type(error_code_t), intent(in) :: code
          real(wp), intent(in) :: t

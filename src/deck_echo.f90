@@ -38,6 +38,7 @@ contains
 
    contains
 
+      !> The line of a form that has no card in the set: what holds without it.
       subroutine add_default(form, labels)
          integer, intent(in) :: form
          character(label_length), intent(in) :: labels(3)
@@ -79,6 +80,7 @@ contains
       end do
    end function card_line
 
+   !> Name and labels of a card, in the columns of the echo.
    pure function head_line(form, labels) result(line)
       integer, intent(in) :: form
       character(label_length), intent(in) :: labels(3)

@@ -79,6 +79,7 @@ contains
       end do
    end subroutine check_repeats
 
+   !> The UNITS card `k`.
    subroutine read_units(set, k)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: k
@@ -97,6 +98,7 @@ contains
       end associate
    end subroutine read_units
 
+   !> The METHOD card `k`.
    subroutine read_method(set, k)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: k
@@ -112,6 +114,7 @@ contains
       end associate
    end subroutine read_method
 
+   !> The TIME card `k`.
    subroutine read_time(set, k)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: k
@@ -217,6 +220,7 @@ contains
       end do
    end subroutine ask_for_all
 
+   !> Adds `request` to `list`, unless its subject has one already.
    subroutine ask_for(request, list)
       type(request_t), intent(in) :: request
       type(asked_t), intent(inout) :: list
@@ -249,6 +253,7 @@ contains
       set%mechanism%choices = choices(:n)
    end subroutine build_branches
 
+   !> The BRANCH card `k`.
    subroutine read_branch(set, k, choice)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: k

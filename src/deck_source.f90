@@ -97,6 +97,7 @@ contains
       call have_more(source, more, failure)
    end subroutine pass_feed
 
+   !> Closes the file of `source`; standard input stays open.
    subroutine close_source(source)
       type(source_t), intent(inout) :: source
       logical :: closed

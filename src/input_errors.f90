@@ -1,5 +1,5 @@
-!> Level 4. All that can be wrong with a deck, each with its number and sentence, and the errors found in one: with a
-!> picture of the card and a mark under the column. A message is `"text" SENTENCE`, or the sentence alone.
+!> Level 4. All that can be wrong with a deck, by number and sentence, and the errors found in one, with pictures of
+!> the cards and a mark under the column. A message is `"text" SENTENCE`, or the sentence alone.
 module input_errors
    use kinds, only: wp, label_length
    use cards, only: card_t, field_t, card_columns, field_text, first_column, forms, find_form
@@ -39,11 +39,11 @@ module input_errors
       card_unknown = error_code_t(10, 'IS NOT THE NAME OF A CARD'), &
       card_lower_case = error_code_t(11, 'CARD NAMES ARE IN CAPITALS'), &
       card_indented = error_code_t(12, 'THE CARD NAME MUST BEGIN IN COLUMN 1'), &
-      card_repeated = error_code_t(13, 'MAY STAND ONCE IN A SET; FIRST ON CARD'), &
+      card_repeated = error_code_t(13, 'MAY STAND ONLY ONCE IN A SET; FIRST ON CARD'), &
       past_last_column = error_code_t(14, 'STANDS PAST COLUMN 80'), &
-      tab_character = error_code_t(15, 'IS OR HOLDS A TAB'), &
-      control_character = error_code_t(16, 'IS OR HOLDS A CONTROL CHARACTER'), &
-      foreign_character = error_code_t(17, 'IS OR HOLDS A CHARACTER THAT IS NOT ASCII'), &
+      tab_character = error_code_t(15, 'CONTAINS A TAB'), &
+      control_character = error_code_t(16, 'CONTAINS A CONTROL CHARACTER'), &
+      foreign_character = error_code_t(17, 'CONTAINS A CHARACTER THAT IS NOT ASCII'), &
       border_crossed = error_code_t(18, 'RUNS ACROSS THE BORDER OF COLUMNS'), &
       field_unused = error_code_t(19, 'THIS FIELD IS NOT USED BY THIS CARD')
    ! Numbers: of those in range, the squares and the squares of squares are in the range of the real kind.
@@ -59,7 +59,7 @@ module input_errors
       number_nan = error_code_t(26, 'IS NOT A NUMBER (NAN)'), &
       number_inf = error_code_t(27, 'IS NOT A FINITE NUMBER'), &
       number_overflow = error_code_t(28, 'IS TOO LARGE A NUMBER: THE LARGEST IS 1E'//power_text), &
-      number_underflow = error_code_t(29, 'IS TOO SMALL A NUMBER: THE LEAST BESIDE ZERO IS 1E-'//power_text), &
+      number_underflow = error_code_t(29, 'IS TOO SMALL A NUMBER: THE SMALLEST ABOVE ZERO IS 1E-'//power_text), &
       number_no_point = error_code_t(30, 'A REAL NUMBER NEEDS A POINT OR AN EXPONENT'), &
       number_point = error_code_t(31, 'A WHOLE NUMBER HAS NO POINT AND NO EXPONENT'), &
       number_no_digits = error_code_t(32, 'IS NOT A NUMBER (NO DIGITS)'), &
@@ -253,6 +253,7 @@ contains
       call add_line(errors, trim(line))
    end subroutine add_message
 
+   !> Appends `line` to the messages.
    subroutine add_line(errors, line)
       type(input_errors_t), intent(inout) :: errors
       character(*), intent(in) :: line

@@ -111,6 +111,7 @@ contains
       end do
    end function hash
 
+   !> Twice as many slots, with the same names.
    subroutine double_slots(slots)
       type(slot_t), allocatable, intent(inout) :: slots(:)
       type(slot_t), allocatable :: old(:)

@@ -194,6 +194,7 @@ contains
       end if
    end function absolute_value
 
+   !> The value of the digit `c`.
    pure integer function digit(c)
       character(1), intent(in) :: c
 
