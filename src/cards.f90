@@ -2,11 +2,12 @@
 !> and forms are declared here and nowhere else.
 module cards
    use kinds, only: label_length
+   use letters, only: capitals
    implicit none
    private
    public :: card_t, field_t, card_columns, card_fields, wide_fields, title_field
    public :: card_name, label_a, label_b, label_c, real_1, real_2, real_3
-   public :: field_text, first_column, ruler_card, is_passed_over, capitals
+   public :: field_text, first_column, ruler_card, is_passed_over
    public :: form_t, forms, form_name, find_form, nearest_form
    public :: form_unknown, form_title, form_units, form_lang, form_ground, form_link, form_point, form_revolute
    public :: form_prism, form_drive, form_add, form_time, form_at, form_method, form_print, form_branch, form_end
@@ -114,18 +115,6 @@ contains
       end do
       text(1:5) = '$'//card_fields(card_name)%name(1:4)
    end function ruler_card
-
-   !> `text` with its small letters (of ASCII) made capitals.
-   pure function capitals(text) result(upper)
-      character(*), intent(in) :: text
-      character(len(text)) :: upper
-      integer :: i
-
-      upper = text
-      do i = 1, len(text)
-         if (text(i:i) >= 'a' .and. text(i:i) <= 'z') upper(i:i) = achar(iachar(text(i:i)) - 32)
-      end do
-   end function capitals
 
    !> The name of the cards of a form.
    pure character(label_length) function form_name(form)

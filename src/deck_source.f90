@@ -1,10 +1,11 @@
-!> Level 2. The deck's lines as cards, from a file or standard input, each line read once and in bounded memory.
+!> Level 3. The deck's lines as cards, from a file or standard input, each line read once and in bounded memory.
 !> Files, pipes and terminals are read alike, by the system's own read: the Fortran run-time library of GNU takes an
 !> error for the end.
 module deck_source
    use, intrinsic :: iso_c_binding, only: c_int
    use failures, only: failure_t, fail, status_machine
-   use cards, only: card_t, card_columns, capitals
+   use letters, only: capitals
+   use cards, only: card_t, card_columns
    use system_calls, only: open_to_read, read_bytes, close_descriptor, last_error, reason_of, &
       no_such_file, is_a_directory
    implicit none
