@@ -1,131 +1,119 @@
-!> Level 5. From a card to its labels, whole number and reals; every field is checked, none is
-!> understood.
+!> Level 6. From a card to its labels, whole number and reals. Every field is checked; its meaning is left to others.
 module card_reader
    use kinds, only: wp, label_length
-   use cards, only: card_t, field_t, name_field, label_fields, real_fields, wide_fields, card_fields, &
-                    no_field, field_text, first_column, card_columns
-   use card_forms, only: forms, label_unused, label_needed, form_title, form_add, form_star, find_form, &
-                         nearest_form
-   use card_borders, only: find_cuts
+   use cards, only: card_t, field_t, card_fields, wide_fields, card_name, label_a, label_c, real_1, field_text, &
+      first_column, card_columns, forms, form_name, form_unknown, form_title, form_add, find_form, &
+      nearest_form
+   use input_errors, only: error_code_t, input_errors_t, add_error, add_field_error, error_count, is_full, max_power, &
+      card_unknown, card_lower_case, card_indented, past_last_column, tab_character, control_character, &
+      foreign_character, border_crossed, field_unused, field_blank, label_blank_inside, star_no_reals, star_second, &
+      star_twice, star_blank, number_overflow, number_underflow
    use letters, only: capitals
-   use numbers, only: read_real, read_whole, flaw_none, flaw_overflow, flaw_underflow, flaw_count
-   use deck_codes, only: code_t, card_unknown, card_lower_case, card_indented, past_last_column, &
-                         tab_character, control_character, foreign_character, field_unused, field_blank, &
-                         label_blank_inside, star_no_reals, star_second, star_twice, star_blank, &
-                         number_other, number_letter_o, number_letter_l, number_blank, number_comma, &
-                         number_sign, number_nan, number_inf, number_overflow, number_underflow, most_power, &
-                         number_no_point, number_point, number_no_digits, number_exponent
-   use complaints, only: complaints_t, complain, complain_field, complaint_count, complaints_full
+   use numbers, only: read_real, read_whole
+   use numerals, only: whole
    implicit none
    private
-   public :: reading_t, read_card, read_star, reals_taken
+   public :: parsed_card_t, read_card, read_star, reals_taken
 
    !> A card as it was read. It is kept even if it is wrong, so that its names are known to other cards.
-   type :: reading_t
+   type :: parsed_card_t
       type(card_t) :: card
-      integer :: form = 0                       !< 0: not known
-      logical :: sound = .true.                 !< no complaint about it
-      logical :: names_sure = .true.            !< its form and labels are what was meant, sound or not
-      character(label_length) :: label(3) = ''
+      type(card_t), allocatable :: star         !< the `*` card below it
+      integer :: form = form_unknown
+      logical :: valid = .true.                 !< no error in it, nor in its `*` card
+      logical :: names_certain = .true.         !< its form and labels are what was meant, valid or not
+      character(label_length) :: label(label_a:label_c) = ''
       integer :: whole = 0
       logical :: whole_given = .false.
       real(wp) :: real(3) = 0.0_wp              !< 0 where the field is blank
-      logical :: given(3) = .false.
-      logical :: starred(3) = .false.           !< the next reading, a `*` card, gives this real
-   end type reading_t
+      logical :: given(3) = .false.             !< which of them are not blank
+      logical :: on_star(3) = .false.           !< which of them the `*` card gives
+      integer :: drive = 0, term = 0            !< the first card of a term: its place in the drives and their terms
+   end type parsed_card_t
 
-   !> Decks hold lengths, angles, times: what lies beyond has no use, and its squares would leave the range of reals.
-   real(wp), parameter :: largest_real = 10.0_wp**most_power, least_real = 10.0_wp**(-most_power)
-
-   !> The words for the flaws of `numbers`, in their order.
-   type(code_t), parameter :: flaw_codes(flaw_count) = [ &
-      number_other, number_letter_o, number_letter_l, number_blank, number_comma, number_sign, number_nan, &
-      number_inf, number_overflow, number_underflow, number_no_point, number_point, number_no_digits, &
-      number_exponent]
+   !> Decks hold lengths, angles and times: numbers outside these bounds have no use, and their squares would leave the
+   !> range of reals.
+   real(wp), parameter :: max_real = 10.0_wp**max_power, min_real = 10.0_wp**(-max_power)
 
 contains
 
-   !> Reads `card`, not a `*` card. Errors go to `list`, in the order of the columns.
-   subroutine read_card(card, reading, list)
+   !> Reads `card`, which is not a `*` card, to `parsed`. Errors go to `errors`, in the order of the columns.
+   subroutine read_card(card, parsed, errors)
       type(card_t), intent(in) :: card
-      type(reading_t), intent(out) :: reading
-      type(complaints_t), intent(inout) :: list
-      logical :: cut(size(card_fields))
+      type(parsed_card_t), intent(out) :: parsed
+      type(input_errors_t), intent(inout) :: errors
+      logical :: cut(size(card_fields)), numeric(size(card_fields))
       integer :: before, i
 
-      before = complaint_count(list)
-      reading%card = card
-      do i = 1, 3
-         reading%label(i) = adjustl(card%text(label_fields(i)%first:label_fields(i)%last))
+      before = error_count(errors)
+      parsed%card = card
+      do i = label_a, label_c
+         parsed%label(i) = adjustl(card%text(card_fields(i)%first:card_fields(i)%last))
       end do
-      call check_characters(card, reading%names_sure, list)
-      if (complaint_count(list) == before) then
-         call read_name(card, reading%form, list)
-      else
-         reading%form = find_form(card%text(name_field%first:name_field%last))
-      end if
-      reading%names_sure = reading%names_sure .and. reading%form > 0
-      reading%sound = complaint_count(list) == before
-      if (.not. reading%sound) return
-      if (reading%form /= form_title) then
-         call find_cuts(card, card_fields, may_begin_number(reading%form), cut, list)
-         reading%names_sure = .not. any(cut(2:4))
-         call read_labels(reading, cut, list)
-         do i = 1, 3
-            if (.not. cut(4 + i)) call read_real_field(reading, card, real_fields(i), i, list)
-         end do
-      end if
-      reading%sound = complaint_count(list) == before
+      parsed%form = find_form(card%text(:label_length))
+      call check_characters(card, parsed%names_certain, errors)
+      if (error_count(errors) == before .and. parsed%form == form_unknown) call guess_form(card, parsed%form, errors)
+      parsed%names_certain = parsed%names_certain .and. parsed%form /= form_unknown
+      parsed%valid = error_count(errors) == before
+      if (.not. parsed%valid .or. parsed%form == form_title) return
+      ! The reals, and the labels that the card does not take, may hold the beginning of a number.
+      numeric = [.false., [(forms(parsed%form)%labels(i:i) == '-', i=1, 3)], .true., .true., .true.]
+      call find_cuts(card, card_fields, numeric, cut, errors)
+      parsed%names_certain = .not. any(cut(label_a:label_c))
+      call read_labels(parsed, cut(label_a:label_c), errors)
+      do i = 1, 3
+         if (.not. cut(label_c + i)) call read_real_field(parsed, card, card_fields(label_c + i), i, errors)
+      end do
+      parsed%valid = error_count(errors) == before
    end subroutine read_card
 
-   !> Reads the `*` card `card` that stands below `above`; `star` is kept for its picture and the echo.
-   subroutine read_star(card, above, above_is_star, star, list)
+   !> Reads the `*` card `card`, which gives reals of the card `above` it, to `above`. Errors go to `errors`.
+   subroutine read_star(card, above, errors)
       type(card_t), intent(in) :: card
-      type(reading_t), intent(inout) :: above
-      logical, intent(in) :: above_is_star
-      type(reading_t), intent(out) :: star
-      type(complaints_t), intent(inout) :: list
+      type(parsed_card_t), intent(inout) :: above
+      type(input_errors_t), intent(inout) :: errors
       integer :: before
       logical :: clean
 
-      before = complaint_count(list)
-      star%card = card
-      star%form = form_star
-      call check_characters(card, clean, list)
-      if (complaint_count(list) > before) then
+      before = error_count(errors)
+      call check_characters(card, clean, errors)
+      if (error_count(errors) > before) then
          continue
-      else if (field_text(card, name_field) /= '*') then
-         call complain_field(list, card_unknown, card, name_field, '')
-      else if (above_is_star) then
-         call complain_field(list, star_second, card, name_field, '')
-      else if (reals_taken(above) == 0 .and. above%form > 0) then
-         call complain_field(list, star_no_reals, card, name_field, '')
-      else if (above%form > 0) then
-         call read_wide_fields(card, above, list)
+      else if (field_text(card, card_fields(card_name)) /= '*') then
+         call add_field_error(errors, card_unknown, card, card_fields(card_name))
+      else if (allocated(above%star)) then
+         call add_field_error(errors, star_second, card, card_fields(card_name))
+      else if (above%form /= form_unknown) then
+         if (reals_taken(above) == 0) then
+            call add_field_error(errors, star_no_reals, card, card_fields(card_name))
+         else
+            call read_wide_fields(card, above, errors)
+         end if
       end if
-      star%sound = complaint_count(list) == before
-      if (.not. above_is_star) above%sound = above%sound .and. star%sound
+      if (allocated(above%star)) return
+      above%star = card
+      above%valid = above%valid .and. error_count(errors) == before
    end subroutine read_star
 
    !> How many of the real fields the card takes.
-   pure integer function reals_taken(reading) result(taken)
-      type(reading_t), intent(in) :: reading
+   pure integer function reals_taken(parsed) result(taken)
+      type(parsed_card_t), intent(in) :: parsed
 
       taken = 0
-      if (reading%form < 1 .or. reading%form > size(forms)) return
-      taken = forms(reading%form)%reals
-      if (reading%form == form_add .and. any(reading%label(1) == ['POWER', 'TABLE'])) taken = 2
+      if (parsed%form == form_unknown) return
+      taken = forms(parsed%form)%reals
+      if (parsed%form == form_add .and. any(parsed%label(label_a) == ['POWER', 'TABLE'])) taken = 2
    end function reals_taken
 
-   !> Only printable ASCII and nothing past column 80: the first offence is told.
-   !> `clean`: the card itself is printable ASCII.
-   subroutine check_characters(card, clean, list)
+   !> Only printable ASCII and nothing past column 80: the first violation is an error. `clean`: the 80 columns are
+   !> printable ASCII.
+   subroutine check_characters(card, clean, errors)
       type(card_t), intent(in) :: card
       logical, intent(out) :: clean
-      type(complaints_t), intent(inout) :: list
-      type(code_t) :: code
+      type(input_errors_t), intent(inout) :: errors
+      type(error_code_t) :: code
       type(field_t) :: field
-      integer :: column, i
+      integer :: column
 
       do column = 1, card_columns
          if (card%text(column:column) < ' ' .or. card%text(column:column) > '~') exit
@@ -133,149 +121,144 @@ contains
       clean = column > card_columns
       if (clean) then
          if (card%overrun > 0) &
-            call complain(list, past_last_column, card, field_t('PAST-80', 81, 81), card%overrun, &
-                          card%beyond, '')
+            call add_error(errors, past_last_column, card, field_t('PAST-80', 81, 81), card%overrun, card%beyond)
          return
       end if
-      select case (ichar(card%text(column:column)))
-      case (9)
-         code = tab_character
-      case (128:)
-         code = foreign_character
-      case default
-         code = control_character
-      end select
-      field = no_field
-      do i = 1, size(card_fields)
-         if (column >= card_fields(i)%first .and. column <= card_fields(i)%last) field = card_fields(i)
-      end do
-      call complain(list, code, card, field, column, field_text(card, field), '')
+      code = control_character
+      if (ichar(card%text(column:column)) == 9) code = tab_character
+      if (ichar(card%text(column:column)) > 127) code = foreign_character
+      field = card_fields(findloc(card_fields%last >= column, .true., dim=1))
+      call add_error(errors, code, card, field, column, field_text(card, field))
    end subroutine check_characters
 
-   !> `form` is known too where the name is wrong but its meaning is clear.
-   subroutine read_name(card, form, list)
+   !> The error of a name that no card has. `form` is the form that was probably meant, or form_unknown.
+   subroutine guess_form(card, form, errors)
       type(card_t), intent(in) :: card
       integer, intent(out) :: form
-      type(complaints_t), intent(inout) :: list
-      character(:), allocatable :: name
-      type(code_t) :: code
+      type(input_errors_t), intent(inout) :: errors
+      character(:), allocatable :: name, hint
+      type(error_code_t) :: code
 
-      form = find_form(card%text(name_field%first:name_field%last))
-      if (form > 0) return
-      name = field_text(card, name_field)
+      name = field_text(card, card_fields(card_name))
       form = find_form(capitals(name))
-      if (form > 0) then
+      code = card_unknown
+      hint = ''
+      if (form /= form_unknown) then
          code = merge(card_indented, card_lower_case, card%text(1:1) == ' ')
-         call complain_field(list, code, card, name_field, '')
       else if (name == '') then
-         call complain(list, field_blank, card, name_field, name_field%first, '', '')
-      else if (complaints_full(list)) then
-         call complain_field(list, card_unknown, card, name_field, '')
-      else
+         code = field_blank
+      else if (.not. is_full(errors)) then
          form = nearest_form(name)
-         if (form > 0) then
-            call complain_field(list, card_unknown, card, name_field, '(IS IT '//trim(forms(form)%name)//'?)')
-         else
-            call complain_field(list, card_unknown, card, name_field, '')
-         end if
+         if (form /= form_unknown) hint = '(IS IT '//trim(form_name(form))//'?)'
       end if
-   end subroutine read_name
+      call add_field_error(errors, code, card, card_fields(card_name), hint)
+   end subroutine guess_form
 
-   subroutine read_labels(reading, cut, list)
-      type(reading_t), intent(inout) :: reading
-      logical, intent(in) :: cut(:)
-      type(complaints_t), intent(inout) :: list
-      integer :: i, flaw, place
+   !> Marks in `cut` the fields of `fields` (in the order of their columns, each ending where the next one
+   !> begins) whose text is cut by a border; each is an error. Text is cut if it does not begin with its field
+   !> and runs on behind the border, or if it is one real number only together with what stands there; the
+   !> latter is asked where `numeric(i)`: field i may hold the beginning of a number. A full label beside
+   !> a full label is no cut, nor are two full reals that cannot be one.
+   subroutine find_cuts(card, fields, numeric, cut, errors)
+      type(card_t), intent(in) :: card
+      type(field_t), intent(in) :: fields(:)
+      logical, intent(in) :: numeric(:)
+      logical, intent(out) :: cut(:)
+      type(input_errors_t), intent(inout) :: errors
+      type(error_code_t) :: error
+      real(wp) :: value
+      integer :: i, start, finish, border, place
 
-      associate (form => forms(reading%form))
-         do i = 1, 3
-            if (cut(i + 1)) then
-               reading%label(i) = ''
-            else if (reading%label(i) == '') then
-               if (form%labels(i) == label_needed) &
-                  call complain_field(list, field_blank, reading%card, label_fields(i), '')
-            else if (form%labels(i) == label_unused) then
-               call complain_field(list, field_unused, reading%card, label_fields(i), '')
-            else if (form%whole == i) then
-               call read_whole(trim(reading%label(i)), reading%whole, flaw, place)
-               reading%whole_given = .true.
-               if (flaw /= flaw_none) call complain_flaw(reading%card, label_fields(i), flaw, place, list)
-            else if (index(trim(reading%label(i)), ' ') > 0) then
-               reading%names_sure = .false.
-               call complain_field(list, label_blank_inside, reading%card, label_fields(i), '')
+      cut = .false.
+      do i = 1, size(fields) - 1
+         border = fields(i)%last
+         if (cut(i) .or. card%text(border:border) == ' ' .or. card%text(border + 1:border + 1) == ' ') cycle
+         start = fields(i)%first + index(card%text(fields(i)%first:border), ' ', back=.true.)
+         finish = border + index(card%text(border + 1:fields(i + 1)%last)//' ', ' ') - 1
+         ! Two numbers, each in a field that it fills, may touch; the first may have a blank in the place of a plus.
+         if (start <= fields(i)%first + merge(1, 0, numeric(i))) then
+            if (.not. numeric(i)) cycle
+            call read_real(card%text(start:finish), value, error, place)
+            if (error%number > 0) cycle
+         end if
+         cut(i:i + 1) = .true.
+         call add_error(errors, border_crossed, card, fields(i), start, card%text(start:finish), &
+                        whole(border)//' AND '//whole(border + 1))
+      end do
+   end subroutine find_cuts
+
+   !> The labels and the whole number of a card. `cut`: which label fields are no labels, as an error says already.
+   subroutine read_labels(parsed, cut, errors)
+      type(parsed_card_t), intent(inout) :: parsed
+      logical, intent(in) :: cut(label_a:label_c)
+      type(input_errors_t), intent(inout) :: errors
+      type(error_code_t) :: error
+      integer :: i, place
+
+      do i = label_a, label_c
+         if (cut(i)) parsed%label(i) = ''
+         if (cut(i)) cycle
+         associate (taken => forms(parsed%form)%labels(i - card_name:i - card_name), label => parsed%label(i), &
+                    field => card_fields(i))
+            if (label == '') then
+               if (scan(taken, 'LW') > 0) call add_field_error(errors, field_blank, parsed%card, field)
+            else if (taken == '-') then
+               call add_field_error(errors, field_unused, parsed%card, field)
+            else if (scan(taken, 'Ww') > 0) then
+               parsed%whole_given = .true.
+               call read_whole(trim(label), parsed%whole, error, place)
+               if (error%number > 0) call add_field_error(errors, error, parsed%card, field, place=place)
+            else if (index(trim(label), ' ') > 0) then
+               parsed%names_certain = .false.
+               call add_field_error(errors, label_blank_inside, parsed%card, field)
             end if
-         end do
-      end associate
+         end associate
+      end do
    end subroutine read_labels
 
-   subroutine read_wide_fields(card, above, list)
+   !> The reals of a `*` card.
+   subroutine read_wide_fields(card, above, errors)
       type(card_t), intent(in) :: card
-      type(reading_t), intent(inout) :: above
-      type(complaints_t), intent(inout) :: list
+      type(parsed_card_t), intent(inout) :: above
+      type(input_errors_t), intent(inout) :: errors
       logical :: cut(3)
       integer :: i
 
       if (card%text(wide_fields(1)%first:) == '') then
-         call complain_field(list, star_blank, card, name_field, '')
+         call add_field_error(errors, star_blank, card, card_fields(card_name))
          return
       end if
-      call find_cuts(card, wide_fields, [.true., .true., .true.], cut, list)
+      call find_cuts(card, wide_fields, [.true., .true., .true.], cut, errors)
       do i = 1, 3
          if (cut(i) .or. field_text(card, wide_fields(i)) == '') cycle
          if (above%given(i)) then
-            call complain_field(list, star_twice, card, wide_fields(i), '')
+            call add_field_error(errors, star_twice, card, wide_fields(i))
          else
-            above%starred(i) = .true.
-            call read_real_field(above, card, wide_fields(i), i, list)
+            above%on_star(i) = .true.
+            call read_real_field(above, card, wide_fields(i), i, errors)
          end if
       end do
    end subroutine read_wide_fields
 
-   !> Which fields of a card may hold the beginning of a number: the reals and the labels it does not take.
-   pure function may_begin_number(form) result(may)
-      integer, intent(in) :: form
-      logical :: may(size(card_fields))
-
-      may = [.false., forms(form)%labels == label_unused, .true., .true., .true.]
-   end function may_begin_number
-
-   !> Real number `i` of `reading` from `field` of `card`, which is its own card or the `*` card below.
-   subroutine read_real_field(reading, card, field, i, list)
-      type(reading_t), intent(inout) :: reading
+   !> Real number `i` of `parsed` from `field` of `card`, which is its own card or the `*` card below.
+   subroutine read_real_field(parsed, card, field, i, errors)
+      type(parsed_card_t), intent(inout) :: parsed
       type(card_t), intent(in) :: card
       type(field_t), intent(in) :: field
       integer, intent(in) :: i
-      type(complaints_t), intent(inout) :: list
-      integer :: flaw, place, start
+      type(input_errors_t), intent(inout) :: errors
+      type(error_code_t) :: error
+      integer :: place
 
       if (card%text(field%first:field%last) == '') return
-      reading%given(i) = .true.
-      if (i > reals_taken(reading)) then
-         call complain_field(list, field_unused, card, field, '')
+      parsed%given(i) = .true.
+      if (i > reals_taken(parsed)) then
+         call add_field_error(errors, field_unused, card, field)
          return
       end if
-      start = first_column(card, field)
-      call read_real(trim(card%text(start:field%last)), reading%real(i), flaw, place)
-      if (flaw == flaw_none) flaw = flaw_of_size(reading%real(i))
-      if (flaw /= flaw_none) call complain_flaw(card, field, flaw, place, list)
+      call read_real(trim(card%text(first_column(card, field):field%last)), parsed%real(i), error, place)
+      if (abs(parsed%real(i)) > max_real) error = number_overflow
+      if (abs(parsed%real(i)) > 0.0_wp .and. abs(parsed%real(i)) < min_real) error = number_underflow
+      if (error%number > 0) call add_field_error(errors, error, card, field, place=place)
    end subroutine read_real_field
-
-   !> Squares and products of two numbers of a deck stay in the range of the real kind.
-   pure integer function flaw_of_size(x) result(flaw)
-      real(wp), intent(in) :: x
-
-      flaw = flaw_none
-      if (abs(x) > largest_real) flaw = flaw_overflow
-      if (abs(x) > 0.0_wp .and. abs(x) < least_real) flaw = flaw_underflow
-   end function flaw_of_size
-
-   subroutine complain_flaw(card, field, flaw, place, list)
-      type(card_t), intent(in) :: card
-      type(field_t), intent(in) :: field
-      integer, intent(in) :: flaw, place
-      type(complaints_t), intent(inout) :: list
-
-      call complain(list, flaw_codes(flaw), card, field, first_column(card, field) + place - 1, &
-                    field_text(card, field), '')
-   end subroutine complain_flaw
 end module card_reader

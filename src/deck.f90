@@ -1,38 +1,33 @@
-!> Level 9. From a card deck to sets of computations. The whole deck is read and every error is told;
+!> Level 9. From a card deck to sets of computations. The whole deck is read and every error is reported;
 !> nothing is computed from a deck that has one.
 module deck
-   use kinds, only: wp
    use mechanism, only: mechanism_t
-   use cards, only: card_t, name_field, is_passed_over
-   use card_forms, only: form_end, form_star
-   use card_reader, only: reading_t, read_card, read_star
-   use complaints, only: complaints_t, complain_field, complain_deck, complaint_count, &
-                         complaints_report, whole_text
-   use deck_branches, only: build_branches
+   use card_reader, only: parsed_card_t, read_card, read_star
+   use card_sets, only: card_set_t, begin_set, append_card
+   use cards, only: card_t, card_fields, card_name, is_passed_over, form_end
    use deck_bodies, only: build_bodies
    use deck_checks, only: check_missing, check_unused, check_instants
-   use deck_codes, only: deck_empty, deck_long, end_missing, set_empty, star_first
    use deck_drives, only: build_drives
    use deck_echo, only: build_echo
-   use deck_options, only: build_options
-   use deck_requests, only: build_requests
+   use deck_options, only: build_options, build_requests, build_branches
    use deck_source, only: source_t, open_source, next_card, close_source
-   use drafts, only: draft_t, add_reading
    use failures, only: failure_t, fail, status_refused
+   use input_errors, only: add_field_error, add_deck_error, error_count, error_report, deck_empty, deck_long, &
+      end_missing, set_empty, star_first
+   use numerals, only: whole
    implicit none
    private
    public :: read_deck
 
    !> Cards of a deck, comments and blank cards included.
-   integer, parameter :: most_cards = 2000000
+   integer, parameter :: max_cards = 2000000
 
-   !> What has been read so far: the sets that are closed, the cards of the open one, the errors.
+   !> What has been read so far.
    type :: progress_t
       type(mechanism_t), allocatable :: sets(:)   !< (closed), with room behind
       integer :: closed = 0
-      type(draft_t) :: draft
-      integer :: complaints_before = 0            !< of the open set
-      type(complaints_t) :: list
+      type(card_set_t) :: set                     !< the open one, and the errors of the deck
+      integer :: errors_before = 0                !< of the deck, before the open set
    end type progress_t
 
 contains
@@ -50,15 +45,16 @@ contains
       integer :: errors
 
       allocate (progress%sets(4))
+      call begin_set(progress%set, 1)
       call open_source(source, path, failure)
       if (.not. allocated(failure)) then
          call read_cards(source, progress, failure)
          call close_source(source)
       end if
-      report = complaints_report(progress%list)
-      errors = complaint_count(progress%list)
+      report = error_report(progress%set%errors)
+      errors = error_count(progress%set%errors)
       if (.not. allocated(failure) .and. errors > 0) &
-         call fail(failure, status_refused, 'THE DECK IS REFUSED, ERRORS: '//whole_text(errors))
+         call fail(failure, status_refused, 'THE DECK IS REFUSED, ERRORS: '//whole(errors))
       if (allocated(failure)) progress%closed = 0
       if (progress%closed == size(progress%sets)) then
          call move_alloc(progress%sets, sets)
@@ -67,6 +63,7 @@ contains
       end if
    end subroutine read_deck
 
+   !> All cards of the deck. Errors: status_machine.
    subroutine read_cards(source, progress, failure)
       type(source_t), intent(inout) :: source
       type(progress_t), intent(inout) :: progress
@@ -78,8 +75,8 @@ contains
          call next_card(source, card, found, failure)
          if (allocated(failure)) return
          if (.not. found) exit
-         if (card%number > most_cards) then
-            call complain_deck(progress%list, deck_long, whole_text(most_cards))
+         if (card%number > max_cards) then
+            call add_deck_error(progress%set%errors, deck_long, whole(max_cards))
             return
          end if
          if (is_passed_over(card)) cycle
@@ -88,80 +85,67 @@ contains
          if (allocated(failure)) return
       end do
       if (last%number == 0) then
-         call complain_deck(progress%list, deck_empty, '')
-      else if (progress%draft%count > 0) then
-         call complain_field(progress%list, end_missing, last, name_field, '')
-         progress%draft%names_sure = .false.
+         call add_deck_error(progress%set%errors, deck_empty)
+      else if (progress%set%count > 0) then
+         call add_field_error(progress%set%errors, end_missing, last, card_fields(card_name))
+         progress%set%names_certain = .false.
          call close_set(progress)
       end if
    end subroutine read_cards
 
+   !> Adds `card` to the open set, or closes the set.
    subroutine take_card(card, progress, failure)
       type(card_t), intent(in) :: card
       type(progress_t), intent(inout) :: progress
       type(failure_t), allocatable, intent(out) :: failure
-      type(reading_t) :: reading
+      type(parsed_card_t) :: parsed
 
-      if (card%text(1:1) == '*') then
-         call take_star(card, progress, failure)
-         return
-      end if
-      call read_card(card, reading, progress%list)
-      if (reading%form /= form_end) then
-         call add_reading(progress%draft, reading, failure)
-      else if (progress%draft%count == 0) then
-         call complain_field(progress%list, set_empty, card, name_field, '')
-      else
-         call check_missing(progress%draft, card, progress%list)
-         call close_set(progress)
-      end if
+      associate (set => progress%set)
+         if (card%text(1:1) == '*') then
+            if (set%count == 0) then
+               call add_field_error(set%errors, star_first, card, card_fields(card_name))
+            else
+               call read_star(card, set%cards(set%count), set%errors)
+            end if
+            return
+         end if
+         call read_card(card, parsed, set%errors)
+         if (parsed%form /= form_end) then
+            call append_card(set, parsed, failure)
+         else if (set%count == 0) then
+            call add_field_error(set%errors, set_empty, card, card_fields(card_name))
+         else
+            call check_missing(set, card)
+            call close_set(progress)
+         end if
+      end associate
    end subroutine take_card
 
-   subroutine take_star(card, progress, failure)
-      type(card_t), intent(in) :: card
-      type(progress_t), intent(inout) :: progress
-      type(failure_t), allocatable, intent(out) :: failure
-      type(reading_t) :: star
-      integer :: above
-
-      above = progress%draft%count
-      if (above == 0) then
-         call complain_field(progress%list, star_first, card, name_field, '')
-         return
-      end if
-      call read_star(card, progress%draft%cards(above), progress%draft%cards(above)%form == form_star, star, &
-                     progress%list)
-      call add_reading(progress%draft, star, failure)
-   end subroutine take_star
-
-   !> Makes a mechanism of the cards of the open set. What nothing uses is asked only of a set without
-   !> errors: a refused card would make its neighbours look unused.
+   !> Makes a mechanism of the cards of the open set, and opens the next. What nothing uses is asked only of a set
+   !> without errors: a card with an error would make others look unused.
    subroutine close_set(progress)
       type(progress_t), intent(inout) :: progress
-      type(mechanism_t) :: set
-      real(wp) :: angle_unit
 
-      associate (draft => progress%draft, list => progress%list)
-         set%set_number = progress%closed + 1
-         call build_options(draft, set, angle_unit, list)
-         call build_bodies(draft, angle_unit, set, list)
-         call build_drives(draft, angle_unit, set, list)
-         call build_requests(draft, set, list)
-         call build_branches(draft, set, list)
-         if (complaint_count(list) == progress%complaints_before) then
-            call check_unused(draft, set, list)
-            call check_instants(draft, set, list)
-            call build_echo(draft, set)
+      associate (set => progress%set)
+         call build_options(set)
+         call build_bodies(set)
+         call build_drives(set)
+         call build_requests(set)
+         call build_branches(set)
+         if (error_count(set%errors) == progress%errors_before) then
+            call check_unused(set)
+            call check_instants(set)
+            call build_echo(set)
          end if
-         progress%complaints_before = complaint_count(list)
+         progress%errors_before = error_count(set%errors)
       end associate
-      progress%draft = draft_t()
-      call add_set(progress, set)
+      call keep_set(progress)
+      call begin_set(progress%set, progress%closed + 1)
    end subroutine close_set
 
-   subroutine add_set(progress, set)
+   !> Adds the mechanism of the open set to the sets that are closed.
+   subroutine keep_set(progress)
       type(progress_t), intent(inout) :: progress
-      type(mechanism_t), intent(in) :: set
       type(mechanism_t), allocatable :: larger(:)
 
       if (progress%closed == size(progress%sets)) then
@@ -170,6 +154,6 @@ contains
          call move_alloc(larger, progress%sets)
       end if
       progress%closed = progress%closed + 1
-      progress%sets(progress%closed) = set
-   end subroutine add_set
+      progress%sets(progress%closed) = progress%set%mechanism
+   end subroutine keep_set
 end module deck

@@ -1,207 +1,180 @@
 !> Level 8. The DRIVE and ADD cards of a set.
 module deck_drives
    use kinds, only: wp
-   use mechanism, only: mechanism_t, drive_t, term_t, drive_angle, drive_x, drive_y, drive_relangle, &
-                        drive_slide, term_harmonic, term_power, term_table, pair_revolute
-   use card_forms, only: form_drive, form_add, form_end
-   use complaints, only: complaints_t
-   use deck_bodies, only: find_label
-   use deck_codes, only: link_unknown, point_unknown, pair_unknown, drive_kind, drive_ground, &
-                         drive_ground_point, drive_grounds, drive_one_link, drive_revolute, field_blank, &
-                         field_unused, add_alone, add_kind, add_blank, table_short, table_order
-   use drafts, only: draft_t, cards_of, next_reading, complain_name, complain_label, complain_choice, complain_real
+   use mechanism, only: drive_t, term_t, drive_angle, drive_relangle, drive_slide, drive_words, driven_kinds, &
+      term_harmonic, term_power, term_table, term_words, pair_revolute, request_link, request_point
+   use card_sets, only: card_set_t, look_up, match_word, add_card_error
+   use cards, only: card_name, label_a, label_b, label_c, real_1, form_unknown, form_drive, form_add, form_end
+   use input_errors, only: drive_kind, drive_ground, drive_ground_point, drive_grounds, drive_one_link, &
+      drive_revolute, field_blank, field_unused, add_alone, add_kind, add_blank, table_short, table_order
    implicit none
    private
    public :: build_drives
 
-   !> The form of a card whose name is wrong: it may have been a DRIVE.
-   integer, parameter :: unknown_form = 0
-
 contains
 
-   !> Makes `set`%drives of the cards; links, points and pairs are there. `angle_unit`: the deck's unit of
-   !> angles in radians.
-   subroutine build_drives(draft, angle_unit, set, list)
-      type(draft_t), intent(in) :: draft
-      real(wp), intent(in) :: angle_unit
-      type(mechanism_t), intent(inout) :: set
-      type(complaints_t), intent(inout) :: list
+   !> Makes the drives of `set`%mechanism from the cards; its links, points and pairs are there. Drives of what cannot
+   !> be driven, ADD cards without a drive and wrong tables are errors.
+   subroutine build_drives(set)
+      type(card_set_t), intent(inout) :: set
+      type(drive_t) :: drive
       integer :: k, n, above
-      real(wp) :: unit
 
-      allocate (set%drives(cards_of(draft, form_drive)))
+      allocate (set%mechanism%drives(set%number_of(form_drive)))
       n = 0
       above = form_end
-      k = next_reading(draft, 0)
-      do while (k <= draft%count)
-         if (draft%cards(k)%form == form_drive) then
+      do k = 1, set%count
+         if (set%cards(k)%form == form_drive) then
             n = n + 1
-            call build_drive(draft, k, set, set%drives(n), list)
-            unit = merge(angle_unit, 1.0_wp, any(set%drives(n)%kind == [drive_angle, drive_relangle]))
-            set%drives(n)%polynomial = draft%cards(k)%real*unit
-            call build_terms(draft, k, unit, angle_unit, set%drives(n), list)
-         else if (draft%cards(k)%form == form_add) then
-            if (all(above /= [form_drive, form_add, unknown_form])) &
-               call complain_name(list, add_alone, draft, k, '')
+            call build_drive(set, k, drive)
+            call build_terms(set, k, n, drive)
+            set%mechanism%drives(n) = drive
+         else if (set%cards(k)%form == form_add) then
+            ! A card whose name is wrong may have been a DRIVE.
+            if (all(above /= [form_drive, form_add, form_unknown])) call add_card_error(set, add_alone, k, card_name)
          end if
-         above = draft%cards(k)%form
-         k = next_reading(draft, k)
+         above = set%cards(k)%form
       end do
    end subroutine build_drives
 
-   subroutine build_drive(draft, k, set, drive, list)
-      type(draft_t), intent(in) :: draft
+   !> The kind of the DRIVE card `k`, what it drives, and its polynomial.
+   subroutine build_drive(set, k, drive)
+      type(card_set_t), intent(inout) :: set
       integer, intent(in) :: k
-      type(mechanism_t), intent(in) :: set
-      type(drive_t), intent(inout) :: drive
-      type(complaints_t), intent(inout) :: list
+      type(drive_t), intent(out) :: drive
+      integer :: kind
 
-      if (draft%cards(k)%label(3) /= '' .and. draft%cards(k)%label(1) /= 'RELANGLE' .and. &
-          draft%cards(k)%sound) call complain_label(list, field_unused, draft, k, 3, '')
-      select case (draft%cards(k)%label(1))
-      case ('ANGLE')
-         drive%kind = drive_angle
-         call find_label(draft, draft%links, k, 2, link_unknown, drive%subject, list)
-         if (drive%subject == 0) return
-         if (set%links(drive%subject)%ground) call complain_label(list, drive_ground, draft, k, 2, '')
-      case ('X', 'Y')
-         drive%kind = merge(drive_x, drive_y, draft%cards(k)%label(1) == 'X')
-         call find_label(draft, draft%points, k, 2, point_unknown, drive%subject, list)
-         if (drive%subject == 0) return
-         if (set%points(drive%subject)%link == 0) return
-         if (set%links(set%points(drive%subject)%link)%ground) &
-            call complain_label(list, drive_ground_point, draft, k, 2, '')
-      case ('RELANGLE')
-         drive%kind = drive_relangle
-         call build_relangle(draft, k, set, drive, list)
-      case ('SLIDE')
-         drive%kind = drive_slide
-         call find_label(draft, draft%pairs, k, 2, pair_unknown, drive%subject, list)
-         if (drive%subject == 0) return
-         if (set%pairs(drive%subject)%kind == pair_revolute) &
-            call complain_label(list, drive_revolute, draft, k, 2, '')
-      case default
-         if (draft%cards(k)%sound) call complain_choice(list, drive_kind, draft, k, 1)
-      end select
+      associate (card => set%cards(k))
+         if (card%label(label_c) /= '' .and. card%label(label_a) /= drive_words(drive_relangle) .and. card%valid) &
+            call add_card_error(set, field_unused, k, label_c)
+         call match_word(set, k, drive_words, drive_kind, kind)
+         if (kind == 0) return
+         drive%kind = kind
+         drive%polynomial = card%real*unit_of(set, drive)
+         call look_up(set, driven_kinds(kind), k, label_b, drive%subject)
+         if (kind == drive_relangle) then
+            call look_up(set, request_link, k, label_c, drive%second)
+            if (card%label(label_c) == '' .and. card%valid) call add_card_error(set, field_blank, k, label_c)
+         end if
+      end associate
+      call check_subject(set, k, drive)
    end subroutine build_drive
 
-   subroutine build_relangle(draft, k, set, drive, list)
-      type(draft_t), intent(in) :: draft
+   !> What the DRIVE card `k` drives can be driven, as far as it is known.
+   subroutine check_subject(set, k, drive)
+      type(card_set_t), intent(inout) :: set
       integer, intent(in) :: k
-      type(mechanism_t), intent(in) :: set
-      type(drive_t), intent(inout) :: drive
-      type(complaints_t), intent(inout) :: list
+      type(drive_t), intent(in) :: drive
+      integer :: link
 
-      call find_label(draft, draft%links, k, 2, link_unknown, drive%subject, list)
-      call find_label(draft, draft%links, k, 3, link_unknown, drive%second, list)
-      if (draft%cards(k)%label(3) == '' .and. draft%cards(k)%sound) &
-         call complain_label(list, field_blank, draft, k, 3, '')
-      if (drive%subject == 0 .or. drive%second == 0) return
-      if (drive%subject == drive%second) then
-         call complain_label(list, drive_one_link, draft, k, 3, '')
-      else if (set%links(drive%subject)%ground .and. set%links(drive%second)%ground) then
-         call complain_label(list, drive_grounds, draft, k, 3, '')
+      if (drive%subject == 0) return
+      if (drive%kind == drive_relangle) then
+         if (drive%second == drive%subject) then
+            call add_card_error(set, drive_one_link, k, label_c)
+         else if (drive%second > 0) then
+            if (all(set%mechanism%links([drive%subject, drive%second])%ground)) &
+               call add_card_error(set, drive_grounds, k, label_c)
+         end if
+      else if (drive%kind == drive_angle) then
+         if (set%mechanism%links(drive%subject)%ground) call add_card_error(set, drive_ground, k, label_b)
+      else if (drive%kind == drive_slide) then
+         if (set%mechanism%pairs(drive%subject)%kind == pair_revolute) &
+            call add_card_error(set, drive_revolute, k, label_b)
+      else
+         link = set%mechanism%points(drive%subject)%link
+         if (link == 0) return
+         if (set%mechanism%links(link)%ground) call add_card_error(set, drive_ground_point, k, label_b)
       end if
-   end subroutine build_relangle
+   end subroutine check_subject
 
-   !> The ADD cards that follow the DRIVE card `k`. `unit`: of the driven coordinate.
-   subroutine build_terms(draft, k, unit, angle_unit, drive, list)
-      type(draft_t), intent(in) :: draft
-      integer, intent(in) :: k
-      real(wp), intent(in) :: unit, angle_unit
+   !> The unit of what `drive` drives: of angles in radians, or 1.
+   pure real(wp) function unit_of(set, drive) result(unit)
+      type(card_set_t), intent(in) :: set
+      type(drive_t), intent(in) :: drive
+
+      unit = merge(set%angle_unit, 1.0_wp, driven_kinds(drive%kind) == request_link)
+   end function unit_of
+
+   !> The terms of drive number `d`, of the ADD cards that follow its card `k`.
+   subroutine build_terms(set, k, d, drive)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: k, d
       type(drive_t), intent(inout) :: drive
-      type(complaints_t), intent(inout) :: list
-      integer :: first, n, pass, rows
+      integer :: i, n, last
 
-      ! The first pass counts the terms, the second one fills them.
-      do pass = 1, 2
-         n = 0
-         first = next_reading(draft, k)
-         do while (is_add(draft, first))
-            n = n + 1
-            rows = 1
-            if (draft%cards(first)%label(1) == 'TABLE') rows = table_rows(draft, first)
-            if (pass == 2) call build_term(draft, first, rows, unit, angle_unit, drive%terms(n), list)
-            do rows = rows, 1, -1
-               first = next_reading(draft, first)
-            end do
-         end do
-         if (pass == 1) allocate (drive%terms(n))
+      n = 0
+      do last = k + 1, set%count
+         if (set%cards(last)%form /= form_add) exit
+         if (.not. continues_table(set, last)) n = n + 1
+      end do
+      allocate (drive%terms(n))
+      n = 0
+      do i = k + 1, last - 1
+         if (continues_table(set, i)) cycle
+         n = n + 1
+         set%cards(i)%drive = d
+         set%cards(i)%term = n
+         call build_term(set, i, unit_of(set, drive), drive%terms(n))
       end do
    end subroutine build_terms
 
-   pure logical function is_add(draft, k)
-      type(draft_t), intent(in) :: draft
+   !> Whether the ADD card `k` is another row of the table to which the card above it belongs.
+   pure logical function continues_table(set, k)
+      type(card_set_t), intent(in) :: set
       integer, intent(in) :: k
 
-      is_add = .false.
-      if (k <= draft%count) is_add = draft%cards(k)%form == form_add
-   end function is_add
+      continues_table = set%cards(k - 1)%form == form_add
+      if (continues_table) continues_table = all(set%cards(k - 1:k)%label(label_a) == term_words(term_table))
+   end function continues_table
 
-   !> Number of ADD TABLE cards that follow each other from card `first` on.
-   pure integer function table_rows(draft, first) result(rows)
-      type(draft_t), intent(in) :: draft
-      integer, intent(in) :: first
-      integer :: k
-
-      rows = 0
-      k = first
-      do while (is_add(draft, k))
-         if (draft%cards(k)%label(1) /= 'TABLE') exit
-         rows = rows + 1
-         k = next_reading(draft, k)
-      end do
-   end function table_rows
-
-   subroutine build_term(draft, k, rows, unit, angle_unit, term, list)
-      type(draft_t), intent(in) :: draft
-      integer, intent(in) :: k, rows
-      real(wp), intent(in) :: unit, angle_unit
+   !> The term that begins with the ADD card `k`. `unit`: of the driven coordinate.
+   subroutine build_term(set, k, unit, term)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: k
+      real(wp), intent(in) :: unit
       type(term_t), intent(inout) :: term
-      type(complaints_t), intent(inout) :: list
+      integer :: kind
 
-      associate (card => draft%cards(k))
-         select case (card%label(1))
-         case ('HARMONIC')
-            term%kind = term_harmonic
-            term%r = card%real*[unit, angle_unit, angle_unit]
-         case ('POWER')
+      call match_word(set, k, term_words, add_kind, kind)
+      associate (card => set%cards(k))
+         select case (kind)
+         case (term_table)
+            call build_table(set, k, unit, term)
+            return
+         case (term_harmonic)
+            term%r = card%real*[unit, set%angle_unit, set%angle_unit]
+         case (term_power)
             term%kind = term_power
             term%r = card%real*[unit, 1.0_wp, 1.0_wp]
-         case ('TABLE')
-            term%kind = term_table
-            call build_table(draft, k, rows, unit, term, list)
-            return
-         case default
-            if (card%sound) call complain_choice(list, add_kind, draft, k, 1)
          end select
-         if (card%sound .and. .not. any(card%given)) call complain_name(list, add_blank, draft, k, '')
+         if (card%valid .and. .not. any(card%given)) call add_card_error(set, add_blank, k, card_name)
       end associate
    end subroutine build_term
 
-   subroutine build_table(draft, first, rows, unit, term, list)
-      type(draft_t), intent(in) :: draft
-      integer, intent(in) :: first, rows
+   !> The table whose first row is the ADD card `first`. `unit`: of its values.
+   subroutine build_table(set, first, unit, term)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: first
       real(wp), intent(in) :: unit
       type(term_t), intent(inout) :: term
-      type(complaints_t), intent(inout) :: list
-      integer :: i, k
-      logical :: sound
+      integer :: k, last
 
-      allocate (term%knots(rows), term%values(rows))
-      k = first
-      sound = .true.
-      do i = 1, rows
-         term%knots(i) = draft%cards(k)%real(1)
-         term%values(i) = draft%cards(k)%real(2)*unit
-         if (draft%cards(k)%sound .and. .not. any(draft%cards(k)%given)) then
-            call complain_name(list, add_blank, draft, k, '')
-         else if (i > 1 .and. sound .and. draft%cards(k)%sound) then
-            if (term%knots(i) <= term%knots(i - 1)) call complain_real(list, table_order, draft, k, 1, '')
-         end if
-         sound = draft%cards(k)%sound
-         k = next_reading(draft, k)
+      do last = first, set%count - 1
+         if (set%cards(last + 1)%form /= form_add) exit
+         if (.not. continues_table(set, last + 1)) exit
       end do
-      if (rows < 2) call complain_label(list, table_short, draft, first, 1, '')
+      term%kind = term_table
+      term%knots = set%cards(first:last)%real(1)
+      term%values = set%cards(first:last)%real(2)*unit
+      do k = first, last
+         if (.not. set%cards(k)%valid) cycle
+         if (.not. any(set%cards(k)%given)) then
+            call add_card_error(set, add_blank, k, card_name)
+         else if (k > first) then
+            if (set%cards(k - 1)%valid .and. set%cards(k)%real(1) <= set%cards(k - 1)%real(1)) &
+               call add_card_error(set, table_order, k, real_1)
+         end if
+      end do
+      if (last == first) call add_card_error(set, table_short, first, label_a)
    end subroutine build_table
 end module deck_drives

@@ -1,11 +1,11 @@
-!> Level 7. The cards of a set as they were understood, with the values in use, for the listing.
+!> Level 8. The cards of a set as they were understood, with the values in use, for the listing.
 module deck_echo
-   use mechanism, only: mechanism_t
-   use cards, only: real_fields, wide_fields, field_text
-   use card_forms, only: forms, form_title, form_units, form_at, form_method, form_print, form_star
-   use card_reader, only: reals_taken
-   use drafts, only: draft_t, cards_of
    use kinds, only: label_length
+   use mechanism, only: method_words, method_newton
+   use card_reader, only: parsed_card_t, reals_taken
+   use card_sets, only: card_set_t
+   use cards, only: card_fields, wide_fields, real_1, field_text, form_name, form_title, form_units, form_at, &
+      form_method, form_print
    implicit none
    private
    public :: build_echo
@@ -17,79 +17,77 @@ module deck_echo
 
 contains
 
-   !> Makes `set`%echo: a line for every card except TITLE, and one for every default that no card replaces.
-   subroutine build_echo(draft, set)
-      type(draft_t), intent(in) :: draft
-      type(mechanism_t), intent(inout) :: set
+   !> Makes `set`%mechanism%echo: a line for every card except TITLE, and one for every default that no card replaces.
+   subroutine build_echo(set)
+      type(card_set_t), intent(inout) :: set
       integer :: k, n
 
-      allocate (set%echo(draft%count + 3))
-      n = 0
-      do k = 1, draft%count
-         if (draft%cards(k)%form == form_title .or. draft%cards(k)%form == form_star) cycle
-         n = n + 1
-         set%echo(n) = card_line(draft, k, set)
-      end do
-      call add_default(form_units, 'UNITS', &
-                       [character(label_length) :: set%length_unit, 'RAD', set%time_unit])
-      call add_default(form_method, 'METHOD', [character(label_length) :: 'NEWTON', '', ''])
-      call add_default(form_print, 'PRINT', [character(label_length) :: 'LINKS', '', '1'])
-      set%echo = set%echo(1:n)
+      associate (m => set%mechanism)
+         allocate (m%echo(set%count + 3))
+         n = 0
+         do k = 1, set%count
+            if (set%cards(k)%form == form_title) cycle
+            n = n + 1
+            m%echo(n) = card_line(set%cards(k), m%length_unit, m%time_unit)
+         end do
+         call add_default(form_units, [m%length_unit, 'RAD     ', m%time_unit])
+         call add_default(form_method, [character(label_length) :: method_words(method_newton), '', ''])
+         call add_default(form_print, [character(label_length) :: 'LINKS', '', '1'])
+         m%echo = m%echo(1:n)
+      end associate
 
    contains
 
-      subroutine add_default(form, name, labels)
+      !> The line of a form that has no card in the set: what holds without it.
+      subroutine add_default(form, labels)
          integer, intent(in) :: form
-         character(*), intent(in) :: name
          character(label_length), intent(in) :: labels(3)
 
-         if (cards_of(draft, form) > 0) return
+         if (set%number_of(form) > 0) return
          n = n + 1
-         set%echo(n) = head_line(name, labels)
-         set%echo(n)(line_length - len(default_mark) + 1:) = default_mark
+         set%mechanism%echo(n) = head_line(form, labels)
+         set%mechanism%echo(n)(line_length - len(default_mark) + 1:) = default_mark
       end subroutine add_default
    end subroutine build_echo
 
    !> A blank real is shown as the 0.0 it stands for; a blank field of AT stands for nothing.
-   pure function card_line(draft, k, set) result(line)
-      type(draft_t), intent(in) :: draft
-      integer, intent(in) :: k
-      type(mechanism_t), intent(in) :: set
+   pure function card_line(card, length_unit, time_unit) result(line)
+      type(parsed_card_t), intent(in) :: card
+      character(label_length), intent(in) :: length_unit, time_unit
       character(line_length) :: line
       character(label_length) :: labels(3)
       character(real_width) :: text
       integer :: i, column
 
-      associate (card => draft%cards(k))
-         labels = card%label
-         if (card%form == form_print .and. labels(3) == '') labels(3) = '1'
-         if (card%form == form_units) then
-            labels(1) = set%length_unit
-            labels(2) = merge('DEG', 'RAD', set%degrees)
-            labels(3) = set%time_unit
+      labels = card%label
+      if (card%form == form_print .and. labels(3) == '') labels(3) = '1'
+      if (card%form == form_units) then
+         labels(1) = length_unit
+         if (labels(2) == '') labels(2) = 'RAD'
+         labels(3) = time_unit
+      end if
+      line = head_line(card%form, labels)
+      do i = 1, reals_taken(card)
+         if (card%on_star(i)) then
+            text = field_text(card%star, wide_fields(i))
+         else if (card%given(i)) then
+            text = field_text(card%card, card_fields(real_1 + i - 1))
+         else
+            text = merge('   ', '0.0', card%form == form_at)
          end if
-         line = head_line(forms(card%form)%name, labels)
-         do i = 1, reals_taken(card)
-            if (card%starred(i)) then
-               text = field_text(draft%cards(k + 1)%card, wide_fields(i))
-            else if (card%given(i)) then
-               text = field_text(card%card, real_fields(i))
-            else
-               text = merge('   ', '0.0', card%form == form_at)
-            end if
-            column = real_column + (i - 1)*real_width
-            line(column:column + real_width - 1) = text
-         end do
-      end associate
+         column = real_column + (i - 1)*real_width
+         line(column:column + real_width - 1) = text
+      end do
    end function card_line
 
-   pure function head_line(name, labels) result(line)
-      character(*), intent(in) :: name
+   !> Name and labels of a card, in the columns of the echo.
+   pure function head_line(form, labels) result(line)
+      integer, intent(in) :: form
       character(label_length), intent(in) :: labels(3)
       character(line_length) :: line
       integer :: i, column
 
-      line = name
+      line = form_name(form)
       do i = 1, 3
          column = label_column + (i - 1)*label_step
          line(column:column + label_length - 1) = labels(i)

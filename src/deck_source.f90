@@ -1,4 +1,4 @@
-!> Level 2. The deck's lines as cards, from a file or standard input, each line read once and in bounded memory.
+!> Level 3. The deck's lines as cards, from a file or standard input, each line read once and in bounded memory.
 !> Files, pipes and terminals are read alike, by the system's own read: the Fortran run-time library of GNU takes an
 !> error for the end.
 module deck_source
@@ -98,6 +98,7 @@ contains
       call have_more(source, more, failure)
    end subroutine pass_feed
 
+   !> Closes the file of `source`; standard input stays open.
    subroutine close_source(source)
       type(source_t), intent(inout) :: source
       logical :: closed

@@ -6,7 +6,7 @@ module listing_remarks
    use remarks, only: remark_t, remark_open, remark_limit, remark_far, remark_second, remark_redundant, remark_mobile, &
       remark_change, remark_long, remark_unused, remark_dead_end, remark_idle, remark_repeated, &
       remark_method
-   use naming, only: drive_name, listed
+   use names, only: drive_name, listed
    use numerals, only: whole
    use text_output, only: output_t, put
    use phrases, only: phrase, say_pair, say_drive, say_link, say_links, say_open_by, say_limit, say_in_line, &

@@ -6,30 +6,37 @@ module mechanism
    private
    public :: link_t, point_t, pair_t, term_t, drive_t, request_t, choice_t, mechanism_t
    public :: pair_revolute, pair_prismatic
-   public :: drive_angle, drive_x, drive_y, drive_relangle, drive_slide
-   public :: term_harmonic, term_power, term_table
+   public :: drive_angle, drive_x, drive_y, drive_relangle, drive_slide, drive_words, driven_kinds
+   public :: term_harmonic, term_power, term_table, term_words
    public :: request_link, request_point, request_pair
-   public :: method_newton, method_matrix, method_dense, own_predictor
+   public :: method_newton, method_matrix, method_dense, method_words, own_predictor
    public :: instant_count, instant, wanted_links, plane_origin, place_links
 
    integer, parameter :: pair_revolute = 1   !< REVOLUTE: eq. (7), (8)
    integer, parameter :: pair_prismatic = 2  !< PRISM: eq. (9), (10)
+
+   !> What has a name of its own, and rows in the tables.
+   integer, parameter :: request_link = 1, request_point = 2, request_pair = 3
 
    integer, parameter :: drive_angle = 1     !< ANGLE: phi of link `subject`
    integer, parameter :: drive_x = 2         !< X: x of point `subject`
    integer, parameter :: drive_y = 3         !< Y: y of point `subject`
    integer, parameter :: drive_relangle = 4  !< RELANGLE: phi of link `second` less phi of link `subject`
    integer, parameter :: drive_slide = 5     !< SLIDE: slide of prismatic pair `subject`
+   !> Their words on cards, and what they drive.
+   character(label_length), parameter :: drive_words(5) = &
+      [character(label_length) :: 'ANGLE', 'X', 'Y', 'RELANGLE', 'SLIDE']
+   integer, parameter :: driven_kinds(5) = [request_link, request_point, request_point, request_link, request_pair]
 
    integer, parameter :: term_harmonic = 1   !< r(1) sin(r(2) t + r(3))
    integer, parameter :: term_power = 2      !< r(1) t**r(2)
    integer, parameter :: term_table = 3      !< the C2 spline through (knots, values)
-
-   integer, parameter :: request_link = 1, request_point = 2, request_pair = 3
+   character(label_length), parameter :: term_words(3) = [character(label_length) :: 'HARMONIC', 'POWER', 'TABLE']
 
    integer, parameter :: method_newton = 1   !< Newton on the closure equations
    integer, parameter :: method_matrix = 2   !< the iteration of 1987 with frozen c(phi), s(phi)
    integer, parameter :: method_dense = 3    !< Newton on all closure equations at once: the reference
+   character(label_length), parameter :: method_words(3) = [character(label_length) :: 'NEWTON', 'MATRIX', 'DENSE']
 
    integer, parameter :: own_predictor = -1  !< the method's own
 

@@ -1,5 +1,5 @@
-!> Level 2. The strict grammar of numbers. A READ statement alone takes `1 2` as 12, a lone `-` as 0, `NaN`,
-!> and 1e400 as infinity; here a text is scanned first and every flaw has a name and a place.
+!> Level 5. The strict grammar of numbers. A READ statement alone takes `1 2` as 12, a lone `-` as 0, `NaN`,
+!> and 1e400 as infinity; here a text is scanned first, and every error has its code and its place.
 !>
 !>     real  = [sign] digits-and-one-point [E|D [sign] digits]     with a point or an exponent, or both
 !>     whole = [sign] digits
@@ -10,32 +10,12 @@ module numbers
    use, intrinsic :: iso_fortran_env, only: int64, dp => real64
    use kinds, only: wp
    use letters, only: capitals
+   use input_errors, only: error_code_t, number_other, number_letter_o, number_letter_l, number_blank, number_comma, &
+      number_sign, number_nan, number_inf, number_overflow, number_underflow, number_no_point, number_point, &
+      number_no_digits, number_exponent
    implicit none
    private
    public :: read_real, read_whole
-   public :: flaw_none, flaw_other, flaw_letter_o, flaw_letter_l, flaw_blank, flaw_comma, flaw_sign
-   public :: flaw_nan, flaw_inf, flaw_overflow, flaw_underflow, flaw_no_point, flaw_point, flaw_no_digits
-   public :: flaw_exponent, flaw_count
-
-   integer, parameter :: flaw_none = 0
-   integer, parameter :: flaw_other = 1       !< a character that no number has
-   integer, parameter :: flaw_letter_o = 2    !< letter O for zero
-   integer, parameter :: flaw_letter_l = 3    !< letter l or I for one
-   integer, parameter :: flaw_blank = 4       !< a blank inside
-   integer, parameter :: flaw_comma = 5       !< decimal comma
-   integer, parameter :: flaw_sign = 6        !< 1.5-3: a sign where only E may introduce an exponent
-   integer, parameter :: flaw_nan = 7
-   integer, parameter :: flaw_inf = 8
-   integer, parameter :: flaw_overflow = 9
-   integer, parameter :: flaw_underflow = 10  !< not zero as written, but it would become zero
-   integer, parameter :: flaw_no_point = 11   !< a real with neither point nor exponent
-   integer, parameter :: flaw_point = 12      !< a whole number with a point or an exponent
-   integer, parameter :: flaw_no_digits = 13  !< a lone sign or point
-   integer, parameter :: flaw_exponent = 14   !< E without digits after it
-   integer, parameter :: flaw_count = 14
-
-   !> Significant digits kept: more than a card has columns.
-   integer, parameter :: digits_kept = 80
    !> Up to here digits (in int64) and powers of ten are exact in `wp`, so one rounding gives the nearest
    !> real: 15 and 22 for 53 bits, 5**22 < 2**53.
    integer, parameter :: exact_digits = min(precision(1.0_wp), 18)
@@ -53,207 +33,168 @@ module numbers
    !> Exponents are cut here: far past the range whatever the digits are.
    integer, parameter :: exponent_cap = 100000
 
-   !> A scanned literal: value = 0.digits x 10**magnitude, and where the scan stands.
-   type :: literal_t
-      logical :: negative = .false., point = .false., exponent = .false.
-      logical :: any_digit = .false.
-      integer :: kept = 0, magnitude = 0, place = 1
-      character(digits_kept) :: digits = ''
-   end type literal_t
-
 contains
 
-   !> The real that `text` (no blanks around it, not empty, at most 80 characters) stands for.
-   !> On a flaw `value` is 0 and `place` is the character of `text` that is wrong.
-   pure subroutine read_real(text, value, flaw, place)
+   !> The real that `text` (no blanks around it, not empty, at most 80 characters) stands for. Where it stands for none,
+   !> `error` has the code of a number_... error, `value` is 0 and `place` is the first wrong character of `text`.
+   pure subroutine read_real(text, value, error, place)
       character(*), intent(in) :: text
       real(wp), intent(out) :: value
-      integer, intent(out) :: flaw, place
-      type(literal_t) :: literal
+      type(error_code_t), intent(out) :: error
+      integer, intent(out) :: place
+      character(len(text)) :: digits
+      integer :: n, magnitude, zeros
 
       value = 0.0_wp
-      call scan_mantissa(text, literal, flaw)
-      if (flaw == flaw_none) call scan_exponent(text, literal, flaw)
-      place = min(literal%place, len(text))
-      if (flaw /= flaw_none) return
+      call split_real(text, digits, n, magnitude, place, error)
+      place = min(place, len(text))
+      if (error%number > 0) return
       place = 1
-      if (.not. (literal%point .or. literal%exponent)) then
-         flaw = flaw_no_point
-         return
-      end if
-      call check_range(literal, flaw)
-      if (flaw == flaw_none) call convert(text, literal, value)
+      if (scan(text, '.EeDd') == 0) error = number_no_point
+      zeros = verify(digits(:n), '0') - 1
+      if (error%number > 0 .or. zeros < 0) return
+      call check_range(digits(zeros + 1:n), magnitude - zeros, error)
+      if (error%number > 0) return
+      value = absolute_value(text, digits(zeros + 1:n), magnitude - n)
+      if (text(1:1) == '-') value = -value
    end subroutine read_real
 
-   !> The whole number that `text` stands for; as `read_real` otherwise.
-   pure subroutine read_whole(text, value, flaw, place)
+   !> The whole number that `text` stands for; the arguments are those of `read_real`.
+   pure subroutine read_whole(text, value, error, place)
       character(*), intent(in) :: text
       integer, intent(out) :: value
-      integer, intent(out) :: flaw, place
+      type(error_code_t), intent(out) :: error
+      integer, intent(out) :: place
       integer(int64) :: sum
       integer :: i, first
 
       value = 0
       place = 1
       sum = 0_int64
-      flaw = flaw_no_digits
       first = merge(2, 1, scan(text(1:1), '+-') == 1)
+      if (first > len(text)) error = number_no_digits
       do i = first, len(text)
-         flaw = flaw_none
-         if (.not. is_digit(text(i:i))) flaw = flaw_at(text, i)
-         if (scan(text(i:i), '.') == 1 .or. (i > first .and. scan(text(i:i), 'EeDd') == 1)) flaw = flaw_point
+         if (verify(text(i:i), '0123456789') == 1) error = error_at(text, i)
+         if (scan(text(i:i), '.') == 1 .or. (i > first .and. scan(text(i:i), 'EeDd') == 1)) error = number_point
          place = i
-         if (flaw /= flaw_none) return
+         if (error%number > 0) return
          sum = min(10_int64*sum + digit(text(i:i)), 10_int64*huge(value))
       end do
       place = 1
-      if (flaw /= flaw_none) return
-      if (sum > huge(value)) flaw = flaw_overflow
-      if (flaw == flaw_none) value = int(merge(-sum, sum, text(1:1) == '-'))
+      if (sum > huge(value)) error = number_overflow
+      if (error%number == 0) value = int(merge(-sum, sum, text(1:1) == '-'))
    end subroutine read_whole
 
-   pure subroutine scan_mantissa(text, literal, flaw)
+   !> `text` = 0.digits x 10**magnitude, with `n` digits. The grammar stops at `place`, behind the text if it is right.
+   pure subroutine split_real(text, digits, n, magnitude, place, error)
       character(*), intent(in) :: text
-      type(literal_t), intent(inout) :: literal
-      integer, intent(out) :: flaw
-      integer :: i
+      character(*), intent(out) :: digits
+      integer, intent(out) :: n, magnitude, place
+      type(error_code_t), intent(out) :: error
+      integer :: first, power, i
 
-      literal%negative = text(1:1) == '-'
-      i = merge(2, 1, scan(text(1:1), '+-') == 1)
-      do i = i, len(text)
-         if (is_digit(text(i:i))) then
-            call keep_digit(literal, text(i:i))
-         else if (text(i:i) == '.' .and. .not. literal%point) then
-            literal%point = .true.
-         else
-            exit
-         end if
-      end do
-      literal%place = i
-      flaw = flaw_none
-      if (literal%any_digit) return
-      flaw = flaw_no_digits
-      if (i <= len(text)) flaw = flaw_at(text, i)
-   end subroutine scan_mantissa
-
-   !> Leading zeros are not kept, but those behind the point count in the magnitude.
-   pure subroutine keep_digit(literal, c)
-      type(literal_t), intent(inout) :: literal
-      character(1), intent(in) :: c
-
-      literal%any_digit = .true.
-      if (literal%kept > 0 .or. c /= '0') then
-         if (literal%kept < digits_kept) then
-            literal%kept = literal%kept + 1
-            literal%digits(literal%kept:literal%kept) = c
-         end if
-         if (.not. literal%point) literal%magnitude = literal%magnitude + 1
-      else if (literal%point) then
-         literal%magnitude = literal%magnitude - 1
+      first = merge(2, 1, scan(text(1:1), '+-') == 1)
+      magnitude = digits_from(text, first)
+      place = first + magnitude
+      digits = text(first:place - 1)
+      n = magnitude
+      if (scan(text(place:), '.') == 1) then
+         n = magnitude + digits_from(text, place + 1)
+         digits(magnitude + 1:) = text(place + 1:)
+         place = first + n + 1
       end if
-   end subroutine keep_digit
-
-   pure subroutine scan_exponent(text, literal, flaw)
-      character(*), intent(in) :: text
-      type(literal_t), intent(inout) :: literal
-      integer, intent(out) :: flaw
-      integer :: first, i, power
-
-      flaw = flaw_none
-      i = literal%place
-      if (i > len(text)) return
-      if (scan(text(i:i), 'EeDd') == 1) then
-         literal%exponent = .true.
-         first = i + 1
-         if (first <= len(text)) first = first + merge(1, 0, scan(text(first:first), '+-') == 1)
+      if (n == 0) then
+         error = number_no_digits
+      else if (scan(text(place:), 'EeDd') == 1) then
+         first = place + 1
+         if (scan(text(first:), '+-') == 1) first = first + 1
+         place = first + digits_from(text, first)
+         if (place == first) error = number_exponent
          power = 0
-         do i = first, len(text)
-            if (.not. is_digit(text(i:i))) exit
+         do i = first, place - 1
             power = min(10*power + digit(text(i:i)), exponent_cap)
          end do
-         if (text(first - 1:first - 1) == '-') power = -power
-         literal%magnitude = literal%magnitude + power
-         if (i == first .and. i > len(text)) flaw = flaw_exponent
+         magnitude = magnitude + merge(-power, power, text(first - 1:first - 1) == '-')
       end if
-      literal%place = i
-      if (i <= len(text)) flaw = flaw_at(text, i)
-   end subroutine scan_exponent
+      if (place <= len(text)) error = error_at(text, place)
+   end subroutine split_real
 
-   !> What is wrong with the character `text(i:i)`, at which the grammar stopped.
-   pure integer function flaw_at(text, i) result(flaw)
+   !> How many digits `text` has one after another from its character `first` on.
+   pure integer function digits_from(text, first) result(n)
+      character(*), intent(in) :: text
+      integer, intent(in) :: first
+
+      do n = 0, len(text) - first
+         if (text(first + n:first + n) < '0' .or. text(first + n:first + n) > '9') return
+      end do
+   end function digits_from
+
+   !> The error at the character `text(i:i)`, at which the grammar stopped.
+   pure function error_at(text, i) result(error)
       character(*), intent(in) :: text
       integer, intent(in) :: i
+      type(error_code_t) :: error
       character(3) :: word
 
       word = capitals(text(i:min(i + 2, len(text))))
-      flaw = flaw_other
+      error = number_other
       select case (text(i:i))
       case (' ')
-         flaw = flaw_blank
+         error = number_blank
       case (',')
-         flaw = flaw_comma
+         error = number_comma
       case ('O', 'o')
-         flaw = flaw_letter_o
+         error = number_letter_o
       case ('l', 'I')
-         flaw = flaw_letter_l
+         error = number_letter_l
       case ('+', '-')
-         if (i > 1) flaw = merge(flaw_sign, flaw_other, scan(text(i - 1:i - 1), '0123456789.') == 1)
+         if (i > 1) error = merge(number_sign, number_other, scan(text(i - 1:i - 1), '0123456789.') == 1)
       end select
-      if (word == 'NAN') flaw = flaw_nan
-      if (word == 'INF') flaw = flaw_inf
-   end function flaw_at
+      if (word == 'NAN') error = number_nan
+      if (word == 'INF') error = number_inf
+   end function error_at
 
-   !> Decided on the digits, because a conversion out of range may trap.
-   pure subroutine check_range(literal, flaw)
-      type(literal_t), intent(in) :: literal
-      integer, intent(out) :: flaw
-      character(len(largest)) :: digits
+   !> Whether 0.digits x 10**magnitude, with a first digit that is not 0, becomes infinite or zero. It is decided on the
+   !> digits, because a conversion out of range may trap.
+   pure subroutine check_range(digits, magnitude, error)
+      character(*), intent(in) :: digits
+      integer, intent(in) :: magnitude
+      type(error_code_t), intent(out) :: error
+      character(len(largest)) :: first
       integer :: power
 
-      flaw = flaw_none
-      if (literal%kept == 0) return
-      digits = literal%digits(1:literal%kept)//repeat('0', len(digits))
-      power = literal%magnitude - 1
-      if (power > largest_exponent) flaw = flaw_overflow
-      if (power == largest_exponent .and. digits > largest) flaw = flaw_overflow
-      if (power < smallest_exponent) flaw = flaw_underflow
-      if (power == smallest_exponent .and. digits < smallest) flaw = flaw_underflow
+      first = digits//repeat('0', len(first))
+      power = magnitude - 1
+      if (power > largest_exponent .or. (power == largest_exponent .and. first > largest)) error = number_overflow
+      if (power < smallest_exponent .or. (power == smallest_exponent .and. first < smallest)) error = number_underflow
    end subroutine check_range
 
-   pure subroutine convert(text, literal, value)
-      character(*), intent(in) :: text
-      type(literal_t), intent(in) :: literal
-      real(wp), intent(out) :: value
+   !> The absolute value of `text`, which is digits x 10**power.
+   pure real(wp) function absolute_value(text, digits, power) result(value)
+      character(*), intent(in) :: text, digits
+      integer, intent(in) :: power
       integer(int64) :: mantissa
-      integer :: i, power
+      integer :: i
       real(dp) :: double
 
-      power = literal%magnitude - literal%kept
-      if (literal%kept == 0) then
-         value = 0.0_wp
-      else if (scan(text, 'Dd') > 0 .and. abs(literal%magnitude) < range(double)) then
+      if (scan(text, 'Dd') > 0 .and. abs(len(digits) + power) < range(double)) then
          read (text, '(f80.0)') double
-         value = real(double, wp)
-      else if (literal%kept <= exact_digits .and. abs(power) <= exact_power) then
+         value = abs(real(double, wp))
+      else if (len(digits) <= exact_digits .and. abs(power) <= exact_power) then
          mantissa = 0_int64
-         do i = 1, literal%kept
-            mantissa = 10_int64*mantissa + digit(literal%digits(i:i))
+         do i = 1, len(digits)
+            mantissa = 10_int64*mantissa + digit(digits(i:i))
          end do
          value = real(mantissa, wp)
          if (power > 0) value = value*10.0_wp**power
          if (power < 0) value = value/10.0_wp**(-power)
-         if (literal%negative) value = -value
       else
          read (text, '(f80.0)') value
+         value = abs(value)
       end if
-   end subroutine convert
+   end function absolute_value
 
-   pure logical function is_digit(c)
-      character(1), intent(in) :: c
-
-      is_digit = c >= '0' .and. c <= '9'
-   end function is_digit
-
+   !> The value of the digit `c`.
    pure integer function digit(c)
       character(1), intent(in) :: c
 

@@ -5,7 +5,7 @@ module structure_faults
    use failures, only: failure_t, fail, status_refused
    use structure, only: findings_t, part_t, find_structure
    use numerals, only: whole
-   use naming, only: drive_name, listed
+   use names, only: drive_name, listed
    implicit none
    private
    public :: check_structure, faults_text

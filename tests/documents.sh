@@ -77,7 +77,7 @@ equal 'README.md: the first command' 1 "$(grep -cE '^ *(sudo )?apt-get .*make ru
 # The manual has every card and option, and every sentence that the sources can say.
 has() { if grep -qF -- "$2" "$manual"; then pass; else miss "$manual lacks $1: $2"; fi; }
 sources=$(find src -name '*.[fF]90')
-sed -n "s/.*form_t('\([A-Z]*\)'.*/\1/p" $sources | sort -u > "$w/cards"
+sed -n "s/^ *form_t('[-LlWw]*', .*'\([A-Z]\{2,8\}\).*/\1/p" $sources | sort -u > "$w/cards"
 equal 'cards are found' yes "$([ "$(wc -l < "$w/cards")" -ge 16 ] && echo yes)"
 while read -r card; do has 'the card' "| $card |"; done < "$w/cards"
 "$kinmat" --help | grep -oE '^ *-(-[a-z]+|o)' | tr -d ' ' > "$w/options"

@@ -629,9 +629,9 @@ equal 'a line of a million characters: few of them told' yes "$([ "$(wc -c < "$w
 { printf 'TITLE   A'; head -c 1000000 /dev/zero | tr '\0' ' '; echo B; echo END; } > "$w/deck"
 refused 'a million blanks in a line' ' *** E014  CARD 1  COLUMN 1000010  FIELD PAST-80: "B" STANDS PAST COLUMN 80'
 head -c 1000000 /dev/zero > "$w/deck"
-refused 'a million zero bytes' ' *** E016  CARD 1  COLUMN 1  FIELD NAME: "????????" IS OR HOLDS A CONTROL CHARACTER'
+refused 'a million zero bytes' ' *** E016  CARD 1  COLUMN 1  FIELD NAME: "????????" CONTAINS A CONTROL CHARACTER'
 cp "$kinmat" "$w/deck"
-refused 'the program as its own deck' ' *** E016  CARD 1  COLUMN 1  FIELD NAME: "?ELF????" IS OR HOLDS A CONTROL CHARACTER'
+refused 'the program as its own deck' ' *** E016  CARD 1  COLUMN 1  FIELD NAME: "?ELF????" CONTAINS A CONTROL CHARACTER'
 rm -f "$w/deck"
 
 # A pipe that ends in the middle of a card.
