@@ -13,7 +13,8 @@ module job
    use protocol, only: protocol_head, protocol_instant
    use convergence, only: convergence_t
    use continuity, only: branch_t
-   use set_motion, only: is_flagged
+   use points, only: strides, any_due
+   use set_motion, only: is_flagged, has_words
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set, set_record, set_errors, &
       set_gap, set_closing_remarks
    use command_line, only: options_t
@@ -150,7 +151,9 @@ contains
       integer, intent(inout) :: status
       type(layout_t) :: layout
       type(set_analysis_t) :: a
+      integer, allocatable :: every(:)
       integer :: k, marked
+      logical :: due
 
       layout = new_layout(m)
       call listing_head(o%listing, layout, m, findings)
@@ -160,12 +163,14 @@ contains
       if (is_over(o)) return
       call make_set_analysis(m, a)
       marked = 0
+      every = strides(m)
       do k = 0, instant_count(m) - 1
          call advance_set(a, m, instant(m, k))
          if (is_flagged(a%now)) marked = marked + 1
-         call sample_set(a, m, options%errors)
-         call listing_set_instant(o%listing, layout, m, a%now, k)
-         if (len(options%csv) > 0) call csv_set_instant(o%csv, m, a%now, k)
+         due = any_due(m, every, k)
+         if (due .or. options%errors) call sample_set(a, m, options%errors)
+         if (due .or. has_words(a%now)) call listing_set_instant(o%listing, layout, m, a%now, k)
+         if (due .and. len(options%csv) > 0) call csv_set_instant(o%csv, m, a%now, k)
          if (len(options%log) > 0) call log_instant(o%log, options, m, a, k)
          if (.not. is_over(o)) cycle
          call listing_broken_off(o%listing, m, k)

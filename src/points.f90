@@ -6,7 +6,7 @@ module points
    use motion, only: motion_t, known_of, mark_of, mark_none
    implicit none
    private
-   public :: row_t, row_of, is_due, is_fixed, point_motion, pair_motion
+   public :: row_t, row_of, is_due, strides, any_due, is_fixed, point_motion, pair_motion
 
    !> One row of a table, in the deck's length unit and radians.
    type :: row_t
@@ -28,6 +28,26 @@ contains
 
       is_due = mod(k, request%every) == 0 .or. k == instant_count(m) - 1
    end function is_due
+
+   !> The different numbers of instants from row to row that the requests of `m` have.
+   pure function strides(m) result(list)
+      type(mechanism_t), intent(in) :: m
+      integer, allocatable :: list(:)
+      integer :: i
+
+      allocate (list(0))
+      do i = 1, size(m%requests)
+         if (all(list /= m%requests(i)%every)) list = [list, m%requests(i)%every]
+      end do
+   end function strides
+
+   !> Some request, all of them with one of the strides `list`, is due at instant number `k` (0, 1, ...).
+   pure logical function any_due(m, list, k)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: list(:), k
+
+      any_due = any(mod(k, list) == 0) .or. (k == instant_count(m) - 1 .and. size(list) > 0)
+   end function any_due
 
    !> The row that `request` asks for, of as much of the motion `q` as is known. What belongs to the ground is known at
    !> any instant, by the deck alone.

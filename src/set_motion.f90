@@ -9,7 +9,7 @@ module set_motion
    use scatter, only: scatter_t
    implicit none
    private
-   public :: set_motion_t, new_set_motion, is_flagged, in_set, put_together
+   public :: set_motion_t, new_set_motion, is_flagged, has_words, in_set, put_together
 
    !> `own` is of size 0 where the set is one mechanism; that is the set itself.
    type :: set_motion_t
@@ -46,6 +46,17 @@ contains
       end do
       is_flagged = .false.
    end function is_flagged
+
+   !> There is something to say of the instant beside its numbers.
+   pure logical function has_words(s)
+      type(set_motion_t), intent(in) :: s
+      integer :: c
+
+      has_words = is_flagged(s)
+      do c = 1, size(s%motions)
+         has_words = has_words .or. allocated(s%motions(c)%remarks)
+      end do
+   end function has_words
 
    !> The motion `q` of all links of the set, known as far as that of every part is; places are counted from where each
    !> part counts them.
