@@ -164,8 +164,8 @@ FUZZ_FIRST ?= 1
 fuzz: $(BUILD)/fuzz/fuzz
 	BUILD=$(BUILD) tests/fuzz.sh $(FUZZ) $(FUZZ_FIRST)
 
-fuzz-short: $(BUILD)/fuzz/fuzz
-	BUILD=$(BUILD) tests/fuzz.sh 1000
+fuzz-short: $(BUILD)/debug/fuzz
+	BUILD=$(BUILD) FUZZ_BUILD=debug tests/fuzz.sh 1000
 
 TEST_LIB     := $(BUILD)/debug/libkinmat.a
 TEST_MODULES := $(BUILD)/debug
@@ -176,7 +176,7 @@ include tests/tests.mk
 
 # What the parts of `make test` need is made beforehand, many at a time; the parts run one after another.
 checkers := check_forms error_estimates compare_digits hard matrix_1987 bench
-test: $(addprefix $(BUILD)/,kinmat debug/kinmat $(checkers:%=release/%) fuzz/fuzz kinmat-quad kinmat-single \
+test: $(addprefix $(BUILD)/,kinmat debug/kinmat $(checkers:%=release/%) debug/fuzz kinmat-quad kinmat-single \
    quad/release/kind_errors single/release/kind_errors tests$(if $(PFUNIT_DIR),/pfunit)/unit) $(references)
 	BUILD=$(BUILD) MAKE='$(MAKE)' tests/run.sh
 

@@ -10,7 +10,7 @@ pass() { echo passed >> "$counts"; }
 miss() { echo failed >> "$counts"; echo "FAILED: $*"; }
 
 # same NAME EXPECTED FOUND: the two files hold the same bytes
-same() { if diff -u "$2" "$3" > "$BUILD/diff.txt" 2>&1; then pass; else miss "$1"; head -n 20 "$BUILD/diff.txt"; fi; }
+same() { if diff -u "$2" "$3" > "$counts.diff" 2>&1; then pass; else miss "$1"; head -n 20 "$counts.diff"; fi; }
 
 # equal NAME EXPECTED FOUND: the two texts are the same
 equal() { if [ "$2" = "$3" ]; then pass; else miss "$1"; echo "  expected: $2"; echo "  found:    $3"; fi; }

@@ -29,7 +29,7 @@ contains
          read (unit, '(a)', iostat=status) line
          if (status /= 0) exit
          if (line(1:1) == '$') cycle
-         one%line = [one%line, line]
+         one%line = [character(line_length) :: one%line, line]
          if (name_of(line) /= 'END') cycle
          one%notes = path
          sets = [sets, one]
@@ -143,14 +143,14 @@ contains
       character(line_length) :: one
 
       one = line
-      d%line = [d%line(:i - 1), one, d%line(i:)]
+      d%line = [character(line_length) :: d%line(:i - 1), one, d%line(i:)]
    end subroutine insert_line
 
    subroutine drop_line(d, i)
       type(draft_t), intent(inout) :: d
       integer, intent(in) :: i
 
-      d%line = [d%line(:i - 1), d%line(i + 1:)]
+      d%line = [character(line_length) :: d%line(:i - 1), d%line(i + 1:)]
    end subroutine drop_line
 
    !> Numbers of the lines whose card has one of `names`.

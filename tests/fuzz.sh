@@ -7,7 +7,8 @@
 #    tests/fuzz.sh --chunk FIRST LAST      what the two at a time are
 export LC_ALL=C
 BUILD=${BUILD:-build}
-driver=$BUILD/fuzz/fuzz
+mkdir -p "$BUILD/fuzz" || exit 3
+driver=$BUILD/${FUZZ_BUILD:-fuzz}/fuzz
 chunk=${FUZZ_CHUNK:-500}
 # Leaks are told at a chunk's end, as a failure of their own; the traps belong to the program, not to the sanitizers; memory
 # given back is kept from use for a while, 16 MB of it.
