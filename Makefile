@@ -37,7 +37,7 @@ modules := $(filter-out main,$(basename $(notdir $(sources))))
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))
 vpath %.F90 $(sort $(dir $(sources)))
 
-.PHONY: all kinds run test check forms errors kind-check quad-check single-check bench bench-short bench-against hard hard-short study study-short study-1987 digits fuzz fuzz-short expected install install-kinds clean
+.PHONY: all example kinds run test check forms errors kind-check quad-check single-check bench bench-short bench-against hard hard-short study study-short study-1987 digits fuzz fuzz-short expected install install-kinds clean
 all: $(BUILD)/kinmat
 
 run: $(BUILD)/kinmat
@@ -78,6 +78,13 @@ $(foreach build,$(builds),$(eval $(call build_in,$(build))))
 
 $(BUILD)/kinmat: $(BUILD)/release/kinmat
 	cp $< $@
+
+# A program of one's own with the modules.
+example: $(BUILD)/example
+	$(BUILD)/example
+
+$(BUILD)/example: docs/example.f90 $(BUILD)/release/libkinmat.a
+	$(FC) $(COMMON) $(release) -I$(BUILD)/release -o $@ $^ $(LIBS)
 
 # Beside kinmat, in double precision, kinmat-quad and kinmat-single.
 kinds: $(BUILD)/kinmat $(BUILD)/kinmat-quad $(BUILD)/kinmat-single
@@ -176,7 +183,7 @@ include tests/tests.mk
 
 # What the parts of `make test` need is made beforehand, many at a time; the parts run one after another.
 checkers := check_forms error_estimates compare_digits hard matrix_1987 bench
-test: $(addprefix $(BUILD)/,kinmat debug/kinmat $(checkers:%=release/%) debug/fuzz kinmat-quad kinmat-single \
+test: $(addprefix $(BUILD)/,kinmat example debug/kinmat $(checkers:%=release/%) debug/fuzz kinmat-quad kinmat-single \
    quad/release/kind_errors single/release/kind_errors tests$(if $(PFUNIT_DIR),/pfunit)/unit) $(references)
 	BUILD=$(BUILD) MAKE='$(MAKE)' tests/run.sh
 

@@ -1,4 +1,4 @@
-!> Level 3. The command's words: what to read, what to write, which sets.
+!> The command's words: what to read, what to write, which sets.
 module command_line
    use kinds, only: wp_name
    use decimal_digits, only: significant

@@ -1,4 +1,4 @@
-!> Level 19. One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later.
+!> One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later.
 module job
    use failures, only: failure_t, fail, status_solved, status_refused, status_marked, status_signal
    use mechanism, only: mechanism_t, instant_count, instant

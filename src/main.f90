@@ -1,4 +1,4 @@
-!> Level 23. The command kinmat: arguments, exit status; the only STOP.
+!> The command kinmat: arguments, exit status; the only STOP.
 program main
    use, intrinsic :: iso_fortran_env, only: error_unit
    use, intrinsic :: iso_c_binding, only: c_int

@@ -117,4 +117,9 @@ for document in $documents; do
          esac
       done
 done
+# The example of the modules, against the angles of the rocker in the listing that closed forms have printed.
+equal 'make example' "$(awk '/END OF SET/ { exit } /^ ROCKER / && $2 != "" && NF > 8 { x = $4*atan2(0, -1)/180
+      if (!n++ || x < low) low = x
+      if (n == 1 || x > high) high = x }
+   END { printf "The rocker swings from %9.6f to %9.6f rad.", low, high }' expected/four_bar.lst)" "$("$BUILD/example")"
 conclude

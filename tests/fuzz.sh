@@ -43,7 +43,7 @@ run_chunk() {
       grep -a '^SUMS ' "$place/seed"
       why=$(grep -a -m 1 -E 'runtime error|Fortran runtime|AddressSanitizer|SIG[A-Z]+' "$place/err")
       [ "$status" -eq 142 ] && why='NO END IN TIME'
-      at=$(grep -a -m 1 -oE 'src/[a-z_0-9]+\.f90:[0-9]+' "$place/err")
+      at=$(grep -a -m 1 -oE 'src/[a-z_0-9/]+\.f90:[0-9]+' "$place/err")
       echo "FAILED: SEED $seed: STATUS $status: $why $at"
       echo 'CRASHED'
       first=$((seed + 1))

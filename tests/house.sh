@@ -1,23 +1,23 @@
 #!/bin/sh
-# The house of src/: the level in each file's first line is one above the highest level that the file uses, so that a
-# file uses only lower levels; only main stops or prints; lines, procedures and files keep their size.
+# The sources: a file uses only files of its own folder and of folders before it, as src/README.md lists them; only main
+# stops or prints; lines and files keep their size.
 BUILD=${BUILD:-build}
 . tests/counting.sh
 
 sources=$(find src -name '*.f90' -o -name '*.F90' | LC_ALL=C sort)
-awk '
-   FNR == 1 { file = FILENAME; sub(/^.*\//, "", file); sub(/\.[fF]90$/, "", file); files[++n] = file
-      if ($0 ~ /^!> Level [0-9]+\. /) { level[file] = $3 + 0 } }
-   tolower($1) == "use" { used = $2; sub(/,.*/, "", used); uses[file] = uses[file] " " used }
-   END {
-      for (i = 1; i <= n; i++) {
-         file = files[i]; highest = 0
-         count = split(uses[file], list, " ")
-         for (j = 1; j <= count; j++) if (level[list[j]] > highest) highest = level[list[j]]
-         if (level[file] != highest + 1) print file ": level " level[file] ", uses level " highest
-      }
-   }' $sources > "$BUILD/levels.txt"
-equal 'levels' '' "$(cat "$BUILD/levels.txt")"
+# The folders in their order: the first cells of the table of src/README.md.
+order=$(sed -n 's/^| `\([a-z]*\)\/*` .*/\1/p' src/README.md | tr '\n' ' ')
+equal 'folders of src/README.md' "$(ls -d src/*/ | sed 's/^src\/\(.*\)\/$/\1/' | LC_ALL=C sort | tr '\n' ' ')src " \
+   "$(echo "$order" | tr ' ' '\n' | grep -v '^src$' | grep . | LC_ALL=C sort | tr '\n' ' ')src "
+equal 'the order of the folders' '' "$(awk -v order="$order src" -f tests/folders.awk $sources)"
+# The check sees what it is there for.
+mkdir -p "$BUILD/order/src/base" "$BUILD/order/src/deck"
+printf 'module a\n   use b\nend module a\n' > "$BUILD/order/src/base/a.f90"
+printf 'module b\n   use c\nend module b\n' > "$BUILD/order/src/deck/b.f90"
+printf 'module c\n   use b, only: x\nend module c\n' > "$BUILD/order/src/deck/c.f90"
+equal 'an arrow the wrong way and a circle are found' 'base/a: USES deck/b,b: IN A CIRCLE' \
+   "$(cd "$BUILD/order" && awk -v order='base deck' -f "$OLDPWD/tests/folders.awk" src/base/a.f90 src/deck/b.f90 src/deck/c.f90 |
+   tr '\n' ',' | sed 's/,$//')"
 equal 'lines over 120 columns' '' "$(awk 'length > 120 { print FILENAME ":" FNR }' $sources)"
 equal 'stop or print outside main' '' \
    "$(grep -nE '^ *((error +)?stop( |$)|print +[^=]*$|write *[(] *[*])' $sources | grep -v '^src/main.f90')"

@@ -1,0 +1,15 @@
+!> The one real kind of KINMAT and the sizes of its texts.
+module kinds
+   ! KIND of the Makefile says which of the three: single, double or quad.
+   use, intrinsic :: iso_fortran_env, only: wp => REAL_KIND, real32, real64
+   implicit none
+   private
+   public :: wp, wp_name, label_length, title_length
+
+   !> The name of the kind `wp` of every real of the program.
+   character(*), parameter :: wp_name = trim(merge('REAL32 ', merge('REAL64 ', 'REAL128', wp == real64), wp == real32))
+   !> Characters of a card's name and of a label.
+   integer, parameter :: label_length = 8
+   !> Characters of a title: columns 9 to 80.
+   integer, parameter :: title_length = 72
+end module kinds

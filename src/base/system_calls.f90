@@ -1,0 +1,239 @@
+!> What the operating system is asked for beyond Fortran: bytes of files, which file it is, why it failed.
+!>
+!> The Fortran run-time library of GNU reports no error of a full disk, neither from WRITE nor from FLUSH nor from
+!> CLOSE, and takes a failed read for the end of a file.
+module system_calls
+   use, intrinsic :: iso_c_binding, only: c_int, c_int16_t, c_int32_t, c_int64_t, c_long, c_size_t, c_char, c_ptr, &
+      c_null_char, c_f_pointer, c_associated
+   implicit none
+   private
+   public :: identity_t, identity_of_path, identity_of_descriptor, same_file
+   public :: open_to_read, open_to_write, read_bytes, write_bytes, close_descriptor, empty_file, remove_file
+   public :: occupy_standard_descriptors, last_error, reason_of, no_such_file, closed_descriptor, is_a_directory, &
+      broken_pipe
+
+   !> Which file it is: device and inode; `regular` is not so for devices, pipes and what is not there.
+   type :: identity_t
+      integer(c_int32_t) :: device(2) = 0
+      integer(c_int64_t) :: inode = 0
+      logical :: regular = .false.
+   end type identity_t
+
+   !> Flags of open, numbers of errors and of statx, the same on every architecture of Linux.
+   integer(c_int), parameter :: read_only = 0, write_only = 1
+   integer, parameter :: no_such_file = 2, closed_descriptor = 9, is_a_directory = 21, broken_pipe = 32
+   integer(c_int), parameter :: from_working_directory = -100, empty_path = int(z'1000', c_int)
+   integer(c_int), parameter :: basic_facts = int(z'7FF', c_int)
+   !> Read and write for all, less the user's mask.
+   integer(c_int), parameter :: permissions = int(o'666', c_int)
+   !> Kinds of files within a mode.
+   integer, parameter :: kind_bits = int(o'170000'), kind_regular = int(o'100000')
+
+   !> The result of statx, which unlike that of stat is the same on every architecture.
+   type, bind(c) :: facts_t
+      integer(c_int32_t) :: head(7)
+      integer(c_int16_t) :: mode, spare
+      integer(c_int64_t) :: inode
+      integer(c_int64_t) :: sizes_and_times(11)
+      integer(c_int32_t) :: special_device(2), device(2)
+      integer(c_int64_t) :: room(14)
+   end type facts_t
+
+   interface
+      integer(c_int) function statx(directory, path, flags, mask, facts) bind(c)
+         import :: c_int, c_char, facts_t
+         integer(c_int), value :: directory, flags, mask
+         character(kind=c_char), intent(in) :: path(*)
+         type(facts_t), intent(out) :: facts
+      end function statx
+      integer(c_int) function c_open(path, flags) bind(c, name='open')
+         import :: c_int, c_char
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int), value :: flags
+      end function c_open
+      integer(c_int) function creat(path, mode) bind(c)
+         import :: c_int, c_char
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int), value :: mode
+      end function creat
+      integer(c_size_t) function c_read(descriptor, text, length) bind(c, name='read')
+         import :: c_int, c_char, c_size_t
+         integer(c_int), value :: descriptor
+         character(kind=c_char), intent(out) :: text(*)
+         integer(c_size_t), value :: length
+      end function c_read
+      integer(c_size_t) function c_write(descriptor, text, length) bind(c, name='write')
+         import :: c_int, c_char, c_size_t
+         integer(c_int), value :: descriptor
+         character(kind=c_char), intent(in) :: text(*)
+         integer(c_size_t), value :: length
+      end function c_write
+      integer(c_int) function c_close(descriptor) bind(c, name='close')
+         import :: c_int
+         integer(c_int), value :: descriptor
+      end function c_close
+      integer(c_int) function ftruncate(descriptor, length) bind(c)
+         import :: c_int, c_long
+         integer(c_int), value :: descriptor
+         integer(c_long), value :: length
+      end function ftruncate
+      integer(c_int) function unlink(path) bind(c)
+         import :: c_int, c_char
+         character(kind=c_char), intent(in) :: path(*)
+      end function unlink
+      type(c_ptr) function realpath(path, resolved) bind(c)
+         import :: c_ptr, c_char
+         character(kind=c_char), intent(in) :: path(*)
+         character(kind=c_char), intent(inout) :: resolved(*)
+      end function realpath
+      type(c_ptr) function errno_location() bind(c, name='__errno_location')
+         import :: c_ptr
+      end function errno_location
+      type(c_ptr) function strerror(number) bind(c)
+         import :: c_int, c_ptr
+         integer(c_int), value :: number
+      end function strerror
+      integer(c_size_t) function strlen(text) bind(c)
+         import :: c_ptr, c_size_t
+         type(c_ptr), value :: text
+      end function strlen
+   end interface
+
+contains
+
+   !> Which file `path` names, links followed; of what is not there nothing is known.
+   type(identity_t) function identity_of_path(path) result(id)
+      character(*), intent(in) :: path
+      type(facts_t) :: facts
+
+      if (statx(from_working_directory, path//c_null_char, 0_c_int, basic_facts, facts) == 0) id = identity_of(facts)
+   end function identity_of_path
+
+   !> Which file is open as `descriptor`.
+   type(identity_t) function identity_of_descriptor(descriptor) result(id)
+      integer(c_int), intent(in) :: descriptor
+      type(facts_t) :: facts
+
+      if (statx(descriptor, c_null_char, empty_path, basic_facts, facts) == 0) id = identity_of(facts)
+   end function identity_of_descriptor
+
+   pure type(identity_t) function identity_of(facts) result(id)
+      type(facts_t), intent(in) :: facts
+
+      id%device = facts%device
+      id%inode = facts%inode
+      id%regular = iand(int(facts%mode), kind_bits) == kind_regular
+   end function identity_of
+
+   !> One regular file; a device, a pipe or a terminal may serve twice without harm.
+   elemental logical function same_file(a, b)
+      type(identity_t), intent(in) :: a, b
+
+      same_file = a%regular .and. b%regular .and. a%inode == b%inode .and. all(a%device == b%device)
+   end function same_file
+
+   !> Descriptor of the file `path`, below 0 where it cannot be opened: then `last_error` says why.
+   integer(c_int) function open_to_read(path)
+      character(*), intent(in) :: path
+
+      open_to_read = c_open(path//c_null_char, read_only)
+   end function open_to_read
+
+   !> The same to write; what the file holds stays. `made`: it was not there.
+   subroutine open_to_write(path, descriptor, made)
+      character(*), intent(in) :: path
+      integer(c_int), intent(out) :: descriptor
+      logical, intent(out) :: made
+      integer :: error
+
+      descriptor = c_open(path//c_null_char, write_only)
+      error = last_error()
+      made = .false.
+      if (descriptor >= 0 .or. error /= no_such_file) return
+      descriptor = creat(path//c_null_char, permissions)
+      made = descriptor >= 0
+   end subroutine open_to_write
+
+   !> Reads to `text`; the number of bytes read, 0 at the end, below 0 for an error.
+   integer function read_bytes(descriptor, text)
+      integer(c_int), intent(in) :: descriptor
+      character(*), intent(out) :: text
+
+      read_bytes = int(c_read(descriptor, text, len(text, c_size_t)))
+   end function read_bytes
+
+   !> Writes a part of `text`; the number of bytes written, below 0 for an error.
+   integer(c_size_t) function write_bytes(descriptor, text)
+      integer(c_int), intent(in) :: descriptor
+      character(*), intent(in) :: text
+
+      write_bytes = c_write(descriptor, text, len(text, c_size_t))
+   end function write_bytes
+
+   !> True if the system had no error left to tell.
+   logical function close_descriptor(descriptor)
+      integer(c_int), intent(in) :: descriptor
+
+      close_descriptor = c_close(descriptor) == 0
+   end function close_descriptor
+
+   !> Takes away what an open file held.
+   logical function empty_file(descriptor)
+      integer(c_int), intent(in) :: descriptor
+
+      empty_file = ftruncate(descriptor, 0_c_long) == 0
+   end function empty_file
+
+   !> Removes the file that `path` names; a link to it stays.
+   subroutine remove_file(path)
+      character(*), intent(in) :: path
+      !> PATH_MAX, and more.
+      character(65536) :: resolved
+      type(c_ptr) :: place
+      integer(c_int) :: status
+
+      place = realpath(path//c_null_char, resolved)
+      if (c_associated(place)) status = unlink(resolved(:index(resolved, c_null_char)))
+   end subroutine remove_file
+
+   !> Standard input, output and error that are closed are opened so that reading or writing fails. The next file opened
+   !> would take their place, and what is printed would go into it.
+   subroutine occupy_standard_descriptors
+      integer(c_int) :: descriptor
+      logical :: closed
+
+      do
+         ! The lowest number that is free is given.
+         descriptor = c_open('/dev/null'//c_null_char, read_only)
+         if (descriptor < 0 .or. descriptor > 2) exit
+         if (descriptor > 0) cycle
+         closed = close_descriptor(descriptor)
+         if (c_open('/dev/null'//c_null_char, write_only) /= 0) exit
+      end do
+      if (descriptor > 2) closed = close_descriptor(descriptor)
+   end subroutine occupy_standard_descriptors
+
+   !> The system's number of its last error.
+   integer function last_error()
+      integer(c_int), pointer :: number
+
+      call c_f_pointer(errno_location(), number)
+      last_error = number
+   end function last_error
+
+   !> The system's words for an error.
+   function reason_of(error) result(text)
+      integer, intent(in) :: error
+      character(:), allocatable :: text
+      character(kind=c_char), pointer :: letters(:)
+      type(c_ptr) :: place
+      integer :: i
+
+      place = strerror(int(error, c_int))
+      call c_f_pointer(place, letters, [strlen(place)])
+      allocate (character(size(letters)) :: text)
+      do i = 1, len(text)
+         text(i:i) = letters(i)
+      end do
+   end function reason_of
+end module system_calls

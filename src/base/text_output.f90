@@ -1,0 +1,201 @@
+!> Lines to a file or to standard output, in large blocks of whole lines; a write that fails is noticed,
+!> never a crash. What a file held stays until the first block is written.
+module text_output
+   use, intrinsic :: iso_c_binding, only: c_int, c_size_t
+   use failures, only: failure_t, fail, status_machine, status_refused
+   use letters, only: capitals
+   use system_calls, only: identity_t, identity_of_path, identity_of_descriptor, same_file, open_to_write, &
+      write_bytes, close_descriptor, empty_file, remove_file, last_error, reason_of, closed_descriptor, broken_pipe
+   implicit none
+   private
+   public :: output_t, open_output, check_apart, put, add, flush_output, close_output, abandon_output
+   public :: has_failed, has_broken_pipe
+
+   integer, parameter :: block_length = 65536
+   integer(c_int), parameter :: standard_input = 0, standard_output = 1
+
+   !> An open text. A failed write is remembered and told by `close_output`; what follows it is dropped.
+   type :: output_t
+      integer(c_int) :: descriptor = standard_output
+      character(:), allocatable :: path      !< '' for standard output
+      character(:), allocatable :: buffer    !< (block_length)
+      integer :: used = 0
+      logical :: made = .false.              !< the file was not there before
+      logical :: emptied = .false.           !< what the file held is gone
+      integer :: error = 0                   !< the system's number of the error of the first write that failed
+   end type output_t
+
+contains
+
+   !> Opens `path` for writing in the place of what it holds, which goes as the first block is written; '' is standard
+   !> output. Errors: status_machine.
+   subroutine open_output(o, path, failure)
+      type(output_t), intent(out) :: o
+      character(*), intent(in) :: path
+      type(failure_t), allocatable, intent(out) :: failure
+
+      o%path = path
+      allocate (character(block_length) :: o%buffer)
+      o%emptied = len(path) == 0
+      if (o%emptied) then
+         ! Of nothing nothing is written, but a descriptor that takes nothing is told.
+         if (write_bytes(o%descriptor, '') >= 0) return
+         o%error = last_error()
+         if (o%error == closed_descriptor) call fail(failure, status_machine, 'STANDARD OUTPUT IS CLOSED')
+         return
+      end if
+      call open_to_write(path, o%descriptor, o%made)
+      if (o%descriptor >= 0) return
+      o%error = last_error()
+      call fail(failure, status_machine, 'FILE '//path//' CANNOT BE OPENED FOR WRITING (' &
+         //capitals(reason_of(o%error))//')')
+   end subroutine open_output
+
+   !> No file is both read and written, or written twice, by whatever names: of the outputs `list` those that are open,
+   !> and the deck in the file `deck`, '' for standard input. Errors: status_refused.
+   subroutine check_apart(list, deck, failure)
+      type(output_t), intent(in) :: list(:)
+      character(*), intent(in) :: deck
+      type(failure_t), allocatable, intent(out) :: failure
+      type(identity_t) :: id(size(list)), read_from
+      integer :: i
+
+      if (len(deck) > 0) then
+         read_from = identity_of_path(deck)
+      else
+         read_from = identity_of_descriptor(standard_input)
+      end if
+      do i = 1, size(list)
+         if (allocated(list(i)%buffer)) id(i) = identity_of_descriptor(list(i)%descriptor)
+         if (any(same_file(id(i), id(:i - 1)))) &
+            call fail(failure, status_refused, 'ONE FILE IS NAMED FOR TWO OUTPUTS')
+      end do
+      if (.not. any(same_file(read_from, id))) return
+      if (len(deck) > 0) then
+         call fail(failure, status_refused, 'THE DECK '//deck//' WOULD BE OVERWRITTEN')
+      else
+         call fail(failure, status_refused, 'THE DECK ON STANDARD INPUT WOULD BE OVERWRITTEN')
+      end if
+   end subroutine check_apart
+
+   !> Appends one line, or the rest of one that `add` began.
+   subroutine put(o, line)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: line
+
+      if (len(line) >= block_length - o%used) then
+         call add(o, line)
+         call add(o, new_line('a'))
+         return
+      end if
+      o%buffer(o%used + 1:o%used + len(line)) = line
+      o%used = o%used + len(line) + 1
+      o%buffer(o%used:o%used) = new_line('a')
+   end subroutine put
+
+   !> Appends a part of a line.
+   subroutine add(o, text)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: text
+
+      if (len(text) > block_length - o%used) call write_lines(o)
+      if (len(text) > block_length - o%used) call write_block(o)
+      if (len(text) > block_length) then
+         call write_text(o, text)
+         return
+      end if
+      o%buffer(o%used + 1:o%used + len(text)) = text
+      o%used = o%used + len(text)
+   end subroutine add
+
+   !> Writes what has been put so far: whoever waits for it has it, and an output that takes nothing is known.
+   subroutine flush_output(o)
+      type(output_t), intent(inout) :: o
+
+      call write_block(o)
+   end subroutine flush_output
+
+   !> A write has failed; what follows is computed in vain.
+   elemental logical function has_failed(o)
+      type(output_t), intent(in) :: o
+
+      has_failed = o%error /= 0
+   end function has_failed
+
+   !> It has failed since nobody reads the pipe any more.
+   elemental logical function has_broken_pipe(o)
+      type(output_t), intent(in) :: o
+
+      has_broken_pipe = o%error == broken_pipe
+   end function has_broken_pipe
+
+   !> Writes what is left and closes; `failure` tells of any line that could not be written.
+   subroutine close_output(o, failure)
+      type(output_t), intent(inout) :: o
+      type(failure_t), allocatable, intent(out) :: failure
+
+      call write_block(o)
+      if (len(o%path) > 0) then
+         if (.not. close_descriptor(o%descriptor) .and. .not. has_failed(o)) o%error = last_error()
+      else
+         o%path = 'STANDARD OUTPUT'
+      end if
+      if (.not. has_failed(o)) return
+      call fail(failure, status_machine, 'WRITING '//o%path//' FAILED ('//capitals(reason_of(o%error))//')')
+   end subroutine close_output
+
+   !> Closes an output to which nothing shall be written: the file is as it was before, gone if it was not there.
+   subroutine abandon_output(o)
+      type(output_t), intent(inout) :: o
+      logical :: closed
+
+      if (.not. allocated(o%buffer)) return
+      if (len(o%path) == 0 .or. o%descriptor < 0) return
+      closed = close_descriptor(o%descriptor)
+      if (o%made) call remove_file(o%path)
+   end subroutine abandon_output
+
+   !> Writes the whole lines of the buffer, so that a process that is killed leaves no half of one.
+   subroutine write_lines(o)
+      type(output_t), intent(inout) :: o
+      integer :: last
+
+      last = index(o%buffer(:o%used), new_line('a'), back=.true.)
+      call write_text(o, o%buffer(:last))
+      o%buffer(:o%used - last) = o%buffer(last + 1:o%used)
+      o%used = o%used - last
+   end subroutine write_lines
+
+   subroutine write_block(o)
+      type(output_t), intent(inout) :: o
+
+      call write_text(o, o%buffer(:o%used))
+      o%used = 0
+   end subroutine write_block
+
+   !> Writes all of `text`, in as many pieces as the system wants it.
+   subroutine write_text(o, text)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: text
+      integer(c_size_t) :: written, done
+
+      if (.not. o%emptied) call empty(o)
+      done = 0
+      do while (done < len(text) .and. .not. has_failed(o))
+         written = write_bytes(o%descriptor, text(done + 1:))
+         if (written <= 0) o%error = last_error()
+         done = done + written
+      end do
+   end subroutine write_text
+
+   !> Devices and pipes hold nothing.
+   subroutine empty(o)
+      type(output_t), intent(inout) :: o
+      type(identity_t) :: id
+
+      o%emptied = .true.
+      id = identity_of_descriptor(o%descriptor)
+      if (.not. id%regular) return
+      if (.not. empty_file(o%descriptor)) o%error = last_error()
+   end subroutine empty
+end module text_output

@@ -1,0 +1,225 @@
+!> The assembly that belongs to a deck's initial estimate, where the blocks one by one leave a choice. A block
+!> takes its nearest position; but two may be about as near, and only what is built on it tells which one is meant:
+!> the links that hang on it lie as the deck says, or do not close at all. So the others are tried as well, and the
+!> rest assembled again.
+!>
+!> All blocks are asked, also those that no table needs: what is printed chooses no assembly.
+module assembly_choice
+   use kinds, only: wp
+   use convergence, only: convergence_t, is_solved
+   use motion, only: motion_t, new_motion
+   use unknowns, only: unknown_t
+   use whole_turns, only: without_turns
+   use block_state, only: set_values
+   use block_solver, only: solve_block
+   use block_needs, only: largest_known
+   use first_position, only: solve_first_block, farthest
+   use link_motion, only: move_links
+   use block_engine, only: block_engine_t, positions_t, seek_blocks, seek_each, begin_record
+   implicit none
+   private
+   public :: seek_first
+
+   !> All that is assembled so far.
+   type :: trial_t
+      type(unknown_t), allocatable :: u(:)
+      logical, allocatable :: solved(:)                 !< (blocks)
+      type(positions_t), allocatable :: others(:)       !< (blocks) what else was found
+      real(wp), allocatable :: place(:, :)              !< (3, links)
+   end type trial_t
+
+   !> Links that differ by more than this, in radians or characteristic lengths, lie in another way.
+   real(wp), parameter :: apart = max(1.0e-6_wp, sqrt(epsilon(1.0_wp)))
+   !> A place that is further off than this part of the characteristic length tells nothing more by how far: a deck may
+   !> give angles alone.
+   real(wp), parameter :: far_place = 0.25_wp
+   !> Sums of squares that differ by less than this are about alike.
+   real(wp), parameter :: nearly = 1.25_wp
+   !> Better by more than rounding.
+   real(wp), parameter :: less = 0.999_wp
+   !> So many blocks are assembled for it; of each block so many positions.
+   integer, parameter :: max_solves = 3000, max_others = 4
+
+contains
+
+   !> Seeks the first motion at `t`, as `seek_blocks` does without one that is followed.
+   subroutine seek_first(e, t, c, correction, same)
+      type(block_engine_t), intent(inout) :: e
+      real(wp), intent(in) :: t
+      type(convergence_t), intent(out) :: c
+      real(wp), intent(out) :: correction
+      logical, intent(out) :: same
+
+      call seek_blocks(e, t, .false., c, correction, same)
+      if (.not. e%blocks%solvable) return
+      if (.not. any(has_others(e%others(e%needed)))) return
+      call choose(e)
+      call begin_record(e, c)
+      call seek_each(e, e%needed, .false., c, correction, same)
+   end subroutine seek_first
+
+   impure elemental logical function has_others(o)
+      type(positions_t), intent(in) :: o
+
+      has_others = .false.
+      if (allocated(o%x)) has_others = size(o%x, 2) > 0
+   end function has_others
+
+   !> Puts the best assembly into the values of the engine; notes blocks with another that is about as near.
+   subroutine choose(e)
+      type(block_engine_t), intent(inout) :: e
+      type(trial_t) :: best
+      integer :: i, solves
+      logical :: again
+
+      best%u = e%state%u
+      best%u%value = e%rough
+      allocate (best%solved(size(e%blocks%list)), source=.false.)
+      allocate (best%others(size(e%blocks%list)))
+      solves = 0
+      call assemble_from(e, 0, best, solves)
+      solves = 0
+      e%is_close = .false.
+      ! Once more where a block finds no position yet: what comes later may have to give way first.
+      do
+         again = .false.
+         do i = 1, size(best%solved)
+            if (has_others(best%others(i))) call try_others(e, i, best, solves, again)
+         end do
+         if (solves >= max_solves .or. all(best%solved) .or. .not. again) exit
+      end do
+      e%state%u = best%u
+   end subroutine choose
+
+   !> Tries the other positions of block `i`, and makes the best assembly `best`; `again`: more blocks are assembled.
+   subroutine try_others(e, i, best, solves, again)
+      type(block_engine_t), intent(inout) :: e
+      integer, intent(in) :: i
+      type(trial_t), intent(inout) :: best
+      integer, intent(inout) :: solves
+      logical, intent(inout) :: again
+      type(trial_t) :: other
+      real(wp), allocatable :: x(:, :)
+      real(wp) :: nearest, cost(2)
+      integer :: k
+
+      x = best%others(i)%x
+      nearest = off(e, i, best%u)
+      do k = 1, min(size(x, 2), max_others)
+         if (solves >= max_solves) return
+         if (all(best%solved) .and. maxval(abs(x(:, k) - rough_of(e, i))) > farthest(nearest)) exit
+         other = best
+         e%state%u = best%u
+         call set_values(e%blocks, i, x(:, k), e%state)
+         other%u = e%state%u
+         call assemble_from(e, i, other, solves)
+         if (count(other%solved) < count(best%solved)) cycle
+         cost = costs(e, best, other)
+         if (count(other%solved) > count(best%solved)) then
+            again = .true.
+            best = other
+            e%is_close(i) = .false.
+         else if (cost(2) < less*cost(1)) then
+            best = other
+            e%is_close(i) = cost(1) < nearly*cost(2)
+         else
+            e%is_close(i) = e%is_close(i) .or. cost(2) < nearly*cost(1)
+         end if
+      end do
+   end subroutine try_others
+
+   !> Assembles block `first` from where it is and those that build on it from the deck's estimate; 0: all.
+   subroutine assemble_from(e, first, t, solves)
+      type(block_engine_t), intent(inout) :: e
+      integer, intent(in) :: first
+      type(trial_t), intent(inout) :: t
+      integer, intent(inout) :: solves
+      type(motion_t) :: found
+      integer, dimension(0:e%blocks%unknowns) :: open, changed
+      integer :: i
+      logical :: finite
+
+      e%state%u = t%u
+      open = 0
+      changed = 0
+      if (first == 0) changed(0) = 1
+      do i = 1, size(t%solved)
+         associate (own => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
+            if (i == first .or. first == 0 .or. largest_known(e%blocks, i, changed) > 0) then
+               changed(own) = 1
+               t%solved(i) = largest_known(e%blocks, i, open) == 0
+               if (i /= first) call set_values(e%blocks, i, e%rough(own), e%state)
+               if (t%solved(i)) call assemble_one(e, i, i == first, t)
+               solves = solves + 1
+            end if
+            if (.not. t%solved(i)) open(own) = 1
+         end associate
+      end do
+      t%u = e%state%u
+      found = new_motion(size(e%estimate, 2))
+      call move_links(e%whole, e%state, e%length, found, finite)
+      t%place = found%position
+   end subroutine assemble_from
+
+   !> Assembles block `i`, from a position (`is_near`) or from the deck's estimate, and goes back to it in vain.
+   subroutine assemble_one(e, i, is_near, t)
+      type(block_engine_t), intent(inout) :: e
+      integer, intent(in) :: i
+      logical, intent(in) :: is_near
+      type(trial_t), intent(inout) :: t
+      type(convergence_t) :: c
+      real(wp) :: change
+
+      change = 0.0_wp
+      if (is_near) then
+         call solve_block(e%blocks, i, e%tolerance, e%work, e%state, c, change)
+      else
+         call solve_first_block(e%blocks, i, e%tolerance, e%work, e%state, c, t%others(i)%x)
+      end if
+      t%solved(i) = is_solved(c)
+      if (.not. t%solved(i)) call set_values(e%blocks, i, rough_of(e, i), e%state)
+   end subroutine assemble_one
+
+   !> How far two assemblies are from the deck's estimate, by the links that lie in another way: the sums of squares.
+   function costs(e, a, b) result(cost)
+      type(block_engine_t), intent(in) :: e
+      type(trial_t), intent(in) :: a, b
+      real(wp) :: cost(2)
+      integer :: i
+
+      cost = 0.0_wp
+      do i = 1, size(a%place, 2)
+         if (max(maxval(abs(a%place(:2, i) - b%place(:2, i)))/e%span, &
+            abs(without_turns(a%place(3, i) - b%place(3, i)))) <= apart) cycle
+         cost = cost + [link_cost(e, i, a), link_cost(e, i, b)]
+      end do
+   end function costs
+
+   pure real(wp) function link_cost(e, i, t) result(cost)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i
+      type(trial_t), intent(in) :: t
+
+      associate (f => e%frame_of(i))
+         cost = min(sum((t%place(:2, i)/e%span - e%estimate(:2, i)/e%span)**2), far_place**2) &
+            + without_turns(t%u(f)%value - e%rough(f))**2
+      end associate
+   end function link_cost
+
+   !> How far the values of block `i` are from the estimate.
+   pure real(wp) function off(e, i, u)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i
+      type(unknown_t), intent(in) :: u(0:)
+
+      off = maxval(abs(u(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))%value - rough_of(e, i)))
+   end function off
+
+   pure function rough_of(e, i) result(x)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i
+      real(wp) :: x(e%blocks%list(i)%shape%n)
+
+      x = e%rough(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
+   end function rough_of
+end module assembly_choice

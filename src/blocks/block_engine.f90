@@ -1,0 +1,262 @@
+!> A mechanism solved block by block, in the order of `blocks`: each knows all that it needs when its
+!> turn comes. Only blocks that a table needs are solved, and those that no drive moves only once.
+module block_engine
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, wanted_links, pair_revolute, drive_x, drive_y, drive_slide
+   use motion, only: motion_t
+   use scales, only: solver_length, power_of_two
+   use links_tree, only: tree_t, new_tree
+   use loop_equations, only: new_equations
+   use rough_positions, only: rough_values
+   use drives, only: law_t, new_law, drive_motion
+   use convergence, only: convergence_t, is_solved, gather, ended_converged, ended_singular
+   use predictor, only: history_t, new_history, remember, predict, largest_change
+   use blocks, only: blocks_t
+   use block_partition, only: new_blocks
+   use block_units, only: find_units
+   use block_needs, only: moving_blocks, needed_blocks
+   use block_state, only: state_t, new_state
+   use block_solver, only: workspace_t, make_workspace, solve_block
+   use first_position, only: solve_first_block, turn_starts
+   use block_rank, only: jacobian_of, relative_side
+   use link_motion, only: chain_t, new_chain, move_links
+   implicit none
+   private
+   public :: block_engine_t, positions_t, make_block_engine, seek_blocks, seek_again, seek_each, begin_record
+   public :: set_targets, keep_blocks, tell_blocks
+
+   !> Positions of one block (unknowns, any number).
+   type :: positions_t
+      real(wp), allocatable :: x(:, :)
+   end type positions_t
+
+   !> Lengths in units of `length`, a power of two in the deck's unit.
+   type :: block_engine_t
+      real(wp) :: length = 1.0_wp, tolerance = 0.0_wp, t = 0.0_wp
+      type(blocks_t) :: blocks
+      type(state_t) :: state
+      type(history_t) :: history                        !< the motions that are followed
+      type(workspace_t) :: work
+      type(chain_t) :: chain                            !< of the links that are asked for
+      type(chain_t) :: whole                            !< of all links
+      type(law_t), allocatable :: laws(:)
+      real(wp), allocatable :: unit_of(:)               !< (drives) of the value: length or 1
+      logical, allocatable :: is_angle(:)               !< (drives)
+      integer, allocatable :: frame_of(:)               !< (links)
+      integer, allocatable :: joint(:, :)               !< (2, revolute pairs) the links of each
+      logical, allocatable :: is_found(:)               !< (links) that a table needs and whose angle no drive gives
+      real(wp), allocatable :: rough(:)                 !< (0:unknowns) from the deck's positions
+      real(wp), allocatable :: estimate(:, :)           !< (3, links) places from `chain%origin` and angles of the deck
+      real(wp) :: span = 1.0_wp                         !< the characteristic length
+      type(positions_t), allocatable :: others(:)       !< (blocks) what else was found at first
+      logical, allocatable :: is_close(:)               !< (blocks) another assembly is about as near to the estimate
+      integer, allocatable :: needed(:), moving(:)      !< blocks that are solved at first, and at every step
+      integer, allocatable :: sign_now(:), sign_of(:)   !< (blocks) of the determinant: found last, followed
+      real(wp), allocatable :: side(:)                  !< Jacobian of the block with too many rows, followed
+      real(wp), allocatable :: pivot_now(:), pivot_of(:) !< (blocks) the least: found last, followed
+      real(wp), allocatable :: inverse_now(:), inverse_of(:) !< (blocks) |J^-1| likewise
+      logical, allocatable :: is_singular(:)            !< (blocks) found last without velocities
+      logical, allocatable :: crossed(:)                !< (blocks) whose determinant has changed its sign
+      real(wp) :: change = 0.0_wp                       !< the largest that was predicted
+   end type block_engine_t
+
+contains
+
+   !> Ready for the first instant of `m`.
+   subroutine make_block_engine(e, m)
+      type(block_engine_t), intent(out) :: e
+      type(mechanism_t), intent(in) :: m
+      type(tree_t) :: t
+      integer :: i
+
+      e%span = solver_length(m)
+      e%length = power_of_two(e%span)
+      e%tolerance = m%tolerance
+      t = new_tree(m)
+      e%blocks = new_blocks(t, new_equations(m, t, e%length))
+      if (.not. e%blocks%solvable) return
+      call find_units(e%blocks)
+      e%needed = needed_blocks(e%blocks, t, wanted_links(m))
+      e%moving = pack(e%needed, moving_blocks(e%blocks, e%needed))
+      e%state = new_state(e%blocks, size(m%drives))
+      e%history = new_history(e%blocks%unknowns, sought_unknowns(e))
+      e%history%order = m%predictor
+      e%is_found = wanted_links(m)
+      do i = 1, size(m%links)
+         if (t%frame(i) == 0) then
+            e%is_found(i) = .false.
+         else if (e%blocks%list(e%blocks%block_of(t%frame(i)))%direct) then
+            e%is_found(i) = .false.
+         end if
+      end do
+      call make_workspace(e%work, e%blocks)
+      e%chain = new_chain(m, t, wanted_links(m), e%blocks%frames, e%blocks%unit)
+      e%whole = new_chain(m, t, spread(.true., 1, size(m%links)), e%blocks%frames, e%blocks%unit)
+      allocate (e%laws(size(m%drives)))
+      allocate (e%unit_of(size(m%drives)), source=1.0_wp)
+      e%frame_of = t%frame
+      allocate (e%joint(2, count(m%pairs%kind == pair_revolute)))
+      e%joint(1, :) = m%points(pack(m%pairs%point_i, m%pairs%kind == pair_revolute))%link
+      e%joint(2, :) = m%points(pack(m%pairs%point_j, m%pairs%kind == pair_revolute))%link
+      allocate (e%is_angle(size(m%drives)))
+      do i = 1, size(m%drives)
+         e%laws(i) = new_law(m%drives(i))
+         e%is_angle(i) = all(m%drives(i)%kind /= [drive_x, drive_y, drive_slide])
+         if (.not. e%is_angle(i)) e%unit_of(i) = 1.0_wp/e%length
+      end do
+      do i = 1, size(e%blocks%rows)
+         associate (d => e%blocks%rows(i)%drive)
+            if (d > 0) e%unit_of(d) = e%unit_of(d)/e%blocks%rows(i)%unit
+         end associate
+      end do
+      allocate (e%sign_now(size(e%blocks%list)), e%sign_of(size(e%blocks%list)), source=1)
+      allocate (e%pivot_now(size(e%blocks%list)), e%pivot_of(size(e%blocks%list)), source=1.0_wp)
+      allocate (e%crossed(size(e%blocks%list)), e%is_close(size(e%blocks%list)), source=.false.)
+      allocate (e%others(size(e%blocks%list)), e%estimate(3, size(m%links)))
+      do i = 1, size(m%links)
+         e%estimate(:, i) = m%links(i)%position - [e%chain%origin, 0.0_wp]
+      end do
+      allocate (e%inverse_now(size(e%blocks%list)), e%inverse_of(size(e%blocks%list)), source=0.0_wp)
+      allocate (e%is_singular(size(e%blocks%list)), source=.false.)
+      ! A function's result would bring its own lower bound.
+      allocate (e%rough(0:e%blocks%unknowns))
+      e%rough(:) = rough_values(m, t, e%length, e%blocks%unknowns)/e%blocks%unit
+   end subroutine make_block_engine
+
+   !> The unknowns of the moving blocks that iterate.
+   pure function sought_unknowns(e) result(list)
+      type(block_engine_t), intent(in) :: e
+      integer, allocatable :: list(:)
+      logical :: sought(0:e%blocks%unknowns)
+      integer :: k, u
+
+      sought = .false.
+      do k = 1, size(e%moving)
+         associate (block => e%blocks%list(e%moving(k)))
+            if (.not. block%direct) sought(e%blocks%unknown(block%first:block%last)) = .true.
+         end associate
+      end do
+      list = pack([(u, u=0, e%blocks%unknowns)], sought)
+   end function sought_unknowns
+
+   !> Seeks the motion at `t`, from those kept (`follows`) or from the deck's. `c`: how the hardest block ended,
+   !> `correction`: the largest change of a predicted value, `same`: every block's determinant has kept its sign.
+   subroutine seek_blocks(e, t, follows, c, correction, same)
+      type(block_engine_t), intent(inout) :: e
+      real(wp), intent(in) :: t
+      logical, intent(in) :: follows
+      type(convergence_t), intent(out) :: c
+      real(wp), intent(out) :: correction
+      logical, intent(out) :: same
+
+      correction = 0.0_wp
+      same = .true.
+      c%ended = ended_singular
+      if (.not. e%blocks%solvable) return
+      e%t = t
+      call set_targets(e, t)
+      call begin_record(e, c)
+      if (follows) then
+         call predict(e%history, t, e%state%u, e%change)
+         same = e%change <= largest_change
+         if (same) call seek_each(e, e%moving, follows, c, correction, same)
+      else
+         call turn_starts(e%blocks, e%needed, e%state%target(0, :), e%rough)
+         e%state%u%value = e%rough
+         call seek_each(e, e%needed, follows, c, correction, same)
+      end if
+   end subroutine seek_blocks
+
+   !> What the drives ask for at `t`.
+   pure subroutine set_targets(e, t)
+      type(block_engine_t), intent(inout) :: e
+      real(wp), intent(in) :: t
+      integer :: i
+
+      do i = 1, size(e%laws)
+         e%state%target(:, i) = drive_motion(e%laws(i), t)*e%unit_of(i)
+      end do
+   end subroutine set_targets
+
+   !> The moving blocks once more, from where they are now.
+   subroutine seek_again(e, c, correction, same)
+      type(block_engine_t), intent(inout) :: e
+      type(convergence_t), intent(out) :: c
+      real(wp), intent(out) :: correction
+      logical, intent(out) :: same
+
+      correction = 0.0_wp
+      same = .true.
+      call begin_record(e, c)
+      call seek_each(e, e%moving, .true., c, correction, same)
+   end subroutine seek_again
+
+   subroutine begin_record(e, c)
+      type(block_engine_t), intent(inout) :: e
+      type(convergence_t), intent(inout) :: c
+
+      e%crossed = .false.
+      c%ended = ended_converged
+      c%reciprocal_condition = 1.0_wp
+      c%determinant = 1
+   end subroutine begin_record
+
+   !> The blocks of `list`, one after another; a block without an end that others can build on ends the search.
+   subroutine seek_each(e, list, follows, c, correction, same)
+      type(block_engine_t), intent(inout) :: e
+      integer, intent(in) :: list(:)
+      logical, intent(in) :: follows
+      type(convergence_t), intent(inout) :: c
+      real(wp), intent(inout) :: correction
+      logical, intent(inout) :: same
+      type(convergence_t) :: one
+      integer :: k, i
+
+      do k = 1, size(list)
+         i = list(k)
+         if (follows) then
+            call solve_block(e%blocks, i, e%tolerance, e%work, e%state, one, correction)
+         else
+            call solve_first_block(e%blocks, i, e%tolerance, e%work, e%state, one, e%others(i)%x)
+         end if
+         if (e%blocks%list(i)%direct) cycle
+         if (follows .and. is_solved(one) .and. e%blocks%list(i)%shape%rows > e%blocks%list(i)%shape%n) &
+            one%determinant = e%sign_of(i)*relative_side(e%blocks, i, e%side, e%state)
+         call gather(one, c)
+         if (.not. is_solved(one)) return
+         e%is_singular(i) = one%singular
+         ! At a change point itself the sign is that of rounding.
+         if (one%singular) cycle
+         c%doubt = max(c%doubt, one%doubt)
+         if (e%state%excursion > 0.0_wp) &
+            c%growth = max(c%growth, e%blocks%list(i)%bend*max(one%inverse, e%inverse_of(i))**2)
+         e%inverse_now(i) = one%inverse
+         e%sign_now(i) = one%determinant
+         e%pivot_now(i) = one%least_pivot
+         if (.not. follows .or. one%determinant == e%sign_of(i)) cycle
+         same = .false.
+         e%crossed(i) = .true.
+      end do
+   end subroutine seek_each
+
+   !> Makes the motion found last the one that is followed.
+   subroutine keep_blocks(e)
+      type(block_engine_t), intent(inout) :: e
+
+      call remember(e%history, e%t, e%state%u)
+      ! As sections: an assignment to the whole would ask for its shape first.
+      e%sign_of(:) = e%sign_now(:)
+      if (e%blocks%redundant > 0) e%side = jacobian_of(e%blocks, 1, e%state)
+      e%pivot_of(:) = e%pivot_now(:)
+      e%inverse_of(:) = e%inverse_now(:)
+   end subroutine keep_blocks
+
+   !> The motion found last of the links that are asked for, in the deck's units; `finite`: all of it is in range.
+   subroutine tell_blocks(e, found, finite)
+      type(block_engine_t), intent(in) :: e
+      type(motion_t), intent(inout) :: found
+      logical, intent(out) :: finite
+
+      call move_links(e%chain, e%state, e%length, found, finite)
+   end subroutine tell_blocks
+end module block_engine

@@ -1,0 +1,293 @@
+!> One block: its position by Newton's method, its velocities and accelerations from the factors of the same
+!> Jacobian.
+!>
+!> A residual at the rounding level has nothing to correct, and DGESV then gives the velocities at once; a larger
+!> one gives a correction first, and where that is at the rounding level the velocities follow from its factors.
+!> So one assembly and one factorization a step are the rule, from a start that is right already. A Jacobian one
+!> correction d away leaves errors of order d in the rates: no larger d is accepted.
+!>
+!> Where equations are too many, all of them are kept, in the sense of least squares (Gauss and Newton): which of
+!> them could be spared changes on the way. What they contradict one another by is the gap.
+module block_solver
+   use kinds, only: wp
+   use klu, only: klu_t
+   use block_matrix, only: shape_t, solve_first, solve_again, pivot_range, inverse_norm
+   use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, &
+      ended_diverged, ended_open
+   use blocks, only: blocks_t
+   use block_state, only: state_t, set_direction, turn_direction, known_parts
+   use block_rows, only: assemble_block
+   use block_sides, only: rate_side
+   use block_gaps, only: note_gap, is_open, contradict
+   use block_workspace, only: workspace_t, make_workspace
+   implicit none
+   private
+   public :: workspace_t, make_workspace, solve_block
+
+   !> Residuals relative to the largest value. Below the first there is nothing to correct; above the second,
+   !> rounding of angles and of their sines alone explains no residual.
+   real(wp), parameter :: closed_level = 2.0_wp*epsilon(1.0_wp)
+   real(wp), parameter :: rounding_level = 12.0_wp*epsilon(1.0_wp)
+   real(wp), parameter :: step_tolerance = 32.0_wp*epsilon(1.0_wp)
+   !> A change of direction below this is applied without a new sine and cosine: its square is lost in rounding.
+   real(wp), parameter :: small_turn = 1.0e-9_wp*sqrt(epsilon(1.0_wp)*2.0_wp**52)
+   !> A pivot this much smaller than the largest is worth an estimate of the inverse.
+   real(wp), parameter :: suspicious_pivot = 1.0e-3_wp
+   !> So is a doubt from here on, where 1 over the least pivot stands for |J^-1|: with more than two unknowns that is
+   !> too small, by 4 with 9 of them, by 2000 with 49 (lattices); doubts are of importance from 0.1 on.
+   !> What the drives' excursions add goes with its square, and with 0.1 over the fourth power of their number.
+   real(wp), parameter :: small_doubt = 1.0e-6_wp, small_growth = 0.1_wp
+   !> Relative error of the velocities, by what rounding leaves open in the position, from which on they are not told.
+   real(wp), parameter :: largest_error = 0.05_wp
+   !> Angles beyond have few digits after the point.
+   real(wp), parameter :: angle_limit = min(1.0e8_wp, 0.01_wp/epsilon(1.0_wp))
+   integer, parameter :: iteration_limit = 60
+   !> 1 over this squared is within the range of reals.
+   real(wp), parameter :: least_inverse = epsilon(1.0_wp)**2
+
+contains
+
+   !> Solves block `i` for value, rate and second rate of its unknowns, the values starting from those of `s`.
+   !> `c`: how it ended; `correction`: the largest change of a value, where it is larger than before.
+   subroutine solve_block(b, i, tolerance, w, s, c, correction)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: tolerance
+      type(workspace_t), intent(inout) :: w
+      type(state_t), intent(inout) :: s
+      type(convergence_t), intent(inout) :: c
+      real(wp), intent(inout) :: correction
+
+      if (b%list(i)%direct) then
+         call solve_direct(b, i, s)
+         c%ended = ended_converged
+         return
+      end if
+      call seek(b, i, b%list(i)%shape, tolerance, w%a, w%r, w%start, w%work, w%pivots, &
+         w%sparse(b%list(i)%shape%pattern), s, c, correction)
+      if (c%ended /= ended_converged .and. c%ended /= ended_stalled) return
+      if (b%list(i)%shape%rows > b%list(i)%shape%n .and. is_open(c)) then
+         c%ended = ended_open
+      else
+         call finish(b, i, b%list(i)%shape%n, w, s, c)
+      end if
+   end subroutine solve_block
+
+   !> A drive's own unknown: nothing to iterate.
+   pure subroutine solve_direct(b, i, s)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(state_t), intent(inout) :: s
+      integer :: d
+
+      associate (u => s%u(b%unknown(b%list(i)%first)), row => b%rows(b%list(i)%first_row))
+         associate (other => s%u(row%other))
+            d = row%drive
+            u%value = other%value + row%sign_of*(row%constant + s%target(0, d))
+            u%rate = other%rate + row%sign_of*s%target(1, d)
+            u%rate2 = other%rate2 + row%sign_of*s%target(2, d)
+         end associate
+      end associate
+      call set_direction(b, b%unknown(b%list(i)%first), s)
+   end subroutine solve_direct
+
+   !> Newton's method; where it ends with a position, `r`(:, 2) holds the velocities and `a` the factors. Where the
+   !> Jacobian there has no inverse, c%singular says so.
+   subroutine seek(b, i, shape, tolerance, a, r, start, work, pivots, k, s, c, correction)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(shape_t), intent(in) :: shape
+      real(wp), intent(in) :: tolerance
+      real(wp), intent(inout) :: a(*), r(shape%rows, 2), start(shape%n), work(*)
+      integer, intent(inout) :: pivots(*)
+      type(klu_t), intent(inout) :: k
+      type(state_t), intent(inout) :: s
+      type(convergence_t), intent(inout) :: c
+      real(wp), intent(inout) :: correction
+      real(wp) :: before, size_of, coarse
+      integer :: info, iteration
+      logical :: is_right
+
+      call begin_block(b, i, shape%n, s, start, size_of)
+      before = huge(before)
+      coarse = b%list(i)%coarse
+      c = convergence_t(ended=ended_limit)
+      do iteration = 1, iteration_limit
+         if (.not. size_of <= angle_limit) then
+            c%ended = ended_diverged
+            return
+         end if
+         c%iterations = iteration
+         call assemble_block(b, i, s, a, r)
+         c%residual = maxval(abs(r(:, 1)))
+         if (shape%rows > shape%n) call note_gap(b, i, r, c)
+         if (c%residual <= closed_level*max(size_of, coarse)) then
+            c%step = 0.0_wp
+            c%ended = ended_converged
+            call rate_side(b, i, 1, s, r(:, 2))
+            call solve_first(shape, a, k, pivots, work, r(:, 2), info)
+            c%singular = info > 0
+            exit
+         end if
+         call solve_first(shape, a, k, pivots, work, r, info)
+         if (info > 0) then
+            c%singular = c%residual <= max(rounding_level*max(size_of, coarse), tolerance)
+            c%ended = merge(ended_stalled, ended_singular, c%singular)
+            exit
+         end if
+         c%step = maxval(abs(r(:shape%n, 1)))
+         if (is_stalled(shape, c, before, max(size_of, coarse))) then
+            c%ended = ended_stalled
+         else
+            call move(b, i, shape%n, r, s, c%step, tolerance, size_of, is_right)
+            if (is_right) c%ended = ended_converged
+         end if
+         before = c%step
+         if (c%ended == ended_limit) cycle
+         call rate_side(b, i, 1, s, r(:, 2))
+         call solve_again(shape, a, k, pivots, work, r(:, 2))
+         exit
+      end do
+      if (c%iterations > 1 .or. c%step > 0.0_wp) c%change = largest_change(b, i, shape%n, s, start)
+      correction = max(correction, c%change)
+   end subroutine seek
+
+   !> Rounding is all that is left to correct, and the position stays; among equations that contradict one another
+   !> it is their gap.
+   pure logical function is_stalled(shape, c, before, size_of)
+      type(shape_t), intent(in) :: shape
+      type(convergence_t), intent(in) :: c
+      real(wp), intent(in) :: before, size_of
+
+      is_stalled = c%step > 0.5_wp*before .and. c%residual <= rounding_level*size_of
+      if (shape%rows > shape%n) is_stalled = is_stalled .or. (c%step > 0.5_wp*before .and. c%step <= small_turn)
+   end function is_stalled
+
+   !> Directions and known parts where the search begins, what it begins from, and the largest value, 1 at least.
+   subroutine begin_block(b, i, n, s, start, size_of)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i, n
+      type(state_t), intent(inout) :: s
+      real(wp), intent(out) :: start(n), size_of
+      integer :: k
+
+      size_of = 1.0_wp
+      do k = 1, n
+         associate (u => b%unknown(b%list(i)%first + k - 1))
+            start(k) = s%u(u)%value
+            size_of = max(size_of, abs(start(k)))
+            call set_direction(b, u, s)
+         end associate
+      end do
+      call known_parts(b, i, s)
+   end subroutine begin_block
+
+   !> Applies the correction `d`, whose largest is `step`; `size_of`: the largest value, 1 at least. `is_right`: each
+   !> was at the rounding level of its own value, or within the `tolerance`: beside a long slide an angle is not.
+   subroutine move(b, i, n, d, s, step, tolerance, size_of, is_right)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i, n
+      real(wp), intent(in) :: d(*)
+      type(state_t), intent(inout) :: s
+      real(wp), intent(in) :: step, tolerance
+      real(wp), intent(out) :: size_of
+      logical, intent(out) :: is_right
+      real(wp) :: own
+      integer :: k
+
+      size_of = 1.0_wp
+      is_right = .true.
+      do k = 1, n
+         associate (u => b%unknown(b%list(i)%first + k - 1))
+            s%u(u)%value = s%u(u)%value - d(k)
+            own = max(1.0_wp, abs(s%u(u)%value))
+            size_of = max(size_of, own)
+            is_right = is_right .and. abs(d(k)) <= max(step_tolerance*max(own, b%list(i)%coarse), tolerance)
+            if (step <= small_turn) then
+               call turn_direction(b, u, -d(k), s)
+            else
+               call set_direction(b, u, s)
+            end if
+         end associate
+      end do
+   end subroutine move
+
+   pure real(wp) function largest_change(b, i, n, s, start) result(change)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i, n
+      type(state_t), intent(in) :: s
+      real(wp), intent(in) :: start(n)
+      integer :: k
+
+      change = 0.0_wp
+      do k = 1, n
+         change = max(change, abs(s%u(b%unknown(b%list(i)%first + k - 1))%value - start(k)))
+      end do
+   end function largest_change
+
+   !> Velocities and accelerations, unless the Jacobian is near to having no inverse.
+   subroutine finish(b, i, n, w, s, c)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i, n
+      type(workspace_t), intent(inout) :: w
+      type(state_t), intent(inout) :: s
+      type(convergence_t), intent(inout) :: c
+      integer :: k
+
+      if (.not. c%singular) call judge(b, i, n, w, s, c)
+      if (c%singular) return
+      associate (rows => b%list(i)%shape%rows)
+         do k = 1, n
+            s%u(b%unknown(b%list(i)%first + k - 1))%rate = w%r(rows + k)
+         end do
+         call rate_side(b, i, 2, s, w%r)
+         call solve_again(b%list(i)%shape, w%a, w%sparse(b%list(i)%shape%pattern), w%pivots, w%work, w%r)
+         do k = 1, n
+            s%u(b%unknown(b%list(i)%first + k - 1))%rate2 = w%r(k)
+         end do
+         if (rows > n) c%rates_open = contradict(w%r(rows + 1:2*rows), n, 0.0_wp, b%list(i)%coarse) &
+            .or. contradict(w%r(:rows), n, norm2(w%r(rows + 1:rows + n))**2, b%list(i)%coarse)
+      end associate
+   end subroutine finish
+
+   !> Sign of the determinant, how certain it is that the root is the one that was predicted, and whether rounding
+   !> leaves the velocities open: with B = |J^-1| and the residual known to h, the position is known to B h, the
+   !> Jacobian to B h times its bend, the velocities to B times that. Newton and Kantorovich: one root only where B
+   !> bend change is below 1/2.
+   subroutine judge(b, i, n, w, s, c)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i, n
+      type(workspace_t), intent(inout) :: w
+      type(state_t), intent(in) :: s
+      type(convergence_t), intent(inout) :: c
+      real(wp) :: least, largest, inverse, size_of
+      integer :: k
+      logical :: suspicious
+
+      k = b%list(i)%shape%pattern
+      call pivot_range(b%list(i)%shape, w%a, w%sparse(k), w%pivots, least, largest, c%determinant)
+      c%least_pivot = least
+      c%reciprocal_condition = 1.0_wp
+      if (n == 0) return
+      if (n > 1) c%reciprocal_condition = least/largest
+      if (n == 1) largest = b%list(i)%bend
+      ! All pivots may be small, where links are much shorter than the mechanism.
+      suspicious = least < suspicious_pivot*max(largest, 1.0_wp)
+      if (n > 2) then
+         c%inverse = 1.0_wp/max(least, least_inverse)
+         c%doubt = c%change*b%list(i)%bend*c%inverse
+         if (.not. suspicious .and. c%doubt <= small_doubt .and. &
+            s%excursion*b%list(i)%bend*c%inverse**2*real(n, wp)**4 <= small_growth) return
+      end if
+      inverse = inverse_norm(b%list(i)%shape, w%a, w%sparse(k), w%work, w%iwork)
+      c%inverse = min(inverse, 1.0_wp/least_inverse)
+      c%doubt = c%change*b%list(i)%bend*inverse
+      if (.not. suspicious) return
+      c%reciprocal_condition = min(1.0_wp, 1.0_wp/(inverse*largest))
+      size_of = b%list(i)%coarse
+      do k = b%list(i)%first, b%list(i)%last
+         size_of = max(size_of, abs(s%u(b%unknown(k))%value))
+      end do
+      c%singular = inverse*inverse*b%list(i)%bend*rounding_level*size_of >= largest_error
+   end subroutine judge
+end module block_solver

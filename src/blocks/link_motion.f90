@@ -1,0 +1,221 @@
+!> From the motion of the unknowns to that of the links, by the tree: with u = R reach + s R e, in the axes of
+!> the frame above, and w = R arm in those of the link's own frame,
+!>
+!>    origin = origin above + u - w,   and so its velocity and acceleration.
+module link_motion
+   use kinds, only: wp
+   use mechanism, only: mechanism_t
+   use motion, only: motion_t
+   use links_tree, only: tree_t
+   use tree_places, only: place_t, place_on_tree
+   use unknowns, only: unknown_t
+   use block_state, only: state_t
+   implicit none
+   private
+   public :: chain_t, new_chain, move_links
+
+   !> A moving link: 0 stands for the ground, for no slide and for no root.
+   type :: hung_t
+      integer :: link = 0, above = 0, frame = 0, frame_above = 0
+      integer :: slide = 0                              !< its unknown
+      integer :: root = 0                               !< the unknown that is its x; y is the next
+      real(wp) :: root_unit(2) = 1.0_wp
+      logical :: has_arm = .false.
+      real(wp) :: turn = 0.0_wp
+      type(place_t) :: place
+   end type hung_t
+
+   !> The links to be moved, what is above first, and those that stay.
+   type :: chain_t
+      type(hung_t), allocatable :: hung(:)
+      integer, allocatable :: ground(:)
+      real(wp), allocatable :: ground_position(:, :)    !< (3, ground links)
+      real(wp) :: origin(2) = 0.0_wp                    !< what places are counted from
+   end type chain_t
+
+contains
+
+   !> The chain of those links of `m` that are `wanted` (links) and of those they hang on, in the deck's length unit.
+   !> `first_slide`: unknowns before the first slide; `unit` (0:unknowns): that of each in the unit of the slides, 1
+   !> where it is not given.
+   function new_chain(m, t, wanted, first_slide, unit) result(c)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      logical, intent(in) :: wanted(:)
+      integer, intent(in) :: first_slide
+      real(wp), intent(in), optional :: unit(0:)
+      type(chain_t) :: c
+      logical :: needed(size(wanted))
+      integer, allocatable :: links(:)
+      integer :: i
+
+      needed = wanted
+      do i = size(t%order), 1, -1
+         if (needed(t%order(i)) .and. t%above(t%order(i)) > 0) needed(t%above(t%order(i))) = .true.
+      end do
+      links = pack(t%order, needed(t%order) .and. .not. m%links(t%order)%ground)
+      allocate (c%hung(size(links)))
+      do i = 1, size(links)
+         c%hung(i) = hung_on(m, t, links(i), first_slide)
+         if (.not. present(unit)) cycle
+         associate (h => c%hung(i))
+            if (h%slide > 0) h%place%slide_arm = unit(h%slide)*h%place%slide_arm
+            if (h%root > 0) h%root_unit = unit(h%root:h%root + 1)
+         end associate
+      end do
+      c%ground = pack([(i, i=1, size(wanted))], m%links%ground .and. wanted)
+      allocate (c%ground_position(3, size(c%ground)))
+      do i = 1, size(c%ground)
+         c%ground_position(:, i) = m%links(c%ground(i))%position - [t%origin, 0.0_wp]
+      end do
+      c%origin = t%origin
+   end function new_chain
+
+   function hung_on(m, t, link, first_slide) result(h)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      integer, intent(in) :: link, first_slide
+      type(hung_t) :: h
+
+      h%link = link
+      h%frame = t%frame(link)
+      h%turn = t%turn(link)
+      if (t%above(link) == 0) then
+         h%root = first_slide + t%slides + 2*t%root(link) - 1
+         return
+      end if
+      h%place = place_on_tree(m, t, 1.0_wp, link)
+      h%has_arm = any(abs(h%place%arm) > 0.0_wp)
+      h%frame_above = t%frame(t%above(link))
+      if (h%place%slide > 0) h%slide = first_slide + h%place%slide
+      if (.not. m%links(t%above(link))%ground) h%above = t%above(link)
+   end function hung_on
+
+   !> Moves the links of the chain; `length`: the unit of the slides of `s` in the deck's unit. `finite`: no
+   !> number of theirs is out of range; false may be said of sums alone.
+   pure subroutine move_links(c, s, length, q, finite)
+      type(chain_t), intent(in) :: c
+      type(state_t), intent(in) :: s
+      real(wp), intent(in) :: length
+      type(motion_t), intent(inout) :: q
+      logical, intent(out) :: finite
+      integer :: i
+
+      q%origin = c%origin
+      do i = 1, size(c%ground)
+         q%position(:, c%ground(i)) = c%ground_position(:, i)
+      end do
+      call move_hung(size(c%hung), c%hung, s%u, length, q%position, q%velocity, q%acceleration, finite)
+   end subroutine move_links
+
+   !> The same on plain arrays, which cost no descriptors.
+   pure subroutine move_hung(n, hung, u, length, p, v, a, finite)
+      integer, intent(in) :: n
+      type(hung_t), intent(in) :: hung(n)
+      type(unknown_t), intent(in) :: u(0:*)
+      real(wp), intent(in) :: length
+      real(wp), intent(inout) :: p(3, *), v(3, *), a(3, *)
+      logical, intent(out) :: finite
+      real(wp) :: check
+      integer :: i, k
+
+      check = 0.0_wp
+      do i = 1, n
+         associate (h => hung(i), f => u(hung(i)%frame))
+            k = h%link
+            call reach_out(h, u(h%frame_above), p(1, k), v(1, k), a(1, k))
+            if (h%has_arm) call draw_back(h, f, p(1, k), v(1, k), a(1, k))
+            if (h%slide > 0) call add_slide(h, u(h%frame_above), u(h%slide), length, p(1, k), v(1, k), a(1, k))
+            if (h%root > 0) call add_root(u(h%root), length*h%root_unit, p(1, k), v(1, k), a(1, k))
+            if (h%above > 0) then
+               p(:2, k) = p(:2, k) + p(:2, h%above)
+               v(:2, k) = v(:2, k) + v(:2, h%above)
+               a(:2, k) = a(:2, k) + a(:2, h%above)
+            end if
+            p(3, k) = f%value + h%turn
+            v(3, k) = f%rate
+            a(3, k) = f%rate2
+            ! Zero, unless something in the sum is infinite or no number.
+            check = check + 0.0_wp*((p(1, k) + p(2, k)) + (v(1, k) + v(2, k)) + ((a(1, k) + a(2, k)) + f%rate2))
+         end associate
+      end do
+      finite = check <= 0.0_wp
+   end subroutine move_hung
+
+   !> u with derivatives, but for a slide.
+   pure subroutine reach_out(h, f, p, v, a)
+      type(hung_t), intent(in) :: h
+      type(unknown_t), intent(in) :: f
+      real(wp), intent(inout) :: p(3), v(3), a(3)
+      real(wp) :: x, y, square
+
+      if (h%frame_above == 0) then
+         p(1) = h%place%reach(1)
+         p(2) = h%place%reach(2)
+         v(1) = 0.0_wp
+         v(2) = 0.0_wp
+         a(1) = 0.0_wp
+         a(2) = 0.0_wp
+         return
+      end if
+      associate (d => h%place%reach)
+         x = f%c*d(1) - f%s*d(2)
+         y = f%s*d(1) + f%c*d(2)
+         square = f%rate*f%rate
+         p(1) = x
+         p(2) = y
+         v(1) = -f%rate*y
+         v(2) = f%rate*x
+         a(1) = -f%rate2*y - square*x
+         a(2) = f%rate2*x - square*y
+      end associate
+   end subroutine reach_out
+
+   !> Less w with derivatives.
+   pure subroutine draw_back(h, f, p, v, a)
+      type(hung_t), intent(in) :: h
+      type(unknown_t), intent(in) :: f
+      real(wp), intent(inout) :: p(3), v(3), a(3)
+      real(wp) :: x, y, square
+
+      associate (d => h%place%arm)
+         x = f%c*d(1) - f%s*d(2)
+         y = f%s*d(1) + f%c*d(2)
+         square = f%rate*f%rate
+         p(1) = p(1) - x
+         p(2) = p(2) - y
+         v(1) = v(1) + f%rate*y
+         v(2) = v(2) - f%rate*x
+         a(1) = a(1) + f%rate2*y + square*x
+         a(2) = a(2) - f%rate2*x + square*y
+      end associate
+   end subroutine draw_back
+
+   !> The slide by which the link hangs.
+   pure subroutine add_slide(h, f, u, length, p, v, a)
+      type(hung_t), intent(in) :: h
+      type(unknown_t), intent(in) :: f, u
+      real(wp), intent(in) :: length
+      real(wp), intent(inout) :: p(3), v(3), a(3)
+      real(wp) :: e(2), turn(2)
+
+      associate (d => h%place%slide_arm)
+         e = length*[f%c*d(1) - f%s*d(2), f%s*d(1) + f%c*d(2)]
+         turn = [-e(2), e(1)]
+         p(:2) = p(:2) + u%value*e
+         v(:2) = v(:2) + u%rate*e + u%value*f%rate*turn
+         a(:2) = a(:2) + u%rate2*e + 2.0_wp*u%rate*f%rate*turn + u%value*(f%rate2*turn - f%rate**2*e)
+      end associate
+   end subroutine add_slide
+
+   !> A link that no pair joins to the ground has its own x and y.
+   pure subroutine add_root(u, length, p, v, a)
+      type(unknown_t), intent(in) :: u(2)
+      real(wp), intent(in) :: length(2)
+      real(wp), intent(inout) :: p(3), v(3), a(3)
+
+      p(:2) = length*u%value
+      v(:2) = length*u%rate
+      a(:2) = length*u%rate2
+   end subroutine add_root
+end module link_motion

@@ -1,0 +1,264 @@
+!> From a card to its labels, whole number and reals. Every field is checked; its meaning is left to others.
+module card_reader
+   use kinds, only: wp, label_length
+   use cards, only: card_t, field_t, card_fields, wide_fields, card_name, label_a, label_c, real_1, field_text, &
+      first_column, card_columns, forms, form_name, form_unknown, form_title, form_add, find_form, &
+      nearest_form
+   use input_errors, only: error_code_t, input_errors_t, add_error, add_field_error, error_count, is_full, max_power, &
+      card_unknown, card_lower_case, card_indented, past_last_column, tab_character, control_character, &
+      foreign_character, border_crossed, field_unused, field_blank, label_blank_inside, star_no_reals, star_second, &
+      star_twice, star_blank, number_overflow, number_underflow
+   use letters, only: capitals
+   use numbers, only: read_real, read_whole
+   use numerals, only: whole
+   implicit none
+   private
+   public :: parsed_card_t, read_card, read_star, reals_taken
+
+   !> A card as it was read. It is kept even if it is wrong, so that its names are known to other cards.
+   type :: parsed_card_t
+      type(card_t) :: card
+      type(card_t), allocatable :: star         !< the `*` card below it
+      integer :: form = form_unknown
+      logical :: valid = .true.                 !< no error in it, nor in its `*` card
+      logical :: names_certain = .true.         !< its form and labels are what was meant, valid or not
+      character(label_length) :: label(label_a:label_c) = ''
+      integer :: whole = 0
+      logical :: whole_given = .false.
+      real(wp) :: real(3) = 0.0_wp              !< 0 where the field is blank
+      logical :: given(3) = .false.             !< which of them are not blank
+      logical :: on_star(3) = .false.           !< which of them the `*` card gives
+      integer :: drive = 0, term = 0            !< the first card of a term: its place in the drives and their terms
+   end type parsed_card_t
+
+   !> Decks hold lengths, angles and times: numbers outside these bounds have no use, and their squares would leave the
+   !> range of reals.
+   real(wp), parameter :: max_real = 10.0_wp**max_power, min_real = 10.0_wp**(-max_power)
+
+contains
+
+   !> Reads `card`, which is not a `*` card, to `parsed`. Errors go to `errors`, in the order of the columns.
+   subroutine read_card(card, parsed, errors)
+      type(card_t), intent(in) :: card
+      type(parsed_card_t), intent(out) :: parsed
+      type(input_errors_t), intent(inout) :: errors
+      logical :: cut(size(card_fields)), numeric(size(card_fields))
+      integer :: before, i
+
+      before = error_count(errors)
+      parsed%card = card
+      do i = label_a, label_c
+         parsed%label(i) = adjustl(card%text(card_fields(i)%first:card_fields(i)%last))
+      end do
+      parsed%form = find_form(card%text(:label_length))
+      call check_characters(card, parsed%names_certain, errors)
+      if (error_count(errors) == before .and. parsed%form == form_unknown) call guess_form(card, parsed%form, errors)
+      parsed%names_certain = parsed%names_certain .and. parsed%form /= form_unknown
+      parsed%valid = error_count(errors) == before
+      if (.not. parsed%valid .or. parsed%form == form_title) return
+      ! The reals, and the labels that the card does not take, may hold the beginning of a number.
+      numeric = [.false., [(forms(parsed%form)%labels(i:i) == '-', i=1, 3)], .true., .true., .true.]
+      call find_cuts(card, card_fields, numeric, cut, errors)
+      parsed%names_certain = .not. any(cut(label_a:label_c))
+      call read_labels(parsed, cut(label_a:label_c), errors)
+      do i = 1, 3
+         if (.not. cut(label_c + i)) call read_real_field(parsed, card, card_fields(label_c + i), i, errors)
+      end do
+      parsed%valid = error_count(errors) == before
+   end subroutine read_card
+
+   !> Reads the `*` card `card`, which gives reals of the card `above` it, to `above`. Errors go to `errors`.
+   subroutine read_star(card, above, errors)
+      type(card_t), intent(in) :: card
+      type(parsed_card_t), intent(inout) :: above
+      type(input_errors_t), intent(inout) :: errors
+      integer :: before
+      logical :: clean
+
+      before = error_count(errors)
+      call check_characters(card, clean, errors)
+      if (error_count(errors) > before) then
+         continue
+      else if (field_text(card, card_fields(card_name)) /= '*') then
+         call add_field_error(errors, card_unknown, card, card_fields(card_name))
+      else if (allocated(above%star)) then
+         call add_field_error(errors, star_second, card, card_fields(card_name))
+      else if (above%form /= form_unknown) then
+         if (reals_taken(above) == 0) then
+            call add_field_error(errors, star_no_reals, card, card_fields(card_name))
+         else
+            call read_wide_fields(card, above, errors)
+         end if
+      end if
+      if (allocated(above%star)) return
+      above%star = card
+      above%valid = above%valid .and. error_count(errors) == before
+   end subroutine read_star
+
+   !> How many of the real fields the card takes.
+   pure integer function reals_taken(parsed) result(taken)
+      type(parsed_card_t), intent(in) :: parsed
+
+      taken = 0
+      if (parsed%form == form_unknown) return
+      taken = forms(parsed%form)%reals
+      if (parsed%form == form_add .and. any(parsed%label(label_a) == ['POWER', 'TABLE'])) taken = 2
+   end function reals_taken
+
+   !> Only printable ASCII and nothing past column 80: the first violation is an error. `clean`: the 80 columns are
+   !> printable ASCII.
+   subroutine check_characters(card, clean, errors)
+      type(card_t), intent(in) :: card
+      logical, intent(out) :: clean
+      type(input_errors_t), intent(inout) :: errors
+      type(error_code_t) :: code
+      type(field_t) :: field
+      integer :: column
+
+      do column = 1, card_columns
+         if (card%text(column:column) < ' ' .or. card%text(column:column) > '~') exit
+      end do
+      clean = column > card_columns
+      if (clean) then
+         if (card%overrun > 0) &
+            call add_error(errors, past_last_column, card, field_t('PAST-80', 81, 81), card%overrun, card%beyond)
+         return
+      end if
+      code = control_character
+      if (ichar(card%text(column:column)) == 9) code = tab_character
+      if (ichar(card%text(column:column)) > 127) code = foreign_character
+      field = card_fields(findloc(card_fields%last >= column, .true., dim=1))
+      call add_error(errors, code, card, field, column, field_text(card, field))
+   end subroutine check_characters
+
+   !> The error of a name that no card has. `form` is the form that was probably meant, or form_unknown.
+   subroutine guess_form(card, form, errors)
+      type(card_t), intent(in) :: card
+      integer, intent(out) :: form
+      type(input_errors_t), intent(inout) :: errors
+      character(:), allocatable :: name, hint
+      type(error_code_t) :: code
+
+      name = field_text(card, card_fields(card_name))
+      form = find_form(capitals(name))
+      code = card_unknown
+      hint = ''
+      if (form /= form_unknown) then
+         code = merge(card_indented, card_lower_case, card%text(1:1) == ' ')
+      else if (name == '') then
+         code = field_blank
+      else if (.not. is_full(errors)) then
+         form = nearest_form(name)
+         if (form /= form_unknown) hint = '(IS IT '//trim(form_name(form))//'?)'
+      end if
+      call add_field_error(errors, code, card, card_fields(card_name), hint)
+   end subroutine guess_form
+
+   !> Marks in `cut` the fields of `fields` (in the order of their columns, each ending where the next one
+   !> begins) whose text is cut by a border; each is an error. Text is cut if it does not begin with its field
+   !> and runs on behind the border, or if it is one real number only together with what stands there; the
+   !> latter is asked where `numeric(i)`: field i may hold the beginning of a number. A full label beside
+   !> a full label is no cut, nor are two full reals that cannot be one.
+   subroutine find_cuts(card, fields, numeric, cut, errors)
+      type(card_t), intent(in) :: card
+      type(field_t), intent(in) :: fields(:)
+      logical, intent(in) :: numeric(:)
+      logical, intent(out) :: cut(:)
+      type(input_errors_t), intent(inout) :: errors
+      type(error_code_t) :: error
+      real(wp) :: value
+      integer :: i, start, finish, border, place
+
+      cut = .false.
+      do i = 1, size(fields) - 1
+         border = fields(i)%last
+         if (cut(i) .or. card%text(border:border) == ' ' .or. card%text(border + 1:border + 1) == ' ') cycle
+         start = fields(i)%first + index(card%text(fields(i)%first:border), ' ', back=.true.)
+         finish = border + index(card%text(border + 1:fields(i + 1)%last)//' ', ' ') - 1
+         ! Two numbers, each in a field that it fills, may touch; the first may have a blank in the place of a plus.
+         if (start <= fields(i)%first + merge(1, 0, numeric(i))) then
+            if (.not. numeric(i)) cycle
+            call read_real(card%text(start:finish), value, error, place)
+            if (error%number > 0) cycle
+         end if
+         cut(i:i + 1) = .true.
+         call add_error(errors, border_crossed, card, fields(i), start, card%text(start:finish), &
+                        whole(border)//' AND '//whole(border + 1))
+      end do
+   end subroutine find_cuts
+
+   !> The labels and the whole number of a card. `cut`: which label fields are no labels, as an error says already.
+   subroutine read_labels(parsed, cut, errors)
+      type(parsed_card_t), intent(inout) :: parsed
+      logical, intent(in) :: cut(label_a:label_c)
+      type(input_errors_t), intent(inout) :: errors
+      type(error_code_t) :: error
+      integer :: i, place
+
+      do i = label_a, label_c
+         if (cut(i)) parsed%label(i) = ''
+         if (cut(i)) cycle
+         associate (taken => forms(parsed%form)%labels(i - card_name:i - card_name), label => parsed%label(i), &
+                    field => card_fields(i))
+            if (label == '') then
+               if (scan(taken, 'LW') > 0) call add_field_error(errors, field_blank, parsed%card, field)
+            else if (taken == '-') then
+               call add_field_error(errors, field_unused, parsed%card, field)
+            else if (scan(taken, 'Ww') > 0) then
+               parsed%whole_given = .true.
+               call read_whole(trim(label), parsed%whole, error, place)
+               if (error%number > 0) call add_field_error(errors, error, parsed%card, field, place=place)
+            else if (index(trim(label), ' ') > 0) then
+               parsed%names_certain = .false.
+               call add_field_error(errors, label_blank_inside, parsed%card, field)
+            end if
+         end associate
+      end do
+   end subroutine read_labels
+
+   !> The reals of a `*` card.
+   subroutine read_wide_fields(card, above, errors)
+      type(card_t), intent(in) :: card
+      type(parsed_card_t), intent(inout) :: above
+      type(input_errors_t), intent(inout) :: errors
+      logical :: cut(3)
+      integer :: i
+
+      if (card%text(wide_fields(1)%first:) == '') then
+         call add_field_error(errors, star_blank, card, card_fields(card_name))
+         return
+      end if
+      call find_cuts(card, wide_fields, [.true., .true., .true.], cut, errors)
+      do i = 1, 3
+         if (cut(i) .or. field_text(card, wide_fields(i)) == '') cycle
+         if (above%given(i)) then
+            call add_field_error(errors, star_twice, card, wide_fields(i))
+         else
+            above%on_star(i) = .true.
+            call read_real_field(above, card, wide_fields(i), i, errors)
+         end if
+      end do
+   end subroutine read_wide_fields
+
+   !> Real number `i` of `parsed` from `field` of `card`, which is its own card or the `*` card below.
+   subroutine read_real_field(parsed, card, field, i, errors)
+      type(parsed_card_t), intent(inout) :: parsed
+      type(card_t), intent(in) :: card
+      type(field_t), intent(in) :: field
+      integer, intent(in) :: i
+      type(input_errors_t), intent(inout) :: errors
+      type(error_code_t) :: error
+      integer :: place
+
+      if (card%text(field%first:field%last) == '') return
+      parsed%given(i) = .true.
+      if (i > reals_taken(parsed)) then
+         call add_field_error(errors, field_unused, card, field)
+         return
+      end if
+      call read_real(trim(card%text(first_column(card, field):field%last)), parsed%real(i), error, place)
+      if (abs(parsed%real(i)) > max_real) error = number_overflow
+      if (abs(parsed%real(i)) > 0.0_wp .and. abs(parsed%real(i)) < min_real) error = number_underflow
+      if (error%number > 0) call add_field_error(errors, error, card, field, place=place)
+   end subroutine read_real_field
+end module card_reader

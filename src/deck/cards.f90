@@ -1,0 +1,167 @@
+!> One card: its 80 columns, the fields by column, and the forms of cards: which fields each card takes. Fields
+!> and forms are declared here and nowhere else.
+module cards
+   use kinds, only: label_length
+   use letters, only: capitals
+   implicit none
+   private
+   public :: card_t, field_t, card_columns, card_fields, wide_fields, title_field
+   public :: card_name, label_a, label_b, label_c, real_1, real_2, real_3
+   public :: field_text, first_column, ruler_card, is_passed_over
+   public :: form_t, forms, form_name, find_form, nearest_form
+   public :: form_unknown, form_title, form_units, form_lang, form_ground, form_link, form_point, form_revolute
+   public :: form_prism, form_drive, form_add, form_time, form_at, form_method, form_print, form_branch, form_end
+
+   !> Columns of a card.
+   integer, parameter :: card_columns = 80
+
+   type :: card_t
+      integer :: number = 0                 !< of the line in the deck, from 1
+      integer :: overrun = 0                !< first column past 80 that is not blank; 0: none
+      character(card_columns) :: text = ''
+      character(24) :: beyond = ''          !< the beginning of the text from column `overrun` on
+   end type card_t
+
+   type :: field_t
+      character(8) :: name = ''
+      integer :: first = 1, last = 0
+   end type field_t
+
+   !> The fields of a card in the order of their columns: field i + 1 begins where field i ends.
+   enum, bind(c)
+      enumerator :: card_name = 1, label_a, label_b, label_c, real_1, real_2, real_3
+   end enum
+   type(field_t), parameter :: card_fields(7) = [field_t('NAME', 1, 8), field_t('LABEL-A', 9, 16), &
+      field_t('LABEL-B', 17, 24), field_t('LABEL-C', 25, 32), field_t('REAL-1', 33, 48), field_t('REAL-2', 49, 64), &
+      field_t('REAL-3', 65, 80)]
+   !> The reals of a `*` card: wide enough for every double.
+   type(field_t), parameter :: wide_fields(3) = &
+      [field_t('REAL-1', 9, 32), field_t('REAL-2', 33, 56), field_t('REAL-3', 57, 80)]
+   type(field_t), parameter :: title_field = field_t('TITLE', 9, 80)
+
+   !> What a card takes. `labels` has a letter for each label field: L for a label, W for a whole number, a small letter
+   !> where the field may be blank, - where it must be.
+   type :: form_t
+      character(3) :: labels = '---'
+      integer :: reals = 0           !< the first so many real fields are taken
+      logical :: once = .false.      !< at most one in a set
+      character(78) :: layout = ''   !< the card's name, then the contents of each field in its columns
+   end type form_t
+
+   !> A card's form is its place in `forms`.
+   enum, bind(c)
+      enumerator :: form_unknown = 0, form_title, form_units, form_lang, form_ground, form_link, form_point
+      enumerator :: form_revolute, form_prism, form_drive, form_add, form_time, form_at, form_method, form_print
+      enumerator :: form_branch, form_end
+   end enum
+
+   !> The text of TITLE is no label. ADD takes two or three reals, which depends on its label A.
+   type(form_t), parameter :: forms(form_end) = [ &
+      form_t('---', 0, .true.,  'TITLE   TEXT, COLUMNS 9 TO 80'), &
+      form_t('lll', 0, .true.,  'UNITS   LENGTH  RAD/DEG TIME'), &
+      form_t('L--', 0, .true.,  'LANG    EN/PL'), &
+      form_t('L--', 3, .false., 'GROUND  LINK                    X               Y               PHI'), &
+      form_t('L--', 3, .false., 'LINK    LINK                    X               Y               PHI'), &
+      form_t('LL-', 2, .false., 'POINT   POINT   LINK            XI              ETA'), &
+      form_t('LLL', 0, .false., 'REVOLUTEPOINT-I POINT-J PAIR'), &
+      form_t('LLL', 3, .false., 'PRISM   POINT-I POINT-J PAIR    ALPHA           H               BETA'), &
+      form_t('LLl', 3, .false., 'DRIVE   KIND    DRIVEN  LINK    VALUE AT 0.0    RATE            ACCELERATION'), &
+      form_t('L--', 3, .false., 'ADD     KIND                    R1              R2              R3'), &
+      form_t('W--', 2, .true.,  'TIME    STEPS                   T0              T1'), &
+      form_t('---', 3, .false., 'AT                              T               T               T'), &
+      form_t('L--', 1, .true.,  'METHOD  METHOD                  TOLERANCE'), &
+      form_t('Llw', 0, .false., 'PRINT   KIND    NAME    EVERY'), &
+      form_t('l--', 1, .false., 'BRANCH  LINK                    T'), &
+      form_t('---', 0, .false., 'END')]
+
+contains
+
+   !> The text of `card` in `field`, without the blanks around it.
+   pure function field_text(card, field) result(text)
+      type(card_t), intent(in) :: card
+      type(field_t), intent(in) :: field
+      character(:), allocatable :: text
+
+      text = trim(adjustl(card%text(field%first:field%last)))
+   end function field_text
+
+   !> The column of the first character of `field` that is not blank; its first column if all are.
+   pure integer function first_column(card, field) result(column)
+      type(card_t), intent(in) :: card
+      type(field_t), intent(in) :: field
+
+      column = field%first + max(verify(card%text(field%first:field%last), ' '), 1) - 1
+   end function first_column
+
+   !> Whether `card` is a comment ($ in column 1) or blank.
+   pure logical function is_passed_over(card)
+      type(card_t), intent(in) :: card
+
+      is_passed_over = card%text(1:1) == '$'
+      if (.not. is_passed_over) is_passed_over = card%overrun == 0 .and. card%text == ''
+   end function is_passed_over
+
+   !> The comment card that shows the columns of every field.
+   pure function ruler_card() result(text)
+      character(card_columns) :: text
+      type(field_t) :: f
+      integer :: i
+
+      text = repeat('-', card_columns)
+      do i = 1, size(card_fields)
+         f = card_fields(i)
+         text(f%first:f%first + len_trim(f%name) - 1) = f%name
+         if (i > 1) text(f%last:f%last) = '|'
+      end do
+      text(1:5) = '$'//card_fields(card_name)%name(1:4)
+   end function ruler_card
+
+   !> The name of the cards of a form.
+   pure character(label_length) function form_name(form)
+      integer, intent(in) :: form
+
+      form_name = forms(form)%layout(:label_length)
+   end function form_name
+
+   !> The form of the card `name`, or form_unknown.
+   pure integer function find_form(name) result(form)
+      character(*), intent(in) :: name
+
+      do form = size(forms), 1, -1
+         if (forms(form)%layout(:label_length) == name) return
+      end do
+   end function find_form
+
+   !> The form whose name is at most two letters away from `name`, and less than half of its own; or form_unknown.
+   pure integer function nearest_form(name) result(nearest)
+      character(*), intent(in) :: name
+      integer :: form, distance, least
+
+      nearest = form_unknown
+      least = 3
+      do form = 1, size(forms)
+         distance = edits(trim(capitals(name)), trim(form_name(form)))
+         if (distance >= least .or. 2*distance > len_trim(form_name(form)) + 1) cycle
+         least = distance
+         nearest = form
+      end do
+   end function nearest_form
+
+   !> Fewest insertions, deletions and replacements of letters that turn `a` into `b` (Levenshtein).
+   pure integer function edits(a, b)
+      character(*), intent(in) :: a, b
+      integer :: row(0:len(b)), i, j, corner, above
+
+      row = [(j, j=0, len(b))]
+      do i = 1, len(a)
+         corner = row(0)
+         row(0) = i
+         do j = 1, len(b)
+            above = row(j)
+            row(j) = min(above + 1, row(j - 1) + 1, corner + merge(0, 1, a(i:i) == b(j:j)))
+            corner = above
+         end do
+      end do
+      edits = row(len(b))
+   end function edits
+end module cards

@@ -1,0 +1,96 @@
+!> The cards of a set as they were understood, with the values in use, for the listing.
+module deck_echo
+   use kinds, only: label_length
+   use mechanism, only: method_words, method_newton
+   use card_reader, only: parsed_card_t, reals_taken
+   use card_sets, only: card_set_t
+   use cards, only: card_fields, wide_fields, real_1, field_text, form_name, form_title, form_units, form_at, &
+      form_method, form_print
+   implicit none
+   private
+   public :: build_echo
+
+   integer, parameter :: line_length = 119, real_width = 25
+   !> Column of the first label, of the first real, and the columns from one label to the next.
+   integer, parameter :: label_column = 10, real_column = 37, label_step = 9
+   character(*), parameter :: default_mark = '(DEFAULT)'
+
+contains
+
+   !> Makes `set`%mechanism%echo: a line for every card except TITLE, and one for every default that no card replaces.
+   subroutine build_echo(set)
+      type(card_set_t), intent(inout) :: set
+      integer :: k, n
+
+      associate (m => set%mechanism)
+         allocate (m%echo(set%count + 3))
+         n = 0
+         do k = 1, set%count
+            if (set%cards(k)%form == form_title) cycle
+            n = n + 1
+            m%echo(n) = card_line(set%cards(k), m%length_unit, m%time_unit)
+         end do
+         call add_default(form_units, [m%length_unit, 'RAD     ', m%time_unit])
+         call add_default(form_method, [character(label_length) :: method_words(method_newton), '', ''])
+         call add_default(form_print, [character(label_length) :: 'LINKS', '', '1'])
+         m%echo = m%echo(1:n)
+      end associate
+
+   contains
+
+      !> The line of a form that has no card in the set: what holds without it.
+      subroutine add_default(form, labels)
+         integer, intent(in) :: form
+         character(label_length), intent(in) :: labels(3)
+
+         if (set%number_of(form) > 0) return
+         n = n + 1
+         set%mechanism%echo(n) = head_line(form, labels)
+         set%mechanism%echo(n)(line_length - len(default_mark) + 1:) = default_mark
+      end subroutine add_default
+   end subroutine build_echo
+
+   !> A blank real is shown as the 0.0 it stands for; a blank field of AT stands for nothing.
+   pure function card_line(card, length_unit, time_unit) result(line)
+      type(parsed_card_t), intent(in) :: card
+      character(label_length), intent(in) :: length_unit, time_unit
+      character(line_length) :: line
+      character(label_length) :: labels(3)
+      character(real_width) :: text
+      integer :: i, column
+
+      labels = card%label
+      if (card%form == form_print .and. labels(3) == '') labels(3) = '1'
+      if (card%form == form_units) then
+         labels(1) = length_unit
+         if (labels(2) == '') labels(2) = 'RAD'
+         labels(3) = time_unit
+      end if
+      line = head_line(card%form, labels)
+      do i = 1, reals_taken(card)
+         if (card%on_star(i)) then
+            text = field_text(card%star, wide_fields(i))
+         else if (card%given(i)) then
+            text = field_text(card%card, card_fields(real_1 + i - 1))
+         else
+            text = merge('   ', '0.0', card%form == form_at)
+         end if
+         column = real_column + (i - 1)*real_width
+         line(column:column + real_width - 1) = text
+      end do
+   end function card_line
+
+   !> Name and labels of a card, in the columns of the echo.
+   pure function head_line(form, labels) result(line)
+      integer, intent(in) :: form
+      character(label_length), intent(in) :: labels(3)
+      character(line_length) :: line
+      integer :: i, column
+
+      line = form_name(form)
+      do i = 1, 3
+         column = label_column + (i - 1)*label_step
+         line(column:column + label_length - 1) = labels(i)
+      end do
+   end function head_line
+end module deck_echo

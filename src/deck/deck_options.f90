@@ -1,0 +1,270 @@
+!> The cards of a set that are no bodies and no drives: TITLE, UNITS, LANG, METHOD, TIME and AT; PRINT; BRANCH.
+module deck_options
+   use kinds, only: wp
+   use constants, only: degree
+   use mechanism, only: request_t, choice_t, request_link, request_point, request_pair, method_newton, method_words
+   use card_sets, only: card_set_t, look_up, match_word, add_card_error
+   use cards, only: title_field, card_name, label_a, label_b, label_c, real_1, real_2, forms, form_unknown, &
+      form_title, form_units, form_lang, form_time, form_at, form_method, form_print, form_branch
+   use input_errors, only: card_repeated, lang_kind, units_angle, units_place, method_kind, tolerance_range, &
+      time_point, number_range, field_blank, print_kind, print_all_name, print_repeated, print_nothing, branch_ground, &
+      branch_method, branch_repeated
+   use names, only: name_table_t, put_name
+   use numerals, only: whole
+   implicit none
+   private
+   public :: build_options, build_requests, build_branches
+
+   !> Steps of a TIME card: what its field can hold.
+   integer, parameter :: max_steps = 99999999
+   !> Relative tolerances allowed: above what rounding permits, below what would be no solution.
+   real(wp), parameter :: min_tolerance = min(1.0e-15_wp, 5.0_wp*epsilon(1.0_wp))
+   real(wp), parameter :: max_tolerance = 1.0e-2_wp
+   !> Words that can only be meant as a unit of angles.
+   character(7), parameter :: angle_words(*) = [character(7) :: 'DEG', 'RAD', 'GRAD', 'DEGREE', 'DEGREES', 'RADIAN', &
+      'RADIANS']
+   !> What PRINT asks for: everything, or the links, points or pairs in the order of their kinds.
+   character(6), parameter :: print_words(0:3) = ['ALL   ', 'LINKS ', 'POINTS', 'PAIRS ']
+
+   !> The requests so far, and whether each link, point and pair has one.
+   type :: asked_t
+      integer :: count = 0
+      type(request_t), allocatable :: requests(:)   !< (count), with room behind
+      logical, allocatable :: asked(:, :)           !< (number, kind)
+   end type asked_t
+
+contains
+
+   !> Takes the options and instants of `set`%mechanism, and `set`%angle_unit, from the cards. Repeated cards, unknown
+   !> words and values out of range are errors.
+   subroutine build_options(set)
+      type(card_set_t), intent(inout) :: set
+      integer :: k, place
+
+      call check_repeats(set)
+      do k = 1, set%count
+         associate (card => set%cards(k), m => set%mechanism)
+            select case (card%form)
+            case (form_title)
+               m%title = card%card%text(title_field%first:title_field%last)
+            case (form_units)
+               call read_units(set, k)
+            case (form_lang)
+               call match_word(set, k, ['EN', 'PL'], lang_kind, place)
+               m%polish = place == 2
+            case (form_method)
+               call read_method(set, k)
+            case (form_time)
+               if (card%valid) call read_time(set, k)
+            end select
+         end associate
+      end do
+      call read_instants(set)
+      if (set%mechanism%degrees) set%angle_unit = degree
+   end subroutine build_options
+
+   !> Some cards may stand only once in a set.
+   subroutine check_repeats(set)
+      type(card_set_t), intent(inout) :: set
+      integer :: first(size(forms)), form, k
+
+      first = 0
+      do k = 1, set%count
+         form = set%cards(k)%form
+         if (form == form_unknown) cycle
+         if (.not. forms(form)%once) cycle
+         if (first(form) == 0) first(form) = k
+         if (first(form) < k) &
+            call add_card_error(set, card_repeated, k, card_name, whole(set%cards(first(form))%card%number))
+      end do
+   end subroutine check_repeats
+
+   !> The UNITS card `k`.
+   subroutine read_units(set, k)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: k
+      integer :: i
+
+      associate (label => set%cards(k)%label, m => set%mechanism)
+         if (label(label_a) /= '') m%length_unit = label(label_a)
+         if (label(label_c) /= '') m%time_unit = label(label_c)
+         m%degrees = label(label_b) == 'DEG'
+         if (.not. set%cards(k)%valid) return
+         ! Taken for a length, DEG would leave all angles in radians.
+         do i = label_a, label_c, 2
+            if (any(label(i) == angle_words)) call add_card_error(set, units_place, k, i)
+         end do
+         if (all(label(label_b) /= ['   ', 'RAD', 'DEG'])) call add_card_error(set, units_angle, k, label_b)
+      end associate
+   end subroutine read_units
+
+   !> The METHOD card `k`.
+   subroutine read_method(set, k)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: k
+      integer :: method
+
+      if (.not. set%cards(k)%valid) return
+      call match_word(set, k, method_words, method_kind, method)
+      if (method > 0) set%mechanism%method = method
+      associate (tolerance => set%cards(k)%real(1))
+         set%mechanism%tolerance = tolerance
+         if (tolerance < 0.0_wp .or. tolerance > max_tolerance .or. &
+             (tolerance > 0.0_wp .and. tolerance <= min_tolerance)) call add_card_error(set, tolerance_range, k, real_1)
+      end associate
+   end subroutine read_method
+
+   !> The TIME card `k`.
+   subroutine read_time(set, k)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: k
+
+      associate (card => set%cards(k), m => set%mechanism)
+         if (card%whole < 1 .or. card%whole > max_steps) then
+            call add_card_error(set, number_range, k, label_a, '1 TO '//whole(max_steps))
+         else if (.not. any(card%given(1:2))) then
+            call add_card_error(set, field_blank, k, real_2)
+         else if (.not. abs(card%real(2) - card%real(1)) > 0.0_wp) then
+            call add_card_error(set, time_point, k, real_2)
+         else
+            m%steps = card%whole
+            m%t0 = card%real(1)
+            m%t1 = card%real(2)
+         end if
+      end associate
+   end subroutine read_time
+
+   !> The instants of the AT cards, in their order.
+   subroutine read_instants(set)
+      type(card_set_t), intent(inout) :: set
+      real(wp) :: instants(3*set%number_of(form_at))
+      integer :: k, n
+
+      n = 0
+      do k = 1, set%count
+         associate (card => set%cards(k), more => count(set%cards(k)%given))
+            if (card%form /= form_at) cycle
+            if (card%valid .and. more == 0) call add_card_error(set, field_blank, k, real_1)
+            instants(n + 1:n + more) = pack(card%real, card%given)
+            n = n + more
+         end associate
+      end do
+      set%mechanism%at = instants(:n)
+   end subroutine read_instants
+
+   !> Makes `set`%mechanism%requests from the PRINT cards: in their order, each subject once, as the first card asks for
+   !> it; without a PRINT card, the links that move. Unknown words and names and repeated cards are errors.
+   subroutine build_requests(set)
+      type(card_set_t), intent(inout) :: set
+      type(asked_t) :: list
+      type(name_table_t) :: seen(0:3)
+      integer :: k
+
+      associate (sizes => [size(set%mechanism%links), size(set%mechanism%points), size(set%mechanism%pairs)])
+         allocate (list%requests(sum(sizes)))
+         allocate (list%asked(maxval(sizes), request_link:request_pair), source=.false.)
+      end associate
+      if (set%number_of(form_print) == 0) call ask_for_all(set, request_link, 1, list)
+      do k = 1, set%count
+         if (set%cards(k)%form == form_print .and. set%cards(k)%valid) call read_print(set, k, seen, list)
+      end do
+      set%mechanism%requests = list%requests(:list%count)
+   end subroutine build_requests
+
+   !> `seen` holds, for each word of PRINT, the names that were asked for and their cards.
+   subroutine read_print(set, k, seen, list)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: k
+      type(name_table_t), intent(inout) :: seen(0:)
+      type(asked_t), intent(inout) :: list
+      integer :: every, earlier, place, kind, subject
+
+      associate (card => set%cards(k))
+         every = merge(card%whole, 1, card%whole_given)
+         if (every < 1) call add_card_error(set, number_range, k, label_c, '1 AND UP')
+         call match_word(set, k, print_words, print_kind, place)
+         if (place == 0) return
+         kind = place - 1
+         call put_name(seen(kind), card%label(label_b), k, earlier)
+         if (earlier > 0) then
+            call add_card_error(set, print_repeated, k, label_a, whole(set%cards(earlier)%card%number))
+         else if (kind == 0 .and. card%label(label_b) /= '') then
+            call add_card_error(set, print_all_name, k, label_b)
+         else if (kind == 0) then
+            do kind = request_link, request_pair
+               call ask_for_all(set, kind, every, list)
+            end do
+         else if (card%label(label_b) == '') then
+            if (size(set%named(kind)%card) == 0 .and. set%names_certain) &
+               call add_card_error(set, print_nothing, k, label_a)
+            call ask_for_all(set, kind, every, list)
+         else
+            call look_up(set, kind, k, label_b, subject)
+            if (subject > 0) call ask_for(request_t(kind, subject, every), list)
+         end if
+      end associate
+   end subroutine read_print
+
+   !> Asks for all of a kind; of the links for those that move.
+   subroutine ask_for_all(set, kind, every, list)
+      type(card_set_t), intent(in) :: set
+      integer, intent(in) :: kind, every
+      type(asked_t), intent(inout) :: list
+      integer :: i
+
+      do i = 1, size(set%named(kind)%card)
+         if (kind == request_link) then
+            if (set%mechanism%links(i)%ground) cycle
+         end if
+         call ask_for(request_t(kind, i, every), list)
+      end do
+   end subroutine ask_for_all
+
+   !> Adds `request` to `list`, unless its subject has one already.
+   subroutine ask_for(request, list)
+      type(request_t), intent(in) :: request
+      type(asked_t), intent(inout) :: list
+
+      if (list%asked(request%subject, request%kind)) return
+      list%asked(request%subject, request%kind) = .true.
+      list%count = list%count + 1
+      list%requests(list%count) = request
+   end subroutine ask_for
+
+   !> Makes `set`%mechanism%choices from the BRANCH cards, in their order; links and options are there. A card that asks
+   !> for the same as an earlier one is an error: it may be meant for the next change point.
+   subroutine build_branches(set)
+      type(card_set_t), intent(inout) :: set
+      type(choice_t) :: choices(set%number_of(form_branch))
+      integer :: card_of(set%number_of(form_branch)), k, n, i
+
+      n = 0
+      do k = 1, set%count
+         if (set%cards(k)%form /= form_branch .or. .not. set%cards(k)%valid) cycle
+         n = n + 1
+         card_of(n) = k
+         call read_branch(set, k, choices(n))
+         do i = 1, n - 1
+            if (choices(i)%link /= choices(n)%link .or. abs(choices(i)%t - choices(n)%t) > 0.0_wp) cycle
+            call add_card_error(set, branch_repeated, k, card_name, whole(set%cards(card_of(i))%card%number))
+            exit
+         end do
+      end do
+      set%mechanism%choices = choices(:n)
+   end subroutine build_branches
+
+   !> The BRANCH card `k`.
+   subroutine read_branch(set, k, choice)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: k
+      type(choice_t), intent(out) :: choice
+
+      if (set%mechanism%method /= method_newton) call add_card_error(set, branch_method, k, card_name)
+      call look_up(set, request_link, k, label_a, choice%link)
+      if (choice%link > 0) then
+         if (set%mechanism%links(choice%link)%ground) call add_card_error(set, branch_ground, k, label_a)
+      end if
+      if (.not. set%cards(k)%given(1)) call add_card_error(set, field_blank, k, real_1)
+      choice%t = set%cards(k)%real(1)
+   end subroutine read_branch
+end module deck_options

@@ -1,0 +1,173 @@
+!> The deck's lines as cards, from a file or standard input, each line read once and in bounded memory.
+!> Files, pipes and terminals are read alike, by the system's own read: the Fortran run-time library of GNU takes an
+!> error for the end.
+module deck_source
+   use, intrinsic :: iso_c_binding, only: c_int
+   use failures, only: failure_t, fail, status_machine
+   use letters, only: capitals
+   use cards, only: card_t, card_columns
+   use system_calls, only: open_to_read, read_bytes, close_descriptor, last_error, reason_of, &
+      no_such_file, is_a_directory
+   implicit none
+   private
+   public :: source_t, open_source, next_card, close_source
+
+   integer(c_int), parameter :: standard_input = 0
+   integer, parameter :: block_length = 65536
+   !> Some editors put this mark in front of a text.
+   character(3), parameter :: byte_order_mark = char(239)//char(187)//char(191)
+   character(1), parameter :: line_feed = achar(10), carriage_return = achar(13)
+
+   type :: source_t
+      private
+      character(:), allocatable :: name      !< for messages
+      integer(c_int) :: descriptor = standard_input
+      integer :: lines = 0                   !< read so far
+      character(:), allocatable :: buffer    !< (block_length)
+      integer :: at = 1, filled = 0          !< the next character to look at, and the last
+      logical :: ended = .false.
+      logical :: after_return = .false.      !< the last line ended with a carriage return
+   end type source_t
+
+contains
+
+   !> Opens the file `path`; '' or '-' is standard input. Errors: status_machine.
+   subroutine open_source(source, path, failure)
+      type(source_t), intent(out) :: source
+      character(*), intent(in) :: path
+      type(failure_t), allocatable, intent(out) :: failure
+      integer :: error
+
+      source%name = 'STANDARD INPUT'
+      if (path /= '' .and. path /= '-') then
+         source%name = 'FILE '//trim(path)
+         source%descriptor = open_to_read(path)
+      end if
+      error = last_error()
+      if (source%descriptor >= 0) then
+         allocate (character(block_length) :: source%buffer)
+         do while (.not. source%ended .and. source%filled < len(byte_order_mark))
+            call read_on(source, failure)
+         end do
+         if (source%filled < len(byte_order_mark)) return
+         if (source%buffer(:len(byte_order_mark)) == byte_order_mark) source%at = len(byte_order_mark) + 1
+      else if (error == no_such_file) then
+         call fail(failure, status_machine, source%name//' DOES NOT EXIST')
+      else
+         call fail(failure, status_machine, source%name//' CANNOT BE OPENED ('//capitals(reason_of(error))//')')
+      end if
+   end subroutine open_source
+
+   !> The next card, or `found` false at the end. A line ends in LF, CR-LF or CR. Errors: status_machine.
+   subroutine next_card(source, card, found, failure)
+      type(source_t), intent(inout) :: source
+      type(card_t), intent(out) :: card
+      logical, intent(out) :: found
+      type(failure_t), allocatable, intent(out) :: failure
+      integer :: columns, length
+
+      call have_more(source, found, failure)
+      if (source%after_return .and. found) call pass_feed(source, found, failure)
+      if (.not. found) return
+      source%lines = source%lines + 1
+      card%number = source%lines
+      columns = 0
+      do
+         length = scan(source%buffer(source%at:source%filled), line_feed//carriage_return) - 1
+         if (length >= 0) exit
+         call note(card, source%buffer(source%at:source%filled), columns)
+         source%at = source%filled + 1
+         call have_more(source, found, failure)
+         if (found) cycle
+         found = .not. allocated(failure)
+         return
+      end do
+      call note(card, source%buffer(source%at:source%at + length - 1), columns)
+      source%after_return = source%buffer(source%at + length:source%at + length) == carriage_return
+      source%at = source%at + length + 1
+   end subroutine next_card
+
+   !> The line feed behind a carriage return belongs to the line before.
+   subroutine pass_feed(source, more, failure)
+      type(source_t), intent(inout) :: source
+      logical, intent(out) :: more
+      type(failure_t), allocatable, intent(out) :: failure
+
+      if (source%buffer(source%at:source%at) == line_feed) source%at = source%at + 1
+      source%after_return = .false.
+      call have_more(source, more, failure)
+   end subroutine pass_feed
+
+   !> Closes the file of `source`; standard input stays open.
+   subroutine close_source(source)
+      type(source_t), intent(inout) :: source
+      logical :: closed
+
+      if (source%descriptor /= standard_input) closed = close_descriptor(source%descriptor)
+   end subroutine close_source
+
+   !> There is a character to look at; not `more`: the deck ends, or `failure` says why it cannot be read.
+   subroutine have_more(source, more, failure)
+      type(source_t), intent(inout) :: source
+      logical, intent(out) :: more
+      type(failure_t), allocatable, intent(out) :: failure
+
+      if (source%at > source%filled .and. .not. source%ended) then
+         source%at = 1
+         source%filled = 0
+         call read_on(source, failure)
+      end if
+      more = source%at <= source%filled
+   end subroutine have_more
+
+   !> Reads to the buffer, behind what it holds.
+   subroutine read_on(source, failure)
+      type(source_t), intent(inout) :: source
+      type(failure_t), allocatable, intent(out) :: failure
+      integer :: length, error
+
+      length = read_bytes(source%descriptor, source%buffer(source%filled + 1:))
+      error = last_error()
+      source%ended = length <= 0
+      source%filled = source%filled + max(0, length)
+      if (length >= 0) return
+      if (error == is_a_directory) then
+         call fail(failure, status_machine, source%name//' IS A DIRECTORY')
+      else
+         call fail(failure, status_machine, source%name//' CANNOT BE READ ('//capitals(reason_of(error))//')')
+      end if
+   end subroutine read_on
+
+   !> `part` of a line follows column `columns`, which is moved behind it.
+   subroutine note(card, part, columns)
+      type(card_t), intent(inout) :: card
+      character(*), intent(in) :: part
+      integer, intent(inout) :: columns
+      integer :: length
+
+      length = max(0, min(len(part), card_columns - columns))
+      if (length > 0) card%text(columns + 1:columns + length) = part(:length)
+      call note_beyond(card, part(length + 1:), columns + length)
+      ! However long a line is, the count stays a number.
+      columns = min(columns + len(part), huge(columns) - block_length)
+   end subroutine note
+
+   !> `part` follows column `before`, the last of a card or beyond it; only the beginning of what is not blank is kept.
+   subroutine note_beyond(card, part, before)
+      type(card_t), intent(inout) :: card
+      character(*), intent(in) :: part
+      integer, intent(in) :: before
+      integer :: i, known
+
+      if (card%overrun == 0) then
+         i = verify(part, ' ')
+         if (i == 0) return
+         card%overrun = before + i
+         card%beyond = part(i:)
+      else
+         ! The part that is known ends at column `before`.
+         known = before - card%overrun + 1
+         if (known < len(card%beyond)) card%beyond(known + 1:) = part
+      end if
+   end subroutine note_beyond
+end module deck_source

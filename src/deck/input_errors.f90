@@ -1,0 +1,267 @@
+!> All that can be wrong with a deck, by number and sentence, and the errors found in one, with pictures of
+!> the cards and a mark under the column. A message is `"text" SENTENCE`, or the sentence alone.
+module input_errors
+   use kinds, only: wp, label_length
+   use cards, only: card_t, field_t, card_columns, field_text, first_column, forms, find_form
+   use numerals, only: whole
+   implicit none
+   private
+   public :: error_code_t, input_errors_t, add_error, add_field_error, add_deck_error
+   public :: error_count, is_full, error_report
+
+   !> A kind of error: its number, its sentence, and whether the layout of the card is shown below it.
+   type :: error_code_t
+      integer :: number = 0
+      character(72) :: sentence = ''
+      logical :: shows_layout = .false.
+   end type error_code_t
+
+   !> The errors of a deck.
+   type :: input_errors_t
+      private
+      integer :: count = 0
+      character(:), allocatable :: lines
+   end type input_errors_t
+
+   !> So many errors are printed; the rest is only counted.
+   integer, parameter :: max_printed = 50
+
+   ! The deck and its sets.
+   type(error_code_t), parameter, public :: &
+      deck_empty = error_code_t(1, 'THE DECK IS EMPTY'), &
+      end_missing = error_code_t(2, 'IS THE LAST CARD OF THE DECK, BUT NOT END'), &
+      set_empty = error_code_t(3, 'CLOSES A SET WITHOUT CARDS'), &
+      link_missing = error_code_t(4, 'CLOSES A SET WITHOUT A LINK CARD'), &
+      time_missing = error_code_t(5, 'CLOSES A SET WITHOUT A TIME OR AT CARD'), &
+      deck_long = error_code_t(6, 'THE DECK IS TOO LONG; CARDS ALLOWED:')
+   ! A card as a whole, and its characters.
+   type(error_code_t), parameter, public :: &
+      card_unknown = error_code_t(10, 'IS NOT THE NAME OF A CARD'), &
+      card_lower_case = error_code_t(11, 'CARD NAMES ARE IN CAPITALS'), &
+      card_indented = error_code_t(12, 'THE CARD NAME MUST BEGIN IN COLUMN 1'), &
+      card_repeated = error_code_t(13, 'MAY STAND ONLY ONCE IN A SET; FIRST ON CARD'), &
+      past_last_column = error_code_t(14, 'STANDS PAST COLUMN 80'), &
+      tab_character = error_code_t(15, 'CONTAINS A TAB'), &
+      control_character = error_code_t(16, 'CONTAINS A CONTROL CHARACTER'), &
+      foreign_character = error_code_t(17, 'CONTAINS A CHARACTER THAT IS NOT ASCII'), &
+      border_crossed = error_code_t(18, 'RUNS ACROSS THE BORDER OF COLUMNS'), &
+      field_unused = error_code_t(19, 'THIS FIELD IS NOT USED BY THIS CARD')
+   ! Numbers: of those in range, the squares and the squares of squares are in the range of the real kind.
+   integer, parameter, public :: max_power = min(60, int(0.25*range(1.0_wp)))
+   character(*), parameter :: power_text = trim(merge('60', '9 ', max_power == 60))
+   type(error_code_t), parameter, public :: &
+      number_other = error_code_t(20, 'IS NOT A NUMBER'), &
+      number_letter_o = error_code_t(21, 'IS NOT A NUMBER (LETTER O)'), &
+      number_letter_l = error_code_t(22, 'IS NOT A NUMBER (LETTER L OR I)'), &
+      number_blank = error_code_t(23, 'IS NOT A NUMBER (EMBEDDED BLANK)'), &
+      number_comma = error_code_t(24, 'IS NOT A NUMBER (DECIMAL COMMA)'), &
+      number_sign = error_code_t(25, 'IS NOT A NUMBER (SIGN INSIDE: EXPONENT WITHOUT E?)'), &
+      number_nan = error_code_t(26, 'IS NOT A NUMBER (NAN)'), &
+      number_inf = error_code_t(27, 'IS NOT A FINITE NUMBER'), &
+      number_overflow = error_code_t(28, 'IS TOO LARGE A NUMBER: THE LARGEST IS 1E'//power_text), &
+      number_underflow = error_code_t(29, 'IS TOO SMALL A NUMBER: THE SMALLEST ABOVE ZERO IS 1E-'//power_text), &
+      number_no_point = error_code_t(30, 'A REAL NUMBER NEEDS A POINT OR AN EXPONENT'), &
+      number_point = error_code_t(31, 'A WHOLE NUMBER HAS NO POINT AND NO EXPONENT'), &
+      number_no_digits = error_code_t(32, 'IS NOT A NUMBER (NO DIGITS)'), &
+      number_exponent = error_code_t(33, 'IS NOT A NUMBER (NO DIGITS IN THE EXPONENT)')
+   ! Fields, and the continuation by a `*` card.
+   type(error_code_t), parameter, public :: &
+      field_blank = error_code_t(34, 'THIS FIELD MUST NOT BE BLANK'), &
+      label_blank_inside = error_code_t(35, 'A LABEL HAS NO BLANKS INSIDE'), &
+      number_range = error_code_t(36, 'IS OUT OF THE RANGE'), &
+      star_first = error_code_t(40, 'NO CARD STANDS ABOVE THIS ONE IN THE SET'), &
+      star_no_reals = error_code_t(41, 'THE CARD ABOVE TAKES NO REALS'), &
+      star_second = error_code_t(42, 'IS A SECOND * CARD FOR THE SAME CARD'), &
+      star_twice = error_code_t(43, 'IS GIVEN TWICE: THE CARD ABOVE HAS IT TOO'), &
+      star_blank = error_code_t(44, 'GIVES NO NUMBERS')
+   ! Names.
+   type(error_code_t), parameter, public :: &
+      name_repeated = error_code_t(50, 'THIS NAME IS REPEATED; FIRST ON CARD'), &
+      link_unknown = error_code_t(51, 'NO LINK HAS THIS NAME'), &
+      point_unknown = error_code_t(52, 'NO POINT HAS THIS NAME'), &
+      pair_unknown = error_code_t(53, 'NO PAIR HAS THIS NAME'), &
+      link_unused = error_code_t(54, 'NO PAIR AND NO DRIVE USES THIS LINK'), &
+      point_unused = error_code_t(55, 'NO PAIR, DRIVE OR PRINT CARD USES THIS POINT')
+   ! Pairs and drives.
+   type(error_code_t), parameter, public :: &
+      pair_one_link = error_code_t(60, 'JOINS TWO POINTS OF ONE LINK'), &
+      pair_grounds = error_code_t(61, 'JOINS TWO GROUND LINKS'), &
+      drive_kind = error_code_t(70, 'IS NOT ANGLE, X, Y, RELANGLE OR SLIDE', .true.), &
+      drive_ground = error_code_t(71, 'A GROUND LINK CANNOT BE DRIVEN'), &
+      drive_ground_point = error_code_t(72, 'A POINT OF A GROUND LINK CANNOT BE DRIVEN'), &
+      drive_grounds = error_code_t(73, 'BOTH LINKS ARE GROUND LINKS'), &
+      drive_one_link = error_code_t(74, 'BOTH LINKS ARE THE SAME'), &
+      drive_revolute = error_code_t(75, 'A REVOLUTE PAIR HAS NO SLIDE'), &
+      add_alone = error_code_t(76, 'NO DRIVE OR ADD CARD STANDS ABOVE THIS ONE'), &
+      add_kind = error_code_t(77, 'IS NOT HARMONIC, POWER OR TABLE', .true.), &
+      add_blank = error_code_t(78, 'GIVES NO NUMBERS'), &
+      power_negative = error_code_t(79, 'THIS POWER DOES NOT EXIST AT THE INSTANT'), &
+      power_zero = error_code_t(80, 'THIS POWER OR ITS DERIVATIVES DO NOT EXIST AT THE INSTANT'), &
+      table_short = error_code_t(81, 'A TABLE NEEDS AT LEAST TWO ROWS'), &
+      table_order = error_code_t(82, 'THE TIMES OF A TABLE MUST INCREASE'), &
+      table_range = error_code_t(83, 'THIS TABLE DOES NOT REACH THE INSTANT'), &
+      power_large = error_code_t(84, 'THIS POWER IS TOO LARGE A NUMBER AT THE INSTANT')
+   ! Times and options.
+   type(error_code_t), parameter, public :: &
+      time_point = error_code_t(85, 'T0 AND T1 ARE EQUAL'), &
+      branch_ground = error_code_t(86, 'A GROUND LINK HAS NO OTHER BRANCH'), &
+      branch_method = error_code_t(87, 'ONLY METHOD NEWTON TAKES ANOTHER BRANCH'), &
+      branch_repeated = error_code_t(88, 'THIS BRANCH CARD IS REPEATED; FIRST ON CARD'), &
+      units_place = error_code_t(89, 'IS A UNIT OF ANGLES, WHICH STANDS IN COLUMNS 17-24 (LABEL-B)', .true.), &
+      lang_kind = error_code_t(90, 'IS NOT EN OR PL', .true.), &
+      units_angle = error_code_t(91, 'IS NOT RAD OR DEG', .true.), &
+      method_kind = error_code_t(92, 'IS NOT NEWTON, DENSE OR MATRIX', .true.), &
+      tolerance_range = error_code_t(93, 'A TOLERANCE IS ABOVE 1E-15 AND AT MOST 1E-2'), &
+      print_kind = error_code_t(94, 'IS NOT ALL, LINKS, POINTS OR PAIRS', .true.), &
+      print_all_name = error_code_t(95, 'PRINT ALL TAKES NO NAME'), &
+      print_repeated = error_code_t(96, 'THIS PRINT CARD IS REPEATED; FIRST ON CARD'), &
+      print_nothing = error_code_t(97, 'THE SET HAS NONE OF THESE')
+
+contains
+
+   !> Adds the error `code` about `text` (may be empty), which begins at `column` in `field` of `card`. `more` ends the
+   !> sentence.
+   subroutine add_error(errors, code, card, field, column, text, more)
+      type(input_errors_t), intent(inout) :: errors
+      type(error_code_t), intent(in) :: code
+      type(card_t), intent(in) :: card
+      type(field_t), intent(in) :: field
+      integer, intent(in) :: column
+      character(*), intent(in) :: text
+      character(*), intent(in), optional :: more
+      character(:), allocatable :: quoted
+      integer :: form
+
+      errors%count = errors%count + 1
+      if (errors%count > max_printed) return
+      quoted = ''
+      if (text /= '') quoted = ' "'//printable(trim(text))//'"'
+      call add_picture(errors, card, column)
+      call add_message(errors, code, '  CARD '//whole(card%number)//'  COLUMN '//whole(column)//'  FIELD '// &
+                       trim(field%name)//':'//quoted, more)
+      form = find_form(card%text(:label_length))
+      if (code%shows_layout .and. form > 0) call add_line(errors, ' LAYOUT    |'//trim(forms(form)%layout))
+   end subroutine add_error
+
+   !> Adds the error `code` about all that stands in `field` of `card`. `more` ends the sentence. `place`: the character
+   !> of that text which the mark is for, if not the first.
+   subroutine add_field_error(errors, code, card, field, more, place)
+      type(input_errors_t), intent(inout) :: errors
+      type(error_code_t), intent(in) :: code
+      type(card_t), intent(in) :: card
+      type(field_t), intent(in) :: field
+      character(*), intent(in), optional :: more
+      integer, intent(in), optional :: place
+      integer :: column
+
+      column = first_column(card, field)
+      if (present(place)) column = column + place - 1
+      call add_error(errors, code, card, field, column, field_text(card, field), more)
+   end subroutine add_field_error
+
+   !> Adds the error `code` about the deck as a whole. `more` ends the sentence.
+   subroutine add_deck_error(errors, code, more)
+      type(input_errors_t), intent(inout) :: errors
+      type(error_code_t), intent(in) :: code
+      character(*), intent(in), optional :: more
+
+      errors%count = errors%count + 1
+      if (errors%count <= max_printed) call add_message(errors, code, ' ', more)
+   end subroutine add_deck_error
+
+   !> Number of errors so far, those included that are not printed.
+   pure integer function error_count(errors)
+      type(input_errors_t), intent(in) :: errors
+
+      error_count = errors%count
+   end function error_count
+
+   !> Whether further errors are only counted: their sentences need no work.
+   pure logical function is_full(errors)
+      type(input_errors_t), intent(in) :: errors
+
+      is_full = errors%count >= max_printed
+   end function is_full
+
+   !> All messages, lines joined by new_line('a'); empty if there is no error.
+   pure function error_report(errors) result(report)
+      type(input_errors_t), intent(in) :: errors
+      character(:), allocatable :: report
+
+      report = ''
+      if (allocated(errors%lines)) report = errors%lines
+      if (errors%count > max_printed) &
+         report = report//new_line('a')//' *** AND '//whole(errors%count - max_printed)//' MORE'
+   end function error_report
+
+   !> The card, a ruler in tens as far as the card or the mark reaches, and the mark.
+   subroutine add_picture(errors, card, column)
+      type(input_errors_t), intent(inout) :: errors
+      type(card_t), intent(in) :: card
+      integer, intent(in) :: column
+      character(:), allocatable :: head, shown, number, margin
+      integer :: tens
+
+      number = whole(card%number)
+      head = ' CARD '//repeat(' ', max(4 - len(number), 0))//number//' |'
+      shown = trim(card%text)
+      ! Text past the last column is shown if a page can hold it.
+      if (card%overrun > 0 .and. card%overrun <= card_columns + 10) &
+         shown = card%text//repeat(' ', card%overrun - card_columns - 1)//trim(card%beyond)
+      call add_line(errors, head//printable(shown))
+      margin = repeat(' ', len(head) - 1)//'|'
+      tens = min(max(len(shown)/10, (column + 9)/10), card_columns/10 + 1)
+      call add_line(errors, margin//ruler(tens))
+      if (column <= 10*tens) call add_line(errors, margin//repeat(' ', column - 1)//'^')
+   end subroutine add_picture
+
+   !> ....+....1....+....2 and so on, for so many tens of columns.
+   pure function ruler(tens) result(text)
+      integer, intent(in) :: tens
+      character(10*tens) :: text
+      integer :: i
+
+      do i = 1, tens
+         text(10*i - 9:10*i) = '....+....'//achar(iachar('0') + modulo(i, 10))
+      end do
+   end function ruler
+
+   !> A byte that is not printable ASCII is shown as ?, so that columns stay columns.
+   pure function printable(text) result(shown)
+      character(*), intent(in) :: text
+      character(len(text)) :: shown
+      integer :: i
+
+      shown = text
+      do i = 1, len(text)
+         if (ichar(text(i:i)) < 32 .or. ichar(text(i:i)) > 126) shown(i:i) = '?'
+      end do
+   end function printable
+
+   !> The line of the error `code`: its number, its `place`, its sentence and what ends it.
+   subroutine add_message(errors, code, place, more)
+      type(input_errors_t), intent(inout) :: errors
+      type(error_code_t), intent(in) :: code
+      character(*), intent(in) :: place
+      character(*), intent(in), optional :: more
+      character(3) :: number
+      character(:), allocatable :: line
+
+      write (number, '(i3.3)') code%number
+      line = ' *** E'//number//place//' '//code%sentence
+      if (present(more)) line = trim(line)//' '//more
+      call add_line(errors, trim(line))
+   end subroutine add_message
+
+   !> Appends `line` to the messages.
+   subroutine add_line(errors, line)
+      type(input_errors_t), intent(inout) :: errors
+      character(*), intent(in) :: line
+
+      if (allocated(errors%lines)) then
+         errors%lines = errors%lines//new_line('a')//line
+      else
+         errors%lines = line
+      end if
+   end subroutine add_line
+end module input_errors

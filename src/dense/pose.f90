@@ -1,0 +1,176 @@
+!> A mechanism made ready for its closure equations, and a position of all its links.
+!>
+!> Unknowns: x, y, phi of every moving link, in the deck's order. Lengths are divided by a power of two near the
+!> characteristic length, which loses no digit and makes all that follows the same in any unit.
+module pose
+   use kinds, only: wp
+   use constants, only: pi
+   use mechanism, only: mechanism_t, pair_t, drive_slide, plane_origin
+   use scales, only: solver_length, power_of_two
+   use drives, only: law_t, new_law
+   use frozen_form, only: nearest_zeros, secants
+   implicit none
+   private
+   public :: system_t, pose_t, new_system, new_pose, set_pose, choose_references, turned, normal_angle, add_to_links
+
+   !> The equations of one mechanism; lengths in units of `length`.
+   type :: system_t
+      integer :: n = 0                            !< equations and unknowns
+      real(wp) :: length = 1.0_wp                 !< a power of two, in the deck's unit
+      real(wp) :: origin(2) = 0.0_wp              !< what places are counted from, in the deck's unit
+      integer, allocatable :: column(:)           !< (links) unknown that is the link's x; 0: ground
+      integer, allocatable :: link_of(:)          !< (points)
+      real(wp), allocatable :: offset(:, :)       !< (2, points) xi, eta
+      type(pair_t), allocatable :: pairs(:)
+      type(law_t), allocatable :: laws(:)         !< of the drives
+      real(wp), allocatable :: guide(:, :)        !< (2, pairs) cos alpha, sin alpha
+   end type system_t
+
+   !> A position of all links and what follows from it alone.
+   type :: pose_t
+      real(wp), allocatable :: q(:, :)            !< (3, links) x, y, phi
+      real(wp), allocatable :: direction(:, :)    !< (2, links) cos phi, sin phi
+      real(wp), allocatable :: arm(:, :)          !< (2, points) from the link's origin to the point
+      real(wp), allocatable :: slope(:, :)        !< (2, points) derivative of the arm by phi, or its frozen form
+      logical :: frozen = .false.                 !< slopes and gradients are those of the frozen form
+      logical :: keeps = .false.                  !< references, once chosen, are never chosen again
+      logical :: has_chosen = .false.
+      real(wp), allocatable :: zeros(:, :)        !< (2, points) reference angles of the arms' rows
+      real(wp), allocatable :: guide_zeros(:, :)  !< (2, pairs) of the slot rows
+      real(wp), allocatable :: slide_zeros(:, :)  !< (2, drives) of the SLIDE rows
+   end type pose_t
+
+contains
+
+   !> The closure equations of `m`, whose count of equations equals its count of unknowns.
+   function new_system(m) result(s)
+      type(mechanism_t), intent(in) :: m
+      type(system_t) :: s
+      integer :: i
+
+      s%length = power_of_two(solver_length(m))
+      s%origin = plane_origin(m)
+      allocate (s%column(size(m%links)), source=0)
+      do i = 1, size(m%links)
+         if (m%links(i)%ground) cycle
+         s%column(i) = s%n + 1
+         s%n = s%n + 3
+      end do
+      s%link_of = m%points%link
+      allocate (s%offset(2, size(m%points)), s%guide(2, size(m%pairs)))
+      do i = 1, size(m%points)
+         s%offset(:, i) = m%points(i)%offset/s%length
+      end do
+      s%pairs = m%pairs
+      s%pairs%offset = m%pairs%offset/s%length
+      s%guide(1, :) = cos(m%pairs%alpha)
+      s%guide(2, :) = sin(m%pairs%alpha)
+      allocate (s%laws(size(m%drives)))
+      do i = 1, size(m%drives)
+         s%laws(i) = new_law(m%drives(i))
+      end do
+   end function new_system
+
+   !> The deck's positions: ground links where they stay, the others where the deck thinks them.
+   pure function new_pose(s, m) result(p)
+      type(system_t), intent(in) :: s
+      type(mechanism_t), intent(in) :: m
+      type(pose_t) :: p
+      integer :: i
+
+      allocate (p%q(3, size(m%links)), p%direction(2, size(m%links)))
+      allocate (p%arm(2, size(m%points)), p%slope(2, size(m%points)), p%zeros(2, size(m%points)))
+      allocate (p%guide_zeros(2, size(m%pairs)), p%slide_zeros(2, size(m%drives)))
+      do i = 1, size(m%links)
+         p%q(:, i) = [(m%links(i)%position(:2) - s%origin)/s%length, m%links(i)%position(3)]
+      end do
+      p%keeps = m%keeps_references
+      call set_pose(s, p)
+   end function new_pose
+
+   !> Directions, arms and slopes from `p%q`: one sine and one cosine a link.
+   pure subroutine set_pose(s, p)
+      type(system_t), intent(in) :: s
+      type(pose_t), intent(inout) :: p
+      integer :: i, k
+
+      p%direction(1, :) = cos(p%q(3, :))
+      p%direction(2, :) = sin(p%q(3, :))
+      do i = 1, size(s%link_of)
+         k = s%link_of(i)
+         p%arm(:, i) = turned(s%offset(:, i), p%direction(:, k))
+         if (p%frozen) then
+            p%slope(:, i) = norm2(s%offset(:, i))*secants(arm_angle(s, p, i), p%zeros(:, i))
+         else
+            p%slope(:, i) = [-p%arm(2, i), p%arm(1, i)]
+         end if
+      end do
+   end subroutine set_pose
+
+   !> Puts `p` into the frozen form of (16), its angles counted from the zeros nearest to where they are now or, if it
+   !> keeps its references, to where they were at the first call.
+   pure subroutine choose_references(s, p)
+      type(system_t), intent(in) :: s
+      type(pose_t), intent(inout) :: p
+
+      p%frozen = .true.
+      if (.not. (p%keeps .and. p%has_chosen)) call take_nearest_zeros(s, p)
+      p%has_chosen = .true.
+      call set_pose(s, p)
+   end subroutine choose_references
+
+   pure subroutine take_nearest_zeros(s, p)
+      type(system_t), intent(in) :: s
+      type(pose_t), intent(inout) :: p
+      integer :: i
+
+      do i = 1, size(s%link_of)
+         p%zeros(:, i) = nearest_zeros(arm_angle(s, p, i))
+      end do
+      do i = 1, size(s%pairs)
+         p%guide_zeros(:, i) = nearest_zeros(normal_angle(s, p, i))
+      end do
+      do i = 1, size(s%laws)
+         if (s%laws(i)%drive%kind == drive_slide) &
+            p%slide_zeros(:, i) = nearest_zeros(normal_angle(s, p, s%laws(i)%drive%subject) + pi/2.0_wp)
+      end do
+   end subroutine take_nearest_zeros
+
+   !> Adds the unknowns' vector `x` (n) to the coordinates `q` (3, links); ground links stay as they are.
+   pure subroutine add_to_links(s, x, q)
+      type(system_t), intent(in) :: s
+      real(wp), intent(in) :: x(:)
+      real(wp), intent(inout) :: q(:, :)
+      integer :: i
+
+      do i = 1, size(s%column)
+         if (s%column(i) > 0) q(:, i) = q(:, i) + x(s%column(i):s%column(i) + 2)
+      end do
+   end subroutine add_to_links
+
+   !> The angle at which the normal of pair `k` points.
+   pure real(wp) function normal_angle(s, p, k)
+      type(system_t), intent(in) :: s
+      type(pose_t), intent(in) :: p
+      integer, intent(in) :: k
+
+      normal_angle = p%q(3, s%link_of(s%pairs(k)%point_i)) + s%pairs(k)%alpha + pi/2.0_wp
+   end function normal_angle
+
+   !> The angle at which the arm to point `i` points.
+   pure real(wp) function arm_angle(s, p, i)
+      type(system_t), intent(in) :: s
+      type(pose_t), intent(in) :: p
+      integer, intent(in) :: i
+
+      arm_angle = p%q(3, s%link_of(i)) + atan2(s%offset(2, i), s%offset(1, i))
+   end function arm_angle
+
+   !> Vector `u` turned by the angle of `direction` = (cos, sin).
+   pure function turned(u, direction) result(w)
+      real(wp), intent(in) :: u(2), direction(2)
+      real(wp) :: w(2)
+
+      w = [u(1)*direction(1) - u(2)*direction(2), u(1)*direction(2) + u(2)*direction(1)]
+   end function turned
+end module pose

@@ -1,0 +1,187 @@
+!> How far the next root of the closure equations is from a position found: the guard of continuity of METHOD
+!> DENSE and METHOD MATRIX, as the blocks have theirs.
+!>
+!> Newton and Kantorovich, row by row. Two positions z and z + d with the same values of the drives have J d = -R, with
+!> J the Jacobian at z and R_k what row k holds beyond its linear part, at most L_k |d|^2/2. Rows of angles alone are
+!> linear: R is 0 there, and links that they tie together turn by the same angle. So
+!>    revolute pair        L = |u| + |w|      arms of the links whose angle is free
+!>    X, Y drive           L = |u|
+!>    (9), SLIDE drive     L = 2 + |x_i - x_j|, if the guide's angle is free, otherwise 0
+!> and |d| needs to hold only what these depend on: free angles, and x_i - x_j of prismatic pairs whose guide turns. For
+!> each such coordinate g . d is at most |d|^2/2 times the sum over k of |g . J^-1 e_k| L_k; the largest of these sums,
+!> K, leaves no other root within 2/K. Rejected: |J^-1| times the largest L, which is larger by 10 to 1000, since places
+!> and given angles count in it too.
+module root_distance
+   use kinds, only: wp
+   use mechanism, only: pair_revolute, pair_prismatic, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
+   use linear_solver, only: factors_t, solve_transposed
+   use pose, only: system_t, pose_t
+   implicit none
+   private
+   public :: coordinates_t, new_coordinates, jacobian_lipschitz, kantorovich, distance
+
+   !> What the rows are not linear in.
+   type :: coordinates_t
+      integer, allocatable :: class(:)           !< (links) links of one class turn by the same angle; 0: a given one
+      integer, allocatable :: angles(:)          !< one link of each other class
+      integer, allocatable :: slots(:)           !< prismatic pairs whose guide's angle is free
+   end type coordinates_t
+
+contains
+
+   !> The coordinates of the system `s`.
+   pure function new_coordinates(s) result(c)
+      type(system_t), intent(in) :: s
+      type(coordinates_t) :: c
+      integer :: i
+
+      c%class = [(i, i=1, size(s%column))]
+      where (s%column == 0) c%class = 0
+      do i = 1, size(s%pairs)
+         if (s%pairs(i)%kind == pair_prismatic) call tie(s%link_of(s%pairs(i)%point_i), s%link_of(s%pairs(i)%point_j))
+      end do
+      do i = 1, size(s%laws)
+         associate (drive => s%laws(i)%drive)
+            if (drive%kind == drive_relangle) call tie(drive%subject, drive%second)
+            if (drive%kind == drive_angle) where (c%class == c%class(drive%subject)) c%class = 0
+         end associate
+      end do
+      c%angles = pack([(i, i=1, size(c%class))], c%class == [(i, i=1, size(c%class))])
+      c%slots = pack([(i, i=1, size(s%pairs))], s%pairs%kind == pair_prismatic &
+         .and. c%class(s%link_of(s%pairs%point_i)) > 0)
+
+   contains
+
+      !> The lower number stands for both: 0, or the first link.
+      pure subroutine tie(i, j)
+         integer, intent(in) :: i, j
+         integer :: lower, higher
+
+         lower = min(c%class(i), c%class(j))
+         higher = max(c%class(i), c%class(j))
+         where (c%class == higher) c%class = lower
+      end subroutine tie
+   end function new_coordinates
+
+   !> The largest change (rad, unit of length) of these coordinates between the positions `a` and `b` (3, links).
+   pure real(wp) function distance(s, c, a, b)
+      type(system_t), intent(in) :: s
+      type(coordinates_t), intent(in) :: c
+      real(wp), intent(in) :: a(:, :), b(:, :)
+      integer :: k
+
+      distance = 0.0_wp
+      do k = 1, size(c%class)
+         if (c%class(k) > 0) distance = max(distance, abs(a(3, k) - b(3, k)))
+      end do
+      do k = 1, size(c%slots)
+         associate (i => s%link_of(s%pairs(c%slots(k))%point_i), j => s%link_of(s%pairs(c%slots(k))%point_j))
+            distance = max(distance, norm2((a(:2, i) - a(:2, j)) - (b(:2, i) - b(:2, j))))
+         end associate
+      end do
+   end function distance
+
+   !> Bounds (n) of what the rows hold beyond their linear part at pose `p`: L_k of above. The two rows of a revolute
+   !> pair have one bound, that of their vector.
+   pure function jacobian_lipschitz(s, c, p) result(bound)
+      type(system_t), intent(in) :: s
+      type(coordinates_t), intent(in) :: c
+      type(pose_t), intent(in) :: p
+      real(wp) :: bound(s%n)
+      integer :: k, row
+
+      bound = 0.0_wp
+      do k = 1, size(s%pairs)
+         if (s%pairs(k)%kind == pair_revolute) then
+            bound(2*k - 1:2*k) = arm_bound(s%pairs(k)%point_i) + arm_bound(s%pairs(k)%point_j)
+         else
+            bound(2*k - 1) = slot_bound(k)
+         end if
+      end do
+      do k = 1, size(s%laws)
+         row = 2*size(s%pairs) + k
+         associate (subject => s%laws(k)%drive%subject)
+            if (any(s%laws(k)%drive%kind == [drive_x, drive_y])) bound(row) = arm_bound(subject)
+            if (s%laws(k)%drive%kind == drive_slide) bound(row) = slot_bound(subject)
+         end associate
+      end do
+
+   contains
+
+      pure real(wp) function arm_bound(point)
+         integer, intent(in) :: point
+
+         arm_bound = 0.0_wp
+         if (c%class(s%link_of(point)) > 0) arm_bound = norm2(s%offset(:, point))
+      end function arm_bound
+
+      pure real(wp) function slot_bound(pair)
+         integer, intent(in) :: pair
+
+         slot_bound = 0.0_wp
+         associate (i => s%link_of(s%pairs(pair)%point_i), j => s%link_of(s%pairs(pair)%point_j))
+            if (c%class(i) > 0) slot_bound = 2.0_wp + norm2(p%q(:2, i) - p%q(:2, j))
+         end associate
+      end function slot_bound
+   end function jacobian_lipschitz
+
+   !> K at pose `p`, from the factors `f` of the Jacobian there: no other root is within 2/K, by `distance`.
+   subroutine kantorovich(s, c, f, p, k)
+      type(system_t), intent(in) :: s
+      type(coordinates_t), intent(in) :: c
+      type(factors_t), intent(in) :: f
+      type(pose_t), intent(in) :: p
+      real(wp), intent(out) :: k
+      real(wp) :: g(s%n, size(c%angles) + 2*size(c%slots)), bound(s%n)
+      integer :: m, slot
+
+      k = 0.0_wp
+      if (size(g) == 0) return
+      bound = jacobian_lipschitz(s, c, p)
+      call set_coordinates(s, c, g)
+      call solve_transposed(f, g)
+      do m = 1, size(c%angles)
+         k = max(k, row_sum(s, g(:, m), bound))
+      end do
+      do slot = 1, size(c%slots)
+         m = size(c%angles) + 2*slot
+         k = max(k, hypot(row_sum(s, g(:, m - 1), bound), row_sum(s, g(:, m), bound)))
+      end do
+   end subroutine kantorovich
+
+   !> The coordinates as columns `g` (n, angles + 2 slots): each is g . x.
+   pure subroutine set_coordinates(s, c, g)
+      type(system_t), intent(in) :: s
+      type(coordinates_t), intent(in) :: c
+      real(wp), intent(out) :: g(:, :)
+      integer :: m, k
+
+      g = 0.0_wp
+      do m = 1, size(c%angles)
+         g(s%column(c%angles(m)) + 2, m) = 1.0_wp
+      end do
+      do m = 1, size(c%slots)
+         associate (i => s%column(s%link_of(s%pairs(c%slots(m))%point_i)), &
+                    j => s%column(s%link_of(s%pairs(c%slots(m))%point_j)))
+            do k = 0, 1
+               if (i > 0) g(i + k, size(c%angles) + 2*m - 1 + k) = 1.0_wp
+               if (j > 0) g(j + k, size(c%angles) + 2*m - 1 + k) = -1.0_wp
+            end do
+         end associate
+      end do
+   end subroutine set_coordinates
+
+   !> The sum over the rows of |y_k| L_k, the two of a pair as one vector.
+   pure real(wp) function row_sum(s, y, bound) result(total)
+      type(system_t), intent(in) :: s
+      real(wp), intent(in) :: y(:), bound(:)
+      integer :: k
+
+      associate (pairs => 2*size(s%pairs))
+         total = sum(abs(y(pairs + 1:))*bound(pairs + 1:))
+         do k = 1, pairs, 2
+            total = total + hypot(y(k)*bound(k), y(k + 1)*bound(k + 1))
+         end do
+      end associate
+   end function row_sum
+end module root_distance

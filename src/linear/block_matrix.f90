@@ -1,0 +1,219 @@
+!> The matrix of a block: dense and square (DGESV), sparse (KLU), or with more rows than columns, in the sense
+!> of least squares (DGEQRF). Dense ones are factored where they stand.
+!>
+!> One right-hand side a call: for more OpenBLAS starts threads, at ten times the cost of a small system.
+module block_matrix
+   use kinds, only: wp
+   use lapack, only: gesv, getrs, gecon, geqrf, ormqr, trtrs, trcon, lacn2
+   use klu, only: klu_t, klu_serves, factor, factor_likewise, solve, solve_transposed, pivots_of, multiply
+   implicit none
+   private
+   public :: shape_t, is_sparse_better, entries_of, solve_first, solve_again, pivot_range, inverse_norm, work_length
+
+   !> `pattern` = 0: dense, by columns. Otherwise sparse and square: the number of its pattern, and its entries, in the
+   !> order of the pattern.
+   type :: shape_t
+      integer :: rows = 0, n = 0, pattern = 0, entries = 0
+   end type shape_t
+
+   !> From this many unknowns on KLU is not slower than DGESV (lattices, reference LAPACK and OpenBLAS).
+   integer, parameter :: least_sparse = merge(12, huge(1), klu_serves)
+   !> A solution leaves this part of what its equations add up: more, and the pivots of the matrix before are no longer
+   !> good for this one.
+   real(wp), parameter :: stale = 128.0_wp*epsilon(1.0_wp)
+   !> Columns that DGEQRF takes together.
+   integer, parameter :: panel = 32
+
+contains
+
+   !> A square matrix of `n` rows with so many entries is best sparse. Where many stand in a row, most of the others
+   !> fill up.
+   pure logical function is_sparse_better(n, entries)
+      integer, intent(in) :: n, entries
+
+      is_sparse_better = n >= least_sparse .and. entries/max(n, 1) < 8 + n/50
+   end function is_sparse_better
+
+   !> Numbers that the matrix takes.
+   pure integer function entries_of(s)
+      type(shape_t), intent(in) :: s
+
+      entries_of = s%entries
+      if (s%pattern == 0) entries_of = s%rows*s%n
+   end function entries_of
+
+   !> Numbers that `work` takes below.
+   pure integer function work_length(s)
+      type(shape_t), intent(in) :: s
+
+      work_length = merge(4*s%n, s%n*(panel + 4) + s%rows, s%rows == s%n)
+   end function work_length
+
+   !> Solves `a` x = `b` (rows); the first n of `b` become x, `a` its factors where it is dense. `info` > 0: exactly
+   !> singular. `k`: of its pattern, untouched where it is dense. `k`, `pivots` (n), `work` (work_length): to be kept
+   !> for the calls that follow.
+   subroutine solve_first(s, a, k, pivots, work, b, info)
+      type(shape_t), intent(in) :: s
+      real(wp), intent(inout) :: a(*), work(*), b(*)
+      type(klu_t), intent(inout) :: k
+      integer, intent(out) :: pivots(*), info
+      integer :: i
+
+      info = 0
+      if (s%n == 0) return
+      if (s%pattern > 0) then
+         call solve_sparse(s%n, a, k, work, work(s%n + 1), work(2*s%n + 1), b, info)
+      else if (s%rows > s%n) then
+         call geqrf(s%rows, s%n, a, s%rows, work, work(s%n + 1), s%n*panel, info)
+         do i = s%n, 1, -1
+            pivots(i) = i
+            if (abs(a((i - 1)*s%rows + i)) <= 0.0_wp) info = i
+         end do
+         if (info == 0) call solve_again(s, a, k, pivots, work, b)
+      else if (s%n == 1) then
+         if (abs(a(1)) <= 0.0_wp) info = 1
+         pivots(1) = 1
+         if (info == 0) b(1) = b(1)/a(1)
+      else
+         call gesv(s%n, 1, a, s%n, pivots, b, s%n, info)
+      end if
+   end subroutine solve_first
+
+   !> With the pivots of the matrix before, if these still serve. `right`, `left`, `size_of`: room.
+   subroutine solve_sparse(n, a, k, right, left, size_of, b, info)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: a(*)
+      type(klu_t), intent(inout) :: k
+      real(wp), intent(inout) :: right(n), left(n), size_of(n), b(n)
+      integer, intent(out) :: info
+
+      call factor_likewise(k, a, info)
+      if (info == 0) then
+         right = b
+         call solve(k, b)
+         call multiply(k%pattern, a, b, left, size_of)
+         if (maxval(abs(left - right)) <= stale*maxval(size_of + abs(right))) return
+         b = right
+      end if
+      call factor(k, a, info)
+      if (info == 0) call solve(k, b)
+   end subroutine solve_sparse
+
+   !> The same for another right-hand side, from the factors.
+   subroutine solve_again(s, a, k, pivots, work, b)
+      type(shape_t), intent(in) :: s
+      real(wp), intent(in) :: a(*)
+      type(klu_t), intent(inout) :: k
+      integer, intent(in) :: pivots(*)
+      real(wp), intent(inout) :: work(*), b(*)
+      integer :: info
+
+      if (s%n == 0) return
+      if (s%pattern > 0) then
+         call solve(k, b)
+      else if (s%rows > s%n) then
+         call ormqr('L', 'T', s%rows, 1, s%n, a, s%rows, work, b, s%rows, work(s%n + 1), s%n*panel, info)
+         call trtrs('U', 'N', 'N', s%n, 1, a, s%rows, b, s%rows, info)
+      else if (s%n == 1) then
+         b(1) = b(1)/a(1)
+      else
+         call getrs('N', s%n, 1, a, s%n, pivots, b, s%n, info)
+      end if
+   end subroutine solve_again
+
+   !> From the factors: the smallest and the largest pivot, and the sign of the determinant (1 where there is none).
+   subroutine pivot_range(s, a, k, pivots, least, largest, sign_of)
+      type(shape_t), intent(in) :: s
+      real(wp), intent(in) :: a(*)
+      type(klu_t), intent(in) :: k
+      integer, intent(in) :: pivots(*)
+      real(wp), intent(out) :: least, largest
+      integer, intent(out) :: sign_of
+      real(wp) :: pivot
+      integer :: i
+
+      sign_of = 1
+      if (s%pattern > 0) then
+         associate (all_pivots => pivots_of(k))
+            least = minval(abs(all_pivots))
+            largest = maxval(abs(all_pivots))
+            sign_of = merge(-k%exchanges, k%exchanges, mod(count(all_pivots < 0.0_wp), 2) == 1)
+         end associate
+         return
+      end if
+      least = huge(least)
+      largest = 0.0_wp
+      do i = 1, s%n
+         pivot = a(i + (i - 1)*s%rows)
+         least = min(least, abs(pivot))
+         largest = max(largest, abs(pivot))
+         if ((pivot < 0.0_wp) .neqv. (pivots(i) /= i)) sign_of = -sign_of
+      end do
+      if (s%rows > s%n) sign_of = 1
+   end subroutine pivot_range
+
+   !> |A^-1| in the maximum norm, from the factors: exact for n <= 2, an estimate otherwise (DGECON, DLACN2, DTRCON);
+   !> `iwork` (n). `work` keeps what the next solve_again needs.
+   real(wp) function inverse_norm(s, a, k, work, iwork)
+      type(shape_t), intent(in) :: s
+      real(wp), intent(in) :: a(*)
+      type(klu_t), intent(inout) :: k
+      real(wp), intent(inout) :: work(*)
+      integer, intent(inout) :: iwork(*)
+      real(wp) :: rcond
+      integer :: info
+
+      rcond = 0.0_wp
+      if (s%pattern > 0) then
+         inverse_norm = sparse_norm(s%n, k, work, work(s%n + 1), iwork)
+      else if (s%rows > s%n) then
+         call trcon('I', 'U', 'N', s%n, a, s%rows, rcond, work(s%n + 1), iwork, info)
+         inverse_norm = 1.0_wp/(max(rcond, tiny(rcond))*triangle_norm(s, a))
+      else if (s%n == 1) then
+         inverse_norm = 1.0_wp/abs(a(1))
+      else if (s%n == 2) then
+         ! The factors are l = a(2), u = a(1), a(3), a(4); columns are swapped by the pivots, row sums are not.
+         inverse_norm = max(abs(a(4) + a(3)*a(2)) + abs(a(3)), abs(a(1)*a(2)) + abs(a(1)))/abs(a(1)*a(4))
+      else
+         call gecon('I', s%n, a, s%n, 1.0_wp, rcond, work, iwork, info)
+         inverse_norm = 1.0_wp/max(rcond, tiny(rcond))
+      end if
+   end function inverse_norm
+
+   !> The same of sparse factors; `v`, `x`, `signs` (n): room.
+   real(wp) function sparse_norm(n, k, v, x, signs) result(norm)
+      integer, intent(in) :: n
+      type(klu_t), intent(inout) :: k
+      real(wp), intent(inout) :: v(*), x(*)
+      integer, intent(inout) :: signs(*)
+      integer :: asks, state(3)
+
+      asks = 0
+      norm = 0.0_wp
+      state = 0
+      do
+         call lacn2(n, v, x, signs, norm, asks, state)
+         ! DLACN2 seeks the largest column sum: that of the transposed inverse.
+         select case (asks)
+         case (1)
+            call solve_transposed(k, x)
+         case (2)
+            call solve(k, x)
+         case default
+            exit
+         end select
+      end do
+   end function sparse_norm
+
+   !> The largest row sum of R.
+   pure real(wp) function triangle_norm(s, a) result(norm)
+      type(shape_t), intent(in) :: s
+      real(wp), intent(in) :: a(s%rows, *)
+      integer :: k
+
+      norm = tiny(norm)
+      do k = 1, s%n
+         norm = max(norm, sum(abs(a(k, k:s%n))))
+      end do
+   end function triangle_norm
+end module block_matrix

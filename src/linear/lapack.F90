@@ -1,0 +1,16 @@
+!> The routines of LAPACK under the names that they have for every kind: LAPACK's own or, for real128, ours.
+#define SAME(text) text
+#define OF_KIND(name) name=>SAME(LETTER)SAME(name)
+module lapack
+#ifdef LETTER
+   use lapack_routines, only: OF_KIND(gesv), OF_KIND(getrf), OF_KIND(getrs), OF_KIND(gecon), OF_KIND(lacn2), &
+      OF_KIND(ptsv), OF_KIND(geqrf), OF_KIND(ormqr), OF_KIND(trtrs), OF_KIND(trcon), OF_KIND(gesvd)
+#else
+   use quad_dense, only: gesv, getrf, getrs, gecon, lacn2, ptsv
+   use quad_orthogonal, only: geqrf, ormqr, trtrs, trcon
+   use quad_singular, only: gesvd
+#endif
+   implicit none
+   private
+   public :: gesv, getrf, getrs, gecon, lacn2, ptsv, geqrf, ormqr, trtrs, trcon, gesvd
+end module lapack

@@ -1,0 +1,97 @@
+!> The routines of LAPACK that are used, and nothing else of it; LETTER is that of the kind, s or d. For
+!> real128 LAPACK has none, and `lapack` takes our own.
+#define SAME(text) text
+#define NAMED(name) SAME(LETTER)SAME(name)
+module lapack_routines
+#ifdef LETTER
+   use, intrinsic :: iso_fortran_env, only: wp => REAL_KIND
+   implicit none
+   public
+
+   interface
+      subroutine NAMED(getrf)(m, n, a, lda, ipiv, info)
+         import :: wp
+         integer, intent(in) :: m, n, lda
+         real(wp), intent(inout) :: a(lda, *)
+         integer, intent(out) :: ipiv(*), info
+      end subroutine NAMED(getrf)
+      subroutine NAMED(getrs)(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
+         import :: wp
+         character(1), intent(in) :: trans
+         integer, intent(in) :: n, nrhs, lda, ldb, ipiv(*)
+         real(wp), intent(in) :: a(lda, *)
+         real(wp), intent(inout) :: b(ldb, *)
+         integer, intent(out) :: info
+      end subroutine NAMED(getrs)
+      subroutine NAMED(gecon)(norm, n, a, lda, anorm, rcond, work, iwork, info)
+         import :: wp
+         character(1), intent(in) :: norm
+         integer, intent(in) :: n, lda
+         real(wp), intent(in) :: a(lda, *), anorm
+         real(wp), intent(out) :: rcond
+         real(wp), intent(inout) :: work(*)
+         integer, intent(inout) :: iwork(*)
+         integer, intent(out) :: info
+      end subroutine NAMED(gecon)
+      subroutine NAMED(gesv)(n, nrhs, a, lda, ipiv, b, ldb, info)
+         import :: wp
+         integer, intent(in) :: n, nrhs, lda, ldb
+         real(wp), intent(inout) :: a(lda, *), b(ldb, *)
+         integer, intent(out) :: ipiv(*), info
+      end subroutine NAMED(gesv)
+      subroutine NAMED(lacn2)(n, v, x, isgn, est, kase, isave)
+         import :: wp
+         integer, intent(in) :: n
+         real(wp), intent(inout) :: v(*), x(*), est
+         integer, intent(inout) :: isgn(*), kase, isave(3)
+      end subroutine NAMED(lacn2)
+      subroutine NAMED(ptsv)(n, nrhs, d, e, b, ldb, info)
+         import :: wp
+         integer, intent(in) :: n, nrhs, ldb
+         real(wp), intent(inout) :: d(*), e(*), b(ldb, *)
+         integer, intent(out) :: info
+      end subroutine NAMED(ptsv)
+      subroutine NAMED(geqrf)(m, n, a, lda, tau, work, lwork, info)
+         import :: wp
+         integer, intent(in) :: m, n, lda, lwork
+         real(wp), intent(inout) :: a(lda, *), work(*)
+         real(wp), intent(out) :: tau(*)
+         integer, intent(out) :: info
+      end subroutine NAMED(geqrf)
+      subroutine NAMED(ormqr)(side, trans, m, n, k, a, lda, tau, c, ldc, work, lwork, info)
+         import :: wp
+         character(1), intent(in) :: side, trans
+         integer, intent(in) :: m, n, k, lda, ldc, lwork
+         real(wp), intent(in) :: a(lda, *), tau(*)
+         real(wp), intent(inout) :: c(ldc, *), work(*)
+         integer, intent(out) :: info
+      end subroutine NAMED(ormqr)
+      subroutine NAMED(trtrs)(uplo, trans, diag, n, nrhs, a, lda, b, ldb, info)
+         import :: wp
+         character(1), intent(in) :: uplo, trans, diag
+         integer, intent(in) :: n, nrhs, lda, ldb
+         real(wp), intent(in) :: a(lda, *)
+         real(wp), intent(inout) :: b(ldb, *)
+         integer, intent(out) :: info
+      end subroutine NAMED(trtrs)
+      subroutine NAMED(trcon)(norm, uplo, diag, n, a, lda, rcond, work, iwork, info)
+         import :: wp
+         character(1), intent(in) :: norm, uplo, diag
+         integer, intent(in) :: n, lda
+         real(wp), intent(in) :: a(lda, *)
+         real(wp), intent(out) :: rcond
+         real(wp), intent(inout) :: work(*)
+         integer, intent(inout) :: iwork(*)
+         integer, intent(out) :: info
+      end subroutine NAMED(trcon)
+      subroutine NAMED(gesvd)(jobu, jobvt, m, n, a, lda, s, u, ldu, vt, ldvt, work, lwork, info)
+         import :: wp
+         character(1), intent(in) :: jobu, jobvt
+         integer, intent(in) :: m, n, lda, ldu, ldvt, lwork
+         real(wp), intent(inout) :: a(lda, *), work(*)
+         real(wp), intent(out) :: s(*), u(ldu, *), vt(ldvt, *)
+         integer, intent(out) :: info
+      end subroutine NAMED(gesvd)
+   end interface
+#endif
+end module lapack_routines

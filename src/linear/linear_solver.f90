@@ -1,0 +1,101 @@
+!> DGESV in its two halves, so that the factors of the Jacobian that ended Newton's iteration serve
+!> velocity and acceleration as well; and the tridiagonal system of a spline.
+module linear_solver
+   use kinds, only: wp
+   use lapack, only: getrf, getrs, gecon, ptsv
+   implicit none
+   private
+   public :: factors_t, new_factors, factor, solve, solve_transposed, reciprocal_condition, determinant_sign
+   public :: solve_tridiagonal
+
+   !> A square matrix, before and after its factorization P L U.
+   type :: factors_t
+      integer :: n = 0
+      real(wp), allocatable :: a(:, :)     !< (n, n): the matrix, then its factors
+      integer, allocatable :: pivots(:)    !< (n)
+      real(wp) :: norm = 0.0_wp            !< 1-norm of the matrix
+      real(wp), allocatable :: work(:)     !< (4 n): for the condition estimate
+      integer, allocatable :: iwork(:)     !< (n)
+   end type factors_t
+
+contains
+
+   !> Room for an `n` by `n` matrix.
+   pure function new_factors(n) result(f)
+      integer, intent(in) :: n
+      type(factors_t) :: f
+
+      f%n = n
+      allocate (f%a(n, n), f%work(4*n), source=0.0_wp)
+      allocate (f%pivots(n), f%iwork(n), source=0)
+   end function new_factors
+
+   !> Factors `f%a` in place. `info` > 0: exactly singular, the pivot of that number is zero.
+   subroutine factor(f, info)
+      type(factors_t), intent(inout) :: f
+      integer, intent(out) :: info
+      integer :: j
+
+      info = 0
+      f%norm = 0.0_wp
+      if (f%n == 0) return
+      do j = 1, f%n
+         f%norm = max(f%norm, sum(abs(f%a(:, j))))
+      end do
+      call getrf(f%n, f%n, f%a, f%n, f%pivots, info)
+   end subroutine factor
+
+   !> Replaces the right-hand side `b` (n) by the solution, from the factors.
+   subroutine solve(f, b)
+      type(factors_t), intent(in) :: f
+      real(wp), intent(inout) :: b(:)
+      integer :: info
+
+      if (f%n == 0) return
+      call getrs('N', f%n, 1, f%a, f%n, f%pivots, b, f%n, info)
+   end subroutine solve
+
+   !> Replaces the columns of `b` (n, any number) by the solutions with the matrix transposed, from the factors.
+   subroutine solve_transposed(f, b)
+      type(factors_t), intent(in) :: f
+      real(wp), intent(inout) :: b(:, :)
+      integer :: info
+
+      if (f%n == 0 .or. size(b, 2) == 0) return
+      call getrs('T', f%n, size(b, 2), f%a, f%n, f%pivots, b, f%n, info)
+   end subroutine solve_transposed
+
+   !> Estimate of 1 / (|A| |A^-1|) in the 1-norm, from the factors (DGECON).
+   subroutine reciprocal_condition(f, rcond)
+      type(factors_t), intent(inout) :: f
+      real(wp), intent(out) :: rcond
+      integer :: info
+
+      rcond = 1.0_wp
+      if (f%n == 0) return
+      call gecon('1', f%n, f%a, f%n, f%norm, rcond, f%work, f%iwork, info)
+   end subroutine reciprocal_condition
+
+   !> Sign of the determinant, +1, -1 or 0, from the factors.
+   pure integer function determinant_sign(f) result(sign_of)
+      type(factors_t), intent(in) :: f
+      integer :: i
+
+      sign_of = 1
+      do i = 1, f%n
+         if (f%pivots(i) /= i) sign_of = -sign_of
+         if (f%a(i, i) < 0.0_wp) sign_of = -sign_of
+         if (abs(f%a(i, i)) <= 0.0_wp) sign_of = 0
+      end do
+   end function determinant_sign
+
+   !> Solves the symmetric positive definite tridiagonal system with diagonal `d` (n) and
+   !> off-diagonal `e` (n - 1); `b` (n) becomes the solution. `info` > 0: not positive definite.
+   subroutine solve_tridiagonal(d, e, b, info)
+      real(wp), intent(inout) :: d(:), e(:), b(:)
+      integer, intent(out) :: info
+
+      info = 0
+      if (size(d) > 0) call ptsv(size(d), 1, d, e, b, size(d), info)
+   end subroutine solve_tridiagonal
+end module linear_solver

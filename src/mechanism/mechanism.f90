@@ -1,0 +1,187 @@
+!> A planar mechanism and what is asked of it, as plain data: links, points, pairs, drives.
+!> `deck` builds it; everything else only reads it. Lengths are in the deck's unit, angles in radians.
+module mechanism
+   use kinds, only: wp, label_length, title_length
+   implicit none
+   private
+   public :: link_t, point_t, pair_t, term_t, drive_t, request_t, choice_t, mechanism_t
+   public :: pair_revolute, pair_prismatic
+   public :: drive_angle, drive_x, drive_y, drive_relangle, drive_slide, drive_words, driven_kinds
+   public :: term_harmonic, term_power, term_table, term_words
+   public :: request_link, request_point, request_pair
+   public :: method_newton, method_matrix, method_dense, method_words, own_predictor
+   public :: instant_count, instant, wanted_links, plane_origin, place_links
+
+   integer, parameter :: pair_revolute = 1   !< REVOLUTE: eq. (7), (8)
+   integer, parameter :: pair_prismatic = 2  !< PRISM: eq. (9), (10)
+
+   !> What has a name of its own, and rows in the tables.
+   integer, parameter :: request_link = 1, request_point = 2, request_pair = 3
+
+   integer, parameter :: drive_angle = 1     !< ANGLE: phi of link `subject`
+   integer, parameter :: drive_x = 2         !< X: x of point `subject`
+   integer, parameter :: drive_y = 3         !< Y: y of point `subject`
+   integer, parameter :: drive_relangle = 4  !< RELANGLE: phi of link `second` less phi of link `subject`
+   integer, parameter :: drive_slide = 5     !< SLIDE: slide of prismatic pair `subject`
+   !> Their words on cards, and what they drive.
+   character(label_length), parameter :: drive_words(5) = &
+      [character(label_length) :: 'ANGLE', 'X', 'Y', 'RELANGLE', 'SLIDE']
+   integer, parameter :: driven_kinds(5) = [request_link, request_point, request_point, request_link, request_pair]
+
+   integer, parameter :: term_harmonic = 1   !< r(1) sin(r(2) t + r(3))
+   integer, parameter :: term_power = 2      !< r(1) t**r(2)
+   integer, parameter :: term_table = 3      !< the C2 spline through (knots, values)
+   character(label_length), parameter :: term_words(3) = [character(label_length) :: 'HARMONIC', 'POWER', 'TABLE']
+
+   integer, parameter :: method_newton = 1   !< Newton on the closure equations
+   integer, parameter :: method_matrix = 2   !< the iteration of 1987 with frozen c(phi), s(phi)
+   integer, parameter :: method_dense = 3    !< Newton on all closure equations at once: the reference
+   character(label_length), parameter :: method_words(3) = [character(label_length) :: 'NEWTON', 'MATRIX', 'DENSE']
+
+   integer, parameter :: own_predictor = -1  !< the method's own
+
+   type :: link_t
+      character(label_length) :: name = ''
+      logical :: ground = .false.
+      real(wp) :: position(3) = 0.0_wp       !< x, y, phi: fixed (ground) or rough, chooses the assembly
+   end type link_t
+
+   type :: point_t
+      character(label_length) :: name = ''
+      integer :: link = 0
+      real(wp) :: offset(2) = 0.0_wp         !< xi, eta in the link's own axes
+   end type point_t
+
+   type :: pair_t
+      integer :: kind = pair_revolute
+      character(label_length) :: name = ''
+      integer :: point_i = 0, point_j = 0    !< P of link i and Q of link j
+      real(wp) :: alpha = 0.0_wp             !< prismatic: the guide's direction in link i
+      real(wp) :: offset = 0.0_wp            !< prismatic: h of eq. (9)
+      real(wp) :: beta = 0.0_wp              !< prismatic: phi_j - phi_i, eq. (10)
+   end type pair_t
+
+   !> One term added to a drive.
+   type :: term_t
+      integer :: kind = term_harmonic
+      real(wp) :: r(3) = 0.0_wp
+      real(wp), allocatable :: knots(:), values(:)  !< a table's rows, knots increasing
+   end type term_t
+
+   type :: drive_t
+      integer :: kind = drive_angle
+      integer :: subject = 0                 !< link, point or pair, as the kind says
+      integer :: second = 0                  !< second link of drive_relangle
+      real(wp) :: polynomial(3) = 0.0_wp     !< value at t = 0, rate, acceleration
+      type(term_t), allocatable :: terms(:)
+   end type drive_t
+
+   !> One row of the tables: a link, point or pair, at every `every`-th instant, the first and the last.
+   type :: request_t
+      integer :: kind = request_link
+      integer :: subject = 0
+      integer :: every = 1
+   end type request_t
+
+   !> At the change point that is passed next after `t` `link` takes the other branch; 0: whatever passes one.
+   type :: choice_t
+      integer :: link = 0
+      real(wp) :: t = 0.0_wp
+   end type choice_t
+
+   type :: mechanism_t
+      integer :: set_number = 1
+      character(title_length) :: title = ''
+      character(label_length) :: length_unit = 'M', time_unit = 'S'
+      logical :: degrees = .false.           !< angles are printed in degrees
+      logical :: polish = .false.            !< headings are printed in Polish
+      integer :: method = method_newton
+      real(wp) :: tolerance = 0.0_wp         !< relative; 0 stands for the method's own
+      integer :: predictor = own_predictor   !< order of the start of a step, 0 to 3; no card asks for it
+      logical :: keeps_references = .false.  !< method_matrix: those of the first instant, for good; no card asks for it
+      type(link_t), allocatable :: links(:)
+      type(point_t), allocatable :: points(:)
+      type(pair_t), allocatable :: pairs(:)
+      type(drive_t), allocatable :: drives(:)
+      type(request_t), allocatable :: requests(:)
+      type(choice_t), allocatable :: choices(:)   !< none: not allocated, or of size 0
+      integer :: steps = -1                  !< of the TIME card: steps + 1 instants from t0 to t1
+      real(wp) :: t0 = 0.0_wp, t1 = 0.0_wp
+      real(wp), allocatable :: at(:)         !< explicit instants, after those of TIME
+      character(120), allocatable :: echo(:) !< the set's cards as they were understood, for the listing
+   end type mechanism_t
+
+contains
+
+   !> Number of instants of a set of computations.
+   pure integer function instant_count(m)
+      type(mechanism_t), intent(in) :: m
+
+      instant_count = m%steps + 1 + size(m%at)
+   end function instant_count
+
+   !> Instant number k = 0, 1, ..., instant_count - 1. The last one of TIME is t1 exactly.
+   pure real(wp) function instant(m, k) result(t)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: k
+
+      if (k > m%steps) then
+         t = m%at(k - m%steps)
+      else if (k == m%steps) then
+         t = m%t1
+      else
+         t = m%t0 + (m%t1 - m%t0)*real(k, wp)/real(m%steps, wp)
+      end if
+   end function instant
+
+   !> Where (2) places are counted from in all that is computed, in the deck's unit: the first ground link. It is added
+   !> back when a row is written: far from the deck's own origin small lengths would otherwise be rounded with large
+   !> places.
+   pure function plane_origin(m) result(origin)
+      type(mechanism_t), intent(in) :: m
+      real(wp) :: origin(2)
+      integer :: i
+
+      origin = 0.0_wp
+      do i = 1, size(m%links)
+         if (.not. m%links(i)%ground) cycle
+         origin = m%links(i)%position(:2)
+         return
+      end do
+   end function plane_origin
+
+   !> Puts the moving links where `position` (3, links) has them, places counted from the origin of the plane.
+   pure subroutine place_links(m, position)
+      type(mechanism_t), intent(inout) :: m
+      real(wp), intent(in) :: position(:, :)
+      real(wp) :: origin(3)
+      integer :: i
+
+      origin = [plane_origin(m), 0.0_wp]
+      do i = 1, size(m%links)
+         if (.not. m%links(i)%ground) m%links(i)%position = position(:, i) + origin
+      end do
+   end subroutine place_links
+
+   !> The links (links) whose motion the deck's requests need.
+   pure function wanted_links(m) result(wanted)
+      type(mechanism_t), intent(in) :: m
+      logical :: wanted(size(m%links))
+      integer :: i
+
+      wanted = .false.
+      do i = 1, size(m%requests)
+         associate (k => m%requests(i)%subject)
+            select case (m%requests(i)%kind)
+            case (request_link)
+               wanted(k) = .true.
+            case (request_point)
+               wanted(m%points(k)%link) = .true.
+            case default
+               wanted(m%points(m%pairs(k)%point_i)%link) = .true.
+               wanted(m%points(m%pairs(k)%point_j)%link) = .true.
+            end select
+         end associate
+      end do
+   end function wanted_links
+end module mechanism

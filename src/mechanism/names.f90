@@ -1,0 +1,126 @@
+!> Names: a table from names to numbers, in constant time (open addressing), and names in messages.
+module names
+   use, intrinsic :: iso_fortran_env, only: int64
+   use kinds, only: label_length
+   use mechanism, only: mechanism_t, drive_t, drive_words, driven_kinds, drive_relangle, request_link, request_point
+   use numerals, only: whole
+   implicit none
+   private
+   public :: name_table_t, put_name, find_name, drive_name, listed
+
+   !> Slots of an empty table. At most one slot in two is filled.
+   integer, parameter :: first_size = 64
+
+   type :: slot_t
+      character(label_length) :: name = ''
+      integer :: number = 0                !< 0: the slot is free
+   end type slot_t
+
+   type :: name_table_t
+      private
+      integer :: filled = 0
+      type(slot_t), allocatable :: slots(:)
+   end type name_table_t
+
+   !> So many names are listed; of more, the number.
+   integer, parameter :: max_names = 8
+
+contains
+
+   !> Enters `name` with `number` > 0. If it was there already, nothing changes and `earlier` is its
+   !> number; otherwise `earlier` is 0.
+   subroutine put_name(table, name, number, earlier)
+      type(name_table_t), intent(inout) :: table
+      character(*), intent(in) :: name
+      integer, intent(in) :: number
+      integer, intent(out) :: earlier
+      integer :: slot
+
+      if (.not. allocated(table%slots)) allocate (table%slots(first_size))
+      slot = slot_of(table%slots, name)
+      earlier = table%slots(slot)%number
+      if (earlier /= 0) return
+      table%slots(slot) = slot_t(name, number)
+      table%filled = table%filled + 1
+      if (2*table%filled > size(table%slots)) call double_slots(table%slots)
+   end subroutine put_name
+
+   !> The number of `name`, or 0 if the table does not hold it.
+   pure integer function find_name(table, name) result(number)
+      type(name_table_t), intent(in) :: table
+      character(*), intent(in) :: name
+
+      number = 0
+      if (allocated(table%slots)) number = table%slots(slot_of(table%slots, name))%number
+   end function find_name
+
+   !> Kind and subject of drive `d` of the mechanism `m`, as on its card.
+   pure function drive_name(m, d) result(name)
+      type(mechanism_t), intent(in) :: m
+      type(drive_t), intent(in) :: d
+      character(3*label_length + 2) :: name
+
+      select case (driven_kinds(d%kind))
+      case (request_link)
+         name = m%links(d%subject)%name
+      case (request_point)
+         name = m%points(d%subject)%name
+      case default
+         name = m%pairs(d%subject)%name
+      end select
+      name = trim(drive_words(d%kind))//' '//name
+      if (d%kind == drive_relangle) name = trim(name)//' '//m%links(d%second)%name
+   end function drive_name
+
+   !> At least one name; commas between them, and of many the number of those left out.
+   pure function listed(words) result(text)
+      character(*), intent(in) :: words(:)
+      character(:), allocatable :: text
+      integer :: i
+
+      text = trim(words(1))
+      do i = 2, min(size(words), max_names)
+         text = text//', '//trim(words(i))
+      end do
+      if (size(words) > max_names) text = text//' AND '//whole(size(words) - max_names)//' MORE'
+   end function listed
+
+   !> The slot that holds `name`, or the free one where it belongs. A free slot always exists.
+   pure integer function slot_of(slots, name) result(k)
+      type(slot_t), intent(in) :: slots(:)
+      character(*), intent(in) :: name
+      character(label_length) :: key
+
+      key = name
+      k = 1 + int(modulo(hash(key), int(size(slots), int64)))
+      do while (slots(k)%number /= 0)
+         if (slots(k)%name == key) exit
+         k = 1 + modulo(k, size(slots))
+      end do
+   end function slot_of
+
+   !> A number below 2**31 - 1 that depends on every character. The product stays below 2**56.
+   pure integer(int64) function hash(key)
+      character(label_length), intent(in) :: key
+      integer(int64), parameter :: prime = 2147483647_int64, factor = 16777619_int64
+      integer :: i
+
+      hash = 0_int64
+      do i = 1, label_length
+         hash = modulo(hash*factor + iachar(key(i:i)), prime)
+      end do
+   end function hash
+
+   !> Twice as many slots, with the same names.
+   subroutine double_slots(slots)
+      type(slot_t), allocatable, intent(inout) :: slots(:)
+      type(slot_t), allocatable :: old(:)
+      integer :: i
+
+      call move_alloc(slots, old)
+      allocate (slots(2*size(old)))
+      do i = 1, size(old)
+         if (old(i)%number /= 0) slots(slot_of(slots, old(i)%name)) = old(i)
+      end do
+   end subroutine double_slots
+end module names

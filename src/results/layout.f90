@@ -1,0 +1,169 @@
+!> How the tables of a listing look: digits, powers of ten, units of angle, heads of columns.
+!>
+!> Digits: positions, velocities and accelerations are printed with the decimals, and where need be the power
+!> of ten, that give seven digits to the deck's characteristic length and rate; so one mechanism in
+!> millimetres and in kilometres prints the same digits.
+module layout
+   use kinds, only: wp
+   use constants, only: degree
+   use mechanism, only: mechanism_t, request_link, request_point, request_pair
+   use independent, only: parts_t, find_parts
+   use scales, only: characteristic_length, characteristic_rate
+   use numerals, only: numeral_length
+   use phrases, only: phrase, say_link, say_point, say_pair, say_phi, say_value, say_rate, say_rate2, &
+      say_none, say_instant
+   implicit none
+   private
+   public :: layout_t, digits_t, new_layout, digits_of, column_powers, name_length, row_length
+
+   integer, parameter :: digits_after_first = 6
+   !> Characters before a row's numbers, and of a whole row.
+   integer, parameter :: name_length = 9, row_length = name_length + 9*numeral_length
+
+   !> Decimals and powers of ten: (length or angle, derivative).
+   type :: digits_t
+      integer :: decimals(2, 0:2) = digits_after_first
+      integer :: power(2, 0:2) = 0
+   end type digits_t
+
+   !> The digits of the set, and of each of its independent mechanisms where they are not all the same.
+   type, extends(digits_t) :: layout_t
+      type(digits_t), allocatable :: own(:)   !< (parts)
+      integer, allocatable :: part(:)         !< (requests) 0: of the ground
+      logical :: mixed = .false.              !< their powers of ten differ: each table has its own in its heads
+      integer :: time_decimals = digits_after_first
+      integer :: time_power = 0
+      real(wp) :: angle = 1.0_wp           !< radians in the unit in which angles are printed
+      character(row_length) :: heads(3)    !< by the kind of a request
+      character(numeral_length) :: none    !< in the place of a number that does not exist
+      character(:), allocatable :: instant !< before the number of an instant
+   end type layout_t
+
+contains
+
+   !> The layout of the tables of `m`, from its deck alone.
+   function new_layout(m) result(l)
+      type(mechanism_t), intent(in) :: m
+      type(layout_t) :: l
+      type(parts_t) :: parts
+      type(mechanism_t), allocatable :: own(:)
+      real(wp) :: time
+      integer :: k
+
+      if (m%degrees) l%angle = degree
+      l%digits_t = digits_for(m, l%angle)
+      call find_parts(m, parts, own)
+      if (parts%count > 1) call take_parts(l, [(digits_for(own(k), l%angle), k=1, size(own))], parts%part)
+      time = max(abs(m%t0), abs(m%t1), maxval([0.0_wp, abs(m%at)]))
+      if (time > 0.0_wp) call choose_digits(log10(time), l%time_decimals, l%time_power)
+      do k = 1, size(l%heads)
+         l%heads(k) = column_heads(k, m%polish)
+      end do
+      l%none = phrase(say_none, m%polish)
+      l%none = adjustr(l%none)
+      l%instant = ' '//phrase(say_instant, m%polish)//' '
+   end function new_layout
+
+   !> The digits of one mechanism; `angle`: radians in the unit in which angles are printed.
+   pure type(digits_t) function digits_for(m, angle) result(d)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: angle
+      real(wp) :: length, rate
+      integer :: k
+
+      length = characteristic_length(m)
+      rate = characteristic_rate(m, length)
+      do k = 0, 2
+         call choose_digits(log10(length) + k*log10(rate), d%decimals(1, k), d%power(1, k))
+         call choose_digits(k*log10(rate) + log10(merge(1.0_wp/angle, 1.0_wp, k > 0)), &
+            d%decimals(2, k), d%power(2, k))
+      end do
+   end function digits_for
+
+   !> Each of several mechanisms has its `own` digits; `part` (requests): whose row it is. Where none has more than one
+   !> decimal more than another, all have those of the largest.
+   pure subroutine take_parts(l, own, part)
+      type(layout_t), intent(inout) :: l
+      type(digits_t), intent(in) :: own(:)
+      integer, intent(in) :: part(:)
+      type(digits_t) :: most
+      integer :: c
+
+      l%digits_t = own(1)
+      most = own(1)
+      do c = 2, size(own)
+         l%mixed = l%mixed .or. any(own(c)%power /= own(1)%power)
+         l%decimals = min(l%decimals, own(c)%decimals)
+         most%decimals = max(most%decimals, own(c)%decimals)
+      end do
+      if (.not. l%mixed .and. all(most%decimals - l%decimals <= 1)) return
+      l%own = own
+      l%part = part
+   end subroutine take_parts
+
+   !> The digits of request number `i`.
+   pure type(digits_t) function digits_of(l, i) result(d)
+      type(layout_t), intent(in) :: l
+      integer, intent(in) :: i
+
+      d = l%digits_t
+      if (.not. allocated(l%own)) return
+      if (l%part(i) > 0) d = l%own(l%part(i))
+   end function digits_of
+
+   !> The powers of ten of the columns of a row of the given `kind` (9): what it does not have is 0.
+   pure function column_powers(d, kind, angular) result(power)
+      type(digits_t), intent(in) :: d
+      integer, intent(in) :: kind
+      logical, intent(in) :: angular
+      integer :: power(9)
+
+      power = 0
+      power(1::3) = d%power(merge(2, 1, angular), :)
+      if (kind == request_pair) return
+      power(2::3) = d%power(1, :)
+      if (kind == request_link) power(3::3) = d%power(2, :)
+   end function column_powers
+
+   !> Decimals and power of ten for values of order 10**`order`: seven digits, no power as long as they fit.
+   pure subroutine choose_digits(order, decimals, power)
+      real(wp), intent(in) :: order
+      integer, intent(out) :: decimals, power
+      integer :: k
+      ! An order that is a whole number but for rounding counts as one.
+      real(wp), parameter :: margin = max(1.0e-9_wp, 32.0_wp*epsilon(1.0_wp))
+
+      k = floor(order + margin)
+      power = 0
+      if (k < -2 .or. k > 4) power = 3*floor(real(k, wp)/3.0_wp + margin)
+      decimals = digits_after_first - (k - power)
+   end subroutine choose_digits
+
+   !> The heads over rows of one kind, right-adjusted over their numbers.
+   pure function column_heads(kind, polish) result(line)
+      integer, intent(in) :: kind
+      logical, intent(in) :: polish
+      character(row_length) :: line
+      character(numeral_length) :: words(9)
+      integer :: k
+      character(1), parameter :: prefix(0:2) = [' ', 'V', 'A']
+      integer, parameter :: kind_words(3) = [say_link, say_point, say_pair]
+
+      words = ''
+      select case (kind)
+      case (request_link, request_point)
+         do k = 0, 2
+            words(3*k + 1) = trim(prefix(k))//'X'
+            words(3*k + 2) = trim(prefix(k))//'Y'
+            if (kind == request_link) words(3*k + 3) = trim(prefix(k))//phrase(say_phi, polish)
+         end do
+      case (request_pair)
+         words(1::3) = [character(numeral_length) :: &
+            phrase(say_value, polish), phrase(say_rate, polish), phrase(say_rate2, polish)]
+      end select
+      line = ' '//phrase(kind_words(kind), polish)
+      do k = 1, size(words)
+         line(name_length + 1 + numeral_length*(k - 1):name_length + numeral_length*k) = adjustr(words(k))
+      end do
+   end function column_heads
+end module layout

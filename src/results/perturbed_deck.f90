@@ -1,0 +1,124 @@
+!> A mechanism as it would be if every number of its deck were a little off: what that changes in a result
+!> is what the result does not know.
+module perturbed_deck
+   use, intrinsic :: iso_fortran_env, only: int64
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, drive_t, pair_prismatic, term_table, term_harmonic, drive_relangle
+   implicit none
+   private
+   public :: perturbed, perturbed_instant, perturbation, sample_count
+
+   !> Relative; many roundings, so that those of the calculation itself are small beside it, and so little that the
+   !> change stays in proportion at 1E-12 from a dead point.
+   real(wp), parameter :: perturbation = 256.0_wp*epsilon(1.0_wp)
+   !> Of eight numbers by chance the largest is seldom a small one.
+   integer, parameter :: sample_count = 8
+   !> Signs by chance, the same ones everywhere (Park and Miller's generator).
+   integer(int64), parameter :: multiplier = 16807_int64, modulus = 2147483647_int64, seed = 198709_int64
+
+   !> Numbers that are the same on many cards have the same rounding, and a sum of many is rounded the same way again
+   !> and again: in every second sample all cards of a kind are off alike.
+   type :: dice_t
+      integer(int64) :: first = seed, last = seed
+      logical :: alike = .false.
+   end type dice_t
+
+contains
+
+   !> `m` with every number up or down by `perturbation`, by chance as sample `k` = 1, 2, ... has it; 0: as it is.
+   pure function perturbed(m, k) result(p)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: k
+      type(mechanism_t) :: p
+      type(dice_t) :: dice
+      integer :: i
+
+      p = m
+      if (k == 0) return
+      dice = dice_t(seed*k, seed*k, mod(k, 2) == 0)
+      do i = 1, size(p%links)
+         if (.not. p%links(i)%ground) cycle
+         call take(1, dice)
+         call shift(p%links(i)%position, abs(p%links(i)%position), dice)
+      end do
+      do i = 1, size(p%points)
+         call take(2, dice)
+         ! Across as well: an arm is turned by an angle that is rounded.
+         call shift(p%points(i)%offset, spread(norm2(p%points(i)%offset), 1, 2), dice)
+      end do
+      do i = 1, size(p%pairs)
+         if (p%pairs(i)%kind /= pair_prismatic) cycle
+         call take(3, dice)
+         call shift_guide(p%pairs(i)%alpha, p%pairs(i)%offset, p%pairs(i)%beta, dice)
+      end do
+      do i = 1, size(p%drives)
+         call take(4, dice)
+         call shift_drive(p%drives(i), dice)
+      end do
+   end function perturbed
+
+   !> Instant `t` of sample `k`.
+   pure real(wp) function perturbed_instant(t, k)
+      real(wp), intent(in) :: t
+      integer, intent(in) :: k
+
+      perturbed_instant = t
+      if (k > 0) perturbed_instant = t*(1.0_wp + merge(perturbation, -perturbation, mod(k/2, 2) == 1))
+   end function perturbed_instant
+
+   pure subroutine shift_guide(alpha, offset, beta, dice)
+      real(wp), intent(inout) :: alpha, offset, beta
+      type(dice_t), intent(inout) :: dice
+      real(wp) :: x(3)
+
+      x = [alpha, offset, beta]
+      call shift(x, [max(1.0_wp, abs(alpha)), abs(offset), abs(beta)], dice)
+      alpha = x(1)
+      offset = x(2)
+      beta = x(3)
+   end subroutine shift_guide
+
+   pure subroutine shift_drive(drive, dice)
+      type(drive_t), intent(inout) :: drive
+      type(dice_t), intent(inout) :: dice
+      real(wp) :: sizes(3)
+      integer :: i
+
+      sizes = abs(drive%polynomial)
+      ! An angle counted from another link is added to that link's, and rounded with it.
+      if (drive%kind == drive_relangle) sizes(1) = max(sizes(1), 1.0_wp)
+      call shift(drive%polynomial, sizes, dice)
+      if (.not. allocated(drive%terms)) return
+      do i = 1, size(drive%terms)
+         if (drive%terms(i)%kind == term_table) then
+            call shift(drive%terms(i)%values, abs(drive%terms(i)%values), dice)
+         else
+            ! The second number of a power says what kind of function it is.
+            call shift(drive%terms(i)%r(1:1), abs(drive%terms(i)%r(1:1)), dice)
+            if (drive%terms(i)%kind == term_harmonic) &
+               call shift(drive%terms(i)%r(2:3), abs(drive%terms(i)%r(2:3)), dice)
+         end if
+      end do
+   end subroutine shift_drive
+
+   !> Each of `x` up or down by `perturbation` times its `size_of`.
+   pure subroutine shift(x, size_of, dice)
+      real(wp), intent(inout) :: x(:)
+      real(wp), intent(in) :: size_of(:)
+      type(dice_t), intent(inout) :: dice
+      integer :: i
+
+      do i = 1, size(x)
+         dice%last = mod(multiplier*dice%last, modulus)
+         x(i) = x(i) + merge(perturbation, -perturbation, 2*dice%last > modulus)*size_of(i)
+      end do
+   end subroutine shift
+
+   !> To be called for each card, of kind number `kind`.
+   pure subroutine take(kind, dice)
+      integer, intent(in) :: kind
+      type(dice_t), intent(inout) :: dice
+
+      if (dice%alike) dice%last = mod(multiplier*(dice%first + seed*kind), modulus)
+   end subroutine take
+end module perturbed_deck

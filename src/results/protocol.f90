@@ -1,0 +1,60 @@
+!> The solver's protocol (--log): how each position was found. It depends on the solver's path, which
+!> the listing never does.
+module protocol
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, method_newton, method_dense, method_matrix
+   use convergence, only: convergence_t, ending
+   use continuity, only: branch_t, branch_word
+   use text_output, only: output_t, put
+   use numerals, only: whole
+   use known_digits, only: nothing_known
+   implicit none
+   private
+   public :: protocol_head, protocol_instant
+
+contains
+
+   !> The set's method and the columns; with `errors`, those of the errors' estimates as well.
+   subroutine protocol_head(o, m, errors)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      logical, intent(in) :: errors
+      character(6) :: method
+
+      if (m%method == method_newton) method = 'NEWTON'
+      if (m%method == method_dense) method = 'DENSE'
+      if (m%method == method_matrix) method = 'MATRIX'
+      call put(o, ' SET '//whole(m%set_number)//'   METHOD '//trim(method))
+      call put(o, trim('    STEP                        T     ENDED  ITER   RESIDUAL       STEP       RATE' &
+         //'  RECIPROCAL CONDITION  SIGN OF DET   BRANCH  PARTS      DOUBT'// &
+         merge('  ERROR OF X  ERROR OF V  ERROR OF A', repeat(' ', 36), errors)))
+   end subroutine protocol_head
+
+   !> One line: instant number, time, how the iteration ended, its count, last residual and step (over the size of
+   !> the coordinates), mean ratio of successive residuals, reciprocal condition and sign of the determinant; the
+   !> branch `b`, and what was verified of it; where `errors` (0:2) are given, the largest of positions, velocities
+   !> and accelerations, in the characteristic length and rate.
+   subroutine protocol_instant(o, step, t, c, b, errors)
+      type(output_t), intent(inout) :: o
+      integer, intent(in) :: step
+      real(wp), intent(in) :: t
+      type(convergence_t), intent(in) :: c
+      type(branch_t), intent(in) :: b
+      real(wp), intent(in), optional :: errors(0:2)
+      character(200) :: line
+      integer :: k
+
+      write (line, '(i8,es25.16e3,a10,i6,3es11.3,es22.3,i13,a9,i7,es11.3)') step, t, adjustr(ending(c)), c%iterations, &
+         c%residual, c%step, c%rate, c%reciprocal_condition, c%determinant, adjustr(branch_word(b)), b%parts, b%doubt
+      if (present(errors)) then
+         do k = 0, 2
+            if (errors(k) < nothing_known) then
+               write (line(len_trim(line) + 1:), '(es12.2e3)') errors(k)
+            else
+               line(len_trim(line) + 1:) = '        NONE'
+            end if
+         end do
+      end if
+      call put(o, trim(line))
+   end subroutine protocol_instant
+end module protocol

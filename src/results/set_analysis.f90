@@ -1,0 +1,185 @@
+!> The analysis of a set, each of its independent mechanisms by itself: its own steps and parts of them, its
+!> own limits, change points and flags. What is told of the whole is the worst of them.
+module set_analysis
+   use kinds, only: wp
+   use mechanism, only: mechanism_t
+   use remarks, only: remark_t
+   use convergence, only: convergence_t, is_solved, gather
+   use continuity, only: branch_t, tally_t, count_in, worst_branch
+   use choices, only: choices_t, new_choices, unused
+   use scatter, only: largest_errors
+   use rounding_samples, only: samples_t, make_samples, take_samples
+   use set_motion, only: set_motion_t, new_set_motion
+   use analysis, only: analysis_t, make_analysis, advance, redundancy_gap
+   use second_opinion, only: opinion_t, ask_blocks
+   implicit none
+   private
+   public :: set_analysis_t, make_set_analysis, advance_set, sample_set, set_record, set_errors, set_gap, &
+      set_closing_remarks, iterations_of
+
+   !> `now`: the instant found last.
+   type :: set_analysis_t
+      type(set_motion_t) :: now
+      type(analysis_t), allocatable :: list(:)    !< (parts)
+      type(opinion_t), allocatable :: opinions(:) !< (parts)
+      type(samples_t), allocatable :: samples(:)  !< (parts)
+      type(tally_t) :: tally                      !< of all instants
+   end type set_analysis_t
+
+contains
+
+   !> Ready for the first instant of `m`, whose equations are as many as its unknowns.
+   subroutine make_set_analysis(m, s)
+      type(mechanism_t), intent(in) :: m
+      type(set_analysis_t), intent(out) :: s
+      integer :: c
+
+      call new_set_motion(m, s%now)
+      associate (n => s%now%parts%count)
+         allocate (s%list(n), s%opinions(n), s%samples(n))
+      end associate
+      if (s%now%parts%count == 1) call prepare(m, s, 1)
+      do c = 1, size(s%now%own)
+         call prepare(s%now%own(c), s, c)
+      end do
+
+   contains
+
+      subroutine prepare(one, s, c)
+         type(mechanism_t), intent(in) :: one
+         type(set_analysis_t), intent(inout) :: s
+         integer, intent(in) :: c
+
+         call make_analysis(s%list(c), one)
+         call make_samples(s%samples(c), one)
+      end subroutine prepare
+   end subroutine make_set_analysis
+
+   !> Solves instant `t` of the set `m`.
+   subroutine advance_set(s, m, t)
+      type(set_analysis_t), intent(inout) :: s
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: t
+      type(branch_t) :: branch
+      integer :: c, passed
+
+      if (s%now%parts%count == 1) then
+         call advance(s%list(1), t, s%now%motions(1))
+         call ask_blocks(m, s%list(1), s%opinions(1), s%now%motions(1))
+         s%tally = s%list(1)%tally
+         return
+      end if
+      passed = sum(s%list%tally%passed)
+      do c = 1, s%now%parts%count
+         call advance(s%list(c), t, s%now%motions(c))
+         call ask_blocks(s%now%own(c), s%list(c), s%opinions(c), s%now%motions(c))
+      end do
+      passed = sum(s%list%tally%passed) - passed
+      branch = worst_branch(s%list%branch)
+      if (all(s%now%motions%known >= 0)) then
+         call count_in(s%tally, branch, passed)
+      else
+         s%tally%passed = s%tally%passed + passed
+      end if
+   end subroutine advance_set
+
+   !> How far the motion found last of `m` is known. `always`: also where no digit of a table is in doubt.
+   subroutine sample_set(s, m, always)
+      type(set_analysis_t), intent(inout) :: s
+      type(mechanism_t), intent(in) :: m
+      logical, intent(in) :: always
+      integer :: c
+
+      if (size(s%now%own) == 0) call sample(m, 1)
+      do c = 1, size(s%now%own)
+         call sample(s%now%own(c), c)
+      end do
+
+   contains
+
+      subroutine sample(one, c)
+         type(mechanism_t), intent(in) :: one
+         integer, intent(in) :: c
+
+         associate (a => s%list(c))
+            call take_samples(s%samples(c), one, a%engine%blocks, a%convergence%reciprocal_condition, &
+               s%now%motions(c), always, s%now%doubts(c))
+         end associate
+      end subroutine sample
+   end subroutine sample_set
+
+   !> How the instant was found, and on which branch: of several mechanisms the worst.
+   pure subroutine set_record(s, record, branch)
+      type(set_analysis_t), intent(in) :: s
+      type(convergence_t), intent(out) :: record
+      type(branch_t), intent(out) :: branch
+      integer :: c
+
+      record = s%list(1)%convergence
+      branch = worst_branch(s%list%branch)
+      do c = 2, size(s%list)
+         associate (one => s%list(c)%convergence)
+            record%doubt = max(record%doubt, one%doubt)
+            record%rate = max(record%rate, one%rate)
+            if (is_solved(record) .or. .not. is_solved(one)) then
+               call gather(one, record)
+            else
+               call gather(convergence_t(ended=record%ended, iterations=one%iterations, residual=one%residual, &
+                  step=one%step, reciprocal_condition=one%reciprocal_condition, determinant=one%determinant), record)
+            end if
+         end associate
+      end do
+   end subroutine set_record
+
+   !> The largest errors (0:2) of any row, in the characteristic length and rate of its mechanism.
+   pure function set_errors(s, m) result(largest)
+      type(set_analysis_t), intent(in) :: s
+      type(mechanism_t), intent(in) :: m
+      real(wp) :: largest(0:2)
+      integer :: c
+
+      largest = 0.0_wp
+      if (size(s%now%own) == 0) largest = largest_errors(m, s%now%doubts(1), s%now%motions(1), &
+         s%samples(1)%length, s%samples(1)%rate)
+      do c = 1, size(s%now%own)
+         largest = max(largest, largest_errors(s%now%own(c), s%now%doubts(c), s%now%motions(c), &
+            s%samples(c)%length, s%samples(c)%rate))
+      end do
+   end function set_errors
+
+   !> By how much redundant equations have differed at most, in the characteristic length; -1 where none are.
+   pure real(wp) function set_gap(s) result(gap)
+      type(set_analysis_t), intent(in) :: s
+      integer :: c
+
+      gap = -1.0_wp
+      do c = 1, size(s%list)
+         gap = max(gap, redundancy_gap(s%list(c)))
+      end do
+   end function set_gap
+
+   !> What there is to say after the last instant: of BRANCH cards for which there was no change point.
+   pure function set_closing_remarks(s, m) result(list)
+      type(set_analysis_t), intent(in) :: s
+      type(mechanism_t), intent(in) :: m
+      type(remark_t), allocatable :: list(:)
+      type(choices_t) :: all_of_them
+      integer :: c
+
+      all_of_them = new_choices(m)
+      if (size(s%now%own) == 0) all_of_them%used = s%list(1)%choices%used
+      do c = 1, size(s%now%own)
+         associate (cards => s%now%parts%list(c)%choices)
+            all_of_them%used(cards) = all_of_them%used(cards) .or. s%list(c)%choices%used
+         end associate
+      end do
+      list = unused(all_of_them)
+   end function set_closing_remarks
+
+   !> Iterations of all positions sought so far: as one mechanism has them where there is one, of several the most.
+   pure integer function iterations_of(s)
+      type(set_analysis_t), intent(in) :: s
+
+      iterations_of = maxval(s%list%iterations)
+   end function iterations_of
+end module set_analysis

@@ -1,0 +1,179 @@
+!> The Assur groups of a mechanism, with the drives that move them: the least sets of links that can be solved
+!> one after another. Each coordinate is matched with a closure equation; a link waits for all links that
+!> stand in the equations of its coordinates, and links that wait for one another are a group.
+!>
+!> Order: a group after those it builds on, within one depth by the deck's links. So groups and order are the
+!> mechanism's own, whatever the matching.
+module assur_groups
+   use mechanism, only: mechanism_t
+   use matching, only: incidence_t, find_blocks
+   use closure_incidence, only: closure_t
+   implicit none
+   private
+   public :: group_t, groups_of
+
+   type :: group_t
+      integer, allocatable :: links(:)
+      logical :: driven = .false.         !< a drive is part of it
+      logical :: needed = .true.          !< a table names one of its links, or one that builds on it
+   end type group_t
+
+contains
+
+   !> The groups of `m`. `unknown_of` (equations), `equation_of` (unknowns): a matching of its closure `c` in which each
+   !> unknown has an equation; `over` (equations): the part with too many equations, whose links are one group;
+   !> `wanted` (links): named by a table.
+   function groups_of(m, c, unknown_of, equation_of, over, wanted) result(groups)
+      type(mechanism_t), intent(in) :: m
+      type(closure_t), intent(in) :: c
+      integer, intent(in) :: unknown_of(:), equation_of(:)
+      logical, intent(in) :: over(:), wanted(:)
+      type(group_t), allocatable :: groups(:)
+      type(incidence_t) :: waits
+      integer, allocatable :: first(:), member(:), of_link(:), order(:)
+      integer :: i, e
+
+      waits = waiting(m, c, equation_of, over)
+      call find_blocks(waits, [(i, i=1, size(m%links))], first, member)
+      of_link = member
+      do i = 1, size(first) - 1
+         of_link(member(first(i):first(i + 1) - 1)) = i
+      end do
+      order = numbers(m, waits, first, member, of_link)
+      allocate (groups(maxval([0, order])))
+      do i = 1, size(groups)
+         groups(i)%needed = .false.
+      end do
+      call share_out_links(of_link, order, wanted, groups)
+      do e = 1, size(unknown_of)
+         if (c%drive(e) == 0 .or. c%incidence%first(e) == c%incidence%first(e + 1)) cycle
+         i = c%link_of(merge(c%incidence%unknown(c%incidence%first(e)), unknown_of(e), over(e)))
+         groups(order(of_link(i)))%driven = .true.
+      end do
+      call spread_need(waits, of_link, order, groups)
+   end function groups_of
+
+   !> For which links each link waits; a ground link for none. The links of the part `over` wait for its first
+   !> link, and that for all of them.
+   function waiting(m, c, equation_of, over) result(w)
+      type(mechanism_t), intent(in) :: m
+      type(closure_t), intent(in) :: c
+      integer, intent(in) :: equation_of(:)
+      logical, intent(in) :: over(:)
+      type(incidence_t) :: w
+      logical :: tied(size(m%links))
+      integer :: u, i, k, link, n
+
+      tied = .false.
+      do u = 1, size(equation_of)
+         if (over(equation_of(u))) tied(c%link_of(u)) = .true.
+      end do
+      w%equations = size(m%links)
+      w%unknowns = size(m%links)
+      allocate (w%first(size(m%links) + 1), w%unknown(3*size(m%links) + size(c%incidence%unknown)))
+      n = 0
+      u = 0
+      do link = 1, size(m%links)
+         w%first(link) = n + 1
+         call wait_for(link)
+         if (.not. m%links(link)%ground) then
+            do i = 1, 3
+               u = u + 1
+               do k = c%incidence%first(equation_of(u)), c%incidence%first(equation_of(u) + 1) - 1
+                  call wait_for(c%link_of(c%incidence%unknown(k)))
+               end do
+            end do
+         end if
+         if (.not. tied(link)) cycle
+         call wait_for(findloc(tied, .true., dim=1))
+         if (any(tied(:link - 1))) cycle
+         do k = link + 1, size(tied)
+            if (tied(k)) call wait_for(k)
+         end do
+      end do
+      w%first(size(m%links) + 1) = n + 1
+
+   contains
+
+      subroutine wait_for(other)
+         integer, intent(in) :: other
+
+         n = n + 1
+         w%unknown(n) = other
+      end subroutine wait_for
+   end function waiting
+
+   !> (components) The number of each component of links among the groups; 0 for ground links.
+   function numbers(m, waits, first, member, of_link) result(order)
+      type(mechanism_t), intent(in) :: m
+      type(incidence_t), intent(in) :: waits
+      integer, intent(in) :: first(:), member(:), of_link(:)
+      integer, allocatable :: order(:)
+      integer :: depth(size(first) - 1), before(size(first) + 1), i, k, n
+
+      depth = 0
+      before = 0
+      do i = 1, size(depth)
+         do k = first(i), first(i + 1) - 1
+            if (m%links(member(k))%ground) cycle
+            do n = waits%first(member(k)), waits%first(member(k) + 1) - 1
+               if (of_link(waits%unknown(n)) /= i) depth(i) = max(depth(i), depth(of_link(waits%unknown(n))))
+            end do
+         end do
+         if (m%links(member(first(i)))%ground) cycle
+         depth(i) = depth(i) + 1
+         before(depth(i) + 1) = before(depth(i) + 1) + 1
+      end do
+      do i = 2, size(before)
+         before(i) = before(i) + before(i - 1)
+      end do
+      allocate (order(size(depth)), source=0)
+      do i = 1, size(of_link)
+         if (order(of_link(i)) > 0 .or. m%links(i)%ground) cycle
+         before(depth(of_link(i))) = before(depth(of_link(i))) + 1
+         order(of_link(i)) = before(depth(of_link(i)))
+      end do
+   end function numbers
+
+   subroutine share_out_links(of_link, order, wanted, groups)
+      integer, intent(in) :: of_link(:), order(:)
+      logical, intent(in) :: wanted(:)
+      type(group_t), intent(inout) :: groups(:)
+      integer :: members(size(groups)), i, g
+
+      members = 0
+      do i = 1, size(of_link)
+         g = order(of_link(i))
+         if (g > 0) members(g) = members(g) + 1
+      end do
+      do g = 1, size(groups)
+         allocate (groups(g)%links(members(g)))
+      end do
+      members = 0
+      do i = 1, size(of_link)
+         g = order(of_link(i))
+         if (g == 0) cycle
+         members(g) = members(g) + 1
+         groups(g)%links(members(g)) = i
+         groups(g)%needed = groups(g)%needed .or. wanted(i)
+      end do
+   end subroutine share_out_links
+
+   !> What a needed group builds on is needed.
+   subroutine spread_need(waits, of_link, order, groups)
+      type(incidence_t), intent(in) :: waits
+      integer, intent(in) :: of_link(:), order(:)
+      type(group_t), intent(inout) :: groups(:)
+      integer :: g, i, n, other
+
+      do g = size(groups), 1, -1
+         if (.not. groups(g)%needed) cycle
+         do i = 1, size(groups(g)%links)
+            do n = waits%first(groups(g)%links(i)), waits%first(groups(g)%links(i) + 1) - 1
+               other = order(of_link(waits%unknown(n)))
+               if (other > 0) groups(other)%needed = .true.
+            end do
+         end do
+      end do
+   end subroutine spread_need
+end module assur_groups

@@ -1,0 +1,137 @@
+!> Each closed polygon in its own lengths: its rows, and the slides that its block seeks, in units of its
+!> largest arm, so that a residual, a gap or a correction is small or large for that polygon and not for the largest
+!> link of the mechanism. Units are powers of two: no digit changes.
+!>
+!> What is known when the block's turn comes may be much larger than the arms that it turns. Its rounding cannot be
+!> corrected: `coarse` tells how much larger, and levels of rounding are that much higher.
+module block_units
+   use kinds, only: wp
+   use scales, only: power_of_two
+   use blocks, only: blocks_t, instance_t, row_t, instance_angles, instance_projection
+   use block_instances, only: bend_of
+   implicit none
+   private
+   public :: find_units
+
+   real(wp), parameter :: much_smaller = 0.0625_wp
+
+contains
+
+   !> Divides the rows of all blocks of `b`, filled in one unit of length, by units of their own, and its slides.
+   pure subroutine find_units(b)
+      type(blocks_t), intent(inout) :: b
+      integer :: i, m
+
+      do i = 1, size(b%list)
+         associate (first => b%list(i)%first_instance, last => b%list(i)%last_instance)
+            do m = first, last
+               call measure(b, m)
+            end do
+            call make_alike(b%instances(first:last))
+            call measure_slides(b, i)
+            do m = first, last
+               call divide(b, b%list(i)%first_row, m)
+            end do
+            b%list(i)%bend = bend_of(b, b%list(i))
+            b%list(i)%coarse = max(1.0_wp, maxval(b%instances(first:last)%coarse))
+         end associate
+      end do
+   end subroutine find_units
+
+   !> Unit of polygon instance `m`: its largest own arm. A slide is as long as what is known lets it be, and a
+   !> projection that turns with a frame has all of the polygon as its arm.
+   pure subroutine measure(b, m)
+      type(blocks_t), intent(inout) :: b
+      integer, intent(in) :: m
+      real(wp) :: own, known
+      integer :: k
+
+      associate (g => b%instances(m))
+         if (g%kind == instance_angles) return
+         own = 0.0_wp
+         known = max(abs(g%ground(1)), abs(g%ground(2)))
+         do k = g%first_arm, g%first_own - 1
+            known = max(known, abs(b%arms(k)%x), abs(b%arms(k)%y))
+         end do
+         do k = g%first_own, g%last_arm
+            own = max(own, abs(b%arms(k)%x), abs(b%arms(k)%y))
+         end do
+         do k = g%first_slide, g%last_slide
+            if (b%slides(k)%column == 0) known = max(known, b%unit(b%slides(k)%unknown))
+         end do
+         if (own <= 0.0_wp .or. any(b%slides(g%first_slide:g%last_slide)%column > 0) .or. &
+            (g%kind == instance_projection .and. g%frame_column > 0)) own = max(own, known)
+         if (own > 0.0_wp) g%unit = power_of_two(own)
+         g%coarse = known
+      end associate
+   end subroutine measure
+
+   !> Polygons `g` of one block that are not much smaller than the largest have its unit: the weights of their rows are
+   !> then the same among equations that are too many. What is known is from now on in the polygon's unit.
+   pure subroutine make_alike(g)
+      type(instance_t), intent(inout) :: g(:)
+      real(wp) :: largest
+      integer :: m
+
+      largest = maxval(g%unit, mask=g%kind /= instance_angles)
+      do m = 1, size(g)
+         if (g(m)%kind == instance_angles) cycle
+         if (g(m)%unit >= much_smaller*largest) g(m)%unit = largest
+         g(m)%coarse = max(1.0_wp, g(m)%coarse/g(m)%unit)
+      end do
+   end subroutine make_alike
+
+   !> Units of the slides that block `i` seeks: of the largest polygon that each is in.
+   pure subroutine measure_slides(b, i)
+      type(blocks_t), intent(inout) :: b
+      integer, intent(in) :: i
+      integer :: m, k
+      logical :: met(0:merge(b%unknowns, 0, size(b%slides) > 0))
+
+      met = .false.
+      do m = b%list(i)%first_instance, b%list(i)%last_instance
+         associate (g => b%instances(m))
+            do k = g%first_slide, g%last_slide
+               if (b%slides(k)%column == 0) cycle
+               associate (u => b%slides(k)%unknown)
+                  if (met(u)) then
+                     b%unit(u) = max(b%unit(u), g%unit)
+                  else
+                     b%unit(u) = g%unit
+                  end if
+                  met(u) = .true.
+               end associate
+            end do
+         end associate
+      end do
+   end subroutine measure_slides
+
+   !> Divides the rows of polygon instance `m`, of the block whose rows begin at `first_row`, by its unit.
+   pure subroutine divide(b, first_row, m)
+      type(blocks_t), intent(inout) :: b
+      integer, intent(in) :: first_row, m
+      integer :: k
+
+      associate (g => b%instances(m))
+         ! A slide by itself.
+         if (g%kind == instance_angles) g%unit = b%unit(g%frame)
+         if (g%row_x > 0) call divide_row(g%unit, b%rows(first_row + g%row_x - 1))
+         if (g%row_y > 0) call divide_row(g%unit, b%rows(first_row + g%row_y - 1))
+         if (g%kind == instance_angles) return
+         g%ground = g%ground/g%unit
+         b%arms(g%first_arm:g%last_arm)%x = b%arms(g%first_arm:g%last_arm)%x/g%unit
+         b%arms(g%first_arm:g%last_arm)%y = b%arms(g%first_arm:g%last_arm)%y/g%unit
+         do k = g%first_slide, g%last_slide
+            b%slides(k)%arm = b%slides(k)%arm*(b%unit(b%slides(k)%unknown)/g%unit)
+         end do
+      end associate
+   end subroutine divide
+
+   pure subroutine divide_row(unit, row)
+      real(wp), intent(in) :: unit
+      type(row_t), intent(inout) :: row
+
+      row%unit = unit
+      row%constant = row%constant/unit
+   end subroutine divide_row
+end module block_units

@@ -1,0 +1,230 @@
+!> The spanning tree of a mechanism, by which its unknowns are few: links that prismatic pairs join turn
+!> together and share one frame and one angle; a link that hangs on another by a revolute pair needs no x and y of
+!> its own. The pairs left over close the loops.
+!>
+!> The tree grows from the ground, revolute pairs first: a prismatic pair that closes a loop costs one equation and
+!> no unknown, one in the tree a slide. Of the numbers of the deck only constant angles are used here.
+module links_tree
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, pair_prismatic, pair_revolute, plane_origin
+   implicit none
+   private
+   public :: tree_t, new_tree, other_link
+
+   !> Pairs by link: those of link i are pairs(first(i)), ..., pairs(first(i + 1) - 1).
+   type :: neighbours_t
+      integer, allocatable :: first(:), pairs(:)
+   end type neighbours_t
+
+   type :: tree_t
+      integer :: frames = 0                 !< angles that are unknown; frame 0 is the ground's
+      integer :: slides = 0                 !< slides of prismatic pairs in the tree
+      integer :: roots = 0                  !< parts that no pair joins to the ground
+      real(wp) :: origin(2) = 0.0_wp        !< what places are counted from
+      integer, allocatable :: frame(:)      !< (links)
+      real(wp), allocatable :: turn(:)      !< (links) phi of the link less the angle of its frame
+      integer, allocatable :: hung_by(:)    !< (links) the pair to the link above; 0: ground or root
+      integer, allocatable :: above(:)      !< (links) the link on which it hangs; 0: ground or root
+      integer, allocatable :: depth(:)      !< (links)
+      integer, allocatable :: root(:)       !< (links) number of its part; 0: joined to the ground
+      integer, allocatable :: order(:)      !< (links) from the ground outwards: what is above comes first
+      integer, allocatable :: slide(:)      !< (pairs) number of its slide; 0: none
+      type(neighbours_t) :: near
+      integer, allocatable :: surplus(:)    !< prismatic pairs whose angle other prismatic pairs already fix
+   end type tree_t
+
+contains
+
+   !> The tree of `m`; time and memory proportional to links and pairs.
+   function new_tree(m) result(t)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t) :: t
+
+      t%origin = plane_origin(m)
+      t%near = neighbours(m)
+      call find_frames(m, t%near, t)
+      call grow(m, t%near, t)
+   end function new_tree
+
+   pure function neighbours(m) result(near)
+      type(mechanism_t), intent(in) :: m
+      type(neighbours_t) :: near
+      integer :: fill(size(m%links)), k, side, link
+
+      allocate (near%first(size(m%links) + 1), near%pairs(2*size(m%pairs)))
+      fill = 0
+      do k = 1, size(m%pairs)
+         do side = 1, 2
+            link = link_of(m, k, side)
+            fill(link) = fill(link) + 1
+         end do
+      end do
+      near%first(1) = 1
+      do link = 1, size(m%links)
+         near%first(link + 1) = near%first(link) + fill(link)
+      end do
+      fill = near%first(:size(m%links))
+      do k = 1, size(m%pairs)
+         do side = 1, 2
+            link = link_of(m, k, side)
+            near%pairs(fill(link)) = k
+            fill(link) = fill(link) + 1
+         end do
+      end do
+   end function neighbours
+
+   !> Link i (side 1) or j (side 2) of pair `k`.
+   pure integer function link_of(m, k, side)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: k, side
+
+      link_of = m%points(merge(m%pairs(k)%point_i, m%pairs(k)%point_j, side == 1))%link
+   end function link_of
+
+   !> The link at the other end of pair `k` of `link`.
+   pure integer function other_link(m, k, link) result(other)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: k, link
+
+      other = link_of(m, k, 1) + link_of(m, k, 2) - link
+   end function other_link
+
+   !> Frames and turns: a walk over prismatic pairs alone, first from the ground links, then from every link not
+   !> yet seen.
+   subroutine find_frames(m, near, t)
+      type(mechanism_t), intent(in) :: m
+      type(neighbours_t), intent(in) :: near
+      type(tree_t), intent(inout) :: t
+      integer :: queue(size(m%links)), last, link
+      logical :: used(size(m%pairs))
+
+      allocate (t%frame(size(m%links)), source=-1)
+      allocate (t%turn(size(m%links)), source=0.0_wp)
+      allocate (t%surplus(0))
+      used = .false.
+      last = 0
+      do link = 1, size(m%links)
+         if (.not. m%links(link)%ground) cycle
+         last = last + 1
+         queue(last) = link
+         t%frame(link) = 0
+         t%turn(link) = m%links(link)%position(3)
+      end do
+      call spread_frame(m, near, queue, last, used, t)
+      do link = 1, size(m%links)
+         if (t%frame(link) >= 0) cycle
+         t%frames = t%frames + 1
+         t%frame(link) = t%frames
+         last = 1
+         queue(1) = link
+         call spread_frame(m, near, queue, last, used, t)
+      end do
+   end subroutine find_frames
+
+   !> Gives the frame of the `last` links in the queue to all links that prismatic pairs join to them.
+   subroutine spread_frame(m, near, queue, last, used, t)
+      type(mechanism_t), intent(in) :: m
+      type(neighbours_t), intent(in) :: near
+      integer, intent(inout) :: queue(:), last
+      logical, intent(inout) :: used(:)
+      type(tree_t), intent(inout) :: t
+      integer :: next, link, far, i, k
+
+      next = 1
+      do while (next <= last)
+         link = queue(next)
+         next = next + 1
+         do i = near%first(link), near%first(link + 1) - 1
+            k = near%pairs(i)
+            if (m%pairs(k)%kind /= pair_prismatic .or. used(k)) cycle
+            used(k) = .true.
+            far = other_link(m, k, link)
+            if (t%frame(far) >= 0) then
+               t%surplus = [t%surplus, k]
+               cycle
+            end if
+            t%frame(far) = t%frame(link)
+            t%turn(far) = t%turn(link) + merge(m%pairs(k)%beta, -m%pairs(k)%beta, link_of(m, k, 1) == link)
+            last = last + 1
+            queue(last) = far
+         end do
+      end do
+   end subroutine spread_frame
+
+   !> Hangs every link on the tree, breadth first; a prismatic pair is taken only where no revolute pair reaches on.
+   subroutine grow(m, near, t)
+      type(mechanism_t), intent(in) :: m
+      type(neighbours_t), intent(in) :: near
+      type(tree_t), intent(inout) :: t
+      integer :: last, revolute_next, prismatic_next, link
+      logical :: hung
+
+      allocate (t%hung_by(size(m%links)), t%above(size(m%links)), t%root(size(m%links)), source=0)
+      allocate (t%depth(size(m%links)), source=-1)
+      allocate (t%order(size(m%links)), t%slide(size(m%pairs)), source=0)
+      last = 0
+      do link = 1, size(m%links)
+         if (m%links(link)%ground) call hang(t, last, link, 0, 0)
+      end do
+      revolute_next = 1
+      prismatic_next = 1
+      link = 1
+      do
+         if (revolute_next <= last) then
+            call hang_neighbours(m, near, pair_revolute, t%order(revolute_next), t, last, hung)
+            revolute_next = revolute_next + 1
+         else if (prismatic_next <= last) then
+            call hang_neighbours(m, near, pair_prismatic, t%order(prismatic_next), t, last, hung)
+            if (.not. hung) prismatic_next = prismatic_next + 1
+         else
+            do while (link <= size(m%links))
+               if (t%depth(link) < 0) exit
+               link = link + 1
+            end do
+            if (link > size(m%links)) exit
+            t%roots = t%roots + 1
+            t%root(link) = t%roots
+            call hang(t, last, link, 0, 0)
+         end if
+      end do
+   end subroutine grow
+
+   !> Hangs on `link` those of its neighbours that its pairs of one kind reach: all revolute ones, one prismatic one.
+   subroutine hang_neighbours(m, near, kind, link, t, last, hung)
+      type(mechanism_t), intent(in) :: m
+      type(neighbours_t), intent(in) :: near
+      integer, intent(in) :: kind, link
+      type(tree_t), intent(inout) :: t
+      integer, intent(inout) :: last
+      logical, intent(out) :: hung
+      integer :: i, k
+
+      hung = .false.
+      do i = near%first(link), near%first(link + 1) - 1
+         k = near%pairs(i)
+         if (m%pairs(k)%kind /= kind) cycle
+         if (t%depth(other_link(m, k, link)) >= 0) cycle
+         call hang(t, last, other_link(m, k, link), link, k)
+         hung = .true.
+         if (kind == pair_revolute) cycle
+         t%slides = t%slides + 1
+         t%slide(k) = t%slides
+         return
+      end do
+   end subroutine hang_neighbours
+
+   subroutine hang(t, last, link, above, pair)
+      type(tree_t), intent(inout) :: t
+      integer, intent(inout) :: last
+      integer, intent(in) :: link, above, pair
+
+      last = last + 1
+      t%order(last) = link
+      t%above(link) = above
+      t%hung_by(link) = pair
+      t%depth(link) = 0
+      if (above == 0) return
+      t%depth(link) = t%depth(above) + 1
+      t%root(link) = t%root(above)
+   end subroutine hang
+end module links_tree

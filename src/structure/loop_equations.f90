@@ -1,0 +1,278 @@
+!> The equations that the tree leaves over, and those of the drives: each gives a component of a polygon, its
+!> projection on a direction that turns with a frame, an angle or a slide. A revolute pair asks both components to be
+!> zero, a prismatic pair that the projection on the guide's normal is h, a drive X or Y one component of its point, a
+!> drive SLIDE the projection along the guide.
+module loop_equations
+   use kinds, only: wp
+   use whole_turns, only: without_turns
+   use mechanism, only: mechanism_t, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
+   use links_tree, only: tree_t
+   use tree_paths, only: search_t, new_search, find_path, find_way_down, close_pair
+   use tree_places, only: guide
+   use polygons, only: polygons_t, new_polygons, add_polygon
+   use matching, only: incidence_t
+   implicit none
+   private
+   public :: equation_t, equations_t, new_equations, incidence
+   public :: equation_x, equation_y, equation_projection, equation_angle, equation_slide
+
+   integer, parameter :: equation_x = 1           !< x of a polygon
+   integer, parameter :: equation_y = 2           !< y of a polygon
+   integer, parameter :: equation_projection = 3  !< projection of a polygon on a direction that turns with a frame
+   integer, parameter :: equation_angle = 4       !< angle of a frame, or of one less another
+   integer, parameter :: equation_slide = 5       !< a slide
+
+   !> What `kind` says = `constant` + value of the drive.
+   type :: equation_t
+      integer :: kind = equation_angle
+      integer :: polygon = 0
+      integer :: drive = 0                        !< 0: a pair's equation
+      integer :: pair = 0                         !< 0: a drive's equation
+      integer :: frame = 0                        !< projection and angle: the frame; slide: the slide's number
+      integer :: less = 0                         !< angle: the frame whose angle is subtracted; 0: none
+      real(wp) :: direction(2) = 0.0_wp           !< projection: in the frame's axes
+      real(wp) :: constant = 0.0_wp
+   end type equation_t
+
+   type :: equations_t
+      integer :: count = 0
+      type(equation_t), allocatable :: list(:)    !< (count), with room behind
+      type(polygons_t) :: polygons
+   end type equations_t
+
+contains
+
+   !> The equations of `m` on its tree `t`, lengths in units of `length`.
+   function new_equations(m, t, length) result(e)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      real(wp), intent(in) :: length
+      type(equations_t) :: e
+      type(search_t) :: s
+      integer, allocatable :: pairs(:)
+      integer :: i
+
+      allocate (e%list(2*size(m%pairs) + size(m%drives) + size(t%surplus)))
+      e%polygons = new_polygons(m, t)
+      s = new_search(m, t)
+      pairs = closing_pairs(m, t)
+      do i = 1, size(pairs)
+         call add_pair(m, t, length, pairs(i), s, e)
+         call close_pair(m, pairs(i), s)
+      end do
+      do i = 1, size(t%surplus)
+         call add(e, equation_t(equation_angle, pair=t%surplus(i), constant=misfit(m, t, t%surplus(i))))
+      end do
+      do i = 1, size(m%drives)
+         call add_drive(m, t, length, i, s, e)
+      end do
+   end function new_equations
+
+   !> The pairs that are not in the tree, those near the ground first.
+   function closing_pairs(m, t) result(pairs)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      integer, allocatable :: pairs(:)
+      integer :: fill(0:2*maxval(t%depth) + 1), k, sum_of
+
+      allocate (pairs(size(m%pairs)))
+      fill = 0
+      do k = 1, size(m%pairs)
+         sum_of = t%depth(m%points(m%pairs(k)%point_i)%link) + t%depth(m%points(m%pairs(k)%point_j)%link)
+         if (.not. is_in_tree(m, t, k)) fill(sum_of + 1) = fill(sum_of + 1) + 1
+      end do
+      do k = 1, ubound(fill, 1)
+         fill(k) = fill(k) + fill(k - 1)
+      end do
+      pairs = pairs(:fill(ubound(fill, 1)))
+      do k = 1, size(m%pairs)
+         if (is_in_tree(m, t, k)) cycle
+         sum_of = t%depth(m%points(m%pairs(k)%point_i)%link) + t%depth(m%points(m%pairs(k)%point_j)%link)
+         fill(sum_of) = fill(sum_of) + 1
+         pairs(fill(sum_of)) = k
+      end do
+   end function closing_pairs
+
+   !> The equations of pair `k`, which closes a loop.
+   subroutine add_pair(m, t, length, k, s, e)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      real(wp), intent(in) :: length
+      integer, intent(in) :: k
+      type(search_t), intent(inout) :: s
+      type(equations_t), intent(inout) :: e
+
+      associate (p => m%pairs(k), n => e%polygons%count)
+         call find_path(m, t, m%points(p%point_i)%link, m%points(p%point_j)%link, s)
+         call add_polygon(m, t, length, p%point_i, p%point_j, s, e%polygons)
+         if (p%kind == pair_revolute) then
+            call add(e, equation_t(equation_x, polygon=n, pair=k))
+            call add(e, equation_t(equation_y, polygon=n, pair=k))
+         else
+            call add(e, equation_t(equation_projection, polygon=n, pair=k, frame=t%frame(m%points(p%point_i)%link), &
+               direction=guide(m, t, k, across=.true.), constant=p%offset/length))
+         end if
+      end associate
+   end subroutine add_pair
+
+   !> The equation of drive `k`.
+   subroutine add_drive(m, t, length, k, s, e)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      real(wp), intent(in) :: length
+      integer, intent(in) :: k
+      type(search_t), intent(inout) :: s
+      type(equations_t), intent(inout) :: e
+      integer :: axis
+
+      associate (i => m%drives(k)%subject, j => m%drives(k)%second, n => e%polygons%count)
+         select case (m%drives(k)%kind)
+         case (drive_angle)
+            call add(e, equation_t(equation_angle, drive=k, frame=t%frame(i), constant=-t%turn(i)))
+         case (drive_relangle)
+            call add(e, equation_t(equation_angle, drive=k, frame=t%frame(j), less=t%frame(i), &
+               constant=t%turn(i) - t%turn(j)))
+         case (drive_x, drive_y)
+            call find_way_down(t, m%points(i)%link, s)
+            call add_polygon(m, t, length, i, 0, s, e%polygons)
+            axis = merge(1, 2, m%drives(k)%kind == drive_x)
+            call add(e, equation_t(merge(equation_x, equation_y, axis == 1), polygon=n, drive=k, &
+               constant=-t%origin(axis)/length))
+         case (drive_slide)
+            if (t%slide(i) > 0) then
+               call add(e, equation_t(equation_slide, drive=k, frame=t%slide(i)))
+               return
+            end if
+            associate (p => m%pairs(i)%point_i, q => m%pairs(i)%point_j)
+               call find_path(m, t, m%points(p)%link, m%points(q)%link, s)
+               call add_polygon(m, t, length, p, q, s, e%polygons)
+               call add(e, equation_t(equation_projection, polygon=n, drive=k, frame=t%frame(m%points(p)%link), &
+                  direction=-guide(m, t, i, across=.false.)))
+            end associate
+         end select
+      end associate
+   end subroutine add_drive
+
+   !> Pair `k` hangs a link on the tree.
+   pure logical function is_in_tree(m, t, k)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      integer, intent(in) :: k
+
+      is_in_tree = t%hung_by(m%points(m%pairs(k)%point_i)%link) == k &
+         .or. t%hung_by(m%points(m%pairs(k)%point_j)%link) == k
+   end function is_in_tree
+
+   !> By how much prismatic pair `k` differs from the angle that other prismatic pairs give its links; whole turns are
+   !> no difference.
+   pure real(wp) function misfit(m, t, k)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      integer, intent(in) :: k
+
+      misfit = m%pairs(k)%beta + t%turn(m%points(m%pairs(k)%point_i)%link) &
+         - t%turn(m%points(m%pairs(k)%point_j)%link)
+      misfit = without_turns(misfit)
+   end function misfit
+
+   subroutine add(e, equation)
+      type(equations_t), intent(inout) :: e
+      type(equation_t), intent(in) :: equation
+
+      e%count = e%count + 1
+      e%list(e%count) = equation
+   end subroutine add
+
+   !> Which unknown is in which equation: 1 to `frames` angles, then slides.
+   function incidence(e, frames, unknowns) result(g)
+      type(equations_t), intent(in) :: e
+      integer, intent(in) :: frames, unknowns
+      type(incidence_t) :: g
+      integer :: seen(0:unknowns), n, i
+
+      g%equations = e%count
+      g%unknowns = unknowns
+      allocate (g%first(e%count + 1), g%unknown(4*e%count + 64))
+      g%first(1) = 1
+      seen = 0
+      n = 0
+      do i = 1, e%count
+         associate (q => e%list(i))
+            select case (q%kind)
+            case (equation_angle)
+               ! Two links that turn together: their angles cancel.
+               if (q%frame /= q%less) then
+                  call note(q%frame)
+                  call note(q%less)
+               end if
+            case (equation_slide)
+               call note(frames + q%frame)
+            case default
+               call note_polygon(q)
+            end select
+         end associate
+         g%first(i + 1) = n + 1
+      end do
+
+   contains
+
+      subroutine note_polygon(q)
+         type(equation_t), intent(in) :: q
+         integer :: k
+
+         associate (p => e%polygons)
+            do k = p%first_arm(q%polygon), p%first_arm(q%polygon + 1) - 1
+               call note(p%arm_frame(k))
+            end do
+            do k = p%first_slide(q%polygon), p%first_slide(q%polygon + 1) - 1
+               call note(p%slide_frame(k))
+               if (has_slide(q, p%slide_frame(k), p%slide_arm(:, k))) call note(frames + p%slide_number(k))
+            end do
+            ! What turns with the direction of the projection has a constant part in it.
+            if (q%kind /= equation_projection) return
+            if (any(p%arm_frame(p%first_arm(q%polygon):p%first_arm(q%polygon + 1) - 1) /= q%frame) .or. &
+               any(p%slide_frame(p%first_slide(q%polygon):p%first_slide(q%polygon + 1) - 1) /= q%frame)) then
+               call note(q%frame)
+            else if (seen(q%frame) == i) then
+               call forget(q%frame)
+            end if
+         end associate
+      end subroutine note_polygon
+
+      !> Takes back unknown `u` of the equation at hand.
+      subroutine forget(u)
+         integer, intent(in) :: u
+         integer :: kept
+
+         kept = g%first(i) - 1 + count(g%unknown(g%first(i):n) /= u)
+         g%unknown(g%first(i):kept) = pack(g%unknown(g%first(i):n), g%unknown(g%first(i):n) /= u)
+         n = kept
+      end subroutine forget
+
+      !> Notes unknown `u`, once; the ground's frame is none.
+      subroutine note(u)
+         integer, intent(in) :: u
+
+         if (u == 0) return
+         if (seen(u) == i) return
+         seen(u) = i
+         n = n + 1
+         if (n > size(g%unknown)) g%unknown = [g%unknown, g%unknown]
+         g%unknown(n) = u
+      end subroutine note
+   end function incidence
+
+   !> A slide at right angles to what is asked for, in whatever position, is no part of the equation.
+   pure logical function has_slide(q, frame, arm)
+      type(equation_t), intent(in) :: q
+      integer, intent(in) :: frame
+      real(wp), intent(in) :: arm(2)
+      real(wp) :: asked(2)
+
+      has_slide = .true.
+      asked = q%direction
+      if (q%kind == equation_x) asked = [1.0_wp, 0.0_wp]
+      if (q%kind == equation_y) asked = [0.0_wp, 1.0_wp]
+      if (frame == q%frame) has_slide = abs(dot_product(asked, arm)) > 8.0_wp*epsilon(1.0_wp)
+   end function has_slide
+end module loop_equations

@@ -1,0 +1,182 @@
+!> What can be said of a mechanism before anything is solved: its counts, and its Assur groups.
+!>
+!> (12)  r = 2 (n1 + n2) + 3 n3
+!> (13)  s = 3 n - r        (the print subtracts 2 n1 + n2 only)
+module structure
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, pair_revolute, pair_prismatic, wanted_links
+   use matching, only: match, overdetermined
+   use loose_parts, only: underdetermined
+   use closure_incidence, only: closure_t, new_closure
+   use assur_groups, only: group_t, groups_of
+   use links_tree, only: tree_t, new_tree
+   use loop_equations, only: new_equations
+   use blocks, only: blocks_t
+   use block_partition, only: new_blocks
+   implicit none
+   private
+   public :: findings_t, group_t, part_t, count_freedoms, find_structure
+
+   !> Links that still can move, and the drives that they lack.
+   type :: part_t
+      integer, allocatable :: links(:)
+      integer :: freedoms = 0
+   end type part_t
+
+   type :: findings_t
+      integer :: links = 0        !< n, ground links with them
+      integer :: ground = 0       !< n3
+      integer :: revolute = 0     !< n1
+      integer :: prismatic = 0    !< n2
+      integer :: coordinates = 0  !< w = 3 n
+      integer :: equations = 0    !< r
+      integer :: freedoms = 0     !< s
+      integer :: drives = 0
+      logical :: solvable = .false.             !< every unknown has an equation of its own
+      type(part_t), allocatable :: lacking(:)   !< what still can move
+      integer :: redundant = 0                  !< equations that are too many, among those of
+      integer, allocatable :: many_pairs(:), many_drives(:)
+      type(group_t), allocatable :: groups(:)   !< in solving order; none where it is not
+   end type findings_t
+
+contains
+
+   !> Counts (12) and (13) of mechanism `m`.
+   pure function count_freedoms(m) result(f)
+      type(mechanism_t), intent(in) :: m
+      type(findings_t) :: f
+
+      f%links = size(m%links)
+      f%ground = count(m%links%ground)
+      f%revolute = count(m%pairs%kind == pair_revolute)
+      f%prismatic = count(m%pairs%kind == pair_prismatic)
+      f%coordinates = 3*f%links
+      f%equations = 2*(f%revolute + f%prismatic) + 3*f%ground
+      f%freedoms = f%coordinates - f%equations
+      f%drives = size(m%drives)
+      allocate (f%groups(0))
+   end function count_freedoms
+
+   !> The counts of `m`, its groups, and what its structure lacks or has too much of.
+   function find_structure(m) result(f)
+      type(mechanism_t), intent(in) :: m
+      type(findings_t) :: f
+      type(closure_t) :: c
+      type(tree_t) :: t
+      type(blocks_t) :: b
+      integer, allocatable :: unknown_of(:), equation_of(:)
+      logical, allocatable :: over(:)
+
+      f = count_freedoms(m)
+      c = new_closure(m)
+      call match(c%incidence, unknown_of, equation_of)
+      over = overdetermined(c%incidence, unknown_of, equation_of)
+      f%redundant = count(unknown_of == 0)
+      f%many_pairs = pack(c%pair, over .and. c%pair > 0)
+      f%many_drives = pack(c%drive, over .and. c%drive > 0)
+      f%lacking = parts_that_lack(m, c%link_of, underdetermined(c%incidence, unknown_of, equation_of), &
+         equation_of)
+      if (size(f%lacking) > 0) return
+      t = new_tree(m)
+      b = new_blocks(t, new_equations(m, t, 1.0_wp))
+      if (.not. b%solvable) f%lacking = parts_on_tree(m, t, b%free)
+      f%solvable = size(f%lacking) == 0
+      if (f%solvable) f%groups = groups_of(m, c, unknown_of, equation_of, over, wanted_links(m))
+   end function find_structure
+
+   !> The parts of `m` that still can move. `part` (unknowns): the number of its part, 0 for what cannot move;
+   !> parts with a link in common are one. Time proportional to the unknowns.
+   function parts_that_lack(m, link_of, part, equation_of) result(parts)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: link_of(:), part(:), equation_of(:)
+      type(part_t), allocatable :: parts(:)
+      integer :: first(size(m%links)), above(size(part)), number(size(part)), u, i, n
+      integer, allocatable :: links(:)
+
+      first = 0
+      above = [(u, u=1, size(part))]
+      do u = 1, size(part)
+         if (part(u) == 0) cycle
+         if (first(link_of(u)) == 0) first(link_of(u)) = part(u)
+         above(top(part(u))) = top(first(link_of(u)))
+      end do
+      links = pack([(i, i=1, size(first))], first > 0)
+      number = 0
+      n = 0
+      do i = 1, size(links)
+         u = top(first(links(i)))
+         if (number(u) == 0) n = n + 1
+         if (number(u) == 0) number(u) = n
+         first(links(i)) = number(u)
+      end do
+      allocate (parts(n))
+      call share_out(links, first(links), parts)
+      do u = 1, size(part)
+         if (part(u) == 0 .or. equation_of(u) > 0) cycle
+         associate (p => parts(number(top(part(u)))))
+            p%freedoms = p%freedoms + 1
+         end associate
+      end do
+
+   contains
+
+      !> The part that stands for all that are one with part `k`.
+      integer function top(k)
+         integer, intent(in) :: k
+
+         top = k
+         do while (above(top) /= top)
+            above(top) = above(above(top))
+            top = above(top)
+         end do
+      end function top
+   end function parts_that_lack
+
+   !> Gives each of the `links` to the part of its `number`.
+   pure subroutine share_out(links, number, parts)
+      integer, intent(in) :: links(:), number(:)
+      type(part_t), intent(inout) :: parts(:)
+      integer :: many(size(parts)), i
+
+      many = 0
+      do i = 1, size(links)
+         many(number(i)) = many(number(i)) + 1
+      end do
+      do i = 1, size(parts)
+         allocate (parts(i)%links(many(i)))
+      end do
+      many = 0
+      do i = 1, size(links)
+         many(number(i)) = many(number(i)) + 1
+         parts(number(i))%links(many(number(i))) = links(i)
+      end do
+   end subroutine share_out
+
+   !> The same by unknowns of the tree that found no equation: two links that a prismatic pair joins have one angle.
+   function parts_on_tree(m, t, free) result(parts)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      integer, intent(in) :: free(:)
+      type(part_t), allocatable :: parts(:)
+      type(part_t) :: one
+      integer :: i, k
+      logical :: is_free(size(m%links))
+
+      allocate (parts(0))
+      do k = 1, size(free)
+         if (free(k) <= t%frames) then
+            is_free = t%frame == free(k)
+         else if (free(k) <= t%frames + t%slides) then
+            do i = 1, size(m%links)
+               is_free(i) = .false.
+               if (t%hung_by(i) > 0) is_free(i) = t%slide(t%hung_by(i)) == free(k) - t%frames
+            end do
+         else
+            is_free = t%root == (free(k) - t%frames - t%slides + 1)/2
+         end if
+         one%links = pack([(i, i=1, size(m%links))], is_free)
+         one%freedoms = 1
+         parts = [parts, one]
+      end do
+   end function parts_on_tree
+end module structure
