@@ -90,10 +90,8 @@ equal 'codes of the manual that no source has' '' "$(grep -oE '^[|] E0[0-9]+' "$
 grep -ohE "'E1[0-9][0-9]  " $sources | tr -d "' " | sort -u > "$w/faults"
 equal 'faults are found' yes "$([ "$(wc -l < "$w/faults")" -ge 4 ] && echo yes)"
 while read -r fault; do has 'the code' "| $fault |"; done < "$w/faults"
-# English phrases of the listing stand in pairs with the Polish ones.
-awk '/^module phrases/ { on = 1 } on && /words\(2, / { table = 1; next } table && !/&$/ && !/\], *\[2,/ { table = 0 }
-   table { n = split($0, part, "\047"); for (i = 2; i <= n; i += 2) print part[i]; if (/\], *\[2,/) exit }' $sources \
-   | awk 'NR % 2 == 1' > "$w/phrases"
+# The English of each phrase of the listing stands before its Polish.
+sed -n "s/.*= phrase_t('\([^']*\)'.*/\1/p" $sources > "$w/phrases"
 equal 'phrases are found' yes "$([ "$(wc -l < "$w/phrases")" -ge 60 ] && echo yes)"
 while IFS= read -r phrase; do has 'the phrase' "$phrase"; done < "$w/phrases"
 # Sentences of failures: the words in quotation marks behind `call fail`, those of two words and more.

@@ -10,7 +10,7 @@ module layout
    use independent, only: parts_t, find_parts
    use scales, only: characteristic_length, characteristic_rate
    use numerals, only: numeral_length
-   use phrases, only: phrase, say_link, say_point, say_pair, say_phi, say_value, say_rate, say_rate2, &
+   use phrases, only: phrase_t, phrase, say_link, say_point, say_pair, say_phi, say_value, say_rate, say_rate2, &
       say_none, say_instant
    implicit none
    private
@@ -147,7 +147,7 @@ contains
       character(numeral_length) :: words(9)
       integer :: k
       character(1), parameter :: prefix(0:2) = [' ', 'V', 'A']
-      integer, parameter :: kind_words(3) = [say_link, say_point, say_pair]
+      type(phrase_t), parameter :: kind_words(3) = [say_link, say_point, say_pair]
 
       words = ''
       select case (kind)
