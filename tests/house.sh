@@ -28,6 +28,7 @@ equal 'names that hide those of pFUnit' '' "$(awk '
    FNR == 1 { inside = 0 }
    /^contains/ { inside = 1 }
    /(subroutine|function) (run|test|suite|initialize|finalize|throw) *[(]/ && !/^ *(!|end)/ { print FILENAME ":" FNR }
+   /^ *use .*only:/ && /[:,] *(run|test|suite|initialize|finalize|throw) *(,|$)/ { print FILENAME ":" FNR }
    !inside && /parameter ::.*[ ,]t = / { print FILENAME ":" FNR }' tests/test_*.pf)"
 # make in a directory whose name holds blanks; where it cannot be, it is said. Without the variables of the make above.
 plain_make() { env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL make --no-print-directory "$@"; }

@@ -86,4 +86,10 @@ for side in 1 -1; do
 done
 equal 'a turning guide: rows of another assembly, or lost by METHOD DENSE' 0 $wrong
 equal 'a turning guide: METHOD MATRIX finds, or says that NEWTON does' 70 $((told + found/3))
+# On a change point: the crank, which its drive alone moves, has its velocity and acceleration by any method.
+for method in NEWTON DENSE; do
+   by $method input/parallelogram_at.deck
+   equal "on a change point, $method: rates of the crank" 10.00000 \
+      "$(awk '/^ INSTANT/ { crank = "" } /^ CRANK / { crank = $7 } /SINGULAR/ { print crank; exit }' "$w/$method.lst")"
+done
 conclude

@@ -3,7 +3,7 @@
 module engine
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton, method_dense
-   use motion, only: motion_t
+   use motion, only: motion_t, mark_none
    use convergence, only: convergence_t
    use block_engine, only: block_engine_t, make_block_engine, seek_blocks, keep_blocks, tell_blocks
    use block_checkpoint, only: block_checkpoint_t, checkpoint_blocks, restore_blocks
@@ -123,12 +123,30 @@ contains
       if (allocated(e%dense)) is_certified = e%dense%method == method_dense
    end function is_certified
 
-   !> Of which links the motion found last is known in full although it is not as a whole.
+   !> Of which links the motion found last is known in full although it is not as a whole. METHOD DENSE and METHOD MATRIX
+   !> have one Jacobian for all links: without its inverse they know the links that drives alone move.
    subroutine tell_links(e, found)
       type(engine_t), intent(in) :: e
       type(motion_t), intent(inout) :: found
+      type(block_engine_t) :: blocks
+      type(motion_t) :: driven
+      integer :: link
 
-      if (allocated(e%blocks)) call know_links(e%blocks, found)
+      if (allocated(e%blocks)) then
+         call know_links(e%blocks, found)
+         return
+      end if
+      call make_block_engine(blocks, e%dense%blocks)
+      driven = found
+      call tell_driven(blocks, found%t, driven)
+      if (.not. allocated(driven%link_known)) return
+      found%link_known = merge(2, 0, driven%link_known == 2)
+      found%link_mark = merge(mark_none, found%mark, driven%link_known == 2)
+      do link = 1, size(driven%link_known)
+         if (driven%link_known(link) < 2) cycle
+         found%velocity(:, link) = driven%velocity(:, link)
+         found%acceleration(:, link) = driven%acceleration(:, link)
+      end do
    end subroutine tell_links
 
    !> What is certain at `t`, where no position was found: the links that drives alone move.
@@ -136,7 +154,6 @@ contains
       type(engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       type(motion_t), intent(inout) :: found
-
       type(block_engine_t) :: blocks
 
       if (allocated(e%blocks)) then

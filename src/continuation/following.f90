@@ -64,6 +64,7 @@ contains
    subroutine make_following(f, m)
       type(following_t), intent(out) :: f
       type(mechanism_t), intent(in) :: m
+
       call make_engine(f%engine, m)
       f%choices = new_choices(m)
       f%drives = new_drive_path(m, depends_on_before(f%engine))
