@@ -51,7 +51,7 @@ contains
          ' CONDITION: of all closure equations, the worst on the way; of large chains, from their number', &
          ' PART: the largest difference in parts of 64 eps CONDITION times the size of the derivative, of rates times that', &
          ' of the positions as well: a large angle is rounded coarsely', '', &
-         ' SCENE                COMPARED         STEPS  MARKED  CONDITION   POSITION   VELOCITY    ACCEL.     PART'
+         ' SCENE                COMPARED         STEPS  FLAGGED  CONDITION   POSITION   VELOCITY    ACCEL.     PART'
       do i = 1, size(inputs)
          call judge_deck(trim(inputs(i)), steps, tally)
       end do

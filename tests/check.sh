@@ -8,7 +8,7 @@ for deck in input/*.deck; do
    name=$(basename "$deck" .deck)
    "$BUILD/kinmat" "$deck" > "$BUILD/$name.lst" 2> "$BUILD/$name.err"
    status=$?
-   equal "$name: exit status" "$(grep -qE ' (MARKED|ZAZNACZONE) [1-9]' "expected/$name.lst" && echo 2 || echo 0)" $status
+   equal "$name: exit status" "$(grep -qE ' (FLAGGED|ZAZNACZONE) [1-9]' "expected/$name.lst" && echo 2 || echo 0)" $status
    equal "$name: standard error" '' "$(cat "$BUILD/$name.err")"
    same "$name: listing" "expected/$name.lst" "$BUILD/$name.lst"
    "$BUILD/kinmat" --errors "$deck" > "$BUILD/$name.errors.lst" 2> /dev/null

@@ -81,7 +81,7 @@ equal 'sets are numbered' \
    ' SET OF COMPUTATIONS NO. 1   TITLE   TEST SET OF COMPUTATIONS NO. 2   TITLE   TEST AT' \
    "$(grep 'SET OF COMPUTATIONS' "$w/m.lst" | tr -d '\n')"
 equal 'last lines of the sets' \
-   ' END OF SET 1:  INSTANTS SOLVED 9, MARKED 0 END OF SET 2:  INSTANTS SOLVED 3, MARKED 0' \
+   ' END OF SET 1:  INSTANTS SOLVED 9, FLAGGED 0 END OF SET 2:  INSTANTS SOLVED 3, FLAGGED 0' \
    "$(grep 'END OF SET' "$w/m.lst" | tr -d '\n')"
 equal 'instants in the order wanted' 'T = 2.500000T = 0.500000T = 1.500000' \
    "$(sed '1,/^ END OF SET 1/d' "$w/m.lst" | grep '^ INSTANT ' | sed 's/.*T/T/' | tr -d '\n')"
@@ -296,7 +296,7 @@ equal '/dev/null may serve for all' 0 $?
 # Drives and freedoms.
 { card TITLE 'NO DRIVE'; four_bar 1.0 3.5 3.0 4.0 0.0 0.9 1.9; card TIME 2 '' '' 0.0 2.0; card END; } > "$w/few.deck"
 refused 'no drive' 1 ' *** E101  SET 1: LINKS CRANK, COUPLER, ROCKER: 1 FREEDOM LEFT, ADD A DRIVE
- *** E103  SET 1: W = 12 COORDINATES LESS R = 11 EQUATIONS LEAVE S = 1 FREEDOMS, DRIVES ARE 0' \
+ *** E103  SET 1: W = 12 COORDINATES LESS R = 11 EQUATIONS LEAVE S = 1 DEGREES OF FREEDOM, DRIVES ARE 0' \
    "$w/few.deck"
 { PHI=0.0 RATE=1.0; one_set 1.0 3.5 3.0 4.0 0.0 0.9 1.9; card DRIVE ANGLE ROCKER '' 0.5 1.0 0.0; card END; } > "$w/many.deck"
 { cat "$w/m.deck"; cat "$w/many.deck"; } > "$w/third.deck"
@@ -311,7 +311,7 @@ equal 'a drive too many, in the third set: the drives do not agree' ' *** TOO MA
 equal 'no assembly: status' 2 $?
 equal 'no assembly: standard error' '' "$(cat "$w/err")"
 equal 'no assembly: each instant is marked' 3 "$(grep -c '^ \*\*\* NO POSITION FOUND$' "$w/open.lst")"
-equal 'no assembly: last line' ' END OF SET 1:  INSTANTS SOLVED 0, MARKED 3' "$(grep 'END OF SET' "$w/open.lst")"
+equal 'no assembly: last line' ' END OF SET 1:  INSTANTS SOLVED 0, FLAGGED 3' "$(grep 'END OF SET' "$w/open.lst")"
 equal 'no assembly: words for numbers' '        NONE        NONE        NONE' \
    "$(grep -m 1 '^ COUPLER .*NONE' "$w/open.lst" | cut -c 10-45)"
 equal 'no assembly: the driven crank' 3 "$(grep -c '^ CRANK       0.000000    0.000000    .*    1.000000' "$w/open.lst")"

@@ -45,7 +45,7 @@ compare() {
       "$kin" "$work/$deck.deck" -o "$work/$deck.lst" --csv "$work/$deck.csv" 2> "$work/$deck.err"
       echo $? >> "$work/$deck.err"
    done
-   equal "$1: flagged" "$5" "$(sed -n 's/^ END OF SET.*MARKED //p' "$work/$1.lst")"
+   equal "$1: flagged" "$5" "$(sed -n 's/^ END OF SET.*FLAGGED //p' "$work/$1.lst")"
    equal "$1: other than in small steps" '' "$(LC_ALL=C awk -F, 'FNR == NR { if (FNR > 1) fine[$2 "," $5] = $0; next }
       FNR > 1 { split(fine[$2*50 "," $5], other, ",")
          if (($6 == "") != (other[6] == "")) { print; next }

@@ -94,53 +94,53 @@ crank_rocker='0.0 1.0 3.5 3.0 4.0 14.0 50.0 110.0'
    point O BASE; point Q BASE 4.0; point O1 ONE; point A1 ONE 1.0; point A2 TWO; point B2 TWO 3.0; point C3 THREE
    point B3 THREE 3.0; point Q4 FOUR; point C4 FOUR 1.0
    joint O O1 PO; joint A1 A2 PA; joint B2 B3 PB; joint C3 C4 PC; joint Q4 Q PQ; until_time 2 1.0; } > "$w/deck"
-told 'five-bar without drives' 1 ' *** E101  SET 1: LINKS ONE, TWO, THREE, FOUR: 2 FREEDOMS LEFT, ADD DRIVES
- *** E103  SET 1: W = 15 COORDINATES LESS R = 13 EQUATIONS LEAVE S = 2 FREEDOMS, DRIVES ARE 0'
+told 'five-bar without drives' 1 ' *** E101  SET 1: LINKS ONE, TWO, THREE, FOUR: 2 DEGREES OF FREEDOM LEFT, ADD DRIVES
+ *** E103  SET 1: W = 15 COORDINATES LESS R = 13 EQUATIONS LEAVE S = 2 DEGREES OF FREEDOM, DRIVES ARE 0'
 sed 's/^TIME /'"$(drive ANGLE TWO '' 20.0)"'\n&/' "$w/deck" > "$w/one.deck" && mv "$w/one.deck" "$w/deck"
 told 'five-bar with one drive' 1 ' *** E101  SET 1: LINKS ONE, TWO, THREE, FOUR: 1 FREEDOM LEFT, ADD A DRIVE
- *** E103  SET 1: W = 15 COORDINATES LESS R = 13 EQUATIONS LEAVE S = 2 FREEDOMS, DRIVES ARE 1'
+ *** E103  SET 1: W = 15 COORDINATES LESS R = 13 EQUATIONS LEAVE S = 2 DEGREES OF FREEDOM, DRIVES ARE 1'
 { head_of TWO; four_bar 1 $crank_rocker; four_bar 2 1$crank_rocker; until_time 2 1.0; } > "$w/deck"
 told 'two mechanisms without drives' 1 ' *** E101  SET 1: LINKS CRANK1, COUPL1, ROCK1: 1 FREEDOM LEFT, ADD A DRIVE
  *** E101  SET 1: LINKS CRANK2, COUPL2, ROCK2: 1 FREEDOM LEFT, ADD A DRIVE
- *** E103  SET 1: W = 21 COORDINATES LESS R = 19 EQUATIONS LEAVE S = 2 FREEDOMS, DRIVES ARE 0'
+ *** E103  SET 1: W = 21 COORDINATES LESS R = 19 EQUATIONS LEAVE S = 2 DEGREES OF FREEDOM, DRIVES ARE 0'
 { head_of TWO; four_bar 1 $crank_rocker; four_bar 2 1$crank_rocker
    drive ANGLE CRANK1 '' 14.0 9.0; drive ANGLE ROCK1 '' 99.0 9.0; until_time 2 1.0; } > "$w/deck"
 told 'two drives on one mechanism, none on the other' 1 \
    ' *** E101  SET 1: LINKS CRANK2, COUPL2, ROCK2: 1 FREEDOM LEFT, ADD A DRIVE
  *** E102  SET 1: TOO MANY EQUATIONS BY 1 AMONG PAIRS PA01, PA1, PB1, PB01 AND DRIVES ANGLE CRANK1, ANGLE ROCK1
- *** E103  SET 1: W = 21 COORDINATES LESS R = 19 EQUATIONS LEAVE S = 2 FREEDOMS, DRIVES ARE 2'
+ *** E103  SET 1: W = 21 COORDINATES LESS R = 19 EQUATIONS LEAVE S = 2 DEGREES OF FREEDOM, DRIVES ARE 2'
 { head_of CHAIN; point P0 BASE
    for i in 1 2 3 4 5 6 7 8 9 10; do
       link "BAR-$i" 0.0 0.0 0.0; point "P$i" "BAR-$i"; point "Q$i" "BAR-$i" 1.0
       if [ $i = 1 ]; then joint P0 P1 J1; else joint "Q$((i - 1))" "P$i" "J$i"; fi
    done; card PRINT POINTS Q10; until_time 2 1.0; } > "$w/deck"
-told 'ten links hang free' 1 ' *** E101  SET 1: LINKS BAR-1, BAR-2, BAR-3, BAR-4, BAR-5, BAR-6, BAR-7, BAR-8 AND 2 MORE: 10 FREEDOMS LEFT, ADD DRIVES
- *** E103  SET 1: W = 33 COORDINATES LESS R = 23 EQUATIONS LEAVE S = 10 FREEDOMS, DRIVES ARE 0'
+told 'ten links hang free' 1 ' *** E101  SET 1: LINKS BAR-1, BAR-2, BAR-3, BAR-4, BAR-5, BAR-6, BAR-7, BAR-8 AND 2 MORE: 10 DEGREES OF FREEDOM LEFT, ADD DRIVES
+ *** E103  SET 1: W = 33 COORDINATES LESS R = 23 EQUATIONS LEAVE S = 10 DEGREES OF FREEDOM, DRIVES ARE 0'
 sed 's/^TIME /'"$(drive ANGLE BAR-5 '' 0.0)"'\n&/' "$w/deck" > "$w/one.deck" && mv "$w/one.deck" "$w/deck"
-told 'ten links, the fifth is driven' 1 ' *** E101  SET 1: LINKS BAR-1, BAR-2, BAR-3, BAR-4, BAR-5, BAR-6, BAR-7, BAR-8 AND 2 MORE: 9 FREEDOMS LEFT, ADD DRIVES
- *** E103  SET 1: W = 33 COORDINATES LESS R = 23 EQUATIONS LEAVE S = 10 FREEDOMS, DRIVES ARE 1'
+told 'ten links, the fifth is driven' 1 ' *** E101  SET 1: LINKS BAR-1, BAR-2, BAR-3, BAR-4, BAR-5, BAR-6, BAR-7, BAR-8 AND 2 MORE: 9 DEGREES OF FREEDOM LEFT, ADD DRIVES
+ *** E103  SET 1: W = 33 COORDINATES LESS R = 23 EQUATIONS LEAVE S = 10 DEGREES OF FREEDOM, DRIVES ARE 1'
 pendulums() { head_of PENDULUMS; awk -v n="$1" 'BEGIN { print "POINT   O       BASE"; for (i = 1; i <= n; i++)
    printf "LINK    L%d\nPOINT   P%-7dL%-7d        1.0\nREVOLUTEO       P%-7dR%d\n", i, i, i, i, i }'; until_time 2 1.0; }
 pendulums 22 > "$w/deck"
 told 'twenty-two pendulums' 1 "$(awk 'BEGIN { for (i = 1; i <= 20; i++)
    print " *** E101  SET 1: LINK L" i ": 1 FREEDOM LEFT, ADD A DRIVE" }')
  *** E101  SET 1: AND 2 MORE PARTS THAT CAN MOVE
- *** E103  SET 1: W = 69 COORDINATES LESS R = 47 EQUATIONS LEAVE S = 22 FREEDOMS, DRIVES ARE 0"
+ *** E103  SET 1: W = 69 COORDINATES LESS R = 47 EQUATIONS LEAVE S = 22 DEGREES OF FREEDOM, DRIVES ARE 0"
 { pendulums 1; pendulums 1; } > "$w/deck"
 told 'faults of every set' 1 ' *** E101  SET 1: LINK L1: 1 FREEDOM LEFT, ADD A DRIVE
- *** E103  SET 1: W = 6 COORDINATES LESS R = 5 EQUATIONS LEAVE S = 1 FREEDOMS, DRIVES ARE 0
+ *** E103  SET 1: W = 6 COORDINATES LESS R = 5 EQUATIONS LEAVE S = 1 DEGREES OF FREEDOM, DRIVES ARE 0
  *** E101  SET 2: LINK L1: 1 FREEDOM LEFT, ADD A DRIVE
- *** E103  SET 2: W = 6 COORDINATES LESS R = 5 EQUATIONS LEAVE S = 1 FREEDOMS, DRIVES ARE 0'
+ *** E103  SET 2: W = 6 COORDINATES LESS R = 5 EQUATIONS LEAVE S = 1 DEGREES OF FREEDOM, DRIVES ARE 0'
 block() { head_of BLOCK; link BLOCK 0.0 0.0 0.0; point O BASE; point O1 BLOCK; card PRISM O O1 GUIDE 0.0 0.0 0.0
    "$@"; until_time 2 1.0; }
 block drive ANGLE BLOCK '' 0.0 > "$w/deck"
 told 'an angle that a guide keeps is driven' 1 ' *** E101  SET 1: LINK BLOCK: 1 FREEDOM LEFT, ADD A DRIVE
  *** E102  SET 1: TOO MANY EQUATIONS BY 1 AMONG PAIR GUIDE AND DRIVE ANGLE BLOCK
- *** E103  SET 1: W = 6 COORDINATES LESS R = 5 EQUATIONS LEAVE S = 1 FREEDOMS, DRIVES ARE 1'
+ *** E103  SET 1: W = 6 COORDINATES LESS R = 5 EQUATIONS LEAVE S = 1 DEGREES OF FREEDOM, DRIVES ARE 1'
 { head_of PIVOT; four_bar '' $crank_rocker; drive X A1 '' 0.0; until_time 2 1.0; } > "$w/deck"
 told 'a drive on a fixed pivot moves nothing' 1 ' *** E101  SET 1: LINKS CRANK, COUPL, ROCK: 1 FREEDOM LEFT, ADD A DRIVE
  *** E102  SET 1: TOO MANY EQUATIONS BY 1 AMONG PAIR PA0 AND DRIVE X A1
- *** E103  SET 1: W = 12 COORDINATES LESS R = 11 EQUATIONS LEAVE S = 1 FREEDOMS, DRIVES ARE 1'
+ *** E103  SET 1: W = 12 COORDINATES LESS R = 11 EQUATIONS LEAVE S = 1 DEGREES OF FREEDOM, DRIVES ARE 1'
 { head_of MATRIX; four_bar '' $crank_rocker; drive ANGLE CRANK '' 14.0 9.0; drive RELANGLE CRANK COUPL 1.0; card METHOD MATRIX
    until_time 2 1.0; } > "$w/deck"
 told 'too many equations for METHOD MATRIX' 1 \
@@ -474,10 +474,10 @@ $below"
 { head_of FAR; four_bar '' $crank_rocker; drive ANGLE CRANK '' 14.0 9.0; card AT '' '' '' 0.0 1.5E6 2.0E6; card AT '' '' '' 2.0 -3.0E6
    card END; } > "$w/deck"
 told 'instants too far apart' 2 "1:$none
-1: *** THE WAY FROM T = 0.00000E+00 IS TOO LONG, ASK FOR INSTANTS NEARER TO ONE ANOTHER
+1: *** THE MOTION FROM T = 0.00000E+00 IS TOO LONG TO FOLLOW: ASK FOR INSTANTS CLOSER TOGETHER
 2:$none
 4:$none
-4: *** THE WAY FROM T = 2.00000E+00 IS TOO LONG, ASK FOR INSTANTS NEARER TO ONE ANOTHER"
+4: *** THE MOTION FROM T = 2.00000E+00 IS TOO LONG TO FOLLOW: ASK FOR INSTANTS CLOSER TOGETHER"
 { head_of DALEKO; card LANG PL; four_bar '' $crank_rocker; drive ANGLE CRANK '' 14.0 9.0; card AT '' '' '' 0.0 1.5E6; card END; } > "$w/deck"
 told 'in Polish: instants too far apart' 2 "1: *** NIE ZNALEZIONO POLOZENIA
 1: *** DROGA OD CHWILI T = 0.00000E+00 JEST ZA DLUGA, PODAJ CHWILE BLIZSZE SIEBIE"

@@ -42,7 +42,7 @@ program hard
    short = argument == 'short'
    call get_command_argument(2, decks)
    print '(a)', ' ERRORS OVER EPS TIMES THE SUM OF WHAT EACH NUMBER OF THE DECK DOES; CONDITION: THE LARGEST SUM OF A POSITION', &
-      '', ' SCENE                        LINKS  INSTANTS  MARKED  CONDITION  POSITION  VELOCITY    ACCEL.'
+      '', ' SCENE                        LINKS  INSTANTS  FLAGGED  CONDITION  POSITION  VELOCITY    ACCEL.'
    do i = 3, command_argument_count()
       call get_command_argument(i, argument)
       call judge_deck(trim(argument))

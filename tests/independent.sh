@@ -133,7 +133,7 @@ on_a_large_link() {
    card END
 }
 on_a_large_link 1.5 > "$w/fits.deck"; run "$w/fits"
-equal 'small cranks on a large link: solved' ' END OF SET 1:  INSTANTS SOLVED 3, MARKED 0' "$(grep 'END OF SET' "$w/fits.lst")"
+equal 'small cranks on a large link: solved' ' END OF SET 1:  INSTANTS SOLVED 3, FLAGGED 0' "$(grep 'END OF SET' "$w/fits.lst")"
 on_a_large_link 1.65 > "$w/open.deck"; run "$w/open"
 equal 'small cranks on a large link, one too long' ' *** TOO MANY EQUATIONS, AND THEY CONTRADICT ONE ANOTHER' \
    "$(grep -m 1 'CONTRADICT' "$w/open.lst")"

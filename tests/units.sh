@@ -61,7 +61,7 @@ for deck in input/*.deck; do
       enlarged $k "$deck" > "$w/deck"
       "$BUILD/kinmat" "$w/deck" > "$w/lst" 2> "$w/err"
       status=$?
-      equal "$name times 10**$k: status" "$(grep -qE ' (MARKED|ZAZNACZONE) [1-9]' "expected/$name.lst" && echo 2 || echo 0)" $status
+      equal "$name times 10**$k: status" "$(grep -qE ' (FLAGGED|ZAZNACZONE) [1-9]' "expected/$name.lst" && echo 2 || echo 0)" $status
       digits "$w/lst" > "$w/out"
       same "$name times 10**$k: the same digits" "$w/wanted" "$w/out"
    done

@@ -123,8 +123,8 @@ contains
       if (allocated(e%dense)) is_certified = e%dense%method == method_dense
    end function is_certified
 
-   !> Of which links the motion found last is known in full although it is not as a whole. METHOD DENSE and METHOD MATRIX
-   !> have one Jacobian for all links: without its inverse they know the links that drives alone move.
+   !> Of which links the motion found last is known in full although it is not as a whole. METHOD DENSE and METHOD
+   !> MATRIX have one Jacobian for all links: without its inverse they know the links that drives alone move.
    subroutine tell_links(e, found)
       type(engine_t), intent(in) :: e
       type(motion_t), intent(inout) :: found

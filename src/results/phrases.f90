@@ -22,7 +22,7 @@ module phrases
       say_prismatic = phrase_t('PRISMATIC PAIRS', 'PARY POSTEPOWE'), &
       say_coordinates = phrase_t('COORDINATES', 'WSPOLRZEDNE'), &
       say_equations = phrase_t('EQUATIONS', 'ROWNANIA'), &
-      say_freedoms = phrase_t('FREEDOMS', 'STOPNIE SWOBODY'), &
+      say_freedoms = phrase_t('DEGREES OF FREEDOM', 'STOPNIE SWOBODY'), &
       say_drives = phrase_t('DRIVES', 'NAPEDY'), &
       say_results = phrase_t('RESULTS', 'WYNIKI'), &
       say_units = phrase_t('UNITS', 'JEDNOSTKI'), &
@@ -37,7 +37,7 @@ module phrases
       say_none = phrase_t('NONE', 'BRAK'), &
       say_end = phrase_t('END OF SET', 'KONIEC KOMPLETU'), &
       say_solved = phrase_t('INSTANTS SOLVED', 'CHWILE ROZWIAZANE'), &
-      say_marked = phrase_t('MARKED', 'ZAZNACZONE'), &
+      say_marked = phrase_t('FLAGGED', 'ZAZNACZONE'), &
       say_no_position = phrase_t('NO POSITION FOUND', 'NIE ZNALEZIONO POLOZENIA'), &
       say_no_rates = phrase_t('JACOBIAN SINGULAR: VELOCITIES AND ACCELERATIONS DO NOT EXIST', &
          'JAKOBIAN OSOBLIWY: PREDKOSCI I PRZYSPIESZENIA NIE ISTNIEJA'), &
@@ -51,7 +51,7 @@ module phrases
       say_open_by = phrase_t('STAYS OPEN BY', 'POZOSTAJE OTWARTA O'), &
       say_limit = phrase_t('LIMIT OF MOTION AT T =', 'KRES RUCHU W CHWILI T ='), &
       say_in_line = phrase_t('AT THE LIMIT, IN LINE', 'NA KRESIE RUCHU, W JEDNEJ LINII'), &
-      say_off_by = phrase_t('ROUGH ANGLE WAS OFF BY', 'KAT PRZYBLIZONY ODBIEGAL O'), &
+      say_off_by = phrase_t('ESTIMATED ANGLE WAS OFF BY', 'KAT PRZYBLIZONY ODBIEGAL O'), &
       say_second = phrase_t('ANOTHER ASSEMBLY IS ABOUT AS NEAR', 'INNY MONTAZ JEST PODOBNIE BLISKI'), &
       say_redundant = phrase_t('REDUNDANT EQUATION', 'ROWNANIE NADLICZBOWE'), &
       say_gap = phrase_t('LARGEST GAP OF REDUNDANT EQUATIONS, OF THE SIZE:', &
@@ -65,8 +65,8 @@ module phrases
       say_change = phrase_t('CHANGE POINT AT T =', 'PUNKT ZMIANY W CHWILI T ='), &
       say_smoothly = phrase_t('GO ON SMOOTHLY', 'RUCH PRZECHODZI GLADKO'), &
       say_unknown = phrase_t('DIGITS THAT ROUNDING LEAVES OPEN', 'CYFRY NIEPEWNE Z POWODU ZAOKRAGLEN'), &
-      say_way = phrase_t('THE WAY FROM T =', 'DROGA OD CHWILI T ='), &
-      say_too_long = phrase_t('IS TOO LONG, ASK FOR INSTANTS NEARER TO ONE ANOTHER', &
+      say_way = phrase_t('THE MOTION FROM T =', 'DROGA OD CHWILI T ='), &
+      say_too_long = phrase_t('IS TOO LONG TO FOLLOW: ASK FOR INSTANTS CLOSER TOGETHER', &
          'JEST ZA DLUGA, PODAJ CHWILE BLIZSZE SIEBIE'), &
       say_branch = phrase_t('BRANCH', 'GALAZ'), &
       say_followed = phrase_t('INSTANTS FOLLOWED', 'CHWILE SLEDZONE'), &

@@ -62,7 +62,8 @@ contains
          //whole(size(f%lacking) - most_parts)//' MORE PARTS THAT CAN MOVE')
       if (f%redundant > 0) call add_line('E102  SET '//whole(set)//': '//surplus(m, f))
       call add_line('E103  SET '//whole(set)//': W = '//whole(f%coordinates)//' COORDINATES LESS R = ' &
-         //whole(f%equations)//' EQUATIONS LEAVE S = '//whole(f%freedoms)//' FREEDOMS, DRIVES ARE '//whole(f%drives))
+         //whole(f%equations)//' EQUATIONS LEAVE S = '//whole(f%freedoms) &
+         //' DEGREES OF FREEDOM, DRIVES ARE '//whole(f%drives))
 
    contains
 
@@ -86,7 +87,7 @@ contains
       if (part%freedoms == 1) then
          text = text//'1 FREEDOM LEFT, ADD A DRIVE'
       else
-         text = text//whole(part%freedoms)//' FREEDOMS LEFT, ADD DRIVES'
+         text = text//whole(part%freedoms)//' DEGREES OF FREEDOM LEFT, ADD DRIVES'
       end if
    end function lack
 
