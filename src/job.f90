@@ -1,6 +1,6 @@
 !> One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later.
 module job
-   use failures, only: failure_t, fail, status_solved, status_refused, status_marked, status_signal
+   use failures, only: failure_t, fail, status_solved, status_refused, status_flagged, status_signal
    use mechanism, only: mechanism_t, instant_count, instant
    use structure, only: findings_t
    use structure_faults, only: check_structure
@@ -12,11 +12,11 @@ module job
    use csv, only: csv_head, csv_set_instant
    use protocol, only: protocol_head, protocol_instant
    use convergence, only: convergence_t
-   use continuity, only: branch_t
+   use branch_certificate, only: branch_t
    use points, only: strides, any_due
    use set_motion, only: is_flagged, has_words
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set, set_record, set_errors, &
-      set_gap, set_closing_remarks
+      set_closure_error, set_closing_diagnostics
    use command_line, only: options_t
    implicit none
    private
@@ -152,7 +152,7 @@ contains
       type(layout_t) :: layout
       type(set_analysis_t) :: a
       integer, allocatable :: every(:)
-      integer :: k, marked
+      integer :: k, flagged
       logical :: due
 
       layout = new_layout(m)
@@ -162,11 +162,11 @@ contains
       call flush_all(options, o)
       if (is_over(o)) return
       call make_set_analysis(m, a)
-      marked = 0
+      flagged = 0
       every = strides(m)
       do k = 0, instant_count(m) - 1
          call advance_set(a, m, instant(m, k))
-         if (is_flagged(a%now)) marked = marked + 1
+         if (is_flagged(a%now)) flagged = flagged + 1
          due = any_due(m, every, k)
          if (due .or. options%errors) call sample_set(a, m, options%errors)
          if (due .or. has_words(a%now)) call listing_set_instant(o%listing, layout, m, a%now, k)
@@ -176,8 +176,9 @@ contains
          call listing_broken_off(o%listing, m, k)
          return
       end do
-      call listing_end(o%listing, m, instant_count(m) - marked, marked, a%tally, set_gap(a), set_closing_remarks(a, m))
-      if (marked > 0) status = status_marked
+      call listing_end(o%listing, m, instant_count(m) - flagged, flagged, a%certificate_counts, set_closure_error(a), &
+         set_closing_diagnostics(a, m))
+      if (flagged > 0) status = status_flagged
    end subroutine run_set
 
    !> The line of instant number `k` in the protocol.

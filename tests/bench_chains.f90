@@ -108,7 +108,8 @@ contains
       type(spot_t) :: m, p, q
 
       m = middle
-      p = spot_t(2*m%x - right%x, 2*m%y - right%y, 2*m%vx - right%vx, 2*m%vy - right%vy, 2*m%ax - right%ax, 2*m%ay - right%ay)
+      p = spot_t(2*m%x - right%x, 2*m%y - right%y, 2*m%vx - right%vx, 2*m%vy - right%vy, 2*m%ax - right%ax, &
+         2*m%ay - right%ay)
       q = spot_t(2*m%x - left%x, 2*m%y - left%y, 2*m%vx - left%vx, 2*m%vy - left%vy, 2*m%ax - left%ax, 2*m%ay - left%ay)
       left = p
       right = q

@@ -13,14 +13,15 @@ module bench_results
 
    !> Rounding moves a position by eps/rcond at most, and moves each derivative by what it moved the one before, over
    !> rcond again where it falls on the weakest direction. That worst case, eps/rcond**3 for an acceleration, would let
-   !> anything pass; asked for is `factor` eps/rcond times the derivative's own size, which holds away from change points.
+   !> anything pass; asked for is `factor` eps/rcond times the derivative's own size, which holds away from change
+   !> points.
    real(wp), parameter :: factor = 64.0_wp
    !> Conditions of positions that are not hard.
    real(wp), parameter :: far_from_dead_points = 1.0e2_wp
 
-   type :: tally_t
+   type :: certificate_counts_t
       integer :: passed = 0, failed = 0
-   end type tally_t
+   end type certificate_counts_t
 
    type :: size_t
       character(7) :: kind
@@ -43,7 +44,7 @@ contains
       character(*), intent(in) :: inputs(:), decks
       integer, intent(in) :: steps
       integer, intent(out) :: failed
-      type(tally_t) :: tally
+      type(certificate_counts_t) :: tally
       type(scene_t) :: s
       integer :: i
 
@@ -73,7 +74,7 @@ contains
    subroutine judge_deck(path, steps, tally)
       character(*), intent(in) :: path
       integer, intent(in) :: steps
-      type(tally_t), intent(inout) :: tally
+      type(certificate_counts_t), intent(inout) :: tally
       type(mechanism_t), allocatable :: sets(:)
       type(failure_t), allocatable :: failure
       character(:), allocatable :: report, name
@@ -94,7 +95,7 @@ contains
          g = gap_of(s, steps)
          if (g%has_change_point) then
             g%worst(2:) = 0.0_wp
-            g%marked = 0
+            g%flagged = 0
          end if
          call judge(name//' '//achar(iachar('0') + i), 'BLOCKS, DENSE', g, tally)
          if (.not. associated(s%fast) .or. i > 1) cycle
@@ -109,7 +110,7 @@ contains
       type(scene_t), intent(in) :: s
       character(*), intent(in) :: kind
       integer, intent(in) :: steps
-      type(tally_t), intent(inout) :: tally
+      type(certificate_counts_t), intent(inout) :: tally
       type(gap_t) :: g
 
       g = error_of(s, method_newton, steps, 1)
@@ -138,11 +139,12 @@ contains
    end function growth
 
    !> Where all closure equations have no inverse the net can leave its motion; the lattice 7 comes there after 56
-   !> steps. What is beyond must be the same motion or be marked: an assembly is never changed in silence. Only positions
+   !> steps. What is beyond must be the same motion or be marked: an assembly is never changed in silence. Only
+   !> positions
    !> are judged, to what a condition of 1.0e7 leaves of them: another assembly is off by 1.0e-3 and more.
    subroutine judge_change_point(decks, tally)
       character(*), intent(in) :: decks
-      type(tally_t), intent(inout) :: tally
+      type(certificate_counts_t), intent(inout) :: tally
       type(scene_t) :: s
       type(gap_t) :: g
 
@@ -151,7 +153,7 @@ contains
       g%condition = 1.0e7_wp
       g%worst(2:) = 0.0_wp
       ! Marks are right here.
-      g%marked = 0
+      g%flagged = 0
       call judge(s%name, 'CHANGE POINT', g, tally)
    end subroutine judge_change_point
 
@@ -159,7 +161,7 @@ contains
    subroutine judge(name, what, g, tally)
       character(*), intent(in) :: name, what
       type(gap_t), intent(in) :: g
-      type(tally_t), intent(inout) :: tally
+      type(certificate_counts_t), intent(inout) :: tally
       real(wp) :: part, turn
       logical :: good
 
@@ -167,9 +169,9 @@ contains
       turn = max(1.0_wp, g%condition/far_from_dead_points)
       ! A large angle is rounded coarsely, and the directions that the rates come from with it.
       part = maxval(g%worst/(g%size*[1.0_wp, g%size(1)*turn, g%size(1)*turn]))/(factor*epsilon(1.0_wp)*g%condition)
-      good = g%instants > 0 .and. g%marked == 0 .and. part <= 1.0_wp
+      good = g%instants > 0 .and. g%flagged == 0 .and. part <= 1.0_wp
       print '(1x, a20, 1x, a14, i8, i8, 4es11.1, es9.1, a)', name//repeat(' ', 20), what//repeat(' ', 14), g%instants, &
-         g%marked, g%condition, g%worst, part, trim(merge('       ', ' FAILED', good))
+         g%flagged, g%condition, g%worst, part, trim(merge('       ', ' FAILED', good))
       if (good) then
          tally%passed = tally%passed + 1
       else

@@ -42,7 +42,7 @@ module bench_scenes
       real(wp) :: size(3) = 1.0_wp                 !< the largest values themselves, 1 at least
       real(wp) :: condition = 1.0_wp               !< of all closure equations, the worst on the way
       integer :: instants = 0                      !< compared
-      integer :: marked = 0                        !< not compared: without a result
+      integer :: flagged = 0                        !< not compared: without a result
       logical :: has_change_point = .false.        !< at which the dense method ends, and rates are what rounding leaves
    end type gap_t
 
@@ -154,8 +154,8 @@ contains
          if (method == by_closed_form) call move_fast(s, instant_of(s, k), found)
          call move_exactly(s, instant_of(s, k), exact)
          if (method == by_closed_form .or. found%mark == mark_none) call widen(s, found, exact, .true., g)
-         if (method /= by_closed_form .and. found%mark /= mark_none) g%marked = g%marked + 1
-         if (g%marked == 5 .and. g%instants == 0) exit
+         if (method /= by_closed_form .and. found%mark /= mark_none) g%flagged = g%flagged + 1
+         if (g%flagged == 5 .and. g%instants == 0) exit
       end do
    end function error_of
 
@@ -175,7 +175,7 @@ contains
       do k = 0, steps
          call advance(blocks, instant_of(s, k), one)
          call advance(dense, instant_of(s, k), two)
-         if (one%mark /= mark_none) g%marked = g%marked + 1
+         if (one%mark /= mark_none) g%flagged = g%flagged + 1
          if (two%mark /= mark_none) g%has_change_point = .true.
          if (one%mark /= mark_none .or. two%mark /= mark_none) cycle
          g%condition = max(g%condition, 1.0_wp/dense%convergence%reciprocal_condition)

@@ -40,7 +40,7 @@ contains
             k = size(methods)*(i - 1) + m
             jobs(k) = job_t(i, methods(m))
             errors(k) = error_of(scenes(i), methods(m), steps_of_turn, 20)
-            if (errors(k)%marked > 0) jobs(k)%method = by_closed_form
+            if (errors(k)%flagged > 0) jobs(k)%method = by_closed_form
          end do
       end do
       time = measure(scenes, jobs, repeats, least)
@@ -70,10 +70,11 @@ contains
 
       ratio = spread_of(time/closed)
       own = spread_of(time*nano)
-      if (e%marked > 0) then
+      if (e%flagged > 0) then
          print '(1x, a10, 1x, a11, a)', deck//'   ', names(method), '    NONE'
       else
-         print '(1x, a10, 1x, a11, 5a8, 3es10.1)', deck//'   ', names(method), figure(ratio%median), figure(ratio%least), &
+         print '(1x, a10, 1x, a11, 5a8, 3es10.1)', deck//'   ', names(method), figure(ratio%median), &
+            figure(ratio%least), &
             figure(ratio%most), figure(own%least/(nano*minval(closed))), figure(own%median), e%worst
       end if
    end subroutine print_method
@@ -112,7 +113,7 @@ contains
       integer, intent(in) :: steps, times
       real(wp), intent(out), optional :: kept(:, 0:, :)
       !> More links would take a second or more a step by all equations at once.
-      integer, parameter :: most_links = 70
+      integer, parameter :: max_links = 70
       type(scene_t) :: scenes(size(sizes))
       type(job_t) :: jobs(3*size(sizes))
       real(wp) :: time(3*size(sizes), times)
@@ -122,7 +123,7 @@ contains
          scenes(i) = chain_scene(decks, trim(sizes(i)%kind), sizes(i)%n)
          scenes(i)%steps = steps
          jobs(3*i - 2:3*i) = [job_t(i, by_closed_form), job_t(i, method_newton), job_t(i, method_dense)]
-         if (size(scenes(i)%m%links) > most_links) jobs(3*i)%method = by_closed_form
+         if (size(scenes(i)%m%links) > max_links) jobs(3*i)%method = by_closed_form
       end do
       time = measure(scenes, jobs, times, least)
       do i = 1, size(sizes)
@@ -184,7 +185,8 @@ contains
       do i = 0, 1
          best(i) = slope(pack(n, n >= 10.0_wp), pack(minval(time(:, i, :), dim=2), n >= 10.0_wp))
       end do
-      print '(a, 3f6.2, a, f6.3, a, 3f6.2, a, f6.3)', ' windows 10 to 10000 as N**p: blocks', blocks, '  BEST', best(1), &
+      print '(a, 3f6.2, a, f6.3, a, 3f6.2, a, f6.3)', ' windows 10 to 10000 as N**p: blocks', blocks, '  BEST', &
+         best(1), &
          ';  closed form', closed, '  BEST', best(0)
    end subroutine print_exponents
 end module bench_tables

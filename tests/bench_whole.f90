@@ -42,7 +42,8 @@ contains
       end do
       inquire (file=path, size=bytes)
       r = [spread_of(plain), spread_of(read), spread_of(ready), spread_of((read + ready)/plain)]
-      print '(1x, a20, i12, f10.1, 3f10.3, f10.1, f10.4, f10.0)', path(index(path, '/', back=.true.) + 1:)//repeat(' ', 20), &
+      print '(1x, a20, i12, f10.1, 3f10.3, f10.1, f10.4, f10.0)', path(index(path, '/', &
+         back=.true.) + 1:)//repeat(' ', 20), &
          size(sets(1)%links), bytes*1.0e-6_wp, r(:3)%median, r(4)%median, step, memory
    end subroutine reading_row
 

@@ -7,19 +7,19 @@ program check_forms
    use mechanism, only: mechanism_t, pair_t, instant_count, instant, pair_revolute, drive_angle, drive_x, drive_y, &
       drive_relangle, drive_slide
    use scales, only: characteristic_length, characteristic_rate
-   use structure, only: findings_t, count_freedoms
+   use structure, only: findings_t, count_degrees_of_freedom
    use deck, only: read_deck
    use quad_jet, only: qp, jet_t, pi_q, operator(+), operator(-), operator(*), sin, cos
    use quad_decks, only: length, angle, law
    use closed_forms_dyads, only: place_t, body_t, place_on
-   use deck_tally, only: tally_t, count_one, conclude, deck_name
+   use deck_tally, only: certificate_counts_t, count_one, conclude, deck_name
    use closed_forms, only: closed_form, hand_count
    implicit none
    !> Relative; real128 rounds at 1e-34, and six digits are left for the roundings of a chain of dyads.
    real(qp), parameter :: tolerance = 1.0e-28_qp
    character(*), parameter :: order(0:2) = [character(18) :: 'positions', 'velocities', 'accelerations']
    character(500) :: path
-   type(tally_t) :: tally
+   type(certificate_counts_t) :: tally
    integer :: i
 
    do i = 1, command_argument_count()
@@ -56,7 +56,8 @@ contains
       integer :: k
 
       write (what, '(2a,i0,a)') name, ', set ', m%set_number, ': '
-      call count_one(tally, agree(hand_count(name), count_freedoms(m)), trim(what)//' links and pairs as counted by hand')
+      call count_one(tally, agree(hand_count(name), count_degrees_of_freedom(m)), &
+         trim(what)//' links and pairs as counted by hand')
       pairs = 0.0_qp
       grounds = 0.0_qp
       driven = 0.0_qp
@@ -198,23 +199,24 @@ contains
       rest = phi - 2.0_qp*pi_q*anint(phi%v/(2.0_qp*pi_q))
    end function whole_turns_off
 
-   !> What a difference of two points' places, velocities and accelerations is measured by: the largest term in it, or the
+   !> What a difference of two points' places, velocities and accelerations is measured by: the largest term in it, or
+   !> the
    !> characteristic length and rate.
    function size_of(m, links, i, j) result(one)
       type(mechanism_t), intent(in) :: m
       type(body_t), intent(in) :: links(:)
       integer, intent(in) :: i, j
-      real(qp) :: one(0:2), arm
+      real(qp) :: one(0:2), body_vector
       integer :: k, point
 
       one = [(characteristic_length(m)*real(characteristic_rate(m, characteristic_length(m)), qp)**k, k=0, 2)]
       do k = 1, 2
          point = merge(i, j, k == 1)
-         arm = maxval(abs(m%points(point)%offset))
+         body_vector = maxval(abs(m%points(point)%offset))
          associate (b => links(m%points(point)%link))
-            one(0) = max(one(0), abs(b%x%v), abs(b%y%v), arm)
-            one(1) = max(one(1), abs(b%x%d), abs(b%y%d), arm*abs(b%phi%d))
-            one(2) = max(one(2), abs(b%x%dd), abs(b%y%dd), arm*b%phi%d**2, arm*abs(b%phi%dd))
+            one(0) = max(one(0), abs(b%x%v), abs(b%y%v), body_vector)
+            one(1) = max(one(1), abs(b%x%d), abs(b%y%d), body_vector*abs(b%phi%d))
+            one(2) = max(one(2), abs(b%x%dd), abs(b%y%dd), body_vector*b%phi%d**2, body_vector*abs(b%phi%dd))
          end associate
       end do
    end function size_of
@@ -256,8 +258,9 @@ contains
    logical function agree(a, b)
       type(findings_t), intent(in) :: a, b
 
-      agree = all([a%links, a%ground, a%revolute, a%prismatic, a%coordinates, a%equations, a%freedoms, a%drives] &
-         == [b%links, b%ground, b%revolute, b%prismatic, b%coordinates, b%equations, b%freedoms, b%drives])
+      agree = all([a%links, a%ground, a%revolute, a%prismatic, a%coordinates, a%equations, a%degrees_of_freedom, &
+         a%drives] &
+         == [b%links, b%ground, b%revolute, b%prismatic, b%coordinates, b%equations, b%degrees_of_freedom, b%drives])
    end function agree
 
    subroutine count_size(worst, what)

@@ -33,7 +33,8 @@ module closed_forms
       count_t('peaucellier', 8, 10, 0, 1), count_t('five_bar', 5, 5, 0, 2), count_t('pantograph', 5, 5, 0, 2), &
       count_t('andrews', 8, 10, 0, 1), count_t('jansen', 8, 10, 0, 1), count_t('watt', 6, 7, 0, 1), &
       count_t('stephenson', 6, 7, 0, 1), &
-      count_t('watt_output', 6, 7, 0, 1), count_t('stephenson_output', 6, 7, 0, 1), count_t('three_rrr_cranks', 8, 9, 0, 3), &
+      count_t('watt_output', 6, 7, 0, 1), count_t('stephenson_output', 6, 7, 0, 1), count_t('three_rrr_cranks', 8, 9, &
+      0, 3), &
       count_t('klann', 6, 7, 0, 1), count_t('grounds', 8, 6, 1, 1, ground=3), &
       count_t('three_rrr', 8, 9, 0, 3), count_t('excavator', 12, 12, 3, 3), count_t('xy_table', 4, 1, 2, 3), &
       count_t('scissor', 10, 11, 2, 1), count_t('chebyshev', 4, 4, 0, 1), count_t('kite', 4, 4, 0, 1), &
@@ -207,7 +208,7 @@ contains
          f%coordinates = 3*f%links
          f%equations = 2*(f%revolute + f%prismatic) + 3*f%ground
          ! In every one of these mechanisms the freedoms are driven one by one; (13) counts each equation.
-         f%freedoms = f%drives - counts(i)%redundant
+         f%degrees_of_freedom = f%drives - counts(i)%redundant
       end do
    end function hand_count
 end module closed_forms

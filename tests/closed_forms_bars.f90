@@ -1,4 +1,5 @@
-!> Tests. Closed forms of linkages of bars with a symmetry, which give them without a square root or with one. The lengths
+!> Tests. Closed forms of linkages of bars with a symmetry, which give them without a square root or with one. The
+!> lengths
 !> are those of the decks in input/, written out again by hand so that a deck read wrongly shows up as a difference.
 module closed_forms_bars
    use quad_jet, only: qp, jet_t, degree_q, constant_jet, time_jet, &
@@ -84,7 +85,8 @@ contains
       q = place_t(p%x - along*dx, p%y - along*dy)
    end function swapped
 
-   !> Hart's inversor: antiparallelogram A B C D, AB = CD = 4, BC = DA = 2, pivoted in the middle O of AB; the middle P of
+   !> Hart's inversor: antiparallelogram A B C D, AB = CD = 4, BC = DA = 2, pivoted in the middle O of AB; the middle P
+   !> of
    !> AD is led by the crank on the circle of radius 1.25 about (1.25, 0), through O. OP = BD/2 and OQ = AC/2 lie on one
    !> line, on both sides of O, and OP OQ = (4^2 - 2^2)/4 = 3; so the middle Q of BC runs on x = -3/2.5.
    pure function hart(t) result(links)

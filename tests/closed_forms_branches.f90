@@ -1,4 +1,5 @@
-!> Tests. Closed forms of motions that take the other branch at a change point, or stand exactly on one. The lengths are those
+!> Tests. Closed forms of motions that take the other branch at a change point, or stand exactly on one. The lengths
+!> are those
 !> of the decks, written out again by hand.
 module closed_forms_branches
    use quad_jet, only: qp, jet_t, degree_q, constant_jet, time_jet, operator(+), operator(-), operator(*)
@@ -29,7 +30,8 @@ contains
       if (t < 27.6_qp) links = parallelogram_links((15.0_qp + 12.5_qp*time_jet(t))*degree_q)
    end function antiparallelogram_branch
 
-   !> Crank and coupler 1, base and rocker 3; from 180 to 360 deg the coupler lies on the crank and the rocker on the base.
+   !> Crank and coupler 1, base and rocker 3; from 180 to 360 deg the coupler lies on the crank and the rocker on the
+   !> base.
    pure function kite_branch(t) result(links)
       real(qp), intent(in) :: t
       type(body_t) :: links(4)

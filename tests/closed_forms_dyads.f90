@@ -5,7 +5,8 @@ module closed_forms_dyads
       operator(+), operator(-), operator(*), operator(/), sqrt, sin, cos, atan2
    implicit none
    private
-   public :: place_t, body_t, fixed_place, body, place_on, polar, direction, distance_squared, third_corner, corner, mirrored, &
+   public :: place_t, body_t, fixed_place, body, place_on, polar, direction, distance_squared, third_corner, corner, &
+      mirrored, &
       on_line, natural_spline_3
 
    !> A point of the plane.

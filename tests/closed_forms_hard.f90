@@ -7,7 +7,8 @@ module closed_forms_hard
    use closed_forms_dyads, only: place_t, body_t, fixed_place, body, polar, direction, corner, on_line
    implicit none
    private
-   public :: parallelogram, parallelogram_links, scott_russell, near_equal_rod, dead_point, pushed_slider, far_small, many_turns
+   public :: parallelogram, parallelogram_links, scott_russell, near_equal_rod, dead_point, pushed_slider, far_small, &
+      many_turns
 
 contains
 
@@ -62,7 +63,8 @@ contains
                body('PISTON', piston, flat)]
    end function near_equal_rod
 
-   !> Crank 1 and rod 3, driven by the piston: x = 4 - g (1 + t), the crank above, g = 2.3/10^power. The triangle's height
+   !> Crank 1 and rod 3, driven by the piston: x = 4 - g (1 + t), the crank above, g = 2.3/10^power. The triangle's
+   !> height
    !> over x by Heron, where 4 - x is not a difference: h = sqrt((4 + x)(4 - x)(x + 2)(x - 2))/(2 x).
    pure function dead_point(power, t) result(links)
       integer, intent(in) :: power
@@ -82,7 +84,8 @@ contains
                body('ROD', pin, direction(pin, piston)), body('PISTON', piston, flat)]
    end function dead_point
 
-   !> The same mechanism with the numbers of the deck `m`, whatever they are: the piston's point at x, on a guide that is
+   !> The same mechanism with the numbers of the deck `m`, whatever they are: the piston's point at x, on a guide that
+   !> is
    !> inclined by alpha; arms across their links' axes too.
    function pushed_slider(m, t) result(links)
       type(mechanism_t), intent(in) :: m

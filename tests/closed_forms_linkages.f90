@@ -66,7 +66,7 @@ contains
    pure function peaucellier(t) result(links)
       real(qp), intent(in) :: t
       type(body_t) :: links(8)
-      real(qp), parameter :: arm = 3.0_qp, bar = 1.5_qp, k = arm**2 - bar**2
+      real(qp), parameter :: body_vector = 3.0_qp, bar = 1.5_qp, k = body_vector**2 - bar**2
       type(jet_t) :: phi, arm2, bar2
       type(place_t) :: o, m, a, b, c, p
 
@@ -75,7 +75,7 @@ contains
       m = fixed_place(1.0_qp, 0.0_qp)
       c = polar(m, 1.0_qp, phi)
       p = place_t(constant_jet(0.5_qp*k), 0.5_qp*k*sin(phi)/(1.0_qp + cos(phi)))
-      arm2 = constant_jet(arm**2)
+      arm2 = constant_jet(body_vector**2)
       bar2 = constant_jet(bar**2)
       a = third_corner(o, p, arm2, bar2, 1.0_qp)
       b = third_corner(o, p, arm2, bar2, -1.0_qp)

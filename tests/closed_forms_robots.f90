@@ -62,7 +62,8 @@ contains
       do k = 1, 3
          foot = fixed_place(base(1, k), base(2, k))
          links(2*k + 1) = body('CRANK-'//digit(k), foot, crank(k))
-         links(2*k + 2) = body('ROD-'//digit(k), elbow(k), direction(elbow(k), place_on(platform, plate(1, k), plate(2, k))))
+         links(2*k + 2) = body('ROD-'//digit(k), elbow(k), direction(elbow(k), place_on(platform, plate(1, k), &
+            plate(2, k))))
       end do
    end function three_rrr_cranks
 
@@ -103,7 +104,8 @@ contains
    end subroutine improve
 
    !> Excavator arm: boom, stick and bucket, each moved by a cylinder whose slide is given. Every triangle has two
-   !> sides on a link (or on the base) and the cylinder as its third; the last one moves the rocker, and a tie the bucket.
+   !> sides on a link (or on the base) and the cylinder as its third; the last one moves the rocker, and a tie the
+   !> bucket.
    pure function excavator(t) result(links)
       real(qp), intent(in) :: t
       type(body_t) :: links(12), base, boom, stick

@@ -90,7 +90,7 @@ contains
    pure function whitworth(t) result(links)
       real(qp), intent(in) :: t
       type(body_t) :: links(6)
-      type(jet_t) :: phi, arm, flat
+      type(jet_t) :: phi, body_vector, flat
       type(place_t) :: o, centre, pin, tail, ram
 
       phi = (90.0_qp + 36.0_qp*time_jet(t))*degree_q
@@ -98,10 +98,11 @@ contains
       centre = fixed_place(0.0_qp, -1.0_qp)
       flat = constant_jet(0.0_qp)
       pin = polar(centre, 2.0_qp, phi)
-      arm = direction(o, pin)
-      tail = polar(o, -1.5_qp, arm)
+      body_vector = direction(o, pin)
+      tail = polar(o, -1.5_qp, body_vector)
       ram = on_level(tail, 5.0_qp, 0.0_qp, 1.0_qp)
-      links = [body('BASE', o, flat), body('CRANK', centre, phi), body('BLOCK', pin, arm), body('ARM', o, arm), &
+      links = [body('BASE', o, flat), body('CRANK', centre, phi), body('BLOCK', pin, body_vector), body('ARM', o, &
+         body_vector), &
                body('ROD', tail, direction(tail, ram)), body('RAM', ram, flat)]
    end function whitworth
 

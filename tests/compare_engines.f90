@@ -20,7 +20,8 @@ module compare_engines
 
 contains
 
-   !> `m` at the instants `t`, all at once by `method` (METHOD DENSE); at none but the first where that has no motion, at none
+   !> `m` at the instants `t`, all at once by `method` (METHOD DENSE); at none but the first where that has no motion,
+   !> at none
    !> where the structure has no solution.
    function compare(m, t, method) result(c)
       type(mechanism_t), intent(in) :: m
@@ -50,7 +51,8 @@ contains
          if (k == 1 .and. (q%mark /= mark_none .or. r%mark /= mark_none)) exit
          if (q%mark == mark_none .and. r%mark == mark_none) then
             c%solved = c%solved + 1
-            share = apart(q, r, wanted_links(m), dense%engine%dense%system%length, dense%convergence%reciprocal_condition)
+            share = apart(q, r, wanted_links(m), dense%engine%dense%system%length, &
+               dense%convergence%reciprocal_condition)
             if (maxval(share) > maxval(c%share)) then
                c%time = t(k)
                c%condition = dense%convergence%reciprocal_condition
@@ -64,8 +66,10 @@ contains
       end do
    end function compare
 
-   !> Differences of the `wanted` links over their bounds. With k the condition of the dense Jacobian, positions are known to
-   !> k eps, velocities v to k times (eps + what that does to the Jacobian) times v, accelerations once more; lengths in the
+   !> Differences of the `wanted` links over their bounds. With k the condition of the dense Jacobian, positions are
+   !> known to
+   !> k eps, velocities v to k times (eps + what that does to the Jacobian) times v, accelerations once more; lengths
+   !> in the
    !> system's unit.
    function apart(q, r, wanted, length, reciprocal_condition) result(share)
       type(motion_t), intent(in) :: q, r

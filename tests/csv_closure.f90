@@ -14,7 +14,8 @@ module csv_closure
    !> Of the size of its numbers, in units of eps: a coordinate is a sum along a chain of up to 20 links, three rounded
    !> terms each; the solver ends with steps of 32 eps.
    real(qp), parameter :: rounding = 64.0_qp*epsilon(1.0_wp)
-   !> A deck's own tolerance is one on the last step, which the step itself then betters; METHOD MATRIX may not better it, and
+   !> A deck's own tolerance is one on the last step, which the step itself then betters; METHOD MATRIX may not better
+   !> it, and
    !> the step may change residuals by as many times itself as a row has numbers.
    real(qp), parameter :: steps_of_tolerance = 16.0_qp
    !> Equations that are too many may contradict one another by this in positions, and by this in rates: so much the
@@ -23,7 +24,7 @@ module csv_closure
    !> Beyond this a Jacobian counts as singular in double precision, and no rates are to be told.
    real(qp), parameter :: worst_condition = 1.0e10_qp
    !> Products of numbers near the end of the range lose digits: what is below tiny is nothing.
-   real(qp), parameter :: least_size = tiny(1.0_wp)/epsilon(1.0_wp)
+   real(qp), parameter :: min_size = tiny(1.0_wp)/epsilon(1.0_wp)
 
    type :: verdict_t
       character(:), allocatable :: text         !< the first thing that is wrong; not allocated: nothing
@@ -124,9 +125,9 @@ contains
                share(0, 2*k) = abs(r(2*k)%v - 2.0_qp*pi_q*anint(r(2*k)%v/(2.0_qp*pi_q)))
          end do
          ! Two drives that ask for accelerations next to none are told apart by what their rates are worth.
-         sizes(2, :) = max(sizes(2, :), sizes(1, :)**2/(sizes(0, :) + least_size))
+         sizes(2, :) = max(sizes(2, :), sizes(1, :)**2/(sizes(0, :) + min_size))
       end if
-      share = share/(spread(allowed, 2, size(r))*(sizes + least_size))
+      share = share/(spread(allowed, 2, size(r))*(sizes + min_size))
       if (rows%known >= 1) then
          if (any(share(1:rows%known, :) > 1.0_qp)) then
             ! The position, and with it the Jacobian, is known to no better than eps times the condition.
@@ -212,7 +213,7 @@ contains
       real(qp) :: off(0:2)
 
       off = [maxval(abs(found%v - wanted%v)), maxval(abs(found%d - wanted%d)), maxval(abs(found%dd - wanted%dd))]
-      off = off/(rounding*(sizes + least_size))
+      off = off/(rounding*(sizes + min_size))
       if (any(off(:known) > 1.0_qp)) call blame(v%text, 'ROW OF '//trim(name)//': '//scientific(maxval(off(:known)))// &
          ' OF WHAT IS ALLOWED')
    end subroutine compare

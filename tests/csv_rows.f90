@@ -82,7 +82,8 @@ contains
       call split(line, cell, status)
       if (status /= cells) call blame(wrong, 'CSV: NUMBER OF CELLS: '//trim(line))
       if (allocated(wrong)) return
-      if (cell(1) /= whole_text(m%set_number) .or. cell(2) /= whole_text(k)) call blame(wrong, 'CSV: SET OR STEP: '//trim(line))
+      if (cell(1) /= whole_text(m%set_number) .or. cell(2) /= whole_text(k)) call blame(wrong, &
+         'CSV: SET OR STEP: '//trim(line))
       read (cell(3), '(f48.0)', iostat=status) rows%t
       if (status /= 0) call blame(wrong, 'CSV: TIME: '//trim(line))
       rows%mark = cell(15)(:12)
@@ -119,11 +120,13 @@ contains
             rows%value(:, i) = value(:2)
          end select
       end associate
-      if (kind /= wanted(1) .or. name /= wanted(2)) call blame(wrong, 'CSV: '//trim(kind)//' '//trim(name)//' IS NOT '// &
+      if (kind /= wanted(1) .or. name /= wanted(2)) call blame(wrong, &
+         'CSV: '//trim(kind)//' '//trim(name)//' IS NOT '// &
          trim(wanted(1))//' '//trim(wanted(2)))
    end subroutine keep_row
 
-   !> The numbers of request `i` as jets, angles in radians; `known`: derivatives that are there, -1 for not even places.
+   !> The numbers of request `i` as jets, angles in radians; `known`: derivatives that are there, -1 for not even
+   !> places.
    subroutine read_values(m, i, cell, value, known, wrong)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: i

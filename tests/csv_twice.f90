@@ -1,4 +1,5 @@
-!> Tests. The results of one deck in n steps and in 2 n: at the instants that both have, the links are in the same places.
+!> Tests. The results of one deck in n steps and in 2 n: at the instants that both have, the links are in the same
+!> places.
 !> An assembly that depends on the length of the steps was changed on the way.
 module csv_twice
    use kinds, only: wp
@@ -10,7 +11,8 @@ module csv_twice
    private
    public :: compare_steps
 
-   !> Another assembly is farther away than this, of the size of the coordinates; rounding at the worst condition at which
+   !> Another assembly is farther away than this, of the size of the coordinates; rounding at the worst condition at
+   !> which
    !> rates are still told, 1e8, leaves less.
    real(qp), parameter :: apart = 1.0e-5_qp
 

@@ -1,29 +1,35 @@
-!> Tests. Changes of a deck that go to the limits of numbers and of structure, or damage its text; and the deck of a seed.
+!> Tests. Changes of a deck that go to the limits of numbers and of structure, or damage its text; and the deck of a
+!> seed.
 module deck_damage
    use kinds, only: wp
    use dice, only: dice_t, new_dice, throw, chance
    use deck_draft, only: draft_t, line_length, name_of, label, set_label, real_field, set_real, set_full, insert_line, &
       drop_line, find_cards, add_note
    use deck_changes, only: pick, is_degrees
-   use deck_mutations, only: prepare, change_gently, most_steps
+   use deck_mutations, only: prepare, change_gently, max_steps
    implicit none
    private
    public :: deck_of_seed
 
    character(16), parameter :: extremes(*) = [character(16) :: '0.0', '-0.0', '1.0E308', '-1.0E308', &
       '1.797693134E308', '4.94066E-324', '1.0E-310', '2.22507385E-308', '1.0E-300', '-1.0E-160', '1.0E-20', '1.0E-9', &
-      '1.0E8', '1.0E9', '1.0E16', '-1.0E20', '1.0E60', '1.1E60', '1.0E-60', '-1.0E-59', '1.0E35', '1.0', '90.0', '180.0', &
-      '1.570796326794', '3.141592653589', '360.0', '0.5', '-1.0', '1.0E400', '1.0E-400', 'NAN', 'INF', '5', '-', '1.5-3']
-   character(8), parameter :: with_reals(*) = [character(8) :: 'GROUND', 'LINK', 'POINT', 'PRISM', 'DRIVE', 'ADD', 'TIME', &
+      '1.0E8', '1.0E9', '1.0E16', '-1.0E20', '1.0E60', '1.1E60', '1.0E-60', '-1.0E-59', '1.0E35', '1.0', '90.0', &
+      '180.0', &
+      '1.570796326794', '3.141592653589', '360.0', '0.5', '-1.0', '1.0E400', '1.0E-400', 'NAN', 'INF', '5', '-', &
+      '1.5-3']
+   character(8), parameter :: with_reals(*) = [character(8) :: 'GROUND', 'LINK', 'POINT', 'PRISM', 'DRIVE', 'ADD', &
+      'TIME', &
       'AT', 'METHOD']
    character(8), parameter :: with_labels(*) = [character(8) :: 'GROUND', 'LINK', 'POINT', 'REVOLUTE', 'PRISM', 'DRIVE']
    !> Radians, or lengths: so far drives go in all.
    real(wp), parameter :: longest_way = 2000.0_wp
-   character(*), parameter :: bytes = 'AZ09.+-*$ ,"'//'|eE'//achar(9)//achar(13)//achar(0)//achar(127)//char(195)//char(255)
+   character(*), &
+      parameter :: bytes = 'AZ09.+-*$ ,"'//'|eE'//achar(9)//achar(13)//achar(0)//achar(127)//char(195)//char(255)
 
 contains
 
-   !> The deck of seed number `seed`, made from one of `sets`. Of ten decks seven are changed gently, two go to the limits,
+   !> The deck of seed number `seed`, made from one of `sets`. Of ten decks seven are changed gently, two go to the
+   !> limits,
    !> one is damaged, by a mixture of everything.
    function deck_of_seed(sets, seed) result(d)
       type(draft_t), intent(in) :: sets(:)
@@ -67,7 +73,7 @@ contains
       do i = 1, size(d%line)
          if (index(d%line(i), 'TIME') == 0) cycle
          read (d%line(i)(9:16), '(i8)', iostat=status) n
-         if (status == 0 .and. n > most_steps) write (d%line(i)(9:16), '(i0)') most_steps
+         if (status == 0 .and. n > max_steps) write (d%line(i)(9:16), '(i0)') max_steps
       end do
    end subroutine limit_steps
 

@@ -10,10 +10,10 @@ module deck_mutations
    use deck_surplus, only: double_pair, weld_link, double_drive, extra_drive, far_rough, round_drive
    implicit none
    private
-   public :: prepare, change_gently, most_steps
+   public :: prepare, change_gently, max_steps
 
    !> So many steps of a TIME card at most: runs are to be short.
-   integer, parameter :: most_steps = 40
+   integer, parameter :: max_steps = 40
    real(wp), parameter :: pi = 3.141592653589793_wp
 
 contains

@@ -1,4 +1,5 @@
-!> Tests. Changes of a deck that give it more equations than unknowns, consistent or not: pairs and drives twice, guides side
+!> Tests. Changes of a deck that give it more equations than unknowns, consistent or not: pairs and drives twice,
+!> guides side
 !> by side, links held at two points; and rough positions from far, drives that stop at round angles.
 module deck_surplus
    use kinds, only: wp
@@ -55,7 +56,8 @@ contains
       end do
    end subroutine copy_card
 
-   !> A pair once more: between the same points, or between others, a prismatic one so that both agree, a revolute one so
+   !> A pair once more: between the same points, or between others, a prismatic one so that both agree, a revolute one
+   !> so
    !> that they agree where the links have their rough angles; or a prismatic one with another number.
    subroutine double_pair(d, r)
       type(draft_t), intent(inout) :: d
@@ -75,7 +77,8 @@ contains
       other = chance(r, 0.3_wp)
       if (name_of(d%line(at)) == 'PRISM' .and. other) then
          k = throw(r, 3)
-         call set_full(d, at, k, real_field(d, at, k) + between(r, -1.0_wp, 1.0_wp)*10.0_wp**(-between(r, 0.0_wp, 15.0_wp)))
+         call set_full(d, at, k, real_field(d, at, k) + between(r, -1.0_wp, 1.0_wp)*10.0_wp**(-between(r, 0.0_wp, &
+            15.0_wp)))
       end if
       call add_note(d, 'PAIR '//label(d%line(i), 3)//' TWICE')
       ! Cards come in above.
@@ -102,7 +105,7 @@ contains
          normal = [-sin(alpha), cos(alpha)]
          call set_full(d, i, 2, real_field(d, i, 2) + dot_product(normal, p - turned(q, turn)))
       else
-         turn = unit*(rough_angle(d, link_of(d, old(2))) - rough_angle(d, link_of(d, old(1))))
+         turn = unit*(estimated_angle(d, link_of(d, old(2))) - estimated_angle(d, link_of(d, old(1))))
          q = turned(p, -turn)
       end if
       names = new_name(d)
@@ -143,24 +146,24 @@ contains
       w = [v(1)*cos(angle) - v(2)*sin(angle), v(1)*sin(angle) + v(2)*cos(angle)]
    end function turned
 
-   real(wp) function rough_angle(d, name)
+   real(wp) function estimated_angle(d, name)
       type(draft_t), intent(in) :: d
       character(*), intent(in) :: name
       integer :: i
 
-      rough_angle = 0.0_wp
+      estimated_angle = 0.0_wp
       do i = 1, size(d%line)
          if (all(name_of(d%line(i)) /= ['LINK    ', 'GROUND  ']) .or. label(d%line(i), 1) /= name) cycle
-         rough_angle = real_field(d, i, 3)
+         estimated_angle = real_field(d, i, 3)
       end do
-   end function rough_angle
+   end function estimated_angle
 
    !> A new link held at two points of another: one equation too many, and the lengths agree to 16 digits, or to fewer.
    subroutine weld_link(d, r)
       type(draft_t), intent(inout) :: d
       type(dice_t), intent(inout) :: r
       integer :: i, j, at, tries
-      real(wp) :: arm(2), length, angle
+      real(wp) :: body_vector(2), length, angle
       character(8) :: names(2), link
 
       i = pick(r, find_cards(d, ['POINT   ']))
@@ -172,10 +175,11 @@ contains
       end do
       if (i == j .or. label(d%line(i), 2) /= label(d%line(j), 2)) return
       names = [label(d%line(i), 1), label(d%line(j), 1)]
-      arm = [real_field(d, j, 1), real_field(d, j, 2)] - [real_field(d, i, 1), real_field(d, i, 2)]
-      length = norm2(arm)
+      body_vector = [real_field(d, j, 1), real_field(d, j, 2)] - [real_field(d, i, 1), real_field(d, i, 2)]
+      length = norm2(body_vector)
       if (chance(r, 0.3_wp)) length = length*(1.0_wp + 10.0_wp**(-between(r, 2.0_wp, 15.0_wp)))
-      angle = rough_angle(d, label(d%line(i), 2)) + atan2(arm(2), arm(1))*merge(180.0_wp/pi, 1.0_wp, is_degrees(d))
+      angle = estimated_angle(d, label(d%line(i), 2)) + atan2(body_vector(2), body_vector(1))*merge(180.0_wp/pi, &
+         1.0_wp, is_degrees(d))
       link = new_name(d)
       call insert_line(d, at, 'LINK    '//link)
       call set_real(d, at, 3, angle)
@@ -266,7 +270,8 @@ contains
             case (3)
                if (k == 3) call set_full(d, cards(i), k, real_field(d, cards(i), k) + quarter)
             case (4)
-               if (k == 3) call set_full(d, cards(i), k, real_field(d, cards(i), k) + between(r, -4.0_wp, 4.0_wp)*quarter)
+               if (k == 3) call set_full(d, cards(i), k, real_field(d, cards(i), k) + between(r, -4.0_wp, &
+                  4.0_wp)*quarter)
             case default
                if (k == 3) call set_full(d, cards(i), k, quarter*(throw(r, 8) - 4))
             end select
@@ -275,7 +280,8 @@ contains
       call add_note(d, 'ROUGH POSITIONS OF ALL LINKS')
    end subroutine far_rough
 
-   !> A drive goes from one multiple of 15 degrees to others, or of 0.25 of the length: over dead points and change points
+   !> A drive goes from one multiple of 15 degrees to others, or of 0.25 of the length: over dead points and change
+   !> points
    !> exactly.
    subroutine round_drive(d, r)
       type(draft_t), intent(inout) :: d

@@ -2,16 +2,16 @@
 module deck_tally
    implicit none
    private
-   public :: tally_t, count_one, conclude, deck_name
+   public :: certificate_counts_t, count_one, conclude, deck_name
 
-   type :: tally_t
+   type :: certificate_counts_t
       integer :: passed = 0, failed = 0
-   end type tally_t
+   end type certificate_counts_t
 
 contains
 
    subroutine count_one(tally, good, what)
-      type(tally_t), intent(inout) :: tally
+      type(certificate_counts_t), intent(inout) :: tally
       logical, intent(in) :: good
       character(*), intent(in) :: what
 
@@ -25,7 +25,7 @@ contains
 
    !> Prints the last line; the program ends with status 1 where something was wrong.
    subroutine conclude(tally)
-      type(tally_t), intent(in) :: tally
+      type(certificate_counts_t), intent(in) :: tally
 
       print '(i0,a,i0,a)', tally%passed, ' passed, ', tally%failed, ' failed'
       if (tally%failed > 0) stop 1, quiet=.true.

@@ -19,7 +19,8 @@ contains
       i = pick(r, find_cards(d, ['DRIVE   ', 'ADD     ']))
       if (i == 0) return
       k = throw(r, merge(3, 2, name_of(d%line(i)) == 'DRIVE' .or. label(d%line(i), 1) == 'HARMONIC'))
-      call put_real(d, r, i, k, near(real_field(d, i, k) + merge(between(r, -1.0_wp, 1.0_wp), 0.0_wp, chance(r, 0.3_wp)), r))
+      call put_real(d, r, i, k, near(real_field(d, i, k) + merge(between(r, -1.0_wp, 1.0_wp), 0.0_wp, chance(r, &
+         0.3_wp)), r))
       call add_note(d, 'NUMBER OF '//d%line(i)(1:24))
    end subroutine change_drive
 

@@ -1,6 +1,7 @@
 !> Tests. `error_estimates DECK...`: the errors that the program tells of its own results (--errors) beside their true
 !> errors against closed forms in real128. An estimate must not be below the error, for no number of any link at any
-!> instant, and of the largest of each instant no more than one in seven may be more than 30 times too large. (A true error
+!> instant, and of the largest of each instant no more than one in seven may be more than 30 times too large. (A true
+!> error
 !> may by chance be small: one below a rounding of the number's size counts as that.) The last line is
 !> `N passed, N failed`.
 program error_estimates
@@ -10,27 +11,27 @@ program error_estimates
    use motion, only: motion_t, new_motion
    use deck, only: read_deck
    use analysis, only: analysis_t, make_analysis, advance
-   use scatter, only: scatter_t, row_error
-   use rounding_samples, only: samples_t, make_samples, take_samples
+   use error_estimate, only: error_estimate_t, row_error
+   use rounding_samples, only: samples_t, make_estimates, take_samples
    use quad_jet, only: qp, pi_q
    use closed_forms_dyads, only: body_t
    use deck_tally, only: deck_name
    use closed_forms, only: closed_form
    implicit none
-   real(wp), parameter :: most_above = 30.0_wp
+   real(wp), parameter :: max_above = 30.0_wp
    !> The closed forms are rounded as well.
    real(wp), parameter :: reference_rounding = 1.0e-30_wp
    !> One in so many of the largest errors may be told too large.
    integer, parameter :: seldom = 7
 
    !> (position, velocity, acceleration) of one deck, and of all.
-   type :: tally_t
+   type :: certificate_counts_t
       integer :: numbers = 0, below = 0, instants = 0, above = 0
       real(wp) :: worst(0:2) = 0.0_wp            !< true over estimate, the largest
       real(wp) :: ratio(0:2) = 0.0_wp            !< estimate over true, sum of logarithms
-   end type tally_t
+   end type certificate_counts_t
 
-   type(tally_t) :: one, all_of_them
+   type(certificate_counts_t) :: one, all_of_them
    character(500) :: path
    integer :: i, failed
 
@@ -39,13 +40,13 @@ program error_estimates
       //' largest     estimate over true, mean'
    do i = 1, command_argument_count()
       call get_command_argument(i, path)
-      one = tally_t()
+      one = certificate_counts_t()
       call weigh_deck(trim(path), one)
-      call tell(deck_name(trim(path)), one)
+      call get_motion_of(deck_name(trim(path)), one)
       if (one%below > 0) failed = failed + 1
       call add(one, all_of_them)
    end do
-   call tell('all', all_of_them)
+   call get_motion_of('all', all_of_them)
    if (seldom*all_of_them%above > all_of_them%instants) failed = failed + 1
    print '(i0,a,i0,a)', command_argument_count() + 1 - failed, ' passed, ', failed, ' failed'
    if (failed > 0) stop 1, quiet=.true.
@@ -54,7 +55,7 @@ contains
 
    subroutine weigh_deck(path, tally)
       character(*), intent(in) :: path
-      type(tally_t), intent(inout) :: tally
+      type(certificate_counts_t), intent(inout) :: tally
       character(:), allocatable :: report
       type(mechanism_t), allocatable :: sets(:)
       type(failure_t), allocatable :: failure
@@ -70,16 +71,16 @@ contains
    subroutine weigh_set(name, m, tally)
       character(*), intent(in) :: name
       type(mechanism_t), intent(in) :: m
-      type(tally_t), intent(inout) :: tally
+      type(certificate_counts_t), intent(inout) :: tally
       type(analysis_t) :: a
       type(motion_t) :: q
       type(samples_t) :: samples
-      type(scatter_t) :: doubt
+      type(error_estimate_t) :: doubt
       integer :: k
 
       call make_analysis(a, m)
       q = new_motion(size(m%links))
-      call make_samples(samples, m)
+      call make_estimates(samples, m)
       do k = 0, instant_count(m) - 1
          call advance(a, instant(m, k), q)
          call take_samples(samples, m, a%engine%blocks, a%convergence%reciprocal_condition, q, .true., doubt)
@@ -91,14 +92,14 @@ contains
    subroutine weigh_instant(m, q, doubt, exact, tally)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
-      type(scatter_t), intent(in) :: doubt
+      type(error_estimate_t), intent(in) :: doubt
       type(body_t), intent(in) :: exact(:)
-      type(tally_t), intent(inout) :: tally
-      real(wp) :: told(3, 0:2), true(3, 0:2), size_of(2, 0:2), most_told(2, 0:2), most_true(2, 0:2)
+      type(certificate_counts_t), intent(inout) :: tally
+      real(wp) :: told(3, 0:2), true(3, 0:2), size_of(2, 0:2), max_told(2, 0:2), max_true(2, 0:2)
       integer :: i, k, link
 
-      most_told = 0.0_wp
-      most_true = 0.0_wp
+      max_told = 0.0_wp
+      max_true = 0.0_wp
       size_of = 0.0_wp
       do i = 1, size(m%requests)
          if (m%requests(i)%kind /= request_link) cycle
@@ -108,23 +109,25 @@ contains
          tally%numbers = tally%numbers + 9
          if (any(true > told)) then
             tally%below = tally%below + count(true > told)
-            print '(a,f0.4,2a,9es9.1/20x,9es9.1)', ' below at ', q%t, ' ', m%links(m%requests(i)%subject)%name, true, told
+            print '(a,f0.4,2a,9es9.1/20x,9es9.1)', ' below at ', q%t, ' ', m%links(m%requests(i)%subject)%name, true, &
+               told
          end if
          do k = 0, 2
             tally%worst(k) = max(tally%worst(k), maxval(true(:, k)/max(told(:, k), tiny(1.0_wp))))
          end do
-         most_told = max(most_told, reshape([maxval(told(:2, :), dim=1), told(3, :)], [2, 3], order=[2, 1]))
-         most_true = max(most_true, reshape([maxval(true(:2, :), dim=1), true(3, :)], [2, 3], order=[2, 1]))
+         max_told = max(max_told, reshape([maxval(told(:2, :), dim=1), told(3, :)], [2, 3], order=[2, 1]))
+         max_true = max(max_true, reshape([maxval(true(:2, :), dim=1), true(3, :)], [2, 3], order=[2, 1]))
          size_of(1, :) = max(size_of(1, :), [maxval(abs(q%position(:2, m%requests(i)%subject) + q%origin)), &
             maxval(abs(q%velocity(:2, m%requests(i)%subject))), maxval(abs(q%acceleration(:2, m%requests(i)%subject)))])
          size_of(2, :) = max(size_of(2, :), [abs(q%position(3, m%requests(i)%subject)), &
             abs(q%velocity(3, m%requests(i)%subject)), abs(q%acceleration(3, m%requests(i)%subject))])
       end do
-      most_true = max(most_true, epsilon(1.0_wp)*size_of, tiny(1.0_wp))
+      max_true = max(max_true, epsilon(1.0_wp)*size_of, tiny(1.0_wp))
       tally%instants = tally%instants + count(size_of > 0.0_wp)
-      tally%above = tally%above + count(most_told > most_above*most_true .and. size_of > 0.0_wp)
+      tally%above = tally%above + count(max_told > max_above*max_true .and. size_of > 0.0_wp)
       do k = 0, 2
-         tally%ratio(k) = tally%ratio(k) + sum(log(max(most_told(:, k), tiny(1.0_wp))/most_true(:, k)), mask=size_of(:, k) > 0.0_wp)
+         tally%ratio(k) = tally%ratio(k) + sum(log(max(max_told(:, k), tiny(1.0_wp))/max_true(:, k)), mask=size_of(:, &
+            k) > 0.0_wp)
       end do
    end subroutine weigh_instant
 
@@ -144,19 +147,19 @@ contains
       where (d < reference_rounding) d = 0.0_wp
    end function away
 
-   subroutine tell(name, t)
+   subroutine get_motion_of(name, t)
       character(*), intent(in) :: name
-      type(tally_t), intent(in) :: t
+      type(certificate_counts_t), intent(in) :: t
       character(24) :: field
 
       field = name
       print '(1x,a,i9,i7,i10,i10,5x,3es9.1,5x,3f9.1)', field, t%numbers, t%below, t%instants, t%above, t%worst, &
          exp(3.0_wp*t%ratio/max(t%instants, 1))
-   end subroutine tell
+   end subroutine get_motion_of
 
    subroutine add(one, sum_of)
-      type(tally_t), intent(in) :: one
-      type(tally_t), intent(inout) :: sum_of
+      type(certificate_counts_t), intent(in) :: one
+      type(certificate_counts_t), intent(inout) :: sum_of
 
       sum_of%numbers = sum_of%numbers + one%numbers
       sum_of%below = sum_of%below + one%below

@@ -32,11 +32,11 @@ contains
       real(wp), intent(in) :: phi, rate
       integer, intent(in) :: n
       real(wp), intent(inout) :: q(3, n), v(3, n), a(3, n)
-      real(wp) :: c, s, dx, over, u, h, e1x, e1y, e2x, e2y, k, w1, w2, gx, gy, rate2
+      real(wp) :: c, s, dx, over, u, h, e1x, e1y, e2x, e2y, k, w1, w2, gx, gy, acceleration
 
       c = cos(phi)
       s = sin(phi)
-      rate2 = rate*rate
+      acceleration = rate*rate
       dx = 4.0_wp - c
       over = 1.0_wp/(17.0_wp - 8.0_wp*c)
       u = 0.5_wp + 1.625_wp*over
@@ -48,8 +48,8 @@ contains
       k = 1.0_wp/(e1x*e2y - e1y*e2x)
       w1 = rate*(s*e2x - c*e2y)*k
       w2 = rate*(s*e1x - c*e1y)*k
-      gx = rate2*c + w1*w1*e1x - w2*w2*e2x
-      gy = rate2*s + w1*w1*e1y - w2*w2*e2y
+      gx = acceleration*c + w1*w1*e1x - w2*w2*e2x
+      gy = acceleration*s + w1*w1*e1y - w2*w2*e2y
       q(:, 1) = 0.0_wp
       v(:, 1) = 0.0_wp
       a(:, 1) = 0.0_wp
@@ -58,7 +58,7 @@ contains
       a(:, 2) = 0.0_wp
       q(:, 3) = [c, s, atan2(e1y, e1x)]
       v(:, 3) = [-rate*s, rate*c, w1]
-      a(:, 3) = [-rate2*c, -rate2*s, (gx*e2x + gy*e2y)*k]
+      a(:, 3) = [-acceleration*c, -acceleration*s, (gx*e2x + gy*e2y)*k]
       q(:, 4) = [4.0_wp, 0.0_wp, atan2(e2y, e2x)]
       v(:, 4) = [0.0_wp, 0.0_wp, w2]
       a(:, 4) = [0.0_wp, 0.0_wp, (gx*e1x + gy*e1y)*k]
@@ -70,16 +70,16 @@ contains
       real(wp), intent(in) :: phi, rate
       integer, intent(in) :: n
       real(wp), intent(inout) :: q(3, n), v(3, n), a(3, n)
-      real(wp) :: c, s, over, factor, lever, w, e, tx, ty, tvx, tvy, tax, tay, rise, run, wr, er, rate2
+      real(wp) :: c, s, over, factor, lever, w, e, tx, ty, tvx, tvy, tax, tay, rise, run, wr, er, acceleration
 
       c = cos(phi)
       s = sin(phi)
-      rate2 = rate*rate
+      acceleration = rate*rate
       over = 1.0_wp/(5.0_wp + 4.0_wp*s)
       factor = 4.0_wp*sqrt(over)
       lever = atan2(2.0_wp + s, c)
       w = rate*(1.0_wp + 2.0_wp*s)*over
-      e = rate2*6.0_wp*c*over*over
+      e = acceleration*6.0_wp*c*over*over
       tx = factor*c
       ty = factor*(2.0_wp + s)
       tvx = -w*ty
@@ -99,7 +99,7 @@ contains
       a(:, 2) = 0.0_wp
       q(:, 3) = [c, 2.0_wp + s, lever]
       v(:, 3) = [-rate*s, rate*c, w]
-      a(:, 3) = [-rate2*c, -rate2*s, e]
+      a(:, 3) = [-acceleration*c, -acceleration*s, e]
       q(:, 4) = [0.0_wp, 0.0_wp, lever]
       v(:, 4) = [0.0_wp, 0.0_wp, w]
       a(:, 4) = [0.0_wp, 0.0_wp, e]

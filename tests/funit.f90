@@ -286,7 +286,8 @@ contains
       character(*), intent(in), optional :: message
       type(sourcelocation), intent(in), optional :: location
 
-      call equal_integer(reshape(expected, [size(expected)]), shape(expected), reshape(actual, [size(actual)]), shape(actual), &
+      call equal_integer(reshape(expected, [size(expected)]), shape(expected), reshape(actual, [size(actual)]), &
+         shape(actual), &
          message, location)
    end subroutine integer_22
 
@@ -355,7 +356,8 @@ contains
             if (.not. (e < a .or. e > a)) cycle
             if (abs(a - e) <= t) cycle
          end if
-         call unequal('AssertEqual', text(e), text(a), '<'//text(a - e)//'> (greater than tolerance of '//text(t)//')', &
+         call unequal('AssertEqual', text(e), text(a), &
+            '<'//text(a - e)//'> (greater than tolerance of '//text(t)//')', &
                       k, shape_actual, message, location)
          return
       end do
@@ -396,7 +398,8 @@ contains
       character(*), intent(in), optional :: message
       type(sourcelocation), intent(in), optional :: location
 
-      call equal_real64([expected], shape(expected), reshape(actual, [size(actual)]), shape(actual), tolerance, message, location)
+      call equal_real64([expected], shape(expected), reshape(actual, [size(actual)]), shape(actual), tolerance, &
+         message, location)
    end subroutine real64_02
 
    subroutine real64_22(expected, actual, tolerance, message, location)
@@ -405,7 +408,8 @@ contains
       character(*), intent(in), optional :: message
       type(sourcelocation), intent(in), optional :: location
 
-      call equal_real64(reshape(expected, [size(expected)]), shape(expected), reshape(actual, [size(actual)]), shape(actual), &
+      call equal_real64(reshape(expected, [size(expected)]), shape(expected), reshape(actual, [size(actual)]), &
+         shape(actual), &
          tolerance, message, location)
    end subroutine real64_22
 
@@ -430,7 +434,8 @@ contains
             if (.not. (e < a .or. e > a)) cycle
             if (abs(a - e) <= t) cycle
          end if
-         call unequal('AssertEqual', text(e), text(a), '<'//text(a - e)//'> (greater than tolerance of '//text(t)//')', &
+         call unequal('AssertEqual', text(e), text(a), &
+            '<'//text(a - e)//'> (greater than tolerance of '//text(t)//')', &
                       k, shape_actual, message, location)
          return
       end do
@@ -481,7 +486,8 @@ contains
       character(*), intent(in), optional :: message
       type(sourcelocation), intent(in), optional :: location
 
-      call equal_real128(reshape(expected, [size(expected)]), shape(expected), reshape(actual, [size(actual)]), shape(actual), &
+      call equal_real128(reshape(expected, [size(expected)]), shape(expected), reshape(actual, [size(actual)]), &
+         shape(actual), &
          tolerance, message, location)
    end subroutine real128_22
 
@@ -582,7 +588,8 @@ contains
       character(*), intent(in), optional :: message
       type(sourcelocation), intent(in), optional :: location
 
-      call compare(lhs <= rhs, 'AssertLessThanOrEqual', 'not less than or equal to', text(lhs), text(rhs), message, location)
+      call compare(lhs <= rhs, 'AssertLessThanOrEqual', 'not less than or equal to', text(lhs), text(rhs), message, &
+         location)
    end subroutine less_equal_integer
 
    subroutine less_equal_real64(lhs, rhs, message, location)
@@ -590,7 +597,8 @@ contains
       character(*), intent(in), optional :: message
       type(sourcelocation), intent(in), optional :: location
 
-      call compare(lhs <= rhs, 'AssertLessThanOrEqual', 'not less than or equal to', text(lhs), text(rhs), message, location)
+      call compare(lhs <= rhs, 'AssertLessThanOrEqual', 'not less than or equal to', text(lhs), text(rhs), message, &
+         location)
    end subroutine less_equal_real64
 
    subroutine less_equal_real128(lhs, rhs, message, location)
@@ -598,7 +606,8 @@ contains
       character(*), intent(in), optional :: message
       type(sourcelocation), intent(in), optional :: location
 
-      call compare(lhs <= rhs, 'AssertLessThanOrEqual', 'not less than or equal to', text(lhs), text(rhs), message, location)
+      call compare(lhs <= rhs, 'AssertLessThanOrEqual', 'not less than or equal to', text(lhs), text(rhs), message, &
+         location)
    end subroutine less_equal_real128
 
    subroutine greater_integer(lhs, rhs, message, location)

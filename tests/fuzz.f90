@@ -1,4 +1,5 @@
-!> Tests. Decks made by chance, each from the number of its seed, run through the program's own job; `tests/fuzz.sh` calls it.
+!> Tests. Decks made by chance, each from the number of its seed, run through the program's own job; `tests/fuzz.sh`
+!> calls it.
 !>
 !>    fuzz FIRST LAST DIRECTORY DECK...     seeds FIRST to LAST, a line for each that fails, then a line of sums
 !>    fuzz --deck SEED FILE DECK...         writes the deck of a seed
@@ -126,7 +127,7 @@ contains
       type(options_t) :: options
       type(draft_t) :: d
       character(:), allocatable :: message
-      integer :: marked
+      integer :: flagged
       integer(c_int) :: left
 
       options = options_in(directory)
@@ -137,8 +138,8 @@ contains
       wrong = ''
       select case (status)
       case (0, 2)
-         call judge(options, v, wrong, marked)
-         if (wrong == '' .and. (marked > 0 .neqv. status == 2)) wrong = 'STATUS AND MARKS'
+         call judge(options, v, wrong, flagged)
+         if (wrong == '' .and. (flagged > 0 .neqv. status == 2)) wrong = 'STATUS AND MARKS'
          if (wrong == '' .and. message /= '') wrong = 'WORDS ON STANDARD ERROR: '//message
          if (wrong == '' .and. status == 0 .and. mod(seed, twice_every) == 0) call run_twice(d, directory, wrong)
       case (1)
@@ -203,17 +204,17 @@ contains
       call ieee_set_halting_mode(ieee_usual, .false.)
    end subroutine run_trapped
 
-   subroutine judge(options, v, wrong, marked)
+   subroutine judge(options, v, wrong, flagged)
       type(options_t), intent(in) :: options
       type(verdict_t), intent(out) :: v
       character(:), allocatable, intent(out) :: wrong
-      integer, intent(out) :: marked
+      integer, intent(out) :: flagged
       type(mechanism_t), allocatable :: read_sets(:)
       type(failure_t), allocatable :: failure
       character(:), allocatable :: report
 
       call read_deck(options%deck, read_sets, report, failure)
-      call check_listing(options%output, size(read_sets), wrong, marked)
+      call check_listing(options%output, size(read_sets), wrong, flagged)
       if (wrong == '') call check_protocol(options%log, wrong)
       if (wrong /= '') return
       call check_csv(options%csv, read_sets, v)

@@ -4,37 +4,42 @@ module hand_groups
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use structure, only: group_t
-   use remarks, only: remark_t, new_remark, remark_redundant, remark_change
+   use diagnostics, only: diagnostic_t, new_diagnostic, diagnostic_redundant, diagnostic_change
    implicit none
    private
    public :: groups_by_hand, redundant_by_hand, passages_by_hand
 
    !> A change point that lies between two instants.
-   type :: passage_t
+   type :: branch_switch_t
       character(24) :: deck = ''
       real(wp) :: t = 0.0_wp
       character(24) :: links = ''
       logical :: other = .false.         !< as a BRANCH card asks for
-   end type passage_t
+   end type branch_switch_t
 
-   ! Cranks at 180 and 360 deg, from 20 deg at 10 deg a second and from 15 deg at 12.5; at 90 and 270 deg from 30 deg at 12.
-   type(passage_t), parameter :: passages(23) = [ &
-      passage_t('parallelogram', 16.0_wp, 'COUPLER ROCKER'), passage_t('parallelogram', 34.0_wp, 'COUPLER ROCKER'), &
-      passage_t('kite_across', 16.0_wp, 'COUPLER ROCKER'), passage_t('kite_across', 34.0_wp, 'COUPLER ROCKER'), &
-      passage_t('antiparallelogram_across', 13.2_wp, 'COUPLER ROCKER'), &
-      passage_t('antiparallelogram_across', 27.6_wp, 'COUPLER ROCKER'), &
-      passage_t('scott_russell', 5.0_wp, 'BAR'), passage_t('scott_russell', 20.0_wp, 'BAR'), &
-      passage_t('parallelogram_branch', 16.0_wp, 'COUPLER ROCKER', .true.), &
-      passage_t('parallelogram_branch', 34.0_wp, 'COUPLER ROCKER', .true.), &
-      passage_t('antiparallelogram_branch', 27.6_wp, 'COUPLER ROCKER', .true.), &
-      passage_t('antiparallelogram_branch', 13.2_wp, 'COUPLER ROCKER'), &
-      passage_t('kite_branch', 16.0_wp, 'COUPLER ROCKER', .true.), &
-      passage_t('kite_branch', 34.0_wp, 'COUPLER ROCKER', .true.), &
-      passage_t('scott_russell_branch', 5.0_wp, 'BAR', .true.), passage_t('scott_russell_branch', 20.0_wp, 'BAR'), &
-      passage_t('parallelogram_at', 16.0_wp, 'COUPLER ROCKER'), passage_t('parallelogram_at', 34.0_wp, 'COUPLER ROCKER'), &
-      passage_t('antiparallelogram_at', 13.2_wp, 'COUPLER ROCKER'), &
-      passage_t('kite_at', 16.0_wp, 'COUPLER ROCKER'), passage_t('kite_at', 34.0_wp, 'COUPLER ROCKER'), &
-      passage_t('scott_russell_at', 5.0_wp, 'BAR'), passage_t('scott_russell_at', 20.0_wp, 'BAR')]
+   ! Cranks at 180 and 360 deg, from 20 deg at 10 deg a second and from 15 deg at 12.5; at 90 and 270 deg from 30 deg
+   ! at 12.
+   type(branch_switch_t), parameter :: branch_switches(23) = [ &
+      branch_switch_t('parallelogram', 16.0_wp, 'COUPLER ROCKER'), branch_switch_t('parallelogram', 34.0_wp, &
+      'COUPLER ROCKER'), &
+      branch_switch_t('kite_across', 16.0_wp, 'COUPLER ROCKER'), branch_switch_t('kite_across', 34.0_wp, &
+      'COUPLER ROCKER'), &
+      branch_switch_t('antiparallelogram_across', 13.2_wp, 'COUPLER ROCKER'), &
+      branch_switch_t('antiparallelogram_across', 27.6_wp, 'COUPLER ROCKER'), &
+      branch_switch_t('scott_russell', 5.0_wp, 'BAR'), branch_switch_t('scott_russell', 20.0_wp, 'BAR'), &
+      branch_switch_t('parallelogram_branch', 16.0_wp, 'COUPLER ROCKER', .true.), &
+      branch_switch_t('parallelogram_branch', 34.0_wp, 'COUPLER ROCKER', .true.), &
+      branch_switch_t('antiparallelogram_branch', 27.6_wp, 'COUPLER ROCKER', .true.), &
+      branch_switch_t('antiparallelogram_branch', 13.2_wp, 'COUPLER ROCKER'), &
+      branch_switch_t('kite_branch', 16.0_wp, 'COUPLER ROCKER', .true.), &
+      branch_switch_t('kite_branch', 34.0_wp, 'COUPLER ROCKER', .true.), &
+      branch_switch_t('scott_russell_branch', 5.0_wp, 'BAR', .true.), branch_switch_t('scott_russell_branch', 20.0_wp, &
+      'BAR'), &
+      branch_switch_t('parallelogram_at', 16.0_wp, 'COUPLER ROCKER'), branch_switch_t('parallelogram_at', 34.0_wp, &
+      'COUPLER ROCKER'), &
+      branch_switch_t('antiparallelogram_at', 13.2_wp, 'COUPLER ROCKER'), &
+      branch_switch_t('kite_at', 16.0_wp, 'COUPLER ROCKER'), branch_switch_t('kite_at', 34.0_wp, 'COUPLER ROCKER'), &
+      branch_switch_t('scott_russell_at', 5.0_wp, 'BAR'), branch_switch_t('scott_russell_at', 20.0_wp, 'BAR')]
 
    !> Of all sets of a deck (0) or of one.
    type :: statement_t
@@ -72,7 +77,8 @@ module hand_groups
       statement_t('klann', 0, '*CRANK; ROD LOWER; UPPER LEG'), &
       statement_t('grounds', 0, '*CRANK; COUPLER ROCKER; ROD RAM'), &
       statement_t('three_rrr', 0, '*PLATFORM; CRANK-1 ROD-1; CRANK-2 ROD-2; CRANK-3 ROD-3'), &
-      statement_t('excavator', 0, '*BOOM BARREL-1 PISTON-1; *STICK BARREL-2 PISTON-2; *ROCKER BARREL-3 PISTON-3; BUCKET TIE'), &
+      statement_t('excavator', 0, &
+      '*BOOM BARREL-1 PISTON-1; *STICK BARREL-2 PISTON-2; *ROCKER BARREL-3 PISTON-3; BUCKET TIE'), &
       statement_t('xy_table', 0, '*SADDLE; *TABLE; *PLATE'), &
       statement_t('scissor', 0, '*FOOT; BAR-A1 BAR-B1; BAR-A2 BAR-B2; BAR-A3 BAR-B3; PLATFORM SHOE'), &
       statement_t('chebyshev', 0, '*CRANK; COUPLER ROCKER'), &
@@ -106,7 +112,8 @@ module hand_groups
       statement_t('parallel_cranks', 0, '*CRANK-1 CRANK-2 CRANK-3 COUPLER', 'PAIR-C'), &
       statement_t('double_parallelogram', 0, '*CRANK-A CRANK-B LOWER UPPER', 'PAIR-B2'), &
       statement_t('two_guides', 0, '*CRANK; ROD CARRIAGE', 'GUIDE-2 GUIDE-2'), &
-      statement_t('cognates', 0, '*CRANK COUPLER ROCKER CRANK-L COUP-L ROCKER-L CRANK-R COUP-R ROCKER-R', 'PAIR-PL PAIR-PR'), &
+      statement_t('cognates', 0, '*CRANK COUPLER ROCKER CRANK-L COUP-L ROCKER-L CRANK-R COUP-R ROCKER-R', &
+      'PAIR-PL PAIR-PR'), &
       statement_t('dixon', 0, '*BAR-12 BAR-13 BAR-21 BAR-22 BAR-23 BAR-31 BAR-32 BAR-33', 'PAIR-A32')]
 
 contains
@@ -136,7 +143,7 @@ contains
    function redundant_by_hand(name, m) result(list)
       character(*), intent(in) :: name
       type(mechanism_t), intent(in) :: m
-      type(remark_t), allocatable :: list(:)
+      type(diagnostic_t), allocatable :: list(:)
       integer :: i, k, n
 
       allocate (list(0))
@@ -144,7 +151,7 @@ contains
          if (statements(i)%deck /= name) cycle
          do k = 1, size(m%pairs)
             n = mentions(' '//statements(i)%redundant, ' '//trim(m%pairs(k)%name)//' ')
-            if (n > 0) list = [list, remark_t(kind=remark_redundant, pair=k, equations=n)]
+            if (n > 0) list = [list, diagnostic_t(kind=diagnostic_redundant, pair=k, equations=n)]
          end do
       end do
    end function redundant_by_hand
@@ -157,22 +164,25 @@ contains
       mentions = count([(text(k:k + len(word) - 1) == word, k=1, len(text) - len(word) + 1)])
    end function mentions
 
-   !> The change points of the deck called `name` that are passed on the way from `before` to `t`, and those in which `t` lies.
+   !> The change points of the deck called `name` that are passed on the way from `before` to `t`, and those in which
+   !> `t` lies.
    function passages_by_hand(name, m, before, t) result(list)
       character(*), intent(in) :: name
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: before, t
-      type(remark_t), allocatable :: list(:)
-      type(remark_t) :: r
+      type(diagnostic_t), allocatable :: list(:)
+      type(diagnostic_t) :: r
       integer :: i, k
 
       allocate (list(0))
-      do i = 1, size(passages)
-         if (passages(i)%deck /= name .or. passages(i)%t < min(before, t) .or. passages(i)%t > max(before, t)) cycle
-         r = new_remark(remark_change, [(index(' '//passages(i)%links, ' '//trim(m%links(k)%name)//' ') > 0, k=1, size(m%links))])
-         r%t = passages(i)%t
-         r%other = passages(i)%other
-         r%here = abs(passages(i)%t - t) <= 0.0_wp
+      do i = 1, size(branch_switches)
+         if (branch_switches(i)%deck /= name .or. branch_switches(i)%t < min(before, &
+            t) .or. branch_switches(i)%t > max(before, t)) cycle
+         r = new_diagnostic(diagnostic_change, [(index(' '//branch_switches(i)%links, ' '//trim(m%links(k)%name)//' ') &
+            > 0, k=1, size(m%links))])
+         r%t = branch_switches(i)%t
+         r%other = branch_switches(i)%other
+         r%here = abs(branch_switches(i)%t - t) <= 0.0_wp
          list = [list, r]
       end do
    end function passages_by_hand

@@ -1,7 +1,9 @@
-!> Tests. `hard short|full DECKS INPUT...`: accuracy on everything that is hard to compute, in what its condition allows. One
+!> Tests. `hard short|full DECKS INPUT...`: accuracy on everything that is hard to compute, in what its condition
+!> allows. One
 !> line a scene; ends non-zero where a number without a mark is wrong by more than `bound` times that.
 !>
-!> A unit of the last three columns is eps times the sum, over all numbers of the deck, of what each of them rounded would
+!> A unit of the last three columns is eps times the sum, over all numbers of the deck, of what each of them rounded
+!> would
 !> do to the result (hard_condition.f90): the result cannot be asked to be better than 1. Counted link by link, x and y
 !> together, phi alone; the largest is printed.
 program hard
@@ -20,7 +22,8 @@ program hard
       scissor_scene, exact_links
    implicit none
 
-   !> Each result comes from some tens of roundings of intermediate numbers, each of which may do what the deck's own do;
+   !> Each result comes from some tens of roundings of intermediate numbers, each of which may do what the deck's own
+   !> do;
    !> and a coordinate that the deck's numbers hardly move has those of its neighbours.
    real(qp), parameter :: bound = 100.0_qp
    !> What moves so much less than the rest of its kind counts as a constant.
@@ -28,10 +31,10 @@ program hard
    !> Results of which a condition leaves nothing: beyond this, a mark is right.
    real(qp), parameter :: nothing_left = 1.0e-2_qp
    !> Of one scene.
-   type :: tally_t
-      integer :: marked = 0
+   type :: certificate_counts_t
+      integer :: flagged = 0
       real(qp) :: condition = 0.0_qp, worst(0:2) = 0.0_qp
-   end type tally_t
+   end type certificate_counts_t
    integer, parameter :: scissor_links(3) = [50, 200, 1000]
    integer :: passed = 0, failed = 0
    logical :: short
@@ -63,7 +66,8 @@ contains
    subroutine judge_deck(path)
       character(*), intent(in) :: path
       type(scene_t), allocatable :: list(:)
-      character(*), parameter :: leap(9) = [character(10) :: 'four_bar', 'yoke', 'drag_link', 'whitworth', 'jansen', &
+      character(*), parameter :: branch_jump(9) = [character(10) :: 'four_bar', 'yoke', 'drag_link', 'whitworth', &
+         'jansen', &
          'klann', 'watt', 'stephenson', 'chebyshev']
       character(*), parameter :: moved(9) = [character(10) :: 'yoke', 'cylinder', 'scissor', 'oldham', 'jansen', &
          'excavator', 'grounds', 'xy_table', 'cognates']
@@ -73,7 +77,7 @@ contains
       do i = 1, size(list)
          call judge(list(i))
       end do
-      if (any(leap == list(1)%deck)) call judge(jumps_of(list(1)))
+      if (any(branch_jump == list(1)%deck)) call judge(jumps_of(list(1)))
       if (any(moved == list(1)%deck)) call judge(far_from(list(1)))
    end subroutine judge_deck
 
@@ -97,7 +101,8 @@ contains
 
       do k = 6, 9, 3
          call judge(four_bar_scene('NEARLY A PARALLELOGRAM '//power(k), &
-            [4.0_wp, 2.0_wp, 4.0_wp, 2.0_wp + 10.0_wp**(-k)], 2, [-30.0_wp, 10.0_wp, 0.0_wp]*degree, [(0.5_wp*i, i=0, 78)]))
+            [4.0_wp, 2.0_wp, 4.0_wp, 2.0_wp + 10.0_wp**(-k)], 2, [-30.0_wp, 10.0_wp, 0.0_wp]*degree, [(0.5_wp*i, i=0, &
+            78)]))
       end do
    end subroutine judge_change_points
 
@@ -151,7 +156,7 @@ contains
       type(scene_t), intent(in) :: s
       type(analysis_t) :: a
       type(motion_t) :: q
-      type(tally_t) :: tally
+      type(certificate_counts_t) :: tally
       real(wp) :: before(size(s%m%links))
       integer :: k
 
@@ -160,17 +165,18 @@ contains
       do k = 1, size(s%at)
          before = q%position(3, :)
          call advance(a, s%at(k), q)
-         if (k > 1) call look_at_turns(exact_links(s, s%at(k)), abs(s%at(k) - s%at(k - 1)), q%position(3, :) - before, tally)
+         if (k > 1) call look_at_turns(exact_links(s, s%at(k)), abs(s%at(k) - s%at(k - 1)), q%position(3, :) - before, &
+            tally)
          call judge_instant(s, s%at(k), q, tally)
       end do
-      call tell(s, tally)
+      call get_motion_of(s, tally)
    end subroutine judge
 
    !> An angle goes on from where it was: in short steps none is brought back by whole turns.
    subroutine look_at_turns(exact, interval, turned, tally)
       type(body_jet_t), intent(in) :: exact(:)
       real(wp), intent(in) :: interval, turned(:)
-      type(tally_t), intent(inout) :: tally
+      type(certificate_counts_t), intent(inout) :: tally
 
       if (maxval(abs(exact%phi%d))*interval < 1.0_qp .and. any(abs(turned) > pi)) tally%worst = huge(1.0_qp)
    end subroutine look_at_turns
@@ -179,7 +185,7 @@ contains
       type(scene_t), intent(in) :: s
       real(wp), intent(in) :: t
       type(motion_t), intent(in) :: q
-      type(tally_t), intent(inout) :: tally
+      type(certificate_counts_t), intent(inout) :: tally
       type(body_jet_t) :: exact(size(s%m%links))
       real(qp) :: allowed(3, size(s%m%links), 0:2)
       logical :: exists
@@ -187,7 +193,7 @@ contains
       exact = exact_links(s, t)
       call find_allowed(s, exact, t, allowed, exists)
       if (q%mark /= mark_none) then
-         tally%marked = tally%marked + 1
+         tally%flagged = tally%flagged + 1
          if (exists) exists = maxval(allowed(:, :, 1))*epsilon(1.0_wp) <= nothing_left*fastest(exact)
          if (exists) tally%worst = huge(1.0_qp)
       else if (.not. exists) then
@@ -200,18 +206,18 @@ contains
       end if
    end subroutine judge_instant
 
-   subroutine tell(s, tally)
+   subroutine get_motion_of(s, tally)
       type(scene_t), intent(in) :: s
-      type(tally_t), intent(in) :: tally
+      type(certificate_counts_t), intent(in) :: tally
       logical :: good
 
       good = all(tally%worst <= bound)
-      print '(1x,a28,i6,i10,i8,es11.1,3f10.1,a)', s%name//repeat(' ', 28), size(s%m%links), size(s%at), tally%marked, &
+      print '(1x,a28,i6,i10,i8,es11.1,3f10.1,a)', s%name//repeat(' ', 28), size(s%m%links), size(s%at), tally%flagged, &
          tally%condition, min(tally%worst, 1.0e7_qp), trim(merge('       ', ' FAILED', good))
       flush (output_unit)
       passed = passed + merge(1, 0, good)
       failed = failed + merge(0, 1, good)
-   end subroutine tell
+   end subroutine get_motion_of
 
    !> (3, links, 0:2) what is divided by; `exists`: the position is not singular.
    subroutine find_allowed(s, exact, t, allowed, exists)
@@ -249,8 +255,10 @@ contains
       size_of(1, 1:) = size_of(2, 1:)*length + [maxval(max(abs(exact%x%d), abs(exact%y%d))), &
          maxval(max(abs(exact%x%dd), abs(exact%y%dd)))]
       do k = 0, 2
-         where (allowed(:2, :, k) <= not_moved*max(size_of(1, k), maxval(allowed(:2, :, k)))) allowed(:2, :, k) = size_of(1, k)
-         where (allowed(3, :, k) <= not_moved*max(size_of(2, k), maxval(allowed(3, :, k)))) allowed(3, :, k) = size_of(2, k)
+         where (allowed(:2, :, k) <= not_moved*max(size_of(1, k), maxval(allowed(:2, :, k)))) allowed(:2, :, &
+            k) = size_of(1, k)
+         where (allowed(3, :, k) <= not_moved*max(size_of(2, k), maxval(allowed(3, :, k)))) allowed(3, :, &
+            k) = size_of(2, k)
       end do
    end subroutine allow_for_constants
 

@@ -1,4 +1,5 @@
-!> Tests. The closure equations with all of a deck's numbers in real128, so that each of them can be changed by less than
+!> Tests. The closure equations with all of a deck's numbers in real128, so that each of them can be changed by less
+!> than
 !> a double can tell: what the condition of a position and of its derivatives is measured with.
 module hard_closure
    use kinds, only: wp
@@ -13,7 +14,8 @@ module hard_closure
 
 contains
 
-   !> The numbers of the deck that place anything: three of a link (those of moving ones are rough and count as zero), two of
+   !> The numbers of the deck that place anything: three of a link (those of moving ones are rough and count as zero),
+   !> two of
    !> a point, three of a pair, one after another.
    function numbers_of(m) result(d)
       type(mechanism_t), intent(in) :: m
@@ -43,7 +45,8 @@ contains
       integer :: i
 
       do i = 1, size(b)
-         if (m%links(i)%ground) b(i) = body_jet_t(constant_jet(d(3*i - 2)), constant_jet(d(3*i - 1)), constant_jet(d(3*i)))
+         if (m%links(i)%ground) b(i) = body_jet_t(constant_jet(d(3*i - 2)), constant_jet(d(3*i - 1)), &
+            constant_jet(d(3*i)))
       end do
    end subroutine set_grounds
 
@@ -129,7 +132,8 @@ contains
       end do
    end function places
 
-   !> By how much (changes) the law of a drive changes at `t` with each of its numbers, times that number. The exponent of
+   !> By how much (changes) the law of a drive changes at `t` with each of its numbers, times that number. The exponent
+   !> of
    !> a power counts as exact.
    function drive_changes(drive, t) result(c)
       type(drive_t), intent(in) :: drive

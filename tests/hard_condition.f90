@@ -1,4 +1,5 @@
-!> Tests. The condition of a position and of its derivatives: for each coordinate y of each link the sum over all numbers d
+!> Tests. The condition of a position and of its derivatives: for each coordinate y of each link the sum over all
+!> numbers d
 !> of the deck, the drives' among them, of |dy/dd| |d|, and |y| itself. So much times eps is what a result computed in
 !> double precision cannot be asked to be better than: each number of the deck is rounded to eps of itself as it is
 !> read, and the result once more. Nothing in it is a norm or a bound, and nothing is the program's.
@@ -16,7 +17,8 @@ module hard_condition
    private
    public :: condition_t, measure
 
-   !> Rounding leaves 1e-34 over this, and a bend this over the distance to a dead point: both below a hundredth at 1e-12.
+   !> Rounding leaves 1e-34 over this, and a bend this over the distance to a dead point: both below a hundredth at
+   !> 1e-12.
    real(qp), parameter :: step = 1.0e-20_qp
    !> With a fixed matrix an error of 1e-16 shrinks at 1e-12 from a dead point by 1e-4 at a time.
    integer, parameter :: few_steps = 6, many_steps = 14
@@ -26,11 +28,12 @@ module hard_condition
       real(qp), allocatable :: of(:, :, :)       !< (3, links, 0:2) x, y, phi and derivatives, in the deck's units
    end type condition_t
 
-   !> A (rows, unknowns) in triangular factors; where rows are too many, the normal equations. Unknown lengths in units of
-   !> `arm`, each row divided by its largest number.
+   !> A (rows, unknowns) in triangular factors; where rows are too many, the normal equations. Unknown lengths in units
+   !> of
+   !> `body_vector`, each row divided by its largest number.
    type :: matrix_t
       logical :: regular = .false.
-      real(qp) :: arm = 1.0_qp
+      real(qp) :: body_vector = 1.0_qp
       real(qp), allocatable :: row_size(:)
       real(qp), allocatable :: rows(:, :), factors(:, :)
       integer, allocatable :: pivot(:)
@@ -146,8 +149,8 @@ contains
          n = 0
          do i = 1, size(b)
             if (m%links(i)%ground) cycle
-            b(i)%x = b(i)%x - a%arm*jet_t(x(n + 1, 1), x(n + 1, 2), x(n + 1, 3))
-            b(i)%y = b(i)%y - a%arm*jet_t(x(n + 2, 1), x(n + 2, 2), x(n + 2, 3))
+            b(i)%x = b(i)%x - a%body_vector*jet_t(x(n + 1, 1), x(n + 1, 2), x(n + 1, 3))
+            b(i)%y = b(i)%y - a%body_vector*jet_t(x(n + 2, 1), x(n + 2, 2), x(n + 2, 3))
             b(i)%phi = b(i)%phi - jet_t(x(n + 3, 1), x(n + 3, 2), x(n + 3, 3))
             n = n + 3
          end do
@@ -164,7 +167,7 @@ contains
       type(jet_t) :: r(2*size(m%pairs) + size(m%drives)), none(size(m%drives))
       integer :: link, i, n
 
-      a%arm = characteristic_length(m)
+      a%body_vector = characteristic_length(m)
       still%x = constant_jet(b%x%v)
       still%y = constant_jet(b%y%v)
       still%phi = constant_jet(b%phi%v)
@@ -174,8 +177,8 @@ contains
          if (m%links(link)%ground) cycle
          do i = 1, 3
             moving = still
-            if (i == 1) moving(link)%x%d = a%arm
-            if (i == 2) moving(link)%y%d = a%arm
+            if (i == 1) moving(link)%x%d = a%body_vector
+            if (i == 2) moving(link)%y%d = a%body_vector
             if (i == 3) moving(link)%phi%d = 1.0_qp
             r = residuals(m, d, moving, none)
             n = n + 1

@@ -58,19 +58,20 @@ contains
       end do
    end function deck_scenes
 
-   !> The scene `s`, whose first drive turns evenly, in steps of 30 degrees and then in leaps forwards, backwards and over
+   !> The scene `s`, whose first drive turns evenly, in steps of 30 degrees and then in leaps forwards, backwards and
+   !> over
    !> many turns.
    function jumps_of(s) result(j)
       type(scene_t), intent(in) :: s
       type(scene_t) :: j
       real(wp) :: step
       integer :: k
-      integer, parameter :: leaps(8) = [25, 7, -3, -370, 1207, 1201, 0, 12000]
+      integer, parameter :: branch_jumps(8) = [25, 7, -3, -370, 1207, 1201, 0, 12000]
 
       j = s
       j%name = s%name//' LEAPS'
       step = 30.0_wp*degree/abs(s%m%drives(1)%polynomial(2))
-      j%at = [(k*step, k=0, 12), leaps*step]
+      j%at = [(k*step, k=0, 12), branch_jumps*step]
    end function jumps_of
 
    !> The scene `s` a thousand kilometres away.
@@ -199,7 +200,8 @@ contains
       flat = constant_jet(0.0_qp)
       o = fixed_place(0.0_qp, 0.0_qp)
       pin = polar(o, real(m%points(4)%offset(1), qp), phi)
-      piston = on_line(pin, real(m%points(6)%offset(1), qp), fixed_place(0.0_qp, real(m%points(2)%offset(2), qp)), flat, 1.0_qp)
+      piston = on_line(pin, real(m%points(6)%offset(1), qp), fixed_place(0.0_qp, real(m%points(2)%offset(2), qp)), &
+         flat, 1.0_qp)
       links = [body('BASE', o, flat), body('CRANK', o, phi), body('ROD', pin, direction(pin, piston)), &
                body('PISTON', piston, flat)]
    end function slider_form

@@ -16,7 +16,8 @@ module iteration_1987
    use scenes_1987, only: scene_t, exact
    implicit none
    private
-   public :: by_print, by_start, by_step, by_tangent, by_dyad, variant_names, rate_by_theory, rate_measured, order_measured
+   public :: by_print, by_start, by_step, by_tangent, by_dyad, variant_names, rate_by_theory, rate_measured, &
+      order_measured
    public :: run_t, iterate_from, went_right, went_wrong, went_nowhere
 
    integer, parameter :: by_print = 1   !< 0 for every angle, the slot row as (16) has it: the print

@@ -104,32 +104,34 @@ contains
       end associate
    end function place_jet
 
-   !> Sizes of the motion `b` of mechanism `m`. An angle is known to one part in 2**53 of itself, a direction no better, so
-   !> that arms count times 1 + |phi|; a velocity turns with every angular velocity, an acceleration likewise. One linear
+   !> Sizes of the motion `b` of mechanism `m`. An angle is known to one part in 2**53 of itself, a direction no
+   !> better, so
+   !> that arms count times 1 + |phi|; a velocity turns with every angular velocity, an acceleration likewise. One
+   !> linear
    !> solve gives lengths and angles: what rounding leaves in one, over the longest arm, it may leave in the other. The
    !> characteristic length counts as an arm: all coordinates may be zero, and lengths are computed in units of it.
    function sizes_of(m, b) result(s)
       type(mechanism_t), intent(in) :: m
       type(body_jet_t), intent(in) :: b(:)
       type(sizes_t) :: s
-      real(qp) :: turn, arm
+      real(qp) :: turn, body_vector
       integer :: i
 
       s%angle = [1.0_qp + maxval(abs(b%phi%v)), maxval(abs(b%phi%d)), maxval(abs(b%phi%dd))]
       turn = s%angle(0)
-      arm = characteristic_length(m)
+      body_vector = characteristic_length(m)
       do i = 1, size(m%points)
-         arm = max(arm, maxval(abs(real(m%points(i)%offset, qp))))
+         body_vector = max(body_vector, maxval(abs(real(m%points(i)%offset, qp))))
       end do
       do i = 1, size(m%pairs)
-         if (m%pairs(i)%kind == pair_prismatic) arm = max(arm, abs(real(m%pairs(i)%offset, qp)))
+         if (m%pairs(i)%kind == pair_prismatic) body_vector = max(body_vector, abs(real(m%pairs(i)%offset, qp)))
          if (m%pairs(i)%kind == pair_prismatic) turn = max(turn, 1.0_qp + abs(real(m%pairs(i)%alpha, qp)))
       end do
-      s%length(0) = max(maxval(abs(b%x%v)), maxval(abs(b%y%v))) + arm*turn
+      s%length(0) = max(maxval(abs(b%x%v)), maxval(abs(b%y%v))) + body_vector*turn
       s%length(1) = max(maxval(abs(b%x%d)), maxval(abs(b%y%d)))*turn + s%length(0)*s%angle(1)
       s%length(2) = max(maxval(abs(b%x%dd)), maxval(abs(b%y%dd)))*turn + s%length(1)*s%angle(1) &
          + s%length(0)*(s%angle(2) + s%angle(1)**2)
-      if (arm > 0.0_qp) s%angle = s%angle + s%length/arm
+      if (body_vector > 0.0_qp) s%angle = s%angle + s%length/body_vector
    end function sizes_of
 
    !> Sizes (0:2, equations) of the numbers in each equation and its derivatives.

@@ -21,19 +21,19 @@ contains
       real(qp) :: condition
       type(body_jet_t) :: moving(size(b))
       type(jet_t) :: r(2*size(m%pairs) + size(m%drives))
-      real(qp) :: column(size(r), 3*size(b)), arm
+      real(qp) :: column(size(r), 3*size(b)), body_vector
       real(wp) :: a(size(r), 3*size(b)), s(3*size(b)), work(8*(size(r) + 3*size(b)))
       real(wp) :: left(size(r), size(r)), right(3*size(b), 3*size(b))
       integer :: link, c, n, info
 
-      arm = longest_arm(m)
+      body_vector = longest_arm(m)
       n = 0
       do link = 1, size(b)
          if (m%links(link)%ground) cycle
          do c = 1, 3
             moving = still(b)
-            if (c == 1) moving(link)%x%d = arm
-            if (c == 2) moving(link)%y%d = arm
+            if (c == 1) moving(link)%x%d = body_vector
+            if (c == 2) moving(link)%y%d = body_vector
             if (c == 3) moving(link)%phi%d = 1.0_qp
             n = n + 1
             ! The drives' own rates are no part of the Jacobian.
@@ -63,18 +63,18 @@ contains
    end function still
 
    !> The largest offset of any point or pair; 1 where there is none.
-   pure function longest_arm(m) result(arm)
+   pure function longest_arm(m) result(body_vector)
       type(mechanism_t), intent(in) :: m
-      real(qp) :: arm
+      real(qp) :: body_vector
       integer :: i
 
-      arm = 0.0_qp
+      body_vector = 0.0_qp
       do i = 1, size(m%points)
-         arm = max(arm, maxval(abs(real(m%points(i)%offset, qp))))
+         body_vector = max(body_vector, maxval(abs(real(m%points(i)%offset, qp))))
       end do
       do i = 1, size(m%pairs)
-         if (m%pairs(i)%kind == pair_prismatic) arm = max(arm, abs(real(m%pairs(i)%offset, qp)))
+         if (m%pairs(i)%kind == pair_prismatic) body_vector = max(body_vector, abs(real(m%pairs(i)%offset, qp)))
       end do
-      if (.not. arm > 0.0_qp) arm = 1.0_qp
+      if (.not. body_vector > 0.0_qp) body_vector = 1.0_qp
    end function longest_arm
 end module jet_condition

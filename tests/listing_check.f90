@@ -5,7 +5,8 @@ module listing_check
    public :: check_listing, check_protocol
 
    integer, parameter :: width = 400
-   character(8), parameter :: heads(*) = [character(8) :: 'X', 'Y', 'PHI', 'FI', 'VX', 'VY', 'VPHI', 'VFI', 'AX', 'AY', &
+   character(8), parameter :: heads(*) = [character(8) :: 'X', 'Y', 'PHI', 'FI', 'VX', 'VY', 'VPHI', 'VFI', 'AX', &
+      'AY', &
       'APHI', 'AFI', 'VALUE', 'WARTOSC', 'RATE', '2ND', 'PREDKOSC', 'PRZYSP.']
    character(70), parameter :: marks(*) = [character(70) :: 'NO POSITION FOUND', 'NIE ZNALEZIONO POLOZENIA', &
       'JACOBIAN SINGULAR: VELOCITIES AND ACCELERATIONS DO NOT EXIST', &
@@ -13,10 +14,11 @@ module listing_check
       'THE RESULT IS TOO LARGE A NUMBER', 'WYNIK JEST ZBYT DUZA LICZBA', &
       'TOO MANY EQUATIONS, AND THEY CONTRADICT ONE ANOTHER', 'ZA DUZO ROWNAN I PRZECZA SOBIE NAWZAJEM']
    !> What a remark holds, after three stars or three dashes.
-   character(60), parameter :: remarks(*) = [character(60) :: 'STAYS OPEN BY', 'POZOSTAJE OTWARTA O', &
+   character(60), parameter :: diagnostics(*) = [character(60) :: 'STAYS OPEN BY', 'POZOSTAJE OTWARTA O', &
       'LIMIT OF MOTION AT T =', 'KRES RUCHU W CHWILI T =', 'AT THE LIMIT', 'NA KRESIE RUCHU', &
       'THE INSTANT LIES ON IT', 'CHWILA LEZY W NIM', 'GO ON SMOOTHLY', 'RUCH PRZECHODZI GLADKO', &
-      'CHANGE POINT AT T =', 'PUNKT ZMIANY W CHWILI T =', 'CAN STILL MOVE, ADD A DRIVE', 'RUCH NIEOKRESLONY, DODAJ NAPED', &
+      'CHANGE POINT AT T =', 'PUNKT ZMIANY W CHWILI T =', 'CAN STILL MOVE, ADD A DRIVE', &
+      'RUCH NIEOKRESLONY, DODAJ NAPED', &
       'ESTIMATED ANGLE WAS OFF BY', 'KAT PRZYBLIZONY ODBIEGAL O', 'ANOTHER ASSEMBLY IS ABOUT AS NEAR', &
       'INNY MONTAZ JEST PODOBNIE BLISKI', 'REDUNDANT EQUATION', 'ROWNANIE NADLICZBOWE', 'ROWNANIA NADLICZBOWE', &
       'MOVES NOTHING', 'NICZEGO NIE PORUSZA', 'ADDS NOTHING TO THE OTHER DRIVES', 'NIE WNOSI NIC PONAD INNE NAPEDY', &
@@ -28,18 +30,18 @@ module listing_check
 
 contains
 
-   !> The first thing that is wrong with the listing in `path` of so many `sets`; '' for nothing. `marked`: steps.
-   subroutine check_listing(path, sets, wrong, marked)
+   !> The first thing that is wrong with the listing in `path` of so many `sets`; '' for nothing. `flagged`: steps.
+   subroutine check_listing(path, sets, wrong, flagged)
       character(*), intent(in) :: path
       integer, intent(in) :: sets
       character(:), allocatable, intent(out) :: wrong
-      integer, intent(out) :: marked
+      integer, intent(out) :: flagged
       character(width) :: line
       integer :: unit, status, ends
       logical :: tables
 
       wrong = ''
-      marked = 0
+      flagged = 0
       ends = 0
       tables = .false.
       open (newunit=unit, file=path, status='old', action='read', iostat=status)
@@ -52,7 +54,7 @@ contains
             ends = ends + 1
          end if
          if (starts(line, ' BRANCH: ') .or. starts(line, ' GALAZ: ')) tables = .false.
-         if (tables .and. starts(line, ' *** ')) marked = marked + merge(0, 1, is_remark(line))
+         if (tables .and. starts(line, ' *** ')) flagged = flagged + merge(0, 1, is_remark(line))
          if (line_is_wrong(line, tables) .and. wrong == '') wrong = 'LISTING: '//trim(line)
       end do
       if (ends /= sets) wrong = 'LISTING: NOT ALL SETS COME TO THEIR END'
@@ -85,10 +87,11 @@ contains
 
       is_remark = .false.
       ! Rows of numbers are many, remarks are few.
-      if (.not. (starts(line, ' *** ') .or. starts(line, ' --- ') .or. starts(line, ' LARGEST ') .or. starts(line, ' NAJ'))) &
+      if (.not. (starts(line, ' *** ') .or. starts(line, ' --- ') .or. starts(line, ' LARGEST ') .or. starts(line, &
+         ' NAJ'))) &
          return
-      do i = 1, size(remarks)
-         is_remark = is_remark .or. index(line, trim(remarks(i))) > 0
+      do i = 1, size(diagnostics)
+         is_remark = is_remark .or. index(line, trim(diagnostics(i))) > 0
       end do
    end function is_remark
 

@@ -7,14 +7,14 @@ program print_expected
    use mechanism, only: mechanism_t, instant_count, instant, method_newton, drive_angle
    use motion, only: motion_t, new_motion, forget_links, mark_none, mark_singular
    use structure, only: findings_t
-   use continuity, only: tally_t
+   use branch_certificate, only: certificate_counts_t
    use hand_groups, only: groups_by_hand, redundant_by_hand, passages_by_hand
    use deck, only: read_deck
    use text_output, only: output_t, open_output, close_output
    use listing, only: layout_t, new_layout, listing_head, listing_instant, listing_end
    use quad_jet, only: qp, pi_q
    use scales, only: characteristic_length
-   use scatter, only: scatter_t, find_noise
+   use error_estimate, only: error_estimate_t, find_estimates
    use perturbed_deck, only: perturbed, perturbed_instant, sample_count
    use closed_forms_dyads, only: body_t
    use closed_forms_hard, only: pushed_slider
@@ -50,9 +50,9 @@ contains
       type(layout_t) :: layout
       type(motion_t) :: q
       type(findings_t) :: findings
-      type(scatter_t) :: doubt
-      type(tally_t) :: tally
-      integer :: k, marked
+      type(error_estimate_t) :: doubt
+      type(certificate_counts_t) :: tally
+      integer :: k, flagged
 
       layout = new_layout(m)
       findings = hand_count(name)
@@ -62,16 +62,16 @@ contains
       do k = 1, size(m%links)
          q%position(:, k) = m%links(k)%position
       end do
-      marked = 0
+      flagged = 0
       do k = 0, instant_count(m) - 1
          call move_to(m, closed_form(name, m%set_number, real(instant(m, k), qp)), instant(m, k), q)
-         if (k == 0) q%remarks = redundant_by_hand(name, m)
+         if (k == 0) q%diagnostics = redundant_by_hand(name, m)
          if (k > 0) then
-            q%remarks = passages_by_hand(name, m, instant(m, k - 1), instant(m, k))
-            tally%passed = tally%passed + count(.not. q%remarks%here)
-            if (any(q%remarks%here)) then
+            q%diagnostics = passages_by_hand(name, m, instant(m, k - 1), instant(m, k))
+            tally%passed = tally%passed + count(.not. q%diagnostics%here)
+            if (any(q%diagnostics%here)) then
                call stop_all_but_driven(m, q)
-               marked = marked + 1
+               flagged = flagged + 1
             end if
          end if
          call doubt_by_hand(name, m, q, doubt)
@@ -83,8 +83,8 @@ contains
       else
          tally%uncertain = instant_count(m) - 1
       end if
-      call listing_end(o, m, instant_count(m) - marked, marked, tally, &
-         gap=merge(0.0_wp, -1.0_wp, size(redundant_by_hand(name, m)) > 0))
+      call listing_end(o, m, instant_count(m) - flagged, flagged, tally, &
+         closure_error=merge(0.0_wp, -1.0_wp, size(redundant_by_hand(name, m)) > 0))
    end subroutine print_set
 
    !> Both branches have the position of `q`, each has velocities of its own, but for the links whose angle is driven.
@@ -104,13 +104,14 @@ contains
       end do
    end subroutine stop_all_but_driven
 
-   !> How far the motion `q` is known, next to dead points, from the closed forms of decks whose numbers are a little off.
+   !> How far the motion `q` is known, next to dead points, from the closed forms of decks whose numbers are a little
+   !> off.
    !> Elsewhere no digit is in doubt.
    subroutine doubt_by_hand(name, m, q, doubt)
       character(*), intent(in) :: name
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
-      type(scatter_t), intent(inout) :: doubt
+      type(error_estimate_t), intent(inout) :: doubt
       integer :: k
 
       if (index(name, 'dead_point') /= 1) return
@@ -119,7 +120,7 @@ contains
          doubt%samples(k) = q
          call move_to(m, pushed_slider(perturbed(m, k), real(perturbed_instant(q%t, k), qp)), q%t, doubt%samples(k))
       end do
-      call find_noise(m, characteristic_length(m), doubt)
+      call find_estimates(m, characteristic_length(m), doubt)
       doubt%taken = .true.
       doubt%in_doubt = .true.
    end subroutine doubt_by_hand

@@ -1,4 +1,5 @@
-!> Tests. The loop equations once more, in real128 and complex numbers, straight from their polygons, on any motion of the
+!> Tests. The loop equations once more, in real128 and complex numbers, straight from their polygons, on any motion of
+!> the
 !> unknowns, with derivatives by time as differences; and the equations of each block.
 module quad_blocks
    use quad_jet, only: qp
@@ -19,30 +20,30 @@ contains
       integer, allocatable :: member(:), unknown_of(:), equation_of(:), first(:)
       type(incidence_t) :: g
 
-      g = incidence(e, b%frames, b%unknowns)
+      g = incidence(e, b%orientations, b%unknowns)
       call match(g, unknown_of, equation_of)
       call find_blocks(g, equation_of, first, member)
    end function members
 
    !> What equation `i` says, less its constant, at the values `u` (0:unknowns).
-   complex(qp) function equation_value(e, frames, i, u) result(value)
+   complex(qp) function equation_value(e, orientations, i, u) result(value)
       type(equations_t), intent(in) :: e
-      integer, intent(in) :: frames, i
+      integer, intent(in) :: orientations, i
       real(qp), intent(in) :: u(0:)
 
       associate (q => e%list(i))
          select case (q%kind)
          case (equation_x)
-            value = real(polygon(e, frames, q%polygon, u), qp)
+            value = real(vector_loop(e, orientations, q%vector_loop, u), qp)
          case (equation_y)
-            value = aimag(polygon(e, frames, q%polygon, u))
+            value = aimag(vector_loop(e, orientations, q%vector_loop, u))
          case (equation_projection)
-            value = real(polygon(e, frames, q%polygon, u) &
-               *conjg(cmplx(q%direction(1), q%direction(2), qp)*turn(u(q%frame))), qp)
+            value = real(vector_loop(e, orientations, q%vector_loop, u) &
+               *conjg(cmplx(q%direction(1), q%direction(2), qp)*turn(u(q%orientation))), qp)
          case (equation_angle)
-            value = u(q%frame) - u(q%less)
+            value = u(q%orientation) - u(q%less)
          case default
-            value = u(frames + q%frame)
+            value = u(orientations + q%orientation)
          end select
          value = value - q%constant
       end associate
@@ -50,36 +51,37 @@ contains
 
    !> Value, first and second derivative of equation `i` on the way `u` (0:unknowns, 0:2): value, rate, second rate.
    !> Step 1e-8: h^2 and eps/h^2 are below 1e-16.
-   function equation_motion(e, frames, i, u) result(motion)
+   function equation_motion(e, orientations, i, u) result(motion)
       type(equations_t), intent(in) :: e
-      integer, intent(in) :: frames, i
+      integer, intent(in) :: orientations, i
       real(qp), intent(in) :: u(0:, 0:)
       real(qp) :: motion(0:2), f(-1:1)
       real(qp), parameter :: h = 1.0e-8_qp
       integer :: k
 
       do k = -1, 1
-         f(k) = real(equation_value(e, frames, i, u(:, 0) + k*h*u(:, 1) + (k*h)**2/2.0_qp*u(:, 2)), qp)
+         f(k) = real(equation_value(e, orientations, i, u(:, 0) + k*h*u(:, 1) + (k*h)**2/2.0_qp*u(:, 2)), qp)
       end do
       motion = [f(0), (f(1) - f(-1))/(2.0_qp*h), (f(1) - 2.0_qp*f(0) + f(-1))/h**2]
    end function equation_motion
 
-   complex(qp) function polygon(e, frames, i, u) result(g)
+   complex(qp) function vector_loop(e, orientations, i, u) result(g)
       type(equations_t), intent(in) :: e
-      integer, intent(in) :: frames, i
+      integer, intent(in) :: orientations, i
       real(qp), intent(in) :: u(0:)
       integer :: k
 
       g = 0.0_qp
-      associate (p => e%polygons)
-         do k = p%first_arm(i), p%first_arm(i + 1) - 1
-            g = g + cmplx(p%arm(1, k), p%arm(2, k), qp)*turn(u(p%arm_frame(k)))
+      associate (p => e%vector_loops)
+         do k = p%first_vector(i), p%first_vector(i + 1) - 1
+            g = g + cmplx(p%body_vector(1, k), p%body_vector(2, k), qp)*turn(u(p%vector_orientation(k)))
          end do
          do k = p%first_slide(i), p%first_slide(i + 1) - 1
-            g = g + u(frames + p%slide_number(k))*cmplx(p%slide_arm(1, k), p%slide_arm(2, k), qp)*turn(u(p%slide_frame(k)))
+            g = g + u(orientations + p%slide_number(k))*cmplx(p%slide_body_vector(1, k), p%slide_body_vector(2, k), &
+               qp)*turn(u(p%slide_orientation(k)))
          end do
       end associate
-   end function polygon
+   end function vector_loop
 
    complex(qp) function turn(phi)
       real(qp), intent(in) :: phi

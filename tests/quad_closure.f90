@@ -65,7 +65,8 @@ contains
       end associate
    end function driven_quantity
 
-   !> Derivatives of the residuals by x, y, phi of every moving link, in order. Step 1e-10: h^2 and eps/h are below 1e-19.
+   !> Derivatives of the residuals by x, y, phi of every moving link, in order. Step 1e-10: h^2 and eps/h are below
+   !> 1e-19.
    function closure_slopes(m, q) result(slopes)
       type(mechanism_t), intent(in) :: m
       real(qp), intent(in) :: q(:, :)

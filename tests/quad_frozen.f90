@@ -13,24 +13,25 @@ module quad_frozen
    public :: frozen_matrix, theory
 
    integer, parameter :: slot_as_printed = 1   !< as (16) has it: columns of x and y alone
-   integer, parameter :: slot_one_product = 2  !< of d_x n_x and d_y n_y the one whose n is nearer to zero becomes d s(h) h
+   !> of d_x n_x and d_y n_y the one whose n is nearer to zero becomes d s(h) h
+   integer, parameter :: slot_one_product = 2
    integer, parameter :: slot_slope = 3        !< the derivative
 
    !> Where the angles that multiply the frozen coefficients are counted from: the cosine's row, the sine's row.
    type :: references_t
-      real(qp), allocatable :: arms(:, :)      !< (2, points)
+      real(qp), allocatable :: body_vectors(:, :)      !< (2, points)
       real(qp), allocatable :: normals(:, :)   !< (2, pairs) of the guides' normals
       integer :: slot = slot_one_product       !< the form of the slot rows
    end type references_t
 
 contains
 
-   !> `arms` (2, points) for the arms; the slot rows as printed.
-   pure type(references_t) function references_of_arms(m, arms) result(z)
+   !> `body_vectors` (2, points) for the arms; the slot rows as printed.
+   pure type(references_t) function references_of_arms(m, body_vectors) result(z)
       type(mechanism_t), intent(in) :: m
-      real(qp), intent(in) :: arms(:, :)
+      real(qp), intent(in) :: body_vectors(:, :)
 
-      z%arms = arms
+      z%body_vectors = body_vectors
       allocate (z%normals(2, size(m%pairs)), source=0.0_qp)
       z%slot = slot_as_printed
    end function references_of_arms
@@ -50,9 +51,9 @@ contains
       real(qp), intent(in) :: q(:, :)
       integer :: i
 
-      allocate (z%arms(2, size(m%points)), z%normals(2, size(m%pairs)))
+      allocate (z%body_vectors(2, size(m%points)), z%normals(2, size(m%pairs)))
       do i = 1, size(m%points)
-         z%arms(:, i) = nearest_zeros(arm_angle(m, q, i))
+         z%body_vectors(:, i) = nearest_zeros(body_vector_angle(m, q, i))
       end do
       do i = 1, size(m%pairs)
          z%normals(:, i) = nearest_zeros(normal_angle(m, q, i))
@@ -66,16 +67,17 @@ contains
       real(qp), intent(in) :: q(:, :)
       integer :: i
 
-      allocate (z%arms(2, size(m%points)))
+      allocate (z%body_vectors(2, size(m%points)))
       allocate (z%normals(2, size(m%pairs)), source=0.0_qp)
       z%slot = slot_slope
       do i = 1, size(m%points)
-         z%arms(:, i) = tangents(arm_angle(m, q, i))
+         z%body_vectors(:, i) = tangents(body_vector_angle(m, q, i))
       end do
    end function tangent_references
 
    !> One reference for each of the two links of a dyad, with which G is nilpotent where they stand in `q` (3, links):
-   !> h3 = sec d - tan d and h4 = sec d + tan d, d = phi_4 - phi_3, make (h4 - h3) cot d = 2 and h3 h4 = 1. There are none at
+   !> h3 = sec d - tan d and h4 = sec d + tan d, d = phi_4 - phi_3, make (h4 - h3) cot d = 2 and h3 h4 = 1. There are
+   !> none at
    !> d = 90 deg. `three`, `four`: the links, whose points have eta = 0.
    pure type(references_t) function dyad_references(m, q, three, four) result(z)
       type(mechanism_t), intent(in) :: m
@@ -98,11 +100,12 @@ contains
       integer :: i
 
       do i = 1, size(m%points)
-         if (m%points(i)%link == link) z%arms(:, i) = angle
+         if (m%points(i)%link == link) z%body_vectors(:, i) = angle
       end do
    end subroutine count_from
 
-   !> The spectral radius of G of a dyad with d = phi_4 - phi_3, its angles counted as `h3` and `h4`: max |1 - l| over the
+   !> The spectral radius of G of a dyad with d = phi_4 - phi_3, its angles counted as `h3` and `h4`: max |1 - l| over
+   !> the
    !> roots of l^2 - (h4 - h3) cot(d) l + h3 h4 = 0.
    elemental real(qp) function dyad_rate(h3, h4, d) result(rho)
       real(qp), intent(in) :: h3, h4, d
@@ -187,16 +190,17 @@ contains
       integer, intent(in) :: i
       real(qp) :: s(2), psi
 
-      psi = arm_angle(m, q, i)
+      psi = body_vector_angle(m, q, i)
       s = 0.0_qp
       ! The angle of a crank is known, so that its coefficients are not needed.
       if (any(m%drives%subject == m%points(i)%link)) return
       if (all(abs(m%points(i)%offset) <= 0.0_wp)) return
-      s = norm2(real(m%points(i)%offset, qp))*[frozen(cos(psi), psi - z%arms(1, i), -sin(psi)), &
-         frozen(sin(psi), psi - z%arms(2, i), cos(psi))]
+      s = norm2(real(m%points(i)%offset, qp))*[frozen(cos(psi), psi - z%body_vectors(1, i), -sin(psi)), &
+         frozen(sin(psi), psi - z%body_vectors(2, i), cos(psi))]
    end function slope
 
-   !> value/h, or its limit at a zero of `value`. Elsewhere h = 0 has no coefficient: c(0) of the print is infinite, and the
+   !> value/h, or its limit at a zero of `value`. Elsewhere h = 0 has no coefficient: c(0) of the print is infinite,
+   !> and the
    !> number given makes the matrix singular.
    pure real(qp) function frozen(value, h, limit)
       real(qp), intent(in) :: value, h, limit
@@ -242,15 +246,15 @@ contains
       end associate
    end function place
 
-   pure real(qp) function arm_angle(m, q, i)
+   pure real(qp) function body_vector_angle(m, q, i)
       type(mechanism_t), intent(in) :: m
       real(qp), intent(in) :: q(:, :)
       integer, intent(in) :: i
 
       associate (u => real(m%points(i)%offset, qp))
-         arm_angle = q(3, m%points(i)%link) + atan2(u(2), u(1))
+         body_vector_angle = q(3, m%points(i)%link) + atan2(u(2), u(1))
       end associate
-   end function arm_angle
+   end function body_vector_angle
 
    pure real(qp) function normal_angle(m, q, k)
       type(mechanism_t), intent(in) :: m

@@ -29,7 +29,8 @@ contains
       rho = exp(logarithm/2.0_qp**squarings)
    end function spectral_radius
 
-   !> Replaces `b` (n, any number) by a^-1 b: Gauss, with the largest pivot of the column. `singular`: a pivot is rounding.
+   !> Replaces `b` (n, any number) by a^-1 b: Gauss, with the largest pivot of the column. `singular`: a pivot is
+   !> rounding.
    pure subroutine solve_quad(a, b, singular)
       real(qp), intent(inout) :: a(:, :), b(:, :)
       logical, intent(out) :: singular

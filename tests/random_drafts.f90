@@ -1,4 +1,5 @@
-!> Tests. A mechanism in the making, by the dice: links where they fall, pairs whose points are put where they coincide in
+!> Tests. A mechanism in the making, by the dice: links where they fall, pairs whose points are put where they coincide
+!> in
 !> this position, drives that begin from it.
 module random_drafts
    use kinds, only: wp

@@ -1,4 +1,5 @@
-!> Tests. Mechanisms by the dice: from ground links outwards cranks, slides, dyads, triads, closed nets of four, cylinders and
+!> Tests. Mechanisms by the dice: from ground links outwards cranks, slides, dyads, triads, closed nets of four,
+!> cylinders and
 !> floating links, each with as many drives as it has freedoms. The position comes first, so that every mechanism is
 !> assembled at t = 0 as far as rounding lets it be.
 module random_mechanisms
@@ -6,7 +7,8 @@ module random_mechanisms
    use mechanism, only: mechanism_t, pair_revolute, pair_prismatic, &
       drive_angle, drive_x, drive_y, drive_relangle, drive_slide
    use dice, only: new_dice, throw, chance
-   use random_drafts, only: draft_t, add_links, add_link, join, add_drive, add_point_drive, add_relative_angle, fair_copy
+   use random_drafts, only: draft_t, add_links, add_link, join, add_drive, add_point_drive, add_relative_angle, &
+      fair_copy
    implicit none
    private
    public :: random_mechanism
@@ -15,7 +17,8 @@ module random_mechanisms
 
 contains
 
-   !> Mechanism number `seed` of `groups` groups; `special`: how often angles are right, coordinates whole and joints shared.
+   !> Mechanism number `seed` of `groups` groups; `special`: how often angles are right, coordinates whole and joints
+   !> shared.
    function random_mechanism(seed, groups, special) result(m)
       integer, intent(in) :: seed, groups
       real(wp), intent(in) :: special

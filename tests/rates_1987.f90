@@ -10,7 +10,8 @@ module rates_1987
    private
    public :: rates_table, constants_table, picture_numbers, judge_rates
 
-   !> Iterations over which a rate is the mean: two eigenvalues of one modulus make it swing by some per cent of 1/steps.
+   !> Iterations over which a rate is the mean: two eigenvalues of one modulus make it swing by some per cent of
+   !> 1/steps.
    integer, parameter :: steps = 400
 
 contains
@@ -24,7 +25,8 @@ contains
          ' THEORY: spectral radius of I - A^-1 J at the closed form, in real128; MEASURED: mean factor of the error', &
          ' over 400 iterations, the error brought back to 1E-6 after each; OFF: the largest difference of the two, relative', &
          ' or, below 0.01, in parts of 0.01', &
-         ' NO MATRIX: angles at which A is singular or c(0) infinite; CONVERGES: angles with a rate below 1, of 180', '', &
+         ' NO MATRIX: angles at which A is singular or c(0) infinite; CONVERGES: angles with a rate below 1, of 180', &
+         '', &
          ' MECHANISM         REFERENCES     THEORY              MEASURED          OFF     NO MATRIX  CONVERGES'
       do i = 1, size(scene_names)
          s = new_scene(i)
@@ -78,7 +80,8 @@ contains
       s = new_scene(3)
       call best_constants(s, best, largest)
       print '(a)', '', ' FOUR-BAR, ONE REFERENCE FOR BOTH ROWS OF A LINK'
-      print '(a, f6.3, a, i0, a, i0, a)', ' Constants for the whole turn, the best of -720, -718, ..., 720 deg: largest rate', &
+      print '(a, f6.3, a, i0, a, i0, a)', &
+         ' Constants for the whole turn, the best of -720, -718, ..., 720 deg: largest rate', &
          largest, ' (coupler ', best(1), ', rocker ', best(2), ' deg)'
       one_degree = 0
       ten_degrees = 0
@@ -122,7 +125,8 @@ contains
       end associate
    end subroutine best_constants
 
-   !> For the picture, a block for each of the first five mechanisms: crank angle, then theory and measurement of printed,
+   !> For the picture, a block for each of the first five mechanisms: crank angle, then theory and measurement of
+   !> printed,
    !> once and nearest; last a block with the errors of the four-bar, iteration by iteration. '-' where there is none.
    subroutine picture_numbers()
       type(scene_t) :: s
@@ -134,7 +138,8 @@ contains
          s = new_scene(i)
          print '(2a)', '# ', s%name
          do k = 0, 360, 2
-            print '(i4, 6a10)', k, (number(rate_by_theory(s, variant, k)), number(rate_measured(s, variant, k, steps)), &
+            print '(i4, 6a10)', k, (number(rate_by_theory(s, variant, k)), number(rate_measured(s, variant, k, &
+               steps)), &
                variant=by_print, by_step)
          end do
          print '(a)', '', ''
@@ -202,7 +207,8 @@ contains
       expected = rate_by_theory(s, variant, angle)
       found = rate_measured(s, variant, angle, steps)
       ! Beside a place where A is singular it has an inverse, which throws the iteration far away.
-      call count_one(merge(found < 0.0_wp .or. found > 1.0e3_wp, abs(found - expected) <= tolerance*expected + rounding, &
+      call count_one(merge(found < 0.0_wp .or. found > 1.0e3_wp, abs(found - expected) <= tolerance*expected &
+         + rounding, &
          expected < 0.0_wp), s, variant, angle, 'the rate is that of the theory', passed, failed)
       ! So close to 1 neither end would come.
       if (abs(expected - 1.0_wp) < 0.02_wp) return

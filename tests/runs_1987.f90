@@ -4,7 +4,8 @@ module runs_1987
    use mechanism, only: instant_count, instant, method_newton, method_dense, method_matrix
    use motion, only: motion_t, new_motion, mark_none
    use analysis, only: analysis_t, make_analysis, advance
-   use bench_scenes, only: bench_t => scene_t, new_bench => new_scene, by_method, by_closed_form, move_exactly, steps_of_turn
+   use bench_scenes, only: bench_t => scene_t, new_bench => new_scene, by_method, by_closed_form, move_exactly, &
+      steps_of_turn
    use bench_timing, only: job_t, measure
    use bench_tools, only: figure
    use constants, only: degree
@@ -26,7 +27,8 @@ contains
       character(8) :: shares(size(distances))
       integer :: i, k, variant
 
-      print '(a)', '', ' FROM HOW FAR IT ARRIVES: per cent of 144 starts, so many degrees of the crank before or after', &
+      print '(a)', '', &
+         ' FROM HOW FAR IT ARRIVES: per cent of 144 starts, so many degrees of the crank before or after', &
          ' each of 0, 5, ..., 355 deg; after the stroke, per cent that come to another assembly. At most 400', &
          ' iterations', ''
       print '(a, 10i8)', ' MECHANISM         REFERENCES', distances
@@ -66,7 +68,8 @@ contains
       type(run_t) :: runs(0:71)
       integer :: i, k, variant
 
-      print '(a)', '', ' ITERATIONS FROM THE POSITION 10 DEG BEFORE, AT 72 ANGLES: mean and most, where it arrives, until', &
+      print '(a)', '', &
+         ' ITERATIONS FROM THE POSITION 10 DEG BEFORE, AT 72 ANGLES: mean and most, where it arrives, until', &
          ' the error is below 1E-6, 1E-10 and 1E-13, the limit of rounding', '', &
          ' MECHANISM         REFERENCES  ARRIVES      1E-6        1E-10        1E-13'
       do i = 1, size(scene_names)
@@ -75,7 +78,8 @@ contains
             runs = [(iterate_from(s, variant, exact(s, 5*k - 10), 5*k, limit), k=0, 71)]
             associate (there => runs%ended == went_right)
                if (.not. any(there)) print '(1x, a16, 2x, a8, i11)', s%name, variant_names(variant), 0
-               if (any(there)) print '(1x, a16, 2x, a8, i11, 3(f9.1, i4))', s%name, variant_names(variant), count(there), &
+               if (any(there)) print '(1x, a16, 2x, a8, i11, 3(f9.1, i4))', s%name, variant_names(variant), &
+                  count(there), &
                   (real(sum(runs%counts(k), mask=there), wp)/count(there), maxval(runs%counts(k), mask=there), k=1, 3)
             end associate
          end do
@@ -147,7 +151,8 @@ contains
 
    !> Time of a step as a ratio to the closed form and to METHOD DENSE, in steps of 0.1 and 10 degrees.
    subroutine times_table()
-      print '(a)', '', ' TIME OF A STEP, POSITION TO ACCELERATION: the least of 15 repeats over the least of the closed', &
+      print '(a)', '', &
+         ' TIME OF A STEP, POSITION TO ACCELERATION: the least of 15 repeats over the least of the closed', &
          ' form in the same run', '', &
          ' MECHANISM  STEP/DEG  BLOCKS   DENSE  MATRIX  MATRIX/DENSE'
       call time_rows(1)

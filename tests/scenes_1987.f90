@@ -35,7 +35,8 @@ contains
    function new_scene(i) result(s)
       integer, intent(in) :: i
       type(scene_t) :: s
-      character(12), parameter :: decks(6) = [character(12) :: 'yoke', 'crank_slider', 'four_bar', 'four_bar', 'andrews', &
+      character(12), parameter :: decks(6) = [character(12) :: 'yoke', 'crank_slider', 'four_bar', 'four_bar', &
+         'andrews', &
          'crank_slider']
       type(mechanism_t), allocatable :: sets(:)
       type(failure_t), allocatable :: failure
@@ -56,7 +57,8 @@ contains
          if (k == 0) call go_on(real(s%m%links%position(3), qp), s%turn(3, :, 0))
          if (k > 0) call go_on(s%turn(3, :, k - 1), s%turn(3, :, k))
       end do
-      if (count(abs(s%turn(3, :, 359) - s%turn(3, :, 0)) > pi_q) /= 1) error stop 'MORE THAN THE CRANK TURNS'
+      if (count(abs(s%turn(3, :, 359) - s%turn(3, :, &
+         0)) > pi_q) /= 1) error stop 'MORE THAN THE CRANK TURNS'
       s%pose = new_pose(s%system, s%m)
       s%once = s%pose
       s%once%q = real(exact(s, 0), wp)
@@ -72,8 +74,10 @@ contains
       phi = phi - 2.0_qp*pi_q*anint((phi - before)/(2.0_qp*pi_q))
    end subroutine go_on
 
-   !> The closed form of mechanism `i` with the crank at `k` degrees, lengths in `unit`. The crossed four-bar is the mirror
-   !> image in the x axis of the open one with its crank at -k degrees; the slider on the left side that in the y axis of
+   !> The closed form of mechanism `i` with the crank at `k` degrees, lengths in `unit`. The crossed four-bar is the
+   !> mirror
+   !> image in the x axis of the open one with its crank at -k degrees; the slider on the left side that in the y axis
+   !> of
    !> the one on the right with its crank at 180 - k degrees.
    function closed(deck, i, k, unit) result(q)
       character(*), intent(in) :: deck
@@ -98,7 +102,8 @@ contains
       q(3, 2:3) = pi_q - q(3, 2:3)
    end function closed
 
-   !> The positions (3, links) with the crank at `angle` degrees, which may lie outside one turn: the crank's angle alone
+   !> The positions (3, links) with the crank at `angle` degrees, which may lie outside one turn: the crank's angle
+   !> alone
    !> goes on, the other links swing.
    pure function exact(s, angle) result(q)
       type(scene_t), intent(in) :: s

@@ -35,7 +35,7 @@ module decimal_digits
    real(wp), parameter :: doubt = 2.0_wp**(-100)
    !> Below `plain`, p alone mostly decides: its fraction is exact, and p is off by two roundings of 2**-53,
    !> those of high and of the product; half as much again is allowed for.
-   real(wp), parameter :: plain = 2.0_wp**45, plain_doubt = 3.0_wp*2.0_wp**(-53)
+   real(wp), parameter :: plain = 2.0_wp**45, plain_kantorovich_ratio = 3.0_wp*2.0_wp**(-53)
    !> From here on the distance between two numbers p is 1/2, and e may be more than that.
    real(wp), parameter :: coarse = 2.0_wp**51
 
@@ -70,7 +70,7 @@ contains
       if (p < plain) then
          n = int(p, int64)
          rest = p - real(n, wp)
-         sure = abs(rest - 0.5_wp) > plain_doubt*p
+         sure = abs(rest - 0.5_wp) > plain_kantorovich_ratio*p
          if (rest > 0.5_wp) n = n + 1
          if (sure) return
       end if

@@ -3,11 +3,11 @@
 module failures
    implicit none
    private
-   public :: failure_t, fail, status_solved, status_refused, status_marked, status_machine, status_signal
+   public :: failure_t, fail, status_solved, status_refused, status_flagged, status_machine, status_signal
 
    integer, parameter :: status_solved = 0   !< every step solved
    integer, parameter :: status_refused = 1  !< deck or command refused, nothing computed
-   integer, parameter :: status_marked = 2   !< listing complete, at least one step marked
+   integer, parameter :: status_flagged = 2   !< listing complete, at least one step marked
    integer, parameter :: status_machine = 3  !< the machine's fault: file, memory, disk full
    !> And above: with the number of a signal added, by which the process ends, as a shell would tell it.
    integer, parameter :: status_signal = 128

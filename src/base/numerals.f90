@@ -70,7 +70,7 @@ contains
       integer(int64) :: n
       character(80) :: line
       integer :: e, carried, places
-      integer, parameter :: most_places = 12, many = 60
+      integer, parameter :: max_places = 12, many = 60
       character(*), parameter :: five = '5.'//repeat('0', many)
 
       n = 0
@@ -80,7 +80,7 @@ contains
       if (index(line, 'E') == 0) return
       e = exponent_of(line)
       places = e + k + 1
-      if (places > most_places) return
+      if (places > max_places) return
       n = 0
       ! Without a place x is below 1/10; with none left over, below 1, and a half goes to 0, which is even.
       if (places == 0 .and. line(:len(five)) > five) n = 1

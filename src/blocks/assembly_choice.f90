@@ -15,10 +15,10 @@ module assembly_choice
    use block_needs, only: largest_known
    use first_position, only: solve_first_block, farthest
    use link_motion, only: move_links
-   use block_engine, only: block_engine_t, positions_t, seek_blocks, seek_each, begin_record
+   use block_engine, only: block_engine_t, positions_t, solve_blocks, solve_each, begin_record
    implicit none
    private
-   public :: seek_first
+   public :: solve_first
 
    !> All that is assembled so far.
    type :: trial_t
@@ -42,21 +42,21 @@ module assembly_choice
 
 contains
 
-   !> Seeks the first motion at `t`, as `seek_blocks` does without one that is followed.
-   subroutine seek_first(e, t, c, correction, same)
+   !> Seeks the first motion at `t`, as `solve_blocks` does without one that is followed.
+   subroutine solve_first(e, t, c, correction, same)
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       type(convergence_t), intent(out) :: c
       real(wp), intent(out) :: correction
       logical, intent(out) :: same
 
-      call seek_blocks(e, t, .false., c, correction, same)
+      call solve_blocks(e, t, .false., c, correction, same)
       if (.not. e%blocks%solvable) return
       if (.not. any(has_others(e%others(e%needed)))) return
       call choose(e)
       call begin_record(e, c)
-      call seek_each(e, e%needed, .false., c, correction, same)
-   end subroutine seek_first
+      call solve_each(e, e%needed, .false., c, correction, same)
+   end subroutine solve_first
 
    impure elemental logical function has_others(o)
       type(positions_t), intent(in) :: o
@@ -73,7 +73,7 @@ contains
       logical :: again
 
       best%u = e%state%u
-      best%u%value = e%rough
+      best%u%value = e%estimated
       allocate (best%solved(size(e%blocks%list)), source=.false.)
       allocate (best%others(size(e%blocks%list)))
       solves = 0
@@ -107,7 +107,7 @@ contains
       nearest = off(e, i, best%u)
       do k = 1, min(size(x, 2), max_others)
          if (solves >= max_solves) return
-         if (all(best%solved) .and. maxval(abs(x(:, k) - rough_of(e, i))) > farthest(nearest)) exit
+         if (all(best%solved) .and. maxval(abs(x(:, k) - estimate_of(e, i))) > farthest(nearest)) exit
          other = best
          e%state%u = best%u
          call set_values(e%blocks, i, x(:, k), e%state)
@@ -148,7 +148,7 @@ contains
             if (i == first .or. first == 0 .or. largest_known(e%blocks, i, changed) > 0) then
                changed(own) = 1
                t%solved(i) = largest_known(e%blocks, i, open) == 0
-               if (i /= first) call set_values(e%blocks, i, e%rough(own), e%state)
+               if (i /= first) call set_values(e%blocks, i, e%estimated(own), e%state)
                if (t%solved(i)) call assemble_one(e, i, i == first, t)
                solves = solves + 1
             end if
@@ -177,7 +177,7 @@ contains
          call solve_first_block(e%blocks, i, e%tolerance, e%work, e%state, c, t%others(i)%x)
       end if
       t%solved(i) = is_solved(c)
-      if (.not. t%solved(i)) call set_values(e%blocks, i, rough_of(e, i), e%state)
+      if (.not. t%solved(i)) call set_values(e%blocks, i, estimate_of(e, i), e%state)
    end subroutine assemble_one
 
    !> How far two assemblies are from the deck's estimate, by the links that lie in another way: the sums of squares.
@@ -200,9 +200,9 @@ contains
       integer, intent(in) :: i
       type(trial_t), intent(in) :: t
 
-      associate (f => e%frame_of(i))
+      associate (f => e%orientation_of(i))
          cost = min(sum((t%place(:2, i)/e%span - e%estimate(:2, i)/e%span)**2), far_place**2) &
-            + without_turns(t%u(f)%value - e%rough(f))**2
+            + without_turns(t%u(f)%value - e%estimated(f))**2
       end associate
    end function link_cost
 
@@ -212,14 +212,14 @@ contains
       integer, intent(in) :: i
       type(unknown_t), intent(in) :: u(0:)
 
-      off = maxval(abs(u(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))%value - rough_of(e, i)))
+      off = maxval(abs(u(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))%value - estimate_of(e, i)))
    end function off
 
-   pure function rough_of(e, i) result(x)
+   pure function estimate_of(e, i) result(x)
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: i
       real(wp) :: x(e%blocks%list(i)%shape%n)
 
-      x = e%rough(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
-   end function rough_of
+      x = e%estimated(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
+   end function estimate_of
 end module assembly_choice

@@ -7,7 +7,7 @@ module block_engine
    use scales, only: solver_length, power_of_two
    use links_tree, only: tree_t, new_tree
    use loop_equations, only: new_equations
-   use rough_positions, only: rough_values
+   use estimated_positions, only: estimated_values
    use drives, only: law_t, new_law, drive_motion
    use convergence, only: convergence_t, is_solved, gather, ended_converged, ended_singular
    use predictor, only: history_t, new_history, remember, predict, largest_change
@@ -22,8 +22,8 @@ module block_engine
    use link_motion, only: chain_t, new_chain, move_links
    implicit none
    private
-   public :: block_engine_t, positions_t, make_block_engine, seek_blocks, seek_again, seek_each, begin_record
-   public :: set_targets, keep_blocks, tell_blocks
+   public :: block_engine_t, positions_t, make_block_engine, solve_blocks, solve_again, solve_each, begin_record
+   public :: set_drive_values, accept_blocks, get_blocks_motion
 
    !> Positions of one block (unknowns, any number).
    type :: positions_t
@@ -42,10 +42,10 @@ module block_engine
       type(law_t), allocatable :: laws(:)
       real(wp), allocatable :: unit_of(:)               !< (drives) of the value: length or 1
       logical, allocatable :: is_angle(:)               !< (drives)
-      integer, allocatable :: frame_of(:)               !< (links)
+      integer, allocatable :: orientation_of(:)               !< (links)
       integer, allocatable :: joint(:, :)               !< (2, revolute pairs) the links of each
       logical, allocatable :: is_found(:)               !< (links) that a table needs and whose angle no drive gives
-      real(wp), allocatable :: rough(:)                 !< (0:unknowns) from the deck's positions
+      real(wp), allocatable :: estimated(:)                 !< (0:unknowns) from the deck's positions
       real(wp), allocatable :: estimate(:, :)           !< (3, links) places from `chain%origin` and angles of the deck
       real(wp) :: span = 1.0_wp                         !< the characteristic length
       type(positions_t), allocatable :: others(:)       !< (blocks) what else was found at first
@@ -83,18 +83,18 @@ contains
       e%history%order = m%predictor
       e%is_found = wanted_links(m)
       do i = 1, size(m%links)
-         if (t%frame(i) == 0) then
+         if (t%orientation(i) == 0) then
             e%is_found(i) = .false.
-         else if (e%blocks%list(e%blocks%block_of(t%frame(i)))%direct) then
+         else if (e%blocks%list(e%blocks%block_of(t%orientation(i)))%direct) then
             e%is_found(i) = .false.
          end if
       end do
       call make_workspace(e%work, e%blocks)
-      e%chain = new_chain(m, t, wanted_links(m), e%blocks%frames, e%blocks%unit)
-      e%whole = new_chain(m, t, spread(.true., 1, size(m%links)), e%blocks%frames, e%blocks%unit)
+      e%chain = new_chain(m, t, wanted_links(m), e%blocks%orientations, e%blocks%unit)
+      e%whole = new_chain(m, t, spread(.true., 1, size(m%links)), e%blocks%orientations, e%blocks%unit)
       allocate (e%laws(size(m%drives)))
       allocate (e%unit_of(size(m%drives)), source=1.0_wp)
-      e%frame_of = t%frame
+      e%orientation_of = t%orientation
       allocate (e%joint(2, count(m%pairs%kind == pair_revolute)))
       e%joint(1, :) = m%points(pack(m%pairs%point_i, m%pairs%kind == pair_revolute))%link
       e%joint(2, :) = m%points(pack(m%pairs%point_j, m%pairs%kind == pair_revolute))%link
@@ -119,8 +119,8 @@ contains
       allocate (e%inverse_now(size(e%blocks%list)), e%inverse_of(size(e%blocks%list)), source=0.0_wp)
       allocate (e%is_singular(size(e%blocks%list)), source=.false.)
       ! A function's result would bring its own lower bound.
-      allocate (e%rough(0:e%blocks%unknowns))
-      e%rough(:) = rough_values(m, t, e%length, e%blocks%unknowns)/e%blocks%unit
+      allocate (e%estimated(0:e%blocks%unknowns))
+      e%estimated(:) = estimated_values(m, t, e%length, e%blocks%unknowns)/e%blocks%unit
    end subroutine make_block_engine
 
    !> The unknowns of the moving blocks that iterate.
@@ -141,7 +141,7 @@ contains
 
    !> Seeks the motion at `t`, from those kept (`follows`) or from the deck's. `c`: how the hardest block ended,
    !> `correction`: the largest change of a predicted value, `same`: every block's determinant has kept its sign.
-   subroutine seek_blocks(e, t, follows, c, correction, same)
+   subroutine solve_blocks(e, t, follows, c, correction, same)
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       logical, intent(in) :: follows
@@ -154,32 +154,32 @@ contains
       c%ended = ended_singular
       if (.not. e%blocks%solvable) return
       e%t = t
-      call set_targets(e, t)
+      call set_drive_values(e, t)
       call begin_record(e, c)
       if (follows) then
          call predict(e%history, t, e%state%u, e%change)
          same = e%change <= largest_change
-         if (same) call seek_each(e, e%moving, follows, c, correction, same)
+         if (same) call solve_each(e, e%moving, follows, c, correction, same)
       else
-         call turn_starts(e%blocks, e%needed, e%state%target(0, :), e%rough)
-         e%state%u%value = e%rough
-         call seek_each(e, e%needed, follows, c, correction, same)
+         call turn_starts(e%blocks, e%needed, e%state%drive_value(0, :), e%estimated)
+         e%state%u%value = e%estimated
+         call solve_each(e, e%needed, follows, c, correction, same)
       end if
-   end subroutine seek_blocks
+   end subroutine solve_blocks
 
    !> What the drives ask for at `t`.
-   pure subroutine set_targets(e, t)
+   pure subroutine set_drive_values(e, t)
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       integer :: i
 
       do i = 1, size(e%laws)
-         e%state%target(:, i) = drive_motion(e%laws(i), t)*e%unit_of(i)
+         e%state%drive_value(:, i) = drive_motion(e%laws(i), t)*e%unit_of(i)
       end do
-   end subroutine set_targets
+   end subroutine set_drive_values
 
    !> The moving blocks once more, from where they are now.
-   subroutine seek_again(e, c, correction, same)
+   subroutine solve_again(e, c, correction, same)
       type(block_engine_t), intent(inout) :: e
       type(convergence_t), intent(out) :: c
       real(wp), intent(out) :: correction
@@ -188,8 +188,8 @@ contains
       correction = 0.0_wp
       same = .true.
       call begin_record(e, c)
-      call seek_each(e, e%moving, .true., c, correction, same)
-   end subroutine seek_again
+      call solve_each(e, e%moving, .true., c, correction, same)
+   end subroutine solve_again
 
    subroutine begin_record(e, c)
       type(block_engine_t), intent(inout) :: e
@@ -202,7 +202,7 @@ contains
    end subroutine begin_record
 
    !> The blocks of `list`, one after another; a block without an end that others can build on ends the search.
-   subroutine seek_each(e, list, follows, c, correction, same)
+   subroutine solve_each(e, list, follows, c, correction, same)
       type(block_engine_t), intent(inout) :: e
       integer, intent(in) :: list(:)
       logical, intent(in) :: follows
@@ -227,20 +227,20 @@ contains
          e%is_singular(i) = one%singular
          ! At a change point itself the sign is that of rounding.
          if (one%singular) cycle
-         c%doubt = max(c%doubt, one%doubt)
+         c%kantorovich_ratio = max(c%kantorovich_ratio, one%kantorovich_ratio)
          if (e%state%excursion > 0.0_wp) &
-            c%growth = max(c%growth, e%blocks%list(i)%bend*max(one%inverse, e%inverse_of(i))**2)
+            c%growth = max(c%growth, e%blocks%list(i)%lipschitz*max(one%inverse, e%inverse_of(i))**2)
          e%inverse_now(i) = one%inverse
          e%sign_now(i) = one%determinant
-         e%pivot_now(i) = one%least_pivot
+         e%pivot_now(i) = one%min_pivot
          if (.not. follows .or. one%determinant == e%sign_of(i)) cycle
          same = .false.
          e%crossed(i) = .true.
       end do
-   end subroutine seek_each
+   end subroutine solve_each
 
    !> Makes the motion found last the one that is followed.
-   subroutine keep_blocks(e)
+   subroutine accept_blocks(e)
       type(block_engine_t), intent(inout) :: e
 
       call remember(e%history, e%t, e%state%u)
@@ -249,14 +249,14 @@ contains
       if (e%blocks%redundant > 0) e%side = jacobian_of(e%blocks, 1, e%state)
       e%pivot_of(:) = e%pivot_now(:)
       e%inverse_of(:) = e%inverse_now(:)
-   end subroutine keep_blocks
+   end subroutine accept_blocks
 
    !> The motion found last of the links that are asked for, in the deck's units; `finite`: all of it is in range.
-   subroutine tell_blocks(e, found, finite)
+   subroutine get_blocks_motion(e, found, finite)
       type(block_engine_t), intent(in) :: e
       type(motion_t), intent(inout) :: found
       logical, intent(out) :: finite
 
       call move_links(e%chain, e%state, e%length, found, finite)
-   end subroutine tell_blocks
+   end subroutine get_blocks_motion
 end module block_engine

@@ -8,7 +8,8 @@ module block_rank
    use block_rows, only: assemble_dense
    implicit none
    private
-   public :: redundant_rows, moving_unknowns, jacobian_of, relative_side, least_direction, residual_of, pull_back, &
+   public :: redundant_rows, moving_unknowns, jacobian_of, relative_side, min_direction, residual_of, &
+      gauss_newton_step, &
       zero_level
 
    !> Singular values below this part of the largest count as zero: the root of the rounding, since a position at which
@@ -19,7 +20,7 @@ module block_rank
    !> Residuals that have nothing to correct, and those that are a position's.
    real(wp), parameter :: closed = max(1.0e-14_wp, 32.0_wp*epsilon(1.0_wp)), near = max(1.0e-12_wp, 100.0_wp*closed)
    !> The decomposition takes the cube of this many operations.
-   integer, parameter :: most_rows = 1500
+   integer, parameter :: max_rows = 1500
 
    type :: values_t
       integer :: rows = 0, n = 0, rank = 0
@@ -42,7 +43,7 @@ contains
       integer :: k, c, at
 
       allocate (list(0))
-      if (b%list(i)%shape%rows > most_rows) return
+      if (b%list(i)%shape%rows > max_rows) return
       v = decomposed(b, i, s)
       null = v%left(:, v%rank + 1:)
       order = row_order(b, i)
@@ -101,7 +102,7 @@ contains
       integer :: k
 
       moves = .false.
-      if (b%list(i)%shape%rows > most_rows .or. size(moves) == 0) return
+      if (b%list(i)%shape%rows > max_rows .or. size(moves) == 0) return
       trial_state = s
       v = decomposed(b, i, trial_state)
       if (v%rank == v%n) return
@@ -109,7 +110,7 @@ contains
       direction = v%right(v%n, :)
       call set_values(b, i, start + trial*direction, trial_state)
       do k = 1, 20
-         call pull_back(b, i, trial_state, far)
+         call gauss_newton_step(b, i, trial_state, far)
          if (far <= closed) exit
       end do
       direction = trial_state%u(b%unknown(b%list(i)%first:b%list(i)%last))%value - start
@@ -151,7 +152,7 @@ contains
    end function relative_side
 
    !> The least singular value of the Jacobian of block `i` with its vectors `left` (rows) and `right` (n).
-   subroutine least_direction(b, i, s, least, left, right)
+   subroutine min_direction(b, i, s, least, left, right)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
@@ -162,7 +163,7 @@ contains
       least = v%s(v%n)
       left = v%left(:, v%n)
       right = v%right(v%n, :)
-   end subroutine least_direction
+   end subroutine min_direction
 
    !> (rows) What the equations of block `i` leave with the values `x` (n), which `s` has from then on.
    function residual_of(b, i, x, s) result(r)
@@ -178,7 +179,7 @@ contains
 
    !> One step of least length towards the equations of block `i` (Gauss and Newton), none along a direction that the
    !> Jacobian leaves open; `far`: the largest residual before it.
-   subroutine pull_back(b, i, s, far)
+   subroutine gauss_newton_step(b, i, s, far)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
@@ -194,7 +195,7 @@ contains
          x = x - v%right(k, :)*(dot_product(v%left(:, k), v%r)/v%s(k))
       end do
       call set_values(b, i, x, s)
-   end subroutine pull_back
+   end subroutine gauss_newton_step
 
    !> The singular values of the Jacobian of block `i`.
    function decomposed(b, i, s) result(v)
@@ -218,6 +219,6 @@ contains
       call assemble_dense(b, i, s, a, v%r)
       call gesvd('A', 'A', v%rows, v%n, a, v%rows, v%s, v%left, v%rows, v%right, v%n, work, size(work), info)
       ! A block of one unknown has nothing but its own arms to be compared with.
-      v%rank = count(v%s > zero_level*max(v%s(1), b%list(i)%bend, tiny(1.0_wp)))
+      v%rank = count(v%s > zero_level*max(v%s(1), b%list(i)%lipschitz, tiny(1.0_wp)))
    end function decomposed
 end module block_rank

@@ -2,7 +2,7 @@
 module block_rows
    use kinds, only: wp
    use block_matrix, only: entries_of
-   use blocks, only: blocks_t, instance_t, instance_components, instance_projection
+   use blocks, only: blocks_t, block_loop_t, loop_components, loop_projection
    use block_state, only: state_t, slide_vector, turned, across
    implicit none
    private
@@ -19,26 +19,26 @@ contains
       integer :: m, k, row
 
       a(:entries_of(b%list(i)%shape)) = 0.0_wp
-      do m = b%list(i)%first_instance, b%list(i)%last_instance
-         associate (g => b%instances(m))
+      do m = b%list(i)%first_loop, b%list(i)%last_loop
+         associate (g => b%loops(m))
             select case (g%kind)
-            case (instance_components)
-               call close_polygon(b, m, s)
+            case (loop_components)
+               call close_vector_loop(b, m, s)
                call component_rows(b, g, m, s, a, r)
-            case (instance_projection)
-               call close_polygon(b, m, s)
+            case (loop_projection)
+               call close_vector_loop(b, m, s)
                call projection_row(b, g, m, s, a, r)
             case default
                ! Both may be the angle of one frame.
-               r(g%row_x) = s%u(g%frame)%value - s%u(g%less)%value
-               if (g%frame_at > 0) a(g%frame_at) = a(g%frame_at) + 1.0_wp
+               r(g%row_x) = s%u(g%orientation)%value - s%u(g%less)%value
+               if (g%orientation_at > 0) a(g%orientation_at) = a(g%orientation_at) + 1.0_wp
                if (g%less_at > 0) a(g%less_at) = a(g%less_at) - 1.0_wp
             end select
          end associate
       end do
       do k = b%list(i)%first_row, b%list(i)%last_row
          row = k - b%list(i)%first_row + 1
-         r(row) = r(row) - b%rows(k)%constant - s%target(0, b%rows(k)%drive)
+         r(row) = r(row) - b%rows(k)%constant - s%drive_value(0, b%rows(k)%drive)
       end do
    end subroutine assemble_block
 
@@ -70,7 +70,7 @@ contains
    end subroutine assemble_dense
 
    !> The gap of polygon instance `m`, and the arms of the block's own frames.
-   pure subroutine close_polygon(b, m, s)
+   pure subroutine close_vector_loop(b, m, s)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: m
       type(state_t), intent(inout) :: s
@@ -79,40 +79,40 @@ contains
 
       x = s%part(m)%known(1, 0)
       y = s%part(m)%known(2, 0)
-      do k = b%instances(m)%first_own, b%instances(m)%last_arm
-         associate (f => s%u(b%arms(k)%frame), d => b%arms(k), u => s%own(:, k))
+      do k = b%loops(m)%first_own, b%loops(m)%last_vector
+         associate (f => s%u(b%body_vectors(k)%orientation), d => b%body_vectors(k), u => s%own(:, k))
             u(1) = f%c*d%x - f%s*d%y
             u(2) = f%s*d%x + f%c*d%y
             x = x + u(1)
             y = y + u(2)
          end associate
       end do
-      s%part(m)%gap(1) = x
-      s%part(m)%gap(2) = y
-      do k = b%instances(m)%first_slide, b%instances(m)%last_slide
-         s%part(m)%gap = s%part(m)%gap + s%u(b%slides(k)%unknown)%value*slide_vector(b, k, s)
+      s%part(m)%closure_error(1) = x
+      s%part(m)%closure_error(2) = y
+      do k = b%loops(m)%first_slide, b%loops(m)%last_slide
+         s%part(m)%closure_error = s%part(m)%closure_error + s%u(b%slides(k)%unknown)%value*slide_vector(b, k, s)
       end do
-   end subroutine close_polygon
+   end subroutine close_vector_loop
 
    !> Rows of the x and y components of polygon instance `m`, which is `g`.
    pure subroutine component_rows(b, g, m, s, a, r)
       type(blocks_t), intent(in) :: b
-      type(instance_t), intent(in) :: g
+      type(block_loop_t), intent(in) :: g
       integer, intent(in) :: m
       type(state_t), intent(in) :: s
       real(wp), intent(inout) :: a(*), r(*)
       integer :: k
 
       if (g%row_x > 0) then
-         r(g%row_x) = s%part(m)%gap(1)
-         do k = g%first_own, g%last_arm
-            a(b%arms(k)%at(1)) = -s%own(2, k)
+         r(g%row_x) = s%part(m)%closure_error(1)
+         do k = g%first_own, g%last_vector
+            a(b%body_vectors(k)%at(1)) = -s%own(2, k)
          end do
       end if
       if (g%row_y > 0) then
-         r(g%row_y) = s%part(m)%gap(2)
-         do k = g%first_own, g%last_arm
-            a(b%arms(k)%at(2)) = s%own(1, k)
+         r(g%row_y) = s%part(m)%closure_error(2)
+         do k = g%first_own, g%last_vector
+            a(b%body_vectors(k)%at(2)) = s%own(1, k)
          end do
       end if
       if (g%last_slide < g%first_slide) return
@@ -123,27 +123,27 @@ contains
    !> Row of the projection of polygon instance `m`, which is `g`.
    pure subroutine projection_row(b, g, m, s, a, r)
       type(blocks_t), intent(in) :: b
-      type(instance_t), intent(in) :: g
+      type(block_loop_t), intent(in) :: g
       integer, intent(in) :: m
       type(state_t), intent(inout) :: s
       real(wp), intent(inout) :: a(*), r(*)
       integer :: k
       real(wp) :: f(2)
 
-      f = turned(s, g%frame, g%direction)
+      f = turned(s, g%orientation, g%direction)
       s%part(m)%f = f
-      r(g%row_x) = s%part(m)%gap(1)*f(1) + s%part(m)%gap(2)*f(2)
-      do k = g%first_own, g%last_arm
-         a(b%arms(k)%at(1)) = s%own(1, k)*f(2) - s%own(2, k)*f(1)
+      r(g%row_x) = s%part(m)%closure_error(1)*f(1) + s%part(m)%closure_error(2)*f(2)
+      do k = g%first_own, g%last_vector
+         a(b%body_vectors(k)%at(1)) = s%own(1, k)*f(2) - s%own(2, k)*f(1)
       end do
       if (g%last_slide >= g%first_slide) call slide_entries(b, g, 1, f, s, a)
-      if (g%frame_at > 0) a(g%frame_at) = a(g%frame_at) + across(s%part(m)%gap, f)
+      if (g%orientation_at > 0) a(g%orientation_at) = a(g%orientation_at) + across(s%part(m)%closure_error, f)
    end subroutine projection_row
 
    !> What the slides of instance `g` add to its row `row` (1: row_x, 2: row_y), which projects on `f`.
    pure subroutine slide_entries(b, g, row, f, s, a)
       type(blocks_t), intent(in) :: b
-      type(instance_t), intent(in) :: g
+      type(block_loop_t), intent(in) :: g
       integer, intent(in) :: row
       real(wp), intent(in) :: f(2)
       type(state_t), intent(in) :: s
@@ -153,9 +153,9 @@ contains
 
       do k = g%first_slide, g%last_slide
          e = slide_vector(b, k, s)
-         associate (at => b%slides(k)%at(row), frame_at => b%slides(k)%frame_at(row))
+         associate (at => b%slides(k)%at(row), orientation_at => b%slides(k)%orientation_at(row))
             if (at > 0) a(at) = a(at) + dot_product(e, f)
-            if (frame_at > 0) a(frame_at) = a(frame_at) - s%u(b%slides(k)%unknown)%value*across(e, f)
+            if (orientation_at > 0) a(orientation_at) = a(orientation_at) - s%u(b%slides(k)%unknown)%value*across(e, f)
          end associate
       end do
    end subroutine slide_entries

@@ -13,12 +13,12 @@ module block_solver
    use klu, only: klu_t
    use block_matrix, only: shape_t, solve_first, solve_again, pivot_range, inverse_norm
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, &
-      ended_diverged, ended_open
+      ended_diverged, ended_inconsistent
    use blocks, only: blocks_t
    use block_state, only: state_t, set_direction, turn_direction, known_parts
    use block_rows, only: assemble_block
-   use block_sides, only: rate_side
-   use block_gaps, only: note_gap, is_open, contradict
+   use right_hand_sides, only: rate_side
+   use closure_errors, only: note_closure_error, is_inconsistent, contradict
    use block_workspace, only: workspace_t, make_workspace
    implicit none
    private
@@ -36,14 +36,14 @@ module block_solver
    !> So is a doubt from here on, where 1 over the least pivot stands for |J^-1|: with more than two unknowns that is
    !> too small, by 4 with 9 of them, by 2000 with 49 (lattices); doubts are of importance from 0.1 on.
    !> What the drives' excursions add goes with its square, and with 0.1 over the fourth power of their number.
-   real(wp), parameter :: small_doubt = 1.0e-6_wp, small_growth = 0.1_wp
+   real(wp), parameter :: small_kantorovich_ratio = 1.0e-6_wp, small_growth = 0.1_wp
    !> Relative error of the velocities, by what rounding leaves open in the position, from which on they are not told.
    real(wp), parameter :: largest_error = 0.05_wp
    !> Angles beyond have few digits after the point.
    real(wp), parameter :: angle_limit = min(1.0e8_wp, 0.01_wp/epsilon(1.0_wp))
    integer, parameter :: iteration_limit = 60
    !> 1 over this squared is within the range of reals.
-   real(wp), parameter :: least_inverse = epsilon(1.0_wp)**2
+   real(wp), parameter :: min_inverse = epsilon(1.0_wp)**2
 
 contains
 
@@ -63,11 +63,11 @@ contains
          c%ended = ended_converged
          return
       end if
-      call seek(b, i, b%list(i)%shape, tolerance, w%a, w%r, w%start, w%work, w%pivots, &
+      call solve(b, i, b%list(i)%shape, tolerance, w%a, w%r, w%start, w%work, w%pivots, &
          w%sparse(b%list(i)%shape%pattern), s, c, correction)
       if (c%ended /= ended_converged .and. c%ended /= ended_stalled) return
-      if (b%list(i)%shape%rows > b%list(i)%shape%n .and. is_open(c)) then
-         c%ended = ended_open
+      if (b%list(i)%shape%rows > b%list(i)%shape%n .and. is_inconsistent(c)) then
+         c%ended = ended_inconsistent
       else
          call finish(b, i, b%list(i)%shape%n, w, s, c)
       end if
@@ -83,9 +83,9 @@ contains
       associate (u => s%u(b%unknown(b%list(i)%first)), row => b%rows(b%list(i)%first_row))
          associate (other => s%u(row%other))
             d = row%drive
-            u%value = other%value + row%sign_of*(row%constant + s%target(0, d))
-            u%rate = other%rate + row%sign_of*s%target(1, d)
-            u%rate2 = other%rate2 + row%sign_of*s%target(2, d)
+            u%value = other%value + row%sign_of*(row%constant + s%drive_value(0, d))
+            u%rate = other%rate + row%sign_of*s%drive_value(1, d)
+            u%acceleration = other%acceleration + row%sign_of*s%drive_value(2, d)
          end associate
       end associate
       call set_direction(b, b%unknown(b%list(i)%first), s)
@@ -93,7 +93,7 @@ contains
 
    !> Newton's method; where it ends with a position, `r`(:, 2) holds the velocities and `a` the factors. Where the
    !> Jacobian there has no inverse, c%singular says so.
-   subroutine seek(b, i, shape, tolerance, a, r, start, work, pivots, k, s, c, correction)
+   subroutine solve(b, i, shape, tolerance, a, r, start, work, pivots, k, s, c, correction)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(shape_t), intent(in) :: shape
@@ -120,7 +120,7 @@ contains
          c%iterations = iteration
          call assemble_block(b, i, s, a, r)
          c%residual = maxval(abs(r(:, 1)))
-         if (shape%rows > shape%n) call note_gap(b, i, r, c)
+         if (shape%rows > shape%n) call note_closure_error(b, i, r, c)
          if (c%residual <= closed_level*max(size_of, coarse)) then
             c%step = 0.0_wp
             c%ended = ended_converged
@@ -150,7 +150,7 @@ contains
       end do
       if (c%iterations > 1 .or. c%step > 0.0_wp) c%change = largest_change(b, i, shape%n, s, start)
       correction = max(correction, c%change)
-   end subroutine seek
+   end subroutine solve
 
    !> Rounding is all that is left to correct, and the position stays; among equations that contradict one another
    !> it is their gap.
@@ -243,7 +243,7 @@ contains
          call rate_side(b, i, 2, s, w%r)
          call solve_again(b%list(i)%shape, w%a, w%sparse(b%list(i)%shape%pattern), w%pivots, w%work, w%r)
          do k = 1, n
-            s%u(b%unknown(b%list(i)%first + k - 1))%rate2 = w%r(k)
+            s%u(b%unknown(b%list(i)%first + k - 1))%acceleration = w%r(k)
          end do
          if (rows > n) c%rates_open = contradict(w%r(rows + 1:2*rows), n, 0.0_wp, b%list(i)%coarse) &
             .or. contradict(w%r(:rows), n, norm2(w%r(rows + 1:rows + n))**2, b%list(i)%coarse)
@@ -266,28 +266,28 @@ contains
 
       k = b%list(i)%shape%pattern
       call pivot_range(b%list(i)%shape, w%a, w%sparse(k), w%pivots, least, largest, c%determinant)
-      c%least_pivot = least
+      c%min_pivot = least
       c%reciprocal_condition = 1.0_wp
       if (n == 0) return
       if (n > 1) c%reciprocal_condition = least/largest
-      if (n == 1) largest = b%list(i)%bend
+      if (n == 1) largest = b%list(i)%lipschitz
       ! All pivots may be small, where links are much shorter than the mechanism.
       suspicious = least < suspicious_pivot*max(largest, 1.0_wp)
       if (n > 2) then
-         c%inverse = 1.0_wp/max(least, least_inverse)
-         c%doubt = c%change*b%list(i)%bend*c%inverse
-         if (.not. suspicious .and. c%doubt <= small_doubt .and. &
-            s%excursion*b%list(i)%bend*c%inverse**2*real(n, wp)**4 <= small_growth) return
+         c%inverse = 1.0_wp/max(least, min_inverse)
+         c%kantorovich_ratio = c%change*b%list(i)%lipschitz*c%inverse
+         if (.not. suspicious .and. c%kantorovich_ratio <= small_kantorovich_ratio .and. &
+            s%excursion*b%list(i)%lipschitz*c%inverse**2*real(n, wp)**4 <= small_growth) return
       end if
       inverse = inverse_norm(b%list(i)%shape, w%a, w%sparse(k), w%work, w%iwork)
-      c%inverse = min(inverse, 1.0_wp/least_inverse)
-      c%doubt = c%change*b%list(i)%bend*inverse
+      c%inverse = min(inverse, 1.0_wp/min_inverse)
+      c%kantorovich_ratio = c%change*b%list(i)%lipschitz*inverse
       if (.not. suspicious) return
       c%reciprocal_condition = min(1.0_wp, 1.0_wp/(inverse*largest))
       size_of = b%list(i)%coarse
       do k = b%list(i)%first, b%list(i)%last
          size_of = max(size_of, abs(s%u(b%unknown(k))%value))
       end do
-      c%singular = inverse*inverse*b%list(i)%bend*rounding_level*size_of >= largest_error
+      c%singular = inverse*inverse*b%list(i)%lipschitz*rounding_level*size_of >= largest_error
    end subroutine judge
 end module block_solver

@@ -16,7 +16,7 @@ module block_state
    !> A polygon: its known part with derivatives (2, 0:2), and all of it.
    type :: part_t
       real(wp) :: known(2, 0:2) = 0.0_wp
-      real(wp) :: gap(2) = 0.0_wp
+      real(wp) :: closure_error(2) = 0.0_wp
       real(wp) :: f(2) = 0.0_wp                      !< the direction on which it is projected, if it is
    end type part_t
 
@@ -24,7 +24,7 @@ module block_state
       type(unknown_t), allocatable :: u(:)           !< (0:unknowns); 0 is the ground's frame
       type(part_t), allocatable :: part(:)           !< (instances)
       real(wp), allocatable :: own(:, :)             !< (2, arms) u of the block's own frames
-      real(wp), allocatable :: target(:, :)          !< (0:2, 0:drives) what the drives ask for
+      real(wp), allocatable :: drive_value(:, :)          !< (0:2, 0:drives) what the drives ask for
       real(wp) :: excursion = 0.0_wp                 !< how far they are off the straight way to that, at most
    end type state_t
 
@@ -36,8 +36,8 @@ contains
       integer, intent(in) :: drives
       type(state_t) :: s
 
-      allocate (s%u(0:b%unknowns), s%part(size(b%instances)))
-      allocate (s%own(2, size(b%arms)), s%target(0:2, 0:drives), source=0.0_wp)
+      allocate (s%u(0:b%unknowns), s%part(size(b%loops)))
+      allocate (s%own(2, size(b%body_vectors)), s%drive_value(0:2, 0:drives), source=0.0_wp)
    end function new_state
 
    !> Cosine and sine of unknown `u`, if it is an angle.
@@ -46,7 +46,7 @@ contains
       integer, intent(in) :: u
       type(state_t), intent(inout) :: s
 
-      if (u > b%frames) return
+      if (u > b%orientations) return
       s%u(u)%c = cos(s%u(u)%value)
       s%u(u)%s = sin(s%u(u)%value)
    end subroutine set_direction
@@ -73,7 +73,7 @@ contains
       type(state_t), intent(inout) :: s
       real(wp) :: c
 
-      if (u > b%frames) return
+      if (u > b%orientations) return
       c = s%u(u)%c
       s%u(u)%c = c - d*s%u(u)%s
       s%u(u)%s = s%u(u)%s + d*c
@@ -87,13 +87,13 @@ contains
       integer :: m, k
       real(wp) :: x, y, square
 
-      do m = b%list(i)%first_instance, b%list(i)%last_instance
+      do m = b%list(i)%first_loop, b%list(i)%last_loop
          associate (g => s%part(m)%known)
-            g(:, 0) = b%instances(m)%ground
+            g(:, 0) = b%loops(m)%ground
             g(:, 1) = 0.0_wp
             g(:, 2) = 0.0_wp
-            do k = b%instances(m)%first_arm, b%instances(m)%first_own - 1
-               associate (f => s%u(b%arms(k)%frame), d => b%arms(k))
+            do k = b%loops(m)%first_vector, b%loops(m)%first_own - 1
+               associate (f => s%u(b%body_vectors(k)%orientation), d => b%body_vectors(k))
                   x = f%c*d%x - f%s*d%y
                   y = f%s*d%x + f%c*d%y
                   square = f%rate*f%rate
@@ -101,8 +101,8 @@ contains
                   g(2, 0) = g(2, 0) + y
                   g(1, 1) = g(1, 1) - f%rate*y
                   g(2, 1) = g(2, 1) + f%rate*x
-                  g(1, 2) = g(1, 2) - f%rate2*y - square*x
-                  g(2, 2) = g(2, 2) + f%rate2*x - square*y
+                  g(1, 2) = g(1, 2) - f%acceleration*y - square*x
+                  g(2, 2) = g(2, 2) + f%acceleration*x - square*y
                end associate
             end do
          end associate
@@ -116,17 +116,17 @@ contains
       type(state_t), intent(in) :: s
       real(wp) :: e(2)
 
-      e = turned(s, b%slides(k)%frame, b%slides(k)%arm)
+      e = turned(s, b%slides(k)%orientation, b%slides(k)%body_vector)
    end function slide_vector
 
-   !> `v` turned by the angle of `frame`.
-   pure function turned(s, frame, v) result(w)
+   !> `v` turned by the angle of `orientation`.
+   pure function turned(s, orientation, v) result(w)
       type(state_t), intent(in) :: s
-      integer, intent(in) :: frame
+      integer, intent(in) :: orientation
       real(wp), intent(in) :: v(2)
       real(wp) :: w(2)
 
-      associate (f => s%u(frame))
+      associate (f => s%u(orientation))
          w = [f%c*v(1) - f%s*v(2), f%s*v(1) + f%c*v(2)]
       end associate
    end function turned

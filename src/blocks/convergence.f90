@@ -4,15 +4,15 @@ module convergence
    implicit none
    private
    public :: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
-      ended_open, ended_unsought, ended_elsewhere
-   public :: ending, is_solved, take_gap, gather
+      ended_inconsistent, ended_unsought, ended_elsewhere
+   public :: ending, is_solved, take_closure_error, gather
 
    integer, parameter :: ended_converged = 1   !< residual and step within the tolerance
    integer, parameter :: ended_stalled = 2     !< residual at rounding level, steps shrink no more: solved
    integer, parameter :: ended_singular = 3    !< the matrix has no inverse
    integer, parameter :: ended_limit = 4       !< too many iterations
    integer, parameter :: ended_diverged = 5    !< the residual left all bounds
-   integer, parameter :: ended_open = 6        !< too many equations, and they contradict one another
+   integer, parameter :: ended_inconsistent = 6        !< too many equations, and they contradict one another
    integer, parameter :: ended_unsought = 7    !< known before to be out of reach
    integer, parameter :: ended_elsewhere = 8   !< at another assembly than the estimated one
 
@@ -24,18 +24,18 @@ module convergence
       real(wp) :: rate = 0.0_wp                !< mean ratio of successive residuals
       real(wp) :: reciprocal_condition = 0.0_wp !< of the Jacobian at the position found
       integer :: determinant = 0               !< its sign
-      real(wp) :: least_pivot = 0.0_wp         !< of its factors
+      real(wp) :: min_pivot = 0.0_wp         !< of its factors
       real(wp) :: change = 0.0_wp              !< the largest of a value, from where the search began
-      real(wp) :: doubt = 0.0_wp               !< that change over the distance within which the root is the only one
+      real(wp) :: kantorovich_ratio = 0.0_wp !< that change over the distance within which the root is the only one
       real(wp) :: inverse = 0.0_wp             !< |J^-1| there
       real(wp) :: growth = 0.0_wp              !< of the doubt with what the drives are off their straight way
       logical :: singular = .false.            !< position found where the Jacobian has no inverse
-      real(wp) :: gap = 0.0_wp                 !< of the equation that is open the most, in the unit of length or rad
-      logical :: gap_is_angle = .false.
-      real(wp) :: gap_unit = 1.0_wp            !< that unit of length, in the one of the mechanism
-      real(wp) :: gap_level = 1.0_wp           !< how many times as coarse as usual its rows are rounded, 1 at least
+      real(wp) :: closure_error = 0.0_wp !< of the equation that is open the most, in the unit of length or rad
+      logical :: closure_error_is_angle = .false.
+      real(wp) :: closure_error_unit = 1.0_wp            !< that unit of length, in the one of the mechanism
+      real(wp) :: closure_error_level = 1.0_wp !< how many times as coarse as usual its rows are rounded, 1 at least
       logical :: rates_open = .false.          !< they agree in position, but not in its derivatives
-      integer :: open_pair = 0, open_drive = 0 !< whose equation that is; 0: none
+      integer :: inconsistent_pair = 0, inconsistent_drive = 0 !< whose equation that is; 0: none
    end type convergence_t
 
 contains
@@ -48,17 +48,17 @@ contains
    end function is_solved
 
    !> Makes the gap of `from` that of `c`, with what it belongs to.
-   pure subroutine take_gap(from, c)
+   pure subroutine take_closure_error(from, c)
       type(convergence_t), intent(in) :: from
       type(convergence_t), intent(inout) :: c
 
-      c%gap = from%gap
-      c%gap_is_angle = from%gap_is_angle
-      c%gap_unit = from%gap_unit
-      c%gap_level = from%gap_level
-      c%open_pair = from%open_pair
-      c%open_drive = from%open_drive
-   end subroutine take_gap
+      c%closure_error = from%closure_error
+      c%closure_error_is_angle = from%closure_error_is_angle
+      c%closure_error_unit = from%closure_error_unit
+      c%closure_error_level = from%closure_error_level
+      c%inconsistent_pair = from%inconsistent_pair
+      c%inconsistent_drive = from%inconsistent_drive
+   end subroutine take_closure_error
 
    !> The record of the whole: the largest of each count, the worst of each ending.
    pure subroutine gather(one, c)
@@ -71,7 +71,7 @@ contains
       c%step = max(c%step, one%step)
       c%reciprocal_condition = min(c%reciprocal_condition, one%reciprocal_condition)
       c%determinant = c%determinant*one%determinant
-      if (one%gap > c%gap) call take_gap(one, c)
+      if (one%closure_error > c%closure_error) call take_closure_error(one, c)
       c%singular = c%singular .or. one%singular
       c%rates_open = c%rates_open .or. one%rates_open
    end subroutine gather

@@ -9,14 +9,14 @@ module drive_rank
    use blocks, only: blocks_t
    use block_state, only: state_t, known_parts
    use block_rows, only: assemble_dense
-   use block_sides, only: rate_side
+   use right_hand_sides, only: rate_side
    use block_rank, only: zero_level
    implicit none
    private
    public :: judge_drives
 
    !> The decomposition takes the cube of this many operations.
-   integer, parameter :: most_unknowns = 600
+   integer, parameter :: max_unknowns = 600
 
 contains
 
@@ -33,7 +33,7 @@ contains
       idle = .false.
       repeated = .false.
       pivot = 0
-      if (sum(b%list(list)%last - b%list(list)%first + 1) > most_unknowns) return
+      if (sum(b%list(list)%last - b%list(list)%first + 1) > max_unknowns) return
       y = null_drives(b, list, s, size(idle))
       do d = size(idle), 1, -1
          k = count(pivot > 0)
@@ -83,7 +83,7 @@ contains
 
       unit = s
       unit%u%rate = 0.0_wp
-      unit%target = 0.0_wp
+      unit%drive_value = 0.0_wp
       n = 0
       column = 0
       allocate (drive_of(0))

@@ -3,19 +3,19 @@
 !> worse: what Newton's method alone has found stands where nothing nearer is found.
 module first_position
    use kinds, only: wp
-   use convergence, only: convergence_t, is_solved, take_gap
+   use convergence, only: convergence_t, is_solved, take_closure_error
    use whole_turns, only: without_turns
-   use blocks, only: blocks_t, instance_angles
+   use blocks, only: blocks_t, loop_angles
    use block_state, only: state_t, set_values
    use block_solver, only: workspace_t, solve_block
-   use block_assembly, only: approach, approach_held
+   use levenberg_marquardt, only: levenberg_marquardt_solve, levenberg_marquardt_held
    use position_path, only: follow_path, cross_fold
    implicit none
    private
    public :: solve_first_block, turn_starts, has_second_position, farthest
 
    !> A change of more than this, in radians or characteristic lengths, is a leap.
-   real(wp), parameter :: leap = 0.5_wp
+   real(wp), parameter :: branch_jump = 0.5_wp
    !> A residual of this size is near enough for Newton's method; below the other there is nothing to correct.
    real(wp), parameter :: near = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
    real(wp), parameter :: closed = max(1.0e-15_wp, 4.0_wp*epsilon(1.0_wp))
@@ -29,9 +29,9 @@ module first_position
    real(wp), parameter :: plausible = 3.0_wp, reach = 0.1_wp, fine = 1.0e-4_wp
    !> Positions that differ by less are the same one.
    real(wp), parameter :: alike = max(1.0e-8_wp, sqrt(epsilon(1.0_wp)))
-   integer, parameter :: most_rounds = 4
+   integer, parameter :: max_rounds = 4
    !> Up to so many unknowns other starts are tried.
-   integer, parameter :: most_unknowns = 4
+   integer, parameter :: max_unknowns = 4
 
 contains
 
@@ -59,11 +59,11 @@ contains
       call follow_path(b, i, w, s)
       call solve_from_here(b, i, tolerance, start, w, s, found)
       call set_values(b, i, start, s)
-      call approach_held(b, i, near, s)
+      call levenberg_marquardt_held(b, i, near, s)
       call solve_from_here(b, i, tolerance, start, w, s, found)
       call look_aside(b, i, tolerance, start, w, s, found)
       call set_values(b, i, start, s)
-      if (is_far(start, found)) then
+      if (is_branch_jump(start, found)) then
          call come_near(b, i, tolerance, w, s, c)
          call note_position(b, i, start, s, c, found)
       end if
@@ -78,7 +78,8 @@ contains
    pure logical function is_certain(c)
       type(convergence_t), intent(in) :: c
 
-      is_certain = is_solved(c) .and. c%change <= leap .and. c%doubt*(c%change + farthest(c%change)) <= 2.0_wp*c%change
+      is_certain = is_solved(c) .and. c%change <= branch_jump .and. c%kantorovich_ratio*(c%change &
+         + farthest(c%change)) <= 2.0_wp*c%change
    end function is_certain
 
    !> How far off a position may be that is meant, where the nearest is so far off.
@@ -90,12 +91,12 @@ contains
    end function farthest
 
    !> Nothing was `found` within reach of `start`.
-   pure logical function is_far(start, found)
+   pure logical function is_branch_jump(start, found)
       real(wp), intent(in) :: start(:), found(:, :)
 
-      is_far = .true.
-      if (size(found, 2) > 0) is_far = maxval(abs(found(:, 1) - start)) > leap
-   end function is_far
+      is_branch_jump = .true.
+      if (size(found, 2) > 0) is_branch_jump = maxval(abs(found(:, 1) - start)) > branch_jump
+   end function is_branch_jump
 
    !> Solves block `i` from the values of `s`, and notes what was found.
    subroutine solve_from_here(b, i, tolerance, start, w, s, found)
@@ -125,7 +126,7 @@ contains
       logical :: is_there
       integer :: round, number
 
-      do round = 1, most_rounds
+      do round = 1, max_rounds
          if (size(found, 2) == 0) return
          from = found(:, 1)
          do number = 1, 2
@@ -162,23 +163,24 @@ contains
    end subroutine note_position
 
    !> Takes whole turns off the rough values of angles that the blocks `list` seek, where a drive with one of the values
-   !> `target` (0:drives) asks for them: they close nothing, and would be a way to go.
-   pure subroutine turn_starts(b, list, target, rough)
+   !> `drive_value` (0:drives) asks for them: they close nothing, and would be a way to go.
+   pure subroutine turn_starts(b, list, drive_value, estimated)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: list(:)
-      real(wp), intent(in) :: target(0:)
-      real(wp), intent(inout) :: rough(0:)
+      real(wp), intent(in) :: drive_value(0:)
+      real(wp), intent(inout) :: estimated(0:)
       real(wp) :: off
       integer :: k, m
 
       do k = 1, size(list)
          associate (block => b%list(list(k)))
             if (block%direct) cycle
-            do m = block%first_instance, block%last_instance
-               if (b%instances(m)%kind /= instance_angles .or. b%instances(m)%frame > b%frames) cycle
-               associate (g => b%instances(m), row => b%rows(block%first_row + b%instances(m)%row_x - 1))
-                  off = rough(g%frame) - rough(g%less) - row%constant - target(row%drive)
-                  if (g%frame_column > 0) rough(g%frame) = rough(g%frame) - (off - without_turns(off))
+            do m = block%first_loop, block%last_loop
+               if (b%loops(m)%kind /= loop_angles .or. b%loops(m)%orientation > b%orientations) cycle
+               associate (g => b%loops(m), row => b%rows(block%first_row + b%loops(m)%row_x - 1))
+                  off = estimated(g%orientation) - estimated(g%less) - row%constant - drive_value(row%drive)
+                  if (g%orientation_column > 0) estimated(g%orientation) = estimated(g%orientation) - (off &
+                     - without_turns(off))
                end associate
             end do
          end associate
@@ -200,18 +202,18 @@ contains
 
       change = 0.0_wp
       nearest = c
-      call approach(b, i, near, s, nearest, reached)
+      call levenberg_marquardt_solve(b, i, near, s, nearest, reached)
       brought = values_of(b, i, s)
       call solve_block(b, i, tolerance, w, s, c, change)
       if (is_solved(c)) return
       if (reached) then
          ! Close to a limit, and perhaps beyond it.
          call set_values(b, i, brought, s)
-         call approach(b, i, closed, s, nearest, reached)
+         call levenberg_marquardt_solve(b, i, closed, s, nearest, reached)
          call solve_block(b, i, tolerance, w, s, c, change)
          if (is_solved(c) .or. reached) return
       end if
-      call take_gap(nearest, c)
+      call take_closure_error(nearest, c)
    end subroutine come_near
 
    !> Takes the whole turns off the angles of `x` by which they have passed `start`, where no equation counts them.
@@ -222,8 +224,8 @@ contains
       real(wp), intent(inout) :: x(:)
 
       associate (block => b%list(i))
-         if (any(b%instances(block%first_instance:block%last_instance)%kind == instance_angles)) return
-         where (b%unknown(block%first:block%last) <= b%frames) x = start + without_turns(x - start)
+         if (any(b%loops(block%first_loop:block%last_loop)%kind == loop_angles)) return
+         where (b%unknown(block%first:block%last) <= b%orientations) x = start + without_turns(x - start)
       end associate
    end subroutine turn_back
 
@@ -238,7 +240,7 @@ contains
       real(wp), allocatable, intent(inout) :: found(:, :)
       integer :: k
 
-      if (size(start) > most_unknowns) return
+      if (size(start) > max_unknowns) return
       do k = 1, 2*size(start)
          call set_values(b, i, beside(start, k), s)
          call solve_from_here(b, i, tolerance, start, w, s, found)
@@ -277,7 +279,7 @@ contains
       integer :: k
 
       has = .false.
-      if (size(start) == 0 .or. size(start) > most_unknowns .or. b%list(i)%direct) return
+      if (size(start) == 0 .or. size(start) > max_unknowns .or. b%list(i)%direct) return
       found = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
       if (maxval(abs(found - start)) < 0.1_wp) return
       other = s

@@ -5,12 +5,12 @@ module link_knowledge
    use motion, only: motion_t, mark_none, mark_not_converged, mark_singular
    use block_needs, only: largest_known
    use block_solver, only: solve_block
-   use block_engine, only: block_engine_t, set_targets
+   use block_engine, only: block_engine_t, set_drive_values
    use convergence, only: convergence_t
    use link_motion, only: chain_t, move_links
    implicit none
    private
-   public :: know_links, tell_driven
+   public :: know_links, get_driven_motion
 
    !> What is missing, the worst last: nothing, what is derived by time, the position.
    integer, parameter :: nothing = 0, singular_rates = 1, all_of_it = 2
@@ -33,7 +33,7 @@ contains
 
    !> Where no position was found at `t`, that of the links which drives alone move from the ground on, whatever the
    !> others do: at `t` they are where their drives have them. `found` has its mark already.
-   subroutine tell_driven(e, t, found)
+   subroutine get_driven_motion(e, t, found)
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       type(motion_t), intent(inout) :: found
@@ -44,7 +44,7 @@ contains
       logical :: finite
 
       if (.not. e%blocks%solvable) return
-      call set_targets(e, t)
+      call set_drive_values(e, t)
       missing = nothing
       correction = 0.0_wp
       do k = 1, size(e%needed)
@@ -60,7 +60,7 @@ contains
       part = e%chain
       part%hung = pack(e%chain%hung, found%link_known(e%chain%hung%link) == 2)
       call move_links(part, e%state, e%length, found, finite)
-   end subroutine tell_driven
+   end subroutine get_driven_motion
 
    !> Of the unknowns of block `i` so much is missing as its `own` equations leave out, or what it builds on.
    subroutine note_block(e, i, own, missing)
@@ -78,17 +78,17 @@ contains
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: missing(0:)
       type(motion_t), intent(inout) :: found
-      integer :: of_link(0:size(e%frame_of)), k
+      integer :: of_link(0:size(e%orientation_of)), k
 
       of_link = nothing
       do k = 1, size(e%chain%hung)
          associate (h => e%chain%hung(k))
-            of_link(h%link) = max(missing(h%frame), missing(h%slide), of_link(h%above))
+            of_link(h%link) = max(missing(h%orientation), missing(h%slide), of_link(h%parent))
             if (h%root > 0) of_link(h%link) = max(of_link(h%link), missing(h%root), missing(h%root + 1))
          end associate
       end do
-      allocate (found%link_known(size(e%frame_of)), found%link_mark(size(e%frame_of)))
-      do k = 1, size(e%frame_of)
+      allocate (found%link_known(size(e%orientation_of)), found%link_mark(size(e%orientation_of)))
+      do k = 1, size(e%orientation_of)
          select case (of_link(k))
          case (nothing)
             found%link_known(k) = 2

@@ -16,12 +16,12 @@ module link_motion
 
    !> A moving link: 0 stands for the ground, for no slide and for no root.
    type :: hung_t
-      integer :: link = 0, above = 0, frame = 0, frame_above = 0
+      integer :: link = 0, parent = 0, orientation = 0, parent_orientation = 0
       integer :: slide = 0                              !< its unknown
       integer :: root = 0                               !< the unknown that is its x; y is the next
       real(wp) :: root_unit(2) = 1.0_wp
-      logical :: has_arm = .false.
-      real(wp) :: turn = 0.0_wp
+      logical :: has_body_vector = .false.
+      real(wp) :: angle_offset = 0.0_wp
       type(place_t) :: place
    end type hung_t
 
@@ -51,7 +51,7 @@ contains
 
       needed = wanted
       do i = size(t%order), 1, -1
-         if (needed(t%order(i)) .and. t%above(t%order(i)) > 0) needed(t%above(t%order(i))) = .true.
+         if (needed(t%order(i)) .and. t%parent(t%order(i)) > 0) needed(t%parent(t%order(i))) = .true.
       end do
       links = pack(t%order, needed(t%order) .and. .not. m%links(t%order)%ground)
       allocate (c%hung(size(links)))
@@ -59,7 +59,7 @@ contains
          c%hung(i) = hung_on(m, t, links(i), first_slide)
          if (.not. present(unit)) cycle
          associate (h => c%hung(i))
-            if (h%slide > 0) h%place%slide_arm = unit(h%slide)*h%place%slide_arm
+            if (h%slide > 0) h%place%slide_body_vector = unit(h%slide)*h%place%slide_body_vector
             if (h%root > 0) h%root_unit = unit(h%root:h%root + 1)
          end associate
       end do
@@ -78,17 +78,17 @@ contains
       type(hung_t) :: h
 
       h%link = link
-      h%frame = t%frame(link)
-      h%turn = t%turn(link)
-      if (t%above(link) == 0) then
+      h%orientation = t%orientation(link)
+      h%angle_offset = t%angle_offset(link)
+      if (t%parent(link) == 0) then
          h%root = first_slide + t%slides + 2*t%root(link) - 1
          return
       end if
       h%place = place_on_tree(m, t, 1.0_wp, link)
-      h%has_arm = any(abs(h%place%arm) > 0.0_wp)
-      h%frame_above = t%frame(t%above(link))
+      h%has_body_vector = any(abs(h%place%body_vector) > 0.0_wp)
+      h%parent_orientation = t%orientation(t%parent(link))
       if (h%place%slide > 0) h%slide = first_slide + h%place%slide
-      if (.not. m%links(t%above(link))%ground) h%above = t%above(link)
+      if (.not. m%links(t%parent(link))%ground) h%parent = t%parent(link)
    end function hung_on
 
    !> Moves the links of the chain; `length`: the unit of the slides of `s` in the deck's unit. `finite`: no
@@ -121,22 +121,22 @@ contains
 
       check = 0.0_wp
       do i = 1, n
-         associate (h => hung(i), f => u(hung(i)%frame))
+         associate (h => hung(i), f => u(hung(i)%orientation))
             k = h%link
-            call reach_out(h, u(h%frame_above), p(1, k), v(1, k), a(1, k))
-            if (h%has_arm) call draw_back(h, f, p(1, k), v(1, k), a(1, k))
-            if (h%slide > 0) call add_slide(h, u(h%frame_above), u(h%slide), length, p(1, k), v(1, k), a(1, k))
+            call reach_out(h, u(h%parent_orientation), p(1, k), v(1, k), a(1, k))
+            if (h%has_body_vector) call draw_back(h, f, p(1, k), v(1, k), a(1, k))
+            if (h%slide > 0) call add_slide(h, u(h%parent_orientation), u(h%slide), length, p(1, k), v(1, k), a(1, k))
             if (h%root > 0) call add_root(u(h%root), length*h%root_unit, p(1, k), v(1, k), a(1, k))
-            if (h%above > 0) then
-               p(:2, k) = p(:2, k) + p(:2, h%above)
-               v(:2, k) = v(:2, k) + v(:2, h%above)
-               a(:2, k) = a(:2, k) + a(:2, h%above)
+            if (h%parent > 0) then
+               p(:2, k) = p(:2, k) + p(:2, h%parent)
+               v(:2, k) = v(:2, k) + v(:2, h%parent)
+               a(:2, k) = a(:2, k) + a(:2, h%parent)
             end if
-            p(3, k) = f%value + h%turn
+            p(3, k) = f%value + h%angle_offset
             v(3, k) = f%rate
-            a(3, k) = f%rate2
+            a(3, k) = f%acceleration
             ! Zero, unless something in the sum is infinite or no number.
-            check = check + 0.0_wp*((p(1, k) + p(2, k)) + (v(1, k) + v(2, k)) + ((a(1, k) + a(2, k)) + f%rate2))
+            check = check + 0.0_wp*((p(1, k) + p(2, k)) + (v(1, k) + v(2, k)) + ((a(1, k) + a(2, k)) + f%acceleration))
          end associate
       end do
       finite = check <= 0.0_wp
@@ -149,7 +149,7 @@ contains
       real(wp), intent(inout) :: p(3), v(3), a(3)
       real(wp) :: x, y, square
 
-      if (h%frame_above == 0) then
+      if (h%parent_orientation == 0) then
          p(1) = h%place%reach(1)
          p(2) = h%place%reach(2)
          v(1) = 0.0_wp
@@ -166,8 +166,8 @@ contains
          p(2) = y
          v(1) = -f%rate*y
          v(2) = f%rate*x
-         a(1) = -f%rate2*y - square*x
-         a(2) = f%rate2*x - square*y
+         a(1) = -f%acceleration*y - square*x
+         a(2) = f%acceleration*x - square*y
       end associate
    end subroutine reach_out
 
@@ -178,7 +178,7 @@ contains
       real(wp), intent(inout) :: p(3), v(3), a(3)
       real(wp) :: x, y, square
 
-      associate (d => h%place%arm)
+      associate (d => h%place%body_vector)
          x = f%c*d(1) - f%s*d(2)
          y = f%s*d(1) + f%c*d(2)
          square = f%rate*f%rate
@@ -186,8 +186,8 @@ contains
          p(2) = p(2) - y
          v(1) = v(1) + f%rate*y
          v(2) = v(2) - f%rate*x
-         a(1) = a(1) + f%rate2*y + square*x
-         a(2) = a(2) - f%rate2*x + square*y
+         a(1) = a(1) + f%acceleration*y + square*x
+         a(2) = a(2) - f%acceleration*x + square*y
       end associate
    end subroutine draw_back
 
@@ -197,14 +197,15 @@ contains
       type(unknown_t), intent(in) :: f, u
       real(wp), intent(in) :: length
       real(wp), intent(inout) :: p(3), v(3), a(3)
-      real(wp) :: e(2), turn(2)
+      real(wp) :: e(2), angle_offset(2)
 
-      associate (d => h%place%slide_arm)
+      associate (d => h%place%slide_body_vector)
          e = length*[f%c*d(1) - f%s*d(2), f%s*d(1) + f%c*d(2)]
-         turn = [-e(2), e(1)]
+         angle_offset = [-e(2), e(1)]
          p(:2) = p(:2) + u%value*e
-         v(:2) = v(:2) + u%rate*e + u%value*f%rate*turn
-         a(:2) = a(:2) + u%rate2*e + 2.0_wp*u%rate*f%rate*turn + u%value*(f%rate2*turn - f%rate**2*e)
+         v(:2) = v(:2) + u%rate*e + u%value*f%rate*angle_offset
+         a(:2) = a(:2) + u%acceleration*e + 2.0_wp*u%rate*f%rate*angle_offset + u%value*(f%acceleration*angle_offset &
+            - f%rate**2*e)
       end associate
    end subroutine add_slide
 
@@ -216,6 +217,6 @@ contains
 
       p(:2) = length*u%value
       v(:2) = length*u%rate
-      a(:2) = length*u%rate2
+      a(:2) = length*u%acceleration
    end subroutine add_root
 end module link_motion

@@ -33,7 +33,7 @@ module predictor
       integer :: place(0:2) = [0, 1, 2]
       real(wp) :: t(0:2) = 0.0_wp
       real(wp), allocatable :: value(:)                 !< (0:unknowns) of the latest
-      real(wp), allocatable :: rate(:, :), rate2(:, :)  !< (0:unknowns, 0:2)
+      real(wp), allocatable :: rate(:, :), acceleration(:, :)  !< (0:unknowns, 0:2)
    end type history_t
 
 contains
@@ -44,7 +44,7 @@ contains
       type(history_t) :: h
 
       h%sought = sought
-      allocate (h%value(0:n), h%rate(0:n, 0:2), h%rate2(0:n, 0:2), source=0.0_wp)
+      allocate (h%value(0:n), h%rate(0:n, 0:2), h%acceleration(0:n, 0:2), source=0.0_wp)
    end function new_history
 
    !> Makes the motion `u` (0:unknowns) at `t` the latest.
@@ -61,7 +61,7 @@ contains
          i = h%sought(k)
          h%value(i) = u(i)%value
          h%rate(i, latest) = u(i)%rate
-         h%rate2(i, latest) = u(i)%rate2
+         h%acceleration(i, latest) = u(i)%acceleration
       end do
       h%filled = min(h%filled + 1, 3)
    end subroutine remember
@@ -78,7 +78,7 @@ contains
       logical :: even
 
       change = 0.0_wp
-      associate (p => h%place(0), q => h%place(1), r => h%place(2), v => h%rate, a => h%rate2)
+      associate (p => h%place(0), q => h%place(1), r => h%place(2), v => h%rate, a => h%acceleration)
          step = t - h%t(p)
          even = is_even(h, step)
          if (h%order /= own_predictor) w = order_weights(h%order, step, merge(h%t(p) - h%t(q), 0.0_wp, h%filled > 1))

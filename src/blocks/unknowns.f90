@@ -6,7 +6,7 @@ module unknowns
    public :: unknown_t
 
    type :: unknown_t
-      real(wp) :: value = 0.0_wp, rate = 0.0_wp, rate2 = 0.0_wp
+      real(wp) :: value = 0.0_wp, rate = 0.0_wp, acceleration = 0.0_wp
       real(wp) :: c = 1.0_wp, s = 0.0_wp   !< of an angle: cosine and sine of the value
    end type unknown_t
 end module unknowns

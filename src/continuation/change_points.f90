@@ -6,13 +6,13 @@
 !> so that the other branch is at a = -2 s/q, and there the determinant has the sign that it had before.
 module change_points
    use kinds, only: wp
-   use remarks, only: remark_t, new_remark, remark_change, remark_dead_end
+   use diagnostics, only: diagnostic_t, new_diagnostic, diagnostic_change, diagnostic_dead_end
    use convergence, only: convergence_t, is_solved
    use block_state, only: set_values
-   use block_rank, only: least_direction, residual_of
-   use block_engine, only: block_engine_t, seek_again
-   use block_remarks, only: links_of
-   use choices, only: choices_t, are_there, decide
+   use block_rank, only: min_direction, residual_of
+   use block_engine, only: block_engine_t, solve_again
+   use block_diagnostics, only: links_of
+   use branch_requests, only: branch_requests_t, are_there, decide
    implicit none
    private
    public :: crosses, pass
@@ -21,12 +21,12 @@ module change_points
    !> was right to so small a part of the step tells a change point. Circuits that pass each other at the distance
    !> d are told from one that crosses another where d^2 is above the product of the two, 1E-14.
    real(wp), parameter :: short_step = max(1.0e-4_wp, 0.75_wp*sqrt(sqrt(epsilon(1.0_wp))))
-   real(wp), parameter :: right_part = max(1.0e-6_wp, 0.7_wp*epsilon(1.0_wp)**0.375_wp), most_wrong = 1.0e-2_wp
+   real(wp), parameter :: right_part = max(1.0e-6_wp, 0.7_wp*epsilon(1.0_wp)**0.375_wp), max_wrong = 1.0e-2_wp
    real(wp), parameter :: rounding = 500.0_wp*epsilon(1.0_wp)
    !> The step of the second difference, and the largest distance at which the other branch is looked for.
    real(wp), parameter :: trial = max(1.0e-4_wp, sqrt(sqrt(epsilon(1.0_wp)))), furthest = 0.05_wp
    !> Equations that are too many are satisfied there, not only to the second order in the distance.
-   real(wp), parameter :: small_part = 0.01_wp
+   real(wp), parameter :: small_substep = 0.01_wp
 
 contains
 
@@ -41,8 +41,8 @@ contains
       crosses = e%change <= short_step
       do i = 1, size(e%crossed)
          if (.not. (e%crossed(i) .and. crosses)) cycle
-         allowed = right_part + rounding*e%blocks%list(i)%bend/e%pivot_of(i)**2
-         crosses = correction <= min(allowed, most_wrong)*e%change
+         allowed = right_part + rounding*e%blocks%list(i)%lipschitz/e%pivot_of(i)**2
+         crosses = correction <= min(allowed, max_wrong)*e%change
       end do
    end function crosses
 
@@ -51,11 +51,11 @@ contains
    subroutine pass(e, t, decisions, c, list, passed)
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
-      type(choices_t), intent(inout) :: decisions
+      type(branch_requests_t), intent(inout) :: decisions
       type(convergence_t), intent(inout) :: c
-      type(remark_t), allocatable, intent(out) :: list(:)
+      type(diagnostic_t), allocatable, intent(out) :: list(:)
       logical, intent(out) :: passed
-      type(remark_t) :: r
+      type(diagnostic_t) :: r
       logical :: other, crossed(size(e%crossed))
       integer :: k
 
@@ -71,7 +71,7 @@ contains
                if (other) call take_other(e, i, c, passed)
                r%other = other
             end if
-            if (.not. passed) r%kind = remark_dead_end
+            if (.not. passed) r%kind = diagnostic_dead_end
          end associate
          list = [list, r]
          if (.not. passed) return
@@ -79,12 +79,12 @@ contains
    end subroutine pass
 
    !> Where block `i` has passed a change point on the way to `t`: the least pivot goes through zero in proportion.
-   type(remark_t) function place_of(e, i, t) result(r)
+   type(diagnostic_t) function place_of(e, i, t) result(r)
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: i
       real(wp), intent(in) :: t
 
-      r = new_remark(remark_change, links_of(e, i))
+      r = new_diagnostic(diagnostic_change, links_of(e, i))
       associate (before => e%history%t(e%history%place(0)), a => e%pivot_of(i), b => e%pivot_now(i))
          r%t = before + (t - before)*(a/(a + b))
       end associate
@@ -97,22 +97,22 @@ contains
       type(convergence_t), intent(inout) :: c
       logical, intent(out) :: found
       real(wp) :: direction(e%blocks%list(i)%shape%n), left(e%blocks%list(i)%shape%rows), x(e%blocks%list(i)%shape%n)
-      real(wp) :: least, bend, away, correction
+      real(wp) :: least, lipschitz, away, correction
       logical :: same, crossed(size(e%crossed))
 
       crossed = e%crossed
       x = e%state%u(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))%value
-      call least_direction(e%blocks, i, e%state, least, left, direction)
-      bend = second_difference()
-      found = abs(bend)*furthest > 2.0_wp*least
+      call min_direction(e%blocks, i, e%state, least, left, direction)
+      lipschitz = second_difference()
+      found = abs(lipschitz)*furthest > 2.0_wp*least
       if (.not. found) return
-      away = -2.0_wp*least/bend
+      away = -2.0_wp*least/lipschitz
       call set_values(e%blocks, i, x + away*direction, e%state)
-      call seek_again(e, c, correction, same)
+      call solve_again(e, c, correction, same)
       crossed(i) = .false.
       same = .not. any(e%crossed .and. .not. crossed)
       found = is_solved(c) .and. same .and. .not. c%singular .and. correction <= 0.5_wp*abs(away) &
-         .and. c%gap <= small_part*abs(bend)*away**2
+         .and. c%closure_error <= small_substep*abs(lipschitz)*away**2
       e%history%filled = 0
 
    contains

@@ -5,16 +5,17 @@ module engine
    use mechanism, only: mechanism_t, method_newton, method_dense
    use motion, only: motion_t, mark_none
    use convergence, only: convergence_t
-   use block_engine, only: block_engine_t, make_block_engine, seek_blocks, keep_blocks, tell_blocks
+   use block_engine, only: block_engine_t, make_block_engine, solve_blocks, accept_blocks, get_blocks_motion
    use block_checkpoint, only: block_checkpoint_t, checkpoint_blocks, restore_blocks
-   use assembly_choice, only: seek_first
-   use dense_engine, only: dense_t, new_dense, seek_dense, keep_dense, tell_dense, &
+   use assembly_choice, only: solve_first
+   use dense_engine, only: dense_t, new_dense, solve_dense, accept_dense, get_dense_motion, &
       dense_checkpoint_t, checkpoint_dense, restore_dense
-   use link_knowledge, only: know_links, tell_driven
+   use link_knowledge, only: know_links, get_driven_motion
    implicit none
    private
-   public :: engine_t, engine_checkpoint_t, make_engine, seek, keep, checkpoint, restore, tell, tell_links, &
-      tell_certain, is_certified
+   public :: engine_t, engine_checkpoint_t, make_engine, solve, accept, checkpoint, restore, get_motion_of, &
+      get_link_flags, &
+      get_certain_links, is_certified
 
    !> One of the two.
    type :: engine_t
@@ -46,7 +47,7 @@ contains
 
    !> Seeks the motion at `t`, from the last one kept (`follows`) or from the deck's. `c`: how it ended,
    !> `correction`: the largest change of a predicted value, `same`: the determinants have kept their signs.
-   subroutine seek(e, t, follows, c, correction, same)
+   subroutine solve(e, t, follows, c, correction, same)
       type(engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       logical, intent(in) :: follows
@@ -55,24 +56,24 @@ contains
       logical, intent(out) :: same
 
       if (allocated(e%blocks) .and. follows) then
-         call seek_blocks(e%blocks, t, follows, c, correction, same)
+         call solve_blocks(e%blocks, t, follows, c, correction, same)
       else if (allocated(e%blocks)) then
-         call seek_first(e%blocks, t, c, correction, same)
+         call solve_first(e%blocks, t, c, correction, same)
       else
-         call seek_dense(e%dense, t, follows, c, correction, same)
+         call solve_dense(e%dense, t, follows, c, correction, same)
       end if
-   end subroutine seek
+   end subroutine solve
 
    !> Makes the motion found last the one that is followed.
-   subroutine keep(e)
+   subroutine accept(e)
       type(engine_t), intent(inout) :: e
 
       if (allocated(e%blocks)) then
-         call keep_blocks(e%blocks)
+         call accept_blocks(e%blocks)
       else
-         call keep_dense(e%dense)
+         call accept_dense(e%dense)
       end if
-   end subroutine keep
+   end subroutine accept
 
    !> Notes in `c` the motion that is followed and that found last.
    pure subroutine checkpoint(e, c)
@@ -101,20 +102,21 @@ contains
    end subroutine restore
 
    !> The motion found last, in the deck's units; `finite`: all of it is known to be in range.
-   subroutine tell(e, found, finite)
+   subroutine get_motion_of(e, found, finite)
       type(engine_t), intent(inout) :: e
       type(motion_t), intent(inout) :: found
       logical, intent(out) :: finite
 
       if (allocated(e%blocks)) then
-         call tell_blocks(e%blocks, found, finite)
+         call get_blocks_motion(e%blocks, found, finite)
       else
-         call tell_dense(e%dense, found)
+         call get_dense_motion(e%dense, found)
          finite = .false.
       end if
-   end subroutine tell
+   end subroutine get_motion_of
 
-   !> Positions that are followed carry the certificate of `continuity`. METHOD MATRIX has the same guard but counts
+   !> Positions that are followed carry the certificate of `branch_certificate`. METHOD MATRIX has the same guard but
+   !> counts
    !> none: its iteration arrives at some instants of a motion and not at others.
    pure logical function is_certified(e)
       type(engine_t), intent(in) :: e
@@ -125,7 +127,7 @@ contains
 
    !> Of which links the motion found last is known in full although it is not as a whole. METHOD DENSE and METHOD
    !> MATRIX have one Jacobian for all links: without its inverse they know the links that drives alone move.
-   subroutine tell_links(e, found)
+   subroutine get_link_flags(e, found)
       type(engine_t), intent(in) :: e
       type(motion_t), intent(inout) :: found
       type(block_engine_t) :: blocks
@@ -138,7 +140,7 @@ contains
       end if
       call make_block_engine(blocks, e%dense%blocks)
       driven = found
-      call tell_driven(blocks, found%t, driven)
+      call get_driven_motion(blocks, found%t, driven)
       if (.not. allocated(driven%link_known)) return
       found%link_known = merge(2, 0, driven%link_known == 2)
       found%link_mark = merge(mark_none, found%mark, driven%link_known == 2)
@@ -147,20 +149,20 @@ contains
          found%velocity(:, link) = driven%velocity(:, link)
          found%acceleration(:, link) = driven%acceleration(:, link)
       end do
-   end subroutine tell_links
+   end subroutine get_link_flags
 
    !> What is certain at `t`, where no position was found: the links that drives alone move.
-   subroutine tell_certain(e, t, found)
+   subroutine get_certain_links(e, t, found)
       type(engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       type(motion_t), intent(inout) :: found
       type(block_engine_t) :: blocks
 
       if (allocated(e%blocks)) then
-         call tell_driven(e%blocks, t, found)
+         call get_driven_motion(e%blocks, t, found)
       else
          call make_block_engine(blocks, e%dense%blocks)
-         call tell_driven(blocks, t, found)
+         call get_driven_motion(blocks, t, found)
       end if
-   end subroutine tell_certain
+   end subroutine get_certain_links
 end module engine

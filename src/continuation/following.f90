@@ -3,16 +3,18 @@
 module following
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use remarks, only: remark_t, remark_dead_end
-   use continuity, only: branch_t
-   use drive_path, only: drive_path_t, new_drive_path, part_allowed, likely_excursion, excursion, steps_at_least
+   use diagnostics, only: diagnostic_t, diagnostic_dead_end
+   use branch_certificate, only: branch_t
+   use drive_excursion, only: drive_excursion_t, new_drive_excursion, substep_allowed, likely_excursion, excursion, &
+      steps_at_least
    use convergence, only: convergence_t, is_solved
-   use choices, only: choices_t, new_choices
+   use branch_requests, only: branch_requests_t, new_branch_requests
    use change_points, only: crosses, pass
-   use engine, only: engine_t, engine_checkpoint_t, make_engine, seek, keep, checkpoint, restore
+   use engine, only: engine_t, engine_checkpoint_t, make_engine, solve, accept, checkpoint, restore
    implicit none
    private
-   public :: following_t, way_t, make_following, go_to, is_too_far, has_too_many_parts, go_on_from, go_back
+   public :: following_t, step_record_t, make_following, continue_to, is_too_far, has_too_many_substeps, go_on_from, &
+      go_back
    public :: place_t, note_place, return_to
 
    !> The largest correction, in the characteristic length and in radians, of a predicted position that is still taken
@@ -20,15 +22,15 @@ module following
    real(wp), parameter :: largest_correction = 0.1_wp
    !> The same over the distance of the next root, as the Jacobian and its bend tell it: near a change point
    !> another branch passes close by, with the sign of the determinant that this one had before.
-   real(wp), parameter :: largest_doubt = 0.1_wp
+   real(wp), parameter :: max_kantorovich_ratio = 0.1_wp
    !> A part of a step smaller than this, of the longest or of what is left to go, is the end of the way; and so are
    !> that many parts.
-   real(wp), parameter :: smallest_part = max(1.0e-10_wp, 4.0_wp*epsilon(1.0_wp))
-   integer, parameter :: most_parts = 200000
+   real(wp), parameter :: min_substep = max(1.0e-10_wp, 4.0_wp*epsilon(1.0_wp))
+   integer, parameter :: max_substeps = 200000
    !> Near a limit a slow iteration creeps, and each part that fails costs all of its iterations: so many failures
    !> of parts that are small already end the way too.
-   integer, parameter :: most_failures = 300
-   real(wp), parameter :: small_part = 1.0e-3_wp
+   integer, parameter :: max_failures = 300
+   real(wp), parameter :: small_substep = 1.0e-3_wp
 
    !> A place of the motion that is followed: all that its further way depends on.
    type :: place_t
@@ -39,24 +41,24 @@ module following
    !> The engine, and how far it has come.
    type :: following_t
       type(engine_t) :: engine
-      type(choices_t) :: choices                 !< BRANCH cards, and change points passed
+      type(branch_requests_t) :: branch_requests                 !< BRANCH cards, and change points passed
       type(convergence_t) :: convergence         !< of the last position sought
       integer :: iterations = 0                  !< of all positions sought so far
       logical :: follows = .false.               !< a regular motion is kept, found at `t`
       real(wp) :: t = 0.0_wp
       type(place_t) :: place                     !< where the step that was divided last began
-      type(drive_path_t) :: drives               !< their way through time
+      type(drive_excursion_t) :: drives               !< their way through time
    end type following_t
 
    !> The way to an instant: whether it came there or to a place where no part of it could be made, how many parts were
    !> tried, what was verified of those kept, the change points on it.
-   type :: way_t
+   type :: step_record_t
       logical :: arrived = .false., blocked = .false.
       logical :: stands = .false.                !< on a change point, from short before which it is followed
       integer :: tries = 0
       type(branch_t) :: branch
-      type(remark_t), allocatable :: passed(:), dead_end(:)   !< not allocated: none
-   end type way_t
+      type(diagnostic_t), allocatable :: passed(:), dead_end(:)   !< not allocated: none
+   end type step_record_t
 
 contains
 
@@ -66,8 +68,8 @@ contains
       type(mechanism_t), intent(in) :: m
 
       call make_engine(f%engine, m)
-      f%choices = new_choices(m)
-      f%drives = new_drive_path(m, depends_on_before(f%engine))
+      f%branch_requests = new_branch_requests(m)
+      f%drives = new_drive_excursion(m, depends_on_before(f%engine))
    end subroutine make_following
 
    !> There is an unknown that is sought from where it was before.
@@ -80,29 +82,29 @@ contains
    end function depends_on_before
 
    !> Follows the motion to `t`, or seeks the first.
-   subroutine go_to(f, t, w)
+   subroutine continue_to(f, t, w)
       type(following_t), intent(inout) :: f
       real(wp), intent(in) :: t
-      type(way_t), intent(out) :: w
-      real(wp) :: part, here, longest, allowed, shortest
+      type(step_record_t), intent(out) :: w
+      real(wp) :: substep, here, longest, allowed, shortest
       integer :: failures
       logical :: accepted
 
-      part = t - f%t
-      longest = abs(part)
-      shortest = smallest_part*longest
+      substep = t - f%t
+      longest = abs(substep)
+      shortest = min_substep*longest
       failures = 0
-      do while (w%tries < most_parts)
+      do while (w%tries < max_substeps)
          w%tries = w%tries + 1
          w%arrived = .not. f%follows
          if (f%follows) then
-            part = sign(min(abs(part), abs(t - f%t)), part)
-            allowed = part_allowed(f%drives, f%t, part)
-            if (abs(allowed) < abs(part)) longest = max(abs(allowed), shortest)
-            part = allowed
-            w%arrived = abs(part) >= abs(t - f%t)
+            substep = sign(min(abs(substep), abs(t - f%t)), substep)
+            allowed = substep_allowed(f%drives, f%t, substep)
+            if (abs(allowed) < abs(substep)) longest = max(abs(allowed), shortest)
+            substep = allowed
+            w%arrived = abs(substep) >= abs(t - f%t)
          end if
-         here = merge(t, f%t + part, w%arrived)
+         here = merge(t, f%t + substep, w%arrived)
          call attempt(f, here, w, accepted)
          w%arrived = w%arrived .and. accepted
          if (w%arrived) exit
@@ -110,41 +112,41 @@ contains
          accepted = accepted .and. .not. f%convergence%singular
          if (accepted) call go_on_from(f, here)
          if (.not. f%follows) exit
-         if (.not. accepted .and. abs(part) <= small_part*longest) failures = failures + 1
-         part = merge(1.5_wp, 0.5_wp, accepted)*part
-         w%blocked = abs(part) <= smallest_part*min(longest, abs(t - f%t))
-         if (w%blocked .or. failures > most_failures) exit
+         if (.not. accepted .and. abs(substep) <= small_substep*longest) failures = failures + 1
+         substep = merge(1.5_wp, 0.5_wp, accepted)*substep
+         w%blocked = abs(substep) <= min_substep*min(longest, abs(t - f%t))
+         if (w%blocked .or. failures > max_failures) exit
       end do
-   end subroutine go_to
+   end subroutine continue_to
 
    !> Seeks the motion at `t`; `accepted`: it is the continuation of the one that is followed, or the first.
    subroutine attempt(f, t, w, accepted)
       type(following_t), intent(inout) :: f
       real(wp), intent(in) :: t
-      type(way_t), intent(inout) :: w
+      type(step_record_t), intent(inout) :: w
       logical, intent(out) :: accepted
       real(wp) :: correction, away
       logical :: same
-      type(remark_t), allocatable :: list(:)
+      type(diagnostic_t), allocatable :: list(:)
 
       away = 0.0_wp
       if (f%follows) then
          away = likely_excursion(f%drives, f%t, t)
          if (allocated(f%engine%blocks)) f%engine%blocks%state%excursion = away
       end if
-      call seek(f%engine, t, f%follows, f%convergence, correction, same)
+      call solve(f%engine, t, f%follows, f%convergence, correction, same)
       f%iterations = f%iterations + f%convergence%iterations
       accepted = is_solved(f%convergence)
       if (.not. f%follows) return
       accepted = accepted .and. correction <= largest_correction
       if (accepted .and. away > 0.0_wp) call add_excursion(f, t, away)
-      accepted = accepted .and. f%convergence%doubt <= largest_doubt
+      accepted = accepted .and. f%convergence%kantorovich_ratio <= max_kantorovich_ratio
       if (accepted .and. .not. same .and. .not. f%convergence%singular .and. allocated(f%engine%blocks)) then
          same = crosses(f%engine%blocks, correction)
          if (same) then
-            call pass(f%engine%blocks, t, f%choices, f%convergence, list, same)
+            call pass(f%engine%blocks, t, f%branch_requests, f%convergence, list, same)
             if (.not. same) then
-               w%dead_end = pack(list, list%kind == remark_dead_end)
+               w%dead_end = pack(list, list%kind == diagnostic_dead_end)
             else if (allocated(w%passed)) then
                w%passed = [w%passed, list]
             else
@@ -152,10 +154,10 @@ contains
             end if
          end if
       end if
-      accepted = accepted .and. same .and. f%convergence%doubt <= largest_doubt
+      accepted = accepted .and. same .and. f%convergence%kantorovich_ratio <= max_kantorovich_ratio
       if (.not. accepted) return
       w%branch%parts = w%branch%parts + 1
-      w%branch%doubt = max(w%branch%doubt, f%convergence%doubt)
+      w%branch%kantorovich_ratio = max(w%branch%kantorovich_ratio, f%convergence%kantorovich_ratio)
    end subroutine attempt
 
    !> Adds to the doubt of the motion found last at `t` what the drives leave open that on the way there are `away` at
@@ -163,12 +165,13 @@ contains
    subroutine add_excursion(f, t, away)
       type(following_t), intent(inout) :: f
       real(wp), intent(in) :: t, away
-      real(wp) :: doubt
+      real(wp) :: kantorovich_ratio
 
       associate (c => f%convergence)
-         doubt = c%doubt + c%growth*away
-         if (doubt > largest_doubt) doubt = c%doubt + c%growth*excursion(f%drives, f%t, t)
-         c%doubt = doubt
+         kantorovich_ratio = c%kantorovich_ratio + c%growth*away
+         if (kantorovich_ratio > max_kantorovich_ratio) kantorovich_ratio = c%kantorovich_ratio &
+            + c%growth*excursion(f%drives, f%t, t)
+         c%kantorovich_ratio = kantorovich_ratio
       end associate
    end subroutine add_excursion
 
@@ -178,22 +181,22 @@ contains
       real(wp), intent(in) :: t
 
       is_too_far = f%follows .and. abs(t - f%t) > f%drives%longest
-      if (is_too_far) is_too_far = steps_at_least(f%drives, f%t, t) > real(most_parts, wp)
+      if (is_too_far) is_too_far = steps_at_least(f%drives, f%t, t) > real(max_substeps, wp)
    end function is_too_far
 
    !> All parts that are tried were not enough for `w`.
-   pure logical function has_too_many_parts(w)
-      type(way_t), intent(in) :: w
+   pure logical function has_too_many_substeps(w)
+      type(step_record_t), intent(in) :: w
 
-      has_too_many_parts = w%tries == most_parts .and. .not. w%arrived
-   end function has_too_many_parts
+      has_too_many_substeps = w%tries == max_substeps .and. .not. w%arrived
+   end function has_too_many_substeps
 
    !> The motion found last, at `t`, is now the one that is followed.
    subroutine go_on_from(f, t)
       type(following_t), intent(inout) :: f
       real(wp), intent(in) :: t
 
-      call keep(f%engine)
+      call accept(f%engine)
       f%t = t
       f%follows = .true.
    end subroutine go_on_from
@@ -203,7 +206,7 @@ contains
    !> enough.
    subroutine go_back(f, w)
       type(following_t), intent(inout) :: f
-      type(way_t), intent(in) :: w
+      type(step_record_t), intent(in) :: w
 
       if (w%tries < 2) return
       f%t = f%place%t

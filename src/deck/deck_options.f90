@@ -2,7 +2,8 @@
 module deck_options
    use kinds, only: wp
    use constants, only: degree
-   use mechanism, only: request_t, choice_t, request_link, request_point, request_pair, method_newton, method_words
+   use mechanism, only: request_t, branch_request_t, request_link, request_point, request_pair, method_newton, &
+      method_words
    use card_sets, only: card_set_t, look_up, match_word, add_card_error
    use cards, only: title_field, card_name, label_a, label_b, label_c, real_1, real_2, forms, form_unknown, &
       form_title, form_units, form_lang, form_time, form_at, form_method, form_print, form_branch
@@ -235,7 +236,7 @@ contains
    !> for the same as an earlier one is an error: it may be meant for the next change point.
    subroutine build_branches(set)
       type(card_set_t), intent(inout) :: set
-      type(choice_t) :: choices(set%number_of(form_branch))
+      type(branch_request_t) :: branch_requests(set%number_of(form_branch))
       integer :: card_of(set%number_of(form_branch)), k, n, i
 
       n = 0
@@ -243,28 +244,29 @@ contains
          if (set%cards(k)%form /= form_branch .or. .not. set%cards(k)%valid) cycle
          n = n + 1
          card_of(n) = k
-         call read_branch(set, k, choices(n))
+         call read_branch(set, k, branch_requests(n))
          do i = 1, n - 1
-            if (choices(i)%link /= choices(n)%link .or. abs(choices(i)%t - choices(n)%t) > 0.0_wp) cycle
+            if (branch_requests(i)%link /= branch_requests(n)%link .or. abs(branch_requests(i)%t &
+               - branch_requests(n)%t) > 0.0_wp) cycle
             call add_card_error(set, branch_repeated, k, card_name, whole(set%cards(card_of(i))%card%number))
             exit
          end do
       end do
-      set%mechanism%choices = choices(:n)
+      set%mechanism%branch_requests = branch_requests(:n)
    end subroutine build_branches
 
    !> The BRANCH card `k`.
-   subroutine read_branch(set, k, choice)
+   subroutine read_branch(set, k, branch_request)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: k
-      type(choice_t), intent(out) :: choice
+      type(branch_request_t), intent(out) :: branch_request
 
       if (set%mechanism%method /= method_newton) call add_card_error(set, branch_method, k, card_name)
-      call look_up(set, request_link, k, label_a, choice%link)
-      if (choice%link > 0) then
-         if (set%mechanism%links(choice%link)%ground) call add_card_error(set, branch_ground, k, label_a)
+      call look_up(set, request_link, k, label_a, branch_request%link)
+      if (branch_request%link > 0) then
+         if (set%mechanism%links(branch_request%link)%ground) call add_card_error(set, branch_ground, k, label_a)
       end if
       if (.not. set%cards(k)%given(1)) call add_card_error(set, field_blank, k, real_1)
-      choice%t = set%cards(k)%real(1)
+      branch_request%t = set%cards(k)%real(1)
    end subroutine read_branch
 end module deck_options

@@ -9,7 +9,7 @@ module closure_equations
    use pose, only: system_t, pose_t, normal_angle
    use revolute_pair, only: revolute_residual, revolute_jacobian, revolute_remainder
    use prismatic_pair, only: projection_residual
-   use sliding, only: gap, normal, projection_row, moving_projection
+   use sliding, only: closure_error, normal, projection_row, moving_projection
    use drive_rows, only: drive_residual, drive_row, drive_remainder, place
    implicit none
    private
@@ -31,9 +31,9 @@ contains
             associate (i => s%link_of(a), j => s%link_of(b))
                select case (s%pairs(k)%kind)
                case (pair_revolute)
-                  r(row:row + 1) = revolute_residual(p%q(:2, i), p%arm(:, a), p%q(:2, j), p%arm(:, b))
+                  r(row:row + 1) = revolute_residual(p%q(:2, i), p%body_vector(:, a), p%q(:2, j), p%body_vector(:, b))
                case (pair_prismatic)
-                  r(row) = projection_residual(gap(s, p, a, b), normal(s, p, k), s%pairs(k)%offset)
+                  r(row) = projection_residual(closure_error(s, p, a, b), normal(s, p, k), s%pairs(k)%offset)
                   r(row + 1) = p%q(3, j) - p%q(3, i) - s%pairs(k)%beta
                end select
             end associate
@@ -94,7 +94,7 @@ contains
          associate (a => s%pairs(k)%point_i, b => s%pairs(k)%point_j)
             associate (i => s%link_of(a), j => s%link_of(b))
                if (s%pairs(k)%kind == pair_revolute) then
-                  gamma(2*k - 1:2*k) = revolute_remainder(p%arm(:, a), v(3, i), p%arm(:, b), v(3, j))
+                  gamma(2*k - 1:2*k) = revolute_remainder(p%body_vector(:, a), v(3, i), p%body_vector(:, b), v(3, j))
                else
                   gamma(2*k - 1) = moving_projection(s, p, v, k, normal(s, p, k))
                end if

@@ -12,7 +12,7 @@ module dense_engine
    use convergence, only: convergence_t, is_solved, ended_elsewhere
    use predictor, only: largest_change, order_weights
    use pose, only: system_t, pose_t, new_system, new_pose
-   use drive_rows, only: drive_targets
+   use drive_rows, only: find_drive_values
    use position_newton, only: solve_newton
    use position_matrix, only: solve_matrix
    use rates, only: solve_velocity, solve_acceleration
@@ -21,17 +21,17 @@ module dense_engine
    use whole_turns, only: without_turns
    implicit none
    private
-   public :: dense_t, new_dense, seek_dense, keep_dense, tell_dense
+   public :: dense_t, new_dense, solve_dense, accept_dense, get_dense_motion
    public :: dense_checkpoint_t, checkpoint_dense, restore_dense
 
    !> The position is known to eps/rcond, and so the Jacobian; below the root of eps no digit of a velocity is certain.
-   real(wp), parameter :: least_condition = 4.0_wp*sqrt(epsilon(1.0_wp))
+   real(wp), parameter :: min_condition = 4.0_wp*sqrt(epsilon(1.0_wp))
    !> A change over the distance of the next root, at least: below it the root is the only one as near, and near enough.
    real(wp), parameter :: certain = 0.5_wp
    !> What is certainly below this needs no closer look: doubts are of importance from 0.1 on.
-   real(wp), parameter :: small_doubt = 1.0e-3_wp
+   real(wp), parameter :: small_kantorovich_ratio = 1.0e-3_wp
    !> A change of more than this, in radians and in the unit of length, is a leap, as the blocks have it.
-   real(wp), parameter :: leap = 0.5_wp
+   real(wp), parameter :: branch_jump = 0.5_wp
    !> An iteration that goes further than this on its way wanders, and where it ends up is up to rounding.
    real(wp), parameter :: reach = largest_change
    !> Where the Jacobian has no inverse a position is known to the root of eps; a root this near is that position.
@@ -43,14 +43,14 @@ module dense_engine
       type(mechanism_t) :: blocks                !< to be solved by blocks, at the first instant
       type(coordinates_t) :: coordinates         !< whose changes the guard of continuity looks at
       type(pose_t) :: pose                       !< room for the position that is being sought
-      real(wp), allocatable :: rough(:, :)       !< (3, links) the deck's positions
+      real(wp), allocatable :: estimated(:, :)       !< (3, links) the deck's positions
       real(wp), allocatable :: start(:, :)       !< (3, links) where the last search began
       type(factors_t) :: factors
       type(motion_t) :: now                      !< the motion sought last
       type(motion_t) :: last                     !< the last one kept
       type(motion_t) :: before                   !< the one kept before, where the order is 3
       integer :: determinant_now = 0, determinant = 0
-      real(wp), allocatable :: targets(:, :)     !< (3, drives) value, rate, second rate
+      real(wp), allocatable :: drive_values(:, :)     !< (3, drives) value, rate, second rate
       logical :: has_missed = .false.            !< the assembly meant at an earlier instant was not found
       integer :: method = 0, order = own_predictor
       real(wp) :: tolerance = 0.0_wp
@@ -73,13 +73,13 @@ contains
       e%pose = new_pose(e%system, m)
       e%blocks = by_blocks(m)
       e%coordinates = new_coordinates(e%system)
-      e%rough = e%pose%q
-      e%start = e%rough
+      e%estimated = e%pose%q
+      e%start = e%estimated
       e%factors = new_factors(e%system%n)
       e%now = new_motion(size(m%links))
       e%last = e%now
       e%before = e%now
-      allocate (e%targets(3, size(m%drives)))
+      allocate (e%drive_values(3, size(m%drives)))
       e%method = m%method
       e%order = m%predictor
       e%tolerance = m%tolerance
@@ -87,7 +87,7 @@ contains
 
    !> Seeks the motion at `t`, from the last one kept (`follows`) or from the deck's. `c`: how it ended,
    !> `correction`: the largest change of the predicted coordinates, `same`: the determinant has kept its sign.
-   subroutine seek_dense(e, t, follows, c, correction, same)
+   subroutine solve_dense(e, t, follows, c, correction, same)
       type(dense_t), intent(inout) :: e
       real(wp), intent(in) :: t
       logical, intent(in) :: follows
@@ -97,7 +97,7 @@ contains
 
       e%now%t = t
       same = .true.
-      call drive_targets(e%system, t, e%targets)
+      call find_drive_values(e%system, t, e%drive_values)
       if (follows) then
          e%start = continued(e, t)
          same = maxval(abs(e%start - e%last%position)) <= largest_change
@@ -109,7 +109,7 @@ contains
       if (.not. (same .and. is_solved(c))) return
       call solve_rates(e, c)
       if (follows .and. .not. c%singular) same = e%determinant_now == e%determinant
-   end subroutine seek_dense
+   end subroutine solve_dense
 
    !> The position by the method's iteration from `start` (3, links), and how far it is from there.
    subroutine search(e, start, c)
@@ -119,10 +119,10 @@ contains
 
       e%pose%q = start
       if (e%method == method_matrix) then
-         call solve_matrix(e%system, e%targets(1, :), e%tolerance, e%pose, e%factors, c, &
+         call solve_matrix(e%system, e%drive_values(1, :), e%tolerance, e%pose, e%factors, c, &
             reach)
       else
-         call solve_newton(e%system, e%targets(1, :), e%tolerance, e%pose, e%factors, c, &
+         call solve_newton(e%system, e%drive_values(1, :), e%tolerance, e%pose, e%factors, c, &
             reach)
       end if
       if (.not. is_solved(c)) return
@@ -140,46 +140,47 @@ contains
       if (c%singular) return
       call reciprocal_condition(e%factors, c%reciprocal_condition)
       c%determinant = determinant_sign(e%factors)
-      c%singular = c%reciprocal_condition <= least_condition
+      c%singular = c%reciprocal_condition <= min_condition
       if (c%singular) return
-      c%doubt = bound_of_doubt(e, c)
-      if (c%doubt <= small_doubt) return
+      c%kantorovich_ratio = kantorovich_bound(e, c)
+      if (c%kantorovich_ratio <= small_kantorovich_ratio) return
       call kantorovich(e%system, e%coordinates, e%factors, e%pose, k)
-      c%doubt = c%change*k
+      c%kantorovich_ratio = c%change*k
    end subroutine judge
 
    !> More than the doubt, from the condition alone: no row sum of the inverse is more than n times its largest column
    !> sum, of which DGECON tells a third or more, and a slot has two rows.
-   real(wp) function bound_of_doubt(e, c) result(doubt)
+   real(wp) function kantorovich_bound(e, c) result(kantorovich_ratio)
       type(dense_t), intent(in) :: e
       type(convergence_t), intent(in) :: c
 
-      doubt = 0.0_wp
+      kantorovich_ratio = 0.0_wp
       if (c%change <= 0.0_wp) return
-      doubt = 6.0_wp*c%change*real(e%system%n, wp)*maxval(jacobian_lipschitz(e%system, e%coordinates, e%pose)) &
+      kantorovich_ratio = 6.0_wp*c%change*real(e%system%n, wp)*maxval(jacobian_lipschitz(e%system, e%coordinates, &
+         e%pose)) &
          /(c%reciprocal_condition*e%factors%norm)
-   end function bound_of_doubt
+   end function kantorovich_bound
 
    !> The first position, from the deck's estimate.
    subroutine search_first(e, t, c)
       type(dense_t), intent(inout) :: e
       real(wp), intent(in) :: t
       type(convergence_t), intent(out) :: c
-      real(wp) :: meant(3, size(e%rough, 2)), unit(3, size(e%rough, 2))
+      real(wp) :: meant(3, size(e%estimated, 2)), unit(3, size(e%estimated, 2))
       logical :: is_known
 
       unit = spread([e%system%length, e%system%length, 1.0_wp], 2, size(unit, 2))
-      e%start = e%rough*unit
+      e%start = e%estimated*unit
       call find_start(e%blocks, t, e%start, meant, is_known)
       e%start = e%start/unit
       call search(e, e%start, c)
-      if (is_solved(c) .and. .not. c%singular .and. c%doubt <= certain) return
+      if (is_solved(c) .and. .not. c%singular .and. c%kantorovich_ratio <= certain) return
       if (is_known .and. .not. e%has_missed) then
          meant = meant/unit
          if (e%method /= method_matrix) call search(e, meant, c)
          if (is_solved(c)) call compare(e, meant, c)
          e%has_missed = .not. is_solved(c)
-      else if (is_solved(c) .and. (c%change > leap .or. e%has_missed)) then
+      else if (is_solved(c) .and. (c%change > branch_jump .or. e%has_missed)) then
          c%ended = ended_elsewhere
       end if
    end subroutine search_first
@@ -209,12 +210,12 @@ contains
       e%now%position = e%pose%q
       if (c%singular) return
       e%determinant_now = c%determinant
-      call solve_velocity(e%system, e%factors, e%targets(2, :), e%now%velocity)
-      call solve_acceleration(e%system, e%factors, e%pose, e%targets(3, :), e%now%velocity, e%now%acceleration)
+      call solve_velocity(e%system, e%factors, e%drive_values(2, :), e%now%velocity)
+      call solve_acceleration(e%system, e%factors, e%pose, e%drive_values(3, :), e%now%velocity, e%now%acceleration)
    end subroutine solve_rates
 
    !> Makes the motion found last the one that is followed.
-   pure subroutine keep_dense(e)
+   pure subroutine accept_dense(e)
       type(dense_t), intent(inout) :: e
 
       if (e%order == 3 .and. e%determinant /= 0) then
@@ -223,7 +224,7 @@ contains
       end if
       e%last = e%now
       e%determinant = e%determinant_now
-   end subroutine keep_dense
+   end subroutine accept_dense
 
    !> Notes in `c` all that depends on the way so far.
    pure subroutine checkpoint_dense(e, c)
@@ -253,7 +254,7 @@ contains
    end subroutine restore_dense
 
    !> The motion found last, in the deck's units.
-   pure subroutine tell_dense(e, found)
+   pure subroutine get_dense_motion(e, found)
       type(dense_t), intent(in) :: e
       type(motion_t), intent(inout) :: found
 
@@ -264,7 +265,7 @@ contains
       found%position(:2, :) = e%system%length*found%position(:2, :)
       found%velocity(:2, :) = e%system%length*found%velocity(:2, :)
       found%acceleration(:2, :) = e%system%length*found%acceleration(:2, :)
-   end subroutine tell_dense
+   end subroutine get_dense_motion
 
    !> The start at `t` (3, links): the state before, corrected through its velocity and acceleration, or by the order
    !> that is asked for.

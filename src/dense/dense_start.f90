@@ -8,8 +8,8 @@ module dense_start
    use convergence, only: convergence_t, is_solved
    use block_state, only: set_values
    use block_solver, only: solve_block
-   use block_engine, only: block_engine_t, make_block_engine, tell_blocks
-   use assembly_choice, only: seek_first
+   use block_engine, only: block_engine_t, make_block_engine, get_blocks_motion
+   use assembly_choice, only: solve_first
    implicit none
    private
    public :: by_blocks, find_start
@@ -46,16 +46,16 @@ contains
 
       q = new_motion(size(m%links))
       call make_block_engine(e, m)
-      call seek_first(e, t, c, correction, unused)
+      call solve_first(e, t, c, correction, unused)
       is_found = e%blocks%solvable .and. is_solved(c)
       assembly = estimate
       if (.not. e%blocks%solvable) return
       if (is_found) then
-         call tell_blocks(e, q, unused)
+         call get_blocks_motion(e, q, unused)
          assembly = q%position
       end if
       call return_to_estimate(e)
-      call tell_blocks(e, q, unused)
+      call get_blocks_motion(e, q, unused)
       estimate = q%position
    end subroutine find_start
 
@@ -70,7 +70,7 @@ contains
       do k = 1, size(e%needed)
          associate (i => e%needed(k))
             associate (unknowns => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
-               call set_values(e%blocks, i, e%rough(unknowns), e%state)
+               call set_values(e%blocks, i, e%estimated(unknowns), e%state)
             end associate
             if (e%blocks%list(i)%direct) call solve_block(e%blocks, i, 0.0_wp, e%work, e%state, c, correction)
          end associate

@@ -7,15 +7,15 @@ module drive_rows
    use drives, only: drive_motion
    use pose, only: system_t, pose_t, normal_angle
    use prismatic_pair, only: projection_residual
-   use sliding, only: gap, along, projection_row, moving_projection
+   use sliding, only: closure_error, along, projection_row, moving_projection
    implicit none
    private
-   public :: drive_targets, drive_residual, drive_row, drive_remainder, place
+   public :: find_drive_values, drive_residual, drive_row, drive_remainder, place
 
 contains
 
    !> Value, rate and second rate (3, drives) that the drives ask for at time `t`.
-   pure subroutine drive_targets(s, t, f)
+   pure subroutine find_drive_values(s, t, f)
       type(system_t), intent(in) :: s
       real(wp), intent(in) :: t
       real(wp), intent(out) :: f(:, :)
@@ -27,7 +27,7 @@ contains
          if (s%laws(i)%drive%kind == drive_y) f(1, i) = f(1, i) - s%origin(2)
          if (any(s%laws(i)%drive%kind == [drive_x, drive_y, drive_slide])) f(:, i) = f(:, i)/s%length
       end do
-   end subroutine drive_targets
+   end subroutine find_drive_values
 
    !> What drive `k` lacks of the value `driven`.
    pure real(wp) function drive_residual(s, p, k, driven) result(r)
@@ -42,14 +42,14 @@ contains
          case (drive_angle)
             r = p%q(3, subject) - driven
          case (drive_x)
-            r = p%q(1, s%link_of(subject)) + p%arm(1, subject) - driven
+            r = p%q(1, s%link_of(subject)) + p%body_vector(1, subject) - driven
          case (drive_y)
-            r = p%q(2, s%link_of(subject)) + p%arm(2, subject) - driven
+            r = p%q(2, s%link_of(subject)) + p%body_vector(2, subject) - driven
          case (drive_relangle)
             r = p%q(3, s%laws(k)%drive%second) - p%q(3, subject) - driven
          case (drive_slide)
             associate (pair => s%pairs(subject))
-               r = projection_residual(gap(s, p, pair%point_i, pair%point_j), along(s, p, subject), driven)
+               r = projection_residual(closure_error(s, p, pair%point_i, pair%point_j), along(s, p, subject), driven)
             end associate
          end select
       end associate
@@ -94,9 +94,9 @@ contains
       associate (subject => s%laws(k)%drive%subject)
          select case (s%laws(k)%drive%kind)
          case (drive_x)
-            gamma = -v(3, s%link_of(subject))**2*p%arm(1, subject)
+            gamma = -v(3, s%link_of(subject))**2*p%body_vector(1, subject)
          case (drive_y)
-            gamma = -v(3, s%link_of(subject))**2*p%arm(2, subject)
+            gamma = -v(3, s%link_of(subject))**2*p%body_vector(2, subject)
          case (drive_slide)
             gamma = moving_projection(s, p, v, subject, along(s, p, subject))
          end select

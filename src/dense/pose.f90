@@ -30,7 +30,7 @@ module pose
    type :: pose_t
       real(wp), allocatable :: q(:, :)            !< (3, links) x, y, phi
       real(wp), allocatable :: direction(:, :)    !< (2, links) cos phi, sin phi
-      real(wp), allocatable :: arm(:, :)          !< (2, points) from the link's origin to the point
+      real(wp), allocatable :: body_vector(:, :)          !< (2, points) from the link's origin to the point
       real(wp), allocatable :: slope(:, :)        !< (2, points) derivative of the arm by phi, or its frozen form
       logical :: frozen = .false.                 !< slopes and gradients are those of the frozen form
       logical :: keeps = .false.                  !< references, once chosen, are never chosen again
@@ -79,7 +79,7 @@ contains
       integer :: i
 
       allocate (p%q(3, size(m%links)), p%direction(2, size(m%links)))
-      allocate (p%arm(2, size(m%points)), p%slope(2, size(m%points)), p%zeros(2, size(m%points)))
+      allocate (p%body_vector(2, size(m%points)), p%slope(2, size(m%points)), p%zeros(2, size(m%points)))
       allocate (p%guide_zeros(2, size(m%pairs)), p%slide_zeros(2, size(m%drives)))
       do i = 1, size(m%links)
          p%q(:, i) = [(m%links(i)%position(:2) - s%origin)/s%length, m%links(i)%position(3)]
@@ -98,11 +98,11 @@ contains
       p%direction(2, :) = sin(p%q(3, :))
       do i = 1, size(s%link_of)
          k = s%link_of(i)
-         p%arm(:, i) = turned(s%offset(:, i), p%direction(:, k))
+         p%body_vector(:, i) = turned(s%offset(:, i), p%direction(:, k))
          if (p%frozen) then
-            p%slope(:, i) = norm2(s%offset(:, i))*secants(arm_angle(s, p, i), p%zeros(:, i))
+            p%slope(:, i) = norm2(s%offset(:, i))*secants(body_vector_angle(s, p, i), p%zeros(:, i))
          else
-            p%slope(:, i) = [-p%arm(2, i), p%arm(1, i)]
+            p%slope(:, i) = [-p%body_vector(2, i), p%body_vector(1, i)]
          end if
       end do
    end subroutine set_pose
@@ -125,7 +125,7 @@ contains
       integer :: i
 
       do i = 1, size(s%link_of)
-         p%zeros(:, i) = nearest_zeros(arm_angle(s, p, i))
+         p%zeros(:, i) = nearest_zeros(body_vector_angle(s, p, i))
       end do
       do i = 1, size(s%pairs)
          p%guide_zeros(:, i) = nearest_zeros(normal_angle(s, p, i))
@@ -158,13 +158,13 @@ contains
    end function normal_angle
 
    !> The angle at which the arm to point `i` points.
-   pure real(wp) function arm_angle(s, p, i)
+   pure real(wp) function body_vector_angle(s, p, i)
       type(system_t), intent(in) :: s
       type(pose_t), intent(in) :: p
       integer, intent(in) :: i
 
-      arm_angle = p%q(3, s%link_of(i)) + atan2(s%offset(2, i), s%offset(1, i))
-   end function arm_angle
+      body_vector_angle = p%q(3, s%link_of(i)) + atan2(s%offset(2, i), s%offset(1, i))
+   end function body_vector_angle
 
    !> Vector `u` turned by the angle of `direction` = (cos, sin).
    pure function turned(u, direction) result(w)

@@ -30,19 +30,19 @@ contains
       call add_to_links(s, b, v)
    end subroutine solve_velocity
 
-   !> Accelerations `a` (3, links) from the second rates `rate2` (drives) and the velocities `v` (3, links).
-   subroutine solve_acceleration(s, f, p, rate2, v, a)
+   !> Accelerations `a` (3, links) from the second rates `acceleration` (drives) and the velocities `v` (3, links).
+   subroutine solve_acceleration(s, f, p, acceleration, v, a)
       type(system_t), intent(in) :: s
       type(factors_t), intent(in) :: f
       type(pose_t), intent(in) :: p
-      real(wp), intent(in) :: rate2(:), v(:, :)
+      real(wp), intent(in) :: acceleration(:), v(:, :)
       real(wp), intent(out) :: a(:, :)
       real(wp) :: b(s%n)
 
       call remainder(s, p, v, b)
       b = -b
-      associate (last => b(s%n - size(rate2) + 1:))
-         last = last + rate2
+      associate (last => b(s%n - size(acceleration) + 1:))
+         last = last + acceleration
       end associate
       call solve(f, b)
       a = 0.0_wp

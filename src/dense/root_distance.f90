@@ -93,7 +93,7 @@ contains
       bound = 0.0_wp
       do k = 1, size(s%pairs)
          if (s%pairs(k)%kind == pair_revolute) then
-            bound(2*k - 1:2*k) = arm_bound(s%pairs(k)%point_i) + arm_bound(s%pairs(k)%point_j)
+            bound(2*k - 1:2*k) = body_vector_bound(s%pairs(k)%point_i) + body_vector_bound(s%pairs(k)%point_j)
          else
             bound(2*k - 1) = slot_bound(k)
          end if
@@ -101,19 +101,19 @@ contains
       do k = 1, size(s%laws)
          row = 2*size(s%pairs) + k
          associate (subject => s%laws(k)%drive%subject)
-            if (any(s%laws(k)%drive%kind == [drive_x, drive_y])) bound(row) = arm_bound(subject)
+            if (any(s%laws(k)%drive%kind == [drive_x, drive_y])) bound(row) = body_vector_bound(subject)
             if (s%laws(k)%drive%kind == drive_slide) bound(row) = slot_bound(subject)
          end associate
       end do
 
    contains
 
-      pure real(wp) function arm_bound(point)
+      pure real(wp) function body_vector_bound(point)
          integer, intent(in) :: point
 
-         arm_bound = 0.0_wp
-         if (c%class(s%link_of(point)) > 0) arm_bound = norm2(s%offset(:, point))
-      end function arm_bound
+         body_vector_bound = 0.0_wp
+         if (c%class(s%link_of(point)) > 0) body_vector_bound = norm2(s%offset(:, point))
+      end function body_vector_bound
 
       pure real(wp) function slot_bound(pair)
          integer, intent(in) :: pair

@@ -7,19 +7,19 @@ module sliding
    use prismatic_pair, only: tangent_gradient, frozen_gradient, projection_jacobian, projection_remainder
    implicit none
    private
-   public :: gap, normal, along, projection_row, moving_projection
+   public :: closure_error, normal, along, projection_row, moving_projection
 
 contains
 
    !> Point a less point b.
-   pure function gap(s, p, a, b) result(d)
+   pure function closure_error(s, p, a, b) result(d)
       type(system_t), intent(in) :: s
       type(pose_t), intent(in) :: p
       integer, intent(in) :: a, b
       real(wp) :: d(2)
 
-      d = revolute_residual(p%q(:2, s%link_of(a)), p%arm(:, a), p%q(:2, s%link_of(b)), p%arm(:, b))
-   end function gap
+      d = revolute_residual(p%q(:2, s%link_of(a)), p%body_vector(:, a), p%q(:2, s%link_of(b)), p%body_vector(:, b))
+   end function closure_error
 
    !> Normal n of the guide of pair `k`.
    pure function normal(s, p, k) result(n)
@@ -50,7 +50,7 @@ contains
       real(wp), intent(in) :: f(2), psi, zeros(2)
       real(wp) :: row(6), g(3), d(2)
 
-      d = gap(s, p, s%pairs(k)%point_i, s%pairs(k)%point_j)
+      d = closure_error(s, p, s%pairs(k)%point_i, s%pairs(k)%point_j)
       if (p%frozen) then
          g = frozen_gradient(d, f, secants(psi, zeros))
       else
@@ -70,9 +70,10 @@ contains
       associate (a => s%pairs(k)%point_i, b => s%pairs(k)%point_j)
          associate (i => s%link_of(a), j => s%link_of(b))
             velocity = v(:2, i) - v(:2, j) &
-               + v(3, i)*[-p%arm(2, a), p%arm(1, a)] - v(3, j)*[-p%arm(2, b), p%arm(1, b)]
-            gamma = projection_remainder(gap(s, p, a, b), f, velocity, &
-               p%arm(:, a), v(3, i), p%arm(:, b), v(3, j))
+               + v(3, i)*[-p%body_vector(2, a), p%body_vector(1, a)] - v(3, j)*[-p%body_vector(2, b), p%body_vector(1, &
+               b)]
+            gamma = projection_remainder(closure_error(s, p, a, b), f, velocity, &
+               p%body_vector(:, a), v(3, i), p%body_vector(:, b), v(3, j))
          end associate
       end associate
    end function moving_projection

@@ -17,7 +17,7 @@ module block_matrix
    end type shape_t
 
    !> From this many unknowns on KLU is not slower than DGESV (lattices, reference LAPACK and OpenBLAS).
-   integer, parameter :: least_sparse = merge(12, huge(1), klu_serves)
+   integer, parameter :: min_sparse = merge(12, huge(1), klu_serves)
    !> A solution leaves this part of what its equations add up: more, and the pivots of the matrix before are no longer
    !> good for this one.
    real(wp), parameter :: stale = 128.0_wp*epsilon(1.0_wp)
@@ -31,7 +31,7 @@ contains
    pure logical function is_sparse_better(n, entries)
       integer, intent(in) :: n, entries
 
-      is_sparse_better = n >= least_sparse .and. entries/max(n, 1) < 8 + n/50
+      is_sparse_better = n >= min_sparse .and. entries/max(n, 1) < 8 + n/50
    end function is_sparse_better
 
    !> Numbers that the matrix takes.

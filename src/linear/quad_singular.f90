@@ -6,7 +6,7 @@ module quad_singular
    private
    public :: gesvd
 
-   integer, parameter :: most_sweeps = 60
+   integer, parameter :: max_sweeps = 60
 
 contains
 
@@ -54,7 +54,7 @@ contains
          v(k, k) = 1.0_qp
       end do
       noise = rounding(w)
-      do sweep = 1, most_sweeps
+      do sweep = 1, max_sweeps
          info = 0
          do i = 1, size(w, 2) - 1
             do j = i + 1, size(w, 2)

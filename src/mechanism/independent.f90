@@ -54,7 +54,7 @@ contains
             part%drives = members(drives, c)
             part%requests = members(requests, c)
             p%number(part%requests) = [(i, i=1, size(part%requests))]
-            part%choices = choices_of(m, link_part, c)
+            part%branch_requests = branch_requests_of(m, link_part, c)
             call add_ground(m, seen, part)
          end associate
          own(c) = mechanism_of(m, p%list(c))
@@ -156,21 +156,21 @@ contains
    end function part_of_request
 
    !> The BRANCH cards of part `c`.
-   pure function choices_of(m, link_part, c) result(list)
+   pure function branch_requests_of(m, link_part, c) result(list)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: link_part(:), c
       integer, allocatable :: list(:)
       integer :: i
 
       allocate (list(0))
-      if (.not. allocated(m%choices)) return
-      do i = 1, size(m%choices)
-         if (m%choices(i)%link > 0) then
-            if (link_part(m%choices(i)%link) /= c) cycle
+      if (.not. allocated(m%branch_requests)) return
+      do i = 1, size(m%branch_requests)
+         if (m%branch_requests(i)%link > 0) then
+            if (link_part(m%branch_requests(i)%link) /= c) cycle
          end if
          list = [list, i]
       end do
-   end function choices_of
+   end function branch_requests_of
 
    !> Adds to `part` the ground links and their points that its pairs and drives touch. `seen`: all false.
    subroutine add_ground(m, seen, part)

@@ -4,7 +4,7 @@ module mechanism
    use kinds, only: wp, label_length, title_length
    implicit none
    private
-   public :: link_t, point_t, pair_t, term_t, drive_t, request_t, choice_t, mechanism_t
+   public :: link_t, point_t, pair_t, term_t, drive_t, request_t, branch_request_t, mechanism_t
    public :: pair_revolute, pair_prismatic
    public :: drive_angle, drive_x, drive_y, drive_relangle, drive_slide, drive_words, driven_kinds
    public :: term_harmonic, term_power, term_table, term_words
@@ -84,10 +84,10 @@ module mechanism
    end type request_t
 
    !> At the change point that is passed next after `t` `link` takes the other branch; 0: whatever passes one.
-   type :: choice_t
+   type :: branch_request_t
       integer :: link = 0
       real(wp) :: t = 0.0_wp
-   end type choice_t
+   end type branch_request_t
 
    type :: mechanism_t
       integer :: set_number = 1
@@ -104,7 +104,7 @@ module mechanism
       type(pair_t), allocatable :: pairs(:)
       type(drive_t), allocatable :: drives(:)
       type(request_t), allocatable :: requests(:)
-      type(choice_t), allocatable :: choices(:)   !< none: not allocated, or of size 0
+      type(branch_request_t), allocatable :: branch_requests(:)   !< none: not allocated, or of size 0
       integer :: steps = -1                  !< of the TIME card: steps + 1 instants from t0 to t1
       real(wp) :: t0 = 0.0_wp, t1 = 0.0_wp
       real(wp), allocatable :: at(:)         !< explicit instants, after those of TIME

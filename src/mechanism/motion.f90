@@ -1,24 +1,24 @@
 !> The motion of every link at one instant: what the solvers fill and the writers print.
 module motion
    use kinds, only: wp
-   use remarks, only: remark_t
+   use diagnostics, only: diagnostic_t
    implicit none
    private
    public :: motion_t, new_motion, known_of, mark_of, forget_links
-   public :: mark_none, mark_not_converged, mark_singular, mark_overflow, mark_open
+   public :: mark_none, mark_not_converged, mark_singular, mark_overflow, mark_inconsistent
 
    integer, parameter :: mark_none = 0
    integer, parameter :: mark_not_converged = 1  !< no position was found
    integer, parameter :: mark_singular = 2       !< position found, Jacobian singular: no velocities
    integer, parameter :: mark_overflow = 3       !< a result beyond the range of the real kind
-   integer, parameter :: mark_open = 4           !< equations that are too many contradict one another
+   integer, parameter :: mark_inconsistent = 4           !< equations that are too many contradict one another
 
    type :: motion_t
       real(wp) :: t = 0.0_wp
       integer :: mark = mark_none
       !> How much of it exists: -1 nothing, 0 positions, 1 velocities too, 2 accelerations too.
       integer :: known = -1
-      type(remark_t), allocatable :: remarks(:)     !< what else there is to say; none: not allocated
+      type(diagnostic_t), allocatable :: diagnostics(:)     !< what else there is to say; none: not allocated
       real(wp) :: origin(2) = 0.0_wp                !< what x and y of `position` are counted from
       !> (3, links): x, y, phi and their first and second derivatives by time.
       real(wp), allocatable :: position(:, :), velocity(:, :), acceleration(:, :)

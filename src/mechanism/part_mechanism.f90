@@ -8,7 +8,7 @@ module part_mechanism
    !> Numbers of links, points, pairs, drives, requests and BRANCH cards as the whole set counts them, in the order of
    !> the part's own. A BRANCH card without a link is for each part.
    type :: part_t
-      integer, allocatable :: links(:), points(:), pairs(:), drives(:), requests(:), choices(:)
+      integer, allocatable :: links(:), points(:), pairs(:), drives(:), requests(:), branch_requests(:)
    end type part_t
 
 contains
@@ -38,10 +38,11 @@ contains
       own%pairs = m%pairs(part%pairs)
       own%drives = m%drives(part%drives)
       own%requests = m%requests(part%requests)
-      allocate (own%choices(size(part%choices)))
-      do i = 1, size(part%choices)
-         own%choices(i) = m%choices(part%choices(i))
-         if (own%choices(i)%link > 0) own%choices(i)%link = place_in(part%links, own%choices(i)%link)
+      allocate (own%branch_requests(size(part%branch_requests)))
+      do i = 1, size(part%branch_requests)
+         own%branch_requests(i) = m%branch_requests(part%branch_requests(i))
+         if (own%branch_requests(i)%link > 0) own%branch_requests(i)%link = place_in(part%links, &
+            own%branch_requests(i)%link)
       end do
       own%points%link = [(place_in(part%links, own%points(i)%link), i=1, size(own%points))]
       own%pairs%point_i = [(place_in(part%points, own%pairs(i)%point_i), i=1, size(own%pairs))]

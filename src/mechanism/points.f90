@@ -163,10 +163,10 @@ contains
          d = point_motion(m, q, pair%point_j) - point_motion(m, q, pair%point_i)
          e = [cos(q%position(3, i) + pair%alpha), sin(q%position(3, i) + pair%alpha)]
          n = [-e(2), e(1)]
-         associate (rate => q%velocity(3, i), rate2 => q%acceleration(3, i))
+         associate (rate => q%velocity(3, i), alpha => q%acceleration(3, i))
             s(0) = dot_product(d(:, 0), e)
             s(1) = dot_product(d(:, 1), e) + rate*dot_product(d(:, 0), n)
-            s(2) = dot_product(d(:, 2), e) + rate2*dot_product(d(:, 0), n) &
+            s(2) = dot_product(d(:, 2), e) + alpha*dot_product(d(:, 0), n) &
                + 2.0_wp*rate*dot_product(d(:, 1), n) - rate**2*s(0)
          end associate
       end associate

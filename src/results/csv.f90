@@ -7,7 +7,7 @@ module csv
    use motion, only: motion_t
    use points, only: row_t, row_of, is_due
    use known_digits, only: nothing_known
-   use scatter, only: scatter_t, row_error
+   use error_estimate, only: error_estimate_t, row_error
    use set_motion, only: set_motion_t
    use text_output, only: output_t, put, add
    use numerals, only: whole, full, put_full, full_length
@@ -31,19 +31,19 @@ contains
    end subroutine csv_head
 
    !> The rows of instant number `step` (0, 1, ...) of the motion `q` of all of `m` that the deck asks for there, with
-   !> their errors as `doubt` has them, where they are asked for.
-   subroutine csv_instant(o, m, q, step, doubt)
+   !> their errors as `kantorovich_ratio` has them, where they are asked for.
+   subroutine csv_instant(o, m, q, step, kantorovich_ratio)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       integer, intent(in) :: step
-      type(scatter_t), intent(in) :: doubt
+      type(error_estimate_t), intent(in) :: kantorovich_ratio
       character(:), allocatable :: start
       integer :: i
 
       start = start_of(m, step, q%t)
       do i = 1, size(m%requests)
-         if (is_due(m, m%requests(i), step)) call add_row(o, start, m, q, m%requests(i), doubt)
+         if (is_due(m, m%requests(i), step)) call add_row(o, start, m, q, m%requests(i), kantorovich_ratio)
       end do
    end subroutine csv_instant
 
@@ -57,7 +57,7 @@ contains
       integer :: i, c
 
       if (size(s%own) == 0) then
-         call csv_instant(o, m, s%motions(1), step, s%doubts(1))
+         call csv_instant(o, m, s%motions(1), step, s%kantorovich_ratios(1))
          return
       end if
       start = start_of(m, step, s%motions(1)%t)
@@ -65,9 +65,11 @@ contains
          if (.not. is_due(m, m%requests(i), step)) cycle
          c = s%parts%part(i)
          if (c == 0) then
-            call add_row(o, start, m, s%motions(1), m%requests(i), scatter_t(asked=s%doubts(1)%asked))
+            call add_row(o, start, m, s%motions(1), m%requests(i), &
+               error_estimate_t(asked=s%kantorovich_ratios(1)%asked))
          else
-            call add_row(o, start, s%own(c), s%motions(c), s%own(c)%requests(s%parts%number(i)), s%doubts(c))
+            call add_row(o, start, s%own(c), s%motions(c), s%own(c)%requests(s%parts%number(i)), &
+               s%kantorovich_ratios(c))
          end if
       end do
    end subroutine csv_set_instant
@@ -83,13 +85,13 @@ contains
    end function start_of
 
    !> One line, which begins with `start`.
-   subroutine add_row(o, start, m, q, request, doubt)
+   subroutine add_row(o, start, m, q, request, kantorovich_ratio)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: start
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       type(request_t), intent(in) :: request
-      type(scatter_t), intent(in) :: doubt
+      type(error_estimate_t), intent(in) :: kantorovich_ratio
       type(row_t) :: row
 
       call add(o, start)
@@ -98,7 +100,8 @@ contains
       call add_values(o, row, row%known, m%degrees)
       call add(o, ',')
       call add(o, marks(row%mark)(:len_trim(marks(row%mark))))
-      if (doubt%asked) call add_errors(o, row, row_error(m, doubt, q, request), row%known, m%degrees)
+      if (kantorovich_ratio%asked) call add_errors(o, row, row_error(m, kantorovich_ratio, q, request), row%known, &
+         m%degrees)
       call put(o, '')
    end subroutine add_row
 

@@ -10,7 +10,7 @@ module layout
    use independent, only: parts_t, find_parts
    use scales, only: characteristic_length, characteristic_rate
    use numerals, only: numeral_length
-   use phrases, only: phrase_t, phrase, say_link, say_point, say_pair, say_phi, say_value, say_rate, say_rate2, &
+   use phrases, only: phrase_t, phrase, say_link, say_point, say_pair, say_phi, say_value, say_rate, say_acceleration, &
       say_none, say_instant
    implicit none
    private
@@ -159,7 +159,7 @@ contains
          end do
       case (request_pair)
          words(1::3) = [character(numeral_length) :: &
-            phrase(say_value, polish), phrase(say_rate, polish), phrase(say_rate2, polish)]
+            phrase(say_value, polish), phrase(say_rate, polish), phrase(say_acceleration, polish)]
       end select
       line = ' '//phrase(kind_words(kind), polish)
       do k = 1, size(words)

@@ -5,7 +5,7 @@ module listing_structure
    use text_output, only: output_t, put, add
    use numerals, only: whole
    use phrases, only: phrase, say_structure, say_links, say_ground, say_revolute, say_prismatic, say_coordinates, &
-      say_equations, say_freedoms, say_drives, say_groups, say_driven, say_not_needed
+      say_equations, say_degrees_of_freedom, say_drives, say_groups, say_driven, say_not_needed
    implicit none
    private
    public :: put_structure
@@ -26,7 +26,8 @@ contains
             //' '//whole(f%ground)//';  '//phrase(say_revolute, pl)//' '//whole(f%revolute) &
             //';  '//phrase(say_prismatic, pl)//' '//whole(f%prismatic))
          call put(o, ' '//phrase(say_coordinates, pl)//' W = '//whole(f%coordinates)//';  '//phrase(say_equations, pl) &
-            //' R = '//whole(f%equations)//';  '//phrase(say_freedoms, pl)//' S = '//whole(f%freedoms) &
+            //' R = '//whole(f%equations)//';  '//phrase(say_degrees_of_freedom, &
+            pl)//' S = '//whole(f%degrees_of_freedom) &
             //';  '//phrase(say_drives, pl)//' '//whole(f%drives))
       end associate
       if (allocated(f%groups)) call put_groups(o, m, f%groups)

@@ -4,7 +4,7 @@ module listing_tables
    use mechanism, only: mechanism_t, request_t, request_point, request_pair
    use motion, only: motion_t
    use points, only: row_t, row_of
-   use scatter, only: scatter_t, row_scatter
+   use error_estimate, only: error_estimate_t, row_estimate
    use text_output, only: output_t, put
    use numerals, only: put_fixed, whole, numeral_length
    use known_digits, only: put_known, unknown_digit
@@ -26,7 +26,7 @@ contains
 
    !> The row that `request`, number `i` of the set, asks for of the motion `q` of `m`, under heads of its own where it
    !> is another table's.
-   subroutine put_requested(o, l, i, m, q, request, table, doubt)
+   subroutine put_requested(o, l, i, m, q, request, table, kantorovich_ratio)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       integer, intent(in) :: i
@@ -34,17 +34,17 @@ contains
       type(motion_t), intent(in) :: q
       type(request_t), intent(in) :: request
       type(table_t), intent(inout) :: table
-      type(scatter_t), intent(in), optional :: doubt
+      type(error_estimate_t), intent(in), optional :: kantorovich_ratio
       logical :: is_known
 
       is_known = .true.
-      if (present(doubt)) is_known = .not. (doubt%taken .and. doubt%in_doubt)
+      if (present(kantorovich_ratio)) is_known = .not. (kantorovich_ratio%taken .and. kantorovich_ratio%in_doubt)
       associate (d => digits_of(l, i), row => row_of(m, q, request))
          call put_heads(o, l, d, row, table)
          if (is_known) then
             call put_row(o, l, d, row)
          else
-            call put_row(o, l, d, row, row_scatter(m, doubt, request), table%masked)
+            call put_row(o, l, d, row, row_estimate(m, kantorovich_ratio, request), table%masked)
          end if
       end associate
    end subroutine put_requested

@@ -22,7 +22,7 @@ module phrases
       say_prismatic = phrase_t('PRISMATIC PAIRS', 'PARY POSTEPOWE'), &
       say_coordinates = phrase_t('COORDINATES', 'WSPOLRZEDNE'), &
       say_equations = phrase_t('EQUATIONS', 'ROWNANIA'), &
-      say_freedoms = phrase_t('DEGREES OF FREEDOM', 'STOPNIE SWOBODY'), &
+      say_degrees_of_freedom = phrase_t('DEGREES OF FREEDOM', 'STOPNIE SWOBODY'), &
       say_drives = phrase_t('DRIVES', 'NAPEDY'), &
       say_results = phrase_t('RESULTS', 'WYNIKI'), &
       say_units = phrase_t('UNITS', 'JEDNOSTKI'), &
@@ -33,11 +33,11 @@ module phrases
       say_phi = phrase_t('PHI', 'FI'), &
       say_value = phrase_t('VALUE', 'WARTOSC'), &
       say_rate = phrase_t('RATE', 'PREDKOSC'), &
-      say_rate2 = phrase_t('2ND RATE', 'PRZYSP.'), &
+      say_acceleration = phrase_t('2ND RATE', 'PRZYSP.'), &
       say_none = phrase_t('NONE', 'BRAK'), &
       say_end = phrase_t('END OF SET', 'KONIEC KOMPLETU'), &
       say_solved = phrase_t('INSTANTS SOLVED', 'CHWILE ROZWIAZANE'), &
-      say_marked = phrase_t('FLAGGED', 'ZAZNACZONE'), &
+      say_flagged = phrase_t('FLAGGED', 'ZAZNACZONE'), &
       say_no_position = phrase_t('NO POSITION FOUND', 'NIE ZNALEZIONO POLOZENIA'), &
       say_no_rates = phrase_t('JACOBIAN SINGULAR: VELOCITIES AND ACCELERATIONS DO NOT EXIST', &
          'JAKOBIAN OSOBLIWY: PREDKOSCI I PRZYSPIESZENIA NIE ISTNIEJA'), &
@@ -48,13 +48,13 @@ module phrases
       say_groups = phrase_t('ASSUR GROUPS IN SOLVING ORDER', 'GRUPY ASSURA W KOLEJNOSCI ROZWIAZYWANIA'), &
       say_driven = phrase_t('DRIVEN', 'NAPEDZANA'), &
       say_not_needed = phrase_t('NOT NEEDED', 'ZBEDNA'), &
-      say_open_by = phrase_t('STAYS OPEN BY', 'POZOSTAJE OTWARTA O'), &
+      say_closure_error_of = phrase_t('STAYS OPEN BY', 'POZOSTAJE OTWARTA O'), &
       say_limit = phrase_t('LIMIT OF MOTION AT T =', 'KRES RUCHU W CHWILI T ='), &
       say_in_line = phrase_t('AT THE LIMIT, IN LINE', 'NA KRESIE RUCHU, W JEDNEJ LINII'), &
       say_off_by = phrase_t('ESTIMATED ANGLE WAS OFF BY', 'KAT PRZYBLIZONY ODBIEGAL O'), &
       say_second = phrase_t('ANOTHER ASSEMBLY IS ABOUT AS NEAR', 'INNY MONTAZ JEST PODOBNIE BLISKI'), &
       say_redundant = phrase_t('REDUNDANT EQUATION', 'ROWNANIE NADLICZBOWE'), &
-      say_gap = phrase_t('LARGEST GAP OF REDUNDANT EQUATIONS, OF THE SIZE:', &
+      say_closure_error = phrase_t('LARGEST GAP OF REDUNDANT EQUATIONS, OF THE SIZE:', &
          'NAJWIEKSZA NIEZGODNOSC ROWNAN NADLICZBOWYCH WZGLEDEM WYMIARU:'), &
       say_mobile = phrase_t('CAN STILL MOVE, ADD A DRIVE', 'RUCH NIEOKRESLONY, DODAJ NAPED'), &
       say_contradiction = phrase_t('TOO MANY EQUATIONS, AND THEY CONTRADICT ONE ANOTHER', &

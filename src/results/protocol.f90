@@ -4,7 +4,7 @@ module protocol
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton, method_dense, method_matrix
    use convergence, only: convergence_t, ending
-   use continuity, only: branch_t, branch_word
+   use branch_certificate, only: branch_t, branch_word
    use text_output, only: output_t, put
    use numerals, only: whole
    use known_digits, only: nothing_known
@@ -45,7 +45,8 @@ contains
       integer :: k
 
       write (line, '(i8,es25.16e3,a10,i6,3es11.3,es22.3,i13,a9,i7,es11.3)') step, t, adjustr(ending(c)), c%iterations, &
-         c%residual, c%step, c%rate, c%reciprocal_condition, c%determinant, adjustr(branch_word(b)), b%parts, b%doubt
+         c%residual, c%step, c%rate, c%reciprocal_condition, c%determinant, adjustr(branch_word(b)), b%parts, &
+         b%kantorovich_ratio
       if (present(errors)) then
          do k = 0, 2
             if (errors(k) < nothing_known) then

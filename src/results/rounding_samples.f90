@@ -5,15 +5,15 @@ module rounding_samples
    use mechanism, only: mechanism_t, place_links
    use motion, only: motion_t, new_motion, forget_links
    use scales, only: characteristic_length, characteristic_rate
-   use convergence, only: convergence_t, is_solved, ended_open
+   use convergence, only: convergence_t, is_solved, ended_inconsistent
    use block_solver, only: solve_block
    use link_knowledge, only: know_links
-   use block_engine, only: block_engine_t, make_block_engine, set_targets, tell_blocks
+   use block_engine, only: block_engine_t, make_block_engine, set_drive_values, get_blocks_motion
    use perturbed_deck, only: sample_count, perturbed, perturbed_instant
-   use scatter, only: scatter_t, find_noise, unusable
+   use error_estimate, only: error_estimate_t, find_estimates, unusable
    implicit none
    private
-   public :: samples_t, make_samples, take_samples
+   public :: samples_t, make_estimates, take_samples
 
    !> Errors are roundings times |J^-1|^2 times the bend times what is asked for; below this many, and with no number
    !> larger than so many characteristic ones, all digits of a table are safe.
@@ -33,13 +33,13 @@ module rounding_samples
 contains
 
    !> Samples of `m`; the engines are made when they are first asked for.
-   subroutine make_samples(s, m)
+   subroutine make_estimates(s, m)
       type(samples_t), intent(out) :: s
       type(mechanism_t), intent(in) :: m
 
       s%length = characteristic_length(m)
       s%rate = characteristic_rate(m, s%length)
-   end subroutine make_samples
+   end subroutine make_estimates
 
    !> How far the motion `q` of `m` is known, which the blocks `e` have found or, where they are not allocated, another
    !> method, by a matrix of the reciprocal condition `rcond`. `always`: also where no digit of a table is in doubt.
@@ -50,7 +50,7 @@ contains
       real(wp), intent(in) :: rcond
       type(motion_t), intent(in) :: q
       logical, intent(in) :: always
-      type(scatter_t), intent(inout) :: found
+      type(error_estimate_t), intent(inout) :: found
       integer :: k
 
       found%taken = .false.
@@ -69,14 +69,14 @@ contains
                ! The perturbed deck's unit may be the next power of two.
                u%value = e%state%u%value*(slide_units(e)/slide_units(s%engine(k)))
             else
-               u%value = s%engine(k)%rough
+               u%value = s%engine(k)%estimated
             end if
             u(2:)%value = u(2:)%value + nudge
          end associate
          call solve_again(s%engine(k), perturbed_instant(q%t, k), found%samples(k))
       end do
       found%taken = found%samples(0)%known /= unusable .and. any(found%samples(1:)%known /= unusable)
-      if (found%taken) call find_noise(m, s%length, found)
+      if (found%taken) call find_estimates(m, s%length, found)
    end subroutine take_samples
 
    !> (0:unknowns) The unit of each slide in the deck's; 1 of an angle.
@@ -85,7 +85,7 @@ contains
       real(wp) :: unit(0:e%blocks%unknowns)
 
       unit = e%blocks%unit
-      unit(e%blocks%frames + 1:) = unit(e%blocks%frames + 1:)*e%length
+      unit(e%blocks%orientations + 1:) = unit(e%blocks%orientations + 1:)*e%length
    end function slide_units
 
    !> Some digit could be in doubt: a pivot is small, or a number large.
@@ -108,7 +108,7 @@ contains
       do k = 1, size(e%needed)
          associate (i => e%needed(k))
             if (.not. e%blocks%list(i)%direct) is_in_doubt = is_in_doubt .or. &
-               e%blocks%list(i)%bend*max(1.0_wp, size_of) > safe_growth*min(1.0_wp, e%pivot_now(i))**2
+               e%blocks%list(i)%lipschitz*max(1.0_wp, size_of) > safe_growth*min(1.0_wp, e%pivot_now(i))**2
          end associate
       end do
    end function is_in_doubt
@@ -152,7 +152,7 @@ contains
       q%t = t
       q%known = 2
       call forget_links(q)
-      call set_targets(e, t)
+      call set_drive_values(e, t)
       correction = 0.0_wp
       do i = 1, size(e%needed)
          c = convergence_t()
@@ -160,10 +160,10 @@ contains
          if (c%singular) q%known = 0
          e%is_singular(e%needed(i)) = c%singular
          if (is_solved(c) .and. .not. c%rates_open) cycle
-         q%known = merge(unusable, -1, c%ended == ended_open .or. c%rates_open)
+         q%known = merge(unusable, -1, c%ended == ended_inconsistent .or. c%rates_open)
          return
       end do
-      call tell_blocks(e, q, finite)
+      call get_blocks_motion(e, q, finite)
       if (q%known == 0) call know_links(e, q)
    end subroutine solve_again
 end module rounding_samples

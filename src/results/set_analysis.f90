@@ -3,19 +3,19 @@
 module set_analysis
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use remarks, only: remark_t
+   use diagnostics, only: diagnostic_t
    use convergence, only: convergence_t, is_solved, gather
-   use continuity, only: branch_t, tally_t, count_in, worst_branch
-   use choices, only: choices_t, new_choices, unused
-   use scatter, only: largest_errors
-   use rounding_samples, only: samples_t, make_samples, take_samples
+   use branch_certificate, only: branch_t, certificate_counts_t, count_in, worst_branch
+   use branch_requests, only: branch_requests_t, new_branch_requests, unused
+   use error_estimate, only: largest_errors
+   use rounding_samples, only: samples_t, make_estimates, take_samples
    use set_motion, only: set_motion_t, new_set_motion
-   use analysis, only: analysis_t, make_analysis, advance, redundancy_gap
-   use second_opinion, only: opinion_t, ask_blocks
+   use analysis, only: analysis_t, make_analysis, advance, redundancy_error
+   use diagnosis, only: opinion_t, ask_blocks
    implicit none
    private
-   public :: set_analysis_t, make_set_analysis, advance_set, sample_set, set_record, set_errors, set_gap, &
-      set_closing_remarks, iterations_of
+   public :: set_analysis_t, make_set_analysis, advance_set, sample_set, set_record, set_errors, set_closure_error, &
+      set_closing_diagnostics, iterations_of
 
    !> `now`: the instant found last.
    type :: set_analysis_t
@@ -23,7 +23,7 @@ module set_analysis
       type(analysis_t), allocatable :: list(:)    !< (parts)
       type(opinion_t), allocatable :: opinions(:) !< (parts)
       type(samples_t), allocatable :: samples(:)  !< (parts)
-      type(tally_t) :: tally                      !< of all instants
+      type(certificate_counts_t) :: certificate_counts                      !< of all instants
    end type set_analysis_t
 
 contains
@@ -51,7 +51,7 @@ contains
          integer, intent(in) :: c
 
          call make_analysis(s%list(c), one)
-         call make_samples(s%samples(c), one)
+         call make_estimates(s%samples(c), one)
       end subroutine prepare
    end subroutine make_set_analysis
 
@@ -66,20 +66,20 @@ contains
       if (s%now%parts%count == 1) then
          call advance(s%list(1), t, s%now%motions(1))
          call ask_blocks(m, s%list(1), s%opinions(1), s%now%motions(1))
-         s%tally = s%list(1)%tally
+         s%certificate_counts = s%list(1)%certificate_counts
          return
       end if
-      passed = sum(s%list%tally%passed)
+      passed = sum(s%list%certificate_counts%passed)
       do c = 1, s%now%parts%count
          call advance(s%list(c), t, s%now%motions(c))
          call ask_blocks(s%now%own(c), s%list(c), s%opinions(c), s%now%motions(c))
       end do
-      passed = sum(s%list%tally%passed) - passed
+      passed = sum(s%list%certificate_counts%passed) - passed
       branch = worst_branch(s%list%branch)
       if (all(s%now%motions%known >= 0)) then
-         call count_in(s%tally, branch, passed)
+         call count_in(s%certificate_counts, branch, passed)
       else
-         s%tally%passed = s%tally%passed + passed
+         s%certificate_counts%passed = s%certificate_counts%passed + passed
       end if
    end subroutine advance_set
 
@@ -103,7 +103,7 @@ contains
 
          associate (a => s%list(c))
             call take_samples(s%samples(c), one, a%engine%blocks, a%convergence%reciprocal_condition, &
-               s%now%motions(c), always, s%now%doubts(c))
+               s%now%motions(c), always, s%now%kantorovich_ratios(c))
          end associate
       end subroutine sample
    end subroutine sample_set
@@ -119,7 +119,7 @@ contains
       branch = worst_branch(s%list%branch)
       do c = 2, size(s%list)
          associate (one => s%list(c)%convergence)
-            record%doubt = max(record%doubt, one%doubt)
+            record%kantorovich_ratio = max(record%kantorovich_ratio, one%kantorovich_ratio)
             record%rate = max(record%rate, one%rate)
             if (is_solved(record) .or. .not. is_solved(one)) then
                call gather(one, record)
@@ -139,42 +139,42 @@ contains
       integer :: c
 
       largest = 0.0_wp
-      if (size(s%now%own) == 0) largest = largest_errors(m, s%now%doubts(1), s%now%motions(1), &
+      if (size(s%now%own) == 0) largest = largest_errors(m, s%now%kantorovich_ratios(1), s%now%motions(1), &
          s%samples(1)%length, s%samples(1)%rate)
       do c = 1, size(s%now%own)
-         largest = max(largest, largest_errors(s%now%own(c), s%now%doubts(c), s%now%motions(c), &
+         largest = max(largest, largest_errors(s%now%own(c), s%now%kantorovich_ratios(c), s%now%motions(c), &
             s%samples(c)%length, s%samples(c)%rate))
       end do
    end function set_errors
 
    !> By how much redundant equations have differed at most, in the characteristic length; -1 where none are.
-   pure real(wp) function set_gap(s) result(gap)
+   pure real(wp) function set_closure_error(s) result(closure_error)
       type(set_analysis_t), intent(in) :: s
       integer :: c
 
-      gap = -1.0_wp
+      closure_error = -1.0_wp
       do c = 1, size(s%list)
-         gap = max(gap, redundancy_gap(s%list(c)))
+         closure_error = max(closure_error, redundancy_error(s%list(c)))
       end do
-   end function set_gap
+   end function set_closure_error
 
    !> What there is to say after the last instant: of BRANCH cards for which there was no change point.
-   pure function set_closing_remarks(s, m) result(list)
+   pure function set_closing_diagnostics(s, m) result(list)
       type(set_analysis_t), intent(in) :: s
       type(mechanism_t), intent(in) :: m
-      type(remark_t), allocatable :: list(:)
-      type(choices_t) :: all_of_them
+      type(diagnostic_t), allocatable :: list(:)
+      type(branch_requests_t) :: all_of_them
       integer :: c
 
-      all_of_them = new_choices(m)
-      if (size(s%now%own) == 0) all_of_them%used = s%list(1)%choices%used
+      all_of_them = new_branch_requests(m)
+      if (size(s%now%own) == 0) all_of_them%used = s%list(1)%branch_requests%used
       do c = 1, size(s%now%own)
-         associate (cards => s%now%parts%list(c)%choices)
-            all_of_them%used(cards) = all_of_them%used(cards) .or. s%list(c)%choices%used
+         associate (cards => s%now%parts%list(c)%branch_requests)
+            all_of_them%used(cards) = all_of_them%used(cards) .or. s%list(c)%branch_requests%used
          end associate
       end do
       list = unused(all_of_them)
-   end function set_closing_remarks
+   end function set_closing_diagnostics
 
    !> Iterations of all positions sought so far: as one mechanism has them where there is one, of several the most.
    pure integer function iterations_of(s)

@@ -3,10 +3,10 @@
 module set_motion
    use mechanism, only: mechanism_t
    use motion, only: motion_t, new_motion, mark_none
-   use remarks, only: remark_t
+   use diagnostics, only: diagnostic_t
    use part_mechanism, only: part_t
    use independent, only: parts_t, find_parts
-   use scatter, only: scatter_t
+   use error_estimate, only: error_estimate_t
    implicit none
    private
    public :: set_motion_t, new_set_motion, is_flagged, has_words, in_set, put_together
@@ -16,7 +16,7 @@ module set_motion
       type(parts_t) :: parts
       type(mechanism_t), allocatable :: own(:)    !< (parts)
       type(motion_t), allocatable :: motions(:)   !< (parts)
-      type(scatter_t), allocatable :: doubts(:)   !< (parts)
+      type(error_estimate_t), allocatable :: kantorovich_ratios(:)   !< (parts)
    end type set_motion_t
 
 contains
@@ -28,7 +28,7 @@ contains
       integer :: c
 
       call find_parts(m, s%parts, s%own)
-      allocate (s%motions(s%parts%count), s%doubts(s%parts%count))
+      allocate (s%motions(s%parts%count), s%kantorovich_ratios(s%parts%count))
       if (s%parts%count == 1) s%motions(1) = new_motion(size(m%links))
       do c = 1, size(s%own)
          s%motions(c) = new_motion(size(s%own(c)%links))
@@ -54,7 +54,7 @@ contains
 
       has_words = is_flagged(s)
       do c = 1, size(s%motions)
-         has_words = has_words .or. allocated(s%motions(c)%remarks)
+         has_words = has_words .or. allocated(s%motions(c)%diagnostics)
       end do
    end function has_words
 
@@ -83,8 +83,8 @@ contains
    end subroutine put_together
 
    !> The remark `r` of a part in the numbers of the set.
-   pure type(remark_t) function in_set(r, part)
-      type(remark_t), intent(in) :: r
+   pure type(diagnostic_t) function in_set(r, part)
+      type(diagnostic_t), intent(in) :: r
       type(part_t), intent(in) :: part
 
       in_set = r

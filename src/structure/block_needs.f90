@@ -58,12 +58,12 @@ contains
       do i = size(t%order), 1, -1
          link = t%order(i)
          if (.not. chain(link)) cycle
-         need(t%frame(link)) = .true.
-         if (t%above(link) > 0) then
-            chain(t%above(link)) = .true.
-            if (t%slide(t%hung_by(link)) > 0) need(b%frames + t%slide(t%hung_by(link))) = .true.
+         need(t%orientation(link)) = .true.
+         if (t%parent(link) > 0) then
+            chain(t%parent(link)) = .true.
+            if (t%slide(t%parent_joint(link)) > 0) need(b%orientations + t%slide(t%parent_joint(link))) = .true.
          else if (t%root(link) > 0) then
-            need(b%frames + t%slides + 2*t%root(link) - 1:b%frames + t%slides + 2*t%root(link)) = .true.
+            need(b%orientations + t%slides + 2*t%root(link) - 1:b%orientations + t%slides + 2*t%root(link)) = .true.
          end if
       end do
    end subroutine need_links
@@ -76,12 +76,12 @@ contains
       integer :: m
 
       need(b%rows(b%list(i)%first_row:b%list(i)%last_row)%other) = .true.
-      do m = b%list(i)%first_instance, b%list(i)%last_instance
-         associate (g => b%instances(m))
-            need(b%arms(g%first_arm:g%last_arm)%frame) = .true.
-            need(b%slides(g%first_slide:g%last_slide)%frame) = .true.
+      do m = b%list(i)%first_loop, b%list(i)%last_loop
+         associate (g => b%loops(m))
+            need(b%body_vectors(g%first_vector:g%last_vector)%orientation) = .true.
+            need(b%slides(g%first_slide:g%last_slide)%orientation) = .true.
             need(b%slides(g%first_slide:g%last_slide)%unknown) = .true.
-            need(g%frame) = .true.
+            need(g%orientation) = .true.
             need(g%less) = .true.
          end associate
       end do
@@ -110,11 +110,11 @@ contains
       integer :: m
 
       largest = max(0, maxval(mark(b%rows(b%list(i)%first_row:b%list(i)%last_row)%other)))
-      do m = b%list(i)%first_instance, b%list(i)%last_instance
-         associate (g => b%instances(m))
-            largest = max(largest, mark(g%frame), mark(g%less), &
-               maxval(mark(b%arms(g%first_arm:g%last_arm)%frame)), &
-               maxval(mark(b%slides(g%first_slide:g%last_slide)%frame)), &
+      do m = b%list(i)%first_loop, b%list(i)%last_loop
+         associate (g => b%loops(m))
+            largest = max(largest, mark(g%orientation), mark(g%less), &
+               maxval(mark(b%body_vectors(g%first_vector:g%last_vector)%orientation)), &
+               maxval(mark(b%slides(g%first_slide:g%last_slide)%orientation)), &
                maxval(mark(b%slides(g%first_slide:g%last_slide)%unknown)))
          end associate
       end do

@@ -7,7 +7,7 @@ module block_partition
    use matching, only: incidence_t, match, find_blocks, overdetermined
    use loop_equations, only: equations_t, incidence, equation_angle, equation_slide
    use blocks, only: blocks_t, block_t
-   use block_instances, only: fill_instances
+   use block_loops, only: fill_block_loops
    use block_places, only: find_places
    implicit none
    private
@@ -25,9 +25,9 @@ contains
       logical :: over(e%count)
       integer :: i
 
-      b%frames = t%frames
-      b%unknowns = t%frames + t%slides + 2*t%roots
-      g = incidence(e, b%frames, b%unknowns)
+      b%orientations = t%orientations
+      b%unknowns = t%orientations + t%slides + 2*t%roots
+      g = incidence(e, b%orientations, b%unknowns)
       call match(g, unknown_of, equation_of)
       b%free = pack([(i, i=1, b%unknowns)], equation_of == 0)
       b%solvable = size(b%free) == 0
@@ -53,7 +53,7 @@ contains
          b%block_of(b%unknown(b%list(i)%first:b%list(i)%last)) = i
       end do
       call fill_rows(e, member, b)
-      call fill_instances(e, member, b)
+      call fill_block_loops(e, member, b)
       allocate (b%unit(0:b%unknowns), source=1.0_wp)
       call find_places(b)
    end function new_blocks
@@ -102,7 +102,7 @@ contains
                ! phi_frame - phi_less = constant + value, solved for whichever of the two is sought.
                row%other = equation%less
                if (b%unknown(b%list(i)%first) /= equation%less) cycle
-               row%other = equation%frame
+               row%other = equation%orientation
                row%sign_of = -1.0_wp
             end associate
          end do

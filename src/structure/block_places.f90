@@ -3,7 +3,7 @@
 module block_places
    use klu, only: pattern_t
    use block_matrix, only: shape_t, is_sparse_better
-   use blocks, only: blocks_t, block_t, instance_t
+   use blocks, only: blocks_t, block_t, block_loop_t
    implicit none
    private
    public :: find_places
@@ -76,11 +76,11 @@ contains
       type(places_t), intent(inout) :: p
       integer :: m
 
-      do m = block%first_instance, block%last_instance
-         call place_row(b, b%instances(m), 1, b%instances(m)%row_x, p)
-         call place_row(b, b%instances(m), 2, b%instances(m)%row_y, p)
-         associate (g => b%instances(m))
-            call place(p, g%row_x, g%frame_column, g%frame_at)
+      do m = block%first_loop, block%last_loop
+         call place_row(b, b%loops(m), 1, b%loops(m)%row_x, p)
+         call place_row(b, b%loops(m), 2, b%loops(m)%row_y, p)
+         associate (g => b%loops(m))
+            call place(p, g%row_x, g%orientation_column, g%orientation_at)
             call place(p, g%row_x, g%less_column, g%less_at)
          end associate
       end do
@@ -89,18 +89,18 @@ contains
    !> The entries of arms and slides of instance `g` in row number `row`, which is its row_x (`side` 1) or row_y (2).
    pure subroutine place_row(b, g, side, row, p)
       type(blocks_t), intent(inout) :: b
-      type(instance_t), intent(in) :: g
+      type(block_loop_t), intent(in) :: g
       integer, intent(in) :: side, row
       type(places_t), intent(inout) :: p
       integer :: k
 
       if (row == 0) return
-      do k = g%first_own, g%last_arm
-         call place(p, row, b%arms(k)%column, b%arms(k)%at(side))
+      do k = g%first_own, g%last_vector
+         call place(p, row, b%body_vectors(k)%column, b%body_vectors(k)%at(side))
       end do
       do k = g%first_slide, g%last_slide
          call place(p, row, b%slides(k)%column, b%slides(k)%at(side))
-         call place(p, row, b%slides(k)%frame_column, b%slides(k)%frame_at(side))
+         call place(p, row, b%slides(k)%orientation_column, b%slides(k)%orientation_at(side))
       end do
    end subroutine place_row
 

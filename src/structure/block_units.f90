@@ -7,8 +7,8 @@
 module block_units
    use kinds, only: wp
    use scales, only: power_of_two
-   use blocks, only: blocks_t, instance_t, row_t, instance_angles, instance_projection
-   use block_instances, only: bend_of
+   use blocks, only: blocks_t, block_loop_t, row_t, loop_angles, loop_projection
+   use block_loops, only: lipschitz_of
    implicit none
    private
    public :: find_units
@@ -23,17 +23,17 @@ contains
       integer :: i, m
 
       do i = 1, size(b%list)
-         associate (first => b%list(i)%first_instance, last => b%list(i)%last_instance)
+         associate (first => b%list(i)%first_loop, last => b%list(i)%last_loop)
             do m = first, last
                call measure(b, m)
             end do
-            call make_alike(b%instances(first:last))
+            call make_alike(b%loops(first:last))
             call measure_slides(b, i)
             do m = first, last
                call divide(b, b%list(i)%first_row, m)
             end do
-            b%list(i)%bend = bend_of(b, b%list(i))
-            b%list(i)%coarse = max(1.0_wp, maxval(b%instances(first:last)%coarse))
+            b%list(i)%lipschitz = lipschitz_of(b, b%list(i))
+            b%list(i)%coarse = max(1.0_wp, maxval(b%loops(first:last)%coarse))
          end associate
       end do
    end subroutine find_units
@@ -46,21 +46,21 @@ contains
       real(wp) :: own, known
       integer :: k
 
-      associate (g => b%instances(m))
-         if (g%kind == instance_angles) return
+      associate (g => b%loops(m))
+         if (g%kind == loop_angles) return
          own = 0.0_wp
          known = max(abs(g%ground(1)), abs(g%ground(2)))
-         do k = g%first_arm, g%first_own - 1
-            known = max(known, abs(b%arms(k)%x), abs(b%arms(k)%y))
+         do k = g%first_vector, g%first_own - 1
+            known = max(known, abs(b%body_vectors(k)%x), abs(b%body_vectors(k)%y))
          end do
-         do k = g%first_own, g%last_arm
-            own = max(own, abs(b%arms(k)%x), abs(b%arms(k)%y))
+         do k = g%first_own, g%last_vector
+            own = max(own, abs(b%body_vectors(k)%x), abs(b%body_vectors(k)%y))
          end do
          do k = g%first_slide, g%last_slide
             if (b%slides(k)%column == 0) known = max(known, b%unit(b%slides(k)%unknown))
          end do
          if (own <= 0.0_wp .or. any(b%slides(g%first_slide:g%last_slide)%column > 0) .or. &
-            (g%kind == instance_projection .and. g%frame_column > 0)) own = max(own, known)
+            (g%kind == loop_projection .and. g%orientation_column > 0)) own = max(own, known)
          if (own > 0.0_wp) g%unit = power_of_two(own)
          g%coarse = known
       end associate
@@ -69,13 +69,13 @@ contains
    !> Polygons `g` of one block that are not much smaller than the largest have its unit: the weights of their rows are
    !> then the same among equations that are too many. What is known is from now on in the polygon's unit.
    pure subroutine make_alike(g)
-      type(instance_t), intent(inout) :: g(:)
+      type(block_loop_t), intent(inout) :: g(:)
       real(wp) :: largest
       integer :: m
 
-      largest = maxval(g%unit, mask=g%kind /= instance_angles)
+      largest = maxval(g%unit, mask=g%kind /= loop_angles)
       do m = 1, size(g)
-         if (g(m)%kind == instance_angles) cycle
+         if (g(m)%kind == loop_angles) cycle
          if (g(m)%unit >= much_smaller*largest) g(m)%unit = largest
          g(m)%coarse = max(1.0_wp, g(m)%coarse/g(m)%unit)
       end do
@@ -89,8 +89,8 @@ contains
       logical :: met(0:merge(b%unknowns, 0, size(b%slides) > 0))
 
       met = .false.
-      do m = b%list(i)%first_instance, b%list(i)%last_instance
-         associate (g => b%instances(m))
+      do m = b%list(i)%first_loop, b%list(i)%last_loop
+         associate (g => b%loops(m))
             do k = g%first_slide, g%last_slide
                if (b%slides(k)%column == 0) cycle
                associate (u => b%slides(k)%unknown)
@@ -112,17 +112,17 @@ contains
       integer, intent(in) :: first_row, m
       integer :: k
 
-      associate (g => b%instances(m))
+      associate (g => b%loops(m))
          ! A slide by itself.
-         if (g%kind == instance_angles) g%unit = b%unit(g%frame)
+         if (g%kind == loop_angles) g%unit = b%unit(g%orientation)
          if (g%row_x > 0) call divide_row(g%unit, b%rows(first_row + g%row_x - 1))
          if (g%row_y > 0) call divide_row(g%unit, b%rows(first_row + g%row_y - 1))
-         if (g%kind == instance_angles) return
+         if (g%kind == loop_angles) return
          g%ground = g%ground/g%unit
-         b%arms(g%first_arm:g%last_arm)%x = b%arms(g%first_arm:g%last_arm)%x/g%unit
-         b%arms(g%first_arm:g%last_arm)%y = b%arms(g%first_arm:g%last_arm)%y/g%unit
+         b%body_vectors(g%first_vector:g%last_vector)%x = b%body_vectors(g%first_vector:g%last_vector)%x/g%unit
+         b%body_vectors(g%first_vector:g%last_vector)%y = b%body_vectors(g%first_vector:g%last_vector)%y/g%unit
          do k = g%first_slide, g%last_slide
-            b%slides(k)%arm = b%slides(k)%arm*(b%unit(b%slides(k)%unknown)/g%unit)
+            b%slides(k)%body_vector = b%slides(k)%body_vector*(b%unit(b%slides(k)%unknown)/g%unit)
          end do
       end associate
    end subroutine divide

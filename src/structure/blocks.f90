@@ -1,7 +1,7 @@
 !> The blocks of a mechanism in solving order, as data made for fast evaluation: for each block the polygons it
 !> closes, split into what is known when its turn comes and what it seeks.
 !>
-!> Unknowns: 1 to `frames` the angles of the frames, then the slides. A block is an Assur group with the drives
+!> Unknowns: 1 to `orientations` the angles of the frames, then the slides. A block is an Assur group with the drives
 !> that move it, or one drive alone. Contract: a block needs unknowns of earlier blocks only; every unknown belongs to
 !> exactly one block.
 module blocks
@@ -10,23 +10,23 @@ module blocks
    use block_matrix, only: shape_t
    implicit none
    private
-   public :: blocks_t, block_t, row_t, instance_t, arm_t, slide_t
-   public :: instance_components, instance_projection, instance_angles
+   public :: blocks_t, block_t, row_t, block_loop_t, body_vector_t, slide_t
+   public :: loop_components, loop_projection, loop_angles
 
-   integer, parameter :: instance_components = 1  !< x and y of a polygon, or one of them
-   integer, parameter :: instance_projection = 2  !< the projection of a polygon
-   integer, parameter :: instance_angles = 3      !< no polygon: two angles that one block seeks together
+   integer, parameter :: loop_components = 1  !< x and y of a polygon, or one of them
+   integer, parameter :: loop_projection = 2  !< the projection of a polygon
+   integer, parameter :: loop_angles = 3      !< no polygon: two angles that one block seeks together
 
    !> Unknowns, rows of equations and instances of a block. As many rows as unknowns, but in the first block where
    !> equations are too many.
    type :: block_t
       integer :: first = 1, last = 0
       integer :: first_row = 1, last_row = 0
-      integer :: first_instance = 1, last_instance = 0
+      integer :: first_loop = 1, last_loop = 0
       type(shape_t) :: shape                      !< of its Jacobian
       logical :: direct = .false.                 !< one equation that is linear with coefficient 1
       real(wp) :: coarse = 1.0_wp                 !< the largest of its instances'
-      real(wp) :: bend = 0.0_wp                   !< bounds the change of its Jacobian over that of its unknowns
+      real(wp) :: lipschitz = 0.0_wp                   !< bounds the change of its Jacobian over that of its unknowns
    end type block_t
 
    !> Row of an equation: = constant + value of the drive; direct: unknown = other + sign_of (constant + value).
@@ -39,33 +39,33 @@ module blocks
    end type row_t
 
    !> A polygon as one block sees it: rows (0: none), the known arms first, then those of the block's own frames.
-   type :: instance_t
-      integer :: kind = instance_components
+   type :: block_loop_t
+      integer :: kind = loop_components
       integer :: row_x = 0, row_y = 0
-      integer :: first_arm = 1, first_own = 1, last_arm = 0, first_slide = 1, last_slide = 0
-      integer :: frame = 0, frame_column = 0      !< projection: turns with it; angles: the first
+      integer :: first_vector = 1, first_own = 1, last_vector = 0, first_slide = 1, last_slide = 0
+      integer :: orientation = 0, orientation_column = 0      !< projection: turns with it; angles: the first
       integer :: less = 0, less_column = 0        !< angles: the one subtracted
-      integer :: frame_at = 0, less_at = 0        !< where their entries stand in the Jacobian
+      integer :: orientation_at = 0, less_at = 0        !< where their entries stand in the Jacobian
       real(wp) :: direction(2) = 0.0_wp           !< projection: in its frame's axes
       real(wp) :: ground(2) = 0.0_wp              !< the polygon's fixed part
       real(wp) :: unit = 1.0_wp                   !< of its lengths: see block_units
       real(wp) :: coarse = 1.0_wp                 !< what is known over the unit, 1 at least
-   end type instance_t
+   end type block_loop_t
 
    !> `at`: where its entries stand in the Jacobian of its block, for the rows row_x and row_y.
-   type :: arm_t
-      integer :: frame = 0, column = 0, at(2) = 0
+   type :: body_vector_t
+      integer :: orientation = 0, column = 0, at(2) = 0
       real(wp) :: x = 0.0_wp, y = 0.0_wp
-   end type arm_t
+   end type body_vector_t
 
-   !> Columns are 0 for what is known; `at` as above, `frame_at` those of the frame's column.
+   !> Columns are 0 for what is known; `at` as above, `orientation_at` those of the frame's column.
    type :: slide_t
-      integer :: frame = 0, frame_column = 0, unknown = 0, column = 0, at(2) = 0, frame_at(2) = 0
-      real(wp) :: arm(2) = 0.0_wp
+      integer :: orientation = 0, orientation_column = 0, unknown = 0, column = 0, at(2) = 0, orientation_at(2) = 0
+      real(wp) :: body_vector(2) = 0.0_wp
    end type slide_t
 
    type :: blocks_t
-      integer :: frames = 0, unknowns = 0
+      integer :: orientations = 0, unknowns = 0
       logical :: solvable = .false.               !< each unknown has an equation of its own
       integer :: redundant = 0                    !< equations that found no unknown
       integer, allocatable :: free(:)             !< unknowns that found no equation
@@ -74,8 +74,8 @@ module blocks
       integer, allocatable :: block_of(:)         !< (unknowns)
       real(wp), allocatable :: unit(:)            !< (0:unknowns) of a slide; 1 of an angle
       type(row_t), allocatable :: rows(:)
-      type(instance_t), allocatable :: instances(:)
-      type(arm_t), allocatable :: arms(:)
+      type(block_loop_t), allocatable :: loops(:)
+      type(body_vector_t), allocatable :: body_vectors(:)
       type(slide_t), allocatable :: slides(:)
       type(pattern_t), allocatable :: patterns(:) !< of the blocks with a sparse Jacobian
    end type blocks_t

@@ -17,14 +17,14 @@ module links_tree
    end type neighbours_t
 
    type :: tree_t
-      integer :: frames = 0                 !< angles that are unknown; frame 0 is the ground's
+      integer :: orientations = 0                 !< angles that are unknown; frame 0 is the ground's
       integer :: slides = 0                 !< slides of prismatic pairs in the tree
       integer :: roots = 0                  !< parts that no pair joins to the ground
       real(wp) :: origin(2) = 0.0_wp        !< what places are counted from
-      integer, allocatable :: frame(:)      !< (links)
-      real(wp), allocatable :: turn(:)      !< (links) phi of the link less the angle of its frame
-      integer, allocatable :: hung_by(:)    !< (links) the pair to the link above; 0: ground or root
-      integer, allocatable :: above(:)      !< (links) the link on which it hangs; 0: ground or root
+      integer, allocatable :: orientation(:)      !< (links)
+      real(wp), allocatable :: angle_offset(:)      !< (links) phi of the link less the angle of its frame
+      integer, allocatable :: parent_joint(:)    !< (links) the pair to the link above; 0: ground or root
+      integer, allocatable :: parent(:)      !< (links) the link on which it hangs; 0: ground or root
       integer, allocatable :: depth(:)      !< (links)
       integer, allocatable :: root(:)       !< (links) number of its part; 0: joined to the ground
       integer, allocatable :: order(:)      !< (links) from the ground outwards: what is above comes first
@@ -42,7 +42,7 @@ contains
 
       t%origin = plane_origin(m)
       t%near = neighbours(m)
-      call find_frames(m, t%near, t)
+      call find_orientations(m, t%near, t)
       call grow(m, t%near, t)
    end function new_tree
 
@@ -91,15 +91,15 @@ contains
 
    !> Frames and turns: a walk over prismatic pairs alone, first from the ground links, then from every link not
    !> yet seen.
-   subroutine find_frames(m, near, t)
+   subroutine find_orientations(m, near, t)
       type(mechanism_t), intent(in) :: m
       type(neighbours_t), intent(in) :: near
       type(tree_t), intent(inout) :: t
       integer :: queue(size(m%links)), last, link
       logical :: used(size(m%pairs))
 
-      allocate (t%frame(size(m%links)), source=-1)
-      allocate (t%turn(size(m%links)), source=0.0_wp)
+      allocate (t%orientation(size(m%links)), source=-1)
+      allocate (t%angle_offset(size(m%links)), source=0.0_wp)
       allocate (t%surplus(0))
       used = .false.
       last = 0
@@ -107,22 +107,22 @@ contains
          if (.not. m%links(link)%ground) cycle
          last = last + 1
          queue(last) = link
-         t%frame(link) = 0
-         t%turn(link) = m%links(link)%position(3)
+         t%orientation(link) = 0
+         t%angle_offset(link) = m%links(link)%position(3)
       end do
-      call spread_frame(m, near, queue, last, used, t)
+      call spread_orientation(m, near, queue, last, used, t)
       do link = 1, size(m%links)
-         if (t%frame(link) >= 0) cycle
-         t%frames = t%frames + 1
-         t%frame(link) = t%frames
+         if (t%orientation(link) >= 0) cycle
+         t%orientations = t%orientations + 1
+         t%orientation(link) = t%orientations
          last = 1
          queue(1) = link
-         call spread_frame(m, near, queue, last, used, t)
+         call spread_orientation(m, near, queue, last, used, t)
       end do
-   end subroutine find_frames
+   end subroutine find_orientations
 
    !> Gives the frame of the `last` links in the queue to all links that prismatic pairs join to them.
-   subroutine spread_frame(m, near, queue, last, used, t)
+   subroutine spread_orientation(m, near, queue, last, used, t)
       type(mechanism_t), intent(in) :: m
       type(neighbours_t), intent(in) :: near
       integer, intent(inout) :: queue(:), last
@@ -139,17 +139,18 @@ contains
             if (m%pairs(k)%kind /= pair_prismatic .or. used(k)) cycle
             used(k) = .true.
             far = other_link(m, k, link)
-            if (t%frame(far) >= 0) then
+            if (t%orientation(far) >= 0) then
                t%surplus = [t%surplus, k]
                cycle
             end if
-            t%frame(far) = t%frame(link)
-            t%turn(far) = t%turn(link) + merge(m%pairs(k)%beta, -m%pairs(k)%beta, link_of(m, k, 1) == link)
+            t%orientation(far) = t%orientation(link)
+            t%angle_offset(far) = t%angle_offset(link) + merge(m%pairs(k)%beta, -m%pairs(k)%beta, link_of(m, k, &
+               1) == link)
             last = last + 1
             queue(last) = far
          end do
       end do
-   end subroutine spread_frame
+   end subroutine spread_orientation
 
    !> Hangs every link on the tree, breadth first; a prismatic pair is taken only where no revolute pair reaches on.
    subroutine grow(m, near, t)
@@ -159,7 +160,7 @@ contains
       integer :: last, revolute_next, prismatic_next, link
       logical :: hung
 
-      allocate (t%hung_by(size(m%links)), t%above(size(m%links)), t%root(size(m%links)), source=0)
+      allocate (t%parent_joint(size(m%links)), t%parent(size(m%links)), t%root(size(m%links)), source=0)
       allocate (t%depth(size(m%links)), source=-1)
       allocate (t%order(size(m%links)), t%slide(size(m%pairs)), source=0)
       last = 0
@@ -213,18 +214,18 @@ contains
       end do
    end subroutine hang_neighbours
 
-   subroutine hang(t, last, link, above, pair)
+   subroutine hang(t, last, link, parent, pair)
       type(tree_t), intent(inout) :: t
       integer, intent(inout) :: last
-      integer, intent(in) :: link, above, pair
+      integer, intent(in) :: link, parent, pair
 
       last = last + 1
       t%order(last) = link
-      t%above(link) = above
-      t%hung_by(link) = pair
+      t%parent(link) = parent
+      t%parent_joint(link) = pair
       t%depth(link) = 0
-      if (above == 0) return
-      t%depth(link) = t%depth(above) + 1
-      t%root(link) = t%root(above)
+      if (parent == 0) return
+      t%depth(link) = t%depth(parent) + 1
+      t%root(link) = t%root(parent)
    end subroutine hang
 end module links_tree

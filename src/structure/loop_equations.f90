@@ -9,7 +9,7 @@ module loop_equations
    use links_tree, only: tree_t
    use tree_paths, only: search_t, new_search, find_path, find_way_down, close_pair
    use tree_places, only: guide
-   use polygons, only: polygons_t, new_polygons, add_polygon
+   use vector_loops, only: vector_loops_t, new_vector_loops, add_vector_loop
    use matching, only: incidence_t
    implicit none
    private
@@ -25,10 +25,10 @@ module loop_equations
    !> What `kind` says = `constant` + value of the drive.
    type :: equation_t
       integer :: kind = equation_angle
-      integer :: polygon = 0
+      integer :: vector_loop = 0
       integer :: drive = 0                        !< 0: a pair's equation
       integer :: pair = 0                         !< 0: a drive's equation
-      integer :: frame = 0                        !< projection and angle: the frame; slide: the slide's number
+      integer :: orientation = 0                        !< projection and angle: the frame; slide: the slide's number
       integer :: less = 0                         !< angle: the frame whose angle is subtracted; 0: none
       real(wp) :: direction(2) = 0.0_wp           !< projection: in the frame's axes
       real(wp) :: constant = 0.0_wp
@@ -37,7 +37,7 @@ module loop_equations
    type :: equations_t
       integer :: count = 0
       type(equation_t), allocatable :: list(:)    !< (count), with room behind
-      type(polygons_t) :: polygons
+      type(vector_loops_t) :: vector_loops
    end type equations_t
 
 contains
@@ -53,7 +53,7 @@ contains
       integer :: i
 
       allocate (e%list(2*size(m%pairs) + size(m%drives) + size(t%surplus)))
-      e%polygons = new_polygons(m, t)
+      e%vector_loops = new_vector_loops(m, t)
       s = new_search(m, t)
       pairs = closing_pairs(m, t)
       do i = 1, size(pairs)
@@ -102,14 +102,15 @@ contains
       type(search_t), intent(inout) :: s
       type(equations_t), intent(inout) :: e
 
-      associate (p => m%pairs(k), n => e%polygons%count)
+      associate (p => m%pairs(k), n => e%vector_loops%count)
          call find_path(m, t, m%points(p%point_i)%link, m%points(p%point_j)%link, s)
-         call add_polygon(m, t, length, p%point_i, p%point_j, s, e%polygons)
+         call add_vector_loop(m, t, length, p%point_i, p%point_j, s, e%vector_loops)
          if (p%kind == pair_revolute) then
-            call add(e, equation_t(equation_x, polygon=n, pair=k))
-            call add(e, equation_t(equation_y, polygon=n, pair=k))
+            call add(e, equation_t(equation_x, vector_loop=n, pair=k))
+            call add(e, equation_t(equation_y, vector_loop=n, pair=k))
          else
-            call add(e, equation_t(equation_projection, polygon=n, pair=k, frame=t%frame(m%points(p%point_i)%link), &
+            call add(e, equation_t(equation_projection, vector_loop=n, pair=k, &
+               orientation=t%orientation(m%points(p%point_i)%link), &
                direction=guide(m, t, k, across=.true.), constant=p%offset/length))
          end if
       end associate
@@ -125,28 +126,29 @@ contains
       type(equations_t), intent(inout) :: e
       integer :: axis
 
-      associate (i => m%drives(k)%subject, j => m%drives(k)%second, n => e%polygons%count)
+      associate (i => m%drives(k)%subject, j => m%drives(k)%second, n => e%vector_loops%count)
          select case (m%drives(k)%kind)
          case (drive_angle)
-            call add(e, equation_t(equation_angle, drive=k, frame=t%frame(i), constant=-t%turn(i)))
+            call add(e, equation_t(equation_angle, drive=k, orientation=t%orientation(i), constant=-t%angle_offset(i)))
          case (drive_relangle)
-            call add(e, equation_t(equation_angle, drive=k, frame=t%frame(j), less=t%frame(i), &
-               constant=t%turn(i) - t%turn(j)))
+            call add(e, equation_t(equation_angle, drive=k, orientation=t%orientation(j), less=t%orientation(i), &
+               constant=t%angle_offset(i) - t%angle_offset(j)))
          case (drive_x, drive_y)
             call find_way_down(t, m%points(i)%link, s)
-            call add_polygon(m, t, length, i, 0, s, e%polygons)
+            call add_vector_loop(m, t, length, i, 0, s, e%vector_loops)
             axis = merge(1, 2, m%drives(k)%kind == drive_x)
-            call add(e, equation_t(merge(equation_x, equation_y, axis == 1), polygon=n, drive=k, &
+            call add(e, equation_t(merge(equation_x, equation_y, axis == 1), vector_loop=n, drive=k, &
                constant=-t%origin(axis)/length))
          case (drive_slide)
             if (t%slide(i) > 0) then
-               call add(e, equation_t(equation_slide, drive=k, frame=t%slide(i)))
+               call add(e, equation_t(equation_slide, drive=k, orientation=t%slide(i)))
                return
             end if
             associate (p => m%pairs(i)%point_i, q => m%pairs(i)%point_j)
                call find_path(m, t, m%points(p)%link, m%points(q)%link, s)
-               call add_polygon(m, t, length, p, q, s, e%polygons)
-               call add(e, equation_t(equation_projection, polygon=n, drive=k, frame=t%frame(m%points(p)%link), &
+               call add_vector_loop(m, t, length, p, q, s, e%vector_loops)
+               call add(e, equation_t(equation_projection, vector_loop=n, drive=k, &
+                  orientation=t%orientation(m%points(p)%link), &
                   direction=-guide(m, t, i, across=.false.)))
             end associate
          end select
@@ -159,8 +161,8 @@ contains
       type(tree_t), intent(in) :: t
       integer, intent(in) :: k
 
-      is_in_tree = t%hung_by(m%points(m%pairs(k)%point_i)%link) == k &
-         .or. t%hung_by(m%points(m%pairs(k)%point_j)%link) == k
+      is_in_tree = t%parent_joint(m%points(m%pairs(k)%point_i)%link) == k &
+         .or. t%parent_joint(m%points(m%pairs(k)%point_j)%link) == k
    end function is_in_tree
 
    !> By how much prismatic pair `k` differs from the angle that other prismatic pairs give its links; whole turns are
@@ -170,8 +172,8 @@ contains
       type(tree_t), intent(in) :: t
       integer, intent(in) :: k
 
-      misfit = m%pairs(k)%beta + t%turn(m%points(m%pairs(k)%point_i)%link) &
-         - t%turn(m%points(m%pairs(k)%point_j)%link)
+      misfit = m%pairs(k)%beta + t%angle_offset(m%points(m%pairs(k)%point_i)%link) &
+         - t%angle_offset(m%points(m%pairs(k)%point_j)%link)
       misfit = without_turns(misfit)
    end function misfit
 
@@ -183,10 +185,10 @@ contains
       e%list(e%count) = equation
    end subroutine add
 
-   !> Which unknown is in which equation: 1 to `frames` angles, then slides.
-   function incidence(e, frames, unknowns) result(g)
+   !> Which unknown is in which equation: 1 to `orientations` angles, then slides.
+   function incidence(e, orientations, unknowns) result(g)
       type(equations_t), intent(in) :: e
-      integer, intent(in) :: frames, unknowns
+      integer, intent(in) :: orientations, unknowns
       type(incidence_t) :: g
       integer :: seen(0:unknowns), n, i
 
@@ -201,14 +203,14 @@ contains
             select case (q%kind)
             case (equation_angle)
                ! Two links that turn together: their angles cancel.
-               if (q%frame /= q%less) then
-                  call note(q%frame)
+               if (q%orientation /= q%less) then
+                  call note(q%orientation)
                   call note(q%less)
                end if
             case (equation_slide)
-               call note(frames + q%frame)
+               call note(orientations + q%orientation)
             case default
-               call note_polygon(q)
+               call note_vector_loop(q)
             end select
          end associate
          g%first(i + 1) = n + 1
@@ -216,28 +218,31 @@ contains
 
    contains
 
-      subroutine note_polygon(q)
+      subroutine note_vector_loop(q)
          type(equation_t), intent(in) :: q
          integer :: k
 
-         associate (p => e%polygons)
-            do k = p%first_arm(q%polygon), p%first_arm(q%polygon + 1) - 1
-               call note(p%arm_frame(k))
+         associate (p => e%vector_loops)
+            do k = p%first_vector(q%vector_loop), p%first_vector(q%vector_loop + 1) - 1
+               call note(p%vector_orientation(k))
             end do
-            do k = p%first_slide(q%polygon), p%first_slide(q%polygon + 1) - 1
-               call note(p%slide_frame(k))
-               if (has_slide(q, p%slide_frame(k), p%slide_arm(:, k))) call note(frames + p%slide_number(k))
+            do k = p%first_slide(q%vector_loop), p%first_slide(q%vector_loop + 1) - 1
+               call note(p%slide_orientation(k))
+               if (has_slide(q, p%slide_orientation(k), p%slide_body_vector(:, k))) call note(orientations &
+                  + p%slide_number(k))
             end do
             ! What turns with the direction of the projection has a constant part in it.
             if (q%kind /= equation_projection) return
-            if (any(p%arm_frame(p%first_arm(q%polygon):p%first_arm(q%polygon + 1) - 1) /= q%frame) .or. &
-               any(p%slide_frame(p%first_slide(q%polygon):p%first_slide(q%polygon + 1) - 1) /= q%frame)) then
-               call note(q%frame)
-            else if (seen(q%frame) == i) then
-               call forget(q%frame)
+            if (any(p%vector_orientation(p%first_vector(q%vector_loop):p%first_vector(q%vector_loop + 1) - 1) &
+               /= q%orientation) .or. &
+               any(p%slide_orientation(p%first_slide(q%vector_loop):p%first_slide(q%vector_loop + 1) - 1) &
+               /= q%orientation)) then
+               call note(q%orientation)
+            else if (seen(q%orientation) == i) then
+               call forget(q%orientation)
             end if
          end associate
-      end subroutine note_polygon
+      end subroutine note_vector_loop
 
       !> Takes back unknown `u` of the equation at hand.
       subroutine forget(u)
@@ -263,16 +268,16 @@ contains
    end function incidence
 
    !> A slide at right angles to what is asked for, in whatever position, is no part of the equation.
-   pure logical function has_slide(q, frame, arm)
+   pure logical function has_slide(q, orientation, body_vector)
       type(equation_t), intent(in) :: q
-      integer, intent(in) :: frame
-      real(wp), intent(in) :: arm(2)
+      integer, intent(in) :: orientation
+      real(wp), intent(in) :: body_vector(2)
       real(wp) :: asked(2)
 
       has_slide = .true.
       asked = q%direction
       if (q%kind == equation_x) asked = [1.0_wp, 0.0_wp]
       if (q%kind == equation_y) asked = [0.0_wp, 1.0_wp]
-      if (frame == q%frame) has_slide = abs(dot_product(asked, arm)) > 8.0_wp*epsilon(1.0_wp)
+      if (orientation == q%orientation) has_slide = abs(dot_product(asked, body_vector)) > 8.0_wp*epsilon(1.0_wp)
    end function has_slide
 end module loop_equations

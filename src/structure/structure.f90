@@ -6,7 +6,7 @@ module structure
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_revolute, pair_prismatic, wanted_links
    use matching, only: match, overdetermined
-   use loose_parts, only: underdetermined
+   use underdetermined_parts, only: underdetermined
    use closure_incidence, only: closure_t, new_closure
    use assur_groups, only: group_t, groups_of
    use links_tree, only: tree_t, new_tree
@@ -15,12 +15,12 @@ module structure
    use block_partition, only: new_blocks
    implicit none
    private
-   public :: findings_t, group_t, part_t, count_freedoms, find_structure
+   public :: findings_t, group_t, part_t, count_degrees_of_freedom, find_structure
 
    !> Links that still can move, and the drives that they lack.
    type :: part_t
       integer, allocatable :: links(:)
-      integer :: freedoms = 0
+      integer :: degrees_of_freedom = 0
    end type part_t
 
    type :: findings_t
@@ -30,7 +30,7 @@ module structure
       integer :: prismatic = 0    !< n2
       integer :: coordinates = 0  !< w = 3 n
       integer :: equations = 0    !< r
-      integer :: freedoms = 0     !< s
+      integer :: degrees_of_freedom = 0     !< s
       integer :: drives = 0
       logical :: solvable = .false.             !< every unknown has an equation of its own
       type(part_t), allocatable :: lacking(:)   !< what still can move
@@ -42,7 +42,7 @@ module structure
 contains
 
    !> Counts (12) and (13) of mechanism `m`.
-   pure function count_freedoms(m) result(f)
+   pure function count_degrees_of_freedom(m) result(f)
       type(mechanism_t), intent(in) :: m
       type(findings_t) :: f
 
@@ -52,10 +52,10 @@ contains
       f%prismatic = count(m%pairs%kind == pair_prismatic)
       f%coordinates = 3*f%links
       f%equations = 2*(f%revolute + f%prismatic) + 3*f%ground
-      f%freedoms = f%coordinates - f%equations
+      f%degrees_of_freedom = f%coordinates - f%equations
       f%drives = size(m%drives)
       allocate (f%groups(0))
-   end function count_freedoms
+   end function count_degrees_of_freedom
 
    !> The counts of `m`, its groups, and what its structure lacks or has too much of.
    function find_structure(m) result(f)
@@ -67,7 +67,7 @@ contains
       integer, allocatable :: unknown_of(:), equation_of(:)
       logical, allocatable :: over(:)
 
-      f = count_freedoms(m)
+      f = count_degrees_of_freedom(m)
       c = new_closure(m)
       call match(c%incidence, unknown_of, equation_of)
       over = overdetermined(c%incidence, unknown_of, equation_of)
@@ -90,15 +90,15 @@ contains
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: link_of(:), part(:), equation_of(:)
       type(part_t), allocatable :: parts(:)
-      integer :: first(size(m%links)), above(size(part)), number(size(part)), u, i, n
+      integer :: first(size(m%links)), parent(size(part)), number(size(part)), u, i, n
       integer, allocatable :: links(:)
 
       first = 0
-      above = [(u, u=1, size(part))]
+      parent = [(u, u=1, size(part))]
       do u = 1, size(part)
          if (part(u) == 0) cycle
          if (first(link_of(u)) == 0) first(link_of(u)) = part(u)
-         above(top(part(u))) = top(first(link_of(u)))
+         parent(top(part(u))) = top(first(link_of(u)))
       end do
       links = pack([(i, i=1, size(first))], first > 0)
       number = 0
@@ -114,7 +114,7 @@ contains
       do u = 1, size(part)
          if (part(u) == 0 .or. equation_of(u) > 0) cycle
          associate (p => parts(number(top(part(u)))))
-            p%freedoms = p%freedoms + 1
+            p%degrees_of_freedom = p%degrees_of_freedom + 1
          end associate
       end do
 
@@ -125,9 +125,9 @@ contains
          integer, intent(in) :: k
 
          top = k
-         do while (above(top) /= top)
-            above(top) = above(above(top))
-            top = above(top)
+         do while (parent(top) /= top)
+            parent(top) = parent(parent(top))
+            top = parent(top)
          end do
       end function top
    end function parts_that_lack
@@ -164,18 +164,18 @@ contains
 
       allocate (parts(0))
       do k = 1, size(free)
-         if (free(k) <= t%frames) then
-            is_free = t%frame == free(k)
-         else if (free(k) <= t%frames + t%slides) then
+         if (free(k) <= t%orientations) then
+            is_free = t%orientation == free(k)
+         else if (free(k) <= t%orientations + t%slides) then
             do i = 1, size(m%links)
                is_free(i) = .false.
-               if (t%hung_by(i) > 0) is_free(i) = t%slide(t%hung_by(i)) == free(k) - t%frames
+               if (t%parent_joint(i) > 0) is_free(i) = t%slide(t%parent_joint(i)) == free(k) - t%orientations
             end do
          else
-            is_free = t%root == (free(k) - t%frames - t%slides + 1)/2
+            is_free = t%root == (free(k) - t%orientations - t%slides + 1)/2
          end if
          one%links = pack([(i, i=1, size(m%links))], is_free)
-         one%freedoms = 1
+         one%degrees_of_freedom = 1
          parts = [parts, one]
       end do
    end function parts_on_tree

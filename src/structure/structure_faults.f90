@@ -11,7 +11,7 @@ module structure_faults
    public :: check_structure, faults_text
 
    !> So many parts are told by name; of more, the number.
-   integer, parameter :: most_parts = 20
+   integer, parameter :: max_substeps = 20
 
    !> Of so many sets it is told what is wrong with them.
    integer, parameter :: max_sets = 10
@@ -55,14 +55,14 @@ contains
             call add_line('E104  SET '//whole(set)//': ONLY METHOD NEWTON TAKES '//surplus(m, f))
          return
       end if
-      do i = 1, min(size(f%lacking), most_parts)
+      do i = 1, min(size(f%lacking), max_substeps)
          call add_line('E101  SET '//whole(set)//': '//lack(m, f%lacking(i)))
       end do
-      if (size(f%lacking) > most_parts) call add_line('E101  SET '//whole(set)//': AND ' &
-         //whole(size(f%lacking) - most_parts)//' MORE PARTS THAT CAN MOVE')
+      if (size(f%lacking) > max_substeps) call add_line('E101  SET '//whole(set)//': AND ' &
+         //whole(size(f%lacking) - max_substeps)//' MORE PARTS THAT CAN MOVE')
       if (f%redundant > 0) call add_line('E102  SET '//whole(set)//': '//surplus(m, f))
       call add_line('E103  SET '//whole(set)//': W = '//whole(f%coordinates)//' COORDINATES LESS R = ' &
-         //whole(f%equations)//' EQUATIONS LEAVE S = '//whole(f%freedoms) &
+         //whole(f%equations)//' EQUATIONS LEAVE S = '//whole(f%degrees_of_freedom) &
          //' DEGREES OF FREEDOM, DRIVES ARE '//whole(f%drives))
 
    contains
@@ -84,10 +84,10 @@ contains
       text = 'LINKS '
       if (size(part%links) == 1) text = 'LINK '
       text = text//listed(m%links(part%links)%name)//': '
-      if (part%freedoms == 1) then
+      if (part%degrees_of_freedom == 1) then
          text = text//'1 FREEDOM LEFT, ADD A DRIVE'
       else
-         text = text//whole(part%freedoms)//' DEGREES OF FREEDOM LEFT, ADD DRIVES'
+         text = text//whole(part%degrees_of_freedom)//' DEGREES OF FREEDOM LEFT, ADD DRIVES'
       end if
    end function lack
 

@@ -31,7 +31,7 @@ contains
 
       allocate (s%open(size(m%pairs)), source=.false.)
       do i = 1, size(m%links)
-         if (t%hung_by(i) > 0) s%open(t%hung_by(i)) = .true.
+         if (t%parent_joint(i) > 0) s%open(t%parent_joint(i)) = .true.
       end do
       allocate (s%via(0:2*size(m%links) + 1), s%seen(0:2*size(m%links) + 1), source=0)
       allocate (s%queue(0:size(m%links), 2), s%pairs(size(m%links) + 1))
@@ -56,10 +56,10 @@ contains
       s%length = 0
       i = link
       do while (i > 0)
-         if (t%above(i) == 0) exit
+         if (t%parent(i) == 0) exit
          s%length = s%length + 1
-         s%pairs(s%length) = t%hung_by(i)
-         i = t%above(i)
+         s%pairs(s%length) = t%parent_joint(i)
+         i = t%parent(i)
       end do
    end subroutine find_way_down
 

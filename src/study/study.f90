@@ -3,7 +3,7 @@
 module study
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
-   use failures, only: failure_t, fail, status_solved, status_refused, status_marked
+   use failures, only: failure_t, fail, status_solved, status_refused, status_flagged
    use mechanism, only: mechanism_t, instant_count, instant
    use structure, only: findings_t
    use structure_faults, only: check_structure
@@ -95,7 +95,7 @@ contains
          write (line(27:), '(3f15.4)') median(time), minval(time), maxval(time)
       else if (.not. one%found) then
          line(27:) = '   NOT TIMED: A POSITION IS NOT FOUND'
-         status = status_marked
+         status = status_flagged
       else
          line(27:) = '   NOT TIMED: ONE INSTANT'
       end if

@@ -1,0 +1,249 @@
+!> What the block engine has to say of a motion beside its numbers.
+module block_diagnostics
+   use kinds, only: wp
+   use drives, only: drive_motion
+   use diagnostics, only: diagnostic_t, new_diagnostic, diagnostic_limit, diagnostic_second, diagnostic_redundant, &
+      diagnostic_mobile, diagnostic_idle, &
+      diagnostic_repeated
+   use block_needs, only: largest_known, blocks_below
+   use block_rank, only: redundant_rows, moving_unknowns
+   use block_state, only: state_t
+   use drive_rank, only: judge_drives
+   use first_position, only: has_second_position
+   use block_engine, only: block_engine_t
+   implicit none
+   private
+   public :: first_diagnostics, limit_diagnostic, links_of
+
+   !> A limit is told where it is no further than this part of the step that could not be made.
+   real(wp), parameter :: near_part = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
+   !> Arms with a smaller sine between them are in line: the last motion kept is the root of its distance in time away.
+   real(wp), parameter :: parallel = 1.0e-3_wp
+
+contains
+
+   !> Of the first motion found: which equations are redundant, what can still move where `singular` says that the
+   !> Jacobian has no inverse, and where the choice of an assembly was close.
+   function first_diagnostics(e, singular) result(list)
+      type(block_engine_t), intent(inout) :: e
+      logical, intent(in) :: singular
+      type(diagnostic_t), allocatable :: list(:)
+      integer :: k
+      logical :: second
+
+      allocate (list(0))
+      if (e%blocks%redundant > 0) list = redundancies(e)
+      do k = 1, size(e%needed)
+         associate (block => e%blocks%list(e%needed(k)))
+            if (block%direct) cycle
+            if (singular) then
+               call add_mobility(e, e%needed(k), list)
+               cycle
+            end if
+            second = e%is_close(e%needed(k))
+            if (.not. second) second = has_second_position(e%blocks, e%needed(k), e%tolerance, &
+               e%estimated(e%blocks%unknown(block%first:block%last)), e%work, e%state)
+            if (second) list = [list, new_diagnostic(diagnostic_second, links_of(e, e%needed(k)))]
+         end associate
+      end do
+   end function first_diagnostics
+
+   !> Each pair and drive with redundant equations, once, and how many it has.
+   function redundancies(e) result(list)
+      type(block_engine_t), intent(inout) :: e
+      type(diagnostic_t), allocatable :: list(:)
+      type(diagnostic_t) :: r
+      integer, allocatable :: rows(:)
+      integer :: k, i, found
+
+      allocate (list(0))
+      rows = redundant_rows(e%blocks, 1, e%state)
+      do k = size(rows), 1, -1
+         r = diagnostic_t(kind=diagnostic_redundant, pair=e%blocks%rows(rows(k))%pair, &
+            drive=e%blocks%rows(rows(k))%drive)
+         found = 0
+         do i = 1, size(list)
+            if (list(i)%pair == r%pair .and. list(i)%drive == r%drive) found = i
+         end do
+         if (found > 0) then
+            list(found)%equations = list(found)%equations + 1
+         else
+            list = [list, r]
+         end if
+      end do
+   end function redundancies
+
+   !> The links of block `i` that can move, and those that hang on them.
+   subroutine add_mobility(e, i, list)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i
+      type(diagnostic_t), allocatable, intent(inout) :: list(:)
+      type(state_t) :: aside
+      logical, allocatable :: moves(:), moved(:)
+      integer :: k
+
+      moves = moving_unknowns(e%blocks, i, e%state, aside)
+      if (.not. any(moves)) return
+      associate (block => e%blocks%list(i))
+         moved = links_with(e, pack(e%blocks%unknown(block%first:block%last), moves))
+      end associate
+      do k = 1, size(e%chain%hung)
+         associate (h => e%chain%hung(k))
+            if (h%parent > 0) moved(h%link) = moved(h%link) .or. moved(h%parent)
+         end associate
+      end do
+      list = [list, new_diagnostic(diagnostic_mobile, moved)]
+      call add_idle_drives(e, i, aside, list)
+   end subroutine add_mobility
+
+   !> The drives of block `i`, and of those it builds on, that hold nothing, both at the position found and `aside`,
+   !> where its links can move to: at one alone it may be a dead point.
+   subroutine add_idle_drives(e, i, aside, list)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i
+      type(state_t), intent(in) :: aside
+      type(diagnostic_t), allocatable, intent(inout) :: list(:)
+      logical, dimension(size(e%laws)) :: idle, repeated, idle_aside, repeated_aside
+      integer :: d
+
+      call judge_drives(e%blocks, blocks_below(e%blocks, i), e%state, idle, repeated)
+      call judge_drives(e%blocks, blocks_below(e%blocks, i), aside, idle_aside, repeated_aside)
+      do d = 1, size(idle)
+         if (any(list%drive == d .and. (list%kind == diagnostic_idle .or. list%kind == diagnostic_repeated))) cycle
+         if (idle(d) .and. idle_aside(d)) list = [list, diagnostic_t(kind=diagnostic_idle, drive=d)]
+         if (repeated(d) .and. repeated_aside(d)) list = [list, diagnostic_t(kind=diagnostic_repeated, drive=d)]
+      end do
+   end subroutine add_idle_drives
+
+   !> (links) Those whose angle block `i` seeks.
+   pure function links_of(e, i) result(chosen)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i
+      logical :: chosen(size(e%orientation_of))
+
+      chosen = links_with(e, e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
+   end function links_of
+
+   !> (links) Those whose angle is among the `unknowns`.
+   pure function links_with(e, unknowns) result(chosen)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: unknowns(:)
+      logical :: chosen(size(e%orientation_of))
+      integer :: k
+
+      chosen = .false.
+      do k = 1, size(unknowns)
+         chosen = chosen .or. (e%orientation_of == unknowns(k) .and. e%orientation_of > 0)
+      end do
+   end function links_with
+
+   !> Where the last motion kept comes to its end on the way to `t`, if it does: the first block, in solving order,
+   !> that comes to a limit; those that build on it do no less.
+   function limit_diagnostic(e, t) result(list)
+      type(block_engine_t), intent(in) :: e
+      real(wp), intent(in) :: t
+      type(diagnostic_t), allocatable :: list(:)
+      type(diagnostic_t) :: r
+      real(wp) :: rest
+      integer :: k
+
+      allocate (list(0))
+      if (e%history%filled == 0) return
+      do k = 1, size(e%moving)
+         if (e%blocks%list(e%moving(k))%direct) cycle
+         rest = way_left(e, e%moving(k), t)
+         if (abs(rest) <= 0.0_wp) cycle
+         associate (i => e%moving(k), block => e%blocks%list(e%moving(k)))
+            r = new_diagnostic(diagnostic_limit, links_of(e, e%moving(k)))
+            r%in_line = is_in_line(e, i, r)
+            r%t = e%history%t(e%history%place(0)) + rest
+            call name_drive(e, i, r)
+         end associate
+         list = [r]
+         return
+      end do
+   end function limit_diagnostic
+
+   !> From the last motion kept to the limit of block `i`, on the way to `t`; 0 where none is near. Close to a limit t*
+   !> the fastest unknown is x* + c sqrt(t* - t), so t* - t = x'/(2 x''), with an error of higher order.
+   pure real(wp) function way_left(e, i, t) result(rest)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i
+      real(wp), intent(in) :: t
+      integer :: fastest
+
+      rest = 0.0_wp
+      associate (h => e%history, p => e%history%place(0), &
+                 u => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
+         if (size(u) == 0) return
+         fastest = u(maxloc(abs(h%acceleration(u, p)), dim=1))
+         if (abs(h%acceleration(fastest, p)) <= 0.0_wp) return
+         rest = 0.5_wp*h%rate(fastest, p)/h%acceleration(fastest, p)
+         if (rest*sign(1.0_wp, t - h%t(p)) <= 0.0_wp .or. abs(rest) > near_part*abs(t - h%t(p))) rest = 0.0_wp
+      end associate
+   end function way_left
+
+   !> The two links of `r`, all that block `i` moves, have a revolute pair in common, and all their arms are parallel.
+   pure logical function is_in_line(e, i, r)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i
+      type(diagnostic_t), intent(in) :: r
+      real(wp) :: first, angle_offset
+      integer :: m, k
+      logical :: has_first
+
+      is_in_line = .false.
+      if (count(r%links > 0) /= 2) return
+      do k = 1, size(e%joint, 2)
+         is_in_line = is_in_line .or. all(e%joint(:, k) == r%links(:2)) .or. all(e%joint(:, k) == r%links(2:1:-1))
+      end do
+      has_first = .false.
+      do m = e%blocks%list(i)%first_loop, e%blocks%list(i)%last_loop
+         do k = e%blocks%loops(m)%first_own, e%blocks%loops(m)%last_vector
+            associate (body_vector => e%blocks%body_vectors(k))
+               angle_offset = e%history%value(body_vector%orientation) + atan2(body_vector%y, body_vector%x)
+            end associate
+            if (.not. has_first) first = angle_offset
+            has_first = .true.
+            is_in_line = is_in_line .and. abs(sin(angle_offset - first)) <= parallel
+         end do
+      end do
+   end function is_in_line
+
+   !> The first drive that moves block `i` at r%t; where all stand still, the first that could.
+   subroutine name_drive(e, i, r)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i
+      type(diagnostic_t), intent(inout) :: r
+      real(wp) :: f(3)
+      integer :: d
+
+      do d = 1, size(e%laws)
+         if (.not. is_moved_by(e, i, d)) cycle
+         f = drive_motion(e%laws(d), r%t)
+         if (r%drive > 0 .and. abs(f(2)) <= 0.0_wp) cycle
+         r%drive = d
+         r%value = f(1)
+         r%is_angle = e%is_angle(d)
+         if (abs(f(2)) > 0.0_wp) return
+      end do
+   end subroutine name_drive
+
+   !> Drive `d` is in block `i` or in one that it builds on.
+   pure logical function is_moved_by(e, i, d)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i, d
+      integer :: mark(0:e%blocks%unknowns), k
+
+      mark = 0
+      is_moved_by = .false.
+      do k = 1, size(e%moving)
+         associate (block => e%blocks%list(e%moving(k)))
+            is_moved_by = any(e%blocks%rows(block%first_row:block%last_row)%drive == d) &
+               .or. largest_known(e%blocks, e%moving(k), mark) > 0
+            if (e%moving(k) == i) return
+            mark(e%blocks%unknown(block%first:block%last)) = merge(1, 0, is_moved_by)
+         end associate
+      end do
+   end function is_moved_by
+end module block_diagnostics

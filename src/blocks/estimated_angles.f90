@@ -1,0 +1,254 @@
+!> The rough angles of a deck, or better ones where its rough places tell them. A deck may give x and y of
+!> its links with care and no angles, or wrong ones: then the places of the pairs say how the links lie.
+!>
+!> With all places kept, the squares of what the pairs stay open by are, for one frame at the angle u, of the form
+!>    c cos u + s sin u + p cos^2 u + q cos u sin u + w sin^2 u
+!> and the frames are turned to the least of it, one after another, until they turn no more. Only such pairs count of
+!> which the place of the other link's point is known: its origin, or a point of a link whose angle is known already.
+!> Two links that meet far from both origins keep the angles of the deck: they may lie on either side.
+module estimated_angles
+   use kinds, only: wp
+   use constants, only: pi
+   use mechanism, only: mechanism_t, pair_revolute
+   use scales, only: solver_length
+   use links_tree, only: tree_t
+   use whole_turns, only: without_turns
+   implicit none
+   private
+   public :: estimated_directions
+
+   !> The places are believed where with their angles the pairs stay open by so small a part of the characteristic
+   !> length, and of what they are with the deck's angles; and where an angle differs by more than that, in radians.
+   real(wp), parameter :: closed_part = 0.1_wp, better_part = 0.2_wp, far_angle = 1.0_wp
+   !> Nothing is wrong with a deck whose pairs are closed to this part of the length.
+   real(wp), parameter :: good_part = 1.0e-3_wp
+   !> Arms this short, squared, tell no direction.
+   real(wp), parameter :: min_substep_part = 1.0e-6_wp
+   !> A point so near to the origin of its link has its place.
+   real(wp), parameter :: short_part = 1.0e-3_wp
+   real(wp), parameter :: alike = 1.0e-9_wp
+   integer, parameter :: max_sweeps = 20, samples = 36
+
+contains
+
+   !> (links) Rough angles: those of the deck, or where the places tell better ones, these.
+   function estimated_directions(m, t) result(phi)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      real(wp) :: phi(size(m%links))
+      real(wp) :: u(0:t%orientations), v(0:t%orientations), before, after, turned, length
+      logical, allocatable :: placed(:)
+      integer, allocatable :: order(:)
+      integer :: i, sweep
+
+      phi = m%links%position(3)
+      u = 0.0_wp
+      do i = size(m%links), 1, -1
+         if (t%orientation(i) > 0) u(t%orientation(i)) = phi(i) - t%angle_offset(i)
+      end do
+      length = solver_length(m)
+      allocate (placed(size(m%points)))
+      placed = m%links(m%points%link)%ground .or. hypot(m%points%offset(1), m%points%offset(2)) <= short_part*length
+      if (largest_opening(m, t, u, spread(.true., 1, size(m%points))) <= good_part*length) return
+      v = u
+      order = by_orientation(t)
+      do sweep = 1, max_sweeps
+         call turn_orientations(m, t, order, min_substep_part*length**2, v, placed, turned)
+         if (turned <= good_part) exit
+      end do
+      v = u + without_turns(v - u)
+      before = largest_opening(m, t, u, placed)
+      after = largest_opening(m, t, v, placed)
+      if (after > min(closed_part*length, better_part*before) .or. maxval(abs(v - u)) <= far_angle) return
+      do i = 1, size(m%links)
+         if (t%orientation(i) > 0) phi(i) = phi(i) + (v(t%orientation(i)) - u(t%orientation(i)))
+      end do
+   end function estimated_directions
+
+   !> Links of frames, frame after frame.
+   pure function by_orientation(t) result(order)
+      type(tree_t), intent(in) :: t
+      integer, allocatable :: order(:)
+      integer :: fill(0:t%orientations + 1), i
+
+      fill = 0
+      do i = 1, size(t%orientation)
+         fill(t%orientation(i) + 1) = fill(t%orientation(i) + 1) + 1
+      end do
+      do i = 1, t%orientations + 1
+         fill(i) = fill(i) + fill(i - 1)
+      end do
+      allocate (order(size(t%orientation)))
+      do i = 1, size(t%orientation)
+         fill(t%orientation(i)) = fill(t%orientation(i)) + 1
+         order(fill(t%orientation(i))) = i
+      end do
+   end function by_orientation
+
+   !> Turns each frame to where its pairs are open the least, unless the form is below `least_form` all around;
+   !> `placed` (points): their places are known, then also those of the frame; `turned`: the largest turn.
+   subroutine turn_orientations(m, t, order, least_form, u, placed, turned)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      integer, intent(in) :: order(:)
+      real(wp), intent(in) :: least_form
+      real(wp), intent(inout) :: u(0:)
+      logical, intent(inout) :: placed(:)
+      real(wp), intent(out) :: turned
+      real(wp) :: e(5), found
+      integer :: i, k, orientation
+
+      turned = 0.0_wp
+      e = 0.0_wp
+      do i = 1, size(order)
+         orientation = t%orientation(order(i))
+         if (orientation == 0) cycle
+         do k = t%near%first(order(i)), t%near%first(order(i) + 1) - 1
+            if (is_reported(m, t, t%near%pairs(k), orientation, placed)) call add_pair(m, t, t%near%pairs(k), &
+               orientation, u, e)
+         end do
+         if (i < size(order)) then
+            if (t%orientation(order(i + 1)) == orientation) cycle
+         end if
+         if (maxval(abs(e)) > least_form) then
+            found = least(e, u(orientation))
+            turned = max(turned, abs(without_turns(found - u(orientation))))
+            u(orientation) = found
+            where (t%orientation(m%points%link) == orientation) placed = .true.
+         end if
+         e = 0.0_wp
+      end do
+   end subroutine turn_orientations
+
+   !> The other side of pair `k` of `orientation`, if it is not the same frame, has its place.
+   pure logical function is_reported(m, t, k, orientation, placed)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      integer, intent(in) :: k, orientation
+      logical, intent(in) :: placed(:)
+
+      associate (i => m%pairs(k)%point_i, j => m%pairs(k)%point_j)
+         is_reported = (placed(i) .or. t%orientation(m%points(i)%link) == orientation) &
+            .and. (placed(j) .or. t%orientation(m%points(j)%link) == orientation)
+      end associate
+   end function is_reported
+
+   !> Adds what pair `k` gives to the form `e` of `orientation`.
+   pure subroutine add_pair(m, t, k, orientation, u, e)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      integer, intent(in) :: k, orientation
+      real(wp), intent(in) :: u(0:)
+      real(wp), intent(inout) :: e(5)
+      real(wp) :: fixed(2), body_vector(2), n(2), a, b, h
+
+      fixed = 0.0_wp
+      body_vector = 0.0_wp
+      call split(m, t, m%pairs(k)%point_i, orientation, 1.0_wp, u, fixed, body_vector)
+      call split(m, t, m%pairs(k)%point_j, orientation, -1.0_wp, u, fixed, body_vector)
+      if (m%pairs(k)%kind == pair_revolute) then
+         e(1) = e(1) + 2.0_wp*dot_product(fixed, body_vector)
+         e(2) = e(2) + 2.0_wp*(fixed(2)*body_vector(1) - fixed(1)*body_vector(2))
+      else
+         n = normal(m, t, k)
+         a = dot_product(fixed, n)
+         b = fixed(2)*n(1) - fixed(1)*n(2)
+         h = dot_product(body_vector, n) - m%pairs(k)%offset
+         e = e + [2.0_wp*h*a, 2.0_wp*h*b, a*a, 2.0_wp*a*b, b*b]
+      end if
+   end subroutine add_pair
+
+   !> Adds `sign_of` times the place of `point` to what stays where it is and what turns with `orientation`.
+   pure subroutine split(m, t, point, orientation, sign_of, u, fixed, body_vector)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      integer, intent(in) :: point, orientation
+      real(wp), intent(in) :: sign_of, u(0:)
+      real(wp), intent(inout) :: fixed(2), body_vector(2)
+      integer :: link
+
+      link = m%points(point)%link
+      fixed = fixed + sign_of*m%links(link)%position(:2)
+      if (t%orientation(link) == orientation) then
+         body_vector = body_vector + sign_of*turned_by(m%points(point)%offset, t%angle_offset(link))
+      else
+         fixed = fixed + sign_of*turned_by(m%points(point)%offset, t%angle_offset(link) + u(t%orientation(link)))
+      end if
+   end subroutine split
+
+   !> The guide's normal of pair `k` in its frame.
+   pure function normal(m, t, k) result(n)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      integer, intent(in) :: k
+      real(wp) :: n(2)
+
+      n = turned_by([0.0_wp, 1.0_wp], t%angle_offset(m%points(m%pairs(k)%point_i)%link) + m%pairs(k)%alpha)
+   end function normal
+
+   pure function turned_by(v, angle) result(w)
+      real(wp), intent(in) :: v(2), angle
+      real(wp) :: w(2)
+
+      w = [v(1)*cos(angle) - v(2)*sin(angle), v(1)*sin(angle) + v(2)*cos(angle)]
+   end function turned_by
+
+   !> The angle at which the form `e` is least, `start` where it is about as small.
+   pure real(wp) function least(e, start) result(u)
+      real(wp), intent(in) :: e(5), start
+      real(wp) :: v, slope, lipschitz
+      integer :: i
+
+      if (maxval(abs(e(3:))) <= 0.0_wp) then
+         u = atan2(-e(2), -e(1))
+         return
+      end if
+      u = start
+      do i = 1, samples
+         ! The nearer of two that are alike: rounding shall not choose.
+         v = start + merge(pi, -pi, modulo(i, 2) == 0)*real((i + 1)/2, wp)/real(samples/2, wp)
+         if (form(e, v) < form(e, u) - alike*sum(abs(e))) u = v
+      end do
+      do i = 1, 3
+         associate (c => cos(u), s => sin(u), c2 => cos(2.0_wp*u), s2 => sin(2.0_wp*u))
+            slope = -e(1)*s + e(2)*c + (e(5) - e(3))*s2 + e(4)*c2
+            lipschitz = -e(1)*c - e(2)*s + 2.0_wp*(e(5) - e(3))*c2 - 2.0_wp*e(4)*s2
+         end associate
+         if (lipschitz > abs(slope)) u = u - slope/lipschitz
+      end do
+   end function least
+
+   pure real(wp) function form(e, u)
+      real(wp), intent(in) :: e(5), u
+
+      associate (c => cos(u), s => sin(u))
+         form = e(1)*c + e(2)*s + e(3)*c*c + e(4)*c*s + e(5)*s*s
+      end associate
+   end function form
+
+   !> The largest distance, from the places of the deck and the angles `u`, by which a pair is open of which both sides
+   !> are `placed` (points).
+   pure real(wp) function largest_opening(m, t, u, placed) result(largest)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      real(wp), intent(in) :: u(0:)
+      logical, intent(in) :: placed(:)
+      real(wp) :: closure_error(2), none(2)
+      integer :: k
+
+      largest = 0.0_wp
+      none = 0.0_wp
+      do k = 1, size(m%pairs)
+         if (.not. (placed(m%pairs(k)%point_i) .and. placed(m%pairs(k)%point_j))) cycle
+         closure_error = 0.0_wp
+         call split(m, t, m%pairs(k)%point_i, -1, 1.0_wp, u, closure_error, none)
+         call split(m, t, m%pairs(k)%point_j, -1, -1.0_wp, u, closure_error, none)
+         if (m%pairs(k)%kind == pair_revolute) then
+            largest = max(largest, norm2(closure_error))
+         else
+            largest = max(largest, abs(dot_product(closure_error, &
+               turned_by(normal(m, t, k), u(t%orientation(m%points(m%pairs(k)%point_i)%link)))) - m%pairs(k)%offset))
+         end if
+      end do
+   end function largest_opening
+end module estimated_angles

@@ -1,0 +1,192 @@
+!> A block assembled from far: the sum of squares of its residuals made less and less (Levenberg 1944,
+!> Marquardt 1963), where Newton's method alone would leap elsewhere. What is left in the end is how far the block
+!> stays open.
+module levenberg_marquardt
+   use kinds, only: wp
+   use block_matrix, only: shape_t, entries_of, work_length, solve_first
+   use klu, only: klu_t
+   use convergence, only: convergence_t
+   use blocks, only: blocks_t
+   use block_state, only: state_t, set_values, known_parts
+   use block_rows, only: assemble_dense
+   use closure_errors, only: note_closure_error
+   implicit none
+   private
+   public :: levenberg_marquardt_solve, levenberg_marquardt_held
+
+   !> No unknown goes further than this in one iteration: half a radian, half the characteristic length.
+   real(wp), parameter :: longest_step = 0.5_wp
+   !> No steps of that length make a residual small that is beyond this; its square is well below overflow.
+   real(wp), parameter :: bound = min(1.0e30_wp, sqrt(sqrt(huge(1.0_wp))))
+   real(wp), parameter :: first_damping = 1.0e-2_wp, min_damping = 1.0e-12_wp, max_damping = 1.0e8_wp
+   !> Shorter ones are rounding.
+   real(wp), parameter :: min_step = max(1.0e-12_wp, 32.0_wp*epsilon(1.0_wp))
+   integer, parameter :: max_iterations = 200
+   !> The tie to the initial estimate: what it begins with, by how much it grows less, when it is none.
+   real(wp), parameter :: first_tie = 1.0_wp, looser = 0.25_wp, last_tie = 1.0e-8_wp
+   integer, parameter :: rounds_a_tie = 3
+   !> Starts: the rough position, then others around it, where that ends in a valley.
+   integer, parameter :: max_starts = 12
+   !> Multiples of it, less their whole part, fill an interval evenly.
+   real(wp), parameter :: golden = 0.61803398874989485_wp
+   !> The matrices are dense: larger blocks are left as they are.
+   integer, parameter :: max_unknowns = 600
+   !> The tied approach is a help among others, and not worth minutes.
+   integer, parameter :: max_held = 150
+
+   type :: room_t
+      type(shape_t) :: shape, damped
+      real(wp), allocatable :: a(:), b(:), r(:), d(:), work(:), x(:), best(:)
+      integer, allocatable :: pivots(:)
+      type(klu_t) :: sparse                       !< unused: the matrices are dense
+   end type room_t
+
+contains
+
+   !> Brings block `i` from the values of `s` to where its residual is at most `near`; where that cannot be, to where
+   !> it is smallest, and `c` tells by how much which equation is open. `reached`: it is small.
+   subroutine levenberg_marquardt_solve(b, i, near, s, c, reached)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: near
+      type(state_t), intent(inout) :: s
+      type(convergence_t), intent(inout) :: c
+      logical, intent(out) :: reached
+      type(room_t) :: w
+      real(wp), allocatable :: start(:)
+      real(wp) :: least, found
+      integer :: k
+
+      reached = .false.
+      associate (block => b%list(i))
+         if (block%shape%n == 0 .or. block%shape%n > max_unknowns) return
+         call make_room(w, block%shape)
+         start = s%u(b%unknown(block%first:block%last))%value
+      end associate
+      call known_parts(b, i, s)
+      w%best = start
+      least = huge(least)
+      do k = 0, max_starts - 1
+         call set_values(b, i, start + spread_start(k, size(start)), s)
+         call descend(b, i, near, w, s, found)
+         if (found < least) then
+            least = found
+            w%best = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
+         end if
+         if (least <= near) exit
+      end do
+      call set_values(b, i, w%best, s)
+      call assemble_dense(b, i, s, w%a, w%r)
+      call note_closure_error(b, i, w%r, c)
+      reached = least <= near
+   end subroutine levenberg_marquardt_solve
+
+   !> Brings block `i` from the values of `s`, the initial estimate x0, towards the position that is nearest to it: the
+   !> least of |r|^2 + tie |x - x0|^2, with a tie that grows less and less (iterated regularization of Tikhonov). No
+   !> unknown goes far where the Jacobian does little.
+   subroutine levenberg_marquardt_held(b, i, near, s)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: near
+      type(state_t), intent(inout) :: s
+      type(room_t) :: w
+      real(wp), allocatable :: start(:)
+      real(wp) :: tie, step
+      integer :: k
+
+      associate (block => b%list(i))
+         if (block%shape%n == 0 .or. block%shape%n > max_held) return
+         call make_room(w, block%shape)
+         start = s%u(b%unknown(block%first:block%last))%value
+      end associate
+      call known_parts(b, i, s)
+      tie = first_tie
+      do while (tie > last_tie)
+         do k = 1, rounds_a_tie
+            call assemble_dense(b, i, s, w%a, w%r)
+            if (.not. maxval(abs(w%r(:w%shape%rows))) <= bound) return
+            if (maxval(abs(w%r(:w%shape%rows))) <= near) return
+            w%x = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
+            call damped_step(w, tie, w%x - start, step)
+            call set_values(b, i, w%x - w%d(:w%shape%n), s)
+            if (step <= 0.01_wp*longest_step) exit
+         end do
+         tie = looser*tie
+      end do
+   end subroutine levenberg_marquardt_held
+
+   subroutine make_room(w, shape)
+      type(room_t), intent(out) :: w
+      type(shape_t), intent(in) :: shape
+
+      w%shape = shape_t(rows=shape%rows, n=shape%n)
+      w%damped = shape_t(rows=shape%rows + shape%n, n=shape%n)
+      allocate (w%a(entries_of(w%shape)), w%b(entries_of(w%damped)), w%work(work_length(w%damped)))
+      allocate (w%r(w%damped%rows), w%d(w%damped%rows), w%x(shape%n), w%best(shape%n), w%pivots(shape%n))
+   end subroutine make_room
+
+   !> By how much start number `k` is off: nothing at first, then more and more, up to half a turn.
+   pure function spread_start(k, n) result(d)
+      integer, intent(in) :: k, n
+      real(wp) :: d(n)
+      real(wp) :: reach
+      integer :: m
+
+      reach = 3.0_wp*real(k, wp)/real(max_starts, wp)
+      d = [(reach*(2.0_wp*modulo(golden*real(k*n + m, wp), 1.0_wp) - 1.0_wp), m=1, n)]
+   end function spread_start
+
+   !> Goes down from the values of `s`; `found`: the largest residual at the end.
+   subroutine descend(b, i, near, w, s, found)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: near
+      type(room_t), intent(inout) :: w
+      type(state_t), intent(inout) :: s
+      real(wp), intent(out) :: found
+      real(wp) :: damping, square, step
+      integer :: iteration
+
+      damping = first_damping
+      call assemble_dense(b, i, s, w%a, w%r)
+      do iteration = 1, max_iterations
+         found = maxval(abs(w%r(:w%shape%rows)))
+         if (found <= near .or. damping > max_damping .or. .not. found <= bound) exit
+         square = sum(w%r(:w%shape%rows)**2)
+         w%x = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
+         call damped_step(w, damping, spread(0.0_wp, 1, w%shape%n), step)
+         call set_values(b, i, w%x - w%d(:w%shape%n), s)
+         call assemble_dense(b, i, s, w%a, w%r)
+         if (sum(w%r(:w%shape%rows)**2) < square) then
+            damping = max(0.2_wp*damping, min_damping)
+            if (step <= min_step) exit
+         else
+            damping = 5.0_wp*damping
+            call set_values(b, i, w%x, s)
+            call assemble_dense(b, i, s, w%a, w%r)
+         end if
+      end do
+      found = maxval(abs(w%r(:w%shape%rows)))
+   end subroutine descend
+
+   !> Least squares of J d = r and sqrt(damping) d = sqrt(damping) `aim` (n) together, cut to the longest step.
+   subroutine damped_step(w, damping, aim, step)
+      type(room_t), intent(inout) :: w
+      real(wp), intent(in) :: damping, aim(:)
+      real(wp), intent(out) :: step
+      integer :: k, info
+
+      associate (m => w%shape%rows, n => w%shape%n)
+         w%b = 0.0_wp
+         do k = 1, n
+            w%b((k - 1)*(m + n) + 1:(k - 1)*(m + n) + m) = w%a((k - 1)*m + 1:k*m)
+            w%b((k - 1)*(m + n) + m + k) = sqrt(damping)
+         end do
+         w%d(:m) = w%r(:m)
+         w%d(m + 1:) = sqrt(damping)*aim
+         call solve_first(w%damped, w%b, w%sparse, w%pivots, w%work, w%d, info)
+         step = maxval(abs(w%d(:n)))
+         if (step > longest_step) w%d(:n) = w%d(:n)*(longest_step/step)
+      end associate
+   end subroutine damped_step
+end module levenberg_marquardt

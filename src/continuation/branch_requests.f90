@@ -1,0 +1,110 @@
+!> Which branch is taken at which change point: smoothly on, but where a BRANCH card asks for the other one.
+!> A change point passed once is passed in the same way again, in either direction: the motion is a function of time.
+module branch_requests
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, branch_request_t
+   use diagnostics, only: diagnostic_t, diagnostic_unused
+   implicit none
+   private
+   public :: branch_requests_t, new_branch_requests, are_there, decide, unused
+
+   !> The listing gives the time of a change point to six digits; so may a card.
+   real(wp), parameter :: digits_of_time = 1.0e-5_wp
+
+   !> A change point of a block at `t`, known to `width`.
+   type :: branch_switch_t
+      integer :: block = 0
+      real(wp) :: t = 0.0_wp, width = 0.0_wp
+      logical :: other = .false.
+   end type branch_switch_t
+
+   type :: branch_requests_t
+      type(branch_request_t), allocatable :: cards(:)
+      logical, allocatable :: used(:)             !< (cards)
+      type(branch_switch_t), allocatable :: branch_switches(:)
+   end type branch_requests_t
+
+contains
+
+   pure function new_branch_requests(m) result(c)
+      type(mechanism_t), intent(in) :: m
+      type(branch_requests_t) :: c
+
+      allocate (c%branch_switches(0))
+      if (allocated(m%branch_requests)) then
+         c%cards = m%branch_requests
+      else
+         allocate (c%cards(0))
+      end if
+      allocate (c%used(size(c%cards)), source=.false.)
+   end function new_branch_requests
+
+   !> There are BRANCH cards.
+   pure logical function are_there(c)
+      type(branch_requests_t), intent(in) :: c
+
+      are_there = size(c%cards) > 0
+   end function are_there
+
+   !> Whether `block`, which moves the `links`, takes the `other` branch at its change point between the times `before`
+   !> and `t`, about at `at`.
+   pure subroutine decide(c, block, links, before, t, at, other)
+      type(branch_requests_t), intent(inout) :: c
+      integer, intent(in) :: block
+      logical, intent(in) :: links(:)
+      real(wp), intent(in) :: before, t, at
+      logical, intent(out) :: other
+      integer :: i
+
+      do i = 1, size(c%branch_switches)
+         associate (p => c%branch_switches(i))
+            other = p%other
+            if (p%block == block .and. abs(p%t - at) <= p%width + abs(t - before)) return
+         end associate
+      end do
+      i = card_for(c, links, sign(1.0_wp, t - before), at, abs(t - before))
+      other = i > 0
+      if (other) c%used(i) = .true.
+      c%branch_switches = [c%branch_switches, branch_switch_t(block, at, abs(t - before), other)]
+   end subroutine decide
+
+   !> Of the cards not used yet that name one of the `links`, or none, that whose time was passed first on the way in
+   !> the `direction` to `at`, known to `width`; or 0.
+   pure integer function card_for(c, links, direction, at, width) result(best)
+      type(branch_requests_t), intent(in) :: c
+      logical, intent(in) :: links(:)
+      real(wp), intent(in) :: direction, at, width
+      integer :: i
+
+      best = 0
+      do i = 1, size(c%cards)
+         associate (card => c%cards(i))
+            if (c%used(i)) cycle
+            if (card%link > 0) then
+               if (.not. links(card%link)) cycle
+            end if
+            if (direction*(card%t - at) > width + digits_of_time*max(abs(card%t), abs(at))) cycle
+            if (best > 0) then
+               if (direction*(card%t - c%cards(best)%t) >= 0.0_wp) cycle
+            end if
+            best = i
+         end associate
+      end do
+   end function card_for
+
+   !> What is to be said of the cards for which there was no change point.
+   pure function unused(c) result(list)
+      type(branch_requests_t), intent(in) :: c
+      type(diagnostic_t), allocatable :: list(:)
+      type(diagnostic_t) :: r
+      integer :: i
+
+      allocate (list(0))
+      do i = 1, size(c%cards)
+         if (c%used(i)) cycle
+         r = diagnostic_t(kind=diagnostic_unused, t=c%cards(i)%t)
+         r%links(1) = c%cards(i)%link
+         list = [list, r]
+      end do
+   end function unused
+end module branch_requests

@@ -1,0 +1,131 @@
+!> METHOD DENSE and METHOD MATRIX have the equations as one system, and cannot tell of an instant without a
+!> position whether the mechanism or the method has come to its end. The blocks can: they are asked, from the same
+!> position, and what they say of the mechanism does not depend on the way of an iteration.
+module diagnosis
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, place_links, wanted_links
+   use motion, only: motion_t, new_motion, mark_not_converged, mark_singular
+   use diagnostics, only: diagnostic_t, diagnostic_inconsistent, diagnostic_limit, diagnostic_far_estimate, &
+      diagnostic_second, diagnostic_mobile, diagnostic_idle, &
+      diagnostic_repeated, diagnostic_method
+   use convergence, only: ended_elsewhere
+   use dense_start, only: by_blocks
+   use analysis, only: analysis_t, make_analysis, advance
+   implicit none
+   private
+   public :: opinion_t, ask_blocks
+
+   !> Angles that differ by less, in radians, are those of one assembly.
+   real(wp), parameter :: alike = 1.0e-3_wp
+
+   !> What has been said: limits once, and of the first motion.
+   type :: opinion_t
+      logical :: is_lost = .false., has_begun = .false.
+   end type opinion_t
+
+contains
+
+   !> Adds to the remarks of `found`, which `a` has found last of `m`: how far the estimate was off; the limit of the
+   !> motion, what stays open, what can still move; or that METHOD NEWTON finds a position.
+   subroutine ask_blocks(m, a, o, found)
+      type(mechanism_t), intent(in) :: m
+      type(analysis_t), intent(in) :: a
+      type(opinion_t), intent(inout) :: o
+      type(motion_t), intent(inout) :: found
+
+      if (.not. allocated(a%engine%dense)) return
+      if (found%mark == mark_not_converged) then
+         if (.not. (a%follows .and. o%is_lost)) call say_why(m, a, o%is_lost, found)
+      else if (found%mark == mark_singular .and. .not. o%has_begun) then
+         call say_what_moves(m, found)
+      else if (.not. o%has_begun) then
+         call say_how_far(m, found)
+      end if
+      o%is_lost = a%is_lost
+      o%has_begun = a%has_begun
+   end subroutine ask_blocks
+
+   !> Why there is no position.
+   subroutine say_why(m, a, is_known, found)
+      type(mechanism_t), intent(in) :: m
+      type(analysis_t), intent(in) :: a
+      logical, intent(in) :: is_known
+      type(motion_t), intent(inout) :: found
+      type(analysis_t) :: b
+      type(motion_t) :: q
+
+      q = new_motion(size(m%links))
+      if (a%follows) then
+         associate (last => a%engine%dense%last%position, unit => a%engine%dense%system%length)
+            call make_analysis(b, placed(m, last*spread([unit, unit, 1.0_wp], 2, size(last, 2))))
+         end associate
+         call advance(b, a%t, q)
+         if (q%known < 2) return
+      else
+         call make_analysis(b, by_blocks(m))
+      end if
+      call advance(b, found%t, q)
+      call pass_on(q, [diagnostic_inconsistent, diagnostic_limit], found)
+      if (q%known < 0 .or. is_known) return
+      call pass_on(q, [diagnostic_mobile, diagnostic_idle, diagnostic_repeated], found)
+      if (allocated(found%diagnostics)) then
+         if (size(found%diagnostics) > 0) return
+      end if
+      found%diagnostics = [diagnostic_t(kind=diagnostic_method, other=a%convergence%ended == ended_elsewhere)]
+   end subroutine say_why
+
+   !> How far the estimate was from the first motion, and whether it means another as well.
+   subroutine say_how_far(m, found)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(inout) :: found
+      type(mechanism_t) :: d
+      type(analysis_t) :: b
+      type(motion_t) :: q
+
+      d = by_blocks(m)
+      d%requests = m%requests
+      q = new_motion(size(m%links))
+      call make_analysis(b, d)
+      call advance(b, found%t, q)
+      if (q%known < 0) return
+      if (any(abs(q%position(3, :) - found%position(3, :)) > alike .and. wanted_links(d))) return
+      call pass_on(q, [diagnostic_far_estimate, diagnostic_second], found)
+   end subroutine say_how_far
+
+   !> What can move where the Jacobian has no inverse.
+   subroutine say_what_moves(m, found)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(inout) :: found
+      type(analysis_t) :: b
+      type(motion_t) :: q
+
+      q = new_motion(size(m%links))
+      call make_analysis(b, placed(m, found%position))
+      call advance(b, found%t, q)
+      call pass_on(q, [diagnostic_mobile, diagnostic_idle, diagnostic_repeated], found)
+   end subroutine say_what_moves
+
+   !> `m` for the blocks, from the `position` (3, links), as the origin of the plane counts it.
+   pure function placed(m, position) result(d)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: position(:, :)
+      type(mechanism_t) :: d
+
+      d = by_blocks(m)
+      call place_links(d, position)
+   end function placed
+
+   !> Adds the remarks of `q` that are of one of the `kinds` to those of `found`.
+   subroutine pass_on(q, kinds, found)
+      type(motion_t), intent(in) :: q
+      integer, intent(in) :: kinds(:)
+      type(motion_t), intent(inout) :: found
+      integer :: i
+
+      if (.not. allocated(q%diagnostics)) return
+      if (.not. allocated(found%diagnostics)) allocate (found%diagnostics(0))
+      do i = 1, size(q%diagnostics)
+         if (any(kinds == q%diagnostics(i)%kind)) found%diagnostics = [found%diagnostics, q%diagnostics(i)]
+      end do
+   end subroutine pass_on
+end module diagnosis

@@ -1,0 +1,208 @@
+!> The way of all drives of a set through their values, between two instants: how far they go from where they
+!> are, and how far off the straight way. What a step of the continuation may take for granted of it.
+!>
+!> A position at the end of a step is the continuation of the one before where the drives went there straight on. Where
+!> one drive moves it may go to and fro between its two values, since the mechanism then comes back the same way;
+!> beyond them it may be at most as far as the position is certain to exist. Of several drives none may
+!> leave its own straight way by more: round a cusp there is another assembly at the same values.
+module drive_excursion
+   use kinds, only: wp
+   use mechanism, only: mechanism_t
+   use scales, only: solver_length, is_length
+   use predictor, only: largest_change
+   use drives, only: law_t, new_law, drive_motion
+   use law_bounds, only: bounds_t, bounds_of
+   implicit none
+   private
+   public :: drive_excursion_t, new_drive_excursion, substep_allowed, likely_excursion, excursion, steps_at_least, &
+      largest_rate
+
+   !> The largest excursion off the straight way, in radians or characteristic lengths. What a position allows is mostly
+   !> less, and is asked of its Jacobian; this bounds what links far down a chain make of it.
+   real(wp), parameter :: largest_excursion = 0.03_wp
+   !> The least factor by which a part is made shorter at once: its bounds get closer as it does.
+   real(wp), parameter :: min_factor = 1.0e-3_wp, a_little_less = 0.98_wp
+
+   type :: drive_excursion_t
+      type(law_t), allocatable :: laws(:)
+      real(wp), allocatable :: unit(:)            !< (drives) of the value: 1 over the characteristic length, or 1
+      real(wp) :: first = 0.0_wp, last = 0.0_wp   !< of all instants
+      real(wp) :: longest = 0.0_wp                !< part between them in which no drive can change by `largest_change`
+      real(wp) :: curve = huge(1.0_wp)            !< the largest second derivative between them
+   end type drive_excursion_t
+
+contains
+
+   !> The way of the drives of `m`; `depends`: there are positions that depend on those before.
+   function new_drive_excursion(m, depends) result(p)
+      type(mechanism_t), intent(in) :: m
+      logical, intent(in) :: depends
+      type(drive_excursion_t) :: p
+      real(wp) :: length
+      integer :: i, n
+
+      n = merge(size(m%drives), 0, depends)
+      length = solver_length(m)
+      allocate (p%laws(n))
+      allocate (p%unit(n), source=1.0_wp)
+      do i = 1, n
+         p%laws(i) = new_law(m%drives(i))
+         if (is_length(m%drives(i))) p%unit(i) = 1.0_wp/length
+      end do
+      call find_instants(m, p%first, p%last)
+      if (p%first > p%last) return
+      p%longest = reciprocal(largest(p, 1, p%first, p%last))
+      p%curve = largest(p, 2, p%first, p%last)
+   end function new_drive_excursion
+
+   !> The `first` and the `last` of all instants of `m`; the other way round where there are none.
+   pure subroutine find_instants(m, first, last)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(out) :: first, last
+
+      first = minval(m%at)
+      last = maxval(m%at)
+      if (m%steps < 0) return
+      first = min(first, m%t0, m%t1)
+      last = max(last, m%t0, m%t1)
+   end subroutine find_instants
+
+   !> Of a part of a step from `t` on, what of it the drives allow at once.
+   pure real(wp) function substep_allowed(p, t, substep) result(allowed)
+      type(drive_excursion_t), intent(in) :: p
+      real(wp), intent(in) :: t, substep
+      real(wp) :: change, away
+      logical :: inside
+
+      allowed = substep
+      if (is_within(p, t, t + substep) .and. abs(substep) <= p%longest .and. p%curve < huge(1.0_wp)) then
+         if (0.125_wp*substep**2*p%curve <= largest_excursion) return
+      end if
+      do while (abs((t + allowed) - t) > 0.0_wp)
+         call examine(p, t, t + allowed, change, away)
+         inside = is_within(p, t, t + allowed)
+         if (change > largest_change .and. .not. (inside .and. abs(allowed) <= p%longest)) then
+            allowed = allowed*max(min_factor, a_little_less*largest_change/change)
+            if (inside) allowed = sign(max(abs(allowed), p%longest), substep)
+         else if (away > largest_excursion) then
+            allowed = 0.5_wp*allowed
+         else
+            return
+         end if
+      end do
+   end function substep_allowed
+
+   !> An upper bound of the `excursion` below, at hardly any cost.
+   pure real(wp) function likely_excursion(p, t1, t2) result(away)
+      type(drive_excursion_t), intent(in) :: p
+      real(wp), intent(in) :: t1, t2
+
+      if (is_within(p, t1, t2) .and. p%curve < huge(1.0_wp)) then
+         away = 0.125_wp*(t2 - t1)**2*p%curve
+      else
+         away = excursion(p, t1, t2)
+      end if
+   end function likely_excursion
+
+   !> How far the drives are off the straight way from `t1` to `t2`, in radians or characteristic lengths.
+   pure real(wp) function excursion(p, t1, t2) result(away)
+      type(drive_excursion_t), intent(in) :: p
+      real(wp), intent(in) :: t1, t2
+      real(wp) :: change
+
+      call examine(p, t1, t2, change, away)
+   end function excursion
+
+   !> `change`: bounds that of every drive from its value at `t1`, up to `t2`; `away`: how far they are off the straight
+   !> way, a chord leaving a curve by h^2/8 times its second derivative.
+   pure subroutine examine(p, t1, t2, change, away)
+      type(drive_excursion_t), intent(in) :: p
+      real(wp), intent(in) :: t1, t2
+      real(wp), intent(out) :: change, away
+      type(bounds_t) :: b
+      real(wp) :: f1(3), f2(3), h, rate, bow, off, beyond, off_one, off_all
+      integer :: i, moving
+
+      change = 0.0_wp
+      off_one = 0.0_wp
+      off_all = 0.0_wp
+      moving = 0
+      h = abs(t2 - t1)
+      do i = 1, size(p%laws)
+         b = bounds_of(p%laws(i), t1, t2)
+         if (any(b%high >= huge(1.0_wp) .or. b%low <= -huge(1.0_wp))) then
+            change = huge(1.0_wp)
+            away = huge(1.0_wp)
+            return
+         end if
+         f1 = drive_motion(p%laws(i), t1)
+         f2 = drive_motion(p%laws(i), t2)
+         rate = max(-b%low(1), b%high(1))
+         if (rate > 0.0_wp) moving = moving + 1
+         change = max(change, p%unit(i)*min(rate*h, max(b%high(0) - f1(1), f1(1) - b%low(0))))
+         bow = 0.125_wp*h**2*max(-b%low(2), b%high(2))
+         off = min(bow, max(b%high(0) - min(f1(1), f2(1)), max(f1(1), f2(1)) - b%low(0)))
+         beyond = max(b%high(0) - max(f1(1), f2(1)), min(f1(1), f2(1)) - b%low(0), 0.0_wp)
+         if (b%low(1) >= 0.0_wp .or. b%high(1) <= 0.0_wp) beyond = 0.0_wp
+         off_one = max(off_one, p%unit(i)*min(bow, beyond))
+         off_all = max(off_all, p%unit(i)*off)
+      end do
+      away = merge(off_all, off_one, moving > 1)
+   end subroutine examine
+
+   !> Parts that a step from `t1` to `t2` has at least, if it can be made: each changes no drive by more than allowed.
+   pure real(wp) function steps_at_least(p, t1, t2) result(steps)
+      type(drive_excursion_t), intent(in) :: p
+      real(wp), intent(in) :: t1, t2
+      real(wp) :: f1(3), f2(3)
+      integer :: i
+
+      steps = 0.0_wp
+      do i = 1, size(p%laws)
+         f1 = drive_motion(p%laws(i), t1)
+         f2 = drive_motion(p%laws(i), t2)
+         steps = max(steps, abs(f2(1) - f1(1))*p%unit(i)/largest_change)
+      end do
+   end function steps_at_least
+
+   !> Bounds the rate of every drive between `t1` and `t2`, in radians or characteristic lengths a unit of time.
+   pure real(wp) function largest_rate(p, t1, t2) result(rate)
+      type(drive_excursion_t), intent(in) :: p
+      real(wp), intent(in) :: t1, t2
+
+      rate = largest(p, 1, t1, t2)
+   end function largest_rate
+
+   !> The largest derivative number `k` of any drive between `t1` and `t2`; huge: no bound.
+   pure real(wp) function largest(p, k, t1, t2)
+      type(drive_excursion_t), intent(in) :: p
+      integer, intent(in) :: k
+      real(wp), intent(in) :: t1, t2
+      type(bounds_t) :: b
+      integer :: i
+
+      largest = 0.0_wp
+      do i = 1, size(p%laws)
+         b = bounds_of(p%laws(i), t1, t2)
+         if (b%high(k) >= huge(1.0_wp) .or. b%low(k) <= -huge(1.0_wp)) then
+            largest = huge(1.0_wp)
+         else
+            largest = max(largest, p%unit(i)*max(-b%low(k), b%high(k)))
+         end if
+      end do
+   end function largest
+
+   pure real(wp) function reciprocal(rate)
+      real(wp), intent(in) :: rate
+
+      reciprocal = huge(1.0_wp)
+      if (rate > largest_change/huge(1.0_wp)) reciprocal = largest_change/rate
+   end function reciprocal
+
+   pure logical function is_within(p, t1, t2)
+      type(drive_excursion_t), intent(in) :: p
+      real(wp), intent(in) :: t1, t2
+
+      is_within = min(t1, t2) >= p%first .and. max(t1, t2) <= p%last
+   end function is_within
+end module drive_excursion

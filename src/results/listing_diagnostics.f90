@@ -1,0 +1,180 @@
+!> Remarks in words: three stars before what concerns the results, three dashes before what is good to know.
+module listing_diagnostics
+   use kinds, only: wp
+   use constants, only: degree
+   use mechanism, only: mechanism_t
+   use diagnostics, only: diagnostic_t, diagnostic_inconsistent, diagnostic_limit, diagnostic_far_estimate, &
+      diagnostic_second, diagnostic_redundant, diagnostic_mobile, &
+      diagnostic_change, diagnostic_long, diagnostic_unused, diagnostic_dead_end, diagnostic_idle, &
+      diagnostic_repeated, &
+      diagnostic_method
+   use names, only: drive_name, listed
+   use numerals, only: whole
+   use text_output, only: output_t, put
+   use phrases, only: phrase, say_pair, say_drive, say_link, say_links, say_closure_error_of, say_limit, say_in_line, &
+      say_at_limit, say_off_by, say_second, say_redundant, say_mobile, say_closure_error, say_below, say_change, &
+      say_smoothly, &
+      say_way, say_too_long, say_other, say_here, say_not_found, say_branch_from, say_no_change, &
+      say_idle, say_repeated, say_redundant_many, say_of_pair, say_method, &
+      say_elsewhere
+   implicit none
+   private
+   public :: put_diagnostics, put_closure_error
+
+   integer, parameter :: line_length = 120
+   !> A gap below this, of the size, is rounding, and no two computers have the same.
+   real(wp), parameter :: min_gap = max(1.0e-13_wp, 400.0_wp*epsilon(1.0_wp))
+
+contains
+
+   !> A line for each remark of `list`.
+   subroutine put_diagnostics(o, m, list)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(diagnostic_t), intent(in) :: list(:)
+      integer :: i
+
+      do i = 1, size(list)
+         select case (list(i)%kind)
+         case (diagnostic_inconsistent, diagnostic_limit, diagnostic_mobile, diagnostic_long, diagnostic_unused, &
+            diagnostic_dead_end, &
+            diagnostic_idle, diagnostic_repeated)
+            call put_broken(o, ' *** ', words_of(m, list(i)))
+            if (list(i)%kind == diagnostic_limit) call put(o, ' *** '//links(m, list(i))//' ' &
+               //phrase(merge(say_in_line, say_at_limit, list(i)%in_line), m%polish))
+         case default
+            call put_broken(o, ' --- ', words_of(m, list(i)))
+         end select
+      end do
+   end subroutine put_diagnostics
+
+   !> `text` in one line or, where names are many and long, in two; each begins with `mark`.
+   subroutine put_broken(o, mark, text)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: mark, text
+      integer :: last
+
+      last = len(text)
+      if (len(mark) + last > line_length) last = index(text(:line_length - len(mark) + 1), ' ', back=.true.) - 1
+      call put(o, mark//text(:last))
+      if (last < len(text)) call put(o, mark//text(last + 2:))
+   end subroutine put_broken
+
+   function words_of(m, r) result(text)
+      type(mechanism_t), intent(in) :: m
+      type(diagnostic_t), intent(in) :: r
+      character(:), allocatable :: text
+
+      text = ''
+      select case (r%kind)
+      case (diagnostic_inconsistent)
+         text = owner(m, r)//' '//phrase(say_closure_error_of, m%polish)//' '//measure(m, r, '(es9.2)')
+      case (diagnostic_limit)
+         text = phrase(say_limit, m%polish)//' '//number(r%t, '(es17.9)')//', '//owner(m, r)//' = ' &
+            //measure(m, r, '(es17.9)')
+      case (diagnostic_far_estimate)
+         text = links(m, r)//': '//phrase(say_off_by, m%polish)//' '//measure(m, r, '(es9.2)')
+      case (diagnostic_second)
+         text = links(m, r)//': '//phrase(say_second, m%polish)
+      case (diagnostic_redundant)
+         text = phrase(say_redundant, m%polish)//': '//owner(m, r)
+         if (r%equations > 1) text = phrase(say_redundant_many, m%polish)//': '//whole(r%equations)//' ' &
+            //phrase(say_of_pair, m%polish)//' '//trim(m%pairs(r%pair)%name)
+      case (diagnostic_change)
+         text = phrase(say_change, m%polish)//' '//number(r%t, '(es13.5)')//', '//links(m, r)//': ' &
+            //phrase(merge(say_here, merge(say_other, say_smoothly, r%other), r%here), m%polish)
+      case (diagnostic_dead_end)
+         text = phrase(say_change, m%polish)//' '//number(r%t, '(es13.5)')//', '//links(m, r)//': ' &
+            //phrase(say_not_found, m%polish)
+      case (diagnostic_unused)
+         text = 'BRANCH '
+         if (r%links(1) > 0) text = text//trim(m%links(r%links(1))%name)//' '
+         text = text//phrase(say_branch_from, m%polish)//' '//number(r%t, '(es13.5)')//': ' &
+            //phrase(say_no_change, m%polish)
+      case (diagnostic_long)
+         text = phrase(say_way, m%polish)//' '//number(r%t, '(es13.5)')//' '//phrase(say_too_long, m%polish)
+      case (diagnostic_idle)
+         text = owner(m, r)//' '//phrase(say_idle, m%polish)
+      case (diagnostic_repeated)
+         text = owner(m, r)//' '//phrase(say_repeated, m%polish)
+      case (diagnostic_method)
+         text = phrase(say_method, m%polish)
+         if (r%other) text = phrase(say_elsewhere, m%polish)//': '//text
+      case (diagnostic_mobile)
+         text = links(m, r)//' '//phrase(say_mobile, m%polish)
+      end select
+   end function words_of
+
+   !> PAIR A, or DRIVE ANGLE B
+   function owner(m, r) result(text)
+      type(mechanism_t), intent(in) :: m
+      type(diagnostic_t), intent(in) :: r
+      character(:), allocatable :: text
+
+      text = ''
+      if (r%pair > 0) then
+         text = phrase(say_pair, m%polish)//' '//trim(m%pairs(r%pair)%name)
+      else if (r%drive > 0) then
+         text = phrase(say_drive, m%polish)//' '//trim(drive_name(m, m%drives(r%drive)))
+      end if
+   end function owner
+
+   function links(m, r) result(text)
+      type(mechanism_t), intent(in) :: m
+      type(diagnostic_t), intent(in) :: r
+      character(:), allocatable :: text
+      integer :: n
+
+      n = count(r%links > 0)
+      text = phrase(merge(say_link, say_links, n == 1), m%polish)
+      if (n > 0) text = text//' '//listed(m%links(r%links(:n))%name)
+      if (r%more == 0) return
+      if (m%polish) then
+         text = text//' I '//whole(r%more)//' INNE'
+      else
+         text = text//' AND '//whole(r%more)//' MORE'
+      end if
+   end function links
+
+   !> The remark's value and its unit.
+   function measure(m, r, form) result(text)
+      type(mechanism_t), intent(in) :: m
+      type(diagnostic_t), intent(in) :: r
+      character(*), intent(in) :: form
+      character(:), allocatable :: text
+
+      if (.not. r%is_angle) then
+         text = number(r%value, form)//' '//trim(m%length_unit)
+      else if (m%degrees) then
+         text = number(r%value/degree, form)//' DEG'
+      else
+         text = number(r%value, form)//' RAD'
+      end if
+   end function measure
+
+   function number(x, form) result(text)
+      real(wp), intent(in) :: x
+      character(*), intent(in) :: form
+      character(:), allocatable :: text
+      character(24) :: field
+
+      write (field, form) x
+      ! An exponent of three digits would lose its E.
+      if (scan(field, 'E') == 0) write (field, '(es17.8e3)') x
+      text = trim(adjustl(field))
+   end function number
+
+   !> By how much redundant equations differ, `closure_error` in parts of the characteristic length.
+   subroutine put_closure_error(o, m, closure_error)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: closure_error
+
+      if (closure_error < min_gap) then
+         call put(o, ' '//phrase(say_closure_error, m%polish)//' '//phrase(say_below, m%polish)//' ' &
+            //number(min_gap, '(es7.0)'))
+      else
+         call put(o, ' '//phrase(say_closure_error, m%polish)//' '//number(closure_error, '(es7.0)'))
+      end if
+   end subroutine put_closure_error
+end module listing_diagnostics
