@@ -1,6 +1,6 @@
 !> One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later.
 module job
-   use failures, only: failure_t, fail, status_solved, status_refused, status_flagged, status_signal
+   use failures, only: failure_t, status_solved, status_flagged, status_signal
    use mechanism, only: mechanism_t, instant_count, instant
    use structure, only: findings_t
    use structure_faults, only: check_structure

@@ -2,8 +2,8 @@
 !> written out again by hand so that a deck read wrongly shows up as a difference.
 module closed_forms_linkages
    use kinds, only: wp
-   use quad_jet, only: qp, jet_t, pi_q, degree_q, constant_jet, time_jet, &
-      operator(+), operator(-), operator(*), operator(/), sqrt, sin, cos, atan2
+   use quad_jet, only: qp, jet_t, pi_q, degree_q, constant_jet, time_jet, operator(+), operator(-), operator(*), &
+      operator(/), sqrt, sin, cos
    use closed_forms_dyads, only: place_t, body_t, fixed_place, body, place_on, polar, direction, third_corner
    implicit none
    private

@@ -2,10 +2,9 @@
 !> places.
 !> An assembly that depends on the length of the steps was changed on the way.
 module csv_twice
-   use kinds, only: wp
    use quad_jet, only: qp
    use mechanism, only: mechanism_t, instant_count
-   use jet_closure, only: body_jet_t, sizes_t, sizes_of
+   use jet_closure, only: sizes_t, sizes_of
    use csv_rows, only: rows_t, read_instant, blame, whole_text
    implicit none
    private

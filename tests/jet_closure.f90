@@ -1,10 +1,8 @@
 !> Tests. The closure equations with their first and second derivatives by time, in real128, for a motion that is given;
 !> and what rounding in double precision may leave of them.
 module jet_closure
-   use kinds, only: wp
-   use quad_jet, only: qp, jet_t, constant_jet, sin, cos, operator(+), operator(-), operator(*)
-   use mechanism, only: mechanism_t, pair_revolute, pair_prismatic, drive_angle, drive_x, drive_y, drive_relangle, &
-      drive_slide
+   use quad_jet, only: qp, jet_t, sin, cos, operator(+), operator(-), operator(*)
+   use mechanism, only: mechanism_t, pair_revolute, pair_prismatic, drive_angle, drive_x, drive_relangle, drive_slide
    use scales, only: characteristic_length
    use jet_drives, only: drive_jet, drive_sizes
    implicit none

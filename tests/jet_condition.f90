@@ -2,7 +2,7 @@
 module jet_condition
    use kinds, only: wp
    use quad_jet, only: qp, jet_t, constant_jet
-   use mechanism, only: mechanism_t, drive_angle, drive_relangle, pair_prismatic
+   use mechanism, only: mechanism_t, pair_prismatic
    use jet_closure, only: body_jet_t, closure_jets
    use lapack, only: gesvd
    implicit none

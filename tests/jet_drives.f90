@@ -1,7 +1,7 @@
 !> Tests. The motions of the drives in real128, and how large the numbers were that they were added up from: one part in
 !> 2**53 of that is what double precision can be held to.
 module jet_drives
-   use quad_jet, only: qp, jet_t, time_jet, constant_jet, sin, operator(+), operator(*)
+   use quad_jet, only: qp, jet_t, time_jet, sin, operator(+), operator(*)
    use mechanism, only: drive_t, term_t, term_harmonic, term_power, term_table
    implicit none
    private

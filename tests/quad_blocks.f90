@@ -4,8 +4,7 @@
 module quad_blocks
    use quad_jet, only: qp
    use matching, only: incidence_t, match, find_blocks
-   use loop_equations, only: equations_t, equation_t, incidence, equation_x, equation_y, equation_projection, &
-      equation_angle
+   use loop_equations, only: equations_t, incidence, equation_x, equation_y, equation_projection, equation_angle
    use blocks, only: blocks_t
    implicit none
    private

@@ -2,10 +2,10 @@
 !> the picture, and the short form of both that judges.
 module rates_1987
    use kinds, only: wp
-   use quad_jet, only: qp, degree_q
+   use quad_jet, only: degree_q
    use scenes_1987, only: scene_t, new_scene, exact, scene_names
-   use iteration_1987, only: by_print, by_start, by_step, by_tangent, by_dyad, variant_names, rate_by_theory, &
-      rate_measured, order_measured, run_t, iterate_from, went_right
+   use iteration_1987, only: by_print, by_step, by_tangent, by_dyad, variant_names, rate_by_theory, rate_measured, &
+      order_measured, run_t, iterate_from, went_right
    implicit none
    private
    public :: rates_table, constants_table, picture_numbers, judge_rates

@@ -9,9 +9,8 @@ module runs_1987
    use bench_timing, only: job_t, measure
    use bench_tools, only: figure
    use constants, only: degree
-   use quad_jet, only: qp
    use scenes_1987, only: scene_t, new_scene, exact, scene_names
-   use iteration_1987, only: by_print, by_step, by_tangent, variant_names, run_t, iterate_from, went_right, went_wrong
+   use iteration_1987, only: by_print, by_tangent, variant_names, run_t, iterate_from, went_right, went_wrong
    implicit none
    private
    public :: basins_table, counts_table, decks_table, times_table

@@ -2,7 +2,7 @@
 module sample_overconstrained
    use kinds, only: wp
    use mechanism, only: mechanism_t, link_t, point_t, pair_t, request_t, request_link, pair_revolute
-   use sample_mechanisms, only: four_bar, angle_drive
+   use sample_mechanisms, only: four_bar
    implicit none
    private
    public :: parallelogram, three_cranks

@@ -1,9 +1,8 @@
 !> From a card to its labels, whole number and reals. Every field is checked; its meaning is left to others.
 module card_reader
    use kinds, only: wp, label_length
-   use cards, only: card_t, field_t, card_fields, wide_fields, card_name, label_a, label_c, real_1, field_text, &
-      first_column, card_columns, forms, form_name, form_unknown, form_title, form_add, find_form, &
-      nearest_form
+   use cards, only: card_t, field_t, card_fields, wide_fields, card_name, label_a, label_c, field_text, first_column, &
+      card_columns, forms, form_name, form_unknown, form_title, form_add, find_form, nearest_form
    use input_errors, only: error_code_t, input_errors_t, add_error, add_field_error, error_count, is_full, max_power, &
       card_unknown, card_lower_case, card_indented, past_last_column, tab_character, control_character, &
       foreign_character, border_crossed, field_unused, field_blank, label_blank_inside, star_no_reals, star_second, &

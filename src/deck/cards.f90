@@ -8,7 +8,7 @@ module cards
    public :: card_t, field_t, card_columns, card_fields, wide_fields, title_field
    public :: card_name, label_a, label_b, label_c, real_1, real_2, real_3
    public :: field_text, first_column, ruler_card, is_passed_over
-   public :: form_t, forms, form_name, find_form, nearest_form
+   public :: forms, form_name, find_form, nearest_form
    public :: form_unknown, form_title, form_units, form_lang, form_ground, form_link, form_point, form_revolute
    public :: form_prism, form_drive, form_add, form_time, form_at, form_method, form_print, form_branch, form_end
 

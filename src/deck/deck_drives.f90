@@ -2,7 +2,7 @@
 module deck_drives
    use kinds, only: wp
    use mechanism, only: drive_t, term_t, drive_angle, drive_relangle, drive_slide, drive_words, driven_kinds, &
-      term_harmonic, term_power, term_table, term_words, pair_revolute, request_link, request_point
+      term_harmonic, term_power, term_table, term_words, pair_revolute, request_link
    use card_sets, only: card_set_t, look_up, match_word, add_card_error
    use cards, only: card_name, label_a, label_b, label_c, real_1, form_unknown, form_drive, form_add, form_end
    use input_errors, only: drive_kind, drive_ground, drive_ground_point, drive_grounds, drive_one_link, &

@@ -2,8 +2,7 @@
 module deck_options
    use kinds, only: wp
    use constants, only: degree
-   use mechanism, only: request_t, branch_request_t, request_link, request_point, request_pair, method_newton, &
-      method_words
+   use mechanism, only: request_t, branch_request_t, request_link, request_pair, method_newton, method_words
    use card_sets, only: card_set_t, look_up, match_word, add_card_error
    use cards, only: title_field, card_name, label_a, label_b, label_c, real_1, real_2, forms, form_unknown, &
       form_title, form_units, form_lang, form_time, form_at, form_method, form_print, form_branch

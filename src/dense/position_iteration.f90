@@ -10,8 +10,7 @@
 module position_iteration
    use kinds, only: wp
    use linear_solver, only: factors_t, factor, solve
-   use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, &
-      ended_diverged
+   use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_diverged
    use pose, only: system_t, pose_t, set_pose, add_to_links
    use closure_equations, only: residual, jacobian
    implicit none

@@ -4,7 +4,7 @@
 !>    f(t) = value + rate t + acceleration t**2/2 + the sum of the terms added
 module drives
    use kinds, only: wp
-   use mechanism, only: drive_t, term_t, term_harmonic, term_power, term_table
+   use mechanism, only: drive_t, term_harmonic, term_power, term_table
    use spline, only: spline_t, new_spline, spline_value
    implicit none
    private

@@ -1,14 +1,13 @@
 !> What --study tries on one set of computations: how many steps, which instants are compared, which trials.
 module study_plan
    use, intrinsic :: iso_fortran_env, only: dp => real64, int64
-   use kinds, only: wp
-   use mechanism, only: mechanism_t, instant_count, method_newton, method_dense, method_matrix, own_predictor
+   use mechanism, only: mechanism_t, instant_count, method_dense, method_matrix, own_predictor
    use block_engine, only: block_engine_t, make_block_engine
    use trials, only: trial_t, kind_single, kind_double, kind_quad
    implicit none
    private
    public :: plan_t, new_plan, plan_trials, truth_trial, default_trial
-   public :: section_tolerance, section_steps, section_predictor, section_kinds
+   public :: section_kinds
 
    integer, parameter :: section_tolerance = 1, section_steps = 2, section_predictor = 3, section_kinds = 4
 
