@@ -116,25 +116,25 @@ errors: $(BUILD)/release/error_estimates
 	$< $(decks)
 
 check: $(BUILD)/kinmat $(references)
-	BUILD=$(BUILD) tests/check.sh
+	BUILD=$(BUILD) tests/system/check.sh
 
 # The results of a build against the closed forms in real128, at the level of its kind.
 kind-check: $(BUILD)/kinmat $(BUILD)/release/kind_errors
-	BUILD=$(BUILD) KIND=$(KIND) tests/kind.sh
+	BUILD=$(BUILD) KIND=$(KIND) tests/system/kind.sh
 
 quad-check single-check: %-check:
 	$(MAKE) --no-print-directory KIND=$* BUILD=$(BUILD)/$* kind-check
 
 # Speed against the closed forms, and the results of the methods compared; bench-short looks at no clock.
 bench: $(BUILD)/kinmat $(BUILD)/release/bench
-	BUILD=$(BUILD) tests/bench.sh
+	BUILD=$(BUILD) tests/bench/bench.sh
 
 bench-short: $(BUILD)/release/bench
-	BUILD=$(BUILD) tests/bench.sh short
+	BUILD=$(BUILD) tests/bench/bench.sh short
 
 # Whole runs of this program against the program at the commit REF: make bench-against REF=HEAD~1
 bench-against: $(BUILD)/kinmat
-	BUILD=$(BUILD) REF='$(REF)' tests/bench_against.sh
+	BUILD=$(BUILD) REF='$(REF)' tests/bench/bench_against.sh
 
 # The method of 1987, measured: tables on standard output, docs/matrix_1987.png drawn anew (gnuplot-nox).
 study-1987: $(BUILD)/release/matrix_1987
@@ -142,23 +142,23 @@ study-1987: $(BUILD)/release/matrix_1987
 	OPENBLAS_NUM_THREADS=1 $< times
 	$< picture > $(BUILD)/matrix_1987.txt
 	mkdir -p docs
-	gnuplot -e "numbers='$(BUILD)/matrix_1987.txt'; picture='docs/matrix_1987.png'" tests/matrix_1987.gp
+	gnuplot -e "numbers='$(BUILD)/matrix_1987.txt'; picture='docs/matrix_1987.png'" tests/study/matrix_1987.gp
 
 # Accuracy where it is hard to have, in units of what the condition allows; hard-short in fewer instants.
 hard: $(BUILD)/release/hard
-	BUILD=$(BUILD) tests/hard.sh full
+	BUILD=$(BUILD) tests/oracle/hard.sh full
 
 hard-short: $(BUILD)/release/hard
-	BUILD=$(BUILD) tests/hard.sh short
+	BUILD=$(BUILD) tests/oracle/hard.sh short
 
 # Speed against error of six scenes: kinmat --study for each, times beside the closed forms where there are such, and
 # docs/speed_against_error.png and .svg drawn anew (gnuplot-nox).
 study: kinds $(BUILD)/release/study_ratio
-	BUILD=$(BUILD) tests/study.sh
+	BUILD=$(BUILD) tests/study/study.sh
 
 # Speed against error of one small deck: what must be so whatever the clock says.
 study-short: kinds $(BUILD)/debug/kinmat
-	OPENBLAS_NUM_THREADS=1 BUILD=$(BUILD) tests/study_short.sh
+	OPENBLAS_NUM_THREADS=1 BUILD=$(BUILD) tests/study/study_short.sh
 
 # Numbers as they are printed against the formats of the run-time library; make digits NUMBERS=... for more of them.
 NUMBERS ?= 20000000
@@ -169,17 +169,17 @@ digits: $(BUILD)/release/compare_digits
 FUZZ       ?= 100000
 FUZZ_FIRST ?= 1
 fuzz: $(BUILD)/fuzz/fuzz
-	BUILD=$(BUILD) tests/fuzz.sh $(FUZZ) $(FUZZ_FIRST)
+	BUILD=$(BUILD) tests/fuzz/fuzz.sh $(FUZZ) $(FUZZ_FIRST)
 
 fuzz-short: $(BUILD)/debug/fuzz
-	BUILD=$(BUILD) FUZZ_BUILD=debug tests/fuzz.sh 1000
+	BUILD=$(BUILD) FUZZ_BUILD=debug tests/fuzz/fuzz.sh 1000
 
 TEST_LIB     := $(BUILD)/debug/libkinmat.a
 TEST_MODULES := $(BUILD)/debug
 TEST_FLAGS   := $(COMMON) $(DEBUG)
 TEST_LIBS    := $(LIBS)
 TEST_HELPERS := $(unit_helpers:%=$(BUILD)/debug/%.o)
-include tests/tests.mk
+include tests/pfunit/tests.mk
 
 # What the parts of `make test` need is made beforehand, many at a time; the parts run one after another.
 checkers := check_forms error_estimates compare_digits hard matrix_1987 bench

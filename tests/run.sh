@@ -7,29 +7,29 @@ export BUILD MAKE
 # A part a line: its name, and its command, whose last line is "N passed, N failed". Longer ones come first.
 parts() {
    sed 's/^ *//' <<'END'
-   faults by name|tests/faults.sh
+   faults by name|tests/system/faults.sh
    real128|"$MAKE" --no-print-directory quad-check
    single precision|"$MAKE" --no-print-directory single-check
    speed against error|"$MAKE" --no-print-directory study-short
    results of the methods|"$MAKE" --no-print-directory bench-short
-   the command|tests/command.sh
-   what is printed arrives|tests/output.sh
+   the command|tests/system/command.sh
+   what is printed arrives|tests/system/output.sh
    unit tests|"$MAKE" --no-print-directory unit
    the stand-in|"$MAKE" --no-print-directory unit-stand-in
-   the sources|tests/house.sh
+   the sources|tests/system/house.sh
    the closed forms|"$BUILD/release/check_forms" input/*.deck
-   make check|tests/check.sh
-   the documents|tests/documents.sh
+   make check|tests/system/check.sh
+   the documents|tests/system/documents.sh
    estimates of errors|"$MAKE" --no-print-directory errors
-   units of length|tests/units.sh
-   the methods against one another|tests/methods.sh
-   independent mechanisms|tests/independent.sh
-   the digits|tests/digits.sh
-   wide blocks|tests/wide.sh
-   drives between instants|tests/drives.sh
-   decks made by chance|FUZZ_BUILD=debug tests/fuzz.sh 1000
+   units of length|tests/system/units.sh
+   the methods against one another|tests/system/methods.sh
+   independent mechanisms|tests/system/independent.sh
+   the digits|tests/system/digits.sh
+   wide blocks|tests/system/wide.sh
+   drives between instants|tests/system/drives.sh
+   decks made by chance|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 1000
    the method of 1987|"$BUILD/release/matrix_1987" short
-   what is hard to compute|tests/hard.sh short
+   what is hard to compute|tests/oracle/hard.sh short
 END
 }
 

@@ -41,7 +41,7 @@ module klu
 
    !> A pattern and, from the first factorization on, the factors of the last matrix of that pattern, which it frees
    !> when it ends. No object that holds one is ever copied, since both would free them: objects are made by subroutines
-   !> (tests/copies.awk looks for any other way). Rejected: an assignment of the type's own, which gfortran 12 does not
+   !> (tests/system/copies.awk looks for others). Rejected: an assignment of the type's own, which gfortran 12 does not
    !> call for allocatable components.
    type :: klu_t
       type(pattern_t) :: pattern

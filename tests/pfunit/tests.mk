@@ -1,14 +1,14 @@
-# Unit tests: every test_*.pf of TEST_DIR in one program, run by the target `unit`. Its last line is "N passed, N failed".
+# Unit tests: every test_*.pf below TEST_DIR in one program, run by the target `unit`. Its last line is "N passed, N failed".
 #
-# To be included by the Makefile, or used alone: make -f tests/tests.mk TEST_LIB=... unit
+# To be included by the Makefile, or used alone: make -f tests/pfunit/tests.mk TEST_LIB=... unit
 #   BUILD         build directory                                               (build)
 #   TEST_LIB      objects or archive under test, without the main program       ($(BUILD)/libkinmat.a)
 #   TEST_MODULES  directory of their .mod files                                 ($(BUILD))
 #   TEST_FLAGS    compiler flags: checks, traps, signalling-NaN fill            (below)
 #   TEST_LIBS     libraries to link                                             (-llapack -lblas)
 #   TEST_HELPERS  objects of modules that the tests use beside it               (none)
-#   TEST_DIR      where the .pf files are                                       (tests)
-#   TESTS         the .pf files                                                 (test_*.pf of TEST_DIR)
+#   TEST_DIR      where the .pf files are, in folders or not                    (tests/unit)
+#   TESTS         the .pf files                                                 (test_*.pf below TEST_DIR)
 #   PFUNIT_DIR    directory of an installed pFUnit 4; without it the stand-in beside this file serves
 # Targets: unit (build and run), unit-build, unit-stand-in (tests of the stand-in itself).
 
@@ -21,8 +21,8 @@ TEST_MODULES ?= $(BUILD)
 TEST_FLAGS   ?= -std=f2018 -Wall -Wextra -pedantic -g -fbacktrace -fcheck=all \
                 -ffpe-trap=invalid,zero,overflow -finit-real=snan -finit-derived
 TEST_LIBS    ?= -llapack -lblas
-TEST_DIR     ?= tests
-TESTS        ?= $(sort $(wildcard $(TEST_DIR)/test_*.pf))
+TEST_DIR     ?= tests/unit
+TESTS        ?= $(sort $(shell find '$(TEST_DIR)' -name 'test_*.pf'))
 
 unit_home  := $(patsubst %/,%,$(dir $(lastword $(MAKEFILE_LIST))))
 # Apart, since both bring a module of the name funit.
@@ -46,6 +46,7 @@ else
    unit_link      :=
 endif
 
+vpath %.pf $(sort $(dir $(TESTS)))
 unit_objects := $(unit_names:%=$(unit_build)/%.o)
 
 .PHONY: unit unit-build unit-stand-in unit-force
@@ -87,7 +88,7 @@ $(unit_objects): $(unit_build)/%.o: $(unit_build)/%.F90 $(TEST_HELPERS) $(unit_f
 
 ifneq ($(PFUNIT_DIR),)
 # pFUnit reads a copy in the build directory: its preprocessor writes beside the file and reads one line for an annotation.
-$(unit_build)/%.pf: $(TEST_DIR)/%.pf $(unit_home)/pf2f90 | $(unit_build)/suites
+$(unit_build)/%.pf: %.pf $(unit_home)/pf2f90 | $(unit_build)/suites
 	$(unit_home)/pf2f90 --join $< > $@.new && mv $@.new $@
 
 .PRECIOUS: $(unit_build)/%.pf
@@ -104,7 +105,7 @@ else
 $(unit_build)/funit.o: $(unit_home)/funit.f90 | $(unit_build)/suites
 	$(FC) $(unit_flags) -c -o $@ $<
 
-$(unit_build)/%.F90: $(TEST_DIR)/%.pf $(unit_home)/pf2f90 | $(unit_build)/suites
+$(unit_build)/%.F90: %.pf $(unit_home)/pf2f90 | $(unit_build)/suites
 	$(unit_home)/pf2f90 $< > $@.new && mv $@.new $@
 
 $(unit_build)/unit_driver.f90: $(unit_build)/suites $(unit_home)/pf2f90

@@ -1,4 +1,4 @@
-!> Tests. Decks made by chance, each from the number of its seed, run through the program's own job; `tests/fuzz.sh`
+!> Tests. Decks made by chance, each from the number of its seed, run through the program's own job; `tests/fuzz/fuzz.sh`
 !> calls it.
 !>
 !>    fuzz FIRST LAST DIRECTORY DECK...     seeds FIRST to LAST, a line for each that fails, then a line of sums

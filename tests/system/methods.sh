@@ -33,16 +33,16 @@ against() {
 }
 
 # A limit, and five instants beyond it in the steps of the deck at which another assembly is not far.
-by NEWTON tests/decks/dense_passes_limit.deck
-by DENSE tests/decks/dense_passes_limit.deck
+by NEWTON tests/system/decks/dense_passes_limit.deck
+by DENSE tests/system/decks/dense_passes_limit.deck
 equal 'a limit between two instants: rows of another assembly, rows found, rows of NEWTON' '0 41 41' "$(against DENSE)"
 equal 'the limit is told' "$(grep LIMIT "$w/NEWTON.lst")" "$(grep LIMIT "$w/DENSE.lst")"
 
 # An estimate 3 degrees off, from which Newton's iteration for all equations falls a thousand radians away.
 for library in $lapack $openblas; do
    [ -d "${library%%:*}" ] || continue
-   by NEWTON tests/decks/dense_first_instant_chaotic.deck "$library"
-   by DENSE tests/decks/dense_first_instant_chaotic.deck "$library"
+   by NEWTON tests/system/decks/dense_first_instant_chaotic.deck "$library"
+   by DENSE tests/system/decks/dense_first_instant_chaotic.deck "$library"
    found=$(against DENSE)
    equal "a far iteration, ${library##*/}: rows of another assembly" 0 "${found%% *}"
    equal "a far iteration, ${library##*/}: rows as many as NEWTON's" "${found##* }" "$(echo "$found" | cut -d' ' -f2)"

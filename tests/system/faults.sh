@@ -550,8 +550,8 @@ for one in crank_slider yoke hart whitworth; do
 done
 # An estimate good to 3 degrees and 3 per cent, of nineteen links in six groups: of an earlier group two positions are about
 # as near, and only with one of them the later ones close. The position found is within 3 degrees of the estimate everywhere.
-"$kinmat" tests/decks/estimate_of_twenty_links.deck --csv "$w/csv" > "$w/out"
-awk -F, '$2 == 0 { print "FOUND", $5, $8 }' "$w/csv" | cat - tests/decks/estimate_of_twenty_links.deck | awk '
+"$kinmat" tests/system/decks/estimate_of_twenty_links.deck --csv "$w/csv" > "$w/out"
+awk -F, '$2 == 0 { print "FOUND", $5, $8 }' "$w/csv" | cat - tests/system/decks/estimate_of_twenty_links.deck | awk '
    $1 == "FOUND" { phi[$2] = $3 }
    link != "" { d = phi[link] - $4; d -= 360*int(d/360); if (d > 180) d -= 360; if (d < -180) d += 360
       if (!(link in phi) || d*d > 9) print link, d; near++; link = "" }

@@ -2,9 +2,9 @@
 # make fuzz: decks made by chance through the debug build with sanitizers, COUNT of them from seed FIRST on, in chunks, two at
 # a time. What a seed's deck is depends on its number alone. The last line is "N passed, N failed".
 #
-#    tests/fuzz.sh COUNT [FIRST]     runs them
-#    tests/fuzz.sh --seed SEED       writes the deck of one seed to $BUILD/fuzz/SEED.deck and runs it alone
-#    tests/fuzz.sh --chunk FIRST LAST      what the two at a time are
+#    tests/fuzz/fuzz.sh COUNT [FIRST]     runs them
+#    tests/fuzz/fuzz.sh --seed SEED       writes the deck of one seed to $BUILD/fuzz/SEED.deck and runs it alone
+#    tests/fuzz/fuzz.sh --chunk FIRST LAST      what the two at a time are
 export LC_ALL=C
 BUILD=${BUILD:-build}
 mkdir -p "$BUILD/fuzz" || exit 3

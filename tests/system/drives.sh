@@ -75,7 +75,7 @@ compare root 0.000001 4.0 4 0
 
 # Three cylinders go round a cusp between t = 0 and 1, each by little: the assembly at t = 1 is the other one. Later a
 # limit is met.
-sed '/^TIME/,$d' tests/decks/cusp.deck > "$work/cusp.part"
+sed '/^TIME/,$d' tests/system/decks/cusp.deck > "$work/cusp.part"
 echo 'PRINT   LINKS   PLAT' >> "$work/cusp.part"
 compare cusp 0.0 2.0 2 1
 equal 'cusp: the other assembly' 1 "$(grep -c '^ PLAT *8\.85715 *-8\.19202 ' "$work/cusp.lst")"

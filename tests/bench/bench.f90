@@ -1,4 +1,4 @@
-!> Tests. The program of `make bench`, one table a call; tests/bench.sh makes the decks and calls it.
+!> Tests. The program of `make bench`, one table a call; tests/bench/bench.sh makes the decks and calls it.
 !>
 !>    bench steps                        time a step of four mechanisms
 !>    bench chains DECKS                 time a step of the chains in the directory DECKS

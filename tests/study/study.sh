@@ -1,7 +1,7 @@
 #!/bin/sh
 # make study: kinmat --study for six scenes, its tables on standard output and in $BUILD/study/, each with the time of the
 # default method beside the closed form where there is one; then the pictures. Error and time of every trial:
-# $BUILD/study/speed.txt, a scene a block of blocks, read by tests/study.gp.
+# $BUILD/study/speed.txt, a scene a block of blocks, read by tests/study/study.gp.
 BUILD=${BUILD:-build}
 out=$BUILD/study
 mkdir -p "$out" docs || exit 3
@@ -62,7 +62,7 @@ for name in yoke four_bar andrews jansen dead_point_6 windows_1000; do
    series BLOCKS "$finest" "$out/$name.txt" "$factor" >> "$out/speed.txt"
 done
 draw() {
-   gnuplot -e "form='$1'; numbers='$out/speed.txt'; scenes='$out/scenes.txt'; picture='$2'" tests/study.gp || exit 3
+   gnuplot -e "form='$1'; numbers='$out/speed.txt'; scenes='$out/scenes.txt'; picture='$2'" tests/study/study.gp || exit 3
 }
 draw png docs/speed_against_error.png
 draw svg "$out/speed.svg"
