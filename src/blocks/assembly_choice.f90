@@ -8,9 +8,8 @@ module assembly_choice
    use kinds, only: wp
    use convergence, only: convergence_t, is_solved
    use motion, only: motion_t, new_motion
-   use unknowns, only: unknown_t
    use whole_turns, only: without_turns
-   use block_state, only: set_values
+   use block_state, only: unknown_t, set_values
    use block_solver, only: solve_block
    use block_needs, only: largest_known
    use first_position, only: solve_first_block, farthest

@@ -6,9 +6,8 @@ module block_diagnostics
       diagnostic_mobile, diagnostic_idle, &
       diagnostic_repeated
    use block_needs, only: largest_known, blocks_below
-   use block_rank, only: redundant_rows, moving_unknowns
+   use block_rank, only: redundant_rows, moving_unknowns, judge_drives
    use block_state, only: state_t
-   use drive_rank, only: judge_drives
    use first_position, only: has_second_position
    use block_engine, only: block_engine_t
    implicit none

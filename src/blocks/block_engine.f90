@@ -7,23 +7,24 @@ module block_engine
    use scales, only: solver_length, power_of_two
    use links_tree, only: tree_t, new_tree
    use loop_equations, only: new_equations
-   use estimated_positions, only: estimated_values
+   use initial_estimate, only: estimated_values
    use drives, only: law_t, new_law, drive_motion
    use convergence, only: convergence_t, is_solved, gather, ended_converged, ended_singular
    use predictor, only: history_t, new_history, remember, predict, largest_change
    use blocks, only: blocks_t
    use block_partition, only: new_blocks
    use block_units, only: find_units
-   use block_needs, only: moving_blocks, needed_blocks
+   use block_needs, only: moving_blocks, needed_blocks, largest_known
    use block_state, only: state_t, new_state
    use block_solver, only: workspace_t, make_workspace, solve_block
    use first_position, only: solve_first_block, turn_starts
    use block_rank, only: jacobian_of, relative_side
-   use link_motion, only: chain_t, new_chain, move_links
+   use link_motion, only: chain_t, new_chain, move_links, mark_links, missing_nothing, missing_rates, missing_all
    implicit none
    private
    public :: block_engine_t, positions_t, make_block_engine, solve_blocks, solve_again, solve_each, begin_record
-   public :: set_drive_values, accept_blocks, get_blocks_motion
+   public :: set_drive_values, accept_blocks, get_blocks_motion, know_links, get_driven_motion
+   public :: block_checkpoint_t, checkpoint_blocks, restore_blocks
 
    !> Positions of one block (unknowns, any number).
    type :: positions_t
@@ -59,6 +60,17 @@ module block_engine
       logical, allocatable :: crossed(:)                !< (blocks) whose determinant has changed its sign
       real(wp) :: change = 0.0_wp                       !< the largest that was predicted
    end type block_engine_t
+
+   !> All that depends on the way so far: the motions that are followed, with the signs and pivots of their
+   !> Jacobians, and the motion found last. No workspace.
+   type :: block_checkpoint_t
+      type(history_t) :: history
+      integer, allocatable :: sign_of(:), sign_now(:)
+      real(wp), allocatable :: pivot_of(:), pivot_now(:), inverse_of(:), inverse_now(:), side(:)
+      logical, allocatable :: crossed(:)
+      type(state_t) :: state
+      real(wp) :: t = 0.0_wp, change = 0.0_wp
+   end type block_checkpoint_t
 
 contains
 
@@ -259,4 +271,101 @@ contains
 
       call move_links(e%chain, e%state, e%length, found, finite)
    end subroutine get_blocks_motion
+
+   !> Notes in `c` all that depends on the way so far.
+   pure subroutine checkpoint_blocks(e, c)
+      type(block_engine_t), intent(in) :: e
+      type(block_checkpoint_t), intent(inout) :: c
+
+      c%history = e%history
+      c%sign_of = e%sign_of
+      c%pivot_of = e%pivot_of
+      c%inverse_of = e%inverse_of
+      if (allocated(e%side)) c%side = e%side
+      c%state = e%state
+      c%sign_now = e%sign_now
+      c%pivot_now = e%pivot_now
+      c%inverse_now = e%inverse_now
+      c%crossed = e%crossed
+      c%t = e%t
+      c%change = e%change
+   end subroutine checkpoint_blocks
+
+   !> Makes the motion that was followed at the checkpoint `c` the one that is followed, and what was found last there
+   !> what was found last; `keeps_found`: that stays as it is now.
+   pure subroutine restore_blocks(e, c, keeps_found)
+      type(block_engine_t), intent(inout) :: e
+      type(block_checkpoint_t), intent(in) :: c
+      logical, intent(in) :: keeps_found
+
+      e%history = c%history
+      e%sign_of = c%sign_of
+      e%pivot_of = c%pivot_of
+      e%inverse_of = c%inverse_of
+      if (allocated(c%side)) e%side = c%side
+      if (keeps_found) return
+      e%state = c%state
+      e%sign_now = c%sign_now
+      e%pivot_now = c%pivot_now
+      e%inverse_now = c%inverse_now
+      e%crossed = c%crossed
+      e%t = c%t
+      e%change = c%change
+   end subroutine restore_blocks
+
+   !> Tells of each link of `found`, the motion that `e` has found, how much of it exists.
+   subroutine know_links(e, found)
+      type(block_engine_t), intent(in) :: e
+      type(motion_t), intent(inout) :: found
+      integer :: missing(0:e%blocks%unknowns), own, k
+
+      missing = missing_nothing
+      do k = 1, size(e%needed)
+         own = merge(missing_rates, missing_nothing, e%is_singular(e%needed(k)))
+         call note_block(e, e%needed(k), own, missing)
+      end do
+      call mark_links(e%chain, missing, found)
+   end subroutine know_links
+
+   !> Where no position was found at `t`, that of the links which drives alone move from the ground on, whatever the
+   !> others do: at `t` they are where their drives have them. `found` has its mark already.
+   subroutine get_driven_motion(e, t, found)
+      type(block_engine_t), intent(inout) :: e
+      real(wp), intent(in) :: t
+      type(motion_t), intent(inout) :: found
+      integer :: missing(0:e%blocks%unknowns), k
+      type(convergence_t) :: c
+      type(chain_t) :: part
+      real(wp) :: correction
+      logical :: finite
+
+      if (.not. e%blocks%solvable) return
+      call set_drive_values(e, t)
+      missing = missing_nothing
+      correction = 0.0_wp
+      do k = 1, size(e%needed)
+         associate (i => e%needed(k))
+            call note_block(e, i, merge(missing_nothing, missing_all, e%blocks%list(i)%direct), missing)
+            if (.not. e%blocks%list(i)%direct) cycle
+            if (missing(e%blocks%unknown(e%blocks%list(i)%first)) == missing_nothing) &
+               call solve_block(e%blocks, i, e%tolerance, e%work, e%state, c, correction)
+         end associate
+      end do
+      call mark_links(e%chain, missing, found)
+      ! What the state has of the others need not be a number.
+      part = e%chain
+      part%hung = pack(e%chain%hung, found%link_known(e%chain%hung%link) == 2)
+      call move_links(part, e%state, e%length, found, finite)
+   end subroutine get_driven_motion
+
+   !> Of the unknowns of block `i` so much is missing as its `own` equations leave out, or what it builds on.
+   subroutine note_block(e, i, own, missing)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i, own
+      integer, intent(inout) :: missing(0:)
+
+      associate (block => e%blocks%list(i))
+         missing(e%blocks%unknown(block%first:block%last)) = max(own, largest_known(e%blocks, i, missing))
+      end associate
+   end subroutine note_block
 end module block_engine

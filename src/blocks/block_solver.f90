@@ -11,18 +11,15 @@
 module block_solver
    use kinds, only: wp
    use klu, only: klu_t
-   use block_matrix, only: shape_t, solve_first, solve_again, pivot_range, inverse_norm
+   use block_matrix, only: shape_t, solve_first, solve_again, pivot_range, inverse_norm, entries_of, work_length
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, &
       ended_diverged, ended_inconsistent
    use blocks, only: blocks_t
    use block_state, only: state_t, set_direction, turn_direction, known_parts
-   use block_rows, only: assemble_block
-   use right_hand_sides, only: rate_side
-   use closure_errors, only: note_closure_error, is_inconsistent, contradict
-   use block_workspace, only: workspace_t, make_workspace
+   use block_equations, only: assemble_block, right_hand_side
    implicit none
    private
-   public :: workspace_t, make_workspace, solve_block
+   public :: workspace_t, make_workspace, solve_block, note_closure_error, contradict
 
    !> Residuals relative to the largest value. Below the first there is nothing to correct; above the second,
    !> rounding of angles and of their sines alone explains no residual.
@@ -44,8 +41,46 @@ module block_solver
    integer, parameter :: iteration_limit = 60
    !> 1 over this squared is within the range of reals.
    real(wp), parameter :: min_inverse = epsilon(1.0_wp)**2
+   !> Gaps that differ by less than this part are alike.
+   real(wp), parameter :: alike = 1.0e-4_wp
+   !> Positions may contradict one another by this, in characteristic lengths and radians, as data of 11 digits do.
+   real(wp), parameter :: inconsistent_level = max(1.0e-10_wp, 64.0_wp*epsilon(1.0_wp))
+   !> Rates may by this part of them, which a condition makes larger.
+   real(wp), parameter :: open_rates = max(1.0e-8_wp, 4096.0_wp*epsilon(1.0_wp))
+   !> Beside what is known the arms of a polygon may be so short that rounding opens it by more: by so many roundings of
+   !> what is known.
+   real(wp), parameter :: roundings = 64.0_wp, rate_roundings = 4096.0_wp
+
+   !> Room for the widest block, and the factors of each sparse one. Never copied: see klu_t.
+   type :: workspace_t
+      real(wp), allocatable :: a(:), r(:), start(:), work(:)
+      integer, allocatable :: pivots(:), iwork(:)
+      type(klu_t), allocatable :: sparse(:)       !< (0:patterns), 0 for dense blocks
+   end type workspace_t
 
 contains
+
+   !> Room for every block of `b`.
+   subroutine make_workspace(w, b)
+      type(workspace_t), intent(out) :: w
+      type(blocks_t), intent(in) :: b
+      integer :: i, entries, rows, length
+
+      entries = 0
+      rows = 0
+      length = 0
+      do i = 1, size(b%list)
+         rows = max(rows, b%list(i)%shape%rows)
+         length = max(length, work_length(b%list(i)%shape))
+         entries = max(entries, entries_of(b%list(i)%shape))
+      end do
+      allocate (w%a(entries), w%r(2*rows), w%start(rows), w%work(length), source=0.0_wp)
+      allocate (w%pivots(rows), w%iwork(rows), source=0)
+      allocate (w%sparse(0:size(b%patterns)))
+      do i = 1, size(b%patterns)
+         w%sparse(i)%pattern = b%patterns(i)
+      end do
+   end subroutine make_workspace
 
    !> Solves block `i` for value, rate and second rate of its unknowns, the values starting from those of `s`.
    !> `c`: how it ended; `correction`: the largest change of a value, where it is larger than before.
@@ -124,7 +159,7 @@ contains
          if (c%residual <= closed_level*max(size_of, coarse)) then
             c%step = 0.0_wp
             c%ended = ended_converged
-            call rate_side(b, i, 1, s, r(:, 2))
+            call right_hand_side(b, i, 1, s, r(:, 2))
             call solve_first(shape, a, k, pivots, work, r(:, 2), info)
             c%singular = info > 0
             exit
@@ -144,7 +179,7 @@ contains
          end if
          before = c%step
          if (c%ended == ended_limit) cycle
-         call rate_side(b, i, 1, s, r(:, 2))
+         call right_hand_side(b, i, 1, s, r(:, 2))
          call solve_again(shape, a, k, pivots, work, r(:, 2))
          exit
       end do
@@ -240,7 +275,7 @@ contains
          do k = 1, n
             s%u(b%unknown(b%list(i)%first + k - 1))%rate = w%r(rows + k)
          end do
-         call rate_side(b, i, 2, s, w%r)
+         call right_hand_side(b, i, 2, s, w%r)
          call solve_again(b%list(i)%shape, w%a, w%sparse(b%list(i)%shape%pattern), w%pivots, w%work, w%r)
          do k = 1, n
             s%u(b%unknown(b%list(i)%first + k - 1))%acceleration = w%r(k)
@@ -290,4 +325,73 @@ contains
       end do
       c%singular = inverse*inverse*b%list(i)%lipschitz*rounding_level*size_of >= largest_error
    end subroutine judge
+
+   !> The pair or drive that is open the most by the residuals `r`: a revolute pair by the distance of its points. Of
+   !> those that are open alike the last pair of the deck, or the last drive: rounding shall not choose.
+   pure subroutine note_closure_error(b, i, r, c)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: r(*)
+      type(convergence_t), intent(inout) :: c
+      real(wp) :: largest
+      integer :: m
+
+      largest = 0.0_wp
+      do m = b%list(i)%first_loop, b%list(i)%last_loop
+         largest = max(largest, opening(b, m, r)/level_of(b, m))
+      end do
+      c%closure_error = 0.0_wp
+      c%inconsistent_pair = 0
+      c%inconsistent_drive = 0
+      do m = b%list(i)%first_loop, b%list(i)%last_loop
+         associate (row => b%rows(b%list(i)%first_row + max(b%loops(m)%row_x, b%loops(m)%row_y) - 1))
+            if (opening(b, m, r)/level_of(b, m) < (1.0_wp - alike)*largest) cycle
+            if (row%pair < c%inconsistent_pair .or. (row%pair == 0 .and. row%drive < c%inconsistent_drive)) cycle
+            c%closure_error = opening(b, m, r)
+            c%closure_error_level = level_of(b, m)
+            c%closure_error_unit = b%loops(m)%unit
+            c%closure_error_is_angle = row%angular
+            c%inconsistent_pair = row%pair
+            c%inconsistent_drive = row%drive
+         end associate
+      end do
+   end subroutine note_closure_error
+
+   !> The gap of `c` is more than rounding.
+   pure logical function is_inconsistent(c)
+      type(convergence_t), intent(in) :: c
+
+      is_inconsistent = c%closure_error > inconsistent_level*c%closure_error_level
+   end function is_inconsistent
+
+   !> How many times as large as usual a gap of instance `m` may be.
+   pure real(wp) function level_of(b, m)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: m
+
+      level_of = max(1.0_wp, b%loops(m)%coarse*(roundings*epsilon(1.0_wp)/inconsistent_level))
+   end function level_of
+
+   !> By how much instance `m` is open.
+   pure real(wp) function opening(b, m, r)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: m
+      real(wp), intent(in) :: r(*)
+
+      associate (g => b%loops(m))
+         opening = 0.0_wp
+         if (g%row_x > 0) opening = abs(r(g%row_x))
+         if (g%row_y > 0) opening = hypot(opening, r(g%row_y))
+      end associate
+   end function opening
+
+   !> The equations of the least squares `x` contradict one another: their first `n` are the solution, the others what
+   !> remains open (DGEQRF); `size_of`: numbers of this size have gone into them; `coarse`: of the block.
+   pure logical function contradict(x, n, size_of, coarse)
+      real(wp), intent(in) :: x(:), size_of, coarse
+      integer, intent(in) :: n
+
+      contradict = norm2(x(n + 1:)) > max(open_rates, rate_roundings*epsilon(1.0_wp)*coarse) &
+         *max(norm2(x(:n)), size_of)
+   end function contradict
 end module block_solver

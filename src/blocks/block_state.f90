@@ -7,11 +7,17 @@
 !> and a projection on f = R(phi_c) f_0 adds phi_c' g . f' and its derivative, as in `prismatic_pair`.
 module block_state
    use kinds, only: wp
-   use unknowns, only: unknown_t
    use blocks, only: blocks_t
    implicit none
    private
-   public :: state_t, new_state, set_direction, turn_direction, set_values, known_parts, slide_vector, turned, across
+   public :: unknown_t, state_t, new_state, set_direction, turn_direction, set_values, known_parts, slide_vector, &
+      turned, across
+
+   !> An unknown of the equations, an angle or a slide, with its derivatives by time.
+   type :: unknown_t
+      real(wp) :: value = 0.0_wp, rate = 0.0_wp, acceleration = 0.0_wp
+      real(wp) :: c = 1.0_wp, s = 0.0_wp   !< of an angle: cosine and sine of the value
+   end type unknown_t
 
    !> A polygon: its known part with derivatives (2, 0:2), and all of it.
    type :: part_t

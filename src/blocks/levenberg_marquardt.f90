@@ -8,8 +8,8 @@ module levenberg_marquardt
    use convergence, only: convergence_t
    use blocks, only: blocks_t
    use block_state, only: state_t, set_values, known_parts
-   use block_rows, only: assemble_dense
-   use closure_errors, only: note_closure_error
+   use block_equations, only: assemble_dense
+   use block_solver, only: note_closure_error
    implicit none
    private
    public :: levenberg_marquardt_solve, levenberg_marquardt_held

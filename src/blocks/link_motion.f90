@@ -5,14 +5,13 @@
 module link_motion
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use motion, only: motion_t
+   use motion, only: motion_t, mark_none, mark_not_converged, mark_singular
    use links_tree, only: tree_t
    use tree_places, only: place_t, place_on_tree
-   use unknowns, only: unknown_t
-   use block_state, only: state_t
+   use block_state, only: unknown_t, state_t
    implicit none
    private
-   public :: chain_t, new_chain, move_links
+   public :: chain_t, new_chain, move_links, mark_links, missing_nothing, missing_rates, missing_all
 
    !> A moving link: 0 stands for the ground, for no slide and for no root.
    type :: hung_t
@@ -32,6 +31,9 @@ module link_motion
       real(wp), allocatable :: ground_position(:, :)    !< (3, ground links)
       real(wp) :: origin(2) = 0.0_wp                    !< what places are counted from
    end type chain_t
+
+   !> What is missing of an unknown, the worst last: nothing, its derivatives, its value as well.
+   integer, parameter :: missing_nothing = 0, missing_rates = 1, missing_all = 2
 
 contains
 
@@ -219,4 +221,26 @@ contains
       v(:2) = length*u%rate
       a(:2) = length*u%acceleration
    end subroutine add_root
+
+   !> Says of each link of `found` how much of it is known, from what is `missing` (0:unknowns) of the unknowns on
+   !> which it and its parents depend; links outside the chain count as known.
+   subroutine mark_links(c, missing, found)
+      type(chain_t), intent(in) :: c
+      integer, intent(in) :: missing(0:)
+      type(motion_t), intent(inout) :: found
+      integer :: of_link(0:size(found%position, 2)), k
+
+      of_link = missing_nothing
+      do k = 1, size(c%hung)
+         associate (h => c%hung(k))
+            of_link(h%link) = max(missing(h%orientation), missing(h%slide), of_link(h%parent))
+            if (h%root > 0) of_link(h%link) = max(of_link(h%link), missing(h%root), missing(h%root + 1))
+         end associate
+      end do
+      associate (links => of_link(1:))
+         found%link_known = merge(2, merge(0, -1, links == missing_rates), links == missing_nothing)
+         found%link_mark = merge(mark_none, merge(mark_singular, mark_not_converged, links == missing_rates), &
+            links == missing_nothing)
+      end associate
+   end subroutine mark_links
 end module link_motion

@@ -9,8 +9,8 @@ module position_path
    use blocks, only: blocks_t
    use block_matrix, only: solve_first, solve_again
    use block_state, only: state_t, set_values, known_parts
-   use block_rows, only: assemble_block
-   use block_workspace, only: workspace_t
+   use block_equations, only: assemble_block
+   use block_solver, only: workspace_t
    implicit none
    private
    public :: follow_path, cross_fold

@@ -12,7 +12,7 @@
 module predictor
    use kinds, only: wp
    use mechanism, only: own_predictor
-   use unknowns, only: unknown_t
+   use block_state, only: unknown_t
    implicit none
    private
    public :: history_t, new_history, remember, predict, is_even, largest_change, order_weights

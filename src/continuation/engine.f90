@@ -5,12 +5,11 @@ module engine
    use mechanism, only: mechanism_t, method_newton, method_dense
    use motion, only: motion_t, mark_none
    use convergence, only: convergence_t
-   use block_engine, only: block_engine_t, make_block_engine, solve_blocks, accept_blocks, get_blocks_motion
-   use block_checkpoint, only: block_checkpoint_t, checkpoint_blocks, restore_blocks
+   use block_engine, only: block_engine_t, make_block_engine, solve_blocks, accept_blocks, get_blocks_motion, &
+      block_checkpoint_t, checkpoint_blocks, restore_blocks, know_links, get_driven_motion
    use assembly_choice, only: solve_first
    use dense_engine, only: dense_t, new_dense, solve_dense, accept_dense, get_dense_motion, &
       dense_checkpoint_t, checkpoint_dense, restore_dense
-   use link_knowledge, only: know_links, get_driven_motion
    implicit none
    private
    public :: engine_t, engine_checkpoint_t, make_engine, solve, accept, checkpoint, restore, get_motion_of, &

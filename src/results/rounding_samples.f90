@@ -7,8 +7,7 @@ module rounding_samples
    use scales, only: characteristic_length, characteristic_rate
    use convergence, only: convergence_t, is_solved, ended_inconsistent
    use block_solver, only: solve_block
-   use link_knowledge, only: know_links
-   use block_engine, only: block_engine_t, make_block_engine, set_drive_values, get_blocks_motion
+   use block_engine, only: block_engine_t, make_block_engine, set_drive_values, get_blocks_motion, know_links
    use perturbed_deck, only: sample_count, perturbed, perturbed_instant
    use error_estimate, only: error_estimate_t, find_estimates, unusable
    implicit none

@@ -6,7 +6,7 @@
 !> and the frames are turned to the least of it, one after another, until they turn no more. Only such pairs count of
 !> which the place of the other link's point is known: its origin, or a point of a link whose angle is known already.
 !> Two links that meet far from both origins keep the angles of the deck: they may lie on either side.
-module estimated_angles
+module initial_estimate
    use kinds, only: wp
    use constants, only: pi
    use mechanism, only: mechanism_t, pair_revolute
@@ -15,7 +15,7 @@ module estimated_angles
    use whole_turns, only: without_turns
    implicit none
    private
-   public :: estimated_directions
+   public :: estimated_values, estimated_directions
 
    !> The places are believed where with their angles the pairs stay open by so small a part of the characteristic
    !> length, and of what they are with the deck's angles; and where an angle differs by more than that, in radians.
@@ -30,6 +30,53 @@ module estimated_angles
    integer, parameter :: max_sweeps = 20, samples = 36
 
 contains
+
+   !> Values (0:unknowns) of angles and slides, lengths in units of `length`.
+   function estimated_values(m, t, length, unknowns) result(value)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      real(wp), intent(in) :: length
+      integer, intent(in) :: unknowns
+      real(wp) :: value(0:unknowns)
+      real(wp) :: phi(size(m%links))
+      integer :: i, u
+
+      value = 0.0_wp
+      phi = estimated_directions(m, t)
+      do i = size(m%links), 1, -1
+         if (t%orientation(i) > 0) value(t%orientation(i)) = phi(i) - t%angle_offset(i)
+         if (t%root(i) == 0 .or. t%parent(i) > 0) cycle
+         u = t%orientations + t%slides + 2*t%root(i) - 1
+         value(u:u + 1) = (m%links(i)%position(:2) - t%origin)/length
+      end do
+      do i = 1, size(m%pairs)
+         if (t%slide(i) > 0) value(t%orientations + t%slide(i)) = estimated_slide(m, i, phi)/length
+      end do
+   end function estimated_values
+
+   !> The slide of prismatic pair `i`, in the deck's unit.
+   pure real(wp) function estimated_slide(m, i, phi) result(slide)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i
+      real(wp), intent(in) :: phi(:)
+      real(wp) :: closure_error(2), angle
+
+      closure_error = estimated_place(m, m%pairs(i)%point_j, phi) - estimated_place(m, m%pairs(i)%point_i, phi)
+      angle = phi(m%points(m%pairs(i)%point_i)%link) + m%pairs(i)%alpha
+      slide = closure_error(1)*cos(angle) + closure_error(2)*sin(angle)
+   end function estimated_slide
+
+   !> Where point `i` is with its link at the deck's place and the angle of `phi` (links).
+   pure function estimated_place(m, i, phi) result(p)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i
+      real(wp), intent(in) :: phi(:)
+      real(wp) :: p(2)
+
+      associate (q => m%links(m%points(i)%link)%position, u => m%points(i)%offset, angle => phi(m%points(i)%link))
+         p = q(:2) + [u(1)*cos(angle) - u(2)*sin(angle), u(1)*sin(angle) + u(2)*cos(angle)]
+      end associate
+   end function estimated_place
 
    !> (links) Rough angles: those of the deck, or where the places tell better ones, these.
    function estimated_directions(m, t) result(phi)
@@ -251,4 +298,4 @@ contains
          end if
       end do
    end function largest_opening
-end module estimated_angles
+end module initial_estimate
