@@ -12,9 +12,8 @@ module dense_engine
    use convergence, only: convergence_t, is_solved, ended_elsewhere
    use predictor, only: largest_change, order_weights
    use pose, only: system_t, pose_t, new_system, new_pose
-   use drive_rows, only: find_drive_values
-   use position_newton, only: solve_newton
-   use position_matrix, only: solve_matrix
+   use closure_equations, only: find_drive_values
+   use position_iteration, only: solve_newton, solve_matrix
    use rates, only: solve_velocity, solve_acceleration
    use root_distance, only: coordinates_t, new_coordinates, distance, kantorovich, jacobian_lipschitz
    use dense_start, only: by_blocks, find_start

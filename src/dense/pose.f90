@@ -2,23 +2,29 @@
 !>
 !> Unknowns: x, y, phi of every moving link, in the deck's order. Lengths are divided by a power of two near the
 !> characteristic length, which loses no digit and makes all that follows the same in any unit.
+!>
+!> A pose can take the frozen form of the method of 1987, (15): c(phi) = cos(phi)/phi, s(phi) = sin(phi)/phi. Here h,
+!> the angle that multiplies them, is counted from the nearest zero of the cosine or sine itself, for each row its own:
+!>    cos psi = c(h) h with c(h) = -+ sin(h)/h,  sin psi = s(h) h with s(h) = +- sin(h)/h.
+!> So h = 0, at which the print divides by zero and the iteration has a false attractor, is an ordinary position:
+!> sin(h)/h is 1 there.
 module pose
    use kinds, only: wp
    use constants, only: pi
    use mechanism, only: mechanism_t, pair_t, drive_slide, plane_origin
    use scales, only: solver_length, power_of_two
    use drives, only: law_t, new_law
-   use frozen_form, only: nearest_zeros, secants
    implicit none
    private
    public :: system_t, pose_t, new_system, new_pose, set_pose, choose_references, turned, normal_angle, add_to_links
+   public :: nearest_zeros, secants
 
    !> The equations of one mechanism; lengths in units of `length`.
    type :: system_t
       integer :: n = 0                            !< equations and unknowns
       real(wp) :: length = 1.0_wp                 !< a power of two, in the deck's unit
-      real(wp) :: origin(2) = 0.0_wp              !< what places are counted from, in the deck's unit
-      integer, allocatable :: column(:)           !< (links) unknown that is the link's x; 0: ground
+      real(wp) :: origin(2) = 0.0_wp              !< the point that x and y are counted from, in the deck's unit
+      integer, allocatable :: column(:)           !< (links) the unknown that is the link's x; 0: ground
       integer, allocatable :: link_of(:)          !< (points)
       real(wp), allocatable :: offset(:, :)       !< (2, points) xi, eta
       type(pair_t), allocatable :: pairs(:)
@@ -26,16 +32,16 @@ module pose
       real(wp), allocatable :: guide(:, :)        !< (2, pairs) cos alpha, sin alpha
    end type system_t
 
-   !> A position of all links and what follows from it alone.
+   !> A position of all links and what follows from it alone; lengths in the system's unit, angles in radians.
    type :: pose_t
       real(wp), allocatable :: q(:, :)            !< (3, links) x, y, phi
       real(wp), allocatable :: direction(:, :)    !< (2, links) cos phi, sin phi
-      real(wp), allocatable :: body_vector(:, :)          !< (2, points) from the link's origin to the point
-      real(wp), allocatable :: slope(:, :)        !< (2, points) derivative of the arm by phi, or its frozen form
+      real(wp), allocatable :: body_vector(:, :)  !< (2, points) from the link's origin to the point
+      real(wp), allocatable :: slope(:, :)        !< (2, points) derivative of that by phi, or its frozen form
       logical :: frozen = .false.                 !< slopes and gradients are those of the frozen form
       logical :: keeps = .false.                  !< references, once chosen, are never chosen again
       logical :: has_chosen = .false.
-      real(wp), allocatable :: zeros(:, :)        !< (2, points) reference angles of the arms' rows
+      real(wp), allocatable :: zeros(:, :)        !< (2, points) reference angles of the body vectors' rows
       real(wp), allocatable :: guide_zeros(:, :)  !< (2, pairs) of the slot rows
       real(wp), allocatable :: slide_zeros(:, :)  !< (2, drives) of the SLIDE rows
    end type pose_t
@@ -71,7 +77,7 @@ contains
       end do
    end function new_system
 
-   !> The deck's positions: ground links where they stay, the others where the deck thinks them.
+   !> The deck's positions: of ground links the given ones, of the others the estimates.
    pure function new_pose(s, m) result(p)
       type(system_t), intent(in) :: s
       type(mechanism_t), intent(in) :: m
@@ -88,17 +94,16 @@ contains
       call set_pose(s, p)
    end function new_pose
 
-   !> Directions, arms and slopes from `p%q`: one sine and one cosine a link.
+   !> Directions, body vectors and slopes from `p%q`: one sine and one cosine a link.
    pure subroutine set_pose(s, p)
       type(system_t), intent(in) :: s
       type(pose_t), intent(inout) :: p
-      integer :: i, k
+      integer :: i
 
       p%direction(1, :) = cos(p%q(3, :))
       p%direction(2, :) = sin(p%q(3, :))
       do i = 1, size(s%link_of)
-         k = s%link_of(i)
-         p%body_vector(:, i) = turned(s%offset(:, i), p%direction(:, k))
+         p%body_vector(:, i) = turned(s%offset(:, i), p%direction(:, s%link_of(i)))
          if (p%frozen) then
             p%slope(:, i) = norm2(s%offset(:, i))*secants(body_vector_angle(s, p, i), p%zeros(:, i))
          else
@@ -107,8 +112,8 @@ contains
       end do
    end subroutine set_pose
 
-   !> Puts `p` into the frozen form of (16), its angles counted from the zeros nearest to where they are now or, if it
-   !> keeps its references, to where they were at the first call.
+   !> Puts `p` into the frozen form of (16). Its angles are counted from the zeros nearest to their present values or,
+   !> if it keeps its references, to those at the first call.
    pure subroutine choose_references(s, p)
       type(system_t), intent(in) :: s
       type(pose_t), intent(inout) :: p
@@ -119,6 +124,7 @@ contains
       call set_pose(s, p)
    end subroutine choose_references
 
+   !> The reference angle of every row.
    pure subroutine take_nearest_zeros(s, p)
       type(system_t), intent(in) :: s
       type(pose_t), intent(inout) :: p
@@ -148,7 +154,7 @@ contains
       end do
    end subroutine add_to_links
 
-   !> The angle at which the normal of pair `k` points.
+   !> The angle of the normal of pair `k`.
    pure real(wp) function normal_angle(s, p, k)
       type(system_t), intent(in) :: s
       type(pose_t), intent(in) :: p
@@ -157,7 +163,7 @@ contains
       normal_angle = p%q(3, s%link_of(s%pairs(k)%point_i)) + s%pairs(k)%alpha + pi/2.0_wp
    end function normal_angle
 
-   !> The angle at which the arm to point `i` points.
+   !> The angle of the body vector to point `i`.
    pure real(wp) function body_vector_angle(s, p, i)
       type(system_t), intent(in) :: s
       type(pose_t), intent(in) :: p
@@ -173,4 +179,30 @@ contains
 
       w = [u(1)*direction(1) - u(2)*direction(2), u(1)*direction(2) + u(2)*direction(1)]
    end function turned
+
+   !> The angles (2) nearest to `psi` at which cos, then sin, is zero.
+   pure function nearest_zeros(psi) result(zeros)
+      real(wp), intent(in) :: psi
+      real(wp) :: zeros(2)
+
+      zeros(1) = (anint(psi/pi - 0.5_wp) + 0.5_wp)*pi
+      zeros(2) = anint(psi/pi)*pi
+   end function nearest_zeros
+
+   !> The frozen coefficients (2) of (15): cos(psi)/(psi - zeros(1)) and sin(psi)/(psi - zeros(2)).
+   pure function secants(psi, zeros) result(c)
+      real(wp), intent(in) :: psi, zeros(2)
+      real(wp) :: c(2)
+
+      c(1) = -sin(zeros(1))*sinc(psi - zeros(1))
+      c(2) = cos(zeros(2))*sinc(psi - zeros(2))
+   end function secants
+
+   !> sin(h)/h.
+   pure real(wp) function sinc(h)
+      real(wp), intent(in) :: h
+
+      sinc = 1.0_wp
+      if (abs(h) > tiny(h)) sinc = sin(h)/h
+   end function sinc
 end module pose
