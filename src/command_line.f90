@@ -1,8 +1,8 @@
 !> The command's words: what to read, what to write, which sets.
 module command_line
    use kinds, only: wp_name
-   use decimal_digits, only: significant
-   use failures, only: failure_t, fail, status_refused
+   use numerals, only: significant
+   use failures, only: failure_t, fail, status_rejected
    implicit none
    private
    public :: options_t, read_command, help_text
@@ -108,10 +108,10 @@ contains
       if (.not. (options%study .or. options%time) .or. len(options%show) > 0) return
       if (len(options%csv) > 0 .or. len(options%log) > 0 .or. options%errors .or. options%check &
          .or. options%shares > 1 .or. (options%study .and. options%time)) then
-         call fail(failure, status_refused, 'OPTION '//trim(merge('--study', '--time ', options%study)) &
+         call fail(failure, status_rejected, 'OPTION '//trim(merge('--study', '--time ', options%study)) &
             //' GOES WITH NO OTHER OPTION BUT -o')
       else if (options%study .and. (len(options%deck) == 0 .or. options%deck == '/dev/stdin')) then
-         call fail(failure, status_refused, 'OPTION --study NEEDS THE DECK AS A FILE')
+         call fail(failure, status_rejected, 'OPTION --study NEEDS THE DECK AS A FILE')
       end if
    end subroutine check_study
 
@@ -122,11 +122,11 @@ contains
       type(failure_t), allocatable, intent(out) :: failure
 
       if (has_deck) then
-         call fail(failure, status_refused, 'MORE THAN ONE DECK IS NAMED: '//deck//' AND '//word)
+         call fail(failure, status_rejected, 'MORE THAN ONE DECK IS NAMED: '//deck//' AND '//word)
       else if (len(word) == 0) then
-         call fail(failure, status_refused, 'AN EMPTY WORD IS NO DECK')
+         call fail(failure, status_rejected, 'AN EMPTY WORD IS NO DECK')
       else if (word(1:1) == '-' .and. word /= '-') then
-         call fail(failure, status_refused, 'OPTION '//word//' IS UNKNOWN; SEE kinmat --help')
+         call fail(failure, status_rejected, 'OPTION '//word//' IS UNKNOWN; SEE kinmat --help')
       else
          deck = word
          if (word == '-') deck = ''
@@ -141,12 +141,12 @@ contains
       type(failure_t), allocatable, intent(out) :: failure
 
       if (i == command_argument_count()) then
-         call fail(failure, status_refused, 'OPTION '//argument(i)//' NEEDS A FILE NAME')
+         call fail(failure, status_rejected, 'OPTION '//argument(i)//' NEEDS A FILE NAME')
       else if (len(path) > 0) then
-         call fail(failure, status_refused, 'OPTION '//argument(i)//' IS GIVEN TWICE')
+         call fail(failure, status_rejected, 'OPTION '//argument(i)//' IS GIVEN TWICE')
       else
          path = argument(i + 1)
-         if (len(path) == 0) call fail(failure, status_refused, 'OPTION '//argument(i)//' NEEDS A FILE NAME')
+         if (len(path) == 0) call fail(failure, status_rejected, 'OPTION '//argument(i)//' NEEDS A FILE NAME')
          i = i + 1
       end if
    end subroutine take_file
@@ -168,7 +168,7 @@ contains
          read (word(slash + 1:), *) options%shares
       end if
       if (options%share < 1 .or. options%share > options%shares) &
-         call fail(failure, status_refused, 'OPTION --sets NEEDS K/N WITH 1 <= K <= N, SUCH AS 1/4')
+         call fail(failure, status_rejected, 'OPTION --sets NEEDS K/N WITH 1 <= K <= N, SUCH AS 1/4')
    end subroutine take_share
 
    pure logical function is_whole(word)

@@ -7,7 +7,7 @@ module job
    use deck, only: read_deck
    use text_output, only: output_t, open_output, check_apart, flush_output, close_output, abandon_output, has_failed, &
       has_broken_pipe
-   use interrupts, only: watch_signals, signal_received, broken_pipe_kills, signal_pipe
+   use system_calls, only: watch_signals, signal_received, broken_pipe_kills, signal_pipe
    use listing, only: layout_t, new_layout, listing_head, listing_set_instant, listing_end, listing_broken_off
    use csv, only: csv_head, csv_set_instant
    use protocol, only: protocol_head, protocol_instant

@@ -4,8 +4,7 @@ program main
    use, intrinsic :: iso_c_binding, only: c_int
    use kinds, only: wp_name
    use failures, only: failure_t, status_signal
-   use system_calls, only: occupy_standard_descriptors
-   use interrupts, only: end_by_signal
+   use system_calls, only: occupy_standard_descriptors, end_by_signal
    use command_line, only: options_t, read_command, help_text
    use cards, only: ruler_card
    use job, only: run_job

@@ -1,20 +1,19 @@
-!> A failure is an exit status and a sentence; an unallocated failure is success.
-!> Only the main program prints one and stops.
+!> A failure is an exit status and a sentence in capitals; an unallocated failure is success. Only the main program
+!> prints one and stops.
 module failures
    implicit none
    private
-   public :: failure_t, fail, status_solved, status_refused, status_flagged, status_machine, status_signal
+   public :: failure_t, fail, capitals, status_solved, status_rejected, status_flagged, status_system, status_signal
 
-   integer, parameter :: status_solved = 0   !< every step solved
-   integer, parameter :: status_refused = 1  !< deck or command refused, nothing computed
-   integer, parameter :: status_flagged = 2   !< listing complete, at least one step marked
-   integer, parameter :: status_machine = 3  !< the machine's fault: file, memory, disk full
-   !> And above: with the number of a signal added, by which the process ends, as a shell would tell it.
-   integer, parameter :: status_signal = 128
+   integer, parameter :: status_solved = 0   !< every instant solved
+   integer, parameter :: status_rejected = 1 !< deck or command rejected, nothing computed
+   integer, parameter :: status_flagged = 2  !< listing complete, at least one instant flagged
+   integer, parameter :: status_system = 3   !< system error: file, memory, disk full
+   integer, parameter :: status_signal = 128 !< plus the number of the signal that ended the process, as in a shell
 
    type :: failure_t
-      integer :: status = status_machine
-      character(:), allocatable :: text
+      integer :: status = status_system     !< exit status
+      character(:), allocatable :: text     !< the sentence, in capitals, without a full stop
    end type failure_t
 
 contains
@@ -29,4 +28,16 @@ contains
       failure%status = status
       failure%text = text
    end subroutine fail
+
+   !> `text` in the capitals of all messages: only the letters of ASCII change.
+   pure function capitals(text) result(upper)
+      character(*), intent(in) :: text
+      character(len(text)) :: upper
+      integer :: i
+
+      upper = text
+      do i = 1, len(text)
+         if (text(i:i) >= 'a' .and. text(i:i) <= 'z') upper(i:i) = achar(iachar(text(i:i)) - 32)
+      end do
+   end function capitals
 end module failures

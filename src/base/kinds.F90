@@ -1,4 +1,4 @@
-!> The one real kind of KINMAT and the sizes of its texts.
+!> The one real kind of KINMAT and the lengths of its texts.
 module kinds
    ! KIND of the Makefile says which of the three: single, double or quad.
    use, intrinsic :: iso_fortran_env, only: wp => REAL_KIND, real32, real64

@@ -1,25 +1,27 @@
-!> What the operating system is asked for beyond Fortran: bytes of files, which file it is, why it failed.
+!> What Fortran has not: bytes of files, the identity of a file, the reason of an error, and signals. The first SIGINT or
+!> SIGTERM is only noted, and the job ends after its instant, with whole lines; the second one kills.
 !>
 !> The Fortran run-time library of GNU reports no error of a full disk, neither from WRITE nor from FLUSH nor from
 !> CLOSE, and takes a failed read for the end of a file.
 module system_calls
    use, intrinsic :: iso_c_binding, only: c_int, c_int16_t, c_int32_t, c_int64_t, c_long, c_size_t, c_char, c_ptr, &
-      c_null_char, c_f_pointer, c_associated
+      c_null_char, c_f_pointer, c_associated, c_intptr_t, c_funptr, c_funloc, c_null_funptr
    implicit none
    private
    public :: identity_t, identity_of_path, identity_of_descriptor, same_file
    public :: open_to_read, open_to_write, read_bytes, write_bytes, close_descriptor, empty_file, remove_file
+   public :: watch_signals, signal_received, broken_pipe_kills, end_by_signal, signal_pipe
    public :: occupy_standard_descriptors, last_error, reason_of, no_such_file, closed_descriptor, is_a_directory, &
       broken_pipe
 
-   !> Which file it is: device and inode; `regular` is not so for devices, pipes and what is not there.
+   !> The identity of a file.
    type :: identity_t
-      integer(c_int32_t) :: device(2) = 0
+      integer(c_int32_t) :: device(2) = 0  !< major and minor number
       integer(c_int64_t) :: inode = 0
-      logical :: regular = .false.
+      logical :: regular = .false.         !< not a device, not a pipe, and not missing
    end type identity_t
 
-   !> Flags of open, numbers of errors and of statx, the same on every architecture of Linux.
+   !> Flags of open and of statx and numbers of errors, the same on every architecture of Linux.
    integer(c_int), parameter :: read_only = 0, write_only = 1
    integer, parameter :: no_such_file = 2, closed_descriptor = 9, is_a_directory = 21, broken_pipe = 32
    integer(c_int), parameter :: from_working_directory = -100, empty_path = int(z'1000', c_int)
@@ -29,7 +31,16 @@ module system_calls
    !> Kinds of files within a mode.
    integer, parameter :: kind_bits = int(o'170000'), kind_regular = int(o'100000')
 
-   !> The result of statx, which unlike that of stat is the same on every architecture.
+   integer(c_int), parameter :: signal_interrupt = 2, signal_pipe = 13, signal_terminate = 15, signal_file_size = 25
+   integer(c_int), parameter :: watched(2) = [signal_interrupt, signal_terminate]
+   !> The address that means "ignore"; null means the usual action.
+   integer(c_intptr_t), parameter :: ignored = 1
+
+   !> The signal that was noted: all that a handler may change.
+   integer(c_int), volatile :: received = 0
+   logical :: pipe_kills = .false.
+
+   !> The result of statx. Unlike that of stat it is the same on every architecture.
    type, bind(c) :: facts_t
       integer(c_int32_t) :: head(7)
       integer(c_int16_t) :: mode, spare
@@ -97,11 +108,20 @@ module system_calls
          import :: c_ptr, c_size_t
          type(c_ptr), value :: text
       end function strlen
+      type(c_funptr) function signal(number, handler) bind(c)
+         import :: c_int, c_funptr
+         integer(c_int), value :: number
+         type(c_funptr), value :: handler
+      end function signal
+      integer(c_int) function raise(number) bind(c)
+         import :: c_int
+         integer(c_int), value :: number
+      end function raise
    end interface
 
 contains
 
-   !> Which file `path` names, links followed; of what is not there nothing is known.
+   !> The identity of the file `path`, symbolic links followed; the default of its type if there is no such file.
    type(identity_t) function identity_of_path(path) result(id)
       character(*), intent(in) :: path
       type(facts_t) :: facts
@@ -109,7 +129,7 @@ contains
       if (statx(from_working_directory, path//c_null_char, 0_c_int, basic_facts, facts) == 0) id = identity_of(facts)
    end function identity_of_path
 
-   !> Which file is open as `descriptor`.
+   !> The identity of the file that is open as `descriptor`.
    type(identity_t) function identity_of_descriptor(descriptor) result(id)
       integer(c_int), intent(in) :: descriptor
       type(facts_t) :: facts
@@ -117,6 +137,7 @@ contains
       if (statx(descriptor, c_null_char, empty_path, basic_facts, facts) == 0) id = identity_of(facts)
    end function identity_of_descriptor
 
+   !> The identity of a file from what statx says of it.
    pure type(identity_t) function identity_of(facts) result(id)
       type(facts_t), intent(in) :: facts
 
@@ -125,21 +146,22 @@ contains
       id%regular = iand(int(facts%mode), kind_bits) == kind_regular
    end function identity_of
 
-   !> One regular file; a device, a pipe or a terminal may serve twice without harm.
+   !> Whether `a` and `b` are one regular file. A device, pipe or terminal may be used twice without harm.
    elemental logical function same_file(a, b)
       type(identity_t), intent(in) :: a, b
 
       same_file = a%regular .and. b%regular .and. a%inode == b%inode .and. all(a%device == b%device)
    end function same_file
 
-   !> Descriptor of the file `path`, below 0 where it cannot be opened: then `last_error` says why.
+   !> Opens the file `path` for reading. The result is its descriptor, or negative for an error: see `last_error`.
    integer(c_int) function open_to_read(path)
       character(*), intent(in) :: path
 
       open_to_read = c_open(path//c_null_char, read_only)
    end function open_to_read
 
-   !> The same to write; what the file holds stays. `made`: it was not there.
+   !> Opens the file `path` for writing and keeps its contents. `descriptor`: negative for an error, see `last_error`.
+   !> `made`: the file did not exist.
    subroutine open_to_write(path, descriptor, made)
       character(*), intent(in) :: path
       integer(c_int), intent(out) :: descriptor
@@ -154,7 +176,7 @@ contains
       made = descriptor >= 0
    end subroutine open_to_write
 
-   !> Reads to `text`; the number of bytes read, 0 at the end, below 0 for an error.
+   !> Reads to `text`. The result is the number of bytes read: 0 at the end, negative for an error.
    integer function read_bytes(descriptor, text)
       integer(c_int), intent(in) :: descriptor
       character(*), intent(out) :: text
@@ -162,7 +184,7 @@ contains
       read_bytes = int(c_read(descriptor, text, len(text, c_size_t)))
    end function read_bytes
 
-   !> Writes a part of `text`; the number of bytes written, below 0 for an error.
+   !> Writes `text` or its first part. The result is the number of bytes written, negative for an error.
    integer(c_size_t) function write_bytes(descriptor, text)
       integer(c_int), intent(in) :: descriptor
       character(*), intent(in) :: text
@@ -170,21 +192,21 @@ contains
       write_bytes = c_write(descriptor, text, len(text, c_size_t))
    end function write_bytes
 
-   !> True if the system had no error left to tell.
+   !> Closes `descriptor`; false if the system reports an error, such as a delayed write error.
    logical function close_descriptor(descriptor)
       integer(c_int), intent(in) :: descriptor
 
       close_descriptor = c_close(descriptor) == 0
    end function close_descriptor
 
-   !> Takes away what an open file held.
+   !> Deletes the contents of an open file; false for an error.
    logical function empty_file(descriptor)
       integer(c_int), intent(in) :: descriptor
 
       empty_file = ftruncate(descriptor, 0_c_long) == 0
    end function empty_file
 
-   !> Removes the file that `path` names; a link to it stays.
+   !> Removes the file that `path` leads to; a symbolic link to it stays.
    subroutine remove_file(path)
       character(*), intent(in) :: path
       !> PATH_MAX, and more.
@@ -196,14 +218,14 @@ contains
       if (c_associated(place)) status = unlink(resolved(:index(resolved, c_null_char)))
    end subroutine remove_file
 
-   !> Standard input, output and error that are closed are opened so that reading or writing fails. The next file opened
-   !> would take their place, and what is printed would go into it.
+   !> Opens standard input, output and error where they are closed, such that reading or writing fails. Otherwise the
+   !> next file would take their descriptors, and what is printed would go into it.
    subroutine occupy_standard_descriptors
       integer(c_int) :: descriptor
       logical :: closed
 
       do
-         ! The lowest number that is free is given.
+         ! The system gives the lowest free number.
          descriptor = c_open('/dev/null'//c_null_char, read_only)
          if (descriptor < 0 .or. descriptor > 2) exit
          if (descriptor > 0) cycle
@@ -221,7 +243,7 @@ contains
       last_error = number
    end function last_error
 
-   !> The system's words for an error.
+   !> The system's words for the error number `error`.
    function reason_of(error) result(text)
       integer, intent(in) :: error
       character(:), allocatable :: text
@@ -236,4 +258,58 @@ contains
          text(i:i) = letters(i)
       end do
    end function reason_of
+
+   !> From now on SIGINT and SIGTERM are noted, unless they were ignored. A broken pipe or the limit of file sizes is a
+   !> write error and no longer a signal that kills.
+   subroutine watch_signals
+      type(c_funptr) :: before
+      integer :: i
+
+      do i = 1, size(watched)
+         before = signal(watched(i), c_funloc(note_signal))
+         if (address(before) == ignored) before = signal(watched(i), before)
+      end do
+      before = signal(signal_pipe, transfer(ignored, c_null_funptr))
+      if (address(before) == 0_c_intptr_t) pipe_kills = .true.
+      before = signal(signal_file_size, transfer(ignored, c_null_funptr))
+   end subroutine watch_signals
+
+   !> Handles a signal by what is safe at any moment: keeps its number and restores the usual actions.
+   subroutine note_signal(number) bind(c)
+      integer(c_int), value :: number
+      type(c_funptr) :: before
+      integer :: i
+
+      received = number
+      do i = 1, size(watched)
+         before = signal(watched(i), c_null_funptr)
+      end do
+   end subroutine note_signal
+
+   !> The number of the signal that was noted; 0: none.
+   integer function signal_received()
+      signal_received = received
+   end function signal_received
+
+   !> Whether a broken pipe would have ended this process without `watch_signals`.
+   logical function broken_pipe_kills()
+      broken_pipe_kills = pipe_kills
+   end function broken_pipe_kills
+
+   !> Ends the process by the signal `number`, so that a shell sees the usual status.
+   subroutine end_by_signal(number)
+      integer, intent(in) :: number
+      type(c_funptr) :: before
+      integer(c_int) :: status
+
+      before = signal(int(number, c_int), c_null_funptr)
+      status = raise(int(number, c_int))
+   end subroutine end_by_signal
+
+   !> The address of a handler as a number.
+   pure integer(c_intptr_t) function address(handler)
+      type(c_funptr), intent(in) :: handler
+
+      address = transfer(handler, 0_c_intptr_t)
+   end function address
 end module system_calls

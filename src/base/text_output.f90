@@ -1,9 +1,8 @@
-!> Lines to a file or to standard output, in large blocks of whole lines; a write that fails is noticed,
-!> never a crash. What a file held stays until the first block is written.
+!> Lines to a file or to standard output, in large blocks of whole lines. A failed write is an error, never a crash. A
+!> file keeps its old contents until the first block is written.
 module text_output
    use, intrinsic :: iso_c_binding, only: c_int, c_size_t
-   use failures, only: failure_t, fail, status_machine, status_refused
-   use letters, only: capitals
+   use failures, only: failure_t, fail, capitals, status_system, status_rejected
    use system_calls, only: identity_t, identity_of_path, identity_of_descriptor, same_file, open_to_write, &
       write_bytes, close_descriptor, empty_file, remove_file, last_error, reason_of, closed_descriptor, broken_pipe
    implicit none
@@ -14,21 +13,21 @@ module text_output
    integer, parameter :: block_length = 65536
    integer(c_int), parameter :: standard_input = 0, standard_output = 1
 
-   !> An open text. A failed write is remembered and told by `close_output`; what follows it is dropped.
+   !> An open output. `close_output` reports a failed write; all that follows such a write is dropped.
    type :: output_t
       integer(c_int) :: descriptor = standard_output
       character(:), allocatable :: path      !< '' for standard output
-      character(:), allocatable :: buffer    !< (block_length)
-      integer :: used = 0
-      logical :: made = .false.              !< the file was not there before
-      logical :: emptied = .false.           !< what the file held is gone
-      integer :: error = 0                   !< the system's number of the error of the first write that failed
+      character(:), allocatable :: buffer    !< (block_length) what is not written yet; not allocated: no open output
+      integer :: used = 0                    !< characters in the buffer
+      logical :: made = .false.              !< the file did not exist before
+      logical :: emptied = .false.           !< the old contents of the file are gone
+      integer :: error = 0                   !< the system's number of the first write error; 0: none
    end type output_t
 
 contains
 
-   !> Opens `path` for writing in the place of what it holds, which goes as the first block is written; '' is standard
-   !> output. Errors: status_machine.
+   !> Opens the file `path` for writing; '' is standard output. The first block that is written replaces its old
+   !> contents. Errors: status_system.
    subroutine open_output(o, path, failure)
       type(output_t), intent(out) :: o
       character(*), intent(in) :: path
@@ -38,21 +37,21 @@ contains
       allocate (character(block_length) :: o%buffer)
       o%emptied = len(path) == 0
       if (o%emptied) then
-         ! Of nothing nothing is written, but a descriptor that takes nothing is told.
+         ! Writing no characters shows whether the descriptor is open.
          if (write_bytes(o%descriptor, '') >= 0) return
          o%error = last_error()
-         if (o%error == closed_descriptor) call fail(failure, status_machine, 'STANDARD OUTPUT IS CLOSED')
+         if (o%error == closed_descriptor) call fail(failure, status_system, 'STANDARD OUTPUT IS CLOSED')
          return
       end if
       call open_to_write(path, o%descriptor, o%made)
       if (o%descriptor >= 0) return
       o%error = last_error()
-      call fail(failure, status_machine, 'FILE '//path//' CANNOT BE OPENED FOR WRITING (' &
+      call fail(failure, status_system, 'FILE '//path//' CANNOT BE OPENED FOR WRITING (' &
          //capitals(reason_of(o%error))//')')
    end subroutine open_output
 
-   !> No file is both read and written, or written twice, by whatever names: of the outputs `list` those that are open,
-   !> and the deck in the file `deck`, '' for standard input. Errors: status_refused.
+   !> Rejects a file that would be both read and written, or written twice, under whatever names. `list`: the outputs, of
+   !> which those that are open count. `deck`: the file of the deck, '' for standard input. Errors: status_rejected.
    subroutine check_apart(list, deck, failure)
       type(output_t), intent(in) :: list(:)
       character(*), intent(in) :: deck
@@ -68,13 +67,13 @@ contains
       do i = 1, size(list)
          if (allocated(list(i)%buffer)) id(i) = identity_of_descriptor(list(i)%descriptor)
          if (any(same_file(id(i), id(:i - 1)))) &
-            call fail(failure, status_refused, 'ONE FILE IS NAMED FOR TWO OUTPUTS')
+            call fail(failure, status_rejected, 'ONE FILE IS NAMED FOR TWO OUTPUTS')
       end do
       if (.not. any(same_file(read_from, id))) return
       if (len(deck) > 0) then
-         call fail(failure, status_refused, 'THE DECK '//deck//' WOULD BE OVERWRITTEN')
+         call fail(failure, status_rejected, 'THE DECK '//deck//' WOULD BE OVERWRITTEN')
       else
-         call fail(failure, status_refused, 'THE DECK ON STANDARD INPUT WOULD BE OVERWRITTEN')
+         call fail(failure, status_rejected, 'THE DECK ON STANDARD INPUT WOULD BE OVERWRITTEN')
       end if
    end subroutine check_apart
 
@@ -108,28 +107,28 @@ contains
       o%used = o%used + len(text)
    end subroutine add
 
-   !> Writes what has been put so far: whoever waits for it has it, and an output that takes nothing is known.
+   !> Writes the buffer at once: a reader that waits has its lines, and a write error shows.
    subroutine flush_output(o)
       type(output_t), intent(inout) :: o
 
       call write_block(o)
    end subroutine flush_output
 
-   !> A write has failed; what follows is computed in vain.
+   !> Whether a write has failed: further results would be lost.
    elemental logical function has_failed(o)
       type(output_t), intent(in) :: o
 
       has_failed = o%error /= 0
    end function has_failed
 
-   !> It has failed since nobody reads the pipe any more.
+   !> Whether it has failed because the reader of the pipe has gone.
    elemental logical function has_broken_pipe(o)
       type(output_t), intent(in) :: o
 
       has_broken_pipe = o%error == broken_pipe
    end function has_broken_pipe
 
-   !> Writes what is left and closes; `failure` tells of any line that could not be written.
+   !> Writes the rest of the buffer and closes. Errors: status_system, if any line could not be written.
    subroutine close_output(o, failure)
       type(output_t), intent(inout) :: o
       type(failure_t), allocatable, intent(out) :: failure
@@ -141,10 +140,10 @@ contains
          o%path = 'STANDARD OUTPUT'
       end if
       if (.not. has_failed(o)) return
-      call fail(failure, status_machine, 'WRITING '//o%path//' FAILED ('//capitals(reason_of(o%error))//')')
+      call fail(failure, status_system, 'WRITING '//o%path//' FAILED ('//capitals(reason_of(o%error))//')')
    end subroutine close_output
 
-   !> Closes an output to which nothing shall be written: the file is as it was before, gone if it was not there.
+   !> Closes an output without writing: the file is as it was before, and removed if it did not exist.
    subroutine abandon_output(o)
       type(output_t), intent(inout) :: o
       logical :: closed
@@ -155,7 +154,7 @@ contains
       if (o%made) call remove_file(o%path)
    end subroutine abandon_output
 
-   !> Writes the whole lines of the buffer, so that a process that is killed leaves no half of one.
+   !> Writes the whole lines of the buffer, so that a killed process leaves no partial line.
    subroutine write_lines(o)
       type(output_t), intent(inout) :: o
       integer :: last
@@ -166,6 +165,7 @@ contains
       o%used = o%used - last
    end subroutine write_lines
 
+   !> Writes all of the buffer.
    subroutine write_block(o)
       type(output_t), intent(inout) :: o
 
@@ -173,7 +173,7 @@ contains
       o%used = 0
    end subroutine write_block
 
-   !> Writes all of `text`, in as many pieces as the system wants it.
+   !> Writes all of `text`: the system may take it in several pieces.
    subroutine write_text(o, text)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: text
@@ -188,7 +188,7 @@ contains
       end do
    end subroutine write_text
 
-   !> Devices and pipes hold nothing.
+   !> Deletes the old contents of the file; devices and pipes have none.
    subroutine empty(o)
       type(output_t), intent(inout) :: o
       type(identity_t) :: id

@@ -1,4 +1,4 @@
-!> What a measurement of time needs: a clock, and the middle of a sample.
+!> Measurement of time: a clock, and the median of a sample.
 module timing
    use, intrinsic :: iso_fortran_env, only: dp => real64, int64
    implicit none
@@ -7,7 +7,7 @@ module timing
 
 contains
 
-   !> The clock, in seconds from some instant.
+   !> The clock (s), from some instant.
    real(dp) function seconds()
       integer(int64) :: ticks, per_second
 
@@ -15,7 +15,7 @@ contains
       seconds = real(ticks, dp)/real(per_second, dp)
    end function seconds
 
-   !> The middle of a sample, 0 where there is none.
+   !> The median of `x`; 0 if x is empty.
    pure real(dp) function median(x)
       real(dp), intent(in) :: x(:)
       real(dp) :: sorted(size(x)), one

@@ -8,11 +8,10 @@
 !> Two links that meet far from both origins keep the angles of the deck: they may lie on either side.
 module initial_estimate
    use kinds, only: wp
-   use constants, only: pi
+   use constants, only: pi, without_turns
    use mechanism, only: mechanism_t, pair_revolute
    use scales, only: solver_length
    use links_tree, only: tree_t
-   use whole_turns, only: without_turns
    implicit none
    private
    public :: estimated_values, estimated_directions

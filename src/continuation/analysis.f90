@@ -8,7 +8,7 @@ module analysis
    use diagnostics, only: diagnostic_t, diagnostic_inconsistent, diagnostic_far_estimate, diagnostic_long
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, branch_none, branch_first, branch_same, &
       branch_crossed
-   use whole_turns, only: without_turns
+   use constants, only: without_turns
    use branch_requests, only: unused
    use limits, only: limits_t, note_limit, lies_beyond, diagnostics_of_limit
    use convergence, only: convergence_t, ended_inconsistent, ended_unsought

@@ -7,7 +7,7 @@ module card_reader
       card_unknown, card_lower_case, card_indented, past_last_column, tab_character, control_character, &
       foreign_character, border_crossed, field_unused, field_blank, label_blank_inside, star_no_reals, star_second, &
       star_twice, star_blank, number_overflow, number_underflow
-   use letters, only: capitals
+   use failures, only: capitals
    use numbers, only: read_real, read_whole
    use numerals, only: whole
    implicit none

@@ -5,7 +5,7 @@ module card_sets
    use mechanism, only: mechanism_t, request_link, request_pair
    use cards, only: form_end, card_fields, wide_fields, label_a, label_c, real_1, real_2, real_3
    use card_reader, only: parsed_card_t
-   use failures, only: failure_t, fail, status_machine
+   use failures, only: failure_t, fail, status_system
    use input_errors, only: error_code_t, input_errors_t, add_field_error, link_unknown, point_unknown, &
       pair_unknown, name_repeated
    use names, only: name_table_t, put_name, find_name
@@ -54,7 +54,7 @@ contains
       set%mechanism = mechanism_t(set_number=number)
    end subroutine begin_set
 
-   !> Appends a card. Errors: status_machine, if there is no memory for it.
+   !> Appends a card. Errors: status_system, if there is no memory for it.
    subroutine append_card(set, card, failure)
       type(card_set_t), intent(inout) :: set
       type(parsed_card_t), intent(in) :: card
@@ -66,7 +66,7 @@ contains
       if (set%count == size(set%cards)) then
          allocate (larger(2*set%count), stat=status)
          if (status /= 0) then
-            call fail(failure, status_machine, 'NOT ENOUGH MEMORY FOR THE DECK')
+            call fail(failure, status_system, 'NOT ENOUGH MEMORY FOR THE DECK')
             return
          end if
          larger(1:set%count) = set%cards

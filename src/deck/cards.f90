@@ -2,7 +2,7 @@
 !> and forms are declared here and nowhere else.
 module cards
    use kinds, only: label_length
-   use letters, only: capitals
+   use failures, only: capitals
    implicit none
    private
    public :: card_t, field_t, card_columns, card_fields, wide_fields, title_field

@@ -11,7 +11,7 @@ module deck
    use deck_echo, only: build_echo
    use deck_options, only: build_options, build_requests, build_branches
    use deck_source, only: source_t, open_source, next_card, close_source
-   use failures, only: failure_t, fail, status_refused
+   use failures, only: failure_t, fail, status_rejected
    use input_errors, only: add_field_error, add_deck_error, error_count, error_report, deck_empty, deck_long, &
       end_missing, set_empty, star_first
    use numerals, only: whole
@@ -34,7 +34,7 @@ contains
 
    !> Reads the deck in the file `path` ('' or '-': standard input).
    !> `sets`: (number of sets), empty on any failure. `report`: all error messages, lines joined by
-   !> new_line('a'), empty if there are none. Errors: status_refused (the report says why) or status_machine.
+   !> new_line('a'), empty if there are none. Errors: status_rejected (the report says why) or status_system.
    subroutine read_deck(path, sets, report, failure)
       character(*), intent(in) :: path
       type(mechanism_t), allocatable, intent(out) :: sets(:)
@@ -54,7 +54,7 @@ contains
       report = error_report(progress%set%errors)
       errors = error_count(progress%set%errors)
       if (.not. allocated(failure) .and. errors > 0) &
-         call fail(failure, status_refused, 'THE DECK IS REFUSED, ERRORS: '//whole(errors))
+         call fail(failure, status_rejected, 'THE DECK IS REFUSED, ERRORS: '//whole(errors))
       if (allocated(failure)) progress%closed = 0
       if (progress%closed == size(progress%sets)) then
          call move_alloc(progress%sets, sets)
@@ -63,7 +63,7 @@ contains
       end if
    end subroutine read_deck
 
-   !> All cards of the deck. Errors: status_machine.
+   !> All cards of the deck. Errors: status_system.
    subroutine read_cards(source, progress, failure)
       type(source_t), intent(inout) :: source
       type(progress_t), intent(inout) :: progress

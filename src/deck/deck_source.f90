@@ -3,8 +3,7 @@
 !> error for the end.
 module deck_source
    use, intrinsic :: iso_c_binding, only: c_int
-   use failures, only: failure_t, fail, status_machine
-   use letters, only: capitals
+   use failures, only: failure_t, fail, capitals, status_system
    use cards, only: card_t, card_columns
    use system_calls, only: open_to_read, read_bytes, close_descriptor, last_error, reason_of, &
       no_such_file, is_a_directory
@@ -31,7 +30,7 @@ module deck_source
 
 contains
 
-   !> Opens the file `path`; '' or '-' is standard input. Errors: status_machine.
+   !> Opens the file `path`; '' or '-' is standard input. Errors: status_system.
    subroutine open_source(source, path, failure)
       type(source_t), intent(out) :: source
       character(*), intent(in) :: path
@@ -52,13 +51,13 @@ contains
          if (source%filled < len(byte_order_mark)) return
          if (source%buffer(:len(byte_order_mark)) == byte_order_mark) source%at = len(byte_order_mark) + 1
       else if (error == no_such_file) then
-         call fail(failure, status_machine, source%name//' DOES NOT EXIST')
+         call fail(failure, status_system, source%name//' DOES NOT EXIST')
       else
-         call fail(failure, status_machine, source%name//' CANNOT BE OPENED ('//capitals(reason_of(error))//')')
+         call fail(failure, status_system, source%name//' CANNOT BE OPENED ('//capitals(reason_of(error))//')')
       end if
    end subroutine open_source
 
-   !> The next card, or `found` false at the end. A line ends in LF, CR-LF or CR. Errors: status_machine.
+   !> The next card, or `found` false at the end. A line ends in LF, CR-LF or CR. Errors: status_system.
    subroutine next_card(source, card, found, failure)
       type(source_t), intent(inout) :: source
       type(card_t), intent(out) :: card
@@ -132,9 +131,9 @@ contains
       source%filled = source%filled + max(0, length)
       if (length >= 0) return
       if (error == is_a_directory) then
-         call fail(failure, status_machine, source%name//' IS A DIRECTORY')
+         call fail(failure, status_system, source%name//' IS A DIRECTORY')
       else
-         call fail(failure, status_machine, source%name//' CANNOT BE READ ('//capitals(reason_of(error))//')')
+         call fail(failure, status_system, source%name//' CANNOT BE READ ('//capitals(reason_of(error))//')')
       end if
    end subroutine read_on
 

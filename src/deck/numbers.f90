@@ -9,7 +9,7 @@
 module numbers
    use, intrinsic :: iso_fortran_env, only: int64, dp => real64
    use kinds, only: wp
-   use letters, only: capitals
+   use failures, only: capitals
    use input_errors, only: error_code_t, number_other, number_letter_o, number_letter_l, number_blank, number_comma, &
       number_sign, number_nan, number_inf, number_overflow, number_underflow, number_no_point, number_point, &
       number_no_digits, number_exponent

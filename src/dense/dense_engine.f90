@@ -17,7 +17,7 @@ module dense_engine
    use rates, only: solve_velocity, solve_acceleration
    use root_distance, only: coordinates_t, new_coordinates, distance, kantorovich, jacobian_lipschitz
    use dense_start, only: by_blocks, find_start
-   use whole_turns, only: without_turns
+   use constants, only: without_turns
    implicit none
    private
    public :: dense_t, new_dense, solve_dense, accept_dense, get_dense_motion

@@ -4,7 +4,7 @@
 !> drive SLIDE the projection along the guide.
 module loop_equations
    use kinds, only: wp
-   use whole_turns, only: without_turns
+   use constants, only: without_turns
    use mechanism, only: mechanism_t, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
    use links_tree, only: tree_t
    use tree_paths, only: search_t, new_search, find_path, find_way_down, close_pair

@@ -2,7 +2,7 @@
 module structure_faults
    use kinds, only: label_length
    use mechanism, only: mechanism_t, method_newton
-   use failures, only: failure_t, fail, status_refused
+   use failures, only: failure_t, fail, status_rejected
    use structure, only: findings_t, part_t, find_structure
    use numerals, only: whole
    use names, only: drive_name, listed
@@ -38,7 +38,7 @@ contains
          told = told + 1
          if (told == max_sets) exit
       end do
-      if (told > 0) call fail(failure, status_refused, all_of_them)
+      if (told > 0) call fail(failure, status_rejected, all_of_them)
    end subroutine check_structure
 
    !> A line for each fault of set number `set`, joined by new_line('a'); '' where there is none.

@@ -7,7 +7,7 @@
 module companion
    use, intrinsic :: iso_c_binding, only: c_ptr, c_char, c_associated, c_null_char
    use, intrinsic :: iso_fortran_env, only: dp => real64, qp => real128
-   use failures, only: failure_t, fail, status_machine, status_refused
+   use failures, only: failure_t, fail, status_system, status_rejected
    use cards, only: card_t
    use deck_source, only: source_t, open_source, next_card, close_source
    use mechanism, only: mechanism_t, method_newton
@@ -35,8 +35,8 @@ module companion
 contains
 
    !> Lets `program`, which computes in `kind_name` (REAL128, ...), make the `trials` of `m`, which the file `deck`
-   !> holds. `outcomes` (trials): what came of them, with times where `timed`. Errors: status_refused, the deck holds
-   !> numbers that are none in that kind; status_machine.
+   !> holds. `outcomes` (trials): what came of them, with times where `timed`. Errors: status_rejected, the deck holds
+   !> numbers that are none in that kind; status_system.
    subroutine ask_companion(program, kind_name, deck, m, trials, timed, outcomes, failure)
       character(*), intent(in) :: program, kind_name, deck
       type(mechanism_t), intent(in) :: m
@@ -53,7 +53,7 @@ contains
       if (size(trials) == 0) return
       folder = environment('TMPDIR', '/tmp')//'/kinmat-XXXXXX'
       if (.not. made(folder)) then
-         call fail(failure, status_machine, 'NO FILE CAN BE MADE IN '//environment('TMPDIR', '/tmp'))
+         call fail(failure, status_system, 'NO FILE CAN BE MADE IN '//environment('TMPDIR', '/tmp'))
          return
       end if
       call open_output(o, folder//'/deck', failure)
@@ -66,12 +66,12 @@ contains
          complete = status == 0
          if (complete) call read_motions(folder//'/csv', m, trials, outcomes, complete)
          if (complete .and. timed) call read_times(folder//'/times', outcomes, complete)
-         if (status == status_refused) then
-            call fail(failure, status_refused, program//' REFUSES THE DECK')
+         if (status == status_rejected) then
+            call fail(failure, status_rejected, program//' REFUSES THE DECK')
          else if (status == not_found) then
-            call fail(failure, status_machine, '--study NEEDS '//program//' BESIDE THIS PROGRAM OR IN PATH: make kinds')
+            call fail(failure, status_system, '--study NEEDS '//program//' BESIDE THIS PROGRAM OR IN PATH: make kinds')
          else if (.not. complete) then
-            call fail(failure, status_machine, program &
+            call fail(failure, status_system, program &
                //' HAS GIVEN NO RESULTS, OR NOT THOSE ASKED FOR (IS IT OF ANOTHER VERSION? make kinds)')
          end if
       end if

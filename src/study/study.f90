@@ -3,7 +3,7 @@
 module study
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
-   use failures, only: failure_t, fail, status_solved, status_refused, status_flagged
+   use failures, only: failure_t, fail, status_solved, status_rejected, status_flagged
    use mechanism, only: mechanism_t, instant_count, instant
    use structure, only: findings_t
    use structure_faults, only: check_structure
@@ -44,7 +44,7 @@ contains
       status = status_solved
       message = ''
       if (digits(1.0_wp) /= digits_double .and. .not. only_times) then
-         call fail(failure, status_refused, '--study IS FOR kinmat IN REAL64, WHICH ASKS THIS PROGRAM FOR ITS PART')
+         call fail(failure, status_rejected, '--study IS FOR kinmat IN REAL64, WHICH ASKS THIS PROGRAM FOR ITS PART')
       else
          call read_deck(path, sets, message, failure)
       end if
@@ -146,7 +146,7 @@ contains
          chosen = pack([(i, i=1, size(rows))], rows%trial%kind == kind)
          call ask_companion(program, kind_name, path, m, rows(chosen)%trial, .true., outcomes, failure)
          if (allocated(failure)) then
-            if (kind == kind_single .and. failure%status == status_refused) deallocate (failure)
+            if (kind == kind_single .and. failure%status == status_rejected) deallocate (failure)
             return
          end if
          do i = 1, size(chosen)
