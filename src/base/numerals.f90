@@ -61,8 +61,8 @@ module numerals
 
 contains
 
-   !> `x` 10**-power, correctly rounded to at most `decimals` >= 0 decimals, right-adjusted: as many decimals as there is
-   !> room for, and an exponent where even the whole part has no room.
+   !> `x` 10**-power, correctly rounded to at most `decimals` >= 0 decimals, right-adjusted: as many decimals as there
+   !> is room for, and an exponent where even the whole part has no room.
    pure function fixed(x, decimals, power) result(text)
       real(wp), intent(in) :: x
       integer, intent(in) :: decimals, power

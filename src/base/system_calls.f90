@@ -1,5 +1,5 @@
-!> What Fortran has not: bytes of files, the identity of a file, the reason of an error, and signals. The first SIGINT or
-!> SIGTERM is only noted, and the job ends after its instant, with whole lines; the second one kills.
+!> What Fortran has not: bytes of files, the identity of a file, the reason of an error, and signals. The first SIGINT
+!> or SIGTERM is only noted, and the job ends after its instant, with whole lines; the second one kills.
 !>
 !> The Fortran run-time library of GNU reports no error of a full disk, neither from WRITE nor from FLUSH nor from
 !> CLOSE, and takes a failed read for the end of a file.

@@ -50,8 +50,8 @@ contains
          //capitals(reason_of(o%error))//')')
    end subroutine open_output
 
-   !> Rejects a file that would be both read and written, or written twice, under whatever names. `list`: the outputs, of
-   !> which those that are open count. `deck`: the file of the deck, '' for standard input. Errors: status_rejected.
+   !> Rejects a file that would be both read and written, or written twice, under whatever names. `list`: the outputs,
+   !> of which those that are open count. `deck`: the file of the deck, '' for standard input. Errors: status_rejected.
    subroutine check_apart(list, deck, failure)
       type(output_t), intent(in) :: list(:)
       character(*), intent(in) :: deck
