@@ -120,7 +120,7 @@ contains
    subroutine run_sets(options, sets, findings, o, status)
       type(options_t), intent(in) :: options
       type(mechanism_t), intent(in) :: sets(:)
-      type(findings_t), intent(in) :: findings(:)
+      type(findings_t), intent(inout) :: findings(:)
       type(outputs_t), intent(inout) :: o
       integer, intent(inout) :: status
       integer :: i, first, last
@@ -146,7 +146,7 @@ contains
    subroutine run_set(options, m, findings, o, status)
       type(options_t), intent(in) :: options
       type(mechanism_t), intent(in) :: m
-      type(findings_t), intent(in) :: findings
+      type(findings_t), intent(inout) :: findings
       type(outputs_t), intent(inout) :: o
       integer, intent(inout) :: status
       type(layout_t) :: layout
@@ -161,7 +161,7 @@ contains
       if (len(options%log) > 0) call protocol_head(o%log, m, options%errors)
       call flush_all(options, o)
       if (is_over(o)) return
-      call make_set_analysis(m, a)
+      call make_set_analysis(m, a, findings%structures)
       flagged = 0
       every = strides(m)
       do k = 0, instant_count(m) - 1

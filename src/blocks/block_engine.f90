@@ -4,16 +4,13 @@ module block_engine
    use kinds, only: wp
    use mechanism, only: mechanism_t, wanted_links, pair_revolute, drive_x, drive_y, drive_slide
    use motion, only: motion_t
-   use scales, only: solver_length, power_of_two
-   use links_tree, only: tree_t, new_tree
-   use loop_equations, only: new_equations
+   use links_tree, only: tree_t
+   use structure, only: structure_t, new_structure
    use initial_estimate, only: estimated_values
    use drives, only: law_t, new_law, drive_motion
    use convergence, only: convergence_t, is_solved, gather, ended_converged, ended_singular
    use predictor, only: history_t, new_history, remember, predict, largest_change
    use blocks, only: blocks_t
-   use block_partition, only: new_blocks
-   use block_units, only: find_units
    use block_needs, only: moving_blocks, needed_blocks, largest_known
    use block_state, only: state_t, new_state
    use block_solver, only: workspace_t, make_workspace, solve_block
@@ -34,7 +31,7 @@ module block_engine
    !> Lengths in units of `length`, a power of two in the deck's unit.
    type :: block_engine_t
       real(wp) :: length = 1.0_wp, tolerance = 0.0_wp, t = 0.0_wp
-      type(blocks_t) :: blocks
+      type(blocks_t), allocatable :: blocks
       type(state_t) :: state
       type(history_t) :: history                        !< the motions that are followed
       type(workspace_t) :: work
@@ -74,20 +71,41 @@ module block_engine
 
 contains
 
-   !> Ready for the first instant of `m`.
-   subroutine make_block_engine(e, m)
+   !> Ready for the first instant of `m`. `structure`: that of `m`, whose blocks the engine takes over; without it
+   !> the engine makes one.
+   subroutine make_block_engine(e, m, structure)
       type(block_engine_t), intent(out) :: e
       type(mechanism_t), intent(in) :: m
-      type(tree_t) :: t
+      type(structure_t), intent(inout), optional :: structure
+      type(structure_t) :: own
+
+      if (present(structure)) then
+         call take_over(structure)
+      else
+         own = new_structure(m)
+         call take_over(own)
+      end if
+
+   contains
+
+      subroutine take_over(s)
+         type(structure_t), intent(inout) :: s
+
+         e%span = s%span
+         e%length = s%length
+         e%tolerance = m%tolerance
+         call move_alloc(s%blocks, e%blocks)
+         if (e%blocks%solvable) call prepare(e, m, s%tree)
+      end subroutine take_over
+   end subroutine make_block_engine
+
+   !> Everything of the engine `e` of `m` that comes from its blocks and its tree `t`.
+   subroutine prepare(e, m, t)
+      type(block_engine_t), intent(inout) :: e
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
       integer :: i
 
-      e%span = solver_length(m)
-      e%length = power_of_two(e%span)
-      e%tolerance = m%tolerance
-      t = new_tree(m)
-      e%blocks = new_blocks(t, new_equations(m, t, e%length))
-      if (.not. e%blocks%solvable) return
-      call find_units(e%blocks)
       e%needed = needed_blocks(e%blocks, t, wanted_links(m))
       e%moving = pack(e%needed, moving_blocks(e%blocks, e%needed))
       e%state = new_state(e%blocks, size(m%drives))
@@ -133,7 +151,7 @@ contains
       ! A function's result would bring its own lower bound.
       allocate (e%estimated(0:e%blocks%unknowns))
       e%estimated(:) = estimated_values(m, t, e%length, e%blocks%unknowns)/e%blocks%unit
-   end subroutine make_block_engine
+   end subroutine prepare
 
    !> The unknowns of the moving blocks that iterate.
    pure function sought_unknowns(e) result(list)

@@ -3,6 +3,7 @@
 module analysis
    use kinds, only: wp
    use mechanism, only: mechanism_t
+   use structure, only: structure_t
    use motion, only: motion_t, forget_links, known_of, mark_none, mark_not_converged, mark_singular, mark_overflow, &
       mark_inconsistent
    use diagnostics, only: diagnostic_t, diagnostic_inconsistent, diagnostic_far_estimate, diagnostic_long
@@ -37,12 +38,14 @@ module analysis
 
 contains
 
-   !> Ready for the first instant of `m`, whose equations are as many as its unknowns.
-   subroutine make_analysis(a, m)
+   !> Ready for the first instant of `m`, whose equations are as many as its unknowns. `structure`: see
+   !> `make_block_engine`.
+   subroutine make_analysis(a, m, structure)
       type(analysis_t), intent(out) :: a
       type(mechanism_t), intent(in) :: m
+      type(structure_t), intent(inout), optional :: structure
 
-      call make_following(a%following_t, m)
+      call make_following(a%following_t, m, structure)
       a%estimated_angle = m%links%position(3)
    end subroutine make_analysis
 

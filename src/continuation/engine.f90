@@ -3,6 +3,7 @@
 module engine
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton, method_dense
+   use structure, only: structure_t
    use motion, only: motion_t, mark_none
    use convergence, only: convergence_t
    use block_engine, only: block_engine_t, make_block_engine, solve_blocks, accept_blocks, get_blocks_motion, &
@@ -31,14 +32,16 @@ module engine
 
 contains
 
-   !> Ready for the first instant of `m`, whose equations are as many as its unknowns.
-   subroutine make_engine(e, m)
+   !> Ready for the first instant of `m`, whose equations are as many as its unknowns. `structure`: see
+   !> `make_block_engine`.
+   subroutine make_engine(e, m, structure)
       type(engine_t), intent(out) :: e
       type(mechanism_t), intent(in) :: m
+      type(structure_t), intent(inout), optional :: structure
 
       if (m%method == method_newton) then
          allocate (e%blocks)
-         call make_block_engine(e%blocks, m)
+         call make_block_engine(e%blocks, m, structure)
       else
          e%dense = new_dense(m)
       end if

@@ -2,6 +2,7 @@
 !> assembly is never changed in silence.
 module following
    use kinds, only: wp
+   use structure, only: structure_t
    use mechanism, only: mechanism_t
    use diagnostics, only: diagnostic_t, diagnostic_dead_end
    use branch_certificate, only: branch_t
@@ -62,12 +63,14 @@ module following
 
 contains
 
-   !> Ready for the first instant of `m`, whose equations are as many as its unknowns.
-   subroutine make_following(f, m)
+   !> Ready for the first instant of `m`, whose equations are as many as its unknowns. `structure`: see
+   !> `make_block_engine`.
+   subroutine make_following(f, m, structure)
       type(following_t), intent(out) :: f
       type(mechanism_t), intent(in) :: m
+      type(structure_t), intent(inout), optional :: structure
 
-      call make_engine(f%engine, m)
+      call make_engine(f%engine, m, structure)
       f%branch_requests = new_branch_requests(m)
       f%drives = new_drive_excursion(m, depends_on_before(f%engine))
    end subroutine make_following

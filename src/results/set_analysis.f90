@@ -3,6 +3,7 @@
 module set_analysis
    use kinds, only: wp
    use mechanism, only: mechanism_t
+   use structure, only: structure_t
    use diagnostics, only: diagnostic_t
    use convergence, only: convergence_t, is_solved, gather
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, worst_branch
@@ -28,10 +29,12 @@ module set_analysis
 
 contains
 
-   !> Ready for the first instant of `m`, whose equations are as many as its unknowns.
-   subroutine make_set_analysis(m, s)
+   !> Ready for the first instant of `m`, whose equations are as many as its unknowns. `structures` (parts): those of
+   !> its independent mechanisms, see `make_block_engine`.
+   subroutine make_set_analysis(m, s, structures)
       type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(out) :: s
+      type(structure_t), intent(inout), optional :: structures(:)
       integer :: c
 
       call new_set_motion(m, s%now)
@@ -50,7 +53,11 @@ contains
          type(set_analysis_t), intent(inout) :: s
          integer, intent(in) :: c
 
-         call make_analysis(s%list(c), one)
+         if (present(structures)) then
+            call make_analysis(s%list(c), one, structures(c))
+         else
+            call make_analysis(s%list(c), one)
+         end if
          call make_estimates(s%samples(c), one)
       end subroutine prepare
    end subroutine make_set_analysis

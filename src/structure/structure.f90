@@ -9,19 +9,30 @@ module structure
    use underdetermined_parts, only: underdetermined
    use closure_incidence, only: closure_t, new_closure
    use assur_groups, only: group_t, groups_of
+   use scales, only: solver_length, power_of_two
+   use independent, only: parts_t, find_parts
    use links_tree, only: tree_t, new_tree
    use loop_equations, only: new_equations
    use blocks, only: blocks_t
    use block_partition, only: new_blocks
+   use block_units, only: find_units
    implicit none
    private
-   public :: findings_t, group_t, part_t, count_degrees_of_freedom, find_structure
+   public :: structure_t, findings_t, group_t, part_t, new_structure, count_degrees_of_freedom, find_structure
 
    !> Links that still can move, and the drives that they lack.
    type :: part_t
       integer, allocatable :: links(:)
       integer :: degrees_of_freedom = 0
    end type part_t
+
+   !> The structure of one independent mechanism: made once, and handed to its engine, which takes the blocks over.
+   type :: structure_t
+      real(wp) :: span = 1.0_wp                 !< its characteristic length, in the deck's unit
+      real(wp) :: length = 1.0_wp               !< the unit of lengths in the blocks: the power of two next to `span`
+      type(tree_t) :: tree
+      type(blocks_t), allocatable :: blocks
+   end type structure_t
 
    type :: findings_t
       integer :: links = 0        !< n, ground links with them
@@ -37,9 +48,23 @@ module structure
       integer :: redundant = 0                  !< equations that are too many, among those of
       integer, allocatable :: many_pairs(:), many_drives(:)
       type(group_t), allocatable :: groups(:)   !< in solving order; none where it is not
+      type(structure_t), allocatable :: structures(:)   !< of the independent mechanisms, as `find_parts` has them
    end type findings_t
 
 contains
+
+   !> The structure of the independent mechanism `m`. Time and memory proportional to its links, pairs and drives.
+   function new_structure(m) result(s)
+      type(mechanism_t), intent(in) :: m
+      type(structure_t) :: s
+
+      s%span = solver_length(m)
+      s%length = power_of_two(s%span)
+      s%tree = new_tree(m)
+      allocate (s%blocks)
+      s%blocks = new_blocks(s%tree, new_equations(m, s%tree, s%length))
+      if (s%blocks%solvable) call find_units(s%blocks)
+   end function new_structure
 
    !> Counts (12) and (13) of mechanism `m`.
    pure function count_degrees_of_freedom(m) result(f)
@@ -62,10 +87,12 @@ contains
       type(mechanism_t), intent(in) :: m
       type(findings_t) :: f
       type(closure_t) :: c
-      type(tree_t) :: t
-      type(blocks_t) :: b
+      type(structure_t) :: whole
+      type(parts_t) :: parts
+      type(mechanism_t), allocatable :: own(:)
       integer, allocatable :: unknown_of(:), equation_of(:)
       logical, allocatable :: over(:)
+      integer :: k
 
       f = count_degrees_of_freedom(m)
       c = new_closure(m)
@@ -77,9 +104,16 @@ contains
       f%lacking = parts_that_lack(m, c%link_of, underdetermined(c%incidence, unknown_of, equation_of), &
          equation_of)
       if (size(f%lacking) > 0) return
-      t = new_tree(m)
-      b = new_blocks(t, new_equations(m, t, 1.0_wp))
-      if (.not. b%solvable) f%lacking = parts_on_tree(m, t, b%free)
+      call find_parts(m, parts, own)
+      allocate (f%structures(parts%count))
+      if (parts%count == 1) f%structures(1) = new_structure(m)
+      do k = 1, size(own)
+         f%structures(k) = new_structure(own(k))
+      end do
+      if (.not. all([(f%structures(k)%blocks%solvable, k=1, size(f%structures))])) then
+         whole = new_structure(m)
+         f%lacking = parts_on_tree(m, whole%tree, whole%blocks%free)
+      end if
       f%solvable = size(f%lacking) == 0
       if (f%solvable) f%groups = groups_of(m, c, unknown_of, equation_of, over, wanted_links(m))
    end function find_structure
