@@ -2,8 +2,7 @@
 module job
    use failures, only: failure_t, status_solved, status_flagged, status_signal
    use mechanism, only: mechanism_t, instant_count, instant
-   use structure, only: findings_t
-   use structure_faults, only: check_structure
+   use structure, only: findings_t, check_structure
    use deck, only: read_deck
    use text_output, only: output_t, open_output, check_apart, flush_output, close_output, abandon_output, has_failed, &
       has_broken_pipe

@@ -6,8 +6,7 @@ module link_motion
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use motion, only: motion_t, mark_none, mark_not_converged, mark_singular
-   use links_tree, only: tree_t
-   use tree_places, only: place_t, place_on_tree
+   use links_tree, only: tree_t, place_t, place_on_tree
    use block_state, only: unknown_t, state_t
    implicit none
    private

@@ -6,9 +6,7 @@ module lapack
    use lapack_routines, only: OF_KIND(gesv), OF_KIND(getrf), OF_KIND(getrs), OF_KIND(gecon), OF_KIND(lacn2), &
       OF_KIND(ptsv), OF_KIND(geqrf), OF_KIND(ormqr), OF_KIND(trtrs), OF_KIND(trcon), OF_KIND(gesvd)
 #else
-   use quad_dense, only: gesv, getrf, getrs, gecon, lacn2, ptsv
-   use quad_orthogonal, only: geqrf, ormqr, trtrs, trcon
-   use quad_singular, only: gesvd
+   use quad_lapack, only: gesv, getrf, getrs, gecon, lacn2, ptsv, geqrf, ormqr, trtrs, trcon, gesvd
 #endif
    implicit none
    private

@@ -7,8 +7,7 @@ module block_partition
    use matching, only: incidence_t, match, find_blocks, overdetermined
    use loop_equations, only: equations_t, incidence, equation_angle, equation_slide
    use blocks, only: blocks_t, block_t
-   use block_loops, only: fill_block_loops
-   use block_places, only: find_places
+   use block_loops, only: fill_block_loops, find_places
    implicit none
    private
    public :: new_blocks

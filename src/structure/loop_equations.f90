@@ -6,9 +6,8 @@ module loop_equations
    use kinds, only: wp
    use constants, only: without_turns
    use mechanism, only: mechanism_t, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
-   use links_tree, only: tree_t
+   use links_tree, only: tree_t, guide
    use tree_paths, only: search_t, new_search, find_path, find_way_down, close_pair
-   use tree_places, only: guide
    use vector_loops, only: vector_loops_t, new_vector_loops, add_vector_loop
    use matching, only: incidence_t
    implicit none

@@ -1,13 +1,17 @@
-!> A largest matching of equations with unknowns, and the blocks it gives: which unknown is in which
-!> equation is all that is looked at.
+!> A largest matching of equations with unknowns, and what follows from it: the blocks, the equations that are too many,
+!> and the unknowns with too few. Which unknown is in which equation is all that is looked at.
 !>
 !> Matching: augmenting paths, depth first with a look ahead (Duff, ACM TOMS 7, 1981). Blocks: the strongly connected
 !> components of the graph in which an equation points to those that its other unknowns are matched with (Tarjan,
-!> SIAM J. Comput. 1, 1972; Duff and Reid, ACM TOMS 4, 1978), without recursion.
+!> SIAM J. Comput. 1, 1972; Duff and Reid, ACM TOMS 4, 1978), without recursion. Parts with too many or too few
+!> equations: Dulmage and Mendelsohn, Can. J. Math. 10, 1958.
+!>
+!> Rejected: btf_maxtrans, btf_strongcomp and cs_dmperm of SuiteSparse. They find the same blocks, but with the unknowns
+!> of a block in other orders, and with these the last digits of results change in 5 to 35 of 56 decks.
 module matching
    implicit none
    private
-   public :: incidence_t, match, find_blocks, overdetermined
+   public :: incidence_t, match, find_blocks, overdetermined, underdetermined
 
    !> Unknowns of equation e: unknown(first(e)), ..., unknown(first(e + 1) - 1), each once.
    type :: incidence_t
@@ -238,4 +242,77 @@ contains
          next = next + 1
       end do
    end function overdetermined
+
+   !> (unknowns) What has too few equations: 0 for what is determined; the others have the number of the first free
+   !> unknown that equations join them with. It is in no other equations.
+   function underdetermined(g, unknown_of, equation_of) result(part)
+      type(incidence_t), intent(in) :: g
+      integer, intent(in) :: unknown_of(:), equation_of(:)
+      integer :: part(g%unknowns)
+      type(incidence_t) :: h
+      integer :: u
+      logical :: loose(g%unknowns)
+
+      h = turned_round(g)
+      ! Turned round, too few equations are too many: those that could be free in place of the free ones.
+      loose = overdetermined(h, equation_of, unknown_of)
+      part = 0
+      do u = 1, g%unknowns
+         if (equation_of(u) == 0 .and. part(u) == 0) call spread(g, h, u, loose, part)
+      end do
+   end function underdetermined
+
+   !> The equations of each unknown.
+   pure function turned_round(g) result(h)
+      type(incidence_t), intent(in) :: g
+      type(incidence_t) :: h
+      integer :: fill(g%unknowns), e, i
+
+      h%equations = g%unknowns
+      h%unknowns = g%equations
+      allocate (h%first(g%unknowns + 1), h%unknown(g%first(g%equations + 1) - 1))
+      fill = 0
+      do i = 1, size(h%unknown)
+         fill(g%unknown(i)) = fill(g%unknown(i)) + 1
+      end do
+      h%first(1) = 1
+      do i = 1, g%unknowns
+         h%first(i + 1) = h%first(i) + fill(i)
+      end do
+      fill = h%first(:g%unknowns)
+      do e = 1, g%equations
+         do i = g%first(e), g%first(e + 1) - 1
+            h%unknown(fill(g%unknown(i))) = e
+            fill(g%unknown(i)) = fill(g%unknown(i)) + 1
+         end do
+      end do
+   end function turned_round
+
+   !> Gives number `start` to all loose unknowns that equations join with it, one after another.
+   pure subroutine spread(g, h, start, loose, part)
+      type(incidence_t), intent(in) :: g, h
+      integer, intent(in) :: start
+      logical, intent(in) :: loose(:)
+      integer, intent(inout) :: part(:)
+      integer, allocatable :: stack(:)
+      integer :: i, k, u, top
+
+      allocate (stack(64))
+      top = 1
+      stack(1) = start
+      part(start) = start
+      do while (top > 0)
+         u = stack(top)
+         top = top - 1
+         do i = h%first(u), h%first(u + 1) - 1
+            do k = g%first(h%unknown(i)), g%first(h%unknown(i) + 1) - 1
+               if (.not. loose(g%unknown(k)) .or. part(g%unknown(k)) > 0) cycle
+               part(g%unknown(k)) = start
+               if (top == size(stack)) stack = [stack, stack]
+               top = top + 1
+               stack(top) = g%unknown(k)
+            end do
+         end do
+      end do
+   end subroutine spread
 end module matching

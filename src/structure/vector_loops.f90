@@ -7,9 +7,8 @@
 module vector_loops
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_prismatic
-   use links_tree, only: tree_t
+   use links_tree, only: tree_t, point_in_drawing, guide
    use tree_paths, only: search_t
-   use tree_places, only: point_in_drawing, guide
    implicit none
    private
    public :: vector_loops_t, new_vector_loops, add_vector_loop

@@ -5,8 +5,7 @@ module study
    use kinds, only: wp
    use failures, only: failure_t, fail, status_solved, status_rejected, status_flagged
    use mechanism, only: mechanism_t, instant_count, instant
-   use structure, only: findings_t
-   use structure_faults, only: check_structure
+   use structure, only: findings_t, check_structure
    use deck, only: read_deck
    use text_output, only: output_t, open_output, check_apart, put, flush_output, close_output, abandon_output, &
       has_failed
