@@ -193,7 +193,7 @@ contains
       state = 0
       do
          call lacn2(n, v, x, signs, norm, asks, state)
-         ! DLACN2 seeks the largest column sum: that of the transposed inverse.
+         ! DLACN2 estimates the largest column sum: that of the transposed inverse.
          select case (asks)
          case (1)
             call solve_transposed(k, x)

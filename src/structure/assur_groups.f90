@@ -9,7 +9,7 @@
 !> mechanism's own, whatever the matching and however it is solved.
 !>
 !> Rejected: groups read off the blocks that are solved. The tree has removed coordinates from these: a piston that a
-!> drive moves along its guide hangs on its rod there, and would be in one group with rod and crank.
+!> drive moves along its guide is joined to its rod there, and would be in one group with rod and crank.
 module assur_groups
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
@@ -89,6 +89,7 @@ contains
 
    contains
 
+      !> Coordinate 1, 2 or 3 of `link` stands in the equation at hand; those of the ground are no unknowns.
       subroutine note(link, coordinate)
          integer, intent(in) :: link, coordinate
 
@@ -97,6 +98,7 @@ contains
          c%incidence%unknown(n) = 3*moving(link) - 3 + coordinate
       end subroutine note
 
+      !> The angle of `link` stands in the equation at hand.
       subroutine note_angle(link)
          integer, intent(in) :: link
 
@@ -133,6 +135,7 @@ contains
          end associate
       end subroutine note_projection
 
+      !> The equation at hand, of `pair` or `drive`, is complete.
       subroutine close_equation(pair, drive)
          integer, intent(in) :: pair, drive
 
@@ -237,6 +240,7 @@ contains
 
    contains
 
+      !> The link at hand waits for link `other`.
       subroutine wait_for(other)
          integer, intent(in) :: other
 
@@ -277,6 +281,7 @@ contains
       end do
    end function numbers
 
+   !> The links of each group, in the deck's order, and which groups hold `wanted` links.
    subroutine share_out_links(of_link, order, wanted, groups)
       integer, intent(in) :: of_link(:), order(:)
       logical, intent(in) :: wanted(:)

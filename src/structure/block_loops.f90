@@ -28,7 +28,7 @@ module block_loops
 
 contains
 
-   !> The instances of all blocks that iterate.
+   !> The loops of all blocks that iterate. `member`: the equations of `e` by block.
    subroutine fill_block_loops(e, member, b)
       type(equations_t), intent(in) :: e
       integer, intent(in) :: member(:)
@@ -55,7 +55,7 @@ contains
       end do
    end subroutine fill_block_loops
 
-   !> Row `row`, in an instance of its own unless x and y of one polygon share it.
+   !> Row `row`, in a loop of its own unless x and y of one vector loop share it.
    subroutine add_row(e, equation, row, first_loop, b, f)
       type(equations_t), intent(in) :: e
       type(equation_t), intent(in) :: equation
@@ -87,7 +87,7 @@ contains
       end associate
    end subroutine add_row
 
-   !> A new instance of polygon `i`, 0 for none, as the block with the columns of `f` sees it.
+   !> Vector loop `i`, 0 for none, as the block with the columns of `f` has it.
    subroutine add_block_loop(p, i, kind, b, f)
       type(vector_loops_t), intent(in) :: p
       integer, intent(in) :: i, kind
@@ -120,7 +120,7 @@ contains
       end associate
    end subroutine add_block_loop
 
-   !> Arms of polygon `i`: those of the block's `own` frames, or the known ones.
+   !> Body vectors of vector loop `i`: those of the block's `own` orientations, or the known ones.
    subroutine add_body_vectors(p, i, own, b, f)
       type(vector_loops_t), intent(in) :: p
       integer, intent(in) :: i
@@ -138,7 +138,7 @@ contains
    end subroutine add_body_vectors
 
    !> A bound of |J(x) - J(z)|/|x - z| in the maximum norm: for a row, the sum of its second derivatives. Slides count
-   !> with the length of their unit; a projection turns once more with its own frame.
+   !> with the length of their unit; a projection turns once more with its own orientation.
    pure real(wp) function lipschitz_of(b, block) result(lipschitz)
       type(blocks_t), intent(in) :: b
       type(block_t), intent(in) :: block
@@ -159,7 +159,7 @@ contains
       end do
    end function lipschitz_of
 
-   !> Room for all instances: a polygon whose two components lie in different blocks has two.
+   !> Room for all loops: a vector loop whose two components lie in different blocks is in both.
    subroutine reserve(e, b, f)
       type(equations_t), intent(in) :: e
       type(blocks_t), intent(inout) :: b
@@ -205,6 +205,7 @@ contains
       b%patterns = b%patterns(:patterns)
    end subroutine find_places
 
+   !> A square Jacobian of so many rows may be better sparse, if it has few entries.
    elemental logical function may_be_sparse(shape)
       type(shape_t), intent(in) :: shape
 
@@ -232,6 +233,7 @@ contains
       end associate
    end subroutine find_pattern
 
+   !> The places of all entries of `block`, row by row.
    pure subroutine place_entries(b, block, p)
       type(blocks_t), intent(inout) :: b
       type(block_t), intent(in) :: block
@@ -248,7 +250,7 @@ contains
       end do
    end subroutine place_entries
 
-   !> The entries of arms and slides of instance `g` in row number `row`, which is its row_x (`side` 1) or row_y (2).
+   !> The entries of body vectors and slides of loop `g` in row `row`, which is its row_x (`side` 1) or row_y (2).
    pure subroutine place_row(b, g, side, row, p)
       type(blocks_t), intent(inout) :: b
       type(block_loop_t), intent(in) :: g

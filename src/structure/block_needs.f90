@@ -45,7 +45,7 @@ contains
       list = pack([(k, k=1, i)], below)
    end function blocks_below
 
-   !> Angles and slides of the wanted links and of those they hang on.
+   !> Angles and slides of the wanted links and of those between them and the ground.
    subroutine need_links(b, t, wanted, need)
       type(blocks_t), intent(in) :: b
       type(tree_t), intent(in) :: t

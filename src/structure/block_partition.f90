@@ -98,7 +98,7 @@ contains
                b%list(i)%direct = any(equation%kind == [equation_angle, equation_slide]) &
                   .and. b%list(i)%shape%rows == 1 .and. b%list(i)%shape%n == 1
                if (.not. (b%list(i)%direct .and. row%angular)) cycle
-               ! phi_frame - phi_less = constant + value, solved for whichever of the two is sought.
+               ! phi_orientation - phi_less = constant + value, solved for the one that is unknown.
                row%other = equation%less
                if (b%unknown(b%list(i)%first) /= equation%less) cycle
                row%other = equation%orientation

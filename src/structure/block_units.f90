@@ -1,9 +1,9 @@
-!> Each closed polygon in its own lengths: its rows, and the slides that its block seeks, in units of its
-!> largest arm, so that a residual, a gap or a correction is small or large for that polygon and not for the largest
+!> Each vector loop in its own lengths: its rows, and the slides that its block solves for, in units of its largest
+!> body vector. A residual, closure error or correction is then small or large for that loop and not for the largest
 !> link of the mechanism. Units are powers of two: no digit changes.
 !>
-!> What is known when the block's turn comes may be much larger than the arms that it turns. Its rounding cannot be
-!> corrected: `coarse` tells how much larger, and levels of rounding are that much higher.
+!> What a block knows may be much larger than its own body vectors. Its rounding cannot be corrected: `coarse` says how
+!> much larger it is, and levels of rounding are that much higher.
 module block_units
    use kinds, only: wp
    use scales, only: power_of_two
@@ -38,8 +38,8 @@ contains
       end do
    end subroutine find_units
 
-   !> Unit of polygon instance `m`: its largest own arm. A slide is as long as what is known lets it be, and a
-   !> projection that turns with a frame has all of the polygon as its arm.
+   !> Unit of loop `m`: its largest own body vector. A slide is as long as what is known lets it be, and a projection
+   !> that turns with an orientation of the block turns the whole loop.
    pure subroutine measure(b, m)
       type(blocks_t), intent(inout) :: b
       integer, intent(in) :: m
@@ -66,8 +66,8 @@ contains
       end associate
    end subroutine measure
 
-   !> Polygons `g` of one block that are not much smaller than the largest have its unit: the weights of their rows are
-   !> then the same among equations that are too many. What is known is from now on in the polygon's unit.
+   !> Loops `g` of one block that are not much smaller than the largest get its unit: the weights of their rows are then
+   !> the same where equations are too many. What is known is from now on in the loop's unit.
    pure subroutine make_alike(g)
       type(block_loop_t), intent(inout) :: g(:)
       real(wp) :: largest
@@ -81,7 +81,7 @@ contains
       end do
    end subroutine make_alike
 
-   !> Units of the slides that block `i` seeks: of the largest polygon that each is in.
+   !> Units of the slides that block `i` solves for: that of the largest loop in which each stands.
    pure subroutine measure_slides(b, i)
       type(blocks_t), intent(inout) :: b
       integer, intent(in) :: i
@@ -106,7 +106,7 @@ contains
       end do
    end subroutine measure_slides
 
-   !> Divides the rows of polygon instance `m`, of the block whose rows begin at `first_row`, by its unit.
+   !> Divides the rows of loop `m`, of the block whose rows begin at `first_row`, by its unit.
    pure subroutine divide(b, first_row, m)
       type(blocks_t), intent(inout) :: b
       integer, intent(in) :: first_row, m
@@ -127,6 +127,7 @@ contains
       end associate
    end subroutine divide
 
+   !> Gives `row` its `unit`.
    pure subroutine divide_row(unit, row)
       real(wp), intent(in) :: unit
       type(row_t), intent(inout) :: row

@@ -1,9 +1,9 @@
-!> The blocks of a mechanism in solving order, as data made for fast evaluation: for each block the polygons it
-!> closes, split into what is known when its turn comes and what it seeks.
+!> The blocks of a mechanism in solving order, as data made for fast evaluation: for each block the vector loops it
+!> closes, split into what earlier blocks have found and what it solves for.
 !>
-!> Unknowns: 1 to `orientations` the angles of the frames, then the slides. A block is an Assur group with the drives
-!> that move it, or one drive alone. Contract: a block needs unknowns of earlier blocks only; every unknown belongs to
-!> exactly one block.
+!> Unknowns: 1 to `orientations` the angles of the orientations, then the slides. A block is one drive alone, or what
+!> the tree leaves of one or more Assur groups with their drives. Contract: a block needs unknowns of earlier blocks
+!> only; every unknown belongs to exactly one block.
 module blocks
    use kinds, only: wp
    use klu, only: pattern_t
@@ -13,11 +13,11 @@ module blocks
    public :: blocks_t, block_t, row_t, block_loop_t, body_vector_t, slide_t
    public :: loop_components, loop_projection, loop_angles
 
-   integer, parameter :: loop_components = 1  !< x and y of a polygon, or one of them
-   integer, parameter :: loop_projection = 2  !< the projection of a polygon
-   integer, parameter :: loop_angles = 3      !< no polygon: two angles that one block seeks together
+   integer, parameter :: loop_components = 1  !< x and y of a vector loop, or one of them
+   integer, parameter :: loop_projection = 2  !< the projection of a vector loop
+   integer, parameter :: loop_angles = 3      !< no vector loop: two angles of one block
 
-   !> Unknowns, rows of equations and instances of a block. As many rows as unknowns, but in the first block where
+   !> Unknowns, rows of equations and loops of a block. As many rows as unknowns, but in the first block where
    !> equations are too many.
    type :: block_t
       integer :: first = 1, last = 0
@@ -25,8 +25,8 @@ module blocks
       integer :: first_loop = 1, last_loop = 0
       type(shape_t) :: shape                      !< of its Jacobian
       logical :: direct = .false.                 !< one equation that is linear with coefficient 1
-      real(wp) :: coarse = 1.0_wp                 !< the largest of its instances'
-      real(wp) :: lipschitz = 0.0_wp                   !< bounds the change of its Jacobian over that of its unknowns
+      real(wp) :: coarse = 1.0_wp                 !< the largest of its loops'
+      real(wp) :: lipschitz = 0.0_wp              !< bounds the change of its Jacobian over that of its unknowns
    end type block_t
 
    !> Row of an equation: = constant + value of the drive; direct: unknown = other + sign_of (constant + value).
@@ -38,16 +38,16 @@ module blocks
       real(wp) :: unit = 1.0_wp                   !< of its lengths, in that of the mechanism
    end type row_t
 
-   !> A polygon as one block sees it: rows (0: none), the known arms first, then those of the block's own frames.
+   !> A vector loop as one block has it: rows (0: none), the known body vectors, then those of the block's own angles.
    type :: block_loop_t
       integer :: kind = loop_components
       integer :: row_x = 0, row_y = 0
       integer :: first_vector = 1, first_own = 1, last_vector = 0, first_slide = 1, last_slide = 0
-      integer :: orientation = 0, orientation_column = 0      !< projection: turns with it; angles: the first
+      integer :: orientation = 0, orientation_column = 0   !< projection: turns with it; angles: the first
       integer :: less = 0, less_column = 0        !< angles: the one subtracted
       integer :: orientation_at = 0, less_at = 0        !< where their entries stand in the Jacobian
-      real(wp) :: direction(2) = 0.0_wp           !< projection: in its frame's axes
-      real(wp) :: ground(2) = 0.0_wp              !< the polygon's fixed part
+      real(wp) :: direction(2) = 0.0_wp           !< projection: in the axes of its orientation
+      real(wp) :: ground(2) = 0.0_wp              !< the loop's fixed part
       real(wp) :: unit = 1.0_wp                   !< of its lengths: see block_units
       real(wp) :: coarse = 1.0_wp                 !< what is known over the unit, 1 at least
    end type block_loop_t
@@ -58,7 +58,7 @@ module blocks
       real(wp) :: x = 0.0_wp, y = 0.0_wp
    end type body_vector_t
 
-   !> Columns are 0 for what is known; `at` as above, `orientation_at` those of the frame's column.
+   !> Columns are 0 for what is known; `at` as above, `orientation_at` those of the orientation's column.
    type :: slide_t
       integer :: orientation = 0, orientation_column = 0, unknown = 0, column = 0, at(2) = 0, orientation_at(2) = 0
       real(wp) :: body_vector(2) = 0.0_wp

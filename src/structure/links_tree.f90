@@ -17,24 +17,24 @@ module links_tree
    end type neighbours_t
 
    type :: tree_t
-      integer :: orientations = 0                 !< angles that are unknown; frame 0 is the ground's
+      integer :: orientations = 0           !< angles that are unknown; orientation 0 is the ground's
       integer :: slides = 0                 !< slides of prismatic pairs in the tree
       integer :: roots = 0                  !< parts that no pair joins to the ground
       real(wp) :: origin(2) = 0.0_wp        !< what places are counted from
-      integer, allocatable :: orientation(:)      !< (links)
-      real(wp), allocatable :: angle_offset(:)      !< (links) phi of the link less the angle of its frame
-      integer, allocatable :: parent_joint(:)    !< (links) the pair to the link above; 0: ground or root
-      integer, allocatable :: parent(:)      !< (links) the link on which it hangs; 0: ground or root
+      integer, allocatable :: orientation(:)     !< (links)
+      real(wp), allocatable :: angle_offset(:)   !< (links) phi of the link less the angle of its orientation, rad
+      integer, allocatable :: parent_joint(:)    !< (links) the pair to the parent; 0: ground or root
+      integer, allocatable :: parent(:)      !< (links) the next link towards the ground; 0: ground or root
       integer, allocatable :: depth(:)      !< (links)
       integer, allocatable :: root(:)       !< (links) number of its part; 0: joined to the ground
-      integer, allocatable :: order(:)      !< (links) from the ground outwards: what is above comes first
+      integer, allocatable :: order(:)      !< (links) from the ground outwards: parents come first
       integer, allocatable :: slide(:)      !< (pairs) number of its slide; 0: none
       type(neighbours_t) :: near
       integer, allocatable :: surplus(:)    !< prismatic pairs whose angle other prismatic pairs already fix
    end type tree_t
 
-   !> Where a link hangs: its origin is the origin above + R(frame above) reach + s R(frame above) slide_arm
-   !> - R(own frame) arm.
+   !> Where a link is, seen from its parent: its origin is that of the parent + R(parent) (reach + s slide_body_vector)
+   !> - R(own) body_vector, R of the orientations.
    type :: place_t
       real(wp) :: reach(2) = 0.0_wp, body_vector(2) = 0.0_wp, slide_body_vector(2) = 0.0_wp
       integer :: slide = 0
@@ -53,6 +53,7 @@ contains
       call grow(m, t%near, t)
    end function new_tree
 
+   !> The pairs of each link.
    pure function neighbours(m) result(near)
       type(mechanism_t), intent(in) :: m
       type(neighbours_t) :: near
@@ -96,8 +97,8 @@ contains
       other = link_of(m, k, 1) + link_of(m, k, 2) - link
    end function other_link
 
-   !> Frames and turns: a walk over prismatic pairs alone, first from the ground links, then from every link not
-   !> yet seen.
+   !> Orientations and angle offsets: a walk over prismatic pairs alone, first from the ground links, then from
+   !> every link not yet seen.
    subroutine find_orientations(m, near, t)
       type(mechanism_t), intent(in) :: m
       type(neighbours_t), intent(in) :: near
@@ -128,7 +129,7 @@ contains
       end do
    end subroutine find_orientations
 
-   !> Gives the frame of the `last` links in the queue to all links that prismatic pairs join to them.
+   !> Gives the orientation of the `last` links in the queue to all links that prismatic pairs join to them.
    subroutine spread_orientation(m, near, queue, last, used, t)
       type(mechanism_t), intent(in) :: m
       type(neighbours_t), intent(in) :: near
@@ -159,31 +160,31 @@ contains
       end do
    end subroutine spread_orientation
 
-   !> Hangs every link on the tree, breadth first; a prismatic pair is taken only where no revolute pair reaches on.
+   !> Joins every link to the tree, breadth first; a prismatic pair is taken only where no revolute pair reaches on.
    subroutine grow(m, near, t)
       type(mechanism_t), intent(in) :: m
       type(neighbours_t), intent(in) :: near
       type(tree_t), intent(inout) :: t
       integer :: last, revolute_next, prismatic_next, link
-      logical :: hung
+      logical :: attached
 
       allocate (t%parent_joint(size(m%links)), t%parent(size(m%links)), t%root(size(m%links)), source=0)
       allocate (t%depth(size(m%links)), source=-1)
       allocate (t%order(size(m%links)), t%slide(size(m%pairs)), source=0)
       last = 0
       do link = 1, size(m%links)
-         if (m%links(link)%ground) call hang(t, last, link, 0, 0)
+         if (m%links(link)%ground) call attach(t, last, link, 0, 0)
       end do
       revolute_next = 1
       prismatic_next = 1
       link = 1
       do
          if (revolute_next <= last) then
-            call hang_neighbours(m, near, pair_revolute, t%order(revolute_next), t, last, hung)
+            call attach_neighbours(m, near, pair_revolute, t%order(revolute_next), t, last, attached)
             revolute_next = revolute_next + 1
          else if (prismatic_next <= last) then
-            call hang_neighbours(m, near, pair_prismatic, t%order(prismatic_next), t, last, hung)
-            if (.not. hung) prismatic_next = prismatic_next + 1
+            call attach_neighbours(m, near, pair_prismatic, t%order(prismatic_next), t, last, attached)
+            if (.not. attached) prismatic_next = prismatic_next + 1
          else
             do while (link <= size(m%links))
                if (t%depth(link) < 0) exit
@@ -192,36 +193,37 @@ contains
             if (link > size(m%links)) exit
             t%roots = t%roots + 1
             t%root(link) = t%roots
-            call hang(t, last, link, 0, 0)
+            call attach(t, last, link, 0, 0)
          end if
       end do
    end subroutine grow
 
-   !> Hangs on `link` those of its neighbours that its pairs of one kind reach: all revolute ones, one prismatic one.
-   subroutine hang_neighbours(m, near, kind, link, t, last, hung)
+   !> Joins to `link` those of its neighbours that its pairs of one kind reach: all revolute ones, one prismatic one.
+   subroutine attach_neighbours(m, near, kind, link, t, last, attached)
       type(mechanism_t), intent(in) :: m
       type(neighbours_t), intent(in) :: near
       integer, intent(in) :: kind, link
       type(tree_t), intent(inout) :: t
       integer, intent(inout) :: last
-      logical, intent(out) :: hung
+      logical, intent(out) :: attached
       integer :: i, k
 
-      hung = .false.
+      attached = .false.
       do i = near%first(link), near%first(link + 1) - 1
          k = near%pairs(i)
          if (m%pairs(k)%kind /= kind) cycle
          if (t%depth(other_link(m, k, link)) >= 0) cycle
-         call hang(t, last, other_link(m, k, link), link, k)
-         hung = .true.
+         call attach(t, last, other_link(m, k, link), link, k)
+         attached = .true.
          if (kind == pair_revolute) cycle
          t%slides = t%slides + 1
          t%slide(k) = t%slides
          return
       end do
-   end subroutine hang_neighbours
+   end subroutine attach_neighbours
 
-   subroutine hang(t, last, link, parent, pair)
+   !> `link` is next in the tree, joined to its `parent` by `pair`; 0 for the ground and for roots.
+   subroutine attach(t, last, link, parent, pair)
       type(tree_t), intent(inout) :: t
       integer, intent(inout) :: last
       integer, intent(in) :: link, parent, pair
@@ -234,9 +236,9 @@ contains
       if (parent == 0) return
       t%depth(link) = t%depth(parent) + 1
       t%root(link) = t%root(parent)
-   end subroutine hang
+   end subroutine attach
 
-   !> How `link` hangs on the link above it.
+   !> Where `link` is, seen from its parent; lengths in units of `length`.
    pure function place_on_tree(m, t, length, link) result(p)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
@@ -256,7 +258,7 @@ contains
       end associate
    end function place_on_tree
 
-   !> Direction (2) of the guide of pair `k`, or of its normal, in the axes of its frame.
+   !> Direction (2) of the guide of pair `k`, or of its normal, in the axes of its orientation.
    pure function guide(m, t, k, across) result(e)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
@@ -269,7 +271,7 @@ contains
       if (across) e = [-e(2), e(1)]
    end function guide
 
-   !> Point number `i` in the axes of its link's frame, from the link's origin; of a ground link, its place
+   !> Point number `i` in the axes of its link's orientation, from the link's origin; of a ground link, its place
    !> from the origin of all places.
    pure function point_in_drawing(m, t, length, i) result(v)
       type(mechanism_t), intent(in) :: m
@@ -284,6 +286,7 @@ contains
       end associate
    end function point_in_drawing
 
+   !> `u` turned by `angle`; by none at all it keeps its digits.
    pure function turned(u, angle) result(w)
       real(wp), intent(in) :: u(2), angle
       real(wp) :: w(2)

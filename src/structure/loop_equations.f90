@@ -1,13 +1,13 @@
-!> The equations that the tree leaves over, and those of the drives: each gives a component of a polygon, its
-!> projection on a direction that turns with a frame, an angle or a slide. A revolute pair asks both components to be
-!> zero, a prismatic pair that the projection on the guide's normal is h, a drive X or Y one component of its point, a
-!> drive SLIDE the projection along the guide.
+!> The equations that the tree leaves over, and those of the drives: each gives a component of a vector loop, its
+!> projection on a direction that turns with an orientation, an angle or a slide. A revolute pair asks both components
+!> to be zero, a prismatic pair that the projection on the guide's normal is h; a drive X or Y gives one component of
+!> its point, a drive SLIDE the projection along the guide.
 module loop_equations
    use kinds, only: wp
    use constants, only: without_turns
    use mechanism, only: mechanism_t, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
    use links_tree, only: tree_t, guide
-   use tree_paths, only: search_t, new_search, find_path, find_way_down, close_pair
+   use tree_paths, only: search_t, new_search, find_path, find_path_down, close_pair
    use vector_loops, only: vector_loops_t, new_vector_loops, add_vector_loop
    use matching, only: incidence_t
    implicit none
@@ -15,10 +15,10 @@ module loop_equations
    public :: equation_t, equations_t, new_equations, incidence
    public :: equation_x, equation_y, equation_projection, equation_angle, equation_slide
 
-   integer, parameter :: equation_x = 1           !< x of a polygon
-   integer, parameter :: equation_y = 2           !< y of a polygon
-   integer, parameter :: equation_projection = 3  !< projection of a polygon on a direction that turns with a frame
-   integer, parameter :: equation_angle = 4       !< angle of a frame, or of one less another
+   integer, parameter :: equation_x = 1           !< x of a vector loop
+   integer, parameter :: equation_y = 2           !< y of a vector loop
+   integer, parameter :: equation_projection = 3  !< projection of a vector loop on a direction that turns with a link
+   integer, parameter :: equation_angle = 4       !< angle of an orientation, or of one less another
    integer, parameter :: equation_slide = 5       !< a slide
 
    !> What `kind` says = `constant` + value of the drive.
@@ -27,9 +27,9 @@ module loop_equations
       integer :: vector_loop = 0
       integer :: drive = 0                        !< 0: a pair's equation
       integer :: pair = 0                         !< 0: a drive's equation
-      integer :: orientation = 0                        !< projection and angle: the frame; slide: the slide's number
-      integer :: less = 0                         !< angle: the frame whose angle is subtracted; 0: none
-      real(wp) :: direction(2) = 0.0_wp           !< projection: in the frame's axes
+      integer :: orientation = 0                  !< projection and angle; slide: the slide's number
+      integer :: less = 0                         !< angle: the orientation whose angle is subtracted; 0: none
+      real(wp) :: direction(2) = 0.0_wp           !< projection: in the axes of the orientation
       real(wp) :: constant = 0.0_wp
    end type equation_t
 
@@ -133,7 +133,7 @@ contains
             call add(e, equation_t(equation_angle, drive=k, orientation=t%orientation(j), less=t%orientation(i), &
                constant=t%angle_offset(i) - t%angle_offset(j)))
          case (drive_x, drive_y)
-            call find_way_down(t, m%points(i)%link, s)
+            call find_path_down(t, m%points(i)%link, s)
             call add_vector_loop(m, t, length, i, 0, s, e%vector_loops)
             axis = merge(1, 2, m%drives(k)%kind == drive_x)
             call add(e, equation_t(merge(equation_x, equation_y, axis == 1), vector_loop=n, drive=k, &
@@ -154,7 +154,7 @@ contains
       end associate
    end subroutine add_drive
 
-   !> Pair `k` hangs a link on the tree.
+   !> Pair `k` joins a link to its parent.
    pure logical function is_in_tree(m, t, k)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
@@ -176,6 +176,7 @@ contains
       misfit = without_turns(misfit)
    end function misfit
 
+   !> Appends `equation` to `e`.
    subroutine add(e, equation)
       type(equations_t), intent(inout) :: e
       type(equation_t), intent(in) :: equation
@@ -217,6 +218,7 @@ contains
 
    contains
 
+      !> Notes the unknowns of the vector loop of equation `q`.
       subroutine note_vector_loop(q)
          type(equation_t), intent(in) :: q
          integer :: k
@@ -253,7 +255,7 @@ contains
          n = kept
       end subroutine forget
 
-      !> Notes unknown `u`, once; the ground's frame is none.
+      !> Notes unknown `u`, once; the ground's orientation is none.
       subroutine note(u)
          integer, intent(in) :: u
 

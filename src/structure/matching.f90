@@ -42,6 +42,7 @@ contains
       end do
    end subroutine match
 
+   !> Matches equation `e` with unknown `u`.
    subroutine join(e, u, unknown_of, equation_of)
       integer, intent(in) :: e, u
       integer, intent(inout) :: unknown_of(:), equation_of(:)
@@ -176,6 +177,7 @@ contains
 
    contains
 
+      !> The search comes to equation `e`.
       subroutine enter(e)
          integer, intent(in) :: e
 

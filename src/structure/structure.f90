@@ -54,10 +54,10 @@ module structure
       type(structure_t), allocatable :: structures(:)   !< of the independent mechanisms, as `find_parts` has them
    end type findings_t
 
-   !> So many parts are told by name; of more, the number.
-   integer, parameter :: max_substeps = 20
+   !> So many parts are named; of more, the number is given.
+   integer, parameter :: max_parts = 20
 
-   !> Of so many sets it is told what is wrong with them.
+   !> The faults of so many sets are reported.
    integer, parameter :: max_sets = 10
 
 contains
@@ -229,21 +229,21 @@ contains
       type(findings_t), allocatable, intent(out) :: findings(:)
       type(failure_t), allocatable, intent(out) :: failure
       character(:), allocatable :: text, all_of_them
-      integer :: i, told
+      integer :: i, reported
 
       allocate (findings(size(sets)))
       all_of_them = ''
-      told = 0
+      reported = 0
       do i = 1, size(sets)
          findings(i) = find_structure(sets(i))
          text = faults_text(sets(i), findings(i), i)
          if (len(text) == 0) cycle
-         if (told > 0) all_of_them = all_of_them//new_line('a')//' *** '
+         if (reported > 0) all_of_them = all_of_them//new_line('a')//' *** '
          all_of_them = all_of_them//text
-         told = told + 1
-         if (told == max_sets) exit
+         reported = reported + 1
+         if (reported == max_sets) exit
       end do
-      if (told > 0) call fail(failure, status_rejected, all_of_them)
+      if (reported > 0) call fail(failure, status_rejected, all_of_them)
    end subroutine check_structure
 
    !> A line for each fault of set number `set`, joined by new_line('a'); '' where there is none.
@@ -260,11 +260,11 @@ contains
             call add_line('E104  SET '//whole(set)//': ONLY METHOD NEWTON TAKES '//surplus(m, f))
          return
       end if
-      do i = 1, min(size(f%lacking), max_substeps)
+      do i = 1, min(size(f%lacking), max_parts)
          call add_line('E101  SET '//whole(set)//': '//lack(m, f%lacking(i)))
       end do
-      if (size(f%lacking) > max_substeps) call add_line('E101  SET '//whole(set)//': AND ' &
-         //whole(size(f%lacking) - max_substeps)//' MORE PARTS THAT CAN MOVE')
+      if (size(f%lacking) > max_parts) call add_line('E101  SET '//whole(set)//': AND ' &
+         //whole(size(f%lacking) - max_parts)//' MORE PARTS THAT CAN MOVE')
       if (f%redundant > 0) call add_line('E102  SET '//whole(set)//': '//surplus(m, f))
       call add_line('E103  SET '//whole(set)//': W = '//whole(f%coordinates)//' COORDINATES LESS R = ' &
          //whole(f%equations)//' EQUATIONS LEAVE S = '//whole(f%degrees_of_freedom) &
@@ -272,6 +272,7 @@ contains
 
    contains
 
+      !> Appends `line`.
       subroutine add_line(line)
          character(*), intent(in) :: line
 

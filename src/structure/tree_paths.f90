@@ -1,13 +1,12 @@
-!> Short ways between links over the pairs taken so far: those of the tree, and each revolute pair once
-!> it has closed its loop. A loop that takes the shortest such way holds its own pair and earlier ones only, so
-!> all loops are independent; and it holds few links, so the blocks stay small and the work proportional to the
-!> links.
+!> Short paths between links over the pairs taken so far: those of the tree, and each revolute pair once it has
+!> closed its loop. A loop that takes the shortest such path holds its own pair and earlier ones only, so all loops are
+!> independent; and it holds few links, so the blocks stay small and the work proportional to the links.
 module tree_paths
    use mechanism, only: mechanism_t, pair_revolute
    use links_tree, only: tree_t, other_link
    implicit none
    private
-   public :: search_t, new_search, find_path, find_way_down, close_pair
+   public :: search_t, new_search, find_path, find_path_down, close_pair
 
    !> What a search needs; links are nodes, all ground links one, node 0.
    type :: search_t
@@ -37,7 +36,7 @@ contains
       allocate (s%queue(0:size(m%links), 2), s%pairs(size(m%links) + 1))
    end function new_search
 
-   !> From now on there is a way through revolute pair `k`.
+   !> From now on paths lead through revolute pair `k`.
    subroutine close_pair(m, k, s)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k
@@ -47,7 +46,7 @@ contains
    end subroutine close_pair
 
    !> `s%pairs`: the pairs down the tree from `link` to a ground link or a root.
-   subroutine find_way_down(t, link, s)
+   subroutine find_path_down(t, link, s)
       type(tree_t), intent(in) :: t
       integer, intent(in) :: link
       type(search_t), intent(inout) :: s
@@ -61,10 +60,10 @@ contains
          s%pairs(s%length) = t%parent_joint(i)
          i = t%parent(i)
       end do
-   end subroutine find_way_down
+   end subroutine find_path_down
 
-   !> `s%pairs`: the pairs on a short way from link `i` to link `j`, which are joined. Breadth first from both ends in
-   !> turn; the ground is an end of the way, never passed over level by level, since all links may hang on it.
+   !> `s%pairs`: the pairs on a short path from link `i` to link `j`, which are joined. Breadth first from both ends in
+   !> turn; the ground ends a path and is never searched level by level, since all links may be joined to it.
    subroutine find_path(m, t, i, j, s)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
@@ -106,6 +105,7 @@ contains
          first(side) = level_end + 1
       end subroutine go_on
 
+      !> The search from end `side` comes to node `n` through `pair`.
       subroutine reach(side, n, pair)
          integer, intent(in) :: side, n, pair
 
@@ -119,6 +119,7 @@ contains
       end subroutine reach
    end subroutine find_path
 
+   !> The node of `link`: 0 for every ground link.
    pure integer function node(m, link)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: link
@@ -138,6 +139,7 @@ contains
 
    contains
 
+      !> Appends the pairs from the meeting node back to the node `goal`, where the search from `side` began.
       subroutine go_back(side, goal)
          integer, intent(in) :: side, goal
          integer :: n, k

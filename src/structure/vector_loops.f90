@@ -1,9 +1,10 @@
-!> Vector polygons along short ways over the pairs: each is a sum of arms that turn with their frames,
+!> Vector loops along short paths over the pairs: each is a sum of body vectors that turn with their orientations,
 !> and of slides,
 !>
 !>    P - Q = d_0 + sum_k R(phi_k) d_k + sum_m s_m R(phi_k(m)) e_m.
 !>
-!> Arms of one frame in one polygon are added up, so each frame stands in it once. Lengths in units of `length`.
+!> Body vectors of one orientation in one loop are added up, so each orientation stands in it once. Lengths are
+!> in units of `length`.
 module vector_loops
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_prismatic
@@ -13,29 +14,30 @@ module vector_loops
    private
    public :: vector_loops_t, new_vector_loops, add_vector_loop
 
-   !> A polygon in the making: sums by frame, and the frames and slides that occur.
+   !> A loop in the making: sums by orientation, and the orientations and slides that occur.
    type :: builder_t
-      real(wp), allocatable :: sum(:, :)             !< (2, 0:frames)
-      real(wp), allocatable :: largest(:)            !< (0:frames) largest component that was added
-      logical, allocatable :: met(:)                 !< (0:frames)
+      real(wp), allocatable :: sum(:, :)             !< (2, 0:orientations)
+      real(wp), allocatable :: largest(:)            !< (0:orientations) largest component that was added
+      logical, allocatable :: met(:)                 !< (0:orientations)
       integer, allocatable :: orientations(:), slide_orientation(:), slide(:)
       real(wp), allocatable :: slide_body_vector(:, :)
       integer :: body_vectors = 0, slides = 0
    end type builder_t
 
-   !> Arms of polygon p are first_arm(p), ..., first_arm(p + 1) - 1; slides likewise. Frame 0 is the ground.
+   !> Body vectors of loop p are first_vector(p), ..., first_vector(p + 1) - 1; slides likewise. Orientation 0 is the
+   !> ground's. Directions are in the axes of the orientation.
    type :: vector_loops_t
       integer :: count = 0
       integer, allocatable :: first_vector(:), vector_orientation(:)
-      real(wp), allocatable :: body_vector(:, :)             !< (2, arms) d in the frame's axes
+      real(wp), allocatable :: body_vector(:, :)     !< (2, body vectors) d
       integer, allocatable :: first_slide(:), slide_orientation(:), slide_number(:)
-      real(wp), allocatable :: slide_body_vector(:, :)       !< (2, slides) e in the frame's axes, with its sign
+      real(wp), allocatable :: slide_body_vector(:, :)   !< (2, slides) e with its sign
       type(builder_t) :: making                      !< the next one
    end type vector_loops_t
 
 contains
 
-   !> No polygon yet, and room for those of `m` on its tree `t`.
+   !> No loop yet, and room for those of `m` on its tree `t`.
    function new_vector_loops(m, t) result(p)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
@@ -53,8 +55,8 @@ contains
       end associate
    end function new_vector_loops
 
-   !> Adds to `vector_loops` the one from point `q` to point `p` by the way that `s` found last from p's link to q's;
-   !> `q` = 0 is the origin of all places, and the way then leads to the ground or to a root.
+   !> Adds to `vector_loops` the one from point `q` to point `p` by the path that `s` found last from p's link to
+   !> q's; `q` = 0 is the origin of all places, and the path then leads to the ground or to a root.
    subroutine add_vector_loop(m, t, length, p, q, s, vector_loops)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
@@ -71,7 +73,7 @@ contains
          call cross(m, t, length, s%pairs(i), link, v, vector_loops%making)
       end do
       if (q > 0) then
-         ! Not their difference: what is left of arms that cancel is told by the largest that was added.
+         ! Not their difference: the largest that was added tells which sums are rounding alone.
          call add_body_vector(vector_loops%making, t%orientation(link), -point_in_drawing(m, t, length, q))
       else if (t%root(link) > 0) then
          call add_slide(vector_loops%making, 0, t%slides + 2*t%root(link) - 1, [1.0_wp, 0.0_wp])
@@ -101,7 +103,7 @@ contains
          call add_body_vector(b, t%orientation(link), v)
          call add_body_vector(b, t%orientation(link), -point_in_drawing(m, t, length, exit_point))
          if (k%kind == pair_prismatic) then
-            ! P - Q = h n - s e, all in the frame that the two links share.
+            ! P - Q = h n - s e, all in the orientation that the two links share.
             call add_slide(b, t%orientation(link), t%slide(pair), merge(-1.0_wp, 1.0_wp, forward)*guide(m, t, pair, &
                .false.))
             call add_body_vector(b, t%orientation(link), merge(1.0_wp, -1.0_wp, forward)*k%offset/length*guide(m, t, &
@@ -120,6 +122,7 @@ contains
       is_on = m%points(i)%link == link .or. (m%links(m%points(i)%link)%ground .and. m%links(link)%ground)
    end function is_on
 
+   !> Adds the body vector `d` of an orientation to the loop in the making.
    subroutine add_body_vector(b, orientation, d)
       type(builder_t), intent(inout) :: b
       integer, intent(in) :: orientation
@@ -136,6 +139,7 @@ contains
       b%largest(orientation) = max(b%largest(orientation), maxval(abs(d)))
    end subroutine add_body_vector
 
+   !> Adds slide number `slide` in the direction `e` to the loop in the making.
    subroutine add_slide(b, orientation, slide, e)
       type(builder_t), intent(inout) :: b
       integer, intent(in) :: orientation, slide
@@ -152,7 +156,7 @@ contains
       b%slide_body_vector(:, b%slides) = e
    end subroutine add_slide
 
-   !> Appends the polygon in the making to `p` and empties it; arms of no length are dropped.
+   !> Appends the loop in the making to `p` and empties it; body vectors of no length are dropped.
    subroutine store(b, p)
       type(builder_t), intent(inout) :: b
       type(vector_loops_t), intent(inout) :: p
@@ -163,7 +167,7 @@ contains
       call extend(p, body_vectors + b%body_vectors, slides + b%slides)
       do i = 1, b%body_vectors
          b%met(b%orientations(i)) = .false.
-         ! What is left of arms that cancel is rounding, and would tie a frame to equations that do not hold it.
+         ! What is left of vectors that cancel is rounding: it would put an angle into equations that do not hold it.
          if (all(abs(b%sum(:, b%orientations(i))) <= 8.0_wp*epsilon(1.0_wp)*b%largest(b%orientations(i)))) cycle
          body_vectors = body_vectors + 1
          p%vector_orientation(body_vectors) = b%orientations(i)
@@ -182,7 +186,7 @@ contains
       p%first_slide(p%count + 1) = slides + 1
    end subroutine store
 
-   !> Room for so many arms and slides, doubled where it runs out.
+   !> Room for so many body vectors and slides, doubled where it runs out.
    subroutine extend(p, body_vectors, slides)
       type(vector_loops_t), intent(inout) :: p
       integer, intent(in) :: body_vectors, slides
