@@ -1,9 +1,9 @@
-!> On which branch an instant was found: what has been verified on the way to it.
+!> On which branch an instant was found: what has been verified on the step to it.
 !>
-!> SAME: on every part of the way the prediction was off by less than a tenth of the distance within which there is
-!> one root only (Newton and Kantorovich), and the determinants of all blocks, or that of all equations at once, have
-!> kept their signs.
-!> CROSSED: the same, but for change points that were passed, each within a short step, and told.
+!> SAME: on every substep the prediction was off by less than a tenth of the distance within which there is one root
+!> only (Newton and Kantorovich), and the determinants of all blocks, or that of all equations at once, have kept their
+!> signs.
+!> CROSSED: the same, but for change points that were passed, each within a short substep, and listed.
 module branch_certificate
    use kinds, only: wp
    implicit none
@@ -12,35 +12,33 @@ module branch_certificate
    public :: branch_none, branch_first, branch_same, branch_crossed
 
    integer, parameter :: branch_none = 0      !< nothing is verified
-   integer, parameter :: branch_first = 1     !< chosen by the deck's rough position
+   integer, parameter :: branch_first = 1     !< chosen by the deck's estimated position
    integer, parameter :: branch_same = 2      !< that of the motion that is followed
    integer, parameter :: branch_crossed = 3   !< the same, through change points
 
-   !> `parts` of the way that were kept; `kantorovich_ratio`: the largest of their corrections, over the distance
-   !> within which the
-   !> root is the only one.
    type :: branch_t
       integer :: kind = branch_none
-      integer :: parts = 0
-      real(wp) :: kantorovich_ratio = 0.0_wp
+      integer :: substeps = 0                    !< made on the step
+      real(wp) :: kantorovich_ratio = 0.0_wp     !< their largest correction over the distance of the next root
    end type branch_t
 
-   !> Instants with a position: followed, and found without that (but for the first); change points passed.
    type :: certificate_counts_t
-      integer :: followed = 0, passed = 0, uncertain = 0
+      integer :: followed = 0    !< instants with a certificate
+      integer :: passed = 0      !< change points
+      integer :: uncertain = 0   !< instants with a position but without a certificate, the first apart
    end type certificate_counts_t
 
 contains
 
-   !> Counts an instant found on the branch `b`, on the way to which so many change points were `passed`.
-   pure subroutine count_in(certificate_counts, b, passed)
-      type(certificate_counts_t), intent(inout) :: certificate_counts
+   !> Counts an instant found on the branch `b` beyond so many change points `passed`.
+   pure subroutine count_in(counts, b, passed)
+      type(certificate_counts_t), intent(inout) :: counts
       type(branch_t), intent(in) :: b
       integer, intent(in) :: passed
 
-      certificate_counts%passed = certificate_counts%passed + passed
-      if (b%kind == branch_none) certificate_counts%uncertain = certificate_counts%uncertain + 1
-      if (b%kind >= branch_same) certificate_counts%followed = certificate_counts%followed + 1
+      counts%passed = counts%passed + passed
+      if (b%kind == branch_none) counts%uncertain = counts%uncertain + 1
+      if (b%kind >= branch_same) counts%followed = counts%followed + 1
    end subroutine count_in
 
    !> What is verified of several independent motions together, each found on one of the branches `b`.
@@ -50,11 +48,11 @@ contains
       worst%kind = maxval(b%kind)
       if (any(b%kind == branch_first)) worst%kind = branch_first
       if (any(b%kind == branch_none)) worst%kind = branch_none
-      worst%parts = maxval(b%parts)
+      worst%substeps = maxval(b%substeps)
       worst%kantorovich_ratio = maxval(b%kantorovich_ratio)
    end function worst_branch
 
-   !> For the protocol.
+   !> The word of the log for the branch `b`.
    pure function branch_word(b) result(word)
       type(branch_t), intent(in) :: b
       character(7) :: word

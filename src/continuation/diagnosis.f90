@@ -1,15 +1,15 @@
-!> METHOD DENSE and METHOD MATRIX have the equations as one system, and cannot tell of an instant without a
-!> position whether the mechanism or the method has come to its end. The blocks can: they are asked, from the same
-!> position, and what they say of the mechanism does not depend on the way of an iteration.
+!> Diagnosis by blocks. METHOD DENSE and METHOD MATRIX have the equations as one system, and cannot tell of an instant
+!> without a position whether the mechanism has come to a limit or the method has failed. The blocks can: they solve
+!> from the same position, and what they say of the mechanism does not depend on how an iteration goes.
 module diagnosis
    use kinds, only: wp
    use mechanism, only: mechanism_t, place_links, wanted_links
    use motion, only: motion_t, new_motion, mark_not_converged, mark_singular
    use diagnostics, only: diagnostic_t, diagnostic_inconsistent, diagnostic_limit, diagnostic_far_estimate, &
-      diagnostic_second, diagnostic_mobile, diagnostic_idle, &
-      diagnostic_repeated, diagnostic_method
+      diagnostic_second, diagnostic_mobile, diagnostic_idle, diagnostic_repeated, diagnostic_method
    use convergence, only: ended_elsewhere
    use dense_start, only: by_blocks
+   use dense_engine, only: dense_engine_t
    use analysis, only: analysis_t, make_analysis, advance
    implicit none
    private
@@ -18,24 +18,32 @@ module diagnosis
    !> Angles that differ by less, in radians, are those of one assembly.
    real(wp), parameter :: alike = 1.0e-3_wp
 
-   !> What has been said: limits once, and of the first motion.
+   !> What the analysis had come to at the instant before: limits are said once, and what there is of the first motion.
    type :: opinion_t
-      logical :: is_lost = .false., has_begun = .false.
+      logical :: is_lost = .false.      !< no position was found
+      logical :: has_begun = .false.    !< a position was found before
    end type opinion_t
 
 contains
 
-   !> Adds to the remarks of `found`, which `a` has found last of `m`: how far the estimate was off; the limit of the
-   !> motion, what stays open, what can still move; or that METHOD NEWTON finds a position.
+   !> Adds to the diagnostics of `found`, which `a` has found last of `m`: how far the estimate was off; the limit of
+   !> the motion, which equation is not satisfied, what can still move; or that METHOD NEWTON finds a position. `o`:
+   !> what has been said before.
    subroutine ask_blocks(m, a, o, found)
       type(mechanism_t), intent(in) :: m
       type(analysis_t), intent(in) :: a
       type(opinion_t), intent(inout) :: o
       type(motion_t), intent(inout) :: found
+      real(wp), allocatable :: last(:, :)
 
-      if (.not. allocated(a%engine%dense)) return
+      select type (e => a%engine)
+      class is (dense_engine_t)
+         if (a%follows) last = e%followed_position()
+      class default
+         return
+      end select
       if (found%mark == mark_not_converged) then
-         if (.not. (a%follows .and. o%is_lost)) call say_why(m, a, o%is_lost, found)
+         if (.not. (a%follows .and. o%is_lost)) call say_why(m, a, o%is_lost, found, last)
       else if (found%mark == mark_singular .and. .not. o%has_begun) then
          call say_what_moves(m, found)
       else if (.not. o%has_begun) then
@@ -45,20 +53,20 @@ contains
       o%has_begun = a%has_begun
    end subroutine ask_blocks
 
-   !> Why there is no position.
-   subroutine say_why(m, a, is_known, found)
+   !> Why there is no position, from the position `last` (3, links) that is followed or, without one, from the estimate;
+   !> `is_known`: the instant before had none either.
+   subroutine say_why(m, a, is_known, found, last)
       type(mechanism_t), intent(in) :: m
       type(analysis_t), intent(in) :: a
       logical, intent(in) :: is_known
       type(motion_t), intent(inout) :: found
+      real(wp), intent(in), optional :: last(:, :)
       type(analysis_t) :: b
       type(motion_t) :: q
 
       q = new_motion(size(m%links))
-      if (a%follows) then
-         associate (last => a%engine%dense%last%position, unit => a%engine%dense%system%length)
-            call make_analysis(b, placed(m, last*spread([unit, unit, 1.0_wp], 2, size(last, 2))))
-         end associate
+      if (present(last)) then
+         call make_analysis(b, placed(m, last))
          call advance(b, a%t, q)
          if (q%known < 2) return
       else
@@ -105,7 +113,7 @@ contains
       call pass_on(q, [diagnostic_mobile, diagnostic_idle, diagnostic_repeated], found)
    end subroutine say_what_moves
 
-   !> `m` for the blocks, from the `position` (3, links), as the origin of the plane counts it.
+   !> `m` for the blocks, its estimate the `position` (3, links) in the deck's unit from the origin of the plane.
    pure function placed(m, position) result(d)
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: position(:, :)
@@ -115,7 +123,7 @@ contains
       call place_links(d, position)
    end function placed
 
-   !> Adds the remarks of `q` that are of one of the `kinds` to those of `found`.
+   !> Adds the diagnostics of `q` that are of one of the `kinds` to those of `found`.
    subroutine pass_on(q, kinds, found)
       type(motion_t), intent(in) :: q
       integer, intent(in) :: kinds(:)

@@ -1,76 +1,90 @@
-!> All closure equations as one block, x, y, phi of every link its unknowns: the form of the paper, by Newton
-!> (METHOD DENSE) or by the iteration of 1987 (METHOD MATRIX). What the blocks are compared with.
+!> METHOD DENSE and METHOD MATRIX: all closure equations as one block, x, y, phi of every link its unknowns: the form of
+!> the paper, by Newton or by the iteration of 1987. The blocks are compared with it.
 !>
 !> The first position is one near the estimate, or in the assembly that the blocks find from it: an iteration that goes
-!> further falls where rounding lets it. Newton's method then begins again from there; that of 1987, which is repelled
+!> further ends where rounding lets it. Newton's method then begins again from there; that of 1987, which is repelled
 !> from some assemblies, has found nothing.
 module dense_engine
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_matrix, own_predictor
-   use motion, only: motion_t, new_motion
-   use linear_solver, only: factors_t, new_factors, reciprocal_condition, determinant_sign
+   use mechanism, only: mechanism_t, method_dense, method_matrix, own_predictor
+   use motion, only: motion_t, new_motion, mark_none
+   use linear_solver, only: factors_t, new_factors, reciprocal_condition, determinant_sign, solve_factored => solve
    use convergence, only: convergence_t, is_solved, ended_elsewhere
    use predictor, only: largest_change, order_weights
-   use pose, only: system_t, pose_t, new_system, new_pose
-   use closure_equations, only: find_drive_values
+   use engine, only: engine_t, engine_checkpoint_t
+   use block_engine, only: block_engine_t, make_block_engine, get_driven_motion
+   use pose, only: system_t, pose_t, new_system, new_pose, add_to_links
+   use closure_equations, only: find_drive_values, remainder
    use position_iteration, only: solve_newton, solve_matrix
-   use rates, only: solve_velocity, solve_acceleration
-   use root_distance, only: coordinates_t, new_coordinates, distance, kantorovich, jacobian_lipschitz
+   use root_distance, only: coordinates_t, new_coordinates, distance, kantorovich, kantorovich_bound
    use dense_start, only: by_blocks, find_start
    use constants, only: without_turns
    implicit none
    private
-   public :: dense_t, new_dense, solve_dense, accept_dense, get_dense_motion
-   public :: dense_checkpoint_t, checkpoint_dense, restore_dense
+   public :: dense_engine_t, make_dense_engine, solve_velocity, solve_acceleration
 
    !> The position is known to eps/rcond, and so the Jacobian; below the root of eps no digit of a velocity is certain.
    real(wp), parameter :: min_condition = 4.0_wp*sqrt(epsilon(1.0_wp))
    !> A change over the distance of the next root, at least: below it the root is the only one as near, and near enough.
    real(wp), parameter :: certain = 0.5_wp
-   !> What is certainly below this needs no closer look: doubts are of importance from 0.1 on.
+   !> A bound of the Kantorovich ratio that is below this needs no closer look: ratios matter from 0.1 on.
    real(wp), parameter :: small_kantorovich_ratio = 1.0e-3_wp
-   !> A change of more than this, in radians and in the unit of length, is a leap, as the blocks have it.
+   !> A change of more than this, in radians and in the unit of length, may be a jump to another branch, as with blocks.
    real(wp), parameter :: branch_jump = 0.5_wp
-   !> An iteration that goes further than this on its way wanders, and where it ends up is up to rounding.
+   !> An iteration that goes further than this wanders, and where it ends is up to rounding.
    real(wp), parameter :: reach = largest_change
    !> Where the Jacobian has no inverse a position is known to the root of eps; a root this near is that position.
    real(wp), parameter :: same_place = min(1.0e4_wp*sqrt(epsilon(1.0_wp)), 1.0e-2_wp)
 
    !> Lengths in the system's unit.
-   type :: dense_t
+   type, extends(engine_t) :: dense_engine_t
+      private
       type(system_t) :: system
-      type(mechanism_t) :: blocks                !< to be solved by blocks, at the first instant
-      type(coordinates_t) :: coordinates         !< whose changes the guard of continuity looks at
-      type(pose_t) :: pose                       !< room for the position that is being sought
-      real(wp), allocatable :: estimated(:, :)       !< (3, links) the deck's positions
+      type(mechanism_t) :: by_blocks             !< to be solved by blocks, at the first instant
+      type(block_engine_t), allocatable :: blocks !< of that, for the links that drives alone move; made when needed
+      type(coordinates_t) :: coordinates         !< whose changes the Kantorovich ratio bounds
+      type(pose_t) :: pose                       !< workspace of the position that is searched for
+      real(wp), allocatable :: estimated(:, :)   !< (3, links) the deck's positions
       real(wp), allocatable :: start(:, :)       !< (3, links) where the last search began
       type(factors_t) :: factors
-      type(motion_t) :: now                      !< the motion sought last
-      type(motion_t) :: last                     !< the last one kept
-      type(motion_t) :: before                   !< the one kept before, where the order is 3
+      type(motion_t) :: now                      !< the motion found last
+      type(motion_t) :: last                     !< the one that is followed
+      type(motion_t) :: before                   !< the one before, where the order is 3
       integer :: determinant_now = 0, determinant = 0
-      real(wp), allocatable :: drive_values(:, :)     !< (3, drives) value, rate, second rate
+      real(wp), allocatable :: drive_values(:, :) !< (3, drives) value, rate, acceleration
       logical :: has_missed = .false.            !< the assembly meant at an earlier instant was not found
       integer :: method = 0, order = own_predictor
       real(wp) :: tolerance = 0.0_wp
-   end type dense_t
+   contains
+      procedure :: solve
+      procedure :: accept
+      procedure :: get_motion
+      procedure :: get_link_flags
+      procedure :: get_driven_links
+      procedure :: checkpoint
+      procedure :: restore
+      procedure :: followed_position
+   end type dense_engine_t
 
-   !> All that depends on the way so far: the motion that is followed, and that found last. No workspace.
-   type :: dense_checkpoint_t
+   !> The motion that is followed, and that found last.
+   type, extends(engine_checkpoint_t) :: place_t
       type(motion_t) :: last, before, now
       integer :: determinant = 0, determinant_now = 0
-   end type dense_checkpoint_t
+   end type place_t
 
 contains
 
-   !> Ready for the first instant of `m`, whose equations are as many as its unknowns.
-   function new_dense(m) result(e)
+   !> Ready for the first instant of `m`, whose equations are as many as its unknowns. METHOD MATRIX follows under the
+   !> same guard but has no certificate: its iteration arrives at some instants of a motion and not at others.
+   subroutine make_dense_engine(e, m)
+      type(dense_engine_t), intent(out) :: e
       type(mechanism_t), intent(in) :: m
-      type(dense_t) :: e
 
       e%system = new_system(m)
+      e%length = e%system%length
+      e%is_certified = m%method == method_dense
       e%pose = new_pose(e%system, m)
-      e%blocks = by_blocks(m)
+      e%by_blocks = by_blocks(m)
       e%coordinates = new_coordinates(e%system)
       e%estimated = e%pose%q
       e%start = e%estimated
@@ -82,12 +96,11 @@ contains
       e%method = m%method
       e%order = m%predictor
       e%tolerance = m%tolerance
-   end function new_dense
+   end subroutine make_dense_engine
 
-   !> Seeks the motion at `t`, from the last one kept (`follows`) or from the deck's. `c`: how it ended,
-   !> `correction`: the largest change of the predicted coordinates, `same`: the determinant has kept its sign.
-   subroutine solve_dense(e, t, follows, c, correction, same)
-      type(dense_t), intent(inout) :: e
+   !> See `engine`.
+   subroutine solve(e, t, follows, c, correction, same)
+      class(dense_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       logical, intent(in) :: follows
       type(convergence_t), intent(out) :: c
@@ -108,21 +121,19 @@ contains
       if (.not. (same .and. is_solved(c))) return
       call solve_rates(e, c)
       if (follows .and. .not. c%singular) same = e%determinant_now == e%determinant
-   end subroutine solve_dense
+   end subroutine solve
 
    !> The position by the method's iteration from `start` (3, links), and how far it is from there.
    subroutine search(e, start, c)
-      type(dense_t), intent(inout) :: e
+      class(dense_engine_t), intent(inout) :: e
       real(wp), intent(in) :: start(:, :)
       type(convergence_t), intent(out) :: c
 
       e%pose%q = start
       if (e%method == method_matrix) then
-         call solve_matrix(e%system, e%drive_values(1, :), e%tolerance, e%pose, e%factors, c, &
-            reach)
+         call solve_matrix(e%system, e%drive_values(1, :), e%tolerance, e%pose, e%factors, c, reach)
       else
-         call solve_newton(e%system, e%drive_values(1, :), e%tolerance, e%pose, e%factors, c, &
-            reach)
+         call solve_newton(e%system, e%drive_values(1, :), e%tolerance, e%pose, e%factors, c, reach)
       end if
       if (.not. is_solved(c)) return
       c%change = distance(e%system, e%coordinates, e%pose%q, start)
@@ -132,7 +143,7 @@ contains
    !> Condition and sign of the Jacobian at the position found, and how certain it is that the root is the one that was
    !> predicted.
    subroutine judge(e, c)
-      type(dense_t), intent(inout) :: e
+      class(dense_engine_t), intent(inout) :: e
       type(convergence_t), intent(inout) :: c
       real(wp) :: k
 
@@ -141,28 +152,16 @@ contains
       c%determinant = determinant_sign(e%factors)
       c%singular = c%reciprocal_condition <= min_condition
       if (c%singular) return
-      c%kantorovich_ratio = kantorovich_bound(e, c)
+      c%kantorovich_ratio = kantorovich_bound(e%system, e%coordinates, e%pose, c%change, &
+         c%reciprocal_condition*e%factors%norm)
       if (c%kantorovich_ratio <= small_kantorovich_ratio) return
       call kantorovich(e%system, e%coordinates, e%factors, e%pose, k)
       c%kantorovich_ratio = c%change*k
    end subroutine judge
 
-   !> More than the doubt, from the condition alone: no row sum of the inverse is more than n times its largest column
-   !> sum, of which DGECON tells a third or more, and a slot has two rows.
-   real(wp) function kantorovich_bound(e, c) result(kantorovich_ratio)
-      type(dense_t), intent(in) :: e
-      type(convergence_t), intent(in) :: c
-
-      kantorovich_ratio = 0.0_wp
-      if (c%change <= 0.0_wp) return
-      kantorovich_ratio = 6.0_wp*c%change*real(e%system%n, wp)*maxval(jacobian_lipschitz(e%system, e%coordinates, &
-         e%pose)) &
-         /(c%reciprocal_condition*e%factors%norm)
-   end function kantorovich_bound
-
    !> The first position, from the deck's estimate.
    subroutine search_first(e, t, c)
-      type(dense_t), intent(inout) :: e
+      class(dense_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       type(convergence_t), intent(out) :: c
       real(wp) :: meant(3, size(e%estimated, 2)), unit(3, size(e%estimated, 2))
@@ -170,7 +169,7 @@ contains
 
       unit = spread([e%system%length, e%system%length, 1.0_wp], 2, size(unit, 2))
       e%start = e%estimated*unit
-      call find_start(e%blocks, t, e%start, meant, is_known)
+      call find_start(e%by_blocks, t, e%start, meant, is_known)
       e%start = e%start/unit
       call search(e, e%start, c)
       if (is_solved(c) .and. .not. c%singular .and. c%kantorovich_ratio <= certain) return
@@ -186,7 +185,7 @@ contains
 
    !> Is the position found the assembly `meant` (3, links)? If so it gets its turns.
    subroutine compare(e, meant, c)
-      type(dense_t), intent(inout) :: e
+      class(dense_engine_t), intent(inout) :: e
       real(wp), intent(in) :: meant(:, :)
       type(convergence_t), intent(inout) :: c
       real(wp) :: apart, k
@@ -203,7 +202,7 @@ contains
 
    !> Velocities and accelerations at the position found, where the Jacobian has an inverse.
    subroutine solve_rates(e, c)
-      type(dense_t), intent(inout) :: e
+      class(dense_engine_t), intent(inout) :: e
       type(convergence_t), intent(inout) :: c
 
       e%now%position = e%pose%q
@@ -213,9 +212,45 @@ contains
       call solve_acceleration(e%system, e%factors, e%pose, e%drive_values(3, :), e%now%velocity, e%now%acceleration)
    end subroutine solve_rates
 
-   !> Makes the motion found last the one that is followed.
-   pure subroutine accept_dense(e)
-      type(dense_t), intent(inout) :: e
+   !> Velocities `v` (3, links) from the drives' rates `rate` (drives), by the factors `f` of the Jacobian:
+   !> J v = f' (21), with the dependence of A' on the unknown velocities moved to the left; f' is zero in pairs' rows.
+   subroutine solve_velocity(s, f, rate, v)
+      type(system_t), intent(in) :: s
+      type(factors_t), intent(in) :: f
+      real(wp), intent(in) :: rate(:)
+      real(wp), intent(out) :: v(:, :)
+      real(wp) :: b(s%n)
+
+      b = 0.0_wp
+      b(s%n - size(rate) + 1:) = rate
+      call solve_factored(f, b)
+      v = 0.0_wp
+      call add_to_links(s, b, v)
+   end subroutine solve_velocity
+
+   !> Accelerations `a` (3, links) from those of the drives, `acceleration` (drives), and the velocities `v` (3, links):
+   !> J a = f'' - gamma(q, v) (22), gamma the acceleration remainder.
+   subroutine solve_acceleration(s, f, p, acceleration, v, a)
+      type(system_t), intent(in) :: s
+      type(factors_t), intent(in) :: f
+      type(pose_t), intent(in) :: p
+      real(wp), intent(in) :: acceleration(:), v(:, :)
+      real(wp), intent(out) :: a(:, :)
+      real(wp) :: b(s%n)
+
+      call remainder(s, p, v, b)
+      b = -b
+      associate (last => b(s%n - size(acceleration) + 1:))
+         last = last + acceleration
+      end associate
+      call solve_factored(f, b)
+      a = 0.0_wp
+      call add_to_links(s, b, a)
+   end subroutine solve_acceleration
+
+   !> See `engine`.
+   subroutine accept(e)
+      class(dense_engine_t), intent(inout) :: e
 
       if (e%order == 3 .and. e%determinant /= 0) then
          e%before = e%last
@@ -223,40 +258,48 @@ contains
       end if
       e%last = e%now
       e%determinant = e%determinant_now
-   end subroutine accept_dense
+   end subroutine accept
 
-   !> Notes in `c` all that depends on the way so far.
-   pure subroutine checkpoint_dense(e, c)
-      type(dense_t), intent(in) :: e
-      type(dense_checkpoint_t), intent(inout) :: c
+   !> See `engine`.
+   subroutine checkpoint(e, c)
+      class(dense_engine_t), intent(in) :: e
+      class(engine_checkpoint_t), allocatable, intent(inout) :: c
 
-      c%last = e%last
-      c%before = e%before
-      c%determinant = e%determinant
-      c%now = e%now
-      c%determinant_now = e%determinant_now
-   end subroutine checkpoint_dense
+      if (.not. allocated(c)) allocate (place_t :: c)
+      select type (c)
+      type is (place_t)
+         c%last = e%last
+         c%before = e%before
+         c%determinant = e%determinant
+         c%now = e%now
+         c%determinant_now = e%determinant_now
+      end select
+   end subroutine checkpoint
 
-   !> Makes the motion that was followed at the checkpoint `c` the one that is followed, and what was found last there
-   !> what was found last; `keeps_found`: that stays as it is now.
-   pure subroutine restore_dense(e, c, keeps_found)
-      type(dense_t), intent(inout) :: e
-      type(dense_checkpoint_t), intent(in) :: c
+   !> See `engine`.
+   subroutine restore(e, c, keeps_found)
+      class(dense_engine_t), intent(inout) :: e
+      class(engine_checkpoint_t), intent(in) :: c
       logical, intent(in) :: keeps_found
 
-      e%last = c%last
-      e%before = c%before
-      e%determinant = c%determinant
-      if (keeps_found) return
-      e%now = c%now
-      e%determinant_now = c%determinant_now
-   end subroutine restore_dense
+      select type (c)
+      type is (place_t)
+         e%last = c%last
+         e%before = c%before
+         e%determinant = c%determinant
+         if (keeps_found) return
+         e%now = c%now
+         e%determinant_now = c%determinant_now
+      end select
+   end subroutine restore
 
-   !> The motion found last, in the deck's units.
-   pure subroutine get_dense_motion(e, found)
-      type(dense_t), intent(in) :: e
+   !> See `engine`; the range of the results is not looked at.
+   subroutine get_motion(e, found, finite)
+      class(dense_engine_t), intent(in) :: e
       type(motion_t), intent(inout) :: found
+      logical, intent(out) :: finite
 
+      finite = .false.
       found%origin = e%system%origin
       found%position = e%now%position
       found%velocity = e%now%velocity
@@ -264,12 +307,52 @@ contains
       found%position(:2, :) = e%system%length*found%position(:2, :)
       found%velocity(:2, :) = e%system%length*found%velocity(:2, :)
       found%acceleration(:2, :) = e%system%length*found%acceleration(:2, :)
-   end subroutine get_dense_motion
+   end subroutine get_motion
+
+   !> The position (3, links) that is followed, in the deck's unit from the origin of the plane.
+   pure function followed_position(e) result(q)
+      class(dense_engine_t), intent(in) :: e
+      real(wp) :: q(3, size(e%last%position, 2))
+
+      q = e%last%position*spread([e%system%length, e%system%length, 1.0_wp], 2, size(q, 2))
+   end function followed_position
+
+   !> See `engine`. There is one Jacobian for all links: without its inverse the links are known that drives alone move.
+   subroutine get_link_flags(e, found)
+      class(dense_engine_t), intent(inout) :: e
+      type(motion_t), intent(inout) :: found
+      type(motion_t) :: driven
+      integer :: link
+
+      driven = found
+      call e%get_driven_links(found%t, driven)
+      if (.not. allocated(driven%link_known)) return
+      found%link_known = merge(2, 0, driven%link_known == 2)
+      found%link_mark = merge(mark_none, found%mark, driven%link_known == 2)
+      do link = 1, size(driven%link_known)
+         if (driven%link_known(link) < 2) cycle
+         found%velocity(:, link) = driven%velocity(:, link)
+         found%acceleration(:, link) = driven%acceleration(:, link)
+      end do
+   end subroutine get_link_flags
+
+   !> See `engine`.
+   subroutine get_driven_links(e, t, found)
+      class(dense_engine_t), intent(inout) :: e
+      real(wp), intent(in) :: t
+      type(motion_t), intent(inout) :: found
+
+      if (.not. allocated(e%blocks)) then
+         allocate (e%blocks)
+         call make_block_engine(e%blocks, e%by_blocks)
+      end if
+      call get_driven_motion(e%blocks, t, found)
+   end subroutine get_driven_links
 
    !> The start at `t` (3, links): the state before, corrected through its velocity and acceleration, or by the order
    !> that is asked for.
    pure function continued(e, t) result(q)
-      type(dense_t), intent(in) :: e
+      class(dense_engine_t), intent(in) :: e
       real(wp), intent(in) :: t
       real(wp) :: q(3, size(e%last%position, 2)), w(3)
 

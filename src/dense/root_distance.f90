@@ -4,7 +4,7 @@
 !> Newton and Kantorovich, row by row. Two positions z and z + d with the same values of the drives have J d = -R, with
 !> J the Jacobian at z and R_k what row k holds beyond its linear part, at most L_k |d|^2/2. Rows of angles alone are
 !> linear: R is 0 there, and links that they tie together turn by the same angle. So
-!>    revolute pair        L = |u| + |w|      arms of the links whose angle is free
+!>    revolute pair        L = |u| + |w|      body vectors of links whose angle is free
 !>    X, Y drive           L = |u|
 !>    (9), SLIDE drive     L = 2 + |x_i - x_j|, if the guide's angle is free, otherwise 0
 !> and |d| needs to hold only what these depend on: free angles, and x_i - x_j of prismatic pairs whose guide turns. For
@@ -18,7 +18,7 @@ module root_distance
    use pose, only: system_t, pose_t
    implicit none
    private
-   public :: coordinates_t, new_coordinates, jacobian_lipschitz, kantorovich, distance
+   public :: coordinates_t, new_coordinates, jacobian_lipschitz, kantorovich, kantorovich_bound, distance
 
    !> What the rows are not linear in.
    type :: coordinates_t
@@ -148,6 +148,19 @@ contains
          k = max(k, hypot(row_sum(s, g(:, m - 1), bound), row_sum(s, g(:, m), bound)))
       end do
    end subroutine kantorovich
+
+   !> More than K times `change`, from the condition alone: no row sum of the inverse is more than n times its largest
+   !> column sum, of which DGECON tells a third or more, and a slot has two rows. `condition`: the reciprocal condition
+   !> times the Jacobian's norm.
+   pure real(wp) function kantorovich_bound(s, c, p, change, condition) result(ratio)
+      type(system_t), intent(in) :: s
+      type(coordinates_t), intent(in) :: c
+      type(pose_t), intent(in) :: p
+      real(wp), intent(in) :: change, condition
+
+      ratio = 0.0_wp
+      if (change > 0.0_wp) ratio = 6.0_wp*change*real(s%n, wp)*maxval(jacobian_lipschitz(s, c, p))/condition
+   end function kantorovich_bound
 
    !> The coordinates as columns `g` (n, angles + 2 slots): each is g . x.
    pure subroutine set_coordinates(s, c, g)

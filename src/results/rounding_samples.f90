@@ -7,6 +7,8 @@ module rounding_samples
    use scales, only: characteristic_length, characteristic_rate
    use convergence, only: convergence_t, is_solved, ended_inconsistent
    use block_solver, only: solve_block
+   use engine, only: engine_t
+   use block_method, only: block_method_t
    use block_engine, only: block_engine_t, make_block_engine, set_drive_values, get_blocks_motion, know_links
    use perturbed_deck, only: sample_count, perturbed, perturbed_instant
    use error_estimate, only: error_estimate_t, find_estimates, unusable
@@ -40,33 +42,51 @@ contains
       s%rate = characteristic_rate(m, s%length)
    end subroutine make_estimates
 
-   !> How far the motion `q` of `m` is known, which the blocks `e` have found or, where they are not allocated, another
-   !> method, by a matrix of the reciprocal condition `rcond`. `always`: also where no digit of a table is in doubt.
-   subroutine take_samples(s, m, e, rcond, q, always, found)
+   !> How far the motion `q` of `m` is known, which the `engine` has found, by a matrix of the reciprocal condition
+   !> `rcond`. `always`: also where no digit of a table is in doubt.
+   subroutine take_samples(s, m, engine, rcond, q, always, found)
       type(samples_t), intent(inout) :: s
       type(mechanism_t), intent(in) :: m
-      type(block_engine_t), allocatable, intent(in) :: e
+      class(engine_t), intent(in) :: engine
       real(wp), intent(in) :: rcond
       type(motion_t), intent(in) :: q
       logical, intent(in) :: always
       type(error_estimate_t), intent(inout) :: found
+
+      select type (engine)
+      class is (block_method_t)
+         call take(s, m, rcond, q, always, found, engine)
+      class default
+         call take(s, m, rcond, q, always, found)
+      end select
+   end subroutine take_samples
+
+   !> The same; `e` is present where blocks have found the motion.
+   subroutine take(s, m, rcond, q, always, found, e)
+      type(samples_t), intent(inout) :: s
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: rcond
+      type(motion_t), intent(in) :: q
+      logical, intent(in) :: always
+      type(error_estimate_t), intent(inout) :: found
+      class(block_method_t), intent(in), optional :: e
       integer :: k
 
       found%taken = .false.
       found%asked = always
-      found%in_doubt = is_in_doubt(s, e, rcond, q)
+      found%in_doubt = is_in_doubt(s, rcond, q, e)
       if (q%known < 0 .or. .not. (always .or. found%in_doubt)) return
       if (.not. allocated(found%samples)) then
          allocate (found%samples(0:sample_count))
          found%samples(:) = new_motion(size(m%links))
       end if
-      call make_engines(s, m, e, q)
+      call make_engines(s, m, q, e)
       if (.not. s%engine(0)%blocks%solvable) return
       do k = 0, sample_count
          associate (u => s%engine(k)%state%u)
-            if (allocated(e)) then
+            if (present(e)) then
                ! The perturbed deck's unit may be the next power of two.
-               u%value = e%state%u%value*(slide_units(e)/slide_units(s%engine(k)))
+               call e%copy_values(s%engine(k))
             else
                u%value = s%engine(k)%estimated
             end if
@@ -76,25 +96,15 @@ contains
       end do
       found%taken = found%samples(0)%known /= unusable .and. any(found%samples(1:)%known /= unusable)
       if (found%taken) call find_estimates(m, s%length, found)
-   end subroutine take_samples
-
-   !> (0:unknowns) The unit of each slide in the deck's; 1 of an angle.
-   pure function slide_units(e) result(unit)
-      type(block_engine_t), intent(in) :: e
-      real(wp) :: unit(0:e%blocks%unknowns)
-
-      unit = e%blocks%unit
-      unit(e%blocks%orientations + 1:) = unit(e%blocks%orientations + 1:)*e%length
-   end function slide_units
+   end subroutine take
 
    !> Some digit could be in doubt: a pivot is small, or a number large.
-   pure logical function is_in_doubt(s, e, rcond, q)
+   pure logical function is_in_doubt(s, rcond, q, e)
       type(samples_t), intent(in) :: s
-      type(block_engine_t), allocatable, intent(in) :: e
       real(wp), intent(in) :: rcond
       type(motion_t), intent(in) :: q
+      class(block_method_t), intent(in), optional :: e
       real(wp) :: size_of
-      integer :: k
 
       is_in_doubt = .false.
       if (q%known < 2) return
@@ -102,14 +112,12 @@ contains
       size_of = max(largest(q%position, s%length), maxval(abs(q%origin))/s%length, &
          largest(q%velocity, s%length)/s%rate, largest(q%acceleration, s%length)/s%rate**2)
       is_in_doubt = size_of > safe_size
-      if (.not. allocated(e)) is_in_doubt = is_in_doubt .or. rcond < safe_condition
-      if (is_in_doubt .or. .not. allocated(e)) return
-      do k = 1, size(e%needed)
-         associate (i => e%needed(k))
-            if (.not. e%blocks%list(i)%direct) is_in_doubt = is_in_doubt .or. &
-               e%blocks%list(i)%lipschitz*max(1.0_wp, size_of) > safe_growth*min(1.0_wp, e%pivot_now(i))**2
-         end associate
-      end do
+      if (is_in_doubt) return
+      if (present(e)) then
+         is_in_doubt = e%roundings_grow(size_of, safe_growth)
+      else
+         is_in_doubt = rcond < safe_condition
+      end if
    end function is_in_doubt
 
    !> The largest coordinate, lengths in units of `length`.
@@ -120,19 +128,19 @@ contains
    end function largest
 
    !> The engines of `m`, for the angles and slides of `e`; without it they are those of the position `q`.
-   subroutine make_engines(s, m, e, q)
+   subroutine make_engines(s, m, q, e)
       type(samples_t), intent(inout) :: s
       type(mechanism_t), intent(in) :: m
-      type(block_engine_t), allocatable, intent(in) :: e
       type(motion_t), intent(in) :: q
+      class(block_method_t), intent(in), optional :: e
       type(mechanism_t) :: deck
       integer :: k
 
-      if (allocated(e) .and. allocated(s%engine)) return
+      if (present(e) .and. allocated(s%engine)) return
       if (allocated(s%engine)) deallocate (s%engine)
       allocate (s%engine(0:sample_count))
       deck = m
-      if (.not. allocated(e)) call place_links(deck, q%position)
+      if (.not. present(e)) call place_links(deck, q%position)
       do k = 0, sample_count
          call make_block_engine(s%engine(k), perturbed(deck, k))
       end do

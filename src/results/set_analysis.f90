@@ -109,7 +109,7 @@ contains
          integer, intent(in) :: c
 
          associate (a => s%list(c))
-            call take_samples(s%samples(c), one, a%engine%blocks, a%convergence%reciprocal_condition, &
+            call take_samples(s%samples(c), one, a%engine, a%convergence%reciprocal_condition, &
                s%now%motions(c), always, s%now%kantorovich_ratios(c))
          end associate
       end subroutine sample

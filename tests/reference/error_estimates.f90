@@ -83,7 +83,7 @@ contains
       call make_estimates(samples, m)
       do k = 0, instant_count(m) - 1
          call advance(a, instant(m, k), q)
-         call take_samples(samples, m, a%engine%blocks, a%convergence%reciprocal_condition, q, .true., doubt)
+         call take_samples(samples, m, a%engine, a%convergence%reciprocal_condition, q, .true., doubt)
          if (q%known == 2) call weigh_instant(m, q, doubt, closed_form(name, m%set_number, real(q%t, qp)), tally)
       end do
    end subroutine weigh_set

@@ -1,5 +1,6 @@
 # No object that holds factors of KLU is copied by assignment, or is a function's result: both would share handles.
-# Two passes over the same Fortran files (awk -f copies.awk pass=1 FILES pass=2 FILES): the types and their components;
+# Two passes over the same Fortran files (awk -f copies.awk pass=1 FILES pass=2 FILES): the types and their components,
+# of a type or a class, for a class of which one extension holds factors may hold them too;
 # then assignments to whole variables or components of a type that holds a klu_t, directly or in a component, and
 # functions with such results, one a line; at the end the types, "holds: TYPE".
 function type_of(line) { sub(/^ *type\(/, "", line); sub(/\).*$/, "", line); return line }
@@ -24,7 +25,8 @@ pass == 1 && /^ *type(, *[a-z_, ()]*)? *:: *[a-z_0-9]+ *$/ {
    }
 }
 pass == 1 && /^ *end type/ { inside = "" }
-pass == 1 && inside != "" && /^ *type\(.*::/ {
+pass == 1 && inside != "" && /^ *(type|class)\(.*::/ {
+   sub(/^ *class/, "type")
    holds[inside] = holds[inside] " " type_of($0)
    count = split(names_of($0), list, ",")
    for (i = 1; i <= count; i++) { component[inside " " list[i]] = type_of($0); known[list[i] " " type_of($0)] = 1 }
@@ -36,7 +38,10 @@ pass == 2 && !ready {
    do {
       grown = 0
       for (one in holds) {
-         if (one in held) continue
+         if (one in held) {
+            if ((one in parent) && !(parent[one] in held)) { held[parent[one]] = 1; grown = 1 }
+            continue
+         }
          count = split(holds[one], list, " ")
          for (i = 1; i <= count; i++) if (list[i] in held) { held[one] = 1; grown = 1 }
       }

@@ -51,7 +51,7 @@ contains
          if (k == 1 .and. (q%mark /= mark_none .or. r%mark /= mark_none)) exit
          if (q%mark == mark_none .and. r%mark == mark_none) then
             c%solved = c%solved + 1
-            share = apart(q, r, wanted_links(m), dense%engine%dense%system%length, &
+            share = apart(q, r, wanted_links(m), dense%engine%length, &
                dense%convergence%reciprocal_condition)
             if (maxval(share) > maxval(c%share)) then
                c%time = t(k)

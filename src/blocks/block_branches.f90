@@ -1,0 +1,188 @@
+!> Branches of a block's motion that cross at a change point: how a change point is known, the position at it, and the
+!> other branch beyond it.
+!>
+!> Just beyond a change point, at the position x on the branch that goes on smoothly, the Jacobian J has one small
+!> singular value s, with w and k on its left and right: to second order along k
+!>    w . r(x + a k) = a s + a^2 q/2,   q = w . r''[k, k],
+!> so that the other branch is at a = -2 s/q, and there the determinant has the sign that it had before.
+!>
+!> At a change point itself the equations determine the position to the root of the rounding only, 1E-8; the branch that
+!> is followed goes through it smoothly, so that three motions before it give it in full.
+module block_branches
+   use kinds, only: wp
+   use diagnostics, only: diagnostic_t, new_diagnostic, diagnostic_change, diagnostic_dead_end
+   use convergence, only: convergence_t, is_solved
+   use predictor, only: predict, is_even
+   use block_state, only: set_values
+   use block_solver, only: solve_block
+   use block_rank, only: min_direction, residual_of, gauss_newton_step
+   use block_engine, only: block_engine_t, solve_again, set_drive_values
+   use block_diagnostics, only: links_of
+   use branch_requests, only: branch_requests_t, are_there, decide
+   implicit none
+   private
+   public :: pass, extrapolate
+
+   !> Over a substep this short, in radians and lengths, a determinant that changes its sign although the prediction
+   !> was right to so small a part of the substep indicates a change point. Circuits that pass each other at the
+   !> distance d are told from one that crosses another where d^2 is above the product of the two, 1E-14.
+   real(wp), parameter :: short_step = max(1.0e-4_wp, 0.75_wp*sqrt(sqrt(epsilon(1.0_wp))))
+   real(wp), parameter :: right_part = max(1.0e-6_wp, 0.7_wp*epsilon(1.0_wp)**0.375_wp), max_wrong = 1.0e-2_wp
+   real(wp), parameter :: rounding = 500.0_wp*epsilon(1.0_wp)
+   !> The step of the second difference, and the largest distance at which the other branch is looked for.
+   real(wp), parameter :: trial = max(1.0e-4_wp, sqrt(sqrt(epsilon(1.0_wp)))), furthest = 0.05_wp
+   !> Redundant equations are satisfied there to more than the second order in the distance.
+   real(wp), parameter :: max_closure_part = 0.01_wp
+   !> The position found from the equations, and that extrapolated, are the same where they differ by less.
+   real(wp), parameter :: same_place = 64.0_wp*sqrt(epsilon(1.0_wp))
+
+contains
+
+   !> Passes the change points before `t`, each as the BRANCH cards have it: `requests`. `correction`: of the prediction
+   !> of the motion found last. `list`: a diagnostic for each. `passed`: the motion found last, with its record `c`, is
+   !> that which goes on; otherwise the list tells why there is none, or is empty where a determinant has changed its
+   !> sign without a change point.
+   subroutine pass(e, t, correction, requests, c, list, passed)
+      type(block_engine_t), intent(inout) :: e
+      real(wp), intent(in) :: t, correction
+      type(branch_requests_t), intent(inout) :: requests
+      type(convergence_t), intent(inout) :: c
+      type(diagnostic_t), allocatable, intent(out) :: list(:)
+      logical, intent(out) :: passed
+      type(diagnostic_t) :: r
+      logical :: crossed(size(e%crossed))
+      integer :: k
+
+      allocate (list(0))
+      crossed = e%crossed
+      passed = crosses(e, correction)
+      do k = 1, size(e%moving)
+         if (.not. passed) return
+         associate (i => e%moving(k), before => e%history%t(e%history%place(0)))
+            if (.not. crossed(i)) cycle
+            r = change_point(e, i, t)
+            if (are_there(requests)) then
+               call decide(requests, i, links_of(e, i), before, t, r%t, r%other)
+               if (r%other) call take_other_branch(e, i, c, passed)
+            end if
+            if (.not. passed) r%kind = diagnostic_dead_end
+            list = [list, r]
+         end associate
+      end do
+   end subroutine pass
+
+   !> The motion found last lies beyond change points, on the branch that goes on smoothly; `correction`: of its
+   !> prediction, which rounding has made wrong by lipschitz/pivot^2, as it does the rates so close to it.
+   pure logical function crosses(e, correction)
+      type(block_engine_t), intent(in) :: e
+      real(wp), intent(in) :: correction
+      real(wp) :: allowed
+      integer :: i
+
+      crosses = e%change <= short_step
+      do i = 1, size(e%crossed)
+         if (.not. (e%crossed(i) .and. crosses)) cycle
+         allowed = right_part + rounding*e%blocks%list(i)%lipschitz/e%pivot_of(i)**2
+         crosses = correction <= min(allowed, max_wrong)*e%change
+      end do
+   end function crosses
+
+   !> Where block `i` has passed a change point before `t`: the least pivot goes through zero in proportion.
+   type(diagnostic_t) function change_point(e, i, t) result(r)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i
+      real(wp), intent(in) :: t
+
+      r = new_diagnostic(diagnostic_change, links_of(e, i))
+      associate (before => e%history%t(e%history%place(0)), a => e%pivot_of(i), b => e%pivot_now(i))
+         r%t = before + (t - before)*(a/(a + b))
+      end associate
+   end function change_point
+
+   !> Puts block `i` on its other branch, and what builds on it after it; `c`: how that ended, `found`: it is there. The
+   !> motions before are no guide to what comes.
+   subroutine take_other_branch(e, i, c, found)
+      type(block_engine_t), intent(inout) :: e
+      integer, intent(in) :: i
+      type(convergence_t), intent(inout) :: c
+      logical, intent(out) :: found
+      real(wp) :: direction(e%blocks%list(i)%shape%n), left(e%blocks%list(i)%shape%rows), x(e%blocks%list(i)%shape%n)
+      real(wp) :: least, curvature, away, correction
+      logical :: same, crossed(size(e%crossed))
+
+      crossed = e%crossed
+      x = e%state%u(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))%value
+      call min_direction(e%blocks, i, e%state, least, left, direction)
+      curvature = second_difference()
+      found = abs(curvature)*furthest > 2.0_wp*least
+      if (.not. found) return
+      away = -2.0_wp*least/curvature
+      call set_values(e%blocks, i, x + away*direction, e%state)
+      call solve_again(e, c, correction, same)
+      crossed(i) = .false.
+      same = .not. any(e%crossed .and. .not. crossed)
+      found = is_solved(c) .and. same .and. .not. c%singular .and. correction <= 0.5_wp*abs(away) &
+         .and. c%closure_error <= max_closure_part*abs(curvature)*away**2
+      e%history%filled = 0
+
+   contains
+
+      !> w . r''[k, k]
+      real(wp) function second_difference() result(second)
+         real(wp), dimension(e%blocks%list(i)%shape%rows) :: ahead, here, behind
+
+         here = residual_of(e%blocks, i, x, e%state)
+         ahead = residual_of(e%blocks, i, x + trial*direction, e%state)
+         behind = residual_of(e%blocks, i, x - trial*direction, e%state)
+         second = dot_product(left, ahead - here + (behind - here))/trial**2
+      end function second_difference
+   end subroutine take_other_branch
+
+   !> The position at the change point `t`: singular blocks are extrapolated from three motions at equal steps before
+   !> it. `list`: a diagnostic for each such block; none where their equations have another position, or where no block
+   !> is singular.
+   subroutine extrapolate(e, t, list)
+      type(block_engine_t), intent(inout) :: e
+      real(wp), intent(in) :: t
+      type(diagnostic_t), allocatable, intent(out) :: list(:)
+      type(convergence_t) :: c
+      type(diagnostic_t) :: r
+      real(wp), allocatable :: x(:)
+      real(wp) :: change, far
+      logical :: smooth, singular(size(e%is_singular))
+      integer :: k
+
+      allocate (list(0))
+      singular = .false.
+      if (.not. is_even(e%history, t - e%history%t(e%history%place(0)))) return
+      call set_drive_values(e, t)
+      call predict(e%history, t, e%state%u, change)
+      smooth = .true.
+      do k = 1, size(e%moving)
+         associate (i => e%moving(k), u => e%blocks%unknown)
+            x = e%state%u(u(e%blocks%list(i)%first:e%blocks%list(i)%last))%value
+            call solve_block(e%blocks, i, e%tolerance, e%work, e%state, c, change)
+            if (.not. (smooth .and. is_solved(c))) return
+            if (e%blocks%list(i)%direct) cycle
+            e%is_singular(i) = c%singular
+            if (.not. c%singular) cycle
+            singular(i) = .true.
+            associate (found => e%state%u(u(e%blocks%list(i)%first:e%blocks%list(i)%last)))
+               smooth = maxval(abs(found%value - x)) <= same_place
+               ! Off the direction that the equations leave undetermined they are exact.
+               call set_values(e%blocks, i, x, e%state)
+               call gauss_newton_step(e%blocks, i, e%state, far)
+               smooth = smooth .and. maxval(abs(found%value - x)) <= same_place
+            end associate
+         end associate
+      end do
+      if (.not. smooth) return
+      do k = 1, size(singular)
+         if (.not. singular(k)) cycle
+         r = new_diagnostic(diagnostic_change, links_of(e, k))
+         r%t = t
+         r%here = .true.
+         list = [list, r]
+      end do
+   end subroutine extrapolate
+end module block_branches
