@@ -7,7 +7,7 @@
 !> leave its own straight way by more: round a cusp there is another assembly at the same values.
 module drive_excursion
    use kinds, only: wp
-   use mechanism, only: mechanism_t
+   use mechanism, only: find_instants, mechanism_t
    use scales, only: solver_length, is_length
    use predictor, only: largest_change
    use drives, only: law_t, new_law, drive_motion
@@ -54,18 +54,6 @@ contains
       p%longest = reciprocal(largest(p, 1, p%first, p%last))
       p%curve = largest(p, 2, p%first, p%last)
    end function new_drive_excursion
-
-   !> The `first` and the `last` of all instants of `m`; the other way round where there are none.
-   pure subroutine find_instants(m, first, last)
-      type(mechanism_t), intent(in) :: m
-      real(wp), intent(out) :: first, last
-
-      first = minval(m%at)
-      last = maxval(m%at)
-      if (m%steps < 0) return
-      first = min(first, m%t0, m%t1)
-      last = max(last, m%t0, m%t1)
-   end subroutine find_instants
 
    !> Of a part of a step from `t` on, what of it the drives allow at once.
    pure real(wp) function substep_allowed(p, t, substep) result(allowed)

@@ -1,47 +1,51 @@
-!> What there is to say of an instant beside its numbers, as data: the writers find the words.
+!> Diagnostics of an instant, beside its numbers, as data: results/ has their words.
 module diagnostics
    use kinds, only: wp
    implicit none
    private
    public :: diagnostic_t, new_diagnostic, max_links
    public :: diagnostic_inconsistent, diagnostic_limit, diagnostic_far_estimate, diagnostic_second, &
-      diagnostic_redundant, diagnostic_mobile, &
-      diagnostic_change, diagnostic_long, diagnostic_unused, diagnostic_dead_end, &
-      diagnostic_idle, diagnostic_repeated, diagnostic_method
+      diagnostic_redundant, diagnostic_mobile, diagnostic_change, diagnostic_long, diagnostic_unused, &
+      diagnostic_dead_end, diagnostic_idle, diagnostic_repeated, diagnostic_method
 
-   integer, parameter :: diagnostic_inconsistent = 1       !< an equation of `pair` or `drive` stays open by `value`
-   integer, parameter :: diagnostic_limit = 2 !< at `t`, where `drive` has `value`, the motion of `links` has its limit
-   integer, parameter :: diagnostic_far_estimate = 3 !< the rough position of links(1) was off by the angle `value`
-   integer, parameter :: diagnostic_second = 4     !< `links` could as well have been assembled in another way
-   integer, parameter :: diagnostic_redundant = 5  !< an equation of `pair` or `drive` could be spared
-   integer, parameter :: diagnostic_mobile = 6     !< `links` can move although the drives stand still
-   integer, parameter :: diagnostic_change = 7     !< at `t` two branches cross; `links` have gone on smoothly, or not
-   integer, parameter :: diagnostic_long = 8       !< the way from `t` would take too many parts
-   integer, parameter :: diagnostic_unused = 9     !< no change point was passed after `t`, as a BRANCH card has it
-   integer, parameter :: diagnostic_dead_end = 10  !< the other branch of `links` at `t` was not found
-   integer, parameter :: diagnostic_idle = 11      !< `drive` asks for what the pairs fix anyway
-   integer, parameter :: diagnostic_repeated = 12  !< `drive` asks for what others give already
-   integer, parameter :: diagnostic_method = 13    !< another method finds a position
+   !> The kinds of diagnostics, and the components that each uses.
+   enum, bind(c)
+      enumerator :: diagnostic_inconsistent = 1 !< an equation of `pair` or `drive` has the closure error `value`
+      enumerator :: diagnostic_limit            !< at `t`, where `drive` is `value`, the motion of `links` has its limit
+      enumerator :: diagnostic_far_estimate     !< the estimated angle of links(1) was off by `value`
+      enumerator :: diagnostic_second           !< another assembly of `links` is about as near
+      enumerator :: diagnostic_redundant        !< `equations` equations of `pair` or `drive` are redundant
+      enumerator :: diagnostic_mobile           !< `links` can move although no drive does
+      enumerator :: diagnostic_change           !< at `t` two branches cross; `other`: `links` took the other one
+      enumerator :: diagnostic_long             !< the step from `t` would need too many substeps
+      enumerator :: diagnostic_unused           !< no change point was passed after `t`, as a BRANCH card asks
+      enumerator :: diagnostic_dead_end         !< the other branch of `links` at `t` was not found
+      enumerator :: diagnostic_idle             !< the pairs already fix what `drive` drives
+      enumerator :: diagnostic_repeated         !< other drives already give what `drive` drives
+      enumerator :: diagnostic_method           !< another method finds a position
+   end enum
 
+   !> Links that a diagnostic can name.
    integer, parameter :: max_links = 6
 
-   !> Lengths in the deck's unit, angles in radians; 0 stands for no pair, drive or link.
+   !> One diagnostic. Lengths are in the deck's unit, angles in radians; 0 stands for no pair, drive or link.
    type :: diagnostic_t
-      integer :: kind = 0
-      integer :: pair = 0, drive = 0
-      integer :: links(max_links) = 0
+      integer :: kind = 0                      !< diagnostic_inconsistent, ...
+      integer :: pair = 0, drive = 0           !< their numbers in the set
+      integer :: links(max_links) = 0          !< the numbers of links
       integer :: more = 0                      !< links for which there is no room
-      integer :: equations = 1                 !< remark_redundant: how many of them
-      logical :: in_line = .false.             !< remark_limit: the two links are in line
-      logical :: other = .false.               !< remark_change: on the other branch; remark_method: at another assembly
-      logical :: here = .false.                !< remark_change: the instant is the change point
-      logical :: is_angle = .false.            !< of `value`
-      real(wp) :: value = 0.0_wp, t = 0.0_wp
+      integer :: equations = 1                 !< diagnostic_redundant: number of equations
+      logical :: in_line = .false.             !< diagnostic_limit: the two links are in line
+      logical :: other = .false.     !< diagnostic_change: on the other branch; diagnostic_method: at another assembly
+      logical :: here = .false.                !< diagnostic_change: the instant is the change point
+      logical :: is_angle = .false.            !< `value` is an angle, not a length
+      real(wp) :: value = 0.0_wp               !< closure error, angle or drive's value (length or rad)
+      real(wp) :: t = 0.0_wp                   !< time, in the deck's unit
    end type diagnostic_t
 
 contains
 
-   !> A remark on those links that are `.true.` in `chosen`, as many as there is room for.
+   !> A diagnostic of `kind` about the links (links) that are true in `chosen`, as many as there is room for.
    pure function new_diagnostic(kind, chosen) result(r)
       integer, intent(in) :: kind
       logical, intent(in) :: chosen(:)

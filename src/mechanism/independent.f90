@@ -1,28 +1,34 @@
-!> The independent mechanisms of a set: links that neither pairs nor drives join, but through the ground. What
-!> one of them does has nothing to do with the others: each is solved as if it were alone, in its own lengths.
+!> The independent mechanisms of a set: links that pairs or drives join, but not through the ground. None of them acts
+!> on another: each is solved as a set of its own, in its own numbers and its own lengths.
 module independent
-   use mechanism, only: mechanism_t, drive_angle, drive_x, drive_y, drive_relangle, request_link, request_point
-   use part_mechanism, only: part_t, mechanism_of
+   use mechanism, only: mechanism_t, drive_relangle, driven_kinds, request_link, request_point
    implicit none
    private
-   public :: parts_t, find_parts, part_of_links
+   public :: part_t, parts_t, find_parts, part_of_links
 
-   !> A set that is one mechanism has `count` 1, and nothing else is allocated.
+   !> The members of a part by their numbers in the whole set, increasing; the place in the list is the number within
+   !> the part. A BRANCH card without a link is for every part.
+   type :: part_t
+      integer, allocatable :: links(:), points(:), pairs(:), drives(:), requests(:), branch_requests(:)
+   end type part_t
+
+   !> The parts of a set. A set that is one mechanism has `count` 1, and nothing else is allocated.
    type :: parts_t
       integer :: count = 1
-      type(part_t), allocatable :: list(:)
-      integer, allocatable :: part(:), number(:)  !< (requests) the part, 0: the ground's; the number in its requests
+      type(part_t), allocatable :: list(:)        !< (count)
+      integer, allocatable :: part(:), number(:)  !< (requests) the part, 0: the ground's; the number within the part
    end type parts_t
 
-   !> Members by part: those of part k are member(first(k)), ..., member(first(k + 1) - 1), in the deck's order.
+   !> Numbers sorted by part: those of part k are member(first(k)), ..., member(first(k + 1) - 1), increasing.
    type :: sorted_t
       integer, allocatable :: first(:), member(:)
    end type sorted_t
 
 contains
 
-   !> The parts of the set `m`, and each as a set of its own: `own` (parts), of size 0 where there is one part. A part
-   !> has the ground links and their points that its pairs and drives touch. Time and memory in proportion to the deck.
+   !> Finds the parts `p` of the set `m`, and makes each a set of its own: `own` (parts), of size 0 where there is one
+   !> part. A part has the ground links, and their points, that its pairs and drives use. Time and memory grow in
+   !> proportion to the deck.
    subroutine find_parts(m, p, own)
       type(mechanism_t), intent(in) :: m
       type(parts_t), intent(out) :: p
@@ -38,7 +44,7 @@ contains
          return
       end if
       allocate (own(p%count), p%list(p%count))
-      p%part = [(part_of_request(m, link_part, i), i=1, size(m%requests))]
+      p%part = [(part_of(m, link_part, m%requests(i)%kind, m%requests(i)%subject), i=1, size(m%requests))]
       links = sorted(link_part, p%count)
       points = sorted(link_part(m%points%link), p%count)
       pairs = sorted([(part_of_pair(m, link_part, i), i=1, size(m%pairs))], p%count)
@@ -65,55 +71,72 @@ contains
    function part_of_links(m) result(part)
       type(mechanism_t), intent(in) :: m
       integer :: part(size(m%links))
-      integer :: above(size(m%links)), i, count
+      integer :: parent(size(m%links)), i, count
 
-      above = [(i, i=1, size(m%links))]
+      parent = [(i, i=1, size(m%links))]
       do i = 1, size(m%pairs)
-         call join(m, above, m%points(m%pairs(i)%point_i)%link, m%points(m%pairs(i)%point_j)%link)
+         call join(m, parent, m%points(m%pairs(i)%point_i)%link, m%points(m%pairs(i)%point_j)%link)
       end do
       do i = 1, size(m%drives)
-         if (m%drives(i)%kind == drive_relangle) call join(m, above, m%drives(i)%subject, m%drives(i)%second)
+         if (m%drives(i)%kind == drive_relangle) call join(m, parent, m%drives(i)%subject, m%drives(i)%second)
       end do
       part = 0
       count = 0
       do i = 1, size(m%links)
          if (m%links(i)%ground) cycle
-         if (above(i) == i) then
+         if (parent(i) == i) then
             count = count + 1
             part(i) = count
          else
-            ! What is above comes before.
-            part(i) = part(above(i))
+            ! The parent has the smaller number: its part is known.
+            part(i) = part(parent(i))
          end if
       end do
    end function part_of_links
 
-   !> Links `i` and `j` are in one part, unless one is the ground.
-   subroutine join(m, above, i, j)
+   !> Puts the links `i` and `j` into one part, unless one is the ground. `parent` (links): the trees of the parts so
+   !> far.
+   subroutine join(m, parent, i, j)
       type(mechanism_t), intent(in) :: m
-      integer, intent(inout) :: above(:)
+      integer, intent(inout) :: parent(:)
       integer, intent(in) :: i, j
       integer :: a, b
 
       if (m%links(i)%ground .or. m%links(j)%ground) return
-      call find_first(above, i, a)
-      call find_first(above, j, b)
-      above(max(a, b)) = min(a, b)
+      call find_root(parent, i, a)
+      call find_root(parent, j, b)
+      parent(max(a, b)) = min(a, b)
    end subroutine join
 
-   !> The `first` link of the part of link `i`, as `above` has it so far; the way there is made shorter.
-   pure subroutine find_first(above, i, first)
-      integer, intent(inout) :: above(:)
+   !> The `root` of the tree of link `i`. The path to it is halved.
+   pure subroutine find_root(parent, i, root)
+      integer, intent(inout) :: parent(:)
       integer, intent(in) :: i
-      integer, intent(out) :: first
+      integer, intent(out) :: root
 
-      first = i
-      do while (above(first) /= first)
-         above(first) = above(above(first))
-         first = above(first)
+      root = i
+      do while (parent(root) /= root)
+         parent(root) = parent(parent(root))
+         root = parent(root)
       end do
-   end subroutine find_first
+   end subroutine find_root
 
+   !> The part of the link, point or pair (`kind`: request_link, ...) number `i`; 0: the ground's.
+   pure integer function part_of(m, link_part, kind, i) result(part)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: link_part(:), kind, i
+
+      select case (kind)
+      case (request_link)
+         part = link_part(i)
+      case (request_point)
+         part = link_part(m%points(i)%link)
+      case default
+         part = part_of_pair(m, link_part, i)
+      end select
+   end function part_of
+
+   !> The part of pair number `i`.
    pure integer function part_of_pair(m, link_part, i) result(part)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: link_part(:), i
@@ -121,39 +144,16 @@ contains
       part = max(link_part(m%points(m%pairs(i)%point_i)%link), link_part(m%points(m%pairs(i)%point_j)%link))
    end function part_of_pair
 
+   !> The part of drive number `i`.
    pure integer function part_of_drive(m, link_part, i) result(part)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: link_part(:), i
 
       associate (d => m%drives(i))
-         select case (d%kind)
-         case (drive_angle)
-            part = link_part(d%subject)
-         case (drive_relangle)
-            part = max(link_part(d%subject), link_part(d%second))
-         case (drive_x, drive_y)
-            part = link_part(m%points(d%subject)%link)
-         case default
-            part = part_of_pair(m, link_part, d%subject)
-         end select
+         part = part_of(m, link_part, driven_kinds(d%kind), d%subject)
+         if (d%kind == drive_relangle) part = max(part, link_part(d%second))
       end associate
    end function part_of_drive
-
-   pure integer function part_of_request(m, link_part, i) result(part)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: link_part(:), i
-
-      associate (subject => m%requests(i)%subject)
-         select case (m%requests(i)%kind)
-         case (request_link)
-            part = link_part(subject)
-         case (request_point)
-            part = link_part(m%points(subject)%link)
-         case default
-            part = part_of_pair(m, link_part, subject)
-         end select
-      end associate
-   end function part_of_request
 
    !> The BRANCH cards of part `c`.
    pure function branch_requests_of(m, link_part, c) result(list)
@@ -172,7 +172,8 @@ contains
       end do
    end function branch_requests_of
 
-   !> Adds to `part` the ground links and their points that its pairs and drives touch. `seen`: all false.
+   !> Adds to `part` the ground links, and their points, that its pairs and drives use. `seen` (links, then points): all
+   !> false before and after.
    subroutine add_ground(m, seen, part)
       type(mechanism_t), intent(in) :: m
       logical, intent(inout) :: seen(:)
@@ -182,13 +183,13 @@ contains
 
       allocate (links(0), points(0))
       do i = 1, size(part%pairs)
-         call touch_point(m%pairs(part%pairs(i))%point_i)
-         call touch_point(m%pairs(part%pairs(i))%point_j)
+         call add_point(m%pairs(part%pairs(i))%point_i)
+         call add_point(m%pairs(part%pairs(i))%point_j)
       end do
       do i = 1, size(part%drives)
          associate (d => m%drives(part%drives(i)))
-            if (d%kind == drive_relangle) call touch_link(d%subject)
-            if (d%kind == drive_relangle) call touch_link(d%second)
+            if (d%kind == drive_relangle) call add_link(d%subject)
+            if (d%kind == drive_relangle) call add_link(d%second)
          end associate
       end do
       seen(links) = .false.
@@ -198,46 +199,50 @@ contains
 
    contains
 
-      subroutine touch_point(k)
+      !> Adds point `k` and its link, if they belong to the ground.
+      subroutine add_point(k)
          integer, intent(in) :: k
 
          if (.not. m%links(m%points(k)%link)%ground) return
-         call touch_link(m%points(k)%link)
+         call add_link(m%points(k)%link)
          if (.not. seen(size(m%links) + k)) points = [points, k]
          seen(size(m%links) + k) = .true.
-      end subroutine touch_point
+      end subroutine add_point
 
-      subroutine touch_link(k)
+      !> Adds link `k`, if it is ground.
+      subroutine add_link(k)
          integer, intent(in) :: k
 
-         if (m%links(k)%ground .and. .not. seen(k)) links = [links, k]
-         if (m%links(k)%ground) seen(k) = .true.
-      end subroutine touch_link
+         if (.not. m%links(k)%ground) return
+         if (.not. seen(k)) links = [links, k]
+         seen(k) = .true.
+      end subroutine add_link
    end subroutine add_ground
 
-   !> Members of each of so many parts, by the `part` of each.
+   !> The numbers 1, 2, ... of what has the parts `part`, sorted by part; those of part 0 are left out.
    pure function sorted(part, parts) result(s)
       integer, intent(in) :: part(:), parts
       type(sorted_t) :: s
-      integer :: fill(parts), i
+      integer :: next(0:parts), i
 
       allocate (s%first(parts + 1), s%member(count(part > 0)))
-      fill = 0
+      s%first = 0
       do i = 1, size(part)
-         if (part(i) > 0) fill(part(i)) = fill(part(i)) + 1
+         if (part(i) > 0) s%first(part(i) + 1) = s%first(part(i) + 1) + 1
       end do
       s%first(1) = 1
       do i = 1, parts
-         s%first(i + 1) = s%first(i) + fill(i)
+         s%first(i + 1) = s%first(i) + s%first(i + 1)
       end do
-      fill = s%first(:parts)
+      next(1:) = s%first(:parts)
       do i = 1, size(part)
          if (part(i) == 0) cycle
-         s%member(fill(part(i))) = i
-         fill(part(i)) = fill(part(i)) + 1
+         s%member(next(part(i))) = i
+         next(part(i)) = next(part(i)) + 1
       end do
    end function sorted
 
+   !> The numbers of part `c`.
    pure function members(s, c) result(list)
       type(sorted_t), intent(in) :: s
       integer, intent(in) :: c
@@ -246,11 +251,12 @@ contains
       list = s%member(s%first(c):s%first(c + 1) - 1)
    end function members
 
-   !> The increasing list `a` and the few numbers `b` in one increasing list.
+   !> The increasing list `a` and the few numbers `b`, in one increasing list.
    pure function merged(a, b) result(list)
       integer, intent(in) :: a(:), b(:)
       integer, allocatable :: list(:)
       integer :: rest(size(b)), i, k, n
+      logical :: from_a
 
       rest = b
       do i = 2, size(b)
@@ -265,13 +271,9 @@ contains
       i = 1
       k = 1
       do n = 1, size(list)
-         if (k > size(b)) then
-            list(n) = a(i)
-            i = i + 1
-         else if (i > size(a)) then
-            list(n) = rest(k)
-            k = k + 1
-         else if (a(i) < rest(k)) then
+         from_a = i <= size(a)
+         if (from_a .and. k <= size(b)) from_a = a(i) < rest(k)
+         if (from_a) then
             list(n) = a(i)
             i = i + 1
          else
@@ -280,4 +282,82 @@ contains
          end if
       end do
    end function merged
+
+   !> The `part` of `m` as a set of its own, without its cards.
+   function mechanism_of(m, part) result(own)
+      type(mechanism_t), intent(in) :: m
+      type(part_t), intent(in) :: part
+      type(mechanism_t) :: own
+      integer :: i
+
+      own%set_number = m%set_number
+      own%length_unit = m%length_unit
+      own%time_unit = m%time_unit
+      own%degrees = m%degrees
+      own%polish = m%polish
+      own%method = m%method
+      own%tolerance = m%tolerance
+      own%predictor = m%predictor
+      own%keeps_references = m%keeps_references
+      own%steps = m%steps
+      own%t0 = m%t0
+      own%t1 = m%t1
+      own%at = m%at
+      own%links = m%links(part%links)
+      own%points = m%points(part%points)
+      own%pairs = m%pairs(part%pairs)
+      own%drives = m%drives(part%drives)
+      own%requests = m%requests(part%requests)
+      allocate (own%branch_requests(size(part%branch_requests)))
+      do i = 1, size(part%branch_requests)
+         associate (request => own%branch_requests(i))
+            request = m%branch_requests(part%branch_requests(i))
+            if (request%link > 0) request%link = place_in(part%links, request%link)
+         end associate
+      end do
+      own%points%link = [(place_in(part%links, own%points(i)%link), i=1, size(own%points))]
+      own%pairs%point_i = [(place_in(part%points, own%pairs(i)%point_i), i=1, size(own%pairs))]
+      own%pairs%point_j = [(place_in(part%points, own%pairs(i)%point_j), i=1, size(own%pairs))]
+      do i = 1, size(own%drives)
+         associate (d => own%drives(i))
+            d%subject = number_in(part, driven_kinds(d%kind), d%subject)
+            if (d%kind == drive_relangle) d%second = place_in(part%links, d%second)
+         end associate
+      end do
+      do i = 1, size(own%requests)
+         own%requests(i)%subject = number_in(part, own%requests(i)%kind, own%requests(i)%subject)
+      end do
+   end function mechanism_of
+
+   !> The number within `part` of the link, point or pair (`kind`: request_link, ...) number `i` of the whole set.
+   pure integer function number_in(part, kind, i)
+      type(part_t), intent(in) :: part
+      integer, intent(in) :: kind, i
+
+      select case (kind)
+      case (request_link)
+         number_in = place_in(part%links, i)
+      case (request_point)
+         number_in = place_in(part%points, i)
+      case default
+         number_in = place_in(part%pairs, i)
+      end select
+   end function number_in
+
+   !> The place of `x` in the increasing `list`, by bisection.
+   pure integer function place_in(list, x) result(low)
+      integer, intent(in) :: list(:), x
+      integer :: high, middle
+
+      low = 1
+      high = size(list)
+      do while (low < high)
+         middle = (low + high)/2
+         if (list(middle) < x) then
+            low = middle + 1
+         else
+            high = middle
+         end if
+      end do
+   end function place_in
 end module independent

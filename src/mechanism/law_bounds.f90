@@ -1,30 +1,30 @@
-!> Bounds of a drive's law over an interval of time: of its value and of its first two derivatives.
+!> Bounds of the law of a drive over an interval of time: of its value and of its first two derivatives.
 !>
-!> True bounds, widened by the rounding of their own evaluation, and the extremes themselves for one polynomial, one
-!> harmonic, one power or one table; of a sum of these the bounds are added, and may be further apart than its extremes.
+!> The bounds are true: they are widened by the rounding errors of their own evaluation. For one polynomial, harmonic,
+!> power or table they are its extremes; for a sum they are the sums of these bounds, which may lie outside its
+!> extremes.
 module law_bounds
    use kinds, only: wp
    use constants, only: pi
    use mechanism, only: term_harmonic, term_power, term_table
-   use spline, only: spline_t, piece_at, piece_value
-   use drives, only: law_t, monomial
+   use drives, only: law_t, monomial, spline_t, piece_at, piece_value
    implicit none
    private
    public :: bounds_t, bounds_of
 
-   !> Of value, first and second derivative. -huge and huge: none.
    type :: bounds_t
+      !> Of the derivatives 0 to 2, in the drive's unit (length or rad) and the deck's unit of time. -huge, huge: no
+      !> bound.
       real(wp) :: low(0:2) = 0.0_wp, high(0:2) = 0.0_wp
    end type bounds_t
 
-   !> Roundings in a value, in parts of what it adds up: some ten operations.
+   !> Rounding error of a value relative to the sum of the absolute values of its terms: some ten operations.
    real(wp), parameter :: margin = 16.0_wp*epsilon(1.0_wp)
 
 contains
 
-   !> Bounds of `law` between the times `t1` and `t2`, in either order; in the drive's unit (length or rad) and time
-   !> unit. A table goes on beyond its ends as its last pieces do; a power that does not exist somewhere in between has
-   !> no bounds.
+   !> The bounds of `law` between the times `t1` and `t2`, in either order. A table continues beyond its ends with its
+   !> last pieces; a power that is not defined somewhere in the interval has no bounds.
    pure function bounds_of(law, t1, t2) result(b)
       type(law_t), intent(in) :: law
       real(wp), intent(in) :: t1, t2
@@ -47,53 +47,55 @@ contains
       end do
    end function bounds_of
 
-   !> c1 + c2 t + c3 t^2/2: at both ends, and where the rate is zero.
+   !> The bounds of c1 + c2 t + c3 t^2/2: from its values at both ends, and where its rate is zero.
    pure function polynomial(c, from, to) result(b)
       real(wp), intent(in) :: c(3), from, to
       type(bounds_t) :: b
       real(wp) :: t
 
       call clear(b)
-      call take_polynomial_at(b, c, from)
-      call take_polynomial_at(b, c, to)
+      call widen_by_polynomial(b, c, from)
+      call widen_by_polynomial(b, c, to)
       if (abs(c(3)) <= 0.0_wp) return
       t = -c(2)/c(3)
-      if (t > from .and. t < to) call take_polynomial_at(b, c, t)
+      if (t > from .and. t < to) call widen_by_polynomial(b, c, t)
    end function polynomial
 
-   pure subroutine take_polynomial_at(b, c, t)
+   !> Widens `b` by the polynomial `c` at the time `t`.
+   pure subroutine widen_by_polynomial(b, c, t)
       type(bounds_t), intent(inout) :: b
       real(wp), intent(in) :: c(3), t
 
-      call take(b, 0, c(1) + t*(c(2) + t*c(3)/2.0_wp), abs(c(1)) + abs(t)*(abs(c(2)) + abs(t*c(3))))
-      call take(b, 1, c(2) + t*c(3), abs(c(2)) + abs(t*c(3)))
-      call take(b, 2, c(3), 0.0_wp)
-   end subroutine take_polynomial_at
+      call widen(b, 0, c(1) + t*(c(2) + t*c(3)/2.0_wp), abs(c(1)) + abs(t)*(abs(c(2)) + abs(t*c(3))))
+      call widen(b, 1, c(2) + t*c(3), abs(c(2)) + abs(t*c(3)))
+      call widen(b, 2, c(3), 0.0_wp)
+   end subroutine widen_by_polynomial
 
-   !> r1 sin(r2 t + r3): each derivative is a sine again, a quarter turn further on.
+   !> The bounds of r1 sin(r2 t + r3): each derivative is again a sine, with its phase advanced by a quarter turn.
    pure function harmonic(r, from, to) result(b)
       real(wp), intent(in) :: r(3), from, to
       type(bounds_t) :: b
-      real(wp) :: u1, u2, low, high, size_of
+      real(wp) :: u1, u2, low, high, magnitude
       integer :: k
 
       call clear(b)
       u1 = min(r(2)*from, r(2)*to) + r(3)
       u2 = max(r(2)*from, r(2)*to) + r(3)
-      size_of = max(1.0_wp, abs(r(2)*from), abs(r(2)*to)) + abs(r(3))
+      magnitude = max(1.0_wp, abs(r(2)*from), abs(r(2)*to)) + abs(r(3))
       do k = 0, 2
-         call sine(u1 + 0.5_wp*k*pi, u2 + 0.5_wp*k*pi, size_of, low, high)
-         call take(b, k, r(1)*r(2)**k*low, abs(r(1)*r(2)**k)*size_of)
-         call take(b, k, r(1)*r(2)**k*high, abs(r(1)*r(2)**k)*size_of)
-         ! Rounding does not lead beyond the amplitude.
+         call sine(u1 + 0.5_wp*k*pi, u2 + 0.5_wp*k*pi, magnitude, low, high)
+         call widen(b, k, r(1)*r(2)**k*low, abs(r(1)*r(2)**k)*magnitude)
+         call widen(b, k, r(1)*r(2)**k*high, abs(r(1)*r(2)**k)*magnitude)
+         ! Rounding does not exceed the amplitude.
          b%low(k) = max(b%low(k), -(1.0_wp + margin)*abs(r(1)*r(2)**k))
          b%high(k) = min(b%high(k), (1.0_wp + margin)*abs(r(1)*r(2)**k))
       end do
    end function harmonic
 
-   !> The least and the largest sine between `u1` and `u2`, which are known to the rounding of `size_of`.
-   pure subroutine sine(u1, u2, size_of, low, high)
-      real(wp), intent(in) :: u1, u2, size_of
+   !> The smallest and the largest sine of the angles from `u1` to `u2`, whose rounding errors are those of numbers of
+   !> the size `magnitude`.
+   pure subroutine sine(u1, u2, magnitude, low, high)
+      real(wp), intent(in) :: u1, u2, magnitude
       real(wp), intent(out) :: low, high
 
       low = min(sin(u1), sin(u2))
@@ -103,54 +105,55 @@ contains
 
    contains
 
-      !> There is `phase`, or whole turns more or less, in between.
+      !> Whether `phase`, plus any number of whole turns, lies between u1 and u2.
       pure logical function holds_phase(phase)
          real(wp), intent(in) :: phase
          real(wp) :: turns, whole
 
-         turns = (u2 + margin*size_of - phase)/(2.0_wp*pi)
+         turns = (u2 + margin*magnitude - phase)/(2.0_wp*pi)
          whole = aint(turns)
          if (whole > turns) whole = whole - 1.0_wp
-         holds_phase = whole >= (u1 - margin*size_of - phase)/(2.0_wp*pi)
+         holds_phase = whole >= (u1 - margin*magnitude - phase)/(2.0_wp*pi)
       end function holds_phase
    end subroutine sine
 
-   !> r1 t^r2 and its derivatives.
+   !> The bounds of r1 t^r2.
    pure function power(r, from, to) result(b)
       real(wp), intent(in) :: r(3), from, to
       type(bounds_t) :: b
 
       call clear(b)
-      call take_power(b, 0, r(1), r(2), from, to)
-      call take_power(b, 1, r(1)*r(2), r(2) - 1.0_wp, from, to)
-      call take_power(b, 2, r(1)*r(2)*(r(2) - 1.0_wp), r(2) - 2.0_wp, from, to)
+      call widen_by_power(b, 0, r(1), r(2), from, to)
+      call widen_by_power(b, 1, r(1)*r(2), r(2) - 1.0_wp, from, to)
+      call widen_by_power(b, 2, r(1)*r(2)*(r(2) - 1.0_wp), r(2) - 2.0_wp, from, to)
    end function power
 
-   !> c t^p as derivative `k`: on either side of t = 0 it only rises or only falls.
-   pure subroutine take_power(b, k, c, p, from, to)
+   !> Widens `b` by c t^p, which is derivative `k`. On either side of t = 0 it is monotonic.
+   pure subroutine widen_by_power(b, k, c, p, from, to)
       type(bounds_t), intent(inout) :: b
       integer, intent(in) :: k
       real(wp), intent(in) :: c, p, from, to
 
-      call take_power_at(b, k, c, p, from)
-      call take_power_at(b, k, c, p, to)
-      if (from < 0.0_wp .and. to > 0.0_wp) call take_power_at(b, k, c, p, 0.0_wp)
-   end subroutine take_power
+      call widen_by_power_at(b, k, c, p, from)
+      call widen_by_power_at(b, k, c, p, to)
+      if (from < 0.0_wp .and. to > 0.0_wp) call widen_by_power_at(b, k, c, p, 0.0_wp)
+   end subroutine widen_by_power
 
-   pure subroutine take_power_at(b, k, c, p, t)
+   !> Widens `b` by c t^p, which is derivative `k`, at the time `t`.
+   pure subroutine widen_by_power_at(b, k, c, p, t)
       type(bounds_t), intent(inout) :: b
       integer, intent(in) :: k
       real(wp), intent(in) :: c, p, t
 
       if (is_finite(c, p, t)) then
-         call take(b, k, monomial(c, p, t), abs(monomial(c, p, t)))
+         call widen(b, k, monomial(c, p, t), abs(monomial(c, p, t)))
       else
          b%low(k) = -huge(1.0_wp)
          b%high(k) = huge(1.0_wp)
       end if
-   end subroutine take_power_at
+   end subroutine widen_by_power_at
 
-   !> c t^p exists, and is within the range of reals.
+   !> Whether c t^p is defined and within the range of reals.
    pure logical function is_finite(c, p, t)
       real(wp), intent(in) :: c, p, t
 
@@ -165,7 +168,7 @@ contains
       end if
    end function is_finite
 
-   !> The pieces that the interval meets, each a cubic.
+   !> The bounds of the spline `s`: those of its pieces in the interval, each a cubic.
    pure function table(s, from, to) result(b)
       type(spline_t), intent(in) :: s
       real(wp), intent(in) :: from, to
@@ -176,12 +179,13 @@ contains
       first = piece_at(s, from)
       last = piece_at(s, to)
       do i = first, last
-         call take_piece(b, s, i, merge(from, s%x(i), i == first), merge(to, s%x(i + 1), i == last))
+         call widen_by_piece(b, s, i, merge(from, s%x(i), i == first), merge(to, s%x(i + 1), i == last))
       end do
    end function table
 
-   !> Piece `i` from `t1` to `t2`: its ends, where its second derivative is zero, and where the first is.
-   pure subroutine take_piece(b, s, i, t1, t2)
+   !> Widens `b` by piece `i` from `t1` to `t2`: by its values at both ends and where its second or first derivative is
+   !> zero.
+   pure subroutine widen_by_piece(b, s, i, t1, t2)
       type(bounds_t), intent(inout) :: b
       type(spline_t), intent(in) :: s
       integer, intent(in) :: i
@@ -201,31 +205,32 @@ contains
          if (abs(q) < abs(slope)*reach) u(2) = q/slope
          if (2.0_wp*abs(f(2)) < abs(q)*reach) u(3) = 2.0_wp*f(2)/q
       end if
-      call take_piece_at(b, s, i, t1)
-      call take_piece_at(b, s, i, t2)
+      call widen_by_piece_at(b, s, i, t1)
+      call widen_by_piece_at(b, s, i, t2)
       do k = 1, 3
-         if (s%x(i) + u(k) > t1 .and. s%x(i) + u(k) < t2) call take_piece_at(b, s, i, s%x(i) + u(k))
+         if (s%x(i) + u(k) > t1 .and. s%x(i) + u(k) < t2) call widen_by_piece_at(b, s, i, s%x(i) + u(k))
       end do
-   end subroutine take_piece
+   end subroutine widen_by_piece
 
-   pure subroutine take_piece_at(b, s, i, t)
+   !> Widens `b` by piece `i` at the time `t`.
+   pure subroutine widen_by_piece_at(b, s, i, t)
       type(bounds_t), intent(inout) :: b
       type(spline_t), intent(in) :: s
       integer, intent(in) :: i
       real(wp), intent(in) :: t
-      real(wp) :: f(3), h, size_of, curve, away
+      real(wp) :: f(3), h, magnitude, curve, away
 
       f = piece_value(s, i, t)
       h = s%x(i + 1) - s%x(i)
       away = max(1.0_wp, abs(t - s%x(i))/h, abs(t - s%x(i + 1))/h)
-      size_of = abs(s%y(i)) + abs(s%y(i + 1))
+      magnitude = abs(s%y(i)) + abs(s%y(i + 1))
       curve = abs(s%m(i)) + abs(s%m(i + 1))
-      call take(b, 0, f(1), (size_of + curve*h**2)*away**3)
-      call take(b, 1, f(2), (size_of/h + curve*h)*away**2)
-      call take(b, 2, f(3), curve*away)
-   end subroutine take_piece_at
+      call widen(b, 0, f(1), (magnitude + curve*h**2)*away**3)
+      call widen(b, 1, f(2), (magnitude/h + curve*h)*away**2)
+      call widen(b, 2, f(3), curve*away)
+   end subroutine widen_by_piece_at
 
-   !> Nothing is taken in yet.
+   !> The bounds of no value at all.
    pure subroutine clear(b)
       type(bounds_t), intent(out) :: b
 
@@ -233,17 +238,17 @@ contains
       b%high = -huge(1.0_wp)
    end subroutine clear
 
-   !> Takes `value` into the bounds of derivative `k`, with the rounding of what it adds up, `size_of`.
-   pure subroutine take(b, k, value, size_of)
+   !> Widens the bounds of derivative `k` by `value`, whose terms have absolute values with the sum `magnitude`.
+   pure subroutine widen(b, k, value, magnitude)
       type(bounds_t), intent(inout) :: b
       integer, intent(in) :: k
-      real(wp), intent(in) :: value, size_of
+      real(wp), intent(in) :: value, magnitude
 
-      b%low(k) = min(b%low(k), below(value, margin*size_of))
-      b%high(k) = max(b%high(k), -below(-value, margin*size_of))
-   end subroutine take
+      b%low(k) = min(b%low(k), below(value, margin*magnitude))
+      b%high(k) = max(b%high(k), -below(-value, margin*magnitude))
+   end subroutine widen
 
-   !> `x` less `d`, not below -huge.
+   !> x - d, but not below -huge.
    elemental real(wp) function below(x, d)
       real(wp), intent(in) :: x, d
 
@@ -251,7 +256,7 @@ contains
       if (x > d - huge(1.0_wp)) below = x - d
    end function below
 
-   !> Adds the bounds of a term to those of a sum.
+   !> Adds the bounds of a term to those of the sum.
    pure subroutine add(term, sum_of)
       type(bounds_t), intent(in) :: term
       type(bounds_t), intent(inout) :: sum_of
@@ -260,7 +265,7 @@ contains
       sum_of%high = -plus(-sum_of%high, -term%high)
    end subroutine add
 
-   !> The sum of two lower bounds, not below -huge.
+   !> The sum of two lower bounds, but not below -huge.
    elemental real(wp) function plus(x, y)
       real(wp), intent(in) :: x, y
 

@@ -1,5 +1,5 @@
-!> A planar mechanism and what is asked of it, as plain data: links, points, pairs, drives.
-!> `deck` builds it; everything else only reads it. Lengths are in the deck's unit, angles in radians.
+!> A planar mechanism and the requests about it, as plain data: links, points, pairs, drives. `deck` builds it, all
+!> others read it. Lengths and times are in the deck's units, angles in radians.
 module mechanism
    use kinds, only: wp, label_length, title_length
    implicit none
@@ -10,12 +10,12 @@ module mechanism
    public :: term_harmonic, term_power, term_table, term_words
    public :: request_link, request_point, request_pair
    public :: method_newton, method_matrix, method_dense, method_words, own_predictor
-   public :: instant_count, instant, wanted_links, plane_origin, place_links
+   public :: instant_count, instant, find_instants, wanted_links, plane_origin, place_links
 
    integer, parameter :: pair_revolute = 1   !< REVOLUTE: eq. (7), (8)
    integer, parameter :: pair_prismatic = 2  !< PRISM: eq. (9), (10)
 
-   !> What has a name of its own, and rows in the tables.
+   !> The kinds of what has a name and a row in the tables.
    integer, parameter :: request_link = 1, request_point = 2, request_pair = 3
 
    integer, parameter :: drive_angle = 1     !< ANGLE: phi of link `subject`
@@ -23,7 +23,7 @@ module mechanism
    integer, parameter :: drive_y = 3         !< Y: y of point `subject`
    integer, parameter :: drive_relangle = 4  !< RELANGLE: phi of link `second` less phi of link `subject`
    integer, parameter :: drive_slide = 5     !< SLIDE: slide of prismatic pair `subject`
-   !> Their words on cards, and what they drive.
+   !> The words of the kinds of drives on cards, and the kinds of their subjects.
    character(label_length), parameter :: drive_words(5) = &
       [character(label_length) :: 'ANGLE', 'X', 'Y', 'RELANGLE', 'SLIDE']
    integer, parameter :: driven_kinds(5) = [request_link, request_point, request_point, request_link, request_pair]
@@ -33,62 +33,63 @@ module mechanism
    integer, parameter :: term_table = 3      !< the C2 spline through (knots, values)
    character(label_length), parameter :: term_words(3) = [character(label_length) :: 'HARMONIC', 'POWER', 'TABLE']
 
-   integer, parameter :: method_newton = 1   !< Newton on the closure equations
+   integer, parameter :: method_newton = 1   !< Newton's method, block by block
    integer, parameter :: method_matrix = 2   !< the iteration of 1987 with frozen c(phi), s(phi)
-   integer, parameter :: method_dense = 3    !< Newton on all closure equations at once: the reference
+   integer, parameter :: method_dense = 3    !< Newton's method on all closure equations at once: the reference
    character(label_length), parameter :: method_words(3) = [character(label_length) :: 'NEWTON', 'MATRIX', 'DENSE']
 
-   integer, parameter :: own_predictor = -1  !< the method's own
+   integer, parameter :: own_predictor = -1  !< the predictor of the method
 
    type :: link_t
       character(label_length) :: name = ''
       logical :: ground = .false.
-      real(wp) :: position(3) = 0.0_wp       !< x, y, phi: fixed (ground) or rough, chooses the assembly
+      real(wp) :: position(3) = 0.0_wp       !< x, y, phi: fixed (ground) or the estimate that selects the assembly
    end type link_t
 
    type :: point_t
       character(label_length) :: name = ''
-      integer :: link = 0
-      real(wp) :: offset(2) = 0.0_wp         !< xi, eta in the link's own axes
+      integer :: link = 0                    !< the number of its link
+      real(wp) :: offset(2) = 0.0_wp         !< its place xi, eta in the axes of the link
    end type point_t
 
    type :: pair_t
-      integer :: kind = pair_revolute
+      integer :: kind = pair_revolute        !< pair_revolute or pair_prismatic
       character(label_length) :: name = ''
-      integer :: point_i = 0, point_j = 0    !< P of link i and Q of link j
-      real(wp) :: alpha = 0.0_wp             !< prismatic: the guide's direction in link i
+      integer :: point_i = 0, point_j = 0    !< the numbers of the points P of link i and Q of link j
+      real(wp) :: alpha = 0.0_wp             !< prismatic: direction of the guide in link i
       real(wp) :: offset = 0.0_wp            !< prismatic: h of eq. (9)
       real(wp) :: beta = 0.0_wp              !< prismatic: phi_j - phi_i, eq. (10)
    end type pair_t
 
-   !> One term added to a drive.
+   !> One term of the law of a drive.
    type :: term_t
-      integer :: kind = term_harmonic
-      real(wp) :: r(3) = 0.0_wp
-      real(wp), allocatable :: knots(:), values(:)  !< a table's rows, knots increasing
+      integer :: kind = term_harmonic        !< term_harmonic, term_power or term_table
+      real(wp) :: r(3) = 0.0_wp              !< its parameters
+      real(wp), allocatable :: knots(:), values(:)  !< (rows) of a table: times, increasing, and values
    end type term_t
 
    type :: drive_t
-      integer :: kind = drive_angle
-      integer :: subject = 0                 !< link, point or pair, as the kind says
-      integer :: second = 0                  !< second link of drive_relangle
+      integer :: kind = drive_angle          !< drive_angle, ..., drive_slide
+      integer :: subject = 0                 !< the number of a link, point or pair: driven_kinds(kind)
+      integer :: second = 0                  !< drive_relangle: the number of the second link
       real(wp) :: polynomial(3) = 0.0_wp     !< value at t = 0, rate, acceleration
       type(term_t), allocatable :: terms(:)
    end type drive_t
 
-   !> One row of the tables: a link, point or pair, at every `every`-th instant, the first and the last.
+   !> A row of the tables at every `every`-th instant, the first and the last.
    type :: request_t
-      integer :: kind = request_link
-      integer :: subject = 0
+      integer :: kind = request_link         !< request_link, request_point or request_pair
+      integer :: subject = 0                 !< the number of the link, point or pair
       integer :: every = 1
    end type request_t
 
-   !> At the change point that is passed next after `t` `link` takes the other branch; 0: whatever passes one.
+   !> At the next change point after `t`, `link` takes the other branch; link 0: any links that pass a change point.
    type :: branch_request_t
       integer :: link = 0
       real(wp) :: t = 0.0_wp
    end type branch_request_t
 
+   !> A set of computations.
    type :: mechanism_t
       integer :: set_number = 1
       character(title_length) :: title = ''
@@ -96,31 +97,31 @@ module mechanism
       logical :: degrees = .false.           !< angles are printed in degrees
       logical :: polish = .false.            !< headings are printed in Polish
       integer :: method = method_newton
-      real(wp) :: tolerance = 0.0_wp         !< relative; 0 stands for the method's own
-      integer :: predictor = own_predictor   !< order of the start of a step, 0 to 3; no card asks for it
-      logical :: keeps_references = .false.  !< method_matrix: those of the first instant, for good; no card asks for it
+      real(wp) :: tolerance = 0.0_wp         !< relative; 0: that of the method
+      integer :: predictor = own_predictor   !< order of the predictor of a step, 0 to 3; no card sets it
+      logical :: keeps_references = .false.  !< method_matrix: keeps those of the first instant; no card sets it
       type(link_t), allocatable :: links(:)
       type(point_t), allocatable :: points(:)
       type(pair_t), allocatable :: pairs(:)
       type(drive_t), allocatable :: drives(:)
       type(request_t), allocatable :: requests(:)
       type(branch_request_t), allocatable :: branch_requests(:)   !< none: not allocated, or of size 0
-      integer :: steps = -1                  !< of the TIME card: steps + 1 instants from t0 to t1
-      real(wp) :: t0 = 0.0_wp, t1 = 0.0_wp
-      real(wp), allocatable :: at(:)         !< explicit instants, after those of TIME
-      character(120), allocatable :: echo(:) !< the set's cards as they were understood, for the listing
+      integer :: steps = -1                  !< of the TIME card: steps + 1 instants from t0 to t1; -1: no TIME card
+      real(wp) :: t0 = 0.0_wp, t1 = 0.0_wp   !< of the TIME card
+      real(wp), allocatable :: at(:)         !< the instants of the AT cards, which come after those of TIME
+      character(120), allocatable :: echo(:) !< the cards as they were understood, for the listing
    end type mechanism_t
 
 contains
 
-   !> Number of instants of a set of computations.
+   !> The number of instants of `m`.
    pure integer function instant_count(m)
       type(mechanism_t), intent(in) :: m
 
       instant_count = m%steps + 1 + size(m%at)
    end function instant_count
 
-   !> Instant number k = 0, 1, ..., instant_count - 1. The last one of TIME is t1 exactly.
+   !> Instant number `k` = 0, 1, ..., instant_count - 1. The last one of TIME is exactly t1.
    pure real(wp) function instant(m, k) result(t)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k
@@ -134,9 +135,20 @@ contains
       end if
    end function instant
 
-   !> Where (2) places are counted from in all that is computed, in the deck's unit: the first ground link. It is added
-   !> back when a row is written: far from the deck's own origin small lengths would otherwise be rounded with large
-   !> places.
+   !> The `first` and the `last` of all instants of `m` in time; the other way round where there are none.
+   pure subroutine find_instants(m, first, last)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(out) :: first, last
+
+      first = minval(m%at)
+      last = maxval(m%at)
+      if (m%steps < 0) return
+      first = min(first, m%t0, m%t1)
+      last = max(last, m%t0, m%t1)
+   end subroutine find_instants
+
+   !> The place (2) of the first ground link, from which all computed places are counted. It is added when a row is
+   !> written. Reason: far from the origin of the deck, small lengths would be rounded with large places.
    pure function plane_origin(m) result(origin)
       type(mechanism_t), intent(in) :: m
       real(wp) :: origin(2)
@@ -150,7 +162,7 @@ contains
       end do
    end function plane_origin
 
-   !> Puts the moving links where `position` (3, links) has them, places counted from the origin of the plane.
+   !> Puts the moving links at `position` (3, links), where places are counted from `plane_origin`.
    pure subroutine place_links(m, position)
       type(mechanism_t), intent(inout) :: m
       real(wp), intent(in) :: position(:, :)
@@ -163,7 +175,7 @@ contains
       end do
    end subroutine place_links
 
-   !> The links (links) whose motion the deck's requests need.
+   !> Whether each link (links) is needed by a request of `m`.
    pure function wanted_links(m) result(wanted)
       type(mechanism_t), intent(in) :: m
       logical :: wanted(size(m%links))

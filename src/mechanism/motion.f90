@@ -7,29 +7,32 @@ module motion
    public :: motion_t, new_motion, known_of, mark_of, forget_links
    public :: mark_none, mark_not_converged, mark_singular, mark_overflow, mark_inconsistent
 
-   integer, parameter :: mark_none = 0
-   integer, parameter :: mark_not_converged = 1  !< no position was found
-   integer, parameter :: mark_singular = 2       !< position found, Jacobian singular: no velocities
-   integer, parameter :: mark_overflow = 3       !< a result beyond the range of the real kind
-   integer, parameter :: mark_inconsistent = 4           !< equations that are too many contradict one another
+   !> Why an instant, or a link, is flagged.
+   enum, bind(c)
+      enumerator :: mark_none = 0
+      enumerator :: mark_not_converged  !< no position was found
+      enumerator :: mark_singular       !< position found, Jacobian singular: no unique velocities
+      enumerator :: mark_overflow       !< a result is beyond the range of the real kind
+      enumerator :: mark_inconsistent   !< redundant equations contradict one another
+   end enum
 
+   !> Lengths and times are in the deck's units, angles in radians.
    type :: motion_t
-      real(wp) :: t = 0.0_wp
-      integer :: mark = mark_none
-      !> How much of it exists: -1 nothing, 0 positions, 1 velocities too, 2 accelerations too.
-      integer :: known = -1
-      type(diagnostic_t), allocatable :: diagnostics(:)     !< what else there is to say; none: not allocated
-      real(wp) :: origin(2) = 0.0_wp                !< what x and y of `position` are counted from
-      !> (3, links): x, y, phi and their first and second derivatives by time.
+      real(wp) :: t = 0.0_wp                             !< the instant
+      integer :: mark = mark_none                        !< why it is flagged
+      integer :: known = -1  !< what exists: -1 nothing, 0 positions, 1 velocities too, 2 accelerations too
+      type(diagnostic_t), allocatable :: diagnostics(:)  !< none: not allocated
+      real(wp) :: origin(2) = 0.0_wp                     !< the place from which x and y of `position` are counted
+      !> (3, links): x, y, phi, and their first and second derivatives with respect to time.
       real(wp), allocatable :: position(:, :), velocity(:, :), acceleration(:, :)
-      !> (links) `known` and `mark` of each link, where they are not alike: those of the whole are then the worst of
-      !> them. Not allocated: as the whole.
+      !> (links) `known` and `mark` of each link, if they differ: those of the whole are then the worst. Not allocated:
+      !> all links as the whole.
       integer, allocatable :: link_known(:), link_mark(:)
    end type motion_t
 
 contains
 
-   !> A motion of `n` links at rest at the origin.
+   !> The motion of `n` links at rest at the origin.
    pure function new_motion(n) result(m)
       integer, intent(in) :: n
       type(motion_t) :: m
@@ -37,7 +40,7 @@ contains
       allocate (m%position(3, n), m%velocity(3, n), m%acceleration(3, n), source=0.0_wp)
    end function new_motion
 
-   !> How much of the motion of `link` exists, as `known` has it.
+   !> How much of the motion of `link` exists, in the values of `known`.
    pure integer function known_of(m, link)
       type(motion_t), intent(in) :: m
       integer, intent(in) :: link
@@ -46,7 +49,7 @@ contains
       if (allocated(m%link_known)) known_of = m%link_known(link)
    end function known_of
 
-   !> Why no more of it exists; mark_none where all of it does.
+   !> Why the rest of it does not exist; mark_none where all of it exists.
    pure integer function mark_of(m, link)
       type(motion_t), intent(in) :: m
       integer, intent(in) :: link
@@ -55,7 +58,7 @@ contains
       if (allocated(m%link_mark)) mark_of = m%link_mark(link)
    end function mark_of
 
-   !> From now on all links are known alike.
+   !> Gives all links the `known` and `mark` of the whole.
    pure subroutine forget_links(m)
       type(motion_t), intent(inout) :: m
 

@@ -1,4 +1,4 @@
-!> Names: a table from names to numbers, in constant time (open addressing), and names in messages.
+!> Names: a hash table from names to numbers (open addressing), and names in messages.
 module names
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: label_length
@@ -8,7 +8,7 @@ module names
    private
    public :: name_table_t, put_name, find_name, drive_name, listed
 
-   !> Slots of an empty table. At most one slot in two is filled.
+   !> Slots of an empty table. At most every second slot is filled.
    integer, parameter :: first_size = 64
 
    type :: slot_t
@@ -18,17 +18,17 @@ module names
 
    type :: name_table_t
       private
-      integer :: filled = 0
+      integer :: filled = 0                !< slots that are not free
       type(slot_t), allocatable :: slots(:)
    end type name_table_t
 
-   !> So many names are listed; of more, the number.
+   !> The largest number of names in a list; the rest is only counted.
    integer, parameter :: max_names = 8
 
 contains
 
-   !> Enters `name` with `number` > 0. If it was there already, nothing changes and `earlier` is its
-   !> number; otherwise `earlier` is 0.
+   !> Enters `name` with `number` > 0. If the table has it already, nothing changes and `earlier` is its number;
+   !> otherwise `earlier` is 0.
    subroutine put_name(table, name, number, earlier)
       type(name_table_t), intent(inout) :: table
       character(*), intent(in) :: name
@@ -45,7 +45,7 @@ contains
       if (2*table%filled > size(table%slots)) call double_slots(table%slots)
    end subroutine put_name
 
-   !> The number of `name`, or 0 if the table does not hold it.
+   !> The number of `name`, or 0 if the table does not have it.
    pure integer function find_name(table, name) result(number)
       type(name_table_t), intent(in) :: table
       character(*), intent(in) :: name
@@ -54,7 +54,7 @@ contains
       if (allocated(table%slots)) number = table%slots(slot_of(table%slots, name))%number
    end function find_name
 
-   !> Kind and subject of drive `d` of the mechanism `m`, as on its card.
+   !> The kind of drive `d` of the mechanism `m` and what it drives, as on its card.
    pure function drive_name(m, d) result(name)
       type(mechanism_t), intent(in) :: m
       type(drive_t), intent(in) :: d
@@ -72,7 +72,7 @@ contains
       if (d%kind == drive_relangle) name = trim(name)//' '//m%links(d%second)%name
    end function drive_name
 
-   !> At least one name; commas between them, and of many the number of those left out.
+   !> The names `words` (at least one) with commas between them; of many, the first ones and the number of the rest.
    pure function listed(words) result(text)
       character(*), intent(in) :: words(:)
       character(:), allocatable :: text
@@ -85,7 +85,7 @@ contains
       if (size(words) > max_names) text = text//' AND '//whole(size(words) - max_names)//' MORE'
    end function listed
 
-   !> The slot that holds `name`, or the free one where it belongs. A free slot always exists.
+   !> The slot of `name`, or the free slot where it belongs. There is always a free slot.
    pure integer function slot_of(slots, name) result(k)
       type(slot_t), intent(in) :: slots(:)
       character(*), intent(in) :: name
@@ -99,7 +99,7 @@ contains
       end do
    end function slot_of
 
-   !> A number below 2**31 - 1 that depends on every character. The product stays below 2**56.
+   !> A number below 2**31 - 1 that depends on every character; products stay below 2**56.
    pure integer(int64) function hash(key)
       character(label_length), intent(in) :: key
       integer(int64), parameter :: prime = 2147483647_int64, factor = 16777619_int64
@@ -111,7 +111,7 @@ contains
       end do
    end function hash
 
-   !> Twice as many slots, with the same names.
+   !> Doubles the number of slots; the names stay.
    subroutine double_slots(slots)
       type(slot_t), allocatable, intent(inout) :: slots(:)
       type(slot_t), allocatable :: old(:)

@@ -1,6 +1,7 @@
-!> The motion of what the tables ask for: links, any point of any link, and pairs.
+!> The rows of the tables: the motion of links, of any point of any link, and of pairs.
 module points
    use kinds, only: wp, label_length
+   use constants, only: rotated
    use mechanism, only: mechanism_t, request_t, pair_t, pair_prismatic, request_link, request_point, request_pair, &
       instant_count
    use motion, only: motion_t, known_of, mark_of, mark_none
@@ -8,19 +9,19 @@ module points
    private
    public :: row_t, row_of, is_due, strides, any_due, is_fixed, point_motion, pair_motion
 
-   !> One row of a table, in the deck's length unit and radians.
+   !> One row of a table, in the deck's units of length and time and in radians.
    type :: row_t
-      integer :: kind = request_link
-      character(label_length) :: name = ''
+      integer :: kind = request_link        !< request_link, request_point or request_pair
+      character(label_length) :: name = ''  !< of the link, point or pair
       logical :: angular = .false.          !< a pair whose value is an angle
-      integer :: known = 2                  !< how much of it exists: as in `motion_t`
-      integer :: mark = mark_none           !< why no more of it does
+      integer :: known = 2                  !< how much of it exists, as in `motion_t`
+      integer :: mark = mark_none           !< why the rest does not
       real(wp) :: value(3, 0:2) = 0.0_wp    !< x, y, phi (a pair: its value first) and their derivatives
    end type row_t
 
 contains
 
-   !> The request is due at instant number `k` (0, 1, ...): at every `every`-th, the first and the last.
+   !> Whether `request` is printed at instant number `k` (0, 1, ...): every `every`-th, the first and the last.
    pure logical function is_due(m, request, k)
       type(mechanism_t), intent(in) :: m
       type(request_t), intent(in) :: request
@@ -29,7 +30,7 @@ contains
       is_due = mod(k, request%every) == 0 .or. k == instant_count(m) - 1
    end function is_due
 
-   !> The different numbers of instants from row to row that the requests of `m` have.
+   !> The different values of `every` among the requests of `m`.
    pure function strides(m) result(list)
       type(mechanism_t), intent(in) :: m
       integer, allocatable :: list(:)
@@ -41,7 +42,7 @@ contains
       end do
    end function strides
 
-   !> Some request, all of them with one of the strides `list`, is due at instant number `k` (0, 1, ...).
+   !> Whether any request is printed at instant number `k` (0, 1, ...). `list`: the `strides` of the requests.
    pure logical function any_due(m, list, k)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: list(:), k
@@ -49,8 +50,7 @@ contains
       any_due = any(mod(k, list) == 0) .or. (k == instant_count(m) - 1 .and. size(list) > 0)
    end function any_due
 
-   !> The row that `request` asks for, of as much of the motion `q` as is known. What belongs to the ground is known at
-   !> any instant, by the deck alone.
+   !> The row of `request`, as far as the motion `q` is known. What belongs to the ground is known at every instant.
    pure function row_of(m, q, request) result(row)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
@@ -89,7 +89,7 @@ contains
       end associate
    end function row_of
 
-   !> What `request` asks for belongs to the ground.
+   !> Whether the subject of `request` belongs to the ground.
    pure logical function is_fixed(m, request)
       type(mechanism_t), intent(in) :: m
       type(request_t), intent(in) :: request
@@ -104,7 +104,7 @@ contains
       end select
    end function is_fixed
 
-   !> Of `row` no more is known than of `link`.
+   !> Reduces what is known of `row` to what is known of `link`.
    pure subroutine note_known(m, q, link, row)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
@@ -117,18 +117,18 @@ contains
       row%mark = mark_of(q, link)
    end subroutine note_known
 
-   !> Where point number `i` of a ground link is.
+   !> The place (2) of point number `i`, which belongs to the ground.
    pure function fixed_place(m, i) result(place)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: i
       real(wp) :: place(2)
 
       associate (p => m%links(m%points(i)%link)%position, u => m%points(i)%offset)
-         place = p(:2) + [u(1)*cos(p(3)) - u(2)*sin(p(3)), u(1)*sin(p(3)) + u(2)*cos(p(3))]
+         place = p(:2) + rotated(u, p(3))
       end associate
    end function fixed_place
 
-   !> Place from the motion's origin, velocity and acceleration (2, 0:2) of point number `i`; u is its arm:
+   !> Place from the motion's origin, velocity and acceleration (2, 0:2) of point number `i`, with its body vector u:
    !> p = o + u,  p' = o' + phi' u_t,  p'' = o'' + phi'' u_t - phi'^2 u,  u_t = (-u_y, u_x).
    pure function point_motion(m, q, i) result(p)
       type(mechanism_t), intent(in) :: m
@@ -137,8 +137,7 @@ contains
       real(wp) :: p(2, 0:2), u(2), across(2)
 
       associate (k => m%points(i)%link, offset => m%points(i)%offset)
-         u = [offset(1)*cos(q%position(3, k)) - offset(2)*sin(q%position(3, k)), &
-            offset(1)*sin(q%position(3, k)) + offset(2)*cos(q%position(3, k))]
+         u = rotated(offset, q%position(3, k))
          across = [-u(2), u(1)]
          p(:, 0) = q%position(:2, k) + u
          p(:, 1) = q%velocity(:2, k) + q%velocity(3, k)*across
@@ -146,8 +145,8 @@ contains
       end associate
    end function point_motion
 
-   !> Value and derivatives (0:2): the slide x_w = (Q - P) . e of a prismatic pair, (3) and (4), or the relative angle
-   !> phi_j - phi_i of a revolute pair.
+   !> Value and derivatives (0:2) of `pair`: the slide x_w = (Q - P) . e of a prismatic pair, eq. (3) and (4), or the
+   !> relative angle phi_j - phi_i of a revolute pair.
    pure function pair_motion(m, q, pair) result(s)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q

@@ -1,17 +1,19 @@
-!> The characteristic length and rate of a mechanism, from its deck alone: what makes the solver's tolerances
-!> and the listing's digits the same in millimetres and in kilometres.
+!> The characteristic length and rate of a mechanism, from its deck alone. They make the tolerances of the solver and
+!> the digits of the listing the same in millimetres and in kilometres.
 module scales
    use kinds, only: wp
-   use mechanism, only: mechanism_t, drive_t, term_t, pair_prismatic, drive_x, drive_y, drive_slide, term_harmonic, &
-      term_power, term_table, plane_origin
+   use constants, only: rotated
+   use drives, only: drive_rate
+   use mechanism, only: mechanism_t, drive_t, pair_prismatic, drive_x, drive_y, drive_slide, plane_origin
    implicit none
    private
    public :: characteristic_length, solver_length, characteristic_rate, power_of_two, is_length
 
 contains
 
-   !> The largest extent of a link between its points (ground links taken as one), prismatic offset, or range of a drive
-   !> of length; 1 where the deck holds no length at all. In the deck's unit; places do not count, only distances.
+   !> The largest of: the extent of a link between its points (all ground links are one), the offset of a prismatic
+   !> pair, the value at t = 0 of a drive of length. In the deck's unit of length; 1 where the deck has no length at
+   !> all. It does not depend on where the origin is.
    pure real(wp) function characteristic_length(m) result(length)
       type(mechanism_t), intent(in) :: m
 
@@ -19,8 +21,7 @@ contains
       if (.not. is_usable(length)) length = 1.0_wp
    end function characteristic_length
 
-   !> The same for what is solved: points that are in no pair and that no drive moves do not count, unless there is no
-   !> other length.
+   !> The same for the equations: points that no pair and no drive uses do not count, unless there is no other length.
    pure real(wp) function solver_length(m) result(length)
       type(mechanism_t), intent(in) :: m
       logical :: counts(size(m%points))
@@ -36,13 +37,14 @@ contains
       if (.not. is_usable(length)) length = characteristic_length(m)
    end function solver_length
 
+   !> Whether `length` is positive and finite.
    pure logical function is_usable(length)
       real(wp), intent(in) :: length
 
       is_usable = length > 0.0_wp .and. length <= huge(length)
    end function is_usable
 
-   !> The largest length of `m`, of its points those that `counts` (points); 0 where there is none.
+   !> The largest length of `m` with those of its points that `counts` (points) marks; 0 if there is none.
    pure real(wp) function largest_length(m, counts) result(length)
       type(mechanism_t), intent(in) :: m
       logical, intent(in) :: counts(:)
@@ -58,10 +60,10 @@ contains
          k = m%points(i)%link
          place = m%points(i)%offset
          if (m%links(k)%ground) then
-            place = ground_place(m%links(k)%position - [origin, 0.0_wp], place)
+            place = m%links(k)%position(:2) - origin + rotated(place, m%links(k)%position(3))
             k = 0
          else
-            ! The link's own origin counts too: its rough place is where the mechanism is.
+            ! The origin of the link counts too: its estimated place is where the mechanism is.
             low(:, k) = min(low(:, k), 0.0_wp)
             high(:, k) = max(high(:, k), 0.0_wp)
          end if
@@ -81,7 +83,8 @@ contains
       end do
    end function largest_length
 
-   !> The largest rate, or 1 where nothing moves or no bound exists: it chooses digits, nothing else.
+   !> The largest rate of the drives, in rad per unit of time; rates of length are divided by the characteristic
+   !> `length`. 1 where nothing moves or no bound exists: it chooses printed digits, nothing else.
    pure real(wp) function characteristic_rate(m, length) result(rate)
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: length
@@ -90,8 +93,7 @@ contains
       if (.not. (rate > 0.0_wp .and. rate <= huge(rate))) rate = 1.0_wp
    end function characteristic_rate
 
-   !> The largest rate of any drive in the time asked for, in rad per time unit; rates of length are divided by the
-   !> characteristic `length`. An estimate: `law_bounds` has true bounds.
+   !> The same, 0 or infinite where the above is 1.
    pure real(wp) function largest_rate(m, length) result(rate)
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: length
@@ -108,54 +110,17 @@ contains
       end do
    end function largest_rate
 
-   !> The power of two next below `x`: dividing by it is exact.
+   !> The largest power of two that is not above `x` > 0: division by it is exact.
    pure real(wp) function power_of_two(x) result(p)
       real(wp), intent(in) :: x
 
       p = scale(1.0_wp, exponent(x) - 1)
    end function power_of_two
 
-   pure function ground_place(position, offset) result(place)
-      real(wp), intent(in) :: position(3), offset(2)
-      real(wp) :: place(2)
-
-      place = position(:2) + [offset(1)*cos(position(3)) - offset(2)*sin(position(3)), &
-         offset(1)*sin(position(3)) + offset(2)*cos(position(3))]
-   end function ground_place
-
+   !> Whether the coordinate of `drive` is a length, not an angle.
    pure logical function is_length(drive)
       type(drive_t), intent(in) :: drive
 
       is_length = any(drive%kind == [drive_x, drive_y, drive_slide])
    end function is_length
-
-   !> The largest |rate| of one drive for |time| <= t.
-   pure real(wp) function drive_rate(drive, t) result(rate)
-      type(drive_t), intent(in) :: drive
-      real(wp), intent(in) :: t
-      integer :: i
-
-      rate = abs(drive%polynomial(2)) + abs(drive%polynomial(3))*t
-      if (.not. allocated(drive%terms)) return
-      do i = 1, size(drive%terms)
-         rate = rate + term_rate(drive%terms(i), t)
-      end do
-   end function drive_rate
-
-   pure real(wp) function term_rate(term, t) result(rate)
-      type(term_t), intent(in) :: term
-      real(wp), intent(in) :: t
-
-      rate = 0.0_wp
-      select case (term%kind)
-      case (term_harmonic)
-         rate = abs(term%r(1)*term%r(2))
-      case (term_power)
-         if (t > 0.0_wp) rate = abs(term%r(1)*term%r(2))*t**(term%r(2) - 1.0_wp)
-      case (term_table)
-         associate (x => term%knots, y => term%values, n => size(term%knots))
-            rate = maxval(abs((y(2:) - y(:n - 1))/(x(2:) - x(:n - 1))))
-         end associate
-      end select
-   end function term_rate
 end module scales

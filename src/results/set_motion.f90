@@ -4,8 +4,7 @@ module set_motion
    use mechanism, only: mechanism_t
    use motion, only: motion_t, new_motion, mark_none
    use diagnostics, only: diagnostic_t
-   use part_mechanism, only: part_t
-   use independent, only: parts_t, find_parts
+   use independent, only: part_t, parts_t, find_parts
    use error_estimate, only: error_estimate_t
    implicit none
    private
