@@ -37,8 +37,8 @@ module command_line
       '  --time               the time of a step, in place of the listing', &
       '  --ruler              prints an empty card with its columns', &
       '  --help, --version', &
-      'Exit status: 0 every step solved; 1 deck or command refused;', &
-      '2 listing complete, at least one step marked; 3 file, memory or disk.', &
+      'Exit status: 0 every instant solved; 1 deck or command rejected;', &
+      '2 listing complete, an instant flagged; 3 error of file, memory or disk.', &
       'Real numbers: '//wp_name//'.']
 
 contains

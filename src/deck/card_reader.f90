@@ -1,8 +1,8 @@
-!> From a card to its labels, whole number and reals. Every field is checked; its meaning is left to others.
+!> Reads a card to its labels, whole number and reals. Every field is checked; deck_... and card_sets give it a meaning.
 module card_reader
    use kinds, only: wp, label_length
    use cards, only: card_t, field_t, card_fields, wide_fields, card_name, label_a, label_c, field_text, first_column, &
-      card_columns, forms, form_name, form_unknown, form_title, form_add, find_form, nearest_form
+      card_columns, forms, form_name, form_unknown, form_title, reals_of, find_form, nearest_form
    use input_errors, only: error_code_t, input_errors_t, add_error, add_field_error, error_count, is_full, max_power, &
       card_unknown, card_lower_case, card_indented, past_last_column, tab_character, control_character, &
       foreign_character, border_crossed, field_unused, field_blank, label_blank_inside, star_no_reals, star_second, &
@@ -12,31 +12,31 @@ module card_reader
    use numerals, only: whole
    implicit none
    private
-   public :: parsed_card_t, read_card, read_star, reals_taken
+   public :: parsed_card_t, read_card, read_star
 
-   !> A card as it was read. It is kept even if it is wrong, so that its names are known to other cards.
+   !> A card as it was read. It is kept even if it is wrong, so that other cards find its names.
    type :: parsed_card_t
       type(card_t) :: card
       type(card_t), allocatable :: star         !< the `*` card below it
-      integer :: form = form_unknown
-      logical :: valid = .true.                 !< no error in it, nor in its `*` card
+      integer :: form = form_unknown            !< its place in `forms`
+      logical :: valid = .true.                 !< it and its `*` card have no error of their own
       logical :: names_certain = .true.         !< its form and labels are what was meant, valid or not
       character(label_length) :: label(label_a:label_c) = ''
-      integer :: whole = 0
-      logical :: whole_given = .false.
-      real(wp) :: real(3) = 0.0_wp              !< 0 where the field is blank
+      integer :: whole = 0                      !< the whole number in a label field
+      logical :: whole_given = .false.          !< that field is not blank
+      real(wp) :: real(3) = 0.0_wp              !< in the deck's units; 0 where the field is blank
       logical :: given(3) = .false.             !< which of them are not blank
-      logical :: on_star(3) = .false.           !< which of them the `*` card gives
-      integer :: drive = 0, term = 0            !< the first card of a term: its place in the drives and their terms
+      logical :: on_star(3) = .false.           !< which of them are on the `*` card
+      integer :: drive = 0, term = 0            !< the first card of a term: the numbers of drive and term; 0: any other
    end type parsed_card_t
 
-   !> Decks hold lengths, angles and times: numbers outside these bounds have no use, and their squares would leave the
-   !> range of reals.
+   !> Bounds of lengths, angles and times. Numbers beyond them have no use, and their squares would leave the range of
+   !> reals.
    real(wp), parameter :: max_real = 10.0_wp**max_power, min_real = 10.0_wp**(-max_power)
 
 contains
 
-   !> Reads `card`, which is not a `*` card, to `parsed`. Errors go to `errors`, in the order of the columns.
+   !> Reads `card`, which is not a `*` card, to `parsed`. Errors are added to `errors`, in the order of the columns.
    subroutine read_card(card, parsed, errors)
       type(card_t), intent(in) :: card
       type(parsed_card_t), intent(out) :: parsed
@@ -66,7 +66,7 @@ contains
       parsed%valid = error_count(errors) == before
    end subroutine read_card
 
-   !> Reads the `*` card `card`, which gives reals of the card `above` it, to `above`. Errors go to `errors`.
+   !> Reads the `*` card `card` to `above`, the card above it, whose reals it gives. Errors are added to `errors`.
    subroutine read_star(card, above, errors)
       type(card_t), intent(in) :: card
       type(parsed_card_t), intent(inout) :: above
@@ -82,29 +82,19 @@ contains
          call add_field_error(errors, card_unknown, card, card_fields(card_name))
       else if (allocated(above%star)) then
          call add_field_error(errors, star_second, card, card_fields(card_name))
-      else if (above%form /= form_unknown) then
-         if (reals_taken(above) == 0) then
-            call add_field_error(errors, star_no_reals, card, card_fields(card_name))
-         else
-            call read_wide_fields(card, above, errors)
-         end if
+      else if (above%form == form_unknown) then
+         continue
+      else if (reals_of(above%form, above%label(label_a)) == 0) then
+         call add_field_error(errors, star_no_reals, card, card_fields(card_name))
+      else
+         call read_wide_fields(card, above, errors)
       end if
       if (allocated(above%star)) return
       above%star = card
       above%valid = above%valid .and. error_count(errors) == before
    end subroutine read_star
 
-   !> How many of the real fields the card takes.
-   pure integer function reals_taken(parsed) result(taken)
-      type(parsed_card_t), intent(in) :: parsed
-
-      taken = 0
-      if (parsed%form == form_unknown) return
-      taken = forms(parsed%form)%reals
-      if (parsed%form == form_add .and. any(parsed%label(label_a) == ['POWER', 'TABLE'])) taken = 2
-   end function reals_taken
-
-   !> Only printable ASCII and nothing past column 80: the first violation is an error. `clean`: the 80 columns are
+   !> Adds the first error of a character that is not printable ASCII or is past column 80. `clean`: columns 1 to 80 are
    !> printable ASCII.
    subroutine check_characters(card, clean, errors)
       type(card_t), intent(in) :: card
@@ -130,7 +120,7 @@ contains
       call add_error(errors, code, card, field, column, field_text(card, field))
    end subroutine check_characters
 
-   !> The error of a name that no card has. `form` is the form that was probably meant, or form_unknown.
+   !> Adds the error of a card name that does not exist. `form`: the form that was probably meant, or form_unknown.
    subroutine guess_form(card, form, errors)
       type(card_t), intent(in) :: card
       integer, intent(out) :: form
@@ -153,11 +143,11 @@ contains
       call add_field_error(errors, code, card, card_fields(card_name), hint)
    end subroutine guess_form
 
-   !> Marks in `cut` the fields of `fields` (in the order of their columns, each ending where the next one
-   !> begins) whose text is cut by a border; each is an error. Text is cut if it does not begin with its field
-   !> and runs on behind the border, or if it is one real number only together with what stands there; the
-   !> latter is asked where `numeric(i)`: field i may hold the beginning of a number. A full label beside
-   !> a full label is no cut, nor are two full reals that cannot be one.
+   !> Sets `cut` for the `fields` (in the order of their columns, each ending where the next one begins) whose text is
+   !> cut by a border, and adds an error for each border. Text is cut if it does not begin at its field and continues
+   !> beyond the border. It is also cut if it is a real number together with what follows the border; that is checked
+   !> where `numeric(i)`: field i may hold the beginning of a number. Two full labels side by side are not cut, nor are
+   !> two full reals that cannot be one number.
    subroutine find_cuts(card, fields, numeric, cut, errors)
       type(card_t), intent(in) :: card
       type(field_t), intent(in) :: fields(:)
@@ -174,7 +164,7 @@ contains
          if (cut(i) .or. card%text(border:border) == ' ' .or. card%text(border + 1:border + 1) == ' ') cycle
          start = fields(i)%first + index(card%text(fields(i)%first:border), ' ', back=.true.)
          finish = border + index(card%text(border + 1:fields(i + 1)%last)//' ', ' ') - 1
-         ! Two numbers, each in a field that it fills, may touch; the first may have a blank in the place of a plus.
+         ! Two numbers that fill their fields may touch; the first may have a blank in place of a plus sign.
          if (start <= fields(i)%first + merge(1, 0, numeric(i))) then
             if (.not. numeric(i)) cycle
             call read_real(card%text(start:finish), value, error, place)
@@ -186,7 +176,7 @@ contains
       end do
    end subroutine find_cuts
 
-   !> The labels and the whole number of a card. `cut`: which label fields are no labels, as an error says already.
+   !> Reads the labels and the whole number of `parsed`. `cut`: label fields that have an error already.
    subroutine read_labels(parsed, cut, errors)
       type(parsed_card_t), intent(inout) :: parsed
       logical, intent(in) :: cut(label_a:label_c)
@@ -215,7 +205,7 @@ contains
       end do
    end subroutine read_labels
 
-   !> The reals of a `*` card.
+   !> Reads the reals of the `*` card `card` to the card `above` it.
    subroutine read_wide_fields(card, above, errors)
       type(card_t), intent(in) :: card
       type(parsed_card_t), intent(inout) :: above
@@ -239,7 +229,7 @@ contains
       end do
    end subroutine read_wide_fields
 
-   !> Real number `i` of `parsed` from `field` of `card`, which is its own card or the `*` card below.
+   !> Reads real number `i` of `parsed` from `field` of `card`, which is its own card or the `*` card below it.
    subroutine read_real_field(parsed, card, field, i, errors)
       type(parsed_card_t), intent(inout) :: parsed
       type(card_t), intent(in) :: card
@@ -251,7 +241,7 @@ contains
 
       if (card%text(field%first:field%last) == '') return
       parsed%given(i) = .true.
-      if (i > reals_taken(parsed)) then
+      if (i > reals_of(parsed%form, parsed%label(label_a))) then
          call add_field_error(errors, field_unused, card, field)
          return
       end if

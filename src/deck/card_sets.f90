@@ -1,34 +1,36 @@
-!> One set of computations while it is read: its cards, the mechanism made of them at END, the deck's errors.
-!> A name may be used before the card that defines it, so names are looked up only at END.
+!> One set of computations while it is read: its cards, the deck's errors, and the mechanism that is built at END: here
+!> its links, points and pairs. A name may be used before the card that defines it, so names are looked up only at END.
 module card_sets
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_link, request_pair
-   use cards, only: form_end, card_fields, wide_fields, label_a, label_c, real_1, real_2, real_3
+   use mechanism, only: mechanism_t, link_t, point_t, pair_t, pair_revolute, pair_prismatic, request_link, &
+      request_point, request_pair
+   use cards, only: card_fields, wide_fields, label_a, label_b, label_c, real_1, real_2, real_3, form_ground, &
+      form_link, form_point, form_revolute, form_prism, form_end
    use card_reader, only: parsed_card_t
    use failures, only: failure_t, fail, status_system
-   use input_errors, only: error_code_t, input_errors_t, add_field_error, link_unknown, point_unknown, &
-      pair_unknown, name_repeated
+   use input_errors, only: error_code_t, input_errors_t, add_field_error, link_unknown, point_unknown, pair_unknown, &
+      name_repeated, pair_one_link, pair_grounds
    use names, only: name_table_t, put_name, find_name
    use numerals, only: whole
    implicit none
    private
-   public :: card_set_t, begin_set, append_card, cards_of, define_name, look_up, match_word, add_card_error
+   public :: card_set_t, begin_set, append_card, build_bodies, look_up, match_word, add_card_error
 
    !> The links, the points or the pairs of a set.
    type :: named_t
-      integer, allocatable :: card(:)               !< the cards that define them
+      integer, allocatable :: card(:)               !< the numbers of the cards that define them
       type(name_table_t) :: table                   !< from their names to their places in `card`
    end type named_t
 
    type :: card_set_t
-      integer :: count = 0
-      type(parsed_card_t), allocatable :: cards(:)  !< (count), with room behind
+      integer :: count = 0                          !< cards so far
+      type(parsed_card_t), allocatable :: cards(:)  !< (count) and room for more
       integer :: number_of(0:form_end) = 0          !< cards of each form
-      logical :: names_certain = .true.             !< of every card: no missing name may be one misread
+      logical :: names_certain = .true.             !< of every card: no unknown name can be one that was misread
       real(wp) :: angle_unit = 1.0_wp               !< the deck's unit of angles in radians
       type(named_t) :: named(request_link:request_pair)
       type(mechanism_t) :: mechanism
-      type(input_errors_t) :: errors                !< of the deck up to here
+      type(input_errors_t) :: errors                !< all errors of the deck so far
    end type card_set_t
 
    integer, parameter :: first_room = 64
@@ -78,24 +80,97 @@ contains
       set%names_certain = set%names_certain .and. card%names_certain
    end subroutine append_card
 
-   !> The places of all cards of some forms, in the order of the deck.
-   pure function cards_of(set, forms_asked) result(places)
+   !> Builds the links, points and pairs of `set`%mechanism, each kind in the order of its cards. Repeated and unknown
+   !> names are errors, and so are pairs that do not join two links.
+   subroutine build_bodies(set)
+      type(card_set_t), intent(inout) :: set
+      integer :: n
+
+      set%named(request_link)%card = cards_of(set, [form_ground, form_link])
+      set%named(request_point)%card = cards_of(set, [form_point])
+      set%named(request_pair)%card = cards_of(set, [form_revolute, form_prism])
+      allocate (set%mechanism%links(size(set%named(request_link)%card)))
+      allocate (set%mechanism%points(size(set%named(request_point)%card)))
+      allocate (set%mechanism%pairs(size(set%named(request_pair)%card)))
+      do n = 1, size(set%mechanism%links)
+         call build_link(set, n)
+      end do
+      do n = 1, size(set%mechanism%points)
+         call build_point(set, n)
+      end do
+      do n = 1, size(set%mechanism%pairs)
+         call build_pair(set, n)
+      end do
+   end subroutine build_bodies
+
+   !> Link number `n`, of a GROUND or LINK card.
+   subroutine build_link(set, n)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: n
+
+      associate (card => set%cards(set%named(request_link)%card(n)))
+         set%mechanism%links(n) = link_t(name=card%label(label_a), ground=card%form == form_ground, &
+            position=card%real*[1.0_wp, 1.0_wp, set%angle_unit])
+      end associate
+      call define_name(set, request_link, n, label_a)
+   end subroutine build_link
+
+   !> Point number `n`, of a POINT card. The links are there.
+   subroutine build_point(set, n)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: n
+      integer :: k, link
+
+      k = set%named(request_point)%card(n)
+      call define_name(set, request_point, n, label_a)
+      call look_up(set, request_link, k, label_b, link)
+      set%mechanism%points(n) = point_t(name=set%cards(k)%label(label_a), link=link, offset=set%cards(k)%real(1:2))
+   end subroutine build_point
+
+   !> Pair number `n`, of a REVOLUTE or PRISM card. The points are there. It must join two links, not both of them
+   !> ground.
+   subroutine build_pair(set, n)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: n
+      integer :: k, i, j
+
+      k = set%named(request_pair)%card(n)
+      call look_up(set, request_point, k, label_a, i)
+      call look_up(set, request_point, k, label_b, j)
+      associate (card => set%cards(k))
+         set%mechanism%pairs(n) = pair_t(kind=merge(pair_revolute, pair_prismatic, card%form == form_revolute), &
+            name=card%label(label_c), point_i=i, point_j=j, alpha=card%real(1)*set%angle_unit, offset=card%real(2), &
+            beta=card%real(3)*set%angle_unit)
+      end associate
+      call define_name(set, request_pair, n, label_c)
+      if (i == 0 .or. j == 0) return
+      i = set%mechanism%points(i)%link
+      j = set%mechanism%points(j)%link
+      if (i == 0 .or. j == 0) return
+      if (i == j) then
+         call add_card_error(set, pair_one_link, k, label_c, trim(set%mechanism%links(i)%name))
+      else if (set%mechanism%links(i)%ground .and. set%mechanism%links(j)%ground) then
+         call add_card_error(set, pair_grounds, k, label_c)
+      end if
+   end subroutine build_pair
+
+   !> The numbers of all cards of the forms `forms_asked`, in the order of the deck.
+   pure function cards_of(set, forms_asked) result(list)
       type(card_set_t), intent(in) :: set
       integer, intent(in) :: forms_asked(:)
-      integer :: places(sum(set%number_of(forms_asked)))
+      integer :: list(sum(set%number_of(forms_asked)))
       integer :: k, n
 
       n = 0
       do k = 1, set%count
-         if (n == size(places)) return
          if (all(set%cards(k)%form /= forms_asked)) cycle
          n = n + 1
-         places(n) = k
+         list(n) = k
       end do
    end function cards_of
 
-   !> Enters the name that label `i` (label_a to label_c) of the card of link, point or pair (`kind`) number `n` gives.
-   !> A name that is there already is an error.
+   !> Enters the name in label `i` (label_a to label_c) of the card of link, point or pair (`kind`) number `n`. A name
+   !> that is there already is an error.
    subroutine define_name(set, kind, n, i)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: kind, n, i
@@ -108,8 +183,9 @@ contains
       call add_card_error(set, name_repeated, k, i, whole(set%cards(set%named(kind)%card(earlier))%card%number))
    end subroutine define_name
 
-   !> The number `n` of the link, point or pair (`kind`) that label `i` (label_a to label_c) of card `k` names; 0 if the
-   !> label is blank, an error of its own, or unknown: an error unless a card that may define it could not be read.
+   !> The number `n` of the link, point or pair (`kind`) that label `i` (label_a to label_c) of card `k` names. 0: the
+   !> label is blank, which is an error of its own, or unknown, an error unless a card that could define it was not
+   !> understood.
    subroutine look_up(set, kind, k, i, n)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: kind, k, i
@@ -121,8 +197,8 @@ contains
       if (n == 0 .and. set%names_certain) call add_card_error(set, unknown(kind), k, i)
    end subroutine look_up
 
-   !> The place in `words` of label A of card `k`; 0 if it is none of them, which is the error `code` of a card without
-   !> other errors.
+   !> The place in `words` of label A of card `k`; 0 if it is none of them: for a card without other errors, that is the
+   !> error `code`.
    subroutine match_word(set, k, words, code, place)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: k
@@ -134,7 +210,7 @@ contains
       if (place == 0 .and. set%cards(k)%valid) call add_card_error(set, code, k, label_a)
    end subroutine match_word
 
-   !> The error `code` about `field` (card_name, label_a to real_3) of card `k`; a real may stand on its `*` card.
+   !> Adds the error `code` about `field` (card_name, label_a to real_3) of card `k`; a real may be on its `*` card.
    !> `more` ends the sentence.
    subroutine add_card_error(set, code, k, field, more)
       type(card_set_t), intent(inout) :: set

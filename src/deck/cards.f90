@@ -1,5 +1,5 @@
-!> One card: its 80 columns, the fields by column, and the forms of cards: which fields each card takes. Fields
-!> and forms are declared here and nowhere else.
+!> One card: its 80 columns, its fields by column, and the forms of cards, that is which fields each card takes. Fields
+!> and forms are declared here and nowhere else: a new card is one enumerator and one line of `forms`.
 module cards
    use kinds, only: label_length
    use failures, only: capitals
@@ -8,7 +8,7 @@ module cards
    public :: card_t, field_t, card_columns, card_fields, wide_fields, title_field
    public :: card_name, label_a, label_b, label_c, real_1, real_2, real_3
    public :: field_text, first_column, ruler_card, is_passed_over
-   public :: forms, form_name, find_form, nearest_form
+   public :: forms, form_name, find_form, nearest_form, reals_of
    public :: form_unknown, form_title, form_units, form_lang, form_ground, form_link, form_point, form_revolute
    public :: form_prism, form_drive, form_add, form_time, form_at, form_method, form_print, form_branch, form_end
 
@@ -16,15 +16,15 @@ module cards
    integer, parameter :: card_columns = 80
 
    type :: card_t
-      integer :: number = 0                 !< of the line in the deck, from 1
+      integer :: number = 0                 !< number of its line in the deck, from 1
       integer :: overrun = 0                !< first column past 80 that is not blank; 0: none
-      character(card_columns) :: text = ''
+      character(card_columns) :: text = ''  !< its columns
       character(24) :: beyond = ''          !< the beginning of the text from column `overrun` on
    end type card_t
 
    type :: field_t
-      character(8) :: name = ''
-      integer :: first = 1, last = 0
+      character(8) :: name = ''             !< as messages and the ruler show it
+      integer :: first = 1, last = 0        !< columns
    end type field_t
 
    !> The fields of a card in the order of their columns: field i + 1 begins where field i ends.
@@ -39,23 +39,31 @@ module cards
       [field_t('REAL-1', 9, 32), field_t('REAL-2', 33, 56), field_t('REAL-3', 57, 80)]
    type(field_t), parameter :: title_field = field_t('TITLE', 9, 80)
 
-   !> What a card takes. `labels` has a letter for each label field: L for a label, W for a whole number, a small letter
-   !> where the field may be blank, - where it must be.
+   !> The fields that a card takes.
    type :: form_t
+      !> A letter for each label field: L for a label, W for a whole number, a small letter where the field may be
+      !> blank, - where it must be.
       character(3) :: labels = '---'
-      integer :: reals = 0           !< the first so many real fields are taken
-      logical :: once = .false.      !< at most one in a set
-      character(78) :: layout = ''   !< the card's name, then the contents of each field in its columns
+      integer :: reals = 0           !< number of real fields, from REAL-1 on
+      logical :: once = .false.      !< at most one such card in a set
+      character(78) :: layout = ''   !< the name of the card, then what each field holds, in its columns
    end type form_t
 
-   !> A card's form is its place in `forms`.
+   !> A card that takes fewer reals if its label A holds a certain word.
+   type :: exception_t
+      integer :: form = 0
+      character(label_length) :: word = ''
+      integer :: reals = 0
+   end type exception_t
+
+   !> The form of a card is its place in `forms`.
    enum, bind(c)
       enumerator :: form_unknown = 0, form_title, form_units, form_lang, form_ground, form_link, form_point
       enumerator :: form_revolute, form_prism, form_drive, form_add, form_time, form_at, form_method, form_print
       enumerator :: form_branch, form_end
    end enum
 
-   !> The text of TITLE is no label. ADD takes two or three reals, which depends on its label A.
+   !> The text of TITLE is not a label.
    type(form_t), parameter :: forms(form_end) = [ &
       form_t('---', 0, .true.,  'TITLE   TEXT, COLUMNS 9 TO 80'), &
       form_t('lll', 0, .true.,  'UNITS   LENGTH  RAD/DEG TIME'), &
@@ -73,6 +81,8 @@ module cards
       form_t('Llw', 0, .false., 'PRINT   KIND    NAME    EVERY'), &
       form_t('l--', 1, .false., 'BRANCH  LINK                    T'), &
       form_t('---', 0, .false., 'END')]
+   type(exception_t), parameter :: exceptions(*) = &
+      [exception_t(form_add, 'POWER', 2), exception_t(form_add, 'TABLE', 2)]
 
 contains
 
@@ -93,7 +103,7 @@ contains
       column = field%first + max(verify(card%text(field%first:field%last), ' '), 1) - 1
    end function first_column
 
-   !> Whether `card` is a comment ($ in column 1) or blank.
+   !> Whether `card` is a comment ($ in column 1) or blank: such cards are skipped.
    pure logical function is_passed_over(card)
       type(card_t), intent(in) :: card
 
@@ -101,7 +111,7 @@ contains
       if (.not. is_passed_over) is_passed_over = card%overrun == 0 .and. card%text == ''
    end function is_passed_over
 
-   !> The comment card that shows the columns of every field.
+   !> The comment card that shows the columns of all fields.
    pure function ruler_card() result(text)
       character(card_columns) :: text
       type(field_t) :: f
@@ -116,14 +126,28 @@ contains
       text(1:5) = '$'//card_fields(card_name)%name(1:4)
    end function ruler_card
 
-   !> The name of the cards of a form.
+   !> How many real fields a card of `form` takes whose label A is `word`; form_unknown: none.
+   pure integer function reals_of(form, word) result(taken)
+      integer, intent(in) :: form
+      character(*), intent(in) :: word
+      integer :: i
+
+      taken = 0
+      if (form == form_unknown) return
+      taken = forms(form)%reals
+      do i = 1, size(exceptions)
+         if (exceptions(i)%form == form .and. exceptions(i)%word == word) taken = exceptions(i)%reals
+      end do
+   end function reals_of
+
+   !> The card name of a form.
    pure character(label_length) function form_name(form)
       integer, intent(in) :: form
 
       form_name = forms(form)%layout(:label_length)
    end function form_name
 
-   !> The form of the card `name`, or form_unknown.
+   !> The form of the cards of the name `name`, or form_unknown.
    pure integer function find_form(name) result(form)
       character(*), intent(in) :: name
 
@@ -132,7 +156,8 @@ contains
       end do
    end function find_form
 
-   !> The form whose name is at most two letters away from `name`, and less than half of its own; or form_unknown.
+   !> The form whose name differs from `name` by at most two letters and by less than half of its own letters; otherwise
+   !> form_unknown.
    pure integer function nearest_form(name) result(nearest)
       character(*), intent(in) :: name
       integer :: form, distance, least
@@ -147,7 +172,8 @@ contains
       end do
    end function nearest_form
 
-   !> Fewest insertions, deletions and replacements of letters that turn `a` into `b` (Levenshtein).
+   !> The smallest number of insertions, deletions and replacements of letters that make `b` of `a` (Levenshtein
+   !> distance).
    pure integer function edits(a, b)
       character(*), intent(in) :: a, b
       integer :: row(0:len(b)), i, j, corner, above

@@ -1,40 +1,46 @@
-!> From a card deck to sets of computations. The whole deck is read and every error is reported;
-!> nothing is computed from a deck that has one.
+!> Reads a card deck to sets of computations. The whole deck is read and all its errors are reported; nothing is
+!> computed from a deck with an error.
 module deck
-   use mechanism, only: mechanism_t
+   use kinds, only: label_length
+   use mechanism, only: mechanism_t, driven_kinds, drive_relangle, request_link, request_point, method_words, &
+      method_newton
    use card_reader, only: parsed_card_t, read_card, read_star
-   use card_sets, only: card_set_t, begin_set, append_card
-   use cards, only: card_t, card_fields, card_name, is_passed_over, form_end
-   use deck_bodies, only: build_bodies
-   use deck_checks, only: check_missing, check_unused, check_instants
-   use deck_drives, only: build_drives
-   use deck_echo, only: build_echo
+   use card_sets, only: card_set_t, begin_set, append_card, build_bodies, add_card_error
+   use cards, only: card_t, card_fields, wide_fields, card_name, label_a, real_1, field_text, is_passed_over, &
+      form_name, reals_of, form_title, form_units, form_link, form_time, form_at, form_method, form_print, form_end
+   use deck_drives, only: build_drives, check_terms
    use deck_options, only: build_options, build_requests, build_branches
    use deck_source, only: source_t, open_source, next_card, close_source
    use failures, only: failure_t, fail, status_rejected
    use input_errors, only: add_field_error, add_deck_error, error_count, error_report, deck_empty, deck_long, &
-      end_missing, set_empty, star_first
+      end_missing, set_empty, star_first, link_missing, time_missing, link_unused, point_unused
    use numerals, only: whole
    implicit none
    private
    public :: read_deck
 
-   !> Cards of a deck, comments and blank cards included.
+   !> The largest number of cards, with comments and blank cards.
    integer, parameter :: max_cards = 2000000
 
    !> What has been read so far.
    type :: progress_t
-      type(mechanism_t), allocatable :: sets(:)   !< (closed), with room behind
-      integer :: closed = 0
-      type(card_set_t) :: set                     !< the open one, and the errors of the deck
-      integer :: errors_before = 0                !< of the deck, before the open set
+      type(mechanism_t), allocatable :: sets(:)   !< (closed) and room for more
+      integer :: closed = 0                       !< number of sets that have their END
+      type(card_set_t) :: set                     !< the open set, and the errors of the deck
+      integer :: errors_before = 0                !< errors of the deck before the open set
    end type progress_t
+
+   !> The echo: its characters in a line, and in a real.
+   integer, parameter :: line_length = 119, real_width = 25
+   !> Column of the first label, column of the first real, and columns from one label to the next.
+   integer, parameter :: label_column = 10, real_column = 37, label_step = 9
+   character(*), parameter :: default_mark = '(DEFAULT)'
 
 contains
 
-   !> Reads the deck in the file `path` ('' or '-': standard input).
-   !> `sets`: (number of sets), empty on any failure. `report`: all error messages, lines joined by
-   !> new_line('a'), empty if there are none. Errors: status_rejected (the report says why) or status_system.
+   !> Reads the deck in the file `path` ('' or '-': standard input). `sets` (number of sets): of size 0 on any failure.
+   !> `report`: all error messages, lines joined by new_line('a'); '' if there are none. Errors: status_rejected
+   !> (`report` says why) or status_system.
    subroutine read_deck(path, sets, report, failure)
       character(*), intent(in) :: path
       type(mechanism_t), allocatable, intent(out) :: sets(:)
@@ -54,7 +60,7 @@ contains
       report = error_report(progress%set%errors)
       errors = error_count(progress%set%errors)
       if (.not. allocated(failure) .and. errors > 0) &
-         call fail(failure, status_rejected, 'THE DECK IS REFUSED, ERRORS: '//whole(errors))
+         call fail(failure, status_rejected, 'THE DECK IS REJECTED, ERRORS: '//whole(errors))
       if (allocated(failure)) progress%closed = 0
       if (progress%closed == size(progress%sets)) then
          call move_alloc(progress%sets, sets)
@@ -63,7 +69,7 @@ contains
       end if
    end subroutine read_deck
 
-   !> All cards of the deck. Errors: status_system.
+   !> Reads all cards of the deck. Errors: status_system.
    subroutine read_cards(source, progress, failure)
       type(source_t), intent(inout) :: source
       type(progress_t), intent(inout) :: progress
@@ -121,8 +127,8 @@ contains
       end associate
    end subroutine take_card
 
-   !> Makes a mechanism of the cards of the open set, and opens the next. What nothing uses is asked only of a set
-   !> without errors: a card with an error would make others look unused.
+   !> Builds the mechanism of the open set from its cards, and opens the next set. Only a set without errors is checked
+   !> for what nothing uses: a card with an error could make others look unused.
    subroutine close_set(progress)
       type(progress_t), intent(inout) :: progress
 
@@ -134,17 +140,17 @@ contains
          call build_branches(set)
          if (error_count(set%errors) == progress%errors_before) then
             call check_unused(set)
-            call check_instants(set)
+            call check_terms(set)
             call build_echo(set)
          end if
          progress%errors_before = error_count(set%errors)
       end associate
-      call keep_set(progress)
+      call append_set(progress)
       call begin_set(progress%set, progress%closed + 1)
    end subroutine close_set
 
-   !> Adds the mechanism of the open set to the sets that are closed.
-   subroutine keep_set(progress)
+   !> Appends the mechanism of the open set to the closed ones.
+   subroutine append_set(progress)
       type(progress_t), intent(inout) :: progress
       type(mechanism_t), allocatable :: larger(:)
 
@@ -155,5 +161,136 @@ contains
       end if
       progress%closed = progress%closed + 1
       progress%sets(progress%closed) = progress%set%mechanism
-   end subroutine keep_set
+   end subroutine append_set
+
+   !> Adds an error at the END card `closing` of a set without a LINK card or without an instant, unless a card that was
+   !> not understood may be the missing one.
+   subroutine check_missing(set, closing)
+      type(card_set_t), intent(inout) :: set
+      type(card_t), intent(in) :: closing
+
+      if (.not. set%names_certain) return
+      if (set%number_of(form_link) == 0) call add_field_error(set%errors, link_missing, closing, card_fields(card_name))
+      if (sum(set%number_of([form_time, form_at])) == 0) &
+         call add_field_error(set%errors, time_missing, closing, card_fields(card_name))
+   end subroutine check_missing
+
+   !> Adds an error for each link without a pair or a drive, and for each point without a pair, a drive or a PRINT card.
+   !> The set has no other error.
+   subroutine check_unused(set)
+      type(card_set_t), intent(inout) :: set
+      logical :: link(size(set%mechanism%links)), point(size(set%mechanism%points))
+      integer :: i
+
+      call find_used(set%mechanism, link, point)
+      do i = 1, size(link)
+         if (.not. link(i)) call add_card_error(set, link_unused, set%named(request_link)%card(i), label_a)
+      end do
+      if (set%number_of(form_print) > 0) then
+         associate (requests => set%mechanism%requests)
+            point(pack(requests%subject, requests%kind == request_point)) = .true.
+         end associate
+      end if
+      do i = 1, size(point)
+         if (.not. point(i)) call add_card_error(set, point_unused, set%named(request_point)%card(i), label_a)
+      end do
+   end subroutine check_unused
+
+   !> The links `link` (links) and points `point` (points) of `m` that a pair or a drive uses.
+   pure subroutine find_used(m, link, point)
+      type(mechanism_t), intent(in) :: m
+      logical, intent(out) :: link(:), point(:)
+      integer :: i
+
+      link = .false.
+      point = .false.
+      point(m%pairs%point_i) = .true.
+      point(m%pairs%point_j) = .true.
+      do i = 1, size(m%drives)
+         associate (drive => m%drives(i))
+            if (driven_kinds(drive%kind) == request_point) point(drive%subject) = .true.
+            if (driven_kinds(drive%kind) == request_link) link(drive%subject) = .true.
+            if (drive%kind == drive_relangle) link(drive%second) = .true.
+         end associate
+      end do
+      link(pack(m%points%link, point)) = .true.
+   end subroutine find_used
+
+   !> Builds `set`%mechanism%echo, the cards as they were understood with the values in use: a line for each card but
+   !> TITLE, and one for each default that no card replaces.
+   subroutine build_echo(set)
+      type(card_set_t), intent(inout) :: set
+      integer :: k, n
+
+      associate (m => set%mechanism)
+         allocate (m%echo(set%count + 3))
+         n = 0
+         do k = 1, set%count
+            if (set%cards(k)%form == form_title) cycle
+            n = n + 1
+            m%echo(n) = card_line(set%cards(k), m%length_unit, m%time_unit)
+         end do
+         call add_default(form_units, [m%length_unit, 'RAD     ', m%time_unit])
+         call add_default(form_method, [character(label_length) :: method_words(method_newton), '', ''])
+         call add_default(form_print, [character(label_length) :: 'LINKS', '', '1'])
+         m%echo = m%echo(1:n)
+      end associate
+
+   contains
+
+      !> Adds the line of a form that has no card in the set: its defaults.
+      subroutine add_default(form, labels)
+         integer, intent(in) :: form
+         character(label_length), intent(in) :: labels(3)
+
+         if (set%number_of(form) > 0) return
+         n = n + 1
+         set%mechanism%echo(n) = head_line(form, labels)
+         set%mechanism%echo(n)(line_length - len(default_mark) + 1:) = default_mark
+      end subroutine add_default
+   end subroutine build_echo
+
+   !> The line of one card. A blank real is shown as 0.0, its value; a blank field of AT has none.
+   pure function card_line(card, length_unit, time_unit) result(line)
+      type(parsed_card_t), intent(in) :: card
+      character(label_length), intent(in) :: length_unit, time_unit
+      character(line_length) :: line
+      character(label_length) :: labels(3)
+      character(real_width) :: text
+      integer :: i, column
+
+      labels = card%label
+      if (card%form == form_print .and. labels(3) == '') labels(3) = '1'
+      if (card%form == form_units) then
+         labels(1) = length_unit
+         if (labels(2) == '') labels(2) = 'RAD'
+         labels(3) = time_unit
+      end if
+      line = head_line(card%form, labels)
+      do i = 1, reals_of(card%form, card%label(label_a))
+         if (card%on_star(i)) then
+            text = field_text(card%star, wide_fields(i))
+         else if (card%given(i)) then
+            text = field_text(card%card, card_fields(real_1 + i - 1))
+         else
+            text = merge('   ', '0.0', card%form == form_at)
+         end if
+         column = real_column + (i - 1)*real_width
+         line(column:column + real_width - 1) = text
+      end do
+   end function card_line
+
+   !> The name and the labels of a card, in the columns of the echo.
+   pure function head_line(form, labels) result(line)
+      integer, intent(in) :: form
+      character(label_length), intent(in) :: labels(3)
+      character(line_length) :: line
+      integer :: i, column
+
+      line = form_name(form)
+      do i = 1, 3
+         column = label_column + (i - 1)*label_step
+         line(column:column + label_length - 1) = labels(i)
+      end do
+   end function head_line
 end module deck

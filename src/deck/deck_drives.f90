@@ -1,19 +1,23 @@
-!> The DRIVE and ADD cards of a set.
+!> The DRIVE and ADD cards of a set. A new kind of term is one case of `build_term` and, if it does not exist at all
+!> instants, one of `check_term`.
 module deck_drives
+   use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
-   use mechanism, only: drive_t, term_t, drive_angle, drive_relangle, drive_slide, drive_words, driven_kinds, &
-      term_harmonic, term_power, term_table, term_words, pair_revolute, request_link
+   use mechanism, only: mechanism_t, drive_t, term_t, instant, find_instants, drive_angle, drive_relangle, &
+      drive_slide, drive_words, driven_kinds, term_harmonic, term_power, term_table, term_words, pair_revolute, &
+      request_link
    use card_sets, only: card_set_t, look_up, match_word, add_card_error
    use cards, only: card_name, label_a, label_b, label_c, real_1, form_unknown, form_drive, form_add, form_end
-   use input_errors, only: drive_kind, drive_ground, drive_ground_point, drive_grounds, drive_one_link, &
-      drive_revolute, field_blank, field_unused, add_alone, add_kind, add_blank, table_short, table_order
+   use input_errors, only: error_code_t, drive_kind, drive_ground, drive_ground_point, drive_grounds, drive_one_link, &
+      drive_revolute, field_blank, field_unused, add_alone, add_kind, add_blank, table_short, table_order, &
+      table_range, power_negative, power_zero, power_large
    implicit none
    private
-   public :: build_drives
+   public :: build_drives, check_terms
 
 contains
 
-   !> Makes the drives of `set`%mechanism from the cards; its links, points and pairs are there. Drives of what cannot
+   !> Builds the drives of `set`%mechanism from the cards; its links, points and pairs are there. Drives of what cannot
    !> be driven, ADD cards without a drive and wrong tables are errors.
    subroutine build_drives(set)
       type(card_set_t), intent(inout) :: set
@@ -30,14 +34,14 @@ contains
             call build_terms(set, k, n, drive)
             set%mechanism%drives(n) = drive
          else if (set%cards(k)%form == form_add) then
-            ! A card whose name is wrong may have been a DRIVE.
+            ! A card with a wrong name may have been a DRIVE card.
             if (all(above /= [form_drive, form_add, form_unknown])) call add_card_error(set, add_alone, k, card_name)
          end if
          above = set%cards(k)%form
       end do
    end subroutine build_drives
 
-   !> The kind of the DRIVE card `k`, what it drives, and its polynomial.
+   !> The `drive` of the DRIVE card `k`: its kind, what it drives, and its polynomial.
    subroutine build_drive(set, k, drive)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: k
@@ -60,7 +64,7 @@ contains
       call check_subject(set, k, drive)
    end subroutine build_drive
 
-   !> What the DRIVE card `k` drives can be driven, as far as it is known.
+   !> Adds an error if what the DRIVE card `k` drives cannot be driven, as far as it is known.
    subroutine check_subject(set, k, drive)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: k
@@ -87,7 +91,7 @@ contains
       end if
    end subroutine check_subject
 
-   !> The unit of what `drive` drives: of angles in radians, or 1.
+   !> The unit of the coordinate of `drive`: the deck's unit of angles in radians, or 1 for lengths.
    pure real(wp) function unit_of(set, drive) result(unit)
       type(card_set_t), intent(in) :: set
       type(drive_t), intent(in) :: drive
@@ -95,21 +99,19 @@ contains
       unit = merge(set%angle_unit, 1.0_wp, driven_kinds(drive%kind) == request_link)
    end function unit_of
 
-   !> The terms of drive number `d`, of the ADD cards that follow its card `k`.
+   !> The terms of drive number `d`, from the ADD cards that follow its card `k`.
    subroutine build_terms(set, k, d, drive)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: k, d
       type(drive_t), intent(inout) :: drive
       integer :: i, n, last
 
-      n = 0
-      do last = k + 1, set%count
-         if (set%cards(last)%form /= form_add) exit
-         if (.not. continues_table(set, last)) n = n + 1
+      do last = k, set%count - 1
+         if (set%cards(last + 1)%form /= form_add) exit
       end do
-      allocate (drive%terms(n))
+      allocate (drive%terms(count([(.not. continues_table(set, i), i=k + 1, last)])))
       n = 0
-      do i = k + 1, last - 1
+      do i = k + 1, last
          if (continues_table(set, i)) cycle
          n = n + 1
          set%cards(i)%drive = d
@@ -118,16 +120,18 @@ contains
       end do
    end subroutine build_terms
 
-   !> Whether the ADD card `k` is another row of the table to which the card above it belongs.
+   !> Whether card `k` is another row of the table to which the card above it belongs.
    pure logical function continues_table(set, k)
       type(card_set_t), intent(in) :: set
       integer, intent(in) :: k
 
-      continues_table = set%cards(k - 1)%form == form_add
-      if (continues_table) continues_table = all(set%cards(k - 1:k)%label(label_a) == term_words(term_table))
+      continues_table = .false.
+      if (k > set%count) return
+      continues_table = all(set%cards(k - 1:k)%form == form_add .and. &
+                            set%cards(k - 1:k)%label(label_a) == term_words(term_table))
    end function continues_table
 
-   !> The term that begins with the ADD card `k`. `unit`: of the driven coordinate.
+   !> The `term` that begins with the ADD card `k`. `unit`: that of the driven coordinate.
    subroutine build_term(set, k, unit, term)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: k
@@ -151,7 +155,7 @@ contains
       end associate
    end subroutine build_term
 
-   !> The table whose first row is the ADD card `first`. `unit`: of its values.
+   !> The table whose first row is the ADD card `first`, as `term`. `unit`: that of its values.
    subroutine build_table(set, first, unit, term)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: first
@@ -159,9 +163,9 @@ contains
       type(term_t), intent(inout) :: term
       integer :: k, last
 
-      do last = first, set%count - 1
-         if (set%cards(last + 1)%form /= form_add) exit
-         if (.not. continues_table(set, last + 1)) exit
+      last = first
+      do while (continues_table(set, last + 1))
+         last = last + 1
       end do
       term%kind = term_table
       term%knots = set%cards(first:last)%real(1)
@@ -177,4 +181,84 @@ contains
       end do
       if (last == first) call add_card_error(set, table_short, first, label_a)
    end subroutine build_table
+
+   !> Adds an error for each term that, with its first two derivatives, does not exist at all instants. The set has no
+   !> other error.
+   subroutine check_terms(set)
+      type(card_set_t), intent(inout) :: set
+      real(wp) :: first, last
+      integer :: k
+
+      call find_instants(set%mechanism, first, last)
+      do k = 1, set%count
+         if (set%cards(k)%term > 0) call check_term(set, k, first, last)
+      end do
+   end subroutine check_terms
+
+   !> The term that begins with card `k`, at the instants, which lie between `first` and `last`. t**p exists for t < 0
+   !> if p is a whole number, and with two derivatives at t = 0 if p is 0, 1 or at least 2.
+   subroutine check_term(set, k, first, last)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: k
+      real(wp), intent(in) :: first, last
+
+      associate (term => set%mechanism%drives(set%cards(k)%drive)%terms(set%cards(k)%term))
+         select case (term%kind)
+         case (term_table)
+            ! As doubles: in real128 a double may lie outside by its rounding.
+            if (real(first, dp) < real(term%knots(1), dp)) call add_instant_error(table_range, first)
+            if (real(last, dp) > real(term%knots(size(term%knots)), dp)) call add_instant_error(table_range, last)
+         case (term_power)
+            associate (p => term%r(2))
+               if (first < 0.0_wp .and. abs(p - anint(p)) > 0.0_wp) then
+                  call add_instant_error(power_negative, first)
+               else if (p < 2.0_wp .and. abs(p*(p - 1.0_wp)) > 0.0_wp) then
+                  if (meets_zero(set%mechanism)) call add_instant_error(power_zero, 0.0_wp)
+               end if
+            end associate
+            if (is_large(term, first)) call add_instant_error(power_large, first)
+            if (is_large(term, last)) call add_instant_error(power_large, last)
+         end select
+      end associate
+
+   contains
+
+      !> Adds the error `code` about the instant `t`.
+      subroutine add_instant_error(code, t)
+         type(error_code_t), intent(in) :: code
+         real(wp), intent(in) :: t
+         character(24) :: text
+
+         write (text, '(es13.5e3)') t
+         call add_card_error(set, code, k, label_a, trim(adjustl(text)))
+      end subroutine add_instant_error
+   end subroutine check_term
+
+   !> Whether the power `term`, or a derivative of it, comes near the end of the range of reals at the time `t`.
+   pure logical function is_large(term, t)
+      type(term_t), intent(in) :: term
+      real(wp), intent(in) :: t
+      real(wp), parameter :: max_order = 120.0_wp
+
+      is_large = .false.
+      if (abs(t) <= 0.0_wp .or. abs(term%r(1)) <= 0.0_wp) return
+      associate (p => abs(term%r(2)))
+         is_large = log10(abs(term%r(1))) + 2.0_wp*log10(max(p, 1.0_wp)) + (p + 2.0_wp)*abs(log10(abs(t))) > max_order
+      end associate
+   end function is_large
+
+   !> Whether one of the instants of `m` is t = 0. Those of TIME are evenly spaced: only those next to the place where
+   !> their line crosses zero can be.
+   pure logical function meets_zero(m)
+      type(mechanism_t), intent(in) :: m
+      integer :: k, near
+
+      meets_zero = any(.not. abs(m%at) > 0.0_wp)
+      if (m%steps < 1 .or. meets_zero) return
+      if (min(m%t0, m%t1) > 0.0_wp .or. max(m%t0, m%t1) < 0.0_wp) return
+      near = nint(m%steps*(m%t0/(m%t0 - m%t1)))
+      do k = max(near - 1, 0), min(near + 1, m%steps)
+         if (.not. abs(instant(m, k)) > 0.0_wp) meets_zero = .true.
+      end do
+   end function meets_zero
 end module deck_drives

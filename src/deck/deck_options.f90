@@ -1,4 +1,5 @@
-!> The cards of a set that are no bodies and no drives: TITLE, UNITS, LANG, METHOD, TIME and AT; PRINT; BRANCH.
+!> The cards of a set that define no bodies and no drives: the options TITLE, UNITS, LANG and METHOD, the instants TIME
+!> and AT, and the requests PRINT and BRANCH.
 module deck_options
    use kinds, only: wp
    use constants, only: degree
@@ -15,7 +16,7 @@ module deck_options
    private
    public :: build_options, build_requests, build_branches
 
-   !> Steps of a TIME card: what its field can hold.
+   !> The largest number of steps that the field of a TIME card can hold.
    integer, parameter :: max_steps = 99999999
    !> Relative tolerances allowed: above what rounding permits, below what would be no solution.
    real(wp), parameter :: min_tolerance = min(1.0e-15_wp, 5.0_wp*epsilon(1.0_wp))
@@ -23,19 +24,19 @@ module deck_options
    !> Words that can only be meant as a unit of angles.
    character(7), parameter :: angle_words(*) = [character(7) :: 'DEG', 'RAD', 'GRAD', 'DEGREE', 'DEGREES', 'RADIAN', &
       'RADIANS']
-   !> What PRINT asks for: everything, or the links, points or pairs in the order of their kinds.
+   !> The words of PRINT: 0 for everything, then the kinds request_link, request_point, request_pair.
    character(6), parameter :: print_words(0:3) = ['ALL   ', 'LINKS ', 'POINTS', 'PAIRS ']
 
-   !> The requests so far, and whether each link, point and pair has one.
-   type :: asked_t
+   !> The requests of PRINT so far.
+   type :: request_list_t
       integer :: count = 0
-      type(request_t), allocatable :: requests(:)   !< (count), with room behind
-      logical, allocatable :: asked(:, :)           !< (number, kind)
-   end type asked_t
+      type(request_t), allocatable :: requests(:)   !< (count) and room for more
+      logical, allocatable :: requested(:, :)       !< (number, kind) whether a link, point or pair has a request
+   end type request_list_t
 
 contains
 
-   !> Takes the options and instants of `set`%mechanism, and `set`%angle_unit, from the cards. Repeated cards, unknown
+   !> Sets the options and instants of `set`%mechanism, and `set`%angle_unit, from the cards. Repeated cards, unknown
    !> words and values out of range are errors.
    subroutine build_options(set)
       type(card_set_t), intent(inout) :: set
@@ -63,7 +64,7 @@ contains
       if (set%mechanism%degrees) set%angle_unit = degree
    end subroutine build_options
 
-   !> Some cards may stand only once in a set.
+   !> Adds an error for each repetition of a card that is allowed once in a set.
    subroutine check_repeats(set)
       type(card_set_t), intent(inout) :: set
       integer :: first(size(forms)), form, k
@@ -90,7 +91,7 @@ contains
          if (label(label_c) /= '') m%time_unit = label(label_c)
          m%degrees = label(label_b) == 'DEG'
          if (.not. set%cards(k)%valid) return
-         ! Taken for a length, DEG would leave all angles in radians.
+         ! DEG as the unit of length would leave all angles in radians.
          do i = label_a, label_c, 2
             if (any(label(i) == angle_words)) call add_card_error(set, units_place, k, i)
          end do
@@ -142,8 +143,8 @@ contains
 
       n = 0
       do k = 1, set%count
+         if (set%cards(k)%form /= form_at) cycle
          associate (card => set%cards(k), more => count(set%cards(k)%given))
-            if (card%form /= form_at) cycle
             if (card%valid .and. more == 0) call add_card_error(set, field_blank, k, real_1)
             instants(n + 1:n + more) = pack(card%real, card%given)
             n = n + more
@@ -152,31 +153,33 @@ contains
       set%mechanism%at = instants(:n)
    end subroutine read_instants
 
-   !> Makes `set`%mechanism%requests from the PRINT cards: in their order, each subject once, as the first card asks for
-   !> it; without a PRINT card, the links that move. Unknown words and names and repeated cards are errors.
+   !> Builds `set`%mechanism%requests from the PRINT cards, in their order. For a subject of several cards the first one
+   !> counts. Without a PRINT card, all links that are not ground are requested. Unknown words and names and repeated
+   !> cards are errors.
    subroutine build_requests(set)
       type(card_set_t), intent(inout) :: set
-      type(asked_t) :: list
+      type(request_list_t) :: list
       type(name_table_t) :: seen(0:3)
       integer :: k
 
       associate (sizes => [size(set%mechanism%links), size(set%mechanism%points), size(set%mechanism%pairs)])
          allocate (list%requests(sum(sizes)))
-         allocate (list%asked(maxval(sizes), request_link:request_pair), source=.false.)
+         allocate (list%requested(maxval(sizes), request_link:request_pair), source=.false.)
       end associate
-      if (set%number_of(form_print) == 0) call ask_for_all(set, request_link, 1, list)
+      if (set%number_of(form_print) == 0) call request_all(set, request_link, 1, list)
       do k = 1, set%count
          if (set%cards(k)%form == form_print .and. set%cards(k)%valid) call read_print(set, k, seen, list)
       end do
       set%mechanism%requests = list%requests(:list%count)
    end subroutine build_requests
 
-   !> `seen` holds, for each word of PRINT, the names that were asked for and their cards.
+   !> The PRINT card `k`. `seen` (word): the names of earlier PRINT cards with that word, and the numbers of these
+   !> cards.
    subroutine read_print(set, k, seen, list)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: k
       type(name_table_t), intent(inout) :: seen(0:)
-      type(asked_t), intent(inout) :: list
+      type(request_list_t), intent(inout) :: list
       integer :: every, earlier, place, kind, subject
 
       associate (card => set%cards(k))
@@ -192,50 +195,50 @@ contains
             call add_card_error(set, print_all_name, k, label_b)
          else if (kind == 0) then
             do kind = request_link, request_pair
-               call ask_for_all(set, kind, every, list)
+               call request_all(set, kind, every, list)
             end do
          else if (card%label(label_b) == '') then
             if (size(set%named(kind)%card) == 0 .and. set%names_certain) &
                call add_card_error(set, print_nothing, k, label_a)
-            call ask_for_all(set, kind, every, list)
+            call request_all(set, kind, every, list)
          else
             call look_up(set, kind, k, label_b, subject)
-            if (subject > 0) call ask_for(request_t(kind, subject, every), list)
+            if (subject > 0) call add_request(request_t(kind, subject, every), list)
          end if
       end associate
    end subroutine read_print
 
-   !> Asks for all of a kind; of the links for those that move.
-   subroutine ask_for_all(set, kind, every, list)
+   !> Requests all links, points or pairs (`kind`), but no ground links.
+   subroutine request_all(set, kind, every, list)
       type(card_set_t), intent(in) :: set
       integer, intent(in) :: kind, every
-      type(asked_t), intent(inout) :: list
+      type(request_list_t), intent(inout) :: list
       integer :: i
 
       do i = 1, size(set%named(kind)%card)
          if (kind == request_link) then
             if (set%mechanism%links(i)%ground) cycle
          end if
-         call ask_for(request_t(kind, i, every), list)
+         call add_request(request_t(kind, i, every), list)
       end do
-   end subroutine ask_for_all
+   end subroutine request_all
 
    !> Adds `request` to `list`, unless its subject has one already.
-   subroutine ask_for(request, list)
+   subroutine add_request(request, list)
       type(request_t), intent(in) :: request
-      type(asked_t), intent(inout) :: list
+      type(request_list_t), intent(inout) :: list
 
-      if (list%asked(request%subject, request%kind)) return
-      list%asked(request%subject, request%kind) = .true.
+      if (list%requested(request%subject, request%kind)) return
+      list%requested(request%subject, request%kind) = .true.
       list%count = list%count + 1
       list%requests(list%count) = request
-   end subroutine ask_for
+   end subroutine add_request
 
-   !> Makes `set`%mechanism%choices from the BRANCH cards, in their order; links and options are there. A card that asks
-   !> for the same as an earlier one is an error: it may be meant for the next change point.
+   !> Builds `set`%mechanism%branch_requests from the BRANCH cards, in their order; links and options are there. A card
+   !> with the link and time of an earlier one is an error: it may be meant for the next change point.
    subroutine build_branches(set)
       type(card_set_t), intent(inout) :: set
-      type(branch_request_t) :: branch_requests(set%number_of(form_branch))
+      type(branch_request_t) :: requests(set%number_of(form_branch))
       integer :: card_of(set%number_of(form_branch)), k, n, i
 
       n = 0
@@ -243,29 +246,28 @@ contains
          if (set%cards(k)%form /= form_branch .or. .not. set%cards(k)%valid) cycle
          n = n + 1
          card_of(n) = k
-         call read_branch(set, k, branch_requests(n))
+         call read_branch(set, k, requests(n))
          do i = 1, n - 1
-            if (branch_requests(i)%link /= branch_requests(n)%link .or. abs(branch_requests(i)%t &
-               - branch_requests(n)%t) > 0.0_wp) cycle
+            if (requests(i)%link /= requests(n)%link .or. abs(requests(i)%t - requests(n)%t) > 0.0_wp) cycle
             call add_card_error(set, branch_repeated, k, card_name, whole(set%cards(card_of(i))%card%number))
             exit
          end do
       end do
-      set%mechanism%branch_requests = branch_requests(:n)
+      set%mechanism%branch_requests = requests(:n)
    end subroutine build_branches
 
    !> The BRANCH card `k`.
-   subroutine read_branch(set, k, branch_request)
+   subroutine read_branch(set, k, request)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: k
-      type(branch_request_t), intent(out) :: branch_request
+      type(branch_request_t), intent(out) :: request
 
       if (set%mechanism%method /= method_newton) call add_card_error(set, branch_method, k, card_name)
-      call look_up(set, request_link, k, label_a, branch_request%link)
-      if (branch_request%link > 0) then
-         if (set%mechanism%links(branch_request%link)%ground) call add_card_error(set, branch_ground, k, label_a)
+      call look_up(set, request_link, k, label_a, request%link)
+      if (request%link > 0) then
+         if (set%mechanism%links(request%link)%ground) call add_card_error(set, branch_ground, k, label_a)
       end if
       if (.not. set%cards(k)%given(1)) call add_card_error(set, field_blank, k, real_1)
-      branch_request%t = set%cards(k)%real(1)
+      request%t = set%cards(k)%real(1)
    end subroutine read_branch
 end module deck_options

@@ -1,6 +1,6 @@
-!> The deck's lines as cards, from a file or standard input, each line read once and in bounded memory.
-!> Files, pipes and terminals are read alike, by the system's own read: the Fortran run-time library of GNU takes an
-!> error for the end.
+!> The lines of the deck as cards, from a file or standard input, each read once and in bounded memory. Files, pipes and
+!> terminals are read in the same way, by the system's own read: the Fortran run-time library of GNU takes an error for
+!> the end of the file.
 module deck_source
    use, intrinsic :: iso_c_binding, only: c_int
    use failures, only: failure_t, fail, capitals, status_system
@@ -13,7 +13,7 @@ module deck_source
 
    integer(c_int), parameter :: standard_input = 0
    integer, parameter :: block_length = 65536
-   !> Some editors put this mark in front of a text.
+   !> The mark that some editors put at the beginning of a file.
    character(3), parameter :: byte_order_mark = char(239)//char(187)//char(191)
    character(1), parameter :: line_feed = achar(10), carriage_return = achar(13)
 
@@ -21,10 +21,10 @@ module deck_source
       private
       character(:), allocatable :: name      !< for messages
       integer(c_int) :: descriptor = standard_input
-      integer :: lines = 0                   !< read so far
-      character(:), allocatable :: buffer    !< (block_length)
-      integer :: at = 1, filled = 0          !< the next character to look at, and the last
-      logical :: ended = .false.
+      integer :: lines = 0                   !< lines read so far
+      character(:), allocatable :: buffer    !< (block_length) bytes of the deck
+      integer :: at = 1, filled = 0          !< the next byte of the buffer and the last one
+      logical :: ended = .false.             !< there is no more to read
       logical :: after_return = .false.      !< the last line ended with a carriage return
    end type source_t
 
@@ -57,7 +57,7 @@ contains
       end if
    end subroutine open_source
 
-   !> The next card, or `found` false at the end. A line ends in LF, CR-LF or CR. Errors: status_system.
+   !> Reads the next `card`; `found` is false at the end. A line ends in LF, CR-LF or CR. Errors: status_system.
    subroutine next_card(source, card, found, failure)
       type(source_t), intent(inout) :: source
       type(card_t), intent(out) :: card
@@ -86,7 +86,7 @@ contains
       source%at = source%at + length + 1
    end subroutine next_card
 
-   !> The line feed behind a carriage return belongs to the line before.
+   !> Skips a line feed after a carriage return, which belongs to the line before. `more`: as in have_more.
    subroutine pass_feed(source, more, failure)
       type(source_t), intent(inout) :: source
       logical, intent(out) :: more
@@ -105,7 +105,8 @@ contains
       if (source%descriptor /= standard_input) closed = close_descriptor(source%descriptor)
    end subroutine close_source
 
-   !> There is a character to look at; not `more`: the deck ends, or `failure` says why it cannot be read.
+   !> Reads on if the buffer is used up. `more`: there is a next byte. Otherwise the deck ends, or `failure` says why it
+   !> cannot be read.
    subroutine have_more(source, more, failure)
       type(source_t), intent(inout) :: source
       logical, intent(out) :: more
@@ -119,7 +120,7 @@ contains
       more = source%at <= source%filled
    end subroutine have_more
 
-   !> Reads to the buffer, behind what it holds.
+   !> Reads to the free end of the buffer. Errors: status_system.
    subroutine read_on(source, failure)
       type(source_t), intent(inout) :: source
       type(failure_t), allocatable, intent(out) :: failure
@@ -137,7 +138,7 @@ contains
       end if
    end subroutine read_on
 
-   !> `part` of a line follows column `columns`, which is moved behind it.
+   !> Adds `part` of a line to `card` after the column `columns`, which becomes its last column.
    subroutine note(card, part, columns)
       type(card_t), intent(inout) :: card
       character(*), intent(in) :: part
@@ -147,11 +148,11 @@ contains
       length = max(0, min(len(part), card_columns - columns))
       if (length > 0) card%text(columns + 1:columns + length) = part(:length)
       call note_beyond(card, part(length + 1:), columns + length)
-      ! However long a line is, the count stays a number.
+      ! The number stays in its range however long a line is.
       columns = min(columns + len(part), huge(columns) - block_length)
    end subroutine note
 
-   !> `part` follows column `before`, the last of a card or beyond it; only the beginning of what is not blank is kept.
+   !> Adds to `card` the beginning of the text beyond its last column. `part` follows column `before`.
    subroutine note_beyond(card, part, before)
       type(card_t), intent(inout) :: card
       character(*), intent(in) :: part
@@ -164,7 +165,7 @@ contains
          card%overrun = before + i
          card%beyond = part(i:)
       else
-         ! The part that is known ends at column `before`.
+         ! What is known ends at column `before`.
          known = before - card%overrun + 1
          if (known < len(card%beyond)) card%beyond(known + 1:) = part
       end if

@@ -1,5 +1,5 @@
-!> All that can be wrong with a deck, by number and sentence, and the errors found in one, with pictures of
-!> the cards and a mark under the column. A message is `"text" SENTENCE`, or the sentence alone.
+!> All errors of decks, by number and sentence, and the errors found in one deck, each with a picture of its card and a
+!> mark under the column. A message is `"text" SENTENCE`, or the sentence alone.
 module input_errors
    use kinds, only: wp, label_length
    use cards, only: card_t, field_t, card_columns, field_text, first_column, forms, find_form
@@ -9,21 +9,21 @@ module input_errors
    public :: error_code_t, input_errors_t, add_error, add_field_error, add_deck_error
    public :: error_count, is_full, error_report
 
-   !> A kind of error: its number, its sentence, and whether the layout of the card is shown below it.
+   !> A kind of error.
    type :: error_code_t
-      integer :: number = 0
+      integer :: number = 0              !< printed as E and three digits; 0: no error
       character(72) :: sentence = ''
-      logical :: shows_layout = .false.
+      logical :: shows_layout = .false.  !< the layout of the card is printed below the message
    end type error_code_t
 
    !> The errors of a deck.
    type :: input_errors_t
       private
-      integer :: count = 0
-      character(:), allocatable :: lines
+      integer :: count = 0               !< with those that are not printed
+      character(:), allocatable :: lines !< the messages, joined by new_line('a')
    end type input_errors_t
 
-   !> So many errors are printed; the rest is only counted.
+   !> Number of errors that are printed; the rest is only counted.
    integer, parameter :: max_printed = 50
 
    ! The deck and its sets.
@@ -37,16 +37,16 @@ module input_errors
    ! A card as a whole, and its characters.
    type(error_code_t), parameter, public :: &
       card_unknown = error_code_t(10, 'IS NOT THE NAME OF A CARD'), &
-      card_lower_case = error_code_t(11, 'CARD NAMES ARE IN CAPITALS'), &
+      card_lower_case = error_code_t(11, 'CARD NAMES ARE WRITTEN IN CAPITALS'), &
       card_indented = error_code_t(12, 'THE CARD NAME MUST BEGIN IN COLUMN 1'), &
-      card_repeated = error_code_t(13, 'MAY STAND ONLY ONCE IN A SET; FIRST ON CARD'), &
-      past_last_column = error_code_t(14, 'STANDS PAST COLUMN 80'), &
+      card_repeated = error_code_t(13, 'IS ALLOWED ONLY ONCE IN A SET; FIRST ON CARD'), &
+      past_last_column = error_code_t(14, 'IS BEYOND COLUMN 80'), &
       tab_character = error_code_t(15, 'CONTAINS A TAB'), &
       control_character = error_code_t(16, 'CONTAINS A CONTROL CHARACTER'), &
       foreign_character = error_code_t(17, 'CONTAINS A CHARACTER THAT IS NOT ASCII'), &
-      border_crossed = error_code_t(18, 'RUNS ACROSS THE BORDER OF COLUMNS'), &
-      field_unused = error_code_t(19, 'THIS FIELD IS NOT USED BY THIS CARD')
-   ! Numbers: of those in range, the squares and the squares of squares are in the range of the real kind.
+      border_crossed = error_code_t(18, 'CROSSES THE FIELD BORDER BETWEEN COLUMNS'), &
+      field_unused = error_code_t(19, 'THIS CARD DOES NOT USE THIS FIELD')
+   ! Numbers. The range of 1E-max_power to 1Emax_power leaves room for fourth powers in the real kind.
    integer, parameter, public :: max_power = min(60, int(0.25*range(1.0_wp)))
    character(*), parameter :: power_text = trim(merge('60', '9 ', max_power == 60))
    type(error_code_t), parameter, public :: &
@@ -69,7 +69,7 @@ module input_errors
       field_blank = error_code_t(34, 'THIS FIELD MUST NOT BE BLANK'), &
       label_blank_inside = error_code_t(35, 'A LABEL HAS NO BLANKS INSIDE'), &
       number_range = error_code_t(36, 'IS OUT OF THE RANGE'), &
-      star_first = error_code_t(40, 'NO CARD STANDS ABOVE THIS ONE IN THE SET'), &
+      star_first = error_code_t(40, 'NO CARD OF THE SET IS ABOVE THIS ONE'), &
       star_no_reals = error_code_t(41, 'THE CARD ABOVE TAKES NO REALS'), &
       star_second = error_code_t(42, 'IS A SECOND * CARD FOR THE SAME CARD'), &
       star_twice = error_code_t(43, 'IS GIVEN TWICE: THE CARD ABOVE HAS IT TOO'), &
@@ -92,26 +92,26 @@ module input_errors
       drive_grounds = error_code_t(73, 'BOTH LINKS ARE GROUND LINKS'), &
       drive_one_link = error_code_t(74, 'BOTH LINKS ARE THE SAME'), &
       drive_revolute = error_code_t(75, 'A REVOLUTE PAIR HAS NO SLIDE'), &
-      add_alone = error_code_t(76, 'NO DRIVE OR ADD CARD STANDS ABOVE THIS ONE'), &
+      add_alone = error_code_t(76, 'MUST FOLLOW A DRIVE OR ADD CARD'), &
       add_kind = error_code_t(77, 'IS NOT HARMONIC, POWER OR TABLE', .true.), &
       add_blank = error_code_t(78, 'GIVES NO NUMBERS'), &
-      power_negative = error_code_t(79, 'THIS POWER DOES NOT EXIST AT THE INSTANT'), &
-      power_zero = error_code_t(80, 'THIS POWER OR ITS DERIVATIVES DO NOT EXIST AT THE INSTANT'), &
+      power_negative = error_code_t(79, 'THIS POWER IS NOT DEFINED AT THE INSTANT'), &
+      power_zero = error_code_t(80, 'THIS POWER OR A DERIVATIVE OF IT IS NOT DEFINED AT THE INSTANT'), &
       table_short = error_code_t(81, 'A TABLE NEEDS AT LEAST TWO ROWS'), &
       table_order = error_code_t(82, 'THE TIMES OF A TABLE MUST INCREASE'), &
-      table_range = error_code_t(83, 'THIS TABLE DOES NOT REACH THE INSTANT'), &
+      table_range = error_code_t(83, 'THIS TABLE DOES NOT COVER THE INSTANT'), &
       power_large = error_code_t(84, 'THIS POWER IS TOO LARGE A NUMBER AT THE INSTANT')
    ! Times and options.
    type(error_code_t), parameter, public :: &
       time_point = error_code_t(85, 'T0 AND T1 ARE EQUAL'), &
       branch_ground = error_code_t(86, 'A GROUND LINK HAS NO OTHER BRANCH'), &
-      branch_method = error_code_t(87, 'ONLY METHOD NEWTON TAKES ANOTHER BRANCH'), &
+      branch_method = error_code_t(87, 'A BRANCH CARD NEEDS METHOD NEWTON'), &
       branch_repeated = error_code_t(88, 'THIS BRANCH CARD IS REPEATED; FIRST ON CARD'), &
-      units_place = error_code_t(89, 'IS A UNIT OF ANGLES, WHICH STANDS IN COLUMNS 17-24 (LABEL-B)', .true.), &
+      units_place = error_code_t(89, 'IS A UNIT OF ANGLES: IT BELONGS IN COLUMNS 17-24 (LABEL-B)', .true.), &
       lang_kind = error_code_t(90, 'IS NOT EN OR PL', .true.), &
       units_angle = error_code_t(91, 'IS NOT RAD OR DEG', .true.), &
       method_kind = error_code_t(92, 'IS NOT NEWTON, DENSE OR MATRIX', .true.), &
-      tolerance_range = error_code_t(93, 'A TOLERANCE IS ABOVE 1E-15 AND AT MOST 1E-2'), &
+      tolerance_range = error_code_t(93, 'A TOLERANCE MUST BE ABOVE 1E-15 AND AT MOST 1E-2'), &
       print_kind = error_code_t(94, 'IS NOT ALL, LINKS, POINTS OR PAIRS', .true.), &
       print_all_name = error_code_t(95, 'PRINT ALL TAKES NO NAME'), &
       print_repeated = error_code_t(96, 'THIS PRINT CARD IS REPEATED; FIRST ON CARD'), &
@@ -119,7 +119,7 @@ module input_errors
 
 contains
 
-   !> Adds the error `code` about `text` (may be empty), which begins at `column` in `field` of `card`. `more` ends the
+   !> Adds the error `code` about `text` (may be ''), which begins at `column` in `field` of `card`. `more` ends the
    !> sentence.
    subroutine add_error(errors, code, card, field, column, text, more)
       type(input_errors_t), intent(inout) :: errors
@@ -143,8 +143,8 @@ contains
       if (code%shows_layout .and. form > 0) call add_line(errors, ' LAYOUT    |'//trim(forms(form)%layout))
    end subroutine add_error
 
-   !> Adds the error `code` about all that stands in `field` of `card`. `more` ends the sentence. `place`: the character
-   !> of that text which the mark is for, if not the first.
+   !> Adds the error `code` about the whole text in `field` of `card`. `more` ends the sentence. `place`: the number of
+   !> the character in that text under which the mark is put, if not the first.
    subroutine add_field_error(errors, code, card, field, more, place)
       type(input_errors_t), intent(inout) :: errors
       type(error_code_t), intent(in) :: code
@@ -169,21 +169,21 @@ contains
       if (errors%count <= max_printed) call add_message(errors, code, ' ', more)
    end subroutine add_deck_error
 
-   !> Number of errors so far, those included that are not printed.
+   !> The number of errors so far, with those that are not printed.
    pure integer function error_count(errors)
       type(input_errors_t), intent(in) :: errors
 
       error_count = errors%count
    end function error_count
 
-   !> Whether further errors are only counted: their sentences need no work.
+   !> Whether further errors are only counted: their sentences are not needed.
    pure logical function is_full(errors)
       type(input_errors_t), intent(in) :: errors
 
       is_full = errors%count >= max_printed
    end function is_full
 
-   !> All messages, lines joined by new_line('a'); empty if there is no error.
+   !> All messages, lines joined by new_line('a'); '' if there is no error.
    pure function error_report(errors) result(report)
       type(input_errors_t), intent(in) :: errors
       character(:), allocatable :: report
@@ -194,7 +194,7 @@ contains
          report = report//new_line('a')//' *** AND '//whole(errors%count - max_printed)//' MORE'
    end function error_report
 
-   !> The card, a ruler in tens as far as the card or the mark reaches, and the mark.
+   !> Adds the card, a ruler in tens up to the end of the card or to the mark, and the mark.
    subroutine add_picture(errors, card, column)
       type(input_errors_t), intent(inout) :: errors
       type(card_t), intent(in) :: card
@@ -205,7 +205,7 @@ contains
       number = whole(card%number)
       head = ' CARD '//repeat(' ', max(4 - len(number), 0))//number//' |'
       shown = trim(card%text)
-      ! Text past the last column is shown if a page can hold it.
+      ! Text beyond the last column is shown if there is room for it in a line.
       if (card%overrun > 0 .and. card%overrun <= card_columns + 10) &
          shown = card%text//repeat(' ', card%overrun - card_columns - 1)//trim(card%beyond)
       call add_line(errors, head//printable(shown))
@@ -215,7 +215,7 @@ contains
       if (column <= 10*tens) call add_line(errors, margin//repeat(' ', column - 1)//'^')
    end subroutine add_picture
 
-   !> ....+....1....+....2 and so on, for so many tens of columns.
+   !> ....+....1....+....2 and so on, for `tens` tens of columns.
    pure function ruler(tens) result(text)
       integer, intent(in) :: tens
       character(10*tens) :: text
@@ -226,7 +226,7 @@ contains
       end do
    end function ruler
 
-   !> A byte that is not printable ASCII is shown as ?, so that columns stay columns.
+   !> `text` with ? for each byte that is not printable ASCII, so that every column stays one character wide.
    pure function printable(text) result(shown)
       character(*), intent(in) :: text
       character(len(text)) :: shown
@@ -238,7 +238,7 @@ contains
       end do
    end function printable
 
-   !> The line of the error `code`: its number, its `place`, its sentence and what ends it.
+   !> Adds the line of the error `code`: its number, its `place`, its sentence, and `more`.
    subroutine add_message(errors, code, place, more)
       type(input_errors_t), intent(inout) :: errors
       type(error_code_t), intent(in) :: code

@@ -1,11 +1,11 @@
-!> The strict grammar of numbers. A READ statement alone takes `1 2` as 12, a lone `-` as 0, `NaN`,
-!> and 1e400 as infinity; here a text is scanned first, and every error has its code and its place.
+!> The strict grammar of numbers. A READ statement alone accepts `1 2` as 12, a lone `-` as 0, `NaN`, and 1e400 as
+!> infinity. Here a text is scanned first, and every error has its code and its place.
 !>
 !>     real  = [sign] digits-and-one-point [E|D [sign] digits]     with a point or an exponent, or both
 !>     whole = [sign] digits
 !>
-!> An exponent D makes the number that of double precision in every kind of reals, as in Fortran: 0.1D0 is the double
-!> nearest to 0.1, and programs in real64 and real128 that read it read the same number.
+!> As in Fortran, a number with the exponent D is of double precision in every kind of reals: 0.1D0 is the double
+!> nearest to 0.1, so that programs in real64 and real128 read the same number.
 module numbers
    use, intrinsic :: iso_fortran_env, only: int64, dp => real64
    use kinds, only: wp
@@ -16,13 +16,14 @@ module numbers
    implicit none
    private
    public :: read_real, read_whole
-   !> Up to here digits (in int64) and powers of ten are exact in `wp`, so one rounding gives the nearest
-   !> real: 15 and 22 for 53 bits, 5**22 < 2**53.
+
+   !> Numbers of digits (in int64) and powers of ten up to which both are exact in `wp`, so that one rounding gives the
+   !> nearest real: 15 and 22 for 53 bits, since 5**22 < 2**53.
    integer, parameter :: exact_digits = min(precision(1.0_wp), 18)
    integer, parameter :: exact_power = int(digits(1.0_wp)*(log10(2.0)/log10(5.0)))
-   !> A literal above largest x 10**308 rounds to infinity, one below smallest x 10**-324 to zero:
-   !> 2**1024 - 2**970 and 2**-1075, first digits. No literal of fewer digits can equal them. For other kinds
-   !> than double, the whole powers of ten in their range.
+   !> A number above largest x 10**308 rounds to infinity, one below smallest x 10**-324 to zero: these are the first
+   !> digits of 2**1024 - 2**970 and of 2**-1075, which no number with fewer digits equals. For kinds other than double,
+   !> the bounds are the whole powers of ten in their range.
    logical, parameter :: is_double = digits(1.0_wp) == 53
    integer, parameter :: largest_exponent = merge(308, range(1.0_wp), is_double)
    integer, parameter :: smallest_exponent = merge(-324, -range(1.0_wp), is_double)
@@ -30,13 +31,13 @@ module numbers
       merge('17976931348623158079372897140530341507993413271003', repeat('9', 50), is_double)
    character(*), parameter :: smallest = &
       merge('24703282292062327208828439643411068618252990130716', repeat('0', 50), is_double)
-   !> Exponents are cut here: far past the range whatever the digits are.
+   !> Larger exponents are set to this one: far beyond the range, whatever the digits are.
    integer, parameter :: exponent_cap = 100000
 
 contains
 
-   !> The real that `text` (no blanks around it, not empty, at most 80 characters) stands for. Where it stands for none,
-   !> `error` has the code of a number_... error, `value` is 0 and `place` is the first wrong character of `text`.
+   !> Reads the real `value` from `text` (no blanks around it, not empty, at most 80 characters). If it is none, `error`
+   !> is a number_... error, `value` is 0 and `place` is the number of the first wrong character of `text`.
    pure subroutine read_real(text, value, error, place)
       character(*), intent(in) :: text
       real(wp), intent(out) :: value
@@ -59,7 +60,7 @@ contains
       if (text(1:1) == '-') value = -value
    end subroutine read_real
 
-   !> The whole number that `text` stands for; the arguments are those of `read_real`.
+   !> Reads the whole number `value` from `text`; the other arguments are those of `read_real`.
    pure subroutine read_whole(text, value, error, place)
       character(*), intent(in) :: text
       integer, intent(out) :: value
@@ -85,7 +86,8 @@ contains
       if (error%number == 0) value = int(merge(-sum, sum, text(1:1) == '-'))
    end subroutine read_whole
 
-   !> `text` = 0.digits x 10**magnitude, with `n` digits. The grammar stops at `place`, behind the text if it is right.
+   !> Splits `text` = 0.digits x 10**magnitude, with `n` digits. `place`: the character at which the grammar stops,
+   !> which is len(text) + 1 if there is no error.
    pure subroutine split_real(text, digits, n, magnitude, place, error)
       character(*), intent(in) :: text
       character(*), intent(out) :: digits
@@ -119,7 +121,7 @@ contains
       if (place <= len(text)) error = error_at(text, place)
    end subroutine split_real
 
-   !> How many digits `text` has one after another from its character `first` on.
+   !> The number of successive digits in `text` from its character `first` on.
    pure integer function digits_from(text, first) result(n)
       character(*), intent(in) :: text
       integer, intent(in) :: first
@@ -154,8 +156,8 @@ contains
       if (word == 'INF') error = number_inf
    end function error_at
 
-   !> Whether 0.digits x 10**magnitude, with a first digit that is not 0, becomes infinite or zero. It is decided on the
-   !> digits, because a conversion out of range may trap.
+   !> Sets `error` if 0.digits x 10**magnitude, with a first digit that is not 0, would round to infinity or zero. The
+   !> digits decide, because a conversion out of range may trap.
    pure subroutine check_range(digits, magnitude, error)
       character(*), intent(in) :: digits
       integer, intent(in) :: magnitude
@@ -169,7 +171,7 @@ contains
       if (power < smallest_exponent .or. (power == smallest_exponent .and. first < smallest)) error = number_underflow
    end subroutine check_range
 
-   !> The absolute value of `text`, which is digits x 10**power.
+   !> The absolute value of `text` = digits x 10**power.
    pure real(wp) function absolute_value(text, digits, power) result(value)
       character(*), intent(in) :: text, digits
       integer, intent(in) :: power

@@ -624,10 +624,10 @@ refused 'a million wrong cards' ' *** E010  CARD 1  COLUMN 1  FIELD NAME: "NONSE
 equal 'a million wrong cards: the rest is counted' ' *** AND 999951 MORE' "$(tail -n 1 "$w/err")"
 { head -c 1000000 /dev/zero | tr '\0' X; echo; } > "$w/deck"
 refused 'a line of a million characters' \
-   ' *** E014  CARD 1  COLUMN 81  FIELD PAST-80: "XXXXXXXXXXXXXXXXXXXXXXXX" STANDS PAST COLUMN 80'
+   ' *** E014  CARD 1  COLUMN 81  FIELD PAST-80: "XXXXXXXXXXXXXXXXXXXXXXXX" IS BEYOND COLUMN 80'
 equal 'a line of a million characters: few of them told' yes "$([ "$(wc -c < "$w/err")" -lt 2000 ] && echo yes)"
 { printf 'TITLE   A'; head -c 1000000 /dev/zero | tr '\0' ' '; echo B; echo END; } > "$w/deck"
-refused 'a million blanks in a line' ' *** E014  CARD 1  COLUMN 1000010  FIELD PAST-80: "B" STANDS PAST COLUMN 80'
+refused 'a million blanks in a line' ' *** E014  CARD 1  COLUMN 1000010  FIELD PAST-80: "B" IS BEYOND COLUMN 80'
 head -c 1000000 /dev/zero > "$w/deck"
 refused 'a million zero bytes' ' *** E016  CARD 1  COLUMN 1  FIELD NAME: "????????" CONTAINS A CONTROL CHARACTER'
 cp "$kinmat" "$w/deck"
