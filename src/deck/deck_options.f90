@@ -18,7 +18,7 @@ module deck_options
 
    !> The largest number of steps that the field of a TIME card can hold.
    integer, parameter :: max_steps = 99999999
-   !> Relative tolerances allowed: above what rounding permits, below what would be no solution.
+   !> Bounds of the relative tolerance: below, rounding prevents convergence; above, the result is no solution.
    real(wp), parameter :: min_tolerance = min(1.0e-15_wp, 5.0_wp*epsilon(1.0_wp))
    real(wp), parameter :: max_tolerance = 1.0e-2_wp
    !> Words that can only be meant as a unit of angles.
@@ -26,13 +26,6 @@ module deck_options
       'RADIANS']
    !> The words of PRINT: 0 for everything, then the kinds request_link, request_point, request_pair.
    character(6), parameter :: print_words(0:3) = ['ALL   ', 'LINKS ', 'POINTS', 'PAIRS ']
-
-   !> The requests of PRINT so far.
-   type :: request_list_t
-      integer :: count = 0
-      type(request_t), allocatable :: requests(:)   !< (count) and room for more
-      logical, allocatable :: requested(:, :)       !< (number, kind) whether a link, point or pair has a request
-   end type request_list_t
 
 contains
 
@@ -158,81 +151,78 @@ contains
    !> cards are errors.
    subroutine build_requests(set)
       type(card_set_t), intent(inout) :: set
-      type(request_list_t) :: list
-      type(name_table_t) :: seen(0:3)
-      integer :: k
+      type(name_table_t) :: seen(0:3)               ! for each word, the names on earlier PRINT cards
+      type(request_t), allocatable :: requests(:)
+      logical, allocatable :: requested(:, :)       ! (number, kind) it has a request
+      integer :: k, n
 
       associate (sizes => [size(set%mechanism%links), size(set%mechanism%points), size(set%mechanism%pairs)])
-         allocate (list%requests(sum(sizes)))
-         allocate (list%requested(maxval(sizes), request_link:request_pair), source=.false.)
+         allocate (requests(sum(sizes)))
+         allocate (requested(maxval(sizes), request_link:request_pair), source=.false.)
       end associate
-      if (set%number_of(form_print) == 0) call request_all(set, request_link, 1, list)
+      n = 0
+      if (set%number_of(form_print) == 0) call request_all(request_link, 1)
       do k = 1, set%count
-         if (set%cards(k)%form == form_print .and. set%cards(k)%valid) call read_print(set, k, seen, list)
+         if (set%cards(k)%form == form_print .and. set%cards(k)%valid) call read_print(k)
       end do
-      set%mechanism%requests = list%requests(:list%count)
-   end subroutine build_requests
+      set%mechanism%requests = requests(:n)
 
-   !> The PRINT card `k`. `seen` (word): the names of earlier PRINT cards with that word, and the numbers of these
-   !> cards.
-   subroutine read_print(set, k, seen, list)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: k
-      type(name_table_t), intent(inout) :: seen(0:)
-      type(request_list_t), intent(inout) :: list
-      integer :: every, earlier, place, kind, subject
+   contains
 
-      associate (card => set%cards(k))
-         every = merge(card%whole, 1, card%whole_given)
+      !> The PRINT card `k`.
+      subroutine read_print(k)
+         integer, intent(in) :: k
+         integer :: every, earlier, place, kind, subject
+
+         every = merge(set%cards(k)%whole, 1, set%cards(k)%whole_given)
          if (every < 1) call add_card_error(set, number_range, k, label_c, '1 AND UP')
          call match_word(set, k, print_words, print_kind, place)
          if (place == 0) return
          kind = place - 1
-         call put_name(seen(kind), card%label(label_b), k, earlier)
-         if (earlier > 0) then
-            call add_card_error(set, print_repeated, k, label_a, whole(set%cards(earlier)%card%number))
-         else if (kind == 0 .and. card%label(label_b) /= '') then
-            call add_card_error(set, print_all_name, k, label_b)
-         else if (kind == 0) then
-            do kind = request_link, request_pair
-               call request_all(set, kind, every, list)
-            end do
-         else if (card%label(label_b) == '') then
-            if (size(set%named(kind)%card) == 0 .and. set%names_certain) &
-               call add_card_error(set, print_nothing, k, label_a)
-            call request_all(set, kind, every, list)
-         else
-            call look_up(set, kind, k, label_b, subject)
-            if (subject > 0) call add_request(request_t(kind, subject, every), list)
-         end if
-      end associate
-   end subroutine read_print
+         associate (name => set%cards(k)%label(label_b))
+            call put_name(seen(kind), name, k, earlier)
+            if (earlier > 0) then
+               call add_card_error(set, print_repeated, k, label_a, whole(set%cards(earlier)%card%number))
+            else if (kind == 0 .and. name /= '') then
+               call add_card_error(set, print_all_name, k, label_b)
+            else if (kind == 0) then
+               do kind = request_link, request_pair
+                  call request_all(kind, every)
+               end do
+            else if (name == '') then
+               if (size(set%named(kind)%card) == 0 .and. set%names_certain) &
+                  call add_card_error(set, print_nothing, k, label_a)
+               call request_all(kind, every)
+            else
+               call look_up(set, kind, k, label_b, subject)
+               if (subject > 0) call add_request(request_t(kind, subject, every))
+            end if
+         end associate
+      end subroutine read_print
 
-   !> Requests all links, points or pairs (`kind`), but no ground links.
-   subroutine request_all(set, kind, every, list)
-      type(card_set_t), intent(in) :: set
-      integer, intent(in) :: kind, every
-      type(request_list_t), intent(inout) :: list
-      integer :: i
+      !> Requests all links, points or pairs (`kind`), but no ground links.
+      subroutine request_all(kind, every)
+         integer, intent(in) :: kind, every
+         integer :: i
 
-      do i = 1, size(set%named(kind)%card)
-         if (kind == request_link) then
-            if (set%mechanism%links(i)%ground) cycle
-         end if
-         call add_request(request_t(kind, i, every), list)
-      end do
-   end subroutine request_all
+         do i = 1, size(set%named(kind)%card)
+            if (kind == request_link) then
+               if (set%mechanism%links(i)%ground) cycle
+            end if
+            call add_request(request_t(kind, i, every))
+         end do
+      end subroutine request_all
 
-   !> Adds `request` to `list`, unless its subject has one already.
-   subroutine add_request(request, list)
-      type(request_t), intent(in) :: request
-      type(request_list_t), intent(inout) :: list
+      !> Adds `request`, unless its subject has one already.
+      subroutine add_request(request)
+         type(request_t), intent(in) :: request
 
-      if (list%requested(request%subject, request%kind)) return
-      list%requested(request%subject, request%kind) = .true.
-      list%count = list%count + 1
-      list%requests(list%count) = request
-   end subroutine add_request
+         if (requested(request%subject, request%kind)) return
+         requested(request%subject, request%kind) = .true.
+         n = n + 1
+         requests(n) = request
+      end subroutine add_request
+   end subroutine build_requests
 
    !> Builds `set`%mechanism%branch_requests from the BRANCH cards, in their order; links and options are there. A card
    !> with the link and time of an earlier one is an error: it may be meant for the next change point.

@@ -37,11 +37,11 @@ contains
       if (.not. is_usable(length)) length = characteristic_length(m)
    end function solver_length
 
-   !> Whether `length` is positive and finite.
-   pure logical function is_usable(length)
-      real(wp), intent(in) :: length
+   !> Whether a length or rate is positive and finite.
+   pure logical function is_usable(x)
+      real(wp), intent(in) :: x
 
-      is_usable = length > 0.0_wp .and. length <= huge(length)
+      is_usable = x > 0.0_wp .and. x <= huge(x)
    end function is_usable
 
    !> The largest length of `m` with those of its points that `counts` (points) marks; 0 if there is none.
@@ -83,32 +83,23 @@ contains
       end do
    end function largest_length
 
-   !> The largest rate of the drives, in rad per unit of time; rates of length are divided by the characteristic
-   !> `length`. 1 where nothing moves or no bound exists: it chooses printed digits, nothing else.
+   !> The largest rate of the drives at the instants, in rad per unit of time; rates of length are divided by the
+   !> characteristic `length`. 1 where nothing moves or the rate has no bound. An estimate: it selects printed digits,
+   !> nothing else.
    pure real(wp) function characteristic_rate(m, length) result(rate)
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: length
-
-      rate = largest_rate(m, length)
-      if (.not. (rate > 0.0_wp .and. rate <= huge(rate))) rate = 1.0_wp
-   end function characteristic_rate
-
-   !> The same, 0 or infinite where the above is 1.
-   pure real(wp) function largest_rate(m, length) result(rate)
-      type(mechanism_t), intent(in) :: m
-      real(wp), intent(in) :: length
-      real(wp) :: t, one
+      real(wp) :: t
       integer :: i
 
       t = max(abs(m%t0), abs(m%t1))
       if (size(m%at) > 0) t = max(t, maxval(abs(m%at)))
       rate = 0.0_wp
       do i = 1, size(m%drives)
-         one = drive_rate(m%drives(i), t)
-         if (is_length(m%drives(i))) one = one/length
-         rate = max(rate, one)
+         rate = max(rate, drive_rate(m%drives(i), t)/merge(length, 1.0_wp, is_length(m%drives(i))))
       end do
-   end function largest_rate
+      if (.not. is_usable(rate)) rate = 1.0_wp
+   end function characteristic_rate
 
    !> The largest power of two that is not above `x` > 0: division by it is exact.
    pure real(wp) function power_of_two(x) result(p)

@@ -115,7 +115,7 @@ contains
       end do
    end function sentences
 
-   !> The first set of a deck; its number is 0 if the deck was refused.
+   !> The first set of a deck; its number is 0 if the deck was rejected.
    function set_of(lines) result(set)
       character(*), intent(in) :: lines(:)
       type(mechanism_t) :: set
