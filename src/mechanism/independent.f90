@@ -290,19 +290,7 @@ contains
       type(mechanism_t) :: own
       integer :: i
 
-      own%set_number = m%set_number
-      own%length_unit = m%length_unit
-      own%time_unit = m%time_unit
-      own%degrees = m%degrees
-      own%polish = m%polish
-      own%method = m%method
-      own%tolerance = m%tolerance
-      own%predictor = m%predictor
-      own%keeps_references = m%keeps_references
-      own%steps = m%steps
-      own%t0 = m%t0
-      own%t1 = m%t1
-      own%at = m%at
+      own%settings_t = m%settings_t
       own%links = m%links(part%links)
       own%points = m%points(part%points)
       own%pairs = m%pairs(part%pairs)

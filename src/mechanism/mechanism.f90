@@ -4,7 +4,7 @@ module mechanism
    use kinds, only: wp, label_length, title_length
    implicit none
    private
-   public :: link_t, point_t, pair_t, term_t, drive_t, request_t, branch_request_t, mechanism_t
+   public :: link_t, point_t, pair_t, term_t, drive_t, request_t, branch_request_t, settings_t, mechanism_t
    public :: pair_revolute, pair_prismatic
    public :: drive_angle, drive_x, drive_y, drive_relangle, drive_slide, drive_words, driven_kinds
    public :: term_harmonic, term_power, term_table, term_words
@@ -89,26 +89,30 @@ module mechanism
       real(wp) :: t = 0.0_wp
    end type branch_request_t
 
-   !> A set of computations.
-   type :: mechanism_t
+   !> Options and instants: what each part of a set has in common with the whole.
+   type :: settings_t
       integer :: set_number = 1
-      character(title_length) :: title = ''
       character(label_length) :: length_unit = 'M', time_unit = 'S'
       logical :: degrees = .false.           !< angles are printed in degrees
       logical :: polish = .false.            !< headings are printed in Polish
-      integer :: method = method_newton
+      integer :: method = method_newton      !< method_newton, method_matrix or method_dense
       real(wp) :: tolerance = 0.0_wp         !< relative; 0: that of the method
       integer :: predictor = own_predictor   !< order of the predictor of a step, 0 to 3; no card sets it
       logical :: keeps_references = .false.  !< method_matrix: keeps those of the first instant; no card sets it
+      integer :: steps = -1                  !< of the TIME card: steps + 1 instants from t0 to t1; -1: no TIME card
+      real(wp) :: t0 = 0.0_wp, t1 = 0.0_wp   !< of the TIME card
+      real(wp), allocatable :: at(:)         !< the instants of the AT cards, which come after those of TIME
+   end type settings_t
+
+   !> A set of computations.
+   type, extends(settings_t) :: mechanism_t
+      character(title_length) :: title = ''
       type(link_t), allocatable :: links(:)
       type(point_t), allocatable :: points(:)
       type(pair_t), allocatable :: pairs(:)
       type(drive_t), allocatable :: drives(:)
       type(request_t), allocatable :: requests(:)
       type(branch_request_t), allocatable :: branch_requests(:)   !< none: not allocated, or of size 0
-      integer :: steps = -1                  !< of the TIME card: steps + 1 instants from t0 to t1; -1: no TIME card
-      real(wp) :: t0 = 0.0_wp, t1 = 0.0_wp   !< of the TIME card
-      real(wp), allocatable :: at(:)         !< the instants of the AT cards, which come after those of TIME
       character(120), allocatable :: echo(:) !< the cards as they were understood, for the listing
    end type mechanism_t
 
