@@ -25,7 +25,8 @@ module block_method
 
    type, extends(engine_t) :: block_method_t
       private
-      type(block_engine_t) :: blocks
+      ! Allocatable, since gfortran 12 frees only one of several components of one type below a class.
+      type(block_engine_t), allocatable :: blocks
    contains
       procedure :: solve
       procedure :: accept
@@ -58,6 +59,7 @@ contains
       type(mechanism_t), intent(in) :: m
       type(structure_t), intent(inout), optional :: structure
 
+      allocate (e%blocks)
       call make_block_engine(e%blocks, m, structure)
       e%length = e%blocks%length
       e%redundant = e%blocks%blocks%redundant

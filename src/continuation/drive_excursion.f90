@@ -1,13 +1,13 @@
-!> The way of all drives of a set through their values, between two instants: how far they go from where they
-!> are, and how far off the straight way. What a step of the continuation may take for granted of it.
+!> The values of all drives between two instants: how far they go from the first, and how far they leave the chord from
+!> the first to the second. What a substep of the continuation may rely on.
 !>
-!> A position at the end of a step is the continuation of the one before where the drives went there straight on. Where
-!> one drive moves it may go to and fro between its two values, since the mechanism then comes back the same way;
-!> beyond them it may be at most as far as the position is certain to exist. Of several drives none may
-!> leave its own straight way by more: round a cusp there is another assembly at the same values.
+!> A position at the end of a substep is the continuation of the one before where the drives follow their chords. Where
+!> one drive moves it may go to and fro between its two values, since the mechanism then comes back through the same
+!> positions; beyond them it may go at most as far as the position is certain to exist. Of several drives none may
+!> leave its own chord by more: round a cusp there is another assembly at the same values.
 module drive_excursion
    use kinds, only: wp
-   use mechanism, only: find_instants, mechanism_t
+   use mechanism, only: mechanism_t, find_instants
    use scales, only: solver_length, is_length
    use predictor, only: largest_change
    use drives, only: law_t, new_law, drive_motion
@@ -17,23 +17,23 @@ module drive_excursion
    public :: drive_excursion_t, new_drive_excursion, substep_allowed, likely_excursion, excursion, steps_at_least, &
       largest_rate
 
-   !> The largest excursion off the straight way, in radians or characteristic lengths. What a position allows is mostly
-   !> less, and is asked of its Jacobian; this bounds what links far down a chain make of it.
+   !> The largest excursion off the chord, in radians or characteristic lengths. What a position allows is mostly
+   !> less, and follows from its Jacobian; this bounds what becomes of it in links far down a chain.
    real(wp), parameter :: largest_excursion = 0.03_wp
-   !> The least factor by which a part is made shorter at once: its bounds get closer as it does.
+   !> The least factor by which a substep is made shorter at once: its bounds get closer as it does.
    real(wp), parameter :: min_factor = 1.0e-3_wp, a_little_less = 0.98_wp
 
    type :: drive_excursion_t
       type(law_t), allocatable :: laws(:)
       real(wp), allocatable :: unit(:)            !< (drives) of the value: 1 over the characteristic length, or 1
       real(wp) :: first = 0.0_wp, last = 0.0_wp   !< of all instants
-      real(wp) :: longest = 0.0_wp                !< part between them in which no drive can change by `largest_change`
+      real(wp) :: longest = 0.0_wp                !< substep in which no drive can change by `largest_change`
       real(wp) :: curve = huge(1.0_wp)            !< the largest second derivative between them
    end type drive_excursion_t
 
 contains
 
-   !> The way of the drives of `m`; `depends`: there are positions that depend on those before.
+   !> The drives of `m`; `depends`: there are positions that depend on those before.
    function new_drive_excursion(m, depends) result(p)
       type(mechanism_t), intent(in) :: m
       logical, intent(in) :: depends
@@ -55,7 +55,7 @@ contains
       p%curve = largest(p, 2, p%first, p%last)
    end function new_drive_excursion
 
-   !> Of a part of a step from `t` on, what of it the drives allow at once.
+   !> The part of the `substep` from `t` on that the drives allow at once.
    pure real(wp) function substep_allowed(p, t, substep) result(allowed)
       type(drive_excursion_t), intent(in) :: p
       real(wp), intent(in) :: t, substep
@@ -92,7 +92,7 @@ contains
       end if
    end function likely_excursion
 
-   !> How far the drives are off the straight way from `t1` to `t2`, in radians or characteristic lengths.
+   !> How far the drives leave their chords from `t1` to `t2`, in radians or characteristic lengths.
    pure real(wp) function excursion(p, t1, t2) result(away)
       type(drive_excursion_t), intent(in) :: p
       real(wp), intent(in) :: t1, t2
@@ -101,8 +101,8 @@ contains
       call examine(p, t1, t2, change, away)
    end function excursion
 
-   !> `change`: bounds that of every drive from its value at `t1`, up to `t2`; `away`: how far they are off the straight
-   !> way, a chord leaving a curve by h^2/8 times its second derivative.
+   !> `change`: bounds that of every drive from its value at `t1`, up to `t2`; `away`: how far they leave their chords,
+   !> a chord being off its curve by h^2/8 times the second derivative at most.
    pure subroutine examine(p, t1, t2, change, away)
       type(drive_excursion_t), intent(in) :: p
       real(wp), intent(in) :: t1, t2
@@ -138,7 +138,7 @@ contains
       away = merge(off_all, off_one, moving > 1)
    end subroutine examine
 
-   !> Parts that a step from `t1` to `t2` has at least, if it can be made: each changes no drive by more than allowed.
+   !> The least number of substeps from `t1` to `t2`: each changes no drive by more than allowed.
    pure real(wp) function steps_at_least(p, t1, t2) result(steps)
       type(drive_excursion_t), intent(in) :: p
       real(wp), intent(in) :: t1, t2
@@ -180,6 +180,7 @@ contains
       end do
    end function largest
 
+   !> The time in which a drive at `rate` changes by `largest_change`.
    pure real(wp) function reciprocal(rate)
       real(wp), intent(in) :: rate
 
@@ -187,6 +188,7 @@ contains
       if (rate > largest_change/huge(1.0_wp)) reciprocal = largest_change/rate
    end function reciprocal
 
+   !> `t1` and `t2` lie within the time of all instants.
    pure logical function is_within(p, t1, t2)
       type(drive_excursion_t), intent(in) :: p
       real(wp), intent(in) :: t1, t2

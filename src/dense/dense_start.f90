@@ -1,6 +1,5 @@
-!> Where METHOD DENSE and METHOD MATRIX begin at the first instant: the deck's estimate as the blocks take it,
-!> and the assembly that the blocks find from there. So all methods mean the same assembly, and the same turns of its
-!> angles.
+!> The start of METHOD DENSE and METHOD MATRIX at the first instant: the deck's estimate as the blocks take it, and the
+!> assembly that the blocks find from there. So all methods mean the same assembly, and the same turns of its angles.
 module dense_start
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_t, request_link, method_newton
@@ -28,10 +27,10 @@ contains
       d%requests = [(request_t(request_link, i, 1), i=1, size(m%links))]
    end function by_blocks
 
-   !> Two positions (3, links) of `m`, which is to be solved by blocks, at `t`, places in the deck's unit from the
-   !> plane's origin: the `estimate`, with driven links where their drives have them, angles without needless turns, and
-   !> links that hang on others where their joints are; and the `assembly` found from it, where there is one
-   !> (`is_found`). Where the structure has no solution `estimate` stays as it is.
+   !> Two positions (3, links) of `m`, which is to be solved by blocks, at `t`, x and y in the deck's unit from the
+   !> plane's origin: the `estimate`, with driven links at their drives' values, angles without needless turns, and
+   !> links that hang on others at their joints; and the `assembly` found from it, where there is one (`is_found`).
+   !> Where the structure has no solution `estimate` stays as it is.
    subroutine find_start(m, t, estimate, assembly, is_found)
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: t
@@ -59,7 +58,7 @@ contains
       estimate = q%position
    end subroutine find_start
 
-   !> The unknowns that are sought have their estimates again, and what drives alone give its value.
+   !> Unknowns that take an iteration get their estimates again; those that drives alone give keep their values.
    subroutine return_to_estimate(e)
       type(block_engine_t), intent(inout) :: e
       type(convergence_t) :: c

@@ -1,8 +1,8 @@
-!> How far the next root of the closure equations is from a position found: the guard of continuity of METHOD
-!> DENSE and METHOD MATRIX, as the blocks have theirs.
+!> How far the next root of the closure equations is from a position found: what the Kantorovich ratio of METHOD DENSE
+!> and METHOD MATRIX needs, as the blocks have theirs.
 !>
 !> Newton and Kantorovich, row by row. Two positions z and z + d with the same values of the drives have J d = -R, with
-!> J the Jacobian at z and R_k what row k holds beyond its linear part, at most L_k |d|^2/2. Rows of angles alone are
+!> J the Jacobian at z and R_k the part of row k beyond its linear one, at most L_k |d|^2/2. Rows of angles alone are
 !> linear: R is 0 there, and links that they tie together turn by the same angle. So
 !>    revolute pair        L = |u| + |w|      body vectors of links whose angle is free
 !>    X, Y drive           L = |u|
