@@ -1,17 +1,22 @@
 !> Numbers of which not all digits are known: a question mark in the place of each that is not.
 module known_digits
+   use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
-   use numerals, only: put_fixed, numeral_length
+   use numerals, only: put_fixed, nearest_whole, nearest_by_format, put_with_point, put_whole, numeral_length
    implicit none
    private
    public :: put_known, unknown_digit, nothing_known
 
+   !> In the place of a digit that is not known.
    character(1), parameter :: unknown_digit = '?'
-   !> The error of what is not known at all; a unit of length or angle makes it no infinity.
+   !> The error of a number of which nothing is known; divided by a unit of length or angle it is no infinity.
    real(wp), parameter :: nothing_known = sqrt(huge(1.0_wp))
-   !> The last digit that is shown is worth so many errors: else another program, as right as this one, would
+   !> The last digit that is shown is worth so many errors: otherwise another program, as right as this one, would
    !> round it to another digit.
    real(wp), parameter :: errors_a_digit = 100.0_wp
+
+   integer :: k  !< index of the constructor below, never set: gfortran 12 rejects its declaration inside
+   integer(int64), parameter :: tens(0:10) = [(10_int64**k, k=0, 10)]
 
 contains
 
@@ -21,54 +26,75 @@ contains
       real(wp), intent(in) :: x, error
       integer, intent(in) :: decimals, power
       character(numeral_length), intent(out) :: text
+      integer(int64) :: n
       integer :: last
+      logical :: sure
 
-      call put_fixed(x, decimals, power, text)
-      if (error*errors_a_digit <= 10.0_wp**(power - decimals)) return
-      if (error > 1.0e-6_wp*nothing_known) then
+      if (error*errors_a_digit <= 10.0_wp**(power - decimals)) then
+         call put_fixed(x, decimals, power, text)
+      else if (error > 1.0e-6_wp*nothing_known) then
          text = repeat(' ', numeral_length - 1)//unknown_digit
-         return
+      else
+         ! The value is n 10**last as far as it is known; a half is rounded up where it is all that is left.
+         last = ceiling(log10(error*errors_a_digit))
+         call nearest_whole(abs(x), -last, n, sure)
+         if (.not. sure) n = nearest_by_format(abs(x), -last)
+         if (n == 0 .and. abs(x) >= 0.5_wp*10.0_wp**last) n = 1
+         text = masked(n, last - power, decimals, x < 0.0_wp .and. n > 0)
+         ! All that there is room for is known.
+         if (text == '') call put_fixed(x, decimals, power, text)
       end if
-      last = ceiling(log10(error*errors_a_digit))
-      call put_fixed(rounded(x, last), decimals, power, text)
-      call mask(text, last - power)
-      ! All that there was room for is known.
-      if (index(text, unknown_digit) == 0) call put_fixed(x, decimals, power, text)
    end subroutine put_known
 
-   !> `x` rounded to a multiple of 10**`last`.
-   pure real(wp) function rounded(x, last)
-      real(wp), intent(in) :: x
-      integer, intent(in) :: last
-      character(80) :: line
-      character(12) :: form
-      integer :: digits
+   !> `n` 10**`last`, with the sign of what is `negative`, in at most `decimals` decimals; digits worth less than
+   !> 10**`last` are masked. Blank where there is no room for a masked digit.
+   pure function masked(n, last, decimals, negative) result(text)
+      integer(int64), intent(in) :: n
+      integer, intent(in) :: last, decimals
+      logical, intent(in) :: negative
+      character(numeral_length) :: text
+      integer :: room, d, unknown, first, i
 
-      rounded = 0.0_wp
-      if (abs(x) < 0.5_wp*10.0_wp**last) return
-      rounded = sign(10.0_wp**last, x)
-      digits = floor(log10(abs(x))) - last + 1
-      if (digits <= 0) return
-      write (form, '(a,i0,a)') '(es80.', min(digits - 1, 60), 'e4)'
-      write (line, form) x
-      read (line, *) rounded
-   end function rounded
-
-   !> Masks the digits of `text` that are worth less than 10**`last`.
-   pure subroutine mask(text, last)
-      character(numeral_length), intent(inout) :: text
-      integer, intent(in) :: last
-      integer :: i, point, ending, worth
-
-      ending = scan(text, 'E')
-      worth = 0
-      if (ending > 0) read (text(ending + 1:), *) worth
-      if (ending == 0) ending = numeral_length + 1
-      point = index(text, '.')
-      if (point == 0) point = ending
-      do i = 1, ending - 1
-         if (verify(text(i:i), '0123456789') > 0) cycle
-         if (worth + merge(point - i - 1, point - i, i < point) < last) text(i:i) = unknown_digit
+      room = numeral_length - 2 - merge(1, 0, negative)
+      do d = min(decimals, room - 1), max(0, 1 - last), -1
+         unknown = last + d
+         if (n >= tens(max(0, room - unknown)) .and. n > 0) cycle
+         text = ''
+         call put_with_point(n*tens(min(unknown, merge(room, 0, n > 0))), d, text, first)
+         do i = numeral_length, first, -1
+            if (unknown == 0) exit
+            if (text(i:i) == '.') cycle
+            text(i:i) = unknown_digit
+            unknown = unknown - 1
+         end do
+         if (negative) text(first - 1:first - 1) = '-'
+         return
       end do
-   end subroutine mask
+      text = ''
+      if (last > 0) text = masked_with_exponent(n, last, negative)
+   end function masked
+
+   !> The same with an exponent, as `with_exponent` would print it, n > 0.
+   pure function masked_with_exponent(n, last, negative) result(text)
+      integer(int64), intent(in) :: n
+      integer, intent(in) :: last
+      logical, intent(in) :: negative
+      character(numeral_length) :: text
+      character(20) :: digits
+      character(80) :: line
+      character(6) :: shown
+      integer :: first, known, d
+
+      text = ''
+      call put_whole(n, digits, first)
+      known = len(digits) - first + 1
+      write (shown, '(sp,i6.3)') last + known - 1
+      digits = digits(first:known + first - 1)//repeat(unknown_digit, len(digits) - known)
+      do d = numeral_length - 8, known, -1
+         line = merge('-', ' ', negative)//digits(1:1)//'.'//digits(2:d + 1)//'E'//adjustl(shown)
+         line = adjustl(line)
+         if (len_trim(line) < numeral_length) text = adjustr(line(:numeral_length))
+         if (text /= '') return
+      end do
+   end function masked_with_exponent
 end module known_digits

@@ -13,7 +13,7 @@ module numerals
    implicit none
    private
    public :: fixed, put_fixed, whole, full, put_full, numeral_length, full_length, significant
-   public :: nearest_whole, leading_digits, put_whole, put_with_point, put_digits, put_leading
+   public :: nearest_whole, nearest_by_format, leading_digits, put_whole, put_with_point, put_digits, put_leading
 
    !> Digits that tell any two reals apart: 17 for 53 bits.
    integer, parameter :: significant = 2 + int(digits(1.0_wp)*log10(2.0))
