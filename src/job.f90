@@ -7,9 +7,9 @@ module job
    use text_output, only: output_t, open_output, check_apart, flush_output, close_output, abandon_output, has_failed, &
       has_broken_pipe
    use system_calls, only: watch_signals, signal_received, broken_pipe_kills, signal_pipe
-   use listing, only: layout_t, new_layout, listing_head, listing_set_instant, listing_end, listing_broken_off
-   use csv, only: csv_head, csv_set_instant
-   use protocol, only: protocol_head, protocol_instant
+   use listing, only: layout_t, new_layout, listing_head, listing_instant, listing_end, listing_broken_off
+   use csv, only: csv_head, csv_instant
+   use solver_log, only: log_head, log_instant
    use convergence, only: convergence_t
    use branch_certificate, only: branch_t
    use points, only: strides, any_due
@@ -157,20 +157,20 @@ contains
       layout = new_layout(m)
       call listing_head(o%listing, layout, m, findings)
       if (options%check) return
-      if (len(options%log) > 0) call protocol_head(o%log, m, options%errors)
+      if (len(options%log) > 0) call log_head(o%log, m, options%errors)
       call flush_all(options, o)
       if (is_over(o)) return
       call make_set_analysis(m, a, findings%structures)
       flagged = 0
       every = strides(m)
       do k = 0, instant_count(m) - 1
-         call advance_set(a, m, instant(m, k))
+         call advance_set(a, instant(m, k))
          if (is_flagged(a%now)) flagged = flagged + 1
          due = any_due(m, every, k)
-         if (due .or. options%errors) call sample_set(a, m, options%errors)
-         if (due .or. has_words(a%now)) call listing_set_instant(o%listing, layout, m, a%now, k)
-         if (due .and. len(options%csv) > 0) call csv_set_instant(o%csv, m, a%now, k)
-         if (len(options%log) > 0) call log_instant(o%log, options, m, a, k)
+         if (due .or. options%errors) call sample_set(a, options%errors)
+         if (due .or. has_words(a%now)) call listing_instant(o%listing, layout, m, a%now, k)
+         if (due .and. len(options%csv) > 0) call csv_instant(o%csv, m, a%now, k)
+         if (len(options%log) > 0) call put_log(o%log, options, m, a, k)
          if (.not. is_over(o)) cycle
          call listing_broken_off(o%listing, m, k)
          return
@@ -180,8 +180,8 @@ contains
       if (flagged > 0) status = status_flagged
    end subroutine run_set
 
-   !> The line of instant number `k` in the protocol.
-   subroutine log_instant(log, options, m, a, k)
+   !> The line of instant number `k` in the log.
+   subroutine put_log(log, options, m, a, k)
       type(output_t), intent(inout) :: log
       type(options_t), intent(in) :: options
       type(mechanism_t), intent(in) :: m
@@ -192,9 +192,9 @@ contains
 
       call set_record(a, record, branch)
       if (options%errors) then
-         call protocol_instant(log, k, instant(m, k), record, branch, set_errors(a, m))
+         call log_instant(log, k, instant(m, k), record, branch, set_errors(a))
       else
-         call protocol_instant(log, k, instant(m, k), record, branch)
+         call log_instant(log, k, instant(m, k), record, branch)
       end if
-   end subroutine log_instant
+   end subroutine put_log
 end module job

@@ -13,14 +13,14 @@ module csv
    use numerals, only: whole, full, put_full, full_length
    implicit none
    private
-   public :: csv_head, csv_instant, csv_set_instant
+   public :: csv_head, csv_instant
 
    character(12), parameter :: marks(0:4) = [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE', 'OPEN']
    character(5), parameter :: kinds_of_row(3) = ['LINK ', 'POINT', 'PAIR ']
 
 contains
 
-   !> The names of the columns; with `errors`, those of the errors' estimates after them.
+   !> The names of the columns; with `errors`, those of the error estimates after them.
    subroutine csv_head(o, errors)
       type(output_t), intent(inout) :: o
       logical, intent(in) :: errors
@@ -30,25 +30,9 @@ contains
       call put(o, '')
    end subroutine csv_head
 
-   !> The rows of instant number `step` (0, 1, ...) of the motion `q` of all of `m` that the deck asks for there, with
-   !> their errors as `kantorovich_ratio` has them, where they are asked for.
-   subroutine csv_instant(o, m, q, step, kantorovich_ratio)
-      type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      integer, intent(in) :: step
-      type(error_estimate_t), intent(in) :: kantorovich_ratio
-      character(:), allocatable :: start
-      integer :: i
-
-      start = start_of(m, step, q%t)
-      do i = 1, size(m%requests)
-         if (is_due(m, m%requests(i), step)) call add_row(o, start, m, q, m%requests(i), kantorovich_ratio)
-      end do
-   end subroutine csv_instant
-
-   !> The same of the motions `s` of the independent mechanisms of `m`.
-   subroutine csv_set_instant(o, m, s, step)
+   !> The rows of instant number `step` (0, 1, ...) of the motions `s` of `m` that the deck asks for there, with their
+   !> errors where these are asked for.
+   subroutine csv_instant(o, m, s, step)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(in) :: s
@@ -56,70 +40,44 @@ contains
       character(:), allocatable :: start
       integer :: i, c
 
-      if (size(s%own) == 0) then
-         call csv_instant(o, m, s%motions(1), step, s%kantorovich_ratios(1))
-         return
-      end if
-      start = start_of(m, step, s%motions(1)%t)
+      start = whole(m%set_number)//','//whole(step)//','//full(s%motions(1)%t)//','
       do i = 1, size(m%requests)
          if (.not. is_due(m, m%requests(i), step)) cycle
+         call add(o, start)
          c = s%parts%part(i)
-         if (c == 0) then
-            call add_row(o, start, m, s%motions(1), m%requests(i), &
-               error_estimate_t(asked=s%kantorovich_ratios(1)%asked))
+         if (c > 0) then
+            call add_row(o, s%own(c), s%motions(c), s%own(c)%requests(s%parts%number(i)), s%errors(c))
          else
-            call add_row(o, start, s%own(c), s%motions(c), s%own(c)%requests(s%parts%number(i)), &
-               s%kantorovich_ratios(c))
+            ! A row of the ground is known by the deck alone.
+            call add_row(o, m, s%motions(1), m%requests(i), error_estimate_t(asked=s%errors(1)%asked))
          end if
       end do
-   end subroutine csv_set_instant
+   end subroutine csv_instant
 
-   !> The first cells of all rows of an instant.
-   function start_of(m, step, t) result(start)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: step
-      real(wp), intent(in) :: t
-      character(:), allocatable :: start
-
-      start = whole(m%set_number)//','//whole(step)//','//full(t)//','
-   end function start_of
-
-   !> One line, which begins with `start`.
-   subroutine add_row(o, start, m, q, request, kantorovich_ratio)
+   !> The cells of one row from its kind on.
+   subroutine add_row(o, m, q, request, errors)
       type(output_t), intent(inout) :: o
-      character(*), intent(in) :: start
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       type(request_t), intent(in) :: request
-      type(error_estimate_t), intent(in) :: kantorovich_ratio
+      type(error_estimate_t), intent(in) :: errors
       type(row_t) :: row
 
-      call add(o, start)
       row = row_of(m, q, request)
-      call add_name(o, row)
-      call add_values(o, row, row%known, m%degrees)
+      call add(o, kinds_of_row(row%kind)(:len_trim(kinds_of_row(row%kind))))
+      call add(o, ',')
+      call add_name(o, row%name(:len_trim(row%name)))
+      call add_values(o, row, m%degrees)
       call add(o, ',')
       call add(o, marks(row%mark)(:len_trim(marks(row%mark))))
-      if (kantorovich_ratio%asked) call add_errors(o, row, row_error(m, kantorovich_ratio, q, request), row%known, &
-         m%degrees)
+      if (errors%asked) call add_errors(o, row, row_error(m, errors, q, request), m%degrees)
       call put(o, '')
    end subroutine add_row
 
-   !> Kind and name.
-   subroutine add_name(o, row)
+   !> Nine values, a comma before each; empty where they are not known or the row has none.
+   subroutine add_values(o, row, degrees)
       type(output_t), intent(inout) :: o
       type(row_t), intent(in) :: row
-
-      call add(o, kinds_of_row(row%kind)(:len_trim(kinds_of_row(row%kind))))
-      call add(o, ',')
-      call add_word(o, row%name(:len_trim(row%name)))
-   end subroutine add_name
-
-   !> Nine values, a comma before each.
-   subroutine add_values(o, row, known, degrees)
-      type(output_t), intent(inout) :: o
-      type(row_t), intent(in) :: row
-      integer, intent(in) :: known
       logical, intent(in) :: degrees
       character(9*(full_length + 1)) :: cells
       real(wp) :: value
@@ -130,7 +88,7 @@ contains
          do c = 1, 3
             used = used + 1
             cells(used:used) = ','
-            if (k <= known .and. has_column(row%kind, c)) then
+            if (k <= row%known .and. has_column(row%kind, c)) then
                value = row%value(c, k)
                if (degrees .and. (c == 3 .or. row%angular)) value = in_degrees(value)
                call put_full(value, cells(used + 1:used + full_length), length)
@@ -141,28 +99,27 @@ contains
       call add(o, cells(:used))
    end subroutine add_values
 
-   !> The nine errors (3, 0:2) of `row`, those of numbers that exist; empty too where nothing is known.
-   subroutine add_errors(o, row, error, known, degrees)
+   !> The nine errors (3, 0:2) of `row`, those of numbers that exist; empty too where no digit is known.
+   subroutine add_errors(o, row, error, degrees)
       type(output_t), intent(inout) :: o
       type(row_t), intent(in) :: row
       real(wp), intent(in) :: error(3, 0:2)
-      integer, intent(in) :: known
       logical, intent(in) :: degrees
       type(row_t) :: errors
-      integer :: k, last
+      integer :: k
 
-      last = -1
-      do k = 0, known
-         if (any(error(:, k) >= nothing_known)) exit
-         last = k
-      end do
       errors = row
       errors%value = error
-      call add_values(o, errors, last, degrees)
+      errors%known = -1
+      do k = 0, row%known
+         if (any(error(:, k) >= nothing_known)) exit
+         errors%known = k
+      end do
+      call add_values(o, errors, degrees)
    end subroutine add_errors
 
    !> A name as a cell: in quotes where it holds a comma or a quote.
-   subroutine add_word(o, name)
+   subroutine add_name(o, name)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: name
       integer :: i
@@ -177,8 +134,9 @@ contains
          call add(o, name(i:i))
       end do
       call add(o, '"')
-   end subroutine add_word
+   end subroutine add_name
 
+   !> Rows of the given `kind` have a column number `c` (x, y, phi) of each derivative.
    pure logical function has_column(kind, c)
       integer, intent(in) :: kind, c
 

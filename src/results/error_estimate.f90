@@ -1,36 +1,199 @@
-!> How far the rows of a table are known: the motion once more, from the deck as it is and from decks whose
-!> numbers are a little off.
+!> The error estimate: how far the numbers of a motion are known, from the deck as it is and from perturbed decks, at
+!> instants where digits of the tables could be in doubt or where the errors are asked for.
 module error_estimate
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_t, request_point
-   use motion, only: motion_t
+   use mechanism, only: mechanism_t, request_t, request_point, place_links
+   use motion, only: motion_t, new_motion, forget_links
    use points, only: row_t, row_of, is_fixed
    use known_digits, only: nothing_known
-   use perturbed_deck, only: perturbation
+   use scales, only: characteristic_length, characteristic_rate
+   use convergence, only: convergence_t, is_solved, ended_inconsistent
+   use block_solver, only: solve_block
+   use engine, only: engine_t
+   use block_method, only: block_method_t
+   use block_engine, only: block_engine_t, make_block_engine, set_drive_values, get_blocks_motion, know_links
+   use perturbed_deck, only: sample_count, perturbation, perturbed, perturbed_instant
    implicit none
    private
-   public :: error_estimate_t, unusable, row_estimate, row_error, largest_errors, find_estimates
+   public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, row_estimate, row_error, largest_errors, &
+      find_estimates
 
-   !> What the samples differ by is an error of as many roundings as the perturbation is long; a deck's number, and with
-   !> it every sum and product, is off by half a rounding. For how few the samples are: some more.
+   !> The perturbed decks differ by an error of as many roundings as the perturbation is long; a number of the deck, and
+   !> with it every sum and product, is off by half a rounding. `caution`: for how few the decks are.
    real(wp), parameter :: roundings = perturbation/epsilon(1.0_wp)
    real(wp), parameter :: caution = 2.5_wp
-   real(wp), parameter :: estimate_roundings = 1.5_wp
+   real(wp), parameter :: sum_roundings = 1.5_wp
 
-   !> `known` of a sample that tells nothing: equations that are too many contradict one another once each is off by
-   !> itself.
+   !> Errors are roundings times |J^-1|^2 times the Lipschitz constant of J times what is asked for; below this many
+   !> roundings, and with no number larger than so many characteristic ones, all digits of a table are safe.
+   real(wp), parameter :: safe_growth = 1.0e4_wp, safe_size = 1.0e4_wp
+   !> The same by the reciprocal condition of all closure equations at once, whose pivots are no block's.
+   real(wp), parameter :: safe_condition = 1.0e-3_wp
+
+   !> From its own position an iteration would end at once, and show nothing of the residual that is left there.
+   real(wp), parameter :: nudge = 0.0625_wp*sqrt(epsilon(1.0_wp))
+
+   !> `known` of a sample that shows nothing: redundant equations contradict one another once each is off by itself.
    integer, parameter :: unusable = -2
 
-   !> Motions at one instant; samples(0) is that of the deck itself. They are `taken` where digits of the tables could
-   !> be `in_doubt`, which are masked then, or where the errors are `asked` for, if there is a position.
+   !> Motions at one instant; samples(0) is that of the deck itself, the others those of perturbed decks. They are
+   !> `taken` where digits of the tables could be `in_doubt`, which are masked then, or where the errors are `asked`
+   !> for, if there is a position.
    type :: error_estimate_t
       logical :: taken = .false., asked = .false., in_doubt = .false.
-      !> (length or angle, derivative) What a sum of numbers as large as the largest of the rows is rounded by.
-      real(wp) :: estimate(2, 0:2) = 0.0_wp
+      !> (length or angle, derivative) The rounding error of a sum of numbers as large as the largest of the rows.
+      real(wp) :: of_sums(2, 0:2) = 0.0_wp
       type(motion_t), allocatable :: samples(:)
    end type error_estimate_t
 
+   !> Engines of the deck (0) and of its perturbed decks; the characteristic length and rate of the mechanism.
+   type :: estimator_t
+      real(wp) :: length = 1.0_wp, rate = 1.0_wp
+      type(block_engine_t), allocatable :: engine(:)
+   end type estimator_t
+
 contains
+
+   !> Samples of `m`; the engines are made when they are first asked for.
+   subroutine make_estimator(s, m)
+      type(estimator_t), intent(out) :: s
+      type(mechanism_t), intent(in) :: m
+
+      s%length = characteristic_length(m)
+      s%rate = characteristic_rate(m, s%length)
+   end subroutine make_estimator
+
+   !> How far the motion `q` of `m` is known, which the `engine` has found, by a matrix of the reciprocal condition
+   !> `rcond`. `always`: also where no digit of a table is in doubt.
+   subroutine estimate_errors(s, m, engine, rcond, q, always, found)
+      type(estimator_t), intent(inout) :: s
+      type(mechanism_t), intent(in) :: m
+      class(engine_t), intent(in) :: engine
+      real(wp), intent(in) :: rcond
+      type(motion_t), intent(in) :: q
+      logical, intent(in) :: always
+      type(error_estimate_t), intent(inout) :: found
+
+      select type (engine)
+      class is (block_method_t)
+         call take_samples(s, m, rcond, q, always, found, engine)
+      class default
+         call take_samples(s, m, rcond, q, always, found)
+      end select
+   end subroutine estimate_errors
+
+   !> The same; `e` is present where blocks have found the motion.
+   subroutine take_samples(s, m, rcond, q, always, found, e)
+      type(estimator_t), intent(inout) :: s
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: rcond
+      type(motion_t), intent(in) :: q
+      logical, intent(in) :: always
+      type(error_estimate_t), intent(inout) :: found
+      class(block_method_t), intent(in), optional :: e
+      integer :: k
+
+      found%taken = .false.
+      found%asked = always
+      found%in_doubt = is_in_doubt(s, rcond, q, e)
+      if (q%known < 0 .or. .not. (always .or. found%in_doubt)) return
+      if (.not. allocated(found%samples)) then
+         allocate (found%samples(0:sample_count))
+         found%samples(:) = new_motion(size(m%links))
+      end if
+      call make_engines(s, m, q, e)
+      if (.not. s%engine(0)%blocks%solvable) return
+      do k = 0, sample_count
+         associate (u => s%engine(k)%state%u)
+            if (present(e)) then
+               ! The perturbed deck's unit may be the next power of two.
+               call e%copy_values(s%engine(k))
+            else
+               u%value = s%engine(k)%estimated
+            end if
+            u(2:)%value = u(2:)%value + nudge
+         end associate
+         call solve_again(s%engine(k), perturbed_instant(q%t, k), found%samples(k))
+      end do
+      found%taken = found%samples(0)%known /= unusable .and. any(found%samples(1:)%known /= unusable)
+      if (found%taken) call find_estimates(m, s%length, found)
+   end subroutine take_samples
+
+   !> Some digit could be in doubt: a pivot is small, or a number large.
+   pure logical function is_in_doubt(s, rcond, q, e)
+      type(estimator_t), intent(in) :: s
+      real(wp), intent(in) :: rcond
+      type(motion_t), intent(in) :: q
+      class(block_method_t), intent(in), optional :: e
+      real(wp) :: size_of
+
+      is_in_doubt = .false.
+      if (q%known < 2) return
+      ! Several ground links that stand far away are rounded as coarsely as far places are.
+      size_of = max(largest(q%position, s%length), maxval(abs(q%origin))/s%length, &
+         largest(q%velocity, s%length)/s%rate, largest(q%acceleration, s%length)/s%rate**2)
+      is_in_doubt = size_of > safe_size
+      if (is_in_doubt) return
+      if (present(e)) then
+         is_in_doubt = e%roundings_grow(size_of, safe_growth)
+      else
+         is_in_doubt = rcond < safe_condition
+      end if
+   end function is_in_doubt
+
+   !> The largest coordinate, lengths in units of `length`.
+   pure real(wp) function largest(x, length)
+      real(wp), intent(in) :: x(:, :), length
+
+      largest = max(maxval(abs(x(:2, :)))/length, maxval(abs(x(3, :))))
+   end function largest
+
+   !> The engines of `m`, for the angles and slides of `e`; without it they are those of the position `q`.
+   subroutine make_engines(s, m, q, e)
+      type(estimator_t), intent(inout) :: s
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      class(block_method_t), intent(in), optional :: e
+      type(mechanism_t) :: deck
+      integer :: k
+
+      if (present(e) .and. allocated(s%engine)) return
+      if (allocated(s%engine)) deallocate (s%engine)
+      allocate (s%engine(0:sample_count))
+      deck = m
+      if (.not. present(e)) call place_links(deck, q%position)
+      do k = 0, sample_count
+         call make_block_engine(s%engine(k), perturbed(deck, k))
+      end do
+   end subroutine make_engines
+
+   !> The motion of `e` at `t`, from where its unknowns are, to the limit of rounding.
+   subroutine solve_again(e, t, q)
+      type(block_engine_t), intent(inout) :: e
+      real(wp), intent(in) :: t
+      type(motion_t), intent(inout) :: q
+      type(convergence_t) :: c
+      real(wp) :: correction
+      logical :: finite
+      integer :: i
+
+      q%t = t
+      q%known = 2
+      call forget_links(q)
+      call set_drive_values(e, t)
+      correction = 0.0_wp
+      do i = 1, size(e%needed)
+         c = convergence_t()
+         call solve_block(e%blocks, e%needed(i), 0.0_wp, e%work, e%state, c, correction)
+         if (c%singular) q%known = 0
+         e%is_singular(e%needed(i)) = c%singular
+         if (is_solved(c) .and. .not. c%rates_open) cycle
+         q%known = merge(unusable, -1, c%ended == ended_inconsistent .or. c%rates_open)
+         return
+      end do
+      call get_blocks_motion(e, q, finite)
+      if (q%known == 0) call know_links(e, q)
+   end subroutine solve_again
 
    !> What rounding of the deck's numbers leaves open in the row that `request` asks for (3, 0:2), in its units: the
    !> conditioning of the mechanism, whatever program has solved it. `nothing_known`, where it is so.
@@ -58,7 +221,7 @@ contains
       scale = caution/merge(roundings, sqrt(roundings), known > 0)
       do k = 1, ubound(s%samples, 1)
          if (s%samples(k)%known == unusable) cycle
-         ! Half of the kin of a mechanism at its limit cannot go so far.
+         ! Next to a limit of the motion, half of the perturbed decks have no position.
          one = row_of(m, s%samples(k), request)
          if (one%known < 0 .and. known == 0) cycle
          error = max(error, abs(one%value - middle%value))
@@ -66,7 +229,7 @@ contains
          known = min(known, one%known)
       end do
       ! A coordinate of what stands still is zero without a sum.
-      error = merge(0.0_wp, scale*error + estimate_of_errors(s, middle%angular), zero)
+      error = merge(0.0_wp, scale*error + error_of_sums(s, middle%angular), zero)
       error(:, known + 1:) = nothing_known
    end function row_estimate
 
@@ -84,7 +247,7 @@ contains
             error = max(error, norm2(p%offset), norm2(m%links(p%link)%position(:2)))
          end associate
       end if
-      error = merge(estimate_roundings*epsilon(1.0_wp)*error, 0.0_wp, abs(row%value(:, 0)) > 0.0_wp)
+      error = merge(sum_roundings*epsilon(1.0_wp)*error, 0.0_wp, abs(row%value(:, 0)) > 0.0_wp)
    end function fixed_error
 
    !> To be called when `s` has its samples; `length`: the characteristic one. What is summed up to a velocity is no
@@ -108,21 +271,21 @@ contains
       size_of(1, 0) = max(size_of(1, 0), size_of(2, 0)*length)
       size_of(1, 1) = max(size_of(1, 1), size_of(2, 1)*length)
       size_of(:, 2) = max(size_of(:, 2), size_of(:, 1)*size_of(2, 1))
-      s%estimate = estimate_roundings*epsilon(1.0_wp)*size_of
+      s%of_sums = sum_roundings*epsilon(1.0_wp)*size_of
    end subroutine find_estimates
 
-   !> The noise of a row (3, 0:2); `angular`: of a pair whose value is an angle.
-   pure function estimate_of_errors(s, angular) result(estimate)
+   !> The rounding errors of the sums of a row (3, 0:2); `angular`: of a pair whose value is an angle.
+   pure function error_of_sums(s, angular) result(estimate)
       type(error_estimate_t), intent(in) :: s
       logical, intent(in) :: angular
       real(wp) :: estimate(3, 0:2)
 
-      estimate = s%estimate([1, 1, 2], :)
-      if (angular) estimate(1, :) = s%estimate(2, :)
-   end function estimate_of_errors
+      estimate = s%of_sums([1, 1, 2], :)
+      if (angular) estimate(1, :) = s%of_sums(2, :)
+   end function error_of_sums
 
-   !> The error of the row of `q`, estimated: the scatter, and how far it is from the
-   !> motion solved to the limit of rounding.
+   !> The estimated error (3, 0:2) of the row of the motion `q`: what rounding leaves open, and how far the row is from
+   !> that of the motion solved to the limit of rounding.
    pure function row_error(m, s, q, request) result(error)
       type(mechanism_t), intent(in) :: m
       type(error_estimate_t), intent(in) :: s

@@ -3,27 +3,27 @@
 module listing
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use motion, only: motion_t, mark_none, mark_not_converged, mark_singular, mark_overflow, &
-      mark_inconsistent
-   use structure, only: findings_t
+   use motion, only: mark_none, mark_inconsistent
+   use structure, only: findings_t, group_t
    use branch_certificate, only: certificate_counts_t
    use diagnostics, only: diagnostic_t
-   use listing_structure, only: put_structure
-   use listing_diagnostics, only: put_diagnostics, put_closure_error
    use points, only: is_due
+   use error_estimate, only: error_estimate_t
    use set_motion, only: set_motion_t, is_flagged, in_set
-   use listing_tables, only: table_t, put_requested, put_units
-   use text_output, only: output_t, put
+   use listing_tables, only: layout_t, new_layout, table_t, put_requested, put_units
+   use listing_diagnostics, only: put_diagnostics, put_closure_error
+   use text_output, only: output_t, put, add
    use numerals, only: fixed, whole, numeral_length
    use known_digits, only: unknown_digit
-   use error_estimate, only: error_estimate_t
-   use layout, only: layout_t, new_layout
-   use phrases, only: phrase, say_program, say_set, say_title, say_data, say_results, &
-      say_end, say_solved, say_flagged, say_no_position, say_no_rates, say_overflow, say_contradiction, &
-      say_unknown, say_branch, say_followed, say_passed, say_uncertain, say_broken_off
+   use phrases
    implicit none
    private
-   public :: layout_t, new_layout, listing_head, listing_instant, listing_set_instant, listing_end, listing_broken_off
+   public :: layout_t, new_layout, listing_head, listing_instant, listing_end, listing_broken_off
+
+   !> Why there is not all of a motion, by its mark.
+   type(phrase_t), parameter :: mark_words(mark_none:mark_inconsistent) = &
+      [phrase_t(), say_no_position, say_no_rates, say_overflow, say_contradiction]
+   integer, parameter :: links_a_line = 10
 
 contains
 
@@ -53,31 +53,52 @@ contains
       end associate
    end subroutine listing_head
 
-   !> The tables of instant number `step` (0, 1, ...) of the motion `q` of all of `m`, as far as the deck asks for them
-   !> there; digits that `kantorovich_ratio` leaves open are masked.
-   subroutine listing_instant(o, l, m, q, step, kantorovich_ratio)
+   !> Counts and groups `f` of `m`.
+   subroutine put_structure(o, m, f)
       type(output_t), intent(inout) :: o
-      type(layout_t), intent(in) :: l
       type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      integer, intent(in) :: step
-      type(error_estimate_t), intent(in), optional :: kantorovich_ratio
-      type(table_t) :: table
-      integer :: i
+      type(findings_t), intent(in) :: f
 
-      do i = 1, size(m%requests)
-         if (.not. is_due(m, m%requests(i), step)) cycle
-         if (table%kind == 0) call put_instant(o, l, q%t, step)
-         call put_requested(o, l, i, m, q, m%requests(i), table, kantorovich_ratio)
+      associate (pl => m%polish)
+         call put(o, ' '//phrase(say_structure, pl))
+         call put(o, ' '//phrase(say_links, pl)//' '//whole(f%links)//', '//phrase(say_ground, pl) &
+            //' '//whole(f%ground)//';  '//phrase(say_revolute, pl)//' '//whole(f%revolute) &
+            //';  '//phrase(say_prismatic, pl)//' '//whole(f%prismatic))
+         call put(o, ' '//phrase(say_coordinates, pl)//' W = '//whole(f%coordinates)//';  '//phrase(say_equations, pl) &
+            //' R = '//whole(f%equations)//';  '//phrase(say_degrees_of_freedom, pl)//' S = ' &
+            //whole(f%degrees_of_freedom)//';  '//phrase(say_drives, pl)//' '//whole(f%drives))
+      end associate
+      if (allocated(f%groups)) call put_groups(o, m, f%groups)
+   end subroutine put_structure
+
+   !> A line of links for each group, continued where they are many.
+   subroutine put_groups(o, m, groups)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(group_t), intent(in) :: groups(:)
+      character(18) :: head
+      integer :: i, k
+
+      if (size(groups) > 0) call put(o, ' '//phrase(say_groups, m%polish))
+      do i = 1, size(groups)
+         write (head, '(i6)') i
+         if (groups(i)%driven) head(9:) = phrase(say_driven, m%polish)
+         if (.not. groups(i)%needed) head(9:) = phrase(say_not_needed, m%polish)
+         do k = 1, size(groups(i)%links)
+            if (mod(k, links_a_line) == 1) call add(o, ' '//head)
+            if (k == size(groups(i)%links) .or. mod(k, links_a_line) == 0) then
+               call put(o, ' '//trim(m%links(groups(i)%links(k))%name))
+            else
+               call add(o, ' '//m%links(groups(i)%links(k))%name)
+            end if
+            head = ''
+         end do
       end do
-      if (table%kind == 0 .and. q%mark /= mark_none) call put_instant(o, l, q%t, step)
-      if (q%mark /= mark_none) call put(o, ' *** '//mark_text(q%mark, m%polish))
-      call put_masked(o, m, table)
-      if (allocated(q%diagnostics)) call put_diagnostics(o, m, q%diagnostics)
-   end subroutine listing_instant
+   end subroutine put_groups
 
-   !> The same of the motions `s` of the independent mechanisms of `m`.
-   subroutine listing_set_instant(o, l, m, s, step)
+   !> The tables of instant number `step` (0, 1, ...) of the motions `s` of `m`, as far as the deck asks for them there;
+   !> digits that rounding leaves open are masked. Then what there is to say of the instant.
+   subroutine listing_instant(o, l, m, s, step)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(mechanism_t), intent(in) :: m
@@ -86,42 +107,31 @@ contains
       type(table_t) :: table
       integer :: i, c, k
 
-      if (size(s%own) == 0) then
-         call listing_instant(o, l, m, s%motions(1), step, s%kantorovich_ratios(1))
-         return
-      end if
       do i = 1, size(m%requests)
          if (.not. is_due(m, m%requests(i), step)) cycle
          if (table%kind == 0) call put_instant(o, l, s%motions(1)%t, step)
          c = s%parts%part(i)
-         if (c == 0) then
-            call put_requested(o, l, i, m, s%motions(1), m%requests(i), table)
+         if (c > 0) then
+            call put_requested(o, l, i, s%own(c), s%motions(c), s%own(c)%requests(s%parts%number(i)), s%errors(c), &
+               table)
          else
-            call put_requested(o, l, i, s%own(c), s%motions(c), s%own(c)%requests(s%parts%number(i)), table, &
-               s%kantorovich_ratios(c))
+            ! A row of the ground is known by the deck alone.
+            call put_requested(o, l, i, m, s%motions(1), m%requests(i), error_estimate_t(), table)
          end if
       end do
       if (table%kind == 0 .and. is_flagged(s)) call put_instant(o, l, s%motions(1)%t, step)
       do k = mark_none + 1, mark_inconsistent
-         if (any(s%motions%mark == k)) call put(o, ' *** '//mark_text(k, m%polish))
+         if (any(s%motions%mark == k)) call put(o, ' *** '//phrase(mark_words(k), m%polish))
       end do
-      call put_masked(o, m, table)
+      if (table%masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, m%polish))
       do c = 1, size(s%motions)
          if (.not. allocated(s%motions(c)%diagnostics)) cycle
          call put_diagnostics(o, m, [(in_set(s%motions(c)%diagnostics(k), s%parts%list(c)), k=1, &
             size(s%motions(c)%diagnostics))])
       end do
-   end subroutine listing_set_instant
+   end subroutine listing_instant
 
-   !> What a question mark stands for, where there is one.
-   subroutine put_masked(o, m, table)
-      type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(table_t), intent(in) :: table
-
-      if (table%masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, m%polish))
-   end subroutine put_masked
-
+   !> The line above the tables of an instant, `t` in the deck's unit.
    subroutine put_instant(o, l, t, step)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
@@ -134,29 +144,9 @@ contains
       call put(o, l%instant//whole(step)//'   T = '//trim(time))
    end subroutine put_instant
 
-   pure function mark_text(mark, pl) result(text)
-      integer, intent(in) :: mark
-      logical, intent(in) :: pl
-      character(:), allocatable :: text
-
-      select case (mark)
-      case (mark_not_converged)
-         text = phrase(say_no_position, pl)
-      case (mark_singular)
-         text = phrase(say_no_rates, pl)
-      case (mark_overflow)
-         text = phrase(say_overflow, pl)
-      case (mark_inconsistent)
-         text = phrase(say_contradiction, pl)
-      case default
-         text = ''
-      end select
-   end function mark_text
-
-   !> The last lines of a set: what is known of the branches on which its instants were found, then how many were solved
-   !> and how many are marked; before them, where equations are redundant, by how much they differ (`closure_error`, in
-   !> parts
-   !> of the characteristic length; negative where none are); and other `diagnostics`.
+   !> The last lines of a set: where equations are redundant, by how much they differ (`closure_error`, in parts of the
+   !> characteristic length; negative where none are); `diagnostics`; what is certified of the branches on which the
+   !> instants were found; how many instants were `solved` and how many are `flagged`.
    subroutine listing_end(o, m, solved, flagged, certificate_counts, closure_error, diagnostics)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
@@ -170,10 +160,11 @@ contains
          if (closure_error >= 0.0_wp) call put_closure_error(o, m, closure_error)
       end if
       if (present(diagnostics)) call put_diagnostics(o, m, diagnostics)
-      call put(o, ' '//phrase(say_branch, m%polish)//':  '//phrase(say_followed, &
-         m%polish)//' '//whole(certificate_counts%followed) &
-         //', '//phrase(say_passed, m%polish)//' '//whole(certificate_counts%passed) &
-         //', '//phrase(say_uncertain, m%polish)//' '//whole(certificate_counts%uncertain))
+      associate (c => certificate_counts)
+         call put(o, ' '//phrase(say_branch, m%polish)//':  '//phrase(say_followed, m%polish)//' '//whole(c%followed) &
+            //', '//phrase(say_passed, m%polish)//' '//whole(c%passed) &
+            //', '//phrase(say_uncertain, m%polish)//' '//whole(c%uncertain))
+      end associate
       call put(o, ' '//phrase(say_end, m%polish)//' '//whole(m%set_number) &
          //':  '//phrase(say_solved, m%polish)//' '//whole(solved) &
          //', '//phrase(say_flagged, m%polish)//' '//whole(flagged))

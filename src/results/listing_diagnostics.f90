@@ -1,33 +1,27 @@
-!> Remarks in words: three stars before what concerns the results, three dashes before what is good to know.
+!> Diagnostics in words: three stars before what concerns the results, three dashes before what is good to know.
 module listing_diagnostics
    use kinds, only: wp
    use constants, only: degree
    use mechanism, only: mechanism_t
-   use diagnostics, only: diagnostic_t, diagnostic_inconsistent, diagnostic_limit, diagnostic_far_estimate, &
-      diagnostic_second, diagnostic_redundant, diagnostic_mobile, &
-      diagnostic_change, diagnostic_long, diagnostic_unused, diagnostic_dead_end, diagnostic_idle, &
-      diagnostic_repeated, &
-      diagnostic_method
+   use diagnostics
    use names, only: drive_name, listed
    use numerals, only: whole
    use text_output, only: output_t, put
-   use phrases, only: phrase, say_pair, say_drive, say_link, say_links, say_closure_error_of, say_limit, say_in_line, &
-      say_at_limit, say_off_by, say_second, say_redundant, say_mobile, say_closure_error, say_below, say_change, &
-      say_smoothly, &
-      say_way, say_too_long, say_other, say_here, say_not_found, say_branch_from, say_no_change, &
-      say_idle, say_repeated, say_redundant_many, say_of_pair, say_method, &
-      say_elsewhere
+   use phrases
    implicit none
    private
    public :: put_diagnostics, put_closure_error
 
    integer, parameter :: line_length = 120
-   !> A gap below this, of the size, is rounding, and no two computers have the same.
-   real(wp), parameter :: min_gap = max(1.0e-13_wp, 400.0_wp*epsilon(1.0_wp))
+   !> What concerns the results.
+   integer, parameter :: of_results(*) = [diagnostic_inconsistent, diagnostic_limit, diagnostic_mobile, &
+      diagnostic_long, diagnostic_unused, diagnostic_dead_end, diagnostic_idle, diagnostic_repeated]
+   !> A closure error below this, in parts of the characteristic length, is rounding: no two computers have the same.
+   real(wp), parameter :: min_closure_error = max(1.0e-13_wp, 400.0_wp*epsilon(1.0_wp))
 
 contains
 
-   !> A line for each remark of `list`.
+   !> A line or two for each diagnostic of `list`.
    subroutine put_diagnostics(o, m, list)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
@@ -35,16 +29,9 @@ contains
       integer :: i
 
       do i = 1, size(list)
-         select case (list(i)%kind)
-         case (diagnostic_inconsistent, diagnostic_limit, diagnostic_mobile, diagnostic_long, diagnostic_unused, &
-            diagnostic_dead_end, &
-            diagnostic_idle, diagnostic_repeated)
-            call put_broken(o, ' *** ', words_of(m, list(i)))
-            if (list(i)%kind == diagnostic_limit) call put(o, ' *** '//links(m, list(i))//' ' &
-               //phrase(merge(say_in_line, say_at_limit, list(i)%in_line), m%polish))
-         case default
-            call put_broken(o, ' --- ', words_of(m, list(i)))
-         end select
+         call put_broken(o, merge(' *** ', ' --- ', any(list(i)%kind == of_results)), words_of(m, list(i)))
+         if (list(i)%kind == diagnostic_limit) call put(o, ' *** '//links(m, list(i))//' ' &
+            //phrase(merge(say_in_line, say_at_limit, list(i)%in_line), m%polish))
       end do
    end subroutine put_diagnostics
 
@@ -60,6 +47,7 @@ contains
       if (last < len(text)) call put(o, mark//text(last + 2:))
    end subroutine put_broken
 
+   !> The sentence of diagnostic `r`.
    function words_of(m, r) result(text)
       type(mechanism_t), intent(in) :: m
       type(diagnostic_t), intent(in) :: r
@@ -119,6 +107,7 @@ contains
       end if
    end function owner
 
+   !> LINKS A, B AND 3 MORE
    function links(m, r) result(text)
       type(mechanism_t), intent(in) :: m
       type(diagnostic_t), intent(in) :: r
@@ -136,7 +125,7 @@ contains
       end if
    end function links
 
-   !> The remark's value and its unit.
+   !> The diagnostic's value and its unit.
    function measure(m, r, form) result(text)
       type(mechanism_t), intent(in) :: m
       type(diagnostic_t), intent(in) :: r
@@ -152,6 +141,7 @@ contains
       end if
    end function measure
 
+   !> `x` by the format `form`, without blanks.
    function number(x, form) result(text)
       real(wp), intent(in) :: x
       character(*), intent(in) :: form
@@ -169,12 +159,13 @@ contains
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: closure_error
+      character(:), allocatable :: text
 
-      if (closure_error < min_gap) then
-         call put(o, ' '//phrase(say_closure_error, m%polish)//' '//phrase(say_below, m%polish)//' ' &
-            //number(min_gap, '(es7.0)'))
+      if (closure_error < min_closure_error) then
+         text = phrase(say_below, m%polish)//' '//number(min_closure_error, '(es7.0)')
       else
-         call put(o, ' '//phrase(say_closure_error, m%polish)//' '//number(closure_error, '(es7.0)'))
+         text = number(closure_error, '(es7.0)')
       end if
+      call put(o, ' '//phrase(say_closure_error, m%polish)//' '//text)
    end subroutine put_closure_error
 end module listing_diagnostics

@@ -25,7 +25,6 @@ module phrases
       say_degrees_of_freedom = phrase_t('DEGREES OF FREEDOM', 'STOPNIE SWOBODY'), &
       say_drives = phrase_t('DRIVES', 'NAPEDY'), &
       say_results = phrase_t('RESULTS', 'WYNIKI'), &
-      say_units = phrase_t('UNITS', 'JEDNOSTKI'), &
       say_instant = phrase_t('INSTANT', 'CHWILA'), &
       say_link = phrase_t('LINK', 'OGNIWO'), &
       say_point = phrase_t('POINT', 'PUNKT'), &
@@ -42,9 +41,6 @@ module phrases
       say_no_rates = phrase_t('JACOBIAN SINGULAR: VELOCITIES AND ACCELERATIONS DO NOT EXIST', &
          'JAKOBIAN OSOBLIWY: PREDKOSCI I PRZYSPIESZENIA NIE ISTNIEJA'), &
       say_overflow = phrase_t('THE RESULT IS TOO LARGE A NUMBER', 'WYNIK JEST ZBYT DUZA LICZBA'), &
-      say_card = phrase_t('CARD', 'KARTA'), &
-      say_default = phrase_t('(DEFAULT)', '(DOMYSLNE)'), &
-      say_in_units = phrase_t('UNIT', 'JEDNOSTKA'), &
       say_groups = phrase_t('ASSUR GROUPS IN SOLVING ORDER', 'GRUPY ASSURA W KOLEJNOSCI ROZWIAZYWANIA'), &
       say_driven = phrase_t('DRIVEN', 'NAPEDZANA'), &
       say_not_needed = phrase_t('NOT NEEDED', 'ZBEDNA'), &

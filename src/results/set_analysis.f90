@@ -1,5 +1,5 @@
-!> The analysis of a set, each of its independent mechanisms by itself: its own steps and parts of them, its
-!> own limits, change points and flags. What is told of the whole is the worst of them.
+!> The analysis of a set, each of its independent mechanisms by itself: its own steps and substeps, its own limits,
+!> change points and flags. Of the set the worst of them is reported.
 module set_analysis
    use kinds, only: wp
    use mechanism, only: mechanism_t
@@ -8,8 +8,7 @@ module set_analysis
    use convergence, only: convergence_t, is_solved, gather
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, worst_branch
    use branch_requests, only: branch_requests_t, new_branch_requests, unused
-   use error_estimate, only: largest_errors
-   use rounding_samples, only: samples_t, make_estimates, take_samples
+   use error_estimate, only: estimator_t, make_estimator, estimate_errors, largest_errors
    use set_motion, only: set_motion_t, new_set_motion
    use analysis, only: analysis_t, make_analysis, advance, redundancy_error
    use diagnosis, only: opinion_t, ask_blocks
@@ -18,13 +17,12 @@ module set_analysis
    public :: set_analysis_t, make_set_analysis, advance_set, sample_set, set_record, set_errors, set_closure_error, &
       set_closing_diagnostics, iterations_of
 
-   !> `now`: the instant found last.
    type :: set_analysis_t
-      type(set_motion_t) :: now
-      type(analysis_t), allocatable :: list(:)    !< (parts)
-      type(opinion_t), allocatable :: opinions(:) !< (parts)
-      type(samples_t), allocatable :: samples(:)  !< (parts)
-      type(certificate_counts_t) :: certificate_counts                      !< of all instants
+      type(set_motion_t) :: now                             !< the motion found last, and how far it is known
+      type(analysis_t), allocatable :: list(:)              !< (parts)
+      type(opinion_t), allocatable :: opinions(:)           !< (parts)
+      type(estimator_t), allocatable :: estimators(:)       !< (parts)
+      type(certificate_counts_t) :: certificate_counts      !< of all instants
    end type set_analysis_t
 
 contains
@@ -39,80 +37,53 @@ contains
 
       call new_set_motion(m, s%now)
       associate (n => s%now%parts%count)
-         allocate (s%list(n), s%opinions(n), s%samples(n))
+         allocate (s%list(n), s%opinions(n), s%estimators(n))
       end associate
-      if (s%now%parts%count == 1) call prepare(m, s, 1)
-      do c = 1, size(s%now%own)
-         call prepare(s%now%own(c), s, c)
-      end do
-
-   contains
-
-      subroutine prepare(one, s, c)
-         type(mechanism_t), intent(in) :: one
-         type(set_analysis_t), intent(inout) :: s
-         integer, intent(in) :: c
-
+      do c = 1, size(s%list)
          if (present(structures)) then
-            call make_analysis(s%list(c), one, structures(c))
+            call make_analysis(s%list(c), s%now%own(c), structures(c))
          else
-            call make_analysis(s%list(c), one)
+            call make_analysis(s%list(c), s%now%own(c))
          end if
-         call make_estimates(s%samples(c), one)
-      end subroutine prepare
+         call make_estimator(s%estimators(c), s%now%own(c))
+      end do
    end subroutine make_set_analysis
 
-   !> Solves instant `t` of the set `m`.
-   subroutine advance_set(s, m, t)
+   !> Solves instant `t` of the set.
+   subroutine advance_set(s, t)
       type(set_analysis_t), intent(inout) :: s
-      type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: t
-      type(branch_t) :: branch
       integer :: c, passed
 
-      if (s%now%parts%count == 1) then
-         call advance(s%list(1), t, s%now%motions(1))
-         call ask_blocks(m, s%list(1), s%opinions(1), s%now%motions(1))
-         s%certificate_counts = s%list(1)%certificate_counts
-         return
-      end if
       passed = sum(s%list%certificate_counts%passed)
-      do c = 1, s%now%parts%count
+      do c = 1, size(s%list)
          call advance(s%list(c), t, s%now%motions(c))
          call ask_blocks(s%now%own(c), s%list(c), s%opinions(c), s%now%motions(c))
       end do
+      if (size(s%list) == 1) then
+         s%certificate_counts = s%list(1)%certificate_counts
+         return
+      end if
       passed = sum(s%list%certificate_counts%passed) - passed
-      branch = worst_branch(s%list%branch)
       if (all(s%now%motions%known >= 0)) then
-         call count_in(s%certificate_counts, branch, passed)
+         call count_in(s%certificate_counts, worst_branch(s%list%branch), passed)
       else
          s%certificate_counts%passed = s%certificate_counts%passed + passed
       end if
    end subroutine advance_set
 
-   !> How far the motion found last of `m` is known. `always`: also where no digit of a table is in doubt.
-   subroutine sample_set(s, m, always)
+   !> How far the motion found last is known. `always`: also where no digit of a table is in doubt.
+   subroutine sample_set(s, always)
       type(set_analysis_t), intent(inout) :: s
-      type(mechanism_t), intent(in) :: m
       logical, intent(in) :: always
       integer :: c
 
-      if (size(s%now%own) == 0) call sample(m, 1)
-      do c = 1, size(s%now%own)
-         call sample(s%now%own(c), c)
-      end do
-
-   contains
-
-      subroutine sample(one, c)
-         type(mechanism_t), intent(in) :: one
-         integer, intent(in) :: c
-
+      do c = 1, size(s%list)
          associate (a => s%list(c))
-            call take_samples(s%samples(c), one, a%engine, a%convergence%reciprocal_condition, &
-               s%now%motions(c), always, s%now%kantorovich_ratios(c))
+            call estimate_errors(s%estimators(c), s%now%own(c), a%engine, a%convergence%reciprocal_condition, &
+               s%now%motions(c), always, s%now%errors(c))
          end associate
-      end subroutine sample
+      end do
    end subroutine sample_set
 
    !> How the instant was found, and on which branch: of several mechanisms the worst.
@@ -139,18 +110,15 @@ contains
    end subroutine set_record
 
    !> The largest errors (0:2) of any row, in the characteristic length and rate of its mechanism.
-   pure function set_errors(s, m) result(largest)
+   pure function set_errors(s) result(largest)
       type(set_analysis_t), intent(in) :: s
-      type(mechanism_t), intent(in) :: m
       real(wp) :: largest(0:2)
       integer :: c
 
       largest = 0.0_wp
-      if (size(s%now%own) == 0) largest = largest_errors(m, s%now%kantorovich_ratios(1), s%now%motions(1), &
-         s%samples(1)%length, s%samples(1)%rate)
-      do c = 1, size(s%now%own)
-         largest = max(largest, largest_errors(s%now%own(c), s%now%kantorovich_ratios(c), s%now%motions(c), &
-            s%samples(c)%length, s%samples(c)%rate))
+      do c = 1, size(s%list)
+         largest = max(largest, largest_errors(s%now%own(c), s%now%errors(c), s%now%motions(c), &
+            s%estimators(c)%length, s%estimators(c)%rate))
       end do
    end function set_errors
 
@@ -165,7 +133,7 @@ contains
       end do
    end function set_closure_error
 
-   !> What there is to say after the last instant: of BRANCH cards for which there was no change point.
+   !> What there is to say after the last instant: of BRANCH cards after whose instants no change point was passed.
    pure function set_closing_diagnostics(s, m) result(list)
       type(set_analysis_t), intent(in) :: s
       type(mechanism_t), intent(in) :: m
@@ -174,8 +142,7 @@ contains
       integer :: c
 
       all_of_them = new_branch_requests(m)
-      if (size(s%now%own) == 0) all_of_them%used = s%list(1)%branch_requests%used
-      do c = 1, size(s%now%own)
+      do c = 1, size(s%list)
          associate (cards => s%now%parts%list(c)%branch_requests)
             all_of_them%used(cards) = all_of_them%used(cards) .or. s%list(c)%branch_requests%used
          end associate
@@ -183,7 +150,7 @@ contains
       list = unused(all_of_them)
    end function set_closing_diagnostics
 
-   !> Iterations of all positions sought so far: as one mechanism has them where there is one, of several the most.
+   !> Iterations of all positions solved so far; of several mechanisms the largest number.
    pure integer function iterations_of(s)
       type(set_analysis_t), intent(in) :: s
 

@@ -1,21 +1,21 @@
-!> The motion of a set at one instant, as the writers take it: that of each of its independent mechanisms, with
-!> what is known of it, and where to find the row that a request asks for.
+!> The motion of a set at one instant, as the writers take it: that of each of its independent mechanisms (its
+!> parts), how far it is known, and where to find the row that a request asks for.
 module set_motion
    use mechanism, only: mechanism_t
    use motion, only: motion_t, new_motion, mark_none
    use diagnostics, only: diagnostic_t
-   use independent, only: part_t, parts_t, find_parts
+   use independent, only: part_t, parts_t, find_parts, mechanism_of
    use error_estimate, only: error_estimate_t
    implicit none
    private
-   public :: set_motion_t, new_set_motion, is_flagged, has_words, in_set, put_together
+   public :: set_motion_t, new_set_motion, one_motion, is_flagged, has_words, in_set, put_together
 
-   !> `own` is of size 0 where the set is one mechanism; that is the set itself.
+   !> A set that is one mechanism is one part, with the numbers of the set.
    type :: set_motion_t
       type(parts_t) :: parts
-      type(mechanism_t), allocatable :: own(:)    !< (parts)
-      type(motion_t), allocatable :: motions(:)   !< (parts)
-      type(error_estimate_t), allocatable :: kantorovich_ratios(:)   !< (parts)
+      type(mechanism_t), allocatable :: own(:)          !< (parts) each as a set of its own
+      type(motion_t), allocatable :: motions(:)         !< (parts)
+      type(error_estimate_t), allocatable :: errors(:)  !< (parts)
    end type set_motion_t
 
 contains
@@ -27,23 +27,57 @@ contains
       integer :: c
 
       call find_parts(m, s%parts, s%own)
-      allocate (s%motions(s%parts%count), s%kantorovich_ratios(s%parts%count))
-      if (s%parts%count == 1) s%motions(1) = new_motion(size(m%links))
+      if (s%parts%count == 1) then
+         call take_whole(m, s%parts)
+         deallocate (s%own)
+         allocate (s%own(1))
+         s%own(1) = mechanism_of(m, s%parts%list(1))
+      end if
+      allocate (s%motions(s%parts%count), s%errors(s%parts%count))
       do c = 1, size(s%own)
          s%motions(c) = new_motion(size(s%own(c)%links))
       end do
    end subroutine new_set_motion
 
+   !> The motion `q` of all of `m`, and how far it is known, as a set of one part.
+   function one_motion(m, q, errors) result(s)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      type(error_estimate_t), intent(in) :: errors
+      type(set_motion_t) :: s
+
+      call take_whole(m, s%parts)
+      allocate (s%own(1), s%motions(1), s%errors(1))
+      s%own(1) = m
+      s%motions(1) = q
+      s%errors(1) = errors
+   end function one_motion
+
+   !> All of `m` as one part.
+   pure subroutine take_whole(m, parts)
+      type(mechanism_t), intent(in) :: m
+      type(parts_t), intent(inout) :: parts
+      integer :: i
+
+      allocate (parts%list(1))
+      associate (whole => parts%list(1))
+         whole%links = [(i, i=1, size(m%links))]
+         whole%points = [(i, i=1, size(m%points))]
+         whole%pairs = [(i, i=1, size(m%pairs))]
+         whole%drives = [(i, i=1, size(m%drives))]
+         whole%requests = [(i, i=1, size(m%requests))]
+         allocate (whole%branch_requests(0))
+         if (allocated(m%branch_requests)) whole%branch_requests = [(i, i=1, size(m%branch_requests))]
+         parts%number = whole%requests
+      end associate
+      allocate (parts%part(size(m%requests)), source=1)
+   end subroutine take_whole
+
    !> Some part has not all of its motion.
    pure logical function is_flagged(s)
       type(set_motion_t), intent(in) :: s
-      integer :: c
 
-      is_flagged = .true.
-      do c = 1, size(s%motions)
-         if (s%motions(c)%mark /= mark_none) return
-      end do
-      is_flagged = .false.
+      is_flagged = any(s%motions%mark /= mark_none)
    end function is_flagged
 
    !> There is something to say of the instant beside its numbers.
@@ -67,11 +101,6 @@ contains
       q%t = s%motions(1)%t
       q%known = minval(s%motions%known)
       q%mark = s%motions(minloc(s%motions%known, dim=1))%mark
-      if (size(s%own) == 0) then
-         q%position = s%motions(1)%position
-         q%velocity = s%motions(1)%velocity
-         q%acceleration = s%motions(1)%acceleration
-      end if
       do c = 1, size(s%own)
          associate (links => s%parts%list(c)%links)
             q%position(:, links) = s%motions(c)%position
@@ -81,7 +110,7 @@ contains
       end do
    end subroutine put_together
 
-   !> The remark `r` of a part in the numbers of the set.
+   !> The diagnostic `r` of a part in the numbers of the set.
    pure type(diagnostic_t) function in_set(r, part)
       type(diagnostic_t), intent(in) :: r
       type(part_t), intent(in) :: part

@@ -82,14 +82,14 @@ contains
       q = new_motion(size(m%links))
       every = t%stride*max(1, (t%last/t%stride)/max_compared)
       do k = 0, t%last
-         call advance_set(a, one, instants(k))
+         call advance_set(a, instants(k))
          if (mod(k, every) /= 0) cycle
          call put_together(a%now, q)
          if (q%known < 2) cycle
          there = true_sample(truth, t, k)
          if (truth%motion%known(there) < 2) cycle
-         call sample_set(a, one, .true.)
-         call add_instant(truth, there, q, set_errors(a, one), c)
+         call sample_set(a, .true.)
+         call add_instant(truth, there, q, set_errors(a), c)
       end do
    end subroutine compare
 

@@ -116,7 +116,7 @@ contains
       begun = seconds()
       failures = 0
       do k = 0, ubound(instants, 1)
-         call advance_set(a, m, instants(k))
+         call advance_set(a, instants(k))
          if (k == 0) at_first = iterations_of(a)
          if (is_flagged(a%now)) failures = failures + 1
          seconds_taken = seconds() - begun
@@ -158,10 +158,10 @@ contains
       time = 0.0_dp
       do i = 1, passes
          call make_set_analysis(m, a)
-         call advance_set(a, m, instants(0))
+         call advance_set(a, instants(0))
          begun = seconds()
          do k = 1, last
-            call advance_set(a, m, instants(k))
+            call advance_set(a, instants(k))
          end do
          time = time + (seconds() - begun)
       end do

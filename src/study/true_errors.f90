@@ -150,7 +150,7 @@ contains
       call make_set_analysis(there, a)
       k = (i - 1)*t%stride
       instants = trial_instants(m, t)
-      call advance_set(a, there, real(instants(k), wp))
+      call advance_set(a, real(instants(k), wp))
       call put_together(a%now, q)
       is_other_assembly = q%mark == mark_none
       if (.not. is_other_assembly) return

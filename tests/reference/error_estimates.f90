@@ -11,8 +11,7 @@ program error_estimates
    use motion, only: motion_t, new_motion
    use deck, only: read_deck
    use analysis, only: analysis_t, make_analysis, advance
-   use error_estimate, only: error_estimate_t, row_error
-   use rounding_samples, only: samples_t, make_estimates, take_samples
+   use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, row_error
    use quad_jet, only: qp, pi_q
    use closed_forms_dyads, only: body_t
    use deck_tally, only: deck_name
@@ -74,16 +73,16 @@ contains
       type(certificate_counts_t), intent(inout) :: tally
       type(analysis_t) :: a
       type(motion_t) :: q
-      type(samples_t) :: samples
+      type(estimator_t) :: samples
       type(error_estimate_t) :: doubt
       integer :: k
 
       call make_analysis(a, m)
       q = new_motion(size(m%links))
-      call make_estimates(samples, m)
+      call make_estimator(samples, m)
       do k = 0, instant_count(m) - 1
          call advance(a, instant(m, k), q)
-         call take_samples(samples, m, a%engine, a%convergence%reciprocal_condition, q, .true., doubt)
+         call estimate_errors(samples, m, a%engine, a%convergence%reciprocal_condition, q, .true., doubt)
          if (q%known == 2) call weigh_instant(m, q, doubt, closed_form(name, m%set_number, real(q%t, qp)), tally)
       end do
    end subroutine weigh_set

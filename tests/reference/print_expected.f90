@@ -15,6 +15,7 @@ program print_expected
    use quad_jet, only: qp, pi_q
    use scales, only: characteristic_length
    use error_estimate, only: error_estimate_t, find_estimates
+   use set_motion, only: one_motion
    use perturbed_deck, only: perturbed, perturbed_instant, sample_count
    use closed_forms_dyads, only: body_t
    use closed_forms_hard, only: pushed_slider
@@ -75,7 +76,7 @@ contains
             end if
          end if
          call doubt_by_hand(name, m, q, doubt)
-         call listing_instant(o, layout, m, q, k, doubt)
+         call listing_instant(o, layout, m, one_motion(m, q, doubt), k)
       end do
       ! All of these motions are followed from their first instant on; METHOD DENSE and MATRIX cannot tell.
       if (m%method == method_newton) then

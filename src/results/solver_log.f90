@@ -1,6 +1,6 @@
 !> The solver's protocol (--log): how each position was found. It depends on the solver's path, which
 !> the listing never does.
-module protocol
+module solver_log
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton, method_dense, method_matrix
    use convergence, only: convergence_t, ending
@@ -10,12 +10,12 @@ module protocol
    use known_digits, only: nothing_known
    implicit none
    private
-   public :: protocol_head, protocol_instant
+   public :: log_head, log_instant
 
 contains
 
    !> The set's method and the columns; with `errors`, those of the errors' estimates as well.
-   subroutine protocol_head(o, m, errors)
+   subroutine log_head(o, m, errors)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       logical, intent(in) :: errors
@@ -28,13 +28,13 @@ contains
       call put(o, trim('    STEP                        T     ENDED  ITER   RESIDUAL       STEP       RATE' &
          //'  RECIPROCAL CONDITION  SIGN OF DET   BRANCH  PARTS      DOUBT'// &
          merge('  ERROR OF X  ERROR OF V  ERROR OF A', repeat(' ', 36), errors)))
-   end subroutine protocol_head
+   end subroutine log_head
 
    !> One line: instant number, time, how the iteration ended, its count, last residual and step (over the size of
    !> the coordinates), mean ratio of successive residuals, reciprocal condition and sign of the determinant; the
    !> branch `b`, and what was verified of it; where `errors` (0:2) are given, the largest of positions, velocities
    !> and accelerations, in the characteristic length and rate.
-   subroutine protocol_instant(o, step, t, c, b, errors)
+   subroutine log_instant(o, step, t, c, b, errors)
       type(output_t), intent(inout) :: o
       integer, intent(in) :: step
       real(wp), intent(in) :: t
@@ -57,5 +57,5 @@ contains
          end do
       end if
       call put(o, trim(line))
-   end subroutine protocol_instant
-end module protocol
+   end subroutine log_instant
+end module solver_log
