@@ -3,7 +3,7 @@ module constants
    use kinds, only: wp
    implicit none
    private
-   public :: pi, degree, in_degrees, without_turns, rotated
+   public :: pi, degree, in_degrees, without_turns
 
    real(wp), parameter :: pi = 3.14159265358979323846264338327950288419716939937510_wp
    !> One degree in radians.
@@ -37,12 +37,4 @@ contains
 
       rest = angle - turn*anint(angle/turn)
    end function without_turns
-
-   !> The plane vector `v` (2) turned by `angle` (rad).
-   pure function rotated(v, angle) result(w)
-      real(wp), intent(in) :: v(2), angle
-      real(wp) :: w(2)
-
-      w = [v(1)*cos(angle) - v(2)*sin(angle), v(1)*sin(angle) + v(2)*cos(angle)]
-   end function rotated
 end module constants

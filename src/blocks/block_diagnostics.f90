@@ -86,8 +86,8 @@ contains
       associate (block => e%blocks%list(i))
          moved = links_with(e, pack(e%blocks%unknown(block%first:block%last), moves))
       end associate
-      do k = 1, size(e%chain%hung)
-         associate (h => e%chain%hung(k))
+      do k = 1, size(e%chain%links)
+         associate (h => e%chain%links(k))
             if (h%parent > 0) moved(h%link) = moved(h%link) .or. moved(h%parent)
          end associate
       end do

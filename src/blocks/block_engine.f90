@@ -372,7 +372,7 @@ contains
       call mark_links(e%chain, missing, found)
       ! What the state has of the others need not be a number.
       part = e%chain
-      part%hung = pack(e%chain%hung, found%link_known(e%chain%hung%link) == 2)
+      part%links = pack(e%chain%links, found%link_known(e%chain%links%link) == 2)
       call move_links(part, e%state, e%length, found, finite)
    end subroutine get_driven_motion
 

@@ -1,11 +1,12 @@
-!> The equations of one block at a state: residual and Jacobian; and what its equations, differentiated once and
-!> twice with respect to time, hold beside the unknowns of that order: the right-hand sides for velocities and
-!> accelerations.
+!> The equations of one block at a state: residual and Jacobian; and the right-hand sides for velocities and
+!> accelerations, what the first and second derivatives of the equations with respect to time hold beside the unknowns
+!> of that order.
 module block_equations
    use kinds, only: wp
+   use planar, only: rotated, quarter_turn, cross
    use block_matrix, only: entries_of
    use blocks, only: blocks_t, block_loop_t, loop_components, loop_projection
-   use block_state, only: state_t, slide_vector, turned, across
+   use block_state, only: state_t, slide_vector
    implicit none
    private
    public :: assemble_block, assemble_dense, right_hand_side
@@ -25,13 +26,13 @@ contains
          associate (g => b%loops(m))
             select case (g%kind)
             case (loop_components)
-               call close_vector_loop(b, m, s)
+               call find_closure_error(b, m, s)
                call component_rows(b, g, m, s, a, r)
             case (loop_projection)
-               call close_vector_loop(b, m, s)
+               call find_closure_error(b, m, s)
                call projection_row(b, g, m, s, a, r)
             case default
-               ! Both may be the angle of one frame.
+               ! Both may be the same angle.
                r(g%row_x) = s%u(g%orientation)%value - s%u(g%less)%value
                if (g%orientation_at > 0) a(g%orientation_at) = a(g%orientation_at) + 1.0_wp
                if (g%less_at > 0) a(g%less_at) = a(g%less_at) - 1.0_wp
@@ -71,32 +72,33 @@ contains
       end associate
    end subroutine assemble_dense
 
-   !> The gap of polygon instance `m`, and the arms of the block's own frames.
-   pure subroutine close_vector_loop(b, m, s)
+   !> The closure error of loop `m`, and the body vectors that the block's own angles rotate.
+   pure subroutine find_closure_error(b, m, s)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: m
       type(state_t), intent(inout) :: s
       integer :: k
       real(wp) :: x, y
 
-      x = s%part(m)%known(1, 0)
-      y = s%part(m)%known(2, 0)
+      x = s%loop(m)%known(1, 0)
+      y = s%loop(m)%known(2, 0)
       do k = b%loops(m)%first_own, b%loops(m)%last_vector
          associate (f => s%u(b%body_vectors(k)%orientation), d => b%body_vectors(k), u => s%own(:, k))
+            ! Not `rotated`: this is the innermost loop of a step.
             u(1) = f%c*d%x - f%s*d%y
             u(2) = f%s*d%x + f%c*d%y
             x = x + u(1)
             y = y + u(2)
          end associate
       end do
-      s%part(m)%closure_error(1) = x
-      s%part(m)%closure_error(2) = y
+      s%loop(m)%closure_error(1) = x
+      s%loop(m)%closure_error(2) = y
       do k = b%loops(m)%first_slide, b%loops(m)%last_slide
-         s%part(m)%closure_error = s%part(m)%closure_error + s%u(b%slides(k)%unknown)%value*slide_vector(b, k, s)
+         s%loop(m)%closure_error = s%loop(m)%closure_error + s%u(b%slides(k)%unknown)%value*slide_vector(b, k, s)
       end do
-   end subroutine close_vector_loop
+   end subroutine find_closure_error
 
-   !> Rows of the x and y components of polygon instance `m`, which is `g`.
+   !> Rows of the x and y components of loop `m`, which is `g`.
    pure subroutine component_rows(b, g, m, s, a, r)
       type(blocks_t), intent(in) :: b
       type(block_loop_t), intent(in) :: g
@@ -106,13 +108,13 @@ contains
       integer :: k
 
       if (g%row_x > 0) then
-         r(g%row_x) = s%part(m)%closure_error(1)
+         r(g%row_x) = s%loop(m)%closure_error(1)
          do k = g%first_own, g%last_vector
             a(b%body_vectors(k)%at(1)) = -s%own(2, k)
          end do
       end if
       if (g%row_y > 0) then
-         r(g%row_y) = s%part(m)%closure_error(2)
+         r(g%row_y) = s%loop(m)%closure_error(2)
          do k = g%first_own, g%last_vector
             a(b%body_vectors(k)%at(2)) = s%own(1, k)
          end do
@@ -122,7 +124,7 @@ contains
       if (g%row_y > 0) call slide_entries(b, g, 2, [0.0_wp, 1.0_wp], s, a)
    end subroutine component_rows
 
-   !> Row of the projection of polygon instance `m`, which is `g`.
+   !> Row of the projection of loop `m`, which is `g`.
    pure subroutine projection_row(b, g, m, s, a, r)
       type(blocks_t), intent(in) :: b
       type(block_loop_t), intent(in) :: g
@@ -132,17 +134,17 @@ contains
       integer :: k
       real(wp) :: f(2)
 
-      f = turned(s, g%orientation, g%direction)
-      s%part(m)%f = f
-      r(g%row_x) = s%part(m)%closure_error(1)*f(1) + s%part(m)%closure_error(2)*f(2)
+      f = rotated(g%direction, [s%u(g%orientation)%c, s%u(g%orientation)%s])
+      s%loop(m)%f = f
+      r(g%row_x) = s%loop(m)%closure_error(1)*f(1) + s%loop(m)%closure_error(2)*f(2)
       do k = g%first_own, g%last_vector
-         a(b%body_vectors(k)%at(1)) = s%own(1, k)*f(2) - s%own(2, k)*f(1)
+         a(b%body_vectors(k)%at(1)) = cross(s%own(:, k), f)
       end do
       if (g%last_slide >= g%first_slide) call slide_entries(b, g, 1, f, s, a)
-      if (g%orientation_at > 0) a(g%orientation_at) = a(g%orientation_at) + across(s%part(m)%closure_error, f)
+      if (g%orientation_at > 0) a(g%orientation_at) = a(g%orientation_at) + cross(f, s%loop(m)%closure_error)
    end subroutine projection_row
 
-   !> What the slides of instance `g` add to its row `row` (1: row_x, 2: row_y), which projects on `f`.
+   !> What the slides of loop `g` add to its row `row` (1: row_x, 2: row_y), which projects on `f`.
    pure subroutine slide_entries(b, g, row, f, s, a)
       type(blocks_t), intent(in) :: b
       type(block_loop_t), intent(in) :: g
@@ -157,14 +159,14 @@ contains
          e = slide_vector(b, k, s)
          associate (at => b%slides(k)%at(row), orientation_at => b%slides(k)%orientation_at(row))
             if (at > 0) a(at) = a(at) + dot_product(e, f)
-            if (orientation_at > 0) a(orientation_at) = a(orientation_at) - s%u(b%slides(k)%unknown)%value*across(e, f)
+            if (orientation_at > 0) a(orientation_at) = a(orientation_at) - s%u(b%slides(k)%unknown)%value*cross(f, e)
          end associate
       end do
    end subroutine slide_entries
 
-   !> Right-hand side `v` (n) for the velocities (`order` 1) or, once these are known, the accelerations (2) of
-   !> block `i`: the drives' rates less what is given. Gaps, directions and own arms are those of the last
-   !> `assemble_block`.
+   !> Right-hand side `v` (rows) for the velocities (`order` 1) or, once these are known, the accelerations (2) of
+   !> block `i`: the drives' derivatives less what is given. Closure errors, directions and rotated body vectors are
+   !> those of the last `assemble_block`.
    pure subroutine right_hand_side(b, i, order, s, v)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, order
@@ -205,7 +207,7 @@ contains
          v(g%row_x) = v(g%row_x) + merge(s%u(g%less)%rate, s%u(g%less)%acceleration, order == 1)
    end subroutine subtract_angles
 
-   !> The part of g' (order 1) or g'' (order 2) of instance `m` that holds no unknown of that order.
+   !> The part of g' (order 1) or g'' (order 2) of loop `m` that holds no unknown of that order.
    pure function given_part(b, block_loop, m, order, s) result(g)
       type(blocks_t), intent(in) :: b
       type(block_loop_t), intent(in) :: block_loop
@@ -214,7 +216,7 @@ contains
       real(wp) :: g(2), square
       integer :: k
 
-      g = s%part(m)%known(:, order)
+      g = s%loop(m)%known(:, order)
       if (order == 2) then
          do k = block_loop%first_own, block_loop%last_vector
             square = s%u(b%body_vectors(k)%orientation)%rate**2
@@ -232,24 +234,24 @@ contains
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: k, order
       type(state_t), intent(in) :: s
-      real(wp) :: g(2), e(2), angle_offset(2)
+      real(wp) :: g(2), e(2), e_t(2)
 
       associate (slide => b%slides(k), u => s%u(b%slides(k)%unknown), f => s%u(b%slides(k)%orientation))
          e = slide_vector(b, k, s)
-         angle_offset = [-e(2), e(1)]
+         e_t = quarter_turn(e)
          g = 0.0_wp
          if (order == 1) then
             if (slide%column == 0) g = g + u%rate*e
-            if (slide%orientation_column == 0) g = g + u%value*f%rate*angle_offset
+            if (slide%orientation_column == 0) g = g + u%value*f%rate*e_t
          else
-            g = 2.0_wp*u%rate*f%rate*angle_offset - u%value*f%rate**2*e
+            g = 2.0_wp*u%rate*f%rate*e_t - u%value*f%rate**2*e
             if (slide%column == 0) g = g + u%acceleration*e
-            if (slide%orientation_column == 0) g = g + u%value*f%acceleration*angle_offset
+            if (slide%orientation_column == 0) g = g + u%value*f%acceleration*e_t
          end if
       end associate
    end function slide_part
 
-   !> The part of (g . f)' or (g . f)'' of instance `m` that holds no unknown of that order.
+   !> The part of (g . f)' or (g . f)'' of loop `m` that holds no unknown of that order.
    pure real(wp) function projected_part(b, block_loop, m, order, s) result(v)
       type(blocks_t), intent(in) :: b
       type(block_loop_t), intent(in) :: block_loop
@@ -257,16 +259,16 @@ contains
       type(state_t), intent(in) :: s
       real(wp) :: g(2)
 
-      associate (c => s%u(block_loop%orientation), closure_error => s%part(m)%closure_error, f => s%part(m)%f)
+      associate (c => s%u(block_loop%orientation), closure_error => s%loop(m)%closure_error, f => s%loop(m)%f)
          g = given_part(b, block_loop, m, order, s)
          v = g(1)*f(1) + g(2)*f(2)
          if (block_loop%orientation == 0) return
          if (order == 1) then
-            if (block_loop%orientation_column == 0) v = v + c%rate*across(closure_error, f)
+            if (block_loop%orientation_column == 0) v = v + c%rate*cross(f, closure_error)
          else
-            v = v + 2.0_wp*c%rate*across(closure_error_rate(b, block_loop, m, s), &
-               f) - c%rate**2*dot_product(closure_error, f)
-            if (block_loop%orientation_column == 0) v = v + c%acceleration*across(closure_error, f)
+            v = v + 2.0_wp*c%rate*cross(f, closure_error_rate(b, block_loop, m, s)) &
+               - c%rate**2*dot_product(closure_error, f)
+            if (block_loop%orientation_column == 0) v = v + c%acceleration*cross(f, closure_error)
          end if
       end associate
    end function projected_part
@@ -280,14 +282,14 @@ contains
       real(wp) :: g(2), e(2)
       integer :: k
 
-      g = s%part(m)%known(:, 1)
+      g = s%loop(m)%known(:, 1)
       do k = block_loop%first_own, block_loop%last_vector
-         g = g + s%u(b%body_vectors(k)%orientation)%rate*[-s%own(2, k), s%own(1, k)]
+         g = g + s%u(b%body_vectors(k)%orientation)%rate*quarter_turn(s%own(:, k))
       end do
       do k = block_loop%first_slide, block_loop%last_slide
          e = slide_vector(b, k, s)
          associate (u => s%u(b%slides(k)%unknown))
-            g = g + u%rate*e + u%value*s%u(b%slides(k)%orientation)%rate*[-e(2), e(1)]
+            g = g + u%rate*e + u%value*s%u(b%slides(k)%orientation)%rate*quarter_turn(e)
          end associate
       end do
    end function closure_error_rate

@@ -4,7 +4,7 @@ module block_rank
    use kinds, only: wp
    use lapack, only: gesvd, getrf
    use blocks, only: blocks_t
-   use block_state, only: state_t, set_values, known_parts
+   use block_state, only: state_t, set_values, find_known_parts
    use block_equations, only: assemble_dense, right_hand_side
    implicit none
    private
@@ -326,7 +326,7 @@ contains
                   end associate
                else
                   allocate (own(rows*n), r(rows))
-                  call known_parts(b, list(k), s)
+                  call find_known_parts(b, list(k), s)
                   call assemble_dense(b, list(k), s, own, r)
                   a(row + 1:row + rows, column(b%unknown(block%first:block%last))) = reshape(own, [rows, n])
                   deallocate (own, r)
@@ -352,7 +352,7 @@ contains
          associate (block => b%list(list(k)))
             associate (rows => block%last_row - block%first_row + 1)
                if (c <= n .and. .not. block%direct) then
-                  call known_parts(b, list(k), s)
+                  call find_known_parts(b, list(k), s)
                   call right_hand_side(b, list(k), 1, s, side)
                   a(row + 1:row + rows, c) = -side(:rows)
                end if

@@ -15,7 +15,7 @@ module block_solver
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, &
       ended_diverged, ended_inconsistent
    use blocks, only: blocks_t
-   use block_state, only: state_t, set_direction, turn_direction, known_parts
+   use block_state, only: state_t, set_direction, rotate_direction, find_known_parts
    use block_equations, only: assemble_block, right_hand_side
    implicit none
    private
@@ -214,7 +214,7 @@ contains
             call set_direction(b, u, s)
          end associate
       end do
-      call known_parts(b, i, s)
+      call find_known_parts(b, i, s)
    end subroutine begin_block
 
    !> Applies the correction `d`, whose largest is `step`; `size_of`: the largest value, 1 at least. `is_right`: each
@@ -239,7 +239,7 @@ contains
             size_of = max(size_of, own)
             is_right = is_right .and. abs(d(k)) <= max(step_tolerance*max(own, b%list(i)%coarse), tolerance)
             if (step <= small_turn) then
-               call turn_direction(b, u, -d(k), s)
+               call rotate_direction(b, u, -d(k), s)
             else
                call set_direction(b, u, s)
             end if

@@ -1,48 +1,50 @@
-!> The motion of all unknowns at one instant, and what earlier blocks give to the polygons of one block.
+!> The motion of all unknowns at one instant, and what earlier blocks give to the vector loops of a block.
 !>
-!> With u_k = R(phi_k) d_k and u_k' its quarter turn, a polygon g = g_0 + sum_k u_k + sum_m s_m R e_m has
-!>    dg/dphi_k = u_k',  dg/ds_m = R e_m
+!> With u_k = R(phi_k) d_k and u_k' its quarter turn, a loop has the closure error
+!>    g = g_0 + sum_k u_k + sum_m s_m R e_m,      dg/dphi_k = u_k',  dg/ds_m = R e_m
 !>    g'  = sum phi_k' u_k' + ...
 !>    g'' = sum phi_k'' u_k' - phi_k'^2 u_k + ...
 !> and a projection on f = R(phi_c) f_0 adds phi_c' g . f' and its derivative, as in `prismatic_pair`.
 module block_state
    use kinds, only: wp
+   use planar, only: rotated, add_rotating
    use blocks, only: blocks_t
    implicit none
    private
-   public :: unknown_t, state_t, new_state, set_direction, turn_direction, set_values, known_parts, slide_vector, &
-      turned, across
+   public :: unknown_t, state_t, new_state, set_direction, rotate_direction, set_values, values_of, find_known_parts, &
+      slide_vector
 
-   !> An unknown of the equations, an angle or a slide, with its derivatives by time.
+   !> An unknown, an angle in radians or a slide in its block's unit of length, and its derivatives with respect to time.
    type :: unknown_t
       real(wp) :: value = 0.0_wp, rate = 0.0_wp, acceleration = 0.0_wp
-      real(wp) :: c = 1.0_wp, s = 0.0_wp   !< of an angle: cosine and sine of the value
+      real(wp) :: c = 1.0_wp, s = 0.0_wp             !< of an angle: cosine and sine of the value
    end type unknown_t
 
-   !> A polygon: its known part with derivatives (2, 0:2), and all of it.
-   type :: part_t
-      real(wp) :: known(2, 0:2) = 0.0_wp
+   !> A vector loop in its block, lengths in the loop's unit.
+   type :: loop_state_t
+      real(wp) :: known(2, 0:2) = 0.0_wp             !< the part that earlier blocks give, and its derivatives
       real(wp) :: closure_error(2) = 0.0_wp
       real(wp) :: f(2) = 0.0_wp                      !< the direction on which it is projected, if it is
-   end type part_t
+   end type loop_state_t
 
+   !> Values alone: no factors, no scratch.
    type :: state_t
-      type(unknown_t), allocatable :: u(:)           !< (0:unknowns); 0 is the ground's frame
-      type(part_t), allocatable :: part(:)           !< (instances)
-      real(wp), allocatable :: own(:, :)             !< (2, arms) u of the block's own frames
-      real(wp), allocatable :: drive_value(:, :)          !< (0:2, 0:drives) what the drives ask for
-      real(wp) :: excursion = 0.0_wp                 !< how far they are off the straight way to that, at most
+      type(unknown_t), allocatable :: u(:)           !< (0:unknowns); 0 is the ground's angle
+      type(loop_state_t), allocatable :: loop(:)     !< (loops)
+      real(wp), allocatable :: own(:, :)             !< (2, body vectors) R d of those that the block's own angles rotate
+      real(wp), allocatable :: drive_value(:, :)     !< (0:2, 0:drives) value, rate and acceleration of each drive
+      real(wp) :: excursion = 0.0_wp                 !< of the drives from their straight lines in a substep, at most
    end type state_t
 
 contains
 
-   !> Room for the state of `b`; `drives`: their number.
+   !> Room for the state of `b` with this number of `drives`.
    pure function new_state(b, drives) result(s)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: drives
       type(state_t) :: s
 
-      allocate (s%u(0:b%unknowns), s%part(size(b%loops)))
+      allocate (s%u(0:b%unknowns), s%loop(size(b%loops)))
       allocate (s%own(2, size(b%body_vectors)), s%drive_value(0:2, 0:drives), source=0.0_wp)
    end function new_state
 
@@ -57,7 +59,21 @@ contains
       s%u(u)%s = sin(s%u(u)%value)
    end subroutine set_direction
 
-   !> Gives the unknowns of block `i` the values `x`.
+   !> Cosine and sine of unknown `u` after a change `d` (rad) so small that its square is below rounding.
+   pure subroutine rotate_direction(b, u, d, s)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: u
+      real(wp), intent(in) :: d
+      type(state_t), intent(inout) :: s
+      real(wp) :: c
+
+      if (u > b%orientations) return
+      c = s%u(u)%c
+      s%u(u)%c = c - d*s%u(u)%s
+      s%u(u)%s = s%u(u)%s + d*c
+   end subroutine rotate_direction
+
+   !> Gives the unknowns of block `i` the values `x` (n).
    pure subroutine set_values(b, i, x, s)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
@@ -71,76 +87,47 @@ contains
       end do
    end subroutine set_values
 
-   !> New cosine and sine after a change `d` so small that its square is below rounding.
-   pure subroutine turn_direction(b, u, d, s)
+   !> (n) The values of the unknowns of block `i`.
+   pure function values_of(b, i, s) result(x)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: u
-      real(wp), intent(in) :: d
-      type(state_t), intent(inout) :: s
-      real(wp) :: c
+      integer, intent(in) :: i
+      type(state_t), intent(in) :: s
+      real(wp) :: x(b%list(i)%last - b%list(i)%first + 1)
 
-      if (u > b%orientations) return
-      c = s%u(u)%c
-      s%u(u)%c = c - d*s%u(u)%s
-      s%u(u)%s = s%u(u)%s + d*c
-   end subroutine turn_direction
+      x = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
+   end function values_of
 
-   !> What earlier blocks give to the polygons of block `i`: value, velocity, acceleration.
-   pure subroutine known_parts(b, i, s)
+   !> What earlier blocks give to the loops of block `i`: place, velocity, acceleration.
+   pure subroutine find_known_parts(b, i, s)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
       integer :: m, k
-      real(wp) :: x, y, square
 
       do m = b%list(i)%first_loop, b%list(i)%last_loop
-         associate (g => s%part(m)%known)
+         associate (g => s%loop(m)%known)
             g(:, 0) = b%loops(m)%ground
             g(:, 1) = 0.0_wp
             g(:, 2) = 0.0_wp
             do k = b%loops(m)%first_vector, b%loops(m)%first_own - 1
                associate (f => s%u(b%body_vectors(k)%orientation), d => b%body_vectors(k))
-                  x = f%c*d%x - f%s*d%y
-                  y = f%s*d%x + f%c*d%y
-                  square = f%rate*f%rate
-                  g(1, 0) = g(1, 0) + x
-                  g(2, 0) = g(2, 0) + y
-                  g(1, 1) = g(1, 1) - f%rate*y
-                  g(2, 1) = g(2, 1) + f%rate*x
-                  g(1, 2) = g(1, 2) - f%acceleration*y - square*x
-                  g(2, 2) = g(2, 2) + f%acceleration*x - square*y
+                  call add_rotating(f%c*d%x - f%s*d%y, f%s*d%x + f%c*d%y, f%rate, f%acceleration, g(:, 0), g(:, 1), &
+                     g(:, 2))
                end associate
             end do
          end associate
       end do
-   end subroutine known_parts
+   end subroutine find_known_parts
 
-   !> R(frame) e of slide number `k`.
+   !> R e (2) of slide number `k`: its direction.
    pure function slide_vector(b, k, s) result(e)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: k
       type(state_t), intent(in) :: s
       real(wp) :: e(2)
 
-      e = turned(s, b%slides(k)%orientation, b%slides(k)%body_vector)
-   end function slide_vector
-
-   !> `v` turned by the angle of `orientation`.
-   pure function turned(s, orientation, v) result(w)
-      type(state_t), intent(in) :: s
-      integer, intent(in) :: orientation
-      real(wp), intent(in) :: v(2)
-      real(wp) :: w(2)
-
-      associate (f => s%u(orientation))
-         w = [f%c*v(1) - f%s*v(2), f%s*v(1) + f%c*v(2)]
+      associate (f => s%u(b%slides(k)%orientation))
+         e = rotated(b%slides(k)%body_vector, [f%c, f%s])
       end associate
-   end function turned
-
-   !> g . f', with f' the quarter turn of f.
-   pure real(wp) function across(g, f)
-      real(wp), intent(in) :: g(2), f(2)
-
-      across = g(2)*f(1) - g(1)*f(2)
-   end function across
+   end function slide_vector
 end module block_state

@@ -8,6 +8,7 @@
 !> Two links that meet far from both origins keep the angles of the deck: they may lie on either side.
 module initial_estimate
    use kinds, only: wp
+   use planar, only: direction, rotated, quarter_turn, cross, point_of
    use constants, only: pi, without_turns
    use mechanism, only: mechanism_t, pair_revolute
    use scales, only: solver_length
@@ -21,8 +22,8 @@ module initial_estimate
    real(wp), parameter :: closed_part = 0.1_wp, better_part = 0.2_wp, far_angle = 1.0_wp
    !> Nothing is wrong with a deck whose pairs are closed to this part of the length.
    real(wp), parameter :: good_part = 1.0e-3_wp
-   !> Arms this short, squared, tell no direction.
-   real(wp), parameter :: min_substep_part = 1.0e-6_wp
+   !> Body vectors this short, squared, give no direction.
+   real(wp), parameter :: min_form_part = 1.0e-6_wp
    !> A point so near to the origin of its link has its place.
    real(wp), parameter :: short_part = 1.0e-3_wp
    real(wp), parameter :: alike = 1.0e-9_wp
@@ -62,18 +63,18 @@ contains
 
       closure_error = estimated_place(m, m%pairs(i)%point_j, phi) - estimated_place(m, m%pairs(i)%point_i, phi)
       angle = phi(m%points(m%pairs(i)%point_i)%link) + m%pairs(i)%alpha
-      slide = closure_error(1)*cos(angle) + closure_error(2)*sin(angle)
+      slide = dot_product(closure_error, direction(angle))
    end function estimated_slide
 
-   !> Where point `i` is with its link at the deck's place and the angle of `phi` (links).
+   !> Place (2) of point `i` with its link at the deck's place and the angle of `phi` (links).
    pure function estimated_place(m, i, phi) result(p)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: i
       real(wp), intent(in) :: phi(:)
       real(wp) :: p(2)
 
-      associate (q => m%links(m%points(i)%link)%position, u => m%points(i)%offset, angle => phi(m%points(i)%link))
-         p = q(:2) + [u(1)*cos(angle) - u(2)*sin(angle), u(1)*sin(angle) + u(2)*cos(angle)]
+      associate (link => m%points(i)%link)
+         p = point_of([m%links(link)%position(:2), phi(link)], m%points(i)%offset)
       end associate
    end function estimated_place
 
@@ -99,7 +100,7 @@ contains
       v = u
       order = by_orientation(t)
       do sweep = 1, max_sweeps
-         call turn_orientations(m, t, order, min_substep_part*length**2, v, placed, turned)
+         call turn_orientations(m, t, order, min_form_part*length**2, v, placed, turned)
          if (turned <= good_part) exit
       end do
       v = u + without_turns(v - u)
@@ -194,11 +195,11 @@ contains
       call split(m, t, m%pairs(k)%point_j, orientation, -1.0_wp, u, fixed, body_vector)
       if (m%pairs(k)%kind == pair_revolute) then
          e(1) = e(1) + 2.0_wp*dot_product(fixed, body_vector)
-         e(2) = e(2) + 2.0_wp*(fixed(2)*body_vector(1) - fixed(1)*body_vector(2))
+         e(2) = e(2) + 2.0_wp*cross(body_vector, fixed)
       else
          n = normal(m, t, k)
          a = dot_product(fixed, n)
-         b = fixed(2)*n(1) - fixed(1)*n(2)
+         b = cross(n, fixed)
          h = dot_product(body_vector, n) - m%pairs(k)%offset
          e = e + [2.0_wp*h*a, 2.0_wp*h*b, a*a, 2.0_wp*a*b, b*b]
       end if
@@ -216,9 +217,9 @@ contains
       link = m%points(point)%link
       fixed = fixed + sign_of*m%links(link)%position(:2)
       if (t%orientation(link) == orientation) then
-         body_vector = body_vector + sign_of*turned_by(m%points(point)%offset, t%angle_offset(link))
+         body_vector = body_vector + sign_of*rotated(m%points(point)%offset, direction(t%angle_offset(link)))
       else
-         fixed = fixed + sign_of*turned_by(m%points(point)%offset, t%angle_offset(link) + u(t%orientation(link)))
+         fixed = fixed + sign_of*rotated(m%points(point)%offset, direction(t%angle_offset(link) + u(t%orientation(link))))
       end if
    end subroutine split
 
@@ -229,15 +230,8 @@ contains
       integer, intent(in) :: k
       real(wp) :: n(2)
 
-      n = turned_by([0.0_wp, 1.0_wp], t%angle_offset(m%points(m%pairs(k)%point_i)%link) + m%pairs(k)%alpha)
+      n = quarter_turn(direction(t%angle_offset(m%points(m%pairs(k)%point_i)%link) + m%pairs(k)%alpha))
    end function normal
-
-   pure function turned_by(v, angle) result(w)
-      real(wp), intent(in) :: v(2), angle
-      real(wp) :: w(2)
-
-      w = [v(1)*cos(angle) - v(2)*sin(angle), v(1)*sin(angle) + v(2)*cos(angle)]
-   end function turned_by
 
    !> The angle at which the form `e` is least, `start` where it is about as small.
    pure real(wp) function least(e, start) result(u)
@@ -293,7 +287,7 @@ contains
             largest = max(largest, norm2(closure_error))
          else
             largest = max(largest, abs(dot_product(closure_error, &
-               turned_by(normal(m, t, k), u(t%orientation(m%points(m%pairs(k)%point_i)%link)))) - m%pairs(k)%offset))
+               rotated(normal(m, t, k), direction(u(t%orientation(m%points(m%pairs(k)%point_i)%link))))) - m%pairs(k)%offset))
          end if
       end do
    end function largest_opening

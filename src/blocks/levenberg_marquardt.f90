@@ -7,7 +7,7 @@ module levenberg_marquardt
    use klu, only: klu_t
    use convergence, only: convergence_t
    use blocks, only: blocks_t
-   use block_state, only: state_t, set_values, known_parts
+   use block_state, only: state_t, set_values, find_known_parts
    use block_equations, only: assemble_dense
    use block_solver, only: note_closure_error
    implicit none
@@ -63,7 +63,7 @@ contains
          call make_room(w, block%shape)
          start = s%u(b%unknown(block%first:block%last))%value
       end associate
-      call known_parts(b, i, s)
+      call find_known_parts(b, i, s)
       w%best = start
       least = huge(least)
       do k = 0, max_starts - 1
@@ -99,7 +99,7 @@ contains
          call make_room(w, block%shape)
          start = s%u(b%unknown(block%first:block%last))%value
       end associate
-      call known_parts(b, i, s)
+      call find_known_parts(b, i, s)
       tie = first_tie
       do while (tie > last_tie)
          do k = 1, rounds_a_tie

@@ -1,9 +1,11 @@
-!> From the motion of the unknowns to that of the links, by the tree: with u = R reach + s R e, in the axes of
-!> the frame above, and w = R arm in those of the link's own frame,
+!> From the motion of the unknowns to that of the links, along the tree. A link's origin is
 !>
-!>    origin = origin above + u - w,   and so its velocity and acceleration.
+!>    origin = parent's origin + R_p r + s R_p e - R d,
+!>
+!> r and e in the parent's axes of orientation, d in the link's own; velocity and acceleration follow.
 module link_motion
    use kinds, only: wp
+   use planar, only: rotated, quarter_turn, add_rotating
    use mechanism, only: mechanism_t
    use motion, only: motion_t, mark_none, mark_not_converged, mark_singular
    use links_tree, only: tree_t, place_t, place_on_tree
@@ -12,23 +14,24 @@ module link_motion
    private
    public :: chain_t, new_chain, move_links, mark_links, missing_nothing, missing_rates, missing_all
 
-   !> A moving link: 0 stands for the ground, for no slide and for no root.
-   type :: hung_t
-      integer :: link = 0, parent = 0, orientation = 0, parent_orientation = 0
+   !> A moving link. Numbers are 0 for the ground, for no slide and for no root.
+   type :: chain_link_t
+      integer :: link = 0, parent = 0
+      integer :: orientation = 0, parent_orientation = 0 !< the unknowns that rotate them
       integer :: slide = 0                              !< its unknown
       integer :: root = 0                               !< the unknown that is its x; y is the next
       real(wp) :: root_unit(2) = 1.0_wp
       logical :: has_body_vector = .false.
-      real(wp) :: angle_offset = 0.0_wp
-      type(place_t) :: place
-   end type hung_t
+      real(wp) :: angle_offset = 0.0_wp                 !< of the link from its orientation, in rad
+      type(place_t) :: place                            !< r, d and e, in the deck's unit of length
+   end type chain_link_t
 
-   !> The links to be moved, what is above first, and those that stay.
+   !> The links to be moved, parents first, and those that stay.
    type :: chain_t
-      type(hung_t), allocatable :: hung(:)
+      type(chain_link_t), allocatable :: links(:)
       integer, allocatable :: ground(:)
       real(wp), allocatable :: ground_position(:, :)    !< (3, ground links)
-      real(wp) :: origin(2) = 0.0_wp                    !< what places are counted from
+      real(wp) :: origin(2) = 0.0_wp                    !< what places are counted from, in the deck's unit
    end type chain_t
 
    !> What is missing of an unknown, the worst last: nothing, its derivatives, its value as well.
@@ -36,8 +39,8 @@ module link_motion
 
 contains
 
-   !> The chain of those links of `m` that are `wanted` (links) and of those they hang on, in the deck's length unit.
-   !> `first_slide`: unknowns before the first slide; `unit` (0:unknowns): that of each in the unit of the slides, 1
+   !> The chain of those links of `m` that are `wanted` (links) and of all their parents, in the deck's unit of length.
+   !> `first_slide`: unknowns before the first slide; `unit` (0:unknowns): of each unknown in the unit of the slides, 1
    !> where it is not given.
    function new_chain(m, t, wanted, first_slide, unit) result(c)
       type(mechanism_t), intent(in) :: m
@@ -55,11 +58,11 @@ contains
          if (needed(t%order(i)) .and. t%parent(t%order(i)) > 0) needed(t%parent(t%order(i))) = .true.
       end do
       links = pack(t%order, needed(t%order) .and. .not. m%links(t%order)%ground)
-      allocate (c%hung(size(links)))
+      allocate (c%links(size(links)))
       do i = 1, size(links)
-         c%hung(i) = hung_on(m, t, links(i), first_slide)
+         c%links(i) = new_chain_link(m, t, links(i), first_slide)
          if (.not. present(unit)) cycle
-         associate (h => c%hung(i))
+         associate (h => c%links(i))
             if (h%slide > 0) h%place%slide_body_vector = unit(h%slide)*h%place%slide_body_vector
             if (h%root > 0) h%root_unit = unit(h%root:h%root + 1)
          end associate
@@ -72,11 +75,12 @@ contains
       c%origin = t%origin
    end function new_chain
 
-   function hung_on(m, t, link, first_slide) result(h)
+   !> How `link` follows its parent.
+   function new_chain_link(m, t, link, first_slide) result(h)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       integer, intent(in) :: link, first_slide
-      type(hung_t) :: h
+      type(chain_link_t) :: h
 
       h%link = link
       h%orientation = t%orientation(link)
@@ -90,10 +94,10 @@ contains
       h%parent_orientation = t%orientation(t%parent(link))
       if (h%place%slide > 0) h%slide = first_slide + h%place%slide
       if (.not. m%links(t%parent(link))%ground) h%parent = t%parent(link)
-   end function hung_on
+   end function new_chain_link
 
-   !> Moves the links of the chain; `length`: the unit of the slides of `s` in the deck's unit. `finite`: no
-   !> number of theirs is out of range; false may be said of sums alone.
+   !> Puts the motion of the chain's links at state `s` into `q`; `length`: the unit of the slides in the deck's unit.
+   !> `finite`: no number of theirs is out of range; false may be said of sums alone.
    pure subroutine move_links(c, s, length, q, finite)
       type(chain_t), intent(in) :: c
       type(state_t), intent(in) :: s
@@ -106,13 +110,13 @@ contains
       do i = 1, size(c%ground)
          q%position(:, c%ground(i)) = c%ground_position(:, i)
       end do
-      call move_hung(size(c%hung), c%hung, s%u, length, q%position, q%velocity, q%acceleration, finite)
+      call move_chain(size(c%links), c%links, s%u, length, q%position, q%velocity, q%acceleration, finite)
    end subroutine move_links
 
-   !> The same on plain arrays, which cost no descriptors.
-   pure subroutine move_hung(n, hung, u, length, p, v, a, finite)
+   !> The same for the moving links, on plain arrays, which cost no descriptors.
+   pure subroutine move_chain(n, links, u, length, p, v, a, finite)
       integer, intent(in) :: n
-      type(hung_t), intent(in) :: hung(n)
+      type(chain_link_t), intent(in) :: links(n)
       type(unknown_t), intent(in) :: u(0:*)
       real(wp), intent(in) :: length
       real(wp), intent(inout) :: p(3, *), v(3, *), a(3, *)
@@ -122,12 +126,14 @@ contains
 
       check = 0.0_wp
       do i = 1, n
-         associate (h => hung(i), f => u(hung(i)%orientation))
+         associate (h => links(i), f => u(links(i)%orientation))
             k = h%link
-            call reach_out(h, u(h%parent_orientation), p(1, k), v(1, k), a(1, k))
-            if (h%has_body_vector) call draw_back(h, f, p(1, k), v(1, k), a(1, k))
-            if (h%slide > 0) call add_slide(h, u(h%parent_orientation), u(h%slide), length, p(1, k), v(1, k), a(1, k))
-            if (h%root > 0) call add_root(u(h%root), length*h%root_unit, p(1, k), v(1, k), a(1, k))
+            call follow_parent(h%place%reach, h%parent_orientation, u(h%parent_orientation), p(1, k), v(1, k), a(1, k))
+            if (h%has_body_vector) call add_rotating(-(f%c*h%place%body_vector(1) - f%s*h%place%body_vector(2)), &
+               -(f%s*h%place%body_vector(1) + f%c*h%place%body_vector(2)), f%rate, f%acceleration, p(1, k), v(1, k), a(1, k))
+            if (h%slide > 0) call add_slide(h%place%slide_body_vector, u(h%parent_orientation), u(h%slide), length, &
+               p(1, k), v(1, k), a(1, k))
+            if (h%root > 0) call set_root(u(h%root), length*h%root_unit, p(1, k), v(1, k), a(1, k))
             if (h%parent > 0) then
                p(:2, k) = p(:2, k) + p(:2, h%parent)
                v(:2, k) = v(:2, k) + v(:2, h%parent)
@@ -141,88 +147,64 @@ contains
          end associate
       end do
       finite = check <= 0.0_wp
-   end subroutine move_hung
+   end subroutine move_chain
 
-   !> u with derivatives, but for a slide.
-   pure subroutine reach_out(h, f, p, v, a)
-      type(hung_t), intent(in) :: h
+   !> From the parent's origin the vector `d` in its axes, which unknown number `orientation`, `f`, rotates.
+   pure subroutine follow_parent(d, orientation, f, p, v, a)
+      real(wp), intent(in) :: d(2)
+      integer, intent(in) :: orientation
       type(unknown_t), intent(in) :: f
-      real(wp), intent(inout) :: p(3), v(3), a(3)
+      real(wp), intent(inout) :: p(2), v(2), a(2)
       real(wp) :: x, y, square
 
-      if (h%parent_orientation == 0) then
-         p(1) = h%place%reach(1)
-         p(2) = h%place%reach(2)
+      if (orientation == 0) then
+         p(1) = d(1)
+         p(2) = d(2)
          v(1) = 0.0_wp
          v(2) = 0.0_wp
          a(1) = 0.0_wp
          a(2) = 0.0_wp
          return
       end if
-      associate (d => h%place%reach)
-         x = f%c*d(1) - f%s*d(2)
-         y = f%s*d(1) + f%c*d(2)
-         square = f%rate*f%rate
-         p(1) = x
-         p(2) = y
-         v(1) = -f%rate*y
-         v(2) = f%rate*x
-         a(1) = -f%acceleration*y - square*x
-         a(2) = f%acceleration*x - square*y
-      end associate
-   end subroutine reach_out
+      x = f%c*d(1) - f%s*d(2)
+      y = f%s*d(1) + f%c*d(2)
+      square = f%rate*f%rate
+      p(1) = x
+      p(2) = y
+      v(1) = -f%rate*y
+      v(2) = f%rate*x
+      a(1) = -f%acceleration*y - square*x
+      a(2) = f%acceleration*x - square*y
+   end subroutine follow_parent
 
-   !> Less w with derivatives.
-   pure subroutine draw_back(h, f, p, v, a)
-      type(hung_t), intent(in) :: h
-      type(unknown_t), intent(in) :: f
-      real(wp), intent(inout) :: p(3), v(3), a(3)
-      real(wp) :: x, y, square
-
-      associate (d => h%place%body_vector)
-         x = f%c*d(1) - f%s*d(2)
-         y = f%s*d(1) + f%c*d(2)
-         square = f%rate*f%rate
-         p(1) = p(1) - x
-         p(2) = p(2) - y
-         v(1) = v(1) + f%rate*y
-         v(2) = v(2) - f%rate*x
-         a(1) = a(1) + f%acceleration*y + square*x
-         a(2) = a(2) - f%acceleration*x + square*y
-      end associate
-   end subroutine draw_back
-
-   !> The slide by which the link hangs.
-   pure subroutine add_slide(h, f, u, length, p, v, a)
-      type(hung_t), intent(in) :: h
+   !> Adds s R e with its derivatives, of slide `u` along `d` = e in the axes that `f` rotates.
+   pure subroutine add_slide(d, f, u, length, p, v, a)
+      real(wp), intent(in) :: d(2)
       type(unknown_t), intent(in) :: f, u
       real(wp), intent(in) :: length
-      real(wp), intent(inout) :: p(3), v(3), a(3)
-      real(wp) :: e(2), angle_offset(2)
+      real(wp), intent(inout) :: p(2), v(2), a(2)
+      real(wp) :: e(2), e_t(2)
 
-      associate (d => h%place%slide_body_vector)
-         e = length*[f%c*d(1) - f%s*d(2), f%s*d(1) + f%c*d(2)]
-         angle_offset = [-e(2), e(1)]
-         p(:2) = p(:2) + u%value*e
-         v(:2) = v(:2) + u%rate*e + u%value*f%rate*angle_offset
-         a(:2) = a(:2) + u%acceleration*e + 2.0_wp*u%rate*f%rate*angle_offset + u%value*(f%acceleration*angle_offset &
-            - f%rate**2*e)
-      end associate
+      e = length*rotated(d, [f%c, f%s])
+      e_t = quarter_turn(e)
+      p = p + u%value*e
+      v = v + u%rate*e + u%value*f%rate*e_t
+      a = a + u%acceleration*e + 2.0_wp*u%rate*f%rate*e_t + u%value*(f%acceleration*e_t - f%rate**2*e)
    end subroutine add_slide
 
-   !> A link that no pair joins to the ground has its own x and y.
-   pure subroutine add_root(u, length, p, v, a)
+   !> A link that no pair joins to the ground has unknowns of its own for x and y.
+   pure subroutine set_root(u, length, p, v, a)
       type(unknown_t), intent(in) :: u(2)
       real(wp), intent(in) :: length(2)
-      real(wp), intent(inout) :: p(3), v(3), a(3)
+      real(wp), intent(inout) :: p(2), v(2), a(2)
 
-      p(:2) = length*u%value
-      v(:2) = length*u%rate
-      a(:2) = length*u%acceleration
-   end subroutine add_root
+      p = length*u%value
+      v = length*u%rate
+      a = length*u%acceleration
+   end subroutine set_root
 
-   !> Says of each link of `found` how much of it is known, from what is `missing` (0:unknowns) of the unknowns on
-   !> which it and its parents depend; links outside the chain count as known.
+   !> Says of each link of `found` how much of it is known and why no more, from what is `missing` (0:unknowns) of the
+   !> unknowns by which it and its parents move; links outside the chain count as known.
    subroutine mark_links(c, missing, found)
       type(chain_t), intent(in) :: c
       integer, intent(in) :: missing(0:)
@@ -230,8 +212,8 @@ contains
       integer :: of_link(0:size(found%position, 2)), k
 
       of_link = missing_nothing
-      do k = 1, size(c%hung)
-         associate (h => c%hung(k))
+      do k = 1, size(c%links)
+         associate (h => c%links(k))
             of_link(h%link) = max(missing(h%orientation), missing(h%slide), of_link(h%parent))
             if (h%root > 0) of_link(h%link) = max(of_link(h%link), missing(h%root), missing(h%root + 1))
          end associate

@@ -8,7 +8,7 @@ module position_path
    use kinds, only: wp
    use blocks, only: blocks_t
    use block_matrix, only: solve_first, solve_again
-   use block_state, only: state_t, set_values, known_parts
+   use block_state, only: state_t, set_values, find_known_parts
    use block_equations, only: assemble_block
    use block_solver, only: workspace_t
    implicit none
@@ -45,7 +45,7 @@ contains
       integer :: step, info
       logical :: is_close
 
-      call known_parts(b, i, s)
+      call find_known_parts(b, i, s)
       x = values_of(b, i, s)
       call assemble_block(b, i, s, w%a, first)
       p = 0.0_wp
@@ -116,7 +116,7 @@ contains
       found = .false.
       associate (shape => b%list(i)%shape)
          x = values_of(b, i, s)
-         call known_parts(b, i, s)
+         call find_known_parts(b, i, s)
          v = [(2.0_wp*modulo(golden*real(number*shape%rows + k, wp), 1.0_wp) - 1.0_wp, k=1, shape%rows)]
          ! Residuals first: the factors must be those of the position itself.
          call set_values(b, i, x, s)

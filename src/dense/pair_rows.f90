@@ -21,7 +21,8 @@
 !> it costs one equation and one unknown a pair and prints nothing that the projection does not.
 module pair_rows
    use kinds, only: wp
-   use pose, only: system_t, pose_t, turned, secants
+   use planar, only: rotated, quarter_turn, cross
+   use pose, only: system_t, pose_t, secants
    implicit none
    private
    public :: revolute_residual, revolute_jacobian, revolute_remainder
@@ -69,7 +70,7 @@ contains
       real(wp), intent(in) :: d(2), f(2)
       real(wp) :: g(3)
 
-      g = [f(1), f(2), d(2)*f(1) - d(1)*f(2)]
+      g = [f(1), f(2), cross(f, d)]
    end function tangent_gradient
 
    !> Frozen coefficients (3) of d . f instead of its derivatives, as in (16): of the two products d_x f_x
@@ -102,7 +103,7 @@ contains
       real(wp), intent(in) :: d(2), f(2), velocity(2), u(2), rate_i, w(2), rate_j
 
       gamma = dot_product(rate_j**2*w - rate_i**2*u, f) &
-         + rate_i*(2.0_wp*(velocity(2)*f(1) - velocity(1)*f(2)) - rate_i*dot_product(d, f))
+         + rate_i*(2.0_wp*cross(f, velocity) - rate_i*dot_product(d, f))
    end function projection_remainder
 
    !> Point `a` less point `b` in the pose `p`.
@@ -120,10 +121,9 @@ contains
       type(system_t), intent(in) :: s
       type(pose_t), intent(in) :: p
       integer, intent(in) :: k
-      real(wp) :: n(2), f(2)
+      real(wp) :: n(2)
 
-      f = along(s, p, k)
-      n = [f(2), -f(1)]
+      n = quarter_turn(-along(s, p, k))
    end function normal
 
    !> Minus the direction e of the guide of pair `k`: the slide is the projection of P - Q on it.
@@ -133,7 +133,7 @@ contains
       integer, intent(in) :: k
       real(wp) :: f(2)
 
-      f = -turned(s%guide(:, k), p%direction(:, s%link_of(s%pairs(k)%point_i)))
+      f = -rotated(s%guide(:, k), p%direction(:, s%link_of(s%pairs(k)%point_i)))
    end function along
 
    !> Row (6) of the projection of prismatic pair `k` on `f` (2), which has the angle `psi` and in the frozen form the
@@ -163,7 +163,7 @@ contains
 
       associate (a => s%pairs(k)%point_i, b => s%pairs(k)%point_j)
          associate (i => s%link_of(a), j => s%link_of(b), u => p%body_vector(:, a), w => p%body_vector(:, b))
-            velocity = v(:2, i) - v(:2, j) + v(3, i)*[-u(2), u(1)] - v(3, j)*[-w(2), w(1)]
+            velocity = v(:2, i) - v(:2, j) + v(3, i)*quarter_turn(u) - v(3, j)*quarter_turn(w)
             gamma = projection_remainder(closure_error(s, p, a, b), f, velocity, u, v(3, i), w, v(3, j))
          end associate
       end associate

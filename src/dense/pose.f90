@@ -10,13 +10,14 @@
 !> sin(h)/h is 1 there.
 module pose
    use kinds, only: wp
+   use planar, only: rotated, quarter_turn
    use constants, only: pi
    use mechanism, only: mechanism_t, pair_t, drive_slide, plane_origin
    use scales, only: solver_length, power_of_two
    use drives, only: law_t, new_law
    implicit none
    private
-   public :: system_t, pose_t, new_system, new_pose, set_pose, choose_references, turned, normal_angle, add_to_links
+   public :: system_t, pose_t, new_system, new_pose, set_pose, choose_references, normal_angle, add_to_links
    public :: nearest_zeros, secants
 
    !> The equations of one mechanism; lengths in units of `length`.
@@ -103,11 +104,11 @@ contains
       p%direction(1, :) = cos(p%q(3, :))
       p%direction(2, :) = sin(p%q(3, :))
       do i = 1, size(s%link_of)
-         p%body_vector(:, i) = turned(s%offset(:, i), p%direction(:, s%link_of(i)))
+         p%body_vector(:, i) = rotated(s%offset(:, i), p%direction(:, s%link_of(i)))
          if (p%frozen) then
             p%slope(:, i) = norm2(s%offset(:, i))*secants(body_vector_angle(s, p, i), p%zeros(:, i))
          else
-            p%slope(:, i) = [-p%body_vector(2, i), p%body_vector(1, i)]
+            p%slope(:, i) = quarter_turn(p%body_vector(:, i))
          end if
       end do
    end subroutine set_pose
@@ -171,14 +172,6 @@ contains
 
       body_vector_angle = p%q(3, s%link_of(i)) + atan2(s%offset(2, i), s%offset(1, i))
    end function body_vector_angle
-
-   !> Vector `u` turned by the angle of `direction` = (cos, sin).
-   pure function turned(u, direction) result(w)
-      real(wp), intent(in) :: u(2), direction(2)
-      real(wp) :: w(2)
-
-      w = [u(1)*direction(1) - u(2)*direction(2), u(1)*direction(2) + u(2)*direction(1)]
-   end function turned
 
    !> The angles (2) nearest to `psi` at which cos, then sin, is zero.
    pure function nearest_zeros(psi) result(zeros)

@@ -1,9 +1,9 @@
 !> The rows of the tables: the motion of links, of any point of any link, and of pairs.
 module points
    use kinds, only: wp, label_length
-   use constants, only: rotated
    use mechanism, only: mechanism_t, request_t, pair_t, pair_prismatic, request_link, request_point, request_pair, &
       instant_count
+   use planar, only: direction, rotated, quarter_turn, point_of
    use motion, only: motion_t, known_of, mark_of, mark_none
    implicit none
    private
@@ -74,7 +74,7 @@ contains
             row%name = m%points(i)%name
             call note_known(m, q, m%points(i)%link, row)
             if (m%links(m%points(i)%link)%ground) then
-               row%value(:2, 0) = fixed_place(m, i)
+               row%value(:2, 0) = point_of(m%links(m%points(i)%link)%position, m%points(i)%offset)
                return
             end if
             row%value(:2, :) = point_motion(m, q, i)
@@ -117,31 +117,20 @@ contains
       row%mark = mark_of(q, link)
    end subroutine note_known
 
-   !> The place (2) of point number `i`, which belongs to the ground.
-   pure function fixed_place(m, i) result(place)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i
-      real(wp) :: place(2)
-
-      associate (p => m%links(m%points(i)%link)%position, u => m%points(i)%offset)
-         place = p(:2) + rotated(u, p(3))
-      end associate
-   end function fixed_place
-
-   !> Place from the motion's origin, velocity and acceleration (2, 0:2) of point number `i`, with its body vector u:
-   !> p = o + u,  p' = o' + phi' u_t,  p'' = o'' + phi'' u_t - phi'^2 u,  u_t = (-u_y, u_x).
+   !> Place from the motion's origin, velocity and acceleration (2, 0:2) of point number `i`, at u from its link's
+   !> origin o:  p = o + u,  p' = o' + phi' u_t,  p'' = o'' + phi'' u_t - phi'^2 u,  u_t = (-u_y, u_x).
    pure function point_motion(m, q, i) result(p)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       integer, intent(in) :: i
-      real(wp) :: p(2, 0:2), u(2), across(2)
+      real(wp) :: p(2, 0:2), u(2), u_t(2)
 
-      associate (k => m%points(i)%link, offset => m%points(i)%offset)
-         u = rotated(offset, q%position(3, k))
-         across = [-u(2), u(1)]
+      associate (k => m%points(i)%link)
+         u = rotated(m%points(i)%offset, direction(q%position(3, k)))
+         u_t = quarter_turn(u)
          p(:, 0) = q%position(:2, k) + u
-         p(:, 1) = q%velocity(:2, k) + q%velocity(3, k)*across
-         p(:, 2) = q%acceleration(:2, k) + q%acceleration(3, k)*across - q%velocity(3, k)**2*u
+         p(:, 1) = q%velocity(:2, k) + q%velocity(3, k)*u_t
+         p(:, 2) = q%acceleration(:2, k) + q%acceleration(3, k)*u_t - q%velocity(3, k)**2*u
       end associate
    end function point_motion
 
@@ -160,8 +149,8 @@ contains
             return
          end if
          d = point_motion(m, q, pair%point_j) - point_motion(m, q, pair%point_i)
-         e = [cos(q%position(3, i) + pair%alpha), sin(q%position(3, i) + pair%alpha)]
-         n = [-e(2), e(1)]
+         e = direction(q%position(3, i) + pair%alpha)
+         n = quarter_turn(e)
          associate (rate => q%velocity(3, i), alpha => q%acceleration(3, i))
             s(0) = dot_product(d(:, 0), e)
             s(1) = dot_product(d(:, 1), e) + rate*dot_product(d(:, 0), n)

@@ -2,7 +2,7 @@
 !> the digits of the listing the same in millimetres and in kilometres.
 module scales
    use kinds, only: wp
-   use constants, only: rotated
+   use planar, only: point_of
    use drives, only: drive_rate
    use mechanism, only: mechanism_t, drive_t, pair_prismatic, drive_x, drive_y, drive_slide, plane_origin
    implicit none
@@ -60,7 +60,7 @@ contains
          k = m%points(i)%link
          place = m%points(i)%offset
          if (m%links(k)%ground) then
-            place = m%links(k)%position(:2) - origin + rotated(place, m%links(k)%position(3))
+            place = point_of(m%links(k)%position - [origin, 0.0_wp], place)
             k = 0
          else
             ! The origin of the link counts too: its estimated place is where the mechanism is.
