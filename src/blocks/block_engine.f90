@@ -14,8 +14,8 @@ module block_engine
    use block_needs, only: moving_blocks, needed_blocks, largest_known
    use block_state, only: state_t, new_state
    use block_solver, only: workspace_t, make_workspace, solve_block
-   use first_position, only: solve_first_block, turn_starts
-   use block_rank, only: jacobian_of, relative_side
+   use first_position, only: solve_first_block, remove_turns
+   use block_rank, only: jacobian_of, relative_sign
    use link_motion, only: chain_t, new_chain, move_links, mark_links, missing_nothing, missing_rates, missing_all
    implicit none
    private
@@ -191,7 +191,7 @@ contains
          same = e%change <= largest_change
          if (same) call solve_each(e, e%moving, follows, c, correction, same)
       else
-         call turn_starts(e%blocks, e%needed, e%state%drive_value(0, :), e%estimated)
+         call remove_turns(e%blocks, e%needed, e%state%drive_value(0, :), e%estimated)
          e%state%u%value = e%estimated
          call solve_each(e, e%needed, follows, c, correction, same)
       end if
@@ -251,7 +251,7 @@ contains
          end if
          if (e%blocks%list(i)%direct) cycle
          if (follows .and. is_solved(one) .and. e%blocks%list(i)%shape%rows > e%blocks%list(i)%shape%n) &
-            one%determinant = e%sign_of(i)*relative_side(e%blocks, i, e%side, e%state)
+            one%determinant = e%sign_of(i)*relative_sign(e%blocks, i, e%side, e%state)
          call gather(one, c)
          if (.not. is_solved(one)) return
          e%is_singular(i) = one%singular

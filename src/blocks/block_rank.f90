@@ -1,31 +1,34 @@
-!> What the rank of a block's Jacobian tells where its equations are too many, or where it has no
-!> inverse, by the singular values (DGESVD).
+!> The rank of a block's Jacobian by its singular values (DGESVD), where equations are too many or where it has no
+!> inverse: redundant equations, unknowns that can still move, and drives that hold nothing.
+!>
+!> With y J = 0 the equations in y depend on one another. Where y holds one drive alone, the pairs already fix its
+!> value: it moves nothing, it is idle. Where y holds several, the last of them adds nothing to the others.
 module block_rank
    use kinds, only: wp
    use lapack, only: gesvd, getrf
    use blocks, only: blocks_t
-   use block_state, only: state_t, set_values, find_known_parts
+   use block_state, only: state_t, set_values, values_of, find_known_parts
    use block_equations, only: assemble_dense, right_hand_side
    implicit none
    private
-   public :: redundant_rows, moving_unknowns, jacobian_of, relative_side, min_direction, residual_of, &
-      gauss_newton_step, &
-      judge_drives
+   public :: redundant_rows, moving_unknowns, jacobian_of, relative_sign, min_direction, residual_of, &
+      gauss_newton_step, judge_drives
 
    !> Singular values below this part of the largest count as zero: the root of the rounding, since a position at which
    !> they vanish is itself known to no more.
    real(wp), parameter :: zero_level = max(1.0e-7_wp, 4.0_wp*sqrt(epsilon(1.0_wp)))
-   !> So far a mechanism with a freedom left is moved to see whether it follows.
+   !> A mechanism with a degree of freedom left is moved by this to see whether it follows.
    real(wp), parameter :: trial = 1.0e-3_wp
-   !> Residuals that have nothing to correct, and those that are a position's.
+   !> A residual below the first leaves nothing to correct; below the second it is that of a position.
    real(wp), parameter :: closed = max(1.0e-14_wp, 32.0_wp*epsilon(1.0_wp)), near = max(1.0e-12_wp, 100.0_wp*closed)
-   !> The decomposition takes the cube of this many operations.
+   !> The decompositions take the cube of these numbers of operations: of a block, and of blocks with all they need.
    integer, parameter :: max_rows = 1500, max_unknowns = 600
 
+   !> A singular value decomposition: left (rows, rows), right (n, n), singular values in falling order.
    type :: values_t
       integer :: rows = 0, n = 0, rank = 0
       real(wp), allocatable :: s(:), left(:, :), right(:, :)
-      real(wp), allocatable :: r(:)               !< the residual there
+      real(wp), allocatable :: r(:)               !< (rows) the block's residual
    end type values_t
 
 contains
@@ -87,9 +90,9 @@ contains
       end do
    end subroutine clear_row
 
-   !> (unknowns of block `i`) Those that move although everything the block builds on stands still: it is moved a
-   !> little along a direction that the Jacobian leaves open, and comes back to its equations elsewhere. Where it
-   !> comes back to where it was, at a dead point, none. `moved`: the state there.
+   !> (unknowns of block `i`) Those that can move although everything the block builds on stands still. The block is
+   !> moved a little along a direction that the Jacobian leaves open, and its equations are solved again: at a dead
+   !> point they lead back to where it was, and none can move. `moved`: the state they lead to.
    function moving_unknowns(b, i, s, moved) result(moves)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
@@ -98,7 +101,7 @@ contains
       logical :: moves(b%list(i)%last - b%list(i)%first + 1)
       type(state_t) :: trial_state
       type(values_t) :: v
-      real(wp) :: start(size(moves)), direction(size(moves)), far
+      real(wp) :: start(size(moves)), direction(size(moves)), residual
       integer :: k
 
       moves = .false.
@@ -106,15 +109,15 @@ contains
       trial_state = s
       v = decomposed(b, i, trial_state)
       if (v%rank == v%n) return
-      start = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
+      start = values_of(b, i, s)
       direction = v%right(v%n, :)
       call set_values(b, i, start + trial*direction, trial_state)
       do k = 1, 20
-         call gauss_newton_step(b, i, trial_state, far)
-         if (far <= closed) exit
+         call gauss_newton_step(b, i, trial_state, residual)
+         if (residual <= closed) exit
       end do
-      direction = trial_state%u(b%unknown(b%list(i)%first:b%list(i)%last))%value - start
-      if (far <= near .and. norm2(direction) > 0.5_wp*trial) &
+      direction = values_of(b, i, trial_state) - start
+      if (residual <= near .and. norm2(direction) > 0.5_wp*trial) &
          moves = abs(direction) > 0.01_wp*maxval(abs(direction))
       if (present(moved)) moved = trial_state
    end function moving_unknowns
@@ -129,10 +132,10 @@ contains
       call assemble_dense(b, i, s, a, r)
    end function jacobian_of
 
-   !> Whether block `i` with more rows than unknowns is on the side of its change points on which the Jacobian `before`
-   !> (rows*n) was: sign of the determinant of the product of that, transposed, and the present one. With as many rows
-   !> as unknowns it would be the product of the two signs.
-   integer function relative_side(b, i, before, s) result(side)
+   !> 1 if block `i`, with more rows than unknowns, is on the same side of its change points as the Jacobian `before`
+   !> (rows*n), -1 if not: sign of the determinant of the product of that, transposed, and the present one. With as many
+   !> rows as unknowns it would be the product of the two signs.
+   integer function relative_sign(b, i, before, s) result(side)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       real(wp), intent(in) :: before(:)
@@ -149,7 +152,7 @@ contains
             if ((product(k, k) < 0.0_wp) .neqv. (pivots(k) /= k)) side = -side
          end do
       end associate
-   end function relative_side
+   end function relative_sign
 
    !> The least singular value of the Jacobian of block `i` with its vectors `left` (rows) and `right` (n).
    subroutine min_direction(b, i, s, least, left, right)
@@ -178,19 +181,19 @@ contains
    end function residual_of
 
    !> One step of least length towards the equations of block `i` (Gauss and Newton), none along a direction that the
-   !> Jacobian leaves open; `far`: the largest residual before it.
-   subroutine gauss_newton_step(b, i, s, far)
+   !> Jacobian leaves open; `residual`: the largest before it.
+   subroutine gauss_newton_step(b, i, s, residual)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
-      real(wp), intent(out) :: far
+      real(wp), intent(out) :: residual
       type(values_t) :: v
       real(wp), allocatable :: x(:)
       integer :: k
 
       v = decomposed(b, i, s)
-      far = maxval(abs(v%r))
-      x = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
+      residual = maxval(abs(v%r))
+      x = values_of(b, i, s)
       do k = 1, v%rank
          x = x - v%right(k, :)*(dot_product(v%left(:, k), v%r)/v%s(k))
       end do
@@ -203,24 +206,37 @@ contains
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
       type(values_t) :: v
-      real(wp), allocatable :: a(:), work(:)
-      integer :: info
+      real(wp), allocatable :: a(:)
+      integer :: k
 
       v%rows = b%list(i)%shape%rows
       v%n = b%list(i)%shape%n
-      allocate (a(v%rows*v%n), v%r(v%rows), work(8*(v%rows + v%n) + 64), v%s(min(v%rows, v%n)), source=0.0_wp)
-      allocate (v%left(v%rows, v%rows), v%right(v%n, v%n), source=0.0_wp)
+      allocate (a(v%rows*v%n), v%r(v%rows), source=0.0_wp)
       if (v%n == 0) then
-         do info = 1, v%rows
-            v%left(info, info) = 1.0_wp
+         allocate (v%left(v%rows, v%rows), v%right(0, 0), v%s(0), source=0.0_wp)
+         do k = 1, v%rows
+            v%left(k, k) = 1.0_wp
          end do
          return
       end if
       call assemble_dense(b, i, s, a, v%r)
-      call gesvd('A', 'A', v%rows, v%n, a, v%rows, v%s, v%left, v%rows, v%right, v%n, work, size(work), info)
-      ! A block of one unknown has nothing but its own arms to be compared with.
-      v%rank = count(v%s > zero_level*max(v%s(1), b%list(i)%lipschitz, tiny(1.0_wp)))
+      ! A block of one unknown has nothing but its own body vectors to be compared with.
+      call decompose(a, b%list(i)%lipschitz, v)
    end function decomposed
+
+   !> Singular values and vectors of `a` (v%rows*v%n), of which those count as zero that are small beside the largest
+   !> and beside `scale`.
+   subroutine decompose(a, scale, v)
+      real(wp), intent(inout) :: a(*)
+      real(wp), intent(in) :: scale
+      type(values_t), intent(inout) :: v
+      real(wp) :: work(8*(v%rows + v%n) + 64)
+      integer :: info
+
+      allocate (v%s(min(v%rows, v%n)), v%left(v%rows, v%rows), v%right(v%n, v%n), source=0.0_wp)
+      call gesvd('A', 'A', v%rows, v%n, a, v%rows, v%s, v%left, v%rows, v%right, v%n, work, size(work), info)
+      v%rank = count(v%s > zero_level*max(v%s(1), scale, tiny(1.0_wp)))
+   end subroutine decompose
 
    !> Which drives (drives) with an equation in the blocks `list`, in solving order and with all they build on, hold
    !> nothing at the position of `s`: `idle`, or nothing but what other drives hold already: `repeated`.
@@ -242,7 +258,7 @@ contains
          if (k == size(y, 2)) exit
          if (maxval(abs(y(d, k + 1:))) <= zero_level) cycle
          pivot(d) = k + 1
-         call take_out(y, d, k + 1)
+         call eliminate(y, d, k + 1)
       end do
       do d = 1, size(idle)
          if (pivot(d) == 0) cycle
@@ -251,25 +267,24 @@ contains
       end do
    end subroutine judge_drives
 
-   !> The left null vectors as columns (drives, vectors), of which only the drives are told.
+   !> The components of drives in the left null vectors, as columns (drives, vectors).
    function null_drives(b, list, s, drives) result(y)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: list(:), drives
       type(state_t), intent(in) :: s
       real(wp), allocatable :: y(:, :)
-      real(wp), allocatable :: a(:, :), values(:), left(:, :), right(:, :), work(:)
+      real(wp), allocatable :: a(:, :)
       integer, allocatable :: drive_of(:)
-      integer :: rows, n, rank, info, k
+      type(values_t) :: v
+      integer :: k
 
       call fill(b, list, s, a, drive_of)
-      rows = size(a, 1)
-      n = size(a, 2)
-      allocate (values(min(rows, n)), left(rows, rows), right(n, n), work(8*(rows + n) + 64))
-      call gesvd('A', 'A', rows, n, a, rows, values, left, rows, right, n, work, size(work), info)
-      rank = count(values > zero_level*max(values(1), tiny(1.0_wp)))
-      allocate (y(drives, rows - rank), source=0.0_wp)
-      do k = 1, rows
-         if (drive_of(k) > 0) y(drive_of(k), :) = left(k, rank + 1:)
+      v%rows = size(a, 1)
+      v%n = size(a, 2)
+      call decompose(a, 0.0_wp, v)
+      allocate (y(drives, v%rows - v%rank), source=0.0_wp)
+      do k = 1, v%rows
+         if (drive_of(k) > 0) y(drive_of(k), :) = v%left(k, v%rank + 1:)
       end do
    end function null_drives
 
@@ -343,7 +358,7 @@ contains
       integer, intent(in) :: list(:), c
       type(state_t), intent(inout) :: s
       real(wp), intent(inout) :: a(:, :)
-      real(wp) :: side(size(a, 1))
+      real(wp) :: rates(size(a, 1))
       integer :: k, row, n
 
       row = 0
@@ -353,8 +368,8 @@ contains
             associate (rows => block%last_row - block%first_row + 1)
                if (c <= n .and. .not. block%direct) then
                   call find_known_parts(b, list(k), s)
-                  call right_hand_side(b, list(k), 1, s, side)
-                  a(row + 1:row + rows, c) = -side(:rows)
+                  call right_hand_side(b, list(k), 1, s, rates)
+                  a(row + 1:row + rows, c) = -rates(:rows)
                end if
                row = row + rows
                n = n + block%last - block%first + 1
@@ -364,7 +379,7 @@ contains
    end subroutine fill_given
 
    !> Makes entry `d` of column `c` of `y` 1, that of all others 0; the columns from `c` on may change places.
-   pure subroutine take_out(y, d, c)
+   pure subroutine eliminate(y, d, c)
       real(wp), intent(inout) :: y(:, :)
       integer, intent(in) :: d, c
       integer :: at, k
@@ -375,5 +390,5 @@ contains
       do k = 1, size(y, 2)
          if (k /= c) y(:, k) = y(:, k) - y(:, c)*y(d, k)
       end do
-   end subroutine take_out
+   end subroutine eliminate
 end module block_rank

@@ -1,18 +1,18 @@
-!> A block assembled from far: the sum of squares of its residuals made less and less (Levenberg 1944,
-!> Marquardt 1963), where Newton's method alone would leap elsewhere. What is left in the end is how far the block
-!> stays open.
+!> A block assembled from a distant estimate: the sum of squares of its residuals is reduced step by step (Levenberg
+!> 1944, Marquardt 1963), where Newton's method alone would jump to another branch. What is left in the end is the
+!> block's closure error.
 module levenberg_marquardt
    use kinds, only: wp
    use block_matrix, only: shape_t, entries_of, work_length, solve_first
    use klu, only: klu_t
    use convergence, only: convergence_t
    use blocks, only: blocks_t
-   use block_state, only: state_t, set_values, find_known_parts
+   use block_state, only: state_t, set_values, values_of, find_known_parts
    use block_equations, only: assemble_dense
    use block_solver, only: note_closure_error
    implicit none
    private
-   public :: levenberg_marquardt_solve, levenberg_marquardt_held
+   public :: levenberg_marquardt_solve, levenberg_marquardt_held, golden_numbers
 
    !> No unknown goes further than this in one iteration: half a radian, half the characteristic length.
    real(wp), parameter :: longest_step = 0.5_wp
@@ -25,15 +25,16 @@ module levenberg_marquardt
    !> The tie to the initial estimate: what it begins with, by how much it grows less, when it is none.
    real(wp), parameter :: first_tie = 1.0_wp, looser = 0.25_wp, last_tie = 1.0e-8_wp
    integer, parameter :: rounds_a_tie = 3
-   !> Starts: the rough position, then others around it, where that ends in a valley.
+   !> Starts: the initial estimate, then others around it, where that ends in a local minimum.
    integer, parameter :: max_starts = 12
    !> Multiples of it, less their whole part, fill an interval evenly.
    real(wp), parameter :: golden = 0.61803398874989485_wp
    !> The matrices are dense: larger blocks are left as they are.
    integer, parameter :: max_unknowns = 600
-   !> The tied approach is a help among others, and not worth minutes.
+   !> `levenberg_marquardt_held` is one method among several, and not worth minutes.
    integer, parameter :: max_held = 150
 
+   !> Room for one block. `shape`: of its Jacobian, `damped`: with a row more for each unknown. Never copied: see klu_t.
    type :: room_t
       type(shape_t) :: shape, damped
       real(wp), allocatable :: a(:), b(:), r(:), d(:), work(:), x(:), best(:)
@@ -44,7 +45,7 @@ module levenberg_marquardt
 contains
 
    !> Brings block `i` from the values of `s` to where its residual is at most `near`; where that cannot be, to where
-   !> it is smallest, and `c` tells by how much which equation is open. `reached`: it is small.
+   !> it is smallest, and `c` has the closure error there and its pair or drive. `reached`: it is at most `near`.
    subroutine levenberg_marquardt_solve(b, i, near, s, c, reached)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
@@ -61,7 +62,7 @@ contains
       associate (block => b%list(i))
          if (block%shape%n == 0 .or. block%shape%n > max_unknowns) return
          call make_room(w, block%shape)
-         start = s%u(b%unknown(block%first:block%last))%value
+         start = values_of(b, i, s)
       end associate
       call find_known_parts(b, i, s)
       w%best = start
@@ -71,7 +72,7 @@ contains
          call descend(b, i, near, w, s, found)
          if (found < least) then
             least = found
-            w%best = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
+            w%best = values_of(b, i, s)
          end if
          if (least <= near) exit
       end do
@@ -97,7 +98,7 @@ contains
       associate (block => b%list(i))
          if (block%shape%n == 0 .or. block%shape%n > max_held) return
          call make_room(w, block%shape)
-         start = s%u(b%unknown(block%first:block%last))%value
+         start = values_of(b, i, s)
       end associate
       call find_known_parts(b, i, s)
       tie = first_tie
@@ -106,7 +107,7 @@ contains
             call assemble_dense(b, i, s, w%a, w%r)
             if (.not. maxval(abs(w%r(:w%shape%rows))) <= bound) return
             if (maxval(abs(w%r(:w%shape%rows))) <= near) return
-            w%x = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
+            w%x = values_of(b, i, s)
             call damped_step(w, tie, w%x - start, step)
             call set_values(b, i, w%x - w%d(:w%shape%n), s)
             if (step <= 0.01_wp*longest_step) exit
@@ -115,6 +116,7 @@ contains
       end do
    end subroutine levenberg_marquardt_held
 
+   !> Room for a block of this `shape`.
    subroutine make_room(w, shape)
       type(room_t), intent(out) :: w
       type(shape_t), intent(in) :: shape
@@ -129,14 +131,20 @@ contains
    pure function spread_start(k, n) result(d)
       integer, intent(in) :: k, n
       real(wp) :: d(n)
-      real(wp) :: reach
-      integer :: m
 
-      reach = 3.0_wp*real(k, wp)/real(max_starts, wp)
-      d = [(reach*(2.0_wp*modulo(golden*real(k*n + m, wp), 1.0_wp) - 1.0_wp), m=1, n)]
+      d = 3.0_wp*real(k, wp)/real(max_starts, wp)*golden_numbers(k, n)
    end function spread_start
 
-   !> Goes down from the values of `s`; `found`: the largest residual at the end.
+   !> The `n` numbers of row `k` of a sequence that fills the interval from -1 to 1 evenly.
+   pure function golden_numbers(k, n) result(x)
+      integer, intent(in) :: k, n
+      real(wp) :: x(n)
+      integer :: m
+
+      x = [(2.0_wp*modulo(golden*real(k*n + m, wp), 1.0_wp) - 1.0_wp, m=1, n)]
+   end function golden_numbers
+
+   !> Reduces the sum of squares from the values of `s`; `found`: the largest residual at the end.
    subroutine descend(b, i, near, w, s, found)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
@@ -153,7 +161,7 @@ contains
          found = maxval(abs(w%r(:w%shape%rows)))
          if (found <= near .or. damping > max_damping .or. .not. found <= bound) exit
          square = sum(w%r(:w%shape%rows)**2)
-         w%x = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
+         w%x = values_of(b, i, s)
          call damped_step(w, damping, spread(0.0_wp, 1, w%shape%n), step)
          call set_values(b, i, w%x - w%d(:w%shape%n), s)
          call assemble_dense(b, i, s, w%a, w%r)

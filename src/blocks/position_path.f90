@@ -8,9 +8,10 @@ module position_path
    use kinds, only: wp
    use blocks, only: blocks_t
    use block_matrix, only: solve_first, solve_again
-   use block_state, only: state_t, set_values, find_known_parts
+   use block_state, only: state_t, set_values, values_of, find_known_parts
    use block_equations, only: assemble_block
    use block_solver, only: workspace_t
+   use levenberg_marquardt, only: golden_numbers
    implicit none
    private
    public :: follow_path, cross_fold
@@ -27,8 +28,6 @@ module position_path
    integer, parameter :: max_steps = 200, max_corrections = 4
    !> The second difference is taken over this; a pair of positions further apart is none.
    real(wp), parameter :: small = 0.02_wp, max_apart = 2.0_wp
-   !> Multiples of it, less their whole part, fill an interval evenly.
-   real(wp), parameter :: golden = 0.61803398874989485_wp
 
 contains
 
@@ -111,13 +110,13 @@ contains
       logical, intent(out) :: found
       real(wp), dimension(b%list(i)%shape%rows) :: v, r, second, room
       real(wp) :: x(b%list(i)%shape%n), a
-      integer :: info, k
+      integer :: info
 
       found = .false.
       associate (shape => b%list(i)%shape)
          x = values_of(b, i, s)
          call find_known_parts(b, i, s)
-         v = [(2.0_wp*modulo(golden*real(number*shape%rows + k, wp), 1.0_wp) - 1.0_wp, k=1, shape%rows)]
+         v = golden_numbers(number, shape%rows)
          ! Residuals first: the factors must be those of the position itself.
          call set_values(b, i, x, s)
          call assemble_block(b, i, s, w%a, r)
@@ -137,6 +136,7 @@ contains
       end associate
    end subroutine cross_fold
 
+   !> (rows) The residual of block `i`, whose factors stay.
    function residual_of(b, i, s) result(r)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
@@ -148,6 +148,7 @@ contains
       call assemble_block(b, i, s, a, r)
    end function residual_of
 
+   !> Factors the Jacobian in `w` and solves for `d` (rows); `info` > 0: it is singular.
    subroutine solve(b, i, w, d, info)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
@@ -159,13 +160,4 @@ contains
          call solve_first(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, d, info)
       end associate
    end subroutine solve
-
-   pure function values_of(b, i, s) result(x)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      type(state_t), intent(in) :: s
-      real(wp) :: x(b%list(i)%shape%n)
-
-      x = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
-   end function values_of
 end module position_path
