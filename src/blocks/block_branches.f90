@@ -82,7 +82,7 @@ contains
       crosses = e%change <= short_step
       do i = 1, size(e%crossed)
          if (.not. (e%crossed(i) .and. crosses)) cycle
-         allowed = right_part + rounding*e%blocks%list(i)%lipschitz/e%pivot_of(i)**2
+         allowed = right_part + rounding*e%blocks%list(i)%lipschitz/e%followed%pivot(i)**2
          crosses = correction <= min(allowed, max_wrong)*e%change
       end do
    end function crosses
@@ -94,7 +94,7 @@ contains
       real(wp), intent(in) :: t
 
       r = new_diagnostic(diagnostic_change, links_of(e, i))
-      associate (before => e%history%t(e%history%place(0)), a => e%pivot_of(i), b => e%pivot_now(i))
+      associate (before => e%history%t(e%history%place(0)), a => e%followed%pivot(i), b => e%found%pivot(i))
          r%t = before + (t - before)*(a/(a + b))
       end associate
    end function change_point

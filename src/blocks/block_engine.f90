@@ -1,5 +1,5 @@
-!> A mechanism solved block by block, in the order of `blocks`: each knows all that it needs when its
-!> turn comes. Only blocks that a table needs are solved, and those that no drive moves only once.
+!> A mechanism solved block by block, in the order of `blocks`: all that a block needs is known before it is solved.
+!> Only blocks that a table needs are solved, and those that no drive moves only once.
 module block_engine
    use kinds, only: wp
    use mechanism, only: mechanism_t, wanted_links, pair_revolute, drive_x, drive_y, drive_slide
@@ -28,44 +28,51 @@ module block_engine
       real(wp), allocatable :: x(:, :)
    end type positions_t
 
-   !> Lengths in units of `length`, a power of two in the deck's unit.
+   !> What the factors of each block's Jacobian say (blocks).
+   type :: jacobians_t
+      integer, allocatable :: sign_of(:)                !< of the determinant
+      real(wp), allocatable :: pivot(:)                 !< the least
+      real(wp), allocatable :: inverse(:)               !< |J^-1|
+   end type jacobians_t
+
+   !> Lengths in units of `length`, a power of two in the deck's unit. What the structure and the deck give does not
+   !> change; `workspace` is scratch; the checkpoint has all else that depends on earlier instants.
    type :: block_engine_t
-      real(wp) :: length = 1.0_wp, tolerance = 0.0_wp, t = 0.0_wp
+      real(wp) :: length = 1.0_wp, tolerance = 0.0_wp
+      real(wp) :: span = 1.0_wp                         !< the characteristic length, in the deck's unit
       type(blocks_t), allocatable :: blocks
-      type(state_t) :: state
-      type(history_t) :: history                        !< the motions that are followed
-      type(workspace_t) :: work
+      integer, allocatable :: needed(:), moving(:)      !< blocks that are solved at first, and at every step
       type(chain_t) :: chain                            !< of the links that are asked for
       type(chain_t) :: whole                            !< of all links
       type(law_t), allocatable :: laws(:)
-      real(wp), allocatable :: unit_of(:)               !< (drives) of the value: length or 1
+      real(wp), allocatable :: unit_of(:)               !< (drives) of the value, in the deck's unit of length, or 1
       logical, allocatable :: is_angle(:)               !< (drives)
-      integer, allocatable :: orientation_of(:)               !< (links)
+      integer, allocatable :: orientation_of(:)         !< (links)
       integer, allocatable :: joint(:, :)               !< (2, revolute pairs) the links of each
       logical, allocatable :: is_found(:)               !< (links) that a table needs and whose angle no drive gives
-      real(wp), allocatable :: estimated(:)                 !< (0:unknowns) from the deck's positions
+      real(wp), allocatable :: estimated(:)             !< (0:unknowns) from the deck's positions
       real(wp), allocatable :: estimate(:, :)           !< (3, links) places from `chain%origin` and angles of the deck
-      real(wp) :: span = 1.0_wp                         !< the characteristic length
       type(positions_t), allocatable :: others(:)       !< (blocks) what else was found at first
       logical, allocatable :: is_close(:)               !< (blocks) another assembly is about as near to the estimate
-      integer, allocatable :: needed(:), moving(:)      !< blocks that are solved at first, and at every step
-      integer, allocatable :: sign_now(:), sign_of(:)   !< (blocks) of the determinant: found last, followed
-      real(wp), allocatable :: side(:)                  !< Jacobian of the block with too many rows, followed
-      real(wp), allocatable :: pivot_now(:), pivot_of(:) !< (blocks) the least: found last, followed
-      real(wp), allocatable :: inverse_now(:), inverse_of(:) !< (blocks) |J^-1| likewise
-      logical, allocatable :: is_singular(:)            !< (blocks) found last without velocities
-      logical, allocatable :: crossed(:)                !< (blocks) whose determinant has changed its sign
-      real(wp) :: change = 0.0_wp                       !< the largest that was predicted
+      type(workspace_t) :: work
+      ! The motion that is followed.
+      type(history_t) :: history
+      type(jacobians_t) :: followed
+      real(wp), allocatable :: jacobian(:)              !< of the block with too many rows: (rows*n)
+      ! The motion found last.
+      real(wp) :: t = 0.0_wp, change = 0.0_wp           !< its time; the largest change of a value that was predicted
+      type(state_t) :: state
+      type(jacobians_t) :: found
+      logical, allocatable :: is_singular(:), crossed(:) !< (blocks) without velocities; with a new sign of determinant
    end type block_engine_t
 
-   !> All that depends on the way so far: the motions that are followed, with the signs and pivots of their
-   !> Jacobians, and the motion found last. No workspace.
+   !> All that depends on earlier instants: the motion that is followed, and the one found last.
    type :: block_checkpoint_t
       type(history_t) :: history
-      integer, allocatable :: sign_of(:), sign_now(:)
-      real(wp), allocatable :: pivot_of(:), pivot_now(:), inverse_of(:), inverse_now(:), side(:)
-      logical, allocatable :: crossed(:)
+      type(jacobians_t) :: followed, found
+      real(wp), allocatable :: jacobian(:)
       type(state_t) :: state
+      logical, allocatable :: crossed(:)
       real(wp) :: t = 0.0_wp, change = 0.0_wp
    end type block_checkpoint_t
 
@@ -79,12 +86,9 @@ contains
       type(structure_t), intent(inout), optional :: structure
       type(structure_t) :: own
 
-      if (present(structure)) then
-         call take_over(structure)
-      else
-         own = new_structure(m)
-         call take_over(own)
-      end if
+      if (.not. present(structure)) own = new_structure(m)
+      if (.not. present(structure)) call take_over(own)
+      if (present(structure)) call take_over(structure)
 
    contains
 
@@ -109,26 +113,38 @@ contains
       e%needed = needed_blocks(e%blocks, t, wanted_links(m))
       e%moving = pack(e%needed, moving_blocks(e%blocks, e%needed))
       e%state = new_state(e%blocks, size(m%drives))
-      e%history = new_history(e%blocks%unknowns, sought_unknowns(e))
+      e%history = new_history(e%blocks%unknowns, iterated_unknowns(e))
       e%history%order = m%predictor
-      e%is_found = wanted_links(m)
-      do i = 1, size(m%links)
-         if (t%orientation(i) == 0) then
-            e%is_found(i) = .false.
-         else if (e%blocks%list(e%blocks%block_of(t%orientation(i)))%direct) then
-            e%is_found(i) = .false.
-         end if
-      end do
       call make_workspace(e%work, e%blocks)
       e%chain = new_chain(m, t, wanted_links(m), e%blocks%orientations, e%blocks%unit)
       e%whole = new_chain(m, t, spread(.true., 1, size(m%links)), e%blocks%orientations, e%blocks%unit)
-      allocate (e%laws(size(m%drives)))
-      allocate (e%unit_of(size(m%drives)), source=1.0_wp)
       e%orientation_of = t%orientation
+      e%is_found = wanted_links(m) .and. t%orientation > 0
+      do i = 1, size(m%links)
+         if (e%is_found(i)) e%is_found(i) = .not. e%blocks%list(e%blocks%block_of(t%orientation(i)))%direct
+      end do
       allocate (e%joint(2, count(m%pairs%kind == pair_revolute)))
       e%joint(1, :) = m%points(pack(m%pairs%point_i, m%pairs%kind == pair_revolute))%link
       e%joint(2, :) = m%points(pack(m%pairs%point_j, m%pairs%kind == pair_revolute))%link
-      allocate (e%is_angle(size(m%drives)))
+      call prepare_drives(e, m)
+      call prepare_records(e, size(e%blocks%list))
+      allocate (e%estimate(3, size(m%links)))
+      do i = 1, size(m%links)
+         e%estimate(:, i) = m%links(i)%position - [e%chain%origin, 0.0_wp]
+      end do
+      ! A function's result would bring its own lower bound.
+      allocate (e%estimated(0:e%blocks%unknowns))
+      e%estimated(:) = estimated_values(m, t, e%length, e%blocks%unknowns)/e%blocks%unit
+   end subroutine prepare
+
+   !> The laws of the drives of `m` and the units of their values.
+   subroutine prepare_drives(e, m)
+      type(block_engine_t), intent(inout) :: e
+      type(mechanism_t), intent(in) :: m
+      integer :: i
+
+      allocate (e%laws(size(m%drives)), e%is_angle(size(m%drives)))
+      allocate (e%unit_of(size(m%drives)), source=1.0_wp)
       do i = 1, size(m%drives)
          e%laws(i) = new_law(m%drives(i))
          e%is_angle(i) = all(m%drives(i)%kind /= [drive_x, drive_y, drive_slide])
@@ -139,37 +155,39 @@ contains
             if (d > 0) e%unit_of(d) = e%unit_of(d)/e%blocks%rows(i)%unit
          end associate
       end do
-      allocate (e%sign_now(size(e%blocks%list)), e%sign_of(size(e%blocks%list)), source=1)
-      allocate (e%pivot_now(size(e%blocks%list)), e%pivot_of(size(e%blocks%list)), source=1.0_wp)
-      allocate (e%crossed(size(e%blocks%list)), e%is_close(size(e%blocks%list)), source=.false.)
-      allocate (e%others(size(e%blocks%list)), e%estimate(3, size(m%links)))
-      do i = 1, size(m%links)
-         e%estimate(:, i) = m%links(i)%position - [e%chain%origin, 0.0_wp]
-      end do
-      allocate (e%inverse_now(size(e%blocks%list)), e%inverse_of(size(e%blocks%list)), source=0.0_wp)
-      allocate (e%is_singular(size(e%blocks%list)), source=.false.)
-      ! A function's result would bring its own lower bound.
-      allocate (e%estimated(0:e%blocks%unknowns))
-      e%estimated(:) = estimated_values(m, t, e%length, e%blocks%unknowns)/e%blocks%unit
-   end subroutine prepare
+   end subroutine prepare_drives
+
+   !> Records of `n` blocks before the first instant.
+   subroutine prepare_records(e, n)
+      type(block_engine_t), intent(inout) :: e
+      integer, intent(in) :: n
+
+      allocate (e%found%sign_of(n), source=1)
+      allocate (e%found%pivot(n), source=1.0_wp)
+      allocate (e%found%inverse(n), source=0.0_wp)
+      e%followed = e%found
+      allocate (e%crossed(n), e%is_close(n), e%is_singular(n), source=.false.)
+      allocate (e%others(n))
+   end subroutine prepare_records
 
    !> The unknowns of the moving blocks that iterate.
-   pure function sought_unknowns(e) result(list)
+   pure function iterated_unknowns(e) result(list)
       type(block_engine_t), intent(in) :: e
       integer, allocatable :: list(:)
-      logical :: sought(0:e%blocks%unknowns)
+      logical :: iterated(0:e%blocks%unknowns)
       integer :: k, u
 
-      sought = .false.
+      iterated = .false.
       do k = 1, size(e%moving)
          associate (block => e%blocks%list(e%moving(k)))
-            if (.not. block%direct) sought(e%blocks%unknown(block%first:block%last)) = .true.
+            if (.not. block%direct) iterated(e%blocks%unknown(block%first:block%last)) = .true.
          end associate
       end do
-      list = pack([(u, u=0, e%blocks%unknowns)], sought)
-   end function sought_unknowns
+      list = pack([(u, u=0, e%blocks%unknowns)], iterated)
+   end function iterated_unknowns
 
-   !> Seeks the motion at `t`, from those kept (`follows`) or from the deck's. `c`: how the hardest block ended,
+   !> Solves for the motion at `t`, from those accepted (`follows`) or from the deck's estimate. `c`: how the worst
+   !> block ended,
    !> `correction`: the largest change of a predicted value, `same`: every block's determinant has kept its sign.
    subroutine solve_blocks(e, t, follows, c, correction, same)
       type(block_engine_t), intent(inout) :: e
@@ -197,7 +215,7 @@ contains
       end if
    end subroutine solve_blocks
 
-   !> What the drives ask for at `t`.
+   !> Value, rate and acceleration of the drives at `t`.
    pure subroutine set_drive_values(e, t)
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
@@ -208,7 +226,7 @@ contains
       end do
    end subroutine set_drive_values
 
-   !> The moving blocks once more, from where they are now.
+   !> Solves the moving blocks once more, from where they are now.
    subroutine solve_again(e, c, correction, same)
       type(block_engine_t), intent(inout) :: e
       type(convergence_t), intent(out) :: c
@@ -221,6 +239,7 @@ contains
       call solve_each(e, e%moving, .true., c, correction, same)
    end subroutine solve_again
 
+   !> The record `c` before the first block.
    subroutine begin_record(e, c)
       type(block_engine_t), intent(inout) :: e
       type(convergence_t), intent(inout) :: c
@@ -231,7 +250,7 @@ contains
       c%determinant = 1
    end subroutine begin_record
 
-   !> The blocks of `list`, one after another; a block without an end that others can build on ends the search.
+   !> Solves the blocks of `list` in turn, up to the first without a position; arguments as in `solve_blocks`.
    subroutine solve_each(e, list, follows, c, correction, same)
       type(block_engine_t), intent(inout) :: e
       integer, intent(in) :: list(:)
@@ -251,7 +270,7 @@ contains
          end if
          if (e%blocks%list(i)%direct) cycle
          if (follows .and. is_solved(one) .and. e%blocks%list(i)%shape%rows > e%blocks%list(i)%shape%n) &
-            one%determinant = e%sign_of(i)*relative_sign(e%blocks, i, e%side, e%state)
+            one%determinant = e%followed%sign_of(i)*relative_sign(e%blocks, i, e%jacobian, e%state)
          call gather(one, c)
          if (.not. is_solved(one)) return
          e%is_singular(i) = one%singular
@@ -259,11 +278,11 @@ contains
          if (one%singular) cycle
          c%kantorovich_ratio = max(c%kantorovich_ratio, one%kantorovich_ratio)
          if (e%state%excursion > 0.0_wp) &
-            c%growth = max(c%growth, e%blocks%list(i)%lipschitz*max(one%inverse, e%inverse_of(i))**2)
-         e%inverse_now(i) = one%inverse
-         e%sign_now(i) = one%determinant
-         e%pivot_now(i) = one%min_pivot
-         if (.not. follows .or. one%determinant == e%sign_of(i)) cycle
+            c%growth = max(c%growth, e%blocks%list(i)%lipschitz*max(one%inverse, e%followed%inverse(i))**2)
+         e%found%inverse(i) = one%inverse
+         e%found%sign_of(i) = one%determinant
+         e%found%pivot(i) = one%min_pivot
+         if (.not. follows .or. one%determinant == e%followed%sign_of(i)) cycle
          same = .false.
          e%crossed(i) = .true.
       end do
@@ -275,10 +294,10 @@ contains
 
       call remember(e%history, e%t, e%state%u)
       ! As sections: an assignment to the whole would ask for its shape first.
-      e%sign_of(:) = e%sign_now(:)
-      if (e%blocks%redundant > 0) e%side = jacobian_of(e%blocks, 1, e%state)
-      e%pivot_of(:) = e%pivot_now(:)
-      e%inverse_of(:) = e%inverse_now(:)
+      e%followed%sign_of(:) = e%found%sign_of(:)
+      if (e%blocks%redundant > 0) e%jacobian = jacobian_of(e%blocks, 1, e%state)
+      e%followed%pivot(:) = e%found%pivot(:)
+      e%followed%inverse(:) = e%found%inverse(:)
    end subroutine accept_blocks
 
    !> The motion found last of the links that are asked for, in the deck's units; `finite`: all of it is in range.
@@ -290,48 +309,40 @@ contains
       call move_links(e%chain, e%state, e%length, found, finite)
    end subroutine get_blocks_motion
 
-   !> Notes in `c` all that depends on the way so far.
+   !> Saves in `c` all that depends on earlier instants.
    pure subroutine checkpoint_blocks(e, c)
       type(block_engine_t), intent(in) :: e
       type(block_checkpoint_t), intent(inout) :: c
 
       c%history = e%history
-      c%sign_of = e%sign_of
-      c%pivot_of = e%pivot_of
-      c%inverse_of = e%inverse_of
-      if (allocated(e%side)) c%side = e%side
-      c%state = e%state
-      c%sign_now = e%sign_now
-      c%pivot_now = e%pivot_now
-      c%inverse_now = e%inverse_now
-      c%crossed = e%crossed
+      c%followed = e%followed
+      if (allocated(e%jacobian)) c%jacobian = e%jacobian
       c%t = e%t
       c%change = e%change
+      c%state = e%state
+      c%found = e%found
+      c%crossed = e%crossed
    end subroutine checkpoint_blocks
 
-   !> Makes the motion that was followed at the checkpoint `c` the one that is followed, and what was found last there
-   !> what was found last; `keeps_found`: that stays as it is now.
+   !> Follows again the motion that was followed at the checkpoint `c`, and has the motion found last there as the one
+   !> found last; `keeps_found`: that stays as it is now.
    pure subroutine restore_blocks(e, c, keeps_found)
       type(block_engine_t), intent(inout) :: e
       type(block_checkpoint_t), intent(in) :: c
       logical, intent(in) :: keeps_found
 
       e%history = c%history
-      e%sign_of = c%sign_of
-      e%pivot_of = c%pivot_of
-      e%inverse_of = c%inverse_of
-      if (allocated(c%side)) e%side = c%side
+      e%followed = c%followed
+      if (allocated(c%jacobian)) e%jacobian = c%jacobian
       if (keeps_found) return
-      e%state = c%state
-      e%sign_now = c%sign_now
-      e%pivot_now = c%pivot_now
-      e%inverse_now = c%inverse_now
-      e%crossed = c%crossed
       e%t = c%t
       e%change = c%change
+      e%state = c%state
+      e%found = c%found
+      e%crossed = c%crossed
    end subroutine restore_blocks
 
-   !> Tells of each link of `found`, the motion that `e` has found, how much of it exists.
+   !> Says of each link of `found`, the motion that `e` has found last, how much of it exists.
    subroutine know_links(e, found)
       type(block_engine_t), intent(in) :: e
       type(motion_t), intent(inout) :: found
@@ -345,8 +356,8 @@ contains
       call mark_links(e%chain, missing, found)
    end subroutine know_links
 
-   !> Where no position was found at `t`, that of the links which drives alone move from the ground on, whatever the
-   !> others do: at `t` they are where their drives have them. `found` has its mark already.
+   !> Where no position was found at `t`: the motion of the links which drives alone move, whatever the others do.
+   !> `found` has its mark already.
    subroutine get_driven_motion(e, t, found)
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
@@ -376,7 +387,7 @@ contains
       call move_links(part, e%state, e%length, found, finite)
    end subroutine get_driven_motion
 
-   !> Of the unknowns of block `i` so much is missing as its `own` equations leave out, or what it builds on.
+   !> What is missing of the unknowns of block `i`: what its `own` equations leave out, or what it builds on lacks.
    subroutine note_block(e, i, own, missing)
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: i, own

@@ -227,7 +227,7 @@ contains
       do k = 1, size(e%blocks%needed)
          associate (i => e%blocks%needed(k))
             if (.not. e%blocks%blocks%list(i)%direct) roundings_grow = roundings_grow .or. &
-               e%blocks%blocks%list(i)%lipschitz*max(1.0_wp, size_of) > limit*min(1.0_wp, e%blocks%pivot_now(i))**2
+               e%blocks%blocks%list(i)%lipschitz*max(1.0_wp, size_of) > limit*min(1.0_wp, e%blocks%found%pivot(i))**2
          end associate
       end do
    end function roundings_grow

@@ -14,7 +14,7 @@ module block_state
    public :: unknown_t, state_t, new_state, set_direction, rotate_direction, set_values, values_of, find_known_parts, &
       slide_vector
 
-   !> An unknown, an angle in radians or a slide in its block's unit of length, and its derivatives with respect to time.
+   !> An unknown, an angle in radians or a slide in its block's unit of length, with its derivatives by time.
    type :: unknown_t
       real(wp) :: value = 0.0_wp, rate = 0.0_wp, acceleration = 0.0_wp
       real(wp) :: c = 1.0_wp, s = 0.0_wp             !< of an angle: cosine and sine of the value
@@ -31,7 +31,7 @@ module block_state
    type :: state_t
       type(unknown_t), allocatable :: u(:)           !< (0:unknowns); 0 is the ground's angle
       type(loop_state_t), allocatable :: loop(:)     !< (loops)
-      real(wp), allocatable :: own(:, :)             !< (2, body vectors) R d of those that the block's own angles rotate
+      real(wp), allocatable :: own(:, :)             !< (2, body vectors) R d, where the block's own angles rotate it
       real(wp), allocatable :: drive_value(:, :)     !< (0:2, 0:drives) value, rate and acceleration of each drive
       real(wp) :: excursion = 0.0_wp                 !< of the drives from their straight lines in a substep, at most
    end type state_t

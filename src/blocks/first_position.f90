@@ -43,7 +43,7 @@ module first_position
 
 contains
 
-   !> Solves block `i` as `solve_block` does, from any estimate in the values of `s`: the position that is the nearest to
+   !> Solves block `i` as `solve_block` does, from any estimate in the values of `s`: the position that is nearest to
    !> it. `others` (unknowns, any number): what else was found, nearest first; not allocated where the position is
    !> certain to be the nearest.
    subroutine solve_first_block(b, i, tolerance, w, s, c, others)
@@ -194,7 +194,7 @@ contains
       end associate
    end subroutine remove_own_turns
 
-   !> Takes whole turns off the `estimated` angles (0:unknowns) of the blocks `list`, where a drive with one of the values
+   !> Takes whole turns off the `estimated` angles (0:unknowns) of the blocks `list`, where a drive with a value of
    !> `drive_value` (0:drives) fixes them: they close nothing, and would have to be travelled.
    pure subroutine remove_turns(b, list, drive_value, estimated)
       type(blocks_t), intent(in) :: b

@@ -219,7 +219,8 @@ contains
       if (t%orientation(link) == orientation) then
          body_vector = body_vector + sign_of*rotated(m%points(point)%offset, direction(t%angle_offset(link)))
       else
-         fixed = fixed + sign_of*rotated(m%points(point)%offset, direction(t%angle_offset(link) + u(t%orientation(link))))
+         fixed = fixed + sign_of*rotated(m%points(point)%offset, &
+            direction(t%angle_offset(link) + u(t%orientation(link))))
       end if
    end subroutine split
 
@@ -286,8 +287,10 @@ contains
          if (m%pairs(k)%kind == pair_revolute) then
             largest = max(largest, norm2(closure_error))
          else
-            largest = max(largest, abs(dot_product(closure_error, &
-               rotated(normal(m, t, k), direction(u(t%orientation(m%points(m%pairs(k)%point_i)%link))))) - m%pairs(k)%offset))
+            associate (u_i => u(t%orientation(m%points(m%pairs(k)%point_i)%link)))
+               largest = max(largest, abs(dot_product(closure_error, rotated(normal(m, t, k), direction(u_i))) &
+                  - m%pairs(k)%offset))
+            end associate
          end if
       end do
    end function largest_opening

@@ -129,8 +129,10 @@ contains
          associate (h => links(i), f => u(links(i)%orientation))
             k = h%link
             call follow_parent(h%place%reach, h%parent_orientation, u(h%parent_orientation), p(1, k), v(1, k), a(1, k))
-            if (h%has_body_vector) call add_rotating(-(f%c*h%place%body_vector(1) - f%s*h%place%body_vector(2)), &
-               -(f%s*h%place%body_vector(1) + f%c*h%place%body_vector(2)), f%rate, f%acceleration, p(1, k), v(1, k), a(1, k))
+            associate (d => h%place%body_vector)
+               if (h%has_body_vector) call add_rotating(-(f%c*d(1) - f%s*d(2)), -(f%s*d(1) + f%c*d(2)), f%rate, &
+                  f%acceleration, p(1, k), v(1, k), a(1, k))
+            end associate
             if (h%slide > 0) call add_slide(h%place%slide_body_vector, u(h%parent_orientation), u(h%slide), length, &
                p(1, k), v(1, k), a(1, k))
             if (h%root > 0) call set_root(u(h%root), length*h%root_unit, p(1, k), v(1, k), a(1, k))
