@@ -1,6 +1,6 @@
 !> The assembly that belongs to a deck's initial estimate, where the blocks one by one leave a choice. A block
 !> takes its nearest position; but two may be about as near, and only what is built on it tells which one is meant:
-!> the links that hang on it lie as the deck says, or do not close at all. So the others are tried as well, and the
+!> its child links lie as the deck says, or do not close at all. So the others are tried as well, and the
 !> rest assembled again.
 !>
 !> All blocks are asked, also those that no table needs: what is printed chooses no assembly.
@@ -27,7 +27,7 @@ module assembly_choice
       real(wp), allocatable :: place(:, :)              !< (3, links)
    end type trial_t
 
-   !> Links that differ by more than this, in radians or characteristic lengths, lie in another way.
+   !> Links that differ by more than this, in radians or characteristic lengths, lie differently.
    real(wp), parameter :: apart = max(1.0e-6_wp, sqrt(epsilon(1.0_wp)))
    !> A place that is further off than this part of the characteristic length tells nothing more by how far: a deck may
    !> give angles alone.
@@ -41,7 +41,7 @@ module assembly_choice
 
 contains
 
-   !> Seeks the first motion at `t`, as `solve_blocks` does without one that is followed.
+   !> Solves for the first motion at `t`, as `solve_blocks` does without one that is followed.
    subroutine solve_first(e, t, c, correction, same)
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t

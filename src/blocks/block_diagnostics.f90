@@ -14,9 +14,10 @@ module block_diagnostics
    private
    public :: first_diagnostics, limit_diagnostic, links_of
 
-   !> A limit is told where it is no further than this part of the step that could not be made.
+   !> A limit is reported where it is no further than this part of the step that could not be made.
    real(wp), parameter :: near_part = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
-   !> Arms with a smaller sine between them are in line: the last motion kept is the root of its distance in time away.
+   !> Body vectors with a smaller sine between them are in line: the last motion accepted is as far off as the root of
+   !> its distance in time.
    real(wp), parameter :: parallel = 1.0e-3_wp
 
 contains
@@ -72,7 +73,7 @@ contains
       end do
    end function redundancies
 
-   !> The links of block `i` that can move, and those that hang on them.
+   !> The links of block `i` that can move, and those that are moved by them.
    subroutine add_mobility(e, i, list)
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: i
@@ -182,7 +183,7 @@ contains
       end associate
    end function way_left
 
-   !> The two links of `r`, all that block `i` moves, have a revolute pair in common, and all their arms are parallel.
+   !> The two links of `r`, all that block `i` moves, share a revolute pair, and their body vectors are parallel.
    pure logical function is_in_line(e, i, r)
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: i

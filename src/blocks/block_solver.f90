@@ -7,7 +7,7 @@
 !> correction d away leaves errors of order d in the rates: no larger d is accepted.
 !>
 !> Where equations are too many, all of them are kept, in the sense of least squares (Gauss and Newton): which of
-!> them could be spared changes on the way. What they contradict one another by is the gap.
+!> them could be spared changes along the motion. By how much they contradict one another is the closure error.
 module block_solver
    use kinds, only: wp
    use klu, only: klu_t
@@ -30,25 +30,25 @@ module block_solver
    real(wp), parameter :: small_turn = 1.0e-9_wp*sqrt(epsilon(1.0_wp)*2.0_wp**52)
    !> A pivot this much smaller than the largest is worth an estimate of the inverse.
    real(wp), parameter :: suspicious_pivot = 1.0e-3_wp
-   !> So is a doubt from here on, where 1 over the least pivot stands for |J^-1|: with more than two unknowns that is
-   !> too small, by 4 with 9 of them, by 2000 with 49 (lattices); doubts are of importance from 0.1 on.
+   !> So is a Kantorovich ratio from here on, where 1 over the least pivot stands for |J^-1|: with more than two
+   !> unknowns that is too small, by 4 with 9 of them, by 2000 with 49 (lattices); ratios matter from 0.1 on.
    !> What the drives' excursions add goes with its square, and with 0.1 over the fourth power of their number.
    real(wp), parameter :: small_kantorovich_ratio = 1.0e-6_wp, small_growth = 0.1_wp
-   !> Relative error of the velocities, by what rounding leaves open in the position, from which on they are not told.
+   !> Relative error of the velocities, by what rounding leaves open in the position, that is too large to print them.
    real(wp), parameter :: largest_error = 0.05_wp
    !> Angles beyond have few digits after the point.
    real(wp), parameter :: angle_limit = min(1.0e8_wp, 0.01_wp/epsilon(1.0_wp))
    integer, parameter :: iteration_limit = 60
    !> 1 over this squared is within the range of reals.
    real(wp), parameter :: min_inverse = epsilon(1.0_wp)**2
-   !> Gaps that differ by less than this part are alike.
+   !> Closure errors that differ by less than this part are alike.
    real(wp), parameter :: alike = 1.0e-4_wp
    !> Positions may contradict one another by this, in characteristic lengths and radians, as data of 11 digits do.
    real(wp), parameter :: inconsistent_level = max(1.0e-10_wp, 64.0_wp*epsilon(1.0_wp))
    !> Rates may by this part of them, which a condition makes larger.
    real(wp), parameter :: open_rates = max(1.0e-8_wp, 4096.0_wp*epsilon(1.0_wp))
-   !> Beside what is known the arms of a polygon may be so short that rounding opens it by more: by so many roundings of
-   !> what is known.
+   !> Beside what is known the body vectors of a loop may be so short that rounding opens it by more: by so many
+   !> roundings of what is known.
    real(wp), parameter :: roundings = 64.0_wp, rate_roundings = 4096.0_wp
 
    !> Room for the widest block, and the factors of each sparse one. Never copied: see klu_t.
@@ -82,7 +82,7 @@ contains
       end do
    end subroutine make_workspace
 
-   !> Solves block `i` for value, rate and second rate of its unknowns, the values starting from those of `s`.
+   !> Solves block `i` for value, rate and acceleration of its unknowns, the values starting from those of `s`.
    !> `c`: how it ended; `correction`: the largest change of a value, where it is larger than before.
    subroutine solve_block(b, i, tolerance, w, s, c, correction)
       type(blocks_t), intent(in) :: b
@@ -198,7 +198,7 @@ contains
       if (shape%rows > shape%n) is_stalled = is_stalled .or. (c%step > 0.5_wp*before .and. c%step <= small_turn)
    end function is_stalled
 
-   !> Directions and known parts where the search begins, what it begins from, and the largest value, 1 at least.
+   !> Directions and known parts at the start of the iteration, the values `start`, and the largest value, 1 at least.
    subroutine begin_block(b, i, n, s, start, size_of)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, n
@@ -247,6 +247,7 @@ contains
       end do
    end subroutine move
 
+   !> The largest change of the values of block `i` from `start`.
    pure real(wp) function largest_change(b, i, n, s, start) result(change)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, n
@@ -287,8 +288,8 @@ contains
 
    !> Sign of the determinant, how certain it is that the root is the one that was predicted, and whether rounding
    !> leaves the velocities open: with B = |J^-1| and the residual known to h, the position is known to B h, the
-   !> Jacobian to B h times its bend, the velocities to B times that. Newton and Kantorovich: one root only where B
-   !> bend change is below 1/2.
+   !> Jacobian to B h times its Lipschitz constant L, the velocities to B times that. Newton and Kantorovich: one root
+   !> only where B L change is below 1/2.
    subroutine judge(b, i, n, w, s, c)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, n
@@ -357,14 +358,14 @@ contains
       end do
    end subroutine note_closure_error
 
-   !> The gap of `c` is more than rounding.
+   !> The closure error of `c` is more than rounding.
    pure logical function is_inconsistent(c)
       type(convergence_t), intent(in) :: c
 
       is_inconsistent = c%closure_error > inconsistent_level*c%closure_error_level
    end function is_inconsistent
 
-   !> How many times as large as usual a gap of instance `m` may be.
+   !> How many times as large as usual the closure error of loop `m` may be.
    pure real(wp) function level_of(b, m)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: m
@@ -372,7 +373,7 @@ contains
       level_of = max(1.0_wp, b%loops(m)%coarse*(roundings*epsilon(1.0_wp)/inconsistent_level))
    end function level_of
 
-   !> By how much instance `m` is open.
+   !> By how much loop `m` is open.
    pure real(wp) function opening(b, m, r)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: m

@@ -1,4 +1,4 @@
-!> How an iteration for a position ended: the record that both methods give back.
+!> How an iteration for a position ended: the record that all methods give back.
 module convergence
    use kinds, only: wp
    implicit none
@@ -13,7 +13,7 @@ module convergence
    integer, parameter :: ended_limit = 4       !< too many iterations
    integer, parameter :: ended_diverged = 5    !< the residual left all bounds
    integer, parameter :: ended_inconsistent = 6        !< too many equations, and they contradict one another
-   integer, parameter :: ended_unsought = 7    !< known before to be out of reach
+   integer, parameter :: ended_unsought = 7    !< known beforehand to be out of reach: no iteration
    integer, parameter :: ended_elsewhere = 8   !< at another assembly than the estimated one
 
    type :: convergence_t
@@ -28,7 +28,7 @@ module convergence
       real(wp) :: change = 0.0_wp              !< the largest of a value, from where the search began
       real(wp) :: kantorovich_ratio = 0.0_wp !< that change over the distance within which the root is the only one
       real(wp) :: inverse = 0.0_wp             !< |J^-1| there
-      real(wp) :: growth = 0.0_wp              !< of the doubt with what the drives are off their straight way
+      real(wp) :: growth = 0.0_wp              !< of that ratio with the excursion of the drives
       logical :: singular = .false.            !< position found where the Jacobian has no inverse
       real(wp) :: closure_error = 0.0_wp !< of the equation that is open the most, in the unit of length or rad
       logical :: closure_error_is_angle = .false.
@@ -47,7 +47,7 @@ contains
       is_solved = c%ended == ended_converged .or. c%ended == ended_stalled
    end function is_solved
 
-   !> Makes the gap of `from` that of `c`, with what it belongs to.
+   !> Gives `c` the closure error of `from`, with what it belongs to.
    pure subroutine take_closure_error(from, c)
       type(convergence_t), intent(in) :: from
       type(convergence_t), intent(inout) :: c
