@@ -140,8 +140,7 @@ contains
 
    !> Where all closure equations have no inverse the net can leave its motion; the lattice 7 comes there after 56
    !> steps. What is beyond must be the same motion or be marked: an assembly is never changed in silence. Only
-   !> positions
-   !> are judged, to what a condition of 1.0e7 leaves of them: another assembly is off by 1.0e-3 and more.
+   !> positions are judged, to what a condition of 1.0e7 leaves of them: another assembly is off by 1.0e-3 and more.
    subroutine judge_change_point(decks, tally)
       character(*), intent(in) :: decks
       type(certificate_counts_t), intent(inout) :: tally

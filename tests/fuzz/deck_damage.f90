@@ -29,8 +29,7 @@ module deck_damage
 contains
 
    !> The deck of seed number `seed`, made from one of `sets`. Of ten decks seven are changed gently, two go to the
-   !> limits,
-   !> one is damaged, by a mixture of everything.
+   !> limits, one is damaged, by a mixture of everything.
    function deck_of_seed(sets, seed) result(d)
       type(draft_t), intent(in) :: sets(:)
       integer, intent(in) :: seed

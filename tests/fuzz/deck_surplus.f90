@@ -1,6 +1,5 @@
-!> Tests. Changes of a deck that give it more equations than unknowns, consistent or not: pairs and drives twice,
-!> guides side
-!> by side, links held at two points; and rough positions from far, drives that stop at round angles.
+!> Tests. Changes of a deck that give it more equations than unknowns, consistent or not: pairs and drives twice, guides
+!> side by side, links held at two points; and rough positions from far, drives that stop at round angles.
 module deck_surplus
    use kinds, only: wp
    use dice, only: dice_t, throw, chance, between
@@ -57,8 +56,7 @@ contains
    end subroutine copy_card
 
    !> A pair once more: between the same points, or between others, a prismatic one so that both agree, a revolute one
-   !> so
-   !> that they agree where the links have their rough angles; or a prismatic one with another number.
+   !> so that they agree where the links have their rough angles; or a prismatic one with another number.
    subroutine double_pair(d, r)
       type(draft_t), intent(inout) :: d
       type(dice_t), intent(inout) :: r
@@ -281,8 +279,7 @@ contains
    end subroutine far_rough
 
    !> A drive goes from one multiple of 15 degrees to others, or of 0.25 of the length: over dead points and change
-   !> points
-   !> exactly.
+   !> points exactly.
    subroutine round_drive(d, r)
       type(draft_t), intent(inout) :: d
       type(dice_t), intent(inout) :: r

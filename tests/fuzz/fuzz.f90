@@ -1,5 +1,5 @@
-!> Tests. Decks made by chance, each from the number of its seed, run through the program's own job; `tests/fuzz/fuzz.sh`
-!> calls it.
+!> Tests. Decks made by chance, each from the number of its seed, run through the program's own job;
+!> `tests/fuzz/fuzz.sh` calls it.
 !>
 !>    fuzz FIRST LAST DIRECTORY DECK...     seeds FIRST to LAST, a line for each that fails, then a line of sums
 !>    fuzz --deck SEED FILE DECK...         writes the deck of a seed

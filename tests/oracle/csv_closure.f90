@@ -5,8 +5,9 @@ module csv_closure
    use quad_jet, only: qp, pi_q, jet_t, operator(-)
    use mechanism, only: mechanism_t, instant_count, request_point, request_pair, pair_prismatic
    use csv_rows, only: rows_t, read_instant, blame, whole_text, csv_head
-   use jet_closure, only: body_jet_t, closure_jets, place_jet, slide_jet, sizes_t, sizes_of, row_sizes
-   use jet_condition, only: condition
+   use jet_closure, only: body_jet_t, numbers_of, closure_jets, place_jet, slide_jet
+   use jet_drives, only: drive_jets
+   use jet_condition, only: condition, sizes_t, sizes_of, row_sizes
    implicit none
    private
    public :: verdict_t, check_csv
@@ -15,8 +16,7 @@ module csv_closure
    !> terms each; the solver ends with steps of 32 eps.
    real(qp), parameter :: rounding = 64.0_qp*epsilon(1.0_wp)
    !> A deck's own tolerance is one on the last step, which the step itself then betters; METHOD MATRIX may not better
-   !> it, and
-   !> the step may change residuals by as many times itself as a row has numbers.
+   !> it, and the step may change residuals by as many times itself as a row has numbers.
    real(qp), parameter :: steps_of_tolerance = 16.0_qp
    !> Equations that are too many may contradict one another by this in positions, and by this in rates: so much the
    !> program says that it allows them, and ten times as much for the norm that it measures rates in.
@@ -111,7 +111,7 @@ contains
 
       v%closures = v%closures + 1
       t = rows%t
-      r = closure_jets(m, rows%body, t)
+      r = closure_jets(m, numbers_of(m), rows%body, drive_jets(m, t))
       share(0, :) = abs(r%v)
       share(1, :) = abs(r%d)
       share(2, :) = abs(r%dd)
@@ -132,7 +132,7 @@ contains
          if (any(share(1:rows%known, :) > 1.0_qp)) then
             ! The position, and with it the Jacobian, is known to no better than eps times the condition.
             v%ill = v%ill + 1
-            share(1:, :) = share(1:, :)/min(worst_condition, 1.0_qp + condition(m, rows%body, t))
+            share(1:, :) = share(1:, :)/min(worst_condition, 1.0_qp + condition(m, rows%body))
          end if
       end if
       do k = 0, rows%known
@@ -178,21 +178,23 @@ contains
       type(verdict_t), intent(inout) :: v
       type(sizes_t) :: s
       type(jet_t) :: p(2)
+      real(qp), allocatable :: d(:)
       integer :: i, j
 
       s = sizes_of(m, body)
+      d = numbers_of(m)
       do i = 1, size(m%requests)
          if (.not. rows%due(i)) cycle
          associate (subject => m%requests(i)%subject)
             if (m%requests(i)%kind == request_point) then
                if (.not. rows%given(m%points(subject)%link)) cycle
-               p = place_jet(m, body, subject)
+               p = place_jet(m, d, body, subject)
                call compare(rows%value(:, i), p, s%length, rows%known, 'POINT '//m%points(subject)%name, v)
             else if (m%requests(i)%kind == request_pair) then
                if (.not. (rows%given(m%points(m%pairs(subject)%point_i)%link) .and. &
                   rows%given(m%points(m%pairs(subject)%point_j)%link))) cycle
                if (m%pairs(subject)%kind == pair_prismatic) then
-                  p(1) = slide_jet(m, body, subject)
+                  p(1) = slide_jet(m, d, body, subject)
                   call compare(rows%value(:1, i), p(:1), s%length, rows%known, 'SLIDE '//m%pairs(subject)%name, v)
                else
                   j = m%points(m%pairs(subject)%point_j)%link

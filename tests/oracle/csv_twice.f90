@@ -1,18 +1,16 @@
 !> Tests. The results of one deck in n steps and in 2 n: at the instants that both have, the links are in the same
-!> places.
-!> An assembly that depends on the length of the steps was changed on the way.
+!> places. An assembly that depends on the length of the steps was changed on the way.
 module csv_twice
    use quad_jet, only: qp
    use mechanism, only: mechanism_t, instant_count
-   use jet_closure, only: sizes_t, sizes_of
+   use jet_condition, only: sizes_t, sizes_of
    use csv_rows, only: rows_t, read_instant, blame, whole_text
    implicit none
    private
    public :: compare_steps
 
    !> Another assembly is farther away than this, of the size of the coordinates; rounding at the worst condition at
-   !> which
-   !> rates are still told, 1e8, leaves less.
+   !> which rates are still told, 1e8, leaves less.
    real(qp), parameter :: apart = 1.0e-5_qp
 
 contains

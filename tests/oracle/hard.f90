@@ -1,11 +1,9 @@
 !> Tests. `hard short|full DECKS INPUT...`: accuracy on everything that is hard to compute, in what its condition
-!> allows. One
-!> line a scene; ends non-zero where a number without a mark is wrong by more than `bound` times that.
+!> allows. One line a scene; ends non-zero where a number without a mark is wrong by more than `bound` times that.
 !>
 !> A unit of the last three columns is eps times the sum, over all numbers of the deck, of what each of them rounded
-!> would
-!> do to the result (hard_condition.f90): the result cannot be asked to be better than 1. Counted link by link, x and y
-!> together, phi alone; the largest is printed.
+!> would do to the result (hard_condition.f90): the result cannot be asked to be better than 1. Counted link by link, x
+!> and y together, phi alone; the largest is printed.
 program hard
    use, intrinsic :: iso_fortran_env, only: output_unit
    use kinds, only: wp
@@ -23,8 +21,7 @@ program hard
    implicit none
 
    !> Each result comes from some tens of roundings of intermediate numbers, each of which may do what the deck's own
-   !> do;
-   !> and a coordinate that the deck's numbers hardly move has those of its neighbours.
+   !> do; and a coordinate that the deck's numbers hardly move has those of its neighbours.
    real(qp), parameter :: bound = 100.0_qp
    !> What moves so much less than the rest of its kind counts as a constant.
    real(qp), parameter :: not_moved = 1.0e-7_qp

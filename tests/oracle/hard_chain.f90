@@ -3,8 +3,7 @@
 module hard_chain
    use quad_jet, only: qp, jet_t, constant_jet, operator(+), operator(-), operator(*)
    use mechanism, only: mechanism_t
-   use jet_drives, only: drive_jet
-   use hard_closure, only: drive_changes
+   use jet_drives, only: drive_jet, drive_changes
    use closed_forms_dyads, only: place_t, body_t, fixed_place, body, polar, direction, corner, on_line
    implicit none
    private

@@ -1,8 +1,7 @@
 !> Tests. The condition of a position and of its derivatives: for each coordinate y of each link the sum over all
-!> numbers d
-!> of the deck, the drives' among them, of |dy/dd| |d|, and |y| itself. So much times eps is what a result computed in
-!> double precision cannot be asked to be better than: each number of the deck is rounded to eps of itself as it is
-!> read, and the result once more. Nothing in it is a norm or a bound, and nothing is the program's.
+!> numbers d of the deck, the drives' among them, of |dy/dd| |d|, and |y| itself. So much times eps is what a result
+!> computed in double precision cannot be asked to be better than: each number of the deck is rounded to eps of itself
+!> as it is read, and the result once more. Nothing in it is a norm or a bound, and nothing is the program's.
 !>
 !> The derivatives are differences in real128: one number is changed by `step` of itself, and Newton's method with the
 !> matrix of the position as it was leads from there to the new one, its velocities and its accelerations.
@@ -10,9 +9,8 @@ module hard_condition
    use quad_jet, only: qp, jet_t, constant_jet, operator(+), operator(-), operator(*)
    use mechanism, only: mechanism_t
    use scales, only: characteristic_length
-   use jet_closure, only: body_jet_t
-   use jet_drives, only: drive_jet
-   use hard_closure, only: numbers_of, set_grounds, residuals, drive_changes
+   use jet_closure, only: body_jet_t, numbers_of, set_grounds, closure_jets
+   use jet_drives, only: drive_jets, drive_changes
    implicit none
    private
    public :: condition_t, measure
@@ -29,8 +27,7 @@ module hard_condition
    end type condition_t
 
    !> A (rows, unknowns) in triangular factors; where rows are too many, the normal equations. Unknown lengths in units
-   !> of
-   !> `body_vector`, each row divided by its largest number.
+   !> of `body_vector`, each row divided by its largest number.
    type :: matrix_t
       logical :: regular = .false.
       real(qp) :: body_vector = 1.0_qp
@@ -51,11 +48,10 @@ contains
       type(jet_t) :: f(size(m%drives))
       real(qp), allocatable :: d(:)
       type(matrix_t) :: a
-      integer :: k
 
       allocate (c%of(3, size(start), 0:2))
       d = numbers_of(m)
-      f = [(drive_jet(m%drives(k), t), k=1, size(m%drives))]
+      f = drive_jets(m, t)
       b = start
       call set_grounds(m, d, b)
       a = matrix_at(m, d, b)
@@ -142,7 +138,7 @@ contains
 
       call set_grounds(m, d, b)
       do k = 1, steps
-         r = residuals(m, d, b, f)
+         r = closure_jets(m, d, b, f)
          x(:, 1) = solution(a, r%v)
          x(:, 2) = solution(a, r%d)
          x(:, 3) = solution(a, r%dd)
@@ -180,7 +176,7 @@ contains
             if (i == 1) moving(link)%x%d = a%body_vector
             if (i == 2) moving(link)%y%d = a%body_vector
             if (i == 3) moving(link)%phi%d = 1.0_qp
-            r = residuals(m, d, moving, none)
+            r = closure_jets(m, d, moving, none)
             n = n + 1
             a%rows(:, n) = r%d
          end do

@@ -59,8 +59,7 @@ contains
    end function deck_scenes
 
    !> The scene `s`, whose first drive turns evenly, in steps of 30 degrees and then in leaps forwards, backwards and
-   !> over
-   !> many turns.
+   !> over many turns.
    function jumps_of(s) result(j)
       type(scene_t), intent(in) :: s
       type(scene_t) :: j

@@ -1,61 +1,93 @@
-!> Tests. The closure equations with their first and second derivatives by time, in real128, for a motion that is given;
-!> and what rounding in double precision may leave of them.
+!> Tests. The closure equations once more, in real128, with their first and second derivatives by time for a motion that
+!> is given. Two of every pair, (7), (8) or (9), (10), in the program's order, then one of every drive. All numbers of
+!> the deck are real128, so that each can be changed by less than a double can tell.
 module jet_closure
-   use quad_jet, only: qp, jet_t, sin, cos, operator(+), operator(-), operator(*)
-   use mechanism, only: mechanism_t, pair_revolute, pair_prismatic, drive_angle, drive_x, drive_relangle, drive_slide
-   use scales, only: characteristic_length
-   use jet_drives, only: drive_jet, drive_sizes
+   use kinds, only: wp
+   use quad_jet, only: qp, jet_t, constant_jet, sin, cos, operator(+), operator(-), operator(*)
+   use mechanism, only: mechanism_t, pair_revolute, drive_angle, drive_x, drive_relangle, drive_slide
    implicit none
    private
-   public :: body_jet_t, closure_jets, place_jet, slide_jet, sizes_t, sizes_of, row_sizes
-
-   real(qp), parameter :: many_roundings = 16.0_qp
+   public :: body_jet_t, numbers_of, set_grounds, closure_jets, place_jet, slide_jet
+   public :: closure, closure_slopes, closure_second, positions
 
    type :: body_jet_t
       type(jet_t) :: x, y, phi
    end type body_jet_t
 
-   !> Sizes of the numbers that positions, velocities and accelerations are added up from: of lengths and of angles.
-   type :: sizes_t
-      real(qp) :: length(0:2) = 0.0_qp, angle(0:2) = 0.0_qp
-   end type sizes_t
-
 contains
 
-   !> Residuals, two of every pair and one of every drive, of the motion `b` (links) at the time `t`.
-   function closure_jets(m, b, t) result(r)
+   !> The numbers of the deck that place anything: three of a link (those of moving ones are estimates and count as
+   !> zero), two of a point, three of a pair, one after another.
+   function numbers_of(m) result(d)
       type(mechanism_t), intent(in) :: m
-      type(body_jet_t), intent(in) :: b(:)
-      real(qp), intent(in) :: t
-      type(jet_t) :: r(2*size(m%pairs) + size(m%drives)), p(2), q(2), theta
-      integer :: k
+      real(qp), allocatable :: d(:)
+      integer :: i, n
 
+      allocate (d(3*size(m%links) + 2*size(m%points) + 3*size(m%pairs)), source=0.0_qp)
+      do i = 1, size(m%links)
+         if (m%links(i)%ground) d(3*i - 2:3*i) = m%links(i)%position
+      end do
+      n = 3*size(m%links)
+      do i = 1, size(m%points)
+         d(n + 2*i - 1:n + 2*i) = m%points(i)%offset
+      end do
+      n = n + 2*size(m%points)
+      do i = 1, size(m%pairs)
+         if (m%pairs(i)%kind == pair_revolute) cycle
+         d(n + 3*i - 2:n + 3*i) = [m%pairs(i)%alpha, m%pairs(i)%offset, m%pairs(i)%beta]
+      end do
+   end function numbers_of
+
+   !> Puts the ground links where the numbers `d` say.
+   subroutine set_grounds(m, d, b)
+      type(mechanism_t), intent(in) :: m
+      real(qp), intent(in) :: d(:)
+      type(body_jet_t), intent(inout) :: b(:)
+      integer :: i
+
+      do i = 1, size(b)
+         if (m%links(i)%ground) b(i) = body_jet_t(constant_jet(d(3*i - 2)), constant_jet(d(3*i - 1)), &
+            constant_jet(d(3*i)))
+      end do
+   end subroutine set_grounds
+
+   !> Residuals for the deck's numbers `d` and the motion `b` (links), the drives asking for `f`.
+   function closure_jets(m, d, b, f) result(r)
+      type(mechanism_t), intent(in) :: m
+      real(qp), intent(in) :: d(:)
+      type(body_jet_t), intent(in) :: b(:)
+      type(jet_t), intent(in) :: f(:)
+      type(jet_t) :: r(2*size(m%pairs) + size(m%drives)), place(2, size(m%points)), e(2), apart(2)
+      integer :: k, n
+
+      do k = 1, size(m%points)
+         place(:, k) = place_jet(m, d, b, k)
+      end do
+      n = 3*size(m%links) + 2*size(m%points)
       do k = 1, size(m%pairs)
-         associate (pair => m%pairs(k))
-            associate (i => m%points(pair%point_i)%link, j => m%points(pair%point_j)%link)
-               p = place_jet(m, b, pair%point_i)
-               q = place_jet(m, b, pair%point_j)
-               if (pair%kind == pair_revolute) then
-                  r(2*k - 1) = p(1) - q(1)
-                  r(2*k) = p(2) - q(2)
-               else
-                  theta = b(i)%phi + real(pair%alpha, qp)
-                  r(2*k - 1) = cos(theta)*(p(2) - q(2)) - sin(theta)*(p(1) - q(1)) - real(pair%offset, qp)
-                  r(2*k) = b(j)%phi - b(i)%phi - real(pair%beta, qp)
-               end if
-            end associate
+         associate (p => m%pairs(k)%point_i, q => m%pairs(k)%point_j)
+            apart = place(:, p) - place(:, q)
+            if (m%pairs(k)%kind == pair_revolute) then
+               r(2*k - 1:2*k) = apart
+            else
+               e = guide(m, d, b, k)
+               r(2*k - 1) = e(1)*apart(2) - e(2)*apart(1) - d(n + 3*k - 1)
+               r(2*k) = b(m%points(q)%link)%phi - b(m%points(p)%link)%phi - d(n + 3*k)
+            end if
          end associate
       end do
       do k = 1, size(m%drives)
-         r(2*size(m%pairs) + k) = driven_jet(m, b, k) - drive_jet(m%drives(k), t)
+         r(2*size(m%pairs) + k) = driven(m, d, b, place, k) - f(k)
       end do
    end function closure_jets
 
-   function driven_jet(m, b, k) result(s)
+   !> The coordinate that drive `k` moves.
+   type(jet_t) function driven(m, d, b, place, k) result(s)
       type(mechanism_t), intent(in) :: m
+      real(qp), intent(in) :: d(:)
       type(body_jet_t), intent(in) :: b(:)
+      type(jet_t), intent(in) :: place(:, :)
       integer, intent(in) :: k
-      type(jet_t) :: s, p(2)
 
       associate (subject => m%drives(k)%subject)
          select case (m%drives(k)%kind)
@@ -64,97 +96,118 @@ contains
          case (drive_relangle)
             s = b(m%drives(k)%second)%phi - b(subject)%phi
          case (drive_slide)
-            s = slide_jet(m, b, subject)
+            s = slide_jet(m, d, b, subject)
          case default
-            p = place_jet(m, b, subject)
-            s = p(merge(1, 2, m%drives(k)%kind == drive_x))
+            s = place(merge(1, 2, m%drives(k)%kind == drive_x), subject)
          end select
       end associate
-   end function driven_jet
+   end function driven
 
    !> The slide of prismatic pair `k`: (Q - P) . (cos theta, sin theta).
-   function slide_jet(m, b, k) result(s)
+   type(jet_t) function slide_jet(m, d, b, k) result(s)
       type(mechanism_t), intent(in) :: m
+      real(qp), intent(in) :: d(:)
       type(body_jet_t), intent(in) :: b(:)
       integer, intent(in) :: k
-      type(jet_t) :: s, p(2), q(2), theta
+      type(jet_t) :: apart(2), e(2)
 
-      p = place_jet(m, b, m%pairs(k)%point_i)
-      q = place_jet(m, b, m%pairs(k)%point_j)
-      theta = b(m%points(m%pairs(k)%point_i)%link)%phi + real(m%pairs(k)%alpha, qp)
-      s = (q(1) - p(1))*cos(theta) + (q(2) - p(2))*sin(theta)
+      apart = place_jet(m, d, b, m%pairs(k)%point_j) - place_jet(m, d, b, m%pairs(k)%point_i)
+      e = guide(m, d, b, k)
+      s = e(1)*apart(1) + e(2)*apart(2)
    end function slide_jet
 
-   !> Place (2) of point number `k`.
-   function place_jet(m, b, k) result(p)
+   !> The direction of the guide of prismatic pair `k`.
+   function guide(m, d, b, k) result(e)
       type(mechanism_t), intent(in) :: m
+      real(qp), intent(in) :: d(:)
+      type(body_jet_t), intent(in) :: b(:)
+      integer, intent(in) :: k
+      type(jet_t) :: e(2), theta
+
+      theta = b(m%points(m%pairs(k)%point_i)%link)%phi + d(3*size(m%links) + 2*size(m%points) + 3*k - 2)
+      e(1) = cos(theta)
+      e(2) = sin(theta)
+   end function guide
+
+   !> Place (2) of point number `k`.
+   function place_jet(m, d, b, k) result(p)
+      type(mechanism_t), intent(in) :: m
+      real(qp), intent(in) :: d(:)
       type(body_jet_t), intent(in) :: b(:)
       integer, intent(in) :: k
       type(jet_t) :: p(2), c, s
-      real(qp) :: u(2)
 
-      u = m%points(k)%offset
-      associate (link => b(m%points(k)%link))
+      associate (link => b(m%points(k)%link), u => d(3*size(m%links) + 2*k - 1), w => d(3*size(m%links) + 2*k))
          c = cos(link%phi)
          s = sin(link%phi)
-         p(1) = link%x + u(1)*c - u(2)*s
-         p(2) = link%y + u(1)*s + u(2)*c
+         p(1) = link%x + u*c - w*s
+         p(2) = link%y + u*s + w*c
       end associate
    end function place_jet
 
-   !> Sizes of the motion `b` of mechanism `m`. An angle is known to one part in 2**53 of itself, a direction no
-   !> better, so
-   !> that arms count times 1 + |phi|; a velocity turns with every angular velocity, an acceleration likewise. One
-   !> linear
-   !> solve gives lengths and angles: what rounding leaves in one, over the longest arm, it may leave in the other. The
-   !> characteristic length counts as an arm: all coordinates may be zero, and lengths are computed in units of it.
-   function sizes_of(m, b) result(s)
+   !> Residuals of all equations at the positions `q` (3, links) with the drives at `f` (drives).
+   function closure(m, q, f) result(r)
       type(mechanism_t), intent(in) :: m
-      type(body_jet_t), intent(in) :: b(:)
-      type(sizes_t) :: s
-      real(qp) :: turn, body_vector
+      real(qp), intent(in) :: q(:, :), f(:)
+      real(qp) :: r(2*size(m%pairs) + size(m%drives))
+      type(jet_t) :: jets(size(r))
+
+      jets = closure_jets(m, numbers_of(m), moving(q, 0.0_qp*q, 0.0_qp*q), constant_jet(f))
+      r = jets%v
+   end function closure
+
+   !> Derivatives of the residuals by x, y, phi of every moving link, in order.
+   function closure_slopes(m, q) result(slopes)
+      type(mechanism_t), intent(in) :: m
+      real(qp), intent(in) :: q(:, :)
+      real(qp) :: slopes(2*size(m%pairs) + size(m%drives), 3*count(.not. m%links%ground)), v(3, size(q, 2))
+      type(jet_t) :: jets(size(slopes, 1)), held(size(m%drives))
+      integer :: link, i, column
+
+      column = 0
+      do link = 1, size(m%links)
+         if (m%links(link)%ground) cycle
+         do i = 1, 3
+            column = column + 1
+            v = 0.0_qp
+            v(i, link) = 1.0_qp
+            jets = closure_jets(m, numbers_of(m), moving(q, v, 0.0_qp*v), held)
+            slopes(:, column) = jets%d
+         end do
+      end do
+   end function closure_slopes
+
+   !> Second derivative by time of the residuals for the motion q, v, a (3, links), the drives standing still.
+   function closure_second(m, q, v, a) result(second)
+      type(mechanism_t), intent(in) :: m
+      real(qp), intent(in) :: q(:, :), v(:, :), a(:, :)
+      real(qp) :: second(2*size(m%pairs) + size(m%drives))
+      type(jet_t) :: jets(size(second)), held(size(m%drives))
+
+      jets = closure_jets(m, numbers_of(m), moving(q, v, a), held)
+      second = jets%dd
+   end function closure_second
+
+   pure function moving(q, v, a) result(b)
+      real(qp), intent(in) :: q(:, :), v(:, :), a(:, :)
+      type(body_jet_t) :: b(size(q, 2))
       integer :: i
 
-      s%angle = [1.0_qp + maxval(abs(b%phi%v)), maxval(abs(b%phi%d)), maxval(abs(b%phi%dd))]
-      turn = s%angle(0)
-      body_vector = characteristic_length(m)
-      do i = 1, size(m%points)
-         body_vector = max(body_vector, maxval(abs(real(m%points(i)%offset, qp))))
+      do i = 1, size(b)
+         b(i)%x = jet_t(q(1, i), v(1, i), a(1, i))
+         b(i)%y = jet_t(q(2, i), v(2, i), a(2, i))
+         b(i)%phi = jet_t(q(3, i), v(3, i), a(3, i))
       end do
-      do i = 1, size(m%pairs)
-         if (m%pairs(i)%kind == pair_prismatic) body_vector = max(body_vector, abs(real(m%pairs(i)%offset, qp)))
-         if (m%pairs(i)%kind == pair_prismatic) turn = max(turn, 1.0_qp + abs(real(m%pairs(i)%alpha, qp)))
-      end do
-      s%length(0) = max(maxval(abs(b%x%v)), maxval(abs(b%y%v))) + body_vector*turn
-      s%length(1) = max(maxval(abs(b%x%d)), maxval(abs(b%y%d)))*turn + s%length(0)*s%angle(1)
-      s%length(2) = max(maxval(abs(b%x%dd)), maxval(abs(b%y%dd)))*turn + s%length(1)*s%angle(1) &
-         + s%length(0)*(s%angle(2) + s%angle(1)**2)
-      if (body_vector > 0.0_qp) s%angle = s%angle + s%length/body_vector
-   end function sizes_of
+   end function moving
 
-   !> Sizes (0:2, equations) of the numbers in each equation and its derivatives.
-   function row_sizes(m, s, t) result(rows)
+   !> The deck's estimates (3, links) of the positions of all links.
+   function positions(m) result(q)
       type(mechanism_t), intent(in) :: m
-      type(sizes_t), intent(in) :: s
-      real(qp), intent(in) :: t
-      real(qp) :: rows(0:2, 2*size(m%pairs) + size(m%drives))
-      integer :: k
+      real(wp) :: q(3, size(m%links))
+      integer :: i
 
-      do k = 1, size(m%pairs)
-         rows(:, 2*k - 1) = s%length
-         ! Arms of many turns: 64 roundings of a length are one of the angle in its direction.
-         rows(0, 2*k - 1) = s%length(0)*max(1.0_qp, s%angle(0)/many_roundings)
-         rows(:, 2*k) = rows(:, 2*k - 1)
-         if (m%pairs(k)%kind /= pair_prismatic) cycle
-         rows(:, 2*k) = s%angle
-         rows(0, 2*k) = max(rows(0, 2*k), abs(real(m%pairs(k)%beta, qp)))
+      do i = 1, size(m%links)
+         q(:, i) = m%links(i)%position
       end do
-      do k = 1, size(m%drives)
-         associate (row => rows(:, 2*size(m%pairs) + k))
-            row = s%length
-            if (any(m%drives(k)%kind == [drive_angle, drive_relangle])) row = s%angle
-            row = row + drive_sizes(m%drives(k), t)
-         end associate
-      end do
-   end function row_sizes
+   end function positions
 end module jet_closure

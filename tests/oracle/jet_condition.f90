@@ -1,32 +1,42 @@
-!> Tests. The condition of the closure equations at a position, from the columns that unit velocities give.
+!> Tests. The condition of the closure equations at a position, from the columns that unit velocities give; and what
+!> rounding in double precision may leave of them.
 module jet_condition
    use kinds, only: wp
    use quad_jet, only: qp, jet_t, constant_jet
-   use mechanism, only: mechanism_t, pair_prismatic
-   use jet_closure, only: body_jet_t, closure_jets
+   use mechanism, only: mechanism_t, pair_prismatic, drive_angle, drive_relangle
+   use scales, only: characteristic_length
+   use jet_closure, only: body_jet_t, closure_jets, numbers_of
+   use jet_drives, only: drive_sizes
    use lapack, only: gesvd
    implicit none
    private
-   public :: condition
+   public :: condition, sizes_t, sizes_of, row_sizes
+
+   real(qp), parameter :: many_roundings = 16.0_qp
+
+   !> Sizes of the numbers that positions, velocities and accelerations are added up from: of lengths and of angles.
+   type :: sizes_t
+      real(qp) :: length(0:2) = 0.0_qp, angle(0:2) = 0.0_qp
+   end type sizes_t
 
 contains
 
-   !> Largest over smallest singular value, the columns of x and y in units of the largest arm, rows brought to the
-   !> size 1 (a row's size says nothing about the position). `huge` where the smallest is zero. There may be more rows
-   !> than columns.
-   function condition(m, b, t)
+   !> Largest over smallest singular value, the columns of x and y in units of the largest body vector, rows brought to
+   !> the size 1 (a row's size says nothing about the position). `huge` where the smallest is zero. There may be more
+   !> rows than columns.
+   function condition(m, b)
       type(mechanism_t), intent(in) :: m
       type(body_jet_t), intent(in) :: b(:)
-      real(qp), intent(in) :: t
       real(qp) :: condition
       type(body_jet_t) :: moving(size(b))
-      type(jet_t) :: r(2*size(m%pairs) + size(m%drives))
+      type(jet_t) :: r(2*size(m%pairs) + size(m%drives)), held(size(m%drives))
       real(qp) :: column(size(r), 3*size(b)), body_vector
       real(wp) :: a(size(r), 3*size(b)), s(3*size(b)), work(8*(size(r) + 3*size(b)))
       real(wp) :: left(size(r), size(r)), right(3*size(b), 3*size(b))
       integer :: link, c, n, info
 
-      body_vector = longest_arm(m)
+      body_vector = longest_vector(m)
+      if (.not. body_vector > 0.0_qp) body_vector = 1.0_qp
       n = 0
       do link = 1, size(b)
          if (m%links(link)%ground) cycle
@@ -36,11 +46,8 @@ contains
             if (c == 2) moving(link)%y%d = body_vector
             if (c == 3) moving(link)%phi%d = 1.0_qp
             n = n + 1
-            ! The drives' own rates are no part of the Jacobian.
-            r = closure_jets(m, moving, t)
+            r = closure_jets(m, numbers_of(m), moving, held)
             column(:, n) = r%d
-            r = closure_jets(m, still(b), t)
-            column(:, n) = column(:, n) - r%d
          end do
       end do
       condition = huge(1.0_wp)
@@ -62,8 +69,8 @@ contains
       s%phi = constant_jet(b%phi%v)
    end function still
 
-   !> The largest offset of any point or pair; 1 where there is none.
-   pure function longest_arm(m) result(body_vector)
+   !> The largest offset of any point or pair.
+   pure function longest_vector(m) result(body_vector)
       type(mechanism_t), intent(in) :: m
       real(qp) :: body_vector
       integer :: i
@@ -75,6 +82,56 @@ contains
       do i = 1, size(m%pairs)
          if (m%pairs(i)%kind == pair_prismatic) body_vector = max(body_vector, abs(real(m%pairs(i)%offset, qp)))
       end do
-      if (.not. body_vector > 0.0_qp) body_vector = 1.0_qp
-   end function longest_arm
+   end function longest_vector
+
+   !> Sizes of the motion `b` of mechanism `m`. An angle is known to one part in 2**53 of itself, a direction no better,
+   !> so that body vectors count times 1 + |phi|; a velocity turns with every angular velocity, an acceleration
+   !> likewise. One linear solve gives lengths and angles: what rounding leaves in one, over the longest body vector, it
+   !> may leave in the other. The characteristic length counts as one: all coordinates may be zero, and lengths are
+   !> computed in units of it.
+   function sizes_of(m, b) result(s)
+      type(mechanism_t), intent(in) :: m
+      type(body_jet_t), intent(in) :: b(:)
+      type(sizes_t) :: s
+      real(qp) :: turn, body_vector
+      integer :: i
+
+      s%angle = [1.0_qp + maxval(abs(b%phi%v)), maxval(abs(b%phi%d)), maxval(abs(b%phi%dd))]
+      turn = s%angle(0)
+      body_vector = max(real(characteristic_length(m), qp), longest_vector(m))
+      do i = 1, size(m%pairs)
+         if (m%pairs(i)%kind == pair_prismatic) turn = max(turn, 1.0_qp + abs(real(m%pairs(i)%alpha, qp)))
+      end do
+      s%length(0) = max(maxval(abs(b%x%v)), maxval(abs(b%y%v))) + body_vector*turn
+      s%length(1) = max(maxval(abs(b%x%d)), maxval(abs(b%y%d)))*turn + s%length(0)*s%angle(1)
+      s%length(2) = max(maxval(abs(b%x%dd)), maxval(abs(b%y%dd)))*turn + s%length(1)*s%angle(1) &
+         + s%length(0)*(s%angle(2) + s%angle(1)**2)
+      if (body_vector > 0.0_qp) s%angle = s%angle + s%length/body_vector
+   end function sizes_of
+
+   !> Sizes (0:2, equations) of the numbers in each equation and its derivatives.
+   function row_sizes(m, s, t) result(rows)
+      type(mechanism_t), intent(in) :: m
+      type(sizes_t), intent(in) :: s
+      real(qp), intent(in) :: t
+      real(qp) :: rows(0:2, 2*size(m%pairs) + size(m%drives))
+      integer :: k
+
+      do k = 1, size(m%pairs)
+         rows(:, 2*k - 1) = s%length
+         ! Body vectors of many turns: 64 roundings of a length are one of the angle in its direction.
+         rows(0, 2*k - 1) = s%length(0)*max(1.0_qp, s%angle(0)/many_roundings)
+         rows(:, 2*k) = rows(:, 2*k - 1)
+         if (m%pairs(k)%kind /= pair_prismatic) cycle
+         rows(:, 2*k) = s%angle
+         rows(0, 2*k) = max(rows(0, 2*k), abs(real(m%pairs(k)%beta, qp)))
+      end do
+      do k = 1, size(m%drives)
+         associate (row => rows(:, 2*size(m%pairs) + k))
+            row = s%length
+            if (any(m%drives(k)%kind == [drive_angle, drive_relangle])) row = s%angle
+            row = row + drive_sizes(m%drives(k), t)
+         end associate
+      end do
+   end function row_sizes
 end module jet_condition

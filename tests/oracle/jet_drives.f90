@@ -1,11 +1,12 @@
-!> Tests. The motions of the drives in real128, and how large the numbers were that they were added up from: one part in
-!> 2**53 of that is what double precision can be held to.
+!> Tests. The motions of the drives in real128; how large the numbers were that they were added up from (one part in
+!> 2**53 of that is what double precision can be held to); and how much each number of a law counts.
 module jet_drives
+   use kinds, only: wp
    use quad_jet, only: qp, jet_t, time_jet, sin, operator(+), operator(*)
-   use mechanism, only: drive_t, term_t, term_harmonic, term_power, term_table
+   use mechanism, only: mechanism_t, drive_t, term_t, term_harmonic, term_power, term_table
    implicit none
    private
-   public :: drive_jet, drive_sizes
+   public :: drive_jet, drive_jets, term_jet, drive_sizes, drive_changes
 
 contains
 
@@ -20,24 +21,48 @@ contains
       c = d%polynomial
       f = jet_t(c(1) + c(2)*t + 0.5_qp*c(3)*t**2, c(2) + c(3)*t, c(3))
       do i = 1, size(d%terms)
-         f = f + term_jet(d%terms(i), t)
+         f = f + term_of(d%terms(i), t)
       end do
    end function drive_jet
 
-   function term_jet(term, t) result(f)
+   !> The laws of all drives of `m` at `t`.
+   function drive_jets(m, t) result(f)
+      type(mechanism_t), intent(in) :: m
+      real(qp), intent(in) :: t
+      type(jet_t) :: f(size(m%drives))
+      integer :: k
+
+      do k = 1, size(f)
+         f(k) = drive_jet(m%drives(k), t)
+      end do
+   end function drive_jets
+
+   !> A term with the numbers of the deck as the program has them.
+   type(jet_t) function term_of(term, t) result(f)
       type(term_t), intent(in) :: term
       real(qp), intent(in) :: t
-      type(jet_t) :: f
-      real(qp) :: r(3)
+      real(qp), allocatable :: x(:), y(:)
 
-      r = term%r
-      select case (term%kind)
+      allocate (x(0), y(0))
+      if (term%kind == term_table) then
+         x = term%knots
+         y = term%values
+      end if
+      f = term_jet(term%kind, real(term%r, qp), x, y, t)
+   end function term_of
+
+   !> The term `kind` with the numbers `r`, or with the table `y` over `x`.
+   type(jet_t) function term_jet(kind, r, x, y, t) result(f)
+      integer, intent(in) :: kind
+      real(qp), intent(in) :: r(3), x(:), y(:), t
+
+      select case (kind)
       case (term_harmonic)
          f = r(1)*sin(r(2)*time_jet(t) + r(3))
       case (term_power)
          f = jet_t(r(1)*raised(t, r(2), 0), r(1)*raised(t, r(2), 1), r(1)*raised(t, r(2), 2))
       case (term_table)
-         f = spline_jet(term, t)
+         f = spline_jet(x, y, t)
       end select
    end function term_jet
 
@@ -62,16 +87,11 @@ contains
    end function raised
 
    !> The natural cubic spline by its second derivatives at the knots (de Boor, ch. IV), eliminated row by row.
-   function spline_jet(term, t) result(f)
-      type(term_t), intent(in) :: term
-      real(qp), intent(in) :: t
-      type(jet_t) :: f
-      real(qp), allocatable :: x(:), y(:)
-      real(qp) :: m(size(term%knots)), h, u, w
+   type(jet_t) function spline_jet(x, y, t) result(f)
+      real(qp), intent(in) :: x(:), y(:), t
+      real(qp) :: m(size(x)), h, u, w
       integer :: i
 
-      x = term%knots
-      y = term%values
       m = curvatures(x, y)
       i = max(1, min(count(x <= t), size(x) - 1))
       h = x(i + 1) - x(i)
@@ -131,7 +151,7 @@ contains
       case (term_harmonic)
          s = r(1)*[1.0_qp, r(2), r(2)**2]*(1.0_qp + r(2)*abs(t) + r(3))
       case (term_power)
-         f = term_jet(term, t)
+         f = term_of(term, t)
          s = abs([f%v, f%d, f%dd])*(1.0_qp + r(2))
       case (term_table)
          associate (x => term%knots, y => term%values, n => size(term%knots))
@@ -143,4 +163,68 @@ contains
          end associate
       end select
    end function term_sizes
+
+   !> By how much (changes) the law of a drive changes at `t` with each of its numbers, times that number. The exponent
+   !> of a power counts as exact.
+   function drive_changes(drive, t) result(c)
+      type(drive_t), intent(in) :: drive
+      real(qp), intent(in) :: t
+      type(jet_t), allocatable :: c(:)
+      type(drive_t) :: one
+      integer :: i, k
+
+      allocate (c(0))
+      do k = 1, 3
+         one = alone(drive, 0)
+         one%polynomial(k) = drive%polynomial(k)
+         if (abs(drive%polynomial(k)) > 0.0_wp) c = [c, drive_jet(one, t)]
+      end do
+      do i = 1, size(drive%terms)
+         c = [c, term_changes(alone(drive, i), t)]
+      end do
+   end function drive_changes
+
+   !> The same of a drive that has one term alone.
+   function term_changes(drive, t) result(c)
+      type(drive_t), intent(in) :: drive
+      real(qp), intent(in) :: t
+      type(jet_t), allocatable :: c(:)
+      type(drive_t) :: one
+      integer :: k
+
+      one = drive
+      associate (term => one%terms(1))
+         if (term%kind == term_table) then
+            allocate (c(size(term%values)))
+            do k = 1, size(c)
+               term%values = 0.0_wp
+               term%values(k) = drive%terms(1)%values(k)
+               c(k) = drive_jet(one, t)
+            end do
+            return
+         end if
+         c = [drive_jet(one, t)]
+         if (term%kind /= term_harmonic) return
+         ! The derivative of a sine is the sine a quarter turn on.
+         term%r(3) = term%r(3) + acos(0.0_wp)
+         associate (r => drive%terms(1)%r)
+            c = [c, real(r(3), qp)*drive_jet(one, t), real(r(2), qp)*time_jet(t)*drive_jet(one, t)]
+         end associate
+      end associate
+   end function term_changes
+
+   !> `drive` without its polynomial and with term `i` alone, 0: none.
+   function alone(drive, i) result(one)
+      type(drive_t), intent(in) :: drive
+      integer, intent(in) :: i
+      type(drive_t) :: one
+
+      one = drive
+      one%polynomial = 0.0_wp
+      if (i == 0) then
+         one%terms = drive%terms(:0)
+      else
+         one%terms = drive%terms(i:i)
+      end if
+   end function alone
 end module jet_drives

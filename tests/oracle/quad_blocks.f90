@@ -1,6 +1,5 @@
 !> Tests. The loop equations once more, in real128 and complex numbers, straight from their polygons, on any motion of
-!> the
-!> unknowns, with derivatives by time as differences; and the equations of each block.
+!> the unknowns, with derivatives by time as differences; and the equations of each block.
 module quad_blocks
    use quad_jet, only: qp
    use matching, only: incidence_t, match, find_blocks

@@ -4,7 +4,7 @@ module quad_frozen
    use kinds, only: wp
    use quad_jet, only: qp, pi_q
    use mechanism, only: mechanism_t, pair_revolute
-   use quad_closure, only: closure_slopes
+   use jet_closure, only: closure_slopes
    use quad_matrices, only: spectral_radius, solve_quad
    implicit none
    private
@@ -77,8 +77,7 @@ contains
 
    !> One reference for each of the two links of a dyad, with which G is nilpotent where they stand in `q` (3, links):
    !> h3 = sec d - tan d and h4 = sec d + tan d, d = phi_4 - phi_3, make (h4 - h3) cot d = 2 and h3 h4 = 1. There are
-   !> none at
-   !> d = 90 deg. `three`, `four`: the links, whose points have eta = 0.
+   !> none at d = 90 deg. `three`, `four`: the links, whose points have eta = 0.
    pure type(references_t) function dyad_references(m, q, three, four) result(z)
       type(mechanism_t), intent(in) :: m
       real(qp), intent(in) :: q(:, :)
@@ -105,8 +104,7 @@ contains
    end subroutine count_from
 
    !> The spectral radius of G of a dyad with d = phi_4 - phi_3, its angles counted as `h3` and `h4`: max |1 - l| over
-   !> the
-   !> roots of l^2 - (h4 - h3) cot(d) l + h3 h4 = 0.
+   !> the roots of l^2 - (h4 - h3) cot(d) l + h3 h4 = 0.
    elemental real(qp) function dyad_rate(h3, h4, d) result(rho)
       real(qp), intent(in) :: h3, h4, d
       complex(qp) :: root
@@ -199,9 +197,8 @@ contains
          frozen(sin(psi), psi - z%body_vectors(2, i), cos(psi))]
    end function slope
 
-   !> value/h, or its limit at a zero of `value`. Elsewhere h = 0 has no coefficient: c(0) of the print is infinite,
-   !> and the
-   !> number given makes the matrix singular.
+   !> value/h, or its limit at a zero of `value`. Elsewhere h = 0 has no coefficient: c(0) of the print is infinite, and
+   !> the number given makes the matrix singular.
    pure real(qp) function frozen(value, h, limit)
       real(qp), intent(in) :: value, h, limit
       real(qp), parameter :: rounding = 1.0e-12_qp, infinite = 1.0e30_qp

@@ -200,8 +200,7 @@ contains
    end function whole_turns_off
 
    !> What a difference of two points' places, velocities and accelerations is measured by: the largest term in it, or
-   !> the
-   !> characteristic length and rate.
+   !> the characteristic length and rate.
    function size_of(m, links, i, j) result(one)
       type(mechanism_t), intent(in) :: m
       type(body_t), intent(in) :: links(:)

@@ -1,6 +1,6 @@
 !> Tests. Closed forms of linkages of bars with a symmetry, which give them without a square root or with one. The
-!> lengths
-!> are those of the decks in input/, written out again by hand so that a deck read wrongly shows up as a difference.
+!> lengths are those of the decks in input/, written out again by hand so that a deck read wrongly shows up as a
+!> difference.
 module closed_forms_bars
    use quad_jet, only: qp, jet_t, degree_q, constant_jet, time_jet, &
       operator(+), operator(-), operator(*), operator(/), sin
@@ -86,9 +86,8 @@ contains
    end function swapped
 
    !> Hart's inversor: antiparallelogram A B C D, AB = CD = 4, BC = DA = 2, pivoted in the middle O of AB; the middle P
-   !> of
-   !> AD is led by the crank on the circle of radius 1.25 about (1.25, 0), through O. OP = BD/2 and OQ = AC/2 lie on one
-   !> line, on both sides of O, and OP OQ = (4^2 - 2^2)/4 = 3; so the middle Q of BC runs on x = -3/2.5.
+   !> of AD is led by the crank on the circle of radius 1.25 about (1.25, 0), through O. OP = BD/2 and OQ = AC/2 lie on
+   !> one line, on both sides of O, and OP OQ = (4^2 - 2^2)/4 = 3; so the middle Q of BC runs on x = -3/2.5.
    pure function hart(t) result(links)
       real(qp), intent(in) :: t
       type(body_t) :: links(6)

@@ -1,6 +1,5 @@
-!> Tests. Closed forms of motions that take the other branch at a change point, or stand exactly on one. The lengths
-!> are those
-!> of the decks, written out again by hand.
+!> Tests. Closed forms of motions that take the other branch at a change point, or stand exactly on one. The lengths are
+!> those of the decks, written out again by hand.
 module closed_forms_branches
    use quad_jet, only: qp, jet_t, degree_q, constant_jet, time_jet, operator(+), operator(-), operator(*)
    use closed_forms_dyads, only: place_t, body_t, fixed_place, body, polar

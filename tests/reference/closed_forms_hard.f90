@@ -64,8 +64,7 @@ contains
    end function near_equal_rod
 
    !> Crank 1 and rod 3, driven by the piston: x = 4 - g (1 + t), the crank above, g = 2.3/10^power. The triangle's
-   !> height
-   !> over x by Heron, where 4 - x is not a difference: h = sqrt((4 + x)(4 - x)(x + 2)(x - 2))/(2 x).
+   !> height over x by Heron, where 4 - x is not a difference: h = sqrt((4 + x)(4 - x)(x + 2)(x - 2))/(2 x).
    pure function dead_point(power, t) result(links)
       integer, intent(in) :: power
       real(qp), intent(in) :: t
@@ -85,8 +84,7 @@ contains
    end function dead_point
 
    !> The same mechanism with the numbers of the deck `m`, whatever they are: the piston's point at x, on a guide that
-   !> is
-   !> inclined by alpha; arms across their links' axes too.
+   !> is inclined by alpha; arms across their links' axes too.
    function pushed_slider(m, t) result(links)
       type(mechanism_t), intent(in) :: m
       real(qp), intent(in) :: t

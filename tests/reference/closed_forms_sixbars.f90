@@ -32,8 +32,7 @@ contains
    end function watt
 
    !> The same six-bar driven from its other side: the output swings by 6 deg about 100 deg. The rocker's second arm is
-   !> 2
-   !> long; C lies to the right of the way from D to B0, the crank's pin to the left of that from A0 to B.
+   !> 2 long; C lies to the right of the way from D to B0, the crank's pin to the left of that from A0 to B.
    pure function watt_output(t) result(links)
       real(qp), intent(in) :: t
       type(body_t) :: links(6), rocker
@@ -65,8 +64,7 @@ contains
    end function stephenson
 
    !> The same six-bar driven from its other side: the output moves as 2.55 + 0.3 sin(1.2 t). Four links are then found
-   !> at
-   !> once, without a formula; but the output is known for each angle of the crank and grows with it from 1.5 to 4
+   !> at once, without a formula; but the output is known for each angle of the crank and grows with it from 1.5 to 4
    !> rad: that function is inverted, by halves and then by Newton's method, and its derivatives with it.
    pure function stephenson_output(t) result(links)
       real(qp), intent(in) :: t

@@ -1,6 +1,5 @@
 !> Tests. Motions to 50 digits, for sets whose cards hold pi/2, a root and the like in 17 digits, which real128 tells
-!> from
-!> the number itself. Made with 110 digits from the decimals on the cards, by the formulas of the closed forms and
+!> from the number itself. Made with 110 digits from the decimals on the cards, by the formulas of the closed forms and
 !> their derivatives by differences.
 module fifty_digits
    use quad_jet, only: qp

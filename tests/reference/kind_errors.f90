@@ -1,13 +1,11 @@
 !> Tests. `kind_errors DECK...`: how good the results of a build are, whatever kind of real it has. Beside each deck
-!> lies
-!> the CSV file that `kinmat --csv` wrote, with all links that move at all instants.
+!> lies the CSV file that `kinmat --csv` wrote, with all links that move at all instants.
 !>
 !> The results must satisfy the equations of the deck as its reader understood it, derivatives included; and they must
-!> be
-!> those of the closed forms, and, where motions are known to 50 digits, those. Printed for each set: the largest errors
-!> of positions, velocities and accelerations, of lengths and of angles, relative to the largest such value of the set,
-!> or to what the deck's characteristic length and rate make of it where that is larger. The last line is
-!> `N passed, N failed`.
+!> be those of the closed forms, and, where motions are known to 50 digits, those. Printed for each set: the largest
+!> errors of positions, velocities and accelerations, of lengths and of angles, relative to the largest such value of
+!> the set, or to what the deck's characteristic length and rate make of it where that is larger. The last line is `N
+!> passed, N failed`.
 program kind_errors
    use kinds, only: wp
    use failures, only: failure_t
@@ -21,12 +19,10 @@ program kind_errors
    use csv_closure, only: verdict_t, check_csv
    use fifty_digits, only: known
    implicit none
-   !> Errors allowed: an equation is known to so many roundings of its six terms and of what is on the cards, a
-   !> position to
-   !> |J^-1| times that, velocities and accelerations to |J^-1| more each. |J^-1| is below 10 in the unit of length, and
-   !> below 27 within 5 deg of a change point, where it has no inverse. For real128 this is 1e-32, 1e-31 and 1e-30. At
-   !> the
-   !> distance g from a dead point, sqrt(g/3) of the crank's angle, it is of the order of 3/sqrt(g).
+   !> Errors allowed: an equation is known to so many roundings of its six terms and of what is on the cards, a position
+   !> to |J^-1| times that, velocities and accelerations to |J^-1| more each. |J^-1| is below 10 in the unit of length,
+   !> and below 27 within 5 deg of a change point, where it has no inverse. For real128 this is 1e-32, 1e-31 and 1e-30.
+   !> At the distance g from a dead point, sqrt(g/3) of the crank's angle, it is of the order of 3/sqrt(g).
    real(qp), parameter :: roundings = 5.0_qp, inverse = 10.0_qp, inverse_close = 27.0_qp
    character(*), parameter :: dead_sets(3) = [character(16) :: 'dead_point_6, 1', 'dead_point_9, 1', 'dead_point_12, 1']
    real(qp), parameter :: inverse_dead(3) = [1.8e3_qp, 5.5e4_qp, 1.8e6_qp]
@@ -34,8 +30,7 @@ program kind_errors
       'parallelogram, 1', 'scott_russell, 1', 'antiparallelogram_branch, 1', 'kite_branch, 1', &
       'parallelogram_branch, 1', 'scott_russell_branch, 1']
    !> At a change point itself a position is extrapolated, and multiplies its roundings by 10 over the step, the eighth
-   !> root of
-   !> 100 roundings; there are no velocities.
+   !> root of 100 roundings; there are no velocities.
    character(*), parameter :: at_change(4) = [character(20) :: 'antiparallelogram_at', 'kite_at', 'parallelogram_at', &
       'scott_russell_at']
    real(qp), parameter :: roundings_there = 10.0_qp/(100.0_qp*epsilon(1.0_wp))**0.125_qp
@@ -46,8 +41,7 @@ program kind_errors
       'scotch_yoke, 2', 'trammel, 2', 'two_loops, 1']
    real(qp), parameter :: rounded_data = 5.0e-16_qp
    !> Below this number of bits it depends on the last one whether the way on from a change point is known: instants of
-   !> decks
-   !> with such names may be marked, which is no error; what is given is compared like all else.
+   !> decks with such names may be marked, which is no error; what is given is compared like all else.
    integer, parameter :: bits_enough = 53
    character(*), parameter :: change_decks(3) = [character(7) :: '_across', '_at', '_branch']
    integer, parameter :: cells = 15, cell_length = 60

@@ -106,8 +106,7 @@ contains
    end subroutine stop_all_but_driven
 
    !> How far the motion `q` is known, next to dead points, from the closed forms of decks whose numbers are a little
-   !> off.
-   !> Elsewhere no digit is in doubt.
+   !> off. Elsewhere no digit is in doubt.
    subroutine doubt_by_hand(name, m, q, doubt)
       character(*), intent(in) :: name
       type(mechanism_t), intent(in) :: m

@@ -9,7 +9,7 @@ module iteration_1987
    use pose, only: set_pose, choose_references, add_to_links
    use closure_equations, only: residual, jacobian
    use quad_jet, only: qp, pi_q, degree_q
-   use quad_closure, only: closure
+   use jet_closure, only: closure
    use quad_frozen, only: references_t, printed_references, nearest_references, dyad_references, &
       frozen_matrix, theory
    use quad_matrices, only: solve_quad

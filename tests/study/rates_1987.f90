@@ -126,8 +126,8 @@ contains
    end subroutine best_constants
 
    !> For the picture, a block for each of the first five mechanisms: crank angle, then theory and measurement of
-   !> printed,
-   !> once and nearest; last a block with the errors of the four-bar, iteration by iteration. '-' where there is none.
+   !> printed, once and nearest; last a block with the errors of the four-bar, iteration by iteration. '-' where there
+   !> is none.
    subroutine picture_numbers()
       type(scene_t) :: s
       type(run_t) :: runs(3)

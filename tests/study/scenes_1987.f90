@@ -75,10 +75,8 @@ contains
    end subroutine go_on
 
    !> The closed form of mechanism `i` with the crank at `k` degrees, lengths in `unit`. The crossed four-bar is the
-   !> mirror
-   !> image in the x axis of the open one with its crank at -k degrees; the slider on the left side that in the y axis
-   !> of
-   !> the one on the right with its crank at 180 - k degrees.
+   !> mirror image in the x axis of the open one with its crank at -k degrees; the slider on the left side that in the y
+   !> axis of the one on the right with its crank at 180 - k degrees.
    function closed(deck, i, k, unit) result(q)
       character(*), intent(in) :: deck
       integer, intent(in) :: i, k
@@ -103,8 +101,7 @@ contains
    end function closed
 
    !> The positions (3, links) with the crank at `angle` degrees, which may lie outside one turn: the crank's angle
-   !> alone
-   !> goes on, the other links swing.
+   !> alone goes on, the other links swing.
    pure function exact(s, angle) result(q)
       type(scene_t), intent(in) :: s
       integer, intent(in) :: angle

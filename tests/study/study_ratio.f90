@@ -1,8 +1,7 @@
 !> Tests. `study_ratio NAME [WINDOWS-DECK]`: how many times a step by the default method takes the time of the closed
-!> form
-!> written for speed, at the steps of the deck input/NAME.deck, set 1, or of the deck of so many windows: what turns the
-!> ratios of `kinmat --study` into ratios to the closed form. Prints the least time over the least, since what else
-!> the machine does only adds to either; 0 where there is no closed form.
+!> form written for speed, at the steps of the deck input/NAME.deck, set 1, or of the deck of so many windows: what
+!> turns the ratios of `kinmat --study` into ratios to the closed form. Prints the least time over the least, since what
+!> else the machine does only adds to either; 0 where there is no closed form.
 program study_ratio
    use kinds, only: wp
    use mechanism, only: method_newton

@@ -1,8 +1,6 @@
 !> compare_digits [N [SEED]]: N numbers (200000) as `fixed` and `full` print them, each against the formats of the
-!> run-time
-!> library. A number passes if both texts are the same, blanks included; the first that do not are told. The same N and
-!> SEED
-!> (1) give the same numbers.
+!> run-time library. A number passes if both texts are the same, blanks included; the first that do not are told. The
+!> same N and SEED (1) give the same numbers.
 program compare_digits
    use, intrinsic :: iso_fortran_env, only: int64, real128
    use kinds, only: wp
@@ -184,8 +182,7 @@ contains
    end function fixed_expected
 
    !> The scale factor kP multiplies the decimal value. For large k gfortran's library prints wrong digits or writes
-   !> beyond
-   !> its buffer.
+   !> beyond its buffer.
    function scaled(x, d, power) result(line)
       real(wp), intent(in) :: x
       integer, intent(in) :: d, power
@@ -198,10 +195,8 @@ contains
    end function scaled
 
    !> Instead, x 10**(d - power) in real128 is printed as a whole number. A number of 53 bits times a power of ten is a
-   !> half of
-   !> ten digits or is off by more than 2**-(53 + 34 + 10) of it; and a half is found exactly, since |d - power| is
-   !> then below
-   !> 48, 10**48 has 112 bits, and the product or quotient is rounded once.
+   !> half of ten digits or is off by more than 2**-(53 + 34 + 10) of it; and a half is found exactly, since |d - power|
+   !> is then below 48, 10**48 has 112 bits, and the product or quotient is rounded once.
    function multiplied(x, d, power) result(line)
       real(wp), intent(in) :: x
       integer, intent(in) :: d, power
