@@ -37,7 +37,7 @@ modules := $(filter-out main,$(basename $(notdir $(sources))))
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))
 vpath %.F90 $(sort $(dir $(sources)))
 
-.PHONY: all example kinds run test check forms errors kind-check quad-check single-check bench bench-short bench-against hard hard-short study study-short study-1987 digits fuzz fuzz-short expected install install-kinds clean
+.PHONY: all example kinds run test check forms errors kind-check quad-check single-check bench bench-short bench-against hard hard-short study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms expected install install-kinds clean
 all: $(BUILD)/kinmat
 
 run: $(BUILD)/kinmat
@@ -174,6 +174,12 @@ fuzz: $(BUILD)/fuzz/fuzz
 fuzz-short: $(BUILD)/debug/fuzz
 	BUILD=$(BUILD) FUZZ_BUILD=debug tests/fuzz/fuzz.sh 1000
 
+# Mechanisms made by chance, with their motion in real128: N of them, from seed SEED on.
+N    ?= 10000
+SEED ?= 1
+fuzz-mechanisms: $(BUILD)/release/fuzz_mechanisms
+	BUILD=$(BUILD) tests/fuzz/fuzz_mechanisms.sh $(N) $(SEED)
+
 TEST_LIB     := $(BUILD)/debug/libkinmat.a
 TEST_MODULES := $(BUILD)/debug
 TEST_FLAGS   := $(COMMON) $(DEBUG)
@@ -182,7 +188,7 @@ TEST_HELPERS := $(unit_helpers:%=$(BUILD)/debug/%.o)
 include tests/pfunit/tests.mk
 
 # What the parts of `make test` need is made beforehand, many at a time; the parts run one after another.
-checkers := check_forms error_estimates compare_digits hard matrix_1987 bench
+checkers := check_forms error_estimates compare_digits hard matrix_1987 bench fuzz_mechanisms
 test: $(addprefix $(BUILD)/,kinmat example debug/kinmat $(checkers:%=release/%) debug/fuzz kinmat-quad kinmat-single \
    quad/release/kind_errors single/release/kind_errors tests$(if $(PFUNIT_DIR),/pfunit)/unit) $(references)
 	BUILD=$(BUILD) MAKE='$(MAKE)' tests/run.sh

@@ -28,6 +28,7 @@ parts() {
    wide blocks|tests/system/wide.sh
    drives between instants|tests/system/drives.sh
    decks made by chance|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 1000
+   mechanisms of a known motion|tests/fuzz/fuzz_mechanisms.sh 200
    the method of 1987|"$BUILD/release/matrix_1987" short
    what is hard to compute|tests/oracle/hard.sh short
 END

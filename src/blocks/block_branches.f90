@@ -21,7 +21,7 @@ module block_branches
    use branch_requests, only: branch_requests_t, are_there, decide
    implicit none
    private
-   public :: pass, extrapolate
+   public :: pass, extrapolate, is_short_and_right
 
    !> Over a substep this short, in radians and lengths, a determinant that changes its sign although the prediction
    !> was right to so small a part of the substep indicates a change point. Circuits that pass each other at the
@@ -55,7 +55,7 @@ contains
 
       allocate (list(0))
       crossed = e%crossed
-      passed = crosses(e, correction)
+      passed = is_short_and_right(e, correction)
       do k = 1, size(e%moving)
          if (.not. passed) return
          associate (i => e%moving(k), before => e%history%t(e%history%place(0)))
@@ -71,21 +71,23 @@ contains
       end do
    end subroutine pass
 
-   !> The motion found last lies beyond change points, on the branch that goes on smoothly; `correction`: of its
-   !> prediction, which rounding has made wrong by lipschitz/pivot^2, as it does the rates so close to it.
-   pure logical function crosses(e, correction)
+   !> The substep was short, and its prediction, off by `correction`, right to so small a part of it that the motion
+   !> found last is on the branch that goes on smoothly, beyond change points too: there rounding has made the
+   !> prediction wrong by lipschitz/pivot^2, as it does the rates so close to them.
+   pure logical function is_short_and_right(e, correction) result(is)
       type(block_engine_t), intent(in) :: e
       real(wp), intent(in) :: correction
       real(wp) :: allowed
       integer :: i
 
-      crosses = e%change <= short_step
+      is = e%change <= short_step
+      if (.not. any(e%crossed)) is = is .and. correction <= right_part*e%change
       do i = 1, size(e%crossed)
-         if (.not. (e%crossed(i) .and. crosses)) cycle
+         if (.not. (e%crossed(i) .and. is)) cycle
          allowed = right_part + rounding*e%blocks%list(i)%lipschitz/e%followed%pivot(i)**2
-         crosses = correction <= min(allowed, max_wrong)*e%change
+         is = correction <= min(allowed, max_wrong)*e%change
       end do
-   end function crosses
+   end function is_short_and_right
 
    !> Where block `i` has passed a change point before `t`: the least pivot goes through zero in proportion.
    type(diagnostic_t) function change_point(e, i, t) result(r)

@@ -7,14 +7,14 @@ module block_method
    use structure, only: structure_t
    use motion, only: motion_t
    use diagnostics, only: diagnostic_t, diagnostic_far_estimate
-   use convergence, only: convergence_t, ended_inconsistent
+   use convergence, only: convergence_t, is_solved, ended_inconsistent
    use engine, only: engine_t, engine_checkpoint_t
    use block_engine, only: block_engine_t, make_block_engine, solve_blocks, accept_blocks, get_blocks_motion, &
       know_links, get_driven_motion, block_checkpoint_t, checkpoint_blocks, restore_blocks
    use assembly_choice, only: solve_first
    use block_diagnostics, only: first_diagnostics, limit_diagnostic
    use branch_requests, only: branch_requests_t
-   use block_branches, only: pass, extrapolate
+   use block_branches, only: pass, extrapolate, is_short_and_right
    implicit none
    private
    public :: block_method_t, make_block_method
@@ -78,6 +78,7 @@ contains
       e%blocks%state%excursion = e%excursion
       if (follows) then
          call solve_blocks(e%blocks, t, follows, c, correction, same)
+         if (e%excursion > 0.0_wp .and. is_solved(c)) c%is_certain = is_short_and_right(e%blocks, correction)
       else
          call solve_first(e%blocks, t, c, correction, same)
       end if

@@ -29,6 +29,7 @@ module convergence
       real(wp) :: kantorovich_ratio = 0.0_wp !< that change over the distance within which the root is the only one
       real(wp) :: inverse = 0.0_wp             !< |J^-1| there
       real(wp) :: growth = 0.0_wp              !< of that ratio with the excursion of the drives
+      logical :: is_certain = .false.          !< a prediction so right in a substep so short leaves no other branch
       logical :: singular = .false.            !< position found where the Jacobian has no inverse
       real(wp) :: closure_error = 0.0_wp !< of the equation that is open the most, in the unit of length or rad
       logical :: closure_error_is_angle = .false.

@@ -155,7 +155,9 @@ contains
       accepted = is_solved(f%convergence)
       if (.not. f%follows) return
       accepted = accepted .and. correction <= largest_correction
-      if (accepted .and. f%engine%excursion > 0.0_wp) call add_excursion(f, t)
+      ! Beside a change point the inverse grows as substeps shrink, and what drives add by leaving their chords never
+      ! becomes small: no substep would come across.
+      if (accepted .and. f%engine%excursion > 0.0_wp .and. .not. f%convergence%is_certain) call add_excursion(f, t)
       accepted = accepted .and. f%convergence%kantorovich_ratio <= max_kantorovich_ratio
       if (accepted .and. .not. (same .or. f%convergence%singular)) call pass_change_points(f, t, correction, step, same)
       accepted = accepted .and. same .and. f%convergence%kantorovich_ratio <= max_kantorovich_ratio

@@ -78,5 +78,37 @@ compare root 0.000001 4.0 4 0
 sed '/^TIME/,$d' tests/system/decks/cusp.deck > "$work/cusp.part"
 echo 'PRINT   LINKS   PLAT' >> "$work/cusp.part"
 compare cusp 0.0 2.0 2 1
+# A parallelogram on a link that turns, its crank driven against that link, each by a law that bends: straight on past its
+# change point.
+cat > "$work/on_a_turning_link.part" <<'DECK'
+TITLE   PARALLELOGRAM ON A TURNING LINK
+GROUND  BASE
+LINK    ARM                     0.0             0.0             0.3
+LINK    CRANK                   0.955           0.296           -0.4
+LINK    COUPLER                 1.876           -0.094          0.3
+LINK    ROCKER                  2.866           0.887           -0.4
+POINT   O       BASE
+POINT   O-ARM   ARM
+POINT   A0      ARM             1.0
+POINT   B0      ARM             3.0
+POINT   A0-CR   CRANK
+POINT   A-CR    CRANK           1.0
+POINT   A-CO    COUPLER
+POINT   B-CO    COUPLER         2.0
+POINT   B0-RO   ROCKER
+POINT   B-RO    ROCKER          1.0
+REVOLUTEO       O-ARM   PAIR-O
+REVOLUTEA0      A0-CR   PAIR-A0
+REVOLUTEA-CR    A-CO    PAIR-A
+REVOLUTEB-CO    B-RO    PAIR-B
+REVOLUTEB0      B0-RO   PAIR-B0
+DRIVE   ANGLE   ARM             0.3             0.2             0.8
+DRIVE   RELANGLEARM     CRANK   -0.7            1.0             -0.6
+PRINT   LINKS
+DECK
+compare on_a_turning_link 0.0 1.25 4 0
+equal 'on_a_turning_link: its change point' 1 "$(grep -c 'CHANGE POINT AT .*, LINKS COUPLER, ROCKER: GO ON' "$work/on_a_turning_link.lst")"
+equal 'on_a_turning_link: coupler parallel to its base' '' "$(LC_ALL=C awk -F, '$5 == "ARM" { phi = $8 }
+   $5 == "COUPLER" && ($8 == "" || ($8 - phi)^2 > 1e-24)' "$work/on_a_turning_link.csv")"
 equal 'cusp: the other assembly' 1 "$(grep -c '^ PLAT *8\.85715 *-8\.19202 ' "$work/cusp.lst")"
 conclude

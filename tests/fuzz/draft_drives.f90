@@ -1,0 +1,149 @@
+!> Tests. Drives of a scheme that grows by the dice: any kind, any law, with the value of the assembly at the first
+!> instant.
+module draft_drives
+   use kinds, only: wp
+   use quad_jet, only: qp, pi_q, jet_t
+   use dice, only: throw, chance
+   use schemes, only: drive_t, drive_angle, drive_relangle, drive_x, drive_y, drive_slide, angle_unit, drive_unit, double, &
+      link_at
+   use drive_laws, only: law_t, law_jet, set_spline, term_harmonic, term_power, term_table
+   use scheme_draft, only: draft_t, number, world, add_point, anywhere
+   implicit none
+   private
+   public :: add_drive, add_point_drive, set_steady
+
+contains
+
+   !> A drive of `kind` that goes about so far as `amplitude`, in radians or lengths.
+   subroutine add_drive(d, kind, subject, second, amplitude)
+      type(draft_t), intent(inout) :: d
+      integer, intent(in) :: kind, subject, second
+      real(qp), intent(in) :: amplitude
+      type(drive_t) :: drive
+      type(jet_t) :: f
+      real(qp) :: unit, now
+
+      drive%kind = kind
+      drive%subject = subject
+      drive%second = second
+      unit = drive_unit(d%s, drive)
+      call make_law(d, drive%law, amplitude/unit)
+      now = value_now(d, drive)
+      f = law_jet(drive%law, d%t, unit, angle_unit(d%s))
+      drive%law%polynomial(1) = double((now - f%v)/unit)
+      d%s%drives = [d%s%drives, drive]
+   end subroutine add_drive
+
+   !> X or Y of a new point of `link`.
+   subroutine add_point_drive(d, kind, link, amplitude)
+      type(draft_t), intent(inout) :: d
+      integer, intent(in) :: kind, link
+      real(qp), intent(in) :: amplitude
+
+      call add_drive(d, kind, add_point(d, link, anywhere(d)), 0, amplitude)
+   end subroutine add_point_drive
+
+   !> What `drive` gives, in the assembly.
+   real(qp) function value_now(d, drive) result(value)
+      type(draft_t), intent(in) :: d
+      type(drive_t), intent(in) :: drive
+      real(qp) :: p(2), theta
+
+      value = 0.0_qp
+      select case (drive%kind)
+      case (drive_angle)
+         value = d%s%links(drive%subject)%at(3)
+      case (drive_relangle)
+         value = d%s%links(drive%second)%at(3) - d%s%links(drive%subject)%at(3)
+      case (drive_x, drive_y)
+         p = world(d, drive%subject)
+         value = merge(p(1), p(2), drive%kind == drive_x)
+      case (drive_slide)
+         associate (pair => d%s%pairs(drive%subject))
+            theta = d%b(link_at(d%s, pair%point_i))%phi%v + pair%alpha*angle_unit(d%s)
+            p = world(d, pair%point_j) - world(d, pair%point_i)
+            value = p(1)*cos(theta) + p(2)*sin(theta)
+         end associate
+      end select
+   end function value_now
+
+   !> A polynomial, mostly with a term, that makes a way of about `amplitude` between the first and the last instant.
+   subroutine make_law(d, law, amplitude)
+      type(draft_t), intent(inout) :: d
+      type(law_t), intent(out) :: law
+      real(qp), intent(in) :: amplitude
+      real(qp) :: span
+
+      span = d%to - d%from
+      law%polynomial(2) = double(number(d, -1.0_qp, 1.0_qp)*amplitude/span)
+      if (chance(d%dice, 0.3_wp)) law%polynomial(3) = double(number(d, -1.0_qp, 1.0_qp)*amplitude/span**2)
+      select case (throw(d%dice, 8))
+      case (1:2)
+         law%form = term_harmonic
+         law%r(1) = double(number(d, -0.5_qp, 0.5_qp)*amplitude)
+         law%r(2) = double(2.0_qp*pi_q/angle_unit(d%s)*number(d, 0.1_qp, 3.0_qp)/span)
+         law%r(3) = double(number(d, -pi_q, pi_q)/angle_unit(d%s))
+      case (3)
+         call make_power(d, law, amplitude)
+      case (4)
+         call make_table(d, law, amplitude)
+      case default
+         if (chance(d%dice, 0.3_wp)) law%polynomial(3) = 0.0_qp
+      end select
+   end subroutine make_law
+
+   !> Whole powers anywhere, others and negative ones where time does not come near zero.
+   subroutine make_power(d, law, amplitude)
+      type(draft_t), intent(inout) :: d
+      type(law_t), intent(inout) :: law
+      real(qp), intent(in) :: amplitude
+
+      law%form = term_power
+      law%r(2) = throw(d%dice, 4)
+      if (d%from > 0.2_qp*(d%to - d%from)) then
+         select case (throw(d%dice, 3))
+         case (1)
+            law%r(2) = -throw(d%dice, 3)
+         case (2)
+            law%r(2) = double(number(d, -1.0_qp, 4.0_qp))
+         end select
+      end if
+      law%r(1) = double(number(d, -1.0_qp, 1.0_qp)*amplitude/max(abs(d%from), abs(d%to))**law%r(2))
+      if (law%r(2) < 0.0_qp) law%r(1) = double(law%r(1)*(d%from/d%to)**(-law%r(2)))
+   end subroutine make_power
+
+   !> Rows from before the first instant to behind the last.
+   subroutine make_table(d, law, amplitude)
+      type(draft_t), intent(inout) :: d
+      type(law_t), intent(inout) :: law
+      real(qp), intent(in) :: amplitude
+      integer :: n, k
+
+      law%form = term_table
+      n = throw(d%dice, 6) + 1
+      allocate (law%time(n), law%value(n))
+      associate (span => d%to - d%from)
+         do k = 1, n
+            law%time(k) = double(d%from - 0.1_qp*span + 1.2_qp*span*(k - 1)/(n - 1))
+            law%value(k) = double(number(d, -0.5_qp, 0.5_qp)*amplitude)
+            if (k > 1 .and. k < n) law%time(k) = double(law%time(k) + 0.3_qp*span/(n - 1)*number(d, -1.0_qp, 1.0_qp))
+         end do
+      end associate
+      call set_spline(law)
+   end subroutine make_table
+
+   !> The last drive goes on with one rate, by `way` from the first instant to the last.
+   subroutine set_steady(d, way)
+      type(draft_t), intent(inout) :: d
+      real(qp), intent(in) :: way
+      type(law_t) :: law
+      real(qp) :: unit
+
+      associate (drive => d%s%drives(size(d%s%drives)))
+         unit = drive_unit(d%s, drive)
+         law%polynomial(2) = double(way/unit/(d%to - d%from))
+         law%polynomial(1) = double(value_now(d, drive)/unit - law%polynomial(2)*d%t)
+         drive%law = law
+      end associate
+   end subroutine set_steady
+end module draft_drives

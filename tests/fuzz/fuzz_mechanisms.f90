@@ -1,0 +1,144 @@
+!> Tests. Mechanisms by the dice whose motion is known in real128, each from the number of its seed, through the program's
+!> own job; `tests/fuzz/fuzz_mechanisms.sh` calls it.
+!>
+!>    fuzz_mechanisms FIRST LAST DIRECTORY     seeds FIRST to LAST, a line for each that fails, then a line of sums
+!>    fuzz_mechanisms --deck SEED FILE         writes the deck of a seed
+!>
+!> DIRECTORY/seed holds the seed that is being run; DIRECTORY/SEED.deck is kept of each that fails.
+program fuzz_mechanisms
+   use, intrinsic :: iso_fortran_env, only: output_unit
+   use command_line, only: options_t
+   use job, only: run_job
+   use quad_jet, only: qp
+   use schemes, only: scheme_t, write_scheme
+   use random_schemes, only: random_scheme, class_of
+   use scheme_results, only: verdict_t, judge
+   implicit none
+
+   type :: sums_t
+      integer :: passed(3) = 0, failed = 0, instants = 0, numbers = 0, lost = 0, unknown = 0, flagged = 0
+      real(qp) :: worst(0:2) = 0.0_qp
+   end type sums_t
+
+   if (argument(1) == '--deck') then
+      call write_deck(schemes_of(whole(argument(2))), argument(3))
+   else
+      call run_seeds(whole(argument(1)), whole(argument(2)), argument(3))
+   end if
+
+contains
+
+   function argument(i) result(text)
+      integer, intent(in) :: i
+      character(:), allocatable :: text
+      integer :: length
+
+      call get_command_argument(i, length=length)
+      allocate (character(length) :: text)
+      call get_command_argument(i, text)
+   end function argument
+
+   integer function whole(text)
+      character(*), intent(in) :: text
+
+      read (text, *) whole
+   end function whole
+
+   function text_of(i) result(text)
+      integer, intent(in) :: i
+      character(:), allocatable :: text
+      character(12) :: buffer
+
+      write (buffer, '(i0)') i
+      text = trim(buffer)
+   end function text_of
+
+   !> Every tenth deck has two sets.
+   function schemes_of(seed) result(s)
+      integer, intent(in) :: seed
+      type(scheme_t), allocatable :: s(:)
+
+      s = [random_scheme(seed, 1)]
+      if (modulo(seed, 10) == 7) s = [s, random_scheme(seed, 2)]
+   end function schemes_of
+
+   subroutine write_deck(s, path)
+      type(scheme_t), intent(in) :: s(:)
+      character(*), intent(in) :: path
+      integer :: unit, k
+
+      open (newunit=unit, file=path, status='replace', action='write')
+      do k = 1, size(s)
+         call write_scheme(s(k), unit)
+      end do
+      close (unit)
+   end subroutine write_deck
+
+   subroutine run_seeds(first, last, directory)
+      integer, intent(in) :: first, last
+      character(*), intent(in) :: directory
+      type(sums_t) :: sums
+      type(verdict_t) :: v
+      integer :: seed, unit
+
+      open (newunit=unit, file=directory//'/seed', access='stream', form='formatted', status='replace')
+      do seed = first, last
+         rewind (unit)
+         write (unit, '(i0)') seed
+         call write_sums(unit, sums)
+         flush (unit)
+         call run_seed(seed, directory, v)
+         sums%instants = sums%instants + v%instants
+         sums%numbers = sums%numbers + v%numbers
+         sums%lost = sums%lost + v%lost
+         sums%unknown = sums%unknown + v%unknown
+         sums%flagged = sums%flagged + v%flagged
+         if (allocated(v%text)) then
+            sums%failed = sums%failed + 1
+            write (output_unit, '(a,i0,2a)') 'FAILED: SEED ', seed, ': ', v%text
+            flush (output_unit)
+            call write_deck(schemes_of(seed), directory//'/'//text_of(seed)//'.deck')
+         else
+            sums%worst = max(sums%worst, v%worst)
+            sums%passed(class_of(seed)) = sums%passed(class_of(seed)) + 1
+         end if
+      end do
+      close (unit, status='delete')
+      call write_sums(output_unit, sums)
+   end subroutine run_seeds
+
+   subroutine write_sums(unit, s)
+      integer, intent(in) :: unit
+      type(sums_t), intent(in) :: s
+
+      write (unit, '(a,9(1x,i0),3f9.4)') 'SUMS', s%passed, s%failed, s%instants, s%numbers, s%lost, s%unknown, s%flagged, &
+         s%worst
+   end subroutine write_sums
+
+   !> Runs one deck and judges its results.
+   subroutine run_seed(seed, directory, v)
+      integer, intent(in) :: seed
+      character(*), intent(in) :: directory
+      type(verdict_t), intent(out) :: v
+      type(options_t) :: options
+      type(scheme_t), allocatable :: s(:)
+      character(:), allocatable :: message
+      integer :: status
+
+      s = schemes_of(seed)
+      options%deck = directory//'/deck'
+      options%output = '/dev/null'
+      options%csv = directory//'/csv'
+      options%log = ''
+      options%show = ''
+      options%errors = .true.
+      call write_deck(s, options%deck)
+      call run_job(options, status, message)
+      if (status == 0 .or. status == 2) then
+         call judge(s, options%csv, v)
+         if (status == 0 .and. v%lost + v%flagged > 0 .and. .not. allocated(v%text)) v%text = 'STATUS 0 WITH FLAGS'
+      else
+         v%text = 'STATUS '//text_of(status)//': '//message
+      end if
+   end subroutine run_seed
+end program fuzz_mechanisms

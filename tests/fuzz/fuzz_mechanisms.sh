@@ -1,0 +1,76 @@
+#!/bin/sh
+# make fuzz-mechanisms: mechanisms by the dice whose motion is known in real128, COUNT of them from seed FIRST on, in chunks,
+# as many at a time as there are processors. Three of four are chains of dyads, one of five has triads or tetrads, and one of
+# twenty a group of 12 to 18 links. The deck of each that fails is kept. The last line is "N passed, N failed".
+#
+#    tests/fuzz/fuzz_mechanisms.sh COUNT [FIRST]       runs them
+#    tests/fuzz/fuzz_mechanisms.sh --seed SEED         writes the deck of one seed to $BUILD/mechanisms/SEED.deck and runs it
+#    tests/fuzz/fuzz_mechanisms.sh --chunk FIRST LAST  what some at a time are
+export LC_ALL=C OPENBLAS_NUM_THREADS=1
+BUILD=${BUILD:-build}
+work=$BUILD/mechanisms
+driver=$BUILD/release/fuzz_mechanisms
+chunk=${FUZZ_CHUNK:-200}
+mkdir -p "$work" || exit 3
+
+# run_chunk FIRST LAST: the driver again behind every seed at which it does not come back
+run_chunk() {
+   first=$1
+   last=$2
+   place=$(mktemp -d "$work/chunk.XXXXXX") || exit 3
+   while [ "$first" -le "$last" ]; do
+      "$driver" "$first" "$last" "$place" > "$place/out" 2> "$place/err"
+      cat "$place/out"
+      grep -q '^SUMS ' "$place/out" && break
+      seed=$(head -n 1 "$place/seed" 2> /dev/null)
+      if [ -z "$seed" ]; then
+         echo "FAILED: SEED $first: THE DRIVER DOES NOT START: $(head -n 1 "$place/err")"
+         echo CRASHED
+         break
+      fi
+      grep '^SUMS ' "$place/seed"
+      echo "FAILED: SEED $seed: THE PROGRAM DOES NOT COME BACK: $(grep -m 1 . "$place/err")"
+      echo CRASHED
+      cp "$place/deck" "$place/$seed.deck"
+      first=$((seed + 1))
+   done
+   find "$place" -name '[0-9]*.deck' -exec mv {} "$work/" ';'
+   rm -rf "$place"
+}
+
+case $1 in
+--chunk)
+   run_chunk "$2" "$3"
+   exit 0
+   ;;
+--seed)
+   "$driver" --deck "$2" "$work/$2.deck" || exit 3
+   echo "$work/$2.deck"
+   run_chunk "$2" "$2"
+   exit
+   ;;
+esac
+
+count=${1:-1000}
+first=${2:-1}
+last=$((first + count - 1))
+seq "$first" "$chunk" "$last" | while read -r a; do
+   b=$((a + chunk - 1))
+   [ "$b" -gt "$last" ] && b=$last
+   echo "$a $b"
+done | xargs -P "${FUZZ_JOBS:-$(nproc)}" -n 2 "$0" --chunk > "$work/results"
+
+grep '^FAILED' "$work/results" | sort -k 3 -n
+awk '
+   $1 == "SUMS" { for (i = 1; i <= 9; i++) sum[i] += $(1 + i)
+      for (i = 0; i < 3; i++) if ($(11 + i) > worst[i]) worst[i] = $(11 + i) }
+   $1 == "CRASHED" { sum[4]++ }
+   END {
+      printf "chains of dyads %d, with triads and tetrads %d, with wide groups %d\n", sum[1], sum[2], sum[3]
+      printf "instants %d, numbers %d; rows beyond limits %d, without a known truth %d, flagged near a singularity %d\n", \
+         sum[5], sum[6], sum[7], sum[8], sum[9]
+      printf "largest errors, of what is allowed: positions %.3f, velocities %.3f, accelerations %.3f\n", \
+         worst[0], worst[1], worst[2]
+      printf "%d passed, %d failed\n", sum[1] + sum[2] + sum[3], sum[4]
+      exit (sum[4] > 0)
+   }' "$work/results"

@@ -1,0 +1,253 @@
+!> Tests. A kinematic scheme of its seed alone: of twenty seeds fifteen are chains of dyads, four have triads, tetrads and
+!> links with several degrees of freedom, and one has a group of 12 to 18 links.
+module random_schemes
+   use kinds, only: wp
+   use quad_jet, only: qp
+   use dice, only: dice_t, new_dice, throw, chance, between, magnitude
+   use schemes, only: scheme_t, double
+   use scheme_draft, only: draft_t, number, add_link, begin_group, end_group
+   use draft_groups, only: add_crank, add_slider, add_dyad, add_plates, add_net, add_open_chain, add_floating, &
+      add_cylinder, add_table, add_ring, add_parallelogram
+   implicit none
+   private
+   public :: random_scheme, class_of, class_dyads, class_triads, class_wide
+
+   enum, bind(c)
+      enumerator :: class_dyads = 1, class_triads, class_wide
+   end enum
+   integer, parameter :: tries = 30
+
+contains
+
+   pure integer function class_of(seed)
+      integer, intent(in) :: seed
+
+      select case (modulo(seed, 20))
+      case (0)
+         class_of = class_wide
+      case (1, 6, 11, 16)
+         class_of = class_triads
+      case default
+         class_of = class_dyads
+      end select
+   end function class_of
+
+   !> Scheme number `seed`; a deck may have several, `set` 1, 2 ...
+   function random_scheme(seed, set) result(s)
+      integer, intent(in) :: seed, set
+      type(scheme_t) :: s
+      type(draft_t), allocatable :: d
+      integer :: k, parts, ground
+
+      allocate (d)
+      d%dice = new_dice(seed + 1000000000*(set - 1))
+      call begin_scheme(d, seed)
+      parts = merge(2, 1, chance(d%dice, 0.15_wp))
+      do k = 1, parts
+         d%part = k
+         d%scale = magnitude(d%dice, merge(6, 1, chance(d%dice, 0.5_wp)))
+         d%size = d%scale
+         d%first_link = size(d%s%links) + 1
+         ground = add_link(d, .true.)
+         if (chance(d%dice, 0.3_wp)) ground = add_link(d, .true.)
+         call add_part(d, merge(class_of(seed), class_dyads, k == 1))
+      end do
+      call end_scheme(d)
+      s = d%s
+   end function random_scheme
+
+   !> Time, units and method.
+   subroutine begin_scheme(d, seed)
+      type(draft_t), intent(inout) :: d
+      integer, intent(in) :: seed
+      real(qp) :: span, start
+
+      associate (s => d%s)
+         s%seed = seed
+         s%degrees = chance(d%dice, 0.5_wp)
+         allocate (s%links(0), s%points(0), s%pairs(0), s%drives(0), s%groups(0), s%at(0), d%b(0))
+         if (chance(d%dice, 0.2_wp)) d%special = 0.5_wp
+         span = magnitude(d%dice, 2)
+         start = 0.0_qp
+         if (chance(d%dice, 0.4_wp)) start = span*number(d, -1.0_qp, 3.0_qp)
+         s%steps = throw(d%dice, 9) + 1
+         s%t0 = double(start)
+         s%t1 = double(start + span)
+         d%from = s%t0
+         d%to = s%t1
+         s%span = span
+         if (chance(d%dice, 0.1_wp)) then
+            s%t0 = d%to
+            s%t1 = d%from
+         end if
+         d%t = s%t0
+         if (chance(d%dice, 0.1_wp)) call add_instants(d)
+         if (chance(d%dice, 0.12_wp)) s%method = merge('DENSE   ', 'MATRIX  ', chance(d%dice, 0.8_wp))
+      end associate
+   end subroutine begin_scheme
+
+   !> AT cards behind TIME, or in its place.
+   subroutine add_instants(d)
+      type(draft_t), intent(inout) :: d
+      integer :: k
+
+      do k = 1, throw(d%dice, 4)
+         d%s%at = [d%s%at, double(number(d, d%from, d%to))]
+      end do
+      if (chance(d%dice, 0.7_wp)) return
+      d%s%steps = 0
+      d%t = d%s%at(1)
+   end subroutine add_instants
+
+   !> An independent mechanism: driven links, and groups on these.
+   subroutine add_part(d, class)
+      type(draft_t), intent(inout) :: d
+      integer, intent(in) :: class
+      integer :: k, groups
+
+      call add_some(d, 1, class)
+      groups = throw(d%dice, merge(4, 7, class == class_wide))
+      do k = 1, groups
+         if (class == class_wide .and. k == 1) then
+            call add_some(d, merge(14, 15, chance(d%dice, 0.5_wp)), class)
+         else if (class /= class_triads) then
+            call add_some(d, merge(3, throw(d%dice, 2), chance(d%dice, 0.8_wp)), class)
+         else
+            call add_some(d, throw(d%dice, 12), class)
+         end if
+         if (chance(d%dice, 0.06_wp)) call add_some(d, merge(13, 16, chance(d%dice, 0.5_wp)), class)
+      end do
+   end subroutine add_part
+
+   !> A group of a kind by its number, at the first place where it is not near a singularity.
+   subroutine add_some(d, kind, class)
+      type(draft_t), intent(inout) :: d
+      integer, intent(in) :: kind, class
+      type(draft_t), allocatable :: before
+      type(dice_t) :: dice
+      real(qp) :: way
+      logical :: kept
+      integer :: k
+
+      allocate (before)
+      do k = 1, tries
+         before = d
+         call choose_region(d)
+         way = number(d, 0.05_qp, merge(0.3_qp, 0.8_qp, class == class_wide))
+         if (class == class_dyads .and. chance(d%dice, 0.2_wp)) way = number(d, 1.0_qp, 8.0_qp)
+         call add_kind(d, kind, way)
+         call end_group(d, kept)
+         if (kept) exit
+         dice = d%dice
+         d = before
+         d%dice = dice
+      end do
+   end subroutine add_some
+
+   subroutine add_kind(d, kind, way)
+      type(draft_t), intent(inout) :: d
+      integer, intent(in) :: kind
+      real(qp), intent(in) :: way
+
+      select case (kind)
+      case (1)
+         call add_crank(d, way)
+      case (2)
+         call add_slider(d, min(way, 0.8_qp))
+      case (3, 4)
+         call add_dyad(d)
+      case (5, 6)
+         call add_plates(d, 1)
+      case (7)
+         call add_net(d)
+      case (8)
+         call add_plates(d, 2)
+      case (9)
+         call add_open_chain(d, min(way, 0.8_qp))
+      case (10)
+         call add_floating(d, min(way, 0.8_qp))
+      case (11)
+         call add_cylinder(d, min(way, 0.8_qp))
+      case (12)
+         call add_table(d, min(way, 0.8_qp))
+      case (13)
+         call add_parallelogram(d, throw(d%dice, 3) + 1, min(10.0_qp*way, 8.0_qp), .false.)
+      case (16)
+         ! A BRANCH card is for the change points of one way in time, and for METHOD NEWTON.
+         call add_parallelogram(d, 2, min(10.0_qp*way, 8.0_qp), size(d%s%at) == 0 .and. d%s%method == '')
+      case (14)
+         call add_plates(d, 4 + throw(d%dice, 4))
+      case default
+         call add_ring(d, 10 + 2*throw(d%dice, 4))
+      end select
+   end subroutine add_kind
+
+   !> Few groups are much smaller than the others.
+   subroutine choose_region(d)
+      type(draft_t), intent(inout) :: d
+
+      d%size = d%scale
+      d%centre = 0.0_qp
+      if (.not. chance(d%dice, 0.04_wp)) return
+      d%centre = d%scale*[number(d, -3.0_qp, 3.0_qp), number(d, -3.0_qp, 3.0_qp)]
+      d%size = d%scale*10.0_qp**number(d, -3.0_qp, -0.5_qp)
+   end subroutine choose_region
+
+   !> What is left: estimates, orders, what is printed, pairs that are there twice.
+   subroutine end_scheme(d)
+      type(draft_t), intent(inout) :: d
+      integer :: k, twice
+
+      associate (s => d%s)
+         call estimate_links(d)
+         twice = 0
+         if (chance(d%dice, 0.05_wp) .and. size(s%pairs) > 0) twice = throw(d%dice, size(s%pairs))
+         if (twice > 0) s%pairs = [s%pairs, s%pairs(twice)]
+         if (twice > 0 .or. any(s%groups%redundant)) s%method = ''
+         s%link_order = disorder(d, size(s%links))
+         s%point_order = disorder(d, size(s%points))
+         s%pair_order = disorder(d, size(s%pairs))
+         s%print = merge('ALL  ', 'LINKS', chance(d%dice, 0.2_wp))
+         if (s%print == 'LINKS' .and. chance(d%dice, 0.1_wp)) then
+            allocate (s%printed(0))
+            do k = 1, size(s%links)
+               if (chance(d%dice, 0.3_wp) .and. .not. s%links(k)%ground) s%printed = [s%printed, k]
+            end do
+            if (size(s%printed) == 0) deallocate (s%printed)
+         end if
+      end associate
+   end subroutine end_scheme
+
+   !> The estimates of the deck: the assembly with all its digits, or near it.
+   subroutine estimate_links(d)
+      type(draft_t), intent(inout) :: d
+      real(qp) :: off
+      integer :: k, c
+
+      off = 0.0_qp
+      if (chance(d%dice, 0.4_wp)) off = min(0.03_qp, 0.05_qp/d%inverse)*10.0_qp**number(d, -3.0_qp, 0.0_qp)
+      do k = 1, size(d%s%links)
+         associate (link => d%s%links(k))
+            link%estimate = link%at
+            if (link%ground .or. .not. off > 0.0_qp) cycle
+            do c = 1, 3
+               link%estimate(c) = link%estimate(c) + off*number(d, -1.0_qp, 1.0_qp) &
+                  *merge(1.0_qp, d%s%groups(link%group)%scale, c == 3)
+            end do
+         end associate
+      end do
+   end subroutine estimate_links
+
+   !> 1 to `n` in disorder.
+   function disorder(d, n) result(list)
+      type(draft_t), intent(inout) :: d
+      integer, intent(in) :: n
+      integer :: list(n), i, k
+
+      list = [(i, i=1, n)]
+      do i = n, 2, -1
+         k = throw(d%dice, i)
+         list([i, k]) = list([k, i])
+      end do
+   end function disorder
+end module random_schemes

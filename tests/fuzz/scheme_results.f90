@@ -1,0 +1,302 @@
+!> Tests. The results of schemes, read back from a CSV file with errors, against their true motion: every number by the
+!> error that the program tells of it, and every flag.
+module scheme_results
+   use, intrinsic :: iso_fortran_env, only: real64
+   use quad_jet, only: qp, jet_t, operator(-), operator(+), operator(*), sin, cos
+   use schemes, only: scheme_t, form_parallelogram, angle_unit, link_at, place
+   use scheme_motion, only: motion_t, begin_motion, move_to, closes, is_followed, is_lost
+   implicit none
+   private
+   public :: verdict_t, judge
+
+   !> The error of a number may be so many times what the program tells of it: eight decks whose numbers are all off tell
+   !> little more than its size.
+   real(qp), parameter :: of_told = 30.0_qp
+   !> The last bits of a number.
+   real(qp), parameter :: bits = 4.0_qp*epsilon(1.0_real64)
+   !> Where it tells no errors, as of links that move at instants at which others do not: this part of a number.
+   real(qp), parameter :: untold = 1.0e-8_qp
+   !> A number that is zero, of the size of its mechanism.
+   real(qp), parameter :: nothing = 1.0e-20_qp
+   !> The square of a distance from a singularity down to which flags are needless, all the way from the first instant.
+   real(qp), parameter :: safe_margin = 1.0e-4_qp
+   integer, parameter :: cells = 24, cell_length = 26
+
+   type :: row_t
+      integer :: set = 0, step = 0, number = 0
+      character(1) :: kind = ''                !< L, P or K
+      real(qp) :: t = 0.0_qp
+      real(qp) :: value(9) = 0.0_qp, error(9) = 0.0_qp
+      logical :: known(9) = .false., is_told(9) = .false.
+      character(12) :: mark = ''
+   end type row_t
+
+   type :: verdict_t
+      character(:), allocatable :: text        !< the first thing that is wrong
+      integer :: instants = 0, numbers = 0     !< compared
+      integer :: lost = 0, unknown = 0         !< rows beyond a limit; of groups whose truth is not known
+      integer :: flagged = 0                   !< rows flagged that have a truth, not far from a singularity
+      real(qp) :: worst(0:2) = 0.0_qp          !< largest errors, in units of what is allowed
+   end type verdict_t
+
+contains
+
+   !> Judges the file `path`, the results of `s`.
+   subroutine judge(s, path, v)
+      type(scheme_t), intent(in) :: s(:)
+      character(*), intent(in) :: path
+      type(verdict_t), intent(inout) :: v
+      type(row_t) :: row
+      type(motion_t) :: m, regular
+      integer :: unit, status, set, step
+      logical :: at_end
+
+      open (newunit=unit, file=path, status='old', action='read', iostat=status)
+      if (status == 0) read (unit, '(a)', iostat=status)
+      if (status /= 0) call blame(v, 'NO CSV FILE')
+      set = 0
+      step = -1
+      do while (.not. allocated(v%text))
+         call read_row(unit, row, at_end, v)
+         if (at_end .or. allocated(v%text)) exit
+         if (row%set /= set .or. row%step /= step) call begin_instant(s, row, set, step, m, regular, v)
+         if (.not. allocated(v%text)) call judge_row(s(set), m, row, v)
+      end do
+      close (unit)
+      if (set /= size(s)) call blame(v, 'SETS ARE MISSING')
+   end subroutine judge
+
+   !> The motion `m` at the instant of `row`, `regular` the last one of all groups.
+   subroutine begin_instant(s, row, set, step, m, regular, v)
+      type(scheme_t), intent(in) :: s(:)
+      type(row_t), intent(in) :: row
+      integer, intent(inout) :: set, step
+      type(motion_t), intent(inout) :: m, regular
+      type(verdict_t), intent(inout) :: v
+      character(:), allocatable :: problem
+
+      step = row%step
+      if (row%set /= set) then
+         set = row%set
+         if (set < 1 .or. set > size(s)) call blame(v, 'NUMBER OF THE SET')
+         if (allocated(v%text)) return
+         call begin_motion(s(set), row%t, m, problem)
+         if (allocated(problem)) call blame(v, 'THE TRUTH: '//problem)
+         if (allocated(problem)) return
+         regular = m
+      end if
+      ! Beyond a limit nothing is lost for an instant before it.
+      if (size(s(set)%at) > 0) m = regular
+      call move_to(s(set), row%t, m)
+      if (all(m%status == regular%status)) regular = m
+      v%instants = v%instants + 1
+      if (.not. closes(s(set), m)) call blame(v, 'THE TRUTH DOES NOT CLOSE AT '//where(row))
+   end subroutine begin_instant
+
+   subroutine judge_row(s, m, row, v)
+      type(scheme_t), intent(in) :: s
+      type(motion_t), intent(in) :: m
+      type(row_t), intent(in) :: row
+      type(verdict_t), intent(inout) :: v
+      type(jet_t) :: truth(3)
+      real(qp) :: scale, unit(3)
+      integer :: group(2), status
+
+      group = groups_of(s, row)
+      if (any(group > 0)) status = maxval(m%status(pack(group, group > 0)))
+      if (.not. any(group > 0)) status = is_followed
+      if (status == is_lost) then
+         v%lost = v%lost + 1
+         if (row%known(1)) call blame(v, 'A POSITION BEYOND A LIMIT: '//where(row))
+         return
+      else if (status /= is_followed) then
+         v%unknown = v%unknown + 1
+         return
+      end if
+      if (row%mark /= '') call judge_flag(s, m, group, row, v)
+      truth = true_values(s, m, row)
+      scale = 1.0_qp
+      if (any(group > 0)) scale = maxval(s%groups(pack(group, group > 0))%scale)
+      unit = [scale, scale, 1.0_qp/angle_unit(s)]
+      call compare(truth%v, row, 0, unit, v)
+      call compare(truth%d, row, 1, unit/s%span, v)
+      call compare(truth%dd, row, 2, unit/s%span**2, v)
+   end subroutine judge_row
+
+   !> Numbers of derivative `k`, as far as they are there; `unit`: their size.
+   subroutine compare(truth, row, k, unit, v)
+      real(qp), intent(in) :: truth(3), unit(3)
+      type(row_t), intent(in) :: row
+      integer, intent(in) :: k
+      type(verdict_t), intent(inout) :: v
+      real(qp) :: off, allowed
+      integer :: c, i
+
+      do c = 1, 3
+         i = 3*k + c
+         if (.not. row%known(i)) cycle
+         v%numbers = v%numbers + 1
+         allowed = of_told*row%error(i) + bits*abs(truth(c)) + nothing*unit(c)
+         if (.not. row%is_told(i)) allowed = untold*max(abs(truth(c)), unit(c))
+         off = abs(row%value(i) - truth(c))/allowed
+         v%worst(k) = max(v%worst(k), off)
+         if (.not. off <= 1.0_qp) call blame(v, 'COLUMN '//achar(iachar('0') + i)//' OF '//where(row)//': '// &
+            told(row%value(i))//' FOR '//told(truth(c))//', ERROR TOLD '//told(row%error(i)))
+      end do
+   end subroutine compare
+
+   !> A flag where the truth is known: needless, unless its mechanism has been near a singularity, or METHOD DENSE was to
+   !> pass a change point.
+   subroutine judge_flag(s, m, group, row, v)
+      type(scheme_t), intent(in) :: s
+      type(motion_t), intent(in) :: m
+      integer, intent(in) :: group(2)
+      type(row_t), intent(in) :: row
+      type(verdict_t), intent(inout) :: v
+      integer :: k
+
+      do k = 1, size(s%groups)
+         if (s%groups(k)%part /= s%groups(maxval(group))%part) cycle
+         if (m%status(k) == is_followed .and. m%lowest(k) > safe_margin .and. .not. (s%method == 'DENSE' &
+            .and. s%groups(k)%form == form_parallelogram)) cycle
+         v%flagged = v%flagged + 1
+         return
+      end do
+      if (s%method == 'MATRIX') then
+         v%flagged = v%flagged + 1
+      else
+         call blame(v, 'A NEEDLESS FLAG '//trim(row%mark)//': '//where(row))
+      end if
+   end subroutine judge_flag
+
+   !> The groups that give the row its numbers, 0 for the ground.
+   function groups_of(s, row) result(group)
+      type(scheme_t), intent(in) :: s
+      type(row_t), intent(in) :: row
+      integer :: group(2)
+
+      select case (row%kind)
+      case ('L')
+         group = s%links(row%number)%group
+      case ('P')
+         group = s%links(s%points(row%number)%link)%group
+      case default
+         group(1) = s%links(link_at(s, s%pairs(row%number)%point_i))%group
+         group(2) = s%links(link_at(s, s%pairs(row%number)%point_j))%group
+      end select
+   end function groups_of
+
+   !> What the three columns of each derivative should be, in the deck's units.
+   function true_values(s, m, row) result(truth)
+      type(scheme_t), intent(in) :: s
+      type(motion_t), intent(in) :: m
+      type(row_t), intent(in) :: row
+      type(jet_t) :: truth(3), d(2), theta
+      real(qp) :: per_unit
+
+      per_unit = 1.0_qp/angle_unit(s)
+      select case (row%kind)
+      case ('L')
+         associate (b => m%b(row%number))
+            truth = [b%x, b%y, per_unit*b%phi]
+         end associate
+      case ('P')
+         truth(:2) = place(m%b(link_at(s, row%number)), s%points(row%number)%offset)
+      case default
+         associate (pair => s%pairs(row%number))
+            associate (i => m%b(link_at(s, pair%point_i)), j => m%b(link_at(s, pair%point_j)))
+               truth(1) = per_unit*(j%phi - i%phi)
+               if (.not. pair%prismatic) return
+               d = place(j, s%points(pair%point_j)%offset) - place(i, s%points(pair%point_i)%offset)
+               theta = i%phi + pair%alpha*angle_unit(s)
+               truth(1) = d(1)*cos(theta) + d(2)*sin(theta)
+            end associate
+         end associate
+      end select
+   end function true_values
+
+   !> The next row; `at_end`: there is none.
+   subroutine read_row(unit, row, at_end, v)
+      integer, intent(in) :: unit
+      type(row_t), intent(out) :: row
+      logical, intent(out) :: at_end
+      type(verdict_t), intent(inout) :: v
+      character(700) :: line
+      character(cell_length) :: cell(cells)
+      integer :: status, k, n
+
+      read (unit, '(a)', iostat=status) line
+      at_end = status /= 0
+      if (at_end) return
+      call split(line, cell, n)
+      if (n /= cells) call blame(v, 'CELLS OF A ROW: '//trim(line))
+      if (n /= cells) return
+      read (cell(1), *) row%set
+      read (cell(2), *) row%step
+      row%t = number(cell(3))
+      row%kind = cell(5)(1:1)
+      read (cell(5)(2:), *) row%number
+      do k = 1, 9
+         row%known(k) = cell(5 + k) /= ''
+         if (.not. row%known(k)) cycle
+         row%value(k) = number(cell(5 + k))
+         row%is_told(k) = cell(15 + k) /= ''
+         if (row%is_told(k)) row%error(k) = number(cell(15 + k))
+      end do
+      row%mark = cell(15)(:12)
+   end subroutine read_row
+
+   pure subroutine split(line, cell, n)
+      character(*), intent(in) :: line
+      character(cell_length), intent(out) :: cell(cells)
+      integer, intent(out) :: n
+      integer :: i, j
+
+      cell = ''
+      n = 0
+      i = 1
+      do
+         j = index(line(i:), ',')
+         if (j == 0) j = len_trim(line(i:)) + 1
+         n = n + 1
+         if (n <= cells) cell(n) = line(i:i + j - 2)
+         i = i + j
+         if (i > len_trim(line) + 1) exit
+      end do
+   end subroutine split
+
+   real(qp) function number(text)
+      character(*), intent(in) :: text
+      real(real64) :: x
+      integer :: status
+
+      x = 0.0_real64
+      read (text, *, iostat=status) x
+      number = x
+   end function number
+
+   function where(row) result(text)
+      type(row_t), intent(in) :: row
+      character(:), allocatable :: text
+      character(60) :: buffer
+
+      write (buffer, '(a,i0,a,i0,a,i0)') row%kind, row%number, ' SET ', row%set, ' STEP ', row%step
+      text = trim(buffer)
+   end function where
+
+   function told(x) result(text)
+      real(qp), intent(in) :: x
+      character(:), allocatable :: text
+      character(30) :: buffer
+
+      write (buffer, '(es24.16e3)') x
+      text = trim(adjustl(buffer))
+   end function told
+
+   subroutine blame(v, text)
+      type(verdict_t), intent(inout) :: v
+      character(*), intent(in) :: text
+
+      if (.not. allocated(v%text)) v%text = text
+   end subroutine blame
+end module scheme_results
