@@ -37,7 +37,7 @@ modules := $(filter-out main,$(basename $(notdir $(sources))))
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))
 vpath %.F90 $(sort $(dir $(sources)))
 
-.PHONY: all example kinds run test check forms errors kind-check quad-check single-check bench bench-short bench-against hard hard-short study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms expected install install-kinds clean
+.PHONY: all example kinds run test check forms errors kind-check quad-check single-check bench bench-short bench-against hard hard-short study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms mutants expected install install-kinds clean
 all: $(BUILD)/kinmat
 
 run: $(BUILD)/kinmat
@@ -175,10 +175,12 @@ fuzz-short: $(BUILD)/debug/fuzz
 	BUILD=$(BUILD) FUZZ_BUILD=debug tests/fuzz/fuzz.sh 1000
 
 # Mechanisms made by chance, with their motion in real128: N of them, from seed SEED on.
-N    ?= 10000
-SEED ?= 1
 fuzz-mechanisms: $(BUILD)/release/fuzz_mechanisms
-	BUILD=$(BUILD) tests/fuzz/fuzz_mechanisms.sh $(N) $(SEED)
+	BUILD=$(BUILD) tests/fuzz/fuzz_mechanisms.sh $(or $(N),10000) $(or $(SEED),1)
+
+# Faults made by chance in the sources, N=200 of them, one at a time: which do the unit tests and `make check` not see?
+mutants:
+	BUILD=$(BUILD) FC='$(FC)' N='$(N)' SEED='$(SEED)' tests/mutants/mutants.sh
 
 TEST_LIB     := $(BUILD)/debug/libkinmat.a
 TEST_MODULES := $(BUILD)/debug

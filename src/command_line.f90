@@ -5,7 +5,7 @@ module command_line
    use failures, only: failure_t, fail, status_rejected
    implicit none
    private
-   public :: options_t, read_command, help_text
+   public :: options_t, word_t, read_command, read_words, help_text
 
    type :: options_t
       character(:), allocatable :: deck      !< '' is standard input
@@ -20,6 +20,11 @@ module command_line
       !> What is printed instead of computing: 'HELP', 'VERSION', 'RULER' or ''.
       character(:), allocatable :: show
    end type options_t
+
+   !> A word of the command.
+   type :: word_t
+      character(:), allocatable :: text
+   end type word_t
 
    character(*), parameter :: two_digits = achar(48 + int(0.1*significant))//achar(48 + mod(significant, 10))
    character(*), parameter :: csv_digits = two_digits(merge(2, 1, significant < 10):)
@@ -58,6 +63,22 @@ contains
    subroutine read_command(options, failure)
       type(options_t), intent(out) :: options
       type(failure_t), allocatable, intent(out) :: failure
+      type(word_t) :: words(command_argument_count())
+      integer :: i, length
+
+      do i = 1, size(words)
+         call get_command_argument(i, length=length)
+         allocate (character(length) :: words(i)%text)
+         if (length > 0) call get_command_argument(i, words(i)%text)
+      end do
+      call read_words(words, options, failure)
+   end subroutine read_command
+
+   !> Reads the words after the program's name.
+   subroutine read_words(words, options, failure)
+      type(word_t), intent(in) :: words(:)
+      type(options_t), intent(out) :: options
+      type(failure_t), allocatable, intent(out) :: failure
       integer :: i
       logical :: has_deck
 
@@ -68,16 +89,16 @@ contains
       options%show = ''
       has_deck = .false.
       i = 1
-      do while (i <= command_argument_count() .and. .not. allocated(failure))
-         select case (argument(i))
+      do while (i <= size(words) .and. .not. allocated(failure))
+         select case (words(i)%text)
          case ('-o')
-            call take_file(i, options%output, failure)
+            call take_file(words, i, options%output, failure)
          case ('--csv')
-            call take_file(i, options%csv, failure)
+            call take_file(words, i, options%csv, failure)
          case ('--log')
-            call take_file(i, options%log, failure)
+            call take_file(words, i, options%log, failure)
          case ('--sets')
-            call take_share(i, options, failure)
+            call take_share(words, i, options, failure)
          case ('--errors')
             options%errors = .true.
          case ('--study')
@@ -93,12 +114,12 @@ contains
          case ('--ruler')
             options%show = 'RULER'
          case default
-            call take_deck(argument(i), has_deck, options%deck, failure)
+            call take_deck(words(i)%text, has_deck, options%deck, failure)
          end select
          i = i + 1
       end do
       if (.not. allocated(failure)) call check_study(options, failure)
-   end subroutine read_command
+   end subroutine read_words
 
    !> A study and times are no listing; a study reads its deck more than once.
    subroutine check_study(options, failure)
@@ -135,31 +156,34 @@ contains
    end subroutine take_deck
 
    !> The file name after option number `i`.
-   subroutine take_file(i, path, failure)
+   subroutine take_file(words, i, path, failure)
+      type(word_t), intent(in) :: words(:)
       integer, intent(inout) :: i
       character(:), allocatable, intent(inout) :: path
       type(failure_t), allocatable, intent(out) :: failure
 
-      if (i == command_argument_count()) then
-         call fail(failure, status_rejected, 'OPTION '//argument(i)//' NEEDS A FILE NAME')
+      if (i == size(words)) then
+         call fail(failure, status_rejected, 'OPTION '//words(i)%text//' NEEDS A FILE NAME')
       else if (len(path) > 0) then
-         call fail(failure, status_rejected, 'OPTION '//argument(i)//' IS GIVEN TWICE')
+         call fail(failure, status_rejected, 'OPTION '//words(i)%text//' IS GIVEN TWICE')
       else
-         path = argument(i + 1)
-         if (len(path) == 0) call fail(failure, status_rejected, 'OPTION '//argument(i)//' NEEDS A FILE NAME')
+         path = words(i + 1)%text
+         if (len(path) == 0) call fail(failure, status_rejected, 'OPTION '//words(i)%text//' NEEDS A FILE NAME')
          i = i + 1
       end if
    end subroutine take_file
 
    !> The K/N after option number `i`.
-   subroutine take_share(i, options, failure)
+   subroutine take_share(words, i, options, failure)
+      type(word_t), intent(in) :: words(:)
       integer, intent(inout) :: i
       type(options_t), intent(inout) :: options
       type(failure_t), allocatable, intent(out) :: failure
       character(:), allocatable :: word
       integer :: slash
 
-      word = argument(i + 1)
+      word = ''
+      if (i < size(words)) word = words(i + 1)%text
       i = i + 1
       slash = index(word, '/')
       options%share = 0
@@ -176,15 +200,4 @@ contains
 
       is_whole = len(word) > 0 .and. len(word) < 9 .and. verify(word, '0123456789') == 0
    end function is_whole
-
-   !> Argument number `i`, '' where there is none.
-   function argument(i) result(word)
-      integer, intent(in) :: i
-      character(:), allocatable :: word
-      integer :: length
-
-      call get_command_argument(i, length=length)
-      allocate (character(length) :: word)
-      if (length > 0) call get_command_argument(i, word)
-   end function argument
 end module command_line

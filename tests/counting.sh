@@ -15,9 +15,9 @@ same() { if diff -u "$2" "$3" > "$counts.diff" 2>&1; then pass; else miss "$1"; 
 # equal NAME EXPECTED FOUND: the two texts are the same
 equal() { if [ "$2" = "$3" ]; then pass; else miss "$1"; echo "  expected: $2"; echo "  found:    $3"; fi; }
 
-# conclude: the closing line; the status is that of the checks
+# conclude: the closing line; the status is that of the checks, of which there must be one
 conclude() {
    failed=$(grep -c failed "$counts")
    echo "$(grep -c passed "$counts") passed, $failed failed"
-   [ "$failed" -eq 0 ]
+   [ "$failed" -eq 0 ] && [ -s "$counts" ]
 }

@@ -4,40 +4,43 @@
 BUILD=${BUILD:-build}
 export BUILD MAKE
 
-# A part a line: its name, and its command, whose last line is "N passed, N failed". Longer ones come first.
+# A part a line: its name, how many checks it has at least, so that none passes by looking at nothing, and its command, whose
+# last line is "N passed, N failed". Longer ones come first. PARTS: a file of other ones.
 parts() {
+   if [ -n "$PARTS" ]; then cat "$PARTS"; return; fi
    sed 's/^ *//' <<'END'
-   faults by name|tests/system/faults.sh
-   real128|"$MAKE" --no-print-directory quad-check
-   single precision|"$MAKE" --no-print-directory single-check
-   speed against error|"$MAKE" --no-print-directory study-short
-   results of the methods|"$MAKE" --no-print-directory bench-short
-   the command|tests/system/command.sh
-   what is printed arrives|tests/system/output.sh
-   unit tests|"$MAKE" --no-print-directory unit
-   the stand-in|"$MAKE" --no-print-directory unit-stand-in
-   the sources|tests/system/house.sh
-   the closed forms|"$BUILD/release/check_forms" input/*.deck
-   make check|tests/system/check.sh
-   the documents|tests/system/documents.sh
-   estimates of errors|"$MAKE" --no-print-directory errors
-   units of length|tests/system/units.sh
-   the methods against one another|tests/system/methods.sh
-   independent mechanisms|tests/system/independent.sh
-   the digits|tests/system/digits.sh
-   wide blocks|tests/system/wide.sh
-   drives between instants|tests/system/drives.sh
-   decks made by chance|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 1000
-   mechanisms of a known motion|tests/fuzz/fuzz_mechanisms.sh 200
-   the method of 1987|"$BUILD/release/matrix_1987" short
-   what is hard to compute|tests/oracle/hard.sh short
+   faults by name|480|tests/system/faults.sh
+   real128|118|"$MAKE" --no-print-directory quad-check
+   single precision|62|"$MAKE" --no-print-directory single-check
+   speed against error|80|"$MAKE" --no-print-directory study-short
+   results of the methods|97|"$MAKE" --no-print-directory bench-short
+   the command|420|tests/system/command.sh
+   what is printed arrives|190|tests/system/output.sh
+   unit tests|700|"$MAKE" --no-print-directory unit
+   the stand-in|75|"$MAKE" --no-print-directory unit-stand-in
+   the sources|60|tests/system/house.sh
+   the closed forms|770|"$BUILD/release/check_forms" input/*.deck
+   make check|515|tests/system/check.sh
+   the documents|300|tests/system/documents.sh
+   estimates of errors|57|"$MAKE" --no-print-directory errors
+   units of length|712|tests/system/units.sh
+   the methods against one another|8|tests/system/methods.sh
+   independent mechanisms|106|tests/system/independent.sh
+   the digits|1|tests/system/digits.sh
+   wide blocks|7|tests/system/wide.sh
+   drives between instants|18|tests/system/drives.sh
+   decks made by chance|1000|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 1000
+   mechanisms of a known motion|200|tests/fuzz/fuzz_mechanisms.sh 200
+   the method of 1987|1000|"$BUILD/release/matrix_1987" short
+   what is hard to compute|120|tests/oracle/hard.sh short
+   the tool of mutants|8|tests/mutants/self_test.sh
 END
 }
 
 w=$BUILD/parts
 # run.sh --part K: part K alone
 if [ "$1" = --part ]; then
-   command=$(parts | sed -n "$2s/^[^|]*|//p")
+   command=$(parts | sed -n "$2s/^[^|]*|[^|]*|//p")
    sh -c "$command" > "$w/$2.txt" 2>&1
    echo $? > "$w/$2.status"
    exit 0
@@ -51,6 +54,7 @@ passed=0
 failed=0
 for k in $(seq "$count"); do
    name=$(parts | sed -n "${k}s/|.*//p")
+   least=$(parts | sed -n "${k}s/^[^|]*|\([0-9]*\)|.*/\1/p")
    cat "$w/$k.txt"
    last=$(grep -E '^[0-9]+ passed, [0-9]+ failed$' "$w/$k.txt" | tail -n 1)
    if [ -z "$last" ] || [ "$last" = '0 passed, 0 failed' ]; then
@@ -61,6 +65,10 @@ for k in $(seq "$count"); do
    set -- $last
    passed=$((passed + $1))
    failed=$((failed + $3))
+   if [ $(($1 + $3)) -lt "$least" ]; then
+      echo "FAILED: $name has $(($1 + $3)) checks, not $least or more"
+      failed=$((failed + 1))
+   fi
    if [ "$(cat "$w/$k.status")" -ne 0 ] && [ "$3" -eq 0 ]; then
       echo "FAILED: $name ends with status $(cat "$w/$k.status")"
       failed=$((failed + 1))

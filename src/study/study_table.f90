@@ -82,7 +82,8 @@ contains
       integer :: i
 
       do i = 1, size(trials)
-         rows(i) = row_t(trial=trials(i), time=[real(dp) ::])
+         rows(i)%trial = trials(i)
+         allocate (rows(i)%time(0))
       end do
    end function new_rows
 

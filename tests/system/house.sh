@@ -50,6 +50,18 @@ equal 'copies of objects that hold factors of KLU' '' "$(grep -v '^holds: ' "$BU
 equal 'types that hold factors of KLU' \
    'analysis_t block_engine_t block_method_t dense_engine_t engine_t estimator_t following_t klu_t room_t set_analysis_t workspace_t' \
    "$(sed -n 's/^holds: //p' "$BUILD/copies.txt" | tr '\n' ' ' | sed 's/ $//')"
+# make test: a part that looks at nothing, at too little, or ends without its counts, fails.
+cat > "$BUILD/some_parts.txt" <<'PARTS'
+good|2|echo '2 passed, 0 failed'
+empty|0|echo '0 passed, 0 failed'
+few|3|echo '2 passed, 0 failed'
+silent|1|true
+PARTS
+PARTS="$BUILD/some_parts.txt" BUILD="$BUILD/some_parts" tests/run.sh > "$BUILD/some_parts.out" 2>&1
+equal 'parts without checks: status' 1 $?
+equal 'parts without checks' \
+   'FAILED: empty has looked at nothing,FAILED: few has 2 checks, not 3 or more,FAILED: silent has looked at nothing,4 passed, 3 failed' \
+   "$(grep -vE '^[02] passed' "$BUILD/some_parts.out" | tr '\n' ',' | sed 's/,$//')"
 for file in $sources; do
    equal "$file: module of that name" "$(basename "${file%.?90}")" \
       "$(sed -n 's/^\(module\|program\) \([a-z_0-9]*\)$/\2/p' "$file" | head -n 1)"

@@ -1,0 +1,179 @@
+!> Whole runs of small decks inside the unit tests: the cards, and what the run prints.
+module deck_runs
+   use kinds, only: wp
+   use command_line, only: options_t
+   use job, only: run_job
+   implicit none
+   private
+   public :: run_t, run_cards, remarks, csv_cell, csv_number, slider, pushed_slider
+
+   character(*), parameter :: deck_file = 'unit_test_run.tmp', listing_file = 'unit_test_run_listing.tmp', &
+      csv_file = 'unit_test_run_csv.tmp', log_file = 'unit_test_run_log.tmp'
+   character(1), parameter :: nl = achar(10)
+   character(*), parameter :: columns = 'set,step,t,kind,name,x,y,phi,vx,vy,vphi,ax,ay,aphi,mark,ex,ey,ephi,evx,evy,evphi,'// &
+      'eax,eay,eaphi,'
+
+   !> What a run leaves: exit status, message for standard error, listing, CSV and log.
+   type :: run_t
+      integer :: status = -1
+      character(:), allocatable :: message, listing, csv, log
+   end type run_t
+
+contains
+
+   !> Runs the deck of these cards; `errors`: with estimates of the errors.
+   subroutine run_cards(cards, r, errors)
+      character(*), intent(in) :: cards(:)
+      type(run_t), intent(out) :: r
+      logical, intent(in), optional :: errors
+      type(options_t) :: options
+      integer :: unit, i
+
+      open (newunit=unit, file=deck_file, status='replace')
+      do i = 1, size(cards)
+         write (unit, '(a)') trim(cards(i))
+      end do
+      close (unit)
+      options%deck = deck_file
+      options%output = listing_file
+      options%csv = csv_file
+      options%log = log_file
+      options%show = ''
+      if (present(errors)) options%errors = errors
+      call run_job(options, r%status, r%message)
+      r%listing = taken(listing_file)
+      r%csv = taken(csv_file)
+      r%log = taken(log_file)
+      open (newunit=unit, file=deck_file)
+      close (unit, status='delete')
+   end subroutine run_cards
+
+   !> The lines of the listing that begin with three stars or three dashes, each with its end.
+   function remarks(r) result(text)
+      type(run_t), intent(in) :: r
+      character(:), allocatable :: text
+      integer :: first, last
+
+      text = ''
+      first = 1
+      do while (first <= len(r%listing))
+         last = first + index(r%listing(first:), nl) - 1
+         if (r%listing(first:min(first + 4, last)) == ' *** ' .or. r%listing(first:min(first + 4, last)) == ' --- ') &
+            text = text//r%listing(first:last)
+         first = last + 1
+      end do
+   end function remarks
+
+   !> The cell of `column` in the row of instant `step` and of `name`; '?' without such a row.
+   function csv_cell(r, step, name, column) result(cell)
+      type(run_t), intent(in) :: r
+      integer, intent(in) :: step
+      character(*), intent(in) :: name, column
+      character(:), allocatable :: cell
+      character(12) :: number
+      integer :: first, last, k, i
+
+      cell = '?'
+      write (number, '(i0)') step
+      k = count([(columns(i:i) == ',', i=1, index(','//columns, ','//column//',') - 1)])
+      first = 1
+      do while (first <= len(r%csv))
+         last = first + index(r%csv(first:), nl) - 1
+         if (has_cells(r%csv(first:last - 1), trim(number), name)) cell = cell_of(r%csv(first:last - 1), k)
+         first = last + 1
+      end do
+   end function csv_cell
+
+   !> The same as a number; huge where it is empty.
+   real(wp) function csv_number(r, step, name, column) result(value)
+      type(run_t), intent(in) :: r
+      integer, intent(in) :: step
+      character(*), intent(in) :: name, column
+      character(:), allocatable :: cell
+      integer :: status
+
+      cell = csv_cell(r, step, name, column)
+      value = huge(value)
+      if (len(cell) > 0) read (cell, *, iostat=status) value
+      if (len(cell) > 0 .and. status /= 0) value = huge(value)
+   end function csv_number
+
+   logical function has_cells(line, step, name)
+      character(*), intent(in) :: line, step, name
+
+      has_cells = cell_of(line, 1) == step .and. cell_of(line, 4) == name
+   end function has_cells
+
+   !> Cell number `k` of a line, from 0 on.
+   function cell_of(line, k) result(cell)
+      character(*), intent(in) :: line
+      integer, intent(in) :: k
+      character(:), allocatable :: cell
+      integer :: i, comma
+
+      cell = line
+      do i = 1, k
+         comma = index(cell, ',')
+         if (comma == 0) comma = len(cell)
+         cell = cell(comma + 1:)
+      end do
+      comma = index(cell, ',')
+      if (comma > 0) cell = cell(:comma - 1)
+   end function cell_of
+
+   !> The central crank-slider, crank 1 and rod 3, in RAD: its estimated angles; without drive, TIME and END.
+   pure function slider(crank, rod) result(cards)
+      character(*), intent(in) :: crank, rod
+      character(80) :: cards(16)
+
+      cards = [character(80) :: &
+         'UNITS   M       RAD     S', &
+         'GROUND  BASE', &
+         'LINK    CRANK                   0.0             0.0             '//crank, &
+         'LINK    ROD                     0.9             0.4             '//rod, &
+         'LINK    PISTON                  3.5             0.0             0.0', &
+         'POINT   O       BASE', &
+         'POINT   GUIDE   BASE', &
+         'POINT   C0      CRANK', &
+         'POINT   C1      CRANK           1.0', &
+         'POINT   R0      ROD', &
+         'POINT   R1      ROD             3.0', &
+         'POINT   S       PISTON', &
+         'REVOLUTEO       C0      PO', &
+         'REVOLUTEC1      R0      PC', &
+         'REVOLUTER1      S       PR', &
+         'PRISM   GUIDE   S       PS']
+   end function slider
+
+   !> The same, moved by its piston: x = `x` + `rate` t, by METHOD `method`, at `steps` + 1 instants from 0 to `t1`.
+   pure function pushed_slider(crank, rod, x, rate, steps, t1, method) result(cards)
+      character(*), intent(in) :: crank, rod, x, rate, steps, t1, method
+      character(80) :: cards(21), drive, time
+
+      drive = 'DRIVE   X       S'
+      drive(33:48) = x
+      drive(49:64) = rate
+      time = 'TIME    '//steps
+      time(33:48) = '0.0'
+      time(49:64) = t1
+      cards = [character(80) :: slider(crank, rod), drive, time, 'PRINT   LINKS', 'METHOD  '//method, 'END']
+   end function pushed_slider
+
+   !> The bytes of a file, which is deleted; '' where there is none.
+   function taken(path) result(text)
+      character(*), intent(in) :: path
+      character(:), allocatable :: text
+      integer :: unit, length
+      logical :: exists
+
+      text = ''
+      inquire (file=path, exist=exists)
+      if (.not. exists) return
+      open (newunit=unit, file=path, access='stream', form='unformatted', status='old')
+      inquire (unit=unit, size=length)
+      deallocate (text)
+      allocate (character(length) :: text)
+      if (length > 0) read (unit) text
+      close (unit, status='delete')
+   end function taken
+end module deck_runs
