@@ -136,6 +136,7 @@ contains
       end if
    end subroutine check_study
 
+   !> Takes `word` as the deck. Errors: a second deck, an empty word, an unknown option.
    subroutine take_deck(word, has_deck, deck, failure)
       character(*), intent(in) :: word
       logical, intent(inout) :: has_deck
@@ -195,6 +196,7 @@ contains
          call fail(failure, status_rejected, 'OPTION --sets NEEDS K/N WITH 1 <= K <= N, SUCH AS 1/4')
    end subroutine take_share
 
+   !> `word` is a whole number of at most 8 digits without a sign.
    pure logical function is_whole(word)
       character(*), intent(in) :: word
 

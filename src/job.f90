@@ -70,6 +70,7 @@ contains
       end if
    end subroutine look_at_signals
 
+   !> Opens the outputs that `options` name. Errors: status_system; status_rejected where two of them are one file.
    subroutine open_all(options, o, failure)
       type(options_t), intent(in) :: options
       type(outputs_t), intent(out) :: o
@@ -95,6 +96,7 @@ contains
       if (len(options%log) > 0) call flush_output(o%log)
    end subroutine flush_all
 
+   !> Closes all outputs; `failure`: that of the last one that could not be written.
    subroutine close_all(options, o, failure)
       type(options_t), intent(in) :: options
       type(outputs_t), intent(inout) :: o

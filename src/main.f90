@@ -13,6 +13,7 @@ program main
    implicit none
 
    interface
+      !> isatty(3): 1 for a terminal.
       integer(c_int) function isatty(descriptor) bind(c)
          import :: c_int
          integer(c_int), value :: descriptor

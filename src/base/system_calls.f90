@@ -51,68 +51,82 @@ module system_calls
    end type facts_t
 
    interface
+      !> statx(2): what kind of file `path` is, and its identity.
       integer(c_int) function statx(directory, path, flags, mask, facts) bind(c)
          import :: c_int, c_char, facts_t
          integer(c_int), value :: directory, flags, mask
          character(kind=c_char), intent(in) :: path(*)
          type(facts_t), intent(out) :: facts
       end function statx
+      !> open(2) without a mode: a descriptor, negative on error.
       integer(c_int) function c_open(path, flags) bind(c, name='open')
          import :: c_int, c_char
          character(kind=c_char), intent(in) :: path(*)
          integer(c_int), value :: flags
       end function c_open
+      !> creat(2): creates or empties a file; a descriptor, negative on error.
       integer(c_int) function creat(path, mode) bind(c)
          import :: c_int, c_char
          character(kind=c_char), intent(in) :: path(*)
          integer(c_int), value :: mode
       end function creat
+      !> read(2): the number of bytes read, 0 at the end of the file, negative on error.
       integer(c_size_t) function c_read(descriptor, text, length) bind(c, name='read')
          import :: c_int, c_char, c_size_t
          integer(c_int), value :: descriptor
          character(kind=c_char), intent(out) :: text(*)
          integer(c_size_t), value :: length
       end function c_read
+      !> write(2): the number of bytes written, negative on error.
       integer(c_size_t) function c_write(descriptor, text, length) bind(c, name='write')
          import :: c_int, c_char, c_size_t
          integer(c_int), value :: descriptor
          character(kind=c_char), intent(in) :: text(*)
          integer(c_size_t), value :: length
       end function c_write
+      !> close(2).
       integer(c_int) function c_close(descriptor) bind(c, name='close')
          import :: c_int
          integer(c_int), value :: descriptor
       end function c_close
+      !> ftruncate(2): cuts an open file to `length` bytes.
       integer(c_int) function ftruncate(descriptor, length) bind(c)
          import :: c_int, c_long
          integer(c_int), value :: descriptor
          integer(c_long), value :: length
       end function ftruncate
+      !> unlink(2): removes a file.
       integer(c_int) function unlink(path) bind(c)
          import :: c_int, c_char
          character(kind=c_char), intent(in) :: path(*)
       end function unlink
+      !> realpath(3): the path without symbolic links; null on error.
       type(c_ptr) function realpath(path, resolved) bind(c)
          import :: c_ptr, c_char
          character(kind=c_char), intent(in) :: path(*)
          character(kind=c_char), intent(inout) :: resolved(*)
       end function realpath
+      !> The address of errno, which C offers as a macro alone.
       type(c_ptr) function errno_location() bind(c, name='__errno_location')
          import :: c_ptr
       end function errno_location
+      !> strerror(3): the text of error `number`.
       type(c_ptr) function strerror(number) bind(c)
          import :: c_int, c_ptr
          integer(c_int), value :: number
       end function strerror
+      !> strlen(3).
       integer(c_size_t) function strlen(text) bind(c)
          import :: c_ptr, c_size_t
          type(c_ptr), value :: text
       end function strlen
+      !> signal(2): installs a handler; returns the one before.
       type(c_funptr) function signal(number, handler) bind(c)
          import :: c_int, c_funptr
          integer(c_int), value :: number
          type(c_funptr), value :: handler
       end function signal
+      !> raise(3): sends this process a signal.
       integer(c_int) function raise(number) bind(c)
          import :: c_int
          integer(c_int), value :: number

@@ -57,6 +57,7 @@ contains
       call solve_each(e, e%needed, .false., c, correction, same)
    end subroutine solve_first
 
+   !> The block has other positions than the one chosen.
    impure elemental logical function has_others(o)
       type(positions_t), intent(in) :: o
 
@@ -194,6 +195,8 @@ contains
       end do
    end function costs
 
+   !> Squared distance of link `i` of trial `t` from the estimate, in spans and radians; far places count as
+   !> `far_place`.
    pure real(wp) function link_cost(e, i, t) result(cost)
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: i
@@ -214,6 +217,7 @@ contains
       off = maxval(abs(u(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))%value - estimate_of(e, i)))
    end function off
 
+   !> The estimated values (n) of the unknowns of block `i`.
    pure function estimate_of(e, i) result(x)
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: i

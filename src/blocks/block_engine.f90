@@ -92,6 +92,7 @@ contains
 
    contains
 
+      !> Moves the blocks out of `s` and prepares the engine for them.
       subroutine take_over(s)
          type(structure_t), intent(inout) :: s
 

@@ -26,6 +26,7 @@ module branch_requests
 
 contains
 
+   !> The BRANCH cards of `m`, none of them used yet.
    pure function new_branch_requests(m) result(c)
       type(mechanism_t), intent(in) :: m
       type(branch_requests_t) :: c

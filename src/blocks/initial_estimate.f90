@@ -259,6 +259,7 @@ contains
       end do
    end function least
 
+   !> The trigonometric form with coefficients `e` at the angle `u`.
    pure real(wp) function form(e, u)
       real(wp), intent(in) :: e(5), u
 

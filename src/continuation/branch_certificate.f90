@@ -16,12 +16,14 @@ module branch_certificate
    integer, parameter :: branch_same = 2      !< that of the motion that is followed
    integer, parameter :: branch_crossed = 3   !< the same, through change points
 
+   !> What is certified of one step.
    type :: branch_t
-      integer :: kind = branch_none
+      integer :: kind = branch_none              !< branch_first, ...
       integer :: substeps = 0                    !< made on the step
       real(wp) :: kantorovich_ratio = 0.0_wp     !< their largest correction over the distance of the next root
    end type branch_t
 
+   !> Sums over the instants of a set, for the listing's line BRANCH.
    type :: certificate_counts_t
       integer :: followed = 0    !< instants with a certificate
       integer :: passed = 0      !< change points

@@ -23,8 +23,9 @@ module drive_excursion
    !> The least factor by which a substep is made shorter at once: its bounds get closer as it does.
    real(wp), parameter :: min_factor = 1.0e-3_wp, a_little_less = 0.98_wp
 
+   !> The laws of all drives, and bounds of them. Times are in the deck's unit.
    type :: drive_excursion_t
-      type(law_t), allocatable :: laws(:)
+      type(law_t), allocatable :: laws(:)         !< (drives)
       real(wp), allocatable :: unit(:)            !< (drives) of the value: 1 over the characteristic length, or 1
       real(wp) :: first = 0.0_wp, last = 0.0_wp   !< of all instants
       real(wp) :: longest = 0.0_wp                !< substep in which no drive can change by `largest_change`

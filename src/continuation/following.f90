@@ -40,25 +40,25 @@ module following
 
    !> A place of the motion that is followed: all that its continuation depends on.
    type :: place_t
-      real(wp) :: t = 0.0_wp
-      class(engine_checkpoint_t), allocatable :: engine
+      real(wp) :: t = 0.0_wp                     !< time
+      class(engine_checkpoint_t), allocatable :: engine   !< the engine's part
    end type place_t
 
    !> The engine, and how far it has come.
    type :: following_t
-      class(engine_t), allocatable :: engine
+      class(engine_t), allocatable :: engine     !< solves single instants
       type(branch_requests_t) :: branch_requests !< BRANCH cards, and change points passed
       type(convergence_t) :: convergence         !< of the position solved for last
       integer :: iterations = 0                  !< of all positions so far
       logical :: follows = .false.               !< a regular motion is followed, found at `t`
-      real(wp) :: t = 0.0_wp
+      real(wp) :: t = 0.0_wp                     !< time
       type(place_t) :: place                     !< where the step that was divided last began
       type(drive_excursion_t) :: drives          !< how far the drives leave their chords
    end type following_t
 
    !> A step of the continuation, from one instant to another.
    type :: step_record_t
-      logical :: arrived = .false.
+      logical :: arrived = .false.               !< at the instant asked for
       logical :: blocked = .false.               !< at a place from which no substep could be made
       logical :: stands = .false.                !< on a change point, from shortly before which it is followed
       integer :: tries = 0                       !< substeps tried
@@ -68,8 +68,8 @@ module following
 
    !> A limit on one side: instants from `t` on lie beyond it; what there is to say of it.
    type :: limit_t
-      logical :: known = .false.
-      real(wp) :: t = 0.0_wp
+      logical :: known = .false.                 !< there is one
+      real(wp) :: t = 0.0_wp                     !< time
       type(diagnostic_t), allocatable :: diagnostics(:)
    end type limit_t
 

@@ -50,11 +50,12 @@ module dense_engine
       type(motion_t) :: now                      !< the motion found last
       type(motion_t) :: last                     !< the one that is followed
       type(motion_t) :: before                   !< the one before, where the order is 3
-      integer :: determinant_now = 0, determinant = 0
+      integer :: determinant_now = 0, determinant = 0   !< signs at `now` and `last`
       real(wp), allocatable :: drive_values(:, :) !< (3, drives) value, rate, acceleration
       logical :: has_missed = .false.            !< the assembly meant at an earlier instant was not found
-      integer :: method = 0, order = own_predictor
-      real(wp) :: tolerance = 0.0_wp
+      integer :: method = 0                      !< method_dense or method_matrix
+      integer :: order = own_predictor           !< of the predictor, 0 to 3
+      real(wp) :: tolerance = 0.0_wp             !< relative; 0: the limit of rounding
    contains
       procedure :: solve
       procedure :: accept
@@ -66,7 +67,7 @@ module dense_engine
       procedure :: followed_position
    end type dense_engine_t
 
-   !> The motion that is followed, and that found last.
+   !> The motion that is followed, and that found last, with the signs of their determinants.
    type, extends(engine_checkpoint_t) :: place_t
       type(motion_t) :: last, before, now
       integer :: determinant = 0, determinant_now = 0

@@ -41,7 +41,7 @@ module pose
       real(wp), allocatable :: slope(:, :)        !< (2, points) derivative of that by phi, or its frozen form
       logical :: frozen = .false.                 !< slopes and gradients are those of the frozen form
       logical :: keeps = .false.                  !< references, once chosen, are never chosen again
-      logical :: has_chosen = .false.
+      logical :: has_chosen = .false.             !< references were chosen
       real(wp), allocatable :: zeros(:, :)        !< (2, points) reference angles of the body vectors' rows
       real(wp), allocatable :: guide_zeros(:, :)  !< (2, pairs) of the slot rows
       real(wp), allocatable :: slide_zeros(:, :)  !< (2, drives) of the SLIDE rows

@@ -108,6 +108,7 @@ contains
 
    contains
 
+      !> Length of the body vector of `point`; 0 where the angle of its link is given.
       pure real(wp) function body_vector_bound(point)
          integer, intent(in) :: point
 
@@ -115,6 +116,7 @@ contains
          if (c%class(s%link_of(point)) > 0) body_vector_bound = norm2(s%offset(:, point))
       end function body_vector_bound
 
+      !> Bound for the second derivatives of the row of prismatic pair `pair`; 0 where the angle of its guide is given.
       pure real(wp) function slot_bound(pair)
          integer, intent(in) :: pair
 

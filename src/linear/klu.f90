@@ -55,40 +55,47 @@ module klu
    integer(c_int), parameter :: colamd = 1, unscaled = -1
 
    interface
+      !> Sets the default parameters.
       integer(c_int) function klu_defaults(common) bind(c)
          import :: c_int, common_t
          type(common_t), intent(inout) :: common
       end function klu_defaults
+      !> Orders the pattern: block triangular form, then COLAMD or AMD.
       type(c_ptr) function klu_analyze(n, ap, ai, common) bind(c)
          import :: c_int, c_ptr, common_t
          integer(c_int), value :: n
          integer(c_int), intent(in) :: ap(*), ai(*)
          type(common_t), intent(inout) :: common
       end function klu_analyze
+      !> Factors with pivoting.
       type(c_ptr) function klu_factor(ap, ai, ax, symbolic, common) bind(c)
          import :: c_int, c_ptr, common_t
          integer(c_int), intent(in) :: ap(*), ai(*)
          type(c_ptr), value :: ax, symbolic
          type(common_t), intent(inout) :: common
       end function klu_factor
+      !> Factors with the pivots of the last klu_factor.
       integer(c_int) function klu_refactor(ap, ai, ax, symbolic, numeric, common) bind(c)
          import :: c_int, c_ptr, common_t
          integer(c_int), intent(in) :: ap(*), ai(*)
          type(c_ptr), value :: ax, symbolic, numeric
          type(common_t), intent(inout) :: common
       end function klu_refactor
+      !> Solves A x = b in place.
       integer(c_int) function klu_solve(symbolic, numeric, ldim, nrhs, b, common) bind(c)
          import :: c_int, c_ptr, common_t
          type(c_ptr), value :: symbolic, numeric, b
          integer(c_int), value :: ldim, nrhs
          type(common_t), intent(inout) :: common
       end function klu_solve
+      !> Solves A' x = b in place.
       integer(c_int) function klu_tsolve(symbolic, numeric, ldim, nrhs, b, common) bind(c)
          import :: c_int, c_ptr, common_t
          type(c_ptr), value :: symbolic, numeric, b
          integer(c_int), value :: ldim, nrhs
          type(common_t), intent(inout) :: common
       end function klu_tsolve
+      !> Copies out the factors; arguments that are null are left out.
       integer(c_int) function klu_extract(numeric, symbolic, lp, li, lx, up, ui, ux, fp, fi, fx, p, q, rs, r, common) &
          bind(c)
          import :: c_int, c_ptr, common_t
@@ -96,11 +103,13 @@ module klu
          integer(c_int), intent(out) :: p(*), q(*)
          type(common_t), intent(inout) :: common
       end function klu_extract
+      !> Frees the ordering.
       integer(c_int) function klu_free_symbolic(symbolic, common) bind(c)
          import :: c_int, c_ptr, common_t
          type(c_ptr), intent(inout) :: symbolic
          type(common_t), intent(inout) :: common
       end function klu_free_symbolic
+      !> Frees the factors.
       integer(c_int) function klu_free_numeric(numeric, common) bind(c)
          import :: c_int, c_ptr, common_t
          type(c_ptr), intent(inout) :: numeric
@@ -197,12 +206,14 @@ contains
       end do
    end subroutine multiply
 
+   !> The order of the matrix.
    pure integer(c_int) function order_of(k)
       type(klu_t), intent(in) :: k
 
       order_of = size(k%pattern%first, kind=c_int) - 1_c_int
    end function order_of
 
+   !> Notes the sign of the row and column permutations of the factors just made.
    subroutine note_exchanges(k)
       type(klu_t), intent(inout) :: k
       integer(c_int), allocatable :: rows(:), columns(:)
@@ -230,6 +241,7 @@ contains
       end do
    end function sign_of
 
+   !> Frees what KLU has allocated for `k`.
    impure elemental subroutine free_factors(k)
       type(klu_t), intent(inout) :: k
       integer(c_int) :: done

@@ -9,12 +9,14 @@ module lapack_routines
    public
 
    interface
+      !> LU factorization with partial pivoting.
       subroutine NAMED(getrf)(m, n, a, lda, ipiv, info)
          import :: wp
          integer, intent(in) :: m, n, lda
          real(wp), intent(inout) :: a(lda, *)
          integer, intent(out) :: ipiv(*), info
       end subroutine NAMED(getrf)
+      !> Solves from the factors of getrf.
       subroutine NAMED(getrs)(trans, n, nrhs, a, lda, ipiv, b, ldb, info)
          import :: wp
          character(1), intent(in) :: trans
@@ -23,6 +25,7 @@ module lapack_routines
          real(wp), intent(inout) :: b(ldb, *)
          integer, intent(out) :: info
       end subroutine NAMED(getrs)
+      !> Reciprocal condition number from the factors of getrf.
       subroutine NAMED(gecon)(norm, n, a, lda, anorm, rcond, work, iwork, info)
          import :: wp
          character(1), intent(in) :: norm
@@ -33,24 +36,28 @@ module lapack_routines
          integer, intent(inout) :: iwork(*)
          integer, intent(out) :: info
       end subroutine NAMED(gecon)
+      !> getrf and getrs at once.
       subroutine NAMED(gesv)(n, nrhs, a, lda, ipiv, b, ldb, info)
          import :: wp
          integer, intent(in) :: n, nrhs, lda, ldb
          real(wp), intent(inout) :: a(lda, *), b(ldb, *)
          integer, intent(out) :: ipiv(*), info
       end subroutine NAMED(gesv)
+      !> 1-norm of a matrix known by its products, by reverse communication.
       subroutine NAMED(lacn2)(n, v, x, isgn, est, kase, isave)
          import :: wp
          integer, intent(in) :: n
          real(wp), intent(inout) :: v(*), x(*), est
          integer, intent(inout) :: isgn(*), kase, isave(3)
       end subroutine NAMED(lacn2)
+      !> Solves a positive definite tridiagonal system.
       subroutine NAMED(ptsv)(n, nrhs, d, e, b, ldb, info)
          import :: wp
          integer, intent(in) :: n, nrhs, ldb
          real(wp), intent(inout) :: d(*), e(*), b(ldb, *)
          integer, intent(out) :: info
       end subroutine NAMED(ptsv)
+      !> QR factorization.
       subroutine NAMED(geqrf)(m, n, a, lda, tau, work, lwork, info)
          import :: wp
          integer, intent(in) :: m, n, lda, lwork
@@ -58,6 +65,7 @@ module lapack_routines
          real(wp), intent(out) :: tau(*)
          integer, intent(out) :: info
       end subroutine NAMED(geqrf)
+      !> Multiplies by the orthogonal factor of geqrf.
       subroutine NAMED(ormqr)(side, trans, m, n, k, a, lda, tau, c, ldc, work, lwork, info)
          import :: wp
          character(1), intent(in) :: side, trans
@@ -66,6 +74,7 @@ module lapack_routines
          real(wp), intent(inout) :: c(ldc, *), work(*)
          integer, intent(out) :: info
       end subroutine NAMED(ormqr)
+      !> Solves a triangular system.
       subroutine NAMED(trtrs)(uplo, trans, diag, n, nrhs, a, lda, b, ldb, info)
          import :: wp
          character(1), intent(in) :: uplo, trans, diag
@@ -74,6 +83,7 @@ module lapack_routines
          real(wp), intent(inout) :: b(ldb, *)
          integer, intent(out) :: info
       end subroutine NAMED(trtrs)
+      !> Reciprocal condition number of a triangular matrix.
       subroutine NAMED(trcon)(norm, uplo, diag, n, a, lda, rcond, work, iwork, info)
          import :: wp
          character(1), intent(in) :: norm, uplo, diag
@@ -84,6 +94,7 @@ module lapack_routines
          integer, intent(inout) :: iwork(*)
          integer, intent(out) :: info
       end subroutine NAMED(trcon)
+      !> Singular value decomposition.
       subroutine NAMED(gesvd)(jobu, jobvt, m, n, a, lda, s, u, ldu, vt, ldvt, work, lwork, info)
          import :: wp
          character(1), intent(in) :: jobu, jobvt

@@ -15,6 +15,7 @@ module drives
    public :: law_t, new_law, drive_motion, drive_rate, monomial
    public :: spline_t, new_spline, spline_value, piece_at, piece_value
 
+   !> A natural cubic spline, in the units of the drive and of time.
    type :: spline_t
       real(wp), allocatable :: x(:), y(:), m(:)   !< (knots) times, increasing; values; second derivatives
    end type spline_t

@@ -9,12 +9,13 @@ module independent
    !> The members of a part by their numbers in the whole set, increasing; the place in the list is the number within
    !> the part. A BRANCH card without a link is for every part.
    type :: part_t
+      !> Their numbers in the set.
       integer, allocatable :: links(:), points(:), pairs(:), drives(:), requests(:), branch_requests(:)
    end type part_t
 
    !> The parts of a set. A set that is one mechanism has `count` 1, and nothing else is allocated.
    type :: parts_t
-      integer :: count = 1
+      integer :: count = 1                        !< of independent mechanisms, the ground apart
       type(part_t), allocatable :: list(:)        !< (count)
       integer, allocatable :: part(:), number(:)  !< (requests) the part, 0: the ground's; the number within the part
    end type parts_t

@@ -12,6 +12,7 @@ module law_bounds
    private
    public :: bounds_t, bounds_of
 
+   !> An interval for each derivative of a law.
    type :: bounds_t
       !> Of the derivatives 0 to 2, in the drive's unit (length or rad) and the deck's unit of time. -huge, huge: no
       !> bound.

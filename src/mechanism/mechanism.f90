@@ -40,9 +40,10 @@ module mechanism
 
    integer, parameter :: own_predictor = -1  !< the predictor of the method
 
+   !> A rigid link, with axes of its own.
    type :: link_t
       character(label_length) :: name = ''
-      logical :: ground = .false.
+      logical :: ground = .false.            !< does not move
       real(wp) :: position(3) = 0.0_wp       !< x, y, phi: fixed (ground) or the estimate that selects the assembly
    end type link_t
 
@@ -64,7 +65,7 @@ module mechanism
    !> One term of the law of a drive.
    type :: term_t
       integer :: kind = term_harmonic        !< term_harmonic, term_power or term_table
-      real(wp) :: r(3) = 0.0_wp              !< its parameters
+      real(wp) :: r(3) = 0.0_wp              !< R1, R2, R3 of the card; angles in radians
       real(wp), allocatable :: knots(:), values(:)  !< (rows) of a table: times, increasing, and values
    end type term_t
 
@@ -72,27 +73,27 @@ module mechanism
       integer :: kind = drive_angle          !< drive_angle, ..., drive_slide
       integer :: subject = 0                 !< the number of a link, point or pair: driven_kinds(kind)
       integer :: second = 0                  !< drive_relangle: the number of the second link
-      real(wp) :: polynomial(3) = 0.0_wp     !< value at t = 0, rate, acceleration
-      type(term_t), allocatable :: terms(:)
+      real(wp) :: polynomial(3) = 0.0_wp     !< value at t = 0 (length or rad), rate, acceleration
+      type(term_t), allocatable :: terms(:)  !< of its ADD cards; none: not allocated
    end type drive_t
 
    !> A row of the tables at every `every`-th instant, the first and the last.
    type :: request_t
       integer :: kind = request_link         !< request_link, request_point or request_pair
       integer :: subject = 0                 !< the number of the link, point or pair
-      integer :: every = 1
+      integer :: every = 1                   !< 1 or more
    end type request_t
 
    !> At the next change point after `t`, `link` takes the other branch; link 0: any links that pass a change point.
    type :: branch_request_t
-      integer :: link = 0
-      real(wp) :: t = 0.0_wp
+      integer :: link = 0                    !< its number; 0: any
+      real(wp) :: t = 0.0_wp                 !< time
    end type branch_request_t
 
    !> Options and instants: what each part of a set has in common with the whole.
    type :: settings_t
-      integer :: set_number = 1
-      character(label_length) :: length_unit = 'M', time_unit = 'S'
+      integer :: set_number = 1              !< of the set in its deck
+      character(label_length) :: length_unit = 'M', time_unit = 'S'   !< printed, never converted
       logical :: degrees = .false.           !< angles are printed in degrees
       logical :: polish = .false.            !< headings are printed in Polish
       integer :: method = method_newton      !< method_newton, method_matrix or method_dense
@@ -106,7 +107,7 @@ module mechanism
 
    !> A set of computations.
    type, extends(settings_t) :: mechanism_t
-      character(title_length) :: title = ''
+      character(title_length) :: title = ''  !< of the card TITLE
       type(link_t), allocatable :: links(:)
       type(point_t), allocatable :: points(:)
       type(pair_t), allocatable :: pairs(:)

@@ -11,6 +11,7 @@ module names
    !> Slots of an empty table. At most every second slot is filled.
    integer, parameter :: first_size = 64
 
+   !> A place of the table.
    type :: slot_t
       character(label_length) :: name = ''
       integer :: number = 0                !< 0: the slot is free

@@ -40,16 +40,18 @@ module error_estimate
    !> `taken` where digits of the tables could be `in_doubt`, which are masked then, or where the errors are `asked`
    !> for, if there is a position.
    type :: error_estimate_t
-      logical :: taken = .false., asked = .false., in_doubt = .false.
+      logical :: taken = .false.             !< `samples` tell something
+      logical :: asked = .false.             !< --errors: wanted at every instant
+      logical :: in_doubt = .false.          !< digits of this instant may be lost
       !> (length or angle, derivative) The rounding error of a sum of numbers as large as the largest of the rows.
       real(wp) :: of_sums(2, 0:2) = 0.0_wp
-      type(motion_t), allocatable :: samples(:)
+      type(motion_t), allocatable :: samples(:)   !< the instant of the deck (0) and of its perturbed decks
    end type error_estimate_t
 
    !> Engines of the deck (0) and of its perturbed decks; the characteristic length and rate of the mechanism.
    type :: estimator_t
-      real(wp) :: length = 1.0_wp, rate = 1.0_wp
-      type(block_engine_t), allocatable :: engine(:)
+      real(wp) :: length = 1.0_wp, rate = 1.0_wp   !< in the deck's units
+      type(block_engine_t), allocatable :: engine(:)   !< (0:sample_count)
    end type estimator_t
 
 contains

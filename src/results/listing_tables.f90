@@ -26,8 +26,8 @@ module listing_tables
 
    !> Decimals and powers of ten: (length or angle, derivative).
    type :: digits_t
-      integer :: decimals(2, 0:2) = digits_after_first
-      integer :: power(2, 0:2) = 0
+      integer :: decimals(2, 0:2) = digits_after_first   !< digits after the point
+      integer :: power(2, 0:2) = 0                       !< printed is the value over 10**power
    end type digits_t
 
    !> The digits of the set, and of each of its independent mechanisms where they are not all the same.
@@ -35,7 +35,7 @@ module listing_tables
       type(digits_t), allocatable :: own(:)   !< (parts)
       integer, allocatable :: part(:)         !< (requests) 0: of the ground
       logical :: mixed = .false.              !< their powers of ten differ: each table has its own in its heads
-      integer :: time_decimals = digits_after_first
+      integer :: time_decimals = digits_after_first   !< of the instants, as above
       integer :: time_power = 0
       real(wp) :: angle = 1.0_wp           !< radians in the unit in which angles are printed
       character(row_length) :: heads(3)    !< by the kind of a request
@@ -46,9 +46,9 @@ module listing_tables
    !> The table at hand: the kind of its rows, 0 where there is none yet; the powers of ten of its columns; `masked`: a
    !> digit of the instant is.
    type :: table_t
-      integer :: kind = 0
-      integer :: power(9) = 0
-      logical :: masked = .false.
+      integer :: kind = 0                  !< of its rows: request_link, ...; 0: no table yet
+      integer :: power(9) = 0              !< (columns) of ten in its heads
+      logical :: masked = .false.          !< some digit is a question mark
    end type table_t
 
 contains

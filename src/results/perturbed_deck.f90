@@ -66,6 +66,7 @@ contains
       if (k > 0) perturbed_instant = t*(1.0_wp + merge(perturbation, -perturbation, mod(k/2, 2) == 1))
    end function perturbed_instant
 
+   !> Perturbs a prismatic pair's guide: alpha and beta (rad), offset (length).
    pure subroutine shift_guide(alpha, offset, beta, dice)
       real(wp), intent(inout) :: alpha, offset, beta
       type(dice_t), intent(inout) :: dice
@@ -78,6 +79,7 @@ contains
       beta = x(3)
    end subroutine shift_guide
 
+   !> Perturbs the numbers of a drive's law.
    pure subroutine shift_drive(drive, dice)
       type(drive_t), intent(inout) :: drive
       type(dice_t), intent(inout) :: dice

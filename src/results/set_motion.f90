@@ -12,7 +12,7 @@ module set_motion
 
    !> A set that is one mechanism is one part, with the numbers of the set.
    type :: set_motion_t
-      type(parts_t) :: parts
+      type(parts_t) :: parts                            !< which link, point, pair and drive is in which
       type(mechanism_t), allocatable :: own(:)          !< (parts) each as a set of its own
       type(motion_t), allocatable :: motions(:)         !< (parts)
       type(error_estimate_t), allocatable :: errors(:)  !< (parts)

@@ -29,7 +29,7 @@ module assur_groups
    real(wp), parameter :: along(2, 2) = reshape([1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [2, 2])
 
    type :: group_t
-      integer, allocatable :: links(:)
+      integer, allocatable :: links(:)    !< numbers of its links
       logical :: driven = .false.         !< a drive is part of it
       logical :: needed = .true.          !< a table names one of its links, or one that builds on it
    end type group_t

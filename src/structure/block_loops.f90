@@ -15,8 +15,9 @@ module block_loops
 
    !> What has been filled, and the columns of the block being filled; 0: not its own.
    type :: filling_t
-      integer :: loops = 0, body_vectors = 0, slides = 0
-      integer, allocatable :: column(:), latest(:)
+      integer :: loops = 0, body_vectors = 0, slides = 0   !< how many of each have been filled
+      integer, allocatable :: column(:)                    !< (0:unknowns) of the block
+      integer, allocatable :: latest(:)                    !< (vector loops) the block loop made of each last
    end type filling_t
 
    !> Entries come row by row: of each column the row noted latest and where its last entry stands.

@@ -20,9 +20,9 @@ module blocks
    !> Unknowns, rows of equations and loops of a block. As many rows as unknowns, but in the first block where
    !> equations are too many.
    type :: block_t
-      integer :: first = 1, last = 0
-      integer :: first_row = 1, last_row = 0
-      integer :: first_loop = 1, last_loop = 0
+      integer :: first = 1, last = 0              !< its unknowns: unknown(first:last) of the blocks
+      integer :: first_row = 1, last_row = 0      !< its rows
+      integer :: first_loop = 1, last_loop = 0    !< its vector loops
       type(shape_t) :: shape                      !< of its Jacobian
       logical :: direct = .false.                 !< one equation that is linear with coefficient 1
       real(wp) :: coarse = 1.0_wp                 !< the largest of its loops'
@@ -31,18 +31,22 @@ module blocks
 
    !> Row of an equation: = constant + value of the drive; direct: unknown = other + sign_of (constant + value).
    type :: row_t
-      integer :: drive = 0, other = 0
+      integer :: drive = 0                        !< whose value is added; 0: none
+      integer :: other = 0                        !< direct: the unknown that is added; 0: the ground's angle
       integer :: pair = 0                         !< 0: a drive's equation
-      logical :: angular = .false.
-      real(wp) :: constant = 0.0_wp, sign_of = 1.0_wp
+      logical :: angular = .false.                !< in radians, not lengths
+      real(wp) :: constant = 0.0_wp               !< in radians or the unit below
+      real(wp) :: sign_of = 1.0_wp                !< 1 or -1
       real(wp) :: unit = 1.0_wp                   !< of its lengths, in that of the mechanism
    end type row_t
 
    !> A vector loop as one block has it: rows (0: none), the known body vectors, then those of the block's own angles.
    type :: block_loop_t
-      integer :: kind = loop_components
-      integer :: row_x = 0, row_y = 0
-      integer :: first_vector = 1, first_own = 1, last_vector = 0, first_slide = 1, last_slide = 0
+      integer :: kind = loop_components           !< what its rows ask for: loop_components, ...
+      integer :: row_x = 0, row_y = 0             !< of the block; 0: none
+      !> Its body vectors; from first_own on those that angles of the block rotate.
+      integer :: first_vector = 1, first_own = 1, last_vector = 0
+      integer :: first_slide = 1, last_slide = 0  !< its slides
       integer :: orientation = 0, orientation_column = 0   !< projection: turns with it; angles: the first
       integer :: less = 0, less_column = 0        !< angles: the one subtracted
       integer :: orientation_at = 0, less_at = 0        !< where their entries stand in the Jacobian
@@ -54,18 +58,18 @@ module blocks
 
    !> `at`: where its entries stand in the Jacobian of its block, for the rows row_x and row_y.
    type :: body_vector_t
-      integer :: orientation = 0, column = 0, at(2) = 0
-      real(wp) :: x = 0.0_wp, y = 0.0_wp
+      integer :: orientation = 0, column = 0, at(2) = 0   !< the angle that rotates it, and the column of that
+      real(wp) :: x = 0.0_wp, y = 0.0_wp                  !< in the axes of the orientation, unit of the loop
    end type body_vector_t
 
    !> Columns are 0 for what is known; `at` as above, `orientation_at` those of the orientation's column.
    type :: slide_t
       integer :: orientation = 0, orientation_column = 0, unknown = 0, column = 0, at(2) = 0, orientation_at(2) = 0
-      real(wp) :: body_vector(2) = 0.0_wp
+      real(wp) :: body_vector(2) = 0.0_wp         !< unit vector along the guide, with its sign in the loop
    end type slide_t
 
    type :: blocks_t
-      integer :: orientations = 0, unknowns = 0
+      integer :: orientations = 0, unknowns = 0   !< angles; angles, slides and places of roots together
       logical :: solvable = .false.               !< each unknown has an equation of its own
       integer :: redundant = 0                    !< equations that found no unknown
       integer, allocatable :: free(:)             !< unknowns that found no equation

@@ -45,7 +45,7 @@ module structure
       integer :: coordinates = 0  !< w = 3 n
       integer :: equations = 0    !< r
       integer :: degrees_of_freedom = 0     !< s
-      integer :: drives = 0
+      integer :: drives = 0       !< number of drives
       logical :: solvable = .false.             !< every unknown has an equation of its own
       type(part_t), allocatable :: lacking(:)   !< what still can move
       integer :: redundant = 0                  !< equations that are too many, among those of

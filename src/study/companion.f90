@@ -19,6 +19,7 @@ module companion
    public :: ask_companion, put_trial, read_motions, read_times
 
    interface
+      !> mkdtemp(3): makes a directory and completes its name; null on error.
       type(c_ptr) function mkdtemp(template) bind(c)
          import :: c_ptr, c_char
          character(kind=c_char), intent(inout) :: template(*)

@@ -154,6 +154,7 @@ contains
       end subroutine ask
    end subroutine study_set
 
+   !> Fills `row` from the outcome of its trial: errors against the truth, iterations, times.
    subroutine take_outcome(m, truth, one, row)
       type(mechanism_t), intent(in) :: m
       type(truth_t), intent(in) :: truth

@@ -65,6 +65,7 @@ contains
       end do
    end subroutine put_estimates
 
+   !> Compares estimates and true errors of trial `t` at up to about max_compared instants.
    subroutine compare(m, t, truth, c)
       type(mechanism_t), intent(in) :: m
       type(trial_t), intent(in) :: t

@@ -211,6 +211,7 @@ contains
       end if
    end function time_text
 
+   !> A ratio of times, in 7 columns.
    pure function ratio_text(ratio) result(text)
       real(dp), intent(in) :: ratio
       character(7) :: text

@@ -22,6 +22,10 @@ equal 'lines over 120 columns' '' "$(awk 'length > 120 { print FILENAME ":" FNR 
 equal 'stop or print outside main' '' \
    "$(grep -nE '^ *((error +)?stop( |$)|print +[^=]*$|write *[(] *[*])' $sources | grep -v '^src/main.f90')"
 equal 'files over 400 lines' '' "$(for file in $sources; do awk 'END { if (NR > 400) print FILENAME }' "$file"; done)"
+equal 'procedures without a head comment' '' "$(awk -f tests/system/heads.awk $sources)"
+printf '   !> Doc.\n   pure function a(x)\n   end function a\n\n   real(wp) function b(x, &\n      y)\n      integer :: x\n' > "$BUILD/order/heads.f90"
+equal 'a procedure without a head comment is found' "$BUILD/order/heads.f90:5: real(wp) function b(x, &" \
+   "$(awk -f tests/system/heads.awk "$BUILD/order/heads.f90")"
 equal 'tabs' '' "$(grep -ln "$(printf '\t')" $sources)"
 # pFUnit writes procedures and variables of these names around every suite.
 equal 'names that hide those of pFUnit' '' "$(awk '
