@@ -156,13 +156,13 @@ contains
       integer :: k, flagged
       logical :: due
 
-      layout = new_layout(m)
+      layout = new_layout(m, findings%parts, findings%own)
       call listing_head(o%listing, layout, m, findings)
       if (options%check) return
       if (len(options%log) > 0) call log_head(o%log, m, options%errors)
       call flush_all(options, o)
       if (is_over(o)) return
-      call make_set_analysis(m, a, findings%structures)
+      call make_set_analysis(m, a, findings)
       flagged = 0
       every = strides(m)
       do k = 0, instant_count(m) - 1

@@ -55,13 +55,12 @@ module block_engine
       type(positions_t), allocatable :: others(:)       !< (blocks) what else was found at first
       logical, allocatable :: is_close(:)               !< (blocks) another assembly is about as near to the estimate
       type(workspace_t) :: work
-      ! The motion that is followed.
-      type(history_t) :: history
-      type(jacobians_t) :: followed
-      real(wp), allocatable :: jacobian(:)              !< of the block with too many rows: (rows*n)
-      ! The motion found last.
-      real(wp) :: t = 0.0_wp, change = 0.0_wp           !< its time; the largest change of a value that was predicted
-      type(state_t) :: state
+      type(history_t) :: history                        !< of the motion that is followed
+      type(jacobians_t) :: followed                     !< there
+      real(wp), allocatable :: jacobian(:)              !< there, of the block with too many rows: (rows*n)
+      real(wp) :: t = 0.0_wp                            !< the time of the motion found last
+      real(wp) :: change = 0.0_wp                       !< its largest correction of a predicted value
+      type(state_t) :: state                            !< its values
       type(jacobians_t) :: found
       logical, allocatable :: is_singular(:), crossed(:) !< (blocks) without velocities; with a new sign of determinant
    end type block_engine_t
@@ -80,28 +79,22 @@ contains
 
    !> Ready for the first instant of `m`. `structure`: that of `m`, whose blocks the engine takes over; without it
    !> the engine makes one.
-   subroutine make_block_engine(e, m, structure)
+   recursive subroutine make_block_engine(e, m, structure)
       type(block_engine_t), intent(out) :: e
       type(mechanism_t), intent(in) :: m
       type(structure_t), intent(inout), optional :: structure
       type(structure_t) :: own
 
-      if (.not. present(structure)) own = new_structure(m)
-      if (.not. present(structure)) call take_over(own)
-      if (present(structure)) call take_over(structure)
-
-   contains
-
-      !> Moves the blocks out of `s` and prepares the engine for them.
-      subroutine take_over(s)
-         type(structure_t), intent(inout) :: s
-
-         e%span = s%span
-         e%length = s%length
-         e%tolerance = m%tolerance
-         call move_alloc(s%blocks, e%blocks)
-         if (e%blocks%solvable) call prepare(e, m, s%tree)
-      end subroutine take_over
+      if (.not. present(structure)) then
+         own = new_structure(m)
+         call make_block_engine(e, m, own)
+         return
+      end if
+      e%span = structure%span
+      e%length = structure%length
+      e%tolerance = m%tolerance
+      call move_alloc(structure%blocks, e%blocks)
+      if (e%blocks%solvable) call prepare(e, m, structure%tree)
    end subroutine make_block_engine
 
    !> Everything of the engine `e` of `m` that comes from its blocks and its tree `t`.

@@ -53,19 +53,26 @@ module listing_tables
 
 contains
 
-   !> The layout of the tables of `m`, from its deck alone.
-   function new_layout(m) result(l)
+   !> The layout of the tables of `m`, from its deck alone. `parts`, `own`: as from `find_parts`, which finds them where
+   !> they are not given.
+   function new_layout(m, parts, own) result(l)
       type(mechanism_t), intent(in) :: m
+      type(parts_t), intent(in), optional :: parts
+      type(mechanism_t), intent(in), optional :: own(:)
       type(layout_t) :: l
-      type(parts_t) :: parts
-      type(mechanism_t), allocatable :: own(:)
+      type(parts_t) :: new_parts
+      type(mechanism_t), allocatable :: new_own(:)
       real(wp) :: time
       integer :: k
 
       if (m%degrees) l%angle = degree
       l%digits_t = digits_for(m, l%angle)
-      call find_parts(m, parts, own)
-      if (parts%count > 1) call take_parts(l, [(digits_for(own(k), l%angle), k=1, size(own))], parts%part)
+      if (present(parts)) then
+         call take_parts(l, parts, own)
+      else
+         call find_parts(m, new_parts, new_own)
+         call take_parts(l, new_parts, new_own)
+      end if
       time = max(abs(m%t0), abs(m%t1), maxval([0.0_wp, abs(m%at)]))
       if (time > 0.0_wp) call choose_digits(log10(time), l%time_decimals, l%time_power)
       do k = 1, size(l%heads)
@@ -92,15 +99,19 @@ contains
       end do
    end function digits_for
 
-   !> Each of several mechanisms has its `own` digits; `part` (requests): whose row it is. Where none has more than one
-   !> decimal more than another, all have those of the largest.
-   pure subroutine take_parts(l, own, part)
+   !> Each of several mechanisms `m` (parts) has its own digits. Where none has more than one decimal more than another,
+   !> all have those of the largest.
+   pure subroutine take_parts(l, parts, m)
       type(layout_t), intent(inout) :: l
-      type(digits_t), intent(in) :: own(:)
-      integer, intent(in) :: part(:)
-      type(digits_t) :: largest
+      type(parts_t), intent(in) :: parts
+      type(mechanism_t), intent(in) :: m(:)
+      type(digits_t) :: own(parts%count), largest
       integer :: c
 
+      if (parts%count == 1) return
+      do c = 1, size(own)
+         own(c) = digits_for(m(c), l%angle)
+      end do
       l%digits_t = own(1)
       largest = own(1)
       do c = 2, size(own)
@@ -110,7 +121,7 @@ contains
       end do
       if (.not. l%mixed .and. all(largest%decimals - l%decimals <= 1)) return
       l%own = own
-      l%part = part
+      l%part = parts%part
    end subroutine take_parts
 
    !> The digits of request number `i`.

@@ -3,7 +3,7 @@
 module set_analysis
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use structure, only: structure_t
+   use structure, only: findings_t
    use diagnostics, only: diagnostic_t
    use convergence, only: convergence_t, is_solved, gather
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, worst_branch
@@ -27,21 +27,21 @@ module set_analysis
 
 contains
 
-   !> Ready for the first instant of `m`, whose equations are as many as its unknowns. `structures` (parts): those of
-   !> its independent mechanisms, see `make_block_engine`.
-   subroutine make_set_analysis(m, s, structures)
+   !> Ready for the first instant of `m`, whose equations are as many as its unknowns. `findings`: those of its
+   !> structure, which give up what the engines need; without them it is found anew.
+   subroutine make_set_analysis(m, s, findings)
       type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(out) :: s
-      type(structure_t), intent(inout), optional :: structures(:)
+      type(findings_t), intent(inout), optional :: findings
       integer :: c
 
-      call new_set_motion(m, s%now)
+      call new_set_motion(m, s%now, findings)
       associate (n => s%now%parts%count)
          allocate (s%list(n), s%opinions(n), s%estimators(n))
       end associate
       do c = 1, size(s%list)
-         if (present(structures)) then
-            call make_analysis(s%list(c), s%now%own(c), structures(c))
+         if (present(findings)) then
+            call make_analysis(s%list(c), s%now%own(c), findings%structures(c))
          else
             call make_analysis(s%list(c), s%now%own(c))
          end if

@@ -5,6 +5,7 @@ module set_motion
    use motion, only: motion_t, new_motion, mark_none
    use diagnostics, only: diagnostic_t
    use independent, only: part_t, parts_t, find_parts, mechanism_of
+   use structure, only: findings_t
    use error_estimate, only: error_estimate_t
    implicit none
    private
@@ -20,13 +21,19 @@ module set_motion
 
 contains
 
-   !> The parts of `m`, at rest.
-   subroutine new_set_motion(m, s)
+   !> The parts of `m`, at rest. `findings`: those of its structure, which give up the parts they have found.
+   subroutine new_set_motion(m, s, findings)
       type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(out) :: s
+      type(findings_t), intent(inout), optional :: findings
       integer :: c
 
-      call find_parts(m, s%parts, s%own)
+      if (present(findings)) then
+         s%parts = findings%parts
+         call move_alloc(findings%own, s%own)
+      else
+         call find_parts(m, s%parts, s%own)
+      end if
       if (s%parts%count == 1) then
          call take_whole(m, s%parts)
          deallocate (s%own)

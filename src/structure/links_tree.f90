@@ -6,6 +6,7 @@
 !> no unknown, one in the tree a slide. Of the numbers of the deck only constant angles are used to build it.
 module links_tree
    use kinds, only: wp
+   use planar, only: direction, rotated
    use mechanism, only: mechanism_t, pair_prismatic, pair_revolute, plane_origin
    implicit none
    private
@@ -281,17 +282,8 @@ contains
       real(wp) :: v(2)
 
       associate (link => m%points(i)%link, offset => m%points(i)%offset)
-         v = turned(offset, t%angle_offset(link))/length
+         v = rotated(offset, direction(t%angle_offset(link)))/length
          if (m%links(link)%ground) v = v + (m%links(link)%position(:2) - t%origin)/length
       end associate
    end function point_in_drawing
-
-   !> `u` turned by `angle`; by none at all it keeps its digits.
-   pure function turned(u, angle) result(w)
-      real(wp), intent(in) :: u(2), angle
-      real(wp) :: w(2)
-
-      w = u
-      if (abs(angle) > 0.0_wp) w = [u(1)*cos(angle) - u(2)*sin(angle), u(1)*sin(angle) + u(2)*cos(angle)]
-   end function turned
 end module links_tree

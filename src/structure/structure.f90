@@ -20,14 +20,14 @@ module structure
    use block_units, only: find_units
    implicit none
    private
-   public :: structure_t, findings_t, group_t, part_t, new_structure, count_degrees_of_freedom, find_structure, &
-      check_structure, faults_text
+   public :: structure_t, findings_t, group_t, underdetermined_t, new_structure, count_degrees_of_freedom, &
+      find_structure, check_structure, faults_text
 
    !> Links that still can move, and the drives that they lack.
-   type :: part_t
+   type :: underdetermined_t
       integer, allocatable :: links(:)
       integer :: degrees_of_freedom = 0
-   end type part_t
+   end type underdetermined_t
 
    !> The structure of one independent mechanism: made once, and handed to its engine, which takes the blocks over.
    type :: structure_t
@@ -47,11 +47,14 @@ module structure
       integer :: degrees_of_freedom = 0     !< s
       integer :: drives = 0       !< number of drives
       logical :: solvable = .false.             !< every unknown has an equation of its own
-      type(part_t), allocatable :: lacking(:)   !< what still can move
+      type(underdetermined_t), allocatable :: lacking(:)   !< what still can move
       integer :: redundant = 0                  !< equations that are too many, among those of
       integer, allocatable :: many_pairs(:), many_drives(:)
       type(group_t), allocatable :: groups(:)   !< in solving order; none where it is not
-      type(structure_t), allocatable :: structures(:)   !< of the independent mechanisms, as `find_parts` has them
+      ! Of the independent mechanisms, where nothing is lacking:
+      type(parts_t) :: parts                            !< which link, point, pair and drive is in which
+      type(mechanism_t), allocatable :: own(:)          !< (parts) each as a set of its own; none where there is one
+      type(structure_t), allocatable :: structures(:)   !< (parts)
    end type findings_t
 
    !> So many parts are named; of more, the number is given.
@@ -97,8 +100,6 @@ contains
       type(findings_t) :: f
       type(closure_t) :: c
       type(structure_t) :: whole
-      type(parts_t) :: parts
-      type(mechanism_t), allocatable :: own(:)
       integer, allocatable :: unknown_of(:), equation_of(:)
       logical, allocatable :: over(:)
       integer :: k
@@ -113,11 +114,11 @@ contains
       f%lacking = parts_that_lack(m, c%link_of, underdetermined(c%incidence, unknown_of, equation_of), &
          equation_of)
       if (size(f%lacking) > 0) return
-      call find_parts(m, parts, own)
-      allocate (f%structures(parts%count))
-      if (parts%count == 1) f%structures(1) = new_structure(m)
-      do k = 1, size(own)
-         f%structures(k) = new_structure(own(k))
+      call find_parts(m, f%parts, f%own)
+      allocate (f%structures(f%parts%count))
+      if (f%parts%count == 1) f%structures(1) = new_structure(m)
+      do k = 1, size(f%own)
+         f%structures(k) = new_structure(f%own(k))
       end do
       if (.not. all([(f%structures(k)%blocks%solvable, k=1, size(f%structures))])) then
          whole = new_structure(m)
@@ -132,7 +133,7 @@ contains
    function parts_that_lack(m, link_of, part, equation_of) result(parts)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: link_of(:), part(:), equation_of(:)
-      type(part_t), allocatable :: parts(:)
+      type(underdetermined_t), allocatable :: parts(:)
       integer :: first(size(m%links)), parent(size(part)), number(size(part)), u, i, n
       integer, allocatable :: links(:)
 
@@ -178,7 +179,7 @@ contains
    !> Gives each of the `links` to the part of its `number`.
    pure subroutine share_out(links, number, parts)
       integer, intent(in) :: links(:), number(:)
-      type(part_t), intent(inout) :: parts(:)
+      type(underdetermined_t), intent(inout) :: parts(:)
       integer :: many(size(parts)), i
 
       many = 0
@@ -200,8 +201,8 @@ contains
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       integer, intent(in) :: free(:)
-      type(part_t), allocatable :: parts(:)
-      type(part_t) :: one
+      type(underdetermined_t), allocatable :: parts(:)
+      type(underdetermined_t) :: one
       integer :: i, k
       logical :: is_free(size(m%links))
 
@@ -284,7 +285,7 @@ contains
    !> LINKS A, B: 1 FREEDOM LEFT, ADD A DRIVE
    function lack(m, part) result(text)
       type(mechanism_t), intent(in) :: m
-      type(part_t), intent(in) :: part
+      type(underdetermined_t), intent(in) :: part
       character(:), allocatable :: text
 
       text = 'LINKS '

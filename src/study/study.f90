@@ -14,10 +14,9 @@ module study
    use trials, only: outcome_t, kind_single, kind_double, kind_quad, repeats, trial_mechanism, &
       trial_instants, march, can_be_timed, step_time
    use companion, only: ask_companion
-   use true_errors, only: truth_t, new_truth, errors_of
+   use true_errors, only: truth_t, new_truth, errors_of, put_estimates
    use study_plan, only: plan_t, new_plan, plan_trials, truth_trial
    use study_table, only: row_t, new_rows, put_head, put_refusal, put_rows
-   use study_estimates, only: put_estimates
    implicit none
    private
    public :: run_study
