@@ -121,6 +121,9 @@ contains
       away = -2.0_wp*least/curvature
       call set_values(e%blocks, i, x + away*direction, e%state)
       call solve_again(e, c, correction, same)
+      ! By the correction of this block alone: what builds on it moves by any multiple of that.
+      correction = maxval(abs(e%state%u(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))%value &
+         - (x + away*direction)))
       crossed(i) = .false.
       same = .not. any(e%crossed .and. .not. crossed)
       found = is_solved(c) .and. same .and. .not. c%singular .and. correction <= 0.5_wp*abs(away) &

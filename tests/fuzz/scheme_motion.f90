@@ -4,7 +4,7 @@
 module scheme_motion
    use quad_jet, only: qp, jet_t, constant_jet, operator(+)
    use schemes, only: scheme_t, group_t, body_t, form_any, form_rrr, form_prp, form_rpp, form_parallelogram, &
-      drive_relangle, angle_unit, drive_unit, set_trigonometry
+      drive_relangle, angle_unit, drive_unit, set_trigonometry, point_on
    use drive_laws, only: law_jet, variation
    use dyad_forms, only: solve_dyad, place_parallelogram
    use group_newton, only: outcome_t, solve_group, residuals
@@ -287,8 +287,29 @@ contains
       if (abs(h) > 0.0_qp .and. sine%d*before%d <= 0.0_qp .and. min(abs(sine%v), abs(before%v)) < 0.05_qp) &
          trial%status(k) = is_unknown
       trial%sine(k) = sine
-      trial%margin(k) = merge(1.0_qp, sine%v**2, g%redundant)
+      trial%margin(k) = merge(nearly_kite(s, g)**4, 1.0_qp, trial%crossed(k))
    end subroutine follow_parallelogram
+
+   !> By how little the sides of a parallelogram differ. Where they do not, the antiparallelogram is a kite, which at its
+   !> change points takes any position; where they hardly do, it goes past them fast.
+   real(qp) function nearly_kite(s, g)
+      type(scheme_t), intent(in) :: s
+      type(group_t), intent(in) :: g
+      real(qp) :: bar, base
+
+      associate (p => s%pairs(g%pairs(1):g%pairs(1) + 2))
+         bar = distance(s, point_on(s, p(1), g%links(1)), point_on(s, p(2), g%links(1)))
+         base = distance(s, point_on(s, p(2), g%links(1) + 1), point_on(s, p(3), g%links(1) + 1))
+      end associate
+      nearly_kite = abs(bar - base)/(bar + base)
+   end function nearly_kite
+
+   pure real(qp) function distance(s, i, j)
+      type(scheme_t), intent(in) :: s
+      integer, intent(in) :: i, j
+
+      distance = norm2(s%points(i)%offset - s%points(j)%offset)
+   end function distance
 
    !> All pairs and drives of the groups that are followed are closed in `m`, with their derivatives.
    logical function closes(s, m)

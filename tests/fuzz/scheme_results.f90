@@ -20,6 +20,8 @@ module scheme_results
    real(qp), parameter :: nothing = 1.0e-20_qp
    !> The square of a distance from a singularity down to which flags are needless, all the way from the first instant.
    real(qp), parameter :: safe_margin = 1.0e-4_qp
+   !> The sine of the angle from a change point up to which there may be no velocities.
+   real(qp), parameter :: beside_change = 1.0e-4_qp
    integer, parameter :: cells = 24, cell_length = 26
 
    type :: row_t
@@ -115,10 +117,14 @@ contains
       end if
       if (row%mark /= '') call judge_flag(s, m, group, row, v)
       truth = true_values(s, m, row)
+      ! Of a point of the ground the sum of its own numbers is rounded, and no error is told.
       scale = 1.0_qp
+      if (row%kind == 'P') scale = (norm2(s%links(link_at(s, row%number))%at(:2)) &
+         + norm2(s%points(row%number)%offset))*bits/nothing
       if (any(group > 0)) scale = maxval(s%groups(pack(group, group > 0))%scale)
       unit = [scale, scale, 1.0_qp/angle_unit(s)]
       call compare(truth%v, row, 0, unit, v)
+      if (.not. any(group > 0)) return
       call compare(truth%d, row, 1, unit/s%span, v)
       call compare(truth%dd, row, 2, unit/s%span**2, v)
    end subroutine judge_row
@@ -154,11 +160,14 @@ contains
       type(row_t), intent(in) :: row
       type(verdict_t), intent(inout) :: v
       integer :: k
+      logical :: is_regular
 
       do k = 1, size(s%groups)
          if (s%groups(k)%part /= s%groups(maxval(group))%part) cycle
-         if (m%status(k) == is_followed .and. m%lowest(k) > safe_margin .and. .not. (s%method == 'DENSE' &
-            .and. s%groups(k)%form == form_parallelogram)) cycle
+         is_regular = m%status(k) == is_followed .and. m%lowest(k) > safe_margin
+         if (s%groups(k)%form == form_parallelogram) is_regular = is_regular .and. s%method /= 'DENSE' &
+            .and. abs(m%sine(k)%v) > beside_change
+         if (is_regular) cycle
          v%flagged = v%flagged + 1
          return
       end do

@@ -148,7 +148,8 @@ contains
       if (s%method /= '') write (unit, '(2a)') 'METHOD  ', trim(s%method)
       do k = 1, size(s%links)
          i = s%link_order(k)
-         if (.not. any(s%points%link == i) .and. all(s%drives%second /= i .and. s%drives%subject /= i)) cycle
+         if (.not. any(s%points%link == i) .and. .not. any(s%drives%kind == drive_relangle .and. &
+            (s%drives%second == i .or. s%drives%subject == i))) cycle
          associate (q => s%links(i)%estimate)
             call card(unit, merge('GROUND  ', 'LINK    ', s%links(i)%ground), [name('L', i)], [q(1), q(2), q(3)/u])
          end associate

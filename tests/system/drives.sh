@@ -110,5 +110,9 @@ compare on_a_turning_link 0.0 1.25 4 0
 equal 'on_a_turning_link: its change point' 1 "$(grep -c 'CHANGE POINT AT .*, LINKS COUPLER, ROCKER: GO ON' "$work/on_a_turning_link.lst")"
 equal 'on_a_turning_link: coupler parallel to its base' '' "$(LC_ALL=C awk -F, '$5 == "ARM" { phi = $8 }
    $5 == "COUPLER" && ($8 == "" || ($8 - phi)^2 > 1e-24)' "$work/on_a_turning_link.csv")"
+# A parallelogram on moving links takes its other branch, on which a dyad on its coupler goes many times as far as that.
+"$kin" tests/system/decks/branch_below_dyad.deck > "$work/branch_below_dyad.lst"
+equal 'branch_below_dyad: its other branch' 1 "$(grep -c 'CHANGE POINT AT .*, LINKS L22, L21: TAKE' "$work/branch_below_dyad.lst")"
+equal 'branch_below_dyad: flagged' 0 "$(sed -n 's/^ END OF SET.*FLAGGED //p' "$work/branch_below_dyad.lst")"
 equal 'cusp: the other assembly' 1 "$(grep -c '^ PLAT *8\.85715 *-8\.19202 ' "$work/cusp.lst")"
 conclude
