@@ -21,6 +21,7 @@ parts() {
    the sources|60|tests/system/house.sh
    the closed forms|770|"$BUILD/release/check_forms" input/*.deck
    make check|515|tests/system/check.sh
+   the reader of listings|87|tests/system/reader.sh
    the documents|300|tests/system/documents.sh
    estimates of errors|57|"$MAKE" --no-print-directory errors
    units of length|712|tests/system/units.sh

@@ -2,7 +2,7 @@
 module listing_check
    implicit none
    private
-   public :: check_listing, check_protocol
+   public :: check_listing, check_protocol, next_word
 
    integer, parameter :: width = 400
    character(8), parameter :: heads(*) = [character(8) :: 'X', 'Y', 'PHI', 'FI', 'VX', 'VY', 'VPHI', 'VFI', 'AX', &

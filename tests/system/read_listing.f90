@@ -1,0 +1,171 @@
+!> Tests. `read_listing LISTING CSV [LEAST]`: every number of the listing is the value in the CSV of the same run, rounded to
+!> the digits that are printed; both have the rows that the PRINT cards ask for, in their order, and `LEAST` numbers or
+!> more. It prints how many numbers there are, and how many of them are masked or do not exist; or the first thing that
+!> is wrong, with status 1.
+program read_listing
+   use, intrinsic :: iso_fortran_env, only: real128
+   use echoed_deck, only: due_t, kind_of_row
+   use listing_reader, only: row_text_t, set_text_t, next_set
+   use printed_numbers, only: printed_t, read_printed, agrees
+   implicit none
+   integer, parameter :: cells = 15, cell_length = 48
+   character(*), parameter :: csv_head = 'set,step,t,kind,name,x,y,phi,vx,vy,vphi,ax,ay,aphi,mark'
+   character(500) :: path, line
+   type(set_text_t) :: set
+   integer :: listing, csv, status, numbers, masked, absent, least
+   logical :: found
+
+   call get_command_argument(1, path)
+   open (newunit=listing, file=path, status='old', action='read')
+   call get_command_argument(2, path)
+   open (newunit=csv, file=path, status='old', action='read')
+   least = 1
+   call get_command_argument(3, path)
+   if (path /= '') read (path, *) least
+   read (csv, '(a)') line
+   if (line /= csv_head) call give_up('THE CSV HAS OTHER COLUMNS')
+   numbers = 0
+   masked = 0
+   absent = 0
+   do
+      call next_set(listing, set, found)
+      if (.not. found) exit
+      if (allocated(set%wrong)) call give_up(set%wrong)
+      call compare_set(set)
+   end do
+   read (csv, '(a)', iostat=status) line
+   if (status == 0) call give_up('THE LISTING HAS NO ROW FOR '//trim(line))
+   if (numbers + absent < least) call give_up('FEWER NUMBERS THAN THERE MUST BE')
+   print '(i0,a,i0,a,i0,a)', numbers, ' numbers, ', masked, ' masked, ', absent, ' absent'
+
+contains
+
+   !> The rows of a set against what its deck asks for and against the next rows of the CSV.
+   subroutine compare_set(set)
+      type(set_text_t), intent(in) :: set
+      integer :: step, i, k
+
+      if (set%instants < 1) call give_up('THE LISTING OF A SET HAS NO END')
+      k = 0
+      do step = 0, set%instants - 1
+         do i = 1, size(set%deck%requests)
+            associate (due => set%deck%requests(i))
+               if (mod(step, due%every) /= 0 .and. step /= set%instants - 1) cycle
+               k = k + 1
+               if (k > set%row_count) call give_up('THE LISTING HAS TOO FEW ROWS')
+               if (set%rows(k)%step /= step .or. set%rows(k)%kind /= due%kind .or. set%rows(k)%name /= due%name) &
+                  call give_up('ANOTHER ROW THAN ASKED FOR: '//shown(set%rows(k)))
+               call compare_row(set%number, set%rows(k))
+            end associate
+         end do
+      end do
+      if (k /= set%row_count) call give_up('MORE ROWS THAN ASKED FOR: '//shown(set%rows(k + 1)))
+   end subroutine compare_set
+
+   !> One row against the next one of the CSV.
+   subroutine compare_row(number, row)
+      integer, intent(in) :: number
+      type(row_text_t), intent(in) :: row
+      character(cell_length) :: cell(cells)
+      integer :: i, status
+
+      read (csv, '(a)', iostat=status) line
+      if (status /= 0) call give_up('THE CSV HAS NO ROW FOR '//shown(row))
+      call split(line, cell)
+      if (cell(1) /= whole(number) .or. cell(2) /= whole(row%step) .or. cell(4) /= kind_of_row(row%kind) &
+         .or. cell(5) /= row%name) call give_up('THE CSV HAS ANOTHER ROW: '//trim(line)//', NOT '//shown(row))
+      call compare_number(row%time, cell(3), row%time_power, row)
+      do i = 1, 9
+         if (row%word(i) == '') then
+            if (cell(5 + i) /= '') call give_up('NOT PRINTED: '//trim(cell(5 + i))//' OF '//shown(row))
+            cycle
+         end if
+         call count_number(read_printed(trim(row%word(i))))
+         call compare_number(row%word(i), cell(5 + i), row%power(i), row)
+      end do
+      if ((cell(15) == '') .eqv. any(row%word == 'NONE' .or. row%word == 'BRAK')) &
+         call give_up('THE MARK DOES NOT FIT: '//trim(line))
+   end subroutine compare_row
+
+   !> The printed `word` against the `cell` of the CSV.
+   subroutine compare_number(word, cell, power, row)
+      character(*), intent(in) :: word, cell
+      integer, intent(in) :: power
+      type(row_text_t), intent(in) :: row
+      type(printed_t) :: p
+      real(real128) :: x
+      integer :: status
+
+      p = read_printed(trim(word))
+      if (cell == '') then
+         if (.not. p%none) call give_up('PRINTED BUT NOT IN THE CSV: '//trim(word)//' OF '//shown(row))
+         return
+      end if
+      read (cell, *, iostat=status) x
+      if (status /= 0) call give_up('NO NUMBER IN THE CSV: '//trim(cell))
+      if (.not. agrees(p, power, x)) &
+         call give_up(trim(word)//' IS NOT '//trim(cell)//' OVER 10**'//whole(power)//': '//shown(row))
+   end subroutine compare_number
+
+   subroutine count_number(p)
+      type(printed_t), intent(in) :: p
+
+      if (p%none) then
+         absent = absent + 1
+      else
+         numbers = numbers + 1
+      end if
+      if (p%masked > 0) masked = masked + 1
+   end subroutine count_number
+
+   !> The cells of a row of the CSV; a name may stand in quotes.
+   pure subroutine split(line, cell)
+      character(*), intent(in) :: line
+      character(cell_length), intent(out) :: cell(:)
+      integer :: i, k, used
+      logical :: quoted
+
+      cell = ''
+      k = 1
+      used = 0
+      quoted = .false.
+      do i = 1, len_trim(line)
+         if (line(i:i) == '"') then
+            quoted = .not. quoted
+            ! Two quotes in quotes are one.
+            if (.not. quoted .or. i == 1) cycle
+            if (line(i - 1:i - 1) /= '"') cycle
+         else if (line(i:i) == ',' .and. .not. quoted) then
+            k = min(k + 1, size(cell))
+            used = 0
+            cycle
+         end if
+         used = min(used + 1, cell_length)
+         cell(k)(used:used) = line(i:i)
+      end do
+   end subroutine split
+
+   pure function shown(row) result(text)
+      type(row_text_t), intent(in) :: row
+      character(:), allocatable :: text
+
+      text = trim(kind_of_row(row%kind))//' '//trim(row%name)//' AT INSTANT '//whole(row%step)
+   end function shown
+
+   pure function whole(i) result(text)
+      integer, intent(in) :: i
+      character(:), allocatable :: text
+      character(12) :: buffer
+
+      write (buffer, '(i0)') i
+      text = trim(buffer)
+   end function whole
+
+   !> Ends the program with what is wrong.
+   subroutine give_up(text)
+      character(*), intent(in) :: text
+
+      print '(a)', text
+      stop 1, quiet=.true.
+   end subroutine give_up
+end program read_listing

@@ -1,0 +1,91 @@
+#!/bin/sh
+# A reader of its own for the listings: every number of expected/ and of decks that print what no deck of input/ does is the
+# value of the CSV, rounded to the digits that are printed, and the rows are those that the PRINT cards ask for. Then listings
+# with a fault are read, each of which it must find.
+BUILD=${BUILD:-build}
+. tests/counting.sh
+w=$BUILD/reader
+rm -rf "$w" && mkdir -p "$w" || exit 3
+reader=$BUILD/release/read_listing
+
+# read_one NAME LISTING: against $w/NAME.csv; the counts go to a file
+read_one() {
+   found=$("$reader" "$2" "$w/$1.csv")
+   equal "$1: every number of the listing is that of the CSV" 0 "$?${found##*[0-9] absent}"
+   echo "$found" >> "$w/counts"
+}
+
+for deck in input/*.deck; do
+   name=$(basename "$deck" .deck)
+   "$BUILD/kinmat" --csv "$w/$name.csv" "$deck" > "$w/$name.lst" 2> "$w/err"
+   read_one "$name" "expected/$name.lst"
+done
+# Powers of ten of each table, in Polish, beyond limits; places of sizes that a plain form has no room for.
+for name in two_sizes estimate_of_twenty_links cusp; do
+   "$BUILD/kinmat" --csv "$w/$name.csv" "tests/system/decks/$name.deck" > "$w/$name.lst" 2> "$w/err"
+   read_one "$name" "$w/$name.lst"
+done
+
+# sum_of WORD: of all listings
+sum_of() { awk -v word="$1" '{ for (i = 2; i <= NF; i++) if ($i ~ "^" word) n += $(i - 1) } END { print n + 0 }' "$w/counts"; }
+# at_least NAME LEAST FOUND
+at_least() { if [ "$3" -ge "$2" ]; then pass; else miss "$1: $3, not $2 or more"; fi; }
+at_least 'numbers read' 79573 "$(sum_of numbers)"
+at_least 'masked numbers read' 155 "$(sum_of masked)"
+at_least 'numbers that do not exist' 275 "$(sum_of absent)"
+equal 'a least count that is not met' 'FEWER NUMBERS THAN THERE MUST BE' "$("$reader" expected/yoke.lst "$w/yoke.csv" 4861)"
+
+# fault NAME DECK LISTING AWK: one change, made by an awk program; the reader finds it, in words that begin as the rest says
+fault() {
+   awk "$4" "$3" > "$w/fault.lst"
+   if cmp -s "$3" "$w/fault.lst"; then miss "$1: nothing has been changed"; return; fi
+   found=$("$reader" "$w/fault.lst" "$w/$2.csv")
+   status=$?
+   case "$status $found" in
+   1\ $5*) pass ;;
+   *) miss "$1 is not found: status $status, $found" ;;
+   esac
+}
+e=expected
+fault 'a last digit' yoke $e/yoke.lst '
+/^ CHWILA 7 / { n = 1 }
+n == 1 && /\.[0-9]+[1-8]$/ { d = substr($0, length($0)) + 1; sub(/.$/, d); n = 2 }
+1' '-*[0-9.]* IS NOT '
+fault 'a first digit' jansen $e/jansen.lst '
+/^ INSTANT 5 / { n = 1 }
+n == 1 && match($0, / [1-8]\.[0-9]/) {
+   $0 = substr($0, 1, RSTART) substr($0, RSTART + 1, 1) + 1 substr($0, RSTART + 2); n = 2
+}
+1' '[2-9].[0-9]* IS NOT '
+fault 'a sign' four_bar $e/four_bar.lst '/^ INSTANT 3 / { n = 1 } n == 1 && / -[0-9]/ { sub(/ -/, "  "); n = 2 } 1' '[0-9.]* IS NOT -'
+fault 'a digit of a time' four_bar $e/four_bar.lst '/^ INSTANT 3 / { sub(/1\./, "2.") } 1' '2.00000 IS NOT '
+fault 'a power of ten of the units' far_small $e/far_small.lst '/^ VX, VY/ { sub(/10\*\*-6/, "10**-5") } 1' '*'
+fault 'a power of ten left out of the units' far_small $e/far_small.lst '/^ X, Y/ { sub(/10\*\*-6 /, "") } 1' '*'
+fault 'a unit' four_bar $e/four_bar.lst '/^ AX, AY/ { sub(/S\*\*2/, "S") } 1' 'CANNOT BE READ: '
+fault 'a power of ten of a head' two_sizes "$w/two_sizes.lst" '!n && /10\*\*-9/ { sub(/10\*\*-9/, "10**-8"); n = 1 } 1' '*IS NOT*'
+fault 'a line of powers left out' two_sizes "$w/two_sizes.lst" '!n && /^ *10\*\*/ { n = 1; next } 1' '*IS NOT*'
+fault 'a power of ten of the times' two_sizes "$w/two_sizes.lst" '/^ T \[/ { sub(/10\*\*6/, "10**3") } 1' '*IS NOT*'
+fault 'a row left out' yoke $e/yoke.lst '/^ CHWILA 9 / { n = 1 } n == 1 && /\.[0-9]+$/ && !/^ CHWILA/ { n = 2; next } 1' 'ANOTHER ROW'
+fault 'the last row left out' four_bar $e/four_bar.lst '
+/\.[0-9]+$/ { last = NR }
+{ line[NR] = $0 }
+END { for (i = 1; i <= NR; i++) if (i != last) print line[i] }' 'THE LISTING HAS TOO FEW ROWS'
+fault 'a row twice' four_bar $e/four_bar.lst '1; /^ INSTANT 2 / { n = 1 } n == 1 && /^ CRANK/ { print; n = 2 }' 'ANOTHER ROW'
+fault 'two rows of other names' four_bar $e/four_bar.lst '/^ INSTANT 2 / { n = 1 } n == 1 && /^ CRANK/ { sub(/CRANK/, "CRANC"); n = 2 } 1' 'ANOTHER ROW'
+fault 'two heads for one another' four_bar $e/four_bar.lst '
+!n && /^ LINK.*VX/ { sub(/VX          VY/, "VY          VX"); n = 1 }
+1' '*IS NOT*'
+fault 'a number left out' four_bar $e/four_bar.lst '/^ INSTANT 2 / { n = 1 } n == 1 && /^ CRANK/ { sub(/[0-9.]+$/, ""); n = 2 } 1' 'CANNOT BE READ'
+fault 'a number out of its column' four_bar $e/four_bar.lst '
+/^ INSTANT 2 / { n = 1 }
+n == 1 && /^ CRANK/ { sub(/ [0-9.]+$/, " &"); n = 2 }
+1' 'CANNOT BE READ'
+fault 'a number for NONE' kite_at $e/kite_at.lst '!n && /NONE/ { sub(/    NONE/, "0.000000"); n = 1 } 1' 'PRINTED BUT NOT IN THE CSV'
+fault 'NONE for a number' four_bar $e/four_bar.lst '/^ INSTANT 2 / { n = 1 } n == 1 && /^ CRANK/ { sub(/0\.000000/, "    NONE"); n = 2 } 1' '*'
+fault 'a shown digit before a mask' dead_point_9 $e/dead_point_9.lst '!n && /2937\?/ { sub(/2937\?/, "2938?"); n = 1 } 1' '2938*IS NOT'
+fault 'a digit after a mask' dead_point_9 $e/dead_point_9.lst '!n && /2937\?\?/ { sub(/2937\?\?/, "2937?5"); n = 1 } 1' '*'
+fault 'an exponent' dead_point_9 $e/dead_point_9.lst '!n && /E\+016/ { sub(/E\+016/, "E+017"); n = 1 } 1' '*IS NOT*'
+fault 'a zero with a sign' four_bar $e/four_bar.lst '/^ INSTANT 2 / { n = 1 } n == 1 && / 0\.000000/ { sub(/ 0\.000000/, "-0.000000"); n = 2 } 1' '-0.0*IS NOT'
+fault 'the last line of the set' four_bar $e/four_bar.lst '!n && /^ END OF SET/ { n = 1; next } 1' '*'
+fault 'the second set' four_bar $e/four_bar.lst '1; /^ END OF SET 1/ { exit }' 'THE LISTING HAS NO ROW FOR'
+conclude
