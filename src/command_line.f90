@@ -13,9 +13,9 @@ module command_line
       character(:), allocatable :: csv       !< '' for none
       character(:), allocatable :: log       !< '' for none
       logical :: check = .false.             !< read and analyse only
-      logical :: errors = .false.            !< CSV and protocol tell how far each number is known
-      logical :: study = .false.             !< speed against error, in the place of the listing
-      logical :: time = .false.              !< the time of a step, in the place of the listing
+      logical :: errors = .false.            !< CSV and log have an error estimate of every number
+      logical :: study = .false.             !< speed against error, instead of the listing
+      logical :: time = .false.              !< the time of a step, instead of the listing
       integer :: share = 1, shares = 1       !< the share-th of so many shares of the deck's sets
       !> What is printed instead of computing: 'HELP', 'VERSION', 'RULER' or ''.
       character(:), allocatable :: show
@@ -33,13 +33,13 @@ module command_line
       'kinmat < DECK          the same', &
       '  -o FILE              the listing to FILE', &
       '  --csv FILE           the results with '//csv_digits//' digits, comma-separated', &
-      '  --log FILE           the protocol of the solver', &
-      '  --errors             how far each number is known, in CSV and protocol', &
-      '  --check              reads and analyses the deck, computes nothing', &
+      '  --log FILE           the log of the solver, a line per instant', &
+      '  --errors             estimates of all errors, in the CSV and the log', &
+      '  --check              reads the deck and analyses its structure only', &
       '  --sets K/N           the K-th of N shares of the sets of the deck', &
-      '  --study              speed against error, in place of the listing', &
+      '  --study              speed against error, instead of the listing', &
       '                       (needs kinmat-quad, kinmat-single: make kinds)', &
-      '  --time               the time of a step, in place of the listing', &
+      '  --time               the time of a step, instead of the listing', &
       '  --ruler              prints an empty card with its columns', &
       '  --help, --version', &
       'Exit status: 0 every instant solved; 1 deck or command rejected;', &
