@@ -3,8 +3,9 @@ module block_diagnostics
    use kinds, only: wp
    use drives, only: drive_motion
    use diagnostics, only: diagnostic_t, new_diagnostic, diagnostic_limit, diagnostic_second, diagnostic_redundant, &
-      diagnostic_mobile, diagnostic_idle, &
-      diagnostic_repeated
+      diagnostic_mobile, diagnostic_idle, diagnostic_repeated, diagnostic_far_estimate
+   use motion, only: motion_t
+   use constants, only: without_turns
    use block_needs, only: largest_known, blocks_below
    use block_rank, only: redundant_rows, moving_unknowns, judge_drives
    use block_state, only: state_t
@@ -12,8 +13,11 @@ module block_diagnostics
    use block_engine, only: block_engine_t
    implicit none
    private
-   public :: first_diagnostics, limit_diagnostic, links_of
+   public :: start_diagnostics, assembly_diagnostics, limit_diagnostic, links_of
 
+   !> An estimated angle that is off by more, in radians, is worth a diagnostic: the assembly may not be the one that
+   !> was meant.
+   real(wp), parameter :: far_angle = 1.0_wp
    !> A limit is reported where it is no further than this part of the step that could not be made.
    real(wp), parameter :: near_part = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
    !> Body vectors with a smaller sine between them are in line: the last motion accepted is as far off as the root of
@@ -22,9 +26,27 @@ module block_diagnostics
 
 contains
 
+   !> What there is to say of the first motion `found`: redundant equations, close assemblies, what can still move where
+   !> the Jacobian is `singular`; and the angle that was estimated the worst.
+   function start_diagnostics(e, found, singular) result(list)
+      type(block_engine_t), intent(inout) :: e
+      type(motion_t), intent(in) :: found
+      logical, intent(in) :: singular
+      type(diagnostic_t), allocatable :: list(:)
+      real(wp) :: off(size(found%position, 2))
+      integer :: link
+
+      list = assembly_diagnostics(e, singular)
+      off = without_turns(found%position(3, :) - e%estimate(3, :))
+      link = maxloc(abs(off), mask=e%is_found, dim=1)
+      if (link == 0) return
+      if (abs(off(link)) > far_angle) list = [list, diagnostic_t(kind=diagnostic_far_estimate, &
+         links=[link, 0, 0, 0, 0, 0], is_angle=.true., value=off(link))]
+   end function start_diagnostics
+
    !> Of the first motion found: which equations are redundant, what can still move where `singular` says that the
    !> Jacobian has no inverse, and where the choice of an assembly was close.
-   function first_diagnostics(e, singular) result(list)
+   function assembly_diagnostics(e, singular) result(list)
       type(block_engine_t), intent(inout) :: e
       logical, intent(in) :: singular
       type(diagnostic_t), allocatable :: list(:)
@@ -46,7 +68,7 @@ contains
             if (second) list = [list, new_diagnostic(diagnostic_second, links_of(e, e%needed(k)))]
          end associate
       end do
-   end function first_diagnostics
+   end function assembly_diagnostics
 
    !> Each pair and drive with redundant equations, once, and how many it has.
    function redundancies(e) result(list)

@@ -9,6 +9,7 @@ module block_engine
    use initial_estimate, only: estimated_values
    use drives, only: law_t, new_law, drive_motion
    use convergence, only: convergence_t, is_solved, gather, ended_converged, ended_singular
+   use engine, only: engine_t, engine_checkpoint_t
    use predictor, only: history_t, new_history, remember, predict, largest_change
    use blocks, only: blocks_t
    use block_needs, only: moving_blocks, needed_blocks, largest_known
@@ -19,9 +20,8 @@ module block_engine
    use link_motion, only: chain_t, new_chain, move_links, mark_links, missing_nothing, missing_rates, missing_all
    implicit none
    private
-   public :: block_engine_t, positions_t, make_block_engine, solve_blocks, solve_again, solve_each, begin_record
-   public :: set_drive_values, accept_blocks, get_blocks_motion, know_links, get_driven_motion
-   public :: block_checkpoint_t, checkpoint_blocks, restore_blocks
+   public :: block_engine_t, block_checkpoint_t, positions_t
+   public :: make_block_engine, solve_again, solve_each, begin_record, set_drive_values
 
    !> Positions of one block (unknowns, any number).
    type :: positions_t
@@ -35,11 +35,10 @@ module block_engine
       real(wp), allocatable :: inverse(:)               !< |J^-1|
    end type jacobians_t
 
-   !> Lengths in units of `length`, a power of two in the deck's unit. What the structure and the deck give does not
-   !> change; `workspace` is scratch; the checkpoint has all else that depends on earlier instants.
-   type :: block_engine_t
-      real(wp) :: length = 1.0_wp, tolerance = 0.0_wp
-      real(wp) :: span = 1.0_wp                         !< the characteristic length, in the deck's unit
+   !> Lengths in units of `length`. What the structure and the deck give does not change; `workspace` is scratch; the
+   !> checkpoint has all else that depends on earlier instants.
+   type, extends(engine_t) :: block_engine_t
+      real(wp) :: tolerance = 0.0_wp, span = 1.0_wp     !< span: the characteristic length, in the deck's unit
       type(blocks_t), allocatable :: blocks
       integer, allocatable :: needed(:), moving(:)      !< blocks that are solved at first, and at every step
       type(chain_t) :: chain                            !< of the links that are asked for
@@ -59,14 +58,22 @@ module block_engine
       type(jacobians_t) :: followed                     !< there
       real(wp), allocatable :: jacobian(:)              !< there, of the block with too many rows: (rows*n)
       real(wp) :: t = 0.0_wp                            !< the time of the motion found last
-      real(wp) :: change = 0.0_wp                       !< its largest correction of a predicted value
+      real(wp) :: change = 0.0_wp                       !< the largest change of a value that was predicted
       type(state_t) :: state                            !< its values
       type(jacobians_t) :: found
       logical, allocatable :: is_singular(:), crossed(:) !< (blocks) without velocities; with a new sign of determinant
+   contains
+      procedure :: solve
+      procedure :: accept
+      procedure :: get_motion
+      procedure :: get_link_flags
+      procedure :: get_driven_links
+      procedure :: checkpoint
+      procedure :: restore
    end type block_engine_t
 
    !> All that depends on earlier instants: the motion that is followed, and the one found last.
-   type :: block_checkpoint_t
+   type, extends(engine_checkpoint_t) :: block_checkpoint_t
       type(history_t) :: history
       type(jacobians_t) :: followed, found
       real(wp), allocatable :: jacobian(:)
@@ -94,6 +101,7 @@ contains
       e%length = structure%length
       e%tolerance = m%tolerance
       call move_alloc(structure%blocks, e%blocks)
+      e%redundant = e%blocks%redundant
       if (e%blocks%solvable) call prepare(e, m, structure%tree)
    end subroutine make_block_engine
 
@@ -109,6 +117,7 @@ contains
       e%state = new_state(e%blocks, size(m%drives))
       e%history = new_history(e%blocks%unknowns, iterated_unknowns(e))
       e%history%order = m%predictor
+      e%depends_on_history = size(e%history%sought) > 0
       call make_workspace(e%work, e%blocks)
       e%chain = new_chain(m, t, wanted_links(m), e%blocks%orientations, e%blocks%unit)
       e%whole = new_chain(m, t, spread(.true., 1, size(m%links)), e%blocks%orientations, e%blocks%unit)
@@ -121,7 +130,14 @@ contains
       e%joint(1, :) = m%points(pack(m%pairs%point_i, m%pairs%kind == pair_revolute))%link
       e%joint(2, :) = m%points(pack(m%pairs%point_j, m%pairs%kind == pair_revolute))%link
       call prepare_drives(e, m)
-      call prepare_records(e, size(e%blocks%list))
+      associate (n => size(e%blocks%list))
+         allocate (e%found%sign_of(n), source=1)
+         allocate (e%found%pivot(n), source=1.0_wp)
+         allocate (e%found%inverse(n), source=0.0_wp)
+         allocate (e%crossed(n), e%is_close(n), e%is_singular(n), source=.false.)
+         allocate (e%others(n))
+      end associate
+      e%followed = e%found
       allocate (e%estimate(3, size(m%links)))
       do i = 1, size(m%links)
          e%estimate(:, i) = m%links(i)%position - [e%chain%origin, 0.0_wp]
@@ -145,24 +161,11 @@ contains
          if (.not. e%is_angle(i)) e%unit_of(i) = 1.0_wp/e%length
       end do
       do i = 1, size(e%blocks%rows)
-         associate (d => e%blocks%rows(i)%drive)
-            if (d > 0) e%unit_of(d) = e%unit_of(d)/e%blocks%rows(i)%unit
+         associate (row => e%blocks%rows(i))
+            if (row%drive > 0) e%unit_of(row%drive) = e%unit_of(row%drive)/row%unit
          end associate
       end do
    end subroutine prepare_drives
-
-   !> Records of `n` blocks before the first instant.
-   subroutine prepare_records(e, n)
-      type(block_engine_t), intent(inout) :: e
-      integer, intent(in) :: n
-
-      allocate (e%found%sign_of(n), source=1)
-      allocate (e%found%pivot(n), source=1.0_wp)
-      allocate (e%found%inverse(n), source=0.0_wp)
-      e%followed = e%found
-      allocate (e%crossed(n), e%is_close(n), e%is_singular(n), source=.false.)
-      allocate (e%others(n))
-   end subroutine prepare_records
 
    !> The unknowns of the moving blocks that iterate.
    pure function iterated_unknowns(e) result(list)
@@ -180,11 +183,9 @@ contains
       list = pack([(u, u=0, e%blocks%unknowns)], iterated)
    end function iterated_unknowns
 
-   !> Solves for the motion at `t`, from those accepted (`follows`) or from the deck's estimate. `c`: how the worst
-   !> block ended,
-   !> `correction`: the largest change of a predicted value, `same`: every block's determinant has kept its sign.
-   subroutine solve_blocks(e, t, follows, c, correction, same)
-      type(block_engine_t), intent(inout) :: e
+   !> See `engine`; of the first motion each block by itself is the nearest to its estimate. `c`: of the worst block.
+   subroutine solve(e, t, follows, c, correction, same)
+      class(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       logical, intent(in) :: follows
       type(convergence_t), intent(out) :: c
@@ -207,7 +208,7 @@ contains
          e%state%u%value = e%estimated
          call solve_each(e, e%needed, follows, c, correction, same)
       end if
-   end subroutine solve_blocks
+   end subroutine solve
 
    !> Value, rate and acceleration of the drives at `t`.
    pure subroutine set_drive_values(e, t)
@@ -244,7 +245,7 @@ contains
       c%determinant = 1
    end subroutine begin_record
 
-   !> Solves the blocks of `list` in turn, up to the first without a position; arguments as in `solve_blocks`.
+   !> Solves the blocks of `list` in turn, up to the first without a position; arguments as in `solve`.
    subroutine solve_each(e, list, follows, c, correction, same)
       type(block_engine_t), intent(inout) :: e
       integer, intent(in) :: list(:)
@@ -282,9 +283,9 @@ contains
       end do
    end subroutine solve_each
 
-   !> Makes the motion found last the one that is followed.
-   subroutine accept_blocks(e)
-      type(block_engine_t), intent(inout) :: e
+   !> See `engine`.
+   subroutine accept(e)
+      class(block_engine_t), intent(inout) :: e
 
       call remember(e%history, e%t, e%state%u)
       ! As sections: an assignment to the whole would ask for its shape first.
@@ -292,68 +293,72 @@ contains
       if (e%blocks%redundant > 0) e%jacobian = jacobian_of(e%blocks, 1, e%state)
       e%followed%pivot(:) = e%found%pivot(:)
       e%followed%inverse(:) = e%found%inverse(:)
-   end subroutine accept_blocks
+   end subroutine accept
 
-   !> The motion found last of the links that are asked for, in the deck's units; `finite`: all of it is in range.
-   subroutine get_blocks_motion(e, found, finite)
-      type(block_engine_t), intent(in) :: e
+   !> See `engine`: the motion of the links that are asked for.
+   subroutine get_motion(e, found, finite)
+      class(block_engine_t), intent(in) :: e
       type(motion_t), intent(inout) :: found
       logical, intent(out) :: finite
 
       call move_links(e%chain, e%state, e%length, found, finite)
-   end subroutine get_blocks_motion
+   end subroutine get_motion
 
-   !> Saves in `c` all that depends on earlier instants.
-   pure subroutine checkpoint_blocks(e, c)
-      type(block_engine_t), intent(in) :: e
-      type(block_checkpoint_t), intent(inout) :: c
+   !> See `engine`.
+   subroutine checkpoint(e, c)
+      class(block_engine_t), intent(in) :: e
+      class(engine_checkpoint_t), allocatable, intent(inout) :: c
 
-      c%history = e%history
-      c%followed = e%followed
-      if (allocated(e%jacobian)) c%jacobian = e%jacobian
-      c%t = e%t
-      c%change = e%change
-      c%state = e%state
-      c%found = e%found
-      c%crossed = e%crossed
-   end subroutine checkpoint_blocks
+      if (.not. allocated(c)) allocate (block_checkpoint_t :: c)
+      select type (c)
+      type is (block_checkpoint_t)
+         c%history = e%history
+         c%followed = e%followed
+         if (allocated(e%jacobian)) c%jacobian = e%jacobian
+         c%t = e%t
+         c%change = e%change
+         c%state = e%state
+         c%found = e%found
+         c%crossed = e%crossed
+      end select
+   end subroutine checkpoint
 
-   !> Follows again the motion that was followed at the checkpoint `c`, and has the motion found last there as the one
-   !> found last; `keeps_found`: that stays as it is now.
-   pure subroutine restore_blocks(e, c, keeps_found)
-      type(block_engine_t), intent(inout) :: e
-      type(block_checkpoint_t), intent(in) :: c
+   !> See `engine`.
+   subroutine restore(e, c, keeps_found)
+      class(block_engine_t), intent(inout) :: e
+      class(engine_checkpoint_t), intent(in) :: c
       logical, intent(in) :: keeps_found
 
-      e%history = c%history
-      e%followed = c%followed
-      if (allocated(c%jacobian)) e%jacobian = c%jacobian
-      if (keeps_found) return
-      e%t = c%t
-      e%change = c%change
-      e%state = c%state
-      e%found = c%found
-      e%crossed = c%crossed
-   end subroutine restore_blocks
+      select type (c)
+      type is (block_checkpoint_t)
+         e%history = c%history
+         e%followed = c%followed
+         if (allocated(c%jacobian)) e%jacobian = c%jacobian
+         if (keeps_found) return
+         e%t = c%t
+         e%change = c%change
+         e%state = c%state
+         e%found = c%found
+         e%crossed = c%crossed
+      end select
+   end subroutine restore
 
-   !> Says of each link of `found`, the motion that `e` has found last, how much of it exists.
-   subroutine know_links(e, found)
-      type(block_engine_t), intent(in) :: e
+   !> See `engine`.
+   subroutine get_link_flags(e, found)
+      class(block_engine_t), intent(inout) :: e
       type(motion_t), intent(inout) :: found
-      integer :: missing(0:e%blocks%unknowns), own, k
+      integer :: missing(0:e%blocks%unknowns), k
 
       missing = missing_nothing
       do k = 1, size(e%needed)
-         own = merge(missing_rates, missing_nothing, e%is_singular(e%needed(k)))
-         call note_block(e, e%needed(k), own, missing)
+         call note_block(e, e%needed(k), merge(missing_rates, missing_nothing, e%is_singular(e%needed(k))), missing)
       end do
       call mark_links(e%chain, missing, found)
-   end subroutine know_links
+   end subroutine get_link_flags
 
-   !> Where no position was found at `t`: the motion of the links which drives alone move, whatever the others do.
-   !> `found` has its mark already.
-   subroutine get_driven_motion(e, t, found)
-      type(block_engine_t), intent(inout) :: e
+   !> See `engine`; `found` has its mark already.
+   subroutine get_driven_links(e, t, found)
+      class(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       type(motion_t), intent(inout) :: found
       integer :: missing(0:e%blocks%unknowns), k
@@ -377,9 +382,9 @@ contains
       call mark_links(e%chain, missing, found)
       ! What the state has of the others need not be a number.
       part = e%chain
-      part%links = pack(e%chain%links, found%link_known(e%chain%links%link) == 2)
+      part%links = pack(part%links, found%link_known(part%links%link) == 2)
       call move_links(part, e%state, e%length, found, finite)
-   end subroutine get_driven_motion
+   end subroutine get_driven_links
 
    !> What is missing of the unknowns of block `i`: what its `own` equations leave out, or what it builds on lacks.
    subroutine note_block(e, i, own, missing)

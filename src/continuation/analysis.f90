@@ -9,7 +9,8 @@ module analysis
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, branch_none, branch_first, branch_same, &
       branch_crossed
    use convergence, only: convergence_t, ended_inconsistent, ended_unsought
-   use block_method, only: block_method_t
+   use block_engine, only: block_engine_t
+   use block_diagnostics, only: start_diagnostics, limit_diagnostic
    use at_bifurcation, only: stand_on
    use following, only: following_t, step_record_t, make_following, continue_to, is_too_far, has_too_many_substeps, &
       go_on_from, go_back, limits_t, note_limit, lies_beyond, diagnostics_of_limit
@@ -154,8 +155,8 @@ contains
 
       a%has_begun = .true.
       select type (e => a%engine)
-      class is (block_method_t)
-         call e%diagnose_start(found, a%convergence%singular, list)
+      class is (block_engine_t)
+         list = start_diagnostics(e, found, a%convergence%singular)
          call add_diagnostics(list, found)
       end select
    end subroutine diagnose_start
@@ -175,8 +176,8 @@ contains
          call add_diagnostics([inconsistency(a%convergence, a%engine%length)], found)
       else if (step%blocked) then
          select type (e => a%engine)
-         class is (block_method_t)
-            call e%diagnose_limit(t, list)
+         class is (block_engine_t)
+            list = limit_diagnostic(e, t)
          end select
       end if
       if (allocated(step%dead_end)) then

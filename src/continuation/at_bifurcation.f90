@@ -8,6 +8,7 @@ module at_bifurcation
    use convergence, only: convergence_t
    use engine, only: engine_t
    use block_method, only: block_method_t
+   use block_branches, only: extrapolate
    use following, only: following_t, step_record_t, place_t, continue_to, go_on_from, go_back, note_place, return_to
    implicit none
    private
@@ -40,7 +41,10 @@ contains
       branch_requests = f%branch_requests
       found = f%convergence
       call come_near(f, t, stands)
-      if (stands) call extrapolate(f%engine, t, list)
+      select type (e => f%engine)
+      class is (block_method_t)
+         if (stands) call extrapolate(e%block_engine_t, t, list)
+      end select
       stands = size(list) > 0
       f%convergence = found
       if (stands) return
@@ -80,16 +84,4 @@ contains
          max_rate = e%max_rate()
       end select
    end function max_rate
-
-   !> The position at the change point `t` from the three places; `list`: a diagnostic for each block that has it there.
-   subroutine extrapolate(e, t, list)
-      class(engine_t), intent(inout) :: e
-      real(wp), intent(in) :: t
-      type(diagnostic_t), allocatable, intent(inout) :: list(:)
-
-      select type (e)
-      class is (block_method_t)
-         call e%extrapolate_to(t, list)
-      end select
-   end subroutine extrapolate
 end module at_bifurcation

@@ -12,7 +12,9 @@ module following
    use convergence, only: convergence_t, is_solved
    use branch_requests, only: branch_requests_t, new_branch_requests
    use engine, only: engine_t, engine_checkpoint_t
-   use block_method, only: block_method_t, make_block_method
+   use block_engine, only: block_engine_t, make_block_engine
+   use block_method, only: block_method_t
+   use block_branches, only: pass
    use dense_engine, only: dense_engine_t, make_dense_engine
    implicit none
    private
@@ -94,7 +96,7 @@ contains
       end if
       select type (e => f%engine)
       type is (block_method_t)
-         call make_block_method(e, m, structure)
+         call make_block_engine(e%block_engine_t, m, structure)
       type is (dense_engine_t)
          call make_dense_engine(e, m)
       end select
@@ -190,8 +192,8 @@ contains
 
       passed = .false.
       select type (e => f%engine)
-      class is (block_method_t)
-         call e%pass_change_points(t, correction, f%branch_requests, f%convergence, list, passed)
+      class is (block_engine_t)
+         call pass(e, t, correction, f%branch_requests, f%convergence, list, passed)
          if (passed) then
             if (.not. allocated(step%passed)) allocate (step%passed(0))
             step%passed = [step%passed, list]

@@ -12,7 +12,7 @@ module dense_engine
    use convergence, only: convergence_t, is_solved, ended_elsewhere
    use predictor, only: largest_change, order_weights
    use engine, only: engine_t, engine_checkpoint_t
-   use block_engine, only: block_engine_t, make_block_engine, get_driven_motion
+   use block_engine, only: block_engine_t, make_block_engine
    use pose, only: system_t, pose_t, new_system, new_pose, add_to_links
    use closure_equations, only: find_drive_values, remainder
    use position_iteration, only: solve_newton, solve_matrix
@@ -347,7 +347,7 @@ contains
          allocate (e%blocks)
          call make_block_engine(e%blocks, e%by_blocks)
       end if
-      call get_driven_motion(e%blocks, t, found)
+      call e%blocks%get_driven_links(t, found)
    end subroutine get_driven_links
 
    !> The start at `t` (3, links): the state before, corrected through its velocity and acceleration, or by the order

@@ -7,7 +7,7 @@ module dense_start
    use convergence, only: convergence_t, is_solved
    use block_state, only: set_values
    use block_solver, only: solve_block
-   use block_engine, only: block_engine_t, make_block_engine, get_blocks_motion
+   use block_engine, only: block_engine_t, make_block_engine
    use assembly_choice, only: solve_first
    implicit none
    private
@@ -50,11 +50,11 @@ contains
       assembly = estimate
       if (.not. e%blocks%solvable) return
       if (is_found) then
-         call get_blocks_motion(e, q, unused)
+         call e%get_motion(q, unused)
          assembly = q%position
       end if
       call return_to_estimate(e)
-      call get_blocks_motion(e, q, unused)
+      call e%get_motion(q, unused)
       estimate = q%position
    end subroutine find_start
 

@@ -11,7 +11,7 @@ module error_estimate
    use block_solver, only: solve_block
    use engine, only: engine_t
    use block_method, only: block_method_t
-   use block_engine, only: block_engine_t, make_block_engine, set_drive_values, get_blocks_motion, know_links
+   use block_engine, only: block_engine_t, make_block_engine, set_drive_values
    use perturbed_deck, only: sample_count, perturbation, perturbed, perturbed_instant
    implicit none
    private
@@ -193,8 +193,8 @@ contains
          q%known = merge(unusable, -1, c%ended == ended_inconsistent .or. c%rates_open)
          return
       end do
-      call get_blocks_motion(e, q, finite)
-      if (q%known == 0) call know_links(e, q)
+      call e%get_motion(q, finite)
+      if (q%known == 0) call e%get_link_flags(q)
    end subroutine solve_again
 
    !> What rounding of the deck's numbers leaves open in the row that `request` asks for (3, 0:2), in its units: the
