@@ -8,6 +8,7 @@ module diagnosis
    use diagnostics, only: diagnostic_t, diagnostic_inconsistent, diagnostic_limit, diagnostic_far_estimate, &
       diagnostic_second, diagnostic_mobile, diagnostic_idle, diagnostic_repeated, diagnostic_method
    use convergence, only: ended_elsewhere
+   use structure, only: structure_t
    use dense_start, only: by_blocks
    use dense_engine, only: dense_engine_t
    use analysis, only: analysis_t, make_analysis, advance
@@ -35,15 +36,20 @@ contains
       type(opinion_t), intent(inout) :: o
       type(motion_t), intent(inout) :: found
       real(wp), allocatable :: last(:, :)
+      type(structure_t) :: structure
 
       select type (e => a%engine)
       class is (dense_engine_t)
-         if (a%follows) last = e%followed_position()
+         if (a%follows) then
+            last = e%followed_position()
+         else
+            structure = e%block_structure()
+         end if
       class default
          return
       end select
       if (found%mark == mark_not_converged) then
-         if (.not. (a%follows .and. o%is_lost)) call say_why(m, a, o%is_lost, found, last)
+         if (.not. (a%follows .and. o%is_lost)) call say_why(m, a, o%is_lost, structure, found, last)
       else if (found%mark == mark_singular .and. .not. o%has_begun) then
          call say_what_moves(m, found)
       else if (.not. o%has_begun) then
@@ -53,12 +59,13 @@ contains
       o%has_begun = a%has_begun
    end subroutine ask_blocks
 
-   !> Why there is no position, from the position `last` (3, links) that is followed or, without one, from the estimate;
-   !> `is_known`: the instant before had none either.
-   subroutine say_why(m, a, is_known, found, last)
+   !> Why there is no position, from the position `last` (3, links) that is followed or, without one, from the estimate,
+   !> by blocks of the `structure`; `is_known`: the instant before had none either.
+   subroutine say_why(m, a, is_known, structure, found, last)
       type(mechanism_t), intent(in) :: m
       type(analysis_t), intent(in) :: a
       logical, intent(in) :: is_known
+      type(structure_t), intent(inout) :: structure
       type(motion_t), intent(inout) :: found
       real(wp), intent(in), optional :: last(:, :)
       type(analysis_t) :: b
@@ -70,7 +77,7 @@ contains
          call advance(b, a%t, q)
          if (q%known < 2) return
       else
-         call make_analysis(b, by_blocks(m))
+         call make_analysis(b, by_blocks(m), structure)
       end if
       call advance(b, found%t, q)
       call pass_on(q, [diagnostic_inconsistent, diagnostic_limit], found)

@@ -8,6 +8,7 @@ module dense_engine
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_dense, method_matrix, own_predictor
    use motion, only: motion_t, new_motion, mark_none
+   use structure, only: structure_t, new_structure
    use linear_solver, only: factors_t, new_factors, reciprocal_condition, determinant_sign, solve_factored => solve
    use convergence, only: convergence_t, is_solved, ended_elsewhere
    use predictor, only: largest_change, order_weights
@@ -41,6 +42,7 @@ module dense_engine
       private
       type(system_t) :: system
       type(mechanism_t) :: by_blocks             !< to be solved by blocks, at the first instant
+      type(structure_t) :: structure             !< of that
       type(block_engine_t), allocatable :: blocks !< of that, for the links that drives alone move; made when needed
       type(coordinates_t) :: coordinates         !< whose changes the Kantorovich ratio bounds
       type(pose_t) :: pose                       !< workspace of the position that is searched for
@@ -65,6 +67,7 @@ module dense_engine
       procedure :: checkpoint
       procedure :: restore
       procedure :: followed_position
+      procedure :: block_structure
    end type dense_engine_t
 
    !> The motion that is followed, and that found last, with the signs of their determinants.
@@ -86,6 +89,7 @@ contains
       e%is_certified = m%method == method_dense
       e%pose = new_pose(e%system, m)
       e%by_blocks = by_blocks(m)
+      e%structure = new_structure(e%by_blocks)
       e%coordinates = new_coordinates(e%system)
       e%estimated = e%pose%q
       e%start = e%estimated
@@ -170,7 +174,7 @@ contains
 
       unit = spread([e%system%length, e%system%length, 1.0_wp], 2, size(unit, 2))
       e%start = e%estimated*unit
-      call find_start(e%by_blocks, t, e%start, meant, is_known)
+      call find_start(e%by_blocks, e%structure, t, e%start, meant, is_known)
       e%start = e%start/unit
       call search(e, e%start, c)
       if (is_solved(c) .and. .not. c%singular .and. c%kantorovich_ratio <= certain) return
@@ -318,6 +322,14 @@ contains
       q = e%last%position*spread([e%system%length, e%system%length, 1.0_wp], 2, size(q, 2))
    end function followed_position
 
+   !> The structure of the mechanism as the blocks solve it: it is built once, and each block engine takes a copy.
+   pure function block_structure(e) result(s)
+      class(dense_engine_t), intent(in) :: e
+      type(structure_t) :: s
+
+      s = e%structure
+   end function block_structure
+
    !> See `engine`. There is one Jacobian for all links: without its inverse the links are known that drives alone move.
    subroutine get_link_flags(e, found)
       class(dense_engine_t), intent(inout) :: e
@@ -342,10 +354,12 @@ contains
       class(dense_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       type(motion_t), intent(inout) :: found
+      type(structure_t) :: own
 
       if (.not. allocated(e%blocks)) then
          allocate (e%blocks)
-         call make_block_engine(e%blocks, e%by_blocks)
+         own = e%structure
+         call make_block_engine(e%blocks, e%by_blocks, own)
       end if
       call e%blocks%get_driven_links(t, found)
    end subroutine get_driven_links

@@ -4,6 +4,7 @@ module dense_start
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_t, request_link, method_newton
    use motion, only: motion_t, new_motion
+   use structure, only: structure_t
    use convergence, only: convergence_t, is_solved
    use block_state, only: set_values
    use block_solver, only: solve_block
@@ -27,24 +28,27 @@ contains
       d%requests = [(request_t(request_link, i, 1), i=1, size(m%links))]
    end function by_blocks
 
-   !> Two positions (3, links) of `m`, which is to be solved by blocks, at `t`, x and y in the deck's unit from the
+   !> Two positions (3, links) of `m`, which is to be solved by blocks and has the `structure`, at `t`, x and y in the deck's unit from the
    !> plane's origin: the `estimate`, with driven links at their drives' values, angles without needless turns, and
    !> links that hang on others at their joints; and the `assembly` found from it, where there is one (`is_found`).
    !> Where the structure has no solution `estimate` stays as it is.
-   subroutine find_start(m, t, estimate, assembly, is_found)
+   subroutine find_start(m, structure, t, estimate, assembly, is_found)
       type(mechanism_t), intent(in) :: m
+      type(structure_t), intent(in) :: structure
       real(wp), intent(in) :: t
       real(wp), intent(inout) :: estimate(:, :)
       real(wp), intent(out) :: assembly(:, :)
       logical, intent(out) :: is_found
       type(block_engine_t) :: e
+      type(structure_t) :: own
       type(convergence_t) :: c
       type(motion_t) :: q
       real(wp) :: correction
       logical :: unused
 
       q = new_motion(size(m%links))
-      call make_block_engine(e, m)
+      own = structure
+      call make_block_engine(e, m, own)
       call solve_first(e, t, c, correction, unused)
       is_found = e%blocks%solvable .and. is_solved(c)
       assembly = estimate
