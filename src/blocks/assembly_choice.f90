@@ -1,5 +1,5 @@
 !> The assembly that belongs to a deck's initial estimate, where the blocks one by one leave a choice. A block
-!> takes its nearest position; but two may be about as near, and only what is built on it tells which one is meant:
+!> takes its nearest position; but two may be about as near, and only what is built on it shows which one is meant:
 !> its child links lie as the deck says, or do not close at all. So the others are tried as well, and the
 !> rest assembled again.
 !>
@@ -29,14 +29,13 @@ module assembly_choice
 
    !> Links that differ by more than this, in radians or characteristic lengths, lie differently.
    real(wp), parameter :: apart = max(1.0e-6_wp, sqrt(epsilon(1.0_wp)))
-   !> A place that is further off than this part of the characteristic length tells nothing more by how far: a deck may
-   !> give angles alone.
+   !> Places count as off by no more than this part of the characteristic length: a deck may give angles alone.
    real(wp), parameter :: far_place = 0.25_wp
    !> Sums of squares that differ by less than this are about alike.
    real(wp), parameter :: nearly = 1.25_wp
-   !> Better by more than rounding.
+   !> A smaller ratio is an improvement by more than rounding.
    real(wp), parameter :: less = 0.999_wp
-   !> So many blocks are assembled for it; of each block so many positions.
+   !> The largest numbers of blocks assembled for the choice, and of other positions tried of one block.
    integer, parameter :: max_solves = 3000, max_others = 4
 
 contains
@@ -80,7 +79,7 @@ contains
       call assemble_from(e, 0, best, solves)
       solves = 0
       e%is_close = .false.
-      ! Once more where a block finds no position yet: what comes later may have to give way first.
+      ! Once more where a block has no position yet: a later block may have to change its own first.
       do
          again = .false.
          do i = 1, size(best%solved)
@@ -180,7 +179,7 @@ contains
       if (.not. t%solved(i)) call set_values(e%blocks, i, estimate_of(e, i), e%state)
    end subroutine assemble_one
 
-   !> How far two assemblies are from the deck's estimate, by the links that lie in another way: the sums of squares.
+   !> How far two assemblies are from the deck's estimate, by the links that lie differently: the sums of squares.
    function costs(e, a, b) result(cost)
       type(block_engine_t), intent(in) :: e
       type(trial_t), intent(in) :: a, b

@@ -25,7 +25,7 @@ module block_branches
 
    !> Over a substep this short, in radians and lengths, a determinant that changes its sign although the prediction
    !> was right to so small a part of the substep indicates a change point. Circuits that pass each other at the
-   !> distance d are told from one that crosses another where d^2 is above the product of the two, 1E-14.
+   !> distance d are distinguished from crossing ones where d^2 is above the product of the two, 1E-14.
    real(wp), parameter :: short_step = max(1.0e-4_wp, 0.75_wp*sqrt(sqrt(epsilon(1.0_wp))))
    real(wp), parameter :: right_part = max(1.0e-6_wp, 0.7_wp*epsilon(1.0_wp)**0.375_wp), max_wrong = 1.0e-2_wp
    real(wp), parameter :: rounding = 500.0_wp*epsilon(1.0_wp)
@@ -40,7 +40,7 @@ contains
 
    !> Passes the change points before `t`, each as the BRANCH cards have it: `requests`. `correction`: of the prediction
    !> of the motion found last. `list`: a diagnostic for each. `passed`: the motion found last, with its record `c`, is
-   !> that which goes on; otherwise the list tells why there is none, or is empty where a determinant has changed its
+   !> that which goes on; otherwise the list says why there is none, or is empty where a determinant has changed its
    !> sign without a change point.
    subroutine pass(e, t, correction, requests, c, list, passed)
       type(block_engine_t), intent(inout) :: e

@@ -1,4 +1,4 @@
-!> What the block engine has to say of a motion beside its numbers.
+!> The diagnostics of the block engine: of the first motion, and of a limit.
 module block_diagnostics
    use kinds, only: wp
    use drives, only: drive_motion
@@ -44,8 +44,8 @@ contains
          links=[link, 0, 0, 0, 0, 0], is_angle=.true., value=off(link))]
    end function start_diagnostics
 
-   !> Of the first motion found: which equations are redundant, what can still move where `singular` says that the
-   !> Jacobian has no inverse, and where the choice of an assembly was close.
+   !> Which equations are redundant, what can still move where the Jacobian is `singular`, and where another
+   !> assembly is about as near to the estimate.
    function assembly_diagnostics(e, singular) result(list)
       type(block_engine_t), intent(inout) :: e
       logical, intent(in) :: singular
@@ -137,7 +137,7 @@ contains
       end do
    end subroutine add_idle_drives
 
-   !> (links) Those whose angle block `i` seeks.
+   !> (links) Those whose angle is an unknown of block `i`.
    pure function links_of(e, i) result(chosen)
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: i
@@ -159,26 +159,26 @@ contains
       end do
    end function links_with
 
-   !> Where the last motion kept comes to its end on the way to `t`, if it does: the first block, in solving order,
-   !> that comes to a limit; those that build on it do no less.
+   !> The limit of the motion that is followed, if it has one before `t`: that of the first block, in solving order,
+   !> that comes to one; blocks that build on it come to it as well.
    function limit_diagnostic(e, t) result(list)
       type(block_engine_t), intent(in) :: e
       real(wp), intent(in) :: t
       type(diagnostic_t), allocatable :: list(:)
       type(diagnostic_t) :: r
-      real(wp) :: rest
+      real(wp) :: left
       integer :: k
 
       allocate (list(0))
       if (e%history%filled == 0) return
       do k = 1, size(e%moving)
          if (e%blocks%list(e%moving(k))%direct) cycle
-         rest = way_left(e, e%moving(k), t)
-         if (abs(rest) <= 0.0_wp) cycle
+         left = time_to_limit(e, e%moving(k), t)
+         if (abs(left) <= 0.0_wp) cycle
          associate (i => e%moving(k), block => e%blocks%list(e%moving(k)))
             r = new_diagnostic(diagnostic_limit, links_of(e, e%moving(k)))
             r%in_line = is_in_line(e, i, r)
-            r%t = e%history%t(e%history%place(0)) + rest
+            r%t = e%history%t(e%history%place(0)) + left
             call name_drive(e, i, r)
          end associate
          list = [r]
@@ -186,24 +186,24 @@ contains
       end do
    end function limit_diagnostic
 
-   !> From the last motion kept to the limit of block `i`, on the way to `t`; 0 where none is near. Close to a limit t*
-   !> the fastest unknown is x* + c sqrt(t* - t), so t* - t = x'/(2 x''), with an error of higher order.
-   pure real(wp) function way_left(e, i, t) result(rest)
+   !> The time from the motion that is followed to the limit t* of block `i` before `t`; 0 where none is near. Close
+   !> to t* the fastest unknown is x* + c sqrt(t* - t), so t* - t = x'/(2 x''), with an error of higher order.
+   pure real(wp) function time_to_limit(e, i, t) result(left)
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: i
       real(wp), intent(in) :: t
       integer :: fastest
 
-      rest = 0.0_wp
+      left = 0.0_wp
       associate (h => e%history, p => e%history%place(0), &
                  u => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
          if (size(u) == 0) return
          fastest = u(maxloc(abs(h%acceleration(u, p)), dim=1))
          if (abs(h%acceleration(fastest, p)) <= 0.0_wp) return
-         rest = 0.5_wp*h%rate(fastest, p)/h%acceleration(fastest, p)
-         if (rest*sign(1.0_wp, t - h%t(p)) <= 0.0_wp .or. abs(rest) > near_part*abs(t - h%t(p))) rest = 0.0_wp
+         left = 0.5_wp*h%rate(fastest, p)/h%acceleration(fastest, p)
+         if (left*sign(1.0_wp, t - h%t(p)) <= 0.0_wp .or. abs(left) > near_part*abs(t - h%t(p))) left = 0.0_wp
       end associate
-   end function way_left
+   end function time_to_limit
 
    !> The two links of `r`, all that block `i` moves, share a revolute pair, and their body vectors are parallel.
    pure logical function is_in_line(e, i, r)

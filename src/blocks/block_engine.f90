@@ -117,7 +117,7 @@ contains
       e%state = new_state(e%blocks, size(m%drives))
       e%history = new_history(e%blocks%unknowns, iterated_unknowns(e))
       e%history%order = m%predictor
-      e%depends_on_history = size(e%history%sought) > 0
+      e%depends_on_history = size(e%history%predicted) > 0
       call make_workspace(e%work, e%blocks)
       e%chain = new_chain(m, t, wanted_links(m), e%blocks%orientations, e%blocks%unit)
       e%whole = new_chain(m, t, spread(.true., 1, size(m%links)), e%blocks%orientations, e%blocks%unit)

@@ -6,7 +6,7 @@
 !> So one assembly and one factorization a step are the rule, from a start that is right already. A Jacobian one
 !> correction d away leaves errors of order d in the rates: no larger d is accepted.
 !>
-!> Where equations are too many, all of them are kept, in the sense of least squares (Gauss and Newton): which of
+!> Where equations are too many, all of them are solved, in the sense of least squares (Gauss and Newton): which of
 !> them could be spared changes along the motion. By how much they contradict one another is the closure error.
 module block_solver
    use kinds, only: wp

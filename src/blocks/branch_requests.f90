@@ -1,5 +1,5 @@
 !> Which branch is taken at which change point: smoothly on, but where a BRANCH card asks for the other one.
-!> A change point passed once is passed in the same way again, in either direction: the motion is a function of time.
+!> A change point passed once is passed on the same branch again, in either direction: the motion is a function of time.
 module branch_requests
    use kinds, only: wp
    use mechanism, only: mechanism_t, branch_request_t

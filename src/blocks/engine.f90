@@ -93,7 +93,7 @@ module engine
 
 contains
 
-   !> The closure error at `t` itself, where a substep has ended with contradictory equations before it: `c` tells how
+   !> The closure error at `t` itself, where a substep has ended with contradictory equations before it: `c` says how
    !> the search for a position there ended.
    subroutine measure_closure_error(e, t, c)
       class(engine_t), intent(inout) :: e

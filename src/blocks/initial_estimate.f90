@@ -1,10 +1,11 @@
-!> The rough angles of a deck, or better ones where its rough places tell them. A deck may give x and y of
-!> its links with care and no angles, or wrong ones: then the places of the pairs say how the links lie.
+!> The initial estimate of the angles: those of the deck, or better ones that follow from its places. A deck may give
+!> x and y of its links with care and no angles, or wrong ones: then the places of the pairs show how the links lie.
 !>
-!> With all places kept, the squares of what the pairs stay open by are, for one frame at the angle u, of the form
+!> For fixed places the sum of the squared closure errors of the pairs is, as a function of the angle u of one
+!> orientation class,
 !>    c cos u + s sin u + p cos^2 u + q cos u sin u + w sin^2 u
-!> and the frames are turned to the least of it, one after another, until they turn no more. Only such pairs count of
-!> which the place of the other link's point is known: its origin, or a point of a link whose angle is known already.
+!> It is minimized over one class after another, until no angle changes. Only those pairs count whose point on the
+!> other link has a known place: its origin, or a point of a link whose angle is known already.
 !> Two links that meet far from both origins keep the angles of the deck: they may lie on either side.
 module initial_estimate
    use kinds, only: wp
@@ -17,15 +18,17 @@ module initial_estimate
    private
    public :: estimated_values, estimated_directions
 
-   !> The places are believed where with their angles the pairs stay open by so small a part of the characteristic
-   !> length, and of what they are with the deck's angles; and where an angle differs by more than that, in radians.
+   !> Angles from the places are taken where their largest closure error is below `closed_part` of the characteristic
+   !> length and below `better_part` of that of the deck's angles, and where an angle differs by more than `far_angle`
+   !> (rad).
    real(wp), parameter :: closed_part = 0.1_wp, better_part = 0.2_wp, far_angle = 1.0_wp
-   !> Nothing is wrong with a deck whose pairs are closed to this part of the length.
+   !> A deck with closure errors below this part of the length needs no other angles.
    real(wp), parameter :: good_part = 1.0e-3_wp
    !> Body vectors this short, squared, give no direction.
    real(wp), parameter :: min_form_part = 1.0e-6_wp
    !> A point so near to the origin of its link has its place.
    real(wp), parameter :: short_part = 1.0e-3_wp
+   !> Values of the form that differ by less than this part of its coefficients are alike.
    real(wp), parameter :: alike = 1.0e-9_wp
    integer, parameter :: max_sweeps = 20, samples = 36
 
@@ -78,12 +81,12 @@ contains
       end associate
    end function estimated_place
 
-   !> (links) Rough angles: those of the deck, or where the places tell better ones, these.
+   !> (links) The estimated angles: those of the deck, or better ones that follow from the places.
    function estimated_directions(m, t) result(phi)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       real(wp) :: phi(size(m%links))
-      real(wp) :: u(0:t%orientations), v(0:t%orientations), before, after, turned, length
+      real(wp) :: u(0:t%orientations), v(0:t%orientations), before, after, change, length
       logical, allocatable :: placed(:)
       integer, allocatable :: order(:)
       integer :: i, sweep
@@ -100,8 +103,8 @@ contains
       v = u
       order = by_orientation(t)
       do sweep = 1, max_sweeps
-         call turn_orientations(m, t, order, min_form_part*length**2, v, placed, turned)
-         if (turned <= good_part) exit
+         call minimize_closure_errors(m, t, order, min_form_part*length**2, v, placed, change)
+         if (change <= good_part) exit
       end do
       v = u + without_turns(v - u)
       before = largest_opening(m, t, u, placed)
@@ -112,7 +115,7 @@ contains
       end do
    end function estimated_directions
 
-   !> Links of frames, frame after frame.
+   !> The links in the order of their orientation classes.
    pure function by_orientation(t) result(order)
       type(tree_t), intent(in) :: t
       integer, allocatable :: order(:)
@@ -132,20 +135,20 @@ contains
       end do
    end function by_orientation
 
-   !> Turns each frame to where its pairs are open the least, unless the form is below `least_form` all around;
-   !> `placed` (points): their places are known, then also those of the frame; `turned`: the largest turn.
-   subroutine turn_orientations(m, t, order, least_form, u, placed, turned)
+   !> Gives each orientation class the angle of the least closure errors, unless the form is below `least_form` at all
+   !> angles. `placed` (points): their places are known, then also those of the class; `change`: the largest, in rad.
+   subroutine minimize_closure_errors(m, t, order, least_form, u, placed, change)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       integer, intent(in) :: order(:)
       real(wp), intent(in) :: least_form
       real(wp), intent(inout) :: u(0:)
       logical, intent(inout) :: placed(:)
-      real(wp), intent(out) :: turned
+      real(wp), intent(out) :: change
       real(wp) :: e(5), found
       integer :: i, k, orientation
 
-      turned = 0.0_wp
+      change = 0.0_wp
       e = 0.0_wp
       do i = 1, size(order)
          orientation = t%orientation(order(i))
@@ -159,15 +162,15 @@ contains
          end if
          if (maxval(abs(e)) > least_form) then
             found = least(e, u(orientation))
-            turned = max(turned, abs(without_turns(found - u(orientation))))
+            change = max(change, abs(without_turns(found - u(orientation))))
             u(orientation) = found
             where (t%orientation(m%points%link) == orientation) placed = .true.
          end if
          e = 0.0_wp
       end do
-   end subroutine turn_orientations
+   end subroutine minimize_closure_errors
 
-   !> The other side of pair `k` of `orientation`, if it is not the same frame, has its place.
+   !> The other side of pair `k` of `orientation`, if it is of another class, has its place.
    pure logical function is_reported(m, t, k, orientation, placed)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
@@ -224,7 +227,7 @@ contains
       end if
    end subroutine split
 
-   !> The guide's normal of pair `k` in its frame.
+   !> (2) The normal of the guide of pair `k` in the axes of its orientation class.
    pure function normal(m, t, k) result(n)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t

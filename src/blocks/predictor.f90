@@ -1,4 +1,4 @@
-!> The start of the next step: the state before, corrected through velocities and accelerations.
+!> The prediction of the next position from the motions before: the start of Newton's method.
 !>
 !> From one instant:  x + h (v + h a/2), error h^3 x'''/6.
 !> From three at equal steps h, latest first: the integral over the next step of the quintic that has their velocities
@@ -27,7 +27,7 @@ module predictor
 
    !> The last three motions; column place(0) is the latest.
    type :: history_t
-      integer, allocatable :: sought(:)                 !< unknowns that are predicted
+      integer, allocatable :: predicted(:)                 !< the unknowns that iterations solve for
       integer :: order = own_predictor                  !< 0 to 3, or as above
       integer :: filled = 0
       integer :: place(0:2) = [0, 1, 2]
@@ -38,12 +38,12 @@ module predictor
 
 contains
 
-   !> Room for `n` unknowns, of which those in the list `sought` are to be predicted.
-   pure function new_history(n, sought) result(h)
-      integer, intent(in) :: n, sought(:)
+   !> Room for `n` unknowns, of which those in the list `predicted` are predicted.
+   pure function new_history(n, predicted) result(h)
+      integer, intent(in) :: n, predicted(:)
       type(history_t) :: h
 
-      h%sought = sought
+      h%predicted = predicted
       allocate (h%value(0:n), h%rate(0:n, 0:2), h%acceleration(0:n, 0:2), source=0.0_wp)
    end function new_history
 
@@ -57,8 +57,8 @@ contains
       latest = h%place(2)
       h%place = [latest, h%place(0), h%place(1)]
       h%t(latest) = t
-      do k = 1, size(h%sought)
-         i = h%sought(k)
+      do k = 1, size(h%predicted)
+         i = h%predicted(k)
          h%value(i) = u(i)%value
          h%rate(i, latest) = u(i)%rate
          h%acceleration(i, latest) = u(i)%acceleration
@@ -82,8 +82,8 @@ contains
          step = t - h%t(p)
          even = is_even(h, step)
          if (h%order /= own_predictor) w = order_weights(h%order, step, merge(h%t(p) - h%t(q), 0.0_wp, h%filled > 1))
-         do k = 1, size(h%sought)
-            i = h%sought(k)
+         do k = 1, size(h%predicted)
+            i = h%predicted(k)
             if (h%order /= own_predictor) then
                d = w(1)*v(i, p) + w(2)*a(i, p) + w(3)*(a(i, p) - a(i, q))
             else if (even) then

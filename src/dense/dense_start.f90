@@ -28,10 +28,10 @@ contains
       d%requests = [(request_t(request_link, i, 1), i=1, size(m%links))]
    end function by_blocks
 
-   !> Two positions (3, links) of `m`, which is to be solved by blocks and has the `structure`, at `t`, x and y in the deck's unit from the
-   !> plane's origin: the `estimate`, with driven links at their drives' values, angles without needless turns, and
-   !> links that hang on others at their joints; and the `assembly` found from it, where there is one (`is_found`).
-   !> Where the structure has no solution `estimate` stays as it is.
+   !> Two positions (3, links) of `m`, which is to be solved by blocks and has the `structure`, at `t`, x and y in the
+   !> deck's unit from the plane's origin: the `estimate`, with driven links at their drives' values, angles without
+   !> needless turns, and child links at the joints of their parents; and the `assembly` found from it, where there is
+   !> one (`is_found`). Where the structure has no solution `estimate` stays as it is.
    subroutine find_start(m, structure, t, estimate, assembly, is_found)
       type(mechanism_t), intent(in) :: m
       type(structure_t), intent(in) :: structure

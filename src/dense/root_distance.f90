@@ -152,7 +152,7 @@ contains
    end subroutine kantorovich
 
    !> More than K times `change`, from the condition alone: no row sum of the inverse is more than n times its largest
-   !> column sum, of which DGECON tells a third or more, and a slot has two rows. `condition`: the reciprocal condition
+   !> column sum, of which DGECON gives a third or more, and a slot has two rows. `condition`: the reciprocal condition
    !> times the Jacobian's norm.
    pure real(wp) function kantorovich_bound(s, c, p, change, condition) result(ratio)
       type(system_t), intent(in) :: s
