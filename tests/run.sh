@@ -27,6 +27,7 @@ parts() {
    units of length|712|tests/system/units.sh
    the methods against one another|8|tests/system/methods.sh
    independent mechanisms|106|tests/system/independent.sh
+   what a singular position is|211|tests/system/singular.sh
    the digits|1|tests/system/digits.sh
    wide blocks|7|tests/system/wide.sh
    drives between instants|18|tests/system/drives.sh

@@ -2,10 +2,12 @@
 !> ask of it alone.
 module block_method
    use kinds, only: wp
+   use motion, only: motion_t
    use convergence, only: convergence_t, is_solved, ended_inconsistent
    use block_engine, only: block_engine_t
    use assembly_choice, only: solve_first
    use block_branches, only: is_short_and_right
+   use singularity, only: singularity_of
    implicit none
    private
    public :: block_method_t
@@ -13,6 +15,7 @@ module block_method
    type, extends(block_engine_t) :: block_method_t
    contains
       procedure :: solve
+      procedure :: get_link_flags
       procedure :: measure_closure_error
       procedure :: max_rate
       procedure :: roundings_grow
@@ -38,6 +41,15 @@ contains
          call solve_first(e%block_engine_t, t, c, correction, same)
       end if
    end subroutine solve
+
+   !> See `engine`.
+   subroutine get_link_flags(e, found)
+      class(block_method_t), intent(inout) :: e
+      type(motion_t), intent(inout) :: found
+
+      call e%block_engine_t%get_link_flags(found)
+      found%singularity = singularity_of(e%block_engine_t)
+   end subroutine get_link_flags
 
    !> The closure error at `t` itself, from the motion that is followed or, where that is too far, from the deck's
    !> estimate; where neither search ends there, `c` stays but for its closure error, which is 0.

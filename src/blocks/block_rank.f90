@@ -11,8 +11,8 @@ module block_rank
    use block_equations, only: assemble_dense, right_hand_side
    implicit none
    private
-   public :: redundant_rows, moving_unknowns, jacobian_of, relative_sign, min_direction, residual_of, &
-      gauss_newton_step, judge_drives
+   public :: values_t, decomposed, redundant_rows, moving_unknowns, jacobian_of, relative_sign, min_direction, &
+      residual_of, gauss_newton_step, judge_drives
 
    !> Singular values below this part of the largest count as zero: the root of the rounding, since a position at which
    !> they vanish is itself known to no more.

@@ -59,7 +59,8 @@ module engine
          logical, intent(out) :: finite
       end subroutine motion_interface
 
-      !> Which links have velocities in the motion `found` last, where not all have.
+      !> Which links have velocities in the motion `found` last, where not all have; METHOD NEWTON: and what the
+      !> singular position is.
       subroutine flags_interface(e, found)
          import :: engine_t, motion_t
          class(engine_t), intent(inout) :: e

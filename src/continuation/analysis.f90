@@ -4,7 +4,7 @@ module analysis
    use mechanism, only: mechanism_t
    use structure, only: structure_t
    use motion, only: motion_t, forget_links, known_of, mark_none, mark_not_converged, mark_singular, mark_overflow, &
-      mark_inconsistent
+      mark_inconsistent, singular_unclear
    use diagnostics, only: diagnostic_t, diagnostic_inconsistent, diagnostic_long
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, branch_none, branch_first, branch_same, &
       branch_crossed
@@ -262,6 +262,7 @@ contains
       call forget_links(found)
       found%known = known
       found%mark = mark
+      found%singularity = singular_unclear
    end subroutine cut
 
    !> By how much redundant equations have differed at most, in characteristic lengths or rad; -1 where there are none.

@@ -28,7 +28,8 @@ module diagnosis
 contains
 
    !> Adds to the diagnostics of `found`, which `a` has found last of `m`: how far the estimate was off; the limit of
-   !> the motion, which equation is not satisfied, what can still move; or that METHOD NEWTON finds a position. `o`:
+   !> the motion, which equation is not satisfied, what can still move; or that METHOD NEWTON finds a position;
+   !> and what a singular position is. `o`:
    !> what has been said before.
    subroutine ask_blocks(m, a, o, found)
       type(mechanism_t), intent(in) :: m
@@ -50,8 +51,8 @@ contains
       end select
       if (found%mark == mark_not_converged) then
          if (.not. (a%follows .and. o%is_lost)) call say_why(m, a, o%is_lost, structure, found, last)
-      else if (found%mark == mark_singular .and. .not. o%has_begun) then
-         call say_what_moves(m, found)
+      else if (found%mark == mark_singular) then
+         call judge_singularity(m, .not. o%has_begun, found)
       else if (.not. o%has_begun) then
          call say_how_far(m, found)
       end if
@@ -107,9 +108,11 @@ contains
       call pass_on(q, [diagnostic_far_estimate, diagnostic_second], found)
    end subroutine say_how_far
 
-   !> What can move where the Jacobian has no inverse.
-   subroutine say_what_moves(m, found)
+   !> Whether the singular position is a change point or a dead point; of the first motion (`is_first`) also what can
+   !> move there.
+   subroutine judge_singularity(m, is_first, found)
       type(mechanism_t), intent(in) :: m
+      logical, intent(in) :: is_first
       type(motion_t), intent(inout) :: found
       type(analysis_t) :: b
       type(motion_t) :: q
@@ -117,8 +120,9 @@ contains
       q = new_motion(size(m%links))
       call make_analysis(b, placed(m, found%position))
       call advance(b, found%t, q)
-      call pass_on(q, [diagnostic_mobile, diagnostic_idle, diagnostic_repeated], found)
-   end subroutine say_what_moves
+      found%singularity = q%singularity
+      if (is_first) call pass_on(q, [diagnostic_mobile, diagnostic_idle, diagnostic_repeated], found)
+   end subroutine judge_singularity
 
    !> `m` for the blocks, its estimate the `position` (3, links) in the deck's unit from the origin of the plane.
    pure function placed(m, position) result(d)

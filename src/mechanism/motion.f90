@@ -6,6 +6,7 @@ module motion
    private
    public :: motion_t, new_motion, known_of, mark_of, forget_links
    public :: mark_none, mark_not_converged, mark_singular, mark_overflow, mark_inconsistent
+   public :: singular_unclear, singular_change, singular_dead
 
    !> Why an instant, or a link, is flagged.
    enum, bind(c)
@@ -16,10 +17,18 @@ module motion
       enumerator :: mark_inconsistent   !< redundant equations contradict one another
    end enum
 
+   !> What a position with a singular Jacobian is, the worst last.
+   enum, bind(c)
+      enumerator :: singular_unclear = 0 !< neither of those below, or they cannot be told apart
+      enumerator :: singular_change      !< a change point: velocities exist and are not unique
+      enumerator :: singular_dead        !< a dead point: no finite velocities exist
+   end enum
+
    !> Lengths and times are in the deck's units, angles in radians.
    type :: motion_t
       real(wp) :: t = 0.0_wp                             !< the instant
       integer :: mark = mark_none                        !< why it is flagged
+      integer :: singularity = singular_unclear          !< of mark_singular: one of singular_...
       integer :: known = -1  !< what exists: -1 nothing, 0 positions, 1 velocities too, 2 accelerations too
       type(diagnostic_t), allocatable :: diagnostics(:)  !< none: not allocated
       real(wp) :: origin(2) = 0.0_wp                     !< the place from which x and y of `position` are counted

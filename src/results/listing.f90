@@ -3,7 +3,7 @@
 module listing
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use motion, only: mark_none, mark_inconsistent
+   use motion, only: mark_none, mark_singular, mark_inconsistent, singular_unclear, singular_dead
    use structure, only: findings_t, group_t
    use branch_certificate, only: certificate_counts_t
    use diagnostics, only: diagnostic_t
@@ -22,7 +22,10 @@ module listing
 
    !> Why there is not all of a motion, by its mark.
    type(phrase_t), parameter :: mark_words(mark_none:mark_inconsistent) = &
-      [phrase_t(), say_no_position, say_no_rates, say_overflow, say_contradiction]
+      [phrase_t(), say_no_position, phrase_t(), say_overflow, say_contradiction]
+   !> The same of mark_singular, by what the position is.
+   type(phrase_t), parameter :: singular_words(singular_unclear:singular_dead) = &
+      [say_singular, say_change_point, say_dead_point]
    integer, parameter :: links_a_line = 10
 
 contains
@@ -120,9 +123,7 @@ contains
          end if
       end do
       if (table%kind == 0 .and. is_flagged(s)) call put_instant(o, l, s%motions(1)%t, step)
-      do k = mark_none + 1, mark_inconsistent
-         if (any(s%motions%mark == k)) call put(o, ' *** '//phrase(mark_words(k), m%polish))
-      end do
+      call put_marks(o, m, s)
       if (table%masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, m%polish))
       do c = 1, size(s%motions)
          if (.not. allocated(s%motions(c)%diagnostics)) cycle
@@ -130,6 +131,25 @@ contains
             size(s%motions(c)%diagnostics))])
       end do
    end subroutine listing_instant
+
+   !> Why some part of `s` has not all of its motion, each reason once.
+   subroutine put_marks(o, m, s)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(set_motion_t), intent(in) :: s
+      integer :: k, i
+
+      do k = mark_none + 1, mark_inconsistent
+         if (k /= mark_singular) then
+            if (any(s%motions%mark == k)) call put(o, ' *** '//phrase(mark_words(k), m%polish))
+            cycle
+         end if
+         do i = singular_unclear, singular_dead
+            if (any(s%motions%mark == k .and. s%motions%singularity == i)) &
+               call put(o, ' *** '//phrase(singular_words(i), m%polish))
+         end do
+      end do
+   end subroutine put_marks
 
    !> The line above the tables of an instant, `t` in the deck's unit.
    subroutine put_instant(o, l, t, step)

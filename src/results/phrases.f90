@@ -38,8 +38,10 @@ module phrases
       say_solved = phrase_t('INSTANTS SOLVED', 'CHWILE ROZWIAZANE'), &
       say_flagged = phrase_t('FLAGGED', 'ZAZNACZONE'), &
       say_no_position = phrase_t('NO POSITION FOUND', 'NIE ZNALEZIONO POLOZENIA'), &
-      say_no_rates = phrase_t('JACOBIAN SINGULAR: VELOCITIES AND ACCELERATIONS DO NOT EXIST', &
-         'JAKOBIAN OSOBLIWY: PREDKOSCI I PRZYSPIESZENIA NIE ISTNIEJA'), &
+      say_singular = phrase_t('JACOBIAN SINGULAR: NO UNIQUE VELOCITIES', &
+         'JAKOBIAN OSOBLIWY: BRAK JEDNOZNACZNYCH PREDKOSCI'), &
+      say_change_point = phrase_t('CHANGE POINT: VELOCITIES NOT UNIQUE', 'PUNKT ZMIANY: PREDKOSCI NIEJEDNOZNACZNE'), &
+      say_dead_point = phrase_t('DEAD POINT: NO FINITE VELOCITIES', 'PUNKT MARTWY: BRAK SKONCZONYCH PREDKOSCI'), &
       say_overflow = phrase_t('THE RESULT IS TOO LARGE A NUMBER', 'WYNIK JEST ZBYT DUZA LICZBA'), &
       say_groups = phrase_t('ASSUR GROUPS IN SOLVING ORDER', 'GRUPY ASSURA W KOLEJNOSCI ROZWIAZYWANIA'), &
       say_driven = phrase_t('DRIVEN', 'NAPEDZANA'), &

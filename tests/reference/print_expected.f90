@@ -5,7 +5,7 @@ program print_expected
    use kinds, only: wp
    use failures, only: failure_t
    use mechanism, only: mechanism_t, instant_count, instant, method_newton, drive_angle
-   use motion, only: motion_t, new_motion, forget_links, mark_none, mark_singular
+   use motion, only: motion_t, new_motion, forget_links, mark_none, mark_singular, singular_change
    use structure, only: findings_t
    use branch_certificate, only: certificate_counts_t
    use hand_groups, only: groups_by_hand, redundant_by_hand, passages_by_hand
@@ -96,6 +96,7 @@ contains
 
       q%known = 0
       q%mark = mark_singular
+      q%singularity = singular_change
       allocate (q%link_known(size(m%links)), source=0)
       allocate (q%link_mark(size(m%links)), source=mark_singular)
       do i = 1, size(m%drives)

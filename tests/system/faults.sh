@@ -82,7 +82,7 @@ found() { awk "function acos(x) { return atan2(sqrt(1 - x*x), x) } function asin
    BEGIN { pi = atan2(0, -1); printf \"%.9E\", $1 }"; }
 small() { awk "BEGIN { pi = atan2(0, -1); printf \"%.2E\", $1 }"; }
 
-singular=' *** JACOBIAN SINGULAR: VELOCITIES AND ACCELERATIONS DO NOT EXIST'
+singular=' *** JACOBIAN SINGULAR: NO UNIQUE VELOCITIES'
 open=' *** TOO MANY EQUATIONS, AND THEY CONTRADICT ONE ANOTHER'
 none=' *** NO POSITION FOUND'
 largest=' LARGEST GAP OF REDUNDANT EQUATIONS, OF THE SIZE:'
@@ -209,10 +209,10 @@ told 'an idle drive, and one at a dead point' 2 "0:$singular
 0: *** DRIVE ANGLE COUPL1 MOVES NOTHING
 1:$singular"
 { head_of NAPED; card LANG PL; four_bar '' 0.0 2.0 4.0 2.0 4.0 40.0 0.0 40.0; drive ANGLE COUPL '' 0.0; until_time 1 1.0; } > "$w/deck"
-told 'in Polish: a drive that moves nothing' 2 '0: *** JAKOBIAN OSOBLIWY: PREDKOSCI I PRZYSPIESZENIA NIE ISTNIEJA
+told 'in Polish: a drive that moves nothing' 2 '0: *** JAKOBIAN OSOBLIWY: BRAK JEDNOZNACZNYCH PREDKOSCI
 0: *** OGNIWA CRANK, COUPL, ROCK RUCH NIEOKRESLONY, DODAJ NAPED
 0: *** NAPED ANGLE COUPL NICZEGO NIE PORUSZA
-1: *** JAKOBIAN OSOBLIWY: PREDKOSCI I PRZYSPIESZENIA NIE ISTNIEJA'
+1: *** JAKOBIAN OSOBLIWY: BRAK JEDNOZNACZNYCH PREDKOSCI'
 { head_of 'THIRD CRANK'; three_cranks 0.0 30.0; until_time 1 1.0; } > "$w/deck"
 told 'three cranks without a drive' 2 "0:$singular
 0: *** LINKS CRANK-1, CRANK-2, CRANK-3, COUPLER CAN STILL MOVE, ADD A DRIVE

@@ -1,0 +1,185 @@
+!> What a singular position is. With w a left null vector of the Jacobian J of a block and k a right one, J x' = b has
+!> solutions x' = p + l k only where w . b = 0. Elsewhere there is none: the drives cannot go on at a finite velocity
+!> (dead point, toggle position). Of the solutions those are velocities of a motion for which J x'' = b2(x') has
+!> solutions too: w . b2(p + l k) = 0, of second degree in l. Two real roots are two branches that cross (change point);
+!> no root is a position without neighbours.
+module singularity
+   use kinds, only: wp
+   use motion, only: singular_unclear, singular_change, singular_dead
+   use blocks, only: blocks_t, block_loop_t, loop_projection, loop_angles
+   use block_needs, only: largest_known
+   use block_state, only: state_t, unknown_t, find_known_parts
+   use block_equations, only: right_hand_side
+   use block_rank, only: values_t, decomposed, moving_unknowns
+   use block_engine, only: block_engine_t
+   implicit none
+   private
+   public :: singularity_of, block_singularity, has_two_roots, drive_speed
+
+   !> A part of b along w, over the speeds that enter it, up to which the equations agree; likewise the coefficients
+   !> above and their discriminant, up to which they are zero. A singular position is known to the root of the rounding,
+   !> and so is w; at a dead point that part is of order 1: the mean of the exponents.
+   real(wp), parameter :: agreement = epsilon(1.0_wp)**0.25_wp
+   !> A drive whose speed takes it no further than this before it turns, in rad or lengths, is at rest.
+   real(wp), parameter :: standstill = 64.0_wp*epsilon(1.0_wp)
+   !> Of larger blocks it is not asked: the twenty decompositions take a second for these.
+   integer, parameter :: max_rows = 300
+
+contains
+
+   !> What the position is that `e` has found last, one of singular_...: a dead point if some block has one, else a
+   !> change point if some block has one. Blocks that build on a singular one have no right-hand side of their own.
+   integer function singularity_of(e) result(found)
+      type(block_engine_t), intent(in) :: e
+      integer :: missing(0:e%blocks%unknowns), before, k
+
+      found = singular_unclear
+      missing = 0
+      do k = 1, size(e%needed)
+         associate (i => e%needed(k), block => e%blocks%list(e%needed(k)))
+            before = largest_known(e%blocks, i, missing)
+            if (before == 0 .and. e%is_singular(i)) found = max(found, block_singularity(e%blocks, i, e%state))
+            missing(e%blocks%unknown(block%first:block%last)) = max(before, merge(1, 0, e%is_singular(i)))
+         end associate
+      end do
+   end function singularity_of
+
+   !> The same of block `i` at the singular position of `s`; unclear where all that moves the block is at rest, and
+   !> where it says the same aside, where its links can move to: then a drive moves nothing, or adds nothing to others.
+   integer function block_singularity(b, i, s) result(found)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(state_t), intent(in) :: s
+      type(state_t) :: aside
+      real(wp) :: speed
+      logical :: agrees, crosses, agrees_aside
+
+      found = singular_unclear
+      if (b%list(i)%shape%rows > max_rows) return
+      aside = s
+      speed = drive_speed(b, i, s)
+      if (speed <= 0.0_wp) return
+      call judge(b, i, speed, aside, agrees, crosses)
+      if (agrees .and. .not. crosses) return
+      if (any(moving_unknowns(b, i, s, aside))) then
+         call judge(b, i, speed, aside, agrees_aside, crosses)
+         if (agrees_aside .eqv. agrees) return
+      end if
+      found = merge(singular_change, singular_dead, agrees)
+   end function block_singularity
+
+   !> `agrees`: the equations of block `i` for the velocities have solutions at `s`, whose Jacobian has no inverse;
+   !> `crosses`: two of them are those of branches. Of several null vectors that is not asked: they are taken to cross.
+   !> `speed`: see `drive_speed`. The rates of the block in `s` are overwritten.
+   subroutine judge(b, i, speed, s, agrees, crosses)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: speed
+      type(state_t), intent(inout) :: s
+      logical, intent(out) :: agrees, crosses
+      type(values_t) :: v
+      real(wp) :: r(b%list(i)%shape%rows)
+
+      call find_known_parts(b, i, s)
+      v = decomposed(b, i, s)
+      call right_hand_side(b, i, 1, s, r)
+      ! A position that rounding makes singular may have its least singular value above the zero level.
+      agrees = norm2(matmul(r, v%left(:, min(v%rank, v%n - 1) + 1:))) <= agreement*speed
+      crosses = agrees
+      if (agrees .and. v%rows == v%n .and. v%rank >= v%n - 1) &
+         crosses = has_two_roots(second_order(b, i, speed, v, r, s), b%list(i)%lipschitz)
+   end subroutine judge
+
+   !> (0:2) The coefficients of w . b2(p + l k) in the module's head, l in units of the velocities p or of `speed`;
+   !> `r` (rows): b.
+   function second_order(b, i, speed, v, r, s) result(c)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: speed, r(:)
+      type(values_t), intent(in) :: v
+      type(state_t), intent(inout) :: s
+      real(wp) :: c(0:2), p(v%n), r2(v%rows), q(-1:1), unit
+      integer :: j
+
+      p = 0.0_wp
+      do j = 1, v%n - 1
+         p = p + v%right(j, :)*(dot_product(v%left(:, j), r)/v%s(j))
+      end do
+      unit = max(speed, norm2(p))
+      do j = -1, 1
+         s%u(b%unknown(b%list(i)%first:b%list(i)%last))%rate = p + j*unit*v%right(v%n, :)
+         call right_hand_side(b, i, 2, s, r2)
+         q(j) = dot_product(v%left(:, v%n), r2)/unit**2
+      end do
+      c = [q(0), 0.5_wp*(q(1) - q(-1)), 0.5_wp*(q(1) + q(-1)) - q(0)]
+   end function second_order
+
+   !> c(0) + c(1) l + c(2) l**2 has two real roots, one of which may be infinite; none where all coefficients are zero
+   !> beside `scale`, as they are where a drive adds nothing to the others.
+   pure logical function has_two_roots(c, scale)
+      real(wp), intent(in) :: c(0:2), scale
+      real(wp) :: largest
+
+      largest = maxval(abs(c))
+      has_two_roots = largest > agreement*scale .and. c(1)**2 - 4.0_wp*c(0)*c(2) > agreement*largest**2
+   end function has_two_roots
+
+   !> The largest speed, in lengths of its loop or rad by time, that drives and earlier blocks give to block `i`.
+   pure real(wp) function drive_speed(b, i, s) result(speed)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(state_t), intent(in) :: s
+      integer :: k, m
+
+      speed = 0.0_wp
+      do k = b%list(i)%first_row, b%list(i)%last_row
+         associate (d => b%rows(k)%drive)
+            speed = max(speed, speed_of(s%drive_value(1, d), s%drive_value(2, d)))
+         end associate
+      end do
+      do m = b%list(i)%first_loop, b%list(i)%last_loop
+         speed = max(speed, loop_speed(b, b%loops(m), s))
+      end do
+   end function drive_speed
+
+   !> The largest speed that earlier blocks give to loop `g`.
+   pure real(wp) function loop_speed(b, g, s) result(speed)
+      type(blocks_t), intent(in) :: b
+      type(block_loop_t), intent(in) :: g
+      type(state_t), intent(in) :: s
+      integer :: k
+
+      speed = 0.0_wp
+      do k = g%first_vector, g%first_own - 1
+         associate (d => b%body_vectors(k))
+            speed = max(speed, hypot(d%x, d%y)*rate_of(s%u(d%orientation)))
+         end associate
+      end do
+      do k = g%first_slide, g%last_slide
+         associate (slide => b%slides(k), u => s%u(b%slides(k)%unknown))
+            if (slide%column == 0) speed = max(speed, rate_of(u))
+            if (slide%orientation_column == 0) speed = max(speed, abs(u%value)*rate_of(s%u(slide%orientation)))
+         end associate
+      end do
+      if (g%kind == loop_projection .or. g%kind == loop_angles) then
+         if (g%orientation_column == 0) speed = max(speed, rate_of(s%u(g%orientation)))
+      end if
+      if (g%kind == loop_angles .and. g%less_column == 0) speed = max(speed, rate_of(s%u(g%less)))
+   end function loop_speed
+
+   !> The speed of an unknown of an earlier block.
+   pure real(wp) function rate_of(u)
+      type(unknown_t), intent(in) :: u
+
+      rate_of = speed_of(u%rate, u%acceleration)
+   end function rate_of
+
+   !> The amount of `rate`; 0 at rest, and where rounding alone tells it from the turning point of a motion with this
+   !> `acceleration`: it has rate**2/(2 acceleration) to go to that.
+   pure real(wp) function speed_of(rate, acceleration) result(speed)
+      real(wp), intent(in) :: rate, acceleration
+
+      speed = 0.0_wp
+      if (rate**2 > standstill*abs(acceleration)) speed = abs(rate)
+   end function speed_of
+end module singularity

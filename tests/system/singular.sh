@@ -1,0 +1,116 @@
+#!/bin/sh
+# What a singular position is: a change point, where velocities exist and are not unique, a dead point, where none are
+# finite, or what cannot be told. By every method, whatever the unit of length; and of independent mechanisms each.
+LC_ALL=C
+export LC_ALL
+BUILD=${BUILD:-build}
+. tests/counting.sh
+
+case $BUILD in
+/*) kinmat=$BUILD/kinmat ;;
+*) kinmat=$PWD/$BUILD/kinmat ;;
+esac
+w=$BUILD/singular
+rm -rf "$w" && mkdir -p "$w" || exit 3
+
+# card NAME A B C R1 R2 R3: one card of a deck. link, point, joint, slide: cards of one mechanism, whose names end in
+# $mark and whose lengths are in units of 10**$unit m
+card() { printf '%-8s%-8s%-8s%-8s%-16s%-16s%-16s\n' "$1" "$2" "$3" "$4" "$5" "$6" "$7" | sed 's/ *$//'; }
+long() { if [ "${1:-0.0}" = 0.0 ]; then echo 0.0; else echo "${1}E$unit"; fi; }
+link() { card LINK "$1$mark" '' '' "$(long "$2")" "$(long "$3")" "$4"; }
+point() { card POINT "$1$mark" "$2" '' "$(long "$3")" "$(long "$4")"; }
+joint() { card REVOLUTE "$1$mark" "$2$mark" "$3$mark"; }
+slide() { card DRIVE X "$1$mark" '' "$(long "$2")" "$(long "$3")"; }
+angle() { card DRIVE ANGLE "$1$mark" '' "$2" "$3" "$4"; }
+
+# four_bar CRANK COUPLER ROCKER BASE PHI-CRANK PHI-COUPLER PHI-ROCKER, in degrees
+four_bar() {
+   link CR 0.0 0.0 "$5"; link CO 0.0 0.0 "$6"; link RO "$4" 0.0 "$7"
+   point A0 BASE; point B0 BASE "$4"; point A1 "CR$mark"; point A2 "CR$mark" "$1"
+   point C1 "CO$mark"; point C2 "CO$mark" "$2"; point R1 "RO$mark"; point R2 "RO$mark" "$3"
+   joint A0 A1 PA0; joint A2 C1 PA; joint C2 R2 PB; joint R1 B0 PB0
+}
+# slider PHI-CRANK PHI-ROD X: crank 1, rod 3 and a piston on the line y = 0
+slider() {
+   link CR 0.0 0.0 "$1"; link RD 0.0 0.0 "$2"; link PI "$3" 0.0 0.0
+   point O BASE; point O1 "CR$mark"; point A1 "CR$mark" 1.0; point A2 "RD$mark"; point B2 "RD$mark" 3.0; point B "PI$mark"
+   joint O O1 PO; joint A1 A2 PA; joint B2 B PB
+   card PRISM "O$mark" "B$mark" "GU$mark" 0.0 0.0 0.0
+}
+
+# Mechanisms that stand at a singular position at T = 0 and leave it, or come to it at T = 1.
+parallelogram() { four_bar 2.0 4.0 2.0 4.0 0.0 0.0 0.0; angle CR 0.0 40.0; }
+parallelogram_later() { four_bar 2.0 4.0 2.0 4.0 150.0 0.0 150.0; angle CR 150.0 30.0; }
+kite_later() { four_bar 2.0 3.0 3.0 2.0 -30.0 30.0 110.0; angle CR -30.0 30.0; }
+# A chain of the full length 1 + 3 + 2 = 6 on a base of 6 has that position alone: its crank can turn neither way.
+stretched() { four_bar 1.0 3.0 2.0 6.0 0.0 0.0 180.0; angle CR 0.0 30.0; }
+far_end() { slider 0.0 0.0 4.0; slide B 4.0 -0.25; }
+near_end() { slider 180.0 0.0 2.0; slide B 2.0 0.25; }
+far_end_later() { slider 40.0 -10.0 3.5; slide B 3.5 0.5; }
+# Crank and coupler in line, 1.5 + 3.5 = 5, over the base of 4: the rocker of 3 stands across it.
+rocker() { four_bar 1.5 3.5 3.0 4.0 36.869897645844 36.869897645844 90.0; angle RO 90.0 -10.0; }
+rocker_later() { four_bar 1.5 3.5 3.0 4.0 60.0 30.0 80.0; angle RO 80.0 10.0; }
+# At its limit the drive turns round: at that instant it is at rest.
+rocker_turns() { four_bar 1.5 3.5 3.0 4.0 36.869897645844 36.869897645844 90.0; angle RO 90.0 0.0 -20.0; }
+# The angle that a parallelogram keeps, driven at a speed, and at rest.
+idle() { four_bar 2.0 4.0 2.0 4.0 40.0 0.0 40.0; angle CO 0.0 30.0; }
+idle_at_rest() { four_bar 2.0 4.0 2.0 4.0 40.0 0.0 40.0; angle CO 0.0 0.0; }
+
+# deck METHOD UNIT LANGUAGE NAME...: one set with these mechanisms, their lengths in units of 10**UNIT m
+deck() {
+   method=$1; unit=$2; language=$3; shift 3
+   card TITLE SINGULAR; card UNITS M DEG S; card LANG "$language"; card GROUND BASE '' '' 0.0 0.0 0.0
+   mark=
+   for name; do mark=$mark+; "$name"; done
+   card METHOD "$method"; card TIME 1 '' '' 0.0 1.0; card END
+}
+# of_instant K LISTING: which sentences on singular positions stand under instant K
+of_instant() {
+   awk -v k="$1" '/^ (INSTANT|CHWILA) / { at = $2 } /^ [*]{3} (JACOBIAN|CHANGE POINT:|DEAD|JAKOBIAN|PUNKT)/ && at == k {
+      print substr($0, 6) }' "$2"
+}
+
+change='CHANGE POINT: VELOCITIES NOT UNIQUE'
+dead='DEAD POINT: NO FINITE VELOCITIES'
+unclear='JACOBIAN SINGULAR: NO UNIQUE VELOCITIES'
+
+# says K WORDS NAME...: by these METHODS, in m, mm and km
+says() {
+   k=$1; words=$2; shift 2
+   for method in $METHODS; do
+      for unit in 0 -3 3; do
+         deck "$method" $unit EN "$@" > "$w/deck"
+         "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
+         equal "$*, METHOD $method, 1E$unit m: standard error" '' "$(cat "$w/err")"
+         equal "$*, METHOD $method, 1E$unit m" "$words" "$(of_instant "$k" "$w/out")"
+      done
+   done
+}
+
+METHODS='NEWTON DENSE MATRIX'
+says 0 "$change" parallelogram
+says 1 "$change" parallelogram_later
+says 0 "$dead" far_end
+says 0 "$dead" near_end
+says 0 "$unclear" idle_at_rest
+METHODS='NEWTON DENSE'
+says 0 "$dead" rocker
+says 0 "$unclear" rocker_turns
+says 1 "$change" kite_later
+says 1 "$dead" far_end_later
+says 1 "$dead" rocker_later
+says 0 "$unclear" idle
+says 0 "$unclear" stretched
+says 0 "$change
+$dead" parallelogram far_end
+says 0 "$change
+$dead" rocker parallelogram
+says 0 "$unclear
+$change
+$dead" rocker_turns parallelogram far_end
+deck NEWTON 0 PL rocker_turns parallelogram far_end > "$w/deck"
+"$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
+equal 'in Polish' 'JAKOBIAN OSOBLIWY: BRAK JEDNOZNACZNYCH PREDKOSCI
+PUNKT ZMIANY: PREDKOSCI NIEJEDNOZNACZNE
+PUNKT MARTWY: BRAK SKONCZONYCH PREDKOSCI' "$(of_instant 0 "$w/out")"
+conclude
