@@ -21,10 +21,10 @@ module assembly_choice
 
    !> All that is assembled so far.
    type :: trial_t
-      type(unknown_t), allocatable :: u(:)
+      type(unknown_t), allocatable :: u(:)              !< (0:unknowns)
       logical, allocatable :: solved(:)                 !< (blocks)
       type(positions_t), allocatable :: others(:)       !< (blocks) what else was found
-      real(wp), allocatable :: place(:, :)              !< (3, links)
+      real(wp), allocatable :: place(:, :)              !< (3, links) x, y in the deck's unit, phi
    end type trial_t
 
    !> Links that differ by more than this, in radians or characteristic lengths, lie differently.

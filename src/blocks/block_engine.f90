@@ -38,12 +38,13 @@ module block_engine
    !> Lengths in units of `length`. What the structure and the deck give does not change; `workspace` is scratch; the
    !> checkpoint has all else that depends on earlier instants.
    type, extends(engine_t) :: block_engine_t
-      real(wp) :: tolerance = 0.0_wp, span = 1.0_wp     !< span: the characteristic length, in the deck's unit
+      real(wp) :: tolerance = 0.0_wp                    !< relative, of corrections; 0: the limit of rounding
+      real(wp) :: span = 1.0_wp                         !< the characteristic length, in the deck's unit
       type(blocks_t), allocatable :: blocks
       integer, allocatable :: needed(:), moving(:)      !< blocks that are solved at first, and at every step
       type(chain_t) :: chain                            !< of the links that are asked for
       type(chain_t) :: whole                            !< of all links
-      type(law_t), allocatable :: laws(:)
+      type(law_t), allocatable :: laws(:)               !< (drives)
       real(wp), allocatable :: unit_of(:)               !< (drives) of the value, in the deck's unit of length, or 1
       logical, allocatable :: is_angle(:)               !< (drives)
       integer, allocatable :: orientation_of(:)         !< (links)

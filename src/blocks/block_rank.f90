@@ -26,7 +26,7 @@ module block_rank
 
    !> A singular value decomposition: left (rows, rows), right (n, n), singular values in falling order.
    type :: values_t
-      integer :: rows = 0, n = 0, rank = 0
+      integer :: rows = 0, n = 0, rank = 0        !< equations, unknowns, singular values that are not small
       real(wp), allocatable :: s(:), left(:, :), right(:, :)
       real(wp), allocatable :: r(:)               !< (rows) the block's residual
    end type values_t

@@ -23,7 +23,7 @@ module block_state
    !> A vector loop in its block, lengths in the loop's unit.
    type :: loop_state_t
       real(wp) :: known(2, 0:2) = 0.0_wp             !< the part that earlier blocks give, and its derivatives
-      real(wp) :: closure_error(2) = 0.0_wp
+      real(wp) :: closure_error(2) = 0.0_wp          !< x and y
       real(wp) :: f(2) = 0.0_wp                      !< the direction on which it is projected, if it is
    end type loop_state_t
 

@@ -13,13 +13,14 @@ module branch_requests
 
    !> A change point of a block at `t`, known to `width`.
    type :: branch_switch_t
-      integer :: block = 0
-      real(wp) :: t = 0.0_wp, width = 0.0_wp
-      logical :: other = .false.
+      integer :: block = 0                        !< its number
+      real(wp) :: t = 0.0_wp, width = 0.0_wp      !< times, in the deck's unit
+      logical :: other = .false.                  !< the other branch was taken
    end type branch_switch_t
 
+   !> BRANCH cards, and how change points were passed.
    type :: branch_requests_t
-      type(branch_request_t), allocatable :: cards(:)
+      type(branch_request_t), allocatable :: cards(:)   !< in the deck's order
       logical, allocatable :: used(:)             !< (cards)
       type(branch_switch_t), allocatable :: branch_switches(:)
    end type branch_requests_t

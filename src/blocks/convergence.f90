@@ -16,9 +16,10 @@ module convergence
    integer, parameter :: ended_unsought = 7    !< known beforehand to be out of reach: no iteration
    integer, parameter :: ended_elsewhere = 8   !< at another assembly than the estimated one
 
+   !> How a position was solved for.
    type :: convergence_t
-      integer :: ended = ended_limit
-      integer :: iterations = 0
+      integer :: ended = ended_limit           !< ended_converged, ...
+      integer :: iterations = 0                !< in all
       real(wp) :: residual = 0.0_wp            !< largest, over the size of the coordinates
       real(wp) :: step = 0.0_wp                !< largest change of the last iteration, likewise
       real(wp) :: rate = 0.0_wp                !< mean ratio of successive residuals

@@ -35,7 +35,7 @@ module first_position
 
    !> The search for positions of block `i` around the estimate `start` (n), in radians and lengths of the block.
    type :: search_t
-      integer :: i = 0
+      integer :: i = 0                                  !< number of the block
       real(wp) :: tolerance = 0.0_wp                    !< of the corrections
       real(wp), allocatable :: start(:)
       real(wp), allocatable :: found(:, :)              !< (n, any number), nearest to the start first

@@ -20,8 +20,8 @@ module link_motion
       integer :: orientation = 0, parent_orientation = 0 !< the unknowns that rotate them
       integer :: slide = 0                              !< its unknown
       integer :: root = 0                               !< the unknown that is its x; y is the next
-      real(wp) :: root_unit(2) = 1.0_wp
-      logical :: has_body_vector = .false.
+      real(wp) :: root_unit(2) = 1.0_wp                 !< of x and y of a root, in the unit of the blocks
+      logical :: has_body_vector = .false.              !< its origin is not the point that joins it to the parent
       real(wp) :: angle_offset = 0.0_wp                 !< of the link from its orientation, in rad
       type(place_t) :: place                            !< r, d and e, in the deck's unit of length
    end type chain_link_t
@@ -29,7 +29,7 @@ module link_motion
    !> The links to be moved, parents first, and those that stay.
    type :: chain_t
       type(chain_link_t), allocatable :: links(:)
-      integer, allocatable :: ground(:)
+      integer, allocatable :: ground(:)                 !< numbers of the ground links
       real(wp), allocatable :: ground_position(:, :)    !< (3, ground links)
       real(wp) :: origin(2) = 0.0_wp                    !< what places are counted from, in the deck's unit
    end type chain_t

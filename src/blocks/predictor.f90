@@ -29,9 +29,9 @@ module predictor
    type :: history_t
       integer, allocatable :: predicted(:)                 !< the unknowns that iterations solve for
       integer :: order = own_predictor                  !< 0 to 3, or as above
-      integer :: filled = 0
-      integer :: place(0:2) = [0, 1, 2]
-      real(wp) :: t(0:2) = 0.0_wp
+      integer :: filled = 0                             !< motions that are there, 0 to 3
+      integer :: place(0:2) = [0, 1, 2]                 !< columns, latest first
+      real(wp) :: t(0:2) = 0.0_wp                       !< (columns) their times
       real(wp), allocatable :: value(:)                 !< (0:unknowns) of the latest
       real(wp), allocatable :: rate(:, :), acceleration(:, :)  !< (0:unknowns, 0:2)
    end type history_t
