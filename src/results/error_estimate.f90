@@ -15,8 +15,7 @@ module error_estimate
    use perturbed_deck, only: sample_count, perturbation, perturbed, perturbed_instant
    implicit none
    private
-   public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, row_estimate, row_error, largest_errors, &
-      find_estimates
+   public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, row_estimate, row_error, largest_errors
 
    !> The perturbed decks differ by an error of as many roundings as the perturbation is long; a number of the deck, and
    !> with it every sum and product, is off by half a rounding. `caution`: for how few the decks are.

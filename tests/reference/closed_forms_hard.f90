@@ -83,22 +83,20 @@ contains
                body('ROD', pin, direction(pin, piston)), body('PISTON', piston, flat)]
    end function dead_point
 
-   !> The same mechanism with the numbers of the deck `m`, whatever they are: the piston's point at x, on a guide that
-   !> is inclined by alpha; arms across their links' axes too.
-   function pushed_slider(m, t) result(links)
-      type(mechanism_t), intent(in) :: m
-      real(qp), intent(in) :: t
+   !> The same mechanism with any `numbers` in its deck: the crank's pin and the rod's eye in their links' axes (1 to
+   !> 4), the direction of the guide (5), the piston's value, rate and acceleration at t = 0 (6 to 8), the instant (9).
+   pure function pushed_slider(numbers) result(links)
+      real(qp), intent(in) :: numbers(9)
       type(body_t) :: links(4)
       type(jet_t) :: reach, x, across, flat
       type(place_t) :: o, pin, eye
-      real(qp) :: crank(2), rod(2), c(3), slope(2), both, less
+      real(qp) :: crank(2), rod(2), c(3), slope(2), both, less, t
 
-      crank = real(m%points(findloc(m%points%name == 'PIN-CR', .true., dim=1))%offset, qp)
-      rod = real(m%points(findloc(m%points%name == 'EYE', .true., dim=1))%offset, qp)
-      associate (alpha => real(m%pairs(findloc(m%pairs%name == 'GUIDE', .true., dim=1))%alpha, qp))
-         slope = [cos(alpha), sin(alpha)]
-      end associate
-      c = real(m%drives(1)%polynomial, qp)
+      crank = numbers(1:2)
+      rod = numbers(3:4)
+      slope = [cos(numbers(5)), sin(numbers(5))]
+      c = numbers(6:8)
+      t = numbers(9)
       both = norm2(crank) + norm2(rod)
       less = norm2(rod) - norm2(crank)
       flat = constant_jet(0.0_qp)

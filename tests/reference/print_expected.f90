@@ -1,27 +1,29 @@
 !> Tests. `print_expected DECK` prints, from the closed form in real128, the listing that `kinmat DECK` must print.
-!> The deck is read and the lines are laid out by the program's own modules; no solver is used.
+!> The deck is read, and what stands before and behind the tables is printed, by the program's own modules; the digits,
+!> powers of ten, rows and masks are computed in real128 by modules of tests/. No solver is used.
 program print_expected
    use, intrinsic :: iso_fortran_env, only: error_unit
    use kinds, only: wp
    use failures, only: failure_t
    use mechanism, only: mechanism_t, instant_count, instant, method_newton, drive_angle
-   use motion, only: motion_t, new_motion, forget_links, mark_none, mark_singular, singular_change
+   use diagnostics, only: diagnostic_t
    use structure, only: findings_t
    use branch_certificate, only: certificate_counts_t
    use hand_groups, only: groups_by_hand, redundant_by_hand, passages_by_hand
    use deck, only: read_deck
    use text_output, only: output_t, open_output, close_output
-   use listing, only: layout_t, new_layout, listing_head, listing_instant, listing_end
+   use listing, only: layout_t, listing_head, listing_end
+   use listing_diagnostics, only: put_diagnostics
    use quad_jet, only: qp, pi_q
-   use scales, only: characteristic_length
-   use error_estimate, only: error_estimate_t, find_estimates
-   use set_motion, only: one_motion
-   use perturbed_deck, only: perturbed, perturbed_instant, sample_count
+   use hand_scales, only: hand_scales_t, scales_by_hand
+   use hand_estimates, only: estimates_by_hand, linear_estimates
+   use hand_tables, only: put_tables
    use closed_forms_dyads, only: body_t
-   use closed_forms_hard, only: pushed_slider
    use deck_tally, only: deck_name
    use closed_forms, only: closed_form, hand_count
    implicit none
+   !> At 2.3E-12 from a dead point 256 roundings, a fifth of that distance, change more than in proportion.
+   real(qp), parameter :: max_nonlinear = 1.6_qp
    character(500) :: path
    character(:), allocatable :: name, report
    type(mechanism_t), allocatable :: sets(:)
@@ -48,35 +50,41 @@ contains
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: name
       type(mechanism_t), intent(in) :: m
+      type(hand_scales_t) :: scales
       type(layout_t) :: layout
-      type(motion_t) :: q
       type(findings_t) :: findings
-      type(error_estimate_t) :: doubt
       type(certificate_counts_t) :: tally
+      type(diagnostic_t), allocatable :: diagnostics(:)
+      type(body_t) :: links(size(m%links))
+      real(qp), allocatable :: error(:, :, :)
+      logical :: resting(size(m%links))
       integer :: k, flagged
 
-      layout = new_layout(m)
+      scales = scales_by_hand(m)
+      layout%power = scales%power
+      layout%time_power = scales%time_power
       findings = hand_count(name)
       findings%groups = groups_by_hand(name, m)
       call listing_head(o, layout, m, findings)
-      q = new_motion(size(m%links))
-      do k = 1, size(m%links)
-         q%position(:, k) = m%links(k)%position
-      end do
+      links%phi%v = real(m%links%position(3), qp)
       flagged = 0
       do k = 0, instant_count(m) - 1
-         call move_to(m, closed_form(name, m%set_number, real(instant(m, k), qp)), instant(m, k), q)
-         if (k == 0) q%diagnostics = redundant_by_hand(name, m)
+         call move_to(m, closed_form(name, m%set_number, real(instant(m, k), qp)), links)
+         resting = .false.
+         if (k == 0) diagnostics = redundant_by_hand(name, m)
          if (k > 0) then
-            q%diagnostics = passages_by_hand(name, m, instant(m, k - 1), instant(m, k))
-            tally%passed = tally%passed + count(.not. q%diagnostics%here)
-            if (any(q%diagnostics%here)) then
-               call stop_all_but_driven(m, q)
+            diagnostics = passages_by_hand(name, m, instant(m, k - 1), instant(m, k))
+            tally%passed = tally%passed + count(.not. diagnostics%here)
+            if (any(diagnostics%here)) then
+               resting = not_driven(m)
                flagged = flagged + 1
             end if
          end if
-         call doubt_by_hand(name, m, q, doubt)
-         call listing_instant(o, layout, m, one_motion(m, q, doubt), k)
+         ! Next to dead points only are digits in doubt.
+         error = reshape([real(qp) ::], [3, 3, 0])
+         if (index(name, 'dead_point') == 1) error = checked_estimates(m, real(instant(m, k), qp))
+         call put_tables(o, m, scales, k, links, resting, error)
+         call put_diagnostics(o, m, diagnostics)
       end do
       ! All of these motions are followed from their first instant on; METHOD DENSE and MATRIX cannot tell.
       if (m%method == method_newton) then
@@ -88,67 +96,49 @@ contains
          closure_error=merge(0.0_wp, -1.0_wp, size(redundant_by_hand(name, m)) > 0))
    end subroutine print_set
 
-   !> Both branches have the position of `q`, each has velocities of its own, but for the links whose angle is driven.
-   subroutine stop_all_but_driven(m, q)
+   !> The estimates of the errors of the rows (3, 0:2, requests) next to a dead point, which must be about those by
+   !> derivatives.
+   function checked_estimates(m, t) result(error)
       type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(inout) :: q
+      real(qp), intent(in) :: t
+      real(qp), dimension(3, 0:2, size(m%requests)) :: error, linear
+
+      error = estimates_by_hand(m, t)
+      linear = linear_estimates(m, t)
+      if (any(error > max_nonlinear*linear .or. linear > max_nonlinear*error)) &
+         call give_up('THE ESTIMATES OF ERRORS ARE NOT IN PROPORTION TO ROUNDINGS')
+   end function checked_estimates
+
+   !> (links) At a change point two branches have the same position, and each has velocities of its own: there are none
+   !> but those of the ground and of links whose angle is driven.
+   function not_driven(m) result(resting)
+      type(mechanism_t), intent(in) :: m
+      logical :: resting(size(m%links))
       integer :: i
 
-      q%known = 0
-      q%mark = mark_singular
-      q%singularity = singular_change
-      allocate (q%link_known(size(m%links)), source=0)
-      allocate (q%link_mark(size(m%links)), source=mark_singular)
+      resting = .not. m%links%ground
       do i = 1, size(m%drives)
-         if (m%drives(i)%kind /= drive_angle) cycle
-         q%link_known(m%drives(i)%subject) = 2
-         q%link_mark(m%drives(i)%subject) = mark_none
+         if (m%drives(i)%kind == drive_angle) resting(m%drives(i)%subject) = .false.
       end do
-   end subroutine stop_all_but_driven
+   end function not_driven
 
-   !> How far the motion `q` is known, next to dead points, from the closed forms of decks whose numbers are a little
-   !> off. Elsewhere no digit is in doubt.
-   subroutine doubt_by_hand(name, m, q, doubt)
-      character(*), intent(in) :: name
+   !> Puts `links` (in the order of the deck) where the closed form has them (`found`, in its own order); angles on the
+   !> branch next to what they were the instant before, at the first instant the deck's estimates.
+   subroutine move_to(m, found, links)
       type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      type(error_estimate_t), intent(inout) :: doubt
-      integer :: k
-
-      if (index(name, 'dead_point') /= 1) return
-      if (.not. allocated(doubt%samples)) allocate (doubt%samples(0:sample_count))
-      do k = 0, sample_count
-         doubt%samples(k) = q
-         call move_to(m, pushed_slider(perturbed(m, k), real(perturbed_instant(q%t, k), qp)), q%t, doubt%samples(k))
-      end do
-      call find_estimates(m, characteristic_length(m), doubt)
-      doubt%taken = .true.
-      doubt%in_doubt = .true.
-   end subroutine doubt_by_hand
-
-   !> The motion `links` at `t`, its angles on the branch next to those of `q` as it comes: the instant before, at the
-   !> first instant the deck's rough ones.
-   subroutine move_to(m, links, t, q)
-      type(mechanism_t), intent(in) :: m
-      type(body_t), intent(in) :: links(:)
-      real(wp), intent(in) :: t
-      type(motion_t), intent(inout) :: q
+      type(body_t), intent(in) :: found(:)
+      type(body_t), intent(inout) :: links(:)
+      real(qp) :: phi
       integer :: k, i
 
-      if (size(links) /= size(m%links)) call give_up('THE CLOSED FORM AND THE DECK DIFFER IN THEIR LINKS')
-      do i = 1, size(links)
-         k = findloc(m%links%name == links(i)%name, .true., dim=1)
-         if (k == 0) call give_up('THE DECK HAS NO LINK '//links(i)%name)
-         associate (b => links(i))
-            q%position(:, k) = real([b%x%v, b%y%v, next_to(real(q%position(3, k), qp), b%phi%v)], wp)
-            q%velocity(:, k) = real([b%x%d, b%y%d, b%phi%d], wp)
-            q%acceleration(:, k) = real([b%x%dd, b%y%dd, b%phi%dd], wp)
-         end associate
+      if (size(found) /= size(m%links)) call give_up('THE CLOSED FORM AND THE DECK DIFFER IN THEIR LINKS')
+      do i = 1, size(found)
+         k = findloc(m%links%name == found(i)%name, .true., dim=1)
+         if (k == 0) call give_up('THE DECK HAS NO LINK '//found(i)%name)
+         phi = next_to(links(k)%phi%v, found(i)%phi%v)
+         links(k) = found(i)
+         links(k)%phi%v = phi
       end do
-      call forget_links(q)
-      q%t = t
-      q%known = 2
-      q%mark = mark_none
    end subroutine move_to
 
    !> `phi` turned by whole turns until it is within half a turn of `before`.
