@@ -8,8 +8,8 @@ module perturbed_deck
    private
    public :: perturbed, perturbed_instant, perturbation, sample_count
 
-   !> Relative; many roundings, so that those of the calculation itself are small beside it, and so little that at
-   !> 1E-12 from a dead point the change is at most 1.6 times that in proportion.
+   !> Relative; many roundings, so that those of the calculation itself are small beside it, and so little that
+   !> 2.3E-12 from a dead point the change is at most 1.6 times that in proportion.
    real(wp), parameter :: perturbation = 256.0_wp*epsilon(1.0_wp)
    !> Of eight numbers by chance the largest is seldom a small one.
    integer, parameter :: sample_count = 8
