@@ -2,8 +2,7 @@
 !>
 !> SAME: on every substep the prediction was off by less than a tenth of the distance within which there is one root
 !> only (Newton and Kantorovich), and the determinants of all blocks, or that of all equations at once, have kept their
-!> signs.
-!> CROSSED: the same, but for change points that were passed, each within a short substep, and listed.
+!> signs. CROSSED: the same, but for change points that were passed, each within a short substep, and listed.
 module branch_certificate
    use kinds, only: wp
    implicit none

@@ -27,10 +27,9 @@ module diagnosis
 
 contains
 
-   !> Adds to the diagnostics of `found`, which `a` has found last of `m`: how far the estimate was off; the limit of
-   !> the motion, which equation is not satisfied, what can still move; or that METHOD NEWTON finds a position;
-   !> and what a singular position is. `o`:
-   !> what has been said before.
+   !> Adds to the diagnostics of `found`, which `a` has found last of `m` by METHOD DENSE or MATRIX: how far the
+   !> estimate was off; the limit of the motion, which equation is not satisfied, what can still move; or that METHOD
+   !> NEWTON finds a position; and what a singular position is. `o`: what has been said before.
    subroutine ask_blocks(m, a, o, found)
       type(mechanism_t), intent(in) :: m
       type(analysis_t), intent(in) :: a

@@ -2,7 +2,7 @@
 !> change points and flags. Of the set the worst of them is reported.
 module set_analysis
    use kinds, only: wp
-   use mechanism, only: mechanism_t
+   use mechanism, only: mechanism_t, method_newton
    use structure, only: findings_t
    use diagnostics, only: diagnostic_t
    use convergence, only: convergence_t, is_solved, gather
@@ -58,7 +58,8 @@ contains
       passed = sum(s%list%certificate_counts%passed)
       do c = 1, size(s%list)
          call advance(s%list(c), t, s%now%motions(c))
-         call ask_blocks(s%now%own(c), s%list(c), s%opinions(c), s%now%motions(c))
+         if (s%now%own(c)%method /= method_newton) &
+            call ask_blocks(s%now%own(c), s%list(c), s%opinions(c), s%now%motions(c))
       end do
       if (size(s%list) == 1) then
          s%certificate_counts = s%list(1)%certificate_counts
