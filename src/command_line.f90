@@ -12,6 +12,7 @@ module command_line
       character(:), allocatable :: output    !< '' is standard output
       character(:), allocatable :: csv       !< '' for none
       character(:), allocatable :: log       !< '' for none
+      character(:), allocatable :: svg       !< '' for none
       logical :: check = .false.             !< read and analyse only
       logical :: errors = .false.            !< CSV and log have an error estimate of every number
       logical :: study = .false.             !< speed against error, instead of the listing
@@ -34,6 +35,7 @@ module command_line
       '  -o FILE              the listing to FILE', &
       '  --csv FILE           the results with '//csv_digits//' digits, comma-separated', &
       '  --log FILE           the log of the solver, a line per instant', &
+      '  --svg FILE           a picture of the mechanism and paths of points', &
       '  --errors             estimates of all errors, in the CSV and the log', &
       '  --check              reads the deck and analyses its structure only', &
       '  --sets K/N           the K-th of N shares of the sets of the deck', &
@@ -86,6 +88,7 @@ contains
       options%output = ''
       options%csv = ''
       options%log = ''
+      options%svg = ''
       options%show = ''
       has_deck = .false.
       i = 1
@@ -97,6 +100,8 @@ contains
             call take_file(words, i, options%csv, failure)
          case ('--log')
             call take_file(words, i, options%log, failure)
+         case ('--svg')
+            call take_file(words, i, options%svg, failure)
          case ('--sets')
             call take_share(words, i, options, failure)
          case ('--errors')
@@ -119,6 +124,8 @@ contains
          i = i + 1
       end do
       if (.not. allocated(failure)) call check_study(options, failure)
+      if (.not. allocated(failure) .and. options%check .and. len(options%svg) > 0) &
+         call fail(failure, status_rejected, 'OPTION --check COMPUTES NO MOTION THAT --svg COULD DRAW')
    end subroutine read_words
 
    !> A study and times are no listing; a study reads its deck more than once.
@@ -127,7 +134,7 @@ contains
       type(failure_t), allocatable, intent(out) :: failure
 
       if (.not. (options%study .or. options%time) .or. len(options%show) > 0) return
-      if (len(options%csv) > 0 .or. len(options%log) > 0 .or. options%errors .or. options%check &
+      if (len(options%csv) > 0 .or. len(options%log) > 0 .or. len(options%svg) > 0 .or. options%errors .or. options%check &
          .or. options%shares > 1 .or. (options%study .and. options%time)) then
          call fail(failure, status_rejected, 'OPTION '//trim(merge('--study', '--time ', options%study)) &
             //' GOES WITH NO OTHER OPTION BUT -o')

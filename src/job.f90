@@ -4,11 +4,13 @@ module job
    use mechanism, only: mechanism_t, instant_count, instant
    use structure, only: findings_t, check_structure
    use deck, only: read_deck
-   use text_output, only: output_t, open_output, check_apart, flush_output, close_output, abandon_output, has_failed, &
-      has_broken_pipe
+   use text_output, only: output_t, open_output, put, check_apart, flush_output, close_output, abandon_output, &
+      has_failed, has_broken_pipe
    use system_calls, only: watch_signals, signal_received, broken_pipe_kills, signal_pipe
    use listing, only: layout_t, new_layout, listing_head, listing_instant, listing_end, listing_broken_off
    use csv, only: csv_head, csv_instant
+   use drawing, only: drawing_t, new_drawing, record_instant
+   use picture, only: put_pictures
    use solver_log, only: log_head, log_instant
    use convergence, only: convergence_t
    use branch_certificate, only: branch_t
@@ -21,9 +23,10 @@ module job
    private
    public :: run_job
 
-   !> The job's outputs; csv and log only where asked for.
+   !> The job's outputs; csv, log and picture only where asked for.
    type :: outputs_t
-      type(output_t) :: listing, csv, log
+      type(output_t) :: listing, csv, log, svg
+      type(drawing_t), allocatable :: drawings(:)   !< of the sets so far
    end type outputs_t
 
 contains
@@ -64,9 +67,9 @@ contains
 
       if (signal_received() > 0) then
          status = status_signal + signal_received()
-      else if (broken_pipe_kills() .and. any(has_broken_pipe([o%listing, o%csv, o%log]))) then
+      else if (broken_pipe_kills() .and. any(has_broken_pipe([o%listing, o%csv, o%log, o%svg]))) then
          status = status_signal + signal_pipe
-         if (len(options%csv) == 0 .and. len(options%log) == 0) message = ''
+         if (len(options%csv) == 0 .and. len(options%log) == 0 .and. len(options%svg) == 0) message = ''
       end if
    end subroutine look_at_signals
 
@@ -79,11 +82,13 @@ contains
       call open_output(o%listing, options%output, failure)
       if (.not. allocated(failure) .and. len(options%csv) > 0) call open_output(o%csv, options%csv, failure)
       if (.not. allocated(failure) .and. len(options%log) > 0) call open_output(o%log, options%log, failure)
-      if (.not. allocated(failure)) call check_apart([o%listing, o%csv, o%log], options%deck, failure)
+      if (.not. allocated(failure) .and. len(options%svg) > 0) call open_output(o%svg, options%svg, failure)
+      if (.not. allocated(failure)) call check_apart([o%listing, o%csv, o%log, o%svg], options%deck, failure)
       if (.not. allocated(failure)) return
       call abandon_output(o%listing)
       call abandon_output(o%csv)
       call abandon_output(o%log)
+      call abandon_output(o%svg)
    end subroutine open_all
 
    !> Writes the heads at once, so that an output that takes nothing is known before anything is computed.
@@ -94,6 +99,7 @@ contains
       call flush_output(o%listing)
       if (len(options%csv) > 0) call flush_output(o%csv)
       if (len(options%log) > 0) call flush_output(o%log)
+      if (len(options%svg) > 0) call flush_output(o%svg)
    end subroutine flush_all
 
    !> Closes all outputs; `failure`: that of the last one that could not be written.
@@ -108,13 +114,16 @@ contains
       if (allocated(other)) call move_alloc(other, failure)
       if (len(options%log) > 0) call close_output(o%log, other)
       if (allocated(other)) call move_alloc(other, failure)
+      if (len(options%svg) > 0) call close_output(o%svg, other)
+      if (allocated(other)) call move_alloc(other, failure)
    end subroutine close_all
 
    !> What follows need not be computed: a write has failed, or a signal has come.
    logical function is_over(o)
       type(outputs_t), intent(in) :: o
 
-      is_over = has_failed(o%listing) .or. has_failed(o%csv) .or. has_failed(o%log) .or. signal_received() > 0
+      is_over = has_failed(o%listing) .or. has_failed(o%csv) .or. has_failed(o%log) .or. has_failed(o%svg) &
+         .or. signal_received() > 0
    end function is_over
 
    !> The sets of this share, one after another: shares put together in their order are the whole.
@@ -129,10 +138,14 @@ contains
       first = share_end(size(sets), options%share - 1, options%shares) + 1
       last = share_end(size(sets), options%share, options%shares)
       if (len(options%csv) > 0 .and. options%share == 1) call csv_head(o%csv, options%errors)
+      if (len(options%svg) > 0) call put(o%svg, '<?xml version="1.0" encoding="US-ASCII"?>')
+      allocate (o%drawings(0))
       do i = first, last
+         if (len(options%svg) > 0) o%drawings = [o%drawings, new_drawing(sets(i))]
          call run_set(options, sets(i), findings(i), o, status)
          if (is_over(o)) exit
       end do
+      if (len(options%svg) > 0) call put_pictures(o%svg, sets(first:first + size(o%drawings) - 1), o%drawings)
    end subroutine run_sets
 
    !> Last set of share `k` of `n` shares of `count` sets.
@@ -172,6 +185,7 @@ contains
          if (due .or. options%errors) call sample_set(a, options%errors)
          if (due .or. has_words(a%now)) call listing_instant(o%listing, layout, m, a%now, k)
          if (due .and. len(options%csv) > 0) call csv_instant(o%csv, m, a%now, k)
+         if (len(options%svg) > 0) call record_instant(o%drawings(size(o%drawings)), m, a%now, k)
          if (len(options%log) > 0) call put_log(o%log, options, m, a, k)
          if (.not. is_over(o)) cycle
          call listing_broken_off(o%listing, m, k)

@@ -18,7 +18,7 @@ module listing
    use phrases
    implicit none
    private
-   public :: layout_t, new_layout, listing_head, listing_instant, listing_end, listing_broken_off
+   public :: layout_t, new_layout, listing_head, listing_instant, listing_end, listing_broken_off, mark_words
 
    !> Why there is not all of a motion, by its mark.
    type(phrase_t), parameter :: mark_words(mark_none:mark_inconsistent) = &

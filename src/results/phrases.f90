@@ -82,6 +82,8 @@ module phrases
       say_of_pair = phrase_t('OF PAIR', 'PARY'), &
       say_method = phrase_t('METHOD NEWTON FINDS A POSITION', 'METODA NEWTON ZNAJDUJE POLOZENIE'), &
       say_elsewhere = phrase_t('THE ITERATION ENDS AT ANOTHER ASSEMBLY', 'ITERACJA KONCZY SIE W INNYM MONTAZU'), &
+      say_faint = phrase_t('FAINT: T =', 'BLADO: T ='), &
+      say_last_position = phrase_t('IN RED THE LAST POSITION, T =', 'NA CZERWONO OSTATNIE POLOZENIE, T ='), &
       say_broken_off = phrase_t('THE RUN WAS BROKEN OFF AFTER INSTANT', 'OBLICZENIA PRZERWANO PO CHWILI')
 
 contains

@@ -1,5 +1,5 @@
-!> Tests. Groups of links by the dice: driven links, dyads of all five forms, triads, tetrads, chains and rings of 12 to 18
-!> links, parallelograms, and links with several degrees of freedom with as many drives.
+!> Tests. Groups of links by the dice: driven links, dyads of all five forms, triads, tetrads, chains and rings of 12 to
+!> 18 links, parallelograms, and links with several degrees of freedom with as many drives.
 module draft_groups
    use kinds, only: wp
    use quad_jet, only: qp, pi_q
@@ -15,8 +15,8 @@ module draft_groups
 
 contains
 
-   !> A link that turns on another, driven by its angle or by that between the two; few go through whole turns, on a short
-   !> arm.
+   !> A link that turns on another, driven by its angle or by that between the two; few go through whole turns, on a
+   !> short arm.
    subroutine add_crank(d, amplitude)
       type(draft_t), intent(inout) :: d
       real(qp), intent(in) :: amplitude
@@ -267,8 +267,8 @@ contains
       end if
    end subroutine add_table
 
-   !> A parallelogram of `bars` bars on a link, in numbers whose sums are exact; two of them may take the other branch past
-   !> a change point.
+   !> A parallelogram of `bars` bars on a link, in numbers whose sums are exact; two of them may take the other branch
+   !> past a change point.
    subroutine add_parallelogram(d, bars, way, branches)
       type(draft_t), intent(inout) :: d
       integer, intent(in) :: bars

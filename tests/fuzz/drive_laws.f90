@@ -20,8 +20,8 @@ module drive_laws
 
 contains
 
-   !> The value of `law` at `t` and its derivatives. `angle_unit`: the deck's unit of angles in radians, 1 where a length
-   !> is driven; `phase_unit`: the unit of the argument of a sine.
+   !> The value of `law` at `t` and its derivatives. `angle_unit`: the deck's unit of angles in radians, 1 where a
+   !> length is driven; `phase_unit`: the unit of the argument of a sine.
    function law_jet(law, t, angle_unit, phase_unit) result(f)
       type(law_t), intent(in) :: law
       real(qp), intent(in) :: t, angle_unit, phase_unit

@@ -17,8 +17,8 @@ module dyad_forms
 
 contains
 
-   !> Places the two links of group `g` in `b`. `margin`: the square of the sine, or of the like, that vanishes where the
-   !> dyad is singular; not above zero: it cannot be closed, and `b` is as it was.
+   !> Places the two links of group `g` in `b`. `margin`: the square of the sine, or of the like, that vanishes where
+   !> the dyad is singular; not above zero: it cannot be closed, and `b` is as it was.
    subroutine solve_dyad(s, g, b, margin)
       type(scheme_t), intent(in) :: s
       type(group_t), intent(in) :: g
@@ -291,8 +291,8 @@ contains
       height = u(1)*sin(angle) + u(2)*cos(angle)
    end function height
 
-   !> The line of the point `u` of the link `slider`, which the prismatic `pair` joins to the known body `known`; `near`:
-   !> its angle is counted in turns from here.
+   !> The line of the point `u` of the link `slider`, which the prismatic `pair` joins to the known body `known`;
+   !> `near`: its angle is counted in turns from here.
    function guide_line(s, pair, known, slider, u, near) result(line)
       type(scheme_t), intent(in) :: s
       type(pair_t), intent(in) :: pair

@@ -1,5 +1,5 @@
-!> Tests. Mechanisms by the dice whose motion is known in real128, each from the number of its seed, through the program's
-!> own job; `tests/fuzz/fuzz_mechanisms.sh` calls it.
+!> Tests. Mechanisms by the dice whose motion is known in real128, each from the number of its seed, through the
+!> program's own job; `tests/fuzz/fuzz_mechanisms.sh` calls it.
 !>
 !>    fuzz_mechanisms FIRST LAST DIRECTORY     seeds FIRST to LAST, a line for each that fails, then a line of sums
 !>    fuzz_mechanisms --deck SEED FILE         writes the deck of a seed

@@ -1,5 +1,5 @@
-!> Tests. A kinematic scheme of its seed alone: of twenty seeds fifteen are chains of dyads, four have triads, tetrads and
-!> links with several degrees of freedom, and one has a group of 12 to 18 links.
+!> Tests. A kinematic scheme of its seed alone: of twenty seeds fifteen are chains of dyads, four have triads, tetrads
+!> and links with several degrees of freedom, and one has a group of 12 to 18 links.
 module random_schemes
    use kinds, only: wp
    use quad_jet, only: qp

@@ -1,5 +1,5 @@
-!> Tests. A scheme that grows by the dice: links, pairs and drives, whose numbers are taken from an assembly that is there
-!> first.
+!> Tests. A scheme that grows by the dice: links, pairs and drives, whose numbers are taken from an assembly that is
+!> there first.
 module scheme_draft
    use kinds, only: wp
    use quad_jet, only: qp, jet_t, pi_q, constant_jet

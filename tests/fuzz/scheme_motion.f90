@@ -1,6 +1,6 @@
-!> Tests. The true motion of a scheme in real128: from its known assembly in steps so small that no other assembly is near,
-!> group by group, by closed forms where there are such and by Newton's method for the others. What cannot be followed is
-!> lost from there on, and so is what hangs on it.
+!> Tests. The true motion of a scheme in real128: from its known assembly in steps so small that no other assembly is
+!> near, group by group, by closed forms where there are such and by Newton's method for the others. What cannot be
+!> followed is lost from there on, and so is what hangs on it.
 module scheme_motion
    use quad_jet, only: qp, jet_t, constant_jet, operator(+)
    use schemes, only: scheme_t, group_t, body_t, form_any, form_rrr, form_prp, form_rpp, form_parallelogram, &
@@ -32,8 +32,8 @@ module scheme_motion
 
    !> Rad, or lengths, that a drive goes in one step at most.
    real(qp), parameter :: longest_way = 0.4_qp
-   !> A step of so small a part of what is asked for ends the motion of a group; a limit of motion is then as near as its
-   !> square root.
+   !> A step of so small a part of what is asked for ends the motion of a group; a limit of motion is then as near as
+   !> its square root.
    real(qp), parameter :: shortest = 1.0e-7_qp, limit_margin = 1.0e-4_qp
    !> Nearer to a singularity than this a slide may be far off on its way to infinity, which is not followed.
    real(qp), parameter :: too_near = 1.0e-6_qp
@@ -145,8 +145,8 @@ contains
       steps_of = 1 + int(min(1.0e6_qp, way/longest_way))
    end function steps_of
 
-   !> The group cannot be followed beyond `m`. Of one with drives some links may be known all the same, as may be some of
-   !> those that hang on it by guides.
+   !> The group cannot be followed beyond `m`. Of one with drives some links may be known all the same, as may be some
+   !> of those that hang on it by guides.
    subroutine lose(g, h, k, m)
       type(group_t), intent(in) :: g
       real(qp), intent(in) :: h
@@ -252,8 +252,8 @@ contains
       trial%slope(k) = margin%d
    end subroutine follow_dyad
 
-   !> A parallelogram on its branch: past each change point straight on, but past the first one after the time of a BRANCH
-   !> card on the other branch.
+   !> A parallelogram on its branch: past each change point straight on, but past the first one after the time of a
+   !> BRANCH card on the other branch.
    subroutine follow_parallelogram(s, g, k, h, trial, fits)
       type(scheme_t), intent(in) :: s
       type(group_t), intent(in) :: g
@@ -290,8 +290,8 @@ contains
       trial%margin(k) = merge(nearly_kite(s, g)**4, 1.0_qp, trial%crossed(k))
    end subroutine follow_parallelogram
 
-   !> By how little the sides of a parallelogram differ. Where they do not, the antiparallelogram is a kite, which at its
-   !> change points takes any position; where they hardly do, it goes past them fast.
+   !> By how little the sides of a parallelogram differ. Where they do not, the antiparallelogram is a kite, which at
+   !> its change points takes any position; where they hardly do, it goes past them fast.
    real(qp) function nearly_kite(s, g)
       type(scheme_t), intent(in) :: s
       type(group_t), intent(in) :: g

@@ -9,8 +9,8 @@ module scheme_results
    private
    public :: verdict_t, judge
 
-   !> The error of a number may be so many times what the program tells of it: eight decks whose numbers are all off tell
-   !> little more than its size.
+   !> The error of a number may be so many times what the program tells of it: eight decks whose numbers are all off
+   !> tell little more than its size.
    real(qp), parameter :: of_told = 30.0_qp
    !> The last bits of a number.
    real(qp), parameter :: bits = 4.0_qp*epsilon(1.0_real64)
@@ -151,8 +151,8 @@ contains
       end do
    end subroutine compare
 
-   !> A flag where the truth is known: needless, unless its mechanism has been near a singularity, or METHOD DENSE was to
-   !> pass a change point.
+   !> A flag where the truth is known: needless, unless its mechanism has been near a singularity, or METHOD DENSE was
+   !> to pass a change point.
    subroutine judge_flag(s, m, group, row, v)
       type(scheme_t), intent(in) :: s
       type(motion_t), intent(in) :: m

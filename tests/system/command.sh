@@ -199,7 +199,7 @@ refused '--sets without a word' 1 ' *** OPTION --sets NEEDS K/N WITH 1 <= K <= N
 "$kinmat" --help > "$w/out" 2> "$w/err"
 equal '--help: status' 0 $?
 equal '--help: first line' 'kinmat DECK            reads a card deck, prints the listing' "$(head -n 1 "$w/out")"
-for option in -o --csv --log --check --errors --sets --ruler --help --version; do
+for option in -o --csv --log --svg --check --errors --sets --ruler --help --version; do
    equal "--help tells of $option" found "$(grep -qe "$option" "$w/out" && echo found)"
 done
 equal '--version' 'KINMAT 1.0, REAL64' "$("$kinmat" --version)"
@@ -240,7 +240,7 @@ equal 'deck with an error: told for both sets' 2 "$(grep -c '^ \*\*\* E' "$w/err
 equal 'deck with an error: the output file is left alone' kept "$(cat "$w/kept")"
 
 # Files that cannot be written. Never a run-time error of the language.
-for option in -o --csv --log; do
+for option in -o --csv --log --svg; do
    "$kinmat" "$w/m.deck" $option /nonexistent/x > "$w/out" 2> "$w/err"
    equal "$option cannot be opened: status" 3 $?
    equal "$option cannot be opened: sentence" ' *** FILE /nonexistent/x CANNOT BE OPENED FOR WRITING (NO SUCH FILE OR DIRECTORY)' "$(cat "$w/err")"
@@ -273,7 +273,7 @@ fi
 
 # The deck is never overwritten, by whatever name.
 ln -s own.deck "$w/link.deck"
-for option in -o --csv --log; do
+for option in -o --csv --log --svg; do
    for path in own.deck ./own.deck link.deck; do
       cp "$w/m.deck" "$w/own.deck"
       refused "$option $path, the deck" 1 " *** THE DECK $w/own.deck WOULD BE OVERWRITTEN" "$w/own.deck" $option "$w/$path"

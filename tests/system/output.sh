@@ -85,7 +85,7 @@ equal 'a pipe may serve twice' 2 "$(grep -cE '^ END OF SET|^set,step' both | awk
 # kept NAME SENTENCE: the deck is as it was, and that was said
 kept() { equal "$1: status" 1 "$status"; equal "$1: sentence" "$2" "$(cat err)"; same "$1: the deck" deck "$3"; }
 cp deck own; ln own own.hard; ln -s own own.link
-for option in -o --csv --log; do
+for option in -o --csv --log --svg; do
    for path in own own.hard own.link; do
       "$kinmat" own $option $path > out 2> err; status=$?
       kept "$option $path" ' *** THE DECK own WOULD BE OVERWRITTEN' own

@@ -1,0 +1,139 @@
+!> The plane of a picture: from the mechanism's places to pixels, what is drawn already, and where a name is clear of it.
+module canvas
+   use kinds, only: wp
+   implicit none
+   private
+   public :: canvas_t, to_pixels, add_line, add_box, find_clear_place
+
+   !> Size of the letters of a name: mean width and height of capitals, in pixels.
+   real(wp), parameter, public :: letter_width = 8.7_wp, letter_height = 9.0_wp
+
+   !> A place p of the deck is at shift + scale (x, -y) in pixels, where x and y are counted from `origin`.
+   type :: canvas_t
+      real(wp) :: scale = 1.0_wp             !< pixels in a unit of length
+      real(wp) :: shift(2) = 0.0_wp
+      real(wp) :: low(2) = 0.0_wp, high(2) = 0.0_wp   !< names stay between these
+      integer :: lines = 0, boxes = 0
+      real(wp), allocatable :: line(:, :)    !< (5, lines or more) x, y of both ends, weight
+      real(wp), allocatable :: box(:, :)     !< (4, boxes or more) x, y of the upper left and the lower right corner
+   end type canvas_t
+
+   !> The distances of a name from its place, in pixels, and what a pixel of distance counts against a pixel of overlap.
+   real(wp), parameter :: distances(*) = [9.0_wp, 14.0_wp, 21.0_wp, 30.0_wp, 42.0_wp]
+   real(wp), parameter :: distance_weight = 0.25_wp
+   !> What a name over a name counts, and one that leaves the picture, in pixels of overlap with a line.
+   real(wp), parameter :: over_name = 60.0_wp, outside = 500.0_wp
+
+contains
+
+   !> The pixel (2) of the place `p` (2), which is counted from the drawing's origin.
+   pure function to_pixels(c, p) result(q)
+      type(canvas_t), intent(in) :: c
+      real(wp), intent(in) :: p(2)
+      real(wp) :: q(2)
+
+      q = c%shift + c%scale*[p(1), -p(2)]
+   end function to_pixels
+
+   !> Notes a line from `p` to `q` (2), in pixels, that names should not cross; a lighter one has less `weight`.
+   pure subroutine add_line(c, p, q, weight)
+      type(canvas_t), intent(inout) :: c
+      real(wp), intent(in) :: p(2), q(2), weight
+
+      call append(c%line, c%lines, [p, q, weight])
+   end subroutine add_line
+
+   !> Notes a box with the corners `low` and `high` (2), in pixels, that names should not cover.
+   pure subroutine add_box(c, low, high)
+      type(canvas_t), intent(inout) :: c
+      real(wp), intent(in) :: low(2), high(2)
+
+      call append(c%box, c%boxes, [low, high])
+   end subroutine add_box
+
+   !> Appends a column to the first `used` columns of `list`.
+   pure subroutine append(list, used, column)
+      real(wp), allocatable, intent(inout) :: list(:, :)
+      integer, intent(inout) :: used
+      real(wp), intent(in) :: column(:)
+      real(wp), allocatable :: longer(:, :)
+
+      if (.not. allocated(list)) allocate (list(size(column), 64))
+      if (used == size(list, 2)) then
+         allocate (longer(size(column), 2*used))
+         longer(:, :used) = list
+         call move_alloc(longer, list)
+      end if
+      used = used + 1
+      list(:, used) = column
+   end subroutine append
+
+   !> The start of the foot line (2) of a name of `length` letters for one of the places `p` (2, :): the candidate, to
+   !> eight sides at several distances, that covers the least of what is drawn. The name is noted as drawn.
+   subroutine find_clear_place(c, p, length, start)
+      type(canvas_t), intent(inout) :: c
+      real(wp), intent(in) :: p(:, :)
+      integer, intent(in) :: length
+      real(wp), intent(out) :: start(2)
+      real(wp) :: low(2), high(2), half(2), cost, least
+      integer :: i, d, x, y
+
+      half = 0.5_wp*[letter_width*real(length, wp), letter_height]
+      least = huge(least)
+      start = p(:, 1)
+      do d = 1, size(distances)
+         do i = 1, size(p, 2)
+            do y = 1, -1, -1
+               do x = 1, -1, -1
+                  if (x == 0 .and. y == 0) cycle
+                  low = p(:, i) + [real(x, wp), -real(y, wp)]*(half + distances(d)*merge(0.75_wp, 1.0_wp, x*y /= 0)) - half
+                  high = low + 2.0_wp*half
+                  cost = cover(c, low - 2.0_wp, high + 2.0_wp) + distance_weight*distances(d)
+                  if (cost >= least) cycle
+                  least = cost
+                  start = [low(1), high(2)]
+               end do
+            end do
+         end do
+      end do
+      call add_box(c, [start(1), start(2) - 2.0_wp*half(2)], [start(1) + 2.0_wp*half(1), start(2)])
+   end subroutine find_clear_place
+
+   !> How much of what is drawn the box from `low` to `high` (2) covers, in pixels of lines.
+   pure real(wp) function cover(c, low, high)
+      type(canvas_t), intent(in) :: c
+      real(wp), intent(in) :: low(2), high(2)
+      integer :: i
+
+      cover = 0.0_wp
+      if (any(low < c%low) .or. any(high > c%high)) cover = outside
+      do i = 1, c%boxes
+         if (all(c%box(:2, i) < high) .and. all(c%box(3:, i) > low)) cover = cover + over_name
+      end do
+      do i = 1, c%lines
+         cover = cover + c%line(5, i)*length_inside(c%line(:2, i), c%line(3:4, i), low, high)
+      end do
+   end function cover
+
+   !> The length of the line from `p` to `q` (2) inside the box from `low` to `high` (2), after Liang and Barsky.
+   pure real(wp) function length_inside(p, q, low, high) result(length)
+      real(wp), intent(in) :: p(2), q(2), low(2), high(2)
+      real(wp) :: from, to, a, b
+      integer :: k
+
+      length = 0.0_wp
+      from = 0.0_wp
+      to = 1.0_wp
+      do k = 1, 2
+         if (abs(q(k) - p(k)) < tiny(1.0_wp)/epsilon(1.0_wp)) then
+            if (p(k) < low(k) .or. p(k) > high(k)) return
+            cycle
+         end if
+         a = (low(k) - p(k))/(q(k) - p(k))
+         b = (high(k) - p(k))/(q(k) - p(k))
+         from = max(from, min(a, b))
+         to = min(to, max(a, b))
+      end do
+      if (to > from) length = (to - from)*norm2(q - p)
+   end function length_inside
+end module canvas

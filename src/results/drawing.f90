@@ -1,0 +1,359 @@
+!> What a picture of a set shows, taken from its motion instant by instant: some positions of all links, the curves of
+!> the points that PRINT asks for, how far each slide goes, and the flagged instants. Places are counted from the set's
+!> first ground link, in the deck's unit of length.
+module drawing
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, pair_t, request_point, pair_prismatic, instant_count, plane_origin
+   use planar, only: direction, rotated, quarter_turn, point_of
+   use motion, only: known_of, mark_none
+   use points, only: point_motion, is_fixed
+   use set_motion, only: set_motion_t
+   implicit none
+   private
+   public :: drawing_t, snapshot_t, curve_t, guide_t, flag_t
+   public :: new_drawing, record_instant, point_place, link_corners, hull, is_same_place, clearest
+
+   !> Positions in a picture: seven, evenly spaced, of which one is drawn in full and the others faint.
+   integer, parameter :: positions = 7
+   !> A curve has at most this many places, a picture at most this many curves and flagged positions. Reason: a picture
+   !> of 800 pixels shows no more, and memory does not grow with the run.
+   integer, parameter :: max_places = 1000, max_curves = 60, max_flags = 3
+   !> Points of a link closer than this part of the link's extent are one.
+   real(wp), parameter :: same_place = 1.0e-6_wp
+   !> Places from here on are not drawn: differences of two must not overflow.
+   real(wp), parameter :: max_place = 1.0e-3_wp*huge(1.0_wp)
+
+   !> The position of all links at one instant.
+   type :: snapshot_t
+      real(wp) :: t = 0.0_wp
+      real(wp), allocatable :: place(:, :)   !< (3, links) x, y, phi
+      logical, allocatable :: known(:)       !< (links)
+   end type snapshot_t
+
+   !> The path of a point.
+   type :: curve_t
+      integer :: request = 0                 !< its number in the set
+      integer :: point = 0
+      real(wp), allocatable :: t(:)          !< (places) the instants of TIME, or some of them
+      real(wp), allocatable :: place(:, :), velocity(:, :)   !< (2, places)
+      integer, allocatable :: known(:)       !< (places) as in `motion_t`
+   end type curve_t
+
+   !> The guide of a prismatic pair: a line of one link, along which a point of the other, its block, slides.
+   type :: guide_t
+      integer :: pair = 0
+      integer :: carrier = 0, block = 0      !< the links
+      integer :: point = 0                   !< the point of the block on the line
+      integer :: pivot = 0                   !< the point of the carrier from which the slide is counted
+      real(wp) :: foot(2) = 0.0_wp           !< of the pivot on the line, in the carrier's axes
+      real(wp) :: angle = 0.0_wp             !< the direction of the line there (rad)
+      integer :: sense = 1                   !< -1: the slide grows against the direction
+      real(wp) :: low = huge(1.0_wp), high = -huge(1.0_wp)   !< range of the block along the line, from the foot
+   end type guide_t
+
+   !> A flagged instant, and the last known position of the links that it concerns.
+   type :: flag_t
+      real(wp) :: t = 0.0_wp
+      integer :: mark = mark_none
+      logical :: earlier = .false.           !< the position is that of an earlier instant
+      type(snapshot_t) :: last               !< `known`: of the links concerned
+   end type flag_t
+
+   type :: drawing_t
+      real(wp) :: origin(2) = 0.0_wp         !< of the places, in the deck's coordinates
+      integer :: stride = 1                  !< every so many instants of TIME are in a curve
+      integer :: flagged = 0                 !< instants
+      type(snapshot_t) :: now                !< the last known position of each link
+      type(snapshot_t), allocatable :: shown(:)
+      type(curve_t), allocatable :: curves(:)
+      type(guide_t), allocatable :: guides(:)
+      type(flag_t), allocatable :: flags(:)
+      integer, allocatable :: mark(:)        !< (parts) of the instant before
+   end type drawing_t
+
+contains
+
+   !> Nothing recorded yet of the set `m`.
+   function new_drawing(m) result(d)
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t) :: d
+      integer :: i, places
+
+      d%origin = plane_origin(m)
+      d%now = snapshot_of_ground(m, d%origin)
+      allocate (d%shown(0), d%flags(0), d%mark(0), d%curves(0), d%guides(0))
+      d%stride = 1 + max(0, m%steps)/max_places
+      places = max(0, m%steps + 1 + d%stride - 1)/d%stride
+      do i = 1, size(m%requests)
+         if (m%requests(i)%kind /= request_point .or. is_fixed(m, m%requests(i))) cycle
+         if (any(d%curves%point == m%requests(i)%subject) .or. size(d%curves) == max_curves) cycle
+         d%curves = [d%curves, new_curve(i, m%requests(i)%subject, places)]
+      end do
+      do i = 1, size(m%pairs)
+         if (m%pairs(i)%kind == pair_prismatic) d%guides = [d%guides, guide_of(m, i)]
+      end do
+   end function new_drawing
+
+   !> A curve with room for `places`, none known.
+   pure function new_curve(request, point, places) result(c)
+      integer, intent(in) :: request, point, places
+      type(curve_t) :: c
+
+      c%request = request
+      c%point = point
+      allocate (c%t(places), c%place(2, places), c%velocity(2, places), source=0.0_wp)
+      allocate (c%known(places), source=-1)
+   end function new_curve
+
+   !> The ground links where the deck has them; the others are not known.
+   pure function snapshot_of_ground(m, origin) result(s)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: origin(2)
+      type(snapshot_t) :: s
+      integer :: i
+
+      allocate (s%place(3, size(m%links)), source=0.0_wp)
+      s%known = m%links%ground
+      do i = 1, size(m%links)
+         if (s%known(i)) s%place(:, i) = m%links(i)%position - [origin, 0.0_wp]
+      end do
+   end function snapshot_of_ground
+
+   !> The guide of pair number `i`. It belongs to link i of the pair: Q - P = s e - h n, eq. (9), lies on a line through
+   !> P - h n. Where link j is ground, or link i has no extent, the same pair is a guide of link j: P slides along the
+   !> line through Q + h n.
+   pure function guide_of(m, i) result(g)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i
+      type(guide_t) :: g
+
+      g%pair = i
+      associate (pair => m%pairs(i), li => m%points(m%pairs(i)%point_i)%link, lj => m%points(m%pairs(i)%point_j)%link)
+         if (.not. m%links(li)%ground .and. (m%links(lj)%ground .or. &
+            (size(link_corners(m, li), 2) == 1 .and. size(link_corners(m, lj), 2) > 1))) then
+            g%carrier = lj
+            g%block = li
+            g%point = pair%point_i
+            g%pivot = pair%point_j
+            g%angle = pair%alpha - pair%beta
+            g%sense = -1
+         else
+            g%carrier = li
+            g%block = lj
+            g%point = pair%point_j
+            g%pivot = pair%point_i
+            g%angle = pair%alpha
+         end if
+         g%foot = m%points(g%pivot)%offset - real(g%sense, wp)*pair%offset*quarter_turn(direction(g%angle))
+      end associate
+   end function guide_of
+
+   !> Takes what the picture needs of instant number `k` (0, 1, ...) of the motion `s` of `m`.
+   subroutine record_instant(d, m, s, k)
+      type(drawing_t), intent(inout) :: d
+      type(mechanism_t), intent(in) :: m
+      type(set_motion_t), intent(in) :: s
+      integer, intent(in) :: k
+      type(snapshot_t) :: before, now
+      integer :: c, i
+
+      before = d%now
+      now = snapshot_of_ground(m, d%origin)
+      now%t = s%motions(1)%t
+      do c = 1, size(s%own)
+         associate (links => s%parts%list(c)%links, q => s%motions(c))
+            do i = 1, size(links)
+               if (m%links(links(i))%ground .or. known_of(q, i) < 0) cycle
+               now%place(:, links(i)) = q%position(:, i) + [q%origin - d%origin, 0.0_wp]
+               now%known(links(i)) = all(abs(now%place(:2, links(i))) < max_place)
+            end do
+         end associate
+      end do
+      do i = 1, size(m%links)
+         if (.not. now%known(i)) cycle
+         d%now%place(:, i) = now%place(:, i)
+         d%now%known(i) = .true.
+      end do
+      d%now%t = now%t
+      call record_slides(d%guides, m, now)
+      call record_curves(d, m, s, k)
+      call record_flags(d, s, now, before)
+      if (is_shown(k, instant_count(m))) d%shown = [d%shown, now]
+   end subroutine record_instant
+
+   !> Whether instant number `k` (0, 1, ...) of `n` is one of the positions that are drawn.
+   pure logical function is_shown(k, n)
+      use, intrinsic :: iso_fortran_env, only: int64
+      integer, intent(in) :: k, n
+      integer :: i
+
+      is_shown = n <= positions .or. any([(int(i, int64)*(n - 1)/(positions - 1) == k, i=0, positions - 1)])
+   end function is_shown
+
+   !> Widens the ranges of the slides.
+   pure subroutine record_slides(guides, m, now)
+      type(guide_t), intent(inout) :: guides(:)
+      type(mechanism_t), intent(in) :: m
+      type(snapshot_t), intent(in) :: now
+      real(wp) :: along
+      integer :: i
+
+      do i = 1, size(guides)
+         associate (g => guides(i))
+            if (.not. (now%known(g%carrier) .and. now%known(g%block))) cycle
+            along = dot_product(point_place(m, now, g%point) - point_place(m, now, g%pivot), &
+               direction(now%place(3, g%carrier) + g%angle))
+            g%low = min(g%low, along)
+            g%high = max(g%high, along)
+         end associate
+      end do
+   end subroutine record_slides
+
+   !> The places of the curves at instant number `k`, if it is one of theirs.
+   subroutine record_curves(d, m, s, k)
+      type(drawing_t), intent(inout) :: d
+      type(mechanism_t), intent(in) :: m
+      type(set_motion_t), intent(in) :: s
+      integer, intent(in) :: k
+      real(wp) :: p(2, 0:2)
+      integer :: i, n, c, local
+
+      if (mod(k, d%stride) /= 0 .or. k > m%steps) return
+      n = 1 + k/d%stride
+      do i = 1, size(d%curves)
+         associate (curve => d%curves(i))
+            c = s%parts%part(curve%request)
+            if (c == 0) cycle
+            local = s%own(c)%requests(s%parts%number(curve%request))%subject
+            curve%t(n) = s%motions(c)%t
+            curve%known(n) = known_of(s%motions(c), s%own(c)%points(local)%link)
+            if (curve%known(n) < 0) cycle
+            p = point_motion(s%own(c), s%motions(c), local)
+            curve%place(:, n) = p(:, 0) + (s%motions(c)%origin - d%origin)
+            curve%velocity(:, n) = p(:, 1)
+            if (any(abs(curve%place(:, n)) > max_place)) curve%known(n) = -1
+         end associate
+      end do
+   end subroutine record_curves
+
+   !> Notes the first of the instants that a part is flagged for one reason. `before`: the last known positions.
+   subroutine record_flags(d, s, now, before)
+      type(drawing_t), intent(inout) :: d
+      type(set_motion_t), intent(in) :: s
+      type(snapshot_t), intent(in) :: now, before
+      type(flag_t) :: flag
+      integer :: c
+
+      if (size(d%mark) == 0) d%mark = spread(mark_none, 1, size(s%motions))
+      if (any(s%motions%mark /= mark_none)) d%flagged = d%flagged + 1
+      do c = 1, size(s%motions)
+         if (s%motions(c)%mark /= d%mark(c) .and. s%motions(c)%mark /= mark_none .and. size(d%flags) < max_flags) then
+            associate (links => s%parts%list(c)%links)
+               flag%t = now%t
+               flag%mark = s%motions(c)%mark
+               flag%earlier = .not. all(now%known(links))
+               flag%last = now
+               if (flag%earlier) flag%last = before
+               flag%last%known = .false.
+               flag%last%known(links) = merge(before%known(links), now%known(links), flag%earlier)
+               d%flags = [d%flags, flag]
+            end associate
+         end if
+         d%mark(c) = s%motions(c)%mark
+      end do
+   end subroutine record_flags
+
+   !> The number of the position that is drawn in full: the first one of which most links are known.
+   pure integer function clearest(d) result(best)
+      type(drawing_t), intent(in) :: d
+      integer :: i
+
+      best = min(1, size(d%shown))
+      do i = 2, size(d%shown)
+         if (count(d%shown(i)%known) > count(d%shown(best)%known)) best = i
+      end do
+   end function clearest
+
+   !> Place (2) of point number `i` at the position `s`.
+   pure function point_place(m, s, i) result(p)
+      type(mechanism_t), intent(in) :: m
+      type(snapshot_t), intent(in) :: s
+      integer, intent(in) :: i
+      real(wp) :: p(2)
+
+      p = point_of(s%place(:, m%points(i)%link), m%points(i)%offset)
+   end function point_place
+
+   !> The outline of `link` in its own axes (2, corners): the convex hull of its points; two where they lie in line, one
+   !> where they are one place, none where it has no point.
+   pure function link_corners(m, link) result(corners)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: link
+      real(wp), allocatable :: corners(:, :)
+      integer :: i
+      integer, allocatable :: own(:)
+
+      own = pack([(i, i=1, size(m%points))], m%points%link == link)
+      allocate (corners(2, size(own)))
+      do i = 1, size(own)
+         corners(:, i) = m%points(own(i))%offset
+      end do
+      corners = hull(corners)
+   end function link_corners
+
+   !> The corners of the convex hull of `p` (2, :), counterclockwise, by Jarvis's march; corners in line are left out.
+   pure function hull(p) result(corners)
+      real(wp), intent(in) :: p(:, :)
+      real(wp), allocatable :: corners(:, :)
+      integer :: order(size(p, 2)), start, last, next, i, n
+      real(wp) :: extent, side
+
+      if (size(p, 2) == 0) then
+         corners = p
+         return
+      end if
+      extent = maxval(maxval(p, dim=2) - minval(p, dim=2))
+      start = 1
+      do i = 2, size(p, 2)
+         if (p(1, i) < p(1, start) .or. (p(1, i) <= p(1, start) .and. p(2, i) < p(2, start))) start = i
+      end do
+      n = 0
+      last = start
+      do
+         n = n + 1
+         order(n) = last
+         next = 0
+         do i = 1, size(p, 2)
+            if (is_same_place(p(:, i), p(:, last), extent)) cycle
+            if (next == 0) then
+               next = i
+               cycle
+            end if
+            side = turn_of(p(:, last), p(:, next), p(:, i))
+            if (side < -same_place .or. (side <= same_place .and. &
+               norm2(p(:, i) - p(:, last)) > norm2(p(:, next) - p(:, last)))) next = i
+         end do
+         if (next == 0 .or. n == size(p, 2)) exit
+         if (is_same_place(p(:, next), p(:, start), extent)) exit
+         last = next
+      end do
+      corners = p(:, order(:n))
+   end function hull
+
+   !> The sine of the angle at `a` (2) from `b` (2) to `c` (2), which are other places.
+   pure real(wp) function turn_of(a, b, c)
+      real(wp), intent(in) :: a(2), b(2), c(2)
+      real(wp) :: u(2), v(2)
+
+      u = (b - a)/norm2(b - a)
+      v = (c - a)/norm2(c - a)
+      turn_of = u(1)*v(2) - u(2)*v(1)
+   end function turn_of
+
+   !> Whether `p` and `q` (2) are one place for the eye, where what is drawn has the given `extent`.
+   pure logical function is_same_place(p, q, extent)
+      real(wp), intent(in) :: p(2), q(2), extent
+
+      is_same_place = all(abs(p - q) <= same_place*extent)
+   end function is_same_place
+end module drawing

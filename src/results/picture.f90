@@ -1,0 +1,316 @@
+!> The picture of a run as SVG, one set below the other: the mechanism at one instant, faint at some others, the paths of
+!> the points that PRINT asks for, flagged positions, names, and a scale.
+module picture
+   use kinds, only: wp
+   use mechanism, only: mechanism_t
+   use numerals, only: full, whole, fixed
+   use drawing, only: drawing_t, snapshot_t, point_place, clearest, is_same_place
+   use canvas, only: canvas_t
+   use picture_parts, only: put_bodies, put_outlines, put_guides, put_ground, put_blocks, put_joints, put_path, &
+      guide_ends, color_of
+   use picture_drives, only: put_drives
+   use picture_names, only: put_names
+   use svg, only: svg_head, svg_end, put_group, put_group_end, put_polyline, put_words
+   use text_output, only: output_t
+   use listing, only: mark_words
+   use phrases
+   implicit none
+   private
+   public :: put_pictures, view_of
+
+   integer, parameter :: width = 800
+   !> Room around what is drawn, for names and supports; largest and least height of what is drawn.
+   real(wp), parameter :: margin = 62.0_wp, max_height = 520.0_wp, min_height = 60.0_wp
+   !> Room above for the title and below for times and scale; height of a line of words.
+   integer, parameter :: above = 34, below = 44, line_height = 17
+   !> The length of the scale bar, at most.
+   real(wp), parameter :: max_bar = 150.0_wp
+
+contains
+
+   !> Writes the picture of the `sets` as `drawings` has recorded them.
+   subroutine put_pictures(o, sets, drawings)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: sets(:)
+      type(drawing_t), intent(in) :: drawings(:)
+      type(canvas_t) :: c(size(drawings))
+      integer :: top(size(drawings) + 1), i
+
+      top(1) = 0
+      do i = 1, size(drawings)
+         call view_of(sets(i), drawings(i), top(i), c(i), top(i + 1))
+      end do
+      call svg_head(o, width, max(1, top(size(top))))
+      do i = 1, size(drawings)
+         call put_set(o, c(i), sets(i), drawings(i), top(i), top(i + 1))
+      end do
+      call svg_end(o)
+   end subroutine put_pictures
+
+   !> Where the set `m` is drawn: the canvas `c` of a picture that begins at the pixel `top` and ends above `bottom`. The
+   !> scale has three digits and the shift is whole: rounding errors of the results do not move the picture.
+   subroutine view_of(m, d, top, c, bottom)
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
+      integer, intent(in) :: top
+      type(canvas_t), intent(out) :: c
+      integer, intent(out) :: bottom
+      real(wp) :: low(2), high(2), size_of_it(2), room
+      integer :: height
+
+      call find_extent(m, d, low, high)
+      size_of_it = high - low
+      room = real(width, wp) - 2.0_wp*margin
+      c%scale = 1.0_wp
+      if (any(size_of_it > 0.0_wp)) c%scale = rounded_down(1.0_wp/max(size_of_it(1)/room, size_of_it(2)/max_height))
+      height = ceiling(max(min_height, c%scale*size_of_it(2)) + 2.0_wp*margin)
+      bottom = top + above + height + below + line_height*size(d%flags)
+      c%shift = anint([0.5_wp*real(width, wp) - c%scale*(low(1) + 0.5_wp*size_of_it(1)), &
+         real(top + above, wp) + 0.5_wp*real(height, wp) + c%scale*(low(2) + 0.5_wp*size_of_it(2))])
+      c%low = [4.0_wp, real(top + above, wp)]
+      c%high = [real(width - 4, wp), real(top + above + height, wp)]
+   end subroutine view_of
+
+   !> The corners `low` and `high` (2) of what the picture shows of `m`.
+   subroutine find_extent(m, d, low, high)
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
+      real(wp), intent(out) :: low(2), high(2)
+      integer :: i, k
+
+      low = huge(1.0_wp)
+      high = -huge(1.0_wp)
+      do i = 1, size(d%shown)
+         call widen_by_links(m, d, d%shown(i), i == clearest(d), low, high)
+      end do
+      do i = 1, size(d%flags)
+         call widen_by_links(m, d, d%flags(i)%last, .false., low, high)
+      end do
+      call widen_by_links(m, d, d%now, .false., low, high, ground=.true.)
+      do i = 1, size(d%curves)
+         do k = 1, size(d%curves(i)%known)
+            if (d%curves(i)%known(k) >= 0) call widen(d%curves(i)%place(:, k), low, high)
+         end do
+      end do
+      if (all(low <= high)) return
+      low = 0.0_wp
+      high = 0.0_wp
+   end subroutine find_extent
+
+   !> Widens the box from `low` to `high` (2) by the links that are known at `s`: moving ones, with guides where these are
+   !> drawn, or the `ground` as far as pairs use it.
+   subroutine widen_by_links(m, d, s, guides, low, high, ground)
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
+      type(snapshot_t), intent(in) :: s
+      logical, intent(in) :: guides
+      real(wp), intent(inout) :: low(2), high(2)
+      logical, intent(in), optional :: ground
+      logical :: is_wanted(size(m%points))
+      real(wp) :: ends(2, 2)
+      integer :: i
+
+      is_wanted = .not. m%links(m%points%link)%ground .and. .not. present(ground)
+      if (present(ground)) then
+         do i = 1, size(m%pairs)
+            is_wanted([m%pairs(i)%point_i, m%pairs(i)%point_j]) = .true.
+         end do
+         is_wanted = is_wanted .and. m%links(m%points%link)%ground
+         is_wanted(d%guides%pivot) = .false.
+      end if
+      do i = 1, size(m%points)
+         if (is_wanted(i) .and. s%known(m%points(i)%link)) call widen(point_place(m, s, i), low, high)
+      end do
+      if (.not. guides) return
+      do i = 1, size(d%guides)
+         if (.not. s%known(d%guides(i)%carrier) .or. d%guides(i)%high < d%guides(i)%low) cycle
+         ends = guide_ends(d%guides(i), s)
+         call widen(ends(:, 1), low, high)
+         call widen(ends(:, 2), low, high)
+      end do
+   end subroutine widen_by_links
+
+   !> Widens the box from `low` to `high` (2) by the place `p` (2).
+   pure subroutine widen(p, low, high)
+      real(wp), intent(in) :: p(2)
+      real(wp), intent(inout) :: low(2), high(2)
+
+      low = min(low, p)
+      high = max(high, p)
+   end subroutine widen
+
+   !> `x` > 0 with three digits, not larger than it was.
+   pure real(wp) function rounded_down(x)
+      real(wp), intent(in) :: x
+      integer :: e
+
+      e = 2 - floor(log10(x))
+      if (e >= 0) rounded_down = aint(x*10.0_wp**e)/10.0_wp**e
+      if (e < 0) rounded_down = aint(x/10.0_wp**(-e))*10.0_wp**(-e)
+   end function rounded_down
+
+   !> One set, from the pixel `top` to above `bottom`.
+   subroutine put_set(o, c, m, d, top, bottom)
+      type(output_t), intent(inout) :: o
+      type(canvas_t), intent(inout) :: c
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
+      integer, intent(in) :: top, bottom
+      type(snapshot_t) :: s
+      integer :: i, best
+
+      best = clearest(d)
+      s = d%now
+      if (best > 0) s = d%shown(best)
+      call put_group(o, 'class="set" data-set="'//whole(m%set_number)//'" data-scale="'//full(c%scale)//'" data-x="' &
+         //fitted(c%shift(1))//'" data-y="'//fitted(c%shift(2))//'" data-origin="'//full(d%origin(1))//' ' &
+         //full(d%origin(2))//'" data-t="'//full(s%t)//'"', trim(m%title))
+      call put_words(o, real([14, top + 24], wp), 'start', 'class="title"', &
+         trim(whole(m%set_number)//'.  '//m%title))
+      call put_group(o, 'class="faint"', '')
+      do i = 1, size(d%shown)
+         if (i /= best) call put_outlines(o, c, m, d%shown(i))
+      end do
+      call put_group_end(o)
+      do i = 1, size(d%curves)
+         if (moves(d, i)) call put_path(o, c, d%curves(i), trim(m%points(d%curves(i)%point)%name), &
+            color_of(m%points(d%curves(i)%point)%link))
+      end do
+      call put_ground(o, c, m, d)
+      call put_guides(o, c, m, d, s)
+      call put_bodies(o, c, m, s)
+      do i = 1, size(d%flags)
+         call put_group(o, 'class="flagged"', '')
+         call put_outlines(o, c, m, d%flags(i)%last)
+         call put_group_end(o)
+      end do
+      call put_blocks(o, c, m, d, s)
+      call put_joints(o, c, m, s)
+      call put_drives(o, c, m, d, s)
+      call put_names(o, c, m, s)
+      call put_times(o, m, d, s, best, bottom)
+      call put_flags(o, m, d, bottom)
+      call put_scale(o, c, m)
+      call put_group_end(o)
+   end subroutine put_set
+
+   !> Whether curve number `i` is more than one place, and no curve before has the same places.
+   pure logical function moves(d, i)
+      type(drawing_t), intent(in) :: d
+      integer, intent(in) :: i
+      real(wp) :: extent
+      integer :: k, j
+
+      moves = .false.
+      associate (curve => d%curves(i))
+         if (size(curve%known) == 0) return
+         extent = maxval(abs(curve%place))
+         do k = 2, size(curve%known)
+            moves = moves .or. (all(curve%known(k - 1:k) >= 0) .and. &
+               .not. is_same_place(curve%place(:, k), curve%place(:, k - 1), extent))
+         end do
+         do j = 1, i - 1
+            if (all(abs(d%curves(j)%place - curve%place) <= 1.0e-6_wp*extent) &
+               .and. all(d%curves(j)%known == curve%known)) moves = .false.
+         end do
+      end associate
+   end function moves
+
+   !> At the foot: the instant that is drawn, and those that are faint.
+   subroutine put_times(o, m, d, s, best, bottom)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
+      type(snapshot_t), intent(in) :: s
+      integer, intent(in) :: best, bottom
+      character(:), allocatable :: now, others
+      integer :: i
+
+      if (best == 0) return
+      now = 'T = '//fitted(s%t)//' '//trim(m%time_unit)
+      call put_words(o, real([14, bottom - 16 - line_height*size(d%flags)], wp), 'start', 'class="time"', now)
+      others = ''
+      do i = 1, size(d%shown)
+         if (i == best) cycle
+         if (len(others) > 0) others = others//', '
+         others = others//fitted(d%shown(i)%t)
+      end do
+      if (len(others) > 0) call put_words(o, real([32 + 9*len(now), bottom - 16 - line_height*size(d%flags)], wp), &
+         'start', 'class="between"', phrase(say_faint, m%polish)//' '//others)
+   end subroutine put_times
+
+   !> Below it: the flagged instants, and what is drawn of them.
+   subroutine put_flags(o, m, d, bottom)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
+      integer, intent(in) :: bottom
+      character(:), allocatable :: words
+      integer :: i
+
+      do i = 1, size(d%flags)
+         associate (flag => d%flags(i))
+            words = 'T = '//fitted(flag%t)//': '//phrase(mark_words(flag%mark), m%polish)
+            if (any(flag%last%known)) then
+               if (flag%earlier) then
+                  words = words//'; '//phrase(say_last_position, m%polish)//' '//fitted(flag%last%t)
+               end if
+            end if
+            call put_words(o, real([14, bottom - 16 - line_height*(size(d%flags) - i)], wp), 'start', 'class="flag"', &
+               words)
+         end associate
+      end do
+   end subroutine put_flags
+
+   !> The scale bar, at the foot on the right: 1, 2 or 5 times a power of ten units of length.
+   subroutine put_scale(o, c, m)
+      type(output_t), intent(inout) :: o
+      type(canvas_t), intent(in) :: c
+      type(mechanism_t), intent(in) :: m
+      real(wp) :: length, y, x
+      integer :: e
+
+      e = floor(log10(max_bar/c%scale))
+      length = 10.0_wp**e
+      if (5.0_wp*length*c%scale <= max_bar) then
+         length = 5.0_wp*length
+      else if (2.0_wp*length*c%scale <= max_bar) then
+         length = 2.0_wp*length
+      end if
+      x = real(width - 24, wp)
+      y = c%high(2) + 16.0_wp
+      associate (from => x - length*c%scale)
+         call put_polyline(o, reshape([from, y - 4.0_wp, from, y + 4.0_wp, from, y, x, y, x, y - 4.0_wp, x, y + 4.0_wp], &
+            [2, 6]), 'class="scale"')
+         call put_words(o, [from - 8.0_wp, y + 4.0_wp], 'end', 'class="time"', fitted(length)//' '//trim(m%length_unit))
+      end associate
+   end subroutine put_scale
+
+   !> `x` with six digits, without zeros at their end.
+   pure function fitted(x) result(text)
+      real(wp), intent(in) :: x
+      character(:), allocatable :: text
+      character(16) :: exponent
+      integer :: e
+
+      e = 0
+      if (abs(x) > 0.0_wp) e = floor(log10(abs(x)))
+      if (abs(x) > 0.0_wp .and. (e < -4 .or. e > 5)) then
+         write (exponent, '(i0)') e
+         text = without_zeros(fixed(x, 5, e))//'E'//trim(exponent)
+      else
+         text = without_zeros(fixed(x, 5 - e, 0))
+      end if
+   end function fitted
+
+   !> The number `digits` without zeros at the end of its decimals.
+   pure function without_zeros(digits) result(text)
+      character(*), intent(in) :: digits
+      character(:), allocatable :: text
+
+      text = trim(adjustl(digits))
+      if (index(text, '.') == 0) return
+      text = text(:verify(text, '0', back=.true.))
+      if (text(len(text):) == '.') text = text(:len(text) - 1)
+   end function without_zeros
+end module picture

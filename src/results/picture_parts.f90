@@ -1,0 +1,335 @@
+!> The parts of a picture: links, guides, blocks, joints, ground, curves. What is drawn in full is noted on the
+!> canvas, so that names keep clear of it. The symbols' sizes are in pixels.
+module picture_parts
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, pair_revolute
+   use planar, only: direction, quarter_turn, point_of
+   use drawing, only: drawing_t, snapshot_t, curve_t, guide_t, point_place, link_corners
+   use canvas, only: canvas_t, to_pixels, add_line, add_box
+   use svg, only: put_group, put_group_end, put_circle, put_polyline, put_polygon, put_curve, attribute
+   use text_output, only: output_t
+   implicit none
+   private
+   public :: put_bodies, put_outlines, put_guides, put_ground, put_blocks, put_joints, put_path, guide_ends
+   public :: color_of, corner_pixels, guide_direction, half_block
+
+   !> Links take these in turn.
+   character(7), parameter :: colors(*) = ['#3b6ea5', '#d98324', '#4c8c4a', '#8058a5', '#2f9aa0', '#96692f', '#b0528a']
+   real(wp), parameter :: joint_radius = 4.5_wp, point_radius = 2.5_wp
+   !> The guide goes on by so much beyond the places of its block; half the length and width of a block.
+   real(wp), parameter :: beyond = 22.0_wp, half_block(2) = [12.0_wp, 7.0_wp]
+   !> Half the width and the height of a support; distance and length of the lines of a hatch.
+   real(wp), parameter :: half_support = 10.0_wp, support_height = 16.0_wp, hatch_step = 7.0_wp, hatch_length = 6.0_wp
+   !> A piece of a curve is a cubic only where its control points are no farther from its ends than this part of the
+   !> distance of its ends: up to about half a turn of a circle. Farther ones would draw loops that are not there.
+   real(wp), parameter :: max_control = 0.6_wp
+   !> The weight of a curve against that of a bar, for names.
+   real(wp), parameter :: curve_weight = 0.4_wp
+
+contains
+
+   !> The color of link number `i`.
+   pure function color_of(i) result(color)
+      integer, intent(in) :: i
+      character(len(colors)) :: color
+
+      color = colors(1 + modulo(i - 1, size(colors)))
+   end function color_of
+
+   !> The moving links in full at the position `s`: bars, or polygons.
+   subroutine put_bodies(o, c, m, s)
+      type(output_t), intent(inout) :: o
+      type(canvas_t), intent(inout) :: c
+      type(mechanism_t), intent(in) :: m
+      type(snapshot_t), intent(in) :: s
+      real(wp), allocatable :: p(:, :)
+      character(:), allocatable :: stroke
+      integer :: i
+
+      do i = 1, size(m%links)
+         if (m%links(i)%ground .or. .not. s%known(i)) cycle
+         p = corner_pixels(c, m, s, i)
+         if (size(p, 2) < 2) cycle
+         stroke = attribute('stroke', color_of(i))
+         call put_group(o, 'style="stroke:'//color_of(i)//'"', trim(m%links(i)%name))
+         if (size(p, 2) == 2) then
+            call put_polyline(o, p, 'class="bar" style="stroke:'//color_of(i)//'"')
+            call put_polyline(o, p, 'class="core"')
+            call add_line(c, p(:, 1), p(:, 2), 1.5_wp)
+         else
+            call put_polygon(o, p, 'class="body" style="stroke:'//color_of(i)//';fill:'//color_of(i)//'"')
+            call add_outline(c, p)
+         end if
+         call put_group_end(o)
+      end do
+   end subroutine put_bodies
+
+   !> Notes the sides of the polygon `p` (2, :).
+   subroutine add_outline(c, p)
+      type(canvas_t), intent(inout) :: c
+      real(wp), intent(in) :: p(:, :)
+      integer :: k
+
+      do k = 1, size(p, 2)
+         call add_line(c, p(:, k), p(:, 1 + modulo(k, size(p, 2))), 1.0_wp)
+      end do
+   end subroutine add_outline
+
+   !> The moving links as thin lines at the position `s`.
+   subroutine put_outlines(o, c, m, s)
+      type(output_t), intent(inout) :: o
+      type(canvas_t), intent(in) :: c
+      type(mechanism_t), intent(in) :: m
+      type(snapshot_t), intent(in) :: s
+      real(wp), allocatable :: p(:, :)
+      integer :: i
+
+      do i = 1, size(m%links)
+         if (m%links(i)%ground .or. .not. s%known(i)) cycle
+         p = corner_pixels(c, m, s, i)
+         if (size(p, 2) == 2) call put_polyline(o, p, 'class="thin"')
+         if (size(p, 2) > 2) call put_polygon(o, p, 'class="thin"')
+      end do
+   end subroutine put_outlines
+
+   !> The corners (2, :) of link number `i`, in pixels.
+   function corner_pixels(c, m, s, i) result(p)
+      type(canvas_t), intent(in) :: c
+      type(mechanism_t), intent(in) :: m
+      type(snapshot_t), intent(in) :: s
+      integer, intent(in) :: i
+      real(wp), allocatable :: p(:, :)
+      integer :: k
+
+      p = link_corners(m, i)
+      do k = 1, size(p, 2)
+         p(:, k) = to_pixels(c, point_of(s%place(:, i), p(:, k)))
+      end do
+   end function corner_pixels
+
+   !> The guides at the position `s`: a line over the range of the slide, hatched where it is the ground's, and a line to
+   !> it from the point that carries it.
+   subroutine put_guides(o, c, m, d, s)
+      type(output_t), intent(inout) :: o
+      type(canvas_t), intent(inout) :: c
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
+      type(snapshot_t), intent(in) :: s
+      real(wp) :: ends(2, 2), e(2), pivot(2, 2)
+      integer :: i
+
+      do i = 1, size(d%guides)
+         associate (g => d%guides(i))
+            if (.not. s%known(g%carrier) .or. g%high < g%low) cycle
+            ends = guide_ends(g, s)
+            ends = reshape([to_pixels(c, ends(:, 1)), to_pixels(c, ends(:, 2))], [2, 2])
+            e = guide_direction(g, s)
+            ends = ends + beyond*reshape([-e, e], [2, 2])
+            call put_group(o, 'class="guide" style="stroke:'//carrier_color(m, g)//'"', trim(m%pairs(g%pair)%name))
+            if (m%links(g%carrier)%ground) then
+               call put_hatch(o, ends(:, 1), ends(:, 2), sign(1.0_wp, e(1))*quarter_turn(e))
+               call put_polyline(o, ends, 'class="guide"')
+            else
+               pivot(:, 1) = to_pixels(c, point_place(m, s, g%pivot))
+               pivot(:, 2) = to_pixels(c, point_of(s%place(:, g%carrier), g%foot))
+               pivot(:, 2) = nearest_on(pivot(:, 2), ends)
+               if (norm2(pivot(:, 2) - pivot(:, 1)) > 1.0_wp) &
+                  call put_polyline(o, pivot, 'style="stroke-width:4;stroke:'//carrier_color(m, g)//'"')
+               call put_polyline(o, ends, 'style="stroke-width:4;stroke:'//carrier_color(m, g)//'"')
+               call put_polyline(o, ends, 'style="stroke-width:1.5;stroke:#222"')
+               call add_line(c, pivot(:, 1), pivot(:, 2), 1.0_wp)
+            end if
+            call put_group_end(o)
+            call add_line(c, ends(:, 1), ends(:, 2), 1.0_wp)
+         end associate
+      end do
+   end subroutine put_guides
+
+   !> The place (2) nearest to `p` (2) on the line between the `ends` (2, 2).
+   pure function nearest_on(p, ends) result(q)
+      real(wp), intent(in) :: p(2), ends(2, 2)
+      real(wp) :: q(2), u(2)
+
+      u = ends(:, 2) - ends(:, 1)
+      q = ends(:, 1) + min(1.0_wp, max(0.0_wp, dot_product(p - ends(:, 1), u)/dot_product(u, u)))*u
+   end function nearest_on
+
+   !> The color of the link that carries the guide `g`.
+   pure function carrier_color(m, g) result(color)
+      type(mechanism_t), intent(in) :: m
+      type(guide_t), intent(in) :: g
+      character(7) :: color
+
+      color = color_of(g%carrier)
+      if (m%links(g%carrier)%ground) color = '#222222'
+   end function carrier_color
+
+   !> The ends (2, 2) of the range of the slide on the guide `g` at the position `s`.
+   pure function guide_ends(g, s) result(ends)
+      type(guide_t), intent(in) :: g
+      type(snapshot_t), intent(in) :: s
+      real(wp) :: ends(2, 2)
+
+      associate (e => direction(g%angle))
+         ends(:, 1) = point_of(s%place(:, g%carrier), g%foot + g%low*e)
+         ends(:, 2) = point_of(s%place(:, g%carrier), g%foot + g%high*e)
+      end associate
+   end function guide_ends
+
+   !> The direction (2) of the guide `g` at the position `s` in the picture, where y is down.
+   pure function guide_direction(g, s) result(e)
+      type(guide_t), intent(in) :: g
+      type(snapshot_t), intent(in) :: s
+      real(wp) :: e(2)
+
+      e = direction(s%place(3, g%carrier) + g%angle)
+      e(2) = -e(2)
+   end function guide_direction
+
+   !> The hatch of the ground along the line from `p` to `q` (2), on the side of the unit vector `side` (2).
+   subroutine put_hatch(o, p, q, side)
+      type(output_t), intent(inout) :: o
+      real(wp), intent(in) :: p(2), q(2), side(2)
+      real(wp) :: e(2), start(2)
+      integer :: k, n
+
+      n = max(1, min(200, int(norm2(q - p)/hatch_step)))
+      e = (q - p)/norm2(q - p)
+      do k = 1, n
+         start = p + real(k, wp)*(q - p)/real(n, wp)
+         call put_polyline(o, reshape([start, start + hatch_length*(side - e)], [2, 2]), 'class="hatch"')
+      end do
+   end subroutine put_hatch
+
+   !> A support under each point of the ground that a revolute pair joins.
+   subroutine put_ground(o, c, m, d)
+      type(output_t), intent(inout) :: o
+      type(canvas_t), intent(inout) :: c
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
+      real(wp) :: p(2), base(2, 2)
+      integer :: i, point
+
+      do i = 1, size(m%pairs)
+         if (m%pairs(i)%kind /= pair_revolute) cycle
+         point = m%pairs(i)%point_i
+         if (.not. m%links(m%points(point)%link)%ground) point = m%pairs(i)%point_j
+         if (.not. m%links(m%points(point)%link)%ground) cycle
+         p = to_pixels(c, point_place(m, d%now, point))
+         base = reshape([p + [-half_support, support_height], p + [half_support, support_height]], [2, 2])
+         call put_group(o, 'class="ground"', trim(m%links(m%points(point)%link)%name))
+         call put_polygon(o, reshape([p, base], [2, 3]), 'class="support"')
+         base(1, :) = base(1, :) + [-4.0_wp, 4.0_wp]
+         call put_hatch(o, base(:, 1), base(:, 2), [0.0_wp, 1.0_wp])
+         call put_polyline(o, base, 'class="support"')
+         call put_group_end(o)
+         call add_box(c, p - [half_support, 0.0_wp], p + [half_support, support_height + hatch_length])
+      end do
+   end subroutine put_ground
+
+   !> The blocks on their guides at the position `s`.
+   subroutine put_blocks(o, c, m, d, s)
+      type(output_t), intent(inout) :: o
+      type(canvas_t), intent(inout) :: c
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
+      type(snapshot_t), intent(in) :: s
+      real(wp) :: p(2), u(2), v(2)
+      character(7) :: color
+      integer :: i
+
+      do i = 1, size(d%guides)
+         associate (g => d%guides(i))
+            if (.not. (s%known(g%carrier) .and. s%known(g%block))) cycle
+            p = to_pixels(c, point_place(m, s, g%point))
+            u = half_block(1)*guide_direction(g, s)
+            v = half_block(2)*quarter_turn(guide_direction(g, s))
+            color = color_of(g%block)
+            if (m%links(g%block)%ground) color = '#dddddd'
+            call put_group(o, 'class="slider"', trim(m%pairs(g%pair)%name))
+            call put_polygon(o, reshape([p - u - v, p + u - v, p + u + v, p - u + v], [2, 4]), &
+               'class="block" style="fill:'//color//'"')
+            call put_group_end(o)
+            call add_box(c, p - abs(u) - abs(v), p + abs(u) + abs(v))
+         end associate
+      end do
+   end subroutine put_blocks
+
+   !> The joints of the revolute pairs, and as dots the other points of moving links, at the position `s`.
+   subroutine put_joints(o, c, m, s)
+      type(output_t), intent(inout) :: o
+      type(canvas_t), intent(inout) :: c
+      type(mechanism_t), intent(in) :: m
+      type(snapshot_t), intent(in) :: s
+      logical :: joined(size(m%points))
+      real(wp) :: p(2)
+      integer :: i, point
+
+      joined = .false.
+      do i = 1, size(m%pairs)
+         joined([m%pairs(i)%point_i, m%pairs(i)%point_j]) = .true.
+         if (m%pairs(i)%kind /= pair_revolute) cycle
+         point = m%pairs(i)%point_i
+         if (.not. s%known(m%points(point)%link) .or. m%links(m%points(point)%link)%ground) point = m%pairs(i)%point_j
+         if (.not. s%known(m%points(point)%link)) cycle
+         p = to_pixels(c, point_place(m, s, point))
+         call put_circle(o, p, joint_radius, 'class="joint" '//attribute('data-pair', trim(m%pairs(i)%name)))
+         call add_box(c, p - joint_radius, p + joint_radius)
+      end do
+      do i = 1, size(m%points)
+         if (joined(i) .or. .not. s%known(m%points(i)%link) .or. m%links(m%points(i)%link)%ground) cycle
+         p = to_pixels(c, point_place(m, s, i))
+         call put_circle(o, p, point_radius, 'class="point" '//attribute('data-point', trim(m%points(i)%name)))
+         call add_box(c, p - point_radius, p + point_radius)
+      end do
+   end subroutine put_joints
+
+   !> The path `curve` of a point called `name`, in pieces where it is not known.
+   subroutine put_path(o, c, curve, name, color)
+      type(output_t), intent(inout) :: o
+      type(canvas_t), intent(inout) :: c
+      type(curve_t), intent(in) :: curve
+      character(*), intent(in) :: name, color
+      integer :: first, last, n
+
+      n = size(curve%known)
+      call put_group(o, attribute('data-path', name), name)
+      first = 1
+      do while (first < n)
+         last = first
+         do while (last < n)
+            if (any(curve%known(last:last + 1) < 0)) exit
+            last = last + 1
+         end do
+         if (last > first) call put_piece(o, c, curve, first, last, color)
+         first = last + 1
+      end do
+      call put_group_end(o)
+   end subroutine put_path
+
+   !> The places `first` to `last` of the path: cubics with the velocities at their ends.
+   subroutine put_piece(o, c, curve, first, last, color)
+      type(output_t), intent(inout) :: o
+      type(canvas_t), intent(inout) :: c
+      type(curve_t), intent(in) :: curve
+      integer, intent(in) :: first, last
+      character(*), intent(in) :: color
+      real(wp) :: p(2, first:last), from(2, first:last - 1), to(2, first:last - 1), third, far
+      logical :: straight(first:last - 1)
+      integer :: k
+
+      do k = first, last
+         p(:, k) = to_pixels(c, curve%place(:, k))
+      end do
+      do k = first, last - 1
+         third = (curve%t(k + 1) - curve%t(k))/3.0_wp
+         from(:, k) = to_pixels(c, curve%place(:, k) + third*curve%velocity(:, k))
+         to(:, k) = to_pixels(c, curve%place(:, k + 1) - third*curve%velocity(:, k + 1))
+         far = max_control*norm2(p(:, k + 1) - p(:, k))
+         straight(k) = any(curve%known(k:k + 1) < 1) .or. .not. (norm2(from(:, k) - p(:, k)) <= far .and. &
+            norm2(to(:, k) - p(:, k + 1)) <= far)
+         call add_line(c, p(:, k), p(:, k + 1), curve_weight)
+      end do
+      call put_curve(o, p, from, to, straight, 'class="curve" style="stroke:'//color//'"')
+   end subroutine put_piece
+end module picture_parts

@@ -1,0 +1,201 @@
+!> The text of an SVG picture (Scalable Vector Graphics 1.1): elements with places in pixels, from the upper left corner,
+!> y down. ASCII; numbers have at most two decimals, so that equal pictures are equal bytes.
+module svg
+   use kinds, only: wp
+   use text_output, only: output_t, put, add
+   use numerals, only: fixed, whole
+   implicit none
+   private
+   public :: svg_head, svg_end, put_group, put_group_end, put_circle, put_polyline, put_polygon, put_curve, put_words, pixels, &
+      escaped, attribute
+
+   !> The classes of the elements. Widths and sizes are in pixels.
+   character(*), parameter :: style(*) = [character(118) :: &
+      'text{font-family:"DejaVu Sans",Verdana,Arial,sans-serif;font-size:12px;fill:#222;stroke:#fff;stroke-width:3;', &
+      'paint-order:stroke;stroke-linejoin:round}', &
+      'text.title{font-size:14px;font-weight:bold}', &
+      'text.time{font-weight:bold}', &
+      'text.between{fill:#777}', &
+      'text.link{font-style:italic}', &
+      'text.flag{fill:#d00000}', &
+      'polyline,polygon,path{fill:none;stroke:#222;stroke-linejoin:round;stroke-linecap:round}', &
+      '.faint *{stroke:#c4c8cc;stroke-width:1.5}', &
+      '.curve{stroke-width:1.5;stroke:#222;stroke-dasharray:5 3}', &
+      '.body{stroke-width:2;fill-opacity:0.35}', &
+      '.bar{stroke-width:7}', &
+      '.core{stroke-width:3.5;stroke:#fff;stroke-opacity:0.65}', &
+      '.guide{stroke-width:1.5}', &
+      '.hatch{stroke-width:1}', &
+      '.support{stroke-width:1.5;fill:#fff}', &
+      '.block{stroke-width:1.5}', &
+      '.joint{fill:#fff;stroke:#222;stroke-width:1.5}', &
+      '.point{fill:#222}', &
+      '.drive{stroke:#0a7a3c;stroke-width:2}', &
+      '.tip{stroke:none;fill:#0a7a3c}', &
+      '.flagged *{stroke:#d00000}', &
+      '.scale{stroke-width:1.5}']
+
+contains
+
+   !> Begins a picture of `width` times `height` pixels with a white ground.
+   subroutine svg_head(o, width, height)
+      type(output_t), intent(inout) :: o
+      integer, intent(in) :: width, height
+      integer :: i
+
+      call put(o, '<svg xmlns="http://www.w3.org/2000/svg" version="1.1" width="'//whole(width)//'" height="' &
+         //whole(height)//'" viewBox="0 0 '//whole(width)//' '//whole(height)//'">')
+      call put(o, '<style type="text/css">')
+      do i = 1, size(style)
+         call put(o, trim(style(i)))
+      end do
+      call put(o, '</style>')
+      call put(o, '<rect width="'//whole(width)//'" height="'//whole(height)//'" fill="#fff"/>')
+   end subroutine svg_head
+
+   !> Ends the picture.
+   subroutine svg_end(o)
+      type(output_t), intent(inout) :: o
+
+      call put(o, '</svg>')
+   end subroutine svg_end
+
+   !> Begins a group of elements with the attributes `attributes`; `title`, if not '', is what a viewer says of it.
+   subroutine put_group(o, attributes, title)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: attributes, title
+
+      call put(o, '<g '//attributes//'>')
+      if (len(title) > 0) call put(o, '<title>'//escaped(title)//'</title>')
+   end subroutine put_group
+
+   !> Ends the group begun last.
+   subroutine put_group_end(o)
+      type(output_t), intent(inout) :: o
+
+      call put(o, '</g>')
+   end subroutine put_group_end
+
+   !> A circle about `p` (2).
+   subroutine put_circle(o, p, radius, attributes)
+      type(output_t), intent(inout) :: o
+      real(wp), intent(in) :: p(2), radius
+      character(*), intent(in) :: attributes
+
+      call put(o, '<circle cx="'//pixels(p(1))//'" cy="'//pixels(p(2))//'" r="'//pixels(radius)//'" '//attributes//'/>')
+   end subroutine put_circle
+
+   !> A line through the places `p` (2, :).
+   subroutine put_polyline(o, p, attributes)
+      type(output_t), intent(inout) :: o
+      real(wp), intent(in) :: p(:, :)
+      character(*), intent(in) :: attributes
+
+      call put_places(o, '<polyline', p, attributes)
+   end subroutine put_polyline
+
+   !> A closed line through the places `p` (2, :).
+   subroutine put_polygon(o, p, attributes)
+      type(output_t), intent(inout) :: o
+      real(wp), intent(in) :: p(:, :)
+      character(*), intent(in) :: attributes
+
+      call put_places(o, '<polygon', p, attributes)
+   end subroutine put_polygon
+
+   !> An element that has its `points`.
+   subroutine put_places(o, element, p, attributes)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: element, attributes
+      real(wp), intent(in) :: p(:, :)
+      integer :: i
+
+      call add(o, element//' '//attributes//' points="')
+      do i = 1, size(p, 2)
+         if (i > 1) call add(o, ' ')
+         call add(o, pixels(p(1, i))//','//pixels(p(2, i)))
+      end do
+      call put(o, '"/>')
+   end subroutine put_places
+
+   !> A curve through the places `p` (2, :). From each to the next leads a cubic with the control points `from` and `to`
+   !> (2, size - 1), or a straight line where `straight` (size - 1).
+   subroutine put_curve(o, p, from, to, straight, attributes)
+      type(output_t), intent(inout) :: o
+      real(wp), intent(in) :: p(:, :), from(:, :), to(:, :)
+      logical, intent(in) :: straight(:)
+      character(*), intent(in) :: attributes
+      integer :: i
+
+      call add(o, '<path '//attributes//' d="M'//place(p(:, 1)))
+      do i = 1, size(straight)
+         if (straight(i)) then
+            call add(o, ' L'//place(p(:, i + 1)))
+         else
+            call add(o, ' C'//place(from(:, i))//' '//place(to(:, i))//' '//place(p(:, i + 1)))
+         end if
+      end do
+      call put(o, '"/>')
+   end subroutine put_curve
+
+   !> `words` at `p` (2): the middle of their foot line where `anchor` is 'middle', its start or end where 'start', 'end'.
+   subroutine put_words(o, p, anchor, attributes, words)
+      type(output_t), intent(inout) :: o
+      real(wp), intent(in) :: p(2)
+      character(*), intent(in) :: anchor, attributes, words
+
+      call put(o, '<text x="'//pixels(p(1))//'" y="'//pixels(p(2))//'" text-anchor="'//anchor//'" '//attributes//'>' &
+         //escaped(words)//'</text>')
+   end subroutine put_words
+
+   !> The place `p` (2) in a path.
+   pure function place(p) result(text)
+      real(wp), intent(in) :: p(2)
+      character(:), allocatable :: text
+
+      text = pixels(p(1))//' '//pixels(p(2))
+   end function place
+
+   !> `x` with at most two decimals.
+   pure function pixels(x) result(text)
+      real(wp), intent(in) :: x
+      character(:), allocatable :: text
+
+      text = trim(adjustl(fixed(x, 2, 0)))
+      text = text(:verify(text, '0', back=.true.))
+      if (text(len(text):) == '.') text = text(:len(text) - 1)
+   end function pixels
+
+   !> The attribute `name` with `value`.
+   pure function attribute(name, value) result(text)
+      character(*), intent(in) :: name, value
+      character(:), allocatable :: text
+
+      text = name//'="'//escaped(value)//'"'
+   end function attribute
+
+   !> `text` as XML takes it; what is not printable ASCII becomes a question mark.
+   pure function escaped(text) result(xml)
+      character(*), intent(in) :: text
+      character(:), allocatable :: xml
+      integer :: i
+
+      xml = ''
+      do i = 1, len(text)
+         select case (text(i:i))
+         case ('&')
+            xml = xml//'&amp;'
+         case ('<')
+            xml = xml//'&lt;'
+         case ('>')
+            xml = xml//'&gt;'
+         case ('"')
+            xml = xml//'&quot;'
+         case (' ':'!', '#':'%', '''':';', '=', '?':'~')
+            xml = xml//text(i:i)
+         case default
+            xml = xml//'?'
+         end select
+      end do
+   end function escaped
+end module svg
