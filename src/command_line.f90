@@ -134,8 +134,8 @@ contains
       type(failure_t), allocatable, intent(out) :: failure
 
       if (.not. (options%study .or. options%time) .or. len(options%show) > 0) return
-      if (len(options%csv) > 0 .or. len(options%log) > 0 .or. len(options%svg) > 0 .or. options%errors .or. options%check &
-         .or. options%shares > 1 .or. (options%study .and. options%time)) then
+      if (len(options%csv) > 0 .or. len(options%log) > 0 .or. len(options%svg) > 0 .or. options%errors &
+         .or. options%check .or. options%shares > 1 .or. (options%study .and. options%time)) then
          call fail(failure, status_rejected, 'OPTION '//trim(merge('--study', '--time ', options%study)) &
             //' GOES WITH NO OTHER OPTION BUT -o')
       else if (options%study .and. (len(options%deck) == 0 .or. options%deck == '/dev/stdin')) then

@@ -1,4 +1,5 @@
-!> The plane of a picture: from the mechanism's places to pixels, what is drawn already, and where a name is clear of it.
+!> The plane of a picture: from the mechanism's places to pixels, what is drawn already, and where a name is clear of
+!> it.
 module canvas
    use kinds, only: wp
    implicit none
@@ -75,7 +76,7 @@ contains
       real(wp), intent(in) :: p(:, :)
       integer, intent(in) :: length
       real(wp), intent(out) :: start(2)
-      real(wp) :: low(2), high(2), half(2), cost, least
+      real(wp) :: low(2), high(2), half(2), distance, cost, least
       integer :: i, d, x, y
 
       half = 0.5_wp*[letter_width*real(length, wp), letter_height]
@@ -86,7 +87,8 @@ contains
             do y = 1, -1, -1
                do x = 1, -1, -1
                   if (x == 0 .and. y == 0) cycle
-                  low = p(:, i) + [real(x, wp), -real(y, wp)]*(half + distances(d)*merge(0.75_wp, 1.0_wp, x*y /= 0)) - half
+                  distance = distances(d)*merge(0.75_wp, 1.0_wp, x*y /= 0)
+                  low = p(:, i) + [real(x, wp), -real(y, wp)]*(half + distance) - half
                   high = low + 2.0_wp*half
                   cost = cover(c, low - 2.0_wp, high + 2.0_wp) + distance_weight*distances(d)
                   if (cost >= least) cycle

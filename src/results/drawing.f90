@@ -5,7 +5,7 @@ module drawing
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_t, request_point, pair_prismatic, instant_count, plane_origin
    use planar, only: direction, rotated, quarter_turn, point_of
-   use motion, only: known_of, mark_none
+   use motion, only: known_of, mark_none, singular_unclear
    use points, only: point_motion, is_fixed
    use set_motion, only: set_motion_t
    implicit none
@@ -54,7 +54,8 @@ module drawing
    !> A flagged instant, and the last known position of the links that it concerns.
    type :: flag_t
       real(wp) :: t = 0.0_wp
-      integer :: mark = mark_none
+      integer :: mark = mark_none            !< why
+      integer :: singularity = singular_unclear   !< what the position is, of mark_singular
       logical :: earlier = .false.           !< the position is that of an earlier instant
       type(snapshot_t) :: last               !< `known`: of the links concerned
    end type flag_t
@@ -251,6 +252,7 @@ contains
             associate (links => s%parts%list(c)%links)
                flag%t = now%t
                flag%mark = s%motions(c)%mark
+               flag%singularity = s%motions(c)%singularity
                flag%earlier = .not. all(now%known(links))
                flag%last = now
                if (flag%earlier) flag%last = before

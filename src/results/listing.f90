@@ -18,7 +18,7 @@ module listing
    use phrases
    implicit none
    private
-   public :: layout_t, new_layout, listing_head, listing_instant, listing_end, listing_broken_off, mark_words
+   public :: layout_t, new_layout, listing_head, listing_instant, listing_end, listing_broken_off, words_of_mark
 
    !> Why there is not all of a motion, by its mark.
    type(phrase_t), parameter :: mark_words(mark_none:mark_inconsistent) = &
@@ -141,15 +141,25 @@ contains
 
       do k = mark_none + 1, mark_inconsistent
          if (k /= mark_singular) then
-            if (any(s%motions%mark == k)) call put(o, ' *** '//phrase(mark_words(k), m%polish))
+            if (any(s%motions%mark == k)) call put(o, ' *** '//words_of_mark(k, singular_unclear, m%polish))
             cycle
          end if
          do i = singular_unclear, singular_dead
             if (any(s%motions%mark == k .and. s%motions%singularity == i)) &
-               call put(o, ' *** '//phrase(singular_words(i), m%polish))
+               call put(o, ' *** '//words_of_mark(k, i, m%polish))
          end do
       end do
    end subroutine put_marks
+
+   !> Why there is not all of a motion, by its `mark`, and where that is mark_singular by its `singularity`.
+   pure function words_of_mark(mark, singularity, polish) result(words)
+      integer, intent(in) :: mark, singularity
+      logical, intent(in) :: polish
+      character(:), allocatable :: words
+
+      words = phrase(mark_words(mark), polish)
+      if (mark == mark_singular) words = phrase(singular_words(singularity), polish)
+   end function words_of_mark
 
    !> The line above the tables of an instant, `t` in the deck's unit.
    subroutine put_instant(o, l, t, step)

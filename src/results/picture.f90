@@ -1,5 +1,5 @@
-!> The picture of a run as SVG, one set below the other: the mechanism at one instant, faint at some others, the paths of
-!> the points that PRINT asks for, flagged positions, names, and a scale.
+!> The picture of a run as SVG, one set below the other: the mechanism at one instant, faint at some others, the paths
+!> of the points that PRINT asks for, flagged positions, names, and a scale.
 module picture
    use kinds, only: wp
    use mechanism, only: mechanism_t
@@ -12,7 +12,7 @@ module picture
    use picture_names, only: put_names
    use svg, only: svg_head, svg_end, put_group, put_group_end, put_polyline, put_words
    use text_output, only: output_t
-   use listing, only: mark_words
+   use listing, only: words_of_mark
    use phrases
    implicit none
    private
@@ -47,8 +47,8 @@ contains
       call svg_end(o)
    end subroutine put_pictures
 
-   !> Where the set `m` is drawn: the canvas `c` of a picture that begins at the pixel `top` and ends above `bottom`. The
-   !> scale has three digits and the shift is whole: rounding errors of the results do not move the picture.
+   !> Where the set `m` is drawn: the canvas `c` of a picture that begins at the pixel `top` and ends above `bottom`.
+   !> The scale has three digits and the shift is whole: rounding errors of the results do not move the picture.
    subroutine view_of(m, d, top, c, bottom)
       type(mechanism_t), intent(in) :: m
       type(drawing_t), intent(in) :: d
@@ -97,8 +97,8 @@ contains
       high = 0.0_wp
    end subroutine find_extent
 
-   !> Widens the box from `low` to `high` (2) by the links that are known at `s`: moving ones, with guides where these are
-   !> drawn, or the `ground` as far as pairs use it.
+   !> Widens the box from `low` to `high` (2) by the links that are known at `s`: moving ones, with guides where these
+   !> are drawn, or the `ground` as far as pairs use it.
    subroutine widen_by_links(m, d, s, guides, low, high, ground)
       type(mechanism_t), intent(in) :: m
       type(drawing_t), intent(in) :: d
@@ -250,7 +250,7 @@ contains
 
       do i = 1, size(d%flags)
          associate (flag => d%flags(i))
-            words = 'T = '//fitted(flag%t)//': '//phrase(mark_words(flag%mark), m%polish)
+            words = 'T = '//fitted(flag%t)//': '//words_of_mark(flag%mark, flag%singularity, m%polish)
             if (any(flag%last%known)) then
                if (flag%earlier) then
                   words = words//'; '//phrase(say_last_position, m%polish)//' '//fitted(flag%last%t)
@@ -280,8 +280,8 @@ contains
       x = real(width - 24, wp)
       y = c%high(2) + 16.0_wp
       associate (from => x - length*c%scale)
-         call put_polyline(o, reshape([from, y - 4.0_wp, from, y + 4.0_wp, from, y, x, y, x, y - 4.0_wp, x, y + 4.0_wp], &
-            [2, 6]), 'class="scale"')
+         call put_polyline(o, reshape([from, y - 4.0_wp, from, y + 4.0_wp, from, y, x, y, x, y - 4.0_wp, &
+            x, y + 4.0_wp], [2, 6]), 'class="scale"')
          call put_words(o, [from - 8.0_wp, y + 4.0_wp], 'end', 'class="time"', fitted(length)//' '//trim(m%length_unit))
       end associate
    end subroutine put_scale

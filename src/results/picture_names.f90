@@ -32,8 +32,8 @@ contains
       call put_links(o, c, m, s)
    end subroutine put_names
 
-   !> (points) Whether a point has its name in the picture: of moving links all, of the ground those of joints. The point
-   !> of the ground from which a slide is counted need not lie on the guide.
+   !> (points) Whether a point has its name in the picture: of moving links all, of the ground those of joints. The
+   !> point of the ground from which a slide is counted need not lie on the guide.
    pure function is_used(m) result(used)
       type(mechanism_t), intent(in) :: m
       logical :: used(size(m%points))

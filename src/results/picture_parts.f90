@@ -107,8 +107,8 @@ contains
       end do
    end function corner_pixels
 
-   !> The guides at the position `s`: a line over the range of the slide, hatched where it is the ground's, and a line to
-   !> it from the point that carries it.
+   !> The guides at the position `s`: a line over the range of the slide, hatched where it is the ground's, and a line
+   !> to it from the point that carries it.
    subroutine put_guides(o, c, m, d, s)
       type(output_t), intent(inout) :: o
       type(canvas_t), intent(inout) :: c

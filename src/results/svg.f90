@@ -1,13 +1,13 @@
-!> The text of an SVG picture (Scalable Vector Graphics 1.1): elements with places in pixels, from the upper left corner,
-!> y down. ASCII; numbers have at most two decimals, so that equal pictures are equal bytes.
+!> The text of an SVG picture (Scalable Vector Graphics 1.1): elements with places in pixels, from the upper left
+!> corner, y down. ASCII; numbers have at most two decimals, so that equal pictures are equal bytes.
 module svg
    use kinds, only: wp
    use text_output, only: output_t, put, add
    use numerals, only: fixed, whole
    implicit none
    private
-   public :: svg_head, svg_end, put_group, put_group_end, put_circle, put_polyline, put_polygon, put_curve, put_words, pixels, &
-      escaped, attribute
+   public :: svg_head, svg_end, put_group, put_group_end, put_circle, put_polyline, put_polygon, put_curve, put_words, &
+      pixels, escaped, attribute
 
    !> The classes of the elements. Widths and sizes are in pixels.
    character(*), parameter :: style(*) = [character(118) :: &
@@ -138,7 +138,8 @@ contains
       call put(o, '"/>')
    end subroutine put_curve
 
-   !> `words` at `p` (2): the middle of their foot line where `anchor` is 'middle', its start or end where 'start', 'end'.
+   !> `words` at `p` (2): the middle of their foot line where `anchor` is 'middle', its start or end where
+   !> 'start', 'end'.
    subroutine put_words(o, p, anchor, attributes, words)
       type(output_t), intent(inout) :: o
       real(wp), intent(in) :: p(2)

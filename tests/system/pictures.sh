@@ -69,8 +69,8 @@ for deck in input/*.deck; do
    equal "$name: a picture of each set" "$(grep -c '^END' "$deck")" "$(grep -c '<g class="set"' "$w/$name.svg")"
    equal "$name: neither script nor reference" '' "$(grep -nE '<script|href|url[(]|<image|on[a-z]+=' "$w/$name.svg")"
    equal "$name: numbers" '' "$(grep -niE '[" ,](nan|inf)|[*]{3}' "$w/$name.svg" | grep -v '<style\|{')"
-   equal "$name: flagged instants in words" "$(grep -c ' \*\*\* ' "expected/$name.lst" | awk '{ print $1 > 0 }')" \
-      "$(grep -c 'class="flag"' "$w/$name.svg" | awk '{ print $1 > 0 }')"
+   equal "$name: flagged instants in words" "$(grep -c ' \*\*\* ' "expected/$name.lst" | awk '{ print ($1 > 0) }')" \
+      "$(grep -c 'class="flag"' "$w/$name.svg" | awk '{ print ($1 > 0) }')"
    "$kinmat" "$w/$name.deck" --svg "$w/$name.all.svg" --csv "$w/$name.csv" > "$w/$name.lst" 2> "$w/$name.err"
    equal "$name: joints, and how many" "$(grep -c '^REVOLUTE' "$deck")" "$(joints "$w/$name.deck" "$w/$name.csv" "$w/$name.all.svg")"
 done
