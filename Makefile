@@ -37,7 +37,7 @@ modules := $(filter-out main,$(basename $(notdir $(sources))))
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))
 vpath %.F90 $(sort $(dir $(sources)))
 
-.PHONY: all example kinds run test check forms errors kind-check quad-check single-check bench bench-short bench-against hard hard-short study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms mutants expected install install-kinds clean
+.PHONY: all example pictures kinds run test check forms errors kind-check quad-check single-check bench bench-short bench-against hard hard-short study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms mutants expected install install-kinds clean
 all: $(BUILD)/kinmat
 
 run: $(BUILD)/kinmat
@@ -78,6 +78,11 @@ $(foreach build,$(builds),$(eval $(call build_in,$(build))))
 
 $(BUILD)/kinmat: $(BUILD)/release/kinmat
 	cp $< $@
+
+# The pictures of docs/manual.md, drawn anew.
+pictures: $(BUILD)/kinmat
+	mkdir -p docs/pictures
+	for name in yoke four_bar jansen; do $(BUILD)/kinmat --svg docs/pictures/$$name.svg input/$$name.deck > /dev/null || exit 1; done
 
 # A program of one's own with the modules.
 example: $(BUILD)/example

@@ -21,7 +21,7 @@ module svg
       'polyline,polygon,path{fill:none;stroke:#222;stroke-linejoin:round;stroke-linecap:round}', &
       '.faint *{stroke:#c4c8cc;stroke-width:1.5}', &
       '.curve{stroke-width:1.5;stroke:#222;stroke-dasharray:5 3}', &
-      '.body{stroke-width:2;fill-opacity:0.35}', &
+      '.body{stroke-width:2;fill-opacity:0.25}', &
       '.bar{stroke-width:7}', &
       '.core{stroke-width:3.5;stroke:#fff;stroke-opacity:0.65}', &
       '.guide{stroke-width:1.5}', &
