@@ -4,7 +4,8 @@ module draft_drives
    use kinds, only: wp
    use quad_jet, only: qp, pi_q, jet_t
    use dice, only: throw, chance
-   use schemes, only: drive_t, drive_angle, drive_relangle, drive_x, drive_y, drive_slide, angle_unit, drive_unit, double, &
+   use schemes, only: drive_t, drive_angle, drive_relangle, drive_x, drive_y, drive_slide, angle_unit, drive_unit, &
+      double, &
       link_at
    use drive_laws, only: law_t, law_jet, set_spline, term_harmonic, term_power, term_table
    use scheme_draft, only: draft_t, number, world, add_point, anywhere

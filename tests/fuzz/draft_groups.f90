@@ -4,13 +4,15 @@ module draft_groups
    use kinds, only: wp
    use quad_jet, only: qp, pi_q
    use dice, only: throw, chance
-   use schemes, only: drive_angle, drive_relangle, drive_x, drive_y, drive_slide, form_any, form_rrr, form_rrp, form_rpr, &
+   use schemes, only: drive_angle, drive_relangle, drive_x, drive_y, drive_slide, form_any, form_rrr, form_rrp, &
+      form_rpr, &
       form_prp, form_rpp, form_parallelogram, double, point_t, angle_unit, set_trigonometry
    use scheme_draft, only: draft_t, number, anywhere, add_link, add_point, join, pick_base, place_on_base, begin_group
    use draft_drives, only: add_drive, add_point_drive, set_steady
    implicit none
    private
-   public :: add_crank, add_slider, add_dyad, add_plates, add_net, add_open_chain, add_floating, add_cylinder, add_table, &
+   public :: add_crank, add_slider, add_dyad, add_plates, add_net, add_open_chain, add_floating, add_cylinder, &
+      add_table, &
       add_ring, add_parallelogram
 
 contains

@@ -1,7 +1,8 @@
 !> Tests. The five dyads and the parallelogram in closed form: two links l1 and l2 on known links e and f, by pairs
 !> e-l1, l1-l2 and l2-f. Plane trigonometry with jets in real128.
 module dyad_forms
-   use quad_jet, only: qp, jet_t, pi_q, constant_jet, operator(+), operator(-), operator(*), operator(/), sqrt, sin, cos, &
+   use quad_jet, only: qp, jet_t, pi_q, constant_jet, operator(+), operator(-), operator(*), operator(/), sqrt, sin, &
+      cos, &
       atan2
    use schemes, only: scheme_t, group_t, pair_t, body_t, form_rrr, form_rrp, form_rpr, form_prp, form_rpp, angle_unit, &
       point_on, place, set_trigonometry
@@ -178,7 +179,8 @@ contains
       do k = 1, 2
          pair = g%pairs(1) + merge(0, 2, k == 1)
          own_joint(:, k) = own(s, s%pairs(g%pairs(1) + 1), l + k - 1)
-         line(k) = guide_line(s, s%pairs(pair), b(other_link(s, s%pairs(pair), l + k - 1)), l + k - 1, own_joint(:, k), &
+         line(k) = guide_line(s, s%pairs(pair), b(other_link(s, s%pairs(pair), l + k - 1)), l + k - 1, own_joint(:, &
+            k), &
             two(k)%phi%v)
       end do
       call cross(line, c, margin)
@@ -245,7 +247,8 @@ contains
          do k = 3, g%links(2) - l
             pair = first + 2*k - 2
             p = base_place(s, b, s%pairs(pair + 1), l + k)
-            call point_rod(b(l + k), p, own(s, s%pairs(pair + 1), l + k), place(b(l + 1), own(s, s%pairs(pair), l + 1)), &
+            call point_rod(b(l + k), p, own(s, s%pairs(pair + 1), l + k), place(b(l + 1), own(s, s%pairs(pair), &
+               l + 1)), &
                own(s, s%pairs(pair), l + k))
          end do
       end associate

@@ -111,7 +111,8 @@ contains
       integer, intent(in) :: unit
       type(sums_t), intent(in) :: s
 
-      write (unit, '(a,9(1x,i0),3f9.4)') 'SUMS', s%passed, s%failed, s%instants, s%numbers, s%lost, s%unknown, s%flagged, &
+      write (unit, '(a,9(1x,i0),3f9.4)') 'SUMS', s%passed, s%failed, s%instants, s%numbers, s%lost, s%unknown, &
+         s%flagged, &
          s%worst
    end subroutine write_sums
 

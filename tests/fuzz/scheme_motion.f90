@@ -76,7 +76,8 @@ contains
       do k = 1, size(s%groups)
          do l = s%groups(k)%links(1), s%groups(k)%links(2)
             associate (b => m%b(l), at => s%links(l)%at)
-               if (max(abs(b%x%v - at(1)), abs(b%y%v - at(2)))/s%groups(k)%scale + abs(b%phi%v - at(3)) < rounding) cycle
+               if (max(abs(b%x%v - at(1)), abs(b%y%v - at(2)))/s%groups(k)%scale + abs(b%phi%v - at(3)) < rounding) &
+                  cycle
             end associate
             problem = 'THE FIRST POSITION IS ANOTHER ONE'
          end do
@@ -195,7 +196,8 @@ contains
                return
             end if
             trial%lowest(k) = min(trial%lowest(k), trial%margin(k))
-            if (trial%margin(k) < too_near .and. any(g%form == [form_any, form_prp, form_rpp])) trial%status(k) = is_unknown
+            if (trial%margin(k) < too_near .and. any(g%form == [form_any, form_prp, form_rpp])) trial%status(k) = &
+               is_unknown
          end associate
       end do
    end subroutine place_groups
