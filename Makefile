@@ -23,7 +23,7 @@ LIBS   ?= -lklu $(if $(filter-out quad,$(KIND)),-llapack -lblas)
 # No flag here changes a result: no fast-math, no contraction into fused multiply-add.
 # gfortran's "uninitialized" is wrong on every array allocated by assignment.
 COMMON  := -std=f2018 -Wall -Wextra -pedantic -Wno-uninitialized -Wno-maybe-uninitialized -ffp-contract=off
-RELEASE ?= -O2 $(if $(filter double,$(KIND)),-flto=auto)
+RELEASE ?= -O2 $(if $(filter double,$(KIND)),-flto=auto -ffat-lto-objects)
 DEBUG   ?= -O0 -g -fbacktrace -fcheck=all,no-array-temps -ffpe-trap=invalid,zero,overflow -finit-real=snan -finit-derived
 
 # What kinds.F90 and lapack.F90 are told of the kind.
@@ -60,9 +60,10 @@ $(BUILD)/$(1)/libkinmat.a: $(modules:%=$(BUILD)/$(1)/%.o)
 	$$(AR) cr $$@ $$^
 $(BUILD)/$(1)/kinmat: $(BUILD)/$(1)/main.o $(BUILD)/$(1)/libkinmat.a
 	$$(FC) $$(COMMON) $$($(1)) -o $$@ $$^ $$(LIBS)
-# The programs of tests/: depends.mk adds the modules of tests/ that each uses.
+# The programs of tests/: depends.mk adds the modules of tests/ that each uses. Those that measure time are optimized as
+# kinmat is, at link time; the others would take 20 seconds each for that.
 $(programs:%=$(BUILD)/$(1)/%): $(BUILD)/$(1)/%: $(BUILD)/$(1)/%.o $(BUILD)/$(1)/libkinmat.a
-	$$(FC) $$(COMMON) $$($(1)) -o $$@ $$(filter %.o,$$^) $(BUILD)/$(1)/libkinmat.a $$(LIBS)
+	$$(FC) $$(COMMON) $$($(1)) $$(if $$(filter bench study_ratio matrix_1987,$$*),,-fno-lto -fno-use-linker-plugin) -o $$@ $$(filter %.o,$$^) $(BUILD)/$(1)/libkinmat.a $$(LIBS)
 $(BUILD)/$(1):
 	mkdir -p $$@
 endef
