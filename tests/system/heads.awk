@@ -4,7 +4,11 @@
 FNR == 1 { previous = ""; open = "" }
 open != "" && continued { continued = (line ~ /&$/); next }
 open != "" { if (line !~ /^!/) print open; open = "" }
-line ~ /^([a-z_]+ *([(][^)]*[)] *)?)* *(subroutine|function) +[a-zA-Z]/ && line !~ /^end / {
+# What stands before the keyword is words alone, types in parentheses apart. One pattern for all of it takes mawk ages.
+match(line, /(^|[ )])(subroutine|function) +[a-zA-Z]/) && line !~ /^end / {
+   before = substr(line, 1, RSTART - 1)
+   gsub(/[(][^)]*[)]/, "", before)
+   if (before ~ /[^a-z_ )]/) { previous = line; next }
    if (previous !~ /^!/) { open = FILENAME ":" FNR ": " line; continued = (line ~ /&$/) }
 }
 { previous = line }
