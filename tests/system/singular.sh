@@ -66,7 +66,7 @@ deck() {
 }
 # of_instant K LISTING: which sentences on singular positions stand under instant K
 of_instant() {
-   awk -v k="$1" '/^ (INSTANT|CHWILA) / { at = $2 } /^ [*]{3} (JACOBIAN|CHANGE POINT:|DEAD|JAKOBIAN|PUNKT)/ && at == k {
+   awk -v k="$1" '/^ (INSTANT|CHWILA) / { at = $2 } /^ [*][*][*] (JACOBIAN|CHANGE POINT:|DEAD|JAKOBIAN|PUNKT)/ && at == k {
       print substr($0, 6) }' "$2"
 }
 
