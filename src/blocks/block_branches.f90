@@ -81,7 +81,8 @@ contains
       integer :: i
 
       is = e%change <= short_step
-      if (.not. any(e%crossed)) is = is .and. correction <= right_part*e%change
+      if (.not. is) return
+      if (.not. any(e%crossed)) is = correction <= right_part*e%change
       do i = 1, size(e%crossed)
          if (.not. (e%crossed(i) .and. is)) cycle
          allowed = right_part + rounding*e%blocks%list(i)%lipschitz/e%followed%pivot(i)**2

@@ -69,6 +69,7 @@ contains
       c = before
       c%closure_error = 0.0_wp
    end subroutine measure_closure_error
+
    !> The largest rate of an unknown of the motion that is followed.
    pure real(wp) function max_rate(e)
       class(block_method_t), intent(in) :: e
