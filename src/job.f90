@@ -26,7 +26,7 @@ module job
    !> The job's outputs; csv, log and picture only where asked for.
    type :: outputs_t
       type(output_t) :: listing, csv, log, svg
-      type(drawing_t), allocatable :: drawings(:)   !< of the sets so far
+      type(drawing_t), allocatable :: drawings(:)   !< (sets of this share)
    end type outputs_t
 
 contains
@@ -139,13 +139,14 @@ contains
       last = share_end(size(sets), options%share, options%shares)
       if (len(options%csv) > 0 .and. options%share == 1) call csv_head(o%csv, options%errors)
       if (len(options%svg) > 0) call put(o%svg, '<?xml version="1.0" encoding="US-ASCII"?>')
-      allocate (o%drawings(0))
+      if (len(options%svg) > 0) allocate (o%drawings(first:last))
       do i = first, last
-         if (len(options%svg) > 0) o%drawings = [o%drawings, new_drawing(sets(i))]
-         call run_set(options, sets(i), findings(i), o, status)
+         if (len(options%svg) > 0) o%drawings(i) = new_drawing(sets(i))
+         call run_set(options, sets(i), i, findings(i), o, status)
          if (is_over(o)) exit
       end do
-      if (len(options%svg) > 0) call put_pictures(o%svg, sets(first:first + size(o%drawings) - 1), o%drawings)
+      i = min(i, last)
+      if (len(options%svg) > 0) call put_pictures(o%svg, sets(first:i), o%drawings(first:i))
    end subroutine run_sets
 
    !> Last set of share `k` of `n` shares of `count` sets.
@@ -156,10 +157,11 @@ contains
       share_end = int(int(count, int64)*k/n)
    end function share_end
 
-   !> Solves and writes one set, instant by instant.
-   subroutine run_set(options, m, findings, o, status)
+   !> Solves and writes set number `i`, `m`, instant by instant.
+   subroutine run_set(options, m, i, findings, o, status)
       type(options_t), intent(in) :: options
       type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i
       type(findings_t), intent(inout) :: findings
       type(outputs_t), intent(inout) :: o
       integer, intent(inout) :: status
@@ -185,7 +187,7 @@ contains
          if (due .or. options%errors) call sample_set(a, options%errors)
          if (due .or. has_words(a%now)) call listing_instant(o%listing, layout, m, a%now, k)
          if (due .and. len(options%csv) > 0) call csv_instant(o%csv, m, a%now, k)
-         if (len(options%svg) > 0) call record_instant(o%drawings(size(o%drawings)), m, a%now, k)
+         if (len(options%svg) > 0) call record_instant(o%drawings(i), m, a%now, k)
          if (len(options%log) > 0) call put_log(o%log, options, m, a, k)
          if (.not. is_over(o)) cycle
          call listing_broken_off(o%listing, m, k)
