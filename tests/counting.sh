@@ -21,3 +21,6 @@ conclude() {
    echo "$(grep -c passed "$counts") passed, $failed failed"
    [ "$failed" -eq 0 ] && [ -s "$counts" ]
 }
+
+# card NAME A B C R1 R2 R3: one card of a deck
+card() { printf '%-8s%-8s%-8s%-8s%-16s%-16s%-16s\n' "$1" "$2" "$3" "$4" "$5" "$6" "$7" | sed 's/ *$//'; }

@@ -5,7 +5,7 @@ module dice
    use kinds, only: wp
    implicit none
    private
-   public :: dice_t, new_dice, throw, chance, between, magnitude
+   public :: dice_t, new_dice, throw, chance, between, magnitude, disorder
 
    integer(int64), parameter :: m1 = 2147483563_int64, m2 = 2147483399_int64
 
@@ -71,4 +71,17 @@ contains
 
       magnitude = 10.0_wp**between(d, -real(k, wp), real(k, wp))
    end function magnitude
+
+   !> 1 to `n` in disorder.
+   function disorder(r, n) result(list)
+      type(dice_t), intent(inout) :: r
+      integer, intent(in) :: n
+      integer :: list(n), i, k
+
+      list = [(i, i=1, n)]
+      do i = n, 2, -1
+         k = throw(r, i)
+         list([i, k]) = list([k, i])
+      end do
+   end function disorder
 end module dice

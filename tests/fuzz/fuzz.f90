@@ -6,6 +6,7 @@
 !>
 !> DIRECTORY/seed holds the seed that is being run and the sums before it, for a run that does not come back.
 program fuzz
+   use arguments, only: argument, number
    use, intrinsic :: iso_fortran_env, only: output_unit
    use, intrinsic :: iso_c_binding, only: c_int
    use, intrinsic :: ieee_arithmetic, only: ieee_set_halting_mode, ieee_set_flag, ieee_usual, ieee_all
@@ -60,22 +61,6 @@ program fuzz
    call ieee_set_flag(ieee_all, .false.)
 
 contains
-
-   function argument(i) result(text)
-      integer, intent(in) :: i
-      character(:), allocatable :: text
-      integer :: length
-
-      call get_command_argument(i, length=length)
-      allocate (character(length) :: text)
-      call get_command_argument(i, text)
-   end function argument
-
-   integer function number(text)
-      character(*), intent(in) :: text
-
-      read (text, *) number
-   end function number
 
    subroutine run_seeds(first, last, directory)
       integer, intent(in) :: first, last

@@ -6,6 +6,8 @@
 !>
 !> DIRECTORY/seed holds the seed that is being run; DIRECTORY/SEED.deck is kept of each that fails.
 program fuzz_mechanisms
+   use arguments, only: argument, number
+   use csv_cells, only: whole_text
    use, intrinsic :: iso_fortran_env, only: output_unit
    use command_line, only: options_t
    use job, only: run_job
@@ -21,37 +23,12 @@ program fuzz_mechanisms
    end type sums_t
 
    if (argument(1) == '--deck') then
-      call write_deck(schemes_of(whole(argument(2))), argument(3))
+      call write_deck(schemes_of(number(argument(2))), argument(3))
    else
-      call run_seeds(whole(argument(1)), whole(argument(2)), argument(3))
+      call run_seeds(number(argument(1)), number(argument(2)), argument(3))
    end if
 
 contains
-
-   function argument(i) result(text)
-      integer, intent(in) :: i
-      character(:), allocatable :: text
-      integer :: length
-
-      call get_command_argument(i, length=length)
-      allocate (character(length) :: text)
-      call get_command_argument(i, text)
-   end function argument
-
-   integer function whole(text)
-      character(*), intent(in) :: text
-
-      read (text, *) whole
-   end function whole
-
-   function text_of(i) result(text)
-      integer, intent(in) :: i
-      character(:), allocatable :: text
-      character(12) :: buffer
-
-      write (buffer, '(i0)') i
-      text = trim(buffer)
-   end function text_of
 
    !> Every tenth deck has two sets.
    function schemes_of(seed) result(s)
@@ -97,7 +74,7 @@ contains
             sums%failed = sums%failed + 1
             write (output_unit, '(a,i0,2a)') 'FAILED: SEED ', seed, ': ', v%text
             flush (output_unit)
-            call write_deck(schemes_of(seed), directory//'/'//text_of(seed)//'.deck')
+            call write_deck(schemes_of(seed), directory//'/'//whole_text(seed)//'.deck')
          else
             sums%worst = max(sums%worst, v%worst)
             sums%passed(class_of(seed)) = sums%passed(class_of(seed)) + 1
@@ -139,7 +116,7 @@ contains
          call judge(s, options%csv, v)
          if (status == 0 .and. v%lost + v%flagged > 0 .and. .not. allocated(v%text)) v%text = 'STATUS 0 WITH FLAGS'
       else
-         v%text = 'STATUS '//text_of(status)//': '//message
+         v%text = 'STATUS '//whole_text(status)//': '//message
       end if
    end subroutine run_seed
 end program fuzz_mechanisms

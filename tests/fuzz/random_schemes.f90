@@ -3,7 +3,7 @@
 module random_schemes
    use kinds, only: wp
    use quad_jet, only: qp
-   use dice, only: dice_t, new_dice, throw, chance, between, magnitude
+   use dice, only: dice_t, new_dice, throw, chance, between, magnitude, disorder
    use schemes, only: scheme_t, double
    use scheme_draft, only: draft_t, number, add_link, begin_group, end_group
    use draft_groups, only: add_crank, add_slider, add_dyad, add_plates, add_net, add_open_chain, add_floating, &
@@ -204,9 +204,9 @@ contains
          if (chance(d%dice, 0.05_wp) .and. size(s%pairs) > 0) twice = throw(d%dice, size(s%pairs))
          if (twice > 0) s%pairs = [s%pairs, s%pairs(twice)]
          if (twice > 0 .or. any(s%groups%redundant)) s%method = ''
-         s%link_order = disorder(d, size(s%links))
-         s%point_order = disorder(d, size(s%points))
-         s%pair_order = disorder(d, size(s%pairs))
+         s%link_order = disorder(d%dice, size(s%links))
+         s%point_order = disorder(d%dice, size(s%points))
+         s%pair_order = disorder(d%dice, size(s%pairs))
          s%print = merge('ALL  ', 'LINKS', chance(d%dice, 0.2_wp))
          if (s%print == 'LINKS' .and. chance(d%dice, 0.1_wp)) then
             allocate (s%printed(0))
@@ -237,17 +237,4 @@ contains
          end associate
       end do
    end subroutine estimate_links
-
-   !> 1 to `n` in disorder.
-   function disorder(d, n) result(list)
-      type(draft_t), intent(inout) :: d
-      integer, intent(in) :: n
-      integer :: list(n), i, k
-
-      list = [(i, i=1, n)]
-      do i = n, 2, -1
-         k = throw(d%dice, i)
-         list([i, k]) = list([k, i])
-      end do
-   end function disorder
 end module random_schemes

@@ -2,15 +2,15 @@
 !> asks for.
 module csv_rows
    use kinds, only: wp
+   use csv_cells, only: cells, cell_length, split, whole_text
    use quad_jet, only: qp, jet_t, degree_q, constant_jet
    use mechanism, only: mechanism_t, instant_count, request_link, request_point, request_pair, pair_prismatic
    use jet_closure, only: body_jet_t
    implicit none
    private
-   public :: rows_t, read_instant, blame, whole_text, csv_head
+   public :: rows_t, read_instant, blame, csv_head
 
    character(*), parameter :: csv_head = 'set,step,t,kind,name,x,y,phi,vx,vy,vphi,ax,ay,aphi,mark'
-   integer, parameter :: cells = 15, cell_length = 48
 
    !> What one instant's rows give.
    type :: rows_t
@@ -32,15 +32,6 @@ contains
 
       if (.not. allocated(wrong)) wrong = text
    end subroutine blame
-
-   function whole_text(i) result(text)
-      integer, intent(in) :: i
-      character(:), allocatable :: text
-      character(12) :: buffer
-
-      write (buffer, '(i0)') i
-      text = trim(buffer)
-   end function whole_text
 
    !> The rows of instant `k`, which must be those that the deck asks for.
    subroutine read_instant(unit, m, k, rows, wrong)
@@ -163,33 +154,4 @@ contains
       value%d = number(:, 1)
       value%dd = number(:, 2)
    end subroutine read_values
-
-   !> The cells of a line, a name in quotes without them; `n`: how many.
-   subroutine split(line, cell, n)
-      character(*), intent(in) :: line
-      character(cell_length), intent(out) :: cell(cells)
-      integer, intent(out) :: n
-      integer :: i, length
-      logical :: quoted
-
-      cell = ''
-      n = 1
-      length = 0
-      quoted = .false.
-      do i = 1, len_trim(line)
-         if (line(i:i) == '"') then
-            quoted = .not. quoted
-            ! The second of two quotes inside stands for itself.
-            if (.not. quoted .or. i == 1) cycle
-            if (line(i - 1:i - 1) /= '"') cycle
-         else if (line(i:i) == ',' .and. .not. quoted) then
-            n = n + 1
-            length = 0
-            if (n > cells) return
-            cycle
-         end if
-         length = min(length + 1, cell_length)
-         cell(n)(length:length) = line(i:i)
-      end do
-   end subroutine split
 end module csv_rows

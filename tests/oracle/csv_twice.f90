@@ -4,7 +4,8 @@ module csv_twice
    use quad_jet, only: qp
    use mechanism, only: mechanism_t, instant_count
    use jet_condition, only: sizes_t, sizes_of
-   use csv_rows, only: rows_t, read_instant, blame, whole_text
+   use csv_rows, only: rows_t, read_instant, blame
+   use csv_cells, only: whole_text
    implicit none
    private
    public :: compare_steps

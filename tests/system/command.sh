@@ -21,9 +21,6 @@ refused() {
    equal "$name: standard output" '' "$(head -n 2 "$w/out")"
 }
 
-# card NAME A B C R1 R2 R3: one card of a deck
-card() { printf '%-8s%-8s%-8s%-8s%-16s%-16s%-16s\n' "$1" "$2" "$3" "$4" "$5" "$6" "$7" | sed 's/ *$//'; }
-
 # four_bar CRANK COUPLER ROCKER BASE PHI-CRANK PHI-COUPLER PHI-ROCKER: bodies and pairs of a four-bar linkage
 four_bar() {
    card GROUND BASE '' '' 0.0 0.0 0.0

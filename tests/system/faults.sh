@@ -17,9 +17,6 @@ openblas=/usr/lib/x86_64-linux-gnu/openblas-pthread
 both=no
 [ -e "${lapack%%:*}/liblapack.so.3" ] && [ -e "${lapack##*:}/libblas.so.3" ] && [ -e $openblas/libopenblas.so.0 ] && both=yes
 
-# card NAME A B C R1 R2 R3: one card of a deck
-card() { printf '%-8s%-8s%-8s%-8s%-16s%-16s%-16s\n' "$1" "$2" "$3" "$4" "$5" "$6" "$7" | sed 's/ *$//'; }
-
 # link NAME X Y PHI, point NAME LINK XI ETA, joint POINT POINT NAME, drive KIND SUBJECT SECOND VALUE RATE ACCELERATION
 link() { card LINK "$1" '' '' "$2" "$3" "$4"; }
 point() { card POINT "$1" "$2" '' "${3:-0.0}" "${4:-0.0}"; }

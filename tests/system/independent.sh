@@ -13,9 +13,8 @@ esac
 w=$BUILD/independent
 rm -rf "$w" && mkdir -p "$w" || exit 3
 
-# card NAME A B C R1 R2 R3: one card of a deck. link, point, joint, drive: cards of one mechanism, whose names end in
+# link, point, joint, drive: cards of one mechanism, whose names end in
 # $mark and whose lengths are in units of 10**$unit
-card() { printf '%-8s%-8s%-8s%-8s%-16s%-16s%-16s\n' "$1" "$2" "$3" "$4" "$5" "$6" "$7" | sed 's/ *$//'; }
 long() { awk -v x="${1:-0.0}" -v e="$unit" 'BEGIN { print (x == 0) ? "0.0" : sprintf("%.8fE%d", x, e) }'; }
 ground() { card GROUND "$1$mark" '' '' "$(long "$2")" "$(long "$3")" 0.0; }
 link() { card LINK "$1$mark" '' '' "$(long "$2")" "$(long "$3")" "$4"; }

@@ -4,11 +4,11 @@
 !> is wrong, with status 1.
 program read_listing
    use, intrinsic :: iso_fortran_env, only: real128
+   use csv_cells, only: cells, cell_length, split, whole_text
    use echoed_deck, only: due_t, kind_of_row
    use listing_reader, only: row_text_t, set_text_t, next_set
    use printed_numbers, only: printed_t, read_printed, agrees
    implicit none
-   integer, parameter :: cells = 15, cell_length = 48
    character(*), parameter :: csv_head = 'set,step,t,kind,name,x,y,phi,vx,vy,vphi,ax,ay,aphi,mark'
    character(500) :: path, line
    type(set_text_t) :: set
@@ -71,8 +71,8 @@ contains
 
       read (csv, '(a)', iostat=status) line
       if (status /= 0) call give_up('THE CSV HAS NO ROW FOR '//shown(row))
-      call split(line, cell)
-      if (cell(1) /= whole(number) .or. cell(2) /= whole(row%step) .or. cell(4) /= kind_of_row(row%kind) &
+      call split(line, cell, status)
+      if (cell(1) /= whole_text(number) .or. cell(2) /= whole_text(row%step) .or. cell(4) /= kind_of_row(row%kind) &
          .or. cell(5) /= row%name) call give_up('THE CSV HAS ANOTHER ROW: '//trim(line)//', NOT '//shown(row))
       call compare_number(row%time, cell(3), row%time_power, row)
       do i = 1, 9
@@ -104,7 +104,7 @@ contains
       read (cell, *, iostat=status) x
       if (status /= 0) call give_up('NO NUMBER IN THE CSV: '//trim(cell))
       if (.not. agrees(p, power, x)) &
-         call give_up(trim(word)//' IS NOT '//trim(cell)//' OVER 10**'//whole(power)//': '//shown(row))
+         call give_up(trim(word)//' IS NOT '//trim(cell)//' OVER 10**'//whole_text(power)//': '//shown(row))
    end subroutine compare_number
 
    subroutine count_number(p)
@@ -118,48 +118,12 @@ contains
       if (p%masked > 0) masked = masked + 1
    end subroutine count_number
 
-   !> The cells of a row of the CSV; a name may stand in quotes.
-   pure subroutine split(line, cell)
-      character(*), intent(in) :: line
-      character(cell_length), intent(out) :: cell(:)
-      integer :: i, k, used
-      logical :: quoted
-
-      cell = ''
-      k = 1
-      used = 0
-      quoted = .false.
-      do i = 1, len_trim(line)
-         if (line(i:i) == '"') then
-            quoted = .not. quoted
-            ! Two quotes in quotes are one.
-            if (.not. quoted .or. i == 1) cycle
-            if (line(i - 1:i - 1) /= '"') cycle
-         else if (line(i:i) == ',' .and. .not. quoted) then
-            k = min(k + 1, size(cell))
-            used = 0
-            cycle
-         end if
-         used = min(used + 1, cell_length)
-         cell(k)(used:used) = line(i:i)
-      end do
-   end subroutine split
-
    pure function shown(row) result(text)
       type(row_text_t), intent(in) :: row
       character(:), allocatable :: text
 
-      text = trim(kind_of_row(row%kind))//' '//trim(row%name)//' AT INSTANT '//whole(row%step)
+      text = trim(kind_of_row(row%kind))//' '//trim(row%name)//' AT INSTANT '//whole_text(row%step)
    end function shown
-
-   pure function whole(i) result(text)
-      integer, intent(in) :: i
-      character(:), allocatable :: text
-      character(12) :: buffer
-
-      write (buffer, '(i0)') i
-      text = trim(buffer)
-   end function whole
 
    !> Ends the program with what is wrong.
    subroutine give_up(text)

@@ -13,9 +13,8 @@ esac
 w=$BUILD/singular
 rm -rf "$w" && mkdir -p "$w" || exit 3
 
-# card NAME A B C R1 R2 R3: one card of a deck. link, point, joint, slide: cards of one mechanism, whose names end in
+# link, point, joint, slide: cards of one mechanism, whose names end in
 # $mark and whose lengths are in units of 10**$unit m
-card() { printf '%-8s%-8s%-8s%-8s%-16s%-16s%-16s\n' "$1" "$2" "$3" "$4" "$5" "$6" "$7" | sed 's/ *$//'; }
 long() { if [ "${1:-0.0}" = 0.0 ]; then echo 0.0; else echo "${1}E$unit"; fi; }
 link() { card LINK "$1$mark" '' '' "$(long "$2")" "$(long "$3")" "$4"; }
 point() { card POINT "$1$mark" "$2" '' "$(long "$3")" "$(long "$4")"; }

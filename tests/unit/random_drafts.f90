@@ -6,7 +6,7 @@ module random_drafts
    use constants, only: pi
    use mechanism, only: mechanism_t, link_t, point_t, pair_t, drive_t, term_t, request_t, pair_prismatic, &
       drive_angle, drive_x, drive_y, drive_relangle, drive_slide, term_harmonic, request_link
-   use dice, only: dice_t, throw, chance, between
+   use dice, only: dice_t, throw, chance, between, disorder
    implicit none
    private
    public :: draft_t, add_links, add_link, join, add_drive, add_point_drive, add_relative_angle, fair_copy
@@ -220,8 +220,8 @@ contains
       type(mechanism_t), intent(out) :: m
       integer :: link(d%links), pair(d%pairs), i
 
-      link = disorder(d, d%links)
-      pair = disorder(d, d%pairs)
+      link = disorder(d%dice, d%links)
+      pair = disorder(d%dice, d%pairs)
       allocate (m%links(d%links), m%pairs(d%pairs), m%at(0))
       m%links(link) = d%link(:d%links)
       m%points = d%point(:d%points)
@@ -239,17 +239,4 @@ contains
       m%requests = [(request_t(request_link, i, 1), i=1, d%links)]
       if (chance(d%dice, 0.3_wp)) m%requests = m%requests(throw(d%dice, d%links):)
    end subroutine fair_copy
-
-   !> 1 to `n` in disorder.
-   function disorder(d, n) result(list)
-      type(draft_t), intent(inout) :: d
-      integer, intent(in) :: n
-      integer :: list(n), i, k
-
-      list = [(i, i=1, n)]
-      do i = n, 2, -1
-         k = throw(d%dice, i)
-         list([i, k]) = list([k, i])
-      end do
-   end function disorder
 end module random_drafts
