@@ -85,7 +85,7 @@ contains
       if (.not. any(e%crossed)) is = correction <= right_part*e%change
       do i = 1, size(e%crossed)
          if (.not. (e%crossed(i) .and. is)) cycle
-         allowed = right_part + rounding*e%blocks%list(i)%lipschitz/e%followed%pivot(i)**2
+         allowed = right_part + rounding*e%blocks%list(i)%lipschitz/e%followed(i)%pivot**2
          is = correction <= min(allowed, max_wrong)*e%change
       end do
    end function is_short_and_right
@@ -97,7 +97,7 @@ contains
       real(wp), intent(in) :: t
 
       r = new_diagnostic(diagnostic_change, links_of(e, i))
-      associate (before => e%history%t(e%history%place(0)), a => e%followed%pivot(i), b => e%found%pivot(i))
+      associate (before => e%history%t(e%history%place(0)), a => e%followed(i)%pivot, b => e%found(i)%pivot)
          r%t = before + (t - before)*(a/(a + b))
       end associate
    end function change_point

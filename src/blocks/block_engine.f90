@@ -28,12 +28,12 @@ module block_engine
       real(wp), allocatable :: x(:, :)
    end type positions_t
 
-   !> What the factors of each block's Jacobian say (blocks).
-   type :: jacobians_t
-      integer, allocatable :: sign_of(:)                !< of the determinant
-      real(wp), allocatable :: pivot(:)                 !< the least
-      real(wp), allocatable :: inverse(:)               !< |J^-1|
-   end type jacobians_t
+   !> What the factors of a block's Jacobian say.
+   type :: jacobian_t
+      integer :: sign_of = 1                            !< of the determinant
+      real(wp) :: pivot = 1.0_wp                        !< the least
+      real(wp) :: inverse = 0.0_wp                      !< |J^-1|
+   end type jacobian_t
 
    !> Lengths in units of `length`. What the structure and the deck give does not change; `workspace` is scratch; the
    !> checkpoint has all else that depends on earlier instants.
@@ -56,12 +56,12 @@ module block_engine
       logical, allocatable :: is_close(:)               !< (blocks) another assembly is about as near to the estimate
       type(workspace_t) :: work
       type(history_t) :: history                        !< of the motion that is followed
-      type(jacobians_t) :: followed                     !< there
+      type(jacobian_t), allocatable :: followed(:)      !< (blocks) there
       real(wp), allocatable :: jacobian(:)              !< there, of the block with too many rows: (rows*n)
       real(wp) :: t = 0.0_wp                            !< the time of the motion found last
       real(wp) :: change = 0.0_wp                       !< the largest change of a value that was predicted
       type(state_t) :: state                            !< its values
-      type(jacobians_t) :: found
+      type(jacobian_t), allocatable :: found(:)         !< (blocks)
       logical, allocatable :: is_singular(:), crossed(:) !< (blocks) without velocities; with a new sign of determinant
    contains
       procedure :: solve
@@ -76,7 +76,7 @@ module block_engine
    !> All that depends on earlier instants: the motion that is followed, and the one found last.
    type, extends(engine_checkpoint_t) :: block_checkpoint_t
       type(history_t) :: history
-      type(jacobians_t) :: followed, found
+      type(jacobian_t), allocatable :: followed(:), found(:)
       real(wp), allocatable :: jacobian(:)
       type(state_t) :: state
       logical, allocatable :: crossed(:)
@@ -132,13 +132,9 @@ contains
       e%joint(2, :) = m%points(pack(m%pairs%point_j, m%pairs%kind == pair_revolute))%link
       call prepare_drives(e, m)
       associate (n => size(e%blocks%list))
-         allocate (e%found%sign_of(n), source=1)
-         allocate (e%found%pivot(n), source=1.0_wp)
-         allocate (e%found%inverse(n), source=0.0_wp)
+         allocate (e%found(n), e%followed(n), e%others(n))
          allocate (e%crossed(n), e%is_close(n), e%is_singular(n), source=.false.)
-         allocate (e%others(n))
       end associate
-      e%followed = e%found
       allocate (e%estimate(3, size(m%links)))
       do i = 1, size(m%links)
          e%estimate(:, i) = m%links(i)%position - [e%chain%origin, 0.0_wp]
@@ -266,7 +262,7 @@ contains
          end if
          if (e%blocks%list(i)%direct) cycle
          if (follows .and. is_solved(one) .and. e%blocks%list(i)%shape%rows > e%blocks%list(i)%shape%n) &
-            one%determinant = e%followed%sign_of(i)*relative_sign(e%blocks, i, e%jacobian, e%state)
+            one%determinant = e%followed(i)%sign_of*relative_sign(e%blocks, i, e%jacobian, e%state)
          call gather(one, c)
          if (.not. is_solved(one)) return
          e%is_singular(i) = one%singular
@@ -274,11 +270,9 @@ contains
          if (one%singular) cycle
          c%kantorovich_ratio = max(c%kantorovich_ratio, one%kantorovich_ratio)
          if (e%state%excursion > 0.0_wp) &
-            c%growth = max(c%growth, e%blocks%list(i)%lipschitz*max(one%inverse, e%followed%inverse(i))**2)
-         e%found%inverse(i) = one%inverse
-         e%found%sign_of(i) = one%determinant
-         e%found%pivot(i) = one%min_pivot
-         if (.not. follows .or. one%determinant == e%followed%sign_of(i)) cycle
+            c%growth = max(c%growth, e%blocks%list(i)%lipschitz*max(one%inverse, e%followed(i)%inverse)**2)
+         e%found(i) = jacobian_t(one%determinant, one%min_pivot, one%inverse)
+         if (.not. follows .or. one%determinant == e%followed(i)%sign_of) cycle
          same = .false.
          e%crossed(i) = .true.
       end do
@@ -289,11 +283,9 @@ contains
       class(block_engine_t), intent(inout) :: e
 
       call remember(e%history, e%t, e%state%u)
-      ! As sections: an assignment to the whole would ask for its shape first.
-      e%followed%sign_of(:) = e%found%sign_of(:)
+      ! As a section: an assignment to the whole would ask for its shape first.
+      e%followed(:) = e%found(:)
       if (e%blocks%redundant > 0) e%jacobian = jacobian_of(e%blocks, 1, e%state)
-      e%followed%pivot(:) = e%found%pivot(:)
-      e%followed%inverse(:) = e%found%inverse(:)
    end subroutine accept
 
    !> See `engine`: the motion of the links that are asked for.

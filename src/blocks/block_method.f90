@@ -89,7 +89,7 @@ contains
       do k = 1, size(e%needed)
          associate (i => e%needed(k))
             if (.not. e%blocks%list(i)%direct) roundings_grow = roundings_grow .or. &
-               e%blocks%list(i)%lipschitz*max(1.0_wp, size_of) > limit*min(1.0_wp, e%found%pivot(i))**2
+               e%blocks%list(i)%lipschitz*max(1.0_wp, size_of) > limit*min(1.0_wp, e%found(i)%pivot)**2
          end associate
       end do
    end function roundings_grow

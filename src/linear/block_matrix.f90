@@ -116,10 +116,24 @@ contains
          call trtrs('U', 'N', 'N', s%n, 1, a, s%rows, b, s%rows, info)
       else if (s%n == 1) then
          b(1) = b(1)/a(1)
+      else if (s%n == 2) then
+         call substitute(a, pivots(1) == 2, b)
       else
          call getrs('N', s%n, 1, a, s%n, pivots, b, s%n, info)
       end if
    end subroutine solve_again
+
+   !> DGETRS for two unknowns and one right-hand side, in the order of its operations: the call itself takes many times
+   !> as long. `exchanged`: the rows of the matrix were.
+   pure subroutine substitute(a, exchanged, b)
+      real(wp), intent(in) :: a(4)
+      logical, intent(in) :: exchanged
+      real(wp), intent(inout) :: b(2)
+
+      if (exchanged) b = [b(2), b(1)]
+      b(2) = (b(2) - b(1)*a(2))/a(4)
+      b(1) = (b(1) - b(2)*a(3))/a(1)
+   end subroutine substitute
 
    !> From the factors: the smallest and the largest pivot, and the sign of the determinant (1 where there is none).
    subroutine pivot_range(s, a, k, pivots, least, largest, sign_of)
