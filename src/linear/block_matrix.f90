@@ -131,8 +131,11 @@ contains
       real(wp), intent(inout) :: b(2)
 
       if (exchanged) b = [b(2), b(1)]
-      b(2) = (b(2) - b(1)*a(2))/a(4)
-      b(1) = (b(1) - b(2)*a(3))/a(1)
+      b(2) = b(2) - b(1)*a(2)
+      ! DTRSM leaves a zero as it is, with its sign.
+      if (abs(b(2)) > 0.0_wp) b(2) = b(2)/a(4)
+      b(1) = b(1) - b(2)*a(3)
+      if (abs(b(1)) > 0.0_wp) b(1) = b(1)/a(1)
    end subroutine substitute
 
    !> From the factors: the smallest and the largest pivot, and the sign of the determinant (1 where there is none).
