@@ -1,10 +1,11 @@
 #!/bin/sh
 # make mutants N=200 SEED=1: N faults, one at a time, in a copy of the sources below BUILD/mutants; which of them do the unit
-# tests (debug build) and `make check` (release build, without -flto) see? Lists those that survive. JOBS=2: two at a time;
-# FILES='src/deck/cards.f90 ...': faults in these alone.
+# tests and `make check` see? Lists those that survive. JOBS=2: two at a time; FILES='src/deck/cards.f90 ...': faults in these
+# alone.
 #
-# A mutant is killed by an assertion of a unit test, in the debug build or, where that stops at a run-time trap first, in a
-# build without traps; or else by a listing that is not the one of closed forms; or else by the trap, or the time limit, alone.
+# A mutant is built without traps and without optimization, which takes a second. It is killed by an assertion of a unit test
+# (those of its own module come first); or else by a listing that is not the one of closed forms; or else by the unit tests of a
+# build that stops at run-time traps, or by the time limit.
 # tests/mutants/equivalent.txt names changes that change nothing, a line each: file|old text|new text|why.
 N=${N:-200}
 SEED=${SEED:-1}
@@ -21,18 +22,13 @@ place=$(mkdir -p "$BUILD/mutants" && cd "$BUILD/mutants" && pwd) || exit 3
 tab=$(printf '\t')
 awk=${AWK:-awk}
 
-# build DIRECTORY TARGET...: make in a tree, with nothing optimized across files, since that takes seconds.
+# build TREE KIND TARGET...: make in a tree. Kind `plain`: whatever nobody has set is NaN; kind `traps`: the debug build.
 build() {
-   tree=$1
-   shift
-   make -s -j1 -C "$tree" BUILD=build FC="${FC:-gfortran}" RELEASE=-O2 "$@" > "$tree/make.log" 2>&1
-}
-
-# The same with debug objects that do not stop at faults.
-build_plain() {
-   tree=$1
-   shift
-   make -s -j1 -C "$tree" BUILD=plain FC="${FC:-gfortran}" DEBUG='-O0 -finit-real=snan -finit-derived' "$@" > "$tree/make.log" 2>&1
+   tree=$1 kind=$2
+   shift 2
+   set -- "$@" BUILD="$kind" FC="${FC:-gfortran}"
+   [ "$kind" = traps ] || set -- "$@" DEBUG='-O0 -finit-real=snan -finit-derived'
+   make -s -j1 -C "$tree" "$@" > "$tree/make.log" 2>&1
 }
 
 # run_until DIRECTORY PATTERN LOG PROCESSOR CLOCK COMMAND...: runs the command there, with limits, until it ends or a line of
@@ -57,18 +53,19 @@ run_until() {
    esac
 }
 
-# unit TREE BUILD: the unit tests of one build; all of them must have been run.
+# unit TREE KIND [SUITE]: the unit tests, which all must have been run; or those of one suite.
 unit() {
-   run_until "$1/$2/tests" 'Failure in:' unit.log $UNIT_TIME $UNIT_CLOCK ./unit
+   run_until "$1/$2/tests" 'Failure in:' unit.log $UNIT_TIME $UNIT_CLOCK ./unit ${3:+-f "$3"}
    status=$?
    [ $status -ne 0 ] || [ "$(tail -n 1 "$1/$2/tests/unit.log")" = "$(cat "$place/base/unit.count")" ] || status=3
    return $status
 }
 
 check() {
-   run_until "$1" 'FAILED' build/check.log $CHECK_TIME $CHECK_CLOCK env BUILD=build tests/system/check.sh
+   cp "$1/plain/debug/kinmat" "$1/plain/kinmat"
+   run_until "$1" 'FAILED' plain/check.log $CHECK_TIME $CHECK_CLOCK env BUILD=plain tests/system/check.sh
    status=$?
-   [ $status -ne 0 ] || [ "$(tail -n 1 "$1/build/check.log")" = "$(cat "$place/base/check.count")" ] || status=3
+   [ $status -ne 0 ] || [ "$(tail -n 1 "$1/plain/check.log")" = "$(cat "$place/base/check.count")" ] || status=3
    return $status
 }
 
@@ -84,63 +81,68 @@ prepare() {
    (cd "$base" && find $kept -type f 2> /dev/null) | while read -r file; do
       [ -f "$file" ] || { rm "$base/$file"; name=${file##*/}; rm -f "$base"/*/*/"${name%.*}".*; }
    done
-   mkdir -p "$base/build/expected"
+   mkdir -p "$base/plain/expected"
    # expected/ is what closed forms print; that they still do is for `make check` itself.
-   cp expected/*.lst "$base/build/expected/" || return 3
-   build "$base" build/kinmat build/tests/unit || { tail -n 20 "$base/make.log"; return 3; }
-   build_plain "$base" plain/tests/unit || { tail -n 20 "$base/make.log"; return 3; }
-   for kind in build plain; do
+   cp expected/*.lst "$base/plain/expected/" || return 3
+   for kind in plain traps; do
+      build "$base" $kind $kind/tests/unit || { tail -n 20 "$base/make.log"; return 3; }
       (cd "$base/$kind/tests" && ./unit > unit.log 2>&1) || { echo "the unit tests fail without a mutant ($kind)"; return 3; }
    done
-   tail -n 1 "$base/build/tests/unit.log" > "$base/unit.count"
-   (cd "$base" && BUILD=build tests/system/check.sh > build/check.log 2>&1) || { echo 'make check fails without a mutant'; return 3; }
-   tail -n 1 "$base/build/check.log" > "$base/check.count"
+   tail -n 1 "$base/plain/tests/unit.log" > "$base/unit.count"
+   build "$base" plain plain/debug/kinmat || { tail -n 20 "$base/make.log"; return 3; }
+   cp "$base/plain/debug/kinmat" "$base/plain/kinmat"
+   (cd "$base" && BUILD=plain tests/system/check.sh > plain/check.log 2>&1) || { echo 'make check fails without a mutant'; return 3; }
+   tail -n 1 "$base/plain/check.log" > "$base/check.count"
 }
 
-# relink TREE BUILD KIND: one object of $name has changed. Where no other can see it (its .mod is the same) nothing else is compiled.
+# relink TREE KIND TARGET...: the object of $name has changed. Where no other can see it (its .mod is the same) nothing else is compiled.
 relink() {
-   tree=$1 kind=$2
-   if cmp -s "$tree/$kind/debug/$name.mod" "$place/base/$kind/debug/$name.mod" || [ ! -f "$place/base/$kind/debug/$name.mod" ]; then
-      touch -c -r "$tree/$kind/debug/$name.o" "$tree/$kind"/*/*.o
-      rm -f "$tree/$kind/debug/libkinmat.a" "$tree/$kind/release/libkinmat.a"
-      [ "$kind" = plain ] || build "$tree" build/debug/libkinmat.a build/release/libkinmat.a || return 1
-      [ "$kind" = build ] || build_plain "$tree" plain/debug/libkinmat.a || return 1
-      touch -c -r "$tree/$kind/debug/libkinmat.a" "$tree/$kind"/tests/*.o
+   tree=$1 objects=$1/$2/debug
+   if cmp -s "$objects/$name.mod" "$place/base/$2/debug/$name.mod" || [ ! -f "$place/base/$2/debug/$name.mod" ]; then
+      touch -c -r "$objects/$name.o" "$tree/$2"/*/*.o
+      rm -f "$objects/libkinmat.a"
+      build "$tree" "$2" "$2/debug/libkinmat.a" || return 1
+      touch -c -r "$objects/libkinmat.a" "$tree/$2"/tests/*.o
    else
       touch "$tree/altered"
    fi
-   rm -f "$tree/$kind/tests/unit"
-   if [ "$kind" = plain ]; then build_plain "$tree" plain/tests/unit; else build "$tree" build/tests/unit build/kinmat; fi
+   rm -f "$tree/$2/tests/unit" "$objects/kinmat"
+   shift
+   build "$tree" "$@"
 }
 
 # verdict TREE: what sees the fault, in `said`.
 verdict() {
    tree=$1
    said='does not compile'
-   relink "$tree" build || return
-   unit "$tree" build
-   trapped=$?
-   said="assertion: $(sed -n 's/^Failure in: //p' "$tree/build/tests/unit.log" | head -n 1)"
-   [ $trapped -eq 1 ] && return
-   if [ $trapped -eq 3 ]; then
-      trap_text=$(grep -am 1 -E '^(At line|Program received|Fortran runtime|Error)' "$tree/build/tests/unit.log")
-      if build_plain "$tree" "plain/debug/$name.o" && relink "$tree" plain && ! unit "$tree" plain; then
-         said="assertion: $(sed -n 's/^Failure in: //p' "$tree/plain/tests/unit.log" | head -n 1) (without traps)"
-         grep -qa '^Failure in: ' "$tree/plain/tests/unit.log" && return
-      fi
-   fi
+   relink "$tree" plain plain/tests/unit plain/debug/kinmat || return
+   for suite in "test_${name}_suite" ''; do
+      unit "$tree" plain $suite
+      stopped=$?
+      [ $stopped -ne 1 ] || { said="assertion: $(first_failure "$tree/plain")"; return; }
+   done
    check "$tree"
    case $? in
       0) ;;
-      2) [ $trapped -eq 0 ] && trapped=2;;
-      *) said="listing: $(sed -n 's/^FAILED: //p' "$tree/build/check.log" | head -n 1)"; return;;
+      2) [ $stopped -ne 0 ] || stopped=2;;
+      *) said="listing: $(sed -n 's/^FAILED: //p' "$tree/plain/check.log" | head -n 1)"; return;;
    esac
-   case $trapped in
+   kind=plain
+   if [ $stopped -eq 0 ]; then
+      kind=traps
+      build "$tree" traps "traps/debug/$name.o" && relink "$tree" traps traps/tests/unit || return
+      unit "$tree" traps
+      stopped=$?
+   fi
+   case $stopped in
       0) said=survives;;
+      1) said="assertion: $(first_failure "$tree/traps")";;
       2) said='time';;
-      *) said="trap: $trap_text";;
+      *) said="trap: $(grep -am 1 -E '^(At line|Program received|Fortran runtime|Error)' "$tree/$kind/tests/unit.log")";;
    esac
 }
+
+first_failure() { sed -n 's/^Failure in: //p' "$1/tests/unit.log" | head -n 1; }
 
 # worker K: every JOBS-th mutant of the list, until N are counted by all.
 worker() {
@@ -161,21 +163,21 @@ worker() {
          "$tree/list" "$place/base/$file" > "$tree/mutant" && cp "$tree/mutant" "$tree/$file" || exit 3
       rm -f "$tree/altered"
       said='does not compile'
-      build "$tree" "build/debug/$name.o" "build/release/$name.o" && verdict "$tree"
+      build "$tree" plain "plain/debug/$name.o" && verdict "$tree"
       case $said in
          'does not compile') printf '%s\n' "$file:$first: {$old} -> {$new}" >> "$place/uncompiled";;
          *) printf '%s\t%s\t%s\t%s\t%s\n' "$said" "$file" "$first" "$old" "$new" >> "$place/result"
             printf '%s\n' "$(grep -c . "$place/result"): $said: $file:$first: {$old} -> {$new}";;
       esac
       if [ -f "$tree/altered" ]; then
-         rm -rf "$tree/build" "$tree/plain"
-         cp -a "$place/base/build" "$place/base/plain" "$tree/" || exit 3
+         rm -rf "$tree/plain" "$tree/traps"
+         cp -a "$place/base/plain" "$place/base/traps" "$tree/" || exit 3
       else
-         for object in build/debug build/release plain/debug; do
-            [ ! -f "$place/base/$object/$name.o" ] || cp -p "$place/base/$object/$name.o" "$tree/$object/$name.o"
+         for kind in plain traps; do
+            [ ! -f "$place/base/$kind/debug/$name.o" ] || cp -p "$place/base/$kind/debug/$name.o" "$tree/$kind/debug/$name.o"
          done
          touch "$tree/now"
-         touch -c -r "$tree/now" "$tree"/build/*/*.o "$tree"/plain/*/*.o
+         touch -c -r "$tree/now" "$tree"/plain/*/*.o "$tree"/traps/*/*.o
       fi
       cp -p "$place/base/$file" "$tree/$file" || exit 3
    done < "$tree/list"

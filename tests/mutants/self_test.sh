@@ -99,15 +99,15 @@ cat > "$tiny/tests/system/check.sh" <<'SHELL'
 if [ "$("$BUILD/kinmat")" = 2 ]; then echo '1 passed, 0 failed'; else echo 'FAILED: listed'; exit 1; fi
 SHELL
 cat > "$tiny/Makefile" <<'MAKE'
-$(BUILD)/debug/tiny.o $(BUILD)/release/tiny.o: src/base/tiny.f90
+$(BUILD)/debug/tiny.o: src/base/tiny.f90
 	mkdir -p $(@D) $(BUILD)/tests
 	$(FC) -J$(@D) -c -o $@ $<
 %/libkinmat.a: %/tiny.o
 	ar cr $@ $<
 $(BUILD)/tests/unit: tests/unit.f90 $(BUILD)/debug/libkinmat.a
 	$(FC) -I$(BUILD)/debug -o $@ $^
-$(BUILD)/kinmat: src/main.f90 $(BUILD)/release/libkinmat.a
-	$(FC) -I$(BUILD)/release -o $@ $^
+$(BUILD)/debug/kinmat: src/main.f90 $(BUILD)/debug/libkinmat.a
+	$(FC) -I$(BUILD)/debug -o $@ $^
 MAKE
 : > "$tiny/README.md"
 : > "$tiny/expected/none.lst"

@@ -427,6 +427,7 @@ if cmp -s "$work/bad.out" "$work/bad.expected"; then pass; else miss 'reports:';
 
 # The program itself says by its exit status what `unit` reads from its last line.
 "$work/good/build/tests/unit" > /dev/null && pass || miss 'the program ends badly after success'
+if [ "$("$work/bad/build/tests/unit" -f one_that)" = '1 passed, 0 failed' ]; then pass; else miss 'tests of some names'; fi
 "$work/bad/build/tests/unit" > /dev/null && miss 'the program ends well after failures' || pass
 
 # A NaN equals nothing and does not trap (pFUnit traps).

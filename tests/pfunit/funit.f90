@@ -80,12 +80,14 @@ module funit
 
 contains
 
-   !> Runs one test between `before` and `after`; as in pFUnit neither it nor `after` runs once `before` has failed.
+   !> Runs one test between `before` and `after`; as in pFUnit neither it nor `after` runs once `before` has failed, and of the
+   !> command's `-f TEXT` only the tests whose names hold the text are run.
    subroutine run_test(name, test, before, after)
       character(*), intent(in) :: name
       procedure(test_procedure) :: test
       procedure(test_procedure), optional :: before, after
 
+      if (.not. is_chosen(name)) return
       running = name
       raised = 0
       if (present(before)) call before
@@ -99,6 +101,16 @@ contains
          failed = failed + 1
       end if
    end subroutine run_test
+
+   !> Whether the command asks for this test.
+   logical function is_chosen(name)
+      character(*), intent(in) :: name
+      character(80) :: option, part
+
+      call get_command_argument(1, option)
+      call get_command_argument(2, part)
+      is_chosen = option /= '-f' .or. index(name, trim(part)) > 0
+   end function is_chosen
 
    !> Prints the counts and ends the run: status 1 unless every test passed and there was one.
    subroutine report_tests()
