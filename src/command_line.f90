@@ -6,13 +6,35 @@ module command_line
    implicit none
    private
    public :: options_t, word_t, read_command, read_words, help_text
+   public :: out_listing, out_csv, out_log, out_svg, out_last
+
+   !> The outputs that are files, and `out_last`, the last of them.
+   enum, bind(c)
+      enumerator :: out_listing = 1, out_csv, out_log, out_svg
+      enumerator :: out_last = out_svg
+   end enum
+
+   !> An option that names the file of an output.
+   type :: file_option_t
+      character(5) :: word = ''
+      logical :: needs_motion = .false.      !< there is nothing to write if only the deck is analysed
+   end type file_option_t
+
+   type(file_option_t), parameter :: file_options(out_last) = [ &
+      file_option_t('-o', .false.), &
+      file_option_t('--csv', .false.), &
+      file_option_t('--log', .false.), &
+      file_option_t('--svg', .true.)]
+
+   !> A word of the command.
+   type :: word_t
+      character(:), allocatable :: text
+   end type word_t
 
    type :: options_t
       character(:), allocatable :: deck      !< '' is standard input
-      character(:), allocatable :: output    !< '' is standard output
-      character(:), allocatable :: csv       !< '' for none
-      character(:), allocatable :: log       !< '' for none
-      character(:), allocatable :: svg       !< '' for none
+      type(word_t) :: files(out_last)        !< '' is standard output; not allocated: this output is not asked for
+      logical :: no_listing = .false.
       logical :: check = .false.             !< read and analyse only
       logical :: errors = .false.            !< CSV and log have an error estimate of every number
       logical :: study = .false.             !< speed against error, instead of the listing
@@ -22,20 +44,17 @@ module command_line
       character(:), allocatable :: show
    end type options_t
 
-   !> A word of the command.
-   type :: word_t
-      character(:), allocatable :: text
-   end type word_t
-
    character(*), parameter :: two_digits = achar(48 + int(0.1*significant))//achar(48 + mod(significant, 10))
    character(*), parameter :: csv_digits = two_digits(merge(2, 1, significant < 10):)
    character(*), parameter :: lines(*) = [character(72) :: &
       'kinmat DECK            reads a card deck, prints the listing', &
       'kinmat < DECK          the same', &
       '  -o FILE              the listing to FILE', &
+      '  --no-listing         no listing', &
       '  --csv FILE           the results with '//csv_digits//' digits, comma-separated', &
       '  --log FILE           the log of the solver, a line per instant', &
       '  --svg FILE           a picture of the mechanism and paths of points', &
+      '                       (FILE - is standard output, without a listing)', &
       '  --errors             estimates of all errors, in the CSV and the log', &
       '  --check              reads the deck and analyses its structure only', &
       '  --sets K/N           the K-th of N shares of the sets of the deck', &
@@ -81,61 +100,100 @@ contains
       type(word_t), intent(in) :: words(:)
       type(options_t), intent(out) :: options
       type(failure_t), allocatable, intent(out) :: failure
-      integer :: i
+      integer :: i, k
       logical :: has_deck
 
       options%deck = ''
-      options%output = ''
-      options%csv = ''
-      options%log = ''
-      options%svg = ''
       options%show = ''
       has_deck = .false.
       i = 1
       do while (i <= size(words) .and. .not. allocated(failure))
-         select case (words(i)%text)
-         case ('-o')
-            call take_file(words, i, options%output, failure)
-         case ('--csv')
-            call take_file(words, i, options%csv, failure)
-         case ('--log')
-            call take_file(words, i, options%log, failure)
-         case ('--svg')
-            call take_file(words, i, options%svg, failure)
-         case ('--sets')
-            call take_share(words, i, options, failure)
-         case ('--errors')
-            options%errors = .true.
-         case ('--study')
-            options%study = .true.
-         case ('--time')
-            options%time = .true.
-         case ('--check')
-            options%check = .true.
-         case ('--help', '-h')
-            options%show = 'HELP'
-         case ('--version')
-            options%show = 'VERSION'
-         case ('--ruler')
-            options%show = 'RULER'
-         case default
-            call take_deck(words(i)%text, has_deck, options%deck, failure)
-         end select
+         do k = 1, out_last
+            if (file_options(k)%word == words(i)%text) exit
+         end do
+         if (k <= out_last) then
+            call take_file(words, i, options%files(k)%text, failure)
+         else
+            call take_word(words, i, has_deck, options, failure)
+         end if
          i = i + 1
       end do
       if (.not. allocated(failure)) call check_study(options, failure)
-      if (.not. allocated(failure) .and. options%check .and. len(options%svg) > 0) &
-         call fail(failure, status_rejected, 'OPTION --check COMPUTES NO MOTION THAT --svg COULD DRAW')
+      if (.not. allocated(failure)) call check_files(options, failure)
+      if (.not. (options%no_listing .or. any(to_standard_output(options%files)) &
+         .or. allocated(options%files(out_listing)%text))) options%files(out_listing)%text = ''
    end subroutine read_words
+
+   !> Takes word number `i` of those that name no file of an output.
+   subroutine take_word(words, i, has_deck, options, failure)
+      type(word_t), intent(in) :: words(:)
+      integer, intent(inout) :: i
+      logical, intent(inout) :: has_deck
+      type(options_t), intent(inout) :: options
+      type(failure_t), allocatable, intent(out) :: failure
+
+      select case (words(i)%text)
+      case ('--sets')
+         call take_share(words, i, options, failure)
+      case ('--errors')
+         options%errors = .true.
+      case ('--no-listing')
+         options%no_listing = .true.
+      case ('--study')
+         options%study = .true.
+      case ('--time')
+         options%time = .true.
+      case ('--check')
+         options%check = .true.
+      case ('--help', '-h')
+         options%show = 'HELP'
+      case ('--version')
+         options%show = 'VERSION'
+      case ('--ruler')
+         options%show = 'RULER'
+      case default
+         call take_deck(words(i)%text, has_deck, options%deck, failure)
+      end select
+   end subroutine take_word
+
+   !> Whether `file` is asked for, as standard output.
+   elemental logical function to_standard_output(file)
+      type(word_t), intent(in) :: file
+
+      to_standard_output = .false.
+      if (allocated(file%text)) to_standard_output = len(file%text) == 0
+   end function to_standard_output
+
+   !> Two outputs on standard output could not be told apart; without motion there is nothing to draw.
+   subroutine check_files(options, failure)
+      type(options_t), intent(in) :: options
+      type(failure_t), allocatable, intent(out) :: failure
+      integer :: k, first
+
+      if (options%no_listing .and. allocated(options%files(out_listing)%text)) &
+         call fail(failure, status_rejected, 'OPTION --no-listing LEAVES OUT THE LISTING, WHICH -o ASKS FOR')
+      first = findloc(to_standard_output(options%files), .true., dim=1)
+      do k = 1, out_last
+         if (to_standard_output(options%files(k)) .and. k > first) &
+            call fail(failure, status_rejected, 'STANDARD OUTPUT TAKES ONE OUTPUT: '//trim(file_options(first)%word) &
+               //' OR '//trim(file_options(k)%word))
+         if (options%check .and. file_options(k)%needs_motion .and. allocated(options%files(k)%text)) &
+            call fail(failure, status_rejected, 'OPTION --check COMPUTES NO MOTION, WHICH ' &
+               //trim(file_options(k)%word)//' NEEDS')
+         if (allocated(failure)) return
+      end do
+   end subroutine check_files
 
    !> A study and times are no listing; a study reads its deck more than once.
    subroutine check_study(options, failure)
       type(options_t), intent(in) :: options
       type(failure_t), allocatable, intent(out) :: failure
+      integer :: k
 
       if (.not. (options%study .or. options%time) .or. len(options%show) > 0) return
-      if (len(options%csv) > 0 .or. len(options%log) > 0 .or. len(options%svg) > 0 .or. options%errors &
-         .or. options%check .or. options%shares > 1 .or. (options%study .and. options%time)) then
+      if (any([(allocated(options%files(k)%text), k=out_listing + 1, out_last)]) .or. options%errors &
+         .or. options%check .or. options%no_listing .or. options%shares > 1 &
+         .or. (options%study .and. options%time)) then
          call fail(failure, status_rejected, 'OPTION '//trim(merge('--study', '--time ', options%study)) &
             //' GOES WITH NO OTHER OPTION BUT -o')
       else if (options%study .and. (len(options%deck) == 0 .or. options%deck == '/dev/stdin')) then
@@ -150,12 +208,12 @@ contains
       character(:), allocatable, intent(inout) :: deck
       type(failure_t), allocatable, intent(out) :: failure
 
-      if (has_deck) then
-         call fail(failure, status_rejected, 'MORE THAN ONE DECK IS NAMED: '//deck//' AND '//word)
-      else if (len(word) == 0) then
+      if (len(word) == 0) then
          call fail(failure, status_rejected, 'AN EMPTY WORD IS NO DECK')
       else if (word(1:1) == '-' .and. word /= '-') then
          call fail(failure, status_rejected, 'OPTION '//word//' IS UNKNOWN; SEE kinmat --help')
+      else if (has_deck) then
+         call fail(failure, status_rejected, 'MORE THAN ONE DECK IS NAMED: '//deck//' AND '//word)
       else
          deck = word
          if (word == '-') deck = ''
@@ -163,7 +221,7 @@ contains
       end if
    end subroutine take_deck
 
-   !> The file name after option number `i`.
+   !> The file name after option number `i`; `-` is standard output.
    subroutine take_file(words, i, path, failure)
       type(word_t), intent(in) :: words(:)
       integer, intent(inout) :: i
@@ -172,11 +230,12 @@ contains
 
       if (i == size(words)) then
          call fail(failure, status_rejected, 'OPTION '//words(i)%text//' NEEDS A FILE NAME')
-      else if (len(path) > 0) then
+      else if (allocated(path)) then
          call fail(failure, status_rejected, 'OPTION '//words(i)%text//' IS GIVEN TWICE')
       else
          path = words(i + 1)%text
          if (len(path) == 0) call fail(failure, status_rejected, 'OPTION '//words(i)%text//' NEEDS A FILE NAME')
+         if (path == '-') path = ''
          i = i + 1
       end if
    end subroutine take_file

@@ -5,7 +5,7 @@ program main
    use kinds, only: wp_name
    use failures, only: failure_t, status_signal
    use system_calls, only: occupy_standard_descriptors, end_by_signal
-   use command_line, only: options_t, read_command, help_text
+   use command_line, only: options_t, out_listing, read_command, help_text
    use cards, only: ruler_card
    use job, only: run_job
    use study, only: run_study
@@ -41,7 +41,7 @@ program main
       call show(ruler_card())
    case default
       if (options%study .or. options%time) then
-         call run_study(options%deck, options%output, options%time, status, message)
+         call run_study(options%deck, options%files(out_listing)%text, options%time, status, message)
       else
          call run_job(options, status, message)
       end if

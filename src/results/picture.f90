@@ -11,12 +11,12 @@ module picture
    use picture_drives, only: put_drives
    use picture_names, only: put_names
    use svg, only: svg_head, svg_end, put_group, put_group_end, put_polyline, put_words
-   use text_output, only: output_t
+   use text_output, only: output_t, put
    use listing, only: words_of_mark
    use phrases
    implicit none
    private
-   public :: put_pictures, view_of
+   public :: picture_head, put_pictures, view_of
 
    integer, parameter :: width = 800
    !> Room around what is drawn, for names and supports; largest and least height of what is drawn.
@@ -27,6 +27,13 @@ module picture
    real(wp), parameter :: max_bar = 150.0_wp
 
 contains
+
+   !> The first line of a file that holds a picture.
+   subroutine picture_head(o)
+      type(output_t), intent(inout) :: o
+
+      call put(o, '<?xml version="1.0" encoding="US-ASCII"?>')
+   end subroutine picture_head
 
    !> Writes the picture of the `sets` as `drawings` has recorded them.
    subroutine put_pictures(o, sets, drawings)

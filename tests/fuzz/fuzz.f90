@@ -13,7 +13,7 @@ program fuzz
    use kinds, only: wp
    use failures, only: failure_t
    use mechanism, only: mechanism_t
-   use command_line, only: options_t
+   use command_line, only: options_t, out_listing, out_csv, out_log
    use deck, only: read_deck
    use job, only: run_job
    use deck_draft, only: draft_t, read_sets, write_draft, find_cards
@@ -141,9 +141,9 @@ contains
       type(options_t) :: options
 
       options%deck = directory//'/deck'
-      options%output = directory//'/listing'
-      options%csv = directory//'/csv'
-      options%log = directory//'/log'
+      options%files(out_listing)%text = directory//'/listing'
+      options%files(out_csv)%text = directory//'/csv'
+      options%files(out_log)%text = directory//'/log'
       options%show = ''
    end function options_in
 
@@ -170,10 +170,10 @@ contains
       read (d%line(cards(1))(9:16), *) n
       write (twice%line(cards(1))(9:16), '(i0)') 2*n
       options%deck = directory//'/deck2'
-      options%csv = directory//'/csv2'
+      options%files(out_csv)%text = directory//'/csv2'
       call write_draft(twice, options%deck)
       call run_trapped(options, status, message)
-      if (status == 0) call compare_steps(one(1), directory//'/csv', options%csv, found)
+      if (status == 0) call compare_steps(one(1), directory//'/csv', options%files(out_csv)%text, found)
       if (allocated(found)) wrong = found
    end subroutine run_twice
 
@@ -199,10 +199,10 @@ contains
       character(:), allocatable :: report
 
       call read_deck(options%deck, read_sets, report, failure)
-      call check_listing(options%output, size(read_sets), wrong, flagged)
-      if (wrong == '') call check_protocol(options%log, wrong)
+      call check_listing(options%files(out_listing)%text, size(read_sets), wrong, flagged)
+      if (wrong == '') call check_protocol(options%files(out_log)%text, wrong)
       if (wrong /= '') return
-      call check_csv(options%csv, read_sets, v)
+      call check_csv(options%files(out_csv)%text, read_sets, v)
       if (allocated(v%text)) wrong = v%text
    end subroutine judge
 end program fuzz

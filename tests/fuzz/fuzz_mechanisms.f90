@@ -9,7 +9,7 @@ program fuzz_mechanisms
    use arguments, only: argument, number
    use csv_cells, only: whole_text
    use, intrinsic :: iso_fortran_env, only: output_unit
-   use command_line, only: options_t
+   use command_line, only: options_t, out_listing, out_csv
    use job, only: run_job
    use quad_jet, only: qp
    use schemes, only: scheme_t, write_scheme
@@ -105,15 +105,14 @@ contains
 
       s = schemes_of(seed)
       options%deck = directory//'/deck'
-      options%output = '/dev/null'
-      options%csv = directory//'/csv'
-      options%log = ''
+      options%files(out_listing)%text = '/dev/null'
+      options%files(out_csv)%text = directory//'/csv'
       options%show = ''
       options%errors = .true.
       call write_deck(s, options%deck)
       call run_job(options, status, message)
       if (status == 0 .or. status == 2) then
-         call judge(s, options%csv, v)
+         call judge(s, options%files(out_csv)%text, v)
          if (status == 0 .and. v%lost + v%flagged > 0 .and. .not. allocated(v%text)) v%text = 'STATUS 0 WITH FLAGS'
       else
          v%text = 'STATUS '//whole_text(status)//': '//message

@@ -151,6 +151,32 @@ same 'three outputs: listing' "$w/m.lst" "$w/three.lst"
 same 'three outputs: csv' "$w/m.csv" "$w/three.csv"
 same 'three outputs: log' "$w/m.log" "$w/three.log"
 
+# - is standard output, for one output; the listing then goes to a file or nowhere.
+for option in -o --csv --log; do
+   "$kinmat" "$w/m.deck" $option - > "$w/out" 2> "$w/err"
+   equal "$option -: status" 0 $?
+   case $option in -o) name=lst ;; *) name=${option#--} ;; esac
+   same "$option -" "$w/m.$name" "$w/out"
+done
+"$kinmat" "$w/m.deck" --svg - > "$w/out" 2> "$w/err"
+"$kinmat" "$w/m.deck" --svg "$w/m.svg" > "$w/o.lst" 2> "$w/err"
+same '--svg -' "$w/m.svg" "$w/out"
+"$kinmat" "$w/m.deck" --csv - -o "$w/o.lst" > "$w/out"
+same '--csv - and -o: the CSV' "$w/m.csv" "$w/out"
+same '--csv - and -o: the listing' "$w/m.lst" "$w/o.lst"
+equal 'no file is called -' '' "$(ls ./- 2> /dev/null)"
+refused 'two outputs to standard output' 1 ' *** STANDARD OUTPUT TAKES ONE OUTPUT: -o OR --csv' "$w/m.deck" --csv - -o -
+refused 'two others to standard output' 1 ' *** STANDARD OUTPUT TAKES ONE OUTPUT: --csv OR --log' --log - "$w/m.deck" --csv -
+
+# --no-listing: the other outputs, messages and statuses are the same.
+"$kinmat" "$w/m.deck" --no-listing > "$w/out" 2> "$w/err"
+equal '--no-listing: status' 0 $?
+equal '--no-listing: nothing is printed' '' "$(cat "$w/out" "$w/err")"
+"$kinmat" --no-listing "$w/m.deck" --csv "$w/o.csv" --log "$w/o.log" > "$w/out"
+same '--no-listing: the CSV' "$w/m.csv" "$w/o.csv"
+same '--no-listing: the log' "$w/m.log" "$w/o.log"
+refused '--no-listing and -o' 1 ' *** OPTION --no-listing LEAVES OUT THE LISTING, WHICH -o ASKS FOR' "$w/m.deck" --no-listing -o "$w/x"
+
 # --errors: nine more columns, as empty as the numbers they belong to; estimates of a four-bar are some roundings.
 "$kinmat" "$w/m.deck" --errors --csv "$w/e.csv" --log "$w/e.log" > "$w/out"
 same '--errors leaves the listing as it is' "$w/m.lst" "$w/out"
@@ -196,7 +222,7 @@ refused '--sets without a word' 1 ' *** OPTION --sets NEEDS K/N WITH 1 <= K <= N
 "$kinmat" --help > "$w/out" 2> "$w/err"
 equal '--help: status' 0 $?
 equal '--help: first line' 'kinmat DECK            reads a card deck, prints the listing' "$(head -n 1 "$w/out")"
-for option in -o --csv --log --svg --check --errors --sets --ruler --help --version; do
+for option in -o --no-listing --csv --log --svg --check --errors --sets --ruler --help --version; do
    equal "--help tells of $option" found "$(grep -qe "$option" "$w/out" && echo found)"
 done
 equal '--version' 'KINMAT 1.0, REAL64' "$("$kinmat" --version)"
@@ -204,6 +230,7 @@ equal '--ruler' '$NAME---LABEL-A|LABEL-B|LABEL-C|REAL-1---------|REAL-2---------
 
 # Refused commands: status 1 or 3, one sentence, no listing.
 refused 'unknown option' 1 ' *** OPTION --nope IS UNKNOWN; SEE kinmat --help' --nope "$w/m.deck"
+refused 'unknown option after the deck' 1 ' *** OPTION --nope IS UNKNOWN; SEE kinmat --help' "$w/m.deck" --nope
 refused 'two decks' 1 ' *** MORE THAN ONE DECK IS NAMED: one AND two' one two
 refused 'empty word' 1 ' *** AN EMPTY WORD IS NO DECK' ''
 refused '-o without a file' 1 ' *** OPTION -o NEEDS A FILE NAME' "$w/m.deck" -o
@@ -307,6 +334,9 @@ equal 'a drive too many, in the third set: the drives do not agree' ' *** TOO MA
 "$kinmat" "$w/open.deck" --csv "$w/open.csv" --log "$w/open.log" > "$w/open.lst" 2> "$w/err"
 equal 'no assembly: status' 2 $?
 equal 'no assembly: standard error' '' "$(cat "$w/err")"
+"$kinmat" "$w/open.deck" --no-listing --csv "$w/o.csv" > "$w/out" 2> "$w/err"
+equal 'no assembly, no listing: status' 2 $?
+same 'no assembly, no listing: the CSV' "$w/open.csv" "$w/o.csv"
 equal 'no assembly: each instant is marked' 3 "$(grep -c '^ \*\*\* NO POSITION FOUND$' "$w/open.lst")"
 equal 'no assembly: last line' ' END OF SET 1:  INSTANTS SOLVED 0, FLAGGED 3' "$(grep 'END OF SET' "$w/open.lst")"
 equal 'no assembly: words for numbers' '        NONE        NONE        NONE' \

@@ -95,7 +95,7 @@ refused() { expected=$2; want=$3; name=$1; shift 3; "$kinmat" "$@" > "$w/out" 2>
 cp input/four_bar.deck "$w/own.deck"
 refused '--svg without a file' 1 ' *** OPTION --svg NEEDS A FILE NAME' "$w/own.deck" --svg
 refused '--svg twice' 1 ' *** OPTION --svg IS GIVEN TWICE' "$w/own.deck" --svg "$w/a" --svg "$w/b"
-refused '--svg and --check' 1 ' *** OPTION --check COMPUTES NO MOTION THAT --svg COULD DRAW' "$w/own.deck" --svg "$w/a" --check
+refused '--svg and --check' 1 ' *** OPTION --check COMPUTES NO MOTION, WHICH --svg NEEDS' "$w/own.deck" --svg "$w/a" --check
 refused '--svg and --study' 1 ' *** OPTION --study GOES WITH NO OTHER OPTION BUT -o' "$w/own.deck" --svg "$w/a" --study
 refused '--svg to the file of the CSV' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own.deck" --csv "$w/a" --svg "$w/./a"
 refused '--svg to the file of the listing' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own.deck" -o "$w/a" --svg "$w/a"

@@ -1,7 +1,7 @@
 !> Whole runs of small decks inside the unit tests: the cards, and what the run prints.
 module deck_runs
    use kinds, only: wp
-   use command_line, only: options_t
+   use command_line, only: options_t, out_listing, out_csv, out_log
    use job, only: run_job
    implicit none
    private
@@ -35,9 +35,9 @@ contains
       end do
       close (unit)
       options%deck = deck_file
-      options%output = listing_file
-      options%csv = csv_file
-      options%log = log_file
+      options%files(out_listing)%text = listing_file
+      options%files(out_csv)%text = csv_file
+      options%files(out_log)%text = log_file
       options%show = ''
       if (present(errors)) options%errors = errors
       call run_job(options, r%status, r%message)
