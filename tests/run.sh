@@ -10,7 +10,7 @@ parts() {
    if [ -n "$PARTS" ]; then cat "$PARTS"; return; fi
    sed 's/^ *//' <<'END'
    faults by name|480|tests/system/faults.sh
-   real128|118|"$MAKE" --no-print-directory quad-check
+   real128|124|"$MAKE" --no-print-directory quad-check
    single precision|62|"$MAKE" --no-print-directory single-check
    speed against error|80|"$MAKE" --no-print-directory study-short
    results of the methods|97|"$MAKE" --no-print-directory bench-short
@@ -19,12 +19,12 @@ parts() {
    unit tests|700|"$MAKE" --no-print-directory unit
    the stand-in|75|"$MAKE" --no-print-directory unit-stand-in
    the sources|60|tests/system/house.sh
-   the closed forms|770|"$BUILD/release/check_forms" input/*.deck
-   make check|515|tests/system/check.sh
-   the reader of listings|87|tests/system/reader.sh
+   the closed forms|818|"$BUILD/release/check_forms" input/*.deck
+   make check|548|tests/system/check.sh
+   the reader of listings|91|tests/system/reader.sh
    the documents|300|tests/system/documents.sh
    estimates of errors|57|"$MAKE" --no-print-directory errors
-   units of length|712|tests/system/units.sh
+   units of length|751|tests/system/units.sh
    the methods against one another|8|tests/system/methods.sh
    independent mechanisms|106|tests/system/independent.sh
    what a singular position is|211|tests/system/singular.sh

@@ -13,6 +13,7 @@ module closed_forms
    use closed_forms_slides, only: crank_inline, inverted_slider, oldham
    use closed_forms_overconstrained, only: parallel_cranks, double_parallelogram, two_guides, cognates, dixon
    use closed_forms_branches, only: parallelogram_branch, antiparallelogram_branch, kite_branch, scott_russell_branch
+   use closed_forms_published, only: ten_plates, teaching_four_bar, watt_i
    use closed_forms_hard, only: parallelogram, scott_russell, near_equal_rod, dead_point, far_small, many_turns
    implicit none
    private
@@ -26,7 +27,7 @@ module closed_forms
       integer :: redundant = 0                        !< pairs' equations that the others already hold
    end type count_t
 
-   type(count_t), parameter :: counts(56) = [ &
+   type(count_t), parameter :: counts(59) = [ &
       count_t('yoke', 6, 5, 2, 1), count_t('yoke_mirrored', 6, 5, 2, 1), count_t('four_bar', 4, 4, 0, 1), &
       count_t('crank_slider', 4, 3, 1, 1), count_t('scotch_yoke', 4, 2, 2, 1), count_t('whitworth', 6, 5, 2, 1), &
       count_t('drag_link', 4, 4, 0, 1), count_t('cylinder', 4, 3, 1, 1), count_t('trammel', 4, 2, 2, 1), &
@@ -51,7 +52,8 @@ module closed_forms
       count_t('scott_russell', 4, 3, 1, 1), count_t('scott_russell_at', 4, 3, 1, 1), &
       count_t('near_equal_rod', 4, 3, 1, 1), count_t('dead_point_6', 4, 3, 1, 1), &
       count_t('dead_point_9', 4, 3, 1, 1), count_t('dead_point_12', 4, 3, 1, 1), &
-      count_t('far_small', 4, 4, 0, 1), count_t('many_turns', 4, 4, 0, 1)]
+      count_t('far_small', 4, 4, 0, 1), count_t('many_turns', 4, 4, 0, 1), &
+      count_t('ten_plates', 11, 12, 2, 2), count_t('teaching_four_bar', 4, 4, 0, 1), count_t('watt_i', 6, 7, 0, 1)]
 
 contains
 
@@ -93,12 +95,13 @@ contains
       case ('jansen')
          links = jansen(t)
       case default
-         links = closed_form_2(name, t)
+         links = closed_form_2(name, set, t)
       end select
    end function closed_form
 
-   pure function closed_form_2(name, t) result(links)
+   pure function closed_form_2(name, set, t) result(links)
       character(*), intent(in) :: name
+      integer, intent(in) :: set
       real(qp), intent(in) :: t
       type(body_t), allocatable :: links(:)
 
@@ -136,12 +139,13 @@ contains
       case ('oldham')
          links = oldham(t)
       case default
-         links = closed_form_3(name, t)
+         links = closed_form_3(name, set, t)
       end select
    end function closed_form_2
 
-   pure function closed_form_3(name, t) result(links)
+   pure function closed_form_3(name, set, t) result(links)
       character(*), intent(in) :: name
+      integer, intent(in) :: set
       real(qp), intent(in) :: t
       type(body_t), allocatable :: links(:)
 
@@ -186,6 +190,12 @@ contains
          links = stephenson_output(t)
       case ('three_rrr_cranks')
          links = three_rrr_cranks(t)
+      case ('ten_plates')
+         links = ten_plates(t)
+      case ('teaching_four_bar')
+         links = teaching_four_bar(t)
+      case ('watt_i')
+         links = watt_i(set, t)
       case default
          allocate (links(0))
       end select

@@ -49,7 +49,7 @@ module hand_groups
       character(40) :: redundant = ''    !< pairs with equations that could be spared, one a name
    end type statement_t
 
-   type(statement_t), parameter :: statements(58) = [ &
+   type(statement_t), parameter :: statements(61) = [ &
       statement_t('yoke', 0, '*CRANK; BLOCK LEVER; ROD RAM'), &
       statement_t('yoke_mirrored', 0, '*CRANK; BLOCK LEVER; ROD RAM'), &
       statement_t('four_bar', 0, '*CRANK; COUPLER ROCKER'), &
@@ -101,6 +101,9 @@ module hand_groups
       statement_t('antiparallelogram_at', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('kite_across', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('kite_at', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('ten_plates', 0, '*C1 C3 C4; *C2 C5 C6; C7 C8; C9 C10'), &
+      statement_t('teaching_four_bar', 0, '*ABH; BCFG CDEI'), &
+      statement_t('watt_i', 0, '*AB; BCD CFG; DE EF'), &
       statement_t('far_small', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('scott_russell', 0, '*CRANK; BAR SHOE'), &
       statement_t('scott_russell_at', 0, '*CRANK; BAR SHOE'), &
