@@ -6,7 +6,7 @@ module sample_mechanisms
       drive_angle, drive_x, drive_y, drive_relangle, drive_slide, request_link
    implicit none
    private
-   public :: four_bar, yoke, crank_slider, in_line_slider, all_kinds, magnified, angle_drive
+   public :: four_bar, yoke, crank_slider, in_line_slider, all_kinds, magnified, twice, angle_drive
 
 contains
 
@@ -115,6 +115,25 @@ contains
             large%drives(i)%polynomial = factor*m%drives(i)%polynomial
       end do
    end function magnified
+
+   !> `m` with a copy of all its moving links.
+   function twice(m) result(both)
+      type(mechanism_t), intent(in) :: m
+      type(mechanism_t) :: both
+      integer :: n
+
+      n = size(m%links)
+      both = m
+      both%links = [m%links, m%links(2:)]
+      both%points = [m%points, m%points]
+      where (both%points(size(m%points) + 1:)%link > 1) &
+         both%points(size(m%points) + 1:)%link = both%points(size(m%points) + 1:)%link + n - 1
+      both%pairs = [m%pairs, m%pairs]
+      both%pairs(size(m%pairs) + 1:)%point_i = m%pairs%point_i + size(m%points)
+      both%pairs(size(m%pairs) + 1:)%point_j = m%pairs%point_j + size(m%points)
+      both%drives = [m%drives, m%drives]
+      both%drives(size(m%drives) + 1:)%subject = m%drives%subject + n - 1
+   end function twice
 
    !> The angle of `link` is value + rate t + acceleration t^2/2.
    type(drive_t) function angle_drive(link, value, rate, acceleration) result(drive)
