@@ -1,24 +1,31 @@
-!> The DRIVE and ADD cards of a set. A new kind of term is one case of `build_term` and, if it does not exist at all
-!> instants, one of `check_term`.
+!> The DRIVE, ADD and RISE cards of a set. A new kind of term is one case of `build_term` and, if it does not exist at
+!> all instants, one of `check_term`.
 module deck_drives
    use, intrinsic :: iso_fortran_env, only: dp => real64
-   use kinds, only: wp
+   use kinds, only: wp, label_length
+   use constants, only: pi
    use mechanism, only: mechanism_t, drive_t, term_t, instant, find_instants, drive_angle, drive_relangle, &
-      drive_slide, drive_words, driven_kinds, term_harmonic, term_power, term_table, term_words, pair_revolute, &
-      request_link
+      drive_slide, drive_words, driven_kinds, term_harmonic, term_power, term_table, term_words, term_cycloid, &
+      rise_words, pair_revolute, request_link
    use card_sets, only: card_set_t, look_up, match_word, add_card_error
-   use cards, only: card_name, label_a, label_b, label_c, real_1, form_unknown, form_drive, form_add, form_end
+   use cards, only: card_name, label_a, label_b, label_c, real_1, real_2, form_unknown, form_drive, form_add, &
+      form_rise, form_end
    use input_errors, only: error_code_t, drive_kind, drive_ground, drive_ground_point, drive_grounds, drive_one_link, &
       drive_revolute, field_blank, field_unused, add_alone, add_kind, add_blank, table_short, table_order, &
-      table_range, power_negative, power_zero, power_large
+      table_range, power_negative, power_zero, power_large, rise_law, rise_duration, rpm_unit
    implicit none
    private
    public :: build_drives, check_terms
 
+   !> Turns a minute: the word on a DRIVE card, and a minute in the units of time that are known.
+   character(label_length), parameter :: turns_a_minute = 'RPM'
+   character(3), parameter :: time_words(4) = ['S  ', 'MS ', 'MIN', 'H  ']
+   real(wp), parameter :: minutes(4) = [60.0_wp, 60.0e3_wp, 1.0_wp, 1.0_wp/60.0_wp]
+
 contains
 
    !> Builds the drives of `set`%mechanism from the cards; its links, points and pairs are there. Drives of what cannot
-   !> be driven, ADD cards without a drive and wrong tables are errors.
+   !> be driven, ADD and RISE cards without a drive, and wrong tables and rises are errors.
    subroutine build_drives(set)
       type(card_set_t), intent(inout) :: set
       type(drive_t) :: drive
@@ -33,9 +40,10 @@ contains
             call build_drive(set, k, drive)
             call build_terms(set, k, n, drive)
             set%mechanism%drives(n) = drive
-         else if (set%cards(k)%form == form_add) then
+         else if (is_term(set, k)) then
             ! A card with a wrong name may have been a DRIVE card.
-            if (all(above /= [form_drive, form_add, form_unknown])) call add_card_error(set, add_alone, k, card_name)
+            if (all(above /= [form_drive, form_add, form_rise, form_unknown])) &
+               call add_card_error(set, add_alone, k, card_name)
          end if
          above = set%cards(k)%form
       end do
@@ -49,12 +57,15 @@ contains
       integer :: kind
 
       associate (card => set%cards(k))
-         if (card%label(label_c) /= '' .and. card%label(label_a) /= drive_words(drive_relangle) .and. card%valid) &
-            call add_card_error(set, field_unused, k, label_c)
          call match_word(set, k, drive_words, drive_kind, kind)
          if (kind == 0) return
          drive%kind = kind
          drive%polynomial = card%real*unit_of(set, drive)
+         if (kind == drive_angle .and. card%label(label_c) == turns_a_minute) then
+            call take_turns(set, k, drive%polynomial(2))
+         else if (kind /= drive_relangle .and. card%label(label_c) /= '' .and. card%valid) then
+            call add_card_error(set, field_unused, k, label_c)
+         end if
          call look_up(set, driven_kinds(kind), k, label_b, drive%subject)
          if (kind == drive_relangle) then
             call look_up(set, request_link, k, label_c, drive%second)
@@ -63,6 +74,18 @@ contains
       end associate
       call check_subject(set, k, drive)
    end subroutine build_drive
+
+   !> The rate of the DRIVE card `k`, in turns a minute, as `rate` in radians a unit of time.
+   subroutine take_turns(set, k, rate)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: k
+      real(wp), intent(out) :: rate
+      integer :: i
+
+      i = findloc(time_words, set%mechanism%time_unit, dim=1)
+      if (i == 0) call add_card_error(set, rpm_unit, k, label_c)
+      rate = set%cards(k)%real(2)*(2.0_wp*pi/minutes(max(i, 1)))
+   end subroutine take_turns
 
    !> Adds an error if what the DRIVE card `k` drives cannot be driven, as far as it is known.
    subroutine check_subject(set, k, drive)
@@ -99,7 +122,15 @@ contains
       unit = merge(set%angle_unit, 1.0_wp, driven_kinds(drive%kind) == request_link)
    end function unit_of
 
-   !> The terms of drive number `d`, from the ADD cards that follow its card `k`.
+   !> Whether card `k` gives a term of the drive above it.
+   pure logical function is_term(set, k)
+      type(card_set_t), intent(in) :: set
+      integer, intent(in) :: k
+
+      is_term = any(set%cards(k)%form == [form_add, form_rise])
+   end function is_term
+
+   !> The terms of drive number `d`, from the ADD and RISE cards that follow its card `k`.
    subroutine build_terms(set, k, d, drive)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: k, d
@@ -107,7 +138,7 @@ contains
       integer :: i, n, last
 
       do last = k, set%count - 1
-         if (set%cards(last + 1)%form /= form_add) exit
+         if (.not. is_term(set, last + 1)) exit
       end do
       allocate (drive%terms(count([(.not. continues_table(set, i), i=k + 1, last)])))
       n = 0
@@ -116,7 +147,11 @@ contains
          n = n + 1
          set%cards(i)%drive = d
          set%cards(i)%term = n
-         call build_term(set, i, unit_of(set, drive), drive%terms(n))
+         if (set%cards(i)%form == form_rise) then
+            call build_rise(set, i, unit_of(set, drive), drive%terms(n))
+         else
+            call build_term(set, i, unit_of(set, drive), drive%terms(n))
+         end if
       end do
    end subroutine build_terms
 
@@ -154,6 +189,22 @@ contains
          if (card%valid .and. .not. any(card%given)) call add_card_error(set, add_blank, k, card_name)
       end associate
    end subroutine build_term
+
+   !> The rise of the RISE card `k`, as `term`. `unit`: that of its lift.
+   subroutine build_rise(set, k, unit, term)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: k
+      real(wp), intent(in) :: unit
+      type(term_t), intent(inout) :: term
+      integer :: law
+
+      call match_word(set, k, rise_words, rise_law, law)
+      associate (card => set%cards(k))
+         term%kind = term_cycloid + max(law, 1) - 1
+         term%r = card%real*[1.0_wp, 1.0_wp, unit]
+         if (card%valid .and. card%real(2) <= 0.0_wp) call add_card_error(set, rise_duration, k, real_2)
+      end associate
+   end subroutine build_rise
 
    !> The table whose first row is the ADD card `first`, as `term`. `unit`: that of its values.
    subroutine build_table(set, first, unit, term)

@@ -92,7 +92,7 @@ module input_errors
       drive_grounds = error_code_t(73, 'BOTH LINKS ARE GROUND LINKS'), &
       drive_one_link = error_code_t(74, 'BOTH LINKS ARE THE SAME'), &
       drive_revolute = error_code_t(75, 'A REVOLUTE PAIR HAS NO SLIDE'), &
-      add_alone = error_code_t(76, 'MUST FOLLOW A DRIVE OR ADD CARD'), &
+      add_alone = error_code_t(76, 'MUST FOLLOW A DRIVE, ADD OR RISE CARD'), &
       add_kind = error_code_t(77, 'IS NOT HARMONIC, POWER OR TABLE', .true.), &
       add_blank = error_code_t(78, 'GIVES NO NUMBERS'), &
       power_negative = error_code_t(79, 'THIS POWER IS NOT DEFINED AT THE INSTANT'), &
@@ -100,7 +100,10 @@ module input_errors
       table_short = error_code_t(81, 'A TABLE NEEDS AT LEAST TWO ROWS'), &
       table_order = error_code_t(82, 'THE TIMES OF A TABLE MUST INCREASE'), &
       table_range = error_code_t(83, 'THIS TABLE DOES NOT COVER THE INSTANT'), &
-      power_large = error_code_t(84, 'THIS POWER IS TOO LARGE A NUMBER AT THE INSTANT')
+      power_large = error_code_t(84, 'THIS POWER IS TOO LARGE A NUMBER AT THE INSTANT'), &
+      rise_law = error_code_t(66, 'IS NOT CYCLOID, 3-4-5, HARMONIC OR PARABOLA', .true.), &
+      rise_duration = error_code_t(67, 'A RISE NEEDS A DURATION ABOVE 0.0', .true.), &
+      rpm_unit = error_code_t(68, 'TURNS A MINUTE NEED THE UNIT OF TIME S, MS, MIN OR H')
    ! Times and options.
    type(error_code_t), parameter, public :: &
       time_point = error_code_t(85, 'T0 AND T1 ARE EQUAL'), &

@@ -6,13 +6,19 @@
 !> the second derivative at knot i (M = 0 at both ends):
 !>    h_(i-1) M_(i-1) + 2 (h_(i-1) + h_i) M_i + h_i M_(i+1) = 6 (d_i - d_(i-1))
 !> (de Boor, A Practical Guide to Splines, ch. IV). Two rows give the straight line.
+!>
+!> The laws of rises are those of cams (Norton, Cam Design and Manufacturing Handbook, ch. 2 and 3). Where their
+!> acceleration jumps it is that from the right.
 module drives
+   use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
+   use constants, only: pi
    use linear_solver, only: solve_tridiagonal
-   use mechanism, only: drive_t, term_t, term_harmonic, term_power, term_table
+   use mechanism, only: drive_t, term_t, term_harmonic, term_power, term_table, term_cycloid, term_345, term_cosine, &
+      term_parabola
    implicit none
    private
-   public :: law_t, new_law, drive_motion, drive_rate, monomial
+   public :: law_t, new_law, drive_motion, drive_rate, monomial, rise_shape, joint_width
    public :: spline_t, new_spline, spline_value, piece_at, piece_value
 
    !> A natural cubic spline, in the units of the drive and of time.
@@ -25,6 +31,11 @@ module drives
       type(drive_t) :: drive
       type(spline_t), allocatable :: splines(:)   !< (terms) the splines of those that are tables
    end type law_t
+
+   !> An instant that is before a joint by less than this part of the rise's times is meant to be at it: decimals,
+   !> quotients of TIME, and the `perturbation` of error estimates put it up to twice 256 roundings aside. Instants of
+   !> doubles are as far off in real128.
+   real(wp), parameter :: joint_part = 1024.0_wp*max(epsilon(1.0_wp), real(epsilon(1.0_dp), wp))
 
 contains
 
@@ -62,6 +73,8 @@ contains
             f = f + power(law%drive%terms(i)%r, t)
          case (term_table)
             f = f + spline_value(law%splines(i), t)
+         case (term_cycloid:term_parabola)
+            f = f + rise(law%drive%terms(i), t)
          end select
       end do
    end function drive_motion
@@ -99,6 +112,49 @@ contains
       end if
    end function monomial
 
+   !> A rise and its derivatives.
+   pure function rise(term, t) result(f)
+      type(term_t), intent(in) :: term
+      real(wp), intent(in) :: t
+      real(wp) :: f(3), u
+
+      u = (t - term%r(1))/term%r(2)
+      f = term%r(3)*rise_shape(term%kind, u, u + joint_width(term))/[1.0_wp, term%r(2), term%r(2)**2]
+   end function rise
+
+   !> How far before a joint `term` has the acceleration from the right already, as a part of the rise's duration; 0
+   !> where its law has a continuous acceleration.
+   pure real(wp) function joint_width(term) result(width)
+      type(term_t), intent(in) :: term
+
+      width = 0.0_wp
+      if (term%kind >= term_cosine) width = joint_part*(1.0_wp + abs(term%r(1))/term%r(2))
+   end function joint_width
+
+   !> s(u) of the law `kind`, term_cycloid to term_parabola, and its derivatives; 0 before u = 0, and 1 from u = 1 on.
+   !> The second derivative is that of the piece in which `at` lies, continued to u.
+   pure function rise_shape(kind, u, at) result(s)
+      integer, intent(in) :: kind
+      real(wp), intent(in) :: u, at
+      real(wp) :: s(3), v, w
+
+      v = min(max(u, 0.0_wp), 1.0_wp)
+      w = 1.0_wp - v
+      select case (kind)
+      case (term_cycloid)
+         s = [v - sin(2.0_wp*pi*v)/(2.0_wp*pi), 2.0_wp*sin(pi*v)**2, 2.0_wp*pi*sin(2.0_wp*pi*v)]
+      case (term_345)
+         s = [v**3*(10.0_wp - v*(15.0_wp - 6.0_wp*v)), 30.0_wp*(v*w)**2, 60.0_wp*v*w*(w - v)]
+      case (term_cosine)
+         s = [sin(0.5_wp*pi*v)**2, 0.5_wp*pi*sin(pi*v), 0.5_wp*pi**2*cos(pi*v)]
+      case default
+         s = [merge(2.0_wp*v**2, 1.0_wp - 2.0_wp*w**2, v < w), 4.0_wp*min(v, w), merge(4.0_wp, -4.0_wp, at < 0.5_wp)]
+      end select
+      ! A sine of pi is not zero: a drive at rest has no rate.
+      if (u >= 1.0_wp) s(:2) = [1.0_wp, 0.0_wp]
+      if (at < 0.0_wp .or. at >= 1.0_wp) s(3) = 0.0_wp
+   end function rise_shape
+
    !> An estimate of the largest |rate| of `drive` for |time| <= `t`, in the drive's unit (length or rad) and the deck's
    !> unit of time; `law_bounds` has true bounds.
    pure real(wp) function drive_rate(drive, t) result(rate)
@@ -117,6 +173,7 @@ contains
    pure real(wp) function term_rate(term, t) result(rate)
       type(term_t), intent(in) :: term
       real(wp), intent(in) :: t
+      real(wp) :: s(3)
 
       rate = 0.0_wp
       select case (term%kind)
@@ -128,6 +185,9 @@ contains
          associate (x => term%knots, y => term%values, n => size(term%knots))
             rate = maxval(abs((y(2:) - y(:n - 1))/(x(2:) - x(:n - 1))))
          end associate
+      case (term_cycloid:term_parabola)
+         s = rise_shape(term%kind, 0.5_wp, 0.5_wp)
+         rate = abs(term%r(3)*s(2))/term%r(2)
       end select
    end function term_rate
 

@@ -1,13 +1,13 @@
 !> Bounds of the law of a drive over an interval of time: of its value and of its first two derivatives.
 !>
 !> The bounds are true: they are widened by the rounding errors of their own evaluation. For one polynomial, harmonic,
-!> power or table they are its extremes; for a sum they are the sums of these bounds, which may lie outside its
+!> power, table or rise they are its extremes; for a sum they are the sums of these bounds, which may lie outside its
 !> extremes.
 module law_bounds
    use kinds, only: wp
    use constants, only: pi
-   use mechanism, only: term_harmonic, term_power, term_table
-   use drives, only: law_t, monomial, spline_t, piece_at, piece_value
+   use mechanism, only: term_t, term_harmonic, term_power, term_table, term_cycloid, term_parabola
+   use drives, only: law_t, monomial, spline_t, piece_at, piece_value, rise_shape, joint_width
    implicit none
    private
    public :: bounds_t, bounds_of
@@ -44,6 +44,8 @@ contains
             call add(power(law%drive%terms(i)%r, from, to), b)
          case (term_table)
             call add(table(law%splines(i), from, to), b)
+         case (term_cycloid:term_parabola)
+            call add(rise(law%drive%terms(i), from, to), b)
          end select
       end do
    end function bounds_of
@@ -230,6 +232,50 @@ contains
       call widen(b, 1, f(2), (magnitude/h + curve*h)*away**2)
       call widen(b, 2, f(3), curve*away)
    end subroutine widen_by_piece_at
+
+   !> The bounds of the rise `term`: its values at both ends and at the places in between where any law has an extreme
+   !> of a derivative. At a joint an acceleration may have two values.
+   pure function rise(term, from, to) result(b)
+      type(term_t), intent(in) :: term
+      real(wp), intent(in) :: from, to
+      type(bounds_t) :: b
+      !> Of the acceleration of the 3-4-5 polynomial, (3 -+ sqrt(3))/6; of the others, and their joints.
+      real(wp), parameter :: aside = sqrt(3.0_wp)/6.0_wp
+      real(wp), parameter :: places(7) = [0.0_wp, 0.5_wp - aside, 0.25_wp, 0.5_wp, 0.75_wp, 0.5_wp + aside, 1.0_wp]
+      real(wp) :: u1, u2, width
+      integer :: i
+
+      call clear(b)
+      width = joint_width(term)
+      u1 = (from - term%r(1))/term%r(2)
+      u2 = (to - term%r(1))/term%r(2)
+      call widen_by_rise(b, term, u1, u1 + width)
+      call widen_by_rise(b, term, u2, u2 + width)
+      do i = 1, size(places)
+         if (places(i) < u1 - width .or. places(i) > u2 + width) cycle
+         call widen_by_rise(b, term, places(i), places(i) - 0.1_wp)
+         call widen_by_rise(b, term, places(i), places(i) + 0.1_wp)
+      end do
+   end function rise
+
+   !> Widens `b` by the rise `term` at the part `u` of its duration, with the acceleration of the piece in which `at`
+   !> lies. Where a law is steepest, a rounding of u changes its second derivative by 60 roundings; in a dwell zeros are
+   !> exact.
+   pure subroutine widen_by_rise(b, term, u, at)
+      type(bounds_t), intent(inout) :: b
+      type(term_t), intent(in) :: term
+      real(wp), intent(in) :: u, at
+      real(wp) :: s(3), factor
+      integer :: k
+      logical :: dwells
+
+      s = rise_shape(term%kind, u, at)
+      dwells = u < -margin .or. u > 1.0_wp + margin
+      do k = 0, 2
+         factor = term%r(3)/term%r(2)**k
+         call widen(b, k, factor*s(k + 1), merge(0.0_wp, abs(factor)*8.0_wp**k, dwells .and. abs(s(k + 1)) <= 0.0_wp))
+      end do
+   end subroutine widen_by_rise
 
    !> The bounds of no value at all.
    pure subroutine clear(b)

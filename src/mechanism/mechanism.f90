@@ -8,6 +8,7 @@ module mechanism
    public :: pair_revolute, pair_prismatic
    public :: drive_angle, drive_x, drive_y, drive_relangle, drive_slide, drive_words, driven_kinds
    public :: term_harmonic, term_power, term_table, term_words
+   public :: term_cycloid, term_345, term_cosine, term_parabola, rise_words
    public :: request_link, request_point, request_pair
    public :: method_newton, method_matrix, method_dense, method_words, own_predictor
    public :: instant_count, instant, find_instants, wanted_links, plane_origin, place_links
@@ -32,6 +33,14 @@ module mechanism
    integer, parameter :: term_power = 2      !< r(1) t**r(2)
    integer, parameter :: term_table = 3      !< the C2 spline through (knots, values)
    character(label_length), parameter :: term_words(3) = [character(label_length) :: 'HARMONIC', 'POWER', 'TABLE']
+   !> A rise: 0 before the time r(1), then r(3) s(u), u = (t - r(1))/r(2) from 0 to 1, then r(3).
+   integer, parameter :: term_cycloid = 4    !< cycloidal: s = u - sin(2 pi u)/(2 pi)
+   integer, parameter :: term_345 = 5        !< the 3-4-5 polynomial: s = 10 u**3 - 15 u**4 + 6 u**5
+   integer, parameter :: term_cosine = 6     !< simple harmonic: s = (1 - cos(pi u))/2
+   integer, parameter :: term_parabola = 7   !< constant acceleration: s = 2 u**2, from u = 1/2 on 1 - 2 (1 - u)**2
+   !> The words of the laws on RISE cards.
+   character(label_length), parameter :: rise_words(term_cycloid:term_parabola) = &
+      [character(label_length) :: 'CYCLOID', '3-4-5', 'HARMONIC', 'PARABOLA']
 
    integer, parameter :: method_newton = 1   !< Newton's method, block by block
    integer, parameter :: method_matrix = 2   !< the iteration of 1987 with frozen c(phi), s(phi)
@@ -64,7 +73,7 @@ module mechanism
 
    !> One term of the law of a drive.
    type :: term_t
-      integer :: kind = term_harmonic        !< term_harmonic, term_power or term_table
+      integer :: kind = term_harmonic        !< term_harmonic, ..., term_parabola
       real(wp) :: r(3) = 0.0_wp              !< R1, R2, R3 of the card; angles in radians
       real(wp), allocatable :: knots(:), values(:)  !< (rows) of a table: times, increasing, and values
    end type term_t
@@ -74,7 +83,7 @@ module mechanism
       integer :: subject = 0                 !< the number of a link, point or pair: driven_kinds(kind)
       integer :: second = 0                  !< drive_relangle: the number of the second link
       real(wp) :: polynomial(3) = 0.0_wp     !< value at t = 0 (length or rad), rate, acceleration
-      type(term_t), allocatable :: terms(:)  !< of its ADD cards; none: not allocated
+      type(term_t), allocatable :: terms(:)  !< of its ADD and RISE cards; none: not allocated
    end type drive_t
 
    !> A row of the tables at every `every`-th instant, the first and the last.

@@ -3,7 +3,7 @@
 module perturbed_deck
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
-   use mechanism, only: mechanism_t, drive_t, pair_prismatic, term_table, term_harmonic, drive_relangle
+   use mechanism, only: mechanism_t, drive_t, pair_prismatic, term_power, term_table, drive_relangle
    implicit none
    private
    public :: perturbed, perturbed_instant, perturbation, sample_count
@@ -92,14 +92,15 @@ contains
       call shift(drive%polynomial, sizes, dice)
       if (.not. allocated(drive%terms)) return
       do i = 1, size(drive%terms)
-         if (drive%terms(i)%kind == term_table) then
+         select case (drive%terms(i)%kind)
+         case (term_table)
             call shift(drive%terms(i)%values, abs(drive%terms(i)%values), dice)
-         else
+         case (term_power)
             ! The second number of a power says what kind of function it is.
             call shift(drive%terms(i)%r(1:1), abs(drive%terms(i)%r(1:1)), dice)
-            if (drive%terms(i)%kind == term_harmonic) &
-               call shift(drive%terms(i)%r(2:3), abs(drive%terms(i)%r(2:3)), dice)
-         end if
+         case default
+            call shift(drive%terms(i)%r, abs(drive%terms(i)%r), dice)
+         end select
       end do
    end subroutine shift_drive
 

@@ -18,8 +18,7 @@ module deck_damage
       '1.570796326794', '3.141592653589', '360.0', '0.5', '-1.0', '1.0E400', '1.0E-400', 'NAN', 'INF', '5', '-', &
       '1.5-3']
    character(8), parameter :: with_reals(*) = [character(8) :: 'GROUND', 'LINK', 'POINT', 'PRISM', 'DRIVE', 'ADD', &
-      'TIME', &
-      'AT', 'METHOD']
+      'RISE', 'TIME', 'AT', 'METHOD']
    character(8), parameter :: with_labels(*) = [character(8) :: 'GROUND', 'LINK', 'POINT', 'REVOLUTE', 'PRISM', 'DRIVE']
    !> Radians, or lengths: so far drives go in all.
    real(wp), parameter :: longest_way = 2000.0_wp
@@ -127,6 +126,8 @@ contains
             rate = max(rate, unit*(r(2) + r(3)*t))
          else if (name_of(d%line(i)) == 'ADD' .and. label(d%line(i), 1) == 'HARMONIC') then
             rate = max(rate, unit*r(1)*r(2))
+         else if (name_of(d%line(i)) == 'RISE' .and. r(2) > 0.0_wp) then
+            rate = max(rate, unit*2.0_wp*r(3)/r(2))
          else if (name_of(d%line(i)) == 'ADD' .and. label(d%line(i), 1) == 'POWER' .and. t > 0.0_wp) then
             rate = max(rate, unit*r(1)*r(2)*10.0_wp**min(60.0_wp, (r(2) - 1.0_wp)*log10(t)))
          end if

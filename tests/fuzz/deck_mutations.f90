@@ -141,7 +141,7 @@ contains
       type(draft_t), intent(inout) :: d
       type(dice_t), intent(inout) :: r
       real(wp) :: factor
-      integer :: i
+      integer :: i, k
       logical :: driven
 
       factor = magnitude(r, merge(3, merge(12, 150, chance(r, 0.7_wp)), chance(r, 0.5_wp)))
@@ -159,16 +159,17 @@ contains
             call set_full(d, i, 1, factor*real_field(d, i, 1))
             call set_full(d, i, 2, factor*real_field(d, i, 2))
             call set_full(d, i, 3, factor*real_field(d, i, 3))
-         case ('ADD')
+         case ('ADD', 'RISE')
             if (.not. is_length_term(d, i)) cycle
-            call set_full(d, i, merge(2, 1, label(d%line(i), 1) == 'TABLE'), &
-               factor*real_field(d, i, merge(2, 1, label(d%line(i), 1) == 'TABLE')))
+            k = merge(2, 1, label(d%line(i), 1) == 'TABLE')
+            if (name_of(d%line(i)) == 'RISE') k = 3
+            call set_full(d, i, k, factor*real_field(d, i, k))
          end select
       end do
       call add_note(d, 'ALL LENGTHS SCALED')
    end subroutine scale_lengths
 
-   !> The ADD card on line `i` stands under a drive of a length.
+   !> The ADD or RISE card on line `i` stands under a drive of a length.
    logical function is_length_term(d, i)
       type(draft_t), intent(in) :: d
       integer, intent(in) :: i

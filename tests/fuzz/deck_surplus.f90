@@ -28,7 +28,7 @@ contains
       integer, intent(in) :: i
 
       do line_after = i + 1, size(d%line)
-         if (d%line(line_after)(1:1) /= '*' .and. name_of(d%line(line_after)) /= 'ADD') return
+         if (d%line(line_after)(1:1) /= '*' .and. all(name_of(d%line(line_after)) /= ['ADD ', 'RISE'])) return
       end do
    end function line_after
 

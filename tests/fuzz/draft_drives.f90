@@ -7,7 +7,7 @@ module draft_drives
    use schemes, only: drive_t, drive_angle, drive_relangle, drive_x, drive_y, drive_slide, angle_unit, drive_unit, &
       double, &
       link_at
-   use drive_laws, only: law_t, law_jet, set_spline, term_harmonic, term_power, term_table
+   use drive_laws, only: law_t, law_jet, set_spline, term_harmonic, term_power, term_table, term_rise
    use scheme_draft, only: draft_t, number, world, add_point, anywhere
    implicit none
    private
@@ -88,6 +88,8 @@ contains
          call make_power(d, law, amplitude)
       case (4)
          call make_table(d, law, amplitude)
+      case (5)
+         call make_rise(d, law, amplitude)
       case default
          if (chance(d%dice, 0.3_wp)) law%polynomial(3) = 0.0_qp
       end select
@@ -132,6 +134,24 @@ contains
       end associate
       call set_spline(law)
    end subroutine make_table
+
+   !> A rise from the first instant on, to the last, or anywhere between about them.
+   subroutine make_rise(d, law, amplitude)
+      type(draft_t), intent(inout) :: d
+      type(law_t), intent(inout) :: law
+      real(qp), intent(in) :: amplitude
+      character(8), parameter :: words(4) = [character(8) :: 'CYCLOID', '3-4-5', 'HARMONIC', 'PARABOLA']
+
+      law%form = term_rise
+      law%word = words(throw(d%dice, 4))
+      associate (span => d%to - d%from)
+         law%r(1) = double(d%from + number(d, -0.2_qp, 0.7_qp)*span)
+         if (chance(d%dice, 0.3_wp)) law%r(1) = d%from
+         law%r(2) = double(number(d, 0.1_qp, 1.0_qp)*span)
+         if (chance(d%dice, 0.3_wp)) law%r(2) = double(d%to - law%r(1))
+         law%r(3) = double(number(d, -1.0_qp, 1.0_qp)*amplitude)
+      end associate
+   end subroutine make_rise
 
    !> The last drive goes on with one rate, by `way` from the first instant to the last.
    subroutine set_steady(d, way)

@@ -1,19 +1,21 @@
 !> Tests. The laws of drives as jets in real128, from the numbers of the deck: a polynomial and one term of each form.
 module drive_laws
    use quad_jet, only: qp, jet_t, time_jet, operator(+), operator(-), operator(*), sin
+   use rise_laws, only: rise_jet
    implicit none
    private
-   public :: law_t, law_jet, set_spline, variation, term_none, term_harmonic, term_power, term_table
+   public :: law_t, law_jet, set_spline, variation, term_none, term_harmonic, term_power, term_table, term_rise
 
    enum, bind(c)
-      enumerator :: term_none, term_harmonic, term_power, term_table
+      enumerator :: term_none, term_harmonic, term_power, term_table, term_rise
    end enum
 
    !> R1 + R2 t + R3 t**2/2 and a term, in the deck's units.
    type :: law_t
       real(qp) :: polynomial(3) = 0.0_qp
       integer :: form = term_none
-      real(qp) :: r(3) = 0.0_qp                !< R1, R2, R3 of HARMONIC or POWER
+      real(qp) :: r(3) = 0.0_qp                !< R1, R2, R3 of HARMONIC, POWER or RISE
+      character(8) :: word = ''                !< the law of a RISE
       real(qp), allocatable :: time(:), value(:) !< rows of a table
       real(qp), allocatable :: bend(:)         !< second derivatives of the spline at the rows
    end type law_t
@@ -37,6 +39,8 @@ contains
          f = f + power_jet(law%r(1), law%r(2), t)
       case (term_table)
          f = f + spline_jet(law, t)
+      case (term_rise)
+         f = f + rise_jet(trim(law%word), law%r(1), law%r(2), law%r(3), t)
       end select
       f = angle_unit*f
    end function law_jet

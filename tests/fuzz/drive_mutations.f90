@@ -9,6 +9,8 @@ module drive_mutations
    private
    public :: change_drive, add_term, change_time, change_at, change_method, exchange_drive
 
+   character(8), parameter :: rise_words(4) = [character(8) :: 'CYCLOID', '3-4-5', 'HARMONIC', 'PARABOLA']
+
 contains
 
    subroutine change_drive(d, r)
@@ -16,15 +18,15 @@ contains
       type(dice_t), intent(inout) :: r
       integer :: i, k
 
-      i = pick(r, find_cards(d, ['DRIVE   ', 'ADD     ']))
+      i = pick(r, find_cards(d, ['DRIVE   ', 'ADD     ', 'RISE    ']))
       if (i == 0) return
-      k = throw(r, merge(3, 2, name_of(d%line(i)) == 'DRIVE' .or. label(d%line(i), 1) == 'HARMONIC'))
+      k = throw(r, merge(2, 3, label(d%line(i), 1) == 'POWER' .or. label(d%line(i), 1) == 'TABLE'))
       call put_real(d, r, i, k, near(real_field(d, i, k) + merge(between(r, -1.0_wp, 1.0_wp), 0.0_wp, chance(r, &
          0.3_wp)), r))
       call add_note(d, 'NUMBER OF '//d%line(i)(1:24))
    end subroutine change_drive
 
-   !> An ADD card or a table under a drive.
+   !> An ADD or RISE card or a table under a drive.
    subroutine add_term(d, r)
       type(draft_t), intent(inout) :: d
       type(dice_t), intent(inout) :: r
@@ -35,7 +37,7 @@ contains
       if (i == 0) return
       unit = merge(10.0_wp, 0.2_wp, is_degrees(d))
       k = i + merge(2, 1, d%line(i + 1)(1:1) == '*')
-      select case (throw(r, 3))
+      select case (throw(r, 4))
       case (1)
          call insert_line(d, k, 'ADD     HARMONIC')
          call set_real(d, k, 1, unit*between(r, -1.0_wp, 1.0_wp))
@@ -45,6 +47,12 @@ contains
          call insert_line(d, k, 'ADD     POWER')
          call set_real(d, k, 1, unit*between(r, -1.0_wp, 1.0_wp))
          call set_real(d, k, 2, merge(real(throw(r, 6) - 1, wp), between(r, 2.0_wp, 4.0_wp), chance(r, 0.7_wp)))
+      case (3)
+         call insert_line(d, k, 'RISE')
+         call set_label(d%line(k), 1, trim(rise_words(throw(r, 4))))
+         call set_real(d, k, 1, between(r, -2.0_wp, 10.0_wp))
+         call set_real(d, k, 2, magnitude(r, 2))
+         call set_real(d, k, 3, unit*between(r, -1.0_wp, 1.0_wp))
       case default
          rows = throw(r, 4) + 1
          t = 50.0_wp

@@ -3,7 +3,7 @@
 module schemes
    use, intrinsic :: iso_fortran_env, only: real64
    use quad_jet, only: qp, jet_t, degree_q, operator(+), operator(-), operator(*), sin, cos
-   use drive_laws, only: law_t, term_harmonic, term_power, term_table
+   use drive_laws, only: law_t, term_harmonic, term_power, term_table, term_rise
    implicit none
    private
    public :: scheme_t, link_t, point_t, pair_t, drive_t, group_t, body_t
@@ -200,6 +200,8 @@ contains
          do k = 1, size(d%law%time)
             call card(unit, 'ADD     ', ['TABLE   '], [d%law%time(k), d%law%value(k)])
          end do
+      case (term_rise)
+         call card(unit, 'RISE    ', [d%law%word], d%law%r)
       end select
    end subroutine write_drive
 

@@ -3,7 +3,9 @@
 module jet_drives
    use kinds, only: wp
    use quad_jet, only: qp, jet_t, time_jet, sin, operator(+), operator(*)
-   use mechanism, only: mechanism_t, drive_t, term_t, term_harmonic, term_power, term_table
+   use rise_laws, only: rise_jet
+   use mechanism, only: mechanism_t, drive_t, term_t, term_harmonic, term_power, term_table, term_cycloid, &
+      term_parabola, rise_words
    implicit none
    private
    public :: drive_jet, drive_jets, term_jet, drive_sizes, drive_changes
@@ -63,6 +65,8 @@ contains
          f = jet_t(r(1)*raised(t, r(2), 0), r(1)*raised(t, r(2), 1), r(1)*raised(t, r(2), 2))
       case (term_table)
          f = spline_jet(x, y, t)
+      case (term_cycloid:term_parabola)
+         f = rise_jet(trim(rise_words(kind)), r(1), r(2), r(3), t)
       end select
    end function term_jet
 
@@ -138,7 +142,7 @@ contains
    end function drive_sizes
 
    !> The argument of a sine is known to one part in 2**53 of itself; a power's factors are as many as its exponent; a
-   !> table's slopes and curvatures are differences divided by its steps.
+   !> table's slopes and curvatures are differences divided by its steps; a rise's derivatives grow by 2 pi at most.
    function term_sizes(term, t) result(s)
       type(term_t), intent(in) :: term
       real(qp), intent(in) :: t
@@ -161,11 +165,13 @@ contains
             s(1) = steepest + s(2)*widest
             s(0) = maxval(abs(real(y, qp))) + s(1)*widest
          end associate
+      case (term_cycloid:term_parabola)
+         s = r(3)*[2.0_qp, 8.0_qp/r(2), 64.0_qp/r(2)**2]
       end select
    end function term_sizes
 
    !> By how much (changes) the law of a drive changes at `t` with each of its numbers, times that number. The exponent
-   !> of a power counts as exact.
+   !> of a power and the times of a rise count as exact.
    function drive_changes(drive, t) result(c)
       type(drive_t), intent(in) :: drive
       real(qp), intent(in) :: t

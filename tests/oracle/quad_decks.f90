@@ -2,7 +2,8 @@
 !> and the laws of the drives, written once more.
 module quad_decks
    use kinds, only: wp
-   use mechanism, only: mechanism_t, drive_t, term_t, drive_angle, drive_relangle, term_harmonic, term_power
+   use mechanism, only: mechanism_t, drive_t, term_t, drive_angle, drive_relangle, term_harmonic, term_power, &
+      term_table
    use quad_jet, only: qp, jet_t, degree_q, time_jet, operator(+), operator(*)
    use jet_drives, only: term_jet
    implicit none
@@ -83,9 +84,11 @@ contains
          r = [number(m, term%r(1), turns), angle(m, term%r(2)), angle(m, term%r(3))]
       case (term_power)
          r(:2) = [number(m, term%r(1), turns), length(term%r(2))]
-      case default
+      case (term_table)
          x = [(length(term%knots(i)), i=1, size(term%knots))]
          y = [(number(m, term%values(i), turns), i=1, size(term%values))]
+      case default
+         r = [length(term%r(1)), length(term%r(2)), number(m, term%r(3), turns)]
       end select
       f = term_jet(term%kind, r, x, y, t)
    end function term_on_card

@@ -4,10 +4,11 @@ module closed_forms_linkages
    use kinds, only: wp
    use quad_jet, only: qp, jet_t, pi_q, degree_q, constant_jet, time_jet, operator(+), operator(-), operator(*), &
       operator(/), sqrt, sin, cos
+   use rise_laws, only: rise_jet
    use closed_forms_dyads, only: place_t, body_t, fixed_place, body, place_on, polar, direction, third_corner
    implicit none
    private
-   public :: four_bar, drag_link, peaucellier, five_bar, pantograph
+   public :: four_bar, rise_dwell, drag_link, peaucellier, five_bar, pantograph
 
 contains
 
@@ -16,25 +17,48 @@ contains
       integer, intent(in) :: set
       real(qp), intent(in) :: t
       type(body_t) :: links(4)
-      type(jet_t) :: phi, time
-      type(place_t) :: a0, b0, a, b
-      real(qp) :: side
+      type(jet_t) :: time
 
       time = time_jet(t)
       if (set == 1) then
-         phi = 30.0_qp*degree_q*time
-         side = 1.0_qp
+         links = crank_rocker(30.0_qp*degree_q*time, 1.0_qp)
       else
-         phi = 0.5_qp + time + 0.25_qp*sin(2.0_qp*time + 0.5_qp)
-         side = -1.0_qp
+         links = crank_rocker(0.5_qp + time + 0.25_qp*sin(2.0_qp*time + 0.5_qp), -1.0_qp)
       end if
+   end function four_bar
+
+   !> The same, open: by each law of a rise the crank goes from 30 to 91.64 deg and back; in set 5 it turns at 1500 turns
+   !> a minute, t in milliseconds, less a rise of 96 deg.
+   pure function rise_dwell(set, t) result(links)
+      integer, intent(in) :: set
+      real(qp), intent(in) :: t
+      type(body_t) :: links(4)
+      character(8), parameter :: laws(4) = [character(8) :: 'CYCLOID', '3-4-5', 'HARMONIC', 'PARABOLA']
+      type(jet_t) :: phi
+
+      if (set == 5) then
+         phi = 1500.0_qp*360.0_qp/60000.0_qp*time_jet(t) - rise_jet('3-4-5', 10.0_qp, 20.0_qp, 96.0_qp, t)
+      else
+         phi = 30.0_qp + rise_jet(trim(laws(set)), 0.3_qp, 1.2_qp, 61.64_qp, t) &
+            - rise_jet(trim(laws(set)), 2.1_qp, 0.6_qp, 61.64_qp, t)
+      end if
+      links = crank_rocker(phi*degree_q, 1.0_qp)
+   end function rise_dwell
+
+   !> Crank-rocker with the crank's angle `phi`; `side` 1: open, -1: crossed.
+   pure function crank_rocker(phi, side) result(links)
+      type(jet_t), intent(in) :: phi
+      real(qp), intent(in) :: side
+      type(body_t) :: links(4)
+      type(place_t) :: a0, b0, a, b
+
       a0 = fixed_place(0.0_qp, 0.0_qp)
       b0 = fixed_place(4.0_qp, 0.0_qp)
       a = polar(a0, 1.0_qp, phi)
       b = third_corner(a, b0, constant_jet(3.5_qp**2), constant_jet(3.0_qp**2), side)
       links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK', a0, phi), &
                body('COUPLER', a, direction(a, b)), body('ROCKER', b0, direction(b0, b))]
-   end function four_bar
+   end function crank_rocker
 
    !> Double crank: base 1 at (1, 0.5) turned by 30 deg, crank 2, coupler sqrt(6) with its axes in its middle,
    !> follower 2.5. The coupler's half length is the double that the deck's continuation card holds.

@@ -49,10 +49,11 @@ module hand_groups
       character(40) :: redundant = ''    !< pairs with equations that could be spared, one a name
    end type statement_t
 
-   type(statement_t), parameter :: statements(61) = [ &
+   type(statement_t), parameter :: statements(*) = [ &
       statement_t('yoke', 0, '*CRANK; BLOCK LEVER; ROD RAM'), &
       statement_t('yoke_mirrored', 0, '*CRANK; BLOCK LEVER; ROD RAM'), &
       statement_t('four_bar', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('rise_dwell', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('crank_slider', 0, '*CRANK; ROD PISTON'), &
       statement_t('scotch_yoke', 1, '*CRANK; BLOCK YOKE'), &
       statement_t('scotch_yoke', 2, '*YOKE; CRANK BLOCK'), &

@@ -2,7 +2,8 @@
 !> the rule of the manual: seven digits to the characteristic length and rate. Nothing of the program's layout is used.
 module hand_scales
    use mechanism, only: mechanism_t, drive_t, pair_prismatic, drive_angle, drive_relangle, drive_x, drive_y, &
-      term_harmonic, term_power, term_table
+      term_harmonic, term_power, term_table, rise_words
+   use rise_laws, only: peak_rate
    use quad_jet, only: qp, degree_q
    implicit none
    private
@@ -150,6 +151,8 @@ contains
                   steepest = max(steepest, abs((real(a%values(k), qp) - a%values(k - 1)) &
                      /(real(a%knots(k), qp) - a%knots(k - 1))))
                end do
+            case default
+               steepest = abs(real(a%r(3), qp)/a%r(2))*peak_rate(trim(rise_words(a%kind)))
             end select
             rate = rate + steepest
          end associate

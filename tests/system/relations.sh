@@ -39,6 +39,9 @@ changed() {
             if (form == "HARMONIC") { times[1] = long; times[2] = 1/60 } else n = 2
             if (form == "TABLE") { times[1] = 60; times[2] = long }
             if (form == "POWER") times[1] = long/60^number(2)
+         } else if (name == "RISE") {
+            turned = kind ~ /^(Y|ANGLE|RELANGLE)$/ ? "001" : "000"
+            times[1] = times[2] = 60; times[3] = long
          } else if (change == "units" && name ~ /^(TIME|AT|BRANCH)$/) {
             times[1] = times[2] = times[3] = 60; n = name == "AT" ? 3 : name == "TIME" ? 2 : 1
          }
@@ -57,7 +60,7 @@ changed() {
       }
       # What belongs to a card stays below it.
       function add_card(text) {
-         if (name == "ADD" || text ~ /^ADD/) cards[n_cards] = cards[n_cards] "\n" text
+         if (name ~ /^(ADD|RISE)$/) cards[n_cards] = cards[n_cards] "\n" text
          else cards[++n_cards] = text
       }
       function finish() { if (card == "") return; name = trim(substr(card, 1, 8)); work_on(); card = ""; star = "" }

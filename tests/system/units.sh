@@ -22,6 +22,7 @@ enlarged() {
          if (card == "PRISM") return "010"
          if (card == "DRIVE") { driven = form ~ /^(X|Y|SLIDE)$/; return driven ? "111" : "000" }
          if (card == "ADD" && driven) return form == "TABLE" ? "010" : "100"
+         if (card == "RISE" && driven) return "001"
          return "000"
       }
       /^[$]/ || /^ *$/ || /^TITLE/ { print; next }
