@@ -6,25 +6,28 @@ module command_line
    implicit none
    private
    public :: options_t, word_t, read_command, read_words, help_text
-   public :: out_listing, out_csv, out_log, out_svg, out_last
+   public :: file_option_t, file_options, out_listing, out_csv, out_log, out_svg, out_table, out_last
 
    !> The outputs that are files, and `out_last`, the last of them.
    enum, bind(c)
-      enumerator :: out_listing = 1, out_csv, out_log, out_svg
-      enumerator :: out_last = out_svg
+      enumerator :: out_listing = 1, out_csv, out_log, out_svg, out_table
+      enumerator :: out_last = out_table
    end enum
 
    !> An option that names the file of an output.
    type :: file_option_t
-      character(5) :: word = ''
+      character(7) :: word = ''
+      character(9) :: in_directory = ''      !< of an option that names a directory: the file in it
       logical :: needs_motion = .false.      !< there is nothing to write if only the deck is analysed
+      logical :: each_set = .false.          !< each set has a file of its own
    end type file_option_t
 
    type(file_option_t), parameter :: file_options(out_last) = [ &
-      file_option_t('-o', .false.), &
-      file_option_t('--csv', .false.), &
-      file_option_t('--log', .false.), &
-      file_option_t('--svg', .true.)]
+      file_option_t('-o'), &
+      file_option_t('--csv'), &
+      file_option_t('--log'), &
+      file_option_t('--svg', needs_motion=.true.), &
+      file_option_t('--table', needs_motion=.true., each_set=.true.)]
 
    !> A word of the command.
    type :: word_t
@@ -55,6 +58,7 @@ module command_line
       '  --log FILE           the log of the solver, a line per instant', &
       '  --svg FILE           a picture of the mechanism and paths of points', &
       '                       (FILE - is standard output, without a listing)', &
+      '  --table FILE         a row an instant, a column a quantity', &
       '  --errors             estimates of all errors, in the CSV and the log', &
       '  --check              reads the deck and analyses its structure only', &
       '  --sets K/N           the K-th of N shares of the sets of the deck', &

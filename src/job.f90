@@ -4,11 +4,11 @@ module job
    use mechanism, only: mechanism_t, instant_count, instant
    use structure, only: findings_t, check_structure
    use deck, only: read_deck
-   use text_output, only: output_t, open_output, check_apart, flush_output, close_output, abandon_output, &
-      has_failed, has_broken_pipe
+   use text_output, only: output_t
    use system_calls, only: watch_signals, signal_received, broken_pipe_kills, signal_pipe
    use listing, only: layout_t, new_layout, listing_head, listing_instant, listing_end, listing_broken_off
    use csv, only: csv_head, csv_instant
+   use table, only: table_t, new_table, table_head, table_instant
    use drawing, only: drawing_t, new_drawing, record_instant
    use picture, only: picture_head, put_pictures
    use solver_log, only: log_head, log_instant
@@ -18,17 +18,19 @@ module job
    use set_motion, only: is_flagged, has_words
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set, set_record, set_errors, &
       set_closure_error, set_closing_diagnostics
-   use command_line, only: options_t, out_listing, out_csv, out_log, out_svg, out_last
+   use command_line, only: options_t, out_listing, out_csv, out_log, out_svg, out_table
+   use outputs, only: outputs_t, open_outputs, flush_outputs, close_outputs, is_over, is_broken_pipe
    implicit none
    private
    public :: run_job
 
-   !> The job's outputs.
-   type :: outputs_t
-      logical :: asked(out_last) = .false.          !< the command asks for them: no other is open
-      type(output_t) :: files(out_last)
-      type(drawing_t), allocatable :: drawings(:)   !< (sets of this share)
-   end type outputs_t
+   !> The job's outputs, and what they keep from instant to instant.
+   type, extends(outputs_t) :: writers_t
+      integer :: first = 1, last = 0                !< the sets of this share
+      type(layout_t) :: layout                      !< of the listing of the set at hand
+      type(table_t) :: table                        !< of the set at hand
+      type(drawing_t), allocatable :: drawings(:)   !< (first:last)
+   end type writers_t
 
 contains
 
@@ -40,16 +42,20 @@ contains
       type(mechanism_t), allocatable :: sets(:)
       type(findings_t), allocatable :: findings(:)
       type(failure_t), allocatable :: failure
-      type(outputs_t) :: o
+      type(writers_t) :: o
 
       status = status_solved
       call read_deck(options%deck, sets, message, failure)
       if (.not. allocated(failure)) call check_structure(sets, findings, failure)
-      if (.not. allocated(failure)) call open_all(options, o, failure)
+      if (.not. allocated(failure)) then
+         o%first = share_end(size(sets), options%share - 1, options%shares) + 1
+         o%last = share_end(size(sets), options%share, options%shares)
+         call open_outputs(options, o%first, o%last, size(sets), o, failure)
+      end if
       if (.not. allocated(failure)) then
          call watch_signals
          call run_sets(options, sets, findings, o, status)
-         call close_all(o, failure)
+         call close_outputs(o, failure)
       end if
       if (allocated(failure)) then
          status = failure%status
@@ -61,89 +67,37 @@ contains
    !> A run that a signal has ended ends by that signal; so does one whose reader has gone (kinmat DECK | head), and
    !> without a word, unless other outputs were asked for, which end there too.
    subroutine look_at_signals(o, status, message)
-      type(outputs_t), intent(in) :: o
+      type(writers_t), intent(in) :: o
       integer, intent(inout) :: status
       character(:), allocatable, intent(inout) :: message
 
       if (signal_received() > 0) then
          status = status_signal + signal_received()
-      else if (broken_pipe_kills() .and. any(has_broken_pipe(o%files))) then
+      else if (broken_pipe_kills() .and. is_broken_pipe(o)) then
          status = status_signal + signal_pipe
          if (count(o%asked) == 1) message = ''
       end if
    end subroutine look_at_signals
-
-   !> Opens the outputs that `options` name. Errors: status_system; status_rejected where two of them are one file.
-   subroutine open_all(options, o, failure)
-      type(options_t), intent(in) :: options
-      type(outputs_t), intent(out) :: o
-      type(failure_t), allocatable, intent(out) :: failure
-
-      integer :: k
-
-      do k = 1, out_last
-         o%asked(k) = allocated(options%files(k)%text)
-         if (o%asked(k) .and. .not. allocated(failure)) call open_output(o%files(k), options%files(k)%text, failure)
-      end do
-      if (.not. allocated(failure)) call check_apart(o%files, options%deck, failure)
-      if (.not. allocated(failure)) return
-      do k = 1, out_last
-         call abandon_output(o%files(k))
-      end do
-   end subroutine open_all
-
-   !> Writes the heads at once, so that an output that takes nothing is known before anything is computed.
-   subroutine flush_all(o)
-      type(outputs_t), intent(inout) :: o
-      integer :: k
-
-      do k = 1, out_last
-         if (o%asked(k)) call flush_output(o%files(k))
-      end do
-   end subroutine flush_all
-
-   !> Closes all outputs; `failure`: that of the last one that could not be written.
-   subroutine close_all(o, failure)
-      type(outputs_t), intent(inout) :: o
-      type(failure_t), allocatable, intent(out) :: failure
-      type(failure_t), allocatable :: other
-      integer :: k
-
-      do k = 1, out_last
-         if (.not. o%asked(k)) cycle
-         call close_output(o%files(k), other)
-         if (allocated(other)) call move_alloc(other, failure)
-      end do
-   end subroutine close_all
-
-   !> What follows need not be computed: a write has failed, or a signal has come.
-   logical function is_over(o)
-      type(outputs_t), intent(in) :: o
-
-      is_over = any(has_failed(o%files)) .or. signal_received() > 0
-   end function is_over
 
    !> The sets of this share, one after another: shares put together in their order are the whole.
    subroutine run_sets(options, sets, findings, o, status)
       type(options_t), intent(in) :: options
       type(mechanism_t), intent(in) :: sets(:)
       type(findings_t), intent(inout) :: findings(:)
-      type(outputs_t), intent(inout) :: o
+      type(writers_t), intent(inout) :: o
       integer, intent(inout) :: status
-      integer :: i, first, last
+      integer :: i
 
-      first = share_end(size(sets), options%share - 1, options%shares) + 1
-      last = share_end(size(sets), options%share, options%shares)
-      if (o%asked(out_csv) .and. options%share == 1) call csv_head(o%files(out_csv), options%errors)
-      if (o%asked(out_svg)) call picture_head(o%files(out_svg))
-      if (o%asked(out_svg)) allocate (o%drawings(first:last))
-      do i = first, last
+      if (o%asked(out_csv) .and. options%share == 1) call csv_head(o%files(out_csv, 0), options%errors)
+      if (o%asked(out_svg)) call picture_head(o%files(out_svg, 0))
+      if (o%asked(out_svg)) allocate (o%drawings(o%first:o%last))
+      do i = o%first, o%last
          if (o%asked(out_svg)) o%drawings(i) = new_drawing(sets(i))
          call run_set(options, sets(i), i, findings(i), o, status)
-         if (is_over(o)) exit
+         if (is_over(o, i)) exit
       end do
-      i = min(i, last)
-      if (o%asked(out_svg)) call put_pictures(o%files(out_svg), sets(first:i), o%drawings(first:i))
+      i = min(i, o%last)
+      if (o%asked(out_svg)) call put_pictures(o%files(out_svg, 0), sets(o%first:i), o%drawings(o%first:i))
    end subroutine run_sets
 
    !> Last set of share `k` of `n` shares of `count` sets.
@@ -160,56 +114,68 @@ contains
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: i
       type(findings_t), intent(inout) :: findings
-      type(outputs_t), intent(inout) :: o
+      type(writers_t), intent(inout) :: o
       integer, intent(inout) :: status
-      type(layout_t) :: layout
       type(set_analysis_t) :: a
       integer, allocatable :: every(:)
       integer :: k, flagged
 
-      associate (listing => o%files(out_listing))
-         if (o%asked(out_listing)) then
-            layout = new_layout(m, findings%parts, findings%own)
-            call listing_head(listing, layout, m, findings)
-         end if
-         if (options%check) return
-         if (o%asked(out_log)) call log_head(o%files(out_log), m, options%errors)
-         call flush_all(o)
-         if (is_over(o)) return
-         call make_set_analysis(m, a, findings)
-         flagged = 0
-         every = strides(m)
-         do k = 0, instant_count(m) - 1
-            call advance_set(a, instant(m, k))
-            if (is_flagged(a%now)) flagged = flagged + 1
-            call write_instant(options, m, k, any_due(m, every, k), layout, a, o)
-            if (o%asked(out_svg)) call record_instant(o%drawings(i), m, a%now, k)
-            if (.not. is_over(o)) cycle
-            if (o%asked(out_listing)) call listing_broken_off(listing, m, k)
-            return
-         end do
-         if (o%asked(out_listing)) call listing_end(listing, m, instant_count(m) - flagged, flagged, &
-            a%certificate_counts, set_closure_error(a), set_closing_diagnostics(a, m))
-      end associate
+      call write_heads(options, m, i, findings, o)
+      if (options%check .or. is_over(o, i)) return
+      call make_set_analysis(m, a, findings)
+      flagged = 0
+      every = strides(m)
+      do k = 0, instant_count(m) - 1
+         call advance_set(a, instant(m, k))
+         if (is_flagged(a%now)) flagged = flagged + 1
+         call write_instant(options, m, i, k, any_due(m, every, k), a, o)
+         if (.not. is_over(o, i)) cycle
+         if (o%asked(out_listing)) call listing_broken_off(o%files(out_listing, 0), m, k)
+         return
+      end do
+      if (o%asked(out_listing)) call listing_end(o%files(out_listing, 0), m, instant_count(m) - flagged, flagged, &
+         a%certificate_counts, set_closure_error(a), set_closing_diagnostics(a, m))
       if (flagged > 0) status = status_flagged
    end subroutine run_set
 
-   !> Writes instant number `k` of `m`, to which `a` has advanced; `due`: PRINT asks for it. Only the listing and
-   !> estimates that are asked for need samples.
-   subroutine write_instant(options, m, k, due, layout, a, o)
+   !> Writes what stands before the first instant of set number `i`, `m`.
+   subroutine write_heads(options, m, i, findings, o)
       type(options_t), intent(in) :: options
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: k
+      integer, intent(in) :: i
+      type(findings_t), intent(in) :: findings
+      type(writers_t), intent(inout) :: o
+
+      if (o%asked(out_listing)) then
+         o%layout = new_layout(m, findings%parts, findings%own)
+         call listing_head(o%files(out_listing, 0), o%layout, m, findings)
+      end if
+      if (options%check) return
+      if (o%asked(out_log)) call log_head(o%files(out_log, 0), m, options%errors)
+      if (o%asked(out_table)) then
+         o%table = new_table(m)
+         call table_head(o%files(out_table, i), o%table)
+      end if
+      call flush_outputs(o, i)
+   end subroutine write_heads
+
+   !> Writes instant number `k` of set number `i`, `m`, to which `a` has advanced; `due`: PRINT asks for it. Only the
+   !> listing, and estimates that are asked for, need samples.
+   subroutine write_instant(options, m, i, k, due, a, o)
+      type(options_t), intent(in) :: options
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i, k
       logical, intent(in) :: due
-      type(layout_t), intent(in) :: layout
       type(set_analysis_t), intent(inout) :: a
-      type(outputs_t), intent(inout) :: o
+      type(writers_t), intent(inout) :: o
 
       if (options%errors .or. (due .and. o%asked(out_listing))) call sample_set(a, options%errors)
       if (o%asked(out_listing) .and. (due .or. has_words(a%now))) &
-         call listing_instant(o%files(out_listing), layout, m, a%now, k)
-      if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv), m, a%now, k)
-      if (o%asked(out_log)) call put_log(o%files(out_log), options, m, a, k)
+         call listing_instant(o%files(out_listing, 0), o%layout, m, a%now, k)
+      if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv, 0), m, a%now, k)
+      if (o%asked(out_table) .and. due) call table_instant(o%files(out_table, i), o%table, m, a%now)
+      if (o%asked(out_svg)) call record_instant(o%drawings(i), m, a%now, k)
+      if (o%asked(out_log)) call put_log(o%files(out_log, 0), options, m, a, k)
    end subroutine write_instant
 
    !> The line of instant number `k` in the log.

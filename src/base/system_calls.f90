@@ -10,6 +10,7 @@ module system_calls
    private
    public :: identity_t, identity_of_path, identity_of_descriptor, same_file
    public :: open_to_read, open_to_write, read_bytes, write_bytes, close_descriptor, empty_file, remove_file
+   public :: make_directory, remove_directory
    public :: watch_signals, signal_received, broken_pipe_kills, end_by_signal, signal_pipe
    public :: occupy_standard_descriptors, last_error, reason_of, no_such_file, closed_descriptor, is_a_directory, &
       broken_pipe
@@ -23,11 +24,12 @@ module system_calls
 
    !> Flags of open and of statx and numbers of errors, the same on every architecture of Linux.
    integer(c_int), parameter :: read_only = 0, write_only = 1
-   integer, parameter :: no_such_file = 2, closed_descriptor = 9, is_a_directory = 21, broken_pipe = 32
+   integer, parameter :: no_such_file = 2, closed_descriptor = 9, file_exists = 17, is_a_directory = 21, &
+      broken_pipe = 32
    integer(c_int), parameter :: from_working_directory = -100, empty_path = int(z'1000', c_int)
    integer(c_int), parameter :: basic_facts = int(z'7FF', c_int)
-   !> Read and write for all, less the user's mask.
-   integer(c_int), parameter :: permissions = int(o'666', c_int)
+   !> Read and write for all, of a directory also its use, less the user's mask.
+   integer(c_int), parameter :: permissions = int(o'666', c_int), directory_permissions = int(o'777', c_int)
    !> Kinds of files within a mode.
    integer, parameter :: kind_bits = int(o'170000'), kind_regular = int(o'100000')
 
@@ -95,6 +97,17 @@ module system_calls
          integer(c_int), value :: descriptor
          integer(c_long), value :: length
       end function ftruncate
+      !> mkdir(2): makes a directory; negative on error.
+      integer(c_int) function mkdir(path, mode) bind(c)
+         import :: c_int, c_char
+         character(kind=c_char), intent(in) :: path(*)
+         integer(c_int), value :: mode
+      end function mkdir
+      !> rmdir(2): removes an empty directory.
+      integer(c_int) function rmdir(path) bind(c)
+         import :: c_int, c_char
+         character(kind=c_char), intent(in) :: path(*)
+      end function rmdir
       !> unlink(2): removes a file.
       integer(c_int) function unlink(path) bind(c)
          import :: c_int, c_char
@@ -231,6 +244,25 @@ contains
       place = realpath(path//c_null_char, resolved)
       if (c_associated(place)) status = unlink(resolved(:index(resolved, c_null_char)))
    end subroutine remove_file
+
+   !> Makes the directory `path`. `made`: it was not there before; `exists`: now there is one, or a file of that name;
+   !> if not, see `last_error`.
+   subroutine make_directory(path, made, exists)
+      character(*), intent(in) :: path
+      logical, intent(out) :: made, exists
+
+      made = mkdir(path//c_null_char, directory_permissions) == 0
+      exists = made
+      if (.not. made) exists = last_error() == file_exists
+   end subroutine make_directory
+
+   !> Removes the directory `path` if it is empty.
+   subroutine remove_directory(path)
+      character(*), intent(in) :: path
+      integer(c_int) :: status
+
+      status = rmdir(path//c_null_char)
+   end subroutine remove_directory
 
    !> Opens standard input, output and error where they are closed, such that reading or writing fails. Otherwise the
    !> next file would take their descriptors, and what is printed would go into it.

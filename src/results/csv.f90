@@ -13,7 +13,7 @@ module csv
    use numerals, only: whole, full, put_full, full_length
    implicit none
    private
-   public :: csv_head, csv_instant
+   public :: csv_head, csv_instant, add_name
 
    character(12), parameter :: marks(0:4) = [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE', 'OPEN']
    character(5), parameter :: kinds_of_row(3) = ['LINK ', 'POINT', 'PAIR ']

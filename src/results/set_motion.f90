@@ -6,10 +6,11 @@ module set_motion
    use diagnostics, only: diagnostic_t
    use independent, only: part_t, parts_t, find_parts, mechanism_of
    use structure, only: findings_t
+   use points, only: row_t, row_of
    use error_estimate, only: error_estimate_t
    implicit none
    private
-   public :: set_motion_t, new_set_motion, one_motion, is_flagged, has_words, in_set, put_together
+   public :: set_motion_t, new_set_motion, one_motion, is_flagged, has_words, in_set, put_together, row_in_set
 
    !> A set that is one mechanism is one part, with the numbers of the set.
    type :: set_motion_t
@@ -116,6 +117,18 @@ contains
          end associate
       end do
    end subroutine put_together
+
+   !> The row of request number `i` of `m`. A row of the ground, which is no part's, is known by the deck alone.
+   pure type(row_t) function row_in_set(m, s, i) result(row)
+      type(mechanism_t), intent(in) :: m
+      type(set_motion_t), intent(in) :: s
+      integer, intent(in) :: i
+      integer :: c
+
+      c = s%parts%part(i)
+      if (c > 0) row = row_of(s%own(c), s%motions(c), s%own(c)%requests(s%parts%number(i)))
+      if (c == 0) row = row_of(m, s%motions(1), m%requests(i))
+   end function row_in_set
 
    !> The diagnostic `r` of a part in the numbers of the set.
    pure type(diagnostic_t) function in_set(r, part)

@@ -1,0 +1,137 @@
+!> The files that a job writes: those that all sets share, and those of which each set has its own.
+module outputs
+   use failures, only: failure_t, fail, capitals, status_system, status_rejected
+   use text_output, only: output_t, open_output, check_apart, flush_output, close_output, abandon_output, has_failed, &
+      has_broken_pipe
+   use system_calls, only: make_directory, remove_directory, last_error, reason_of, signal_received
+   use numerals, only: whole
+   use command_line, only: options_t, file_options, out_last
+   implicit none
+   private
+   public :: outputs_t, open_outputs, flush_outputs, close_outputs, is_over, is_broken_pipe, set_suffix
+
+   type :: outputs_t
+      logical :: asked(out_last) = .false.                  !< the command asks for them: no other is open
+      !> (out_last, 0:sets) In column 0 those that all sets share; in column i those of set number i.
+      type(output_t), allocatable :: files(:, :)
+      character(:), allocatable :: made_directory           !< that was not there before
+   end type outputs_t
+
+contains
+
+   !> Opens the outputs that `options` ask for, for the sets `first` to `last` of the deck's `count`. Errors:
+   !> status_system; status_rejected where two of them are one file, or would be one after another on standard output.
+   subroutine open_outputs(options, first, last, count, o, failure)
+      type(options_t), intent(in) :: options
+      integer, intent(in) :: first, last, count
+      class(outputs_t), intent(inout), target :: o
+      type(failure_t), allocatable, intent(out) :: failure
+      type(output_t), pointer :: all_files(:)
+      integer :: k, i
+
+      allocate (o%files(out_last, 0:last))
+      do k = 1, out_last
+         o%asked(k) = allocated(options%files(k)%text)
+         if (.not. o%asked(k)) cycle
+         if (len_trim(file_options(k)%in_directory) > 0 .and. .not. allocated(failure)) &
+            call open_directory(options%files(k)%text, o, failure)
+         do i = merge(first, 0, file_options(k)%each_set), merge(last, 0, file_options(k)%each_set)
+            if (allocated(failure)) exit
+            call open_output(o%files(k, i), path_of(k, options%files(k)%text, set_suffix(first, last, i)), failure)
+         end do
+         if (first < last .and. file_options(k)%each_set .and. len(options%files(k)%text) == 0) &
+            call fail(failure, status_rejected, 'STANDARD OUTPUT TAKES THE TABLE OF ONE SET: CHOOSE THE K-TH OF ' &
+               //whole(count)//' WITH --sets K/'//whole(count))
+      end do
+      all_files(1:size(o%files)) => o%files
+      if (.not. allocated(failure)) call check_apart(all_files, options%deck, failure)
+      if (.not. allocated(failure)) return
+      do i = 1, size(all_files)
+         call abandon_output(all_files(i))
+      end do
+      if (allocated(o%made_directory)) call remove_directory(o%made_directory)
+   end subroutine open_outputs
+
+   !> Makes the directory `path` unless it is there; what else is wrong with it shows when its files are opened.
+   subroutine open_directory(path, o, failure)
+      character(*), intent(in) :: path
+      class(outputs_t), intent(inout) :: o
+      type(failure_t), allocatable, intent(out) :: failure
+      logical :: made, exists
+
+      call make_directory(path, made, exists)
+      if (made) o%made_directory = path
+      if (.not. exists) call fail(failure, status_system, 'DIRECTORY '//path//' CANNOT BE MADE (' &
+         //capitals(reason_of(last_error()))//')')
+   end subroutine open_directory
+
+   !> The path of output number `k`, for which the command gives `text`; '' is standard output.
+   pure function path_of(k, text, suffix) result(path)
+      integer, intent(in) :: k
+      character(*), intent(in) :: text, suffix
+      character(:), allocatable :: path
+      integer :: dot
+
+      path = text
+      if (len_trim(file_options(k)%in_directory) > 0) path = text//'/'//trim(file_options(k)%in_directory)
+      if (len(path) == 0) return
+      dot = index(path, '.', back=.true.)
+      ! A name without an extension ends with the suffix.
+      if (dot <= index(path, '/', back=.true.) + 1) dot = len(path) + 1
+      path = path(:dot - 1)//suffix//path(dot:)
+   end function path_of
+
+   !> What the names of files have before their extension for set number `i`, where the job has more than one set, those
+   !> from `first` to `last`; '' for files that all sets share (0).
+   pure function set_suffix(first, last, i) result(suffix)
+      integer, intent(in) :: first, last, i
+      character(:), allocatable :: suffix
+
+      suffix = ''
+      if (first < last .and. i > 0) suffix = '-'//whole(i)
+   end function set_suffix
+
+   !> Writes at once what there is for set number `i`, so that an output that takes nothing is known before anything is
+   !> computed.
+   subroutine flush_outputs(o, i)
+      class(outputs_t), intent(inout) :: o
+      integer, intent(in) :: i
+      integer :: k
+
+      do k = 1, out_last
+         if (o%asked(k)) call flush_output(o%files(k, merge(i, 0, file_options(k)%each_set)))
+      end do
+   end subroutine flush_outputs
+
+   !> Closes all outputs; `failure`: that of the last one that could not be written.
+   subroutine close_outputs(o, failure)
+      class(outputs_t), intent(inout) :: o
+      type(failure_t), allocatable, intent(out) :: failure
+      type(failure_t), allocatable :: other
+      integer :: k, i
+
+      do i = 0, ubound(o%files, 2)
+         do k = 1, out_last
+            if (.not. allocated(o%files(k, i)%buffer)) cycle
+            call close_output(o%files(k, i), other)
+            if (allocated(other)) call move_alloc(other, failure)
+         end do
+      end do
+   end subroutine close_outputs
+
+   !> What follows in set number `i` need not be computed: a write has failed, or a signal has come.
+   logical function is_over(o, i)
+      class(outputs_t), intent(in) :: o
+      integer, intent(in) :: i
+
+      is_over = any(has_failed(o%files(:, 0))) .or. any(has_failed(o%files(:, i))) .or. signal_received() > 0
+   end function is_over
+
+   !> Whether the reader of some output has gone.
+   logical function is_broken_pipe(o)
+      class(outputs_t), intent(in) :: o
+
+      is_broken_pipe = .false.
+      if (allocated(o%files)) is_broken_pipe = any(has_broken_pipe(o%files))
+   end function is_broken_pipe
+end module outputs

@@ -1,0 +1,187 @@
+!> The results as a table (--table): a row for each instant at which PRINT asks for anything, a column for each
+!> quantity; time first, then the drives, then all positions, velocities and accelerations that PRINT asks for, with
+!> all digits.
+!>
+!> pandas, R and spreadsheets part the cells of a row at commas, gnuplot at blanks: between two cells are both, and no
+!> blanks in the heading, which gnuplot skips. The units are those of the deck. A row ends before the first value that
+!> does not exist: all four take the cells that are not there for missing values. Rejected: empty cells or NaN, which
+!> no mixture of commas and blanks gives to all of them.
+module table
+   use kinds, only: wp, label_length
+   use constants, only: in_degrees
+   use mechanism, only: mechanism_t, request_link, request_point, pair_prismatic, drive_angle, drive_relangle
+   use drives, only: law_t, new_law, drive_motion
+   use names, only: name_table_t, put_name, find_name, drive_name
+   use points, only: row_t
+   use set_motion, only: set_motion_t, row_in_set
+   use csv, only: add_name
+   use text_output, only: output_t, put, add
+   use numerals, only: put_full, full_length
+   implicit none
+   private
+   public :: table_t, column_t, new_table, table_head, table_instant
+
+   !> A column after those of time and drives.
+   type :: column_t
+      integer :: request = 0                        !< its number in the set
+      integer :: order = 0                          !< of the derivative: 0, 1 or 2
+      integer :: coordinate = 1                     !< 1, 2 or 3: x, y, phi; of a pair 1
+      logical :: angular = .false.                  !< an angle or a derivative of one
+      character(2*label_length + 7) :: name = ''    !< ROCKER.phi, TIP.vx, SLOT.v
+   end type column_t
+
+   !> The columns of a set.
+   type :: table_t
+      type(law_t), allocatable :: laws(:)           !< (drives)
+      character(3*label_length + 2), allocatable :: drives(:)   !< (drives) names: ANGLE.CRANK
+      logical, allocatable :: angular(:)            !< (drives) the drive is an angle
+      type(column_t), allocatable :: columns(:)     !< the others, by derivative and request
+   end type table_t
+
+   !> What the columns of a derivative add to the name of a link or point, a prismatic pair, a revolute pair. Those of
+   !> pairs are not those of links, whose names pairs may have.
+   character(4), parameter :: link_words(3, 0:2) = reshape([character(4) :: &
+      'x', 'y', 'phi', 'vx', 'vy', 'vphi', 'ax', 'ay', 'aphi'], [3, 3])
+   character(5), parameter :: slide_words(0:2) = [character(5) :: 's', 'v', 'a']
+   character(5), parameter :: turn_words(0:2) = [character(5) :: 'theta', 'omega', 'alpha']
+
+contains
+
+   !> The table of the set `m`.
+   function new_table(m) result(t)
+      type(mechanism_t), intent(in) :: m
+      type(table_t) :: t
+      integer :: i, k, c, n
+
+      allocate (t%laws(size(m%drives)), t%drives(size(m%drives)))
+      do i = 1, size(m%drives)
+         t%laws(i) = new_law(m%drives(i))
+         t%drives(i) = dotted(drive_name(m, m%drives(i)))
+      end do
+      t%angular = m%drives%kind == drive_angle .or. m%drives%kind == drive_relangle
+      allocate (t%columns(3*sum(coordinates_of(m%requests%kind))))
+      n = 0
+      do k = 0, 2
+         do i = 1, size(m%requests)
+            do c = 1, coordinates_of(m%requests(i)%kind)
+               n = n + 1
+               t%columns(n) = column_t(i, k, c, c == 3)
+            end do
+         end do
+      end do
+      call name_columns(m, t%columns)
+   end function new_table
+
+   !> How many columns a derivative of a row of the given `kind` has.
+   elemental integer function coordinates_of(kind)
+      integer, intent(in) :: kind
+
+      coordinates_of = 1
+      if (kind == request_link) coordinates_of = 3
+      if (kind == request_point) coordinates_of = 2
+   end function coordinates_of
+
+   !> The names of the columns, and which of a pair are angles. A point that has the name of a link in the table has
+   !> that of its own link before it.
+   subroutine name_columns(m, columns)
+      type(mechanism_t), intent(in) :: m
+      type(column_t), intent(inout) :: columns(:)
+      type(name_table_t) :: links
+      integer :: i, earlier
+
+      do i = 1, size(m%requests)
+         if (m%requests(i)%kind == request_link) call put_name(links, m%links(m%requests(i)%subject)%name, i, earlier)
+      end do
+      do i = 1, size(columns)
+         associate (c => columns(i), subject => m%requests(columns(i)%request)%subject)
+            select case (m%requests(c%request)%kind)
+            case (request_link)
+               c%name = trim(m%links(subject)%name)//'.'//link_words(c%coordinate, c%order)
+            case (request_point)
+               c%name = trim(m%points(subject)%name)//'.'//link_words(c%coordinate, c%order)
+               if (find_name(links, m%points(subject)%name) > 0) &
+                  c%name = trim(m%links(m%points(subject)%link)%name)//'.'//c%name
+            case default
+               c%angular = m%pairs(subject)%kind /= pair_prismatic
+               c%name = trim(m%pairs(subject)%name)//'.'//merge(turn_words(c%order), slide_words(c%order), c%angular)
+            end select
+         end associate
+      end do
+   end subroutine name_columns
+
+   !> `name` with a dot for each blank inside.
+   pure function dotted(name) result(text)
+      character(*), intent(in) :: name
+      character(len(name)) :: text
+      integer :: i
+
+      text = name
+      do i = 1, len_trim(name)
+         if (text(i:i) == ' ') text(i:i) = '.'
+      end do
+   end function dotted
+
+   !> The heading: the names of all columns.
+   subroutine table_head(o, t)
+      type(output_t), intent(inout) :: o
+      type(table_t), intent(in) :: t
+      integer :: i
+
+      call add(o, 't')
+      do i = 1, size(t%drives)
+         call add(o, ',')
+         call add_name(o, trim(t%drives(i)))
+      end do
+      do i = 1, size(t%columns)
+         call add(o, ',')
+         call add_name(o, trim(t%columns(i)%name))
+      end do
+      call put(o, '')
+   end subroutine table_head
+
+   !> The row of the motions `s` of `m`.
+   subroutine table_instant(o, t, m, s)
+      type(output_t), intent(inout) :: o
+      type(table_t), intent(in) :: t
+      type(mechanism_t), intent(in) :: m
+      type(set_motion_t), intent(in) :: s
+      type(row_t), allocatable :: rows(:)
+      real(wp) :: f(3)
+      integer :: i
+
+      call add_cell(o, '', s%motions(1)%t, .false.)
+      do i = 1, size(t%laws)
+         f = drive_motion(t%laws(i), s%motions(1)%t)
+         call add_cell(o, ', ', f(1), m%degrees .and. t%angular(i))
+      end do
+      allocate (rows(size(m%requests)))
+      do i = 1, size(rows)
+         rows(i) = row_in_set(m, s, i)
+      end do
+      do i = 1, size(t%columns)
+         associate (c => t%columns(i))
+            if (c%order > rows(c%request)%known) exit
+            call add_cell(o, ', ', rows(c%request)%value(c%coordinate, c%order), m%degrees .and. c%angular)
+         end associate
+      end do
+      call put(o, '')
+   end subroutine table_instant
+
+   !> A cell: `before`, then `value`, an angle in radians in degrees where `degrees`.
+   subroutine add_cell(o, before, value, degrees)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: before
+      real(wp), intent(in) :: value
+      logical, intent(in) :: degrees
+      character(full_length) :: cell
+      integer :: length
+
+      if (degrees) then
+         call put_full(in_degrees(value), cell, length)
+      else
+         call put_full(value, cell, length)
+      end if
+      call add(o, before)
+      call add(o, cell(:length))
+   end subroutine add_cell
+end module table
