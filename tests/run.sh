@@ -34,7 +34,7 @@ parts() {
    wide blocks|7|tests/system/wide.sh
    drives between instants|18|tests/system/drives.sh
    decks made by chance|1000|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 1000
-   relations between runs|300|tests/system/relations.sh
+   relations between runs|300|tests/system/relations.sh --short
    mechanisms of a known motion|200|tests/fuzz/fuzz_mechanisms.sh 200
    the method of 1987|1000|"$BUILD/release/matrix_1987" short
    what is hard to compute|120|tests/oracle/hard.sh short

@@ -1,0 +1,206 @@
+# awk -v change=CHANGE [-v csv=FILE -v lst=FILE] -v map=FILE -f relation_deck.awk DECK: the deck, changed. CHANGE is
+#    whole      all results are asked for, in English: to this deck come the others
+#    3, 7       so many times the steps
+#    turned     the cards of each set in the opposite order
+#    moved      by (3, -2)
+#    mirrored   in the x axis
+#    units      lengths times 25.4, times times 60
+#    axes       each link has another reference point, and axes that are turned
+#    beside     a four-bar linkage of another size and speed is in each set
+#    middle     begun in the middle: with the second half of the instants, from the positions at the first of these
+#    back       with the instants in the opposite order, from the positions at the last one
+# The last three take what they need from `csv`, results of the deck, and from `lst`, its listing. `map` tells what a reader
+# of the results must know: "start SET STEP", the instant of the deck with which the changed one begins, "link SET NAME XI
+# ETA PHI", the new axes of a link in the old ones, "pair SET NAME PHI", by how much its angle is more, "slide SET NAME", a
+# prismatic pair, "degrees SET", a set in degrees.
+# The numbers of a card and of its * card go to one * card.
+
+function trim(s) { gsub(/^ +| +$/, "", s); return s }
+# A number as text, its exponent D as E.
+function value(s) { s = toupper(trim(s)); sub(/D/, "E", s); return s + 0 }
+function number(k,  x) {
+   x = value(star == "" ? "" : substr(star, 24*k - 15, 24))
+   return x == 0 ? value(substr(card, 16*k + 17, 16)) : x
+}
+function is_given(k) { return trim(substr(card, 16*k + 17, 16) (star == "" ? "" : substr(star, 24*k - 15, 24))) != "" }
+
+# What belongs to a card stays below it.
+function put(text) {
+   # Instants are in the order of their cards.
+   if (change == "turned" && text ~ /^AT/) { instants = instants text "\n"; return }
+   if (text ~ /^(ADD|RISE)/) out[n_out] = out[n_out] "\n" text
+   else out[++n_out] = text
+}
+# A card with its first `n` numbers x.
+function put_numbers(head, n,  k, line) {
+   line = "*       "
+   for (k = 1; k <= n; k++) line = line sprintf("%-24s", sprintf("%.16E", x[k]))
+   sub(/ *$/, "", line); sub(/ *$/, "", head)
+   put(head "\n" line)
+}
+function put_card(name, a, b, c, n, x1, x2, x3) {
+   x[1] = x1; x[2] = x2; x[3] = x3
+   if (n) put_numbers(sprintf("%-8s%-8s%-8s%-8s", name, a, b, c), n)
+   else put(sprintf("%-8s%-8s%-8s%s", name, a, b, c))
+}
+
+# The columns of the card in hand.
+function take(k,  i) {
+   card = cards[k]; star = stars[k]
+   name = trim(substr(card, 1, 8)); a = trim(substr(card, 9, 8)); b = trim(substr(card, 17, 8)); c = trim(substr(card, 25, 8))
+   for (i = 1; i <= 3; i++) x[i] = number(i)
+   # ADD and RISE cards have the units of the drive above them.
+   if (name == "DRIVE") driven = a
+}
+
+# Where each link has its new axes: in its points' middle and beside it, turned by more from link to link.
+function choose_axes(  k, i) {
+   split("", n_points); split("", link_of); split("", xi); split("", eta); split("", turn); n_links = 0
+   for (k = 1; k <= n_cards; k++) {
+      take(k)
+      if (name == "GROUND" || name == "LINK") { links[++n_links] = a; turn[a] = (degrees ? 17 : 0.3)*n_links }
+      if (name == "POINT") { n_points[b]++; xi[b] += x[1]; eta[b] += x[2]; link_of[a] = b }
+   }
+   for (i = 1; i <= n_links; i++) {
+      a = links[i]
+      if (n_points[a]) { xi[a] /= n_points[a]; eta[a] /= n_points[a] }
+      eta[a] += xi[a]/4; xi[a] -= eta[a]/2
+      printf "link %d %s %.16E %.16E %.16E\n", set, a, xi[a], eta[a], turn[a] > map
+   }
+   for (k = 1; k <= n_cards; k++) {
+      take(k)
+      if (name == "REVOLUTE") printf "pair %d %s %.16E\n", set, c, turn[link_of[b]] - turn[link_of[a]] > map
+   }
+}
+function change_axes(  phi, dx, dy) {
+   if (name == "GROUND" || name == "LINK") {
+      phi = x[3]*unit
+      x[1] += xi[a]*cos(phi) - eta[a]*sin(phi); x[2] += xi[a]*sin(phi) + eta[a]*cos(phi); x[3] += turn[a]
+   }
+   if (name == "POINT") {
+      dx = x[1] - xi[b]; dy = x[2] - eta[b]; phi = turn[b]*unit
+      x[1] = dx*cos(phi) + dy*sin(phi); x[2] = dy*cos(phi) - dx*sin(phi)
+   }
+   if (name == "PRISM") { x[1] -= turn[link_of[a]]; x[3] += turn[link_of[b]] - turn[link_of[a]] }
+   if (name == "DRIVE" && a == "ANGLE") x[1] += turn[b]
+   if (name == "DRIVE" && a == "RELANGLE") x[1] += turn[c] - turn[b]
+}
+
+# Lengths times 25.4 and times times 60.
+function change_units(  long) {
+   long = driven ~ /ANGLE/ ? 1 : 25.4
+   if (name ~ /^(GROUND|LINK|POINT)$/) { x[1] *= 25.4; x[2] *= 25.4 }
+   if (name == "PRISM") x[2] *= 25.4
+   if (name == "DRIVE") { x[1] *= long; x[2] *= long/60; x[3] *= long/3600 }
+   if (name == "ADD" && a == "HARMONIC") { x[1] *= long; x[2] /= 60 }
+   if (name == "ADD" && a == "POWER") x[1] *= long/60^x[2]
+   if (name == "ADD" && a == "TABLE") { x[1] *= 60; x[2] *= long }
+   if (name == "RISE") { x[1] *= 60; x[2] *= 60; x[3] *= long }
+   if (name ~ /^(TIME|AT|BRANCH)$/) { x[1] *= 60; x[2] *= 60; x[3] *= 60 }
+}
+function change_side(  turned) {
+   turned = driven ~ /^(Y|ANGLE|RELANGLE)$/
+   if (name ~ /^(GROUND|LINK|PRISM)$/ || name ~ /^(DRIVE|RISE)$/ && turned) x[3] = -x[3]
+   if (name ~ /^(GROUND|LINK|POINT|PRISM)$/ || name == "DRIVE" && turned || name == "ADD" && turned && a == "TABLE") x[2] = -x[2]
+   if (name == "PRISM" || name == "DRIVE" && turned || name == "ADD" && turned && a != "TABLE") x[1] = -x[1]
+}
+function move() {
+   if (name == "GROUND" || name == "LINK" || name == "DRIVE" && driven == "X") x[1] += 3
+   if (name == "GROUND" || name == "LINK") x[2] -= 2
+   if (name == "DRIVE" && driven == "Y") x[1] -= 2
+}
+
+# The results of the deck: time[set, step], place[set, step, link, 1 to 3], flagged[set, step], last[set].
+function read_results(  line, f) {
+   getline line < csv
+   while ((getline line < csv) > 0) {
+      split(line, f, ",")
+      time[f[1], f[2]] = f[3]; last[f[1]] = f[2]
+      if (f[15] != "") flagged[f[1], f[2]] = 1
+      if (f[4] == "LINK") { place[f[1], f[2], f[5], 1] = f[6]; place[f[1], f[2], f[5], 2] = f[7]; place[f[1], f[2], f[5], 3] = f[8] }
+   }
+   # Where a BRANCH card has taken the other branch, and its link.
+   while ((getline line < lst) > 0) {
+      if (line ~ /^ SET OF COMPUTATIONS/) n_set++
+      if (line !~ /CHANGE POINT AT T = .*TAKE THE OTHER BRANCH/) continue
+      n_switch++; switch_set[n_switch] = n_set
+      sub(/.* T = /, "", line); switch_time[n_switch] = line + 0
+      sub(/.*LINKS? /, "", line); sub(/[ :,].*/, "", line); switch_link[n_switch] = line
+   }
+}
+# The instants of the set in hand from `start` on, by `way` = 1 or -1, and the BRANCH cards that lead through them the same way.
+function put_instants(  k, i, n, reached, by) {
+   n = 0; by = way
+   for (k = start; k >= 0 && k <= last[set]; k += by) {
+      x[++n] = time[set, k]
+      if (n == 3) { put_numbers("AT", n); n = 0 }
+      for (i = 1; i <= n_switch; i++) if (switch_set[i] == set && (k + by >= 0) && (k + by <= last[set]) \
+         && (time[set, k] - switch_time[i])*(time[set, k + by] - switch_time[i]) < 0) branches[i] = time[set, k]
+   }
+   if (n) put_numbers("AT", n)
+   for (i in branches) put_card("BRANCH", switch_link[i], "", "", 1, branches[i])
+   split("", branches)
+}
+# A four-bar linkage, a thousandth as large as 1, that turns by 20 rad in the time of the set.
+function put_companion(  rate, first) {
+   first = time[set, 0]
+   rate = time[set, last[set]] - first
+   rate = 20/unit/(rate == 0 ? 1 : rate)
+   put_card("GROUND", "Q-BASE", "", "", 3, 5, 7, 0.5/unit)
+   put_card("LINK", "Q-CRANK", "", "", 3, 5, 7, 0.5/unit)
+   put_card("LINK", "Q-COUP", "", "", 3, 5.0009, 7.0005, 1.4/unit)
+   put_card("LINK", "Q-ROCK", "", "", 3, 5.0035, 7.0019, 2.4/unit)
+   put_card("POINT", "Q-A0", "Q-BASE", "", 2, 0, 0); put_card("POINT", "Q-B0", "Q-BASE", "", 2, 0.004, 0)
+   put_card("POINT", "Q-A0C", "Q-CRANK", "", 2, 0, 0); put_card("POINT", "Q-AC", "Q-CRANK", "", 2, 0.001, 0)
+   put_card("POINT", "Q-A", "Q-COUP", "", 2, 0, 0); put_card("POINT", "Q-B", "Q-COUP", "", 2, 0.0035, 0)
+   put_card("POINT", "Q-B0R", "Q-ROCK", "", 2, 0, 0); put_card("POINT", "Q-BR", "Q-ROCK", "", 2, 0.003, 0)
+   put_card("REVOLUTE", "Q-A0", "Q-A0C", "Q-PA0"); put_card("REVOLUTE", "Q-AC", "Q-A", "Q-PA")
+   put_card("REVOLUTE", "Q-B", "Q-BR", "Q-PB"); put_card("REVOLUTE", "Q-B0R", "Q-B0", "Q-PB0")
+   put_card("DRIVE", "ANGLE", "Q-CRANK", "", 2, 0.5/unit - rate*first, rate)
+}
+
+function change_card(  n) {
+   n = name ~ /^(POINT|TIME)$/ || name == "ADD" && a != "HARMONIC" ? 2 : name == "BRANCH" ? 1 : 3
+   if (change == "whole" && name ~ /^(PRINT|LANG)$/) return
+   if (change ~ /^(middle|back)$/ && name ~ /^(TIME|AT|BRANCH)$/) return
+   if (name == "TIME" && change ~ /^[37]$/) card = sprintf("%-8s%-8s%s", "TIME", change*a, substr(card, 17))
+   # A card of which nothing is known here is refused.
+   if (name !~ /^(TITLE|UNITS|LANG|METHOD|REVOLUTE|PRINT|GROUND|LINK|POINT|PRISM|DRIVE|ADD|RISE|TIME|AT|BRANCH)$/) card = "?" card
+   if (name !~ /^(GROUND|LINK|POINT|PRISM|DRIVE|ADD|RISE|TIME|AT|BRANCH)$/) { put(card); return }
+   if (name == "AT") while (n > 1 && !is_given(n)) n--
+   if (change == "axes") change_axes()
+   if (change == "units") change_units()
+   if (change == "mirrored") change_side()
+   if (change == "moved") move()
+   if (name == "LINK" && change ~ /^(middle|back)$/) for (k = 1; k <= 3; k++) x[k] = place[set, start, a, k]
+   put_numbers(substr(card, 1, 32), n)
+}
+
+BEGIN { if (csv != "") read_results() }
+/^[$]/ || /^ *$/ { next }
+/^\*/ { stars[n_cards] = $0; next }
+/^UNITS/ { degrees = substr($0, 17, 3) == "DEG" }
+!/^END/ { cards[++n_cards] = sprintf("%-80s", $0); stars[n_cards] = ""; next }
+{
+   set++; n_out = 0
+   unit = degrees ? atan2(0, -1)/180 : 1
+   way = change == "back" ? -1 : 1
+   start = change ~ /^(middle|back)$/ ? last[set] : 0
+   while ((set, start) in flagged) start--
+   if (change == "middle" && start > 0) start = int((start + 1)/2)
+   while (start < 0 || (set, start) in flagged) start++
+   printf "start %d %d\n", set, start > map
+   if (degrees) print "degrees", set > map
+   for (i = 1; i <= n_cards; i++) { take(i); if (name == "PRISM") print "slide", set, c > map }
+   if (change == "axes") choose_axes()
+   for (i = 1; i <= n_cards; i++) { take(i); change_card() }
+   if (change == "beside") put_companion()
+   if (change ~ /^(middle|back)$/) put_instants()
+   if (change == "whole") put("PRINT   ALL")
+   for (i = 1; i <= n_out; i++) {
+      text = out[change == "turned" ? n_out + 1 - i : i]
+      gsub(/ +\n/, "\n", text); sub(/ +$/, "", text); print text
+   }
+   printf "%sEND\n", instants
+   n_cards = 0; degrees = 0; instants = ""
+}

@@ -1,0 +1,71 @@
+# awk -v change=CHANGE -f relation_rows.awk MAP CSV CHANGED: rows of the results of a deck (CSV) and of the deck changed by
+# relation_deck.awk (CHANGED, with its MAP) that differ by more than both tell of their errors, and rows flagged in one alone.
+# An error is known to a small factor only, and a row's numbers are rounded; where no error is told a number is not compared.
+BEGIN { FS = ","; factor = 30; rounding = 1e-14 }
+function size(x) { return x < 0 ? -x : x }
+
+# The number of the instant in the deck.
+function step_there() {
+   if (change == "middle") return start[$1] + $2
+   if (change == "back") return start[$1] - $2
+   return change ~ /^[37]$/ ? $2/change : $2
+}
+# The row at hand of a link whose axes are others: its own origin is not at (xi, eta, turn) of the old ones but there.
+function to_old_axes(  key, phi, x, y, s, c, w, reach, e, ew) {
+   key = $1 " " $5
+   $8 -= turn[key]; phi = $8*unit
+   x = xi[key]*cos(phi) - eta[key]*sin(phi); y = xi[key]*sin(phi) + eta[key]*cos(phi)
+   # A rounding of the angle moves what is so far away.
+   reach = size(x) + size(y); e = $18*unit + 1e-16*(1 + size(phi))
+   $6 -= x; $7 -= y; $16 += reach*e; $17 += reach*e
+   if ($11 == "") return
+   w = $11*unit; ew = $21*unit
+   $9 += w*y; $10 -= w*x
+   $19 += reach*(ew + size(w)*e); $20 += reach*(ew + size(w)*e)
+   if ($14 == "") return
+   $12 += $14*unit*y + w*w*x; $13 += w*w*y - $14*unit*x
+   e = reach*($24*unit + size($14*unit)*e + 2*size(w)*ew + w*w*e)
+   $22 += e; $23 += e
+}
+# The row at hand as it would be in the deck.
+function back_to_deck(  c, f) {
+   for (c = 6; c <= 14; c++) {
+      if ($c == "") continue
+      f = 1
+      if (change == "units") f = ($4 == "PAIR" && !(($1 " " $5) in slides) || (c - 6) % 3 == 2 ? 1 : 25.4)/60^int((c - 6)/3)
+      $c /= f; $(c + 10) = $(c + 10)/f
+      # A relative angle is turned round, a slide is not.
+      if (change == "mirrored" && ($4 == "PAIR" ? !(($1 " " $5) in slides) : (c - 6) % 3 > 0)) $c = -$c
+      if (change == "moved" && $4 != "PAIR" && c < 8) $c -= c == 6 ? 3 : -2
+   }
+   if (change == "axes" && $4 == "LINK" && $6 != "") to_old_axes()
+   if (change == "axes" && $4 == "PAIR" && $6 != "") $6 -= pair_turn[$1 " " $5]
+}
+
+FILENAME != file { file = FILENAME; n_files++ }
+n_files == 1 { split($0, f, " ") }
+n_files == 1 && f[1] == "start" { start[f[2]] = f[3] }
+n_files == 1 && f[1] == "link" { xi[f[2] " " f[3]] = f[4]; eta[f[2] " " f[3]] = f[5]; turn[f[2] " " f[3]] = f[6] }
+n_files == 1 && f[1] == "pair" { pair_turn[f[2] " " f[3]] = f[4] }
+n_files == 1 && f[1] == "slide" { slides[f[2] " " f[3]] = 1 }
+n_files == 1 && f[1] == "degrees" { degrees[f[2]] = 1 }
+n_files == 1 || /^set,/ { next }
+n_files == 2 { row[$1 "," $2 "," $4 "," $5] = $0; n_rows++; next }
+{
+   key = $1 "," step_there() "," $4 "," $5
+   # Where there are more steps, instants of AT cards have other numbers.
+   if (!(key in row)) next
+   split(row[key], a, ",")
+   if (size(a[3] - $3/(change == "units" ? 60 : 1)) > 1e-9*size(a[3])) next
+   compared++
+   if (a[15] != $15) { print "flag " key " " a[15] " " $15; next }
+   unit = ($1 in degrees) ? atan2(0, -1)/180 : 1
+   back_to_deck()
+   for (c = 6; c <= 14; c++) {
+      if ($c == "" || a[c] == "" || a[c + 10] == "" || $(c + 10) == "") continue
+      numbers++
+      if (size($c - a[c]) > factor*(a[c + 10] + $(c + 10)) + rounding*(size($c) + (change == "moved" && c < 8 ? 5 : 0))) \
+         print key " column " c ": " a[c] " " $c " " a[c + 10] " " $(c + 10)
+   }
+}
+END { if (compared < 10) print compared + 0 " rows"; if (verbose) print compared, "rows", numbers, "numbers" }
