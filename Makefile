@@ -80,10 +80,11 @@ $(foreach build,$(builds),$(eval $(call build_in,$(build))))
 $(BUILD)/kinmat: $(BUILD)/release/kinmat
 	cp $< $@
 
-# The pictures of docs/manual.md, drawn anew.
+# The pictures of the documents, drawn anew: of the first deck of README.md and of two of input/.
 pictures: $(BUILD)/kinmat
 	mkdir -p docs/pictures
-	for name in yoke four_bar jansen; do $(BUILD)/kinmat --svg docs/pictures/$$name.svg input/$$name.deck > /dev/null || exit 1; done
+	awk '/^```deck/ { on = 1; next } /^```/ && on { exit } on' README.md | $(BUILD)/kinmat --svg docs/pictures/four_bar.svg > /dev/null
+	for name in yoke jansen; do sed '/^END/q' input/$$name.deck | $(BUILD)/kinmat --svg docs/pictures/$$name.svg > /dev/null || exit 1; done
 
 # A program of one's own with the modules.
 example: $(BUILD)/example

@@ -1,7 +1,7 @@
 !> One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later.
 module job
    use failures, only: failure_t, status_solved, status_flagged, status_signal
-   use mechanism, only: mechanism_t, instant_count, instant
+   use mechanism, only: mechanism_t, instant_count, instant, with_all_links
    use structure, only: findings_t, check_structure
    use deck, only: read_deck
    use text_output, only: output_t
@@ -10,6 +10,7 @@ module job
    use csv, only: csv_head, csv_instant
    use table, only: table_t, new_table, table_head, table_instant
    use drawing, only: drawing_t, new_drawing, record_instant
+   use picture_frames, only: picture_candidates
    use picture, only: picture_head, put_pictures
    use solver_log, only: log_head, log_instant
    use convergence, only: convergence_t
@@ -92,13 +93,31 @@ contains
       if (o%asked(out_svg)) call picture_head(o%files(out_svg, 0))
       if (o%asked(out_svg)) allocate (o%drawings(o%first:o%last))
       do i = o%first, o%last
-         if (o%asked(out_svg)) o%drawings(i) = new_drawing(sets(i))
          call run_set(options, sets(i), i, findings(i), o, status)
          if (is_over(o, i)) exit
+         if (o%asked(out_svg)) call draw_set(sets(i), picture_candidates, o%drawings(i))
       end do
-      i = min(i, o%last)
-      if (o%asked(out_svg)) call put_pictures(o%files(out_svg, 0), sets(o%first:i), o%drawings(o%first:i))
+      ! Sets that were broken off are not drawn.
+      if (o%asked(out_svg)) call put_pictures(o%files(out_svg, 0), sets(o%first:i - 1), o%drawings(o%first:i - 1))
    end subroutine run_sets
+
+   !> Records the drawing `d` of `m`, of at most `frames` frames. It has an analysis of its own: a picture shows links
+   !> that no table asks for, and what is printed must not depend on it.
+   subroutine draw_set(m, frames, d)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: frames
+      type(drawing_t), intent(out) :: d
+      type(set_analysis_t) :: a
+      integer :: k
+
+      d = new_drawing(m, frames)
+      call make_set_analysis(with_all_links(m), a)
+      do k = 0, instant_count(m) - 1
+         call advance_set(a, instant(m, k))
+         call record_instant(d, m, a%now, k)
+         if (signal_received() > 0) return
+      end do
+   end subroutine draw_set
 
    !> Last set of share `k` of `n` shares of `count` sets.
    pure integer function share_end(count, k, n)
@@ -174,7 +193,6 @@ contains
          call listing_instant(o%files(out_listing, 0), o%layout, m, a%now, k)
       if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv, 0), m, a%now, k)
       if (o%asked(out_table) .and. due) call table_instant(o%files(out_table, i), o%table, m, a%now)
-      if (o%asked(out_svg)) call record_instant(o%drawings(i), m, a%now, k)
       if (o%asked(out_log)) call put_log(o%files(out_log, 0), options, m, a, k)
    end subroutine write_instant
 

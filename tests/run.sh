@@ -28,7 +28,7 @@ parts() {
    the methods against one another|8|tests/system/methods.sh
    independent mechanisms|106|tests/system/independent.sh
    what a singular position is|211|tests/system/singular.sh
-   pictures|390|tests/system/pictures.sh
+   pictures|610|tests/system/pictures.sh
    tables|150|tests/system/tables.sh
    the digits|1|tests/system/digits.sh
    wide blocks|7|tests/system/wide.sh

@@ -11,7 +11,7 @@ module mechanism
    public :: term_cycloid, term_345, term_cosine, term_parabola, rise_words
    public :: request_link, request_point, request_pair
    public :: method_newton, method_matrix, method_dense, method_words, own_predictor
-   public :: instant_count, instant, find_instants, wanted_links, plane_origin, place_links
+   public :: instant_count, instant, find_instants, wanted_links, with_all_links, plane_origin, place_links
 
    integer, parameter :: pair_revolute = 1   !< REVOLUTE: eq. (7), (8)
    integer, parameter :: pair_prismatic = 2  !< PRISM: eq. (9), (10)
@@ -210,4 +210,20 @@ contains
          end associate
       end do
    end function wanted_links
+
+   !> `m` with requests for all its moving links, after its own.
+   pure function with_all_links(m) result(all_links)
+      type(mechanism_t), intent(in) :: m
+      type(mechanism_t) :: all_links
+      integer :: i, n
+
+      all_links = m
+      n = size(m%requests)
+      deallocate (all_links%requests)
+      allocate (all_links%requests(n + size(m%links)))
+      all_links%requests(:n) = m%requests
+      do i = 1, size(m%links)
+         all_links%requests(n + i) = request_t(request_link, i)
+      end do
+   end function with_all_links
 end module mechanism

@@ -4,7 +4,7 @@ module canvas
    use kinds, only: wp
    implicit none
    private
-   public :: canvas_t, to_pixels, add_line, add_box, find_clear_place
+   public :: canvas_t, to_pixels, add_line, add_box, find_clear_place, cover_of
 
    !> Size of the letters of a name: mean width and height of capitals, in pixels.
    real(wp), parameter, public :: letter_width = 8.7_wp, letter_height = 9.0_wp
@@ -24,6 +24,9 @@ module canvas
    real(wp), parameter :: distance_weight = 0.25_wp
    !> What a name over a name counts, and one that leaves the picture, in pixels of overlap with a line.
    real(wp), parameter :: over_name = 60.0_wp, outside = 500.0_wp
+
+   !> Lines and names that are closer than this, in pixels, are hard to tell apart.
+   real(wp), parameter :: near = 4.0_wp
 
 contains
 
@@ -90,7 +93,7 @@ contains
                   distance = distances(d)*merge(0.75_wp, 1.0_wp, x*y /= 0)
                   low = p(:, i) + [real(x, wp), -real(y, wp)]*(half + distance) - half
                   high = low + 2.0_wp*half
-                  cost = cover(c, low - 2.0_wp, high + 2.0_wp) + distance_weight*distances(d)
+                  cost = cover(c, low - near, high + near) + distance_weight*distances(d)
                   if (cost >= least) cycle
                   least = cost
                   start = [low(1), high(2)]
@@ -100,6 +103,18 @@ contains
       end do
       call add_box(c, [start(1), start(2) - 2.0_wp*half(2)], [start(1) + 2.0_wp*half(1), start(2)])
    end subroutine find_clear_place
+
+   !> How much of what is drawn the line through the places `p` (2, :) would cover or come near.
+   pure real(wp) function cover_of(c, p)
+      type(canvas_t), intent(in) :: c
+      real(wp), intent(in) :: p(:, :)
+      integer :: i
+
+      cover_of = 0.0_wp
+      do i = 1, size(p, 2)
+         cover_of = cover_of + cover(c, p(:, i) - near, p(:, i) + near)
+      end do
+   end function cover_of
 
    !> How much of what is drawn the box from `low` to `high` (2) covers, in pixels of lines.
    pure real(wp) function cover(c, low, high)

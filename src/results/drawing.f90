@@ -1,25 +1,24 @@
-!> What a picture of a set shows, taken from its motion instant by instant: some positions of all links, the curves of
-!> the points that PRINT asks for, how far each slide goes, and the flagged instants. Places are counted from the set's
+!> What a picture of a set shows, taken from its motion instant by instant: positions of all links, the curves of the
+!> points that PRINT asks for, how far each slide goes, and the flagged instants. Places are counted from the set's
 !> first ground link, in the deck's unit of length.
 module drawing
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_t, request_point, pair_prismatic, instant_count, plane_origin
-   use planar, only: direction, rotated, quarter_turn, point_of
+   use planar, only: direction, quarter_turn, point_of
    use motion, only: known_of, mark_none, singular_unclear
    use points, only: point_motion, is_fixed
    use set_motion, only: set_motion_t
+   use outline, only: outline_t, outlines_of
    implicit none
    private
-   public :: drawing_t, snapshot_t, curve_t, guide_t, flag_t
-   public :: new_drawing, record_instant, point_place, link_corners, hull, is_same_place, clearest
+   public :: drawing_t, snapshot_t, curve_t, guide_t, flag_t, new_drawing, record_instant, point_place
 
-   !> Positions in a picture: seven, evenly spaced, of which one is drawn in full and the others faint.
-   integer, parameter :: positions = 7
    !> A curve has at most this many places, a picture at most this many curves and flagged positions. Reason: a picture
    !> of 800 pixels shows no more, and memory does not grow with the run.
    integer, parameter :: max_places = 1000, max_curves = 60, max_flags = 3
-   !> Points of a link closer than this part of the link's extent are one.
-   real(wp), parameter :: same_place = 1.0e-6_wp
+   !> The frames of a drawing hold at most this many positions of links, but there are two frames at least. Reason: an
+   !> animation takes about 25 bytes for each.
+   integer, parameter :: max_positions = 72000
    !> Places from here on are not drawn: differences of two must not overflow.
    real(wp), parameter :: max_place = 1.0e-3_wp*huge(1.0_wp)
 
@@ -47,6 +46,7 @@ module drawing
       integer :: pivot = 0                   !< the point of the carrier from which the slide is counted
       real(wp) :: foot(2) = 0.0_wp           !< of the pivot on the line, in the carrier's axes
       real(wp) :: angle = 0.0_wp             !< the direction of the line there (rad)
+      real(wp) :: block_angle = 0.0_wp       !< the same in the axes of the block (rad)
       integer :: sense = 1                   !< -1: the slide grows against the direction
       real(wp) :: low = huge(1.0_wp), high = -huge(1.0_wp)   !< range of the block along the line, from the foot
    end type guide_t
@@ -65,7 +65,9 @@ module drawing
       integer :: stride = 1                  !< every so many instants of TIME are in a curve
       integer :: flagged = 0                 !< instants
       type(snapshot_t) :: now                !< the last known position of each link
-      type(snapshot_t), allocatable :: shown(:)
+      type(outline_t), allocatable :: outlines(:)   !< (links)
+      integer :: frames = 0                  !< recorded so far
+      type(snapshot_t), allocatable :: frame(:)     !< at evenly spaced instants
       type(curve_t), allocatable :: curves(:)
       type(guide_t), allocatable :: guides(:)
       type(flag_t), allocatable :: flags(:)
@@ -74,26 +76,41 @@ module drawing
 
 contains
 
-   !> Nothing recorded yet of the set `m`.
-   function new_drawing(m) result(d)
+   !> Nothing recorded yet of the set `m`; at most `max_frames` frames will be.
+   function new_drawing(m, max_frames) result(d)
       type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: max_frames
       type(drawing_t) :: d
-      integer :: i, places
+      integer :: i, n, places
 
       d%origin = plane_origin(m)
       d%now = snapshot_of_ground(m, d%origin)
-      allocate (d%shown(0), d%flags(0), d%mark(0), d%curves(0), d%guides(0))
+      d%outlines = outlines_of(m)
+      allocate (d%flags(0), d%mark(0), d%curves(0), d%guides(count(m%pairs%kind == pair_prismatic)))
+      allocate (d%frame(max(2, min(max_frames, instant_count(m), max_positions/size(m%links)))))
       d%stride = 1 + max(0, m%steps)/max_places
-      places = max(0, m%steps + 1 + d%stride - 1)/d%stride
+      places = 0
+      if (m%steps >= 0) places = place_number(d, m%steps)
       do i = 1, size(m%requests)
          if (m%requests(i)%kind /= request_point .or. is_fixed(m, m%requests(i))) cycle
          if (any(d%curves%point == m%requests(i)%subject) .or. size(d%curves) == max_curves) cycle
          d%curves = [d%curves, new_curve(i, m%requests(i)%subject, places)]
       end do
+      n = 0
       do i = 1, size(m%pairs)
-         if (m%pairs(i)%kind == pair_prismatic) d%guides = [d%guides, guide_of(m, i)]
+         if (m%pairs(i)%kind /= pair_prismatic) cycle
+         n = n + 1
+         d%guides(n) = guide_of(m, d%outlines, i)
       end do
    end function new_drawing
+
+   !> The number in a curve of the place at instant `k` (0, 1, ...) of TIME, or of the first one after it.
+   pure integer function place_number(d, k)
+      type(drawing_t), intent(in) :: d
+      integer, intent(in) :: k
+
+      place_number = 1 + (k + d%stride - 1)/d%stride
+   end function place_number
 
    !> A curve with room for `places`, none known.
    pure function new_curve(request, point, places) result(c)
@@ -123,20 +140,22 @@ contains
    !> The guide of pair number `i`. It belongs to link i of the pair: Q - P = s e - h n, eq. (9), lies on a line through
    !> P - h n. Where link j is ground, or link i has no extent, the same pair is a guide of link j: P slides along the
    !> line through Q + h n.
-   pure function guide_of(m, i) result(g)
+   pure function guide_of(m, outlines, i) result(g)
       type(mechanism_t), intent(in) :: m
+      type(outline_t), intent(in) :: outlines(:)
       integer, intent(in) :: i
       type(guide_t) :: g
 
       g%pair = i
       associate (pair => m%pairs(i), li => m%points(m%pairs(i)%point_i)%link, lj => m%points(m%pairs(i)%point_j)%link)
          if (.not. m%links(li)%ground .and. (m%links(lj)%ground .or. &
-            (size(link_corners(m, li), 2) == 1 .and. size(link_corners(m, lj), 2) > 1))) then
+            (size(outlines(li)%corner, 2) == 1 .and. size(outlines(lj)%corner, 2) > 1))) then
             g%carrier = lj
             g%block = li
             g%point = pair%point_i
             g%pivot = pair%point_j
             g%angle = pair%alpha - pair%beta
+            g%block_angle = pair%alpha
             g%sense = -1
          else
             g%carrier = li
@@ -144,6 +163,7 @@ contains
             g%point = pair%point_j
             g%pivot = pair%point_i
             g%angle = pair%alpha
+            g%block_angle = pair%alpha - pair%beta
          end if
          g%foot = m%points(g%pivot)%offset - real(g%sense, wp)*pair%offset*quarter_turn(direction(g%angle))
       end associate
@@ -179,17 +199,22 @@ contains
       call record_slides(d%guides, m, now)
       call record_curves(d, m, s, k)
       call record_flags(d, s, now, before)
-      if (is_shown(k, instant_count(m))) d%shown = [d%shown, now]
+      if (.not. is_frame(k, instant_count(m), size(d%frame))) return
+      d%frames = d%frames + 1
+      d%frame(d%frames) = now
    end subroutine record_instant
 
-   !> Whether instant number `k` (0, 1, ...) of `n` is one of the positions that are drawn.
-   pure logical function is_shown(k, n)
+   !> Whether instant number `k` (0, 1, ...) of `n` is one of `frames` evenly spaced ones, the first and the last.
+   pure logical function is_frame(k, n, frames)
       use, intrinsic :: iso_fortran_env, only: int64
-      integer, intent(in) :: k, n
-      integer :: i
+      integer, intent(in) :: k, n, frames
+      integer(int64) :: i
 
-      is_shown = n <= positions .or. any([(int(i, int64)*(n - 1)/(positions - 1) == k, i=0, positions - 1)])
-   end function is_shown
+      is_frame = n <= frames
+      if (is_frame) return
+      i = (int(k, int64)*(frames - 1) + n - 2)/(n - 1)
+      is_frame = i*(n - 1)/(frames - 1) == k
+   end function is_frame
 
    !> Widens the ranges of the slides.
    pure subroutine record_slides(guides, m, now)
@@ -219,8 +244,8 @@ contains
       real(wp) :: p(2, 0:2)
       integer :: i, n, c, local
 
-      if (mod(k, d%stride) /= 0 .or. k > m%steps) return
-      n = 1 + k/d%stride
+      if (k > m%steps .or. (mod(k, d%stride) /= 0 .and. k < m%steps)) return
+      n = place_number(d, k)
       do i = 1, size(d%curves)
          associate (curve => d%curves(i))
             c = s%parts%part(curve%request)
@@ -265,17 +290,6 @@ contains
       end do
    end subroutine record_flags
 
-   !> The number of the position that is drawn in full: the first one of which most links are known.
-   pure integer function clearest(d) result(best)
-      type(drawing_t), intent(in) :: d
-      integer :: i
-
-      best = min(1, size(d%shown))
-      do i = 2, size(d%shown)
-         if (count(d%shown(i)%known) > count(d%shown(best)%known)) best = i
-      end do
-   end function clearest
-
    !> Place (2) of point number `i` at the position `s`.
    pure function point_place(m, s, i) result(p)
       type(mechanism_t), intent(in) :: m
@@ -285,77 +299,4 @@ contains
 
       p = point_of(s%place(:, m%points(i)%link), m%points(i)%offset)
    end function point_place
-
-   !> The outline of `link` in its own axes (2, corners): the convex hull of its points; two where they lie in line, one
-   !> where they are one place, none where it has no point.
-   pure function link_corners(m, link) result(corners)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: link
-      real(wp), allocatable :: corners(:, :)
-      integer :: i
-      integer, allocatable :: own(:)
-
-      own = pack([(i, i=1, size(m%points))], m%points%link == link)
-      allocate (corners(2, size(own)))
-      do i = 1, size(own)
-         corners(:, i) = m%points(own(i))%offset
-      end do
-      corners = hull(corners)
-   end function link_corners
-
-   !> The corners of the convex hull of `p` (2, :), counterclockwise, by Jarvis's march; corners in line are left out.
-   pure function hull(p) result(corners)
-      real(wp), intent(in) :: p(:, :)
-      real(wp), allocatable :: corners(:, :)
-      integer :: order(size(p, 2)), start, last, next, i, n
-      real(wp) :: extent, side
-
-      if (size(p, 2) == 0) then
-         corners = p
-         return
-      end if
-      extent = maxval(maxval(p, dim=2) - minval(p, dim=2))
-      start = 1
-      do i = 2, size(p, 2)
-         if (p(1, i) < p(1, start) .or. (p(1, i) <= p(1, start) .and. p(2, i) < p(2, start))) start = i
-      end do
-      n = 0
-      last = start
-      do
-         n = n + 1
-         order(n) = last
-         next = 0
-         do i = 1, size(p, 2)
-            if (is_same_place(p(:, i), p(:, last), extent)) cycle
-            if (next == 0) then
-               next = i
-               cycle
-            end if
-            side = turn_of(p(:, last), p(:, next), p(:, i))
-            if (side < -same_place .or. (side <= same_place .and. &
-               norm2(p(:, i) - p(:, last)) > norm2(p(:, next) - p(:, last)))) next = i
-         end do
-         if (next == 0 .or. n == size(p, 2)) exit
-         if (is_same_place(p(:, next), p(:, start), extent)) exit
-         last = next
-      end do
-      corners = p(:, order(:n))
-   end function hull
-
-   !> The sine of the angle at `a` (2) from `b` (2) to `c` (2), which are other places.
-   pure real(wp) function turn_of(a, b, c)
-      real(wp), intent(in) :: a(2), b(2), c(2)
-      real(wp) :: u(2), v(2)
-
-      u = (b - a)/norm2(b - a)
-      v = (c - a)/norm2(c - a)
-      turn_of = u(1)*v(2) - u(2)*v(1)
-   end function turn_of
-
-   !> Whether `p` and `q` (2) are one place for the eye, where what is drawn has the given `extent`.
-   pure logical function is_same_place(p, q, extent)
-      real(wp), intent(in) :: p(2), q(2), extent
-
-      is_same_place = all(abs(p - q) <= same_place*extent)
-   end function is_same_place
 end module drawing

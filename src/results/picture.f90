@@ -4,10 +4,13 @@ module picture
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use numerals, only: full, whole, fixed
-   use drawing, only: drawing_t, snapshot_t, point_place, clearest, is_same_place
+   use planar, only: point_of
+   use drawing, only: drawing_t, snapshot_t, flag_t, point_place
+   use outline, only: is_same_place
+   use picture_frames, only: clearest, faint_frames
    use canvas, only: canvas_t
-   use picture_parts, only: put_bodies, put_outlines, put_guides, put_ground, put_blocks, put_joints, put_path, &
-      guide_ends, color_of
+   use picture_parts, only: put_body, put_outlines, put_guide, put_ground, put_block, put_joint, put_dots, put_path, &
+      put_flagged, guide_ends, color_of
    use picture_drives, only: put_drives
    use picture_names, only: put_names
    use svg, only: svg_head, svg_end, put_group, put_group_end, put_polyline, put_words
@@ -26,6 +29,12 @@ module picture
    !> The length of the scale bar, at most.
    real(wp), parameter :: max_bar = 150.0_wp
 
+   !> The frames of a drawing that a picture shows.
+   type :: choice_t
+      integer :: best = 0                    !< in full; 0 for none
+      integer, allocatable :: faint(:)
+   end type choice_t
+
 contains
 
    !> The first line of a file that holds a picture.
@@ -41,37 +50,41 @@ contains
       type(mechanism_t), intent(in) :: sets(:)
       type(drawing_t), intent(in) :: drawings(:)
       type(canvas_t) :: c(size(drawings))
+      type(choice_t) :: choice(size(drawings))
       integer :: top(size(drawings) + 1), i
 
       top(1) = 0
       do i = 1, size(drawings)
-         call view_of(sets(i), drawings(i), top(i), c(i), top(i + 1))
+         choice(i)%best = clearest(sets(i), drawings(i))
+         choice(i)%faint = faint_frames(sets(i), drawings(i), choice(i)%best)
+         call view_of(sets(i), drawings(i), choice(i), top(i), c(i), top(i + 1))
       end do
       call svg_head(o, width, max(1, top(size(top))))
       do i = 1, size(drawings)
-         call put_set(o, c(i), sets(i), drawings(i), top(i), top(i + 1))
+         call put_set(o, c(i), sets(i), drawings(i), choice(i), top(i), top(i + 1))
       end do
       call svg_end(o)
    end subroutine put_pictures
 
    !> Where the set `m` is drawn: the canvas `c` of a picture that begins at the pixel `top` and ends above `bottom`.
    !> The scale has three digits and the shift is whole: rounding errors of the results do not move the picture.
-   subroutine view_of(m, d, top, c, bottom)
+   subroutine view_of(m, d, choice, top, c, bottom)
       type(mechanism_t), intent(in) :: m
       type(drawing_t), intent(in) :: d
+      type(choice_t), intent(in) :: choice
       integer, intent(in) :: top
       type(canvas_t), intent(out) :: c
       integer, intent(out) :: bottom
       real(wp) :: low(2), high(2), size_of_it(2), room
       integer :: height
 
-      call find_extent(m, d, low, high)
+      call find_extent(m, d, choice, low, high)
       size_of_it = high - low
       room = real(width, wp) - 2.0_wp*margin
       c%scale = 1.0_wp
       if (any(size_of_it > 0.0_wp)) c%scale = rounded_down(1.0_wp/max(size_of_it(1)/room, size_of_it(2)/max_height))
       height = ceiling(max(min_height, c%scale*size_of_it(2)) + 2.0_wp*margin)
-      bottom = top + above + height + below + line_height*size(d%flags)
+      bottom = top + above + height + below + line_height*flag_lines(d)
       c%shift = anint([0.5_wp*real(width, wp) - c%scale*(low(1) + 0.5_wp*size_of_it(1)), &
          real(top + above, wp) + 0.5_wp*real(height, wp) + c%scale*(low(2) + 0.5_wp*size_of_it(2))])
       c%low = [4.0_wp, real(top + above, wp)]
@@ -79,16 +92,18 @@ contains
    end subroutine view_of
 
    !> The corners `low` and `high` (2) of what the picture shows of `m`.
-   subroutine find_extent(m, d, low, high)
+   subroutine find_extent(m, d, choice, low, high)
       type(mechanism_t), intent(in) :: m
       type(drawing_t), intent(in) :: d
+      type(choice_t), intent(in) :: choice
       real(wp), intent(out) :: low(2), high(2)
       integer :: i, k
 
       low = huge(1.0_wp)
       high = -huge(1.0_wp)
-      do i = 1, size(d%shown)
-         call widen_by_links(m, d, d%shown(i), i == clearest(d), low, high)
+      if (choice%best > 0) call widen_by_links(m, d, d%frame(choice%best), .true., low, high)
+      do i = 1, size(choice%faint)
+         call widen_by_links(m, d, d%frame(choice%faint(i)), .false., low, high)
       end do
       do i = 1, size(d%flags)
          call widen_by_links(m, d, d%flags(i)%last, .false., low, high)
@@ -134,6 +149,8 @@ contains
          ends = guide_ends(d%guides(i), s)
          call widen(ends(:, 1), low, high)
          call widen(ends(:, 2), low, high)
+         if (.not. m%links(d%guides(i)%carrier)%ground) &
+            call widen(point_of(s%place(:, d%guides(i)%carrier), d%guides(i)%foot), low, high)
       end do
    end subroutine widen_by_links
 
@@ -157,49 +174,90 @@ contains
    end function rounded_down
 
    !> One set, from the pixel `top` to above `bottom`.
-   subroutine put_set(o, c, m, d, top, bottom)
+   subroutine put_set(o, c, m, d, choice, top, bottom)
       type(output_t), intent(inout) :: o
       type(canvas_t), intent(inout) :: c
       type(mechanism_t), intent(in) :: m
       type(drawing_t), intent(in) :: d
+      type(choice_t), intent(in) :: choice
       integer, intent(in) :: top, bottom
       type(snapshot_t) :: s
-      integer :: i, best
+      integer :: i
 
-      best = clearest(d)
       s = d%now
-      if (best > 0) s = d%shown(best)
-      call put_group(o, 'class="set" data-set="'//whole(m%set_number)//'" data-scale="'//full(c%scale)//'" data-x="' &
-         //fitted(c%shift(1))//'" data-y="'//fitted(c%shift(2))//'" data-origin="'//full(d%origin(1))//' ' &
-         //full(d%origin(2))//'" data-t="'//full(s%t)//'"', trim(m%title))
-      call put_words(o, real([14, top + 24], wp), 'start', 'class="title"', &
-         trim(whole(m%set_number)//'.  '//m%title))
+      if (choice%best > 0) s = d%frame(choice%best)
+      call put_set_head(o, c, m, d, s%t, top)
       call put_group(o, 'class="faint"', '')
-      do i = 1, size(d%shown)
-         if (i /= best) call put_outlines(o, c, m, d%shown(i))
+      do i = 1, size(choice%faint)
+         call put_outlines(o, c, m, d, d%frame(choice%faint(i)))
       end do
       call put_group_end(o)
-      do i = 1, size(d%curves)
-         if (moves(d, i)) call put_path(o, c, d%curves(i), trim(m%points(d%curves(i)%point)%name), &
-            color_of(m%points(d%curves(i)%point)%link))
-      end do
-      call put_ground(o, c, m, d)
-      call put_guides(o, c, m, d, s)
-      call put_bodies(o, c, m, s)
+      call put_curves(o, c, m, d)
       do i = 1, size(d%flags)
-         call put_group(o, 'class="flagged"', '')
-         call put_outlines(o, c, m, d%flags(i)%last)
-         call put_group_end(o)
+         call put_flagged(o, c, m, d, d%flags(i)%last)
       end do
-      call put_blocks(o, c, m, d, s)
-      call put_joints(o, c, m, s)
+      call put_mechanism(o, c, m, d, s)
       call put_drives(o, c, m, d, s)
-      call put_names(o, c, m, s)
-      call put_times(o, m, d, s, best, bottom)
+      call put_names(o, c, m, d, s)
+      call put_times(o, m, d, choice, bottom)
       call put_flags(o, m, d, bottom)
       call put_scale(o, c, m)
       call put_group_end(o)
    end subroutine put_set
+
+   !> Begins the group of a set, with its title at the pixel `top`. `t`: the instant that is drawn.
+   subroutine put_set_head(o, c, m, d, t, top)
+      type(output_t), intent(inout) :: o
+      type(canvas_t), intent(in) :: c
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
+      real(wp), intent(in) :: t
+      integer, intent(in) :: top
+
+      call put_group(o, 'class="set" data-set="'//whole(m%set_number)//'" data-scale="'//full(c%scale)//'" data-x="' &
+         //fitted(c%shift(1))//'" data-y="'//fitted(c%shift(2))//'" data-origin="'//full(d%origin(1))//' ' &
+         //full(d%origin(2))//'" data-t="'//full(t)//'"', trim(m%title))
+      call put_words(o, real([14, top + 24], wp), 'start', 'class="title"', trim(whole(m%set_number)//'.  '//m%title))
+   end subroutine put_set_head
+
+   !> The paths of the points.
+   subroutine put_curves(o, c, m, d)
+      type(output_t), intent(inout) :: o
+      type(canvas_t), intent(inout) :: c
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
+      integer :: i
+
+      do i = 1, size(d%curves)
+         if (moves(d, i)) call put_path(o, c, d%curves(i), trim(m%points(d%curves(i)%point)%name), &
+            color_of(m%points(d%curves(i)%point)%link))
+      end do
+   end subroutine put_curves
+
+   !> Ground, links and pairs in full at the position `s`.
+   subroutine put_mechanism(o, c, m, d, s)
+      type(output_t), intent(inout) :: o
+      type(canvas_t), intent(inout) :: c
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
+      type(snapshot_t), intent(in) :: s
+      integer :: i
+
+      call put_ground(o, c, m, d)
+      do i = 1, size(d%guides)
+         call put_guide(o, c, m, d%guides(i), s)
+      end do
+      do i = 1, size(m%links)
+         call put_body(o, c, m, d, s, i)
+      end do
+      do i = 1, size(d%guides)
+         call put_block(o, c, m, d%guides(i), s)
+      end do
+      do i = 1, size(m%pairs)
+         call put_joint(o, c, m, s, i)
+      end do
+      call put_dots(o, c, m, s)
+   end subroutine put_mechanism
 
    !> Whether curve number `i` is more than one place, and no curve before has the same places.
    pure logical function moves(d, i)
@@ -224,27 +282,36 @@ contains
    end function moves
 
    !> At the foot: the instant that is drawn, and those that are faint.
-   subroutine put_times(o, m, d, s, best, bottom)
+   subroutine put_times(o, m, d, choice, bottom)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(drawing_t), intent(in) :: d
-      type(snapshot_t), intent(in) :: s
-      integer, intent(in) :: best, bottom
+      type(choice_t), intent(in) :: choice
+      integer, intent(in) :: bottom
       character(:), allocatable :: now, others
+      real(wp) :: y
       integer :: i
 
-      if (best == 0) return
-      now = 'T = '//fitted(s%t)//' '//trim(m%time_unit)
-      call put_words(o, real([14, bottom - 16 - line_height*size(d%flags)], wp), 'start', 'class="time"', now)
+      if (choice%best == 0) return
+      y = real(bottom - 16 - line_height*flag_lines(d), wp)
+      now = 'T = '//fitted(d%frame(choice%best)%t)//' '//trim(m%time_unit)
+      call put_words(o, [14.0_wp, y], 'start', 'class="time"', now)
       others = ''
-      do i = 1, size(d%shown)
-         if (i == best) cycle
-         if (len(others) > 0) others = others//', '
-         others = others//fitted(d%shown(i)%t)
+      do i = 1, size(choice%faint)
+         if (i > 1) others = others//', '
+         others = others//fitted(d%frame(choice%faint(i))%t)
       end do
-      if (len(others) > 0) call put_words(o, real([32 + 9*len(now), bottom - 16 - line_height*size(d%flags)], wp), &
-         'start', 'class="between"', phrase(say_faint, m%polish)//' '//others)
+      if (len(others) > 0) call put_words(o, [real(32 + 9*len(now), wp), y], 'start', 'class="between"', &
+         phrase(say_faint, m%polish)//' '//others)
    end subroutine put_times
+
+   !> The lines of words about flagged instants: one for each that is drawn, and one where there are more.
+   pure integer function flag_lines(d)
+      type(drawing_t), intent(in) :: d
+
+      flag_lines = size(d%flags)
+      if (d%flagged > size(d%flags)) flag_lines = flag_lines + 1
+   end function flag_lines
 
    !> Below it: the flagged instants, and what is drawn of them.
    subroutine put_flags(o, m, d, bottom)
@@ -255,19 +322,27 @@ contains
       character(:), allocatable :: words
       integer :: i
 
-      do i = 1, size(d%flags)
-         associate (flag => d%flags(i))
-            words = 'T = '//fitted(flag%t)//': '//words_of_mark(flag%mark, flag%singularity, m%polish)
-            if (any(flag%last%known)) then
-               if (flag%earlier) then
-                  words = words//'; '//phrase(say_last_position, m%polish)//' '//fitted(flag%last%t)
-               end if
-            end if
-            call put_words(o, real([14, bottom - 16 - line_height*(size(d%flags) - i)], wp), 'start', 'class="flag"', &
-               words)
-         end associate
+      do i = 1, flag_lines(d)
+         if (i > size(d%flags)) then
+            words = phrase(say_flagged_in_all, m%polish)//' '//whole(d%flagged)
+         else
+            words = words_of_flag(m, d%flags(i))
+         end if
+         call put_words(o, real([14, bottom - 16 - line_height*(flag_lines(d) - i)], wp), 'start', 'class="flag"', &
+            words)
       end do
    end subroutine put_flags
+
+   !> When and why an instant is flagged, and what is drawn of it.
+   function words_of_flag(m, flag) result(words)
+      type(mechanism_t), intent(in) :: m
+      type(flag_t), intent(in) :: flag
+      character(:), allocatable :: words
+
+      words = 'T = '//fitted(flag%t)//': '//words_of_mark(flag%mark, flag%singularity, m%polish)
+      if (flag%earlier .and. any(flag%last%known)) &
+         words = words//'; '//phrase(say_last_position, m%polish)//' '//fitted(flag%last%t)
+   end function words_of_flag
 
    !> The scale bar, at the foot on the right: 1, 2 or 5 times a power of ten units of length.
    subroutine put_scale(o, c, m)

@@ -4,22 +4,28 @@ module picture_drives
    use constants, only: degree
    use mechanism, only: mechanism_t, drive_t, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, &
       drive_slide
-   use planar, only: direction, quarter_turn
+   use planar, only: quarter_turn
    use drives, only: drive_motion, new_law
    use names, only: drive_name
    use drawing, only: drawing_t, snapshot_t, point_place
-   use canvas, only: canvas_t, to_pixels, add_line
-   use picture_parts, only: corner_pixels, guide_direction, half_block
+   use canvas, only: canvas_t, to_pixels, add_line, cover_of
+   use picture_parts, only: corner_pixels, direction_in_picture, half_block
    use svg, only: put_group, put_group_end, put_polyline, put_polygon
    use text_output, only: output_t
    implicit none
    private
    public :: put_drives, joint_with
 
-   !> Radius of an arc, length of an arrow, its distance from the place, its tip.
-   real(wp), parameter :: arc_radius = 24.0_wp, arrow_length = 36.0_wp, arrow_start = 12.0_wp, tip_length = 9.0_wp, &
-      tip_half = 4.5_wp
+   !> Radius of an arc, length of an arrow, its distance from the place along it and aside, its tip.
+   real(wp), parameter :: arc_radius = 24.0_wp, arrow_length = 36.0_wp, arrow_start = 14.0_wp, &
+      arrow_aside = half_block(2) + 10.0_wp, tip_length = 9.0_wp, tip_half = 4.5_wp
    integer, parameter :: arc_pieces = 12
+   !> The angle of an arc without and with its tip, and where it may begin, from the side of the link in its own sense
+   !> (degrees).
+   real(wp), parameter :: arc_angle = 110.0_wp, tip_angle = 22.0_wp, &
+      arc_starts(*) = [25.0_wp, 200.0_wp, 45.0_wp, 180.0_wp, 65.0_wp, 160.0_wp, 85.0_wp, 140.0_wp, 105.0_wp, 120.0_wp]
+   !> The weight of an arrow for names, and what one farther from its place counts, in pixels of overlap.
+   real(wp), parameter :: arrow_weight = 3.0_wp, away = 20.0_wp
 
 contains
 
@@ -38,14 +44,14 @@ contains
          call put_group(o, 'class="drives"', trim(drive_name(m, m%drives(i))))
          select case (m%drives(i)%kind)
          case (drive_angle)
-            if (s%known(m%drives(i)%subject)) call put_arc(o, c, m, s, 0, m%drives(i)%subject, sense)
+            if (s%known(m%drives(i)%subject)) call put_arc(o, c, m, d, s, 0, m%drives(i)%subject, sense)
          case (drive_relangle)
             if (s%known(m%drives(i)%subject) .and. s%known(m%drives(i)%second)) &
-               call put_arc(o, c, m, s, m%drives(i)%subject, m%drives(i)%second, sense)
+               call put_arc(o, c, m, d, s, m%drives(i)%subject, m%drives(i)%second, sense)
          case (drive_x, drive_y)
             if (s%known(m%points(m%drives(i)%subject)%link)) call put_arrow(o, c, &
                to_pixels(c, point_place(m, s, m%drives(i)%subject)), &
-               sense*merge([1.0_wp, 0.0_wp], [0.0_wp, -1.0_wp], m%drives(i)%kind == drive_x), [0.0_wp, 0.0_wp])
+               sense*merge([1.0_wp, 0.0_wp], [0.0_wp, -1.0_wp], m%drives(i)%kind == drive_x), .true.)
          case (drive_slide)
             call put_slide(o, c, m, d, s, m%drives(i)%subject, sense)
          end select
@@ -68,9 +74,8 @@ contains
       do k = 1, size(d%guides)
          associate (g => d%guides(k))
             if (g%pair /= pair .or. .not. (s%known(g%carrier) .and. s%known(g%block))) cycle
-            e = guide_direction(g, s)
-            call put_arrow(o, c, to_pixels(c, point_place(m, s, g%point)), sense*real(g%sense, wp)*e, &
-               -1.0_wp*sign(half_block(2) + 6.0_wp, e(1))*quarter_turn(e))
+            e = sense*real(g%sense, wp)*direction_in_picture(s%place(3, g%carrier) + g%angle)
+            call put_arrow(o, c, to_pixels(c, point_place(m, s, g%point)), e, .false.)
          end associate
       end do
    end subroutine put_slide
@@ -88,37 +93,52 @@ contains
 
    !> An arc about a joint of `link` with an arrow: about its joint with `base`, 0 for the ground, otherwise about its
    !> first joint.
-   subroutine put_arc(o, c, m, s, base, link, sense)
+   subroutine put_arc(o, c, m, d, s, base, link, sense)
       type(output_t), intent(inout) :: o
       type(canvas_t), intent(inout) :: c
       type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
       type(snapshot_t), intent(in) :: s
       integer, intent(in) :: base, link
       real(wp), intent(in) :: sense
-      real(wp) :: center(2), start, p(2, 0:arc_pieces), e(2), outline
-      real(wp), allocatable :: corners(:, :)
+      real(wp) :: center(2), start, best(2, 0:arc_pieces), e(2), cover, least
       integer :: k, point
 
       point = joint_with(m, base, link)
       center = to_pixels(c, s%place(:2, link))
       if (point > 0) center = to_pixels(c, point_place(m, s, point))
-      ! From the side of the link, 25 degrees on: the arc is beside the bar.
-      corners = corner_pixels(c, m, s, link)
       start = s%place(3, link)
-      if (size(corners, 2) > 1) then
-         e = sum(corners, dim=2)/real(size(corners, 2), wp) - center
-         if (norm2(e) > 1.0_wp) start = atan2(-e(2), e(1))
-      end if
-      do k = 0, arc_pieces
-         outline = start + sense*degree*(25.0_wp + 110.0_wp*real(k, wp)/real(arc_pieces, wp))
-         e = direction(outline)
-         p(:, k) = center + arc_radius*[e(1), -e(2)]
-         if (k > 0) call add_line(c, p(:, k - 1), p(:, k), 1.0_wp)
+      associate (corners => corner_pixels(c, d%outlines(link), s%place(:, link)))
+         if (size(corners, 2) > 1) then
+            e = sum(corners, dim=2)/real(size(corners, 2), wp) - center
+            if (norm2(e) > 1.0_wp) start = atan2(-e(2), e(1))
+         end if
+      end associate
+      least = huge(least)
+      do k = 1, size(arc_starts)
+         cover = cover_of(c, arc(center, start + sense*degree*arc_starts(k), sense*degree*(arc_angle + tip_angle)))
+         if (cover >= least) cycle
+         least = cover
+         best = arc(center, start + sense*degree*arc_starts(k), sense*degree*arc_angle)
       end do
-      call put_polyline(o, p, 'class="drive"')
-      e = sense*[-sin(outline), -cos(outline)]
-      call put_tip(o, p(:, arc_pieces), e)
+      do k = 1, arc_pieces
+         call add_line(c, best(:, k - 1), best(:, k), arrow_weight)
+      end do
+      call put_polyline(o, best, 'class="drive"')
+      e = best(:, arc_pieces) - center
+      call put_tip(o, best(:, arc_pieces), -sense*quarter_turn(e)/norm2(e))
    end subroutine put_arc
+
+   !> The places (2, 0:arc_pieces) of an arc about the pixel `center` (2), from `start` over `angle` (rad).
+   pure function arc(center, start, angle) result(p)
+      real(wp), intent(in) :: center(2), start, angle
+      real(wp) :: p(2, 0:arc_pieces)
+      integer :: k
+
+      do k = 0, arc_pieces
+         p(:, k) = center + arc_radius*direction_in_picture(start + angle*real(k, wp)/real(arc_pieces, wp))
+      end do
+   end function arc
 
    !> The point of `link` in its revolute pair with the link `base`, with any ground link where `base` is 0, or in its
    !> first revolute pair; 0 if it has none.
@@ -144,19 +164,31 @@ contains
       end do
    end function joint_with
 
-   !> A straight arrow in the direction `e` (2) beside the pixel `p` (2), moved by `aside` (2).
-   subroutine put_arrow(o, c, p, e, aside)
+   !> A straight arrow in the direction `e` (2) beside the pixel `p` (2) or, if it may be `ahead` of it, there: where it
+   !> covers least.
+   subroutine put_arrow(o, c, p, e, ahead)
       type(output_t), intent(inout) :: o
       type(canvas_t), intent(inout) :: c
-      real(wp), intent(in) :: p(2), e(2), aside(2)
-      real(wp) :: ends(2, 2), start
+      real(wp), intent(in) :: p(2), e(2)
+      logical, intent(in) :: ahead
+      real(wp) :: ends(2, 2), best(2, 2), cover, least
+      integer :: side, k
 
-      start = merge(arrow_start, -0.5_wp*arrow_length, norm2(aside) < 1.0_wp)
-      ends(:, 1) = p + aside + start*e
-      ends(:, 2) = ends(:, 1) + arrow_length*e
-      call put_polyline(o, ends, 'class="drive"')
-      call put_tip(o, ends(:, 2), e)
-      call add_line(c, ends(:, 1), ends(:, 2), 1.0_wp)
+      least = huge(least)
+      do side = merge(0, 1, ahead), 4
+         ends(:, 1) = p + arrow_start*e
+         if (side > 0) ends(:, 1) = p - 0.5_wp*arrow_length*e + real((side + 1)/2, wp) &
+            *merge(arrow_aside, -arrow_aside, (mod(side, 2) == 1) .eqv. (e(1) < 0.0_wp))*quarter_turn(e)
+         ends(:, 2) = ends(:, 1) + arrow_length*e
+         cover = cover_of(c, reshape([(ends(:, 1) + real(k, wp)/6.0_wp*(ends(:, 2) + tip_length*e - ends(:, 1)), &
+            k=0, 6)], [2, 7])) + away*real((side + 1)/2, wp)
+         if (cover >= least) cycle
+         least = cover
+         best = ends
+      end do
+      call put_polyline(o, best, 'class="drive"')
+      call put_tip(o, best(:, 2), e)
+      call add_line(c, best(:, 1), best(:, 2) + tip_length*e, arrow_weight)
    end subroutine put_arrow
 
    !> The tip of an arrow that ends at the pixel `p` (2) in the direction `e` (2).

@@ -1,8 +1,8 @@
 !> The names in a picture, each where it covers least of what is drawn.
 module picture_names
-   use kinds, only: wp
-   use mechanism, only: mechanism_t, pair_revolute
-   use drawing, only: snapshot_t, point_place
+   use kinds, only: wp, label_length
+   use mechanism, only: mechanism_t, pair_revolute, request_point
+   use drawing, only: drawing_t, snapshot_t, point_place
    use canvas, only: canvas_t, to_pixels, find_clear_place
    use picture_parts, only: corner_pixels, color_of
    use svg, only: put_words
@@ -21,18 +21,19 @@ module picture_names
 contains
 
    !> The names of the points that are known at `s`, then those of the moving links.
-   subroutine put_names(o, c, m, s)
+   subroutine put_names(o, c, m, d, s)
       type(output_t), intent(inout) :: o
       type(canvas_t), intent(inout) :: c
       type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
       type(snapshot_t), intent(in) :: s
 
       if (size(m%links) > max_names .or. size(m%points) > max_names) return
-      call put_points(o, c, m, s, is_used(m))
-      call put_links(o, c, m, s)
+      call put_points(o, c, m, s, is_used(m), is_printed(m))
+      call put_links(o, c, m, d, s)
    end subroutine put_names
 
-   !> (points) Whether a point has its name in the picture: of moving links all, of the ground those of joints. The
+   !> (points) Whether a point may have its name in the picture: of moving links all, of the ground those of joints. The
    !> point of the ground from which a slide is counted need not lie on the guide.
    pure function is_used(m) result(used)
       type(mechanism_t), intent(in) :: m
@@ -45,40 +46,48 @@ contains
       end do
    end function is_used
 
-   !> A name for each place: of the points there the one with the shortest name, the first of these.
-   subroutine put_points(o, c, m, s, used)
+   !> (points) Whether PRINT asks for it.
+   pure function is_printed(m) result(printed)
+      type(mechanism_t), intent(in) :: m
+      logical :: printed(size(m%points))
+
+      printed = .false.
+      printed(pack(m%requests%subject, m%requests%kind == request_point)) = .true.
+   end function is_printed
+
+   !> A name for each place, first for those of points that are `printed` (points): of the points there a printed one,
+   !> of several the one with the shortest name, the first of these. The name of its link would stand there twice.
+   subroutine put_points(o, c, m, s, used, printed)
       type(output_t), intent(inout) :: o
       type(canvas_t), intent(inout) :: c
       type(mechanism_t), intent(in) :: m
       type(snapshot_t), intent(in) :: s
-      logical, intent(in) :: used(:)
+      logical, intent(in) :: used(:), printed(:)
       logical :: open(size(m%points))
       real(wp) :: p(2, size(m%points)), start(2)
-      integer :: i, k, best
+      integer :: i, best
 
       open = used .and. s%known(m%points%link)
       do i = 1, size(m%points)
          if (open(i)) p(:, i) = to_pixels(c, point_place(m, s, i))
       end do
-      do i = 1, size(m%points)
-         if (.not. open(i)) cycle
-         best = i
-         do k = i + 1, size(m%points)
-            if (.not. open(k)) cycle
-            if (any(abs(p(:, k) - p(:, i)) > together)) cycle
-            open(k) = .false.
-            if (len_trim(m%points(k)%name) < len_trim(m%points(best)%name)) best = k
+      do while (any(open))
+         best = minloc(len_trim(m%points%name) + merge(0, label_length + 1, printed), dim=1, mask=open)
+         do i = 1, size(m%points)
+            if (open(i)) open(i) = any(abs(p(:, i) - p(:, best)) > together)
          end do
-         call find_clear_place(c, p(:, i:i), len_trim(m%points(best)%name), start)
+         if (m%points(best)%name == m%links(m%points(best)%link)%name) cycle
+         call find_clear_place(c, p(:, best:best), len_trim(m%points(best)%name), start)
          call put_words(o, start, 'start', 'class="name"', trim(m%points(best)%name))
       end do
    end subroutine put_points
 
    !> The names of the moving links, each in its color: beside a bar, in or beside a polygon.
-   subroutine put_links(o, c, m, s)
+   subroutine put_links(o, c, m, d, s)
       type(output_t), intent(inout) :: o
       type(canvas_t), intent(inout) :: c
       type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
       type(snapshot_t), intent(in) :: s
       real(wp), allocatable :: p(:, :), q(:, :)
       real(wp) :: start(2)
@@ -86,7 +95,7 @@ contains
 
       do i = 1, size(m%links)
          if (m%links(i)%ground .or. .not. s%known(i)) cycle
-         p = corner_pixels(c, m, s, i)
+         p = corner_pixels(c, d%outlines(i), s%place(:, i))
          n = size(p, 2)
          if (n == 0) cycle
          if (n == 1) then

@@ -4,20 +4,22 @@ module picture_parts
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_revolute
    use planar, only: direction, quarter_turn, point_of
-   use drawing, only: drawing_t, snapshot_t, curve_t, guide_t, point_place, link_corners
+   use drawing, only: drawing_t, snapshot_t, curve_t, guide_t, point_place
+   use outline, only: outline_t, corners_at
    use canvas, only: canvas_t, to_pixels, add_line, add_box
    use svg, only: put_group, put_group_end, put_circle, put_polyline, put_polygon, put_curve, attribute
    use text_output, only: output_t
    implicit none
    private
-   public :: put_bodies, put_outlines, put_guides, put_ground, put_blocks, put_joints, put_path, guide_ends
-   public :: color_of, corner_pixels, guide_direction, half_block
+   public :: put_body, put_outlines, put_flagged, put_guide, put_ground, put_block, put_joint, put_dots, put_path
+   public :: guide_ends, color_of, corner_pixels, direction_in_picture, joint_point, half_block
 
    !> Links take these in turn.
    character(7), parameter :: colors(*) = ['#3b6ea5', '#d98324', '#4c8c4a', '#8058a5', '#2f9aa0', '#96692f', '#b0528a']
-   real(wp), parameter :: joint_radius = 4.5_wp, point_radius = 2.5_wp
-   !> The guide goes on by so much beyond the places of its block; half the length and width of a block.
-   real(wp), parameter :: beyond = 22.0_wp, half_block(2) = [12.0_wp, 7.0_wp]
+   real(wp), parameter :: joint_radius = 4.5_wp, point_radius = 2.5_wp, ring_radius = 8.0_wp
+   !> Half the length and width of a block. A guide goes on by so much beyond the places of its block: the ground's, and
+   !> that of a moving link.
+   real(wp), parameter :: half_block(2) = [12.0_wp, 7.0_wp], beyond = 22.0_wp, rod_beyond = 15.0_wp
    !> Half the width and the height of a support; distance and length of the lines of a hatch.
    real(wp), parameter :: half_support = 10.0_wp, support_height = 16.0_wp, hatch_step = 7.0_wp, hatch_length = 6.0_wp
    !> A piece of a curve is a cubic only where its control points are no farther from its ends than this part of the
@@ -36,33 +38,29 @@ contains
       color = colors(1 + modulo(i - 1, size(colors)))
    end function color_of
 
-   !> The moving links in full at the position `s`: bars, or polygons.
-   subroutine put_bodies(o, c, m, s)
+   !> Link number `i`, which moves, in full at the position `s`: a bar, or a polygon.
+   subroutine put_body(o, c, m, d, s, i)
       type(output_t), intent(inout) :: o
       type(canvas_t), intent(inout) :: c
       type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
       type(snapshot_t), intent(in) :: s
-      real(wp), allocatable :: p(:, :)
-      character(:), allocatable :: stroke
-      integer :: i
+      integer, intent(in) :: i
+      real(wp) :: p(2, size(d%outlines(i)%corner, 2))
 
-      do i = 1, size(m%links)
-         if (m%links(i)%ground .or. .not. s%known(i)) cycle
-         p = corner_pixels(c, m, s, i)
-         if (size(p, 2) < 2) cycle
-         stroke = attribute('stroke', color_of(i))
-         call put_group(o, 'style="stroke:'//color_of(i)//'"', trim(m%links(i)%name))
-         if (size(p, 2) == 2) then
-            call put_polyline(o, p, 'class="bar" style="stroke:'//color_of(i)//'"')
-            call put_polyline(o, p, 'class="core"')
-            call add_line(c, p(:, 1), p(:, 2), 1.5_wp)
-         else
-            call put_polygon(o, p, 'class="body" style="stroke:'//color_of(i)//';fill:'//color_of(i)//'"')
-            call add_outline(c, p)
-         end if
-         call put_group_end(o)
-      end do
-   end subroutine put_bodies
+      if (m%links(i)%ground .or. .not. s%known(i) .or. size(p, 2) < 2) return
+      p = corner_pixels(c, d%outlines(i), s%place(:, i))
+      call put_group(o, 'style="stroke:'//color_of(i)//'"', trim(m%links(i)%name))
+      if (size(p, 2) == 2) then
+         call put_polyline(o, p, 'class="bar" style="stroke:'//color_of(i)//'"')
+         call put_polyline(o, p, 'class="core"')
+         call add_line(c, p(:, 1), p(:, 2), 1.5_wp)
+      else
+         call put_polygon(o, p, 'class="body" style="stroke:'//color_of(i)//';fill:'//color_of(i)//'"')
+         call add_outline(c, p)
+      end if
+      call put_group_end(o)
+   end subroutine put_body
 
    !> Notes the sides of the polygon `p` (2, :).
    subroutine add_outline(c, p)
@@ -76,93 +74,91 @@ contains
    end subroutine add_outline
 
    !> The moving links as thin lines at the position `s`.
-   subroutine put_outlines(o, c, m, s)
+   subroutine put_outlines(o, c, m, d, s)
       type(output_t), intent(inout) :: o
       type(canvas_t), intent(in) :: c
       type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
       type(snapshot_t), intent(in) :: s
-      real(wp), allocatable :: p(:, :)
       integer :: i
 
       do i = 1, size(m%links)
          if (m%links(i)%ground .or. .not. s%known(i)) cycle
-         p = corner_pixels(c, m, s, i)
-         if (size(p, 2) == 2) call put_polyline(o, p, 'class="thin"')
-         if (size(p, 2) > 2) call put_polygon(o, p, 'class="thin"')
+         associate (p => corner_pixels(c, d%outlines(i), s%place(:, i)))
+            if (size(p, 2) == 2) call put_polyline(o, p, 'class="thin"')
+            if (size(p, 2) > 2) call put_polygon(o, p, 'class="thin"')
+         end associate
       end do
    end subroutine put_outlines
 
-   !> The corners (2, :) of link number `i`, in pixels.
-   function corner_pixels(c, m, s, i) result(p)
-      type(canvas_t), intent(in) :: c
-      type(mechanism_t), intent(in) :: m
-      type(snapshot_t), intent(in) :: s
-      integer, intent(in) :: i
-      real(wp), allocatable :: p(:, :)
-      integer :: k
-
-      p = link_corners(m, i)
-      do k = 1, size(p, 2)
-         p(:, k) = to_pixels(c, point_of(s%place(:, i), p(:, k)))
-      end do
-   end function corner_pixels
-
-   !> The guides at the position `s`: a line over the range of the slide, hatched where it is the ground's, and a line
-   !> to it from the point that carries it.
-   subroutine put_guides(o, c, m, d, s)
+   !> The flagged position `s`: thin lines, and rings about the joints, which show where the lines are covered.
+   subroutine put_flagged(o, c, m, d, s)
       type(output_t), intent(inout) :: o
-      type(canvas_t), intent(inout) :: c
+      type(canvas_t), intent(in) :: c
       type(mechanism_t), intent(in) :: m
       type(drawing_t), intent(in) :: d
       type(snapshot_t), intent(in) :: s
-      real(wp) :: ends(2, 2), e(2), pivot(2, 2)
       integer :: i
 
-      do i = 1, size(d%guides)
-         associate (g => d%guides(i))
-            if (.not. s%known(g%carrier) .or. g%high < g%low) cycle
-            ends = guide_ends(g, s)
-            ends = reshape([to_pixels(c, ends(:, 1)), to_pixels(c, ends(:, 2))], [2, 2])
-            e = guide_direction(g, s)
-            ends = ends + beyond*reshape([-e, e], [2, 2])
-            call put_group(o, 'class="guide" style="stroke:'//carrier_color(m, g)//'"', trim(m%pairs(g%pair)%name))
-            if (m%links(g%carrier)%ground) then
-               call put_hatch(o, ends(:, 1), ends(:, 2), sign(1.0_wp, e(1))*quarter_turn(e))
-               call put_polyline(o, ends, 'class="guide"')
-            else
-               pivot(:, 1) = to_pixels(c, point_place(m, s, g%pivot))
-               pivot(:, 2) = to_pixels(c, point_of(s%place(:, g%carrier), g%foot))
-               pivot(:, 2) = nearest_on(pivot(:, 2), ends)
-               if (norm2(pivot(:, 2) - pivot(:, 1)) > 1.0_wp) &
-                  call put_polyline(o, pivot, 'style="stroke-width:4;stroke:'//carrier_color(m, g)//'"')
-               call put_polyline(o, ends, 'style="stroke-width:4;stroke:'//carrier_color(m, g)//'"')
-               call put_polyline(o, ends, 'style="stroke-width:1.5;stroke:#222"')
-               call add_line(c, pivot(:, 1), pivot(:, 2), 1.0_wp)
-            end if
-            call put_group_end(o)
-            call add_line(c, ends(:, 1), ends(:, 2), 1.0_wp)
+      call put_group(o, 'class="flagged"', '')
+      call put_outlines(o, c, m, d, s)
+      do i = 1, size(m%pairs)
+         associate (point => joint_point(m, s%known, i))
+            if (point > 0) call put_circle(o, to_pixels(c, point_place(m, s, point)), ring_radius, 'class="ring"')
          end associate
       end do
-   end subroutine put_guides
+      call put_group_end(o)
+   end subroutine put_flagged
 
-   !> The place (2) nearest to `p` (2) on the line between the `ends` (2, 2).
-   pure function nearest_on(p, ends) result(q)
-      real(wp), intent(in) :: p(2), ends(2, 2)
-      real(wp) :: q(2), u(2)
+   !> The corners (2, :) of the outline `h` of a link at `position` (x, y, phi), in pixels.
+   pure function corner_pixels(c, h, position) result(p)
+      type(canvas_t), intent(in) :: c
+      type(outline_t), intent(in) :: h
+      real(wp), intent(in) :: position(3)
+      real(wp) :: p(2, size(h%corner, 2))
+      integer :: k
 
-      u = ends(:, 2) - ends(:, 1)
-      q = ends(:, 1) + min(1.0_wp, max(0.0_wp, dot_product(p - ends(:, 1), u)/dot_product(u, u)))*u
-   end function nearest_on
+      p = corners_at(h, position)
+      do k = 1, size(p, 2)
+         p(:, k) = to_pixels(c, p(:, k))
+      end do
+   end function corner_pixels
 
-   !> The color of the link that carries the guide `g`.
-   pure function carrier_color(m, g) result(color)
+   !> The guide `g` at the position `s`: a line over the range of the slide. The ground's has a hatch. That of a moving
+   !> link is a rod that begins where the perpendicular from its pivot meets it.
+   subroutine put_guide(o, c, m, g, s)
+      type(output_t), intent(inout) :: o
+      type(canvas_t), intent(inout) :: c
       type(mechanism_t), intent(in) :: m
       type(guide_t), intent(in) :: g
-      character(7) :: color
+      type(snapshot_t), intent(in) :: s
+      real(wp) :: e(2), pivot(2), foot(2), ends(2, 2), from, to
+      real(wp), allocatable :: p(:, :)
 
-      color = color_of(g%carrier)
-      if (m%links(g%carrier)%ground) color = '#222222'
-   end function carrier_color
+      if (.not. s%known(g%carrier) .or. g%high < g%low) return
+      e = direction_in_picture(s%place(3, g%carrier) + g%angle)
+      pivot = to_pixels(c, point_place(m, s, g%pivot))
+      foot = to_pixels(c, point_of(s%place(:, g%carrier), g%foot))
+      from = c%scale*g%low
+      to = c%scale*g%high
+      call put_group(o, 'class="guide"', trim(m%pairs(g%pair)%name))
+      if (m%links(g%carrier)%ground) then
+         ends = reshape([foot + (from - beyond)*e, foot + (to + beyond)*e], [2, 2])
+         call put_hatch(o, ends(:, 1), ends(:, 2), sign(1.0_wp, e(1))*quarter_turn(e))
+         call put_polyline(o, ends, 'class="guide"')
+      else
+         ends = reshape([foot + min(from - rod_beyond, 0.0_wp)*e, foot + max(to + rod_beyond, 0.0_wp)*e], [2, 2])
+         p = ends
+         if (norm2(pivot - foot) > 1.0_wp) then
+            p = reshape([ends(:, 1), foot, pivot, foot, ends(:, 2)], [2, 5])
+            call add_line(c, pivot, foot, 1.0_wp)
+         end if
+         call put_polyline(o, p, 'class="rod" style="stroke:'//color_of(g%carrier)//'"')
+         call put_polyline(o, p, 'class="slot"')
+      end if
+      call put_group_end(o)
+      call add_line(c, ends(:, 1), ends(:, 2), 1.0_wp)
+   end subroutine put_guide
 
    !> The ends (2, 2) of the range of the slide on the guide `g` at the position `s`.
    pure function guide_ends(g, s) result(ends)
@@ -176,15 +172,14 @@ contains
       end associate
    end function guide_ends
 
-   !> The direction (2) of the guide `g` at the position `s` in the picture, where y is down.
-   pure function guide_direction(g, s) result(e)
-      type(guide_t), intent(in) :: g
-      type(snapshot_t), intent(in) :: s
+   !> The unit vector (2) at `angle` (rad) in the picture, where y is down.
+   pure function direction_in_picture(angle) result(e)
+      real(wp), intent(in) :: angle
       real(wp) :: e(2)
 
-      e = direction(s%place(3, g%carrier) + g%angle)
+      e = direction(angle)
       e(2) = -e(2)
-   end function guide_direction
+   end function direction_in_picture
 
    !> The hatch of the ground along the line from `p` to `q` (2), on the side of the unit vector `side` (2).
    subroutine put_hatch(o, p, q, side)
@@ -227,62 +222,91 @@ contains
       end do
    end subroutine put_ground
 
-   !> The blocks on their guides at the position `s`.
-   subroutine put_blocks(o, c, m, d, s)
+   !> The block on the guide `g` at the position `s`.
+   subroutine put_block(o, c, m, g, s)
       type(output_t), intent(inout) :: o
       type(canvas_t), intent(inout) :: c
       type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
+      type(guide_t), intent(in) :: g
       type(snapshot_t), intent(in) :: s
       real(wp) :: p(2), u(2), v(2)
       character(7) :: color
-      integer :: i
 
-      do i = 1, size(d%guides)
-         associate (g => d%guides(i))
-            if (.not. (s%known(g%carrier) .and. s%known(g%block))) cycle
-            p = to_pixels(c, point_place(m, s, g%point))
-            u = half_block(1)*guide_direction(g, s)
-            v = half_block(2)*quarter_turn(guide_direction(g, s))
-            color = color_of(g%block)
-            if (m%links(g%block)%ground) color = '#dddddd'
-            call put_group(o, 'class="slider"', trim(m%pairs(g%pair)%name))
-            call put_polygon(o, reshape([p - u - v, p + u - v, p + u + v, p - u + v], [2, 4]), &
-               'class="block" style="fill:'//color//'"')
-            call put_group_end(o)
-            call add_box(c, p - abs(u) - abs(v), p + abs(u) + abs(v))
-         end associate
-      end do
-   end subroutine put_blocks
+      if (.not. s%known(g%block)) return
+      p = to_pixels(c, point_place(m, s, g%point))
+      u = half_block(1)*direction_in_picture(s%place(3, g%block) + g%block_angle)
+      v = half_block(2)*quarter_turn(u)/half_block(1)
+      color = color_of(g%block)
+      if (m%links(g%block)%ground) color = '#dddddd'
+      call put_group(o, 'class="slider"', trim(m%pairs(g%pair)%name))
+      call put_polygon(o, reshape([p - u - v, p + u - v, p + u + v, p - u + v], [2, 4]), &
+         'class="block" style="fill:'//color//'"')
+      call put_group_end(o)
+      call add_box(c, p - abs(u) - abs(v), p + abs(u) + abs(v))
+   end subroutine put_block
 
-   !> The joints of the revolute pairs, and as dots the other points of moving links, at the position `s`.
-   subroutine put_joints(o, c, m, s)
+   !> The joint of pair number `i`, if that is a revolute pair, at the position `s`.
+   subroutine put_joint(o, c, m, s, i)
       type(output_t), intent(inout) :: o
       type(canvas_t), intent(inout) :: c
       type(mechanism_t), intent(in) :: m
       type(snapshot_t), intent(in) :: s
-      logical :: joined(size(m%points))
+      integer, intent(in) :: i
       real(wp) :: p(2)
-      integer :: i, point
 
-      joined = .false.
-      do i = 1, size(m%pairs)
-         joined([m%pairs(i)%point_i, m%pairs(i)%point_j]) = .true.
-         if (m%pairs(i)%kind /= pair_revolute) cycle
-         point = m%pairs(i)%point_i
-         if (.not. s%known(m%points(point)%link) .or. m%links(m%points(point)%link)%ground) point = m%pairs(i)%point_j
-         if (.not. s%known(m%points(point)%link)) cycle
+      if (m%pairs(i)%kind /= pair_revolute) return
+      associate (point => joint_point(m, s%known, i))
+         if (point == 0) return
          p = to_pixels(c, point_place(m, s, point))
-         call put_circle(o, p, joint_radius, 'class="joint" '//attribute('data-pair', trim(m%pairs(i)%name)))
-         call add_box(c, p - joint_radius, p + joint_radius)
+      end associate
+      call put_circle(o, p, joint_radius, 'class="joint" '//attribute('data-pair', trim(m%pairs(i)%name)))
+      call add_box(c, p - joint_radius, p + joint_radius)
+   end subroutine put_joint
+
+   !> The point at which pair number `i` is drawn: of the links that are `known` (links) that of a moving one, of two
+   !> moving ones the later in the deck; 0 for none.
+   pure integer function joint_point(m, known, i) result(point)
+      type(mechanism_t), intent(in) :: m
+      logical, intent(in) :: known(:)
+      integer, intent(in) :: i
+
+      integer :: ends(2), k
+
+      ends = [m%pairs(i)%point_i, m%pairs(i)%point_j]
+      point = 0
+      do k = 1, 2
+         associate (link => m%points(ends(k))%link)
+            if (.not. known(link)) cycle
+            if (point > 0) then
+               if (m%links(link)%ground .or. (link < m%points(point)%link .and. &
+                  .not. m%links(m%points(point)%link)%ground)) cycle
+            end if
+            point = ends(k)
+         end associate
       end do
+   end function joint_point
+
+   !> As dots the points of moving links, or of `link` alone, that no pair joins, at the position `s`.
+   subroutine put_dots(o, c, m, s, link)
+      type(output_t), intent(inout) :: o
+      type(canvas_t), intent(inout) :: c
+      type(mechanism_t), intent(in) :: m
+      type(snapshot_t), intent(in) :: s
+      integer, intent(in), optional :: link
+      logical :: wanted(size(m%points))
+      real(wp) :: p(2)
+      integer :: i
+
+      wanted = s%known(m%points%link) .and. .not. m%links(m%points%link)%ground
+      if (present(link)) wanted = wanted .and. m%points%link == link
+      wanted([m%pairs%point_i, m%pairs%point_j]) = .false.
       do i = 1, size(m%points)
-         if (joined(i) .or. .not. s%known(m%points(i)%link) .or. m%links(m%points(i)%link)%ground) cycle
+         if (.not. wanted(i)) cycle
          p = to_pixels(c, point_place(m, s, i))
          call put_circle(o, p, point_radius, 'class="point" '//attribute('data-point', trim(m%points(i)%name)))
          call add_box(c, p - point_radius, p + point_radius)
       end do
-   end subroutine put_joints
+   end subroutine put_dots
 
    !> The path `curve` of a point called `name`, in pieces where it is not known.
    subroutine put_path(o, c, curve, name, color)

@@ -19,12 +19,14 @@ module svg
       'text.link{font-style:italic}', &
       'text.flag{fill:#d00000}', &
       'polyline,polygon,path{fill:none;stroke:#222;stroke-linejoin:round;stroke-linecap:round}', &
-      '.faint *{stroke:#c4c8cc;stroke-width:1.5}', &
-      '.curve{stroke-width:1.5;stroke:#222;stroke-dasharray:5 3}', &
+      '.faint *{stroke:#d0d4d8;stroke-width:1.2}', &
+      '.curve{stroke-width:1.5;stroke:#222}', &
       '.body{stroke-width:2;fill-opacity:0.25}', &
       '.bar{stroke-width:7}', &
       '.core{stroke-width:3.5;stroke:#fff;stroke-opacity:0.65}', &
       '.guide{stroke-width:1.5}', &
+      '.rod{stroke-width:5}', &
+      '.slot{stroke-width:1.5;stroke:#fff;stroke-opacity:0.8}', &
       '.hatch{stroke-width:1}', &
       '.support{stroke-width:1.5;fill:#fff}', &
       '.block{stroke-width:1.5}', &
@@ -32,7 +34,8 @@ module svg
       '.point{fill:#222}', &
       '.drive{stroke:#0a7a3c;stroke-width:2}', &
       '.tip{stroke:none;fill:#0a7a3c}', &
-      '.flagged *{stroke:#d00000}', &
+      '.flagged *{stroke:#d00000;stroke-width:3;stroke-opacity:0.6}', &
+      '.ring{fill:none}', &
       '.scale{stroke-width:1.5}']
 
 contains

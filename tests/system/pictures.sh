@@ -37,7 +37,8 @@ tags() { awk '
 printf '<svg><g a="1"><text>x &amp; y</text></svg>\n' > "$w/bad.svg"
 equal 'a tag that is not closed is found' yes "$([ -n "$(tags "$w/bad.svg")" ] && echo yes)"
 
-# joints DECK CSV SVG: the joints of the picture that are not where the CSV has their points; then how many there are
+# joints DECK CSV SVG: the joints of the picture that are not where the CSV has their points; then how many there are.
+# A picture shows all links, those that no table asks for as well.
 joints() { awk -F, '
    function value(line, name) { sub(".* " name "=\"", "", line); sub(/".*/, "", line); return line }
    FILENAME == ARGV[1] {
@@ -72,7 +73,10 @@ for deck in input/*.deck; do
    equal "$name: flagged instants in words" "$(grep -c ' \*\*\* ' "expected/$name.lst" | awk '{ print ($1 > 0) }')" \
       "$(grep -c 'class="flag"' "$w/$name.svg" | awk '{ print ($1 > 0) }')"
    "$kinmat" "$w/$name.deck" --svg "$w/$name.all.svg" --csv "$w/$name.csv" > "$w/$name.lst" 2> "$w/$name.err"
-   equal "$name: joints, and how many" "$(grep -c '^REVOLUTE' "$deck")" "$(joints "$w/$name.deck" "$w/$name.csv" "$w/$name.all.svg")"
+   for svg in "$w/$name.svg" "$w/$name.all.svg"; do
+      equal "$svg: joints, and how many" "$(grep -c '^REVOLUTE' "$deck")" "$(joints "$w/$name.deck" "$w/$name.csv" "$svg")"
+      equal "$svg: blocks on guides" "$(grep -c '^PRISM' "$deck")" "$(grep -c 'class="block"' "$svg")"
+   done
 done
 
 # What has no position is not drawn: of this four-bar the crank alone.
@@ -82,6 +86,17 @@ equal 'no position: status' 2 $?
 equal 'no position: well-formed' '' "$(tags "$w/none.svg")"
 equal 'no position: the words' yes "$(grep -q 'class="flag".*NO POSITION FOUND' "$w/none.svg" && echo yes)"
 equal 'no position: the crank alone' 1 "$(grep -cE 'class="(bar|body)"' "$w/none.svg")"
+
+# A name that PRINT asks for stands before a shorter one, at one place.
+sed -e '/^END/q' -e '/^PRINT/d' input/crank_slider.deck | sed 's/^END/PRINT   POINTS  A-ROD\n&/' > "$w/printed.deck"
+"$kinmat" "$w/printed.deck" --svg "$w/printed.svg" > "$w/out" 2> "$w/err"
+equal 'the printed name' 'A-ROD' "$(sed -n 's/.*class="name">\(A-[CR][A-Z]*\)<.*/\1/p' "$w/printed.svg")"
+
+# Five flagged instants, one by one: three are drawn, and all are counted.
+sed -e 's/^TIME.*/TIME    90                      0.0             90.0/' input/parallelogram_at.deck > "$w/many.deck"
+"$kinmat" "$w/many.deck" --svg "$w/many.svg" > "$w/out" 2> "$w/err"
+equal 'flagged instants drawn' 3 "$(grep -c '<g class="flagged"' "$w/many.svg")"
+equal 'flagged instants in all' "$(grep -c ' \*\*\* ' "$w/out")" "$(sed -n 's/.*>FLAGGED INSTANTS IN ALL: \([0-9]*\)<.*/\1/p' "$w/many.svg")"
 
 # A title and names that XML does not take as they are.
 sed -e '/^END/q' -e 's/^TITLE.*/TITLE   A < B \& "C"/' input/four_bar.deck > "$w/title.deck"

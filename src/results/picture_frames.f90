@@ -1,0 +1,176 @@
+!> Which frames of a drawing a picture shows: the one in which the mechanism is read best, and a few others.
+module picture_frames
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, pair_revolute
+   use planar, only: cross, direction, point_of
+   use drawing, only: drawing_t, snapshot_t, point_place
+   use outline, only: corners_at, distance_to
+   use picture_parts, only: joint_point
+   implicit none
+   private
+   public :: clearest, faint_frames, closes
+
+   !> Frames from which a picture chooses.
+   integer, parameter, public :: picture_candidates = 25
+   !> A joint is crowded if it is nearer to a bar or guide that is not its own than this part of the mechanism.
+   real(wp), parameter :: clear_distance = 0.1_wp
+   !> A joint in line with a bar counts as crowded by this part.
+   real(wp), parameter :: in_line = 0.5_wp
+   !> A later frame is taken if so many joints fewer are crowded. Reason: the first instant is what a reader expects,
+   !> and rounding errors must not choose.
+   real(wp), parameter :: much_clearer = 0.5_wp
+   !> A mechanism of more links is drawn in its first frame: the search takes joints times links.
+   integer, parameter :: max_links = 120
+   !> A picture has this many faint positions at most and at least, and about this many faint links.
+   integer, parameter :: max_faint = 4, min_faint = 2, faint_links = 15
+   !> Positions that differ by less than this part of the mechanism would cover one another; closer than the other the
+   !> motion has come back.
+   real(wp), parameter :: alike = 0.03_wp, come_back = 1.0e-3_wp
+
+contains
+
+   !> The number of the frame that is drawn in full: of those of which most links are known the clearest; 0 for none.
+   integer function clearest(m, d) result(best)
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
+      real(wp) :: crowded, least
+      integer :: i, known
+
+      best = 0
+      known = -1
+      least = huge(least)
+      do i = 1, d%frames
+         associate (s => d%frame(i))
+            if (count(s%known) < known) cycle
+            crowded = crowded_joints(m, d, s)
+            if (count(s%known) == known .and. crowded > least - much_clearer) cycle
+            known = count(s%known)
+            least = crowded
+            best = i
+         end associate
+      end do
+   end function clearest
+
+   !> How many joints are crowded at the position `s`: each by 1 on another's bar, by 0 at `clear_distance` from it.
+   real(wp) function crowded_joints(m, d, s) result(crowded)
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
+      type(snapshot_t), intent(in) :: s
+      real(wp) :: extent, p(2)
+      integer :: i, k, own(2), point
+
+      crowded = 0.0_wp
+      extent = extent_of(m, d, s)
+      if (size(m%links) > max_links .or. .not. extent > 0.0_wp) return
+      do i = 1, size(m%pairs)
+         point = joint_point(m, s%known, i)
+         if (point == 0) cycle
+         own = m%points([m%pairs(i)%point_i, m%pairs(i)%point_j])%link
+         p = point_place(m, s, point)/extent
+         do k = 1, size(m%links)
+            if (m%links(k)%ground .or. any(own == k) .or. .not. s%known(k) .or. size(d%outlines(k)%corner, 2) < 2) cycle
+            associate (corners => corners_at(d%outlines(k), s%place(:, k))/extent)
+               crowded = crowded + max(nearness(distance_to(corners, p, 0.0_wp)), &
+                  merge(in_line, 0.0_wp, size(corners, 2) == 2)*nearness(distance_to(corners, p, 1.0_wp)))
+            end associate
+         end do
+         if (m%pairs(i)%kind /= pair_revolute) cycle
+         do k = 1, size(d%guides)
+            associate (g => d%guides(k))
+               if (.not. s%known(g%carrier) .or. any(own == g%block)) cycle
+               crowded = crowded + nearness(abs(cross(direction(s%place(3, g%carrier) + g%angle), &
+                  p - point_of(s%place(:, g%carrier), g%foot)/extent)))
+            end associate
+         end do
+      end do
+   end function crowded_joints
+
+   !> 1 at the distance 0, 0 at `clear_distance` and from there on.
+   pure real(wp) function nearness(distance)
+      real(wp), intent(in) :: distance
+
+      nearness = max(0.0_wp, 1.0_wp - distance/clear_distance)
+   end function nearness
+
+   !> The larger side of what the known moving links cover at the position `s`.
+   pure real(wp) function extent_of(m, d, s) result(extent)
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
+      type(snapshot_t), intent(in) :: s
+      real(wp) :: low(2), high(2)
+      integer :: i
+
+      low = huge(1.0_wp)
+      high = -huge(1.0_wp)
+      do i = 1, size(m%links)
+         if (m%links(i)%ground .or. .not. s%known(i)) cycle
+         associate (p => corners_at(d%outlines(i), s%place(:, i)))
+            low = min(low, minval(p, dim=2))
+            high = max(high, maxval(p, dim=2))
+         end associate
+      end do
+      extent = 0.0_wp
+      if (all(high >= low)) extent = maxval(high - low)
+   end function extent_of
+
+   !> The numbers of the frames that are faint beside frame `best`: evenly spaced, without those that are like it or
+   !> like one another.
+   function faint_frames(m, d, best) result(list)
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
+      integer, intent(in) :: best
+      integer, allocatable :: list(:)
+      integer :: i, j, k, n
+
+      allocate (list(0))
+      n = max(min_faint, min(max_faint, faint_links/max(1, count(.not. m%links%ground))))
+      do i = 0, n
+         ! Where the motion comes back, the last frame is the first one again.
+         k = 1 + i*(d%frames - 1)/merge(n + 1, n, closes(m, d))
+         if (is_like(m, d, k, best)) cycle
+         if (any([(is_like(m, d, k, list(j)), j=1, size(list))])) cycle
+         list = [list, k]
+      end do
+   end function faint_frames
+
+   !> Whether the motion of the moving links ends where it has begun.
+   logical function closes(m, d)
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
+
+      closes = .false.
+      if (d%frames > 2) closes = distance(m, d, 1, d%frames) < come_back
+   end function closes
+
+   !> Whether frames `i` and `j` would cover one another.
+   logical function is_like(m, d, i, j)
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
+      integer, intent(in) :: i, j
+
+      is_like = distance(m, d, i, j) < alike
+   end function is_like
+
+   !> The largest distance of a corner between frames `i` and `j`, in parts of the mechanism; 1 if one of them lacks a
+   !> link.
+   real(wp) function distance(m, d, i, j)
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
+      integer, intent(in) :: i, j
+      real(wp) :: extent
+      integer :: k
+
+      distance = 1.0_wp
+      if (any(d%frame(i)%known .neqv. d%frame(j)%known)) return
+      distance = 0.0_wp
+      extent = extent_of(m, d, d%frame(i))
+      do k = 1, size(m%links)
+         if (m%links(k)%ground .or. .not. d%frame(i)%known(k)) cycle
+         associate (p => corners_at(d%outlines(k), d%frame(i)%place(:, k)), &
+            q => corners_at(d%outlines(k), d%frame(j)%place(:, k)))
+            if (size(p) > 0) distance = max(distance, maxval(abs(p - q)))
+         end associate
+      end do
+      if (distance > 0.0_wp) distance = distance/max(extent, distance)
+   end function distance
+end module picture_frames
