@@ -9,7 +9,7 @@ export BUILD MAKE
 parts() {
    if [ -n "$PARTS" ]; then cat "$PARTS"; return; fi
    sed 's/^ *//' <<'END'
-   faults by name|480|tests/system/faults.sh
+   faults by name|560|tests/system/faults.sh
    real128|124|"$MAKE" --no-print-directory quad-check
    single precision|62|"$MAKE" --no-print-directory single-check
    speed against error|80|"$MAKE" --no-print-directory study-short

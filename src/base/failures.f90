@@ -30,7 +30,7 @@ contains
    end subroutine fail
 
    !> `text` in the capitals of all messages: only the letters of ASCII change.
-   pure function capitals(text) result(upper)
+   elemental function capitals(text) result(upper)
       character(*), intent(in) :: text
       character(len(text)) :: upper
       integer :: i

@@ -1,13 +1,14 @@
 !> Reads a card to its labels, whole number and reals. Every field is checked; deck_... and card_sets give it a meaning.
+!> What is harmless is a remark, all else an error.
 module card_reader
    use kinds, only: wp, label_length
-   use cards, only: card_t, field_t, card_fields, wide_fields, card_name, label_a, label_c, field_text, first_column, &
-      card_columns, forms, form_name, form_unknown, form_title, reals_of, find_form, nearest_form
-   use input_errors, only: error_code_t, input_errors_t, add_error, add_field_error, error_count, is_full, max_power, &
-      card_unknown, card_lower_case, card_indented, past_last_column, tab_character, control_character, &
-      foreign_character, border_crossed, field_unused, field_blank, label_blank_inside, star_no_reals, star_second, &
+   use diagnostics, only: remark_title_long, remark_title_letters, remark_touching
+   use cards, only: card_t, field_t, card_fields, wide_fields, title_field, card_name, label_a, label_c, field_text, &
+      first_column, card_columns, forms, form_name, form_unknown, form_title, reals_of, find_form, nearest_form
+   use input_errors, only: error_code_t, input_errors_t, add_error, add_field_error, add_remark, error_count, is_full, &
+      max_power, card_unknown, card_indented, past_last_column, tab_character, control_character, foreign_character, &
+      border_crossed, field_unused, field_blank, label_blank_inside, label_long, star_no_reals, star_second, &
       star_twice, star_blank, number_overflow, number_underflow
-   use failures, only: capitals
    use numbers, only: read_real, read_whole
    use numerals, only: whole
    implicit none
@@ -50,7 +51,8 @@ contains
          parsed%label(i) = adjustl(card%text(card_fields(i)%first:card_fields(i)%last))
       end do
       parsed%form = find_form(card%text(:label_length))
-      call check_characters(card, parsed%names_certain, errors)
+      if (parsed%form == form_title) call read_title(parsed%card, errors)
+      call check_characters(parsed%card, parsed%names_certain, errors)
       if (error_count(errors) == before .and. parsed%form == form_unknown) call guess_form(card, parsed%form, errors)
       parsed%names_certain = parsed%names_certain .and. parsed%form /= form_unknown
       parsed%valid = error_count(errors) == before
@@ -65,6 +67,65 @@ contains
       end do
       parsed%valid = error_count(errors) == before
    end subroutine read_card
+
+   !> Makes the text of the TITLE card `card` printable: letters without their accents, cut at the last column. Both are
+   !> remarks.
+   subroutine read_title(card, errors)
+      type(card_t), intent(inout) :: card
+      type(input_errors_t), intent(inout) :: errors
+      character(:), allocatable :: typed, title
+      integer :: i
+
+      typed = trim(card%text(title_field%first:))
+      if (card%overrun > 0) typed = card%text(title_field%first:) &
+         //repeat(' ', min(card%overrun - card_columns - 1, card_columns))//trim(card%beyond)
+      title = without_accents(typed)
+      i = findloc([(ichar(typed(i:i)) > 127, i=1, len(typed))], .true., dim=1)
+      if (i > 0) call add_remark(errors, remark_title_letters, card, title_field%first + i - 1, '')
+      ! Of the text beyond the last column only the beginning is known.
+      if (len(title) > card_columns - title_field%first + 1 .or. card%beyond(len(card%beyond):) /= ' ') &
+         call add_remark(errors, remark_title_long, card, card_columns + 1, '')
+      card%text(title_field%first:) = title
+      card%overrun = 0
+   end subroutine read_title
+
+   !> `text`, in UTF-8, with the Latin letter for a Latin letter with an accent, plain dashes and quotation marks, and ?
+   !> for any other character that is not ASCII.
+   pure function without_accents(text) result(plain)
+      character(*), intent(in) :: text
+      character(:), allocatable :: plain
+      !> The letters of U+00C0 to U+017F; a character of UTF-8 begins with one of the bytes 195, 196, 197.
+      character(*), parameter :: letters = 'AAAAAAACEEEEIIIIDNOOOOOxOUUUUYTsaaaaaaaceeeeiiiidnooooo/ouuuuyty' &
+         //'AaAaAaCcCcCcCcDdDdEeEeEeEeEeGgGgGgGgHhHhIiIiIiIiIiIiJjKkkLlLlLlLlLlNnNnNnnNnOoOoOoOoRrRrRrSsSsSs' &
+         //'SsTtTtTtUuUuUuUuUuUuWwYyYZzZzZzs'
+      character(*), parameter :: dashes = char(226)//char(128)
+      integer :: i, length, code
+
+      plain = ''
+      i = 1
+      do while (i <= len(text))
+         code = ichar(text(i:i))
+         length = 1
+         ! Bytes of 128 to 191 continue the character.
+         do while (code > 127 .and. length < 4 .and. i + length <= len(text))
+            if (iand(ichar(text(i + length:i + length)), 192) /= 128) exit
+            length = length + 1
+         end do
+         associate (c => text(i:i + length - 1))
+            if (code < 128) then
+               plain = plain//c
+            else if (code >= 195 .and. code <= 197 .and. len(c) == 2) then
+               code = 64*(code - 195) + modulo(ichar(c(2:2)), 64) + 1
+               plain = plain//letters(code:code)
+            else if (len(c) == 3 .and. index(c, dashes) == 1) then
+               plain = plain//trim(merge('-', merge('''', '"', ichar(c(3:3)) < 156), ichar(c(3:3)) < 152))
+            else
+               plain = plain//'?'
+            end if
+         end associate
+         i = i + length
+      end do
+   end function without_accents
 
    !> Reads the `*` card `card` to `above`, the card above it, whose reals it gives. Errors are added to `errors`.
    subroutine read_star(card, above, errors)
@@ -129,11 +190,11 @@ contains
       type(error_code_t) :: code
 
       name = field_text(card, card_fields(card_name))
-      form = find_form(capitals(name))
+      form = find_form(name)
       code = card_unknown
       hint = ''
       if (form /= form_unknown) then
-         code = merge(card_indented, card_lower_case, card%text(1:1) == ' ')
+         code = card_indented
       else if (name == '') then
          code = field_blank
       else if (.not. is_full(errors)) then
@@ -147,7 +208,7 @@ contains
    !> cut by a border, and adds an error for each border. Text is cut if it does not begin at its field and continues
    !> beyond the border. It is also cut if it is a real number together with what follows the border; that is checked
    !> where `numeric(i)`: field i may hold the beginning of a number. Two full labels side by side are not cut, nor are
-   !> two full reals that cannot be one number.
+   !> two reals that cannot be one number: two full ones, or any two if the second has a sign, which is a remark.
    subroutine find_cuts(card, fields, numeric, cut, errors)
       type(card_t), intent(in) :: card
       type(field_t), intent(in) :: fields(:)
@@ -169,6 +230,10 @@ contains
             if (.not. numeric(i)) cycle
             call read_real(card%text(start:finish), value, error, place)
             if (error%number > 0) cycle
+         else if (numeric(i) .and. scan(card%text(border + 1:border + 1), '+-') == 1 .and. &
+                  scan(card%text(border:border), 'EeDd') == 0) then
+            call add_remark(errors, remark_touching, card, border + 1, card%text(border + 1:finish))
+            cycle
          end if
          cut(i:i + 1) = .true.
          call add_error(errors, border_crossed, card, fields(i), start, card%text(start:finish), &
@@ -192,7 +257,7 @@ contains
             if (label == '') then
                if (scan(taken, 'LW') > 0) call add_field_error(errors, field_blank, parsed%card, field)
             else if (taken == '-') then
-               call add_field_error(errors, field_unused, parsed%card, field)
+               call refuse_field(parsed, i, errors)
             else if (scan(taken, 'Ww') > 0) then
                parsed%whole_given = .true.
                call read_whole(trim(label), parsed%whole, error, place)
@@ -204,6 +269,26 @@ contains
          end associate
       end do
    end subroutine read_labels
+
+   !> Adds the error of text in field number `i`, which the card `parsed` does not take: it may belong to a name in the
+   !> field before, which is longer than a label.
+   subroutine refuse_field(parsed, i, errors)
+      type(parsed_card_t), intent(inout) :: parsed
+      integer, intent(in) :: i
+      type(input_errors_t), intent(inout) :: errors
+      integer :: first, finish
+
+      associate (text => parsed%card%text, border => card_fields(i)%first)
+         if (i > label_a .and. i <= label_c + 1 .and. index(text(border - 1:border), ' ') == 0) then
+            parsed%names_certain = .false.
+            first = first_column(parsed%card, card_fields(i - 1))
+            finish = border + index(text(border:card_fields(i)%last)//' ', ' ') - 2
+            call add_error(errors, label_long, parsed%card, card_fields(i - 1), first, text(first:finish))
+         else
+            call add_field_error(errors, field_unused, parsed%card, card_fields(i))
+         end if
+      end associate
+   end subroutine refuse_field
 
    !> Reads the reals of the `*` card `card` to the card `above` it.
    subroutine read_wide_fields(card, above, errors)
@@ -242,7 +327,11 @@ contains
       if (card%text(field%first:field%last) == '') return
       parsed%given(i) = .true.
       if (i > reals_of(parsed%form, parsed%label(label_a))) then
-         call add_field_error(errors, field_unused, card, field)
+         if (parsed%on_star(i)) then
+            call add_field_error(errors, field_unused, card, field)
+         else
+            call refuse_field(parsed, label_c + i, errors)
+         end if
          return
       end if
       call read_real(trim(card%text(first_column(card, field):field%last)), parsed%real(i), error, place)

@@ -4,17 +4,19 @@ module card_sets
    use kinds, only: wp
    use mechanism, only: mechanism_t, link_t, point_t, pair_t, pair_revolute, pair_prismatic, request_link, &
       request_point, request_pair
-   use cards, only: card_fields, wide_fields, label_a, label_b, label_c, real_1, real_2, real_3, form_ground, &
-      form_link, form_point, form_revolute, form_prism, form_end
+   use diagnostics, only: remark_small_letters
+   use cards, only: card_t, card_fields, wide_fields, field_text, first_column, small_field, label_a, label_b, &
+      label_c, real_1, real_2, real_3, form_ground, form_link, form_point, form_revolute, form_prism, form_end
    use card_reader, only: parsed_card_t
-   use failures, only: failure_t, fail, status_system
-   use input_errors, only: error_code_t, input_errors_t, add_field_error, link_unknown, point_unknown, pair_unknown, &
-      name_repeated, pair_one_link, pair_grounds
-   use names, only: name_table_t, put_name, find_name
+   use failures, only: failure_t, fail, capitals, status_system
+   use input_errors, only: error_code_t, input_errors_t, add_field_error, add_remark, link_unknown, &
+      point_unknown, pair_unknown, name_repeated, pair_one_link, pair_grounds
+   use names, only: name_table_t, put_name, find_name, listed
    use numerals, only: whole
    implicit none
    private
-   public :: card_set_t, begin_set, append_card, build_bodies, look_up, match_word, add_card_error
+   public :: card_set_t, begin_set, append_card, read_small_letters, build_bodies, look_up, match_word
+   public :: add_card_error, add_card_remark
 
    !> The links, the points or the pairs of a set.
    type :: named_t
@@ -27,6 +29,7 @@ module card_sets
       type(parsed_card_t), allocatable :: cards(:)  !< (count) and room for more
       integer :: number_of(0:form_end) = 0          !< cards of each form
       logical :: names_certain = .true.             !< of every card: no unknown name can be one that was misread
+      type(card_t) :: small                         !< the first card with small letters; its number is 0: none
       real(wp) :: angle_unit = 1.0_wp               !< the deck's unit of angles in radians
       type(named_t) :: named(request_link:request_pair)
       type(mechanism_t) :: mechanism
@@ -49,6 +52,7 @@ contains
       if (allocated(set%cards)) deallocate (set%cards)
       set%number_of = 0
       set%names_certain = .true.
+      set%small = card_t()
       set%angle_unit = 1.0_wp
       do kind = request_link, request_pair
          set%named(kind) = named_t()
@@ -79,6 +83,35 @@ contains
       set%number_of(card%form) = set%number_of(card%form) + 1
       set%names_certain = set%names_certain .and. card%names_certain
    end subroutine append_card
+
+   !> Reads the labels of the cards of `set` as capitals, a remark about the first of them: unless two names of a kind
+   !> differ by small letters alone; then all labels stay as they are typed.
+   subroutine read_small_letters(set)
+      type(card_set_t), intent(inout) :: set
+      integer, parameter :: kinds(*) = [request_link, request_link, request_point, request_pair, request_pair]
+      integer, parameter :: definers(*) = [form_ground, form_link, form_point, form_revolute, form_prism]
+      integer, parameter :: name_fields(*) = [label_a, label_a, label_a, label_c, label_c]
+      type(name_table_t) :: typed(request_link:request_pair), upper(request_link:request_pair)
+      integer :: k, i, earlier
+
+      if (set%small%number == 0) return
+      do k = 1, set%count
+         i = findloc(definers, set%cards(k)%form, dim=1)
+         if (i == 0) cycle
+         associate (name => set%cards(k)%label(name_fields(i)))
+            call put_name(typed(kinds(i)), name, k, earlier)
+            if (earlier > 0 .or. name == '') cycle
+            call put_name(upper(kinds(i)), capitals(name), k, earlier)
+            if (earlier > 0) return
+         end associate
+      end do
+      do k = 1, set%count
+         set%cards(k)%label = capitals(set%cards(k)%label)
+      end do
+      i = small_field(set%small)
+      call add_remark(set%errors, remark_small_letters, set%small, first_column(set%small, card_fields(i)), &
+         field_text(set%small, card_fields(i)))
+   end subroutine read_small_letters
 
    !> Builds the links, points and pairs of `set`%mechanism, each kind in the order of its cards. Repeated and unknown
    !> names are errors, and so are pairs that do not join two links.
@@ -194,8 +227,35 @@ contains
       n = 0
       if (set%cards(k)%label(i) == '') return
       n = find_name(set%named(kind)%table, set%cards(k)%label(i))
-      if (n == 0 .and. set%names_certain) call add_card_error(set, unknown(kind), k, i)
+      if (n == 0 .and. set%names_certain) call add_card_error(set, unknown(kind), k, i, hint_for(set, k, i))
    end subroutine look_up
+
+   !> What the unknown name in label `i` (label_a to label_c) of card `k` may be; '' for nothing that is known.
+   function hint_for(set, k, i) result(hint)
+      type(card_set_t), intent(in) :: set
+      integer, intent(in) :: k, i
+      character(:), allocatable :: hint
+      integer :: link, point
+
+      hint = ''
+      associate (card => set%cards(k), text => set%cards(k)%card%text, field => card_fields(i), m => set%mechanism)
+         link = find_name(set%named(request_link)%table, card%label(i))
+         point = find_name(set%named(request_point)%table, card%label(i))
+         if (link > 0) then
+            hint = '(A LINK HAS IT)'
+            if (any(m%points%link == link)) &
+               hint = '(A LINK HAS IT; ITS POINTS: '//listed(pack(m%points%name, m%points%link == link))//')'
+         else if (point > 0) then
+            hint = '(A POINT HAS IT)'
+         else if (find_name(set%named(request_pair)%table, card%label(i)) > 0) then
+            hint = '(A PAIR HAS IT)'
+         else if (index(text(field%last:field%last + 1), ' ') == 0) then
+            hint = '(IS IT LONGER THAN 8 LETTERS?)'
+         else if (index(text(field%first - 1:field%first), ' ') == 0 .and. i > label_a) then
+            hint = '(IS THE NAME BEFORE IT LONGER THAN 8 LETTERS?)'
+         end if
+      end associate
+   end function hint_for
 
    !> The place in `words` of label A of card `k`; 0 if it is none of them: for a card without other errors, that is the
    !> error `code`.
@@ -209,6 +269,25 @@ contains
       place = findloc(words, set%cards(k)%label(label_a), dim=1)
       if (place == 0 .and. set%cards(k)%valid) call add_card_error(set, code, k, label_a)
    end subroutine match_word
+
+   !> Adds the remark `kind` about `field` (label_a to real_3) of card `k`; a real may be on its `*` card.
+   subroutine add_card_remark(set, kind, k, field)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: kind, k, field
+
+      associate (card => set%cards(k))
+         if (any(card%on_star .and. field == [real_1, real_2, real_3])) then
+            associate (wide => wide_fields(field - label_c))
+               call add_remark(set%errors, kind, card%star, first_column(card%star, wide), field_text(card%star, wide))
+            end associate
+         else
+            associate (narrow => card_fields(field))
+               call add_remark(set%errors, kind, card%card, first_column(card%card, narrow), &
+                               field_text(card%card, narrow))
+            end associate
+         end if
+      end associate
+   end subroutine add_card_remark
 
    !> Adds the error `code` about `field` (card_name, label_a to real_3) of card `k`; a real may be on its `*` card.
    !> `more` ends the sentence.

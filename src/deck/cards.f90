@@ -7,7 +7,7 @@ module cards
    private
    public :: card_t, field_t, card_columns, card_fields, wide_fields, title_field
    public :: card_name, label_a, label_b, label_c, real_1, real_2, real_3
-   public :: field_text, first_column, ruler_card, is_passed_over
+   public :: field_text, first_column, small_field, ruler_card, is_passed_over
    public :: forms, form_name, find_form, nearest_form, reals_of
    public :: form_unknown, form_title, form_units, form_lang, form_ground, form_link, form_point, form_revolute
    public :: form_prism, form_drive, form_add, form_rise, form_time, form_at, form_method, form_print
@@ -105,12 +105,31 @@ contains
       column = field%first + max(verify(card%text(field%first:field%last), ' '), 1) - 1
    end function first_column
 
-   !> Whether `card` is a comment ($ in column 1) or blank: such cards are skipped.
+   !> The first of the name and label fields of `card` that has a small letter; 0: none. A title may have them.
+   pure integer function small_field(card) result(i)
+      type(card_t), intent(in) :: card
+
+      do i = card_name, label_c
+         associate (text => card%text(card_fields(i)%first:card_fields(i)%last))
+            if (text /= capitals(text)) return
+         end associate
+         if (find_form(card%text(:label_length)) == form_title) exit
+      end do
+      i = 0
+   end function small_field
+
+   !> Whether `card` is a comment ($, # or ! before all else) or blank: such cards are skipped.
    pure logical function is_passed_over(card)
       type(card_t), intent(in) :: card
 
-      is_passed_over = card%text(1:1) == '$'
-      if (.not. is_passed_over) is_passed_over = card%overrun == 0 .and. card%text == ''
+      integer :: first
+
+      first = verify(card%text, ' ')
+      if (first == 0) then
+         is_passed_over = card%overrun == 0
+      else
+         is_passed_over = scan(card%text(first:first), '$#!') > 0
+      end if
    end function is_passed_over
 
    !> The comment card that shows the columns of all fields.
@@ -138,7 +157,7 @@ contains
       if (form == form_unknown) return
       taken = forms(form)%reals
       do i = 1, size(exceptions)
-         if (exceptions(i)%form == form .and. exceptions(i)%word == word) taken = exceptions(i)%reals
+         if (exceptions(i)%form == form .and. exceptions(i)%word == capitals(word)) taken = exceptions(i)%reals
       end do
    end function reals_of
 
@@ -149,12 +168,14 @@ contains
       form_name = forms(form)%layout(:label_length)
    end function form_name
 
-   !> The form of the cards of the name `name`, or form_unknown.
+   !> The form of the cards of the name `name`, in capitals or small letters; or form_unknown.
    pure integer function find_form(name) result(form)
       character(*), intent(in) :: name
+      character(len(name)) :: upper
 
+      upper = capitals(name)
       do form = size(forms), 1, -1
-         if (forms(form)%layout(:label_length) == name) return
+         if (forms(form)%layout(:label_length) == upper) return
       end do
    end function find_form
 

@@ -2,18 +2,19 @@
 !> computed from a deck with an error.
 module deck
    use kinds, only: label_length
-   use mechanism, only: mechanism_t, driven_kinds, drive_relangle, request_link, request_point, method_words, &
-      method_newton
+   use mechanism, only: mechanism_t, method_words, method_newton
    use card_reader, only: parsed_card_t, read_card, read_star
-   use card_sets, only: card_set_t, begin_set, append_card, build_bodies, add_card_error
-   use cards, only: card_t, card_fields, wide_fields, card_name, label_a, real_1, field_text, is_passed_over, &
-      form_name, reals_of, form_title, form_units, form_link, form_time, form_at, form_method, form_print, form_end
+   use card_sets, only: card_set_t, begin_set, append_card, read_small_letters, build_bodies
+   use cards, only: card_t, card_fields, wide_fields, card_name, label_a, real_1, field_text, small_field, &
+      is_passed_over, form_name, reals_of, form_title, form_units, form_link, form_time, form_at, form_method, &
+      form_print, form_end
    use deck_drives, only: build_drives, check_terms
    use deck_options, only: build_options, build_requests, build_branches
+   use deck_remarks, only: check_unused, check_angles, check_guides
    use deck_source, only: source_t, open_source, next_card, close_source
    use failures, only: failure_t, fail, status_rejected
-   use input_errors, only: add_field_error, add_deck_error, error_count, error_report, deck_empty, deck_long, &
-      end_missing, set_empty, star_first, link_missing, time_missing, link_unused, point_unused
+   use input_errors, only: add_field_error, add_deck_error, error_count, error_report, take_remarks, &
+      deck_empty, deck_long, end_missing, set_empty, star_first, link_missing, time_missing
    use numerals, only: whole
    implicit none
    private
@@ -116,6 +117,7 @@ contains
             return
          end if
          call read_card(card, parsed, set%errors)
+         if (set%small%number == 0 .and. small_field(card) > 0) set%small = card
          if (parsed%form /= form_end) then
             call append_card(set, parsed, failure)
          else if (set%count == 0) then
@@ -128,21 +130,25 @@ contains
    end subroutine take_card
 
    !> Builds the mechanism of the open set from its cards, and opens the next set. Only a set without errors is checked
-   !> for what nothing uses: a card with an error could make others look unused.
+   !> for what nothing uses and for what looks wrong: a card with an error could make others look so.
    subroutine close_set(progress)
       type(progress_t), intent(inout) :: progress
 
       associate (set => progress%set)
+         call read_small_letters(set)
          call build_options(set)
          call build_bodies(set)
          call build_drives(set)
          call build_requests(set)
          call build_branches(set)
          if (error_count(set%errors) == progress%errors_before) then
-            call check_unused(set)
             call check_terms(set)
+            call check_unused(set)
+            call check_angles(set)
+            call check_guides(set)
             call build_echo(set)
          end if
+         call take_remarks(set%errors, set%mechanism%remarks)
          progress%errors_before = error_count(set%errors)
       end associate
       call append_set(progress)
@@ -174,47 +180,6 @@ contains
       if (sum(set%number_of([form_time, form_at])) == 0) &
          call add_field_error(set%errors, time_missing, closing, card_fields(card_name))
    end subroutine check_missing
-
-   !> Adds an error for each link without a pair or a drive, and for each point without a pair, a drive or a PRINT card.
-   !> The set has no other error.
-   subroutine check_unused(set)
-      type(card_set_t), intent(inout) :: set
-      logical :: link(size(set%mechanism%links)), point(size(set%mechanism%points))
-      integer :: i
-
-      call find_used(set%mechanism, link, point)
-      do i = 1, size(link)
-         if (.not. link(i)) call add_card_error(set, link_unused, set%named(request_link)%card(i), label_a)
-      end do
-      if (set%number_of(form_print) > 0) then
-         associate (requests => set%mechanism%requests)
-            point(pack(requests%subject, requests%kind == request_point)) = .true.
-         end associate
-      end if
-      do i = 1, size(point)
-         if (.not. point(i)) call add_card_error(set, point_unused, set%named(request_point)%card(i), label_a)
-      end do
-   end subroutine check_unused
-
-   !> The links `link` (links) and points `point` (points) of `m` that a pair or a drive uses.
-   pure subroutine find_used(m, link, point)
-      type(mechanism_t), intent(in) :: m
-      logical, intent(out) :: link(:), point(:)
-      integer :: i
-
-      link = .false.
-      point = .false.
-      point(m%pairs%point_i) = .true.
-      point(m%pairs%point_j) = .true.
-      do i = 1, size(m%drives)
-         associate (drive => m%drives(i))
-            if (driven_kinds(drive%kind) == request_point) point(drive%subject) = .true.
-            if (driven_kinds(drive%kind) == request_link) link(drive%subject) = .true.
-            if (drive%kind == drive_relangle) link(drive%second) = .true.
-         end associate
-      end do
-      link(pack(m%points%link, point)) = .true.
-   end subroutine find_used
 
    !> Builds `set`%mechanism%echo, the cards as they were understood with the values in use: a line for each card but
    !> TITLE, and one for each default that no card replaces.

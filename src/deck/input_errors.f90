@@ -1,19 +1,27 @@
-!> All errors of decks, by number and sentence, and the errors found in one deck, each with a picture of its card and a
-!> mark under the column. A message is `"text" SENTENCE`, or the sentence alone.
+!> All errors of decks, by number and sentence, and the errors found in one deck, each with a picture of its card, a
+!> mark under the column and, where it helps, the layout of the card. A message is `"text" SENTENCE`, or the sentence
+!> alone. Remarks are collected beside the errors; they reject nothing.
 module input_errors
    use kinds, only: wp, label_length
-   use cards, only: card_t, field_t, card_columns, field_text, first_column, forms, find_form
+   use diagnostics, only: remark_t, remark_more
+   use cards, only: card_t, field_t, card_columns, field_text, first_column, forms, find_form, form_unknown, &
+      form_link, form_time, form_end
    use numerals, only: whole
    implicit none
    private
    public :: error_code_t, input_errors_t, add_error, add_field_error, add_deck_error
-   public :: error_count, is_full, error_report
+   public :: error_count, is_full, error_report, add_remark, take_remarks
+
+   !> Number of errors that are printed, and of remarks of a set; the rest is only counted.
+   integer, parameter :: max_printed = 50
+   !> The layout of an error's own card.
+   integer, parameter :: own_layout = -1
 
    !> A kind of error.
    type :: error_code_t
       integer :: number = 0              !< printed as E and three digits; 0: no error
       character(72) :: sentence = ''
-      logical :: shows_layout = .false.  !< the layout of the card is printed below the message
+      integer :: layout = form_unknown   !< the form whose layout is printed below the message, or own_layout
    end type error_code_t
 
    !> The errors of a deck.
@@ -21,31 +29,29 @@ module input_errors
       private
       integer :: count = 0               !< with those that are not printed
       character(:), allocatable :: lines !< the messages, joined by new_line('a')
+      type(remark_t) :: remarks(max_printed)
+      integer :: remarked = 0            !< remarks about the open set, with those for which there is no room
    end type input_errors_t
-
-   !> Number of errors that are printed; the rest is only counted.
-   integer, parameter :: max_printed = 50
 
    ! The deck and its sets.
    type(error_code_t), parameter, public :: &
       deck_empty = error_code_t(1, 'THE DECK IS EMPTY'), &
-      end_missing = error_code_t(2, 'IS THE LAST CARD OF THE DECK, BUT NOT END'), &
+      end_missing = error_code_t(2, 'IS THE LAST CARD OF THE DECK: PUT AN END CARD BEHIND IT', form_end), &
       set_empty = error_code_t(3, 'CLOSES A SET WITHOUT CARDS'), &
-      link_missing = error_code_t(4, 'CLOSES A SET WITHOUT A LINK CARD'), &
-      time_missing = error_code_t(5, 'CLOSES A SET WITHOUT A TIME OR AT CARD'), &
+      link_missing = error_code_t(4, 'CLOSES A SET WITHOUT A LINK CARD', form_link), &
+      time_missing = error_code_t(5, 'CLOSES A SET WITHOUT A TIME OR AT CARD', form_time), &
       deck_long = error_code_t(6, 'THE DECK IS TOO LONG; CARDS ALLOWED:')
    ! A card as a whole, and its characters.
    type(error_code_t), parameter, public :: &
       card_unknown = error_code_t(10, 'IS NOT THE NAME OF A CARD'), &
-      card_lower_case = error_code_t(11, 'CARD NAMES ARE WRITTEN IN CAPITALS'), &
       card_indented = error_code_t(12, 'THE CARD NAME MUST BEGIN IN COLUMN 1'), &
       card_repeated = error_code_t(13, 'IS ALLOWED ONLY ONCE IN A SET; FIRST ON CARD'), &
       past_last_column = error_code_t(14, 'IS BEYOND COLUMN 80'), &
       tab_character = error_code_t(15, 'CONTAINS A TAB'), &
       control_character = error_code_t(16, 'CONTAINS A CONTROL CHARACTER'), &
       foreign_character = error_code_t(17, 'CONTAINS A CHARACTER THAT IS NOT ASCII'), &
-      border_crossed = error_code_t(18, 'CROSSES THE FIELD BORDER BETWEEN COLUMNS'), &
-      field_unused = error_code_t(19, 'THIS CARD DOES NOT USE THIS FIELD')
+      border_crossed = error_code_t(18, 'CROSSES THE FIELD BORDER BETWEEN COLUMNS', own_layout), &
+      field_unused = error_code_t(19, 'THIS CARD DOES NOT USE THIS FIELD', own_layout)
    ! Numbers. The range of 1E-max_power to 1Emax_power leaves room for fourth powers in the real kind.
    integer, parameter, public :: max_power = min(60, int(0.25*range(1.0_wp)))
    character(*), parameter :: power_text = trim(merge('60', '9 ', max_power == 60))
@@ -66,9 +72,10 @@ module input_errors
       number_exponent = error_code_t(33, 'IS NOT A NUMBER (NO DIGITS IN THE EXPONENT)')
    ! Fields, and the continuation by a `*` card.
    type(error_code_t), parameter, public :: &
-      field_blank = error_code_t(34, 'THIS FIELD MUST NOT BE BLANK'), &
-      label_blank_inside = error_code_t(35, 'A LABEL HAS NO BLANKS INSIDE'), &
+      field_blank = error_code_t(34, 'THIS FIELD MUST NOT BE BLANK', own_layout), &
+      label_blank_inside = error_code_t(35, 'A LABEL HAS NO BLANKS INSIDE', own_layout), &
       number_range = error_code_t(36, 'IS OUT OF THE RANGE'), &
+      label_long = error_code_t(37, 'IS TOO LONG: A NAME HAS AT MOST 8 LETTERS', own_layout), &
       star_first = error_code_t(40, 'NO CARD OF THE SET IS ABOVE THIS ONE'), &
       star_no_reals = error_code_t(41, 'THE CARD ABOVE TAKES NO REALS'), &
       star_second = error_code_t(42, 'IS A SECOND * CARD FOR THE SAME CARD'), &
@@ -77,32 +84,33 @@ module input_errors
    ! Names.
    type(error_code_t), parameter, public :: &
       name_repeated = error_code_t(50, 'THIS NAME IS REPEATED; FIRST ON CARD'), &
-      link_unknown = error_code_t(51, 'NO LINK HAS THIS NAME'), &
-      point_unknown = error_code_t(52, 'NO POINT HAS THIS NAME'), &
-      pair_unknown = error_code_t(53, 'NO PAIR HAS THIS NAME'), &
-      link_unused = error_code_t(54, 'NO PAIR AND NO DRIVE USES THIS LINK'), &
-      point_unused = error_code_t(55, 'NO PAIR, DRIVE OR PRINT CARD USES THIS POINT')
+      link_unknown = error_code_t(51, 'NO LINK HAS THIS NAME', own_layout), &
+      point_unknown = error_code_t(52, 'NO POINT HAS THIS NAME', own_layout), &
+      pair_unknown = error_code_t(53, 'NO PAIR HAS THIS NAME', own_layout), &
+      link_unused = error_code_t(54, 'NO PAIR AND NO DRIVE USES THIS LINK, AND NO OTHER LINK MOVES')
    ! Pairs and drives.
    type(error_code_t), parameter, public :: &
-      pair_one_link = error_code_t(60, 'JOINS TWO POINTS OF ONE LINK'), &
+      pair_one_link = error_code_t(60, 'JOINS TWO POINTS OF ONE LINK', own_layout), &
       pair_grounds = error_code_t(61, 'JOINS TWO GROUND LINKS'), &
-      drive_kind = error_code_t(70, 'IS NOT ANGLE, X, Y, RELANGLE OR SLIDE', .true.), &
+      drive_kind = error_code_t(70, 'IS NOT ANGLE, X, Y, RELANGLE OR SLIDE', own_layout), &
       drive_ground = error_code_t(71, 'A GROUND LINK CANNOT BE DRIVEN'), &
       drive_ground_point = error_code_t(72, 'A POINT OF A GROUND LINK CANNOT BE DRIVEN'), &
       drive_grounds = error_code_t(73, 'BOTH LINKS ARE GROUND LINKS'), &
       drive_one_link = error_code_t(74, 'BOTH LINKS ARE THE SAME'), &
       drive_revolute = error_code_t(75, 'A REVOLUTE PAIR HAS NO SLIDE'), &
       add_alone = error_code_t(76, 'MUST FOLLOW A DRIVE, ADD OR RISE CARD'), &
-      add_kind = error_code_t(77, 'IS NOT HARMONIC, POWER OR TABLE', .true.), &
-      add_blank = error_code_t(78, 'GIVES NO NUMBERS'), &
-      power_negative = error_code_t(79, 'THIS POWER IS NOT DEFINED AT THE INSTANT'), &
-      power_zero = error_code_t(80, 'THIS POWER OR A DERIVATIVE OF IT IS NOT DEFINED AT THE INSTANT'), &
+      add_kind = error_code_t(77, 'IS NOT HARMONIC, POWER OR TABLE', own_layout), &
+      add_blank = error_code_t(78, 'GIVES NO NUMBERS', own_layout), &
+      power_negative = &
+         error_code_t(79, 'FOR T < 0 ONLY WHOLE POWERS EXIST: SHIFT THE TIME; THE INSTANT IS', own_layout), &
+      power_zero = &
+         error_code_t(80, 'AT T = 0 THE POWER MUST BE 0, 1, OR AT LEAST 2; BEGIN LATER THAN', own_layout), &
       table_short = error_code_t(81, 'A TABLE NEEDS AT LEAST TWO ROWS'), &
       table_order = error_code_t(82, 'THE TIMES OF A TABLE MUST INCREASE'), &
       table_range = error_code_t(83, 'THIS TABLE DOES NOT COVER THE INSTANT'), &
       power_large = error_code_t(84, 'THIS POWER IS TOO LARGE A NUMBER AT THE INSTANT'), &
-      rise_law = error_code_t(66, 'IS NOT CYCLOID, 3-4-5, HARMONIC OR PARABOLA', .true.), &
-      rise_duration = error_code_t(67, 'A RISE NEEDS A DURATION ABOVE 0.0', .true.), &
+      rise_law = error_code_t(66, 'IS NOT CYCLOID, 3-4-5, HARMONIC OR PARABOLA', own_layout), &
+      rise_duration = error_code_t(67, 'A RISE NEEDS A DURATION ABOVE 0.0', own_layout), &
       rpm_unit = error_code_t(68, 'TURNS A MINUTE NEED THE UNIT OF TIME S, MS, MIN OR H')
    ! Times and options.
    type(error_code_t), parameter, public :: &
@@ -110,12 +118,12 @@ module input_errors
       branch_ground = error_code_t(86, 'A GROUND LINK HAS NO OTHER BRANCH'), &
       branch_method = error_code_t(87, 'A BRANCH CARD NEEDS METHOD NEWTON'), &
       branch_repeated = error_code_t(88, 'THIS BRANCH CARD IS REPEATED; FIRST ON CARD'), &
-      units_place = error_code_t(89, 'IS A UNIT OF ANGLES: IT BELONGS IN COLUMNS 17-24 (LABEL-B)', .true.), &
-      lang_kind = error_code_t(90, 'IS NOT EN OR PL', .true.), &
-      units_angle = error_code_t(91, 'IS NOT RAD OR DEG', .true.), &
-      method_kind = error_code_t(92, 'IS NOT NEWTON, DENSE OR MATRIX', .true.), &
+      units_place = error_code_t(89, 'IS A UNIT OF ANGLES: IT BELONGS IN COLUMNS 17-24 (LABEL-B)', own_layout), &
+      lang_kind = error_code_t(90, 'IS NOT EN OR PL', own_layout), &
+      units_angle = error_code_t(91, 'IS NOT RAD OR DEG', own_layout), &
+      method_kind = error_code_t(92, 'IS NOT NEWTON, DENSE OR MATRIX', own_layout), &
       tolerance_range = error_code_t(93, 'A TOLERANCE MUST BE ABOVE 1E-15 AND AT MOST 1E-2'), &
-      print_kind = error_code_t(94, 'IS NOT ALL, LINKS, POINTS OR PAIRS', .true.), &
+      print_kind = error_code_t(94, 'IS NOT ALL, LINKS, POINTS OR PAIRS', own_layout), &
       print_all_name = error_code_t(95, 'PRINT ALL TAKES NO NAME'), &
       print_repeated = error_code_t(96, 'THIS PRINT CARD IS REPEATED; FIRST ON CARD'), &
       print_nothing = error_code_t(97, 'THE SET HAS NONE OF THESE')
@@ -142,8 +150,9 @@ contains
       call add_picture(errors, card, column)
       call add_message(errors, code, '  CARD '//whole(card%number)//'  COLUMN '//whole(column)//'  FIELD '// &
                        trim(field%name)//':'//quoted, more)
-      form = find_form(card%text(:label_length))
-      if (code%shows_layout .and. form > 0) call add_line(errors, ' LAYOUT    |'//trim(forms(form)%layout))
+      form = code%layout
+      if (form == own_layout) form = find_form(card%text(:label_length))
+      if (form /= form_unknown) call add_line(errors, ' LAYOUT    |'//trim(forms(form)%layout))
    end subroutine add_error
 
    !> Adds the error `code` about the whole text in `field` of `card`. `more` ends the sentence. `place`: the number of
@@ -171,6 +180,28 @@ contains
       errors%count = errors%count + 1
       if (errors%count <= max_printed) call add_message(errors, code, ' ', more)
    end subroutine add_deck_error
+
+   !> Adds the remark `kind` about `text` (may be ''), which begins at `column` of `card`.
+   subroutine add_remark(errors, kind, card, column, text)
+      type(input_errors_t), intent(inout) :: errors
+      integer, intent(in) :: kind, column
+      type(card_t), intent(in) :: card
+      character(*), intent(in) :: text
+
+      errors%remarked = errors%remarked + 1
+      if (errors%remarked <= max_printed) errors%remarks(errors%remarked) = remark_t(kind, card%number, column, text)
+   end subroutine add_remark
+
+   !> Moves the remarks about the open set to `remarks`; not allocated if there are none.
+   subroutine take_remarks(errors, remarks)
+      type(input_errors_t), intent(inout) :: errors
+      type(remark_t), allocatable, intent(out) :: remarks(:)
+
+      if (errors%remarked > 0) remarks = errors%remarks(:min(errors%remarked, max_printed))
+      if (errors%remarked > max_printed) &
+         remarks = [remarks, remark_t(remark_more, text=whole(errors%remarked - max_printed))]
+      errors%remarked = 0
+   end subroutine take_remarks
 
    !> The number of errors so far, with those that are not printed.
    pure integer function error_count(errors)

@@ -1,12 +1,14 @@
-!> Diagnostics of an instant, beside its numbers, as data: results/ has their words.
+!> Diagnostics of an instant, beside its numbers, and remarks about a deck, as data: results/ has their words.
 module diagnostics
    use kinds, only: wp
    implicit none
    private
-   public :: diagnostic_t, new_diagnostic, max_links
+   public :: diagnostic_t, new_diagnostic, max_links, remark_t
    public :: diagnostic_inconsistent, diagnostic_limit, diagnostic_far_estimate, diagnostic_second, &
       diagnostic_redundant, diagnostic_mobile, diagnostic_change, diagnostic_long, diagnostic_unused, &
       diagnostic_dead_end, diagnostic_idle, diagnostic_repeated, diagnostic_method
+   public :: remark_small_letters, remark_title_long, remark_title_letters, remark_touching, remark_link_unused, &
+      remark_point_unused, remark_radians, remark_guide, remark_more
 
    !> The kinds of diagnostics, and the components that each uses.
    enum, bind(c)
@@ -23,6 +25,19 @@ module diagnostics
       enumerator :: diagnostic_idle             !< the pairs already fix what `drive` drives
       enumerator :: diagnostic_repeated         !< other drives already give what `drive` drives
       enumerator :: diagnostic_method           !< another method finds a position
+   end enum
+
+   !> The kinds of remarks: what a deck has that is harmless, or likely not what was meant.
+   enum, bind(c)
+      enumerator :: remark_small_letters = 1    !< small letters are read as capitals
+      enumerator :: remark_title_long           !< a title is cut
+      enumerator :: remark_title_letters        !< a title has letters that are not ASCII
+      enumerator :: remark_touching             !< two numbers touch
+      enumerator :: remark_link_unused          !< no pair and no drive uses a link: it rests
+      enumerator :: remark_point_unused         !< no pair, drive or PRINT card uses a point
+      enumerator :: remark_radians              !< an angle in radians looks like one in degrees
+      enumerator :: remark_guide                !< a guide fits its points if it is turned by a right angle
+      enumerator :: remark_more                 !< there are more remarks, `text` says how many
    end enum
 
    !> Links that a diagnostic can name.
@@ -42,6 +57,13 @@ module diagnostics
       real(wp) :: value = 0.0_wp               !< closure error, angle or drive's value (length or rad)
       real(wp) :: t = 0.0_wp                   !< time, in the deck's unit
    end type diagnostic_t
+
+   !> A remark about `text`, which begins at `column` of a card.
+   type :: remark_t
+      integer :: kind = 0                      !< remark_small_letters, ...
+      integer :: card = 0, column = 0          !< number of the card in the deck, and column
+      character(24) :: text = ''
+   end type remark_t
 
 contains
 

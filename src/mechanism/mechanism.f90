@@ -2,6 +2,7 @@
 !> others read it. Lengths and times are in the deck's units, angles in radians.
 module mechanism
    use kinds, only: wp, label_length, title_length
+   use diagnostics, only: remark_t
    implicit none
    private
    public :: link_t, point_t, pair_t, term_t, drive_t, request_t, branch_request_t, settings_t, mechanism_t
@@ -124,6 +125,7 @@ module mechanism
       type(request_t), allocatable :: requests(:)
       type(branch_request_t), allocatable :: branch_requests(:)   !< none: not allocated, or of size 0
       character(120), allocatable :: echo(:) !< the cards as they were understood, for the listing
+      type(remark_t), allocatable :: remarks(:)   !< about the cards; none: not allocated
    end type mechanism_t
 
 contains

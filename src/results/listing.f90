@@ -4,14 +4,14 @@ module listing
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use motion, only: mark_none, mark_singular, mark_inconsistent, singular_unclear, singular_dead
-   use structure, only: findings_t, group_t
+   use structure, only: findings_t, group_t, spare_drives_text
    use branch_certificate, only: certificate_counts_t
    use diagnostics, only: diagnostic_t
    use points, only: is_due
    use error_estimate, only: error_estimate_t
    use set_motion, only: set_motion_t, is_flagged, in_set
    use listing_tables, only: layout_t, new_layout, table_t, put_requested, put_units
-   use listing_diagnostics, only: put_diagnostics, put_closure_error
+   use listing_diagnostics, only: put_diagnostics, put_closure_error, put_remarks
    use text_output, only: output_t, put, add
    use numerals, only: fixed, whole, numeral_length
    use known_digits, only: unknown_digit
@@ -48,6 +48,7 @@ contains
          do i = 1, size(m%echo)
             call put(o, ' '//trim(m%echo(i)))
          end do
+         call put_remarks(o, m)
          call put(o, '')
          call put_structure(o, m, findings)
          call put(o, '')
@@ -70,6 +71,7 @@ contains
          call put(o, ' '//phrase(say_coordinates, pl)//' W = '//whole(f%coordinates)//';  '//phrase(say_equations, pl) &
             //' R = '//whole(f%equations)//';  '//phrase(say_degrees_of_freedom, pl)//' S = ' &
             //whole(f%degrees_of_freedom)//';  '//phrase(say_drives, pl)//' '//whole(f%drives))
+         if (f%spare_drives > 0) call put(o, ' --- '//phrase(say_spare_drives, pl)//' '//spare_drives_text(m, f))
       end associate
       if (allocated(f%groups)) call put_groups(o, m, f%groups)
    end subroutine put_structure

@@ -10,7 +10,7 @@ module listing_diagnostics
    use phrases
    implicit none
    private
-   public :: put_diagnostics, put_closure_error
+   public :: put_diagnostics, put_closure_error, put_remarks
 
    integer, parameter :: line_length = 120
    !> What concerns the results.
@@ -19,7 +19,40 @@ module listing_diagnostics
    !> A closure error below this, in parts of the characteristic length, is rounding: no two computers have the same.
    real(wp), parameter :: min_closure_error = max(1.0e-13_wp, 400.0_wp*epsilon(1.0_wp))
 
+   !> The words of remarks, by their kind.
+   type(phrase_t), parameter :: remark_words(remark_small_letters:remark_more) = &
+      [say_small_letters, say_title_long, say_title_letters, say_touching, say_link_unused, say_point_unused, &
+      say_radians, say_guide, say_more]
+
 contains
+
+   !> A line for each remark about the cards of `m`.
+   subroutine put_remarks(o, m)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      integer :: i
+
+      if (.not. allocated(m%remarks)) return
+      do i = 1, size(m%remarks)
+         call put(o, ' --- '//words_of_remark(m%remarks(i), m%polish))
+      end do
+   end subroutine put_remarks
+
+   !> CARD 7  COLUMN 9: "TIP" and the sentence of remark `r`.
+   function words_of_remark(r, polish) result(text)
+      type(remark_t), intent(in) :: r
+      logical, intent(in) :: polish
+      character(:), allocatable :: text
+
+      text = phrase(remark_words(r%kind), polish)
+      if (r%kind == remark_more) then
+         text = text//' '//trim(r%text)
+         return
+      end if
+      if (r%text /= '') text = '"'//trim(r%text)//'" '//text
+      text = phrase(say_card, polish)//' '//whole(r%card)//'  '//phrase(say_column, polish)//' '//whole(r%column) &
+         //': '//text
+   end function words_of_remark
 
    !> A line or two for each diagnostic of `list`.
    subroutine put_diagnostics(o, m, list)

@@ -86,6 +86,25 @@ module phrases
       say_last_position = phrase_t('IN RED THE LAST POSITION, T =', 'NA CZERWONO OSTATNIE POLOZENIE, T ='), &
       say_flagged_in_all = phrase_t('FLAGGED INSTANTS IN ALL:', 'CHWILE ZAZNACZONE RAZEM:'), &
       say_broken_off = phrase_t('THE RUN WAS BROKEN OFF AFTER INSTANT', 'OBLICZENIA PRZERWANO PO CHWILI')
+   ! Remarks about a deck.
+   type(phrase_t), parameter, public :: &
+      say_card = phrase_t('CARD', 'KARTA'), &
+      say_column = phrase_t('COLUMN', 'KOLUMNA'), &
+      say_small_letters = phrase_t('SMALL LETTERS ARE READ AS CAPITALS', 'MALE LITERY SA CZYTANE JAK DUZE'), &
+      say_title_long = phrase_t('THE TITLE IS CUT AT COLUMN 80', 'TYTUL JEST OBCIETY NA KOLUMNIE 80'), &
+      say_title_letters = phrase_t('THE TITLE IS PRINTED WITHOUT ACCENTS', 'TYTUL JEST BEZ ZNAKOW DIAKRYTYCZNYCH'), &
+      say_touching = phrase_t('TOUCHES THE NUMBER BEFORE IT: TWO NUMBERS ARE READ', &
+         'STYKA SIE Z LICZBA PRZED NIA: CZYTANE SA DWIE'), &
+      say_link_unused = phrase_t('NO PAIR AND NO DRIVE USES THIS LINK: IT RESTS', &
+         'OGNIWA NIE UZYWA ZADNA PARA ANI NAPED: SPOCZYWA'), &
+      say_point_unused = phrase_t('NO PAIR, DRIVE OR PRINT CARD USES THIS POINT', &
+         'PUNKTU NIE UZYWA ZADNA PARA, NAPED ANI KARTA PRINT'), &
+      say_radians = phrase_t('IS AN ANGLE IN RADIANS: ARE DEGREES MEANT (UNITS DEG)?', &
+         'TO KAT W RADIANACH: CZY MIALY BYC STOPNIE (UNITS DEG)?'), &
+      say_guide = phrase_t('THE GUIDE LOOKS WRONG BY A RIGHT ANGLE (ALPHA)', &
+         'PROWADNICA WYGLADA NA OBROCONA O KAT PROSTY (ALPHA)'), &
+      say_spare_drives = phrase_t('TOO MANY DRIVES BY', 'ZA DUZO NAPEDOW O'), &
+      say_more = phrase_t('FURTHER REMARKS:', 'DALSZYCH UWAG:')
 
 contains
 

@@ -5,6 +5,7 @@
 !> (13)  s = 3 n - r        (the print subtracts 2 n1 + n2 only)
 module structure
    use kinds, only: wp, label_length
+   use cards, only: forms, form_ground
    use failures, only: failure_t, fail, status_rejected
    use numerals, only: whole
    use names, only: drive_name, listed
@@ -21,7 +22,7 @@ module structure
    implicit none
    private
    public :: structure_t, findings_t, group_t, underdetermined_t, new_structure, count_degrees_of_freedom, &
-      find_structure, check_structure, faults_text
+      find_structure, check_structure, faults_text, spare_drives_text
 
    !> Links that still can move, and the drives that they lack.
    type :: underdetermined_t
@@ -48,6 +49,7 @@ module structure
       integer :: drives = 0       !< number of drives
       logical :: solvable = .false.             !< every unknown has an equation of its own
       type(underdetermined_t), allocatable :: lacking(:)   !< what still can move
+      integer :: spare_drives = 0               !< drives that are too many, among many_drives
       integer :: redundant = 0                  !< equations that are too many, among those of
       integer, allocatable :: many_pairs(:), many_drives(:)
       type(group_t), allocatable :: groups(:)   !< in solving order; none where it is not
@@ -111,6 +113,9 @@ contains
       f%redundant = count(unknown_of == 0)
       f%many_pairs = pack(c%pair, over .and. c%pair > 0)
       f%many_drives = pack(c%drive, over .and. c%drive > 0)
+      if (size(f%many_drives) > 1) f%spare_drives = f%redundant - redundant_without_drives(m)
+      ! The pairs of a mechanism that moves against its count leave no drive: those are not too many.
+      if (f%spare_drives >= size(f%many_drives)) f%spare_drives = 0
       f%lacking = parts_that_lack(m, c%link_of, underdetermined(c%incidence, unknown_of, equation_of), &
          equation_of)
       if (size(f%lacking) > 0) return
@@ -127,6 +132,21 @@ contains
       f%solvable = size(f%lacking) == 0
       if (f%solvable) f%groups = groups_of(m, c, unknown_of, equation_of, over, wanted_links(m))
    end function find_structure
+
+   !> The number of equations of the pairs of `m` that are too many by themselves.
+   integer function redundant_without_drives(m) result(redundant)
+      type(mechanism_t), intent(in) :: m
+      type(mechanism_t) :: pairs_only
+      type(closure_t) :: c
+      integer, allocatable :: unknown_of(:), equation_of(:)
+
+      pairs_only = m
+      deallocate (pairs_only%drives)
+      allocate (pairs_only%drives(0))
+      c = new_closure(pairs_only)
+      call match(c%incidence, unknown_of, equation_of)
+      redundant = count(unknown_of == 0)
+   end function redundant_without_drives
 
    !> The parts of `m` that still can move. `part` (unknowns): the number of its part, 0 for what cannot move;
    !> parts with a link in common are one. Time proportional to the unknowns.
@@ -257,9 +277,15 @@ contains
 
       text = ''
       if (size(f%lacking) == 0) then
-         if (f%redundant > 0 .and. m%method /= method_newton) &
+         if (f%redundant > 0 .and. m%method /= method_newton) then
             call add_line('E104  SET '//whole(set)//': ONLY METHOD NEWTON TAKES '//surplus(m, f))
+            call add_spare_drives('TAKE IT AWAY')
+         end if
          return
+      end if
+      if (f%ground == 0) then
+         call add_line('E105  SET '//whole(set)//': NO LINK IS GROUND: GIVE IT A GROUND CARD')
+         text = text//new_line('a')//' LAYOUT    |'//trim(forms(form_ground)%layout)
       end if
       do i = 1, min(size(f%lacking), max_parts)
          call add_line('E101  SET '//whole(set)//': '//lack(m, f%lacking(i)))
@@ -267,6 +293,7 @@ contains
       if (size(f%lacking) > max_parts) call add_line('E101  SET '//whole(set)//': AND ' &
          //whole(size(f%lacking) - max_parts)//' MORE PARTS THAT CAN MOVE')
       if (f%redundant > 0) call add_line('E102  SET '//whole(set)//': '//surplus(m, f))
+      call add_spare_drives('DRIVE THE LINKS OF E101')
       call add_line('E103  SET '//whole(set)//': W = '//whole(f%coordinates)//' COORDINATES LESS R = ' &
          //whole(f%equations)//' EQUATIONS LEAVE S = '//whole(f%degrees_of_freedom) &
          //' DEGREES OF FREEDOM, DRIVES ARE '//whole(f%drives))
@@ -280,7 +307,38 @@ contains
          if (len(text) > 0) text = text//new_line('a')//' *** '
          text = text//line
       end subroutine add_line
+
+      !> Appends the line on drives that are too many, and what `to_do`.
+      subroutine add_spare_drives(to_do)
+         character(*), intent(in) :: to_do
+
+         if (f%spare_drives > 0) call add_line('E106  SET '//whole(set)//': TOO MANY DRIVES BY ' &
+            //spare_drives_text(m, f)//'; '//to_do)
+      end subroutine add_spare_drives
    end function faults_text
+
+   !> How many drives are too many, and among which: 1: ANGLE CRANK, ANGLE ROCKER.
+   function spare_drives_text(m, f) result(text)
+      type(mechanism_t), intent(in) :: m
+      type(findings_t), intent(in) :: f
+      character(:), allocatable :: text
+
+      text = whole(f%spare_drives)//': '//many_drives_listed(m, f)
+   end function spare_drives_text
+
+   !> The names of the drives among which equations are too many.
+   function many_drives_listed(m, f) result(text)
+      type(mechanism_t), intent(in) :: m
+      type(findings_t), intent(in) :: f
+      character(:), allocatable :: text
+      character(3*label_length + 2) :: drives(size(f%many_drives))
+      integer :: i
+
+      do i = 1, size(drives)
+         drives(i) = drive_name(m, m%drives(f%many_drives(i)))
+      end do
+      text = listed(drives)
+   end function many_drives_listed
 
    !> LINKS A, B: 1 FREEDOM LEFT, ADD A DRIVE
    function lack(m, part) result(text)
@@ -303,20 +361,15 @@ contains
       type(mechanism_t), intent(in) :: m
       type(findings_t), intent(in) :: f
       character(:), allocatable :: text
-      character(3*label_length + 2) :: drives(size(f%many_drives))
-      integer :: i
       integer, allocatable :: pairs(:)
 
       pairs = once(f%many_pairs)
       text = 'TOO MANY EQUATIONS BY '//whole(f%redundant)//' AMONG'
       if (size(pairs) > 0) text = text//trim(merge(' PAIR ', ' PAIRS', size(pairs) == 1))//' ' &
          //listed(m%pairs(pairs)%name)
-      if (size(drives) == 0) return
+      if (size(f%many_drives) == 0) return
       if (size(pairs) > 0) text = text//' AND'
-      do i = 1, size(drives)
-         drives(i) = drive_name(m, m%drives(f%many_drives(i)))
-      end do
-      text = text//trim(merge(' DRIVE ', ' DRIVES', size(drives) == 1))//' '//listed(drives)
+      text = text//trim(merge(' DRIVE ', ' DRIVES', size(f%many_drives) == 1))//' '//many_drives_listed(m, f)
    end function surplus
 
    !> The first of each run of equal numbers.

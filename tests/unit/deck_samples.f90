@@ -1,11 +1,12 @@
 !> Small decks for the tests of the reader, and its words about them.
 module deck_samples
    use mechanism, only: mechanism_t
+   use numerals, only: whole
    use failures, only: failure_t
    use deck, only: read_deck
    implicit none
    private
-   public :: row, sample, replaced, inserted, read_lines, read_bytes, sentences, set_of
+   public :: row, sample, replaced, inserted, read_lines, read_bytes, sentences, remarks_of, set_of
 
    !> The deck under test, beside the program; every reading deletes it.
    character(*), parameter :: deck_file = 'unit_test_deck.tmp'
@@ -114,6 +115,25 @@ contains
          report = report(last + 1:)
       end do
    end function sentences
+
+   !> The remarks about the first set of a deck, each as kind, card, column and text; several joined by ' / '. '*' for a
+   !> deck that is rejected.
+   function remarks_of(lines) result(text)
+      character(*), intent(in) :: lines(:)
+      character(:), allocatable :: text
+      type(mechanism_t) :: set
+      integer :: i
+
+      set = set_of(lines)
+      text = trim(merge('*', ' ', set%set_number == 0))
+      if (.not. allocated(set%remarks)) return
+      do i = 1, size(set%remarks)
+         if (i > 1) text = text//' / '
+         associate (r => set%remarks(i))
+            text = trim(text//whole(r%kind)//' '//whole(r%card)//' '//whole(r%column)//' '//r%text)
+         end associate
+      end do
+   end function remarks_of
 
    !> The first set of a deck; its number is 0 if the deck was rejected.
    function set_of(lines) result(set)

@@ -1,0 +1,133 @@
+!> What a set without errors has that is harmless or likely not what was meant: names that nothing uses, degrees for
+!> radians, a guide that is off by a right angle.
+module deck_remarks
+   use kinds, only: wp
+   use constants, only: pi
+   use planar, only: direction, quarter_turn, point_of
+   use diagnostics, only: remark_link_unused, remark_point_unused, remark_radians, remark_guide
+   use mechanism, only: mechanism_t, pair_prismatic, drive_words, driven_kinds, drive_angle, drive_relangle, &
+      request_link, request_point, request_pair
+   use scales, only: solver_length
+   use card_sets, only: card_set_t, add_card_error, add_card_remark
+   use cards, only: label_a, label_c, real_1, real_3, form_ground, form_link, form_prism, form_drive
+   use input_errors, only: link_unused
+   implicit none
+   private
+   public :: check_unused, check_angles, check_guides
+
+   !> Parts of the characteristic length: an estimate closes a pair to `closed`; a guide at `open` is not met.
+   real(wp), parameter :: closed = 0.05_wp, open = 0.3_wp
+   !> Angles beyond this are no degrees that someone has read from a drawing.
+   real(wp), parameter :: max_degrees = 720.0_wp
+
+contains
+
+   !> Remarks on each link without a pair or a drive, which rests then, and on each point without a pair, a drive or a
+   !> PRINT card. An error, if no link is left that moves.
+   subroutine check_unused(set)
+      type(card_set_t), intent(inout) :: set
+      logical :: link(size(set%mechanism%links)), point(size(set%mechanism%points))
+      integer :: i
+
+      call find_used(set%mechanism, link, point)
+      associate (m => set%mechanism, card_of_link => set%named(request_link)%card)
+         if (.not. any(link .and. .not. m%links%ground)) &
+            call add_card_error(set, link_unused, card_of_link(findloc(m%links%ground, .false., dim=1)), label_a)
+         do i = 1, size(link)
+            if (.not. link(i)) call add_card_remark(set, remark_link_unused, card_of_link(i), label_a)
+         end do
+         where (.not. link) m%links%ground = .true.
+         associate (requests => m%requests)
+            point(pack(requests%subject, requests%kind == request_point)) = .true.
+         end associate
+      end associate
+      do i = 1, size(point)
+         if (.not. point(i)) call add_card_remark(set, remark_point_unused, set%named(request_point)%card(i), label_a)
+      end do
+   end subroutine check_unused
+
+   !> The links `link` (links) and points `point` (points) of `m` that a pair or a drive uses.
+   pure subroutine find_used(m, link, point)
+      type(mechanism_t), intent(in) :: m
+      logical, intent(out) :: link(:), point(:)
+      integer :: i
+
+      link = .false.
+      point = .false.
+      point(m%pairs%point_i) = .true.
+      point(m%pairs%point_j) = .true.
+      do i = 1, size(m%drives)
+         associate (drive => m%drives(i))
+            if (driven_kinds(drive%kind) == request_point) point(drive%subject) = .true.
+            if (driven_kinds(drive%kind) == request_link) link(drive%subject) = .true.
+            if (drive%kind == drive_relangle) link(drive%second) = .true.
+         end associate
+      end do
+      link(pack(m%points%link, point)) = .true.
+   end subroutine find_used
+
+   !> A remark on the first angle in radians that looks like degrees: beyond a turn, up to two turns of degrees, a whole
+   !> number or a half.
+   subroutine check_angles(set)
+      type(card_set_t), intent(inout) :: set
+      logical :: is_angle(3)
+      integer :: k, i
+
+      if (set%mechanism%degrees) return
+      do k = 1, set%count
+         associate (card => set%cards(k))
+            select case (card%form)
+            case (form_ground, form_link)
+               is_angle = [.false., .false., .true.]
+            case (form_prism)
+               is_angle = [.true., .false., .true.]
+            case (form_drive)
+               is_angle = [any(card%label(label_a) == drive_words([drive_angle, drive_relangle])), .false., .false.]
+            case default
+               cycle
+            end select
+            i = findloc(is_angle .and. abs(card%real) > 2.0_wp*pi .and. abs(card%real) <= max_degrees &
+                        .and. .not. abs(2.0_wp*card%real - anint(2.0_wp*card%real)) > 0.0_wp, .true., dim=1)
+         end associate
+         if (i == 0) cycle
+         call add_card_remark(set, remark_radians, k, label_c + i)
+         return
+      end do
+   end subroutine check_angles
+
+   !> A remark on each guide that the estimate of the links does not meet, but would meet if it were turned by a right
+   !> angle. Only where the estimate closes all revolute pairs: a rough one proves nothing.
+   subroutine check_guides(set)
+      type(card_set_t), intent(inout) :: set
+      real(wp) :: length
+      integer :: i
+
+      associate (m => set%mechanism)
+         length = solver_length(m)
+         if (any([(m%pairs(i)%kind /= pair_prismatic .and. opening(m, i, 0.0_wp) > closed*length, &
+                   i=1, size(m%pairs))])) return
+         do i = 1, size(m%pairs)
+            if (m%pairs(i)%kind /= pair_prismatic) cycle
+            if (opening(m, i, 0.0_wp) < open*length) cycle
+            if (min(opening(m, i, 0.5_wp*pi), opening(m, i, -0.5_wp*pi)) > closed*length) cycle
+            call add_card_remark(set, remark_guide, set%named(request_pair)%card(i), real_1)
+         end do
+      end associate
+   end subroutine check_guides
+
+   !> By how much pair `i` is open where the deck has its links; of a prismatic pair eq. (9), its guide turned by `turn`
+   !> (rad).
+   pure real(wp) function opening(m, i, turn)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i
+      real(wp), intent(in) :: turn
+      real(wp) :: gap(2)
+
+      associate (pair => m%pairs(i), p => m%points(m%pairs(i)%point_i), q => m%points(m%pairs(i)%point_j))
+         gap = point_of(m%links(p%link)%position, p%offset) - point_of(m%links(q%link)%position, q%offset)
+         opening = norm2(gap)
+         if (pair%kind == pair_prismatic) opening = abs(pair%offset - dot_product(gap, &
+            quarter_turn(direction(m%links(p%link)%position(3) + pair%alpha + turn))))
+      end associate
+   end function opening
+end module deck_remarks
