@@ -7,6 +7,7 @@ module job
    use text_output, only: output_t
    use system_calls, only: watch_signals, signal_received, broken_pipe_kills, signal_pipe
    use listing, only: layout_t, new_layout, listing_head, listing_instant, listing_end, listing_broken_off
+   use listing_diagnostics, only: remarks_text
    use csv, only: csv_head, csv_instant
    use table, only: table_t, new_table, table_head, table_instant
    use drawing, only: drawing_t, new_drawing, record_instant
@@ -48,6 +49,7 @@ contains
       status = status_solved
       call read_deck(options%deck, sets, message, failure)
       if (.not. allocated(failure)) call check_structure(sets, findings, failure)
+      if (allocated(failure) .and. len(message) == 0) message = said_of(sets)//' *** '//failure%text
       if (.not. allocated(failure)) then
          o%first = share_end(size(sets), options%share - 1, options%shares) + 1
          o%last = share_end(size(sets), options%share, options%shares)
@@ -61,9 +63,25 @@ contains
       if (allocated(failure)) then
          status = failure%status
          if (len(message) == 0) message = ' *** '//failure%text
+      else if (.not. o%asked(out_listing)) then
+         message = said_of(sets(o%first:o%last))
+         ! The end of the last line comes with the message.
+         message = message(:max(0, len(message) - 1))
       end if
       call look_at_signals(o, status, message)
    end subroutine run_job
+
+   !> The remarks about `sets`, each line ended by new_line('a'), for where they stand in no listing.
+   function said_of(sets) result(text)
+      type(mechanism_t), intent(in) :: sets(:)
+      character(:), allocatable :: text
+      integer :: i
+
+      text = ''
+      do i = 1, size(sets)
+         if (allocated(sets(i)%remarks)) text = text//remarks_text(sets(i))//new_line('a')
+      end do
+   end function said_of
 
    !> A run that a signal has ended ends by that signal; so does one whose reader has gone (kinmat DECK | head), and
    !> without a word, unless other outputs were asked for, which end there too.

@@ -11,7 +11,7 @@ module listing
    use error_estimate, only: error_estimate_t
    use set_motion, only: set_motion_t, is_flagged, in_set
    use listing_tables, only: layout_t, new_layout, table_t, put_requested, put_units
-   use listing_diagnostics, only: put_diagnostics, put_closure_error, put_remarks
+   use listing_diagnostics, only: put_diagnostics, put_closure_error, remarks_text
    use text_output, only: output_t, put, add
    use numerals, only: fixed, whole, numeral_length
    use known_digits, only: unknown_digit
@@ -48,7 +48,7 @@ contains
          do i = 1, size(m%echo)
             call put(o, ' '//trim(m%echo(i)))
          end do
-         call put_remarks(o, m)
+         if (allocated(m%remarks)) call put(o, remarks_text(m))
          call put(o, '')
          call put_structure(o, m, findings)
          call put(o, '')

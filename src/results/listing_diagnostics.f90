@@ -10,7 +10,7 @@ module listing_diagnostics
    use phrases
    implicit none
    private
-   public :: put_diagnostics, put_closure_error, put_remarks
+   public :: put_diagnostics, put_closure_error, remarks_text
 
    integer, parameter :: line_length = 120
    !> What concerns the results.
@@ -26,17 +26,19 @@ module listing_diagnostics
 
 contains
 
-   !> A line for each remark about the cards of `m`.
-   subroutine put_remarks(o, m)
-      type(output_t), intent(inout) :: o
+   !> A line for each remark about the cards of `m`, joined by new_line('a'); '' if there are none.
+   function remarks_text(m) result(text)
       type(mechanism_t), intent(in) :: m
+      character(:), allocatable :: text
       integer :: i
 
+      text = ''
       if (.not. allocated(m%remarks)) return
       do i = 1, size(m%remarks)
-         call put(o, ' --- '//words_of_remark(m%remarks(i), m%polish))
+         if (i > 1) text = text//new_line('a')
+         text = text//' --- '//words_of_remark(m%remarks(i), m%polish)
       end do
-   end subroutine put_remarks
+   end function remarks_text
 
    !> CARD 7  COLUMN 9: "TIP" and the sentence of remark `r`.
    function words_of_remark(r, polish) result(text)

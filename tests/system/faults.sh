@@ -686,6 +686,15 @@ changed '/^LINK    CRANK/ { sub(/60.0$/, "0.0") } /^LINK    ROD/ { $0 = "LINK   
 "$kinmat" "$w/deck" > "$w/out"
 equal 'a guide a right angle off' ' --- CARD 17  COLUMN 33: "90.0" THE GUIDE LOOKS WRONG BY A RIGHT ANGLE (ALPHA)' "$(grep '^ --- CARD' "$w/out")"
 
+# Without a listing, and before the errors of the structure, the remarks stand on standard error.
+changed '/^DRIVE/ { print "POINT   TIP     ROD" } 1'
+"$kinmat" --no-listing --csv "$w/csv" "$w/deck" > "$w/out" 2> "$w/err"
+equal 'a remark without a listing' ' --- CARD 18  COLUMN 9: "TIP" NO PAIR, DRIVE OR PRINT CARD USES THIS POINT' "$(cat "$w/err" "$w/out")"
+changed '/^DRIVE/ { print "POINT   TIP     ROD"; next } 1'
+"$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
+equal 'a remark before errors of the structure' ' --- CARD 18  COLUMN 9: "TIP" NO PAIR, DRIVE OR PRINT CARD USES THIS POINT
+ *** E101  SET 1: LINKS CRANK, ROD, PISTON: 1 FREEDOM LEFT, ADD A DRIVE' "$(head -n 2 "$w/err")"
+
 # What is not harmless is refused, with the layout of the card.
 # explained NAME AWK LINES: the last lines of what is said
 explained() {
@@ -716,10 +725,10 @@ explained 'a link for a point' '/^REVOLUTEA1/ { sub(/A1 /, "ROD") } 1' \
  LAYOUT    |REVOLUTEPOINT-I POINT-J PAIR'
 explained 'a point for a link' '/^DRIVE/ { sub(/CRANK/, "A1   ") } 1' \
    ' *** E051  CARD 18  COLUMN 17  FIELD LABEL-B: "A1" NO LINK HAS THIS NAME (A POINT HAS IT)
- LAYOUT    |DRIVE   KIND    DRIVEN  LINK    VALUE AT 0.0    RATE            ACCELERATION'
+ LAYOUT    |DRIVE   KIND    DRIVEN  2ND/RPM VALUE AT 0.0    RATE            ACCELERATION'
 explained 'a pair for a point' '/^DRIVE/ { sub(/ANGLE   CRANK /, "X       PAIR-A") } 1' \
    ' *** E052  CARD 18  COLUMN 17  FIELD LABEL-B: "PAIR-A" NO POINT HAS THIS NAME (A PAIR HAS IT)
- LAYOUT    |DRIVE   KIND    DRIVEN  LINK    VALUE AT 0.0    RATE            ACCELERATION'
+ LAYOUT    |DRIVE   KIND    DRIVEN  2ND/RPM VALUE AT 0.0    RATE            ACCELERATION'
 explained 'no END' '/^END/ { next } 1' \
    ' *** E002  CARD 19  COLUMN 1  FIELD NAME: "TIME" IS THE LAST CARD OF THE DECK: PUT AN END CARD BEHIND IT
  LAYOUT    |END'
