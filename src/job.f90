@@ -185,7 +185,7 @@ contains
 
       if (o%asked(out_listing)) then
          o%layout = new_layout(m, findings%parts, findings%own)
-         call listing_head(o%files(out_listing, 0), o%layout, m, findings)
+         call listing_head(o%files(out_listing, 0), m, findings)
       end if
       if (options%check) return
       if (o%asked(out_log)) call log_head(o%files(out_log, 0), m, options%errors)

@@ -10,10 +10,11 @@ module listing
    use points, only: is_due
    use error_estimate, only: error_estimate_t
    use set_motion, only: set_motion_t, is_flagged, in_set
-   use listing_tables, only: layout_t, new_layout, table_t, put_requested, put_units
+   use listing_layout, only: layout_t, new_layout
+   use listing_tables, only: table_t, put_instant, put_requested
    use listing_diagnostics, only: put_diagnostics, put_closure_error, remarks_text
    use text_output, only: output_t, put, add
-   use numerals, only: fixed, whole, numeral_length
+   use numerals, only: whole
    use known_digits, only: unknown_digit
    use phrases
    implicit none
@@ -31,9 +32,8 @@ module listing
 contains
 
    !> Title, data and structure of one set.
-   subroutine listing_head(o, l, m, findings)
+   subroutine listing_head(o, m, findings)
       type(output_t), intent(inout) :: o
-      type(layout_t), intent(in) :: l
       type(mechanism_t), intent(in) :: m
       type(findings_t), intent(in) :: findings
       integer :: i
@@ -53,7 +53,6 @@ contains
          call put_structure(o, m, findings)
          call put(o, '')
          call put(o, ' '//phrase(say_results, pl))
-         call put_units(o, l, m)
       end associate
    end subroutine listing_head
 
@@ -162,19 +161,6 @@ contains
       words = phrase(mark_words(mark), polish)
       if (mark == mark_singular) words = phrase(singular_words(singularity), polish)
    end function words_of_mark
-
-   !> The line above the tables of an instant, `t` in the deck's unit.
-   subroutine put_instant(o, l, t, step)
-      type(output_t), intent(inout) :: o
-      type(layout_t), intent(in) :: l
-      real(wp), intent(in) :: t
-      integer, intent(in) :: step
-      character(numeral_length) :: time
-
-      time = adjustl(fixed(t, l%time_decimals, l%time_power))
-      call put(o, '')
-      call put(o, l%instant//whole(step)//'   T = '//trim(time))
-   end subroutine put_instant
 
    !> The last lines of a set: where equations are redundant, by how much they differ (`closure_error`, in parts of the
    !> characteristic length; negative where none are); `diagnostics`; what is certified of the branches on which the

@@ -152,12 +152,7 @@ contains
       n = count(r%links > 0)
       text = phrase(merge(say_link, say_links, n == 1), m%polish)
       if (n > 0) text = text//' '//listed(m%links(r%links(:n))%name)
-      if (r%more == 0) return
-      if (m%polish) then
-         text = text//' I '//whole(r%more)//' INNE'
-      else
-         text = text//' AND '//whole(r%more)//' MORE'
-      end if
+      text = text//more(r%more, m%polish)
    end function links
 
    !> The diagnostic's value and its unit.

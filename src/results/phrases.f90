@@ -1,8 +1,9 @@
 !> The words of the listing, English and Polish (without diacritics).
 module phrases
+   use numerals, only: whole
    implicit none
    private
-   public :: phrase_t, phrase
+   public :: phrase_t, phrase, more
 
    !> The same words in both languages.
    type :: phrase_t
@@ -30,7 +31,8 @@ module phrases
       say_point = phrase_t('POINT', 'PUNKT'), &
       say_pair = phrase_t('PAIR', 'PARA'), &
       say_phi = phrase_t('PHI', 'FI'), &
-      say_value = phrase_t('VALUE', 'WARTOSC'), &
+      say_slide = phrase_t('SLIDE', 'PRZESUW'), &
+      say_angle = phrase_t('ANGLE', 'KAT'), &
       say_rate = phrase_t('RATE', 'PREDKOSC'), &
       say_acceleration = phrase_t('2ND RATE', 'PRZYSP.'), &
       say_none = phrase_t('NONE', 'BRAK'), &
@@ -116,4 +118,16 @@ contains
 
       text = trim(merge(p%polish, p%english, polish))
    end function phrase
+
+   !> The end of a list of which `n` are left out: ' AND 3 MORE'; '' where none are.
+   pure function more(n, polish) result(text)
+      integer, intent(in) :: n
+      logical, intent(in) :: polish
+      character(:), allocatable :: text
+
+      text = ''
+      if (n == 0) return
+      text = ' AND '//whole(n)//' MORE'
+      if (polish) text = ' I '//whole(n)//' INNE'
+   end function more
 end module phrases

@@ -7,7 +7,7 @@ module listing_check
    integer, parameter :: width = 400
    character(8), parameter :: heads(*) = [character(8) :: 'X', 'Y', 'PHI', 'FI', 'VX', 'VY', 'VPHI', 'VFI', 'AX', &
       'AY', &
-      'APHI', 'AFI', 'VALUE', 'WARTOSC', 'RATE', '2ND', 'PREDKOSC', 'PRZYSP.']
+      'APHI', 'AFI', 'SLIDE', 'ANGLE', 'PRZESUW', 'KAT', 'RATE', '2ND', 'PREDKOSC', 'PRZYSP.']
    character(70), parameter :: marks(*) = [character(70) :: 'NO POSITION FOUND', 'NIE ZNALEZIONO POLOZENIA', &
       'JACOBIAN SINGULAR: NO UNIQUE VELOCITIES', 'JAKOBIAN OSOBLIWY: BRAK JEDNOZNACZNYCH PREDKOSCI', &
       'CHANGE POINT: VELOCITIES NOT UNIQUE', 'PUNKT ZMIANY: PREDKOSCI NIEJEDNOZNACZNE', &
@@ -74,8 +74,10 @@ contains
          wrong = all(marks /= line(6:75)) .and. .not. is_remark(line)
       else if (is_remark(line)) then
          wrong = .false.
-      else if (starts(line, ' INSTANT ') .or. starts(line, ' CHWILA ')) then
-         wrong = .not. are_numbers(line(index(line, 'T =', back=.true.) + 3:))
+      else if (starts(line, ' INSTANT ') .or. starts(line, ' CHWILA ') .or. index(line, ' = ') > 0) then
+         wrong = .not. are_values(line)
+      else if (line(:10) == '') then
+         wrong = index(line, '****') > 0
       else
          wrong = .not. (are_numbers(line(10:)) .or. are_heads(line(10:)))
       end if
@@ -121,6 +123,23 @@ contains
       end do
    end function are_numbers
 
+   !> The line has the time or values of drives: a number behind each sign of equality, one at least.
+   pure logical function are_values(line)
+      character(*), intent(in) :: line
+      integer :: first, last, at
+
+      are_values = index(line, ' = ') > 0
+      last = 0
+      do while (are_values)
+         at = index(line(last + 1:), ' = ')
+         if (at == 0) return
+         last = last + at + 2
+         call next_word(line, first, last)
+         are_values = first > 0
+         if (are_values) are_values = are_numbers(line(first:last))
+      end do
+   end function are_values
+
    pure logical function are_heads(text)
       character(*), intent(in) :: text
       integer :: first, last
@@ -130,7 +149,7 @@ contains
       do while (are_heads)
          call next_word(text, first, last)
          if (first == 0) return
-         are_heads = any(heads == text(first:last)) .or. text(first:min(first + 3, last)) == '10**'
+         are_heads = any(heads == text(first:last))
       end do
    end function are_heads
 

@@ -51,6 +51,7 @@ module hand_groups
 
    type(statement_t), parameter :: statements(*) = [ &
       statement_t('yoke', 0, '*CRANK; BLOCK LEVER; ROD RAM'), &
+      statement_t('jarzmowy', 0, '*CRANK; BLOCK LEVER; ROD RAM'), &
       statement_t('yoke_mirrored', 0, '*CRANK; BLOCK LEVER; ROD RAM'), &
       statement_t('four_bar', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('rise_dwell', 0, '*CRANK; COUPLER ROCKER'), &

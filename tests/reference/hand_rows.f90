@@ -8,12 +8,12 @@ module hand_rows
    private
    public :: hand_row_t, row_by_hand
 
-   !> A row of the kind `kind` of a request; `is_length`: of columns x, y, phi; `links`: those that it depends on.
+   !> A row of the kind `kind` of a request; `column`: which of x, y, phi its values stand under, a slide under x and the
+   !> angle of a pair under phi; `links`: those that it depends on.
    type :: hand_row_t
       integer :: kind = request_link
       character(8) :: name = ''
-      integer :: columns = 3
-      logical :: is_length(3) = [.true., .true., .false.]
+      integer :: columns = 3, column(3) = [1, 2, 3]
       integer :: links(2) = 0
       real(qp) :: value(3, 0:2) = 0.0_qp
    end type hand_row_t
@@ -43,7 +43,7 @@ contains
          case default
             row%name = m%pairs(i)%name
             row%links = m%points([m%pairs(i)%point_i, m%pairs(i)%point_j])%link
-            row%is_length(1) = m%pairs(i)%kind == pair_prismatic
+            if (m%pairs(i)%kind /= pair_prismatic) row%column(1) = 3
             call take([pair_value(m, b, i)], row)
          end select
       end associate

@@ -1,8 +1,11 @@
-!> Tests. The tables of one instant as the listing must print them, from closed forms in real128: heads, rows, what does
-!> not exist, masks. Nothing of the program's tables is used.
+!> Tests. The tables of one instant as the listing must print them, from closed forms in real128: the line over them with
+!> the drives, heads with powers of ten and units, rows, what does not exist, masks. Nothing of the program's tables is
+!> used.
 module hand_tables
-   use mechanism, only: mechanism_t, instant_count, instant, request_pair
-   use quad_jet, only: qp, degree_q
+   use mechanism, only: mechanism_t, drive_t, instant_count, instant, request_pair, drive_angle, drive_x, drive_y, &
+      drive_relangle, drive_slide
+   use quad_jet, only: qp, jet_t, degree_q
+   use jet_drives, only: drive_jet
    use closed_forms_dyads, only: body_t
    use hand_scales, only: hand_scales_t
    use hand_numbers, only: number_by_hand, field_length
@@ -25,11 +28,17 @@ module hand_tables
       ' LINK               X           Y         PHI          VX          VY        VPHI' &
       //'          AX          AY        APHI', &
       ' POINT              X           Y                      VX          VY                      AX          AY', &
-      ' PAIR           VALUE                                RATE                            2ND RATE', &
+      ' PAIR           SLIDE                   ANGLE        RATE                    RATE' &
+      //'    2ND RATE                2ND RATE', &
       ' OGNIWO             X           Y          FI          VX          VY         VFI' &
       //'          AX          AY         AFI', &
       ' PUNKT              X           Y                      VX          VY                      AX          AY', &
-      ' PARA         WARTOSC                            PREDKOSC                             PRZYSP.'], [3, 2])
+      ' PARA         PRZESUW                     KAT    PREDKOSC                PREDKOSC' &
+      //'     PRZYSP.                 PRZYSP.'], [3, 2])
+   !> Their columns, three a derivative: of lengths (1) or angles (2), or none.
+   integer, parameter :: columns(3, 3) = reshape([1, 1, 2, 1, 1, 0, 1, 0, 2], [3, 3])
+   !> More drives do not stand over the tables, and no line is longer.
+   integer, parameter :: most_drives = 6, widest = 120
 
 contains
 
@@ -55,7 +64,7 @@ contains
          if (mod(step, m%requests(i)%every) /= 0 .and. step /= instant_count(m) - 1) cycle
          row = row_by_hand(m, b, m%requests(i))
          if (kind == 0) call put_time(o, m, scales, step, language)
-         if (row%kind /= kind) call put(o, trim(heads(row%kind, language)))
+         if (row%kind /= kind) call put_heads(o, m, scales, row%kind, language)
          kind = row%kind
          if (size(error) > 0) then
             line = row_line(row, m%degrees, scales, merge(0, 2, any(resting(row%links))), error(:, :, i), language)
@@ -63,26 +72,143 @@ contains
             line = row_line(row, m%degrees, scales, merge(0, 2, any(resting(row%links))), 0.0_qp*row%value, language)
          end if
          masked = masked .or. index(line, '?') > 0
-         call put(o, line(:name_length + field_length*(6 + row%columns)))
+         call put(o, line(:name_length + field_length*(6 + row%column(row%columns))))
       end do
       if (kind == 0 .and. any(resting)) call put_time(o, m, scales, step, language)
       if (any(resting)) call put(o, ' *** '//trim(singular_words(language)))
       if (masked) call put(o, ' --- ?: '//trim(unknown_words(language)))
    end subroutine put_tables
 
-   !> The line over the tables.
+   !> The heads over rows of one `kind`: names, powers of ten, units. What a unit is divided by has a line of its own
+   !> where the longest unit has no room in its column, a blank before it.
+   subroutine put_heads(o, m, scales, kind, language)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(hand_scales_t), intent(in) :: scales
+      integer, intent(in) :: kind, language
+      character(line_length) :: line(3)
+      character(30) :: power, unit, per
+      integer :: c, k
+      logical :: has_room
+
+      has_room = max(3, len_trim(m%length_unit)) + len('/'//trim(m%time_unit)//'**2') <= field_length - 1
+      line = ''
+      do k = 0, 2
+         per = ''
+         if (k > 0) per = '/'//m%time_unit
+         if (k == 2) per = trim(per)//'**2'
+         do c = 1, 3
+            if (columns(c, kind) == 0) cycle
+            unit = m%length_unit
+            if (columns(c, kind) == 2) unit = merge('DEG', 'RAD', m%degrees)
+            write (power, '("10**", i0)') scales%power(columns(c, kind), k)
+            if (scales%power(columns(c, kind), k) /= 0) call put_end(power, 3*k + c, line(1))
+            if (has_room) then
+               call put_end(trim(unit)//per, 3*k + c, line(2))
+            else
+               call put_end(unit, 3*k + c, line(2))
+               call put_end(per, 3*k + c, line(3))
+            end if
+         end do
+      end do
+      call put(o, trim(heads(kind, language)))
+      do k = 1, 3
+         if (line(k) /= '') call put(o, trim(line(k)))
+      end do
+   end subroutine put_heads
+
+   !> Puts `word` where column number `column` of `line` ends.
+   subroutine put_end(word, column, line)
+      character(*), intent(in) :: word
+      integer, intent(in) :: column
+      character(*), intent(inout) :: line
+      integer :: last
+
+      last = name_length + field_length*column
+      line(last - len_trim(word) + 1:last) = word
+   end subroutine put_end
+
+   !> The lines over the tables: the instant, and where its drives are.
    subroutine put_time(o, m, scales, step, language)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(hand_scales_t), intent(in) :: scales
       integer, intent(in) :: step, language
-      character(12) :: number
+      character(:), allocatable :: line, word
+      character(12) :: number, left_out
+      integer :: i, first
 
       write (number, '(i0)') step
       call put(o, '')
-      call put(o, trim(instant_words(language))//' '//trim(number)//'   T = ' &
-         //trim(adjustl(number_by_hand(real(instant(m, step), qp), 0.0_qp, scales%time_decimals, scales%time_power))))
+      line = trim(instant_words(language))//' '//trim(number)
+      first = len(line)
+      line = line//'   T = '//with_unit(real(instant(m, step), qp), scales%time_decimals, scales%time_power, m%time_unit)
+      do i = 1, min(most_drives, size(m%drives))
+         word = '   '//drive_word(m, m%drives(i))//' = '//drive_value(m, m%drives(i), scales, real(instant(m, step), qp))
+         write (left_out, '(i0)') size(m%drives) - i
+         if (i == most_drives .and. size(m%drives) > i) word = word//' '//trim(merge('AND', 'I  ', language == 1))//' ' &
+            //trim(left_out)//' '//merge('MORE', 'INNE', language == 1)
+         if (len(line//word) > widest) then
+            call put(o, line)
+            line = repeat(' ', first)
+         end if
+         line = line//word
+      end do
+      call put(o, line)
    end subroutine put_time
+
+   !> A number over the power of ten that stands before its unit.
+   function with_unit(x, decimals, power, unit) result(text)
+      real(qp), intent(in) :: x
+      integer, intent(in) :: decimals, power
+      character(*), intent(in) :: unit
+      character(:), allocatable :: text
+      character(12) :: factor
+
+      text = trim(adjustl(number_by_hand(x, 0.0_qp, decimals, power)))
+      write (factor, '("10**", i0)') power
+      if (power /= 0) text = text//' '//trim(factor)
+      text = text//' '//trim(unit)
+   end function with_unit
+
+   !> The kind of the drive `d` and the names of what it drives.
+   function drive_word(m, d) result(text)
+      type(mechanism_t), intent(in) :: m
+      type(drive_t), intent(in) :: d
+      character(:), allocatable :: text
+
+      select case (d%kind)
+      case (drive_angle)
+         text = 'ANGLE '//trim(m%links(d%subject)%name)
+      case (drive_x)
+         text = 'X '//trim(m%points(d%subject)%name)
+      case (drive_y)
+         text = 'Y '//trim(m%points(d%subject)%name)
+      case (drive_relangle)
+         text = 'RELANGLE '//trim(m%links(d%subject)%name)//' '//trim(m%links(d%second)%name)
+      case (drive_slide)
+         text = 'SLIDE '//trim(m%pairs(d%subject)%name)
+      end select
+   end function drive_word
+
+   !> Where the drive `d` is at `t`, with as many digits as places and angles have in the tables.
+   function drive_value(m, d, scales, t) result(text)
+      type(mechanism_t), intent(in) :: m
+      type(drive_t), intent(in) :: d
+      type(hand_scales_t), intent(in) :: scales
+      real(qp), intent(in) :: t
+      character(:), allocatable :: text
+      type(jet_t) :: f
+
+      f = drive_jet(d, t)
+      if (all(d%kind /= [drive_angle, drive_relangle])) then
+         text = with_unit(f%v, scales%decimals(1, 0), scales%power(1, 0), m%length_unit)
+      else if (m%degrees) then
+         text = with_unit(f%v/degree_q, scales%decimals(2, 0), scales%power(2, 0), 'DEG')
+      else
+         text = with_unit(f%v, scales%decimals(2, 0), scales%power(2, 0), 'RAD')
+      end if
+   end function drive_value
 
    !> The line of `row`, of which derivatives up to `known` exist.
    function row_line(row, degrees, scales, known, error, language) result(line)
@@ -98,8 +224,8 @@ contains
       line = ' '//row%name
       do k = 0, 2
          do c = 1, row%columns
-            first = name_length + field_length*(3*k + c - 1) + 1
-            what = merge(1, 2, row%is_length(c))
+            first = name_length + field_length*(3*k + row%column(c) - 1) + 1
+            what = columns(row%column(c), row%kind)
             unit = 1.0_qp
             if (degrees .and. what == 2) unit = degree_q
             line(first:first + field_length - 1) = repeat(' ', field_length - len(none_words))//none_words(language)

@@ -12,7 +12,7 @@ program print_expected
    use hand_groups, only: groups_by_hand, redundant_by_hand, passages_by_hand
    use deck, only: read_deck
    use text_output, only: output_t, open_output, close_output
-   use listing, only: layout_t, listing_head, listing_end
+   use listing, only: listing_head, listing_end
    use listing_diagnostics, only: put_diagnostics
    use quad_jet, only: qp, pi_q
    use hand_scales, only: hand_scales_t, scales_by_hand
@@ -51,7 +51,6 @@ contains
       character(*), intent(in) :: name
       type(mechanism_t), intent(in) :: m
       type(hand_scales_t) :: scales
-      type(layout_t) :: layout
       type(findings_t) :: findings
       type(certificate_counts_t) :: tally
       type(diagnostic_t), allocatable :: diagnostics(:)
@@ -61,11 +60,9 @@ contains
       integer :: k, flagged
 
       scales = scales_by_hand(m)
-      layout%power = scales%power
-      layout%time_power = scales%time_power
       findings = hand_count(name)
       findings%groups = groups_by_hand(name, m)
-      call listing_head(o, layout, m, findings)
+      call listing_head(o, m, findings)
       links%phi%v = real(m%links%position(3), qp)
       flagged = 0
       do k = 0, instant_count(m) - 1

@@ -1,11 +1,12 @@
-!> Tests. The deck as a listing repeats it, read for what its tables must hold: units, kinds of pairs, and the rows that
-!> the PRINT cards ask for.
+!> Tests. The deck as a listing repeats it, read for what its tables must hold: units, kinds of pairs, drives, and the rows
+!> that the PRINT cards ask for.
 module echoed_deck
    implicit none
    private
-   public :: echoed_deck_t, due_t, new_echoed_deck, read_card, expand_requests, label_length, kind_of_row
+   public :: echoed_deck_t, due_t, new_echoed_deck, read_card, expand_requests, is_slide, label_length, word_length, &
+      kind_of_row
 
-   integer, parameter :: label_length = 8
+   integer, parameter :: label_length = 8, word_length = 16
    integer, parameter :: label_first(0:3) = [2, 11, 20, 29]
    character(5), parameter :: kind_of_row(3) = [character(5) :: 'LINK', 'POINT', 'PAIR']
 
@@ -15,11 +16,22 @@ module echoed_deck
       character(label_length) :: name = ''
    end type due_t
 
+   !> A drive by the words of its card; the `column` of the row of `kind` and `name` has the same value.
+   type :: drive_words_t
+      character(3*label_length + 2) :: words = ''
+      integer :: kind = 0, column = 0            !< 0: no row has it
+      character(label_length) :: name = ''
+      logical :: is_angle = .false.
+      character(word_length) :: value = ''       !< at the instant at hand, over 10**power
+      integer :: power = 0
+   end type drive_words_t
+
    type :: echoed_deck_t
       character(label_length) :: units(3) = ''   !< of length, angle and time
       type(due_t), allocatable :: named(:)       !< links that move, points and pairs, in the order of their cards
       logical, allocatable :: slides(:)          !< (named) prismatic pairs
       type(due_t), allocatable :: requests(:)
+      type(drive_words_t), allocatable :: drives(:)
    end type echoed_deck_t
 
 contains
@@ -27,7 +39,7 @@ contains
    function new_echoed_deck() result(d)
       type(echoed_deck_t) :: d
 
-      allocate (d%named(0), d%slides(0), d%requests(0))
+      allocate (d%named(0), d%slides(0), d%requests(0), d%drives(0))
    end function new_echoed_deck
 
    !> One card, as the listing prints it.
@@ -49,6 +61,8 @@ contains
          call add_name(d, 2, label(1), .false.)
       case ('REVOLUTE', 'PRISM')
          call add_name(d, 3, label(3), label(0) == 'PRISM')
+      case ('DRIVE')
+         call add_drive(d, label(1:3))
       case ('PRINT')
          read (label(3), *, iostat=status) every
          if (status /= 0) every = 1
@@ -58,6 +72,30 @@ contains
          end do
       end select
    end subroutine read_card
+
+   subroutine add_drive(d, label)
+      type(echoed_deck_t), intent(inout) :: d
+      character(label_length), intent(in) :: label(3)
+      type(drive_words_t) :: drive
+
+      drive%words = trim(label(1))//' '//trim(label(2))//' '//label(3)
+      drive%name = label(2)
+      drive%is_angle = label(1) == 'ANGLE' .or. label(1) == 'RELANGLE'
+      if (label(1) == 'ANGLE') drive%kind = 1
+      if (label(1) == 'X' .or. label(1) == 'Y') drive%kind = 2
+      if (label(1) == 'SLIDE') drive%kind = 3
+      drive%column = index('XYA', label(1)(:1))
+      if (label(1) == 'SLIDE') drive%column = 1
+      d%drives = [d%drives, drive]
+   end subroutine add_drive
+
+   !> The pair of this `name` is prismatic.
+   pure logical function is_slide(d, name)
+      type(echoed_deck_t), intent(in) :: d
+      character(*), intent(in) :: name
+
+      is_slide = any(d%named%kind == 3 .and. d%named%name == name .and. d%slides)
+   end function is_slide
 
    subroutine add_name(d, kind, name, slides)
       type(echoed_deck_t), intent(inout) :: d

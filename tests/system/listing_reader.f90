@@ -1,22 +1,29 @@
-!> Tests. A listing read back by its own words: units, powers of ten, heads and rows. It shares nothing with the modules
-!> that print it.
+!> Tests. A listing read back by its own words: instants with their drives, heads, powers of ten and units of columns, rows.
+!> It shares nothing with the modules that print it.
 module listing_reader
-   use echoed_deck, only: echoed_deck_t, new_echoed_deck, read_card, expand_requests, label_length
+   use echoed_deck, only: echoed_deck_t, new_echoed_deck, read_card, expand_requests, is_slide, label_length, word_length
    use listing_check, only: next_word
    implicit none
    private
    public :: row_text_t, set_text_t, next_set, word_length
 
-   integer, parameter :: line_length = 400, word_length = 16
+   integer, parameter :: line_length = 400
    !> A row's numbers begin behind its name.
    integer, parameter :: first_number = 10
    character(8), parameter :: kind_words(3, 2) = reshape([character(8) :: &
       'LINK', 'POINT', 'PAIR', 'OGNIWO', 'PUNKT', 'PARA'], [3, 2])
-   !> The heads of the nine columns, in two languages; a pair has the first, fourth and seventh. The second word of
-   !> 2ND RATE stands over its numbers' end.
+   !> The heads of the nine columns, in two languages. A pair has a slide in the first of three and an angle in the third;
+   !> their derivatives have the same heads. The second word of 2ND RATE stands over its numbers' end.
    character(8), parameter :: head_words(*) = [character(8) :: 'X', 'Y', 'PHI', 'VX', 'VY', 'VPHI', 'AX', 'AY', &
-      'APHI', 'FI', 'VFI', 'AFI', 'VALUE', 'RATE', '2ND', 'WARTOSC', 'PREDKOSC', 'PRZYSP.']
-   integer, parameter :: head_columns(*) = [1, 2, 3, 4, 5, 6, 7, 8, 9, 3, 6, 9, 1, 4, 0, 1, 4, 7]
+      'APHI', 'FI', 'VFI', 'AFI', 'SLIDE', 'ANGLE', 'RATE', '2ND', 'PRZESUW', 'KAT', 'PREDKOSC', 'PRZYSP.']
+   integer, parameter :: head_columns(*) = [1, 2, 3, 4, 5, 6, 7, 8, 9, 3, 6, 9, 1, 3, 4, 0, 1, 3, 4, 7]
+   !> Which columns rows of each kind have.
+   logical, parameter :: has_column(3, 3) = reshape([.true., .true., .true., .true., .true., .false., &
+      .true., .false., .true.], [3, 3])
+   !> Of more drives only the first stand over the tables.
+   integer, parameter :: most_drives = 6
+   !> A number and the blank before it.
+   integer, parameter :: column_length = 12
 
    !> One row of step `step`; `kind`: 1 link, 2 point, 3 pair. Where there is no column, its word is blank.
    type :: row_text_t
@@ -39,9 +46,11 @@ module listing_reader
    type :: table_t
       integer :: step = -1, kind = 0
       character(word_length) :: time = ''
+      integer :: time_power = 0
       integer :: last(9) = 0, power(9) = 0
-      integer :: time_power = 0, unit_power(2, 0:2) = 0   !< (length or angle, derivative)
-      logical :: results = .false.                        !< the deck and the structure are over
+      character(30) :: unit(9) = ''          !< as it stands in the heads, its lines put together
+      integer :: drives = 0                  !< of the instant, that have been read
+      logical :: results = .false.           !< the deck and the structure are over
    end type table_t
 
 contains
@@ -92,11 +101,14 @@ contains
          if (used /= 1) call blame(set, line)
          table%step = counts(1)
          table%kind = 0
-         table%time = adjustl(line(index(line, 'T =') + 3:))
+         table%drives = 0
+         used = index(line, 'T =') + 2
+         call read_value(line, set%deck%units(3), used, table%time, table%time_power, set)
+         call read_drives(line, used, set, table)
       else if (.not. table%results) then
          call read_card(set%deck, line)
-      else if (table%step < 0) then
-         call read_units(line, set, table)
+      else if (is_row(line) .and. table%kind == 0 .and. line(2:first_number - 1) == '') then
+         call read_drives(line, 0, set, table)
       else if (is_row(line)) then
          call read_table_line(line, set, table)
       end if
@@ -110,67 +122,74 @@ contains
          .or. starts(line, ' LARGEST GAP OF ', ' NAJWIEKSZA NIEZGODNOSC '))
    end function is_row
 
-   !> One of the four lines of units, which must be those of the deck.
-   subroutine read_units(line, set, table)
+   !> The drives of an instant behind column `last` of `line`, in the order of their cards.
+   subroutine read_drives(line, last, set, table)
       character(*), intent(in) :: line
+      integer, intent(in) :: last
       type(set_text_t), intent(inout) :: set
       type(table_t), intent(inout) :: table
-      character(:), allocatable :: per
-      integer :: k, last
-      character(8), parameter :: line_starts(0:2) = [character(8) :: ' X, Y [', ' VX, VY', ' AX, AY']
+      integer :: at
 
-      associate (unit => set%deck%units)
-         if (starts(line, ' T [', ' T [')) call read_bracket(line, 1, trim(unit(3)), table%time_power, last, set)
-         do k = 0, 2
-            if (.not. starts(line, trim(line_starts(k)), trim(line_starts(k)))) cycle
-            per = ''
-            if (k == 1) per = '/'//trim(unit(3))
-            if (k == 2) per = '/'//trim(unit(3))//'**2'
-            call read_bracket(line, 1, trim(unit(1))//per, table%unit_power(1, k), last, set)
-            call read_bracket(line, last + 1, trim(unit(2))//per, table%unit_power(2, k), last, set)
-         end do
-      end associate
-   end subroutine read_units
+      at = last
+      do while (line(at + 1:) /= '' .and. .not. starts(line(at + 1:), ' AND ', ' I '))
+         table%drives = table%drives + 1
+         if (table%drives > size(set%deck%drives)) call blame(set, line)
+         if (allocated(set%wrong)) return
+         associate (d => set%deck%drives(table%drives))
+            at = at + verify(line(at + 1:), ' ') - 1
+            if (index(line(at + 1:), trim(d%words)//' = ') /= 1) call blame(set, line)
+            at = at + len_trim(d%words) + 2
+            call read_value(line, set%deck%units(merge(2, 1, d%is_angle)), at, d%value, d%power, set)
+         end associate
+      end do
+   end subroutine read_drives
 
-   !> The power of ten in the first brackets from column `first` on, whose unit must be `unit`; `last`: their end.
-   subroutine read_bracket(line, first, unit, power, last, set)
+   !> The number behind column `last` of `line`, its power of ten, if it has one, and its unit, which must be `unit`; `last`
+   !> becomes the end of the unit.
+   subroutine read_value(line, unit, last, word, power, set)
       character(*), intent(in) :: line, unit
-      integer, intent(in) :: first
-      integer, intent(out) :: power, last
+      integer, intent(inout) :: last
+      character(word_length), intent(out) :: word
+      integer, intent(out) :: power
       type(set_text_t), intent(inout) :: set
-      integer :: start, blank, status
+      integer :: first, status
 
       power = 0
-      start = first + index(line(first:), '[')
-      last = start + index(line(start:), ']') - 1
-      if (line(start:min(start + 3, last)) == '10**') then
-         blank = start + index(line(start:), ' ') - 1
-         read (line(start + 4:blank), *, iostat=status) power
-         if (status /= 0) call blame(set, line)
-         start = blank + 1
+      status = 0
+      call next_word(line, first, last)
+      word = line(first:last)
+      call next_word(line, first, last)
+      if (line(first:min(first + 3, last)) == '10**') then
+         read (line(first + 4:last), *, iostat=status) power
+         call next_word(line, first, last)
       end if
-      if (line(start:last - 1) /= unit) call blame(set, line)
-   end subroutine read_bracket
+      if (status /= 0 .or. line(first:last) /= unit) call blame(set, line)
+   end subroutine read_value
 
-   !> Heads, powers of ten under them, or a row.
+   !> Heads, powers of ten and units under them, or a row.
    subroutine read_table_line(line, set, table)
       character(*), intent(in) :: line
       type(set_text_t), intent(inout) :: set
       type(table_t), intent(inout) :: table
       type(row_text_t) :: row
-      integer :: first, last, column, status
-      logical :: powers
+      integer :: first, last, column
+      logical :: has(9)
 
       if (index(line, '.') == 0 .or. index(line, 'PRZYSP.') > 0) then
          if (any(kind_words == line(2:first_number - 1))) then
+            if (table%drives /= min(size(set%deck%drives), most_drives)) call blame(set, line)
             call read_heads(line, set, table)
-            if (table%kind > 0) return
+            return
          end if
       end if
       if (table%kind == 0) call blame(set, line)
+      if (allocated(set%wrong)) return
+      if (line(2:first_number - 1) == '') then
+         call read_units(line, set, table)
+         return
+      end if
       row = row_text_t(step=table%step, kind=table%kind, name=line(2:first_number - 1), time=table%time, &
-         time_power=table%time_power)
-      powers = row%name == '' .and. index(line, '10**') > 0
+         time_power=table%time_power, power=table%power)
       last = first_number - 1
       do
          call next_word(line, first, last)
@@ -178,29 +197,59 @@ contains
          column = findloc(table%last, last, dim=1)
          if (column == 0 .or. last - first >= word_length) call blame(set, line)
          if (column == 0) return
-         if (powers) then
-            read (line(first + len('10**'):last), *, iostat=status) table%power(column)
-            if (status /= 0 .or. line(first:first + 3) /= '10**') call blame(set, line)
-         else
-            row%word(column) = line(first:last)
-         end if
+         row%word(column) = line(first:last)
       end do
-      if (powers) return
-      row%power = table%power + powers_of_units(set%deck, table, row%name)
-      if (any((row%word == '') .neqv. (table%last == 0))) call blame(set, line)
+      has = table%last > 0
+      if (row%kind == 3) call choose_columns(is_slide(set%deck, row%name), has)
+      if (any((row%word == '') .eqv. has)) call blame(set, line)
+      if (any(table%unit /= units_wanted(set%deck, table))) call blame(set, 'UNITS OVER '//line)
+      call compare_drives(line, row, set)
+      if (row%kind == 3 .and. .not. has(1)) then
+         ! The CSV has one value of a pair.
+         row%word(1::3) = row%word(3::3)
+         row%word(3::3) = ''
+         row%power(1::3) = row%power(3::3)
+      end if
       call add_row(set, row)
    end subroutine read_table_line
+
+   !> The columns that are not those of a pair's own value.
+   pure subroutine choose_columns(slide, has)
+      logical, intent(in) :: slide
+      logical, intent(inout) :: has(9)
+
+      has(1::3) = has(1::3) .and. slide
+      has(3::3) = has(3::3) .and. .not. slide
+   end subroutine choose_columns
+
+   !> The drives of the instant have the values that `row`, read from `line`, has: where it has a number, and no digit of it
+   !> is masked.
+   subroutine compare_drives(line, row, set)
+      character(*), intent(in) :: line
+      type(row_text_t), intent(in) :: row
+      type(set_text_t), intent(inout) :: set
+      integer :: i
+
+      do i = 1, size(set%deck%drives)
+         associate (d => set%deck%drives(i))
+            if (d%kind /= row%kind .or. d%name /= row%name .or. d%value == '') cycle
+            if (scan(row%word(d%column), '?NB') > 0) cycle
+            if (row%word(d%column) /= d%value .or. row%power(d%column) /= d%power) call blame(set, line)
+         end associate
+      end do
+   end subroutine compare_drives
 
    !> The columns under the heads of a `line`, which begins with the kind of its rows.
    subroutine read_heads(line, set, table)
       character(*), intent(in) :: line
       type(set_text_t), intent(inout) :: set
       type(table_t), intent(inout) :: table
-      integer :: first, last, head, place(2)
+      integer :: first, last, head, column, place(2)
       logical :: second
 
       table%last = 0
       table%power = 0
+      table%unit = ''
       place = findloc(kind_words, line(2:first_number - 1))
       table%kind = place(1)
       second = .false.
@@ -211,27 +260,54 @@ contains
          head = findloc(head_words == line(first:last), .true., dim=1)
          if (head == 0) call blame(set, line)
          if (head == 0) return
-         if (head_columns(head) > 0) table%last(head_columns(head) + merge(3, 0, second)) = last
+         column = head_columns(head) + merge(3, 0, second)
+         if (column > 3 .and. table%kind == 3) then
+            if (table%last(column) > 0) column = column + 2
+         end if
+         if (head_columns(head) > 0) table%last(column) = last
          second = line(first:last) == '2ND'
       end do
-      if (count(table%last > 0) /= 3*(4 - table%kind)) call blame(set, line)
+      if (any((table%last > 0) .neqv. [has_column(:, table%kind), has_column(:, table%kind), has_column(:, table%kind)])) &
+         call blame(set, line)
    end subroutine read_heads
 
-   !> The powers of ten that the units give to the columns of the row of `name`.
-   function powers_of_units(deck, table, name) result(power)
+   !> A line under the heads: powers of ten, or units.
+   subroutine read_units(line, set, table)
+      character(*), intent(in) :: line
+      type(set_text_t), intent(inout) :: set
+      type(table_t), intent(inout) :: table
+      character(column_length) :: word
+      integer :: c, status, read_so_far
+
+      read_so_far = 0
+      do c = 1, 9
+         if (table%last(c) == 0) cycle
+         word = adjustl(line(table%last(c) - column_length + 1:table%last(c)))
+         read_so_far = read_so_far + len_trim(word)
+         if (word(:4) /= '10**') then
+            table%unit(c) = trim(table%unit(c))//word
+         else
+            read (word(5:), *, iostat=status) table%power(c)
+            if (status /= 0 .or. table%unit(c) /= '') call blame(set, line)
+         end if
+      end do
+      if (read_so_far /= count([(line(c:c) /= ' ', c=1, len(line))])) call blame(set, line)
+   end subroutine read_units
+
+   !> The units of the columns of `table`.
+   pure function units_wanted(deck, table) result(unit)
       type(echoed_deck_t), intent(in) :: deck
       type(table_t), intent(in) :: table
-      character(*), intent(in) :: name
-      integer :: power(9)
-      logical :: angle
+      character(30) :: unit(9)
+      integer :: c
 
-      power(1::3) = table%unit_power(1, :)
-      power(2::3) = table%unit_power(1, :)
-      power(3::3) = table%unit_power(2, :)
-      if (table%kind < 3) return
-      angle = any(deck%named%kind == 3 .and. deck%named%name == name .and. .not. deck%slides)
-      if (angle) power(1::3) = table%unit_power(2, :)
-   end function powers_of_units
+      do c = 1, 9
+         unit(c) = deck%units(merge(2, 1, modulo(c, 3) == 0))
+         if (c > 3) unit(c) = trim(unit(c))//'/'//deck%units(3)
+         if (c > 6) unit(c) = trim(unit(c))//'**2'
+         if (table%last(c) == 0) unit(c) = ''
+      end do
+   end function units_wanted
 
    subroutine add_row(set, row)
       type(set_text_t), intent(inout) :: set

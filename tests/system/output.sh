@@ -126,7 +126,7 @@ if [ -w /dev/full ]; then
    done
 fi
 # A limit on the size of files: after so many blocks of 512 bytes.
-(ulimit -f 400; exec timeout -k 1 20 "$kinmat" long -o limited --csv limited.csv 2> err)
+(ulimit -f 400; exec timeout -k 1 20 "$kinmat" long -o limited --csv limited.csv --errors 2> err)
 told 'a file that may not grow' 3 $? ' *** WRITING limited.csv FAILED (FILE TOO LARGE)'
 whole 'a file that may not grow: listing' limited
 equal 'a file that may not grow: the listing says so' 1 "$(tail -n 1 limited | grep -c '^ \*\*\* THE RUN WAS BROKEN OFF AFTER INSTANT [0-9]*$')"

@@ -1,0 +1,281 @@
+!> The layout of the tables of a set: digits, powers of ten, units, heads of columns.
+!>
+!> Digits: positions, velocities and accelerations are printed with the decimals, and where need be the power
+!> of ten, that give seven digits to the deck's characteristic length and rate; so one mechanism in
+!> millimetres and in kilometres prints the same digits.
+module listing_layout
+   use kinds, only: wp, label_length
+   use constants, only: degree
+   use mechanism, only: mechanism_t, request_link, request_pair, driven_kinds
+   use independent, only: parts_t, find_parts
+   use drives, only: law_t, new_law
+   use names, only: drive_name
+   use scales, only: characteristic_length, characteristic_rate
+   use numerals, only: whole, numeral_length
+   use phrases
+   implicit none
+   private
+   public :: layout_t, new_layout, digits_t, digits_of, column_powers, in_columns
+   public :: name_length, row_length, has_column, dimension_of
+
+   integer, parameter :: digits_after_first = 6
+   !> Characters before a row's numbers, and of a whole row.
+   integer, parameter :: name_length = 9, row_length = name_length + 9*numeral_length
+   !> Which of the columns x, y, phi each kind of rows has, and whether a column is of lengths (1) or angles (2). A pair
+   !> has its slide in the column of x, or its angle in that of phi.
+   logical, parameter :: has_column(3, 3) = reshape([.true., .true., .true., .true., .true., .false., &
+      .true., .false., .true.], [3, 3])
+   integer, parameter :: dimension_of(3) = [1, 1, 2]
+   !> Of more drives only the first stand at the head of an instant.
+   integer, parameter :: max_drives = 6
+
+   !> Decimals and powers of ten: (length or angle, derivative).
+   type :: digits_t
+      integer :: decimals(2, 0:2) = digits_after_first   !< digits after the point
+      integer :: power(2, 0:2) = 0                       !< printed is the value over 10**power
+   end type digits_t
+
+   !> A drive at the head of an instant: what stands before and behind its value, and its form.
+   type :: head_drive_t
+      character(:), allocatable :: before, behind
+      type(law_t) :: law
+      real(wp) :: unit = 1.0_wp            !< length or radians in the unit in which it is printed
+      integer :: decimals = digits_after_first, power = 0   !< as in `digits_t`
+   end type head_drive_t
+
+   !> The digits of the set, and of each of its independent mechanisms where they are not all the same.
+   type, extends(digits_t) :: layout_t
+      type(digits_t), allocatable :: own(:)   !< (parts)
+      integer, allocatable :: part(:)         !< (requests) 0: of the ground
+      integer, allocatable :: drive_part(:)   !< (drives)
+      logical :: mixed = .false.              !< their powers of ten differ
+      integer :: time_decimals = digits_after_first   !< of the instants, as above
+      integer :: time_power = 0
+      real(wp) :: angle = 1.0_wp           !< radians in the unit in which angles are printed
+      character(row_length) :: heads(3)    !< by the kind of a request
+      character(row_length) :: units(2, 3) !< two lines under the heads; the second is blank unless units are long
+      character(numeral_length) :: none    !< in the place of a number that does not exist
+      character(:), allocatable :: before_instant, behind_time    !< of the line over the tables: ' INSTANT ', ' S'
+      type(head_drive_t), allocatable :: drives(:)                !< that stand in it
+      character(:), allocatable :: more_drives                    !< ' AND 3 MORE', or ''
+   end type layout_t
+
+contains
+
+   !> The layout of the tables of `m`, from its deck alone. `parts`, `own`: as from `find_parts`, which finds them where
+   !> they are not given.
+   function new_layout(m, parts, own) result(l)
+      type(mechanism_t), intent(in) :: m
+      type(parts_t), intent(in), optional :: parts
+      type(mechanism_t), intent(in), optional :: own(:)
+      type(layout_t) :: l
+      type(parts_t) :: new_parts
+      type(mechanism_t), allocatable :: new_own(:)
+      real(wp) :: time
+      integer :: k
+
+      if (m%degrees) l%angle = degree
+      l%digits_t = digits_for(m, l%angle)
+      if (present(parts)) then
+         call take_parts(l, parts, own)
+      else
+         call find_parts(m, new_parts, new_own)
+         call take_parts(l, new_parts, new_own)
+      end if
+      time = max(abs(m%t0), abs(m%t1), maxval([0.0_wp, abs(m%at)]))
+      if (time > 0.0_wp) call choose_digits(log10(time), l%time_decimals, l%time_power)
+      do k = 1, size(l%heads)
+         l%heads(k) = column_heads(k, m%polish)
+      end do
+      l%units = unit_lines(m)
+      l%none = phrase(say_none, m%polish)
+      l%none = adjustr(l%none)
+      l%before_instant = ' '//phrase(say_instant, m%polish)//' '
+      l%behind_time = ' '//unit_of(l%time_power, trim(m%time_unit))
+      allocate (l%drives(min(size(m%drives), max_drives)))
+      do k = 1, size(l%drives)
+         call take_drive(l, m, k, l%drives(k))
+      end do
+      l%more_drives = more(size(m%drives) - size(l%drives), m%polish)
+   end function new_layout
+
+   !> Drive number `k` of `m`, ready for the head of an instant.
+   subroutine take_drive(l, m, k, drive)
+      type(layout_t), intent(in) :: l
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: k
+      type(head_drive_t), intent(out) :: drive
+      type(digits_t) :: d
+      integer :: what
+
+      d = l%digits_t
+      if (allocated(l%own)) d = l%own(l%drive_part(k))
+      what = merge(2, 1, driven_kinds(m%drives(k)%kind) == request_link)
+      drive%before = '   '//trim(drive_name(m, m%drives(k)))//' = '
+      drive%behind = ' '//unit_of(d%power(what, 0), trim(merge(angle_unit(m), m%length_unit, what == 2)))
+      drive%law = new_law(m%drives(k))
+      if (what == 2) drive%unit = l%angle
+      drive%decimals = d%decimals(what, 0)
+      drive%power = d%power(what, 0)
+   end subroutine take_drive
+
+   !> The digits of one mechanism; `angle`: radians in the unit in which angles are printed.
+   pure type(digits_t) function digits_for(m, angle) result(d)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: angle
+      real(wp) :: length, rate
+      integer :: k
+
+      length = characteristic_length(m)
+      rate = characteristic_rate(m, length)
+      do k = 0, 2
+         call choose_digits(log10(length) + k*log10(rate), d%decimals(1, k), d%power(1, k))
+         call choose_digits(k*log10(rate) + log10(merge(1.0_wp/angle, 1.0_wp, k > 0)), &
+            d%decimals(2, k), d%power(2, k))
+      end do
+   end function digits_for
+
+   !> Each of several mechanisms `m` (parts) has its own digits. Where none has more than one decimal more than another,
+   !> all have those of the largest.
+   pure subroutine take_parts(l, parts, m)
+      type(layout_t), intent(inout) :: l
+      type(parts_t), intent(in) :: parts
+      type(mechanism_t), intent(in) :: m(:)
+      type(digits_t) :: own(parts%count), largest
+      integer :: c
+
+      if (parts%count == 1) return
+      do c = 1, size(own)
+         own(c) = digits_for(m(c), l%angle)
+      end do
+      l%digits_t = own(1)
+      largest = own(1)
+      do c = 2, size(own)
+         l%mixed = l%mixed .or. any(own(c)%power /= own(1)%power)
+         l%decimals = min(l%decimals, own(c)%decimals)
+         largest%decimals = max(largest%decimals, own(c)%decimals)
+      end do
+      if (.not. l%mixed .and. all(largest%decimals - l%decimals <= 1)) return
+      l%own = own
+      l%part = parts%part
+      allocate (l%drive_part(sum([(size(parts%list(c)%drives), c=1, parts%count)])))
+      do c = 1, parts%count
+         l%drive_part(parts%list(c)%drives) = c
+      end do
+   end subroutine take_parts
+
+   !> The digits of request number `i`.
+   pure type(digits_t) function digits_of(l, i) result(d)
+      type(layout_t), intent(in) :: l
+      integer, intent(in) :: i
+
+      d = l%digits_t
+      if (.not. allocated(l%own)) return
+      if (l%part(i) > 0) d = l%own(l%part(i))
+   end function digits_of
+
+   !> The powers of ten of the columns of rows of the given `kind` (9): what they do not have is 0.
+   pure function column_powers(d, kind) result(power)
+      type(digits_t), intent(in) :: d
+      integer, intent(in) :: kind
+      integer :: power(9), k
+
+      do k = 0, 2
+         power(3*k + 1:3*k + 3) = merge(d%power(dimension_of, k), 0, has_column(:, kind))
+      end do
+   end function column_powers
+
+   !> Decimals and power of ten for values of order 10**`order`: seven digits, no power as long as they fit.
+   pure subroutine choose_digits(order, decimals, power)
+      real(wp), intent(in) :: order
+      integer, intent(out) :: decimals, power
+      integer :: k
+      ! An order that is a whole number but for rounding counts as one.
+      real(wp), parameter :: margin = max(1.0e-9_wp, 32.0_wp*epsilon(1.0_wp))
+
+      k = floor(order + margin)
+      power = 0
+      if (k < -2 .or. k > 4) power = 3*floor(real(k, wp)/3.0_wp + margin)
+      decimals = digits_after_first - (k - power)
+   end subroutine choose_digits
+
+   !> The heads over rows of one kind.
+   pure function column_heads(kind, polish) result(line)
+      integer, intent(in) :: kind
+      logical, intent(in) :: polish
+      character(row_length) :: line
+      character(numeral_length) :: words(9)
+      integer :: k
+      character(1), parameter :: prefix(0:2) = [' ', 'V', 'A']
+      type(phrase_t), parameter :: kind_words(3) = [say_link, say_point, say_pair], &
+         rate_words(0:2) = [phrase_t(), say_rate, say_acceleration]
+
+      do k = 0, 2
+         words(3*k + 1) = trim(prefix(k))//'X'
+         words(3*k + 2) = trim(prefix(k))//'Y'
+         words(3*k + 3) = trim(prefix(k))//phrase(say_phi, polish)
+         if (kind == request_pair) words(3*k + 1:3*k + 3) = phrase(rate_words(k), polish)
+      end do
+      if (kind == request_pair) words(:3) = [character(numeral_length) :: phrase(say_slide, polish), '', &
+         phrase(say_angle, polish)]
+      line = in_columns(words, kind)
+      line(:name_length) = ' '//phrase(kind_words(kind), polish)
+   end function column_heads
+
+   !> The units of the columns, for each kind of rows; where one is too long for its column, all that they are divided
+   !> by stands in a second line.
+   pure function unit_lines(m) result(lines)
+      type(mechanism_t), intent(in) :: m
+      character(row_length) :: lines(2, 3)
+      character(2*label_length + 4), dimension(9) :: unit, per
+      integer :: k
+
+      per = ''
+      per(4:6) = '/'//m%time_unit
+      per(7:9) = '/'//trim(m%time_unit)//'**2'
+      unit = [([m%length_unit, m%length_unit, angle_unit(m)], k=0, 2)]
+      if (max(len_trim(unit(1)), len_trim(unit(3))) + len_trim(per(9)) < numeral_length) then
+         do k = 1, 9
+            unit(k) = trim(unit(k))//per(k)
+         end do
+         per = ''
+      end if
+      do k = 1, 3
+         lines(1, k) = in_columns(unit, k)
+         lines(2, k) = in_columns(per, k)
+      end do
+   end function unit_lines
+
+   !> `words` (9), right-adjusted over the numbers of the columns that rows of the given `kind` have.
+   pure function in_columns(words, kind) result(line)
+      character(*), intent(in) :: words(9)
+      integer, intent(in) :: kind
+      character(row_length) :: line
+      character(numeral_length) :: word
+      integer :: k
+
+      line = ''
+      do k = 1, 9
+         word = words(k)
+         if (has_column(modulo(k - 1, 3) + 1, kind)) &
+            line(name_length + 1 + numeral_length*(k - 1):name_length + numeral_length*k) = adjustr(word)
+      end do
+   end function in_columns
+
+   !> The deck's unit of angles.
+   pure character(label_length) function angle_unit(m)
+      type(mechanism_t), intent(in) :: m
+
+      angle_unit = merge('DEG', 'RAD', m%degrees)
+   end function angle_unit
+
+   !> A unit with its power of ten, if there is one.
+   pure function unit_of(power, unit) result(text)
+      integer, intent(in) :: power
+      character(*), intent(in) :: unit
+      character(:), allocatable :: text
+
+      text = unit
+      if (power /= 0) text = '10**'//whole(power)//' '//unit
+   end function unit_of
+end module listing_layout
