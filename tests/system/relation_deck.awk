@@ -129,13 +129,15 @@ function read_results(  line, f) {
    }
 }
 # The instants of the set in hand from `start` on, by `way` = 1 or -1, and the BRANCH cards that lead through them the same way.
-function put_instants(  k, i, n, reached, by) {
-   n = 0; by = way
-   for (k = start; k >= 0 && k <= last[set]; k += by) {
+function put_instants(  k, next_one, i, n) {
+   for (k = start; k >= 0 && k <= last[set]; k = next_one) {
+      next_one = k + way
       x[++n] = time[set, k]
       if (n == 3) { put_numbers("AT", n); n = 0 }
-      for (i = 1; i <= n_switch; i++) if (switch_set[i] == set && (k + by >= 0) && (k + by <= last[set]) \
-         && (time[set, k] - switch_time[i])*(time[set, k + by] - switch_time[i]) < 0) branches[i] = time[set, k]
+      for (i = 1; i <= n_switch; i++) {
+         if (switch_set[i] != set || !((set, next_one) in time)) continue
+         if ((time[set, k] - switch_time[i])*(time[set, next_one] - switch_time[i]) < 0) branches[i] = time[set, k]
+      }
    }
    if (n) put_numbers("AT", n)
    for (i in branches) put_card("BRANCH", switch_link[i], "", "", 1, branches[i])
@@ -172,7 +174,7 @@ function change_card(  n) {
    if (change == "units") change_units()
    if (change == "mirrored") change_side()
    if (change == "moved") move()
-   if (name == "LINK" && change ~ /^(middle|back)$/) for (k = 1; k <= 3; k++) x[k] = place[set, start, a, k]
+   if (name == "LINK" && change ~ /^(middle|back)$/) for (k = 1; k <= 3; k++) if (place[set, start, a, k] != "") x[k] = place[set, start, a, k]
    put_numbers(substr(card, 1, 32), n)
 }
 
@@ -189,6 +191,8 @@ BEGIN { if (csv != "") read_results() }
    while ((set, start) in flagged) start--
    if (change == "middle" && start > 0) start = int((start + 1)/2)
    while (start < 0 || (set, start) in flagged) start++
+   # Where all is flagged, the deck stays as it is.
+   if (start > last[set]) { start = 0; way = 1 }
    printf "start %d %d\n", set, start > map
    if (degrees) print "degrees", set > map
    for (i = 1; i <= n_cards; i++) { take(i); if (name == "PRISM") print "slide", set, c > map }
