@@ -41,12 +41,12 @@ equal "the manual, first deck: t = 0" \
    ' TIP        0.2500000   0.0000000                0.000000    1.570000               -9.859600    0.000000' \
    "$(grep '^ TIP' "$BUILD/first.lst" | head -n 1)"
 equal "the manual, first deck: instants" 11 "$(grep -c '^ TIP' "$BUILD/first.lst")"
-# Other programs' results: every number agrees to its precision, but for six in which ADAMS is off, by so many half units of
-# its last digit; the closed forms confirm the others.
+# Other programs' results: every number agrees to its precision, except six in which ADAMS is off by so many half units of
+# its last digit. There the closed forms agree with this program.
 compare() {
    "$BUILD/kinmat" --csv "$BUILD/$1.csv" "input/$1.deck" > /dev/null
    awk -f tests/validation/compare.awk "tests/validation/$1.csv" "$BUILD/$1.csv" > "$BUILD/$1.txt"
-   equal "$1, $2: numbers that agree" "$3" "$(sed '$d' "$BUILD/$1.txt")"
+   equal "$1, $2: numbers compared, and those that are off" "$3" "$(sed '$d' "$BUILD/$1.txt")"
    equal "$1: the numbers in docs/evidence.md" 1 "$(grep -c "^| $2 | $1 | ${3%% *} |" docs/evidence.md)"
    echo "$1, $2: $(tail -n 1 "$BUILD/$1.txt") of the precision"
 }

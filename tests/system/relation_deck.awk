@@ -9,11 +9,10 @@
 #    beside     a four-bar linkage of another size and speed is in each set
 #    middle     begun in the middle: with the second half of the instants, from the positions at the first of these
 #    back       with the instants in the opposite order, from the positions at the last one
-# The last three take what they need from `csv`, results of the deck, and from `lst`, its listing. `map` tells what a reader
-# of the results must know: "start SET STEP", the instant of the deck with which the changed one begins, "link SET NAME XI
-# ETA PHI", the new axes of a link in the old ones, "pair SET NAME PHI", by how much its angle is more, "slide SET NAME", a
-# prismatic pair, "degrees SET", a set in degrees.
-# The numbers of a card and of its * card go to one * card.
+# The last three take what they need from `csv`, results of the deck, and from `lst`, its listing. `map` says what one must
+# know to compare results: "start SET STEP", the instant of the deck with which the changed one begins; "link SET NAME XI
+# ETA PHI", the new axes of a link in the old ones; "pair SET NAME PHI", by how much its angle is larger; "slide SET NAME",
+# a prismatic pair; "degrees SET", a set in degrees. The numbers of a card and of its * card go to one * card.
 
 function trim(s) { gsub(/^ +| +$/, "", s); return s }
 # A number as text, its exponent D as E.
@@ -47,7 +46,8 @@ function put_card(name, a, b, c, n, x1, x2, x3) {
 # The columns of the card in hand.
 function take(k,  i) {
    card = cards[k]; star = stars[k]
-   name = trim(substr(card, 1, 8)); a = trim(substr(card, 9, 8)); b = trim(substr(card, 17, 8)); c = trim(substr(card, 25, 8))
+   name = trim(substr(card, 1, 8))
+   a = trim(substr(card, 9, 8)); b = trim(substr(card, 17, 8)); c = trim(substr(card, 25, 8))
    for (i = 1; i <= 3; i++) x[i] = number(i)
    # ADD and RISE cards have the units of the drive above them.
    if (name == "DRIVE") driven = a
@@ -101,8 +101,8 @@ function change_units(  long) {
 function change_side(  turned) {
    turned = driven ~ /^(Y|ANGLE|RELANGLE)$/
    if (name ~ /^(GROUND|LINK|PRISM)$/ || name ~ /^(DRIVE|RISE)$/ && turned) x[3] = -x[3]
-   if (name ~ /^(GROUND|LINK|POINT|PRISM)$/ || name == "DRIVE" && turned || name == "ADD" && turned && a == "TABLE") x[2] = -x[2]
-   if (name == "PRISM" || name == "DRIVE" && turned || name == "ADD" && turned && a != "TABLE") x[1] = -x[1]
+   if (name ~ /^(GROUND|LINK|POINT|PRISM)$/ || turned && (name == "DRIVE" || name == "ADD" && a == "TABLE")) x[2] = -x[2]
+   if (name == "PRISM" || turned && (name == "DRIVE" || name == "ADD" && a != "TABLE")) x[1] = -x[1]
 }
 function move() {
    if (name == "GROUND" || name == "LINK" || name == "DRIVE" && driven == "X") x[1] += 3
@@ -111,13 +111,13 @@ function move() {
 }
 
 # The results of the deck: time[set, step], place[set, step, link, 1 to 3], flagged[set, step], last[set].
-function read_results(  line, f) {
+function read_results(  line, f, k) {
    getline line < csv
    while ((getline line < csv) > 0) {
       split(line, f, ",")
       time[f[1], f[2]] = f[3]; last[f[1]] = f[2]
       if (f[15] != "") flagged[f[1], f[2]] = 1
-      if (f[4] == "LINK") { place[f[1], f[2], f[5], 1] = f[6]; place[f[1], f[2], f[5], 2] = f[7]; place[f[1], f[2], f[5], 3] = f[8] }
+      if (f[4] == "LINK") for (k = 1; k <= 3; k++) place[f[1], f[2], f[5], k] = f[5 + k]
    }
    # Where a BRANCH card has taken the other branch, and its link.
    while ((getline line < lst) > 0) {
@@ -128,7 +128,8 @@ function read_results(  line, f) {
       sub(/.*LINKS? /, "", line); sub(/[ :,].*/, "", line); switch_link[n_switch] = line
    }
 }
-# The instants of the set in hand from `start` on, by `way` = 1 or -1, and the BRANCH cards that lead through them the same way.
+# The instants of the set in hand from `start` on, by `way` = 1 or -1, and BRANCH cards for the change points between them
+# at which the deck takes the other branch.
 function put_instants(  k, next_one, i, n) {
    for (k = start; k >= 0 && k <= last[set]; k = next_one) {
       next_one = k + way
@@ -161,20 +162,26 @@ function put_companion(  rate, first) {
    put_card("DRIVE", "ANGLE", "Q-CRANK", "", 2, 0.5/unit - rate*first, rate)
 }
 
+# The position of the link in hand at the first instant.
+function estimate(  k) {
+   for (k = 1; k <= 3; k++) if (place[set, start, a, k] != "") x[k] = place[set, start, a, k]
+}
 function change_card(  n) {
    n = name ~ /^(POINT|TIME)$/ || name == "ADD" && a != "HARMONIC" ? 2 : name == "BRANCH" ? 1 : 3
    if (change == "whole" && name ~ /^(PRINT|LANG)$/) return
    if (change ~ /^(middle|back)$/ && name ~ /^(TIME|AT|BRANCH)$/) return
    if (name == "TIME" && change ~ /^[37]$/) card = sprintf("%-8s%-8s%s", "TIME", change*a, substr(card, 17))
    # A card of which nothing is known here is refused.
-   if (name !~ /^(TITLE|UNITS|LANG|METHOD|REVOLUTE|PRINT|GROUND|LINK|POINT|PRISM|DRIVE|ADD|RISE|TIME|AT|BRANCH)$/) card = "?" card
-   if (name !~ /^(GROUND|LINK|POINT|PRISM|DRIVE|ADD|RISE|TIME|AT|BRANCH)$/) { put(card); return }
+   if (name !~ /^(GROUND|LINK|POINT|PRISM|DRIVE|ADD|RISE|TIME|AT|BRANCH)$/) {
+      put((name ~ /^(TITLE|UNITS|LANG|METHOD|REVOLUTE|PRINT)$/ ? "" : "?") card)
+      return
+   }
    if (name == "AT") while (n > 1 && !is_given(n)) n--
    if (change == "axes") change_axes()
    if (change == "units") change_units()
    if (change == "mirrored") change_side()
    if (change == "moved") move()
-   if (name == "LINK" && change ~ /^(middle|back)$/) for (k = 1; k <= 3; k++) if (place[set, start, a, k] != "") x[k] = place[set, start, a, k]
+   if (name == "LINK" && change ~ /^(middle|back)$/) estimate()
    put_numbers(substr(card, 1, 32), n)
 }
 
