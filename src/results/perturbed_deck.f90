@@ -3,10 +3,11 @@
 module perturbed_deck
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
-   use mechanism, only: mechanism_t, drive_t, pair_prismatic, term_power, term_table, drive_relangle
+   use blocks, only: blocks_t
+   use mechanism, only: mechanism_t, drive_t, plane_origin, pair_prismatic, term_power, term_table, drive_relangle
    implicit none
    private
-   public :: perturbed, perturbed_instant, perturbation, sample_count
+   public :: perturbed, perturbed_instant, perturbation, sample_count, round_loops
 
    !> Relative; many roundings, so that those of the calculation itself are small beside it, and so little that
    !> 2.3E-12 from a dead point the change is at most 1.6 times that in proportion.
@@ -31,6 +32,7 @@ contains
       integer, intent(in) :: k
       type(mechanism_t) :: p
       type(dice_t) :: dice
+      real(wp) :: origin(2)
       integer :: i
 
       p = m
@@ -41,10 +43,11 @@ contains
          call take(1, dice)
          call shift(p%links(i)%position, abs(p%links(i)%position), dice)
       end do
+      origin = plane_origin(m)
       do i = 1, size(p%points)
          call take(2, dice)
          ! Across as well: an arm is turned by an angle that is rounded.
-         call shift(p%points(i)%offset, spread(norm2(p%points(i)%offset), 1, 2), dice)
+         call shift(p%points(i)%offset, spread(size_of_place(m, i, origin), 1, 2), dice)
       end do
       do i = 1, size(p%pairs)
          if (p%pairs(i)%kind /= pair_prismatic) cycle
@@ -57,14 +60,61 @@ contains
       end do
    end function perturbed
 
-   !> Instant `t` of sample `k`.
+   !> Instant `t` of sample `k`; off by a rounding alone where `k` is negative.
    pure real(wp) function perturbed_instant(t, k)
       real(wp), intent(in) :: t
       integer, intent(in) :: k
+      real(wp) :: part
 
       perturbed_instant = t
-      if (k > 0) perturbed_instant = t*(1.0_wp + merge(perturbation, -perturbation, mod(k/2, 2) == 1))
+      if (k == 0) return
+      part = merge(perturbation, epsilon(1.0_wp), k > 0)
+      perturbed_instant = t*(1.0_wp + merge(part, -part, mod(abs(k)/2, 2) == 1))
    end function perturbed_instant
+
+   !> The size of the largest number that the place of point number `i` is a sum of: a ground link's is counted from
+   !> `origin`.
+   pure real(wp) function size_of_place(m, i, origin) result(size_of)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i
+      real(wp), intent(in) :: origin(2)
+
+      associate (link => m%links(m%points(i)%link))
+         size_of = norm2(m%points(i)%offset)
+         if (link%ground) size_of = max(size_of, norm2(link%position(:2) - origin))
+      end associate
+   end function size_of_place
+
+   !> Moves each vector of the loops of `b` up or down by a rounding, by chance as sample `k` < 0 has it.
+   pure subroutine round_loops(b, k)
+      type(blocks_t), intent(inout) :: b
+      integer, intent(in) :: k
+      type(dice_t) :: dice
+      real(wp) :: v(2)
+      integer :: i
+
+      dice = dice_t(-seed*k, -seed*k)
+      do i = 1, size(b%body_vectors)
+         v = [b%body_vectors(i)%x, b%body_vectors(i)%y]
+         call round_vector(v, dice)
+         b%body_vectors(i)%x = v(1)
+         b%body_vectors(i)%y = v(2)
+      end do
+      do i = 1, size(b%slides)
+         call round_vector(b%slides(i)%body_vector, dice)
+      end do
+      do i = 1, size(b%loops)
+         call round_vector(b%loops(i)%ground, dice)
+      end do
+   end subroutine round_loops
+
+   !> Moves `v` by a rounding of its length, along and across.
+   pure subroutine round_vector(v, dice)
+      real(wp), intent(inout) :: v(2)
+      type(dice_t), intent(inout) :: dice
+
+      call shift(v, spread(norm2(v)*epsilon(1.0_wp)/perturbation, 1, 2), dice)
+   end subroutine round_vector
 
    !> Perturbs a prismatic pair's guide: alpha and beta (rad), offset (length).
    pure subroutine shift_guide(alpha, offset, beta, dice)
