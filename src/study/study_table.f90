@@ -78,9 +78,11 @@ contains
    !> Rows of the `trials`, of which nothing is known yet.
    pure function new_rows(trials) result(rows)
       type(trial_t), intent(in) :: trials(:)
-      type(row_t) :: rows(size(trials))
+      ! Allocated, since gfortran 12 gives an automatic result no default values.
+      type(row_t), allocatable :: rows(:)
       integer :: i
 
+      allocate (rows(size(trials)))
       do i = 1, size(trials)
          rows(i)%trial = trials(i)
          allocate (rows(i)%time(0))

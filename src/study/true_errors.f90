@@ -248,6 +248,7 @@ contains
       real(wp), intent(in) :: estimate(0:2)
       type(comparison_t), intent(inout) :: c
       real(dp) :: true(0:2), ratio(0:2)
+      real(dp), parameter :: rounding = real(epsilon(1.0_wp), dp)
 
       if (any(estimate >= nothing_known)) then
          c%unknown = c%unknown + 1
@@ -256,8 +257,10 @@ contains
       true = [maxval(differences(truth, there, 0, real(q%position, qp))), &
          maxval(differences(truth, there, 1, real(q%velocity, qp))), &
          maxval(differences(truth, there, 2, real(q%acceleration, qp)))]
-      ! By chance an error may be small: one below a rounding counts as that.
-      ratio = real(estimate, dp)/max(true, real(epsilon(1.0_wp), dp))
+      ! By chance an error may be small: one below a rounding counts as that, and so does an estimate that covers it.
+      ratio = real(estimate, dp)
+      where (ratio >= true) ratio = max(ratio, rounding)
+      ratio = ratio/max(true, rounding)
       c%instants = c%instants + 1
       c%true = max(c%true, true)
       c%estimate = max(c%estimate, real(estimate, dp))
