@@ -33,6 +33,12 @@ cam() {
 }
 # added FORM R1 R2 R3
 added() { LC_ALL=C printf 'ADD     %s\n*       %-24s%-24s%s\n' "$1" "$2" "$3" "$4"; }
+# rises LAW LIFT: in each unit of time from 0 to 4 a rise and a return, from a fifth on and up to four fifths
+rises() {
+   LC_ALL=C awk -v law="$1" -v lift="$2" 'BEGIN { for (k = 0; k < 4; k++)
+      printf "RISE    %s\n*       %-24s0.3                     %.2f\nRISE    %s\n*       %-24s0.3                     %.2f\n", \
+         law, k + 0.2, lift, law, k + 0.5, -lift }'
+}
 # ends STEPS FROM TO
 ends() { LC_ALL=C printf 'TIME    %s\n*       %-24s%s\nEND\n' "$1" "$2" "$3"; }
 
@@ -59,6 +65,15 @@ compare cam_below 0.0 4.0 4 0
 { four_bar 2 1.5 1.5 4 0.7; angle 0.7; cam 0.14; } > "$work/cam_beyond.part"
 compare cam_beyond 0.0 4.0 4 4
 equal 'cam_beyond: its limit' 1 "$(grep -c 'LIMIT OF MOTION AT T = 4.12745' "$work/cam_beyond.lst")"
+# The same of rises by each law.
+for law in CYCLOID 3-4-5 HARMONIC PARABOLA; do
+   { four_bar 2 1.5 1.5 4 0.7; angle 0.7; rises $law 0.10; } > "$work/$law.below.part"
+   compare $law.below 0.0 4.0 4 0
+   { four_bar 2 1.5 1.5 4 0.7; angle 0.7; rises $law 0.14; } > "$work/$law.beyond.part"
+   compare $law.beyond 0.0 4.0 4 4
+   { four_bar 1 3.5 3 4 0.5; angle 0.5; rises $law 30.0; } > "$work/$law.turning.part"
+   compare $law.turning 0.0 4.0 4 0
+done
 # A harmonic of exactly one period a step, on the same four-bar and on one whose crank turns fully.
 { four_bar 2 1.5 1.5 4 0.7; angle 0.7; added HARMONIC -0.10 6.2831853071795862 0.0; } > "$work/period_below.part"
 compare period_below 0.0 4.0 4 0
