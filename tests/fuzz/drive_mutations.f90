@@ -23,7 +23,9 @@ contains
       k = throw(r, merge(2, 3, label(d%line(i), 1) == 'POWER' .or. label(d%line(i), 1) == 'TABLE'))
       call put_real(d, r, i, k, near(real_field(d, i, k) + merge(between(r, -1.0_wp, 1.0_wp), 0.0_wp, chance(r, &
          0.3_wp)), r))
-      call add_note(d, 'NUMBER OF '//d%line(i)(1:24))
+      if (name_of(d%line(i)) == 'DRIVE' .and. label(d%line(i), 1) == 'ANGLE' .and. chance(r, 0.1_wp)) &
+         call set_label(d%line(i), 3, 'RPM')
+      call add_note(d, 'NUMBER OF '//d%line(i)(1:32))
    end subroutine change_drive
 
    !> An ADD or RISE card or a table under a drive.
