@@ -4,10 +4,11 @@ module deck_drives
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp, label_length
    use constants, only: pi
+   use diagnostics, only: remark_jumps
    use mechanism, only: mechanism_t, drive_t, term_t, instant, find_instants, drive_angle, drive_relangle, &
       drive_slide, drive_words, driven_kinds, term_harmonic, term_power, term_table, term_words, term_cycloid, &
-      rise_words, pair_revolute, request_link
-   use card_sets, only: card_set_t, look_up, match_word, add_card_error
+      term_cosine, rise_words, pair_revolute, request_link
+   use card_sets, only: card_set_t, look_up, match_word, add_card_error, add_card_remark
    use cards, only: card_name, label_a, label_b, label_c, real_1, real_2, form_unknown, form_drive, form_add, &
       form_rise, form_end
    use input_errors, only: error_code_t, drive_kind, drive_ground, drive_ground_point, drive_grounds, drive_one_link, &
@@ -203,6 +204,7 @@ contains
          term%kind = term_cycloid + max(law, 1) - 1
          term%r = card%real*[1.0_wp, 1.0_wp, unit]
          if (card%valid .and. card%real(2) <= 0.0_wp) call add_card_error(set, rise_duration, k, real_2)
+         if (term%kind >= term_cosine) call add_card_remark(set, remark_jumps, k, label_a)
       end associate
    end subroutine build_rise
 

@@ -9,7 +9,7 @@ module deck_remarks
       request_link, request_point, request_pair
    use scales, only: solver_length
    use card_sets, only: card_set_t, add_card_error, add_card_remark
-   use cards, only: label_a, label_c, real_1, real_3, form_ground, form_link, form_prism, form_drive
+   use cards, only: label_a, label_c, real_1, real_3, form_ground, form_link, form_prism, form_drive, form_rise
    use input_errors, only: link_unused
    implicit none
    private
@@ -83,6 +83,8 @@ contains
                is_angle = [.true., .false., .true.]
             case (form_drive)
                is_angle = [any(card%label(label_a) == drive_words([drive_angle, drive_relangle])), .false., .false.]
+            case (form_rise)
+               is_angle = [.false., .false., driven_kinds(set%mechanism%drives(card%drive)%kind) == request_link]
             case default
                cycle
             end select

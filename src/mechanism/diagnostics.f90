@@ -8,7 +8,7 @@ module diagnostics
       diagnostic_redundant, diagnostic_mobile, diagnostic_change, diagnostic_long, diagnostic_unused, &
       diagnostic_dead_end, diagnostic_idle, diagnostic_repeated, diagnostic_method
    public :: remark_small_letters, remark_title_long, remark_title_letters, remark_touching, remark_link_unused, &
-      remark_point_unused, remark_radians, remark_guide, remark_more
+      remark_point_unused, remark_radians, remark_guide, remark_jumps, remark_more
 
    !> The kinds of diagnostics, and the components that each uses.
    enum, bind(c)
@@ -37,6 +37,7 @@ module diagnostics
       enumerator :: remark_point_unused         !< no pair, drive or PRINT card uses a point
       enumerator :: remark_radians              !< an angle in radians looks like one in degrees
       enumerator :: remark_guide                !< a guide fits its points if it is turned by a right angle
+      enumerator :: remark_jumps                !< the acceleration of a rise jumps
       enumerator :: remark_more                 !< there are more remarks, `text` says how many
    end enum
 

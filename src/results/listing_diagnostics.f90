@@ -22,7 +22,7 @@ module listing_diagnostics
    !> The words of remarks, by their kind.
    type(phrase_t), parameter :: remark_words(remark_small_letters:remark_more) = &
       [say_small_letters, say_title_long, say_title_letters, say_touching, say_link_unused, say_point_unused, &
-      say_radians, say_guide, say_more]
+      say_radians, say_guide, say_jumps, say_more]
 
 contains
 

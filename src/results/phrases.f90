@@ -105,6 +105,8 @@ module phrases
          'TO KAT W RADIANACH: CZY MIALY BYC STOPNIE (UNITS DEG)?'), &
       say_guide = phrase_t('THE GUIDE LOOKS WRONG BY A RIGHT ANGLE (ALPHA)', &
          'PROWADNICA WYGLADA NA OBROCONA O KAT PROSTY (ALPHA)'), &
+      say_jumps = phrase_t('ITS ACCELERATION JUMPS WHERE ITS PIECES MEET: PRINTED FROM THE RIGHT', &
+         'PRZYSPIESZENIE MA SKOKI NA STYKACH: DRUKOWANE Z PRAWEJ STRONY'), &
       say_spare_drives = phrase_t('TOO MANY DRIVES BY', 'ZA DUZO NAPEDOW O'), &
       say_more = phrase_t('FURTHER REMARKS:', 'DALSZYCH UWAG:')
 
