@@ -6,12 +6,13 @@ module command_line
    implicit none
    private
    public :: options_t, word_t, read_command, read_words, help_text
-   public :: file_option_t, file_options, out_listing, out_csv, out_log, out_svg, out_table, out_last
+   public :: file_option_t, file_options
+   public :: out_listing, out_csv, out_log, out_svg, out_table, out_plot_table, out_plot_script, out_last
 
    !> The outputs that are files, and `out_last`, the last of them.
    enum, bind(c)
-      enumerator :: out_listing = 1, out_csv, out_log, out_svg, out_table
-      enumerator :: out_last = out_table
+      enumerator :: out_listing = 1, out_csv, out_log, out_svg, out_table, out_plot_table, out_plot_script
+      enumerator :: out_last = out_plot_script
    end enum
 
    !> An option that names the file of an output.
@@ -27,7 +28,9 @@ module command_line
       file_option_t('--csv'), &
       file_option_t('--log'), &
       file_option_t('--svg', needs_motion=.true.), &
-      file_option_t('--table', needs_motion=.true., each_set=.true.)]
+      file_option_t('--table', needs_motion=.true., each_set=.true.), &
+      file_option_t('--plot', 'table.csv', needs_motion=.true., each_set=.true.), &
+      file_option_t('--plot', 'plot.gp', needs_motion=.true., each_set=.true.)]
 
    !> A word of the command.
    type :: word_t
@@ -59,6 +62,8 @@ module command_line
       '  --svg FILE           a picture of the mechanism and paths of points', &
       '                       (FILE - is standard output, without a listing)', &
       '  --table FILE         a row an instant, a column a quantity', &
+      '  --plot DIR           that table and a script in the directory DIR:', &
+      '                       gnuplot DIR/plot.gp draws it', &
       '  --errors             estimates of all errors, in the CSV and the log', &
       '  --check              reads the deck and analyses its structure only', &
       '  --sets K/N           the K-th of N shares of the sets of the deck', &
@@ -116,7 +121,7 @@ contains
             if (file_options(k)%word == words(i)%text) exit
          end do
          if (k <= out_last) then
-            call take_file(words, i, options%files(k)%text, failure)
+            call take_file(words, i, k, options%files, failure)
          else
             call take_word(words, i, has_deck, options, failure)
          end if
@@ -225,23 +230,32 @@ contains
       end if
    end subroutine take_deck
 
-   !> The file name after option number `i`; `-` is standard output.
-   subroutine take_file(words, i, path, failure)
+   !> The name after word number `i`, which is the option of output number `k`: of a file, `-` for standard output, or of
+   !> a directory. All `files` of the option have it.
+   subroutine take_file(words, i, k, files, failure)
       type(word_t), intent(in) :: words(:)
       integer, intent(inout) :: i
-      character(:), allocatable, intent(inout) :: path
+      integer, intent(in) :: k
+      type(word_t), intent(inout) :: files(:)
       type(failure_t), allocatable, intent(out) :: failure
+      character(:), allocatable :: path
+      integer :: j
+      logical :: of_file
 
-      if (i == size(words)) then
-         call fail(failure, status_rejected, 'OPTION '//words(i)%text//' NEEDS A FILE NAME')
-      else if (allocated(path)) then
+      of_file = len_trim(file_options(k)%in_directory) == 0
+      path = ''
+      if (i < size(words)) path = words(i + 1)%text
+      if (len(path) == 0 .or. (path == '-' .and. .not. of_file)) then
+         call fail(failure, status_rejected, 'OPTION '//words(i)%text//' NEEDS A ' &
+            //trim(merge('FILE NAME', 'DIRECTORY', of_file)))
+      else if (allocated(files(k)%text)) then
          call fail(failure, status_rejected, 'OPTION '//words(i)%text//' IS GIVEN TWICE')
-      else
-         path = words(i + 1)%text
-         if (len(path) == 0) call fail(failure, status_rejected, 'OPTION '//words(i)%text//' NEEDS A FILE NAME')
-         if (path == '-') path = ''
-         i = i + 1
       end if
+      if (path == '-') path = ''
+      do j = 1, out_last
+         if (file_options(j)%word == file_options(k)%word) files(j)%text = path
+      end do
+      i = i + 1
    end subroutine take_file
 
    !> The K/N after option number `i`.

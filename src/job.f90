@@ -10,6 +10,7 @@ module job
    use listing_diagnostics, only: remarks_text
    use csv, only: csv_head, csv_instant
    use table, only: table_t, new_table, table_head, table_instant
+   use plot_script, only: put_script
    use drawing, only: drawing_t, new_drawing, record_instant
    use picture_frames, only: picture_candidates
    use picture, only: picture_head, put_pictures
@@ -20,8 +21,9 @@ module job
    use set_motion, only: is_flagged, has_words
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set, set_record, set_errors, &
       set_closure_error, set_closing_diagnostics
-   use command_line, only: options_t, out_listing, out_csv, out_log, out_svg, out_table
-   use outputs, only: outputs_t, open_outputs, flush_outputs, close_outputs, is_over, is_broken_pipe
+   use command_line, only: options_t, out_listing, out_csv, out_log, out_svg, out_table, out_plot_table, &
+      out_plot_script
+   use outputs, only: outputs_t, open_outputs, flush_outputs, close_outputs, is_over, is_broken_pipe, set_suffix
    implicit none
    private
    public :: run_job
@@ -189,10 +191,11 @@ contains
       end if
       if (options%check) return
       if (o%asked(out_log)) call log_head(o%files(out_log, 0), m, options%errors)
-      if (o%asked(out_table)) then
-         o%table = new_table(m)
-         call table_head(o%files(out_table, i), o%table)
-      end if
+      if (o%asked(out_table) .or. o%asked(out_plot_table)) o%table = new_table(m)
+      if (o%asked(out_table)) call table_head(o%files(out_table, i), o%table)
+      if (o%asked(out_plot_table)) call table_head(o%files(out_plot_table, i), o%table)
+      if (o%asked(out_plot_script)) &
+         call put_script(o%files(out_plot_script, i), m, o%table, set_suffix(o%first, o%last, i))
       call flush_outputs(o, i)
    end subroutine write_heads
 
@@ -211,6 +214,7 @@ contains
          call listing_instant(o%files(out_listing, 0), o%layout, m, a%now, k)
       if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv, 0), m, a%now, k)
       if (o%asked(out_table) .and. due) call table_instant(o%files(out_table, i), o%table, m, a%now)
+      if (o%asked(out_plot_table) .and. due) call table_instant(o%files(out_plot_table, i), o%table, m, a%now)
       if (o%asked(out_log)) call put_log(o%files(out_log, 0), options, m, a, k)
    end subroutine write_instant
 

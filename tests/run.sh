@@ -29,7 +29,7 @@ parts() {
    independent mechanisms|106|tests/system/independent.sh
    what a singular position is|211|tests/system/singular.sh
    pictures|610|tests/system/pictures.sh
-   tables|150|tests/system/tables.sh
+   tables|225|tests/system/tables.sh
    the digits|1|tests/system/digits.sh
    wide blocks|7|tests/system/wide.sh
    drives between instants|18|tests/system/drives.sh

@@ -87,6 +87,12 @@ module phrases
       say_faint = phrase_t('FAINT: T =', 'BLADO: T ='), &
       say_last_position = phrase_t('IN RED THE LAST POSITION, T =', 'NA CZERWONO OSTATNIE POLOZENIE, T ='), &
       say_flagged_in_all = phrase_t('FLAGGED INSTANTS IN ALL:', 'CHWILE ZAZNACZONE RAZEM:'), &
+      say_position = phrase_t('POSITION', 'POLOZENIE'), &
+      say_velocity = phrase_t('VELOCITY', 'PREDKOSC'), &
+      say_second_derivative = phrase_t('ACCELERATION', 'PRZYSPIESZENIE'), &
+      say_angle = phrase_t('ANGLE', 'KAT'), &
+      say_angular_velocity = phrase_t('ANGULAR VELOCITY', 'PREDKOSC KATOWA'), &
+      say_angular_acceleration = phrase_t('ANGULAR ACCELERATION', 'PRZYSPIESZENIE KATOWE'), &
       say_broken_off = phrase_t('THE RUN WAS BROKEN OFF AFTER INSTANT', 'OBLICZENIA PRZERWANO PO CHWILI')
    ! Remarks about a deck.
    type(phrase_t), parameter, public :: &

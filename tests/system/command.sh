@@ -222,7 +222,7 @@ refused '--sets without a word' 1 ' *** OPTION --sets NEEDS K/N WITH 1 <= K <= N
 "$kinmat" --help > "$w/out" 2> "$w/err"
 equal '--help: status' 0 $?
 equal '--help: first line' 'kinmat DECK            reads a card deck, prints the listing' "$(head -n 1 "$w/out")"
-for option in -o --no-listing --csv --log --svg --table --check --errors --sets --ruler --help --version; do
+for option in -o --no-listing --csv --log --svg --table --plot --check --errors --sets --ruler --help --version; do
    equal "--help tells of $option" found "$(grep -qe "$option" "$w/out" && echo found)"
 done
 equal '--version' 'KINMAT 1.0, REAL64' "$("$kinmat" --version)"

@@ -66,6 +66,47 @@ done
 "$kinmat" input/four_bar.deck --sets 2/2 --table - > "$w/out"
 same 'one set of two, on standard output' "$w/four_bar.table-2.csv" "$w/out"
 
+# --plot: the table, and a script that gnuplot runs from any directory. A picture for time and each drive, of five rows of
+# the listing each. Gaps where the motion has no values; where no instant has any, empty panels.
+sed -e '/^END/q' -e 's/^\(POINT   B-RO    ROCKER  \).*/\1        0.1/' input/four_bar.deck > "$w/nowhere.deck"
+sed -e '/^END/q' -e "s/^TITLE.*/TITLE   A'S \"B\" {x}_2/" -e "s/^\(.*\)CRANK  /\1CRANK' /" input/four_bar.deck > "$w/quotes.deck"
+for run in 'four_bar 2 5 1' 'yoke 2 14 12' 'xy_table 1 12 4' 'scott_russell_at 1 2 2' 'nowhere 1 2 1' 'quotes 1 2 1'; do
+   set -- $run
+   deck=input/$1.deck
+   [ -f "$deck" ] || deck=$w/$1.deck
+   "$kinmat" "$deck" --plot "$w/plot_$1" --table "$w/plot.csv" > "$w/lst" 2> "$w/err"
+   equal "--plot, $1: files" "$2" "$(ls "$w/plot_$1"/plot*.gp | wc -l | tr -d ' ')"
+   set=1
+   while [ "$set" -le "$2" ]; do
+      suffix=; [ "$2" -eq 1 ] || suffix=-$set
+      same "--plot, $1, set $set: the table" "$w/plot$suffix.csv" "$w/plot_$1/table$suffix.csv"
+      set=$((set + 1))
+   done
+done
+if command -v gnuplot > /dev/null; then
+   for run in 'four_bar 10 -1' 'yoke 14 -1' 'xy_table 12 none' 'scott_russell_at 2 none' 'nowhere 2 none' 'quotes 2 none'; do
+      set -- $run
+      for script in "$w/plot_$1"/*.gp; do
+         gnuplot "$script" > "$w/out" 2> "$w/err"
+         equal "gnuplot, $1: status" 0 $?
+         equal "gnuplot, $1: no error" '' "$(grep -iE 'undefined|error|invalid|empty|too small|separators' "$w/err" | grep -v 'No valid data')"
+      done
+      equal "gnuplot, $1: pictures" "$2" "$(ls "$w/plot_$1"/*.svg | wc -l | tr -d ' ')"
+   done
+   mv "$w/plot_scott_russell_at/time.svg" "$w/time.svg"
+   (cd "$w/plot_scott_russell_at" && gnuplot plot.gp > /dev/null 2>&1)
+   same 'gnuplot, started beside the script' "$w/time.svg" "$w/plot_scott_russell_at/time.svg"
+   # The table as it is: 39 instants of the four-bar, those with velocities of a mechanism in its change points.
+   points() { gnuplot -e "set table '$w/points'; plot '$1' using $2; unset table" > /dev/null 2>&1; grep -c ' i$' "$w/points"; }
+   equal 'gnuplot reads a table: all rows' 39 "$(points "$w/four_bar.table-1.csv" 2:5)"
+   equal 'gnuplot reads a table: positions' "$(sed 1d "$w/scott_russell_at.table.csv" | wc -l | tr -d ' ')" \
+      "$(points "$w/scott_russell_at.table.csv" 1:5)"
+   equal 'gnuplot reads a table: velocities' "$(awk -F, '$4 == "POINT" && $15 == ""' "$w/scott_russell_at.csv" | wc -l | tr -d ' ')" \
+      "$(points "$w/scott_russell_at.table.csv" 1:23)"
+else
+   echo 'skipped: pictures of gnuplot (not installed)'
+fi
+
 # The words of the command.
 refused() { expected=$2; want=$3; name=$1; shift 3; "$kinmat" "$@" > "$w/out" 2> "$w/err"
    equal "$name: status" "$expected" $?; equal "$name: sentence" "$want" "$(cat "$w/err")"; equal "$name: no listing" '' "$(cat "$w/out")"; }
@@ -81,7 +122,19 @@ refused 'the table of a set is the deck' 1 " *** THE DECK $w/own-1.deck WOULD BE
 same 'the table of a set is the deck: it is as it was' input/four_bar.deck "$w/own-1.deck"
 refused '--table to a file that cannot be' 3 ' *** FILE /nonexistent/x-1 CANNOT BE OPENED FOR WRITING (NO SUCH FILE OR DIRECTORY)' \
    "$w/own-1.deck" --table /nonexistent/x
-equal 'no file is made by what is refused' '' "$(ls "$w"/a "$w"/a.x "$w"/a-* "$w/own-2.deck" 2> /dev/null)"
+refused '--plot without a directory' 1 ' *** OPTION --plot NEEDS A DIRECTORY' "$w/own-1.deck" --plot
+refused '--plot -' 1 ' *** OPTION --plot NEEDS A DIRECTORY' "$w/own-1.deck" --plot -
+refused '--plot twice' 1 ' *** OPTION --plot IS GIVEN TWICE' "$w/own-1.deck" --plot "$w/a" --plot "$w/b"
+refused '--plot and --check' 1 ' *** OPTION --check COMPUTES NO MOTION, WHICH --plot NEEDS' --check "$w/own-1.deck" --plot "$w/a"
+refused '--plot and --study' 1 ' *** OPTION --study GOES WITH NO OTHER OPTION BUT -o' --study "$w/own-1.deck" --plot "$w/a"
+refused '--plot where no directory can be made' 3 ' *** DIRECTORY /nonexistent/x CANNOT BE MADE (NO SUCH FILE OR DIRECTORY)' \
+   "$w/own-1.deck" --plot /nonexistent/x
+refused '--plot in the place of a file' 3 " *** FILE $w/own-1.deck/table-1.csv CANNOT BE OPENED FOR WRITING (NOT A DIRECTORY)" \
+   "$w/own-1.deck" --plot "$w/own-1.deck"
+refused '--plot, and one of its files' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own-1.deck" --plot "$w/plot_yoke" \
+   --csv "$w/plot_yoke/plot-2.gp"
+refused 'a command with --plot' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own-1.deck" --plot "$w/a" --csv "$w/b" --log "$w/b"
+equal 'no file is made by what is refused' '' "$(ls "$w"/a "$w"/a.x "$w"/a-* "$w/b" "$w/own-2.deck" 2> /dev/null)"
 if [ -w /dev/full ]; then
    "$kinmat" "$w/own-1.deck" --sets 1/2 --table /dev/full > "$w/out" 2> "$w/err"
    equal '--table, disk full: status' 3 $?
