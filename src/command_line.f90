@@ -230,8 +230,8 @@ contains
       end if
    end subroutine take_deck
 
-   !> The name after word number `i`, which is the option of output number `k`: of a file, `-` for standard output, or of
-   !> a directory. All `files` of the option have it.
+   !> The name after word number `i`, which is the option of output number `k`: of a file, `-` for standard output, or
+   !> of a directory. All `files` of the option have it.
    subroutine take_file(words, i, k, files, failure)
       type(word_t), intent(in) :: words(:)
       integer, intent(inout) :: i

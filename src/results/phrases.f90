@@ -89,8 +89,7 @@ module phrases
       say_flagged_in_all = phrase_t('FLAGGED INSTANTS IN ALL:', 'CHWILE ZAZNACZONE RAZEM:'), &
       say_position = phrase_t('POSITION', 'POLOZENIE'), &
       say_velocity = phrase_t('VELOCITY', 'PREDKOSC'), &
-      say_second_derivative = phrase_t('ACCELERATION', 'PRZYSPIESZENIE'), &
-      say_angle = phrase_t('ANGLE', 'KAT'), &
+      say_linear_acceleration = phrase_t('ACCELERATION', 'PRZYSPIESZENIE'), &
       say_angular_velocity = phrase_t('ANGULAR VELOCITY', 'PREDKOSC KATOWA'), &
       say_angular_acceleration = phrase_t('ANGULAR ACCELERATION', 'PRZYSPIESZENIE KATOWE'), &
       say_broken_off = phrase_t('THE RUN WAS BROKEN OFF AFTER INSTANT', 'OBLICZENIA PRZERWANO PO CHWILI')
