@@ -29,6 +29,7 @@ module card_reader
       logical :: given(3) = .false.             !< which of them are not blank
       logical :: on_star(3) = .false.           !< which of them are on the `*` card
       integer :: drive = 0, term = 0            !< the first card of a term: the numbers of drive and term; 0: any other
+      integer :: point = 0                      !< of POINT and JOINT: the number of its first point
    end type parsed_card_t
 
    !> Bounds of lengths, angles and times. Numbers beyond them have no use, and their squares would leave the range of

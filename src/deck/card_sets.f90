@@ -2,11 +2,13 @@
 !> its links, points and pairs. A name may be used before the card that defines it, so names are looked up only at END.
 module card_sets
    use kinds, only: wp
-   use mechanism, only: mechanism_t, link_t, point_t, pair_t, pair_revolute, pair_prismatic, request_link, &
+   use planar, only: direction, rotated
+   use mechanism, only: mechanism_t, link_t, point_t, pair_t, pair_prismatic, request_link, &
       request_point, request_pair
    use diagnostics, only: remark_small_letters
    use cards, only: card_t, card_fields, wide_fields, field_text, first_column, small_field, label_a, label_b, &
-      label_c, real_1, real_2, real_3, form_ground, form_link, form_point, form_revolute, form_prism, form_end
+      label_c, real_1, real_2, real_3, form_ground, form_link, form_point, form_revolute, form_prism, form_joint, &
+      form_end
    use card_reader, only: parsed_card_t
    use failures, only: failure_t, fail, capitals, status_system
    use input_errors, only: error_code_t, input_errors_t, add_field_error, add_remark, link_unknown, &
@@ -88,22 +90,24 @@ contains
    !> differ by small letters alone; then all labels stay as they are typed.
    subroutine read_small_letters(set)
       type(card_set_t), intent(inout) :: set
-      integer, parameter :: kinds(*) = [request_link, request_link, request_point, request_pair, request_pair]
-      integer, parameter :: definers(*) = [form_ground, form_link, form_point, form_revolute, form_prism]
-      integer, parameter :: name_fields(*) = [label_a, label_a, label_a, label_c, label_c]
+      integer, parameter :: kinds(*) = [request_link, request_link, request_point, request_pair, request_pair, &
+         request_point, request_pair]
+      integer, parameter :: definers(*) = [form_ground, form_link, form_point, form_revolute, form_prism, form_joint, &
+         form_joint]
       type(name_table_t) :: typed(request_link:request_pair), upper(request_link:request_pair)
       integer :: k, i, earlier
 
       if (set%small%number == 0) return
       do k = 1, set%count
-         i = findloc(definers, set%cards(k)%form, dim=1)
-         if (i == 0) cycle
-         associate (name => set%cards(k)%label(name_fields(i)))
-            call put_name(typed(kinds(i)), name, k, earlier)
-            if (earlier > 0 .or. name == '') cycle
-            call put_name(upper(kinds(i)), capitals(name), k, earlier)
-            if (earlier > 0) return
-         end associate
+         do i = 1, size(definers)
+            if (set%cards(k)%form /= definers(i)) cycle
+            associate (name => set%cards(k)%label(name_field(definers(i))))
+               call put_name(typed(kinds(i)), name, k, earlier)
+               if (earlier > 0 .or. name == '') cycle
+               call put_name(upper(kinds(i)), capitals(name), k, earlier)
+               if (earlier > 0) return
+            end associate
+         end do
       end do
       do k = 1, set%count
          set%cards(k)%label = capitals(set%cards(k)%label)
@@ -113,6 +117,13 @@ contains
          field_text(set%small, card_fields(i)))
    end subroutine read_small_letters
 
+   !> The label field of a card of `form` that holds the name of what the card defines.
+   pure integer function name_field(form)
+      integer, intent(in) :: form
+
+      name_field = merge(label_c, label_a, any(form == [form_revolute, form_prism]))
+   end function name_field
+
    !> Builds the links, points and pairs of `set`%mechanism, each kind in the order of its cards. Repeated and unknown
    !> names are errors, and so are pairs that do not join two links.
    subroutine build_bodies(set)
@@ -120,8 +131,8 @@ contains
       integer :: n
 
       set%named(request_link)%card = cards_of(set, [form_ground, form_link])
-      set%named(request_point)%card = cards_of(set, [form_point])
-      set%named(request_pair)%card = cards_of(set, [form_revolute, form_prism])
+      set%named(request_point)%card = cards_of(set, [form_point, form_joint, form_joint])
+      set%named(request_pair)%card = cards_of(set, [form_revolute, form_prism, form_joint])
       allocate (set%mechanism%links(size(set%named(request_link)%card)))
       allocate (set%mechanism%points(size(set%named(request_point)%card)))
       allocate (set%mechanism%pairs(size(set%named(request_pair)%card)))
@@ -155,27 +166,60 @@ contains
       integer :: k, link
 
       k = set%named(request_point)%card(n)
+      if (set%cards(k)%form == form_joint) then
+         call build_joint_point(set, n)
+         return
+      end if
       call define_name(set, request_point, n, label_a)
       call look_up(set, request_link, k, label_b, link)
       set%mechanism%points(n) = point_t(name=set%cards(k)%label(label_a), link=link, offset=set%cards(k)%real(1:2))
    end subroutine build_point
 
-   !> Pair number `n`, of a REVOLUTE or PRISM card. The points are there. It must join two links, not both of them
-   !> ground.
+   !> Point number `n`, one of the two of a JOINT card, which gives their place in the drawing: its place in the axes of
+   !> its link follows from where the link's card puts these. Both have the name of the card; it stands for the point
+   !> of the first link that is not ground.
+   subroutine build_joint_point(set, n)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: n
+      integer :: k, link
+      logical :: is_first, is_ground
+
+      k = set%named(request_point)%card(n)
+      is_first = set%cards(k)%point == 0
+      if (is_first) set%cards(k)%point = n
+      call look_up(set, request_link, k, merge(label_b, label_c, is_first), link)
+      associate (m => set%mechanism, place => set%cards(k)%real(1:2))
+         m%points(n) = point_t(name=set%cards(k)%label(label_a), link=link, offset=place)
+         if (link > 0) m%points(n)%offset = &
+            rotated(place - m%links(link)%position(:2), direction(-m%links(link)%position(3)))
+         link = m%points(set%cards(k)%point)%link
+         is_ground = .false.
+         if (link > 0) is_ground = m%links(link)%ground
+      end associate
+      if (is_first .neqv. is_ground) call define_name(set, request_point, n, label_a)
+   end subroutine build_joint_point
+
+   !> Pair number `n`, of a REVOLUTE, PRISM or JOINT card. The points are there. It must join two links, not both of
+   !> them ground.
    subroutine build_pair(set, n)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: n
       integer :: k, i, j
 
       k = set%named(request_pair)%card(n)
-      call look_up(set, request_point, k, label_a, i)
-      call look_up(set, request_point, k, label_b, j)
-      associate (card => set%cards(k))
-         set%mechanism%pairs(n) = pair_t(kind=merge(pair_revolute, pair_prismatic, card%form == form_revolute), &
-            name=card%label(label_c), point_i=i, point_j=j, alpha=card%real(1)*set%angle_unit, offset=card%real(2), &
-            beta=card%real(3)*set%angle_unit)
+      if (set%cards(k)%form == form_joint) then
+         i = set%cards(k)%point
+         j = i + 1
+      else
+         call look_up(set, request_point, k, label_a, i)
+         call look_up(set, request_point, k, label_b, j)
+      end if
+      associate (card => set%cards(k), pair => set%mechanism%pairs(n))
+         pair = pair_t(name=card%label(name_field(card%form)), point_i=i, point_j=j)
+         if (card%form == form_prism) pair = pair_t(pair_prismatic, pair%name, i, j, card%real(1)*set%angle_unit, &
+            card%real(2), card%real(3)*set%angle_unit)
       end associate
-      call define_name(set, request_pair, n, label_c)
+      call define_name(set, request_pair, n, name_field(set%cards(k)%form))
       if (i == 0 .or. j == 0) return
       i = set%mechanism%points(i)%link
       j = set%mechanism%points(j)%link
@@ -187,18 +231,19 @@ contains
       end if
    end subroutine build_pair
 
-   !> The numbers of all cards of the forms `forms_asked`, in the order of the deck.
+   !> The numbers of all cards of the forms `forms_asked`, in the order of the deck; twice those of a form that is there
+   !> twice.
    pure function cards_of(set, forms_asked) result(list)
       type(card_set_t), intent(in) :: set
       integer, intent(in) :: forms_asked(:)
       integer :: list(sum(set%number_of(forms_asked)))
-      integer :: k, n
+      integer :: k, n, many
 
       n = 0
       do k = 1, set%count
-         if (all(set%cards(k)%form /= forms_asked)) cycle
-         n = n + 1
-         list(n) = k
+         many = count(set%cards(k)%form == forms_asked)
+         list(n + 1:n + many) = k
+         n = n + many
       end do
    end function cards_of
 

@@ -10,7 +10,7 @@ module cards
    public :: field_text, first_column, small_field, ruler_card, is_passed_over
    public :: forms, form_name, find_form, nearest_form, reals_of
    public :: form_unknown, form_title, form_units, form_lang, form_ground, form_link, form_point, form_revolute
-   public :: form_prism, form_drive, form_add, form_rise, form_time, form_at, form_method, form_print
+   public :: form_prism, form_joint, form_drive, form_add, form_rise, form_time, form_at, form_method, form_print
    public :: form_branch, form_end
 
    !> Columns of a card.
@@ -60,8 +60,8 @@ module cards
    !> The form of a card is its place in `forms`.
    enum, bind(c)
       enumerator :: form_unknown = 0, form_title, form_units, form_lang, form_ground, form_link, form_point
-      enumerator :: form_revolute, form_prism, form_drive, form_add, form_rise, form_time, form_at, form_method
-      enumerator :: form_print, form_branch, form_end
+      enumerator :: form_revolute, form_prism, form_joint, form_drive, form_add, form_rise, form_time, form_at
+      enumerator :: form_method, form_print, form_branch, form_end
    end enum
 
    !> The text of TITLE is not a label.
@@ -74,6 +74,7 @@ module cards
       form_t('LL-', 2, .false., 'POINT   POINT   LINK            XI              ETA'), &
       form_t('LLL', 0, .false., 'REVOLUTEPOINT-I POINT-J PAIR'), &
       form_t('LLL', 3, .false., 'PRISM   POINT-I POINT-J PAIR    ALPHA           H               BETA'), &
+      form_t('LLL', 2, .false., 'JOINT   PAIR    LINK-I  LINK-J  X               Y'), &
       form_t('LLl', 3, .false., 'DRIVE   KIND    DRIVEN  2ND/RPM VALUE AT 0.0    RATE            ACCELERATION'), &
       form_t('L--', 3, .false., 'ADD     KIND                    R1              R2              R3'), &
       form_t('L--', 3, .false., 'RISE    LAW                     START           DURATION        LIFT'), &

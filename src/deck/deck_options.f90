@@ -3,14 +3,15 @@
 module deck_options
    use kinds, only: wp
    use constants, only: degree
-   use mechanism, only: request_t, branch_request_t, request_link, request_pair, method_newton, method_words
+   use mechanism, only: request_t, branch_request_t, request_link, request_point, request_pair, method_newton, &
+      method_words
    use card_sets, only: card_set_t, look_up, match_word, add_card_error
    use cards, only: title_field, card_name, label_a, label_b, label_c, real_1, real_2, forms, form_unknown, &
       form_title, form_units, form_lang, form_time, form_at, form_method, form_print, form_branch
    use input_errors, only: card_repeated, lang_kind, units_angle, units_place, method_kind, tolerance_range, &
       time_point, number_range, field_blank, print_kind, print_all_name, print_repeated, print_nothing, branch_ground, &
       branch_method, branch_repeated
-   use names, only: name_table_t, put_name
+   use names, only: name_table_t, put_name, find_name
    use numerals, only: whole
    implicit none
    private
@@ -208,6 +209,9 @@ contains
          do i = 1, size(set%named(kind)%card)
             if (kind == request_link) then
                if (set%mechanism%links(i)%ground) cycle
+            else if (kind == request_point) then
+               ! Of the two points of a JOINT card, the one that its name stands for.
+               if (find_name(set%named(kind)%table, set%mechanism%points(i)%name) /= i) cycle
             end if
             call add_request(request_t(kind, i, every))
          end do

@@ -17,9 +17,11 @@ module deck_damage
       '180.0', &
       '1.570796326794', '3.141592653589', '360.0', '0.5', '-1.0', '1.0E400', '1.0E-400', 'NAN', 'INF', '5', '-', &
       '1.5-3']
-   character(8), parameter :: with_reals(*) = [character(8) :: 'GROUND', 'LINK', 'POINT', 'PRISM', 'DRIVE', 'ADD', &
+   character(8), parameter :: with_reals(*) = [character(8) :: 'GROUND', 'LINK', 'POINT', 'PRISM', 'JOINT', &
+      'DRIVE', 'ADD', &
       'RISE', 'TIME', 'AT', 'METHOD']
-   character(8), parameter :: with_labels(*) = [character(8) :: 'GROUND', 'LINK', 'POINT', 'REVOLUTE', 'PRISM', 'DRIVE']
+   character(8), parameter :: with_labels(*) = [character(8) :: 'GROUND', 'LINK', 'POINT', 'REVOLUTE', 'PRISM', &
+      'JOINT', 'DRIVE']
    !> Radians, or lengths: so far drives go in all.
    real(wp), parameter :: longest_way = 2000.0_wp
    character(*), &

@@ -113,7 +113,7 @@ contains
       type(dice_t), intent(inout) :: r
       integer :: i, k
 
-      i = pick(r, find_cards(d, ['POINT   ']))
+      i = pick(r, find_cards(d, ['POINT   ', 'JOINT   ']))
       if (i == 0) return
       k = merge(1, 2, chance(r, 0.7_wp))
       call put_real(d, r, i, k, near(real_field(d, i, k), r))
@@ -148,7 +148,7 @@ contains
       driven = .false.
       do i = size(d%line), 1, -1
          select case (name_of(d%line(i)))
-         case ('POINT', 'GROUND', 'LINK')
+         case ('POINT', 'GROUND', 'LINK', 'JOINT')
             call set_full(d, i, 1, factor*real_field(d, i, 1))
             call set_full(d, i, 2, factor*real_field(d, i, 2))
          case ('PRISM')
@@ -204,7 +204,7 @@ contains
       integer, allocatable :: cards(:)
       integer :: i, j
 
-      cards = find_cards(d, ['LINK    ', 'POINT   ', 'REVOLUTE', 'PRISM   '])
+      cards = find_cards(d, ['LINK    ', 'POINT   ', 'REVOLUTE', 'PRISM   ', 'JOINT   '])
       i = pick(r, cards)
       if (i == 0) return
       j = pick(r, find_cards(d, [name_of(d%line(i))]))

@@ -4,7 +4,7 @@ module closed_forms
    use structure, only: findings_t
    use quad_jet, only: qp
    use closed_forms_dyads, only: body_t
-   use closed_forms_linkages, only: four_bar, rise_dwell, drag_link, peaucellier, five_bar, pantograph
+   use closed_forms_linkages, only: four_bar, drawing, rise_dwell, drag_link, peaucellier, five_bar, pantograph
    use closed_forms_sliders, only: yoke, crank_slider, scotch_yoke, whitworth, cylinder, trammel
    use closed_forms_legs, only: andrews, jansen
    use closed_forms_sixbars, only: watt, watt_output, stephenson, stephenson_output, klann, grounds
@@ -29,7 +29,7 @@ module closed_forms
 
    type(count_t), parameter :: counts(*) = [ &
       count_t('yoke', 6, 5, 2, 1), count_t('jarzmowy', 6, 5, 2, 1), count_t('yoke_mirrored', 6, 5, 2, 1), &
-      count_t('four_bar', 4, 4, 0, 1), count_t('rise_dwell', 4, 4, 0, 1), &
+      count_t('four_bar', 4, 4, 0, 1), count_t('rise_dwell', 4, 4, 0, 1), count_t('drawing', 4, 4, 0, 1), &
       count_t('crank_slider', 4, 3, 1, 1), count_t('scotch_yoke', 4, 2, 2, 1), count_t('whitworth', 6, 5, 2, 1), &
       count_t('drag_link', 4, 4, 0, 1), count_t('cylinder', 4, 3, 1, 1), count_t('trammel', 4, 2, 2, 1), &
       count_t('peaucellier', 8, 10, 0, 1), count_t('five_bar', 5, 5, 0, 2), count_t('pantograph', 5, 5, 0, 2), &
@@ -75,6 +75,8 @@ contains
          links = four_bar(set, t)
       case ('rise_dwell')
          links = rise_dwell(set, t)
+      case ('drawing')
+         links = drawing(set, t)
       case ('crank_slider')
          links = crank_slider(set, t)
       case ('scotch_yoke')

@@ -8,7 +8,7 @@ module closed_forms_linkages
    use closed_forms_dyads, only: place_t, body_t, fixed_place, body, place_on, polar, direction, third_corner
    implicit none
    private
-   public :: four_bar, rise_dwell, drag_link, peaucellier, five_bar, pantograph
+   public :: four_bar, drawing, rise_dwell, drag_link, peaucellier, five_bar, pantograph
 
 contains
 
@@ -27,7 +27,41 @@ contains
       end if
    end function four_bar
 
-   !> The same, open: by each law of a rise the crank goes from 30 to 91.64 deg and back; in set 5 it turns at 1500 turns
+   !> Four-bar linkage A0 A B B0 as it is drawn, with B to the right of A B0; the axes of the links lie in those of the
+   !> drawing. In set 2 the origin of the rocker's axes is drawn at B0.
+   pure function drawing(set, t) result(links)
+      integer, intent(in) :: set
+      real(qp), intent(in) :: t
+      type(body_t) :: links(4)
+      real(qp), parameter :: a0(2) = [0.5_qp, 0.0_qp], a(2) = [0.0_qp, 1.0_qp], b(2) = [3.0_qp, 2.75_qp], &
+         b0(2) = [4.0_qp, 0.0_qp], origin(2) = 0.0_qp
+      type(body_t) :: crank
+      type(place_t) :: pin, end_of_crank, elbow
+
+      pin = fixed_place(b0(1), b0(2))
+      crank = body('CRANK', fixed_place(a0(1), a0(2)), -30.0_qp*degree_q*time_jet(t))
+      end_of_crank = place_on(crank, a(1) - a0(1), a(2) - a0(2))
+      elbow = third_corner(end_of_crank, pin, constant_jet(sum((b - a)**2)), constant_jet(sum((b - b0)**2)), 1.0_qp)
+      links = [body('BASE', fixed_place(0.0_qp, 0.0_qp), constant_jet(0.0_qp)), &
+               drawn_link('CRANK', fixed_place(a0(1), a0(2)), end_of_crank, a0, a, origin), &
+               drawn_link('COUPLER', end_of_crank, elbow, a, b, origin), &
+               drawn_link('ROCKER', pin, elbow, b0, b, merge(origin, b0, set == 1))]
+   end function drawing
+
+   !> The link `name` with the points `p` and `q`, which are drawn at `p_drawn` and `q_drawn`, as the origin of its axes
+   !> is drawn at `origin`; the axes are parallel to those of the drawing.
+   pure type(body_t) function drawn_link(name, p, q, p_drawn, q_drawn, origin) result(link)
+      character(*), intent(in) :: name
+      type(place_t), intent(in) :: p, q
+      real(qp), intent(in) :: p_drawn(2), q_drawn(2), origin(2)
+      real(qp) :: drawn_direction
+
+      drawn_direction = atan2(q_drawn(2) - p_drawn(2), q_drawn(1) - p_drawn(1))
+      link = body(name, p, direction(p, q) - drawn_direction)
+      link = body(name, place_on(link, origin(1) - p_drawn(1), origin(2) - p_drawn(2)), link%phi)
+   end function drawn_link
+
+   !> The crank-rocker, open: by each law of a rise the crank goes from 30 to 91.64 deg and back; in set 5 it turns at 1500 turns
    !> a minute, t in milliseconds, less a rise of 96 deg.
    pure function rise_dwell(set, t) result(links)
       integer, intent(in) :: set

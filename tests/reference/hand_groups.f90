@@ -55,6 +55,7 @@ module hand_groups
       statement_t('yoke_mirrored', 0, '*CRANK; BLOCK LEVER; ROD RAM'), &
       statement_t('four_bar', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('rise_dwell', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('drawing', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('crank_slider', 0, '*CRANK; ROD PISTON'), &
       statement_t('scotch_yoke', 1, '*CRANK; BLOCK YOKE'), &
       statement_t('scotch_yoke', 2, '*YOKE; CRANK BLOCK'), &

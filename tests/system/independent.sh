@@ -79,13 +79,13 @@ run() { "$kinmat" "$1.deck" -o "$1.lst" --csv "$1.csv" --errors 2> "$1.err"; }
 
 # beside NAME POWER: NAME alone and a copy of 10**POWER times its size alone, and the two in one deck
 beside() {
-   echo "$1 a 0" | deck > "$w/alone.deck"; run "$w/alone"
-   echo "$1 b $2" | deck > "$w/copy.deck"; run "$w/copy"
-   printf '%s\n' "$1 a 0" "$1 b $2" | deck > "$w/before.deck"; run "$w/before"
-   printf '%s\n' "$1 b $2" "$1 a 0" | deck > "$w/after.deck"; run "$w/after"
-   rows "$w/alone.csv" a > "$w/alone.rows"; rows "$w/copy.csv" b > "$w/copy.rows"
+   echo "$1 + 0" | deck > "$w/alone.deck"; run "$w/alone"
+   echo "$1 - $2" | deck > "$w/copy.deck"; run "$w/copy"
+   printf '%s\n' "$1 + 0" "$1 - $2" | deck > "$w/before.deck"; run "$w/before"
+   printf '%s\n' "$1 - $2" "$1 + 0" | deck > "$w/after.deck"; run "$w/after"
+   rows "$w/alone.csv" + > "$w/alone.rows"; rows "$w/copy.csv" - > "$w/copy.rows"
    for order in before after; do
-      rows "$w/$order.csv" a > "$w/a.rows"; rows "$w/$order.csv" b > "$w/b.rows"
+      rows "$w/$order.csv" + > "$w/a.rows"; rows "$w/$order.csv" - > "$w/b.rows"
       same "$method $1, $order a copy of 1E$2" "$w/alone.rows" "$w/a.rows"
       same "$method $1, $order: the copy of 1E$2" "$w/copy.rows" "$w/b.rows"
    done
@@ -100,33 +100,33 @@ for method in DENSE MATRIX; do beside four_bar -12; beside limit 6; done
 method=NEWTON
 
 # The listing: each has its own power of ten, so that the small one has its seven digits too.
-printf '%s\n' 'four_bar a 0' 'four_bar b -12' | deck > "$w/two.deck"; run "$w/two"
-equal 'the large one of two' ' ROa         4.000000' "$(grep -m 1 '^ ROa ' "$w/two.lst" | cut -c 1-21)"
-equal 'the small one of two' ' ROb         4.000000' "$(grep -m 1 '^ ROb ' "$w/two.lst" | cut -c 1-21)"
+printf '%s\n' 'four_bar + 0' 'four_bar - -12' | deck > "$w/two.deck"; run "$w/two"
+equal 'the large one of two' ' RO+         4.000000' "$(grep -m 1 '^ RO+ ' "$w/two.lst" | cut -c 1-21)"
+equal 'the small one of two' ' RO-         4.000000' "$(grep -m 1 '^ RO- ' "$w/two.lst" | cut -c 1-21)"
 equal 'its power of ten' '              10**-12     10**-12                 10**-12     10**-12                 10**-12     10**-12' \
    "$(grep -m 1 '10[*][*]' "$w/two.lst")"
 equal 'lines over 120 columns' '' "$(awk 'length > 120' "$w/two.lst")"
 
 # One that is at its limit, or that contradicts itself, flags the instant, and not the rows of the other.
-printf '%s\n' 'four_bar a 0' 'contradiction b -10' | deck > "$w/gap.deck"; run "$w/gap"
+printf '%s\n' 'four_bar + 0' 'contradiction - -10' | deck > "$w/gap.deck"; run "$w/gap"
 equal 'a contradiction in a small mechanism: status' 2 "$("$kinmat" "$w/gap.deck" -o "$w/gap.lst"; echo $?)"
 equal 'a contradiction in a small mechanism: marks' '11 OPEN' \
-   "$(rows "$w/gap.csv" b | awk -F, '$5 == "CO" { n[$15]++ } END { for (k in n) print n[k], k }')"
+   "$(rows "$w/gap.csv" - | awk -F, '$5 == "CO" { n[$15]++ } END { for (k in n) print n[k], k }')"
 equal 'a contradiction in a small mechanism: the other' '11 ' \
-   "$(rows "$w/gap.csv" a | awk -F, '$5 == "CO" { n[$15]++ } END { for (k in n) print n[k], k }')"
+   "$(rows "$w/gap.csv" + | awk -F, '$5 == "CO" { n[$15]++ } END { for (k in n) print n[k], k }')"
 
 # Redundant cranks a millionth as large on a link of a large mechanism: a tenth too long is open, and by nothing is not.
 # on_a_large_link LENGTH: three cranks on the coupler of a four-bar linkage
 on_a_large_link() {
    card TITLE 'SMALL ON LARGE'
    mark=; unit=3; four_bar
-   mark=s; unit=-3
+   mark==; unit=-3
    link CR 0.0 0.0 0.9; link R2 0.0 0.0 0.9; link R3 0.0 0.0 0.9; link CO 0.0 0.0 0.4
-   card POINT A0s CO; card POINT B0s CO '' 0.004 0.0; card POINT C0s CO '' 0.002 0.001
+   card POINT A0= CO; card POINT B0= CO '' 0.004 0.0; card POINT C0= CO '' 0.002 0.001
    point A1 CR; point A2 CR 1.5; point B1 R2; point B2 R2 1.5; point C1 R3; point C2 R3 "$1"
    point A CO; point B CO 4.0; point C CO 2.0 1.0
    joint A0 A1 PA0; joint B0 B1 PB0; joint C0 C1 PC0; joint A2 A PA; joint B2 B PB; joint C2 C PC
-   card DRIVE RELANGLE CO CRs 0.5 1.0
+   card DRIVE RELANGLE CO CR= 0.5 1.0
    card TIME 2 '' '' 0.0 1.0
    card PRINT ALL
    card END
@@ -138,11 +138,11 @@ equal 'small cranks on a large link, one too long' ' *** TOO MANY EQUATIONS, AND
    "$(grep -m 1 'CONTRADICT' "$w/open.lst")"
 
 # A point in no pair changes no digit of the links.
-{ card TITLE 'FAR POINT'; mark=a; unit=0; four_bar; card TIME 10 '' '' 0.0 2.0; } > "$w/set"
-{ cat "$w/set"; card PRINT LINKS; card PRINT POINTS Pa; card END; } > "$w/near.deck"; "$kinmat" "$w/near.deck" --csv "$w/near.csv" > "$w/out"
-{ sed 's/^\(POINT   Pa .*\)1.70000000E0 /\14.70000000E2 /' "$w/set"; card PRINT LINKS; card PRINT POINTS Pa; card END; } > "$w/far.deck"
+{ card TITLE 'FAR POINT'; mark=+; unit=0; four_bar; card TIME 10 '' '' 0.0 2.0; } > "$w/set"
+{ cat "$w/set"; card PRINT LINKS; card PRINT POINTS P+; card END; } > "$w/near.deck"; "$kinmat" "$w/near.deck" --csv "$w/near.csv" > "$w/out"
+{ sed 's/^\(POINT   P+ .*\)1.70000000E0 /\14.70000000E2 /' "$w/set"; card PRINT LINKS; card PRINT POINTS P+; card END; } > "$w/far.deck"
 "$kinmat" "$w/far.deck" --csv "$w/far.csv" > "$w/out"
 grep LINK "$w/near.csv" > "$w/near.rows"; grep LINK "$w/far.csv" > "$w/far.rows"
 same 'a point far away, in no pair' "$w/near.rows" "$w/far.rows"
-equal 'a point far away: it is far' 11 "$(grep -c 'POINT,Pa,[-0-9.]*E+002' "$w/far.csv")"
+equal 'a point far away: it is far' 11 "$(grep -c 'POINT,P+,[-0-9.]*E+002' "$w/far.csv")"
 conclude

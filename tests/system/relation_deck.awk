@@ -1,5 +1,6 @@
 # awk -v change=CHANGE [-v csv=FILE -v lst=FILE] -v map=FILE -f relation_deck.awk DECK: the deck, changed. CHANGE is
-#    whole      all results are asked for, in English: to this deck come the others
+#    whole      all results are asked for, in English, a JOINT card as two POINT cards and a REVOLUTE card: to this deck come the
+#               others
 #    3, 7       so many times the steps
 #    turned     the cards of each set in the opposite order
 #    moved      by (3, -2)
@@ -166,9 +167,24 @@ function put_companion(  rate, first) {
 function estimate(  k) {
    for (k = 1; k <= 3; k++) if (place[set, start, a, k] != "") x[k] = place[set, start, a, k]
 }
+# The JOINT card in hand: its points in the axes of their links, which stand where the cards of the links put them.
+function put_joint_point(point, link,  dx, dy, phi) {
+   dx = x[1] - drawn[link, 1]; dy = x[2] - drawn[link, 2]; phi = drawn[link, 3]*unit
+   put_card("POINT", point, link, "", 2, dx*cos(phi) + dy*sin(phi), dy*cos(phi) - dx*sin(phi))
+}
+function put_joint(  first, second, x1, x2) {
+   first = rests[b] ? substr(a, 1, 6) "-2" : a; second = rests[b] ? a : substr(a, 1, 6) "-2"
+   x1 = x[1]; x2 = x[2]
+   put_joint_point(first, b)
+   x[1] = x1; x[2] = x2
+   put_joint_point(second, c)
+   put_card("REVOLUTE", first, second, a)
+}
+
 function change_card(  n) {
    n = name ~ /^(POINT|TIME)$/ || name == "ADD" && a != "HARMONIC" ? 2 : name == "BRANCH" ? 1 : 3
    if (change == "whole" && name ~ /^(PRINT|LANG)$/) return
+   if (change == "whole" && name == "JOINT") { put_joint(); return }
    if (change ~ /^(middle|back)$/ && name ~ /^(TIME|AT|BRANCH)$/) return
    if (name == "TIME" && change ~ /^[37]$/) card = sprintf("%-8s%-8s%s", "TIME", change*a, substr(card, 17))
    # A card of which nothing is known here is refused.
@@ -202,7 +218,11 @@ BEGIN { if (csv != "") read_results() }
    if (start > last[set]) { start = 0; way = 1 }
    printf "start %d %d\n", set, start > map
    if (degrees) print "degrees", set > map
-   for (i = 1; i <= n_cards; i++) { take(i); if (name == "PRISM") print "slide", set, c > map }
+   for (i = 1; i <= n_cards; i++) {
+      take(i)
+      if (name == "PRISM") print "slide", set, c > map
+      if (name ~ /^(GROUND|LINK)$/) { rests[a] = name == "GROUND"; for (k = 1; k <= 3; k++) drawn[a, k] = x[k] }
+   }
    if (change == "axes") choose_axes()
    for (i = 1; i <= n_cards; i++) { take(i); change_card() }
    if (change == "beside") put_companion()

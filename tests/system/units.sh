@@ -18,7 +18,7 @@ enlarged() {
       }
       # Which of the three numbers of a card are lengths.
       function lengths(card, form) {
-         if (card == "GROUND" || card == "LINK" || card == "POINT") return "110"
+         if (card == "GROUND" || card == "LINK" || card == "POINT" || card == "JOINT") return "110"
          if (card == "PRISM") return "010"
          if (card == "DRIVE") { driven = form ~ /^(X|Y|SLIDE)$/; return driven ? "111" : "000" }
          if (card == "ADD" && driven) return form == "TABLE" ? "010" : "100"
