@@ -32,7 +32,7 @@ parts() {
    tables|225|tests/system/tables.sh
    the digits|1|tests/system/digits.sh
    wide blocks|7|tests/system/wide.sh
-   drives between instants|18|tests/system/drives.sh
+   drives between instants|48|tests/system/drives.sh
    decks made by chance|1000|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 1000
    relations between runs|300|tests/system/relations.sh --short
    mechanisms of a known motion|200|tests/fuzz/fuzz_mechanisms.sh 200
