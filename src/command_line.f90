@@ -3,6 +3,7 @@ module command_line
    use kinds, only: wp_name
    use numerals, only: significant
    use failures, only: failure_t, fail, status_rejected
+   use cards, only: forms, form_name, find_form, form_unknown
    implicit none
    private
    public :: options_t, word_t, read_command, read_words, help_text
@@ -38,7 +39,7 @@ module command_line
    end type word_t
 
    type :: options_t
-      character(:), allocatable :: deck      !< '' is standard input
+      character(:), allocatable :: deck      !< '' is standard input; with --ruler the name of a card, or ''
       type(word_t) :: files(out_last)        !< '' is standard output; not allocated: this output is not asked for
       logical :: no_listing = .false.
       logical :: check = .false.             !< read and analyse only
@@ -70,7 +71,7 @@ module command_line
       '  --study              speed against error, instead of the listing', &
       '                       (needs kinmat-quad, kinmat-single: make kinds)', &
       '  --time               the time of a step, instead of the listing', &
-      '  --ruler              prints an empty card with its columns', &
+      '  --ruler [CARD]       an empty card with its columns; the layout of CARD', &
       '  --help, --version', &
       'Exit status: 0 every instant solved; 1 deck or command rejected;', &
       '2 listing complete, an instant flagged; 3 error of file, memory or disk.', &
@@ -129,9 +130,24 @@ contains
       end do
       if (.not. allocated(failure)) call check_study(options, failure)
       if (.not. allocated(failure)) call check_files(options, failure)
+      if (.not. allocated(failure) .and. options%show == 'RULER' .and. len(options%deck) > 0 .and. &
+          find_form(options%deck) == form_unknown) call fail(failure, status_rejected, &
+         'OPTION --ruler: NO CARD HAS THE NAME '//options%deck//'; CARDS ARE '//card_names())
       if (.not. (options%no_listing .or. any(to_standard_output(options%files)) &
          .or. allocated(options%files(out_listing)%text))) options%files(out_listing)%text = ''
    end subroutine read_words
+
+   !> The names of all cards, with blanks between them.
+   pure function card_names() result(text)
+      character(:), allocatable :: text
+      integer :: form
+
+      text = ''
+      do form = 1, size(forms)
+         text = trim(text//' '//form_name(form))
+      end do
+      text = text(2:)
+   end function card_names
 
    !> Takes word number `i` of those that name no file of an output.
    subroutine take_word(words, i, has_deck, options, failure)

@@ -6,7 +6,7 @@ program main
    use failures, only: failure_t, status_signal
    use system_calls, only: occupy_standard_descriptors, end_by_signal
    use command_line, only: options_t, out_listing, read_command, help_text
-   use cards, only: ruler_card
+   use cards, only: layout_of
    use job, only: run_job
    use study, only: run_study
    use text_output, only: output_t, open_output, put, close_output
@@ -38,7 +38,7 @@ program main
    case ('VERSION')
       call show(version)
    case ('RULER')
-      call show(ruler_card())
+      call show(layout_of(options%deck))
    case default
       if (options%study .or. options%time) then
          call run_study(options%deck, options%files(out_listing)%text, options%time, status, message)

@@ -7,7 +7,7 @@ module cards
    private
    public :: card_t, field_t, card_columns, card_fields, wide_fields, title_field
    public :: card_name, label_a, label_b, label_c, real_1, real_2, real_3
-   public :: field_text, first_column, small_field, ruler_card, is_passed_over
+   public :: field_text, first_column, small_field, ruler_card, layout_of, is_passed_over
    public :: forms, form_name, find_form, nearest_form, reals_of
    public :: form_unknown, form_title, form_units, form_lang, form_ground, form_link, form_point, form_revolute
    public :: form_prism, form_joint, form_drive, form_add, form_rise, form_time, form_at, form_method, form_print
@@ -147,6 +147,17 @@ contains
       end do
       text(1:5) = '$'//card_fields(card_name)%name(1:4)
    end function ruler_card
+
+   !> The ruler and, below it, the layout of the cards of the name `name`; of '', the ruler alone.
+   pure function layout_of(name) result(text)
+      character(*), intent(in) :: name
+      character(:), allocatable :: text
+      integer :: form
+
+      text = ruler_card()
+      form = find_form(name)
+      if (form /= form_unknown) text = text//new_line('a')//trim(forms(form)%layout)
+   end function layout_of
 
    !> How many real fields a card of `form` takes whose label A is `word`; form_unknown: none.
    pure integer function reals_of(form, word) result(taken)
