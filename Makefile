@@ -206,9 +206,18 @@ test: $(addprefix $(BUILD)/,kinmat example debug/kinmat $(checkers:%=release/%) 
    quad/release/kind_errors single/release/kind_errors tests$(if $(PFUNIT_DIR),/pfunit)/unit) $(references)
 	BUILD=$(BUILD) MAKE='$(MAKE)' tests/run.sh
 
-install: $(BUILD)/kinmat
-	install -d $(DESTDIR)$(PREFIX)/bin
+# The man page: the text of --help in another form.
+$(BUILD)/kinmat.1: $(BUILD)/kinmat docs/man.awk
+	$< --help | awk -v version="$$($< --version | sed 's/,.*//')" -f docs/man.awk > $@.new && mv $@.new $@
+
+# The command with its man page and manual; the modules and their library: gfortran -I PREFIX/include/kinmat ... -lkinmat.
+install: $(BUILD)/kinmat $(BUILD)/kinmat.1
+	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin include/kinmat lib share/doc/kinmat share/man/man1)
 	install -m 755 $(BUILD)/kinmat $(DESTDIR)$(PREFIX)/bin/kinmat
+	install -m 644 $(modules:%=$(BUILD)/release/%.mod) $(DESTDIR)$(PREFIX)/include/kinmat
+	install -m 644 $(BUILD)/release/libkinmat.a $(DESTDIR)$(PREFIX)/lib
+	install -m 644 README.md docs/manual.md docs/example.f90 $(DESTDIR)$(PREFIX)/share/doc/kinmat
+	install -m 644 $(BUILD)/kinmat.1 $(DESTDIR)$(PREFIX)/share/man/man1
 
 install-kinds: install kinds
 	install -m 755 $(BUILD)/kinmat-quad $(BUILD)/kinmat-single $(DESTDIR)$(PREFIX)/bin

@@ -6,7 +6,7 @@ module command_line
    use cards, only: forms, form_name, find_form, form_unknown
    implicit none
    private
-   public :: options_t, word_t, read_command, read_words, help_text
+   public :: options_t, to_standard_output, word_t, read_command, read_words, help_text
    public :: file_option_t, file_options
    public :: out_listing, out_csv, out_log, out_svg, out_table, out_plot_table, out_plot_script, out_last
 
@@ -42,6 +42,7 @@ module command_line
       character(:), allocatable :: deck      !< '' is standard input; with --ruler the name of a card, or ''
       type(word_t) :: files(out_last)        !< '' is standard output; not allocated: this output is not asked for
       logical :: no_listing = .false.
+      logical :: quiet = .false.             !< no remarks on standard error, no progress
       logical :: check = .false.             !< read and analyse only
       logical :: errors = .false.            !< CSV and log have an error estimate of every number
       logical :: study = .false.             !< speed against error, instead of the listing
@@ -53,6 +54,8 @@ module command_line
 
    character(*), parameter :: two_digits = achar(48 + int(0.1*significant))//achar(48 + mod(significant, 10))
    character(*), parameter :: csv_digits = two_digits(merge(2, 1, significant < 10):)
+   !> The text of --help. docs/man.awk makes the man page of it: an option in columns 3 to 22, what it does from column
+   !> 24 on.
    character(*), parameter :: lines(*) = [character(72) :: &
       'kinmat DECK            reads a card deck, prints the listing', &
       'kinmat < DECK          the same', &
@@ -61,7 +64,6 @@ module command_line
       '  --csv FILE           the results with '//csv_digits//' digits, comma-separated', &
       '  --log FILE           the log of the solver, a line per instant', &
       '  --svg FILE           a picture of the mechanism and paths of points', &
-      '                       (FILE - is standard output, without a listing)', &
       '  --table FILE         a row an instant, a column a quantity', &
       '  --plot DIR           that table and a script in the directory DIR:', &
       '                       gnuplot DIR/plot.gp draws it', &
@@ -71,8 +73,10 @@ module command_line
       '  --study              speed against error, instead of the listing', &
       '                       (needs kinmat-quad, kinmat-single: make kinds)', &
       '  --time               the time of a step, instead of the listing', &
+      '  --quiet              neither remarks nor progress on standard error', &
       '  --ruler [CARD]       an empty card with its columns; the layout of CARD', &
-      '  --help, --version', &
+      '  --help, --version    this text; the version and the kind of reals', &
+      'FILE - is standard output, for one output; the listing gives way to it.', &
       'Exit status: 0 every instant solved; 1 deck or command rejected;', &
       '2 listing complete, an instant flagged; 3 error of file, memory or disk.', &
       'Real numbers: '//wp_name//'.']
@@ -164,6 +168,8 @@ contains
          options%errors = .true.
       case ('--no-listing')
          options%no_listing = .true.
+      case ('--quiet')
+         options%quiet = .true.
       case ('--study')
          options%study = .true.
       case ('--time')

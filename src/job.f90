@@ -5,6 +5,7 @@ module job
    use structure, only: findings_t, check_structure
    use deck, only: read_deck
    use text_output, only: output_t
+   use progress, only: progress_t, start_progress, show_progress, end_progress
    use system_calls, only: watch_signals, signal_received, broken_pipe_kills, signal_pipe
    use listing, only: layout_t, new_layout, listing_head, listing_instant, listing_end, listing_broken_off
    use listing_diagnostics, only: remarks_text
@@ -18,11 +19,12 @@ module job
    use convergence, only: convergence_t
    use branch_certificate, only: branch_t
    use points, only: strides, any_due
+   use numerals, only: whole
    use set_motion, only: is_flagged, has_words
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set, set_record, set_errors, &
       set_closure_error, set_closing_diagnostics
-   use command_line, only: options_t, out_listing, out_csv, out_log, out_svg, out_table, out_plot_table, &
-      out_plot_script
+   use command_line, only: options_t, to_standard_output, out_listing, out_csv, out_log, out_svg, out_table, &
+      out_plot_table, out_plot_script
    use outputs, only: outputs_t, open_outputs, flush_outputs, close_outputs, is_over, is_broken_pipe, set_suffix
    implicit none
    private
@@ -30,6 +32,7 @@ module job
 
    !> The job's outputs, and what they keep from instant to instant.
    type, extends(outputs_t) :: writers_t
+      type(progress_t) :: progress
       integer :: first = 1, last = 0                !< the sets of this share
       type(layout_t) :: layout                      !< of the listing of the set at hand
       type(table_t) :: table                        !< of the set at hand
@@ -49,9 +52,10 @@ contains
       type(writers_t) :: o
 
       status = status_solved
+      call start_progress(o%progress, .not. options%quiet, any(to_standard_output(options%files)))
       call read_deck(options%deck, sets, message, failure)
       if (.not. allocated(failure)) call check_structure(sets, findings, failure)
-      if (allocated(failure) .and. len(message) == 0) message = said_of(sets)//' *** '//failure%text
+      if (allocated(failure) .and. len(message) == 0) message = said_of(options, sets)//' *** '//failure%text
       if (.not. allocated(failure)) then
          o%first = share_end(size(sets), options%share - 1, options%shares) + 1
          o%last = share_end(size(sets), options%share, options%shares)
@@ -60,26 +64,29 @@ contains
       if (.not. allocated(failure)) then
          call watch_signals
          call run_sets(options, sets, findings, o, status)
+         call end_progress(o%progress)
          call close_outputs(o, failure)
       end if
       if (allocated(failure)) then
          status = failure%status
          if (len(message) == 0) message = ' *** '//failure%text
       else if (.not. o%asked(out_listing)) then
-         message = said_of(sets(o%first:o%last))
+         message = said_of(options, sets(o%first:o%last))
          ! The end of the last line comes with the message.
          message = message(:max(0, len(message) - 1))
       end if
       call look_at_signals(o, status, message)
    end subroutine run_job
 
-   !> The remarks about `sets`, each line ended by new_line('a'), for where they stand in no listing.
-   function said_of(sets) result(text)
+   !> The remarks about `sets`, each line ended by new_line('a'), for where they stand in no listing; '' for --quiet.
+   function said_of(options, sets) result(text)
+      type(options_t), intent(in) :: options
       type(mechanism_t), intent(in) :: sets(:)
       character(:), allocatable :: text
       integer :: i
 
       text = ''
+      if (options%quiet) return
       do i = 1, size(sets)
          if (allocated(sets(i)%remarks)) text = text//remarks_text(sets(i))//new_line('a')
       end do
@@ -115,7 +122,7 @@ contains
       do i = o%first, o%last
          call run_set(options, sets(i), i, findings(i), o, status)
          if (is_over(o, i)) exit
-         if (o%asked(out_svg)) call draw_set(sets(i), picture_candidates, o%drawings(i))
+         if (o%asked(out_svg)) call draw_set(sets(i), picture_candidates, o%drawings(i), o%progress)
       end do
       ! Sets that were broken off are not drawn.
       if (o%asked(out_svg)) call put_pictures(o%files(out_svg, 0), sets(o%first:i - 1), o%drawings(o%first:i - 1))
@@ -123,10 +130,11 @@ contains
 
    !> Records the drawing `d` of `m`, of at most `frames` frames. It has an analysis of its own: a picture shows links
    !> that no table asks for, and what is printed must not depend on it.
-   subroutine draw_set(m, frames, d)
+   subroutine draw_set(m, frames, d, progress)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: frames
       type(drawing_t), intent(out) :: d
+      type(progress_t), intent(inout) :: progress
       type(set_analysis_t) :: a
       integer :: k
 
@@ -135,6 +143,8 @@ contains
       do k = 0, instant_count(m) - 1
          call advance_set(a, instant(m, k))
          call record_instant(d, m, a%now, k)
+         if (progress%shown) &
+            call show_progress(progress, 'PICTURE OF SET '//whole(m%set_number)//': INSTANT', k, instant_count(m) - 1)
          if (signal_received() > 0) return
       end do
    end subroutine draw_set
@@ -168,6 +178,8 @@ contains
          call advance_set(a, instant(m, k))
          if (is_flagged(a%now)) flagged = flagged + 1
          call write_instant(options, m, i, k, any_due(m, every, k), a, o)
+         if (o%progress%shown) &
+            call show_progress(o%progress, 'SET '//whole(i)//': INSTANT', k, instant_count(m) - 1)
          if (.not. is_over(o, i)) cycle
          if (o%asked(out_listing)) call listing_broken_off(o%files(out_listing, 0), m, k)
          return

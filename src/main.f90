@@ -4,21 +4,13 @@ program main
    use, intrinsic :: iso_c_binding, only: c_int
    use kinds, only: wp_name
    use failures, only: failure_t, status_signal
-   use system_calls, only: occupy_standard_descriptors, end_by_signal
+   use system_calls, only: occupy_standard_descriptors, end_by_signal, is_terminal
    use command_line, only: options_t, out_listing, read_command, help_text
    use cards, only: layout_of
    use job, only: run_job
    use study, only: run_study
    use text_output, only: output_t, open_output, put, close_output
    implicit none
-
-   interface
-      !> isatty(3): 1 for a terminal.
-      integer(c_int) function isatty(descriptor) bind(c)
-         import :: c_int
-         integer(c_int), value :: descriptor
-      end function isatty
-   end interface
 
    character(*), parameter :: version = 'KINMAT 1.0, '//wp_name
    type(options_t) :: options
@@ -30,7 +22,7 @@ program main
    call read_command(options, failure)
    if (allocated(failure)) call leave(failure%status, ' *** '//failure%text)
    if (command_argument_count() == 0) then
-      if (isatty(0_c_int) /= 0) options%show = 'HELP'
+      if (is_terminal(0_c_int)) options%show = 'HELP'
    end if
    select case (options%show)
    case ('HELP')

@@ -10,7 +10,7 @@ module system_calls
    private
    public :: identity_t, identity_of_path, identity_of_descriptor, same_file
    public :: open_to_read, open_to_write, read_bytes, write_bytes, close_descriptor, empty_file, remove_file
-   public :: make_directory, remove_directory
+   public :: make_directory, remove_directory, is_terminal
    public :: watch_signals, signal_received, broken_pipe_kills, end_by_signal, signal_pipe
    public :: occupy_standard_descriptors, last_error, reason_of, no_such_file, closed_descriptor, is_a_directory, &
       broken_pipe
@@ -97,6 +97,11 @@ module system_calls
          integer(c_int), value :: descriptor
          integer(c_long), value :: length
       end function ftruncate
+      !> isatty(3): 1 for a terminal.
+      integer(c_int) function isatty(descriptor) bind(c)
+         import :: c_int
+         integer(c_int), value :: descriptor
+      end function isatty
       !> mkdir(2): makes a directory; negative on error.
       integer(c_int) function mkdir(path, mode) bind(c)
          import :: c_int, c_char
@@ -225,6 +230,13 @@ contains
 
       close_descriptor = c_close(descriptor) == 0
    end function close_descriptor
+
+   !> Whether `descriptor` is that of a terminal.
+   logical function is_terminal(descriptor)
+      integer(c_int), intent(in) :: descriptor
+
+      is_terminal = isatty(descriptor) /= 0
+   end function is_terminal
 
    !> Deletes the contents of an open file; false for an error.
    logical function empty_file(descriptor)

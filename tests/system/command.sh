@@ -177,6 +177,19 @@ same '--no-listing: the CSV' "$w/m.csv" "$w/o.csv"
 same '--no-listing: the log' "$w/m.log" "$w/o.log"
 refused '--no-listing and -o' 1 ' *** OPTION --no-listing LEAVES OUT THE LISTING, WHICH -o ASKS FOR' "$w/m.deck" --no-listing -o "$w/x"
 
+# --quiet: no remarks on standard error, but errors.
+sed 's/^PRINT /print /' "$w/m.deck" > "$w/remark.deck"
+"$kinmat" "$w/remark.deck" --no-listing > "$w/out" 2> "$w/err"
+equal 'without --quiet there are remarks' 2 "$(grep -c '^ --- .*SMALL LETTERS' "$w/err")"
+"$kinmat" "$w/remark.deck" --no-listing --quiet > "$w/out" 2> "$w/err"
+equal '--quiet: status' 0 $?
+equal '--quiet: standard error' '' "$(cat "$w/err")"
+"$kinmat" --quiet "$w/remark.deck" > "$w/out" 2> "$w/err"
+equal '--quiet: the listing has its remarks' 2 "$(grep -c '^ --- .*SMALL LETTERS' "$w/out")"
+sed '/^DRIVE/d' "$w/remark.deck" > "$w/quiet.deck"
+"$kinmat" "$w/quiet.deck" --quiet > "$w/out" 2> "$w/err"
+equal '--quiet: errors are told, and no remarks' '*** E101 *** E103 *** E101 *** E103 ' "$(awk '{ printf "%s %s ", $1, $2 }' "$w/err")"
+
 # --errors: nine more columns, as empty as the numbers they belong to; estimates of a four-bar are some roundings.
 "$kinmat" "$w/m.deck" --errors --csv "$w/e.csv" --log "$w/e.log" > "$w/out"
 same '--errors leaves the listing as it is' "$w/m.lst" "$w/out"
@@ -222,7 +235,7 @@ refused '--sets without a word' 1 ' *** OPTION --sets NEEDS K/N WITH 1 <= K <= N
 "$kinmat" --help > "$w/out" 2> "$w/err"
 equal '--help: status' 0 $?
 equal '--help: first line' 'kinmat DECK            reads a card deck, prints the listing' "$(head -n 1 "$w/out")"
-for option in -o --no-listing --csv --log --svg --table --plot --check --errors --sets --ruler --help --version; do
+for option in -o --no-listing --quiet --csv --log --svg --table --plot --check --errors --sets --ruler --help --version; do
    equal "--help tells of $option" found "$(grep -qe "$option" "$w/out" && echo found)"
 done
 equal '--version' 'KINMAT 1.0, REAL64' "$("$kinmat" --version)"

@@ -143,6 +143,27 @@ columns 'kinmat --csv | head' pipe.csv
 { (trap '' PIPE; exec timeout -k 1 20 "$kinmat" long 2> err); echo $? > status; } | head -n 1 > out
 told 'a broken pipe that is ignored' 3 "$(cat status)" ' *** WRITING STANDARD OUTPUT FAILED (BROKEN PIPE)'
 
+# Progress: on a terminal, for a run of more than two seconds, here one whose deck comes late; one line that is gone at the
+# end. None with --quiet, none in a file, none where the listing is on the terminal, none of a short run.
+if [ "$(script -qec 'test -t 2 && echo terminal' /dev/null < /dev/null 2> /dev/null | tr -d '\r')" = terminal ]; then
+   sed -e '/^END/q' -e 's/^TIME    36  /TIME    300000/' deck > slow.deck
+   # progress DECK WAIT WORDS: what the run leaves on a terminal, its lines as they are rewritten
+   progress() { script -qec "sh -c '(sleep $2; cat $1) | $kinmat $3'" /dev/null < /dev/null | tr '\r' '\n'; }
+   progress slow.deck 2.1 '--no-listing; echo end' > out.shown &
+   progress slow.deck 2.1 '--no-listing --quiet' > out.quiet &
+   progress slow.deck 2.1 '--no-listing 2> slow.err' > out.file &
+   progress deck 2.1 '' > out.listing &
+   progress slow.deck 0.1 '--no-listing' > out.short
+   wait
+   equal 'progress: lines' '' "$(sed '/^end$/,$d' out.shown | grep -vE '^( SET 1: INSTANT [0-9]+ OF 300002 *| *)$')"
+   equal 'progress: there is some' yes "$([ "$(grep -c 'SET 1: INSTANT' out.shown)" -ge 1 ] && echo yes)"
+   equal 'progress: it is gone at the end' '' "$(sed '/^end$/,$d' out.shown | tail -n 1 | tr -d ' ')"
+   equal 'the listing on a terminal' 2 "$(grep -c 'END OF SET' out.listing)"
+   for file in out.quiet out.file slow.err out.listing out.short; do equal "no progress: $file" 0 "$(grep -c 'INSTANT [0-9]* OF' $file)"; done
+else
+   echo 'skipped: progress on a terminal (script is not installed)'
+fi
+
 # SIGINT and SIGTERM: whole lines, a line that says so, the signal's status. In both languages.
 # stopped SIGNAL DECK: a run that has begun is sent the signal
 stopped() {

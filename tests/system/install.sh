@@ -1,0 +1,33 @@
+#!/bin/sh
+# What `make install` leaves: the command, its man page, and a library with modules that another program can use.
+BUILD=${BUILD:-build}
+. tests/counting.sh
+
+w=$BUILD/installed
+rm -rf "$w" && mkdir -p "$w" || exit 3
+"${MAKE:-make}" --no-print-directory BUILD="$BUILD" DESTDIR="$w" PREFIX=/usr install > "$w/out" 2>&1
+equal 'make install: status' 0 $?
+equal 'make install: directories' 'bin include lib share ' "$(ls "$w/usr" | tr '\n' ' ')"
+equal 'make install: a module for each source but main' "$(find src -name '*.[fF]90' | sed -e 's/.*\///' -e 's/\..*/.mod/' | grep -v '^main[.]' \
+   | LC_ALL=C sort)" "$(ls "$w/usr/include/kinmat" | LC_ALL=C sort)"
+"$w/usr/bin/kinmat" input/yoke.deck > "$w/out" 2> "$w/err"
+same 'the installed command' expected/yoke.lst "$w/out"
+
+# The example of docs/ with what is installed, and nothing else.
+(cd "$w" && "${FC:-gfortran}" -fno-lto -fno-use-linker-plugin -Iusr/include/kinmat -o example usr/share/doc/kinmat/example.f90 -Lusr/lib -lkinmat -lklu -llapack -lblas) \
+   > "$w/err" 2>&1
+equal 'a program with the installed modules: it is built' '' "$(cat "$w/err")"
+equal 'a program with the installed modules' "$("$BUILD/example")" "$("$w/example")"
+
+# The man page has each option of --help, and no fault that its readers find.
+page=$w/usr/share/man/man1/kinmat.1
+"$w/usr/bin/kinmat" --help | sed -n 's/^  \(-[-a-z]*\).*/\1/p' > "$w/options"
+equal 'the man page: options are found' yes "$([ "$(wc -l < "$w/options")" -ge 14 ] && echo yes)"
+equal 'the man page: options it lacks' '' "$(while read -r option; do tr -d '\\' < "$page" | grep -qF -- "fB$option" || echo "$option"; done < "$w/options")"
+equal 'the man page: its sections' 'NAME SYNOPSIS DESCRIPTION OPTIONS EXIT STATUS SEE ALSO ' "$(sed -n 's/^[.]SH //p' "$page" | tr '\n' ' ')"
+equal 'the man page: exit statuses' '0 1 2 3 ' "$(sed -n '/^.SH EXIT/,$p' "$page" | grep -E '^[0-9]$' | tr '\n' ' ')"
+equal 'the man page: lines over 120 columns' '' "$(awk 'length > 120' "$page")"
+read_page() { if command -v "$1" > /dev/null; then equal "the man page: $1" '' "$("$@" "$page" 2>&1 > /dev/null)"; else echo "skipped: the man page in $1 (not installed)"; fi; }
+read_page groff -man -Tascii -ww -z
+read_page mandoc -T lint -W error
+conclude
