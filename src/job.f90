@@ -19,6 +19,7 @@ module job
    use convergence, only: convergence_t
    use branch_certificate, only: branch_t
    use points, only: strides, any_due
+   use answers, only: answers_t, new_answers, take_instant, put_answers
    use numerals, only: whole
    use set_motion, only: is_flagged, has_words
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set, set_record, set_errors, &
@@ -166,24 +167,28 @@ contains
       type(writers_t), intent(inout) :: o
       integer, intent(inout) :: status
       type(set_analysis_t) :: a
+      type(answers_t) :: asked
       integer, allocatable :: every(:)
       integer :: k, flagged
 
       call write_heads(options, m, i, findings, o)
       if (options%check .or. is_over(o, i)) return
       call make_set_analysis(m, a, findings)
+      if (o%asked(out_listing)) call new_answers(m, a, asked)
       flagged = 0
       every = strides(m)
       do k = 0, instant_count(m) - 1
          call advance_set(a, instant(m, k))
          if (is_flagged(a%now)) flagged = flagged + 1
          call write_instant(options, m, i, k, any_due(m, every, k), a, o)
+         call take_instant(asked, m, a, k)
          if (o%progress%shown) &
             call show_progress(o%progress, 'SET '//whole(i)//': INSTANT', k, instant_count(m) - 1)
          if (.not. is_over(o, i)) cycle
          if (o%asked(out_listing)) call listing_broken_off(o%files(out_listing, 0), m, k)
          return
       end do
+      if (o%asked(out_listing)) call put_answers(o%files(out_listing, 0), o%layout, asked, m, a)
       if (o%asked(out_listing)) call listing_end(o%files(out_listing, 0), m, instant_count(m) - flagged, flagged, &
          a%certificate_counts, set_closure_error(a), set_closing_diagnostics(a, m))
       if (flagged > 0) status = status_flagged

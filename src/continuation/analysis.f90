@@ -13,10 +13,10 @@ module analysis
    use block_diagnostics, only: start_diagnostics, limit_diagnostic
    use at_bifurcation, only: stand_on
    use following, only: following_t, step_record_t, make_following, continue_to, is_too_far, has_too_many_substeps, &
-      go_on_from, go_back, limits_t, note_limit, lies_beyond, diagnostics_of_limit
+      go_on_from, go_back, place_t, note_place, return_to, limits_t, note_limit, lies_beyond, diagnostics_of_limit
    implicit none
    private
-   public :: analysis_t, make_analysis, advance, redundancy_error
+   public :: analysis_t, make_analysis, advance, look_at, redundancy_error
 
    !> The motion that is followed, and what is known of the instants so far.
    type, extends(following_t) :: analysis_t
@@ -68,6 +68,37 @@ contains
       end if
       a%is_lost = .not. step%arrived
    end subroutine advance
+
+   !> The motion `found` at a time `t` that is no instant of the deck, by continuity from the last one; nothing else
+   !> changes. `is_found`: it has a position, velocities and accelerations.
+   subroutine look_at(a, t, found, is_found)
+      type(analysis_t), intent(inout) :: a
+      real(wp), intent(in) :: t
+      type(motion_t), intent(inout) :: found
+      logical, intent(out) :: is_found
+      type(place_t) :: here
+      type(step_record_t) :: step
+      type(convergence_t) :: convergence
+      integer :: iterations
+      logical :: finite
+
+      is_found = .false.
+      if (.not. a%follows .or. a%is_lost) return
+      call note_place(a%following_t, here)
+      convergence = a%convergence
+      iterations = a%iterations
+      call continue_to(a%following_t, t, step)
+      if (step%arrived .and. .not. (a%convergence%singular .or. a%convergence%rates_open)) then
+         found%t = t
+         call a%engine%get_motion(found, finite)
+         call cut(found, 2, mark_none)
+         if (.not. finite) call look_for_overflow(found)
+         is_found = found%known == 2
+      end if
+      call return_to(a%following_t, here)
+      a%convergence = convergence
+      a%iterations = iterations
+   end subroutine look_at
 
    !> The motion found at the end of `step`.
    subroutine arrive(a, step, found)

@@ -1,5 +1,5 @@
 !> The cards of a set that define no bodies and no drives: the options TITLE, UNITS, LANG and METHOD, the instants TIME
-!> and AT, and the requests PRINT and BRANCH.
+!> and AT, and the requests PRINT, EXTREMES, RANGE and BRANCH.
 module deck_options
    use kinds, only: wp
    use constants, only: degree
@@ -7,10 +7,11 @@ module deck_options
       method_words
    use card_sets, only: card_set_t, look_up, match_word, add_card_error
    use cards, only: title_field, card_name, label_a, label_b, label_c, real_1, real_2, forms, form_unknown, &
-      form_title, form_units, form_lang, form_time, form_at, form_method, form_print, form_branch
+      form_title, form_units, form_lang, form_time, form_at, form_method, form_print, form_extremes, &
+      form_range, form_branch
    use input_errors, only: card_repeated, lang_kind, units_angle, units_place, method_kind, tolerance_range, &
-      time_point, number_range, field_blank, print_kind, print_all_name, print_repeated, print_nothing, branch_ground, &
-      branch_method, branch_repeated
+      time_point, number_range, field_blank, print_kind, print_all_name, print_repeated, print_nothing, extremes_time, &
+      extremes_ground, branch_ground, branch_method, branch_repeated
    use names, only: name_table_t, put_name, find_name
    use numerals, only: whole
    implicit none
@@ -49,6 +50,8 @@ contains
                m%polish = place == 2
             case (form_method)
                call read_method(set, k)
+            case (form_range)
+               m%ranges = .true.
             case (form_time)
                if (card%valid) call read_time(set, k)
             end select
@@ -147,24 +150,28 @@ contains
       set%mechanism%at = instants(:n)
    end subroutine read_instants
 
-   !> Builds `set`%mechanism%requests from the PRINT cards, in their order. For a subject of several cards the first one
-   !> counts. Without a PRINT card, all links that are not ground are requested. Unknown words and names and repeated
-   !> cards are errors.
+   !> Builds `set`%mechanism%requests from the PRINT cards, in their order, and from the EXTREMES cards. For a subject of
+   !> several PRINT cards or several EXTREMES cards the first one counts. Without a PRINT card, all links that are not
+   !> ground are printed. Unknown words and names and repeated cards are errors.
    subroutine build_requests(set)
       type(card_set_t), intent(inout) :: set
-      type(name_table_t) :: seen(0:3)               ! for each word, the names on earlier PRINT cards
+      type(name_table_t) :: seen(0:3)               ! for each word, the names on earlier cards of the same form
       type(request_t), allocatable :: requests(:)
-      logical, allocatable :: requested(:, :)       ! (number, kind) it has a request
+      integer, allocatable :: number(:, :)          ! (number, kind) its request, 0: none yet
       integer :: k, n
 
       associate (sizes => [size(set%mechanism%links), size(set%mechanism%points), size(set%mechanism%pairs)])
          allocate (requests(sum(sizes)))
-         allocate (requested(maxval(sizes), request_link:request_pair), source=.false.)
+         allocate (number(maxval(sizes), request_link:request_pair), source=0)
       end associate
       n = 0
-      if (set%number_of(form_print) == 0) call request_all(request_link, 1)
+      if (set%number_of(form_print) == 0) call request_all(request_t(request_link))
       do k = 1, set%count
          if (set%cards(k)%form == form_print .and. set%cards(k)%valid) call read_print(k)
+      end do
+      seen = name_table_t()
+      do k = 1, set%count
+         if (set%cards(k)%form == form_extremes .and. set%cards(k)%valid) call read_extremes(k)
       end do
       set%mechanism%requests = requests(:n)
 
@@ -173,58 +180,107 @@ contains
       !> The PRINT card `k`.
       subroutine read_print(k)
          integer, intent(in) :: k
-         integer :: every, earlier, place, kind, subject
+         integer :: every
 
          every = merge(set%cards(k)%whole, 1, set%cards(k)%whole_given)
          if (every < 1) call add_card_error(set, number_range, k, label_c, '1 AND UP')
-         call match_word(set, k, print_words, print_kind, place)
-         if (place == 0) return
-         kind = place - 1
-         associate (name => set%cards(k)%label(label_b))
-            call put_name(seen(kind), name, k, earlier)
-            if (earlier > 0) then
-               call add_card_error(set, print_repeated, k, label_a, whole(set%cards(earlier)%card%number))
-            else if (kind == 0 .and. name /= '') then
-               call add_card_error(set, print_all_name, k, label_b)
-            else if (kind == 0) then
-               do kind = request_link, request_pair
-                  call request_all(kind, every)
-               end do
-            else if (name == '') then
-               if (size(set%named(kind)%card) == 0 .and. set%names_certain) &
-                  call add_card_error(set, print_nothing, k, label_a)
-               call request_all(kind, every)
-            else
-               call look_up(set, kind, k, label_b, subject)
-               if (subject > 0) call add_request(request_t(kind, subject, every))
-            end if
-         end associate
+         call read_subjects(k, request_t(every=every))
       end subroutine read_print
 
-      !> Requests all links, points or pairs (`kind`), but no ground links.
-      subroutine request_all(kind, every)
-         integer, intent(in) :: kind, every
+      !> The EXTREMES card `k`.
+      subroutine read_extremes(k)
+         integer, intent(in) :: k
          integer :: i
 
-         do i = 1, size(set%named(kind)%card)
-            if (kind == request_link) then
-               if (set%mechanism%links(i)%ground) cycle
-            else if (kind == request_point) then
-               ! Of the two points of a JOINT card, the one that its name stands for.
-               if (find_name(set%named(kind)%table, set%mechanism%points(i)%name) /= i) cycle
+         if (set%mechanism%steps < 0 .and. set%number_of(form_time) == 0) &
+            call add_card_error(set, extremes_time, k, card_name)
+         associate (dwell => set%cards(k)%real(1:2))
+            do i = 1, 2
+               if (dwell(i) < 0.0_wp) call add_card_error(set, number_range, k, real_1 + i - 1, '0.0 AND UP')
+            end do
+            call read_subjects(k, request_t(every=0, extremes=.true., dwell=dwell*[1.0_wp, set%angle_unit]))
+         end associate
+      end subroutine read_extremes
+
+      !> Asks what `request` does about the subjects of card `k`.
+      subroutine read_subjects(k, request)
+         integer, intent(in) :: k
+         type(request_t), intent(in) :: request
+         type(request_t) :: one
+         integer :: earlier, place
+
+         call match_word(set, k, print_words, print_kind, place)
+         if (place == 0) return
+         one = request
+         one%kind = place - 1
+         associate (name => set%cards(k)%label(label_b))
+            call put_name(seen(one%kind), name, k, earlier)
+            if (earlier > 0) then
+               call add_card_error(set, print_repeated, k, label_a, whole(set%cards(earlier)%card%number))
+            else if (one%kind == 0 .and. name /= '') then
+               call add_card_error(set, print_all_name, k, label_b)
+            else if (one%kind == 0) then
+               do place = request_link, request_pair
+                  one%kind = place
+                  call request_all(one)
+               end do
+            else if (name == '') then
+               if (size(set%named(one%kind)%card) == 0 .and. set%names_certain) &
+                  call add_card_error(set, print_nothing, k, label_a)
+               call request_all(one)
+            else
+               call look_up(set, one%kind, k, label_b, one%subject)
+               if (one%subject == 0) return
+               if (one%extremes .and. is_fixed(one)) call add_card_error(set, extremes_ground, k, label_b)
+               call add_request(one)
             end if
-            call add_request(request_t(kind, i, every))
+         end associate
+      end subroutine read_subjects
+
+      !> The subject of `request` belongs to the ground.
+      pure logical function is_fixed(request)
+         type(request_t), intent(in) :: request
+         integer :: link
+
+         link = request%subject
+         is_fixed = .false.
+         if (request%kind == request_point) link = set%mechanism%points(request%subject)%link
+         if (request%kind /= request_pair .and. link > 0) is_fixed = set%mechanism%links(link)%ground
+      end function is_fixed
+
+      !> Asks what `request` does about all links, points or pairs (its kind), but no ground links.
+      subroutine request_all(request)
+         type(request_t), intent(in) :: request
+         type(request_t) :: one
+         integer :: i
+
+         one = request
+         do i = 1, size(set%named(one%kind)%card)
+            if (one%kind == request_link) then
+               if (set%mechanism%links(i)%ground) cycle
+            else if (one%kind == request_point) then
+               ! Of the two points of a JOINT card, the one that its name stands for.
+               if (find_name(set%named(one%kind)%table, set%mechanism%points(i)%name) /= i) cycle
+            end if
+            one%subject = i
+            call add_request(one)
          end do
       end subroutine request_all
 
-      !> Adds `request`, unless its subject has one already.
+      !> Adds `request`; to that of its subject, if it has one already, the extremes.
       subroutine add_request(request)
          type(request_t), intent(in) :: request
 
-         if (requested(request%subject, request%kind)) return
-         requested(request%subject, request%kind) = .true.
-         n = n + 1
-         requests(n) = request
+         associate (i => number(request%subject, request%kind))
+            if (i == 0) then
+               n = n + 1
+               i = n
+               requests(i) = request
+            else if (request%extremes .and. .not. requests(i)%extremes) then
+               requests(i)%extremes = .true.
+               requests(i)%dwell = request%dwell
+            end if
+         end associate
       end subroutine add_request
    end subroutine build_requests
 

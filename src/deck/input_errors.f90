@@ -124,9 +124,11 @@ module input_errors
       method_kind = error_code_t(92, 'IS NOT NEWTON, DENSE OR MATRIX', own_layout), &
       tolerance_range = error_code_t(93, 'A TOLERANCE MUST BE ABOVE 1E-15 AND AT MOST 1E-2'), &
       print_kind = error_code_t(94, 'IS NOT ALL, LINKS, POINTS OR PAIRS', own_layout), &
-      print_all_name = error_code_t(95, 'PRINT ALL TAKES NO NAME'), &
-      print_repeated = error_code_t(96, 'THIS PRINT CARD IS REPEATED; FIRST ON CARD'), &
-      print_nothing = error_code_t(97, 'THE SET HAS NONE OF THESE')
+      print_all_name = error_code_t(95, 'ALL TAKES NO NAME'), &
+      print_repeated = error_code_t(96, 'THIS CARD IS REPEATED; FIRST ON CARD'), &
+      print_nothing = error_code_t(97, 'THE SET HAS NONE OF THESE'), &
+      extremes_time = error_code_t(98, 'EXTREMES NEEDS A TIME CARD: IT SEARCHES BETWEEN ITS INSTANTS'), &
+      extremes_ground = error_code_t(99, 'BELONGS TO THE GROUND: IT DOES NOT MOVE')
 
 contains
 

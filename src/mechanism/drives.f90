@@ -18,7 +18,7 @@ module drives
       term_parabola
    implicit none
    private
-   public :: law_t, new_law, drive_motion, drive_rate, monomial, rise_shape, joint_width
+   public :: law_t, new_law, drive_motion, drive_rate, joints_of, monomial, rise_shape, joint_width
    public :: spline_t, new_spline, spline_value, piece_at, piece_value
 
    !> A natural cubic spline, in the units of the drive and of time.
@@ -190,6 +190,27 @@ contains
          rate = abs(term%r(3)*s(2))/term%r(2)
       end select
    end function term_rate
+
+   !> The times at which some derivative of the law of `drive` jumps: the knots of its tables, the joints of its rises.
+   pure function joints_of(drive) result(times)
+      type(drive_t), intent(in) :: drive
+      real(wp), allocatable :: times(:)
+      integer :: i
+
+      allocate (times(0))
+      if (.not. allocated(drive%terms)) return
+      do i = 1, size(drive%terms)
+         associate (r => drive%terms(i)%r)
+            select case (drive%terms(i)%kind)
+            case (term_table)
+               times = [times, drive%terms(i)%knots]
+            case (term_cycloid:term_parabola)
+               times = [times, r(1), r(1) + r(2)]
+               if (drive%terms(i)%kind == term_parabola) times = [times, r(1) + 0.5_wp*r(2)]
+            end select
+         end associate
+      end do
+   end function joints_of
 
    !> The spline through the knots `x` (strictly increasing, at least two) and the values `y`.
    function new_spline(x, y) result(s)

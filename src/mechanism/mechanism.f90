@@ -87,11 +87,13 @@ module mechanism
       type(term_t), allocatable :: terms(:)  !< of its ADD and RISE cards; none: not allocated
    end type drive_t
 
-   !> A row of the tables at every `every`-th instant, the first and the last.
+   !> What is asked about a link, point or pair: a row of the tables, its extremes, or both.
    type :: request_t
       integer :: kind = request_link         !< request_link, request_point or request_pair
       integer :: subject = 0                 !< the number of the link, point or pair
-      integer :: every = 1                   !< 1 or more
+      integer :: every = 1                   !< a row at every such instant, the first and the last; 0: no row
+      logical :: extremes = .false.          !< its extremes over the run
+      real(wp) :: dwell(2) = 0.0_wp          !< (length, rad) its dwells within this distance; 0: not asked for
    end type request_t
 
    !> At the next change point after `t`, `link` takes the other branch; link 0: any links that pass a change point.
@@ -108,6 +110,7 @@ module mechanism
       logical :: polish = .false.            !< headings are printed in Polish
       integer :: method = method_newton      !< method_newton, method_matrix or method_dense
       real(wp) :: tolerance = 0.0_wp         !< relative; 0: that of the method
+      logical :: ranges = .false.            !< the ranges of the drives are asked for
       integer :: predictor = own_predictor   !< order of the predictor of a step, 0 to 3; no card sets it
       logical :: keeps_references = .false.  !< method_matrix: keeps those of the first instant; no card sets it
       integer :: steps = -1                  !< of the TIME card: steps + 1 instants from t0 to t1; -1: no TIME card
@@ -191,13 +194,13 @@ contains
       end do
    end subroutine place_links
 
-   !> Whether each link (links) is needed by a request of `m`.
+   !> Whether each link (links) is needed by a request of `m`; ranges need all of them.
    pure function wanted_links(m) result(wanted)
       type(mechanism_t), intent(in) :: m
       logical :: wanted(size(m%links))
       integer :: i
 
-      wanted = .false.
+      wanted = m%ranges
       do i = 1, size(m%requests)
          associate (k => m%requests(i)%subject)
             select case (m%requests(i)%kind)

@@ -21,13 +21,14 @@ module points
 
 contains
 
-   !> Whether `request` is printed at instant number `k` (0, 1, ...): every `every`-th, the first and the last.
+   !> Whether `request` is printed at instant number `k` (0, 1, ...): every `every`-th, the first and the last, if any.
    pure logical function is_due(m, request, k)
       type(mechanism_t), intent(in) :: m
       type(request_t), intent(in) :: request
       integer, intent(in) :: k
 
-      is_due = mod(k, request%every) == 0 .or. k == instant_count(m) - 1
+      is_due = request%every > 0
+      if (is_due) is_due = mod(k, request%every) == 0 .or. k == instant_count(m) - 1
    end function is_due
 
    !> The different values of `every` among the requests of `m`.
@@ -38,7 +39,7 @@ contains
 
       allocate (list(0))
       do i = 1, size(m%requests)
-         if (all(list /= m%requests(i)%every)) list = [list, m%requests(i)%every]
+         if (all([list, 0] /= m%requests(i)%every)) list = [list, m%requests(i)%every]
       end do
    end function strides
 

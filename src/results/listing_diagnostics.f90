@@ -10,7 +10,7 @@ module listing_diagnostics
    use phrases
    implicit none
    private
-   public :: put_diagnostics, put_closure_error, remarks_text
+   public :: limit_words, put_diagnostics, put_closure_error, remarks_text
 
    integer, parameter :: line_length = 120
    !> What concerns the results.
@@ -127,6 +127,17 @@ contains
          text = links(m, r)//' '//phrase(say_mobile, m%polish)
       end select
    end function words_of
+
+   !> Where a drive is at the limit `r` of its range, and which links are there.
+   function limit_words(m, r) result(text)
+      type(mechanism_t), intent(in) :: m
+      type(diagnostic_t), intent(in) :: r
+      character(:), allocatable :: text
+
+      text = measure(m, r, '(es17.9)')
+      if (r%links(1) == 0) return
+      text = text//'   '//links(m, r)//' '//phrase(merge(say_in_line, say_at_limit, r%in_line), m%polish)
+   end function limit_words
 
    !> PAIR A, or DRIVE ANGLE B
    function owner(m, r) result(text)

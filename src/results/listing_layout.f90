@@ -15,7 +15,7 @@ module listing_layout
    use phrases
    implicit none
    private
-   public :: layout_t, new_layout, digits_t, digits_of, column_powers, in_columns
+   public :: layout_t, head_drive_t, new_layout, digits_t, digits_of, column_powers, in_columns
    public :: name_length, row_length, has_column, dimension_of
 
    integer, parameter :: digits_after_first = 6

@@ -2,7 +2,7 @@
 module listing_tables
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_t, request_pair
-   use drives, only: law_t, drive_motion
+   use drives, only: drive_motion
    use motion, only: motion_t
    use points, only: row_t, row_of
    use error_estimate, only: error_estimate_t, row_estimate
@@ -12,7 +12,7 @@ module listing_tables
    use listing_layout
    implicit none
    private
-   public :: table_t, put_instant, put_requested
+   public :: table_t, put_instant, put_times, put_requested, put_heads, time_text, drive_text
 
    integer, parameter :: line_length = 120
 
@@ -27,42 +27,64 @@ module listing_tables
 contains
 
    !> The line over the tables of instant number `step`, at `t` in the deck's unit: the time and the values of the
-   !> drives, which go on in the next line where they are many.
+   !> drives.
    subroutine put_instant(o, l, t, step)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       real(wp), intent(in) :: t
       integer, intent(in) :: step
-      character(:), allocatable :: line, part
-      integer :: i, start
 
+      call put_times(o, l, l%before_instant//whole(step), [t])
+   end subroutine put_instant
+
+   !> A blank line, and one with `start`, the `times` (1 or 2, in the deck's unit) and the values of the drives then,
+   !> which go on in the next line where they are many.
+   subroutine put_times(o, l, start, times)
+      type(output_t), intent(inout) :: o
+      type(layout_t), intent(in) :: l
+      character(*), intent(in) :: start
+      real(wp), intent(in) :: times(:)
+      character(:), allocatable :: line, part
+      integer :: i, last
+
+      last = size(times)
       call put(o, '')
-      line = l%before_instant//whole(step)
-      start = len(line)
-      line = line//'   T = '//trim(adjustl(fixed(t, l%time_decimals, l%time_power)))//l%behind_time
+      line = start//'   T = '//time_text(l, times(1))
+      if (last > 1) line = line//' .. '//time_text(l, times(last))
+      line = line//l%behind_time
       do i = 1, size(l%drives)
-         associate (d => l%drives(i))
-            part = d%before//trim(adjustl(fixed(value_of(d%law, t)/d%unit, d%decimals, d%power)))//d%behind
-         end associate
+         part = l%drives(i)%before//drive_text(l%drives(i), times(1))
+         if (last > 1) part = part//' .. '//drive_text(l%drives(i), times(last))
+         part = part//l%drives(i)%behind
          if (i == size(l%drives)) part = part//l%more_drives
          if (len(line) + len(part) > line_length) then
             call put(o, line)
-            line = repeat(' ', start)
+            line = repeat(' ', len(start))
          end if
          line = line//part
       end do
       call put(o, line)
-   end subroutine put_instant
+   end subroutine put_times
 
-   !> The value of a drive at the time `t`.
-   pure real(wp) function value_of(law, t) result(value)
-      type(law_t), intent(in) :: law
+   !> A time with the digits of the set, without blanks.
+   pure function time_text(l, t) result(text)
+      type(layout_t), intent(in) :: l
       real(wp), intent(in) :: t
+      character(:), allocatable :: text
+
+      text = trim(adjustl(fixed(t, l%time_decimals, l%time_power)))
+   end function time_text
+
+   !> The value of the drive `d` at the time `t`, without blanks.
+   pure function drive_text(d, t) result(text)
+      type(head_drive_t), intent(in) :: d
+      real(wp), intent(in) :: t
+      character(:), allocatable :: text
       real(wp) :: f(3)
 
-      f = drive_motion(law, t)
-      value = f(1)
-   end function value_of
+      f = drive_motion(d%law, t)
+      text = trim(adjustl(fixed(f(1)/d%unit, d%decimals, d%power)))
+   end function drive_text
 
    !> The row that `request`, number `i` of the set, asks for of the motion `q` of `m`, under heads of its own where it
    !> is another table's. `errors`: how far the motion is known.
@@ -75,9 +97,11 @@ contains
       type(request_t), intent(in) :: request
       type(error_estimate_t), intent(in) :: errors
       type(table_t), intent(inout) :: table
+      type(row_t) :: row
 
-      associate (d => digits_of(l, i), row => row_of(m, q, request))
-         call put_heads(o, l, d, row, table)
+      row = row_of(m, q, request)
+      associate (d => digits_of(l, i))
+         call put_heads(o, l, d, row%kind, table)
          if (errors%taken .and. errors%in_doubt) then
             call put_row(o, l, d, row, row_estimate(m, errors, request), table%masked)
          else
@@ -86,31 +110,32 @@ contains
       end associate
    end subroutine put_requested
 
-   !> The heads of the table that `row` is in: names, powers of ten where there are any, units.
-   subroutine put_heads(o, l, d, row, table)
+   !> The heads over rows of this `kind` with the digits `d`, unless they stand there: names, powers of ten where there
+   !> are any, units.
+   subroutine put_heads(o, l, d, kind, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(digits_t), intent(in) :: d
-      type(row_t), intent(in) :: row
+      integer, intent(in) :: kind
       type(table_t), intent(inout) :: table
       character(numeral_length) :: words(9)
       integer :: power(9), k
 
-      if (row%kind == table%kind .and. .not. l%mixed) return
-      power = column_powers(d, row%kind)
-      if (row%kind == table%kind .and. all(power == table%power)) return
-      table%kind = row%kind
+      if (kind == table%kind .and. .not. l%mixed) return
+      power = column_powers(d, kind)
+      if (kind == table%kind .and. all(power == table%power)) return
+      table%kind = kind
       table%power = power
-      call put_trimmed(o, l%heads(row%kind))
+      call put_trimmed(o, l%heads(kind))
       if (any(power /= 0)) then
          words = ''
          do k = 1, size(power)
             if (power(k) /= 0) words(k) = '10**'//whole(power(k))
          end do
-         call put_trimmed(o, in_columns(words, row%kind))
+         call put_trimmed(o, in_columns(words, kind))
       end if
-      call put_trimmed(o, l%units(1, row%kind))
-      if (l%units(2, row%kind) /= '') call put_trimmed(o, l%units(2, row%kind))
+      call put_trimmed(o, l%units(1, kind))
+      if (l%units(2, kind) /= '') call put_trimmed(o, l%units(2, kind))
    end subroutine put_heads
 
    !> One row with the digits `d`: what is not known is a word, what the row does not have is blank. `error` (3, 0:2),

@@ -76,6 +76,16 @@ module phrases
       say_not_found = phrase_t('OTHER BRANCH NOT FOUND', 'DRUGIEJ GALEZI NIE ZNALEZIONO'), &
       say_branch_from = phrase_t('FROM T =', 'OD CHWILI T =')
    type(phrase_t), parameter, public :: &
+      say_extremes = phrase_t('EXTREMES', 'EKSTREMA'), &
+      say_stroke = phrase_t('STROKE', 'SKOK'), &
+      say_ratio = phrase_t('RATIO', 'STOSUN.'), &
+      say_dwell = phrase_t('DWELL', 'POSTOJ'), &
+      say_unsolved = phrase_t('NOT SEARCHED BESIDE INSTANTS WITHOUT ALL OF THEIR MOTION:', &
+         'BEZ OTOCZENIA CHWIL O NIEPELNYM RUCHU:'), &
+      say_range = phrase_t('RANGES OF THE DRIVES, EACH ALONE', 'ZAKRESY NAPEDOW, KAZDY OSOBNO'), &
+      say_all = phrase_t('ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS', 'PELNY: BEZ KRESU, RUCH SIE ZAMYKA; OBROTY'), &
+      say_no_limit = phrase_t('NO LIMIT AS FAR AS', 'BEZ KRESU CO NAJMNIEJ DO')
+   type(phrase_t), parameter, public :: &
       say_no_change = phrase_t('NO CHANGE POINT WAS PASSED', 'NIE BYLO PUNKTU ZMIANY'), &
       say_here = phrase_t('THE INSTANT LIES ON IT', 'CHWILA LEZY W NIM'), &
       say_idle = phrase_t('MOVES NOTHING', 'NICZEGO NIE PORUSZA'), &

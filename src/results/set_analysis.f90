@@ -10,12 +10,14 @@ module set_analysis
    use branch_requests, only: branch_requests_t, new_branch_requests, unused
    use error_estimate, only: estimator_t, make_estimator, estimate_errors, largest_errors
    use set_motion, only: set_motion_t, new_set_motion
-   use analysis, only: analysis_t, make_analysis, advance, redundancy_error
+   use motion, only: motion_t, new_motion
+   use points, only: row_t, row_of
+   use analysis, only: analysis_t, make_analysis, advance, look_at, redundancy_error
    use diagnosis, only: opinion_t, ask_blocks
    implicit none
    private
-   public :: set_analysis_t, make_set_analysis, advance_set, sample_set, set_record, set_errors, set_closure_error, &
-      set_closing_diagnostics, iterations_of
+   public :: set_analysis_t, make_set_analysis, advance_set, row_at, sample_set, set_record, set_errors, &
+      set_closure_error, set_closing_diagnostics, iterations_of
 
    type :: set_analysis_t
       type(set_motion_t) :: now                             !< the motion found last, and how far it is known
@@ -72,6 +74,23 @@ contains
          s%certificate_counts%passed = s%certificate_counts%passed + passed
       end if
    end subroutine advance_set
+
+   !> The `row` of request number `i` at a time `t` between the instants; nothing else changes. `is_found`: all of it is
+   !> known.
+   subroutine row_at(s, i, t, row, is_found)
+      type(set_analysis_t), intent(inout) :: s
+      integer, intent(in) :: i
+      real(wp), intent(in) :: t
+      type(row_t), intent(out) :: row
+      logical, intent(out) :: is_found
+      type(motion_t) :: q
+
+      associate (c => s%now%parts%part(i))
+         q = new_motion(size(s%now%own(c)%links))
+         call look_at(s%list(c), t, q, is_found)
+         if (is_found) row = row_of(s%now%own(c), q, s%now%own(c)%requests(s%now%parts%number(i)))
+      end associate
+   end subroutine row_at
 
    !> How far the motion found last is known. `always`: also where no digit of a table is in doubt.
    subroutine sample_set(s, always)

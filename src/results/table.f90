@@ -59,10 +59,11 @@ contains
          t%drives(i) = dotted(drive_name(m, m%drives(i)))
       end do
       t%angular = m%drives%kind == drive_angle .or. m%drives%kind == drive_relangle
-      allocate (t%columns(3*sum(coordinates_of(m%requests%kind))))
+      allocate (t%columns(3*sum(coordinates_of(m%requests%kind), mask=m%requests%every > 0)))
       n = 0
       do k = 0, 2
          do i = 1, size(m%requests)
+            if (m%requests(i)%every == 0) cycle
             do c = 1, coordinates_of(m%requests(i)%kind)
                n = n + 1
                t%columns(n) = column_t(i, k, c, c == 3)

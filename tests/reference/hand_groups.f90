@@ -54,6 +54,7 @@ module hand_groups
       statement_t('jarzmowy', 0, '*CRANK; BLOCK LEVER; ROD RAM'), &
       statement_t('yoke_mirrored', 0, '*CRANK; BLOCK LEVER; ROD RAM'), &
       statement_t('four_bar', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('stroke', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('rise_dwell', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('drawing', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('crank_slider', 0, '*CRANK; ROD PISTON'), &

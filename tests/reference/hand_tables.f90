@@ -13,7 +13,7 @@ module hand_tables
    use text_output, only: output_t, put
    implicit none
    private
-   public :: put_tables
+   public :: put_tables, put_heads, dimension_of, with_unit, drive_word, drive_value, instant_text
 
    integer, parameter :: name_length = 9, line_length = name_length + 9*field_length
    !> In English and in Polish.
@@ -37,6 +37,8 @@ module hand_tables
       //'     PRZYSP.                 PRZYSP.'], [3, 2])
    !> Their columns, three a derivative: of lengths (1) or angles (2), or none.
    integer, parameter :: columns(3, 3) = reshape([1, 1, 2, 1, 1, 0, 1, 0, 2], [3, 3])
+   !> Of x, y, phi: a length (1) or an angle (2).
+   integer, parameter :: dimension_of(3) = [1, 1, 2]
    !> More drives do not stand over the tables, and no line is longer.
    integer, parameter :: most_drives = 6, widest = 120
 
@@ -61,6 +63,7 @@ contains
       kind = 0
       masked = .false.
       do i = 1, size(m%requests)
+         if (m%requests(i)%every == 0) cycle
          if (mod(step, m%requests(i)%every) /= 0 .and. step /= instant_count(m) - 1) cycle
          row = row_by_hand(m, b, m%requests(i))
          if (kind == 0) call put_time(o, m, scales, step, language)
@@ -156,6 +159,15 @@ contains
       end do
       call put(o, line)
    end subroutine put_time
+
+   !> A time without its unit.
+   function instant_text(scales, t) result(text)
+      type(hand_scales_t), intent(in) :: scales
+      real(qp), intent(in) :: t
+      character(:), allocatable :: text
+
+      text = trim(adjustl(number_by_hand(t, 0.0_qp, scales%time_decimals, scales%time_power)))
+   end function instant_text
 
    !> A number over the power of ten that stands before its unit.
    function with_unit(x, decimals, power, unit) result(text)

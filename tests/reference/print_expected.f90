@@ -14,13 +14,15 @@ program print_expected
    use text_output, only: output_t, open_output, close_output
    use listing, only: listing_head, listing_end
    use listing_diagnostics, only: put_diagnostics
-   use quad_jet, only: qp, pi_q
+   use quad_jet, only: qp
    use hand_scales, only: hand_scales_t, scales_by_hand
    use hand_estimates, only: estimates_by_hand, linear_estimates
    use hand_tables, only: put_tables
    use closed_forms_dyads, only: body_t
    use deck_tally, only: deck_name
    use closed_forms, only: closed_form, hand_count
+   use hand_links, only: move_links_to
+   use hand_extremes, only: put_extremes_by_hand
    implicit none
    !> At 2.3E-12 from a dead point 256 roundings, a fifth of that distance, change more than in proportion.
    real(qp), parameter :: max_nonlinear = 1.6_qp
@@ -56,17 +58,19 @@ contains
       type(diagnostic_t), allocatable :: diagnostics(:)
       type(body_t) :: links(size(m%links))
       real(qp), allocatable :: error(:, :, :)
-      logical :: resting(size(m%links))
-      integer :: k, flagged
+      logical :: resting(size(m%links)), was_flagged(0:max(0, instant_count(m) - 1))
+      character(:), allocatable :: fault
+      integer :: k
 
       scales = scales_by_hand(m)
       findings = hand_count(name)
       findings%groups = groups_by_hand(name, m)
       call listing_head(o, m, findings)
       links%phi%v = real(m%links%position(3), qp)
-      flagged = 0
+      was_flagged = .false.
       do k = 0, instant_count(m) - 1
-         call move_to(m, closed_form(name, m%set_number, real(instant(m, k), qp)), links)
+         call move_links_to(name, m, real(instant(m, k), qp), links, fault)
+         if (fault /= '') call give_up(fault)
          resting = .false.
          if (k == 0) diagnostics = redundant_by_hand(name, m)
          if (k > 0) then
@@ -74,7 +78,7 @@ contains
             tally%passed = tally%passed + count(.not. diagnostics%here)
             if (any(diagnostics%here)) then
                resting = not_driven(m)
-               flagged = flagged + 1
+               was_flagged(k) = .true.
             end if
          end if
          ! Next to dead points only are digits in doubt.
@@ -89,7 +93,8 @@ contains
       else
          tally%uncertain = instant_count(m) - 1
       end if
-      call listing_end(o, m, instant_count(m) - flagged, flagged, tally, &
+      if (any(m%requests%extremes)) call put_extremes_by_hand(o, name, m, scales, was_flagged, not_driven(m))
+      call listing_end(o, m, count(.not. was_flagged), count(was_flagged), tally, &
          closure_error=merge(0.0_wp, -1.0_wp, size(redundant_by_hand(name, m)) > 0))
    end subroutine print_set
 
@@ -118,32 +123,6 @@ contains
          if (m%drives(i)%kind == drive_angle) resting(m%drives(i)%subject) = .false.
       end do
    end function not_driven
-
-   !> Puts `links` (in the order of the deck) where the closed form has them (`found`, in its own order); angles on the
-   !> branch next to what they were the instant before, at the first instant the deck's estimates.
-   subroutine move_to(m, found, links)
-      type(mechanism_t), intent(in) :: m
-      type(body_t), intent(in) :: found(:)
-      type(body_t), intent(inout) :: links(:)
-      real(qp) :: phi
-      integer :: k, i
-
-      if (size(found) /= size(m%links)) call give_up('THE CLOSED FORM AND THE DECK DIFFER IN THEIR LINKS')
-      do i = 1, size(found)
-         k = findloc(m%links%name == found(i)%name, .true., dim=1)
-         if (k == 0) call give_up('THE DECK HAS NO LINK '//found(i)%name)
-         phi = next_to(links(k)%phi%v, found(i)%phi%v)
-         links(k) = found(i)
-         links(k)%phi%v = phi
-      end do
-   end subroutine move_to
-
-   !> `phi` turned by whole turns until it is within half a turn of `before`.
-   pure real(qp) function next_to(before, phi)
-      real(qp), intent(in) :: before, phi
-
-      next_to = phi + 2.0_qp*pi_q*anint((before - phi)/(2.0_qp*pi_q))
-   end function next_to
 
    !> Ends the program with a sentence and the status 1.
    subroutine give_up(text)

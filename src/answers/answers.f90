@@ -1,0 +1,68 @@
+!> What a set asks of its motion beyond tables at instants: the cards EXTREMES and RANGE. A set that asks for nothing
+!> costs nothing.
+module answers
+   use mechanism, only: mechanism_t
+   use set_analysis, only: set_analysis_t
+   use listing_layout, only: layout_t
+   use text_output, only: output_t
+   use extremes, only: extremes_t, new_extremes, note_instant
+   use dwells, only: dwells_t, dwell_t, new_dwells, note_position, find_dwells
+   use extremes_table, only: put_extremes
+   use ranges, only: range_t, find_ranges, put_ranges
+   implicit none
+   private
+   public :: answers_t, new_answers, take_instant, put_answers
+
+   type :: answers_t
+      logical :: extremes_asked = .false.
+      logical :: ranges_asked = .false.
+      type(extremes_t) :: extremes
+      type(dwells_t) :: dwells
+      type(range_t), allocatable :: ranges(:)       !< (drives that have one), in the numbers of the set
+   end type answers_t
+
+contains
+
+   !> Ready for the first instant of `m`; `s`: its analysis.
+   subroutine new_answers(m, s, a)
+      type(mechanism_t), intent(in) :: m
+      type(set_analysis_t), intent(in) :: s
+      type(answers_t), intent(out) :: a
+
+      a%extremes_asked = any(m%requests%extremes)
+      a%ranges_asked = m%ranges
+      allocate (a%ranges(0))
+      if (.not. a%extremes_asked) return
+      call new_extremes(m, s, a%extremes)
+      call new_dwells(m, a%extremes, a%dwells)
+   end subroutine new_answers
+
+   !> Takes instant number `k` of `m`, to which `s` has advanced, and what is asked for between it and those before.
+   subroutine take_instant(a, m, s, k)
+      type(answers_t), intent(inout) :: a
+      type(mechanism_t), intent(in) :: m
+      type(set_analysis_t), intent(inout) :: s
+      integer, intent(in) :: k
+
+      if (a%ranges_asked .and. k == 0) call find_ranges(s, a%ranges)
+      if (.not. a%extremes_asked .or. k > m%steps) return
+      call note_instant(a%extremes, m, s, k)
+      call note_position(a%dwells, a%extremes, k)
+   end subroutine take_instant
+
+   !> Writes the answers after the last instant.
+   subroutine put_answers(o, l, a, m, s)
+      type(output_t), intent(inout) :: o
+      type(layout_t), intent(in) :: l
+      type(answers_t), intent(in) :: a
+      type(mechanism_t), intent(in) :: m
+      type(set_analysis_t), intent(inout) :: s
+      type(dwell_t), allocatable :: dwells(:)
+
+      if (a%extremes_asked) then
+         call find_dwells(a%dwells, m, a%extremes, s, dwells)
+         call put_extremes(o, l, m, s, a%extremes, dwells)
+      end if
+      if (a%ranges_asked) call put_ranges(o, m, a%ranges)
+   end subroutine put_answers
+end module answers

@@ -1,0 +1,226 @@
+!> Card RANGE: the interval of each drive in which the assembly of the first instant lives, the other drives held. The
+!> motion is followed both ways, by the drive's value instead of time, until it ends or, where a drive of an angle has
+!> made whole turns, every link is where it was.
+module ranges
+   use kinds, only: wp
+   use constants, only: pi
+   use mechanism, only: mechanism_t, request_t, request_link, method_newton, place_links
+   use motion, only: motion_t, new_motion
+   use diagnostics, only: diagnostic_t, diagnostic_limit, diagnostic_change
+   use drives, only: new_law, drive_motion
+   use scales, only: is_length, characteristic_length
+   use analysis, only: analysis_t, make_analysis, advance
+   use set_analysis, only: set_analysis_t
+   use set_motion, only: in_set
+   use names, only: drive_name
+   use text_output, only: output_t, put
+   use numerals, only: whole
+   use listing_diagnostics, only: limit_words
+   use phrases
+   implicit none
+   private
+   public :: range_t, find_range, find_ranges, put_ranges, low, high
+
+   !> Instants along the drive, in rad or characteristic lengths, and how far it is followed each way.
+   real(wp), parameter :: step_of_angle = pi/36.0_wp, step_of_length = 0.05_wp
+   integer, parameter :: max_turns = 12
+   real(wp), parameter :: max_lengths = 100.0_wp
+   !> A motion closes where positions agree to this part of a radian and of the characteristic length.
+   real(wp), parameter :: closes_to = max(1.0e-7_wp, 1.0e6_wp*epsilon(1.0_wp))
+   !> The ends of a range.
+   integer, parameter :: low = 1, high = 2
+
+   !> The range of a drive. An end without a limit is the last value to which the drive was followed.
+   type :: range_t
+      integer :: drive = 0                  !< its number in the mechanism
+      logical :: is_all = .false.           !< it turns fully, and the motion closes
+      integer :: turns = 0                  !< after so many turns
+      integer :: change_points = 0          !< passed on the smooth branch, both ways
+      logical :: has_limit(2) = .false.     !< (low:high)
+      type(diagnostic_t) :: limit(2)        !< (low:high) of the kind diagnostic_limit: links, value in the deck's unit or rad
+   end type range_t
+
+contains
+
+   !> The ranges of all drives of the set that `s` analyses, in the numbers of the set, at its first instant; none of a
+   !> mechanism that has no position there.
+   subroutine find_ranges(s, list)
+      type(set_analysis_t), intent(in) :: s
+      type(range_t), allocatable, intent(out) :: list(:)
+      type(range_t) :: r
+      integer :: c, i
+
+      allocate (list(0))
+      do c = 1, size(s%now%own)
+         if (s%now%motions(c)%known < 0) cycle
+         do i = 1, size(s%now%own(c)%drives)
+            call find_range(s%now%own(c), s%now%motions(c), i, r)
+            r%drive = s%now%parts%list(c)%drives(i)
+            r%limit(low) = in_set(r%limit(low), s%now%parts%list(c))
+            r%limit(high) = in_set(r%limit(high), s%now%parts%list(c))
+            list = [list, r]
+         end do
+      end do
+   end subroutine find_ranges
+
+   !> The lines of `list` at the end of a set.
+   subroutine put_ranges(o, m, list)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(range_t), intent(in) :: list(:)
+      character(3), parameter :: side_words(2) = ['MIN', 'MAX']
+      integer :: i, side
+
+      call put(o, '')
+      call put(o, ' '//phrase(say_range, m%polish))
+      if (size(list) == 0) call put(o, '   '//phrase(say_none, m%polish))
+      do i = 1, size(list)
+         associate (r => list(i))
+            call put(o, ' '//trim(drive_name(m, m%drives(r%drive))))
+            if (r%is_all) then
+               call put(o, '   '//phrase(say_all, m%polish)//' '//whole(r%turns))
+            else
+               do side = low, high
+                  if (r%has_limit(side)) then
+                     call put(o, '   '//side_words(side)//'  '//limit_words(m, r%limit(side)))
+                  else
+                     call put(o, '   '//side_words(side)//'  '//phrase(say_no_limit, m%polish)//' ' &
+                        //limit_words(m, r%limit(side)))
+                  end if
+               end do
+            end if
+            if (r%change_points > 0) call put(o, '   '//phrase(say_passed, m%polish)//' '//whole(r%change_points))
+         end associate
+      end do
+   end subroutine put_ranges
+
+   !> The range of drive number `drive` of `m`, one independent mechanism at the motion `start` of its first instant.
+   subroutine find_range(m, start, drive, r)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: start
+      integer, intent(in) :: drive
+      type(range_t), intent(out) :: r
+      real(wp) :: value, unit
+      integer :: side
+
+      r%drive = drive
+      value = value_of(m, drive, start%t)
+      unit = 1.0_wp
+      if (is_length(m%drives(drive))) unit = characteristic_length(m)
+      do side = low, high
+         call follow(along(m, start, drive, value, merge(-unit, unit, side == low)), value, &
+            merge(-unit, unit, side == low), side, r)
+         if (r%is_all) return
+      end do
+   end subroutine find_range
+
+   !> `m` at `start`, with drive number `drive` at `value` + `rate` t, the other ones held.
+   function along(m, start, drive, value, rate) result(d)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: start
+      integer, intent(in) :: drive
+      real(wp), intent(in) :: value, rate
+      type(mechanism_t) :: d
+      integer :: i
+
+      d = m
+      d%method = method_newton
+      d%tolerance = 0.0_wp
+      d%requests = [(request_t(request_link, i), i=1, size(m%links))]
+      if (allocated(d%branch_requests)) deallocate (d%branch_requests)
+      call place_links(d, start%position)
+      do i = 1, size(d%drives)
+         d%drives(i)%polynomial = [value_of(m, i, start%t), 0.0_wp, 0.0_wp]
+         if (allocated(d%drives(i)%terms)) deallocate (d%drives(i)%terms)
+      end do
+      d%drives(drive)%polynomial = [value, rate, 0.0_wp]
+      d%steps = 1
+      d%t0 = 0.0_wp
+      d%t1 = merge(max_lengths, 2.0_wp*pi*max_turns, is_length(m%drives(drive)))
+      d%at = [real(wp) ::]
+   end function along
+
+   !> The value of drive number `i` of `m` at the time `t`.
+   real(wp) function value_of(m, i, t) result(value)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i
+      real(wp), intent(in) :: t
+      real(wp) :: f(3)
+
+      f = drive_motion(new_law(m%drives(i)), t)
+      value = f(1)
+   end function value_of
+
+   !> Follows the drive of `d`, which is at `value` + `rate` t, to its end on one `side`.
+   subroutine follow(d, value, rate, side, r)
+      type(mechanism_t), intent(in) :: d
+      real(wp), intent(in) :: value, rate
+      integer, intent(in) :: side
+      type(range_t), intent(inout) :: r
+      type(analysis_t) :: a
+      type(motion_t) :: first, now
+      real(wp) :: t, step
+      integer :: k, steps_a_turn
+      logical :: is_angle
+
+      is_angle = .not. is_length(d%drives(r%drive))
+      step = merge(step_of_angle, step_of_length, is_angle)
+      steps_a_turn = nint(2.0_wp*pi/step_of_angle)
+      first = new_motion(size(d%links))
+      now = first
+      call make_analysis(a, d)
+      call advance(a, 0.0_wp, first)
+      r%limit(side) = diagnostic_t(kind=diagnostic_limit, drive=r%drive, is_angle=is_angle, value=value)
+      t = 0.0_wp
+      if (first%known < 0) return
+      do k = 1, nint(d%t1/step)
+         t = step*k
+         call advance(a, t, now)
+         if (allocated(now%diagnostics)) r%change_points = r%change_points &
+            + count(now%diagnostics%kind == diagnostic_change .and. .not. now%diagnostics%here)
+         if (now%known < 0) then
+            call take_limit(now, a%t, value, rate, side, r)
+            return
+         end if
+         if (.not. is_angle .or. mod(k, steps_a_turn) /= 0 .or. now%known < 2) cycle
+         r%is_all = is_closed(d, first, now)
+         r%turns = k/steps_a_turn
+         if (r%is_all) return
+      end do
+      r%limit(side)%value = value + rate*t
+   end subroutine follow
+
+   !> The motion ends before that asked for in `now`, shortly after `t`.
+   subroutine take_limit(now, t, value, rate, side, r)
+      type(motion_t), intent(in) :: now
+      real(wp), intent(in) :: t, value, rate
+      integer, intent(in) :: side
+      type(range_t), intent(inout) :: r
+      integer :: i
+
+      r%has_limit(side) = .true.
+      r%limit(side)%value = value + rate*t
+      if (.not. allocated(now%diagnostics)) return
+      do i = 1, size(now%diagnostics)
+         if (now%diagnostics(i)%kind /= diagnostic_limit) cycle
+         associate (found => r%limit(side))
+            found%links = now%diagnostics(i)%links
+            found%more = now%diagnostics(i)%more
+            found%in_line = now%diagnostics(i)%in_line
+            found%value = value + rate*now%diagnostics(i)%t
+         end associate
+      end do
+   end subroutine take_limit
+
+   !> Every link of `m` is in the same place in both motions, but for whole turns.
+   pure logical function is_closed(m, first, now)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: first, now
+      real(wp) :: d(3, size(m%links))
+
+      d = now%position - first%position
+      d(:2, :) = d(:2, :)/characteristic_length(m)
+      d(3, :) = d(3, :) - 2.0_wp*pi*anint(d(3, :)/(2.0_wp*pi))
+      is_closed = all(abs(d) <= closes_to)
+   end function is_closed
+end module ranges

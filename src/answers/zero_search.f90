@@ -1,0 +1,120 @@
+!> The time between two known ones at which a number of a row, or a derivative of it, is zero: by values of the motion
+!> alone, in a bracket that holds the zero from the first to the last.
+module zero_search
+   use kinds, only: wp
+   use points, only: row_t
+   use set_analysis, only: set_analysis_t, row_at
+   implicit none
+   private
+   public :: sample_t, column_t, look, find_zero, differ_in_sign
+
+   integer, parameter :: max_iterations = 100
+   !> A bracket as narrow as so many roundings of the time is closed.
+   real(wp), parameter :: closed = 4.0_wp
+
+   !> A number of a row at one time, in the deck's units and rad.
+   type :: sample_t
+      real(wp) :: t = 0.0_wp
+      real(wp) :: f(0:2) = 0.0_wp   !< value, rate, acceleration
+      logical :: exists = .false.
+   end type sample_t
+
+   !> Which number: its column (1 to 3) in the row of a request of the set; `step`: of the difference that stands for
+   !> the third derivative, in the unit of time.
+   type :: column_t
+      integer :: request = 0, column = 0
+      real(wp) :: step = 0.0_wp
+   end type column_t
+
+contains
+
+   !> The column `c` at the time `t`.
+   subroutine look(s, c, t, sample)
+      type(set_analysis_t), intent(inout) :: s
+      type(column_t), intent(in) :: c
+      real(wp), intent(in) :: t
+      type(sample_t), intent(out) :: sample
+      type(row_t) :: row
+
+      sample%t = t
+      call row_at(s, c%request, t, row, sample%exists)
+      sample%f = row%value(c%column, :)
+   end subroutine look
+
+   !> Where between `a` and `b` the derivative number `order` (0 to 3) of column `c`, less `level`, is zero: it has
+   !> opposite signs there. The method of false position with halved values (Illinois: Dowell and Jarratt, BIT 11,
+   !> 1971). `zero`%exists is false where some time between has no motion or the signs were the same.
+   subroutine find_zero(s, c, order, level, a, b, zero)
+      type(set_analysis_t), intent(inout) :: s
+      type(column_t), intent(in) :: c
+      integer, intent(in) :: order
+      real(wp), intent(in) :: level
+      type(sample_t), intent(in) :: a, b
+      type(sample_t), intent(out) :: zero
+      real(wp) :: t, t1, t2, g1, g2, g, last
+      integer :: i
+      logical :: known(2)
+
+      t1 = a%t
+      t2 = b%t
+      known = .true.
+      if (order < 3) then
+         g1 = a%f(order) - level
+         g2 = b%f(order) - level
+      else
+         call evaluate(t1, g1, known(1))
+         call evaluate(t2, g2, known(2))
+      end if
+      if (.not. (all(known) .and. differ_in_sign(g1, g2))) return
+      last = t2
+      t = t1
+      do i = 1, max_iterations
+         t = t2 - g2*((t2 - t1)/(g2 - g1))
+         if (.not. (t - t1)*(t2 - t) > 0.0_wp) t = t1 + 0.5_wp*(t2 - t1)
+         if (min(abs(t2 - t1), abs(t - last)) <= closed*spacing(max(abs(t1), abs(t2)))) exit
+         last = t
+         call evaluate(t, g, known(1))
+         if (.not. known(1)) return
+         if (abs(g) <= 0.0_wp) exit
+         if (differ_in_sign(g, g2)) then
+            t1 = t2
+            g1 = g2
+         else
+            g1 = 0.5_wp*g1
+         end if
+         t2 = t
+         g2 = g
+      end do
+      call look(s, c, t, zero)
+
+   contains
+
+      !> The function `g` at a `time`.
+      subroutine evaluate(time, g, known)
+         real(wp), intent(in) :: time
+         real(wp), intent(out) :: g
+         logical, intent(out) :: known
+         type(sample_t) :: at(-2:2)
+         integer :: k
+
+         if (order < 3) then
+            call look(s, c, time, at(0))
+            g = at(0)%f(order) - level
+            known = at(0)%exists
+            return
+         end if
+         do k = -2, 2
+            if (k /= 0) call look(s, c, time + k*c%step, at(k))
+         end do
+         g = (8.0_wp*(at(1)%f(2) - at(-1)%f(2)) - (at(2)%f(2) - at(-2)%f(2)))/(12.0_wp*c%step)
+         known = all(at([-2, -1, 1, 2])%exists)
+      end subroutine evaluate
+   end subroutine find_zero
+
+   !> One is positive, the other negative.
+   pure logical function differ_in_sign(x, y)
+      real(wp), intent(in) :: x, y
+
+      differ_in_sign = (x > 0.0_wp .and. y < 0.0_wp) .or. (x < 0.0_wp .and. y > 0.0_wp)
+   end function differ_in_sign
+end module zero_search

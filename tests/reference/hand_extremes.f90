@@ -1,0 +1,444 @@
+!> Tests. The table of extremes as the listing must print it, from closed forms in real128: each number on a fine grid
+!> of times, then by golden section around the grid's largest and least values. No derivative is used.
+module hand_extremes
+   use mechanism, only: mechanism_t, request_link, request_point, request_pair
+   use quad_jet, only: qp, pi_q, jet_t, degree_q
+   use jet_drives, only: drive_jet
+   use closed_forms_dyads, only: body_t
+   use hand_scales, only: hand_scales_t
+   use hand_numbers, only: number_by_hand, field_length
+   use hand_rows, only: hand_row_t, row_by_hand
+   use hand_links, only: move_links_to
+   use hand_tables, only: put_heads, dimension_of, with_unit, drive_word, drive_value, instant_text
+   use text_output, only: output_t, put
+   implicit none
+   private
+   public :: put_extremes_by_hand
+
+   !> Cells of the grid in a step of TIME. Values that differ by the second, relatively, are one: the earlier counts.
+   integer, parameter :: refined = 8
+   real(qp), parameter :: alike = 1.0e-12_qp, closes_to = 1.0e-9_qp
+   real(qp), parameter :: golden = 0.61803398874989484820458683436563811772_qp
+
+   !> The rows asked for at the times of a grid; a cell next to an instant without velocities is not searched.
+   type :: grid_t
+      character(:), allocatable :: name                !< of the deck
+      integer, allocatable :: asked(:)                 !< requests
+      real(qp), allocatable :: t(:)                    !< (0:cells)
+      real(qp), allocatable :: phi(:, :)               !< (links, 0:cells) angles
+      type(hand_row_t), allocatable :: row(:, :)       !< (asked, 0:cells)
+      logical, allocatable :: open(:)                  !< (cells)
+      logical, allocatable :: resting(:, :)            !< (asked, 0:cells) a position alone
+   end type grid_t
+
+   type :: extreme_t
+      real(qp) :: t = 0.0_qp, value = 0.0_qp
+   end type extreme_t
+
+contains
+
+   !> The table for the deck `name`; `flagged` (0:steps): instants of TIME at which the links that are `resting` (links)
+   !> have no velocity.
+   subroutine put_extremes_by_hand(o, name, m, scales, flagged, resting)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: name
+      type(mechanism_t), intent(in) :: m
+      type(hand_scales_t), intent(in) :: scales
+      logical, intent(in) :: flagged(0:), resting(:)
+      type(grid_t) :: g
+      character(12) :: number
+      integer :: q, kind
+
+      g = grid_of(name, m, flagged, resting)
+      call put(o, '')
+      call put_times(o, m, scales, g)
+      kind = 0
+      do q = 1, size(g%asked)
+         associate (request => m%requests(g%asked(q)))
+            if (request%kind /= kind) call put_heads(o, m, scales, request%kind, merge(2, 1, m%polish))
+            kind = request%kind
+            call put_subject(o, m, scales, g, q)
+         end associate
+      end do
+      if (.not. any(flagged)) return
+      write (number, '(i0)') count(flagged)
+      call put(o, ' --- '//trim(merge('BEZ OTOCZENIA CHWIL O NIEPELNYM RUCHU:                   ', &
+         'NOT SEARCHED BESIDE INSTANTS WITHOUT ALL OF THEIR MOTION:', m%polish))//' '//trim(number))
+   end subroutine put_extremes_by_hand
+
+   !> The line over the table: the run, and the drives at both of its ends.
+   subroutine put_times(o, m, scales, g)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(hand_scales_t), intent(in) :: scales
+      type(grid_t), intent(in) :: g
+      character(:), allocatable :: line, word, from
+      integer :: i
+
+      line = trim(merge(' EKSTREMA', ' EXTREMES', m%polish))//'   T = '//instant_text(scales, g%t(0))//' .. ' &
+         //with_unit(g%t(ubound(g%t, 1)), scales%time_decimals, scales%time_power, m%time_unit)
+      do i = 1, size(m%drives)
+         from = drive_value(m, m%drives(i), scales, g%t(0))
+         word = '   '//drive_word(m, m%drives(i))//' = '//from(:index(from, ' ') - 1)//' .. ' &
+            //drive_value(m, m%drives(i), scales, g%t(ubound(g%t, 1)))
+         if (len(line//word) > 120) then
+            call put(o, line)
+            line = repeat(' ', 9)
+         end if
+         line = line//word
+      end do
+      call put(o, line)
+   end subroutine put_times
+
+   !> The rows of all requests for extremes of moving links.
+   function grid_of(name, m, flagged, resting) result(g)
+      character(*), intent(in) :: name
+      type(mechanism_t), intent(in) :: m
+      logical, intent(in) :: flagged(0:), resting(:)
+      type(grid_t) :: g
+      type(body_t) :: links(size(m%links))
+      character(:), allocatable :: fault
+      integer :: i, k, q, n, step
+
+      n = refined*m%steps
+      g%name = name
+      g%asked = pack([(i, i=1, size(m%requests))], m%requests%extremes .and. [(moves(m, i), i=1, size(m%requests))])
+      allocate (g%t(0:n), g%phi(size(m%links), 0:n), g%row(size(g%asked), 0:n), g%open(n))
+      allocate (g%resting(size(g%asked), 0:n), source=.false.)
+      links%phi%v = real(m%links%position(3), qp)
+      do k = 0, n
+         g%t(k) = real(m%t0, qp) + (real(m%t1, qp) - real(m%t0, qp))*k/n
+         call move_links_to(name, m, g%t(k), links, fault)
+         g%phi(:, k) = links%phi%v
+         do q = 1, size(g%asked)
+            g%row(q, k) = row_by_hand(m, links, m%requests(g%asked(q)))
+            if (mod(k, refined) == 0) g%resting(q, k) = flagged(k/refined) .and. any(resting(g%row(q, k)%links))
+         end do
+         step = (k - 1)/refined
+         if (k > 0) g%open(k) = .not. (flagged(step) .or. flagged(step + 1))
+      end do
+   end function grid_of
+
+   !> The subject of request `i` does not belong to the ground.
+   logical function moves(m, i)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i
+
+      moves = .true.
+      if (m%requests(i)%kind == request_link) moves = .not. m%links(m%requests(i)%subject)%ground
+      if (m%requests(i)%kind == request_point) moves = .not. m%links(m%points(m%requests(i)%subject)%link)%ground
+   end function moves
+
+   !> Number (c, k) of row `q` at the time `t` beside grid point `i`.
+   real(qp) function value_at(m, g, q, c, k, t, i) result(value)
+      type(mechanism_t), intent(in) :: m
+      type(grid_t), intent(in) :: g
+      integer, intent(in) :: q, c, k, i
+      real(qp), intent(in) :: t
+      type(body_t) :: links(size(m%links))
+      type(hand_row_t) :: row
+      character(:), allocatable :: fault
+
+      links%phi%v = g%phi(:, i)
+      call move_links_to(g%name, m, t, links, fault)
+      row = row_by_hand(m, links, m%requests(g%asked(q)))
+      value = row%value(c, k)
+   end function value_at
+
+   !> The greatest of number (c, k) of row `q` (`way` 1), or the least (-1).
+   function extreme(m, g, q, c, k, way) result(best)
+      type(mechanism_t), intent(in) :: m
+      type(grid_t), intent(in) :: g
+      integer, intent(in) :: q, c, k, way
+      type(extreme_t) :: best, one
+      real(qp) :: f(0:ubound(g%t, 1)), range
+      logical :: exists(0:ubound(g%t, 1)), first
+      integer :: i
+
+      f = way*g%row(q, :)%value(c, k)
+      exists = k == 0 .or. .not. g%resting(q, :)
+      ! Between instants only where the step is searched.
+      do i = 1, ubound(f, 1) - 1
+         if (mod(i, refined) /= 0) exists(i) = g%open(i)
+      end do
+      range = maxval(f, mask=exists) - minval(f, mask=exists)
+      first = .true.
+      ! A constant, but for the rounding of real128.
+      if (range <= 1.0e-15_qp*(1.0_qp + maxval(abs(f)))) f = 0.0_qp
+      do i = 0, ubound(f, 1)
+         if (.not. exists(i)) cycle
+         ! A grid point so far below the largest has none beside it: an extreme is flat.
+         if (f(i) < maxval(f, mask=exists) - 0.1_qp*range .and. .not. first) cycle
+         one = extreme_t(g%t(i), g%row(q, i)%value(c, k))
+         if (range > 0.0_qp .and. any(abs(f) > 0.0_qp)) one = refined_extreme(m, g, q, c, k, way, i, f)
+         if (first .or. way*(one%value - best%value) > alike*(1.0_qp + maxval(abs(f)))) best = one
+         first = .false.
+      end do
+   end function extreme
+
+   !> The same beside grid point `i`, where it is no less than its neighbours; otherwise the point itself.
+   function refined_extreme(m, g, q, c, k, way, i, f) result(e)
+      type(mechanism_t), intent(in) :: m
+      type(grid_t), intent(in) :: g
+      integer, intent(in) :: q, c, k, way, i
+      real(qp), intent(in) :: f(0:)
+      type(extreme_t) :: e
+      real(qp) :: a, b, t1, t2, f1, f2
+      integer :: left, right
+
+      e = extreme_t(g%t(i), way*f(i))
+      left = i
+      right = i
+      if (i > 0) then
+         if (g%open(i)) left = i - 1
+      end if
+      if (i < ubound(f, 1)) then
+         if (g%open(i + 1)) right = i + 1
+      end if
+      if (max(f(left), f(right)) > f(i) .or. left == right) return
+      a = g%t(left)
+      b = g%t(right)
+      t1 = b - golden*(b - a)
+      t2 = a + golden*(b - a)
+      f1 = way*value_at(m, g, q, c, k, t1, i)
+      f2 = way*value_at(m, g, q, c, k, t2, i)
+      do while (abs(b - a) > 1.0e-11_qp*abs(g%t(ubound(f, 1)) - g%t(0)))
+         if (f1 >= f2) then
+            b = t2
+            t2 = t1
+            f2 = f1
+            t1 = b - golden*(b - a)
+            f1 = way*value_at(m, g, q, c, k, t1, i)
+         else
+            a = t1
+            t1 = t2
+            f1 = f2
+            t2 = a + golden*(b - a)
+            f2 = way*value_at(m, g, q, c, k, t2, i)
+         end if
+      end do
+      if (max(f1, f2) > f(i)) e = extreme_t(0.5_qp*(a + b), way*max(f1, f2))
+   end function refined_extreme
+
+   !> The lines of row `q`.
+   subroutine put_subject(o, m, scales, g, q)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(hand_scales_t), intent(in) :: scales
+      type(grid_t), intent(in) :: g
+      integer, intent(in) :: q
+      type(extreme_t) :: e(-1:1, 3, 0:2)
+      character(field_length) :: fields(3, 0:2, 3), strokes(3, 0:2, 4)
+      character(3), parameter :: words(-1:1) = ['MIN', '   ', 'MAX']
+      real(qp) :: forward, period
+      integer :: way, c, k, what
+      character(:), allocatable :: drive
+
+      associate (row => g%row(q, 0), drive_of => m%drives(1))
+         call put(o, ' '//trim(row%name))
+         drive = drive_word(m, drive_of)
+         drive = drive(index(drive, ' ') + 1:)
+         if (index(drive, ' ') > 0) drive = drive(:index(drive, ' ') - 1)
+         do way = -1, 1, 2
+            fields = ''
+            do k = 0, 2
+               do c = 1, row%columns
+                  e(way, c, k) = extreme(m, g, q, c, k, way)
+                  fields(c, k, 1) = number_of(m, scales, row, c, k, e(way, c, k)%value)
+                  fields(c, k, 2) = number_by_hand(e(way, c, k)%t, 0.0_qp, scales%time_decimals, scales%time_power)
+                  fields(c, k, 3) = in_field(drive_value(m, drive_of, scales, e(way, c, k)%t))
+               end do
+            end do
+            call put_line(o, row, words(way), fields(:, :, 1))
+            call put_line(o, row, 'T', fields(:, :, 2))
+            call put_line(o, row, drive, fields(:, :, 3))
+         end do
+         strokes = ''
+         period = abs(g%t(ubound(g%t, 1)) - g%t(0))
+         do c = 1, row%columns
+            strokes(c, 0, 1) = number_of(m, scales, row, c, 0, e(1, c, 0)%value - e(-1, c, 0)%value)
+            if (.not. is_cycle(m, g, q, c)) cycle
+            forward = period*modulo((e(1, c, 0)%t - e(-1, c, 0)%t)/(g%t(ubound(g%t, 1)) - g%t(0)), 1.0_qp)
+            strokes(c, 0, 2) = number_by_hand(forward, 0.0_qp, scales%time_decimals, scales%time_power)
+            strokes(c, 0, 3) = number_by_hand(period - forward, 0.0_qp, scales%time_decimals, scales%time_power)
+            strokes(c, 0, 4) = number_by_hand(max(forward, period - forward)/min(forward, period - forward), 0.0_qp, 6, 0)
+         end do
+         call put_line(o, row, trim(merge('SKOK  ', 'STROKE', m%polish)), strokes(:, :, 1))
+         if (any(strokes(:, :, 2) /= '')) then
+            call put_line(o, row, 'MIN-MAX', strokes(:, :, 2))
+            call put_line(o, row, 'MAX-MIN', strokes(:, :, 3))
+            call put_line(o, row, trim(merge('STOSUN.', 'RATIO  ', m%polish)), strokes(:, :, 4))
+         end if
+         do c = 1, row%columns
+            what = dimension_of(row%column(c))
+            if (m%requests(g%asked(q))%dwell(what) <= 0.0 .or. .not. all(g%open)) cycle
+            if (e(1, c, 0)%value - e(-1, c, 0)%value <= m%requests(g%asked(q))%dwell(what)) cycle
+            do way = -1, 1, 2
+               call put_dwell(o, m, scales, g, q, c, way, e(way, c, 0), drive)
+            end do
+         end do
+      end associate
+   end subroutine put_subject
+
+   !> Number (c, k) of `row`, in the unit of its column.
+   function number_of(m, scales, row, c, k, value) result(text)
+      type(mechanism_t), intent(in) :: m
+      type(hand_scales_t), intent(in) :: scales
+      type(hand_row_t), intent(in) :: row
+      integer, intent(in) :: c, k
+      real(qp), intent(in) :: value
+      character(field_length) :: text
+
+      associate (what => dimension_of(row%column(c)))
+         text = number_by_hand(value/merge(degree_q, 1.0_qp, what == 2 .and. m%degrees), 0.0_qp, scales%decimals(what, k), &
+            scales%power(what, k))
+      end associate
+   end function number_of
+
+   !> The number of `text`, without its unit, at the end of a field.
+   function in_field(text) result(field)
+      character(*), intent(in) :: text
+      character(field_length) :: field
+
+      field = text(:index(text, ' ') - 1)
+      field = adjustr(field)
+   end function in_field
+
+   !> A line of `fields` (3, 0:2) in the columns of `row`.
+   subroutine put_line(o, row, label, fields)
+      type(output_t), intent(inout) :: o
+      type(hand_row_t), intent(in) :: row
+      character(*), intent(in) :: label
+      character(field_length), intent(in) :: fields(3, 0:2)
+      character(9 + 9*field_length) :: line
+      integer :: c, k, first
+
+      line = '  '//label
+      if (len(label) > 7) line = ' '//label
+      do k = 0, 2
+         do c = 1, row%columns
+            first = 9 + field_length*(3*k + row%column(c) - 1)
+            line(first + 1:first + field_length) = fields(c, k)
+         end do
+      end do
+      call put(o, trim(line))
+   end subroutine put_line
+
+   !> Row `q` closes, and column `c` turns twice.
+   logical function is_cycle(m, g, q, c)
+      type(mechanism_t), intent(in) :: m
+      type(grid_t), intent(in) :: g
+      integer, intent(in) :: q, c
+      real(qp) :: v(0:ubound(g%t, 1))
+      integer :: i, n, before, turns
+
+      n = ubound(g%t, 1)
+      v = g%row(q, :)%value(c, 1)
+      turns = 0
+      before = 0
+      do i = 0, 2*n
+         if (abs(v(mod(i, n))) <= 1.0e-20_qp*maxval(abs(v))) cycle
+         if (i >= n .and. before*sign(1.0_qp, v(mod(i, n))) < 0) turns = turns + 1
+         before = nint(sign(1.0_qp, v(mod(i, n))))
+      end do
+      is_cycle = turns == 2 .and. closes(m, g, q)
+   end function is_cycle
+
+   !> Row `q` is at the end where it was at the beginning, as fast, with its drives, but for whole turns.
+   logical function closes(m, g, q)
+      type(mechanism_t), intent(in) :: m
+      type(grid_t), intent(in) :: g
+      integer, intent(in) :: q
+      type(jet_t) :: first, last
+      real(qp) :: d(3, 0:1)
+      integer :: i, n
+
+      n = ubound(g%t, 1)
+      d = g%row(q, n)%value(:, :1) - g%row(q, 0)%value(:, :1)
+      do i = 1, g%row(q, 0)%columns
+         if (dimension_of(g%row(q, 0)%column(i)) == 2) d(i, 0) = without_turns(d(i, 0))
+      end do
+      closes = all(abs(d) < closes_to) .and. all(g%open)
+      do i = 1, size(m%drives)
+         first = drive_jet(m%drives(i), g%t(0))
+         last = drive_jet(m%drives(i), g%t(n))
+         closes = closes .and. max(abs(without_turns(last%v - first%v)), abs(last%d - first%d), &
+            abs(last%dd - first%dd)) < closes_to
+      end do
+   end function closes
+
+   !> An angle less whole turns.
+   pure real(qp) function without_turns(phi)
+      real(qp), intent(in) :: phi
+
+      without_turns = phi - 2.0_qp*pi_q*anint(phi/(2.0_qp*pi_q))
+   end function without_turns
+
+   !> The line of a dwell beside the extreme `e`.
+   subroutine put_dwell(o, m, scales, g, q, c, way, e, drive)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(hand_scales_t), intent(in) :: scales
+      type(grid_t), intent(in) :: g
+      integer, intent(in) :: q, c, way
+      type(extreme_t), intent(in) :: e
+      character(*), intent(in) :: drive
+      real(qp) :: distance, from, to
+      character(:), allocatable :: first
+      character(7), parameter :: names(3, 4) = reshape([character(7) :: 'X', 'Y', 'PHI', 'X', 'Y', 'FI', &
+         'SLIDE', '', 'ANGLE', 'PRZESUW', '', 'KAT'], [3, 4])
+      integer :: language
+      character(field_length) :: text
+
+      associate (row => g%row(q, 0))
+         language = merge(2, 1, m%polish)
+         if (row%kind == request_pair) language = language + 2
+         distance = real(m%requests(g%asked(q))%dwell(dimension_of(row%column(c))), qp)
+         from = leaves(m, g, q, c, way, e, distance, -1)
+         to = leaves(m, g, q, c, way, e, distance, 1)
+         text = number_of(m, scales, row, c, 0, distance)
+         first = drive_value(m, m%drives(1), scales, from)
+         call put(o, ' '//trim(merge('POSTOJ', 'DWELL ', m%polish))//'  '//trim(names(row%column(c), language)) &
+            //'  '//merge('MAX', 'MIN', way > 0)//' +- '//trim(adjustl(text))//'   T = '//instant_text(scales, from)//' .. ' &
+            //instant_text(scales, to)//'   '//drive//' = '//first(:index(first, ' ') - 1)//' .. ' &
+            //trim(adjustl(in_field(drive_value(m, m%drives(1), scales, to)))))
+      end associate
+   end subroutine put_dwell
+
+   !> When column `c` of row `q` leaves the `distance` of its extreme `e`, along the run (`side` 1) or against it: by
+   !> bisection. In a cycle the run has no end.
+   real(qp) function leaves(m, g, q, c, way, e, distance, side) result(t)
+      type(mechanism_t), intent(in) :: m
+      type(grid_t), intent(in) :: g
+      integer, intent(in) :: q, c, way, side
+      type(extreme_t), intent(in) :: e
+      real(qp), intent(in) :: distance
+      real(qp) :: inside, outside, level
+      integer :: i, n
+
+      n = ubound(g%t, 1)
+      level = e%value - way*distance
+      i = merge(count((g%t - e%t)*(g%t(n) - g%t(0)) <= 0.0_qp), count((g%t - e%t)*(g%t(n) - g%t(0)) < 0.0_qp) - 1, side > 0)
+      inside = e%t
+      do
+         if (i < 0 .or. i > n) then
+            t = inside
+            if (.not. closes(m, g, q) .or. abs(g%row(q, n)%value(c, 0) - g%row(q, 0)%value(c, 0)) > closes_to) return
+            i = merge(0, n, side > 0)
+         end if
+         outside = g%t(i)
+         if (way*(g%row(q, i)%value(c, 0) - level) < 0.0_qp) exit
+         inside = outside
+         i = i + side
+      end do
+      do while (abs(outside - inside) > 1.0e-15_qp*abs(g%t(n) - g%t(0)))
+         t = 0.5_qp*(inside + outside)
+         if (way*(value_at(m, g, q, c, 0, t, i) - level) < 0.0_qp) then
+            outside = t
+         else
+            inside = t
+         end if
+      end do
+      t = inside
+   end function leaves
+end module hand_extremes
