@@ -37,7 +37,7 @@ module ranges
       integer :: turns = 0                  !< after so many turns
       integer :: change_points = 0          !< passed on the smooth branch, both ways
       logical :: has_limit(2) = .false.     !< (low:high)
-      type(diagnostic_t) :: limit(2)        !< (low:high) of the kind diagnostic_limit: links, value in the deck's unit or rad
+      type(diagnostic_t) :: limit(2)        !< (low:high) of the kind diagnostic_limit: links, the drive's value
    end type range_t
 
 contains

@@ -150,9 +150,9 @@ contains
       set%mechanism%at = instants(:n)
    end subroutine read_instants
 
-   !> Builds `set`%mechanism%requests from the PRINT cards, in their order, and from the EXTREMES cards. For a subject of
-   !> several PRINT cards or several EXTREMES cards the first one counts. Without a PRINT card, all links that are not
-   !> ground are printed. Unknown words and names and repeated cards are errors.
+   !> Builds `set`%mechanism%requests from the PRINT cards, in their order, and from the EXTREMES cards. For a subject
+   !> of several PRINT cards or several EXTREMES cards the first one counts. Without a PRINT card, all links that are
+   !> not ground are printed. Unknown words and names and repeated cards are errors.
    subroutine build_requests(set)
       type(card_set_t), intent(inout) :: set
       type(name_table_t) :: seen(0:3)               ! for each word, the names on earlier cards of the same form
