@@ -73,7 +73,7 @@ module command_line
       '  --study              speed against error, instead of the listing', &
       '                       (needs kinmat-quad, kinmat-single: make kinds)', &
       '  --time               the time of a step, instead of the listing', &
-      '  --quiet              neither remarks nor progress on standard error', &
+      '  --quiet              no remarks, no progress on standard error', &
       '  --ruler [CARD]       an empty card with its columns; the layout of CARD', &
       '  --help, --version    this text; the version and the kind of reals', &
       'FILE - is standard output, for one output; the listing gives way to it.', &
