@@ -49,12 +49,11 @@ contains
       call write_line(p, trim(line))
    end subroutine show_progress
 
-   !> Takes the line away.
+   !> Takes the line away, before something else is printed.
    subroutine end_progress(p)
       type(progress_t), intent(inout) :: p
 
       if (p%length > 0) call write_line(p, '')
-      p%shown = .false.
    end subroutine end_progress
 
    !> Writes `line` in the place of the one before it. What is not written is no error: it is no result.

@@ -10,6 +10,7 @@ module study
    use text_output, only: output_t, open_output, check_apart, put, flush_output, close_output, abandon_output, &
       has_failed
    use numerals, only: whole
+   use progress, only: progress_t, start_progress, show_progress, end_progress
    use timing, only: median
    use trials, only: outcome_t, kind_single, kind_double, kind_quad, repeats, trial_mechanism, &
       trial_instants, march, can_be_timed, step_time
@@ -23,24 +24,30 @@ module study
 
    integer, parameter :: digits_double = 53
    real(dp), parameter :: micro = 1.0e6_dp
+   !> Of a study: the reference, the trials in real128, those in real32, those in real64.
+   integer, parameter :: parts = 4
 
 contains
 
    !> The study of the deck in the file `path`, to `output`, '' for standard output; with `only_times` the time of a
-   !> step of each set, of the deck '' on standard input too. `message`: lines for standard error, '' for none.
-   subroutine run_study(path, output, only_times, status, message)
+   !> step of each set, of the deck '' on standard input too. `quiet`: without progress on a terminal. `message`: lines
+   !> for standard error, '' for none.
+   subroutine run_study(path, output, only_times, quiet, status, message)
       character(*), intent(in) :: path, output
-      logical, intent(in) :: only_times
+      logical, intent(in) :: only_times, quiet
       integer, intent(out) :: status
       character(:), allocatable, intent(out) :: message
       type(mechanism_t), allocatable :: sets(:)
       type(findings_t), allocatable :: findings(:)
       type(failure_t), allocatable :: failure
       type(output_t) :: o
+      type(progress_t) :: progress
       integer :: i
 
       status = status_solved
       message = ''
+      ! The table of a set comes at once, when all of it is measured: until then a terminal shows the progress.
+      call start_progress(progress, .not. quiet, .false.)
       if (digits(1.0_wp) /= digits_double .and. .not. only_times) then
          call fail(failure, status_rejected, '--study IS FOR kinmat IN REAL64, WHICH ASKS THIS PROGRAM FOR ITS PART')
       else
@@ -55,10 +62,11 @@ contains
          if (only_times) call put(o, '  SET     STEPS ITERATIONS   MEDIAN US/STEP            MIN            MAX')
          do i = 1, size(sets)
             if (only_times) then
-               call put_times(o, sets(i), status)
+               call put_times(o, sets(i), progress, status)
             else
-               call study_set(o, path, sets(i), findings(i)%redundant > 0, failure)
+               call study_set(o, path, sets(i), findings(i)%redundant > 0, progress, failure)
             end if
+            call end_progress(progress)
             if (allocated(failure)) exit
             call flush_output(o)
             if (has_failed(o)) exit
@@ -72,9 +80,10 @@ contains
 
    !> Iterations and time of a step of `m`, as the deck asks for it. `status`: status_marked where a position is not
    !> found.
-   subroutine put_times(o, m, status)
+   subroutine put_times(o, m, progress, status)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
+      type(progress_t), intent(inout) :: progress
       integer, intent(inout) :: status
       real(wp) :: instants(0:instant_count(m) - 1)
       type(outcome_t) :: one
@@ -88,6 +97,7 @@ contains
       write (line, '(i5, i10, f11.2)') m%set_number, last, one%iterations
       if (can_be_timed(one, last)) then
          do k = 1, repeats
+            call show_progress(progress, 'MEASUREMENT', k, repeats)
             time(k) = step_time(m, instants, seconds)*micro
          end do
          write (line(27:), '(3f15.4)') median(time), minval(time), maxval(time)
@@ -101,11 +111,12 @@ contains
    end subroutine put_times
 
    !> The study of `m`, a set of the deck in the file `path`; `redundant`: it has equations too many.
-   subroutine study_set(o, path, m, redundant, failure)
+   subroutine study_set(o, path, m, redundant, progress, failure)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: path
       type(mechanism_t), intent(in) :: m
       logical, intent(in) :: redundant
+      type(progress_t), intent(inout) :: progress
       type(failure_t), allocatable, intent(out) :: failure
       type(plan_t) :: p
       type(row_t), allocatable :: rows(:)
@@ -125,10 +136,12 @@ contains
       truth = new_truth(m, truth_trial(p), outcomes(1))
       call put_head(o, m, p, truth)
       if (.not. any(truth%motion%known == 2)) return
+      call show_progress(progress, 'PART', 2, parts)
       call ask('kinmat-quad', 'REAL128', kind_quad)
+      call show_progress(progress, 'PART', 3, parts)
       if (.not. allocated(failure)) call ask('kinmat-single', 'REAL32', kind_single)
       if (allocated(failure)) return
-      call solve_rows(m, truth, rows)
+      call solve_rows(m, truth, progress, rows)
       call put_rows(o, p, rows)
       call put_estimates(o, m, p, truth)
 
@@ -166,9 +179,10 @@ contains
    end subroutine take_outcome
 
    !> The rows in double precision. What is measured is measured in turn, repeat by repeat.
-   subroutine solve_rows(m, truth, rows)
+   subroutine solve_rows(m, truth, progress, rows)
       type(mechanism_t), intent(in) :: m
       type(truth_t), intent(in) :: truth
+      type(progress_t), intent(inout) :: progress
       type(row_t), intent(inout) :: rows(:)
       type(outcome_t) :: one
       real(dp) :: seconds(size(rows))
@@ -183,6 +197,7 @@ contains
          end associate
       end do
       do k = 1, repeats
+         call show_progress(progress, 'MEASUREMENT', k, repeats)
          do i = 1, size(rows)
             associate (t => rows(i)%trial)
                if (t%kind == kind_double .and. k <= size(rows(i)%time)) rows(i)%time(k) = &
