@@ -28,6 +28,10 @@ module block_branches
    !> distance d are distinguished from crossing ones where d^2 is above the product of the two, 1E-14.
    real(wp), parameter :: short_step = max(1.0e-4_wp, 0.75_wp*sqrt(sqrt(epsilon(1.0_wp))))
    real(wp), parameter :: right_part = max(1.0e-6_wp, 0.7_wp*epsilon(1.0_wp)**0.375_wp), max_wrong = 1.0e-2_wp
+   !> A substep may be longer where the pivots before and beyond are together less than this part of the Lipschitz
+   !> constant: where a crank in line with a base is almost as long, the coupler is so fast that short substeps
+   !> would all end where rounding leaves no velocities.
+   real(wp), parameter :: short_pivots = 0.1_wp*short_step
    real(wp), parameter :: rounding = 500.0_wp*epsilon(1.0_wp)
    !> The step of the second difference, and the largest distance at which the other branch is looked for.
    real(wp), parameter :: trial = max(1.0e-4_wp, sqrt(sqrt(epsilon(1.0_wp)))), furthest = 0.05_wp
@@ -73,20 +77,25 @@ contains
 
    !> The substep was short, and its prediction, off by `correction`, right to so small a part of it that the motion
    !> found last is on the branch that goes on smoothly, beyond change points too: there rounding has made the
-   !> prediction wrong by lipschitz/pivot^2, as it does the rates so close to them.
+   !> prediction wrong by lipschitz/pivot^2, as it does the rates so close to them. A longer substep past a change point
+   !> has to be right to a part that is smaller as its square, by which the same circuits are distinguished.
    pure logical function is_short_and_right(e, correction) result(is)
       type(block_engine_t), intent(in) :: e
       real(wp), intent(in) :: correction
-      real(wp) :: allowed
+      real(wp) :: allowed, right
       integer :: i
 
-      is = e%change <= short_step
+      is = e%change <= short_step .or. any(e%crossed)
       if (.not. is) return
       if (.not. any(e%crossed)) is = correction <= right_part*e%change
+      right = right_part*(short_step/max(short_step, e%change))**2
       do i = 1, size(e%crossed)
          if (.not. (e%crossed(i) .and. is)) cycle
-         allowed = right_part + rounding*e%blocks%list(i)%lipschitz/e%followed(i)%pivot**2
-         is = correction <= min(allowed, max_wrong)*e%change
+         associate (before => e%followed(i)%pivot, lipschitz => e%blocks%list(i)%lipschitz)
+            allowed = right + rounding*lipschitz/before**2
+            is = correction <= min(allowed, max_wrong)*e%change .and. (e%change <= short_step &
+               .or. before + e%found(i)%pivot <= short_pivots*lipschitz)
+         end associate
       end do
    end function is_short_and_right
 

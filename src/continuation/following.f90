@@ -36,6 +36,9 @@ module following
    !> of small substeps end the continuation too.
    integer, parameter :: max_failures = 300
    real(wp), parameter :: small_substep = 1.0e-3_wp
+   !> A substep that ends so near a change point that there are no velocities is made longer, to end beyond it, at most
+   !> so many times: shorter ones would come up to that place and never across.
+   integer, parameter :: max_longer = 4
    !> An instant lies beyond a limit if it is further behind the place where the motion was blocked than this part of
    !> the step.
    real(wp), parameter :: near_part = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
@@ -110,13 +113,14 @@ contains
       real(wp), intent(in) :: t
       type(step_record_t), intent(out) :: step
       real(wp) :: substep, here, longest, allowed, shortest
-      integer :: failures
-      logical :: accepted
+      integer :: failures, longer
+      logical :: accepted, grows
 
       substep = t - f%t
       longest = abs(substep)
       shortest = min_substep*longest
       failures = 0
+      longer = 0
       do while (step%tries < max_substeps)
          step%tries = step%tries + 1
          step%arrived = .not. f%follows
@@ -132,11 +136,13 @@ contains
          step%arrived = step%arrived .and. accepted
          if (step%arrived) exit
          if (step%tries == 1) call note_place(f, f%place)
+         grows = accepted .and. (longer < max_longer .or. .not. f%convergence%singular)
          accepted = accepted .and. .not. f%convergence%singular
          if (accepted) call go_on_from(f, here)
          if (.not. f%follows) exit
          if (.not. accepted .and. abs(substep) <= small_substep*longest) failures = failures + 1
-         substep = merge(1.5_wp, 0.5_wp, accepted)*substep
+         longer = merge(merge(0, longer + 1, accepted), max_longer, grows)
+         substep = merge(1.5_wp, 0.5_wp, grows)*substep
          step%blocked = abs(substep) <= min_substep*min(longest, abs(t - f%t))
          if (step%blocked .or. failures > max_failures) exit
       end do
