@@ -8,17 +8,18 @@ module command_line
    private
    public :: options_t, to_standard_output, word_t, read_command, read_words, help_text
    public :: file_option_t, file_options
-   public :: out_listing, out_csv, out_log, out_svg, out_table, out_plot_table, out_plot_script, out_last
+   public :: out_listing, out_csv, out_log, out_svg, out_animation, out_table, out_plot_table, out_plot_script, out_last
 
    !> The outputs that are files, and `out_last`, the last of them.
    enum, bind(c)
-      enumerator :: out_listing = 1, out_csv, out_log, out_svg, out_table, out_plot_table, out_plot_script
+      enumerator :: out_listing = 1, out_csv, out_log, out_svg, out_animation, out_table
+      enumerator :: out_plot_table, out_plot_script
       enumerator :: out_last = out_plot_script
    end enum
 
    !> An option that names the file of an output.
    type :: file_option_t
-      character(7) :: word = ''
+      character(9) :: word = ''
       character(9) :: in_directory = ''      !< of an option that names a directory: the file in it
       logical :: needs_motion = .false.      !< there is nothing to write if only the deck is analysed
       logical :: each_set = .false.          !< each set has a file of its own
@@ -29,6 +30,7 @@ module command_line
       file_option_t('--csv'), &
       file_option_t('--log'), &
       file_option_t('--svg', needs_motion=.true.), &
+      file_option_t('--animate', needs_motion=.true.), &
       file_option_t('--table', needs_motion=.true., each_set=.true.), &
       file_option_t('--plot', 'table.csv', needs_motion=.true., each_set=.true.), &
       file_option_t('--plot', 'plot.gp', needs_motion=.true., each_set=.true.)]
@@ -56,7 +58,7 @@ module command_line
    character(*), parameter :: csv_digits = two_digits(merge(2, 1, significant < 10):)
    !> The text of --help. docs/man.awk makes the man page of it: an option in columns 3 to 22, what it does from column
    !> 24 on.
-   character(*), parameter :: lines(*) = [character(72) :: &
+   character(*), parameter :: lines(*) = [character(73) :: &
       'kinmat DECK            reads a card deck, prints the listing', &
       'kinmat < DECK          the same', &
       '  -o FILE              the listing to FILE', &
@@ -64,6 +66,7 @@ module command_line
       '  --csv FILE           the results with '//csv_digits//' digits, comma-separated', &
       '  --log FILE           the log of the solver, a line per instant', &
       '  --svg FILE           a picture of the mechanism and paths of points', &
+      '  --animate FILE       the same with the mechanism in motion', &
       '  --table FILE         a row an instant, a column a quantity', &
       '  --plot DIR           that table and a script in the directory DIR:', &
       '                       gnuplot DIR/plot.gp draws it', &

@@ -14,7 +14,9 @@ module job
    use plot_script, only: put_script
    use drawing, only: drawing_t, new_drawing, record_instant
    use picture_frames, only: picture_candidates
-   use picture, only: picture_head, put_pictures
+   use picture_page, only: picture_head
+   use picture, only: put_pictures
+   use animation, only: film_of, put_animations, max_intervals
    use solver_log, only: log_head, log_instant
    use convergence, only: convergence_t
    use branch_certificate, only: branch_t
@@ -24,8 +26,8 @@ module job
    use set_motion, only: is_flagged, has_words
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set, set_record, set_errors, &
       set_closure_error, set_closing_diagnostics
-   use command_line, only: options_t, to_standard_output, out_listing, out_csv, out_log, out_svg, out_table, &
-      out_plot_table, out_plot_script
+   use command_line, only: options_t, to_standard_output, out_listing, out_csv, out_log, out_svg, out_animation, &
+      out_table, out_plot_table, out_plot_script
    use outputs, only: outputs_t, open_outputs, flush_outputs, close_outputs, is_over, is_broken_pipe, set_suffix
    implicit none
    private
@@ -37,7 +39,7 @@ module job
       integer :: first = 1, last = 0                !< the sets of this share
       type(layout_t) :: layout                      !< of the listing of the set at hand
       type(table_t) :: table                        !< of the set at hand
-      type(drawing_t), allocatable :: drawings(:)   !< (first:last)
+      type(drawing_t), allocatable :: drawings(:), films(:)   !< (first:last)
    end type writers_t
 
 contains
@@ -115,31 +117,41 @@ contains
       type(findings_t), intent(inout) :: findings(:)
       type(writers_t), intent(inout) :: o
       integer, intent(inout) :: status
-      integer :: i
+      type(mechanism_t) :: film
+      integer :: i, every
 
       if (o%asked(out_csv) .and. options%share == 1) call csv_head(o%files(out_csv, 0), options%errors)
       if (o%asked(out_svg)) call picture_head(o%files(out_svg, 0))
       if (o%asked(out_svg)) allocate (o%drawings(o%first:o%last))
+      if (o%asked(out_animation)) call picture_head(o%files(out_animation, 0))
+      if (o%asked(out_animation)) allocate (o%films(o%first:o%last))
       do i = o%first, o%last
          call run_set(options, sets(i), i, findings(i), o, status)
          if (is_over(o, i)) exit
-         if (o%asked(out_svg)) call draw_set(sets(i), picture_candidates, o%drawings(i), o%progress)
+         if (o%asked(out_svg)) call draw_set(sets(i), picture_candidates, 1, o%drawings(i), o%progress)
+         if (o%asked(out_animation)) then
+            call film_of(sets(i), film, every)
+            call draw_set(film, max_intervals + 1, every, o%films(i), o%progress)
+         end if
       end do
       ! Sets that were broken off are not drawn.
-      if (o%asked(out_svg)) call put_pictures(o%files(out_svg, 0), sets(o%first:i - 1), o%drawings(o%first:i - 1))
+      associate (done => sets(o%first:i - 1))
+         if (o%asked(out_svg)) call put_pictures(o%files(out_svg, 0), done, o%drawings(o%first:i - 1))
+         if (o%asked(out_animation)) call put_animations(o%files(out_animation, 0), done, o%films(o%first:i - 1))
+      end associate
    end subroutine run_sets
 
-   !> Records the drawing `d` of `m`, of at most `frames` frames. It has an analysis of its own: a picture shows links
-   !> that no table asks for, and what is printed must not depend on it.
-   subroutine draw_set(m, frames, d, progress)
+   !> Records the drawing `d` of `m`, of at most `frames` frames; `every` as in `new_drawing`. It has an analysis of its
+   !> own: a picture shows links that no table asks for, and what is printed must not depend on it.
+   subroutine draw_set(m, frames, every, d, progress)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: frames
+      integer, intent(in) :: frames, every
       type(drawing_t), intent(out) :: d
       type(progress_t), intent(inout) :: progress
       type(set_analysis_t) :: a
       integer :: k
 
-      d = new_drawing(m, frames)
+      d = new_drawing(m, frames, every)
       call make_set_analysis(with_all_links(m), a)
       do k = 0, instant_count(m) - 1
          call advance_set(a, instant(m, k))

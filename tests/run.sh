@@ -30,7 +30,7 @@ parts() {
    extremes and ranges|34|tests/system/answers.sh
    independent mechanisms|106|tests/system/independent.sh
    what a singular position is|211|tests/system/singular.sh
-   pictures|610|tests/system/pictures.sh
+   pictures|1060|tests/system/pictures.sh
    tables|225|tests/system/tables.sh
    the digits|1|tests/system/digits.sh
    wide blocks|7|tests/system/wide.sh

@@ -7,7 +7,7 @@ module drawing
    use planar, only: direction, quarter_turn, point_of
    use motion, only: known_of, mark_none, singular_unclear
    use points, only: point_motion, is_fixed
-   use set_motion, only: set_motion_t
+   use set_motion, only: set_motion_t, is_flagged
    use outline, only: outline_t, outlines_of
    implicit none
    private
@@ -18,15 +18,17 @@ module drawing
    integer, parameter :: max_places = 1000, max_curves = 60, max_flags = 3
    !> The frames of a drawing hold at most this many positions of links, but there are two frames at least. Reason: an
    !> animation takes about 25 bytes for each.
-   integer, parameter :: max_positions = 72000
+   integer, parameter, public :: max_positions = 45000
    !> Places from here on are not drawn: differences of two must not overflow.
    real(wp), parameter :: max_place = 1.0e-3_wp*huge(1.0_wp)
 
-   !> The position of all links at one instant.
+   !> The position of all links at one instant, and why it is flagged.
    type :: snapshot_t
       real(wp) :: t = 0.0_wp
       real(wp), allocatable :: place(:, :)   !< (3, links) x, y, phi
       logical, allocatable :: known(:)       !< (links)
+      integer :: mark = mark_none            !< of the first part that is flagged
+      integer :: singularity = singular_unclear   !< what the position is, of mark_singular
    end type snapshot_t
 
    !> The path of a point.
@@ -63,11 +65,14 @@ module drawing
    type :: drawing_t
       real(wp) :: origin(2) = 0.0_wp         !< of the places, in the deck's coordinates
       integer :: stride = 1                  !< every so many instants of TIME are in a curve
-      integer :: flagged = 0                 !< instants
+      integer :: every = 1                   !< each so many instants of TIME are the deck's; 0: none
+      integer :: flagged = 0                 !< of the deck's instants
+      real(wp), allocatable :: flagged_at(:) !< the first flagged instants
       type(snapshot_t) :: now                !< the last known position of each link
       type(outline_t), allocatable :: outlines(:)   !< (links)
       integer :: frames = 0                  !< recorded so far
-      type(snapshot_t), allocatable :: frame(:)     !< at evenly spaced instants
+      integer :: frame_stride = 1            !< every so many instants, and the last one, are frames
+      type(snapshot_t), allocatable :: frame(:)
       type(curve_t), allocatable :: curves(:)
       type(guide_t), allocatable :: guides(:)
       type(flag_t), allocatable :: flags(:)
@@ -76,18 +81,22 @@ module drawing
 
 contains
 
-   !> Nothing recorded yet of the set `m`; at most `max_frames` frames will be.
-   function new_drawing(m, max_frames) result(d)
+   !> Nothing recorded yet of the set `m`; at most `max_frames` frames will be. `every`: each so many instants of TIME
+   !> are counted if they are flagged; 0: none.
+   function new_drawing(m, max_frames, every) result(d)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: max_frames
+      integer, intent(in) :: max_frames, every
       type(drawing_t) :: d
       integer :: i, n, places
 
+      d%every = every
       d%origin = plane_origin(m)
       d%now = snapshot_of_ground(m, d%origin)
       d%outlines = outlines_of(m)
-      allocate (d%flags(0), d%mark(0), d%curves(0), d%guides(count(m%pairs%kind == pair_prismatic)))
-      allocate (d%frame(max(2, min(max_frames, instant_count(m), max_positions/size(m%links)))))
+      allocate (d%flagged_at(0), d%flags(0), d%mark(0), d%curves(0), d%guides(count(m%pairs%kind == pair_prismatic)))
+      n = max(2, min(max_frames, max_positions/size(m%links)))
+      d%frame_stride = max(1, 1 + (frame_instants(m) - 2)/(n - 1))
+      allocate (d%frame(1 + max(0, frame_instants(m) + d%frame_stride - 2)/d%frame_stride))
       d%stride = 1 + max(0, m%steps)/max_places
       places = 0
       if (m%steps >= 0) places = place_number(d, m%steps)
@@ -181,7 +190,11 @@ contains
       before = d%now
       now = snapshot_of_ground(m, d%origin)
       now%t = s%motions(1)%t
-      do c = 1, size(s%own)
+      do c = size(s%own), 1, -1
+         if (s%motions(c)%mark /= mark_none) then
+            now%mark = s%motions(c)%mark
+            now%singularity = s%motions(c)%singularity
+         end if
          associate (links => s%parts%list(c)%links, q => s%motions(c))
             do i = 1, size(links)
                if (m%links(links(i))%ground .or. known_of(q, i) < 0) cycle
@@ -198,23 +211,29 @@ contains
       d%now%t = now%t
       call record_slides(d%guides, m, now)
       call record_curves(d, m, s, k)
+      if (is_flagged(s) .and. is_own(d, m, k)) d%flagged = d%flagged + 1
       call record_flags(d, s, now, before)
-      if (.not. is_frame(k, instant_count(m), size(d%frame))) return
+      if (k >= frame_instants(m) .or. (mod(k, d%frame_stride) /= 0 .and. k < frame_instants(m) - 1)) return
       d%frames = d%frames + 1
       d%frame(d%frames) = now
    end subroutine record_instant
 
-   !> Whether instant number `k` (0, 1, ...) of `n` is one of `frames` evenly spaced ones, the first and the last.
-   pure logical function is_frame(k, n, frames)
-      use, intrinsic :: iso_fortran_env, only: int64
-      integer, intent(in) :: k, n, frames
-      integer(int64) :: i
+   !> Whether instant number `k` (0, 1, ...) is one of the deck's.
+   pure logical function is_own(d, m, k)
+      type(drawing_t), intent(in) :: d
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: k
 
-      is_frame = n <= frames
-      if (is_frame) return
-      i = (int(k, int64)*(frames - 1) + n - 2)/(n - 1)
-      is_frame = i*(n - 1)/(frames - 1) == k
-   end function is_frame
+      is_own = k > m%steps
+      if (.not. is_own .and. d%every > 0) is_own = mod(k, d%every) == 0
+   end function is_own
+
+   !> The number of instants from which frames are taken: those of TIME, or where there is none those of AT.
+   pure integer function frame_instants(m)
+      type(mechanism_t), intent(in) :: m
+
+      frame_instants = merge(m%steps + 1, instant_count(m), m%steps >= 0)
+   end function frame_instants
 
    !> Widens the ranges of the slides.
    pure subroutine record_slides(guides, m, now)
@@ -271,7 +290,7 @@ contains
       integer :: c
 
       if (size(d%mark) == 0) d%mark = spread(mark_none, 1, size(s%motions))
-      if (any(s%motions%mark /= mark_none)) d%flagged = d%flagged + 1
+      if (is_flagged(s) .and. size(d%flagged_at) < max_places) d%flagged_at = [d%flagged_at, now%t]
       do c = 1, size(s%motions)
          if (s%motions(c)%mark /= d%mark(c) .and. s%motions(c)%mark /= mark_none .and. size(d%flags) < max_flags) then
             associate (links => s%parts%list(c)%links)

@@ -3,46 +3,23 @@
 module picture
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use numerals, only: full, whole, fixed
-   use planar, only: point_of
-   use drawing, only: drawing_t, snapshot_t, flag_t, point_place
+   use drawing, only: drawing_t, snapshot_t
    use outline, only: is_same_place
    use picture_frames, only: clearest, faint_frames
    use canvas, only: canvas_t
-   use picture_parts, only: put_body, put_outlines, put_guide, put_ground, put_block, put_joint, put_dots, put_path, &
-      put_flagged, guide_ends, color_of
+   use picture_parts, only: put_body, put_outlines, put_flagged, put_guide, put_ground, put_block, put_joint, put_dot, &
+      put_path, dots_of, color_of, joint_point
    use picture_drives, only: put_drives
    use picture_names, only: put_names
-   use svg, only: svg_head, svg_end, put_group, put_group_end, put_polyline, put_words
-   use text_output, only: output_t, put
-   use listing, only: words_of_mark
+   use picture_page, only: choice_t, view_of, put_set_head, put_flags, put_scale, flag_lines, fitted, width, line_height
+   use svg, only: svg_head, svg_end, put_group, put_group_end, put_words
+   use text_output, only: output_t
    use phrases
    implicit none
    private
-   public :: picture_head, put_pictures, view_of
-
-   integer, parameter :: width = 800
-   !> Room around what is drawn, for names and supports; largest and least height of what is drawn.
-   real(wp), parameter :: margin = 62.0_wp, max_height = 520.0_wp, min_height = 60.0_wp
-   !> Room above for the title and below for times and scale; height of a line of words.
-   integer, parameter :: above = 34, below = 44, line_height = 17
-   !> The length of the scale bar, at most.
-   real(wp), parameter :: max_bar = 150.0_wp
-
-   !> The frames of a drawing that a picture shows.
-   type :: choice_t
-      integer :: best = 0                    !< in full; 0 for none
-      integer, allocatable :: faint(:)
-   end type choice_t
+   public :: put_pictures, put_curves
 
 contains
-
-   !> The first line of a file that holds a picture.
-   subroutine picture_head(o)
-      type(output_t), intent(inout) :: o
-
-      call put(o, '<?xml version="1.0" encoding="US-ASCII"?>')
-   end subroutine picture_head
 
    !> Writes the picture of the `sets` as `drawings` has recorded them.
    subroutine put_pictures(o, sets, drawings)
@@ -65,113 +42,6 @@ contains
       end do
       call svg_end(o)
    end subroutine put_pictures
-
-   !> Where the set `m` is drawn: the canvas `c` of a picture that begins at the pixel `top` and ends above `bottom`.
-   !> The scale has three digits and the shift is whole: rounding errors of the results do not move the picture.
-   subroutine view_of(m, d, choice, top, c, bottom)
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
-      type(choice_t), intent(in) :: choice
-      integer, intent(in) :: top
-      type(canvas_t), intent(out) :: c
-      integer, intent(out) :: bottom
-      real(wp) :: low(2), high(2), size_of_it(2), room
-      integer :: height
-
-      call find_extent(m, d, choice, low, high)
-      size_of_it = high - low
-      room = real(width, wp) - 2.0_wp*margin
-      c%scale = 1.0_wp
-      if (any(size_of_it > 0.0_wp)) c%scale = rounded_down(1.0_wp/max(size_of_it(1)/room, size_of_it(2)/max_height))
-      height = ceiling(max(min_height, c%scale*size_of_it(2)) + 2.0_wp*margin)
-      bottom = top + above + height + below + line_height*flag_lines(d)
-      c%shift = anint([0.5_wp*real(width, wp) - c%scale*(low(1) + 0.5_wp*size_of_it(1)), &
-         real(top + above, wp) + 0.5_wp*real(height, wp) + c%scale*(low(2) + 0.5_wp*size_of_it(2))])
-      c%low = [4.0_wp, real(top + above, wp)]
-      c%high = [real(width - 4, wp), real(top + above + height, wp)]
-   end subroutine view_of
-
-   !> The corners `low` and `high` (2) of what the picture shows of `m`.
-   subroutine find_extent(m, d, choice, low, high)
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
-      type(choice_t), intent(in) :: choice
-      real(wp), intent(out) :: low(2), high(2)
-      integer :: i, k
-
-      low = huge(1.0_wp)
-      high = -huge(1.0_wp)
-      if (choice%best > 0) call widen_by_links(m, d, d%frame(choice%best), .true., low, high)
-      do i = 1, size(choice%faint)
-         call widen_by_links(m, d, d%frame(choice%faint(i)), .false., low, high)
-      end do
-      do i = 1, size(d%flags)
-         call widen_by_links(m, d, d%flags(i)%last, .false., low, high)
-      end do
-      call widen_by_links(m, d, d%now, .false., low, high, ground=.true.)
-      do i = 1, size(d%curves)
-         do k = 1, size(d%curves(i)%known)
-            if (d%curves(i)%known(k) >= 0) call widen(d%curves(i)%place(:, k), low, high)
-         end do
-      end do
-      if (all(low <= high)) return
-      low = 0.0_wp
-      high = 0.0_wp
-   end subroutine find_extent
-
-   !> Widens the box from `low` to `high` (2) by the links that are known at `s`: moving ones, with guides where these
-   !> are drawn, or the `ground` as far as pairs use it.
-   subroutine widen_by_links(m, d, s, guides, low, high, ground)
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
-      type(snapshot_t), intent(in) :: s
-      logical, intent(in) :: guides
-      real(wp), intent(inout) :: low(2), high(2)
-      logical, intent(in), optional :: ground
-      logical :: is_wanted(size(m%points))
-      real(wp) :: ends(2, 2)
-      integer :: i
-
-      is_wanted = .not. m%links(m%points%link)%ground .and. .not. present(ground)
-      if (present(ground)) then
-         do i = 1, size(m%pairs)
-            is_wanted([m%pairs(i)%point_i, m%pairs(i)%point_j]) = .true.
-         end do
-         is_wanted = is_wanted .and. m%links(m%points%link)%ground
-         is_wanted(d%guides%pivot) = .false.
-      end if
-      do i = 1, size(m%points)
-         if (is_wanted(i) .and. s%known(m%points(i)%link)) call widen(point_place(m, s, i), low, high)
-      end do
-      if (.not. guides) return
-      do i = 1, size(d%guides)
-         if (.not. s%known(d%guides(i)%carrier) .or. d%guides(i)%high < d%guides(i)%low) cycle
-         ends = guide_ends(d%guides(i), s)
-         call widen(ends(:, 1), low, high)
-         call widen(ends(:, 2), low, high)
-         if (.not. m%links(d%guides(i)%carrier)%ground) &
-            call widen(point_of(s%place(:, d%guides(i)%carrier), d%guides(i)%foot), low, high)
-      end do
-   end subroutine widen_by_links
-
-   !> Widens the box from `low` to `high` (2) by the place `p` (2).
-   pure subroutine widen(p, low, high)
-      real(wp), intent(in) :: p(2)
-      real(wp), intent(inout) :: low(2), high(2)
-
-      low = min(low, p)
-      high = max(high, p)
-   end subroutine widen
-
-   !> `x` > 0 with three digits, not larger than it was.
-   pure real(wp) function rounded_down(x)
-      real(wp), intent(in) :: x
-      integer :: e
-
-      e = 2 - floor(log10(x))
-      if (e >= 0) rounded_down = aint(x*10.0_wp**e)/10.0_wp**e
-      if (e < 0) rounded_down = aint(x/10.0_wp**(-e))*10.0_wp**(-e)
-   end function rounded_down
 
    !> One set, from the pixel `top` to above `bottom`.
    subroutine put_set(o, c, m, d, choice, top, bottom)
@@ -205,21 +75,6 @@ contains
       call put_group_end(o)
    end subroutine put_set
 
-   !> Begins the group of a set, with its title at the pixel `top`. `t`: the instant that is drawn.
-   subroutine put_set_head(o, c, m, d, t, top)
-      type(output_t), intent(inout) :: o
-      type(canvas_t), intent(in) :: c
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
-      real(wp), intent(in) :: t
-      integer, intent(in) :: top
-
-      call put_group(o, 'class="set" data-set="'//whole(m%set_number)//'" data-scale="'//full(c%scale)//'" data-x="' &
-         //fitted(c%shift(1))//'" data-y="'//fitted(c%shift(2))//'" data-origin="'//full(d%origin(1))//' ' &
-         //full(d%origin(2))//'" data-t="'//full(t)//'"', trim(m%title))
-      call put_words(o, real([14, top + 24], wp), 'start', 'class="title"', trim(whole(m%set_number)//'.  '//m%title))
-   end subroutine put_set_head
-
    !> The paths of the points.
    subroutine put_curves(o, c, m, d)
       type(output_t), intent(inout) :: o
@@ -241,8 +96,10 @@ contains
       type(mechanism_t), intent(in) :: m
       type(drawing_t), intent(in) :: d
       type(snapshot_t), intent(in) :: s
+      integer, allocatable :: dots(:)
       integer :: i
 
+      dots = dots_of(m)
       call put_ground(o, c, m, d)
       do i = 1, size(d%guides)
          call put_guide(o, c, m, d%guides(i), s)
@@ -254,9 +111,11 @@ contains
          call put_block(o, c, m, d%guides(i), s)
       end do
       do i = 1, size(m%pairs)
-         call put_joint(o, c, m, s, i)
+         call put_joint(o, c, m, s, i, joint_point(m, s%known, i))
       end do
-      call put_dots(o, c, m, s)
+      do i = 1, size(dots)
+         call put_dot(o, c, m, s, dots(i))
+      end do
    end subroutine put_mechanism
 
    !> Whether curve number `i` is more than one place, and no curve before has the same places.
@@ -305,94 +164,4 @@ contains
          phrase(say_faint, m%polish)//' '//others)
    end subroutine put_times
 
-   !> The lines of words about flagged instants: one for each that is drawn, and one where there are more.
-   pure integer function flag_lines(d)
-      type(drawing_t), intent(in) :: d
-
-      flag_lines = size(d%flags)
-      if (d%flagged > size(d%flags)) flag_lines = flag_lines + 1
-   end function flag_lines
-
-   !> Below it: the flagged instants, and what is drawn of them.
-   subroutine put_flags(o, m, d, bottom)
-      type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
-      integer, intent(in) :: bottom
-      character(:), allocatable :: words
-      integer :: i
-
-      do i = 1, flag_lines(d)
-         if (i > size(d%flags)) then
-            words = phrase(say_flagged_in_all, m%polish)//' '//whole(d%flagged)
-         else
-            words = words_of_flag(m, d%flags(i))
-         end if
-         call put_words(o, real([14, bottom - 16 - line_height*(flag_lines(d) - i)], wp), 'start', 'class="flag"', &
-            words)
-      end do
-   end subroutine put_flags
-
-   !> When and why an instant is flagged, and what is drawn of it.
-   function words_of_flag(m, flag) result(words)
-      type(mechanism_t), intent(in) :: m
-      type(flag_t), intent(in) :: flag
-      character(:), allocatable :: words
-
-      words = 'T = '//fitted(flag%t)//': '//words_of_mark(flag%mark, flag%singularity, m%polish)
-      if (flag%earlier .and. any(flag%last%known)) &
-         words = words//'; '//phrase(say_last_position, m%polish)//' '//fitted(flag%last%t)
-   end function words_of_flag
-
-   !> The scale bar, at the foot on the right: 1, 2 or 5 times a power of ten units of length.
-   subroutine put_scale(o, c, m)
-      type(output_t), intent(inout) :: o
-      type(canvas_t), intent(in) :: c
-      type(mechanism_t), intent(in) :: m
-      real(wp) :: length, y, x
-      integer :: e
-
-      e = floor(log10(max_bar/c%scale))
-      length = 10.0_wp**e
-      if (5.0_wp*length*c%scale <= max_bar) then
-         length = 5.0_wp*length
-      else if (2.0_wp*length*c%scale <= max_bar) then
-         length = 2.0_wp*length
-      end if
-      x = real(width - 24, wp)
-      y = c%high(2) + 16.0_wp
-      associate (from => x - length*c%scale)
-         call put_polyline(o, reshape([from, y - 4.0_wp, from, y + 4.0_wp, from, y, x, y, x, y - 4.0_wp, &
-            x, y + 4.0_wp], [2, 6]), 'class="scale"')
-         call put_words(o, [from - 8.0_wp, y + 4.0_wp], 'end', 'class="time"', fitted(length)//' '//trim(m%length_unit))
-      end associate
-   end subroutine put_scale
-
-   !> `x` with six digits, without zeros at their end.
-   pure function fitted(x) result(text)
-      real(wp), intent(in) :: x
-      character(:), allocatable :: text
-      character(16) :: exponent
-      integer :: e
-
-      e = 0
-      if (abs(x) > 0.0_wp) e = floor(log10(abs(x)))
-      if (abs(x) > 0.0_wp .and. (e < -4 .or. e > 5)) then
-         write (exponent, '(i0)') e
-         text = without_zeros(fixed(x, 5, e))//'E'//trim(exponent)
-      else
-         text = without_zeros(fixed(x, 5 - e, 0))
-      end if
-   end function fitted
-
-   !> The number `digits` without zeros at the end of its decimals.
-   pure function without_zeros(digits) result(text)
-      character(*), intent(in) :: digits
-      character(:), allocatable :: text
-
-      text = trim(adjustl(digits))
-      if (index(text, '.') == 0) return
-      text = text(:verify(text, '0', back=.true.))
-      if (text(len(text):) == '.') text = text(:len(text) - 1)
-   end function without_zeros
 end module picture

@@ -11,8 +11,8 @@ module picture_parts
    use text_output, only: output_t
    implicit none
    private
-   public :: put_body, put_outlines, put_flagged, put_guide, put_ground, put_block, put_joint, put_dots, put_path
-   public :: guide_ends, color_of, corner_pixels, direction_in_picture, joint_point, half_block
+   public :: put_body, put_outlines, put_flagged, put_guide, put_ground, put_block, put_joint, put_dot, put_path
+   public :: dots_of, guide_ends, color_of, corner_pixels, direction_in_picture, joint_point, half_block
 
    !> Links take these in turn.
    character(7), parameter :: colors(*) = ['#3b6ea5', '#d98324', '#4c8c4a', '#8058a5', '#2f9aa0', '#96692f', '#b0528a']
@@ -245,20 +245,17 @@ contains
       call add_box(c, p - abs(u) - abs(v), p + abs(u) + abs(v))
    end subroutine put_block
 
-   !> The joint of pair number `i`, if that is a revolute pair, at the position `s`.
-   subroutine put_joint(o, c, m, s, i)
+   !> The joint of pair number `i`, if that is a revolute pair, at its `point` at the position `s`; 0 for none.
+   subroutine put_joint(o, c, m, s, i, point)
       type(output_t), intent(inout) :: o
       type(canvas_t), intent(inout) :: c
       type(mechanism_t), intent(in) :: m
       type(snapshot_t), intent(in) :: s
-      integer, intent(in) :: i
+      integer, intent(in) :: i, point
       real(wp) :: p(2)
 
-      if (m%pairs(i)%kind /= pair_revolute) return
-      associate (point => joint_point(m, s%known, i))
-         if (point == 0) return
-         p = to_pixels(c, point_place(m, s, point))
-      end associate
+      if (m%pairs(i)%kind /= pair_revolute .or. point == 0) return
+      p = to_pixels(c, point_place(m, s, point))
       call put_circle(o, p, joint_radius, 'class="joint" '//attribute('data-pair', trim(m%pairs(i)%name)))
       call add_box(c, p - joint_radius, p + joint_radius)
    end subroutine put_joint
@@ -286,27 +283,32 @@ contains
       end do
    end function joint_point
 
-   !> As dots the points of moving links, or of `link` alone, that no pair joins, at the position `s`.
-   subroutine put_dots(o, c, m, s, link)
+   !> The numbers of the points of moving links that no pair joins: they are dots.
+   pure function dots_of(m) result(list)
+      type(mechanism_t), intent(in) :: m
+      integer, allocatable :: list(:)
+      logical :: is_dot(size(m%points))
+      integer :: i
+
+      is_dot = .not. m%links(m%points%link)%ground
+      is_dot([m%pairs%point_i, m%pairs%point_j]) = .false.
+      list = pack([(i, i=1, size(is_dot))], is_dot)
+   end function dots_of
+
+   !> As a dot point number `i` at the position `s`.
+   subroutine put_dot(o, c, m, s, i)
       type(output_t), intent(inout) :: o
       type(canvas_t), intent(inout) :: c
       type(mechanism_t), intent(in) :: m
       type(snapshot_t), intent(in) :: s
-      integer, intent(in), optional :: link
-      logical :: wanted(size(m%points))
+      integer, intent(in) :: i
       real(wp) :: p(2)
-      integer :: i
 
-      wanted = s%known(m%points%link) .and. .not. m%links(m%points%link)%ground
-      if (present(link)) wanted = wanted .and. m%points%link == link
-      wanted([m%pairs%point_i, m%pairs%point_j]) = .false.
-      do i = 1, size(m%points)
-         if (.not. wanted(i)) cycle
-         p = to_pixels(c, point_place(m, s, i))
-         call put_circle(o, p, point_radius, 'class="point" '//attribute('data-point', trim(m%points(i)%name)))
-         call add_box(c, p - point_radius, p + point_radius)
-      end do
-   end subroutine put_dots
+      if (.not. s%known(m%points(i)%link)) return
+      p = to_pixels(c, point_place(m, s, i))
+      call put_circle(o, p, point_radius, 'class="point" '//attribute('data-point', trim(m%points(i)%name)))
+      call add_box(c, p - point_radius, p + point_radius)
+   end subroutine put_dot
 
    !> The path `curve` of a point called `name`, in pieces where it is not known.
    subroutine put_path(o, c, curve, name, color)

@@ -7,7 +7,7 @@ module svg
    implicit none
    private
    public :: svg_head, svg_end, put_group, put_group_end, put_circle, put_polyline, put_polygon, put_curve, put_words, &
-      pixels, escaped, attribute
+      put_values, put_window, put_window_end, pixels, escaped, attribute
 
    !> The classes of the elements. Widths and sizes are in pixels.
    character(*), parameter :: style(*) = [character(118) :: &
@@ -36,6 +36,7 @@ module svg
       '.tip{stroke:none;fill:#0a7a3c}', &
       '.flagged *{stroke:#d00000;stroke-width:3;stroke-opacity:0.6}', &
       '.ring{fill:none}', &
+      '.mark{stroke:#d00000;stroke-width:1.5}', &
       '.scale{stroke-width:1.5}']
 
 contains
@@ -151,6 +152,41 @@ contains
       call put(o, '<text x="'//pixels(p(1))//'" y="'//pixels(p(2))//'" text-anchor="'//anchor//'" '//attributes//'>' &
          //escaped(words)//'</text>')
    end subroutine put_words
+
+   !> An `element` with the attribute `values`: the columns of `values` (:, :) in turn.
+   subroutine put_values(o, element, values)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: element
+      real(wp), intent(in) :: values(:, :)
+      integer :: i, k
+
+      call add(o, '<'//element//' values="')
+      do k = 1, size(values, 2)
+         if (k > 1) call add(o, ';')
+         do i = 1, size(values, 1)
+            if (i > 1) call add(o, ' ')
+            call add(o, pixels(values(i, k)))
+         end do
+      end do
+      call put(o, '"/>')
+   end subroutine put_values
+
+   !> Begins a picture in the picture: what follows is seen from the place `p` (2) on, over `extent` (2), and has its
+   !> places from there.
+   subroutine put_window(o, p, extent)
+      type(output_t), intent(inout) :: o
+      real(wp), intent(in) :: p(2), extent(2)
+
+      call put(o, '<svg x="'//pixels(p(1))//'" y="'//pixels(p(2))//'" width="'//pixels(extent(1))//'" height="' &
+         //pixels(extent(2))//'" overflow="hidden">')
+   end subroutine put_window
+
+   !> Ends it.
+   subroutine put_window_end(o)
+      type(output_t), intent(inout) :: o
+
+      call put(o, '</svg>')
+   end subroutine put_window_end
 
    !> The place `p` (2) in a path.
    pure function place(p) result(text)

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Pictures: of every deck of input/ one that is well-formed XML, with the joints where the CSV has them; what is refused.
+# Pictures and animations: of every deck of input/, well-formed XML, with the joints where the CSV has them; what is refused.
 BUILD=${BUILD:-build}
 . tests/counting.sh
 
@@ -34,6 +34,10 @@ tags() { awk '
       }
       if (depth != 0 || roots != 1) print FILENAME ": " depth " open, " roots " roots"
    }' "$1"; }
+# xml FILE: the same by xmllint, where that is installed
+xml() { [ -z "$xmllint" ] || equal "$1: by xmllint" '' "$(xmllint --noout "$1" 2>&1)"; }
+xmllint=$(command -v xmllint)
+[ -n "$xmllint" ] || echo 'skipped: xmllint (not installed)'
 printf '<svg><g a="1"><text>x &amp; y</text></svg>\n' > "$w/bad.svg"
 equal 'a tag that is not closed is found' yes "$([ -n "$(tags "$w/bad.svg")" ] && echo yes)"
 
@@ -44,6 +48,7 @@ joints() { awk -F, '
    FILENAME == ARGV[1] {
       if ($0 ~ /^REVOLUTE/) { pair = substr($0, 25, 8); first = substr($0, 9, 8); gsub(/ /, "", pair); gsub(/ /, "", first)
          point[set + 1, pair] = first }
+      if ($0 ~ /^JOINT/) { pair = substr($0, 9, 8); gsub(/ /, "", pair); point[set + 1, pair] = pair }
       if ($0 ~ /^END/) set++
       next
    }
@@ -61,12 +66,58 @@ joints() { awk -F, '
    }
    END { print found + 0 }' "$1" "$2" "$3"; }
 
+# moving DECK CSV SVG: the joints of the animation that are not where the CSV has their points at its instants, by the
+# values of the animation's own lists; links that turn by half a turn at once; then how many joints and instants there are.
+moving() { awk -F, '
+   function value(line, name) { sub(".* " name "=\"", "", line); sub(/".*/, "", line); return line }
+   function inner(line) { sub(/.*[(]/, "", line); sub(/[)].*/, "", line); return line }
+   function joint(line,   i, k, f, c, s, a, b, key) {
+      joints++
+      for (i = 1; i <= instants[number]; i++) {
+         f = end == start ? 0 : (time[number, i] - start)/(end - start)*(frames - 1)
+         k = int(f + 0.5)
+         if (f - k > 1e-6 || k - f > 1e-6 || k < 0 || k >= frames) continue
+         key = number SUBSEP time[number, i] SUBSEP point[number, value(line, "data-pair")]
+         if (x[key] == "") continue
+         if (places < 2) k = 0
+         split(place[k + 1], p, " ")
+         c = cos(angle[k + 1]*atan2(0, -1)/180); s = sin(angle[k + 1]*atan2(0, -1)/180)
+         a = p[1] + c*value(line, "cx") - s*value(line, "cy") - dx - scale*(x[key] - origin[1])
+         b = p[2] + s*value(line, "cx") + c*value(line, "cy") - dy + scale*(y[key] - origin[2])
+         checked++
+         if (a*a + b*b > 0.01) { print "set " number " t " time[number, i] ": " line " is off by " a ", " b; return }
+      }
+   }
+   FILENAME == ARGV[1] {
+      if ($0 ~ /^REVOLUTE/) { pair = substr($0, 25, 8); first = substr($0, 9, 8); gsub(/ /, "", pair); gsub(/ /, "", first)
+         point[set + 1, pair] = first }
+      if ($0 ~ /^JOINT/) { pair = substr($0, 9, 8); gsub(/ /, "", pair); point[set + 1, pair] = pair }
+      if ($0 ~ /^END/) set++
+      next
+   }
+   FILENAME == ARGV[2] {
+      if ($4 == "POINT") { x[$1, $3, $5] = $6; y[$1, $3, $5] = $7 }
+      if ($4 == "POINT" && !(($1, $3) in seen)) { seen[$1, $3]; time[$1, ++instants[$1]] = $3 }
+      next
+   }
+   /class="set"/ { number = value($0, "data-set"); scale = value($0, "data-scale"); start = value($0, "data-t")
+      dx = value($0, "data-x"); dy = value($0, "data-y"); split(value($0, "data-origin"), origin, " ") }
+   /class="film"/ { frames = value($0, "data-frames"); end = value($0, "data-end") }
+   /class="link"/ { place[1] = inner($0); places = 1 }
+   /^<g transform="rotate/ { angle[1] = inner($0) }
+   /^<animateTransform.*type="translate"/ { places = split(value($0, "values"), place, ";") }
+   /^<animateTransform.*type="rotate"/ { n = split(value($0, "values"), angle, ";")
+      for (k = 2; k <= n; k++) if (angle[k] - angle[k - 1] > 180 || angle[k] - angle[k - 1] < -180) print "set " number ": a jump" }
+   /class="joint"/ { joint($0) }
+   END { print joints + 0, (checked > 0) }' "$1" "$2" "$3"; }
+
 for deck in input/*.deck; do
    name=$(basename "$deck" .deck)
    sed -e '/^PRINT/d' -e 's/^END.*/PRINT   ALL\n&/' "$deck" > "$w/$name.deck"
-   "$kinmat" "$deck" --svg "$w/$name.svg" > "$w/$name.lst" 2> "$w/$name.err"
+   "$kinmat" "$deck" --svg "$w/$name.svg" --animate "$w/$name.moving.svg" > "$w/$name.lst" 2> "$w/$name.err"
    same "$name: the listing is as it was" "expected/$name.lst" "$w/$name.lst"
    equal "$name: well-formed" '' "$(tags "$w/$name.svg")"
+   xml "$w/$name.svg"
    equal "$name: a picture of each set" "$(grep -c '^END' "$deck")" "$(grep -c '<g class="set"' "$w/$name.svg")"
    equal "$name: neither script nor reference" '' "$(grep -nE '<script|href|url[(]|<image|on[a-z]+=' "$w/$name.svg")"
    equal "$name: numbers" '' "$(grep -niE '[" ,](nan|inf)|[*]{3}' "$w/$name.svg" | grep -v '<style\|{')"
@@ -74,9 +125,17 @@ for deck in input/*.deck; do
       "$(grep -c 'class="flag"' "$w/$name.svg" | awk '{ print ($1 > 0) }')"
    "$kinmat" "$w/$name.deck" --svg "$w/$name.all.svg" --csv "$w/$name.csv" > "$w/$name.lst" 2> "$w/$name.err"
    for svg in "$w/$name.svg" "$w/$name.all.svg"; do
-      equal "$svg: joints, and how many" "$(grep -c '^REVOLUTE' "$deck")" "$(joints "$w/$name.deck" "$w/$name.csv" "$svg")"
+      equal "$svg: joints, and how many" "$(grep -cE '^(REVOLUTE|JOINT)' "$deck")" "$(joints "$w/$name.deck" "$w/$name.csv" "$svg")"
       equal "$svg: blocks on guides" "$(grep -c '^PRISM' "$deck")" "$(grep -c 'class="block"' "$svg")"
    done
+   svg=$w/$name.moving.svg
+   equal "$svg: well-formed" '' "$(tags "$svg")"
+   xml "$svg"
+   equal "$svg: neither script nor reference" '' "$(grep -nE '<script|href|url[(]|<image|on[a-z]+=' "$svg")"
+   equal "$svg: numbers" '' "$(grep -niE '[" ,;](nan|inf)|[*]{3}' "$svg" | grep -v '<style\|{')"
+   equal "$svg: blocks on guides" "$(grep -c '^PRISM' "$deck")" "$(grep -c 'class="block"' "$svg")"
+   equal "$svg: joints in motion" "$(grep -cE '^(REVOLUTE|JOINT)' "$deck") 1" "$(moving "$w/$name.deck" "$w/$name.csv" "$svg")"
+   equal "$svg: at most 2 MB" yes "$([ "$(wc -c < "$svg")" -le 2000000 ] && echo yes)"
 done
 
 # What has no position is not drawn: of this four-bar the crank alone.
@@ -98,6 +157,29 @@ sed -e 's/^TIME.*/TIME    90                      0.0             90.0/' input/p
 equal 'flagged instants drawn' 3 "$(grep -c '<g class="flagged"' "$w/many.svg")"
 equal 'flagged instants in all' "$(grep -c ' \*\*\* ' "$w/out")" "$(sed -n 's/.*>FLAGGED INSTANTS IN ALL: \([0-9]*\)<.*/\1/p' "$w/many.svg")"
 
+# The animation: a joint out of place is found; red marks at the five instants; the same frames before they are said again.
+sed 's/class="joint"/& r="0"/; s/cx="0"/cx="9"/' "$w/jansen.moving.svg" > "$w/wrong.svg"
+equal 'a joint out of place is found' yes "$(moving "$w/jansen.deck" "$w/jansen.csv" "$w/wrong.svg" | grep -q 'off by' && echo yes)"
+"$kinmat" "$w/many.deck" --animate "$w/many.svg" > "$w/out" 2> "$w/err"
+equal 'five marks' 5 "$(grep -c 'class="mark"' "$w/many.svg")"
+equal 'five times in red' 5 "$(grep -c 'class="time flag".*CHANGE POINT' "$w/many.svg")"
+equal 'flagged instants in all' yes "$(grep -q '>FLAGGED INSTANTS IN ALL: 5<' "$w/many.svg" && echo yes)"
+# film SVG: frames and keys
+film() { sed -n 's/.*class="film" data-frames="\([0-9]*\)" data-keys="\([0-9]*\)".*/\1 \2/p' "$1"; }
+equal 'a motion that comes back begins anew at once' '361 361' "$(film "$w/jansen.moving.svg")"
+equal 'another one after a second of ten' '353 388' "$(film "$w/excavator.moving.svg")"
+# A whole turn and more from frame to frame: no positions between them. One instant: no motion. No position: pale.
+sed -e '/^END/q' -e 's/^TIME.*/TIME    360                     0.0             9000.0/' input/jansen.deck > "$w/fast.deck"
+"$kinmat" "$w/fast.deck" --animate "$w/fast.svg" > "$w/out" 2> "$w/err"
+equal 'fast: by leaps' ' calcMode="discrete"' "$(grep -o ' calcMode="[a-z]*"' "$w/fast.svg" | sort -u)"
+sed -e '/^END/q' -e '/^AT/d' -e 's/^TIME.*/AT                              2.5/' input/four_bar.deck > "$w/one.deck"
+"$kinmat" "$w/one.deck" --animate "$w/one.svg" > "$w/out" 2> "$w/err"
+equal 'one instant: well-formed' '' "$(tags "$w/one.svg")"
+equal 'one instant: no motion' '1 1 0' "$(film "$w/one.svg") $(grep -c '<animate' "$w/one.svg")"
+"$kinmat" "$w/none.deck" --animate "$w/none.svg" > "$w/out" 2> "$w/err"
+equal 'no position: well-formed' '' "$(tags "$w/none.svg")"
+equal 'no position: pale' yes "$(grep -q '<animate attributeName="opacity" calcMode="discrete".*[";]0.2[";]' "$w/none.svg" && echo yes)"
+
 # A title and names that XML does not take as they are.
 sed -e '/^END/q' -e 's/^TITLE.*/TITLE   A < B \& "C"/' input/four_bar.deck > "$w/title.deck"
 "$kinmat" "$w/title.deck" --svg "$w/title.svg" > "$w/out" 2> "$w/err"
@@ -108,24 +190,27 @@ equal 'a title with characters of XML: text' 2 "$(grep -c 'A &lt; B &amp; &quot;
 refused() { expected=$2; want=$3; name=$1; shift 3; "$kinmat" "$@" > "$w/out" 2> "$w/err"
    equal "$name: status" "$expected" $?; equal "$name: sentence" "$want" "$(cat "$w/err")"; equal "$name: no listing" '' "$(cat "$w/out")"; }
 cp input/four_bar.deck "$w/own.deck"
-refused '--svg without a file' 1 ' *** OPTION --svg NEEDS A FILE NAME' "$w/own.deck" --svg
-refused '--svg twice' 1 ' *** OPTION --svg IS GIVEN TWICE' "$w/own.deck" --svg "$w/a" --svg "$w/b"
-refused '--svg and --check' 1 ' *** OPTION --check COMPUTES NO MOTION, WHICH --svg NEEDS' "$w/own.deck" --svg "$w/a" --check
-refused '--svg and --study' 1 ' *** OPTION --study GOES WITH NO OTHER OPTION BUT -o' "$w/own.deck" --svg "$w/a" --study
-refused '--svg to the file of the CSV' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own.deck" --csv "$w/a" --svg "$w/./a"
-refused '--svg to the file of the listing' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own.deck" -o "$w/a" --svg "$w/a"
-refused '--svg to the deck' 1 " *** THE DECK $w/own.deck WOULD BE OVERWRITTEN" "$w/own.deck" --svg "$w/own.deck"
-same '--svg to the deck: it is as it was' input/four_bar.deck "$w/own.deck"
-refused '--svg to a file that cannot be' 3 ' *** FILE /nonexistent/x CANNOT BE OPENED FOR WRITING (NO SUCH FILE OR DIRECTORY)' \
-   "$w/own.deck" --svg /nonexistent/x
-equal 'no file is made by what is refused' '' "$(ls "$w/a" 2> /dev/null)"
-if [ -w /dev/full ]; then
-   "$kinmat" "$w/own.deck" --svg /dev/full > "$w/out" 2> "$w/err"
-   equal '--svg, disk full: status' 3 $?
-   equal '--svg, disk full: sentence' ' *** WRITING /dev/full FAILED (NO SPACE LEFT ON DEVICE)' "$(cat "$w/err")"
-fi
-# More shares than sets: a picture of nothing is still one.
-"$kinmat" "$w/own.deck" --sets 1/9 --svg "$w/share.svg" > "$w/out" 2> "$w/err"
-equal 'a share without sets' '' "$(tags "$w/share.svg")"
-equal 'a share without sets: none' 0 "$(grep -c '<g class="set"' "$w/share.svg")"
+for option in --svg --animate; do
+   refused "$option without a file" 1 " *** OPTION $option NEEDS A FILE NAME" "$w/own.deck" $option
+   refused "$option twice" 1 " *** OPTION $option IS GIVEN TWICE" "$w/own.deck" $option "$w/a" $option "$w/b"
+   refused "$option and --check" 1 " *** OPTION --check COMPUTES NO MOTION, WHICH $option NEEDS" "$w/own.deck" $option "$w/a" --check
+   refused "$option and --study" 1 ' *** OPTION --study GOES WITH NO OTHER OPTION BUT -o' "$w/own.deck" $option "$w/a" --study
+   refused "$option to the file of the CSV" 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own.deck" --csv "$w/a" $option "$w/./a"
+   refused "$option to the file of the listing" 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own.deck" -o "$w/a" $option "$w/a"
+   refused "$option to the deck" 1 " *** THE DECK $w/own.deck WOULD BE OVERWRITTEN" "$w/own.deck" $option "$w/own.deck"
+   same "$option to the deck: it is as it was" input/four_bar.deck "$w/own.deck"
+   refused "$option to a file that cannot be" 3 ' *** FILE /nonexistent/x CANNOT BE OPENED FOR WRITING (NO SUCH FILE OR DIRECTORY)' \
+      "$w/own.deck" $option /nonexistent/x
+   equal "$option: no file is made by what is refused" '' "$(ls "$w/a" 2> /dev/null)"
+   if [ -w /dev/full ]; then
+      "$kinmat" "$w/own.deck" $option /dev/full > "$w/out" 2> "$w/err"
+      equal "$option, disk full: status" 3 $?
+      equal "$option, disk full: sentence" ' *** WRITING /dev/full FAILED (NO SPACE LEFT ON DEVICE)' "$(cat "$w/err")"
+   fi
+   # More shares than sets: a picture of nothing is still one.
+   "$kinmat" "$w/own.deck" --sets 1/9 $option "$w/share.svg" > "$w/out" 2> "$w/err"
+   equal "$option, a share without sets" '' "$(tags "$w/share.svg")"
+   equal "$option, a share without sets: none" 0 "$(grep -c '<g class="set"' "$w/share.svg")"
+done
+refused '--svg and --animate to one file' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own.deck" --animate "$w/a" --svg "$w/a"
 conclude

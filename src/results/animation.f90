@@ -1,0 +1,222 @@
+!> The animation of a run as SVG, without scripts: the links move through the frames of a drawing over the paths of
+!> points, with the time below, and a bar on which it passes.
+module animation
+   use kinds, only: wp
+   use constants, only: in_degrees, without_turns
+   use mechanism, only: mechanism_t, drive_x, drive_y, drive_slide
+   use drives, only: drive_motion, new_law
+   use motion, only: mark_none
+   use names, only: drive_name
+   use numerals, only: full, whole
+   use drawing, only: drawing_t, max_positions
+   use canvas, only: canvas_t
+   use picture_frames, only: closes
+   use picture_parts, only: put_flagged, put_guide, put_ground, put_block
+   use picture, only: put_curves
+   use picture_page, only: choice_t, view_of, put_set_head, put_flags, put_scale, flag_lines, fitted, width, line_height
+   use moving_links, only: course_t, put_moving, put_moving_links
+   use svg, only: svg_head, svg_end, put_group, put_group_end, put_window, put_window_end, put_circle, put_polyline, &
+      put_words
+   use text_output, only: output_t
+   use listing, only: words_of_mark
+   implicit none
+   private
+   public :: film_of, put_animations
+
+   !> An animation has at most this many intervals between its frames.
+   integer, parameter, public :: max_intervals = 360
+   !> It takes this time (s), and rests as long at the end where the motion does not come back.
+   real(wp), parameter :: motion_seconds = 10.0_wp, pause_seconds = 1.0_wp
+   !> A link that turns by more than this (rad) from one frame to the next is not turned in between: the links would
+   !> part by more than 1 % of their lengths.
+   real(wp), parameter :: max_turn = 0.3_wp
+   !> Room for the bar of the time, its ends, the height of a mark on it, the radius of its dot.
+   integer, parameter :: bar_room = 14
+   real(wp), parameter :: bar_ends(2) = [14.0_wp, real(width - 24, wp)], mark_height = 5.0_wp, dot_radius = 4.0_wp
+   !> The values of so many drives stand beside the time.
+   integer, parameter :: max_drives = 3
+
+contains
+
+   !> `m` at the instants of its animation: those of TIME and instants between them, or where there is no TIME between
+   !> the first and the last of AT. `every`: each so many of them are of the deck; 0: none but those of AT.
+   subroutine film_of(m, film, every)
+      type(mechanism_t), intent(in) :: m
+      type(mechanism_t), intent(out) :: film
+      integer, intent(out) :: every
+
+      film = m
+      every = 1
+      if (m%steps < 0) then
+         film%t0 = minval(m%at)
+         film%t1 = maxval(m%at)
+         film%steps = merge(max_intervals, 0, film%t1 > film%t0)
+         every = 0
+      else if (m%steps > 0) then
+         every = max(1, min(max_intervals, max_positions/size(m%links))/m%steps)
+         film%steps = every*m%steps
+      end if
+   end subroutine film_of
+
+   !> Writes the animation of the `sets`, one below the other, as `films` has recorded them.
+   subroutine put_animations(o, sets, films)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: sets(:)
+      type(drawing_t), intent(in) :: films(:)
+      type(canvas_t) :: c(size(films))
+      integer :: top(size(films) + 1), i, k
+
+      top(1) = 0
+      do i = 1, size(films)
+         call view_of(sets(i), films(i), choice_t(min(1, films(i)%frames), [(k, k=1, films(i)%frames)]), top(i), c(i), &
+            top(i + 1))
+         top(i + 1) = top(i + 1) + bar_room
+      end do
+      call svg_head(o, width, max(1, top(size(top))))
+      do i = 1, size(films)
+         if (films(i)%frames > 0) call put_film(o, c(i), sets(i), films(i), top(i), top(i + 1) - bar_room)
+      end do
+      call svg_end(o)
+   end subroutine put_animations
+
+   !> One set, from the pixel `top` to the bar of the time below `bottom`.
+   subroutine put_film(o, c, m, d, top, bottom)
+      type(output_t), intent(inout) :: o
+      type(canvas_t), intent(inout) :: c
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
+      integer, intent(in) :: top, bottom
+      type(course_t) :: course
+      integer :: i
+
+      course = course_of(m, d)
+      call put_set_head(o, c, m, d, d%frame(1)%t, top)
+      call put_curves(o, c, m, d)
+      do i = 1, size(d%flags)
+         call put_flagged(o, c, m, d, d%flags(i)%last)
+      end do
+      call put_ground(o, c, m, d)
+      do i = 1, size(d%guides)
+         if (m%links(d%guides(i)%carrier)%ground) call put_guide(o, c, m, d%guides(i), d%now)
+      end do
+      call put_group(o, 'class="film" data-frames="'//whole(d%frames)//'" data-keys="'//whole(size(course%frame)) &
+         //'" data-end="'//full(d%frame(d%frames)%t)//'"', '')
+      call put_moving_links(o, c, m, d, course)
+      call put_group_end(o)
+      do i = 1, size(d%guides)
+         if (m%links(d%guides(i)%block)%ground) call put_block(o, c, m, d%guides(i), d%now)
+      end do
+      call put_clock(o, m, d, course, bottom - 16 - line_height*flag_lines(d))
+      call put_flags(o, m, d, bottom)
+      call put_bar(o, d, course, real(bottom, wp))
+      call put_scale(o, c, m)
+      call put_group_end(o)
+   end subroutine put_film
+
+   !> The motion begins anew after its end: at once where it has come back, otherwise after a pause. It is not shown
+   !> backwards: drives do not run so.
+   function course_of(m, d) result(course)
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
+      type(course_t) :: course
+      integer :: i, k, pause
+
+      pause = 0
+      if (.not. closes(m, d)) pause = nint(real(d%frames - 1, wp)*pause_seconds/motion_seconds)
+      course%frame = [(min(k, d%frames), k=1, d%frames + pause)]
+      course%seconds = motion_seconds*real(max(1, d%frames + pause - 1), wp)/real(max(1, d%frames - 1), wp)
+      do k = 2, d%frames
+         do i = 1, size(m%links)
+            if (m%links(i)%ground .or. .not. (d%frame(k)%known(i) .and. d%frame(k - 1)%known(i))) cycle
+            if (abs(without_turns(d%frame(k)%place(3, i) - d%frame(k - 1)%place(3, i))) > max_turn) &
+               course%smooth = .false.
+         end do
+      end do
+   end function course_of
+
+   !> The time and the values of drives, in red with its words where the instant is flagged: a column of lines behind a
+   !> window of one line, with its foot at the pixel `y`.
+   subroutine put_clock(o, m, d, course, y)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(in) :: d
+      type(course_t), intent(in) :: course
+      integer, intent(in) :: y
+      real(wp) :: up(2, size(course%frame))
+      character(:), allocatable :: words
+      integer :: k
+
+      call put_window(o, real([14, y - line_height + 5], wp), real([width/2 + 100, line_height], wp))
+      call put_group(o, 'class="clock"', '')
+      up(1, :) = 0.0_wp
+      up(2, :) = -real(line_height*(course%frame - 1), wp)
+      call put_moving(o, course, 'animateTransform attributeName="transform" type="translate"', up, .false.)
+      do k = 1, d%frames
+         associate (s => d%frame(k))
+            words = 'T = '//fitted(s%t)//' '//trim(m%time_unit)//drive_values(m, s%t)
+            if (s%mark /= mark_none) words = words//': '//words_of_mark(s%mark, s%singularity, m%polish)
+            call put_words(o, real([0, line_height*k - 5], wp), 'start', &
+               trim(merge('class="time flag"', 'class="time"     ', s%mark /= mark_none)), words)
+         end associate
+      end do
+      call put_group_end(o)
+      call put_window_end(o)
+   end subroutine put_clock
+
+   !> The values of the first drives at `t`.
+   function drive_values(m, t) result(words)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: t
+      character(:), allocatable :: words
+      real(wp) :: f(0:2)
+      integer :: i
+
+      words = ''
+      do i = 1, min(max_drives, size(m%drives))
+         f = drive_motion(new_law(m%drives(i)), t)
+         if (m%degrees .and. all(m%drives(i)%kind /= [drive_x, drive_y, drive_slide])) f = in_degrees(f)
+         words = words//', '//trim(drive_name(m, m%drives(i)))//' = '//fitted(f(0))
+      end do
+   end function drive_values
+
+   !> The bar on which the time passes, at the pixel `y`, with red marks at flagged instants.
+   subroutine put_bar(o, d, course, y)
+      type(output_t), intent(inout) :: o
+      type(drawing_t), intent(in) :: d
+      type(course_t), intent(in) :: course
+      real(wp), intent(in) :: y
+      real(wp) :: x, last, first(2)
+      integer :: k
+
+      first = [bar_ends(1), y]
+      call put_polyline(o, reshape([first, bar_ends(2), y], [2, 2]), 'class="time"')
+      last = -1.0_wp
+      do k = 1, size(d%flagged_at)
+         x = along_bar(d, d%flagged_at(k))
+         if (abs(x - last) < 1.0_wp) cycle
+         last = x
+         call put_polyline(o, reshape([x, y - mark_height, x, y + mark_height], [2, 2]), 'class="mark"')
+      end do
+      call put_group(o, 'class="now"', '')
+      call put_moving(o, course, 'animateTransform attributeName="transform" type="translate"', &
+         reshape([(along_bar(d, d%frame(course%frame(k))%t) - first(1), 0.0_wp, k=1, size(course%frame))], &
+         [2, size(course%frame)]), course%smooth)
+      call put_circle(o, first, dot_radius, 'class="point"')
+      call put_group_end(o)
+   end subroutine put_bar
+
+   !> Where the time `t` is on the bar (pixel).
+   pure real(wp) function along_bar(d, t) result(x)
+      type(drawing_t), intent(in) :: d
+      real(wp), intent(in) :: t
+      real(wp) :: part
+
+      x = bar_ends(1)
+      associate (t0 => d%frame(1)%t, t1 => d%frame(d%frames)%t)
+         if (abs(t1 - t0) > 0.0_wp) then
+            part = min(1.0_wp, max(0.0_wp, (t - t0)/(t1 - t0)))
+            x = bar_ends(1) + part*(bar_ends(2) - bar_ends(1))
+         end if
+      end associate
+   end function along_bar
+end module animation
