@@ -3,7 +3,7 @@ module block_diagnostics
    use kinds, only: wp
    use drives, only: drive_motion
    use diagnostics, only: diagnostic_t, new_diagnostic, diagnostic_limit, diagnostic_second, diagnostic_redundant, &
-      diagnostic_mobile, diagnostic_idle, diagnostic_repeated, diagnostic_far_estimate
+      diagnostic_mobile, diagnostic_idle, diagnostic_repeated, diagnostic_far_estimate, diagnostic_singular
    use motion, only: motion_t
    use constants, only: without_turns
    use block_needs, only: largest_known, blocks_below
@@ -13,7 +13,7 @@ module block_diagnostics
    use block_engine, only: block_engine_t
    implicit none
    private
-   public :: start_diagnostics, assembly_diagnostics, limit_diagnostic, links_of
+   public :: start_diagnostics, assembly_diagnostics, limit_diagnostic, singular_links, links_of
 
    !> An estimated angle that is off by more, in radians, is worth a diagnostic: the assembly may not be the one that
    !> was meant.
@@ -177,7 +177,7 @@ contains
          if (abs(left) <= 0.0_wp) cycle
          associate (i => e%moving(k), block => e%blocks%list(e%moving(k)))
             r = new_diagnostic(diagnostic_limit, links_of(e, e%moving(k)))
-            r%in_line = is_in_line(e, i, r)
+            r%in_line = is_in_line(e, i, r, e%history%value)
             r%t = e%history%t(e%history%place(0)) + left
             call name_drive(e, i, r)
          end associate
@@ -185,6 +185,16 @@ contains
          return
       end do
    end function limit_diagnostic
+
+   !> The links of block `i`, which is singular at the position found last, and whether they are in line.
+   function singular_links(e, i) result(r)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i
+      type(diagnostic_t) :: r
+
+      r = new_diagnostic(diagnostic_singular, links_of(e, i))
+      r%in_line = is_in_line(e, i, r, e%state%u%value)
+   end function singular_links
 
    !> The time from the motion that is followed to the limit t* of block `i` before `t`; 0 where none is near. Close
    !> to t* the fastest unknown is x* + c sqrt(t* - t), so t* - t = x'/(2 x''), with an error of higher order.
@@ -205,11 +215,13 @@ contains
       end associate
    end function time_to_limit
 
-   !> The two links of `r`, all that block `i` moves, share a revolute pair, and their body vectors are parallel.
-   pure logical function is_in_line(e, i, r)
+   !> The two links of `r`, all that block `i` moves, share a revolute pair, and their body vectors are parallel where
+   !> the unknowns have the values `value` (0:unknowns).
+   pure logical function is_in_line(e, i, r, value)
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: i
       type(diagnostic_t), intent(in) :: r
+      real(wp), intent(in) :: value(0:)
       real(wp) :: first, angle_offset
       integer :: m, k
       logical :: has_first
@@ -223,7 +235,7 @@ contains
       do m = e%blocks%list(i)%first_loop, e%blocks%list(i)%last_loop
          do k = e%blocks%loops(m)%first_own, e%blocks%loops(m)%last_vector
             associate (body_vector => e%blocks%body_vectors(k))
-               angle_offset = e%history%value(body_vector%orientation) + atan2(body_vector%y, body_vector%x)
+               angle_offset = value(body_vector%orientation) + atan2(body_vector%y, body_vector%x)
             end associate
             if (.not. has_first) first = angle_offset
             has_first = .true.

@@ -7,7 +7,8 @@ module block_method
    use block_engine, only: block_engine_t
    use assembly_choice, only: solve_first
    use block_branches, only: is_short_and_right
-   use singularity, only: singularity_of
+   use singularity, only: judge_position
+   use block_diagnostics, only: singular_links
    implicit none
    private
    public :: block_method_t
@@ -46,9 +47,11 @@ contains
    subroutine get_link_flags(e, found)
       class(block_method_t), intent(inout) :: e
       type(motion_t), intent(inout) :: found
+      integer :: i
 
       call e%block_engine_t%get_link_flags(found)
-      found%singularity = singularity_of(e%block_engine_t)
+      call judge_position(e%block_engine_t, found%singularity, i)
+      if (i > 0) found%singular_links = singular_links(e%block_engine_t, i)
    end subroutine get_link_flags
 
    !> The closure error at `t` itself, from the motion that is followed or, where that is too far, from the deck's

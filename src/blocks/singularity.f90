@@ -14,7 +14,7 @@ module singularity
    use block_engine, only: block_engine_t
    implicit none
    private
-   public :: singularity_of, block_singularity, has_two_roots, drive_speed
+   public :: judge_position, block_singularity, has_two_roots, drive_speed
 
    !> A part of b along w, over the speeds that enter it, up to which the equations agree; likewise the coefficients
    !> above and their discriminant, up to which they are zero. A singular position is known to the root of the rounding,
@@ -28,21 +28,28 @@ module singularity
 contains
 
    !> What the position is that `e` has found last, one of singular_...: a dead point if some block has one, else a
-   !> change point if some block has one. Blocks that build on a singular one have no right-hand side of their own.
-   integer function singularity_of(e) result(found)
+   !> change point if some block has one; and the first `block` for which that is so, 0 where none is singular. Blocks
+   !> that build on a singular one have no right-hand side of their own.
+   subroutine judge_position(e, singularity, block)
       type(block_engine_t), intent(in) :: e
-      integer :: missing(0:e%blocks%unknowns), before, k
+      integer, intent(out) :: singularity, block
+      integer :: missing(0:e%blocks%unknowns), before, found, k
 
-      found = singular_unclear
+      singularity = singular_unclear
+      block = 0
       missing = 0
       do k = 1, size(e%needed)
-         associate (i => e%needed(k), block => e%blocks%list(e%needed(k)))
+         associate (i => e%needed(k), b => e%blocks%list(e%needed(k)))
             before = largest_known(e%blocks, i, missing)
-            if (before == 0 .and. e%is_singular(i)) found = max(found, block_singularity(e%blocks, i, e%state))
-            missing(e%blocks%unknown(block%first:block%last)) = max(before, merge(1, 0, e%is_singular(i)))
+            if (before == 0 .and. e%is_singular(i)) then
+               found = block_singularity(e%blocks, i, e%state)
+               if (block == 0 .or. found > singularity) block = i
+               singularity = max(singularity, found)
+            end if
+            missing(e%blocks%unknown(b%first:b%last)) = max(before, merge(1, 0, e%is_singular(i)))
          end associate
       end do
-   end function singularity_of
+   end subroutine judge_position
 
    !> The same of block `i` at the singular position of `s`; unclear where all that moves the block is at rest, and
    !> where it says the same aside, where its links can move to: then a drive moves nothing, or adds nothing to others.

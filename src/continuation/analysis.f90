@@ -294,6 +294,7 @@ contains
       found%known = known
       found%mark = mark
       found%singularity = singular_unclear
+      found%singular_links = diagnostic_t()
    end subroutine cut
 
    !> By how much redundant equations have differed at most, in characteristic lengths or rad; -1 where there are none.

@@ -120,6 +120,7 @@ contains
       call make_analysis(b, placed(m, found%position))
       call advance(b, found%t, q)
       found%singularity = q%singularity
+      found%singular_links = q%singular_links
       if (is_first) call pass_on(q, [diagnostic_mobile, diagnostic_idle, diagnostic_repeated], found)
    end subroutine judge_singularity
 

@@ -6,7 +6,7 @@ module diagnostics
    public :: diagnostic_t, new_diagnostic, max_links, remark_t
    public :: diagnostic_inconsistent, diagnostic_limit, diagnostic_far_estimate, diagnostic_second, &
       diagnostic_redundant, diagnostic_mobile, diagnostic_change, diagnostic_long, diagnostic_unused, &
-      diagnostic_dead_end, diagnostic_idle, diagnostic_repeated, diagnostic_method
+      diagnostic_dead_end, diagnostic_idle, diagnostic_repeated, diagnostic_method, diagnostic_singular
    public :: remark_small_letters, remark_title_long, remark_title_letters, remark_touching, remark_link_unused, &
       remark_point_unused, remark_radians, remark_guide, remark_jumps, remark_more
 
@@ -25,6 +25,7 @@ module diagnostics
       enumerator :: diagnostic_idle             !< the pairs already fix what `drive` drives
       enumerator :: diagnostic_repeated         !< other drives already give what `drive` drives
       enumerator :: diagnostic_method           !< another method finds a position
+      enumerator :: diagnostic_singular         !< the position of `links` is singular: a part of its mark's sentence
    end enum
 
    !> The kinds of remarks: what a deck has that is harmless, or likely not what was meant.
@@ -51,7 +52,7 @@ module diagnostics
       integer :: links(max_links) = 0          !< the numbers of links
       integer :: more = 0                      !< links for which there is no room
       integer :: equations = 1                 !< diagnostic_redundant: number of equations
-      logical :: in_line = .false.             !< diagnostic_limit: the two links are in line
+      logical :: in_line = .false.             !< diagnostic_limit, diagnostic_singular: the two links are in line
       logical :: other = .false.     !< diagnostic_change: on the other branch; diagnostic_method: at another assembly
       logical :: here = .false.                !< diagnostic_change: the instant is the change point
       logical :: is_angle = .false.            !< `value` is an angle, not a length

@@ -29,6 +29,7 @@ module motion
       real(wp) :: t = 0.0_wp                             !< the instant
       integer :: mark = mark_none                        !< why it is flagged
       integer :: singularity = singular_unclear          !< of mark_singular: one of singular_...
+      type(diagnostic_t) :: singular_links               !< and its links, where they are known
       integer :: known = -1  !< what exists: -1 nothing, 0 positions, 1 velocities too, 2 accelerations too
       type(diagnostic_t), allocatable :: diagnostics(:)  !< none: not allocated
       real(wp) :: origin(2) = 0.0_wp                     !< the place from which x and y of `position` are counted

@@ -12,7 +12,7 @@ module listing
    use set_motion, only: set_motion_t, is_flagged, in_set
    use listing_layout, only: layout_t, new_layout
    use listing_tables, only: table_t, put_instant, put_requested
-   use listing_diagnostics, only: put_diagnostics, put_closure_error, remarks_text
+   use listing_diagnostics, only: put_diagnostics, put_singular, put_closure_error, remarks_text
    use text_output, only: output_t, put, add
    use numerals, only: whole
    use known_digits, only: unknown_digit
@@ -133,12 +133,12 @@ contains
       end do
    end subroutine listing_instant
 
-   !> Why some part of `s` has not all of its motion, each reason once.
+   !> Why some part of `s` has not all of its motion, each reason once, and of singular positions each with its links.
    subroutine put_marks(o, m, s)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(in) :: s
-      integer :: k, i
+      integer :: k, i, c
 
       do k = mark_none + 1, mark_inconsistent
          if (k /= mark_singular) then
@@ -146,8 +146,10 @@ contains
             cycle
          end if
          do i = singular_unclear, singular_dead
-            if (any(s%motions%mark == k .and. s%motions%singularity == i)) &
-               call put(o, ' *** '//words_of_mark(k, i, m%polish))
+            do c = 1, size(s%motions)
+               if (s%motions(c)%mark == k .and. s%motions(c)%singularity == i) call put_singular(o, m, &
+                  words_of_mark(k, i, m%polish), in_set(s%motions(c)%singular_links, s%parts%list(c)))
+            end do
          end do
       end do
    end subroutine put_marks

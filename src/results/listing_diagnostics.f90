@@ -10,7 +10,7 @@ module listing_diagnostics
    use phrases
    implicit none
    private
-   public :: limit_words, put_diagnostics, put_closure_error, remarks_text
+   public :: limit_words, put_diagnostics, put_singular, put_closure_error, remarks_text
 
    integer, parameter :: line_length = 120
    !> What concerns the results.
@@ -65,10 +65,45 @@ contains
 
       do i = 1, size(list)
          call put_broken(o, merge(' *** ', ' --- ', any(list(i)%kind == of_results)), words_of(m, list(i)))
-         if (list(i)%kind == diagnostic_limit) call put(o, ' *** '//links(m, list(i))//' ' &
-            //phrase(merge(say_in_line, say_at_limit, list(i)%in_line), m%polish))
+         if (list(i)%kind == diagnostic_limit) call put(o, ' *** '//at_limit(m, list(i)))
       end do
    end subroutine put_diagnostics
+
+   !> The sentence `words` of a singular position, with the links of `r` before its colon.
+   subroutine put_singular(o, m, words, r)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      character(*), intent(in) :: words
+      type(diagnostic_t), intent(in) :: r
+      integer :: colon
+
+      colon = index(words, ':')
+      if (all(r%links == 0)) then
+         call put(o, ' *** '//words)
+      else
+         call put_broken(o, ' *** ', words(:colon - 1)//', '//links(m, r)//in_line(m, r, ' ')//words(colon:))
+      end if
+   end subroutine put_singular
+
+   !> LINKS A, B AT THE LIMIT, IN LINE
+   function at_limit(m, r) result(text)
+      type(mechanism_t), intent(in) :: m
+      type(diagnostic_t), intent(in) :: r
+      character(:), allocatable :: text
+
+      text = links(m, r)//' '//phrase(say_at_limit, m%polish)//in_line(m, r, ', ')
+   end function at_limit
+
+   !> `before` and the words for links in line; '' where those of `r` are not.
+   function in_line(m, r, before) result(text)
+      type(mechanism_t), intent(in) :: m
+      type(diagnostic_t), intent(in) :: r
+      character(*), intent(in) :: before
+      character(:), allocatable :: text
+
+      text = ''
+      if (r%in_line) text = before//phrase(say_in_line, m%polish)
+   end function in_line
 
    !> `text` in one line or, where names are many and long, in two; each begins with `mark`.
    subroutine put_broken(o, mark, text)
@@ -136,7 +171,7 @@ contains
 
       text = measure(m, r, '(es17.9)')
       if (r%links(1) == 0) return
-      text = text//'   '//links(m, r)//' '//phrase(merge(say_in_line, say_at_limit, r%in_line), m%polish)
+      text = text//'   '//at_limit(m, r)
    end function limit_words
 
    !> PAIR A, or DRIVE ANGLE B

@@ -50,7 +50,7 @@ module phrases
       say_not_needed = phrase_t('NOT NEEDED', 'ZBEDNA'), &
       say_closure_error_of = phrase_t('STAYS OPEN BY', 'POZOSTAJE OTWARTA O'), &
       say_limit = phrase_t('LIMIT OF MOTION AT T =', 'KRES RUCHU W CHWILI T ='), &
-      say_in_line = phrase_t('AT THE LIMIT, IN LINE', 'NA KRESIE RUCHU, W JEDNEJ LINII'), &
+      say_in_line = phrase_t('IN LINE', 'W JEDNEJ LINII'), &
       say_off_by = phrase_t('ESTIMATED ANGLE WAS OFF BY', 'KAT PRZYBLIZONY ODBIEGAL O'), &
       say_second = phrase_t('ANOTHER ASSEMBLY IS ABOUT AS NEAR', 'INNY MONTAZ JEST PODOBNIE BLISKI'), &
       say_redundant = phrase_t('REDUNDANT EQUATION', 'ROWNANIE NADLICZBOWE'), &

@@ -71,7 +71,7 @@ contains
       if (.not. tables) then
          wrong = index(line, '****') > 0
       else if (starts(line, ' *** ')) then
-         wrong = all(marks /= line(6:75)) .and. .not. is_remark(line)
+         wrong = all(marks /= without_links(line(6:))) .and. .not. is_remark(line)
       else if (is_remark(line)) then
          wrong = .false.
       else if (starts(line, ' INSTANT ') .or. starts(line, ' CHWILA ') .or. index(line, ' = ') > 0) then
@@ -82,6 +82,17 @@ contains
          wrong = .not. (are_numbers(line(10:)) .or. are_heads(line(10:)))
       end if
    end function line_is_wrong
+
+   !> The sentence `text` without the links that it names before its colon.
+   pure function without_links(text) result(rest)
+      character(*), intent(in) :: text
+      character(len(text)) :: rest
+      integer :: comma
+
+      rest = text
+      comma = max(index(text, ', LINK'), index(text, ', OGNIW'))
+      if (comma > 0) rest = text(:comma - 1)//text(index(text, ': ', back=.true.):)
+   end function without_links
 
    !> The line holds the words of a remark.
    pure logical function is_remark(line)

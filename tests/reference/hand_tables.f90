@@ -21,8 +21,13 @@ module hand_tables
    character(4), parameter :: none_words(2) = [character(4) :: 'NONE', 'BRAK']
    character(40), parameter :: unknown_words(2) = [character(40) :: 'DIGITS THAT ROUNDING LEAVES OPEN', &
       'CYFRY NIEPEWNE Z POWODU ZAOKRAGLEN']
-   character(60), parameter :: singular_words(2) = [character(60) :: 'CHANGE POINT: VELOCITIES NOT UNIQUE', &
-      'PUNKT ZMIANY: PREDKOSCI NIEJEDNOZNACZNE']
+   character(40), parameter :: singular_words(2, 2) = reshape([character(40) :: 'CHANGE POINT', &
+      'VELOCITIES NOT UNIQUE', 'PUNKT ZMIANY', 'PREDKOSCI NIEJEDNOZNACZNE'], [2, 2])
+   character(6), parameter :: link_words(2, 2) = reshape([character(6) :: 'LINK', 'LINKS', 'OGNIWO', 'OGNIWA'], [2, 2])
+   character(14), parameter :: line_words(2) = [character(14) :: 'IN LINE', 'W JEDNEJ LINII']
+   !> Two links with a smaller sine of the angle between them are in line: an instant is a change point but for the
+   !> rounding of a double, and angles are off by its root at most.
+   real(qp), parameter :: parallel = 1.0e-6_qp
    !> The heads over links, points and pairs; their words end where the numbers do.
    character(line_length), parameter :: heads(3, 2) = reshape([character(line_length) :: &
       ' LINK               X           Y         PHI          VX          VY        VPHI' &
@@ -45,14 +50,16 @@ module hand_tables
 contains
 
    !> Instant number `step` of `m`, whose links are at `b`, in the order of the deck; `resting` (links): they have no
-   !> velocity of their own; `error` (3, 0:2, requests), of size 0 where all digits are known.
-   subroutine put_tables(o, m, scales, step, b, resting, error)
+   !> velocity of their own, for at a change point those numbered `crossing` have two; `error` (3, 0:2, requests), of size
+   !> 0 where all digits are known.
+   subroutine put_tables(o, m, scales, step, b, resting, crossing, error)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(hand_scales_t), intent(in) :: scales
       integer, intent(in) :: step
       type(body_t), intent(in) :: b(:)
       logical, intent(in) :: resting(:)
+      integer, intent(in) :: crossing(:)
       real(qp), intent(in) :: error(:, 0:, :)
       type(hand_row_t) :: row
       character(line_length) :: line
@@ -78,9 +85,28 @@ contains
          call put(o, line(:name_length + field_length*(6 + row%column(row%columns))))
       end do
       if (kind == 0 .and. any(resting)) call put_time(o, m, scales, step, language)
-      if (any(resting)) call put(o, ' *** '//trim(singular_words(language)))
+      if (any(resting)) call put(o, ' *** '//crossing_words(m, b, crossing, language))
       if (masked) call put(o, ' --- ?: '//trim(unknown_words(language)))
    end subroutine put_tables
+
+   !> What there is to say of a change point: its links, and whether two of them are in line.
+   function crossing_words(m, b, crossing, language) result(text)
+      type(mechanism_t), intent(in) :: m
+      type(body_t), intent(in) :: b(:)
+      integer, intent(in) :: crossing(:), language
+      character(:), allocatable :: text
+      integer :: i
+
+      text = trim(singular_words(1, language))//', '//trim(link_words(min(2, size(crossing)), language))
+      do i = 1, size(crossing)
+         if (i > 1) text = text//','
+         text = text//' '//trim(m%links(crossing(i))%name)
+      end do
+      if (size(crossing) == 2) then
+         if (abs(sin(b(crossing(2))%phi%v - b(crossing(1))%phi%v)) < parallel) text = text//' '//trim(line_words(language))
+      end if
+      text = text//': '//trim(singular_words(2, language))
+   end function crossing_words
 
    !> The heads over rows of one `kind`: names, powers of ten, units. What a unit is divided by has a line of its own
    !> where the longest unit has no room in its column, a blank before it.

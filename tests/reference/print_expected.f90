@@ -60,6 +60,7 @@ contains
       real(qp), allocatable :: error(:, :, :)
       logical :: resting(size(m%links)), was_flagged(0:max(0, instant_count(m) - 1))
       character(:), allocatable :: fault
+      integer, allocatable :: crossing(:)
       integer :: k
 
       scales = scales_by_hand(m)
@@ -72,6 +73,7 @@ contains
          call move_links_to(name, m, real(instant(m, k), qp), links, fault)
          if (fault /= '') call give_up(fault)
          resting = .false.
+         crossing = [integer ::]
          if (k == 0) diagnostics = redundant_by_hand(name, m)
          if (k > 0) then
             diagnostics = passages_by_hand(name, m, instant(m, k - 1), instant(m, k))
@@ -79,12 +81,13 @@ contains
             if (any(diagnostics%here)) then
                resting = not_driven(m)
                was_flagged(k) = .true.
+               crossing = links_of(diagnostics(findloc(diagnostics%here, .true., dim=1)))
             end if
          end if
          ! Next to dead points only are digits in doubt.
          error = reshape([real(qp) ::], [3, 3, 0])
          if (index(name, 'dead_point') == 1) error = checked_estimates(m, real(instant(m, k), qp))
-         call put_tables(o, m, scales, k, links, resting, error)
+         call put_tables(o, m, scales, k, links, resting, crossing, error)
          call put_diagnostics(o, m, diagnostics)
       end do
       ! All of these motions are followed from their first instant on; METHOD DENSE and MATRIX cannot tell.
@@ -97,6 +100,14 @@ contains
       call listing_end(o, m, count(.not. was_flagged), count(was_flagged), tally, &
          closure_error=merge(0.0_wp, -1.0_wp, size(redundant_by_hand(name, m)) > 0))
    end subroutine print_set
+
+   !> The numbers of the links of `r`.
+   function links_of(r) result(list)
+      type(diagnostic_t), intent(in) :: r
+      integer, allocatable :: list(:)
+
+      list = pack(r%links, r%links > 0)
+   end function links_of
 
    !> The estimates of the errors of the rows (3, 0:2, requests) next to a dead point, which must be about those by
    !> derivatives.

@@ -371,7 +371,7 @@ equal 'no assembly: protocol' 3 "$(grep -cE ' (SINGULAR|LIMIT|DIVERGED) ' "$w/op
 { PHI=0.0 RATE=0.5; one_set 2.0 4.0 2.0 4.0 0.0 0.0 0.0; card END; } > "$w/flat.deck"
 "$kinmat" "$w/flat.deck" --csv "$w/flat.csv" > "$w/flat.lst" 2> "$w/err"
 equal 'change point: status' 2 $?
-equal 'change point: sentence' ' *** CHANGE POINT: VELOCITIES NOT UNIQUE' \
+equal 'change point: sentence' ' *** CHANGE POINT, LINKS COUPLER, ROCKER IN LINE: VELOCITIES NOT UNIQUE' \
    "$(grep -m 1 '\*\*\*' "$w/flat.lst")"
 equal 'change point: csv' \
    '1,0,LINK,COUPLER,2.0000000000000000E+000,0.0000000000000000E+000,0.0000000000000000E+000,,,,,,,NO-RATES' \

@@ -81,7 +81,8 @@ contains
       character(label_length), intent(in) :: label(3)
       type(drive_words_t) :: drive
 
-      drive%words = trim(label(1))//' '//trim(label(2))//' '//label(3)
+      drive%words = trim(label(1))//' '//label(2)
+      if (label(1) == 'RELANGLE') drive%words = trim(drive%words)//' '//label(3)
       drive%name = label(2)
       drive%is_angle = label(1) == 'ANGLE' .or. label(1) == 'RELANGLE'
       if (label(1) == 'ANGLE') drive%kind = 1

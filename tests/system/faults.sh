@@ -79,7 +79,8 @@ found() { awk "function acos(x) { return atan2(sqrt(1 - x*x), x) } function asin
    BEGIN { pi = atan2(0, -1); printf \"%.9E\", $1 }"; }
 small() { awk "BEGIN { pi = atan2(0, -1); printf \"%.2E\", $1 }"; }
 
-singular=' *** JACOBIAN SINGULAR: NO UNIQUE VELOCITIES'
+# singular LINKS: the sentence of a singular position of these
+singular() { echo " *** JACOBIAN SINGULAR, $*: NO UNIQUE VELOCITIES"; }
 open=' *** TOO MANY EQUATIONS, AND THEY CONTRADICT ONE ANOTHER'
 none=' *** NO POSITION FOUND'
 largest=' LARGEST GAP OF REDUNDANT EQUATIONS, OF THE SIZE:'
@@ -148,41 +149,41 @@ told 'too many equations for METHOD MATRIX' 1 \
 # Freedoms by rank: the count is right and the structure too, the numbers are not.
 parallelogram() { head_of PARALLEL; four_bar '' 0.0 2.0 4.0 2.0 4.0 40.0 0.0 40.0; "$@"; until_time 1 1.0; }
 parallelogram drive ANGLE COUPL '' 0.0 > "$w/deck"
-told 'the coupler of a parallelogram is driven' 2 "0:$singular
+told 'the coupler of a parallelogram is driven' 2 "0:$(singular LINKS CRANK, ROCK)
 0: *** LINKS CRANK, COUPL, ROCK CAN STILL MOVE, ADD A DRIVE
 0: *** DRIVE ANGLE COUPL MOVES NOTHING
-1:$singular"
+1:$(singular LINKS CRANK, ROCK)"
 parallelogram drive RELANGLE CRANK ROCK 0.0 > "$w/deck"
-told 'the cranks of a parallelogram by their difference' 2 "0:$singular
+told 'the cranks of a parallelogram by their difference' 2 "0:$(singular LINKS CRANK, COUPL, ROCK)
 0: *** LINKS CRANK, COUPL, ROCK CAN STILL MOVE, ADD A DRIVE
 0: *** DRIVE RELANGLE CRANK ROCK MOVES NOTHING
-1:$singular"
+1:$(singular LINKS CRANK, COUPL, ROCK)"
 scott_russell() { head_of 'SCOTT RUSSELL'; link CRANK 0.0 0.0 30.0; link BAR 0.87 0.5 -30.0; link BLOCK 1.73 0.0 0.0
    point O BASE; point O1 CRANK; point A1 CRANK 1.0; point A2 BAR; point B2 BAR 1.0; point C BAR -1.0; point B BLOCK
    joint O O1 PO; joint A1 A2 PA; joint B2 B PB; card PRISM O B GUIDE 0.0 0.0 0.0; "$@"; until_time 1 1.0; }
 scott_russell drive X C '' 0.0 > "$w/deck"
-told 'a drive across a straight line that the point cannot leave' 2 "0:$singular
+told 'a drive across a straight line that the point cannot leave' 2 "0:$(singular LINKS CRANK, BAR)
 0: *** LINKS CRANK, BAR, BLOCK CAN STILL MOVE, ADD A DRIVE
 0: *** DRIVE X C MOVES NOTHING
-1:$singular"
+1:$(singular LINKS CRANK, BAR)"
 # Inverse points of the cell, 3**2 - 1.5**2 = 6.75 over the diameter 2 of the crank's circle: P stays on x = 3.375.
 sed -e '/^DRIVE /d' -e '/^TIME /d' -e '/^END/d' input/peaucellier.deck > "$w/deck"
 { drive X P '' 3.375; until_time 1 1.0; } >> "$w/deck"
 # Where on its way it stands rounding decides: no bytes are compared.
 "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
-equal "across Peaucellier's line" "0:$singular
+equal "across Peaucellier's line" "0:$(singular LINKS CRANK, ARM-A, ARM-B, BAR-AC, BAR-BC, BAR-AP AND 1 MORE)
 0: *** LINKS CRANK, ARM-A, ARM-B, BAR-AC, BAR-BC, BAR-AP AND 1 MORE CAN STILL MOVE, ADD A DRIVE
 0: *** DRIVE X P MOVES NOTHING
-1:$singular" "$(said "$w/out")"
+1:$(singular LINKS CRANK, ARM-A, ARM-B, BAR-AC, BAR-BC, BAR-AP AND 1 MORE)" "$(said "$w/out")"
 # Crank and lever turn about points of the same place: the block stays where it is on the lever.
 { head_of TOGETHER; link CRANK 0.0 0.0 30.0; link LEVER 0.0 0.0 30.0; link BLOCK 0.87 0.5 30.0
    point O BASE; point Q BASE; point O1 CRANK; point A1 CRANK 1.0; point Q2 LEVER; point B BLOCK
    joint O O1 PO; joint Q Q2 PQ; joint A1 B PA; card PRISM Q2 B GUIDE 0.0 0.0 0.0; drive SLIDE GUIDE '' 1.0
    until_time 1 1.0; } > "$w/deck"
-told 'a slide that cannot change' 2 "0:$singular
+told 'a slide that cannot change' 2 "0:$(singular LINKS CRANK, LEVER, BLOCK)
 0: *** LINKS CRANK, LEVER, BLOCK CAN STILL MOVE, ADD A DRIVE
 0: *** DRIVE SLIDE GUIDE MOVES NOTHING
-1:$singular"
+1:$(singular LINKS CRANK, LEVER, BLOCK)"
 # Scott Russell's mechanism on the coupler of a parallelogram: the x of its point C is that of the coupler.
 on_coupler() { head_of 'TWO DRIVES'; four_bar '' 0.0 2.0 4.0 2.0 4.0 60.0 0.0 60.0
    link CRANK-S 1.0 1.73 30.0; link BAR 1.87 2.23 -30.0; link BLOCK 2.73 1.73 0.0
@@ -191,31 +192,33 @@ on_coupler() { head_of 'TWO DRIVES'; four_bar '' 0.0 2.0 4.0 2.0 4.0 60.0 0.0 60
 angle_first() { drive ANGLE CRANK '' 60.0; drive X C '' 1.0; }
 angle_last() { drive X C '' 1.0; drive ANGLE CRANK '' 60.0; }
 on_coupler angle_first > "$w/deck"
-told 'two drives for one freedom, none for the other' 2 "0:$singular
+told 'two drives for one freedom, none for the other' 2 "0:$(singular LINKS CRANK-S, BAR)
 0: *** LINKS CRANK-S, BAR, BLOCK CAN STILL MOVE, ADD A DRIVE
 0: *** DRIVE X C ADDS NOTHING TO THE OTHER DRIVES
-1:$singular"
+1:$(singular LINKS CRANK-S, BAR)"
 on_coupler angle_last > "$w/deck"
-told 'the same in another order' 2 "0:$singular
+told 'the same in another order' 2 "0:$(singular LINKS CRANK-S, BAR)
 0: *** LINKS CRANK-S, BAR, BLOCK CAN STILL MOVE, ADD A DRIVE
 0: *** DRIVE ANGLE CRANK ADDS NOTHING TO THE OTHER DRIVES
-1:$singular"
+1:$(singular LINKS CRANK-S, BAR)"
 # A dead point is no idle drive: the piston that is as far as it goes is not named.
 { head_of TWO; four_bar 1 0.0 2.0 4.0 2.0 4.0 40.0 0.0 40.0; drive ANGLE COUPL1 '' 0.0
    slider 1.0 3.0 0.0 0.0 | sed 's/-10.0$/0.0/'; drive X B '' 4.0; until_time 1 1.0; } > "$w/deck"
-told 'an idle drive, and one at a dead point' 2 "0:$singular
+told 'an idle drive, and one at a dead point' 2 "0:$(singular LINKS CRANK1, ROCK1)
+0:$(singular LINKS CRANK, ROD IN LINE)
 0: *** LINKS CRANK1, COUPL1, ROCK1 CAN STILL MOVE, ADD A DRIVE
 0: *** DRIVE ANGLE COUPL1 MOVES NOTHING
-1:$singular"
+1:$(singular LINKS CRANK1, ROCK1)
+1:$(singular LINKS CRANK, ROD IN LINE)"
 { head_of NAPED; card LANG PL; four_bar '' 0.0 2.0 4.0 2.0 4.0 40.0 0.0 40.0; drive ANGLE COUPL '' 0.0; until_time 1 1.0; } > "$w/deck"
-told 'in Polish: a drive that moves nothing' 2 '0: *** JAKOBIAN OSOBLIWY: BRAK JEDNOZNACZNYCH PREDKOSCI
+told 'in Polish: a drive that moves nothing' 2 '0: *** JAKOBIAN OSOBLIWY, OGNIWA CRANK, ROCK: BRAK JEDNOZNACZNYCH PREDKOSCI
 0: *** OGNIWA CRANK, COUPL, ROCK RUCH NIEOKRESLONY, DODAJ NAPED
 0: *** NAPED ANGLE COUPL NICZEGO NIE PORUSZA
-1: *** JAKOBIAN OSOBLIWY: BRAK JEDNOZNACZNYCH PREDKOSCI'
+1: *** JAKOBIAN OSOBLIWY, OGNIWA CRANK, ROCK: BRAK JEDNOZNACZNYCH PREDKOSCI'
 { head_of 'THIRD CRANK'; three_cranks 0.0 30.0; until_time 1 1.0; } > "$w/deck"
-told 'three cranks without a drive' 2 "0:$singular
+told 'three cranks without a drive' 2 "0:$(singular LINKS CRANK-1, CRANK-2, CRANK-3, COUPLER)
 0: *** LINKS CRANK-1, CRANK-2, CRANK-3, COUPLER CAN STILL MOVE, ADD A DRIVE
-1:$singular"
+1:$(singular LINKS CRANK-1, CRANK-2, CRANK-3, COUPLER)"
 
 # Redundant and consistent: of those that depend on one another, the last of the deck.
 { head_of TWICE; four_bar '' $crank_rocker; drive ANGLE CRANK '' 14.0 9.0

@@ -63,15 +63,22 @@ deck() {
    for name; do mark=$mark+; "$name"; done
    card METHOD "$method"; card TIME 1 '' '' 0.0 1.0; card END
 }
-# of_instant K LISTING: which sentences on singular positions stand under instant K
-of_instant() {
-   awk -v k="$1" '/^ (INSTANT|CHWILA) / { at = $2 } /^ [*][*][*] (JACOBIAN|CHANGE POINT:|DEAD|JAKOBIAN|PUNKT)/ && at == k {
-      print substr($0, 6) }' "$2"
+# Two dyads on one crank: a parallelogram at its change point, and one that is stretched across the crank.
+two_dyads() {
+   parallelogram
+   link C3 0.0 0.0 90.0; link R3 2.0 5.0 270.0; point G3 BASE 2.0 5.0; point C31 "C3$mark"; point C32 "C3$mark" 2.0
+   point R31 "R3$mark"; point R32 "R3$mark" 3.0; joint A2 C31 P3; joint C32 R32 P4; joint R31 G3 P5
 }
 
-change='CHANGE POINT: VELOCITIES NOT UNIQUE'
-dead='DEAD POINT: NO FINITE VELOCITIES'
-unclear='JACOBIAN SINGULAR: NO UNIQUE VELOCITIES'
+# of_instant K LISTING: which sentences on singular positions stand under instant K
+of_instant() {
+   awk -v k="$1" '/^ (INSTANT|CHWILA) / { at = $2 }
+      /^ [*][*][*] (JACOBIAN|CHANGE POINT[,:]|DEAD|JAKOBIAN|PUNKT [A-Z]*[,:])/ && at == k { print substr($0, 6) }' "$2"
+}
+
+change=': VELOCITIES NOT UNIQUE'
+dead=': NO FINITE VELOCITIES'
+unclear=': NO UNIQUE VELOCITIES'
 
 # says K WORDS NAME...: by these METHODS, in m, mm and km
 says() {
@@ -87,29 +94,31 @@ says() {
 }
 
 METHODS='NEWTON DENSE MATRIX'
-says 0 "$change" parallelogram
-says 1 "$change" parallelogram_later
-says 0 "$dead" far_end
-says 0 "$dead" near_end
-says 0 "$unclear" idle_at_rest
+says 0 "CHANGE POINT, LINKS CO+, RO+ IN LINE$change" parallelogram
+says 1 "CHANGE POINT, LINKS CO+, RO+ IN LINE$change" parallelogram_later
+says 0 "DEAD POINT, LINKS CR+, RD+ IN LINE$dead" far_end
+says 0 "DEAD POINT, LINKS CR+, RD+ IN LINE$dead" near_end
+says 0 "JACOBIAN SINGULAR, LINKS CR+, RO+$unclear" idle_at_rest
 METHODS='NEWTON DENSE'
-says 0 "$dead" rocker
-says 0 "$unclear" rocker_turns
-says 1 "$change" kite_later
-says 1 "$dead" far_end_later
-says 1 "$dead" rocker_later
-says 0 "$unclear" idle
-says 0 "$unclear" stretched
-says 0 "$change
-$dead" parallelogram far_end
-says 0 "$change
-$dead" rocker parallelogram
-says 0 "$unclear
-$change
-$dead" rocker_turns parallelogram far_end
+says 0 "DEAD POINT, LINKS CR+, CO+ IN LINE$dead" rocker
+says 0 "JACOBIAN SINGULAR, LINKS CR+, CO+ IN LINE$unclear" rocker_turns
+says 1 "CHANGE POINT, LINKS CO+, RO+ IN LINE$change" kite_later
+says 1 "DEAD POINT, LINKS CR+, RD+ IN LINE$dead" far_end_later
+says 1 "DEAD POINT, LINKS CR+, CO+ IN LINE$dead" rocker_later
+says 0 "JACOBIAN SINGULAR, LINKS CR+, RO+$unclear" idle
+says 0 "JACOBIAN SINGULAR, LINKS CO+, RO+ IN LINE$unclear" stretched
+says 0 "DEAD POINT, LINKS C3+, R3+ IN LINE$dead" two_dyads
+says 0 "CHANGE POINT, LINKS CO+, RO+ IN LINE$change
+DEAD POINT, LINKS CR++, RD++ IN LINE$dead" parallelogram far_end
+says 0 "CHANGE POINT, LINKS CO++, RO++ IN LINE$change
+DEAD POINT, LINKS CR+, CO+ IN LINE$dead" rocker parallelogram
+says 0 "JACOBIAN SINGULAR, LINKS CR+, CO+ IN LINE$unclear
+CHANGE POINT, LINKS CO++, RO++ IN LINE$change
+CHANGE POINT, LINKS CO+++, RO+++ IN LINE$change
+DEAD POINT, LINKS CR++++, RD++++ IN LINE$dead" rocker_turns parallelogram parallelogram far_end
 deck NEWTON 0 PL rocker_turns parallelogram far_end > "$w/deck"
 "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
-equal 'in Polish' 'JAKOBIAN OSOBLIWY: BRAK JEDNOZNACZNYCH PREDKOSCI
-PUNKT ZMIANY: PREDKOSCI NIEJEDNOZNACZNE
-PUNKT MARTWY: BRAK SKONCZONYCH PREDKOSCI' "$(of_instant 0 "$w/out")"
+equal 'in Polish' 'JAKOBIAN OSOBLIWY, OGNIWA CR+, CO+ W JEDNEJ LINII: BRAK JEDNOZNACZNYCH PREDKOSCI
+PUNKT ZMIANY, OGNIWA CO++, RO++ W JEDNEJ LINII: PREDKOSCI NIEJEDNOZNACZNE
+PUNKT MARTWY, OGNIWA CR+++, RD+++ W JEDNEJ LINII: BRAK SKONCZONYCH PREDKOSCI' "$(of_instant 0 "$w/out")"
 conclude
