@@ -51,6 +51,7 @@ module listing_reader
       character(30) :: unit(9) = ''          !< as it stands in the heads, its lines put together
       integer :: drives = 0                  !< of the instant, that have been read
       logical :: results = .false.           !< the deck and the structure are over
+      logical :: is_over = .false.           !< what follows is asked of the whole run
    end type table_t
 
 contains
@@ -96,6 +97,9 @@ contains
       if (line == ' RESULTS' .or. line == ' WYNIKI') then
          table%results = .true.
          call expand_requests(set%deck)
+      else if (table%results .and. (table%is_over .or. starts(line, ' EXTREMES ', ' EKSTREMA ') &
+         .or. starts(line, ' RANGES OF THE DRIVES', ' ZAKRESY NAPEDOW'))) then
+         table%is_over = .true.
       else if (starts(line, ' INSTANT ', ' CHWILA ') .and. table%results) then
          call read_wholes(line(:index(line, 'T =')), counts, used)
          if (used /= 1) call blame(set, line)
