@@ -12,8 +12,9 @@ BEGIN {
    print ".SH NAME\nkinmat \\- kinematics of planar mechanisms"
    print ".SH SYNOPSIS\n.B kinmat\n[\\fIoptions\\fR] [\\fIDECK\\fR]"
    print ".SH DESCRIPTION"
-   print "Finds positions, velocities and accelerations of all links of a planar mechanism of any structure,"
-   print "with revolute and prismatic pairs, for the motions of its drives that a deck of 80\\-column cards gives."
+   print "Finds positions, velocities and accelerations of all links of a planar"
+   print "mechanism of any structure, with revolute and prismatic pairs, for the"
+   print "motions of its drives that a deck of 80\\-column cards gives."
 }
 { head = substr($0, 1, 23); tail = substr($0, 24) }
 /^kinmat/ { print ".TP\n" bold(head) "\n" plain(tail); next }
@@ -33,6 +34,7 @@ statuses { statuses = statuses " " plain($0); next }
 { print plain($0) }
 END {
    print ".SH SEE ALSO"
-   print "The manual, with all cards, messages and formats: \\fIPREFIX\\fR/share/doc/kinmat/manual.md, where kinmat is installed"
-   print "below \\fIPREFIX\\fR (/usr/local)."
+   print "The manual, with all cards, messages and formats:"
+   print "\\fIPREFIX\\fR/share/doc/kinmat/manual.md, where kinmat is installed below"
+   print "\\fIPREFIX\\fR (/usr/local)."
 }

@@ -25,6 +25,8 @@ module command_line
       logical :: each_set = .false.          !< each set has a file of its own
    end type file_option_t
 
+   !> The options of the outputs; those of one directory name it once. A further output costs a line here and one in the
+   !> help.
    type(file_option_t), parameter :: file_options(out_last) = [ &
       file_option_t('-o'), &
       file_option_t('--csv'), &
@@ -43,7 +45,7 @@ module command_line
    type :: options_t
       character(:), allocatable :: deck      !< '' is standard input; with --ruler the name of a card, or ''
       type(word_t) :: files(out_last)        !< '' is standard output; not allocated: this output is not asked for
-      logical :: no_listing = .false.
+      logical :: no_listing = .false.        !< no listing, not even on standard output
       logical :: quiet = .false.             !< no remarks on standard error, no progress
       logical :: check = .false.             !< read and analyse only
       logical :: errors = .false.            !< CSV and log have an error estimate of every number
