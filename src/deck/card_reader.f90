@@ -29,7 +29,7 @@ module card_reader
       logical :: given(3) = .false.             !< which of them are not blank
       logical :: on_star(3) = .false.           !< which of them are on the `*` card
       integer :: drive = 0, term = 0            !< the first card of a term: the numbers of drive and term; 0: any other
-      integer :: point = 0                      !< of POINT and JOINT: the number of its first point
+      integer :: point = 0                      !< of a JOINT card: the number of its first point
    end type parsed_card_t
 
    !> Bounds of lengths, angles and times. Numbers beyond them have no use, and their squares would leave the range of
@@ -231,8 +231,7 @@ contains
             if (.not. numeric(i)) cycle
             call read_real(card%text(start:finish), value, error, place)
             if (error%number > 0) cycle
-         else if (numeric(i) .and. scan(card%text(border + 1:border + 1), '+-') == 1 .and. &
-                  scan(card%text(border:border), 'EeDd') == 0) then
+         else if (is_signed(card%text(start:finish), border + 2 - start, numeric(i))) then
             call add_remark(errors, remark_touching, card, border + 1, card%text(border + 1:finish))
             cycle
          end if
@@ -241,6 +240,26 @@ contains
                         whole(border)//' AND '//whole(border + 1))
       end do
    end subroutine find_cuts
+
+   !> Whether a number with a sign begins with the character number `first` of `text`. Where what is before it is a
+   !> number too (`numeric`), it must not be the exponent of that; where it is a label, it must be a number without an
+   !> error.
+   pure logical function is_signed(text, first, numeric)
+      character(*), intent(in) :: text
+      integer, intent(in) :: first
+      logical, intent(in) :: numeric
+      type(error_code_t) :: error
+      real(wp) :: value
+      integer :: place
+
+      is_signed = scan(text(first:first), '+-') == 1
+      if (numeric) then
+         is_signed = is_signed .and. scan(text(first - 1:first - 1), 'EeDd') == 0
+      else if (is_signed) then
+         call read_real(text(first:), value, error, place)
+         is_signed = error%number == 0
+      end if
+   end function is_signed
 
    !> Reads the labels and the whole number of `parsed`. `cut`: label fields that have an error already.
    subroutine read_labels(parsed, cut, errors)

@@ -8,7 +8,8 @@ module companion
    use, intrinsic :: iso_c_binding, only: c_ptr, c_char, c_associated, c_null_char
    use, intrinsic :: iso_fortran_env, only: dp => real64, qp => real128
    use failures, only: failure_t, fail, status_system, status_rejected
-   use cards, only: card_t
+   use cards, only: card_t, find_form, form_time, form_at, form_method, form_print, form_extremes, form_range, &
+      form_branch, form_end
    use deck_source, only: source_t, open_source, next_card, close_source
    use mechanism, only: mechanism_t, method_newton
    use text_output, only: output_t, open_output, put, close_output
@@ -99,21 +100,21 @@ contains
    end function script
 
    !> Writes trial `t` of `m` as a set of computations: its cards as they stand in the file `deck`, but for those of
-   !> method, instants and what is printed, and of branches, which METHOD NEWTON alone takes. The points and pairs are
-   !> printed too, at the first and the last instant: a point that nothing uses would be refused.
+   !> method, instants and what is asked of the motion, and of branches, which METHOD NEWTON alone takes. The points and
+   !> pairs are printed too, at the first and the last instant.
    subroutine put_trial(o, deck, m, t, failure)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: deck
       type(mechanism_t), intent(in) :: m
       type(trial_t), intent(in) :: t
       type(failure_t), allocatable, intent(out) :: failure
-      character(8), parameter :: replaced(4) = [character(8) :: 'METHOD', 'TIME', 'AT', 'PRINT']
+      integer, parameter :: replaced(*) = [form_method, form_time, form_at, form_print, form_extremes, form_range]
       real(dp) :: instants(0:t%last)
       type(source_t) :: source
       type(card_t) :: card
       character(24) :: number
       logical :: found, kept
-      integer :: set, k
+      integer :: set, k, form
 
       call open_source(source, deck, failure)
       set = 1
@@ -121,9 +122,10 @@ contains
       do while (.not. allocated(failure) .and. set <= m%set_number)
          call next_card(source, card, found, failure)
          if (.not. found) exit
-         if (card%text(1:1) /= '*') kept = all(card%text(:8) /= replaced)
-         if (card%text(:8) == 'BRANCH') kept = t%method == method_newton
-         if (card%text(:8) == 'END') then
+         form = find_form(card%text(:8))
+         if (card%text(1:1) /= '*') kept = all(form /= replaced)
+         if (form == form_branch) kept = t%method == method_newton
+         if (form == form_end) then
             set = set + 1
          else if (set == m%set_number .and. kept) then
             call put(o, trim(card%text))
