@@ -168,7 +168,7 @@ fi
 # stopped SIGNAL DECK: a run that has begun is sent the signal
 stopped() {
    rm -f stop.lst
-   env --default-signal=INT,TERM "$kinmat" "$2" -o stop.lst --csv stop.csv --log stop.log 2> err &
+   env --default-signal=INT,TERM "$kinmat" "$2" -o stop.lst --csv stop.csv --log stop.log --table stop.table 2> err &
    pid=$!
    waited=0
    until [ -s stop.csv ] && [ "$(wc -l < stop.csv)" -gt 10 ] || [ $waited -ge 200 ]; do sleep 0.05; waited=$((waited + 1)); done
@@ -181,7 +181,7 @@ stopped() {
    kill $killer 2> /dev/null
 }
 { sed '/^LANG/d' long | awk '{ print } /^TITLE/ && !told { print "LANG    PL"; told = 1 }'; } > polish
-rm -f stop.*
+rm -f stop[.-]*
 for one in 'INT 130 long' 'TERM 143 long' 'TERM 143 polish' 'INT 130 polish debug'; do
    set -- $one
    if [ -n "$4" ]; then kinmat=$debug; fi
@@ -191,9 +191,12 @@ for one in 'INT 130 long' 'TERM 143 long' 'TERM 143 polish' 'INT 130 polish debu
    last=$(tail -n 1 stop.log | awk '{ print $1 }')
    equal "SIG$1, $3: last line of the listing" " *** $words $last" "$(tail -n 1 stop.lst)"
    equal "SIG$1, $3: the last instant of the CSV" "1,$last" "$(tail -n 1 stop.csv | cut -d, -f1,2)"
-   for name in lst csv log; do whole "SIG$1, $3: $name" stop.$name; done
+   equal "SIG$1, $3: the last row of the table" "$(tail -n 1 stop.csv | cut -d, -f3)" "$(tail -n 1 stop-1.table | cut -d, -f1)"
+   equal "SIG$1, $3: rows of the table" '' "$(awk -F, 'NR == 1 { n = NF } NF != n' stop-1.table | head -n 2)"
+   for name in stop.lst stop.csv stop.log stop-1.table; do whole "SIG$1, $3: $name" $name; done
+   equal "SIG$1, $3: a set that was not reached leaves no row" 0 "$(wc -c < stop-2.table | tr -d " ")"
    columns "SIG$1, $3" stop.csv
-   rm -f stop.*
+   rm -f stop[.-]*
 done
 
 # Decks that cannot be read.
