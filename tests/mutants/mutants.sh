@@ -1,7 +1,7 @@
 #!/bin/sh
 # make mutants N=200 SEED=1: N faults, one at a time, in a copy of the sources below BUILD/mutants; which of them do the unit
 # tests and `make check` see? Lists those that survive. JOBS=2: two at a time; FILES='src/deck/cards.f90 ...': faults in these
-# alone.
+# alone. ONLY=file: its changes alone, a line each, as in equivalent.txt below.
 #
 # A mutant is built without traps and without optimization, which takes a second. It is killed by an assertion of a unit test
 # (those of its own module come first); or else by a listing that is not the one of closed forms; or else by the unit tests of a
@@ -16,7 +16,7 @@ OPENBLAS_NUM_THREADS=1
 export LC_ALL OPENBLAS_NUM_THREADS
 # Seconds of processor time of one process, and seconds by the clock: many times what the tests take.
 UNIT_TIME=${UNIT_TIME:-60} UNIT_CLOCK=${UNIT_CLOCK:-900}
-CHECK_TIME=10 CHECK_CLOCK=300
+CHECK_TIME=${CHECK_TIME:-10} CHECK_CLOCK=${CHECK_CLOCK:-300}
 unset MAKEFLAGS MFLAGS MAKELEVEL
 place=$(mkdir -p "$BUILD/mutants" && cd "$BUILD/mutants" && pwd) || exit 3
 tab=$(printf '\t')
@@ -201,12 +201,16 @@ report() {
 
 running=
 workers=
+[ -z "$ONLY" ] || ONLY=$(cd "$(dirname "$ONLY")" && pwd)/$(basename "$ONLY")
 trap 'for p in $workers; do kill $p 2> /dev/null; done; exit 3' 1 2 13 15
 rm -f "$place/result" "$place/uncompiled"
 : > "$place/result"
 prepare || exit 3
 (cd "$place/base" &&
-   $awk -v seed="$SEED" -v wanted="$N" -f tests/mutants/mutate.awk ${FILES:-$(find src -name '*.f90' -o -name '*.F90' | sort)}) |
+   $awk -v seed="$SEED" -v wanted="$N" -v all="$ONLY" -f tests/mutants/mutate.awk ${FILES:-$(find src -name '*.f90' -o -name '*.F90' | sort)}) |
+   $awk -F "$tab" -v only="$ONLY" '
+      BEGIN { if (only != "") while ((getline s < only) > 0) { split(s, f, "|"); asked[f[1] "|" f[2] "|" f[3]] = 1 } }
+      only == "" || ($2 "|" $5 "|" $6) in asked' |
    sort -n | $awk -v OFS="$tab" -F "$tab" '{ $1 = NR; print }' > "$place/list"
 for k in $(seq "$JOBS"); do
    worker "$k" &

@@ -119,5 +119,8 @@ equal 'five mutants: the last line' '5 mutants: 4 killed (1 by unit tests'"'"' a
 equal 'the one that never ends' 'Killed by time: 1, counted as traps. Equivalent survivors: 0.' "$(grep '^Killed' "$tiny/said.txt")"
 equal 'the survivor' 'SURVIVES src/base/tiny.f90:9' "$(grep '^SURVIVES' "$tiny/said.txt")"
 equal 'what has seen a fault' 'assertion: held' "$(sed -n 's/^[0-9]*: \(assertion.*\): src.*/\1/p' "$tiny/said.txt")"
+echo 'src/base/tiny.f90|listed = 2|listed = 1' > "$tiny/only.txt"
+(cd "$tiny" && BUILD=build N=5 ONLY=only.txt FC="${FC:-gfortran}" tests/mutants/mutants.sh) > "$tiny/said.txt" 2>&1
+equal 'one change alone' '1: listing: listed: src/base/tiny.f90:8: {listed = 2} -> {listed = 1}' "$(head -n 1 "$tiny/said.txt")"
 equal 'the sources are as they were' 'held = 2' "$(sed -n 's/^ *\(held = .*\)/\1/p' "$tiny/src/base/tiny.f90")"
 conclude
