@@ -8,6 +8,7 @@ module draft_drives
       double, &
       link_at
    use drive_laws, only: law_t, law_jet, set_spline, term_harmonic, term_power, term_table, term_rise
+   use rise_laws, only: rise_words
    use scheme_draft, only: draft_t, number, world, add_point, anywhere
    implicit none
    private
@@ -135,18 +136,17 @@ contains
       call set_spline(law)
    end subroutine make_table
 
-   !> A rise from the first instant on, to the last, or anywhere between about them.
+   !> A rise somewhere among the instants, at times from the first on or up to the last.
    subroutine make_rise(d, law, amplitude)
       type(draft_t), intent(inout) :: d
       type(law_t), intent(inout) :: law
       real(qp), intent(in) :: amplitude
-      character(8), parameter :: words(4) = [character(8) :: 'CYCLOID', '3-4-5', 'HARMONIC', 'PARABOLA']
 
       law%form = term_rise
-      law%word = words(throw(d%dice, 4))
+      law%word = rise_words(throw(d%dice, 4))
       associate (span => d%to - d%from)
          law%r(1) = double(d%from + number(d, -0.2_qp, 0.7_qp)*span)
-         if (chance(d%dice, 0.3_wp)) law%r(1) = d%from
+         if (chance(d%dice, 0.3_wp)) law%r(1) = double(d%from)
          law%r(2) = double(number(d, 0.1_qp, 1.0_qp)*span)
          if (chance(d%dice, 0.3_wp)) law%r(2) = double(d%to - law%r(1))
          law%r(3) = double(number(d, -1.0_qp, 1.0_qp)*amplitude)

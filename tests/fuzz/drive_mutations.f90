@@ -4,12 +4,11 @@ module drive_mutations
    use dice, only: dice_t, throw, chance, between, magnitude
    use deck_draft, only: draft_t, name_of, label, set_label, real_field, set_real, insert_line, drop_line, find_cards, &
       add_note
+   use rise_laws, only: rise_words
    use deck_changes, only: pick, near, put_real, is_degrees
    implicit none
    private
    public :: change_drive, add_term, change_time, change_at, change_method, exchange_drive
-
-   character(8), parameter :: rise_words(4) = [character(8) :: 'CYCLOID', '3-4-5', 'HARMONIC', 'PARABOLA']
 
 contains
 

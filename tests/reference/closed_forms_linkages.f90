@@ -4,7 +4,7 @@ module closed_forms_linkages
    use kinds, only: wp
    use quad_jet, only: qp, jet_t, pi_q, degree_q, constant_jet, time_jet, operator(+), operator(-), operator(*), &
       operator(/), sqrt, sin, cos
-   use rise_laws, only: rise_jet
+   use rise_laws, only: rise_jet, rise_words
    use closed_forms_dyads, only: place_t, body_t, fixed_place, body, place_on, polar, direction, third_corner
    implicit none
    private
@@ -67,14 +67,13 @@ contains
       integer, intent(in) :: set
       real(qp), intent(in) :: t
       type(body_t) :: links(4)
-      character(8), parameter :: laws(4) = [character(8) :: 'CYCLOID', '3-4-5', 'HARMONIC', 'PARABOLA']
       type(jet_t) :: phi
 
       if (set == 5) then
          phi = 1500.0_qp*360.0_qp/60000.0_qp*time_jet(t) - rise_jet('3-4-5', 10.0_qp, 20.0_qp, 96.0_qp, t)
       else
-         phi = 30.0_qp + rise_jet(trim(laws(set)), 0.3_qp, 1.2_qp, 61.64_qp, t) &
-            - rise_jet(trim(laws(set)), 2.1_qp, 0.6_qp, 61.64_qp, t)
+         phi = 30.0_qp + rise_jet(trim(rise_words(set)), 0.3_qp, 1.2_qp, 61.64_qp, t) &
+            - rise_jet(trim(rise_words(set)), 2.1_qp, 0.6_qp, 61.64_qp, t)
       end if
       links = crank_rocker(phi*degree_q, 1.0_qp)
    end function rise_dwell

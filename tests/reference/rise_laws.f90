@@ -4,8 +4,9 @@ module rise_laws
       cos
    implicit none
    private
-   public :: rise_jet, peak_rate
+   public :: rise_jet, peak_rate, rise_words
 
+   character(8), parameter :: rise_words(4) = [character(8) :: 'CYCLOID', '3-4-5', 'HARMONIC', 'PARABOLA']
    !> An instant that is before a joint by less than this part of the rise's times is meant to be at it.
    real(qp), parameter :: joint_part = 1.0e-6_qp
 
