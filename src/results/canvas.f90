@@ -25,7 +25,7 @@ module canvas
    !> What a name over a name counts, and one that leaves the picture, in pixels of overlap with a line.
    real(wp), parameter :: over_name = 60.0_wp, outside = 500.0_wp
 
-   !> Lines and names that are closer than this, in pixels, are hard to tell apart.
+   !> Lines that are closer than this, in pixels, are hard to tell apart.
    real(wp), parameter :: near = 4.0_wp
 
 contains
@@ -73,11 +73,13 @@ contains
    end subroutine append
 
    !> The start of the foot line (2) of a name of `length` letters for one of the places `p` (2, :): the candidate, to
-   !> eight sides at several distances, that covers the least of what is drawn. The name is noted as drawn.
-   subroutine find_clear_place(c, p, length, start)
+   !> eight sides at several distances, that covers the least of what is drawn, or is nearer to it than `clear` (pixels).
+   !> The name is noted as drawn.
+   subroutine find_clear_place(c, p, length, clear, start)
       type(canvas_t), intent(inout) :: c
       real(wp), intent(in) :: p(:, :)
       integer, intent(in) :: length
+      real(wp), intent(in) :: clear
       real(wp), intent(out) :: start(2)
       real(wp) :: low(2), high(2), half(2), distance, cost, least
       integer :: i, d, x, y
@@ -93,7 +95,7 @@ contains
                   distance = distances(d)*merge(0.75_wp, 1.0_wp, x*y /= 0)
                   low = p(:, i) + [real(x, wp), -real(y, wp)]*(half + distance) - half
                   high = low + 2.0_wp*half
-                  cost = cover(c, low - near, high + near) + distance_weight*distances(d)
+                  cost = cover(c, low - clear, high + clear) + distance_weight*distances(d)
                   if (cost >= least) cycle
                   least = cost
                   start = [low(1), high(2)]

@@ -2,7 +2,7 @@
 module outline
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use planar, only: point_of
+   use planar, only: cross, point_of
    implicit none
    private
    public :: outline_t, outlines_of, hull, is_same_place, corners_at, distance_to
@@ -53,20 +53,24 @@ contains
       end do
    end function corners_at
 
-   !> The distance of the place `p` (2) from the sides of the outline with the corners `c` (2, 2 or more), each longer
-   !> at both ends by the part `longer` of its length.
+   !> The distance of the place `p` (2) from the outline with the corners `c` (2, 2 or more; counterclockwise), the sides
+   !> longer at both ends by the part `longer` of their lengths; 0 inside.
    pure real(wp) function distance_to(c, p, longer) result(distance)
       real(wp), intent(in) :: c(:, :), p(2), longer
       real(wp) :: u(2), along
+      logical :: inside
       integer :: k, n
 
       n = size(c, 2)
+      inside = n > 2
       distance = huge(distance)
       do k = 1, n
          u = c(:, 1 + modulo(k, n)) - c(:, k)
          along = min(1.0_wp + longer, max(-longer, dot_product(p - c(:, k), u)/dot_product(u, u)))
          distance = min(distance, norm2(p - c(:, k) - along*u))
+         inside = inside .and. cross(u, p - c(:, k)) > 0.0_wp
       end do
+      if (inside) distance = 0.0_wp
    end function distance_to
 
    !> The corners of the convex hull of `p` (2, :), counterclockwise, by Jarvis's march; corners in line are left out.

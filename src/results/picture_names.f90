@@ -15,6 +15,8 @@ module picture_names
    integer, parameter :: max_names = 120
    !> Points closer than this, in pixels, have one name.
    real(wp), parameter :: together = 2.0_wp
+   !> How far names stay from what is drawn, in pixels. The name of a link must not seem to be that of another.
+   real(wp), parameter :: clear_of_point = 4.0_wp, clear_of_link = 8.0_wp
    !> Where along a bar its name may stand, in parts of its length.
    real(wp), parameter :: along(*) = [0.5_wp, 0.35_wp, 0.65_wp, 0.2_wp, 0.8_wp]
 
@@ -77,7 +79,7 @@ contains
             if (open(i)) open(i) = any(abs(p(:, i) - p(:, best)) > together)
          end do
          if (m%points(best)%name == m%links(m%points(best)%link)%name) cycle
-         call find_clear_place(c, p(:, best:best), len_trim(m%points(best)%name), start)
+         call find_clear_place(c, p(:, best:best), len_trim(m%points(best)%name), clear_of_point, start)
          call put_words(o, start, 'start', 'class="name"', trim(m%points(best)%name))
       end do
    end subroutine put_points
@@ -109,7 +111,7 @@ contains
                end associate
             end do
          end if
-         call find_clear_place(c, q, len_trim(m%links(i)%name), start)
+         call find_clear_place(c, q, len_trim(m%links(i)%name), clear_of_link, start)
          call put_words(o, start, 'start', 'class="link" style="fill:'//color_of(i)//'"', trim(m%links(i)%name))
          deallocate (q)
       end do

@@ -94,7 +94,7 @@ contains
    !> The flagged position `s`: thin lines, and rings about the joints, which show where the lines are covered.
    subroutine put_flagged(o, c, m, d, s)
       type(output_t), intent(inout) :: o
-      type(canvas_t), intent(in) :: c
+      type(canvas_t), intent(inout) :: c
       type(mechanism_t), intent(in) :: m
       type(drawing_t), intent(in) :: d
       type(snapshot_t), intent(in) :: s
@@ -102,6 +102,9 @@ contains
 
       call put_group(o, 'class="flagged"', '')
       call put_outlines(o, c, m, d, s)
+      do i = 1, size(m%links)
+         if (s%known(i) .and. .not. m%links(i)%ground) call add_outline(c, corner_pixels(c, d%outlines(i), s%place(:, i)))
+      end do
       do i = 1, size(m%pairs)
          associate (point => joint_point(m, s%known, i))
             if (point > 0) call put_circle(o, to_pixels(c, point_place(m, s, point)), ring_radius, 'class="ring"')
