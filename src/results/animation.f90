@@ -4,7 +4,7 @@ module animation
    use kinds, only: wp
    use constants, only: in_degrees, without_turns
    use mechanism, only: mechanism_t, drive_x, drive_y, drive_slide
-   use drives, only: drive_motion, new_law
+   use drives, only: law_t, drive_motion, new_law
    use motion, only: mark_none
    use names, only: drive_name
    use numerals, only: full, whole
@@ -35,6 +35,8 @@ module animation
    real(wp), parameter :: bar_ends(2) = [14.0_wp, real(width - 24, wp)], mark_height = 5.0_wp, dot_radius = 4.0_wp
    !> The values of so many drives stand beside the time.
    integer, parameter :: max_drives = 3
+   !> What is smaller than this part of the largest value of a drive is 0: six digits are shown.
+   real(wp), parameter :: not_shown = 1.0e-9_wp
 
 contains
 
@@ -143,17 +145,22 @@ contains
       type(course_t), intent(in) :: course
       integer, intent(in) :: y
       real(wp) :: up(2, size(course%frame))
+      real(wp) :: value(min(max_drives, size(m%drives)), d%frames)
       character(:), allocatable :: words
-      integer :: k
+      integer :: k, i
 
-      call put_window(o, real([14, y - line_height + 5], wp), real([width/2 + 100, line_height], wp))
+      value = drive_values(m, d)
+      call put_window(o, real([14, y - line_height + 5], wp), real([width - 28, line_height], wp))
       call put_group(o, 'class="clock"', '')
       up(1, :) = 0.0_wp
       up(2, :) = -real(line_height*(course%frame - 1), wp)
       call put_moving(o, course, 'animateTransform attributeName="transform" type="translate"', up, .false.)
       do k = 1, d%frames
          associate (s => d%frame(k))
-            words = 'T = '//fitted(s%t)//' '//trim(m%time_unit)//drive_values(m, s%t)
+            words = 'T = '//fitted(s%t)//' '//trim(m%time_unit)
+            do i = 1, size(value, 1)
+               words = words//', '//trim(drive_name(m, m%drives(i)))//' = '//fitted(value(i, k))
+            end do
             if (s%mark /= mark_none) words = words//': '//words_of_mark(s%mark, s%singularity, m%polish)
             call put_words(o, real([0, line_height*k - 5], wp), 'start', &
                trim(merge('class="time flag"', 'class="time"     ', s%mark /= mark_none)), words)
@@ -163,19 +170,23 @@ contains
       call put_window_end(o)
    end subroutine put_clock
 
-   !> The values of the first drives at `t`.
-   function drive_values(m, t) result(words)
+   !> The values of the first drives at the frames, angles in the deck's unit. Rounding errors of a 0 are not shown.
+   function drive_values(m, d) result(value)
       type(mechanism_t), intent(in) :: m
-      real(wp), intent(in) :: t
-      character(:), allocatable :: words
-      real(wp) :: f(0:2)
-      integer :: i
+      type(drawing_t), intent(in) :: d
+      real(wp) :: value(min(max_drives, size(m%drives)), d%frames), f(0:2)
+      type(law_t) :: law
+      integer :: i, k
 
-      words = ''
-      do i = 1, min(max_drives, size(m%drives))
-         f = drive_motion(new_law(m%drives(i)), t)
-         if (m%degrees .and. all(m%drives(i)%kind /= [drive_x, drive_y, drive_slide])) f = in_degrees(f)
-         words = words//', '//trim(drive_name(m, m%drives(i)))//' = '//fitted(f(0))
+      do i = 1, size(value, 1)
+         law = new_law(m%drives(i))
+         do k = 1, d%frames
+            f = drive_motion(law, d%frame(k)%t)
+            value(i, k) = f(0)
+         end do
+         if (m%degrees .and. all(m%drives(i)%kind /= [drive_x, drive_y, drive_slide])) &
+            value(i, :) = in_degrees(value(i, :))
+         where (abs(value(i, :)) < not_shown*maxval(abs(value(i, :)))) value(i, :) = 0.0_wp
       end do
    end function drive_values
 

@@ -73,8 +73,8 @@ contains
    end subroutine append
 
    !> The start of the foot line (2) of a name of `length` letters for one of the places `p` (2, :): the candidate, to
-   !> eight sides at several distances, that covers the least of what is drawn, or is nearer to it than `clear` (pixels).
-   !> The name is noted as drawn.
+   !> eight sides at several distances, that covers the least of what is drawn, or is nearer to it than `clear`
+   !> (pixels). The name is noted as drawn.
    subroutine find_clear_place(c, p, length, clear, start)
       type(canvas_t), intent(inout) :: c
       real(wp), intent(in) :: p(:, :)

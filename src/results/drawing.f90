@@ -66,8 +66,8 @@ module drawing
       real(wp) :: origin(2) = 0.0_wp         !< of the places, in the deck's coordinates
       integer :: stride = 1                  !< every so many instants of TIME are in a curve
       integer :: every = 1                   !< each so many instants of TIME are the deck's; 0: none
-      integer :: flagged = 0                 !< of the deck's instants
-      real(wp), allocatable :: flagged_at(:) !< the first flagged instants
+      integer :: flagged = 0                 !< instants
+      real(wp), allocatable :: flagged_at(:) !< the first of them
       type(snapshot_t) :: now                !< the last known position of each link
       type(outline_t), allocatable :: outlines(:)   !< (links)
       integer :: frames = 0                  !< recorded so far
@@ -82,7 +82,7 @@ module drawing
 contains
 
    !> Nothing recorded yet of the set `m`; at most `max_frames` frames will be. `every`: each so many instants of TIME
-   !> are counted if they are flagged; 0: none.
+   !> are the deck's, 0: none; where others are flagged that is not noted.
    function new_drawing(m, max_frames, every) result(d)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: max_frames, every
@@ -191,7 +191,7 @@ contains
       now = snapshot_of_ground(m, d%origin)
       now%t = s%motions(1)%t
       do c = size(s%own), 1, -1
-         if (s%motions(c)%mark /= mark_none) then
+         if (s%motions(c)%mark /= mark_none .and. is_own(d, m, k)) then
             now%mark = s%motions(c)%mark
             now%singularity = s%motions(c)%singularity
          end if
@@ -211,8 +211,7 @@ contains
       d%now%t = now%t
       call record_slides(d%guides, m, now)
       call record_curves(d, m, s, k)
-      if (is_flagged(s) .and. is_own(d, m, k)) d%flagged = d%flagged + 1
-      call record_flags(d, s, now, before)
+      if (is_own(d, m, k)) call record_flags(d, s, now, before)
       if (k >= frame_instants(m) .or. (mod(k, d%frame_stride) /= 0 .and. k < frame_instants(m) - 1)) return
       d%frames = d%frames + 1
       d%frame(d%frames) = now
@@ -290,6 +289,7 @@ contains
       integer :: c
 
       if (size(d%mark) == 0) d%mark = spread(mark_none, 1, size(s%motions))
+      if (is_flagged(s)) d%flagged = d%flagged + 1
       if (is_flagged(s) .and. size(d%flagged_at) < max_places) d%flagged_at = [d%flagged_at, now%t]
       do c = 1, size(s%motions)
          if (s%motions(c)%mark /= d%mark(c) .and. s%motions(c)%mark /= mark_none .and. size(d%flags) < max_flags) then

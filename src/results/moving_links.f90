@@ -59,15 +59,19 @@ contains
       end do
    end subroutine put_moving_links
 
-   !> The links in the order in which they are drawn: polygons, bars, and what is a single point, such as a block.
+   !> The links in the order in which they are drawn: polygons, bars and rods, what is a single point, such as a block.
    function order_of(d) result(order)
       type(drawing_t), intent(in) :: d
-      integer :: order(size(d%outlines)), i, n, corners
+      integer :: order(size(d%outlines)), corners(size(d%outlines)), i, k, n
 
+      corners = [(min(3, size(d%outlines(i)%corner, 2)), i=1, size(corners))]
+      do i = 1, size(d%guides)
+         corners(d%guides(i)%carrier) = max(2, corners(d%guides(i)%carrier))
+      end do
       n = 0
-      do corners = 3, 0, -1
+      do k = 3, 0, -1
          do i = 1, size(order)
-            if (min(3, size(d%outlines(i)%corner, 2)) /= corners) cycle
+            if (corners(i) /= k) cycle
             n = n + 1
             order(n) = i
          end do

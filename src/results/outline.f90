@@ -53,8 +53,8 @@ contains
       end do
    end function corners_at
 
-   !> The distance of the place `p` (2) from the outline with the corners `c` (2, 2 or more; counterclockwise), the sides
-   !> longer at both ends by the part `longer` of their lengths; 0 inside.
+   !> The distance of the place `p` (2) from the outline with the corners `c` (2, 2 or more; counterclockwise), whose
+   !> sides are longer at both ends by the part `longer` of their lengths; 0 inside.
    pure real(wp) function distance_to(c, p, longer) result(distance)
       real(wp), intent(in) :: c(:, :), p(2), longer
       real(wp) :: u(2), along

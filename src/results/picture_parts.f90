@@ -103,7 +103,8 @@ contains
       call put_group(o, 'class="flagged"', '')
       call put_outlines(o, c, m, d, s)
       do i = 1, size(m%links)
-         if (s%known(i) .and. .not. m%links(i)%ground) call add_outline(c, corner_pixels(c, d%outlines(i), s%place(:, i)))
+         if (m%links(i)%ground .or. .not. s%known(i)) cycle
+         call add_outline(c, corner_pixels(c, d%outlines(i), s%place(:, i)))
       end do
       do i = 1, size(m%pairs)
          associate (point => joint_point(m, s%known, i))
