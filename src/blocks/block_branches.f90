@@ -30,8 +30,9 @@ module block_branches
    real(wp), parameter :: right_part = max(1.0e-6_wp, 0.7_wp*epsilon(1.0_wp)**0.375_wp), max_wrong = 1.0e-2_wp
    !> A substep may be longer where the pivots before and beyond are together less than this part of the Lipschitz
    !> constant: where a crank in line with a base is almost as long, the coupler is so fast that short substeps
-   !> would all end where rounding leaves no velocities.
-   real(wp), parameter :: short_pivots = 0.1_wp*short_step
+   !> would all end where rounding leaves no velocities. Three widths of that zone are enough; of more, circuits that
+   !> do not meet, of lengths that are off by 1E-13, would be taken for crossing ones.
+   real(wp), parameter :: short_pivots = 0.02_wp*short_step
    real(wp), parameter :: rounding = 500.0_wp*epsilon(1.0_wp)
    !> The step of the second difference, and the largest distance at which the other branch is looked for.
    real(wp), parameter :: trial = max(1.0e-4_wp, sqrt(sqrt(epsilon(1.0_wp)))), furthest = 0.05_wp
