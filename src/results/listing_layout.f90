@@ -15,7 +15,7 @@ module listing_layout
    use phrases
    implicit none
    private
-   public :: layout_t, head_drive_t, new_layout, digits_t, digits_of, column_powers, in_columns
+   public :: layout_t, head_drive_t, new_layout, digits_t, digits_of, column_powers, head_lines
    public :: name_length, row_length, has_column, dimension_of
 
    integer, parameter :: digits_after_first = 6
@@ -52,8 +52,10 @@ module listing_layout
       integer :: time_decimals = digits_after_first   !< of the instants, as above
       integer :: time_power = 0
       real(wp) :: angle = 1.0_wp           !< radians in the unit in which angles are printed
-      character(row_length) :: heads(3)    !< by the kind of a request
-      character(row_length) :: units(2, 3) !< two lines under the heads; the second is blank unless units are long
+      character(row_length) :: names(3)    !< of the columns, by the kind of a request
+      character(row_length) :: units(2, 3) !< two lines under them; the second is blank unless units are long
+      character(4*(row_length + 1)) :: heads(3)    !< all lines over rows of a kind, where the parts' are the same
+      integer :: head_length(3) = 0
       character(numeral_length) :: none    !< in the place of a number that does not exist
       character(:), allocatable :: before_instant, behind_time    !< of the line over the tables: ' INSTANT ', ' S'
       type(head_drive_t), allocatable :: drives(:)                !< that stand in it
@@ -84,10 +86,14 @@ contains
       end if
       time = max(abs(m%t0), abs(m%t1), maxval([0.0_wp, abs(m%at)]))
       if (time > 0.0_wp) call choose_digits(log10(time), l%time_decimals, l%time_power)
-      do k = 1, size(l%heads)
-         l%heads(k) = column_heads(k, m%polish)
+      do k = 1, size(l%names)
+         l%names(k) = column_names(k, m%polish)
       end do
       l%units = unit_lines(m)
+      do k = 1, size(l%heads)
+         l%heads(k) = head_lines(l, l%digits_t, k)
+         l%head_length(k) = len_trim(l%heads(k))
+      end do
       l%none = phrase(say_none, m%polish)
       l%none = adjustr(l%none)
       l%before_instant = ' '//phrase(say_instant, m%polish)//' '
@@ -199,8 +205,29 @@ contains
       decimals = digits_after_first - (k - power)
    end subroutine choose_digits
 
-   !> The heads over rows of one kind.
-   pure function column_heads(kind, polish) result(line)
+   !> The lines over rows of the given `kind` with the digits `d`, joined by new_line('a'): names, powers of ten where
+   !> there are any, units.
+   pure function head_lines(l, d, kind) result(text)
+      type(layout_t), intent(in) :: l
+      type(digits_t), intent(in) :: d
+      integer, intent(in) :: kind
+      character(:), allocatable :: text
+      character(numeral_length) :: words(9)
+      integer :: power(9), k
+
+      text = trim(l%names(kind))
+      power = column_powers(d, kind)
+      words = ''
+      do k = 1, size(power)
+         if (power(k) /= 0) words(k) = '10**'//whole(power(k))
+      end do
+      if (any(power /= 0)) text = text//new_line('a')//trim(in_columns(words, kind))
+      text = text//new_line('a')//trim(l%units(1, kind))
+      if (l%units(2, kind) /= '') text = text//new_line('a')//trim(l%units(2, kind))
+   end function head_lines
+
+   !> The names of the columns over rows of one kind.
+   pure function column_names(kind, polish) result(line)
       integer, intent(in) :: kind
       logical, intent(in) :: polish
       character(row_length) :: line
@@ -220,7 +247,7 @@ contains
          phrase(say_angle, polish)]
       line = in_columns(words, kind)
       line(:name_length) = ' '//phrase(kind_words(kind), polish)
-   end function column_heads
+   end function column_names
 
    !> The units of the columns, for each kind of rows; where one is too long for its column, all that they are divided
    !> by stands in a second line.

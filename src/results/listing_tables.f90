@@ -1,5 +1,6 @@
 !> The tables of the listing: the line over those of an instant, heads of columns with powers of ten and units, rows.
 module listing_tables
+   use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_t, request_pair
    use drives, only: drive_motion
@@ -7,7 +8,7 @@ module listing_tables
    use points, only: row_t, row_of
    use error_estimate, only: error_estimate_t, row_estimate
    use text_output, only: output_t, put
-   use numerals, only: fixed, put_fixed, whole, numeral_length
+   use numerals, only: fixed, put_fixed, put_whole, numeral_length
    use known_digits, only: put_known, unknown_digit
    use listing_layout
    implicit none
@@ -33,38 +34,89 @@ contains
       type(layout_t), intent(in) :: l
       real(wp), intent(in) :: t
       integer, intent(in) :: step
+      character(numeral_length) :: number
+      integer :: first
 
-      call put_times(o, l, l%before_instant//whole(step), [t])
+      call put_whole(int(step, int64), number, first)
+      call put_times(o, l, l%before_instant//number(first:), [t])
    end subroutine put_instant
 
    !> A blank line, and one with `start`, the `times` (1 or 2, in the deck's unit) and the values of the drives then,
-   !> which go on in the next line where they are many.
+   !> which go on in the next line where they are many. Written into lines of their own, since text that grows would
+   !> cost as much as a table.
    subroutine put_times(o, l, start, times)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       character(*), intent(in) :: start
       real(wp), intent(in) :: times(:)
-      character(:), allocatable :: line, part
-      integer :: i, last
+      character(line_length) :: line, part
+      integer :: i, used, length
 
-      last = size(times)
       call put(o, '')
-      line = start//'   T = '//time_text(l, times(1))
-      if (last > 1) line = line//' .. '//time_text(l, times(last))
-      line = line//l%behind_time
+      used = 0
+      call append(start//'   T = ', line, used)
+      call append_numbers(times, l%time_decimals, l%time_power, line, used)
+      call append(l%behind_time, line, used)
       do i = 1, size(l%drives)
-         part = l%drives(i)%before//drive_text(l%drives(i), times(1))
-         if (last > 1) part = part//' .. '//drive_text(l%drives(i), times(last))
-         part = part//l%drives(i)%behind
-         if (i == size(l%drives)) part = part//l%more_drives
-         if (len(line) + len(part) > line_length) then
-            call put(o, line)
-            line = repeat(' ', len(start))
+         length = 0
+         associate (d => l%drives(i))
+            call append(d%before, part, length)
+            call append_numbers(values_of(d, times), d%decimals, d%power, part, length)
+            call append(d%behind, part, length)
+         end associate
+         if (i == size(l%drives)) call append(l%more_drives, part, length)
+         if (used + length > line_length) then
+            call put(o, line(:used))
+            used = len(start)
+            line(:used) = ''
          end if
-         line = line//part
+         call append(part(:length), line, used)
       end do
-      call put(o, line)
+      call put(o, line(:used))
    end subroutine put_times
+
+   !> Writes `text` behind the first `used` characters of `line`, and counts it among them.
+   pure subroutine append(text, line, used)
+      character(*), intent(in) :: text
+      character(*), intent(inout) :: line
+      integer, intent(inout) :: used
+
+      line(used + 1:used + len(text)) = text
+      used = used + len(text)
+   end subroutine append
+
+   !> The same of the numbers `x` without blanks, dots between them.
+   pure subroutine append_numbers(x, decimals, power, line, used)
+      real(wp), intent(in) :: x(:)
+      integer, intent(in) :: decimals, power
+      character(*), intent(inout) :: line
+      integer, intent(inout) :: used
+      character(numeral_length) :: number
+      integer :: i, first
+
+      do i = 1, size(x)
+         if (i > 1) call append(' .. ', line, used)
+         call put_fixed(x(i), decimals, power, number)
+         first = 1
+         do while (number(first:first) == ' ')
+            first = first + 1
+         end do
+         call append(number(first:), line, used)
+      end do
+   end subroutine append_numbers
+
+   !> The values of the drive `d` at `times`, in its unit.
+   pure function values_of(d, times) result(x)
+      type(head_drive_t), intent(in) :: d
+      real(wp), intent(in) :: times(:)
+      real(wp) :: x(size(times)), f(3)
+      integer :: i
+
+      do i = 1, size(times)
+         f = drive_motion(d%law, times(i))
+         x(i) = f(1)/d%unit
+      end do
+   end function values_of
 
    !> A time with the digits of the set, without blanks.
    pure function time_text(l, t) result(text)
@@ -80,10 +132,10 @@ contains
       type(head_drive_t), intent(in) :: d
       real(wp), intent(in) :: t
       character(:), allocatable :: text
-      real(wp) :: f(3)
+      real(wp) :: x(1)
 
-      f = drive_motion(d%law, t)
-      text = trim(adjustl(fixed(f(1)/d%unit, d%decimals, d%power)))
+      x = values_of(d, [t])
+      text = trim(adjustl(fixed(x(1), d%decimals, d%power)))
    end function drive_text
 
    !> The row that `request`, number `i` of the set, asks for of the motion `q` of `m`, under heads of its own where it
@@ -118,24 +170,18 @@ contains
       type(digits_t), intent(in) :: d
       integer, intent(in) :: kind
       type(table_t), intent(inout) :: table
-      character(numeral_length) :: words(9)
-      integer :: power(9), k
+      integer :: power(9)
 
       if (kind == table%kind .and. .not. l%mixed) return
-      power = column_powers(d, kind)
-      if (kind == table%kind .and. all(power == table%power)) return
-      table%kind = kind
-      table%power = power
-      call put_trimmed(o, l%heads(kind))
-      if (any(power /= 0)) then
-         words = ''
-         do k = 1, size(power)
-            if (power(k) /= 0) words(k) = '10**'//whole(power(k))
-         end do
-         call put_trimmed(o, in_columns(words, kind))
+      if (.not. l%mixed) then
+         call put(o, l%heads(kind)(:l%head_length(kind)))
+      else
+         power = column_powers(d, kind)
+         if (kind == table%kind .and. all(power == table%power)) return
+         table%power = power
+         call put(o, head_lines(l, d, kind))
       end if
-      call put_trimmed(o, l%units(1, kind))
-      if (l%units(2, kind) /= '') call put_trimmed(o, l%units(2, kind))
+      table%kind = kind
    end subroutine put_heads
 
    !> One row with the digits `d`: what is not known is a word, what the row does not have is blank. `error` (3, 0:2),
@@ -183,12 +229,4 @@ contains
       if (present(masked)) masked = masked .or. index(line(name_length + 1:last), unknown_digit) > 0
       call put(o, line(:last))
    end subroutine put_row
-
-   !> A line without the blanks at its end, and without a copy.
-   subroutine put_trimmed(o, line)
-      type(output_t), intent(inout) :: o
-      character(*), intent(in) :: line
-
-      call put(o, line(:len_trim(line)))
-   end subroutine put_trimmed
 end module listing_tables
