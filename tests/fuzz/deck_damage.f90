@@ -223,7 +223,9 @@ contains
          c = merge(8*c - 7, 16*c - 47, c < 5)
          d%line(i)(c:c + 15) = d%line(j)(c:c + 15)
       case (8)
-         d%line(i)(1:8) = lower(line(1:8))
+         ! The name of the card, or the labels too.
+         c = merge(8, 32, c < 40)
+         d%line(i)(:c) = lower(line(:c))
       case (9)
          d%line(i) = trim(line)//achar(13)
       case (10)

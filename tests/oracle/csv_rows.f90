@@ -50,7 +50,9 @@ contains
          end associate
       end do
       do i = 1, size(m%requests)
-         rows%due(i) = mod(k, m%requests(i)%every) == 0 .or. k == instant_count(m) - 1
+         ! Requests for extremes alone have no rows.
+         rows%due(i) = m%requests(i)%every > 0
+         if (rows%due(i)) rows%due(i) = mod(k, m%requests(i)%every) == 0 .or. k == instant_count(m) - 1
          if (rows%due(i)) call read_row(unit, m, k, i, rows, wrong)
          if (allocated(wrong)) return
       end do
