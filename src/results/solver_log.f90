@@ -1,4 +1,4 @@
-!> The solver's protocol (--log): how each position was found. It depends on the solver's path, which
+!> The solver's log (--log): how each position was found. It depends on the solver's path, which
 !> the listing never does.
 module solver_log
    use kinds, only: wp
@@ -26,7 +26,7 @@ contains
       if (m%method == method_matrix) method = 'MATRIX'
       call put(o, ' SET '//whole(m%set_number)//'   METHOD '//trim(method))
       call put(o, trim('    STEP                        T     ENDED  ITER   RESIDUAL       STEP       RATE' &
-         //'  RECIPROCAL CONDITION  SIGN OF DET   BRANCH  PARTS      DOUBT'// &
+         //'  RECIPROCAL CONDITION  SIGN OF DET   BRANCH  SUBSTEPS  KANTOROVICH'// &
          merge('  ERROR OF X  ERROR OF V  ERROR OF A', repeat(' ', 36), errors)))
    end subroutine log_head
 
@@ -44,7 +44,7 @@ contains
       character(200) :: line
       integer :: k
 
-      write (line, '(i8,es25.16e3,a10,i6,3es11.3,es22.3,i13,a9,i7,es11.3)') step, t, adjustr(ending(c)), c%iterations, &
+      write (line, '(i8,es25.16e3,a10,i6,3es11.3,es22.3,i13,a9,i10,es13.3)') step, t, adjustr(ending(c)), c%iterations, &
          c%residual, c%step, c%rate, c%reciprocal_condition, c%determinant, adjustr(branch_word(b)), b%substeps, &
          b%kantorovich_ratio
       if (present(errors)) then
