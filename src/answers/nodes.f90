@@ -4,7 +4,7 @@ module nodes
    use kinds, only: wp
    use mechanism, only: mechanism_t, instant
    use points, only: row_t, row_of
-   use set_analysis, only: set_analysis_t, row_at
+   use set_analysis, only: set_analysis_t, rows_at
    implicit none
    private
    public :: node_t, node_of_instant, node_at, times_between
@@ -48,16 +48,23 @@ contains
       type(set_analysis_t), intent(inout) :: s
       real(wp), intent(in) :: t
       type(node_t) :: node
-      type(row_t) :: row
-      integer :: q
+      type(row_t), allocatable :: rows(:)
+      integer, allocatable :: these(:)
+      integer :: c, i
       logical :: is_found
 
       node = empty_node(size(asked))
       node%t = t
-      do q = 1, size(asked)
-         call row_at(s, asked(q), t, row, is_found)
-         if (is_found) node%known(q) = 2
-         node%value(:, :, q) = row%value
+      do c = 1, s%now%parts%count
+         these = pack([(i, i=1, size(asked))], s%now%parts%part(asked) == c)
+         if (size(these) == 0) cycle
+         allocate (rows(size(these)))
+         call rows_at(s, c, asked(these), t, rows, is_found)
+         if (is_found) node%known(these) = 2
+         do i = 1, size(these)
+            node%value(:, :, these(i)) = rows(i)%value
+         end do
+         deallocate (rows)
       end do
    end function node_at
 

@@ -3,7 +3,7 @@
 module zero_search
    use kinds, only: wp
    use points, only: row_t
-   use set_analysis, only: set_analysis_t, row_at
+   use set_analysis, only: set_analysis_t, rows_at
    implicit none
    private
    public :: sample_t, column_t, look, find_zero, differ_in_sign
@@ -34,11 +34,11 @@ contains
       type(column_t), intent(in) :: c
       real(wp), intent(in) :: t
       type(sample_t), intent(out) :: sample
-      type(row_t) :: row
+      type(row_t) :: row(1)
 
       sample%t = t
-      call row_at(s, c%request, t, row, sample%exists)
-      sample%f = row%value(c%column, :)
+      call rows_at(s, s%now%parts%part(c%request), [c%request], t, row, sample%exists)
+      sample%f = row(1)%value(c%column, :)
    end subroutine look
 
    !> Where between `a` and `b` the derivative number `order` (0 to 3) of column `c`, less `level`, is zero: it has

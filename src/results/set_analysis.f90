@@ -16,7 +16,7 @@ module set_analysis
    use diagnosis, only: opinion_t, ask_blocks
    implicit none
    private
-   public :: set_analysis_t, make_set_analysis, advance_set, row_at, sample_set, set_record, set_errors, &
+   public :: set_analysis_t, make_set_analysis, advance_set, rows_at, sample_set, set_record, set_errors, &
       set_closure_error, set_closing_diagnostics, iterations_of
 
    type :: set_analysis_t
@@ -75,22 +75,26 @@ contains
       end if
    end subroutine advance_set
 
-   !> The `row` of request number `i` at a time `t` between the instants; nothing else changes. `is_found`: all of it is
-   !> known.
-   subroutine row_at(s, i, t, row, is_found)
+   !> The rows (any number) of the requests `list`, all of independent mechanism number `c`, at a time `t` between the
+   !> instants; nothing else changes. `is_found`: all of them is known.
+   subroutine rows_at(s, c, list, t, rows, is_found)
       type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: i
+      integer, intent(in) :: c, list(:)
       real(wp), intent(in) :: t
-      type(row_t), intent(out) :: row
+      type(row_t), intent(out) :: rows(size(list))
       logical, intent(out) :: is_found
       type(motion_t) :: q
+      integer :: i
 
-      associate (c => s%now%parts%part(i))
-         q = new_motion(size(s%now%own(c)%links))
+      associate (own => s%now%own(c))
+         q = new_motion(size(own%links))
          call look_at(s%list(c), t, q, is_found)
-         if (is_found) row = row_of(s%now%own(c), q, s%now%own(c)%requests(s%now%parts%number(i)))
+         if (.not. is_found) return
+         do i = 1, size(list)
+            rows(i) = row_of(own, q, own%requests(s%now%parts%number(list(i))))
+         end do
       end associate
-   end subroutine row_at
+   end subroutine rows_at
 
    !> How far the motion found last is known. `always`: also where no digit of a table is in doubt.
    subroutine sample_set(s, always)
