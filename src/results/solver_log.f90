@@ -44,9 +44,9 @@ contains
       character(200) :: line
       integer :: k
 
-      write (line, '(i8,es25.16e3,a10,i6,3es11.3,es22.3,i13,a9,i10,es13.3)') step, t, adjustr(ending(c)), c%iterations, &
-         c%residual, c%step, c%rate, c%reciprocal_condition, c%determinant, adjustr(branch_word(b)), b%substeps, &
-         b%kantorovich_ratio
+      write (line, '(i8,es25.16e3,a10,i6,3es11.3,es22.3,i13,a9,i10,es13.3)') step, t, adjustr(ending(c)), &
+         c%iterations, c%residual, c%step, c%rate, c%reciprocal_condition, c%determinant, adjustr(branch_word(b)), &
+         b%substeps, b%kantorovich_ratio
       if (present(errors)) then
          do k = 0, 2
             if (errors(k) < nothing_known) then
