@@ -13,7 +13,7 @@
 # The last three take what they need from `csv`, results of the deck, and from `lst`, its listing. `map` says what one must
 # know to compare results: "start SET STEP", the instant of the deck with which the changed one begins; "link SET NAME XI
 # ETA PHI", the new axes of a link in the old ones; "pair SET NAME PHI", by how much its angle is larger; "slide SET NAME",
-# a prismatic pair; "degrees SET", a set in degrees. The numbers of a card and of its * card go to one * card.
+# a prismatic pair; "degrees SET", "matrix SET", a set in degrees, by METHOD MATRIX. The numbers of a card and of its * card go to one * card.
 
 function trim(s) { gsub(/^ +| +$/, "", s); return s }
 # A number as text, its exponent D as E.
