@@ -2,8 +2,9 @@
 !> pair its least and greatest values, each with its time and the value of the first drive of its mechanism, the
 !> stroke, and in a cyclic motion the times of the forward and the return stroke with their ratio; then the dwells.
 module extremes_table
-   use kinds, only: wp, label_length
-   use mechanism, only: mechanism_t, request_link, request_point, request_pair, driven_kinds
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, request_t, request_pair, driven_kinds
+   use names, only: subject_name
    use set_analysis, only: set_analysis_t
    use listing_layout, only: layout_t, digits_t, digits_of, has_column, dimension_of, name_length, row_length
    use listing_tables, only: table_t, put_times, put_heads, time_text, drive_text
@@ -177,7 +178,7 @@ contains
          do c = 1, 3
             if (.not. has_column(c, kind)) cycle
             i = c
-            if (kind == request_pair) i = merge(1, 2, (c == 3) .eqv. is_angular_pair(m, subject))
+            if (kind == request_pair) i = merge(1, 2, (c == 3) .eqv. is_angle(m, request_t(kind, subject), 1))
             associate (first => name_length + numeral_length*(3*k + c - 1))
                line(first + 1:first + numeral_length) = fields(i, k)
             end associate
@@ -185,15 +186,6 @@ contains
       end do
       call put(o, line(:len_trim(line)))
    end subroutine put_fields
-
-   !> Pair number `i` has an angle, not a slide.
-   pure logical function is_angular_pair(m, i)
-      use mechanism, only: pair_prismatic
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i
-
-      is_angular_pair = m%pairs(i)%kind /= pair_prismatic
-   end function is_angular_pair
 
    !> A length or angle, or its derivative number `k`, with the digits of the table.
    pure function number_text(l, d, value, angular, k) result(text)
@@ -229,20 +221,4 @@ contains
          if (first_drive > size(l%drives)) first_drive = 0
       end associate
    end function first_drive
-
-   !> The name of a link, point or pair.
-   pure function subject_name(m, kind, subject) result(name)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: kind, subject
-      character(label_length) :: name
-
-      select case (kind)
-      case (request_link)
-         name = m%links(subject)%name
-      case (request_point)
-         name = m%points(subject)%name
-      case default
-         name = m%pairs(subject)%name
-      end select
-   end function subject_name
 end module extremes_table

@@ -6,7 +6,7 @@ module names
    use numerals, only: whole
    implicit none
    private
-   public :: name_table_t, put_name, find_name, drive_name, listed
+   public :: name_table_t, put_name, find_name, drive_name, subject_name, listed
 
    !> Slots of an empty table. At most every second slot is filled.
    integer, parameter :: first_size = 64
@@ -61,17 +61,25 @@ contains
       type(drive_t), intent(in) :: d
       character(3*label_length + 2) :: name
 
-      select case (driven_kinds(d%kind))
-      case (request_link)
-         name = m%links(d%subject)%name
-      case (request_point)
-         name = m%points(d%subject)%name
-      case default
-         name = m%pairs(d%subject)%name
-      end select
-      name = trim(drive_words(d%kind))//' '//name
+      name = trim(drive_words(d%kind))//' '//subject_name(m, driven_kinds(d%kind), d%subject)
       if (d%kind == drive_relangle) name = trim(name)//' '//m%links(d%second)%name
    end function drive_name
+
+   !> The name of the link, point or pair (`kind`, as of a request) with the number `subject`.
+   pure function subject_name(m, kind, subject) result(name)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: kind, subject
+      character(label_length) :: name
+
+      select case (kind)
+      case (request_link)
+         name = m%links(subject)%name
+      case (request_point)
+         name = m%points(subject)%name
+      case default
+         name = m%pairs(subject)%name
+      end select
+   end function subject_name
 
    !> The names `words` (at least one) with commas between them; of many, the first ones and the number of the rest.
    pure function listed(words) result(text)
