@@ -2,6 +2,7 @@
 !> near, group by group, by closed forms where there are such and by Newton's method for the others. What cannot be
 !> followed is lost from there on, and so is what hangs on it.
 module scheme_motion
+   use, intrinsic :: iso_fortran_env, only: real64
    use quad_jet, only: qp, jet_t, constant_jet, operator(+)
    use schemes, only: scheme_t, group_t, body_t, form_any, form_rrr, form_prp, form_rpp, form_parallelogram, &
       drive_relangle, angle_unit, drive_unit, set_trigonometry, point_on
@@ -42,8 +43,9 @@ module scheme_motion
    !> Kantorovich's ratio with 3 for the bend of the equations: 0.5 would do.
    real(qp), parameter :: safe_ratio = 0.02_qp, bend = 3.0_qp
    real(qp), parameter :: rough = 1.0e-14_qp, exact = 1.0e-26_qp
-   !> At the first instant the assembly, rounded as the deck is, is so near.
-   real(qp), parameter :: rounding = 1.0e-7_qp
+   !> At the first instant the assembly, rounded as the deck is, is so near; beside lengths much larger than those of a
+   !> group, of its own ground link perhaps, so many roundings of them.
+   real(qp), parameter :: rounding = 1.0e-7_qp, of_largest = 64.0_qp*epsilon(1.0_real64)
 
 contains
 
@@ -54,6 +56,7 @@ contains
       type(motion_t), intent(out) :: m
       character(:), allocatable, intent(out) :: problem
       integer :: k, l, failed
+      real(qp) :: largest
 
       m%t = t
       allocate (m%b(size(s%links)), m%sine(size(s%groups)))
@@ -73,11 +76,15 @@ contains
          problem = 'THE FIRST POSITION IS NOT CLOSED'
          return
       end if
+      largest = 0.0_qp
+      do l = 1, size(s%links)
+         largest = max(largest, maxval(abs(s%links(l)%at(:2))))
+      end do
       do k = 1, size(s%groups)
          do l = s%groups(k)%links(1), s%groups(k)%links(2)
-            associate (b => m%b(l), at => s%links(l)%at)
-               if (max(abs(b%x%v - at(1)), abs(b%y%v - at(2)))/s%groups(k)%scale + abs(b%phi%v - at(3)) < rounding) &
-                  cycle
+            associate (b => m%b(l), at => s%links(l)%at, u => s%groups(k)%scale)
+               if (max(abs(b%x%v - at(1)), abs(b%y%v - at(2)))/u + abs(b%phi%v - at(3)) &
+                  < rounding + of_largest*(largest/u)) cycle
             end associate
             problem = 'THE FIRST POSITION IS ANOTHER ONE'
          end do
