@@ -20,6 +20,8 @@ module block_diagnostics
    real(wp), parameter :: far_angle = 1.0_wp
    !> A limit is reported where it is no further than this part of the step that could not be made.
    real(wp), parameter :: near_part = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
+   !> So many lengths is a slide on its way to infinity, and its derivatives are so near to those of a pole.
+   real(wp), parameter :: far_slide = 10.0_wp, as_a_pole = 0.2_wp
    !> Body vectors with a smaller sine between them are in line: the last motion accepted is as far off as the root of
    !> its distance in time.
    real(wp), parameter :: parallel = 1.0e-3_wp
@@ -137,13 +139,20 @@ contains
       end do
    end subroutine add_idle_drives
 
-   !> (links) Those whose angle is an unknown of block `i`.
+   !> (links) Those whose angle is an unknown of block `i`; of a block of slides alone those that slide.
    pure function links_of(e, i) result(chosen)
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: i
       logical :: chosen(size(e%orientation_of))
+      integer :: k
 
-      chosen = links_with(e, e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
+      associate (unknowns => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
+         chosen = links_with(e, unknowns)
+         if (any(chosen)) return
+         do k = 1, size(e%whole%links)
+            if (any(unknowns == e%whole%links(k)%slide)) chosen(e%whole%links(k)%link) = .true.
+         end do
+      end associate
    end function links_of
 
    !> (links) Those whose angle is among the `unknowns`.
@@ -174,6 +183,7 @@ contains
       do k = 1, size(e%moving)
          if (e%blocks%list(e%moving(k))%direct) cycle
          left = time_to_limit(e, e%moving(k), t)
+         if (abs(left) <= 0.0_wp) left = time_to_infinity(e, e%moving(k), t)
          if (abs(left) <= 0.0_wp) cycle
          associate (i => e%moving(k), block => e%blocks%list(e%moving(k)))
             r = new_diagnostic(diagnostic_limit, links_of(e, e%moving(k)))
@@ -214,6 +224,28 @@ contains
          if (left*sign(1.0_wp, t - h%t(p)) <= 0.0_wp .or. abs(left) > near_part*abs(t - h%t(p))) left = 0.0_wp
       end associate
    end function time_to_limit
+
+   !> The time from the motion that is followed to the instant t* before `t` at which a slide of block `i` is infinite,
+   !> since its guide comes to be parallel to another; 0 where none is. Close to t* the slide s is c/(t* - t) and a
+   !> constant, so t* - t = 2 s'/s'', and s s''/s'^2 is about 2.
+   pure real(wp) function time_to_infinity(e, i, t) result(left)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i
+      real(wp), intent(in) :: t
+      real(wp) :: to_go
+      integer :: k
+
+      left = 0.0_wp
+      do k = e%blocks%list(i)%first, e%blocks%list(i)%last
+         associate (h => e%history, p => e%history%place(0), u => e%blocks%unknown(k))
+            if (u <= e%blocks%orientations .or. .not. abs(h%rate(u, p)) > 0.0_wp) cycle
+            if (abs(h%value(u)) < far_slide) cycle
+            if (abs(h%value(u)*h%acceleration(u, p)/h%rate(u, p)**2 - 2.0_wp) > as_a_pole) cycle
+            to_go = 2.0_wp*h%rate(u, p)/h%acceleration(u, p)
+            if (to_go*sign(1.0_wp, t - h%t(p)) > 0.0_wp .and. abs(to_go) < abs(t - h%t(p))) left = to_go
+         end associate
+      end do
+   end function time_to_infinity
 
    !> The two links of `r`, all that block `i` moves, share a revolute pair, and their body vectors are parallel where
    !> the unknowns have the values `value` (0:unknowns).

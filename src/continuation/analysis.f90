@@ -205,7 +205,7 @@ contains
       inconsistent = a%convergence%ended == ended_inconsistent
       if (a%convergence%closure_error > 0.0_wp .and. (inconsistent .or. .not. a%follows)) then
          call add_diagnostics([inconsistency(a%convergence, a%engine%length)], found)
-      else if (step%blocked) then
+      else
          select type (e => a%engine)
          class is (block_engine_t)
             list = limit_diagnostic(e, t)
