@@ -205,7 +205,7 @@ include tests/pfunit/tests.mk
 checkers := check_forms error_estimates compare_digits hard matrix_1987 bench fuzz_mechanisms read_listing
 test: $(addprefix $(BUILD)/,kinmat example debug/kinmat $(checkers:%=release/%) debug/fuzz kinmat-quad kinmat-single \
    quad/release/kind_errors single/release/kind_errors tests$(if $(PFUNIT_DIR),/pfunit)/unit) $(references)
-	BUILD=$(BUILD) MAKE='$(MAKE)' tests/run.sh
+	BUILD=$(BUILD) MAKE='$(MAKE)' FC='$(FC)' tests/run.sh
 
 # The man page: the text of --help in another form.
 $(BUILD)/kinmat.1: $(BUILD)/kinmat docs/man.awk
