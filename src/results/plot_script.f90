@@ -38,16 +38,17 @@ contains
       type(mechanism_t), intent(in) :: m
       type(table_t), intent(in) :: table
       character(*), intent(in) :: suffix
-      integer :: pages, i
+      integer :: rows, pages, i
 
-      pages = min(max_pages, (size(m%requests) + page_rows - 1)/page_rows)
+      rows = maxval([0, table%columns%row])
+      pages = min(max_pages, (rows + page_rows - 1)/page_rows)
       call put_beginning(o, m, table, suffix)
       call put(o, 'do for [over = 1:'//whole(1 + size(m%drives))//'] {')
       do i = 1, pages
          call put_page(o, m, table, i)
       end do
       call put(o, '}')
-      if (size(m%requests) > pages*page_rows) call put(o, '# The other columns of the table, from ' &
+      if (rows > pages*page_rows) call put(o, '# The other columns of the table, from ' &
          //whole(2 + size(m%drives))//' on, are drawn in the same way.')
    end subroutine put_script
 
@@ -97,7 +98,7 @@ contains
 
       ending = ''
       if (page > 1) ending = '-page'//whole(page)
-      associate (own => table%columns%request > (page - 1)*page_rows .and. table%columns%request <= page*page_rows)
+      associate (own => table%columns%row > (page - 1)*page_rows .and. table%columns%row <= page*page_rows)
          is_there = [any(own .and. .not. table%columns%angular), any(own .and. table%columns%angular)]
          call put(o, '   set output picture(over)."'//ending//'.svg"')
          call put(o, '   set multiplot layout 3,'//whole(count(is_there))//' title '//quoted(trim(m%title)) &
@@ -131,7 +132,7 @@ contains
       call add(o, '      plot')
       do i = first, size(own)
          if (.not. own(i) .or. (table%columns(i)%angular .neqv. angular)) cycle
-         color = 1 + mod(table%columns(i)%request - 1, page_rows)
+         color = 1 + mod(table%columns(i)%row - 1, page_rows)
          call put(o, ' table skip 1 using (column(over)):(column('//whole(number(i))//')) title ' &
             //quoted(trim(table%columns(i)%name))//' linetype '//whole(color)//' dashtype ' &
             //whole(merge(2, 1, table%columns(i)%coordinate == 2))//', \')

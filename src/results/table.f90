@@ -24,6 +24,7 @@ module table
    !> A column after those of time and drives.
    type :: column_t
       integer :: request = 0                        !< its number in the set
+      integer :: row = 0                            !< the number of the request among those of which rows are printed
       integer :: order = 0                          !< of the derivative: 0, 1 or 2
       integer :: coordinate = 1                     !< 1, 2 or 3: x, y, phi; of a pair 1
       logical :: angular = .false.                  !< an angle or a derivative of one
@@ -51,7 +52,7 @@ contains
    function new_table(m) result(t)
       type(mechanism_t), intent(in) :: m
       type(table_t) :: t
-      integer :: i, k, c, n
+      integer :: i, k, c, n, row
 
       allocate (t%laws(size(m%drives)), t%drives(size(m%drives)))
       do i = 1, size(m%drives)
@@ -62,11 +63,13 @@ contains
       allocate (t%columns(3*sum(coordinates_of(m%requests%kind), mask=m%requests%every > 0)))
       n = 0
       do k = 0, 2
+         row = 0
          do i = 1, size(m%requests)
             if (m%requests(i)%every == 0) cycle
+            row = row + 1
             do c = 1, coordinates_of(m%requests(i)%kind)
                n = n + 1
-               t%columns(n) = column_t(i, k, c, c == 3)
+               t%columns(n) = column_t(i, row, k, c, c == 3)
             end do
          end do
       end do
@@ -91,7 +94,8 @@ contains
       integer :: i, earlier
 
       do i = 1, size(m%requests)
-         if (m%requests(i)%kind == request_link) call put_name(links, m%links(m%requests(i)%subject)%name, i, earlier)
+         if (m%requests(i)%kind == request_link .and. m%requests(i)%every > 0) &
+            call put_name(links, m%links(m%requests(i)%subject)%name, i, earlier)
       end do
       do i = 1, size(columns)
          associate (c => columns(i), subject => m%requests(columns(i)%request)%subject)
