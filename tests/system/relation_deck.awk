@@ -13,7 +13,8 @@
 # The last three take what they need from `csv`, results of the deck, and from `lst`, its listing. `map` says what one must
 # know to compare results: "start SET STEP", the instant of the deck with which the changed one begins; "link SET NAME XI
 # ETA PHI", the new axes of a link in the old ones; "pair SET NAME PHI", by how much its angle is larger; "slide SET NAME",
-# a prismatic pair; "degrees SET", "matrix SET", a set in degrees, by METHOD MATRIX. The numbers of a card and of its * card go to one * card.
+# a prismatic pair; "degrees SET", "matrix SET", a set in degrees, by METHOD MATRIX. The numbers of a card and of its *
+# card go to one * card.
 
 function trim(s) { gsub(/^ +| +$/, "", s); return s }
 # A number as text, its exponent D as E.
@@ -183,7 +184,7 @@ function put_joint(  first, second, x1, x2) {
 
 function change_card(  n) {
    n = name ~ /^(POINT|TIME)$/ || name == "ADD" && a != "HARMONIC" ? 2 : name == "BRANCH" ? 1 : 3
-   if (change == "whole" && name ~ /^(PRINT|LANG)$/) return
+   if (change == "whole" && name ~ /^(PRINT|LANG|EXTREMES|RANGE)$/) return
    if (change == "whole" && name == "JOINT") { put_joint(); return }
    if (change ~ /^(middle|back)$/ && name ~ /^(TIME|AT|BRANCH)$/) return
    if (name == "TIME" && change ~ /^[37]$/) card = sprintf("%-8s%-8s%s", "TIME", change*a, substr(card, 17))
@@ -221,6 +222,7 @@ BEGIN { if (csv != "") read_results() }
    for (i = 1; i <= n_cards; i++) {
       take(i)
       if (name == "PRISM") print "slide", set, c > map
+      if (name == "METHOD" && a == "MATRIX") print "matrix", set > map
       if (name ~ /^(GROUND|LINK)$/) { rests[a] = name == "GROUND"; for (k = 1; k <= 3; k++) drawn[a, k] = x[k] }
    }
    if (change == "axes") choose_axes()
