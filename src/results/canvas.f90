@@ -25,6 +25,9 @@ module canvas
    !> What a name over a name counts, and one that leaves the picture, in pixels of overlap with a line.
    real(wp), parameter :: over_name = 60.0_wp, outside = 500.0_wp
 
+   !> Two places whose covers differ by no more, in pixels, cover the same: rounding errors do not choose, the first is
+   !> taken.
+   real(wp), parameter, public :: tie = 1.0e-6_wp
    !> Lines that are closer than this, in pixels, are hard to tell apart.
    real(wp), parameter :: near = 4.0_wp
 
@@ -96,7 +99,7 @@ contains
                   low = p(:, i) + [real(x, wp), -real(y, wp)]*(half + distance) - half
                   high = low + 2.0_wp*half
                   cost = cover(c, low - clear, high + clear) + distance_weight*distances(d)
-                  if (cost >= least) cycle
+                  if (cost >= least - tie) cycle
                   least = cost
                   start = [low(1), high(2)]
                end do

@@ -8,7 +8,7 @@ module picture_drives
    use drives, only: drive_motion, new_law
    use names, only: drive_name
    use drawing, only: drawing_t, snapshot_t, point_place
-   use canvas, only: canvas_t, to_pixels, add_line, cover_of
+   use canvas, only: canvas_t, to_pixels, add_line, cover_of, tie
    use picture_parts, only: corner_pixels, direction_in_picture, half_block
    use svg, only: put_group, put_group_end, put_polyline, put_polygon
    use text_output, only: output_t
@@ -117,7 +117,7 @@ contains
       least = huge(least)
       do k = 1, size(arc_starts)
          cover = cover_of(c, arc(center, start + sense*degree*arc_starts(k), sense*degree*(arc_angle + tip_angle)))
-         if (cover >= least) cycle
+         if (cover >= least - tie) cycle
          least = cover
          best = arc(center, start + sense*degree*arc_starts(k), sense*degree*arc_angle)
       end do
@@ -182,7 +182,7 @@ contains
          ends(:, 2) = ends(:, 1) + arrow_length*e
          cover = cover_of(c, reshape([(ends(:, 1) + real(k, wp)/6.0_wp*(ends(:, 2) + tip_length*e - ends(:, 1)), &
             k=0, 6)], [2, 7])) + away*real((side + 1)/2, wp)
-         if (cover >= least) cycle
+         if (cover >= least - tie) cycle
          least = cover
          best = ends
       end do

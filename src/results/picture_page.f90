@@ -21,6 +21,8 @@ module picture_page
    !> Room above for the title and below for times and scale; height of a line of words.
    integer, parameter :: above = 34, below = 44
    integer, parameter, public :: line_height = 17
+   !> What rounds to the lower number although it is above it, a rounding error being the reason.
+   real(wp), parameter :: tie = 1.0e-6_wp
    !> The length of the scale bar, at most.
    real(wp), parameter :: max_bar = 150.0_wp
 
@@ -40,7 +42,8 @@ contains
    end subroutine picture_head
 
    !> Where the set `m` is drawn: the canvas `c` of a picture that begins at the pixel `top` and ends above `bottom`.
-   !> The scale has three digits and the shift is whole: rounding errors of the results do not move the picture.
+   !> The scale has three digits, the height is even and the shift whole: rounding errors of the results do not move the
+   !> picture, and none of these is near a tie for what is symmetric or has few digits.
    subroutine view_of(m, d, choice, top, c, bottom)
       type(mechanism_t), intent(in) :: m
       type(drawing_t), intent(in) :: d
@@ -56,7 +59,7 @@ contains
       room = real(width, wp) - 2.0_wp*margin
       c%scale = 1.0_wp
       if (any(size_of_it > 0.0_wp)) c%scale = rounded_down(1.0_wp/max(size_of_it(1)/room, size_of_it(2)/max_height))
-      height = ceiling(max(min_height, c%scale*size_of_it(2)) + 2.0_wp*margin)
+      height = 2*ceiling(0.5_wp*max(min_height, c%scale*size_of_it(2)) + margin - tie)
       bottom = top + above + height + below + line_height*flag_lines(d)
       c%shift = anint([0.5_wp*real(width, wp) - c%scale*(low(1) + 0.5_wp*size_of_it(1)), &
          real(top + above, wp) + 0.5_wp*real(height, wp) + c%scale*(low(2) + 0.5_wp*size_of_it(2))])
@@ -136,14 +139,14 @@ contains
       high = max(high, p)
    end subroutine widen
 
-   !> `x` > 0 with three digits, not larger than it was.
+   !> `x` > 0 with three digits, not larger than it was but for `tie`.
    pure real(wp) function rounded_down(x)
       real(wp), intent(in) :: x
       integer :: e
 
       e = 2 - floor(log10(x))
-      if (e >= 0) rounded_down = aint(x*10.0_wp**e)/10.0_wp**e
-      if (e < 0) rounded_down = aint(x/10.0_wp**(-e))*10.0_wp**(-e)
+      if (e >= 0) rounded_down = aint(x*(1.0_wp + tie)*10.0_wp**e)/10.0_wp**e
+      if (e < 0) rounded_down = aint(x*(1.0_wp + tie)/10.0_wp**(-e))*10.0_wp**(-e)
    end function rounded_down
 
    !> Begins the group of a set, with its title at the pixel `top`. `t`: the instant that is drawn.

@@ -39,6 +39,9 @@ module svg
       '.mark{stroke:#d00000;stroke-width:1.5}', &
       '.scale{stroke-width:1.5}']
 
+   !> More than rounding errors of a pixel's coordinate.
+   real(wp), parameter :: tie = 1.0e-6_wp
+
 contains
 
    !> Begins a picture of `width` times `height` pixels with a white ground.
@@ -196,12 +199,12 @@ contains
       text = pixels(p(1))//' '//pixels(p(2))
    end function place
 
-   !> `x` with at most two decimals.
+   !> `x` with at most two decimals. What is half a hundredth, but for rounding errors, always goes up.
    pure function pixels(x) result(text)
       real(wp), intent(in) :: x
       character(:), allocatable :: text
 
-      text = trim(adjustl(fixed(x, 2, 0)))
+      text = trim(adjustl(fixed(x + tie, 2, 0)))
       text = text(:verify(text, '0', back=.true.))
       if (text(len(text):) == '.') text = text(:len(text) - 1)
    end function pixels
