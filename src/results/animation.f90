@@ -25,7 +25,7 @@ module animation
 
    !> An animation has at most this many intervals between its frames.
    integer, parameter, public :: max_intervals = 360
-   !> It takes this time (s), and rests as long at the end where the motion does not come back.
+   !> The time from its first to its last frame, and of the rest at its end where the motion does not come back (s).
    real(wp), parameter :: motion_seconds = 10.0_wp, pause_seconds = 1.0_wp
    !> A link that turns by more than this (rad) from one frame to the next is not turned in between: the links would
    !> part by more than 1 % of their lengths.
