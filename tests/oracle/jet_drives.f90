@@ -171,7 +171,7 @@ contains
    end function term_sizes
 
    !> By how much (changes) the law of a drive changes at `t` with each of its numbers, times that number. The exponent
-   !> of a power and the times of a rise count as exact.
+   !> of a power counts as exact.
    function drive_changes(drive, t) result(c)
       type(drive_t), intent(in) :: drive
       real(qp), intent(in) :: t
@@ -210,6 +210,7 @@ contains
             return
          end if
          c = [drive_jet(one, t)]
+         if (any(term%kind == [(k, k=term_cycloid, term_parabola)])) c = [c, rise_shift(term, c(1), t)]
          if (term%kind /= term_harmonic) return
          ! The derivative of a sine is the sine a quarter turn on.
          term%r(3) = term%r(3) + acos(0.0_wp)
@@ -218,6 +219,22 @@ contains
          end associate
       end associate
    end function term_changes
+
+   !> The same with the times of the rise `term`, whose motion at `t` is `f`: later by t, it is as its derivatives say; no
+   !> third derivative is above 60 lifts over the cube of the duration, that of the 3-4-5 polynomial.
+   type(jet_t) function rise_shift(term, f, t) result(c)
+      type(term_t), intent(in) :: term
+      type(jet_t), intent(in) :: f
+      real(qp), intent(in) :: t
+      real(qp) :: r(3), time
+
+      r = abs(real(term%r, qp))
+      time = max(abs(t), r(1), r(2))
+      c%dd = time*60.0_qp*r(3)/r(2)**3
+      ! At a joint the rate and its derivative are zero: what a rounding changes is the next term of the series.
+      c%d = time*(abs(f%dd) + real(epsilon(1.0_wp), qp)*c%dd)
+      c%v = time*abs(f%d)
+   end function rise_shift
 
    !> `drive` without its polynomial and with term `i` alone, 0: none.
    function alone(drive, i) result(one)
