@@ -23,7 +23,10 @@ LIBS   ?= -lklu $(if $(filter-out quad,$(KIND)),-llapack -lblas)
 # No flag here changes a result: no fast-math, no contraction into fused multiply-add.
 # gfortran's "uninitialized" is wrong on every array allocated by assignment.
 COMMON  := -std=f2018 -Wall -Wextra -pedantic -Wno-uninitialized -Wno-maybe-uninitialized -ffp-contract=off
-RELEASE ?= -O2 $(if $(filter double,$(KIND)),-flto=auto -ffat-lto-objects)
+# real128 is the library's work, whatever the flags; the other kinds are for comparison, and compile in half the time.
+RELEASE ?= $(if $(filter double,$(KIND)),-O2 -flto=auto -ffat-lto-objects,$(if $(filter quad,$(KIND)),-O0,-O1))
+# Links in two seconds what the optimization at link time takes ten for.
+no_lto  := -fno-lto -fno-use-linker-plugin
 DEBUG   ?= -O0 -g -fbacktrace -fcheck=all,no-array-temps -ffpe-trap=invalid,zero,overflow -finit-real=snan -finit-derived
 
 # What kinds.F90 and lapack.F90 are told of the kind.
@@ -43,13 +46,14 @@ all: $(BUILD)/kinmat
 run: $(BUILD)/kinmat
 	$(BUILD)/kinmat input/yoke.deck
 
-# Three builds of the same sources, each in its own directory: release for use, debug for the unit tests, fuzz with the
-# sanitizers for `make fuzz`.
+# Builds of the same sources, each in its own directory: release for use, debug for the unit tests, fuzz with the
+# sanitizers for `make fuzz`, timed for programs of tests/ that measure time, optimized at link time as kinmat is.
 SANITIZE ?= -O1 -fsanitize=address,undefined -fno-sanitize-recover=undefined
 release  := $(RELEASE)
 debug    := $(DEBUG)
 fuzz     := $(DEBUG) $(SANITIZE)
-builds   := release debug fuzz
+timed    := $(RELEASE)
+builds   := release debug fuzz timed
 define build_in
 $(BUILD)/$(1)/%.o: %.f90 | $(BUILD)/$(1)
 	$$(FC) $$(COMMON) $$($(1)) -J$(BUILD)/$(1) -c -o $$@ $$<
@@ -60,10 +64,9 @@ $(BUILD)/$(1)/libkinmat.a: $(modules:%=$(BUILD)/$(1)/%.o)
 	$$(AR) cr $$@ $$^
 $(BUILD)/$(1)/kinmat: $(BUILD)/$(1)/main.o $(BUILD)/$(1)/libkinmat.a
 	$$(FC) $$(COMMON) $$($(1)) -o $$@ $$^ $$(LIBS)
-# The programs of tests/: depends.mk adds the modules of tests/ that each uses. Those that measure time are optimized as
-# kinmat is, at link time; the others would take 20 seconds each for that.
+# The programs of tests/: depends.mk adds the modules of tests/ that each uses.
 $(programs:%=$(BUILD)/$(1)/%): $(BUILD)/$(1)/%: $(BUILD)/$(1)/%.o $(BUILD)/$(1)/libkinmat.a
-	$$(FC) $$(COMMON) $$($(1)) $$(if $$(filter bench study_ratio matrix_1987,$$*),,-fno-lto -fno-use-linker-plugin) -o $$@ $$(filter %.o,$$^) $(BUILD)/$(1)/libkinmat.a $$(LIBS)
+	$$(FC) $$(COMMON) $$($(1)) $(if $(filter timed,$(1)),,$(no_lto)) -o $$@ $$(filter %.o,$$^) $(BUILD)/$(1)/libkinmat.a $$(LIBS)
 $(BUILD)/$(1):
 	mkdir -p $$@
 endef
@@ -92,7 +95,7 @@ example: $(BUILD)/example
 	$(BUILD)/example
 
 $(BUILD)/example: docs/example.f90 $(BUILD)/release/libkinmat.a
-	$(FC) $(COMMON) $(release) -I$(BUILD)/release -o $@ $^ $(LIBS)
+	$(FC) $(COMMON) $(release) $(no_lto) -I$(BUILD)/release -o $@ $^ $(LIBS)
 
 # Beside kinmat, in double precision, kinmat-quad and kinmat-single.
 kinds: $(BUILD)/kinmat $(BUILD)/kinmat-quad $(BUILD)/kinmat-single
@@ -134,7 +137,7 @@ quad-check single-check: %-check:
 	$(MAKE) --no-print-directory KIND=$* BUILD=$(BUILD)/$* kind-check
 
 # Speed against the closed forms, and the results of the methods compared; bench-short looks at no clock.
-bench: $(BUILD)/kinmat $(BUILD)/release/bench
+bench: $(BUILD)/kinmat $(BUILD)/timed/bench
 	BUILD=$(BUILD) tests/bench/bench.sh
 
 bench-short: $(BUILD)/release/bench
@@ -145,7 +148,7 @@ bench-against: $(BUILD)/kinmat
 	BUILD=$(BUILD) REF='$(REF)' tests/bench/bench_against.sh
 
 # The method of 1987, measured: tables on standard output, docs/matrix_1987.png drawn anew (gnuplot-nox).
-study-1987: $(BUILD)/release/matrix_1987
+study-1987: $(BUILD)/timed/matrix_1987
 	$< tables
 	OPENBLAS_NUM_THREADS=1 $< times
 	$< picture > $(BUILD)/matrix_1987.txt
@@ -161,7 +164,7 @@ hard-short: $(BUILD)/release/hard
 
 # Speed against error of six scenes: kinmat --study for each, times beside the closed forms where there are such, and
 # docs/speed_against_error.png and .svg drawn anew (gnuplot-nox).
-study: kinds $(BUILD)/release/study_ratio
+study: kinds $(BUILD)/timed/study_ratio
 	BUILD=$(BUILD) tests/study/study.sh
 
 # Speed against error of one small deck: what must be so whatever the clock says.

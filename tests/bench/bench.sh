@@ -4,7 +4,8 @@
 BUILD=${BUILD:-build}
 decks=$BUILD/bench
 mkdir -p "$decks" || exit 3
-bench=$BUILD/release/bench
+bench=$BUILD/timed/bench
+[ "$1" = short ] && bench=$BUILD/release/bench
 mkdir -p "$decks" || exit 3
 # OpenBLAS would start threads for matrices of three rows, and wait for them.
 OPENBLAS_NUM_THREADS=${OPENBLAS_NUM_THREADS:-1}

@@ -34,12 +34,12 @@ for name in yoke four_bar andrews jansen dead_point_6 windows_1000; do
    deck=input/$name.deck
    if [ $name = windows_1000 ]; then
       deck=$out/$name.deck
-      ratio=$("$BUILD/release/study_ratio" $name "$out") || exit 3
+      ratio=$("$BUILD/timed/study_ratio" $name "$out") || exit 3
    else
       # One set of computations is enough for a picture.
       awk '{ print } /^END/ { exit }' "$deck" > "$out/$name.deck"
       deck=$out/$name.deck
-      ratio=$("$BUILD/release/study_ratio" $name) || exit 3
+      ratio=$("$BUILD/timed/study_ratio" $name) || exit 3
    fi
    "$BUILD/kinmat" --study -o "$out/$name.txt" "$deck" || exit 3
    cat "$out/$name.txt"
