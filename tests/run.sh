@@ -31,7 +31,7 @@ parts() {
    independent mechanisms|106|tests/system/independent.sh
    what a singular position is|211|tests/system/singular.sh
    pictures|1060|tests/system/pictures.sh
-   tables|225|tests/system/tables.sh
+   tables|212|tests/system/tables.sh
    the digits|1|tests/system/digits.sh
    wide blocks|7|tests/system/wide.sh
    drives between instants|48|tests/system/drives.sh
