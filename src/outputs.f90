@@ -123,8 +123,14 @@ contains
    logical function is_over(o, i)
       class(outputs_t), intent(in) :: o
       integer, intent(in) :: i
+      integer :: k
 
-      is_over = any(has_failed(o%files(:, 0))) .or. any(has_failed(o%files(:, i))) .or. signal_received() > 0
+      is_over = signal_received() > 0
+      ! Only what was asked for: this is asked after every instant.
+      do k = 1, out_last
+         if (.not. o%asked(k)) cycle
+         if (has_failed(o%files(k, merge(i, 0, file_options(k)%each_set)))) is_over = .true.
+      end do
    end function is_over
 
    !> Whether the reader of some output has gone.
