@@ -2,9 +2,10 @@
 module dwells
    use kinds, only: wp
    use mechanism, only: mechanism_t
+   use points, only: coordinates_of
    use set_analysis, only: set_analysis_t
    use zero_search, only: sample_t, column_t, find_zero
-   use extremes, only: extremes_t, least, greatest, is_angle, columns_of, is_cyclic
+   use extremes, only: extremes_t, least, greatest, is_angle, is_cyclic
    implicit none
    private
    public :: dwells_t, dwell_t, new_dwells, note_position, find_dwells
@@ -38,7 +39,7 @@ contains
       allocate (d%wanted(0))
       do q = 1, size(x%asked)
          associate (request => m%requests(x%asked(q)))
-            do c = 1, columns_of(request)
+            do c = 1, coordinates_of(request%kind)
                distance = request%dwell(merge(2, 1, is_angle(m, request, c)))
                if (distance > 0.0_wp) d%wanted = [d%wanted, dwell_t(q, c, distance=distance)]
             end do

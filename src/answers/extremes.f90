@@ -9,18 +9,18 @@
 !> of an acceleration that has at most one extreme in any two consecutive steps.
 module extremes
    use kinds, only: wp
-   use constants, only: pi
-   use mechanism, only: mechanism_t, request_t, request_link, request_point, request_pair, pair_prismatic, instant
+   use constants, only: without_turns
+   use mechanism, only: mechanism_t, request_t, request_link, request_pair, pair_prismatic, instant
    use scales, only: characteristic_length, characteristic_rate, is_length
    use drives, only: new_law, drive_motion, joints_of
-   use points, only: is_fixed
+   use points, only: is_fixed, coordinates_of
    use set_analysis, only: set_analysis_t
    use nodes, only: node_t, node_of_instant, node_at, times_between
    use zero_search, only: sample_t, column_t, find_zero, differ_in_sign
    implicit none
    private
    public :: extremes_t, extreme_t, least, greatest, new_extremes, note_instant, stroke_times, is_cyclic, &
-      is_angle, columns_of
+      is_angle
 
    !> Values that differ by less, in characteristic lengths or rad and rates, are alike: the earlier one counts. A
    !> derivative below the second is a zero that rounding has moved.
@@ -137,7 +137,7 @@ contains
 
       if (size(x%last) == 0) x%first = node
       do q = 1, size(x%asked)
-         do c = 1, columns_of(m%requests(x%asked(q)))
+         do c = 1, coordinates_of(m%requests(x%asked(q))%kind)
             do k = 0, node%known(q)
                call offer(x, m, q, c, k, sample_of(node, q, c), .false.)
             end do
@@ -156,15 +156,6 @@ contains
       end do
       x%last = [node, x%last(:min(size(x%last), 1))]
    end subroutine add_node
-
-   !> Numbers of one derivative in the row of `request`.
-   pure integer function columns_of(request)
-      type(request_t), intent(in) :: request
-
-      columns_of = 3
-      if (request%kind == request_point) columns_of = 2
-      if (request%kind == request_pair) columns_of = 1
-   end function columns_of
 
    !> Column `c` of row `q` of `node`.
    pure type(sample_t) function sample_of(node, q, c) result(sample)
@@ -333,9 +324,9 @@ contains
       integer :: c
 
       closes = .true.
-      do c = 1, columns_of(m%requests(x%asked(q)))
+      do c = 1, coordinates_of(m%requests(x%asked(q))%kind)
          d = x%last(1)%value(c, :1, q) - x%first%value(c, :1, q)
-         if (is_angle(m, m%requests(x%asked(q)), c)) d(0) = d(0) - 2.0_wp*pi*anint(d(0)/(2.0_wp*pi))
+         if (is_angle(m, m%requests(x%asked(q)), c)) d(0) = without_turns(d(0))
          closes = closes .and. all(abs(d) <= closes_to*x%size_of(c, :1, q))
       end do
    end function closes
@@ -354,7 +345,7 @@ contains
          if (is_length(m%drives(i))) then
             d = d/length
          else
-            d(1) = d(1) - 2.0_wp*pi*anint(d(1)/(2.0_wp*pi))
+            d(1) = without_turns(d(1))
          end if
          drives_close = drives_close .and. all(abs(d) <= closes_to*[1.0_wp, rate, rate**2])
       end do

@@ -5,12 +5,13 @@ module extremes_table
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_t, request_pair, driven_kinds
    use names, only: subject_name
+   use points, only: coordinates_of
    use set_analysis, only: set_analysis_t
    use listing_layout, only: layout_t, digits_t, digits_of, has_column, dimension_of, name_length, row_length
    use listing_tables, only: table_t, put_times, put_heads, time_text, drive_text
    use text_output, only: output_t, put
    use numerals, only: fixed, whole, numeral_length
-   use extremes, only: extremes_t, least, greatest, stroke_times, columns_of, is_angle
+   use extremes, only: extremes_t, least, greatest, stroke_times, is_angle
    use dwells, only: dwell_t
    use phrases
    implicit none
@@ -67,7 +68,7 @@ contains
             time = ''
             drive = ''
             do k = 0, 2
-               do c = 1, columns_of(request)
+               do c = 1, coordinates_of(request%kind)
                   associate (e => x%found(which, c, k, q))
                      value(c, k) = l%none
                      if (.not. e%exists) cycle
@@ -105,7 +106,7 @@ contains
       return = ''
       ratio = ''
       associate (request => m%requests(x%asked(q)))
-         do c = 1, columns_of(request)
+         do c = 1, coordinates_of(request%kind)
             associate (e => x%found(:, c, 0, q))
                if (.not. all(e%exists)) cycle
                stroke(c, 0) = number_text(l, d, e(greatest)%value - e(least)%value, is_angle(m, request, c), 0)

@@ -3,7 +3,7 @@
 !> made whole turns, every link is where it was.
 module ranges
    use kinds, only: wp
-   use constants, only: pi
+   use constants, only: pi, without_turns
    use mechanism, only: mechanism_t, request_t, request_link, method_newton, place_links
    use motion, only: motion_t, new_motion
    use diagnostics, only: diagnostic_t, diagnostic_limit, diagnostic_change
@@ -220,7 +220,7 @@ contains
 
       d = now%position - first%position
       d(:2, :) = d(:2, :)/characteristic_length(m)
-      d(3, :) = d(3, :) - 2.0_wp*pi*anint(d(3, :)/(2.0_wp*pi))
+      d(3, :) = without_turns(d(3, :))
       is_closed = all(abs(d) <= closes_to)
    end function is_closed
 end module ranges

@@ -4,7 +4,7 @@ module independent
    use mechanism, only: mechanism_t, drive_relangle, driven_kinds, request_link, request_point
    implicit none
    private
-   public :: part_t, parts_t, find_parts, part_of_links, mechanism_of
+   public :: sorted_t, sorted, part_t, parts_t, find_parts, part_of_links, mechanism_of
 
    !> The members of a part by their numbers in the whole set, increasing; the place in the list is the number within
    !> the part. A BRANCH card without a link is for every part.

@@ -7,7 +7,7 @@ module points
    use motion, only: motion_t, known_of, mark_of, mark_none
    implicit none
    private
-   public :: row_t, row_of, is_due, strides, any_due, is_fixed, point_motion, pair_motion
+   public :: row_t, row_of, coordinates_of, is_due, strides, any_due, is_fixed, point_motion, pair_motion
 
    !> One row of a table, in the deck's units of length and time and in radians.
    type :: row_t
@@ -89,6 +89,15 @@ contains
          end select
       end associate
    end function row_of
+
+   !> How many columns a derivative of a row of the given `kind` has.
+   elemental integer function coordinates_of(kind)
+      integer, intent(in) :: kind
+
+      coordinates_of = 1
+      if (kind == request_link) coordinates_of = 3
+      if (kind == request_point) coordinates_of = 2
+   end function coordinates_of
 
    !> Whether the subject of `request` belongs to the ground.
    pure logical function is_fixed(m, request)

@@ -4,6 +4,7 @@ module moving_links
    use kinds, only: wp
    use constants, only: in_degrees, without_turns
    use mechanism, only: mechanism_t
+   use independent, only: sorted_t, sorted
    use planar, only: point_of
    use drawing, only: drawing_t, snapshot_t
    use canvas, only: canvas_t, to_pixels
@@ -25,17 +26,12 @@ module moving_links
    !> What is seen of a link where it has no position; it stays where it was.
    real(wp), parameter :: pale = 0.2_wp
 
-   !> Things of the links: those of link i are item(first(i):first(i + 1) - 1).
-   type :: things_t
-      integer, allocatable :: first(:)       !< (links + 1)
-      integer, allocatable :: item(:)
-   end type things_t
-
    !> What moves with each link. It is found once for all links: time is proportional to them.
+   !> Of what belongs to link i there are the numbers member(first(i):first(i + 1) - 1).
    type :: cargo_t
-      type(things_t) :: joints               !< pairs
-      type(things_t) :: rods, blocks         !< guides
-      type(things_t) :: dots                 !< points
+      type(sorted_t) :: joints               !< pairs
+      type(sorted_t) :: rods, blocks         !< guides
+      type(sorted_t) :: dots                 !< points
       integer, allocatable :: joint_at(:)    !< (pairs) the point of the link with which the joint moves
       type(snapshot_t) :: rest               !< all links in their own axes
    end type cargo_t
@@ -93,38 +89,15 @@ contains
          if (rank(m%points(m%pairs(i)%point_j)%link) > rank(m%points(m%pairs(i)%point_i)%link)) &
             cargo%joint_at(i) = m%pairs(i)%point_j
       end do
-      cargo%joints = things_of(m%points(cargo%joint_at)%link, size(m%links))
-      cargo%rods = things_of(d%guides%carrier, size(m%links))
-      cargo%blocks = things_of(d%guides%block, size(m%links))
+      cargo%joints = sorted(m%points(cargo%joint_at)%link, size(m%links))
+      cargo%rods = sorted(d%guides%carrier, size(m%links))
+      cargo%blocks = sorted(d%guides%block, size(m%links))
       owner = 0
       owner(dots_of(m)) = m%points(dots_of(m))%link
-      cargo%dots = things_of(owner, size(m%links))
+      cargo%dots = sorted(owner, size(m%links))
       allocate (cargo%rest%place(3, size(m%links)), source=0.0_wp)
       allocate (cargo%rest%known(size(m%links)), source=.true.)
    end subroutine find_cargo
-
-   !> The things 1, 2, ... by their links; `owner` (things): the link of each, 0 for none.
-   pure function things_of(owner, links) result(t)
-      integer, intent(in) :: owner(:), links
-      type(things_t) :: t
-      integer :: next(links), i
-
-      allocate (t%first(links + 1), source=0)
-      do i = 1, size(owner)
-         if (owner(i) > 0) t%first(owner(i) + 1) = t%first(owner(i) + 1) + 1
-      end do
-      t%first(1) = 1
-      do i = 1, links
-         t%first(i + 1) = t%first(i) + t%first(i + 1)
-      end do
-      allocate (t%item(t%first(links + 1) - 1))
-      next = t%first(:links)
-      do i = 1, size(owner)
-         if (owner(i) == 0) cycle
-         t%item(next(owner(i))) = i
-         next(owner(i)) = next(owner(i)) + 1
-      end do
-   end function things_of
 
    !> The moving `link` with what it carries. It turns about a corner of its own: its origin may be far away.
    subroutine put_link(o, c, m, d, course, cargo, link)
@@ -175,18 +148,18 @@ contains
       own%scale = c%scale
       own%shift = -c%scale*d%outlines(link)%corner(:, 1)*[1.0_wp, -1.0_wp]
       do i = cargo%rods%first(link), cargo%rods%first(link + 1) - 1
-         call put_guide(o, own, m, d%guides(cargo%rods%item(i)), cargo%rest)
+         call put_guide(o, own, m, d%guides(cargo%rods%member(i)), cargo%rest)
       end do
       call put_body(o, own, m, d, cargo%rest, link)
       do i = cargo%blocks%first(link), cargo%blocks%first(link + 1) - 1
-         call put_block(o, own, m, d%guides(cargo%blocks%item(i)), cargo%rest)
+         call put_block(o, own, m, d%guides(cargo%blocks%member(i)), cargo%rest)
       end do
       do i = cargo%joints%first(link), cargo%joints%first(link + 1) - 1
-         k = cargo%joints%item(i)
+         k = cargo%joints%member(i)
          call put_joint(o, own, m, cargo%rest, k, cargo%joint_at(k))
       end do
       do i = cargo%dots%first(link), cargo%dots%first(link + 1) - 1
-         call put_dot(o, own, m, cargo%rest, cargo%dots%item(i))
+         call put_dot(o, own, m, cargo%rest, cargo%dots%member(i))
       end do
    end subroutine put_carried
 

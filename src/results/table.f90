@@ -12,7 +12,7 @@ module table
    use mechanism, only: mechanism_t, request_link, request_point, pair_prismatic, drive_angle, drive_relangle
    use drives, only: law_t, new_law, drive_motion
    use names, only: name_table_t, put_name, find_name, drive_name
-   use points, only: row_t
+   use points, only: row_t, coordinates_of
    use set_motion, only: set_motion_t, row_in_set
    use csv, only: add_name
    use text_output, only: output_t, put, add
@@ -75,15 +75,6 @@ contains
       end do
       call name_columns(m, t%columns)
    end function new_table
-
-   !> How many columns a derivative of a row of the given `kind` has.
-   elemental integer function coordinates_of(kind)
-      integer, intent(in) :: kind
-
-      coordinates_of = 1
-      if (kind == request_link) coordinates_of = 3
-      if (kind == request_point) coordinates_of = 2
-   end function coordinates_of
 
    !> The names of the columns, and which of a pair are angles. A point that has the name of a link in the table has
    !> that of its own link before it.
