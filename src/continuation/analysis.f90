@@ -16,7 +16,15 @@ module analysis
       go_on_from, go_back, place_t, note_place, return_to, limits_t, note_limit, lies_beyond, diagnostics_of_limit
    implicit none
    private
-   public :: analysis_t, make_analysis, advance, look_at, redundancy_error
+   public :: analysis_t, make_analysis, advance, look_at, come_back, redundancy_error
+
+   !> The last instant, while the motion at others is looked at.
+   type :: left_t
+      logical :: is_left = .false.                         !< the motion followed is at another time
+      type(place_t) :: place                               !< of the motion followed from that instant
+      type(convergence_t) :: convergence
+      integer :: iterations = 0
+   end type left_t
 
    !> The motion that is followed, and what is known of the instants so far.
    type, extends(following_t) :: analysis_t
@@ -26,6 +34,7 @@ module analysis
       logical :: has_begun = .false.                       !< a position was found
       logical :: is_lost = .false.                         !< at the last instant none was
       real(wp) :: max_closure_error = 0.0_wp               !< of redundant equations, in characteristic lengths or rad
+      type(left_t) :: left                                 !< see `look_at`
    end type analysis_t
 
 contains
@@ -48,6 +57,7 @@ contains
       type(motion_t), intent(inout) :: found
       type(step_record_t) :: step
 
+      call come_back(a)
       if (allocated(found%diagnostics)) deallocate (found%diagnostics)
       found%t = t
       if (lies_beyond(a%limits, t) .or. is_too_far(a%following_t, t)) then
@@ -69,24 +79,25 @@ contains
       a%is_lost = .not. step%arrived
    end subroutine advance
 
-   !> The motion `found` at a time `t` that is no instant of the deck, by continuity from the last one; nothing else
-   !> changes. `is_found`: it has a position, velocities and accelerations.
+   !> The motion `found` at a time `t` that is no instant of the deck, by continuity from the last one, or from a time
+   !> looked at before: of many times in a row each costs a short step. Nothing else changes; the engine stays at `t`
+   !> until `come_back`. `is_found`: it has a position, velocities and accelerations.
    subroutine look_at(a, t, found, is_found)
       type(analysis_t), intent(inout) :: a
       real(wp), intent(in) :: t
       type(motion_t), intent(inout) :: found
       logical, intent(out) :: is_found
-      type(place_t) :: here
       type(step_record_t) :: step
-      type(convergence_t) :: convergence
-      integer :: iterations
       logical :: finite
 
       is_found = .false.
-      if (.not. a%follows .or. a%is_lost) return
-      call note_place(a%following_t, here)
-      convergence = a%convergence
-      iterations = a%iterations
+      if (.not. a%follows .or. lies_beyond(a%limits, t)) return
+      if (.not. a%left%is_left) then
+         call note_place(a%following_t, a%left%place)
+         a%left%convergence = a%convergence
+         a%left%iterations = a%iterations
+         a%left%is_left = .true.
+      end if
       call continue_to(a%following_t, t, step)
       if (step%arrived .and. .not. (a%convergence%singular .or. a%convergence%rates_open)) then
          found%t = t
@@ -95,10 +106,23 @@ contains
          if (.not. finite) call look_for_overflow(found)
          is_found = found%known == 2
       end if
-      call return_to(a%following_t, here)
-      a%convergence = convergence
-      a%iterations = iterations
+      if (.not. is_found) then
+         call go_back(a%following_t, step)
+      else if (step%tries > 1) then
+         call go_on_from(a%following_t, t)
+      end if
    end subroutine look_at
+
+   !> Follows the motion from the last instant again, if it was left.
+   subroutine come_back(a)
+      type(analysis_t), intent(inout) :: a
+
+      if (.not. a%left%is_left) return
+      call return_to(a%following_t, a%left%place)
+      a%convergence = a%left%convergence
+      a%iterations = a%left%iterations
+      a%left%is_left = .false.
+   end subroutine come_back
 
    !> The motion found at the end of `step`.
    subroutine arrive(a, step, found)
