@@ -38,6 +38,8 @@ module scheme_motion
    real(qp), parameter :: shortest = 1.0e-7_qp, limit_margin = 1.0e-4_qp
    !> Nearer to a singularity than this a slide may be far off on its way to infinity, which is not followed.
    real(qp), parameter :: too_near = 1.0e-6_qp
+   !> The sine of the angle from a change point within which an antiparallelogram may be so fast.
+   real(qp), parameter :: whip = 0.3_qp
    !> More steps than this are not taken.
    integer, parameter :: most_tries = 5000
    !> Kantorovich's ratio with 3 for the bend of the equations: 0.5 would do.
@@ -271,7 +273,7 @@ contains
       type(motion_t), intent(inout) :: trial
       logical, intent(out) :: fits
       type(jet_t) :: phi, sine, before
-      real(qp) :: predicted(g%links(1):g%links(2))
+      real(qp) :: predicted(g%links(1):g%links(2)), longest
       logical :: passes
 
       predicted = trial%b(g%links(1):g%links(2))%phi%v
@@ -290,7 +292,9 @@ contains
          trial%has_branched(k) = .true.
          call place_parallelogram(s, g, trial%b, phi, trial%crossed(k), sine)
       end if
-      fits = abs(sine%d*h) <= 0.2_qp .and. abs(sine%dd*h**2) <= 0.2_qp
+      longest = 0.2_qp
+      if (trial%crossed(k) .and. min(abs(sine%v), abs(before%v)) < whip) longest = longest*nearly_kite(s, g)
+      fits = max(abs(sine%d), abs(before%d))*abs(h) <= longest .and. abs(sine%dd)*h**2 <= longest
       if (abs(h) > 0.0_qp) fits = fits .and. all(abs(trial%b(g%links(1):g%links(2))%phi%v - predicted) < 0.5_qp)
       ! A turn beside a change point.
       if (abs(h) > 0.0_qp .and. sine%d*before%d <= 0.0_qp .and. min(abs(sine%v), abs(before%v)) < 0.05_qp) &
@@ -300,7 +304,8 @@ contains
    end subroutine follow_parallelogram
 
    !> By how little the sides of a parallelogram differ. Where they do not, the antiparallelogram is a kite, which at
-   !> its change points takes any position; where they hardly do, it goes past them fast.
+   !> its change points takes any position; where they hardly do, it goes past them fast: 1 over this is the largest
+   !> ratio of its rates, and a step as long as the others could count a turn too many or too few.
    real(qp) function nearly_kite(s, g)
       type(scheme_t), intent(in) :: s
       type(group_t), intent(in) :: g
