@@ -77,27 +77,35 @@ contains
    end subroutine pass
 
    !> The substep was short, and its prediction, off by `correction`, right to so small a part of it that the motion
-   !> found last is on the branch that goes on smoothly, beyond change points too: there rounding has made the
-   !> prediction wrong by lipschitz/pivot^2, as it does the rates so close to them. A longer substep past a change point
-   !> has to be right to a part that is smaller as its square, by which the same circuits are distinguished.
+   !> found last is on the branch that goes on smoothly, beyond change points too. Close to them rounding has made the
+   !> prediction wrong by lipschitz/pivot^2, as it does the rates. A longer substep past a change point has to be right
+   !> to a part that is smaller as its square, by which the same circuits are distinguished.
    pure logical function is_short_and_right(e, correction) result(is)
       type(block_engine_t), intent(in) :: e
       real(wp), intent(in) :: correction
-      real(wp) :: allowed, right
-      integer :: i
+      real(wp) :: rounded(size(e%moving)), right
+      logical :: crosses
+      integer :: k
 
-      is = e%change <= short_step .or. any(e%crossed)
+      crosses = any(e%crossed)
+      is = e%change <= short_step .or. crosses
       if (.not. is) return
-      if (.not. any(e%crossed)) is = correction <= right_part*e%change
-      right = right_part*(short_step/max(short_step, e%change))**2
-      do i = 1, size(e%crossed)
-         if (.not. (e%crossed(i) .and. is)) cycle
-         associate (before => e%followed(i)%pivot, lipschitz => e%blocks%list(i)%lipschitz)
-            allowed = right + rounding*lipschitz/before**2
-            is = correction <= min(allowed, max_wrong)*e%change .and. (e%change <= short_step &
-               .or. before + e%found(i)%pivot <= short_pivots*lipschitz)
+      do k = 1, size(e%moving)
+         associate (i => e%moving(k))
+            associate (before => e%followed(i)%pivot, lipschitz => e%blocks%list(i)%lipschitz)
+               rounded(k) = rounding*lipschitz/before**2
+               if (e%crossed(i)) is = is .and. (e%change <= short_step &
+                  .or. before + e%found(i)%pivot <= short_pivots*lipschitz)
+            end associate
          end associate
       end do
+      right = right_part*(short_step/max(short_step, e%change))**2
+      if (crosses) then
+         right = right + minval(rounded, mask=e%crossed(e%moving))
+      else
+         right = right + maxval(rounded)
+      end if
+      is = is .and. correction <= min(right, max_wrong)*e%change
    end function is_short_and_right
 
    !> Where block `i` has passed a change point before `t`: the least pivot goes through zero in proportion.

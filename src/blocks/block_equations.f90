@@ -9,7 +9,7 @@ module block_equations
    use block_state, only: state_t, slide_vector
    implicit none
    private
-   public :: assemble_block, assemble_dense, right_hand_side
+   public :: assemble_block, assemble_dense, right_hand_side, largest_rates
 
 contains
 
@@ -193,6 +193,41 @@ contains
          end associate
       end do
    end subroutine right_hand_side
+
+   !> The largest rate and acceleration of anything that goes into the equations of block `i`: angles, slides, drives,
+   !> known or not.
+   pure function largest_rates(b, i, s) result(largest)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(state_t), intent(in) :: s
+      real(wp) :: largest(2)
+      integer :: k, m
+
+      largest = 0.0_wp
+      do k = b%list(i)%first_row, b%list(i)%last_row
+         largest = max(largest, abs(s%drive_value(1:2, b%rows(k)%drive)))
+      end do
+      do m = b%list(i)%first_loop, b%list(i)%last_loop
+         call take(b%loops(m)%orientation)
+         call take(b%loops(m)%less)
+         do k = b%loops(m)%first_vector, b%loops(m)%last_vector
+            call take(b%body_vectors(k)%orientation)
+         end do
+         do k = b%loops(m)%first_slide, b%loops(m)%last_slide
+            call take(b%slides(k)%orientation)
+            call take(b%slides(k)%unknown)
+         end do
+      end do
+
+   contains
+
+      !> Unknown number `u` of all blocks.
+      pure subroutine take(u)
+         integer, intent(in) :: u
+
+         largest = max(largest, abs([s%u(u)%rate, s%u(u)%acceleration]))
+      end subroutine take
+   end function largest_rates
 
    !> Angles of earlier blocks in an equation of two angles.
    pure subroutine subtract_angles(g, order, s, v)

@@ -16,7 +16,7 @@ module block_solver
       ended_diverged, ended_inconsistent
    use blocks, only: blocks_t
    use block_state, only: state_t, set_direction, rotate_direction, find_known_parts
-   use block_equations, only: assemble_block, right_hand_side
+   use block_equations, only: assemble_block, right_hand_side, largest_rates
    implicit none
    private
    public :: workspace_t, make_workspace, solve_block, note_closure_error, contradict
@@ -268,6 +268,7 @@ contains
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
+      real(wp) :: rates(2)
       integer :: k
 
       if (.not. c%singular) call judge(b, i, n, w, s, c)
@@ -281,8 +282,10 @@ contains
          do k = 1, n
             s%u(b%unknown(b%list(i)%first + k - 1))%acceleration = w%r(k)
          end do
-         if (rows > n) c%rates_open = contradict(w%r(rows + 1:2*rows), n, 0.0_wp, b%list(i)%coarse) &
-            .or. contradict(w%r(:rows), n, norm2(w%r(rows + 1:rows + n))**2, b%list(i)%coarse)
+         if (rows == n) return
+         rates = largest_rates(b, i, s)
+         c%rates_open = contradict(w%r(rows + n + 1:2*rows), rates(1), b%list(i)%coarse) &
+            .or. contradict(w%r(n + 1:rows), max(rates(2), rates(1)**2), b%list(i)%coarse)
       end associate
    end subroutine finish
 
@@ -386,13 +389,11 @@ contains
       end associate
    end function opening
 
-   !> The equations of the least squares `x` contradict one another: their first `n` are the solution, the others what
-   !> remains open (DGEQRF); `size_of`: numbers of this size have gone into them; `coarse`: of the block.
-   pure logical function contradict(x, n, size_of, coarse)
-      real(wp), intent(in) :: x(:), size_of, coarse
-      integer, intent(in) :: n
+   !> Equations that leave `open` of their rates contradict one another; `size_of`: numbers of this size have gone into
+   !> them; `coarse`: of the block.
+   pure logical function contradict(open, size_of, coarse)
+      real(wp), intent(in) :: open(:), size_of, coarse
 
-      contradict = norm2(x(n + 1:)) > max(open_rates, rate_roundings*epsilon(1.0_wp)*coarse) &
-         *max(norm2(x(:n)), size_of)
+      contradict = norm2(open) > max(open_rates, rate_roundings*epsilon(1.0_wp)*coarse)*size_of
    end function contradict
 end module block_solver

@@ -32,8 +32,8 @@ module following
    !> blocked there. So many substeps at most are tried.
    real(wp), parameter :: min_substep = max(1.0e-10_wp, 4.0_wp*epsilon(1.0_wp))
    integer, parameter :: max_substeps = 200000
-   !> Near a limit a slow iteration creeps, and each substep that fails costs all of its iterations: so many failures
-   !> of small substeps end the continuation too.
+   !> Near a limit a slow iteration creeps, and each substep without a position costs all of its iterations: so many of
+   !> small substeps end the continuation too.
    integer, parameter :: max_failures = 300
    real(wp), parameter :: small_substep = 1.0e-3_wp
    !> A substep that ends so near a change point that there are no velocities is made longer, to end beyond it, at most
@@ -140,7 +140,7 @@ contains
          accepted = accepted .and. .not. f%convergence%singular
          if (accepted) call go_on_from(f, here)
          if (.not. f%follows) exit
-         if (.not. accepted .and. abs(substep) <= small_substep*longest) failures = failures + 1
+         if (.not. is_solved(f%convergence) .and. abs(substep) <= small_substep*longest) failures = failures + 1
          longer = merge(merge(0, longer + 1, accepted), max_longer, grows)
          substep = merge(1.5_wp, 0.5_wp, grows)*substep
          step%blocked = abs(substep) <= min_substep*min(longest, abs(t - f%t))
