@@ -63,7 +63,7 @@ contains
       passed = is_short_and_right(e, correction)
       do k = 1, size(e%moving)
          if (.not. passed) return
-         associate (i => e%moving(k), before => e%history%t(e%history%place(0)))
+         associate (i => e%moving(k), before => e%history%t(0))
             if (.not. crossed(i)) cycle
             r = change_point(e, i, t)
             if (are_there(requests)) then
@@ -115,7 +115,7 @@ contains
       real(wp), intent(in) :: t
 
       r = new_diagnostic(diagnostic_change, links_of(e, i))
-      associate (before => e%history%t(e%history%place(0)), a => e%followed(i)%pivot, b => e%found(i)%pivot)
+      associate (before => e%history%t(0), a => e%followed(i)%pivot, b => e%found(i)%pivot)
          r%t = before + (t - before)*(a/(a + b))
       end associate
    end function change_point
@@ -178,7 +178,7 @@ contains
 
       allocate (list(0))
       singular = .false.
-      if (.not. is_even(e%history, t - e%history%t(e%history%place(0)))) return
+      if (.not. is_even(e%history, t - e%history%t(0))) return
       call set_drive_values(e, t)
       call predict(e%history, t, e%state%u, change)
       smooth = .true.

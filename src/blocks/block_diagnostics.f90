@@ -187,8 +187,8 @@ contains
          if (abs(left) <= 0.0_wp) cycle
          associate (i => e%moving(k), block => e%blocks%list(e%moving(k)))
             r = new_diagnostic(diagnostic_limit, links_of(e, e%moving(k)))
-            r%in_line = is_in_line(e, i, r, e%history%value)
-            r%t = e%history%t(e%history%place(0)) + left
+            r%in_line = is_in_line(e, i, r, e%history%past%value)
+            r%t = e%history%t(0) + left
             call name_drive(e, i, r)
          end associate
          list = [r]
@@ -215,13 +215,13 @@ contains
       integer :: fastest
 
       left = 0.0_wp
-      associate (h => e%history, p => e%history%place(0), &
+      associate (past => e%history%past, step => t - e%history%t(0), &
                  u => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
          if (size(u) == 0) return
-         fastest = u(maxloc(abs(h%acceleration(u, p)), dim=1))
-         if (abs(h%acceleration(fastest, p)) <= 0.0_wp) return
-         left = 0.5_wp*h%rate(fastest, p)/h%acceleration(fastest, p)
-         if (left*sign(1.0_wp, t - h%t(p)) <= 0.0_wp .or. abs(left) > near_part*abs(t - h%t(p))) left = 0.0_wp
+         fastest = u(maxloc(abs(past(u)%acceleration(0)), dim=1))
+         if (abs(past(fastest)%acceleration(0)) <= 0.0_wp) return
+         left = 0.5_wp*past(fastest)%rate(0)/past(fastest)%acceleration(0)
+         if (left*sign(1.0_wp, step) <= 0.0_wp .or. abs(left) > near_part*abs(step)) left = 0.0_wp
       end associate
    end function time_to_limit
 
@@ -237,12 +237,12 @@ contains
 
       left = 0.0_wp
       do k = e%blocks%list(i)%first, e%blocks%list(i)%last
-         associate (h => e%history, p => e%history%place(0), u => e%blocks%unknown(k))
-            if (u <= e%blocks%orientations .or. .not. abs(h%rate(u, p)) > 0.0_wp) cycle
-            if (abs(h%value(u)) < far_slide) cycle
-            if (abs(h%value(u)*h%acceleration(u, p)/h%rate(u, p)**2 - 2.0_wp) > as_a_pole) cycle
-            to_go = 2.0_wp*h%rate(u, p)/h%acceleration(u, p)
-            if (to_go*sign(1.0_wp, t - h%t(p)) > 0.0_wp .and. abs(to_go) < abs(t - h%t(p))) left = to_go
+         associate (x => e%history%past(e%blocks%unknown(k)), step => t - e%history%t(0))
+            if (e%blocks%unknown(k) <= e%blocks%orientations .or. .not. abs(x%rate(0)) > 0.0_wp) cycle
+            if (abs(x%value) < far_slide) cycle
+            if (abs(x%value*x%acceleration(0)/x%rate(0)**2 - 2.0_wp) > as_a_pole) cycle
+            to_go = 2.0_wp*x%rate(0)/x%acceleration(0)
+            if (to_go*sign(1.0_wp, step) > 0.0_wp .and. abs(to_go) < abs(step)) left = to_go
          end associate
       end do
    end function time_to_infinity

@@ -214,7 +214,7 @@ contains
       integer :: i
 
       do i = 1, size(e%laws)
-         e%state%drive_value(:, i) = drive_motion(e%laws(i), t)*e%unit_of(i)
+         e%state%drive_value(0:2, i) = drive_motion(e%laws(i), t)*e%unit_of(i)
       end do
    end subroutine set_drive_values
 

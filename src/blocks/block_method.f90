@@ -78,7 +78,7 @@ contains
       class(block_method_t), intent(in) :: e
 
       associate (h => e%history)
-         max_rate = max(0.0_wp, maxval(abs(h%rate(h%predicted, h%place(0)))))
+         max_rate = max(0.0_wp, maxval(abs(h%past(h%predicted)%rate(0))))
       end associate
    end function max_rate
 

@@ -25,15 +25,18 @@ module predictor
    !> Steps that differ by less, relatively, count as equal: instants are rounded too.
    real(wp), parameter :: equal_step = max(1.0e-6_wp, 4096.0_wp*epsilon(1.0_wp))
 
-   !> The last three motions; column place(0) is the latest.
+   !> One unknown in the last three motions, the latest first; of its values the latest alone.
+   type :: past_t
+      real(wp) :: value = 0.0_wp, rate(0:2) = 0.0_wp, acceleration(0:2) = 0.0_wp
+   end type past_t
+
+   !> The last three motions.
    type :: history_t
-      integer, allocatable :: predicted(:)                 !< the unknowns that iterations solve for
+      integer, allocatable :: predicted(:)              !< the unknowns that iterations solve for
       integer :: order = own_predictor                  !< 0 to 3, or as above
       integer :: filled = 0                             !< motions that are there, 0 to 3
-      integer :: place(0:2) = [0, 1, 2]                 !< columns, latest first
-      real(wp) :: t(0:2) = 0.0_wp                       !< (columns) their times
-      real(wp), allocatable :: value(:)                 !< (0:unknowns) of the latest
-      real(wp), allocatable :: rate(:, :), acceleration(:, :)  !< (0:unknowns, 0:2)
+      real(wp) :: t(0:2) = 0.0_wp                       !< their times, the latest first
+      type(past_t), allocatable :: past(:)              !< (0:unknowns)
    end type history_t
 
 contains
@@ -44,7 +47,7 @@ contains
       type(history_t) :: h
 
       h%predicted = predicted
-      allocate (h%value(0:n), h%rate(0:n, 0:2), h%acceleration(0:n, 0:2), source=0.0_wp)
+      allocate (h%past(0:n))
    end function new_history
 
    !> Makes the motion `u` (0:unknowns) at `t` the latest.
@@ -52,16 +55,16 @@ contains
       type(history_t), intent(inout) :: h
       real(wp), intent(in) :: t
       type(unknown_t), intent(in) :: u(0:)
-      integer :: i, k, latest
+      integer :: i, k
 
-      latest = h%place(2)
-      h%place = [latest, h%place(0), h%place(1)]
-      h%t(latest) = t
+      h%t = [t, h%t(0), h%t(1)]
       do k = 1, size(h%predicted)
          i = h%predicted(k)
-         h%value(i) = u(i)%value
-         h%rate(i, latest) = u(i)%rate
-         h%acceleration(i, latest) = u(i)%acceleration
+         associate (x => h%past(i))
+            x%value = u(i)%value
+            x%rate = [u(i)%rate, x%rate(0), x%rate(1)]
+            x%acceleration = [u(i)%acceleration, x%acceleration(0), x%acceleration(1)]
+         end associate
       end do
       h%filled = min(h%filled + 1, 3)
    end subroutine remember
@@ -78,24 +81,24 @@ contains
       logical :: even
 
       change = 0.0_wp
-      associate (p => h%place(0), q => h%place(1), r => h%place(2), v => h%rate, a => h%acceleration)
-         step = t - h%t(p)
-         even = is_even(h, step)
-         if (h%order /= own_predictor) w = order_weights(h%order, step, merge(h%t(p) - h%t(q), 0.0_wp, h%filled > 1))
-         do k = 1, size(h%predicted)
-            i = h%predicted(k)
+      step = t - h%t(0)
+      even = is_even(h, step)
+      if (h%order /= own_predictor) w = order_weights(h%order, step, merge(h%t(0) - h%t(1), 0.0_wp, h%filled > 1))
+      do k = 1, size(h%predicted)
+         i = h%predicted(k)
+         associate (v => h%past(i)%rate, a => h%past(i)%acceleration)
             if (h%order /= own_predictor) then
-               d = w(1)*v(i, p) + w(2)*a(i, p) + w(3)*(a(i, p) - a(i, q))
+               d = w(1)*v(0) + w(2)*a(0) + w(3)*(a(0) - a(1))
             else if (even) then
-               d = step*(weight(0)*v(i, p) + weight(1)*v(i, q) + weight(2)*v(i, r) &
-                  + step*(weight2(0)*a(i, p) + weight2(1)*a(i, q) + weight2(2)*a(i, r)))
+               d = step*(weight(0)*v(0) + weight(1)*v(1) + weight(2)*v(2) &
+                  + step*(weight2(0)*a(0) + weight2(1)*a(1) + weight2(2)*a(2)))
             else
-               d = step*(v(i, p) + 0.5_wp*step*a(i, p))
+               d = step*(v(0) + 0.5_wp*step*a(0))
             end if
-            u(i)%value = h%value(i) + d
-            change = max(change, abs(d))
-         end do
-      end associate
+         end associate
+         u(i)%value = h%past(i)%value + d
+         change = max(change, abs(d))
+      end do
    end subroutine predict
 
    !> Weights (3) of the velocity, the acceleration and the last change of the acceleration in a start of the given
@@ -118,9 +121,7 @@ contains
 
       is_even = h%filled == 3 .and. h%order == own_predictor
       if (.not. is_even) return
-      associate (t => h%t, p => h%place)
-         is_even = abs(t(p(0)) - t(p(1)) - step) <= equal_step*abs(step) &
-            .and. abs(t(p(1)) - t(p(2)) - step) <= equal_step*abs(step)
-      end associate
+      is_even = abs(h%t(0) - h%t(1) - step) <= equal_step*abs(step) &
+         .and. abs(h%t(1) - h%t(2) - step) <= equal_step*abs(step)
    end function is_even
 end module predictor

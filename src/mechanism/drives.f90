@@ -63,7 +63,9 @@ contains
       integer :: i
 
       associate (c => law%drive%polynomial)
-         f = [c(1) + t*(c(2) + t*c(3)/2.0_wp), c(2) + t*c(3), c(3)]
+         f(1) = c(1) + t*(c(2) + t*c(3)/2.0_wp)
+         f(2) = c(2) + t*c(3)
+         f(3) = c(3)
       end associate
       do i = 1, size(law%splines)
          select case (law%drive%terms(i)%kind)
