@@ -7,9 +7,10 @@ module deck
    use card_sets, only: card_set_t, begin_set, append_card, read_small_letters, build_bodies
    use cards, only: card_t, card_fields, wide_fields, card_name, label_a, real_1, field_text, small_field, &
       is_passed_over, form_name, reals_of, form_title, form_units, form_link, form_time, form_at, form_method, &
-      form_print, form_end
+      form_print, form_pole, form_curve, form_end
    use deck_drives, only: build_drives, check_terms
    use deck_options, only: build_options, build_requests, build_branches
+   use deck_centres, only: build_centres, check_centres
    use deck_remarks, only: check_unused, check_angles, check_guides
    use deck_source, only: source_t, open_source, next_card, close_source
    use failures, only: failure_t, fail, status_rejected
@@ -140,10 +141,12 @@ contains
          call build_bodies(set)
          call build_drives(set)
          call build_requests(set)
+         call build_centres(set)
          call build_branches(set)
          if (error_count(set%errors) == progress%errors_before) then
             call check_terms(set)
             call check_unused(set)
+            call check_centres(set)
             call check_angles(set)
             call check_guides(set)
             call build_echo(set)
@@ -225,7 +228,7 @@ contains
       integer :: i, column
 
       labels = card%label
-      if (card%form == form_print .and. labels(3) == '') labels(3) = '1'
+      if (any(card%form == [form_print, form_pole, form_curve]) .and. labels(3) == '') labels(3) = '1'
       if (card%form == form_units) then
          labels(1) = length_unit
          if (labels(2) == '') labels(2) = 'RAD'

@@ -6,7 +6,7 @@ module deck_remarks
    use planar, only: direction, quarter_turn, point_of
    use diagnostics, only: remark_link_unused, remark_point_unused, remark_radians, remark_guide
    use mechanism, only: mechanism_t, pair_prismatic, drive_words, driven_kinds, drive_angle, drive_relangle, &
-      request_link, request_point, request_pair
+      request_link, request_point, request_pair, request_curve
    use scales, only: solver_length
    use card_sets, only: card_set_t, add_card_error, add_card_remark
    use cards, only: label_a, label_c, real_1, real_3, form_ground, form_link, form_prism, form_drive, form_rise
@@ -38,7 +38,7 @@ contains
          end do
          where (.not. link) m%links%ground = .true.
          associate (requests => m%requests)
-            point(pack(requests%subject, requests%kind == request_point)) = .true.
+            point(pack(requests%subject, requests%kind == request_point .or. requests%kind == request_curve)) = .true.
          end associate
       end associate
       do i = 1, size(point)

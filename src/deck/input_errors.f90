@@ -128,7 +128,9 @@ module input_errors
       print_repeated = error_code_t(96, 'THIS CARD IS REPEATED; FIRST ON CARD'), &
       print_nothing = error_code_t(97, 'THE SET HAS NONE OF THESE'), &
       extremes_time = error_code_t(98, 'EXTREMES NEEDS A TIME CARD: IT SEARCHES BETWEEN ITS INSTANTS'), &
-      extremes_ground = error_code_t(99, 'BELONGS TO THE GROUND: IT DOES NOT MOVE')
+      extremes_ground = error_code_t(99, 'BELONGS TO THE GROUND: IT DOES NOT MOVE'), &
+      centre_still = error_code_t(100, 'THERE IS NO RELATIVE MOTION: BOTH ARE OF ONE LINK, OR OF THE GROUND'), &
+      centre_apart = error_code_t(101, 'IS IN AN INDEPENDENT MECHANISM: NAME A GROUND LINK INSTEAD OF ONE')
 
 contains
 

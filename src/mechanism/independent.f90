@@ -1,7 +1,9 @@
 !> The independent mechanisms of a set: links that pairs or drives join, but not through the ground. None of them acts
 !> on another: each is solved as a set of its own, in its own numbers and its own lengths.
 module independent
-   use mechanism, only: mechanism_t, drive_relangle, driven_kinds, request_link, request_point
+   use mechanism, only: mechanism_t, request_t, drive_relangle, driven_kinds, request_link, request_point, &
+      request_pole, request_curve
+   use scales, only: characteristic_length, characteristic_rate
    implicit none
    private
    public :: sorted_t, sorted, part_t, parts_t, find_parts, part_of_links, mechanism_of
@@ -28,8 +30,8 @@ module independent
 contains
 
    !> Finds the parts `p` of the set `m`, and makes each a set of its own: `own` (parts), of size 0 where there is one
-   !> part. A part has the ground links, and their points, that its pairs and drives use. Time and memory grow in
-   !> proportion to the deck.
+   !> part. A part has the ground links, and their points, that its pairs, drives and requests use. Time and memory grow
+   !> in proportion to the deck.
    subroutine find_parts(m, p, own)
       type(mechanism_t), intent(in) :: m
       type(parts_t), intent(out) :: p
@@ -45,7 +47,7 @@ contains
          return
       end if
       allocate (own(p%count), p%list(p%count))
-      p%part = [(part_of(m, link_part, m%requests(i)%kind, m%requests(i)%subject), i=1, size(m%requests))]
+      p%part = [(part_of_request(m, link_part, m%requests(i)), i=1, size(m%requests))]
       links = sorted(link_part, p%count)
       points = sorted(link_part(m%points%link), p%count)
       pairs = sorted([(part_of_pair(m, link_part, i), i=1, size(m%pairs))], p%count)
@@ -128,14 +130,24 @@ contains
       integer, intent(in) :: link_part(:), kind, i
 
       select case (kind)
-      case (request_link)
+      case (request_link, request_pole)
          part = link_part(i)
-      case (request_point)
+      case (request_point, request_curve)
          part = link_part(m%points(i)%link)
       case default
          part = part_of_pair(m, link_part, i)
       end select
    end function part_of
+
+   !> The part of `request`; 0: the ground's.
+   pure integer function part_of_request(m, link_part, request) result(part)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: link_part(:)
+      type(request_t), intent(in) :: request
+
+      part = part_of(m, link_part, request%kind, request%subject)
+      if (request%second > 0) part = max(part, link_part(request%second))
+   end function part_of_request
 
    !> The part of pair number `i`.
    pure integer function part_of_pair(m, link_part, i) result(part)
@@ -173,8 +185,8 @@ contains
       end do
    end function branch_requests_of
 
-   !> Adds to `part` the ground links, and their points, that its pairs and drives use. `seen` (links, then points): all
-   !> false before and after.
+   !> Adds to `part` the ground links, and their points, that its pairs, drives and requests use. `seen` (links, then
+   !> points): all false before and after.
    subroutine add_ground(m, seen, part)
       type(mechanism_t), intent(in) :: m
       logical, intent(inout) :: seen(:)
@@ -191,6 +203,13 @@ contains
          associate (d => m%drives(part%drives(i)))
             if (d%kind == drive_relangle) call add_link(d%subject)
             if (d%kind == drive_relangle) call add_link(d%second)
+         end associate
+      end do
+      do i = 1, size(part%requests)
+         associate (request => m%requests(part%requests(i)))
+            if (request%kind == request_pole) call add_link(request%subject)
+            if (request%kind == request_curve) call add_point(request%subject)
+            if (request%second > 0) call add_link(request%second)
          end associate
       end do
       seen(links) = .false.
@@ -315,7 +334,11 @@ contains
       end do
       do i = 1, size(own%requests)
          own%requests(i)%subject = number_in(part, own%requests(i)%kind, own%requests(i)%subject)
+         if (own%requests(i)%second > 0) own%requests(i)%second = place_in(part%links, own%requests(i)%second)
       end do
+      if (.not. any(own%requests%kind >= request_pole)) return
+      own%requests%length = characteristic_length(own)
+      own%requests%rate = characteristic_rate(own, own%requests(1)%length)
    end function mechanism_of
 
    !> The number within `part` of the link, point or pair (`kind`: request_link, ...) number `i` of the whole set.
@@ -324,9 +347,9 @@ contains
       integer, intent(in) :: kind, i
 
       select case (kind)
-      case (request_link)
+      case (request_link, request_pole)
          number_in = place_in(part%links, i)
-      case (request_point)
+      case (request_point, request_curve)
          number_in = place_in(part%points, i)
       case default
          number_in = place_in(part%pairs, i)

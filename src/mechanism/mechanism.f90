@@ -10,7 +10,7 @@ module mechanism
    public :: drive_angle, drive_x, drive_y, drive_relangle, drive_slide, drive_words, driven_kinds
    public :: term_harmonic, term_power, term_table, term_words
    public :: term_cycloid, term_345, term_cosine, term_parabola, rise_words
-   public :: request_link, request_point, request_pair
+   public :: request_link, request_point, request_pair, request_pole, request_curve
    public :: method_newton, method_matrix, method_dense, method_words, own_predictor
    public :: instant_count, instant, find_instants, wanted_links, with_all_links, plane_origin, place_links
 
@@ -19,6 +19,8 @@ module mechanism
 
    !> The kinds of what has a name and a row in the tables.
    integer, parameter :: request_link = 1, request_point = 2, request_pair = 3
+   !> The kinds of requests for instant centres and for centres of curvature, cards POLE and CURVE.
+   integer, parameter :: request_pole = 4, request_curve = 5
 
    integer, parameter :: drive_angle = 1     !< ANGLE: phi of link `subject`
    integer, parameter :: drive_x = 2         !< X: x of point `subject`
@@ -87,13 +89,16 @@ module mechanism
       type(term_t), allocatable :: terms(:)  !< of its ADD and RISE cards; none: not allocated
    end type drive_t
 
-   !> What is asked about a link, point or pair: a row of the tables, its extremes, or both.
+   !> What is asked about a link, point or pair: a row of the tables, its extremes, or both; or about the motion of a
+   !> link (request_pole) or the path of a point (request_curve) as seen from the link `second`.
    type :: request_t
-      integer :: kind = request_link         !< request_link, request_point or request_pair
+      integer :: kind = request_link         !< request_link, ..., request_curve
       integer :: subject = 0                 !< the number of the link, point or pair
       integer :: every = 1                   !< a row at every such instant, the first and the last; 0: no row
       logical :: extremes = .false.          !< its extremes over the run
       real(wp) :: dwell(2) = 0.0_wp          !< (length, rad) its dwells within this distance; 0: not asked for
+      integer :: second = 0                  !< the link from which a motion is seen; of a curve 0: the fixed plane
+      real(wp) :: length = 1.0_wp, rate = 1.0_wp   !< of a pole or curve: characteristic ones of its mechanism
    end type request_t
 
    !> At the next change point after `t`, `link` takes the other branch; link 0: any links that pass a change point.
@@ -204,14 +209,15 @@ contains
       do i = 1, size(m%requests)
          associate (k => m%requests(i)%subject)
             select case (m%requests(i)%kind)
-            case (request_link)
+            case (request_link, request_pole)
                wanted(k) = .true.
-            case (request_point)
+            case (request_point, request_curve)
                wanted(m%points(k)%link) = .true.
-            case default
+            case (request_pair)
                wanted(m%points(m%pairs(k)%point_i)%link) = .true.
                wanted(m%points(m%pairs(k)%point_j)%link) = .true.
             end select
+            if (m%requests(i)%second > 0) wanted(m%requests(i)%second) = .true.
          end associate
       end do
    end function wanted_links

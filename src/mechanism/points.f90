@@ -1,23 +1,35 @@
-!> The rows of the tables: the motion of links, of any point of any link, and of pairs.
+!> The rows of the tables: the motion of links, of any point of any link, and of pairs; instant centres, and centres of
+!> curvature.
 module points
    use kinds, only: wp, label_length
+   use constants, only: pi
    use mechanism, only: mechanism_t, request_t, pair_t, pair_prismatic, request_link, request_point, request_pair, &
-      instant_count
+      request_pole, request_curve, instant_count
+   use instant_centres, only: centre_t, pole_of, curve_of, seen_from, centre_finite, centre_infinite, centre_resting
    use planar, only: direction, rotated, quarter_turn, point_of
    use motion, only: motion_t, known_of, mark_of, mark_none
    implicit none
    private
-   public :: row_t, row_of, coordinates_of, is_due, strides, any_due, is_fixed, point_motion, pair_motion
+   public :: row_t, row_of, has_number, difference, centre_numbers, coordinates_of, is_due, strides, any_due, is_fixed
+   public :: point_motion, pair_motion
 
    !> One row of a table, in the deck's units of length and time and in radians.
    type :: row_t
-      integer :: kind = request_link        !< request_link, request_point or request_pair
-      character(label_length) :: name = ''  !< of the link, point or pair
+      integer :: kind = request_link        !< request_link, ..., request_curve
+      character(2*label_length + 1) :: name = ''   !< of the link, point or pair; of both links, or point and link
       logical :: angular = .false.          !< a pair whose value is an angle
       integer :: known = 2                  !< how much of it exists, as in `motion_t`
       integer :: mark = mark_none           !< why the rest does not
-      real(wp) :: value(3, 0:2) = 0.0_wp    !< x, y, phi (a pair: its value first) and their derivatives
+      integer :: state = centre_finite      !< of a pole or curve: as in `centre_t`
+      real(wp) :: weight = 1.0_wp           !< the same
+      !> x, y, phi (a pair: its value first) and their derivatives; or as in `centre_t`.
+      real(wp) :: value(3, 0:2) = 0.0_wp
    end type row_t
+
+   !> The numbers (coordinate, derivative or axes) of a pole or curve that are there wherever its centre is finite, in
+   !> the order of the tables: x, y in the fixed plane, in link I, in link J; point, tangent, radius, centre.
+   integer, parameter :: centre_numbers(2, 6, request_pole:request_curve) = reshape( &
+      [1, 0, 2, 0, 1, 1, 2, 1, 1, 2, 2, 2, 1, 0, 2, 0, 3, 0, 1, 2, 1, 1, 2, 1], [2, 6, 2])
 
 contains
 
@@ -86,17 +98,106 @@ contains
             call note_known(m, q, m%points(m%pairs(i)%point_i)%link, row)
             call note_known(m, q, m%points(m%pairs(i)%point_j)%link, row)
             row%value(1, :) = pair_motion(m, q, m%pairs(i))
+         case (request_pole)
+            row%name = trim(m%links(request%second)%name)//' '//m%links(i)%name
+            call note_known(m, q, i, row)
+            call note_known(m, q, request%second, row)
+            if (row%known < 1) return
+            call take_centre(pole_of(link_motion(q, request%second), link_motion(q, i), request%length, request%rate), &
+               row)
+            row%value(:2, 0) = row%value(:2, 0) + q%origin
+         case (request_curve)
+            call take_curve(m, q, request, row)
          end select
       end associate
    end function row_of
 
-   !> How many columns a derivative of a row of the given `kind` has.
+   !> The numbers of the `row` of the path of a point: in the axes of the link from which it is seen, or in the fixed
+   !> plane.
+   pure subroutine take_curve(m, q, request, row)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      type(request_t), intent(in) :: request
+      type(row_t), intent(inout) :: row
+      real(wp) :: p(2, 0:2)
+
+      row%name = m%points(request%subject)%name
+      call note_known(m, q, m%points(request%subject)%link, row)
+      p = point_motion(m, q, request%subject)
+      if (request%second > 0) then
+         row%name = trim(m%points(request%subject)%name)//' '//m%links(request%second)%name
+         call note_known(m, q, request%second, row)
+         p = seen_from(link_motion(q, request%second), p)
+      end if
+      if (row%known < 2) p(:, max(0, row%known + 1):) = 0.0_wp
+      call take_centre(curve_of(p, request%length, request%rate), row)
+      if (request%second > 0) return
+      row%value(:2, 0) = row%value(:2, 0) + q%origin
+      row%value(:2, 1) = row%value(:2, 1) + q%origin
+   end subroutine take_curve
+
+   !> Puts the centre `c` into `row`.
+   pure subroutine take_centre(c, row)
+      type(centre_t), intent(in) :: c
+      type(row_t), intent(inout) :: row
+
+      row%state = c%state
+      row%weight = c%weight
+      row%value = c%value
+   end subroutine take_centre
+
+   !> Position, velocity and acceleration (3, 0:2) of link number `i`.
+   pure function link_motion(q, i) result(x)
+      type(motion_t), intent(in) :: q
+      integer, intent(in) :: i
+      real(wp) :: x(3, 0:2)
+
+      x(:, 0) = q%position(:, i)
+      x(:, 1) = q%velocity(:, i)
+      x(:, 2) = q%acceleration(:, i)
+   end function link_motion
+
+   !> Whether `row` has the number (c, k) of its values: x, y, phi (c) of the k-th derivative, as far as it is known; of
+   !> centres those that exist.
+   pure logical function has_number(row, c, k)
+      type(row_t), intent(in) :: row
+      integer, intent(in) :: c, k
+
+      select case (row%kind)
+      case (request_pole)
+         has_number = row%known >= 1 .and. row%state == merge(centre_infinite, centre_finite, c == 3)
+      case (request_curve)
+         has_number = row%known == 2 .and. row%state == centre_finite .and. any(3*k + c == [4, 5, 7])
+         if (k == 0) has_number = row%known >= 0
+         if (k == 0 .and. c == 3) has_number = row%known >= 1 .and. row%state /= centre_resting
+      case default
+         has_number = k <= row%known .and. c <= coordinates_of(row%kind)
+      end select
+   end function has_number
+
+   !> By how much the numbers of `one` differ from those of `row`, to first order (3, 0:2): a place at p = n/w, with the
+   !> weight w, changes by (n' - p w')/w where n and w become n' and w'. Directions of lines count without half turns.
+   pure function difference(one, row) result(d)
+      type(row_t), intent(in) :: one, row
+      real(wp) :: d(3, 0:2)
+
+      d = abs(one%value - row%value)
+      if (row%kind == request_pole) then
+         d(:2, :) = d(:2, :)*abs(one%weight/row%weight)
+         d(3, :) = abs(d(3, :) - pi*anint(d(3, :)/pi))
+      else if (row%kind == request_curve) then
+         d(:, 1:) = d(:, 1:)*abs(one%weight/row%weight)
+         d(3, 0) = abs(d(3, 0) - pi*anint(d(3, 0)/pi))
+      end if
+   end function difference
+
+   !> How many columns a derivative of a row of the given `kind` has; of centres, a third of all.
    elemental integer function coordinates_of(kind)
       integer, intent(in) :: kind
 
       coordinates_of = 1
       if (kind == request_link) coordinates_of = 3
-      if (kind == request_point) coordinates_of = 2
+      if (any(kind == [request_point, request_pole, request_curve])) coordinates_of = 2
    end function coordinates_of
 
    !> Whether the subject of `request` belongs to the ground.

@@ -1,11 +1,13 @@
 !> The results as comma-separated values with 17 digits: the deck's length unit, radians or degrees
-!> as the deck says. A value that does not exist is empty and `mark` says why; a name with a comma is quoted.
+!> as the deck says. A value that does not exist is empty and `mark` says why; a name with a comma is quoted. A pole or
+!> curve has three rows.
 module csv
    use kinds, only: wp
    use constants, only: in_degrees
-   use mechanism, only: mechanism_t, request_t, request_link, request_point
+   use mechanism, only: mechanism_t, request_t, request_pole, request_curve
    use motion, only: motion_t
-   use points, only: row_t, row_of, is_due
+   use points, only: row_t, row_of, has_number, is_due
+   use instant_centres, only: centre_finite, centre_resting
    use known_digits, only: nothing_known
    use error_estimate, only: error_estimate_t, row_error
    use set_motion, only: set_motion_t
@@ -17,6 +19,12 @@ module csv
 
    character(12), parameter :: marks(0:4) = [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE', 'OPEN']
    character(5), parameter :: kinds_of_row(3) = ['LINK ', 'POINT', 'PAIR ']
+   !> The three rows of a pole: in the fixed plane, and in the axes of both links; of a curve.
+   character(6), parameter :: kinds_of_centre(0:2, request_pole:request_curve) = reshape([character(6) :: &
+      'POLE', 'POLE-I', 'POLE-J', 'CURVE', 'CENTRE', 'RADIUS'], [3, 2])
+   !> Why a centre has no place, by its state.
+   character(11), parameter :: marks_of_centre(centre_finite:centre_resting) = [character(11) :: &
+      '', 'AT-INFINITY', 'AT-REST', 'AT-REST']
 
 contains
 
@@ -43,42 +51,91 @@ contains
       start = whole(m%set_number)//','//whole(step)//','//full(s%motions(1)%t)//','
       do i = 1, size(m%requests)
          if (.not. is_due(m, m%requests(i), step)) cycle
-         call add(o, start)
          c = s%parts%part(i)
          if (c > 0) then
-            call add_row(o, s%own(c), s%motions(c), s%own(c)%requests(s%parts%number(i)), s%errors(c))
+            call add_row(o, start, s%own(c), s%motions(c), s%own(c)%requests(s%parts%number(i)), s%errors(c))
          else
             ! A row of the ground is known by the deck alone.
-            call add_row(o, m, s%motions(1), m%requests(i), error_estimate_t(asked=s%errors(1)%asked))
+            call add_row(o, start, m, s%motions(1), m%requests(i), error_estimate_t(asked=s%errors(1)%asked))
          end if
       end do
    end subroutine csv_instant
 
-   !> The cells of one row from its kind on.
-   subroutine add_row(o, m, q, request, errors)
+   !> The row that `request` asks for, or its three rows, each with the cells `start` before it.
+   subroutine add_row(o, start, m, q, request, errors)
       type(output_t), intent(inout) :: o
+      character(*), intent(in) :: start
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       type(request_t), intent(in) :: request
       type(error_estimate_t), intent(in) :: errors
       type(row_t) :: row
+      real(wp) :: error(3, 0:2)
+      logical :: there(3, 0:2)
+      integer :: c, k
 
       row = row_of(m, q, request)
-      call add(o, kinds_of_row(row%kind)(:len_trim(kinds_of_row(row%kind))))
-      call add(o, ',')
-      call add_name(o, row%name(:len_trim(row%name)))
-      call add_values(o, row, m%degrees)
-      call add(o, ',')
-      call add(o, marks(row%mark)(:len_trim(marks(row%mark))))
-      if (errors%asked) call add_errors(o, row, row_error(m, errors, q, request), m%degrees)
-      call put(o, '')
+      do k = 0, 2
+         do c = 1, 3
+            there(c, k) = has_number(row, c, k)
+         end do
+      end do
+      error = 0.0_wp
+      if (errors%asked) error = row_error(m, errors, q, request)
+      if (row%kind < request_pole) then
+         call add(o, start)
+         call add_cells(o, kinds_of_row(row%kind), row, there, errors%asked, error, m%degrees, marks(row%mark))
+      else
+         call add_centre(o, start, row, there, errors%asked, error, m%degrees)
+      end if
    end subroutine add_row
 
-   !> Nine values, a comma before each; empty where they are not known or the row has none.
-   subroutine add_values(o, row, degrees)
+   !> The three rows of a pole or curve: each has one third of the numbers under x, y, phi.
+   subroutine add_centre(o, start, row, there, asked, error, degrees)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: start
+      type(row_t), intent(in) :: row
+      logical, intent(in) :: there(3, 0:2), asked, degrees
+      real(wp), intent(in) :: error(3, 0:2)
+      type(row_t) :: third
+      character(12) :: mark
+      integer :: k
+
+      do k = 0, 2
+         third = row
+         third%value(:, 0) = row%value(:, k)
+         mark = marks(row%mark)
+         if (mark == '' .and. .not. all(there(:, k))) mark = marks_of_centre(row%state)
+         call add(o, start)
+         call add_cells(o, kinds_of_centre(k, row%kind), third, reshape(there(:, k), [3, 3], [.false.]), asked, &
+            reshape(error(:, k), [3, 3], [0.0_wp]), degrees, mark)
+      end do
+   end subroutine add_centre
+
+   !> The cells of a row from its `kind` on: its name, the values that are `there` (3, 0:2), its `mark`; their errors
+   !> (3, 0:2) where `asked`.
+   subroutine add_cells(o, kind, row, there, asked, error, degrees, mark)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: kind, mark
+      type(row_t), intent(in) :: row
+      logical, intent(in) :: there(3, 0:2), asked, degrees
+      real(wp), intent(in) :: error(3, 0:2)
+
+      call add(o, kind(:len_trim(kind)))
+      call add(o, ',')
+      call add_name(o, row%name(:len_trim(row%name)))
+      call add_values(o, row, there, degrees)
+      call add(o, ',')
+      call add(o, mark(:len_trim(mark)))
+      if (asked) call add_errors(o, row, there, error, degrees)
+      call put(o, '')
+   end subroutine add_cells
+
+   !> Nine values, a comma before each; empty where they are not `there` (3, 0:2).
+   subroutine add_values(o, row, there, degrees)
       type(output_t), intent(inout) :: o
       type(row_t), intent(in) :: row
-      logical, intent(in) :: degrees
+      logical, intent(in) :: there(3, 0:2), degrees
       character(9*(full_length + 1)) :: cells
       real(wp) :: value
       integer :: k, c, used, length
@@ -88,7 +145,7 @@ contains
          do c = 1, 3
             used = used + 1
             cells(used:used) = ','
-            if (k <= row%known .and. has_column(row%kind, c)) then
+            if (there(c, k)) then
                value = row%value(c, k)
                if (degrees .and. (c == 3 .or. row%angular)) value = in_degrees(value)
                call put_full(value, cells(used + 1:used + full_length), length)
@@ -99,23 +156,23 @@ contains
       call add(o, cells(:used))
    end subroutine add_values
 
-   !> The nine errors (3, 0:2) of `row`, those of numbers that exist; empty too where no digit is known.
-   subroutine add_errors(o, row, error, degrees)
+   !> The nine errors (3, 0:2) of `row`, those of numbers that are `there` (3, 0:2); empty too where no digit is known.
+   subroutine add_errors(o, row, there, error, degrees)
       type(output_t), intent(inout) :: o
       type(row_t), intent(in) :: row
+      logical, intent(in) :: there(3, 0:2), degrees
       real(wp), intent(in) :: error(3, 0:2)
-      logical, intent(in) :: degrees
       type(row_t) :: errors
+      logical :: known(3, 0:2)
       integer :: k
 
       errors = row
       errors%value = error
-      errors%known = -1
-      do k = 0, row%known
-         if (any(error(:, k) >= nothing_known)) exit
-         errors%known = k
+      known = there
+      do k = 0, 2
+         if (any(known(:, k) .and. error(:, k) >= nothing_known)) known(:, k:) = .false.
       end do
-      call add_values(o, errors, degrees)
+      call add_values(o, errors, known, degrees)
    end subroutine add_errors
 
    !> A name as a cell: in quotes where it holds a comma or a quote.
@@ -135,11 +192,4 @@ contains
       end do
       call add(o, '"')
    end subroutine add_name
-
-   !> Rows of the given `kind` have a column number `c` (x, y, phi) of each derivative.
-   pure logical function has_column(kind, c)
-      integer, intent(in) :: kind, c
-
-      has_column = kind == request_link .or. c == 1 .or. (kind == request_point .and. c == 2)
-   end function has_column
 end module csv

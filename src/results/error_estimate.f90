@@ -2,9 +2,10 @@
 !> instants where digits of the tables could be in doubt or where the errors are asked for.
 module error_estimate
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_t, request_point, request_pair, place_links
-   use motion, only: motion_t, new_motion, known_of, forget_links
-   use points, only: row_t, row_of, is_fixed
+   use mechanism, only: mechanism_t, request_t, request_point, request_pole, place_links
+   use motion, only: motion_t, new_motion, forget_links
+   use points, only: row_t, row_of, difference, is_fixed
+   use sum_errors, only: sum_roundings, errors_of_sums, error_of_sums, lost_numbers, growth_in_centres
    use known_digits, only: nothing_known
    use scales, only: characteristic_length, characteristic_rate
    use convergence, only: convergence_t, is_solved, ended_inconsistent
@@ -22,7 +23,6 @@ module error_estimate
    !> with it every sum and product, is off by half a rounding. `caution`: for how few the decks are.
    real(wp), parameter :: roundings = perturbation/epsilon(1.0_wp)
    real(wp), parameter :: caution = 2.5_wp
-   real(wp), parameter :: sum_roundings = 1.5_wp
 
    !> A digit of a table is worth a hundred errors of what the deck leaves open, which is the same for all programs; the
    !> program's own errors may be as large as the digit.
@@ -107,7 +107,7 @@ contains
 
       found%taken = .false.
       found%asked = always
-      found%in_doubt = is_in_doubt(s, rcond, q, e)
+      found%in_doubt = is_in_doubt(s, m, rcond, q, e)
       if (.not. (always .or. found%in_doubt)) return
       if (q%known < 0 .and. .not. allocated(q%link_known)) return
       if (.not. allocated(found%samples)) then
@@ -133,12 +133,13 @@ contains
          end associate
       end do
       found%taken = found%samples(0)%known /= unusable .and. any(found%samples(1:)%known /= unusable)
-      if (found%taken) call find_estimates(m, s%length, found)
+      if (found%taken) found%of_sums = errors_of_sums(m, found%samples(0), s%length)
    end subroutine take_samples
 
    !> Some digit could be in doubt: a pivot is small, or a number large.
-   pure logical function is_in_doubt(s, rcond, q, e)
+   pure logical function is_in_doubt(s, m, rcond, q, e)
       type(estimator_t), intent(in) :: s
+      type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: rcond
       type(motion_t), intent(in) :: q
       class(block_method_t), intent(in), optional :: e
@@ -149,6 +150,7 @@ contains
       ! Several ground links that stand far away are rounded as coarsely as far places are.
       size_of = max(largest(q%position, s%length), maxval(abs(q%origin))/s%length, &
          largest(q%velocity, s%length)/s%rate, largest(q%acceleration, s%length)/s%rate**2)
+      size_of = max(size_of, growth_in_centres(m, q))
       is_in_doubt = size_of > safe_size
       if (is_in_doubt) return
       if (present(e)) then
@@ -250,10 +252,11 @@ contains
       real(wp), intent(in), optional :: own
       real(wp) :: error(3, 0:2), scale(-1:1)
       type(row_t) :: middle, one
-      logical :: zero(3, 0:2)
+      logical :: zero(3, 0:2), lost(3, 0:2)
       integer :: k, known
 
       error = 0.0_wp
+      lost = .false.
       if (is_fixed(m, request)) then
          error(:, 0) = fixed_error(m, request)
          return
@@ -272,13 +275,15 @@ contains
          ! Next to a limit of the motion, half of the perturbed decks have no position.
          one = row_of(m, s%samples(k), request)
          if (one%known < 0 .and. known == 0) cycle
-         error = max(error, scale(sign(1, k))*abs(one%value - middle%value))
+         error = max(error, scale(sign(1, k))*difference(one, middle))
+         if (request%kind >= request_pole) lost = lost .or. lost_numbers(one, middle)
          zero = zero .and. abs(one%value) <= 0.0_wp
          known = min(known, one%known)
       end do
       ! A coordinate of what stands still is zero without a sum.
-      error = merge(0.0_wp, caution*error + error_of_sums(s, middle), zero)
-      error(:, known + 1:) = nothing_known
+      error = merge(0.0_wp, caution*error + error_of_sums(s%of_sums, request, middle), zero)
+      if (request%kind < request_pole) error(:, known + 1:) = nothing_known
+      error = merge(nothing_known, error, lost)
    end function row_estimate
 
    !> What rounding leaves open of the place (3) of a ground link or of a point on one: a sum of numbers of cards.
@@ -298,48 +303,6 @@ contains
       error = merge(sum_roundings*epsilon(1.0_wp)*error, 0.0_wp, abs(row%value(:, 0)) > 0.0_wp)
    end function fixed_error
 
-   !> To be called when `s` has its samples; `length`: the characteristic one. What is summed up to a velocity is no
-   !> smaller than an angular velocity times a length, what is summed up to an acceleration has the square of one. A
-   !> slide is a difference of places, which are counted from a ground link, and so are the arms of its derivatives.
-   pure subroutine find_estimates(m, length, s)
-      type(mechanism_t), intent(in) :: m
-      real(wp), intent(in) :: length
-      type(error_estimate_t), intent(inout) :: s
-      type(row_t) :: row
-      real(wp) :: size_of(3, 0:2)
-      integer :: i, unit
-
-      size_of = 0.0_wp
-      do i = 1, size(m%requests)
-         row = row_of(m, s%samples(0), m%requests(i))
-         if (row%known < 0) cycle
-         unit = merge(2, 1, row%angular)
-         size_of(unit, :) = max(size_of(unit, :), maxval(abs(row%value(:2, :)), dim=1))
-         size_of(2, :) = max(size_of(2, :), abs(row%value(3, :)))
-      end do
-      size_of(2, 0) = max(size_of(2, 0), 1.0_wp)
-      size_of(1, 0) = max(size_of(1, 0), size_of(2, 0)*length, maxval(abs(s%samples(0)%origin)))
-      size_of(1, 1) = max(size_of(1, 1), size_of(2, 1)*length)
-      size_of(:2, 2) = max(size_of(:2, 2), size_of(:2, 1)*size_of(2, 1))
-      size_of(3, 0) = size_of(1, 0)
-      do i = 1, size(m%links)
-         if (known_of(s%samples(0), i) < 0) cycle
-         size_of(3, 0) = max(size_of(3, 0), maxval(abs(s%samples(0)%position(:2, i))))
-      end do
-      size_of(3, 1:) = max(size_of(1, 1:), size_of(3, 0)*size_of(2, 1:))
-      s%of_sums = sum_roundings*epsilon(1.0_wp)*size_of
-   end subroutine find_estimates
-
-   !> The rounding errors (3, 0:2) of the sums of `row`.
-   pure function error_of_sums(s, row) result(estimate)
-      type(error_estimate_t), intent(in) :: s
-      type(row_t), intent(in) :: row
-      real(wp) :: estimate(3, 0:2)
-
-      estimate = s%of_sums([1, 1, 2], :)
-      if (row%kind == request_pair) estimate(1, :) = s%of_sums(merge(2, 3, row%angular), :)
-   end function error_of_sums
-
    !> The estimated error (3, 0:2) of the row of the motion `q`: what rounding leaves open, and how far the row is from
    !> that of the motion solved to the limit of rounding.
    pure function row_error(m, s, q, request) result(error)
@@ -354,11 +317,12 @@ contains
       if (.not. s%taken .or. is_fixed(m, request)) return
       row = row_of(m, q, request)
       solved = row_of(m, s%samples(0), request)
-      where (error < nothing_known) error = error + abs(row%value - solved%value)
+      where (error < nothing_known) error = error + difference(row, solved)
+      if (request%kind >= request_pole) error = merge(nothing_known, error, lost_numbers(row, solved))
    end function row_error
 
-   !> The largest error (0:2) of a position, velocity and acceleration in any row; `nothing_known`, where it is so.
-   !> In parts of the characteristic `length` and `rate`.
+   !> The largest error (0:2) of a position, velocity and acceleration in any row of a link, point or pair;
+   !> `nothing_known`, where it is so. In parts of the characteristic `length` and `rate`.
    pure function largest_errors(m, s, q, length, rate) result(largest)
       type(mechanism_t), intent(in) :: m
       type(error_estimate_t), intent(in) :: s
@@ -370,6 +334,7 @@ contains
 
       largest = 0.0_wp
       do i = 1, size(m%requests)
+         if (m%requests(i)%kind >= request_pole) cycle
          error = row_error(m, s, q, m%requests(i))
          unit = [length, length, 1.0_wp]
          row = row_of(m, q, m%requests(i))

@@ -16,7 +16,7 @@ module listing_layout
    implicit none
    private
    public :: layout_t, head_drive_t, new_layout, digits_t, digits_of, column_powers, head_lines
-   public :: name_length, row_length, has_column, dimension_of
+   public :: name_length, row_length, has_column, dimension_of, angle_unit
 
    integer, parameter :: digits_after_first = 6
    !> Characters before a row's numbers, and of a whole row.

@@ -2,7 +2,7 @@
 module listing_tables
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_t, request_pair
+   use mechanism, only: mechanism_t, request_t, request_pair, request_pole
    use drives, only: drive_motion
    use motion, only: motion_t
    use points, only: row_t, row_of
@@ -11,6 +11,7 @@ module listing_tables
    use numerals, only: fixed, put_fixed, put_whole, numeral_length
    use known_digits, only: put_known, unknown_digit
    use listing_layout
+   use listing_centres, only: put_centre, put_centre_heads
    implicit none
    private
    public :: table_t, put_instant, put_times, put_requested, put_heads, time_text, drive_text
@@ -151,8 +152,16 @@ contains
       type(table_t), intent(inout) :: table
       type(row_t) :: row
 
-      row = row_of(m, q, request)
       associate (d => digits_of(l, i))
+         if (request%kind >= request_pole) then
+            if (request%kind /= table%kind .or. (l%mixed .and. table%power(1) /= d%power(1, 0))) &
+               call put_centre_heads(o, d, m, request%kind)
+            table%kind = request%kind
+            table%power(1) = d%power(1, 0)
+            call put_centre(o, l, d, m, q, request, errors, table%masked)
+            return
+         end if
+         row = row_of(m, q, request)
          call put_heads(o, l, d, row%kind, table)
          if (errors%taken .and. errors%in_doubt) then
             call put_row(o, l, d, row, row_estimate(m, errors, request), table%masked)

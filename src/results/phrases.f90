@@ -86,6 +86,16 @@ module phrases
       say_all = phrase_t('ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS', 'PELNY: BEZ KRESU, RUCH SIE ZAMYKA; OBROTY'), &
       say_no_limit = phrase_t('NO LIMIT AS FAR AS', 'BEZ KRESU CO NAJMNIEJ DO')
    type(phrase_t), parameter, public :: &
+      say_pole = phrase_t('POLE', 'BIEGUN'), &
+      say_curve = phrase_t('CURVE', 'TOR'), &
+      say_xi = phrase_t('XI', 'KSI'), &
+      say_direction = phrase_t('DIRECTION', 'KIERUNEK'), &
+      say_tangent = phrase_t('TANGENT', 'STYCZNA'), &
+      say_radius = phrase_t('RADIUS', 'PROMIEN'), &
+      say_centre = phrase_t('CENTRE', 'SRODKA'), &
+      say_infinite = phrase_t('INFINITE', 'NIESKONCZ.'), &
+      say_at_rest = phrase_t('AT REST', 'W SPOCZYNKU')
+   type(phrase_t), parameter, public :: &
       say_no_change = phrase_t('NO CHANGE POINT WAS PASSED', 'NIE BYLO PUNKTU ZMIANY'), &
       say_here = phrase_t('THE INSTANT LIES ON IT', 'CHWILA LEZY W NIM'), &
       say_idle = phrase_t('MOVES NOTHING', 'NICZEGO NIE PORUSZA'), &

@@ -1,6 +1,6 @@
 !> The results as a table (--table): a row for each instant at which PRINT asks for anything, a column for each
 !> quantity; time first, then the drives, then all positions, velocities and accelerations that PRINT asks for, with
-!> all digits.
+!> all digits; then poles and curves, whose places may be at infinity.
 !>
 !> pandas, R and spreadsheets part the cells of a row at commas, gnuplot at blanks: between two cells are both, and no
 !> blanks in the heading, which gnuplot skips. The units are those of the deck. A row ends before the first value that
@@ -9,10 +9,11 @@
 module table
    use kinds, only: wp, label_length
    use constants, only: in_degrees
-   use mechanism, only: mechanism_t, request_link, request_point, pair_prismatic, drive_angle, drive_relangle
+   use mechanism, only: mechanism_t, request_link, request_point, request_pair, request_pole, request_curve, &
+      pair_prismatic, drive_angle, drive_relangle
    use drives, only: law_t, new_law, drive_motion
    use names, only: name_table_t, put_name, find_name, drive_name
-   use points, only: row_t, coordinates_of
+   use points, only: row_t, has_number, centre_numbers, coordinates_of
    use set_motion, only: set_motion_t, row_in_set
    use csv, only: add_name
    use text_output, only: output_t, put, add
@@ -24,11 +25,12 @@ module table
    !> A column after those of time and drives.
    type :: column_t
       integer :: request = 0                        !< its number in the set
-      integer :: row = 0                            !< the number of the request among those of which rows are printed
-      integer :: order = 0                          !< of the derivative: 0, 1 or 2
+      !> The number of the request among those of which links, points and pairs are printed; 0: a pole or curve.
+      integer :: row = 0
+      integer :: order = 0                          !< of the derivative: 0, 1 or 2; of a pole or curve as in `centre_t`
       integer :: coordinate = 1                     !< 1, 2 or 3: x, y, phi; of a pair 1
       logical :: angular = .false.                  !< an angle or a derivative of one
-      character(2*label_length + 7) :: name = ''    !< ROCKER.phi, TIP.vx, SLOT.v
+      character(2*label_length + 12) :: name = ''   !< ROCKER.phi, TIP.vx, SLOT.v, POLE.BASE.COUPLER.x
    end type column_t
 
    !> The columns of a set.
@@ -45,6 +47,10 @@ module table
       'x', 'y', 'phi', 'vx', 'vy', 'vphi', 'ax', 'ay', 'aphi'], [3, 3])
    character(5), parameter :: slide_words(0:2) = [character(5) :: 's', 'v', 'a']
    character(5), parameter :: turn_words(0:2) = [character(5) :: 'theta', 'omega', 'alpha']
+   !> What the columns of a pole add to the names of both links, those of a curve to that of the point, in the order of
+   !> `centre_numbers`.
+   character(7), parameter :: centre_words(6, request_pole:request_curve) = reshape([character(7) :: &
+      'x', 'y', 'xi_i', 'eta_i', 'xi_j', 'eta_j', 'x', 'y', 'tangent', 'radius', 'xc', 'yc'], [6, 2])
 
 contains
 
@@ -65,7 +71,7 @@ contains
       do k = 0, 2
          row = 0
          do i = 1, size(m%requests)
-            if (m%requests(i)%every == 0) cycle
+            if (m%requests(i)%every == 0 .or. m%requests(i)%kind >= request_pole) cycle
             row = row + 1
             do c = 1, coordinates_of(m%requests(i)%kind)
                n = n + 1
@@ -73,8 +79,42 @@ contains
             end do
          end do
       end do
+      do i = 1, size(m%requests)
+         if (m%requests(i)%kind < request_pole) cycle
+         associate (numbers => centre_numbers(:, :, m%requests(i)%kind))
+            do c = 1, size(numbers, 2)
+               n = n + 1
+               t%columns(n) = column_t(i, 0, numbers(2, c), numbers(1, c), numbers(1, c) == 3)
+            end do
+         end associate
+      end do
       call name_columns(m, t%columns)
+      call name_centres(m, t%columns)
    end function new_table
+
+   !> The names of the columns of poles and curves.
+   subroutine name_centres(m, columns)
+      type(mechanism_t), intent(in) :: m
+      type(column_t), intent(inout) :: columns(:)
+      character(:), allocatable :: name
+      integer :: i, c
+
+      do i = 1, size(columns)
+         associate (request => m%requests(columns(i)%request))
+            if (request%kind < request_pole) cycle
+            if (request%kind == request_pole) then
+               name = 'POLE.'//trim(m%links(request%second)%name)//'.'//trim(m%links(request%subject)%name)
+            else
+               name = 'CURVE.'//trim(m%points(request%subject)%name)
+               if (request%second > 0) name = name//'.'//trim(m%links(request%second)%name)
+            end if
+            do c = 1, size(centre_words, 1)
+               if (all(centre_numbers(:, c, request%kind) == [columns(i)%coordinate, columns(i)%order])) &
+                  columns(i)%name = name//'.'//centre_words(c, request%kind)
+            end do
+         end associate
+      end do
+   end subroutine name_centres
 
    !> The names of the columns, and which of a pair are angles. A point that has the name of a link in the table has
    !> that of its own link before it.
@@ -97,7 +137,7 @@ contains
                c%name = trim(m%points(subject)%name)//'.'//link_words(c%coordinate, c%order)
                if (find_name(links, m%points(subject)%name) > 0) &
                   c%name = trim(m%links(m%points(subject)%link)%name)//'.'//c%name
-            case default
+            case (request_pair)
                c%angular = m%pairs(subject)%kind /= pair_prismatic
                c%name = trim(m%pairs(subject)%name)//'.'//merge(turn_words(c%order), slide_words(c%order), c%angular)
             end select
@@ -156,7 +196,7 @@ contains
       end do
       do i = 1, size(t%columns)
          associate (c => t%columns(i))
-            if (c%order > rows(c%request)%known) exit
+            if (.not. has_number(rows(c%request), c%coordinate, c%order)) exit
             call add_cell(o, ', ', rows(c%request)%value(c%coordinate, c%order), m%degrees .and. c%angular)
          end associate
       end do

@@ -29,7 +29,8 @@ module closed_forms
 
    type(count_t), parameter :: counts(*) = [ &
       count_t('yoke', 6, 5, 2, 1), count_t('jarzmowy', 6, 5, 2, 1), count_t('yoke_mirrored', 6, 5, 2, 1), &
-      count_t('four_bar', 4, 4, 0, 1), count_t('stroke', 4, 4, 0, 1), count_t('rise_dwell', 4, 4, 0, 1), &
+      count_t('four_bar', 4, 4, 0, 1), count_t('stroke', 4, 4, 0, 1), &
+      count_t('poles', 4, 4, 0, 1), count_t('cardan', 4, 2, 2, 1), count_t('rise_dwell', 4, 4, 0, 1), &
       count_t('drawing', 4, 4, 0, 1), &
       count_t('crank_slider', 4, 3, 1, 1), count_t('scotch_yoke', 4, 2, 2, 1), count_t('whitworth', 6, 5, 2, 1), &
       count_t('drag_link', 4, 4, 0, 1), count_t('cylinder', 4, 3, 1, 1), count_t('trammel', 4, 2, 2, 1), &
@@ -74,6 +75,9 @@ contains
          links = yoke(set, t, -1.0_qp)
       case ('four_bar', 'stroke')
          links = four_bar(set, t)
+      case ('poles')
+         links = four_bar(1, t)
+         if (set == 2) links = parallelogram(t)
       case ('rise_dwell')
          links = rise_dwell(set, t)
       case ('drawing')
@@ -88,7 +92,7 @@ contains
          links = drag_link(set, t)
       case ('cylinder')
          links = cylinder(t)
-      case ('trammel')
+      case ('trammel', 'cardan')
          links = trammel(set, t)
       case ('peaucellier')
          links = peaucellier(t)

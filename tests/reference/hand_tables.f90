@@ -2,7 +2,7 @@
 !> the drives, heads with powers of ten and units, rows, what does not exist, masks. Nothing of the program's tables is
 !> used.
 module hand_tables
-   use mechanism, only: mechanism_t, drive_t, instant_count, instant, request_pair, drive_angle, drive_x, drive_y, &
+   use mechanism, only: mechanism_t, drive_t, instant_count, instant, request_pole, drive_angle, drive_x, drive_y, &
       drive_relangle, drive_slide
    use quad_jet, only: qp, jet_t, degree_q
    use jet_drives, only: drive_jet
@@ -10,6 +10,7 @@ module hand_tables
    use hand_scales, only: hand_scales_t
    use hand_numbers, only: number_by_hand, field_length
    use hand_rows, only: hand_row_t, row_by_hand
+   use hand_centres, only: put_centre_heads_by_hand, put_centre_by_hand
    use text_output, only: output_t, put
    implicit none
    private
@@ -72,8 +73,14 @@ contains
       do i = 1, size(m%requests)
          if (m%requests(i)%every == 0) cycle
          if (mod(step, m%requests(i)%every) /= 0 .and. step /= instant_count(m) - 1) cycle
-         row = row_by_hand(m, b, m%requests(i))
          if (kind == 0) call put_time(o, m, scales, step, language)
+         if (m%requests(i)%kind >= request_pole) then
+            if (m%requests(i)%kind /= kind) call put_centre_heads_by_hand(o, m, scales, m%requests(i), language)
+            kind = m%requests(i)%kind
+            call put_centre_by_hand(o, m, scales, b, m%requests(i), resting, language)
+            cycle
+         end if
+         row = row_by_hand(m, b, m%requests(i))
          if (row%kind /= kind) call put_heads(o, m, scales, row%kind, language)
          kind = row%kind
          if (size(error) > 0) then

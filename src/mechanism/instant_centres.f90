@@ -1,0 +1,146 @@
+!> The instant centre of the motion of two links, and the centre of curvature of a point's path, from positions,
+!> velocities and accelerations. Either may be at infinity, or nothing may move: which of these it is depends on no
+!> unit.
+module instant_centres
+   use kinds, only: wp
+   use constants, only: pi
+   use planar, only: direction, rotated, quarter_turn, cross
+   implicit none
+   private
+   public :: centre_t, pole_of, curve_of, seen_from, pole_rate
+   public :: centre_finite, centre_infinite, centre_starting, centre_resting
+
+   !> What a centre is.
+   enum, bind(c)
+      enumerator :: centre_finite = 0
+      enumerator :: centre_infinite   !< farther than any length of the mechanism: only its direction exists
+      enumerator :: centre_starting   !< of a curve: the point stands still, and its acceleration has a direction
+      enumerator :: centre_resting    !< nothing moves
+   end enum
+
+   !> Half of the digits. A motion that is smaller by this part than the characteristic one is rest; a centre that is
+   !> farther than 1/negligible (6.7E7 in real64) characteristic lengths is at infinity. Reason: angular velocities are
+   !> known to a rounding or, where the mechanism is ill-conditioned, to many; so parallel cranks are told from nearly
+   !> parallel ones as long as half of the digits are left. A finite centre then has the other half.
+   real(wp), parameter :: negligible = sqrt(epsilon(1.0_wp))
+   !> A weight is at least this part of what it is compared with, so that places exist in any case.
+   real(wp), parameter :: least = epsilon(1.0_wp)**2
+   !> The larger one of two angles that are the same direction is printed: rounding must not choose.
+   real(wp), parameter :: margin = sqrt(epsilon(1.0_wp))
+
+   !> A centre. Its place times its `weight` is finite even at infinity. Of a pole, `value` has x, y and direction in
+   !> the fixed plane (:, 0), in the axes of link I (:, 1) and of link J (:, 2). Of a curve: the point and the tangent
+   !> (:, 0), the centre of curvature (:2, 1), the radius (1, 2); speed and acceleration in characteristic ones (3, 1:).
+   type :: centre_t
+      integer :: state = centre_finite       !< centre_finite, ...
+      !> Of a pole the relative angular velocity, of a curve v x a in characteristic ones.
+      real(wp) :: weight = 1.0_wp
+      real(wp) :: value(3, 0:2) = 0.0_wp     !< lengths in the deck's unit, angles in radians
+   end type centre_t
+
+contains
+
+   !> The instant centre of the motion of link J relative to link I, which move as `j` and `i` (3, 0:2) say: x, y, phi
+   !> and their derivatives. `length`, `rate`: characteristic ones, > 0. With o the origin of link J, u its velocity
+   !> relative to link I, w the relative angular velocity and R a quarter turn:  p = o + R u/w  (Bottema and Roth,
+   !> Theoretical Kinematics, 1979, ch. VIII). At infinity it is in the direction of R u.
+   pure function pole_of(i, j, length, rate) result(c)
+      real(wp), intent(in) :: i(3, 0:2), j(3, 0:2), length, rate
+      type(centre_t) :: c
+      real(wp) :: d(2), u(2), w, arm(2), to_i(2), to_j(2)
+
+      to_i = [cos(i(3, 0)), -sin(i(3, 0))]
+      to_j = [cos(j(3, 0)), -sin(j(3, 0))]
+      d = j(:2, 0) - i(:2, 0)
+      u = j(:2, 1) - i(:2, 1) - i(3, 1)*quarter_turn(d)
+      w = j(3, 1) - i(3, 1)
+      if (max(norm2(u), abs(w)*length) <= negligible*length*rate) then
+         c%state = centre_resting
+         return
+      end if
+      if (abs(w)*length <= negligible*norm2(u)) c%state = centre_infinite
+      c%weight = sign(max(abs(w), least*norm2(u)/length), w)
+      arm = quarter_turn(u)/c%weight
+      c%value(:2, 0) = j(:2, 0) + arm
+      c%value(:2, 1) = rotated(d + arm, to_i)
+      c%value(:2, 2) = rotated(arm, to_j)
+      c%value(3, :) = [line_angle(quarter_turn(u)), line_angle(rotated(quarter_turn(u), to_i)), &
+         line_angle(rotated(quarter_turn(u), to_j))]
+   end function pole_of
+
+   !> The velocity (2) of that instant centre along the two centrodes, in the axes of link I; it is the same in those of
+   !> link J, since they roll. Accelerations exist, and the centre is finite. In the axes of link I, with a = u' and
+   !> b = w':  p' = u + R (a w - u b)/w**2.
+   pure function pole_rate(i, j) result(v)
+      real(wp), intent(in) :: i(3, 0:2), j(3, 0:2)
+      real(wp) :: v(2), r(2, 0:2), w, b
+
+      r = seen_from(i, j(:2, :))
+      w = j(3, 1) - i(3, 1)
+      b = j(3, 2) - i(3, 2)
+      v = r(:, 1) + quarter_turn(r(:, 2)*w - r(:, 1)*b)/w**2
+   end function pole_rate
+
+   !> The place, velocity and acceleration (2, 0:2) of a point in the axes of a link that moves as `frame` (3, 0:2);
+   !> `p` (2, 0:2): those in the fixed plane, counted as those of the link.
+   pure function seen_from(frame, p) result(r)
+      real(wp), intent(in) :: frame(3, 0:2), p(2, 0:2)
+      real(wp) :: r(2, 0:2), back(2)
+
+      r = p - frame(:2, :)
+      r(:, 1) = r(:, 1) - frame(3, 1)*quarter_turn(r(:, 0))
+      r(:, 2) = r(:, 2) - frame(3, 2)*quarter_turn(r(:, 0)) + frame(3, 1)**2*r(:, 0) &
+         - 2.0_wp*frame(3, 1)*quarter_turn(r(:, 1))
+      back = [cos(frame(3, 0)), -sin(frame(3, 0))]
+      r(:, 0) = rotated(r(:, 0), back)
+      r(:, 1) = rotated(r(:, 1), back)
+      r(:, 2) = rotated(r(:, 2), back)
+   end function seen_from
+
+   !> The tangent, radius and centre of curvature of the path of a point with the place, velocity v and acceleration a
+   !> `p` (2, 0:2):  radius |v|**3/|v x a|,  centre p + R v |v|**2/(v x a).  Where the point stands still its path has
+   !> the direction of a, and no curvature that v and a could tell. `length`, `rate`: characteristic ones, > 0.
+   pure function curve_of(p, length, rate) result(c)
+      real(wp), intent(in) :: p(2, 0:2), length, rate
+      type(centre_t) :: c
+      real(wp) :: v(2), a(2), speed, size_of_weight
+
+      ! In units of the mechanism, cubes do not overflow.
+      v = p(:, 1)/(length*rate)
+      a = p(:, 2)/(length*rate**2)
+      speed = norm2(v)
+      c%value(3, 1:) = [speed, norm2(a)]
+      c%value(:2, 0) = p(:, 0)
+      c%value(3, 0) = arrow_angle(v)
+      if (speed <= negligible) then
+         c%state = centre_resting
+         if (norm2(a) > negligible) c%state = centre_starting
+         c%value(3, 0) = arrow_angle(a)
+         return
+      end if
+      c%weight = cross(v, a)
+      size_of_weight = speed*(speed**2 + norm2(a))
+      if (abs(c%weight) <= negligible*size_of_weight) c%state = centre_infinite
+      c%weight = sign(max(abs(c%weight), least*size_of_weight), c%weight)
+      c%value(:2, 1) = p(:, 0) + quarter_turn(v)*(length*speed**2/c%weight)
+      c%value(1, 2) = length*speed**3/abs(c%weight)
+   end function curve_of
+
+   !> The direction of `v` (2), from -pi (excluded) to pi (rad).
+   pure real(wp) function arrow_angle(v)
+      real(wp), intent(in) :: v(2)
+
+      arrow_angle = 0.0_wp
+      if (any(abs(v) > 0.0_wp)) arrow_angle = atan2(v(2), v(1))
+      if (arrow_angle <= margin - pi) arrow_angle = arrow_angle + 2.0_wp*pi
+   end function arrow_angle
+
+   !> The direction of the line along `v` (2), from -pi/2 (excluded) to pi/2 (rad).
+   pure real(wp) function line_angle(v)
+      real(wp), intent(in) :: v(2)
+
+      line_angle = arrow_angle(v)
+      if (line_angle > 0.5_wp*pi + margin) line_angle = line_angle - pi
+      if (line_angle <= margin - 0.5_wp*pi) line_angle = line_angle + pi
+   end function line_angle
+end module instant_centres
