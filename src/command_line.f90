@@ -1,7 +1,7 @@
 !> The command's words: what to read, what to write, which sets.
 module command_line
    use kinds, only: wp_name
-   use numerals, only: significant
+   use numerals, only: significant, whole
    use failures, only: failure_t, fail, status_rejected
    use cards, only: forms, form_name, find_form, form_unknown
    implicit none
@@ -52,9 +52,13 @@ module command_line
       logical :: study = .false.             !< speed against error, instead of the listing
       logical :: time = .false.              !< the time of a step, instead of the listing
       integer :: share = 1, shares = 1       !< the share-th of so many shares of the deck's sets
+      integer :: jobs = 0                    !< processes side by side; 0: one for each processor
       !> What is printed instead of computing: 'HELP', 'VERSION', 'RULER' or ''.
       character(:), allocatable :: show
    end type options_t
+
+   !> More processes than any machine has processors would only take memory.
+   integer, parameter :: max_jobs = 1024
 
    character(*), parameter :: two_digits = achar(48 + int(0.1*significant))//achar(48 + mod(significant, 10))
    character(*), parameter :: csv_digits = two_digits(merge(2, 1, significant < 10):)
@@ -75,6 +79,7 @@ module command_line
       '  --errors             estimates of all errors, in the CSV and the log', &
       '  --check              reads the deck and analyses its structure only', &
       '  --sets K/N           the K-th of N shares of the sets of the deck', &
+      '  --jobs N             sets in N processes; else one for each processor', &
       '  --study              speed against error, instead of the listing', &
       '                       (needs kinmat-quad, kinmat-single: make kinds)', &
       '  --time               the time of a step, instead of the listing', &
@@ -169,6 +174,8 @@ contains
       select case (words(i)%text)
       case ('--sets')
          call take_share(words, i, options, failure)
+      case ('--jobs')
+         call take_jobs(words, i, options%jobs, failure)
       case ('--errors')
          options%errors = .true.
       case ('--no-listing')
@@ -228,7 +235,7 @@ contains
 
       if (.not. (options%study .or. options%time) .or. len(options%show) > 0) return
       if (any([(allocated(options%files(k)%text), k=out_listing + 1, out_last)]) .or. options%errors &
-         .or. options%check .or. options%no_listing .or. options%shares > 1 &
+         .or. options%check .or. options%no_listing .or. options%shares > 1 .or. options%jobs > 0 &
          .or. (options%study .and. options%time)) then
          call fail(failure, status_rejected, 'OPTION '//trim(merge('--study', '--time ', options%study)) &
             //' GOES WITH NO OTHER OPTION BUT -o')
@@ -306,6 +313,23 @@ contains
       if (options%share < 1 .or. options%share > options%shares) &
          call fail(failure, status_rejected, 'OPTION --sets NEEDS K/N WITH 1 <= K <= N, SUCH AS 1/4')
    end subroutine take_share
+
+   !> The number after option number `i`.
+   subroutine take_jobs(words, i, jobs, failure)
+      type(word_t), intent(in) :: words(:)
+      integer, intent(inout) :: i
+      integer, intent(out) :: jobs
+      type(failure_t), allocatable, intent(out) :: failure
+      character(:), allocatable :: word
+
+      word = ''
+      if (i < size(words)) word = words(i + 1)%text
+      i = i + 1
+      jobs = 0
+      if (is_whole(word)) read (word, *) jobs
+      if (jobs < 1 .or. jobs > max_jobs) &
+         call fail(failure, status_rejected, 'OPTION --jobs NEEDS A WHOLE NUMBER FROM 1 TO '//whole(max_jobs))
+   end subroutine take_jobs
 
    !> `word` is a whole number of at most 8 digits without a sign.
    pure logical function is_whole(word)

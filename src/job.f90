@@ -1,9 +1,10 @@
-!> One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later.
+!> One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later. Sets are independent of
+!> one another, and long jobs compute them in several processes.
 module job
    use failures, only: failure_t, status_solved, status_flagged, status_signal
    use mechanism, only: mechanism_t, instant_count, instant, with_all_links
    use structure, only: findings_t, check_structure
-   use deck, only: read_deck
+   use deck, only: read_deck, share_t
    use text_output, only: output_t
    use progress, only: progress_t, start_progress, show_progress, end_progress
    use system_calls, only: watch_signals, signal_received, broken_pipe_kills, signal_pipe
@@ -28,6 +29,8 @@ module job
       set_closure_error, set_closing_diagnostics
    use command_line, only: options_t, to_standard_output, out_listing, out_csv, out_log, out_svg, out_animation, &
       out_table, out_plot_table, out_plot_script
+   use shares, only: run_shares, end_share
+   use processes, only: processor_count
    use outputs, only: outputs_t, open_outputs, flush_outputs, close_outputs, is_over, is_broken_pipe, set_suffix
    implicit none
    private
@@ -36,11 +39,15 @@ module job
    !> The job's outputs, and what they keep from instant to instant.
    type, extends(outputs_t) :: writers_t
       type(progress_t) :: progress
-      integer :: first = 1, last = 0                !< the sets of this share
+      integer :: first = 1, last = 0                !< the sets that the command asks for
+      integer :: own_first = 1, own_last = 0        !< those that this process computes
       type(layout_t) :: layout                      !< of the listing of the set at hand
       type(table_t) :: table                        !< of the set at hand
       type(drawing_t), allocatable :: drawings(:), films(:)   !< (first:last)
    end type writers_t
+
+   !> Links times instants from which on more than one process is made: about a hundredth of a second.
+   real, parameter :: least_work = 2.0e4
 
 contains
 
@@ -53,33 +60,60 @@ contains
       type(findings_t), allocatable :: findings(:)
       type(failure_t), allocatable :: failure
       type(writers_t) :: o
+      type(share_t) :: share
+      logical :: is_child
 
       status = status_solved
+      is_child = .false.
       call start_progress(o%progress, .not. options%quiet, any(to_standard_output(options%files)))
-      call read_deck(options%deck, sets, message, failure)
+      share = share_t(options%share, options%shares)
+      call read_deck(options%deck, sets, message, failure, share)
       if (.not. allocated(failure)) call check_structure(sets, findings, failure)
       if (allocated(failure) .and. len(message) == 0) message = said_of(options, sets)//' *** '//failure%text
       if (.not. allocated(failure)) then
-         o%first = share_end(size(sets), options%share - 1, options%shares) + 1
-         o%last = share_end(size(sets), options%share, options%shares)
-         call open_outputs(options, o%first, o%last, size(sets), o, failure)
+         o%first = share%first
+         o%last = share%last
+         call open_outputs(options, o%first, o%last, share%sets, o, failure)
       end if
       if (.not. allocated(failure)) then
          call watch_signals
-         call run_sets(options, sets, findings, o, status)
+         o%own_first = o%first
+         o%own_last = o%last
+         associate (processes => process_count(options, sets))
+            if (processes > 1) call run_shares(o, o%own_first, o%own_last, processes, o%progress, is_child, status, &
+               message)
+            if (is_child) o%progress%shown = .false.
+            if (processes == 1 .or. is_child) call run_sets(options, sets, findings, o, status)
+         end associate
          call end_progress(o%progress)
          call close_outputs(o, failure)
       end if
       if (allocated(failure)) then
          status = failure%status
          if (len(message) == 0) message = ' *** '//failure%text
-      else if (.not. o%asked(out_listing)) then
-         message = said_of(options, sets(o%first:o%last))
+      else if (len(message) == 0 .and. .not. (o%asked(out_listing) .or. is_child)) then
+         message = said_of(options, sets)
          ! The end of the last line comes with the message.
          message = message(:max(0, len(message) - 1))
       end if
       call look_at_signals(o, status, message)
+      if (is_child) call end_share(status, message)
    end subroutine run_job
+
+   !> How many processes compute `sets`: one where they take no time, or are to be drawn on one page.
+   integer function process_count(options, sets) result(n)
+      type(options_t), intent(in) :: options
+      type(mechanism_t), intent(in) :: sets(:)
+      real :: work
+      integer :: i
+
+      n = options%jobs
+      work = sum([(real(instant_count(sets(i)))*size(sets(i)%links), i=1, size(sets))])
+      if (n == 0) n = merge(processor_count(), 1, work > least_work)
+      if (options%check .or. allocated(options%files(out_svg)%text) .or. &
+         allocated(options%files(out_animation)%text)) n = 1
+      n = max(1, min(n, size(sets)))
+   end function process_count
 
    !> The remarks about `sets`, each line ended by new_line('a'), for where they stand in no listing; '' for --quiet.
    function said_of(options, sets) result(text)
@@ -113,19 +147,20 @@ contains
    !> The sets of this share, one after another: shares put together in their order are the whole.
    subroutine run_sets(options, sets, findings, o, status)
       type(options_t), intent(in) :: options
-      type(mechanism_t), intent(in) :: sets(:)
-      type(findings_t), intent(inout) :: findings(:)
       type(writers_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: sets(o%first:)
+      type(findings_t), intent(inout) :: findings(o%first:)
       integer, intent(inout) :: status
       type(mechanism_t) :: film
       integer :: i, every
 
-      if (o%asked(out_csv) .and. options%share == 1) call csv_head(o%files(out_csv, 0), options%errors)
+      if (o%asked(out_csv) .and. options%share == 1 .and. o%own_first == o%first) &
+         call csv_head(o%files(out_csv, 0), options%errors)
       if (o%asked(out_svg)) call picture_head(o%files(out_svg, 0))
       if (o%asked(out_svg)) allocate (o%drawings(o%first:o%last))
       if (o%asked(out_animation)) call picture_head(o%files(out_animation, 0))
       if (o%asked(out_animation)) allocate (o%films(o%first:o%last))
-      do i = o%first, o%last
+      do i = o%own_first, o%own_last
          call run_set(options, sets(i), i, findings(i), o, status)
          if (is_over(o, i)) exit
          if (o%asked(out_svg)) call draw_set(sets(i), picture_candidates, 1, o%drawings(i), o%progress)
@@ -161,14 +196,6 @@ contains
          if (signal_received() > 0) return
       end do
    end subroutine draw_set
-
-   !> Last set of share `k` of `n` shares of `count` sets.
-   pure integer function share_end(count, k, n)
-      use, intrinsic :: iso_fortran_env, only: int64
-      integer, intent(in) :: count, k, n
-
-      share_end = int(int(count, int64)*k/n)
-   end function share_end
 
    !> Solves and writes set number `i`, `m`, instant by instant.
    subroutine run_set(options, m, i, findings, o, status)

@@ -1,18 +1,18 @@
 !> The files that a job writes: those that all sets share, and those of which each set has its own.
 module outputs
    use failures, only: failure_t, fail, capitals, status_system, status_rejected
-   use text_output, only: output_t, open_output, check_apart, flush_output, close_output, abandon_output, has_failed, &
-      has_broken_pipe
+   use text_output, only: output_t, open_output, check_apart, flush_output, close_output, forget_output, &
+      abandon_output, has_failed, has_broken_pipe
    use system_calls, only: make_directory, remove_directory, last_error, reason_of, signal_received
    use numerals, only: whole
    use command_line, only: options_t, file_options, out_last
    implicit none
    private
-   public :: outputs_t, open_outputs, flush_outputs, close_outputs, is_over, is_broken_pipe, set_suffix
+   public :: outputs_t, open_outputs, flush_outputs, forget_files, close_outputs, is_over, is_broken_pipe, set_suffix
 
    type :: outputs_t
       logical :: asked(out_last) = .false.                  !< the command asks for them: no other is open
-      !> (out_last, 0:sets) In column 0 those that all sets share; in column i those of set number i.
+      !> (out_last, 0:sets or 0) In column 0 those that all sets share; in column i those of set number i.
       type(output_t), allocatable :: files(:, :)
       character(:), allocatable :: made_directory           !< that was not there before
    end type outputs_t
@@ -29,9 +29,9 @@ contains
       type(output_t), pointer :: all_files(:)
       integer :: k, i
 
-      allocate (o%files(out_last, 0:last))
+      o%asked = [(allocated(options%files(k)%text), k=1, out_last)]
+      allocate (o%files(out_last, 0:merge(last, 0, any(o%asked .and. file_options%each_set))))
       do k = 1, out_last
-         o%asked(k) = allocated(options%files(k)%text)
          if (.not. o%asked(k)) cycle
          if (len_trim(file_options(k)%in_directory) > 0 .and. .not. allocated(failure)) &
             call open_directory(options%files(k)%text, o, failure)
@@ -102,6 +102,17 @@ contains
          if (o%asked(k)) call flush_output(o%files(k, merge(i, 0, file_options(k)%each_set)))
       end do
    end subroutine flush_outputs
+
+   !> Leaves the files of all sets but those from `first` to `last` to other processes.
+   subroutine forget_files(o, first, last)
+      class(outputs_t), intent(inout) :: o
+      integer, intent(in) :: first, last
+      integer :: i
+
+      do i = 1, ubound(o%files, 2)
+         if (i < first .or. i > last) call forget_output(o%files(:, i))
+      end do
+   end subroutine forget_files
 
    !> Closes all outputs; `failure`: that of the last one that could not be written.
    subroutine close_outputs(o, failure)

@@ -16,6 +16,7 @@ parts() {
    results of the methods|97|"$MAKE" --no-print-directory bench-short
    the command|420|tests/system/command.sh
    what is installed|11|tests/system/install.sh
+   many sets|7|tests/system/many_sets.sh
    what is printed arrives|205|tests/system/output.sh
    unit tests|700|"$MAKE" --no-print-directory unit
    the stand-in|75|"$MAKE" --no-print-directory unit-stand-in

@@ -11,7 +11,7 @@ module system_calls
    public :: identity_t, identity_of_path, identity_of_descriptor, same_file
    public :: open_to_read, open_to_write, read_bytes, write_bytes, close_descriptor, empty_file, remove_file
    public :: make_directory, remove_directory, is_terminal
-   public :: watch_signals, signal_received, broken_pipe_kills, end_by_signal, signal_pipe
+   public :: watch_signals, note_all_signals, signal_received, broken_pipe_kills, end_by_signal, signal_pipe
    public :: occupy_standard_descriptors, last_error, reason_of, no_such_file, closed_descriptor, is_a_directory, &
       broken_pipe
 
@@ -331,6 +331,23 @@ contains
       if (address(before) == 0_c_intptr_t) pipe_kills = .true.
       before = signal(signal_file_size, transfer(ignored, c_null_funptr))
    end subroutine watch_signals
+
+   !> From now on no further SIGINT or SIGTERM kills this process either: it ends by itself after the first.
+   subroutine note_all_signals
+      type(c_funptr) :: before
+      integer :: i
+
+      do i = 1, size(watched)
+         before = signal(watched(i), c_funloc(note_number))
+      end do
+   end subroutine note_all_signals
+
+   !> Handles a signal: keeps its number.
+   subroutine note_number(number) bind(c)
+      integer(c_int), value :: number
+
+      received = number
+   end subroutine note_number
 
    !> Handles a signal by what is safe at any moment: keeps its number and restores the usual actions.
    subroutine note_signal(number) bind(c)

@@ -7,7 +7,7 @@ module text_output
       write_bytes, close_descriptor, empty_file, remove_file, last_error, reason_of, closed_descriptor, broken_pipe
    implicit none
    private
-   public :: output_t, open_output, check_apart, put, add, flush_output, close_output, abandon_output
+   public :: output_t, open_output, check_apart, put, add, flush_output, close_output, forget_output, abandon_output
    public :: has_failed, has_broken_pipe
 
    integer, parameter :: block_length = 65536
@@ -57,19 +57,22 @@ contains
       character(*), intent(in) :: deck
       type(failure_t), allocatable, intent(out) :: failure
       type(identity_t) :: id(size(list)), read_from
-      integer :: i
+      integer :: i, n
 
       if (len(deck) > 0) then
          read_from = identity_of_path(deck)
       else
          read_from = identity_of_descriptor(standard_input)
       end if
+      n = 0
       do i = 1, size(list)
-         if (allocated(list(i)%buffer)) id(i) = identity_of_descriptor(list(i)%descriptor)
-         if (any(same_file(id(i), id(:i - 1)))) &
+         if (.not. allocated(list(i)%buffer)) cycle
+         n = n + 1
+         id(n) = identity_of_descriptor(list(i)%descriptor)
+         if (any(same_file(id(n), id(:n - 1)))) &
             call fail(failure, status_rejected, 'ONE FILE IS NAMED FOR TWO OUTPUTS')
       end do
-      if (.not. any(same_file(read_from, id))) return
+      if (.not. any(same_file(read_from, id(:n)))) return
       if (len(deck) > 0) then
          call fail(failure, status_rejected, 'THE DECK '//deck//' WOULD BE OVERWRITTEN')
       else
@@ -142,6 +145,13 @@ contains
       if (.not. has_failed(o)) return
       call fail(failure, status_system, 'WRITING '//o%path//' FAILED ('//capitals(reason_of(o%error))//')')
    end subroutine close_output
+
+   !> Leaves an output to another process, which writes and closes it.
+   elemental subroutine forget_output(o)
+      type(output_t), intent(inout) :: o
+
+      if (allocated(o%buffer)) deallocate (o%buffer)
+   end subroutine forget_output
 
    !> Closes an output without writing: the file is as it was before, and removed if it did not exist.
    subroutine abandon_output(o)

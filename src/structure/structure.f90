@@ -257,7 +257,7 @@ contains
       reported = 0
       do i = 1, size(sets)
          findings(i) = find_structure(sets(i))
-         text = faults_text(sets(i), findings(i), i)
+         text = faults_text(sets(i), findings(i), sets(i)%set_number)
          if (len(text) == 0) cycle
          if (reported > 0) all_of_them = all_of_them//new_line('a')//' *** '
          all_of_them = all_of_them//text

@@ -231,6 +231,32 @@ for share in 0/2 3/2 x 1 1/ /2 1/2/3 -1/2 1/0 1.0/2 ''; do
 done
 refused '--sets without a word' 1 ' *** OPTION --sets NEEDS K/N WITH 1 <= K <= N, SUCH AS 1/4' "$w/m.deck" --sets
 
+# --jobs: the sets in several processes give the same bytes, and end as one process does.
+for jobs in 1 2 3 8; do
+   "$kinmat" "$w/m.deck" --jobs $jobs --csv "$w/jobs.csv" --log "$w/jobs.log" --table "$w/jobs.table" > "$w/jobs.lst" 2> "$w/err"
+   equal "--jobs $jobs: status" 0 $?
+   same "$jobs jobs: listing" "$w/m.lst" "$w/jobs.lst"
+   same "$jobs jobs: csv" "$w/m.csv" "$w/jobs.csv"
+   cat "$w/jobs.log" "$w"/jobs-*.table > "$w/jobs.$jobs"
+   same "$jobs jobs: log and tables" "$w/jobs.1" "$w/jobs.$jobs"
+done
+"$kinmat" "$w/m.deck" --sets 2/2 --jobs 2 > "$w/out"
+"$kinmat" "$w/m.deck" --sets 2/2 | same '--jobs with --sets' - "$w/out"
+TMPDIR=/nonexistent refused '--jobs: no place for its files' 3 ' *** NO PROCESS FOR SETS 1 TO 1 (NO SUCH FILE OR DIRECTORY)' "$w/m.deck" --jobs 2 -o "$w/out"
+for jobs in 0 x 1025 -1 1.5 ''; do
+   refused "--jobs '$jobs'" 1 ' *** OPTION --jobs NEEDS A WHOLE NUMBER FROM 1 TO 1024' "$w/m.deck" --jobs "$jobs"
+done
+refused '--study with --jobs' 1 ' *** OPTION --study GOES WITH NO OTHER OPTION BUT -o' "$w/m.deck" --study --jobs 2
+
+# A share of a file reads no other sets; a pipe is read wholly.
+{ cat "$w/m.deck"; echo 'WRONG'; echo END; } > "$w/wrong.deck"
+"$kinmat" "$w/wrong.deck" --sets 1/9 > "$w/out" 2>&1
+equal 'a share beside a wrong set' 0 $?
+"$kinmat" --sets 1/9 < "$w/wrong.deck" > "$w/out" 2> "$w/err"
+equal 'a share of a pipe with a wrong set' 1 $?
+"$kinmat" "$w/wrong.deck" --sets 9/9 > "$w/out" 2> "$w/err"
+equal 'the share of a wrong set' 1 $?
+
 # --help, --version, --ruler
 "$kinmat" --help > "$w/out" 2> "$w/err"
 equal '--help: status' 0 $?

@@ -168,7 +168,7 @@ fi
 # stopped SIGNAL DECK: a run that has begun is sent the signal
 stopped() {
    rm -f stop.lst
-   env --default-signal=INT,TERM "$kinmat" "$2" -o stop.lst --csv stop.csv --log stop.log --table stop.table 2> err &
+   env --default-signal=INT,TERM "$kinmat" "$2" --jobs 1 -o stop.lst --csv stop.csv --log stop.log --table stop.table 2> err &
    pid=$!
    waited=0
    until [ -s stop.csv ] && [ "$(wc -l < stop.csv)" -gt 10 ] || [ $waited -ge 200 ]; do sleep 0.05; waited=$((waited + 1)); done
