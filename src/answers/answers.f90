@@ -5,7 +5,8 @@ module answers
    use set_analysis, only: set_analysis_t
    use listing_layout, only: layout_t
    use text_output, only: output_t
-   use extremes, only: extremes_t, new_extremes, note_instant
+   use extremes, only: extremes_t, new_extremes
+   use extreme_search, only: note_instant
    use dwells, only: dwells_t, dwell_t, new_dwells, note_position, find_dwells
    use extremes_table, only: put_extremes
    use ranges, only: range_t, find_ranges, put_ranges

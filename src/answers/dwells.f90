@@ -5,7 +5,7 @@ module dwells
    use points, only: coordinates_of
    use set_analysis, only: set_analysis_t
    use zero_search, only: sample_t, column_t, find_zero
-   use extremes, only: extremes_t, least, greatest, is_angle, is_cyclic
+   use extremes, only: extremes_t, least, greatest, is_angle, is_cyclic, is_covered, noise_part
    implicit none
    private
    public :: dwells_t, dwell_t, new_dwells, note_position, find_dwells
@@ -16,6 +16,7 @@ module dwells
       integer :: asked = 0, column = 0, which = least
       real(wp) :: distance = 0.0_wp                    !< in the deck's unit or rad
       real(wp) :: from = 0.0_wp, to = 0.0_wp           !< times
+      real(wp) :: error(2) = 0.0_wp                    !< what rounding leaves open of both
    end type dwell_t
 
    !> The coordinates whose dwells are asked for, at all instants of TIME.
@@ -57,14 +58,16 @@ contains
 
       if (size(d%wanted) == 0) return
       d%last = k
-      d%t(k) = x%last(1)%t
       do i = 1, size(d%wanted)
-         d%value(i, k) = x%last(1)%value(d%wanted(i)%column, 0, d%wanted(i)%asked)
+         associate (w => d%wanted(i), now => x%tracks(x%part(d%wanted(i)%asked))%instant)
+            d%t(k) = now%t
+            d%value(i, k) = now%value(w%column, 0, w%asked)
+         end associate
       end do
    end subroutine note_position
 
    !> The dwells (any number) after the last instant; none of what never leaves its distance, and none at all where some
-   !> instant has no motion.
+   !> of the motion between instants is not known.
    subroutine find_dwells(d, m, x, s, list)
       type(dwells_t), intent(in) :: d
       type(mechanism_t), intent(in) :: m
@@ -77,38 +80,40 @@ contains
       logical :: is_cycle, found(2)
 
       allocate (list(0))
-      if (x%unsolved > 0) return
+      if (.not. is_covered(x)) return
       do i = 1, size(d%wanted)
          one = d%wanted(i)
          stroke = x%found(greatest, one%column, 0, one%asked)%value - x%found(least, one%column, 0, one%asked)%value
          if (stroke <= one%distance) cycle
          ! A crank that has made whole turns is not where it was.
          is_cycle = abs(d%value(i, d%last) - d%value(i, 0)) < 0.5_wp*stroke &
-            .and. is_cyclic(x, m, s%now%own(s%now%parts%part(x%asked(one%asked))), one%asked)
+            .and. is_cyclic(x, m, one%asked)
          do which = least, greatest
             one%which = which
-            call find_end(d, i, x, s, which, -1, is_cycle, one%from, found(1))
-            call find_end(d, i, x, s, which, 1, is_cycle, one%to, found(2))
+            call find_end(d, i, x, s, which, -1, is_cycle, one%from, one%error(1), found(1))
+            call find_end(d, i, x, s, which, 1, is_cycle, one%to, one%error(2), found(2))
             if (all(found)) list = [list, one]
          end do
       end do
    end subroutine find_dwells
 
    !> The time `t` at which wanted column `i`, followed from its extreme `which` along the run (`way` 1) or against it
-   !> (-1), leaves its distance; the end of the run where it does not, unless the motion is a cycle and goes on.
-   subroutine find_end(d, i, x, s, which, way, is_cycle, t, found)
+   !> (-1), leaves its distance, and its `error`; the end of the run where it does not, unless the motion is a cycle and
+   !> goes on.
+   subroutine find_end(d, i, x, s, which, way, is_cycle, t, error, found)
       type(dwells_t), intent(in) :: d
       integer, intent(in) :: i, which, way
       type(extremes_t), intent(in) :: x
       type(set_analysis_t), intent(inout) :: s
       logical, intent(in) :: is_cycle
-      real(wp), intent(out) :: t
+      real(wp), intent(out) :: t, error
       logical, intent(out) :: found
       type(sample_t) :: inside, outside, zero
       real(wp) :: level
       integer :: k, passed
 
       found = .true.
+      error = 0.0_wp
       associate (w => d%wanted(i), e => x%found(which, d%wanted(i)%column, 0, d%wanted(i)%asked))
          level = e%value + merge(w%distance, -w%distance, which == least)
          inside = position_at(e%t, e%value)
@@ -126,7 +131,11 @@ contains
             k = k + way
          end do
          if (passed > d%last) return
-         call find_zero(s, column_t(x%asked(w%asked), w%column), 0, level, inside, outside, zero)
+         call find_zero(s, column_t(x%asked(w%asked), w%column, &
+            noise=noise_part*[x%size_of(w%column, :, w%asked), 0.0_wp]), 0, level, inside, outside, zero)
+         ! The level is known as far as the extreme.
+         error = zero%t_error
+         if (zero%error(0) > 0.0_wp) error = error*(1.0_wp + e%error/zero%error(0))
       end associate
       t = zero%t
       found = zero%exists
@@ -149,6 +158,6 @@ contains
    pure type(sample_t) function position_at(t, value) result(sample)
       real(wp), intent(in) :: t, value
 
-      sample = sample_t(t, [value, 0.0_wp, 0.0_wp], .true.)
+      sample = sample_t(t, [value, 0.0_wp, 0.0_wp], exists=.true.)
    end function position_at
 end module dwells

@@ -1,55 +1,63 @@
-!> Card EXTREMES: the least and the greatest value of each coordinate, velocity and acceleration of a row, over the
-!> instants of TIME and between them; and the times of the forward and the return stroke of a cyclic motion.
-!>
-!> The instants, and the joints of the drives' laws, are nodes. Between two of them a coordinate has an extreme where
-!> its velocity is zero, a velocity where its acceleration is, and an acceleration where its five-point difference is.
-!> Each zero lies between two times at which that derivative has opposite signs, and is found there by motions at times
-!> between the instants. An acceleration is searched where the middle of three nodes is the largest or the least; if it
-!> has another sign there, its two zeros are searched for, and likewise those of the velocity. So none is missed
-!> of an acceleration that has at most one extreme in any two consecutive steps.
+!> Card EXTREMES: the least and the greatest value of each coordinate, velocity and acceleration of a row, as far as
+!> `extreme_search` has come; the times of the forward and the return stroke of a cyclic motion.
 module extremes
    use kinds, only: wp
    use constants, only: without_turns
-   use mechanism, only: mechanism_t, request_t, request_link, request_pair, pair_prismatic, instant
+   use mechanism, only: mechanism_t, request_t, request_link, request_pair, pair_prismatic
    use scales, only: characteristic_length, characteristic_rate, is_length
    use drives, only: new_law, drive_motion, joints_of
    use points, only: is_fixed, coordinates_of
    use set_analysis, only: set_analysis_t
-   use nodes, only: node_t, node_of_instant, node_at, times_between
-   use zero_search, only: sample_t, column_t, find_zero, differ_in_sign
+   use nodes, only: node_t, one_sided_t
+   use zero_search, only: sample_t
    implicit none
    private
-   public :: extremes_t, extreme_t, least, greatest, new_extremes, note_instant, stroke_times, is_cyclic, &
-      is_angle
+   public :: extremes_t, extreme_t, track_t, gap_t, least, greatest, new_extremes, offer, offer_limits, count_turn, &
+      note_gap, alike, noise_part, step_of, stroke_times, is_cyclic, is_covered, is_angle
 
-   !> Values that differ by less, in characteristic lengths or rad and rates, are alike: the earlier one counts. A
-   !> derivative below the second is a zero that rounding has moved.
-   real(wp), parameter :: alike = 1.0e4_wp*epsilon(1.0_wp), is_zero = 64.0_wp*epsilon(1.0_wp)
+   !> Values that differ by less, in characteristic lengths or rad and rates, are alike, since errors
+   !> that no table shows may be as large: the earlier one counts. A derivative below the second is a zero that rounding
+   !> has moved.
+   real(wp), parameter :: alike = 1.0e5_wp*epsilon(1.0_wp), noise_part = 64.0_wp*epsilon(1.0_wp)
    !> A motion is cyclic if its end differs from its beginning by less, in the same units.
    real(wp), parameter :: closes_to = max(1.0e-9_wp, 1.0e5_wp*epsilon(1.0_wp))
-   !> The step of the five-point difference, whose error goes with its fourth power, in steps of TIME.
-   real(wp), parameter :: difference_part = 1.0_wp/256.0_wp
    !> The first index of the extremes.
    integer, parameter :: least = 1, greatest = 2
 
    !> In the deck's units and rad.
    type :: extreme_t
       logical :: exists = .false.
+      logical :: has_bound = .true.                    !< false: the number grows without bound before the time `t`
       logical :: is_located = .false.                  !< at a zero of a derivative, not at a node
       real(wp) :: t = 0.0_wp, value = 0.0_wp
+      real(wp) :: t_error = 0.0_wp, error = 0.0_wp     !< what rounding leaves open of both
    end type extreme_t
+
+   !> The way that the rows of one independent mechanism have come.
+   type :: track_t
+      integer, allocatable :: rows(:)                  !< those asked for
+      real(wp), allocatable :: joints(:)               !< times at which a law is not smooth
+      logical :: drives_close = .false.                !< its drives are at the end of the run as at its beginning
+      logical :: at_change = .false.                   !< the last instant is at a change point
+      type(node_t) :: first, instant                   !< nodes of the first instant and of the last one
+      type(node_t), allocatable :: last(:)             !< the last two nodes, latest first
+   end type track_t
+
+   !> An interval of time in which not all of the motion is known.
+   type :: gap_t
+      real(wp) :: from = 0.0_wp, to = 0.0_wp
+   end type gap_t
 
    type :: extremes_t
       integer, allocatable :: asked(:)                 !< the requests of the set for extremes, but those of the ground
+      integer, allocatable :: part(:)                  !< (asked) their independent mechanisms
       real(wp), allocatable :: size_of(:, :, :)        !< (3, 0:2, asked) characteristic value of each number
-      real(wp), allocatable :: joints(:)               !< times inside the run at which a law is not smooth
       type(extreme_t), allocatable :: found(:, :, :, :) !< (least:greatest, 3, 0:2, asked)
       integer, allocatable :: turns(:, :)              !< (3, asked) changes of sign of the velocity
       integer, allocatable :: first_sign(:, :), last_sign(:, :) !< (3, asked) of the velocity: the first, the latest
-      type(node_t) :: first                            !< node of the run
-      type(node_t), allocatable :: last(:)             !< the last two nodes, latest first
-      integer :: unsolved = 0                          !< instants at which not all is known
-      logical :: was_whole = .false.                   !< all was known at the last instant
+      type(track_t), allocatable :: tracks(:)          !< (independent mechanisms)
+      type(gap_t), allocatable :: gaps(:)              !< (any number) in the order of the run
+      real(wp) :: way = 1.0_wp                         !< of the run: -1 backwards in time
    end type extremes_t
 
 contains
@@ -59,20 +67,28 @@ contains
       type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(in) :: s
       type(extremes_t), intent(out) :: x
-      integer :: i, q, n
+      integer :: i, c, q, n
 
       x%asked = pack([(i, i=1, size(m%requests))], m%requests%extremes .and. .not. [(is_fixed(m, m%requests(i)), i=1, &
          size(m%requests))])
       n = size(x%asked)
-      allocate (x%size_of(3, 0:2, n), x%found(least:greatest, 3, 0:2, n), x%last(0), x%joints(0))
+      x%part = s%now%parts%part(x%asked)
+      x%way = sign(1.0_wp, m%t1 - m%t0)
+      allocate (x%size_of(3, 0:2, n), x%found(least:greatest, 3, 0:2, n), x%gaps(0), x%tracks(size(s%now%own)))
       allocate (x%turns(3, n), x%first_sign(3, n), x%last_sign(3, n), source=0)
-      do q = 1, n
-         associate (own => s%now%own(s%now%parts%part(x%asked(q))))
-            x%size_of(:, :, q) = sizes_of(own, m, m%requests(x%asked(q)))
+      do c = 1, size(x%tracks)
+         associate (track => x%tracks(c), own => s%now%own(c))
+            track%rows = pack([(q, q=1, n)], x%part == c)
+            allocate (track%last(0), track%joints(0))
+            if (size(track%rows) == 0) cycle
+            do i = 1, size(own%drives)
+               track%joints = [track%joints, joints_of(own%drives(i))]
+            end do
+            track%drives_close = drives_close(own)
+            do i = 1, size(track%rows)
+               x%size_of(:, :, track%rows(i)) = sizes_of(own, m, m%requests(x%asked(track%rows(i))))
+            end do
          end associate
-      end do
-      do i = 1, size(m%drives)
-         x%joints = [x%joints, joints_of(m%drives(i))]
       end do
    end subroutine new_extremes
 
@@ -102,85 +118,15 @@ contains
       if (request%kind == request_pair) is_angle = m%pairs(request%subject)%kind /= pair_prismatic
    end function is_angle
 
-   !> Takes instant number `k` of `m`, to which `s` has advanced. Only the instants of TIME count.
-   subroutine note_instant(x, m, s, k)
-      type(extremes_t), intent(inout) :: x
+   !> A step of the TIME card.
+   pure real(wp) function step_of(m)
       type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: k
-      type(node_t) :: now
-      real(wp), allocatable :: times(:)
-      integer :: i
 
-      if (k > m%steps) return
-      now = node_of_instant(x%asked, s)
-      if (any(now%known < 2)) x%unsolved = x%unsolved + 1
-      if (k > 0 .and. all(now%known == 2) .and. x%was_whole) then
-         times = times_between(x%joints, m, k)
-         do i = 1, size(times)
-            call add_node(x, m, s, node_at(x%asked, s, times(i)))
-         end do
-      end if
-      call add_node(x, m, s, now)
-      x%was_whole = all(now%known == 2)
-   end subroutine note_instant
+      step_of = abs(m%t1 - m%t0)/real(m%steps, wp)
+   end function step_of
 
-   !> Takes `node`, and searches between it and the last two.
-   subroutine add_node(x, m, s, node)
-      type(extremes_t), intent(inout) :: x
-      type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(inout) :: s
-      type(node_t), intent(in) :: node
-      type(sample_t) :: now, before, earlier
-      type(column_t) :: column
-      integer :: q, c, k
-
-      if (size(x%last) == 0) x%first = node
-      do q = 1, size(x%asked)
-         do c = 1, coordinates_of(m%requests(x%asked(q))%kind)
-            do k = 0, node%known(q)
-               call offer(x, m, q, c, k, sample_of(node, q, c), .false.)
-            end do
-            if (node%known(q) < 2) cycle
-            call count_turn(x, q, c, node%value(c, 1, q))
-            column = column_t(x%asked(q), c)
-            now = sample_of(node, q, c)
-            if (size(x%last) < 1) cycle
-            before = sample_of(x%last(1), q, c)
-            if (.not. before%exists) cycle
-            call search_velocity(x, m, s, q, column, before, now)
-            if (size(x%last) < 2) cycle
-            earlier = sample_of(x%last(2), q, c)
-            if (earlier%exists) call search_acceleration(x, m, s, q, column, earlier, before, now)
-         end do
-      end do
-      x%last = [node, x%last(:min(size(x%last), 1))]
-   end subroutine add_node
-
-   !> Column `c` of row `q` of `node`.
-   pure type(sample_t) function sample_of(node, q, c) result(sample)
-      type(node_t), intent(in) :: node
-      integer, intent(in) :: q, c
-
-      sample = sample_t(node%t, node%value(c, :, q), node%known(q) == 2)
-   end function sample_of
-
-   !> Counts a change of sign of the velocity `v`.
-   pure subroutine count_turn(x, q, c, v)
-      type(extremes_t), intent(inout) :: x
-      integer, intent(in) :: q, c
-      real(wp), intent(in) :: v
-      integer :: this
-
-      if (abs(v) <= is_zero*x%size_of(c, 1, q)) return
-      this = merge(1, -1, v > 0.0_wp)
-      if (x%first_sign(c, q) == 0) x%first_sign(c, q) = this
-      if (x%last_sign(c, q) == -this) x%turns(c, q) = x%turns(c, q) + 1
-      x%last_sign(c, q) = this
-   end subroutine count_turn
-
-   !> Number `k` of `sample` may be the least or the greatest. A value `at_zero` of the next derivative has its time
-   !> from that, and replaces a node's beside it.
+   !> Number `k` of `sample`, column `c` of row `q`, may be the least or the greatest. A value `at_zero` of the next
+   !> derivative has its time from that, and replaces a node's beside it.
    pure subroutine offer(x, m, q, c, k, sample, at_zero)
       type(extremes_t), intent(inout) :: x
       type(mechanism_t), intent(in) :: m
@@ -193,140 +139,128 @@ contains
 
       do which = least, greatest
          associate (e => x%found(which, c, k, q))
+            if (.not. e%has_bound) cycle
             gain = (sample%f(k) - e%value)*merge(-1.0_wp, 1.0_wp, which == least)
-            better = .not. e%exists .or. gain > alike*x%size_of(c, k, q)
+            better = .not. e%exists .or. gain > alike*x%size_of(c, k, q) + e%error + sample%error(k)
             if (at_zero .and. .not. (better .or. e%is_located)) better = gain >= -alike*x%size_of(c, k, q) &
                .and. abs(sample%t - e%t) <= step_of(m)
-            if (better) e = extreme_t(.true., at_zero, sample%t, sample%f(k))
+            ! A one-sided limit is known less well than the number itself.
+            better = better .or. (abs(sample%t - e%t) <= 0.0_wp .and. sample%error(k) < e%error)
+            if (better) e = extreme_t(exists=.true., is_located=at_zero, t=sample%t, &
+               value=sample%f(k), t_error=sample%t_error, error=sample%error(k))
          end associate
       end do
    end subroutine offer
 
-   !> A step of the TIME card.
-   pure real(wp) function step_of(m)
-      type(mechanism_t), intent(in) :: m
-
-      step_of = abs(m%t1 - m%t0)/real(m%steps, wp)
-   end function step_of
-
-   !> Extremes of the coordinate between `a` and `b`, whose accelerations have one sign.
-   subroutine search_coordinate(x, m, s, q, column, a, b)
+   !> So may the one-sided `limits` of the numbers of `row` at the time `t`; `columns`: how many it has.
+   pure subroutine offer_limits(x, row, columns, t, limits)
       type(extremes_t), intent(inout) :: x
-      type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: q
-      type(column_t), intent(in) :: column
-      type(sample_t), intent(in) :: a, b
-      type(sample_t) :: zero
+      integer, intent(in) :: row, columns
+      real(wp), intent(in) :: t
+      type(one_sided_t), intent(in) :: limits
+      real(wp) :: gain
+      integer :: which, c, k
 
-      if (.not. changes_sign(x, q, column%column, 1, a, b)) return
-      call find_zero(s, column, 1, 0.0_wp, a, b, zero)
-      if (zero%exists) call offer(x, m, q, column%column, 0, zero, .true.)
-   end subroutine search_coordinate
+      do k = 0, 2
+         do c = 1, columns
+            do which = least, greatest
+               associate (e => x%found(which, c, k, row), value => limits%value(c, k, row), &
+                          error => limits%error(c, k, row), has_bound => limits%has_bound(c, k, row))
+                  gain = (value - e%value)*merge(-1.0_wp, 1.0_wp, which == least)
+                  if (.not. e%has_bound) cycle
+                  if (has_bound) then
+                     if (e%exists .and. gain <= alike*x%size_of(c, k, row) + e%error + error) cycle
+                  else
+                     if ((value > 0.0_wp) .neqv. which == greatest) cycle
+                  end if
+                  e = extreme_t(exists=.true., has_bound=has_bound, is_located=.true., t=t, value=value, error=error)
+               end associate
+            end do
+         end do
+      end do
+   end subroutine offer_limits
 
-   !> Extremes of the velocity between `a` and `b`, and of the coordinate on either side of them.
-   subroutine search_velocity(x, m, s, q, column, a, b)
+   !> Counts a change of sign of the velocity `v` of column `c` of row `q`.
+   pure subroutine count_turn(x, q, c, v)
       type(extremes_t), intent(inout) :: x
-      type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: q
-      type(column_t), intent(in) :: column
-      type(sample_t), intent(in) :: a, b
-      type(sample_t) :: zero
+      integer, intent(in) :: q, c
+      real(wp), intent(in) :: v
+      integer :: this
 
-      if (changes_sign(x, q, column%column, 2, a, b)) call find_zero(s, column, 2, 0.0_wp, a, b, zero)
-      if (zero%exists) then
-         call offer(x, m, q, column%column, 1, zero, .true.)
-         call search_coordinate(x, m, s, q, column, a, zero)
-         call search_coordinate(x, m, s, q, column, zero, b)
-      else
-         call search_coordinate(x, m, s, q, column, a, b)
+      if (abs(v) <= noise_part*x%size_of(c, 1, q)) return
+      this = merge(1, -1, v > 0.0_wp)
+      if (x%first_sign(c, q) == 0) x%first_sign(c, q) = this
+      if (x%last_sign(c, q) == -this) x%turns(c, q) = x%turns(c, q) + 1
+      x%last_sign(c, q) = this
+   end subroutine count_turn
+
+   !> Notes that from the time `from` to `to` not all is known; gaps that meet are one.
+   pure subroutine note_gap(x, from, to)
+      type(extremes_t), intent(inout) :: x
+      real(wp), intent(in) :: from, to
+      integer :: n
+
+      n = size(x%gaps)
+      if (n > 0) then
+         associate (g => x%gaps(n))
+            if ((g%to - from)*x%way >= 0.0_wp) then
+               g%from = x%way*min(x%way*g%from, x%way*from)
+               g%to = x%way*max(x%way*g%to, x%way*to)
+               return
+            end if
+         end associate
       end if
-   end subroutine search_velocity
+      x%gaps = [x%gaps, gap_t(from, to)]
+   end subroutine note_gap
 
-   !> An extreme of the acceleration between `a` and `d`, if it is the largest or least at `b`; where it has another
-   !> sign there, the extremes of the velocity on either side of it.
-   subroutine search_acceleration(x, m, s, q, column, a, b, d)
-      type(extremes_t), intent(inout) :: x
-      type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: q
-      type(column_t), intent(in) :: column
-      type(sample_t), intent(in) :: a, b, d
-      type(column_t) :: c
-      type(sample_t) :: zero, from, to
-      real(wp) :: way
-
-      associate (up => (b%f(2) - a%f(2))/x%size_of(column%column, 2, q), &
-                 down => (b%f(2) - d%f(2))/x%size_of(column%column, 2, q))
-         ! Beside an extreme halfway between two instants both have the same value.
-         if (max(abs(up), abs(down)) <= alike) return
-         if (differ_in_sign(up, down) .and. min(abs(up), abs(down)) > alike) return
-      end associate
-      c = column
-      way = sign(1.0_wp, d%t - a%t)
-      c%step = difference_part*min(step_of(m), 32.0_wp*abs(b%t - a%t), 32.0_wp*abs(d%t - b%t))
-      from = sample_t(t=a%t + 2.0_wp*way*c%step)
-      to = sample_t(t=d%t - 2.0_wp*way*c%step)
-      call find_zero(s, c, 3, 0.0_wp, from, to, zero)
-      if (.not. zero%exists) return
-      call offer(x, m, q, c%column, 2, zero, .true.)
-      from = merge(b, a, (zero%t - b%t)*way > 0.0_wp)
-      to = merge(d, b, (zero%t - b%t)*way > 0.0_wp)
-      if (.not. (changes_sign(x, q, c%column, 2, from, zero) .and. changes_sign(x, q, c%column, 2, zero, to))) return
-      call search_velocity(x, m, s, q, c, from, zero)
-      call search_velocity(x, m, s, q, c, zero, to)
-   end subroutine search_acceleration
-
-   !> Derivative number `k` (1, 2) changes its sign between `a` and `b`, by more than rounding.
-   pure logical function changes_sign(x, q, c, k, a, b)
+   !> All of the motion is known, but for single instants.
+   pure logical function is_covered(x)
       type(extremes_t), intent(in) :: x
-      integer, intent(in) :: q, c, k
-      type(sample_t), intent(in) :: a, b
 
-      changes_sign = differ_in_sign(a%f(k), b%f(k)) &
-         .and. min(abs(a%f(k)), abs(b%f(k))) > is_zero*x%size_of(c, k, q)
-   end function changes_sign
+      is_covered = .not. any(abs(x%gaps%to - x%gaps%from) > 0.0_wp)
+   end function is_covered
 
    !> Times from the least to the greatest value of column `c` of row `q` and back, positive, after the last instant:
    !> of a cyclic motion that turns twice, whose run is one period. Otherwise 0.
-   function stroke_times(x, m, own, q, c) result(times)
+   pure function stroke_times(x, m, q, c) result(times)
       type(extremes_t), intent(in) :: x
-      type(mechanism_t), intent(in) :: m, own
+      type(mechanism_t), intent(in) :: m
       integer, intent(in) :: q, c
       real(wp) :: times(2), period, phase
 
       times = 0.0_wp
       if (x%turns(c, q) + merge(1, 0, x%first_sign(c, q) /= x%last_sign(c, q)) /= 2) return
-      if (.not. is_cyclic(x, m, own, q)) return
+      if (.not. is_cyclic(x, m, q)) return
       period = m%t1 - m%t0
       phase = modulo((x%found(greatest, c, 0, q)%t - x%found(least, c, 0, q)%t)/period, 1.0_wp)
       times = abs(period)*[phase, 1.0_wp - phase]
    end function stroke_times
 
-   !> After the last instant: row `q`, which is in the mechanism `own` of the set `m`, and its drives are as at the
-   !> first.
-   logical function is_cyclic(x, m, own, q)
+   !> After the last instant: row `q` and the drives of its mechanism are as at the first.
+   pure logical function is_cyclic(x, m, q)
       type(extremes_t), intent(in) :: x
-      type(mechanism_t), intent(in) :: m, own
+      type(mechanism_t), intent(in) :: m
       integer, intent(in) :: q
 
-      is_cyclic = x%unsolved == 0 .and. size(x%last) > 0
-      if (is_cyclic) is_cyclic = closes(x, m, q) .and. drives_close(own)
+      is_cyclic = is_covered(x) .and. x%tracks(x%part(q))%drives_close
+      if (is_cyclic) is_cyclic = closes(x, m, x%tracks(x%part(q)), q)
    end function is_cyclic
 
    !> The positions and velocities of row `q` at the end of the run are those at its beginning, but for whole turns.
-   pure logical function closes(x, m, q)
+   pure logical function closes(x, m, track, q)
       type(extremes_t), intent(in) :: x
       type(mechanism_t), intent(in) :: m
+      type(track_t), intent(in) :: track
       integer, intent(in) :: q
       real(wp) :: d(0:1)
       integer :: c
 
-      closes = .true.
+      ! At a change point velocities are not unique.
+      closes = min(track%instant%known(q), track%first%known(q)) >= 0
       do c = 1, coordinates_of(m%requests(x%asked(q))%kind)
-         d = x%last(1)%value(c, :1, q) - x%first%value(c, :1, q)
+         d = track%instant%value(c, :1, q) - track%first%value(c, :1, q)
          if (is_angle(m, m%requests(x%asked(q)), c)) d(0) = without_turns(d(0))
+         if (min(track%instant%known(q), track%first%known(q)) < 1) d(1) = 0.0_wp
          closes = closes .and. all(abs(d) <= closes_to*x%size_of(c, :1, q))
       end do
    end function closes

@@ -8,10 +8,11 @@ module extremes_table
    use points, only: coordinates_of
    use set_analysis, only: set_analysis_t
    use listing_layout, only: layout_t, digits_t, digits_of, has_column, dimension_of, name_length, row_length
-   use listing_tables, only: table_t, put_times, put_heads, time_text, drive_text
+   use listing_tables, only: table_t, put_times, put_heads, time_text, drive_text, known_text
    use text_output, only: output_t, put
-   use numerals, only: fixed, whole, numeral_length
-   use extremes, only: extremes_t, least, greatest, stroke_times, is_angle
+   use numerals, only: numeral_length
+   use known_digits, only: unknown_digit
+   use extremes, only: extremes_t, extreme_t, least, greatest, stroke_times, is_angle
    use dwells, only: dwell_t
    use phrases
    implicit none
@@ -21,6 +22,8 @@ module extremes_table
    !> Digits after the point of a ratio of times.
    integer, parameter :: ratio_decimals = 6
    character(3), parameter :: extreme_words(least:greatest) = ['MIN', 'MAX']
+   !> Of more gaps only the first are told.
+   integer, parameter :: max_gaps = 4
 
 contains
 
@@ -39,28 +42,29 @@ contains
       do q = 1, size(x%asked)
          associate (i => x%asked(q))
             call put_heads(o, l, digits_of(l, i), m%requests(i)%kind, table)
-            call put_subject(o, l, digits_of(l, i), m, s, x, q)
+            call put_subject(o, l, digits_of(l, i), m, first_drive(l, s, i), x, q, table%masked)
             do k = 1, size(dwells)
-               if (dwells(k)%asked == q) call put_dwell(o, l, digits_of(l, i), m, first_drive(l, s, i), i, dwells(k))
+               if (dwells(k)%asked == q) &
+                  call put_dwell(o, l, digits_of(l, i), m, first_drive(l, s, i), i, dwells(k), table%masked)
             end do
          end associate
       end do
-      if (x%unsolved > 0) call put(o, ' --- '//phrase(say_unsolved, m%polish)//' '//whole(x%unsolved))
+      if (table%masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, m%polish))
+      if (size(x%gaps) > 0) call put(o, ' --- '//gaps_text(l, m, x))
    end subroutine put_extremes
 
-   !> The rows of asked row `q`.
-   subroutine put_subject(o, l, d, m, s, x, q)
+   !> The rows of asked row `q`; `first`: see `first_drive`. `masked`: as in `table_t`.
+   subroutine put_subject(o, l, d, m, first, x, q, masked)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(digits_t), intent(in) :: d
       type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(in) :: s
+      integer, intent(in) :: first, q
       type(extremes_t), intent(in) :: x
-      integer, intent(in) :: q
+      logical, intent(inout) :: masked
       character(numeral_length), dimension(3, 0:2) :: value, time, drive
-      integer :: which, c, k, first
+      integer :: which, c, k
 
-      first = first_drive(l, s, x%asked(q))
       associate (request => m%requests(x%asked(q)))
          call put(o, ' '//trim(subject_name(m, request%kind, request%subject)))
          do which = least, greatest
@@ -70,35 +74,53 @@ contains
             do k = 0, 2
                do c = 1, coordinates_of(request%kind)
                   associate (e => x%found(which, c, k, q))
-                     value(c, k) = l%none
+                     value(c, k) = value_text(l, d, m, e, is_angle(m, request, c), k)
                      if (.not. e%exists) cycle
-                     value(c, k) = number_text(l, d, e%value, is_angle(m, request, c), k)
-                     time(c, k) = fixed(e%t, l%time_decimals, l%time_power)
-                     if (first > 0) drive(c, k) = adjusted(drive_text(l%drives(first), e%t))
+                     time(c, k) = time_text(l, e%t, e%t_error)
+                     if (first > 0) drive(c, k) = drive_text(l%drives(first), e%t, e%t_error)
                   end associate
                end do
             end do
-            call put_fields(m, request%kind, request%subject, extreme_words(which), value, o)
-            call put_fields(m, request%kind, request%subject, 'T', time, o)
-            if (first > 0) call put_fields(m, request%kind, request%subject, trim(subject_name(m, &
-               driven_kinds(m%drives(first)%kind), m%drives(first)%subject)), drive, o)
+            call put_fields(m, request, extreme_words(which), value, masked, o)
+            call put_fields(m, request, 'T', time, masked, o)
+            if (first > 0) call put_fields(m, request, trim(subject_name(m, driven_kinds(m%drives(first)%kind), &
+               m%drives(first)%subject)), drive, masked, o)
          end do
       end associate
-      call put_strokes(o, l, d, m, s, x, q)
+      call put_strokes(o, l, d, m, x, q, masked)
    end subroutine put_subject
+
+   !> The value of the extreme `e` of a length or an angle, or of derivative number `k` of one: or that there is none.
+   function value_text(l, d, m, e, angular, k) result(text)
+      type(layout_t), intent(in) :: l
+      type(digits_t), intent(in) :: d
+      type(mechanism_t), intent(in) :: m
+      type(extreme_t), intent(in) :: e
+      logical, intent(in) :: angular
+      integer, intent(in) :: k
+      character(:), allocatable :: text
+
+      if (.not. e%exists) then
+         text = trim(adjustl(l%none))
+      else if (.not. e%has_bound) then
+         text = phrase(say_unbounded, m%polish)
+      else
+         text = number_text(l, d, e%value, e%error, angular, k)
+      end if
+   end function value_text
 
    !> The stroke of each coordinate, and where the motion is cyclic the times of both strokes and their ratio, the
    !> longer over the shorter.
-   subroutine put_strokes(o, l, d, m, s, x, q)
+   subroutine put_strokes(o, l, d, m, x, q, masked)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(digits_t), intent(in) :: d
       type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(in) :: s
       type(extremes_t), intent(in) :: x
       integer, intent(in) :: q
+      logical, intent(inout) :: masked
       character(numeral_length), dimension(3, 0:2) :: stroke, forward, return, ratio
-      real(wp) :: times(2)
+      real(wp) :: times(2), error
       integer :: c
 
       stroke = ''
@@ -108,44 +130,66 @@ contains
       associate (request => m%requests(x%asked(q)))
          do c = 1, coordinates_of(request%kind)
             associate (e => x%found(:, c, 0, q))
-               if (.not. all(e%exists)) cycle
-               stroke(c, 0) = number_text(l, d, e(greatest)%value - e(least)%value, is_angle(m, request, c), 0)
+               if (.not. all(e%exists .and. e%has_bound)) cycle
+               stroke(c, 0) = number_text(l, d, e(greatest)%value - e(least)%value, sum(e%error), &
+                  is_angle(m, request, c), 0)
+               times = stroke_times(x, m, q, c)
+               if (any(times <= 0.0_wp)) cycle
+               error = sum(e%t_error)
             end associate
-            times = stroke_times(x, m, s%now%own(s%now%parts%part(x%asked(q))), q, c)
-            if (any(times <= 0.0_wp)) cycle
-            forward(c, 0) = fixed(times(1), l%time_decimals, l%time_power)
-            return(c, 0) = fixed(times(2), l%time_decimals, l%time_power)
-            ratio(c, 0) = fixed(maxval(times)/minval(times), ratio_decimals, 0)
+            forward(c, 0) = time_text(l, times(1), error)
+            return(c, 0) = time_text(l, times(2), error)
+            error = error*sum(times)/minval(times)**2
+            ratio(c, 0) = known_text(maxval(times)/minval(times), ratio_decimals, 0, error)
          end do
-         call put_fields(m, request%kind, request%subject, phrase(say_stroke, m%polish), stroke, o)
+         call put_fields(m, request, phrase(say_stroke, m%polish), stroke, masked, o)
          if (all(forward == '')) return
-         call put_fields(m, request%kind, request%subject, 'MIN-MAX', forward, o)
-         call put_fields(m, request%kind, request%subject, 'MAX-MIN', return, o)
-         call put_fields(m, request%kind, request%subject, phrase(say_ratio, m%polish), ratio, o)
+         call put_fields(m, request, 'MIN-MAX', forward, masked, o)
+         call put_fields(m, request, 'MAX-MIN', return, masked, o)
+         call put_fields(m, request, phrase(say_ratio, m%polish), ratio, masked, o)
       end associate
    end subroutine put_strokes
 
    !> A line for a dwell: of which coordinate, within what distance of what, from when to when.
-   subroutine put_dwell(o, l, d, m, drive, i, dwell)
+   subroutine put_dwell(o, l, d, m, drive, i, dwell, masked)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(digits_t), intent(in) :: d
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: drive, i
       type(dwell_t), intent(in) :: dwell
+      logical, intent(inout) :: masked
       character(:), allocatable :: line
-      logical :: angular
 
-      angular = is_angle(m, m%requests(i), dwell%column)
       line = ' '//phrase(say_dwell, m%polish)//'  '//column_name(m, i, dwell%column)//'  ' &
          //extreme_words(dwell%which)//' +- ' &
-         //trim(adjustl(number_text(l, d, dwell%distance, angular, 0)))//'   T = '//time_text(l, dwell%from)//' .. ' &
-         //time_text(l, dwell%to)
+         //number_text(l, d, dwell%distance, 0.0_wp, is_angle(m, m%requests(i), dwell%column), 0) &
+         //'   T = '//time_text(l, dwell%from, dwell%error(1))//' .. '//time_text(l, dwell%to, dwell%error(2))
       if (drive > 0) line = line//'   '//trim(subject_name(m, driven_kinds(m%drives(drive)%kind), &
-         m%drives(drive)%subject))//' = '//drive_text(l%drives(drive), dwell%from)//' .. ' &
-         //drive_text(l%drives(drive), dwell%to)
+         m%drives(drive)%subject))//' = '//drive_text(l%drives(drive), dwell%from, dwell%error(1))//' .. ' &
+         //drive_text(l%drives(drive), dwell%to, dwell%error(2))
+      masked = masked .or. index(line, unknown_digit) > 0
       call put(o, line)
    end subroutine put_dwell
+
+   !> The times and intervals that the extremes `x` do not cover.
+   function gaps_text(l, m, x) result(text)
+      type(layout_t), intent(in) :: l
+      type(mechanism_t), intent(in) :: m
+      type(extremes_t), intent(in) :: x
+      character(:), allocatable :: text
+      integer :: i
+
+      text = phrase(say_not_covered, m%polish)
+      do i = 1, min(size(x%gaps), max_gaps)
+         associate (g => x%gaps(i))
+            if (i > 1) text = text//','
+            text = text//' '//time_text(l, g%from)
+            if (abs(g%to - g%from) > 0.0_wp) text = text//' .. '//time_text(l, g%to)
+         end associate
+      end do
+      text = text//l%behind_time//more(max(0, size(x%gaps) - max_gaps), m%polish)
+   end function gaps_text
 
    !> The name of column `c` of request `i`.
    pure function column_name(m, i, c) result(name)
@@ -163,12 +207,13 @@ contains
       end if
    end function column_name
 
-   !> A row of `fields` (3, 0:2), those of a subject of the given kind, with a label before it.
-   subroutine put_fields(m, kind, subject, label, fields, o)
+   !> A row of `fields` (3, 0:2), those of `request`, with a label before it. `masked`: as in `table_t`.
+   subroutine put_fields(m, request, label, fields, masked, o)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: kind, subject
+      type(request_t), intent(in) :: request
       character(*), intent(in) :: label
       character(numeral_length), intent(in) :: fields(3, 0:2)
+      logical, intent(inout) :: masked
       type(output_t), intent(inout) :: o
       character(row_length) :: line
       integer :: c, k, i
@@ -177,38 +222,32 @@ contains
       if (len(label) > 7) line = ' '//label
       do k = 0, 2
          do c = 1, 3
-            if (.not. has_column(c, kind)) cycle
+            if (.not. has_column(c, request%kind)) cycle
             i = c
-            if (kind == request_pair) i = merge(1, 2, (c == 3) .eqv. is_angle(m, request_t(kind, subject), 1))
+            if (request%kind == request_pair) i = merge(1, 2, (c == 3) .eqv. is_angle(m, request, 1))
             associate (first => name_length + numeral_length*(3*k + c - 1))
-               line(first + 1:first + numeral_length) = fields(i, k)
+               line(first + 1:first + numeral_length) = adjustr(fields(i, k))
             end associate
          end do
       end do
+      masked = masked .or. index(line(name_length + 1:), unknown_digit) > 0
       call put(o, line(:len_trim(line)))
    end subroutine put_fields
 
-   !> A length or angle, or its derivative number `k`, with the digits of the table.
-   pure function number_text(l, d, value, angular, k) result(text)
+   !> A length or angle, or its derivative number `k`, with the digits of the table, without blanks; `error` is unknown
+   !> of it.
+   pure function number_text(l, d, value, error, angular, k) result(text)
       type(layout_t), intent(in) :: l
       type(digits_t), intent(in) :: d
-      real(wp), intent(in) :: value
+      real(wp), intent(in) :: value, error
       logical, intent(in) :: angular
       integer, intent(in) :: k
-      character(numeral_length) :: text
+      character(:), allocatable :: text
 
-      text = fixed(value/merge(l%angle, 1.0_wp, angular), d%decimals(merge(2, 1, angular), k), &
-         d%power(merge(2, 1, angular), k))
+      associate (unit => merge(l%angle, 1.0_wp, angular), what => merge(2, 1, angular))
+         text = known_text(value/unit, d%decimals(what, k), d%power(what, k), error/unit)
+      end associate
    end function number_text
-
-   !> `text` at the end of a field.
-   pure function adjusted(text) result(field)
-      character(*), intent(in) :: text
-      character(numeral_length) :: field
-
-      field = text
-      field = adjustr(field)
-   end function adjusted
 
    !> The first drive of the mechanism that request `i` asks about; 0: none, or it does not stand over the table.
    pure integer function first_drive(l, s, i)

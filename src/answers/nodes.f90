@@ -1,70 +1,78 @@
 !> The rows of some requests of a set at the instants of TIME and at times between them, where what is asked of the
-!> whole run looks for something.
+!> whole run looks for something; and the limits of their numbers on one side of a time at which not all of the motion
+!> exists: a limit of the motion, a change point, a dead point.
+!>
+!> On each side of a change point a number is a smooth function of the time that is left, at a limit of the motion of
+!> the root s of that: x0 + x1 s + x2 s^2 ... So it is known at s, 2s, ... 5s, and extrapolated to s = 0 by the
+!> polynomial through these five in s^2 or in s; or it grows without bound, as velocities do at a limit, with 1/s.
 module nodes
    use kinds, only: wp
    use mechanism, only: mechanism_t, instant
-   use points, only: row_t, row_of
+   use points, only: row_t
    use set_analysis, only: set_analysis_t, rows_at
    implicit none
    private
-   public :: node_t, node_of_instant, node_at, times_between
+   public :: node_t, node_at, times_between, one_sided_t, limits_of, places, places_beside
 
    !> How far from an end or a joint the next node is, in steps of TIME: so that an extreme beside it is seen.
    real(wp), parameter :: beside_part = 1.0_wp/1024.0_wp
    !> Just before a joint, in parts of the time or of the run: `drives` takes what is nearer as the joint itself.
    real(wp), parameter :: just_before = 65536.0_wp*epsilon(1.0_wp)
+   !> The places beside a time, and how far the nearest is from it, in steps of TIME. At a change point rounding errors
+   !> of accelerations are divided by the square of that distance, and the polynomial leaves its fifth power; at a limit
+   !> of the motion it leaves the power 5/2.
+   integer, parameter :: places = 5
+   real(wp), parameter :: beside_change = 1.0_wp/256.0_wp, &
+      beside_limit = max(1.0e-5_wp, epsilon(1.0_wp)**(1.0_wp/3.0_wp))
+   !> The polynomials at s = 0: through the five places, and through the first four for an estimate of the error.
+   real(wp), parameter :: in_time(places) = [5.0_wp/3.0_wp, -20.0_wp/21.0_wp, 5.0_wp/14.0_wp, -5.0_wp/63.0_wp, &
+      1.0_wp/126.0_wp], four_in_time(places) = [1.6_wp, -0.8_wp, 8.0_wp/35.0_wp, -1.0_wp/35.0_wp, 0.0_wp]
+   real(wp), parameter :: in_root(places) = [5.0_wp, -10.0_wp, 10.0_wp, -5.0_wp, 1.0_wp], &
+      four_in_root(places) = [4.0_wp, -6.0_wp, 4.0_wp, -1.0_wp, 0.0_wp]
+   !> What grows by more than this from 2s to s has no bound: 1/s doubles, s^(-2/3) grows by 1.59. That is not asked of
+   !> numbers below the second, in characteristic ones.
+   real(wp), parameter :: growth = 1.4_wp, small = 1.0e-3_wp
 
-   !> The rows at one time.
+   !> The rows at one time, of the requests of one independent mechanism.
    type :: node_t
       real(wp) :: t = 0.0_wp                           !< time
-      integer, allocatable :: known(:)                 !< (asked) as in `row_t`
+      integer, allocatable :: known(:)                 !< (asked) as in `row_t`; -1 of those of other mechanisms
       real(wp), allocatable :: value(:, :, :)          !< (3, 0:2, asked) in the deck's units and rad
+      real(wp), allocatable :: error(:, :, :)          !< of them, where digits of a table could be in doubt
    end type node_t
+
+   !> The limits (3, 0:2, asked) on one side of a time.
+   type :: one_sided_t
+      logical, allocatable :: has_bound(:, :, :)
+      real(wp), allocatable :: value(:, :, :)          !< the limit; of what has none, a value with its sign
+      real(wp), allocatable :: error(:, :, :)          !< of the limit
+   end type one_sided_t
 
 contains
 
-   !> The rows of the requests `asked` at the last instant of `s`.
-   function node_of_instant(asked, s) result(node)
-      integer, intent(in) :: asked(:)
-      type(set_analysis_t), intent(in) :: s
-      type(node_t) :: node
-      type(row_t) :: row
-      integer :: q
-
-      node = empty_node(size(asked))
-      node%t = s%now%motions(1)%t
-      do q = 1, size(asked)
-         associate (c => s%now%parts%part(asked(q)), i => s%now%parts%number(asked(q)))
-            row = row_of(s%now%own(c), s%now%motions(c), s%now%own(c)%requests(i))
-         end associate
-         node%known(q) = row%known
-         node%value(:, :, q) = row%value
-      end do
-   end function node_of_instant
-
-   !> The same at a time `t` between the instants.
-   function node_at(asked, s, t) result(node)
-      integer, intent(in) :: asked(:)
+   !> The rows of those of the requests `asked` that are of mechanism `c`, at the last instant of `s` or a time `t`
+   !> between the instants. `always`: their errors too where no digit of a table is in doubt.
+   function node_at(asked, s, c, t, always) result(node)
+      integer, intent(in) :: asked(:), c
       type(set_analysis_t), intent(inout) :: s
       real(wp), intent(in) :: t
+      logical, intent(in) :: always
       type(node_t) :: node
       type(row_t), allocatable :: rows(:)
+      real(wp), allocatable :: error(:, :, :)
       integer, allocatable :: these(:)
-      integer :: c, i
+      integer :: i
       logical :: is_found
 
       node = empty_node(size(asked))
       node%t = t
-      do c = 1, s%now%parts%count
-         these = pack([(i, i=1, size(asked))], s%now%parts%part(asked) == c)
-         if (size(these) == 0) cycle
-         allocate (rows(size(these)))
-         call rows_at(s, c, asked(these), t, rows, is_found)
-         if (is_found) node%known(these) = 2
-         do i = 1, size(these)
-            node%value(:, :, these(i)) = rows(i)%value
-         end do
-         deallocate (rows)
+      these = pack([(i, i=1, size(asked))], s%now%parts%part(asked) == c)
+      allocate (rows(size(these)), error(3, 0:2, size(these)))
+      call rows_at(s, c, asked(these), t, rows, is_found, always, error)
+      do i = 1, size(these)
+         node%known(these(i)) = rows(i)%known
+         node%value(:, :, these(i)) = rows(i)%value
+         node%error(:, :, these(i)) = error(:, :, i)
       end do
    end function node_at
 
@@ -73,7 +81,7 @@ contains
       integer, intent(in) :: n
 
       allocate (node%known(n), source=-1)
-      allocate (node%value(3, 0:2, n), source=0.0_wp)
+      allocate (node%value(3, 0:2, n), node%error(3, 0:2, n), source=0.0_wp)
    end function empty_node
 
    !> The times of the nodes between instants number `k` - 1 and `k`, in their order: on either side of each of the
@@ -118,4 +126,43 @@ contains
       end do
    end subroutine sort_along
 
+   !> Times beside `t`, a change point or a limit, the nearest first, on the side of `from`; `step` of TIME.
+   pure function places_beside(t, from, step, is_change) result(times)
+      real(wp), intent(in) :: t, from, step
+      logical, intent(in) :: is_change
+      real(wp) :: times(places), nearest
+      integer :: i
+
+      nearest = min(merge(beside_change, beside_limit, is_change)*step, abs(from - t)/(2*places**2))
+      times = t + sign(nearest, from - t)*[(i**2, i=1, places)]
+   end function places_beside
+
+   !> The limits at the time beside which the `nodes` are, a change point or a limit; `size_of` (3, 0:2, asked):
+   !> characteristic values.
+   pure function limits_of(nodes, is_change, size_of) result(limits)
+      type(node_t), intent(in) :: nodes(places)
+      logical, intent(in) :: is_change
+      real(wp), intent(in) :: size_of(:, 0:, :)
+      type(one_sided_t) :: limits
+      real(wp), dimension(places) :: f, five, four
+      integer :: q, c, k, i
+
+      five = merge(in_time, in_root, is_change)
+      four = merge(four_in_time, four_in_root, is_change)
+      allocate (limits%value, limits%error, mold=nodes(1)%value)
+      allocate (limits%has_bound(3, 0:2, size(size_of, 3)))
+      do q = 1, size(size_of, 3)
+         do k = 0, 2
+            do c = 1, 3
+               f = [(nodes(i)%value(c, k, q), i=1, places)]
+               limits%value(c, k, q) = dot_product(five, f)
+               limits%error(c, k, q) = 2.0_wp*abs(dot_product(five - four, f)) &
+                  + maxval([(nodes(i)%error(c, k, q), i=1, places)])
+               limits%has_bound(c, k, q) = is_change .or. abs(f(1)) < small*size_of(c, k, q) &
+                  .or. abs(f(1)) < growth*abs(f(2))
+               if (.not. limits%has_bound(c, k, q)) limits%value(c, k, q) = f(1)
+            end do
+         end do
+      end do
+   end function limits_of
 end module nodes

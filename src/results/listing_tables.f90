@@ -8,13 +8,13 @@ module listing_tables
    use points, only: row_t, row_of
    use error_estimate, only: error_estimate_t, row_estimate
    use text_output, only: output_t, put
-   use numerals, only: fixed, put_fixed, put_whole, numeral_length
+   use numerals, only: put_fixed, put_whole, numeral_length
    use known_digits, only: put_known, unknown_digit
    use listing_layout
    use listing_centres, only: put_centre, put_centre_heads
    implicit none
    private
-   public :: table_t, put_instant, put_times, put_requested, put_heads, time_text, drive_text
+   public :: table_t, put_instant, put_times, put_requested, put_heads, time_text, drive_text, known_text
 
    integer, parameter :: line_length = 120
 
@@ -119,25 +119,42 @@ contains
       end do
    end function values_of
 
-   !> A time with the digits of the set, without blanks.
-   pure function time_text(l, t) result(text)
+   !> A time with the digits of the set, without blanks; `error`, where it is given, is unknown of it.
+   pure function time_text(l, t, error) result(text)
       type(layout_t), intent(in) :: l
       real(wp), intent(in) :: t
+      real(wp), intent(in), optional :: error
       character(:), allocatable :: text
 
-      text = trim(adjustl(fixed(t, l%time_decimals, l%time_power)))
+      text = known_text(t, l%time_decimals, l%time_power, error)
    end function time_text
 
-   !> The value of the drive `d` at the time `t`, without blanks.
-   pure function drive_text(d, t) result(text)
+   !> The value of the drive `d` at the time `t`, without blanks; `error` of the time.
+   pure function drive_text(d, t, error) result(text)
       type(head_drive_t), intent(in) :: d
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t, error
       character(:), allocatable :: text
-      real(wp) :: x(1)
+      real(wp) :: f(3)
 
-      x = values_of(d, [t])
-      text = trim(adjustl(fixed(x(1), d%decimals, d%power)))
+      f = drive_motion(d%law, t)/d%unit
+      text = known_text(f(1), d%decimals, d%power, abs(f(2))*error + 0.5_wp*abs(f(3))*error**2)
    end function drive_text
+
+   !> A number without blanks; `error`, where it is given, is unknown of it.
+   pure function known_text(x, decimals, power, error) result(text)
+      real(wp), intent(in) :: x
+      integer, intent(in) :: decimals, power
+      real(wp), intent(in), optional :: error
+      character(:), allocatable :: text
+      character(numeral_length) :: field
+
+      if (present(error)) then
+         call put_known(x, error, decimals, power, field)
+      else
+         call put_fixed(x, decimals, power, field)
+      end if
+      text = trim(adjustl(field))
+   end function known_text
 
    !> The row that `request`, number `i` of the set, asks for of the motion `q` of `m`, under heads of its own where it
    !> is another table's. `errors`: how far the motion is known.

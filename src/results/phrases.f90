@@ -80,8 +80,9 @@ module phrases
       say_stroke = phrase_t('STROKE', 'SKOK'), &
       say_ratio = phrase_t('RATIO', 'STOSUN.'), &
       say_dwell = phrase_t('DWELL', 'POSTOJ'), &
-      say_unsolved = phrase_t('NOT SEARCHED BESIDE INSTANTS WITHOUT ALL OF THEIR MOTION:', &
-         'BEZ OTOCZENIA CHWIL O NIEPELNYM RUCHU:'), &
+      say_not_covered = phrase_t('NOT COVERED, SINCE NOT ALL OF THE MOTION IS KNOWN: T =', &
+         'NIE OBJETO, BO NIE CALY RUCH JEST ZNANY: T ='), &
+      say_unbounded = phrase_t('UNBOUNDED', 'NIEOGRAN.'), &
       say_range = phrase_t('RANGES OF THE DRIVES, EACH ALONE', 'ZAKRESY NAPEDOW, KAZDY OSOBNO'), &
       say_all = phrase_t('ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS', 'PELNY: BEZ KRESU, RUCH SIE ZAMYKA; OBROTY'), &
       say_no_limit = phrase_t('NO LIMIT AS FAR AS', 'BEZ KRESU CO NAJMNIEJ DO')

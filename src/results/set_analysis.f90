@@ -8,11 +8,12 @@ module set_analysis
    use convergence, only: convergence_t, is_solved, gather
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, worst_branch
    use branch_requests, only: branch_requests_t, new_branch_requests, unused
-   use error_estimate, only: estimator_t, make_estimator, estimate_errors, largest_errors
+   use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, row_estimate, &
+      largest_errors
    use set_motion, only: set_motion_t, new_set_motion
    use motion, only: motion_t, new_motion
    use points, only: row_t, row_of
-   use analysis, only: analysis_t, make_analysis, advance, look_at, redundancy_error
+   use analysis, only: analysis_t, make_analysis, advance, look_at, come_back, redundancy_error
    use diagnosis, only: opinion_t, ask_blocks
    implicit none
    private
@@ -75,23 +76,41 @@ contains
       end if
    end subroutine advance_set
 
-   !> The rows (any number) of the requests `list`, all of independent mechanism number `c`, at a time `t` between the
-   !> instants; nothing else changes. `is_found`: all of them is known.
-   subroutine rows_at(s, c, list, t, rows, is_found)
+   !> The rows (any number) of the requests `list`, all of independent mechanism number `c`, at the last instant or a
+   !> time `t` between the instants; nothing else changes. `is_found`: all of them is known. `error` (3, 0:2, rows):
+   !> what is unknown of them where digits of a table could be in doubt or `always`, otherwise 0.
+   subroutine rows_at(s, c, list, t, rows, is_found, always, error)
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c, list(:)
       real(wp), intent(in) :: t
       type(row_t), intent(out) :: rows(size(list))
       logical, intent(out) :: is_found
+      logical, intent(in), optional :: always
+      real(wp), intent(out), optional :: error(3, 0:2, size(list))
       type(motion_t) :: q
+      type(error_estimate_t) :: estimate
       integer :: i
 
-      associate (own => s%now%own(c))
-         q = new_motion(size(own%links))
-         call look_at(s%list(c), t, q, is_found)
-         if (.not. is_found) return
+      associate (own => s%now%own(c), a => s%list(c))
+         if (present(error)) error = 0.0_wp
+         if (abs(t - s%now%motions(c)%t) > 0.0_wp) then
+            q = new_motion(size(own%links))
+            call look_at(a, t, q, is_found)
+            rows%known = -1
+            if (.not. is_found) return
+         else
+            call come_back(a)
+            q = s%now%motions(c)
+            is_found = q%known == 2
+         end if
          do i = 1, size(list)
             rows(i) = row_of(own, q, own%requests(s%now%parts%number(list(i))))
+         end do
+         if (.not. present(error)) return
+         call estimate_errors(s%estimators(c), own, a%engine, a%convergence%reciprocal_condition, q, always, estimate)
+         if (.not. estimate%taken) return
+         do i = 1, size(list)
+            error(:, :, i) = row_estimate(own, estimate, own%requests(s%now%parts%number(list(i))))
          end do
       end associate
    end subroutine rows_at

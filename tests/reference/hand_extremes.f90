@@ -20,15 +20,13 @@ module hand_extremes
    real(qp), parameter :: alike = 1.0e-12_qp, closes_to = 1.0e-9_qp
    real(qp), parameter :: golden = 0.61803398874989484820458683436563811772_qp
 
-   !> The rows asked for at the times of a grid; a cell next to an instant without velocities is not searched.
+   !> The rows asked for at the times of a grid.
    type :: grid_t
       character(:), allocatable :: name                !< of the deck
       integer, allocatable :: asked(:)                 !< requests
       real(qp), allocatable :: t(:)                    !< (0:cells)
       real(qp), allocatable :: phi(:, :)               !< (links, 0:cells) angles
       type(hand_row_t), allocatable :: row(:, :)       !< (asked, 0:cells)
-      logical, allocatable :: open(:)                  !< (cells)
-      logical, allocatable :: resting(:, :)            !< (asked, 0:cells) a position alone
    end type grid_t
 
    type :: extreme_t
@@ -37,19 +35,19 @@ module hand_extremes
 
 contains
 
-   !> The table for the deck `name`; `flagged` (0:steps): instants of TIME at which the links that are `resting` (links)
-   !> have no velocity.
-   subroutine put_extremes_by_hand(o, name, m, scales, flagged, resting)
+   !> The table for the deck `name`; `flagged` (0:steps): instants of TIME without all of their motion, which goes on
+   !> smoothly through them.
+   subroutine put_extremes_by_hand(o, name, m, scales, flagged)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: name
       type(mechanism_t), intent(in) :: m
       type(hand_scales_t), intent(in) :: scales
-      logical, intent(in) :: flagged(0:), resting(:)
+      logical, intent(in) :: flagged(0:)
       type(grid_t) :: g
-      character(12) :: number
-      integer :: q, kind
+      character(:), allocatable :: line
+      integer :: i, q, kind
 
-      g = grid_of(name, m, flagged, resting)
+      g = grid_of(name, m)
       call put(o, '')
       call put_times(o, m, scales, g)
       kind = 0
@@ -61,9 +59,14 @@ contains
          end associate
       end do
       if (.not. any(flagged)) return
-      write (number, '(i0)') count(flagged)
-      call put(o, ' --- '//trim(merge('BEZ OTOCZENIA CHWIL O NIEPELNYM RUCHU:                   ', &
-         'NOT SEARCHED BESIDE INSTANTS WITHOUT ALL OF THEIR MOTION:', m%polish))//' '//trim(number))
+      line = trim(merge(' --- NIE OBJETO, BO NIE CALY RUCH JEST ZNANY: T =          ', &
+                        ' --- NOT COVERED, SINCE NOT ALL OF THE MOTION IS KNOWN: T =', m%polish))
+      do i = 0, m%steps
+         if (.not. flagged(i)) cycle
+         if (line(len(line):) /= '=') line = line//','
+         line = line//' '//instant_text(scales, g%t(i*refined))
+      end do
+      call put(o, line//' '//trim(m%time_unit))
    end subroutine put_extremes_by_hand
 
    !> The line over the table: the run, and the drives at both of its ends.
@@ -91,20 +94,18 @@ contains
    end subroutine put_times
 
    !> The rows of all requests for extremes of moving links.
-   function grid_of(name, m, flagged, resting) result(g)
+   function grid_of(name, m) result(g)
       character(*), intent(in) :: name
       type(mechanism_t), intent(in) :: m
-      logical, intent(in) :: flagged(0:), resting(:)
       type(grid_t) :: g
       type(body_t) :: links(size(m%links))
       character(:), allocatable :: fault
-      integer :: i, k, q, n, step
+      integer :: i, k, q, n
 
       n = refined*m%steps
       g%name = name
       g%asked = pack([(i, i=1, size(m%requests))], m%requests%extremes .and. [(moves(m, i), i=1, size(m%requests))])
-      allocate (g%t(0:n), g%phi(size(m%links), 0:n), g%row(size(g%asked), 0:n), g%open(n))
-      allocate (g%resting(size(g%asked), 0:n), source=.false.)
+      allocate (g%t(0:n), g%phi(size(m%links), 0:n), g%row(size(g%asked), 0:n))
       links%phi%v = real(m%links%position(3), qp)
       do k = 0, n
          g%t(k) = real(m%t0, qp) + (real(m%t1, qp) - real(m%t0, qp))*k/n
@@ -112,10 +113,7 @@ contains
          g%phi(:, k) = links%phi%v
          do q = 1, size(g%asked)
             g%row(q, k) = row_by_hand(m, links, m%requests(g%asked(q)))
-            if (mod(k, refined) == 0) g%resting(q, k) = flagged(k/refined) .and. any(resting(g%row(q, k)%links))
          end do
-         step = (k - 1)/refined
-         if (k > 0) g%open(k) = .not. (flagged(step) .or. flagged(step + 1))
       end do
    end function grid_of
 
@@ -152,23 +150,17 @@ contains
       integer, intent(in) :: q, c, k, way
       type(extreme_t) :: best, one
       real(qp) :: f(0:ubound(g%t, 1)), range
-      logical :: exists(0:ubound(g%t, 1)), first
+      logical :: first
       integer :: i
 
       f = way*g%row(q, :)%value(c, k)
-      exists = k == 0 .or. .not. g%resting(q, :)
-      ! Between instants only where the step is searched.
-      do i = 1, ubound(f, 1) - 1
-         if (mod(i, refined) /= 0) exists(i) = g%open(i)
-      end do
-      range = maxval(f, mask=exists) - minval(f, mask=exists)
+      range = maxval(f) - minval(f)
       first = .true.
       ! A constant, but for the rounding of real128.
       if (range <= 1.0e-15_qp*(1.0_qp + maxval(abs(f)))) f = 0.0_qp
       do i = 0, ubound(f, 1)
-         if (.not. exists(i)) cycle
          ! A grid point so far below the largest has none beside it: an extreme is flat.
-         if (f(i) < maxval(f, mask=exists) - 0.1_qp*range .and. .not. first) cycle
+         if (f(i) < maxval(f) - 0.1_qp*range .and. .not. first) cycle
          one = extreme_t(g%t(i), g%row(q, i)%value(c, k))
          if (range > 0.0_qp .and. any(abs(f) > 0.0_qp)) one = refined_extreme(m, g, q, c, k, way, i, f)
          if (first .or. way*(one%value - best%value) > alike*(1.0_qp + maxval(abs(f)))) best = one
@@ -187,15 +179,9 @@ contains
       integer :: left, right
 
       e = extreme_t(g%t(i), way*f(i))
-      left = i
-      right = i
-      if (i > 0) then
-         if (g%open(i)) left = i - 1
-      end if
-      if (i < ubound(f, 1)) then
-         if (g%open(i + 1)) right = i + 1
-      end if
-      if (max(f(left), f(right)) > f(i) .or. left == right) return
+      left = max(0, i - 1)
+      right = min(ubound(f, 1), i + 1)
+      if (max(f(left), f(right)) > f(i)) return
       a = g%t(left)
       b = g%t(right)
       t1 = b - golden*(b - a)
@@ -271,7 +257,7 @@ contains
          end if
          do c = 1, row%columns
             what = dimension_of(row%column(c))
-            if (m%requests(g%asked(q))%dwell(what) <= 0.0 .or. .not. all(g%open)) cycle
+            if (m%requests(g%asked(q))%dwell(what) <= 0.0) cycle
             if (e(1, c, 0)%value - e(-1, c, 0)%value <= m%requests(g%asked(q))%dwell(what)) cycle
             do way = -1, 1, 2
                call put_dwell(o, m, scales, g, q, c, way, e(way, c, 0), drive)
@@ -358,7 +344,7 @@ contains
       do i = 1, g%row(q, 0)%columns
          if (dimension_of(g%row(q, 0)%column(i)) == 2) d(i, 0) = without_turns(d(i, 0))
       end do
-      closes = all(abs(d) < closes_to) .and. all(g%open)
+      closes = all(abs(d) < closes_to)
       do i = 1, size(m%drives)
          first = drive_jet(m%drives(i), g%t(0))
          last = drive_jet(m%drives(i), g%t(n))

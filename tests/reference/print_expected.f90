@@ -96,7 +96,7 @@ contains
       else
          tally%uncertain = instant_count(m) - 1
       end if
-      if (any(m%requests%extremes)) call put_extremes_by_hand(o, name, m, scales, was_flagged, not_driven(m))
+      if (any(m%requests%extremes)) call put_extremes_by_hand(o, name, m, scales, was_flagged)
       call listing_end(o, m, count(.not. was_flagged), count(was_flagged), tally, &
          closure_error=merge(0.0_wp, -1.0_wp, size(redundant_by_hand(name, m)) > 0))
    end subroutine print_set
