@@ -68,7 +68,8 @@ contains
       real(wp), intent(in) :: level
       type(sample_t), intent(in) :: a, b
       type(sample_t), intent(out) :: zero
-      real(wp) :: t, t1, t2, g1, g2, g, last, width, slope, of_zero, times(max_iterations + 2), values(max_iterations + 2)
+      real(wp) :: t, t1, t2, g1, g2, g, last, width, slope, of_zero
+      real(wp) :: times(max_iterations + 2), values(max_iterations + 2)
       integer :: i, n
       logical :: known(2)
 
