@@ -88,7 +88,7 @@ pictures: $(BUILD)/kinmat
 	mkdir -p docs/pictures
 	awk '/^```deck/ { on = 1; next } /^```/ && on { exit } on' README.md | $(BUILD)/kinmat --svg docs/pictures/four_bar.svg > /dev/null
 	$(BUILD)/kinmat --no-listing --animate docs/pictures/jansen_moving.svg input/jansen.deck
-	for name in yoke jansen; do sed '/^END/q' input/$$name.deck | $(BUILD)/kinmat --svg docs/pictures/$$name.svg > /dev/null || exit 1; done
+	for name in yoke jansen cardan; do sed '/^END/q' input/$$name.deck | $(BUILD)/kinmat --svg docs/pictures/$$name.svg > /dev/null || exit 1; done
 
 # A program of one's own with the modules.
 example: $(BUILD)/example

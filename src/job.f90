@@ -2,7 +2,7 @@
 !> one another, and long jobs compute them in several processes.
 module job
    use failures, only: failure_t, status_solved, status_flagged, status_signal
-   use mechanism, only: mechanism_t, instant_count, instant, with_all_links
+   use mechanism, only: mechanism_t, request_pole, instant_count, instant, with_all_links
    use structure, only: findings_t, check_structure
    use deck, only: read_deck, share_t
    use text_output, only: output_t
@@ -164,6 +164,8 @@ contains
          call run_set(options, sets(i), i, findings(i), o, status)
          if (is_over(o, i)) exit
          if (o%asked(out_svg)) call draw_set(sets(i), picture_candidates, 1, o%drawings(i), o%progress)
+         if (o%asked(out_svg) .and. any(sets(i)%requests%kind == request_pole)) &
+            call draw_centrodes(sets(i), o%drawings(i), o%progress)
          if (o%asked(out_animation)) then
             call film_of(sets(i), film, every)
             call draw_set(film, max_intervals + 1, every, o%films(i), o%progress)
@@ -196,6 +198,20 @@ contains
          if (signal_received() > 0) return
       end do
    end subroutine draw_set
+
+   !> Replaces the centrodes of the drawing `d` of `m` by finer ones: the deck's instants may be far apart.
+   subroutine draw_centrodes(m, d, progress)
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(inout) :: d
+      type(progress_t), intent(inout) :: progress
+      type(mechanism_t) :: film
+      type(drawing_t) :: fine
+      integer :: every
+
+      call film_of(m, film, every)
+      call draw_set(film, 2, every, fine, progress)
+      call move_alloc(fine%centrodes, d%centrodes)
+   end subroutine draw_centrodes
 
    !> Solves and writes set number `i`, `m`, instant by instant.
    subroutine run_set(options, m, i, findings, o, status)

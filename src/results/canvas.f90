@@ -4,7 +4,7 @@ module canvas
    use kinds, only: wp
    implicit none
    private
-   public :: canvas_t, to_pixels, add_line, add_box, find_clear_place, cover_of
+   public :: canvas_t, to_pixels, add_line, add_box, find_clear_place, cover_of, find_inside
 
    !> Size of the letters of a name: mean width and height of capitals, in pixels.
    real(wp), parameter, public :: letter_width = 8.7_wp, letter_height = 9.0_wp
@@ -137,18 +137,29 @@ contains
       end do
    end function cover
 
-   !> The length of the line from `p` to `q` (2) inside the box from `low` to `high` (2), after Liang and Barsky.
+   !> The length of the line from `p` to `q` (2) inside the box from `low` to `high` (2).
    pure real(wp) function length_inside(p, q, low, high) result(length)
       real(wp), intent(in) :: p(2), q(2), low(2), high(2)
-      real(wp) :: from, to, a, b
-      integer :: k
+      real(wp) :: from, to
 
       length = 0.0_wp
+      call find_inside(p, q, low, high, from, to)
+      if (to > from) length = (to - from)*norm2(q - p)
+   end function length_inside
+
+   !> Which part of the line from `p` to `q` (2) is inside the box from `low` to `high` (2): that between the parts
+   !> `from` and `to` of its length; none where `to` is not above `from`. After Liang and Barsky.
+   pure subroutine find_inside(p, q, low, high, from, to)
+      real(wp), intent(in) :: p(2), q(2), low(2), high(2)
+      real(wp), intent(out) :: from, to
+      real(wp) :: a, b
+      integer :: k
+
       from = 0.0_wp
       to = 1.0_wp
       do k = 1, 2
          if (abs(q(k) - p(k)) < tiny(1.0_wp)/epsilon(1.0_wp)) then
-            if (p(k) < low(k) .or. p(k) > high(k)) return
+            if (p(k) < low(k) .or. p(k) > high(k)) to = -1.0_wp
             cycle
          end if
          a = (low(k) - p(k))/(q(k) - p(k))
@@ -156,6 +167,5 @@ contains
          from = max(from, min(a, b))
          to = min(to, max(a, b))
       end do
-      if (to > from) length = (to - from)*norm2(q - p)
-   end function length_inside
+   end subroutine find_inside
 end module canvas

@@ -1,17 +1,18 @@
 !> What a picture of a set shows, taken from its motion instant by instant: positions of all links, the curves of the
-!> points that PRINT asks for, how far each slide goes, and the flagged instants. Places are counted from the set's
-!> first ground link, in the deck's unit of length.
+!> points that PRINT asks for, the centrodes that POLE asks for, how far each slide goes, and the flagged instants.
+!> Places are counted from the set's first ground link, in the deck's unit of length.
 module drawing
    use kinds, only: wp
-   use mechanism, only: mechanism_t, pair_t, request_point, pair_prismatic, instant_count, plane_origin
+   use mechanism, only: mechanism_t, pair_t, request_point, request_pole, pair_prismatic, &
+      instant_count, plane_origin
    use planar, only: direction, quarter_turn, point_of
    use motion, only: known_of, mark_none, singular_unclear
-   use points, only: point_motion, is_fixed
-   use set_motion, only: set_motion_t, is_flagged
+   use points, only: row_t, has_number, point_motion, is_fixed
+   use set_motion, only: set_motion_t, is_flagged, row_in_set
    use outline, only: outline_t, outlines_of
    implicit none
    private
-   public :: drawing_t, snapshot_t, curve_t, guide_t, flag_t, new_drawing, record_instant, point_place
+   public :: drawing_t, snapshot_t, curve_t, centrode_t, guide_t, flag_t, new_drawing, record_instant, point_place
 
    !> A curve has at most this many places, a picture at most this many curves and flagged positions. Reason: a picture
    !> of 800 pixels shows no more, and memory does not grow with the run.
@@ -27,6 +28,8 @@ module drawing
       real(wp) :: t = 0.0_wp
       real(wp), allocatable :: place(:, :)   !< (3, links) x, y, phi
       logical, allocatable :: known(:)       !< (links)
+      real(wp), allocatable :: centre(:, :)  !< (2, centrodes) the instant centres
+      logical, allocatable :: has_centre(:)  !< (centrodes) they are not at infinity
       integer :: mark = mark_none            !< of the first part that is flagged
       integer :: singularity = singular_unclear   !< what the position is, of mark_singular
    end type snapshot_t
@@ -39,6 +42,14 @@ module drawing
       real(wp), allocatable :: place(:, :), velocity(:, :)   !< (2, places)
       integer, allocatable :: known(:)       !< (places) as in `motion_t`
    end type curve_t
+
+   !> The centrodes of two links: where their instant centre is in the axes of either.
+   type :: centrode_t
+      integer :: request = 0                 !< its number in the set
+      integer :: link(2) = 0                 !< link I and link J
+      real(wp), allocatable :: place(:, :, :)   !< (2, places, 2) in the axes of link I, of link J
+      integer, allocatable :: side(:)        !< (places) the sense of the relative turn, 1 or -1; 0: no centre
+   end type centrode_t
 
    !> The guide of a prismatic pair: a line of one link, along which a point of the other, its block, slides.
    type :: guide_t
@@ -74,6 +85,7 @@ module drawing
       integer :: frame_stride = 1            !< every so many instants, and the last one, are frames
       type(snapshot_t), allocatable :: frame(:)
       type(curve_t), allocatable :: curves(:)
+      type(centrode_t), allocatable :: centrodes(:)
       type(guide_t), allocatable :: guides(:)
       type(flag_t), allocatable :: flags(:)
       integer, allocatable :: mark(:)        !< (parts) of the instant before
@@ -105,6 +117,10 @@ contains
          if (any(d%curves%point == m%requests(i)%subject) .or. size(d%curves) == max_curves) cycle
          d%curves = [d%curves, new_curve(i, m%requests(i)%subject, places)]
       end do
+      allocate (d%centrodes(0))
+      do i = 1, size(m%requests)
+         if (m%requests(i)%kind == request_pole) d%centrodes = [d%centrodes, new_centrode(m, i, places)]
+      end do
       n = 0
       do i = 1, size(m%pairs)
          if (m%pairs(i)%kind /= pair_prismatic) cycle
@@ -132,6 +148,18 @@ contains
       allocate (c%known(places), source=-1)
    end function new_curve
 
+   !> The centrodes that request number `i` of `m` asks for, with room for `places`, none known.
+   pure function new_centrode(m, i, places) result(c)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i, places
+      type(centrode_t) :: c
+
+      c%request = i
+      c%link = [m%requests(i)%second, m%requests(i)%subject]
+      allocate (c%place(2, places, 2), source=0.0_wp)
+      allocate (c%side(places), source=0)
+   end function new_centrode
+
    !> The ground links where the deck has them; the others are not known.
    pure function snapshot_of_ground(m, origin) result(s)
       type(mechanism_t), intent(in) :: m
@@ -141,6 +169,8 @@ contains
 
       allocate (s%place(3, size(m%links)), source=0.0_wp)
       s%known = m%links%ground
+      allocate (s%centre(2, count(m%requests%kind == request_pole)), source=0.0_wp)
+      allocate (s%has_centre(size(s%centre, 2)), source=.false.)
       do i = 1, size(m%links)
          if (s%known(i)) s%place(:, i) = m%links(i)%position - [origin, 0.0_wp]
       end do
@@ -209,6 +239,7 @@ contains
          d%now%known(i) = .true.
       end do
       d%now%t = now%t
+      call record_centres(d, m, s, k, now)
       call record_slides(d%guides, m, now)
       call record_curves(d, m, s, k)
       if (is_own(d, m, k)) call record_flags(d, s, now, before)
@@ -279,6 +310,31 @@ contains
          end associate
       end do
    end subroutine record_curves
+
+   !> Puts the instant centres into `now`, and into their centrodes if instant number `k` is one of theirs.
+   subroutine record_centres(d, m, s, k, now)
+      type(drawing_t), intent(inout) :: d
+      type(mechanism_t), intent(in) :: m
+      type(set_motion_t), intent(in) :: s
+      integer, intent(in) :: k
+      type(snapshot_t), intent(inout) :: now
+      type(row_t) :: row
+      integer :: i, n
+
+      n = 0
+      if (k <= m%steps .and. (mod(k, d%stride) == 0 .or. k == m%steps)) n = place_number(d, k)
+      do i = 1, size(d%centrodes)
+         row = row_in_set(m, s, d%centrodes(i)%request)
+         now%has_centre(i) = has_number(row, 1, 0) .and. all(abs(row%value(:2, :)) < max_place)
+         if (.not. now%has_centre(i)) cycle
+         now%centre(:, i) = row%value(:2, 0) - d%origin
+         if (n == 0) cycle
+         d%centrodes(i)%place(:, n, :) = row%value(:2, 1:2)
+         d%centrodes(i)%side(n) = merge(1, -1, row%weight > 0.0_wp)
+      end do
+      d%now%centre = now%centre
+      d%now%has_centre = now%has_centre
+   end subroutine record_centres
 
    !> Notes the first of the instants that a part is flagged for one reason. `before`: the last known positions.
    subroutine record_flags(d, s, now, before)

@@ -1,5 +1,5 @@
 !> The picture of a run as SVG, one set below the other: the mechanism at one instant, faint at some others, the paths
-!> of the points that PRINT asks for, flagged positions, names, and a scale.
+!> of the points that PRINT asks for, the centrodes that POLE asks for, flagged positions, names, and a scale.
 module picture
    use kinds, only: wp
    use mechanism, only: mechanism_t
@@ -10,6 +10,7 @@ module picture
    use picture_parts, only: put_body, put_outlines, put_flagged, put_guide, put_ground, put_block, put_joint, put_dot, &
       put_path, dots_of, color_of, joint_point
    use picture_drives, only: put_drives
+   use picture_centrodes, only: put_centrodes, put_centres
    use picture_names, only: put_names
    use picture_page, only: choice_t, view_of, put_set_head, put_flags, put_scale, flag_lines, fitted, width, line_height
    use svg, only: svg_head, svg_end, put_group, put_group_end, put_words
@@ -32,6 +33,7 @@ contains
 
       top(1) = 0
       do i = 1, size(drawings)
+         choice(i)%centrodes = .true.
          choice(i)%best = clearest(sets(i), drawings(i))
          choice(i)%faint = faint_frames(sets(i), drawings(i), choice(i)%best)
          call view_of(sets(i), drawings(i), choice(i), top(i), c(i), top(i + 1))
@@ -63,11 +65,13 @@ contains
       end do
       call put_group_end(o)
       call put_curves(o, c, m, d)
+      call put_centrodes(o, c, m, d, s)
       do i = 1, size(d%flags)
          call put_flagged(o, c, m, d, d%flags(i)%last)
       end do
       call put_mechanism(o, c, m, d, s)
       call put_drives(o, c, m, d, s)
+      call put_centres(o, c, m, d, s)
       call put_names(o, c, m, d, s)
       call put_times(o, m, d, choice, bottom)
       call put_flags(o, m, d, bottom)

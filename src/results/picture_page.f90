@@ -23,6 +23,8 @@ module picture_page
    integer, parameter, public :: line_height = 17
    !> What rounds to the lower number although it is above it, a rounding error being the reason.
    real(wp), parameter :: tie = 1.0e-6_wp
+   !> By this part of its larger side a mechanism's picture is wider on each side, at most, for centrodes.
+   real(wp), parameter :: centrode_room = 0.4_wp
    !> The length of the scale bar, at most.
    real(wp), parameter :: max_bar = 150.0_wp
 
@@ -30,6 +32,7 @@ module picture_page
    type :: choice_t
       integer :: best = 0                    !< in full; 0 for none
       integer, allocatable :: faint(:)
+      logical :: centrodes = .false.         !< they are drawn
    end type choice_t
 
 contains
@@ -90,10 +93,46 @@ contains
             if (d%curves(i)%known(k) >= 0) call widen(d%curves(i)%place(:, k), low, high)
          end do
       end do
-      if (all(low <= high)) return
-      low = 0.0_wp
-      high = 0.0_wp
+      if (.not. all(low <= high)) then
+         low = 0.0_wp
+         high = 0.0_wp
+      end if
+      if (choice%centrodes .and. choice%best > 0) call widen_by_centrodes(d, d%frame(choice%best), low, high)
    end subroutine find_extent
+
+   !> Widens the box from `low` to `high` (2) by the instant centres at `s` and by what there is of their centrodes in
+   !> the box that is wider by `centrode_room` on all sides: they may run to infinity.
+   subroutine widen_by_centrodes(d, s, low, high)
+      type(drawing_t), intent(in) :: d
+      type(snapshot_t), intent(in) :: s
+      real(wp), intent(inout) :: low(2), high(2)
+      real(wp) :: wide_low(2), wide_high(2), room
+      integer :: i, k, side
+
+      room = centrode_room*maxval(high - low)
+      wide_low = low - room
+      wide_high = high + room
+      do i = 1, size(d%centrodes)
+         associate (c => d%centrodes(i))
+            if (s%has_centre(i)) call widen_inside(s%centre(:, i))
+            do side = 1, 2
+               do k = 1, size(c%side)
+                  if (c%side(k) /= 0 .and. s%known(c%link(side))) &
+                     call widen_inside(point_of(s%place(:, c%link(side)), c%place(:, k, side)))
+               end do
+            end do
+         end associate
+      end do
+
+   contains
+
+      !> Widens the box by the place `p`, if that is in the wider one.
+      subroutine widen_inside(p)
+         real(wp), intent(in) :: p(2)
+
+         if (all(p >= wide_low) .and. all(p <= wide_high)) call widen(p, low, high)
+      end subroutine widen_inside
+   end subroutine widen_by_centrodes
 
    !> Widens the box from `low` to `high` (2) by the links that are known at `s`: moving ones, with guides where these
    !> are drawn, or the `ground` as far as pairs use it.

@@ -24,6 +24,8 @@ module svg
       '.body{stroke-width:2;fill-opacity:0.25}', &
       '.bar{stroke-width:7}', &
       '.core{stroke-width:3.5;stroke:#fff;stroke-opacity:0.65}', &
+      '.centrode{stroke-width:1.5;stroke-dasharray:7 4}', &
+      '.centre{fill:#fff;stroke-width:2}', &
       '.guide{stroke-width:1.5}', &
       '.rod{stroke-width:5}', &
       '.slot{stroke-width:1.5;stroke:#fff;stroke-opacity:0.8}', &

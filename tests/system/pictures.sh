@@ -138,6 +138,57 @@ for deck in input/*.deck; do
    equal "$svg: at most 2 MB" yes "$([ "$(wc -c < "$svg")" -le 2000000 ] && echo yes)"
 done
 
+# centrodes SVG: of each centrode its width in units of length, its lines, how far it leaves the picture, and whether it
+# goes through the ring of its instant centre; of the first set.
+centrodes() { awk '
+   function value(line, name) { sub(".* " name "=\"", "", line); sub(/".*/, "", line); return line }
+   function away(x, y, a, b, c, d,   s) {
+      s = (c - a)*(c - a) + (d - b)*(d - b)
+      s = s > 0 ? ((x - a)*(c - a) + (y - b)*(d - b))/s : 0
+      if (s < 0) s = 0
+      if (s > 1) s = 1
+      return sqrt((a + s*(c - a) - x)^2 + (b + s*(d - b) - y)^2)
+   }
+   /class="set"/ && sets++ { exit }
+   /class="set"/ { scale = value($0, "data-scale") }
+   /data-centrode/ { name[++g] = value($0, "data-centrode"); low[g] = 1e9; high[g] = -1e9; lines[g] = 0; points[g] = 0 }
+   /class="centrode"/ {
+      lines[g]++
+      n = split(value($0, "points"), place, " ")
+      for (k = 1; k <= n; k++) {
+         split(place[k], p, ",")
+         if (p[1] < 3.99 || p[1] > 796.01 || p[2] < 33.99) outside[g]++
+         if (p[1] < low[g]) low[g] = p[1]
+         if (p[1] > high[g]) high[g] = p[1]
+         x[g, ++points[g]] = p[1]; y[g, points[g]] = p[2]; first[g, points[g]] = (k == 1)
+      }
+   }
+   /class="centre"/ { rings++; rx[rings] = value($0, "cx"); ry[rings] = value($0, "cy") }
+   END { for (k = 1; k <= g; k++) {
+      r = int((k + 1)/2); least = 1e9
+      for (i = 2; i <= points[k]; i++) if (!first[k, i]) {
+         d = away(rx[r], ry[r], x[k, i - 1], y[k, i - 1], x[k, i], y[k, i])
+         if (d < least) least = d
+      }
+      printf "%s %.2f %d %d %s\n", name[k], (high[k] - low[k])/scale, lines[k], outside[k], least < 0.5 ? "through" : "beside"
+   } }' "$1"; }
+# The circles of Cardan have the diameters 6 and 3: the bar turns once, its centre twice round the smaller one, drawn once.
+# Those of the shoes, which are at infinity, are not there.
+sed -e '/^POLE    BASE    SHOE/d' -e '/^POLE    SHOE/d' input/cardan.deck > "$w/cardan.deck"
+"$kinmat" "$w/cardan.deck" --no-listing --svg "$w/cardan.svg"
+equal "Cardan's circles" 'BASE-BAR 6.00 1 0 through
+BASE-BAR 3.00 1 0 through' "$(centrodes "$w/cardan.svg")"
+# Those of a coupler run twice to infinity: three lines each, cut at the border of the picture; those of crank and rocker are closed.
+# Coarse instants make no coarse centrodes.
+equal 'centrodes of a four-bar' '2 3 0 through
+2 3 0 through
+1 1 0 through
+1 1 0 through' "$(centrodes "$w/poles.svg" | awk '{ print ($1 == "BASE-COUPLER") + 1, $3, $4, $5 }')"
+sed -e '/^END/q' -e 's/^TIME.*/TIME    4                       0.0             12.0/' input/poles.deck > "$w/coarse.deck"
+"$kinmat" "$w/coarse.deck" --no-listing --svg "$w/coarse.svg"
+equal 'centrodes of coarse instants' "$(centrodes "$w/poles.svg" | cut -d' ' -f3-)" "$(centrodes "$w/coarse.svg" | cut -d' ' -f3-)"
+equal 'no centrodes without POLE' 0 "$(grep -c 'class="centrode"' "$w/four_bar.svg")"
+
 # What has no position is not drawn: of this four-bar the crank alone.
 sed -e '/^END/q' -e 's/^\(POINT   B-RO    ROCKER  \).*/\1        0.1/' input/four_bar.deck > "$w/none.deck"
 "$kinmat" "$w/none.deck" --svg "$w/none.svg" > "$w/out" 2> "$w/err"
