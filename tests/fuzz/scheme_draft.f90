@@ -198,7 +198,7 @@ contains
          g%drives(2) = size(d%s%drives)
          call find_bases(d)
          if (g%form == form_any) then
-            call solve_group(d%s, g, d%t, 1.0e-20_qp, d%b, o)
+            call solve_group(d%s, g, d%t, max(1.0e-20_qp, 256*epsilon(1.0_qp)), d%b, o)
             kept = o%converged .and. o%inverse < merge(largest_wide_inverse, largest_inverse, &
                g%links(2) - g%links(1) + 1 >= wide)
             if (kept) d%inverse = max(d%inverse, real(o%inverse, qp))

@@ -44,7 +44,7 @@ module scheme_motion
    integer, parameter :: most_tries = 5000
    !> Kantorovich's ratio with 3 for the bend of the equations: 0.5 would do.
    real(qp), parameter :: safe_ratio = 0.02_qp, bend = 3.0_qp
-   real(qp), parameter :: rough = 1.0e-14_qp, exact = 1.0e-26_qp
+   real(qp), parameter :: rough = 1.0e-14_qp, exact = max(1.0e-26_qp, 256*epsilon(1.0_qp))
    !> At the first instant the assembly, rounded as the deck is, is so near; beside lengths much larger than those of a
    !> group, of its own ground link perhaps, so many roundings of them.
    real(qp), parameter :: rounding = 1.0e-7_qp, of_largest = 64.0_qp*epsilon(1.0_real64)
@@ -329,7 +329,7 @@ contains
    logical function closes(s, m)
       type(scheme_t), intent(in) :: s
       type(motion_t), intent(in) :: m
-      real(qp), parameter :: nothing = 1.0e-20_qp
+      real(qp), parameter :: nothing = max(1.0e-20_qp, 8192*epsilon(1.0_qp))
       type(jet_t), allocatable :: r(:)
       real(qp) :: speed(0:2), allowed
       integer :: k, l

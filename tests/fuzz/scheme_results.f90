@@ -17,7 +17,7 @@ module scheme_results
    !> Where it tells no errors, as of links that move at instants at which others do not: this part of a number.
    real(qp), parameter :: untold = 1.0e-8_qp
    !> A number that is zero, of the size of its mechanism.
-   real(qp), parameter :: nothing = 1.0e-20_qp
+   real(qp), parameter :: nothing = max(1.0e-20_qp, 256*epsilon(1.0_qp))
    !> The square of a distance from a singularity down to which flags are needless, all the way from the first instant.
    real(qp), parameter :: safe_margin = 1.0e-4_qp
    !> The sine of the angle from a change point up to which there may be no velocities.
