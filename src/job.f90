@@ -25,8 +25,8 @@ module job
    use answers, only: answers_t, new_answers, take_instant, put_answers
    use numerals, only: whole
    use set_motion, only: is_flagged, has_words
-   use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set, set_record, set_errors, &
-      set_closure_error, set_closing_diagnostics
+   use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set, sense_set, set_record, &
+      set_errors, set_closure_error, set_closing_diagnostics
    use command_line, only: options_t, to_standard_output, out_listing, out_csv, out_log, out_svg, out_animation, &
       out_table, out_plot_table, out_plot_script
    use shares, only: run_shares, end_share
@@ -282,6 +282,7 @@ contains
       type(writers_t), intent(inout) :: o
 
       if (options%errors .or. (due .and. o%asked(out_listing))) call sample_set(a, options%errors)
+      if (due .and. (o%asked(out_listing) .or. o%asked(out_csv))) call sense_set(a)
       if (o%asked(out_listing) .and. (due .or. has_words(a%now))) &
          call listing_instant(o%files(out_listing, 0), o%layout, m, a%now, k)
       if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv, 0), m, a%now, k)

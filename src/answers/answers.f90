@@ -1,5 +1,5 @@
-!> What a set asks of its motion beyond tables at instants: the cards EXTREMES and RANGE. A set that asks for nothing
-!> costs nothing.
+!> What a set asks of its motion beyond tables at instants: the cards EXTREMES, RANGE and TOLER. A set that asks for
+!> nothing costs nothing.
 module answers
    use mechanism, only: mechanism_t
    use set_analysis, only: set_analysis_t
@@ -9,6 +9,7 @@ module answers
    use extreme_search, only: note_instant
    use dwells, only: dwells_t, dwell_t, new_dwells, note_position, find_dwells
    use extremes_table, only: put_extremes
+   use tolerance_shares, only: shares_t, new_shares, note_tolerances, put_shares
    use ranges, only: range_t, find_ranges, put_ranges
    implicit none
    private
@@ -17,8 +18,10 @@ module answers
    type :: answers_t
       logical :: extremes_asked = .false.
       logical :: ranges_asked = .false.
+      logical :: shares_asked = .false.
       type(extremes_t) :: extremes
       type(dwells_t) :: dwells
+      type(shares_t) :: shares
       type(range_t), allocatable :: ranges(:)       !< (drives that have one), in the numbers of the set
    end type answers_t
 
@@ -32,6 +35,8 @@ contains
 
       a%extremes_asked = any(m%requests%extremes)
       a%ranges_asked = m%ranges
+      a%shares_asked = allocated(m%tolerances)
+      if (a%shares_asked) call new_shares(m, a%shares)
       allocate (a%ranges(0))
       if (.not. a%extremes_asked) return
       call new_extremes(m, s, a%extremes)
@@ -46,6 +51,7 @@ contains
       integer, intent(in) :: k
 
       if (a%ranges_asked .and. k == 0) call find_ranges(s, a%ranges)
+      if (a%shares_asked) call note_tolerances(a%shares, m, s%now, k)
       if (.not. a%extremes_asked .or. k > m%steps) return
       call note_instant(a%extremes, m, s, k)
       call note_position(a%dwells, a%extremes, k)
@@ -65,5 +71,6 @@ contains
          call put_extremes(o, l, m, s, a%extremes, dwells)
       end if
       if (a%ranges_asked) call put_ranges(o, m, a%ranges)
+      if (a%shares_asked) call put_shares(o, l, a%shares, m, s%now)
    end subroutine put_answers
 end module answers

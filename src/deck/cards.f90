@@ -10,8 +10,8 @@ module cards
    public :: field_text, first_column, small_field, ruler_card, layout_of, is_passed_over
    public :: forms, form_name, find_form, nearest_form, reals_of
    public :: form_unknown, form_title, form_units, form_lang, form_ground, form_link, form_point, form_revolute
-   public :: form_prism, form_joint, form_drive, form_add, form_rise, form_time, form_at, form_method, form_print
-   public :: form_extremes, form_range, form_pole, form_curve, form_branch, form_end
+   public :: form_prism, form_joint, form_drive, form_add, form_rise, form_toler, form_time, form_at
+   public :: form_method, form_print, form_extremes, form_range, form_pole, form_curve, form_branch, form_end
 
    !> Columns of a card.
    integer, parameter :: card_columns = 80
@@ -60,8 +60,9 @@ module cards
    !> The form of a card is its place in `forms`.
    enum, bind(c)
       enumerator :: form_unknown = 0, form_title, form_units, form_lang, form_ground, form_link, form_point
-      enumerator :: form_revolute, form_prism, form_joint, form_drive, form_add, form_rise, form_time, form_at
-      enumerator :: form_method, form_print, form_extremes, form_range, form_pole, form_curve, form_branch, form_end
+      enumerator :: form_revolute, form_prism, form_joint, form_drive, form_add, form_rise, form_toler, form_time
+      enumerator :: form_at, form_method, form_print, form_extremes, form_range, form_pole, form_curve, form_branch
+      enumerator :: form_end
    end enum
 
    !> The text of TITLE is not a label.
@@ -78,6 +79,7 @@ module cards
       form_t('LLl', 3, .false., 'DRIVE   KIND    DRIVEN  2ND/RPM VALUE AT 0.0    RATE            ACCELERATION'), &
       form_t('L--', 3, .false., 'ADD     KIND                    R1              R2              R3'), &
       form_t('L--', 3, .false., 'RISE    LAW                     START           DURATION        LIFT'), &
+      form_t('---', 3, .false., 'TOLER                           OF R1           OF R2           OF R3'), &
       form_t('W--', 2, .true.,  'TIME    STEPS                   T0              T1'), &
       form_t('---', 3, .false., 'AT                              T               T               T'), &
       form_t('L--', 1, .true.,  'METHOD  METHOD                  TOLERANCE'), &

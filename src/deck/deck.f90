@@ -12,6 +12,7 @@ module deck
    use deck_drives, only: build_drives, check_terms
    use deck_options, only: build_options, build_requests, build_branches
    use deck_centres, only: build_centres, check_centres
+   use deck_tolerances, only: build_tolerances
    use deck_remarks, only: check_unused, check_angles, check_guides
    use deck_source, only: source_t, open_source, next_card, close_source
    use system_calls, only: identity_t, identity_of_path
@@ -224,6 +225,7 @@ contains
          call build_requests(set)
          call build_centres(set)
          call build_branches(set)
+         call build_tolerances(set)
          if (error_count(set%errors) == progress%errors_before) then
             call check_terms(set)
             call check_unused(set)

@@ -8,15 +8,16 @@ module deck_drives
    use mechanism, only: mechanism_t, drive_t, term_t, instant, find_instants, drive_angle, drive_relangle, &
       drive_slide, drive_words, driven_kinds, term_harmonic, term_power, term_table, term_words, term_cycloid, &
       term_cosine, rise_words, pair_revolute, request_link
+   use card_reader, only: parsed_card_t
    use card_sets, only: card_set_t, look_up, match_word, add_card_error, add_card_remark
    use cards, only: card_name, label_a, label_b, label_c, real_1, real_2, form_unknown, form_drive, form_add, &
-      form_rise, form_end
+      form_rise, form_toler, form_end
    use input_errors, only: error_code_t, drive_kind, drive_ground, drive_ground_point, drive_grounds, drive_one_link, &
       drive_revolute, field_blank, field_unused, add_alone, add_kind, add_blank, table_short, table_order, &
       table_range, power_negative, power_zero, power_large, rise_law, rise_duration, rpm_unit
    implicit none
    private
-   public :: build_drives, check_terms
+   public :: build_drives, check_terms, turns_a_minute, turns_unit, continues_table
 
    !> Turns a minute: the word on a DRIVE card, and a minute in the units of time that are known.
    character(label_length), parameter :: turns_a_minute = 'RPM'
@@ -46,7 +47,7 @@ contains
             if (all(above /= [form_drive, form_add, form_rise, form_unknown])) &
                call add_card_error(set, add_alone, k, card_name)
          end if
-         above = set%cards(k)%form
+         if (set%cards(k)%form /= form_toler) above = set%cards(k)%form
       end do
    end subroutine build_drives
 
@@ -81,12 +82,17 @@ contains
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: k
       real(wp), intent(out) :: rate
-      integer :: i
 
-      i = findloc(time_words, set%mechanism%time_unit, dim=1)
-      if (i == 0) call add_card_error(set, rpm_unit, k, label_c)
-      rate = set%cards(k)%real(2)*(2.0_wp*pi/minutes(max(i, 1)))
+      if (all(time_words /= set%mechanism%time_unit)) call add_card_error(set, rpm_unit, k, label_c)
+      rate = set%cards(k)%real(2)*turns_unit(set)
    end subroutine take_turns
+
+   !> A turn a minute in radians a unit of time.
+   pure real(wp) function turns_unit(set)
+      type(card_set_t), intent(in) :: set
+
+      turns_unit = 2.0_wp*pi/minutes(max(1, findloc(time_words, set%mechanism%time_unit, dim=1)))
+   end function turns_unit
 
    !> Adds an error if what the DRIVE card `k` drives cannot be driven, as far as it is known.
    subroutine check_subject(set, k, drive)
@@ -139,12 +145,12 @@ contains
       integer :: i, n, last
 
       do last = k, set%count - 1
-         if (.not. is_term(set, last + 1)) exit
+         if (.not. (is_term(set, last + 1) .or. set%cards(last + 1)%form == form_toler)) exit
       end do
-      allocate (drive%terms(count([(.not. continues_table(set, i), i=k + 1, last)])))
+      allocate (drive%terms(count([(begins_term(set, i), i=k + 1, last)])))
       n = 0
       do i = k + 1, last
-         if (continues_table(set, i)) cycle
+         if (.not. begins_term(set, i)) cycle
          n = n + 1
          set%cards(i)%drive = d
          set%cards(i)%term = n
@@ -156,16 +162,36 @@ contains
       end do
    end subroutine build_terms
 
-   !> Whether card `k` is another row of the table to which the card above it belongs.
-   pure logical function continues_table(set, k)
+   !> Whether a term begins with card `k`.
+   pure logical function begins_term(set, k)
       type(card_set_t), intent(in) :: set
       integer, intent(in) :: k
 
+      begins_term = .false.
+      if (is_term(set, k)) begins_term = .not. continues_table(set, k)
+   end function begins_term
+
+   !> Whether card `k` is another row of the table to which the card above it belongs; TOLER cards stand between them.
+   pure logical function continues_table(set, k)
+      type(card_set_t), intent(in) :: set
+      integer, intent(in) :: k
+      integer :: above
+
       continues_table = .false.
-      if (k > set%count) return
-      continues_table = all(set%cards(k - 1:k)%form == form_add .and. &
-                            set%cards(k - 1:k)%label(label_a) == term_words(term_table))
+      if (.not. is_row(set%cards(k))) return
+      above = k - 1
+      do while (set%cards(above)%form == form_toler .and. above > 1)
+         above = above - 1
+      end do
+      continues_table = is_row(set%cards(above))
    end function continues_table
+
+   !> Whether `card` is a row of a table.
+   elemental logical function is_row(card)
+      type(parsed_card_t), intent(in) :: card
+
+      is_row = card%form == form_add .and. card%label(label_a) == term_words(term_table)
+   end function is_row
 
    !> The `term` that begins with the ADD card `k`. `unit`: that of the driven coordinate.
    subroutine build_term(set, k, unit, term)
@@ -214,26 +240,42 @@ contains
       integer, intent(in) :: first
       real(wp), intent(in) :: unit
       type(term_t), intent(inout) :: term
+      integer, allocatable :: rows(:)
+      integer :: i
+
+      rows = rows_of_table(set, first)
+      term%kind = term_table
+      term%knots = set%cards(rows)%real(1)
+      term%values = set%cards(rows)%real(2)*unit
+      do i = 1, size(rows)
+         associate (k => rows(i), above => rows(max(1, i - 1)))
+            if (.not. set%cards(k)%valid) cycle
+            if (.not. any(set%cards(k)%given)) then
+               call add_card_error(set, add_blank, k, card_name)
+            else if (i > 1) then
+               if (set%cards(above)%valid .and. set%cards(k)%real(1) <= set%cards(above)%real(1)) &
+                  call add_card_error(set, table_order, k, real_1)
+            end if
+         end associate
+      end do
+      if (size(rows) == 1) call add_card_error(set, table_short, first, label_a)
+   end subroutine build_table
+
+   !> The cards of the table whose first row is card `first`.
+   pure function rows_of_table(set, first) result(rows)
+      type(card_set_t), intent(in) :: set
+      integer, intent(in) :: first
+      integer, allocatable :: rows(:)
       integer :: k, last
 
       last = first
-      do while (continues_table(set, last + 1))
-         last = last + 1
+      do k = first + 1, set%count
+         if (set%cards(k)%form == form_toler) cycle
+         if (.not. is_row(set%cards(k))) exit
+         last = k
       end do
-      term%kind = term_table
-      term%knots = set%cards(first:last)%real(1)
-      term%values = set%cards(first:last)%real(2)*unit
-      do k = first, last
-         if (.not. set%cards(k)%valid) cycle
-         if (.not. any(set%cards(k)%given)) then
-            call add_card_error(set, add_blank, k, card_name)
-         else if (k > first) then
-            if (set%cards(k - 1)%valid .and. set%cards(k)%real(1) <= set%cards(k - 1)%real(1)) &
-               call add_card_error(set, table_order, k, real_1)
-         end if
-      end do
-      if (last == first) call add_card_error(set, table_short, first, label_a)
-   end subroutine build_table
+      rows = pack([(k, k=first, last)], is_row(set%cards(first:last)))
+   end function rows_of_table
 
    !> Adds an error for each term that, with its first two derivatives, does not exist at all instants. The set has no
    !> other error.

@@ -70,7 +70,7 @@ module input_errors
       number_point = error_code_t(31, 'A WHOLE NUMBER HAS NO POINT AND NO EXPONENT'), &
       number_no_digits = error_code_t(32, 'IS NOT A NUMBER (NO DIGITS)'), &
       number_exponent = error_code_t(33, 'IS NOT A NUMBER (NO DIGITS IN THE EXPONENT)')
-   ! Fields, and the continuation by a `*` card.
+   ! Fields, and the cards that belong to the one above them: `*` and TOLER.
    type(error_code_t), parameter, public :: &
       field_blank = error_code_t(34, 'THIS FIELD MUST NOT BE BLANK', own_layout), &
       label_blank_inside = error_code_t(35, 'A LABEL HAS NO BLANKS INSIDE', own_layout), &
@@ -80,7 +80,11 @@ module input_errors
       star_no_reals = error_code_t(41, 'THE CARD ABOVE TAKES NO REALS'), &
       star_second = error_code_t(42, 'IS A SECOND * CARD FOR THE SAME CARD'), &
       star_twice = error_code_t(43, 'IS GIVEN TWICE: THE CARD ABOVE HAS IT TOO'), &
-      star_blank = error_code_t(44, 'GIVES NO NUMBERS')
+      star_blank = error_code_t(44, 'GIVES NO NUMBERS'), &
+      toler_alone = error_code_t(45, 'MUST FOLLOW THE CARD WHOSE NUMBERS HAVE THE TOLERANCES'), &
+      toler_none = error_code_t(46, 'THE NUMBER ABOVE IT TAKES NO TOLERANCE'), &
+      toler_second = error_code_t(47, 'IS A SECOND TOLER CARD FOR THE SAME CARD'), &
+      toler_blank = error_code_t(48, 'GIVES NO TOLERANCES')
    ! Names.
    type(error_code_t), parameter, public :: &
       name_repeated = error_code_t(50, 'THIS NAME IS REPEATED; FIRST ON CARD'), &

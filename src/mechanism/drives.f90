@@ -18,7 +18,7 @@ module drives
       term_parabola
    implicit none
    private
-   public :: law_t, new_law, drive_motion, drive_rate, joints_of, monomial, rise_shape, joint_width
+   public :: law_t, new_law, drive_motion, drive_rate, joints_of, monomial, rise_shape, joint_width, joint_distance
    public :: spline_t, new_spline, spline_value, piece_at, piece_value
 
    !> A natural cubic spline, in the units of the drive and of time.
@@ -130,8 +130,15 @@ contains
       type(term_t), intent(in) :: term
 
       width = 0.0_wp
-      if (term%kind >= term_cosine) width = joint_part*(1.0_wp + abs(term%r(1))/term%r(2))
+      if (term%kind >= term_cosine) width = joint_distance(term)
    end function joint_width
+
+   !> How far from a joint of `term` an instant may be that is meant to be at it, as a part of the rise's duration.
+   pure real(wp) function joint_distance(term) result(distance)
+      type(term_t), intent(in) :: term
+
+      distance = joint_part*(1.0_wp + abs(term%r(1))/term%r(2))
+   end function joint_distance
 
    !> s(u) of the law `kind`, term_cycloid to term_parabola, and its derivatives; 0 before u = 0, and 1 from u = 1 on.
    !> The second derivative is that of the piece in which `at` lies, continued to u.

@@ -1,8 +1,8 @@
 !> The independent mechanisms of a set: links that pairs or drives join, but not through the ground. None of them acts
 !> on another: each is solved as a set of its own, in its own numbers and its own lengths.
 module independent
-   use mechanism, only: mechanism_t, request_t, drive_relangle, driven_kinds, request_link, request_point, &
-      request_pole, request_curve
+   use mechanism, only: mechanism_t, request_t, tolerance_t, drive_relangle, driven_kinds, request_link, &
+      request_point, request_pair, request_pole, request_curve, number_ground, number_pair
    use scales, only: characteristic_length, characteristic_rate
    implicit none
    private
@@ -336,10 +336,30 @@ contains
          own%requests(i)%subject = number_in(part, own%requests(i)%kind, own%requests(i)%subject)
          if (own%requests(i)%second > 0) own%requests(i)%second = place_in(part%links, own%requests(i)%second)
       end do
+      if (allocated(m%tolerances)) own%tolerances = tolerances_of(m%tolerances, part)
       if (.not. any(own%requests%kind >= request_pole)) return
       own%requests%length = characteristic_length(own)
       own%requests%rate = characteristic_rate(own, own%requests(1)%length)
    end function mechanism_of
+
+   !> Those of `list` whose numbers are in `part`, in the numbers of the part.
+   pure function tolerances_of(list, part) result(own)
+      type(tolerance_t), intent(in) :: list(:)
+      type(part_t), intent(in) :: part
+      type(tolerance_t), allocatable :: own(:)
+      integer, parameter :: kinds(number_ground:number_pair) = [request_link, request_point, request_point, &
+         request_pair]
+      integer :: i
+
+      own = list
+      do i = 1, size(own)
+         associate (k => list(i)%kind, n => list(i)%subject)
+            if (k > number_pair) own(i)%subject = place_in(part%drives, n)
+            if (k <= number_pair) own(i)%subject = number_in(part, kinds(k), n)
+         end associate
+      end do
+      own = pack(own, own%subject > 0)
+   end function tolerances_of
 
    !> The number within `part` of the link, point or pair (`kind`: request_link, ...) number `i` of the whole set.
    pure integer function number_in(part, kind, i)
@@ -356,7 +376,7 @@ contains
       end select
    end function number_in
 
-   !> The place of `x` in the increasing `list`, by bisection.
+   !> The place of `x` in the increasing `list`, by bisection; 0: it is not there.
    pure integer function place_in(list, x) result(low)
       integer, intent(in) :: list(:), x
       integer :: high, middle
@@ -371,5 +391,6 @@ contains
             high = middle
          end if
       end do
+      if (all(list(low:high) /= x)) low = 0
    end function place_in
 end module independent

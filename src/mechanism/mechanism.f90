@@ -5,12 +5,13 @@ module mechanism
    use diagnostics, only: remark_t
    implicit none
    private
-   public :: link_t, point_t, pair_t, term_t, drive_t, request_t, branch_request_t, settings_t, mechanism_t
+   public :: link_t, point_t, pair_t, term_t, drive_t, request_t, branch_request_t, tolerance_t, settings_t, mechanism_t
    public :: pair_revolute, pair_prismatic
    public :: drive_angle, drive_x, drive_y, drive_relangle, drive_slide, drive_words, driven_kinds
    public :: term_harmonic, term_power, term_table, term_words
    public :: term_cycloid, term_345, term_cosine, term_parabola, rise_words
    public :: request_link, request_point, request_pair, request_pole, request_curve
+   public :: number_ground, number_point, number_joint, number_pair, number_drive
    public :: method_newton, method_matrix, method_dense, method_words, own_predictor
    public :: instant_count, instant, find_instants, wanted_links, with_all_links, plane_origin, place_links
 
@@ -44,6 +45,12 @@ module mechanism
    !> The words of the laws on RISE cards.
    character(label_length), parameter :: rise_words(term_cycloid:term_parabola) = &
       [character(label_length) :: 'CYCLOID', '3-4-5', 'HARMONIC', 'PARABOLA']
+
+   integer, parameter :: number_ground = 1   !< x, y or phi of ground link `subject`
+   integer, parameter :: number_point = 2    !< xi or eta of point `subject`
+   integer, parameter :: number_joint = 3    !< x or y, in the drawing, of points `subject` and `subject` + 1
+   integer, parameter :: number_pair = 4     !< alpha, h or beta of prismatic pair `subject`
+   integer, parameter :: number_drive = 5    !< of drive `subject`, or of its term `term`
 
    integer, parameter :: method_newton = 1   !< Newton's method, block by block
    integer, parameter :: method_matrix = 2   !< the iteration of 1987 with frozen c(phi), s(phi)
@@ -107,6 +114,20 @@ module mechanism
       real(wp) :: t = 0.0_wp                 !< time
    end type branch_request_t
 
+   !> The tolerance of a number on a card.
+   type :: tolerance_t
+      integer :: kind = number_point         !< of the number: number_ground, ..., number_drive
+      integer :: subject = 0                 !< the number of its link, point, pair or drive
+      integer :: term = 0                    !< of a drive: the number of the term; 0: its polynomial
+      integer :: place = 1                   !< R1, R2 or R3 of the card; of a table the row
+      real(wp) :: size_of = 0.0_wp           !< the tolerance, above 0, in the unit of the number on its card
+      real(wp) :: unit = 1.0_wp              !< that unit in those of `mechanism_t`
+      real(wp) :: powers(2) = [1.0_wp, 0.0_wp]   !< of length and of time in that unit
+      character(48) :: name = ''             !< of the number, in tables
+      character(24) :: text = ''             !< the tolerance as it stands on its card
+      character(2*label_length + 5) :: unit_name = ''
+   end type tolerance_t
+
    !> Options and instants: what each part of a set has in common with the whole.
    type :: settings_t
       integer :: set_number = 1              !< of the set in its deck
@@ -132,6 +153,7 @@ module mechanism
       type(drive_t), allocatable :: drives(:)
       type(request_t), allocatable :: requests(:)
       type(branch_request_t), allocatable :: branch_requests(:)   !< none: not allocated, or of size 0
+      type(tolerance_t), allocatable :: tolerances(:)   !< none: not allocated
       character(120), allocatable :: echo(:) !< the cards as they were understood, for the listing
       type(remark_t), allocatable :: remarks(:)   !< about the cards; none: not allocated
    end type mechanism_t
@@ -199,13 +221,13 @@ contains
       end do
    end subroutine place_links
 
-   !> Whether each link (links) is needed by a request of `m`; ranges need all of them.
+   !> Whether each link (links) is needed by a request of `m`; ranges and tolerances need all of them.
    pure function wanted_links(m) result(wanted)
       type(mechanism_t), intent(in) :: m
       logical :: wanted(size(m%links))
       integer :: i
 
-      wanted = m%ranges
+      wanted = m%ranges .or. allocated(m%tolerances)
       do i = 1, size(m%requests)
          associate (k => m%requests(i)%subject)
             select case (m%requests(i)%kind)

@@ -7,7 +7,7 @@ module scales
    use mechanism, only: mechanism_t, drive_t, pair_prismatic, drive_x, drive_y, drive_slide, plane_origin
    implicit none
    private
-   public :: characteristic_length, solver_length, characteristic_rate, power_of_two, is_length
+   public :: characteristic_length, solver_length, characteristic_rate, power_of_two, is_length, relative_tolerance
 
 contains
 
@@ -100,6 +100,23 @@ contains
       end do
       if (.not. is_usable(rate)) rate = 1.0_wp
    end function characteristic_rate
+
+   !> The largest tolerance of `m`, as a part of the characteristic length and rate; `m` has one.
+   pure real(wp) function relative_tolerance(m) result(part)
+      type(mechanism_t), intent(in) :: m
+      real(wp) :: length, rate
+      integer :: i
+
+      length = characteristic_length(m)
+      rate = characteristic_rate(m, length)
+      part = 0.0_wp
+      do i = 1, size(m%tolerances)
+         associate (one => m%tolerances(i))
+            part = max(part, one%size_of*one%unit*rate**one%powers(2)/length**one%powers(1))
+         end associate
+      end do
+      part = min(1.0_wp, max(epsilon(1.0_wp), part))
+   end function relative_tolerance
 
    !> The largest power of two that is not above `x` > 0: division by it is exact.
    pure real(wp) function power_of_two(x) result(p)

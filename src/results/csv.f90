@@ -10,7 +10,8 @@ module csv
    use instant_centres, only: centre_finite, centre_resting
    use known_digits, only: nothing_known
    use error_estimate, only: error_estimate_t, row_error
-   use set_motion, only: set_motion_t
+   use sensitivities, only: has_tolerances, ground_sensitivities, worst_case, root_of_squares
+   use set_motion, only: set_motion_t, row_in_set
    use text_output, only: output_t, put, add
    use numerals, only: whole, full, put_full, full_length
    implicit none
@@ -58,6 +59,7 @@ contains
             ! A row of the ground is known by the deck alone.
             call add_row(o, start, m, s%motions(1), m%requests(i), error_estimate_t(asked=s%errors(1)%asked))
          end if
+         if (has_tolerances(m, m%requests(i))) call add_tolerances(o, start, m, s, i)
       end do
    end subroutine csv_instant
 
@@ -72,14 +74,9 @@ contains
       type(row_t) :: row
       real(wp) :: error(3, 0:2)
       logical :: there(3, 0:2)
-      integer :: c, k
 
       row = row_of(m, q, request)
-      do k = 0, 2
-         do c = 1, 3
-            there(c, k) = has_number(row, c, k)
-         end do
-      end do
+      there = numbers_of(row)
       error = 0.0_wp
       if (errors%asked) error = row_error(m, errors, q, request)
       if (row%kind < request_pole) then
@@ -89,6 +86,75 @@ contains
          call add_centre(o, start, row, there, errors%asked, error, m%degrees)
       end if
    end subroutine add_row
+
+   !> Which of its numbers (3, 0:2) `row` has.
+   pure function numbers_of(row) result(there)
+      type(row_t), intent(in) :: row
+      logical :: there(3, 0:2)
+      integer :: c, k
+
+      do k = 0, 2
+         do c = 1, 3
+            there(c, k) = has_number(row, c, k)
+         end do
+      end do
+   end function numbers_of
+
+   !> What tolerances do to the row of request number `i`: its worst case, its root of the sum of squares, and its
+   !> sensitivity to each number. `start`: the cells before the kind.
+   subroutine add_tolerances(o, start, m, s, i)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: start
+      type(mechanism_t), intent(in) :: m
+      type(set_motion_t), intent(in) :: s
+      integer, intent(in) :: i
+      type(row_t) :: row
+      integer :: c
+
+      c = s%parts%part(i)
+      row = row_in_set(m, s, i)
+      if (c == 0) then
+         call add_sensitivities(o, start, m, row, ground_sensitivities(m, m%requests(i)), s%errors(1)%asked)
+      else
+         associate (k => s%parts%number(i), found => s%sensitivities(c))
+            row%known = found%known(k)
+            call add_sensitivities(o, start, s%own(c), row, found%of(:, :, :, k), s%errors(c)%asked)
+         end associate
+      end if
+   end subroutine add_tolerances
+
+   !> The same of `row` with the sensitivities `s` (3, 0:2, numbers) of `m`. `asked`: errors have columns, which stay
+   !> empty.
+   subroutine add_sensitivities(o, start, m, row, s, asked)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: start
+      type(mechanism_t), intent(in) :: m
+      type(row_t), intent(in) :: row
+      real(wp), intent(in) :: s(:, 0:, :)
+      logical, intent(in) :: asked
+      integer :: d
+
+      call add_one('WORST', worst_case(m, s))
+      call add_one('RSS', root_of_squares(m, s))
+      do d = 1, size(m%tolerances)
+         call add_one('PER '//trim(m%tolerances(d)%name), s(:, :, d))
+      end do
+
+   contains
+
+      !> The row of what `word` says, with its values (3, 0:2).
+      subroutine add_one(word, value)
+         character(*), intent(in) :: word
+         real(wp), intent(in) :: value(:, :)
+         type(row_t) :: one
+
+         one = row
+         one%value = value
+         call add(o, start)
+         call add_cells(o, trim(kinds_of_row(row%kind))//' '//word, one, numbers_of(one), asked, &
+            spread(spread(nothing_known, 1, 3), 2, 3), m%degrees, marks(row%mark))
+      end subroutine add_one
+   end subroutine add_sensitivities
 
    !> The three rows of a pole or curve: each has one third of the numbers under x, y, phi.
    subroutine add_centre(o, start, row, there, asked, error, degrees)
@@ -121,7 +187,7 @@ contains
       logical, intent(in) :: there(3, 0:2), asked, degrees
       real(wp), intent(in) :: error(3, 0:2)
 
-      call add(o, kind(:len_trim(kind)))
+      call add_name(o, kind(:len_trim(kind)))
       call add(o, ',')
       call add_name(o, row%name(:len_trim(row%name)))
       call add_values(o, row, there, degrees)

@@ -10,13 +10,13 @@ module listing_layout
    use independent, only: parts_t, find_parts
    use drives, only: law_t, new_law
    use names, only: drive_name
-   use scales, only: characteristic_length, characteristic_rate
+   use scales, only: characteristic_length, characteristic_rate, relative_tolerance
    use numerals, only: whole, numeral_length
    use phrases
    implicit none
    private
    public :: layout_t, head_drive_t, new_layout, digits_t, digits_of, column_powers, head_lines
-   public :: name_length, row_length, has_column, dimension_of, angle_unit
+   public :: name_length, row_length, has_column, dimension_of, angle_unit, unit_of
 
    integer, parameter :: digits_after_first = 6
    !> Characters before a row's numbers, and of a whole row.
@@ -51,6 +51,7 @@ module listing_layout
       logical :: mixed = .false.              !< their powers of ten differ
       integer :: time_decimals = digits_after_first   !< of the instants, as above
       integer :: time_power = 0
+      integer :: more_decimals = 0         !< of what tolerances do to a number, beside those of the number
       real(wp) :: angle = 1.0_wp           !< radians in the unit in which angles are printed
       character(row_length) :: names(3)    !< of the columns, by the kind of a request
       character(row_length) :: units(2, 3) !< two lines under them; the second is blank unless units are long
@@ -86,6 +87,7 @@ contains
       end if
       time = max(abs(m%t0), abs(m%t1), maxval([0.0_wp, abs(m%at)]))
       if (time > 0.0_wp) call choose_digits(log10(time), l%time_decimals, l%time_power)
+      if (allocated(m%tolerances)) l%more_decimals = decimals_for(relative_tolerance(m))
       do k = 1, size(l%names)
          l%names(k) = column_names(k, m%polish)
       end do
@@ -204,6 +206,13 @@ contains
       if (k < -2 .or. k > 4) power = 3*floor(real(k, wp)/3.0_wp + margin)
       decimals = digits_after_first - (k - power)
    end subroutine choose_digits
+
+   !> Decimals that a number takes beside its own for its change by `part` of it to have four digits.
+   pure integer function decimals_for(part) result(more_decimals)
+      real(wp), intent(in) :: part
+
+      more_decimals = max(0, 3 - digits_after_first - floor(log10(part)))
+   end function decimals_for
 
    !> The lines over rows of the given `kind` with the digits `d`, joined by new_line('a'): names, powers of ten where
    !> there are any, units.

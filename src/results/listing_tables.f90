@@ -7,14 +7,16 @@ module listing_tables
    use motion, only: motion_t
    use points, only: row_t, row_of
    use error_estimate, only: error_estimate_t, row_estimate
+   use sensitivities, only: worst_case, root_of_squares
    use text_output, only: output_t, put
    use numerals, only: put_fixed, put_whole, numeral_length
    use known_digits, only: put_known, unknown_digit
    use listing_layout
    use listing_centres, only: put_centre, put_centre_heads
+   use phrases, only: phrase, say_worst
    implicit none
    private
-   public :: table_t, put_instant, put_times, put_requested, put_heads, time_text, drive_text, known_text
+   public :: table_t, put_instant, put_times, put_requested, put_spreads, put_heads, time_text, drive_text, known_text
 
    integer, parameter :: line_length = 120
 
@@ -187,6 +189,32 @@ contains
          end if
       end associate
    end subroutine put_requested
+
+   !> What the tolerances of `m` do to the row of request number `i` of the set, of the given kind, with the
+   !> sensitivities `s` (3, 0:2, numbers), of which as much is known as `known` says: the worst case, and the root of
+   !> the sum of squares. `doubt`: the part of each that rounding leaves open.
+   subroutine put_spreads(o, l, i, m, row, s, known, doubt, table)
+      type(output_t), intent(inout) :: o
+      type(layout_t), intent(in) :: l
+      integer, intent(in) :: i, known
+      type(mechanism_t), intent(in) :: m
+      type(row_t), intent(in) :: row
+      real(wp), intent(in) :: s(:, 0:, :), doubt(0:)
+      type(table_t), intent(inout) :: table
+      type(digits_t) :: d
+      type(row_t) :: one
+
+      d = digits_of(l, i)
+      d%decimals = d%decimals + l%more_decimals
+      one = row
+      one%known = known
+      one%name = ' '//phrase(say_worst, m%polish)
+      one%value = worst_case(m, s)
+      call put_row(o, l, d, one, one%value*spread(doubt, 1, 3), table%masked)
+      one%name = ' RSS'
+      one%value = root_of_squares(m, s)
+      call put_row(o, l, d, one, one%value*spread(doubt, 1, 3), table%masked)
+   end subroutine put_spreads
 
    !> The heads over rows of this `kind` with the digits `d`, unless they stand there: names, powers of ten where there
    !> are any, units.

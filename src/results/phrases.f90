@@ -85,7 +85,13 @@ module phrases
       say_unbounded = phrase_t('UNBOUNDED', 'NIEOGRAN.'), &
       say_range = phrase_t('RANGES OF THE DRIVES, EACH ALONE', 'ZAKRESY NAPEDOW, KAZDY OSOBNO'), &
       say_all = phrase_t('ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS', 'PELNY: BEZ KRESU, RUCH SIE ZAMYKA; OBROTY'), &
-      say_no_limit = phrase_t('NO LIMIT AS FAR AS', 'BEZ KRESU CO NAJMNIEJ DO')
+      say_no_limit = phrase_t('NO LIMIT AS FAR AS', 'BEZ KRESU CO NAJMNIEJ DO'), &
+      say_worst = phrase_t('WORST', 'NAJGOR.'), &
+      say_shares = phrase_t('TOLERANCES: SHARES OF THE NUMBERS WHERE THE RSS IS GREATEST', &
+         'TOLERANCJE: UDZIALY LICZB PRZY NAJWIEKSZYM RSS'), &
+      say_small_shares = phrase_t('SMALLER SHARES:', 'MNIEJSZE UDZIALY:'), &
+      say_jams = phrase_t('REDUNDANT EQUATIONS LEAVE NO ROOM FOR ITS TOLERANCE', &
+         'ROWNANIA NADLICZBOWE NIE DOPUSZCZAJA TOLERANCJI')
    type(phrase_t), parameter, public :: &
       say_pole = phrase_t('POLE', 'BIEGUN'), &
       say_curve = phrase_t('CURVE', 'TOR'), &

@@ -10,6 +10,7 @@ module set_analysis
    use branch_requests, only: branch_requests_t, new_branch_requests, unused
    use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, row_estimate, &
       largest_errors
+   use sensitivities, only: sensor_t, make_sensor, find_sensitivities
    use set_motion, only: set_motion_t, new_set_motion
    use motion, only: motion_t, new_motion
    use points, only: row_t, row_of
@@ -17,14 +18,15 @@ module set_analysis
    use diagnosis, only: opinion_t, ask_blocks
    implicit none
    private
-   public :: set_analysis_t, make_set_analysis, advance_set, rows_at, sample_set, set_record, set_errors, &
-      set_closure_error, set_closing_diagnostics, iterations_of
+   public :: set_analysis_t, make_set_analysis, advance_set, rows_at, sample_set, sense_set, set_record, &
+      set_errors, set_closure_error, set_closing_diagnostics, iterations_of
 
    type :: set_analysis_t
       type(set_motion_t) :: now                             !< the motion found last, and how far it is known
       type(analysis_t), allocatable :: list(:)              !< (parts)
       type(opinion_t), allocatable :: opinions(:)           !< (parts)
       type(estimator_t), allocatable :: estimators(:)       !< (parts)
+      type(sensor_t), allocatable :: sensors(:)             !< (parts)
       type(certificate_counts_t) :: certificate_counts      !< of all instants
    end type set_analysis_t
 
@@ -40,7 +42,7 @@ contains
 
       call new_set_motion(m, s%now, findings)
       associate (n => s%now%parts%count)
-         allocate (s%list(n), s%opinions(n), s%estimators(n))
+         allocate (s%list(n), s%opinions(n), s%estimators(n), s%sensors(n))
       end associate
       do c = 1, size(s%list)
          if (present(findings)) then
@@ -49,6 +51,7 @@ contains
             call make_analysis(s%list(c), s%now%own(c))
          end if
          call make_estimator(s%estimators(c), s%now%own(c))
+         call make_sensor(s%sensors(c), s%now%own(c))
       end do
    end subroutine make_set_analysis
 
@@ -128,6 +131,17 @@ contains
          end associate
       end do
    end subroutine sample_set
+
+   !> The sensitivities of the motion found last to the numbers with tolerances; nothing, where no number has one.
+   subroutine sense_set(s)
+      type(set_analysis_t), intent(inout) :: s
+      integer :: c
+
+      do c = 1, size(s%list)
+         call find_sensitivities(s%sensors(c), s%now%own(c), s%list(c)%engine, s%now%motions(c), &
+            s%now%sensitivities(c))
+      end do
+   end subroutine sense_set
 
    !> How the instant was found, and on which branch: of several mechanisms the worst.
    pure subroutine set_record(s, record, branch)

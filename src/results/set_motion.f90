@@ -8,6 +8,7 @@ module set_motion
    use structure, only: findings_t
    use points, only: row_t, row_of
    use error_estimate, only: error_estimate_t
+   use sensitivities, only: sensitivities_t
    implicit none
    private
    public :: set_motion_t, new_set_motion, one_motion, is_flagged, has_words, in_set, put_together, row_in_set
@@ -18,6 +19,7 @@ module set_motion
       type(mechanism_t), allocatable :: own(:)          !< (parts) each as a set of its own
       type(motion_t), allocatable :: motions(:)         !< (parts)
       type(error_estimate_t), allocatable :: errors(:)  !< (parts)
+      type(sensitivities_t), allocatable :: sensitivities(:)   !< (parts)
    end type set_motion_t
 
 contains
@@ -41,7 +43,7 @@ contains
          allocate (s%own(1))
          s%own(1) = mechanism_of(m, s%parts%list(1))
       end if
-      allocate (s%motions(s%parts%count), s%errors(s%parts%count))
+      allocate (s%motions(s%parts%count), s%errors(s%parts%count), s%sensitivities(s%parts%count))
       do c = 1, size(s%own)
          s%motions(c) = new_motion(size(s%own(c)%links))
       end do
@@ -55,7 +57,7 @@ contains
       type(set_motion_t) :: s
 
       call take_whole(m, s%parts)
-      allocate (s%own(1), s%motions(1), s%errors(1))
+      allocate (s%own(1), s%motions(1), s%errors(1), s%sensitivities(1))
       s%own(1) = m
       s%motions(1) = q
       s%errors(1) = errors

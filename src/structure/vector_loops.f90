@@ -22,6 +22,8 @@ module vector_loops
       integer, allocatable :: orientations(:), slide_orientation(:), slide(:)
       real(wp), allocatable :: slide_body_vector(:, :)
       integer :: body_vectors = 0, slides = 0
+      integer, allocatable :: terms(:, :)            !< of all loops so far, as below, with room behind
+      integer :: term_count = 0
    end type builder_t
 
    !> Body vectors of loop p are first_vector(p), ..., first_vector(p + 1) - 1; slides likewise. Orientation 0 is the
@@ -33,14 +35,18 @@ module vector_loops
       integer, allocatable :: first_slide(:), slide_orientation(:), slide_number(:)
       real(wp), allocatable :: slide_body_vector(:, :)   !< (2, slides) e with its sign
       type(builder_t) :: making                      !< the next one
+      !> If they are traced: loop p is the sum of the terms making%terms(:, first_term(p):first_term(p + 1) - 1), each
+      !> a point (its number, 0), from its link's origin, or a prismatic pair's P - Q (0, its number), with their signs.
+      integer, allocatable :: first_term(:)
    end type vector_loops_t
 
 contains
 
-   !> No loop yet, and room for those of `m` on its tree `t`.
-   function new_vector_loops(m, t) result(p)
+   !> No loop yet, and room for those of `m` on its tree `t`. `traced`: it is noted of what terms they are sums.
+   function new_vector_loops(m, t, traced) result(p)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
+      logical, intent(in) :: traced
       type(vector_loops_t) :: p
       integer :: most
 
@@ -52,6 +58,8 @@ contains
          allocate (b%sum(2, 0:t%orientations), b%largest(0:t%orientations), b%orientations(t%orientations + 1))
          allocate (b%met(0:t%orientations), source=.false.)
          allocate (b%slide_orientation(8), b%slide(8), b%slide_body_vector(2, 8))
+         if (traced) allocate (b%terms(2, 4*most), p%first_term(most))
+         if (traced) p%first_term(1) = 1
       end associate
    end function new_vector_loops
 
@@ -69,12 +77,14 @@ contains
 
       link = m%points(p)%link
       v = point_in_drawing(m, t, length, p)
+      call note_term(vector_loops%making, [p, 0])
       do i = 1, s%length
          call cross(m, t, length, s%pairs(i), link, v, vector_loops%making)
       end do
       if (q > 0) then
          ! Not their difference: the largest that was added tells which sums are rounding alone.
          call add_body_vector(vector_loops%making, t%orientation(link), -point_in_drawing(m, t, length, q))
+         call note_term(vector_loops%making, [-q, 0])
       else if (t%root(link) > 0) then
          call add_slide(vector_loops%making, 0, t%slides + 2*t%root(link) - 1, [1.0_wp, 0.0_wp])
          call add_slide(vector_loops%making, 0, t%slides + 2*t%root(link), [0.0_wp, 1.0_wp])
@@ -102,8 +112,11 @@ contains
          entry_point = merge(k%point_j, k%point_i, forward)
          call add_body_vector(b, t%orientation(link), v)
          call add_body_vector(b, t%orientation(link), -point_in_drawing(m, t, length, exit_point))
+         call note_term(b, [-exit_point, 0])
+         call note_term(b, [entry_point, 0])
          if (k%kind == pair_prismatic) then
             ! P - Q = h n - s e, all in the orientation that the two links share.
+            call note_term(b, [0, merge(pair, -pair, forward)])
             call add_slide(b, t%orientation(link), t%slide(pair), merge(-1.0_wp, 1.0_wp, forward)*guide(m, t, pair, &
                .false.))
             call add_body_vector(b, t%orientation(link), merge(1.0_wp, -1.0_wp, forward)*k%offset/length*guide(m, t, &
@@ -113,6 +126,17 @@ contains
          v = point_in_drawing(m, t, length, entry_point)
       end associate
    end subroutine cross
+
+   !> Notes a term of the loop in the making, if loops are traced.
+   subroutine note_term(b, term)
+      type(builder_t), intent(inout) :: b
+      integer, intent(in) :: term(2)
+
+      if (.not. allocated(b%terms)) return
+      b%term_count = b%term_count + 1
+      if (b%term_count > size(b%terms, 2)) b%terms = reshape([b%terms, b%terms], [2, 2*size(b%terms, 2)])
+      b%terms(:, b%term_count) = term
+   end subroutine note_term
 
    !> Point `i` is on `link`, or both belong to the ground.
    pure logical function is_on(m, i, link)
@@ -184,6 +208,7 @@ contains
       p%count = p%count + 1
       p%first_vector(p%count + 1) = body_vectors + 1
       p%first_slide(p%count + 1) = slides + 1
+      if (allocated(p%first_term)) p%first_term(p%count + 1) = b%term_count + 1
    end subroutine store
 
    !> Room for so many body vectors and slides, doubled where it runs out.

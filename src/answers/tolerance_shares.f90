@@ -1,0 +1,220 @@
+!> Which tolerances count: of each quantity that PRINT asks for, at the printed instant at which the root of the sum of
+!> squares is greatest, the share of each number in the sum of squares, the largest first.
+module tolerance_shares
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, request_pair, pair_prismatic
+   use points, only: is_due, coordinates_of
+   use names, only: subject_name
+   use set_motion, only: set_motion_t
+   use sensitivities, only: has_tolerances, ground_sensitivities, worst_case, root_of_squares
+   use listing_layout, only: layout_t, digits_t, digits_of, dimension_of, name_length, unit_of
+   use listing_tables, only: time_text
+   use text_output, only: output_t, put
+   use numerals, only: fixed, whole, numeral_length
+   use phrases
+   implicit none
+   private
+   public :: shares_t, new_shares, note_tolerances, put_shares
+
+   !> A quantity at the instant at which its root of squares is greatest so far.
+   type :: share_t
+      real(wp) :: root = 0.0_wp, worst = 0.0_wp, t = 0.0_wp
+      real(wp), allocatable :: s(:)                 !< (numbers) the sensitivities; not allocated: none was known yet
+   end type share_t
+
+   type :: shares_t
+      type(share_t), allocatable :: list(:, :, :)   !< (3, 0:2, requests)
+      logical, allocatable :: jams(:)               !< (numbers of the set) redundant equations leave no room for it
+   end type shares_t
+
+   !> Smaller shares are only counted.
+   real(wp), parameter :: least_share = 1.0e-4_wp
+   integer, parameter :: percent_decimals = 2
+   !> Numbers that differ by less than this part are alike: the first counts.
+   real(wp), parameter :: alike = max(1.0e-9_wp, 4096.0_wp*epsilon(1.0_wp))
+   !> Characters of the name of a number before its sensitivity, unless it is longer.
+   integer, parameter :: number_name = 36
+
+contains
+
+   !> Before the first instant of `m`.
+   subroutine new_shares(m, a)
+      type(mechanism_t), intent(in) :: m
+      type(shares_t), intent(out) :: a
+
+      allocate (a%list(3, 0:2, size(m%requests)))
+      allocate (a%jams(size(m%tolerances)), source=.false.)
+   end subroutine new_shares
+
+   !> Takes the sensitivities of instant number `k`, that of the motions `s` of `m`.
+   subroutine note_tolerances(a, m, s, k)
+      type(shares_t), intent(inout) :: a
+      type(mechanism_t), intent(in) :: m
+      type(set_motion_t), intent(in) :: s
+      integer, intent(in) :: k
+      integer :: i, c, d
+
+      do i = 1, size(m%requests)
+         if (.not. is_due(m, m%requests(i), k) .or. .not. has_tolerances(m, m%requests(i))) cycle
+         c = s%parts%part(i)
+         if (c == 0) then
+            call take_row(a%list(:, :, i), m, ground_sensitivities(m, m%requests(i)), 2, s%motions(1)%t)
+            cycle
+         end if
+         associate (found => s%sensitivities(c), n => s%parts%number(i))
+            call take_row(a%list(:, :, i), s%own(c), found%of(:, :, :, n), found%known(n), s%motions(c)%t)
+            do d = 1, size(found%jams)
+               if (found%jams(d)) a%jams = a%jams .or. m%tolerances%name == s%own(c)%tolerances(d)%name
+            end do
+         end associate
+      end do
+   end subroutine note_tolerances
+
+   !> Takes the sensitivities `s` (3, 0:2, numbers), as far as they are `known`, of a row at the time `t`.
+   pure subroutine take_row(list, m, s, known, t)
+      type(share_t), intent(inout) :: list(:, 0:)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: s(:, 0:, :), t
+      integer, intent(in) :: known
+      real(wp) :: root(3, 0:2), worst(3, 0:2)
+      integer :: c, k
+
+      root = root_of_squares(m, s)
+      worst = worst_case(m, s)
+      do k = 0, known
+         do c = 1, 3
+            associate (one => list(c, k))
+               if (allocated(one%s) .and. root(c, k) <= one%root*(1.0_wp + alike)) cycle
+               one%root = root(c, k)
+               one%worst = worst(c, k)
+               one%t = t
+               one%s = s(c, k, :)
+            end associate
+         end do
+      end do
+   end subroutine take_row
+
+   !> Writes the shares after the last instant of `m`.
+   subroutine put_shares(o, l, a, m, s)
+      type(output_t), intent(inout) :: o
+      type(layout_t), intent(in) :: l
+      type(shares_t), intent(in) :: a
+      type(mechanism_t), intent(in) :: m
+      type(set_motion_t), intent(in) :: s
+      integer :: i, c, k, d
+
+      call put(o, '')
+      call put(o, ' '//phrase(say_shares, m%polish))
+      do d = 1, size(a%jams)
+         if (a%jams(d)) call put(o, ' *** '//trim(m%tolerances(d)%name)//': '//phrase(say_jams, m%polish))
+      end do
+      do i = 1, size(m%requests)
+         if (.not. has_tolerances(m, m%requests(i))) cycle
+         associate (part => s%parts%part(i))
+            do k = 0, 2
+               do c = 1, coordinates_of(m%requests(i)%kind)
+                  if (part == 0) call put_quantity(o, l, m, m, i, c, k, a%list(c, k, i))
+                  if (part > 0) call put_quantity(o, l, m, s%own(part), i, c, k, a%list(c, k, i))
+               end do
+            end do
+         end associate
+      end do
+   end subroutine put_shares
+
+   !> The lines of coordinate `c`, derivative `k`, of request number `i` of the set `m`, which is one about its part
+   !> `own`; none where the tables have zero.
+   subroutine put_quantity(o, l, m, own, i, c, k, share)
+      type(output_t), intent(inout) :: o
+      type(layout_t), intent(in) :: l
+      type(mechanism_t), intent(in) :: m, own
+      integer, intent(in) :: i, c, k
+      type(share_t), intent(in) :: share
+      type(digits_t) :: d
+      character(:), allocatable :: unit
+      integer :: column, what, decimals
+      real(wp) :: size_of
+
+      if (.not. allocated(share%s)) return
+      column = c
+      associate (request => m%requests(i))
+         if (request%kind == request_pair) column = merge(1, 3, m%pairs(request%subject)%kind == pair_prismatic)
+         what = dimension_of(column)
+         size_of = merge(l%angle, 1.0_wp, what == 2)
+         d = digits_of(l, i)
+         decimals = d%decimals(what, k) + l%more_decimals
+         if (share%root/size_of < 0.5_wp*10.0_wp**(d%power(what, k) - decimals)) return
+         unit = unit_of(d%power(what, k), column_text(l%units(1, request%kind), column, k) &
+            //column_text(l%units(2, request%kind), column, k))
+         call put(o, ' '//trim(l%names(request%kind)(2:name_length))//' ' &
+            //trim(subject_name(m, request%kind, request%subject))//'  ' &
+            //column_text(l%names(request%kind), column, k)//'   T = '//time_text(l, share%t)//l%behind_time &
+            //'   RSS = '//value_text(share%root)//'   '//phrase(say_worst, m%polish)//' = ' &
+            //value_text(share%worst)//' '//unit)
+      end associate
+      call put_numbers(o, own, share, size_of, m%polish)
+
+   contains
+
+      !> A value of the quantity.
+      function value_text(x) result(text)
+         real(wp), intent(in) :: x
+         character(:), allocatable :: text
+
+         text = trim(adjustl(fixed(x/size_of, decimals, d%power(what, k))))
+      end function value_text
+   end subroutine put_quantity
+
+   !> What `line`, of the head of a table, has over column `c` of derivative `k`, without blanks around it.
+   pure function column_text(line, c, k) result(text)
+      character(*), intent(in) :: line
+      integer, intent(in) :: c, k
+      character(:), allocatable :: text
+
+      associate (before => name_length + numeral_length*(3*k + c - 1))
+         text = trim(adjustl(line(before + 1:before + numeral_length)))
+      end associate
+   end function column_text
+
+   !> A line for each number of `m` with a share of note, the largest first: share, name, sensitivity (the quantity is
+   !> divided by `size_of`), tolerance.
+   subroutine put_numbers(o, m, share, size_of, polish)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(share_t), intent(in) :: share
+      real(wp), intent(in) :: size_of
+      logical, intent(in) :: polish
+      real(wp) :: part(size(share%s))
+      integer :: order(size(share%s)), j
+      character(12) :: sensitivity
+      character(max(number_name, len(m%tolerances%name))) :: name
+
+      part = (share%s*m%tolerances%size_of/share%root)**2
+      order = in_order(part)
+      do j = 1, size(order)
+         associate (one => m%tolerances(order(j)))
+            if (part(order(j)) < least_share) exit
+            write (sensitivity, '(es12.4e3)') share%s(order(j))/size_of
+            name = one%name
+            ! A half is rounded up, whatever the last bit.
+            call put(o, fixed(100.0_wp*part(order(j))*(1.0_wp + alike), percent_decimals, 0)//' %  ' &
+               //name(:max(number_name, len_trim(name)))//'  S = '//sensitivity//'   +- '//trim(one%text)//' ' &
+               //trim(one%unit_name))
+         end associate
+      end do
+      if (j <= size(order)) call put(o, '   '//phrase(say_small_shares, polish)//' '//whole(size(order) - j + 1))
+   end subroutine put_numbers
+
+   !> The numbers of the elements of `x`, the largest first; of those that are alike the first one.
+   pure function in_order(x) result(order)
+      real(wp), intent(in) :: x(:)
+      integer :: order(size(x)), i, k
+
+      do i = 1, size(x)
+         do k = i - 1, 1, -1
+            if (x(order(k)) >= x(i)*(1.0_wp - alike)) exit
+            order(k + 1) = order(k)
+         end do
+         order(k + 1) = i
+      end do
+   end function in_order
+end module tolerance_shares

@@ -1,0 +1,269 @@
+!> The first-order sensitivities of the rows of a motion to the numbers that have tolerances, at one instant, and what
+!> the tolerances make of them: the worst case, the sum of |s| times the tolerance, and the root of the sum of squares.
+!> The linear response is that of METHOD NEWTON's blocks, whatever method has found the position.
+module sensitivities
+   use kinds, only: wp
+   use planar, only: direction
+   use jets, only: turning, turning_change, dotted
+   use mechanism, only: mechanism_t, request_t, request_link, request_point, request_pair, number_drive, &
+      pair_prismatic, place_links
+   use number_changes, only: change_t, change_of
+   use law_changes, only: law_change, smooth_order
+   use motion, only: motion_t, new_motion
+   use points, only: row_t, row_of, point_motion
+   use engine, only: engine_t
+   use block_method, only: block_method_t
+   use block_engine, only: block_engine_t, make_block_engine, set_drive_values
+   use link_motion, only: mark_links
+   use equation_changes, only: response_t, arm_change
+   use linear_response, only: make_response, respond
+   implicit none
+   private
+   public :: sensitivities_t, sensor_t, make_sensor, find_sensitivities, has_tolerances, ground_sensitivities, &
+      worst_case, root_of_squares
+
+   !> At one instant, in the units of the rows (lengths, radians) and of the numbers on their cards.
+   type :: sensitivities_t
+      logical :: taken = .false.                     !< some number has a tolerance
+      real(wp), allocatable :: of(:, :, :, :)        !< (3, 0:2, numbers, requests)
+      integer, allocatable :: known(:)               !< (requests) as of a row: -1 none of them exists
+      logical, allocatable :: jams(:)                !< (numbers) redundant equations do not allow it to change
+   end type sensitivities_t
+
+   !> What an independent mechanism needs for them.
+   type :: sensor_t
+      type(response_t) :: response
+      type(block_engine_t) :: engine
+      logical :: is_ready = .false.
+   end type sensor_t
+
+contains
+
+   !> Ready for the sensitivities of `m`; nothing, where no number has a tolerance.
+   subroutine make_sensor(s, m)
+      type(sensor_t), intent(out) :: s
+      type(mechanism_t), intent(in) :: m
+      integer :: i
+
+      if (.not. allocated(m%tolerances)) return
+      call make_response(s%response, m, [(change_of(m, m%tolerances(i)), i=1, size(m%tolerances))])
+   end subroutine make_sensor
+
+   !> The sensitivities of all requests of `m` at its motion `q`, which the engine `e` has found.
+   subroutine find_sensitivities(s, m, e, q, found)
+      type(sensor_t), intent(inout) :: s
+      type(mechanism_t), intent(in) :: m
+      class(engine_t), intent(in) :: e
+      type(motion_t), intent(in) :: q
+      type(sensitivities_t), intent(inout) :: found
+      type(motion_t) :: again
+      logical :: finite
+      integer :: i, d, order
+
+      found%taken = allocated(m%tolerances)
+      if (.not. found%taken) return
+      call take_position(s, m, e, q)
+      call set_drive_values(s%engine, q%t)
+      call respond(s%response, m, s%engine, drive_changes(m, q%t, order), q%known < 0)
+      again = new_motion(size(m%links))
+      again%t = q%t
+      again%known = 2
+      call s%engine%get_motion(again, finite)
+      call mark_links(s%engine%chain, s%response%missing, again)
+      if (.not. allocated(found%of)) then
+         allocate (found%of(3, 0:2, size(m%tolerances), size(m%requests)), found%known(size(m%requests)))
+      end if
+      found%jams = s%response%jams
+      found%of = 0.0_wp
+      do i = 1, size(m%requests)
+         found%known(i) = known_of_row(m, q, again, m%requests(i))
+         if (found%known(i) < 0 .or. m%requests(i)%kind > request_pair) cycle
+         found%known(i) = order
+         do d = 1, size(m%tolerances)
+            found%of(:, :, d, i) = row_change(m, again, m%requests(i), s%response%changes(d), &
+               s%response%links(:, :, :, d))*m%tolerances(d)%unit
+         end do
+      end do
+   end subroutine find_sensitivities
+
+   !> What `request` asks for has sensitivities: some number of `m` has a tolerance, and it is no pole and no curve.
+   pure logical function has_tolerances(m, request)
+      type(mechanism_t), intent(in) :: m
+      type(request_t), intent(in) :: request
+
+      has_tolerances = allocated(m%tolerances) .and. request%kind <= request_pair
+   end function has_tolerances
+
+   !> All of a row must exist, in the motion `q` and in the same motion found `again`, for any of its sensitivities to.
+   pure integer function known_of_row(m, q, again, request) result(known)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q, again
+      type(request_t), intent(in) :: request
+      type(row_t) :: row, second
+
+      row = row_of(m, q, request)
+      second = row_of(m, again, request)
+      known = merge(2, -1, min(row%known, second%known) == 2)
+   end function known_of_row
+
+   !> Puts the engine of `s` at the position of `q`.
+   subroutine take_position(s, m, e, q)
+      type(sensor_t), intent(inout) :: s
+      type(mechanism_t), intent(in) :: m
+      class(engine_t), intent(in) :: e
+      type(motion_t), intent(in) :: q
+      type(mechanism_t) :: placed
+
+      select type (e)
+      class is (block_method_t)
+         if (.not. s%is_ready) call make_block_engine(s%engine, m)
+         s%engine%state%u = e%state%u
+      class default
+         placed = m
+         call place_links(placed, q%position)
+         call make_block_engine(s%engine, placed)
+         s%engine%state%u%value = s%engine%estimated
+      end select
+      s%is_ready = .true.
+   end subroutine take_position
+
+   !> (0:2, drives, numbers) The changes of the laws of the drives of `m` with its numbers at the time `t`. `order`:
+   !> that of the highest derivatives, 0 to 2, of which this exists for all of them.
+   function drive_changes(m, t, order) result(changes)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: t
+      integer, intent(out) :: order
+      real(wp) :: changes(0:2, size(m%drives), size(m%tolerances))
+      integer :: d
+
+      changes = 0.0_wp
+      order = 2
+      do d = 1, size(m%tolerances)
+         associate (one => m%tolerances(d))
+            if (one%kind /= number_drive) cycle
+            changes(:, one%subject, d) = law_change(m%drives(one%subject), one%term, one%place, t)
+            order = min(order, smooth_order(m%drives(one%subject), one%term, one%place, t))
+         end associate
+      end do
+   end function drive_changes
+
+   !> The change (3, 0:2) of the row of `request` of the motion `q` of `m`, where its numbers change by `change`, and
+   !> its links by `links` (3, 0:2, links).
+   pure function row_change(m, q, request, change, links) result(dx)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      type(request_t), intent(in) :: request
+      type(change_t), intent(in) :: change
+      real(wp), intent(in) :: links(:, 0:, :)
+      real(wp) :: dx(3, 0:2)
+
+      dx = 0.0_wp
+      associate (i => request%subject)
+         select case (request%kind)
+         case (request_link)
+            dx = links(:, :, i)
+         case (request_point)
+            dx(:2, :) = point_change(m, q, i, change, links)
+         case default
+            dx(1, :) = pair_change(m, q, i, change, links)
+         end select
+      end associate
+   end function row_change
+
+   !> The same (2, 0:2) of point number `i`.
+   pure function point_change(m, q, i, change, links) result(dx)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      integer, intent(in) :: i
+      type(change_t), intent(in) :: change
+      real(wp), intent(in) :: links(:, 0:, :)
+      real(wp) :: dx(2, 0:2)
+
+      associate (link => m%points(i)%link)
+         dx = links(:2, :, link) + arm_change(m%points(i)%offset, change%point(:, i), angle_of(m, q, link), &
+            links(3, :, link))
+      end associate
+   end function point_change
+
+   !> The angle (0:2) of `link`.
+   pure function angle_of(m, q, link) result(f)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      integer, intent(in) :: link
+      real(wp) :: f(0:2)
+
+      f = [m%links(link)%position(3), 0.0_wp, 0.0_wp]
+      if (.not. m%links(link)%ground) f = [q%position(3, link), q%velocity(3, link), q%acceleration(3, link)]
+   end function angle_of
+
+   !> The same (0:2) of pair number `k`: phi_j - phi_i, or (Q - P) . e.
+   pure function pair_change(m, q, k, change, links) result(ds)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      integer, intent(in) :: k
+      type(change_t), intent(in) :: change
+      real(wp), intent(in) :: links(:, 0:, :)
+      real(wp) :: ds(0:2), f(0:2), df(0:2), e(2)
+
+      associate (pair => m%pairs(k), i => m%points(m%pairs(k)%point_i)%link, j => m%points(m%pairs(k)%point_j)%link)
+         ds = links(3, :, j) - links(3, :, i)
+         if (pair%kind /= pair_prismatic) return
+         f = angle_of(m, q, i)
+         df = links(3, :, i)
+         df(0) = df(0) + change%pair(1, k)
+         e = direction(f(0) + pair%alpha)
+         ds = dotted(point_change(m, q, pair%point_j, change, links) &
+            - point_change(m, q, pair%point_i, change, links), turning(e, f)) &
+            + dotted(point_motion(m, q, pair%point_j) - point_motion(m, q, pair%point_i), &
+            turning_change(e, [0.0_wp, 0.0_wp], f, df))
+      end associate
+   end function pair_change
+
+   !> The sensitivities (3, 0:2, numbers) of the row of the ground that `request` asks for.
+   function ground_sensitivities(m, request) result(s)
+      type(mechanism_t), intent(in) :: m
+      type(request_t), intent(in) :: request
+      real(wp), allocatable :: s(:, :, :)
+      type(change_t) :: change
+      real(wp) :: links(3, 0:2, size(m%links))
+      type(motion_t) :: rest
+      integer :: d
+
+      allocate (s(3, 0:2, size(m%tolerances)))
+      rest = new_motion(size(m%links))
+      do d = 1, size(m%tolerances)
+         change = change_of(m, m%tolerances(d))
+         links = 0.0_wp
+         links(:, 0, :) = change%ground
+         s(:, :, d) = row_change(m, rest, request, change, links)*m%tolerances(d)%unit
+      end do
+   end function ground_sensitivities
+
+   !> The largest change (3, 0:2) of a row with the sensitivities `s` (3, 0:2, numbers) that the tolerances of `m`
+   !> allow.
+   pure function worst_case(m, s) result(x)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: s(:, 0:, :)
+      real(wp) :: x(3, 0:2)
+      integer :: d
+
+      x = 0.0_wp
+      do d = 1, size(m%tolerances)
+         x = x + abs(s(:, :, d))*m%tolerances(d)%size_of
+      end do
+   end function worst_case
+
+   !> The root (3, 0:2) of the sum of the squares of its changes by one tolerance at a time.
+   pure function root_of_squares(m, s) result(x)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: s(:, 0:, :)
+      real(wp) :: x(3, 0:2)
+      integer :: c, k
+
+      do k = 0, 2
+         do c = 1, 3
+            x(c, k) = norm2(s(c, k, :)*m%tolerances%size_of)
+         end do
+      end do
+   end function root_of_squares
+end module sensitivities
