@@ -6,7 +6,7 @@ module independent
    use scales, only: characteristic_length, characteristic_rate
    implicit none
    private
-   public :: sorted_t, sorted, part_t, parts_t, find_parts, part_of_links, mechanism_of
+   public :: sorted_t, sorted, part_t, parts_t, find_parts, part_of_links, part_of_pair, part_of_drive, mechanism_of
 
    !> The members of a part by their numbers in the whole set, increasing; the place in the list is the number within
    !> the part. A BRANCH card without a link is for every part.

@@ -13,7 +13,7 @@ module structure
    use matching, only: match, overdetermined, underdetermined
    use assur_groups, only: closure_t, new_closure, group_t, groups_of
    use scales, only: solver_length, power_of_two
-   use independent, only: parts_t, find_parts
+   use independent, only: sorted_t, sorted, parts_t, find_parts, part_of_links, part_of_pair, part_of_drive
    use links_tree, only: tree_t, new_tree
    use loop_equations, only: new_equations
    use blocks, only: blocks_t
@@ -49,7 +49,8 @@ module structure
       integer :: drives = 0       !< number of drives
       logical :: solvable = .false.             !< every unknown has an equation of its own
       type(underdetermined_t), allocatable :: lacking(:)   !< what still can move
-      integer :: spare_drives = 0               !< drives that are too many, among many_drives
+      integer :: spare_drives = 0               !< drives that are too many, among those of
+      integer, allocatable :: spare_among(:)    !< (any number) where there are such drives
       integer :: redundant = 0                  !< equations that are too many, among those of
       integer, allocatable :: many_pairs(:), many_drives(:)
       type(group_t), allocatable :: groups(:)   !< in solving order; none where it is not
@@ -113,9 +114,7 @@ contains
       f%redundant = count(unknown_of == 0)
       f%many_pairs = pack(c%pair, over .and. c%pair > 0)
       f%many_drives = pack(c%drive, over .and. c%drive > 0)
-      if (size(f%many_drives) > 1) f%spare_drives = f%redundant - redundant_without_drives(m)
-      ! The pairs of a mechanism that moves against its count leave no drive: those are not too many.
-      if (f%spare_drives >= size(f%many_drives)) f%spare_drives = 0
+      if (size(f%many_drives) > 1) call find_spare_drives(m, f)
       f%lacking = parts_that_lack(m, c%link_of, underdetermined(c%incidence, unknown_of, equation_of), &
          equation_of)
       if (size(f%lacking) > 0) return
@@ -133,20 +132,44 @@ contains
       if (f%solvable) f%groups = groups_of(m, c, unknown_of, equation_of, over, wanted_links(m))
    end function find_structure
 
-   !> The number of equations of the pairs of `m` that are too many by themselves.
-   integer function redundant_without_drives(m) result(redundant)
+   !> Of `f` the drives that are too many: in each independent mechanism of `m` as many as there are equations that are too
+   !> many with its drives and not without.
+   subroutine find_spare_drives(m, f)
       type(mechanism_t), intent(in) :: m
+      type(findings_t), intent(inout) :: f
       type(mechanism_t) :: pairs_only
+      integer :: part(size(m%links)), owner(size(f%many_drives)), i
+      integer, allocatable :: spare(:)
+
+      pairs_only = m
+      pairs_only%drives = m%drives(:0)
+      part = part_of_links(m)
+      spare = redundant_in_parts(m, part) - redundant_in_parts(pairs_only, part)
+      owner = [(part_of_drive(m, part, f%many_drives(i)), i=1, size(owner))]
+      ! The pairs of a mechanism that moves against its count leave no drive: those are not too many.
+      where (spare >= [(count(owner == i), i=1, size(spare))]) spare = 0
+      f%spare_drives = sum(spare)
+      f%spare_among = pack(f%many_drives, spare(owner) > 0)
+   end subroutine find_spare_drives
+
+   !> (mechanisms) How many equations of each independent mechanism of `m` are too many. `part` (links): its number.
+   function redundant_in_parts(m, part) result(redundant)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: part(:)
+      integer :: redundant(maxval(part)), i, k
       type(closure_t) :: c
       integer, allocatable :: unknown_of(:), equation_of(:)
 
-      pairs_only = m
-      deallocate (pairs_only%drives)
-      allocate (pairs_only%drives(0))
-      c = new_closure(pairs_only)
+      c = new_closure(m)
       call match(c%incidence, unknown_of, equation_of)
-      redundant = count(unknown_of == 0)
-   end function redundant_without_drives
+      redundant = 0
+      do i = 1, size(unknown_of)
+         if (unknown_of(i) > 0) cycle
+         if (c%pair(i) > 0) k = part_of_pair(m, part, c%pair(i))
+         if (c%drive(i) > 0) k = part_of_drive(m, part, c%drive(i))
+         if (k > 0) redundant(k) = redundant(k) + 1
+      end do
+   end function redundant_in_parts
 
    !> The parts of `m` that still can move. `part` (unknowns): the number of its part, 0 for what cannot move;
    !> parts with a link in common are one. Time proportional to the unknowns.
@@ -156,6 +179,7 @@ contains
       type(underdetermined_t), allocatable :: parts(:)
       integer :: first(size(m%links)), parent(size(part)), number(size(part)), u, i, n
       integer, allocatable :: links(:)
+      type(sorted_t) :: by_part
 
       first = 0
       parent = [(u, u=1, size(part))]
@@ -174,7 +198,10 @@ contains
          first(links(i)) = number(u)
       end do
       allocate (parts(n))
-      call share_out(links, first(links), parts)
+      by_part = sorted(first(links), n)
+      do i = 1, n
+         parts(i)%links = links(by_part%member(by_part%first(i):by_part%first(i + 1) - 1))
+      end do
       do u = 1, size(part)
          if (part(u) == 0 .or. equation_of(u) > 0) cycle
          associate (p => parts(number(top(part(u)))))
@@ -195,26 +222,6 @@ contains
          end do
       end function top
    end function parts_that_lack
-
-   !> Gives each of the `links` to the part of its `number`.
-   pure subroutine share_out(links, number, parts)
-      integer, intent(in) :: links(:), number(:)
-      type(underdetermined_t), intent(inout) :: parts(:)
-      integer :: many(size(parts)), i
-
-      many = 0
-      do i = 1, size(links)
-         many(number(i)) = many(number(i)) + 1
-      end do
-      do i = 1, size(parts)
-         allocate (parts(i)%links(many(i)))
-      end do
-      many = 0
-      do i = 1, size(links)
-         many(number(i)) = many(number(i)) + 1
-         parts(number(i))%links(many(number(i))) = links(i)
-      end do
-   end subroutine share_out
 
    !> The same by unknowns of the tree that found no equation: two links that a prismatic pair joins have one angle.
    function parts_on_tree(m, t, free) result(parts)
@@ -323,22 +330,22 @@ contains
       type(findings_t), intent(in) :: f
       character(:), allocatable :: text
 
-      text = whole(f%spare_drives)//': '//many_drives_listed(m, f)
+      text = whole(f%spare_drives)//': '//drives_listed(m, f%spare_among)
    end function spare_drives_text
 
-   !> The names of the drives among which equations are too many.
-   function many_drives_listed(m, f) result(text)
+   !> The names of the drives with these numbers.
+   function drives_listed(m, numbers) result(text)
       type(mechanism_t), intent(in) :: m
-      type(findings_t), intent(in) :: f
+      integer, intent(in) :: numbers(:)
       character(:), allocatable :: text
-      character(3*label_length + 2) :: drives(size(f%many_drives))
+      character(3*label_length + 2) :: drives(size(numbers))
       integer :: i
 
       do i = 1, size(drives)
-         drives(i) = drive_name(m, m%drives(f%many_drives(i)))
+         drives(i) = drive_name(m, m%drives(numbers(i)))
       end do
       text = listed(drives)
-   end function many_drives_listed
+   end function drives_listed
 
    !> LINKS A, B: 1 FREEDOM LEFT, ADD A DRIVE
    function lack(m, part) result(text)
@@ -369,7 +376,7 @@ contains
          //listed(m%pairs(pairs)%name)
       if (size(f%many_drives) == 0) return
       if (size(pairs) > 0) text = text//' AND'
-      text = text//trim(merge(' DRIVE ', ' DRIVES', size(f%many_drives) == 1))//' '//many_drives_listed(m, f)
+      text = text//trim(merge(' DRIVE ', ' DRIVES', size(f%many_drives) == 1))//' '//drives_listed(m, f%many_drives)
    end function surplus
 
    !> The first of each run of equal numbers.
