@@ -238,7 +238,7 @@ contains
          .or. options%check .or. options%no_listing .or. options%shares > 1 .or. options%jobs > 0 &
          .or. (options%study .and. options%time)) then
          call fail(failure, status_rejected, 'OPTION '//trim(merge('--study', '--time ', options%study)) &
-            //' GOES WITH NO OTHER OPTION BUT -o')
+            //' GOES WITH NO OTHER OPTION BUT -o AND --quiet')
       else if (options%study .and. (len(options%deck) == 0 .or. options%deck == '/dev/stdin')) then
          call fail(failure, status_rejected, 'OPTION --study NEEDS THE DECK AS A FILE')
       end if

@@ -132,8 +132,8 @@ contains
       if (f%solvable) f%groups = groups_of(m, c, unknown_of, equation_of, over, wanted_links(m))
    end function find_structure
 
-   !> Of `f` the drives that are too many: in each independent mechanism of `m` as many as there are equations that are too
-   !> many with its drives and not without.
+   !> Of `f` the drives that are too many: in each independent mechanism of `m` as many as there are equations that are
+   !> too many with its drives and not without.
    subroutine find_spare_drives(m, f)
       type(mechanism_t), intent(in) :: m
       type(findings_t), intent(inout) :: f

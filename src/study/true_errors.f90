@@ -107,6 +107,7 @@ contains
       real(qp) :: x(3, size(value, 2))
 
       x = value - truth%motion%value(:, :, k, i)
+      ! In real128: `without_turns` would add a rounding of a turn to errors that are no larger.
       if (k == 0) x(3, :) = x(3, :) - turn*anint(x(3, :)/turn)
       d = scaled(truth, k, x)
    end function differences

@@ -115,7 +115,7 @@ without_clock "$w/named.txt" > "$w/out"
 same 'in PATH: the same but for the clock' "$w/wanted" "$w/out"
 
 # What is refused.
-only=' *** OPTION --study GOES WITH NO OTHER OPTION BUT -o'
+only=' *** OPTION --study GOES WITH NO OTHER OPTION BUT -o AND --quiet'
 deck=$w/four_bar.deck
 refused '--csv' 1 "$only" --study --csv "$w/x.csv" "$deck"
 refused '--log' 1 "$only" --study --log "$w/x.log" "$deck"
@@ -123,7 +123,7 @@ refused '--errors' 1 "$only" --study --errors "$deck"
 refused '--check' 1 "$only" --check --study "$deck"
 refused '--sets' 1 "$only" --study --sets 1/2 "$deck"
 refused '--time' 1 "$only" --study --time "$deck"
-refused '--time and --csv' 1 ' *** OPTION --time GOES WITH NO OTHER OPTION BUT -o' --time --csv "$w/x.csv" "$deck"
+refused '--time and --csv' 1 ' *** OPTION --time GOES WITH NO OTHER OPTION BUT -o AND --quiet' --time --csv "$w/x.csv" "$deck"
 refused 'no deck' 1 ' *** OPTION --study NEEDS THE DECK AS A FILE' --study
 refused 'its own deck' 1 " *** THE DECK $deck WOULD BE OVERWRITTEN" --study -o "$deck" "$deck"
 sed 's/^END/EMD/' "$deck" > "$w/bad.deck"

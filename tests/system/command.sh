@@ -246,7 +246,7 @@ TMPDIR=/nonexistent refused '--jobs: no place for its files' 3 ' *** NO PROCESS 
 for jobs in 0 x 1025 -1 1.5 ''; do
    refused "--jobs '$jobs'" 1 ' *** OPTION --jobs NEEDS A WHOLE NUMBER FROM 1 TO 1024' "$w/m.deck" --jobs "$jobs"
 done
-refused '--study with --jobs' 1 ' *** OPTION --study GOES WITH NO OTHER OPTION BUT -o' "$w/m.deck" --study --jobs 2
+refused '--study with --jobs' 1 ' *** OPTION --study GOES WITH NO OTHER OPTION BUT -o AND --quiet' "$w/m.deck" --study --jobs 2
 
 # A share of a file reads no other sets; a pipe is read wholly.
 { cat "$w/m.deck"; echo 'WRONG'; echo END; } > "$w/wrong.deck"

@@ -114,7 +114,7 @@ cp input/four_bar.deck "$w/own-1.deck"
 refused '--table without a file' 1 ' *** OPTION --table NEEDS A FILE NAME' "$w/own-1.deck" --table
 refused '--table twice' 1 ' *** OPTION --table IS GIVEN TWICE' "$w/own-1.deck" --table "$w/a" --table "$w/b"
 refused '--table and --check' 1 ' *** OPTION --check COMPUTES NO MOTION, WHICH --table NEEDS' "$w/own-1.deck" --table "$w/a" --check
-refused '--table and --time' 1 ' *** OPTION --time GOES WITH NO OTHER OPTION BUT -o' "$w/own-1.deck" --table "$w/a" --time
+refused '--table and --time' 1 ' *** OPTION --time GOES WITH NO OTHER OPTION BUT -o AND --quiet' "$w/own-1.deck" --table "$w/a" --time
 refused 'two tables on standard output' 1 ' *** STANDARD OUTPUT TAKES THE TABLE OF ONE SET: CHOOSE THE K-TH OF 2 WITH --sets K/2' \
    "$w/own-1.deck" --table -
 refused 'the table of a set is another output' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own-1.deck" --table "$w/a.x" --csv "$w/a-2.x"
@@ -126,7 +126,7 @@ refused '--plot without a directory' 1 ' *** OPTION --plot NEEDS A DIRECTORY' "$
 refused '--plot -' 1 ' *** OPTION --plot NEEDS A DIRECTORY' "$w/own-1.deck" --plot -
 refused '--plot twice' 1 ' *** OPTION --plot IS GIVEN TWICE' "$w/own-1.deck" --plot "$w/a" --plot "$w/b"
 refused '--plot and --check' 1 ' *** OPTION --check COMPUTES NO MOTION, WHICH --plot NEEDS' --check "$w/own-1.deck" --plot "$w/a"
-refused '--plot and --study' 1 ' *** OPTION --study GOES WITH NO OTHER OPTION BUT -o' --study "$w/own-1.deck" --plot "$w/a"
+refused '--plot and --study' 1 ' *** OPTION --study GOES WITH NO OTHER OPTION BUT -o AND --quiet' --study "$w/own-1.deck" --plot "$w/a"
 refused '--plot where no directory can be made' 3 ' *** DIRECTORY /nonexistent/x CANNOT BE MADE (NO SUCH FILE OR DIRECTORY)' \
    "$w/own-1.deck" --plot /nonexistent/x
 refused '--plot in the place of a file' 3 " *** FILE $w/own-1.deck/table-1.csv CANNOT BE OPENED FOR WRITING (NOT A DIRECTORY)" \
