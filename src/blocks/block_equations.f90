@@ -83,19 +83,20 @@ contains
       x = s%loop(m)%known(1, 0)
       y = s%loop(m)%known(2, 0)
       do k = b%loops(m)%first_own, b%loops(m)%last_vector
-         associate (f => s%u(b%body_vectors(k)%orientation), d => b%body_vectors(k), u => s%own(:, k))
+         associate (f => s%u(b%body_vectors(k)%orientation), d => b%body_vectors(k))
             ! Not `rotated`: this is the innermost loop of a step.
-            u(1) = f%c*d%x - f%s*d%y
-            u(2) = f%s*d%x + f%c*d%y
-            x = x + u(1)
-            y = y + u(2)
+            s%own(1, k) = f%c*d%x - f%s*d%y
+            s%own(2, k) = f%s*d%x + f%c*d%y
+            x = x + s%own(1, k)
+            y = y + s%own(2, k)
          end associate
       end do
-      s%loop(m)%closure_error(1) = x
-      s%loop(m)%closure_error(2) = y
       do k = b%loops(m)%first_slide, b%loops(m)%last_slide
-         s%loop(m)%closure_error = s%loop(m)%closure_error + s%u(b%slides(k)%unknown)%value*slide_vector(b, k, s)
+         s%guide(:, k) = slide_vector(b, k, s)
+         x = x + s%u(b%slides(k)%unknown)%value*s%guide(1, k)
+         y = y + s%u(b%slides(k)%unknown)%value*s%guide(2, k)
       end do
+      s%loop(m)%closure_error = [x, y]
    end subroutine find_closure_error
 
    !> Rows of the x and y components of loop `m`, which is `g`.
@@ -107,18 +108,12 @@ contains
       real(wp), intent(inout) :: a(*), r(*)
       integer :: k
 
-      if (g%row_x > 0) then
-         r(g%row_x) = s%loop(m)%closure_error(1)
-         do k = g%first_own, g%last_vector
-            a(b%body_vectors(k)%at(1)) = -s%own(2, k)
-         end do
-      end if
-      if (g%row_y > 0) then
-         r(g%row_y) = s%loop(m)%closure_error(2)
-         do k = g%first_own, g%last_vector
-            a(b%body_vectors(k)%at(2)) = s%own(1, k)
-         end do
-      end if
+      if (g%row_x > 0) r(g%row_x) = s%loop(m)%closure_error(1)
+      if (g%row_y > 0) r(g%row_y) = s%loop(m)%closure_error(2)
+      do k = g%first_own, g%last_vector
+         if (g%row_x > 0) a(b%body_vectors(k)%at(1)) = -s%own(2, k)
+         if (g%row_y > 0) a(b%body_vectors(k)%at(2)) = s%own(1, k)
+      end do
       if (g%last_slide < g%first_slide) return
       if (g%row_x > 0) call slide_entries(b, g, 1, [1.0_wp, 0.0_wp], s, a)
       if (g%row_y > 0) call slide_entries(b, g, 2, [0.0_wp, 1.0_wp], s, a)
@@ -153,11 +148,9 @@ contains
       type(state_t), intent(in) :: s
       real(wp), intent(inout) :: a(*)
       integer :: k
-      real(wp) :: e(2)
 
       do k = g%first_slide, g%last_slide
-         e = slide_vector(b, k, s)
-         associate (at => b%slides(k)%at(row), orientation_at => b%slides(k)%orientation_at(row))
+         associate (at => b%slides(k)%at(row), orientation_at => b%slides(k)%orientation_at(row), e => s%guide(:, k))
             if (at > 0) a(at) = a(at) + dot_product(e, f)
             if (orientation_at > 0) a(orientation_at) = a(orientation_at) - s%u(b%slides(k)%unknown)%value*cross(f, e)
          end associate
@@ -272,7 +265,7 @@ contains
       real(wp) :: g(2), e(2), e_t(2)
 
       associate (slide => b%slides(k), u => s%u(b%slides(k)%unknown), f => s%u(b%slides(k)%orientation))
-         e = slide_vector(b, k, s)
+         e = s%guide(:, k)
          e_t = quarter_turn(e)
          g = 0.0_wp
          if (order == 1) then
@@ -322,7 +315,7 @@ contains
          g = g + s%u(b%body_vectors(k)%orientation)%rate*quarter_turn(s%own(:, k))
       end do
       do k = block_loop%first_slide, block_loop%last_slide
-         e = slide_vector(b, k, s)
+         e = s%guide(:, k)
          associate (u => s%u(b%slides(k)%unknown))
             g = g + u%rate*e + u%value*s%u(b%slides(k)%orientation)%rate*quarter_turn(e)
          end associate

@@ -32,6 +32,7 @@ module block_state
       type(unknown_t), allocatable :: u(:)           !< (0:unknowns); 0 is the ground's angle
       type(loop_state_t), allocatable :: loop(:)     !< (loops)
       real(wp), allocatable :: own(:, :)             !< (2, body vectors) R d, where the block's own angles rotate it
+      real(wp), allocatable :: guide(:, :)           !< (2, slides) R e, their directions
       real(wp), allocatable :: drive_value(:, :)     !< (0:2, 0:drives) value, rate and acceleration of each drive
       real(wp) :: excursion = 0.0_wp                 !< of the drives from their straight lines in a substep, at most
    end type state_t
@@ -45,7 +46,8 @@ contains
       type(state_t) :: s
 
       allocate (s%u(0:b%unknowns), s%loop(size(b%loops)))
-      allocate (s%own(2, size(b%body_vectors)), s%drive_value(0:2, 0:drives), source=0.0_wp)
+      allocate (s%own(2, size(b%body_vectors)), s%guide(2, size(b%slides)), source=0.0_wp)
+      allocate (s%drive_value(0:2, 0:drives), source=0.0_wp)
    end function new_state
 
    !> Cosine and sine of unknown `u`, if it is an angle.
