@@ -41,6 +41,7 @@ module extremes
       logical :: at_change = .false.                   !< the last instant is at a change point
       type(node_t) :: first, instant                   !< nodes of the first instant and of the last one
       type(node_t), allocatable :: last(:)             !< the last two nodes, latest first
+      logical, allocatable :: turned(:, :)             !< (3, asked) the acceleration has turned between them
    end type track_t
 
    !> An interval of time in which not all of the motion is known.
@@ -79,7 +80,8 @@ contains
       do c = 1, size(x%tracks)
          associate (track => x%tracks(c), own => s%now%own(c))
             track%rows = pack([(q, q=1, n)], x%part == c)
-            allocate (track%last(0), track%joints(0))
+            allocate (track%last(0), track%joints(0), track%turned(3, n))
+            track%turned = .false.
             if (size(track%rows) == 0) cycle
             do i = 1, size(own%drives)
                track%joints = [track%joints, joints_of(own%drives(i))]
