@@ -1,17 +1,20 @@
 !> Tests. The program of `make bench`, one table a call; tests/bench/bench.sh makes the decks and calls it.
 !>
-!>    bench steps                        time a step of four mechanisms
+!>    bench steps                        time a step of four mechanisms, also in coarse steps
+!>    bench elimination                  time of DGESV for two unknowns, and of the same operations written out
+!>    bench bits COUNT                   both compared, no clock; exit status 1 if any bits differ
 !>    bench chains DECKS                 time a step of the chains in the directory DECKS
 !>    bench reading [DECK]               time to read and analyse a deck, and memory; the table's head
 !>    bench process DECKS KINMAT         time of the whole command
 !>    bench results DECKS STEPS DECK...  results compared, no clock; exit status 1 if any differ
 program bench
    use bench_results, only: judge_all
-   use bench_tables, only: steps_table, chains_table
+   use bench_tables, only: steps_table, coarse_table, chains_table
+   use bench_elimination, only: elimination_table, judge_elimination
    use bench_whole, only: reading_head, reading_row, process_table
    implicit none
    character(200), allocatable :: arguments(:)
-   integer :: i, steps, failed
+   integer :: i, steps, count, failed
 
    allocate (arguments(max(3, command_argument_count())))
    do i = 1, size(arguments)
@@ -20,6 +23,13 @@ program bench
    select case (arguments(1))
    case ('steps')
       call steps_table()
+      call coarse_table()
+   case ('elimination')
+      call elimination_table()
+   case ('bits')
+      read (arguments(2), *) count
+      call judge_elimination(count, failed)
+      if (failed > 0) stop 1, quiet=.true.
    case ('chains')
       call chains_table(trim(arguments(2)))
    case ('reading')

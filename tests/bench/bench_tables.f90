@@ -3,14 +3,16 @@
 module bench_tables
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton, method_matrix, method_dense
-   use analysis, only: analysis_t, make_analysis
+   use analysis, only: analysis_t, make_analysis, advance
+   use motion, only: motion_t, new_motion
    use timing, only: seconds
    use bench_tools, only: spread_t, spread_of, slope, figure
-   use bench_scenes, only: scene_t, new_scene, chain_scene, gap_t, error_of, by_method, by_closed_form, steps_of_turn
+   use bench_scenes, only: scene_t, new_scene, chain_scene, gap_t, error_of, by_method, by_closed_form, steps_of_turn, &
+      instant_of
    use bench_timing, only: job_t, measure
    implicit none
    private
-   public :: steps_table, chains_table
+   public :: steps_table, coarse_table, chains_table
 
    integer, parameter :: repeats = 15
    !> Seconds of one measurement, at least: many clock ticks, yet often less than what another process is given at once.
@@ -78,6 +80,51 @@ contains
             figure(ratio%most), figure(own%least/(nano*minval(closed))), figure(own%median), e%worst
       end if
    end subroutine print_method
+
+   !> Three turns of the four-bar and the yoke in coarser steps: the start of a step is no longer right at once.
+   subroutine coarse_table()
+      integer, parameter :: steps(3) = [steps_of_turn, 360, 36]
+      character(8), parameter :: decks(2) = [character(8) :: 'four_bar', 'yoke']
+      type(scene_t) :: scenes(size(steps)*size(decks))
+      type(job_t) :: jobs(2*size(scenes))
+      real(wp) :: time(size(jobs), repeats)
+      type(spread_t) :: ratio, own
+      integer :: i
+
+      do i = 1, size(scenes)
+         associate (deck => decks((i + 2)/3), n => steps(mod(i - 1, 3) + 1))
+            scenes(i) = new_scene('input/'//trim(deck)//'.deck', trim(deck), 1)
+            scenes(i)%step = 12.0_wp/n
+            scenes(i)%steps = 3*n
+         end associate
+         jobs(2*i - 1:2*i) = [job_t(i, by_closed_form), job_t(i, method_newton)]
+      end do
+      time = measure(scenes, jobs, repeats, least)
+      print '(a)', '', ' COARSE STEPS, BLOCKS: RATIO AND NS AS ABOVE', &
+         ' FACTORIZATIONS: a step, of the block that needs most', '', &
+         ' MECHANISM  STEPS A TURN   RATIO   LEAST    MOST      NS  FACTORIZATIONS'
+      do i = 1, size(scenes)
+         ratio = spread_of(time(2*i, :)/time(2*i - 1, :))
+         own = spread_of(time(2*i, :)*nano)
+         print '(1x, a10, i13, 4a8, f16.2)', scenes(i)%name//repeat(' ', 10), scenes(i)%steps/3, figure(ratio%median), &
+            figure(ratio%least), figure(ratio%most), figure(own%median), factorizations(scenes(i))
+      end do
+   end subroutine coarse_table
+
+   !> Iterations a step, each of them a factorization.
+   real(wp) function factorizations(s)
+      type(scene_t), intent(in) :: s
+      type(analysis_t) :: a
+      type(motion_t) :: q
+      integer :: k
+
+      q = new_motion(size(s%m%links))
+      call make_analysis(a, s%m)
+      do k = 0, s%steps
+         call advance(a, instant_of(s, k), q)
+      end do
+      factorizations = real(a%iterations, wp)/s%steps
+   end function factorizations
 
    !> The chains of tests/make_deck in the directory `decks`: closed form, blocks and, where they are small, dense.
    subroutine chains_table(decks)

@@ -73,12 +73,13 @@ contains
       step = 0.1_wp*(seconds() - step)
    end subroutine read_and_step
 
-   !> The command `kinmat` on the deck s1 of 3600 steps, from start to end, and what the solving alone takes in here.
+   !> The command `kinmat` on the deck s1 of 3600 steps, from start to end, and on s2, the same with the first and the
+   !> last step printed; what the solving alone takes in here.
    subroutine process_table(decks, kinmat)
       character(*), intent(in) :: decks, kinmat
-      character(20), parameter :: names(4) = [character(20) :: 'start-up (--version)', 'solving alone', 'listing', &
-         'listing and csv']
-      real(wp) :: time(4, repeats)
+      character(20), parameter :: names(5) = [character(20) :: 'start-up (--version)', 'solving alone', &
+         'printing two steps', 'listing', 'listing and csv']
+      real(wp) :: time(size(names), repeats)
       type(spread_t) :: own, start, solving
       type(scene_t) :: s
       integer :: i, k
@@ -87,13 +88,14 @@ contains
       do k = 1, repeats
          time(1, k) = time_of('exec '//kinmat//' --version > /dev/null')
          time(2, k) = time_turn(s)
-         time(3, k) = time_of('exec '//kinmat//' '//decks//'/s1.deck > /dev/null')
-         time(4, k) = time_of('exec '//kinmat//' --csv /dev/null '//decks//'/s1.deck > /dev/null')
+         time(3, k) = time_of('exec '//kinmat//' '//decks//'/s2.deck > /dev/null')
+         time(4, k) = time_of('exec '//kinmat//' '//decks//'/s1.deck > /dev/null')
+         time(5, k) = time_of('exec '//kinmat//' --csv /dev/null '//decks//'/s1.deck > /dev/null')
       end do
       print '(a)', '', ' THE WHOLE PROCESS: THE FOUR-BAR, 3600 STEPS, RESULTS TO /dev/null', &
          ' MS: the middle of 15 repeats; RATIO: to the start-up, and to the solving alone, in the same repeat', '', &
          ' PART                      MS   LEAST    MOST  START-UP   SOLVING'
-      do i = 1, 4
+      do i = 1, size(names)
          own = spread_of(1000.0_wp*time(i, :))
          start = spread_of(time(i, :)/time(1, :))
          solving = spread_of(time(i, :)/time(2, :))
