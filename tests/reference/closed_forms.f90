@@ -14,6 +14,7 @@ module closed_forms
    use closed_forms_overconstrained, only: parallel_cranks, double_parallelogram, two_guides, cognates, dixon
    use closed_forms_branches, only: parallelogram_branch, antiparallelogram_branch, kite_branch, scott_russell_branch
    use closed_forms_published, only: ten_plates, teaching_four_bar, watt_i
+   use hand_tolerances, only: tolerant_links
    use closed_forms_hard, only: parallelogram, scott_russell, near_equal_rod, dead_point, far_small, many_turns
    implicit none
    private
@@ -30,6 +31,7 @@ module closed_forms
    type(count_t), parameter :: counts(*) = [ &
       count_t('yoke', 6, 5, 2, 1), count_t('jarzmowy', 6, 5, 2, 1), count_t('yoke_mirrored', 6, 5, 2, 1), &
       count_t('four_bar', 4, 4, 0, 1), count_t('stroke', 4, 4, 0, 1), &
+      count_t('tolerances', 4, 4, 0, 1), count_t('guide_tolerances', 4, 3, 1, 1), &
       count_t('poles', 4, 4, 0, 1), count_t('cardan', 4, 2, 2, 1), count_t('rise_dwell', 4, 4, 0, 1), &
       count_t('drawing', 4, 4, 0, 1), &
       count_t('crank_slider', 4, 3, 1, 1), count_t('scotch_yoke', 4, 2, 2, 1), count_t('whitworth', 6, 5, 2, 1), &
@@ -75,6 +77,10 @@ contains
          links = yoke(set, t, -1.0_qp)
       case ('four_bar', 'stroke')
          links = four_bar(set, t)
+      case ('tolerances')
+         links = tolerant_links(1, t)
+      case ('guide_tolerances')
+         links = tolerant_links(2, t)
       case ('poles')
          links = four_bar(1, t)
          if (set == 2) links = parallelogram(t)

@@ -55,6 +55,8 @@ module hand_groups
       statement_t('yoke_mirrored', 0, '*CRANK; BLOCK LEVER; ROD RAM'), &
       statement_t('four_bar', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('stroke', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('tolerances', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('guide_tolerances', 0, '*CRANK; ROD PISTON'), &
       statement_t('poles', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('cardan', 0, '*BAR SHOE-A SHOE-B'), &
       statement_t('rise_dwell', 0, '*CRANK; COUPLER ROCKER'), &

@@ -10,6 +10,7 @@ module hand_tables
    use hand_scales, only: hand_scales_t
    use hand_numbers, only: number_by_hand, field_length
    use hand_rows, only: hand_row_t, row_by_hand
+   use hand_tolerances, only: spread_lines
    use hand_centres, only: put_centre_heads_by_hand, put_centre_by_hand
    use text_output, only: output_t, put
    implicit none
@@ -64,6 +65,7 @@ contains
       real(qp), intent(in) :: error(:, 0:, :)
       type(hand_row_t) :: row
       character(line_length) :: line
+      character(120) :: spreads(2)
       integer :: i, kind, language
       logical :: masked
 
@@ -90,6 +92,11 @@ contains
          end if
          masked = masked .or. index(line, '?') > 0
          call put(o, line(:name_length + field_length*(6 + row%column(row%columns))))
+         if (allocated(m%tolerances)) then
+            spreads = spread_lines(m, scales, i, real(instant(m, step), qp))
+            call put(o, trim(spreads(1)))
+            call put(o, trim(spreads(2)))
+         end if
       end do
       if (kind == 0 .and. any(resting)) call put_time(o, m, scales, step, language)
       if (any(resting)) call put(o, ' *** '//crossing_words(m, b, crossing, language))

@@ -22,6 +22,7 @@ program print_expected
    use deck_tally, only: deck_name
    use closed_forms, only: closed_form, hand_count
    use hand_links, only: move_links_to
+   use hand_tolerances, only: put_shares_by_hand
    use hand_extremes, only: put_extremes_by_hand
    implicit none
    !> At 2.3E-12 from a dead point 256 roundings, a fifth of that distance, change more than in proportion.
@@ -97,6 +98,7 @@ contains
          tally%uncertain = instant_count(m) - 1
       end if
       if (any(m%requests%extremes)) call put_extremes_by_hand(o, name, m, scales, was_flagged)
+      if (allocated(m%tolerances)) call put_shares_by_hand(o, m, scales)
       call listing_end(o, m, count(.not. was_flagged), count(was_flagged), tally, &
          closure_error=merge(0.0_wp, -1.0_wp, size(redundant_by_hand(name, m)) > 0))
    end subroutine print_set

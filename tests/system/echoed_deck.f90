@@ -32,6 +32,7 @@ module echoed_deck
       logical, allocatable :: slides(:)          !< (named) prismatic pairs
       type(due_t), allocatable :: requests(:)
       type(drive_words_t), allocatable :: drives(:)
+      logical :: tolerances = .false.            !< below each row stand two more: what they make of it
    end type echoed_deck_t
 
 contains
@@ -64,6 +65,8 @@ contains
       case ('JOINT')
          call add_name(d, 2, label(1), .false.)
          call add_name(d, 3, label(1), .false.)
+      case ('TOLER')
+         d%tolerances = .true.
       case ('DRIVE')
          call add_drive(d, label(1:3))
       case ('PRINT')

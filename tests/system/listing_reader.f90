@@ -29,6 +29,7 @@ module listing_reader
    type :: row_text_t
       integer :: step = -1, kind = 0
       character(label_length) :: name = ''
+      character(5) :: spread = ''            !< WORST or RSS of the row above, otherwise blank
       character(word_length) :: word(9) = '', time = ''
       integer :: power(9) = 0, time_power = 0
    end type row_text_t
@@ -45,6 +46,7 @@ module listing_reader
    !> The table at hand; of each column its last character, 0 where it has none.
    type :: table_t
       integer :: step = -1, kind = 0
+      character(label_length) :: name = ''   !< of the latest row
       character(word_length) :: time = ''
       integer :: time_power = 0
       integer :: last(9) = 0, power(9) = 0
@@ -98,7 +100,8 @@ contains
          table%results = .true.
          call expand_requests(set%deck)
       else if (table%results .and. (table%is_over .or. starts(line, ' EXTREMES ', ' EKSTREMA ') &
-         .or. starts(line, ' RANGES OF THE DRIVES', ' ZAKRESY NAPEDOW'))) then
+         .or. starts(line, ' RANGES OF THE DRIVES', ' ZAKRESY NAPEDOW') &
+         .or. starts(line, ' TOLERANCES: ', ' TOLERANCJE: '))) then
          table%is_over = .true.
       else if (starts(line, ' INSTANT ', ' CHWILA ') .and. table%results) then
          call read_wholes(line(:index(line, 'T =')), counts, used)
@@ -194,6 +197,12 @@ contains
       end if
       row = row_text_t(step=table%step, kind=table%kind, name=line(2:first_number - 1), time=table%time, &
          time_power=table%time_power, power=table%power)
+      if (row%name(:1) == ' ') then
+         row%spread = spread_word(row%name)
+         if (row%spread == '') call blame(set, line)
+         row%name = table%name
+      end if
+      table%name = row%name
       last = first_number - 1
       do
          call next_word(line, first, last)
@@ -207,7 +216,7 @@ contains
       if (row%kind == 3) call choose_columns(is_slide(set%deck, row%name), has)
       if (any((row%word == '') .eqv. has)) call blame(set, line)
       if (any(table%unit /= units_wanted(set%deck, table))) call blame(set, 'UNITS OVER '//line)
-      call compare_drives(line, row, set)
+      if (row%spread == '') call compare_drives(line, row, set)
       if (row%kind == 3 .and. .not. has(1)) then
          ! The CSV has one value of a pair.
          row%word(1::3) = row%word(3::3)
@@ -216,6 +225,15 @@ contains
       end if
       call add_row(set, row)
    end subroutine read_table_line
+
+   !> What the row above with the name `word` says of tolerances, as the CSV has it; '' where it says nothing.
+   pure character(5) function spread_word(word)
+      character(*), intent(in) :: word
+
+      spread_word = ''
+      if (word == ' WORST' .or. word == ' NAJGOR.') spread_word = 'WORST'
+      if (word == ' RSS') spread_word = 'RSS'
+   end function spread_word
 
    !> The columns that are not those of a pair's own value.
    pure subroutine choose_columns(slide, has)

@@ -43,7 +43,8 @@ contains
    !> The rows of a set against what its deck asks for and against the next rows of the CSV.
    subroutine compare_set(set)
       type(set_text_t), intent(in) :: set
-      integer :: step, i, k
+      character(5), parameter :: spreads(0:2) = [character(5) :: '', 'WORST', 'RSS']
+      integer :: step, i, k, n
 
       if (set%instants < 1) call give_up('THE LISTING OF A SET HAS NO END')
       k = 0
@@ -51,16 +52,37 @@ contains
          do i = 1, size(set%deck%requests)
             associate (due => set%deck%requests(i))
                if (mod(step, due%every) /= 0 .and. step /= set%instants - 1) cycle
-               k = k + 1
-               if (k > set%row_count) call give_up('THE LISTING HAS TOO FEW ROWS')
-               if (set%rows(k)%step /= step .or. set%rows(k)%kind /= due%kind .or. set%rows(k)%name /= due%name) &
-                  call give_up('ANOTHER ROW THAN ASKED FOR: '//shown(set%rows(k)))
-               call compare_row(set%number, set%rows(k))
+               do n = 0, merge(2, 0, set%deck%tolerances)
+                  k = k + 1
+                  if (k > set%row_count) call give_up('THE LISTING HAS TOO FEW ROWS')
+                  if (set%rows(k)%step /= step .or. set%rows(k)%kind /= due%kind .or. set%rows(k)%name /= due%name &
+                     .or. set%rows(k)%spread /= spreads(n)) &
+                     call give_up('ANOTHER ROW THAN ASKED FOR: '//shown(set%rows(k)))
+                  call compare_row(set%number, set%rows(k))
+               end do
+               if (set%deck%tolerances) call pass_sensitivities
             end associate
          end do
       end do
       if (k /= set%row_count) call give_up('MORE ROWS THAN ASKED FOR: '//shown(set%rows(k + 1)))
    end subroutine compare_set
+
+   !> The rows of the CSV that the listing does not have: one for each number with a tolerance, one at least.
+   subroutine pass_sensitivities
+      integer :: status, passed
+
+      passed = -1
+      do
+         read (csv, '(a)', iostat=status) line
+         passed = passed + 1
+         if (status /= 0) exit
+         if (index(line, ' PER ') == 0) then
+            backspace (csv)
+            exit
+         end if
+      end do
+      if (passed == 0) call give_up('THE CSV HAS NO SENSITIVITIES')
+   end subroutine pass_sensitivities
 
    !> One row against the next one of the CSV.
    subroutine compare_row(number, row)
@@ -72,7 +94,7 @@ contains
       read (csv, '(a)', iostat=status) line
       if (status /= 0) call give_up('THE CSV HAS NO ROW FOR '//shown(row))
       call split(line, cell, status)
-      if (cell(1) /= whole_text(number) .or. cell(2) /= whole_text(row%step) .or. cell(4) /= kind_of_row(row%kind) &
+      if (cell(1) /= whole_text(number) .or. cell(2) /= whole_text(row%step) .or. cell(4) /= trim(kind_of_row(row%kind))//' '//row%spread &
          .or. cell(5) /= row%name) call give_up('THE CSV HAS ANOTHER ROW: '//trim(line)//', NOT '//shown(row))
       call compare_number(row%time, cell(3), row%time_power, row)
       do i = 1, 9
@@ -83,6 +105,7 @@ contains
          call count_number(read_printed(trim(row%word(i))))
          call compare_number(row%word(i), cell(5 + i), row%power(i), row)
       end do
+      if (row%spread /= '') return
       if ((cell(15) == '') .eqv. any(row%word == 'NONE' .or. row%word == 'BRAK')) &
          call give_up('THE MARK DOES NOT FIT: '//trim(line))
    end subroutine compare_row
