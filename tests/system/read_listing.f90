@@ -94,8 +94,8 @@ contains
       read (csv, '(a)', iostat=status) line
       if (status /= 0) call give_up('THE CSV HAS NO ROW FOR '//shown(row))
       call split(line, cell, status)
-      if (cell(1) /= whole_text(number) .or. cell(2) /= whole_text(row%step) .or. cell(4) /= trim(kind_of_row(row%kind))//' '//row%spread &
-         .or. cell(5) /= row%name) call give_up('THE CSV HAS ANOTHER ROW: '//trim(line)//', NOT '//shown(row))
+      if (cell(1) /= whole_text(number) .or. cell(2) /= whole_text(row%step) .or. cell(4) /= trim(kind_of_row(row%kind)) &
+         //' '//row%spread .or. cell(5) /= row%name) call give_up('THE CSV HAS ANOTHER ROW: '//trim(line)//', NOT '//shown(row))
       call compare_number(row%time, cell(3), row%time_power, row)
       do i = 1, 9
          if (row%word(i) == '') then
