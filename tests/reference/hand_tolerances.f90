@@ -1,0 +1,343 @@
+!> Tests. What tolerances do to the rows of the decks tolerances (1) and guide_tolerances (2), from their closed forms in real128 as functions of the
+!> numbers that have tolerances: sensitivities are central differences of these. Numbers, tolerances and units are those
+!> of the deck, written out again by hand.
+module hand_tolerances
+   use mechanism, only: mechanism_t, instant_count, instant, request_link, request_point, pair_prismatic
+   use quad_jet, only: qp, jet_t, degree_q, constant_jet, time_jet, operator(+), operator(-), operator(*), sqrt, sin, cos
+   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, place_on, polar, direction, third_corner
+   use hand_scales, only: hand_scales_t
+   use hand_numbers, only: number_by_hand, field_length
+   use text_output, only: output_t, put
+   implicit none
+   private
+   public :: tolerant_links, spread_lines, put_shares_by_hand
+
+   type :: number_t
+      character(24) :: name, tolerance, unit
+      real(qp) :: value, half_width              !< in the unit of its card
+   end type number_t
+
+   !> The numbers with tolerances of either deck, in the order of their cards.
+   type(number_t), parameter :: numbers_1(11) = [ &
+      number_t('GROUND BASE X', '0.005', 'M', 0.0_qp, 0.005_qp), number_t('GROUND BASE PHI', '0.1', 'DEG', 0.0_qp, 0.1_qp), &
+      number_t('POINT B0 XI', '0.01', 'M', 4.0_qp, 0.01_qp), number_t('POINT B0 ETA', '0.01', 'M', 0.0_qp, 0.01_qp), &
+      number_t('POINT A-CR XI', '0.005', 'M', 1.0_qp, 0.005_qp), number_t('POINT B-CO XI', '0.01', 'M', 3.5_qp, 0.01_qp), &
+      number_t('POINT C XI', '0.02', 'M', 1.75_qp, 0.02_qp), number_t('POINT C ETA', '0.02', 'M', 1.25_qp, 0.02_qp), &
+      number_t('POINT B-RO XI', '0.01', 'M', 3.0_qp, 0.01_qp), &
+      number_t('ANGLE CRANK VALUE', '0.2', 'DEG', 0.0_qp, 0.2_qp), &
+      number_t('ANGLE CRANK RATE', '0.05', 'DEG/S', 30.0_qp, 0.05_qp)]
+   type(number_t), parameter :: numbers_2(6) = [ &
+      number_t('POINT A-CR XI', '0.005', 'MM', 30.0_qp, 0.005_qp), &
+      number_t('POINT B-ROD XI', '0.01', 'MM', 90.0_qp, 0.01_qp), &
+      number_t('PRISM GUIDE ALPHA', '0.0002', 'RAD', 0.0_qp, 0.0002_qp), &
+      number_t('PRISM GUIDE H', '0.005', 'MM', 6.0_qp, 0.005_qp), &
+      number_t('PRISM GUIDE BETA', '0.0001', 'RAD', 0.0_qp, 0.0001_qp), &
+      number_t('ANGLE CRANK RATE', '0.001', 'RAD/S', 6.0_qp, 0.001_qp)]
+   !> The largest tolerance of deck 1 is about 1/200 of the whole, that of deck 2 1/5000: for four digits of what it does,
+   !> one more decimal.
+   integer, parameter :: more_decimals(2) = [0, 1]
+   !> The error of the differences is the square of this.
+   real(qp), parameter :: h = 1.0e-12_qp
+   !> Numbers that differ by less are alike: symmetric positions, equal shares.
+   real(qp), parameter :: alike = 1.0e-9_qp, least_share = 1.0e-4_qp
+   character(8), parameter :: worst_words(2) = ['WORST   ', 'NAJGOR. ']
+   character(60), parameter :: share_words(2) = [character(60) :: &
+      'TOLERANCES: SHARES OF THE NUMBERS WHERE THE RSS IS GREATEST', 'TOLERANCJE: UDZIALY LICZB PRZY NAJWIEKSZYM RSS']
+   character(20), parameter :: small_words(2) = [character(20) :: 'SMALLER SHARES:', 'MNIEJSZE UDZIALY:']
+   character(6), parameter :: kind_words(3, 2) = reshape([character(6) :: 'LINK', 'POINT', 'PAIR', &
+      'OGNIWO', 'PUNKT', 'PARA'], [3, 2])
+   character(8), parameter :: column_words(3, 0:2, 2) = reshape([character(8) :: 'X', 'Y', 'PHI', 'VX', 'VY', 'VPHI', &
+      'AX', 'AY', 'APHI', 'X', 'Y', 'FI', 'VX', 'VY', 'VFI', 'AX', 'AY', 'AFI'], [3, 3, 2])
+   !> Of deck 1 pairs have angles, of deck 2 a slide.
+   character(8), parameter :: pair_words(0:2, 2) = reshape([character(8) :: 'ANGLE', 'RATE', '2ND RATE', 'PRZESUW', &
+      'PREDKOSC', 'PRZYSP.'], [3, 2])
+
+contains
+
+   !> The deck of `m`: 2 if it has a guide.
+   pure integer function case_of(m)
+      type(mechanism_t), intent(in) :: m
+
+      case_of = merge(2, 1, any(m%pairs%kind == pair_prismatic))
+   end function case_of
+
+   !> The numbers with tolerances of deck `set`.
+   pure function numbers_of_set(set) result(list)
+      integer, intent(in) :: set
+      type(number_t), allocatable :: list(:)
+
+      list = numbers_1
+      if (set == 2) list = numbers_2
+   end function numbers_of_set
+
+   !> The links of deck `set` at the time `t`, its numbers being what the deck says.
+   pure function tolerant_links(set, t) result(links)
+      integer, intent(in) :: set
+      real(qp), intent(in) :: t
+      type(body_t) :: links(4)
+      type(number_t), allocatable :: list(:)
+
+      list = numbers_of_set(set)
+      links = links_with(set, t, list%value)
+   end function tolerant_links
+
+   !> The same with the numbers `p`.
+   pure function links_with(set, t, p) result(links)
+      integer, intent(in) :: set
+      real(qp), intent(in) :: t, p(:)
+      type(body_t) :: links(4)
+      type(place_t) :: a0, b0, a, b
+      type(body_t) :: base
+      type(jet_t) :: phi, s, along, across
+
+      if (set == 1) then
+         a0 = fixed_place(p(1), 0.0_qp)
+         base = body('BASE', a0, constant_jet(p(2)*degree_q))
+         b0 = place_on(base, p(3), p(4))
+         phi = (p(10) + p(11)*time_jet(t))*degree_q
+         a = polar(a0, p(5), phi)
+         b = third_corner(a, b0, constant_jet(p(6)**2), constant_jet(p(9)**2), 1.0_qp)
+         links = [base, body('CRANK', a0, phi), body('COUPLER', a, direction(a, b)), body('ROCKER', b0, direction(b0, b))]
+      else
+         ! The pin B is on the guide, (0 - B) . n = h, at the distance of the rod from A.
+         a0 = fixed_place(0.0_qp, 0.0_qp)
+         phi = p(6)*time_jet(t)
+         a = polar(a0, p(1), phi)
+         along = p(1)*cos(phi - p(3))
+         across = p(1)*sin(phi - p(3)) + p(4)
+         s = along + sqrt(p(2)**2 - across*across)
+         b = place_t(s*cos(p(3)) + p(4)*sin(p(3)), s*sin(p(3)) - p(4)*cos(p(3)))
+         links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK', a0, phi), body('ROD', a, direction(a, b)), &
+            body('PISTON', b, constant_jet(p(5)))]
+      end if
+   end function links_with
+
+   !> The numbers (3, 0:2) of the row of request number `i` of `m` at the time `t`, with the numbers `p`: of deck 1 the
+   !> rocker, the point C, the angle of pair B; of deck 2 the piston, and the slide along its guide.
+   function row_with(m, i, t, p) result(value)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i
+      real(qp), intent(in) :: t, p(:)
+      real(qp) :: value(3, 0:2)
+      type(body_t) :: b(4)
+      type(place_t) :: c
+      type(jet_t) :: x(3)
+
+      b = links_with(case_of(m), t, p)
+      x = constant_jet(0.0_qp)
+      if (m%requests(i)%kind == request_link) then
+         x = [b(4)%x, b(4)%y, b(4)%phi]
+      else if (m%requests(i)%kind == request_point) then
+         c = place_on(b(3), p(7), p(8))
+         x(:2) = [c%x, c%y]
+      else if (case_of(m) == 1) then
+         x(1) = b(4)%phi - b(3)%phi
+      else
+         x(1) = b(4)%x*cos(p(3)) + b(4)%y*sin(p(3))
+      end if
+      value(:, 0) = x%v
+      value(:, 1) = x%d
+      value(:, 2) = x%dd
+   end function row_with
+
+   !> (3, 0:2, numbers) By how much the row of request number `i` changes at the time `t` for each number with a
+   !> tolerance, over the change of that.
+   function sensitivities_by_hand(m, i, t) result(s)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i
+      real(qp), intent(in) :: t
+      real(qp), allocatable :: s(:, :, :)
+      type(number_t), allocatable :: list(:)
+      real(qp), allocatable :: p(:)
+      integer :: d
+
+      list = numbers_of_set(case_of(m))
+      allocate (s(3, 0:2, size(list)))
+      do d = 1, size(list)
+         p = list%value
+         p(d) = list(d)%value + h
+         s(:, :, d) = row_with(m, i, t, p)
+         p(d) = list(d)%value - h
+         s(:, :, d) = (s(:, :, d) - row_with(m, i, t, p))/(2.0_qp*h)
+      end do
+   end function sensitivities_by_hand
+
+   !> The lines (2) below the row of request number `i` at the time `t`: worst case, root of the sum of squares.
+   function spread_lines(m, scales, i, t) result(lines)
+      type(mechanism_t), intent(in) :: m
+      type(hand_scales_t), intent(in) :: scales
+      integer, intent(in) :: i
+      real(qp), intent(in) :: t
+      character(120) :: lines(2)
+      real(qp) :: value(3, 0:2, 2)
+      integer :: c, k, what, n, column
+
+      call find_spreads(m, sensitivities_by_hand(m, i, t), value)
+      lines(1) = '  '//worst_words(merge(2, 1, m%polish))
+      lines(2) = '  RSS'
+      do n = 1, 2
+         do k = 0, 2
+            do c = 1, columns_of(m, i)
+               column = column_of(m, i, c)
+               what = merge(2, 1, column == 3)
+               lines(n)(10 + field_length*(3*k + column - 1):9 + field_length*(3*k + column)) = &
+                  number_by_hand(value(c, k, n)/unit_of(m, what), 0.0_qp, scales%decimals(what, k) &
+                  + more_decimals(case_of(m)), scales%power(what, k))
+            end do
+         end do
+      end do
+   end function spread_lines
+
+   !> Worst cases and roots of the sums of squares, `value` (3, 0:2, 2), from the sensitivities `s`.
+   subroutine find_spreads(m, s, value)
+      type(mechanism_t), intent(in) :: m
+      real(qp), intent(in) :: s(:, 0:, :)
+      real(qp), intent(out) :: value(3, 0:2, 2)
+      type(number_t), allocatable :: list(:)
+      integer :: d
+
+      list = numbers_of_set(case_of(m))
+      value = 0.0_qp
+      do d = 1, size(list)
+         value(:, :, 1) = value(:, :, 1) + abs(s(:, :, d)*list(d)%half_width)
+         value(:, :, 2) = value(:, :, 2) + (s(:, :, d)*list(d)%half_width)**2
+      end do
+      value(:, :, 2) = sqrt(value(:, :, 2))
+   end subroutine find_spreads
+
+   !> The number of columns of request number `i`.
+   integer function columns_of(m, i)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i
+
+      columns_of = merge(3, merge(2, 1, m%requests(i)%kind == request_point), m%requests(i)%kind == request_link)
+   end function columns_of
+
+   !> The column, 1 to 3, under which its number `c` stands: an angle of a pair under the third.
+   integer function column_of(m, i, c)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i, c
+
+      column_of = c
+      if (columns_of(m, i) == 1 .and. case_of(m) == 1) column_of = 3
+   end function column_of
+
+   !> The unit of lengths (1) or angles (2) in those of the forms.
+   real(qp) function unit_of(m, what)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: what
+
+      unit_of = 1.0_qp
+      if (what == 2 .and. m%degrees) unit_of = degree_q
+   end function unit_of
+
+   !> The shares behind the last instant of `m`.
+   subroutine put_shares_by_hand(o, m, scales)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(hand_scales_t), intent(in) :: scales
+      integer :: i, c, k
+
+      call put(o, '')
+      call put(o, ' '//trim(share_words(merge(2, 1, m%polish))))
+      do i = 1, size(m%requests)
+         do k = 0, 2
+            do c = 1, columns_of(m, i)
+               call put_quantity(o, m, scales, i, c, k)
+            end do
+         end do
+      end do
+   end subroutine put_shares_by_hand
+
+   !> Those of number `c`, derivative `k`, of request number `i`, unless its root is zero in the tables.
+   subroutine put_quantity(o, m, scales, i, c, k)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(hand_scales_t), intent(in) :: scales
+      integer, intent(in) :: i, c, k
+      real(qp), allocatable :: s(:, :, :), best(:)
+      real(qp) :: value(3, 0:2, 2), root, worst, t
+      integer :: n, what, decimals, language
+      character(:), allocatable :: line
+      character(20) :: unit
+
+      root = -1.0_qp
+      do n = 0, instant_count(m) - 1
+         s = sensitivities_by_hand(m, i, real(instant(m, n), qp))
+         call find_spreads(m, s, value)
+         if (value(c, k, 2) <= root*(1.0_qp + alike)) cycle
+         root = value(c, k, 2)
+         worst = value(c, k, 1)
+         t = instant(m, n)
+         ! The function's value has brought its own lower bounds.
+         best = s(c, k + 1, :)
+      end do
+      what = merge(2, 1, column_of(m, i, c) == 3)
+      decimals = scales%decimals(what, k) + more_decimals(case_of(m))
+      if (root/unit_of(m, what)*10.0_qp**(decimals - scales%power(what, k)) < 0.5_qp) return
+      language = merge(2, 1, m%polish)
+      line = ' '//trim(kind_words(m%requests(i)%kind, language))//' '//trim(subject())//'  '
+      if (columns_of(m, i) == 1) line = line//trim(pair_words(k, case_of(m)))
+      if (columns_of(m, i) > 1) line = line//trim(column_words(c, k, language))
+      unit = merge(m%length_unit, merge('DEG', 'RAD', m%degrees)//'     ', what == 1)
+      if (k > 0) unit = trim(unit)//'/'//m%time_unit
+      if (k == 2) unit = trim(unit)//'**2'
+      call put(o, line//'   T = '//number(t, scales%time_decimals, 0)//' '//trim(m%time_unit)//'   RSS = ' &
+         //number(root/unit_of(m, what), decimals, scales%power(what, k))//'   '//trim(worst_words(language))//' = ' &
+         //number(worst/unit_of(m, what), decimals, scales%power(what, k))//' '//trim(unit))
+      call put_numbers(o, m, best, root, unit_of(m, what), language)
+
+   contains
+
+      !> Its name.
+      function subject() result(name)
+         character(8) :: name
+
+         select case (m%requests(i)%kind)
+         case (request_link)
+            name = m%links(m%requests(i)%subject)%name
+         case (request_point)
+            name = m%points(m%requests(i)%subject)%name
+         case default
+            name = m%pairs(m%requests(i)%subject)%name
+         end select
+      end function subject
+
+      !> A number without blanks.
+      function number(x, places, power) result(text)
+         real(qp), intent(in) :: x
+         integer, intent(in) :: places, power
+         character(:), allocatable :: text
+
+         text = trim(adjustl(number_by_hand(x, 0.0_qp, places, power)))
+      end function number
+   end subroutine put_quantity
+
+   !> A line for each number with a share of note, from the sensitivities `s` of a quantity with this `root`, in units of
+   !> `unit`.
+   subroutine put_numbers(o, m, s, root, unit, language)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      real(qp), intent(in) :: s(:), root, unit
+      integer, intent(in) :: language
+      type(number_t), allocatable :: list(:)
+      real(qp) :: share(size(s))
+      character(12) :: text
+      character(36) :: name
+      integer :: n, d
+
+      list = numbers_of_set(case_of(m))
+      share = (s*list%half_width/root)**2
+      do n = 1, size(s)
+         d = findloc(share >= maxval(share)*(1.0_qp - alike), .true., dim=1)
+         if (share(d) < least_share) exit
+         write (text, '(es12.4e3)') s(d)/unit
+         name = list(d)%name
+         call put(o, number_by_hand(100.0_qp*share(d)*(1.0_qp + alike), 0.0_qp, 2, 0)//' %  '//name//'  S = '//text &
+            //'   +- '//trim(list(d)%tolerance)//' '//trim(list(d)%unit))
+         share(d) = -1.0_qp
+      end do
+      write (text, '(i0)') size(s) - n + 1
+      if (n <= size(s)) call put(o, '   '//trim(small_words(language))//' '//trim(text))
+   end subroutine put_numbers
+end module hand_tolerances
