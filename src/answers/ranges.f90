@@ -171,7 +171,6 @@ contains
       call make_analysis(a, d)
       call advance(a, 0.0_wp, first)
       r%limit(side) = diagnostic_t(kind=diagnostic_limit, drive=r%drive, is_angle=is_angle, value=value)
-      t = 0.0_wp
       if (first%known < 0) return
       do k = 1, nint(d%t1/step)
          t = step*k
