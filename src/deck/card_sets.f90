@@ -51,7 +51,6 @@ contains
       integer :: kind
 
       set%count = 0
-      if (allocated(set%cards)) deallocate (set%cards)
       set%number_of = 0
       set%names_certain = .true.
       set%small = card_t()
