@@ -1,6 +1,6 @@
 !> The results as a table (--table): a row for each instant at which PRINT asks for anything, a column for each
 !> quantity; time first, then the drives, then all positions, velocities and accelerations that PRINT asks for, with
-!> all digits; then poles and curves, whose places may be at infinity.
+!> all digits; then curves and poles, which have no place where it is at infinity.
 !>
 !> pandas, R and spreadsheets part the cells of a row at commas, gnuplot at blanks: between two cells are both, and no
 !> blanks in the heading, which gnuplot skips. The units are those of the deck. A row ends before the first value that
@@ -79,14 +79,14 @@ contains
             end do
          end do
       end do
-      do i = 1, size(m%requests)
-         if (m%requests(i)%kind < request_pole) cycle
-         associate (numbers => centre_numbers(:, :, m%requests(i)%kind))
-            do c = 1, size(numbers, 2)
+      do k = request_curve, request_pole, -1
+         do i = 1, size(m%requests)
+            if (m%requests(i)%kind /= k) cycle
+            do c = 1, size(centre_numbers, 2)
                n = n + 1
-               t%columns(n) = column_t(i, 0, numbers(2, c), numbers(1, c), numbers(1, c) == 3)
+               t%columns(n) = column_t(i, 0, centre_numbers(2, c, k), centre_numbers(1, c, k), centre_numbers(1, c, k) == 3)
             end do
-         end associate
+         end do
       end do
       call name_columns(m, t%columns)
       call name_centres(m, t%columns)

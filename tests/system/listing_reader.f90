@@ -54,6 +54,7 @@ module listing_reader
       integer :: drives = 0                  !< of the instant, that have been read
       logical :: results = .false.           !< the deck and the structure are over
       logical :: is_over = .false.           !< what follows is asked of the whole run
+      logical :: centres = .false.           !< of a POLE or CURVE card, which tests/system/centres.sh reads
    end type table_t
 
 contains
@@ -108,12 +109,15 @@ contains
          if (used /= 1) call blame(set, line)
          table%step = counts(1)
          table%kind = 0
+         table%centres = .false.
          table%drives = 0
          used = index(line, 'T =') + 2
          call read_value(line, set%deck%units(3), used, table%time, table%time_power, set)
          call read_drives(line, used, set, table)
       else if (.not. table%results) then
          call read_card(set%deck, line)
+      else if (table%centres .or. starts(line, ' POLE   ', ' BIEGUN ') .or. starts(line, ' CURVE  ', ' TOR    ')) then
+         table%centres = .true.
       else if (is_row(line) .and. table%kind == 0 .and. line(2:first_number - 1) == '') then
          call read_drives(line, 0, set, table)
       else if (is_row(line)) then

@@ -33,7 +33,7 @@ program read_listing
       if (allocated(set%wrong)) call give_up(set%wrong)
       call compare_set(set)
    end do
-   read (csv, '(a)', iostat=status) line
+   call next_row(line, status)
    if (status == 0) call give_up('THE LISTING HAS NO ROW FOR '//trim(line))
    if (numbers + absent < least) call give_up('FEWER NUMBERS THAN THERE MUST BE')
    print '(i0,a,i0,a,i0,a)', numbers, ' numbers, ', masked, ' masked, ', absent, ' absent'
@@ -84,6 +84,22 @@ contains
       if (passed == 0) call give_up('THE CSV HAS NO SENSITIVITIES')
    end subroutine pass_sensitivities
 
+   !> The next line of the CSV, but those of POLE and CURVE cards.
+   subroutine next_row(line, status)
+      character(*), intent(out) :: line
+      integer, intent(out) :: status
+      character(8), parameter :: centres(*) = [character(8) :: 'POLE', 'POLE-I', 'POLE-J', 'CURVE', 'CENTRE', 'RADIUS']
+      character(cell_length) :: cell(cells)
+
+      do
+         read (csv, '(a)', iostat=status) line
+         if (status /= 0) return
+         call split(line, cell, status)
+         if (all(cell(4) /= centres)) exit
+      end do
+      status = 0
+   end subroutine next_row
+
    !> One row against the next one of the CSV.
    subroutine compare_row(number, row)
       integer, intent(in) :: number
@@ -91,7 +107,7 @@ contains
       character(cell_length) :: cell(cells)
       integer :: i, status
 
-      read (csv, '(a)', iostat=status) line
+      call next_row(line, status)
       if (status /= 0) call give_up('THE CSV HAS NO ROW FOR '//shown(row))
       call split(line, cell, status)
       if (cell(1) /= whole_text(number) .or. cell(2) /= whole_text(row%step) .or. cell(4) /= trim(kind_of_row(row%kind)) &
