@@ -23,7 +23,7 @@ parts() {
    the sources|60|tests/system/house.sh
    the closed forms|818|"$BUILD/release/check_forms" input/*.deck
    make check|548|tests/system/check.sh
-   the reader of listings|91|tests/system/reader.sh
+   the reader of listings|93|tests/system/reader.sh
    the documents|300|tests/system/documents.sh
    estimates of errors|57|"$MAKE" --no-print-directory errors
    units of length|751|tests/system/units.sh
@@ -31,8 +31,9 @@ parts() {
    extremes and ranges|34|tests/system/answers.sh
    independent mechanisms|106|tests/system/independent.sh
    what a singular position is|211|tests/system/singular.sh
-   pictures|1060|tests/system/pictures.sh
-   tables|212|tests/system/tables.sh
+   poles and curves|37|tests/system/centres.sh
+   pictures|1128|tests/system/pictures.sh
+   tables|218|tests/system/tables.sh
    the digits|1|tests/system/digits.sh
    wide blocks|7|tests/system/wide.sh
    drives between instants|48|tests/system/drives.sh

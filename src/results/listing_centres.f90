@@ -138,10 +138,10 @@ contains
       is_direction = row%kind == request_pole .and. c == 3
       if (row%known < needed(row%kind, c, k)) then
          cell = l%none
-      else if (error(c, k) >= nothing_known) then
-         cell = repeat(' ', numeral_length - 1)//unknown_digit
       else if (is_direction .and. row%state == centre_finite .and. error(1, 0) < nothing_known) then
          cell = ''
+      else if (error(c, k) >= nothing_known) then
+         cell = repeat(' ', numeral_length - 1)//unknown_digit
       else if (has_number(row, c, k) .or. (is_direction .and. row%state == centre_finite)) then
          associate (what => dimension_of(c))
             call put_known(row%value(c, k)/unit, error(c, k)/unit, d%decimals(what, 0), d%power(what, 0), cell)

@@ -2,6 +2,7 @@
 module sum_errors
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_t, request_link, request_point, request_pair, request_pole, request_curve
+   use known_digits, only: nothing_known
    use motion, only: motion_t, known_of
    use points, only: row_t, row_of
    use instant_centres, only: centre_finite, centre_starting
@@ -113,7 +114,9 @@ contains
       if (request%kind == request_pole) then
          if (row%state >= centre_starting) return
          arm = norm2(row%value(:2, 2))
-         error(3, :) = of_sums(1, 1)/(arm*abs(row%weight)) + of_sums(2, 0)
+         ! A centre in the origin of link J has no direction there.
+         error(3, :) = nothing_known
+         if (arm*abs(row%weight) > of_sums(1, 1)) error(3, :) = of_sums(1, 1)/(arm*abs(row%weight)) + of_sums(2, 0)
          if (row%state == centre_finite) &
             error(:2, :) = (of_sums(1, 1) + arm*of_sums(2, 1))/abs(row%weight) + of_sums(1, 0)
          return
