@@ -84,7 +84,9 @@ contains
             if (m%requests(i)%kind /= k) cycle
             do c = 1, size(centre_numbers, 2)
                n = n + 1
-               t%columns(n) = column_t(i, 0, centre_numbers(2, c, k), centre_numbers(1, c, k), centre_numbers(1, c, k) == 3)
+               associate (number => centre_numbers(:, c, k))
+                  t%columns(n) = column_t(i, 0, number(2), number(1), number(1) == 3)
+               end associate
             end do
          end do
       end do
