@@ -23,7 +23,7 @@ module scheme_motion
       type(body_t), allocatable :: b(:)
       integer, allocatable :: status(:)        !< of the groups
       real(qp), allocatable :: margin(:)       !< square of the distance from a singularity, about 1 far from it
-      real(qp), allocatable :: slope(:)        !< its rate where there is a closed form
+      real(qp), allocatable :: slope(:), bow(:) !< its derivatives where there is a closed form
       real(qp), allocatable :: lowest(:)       !< the least margin on the way
       integer, allocatable :: sign(:)          !< of the determinant
       type(jet_t), allocatable :: sine(:)      !< of a parallelogram's angle
@@ -36,6 +36,9 @@ module scheme_motion
    !> A step of so small a part of what is asked for ends the motion of a group; a limit of motion is then as near as
    !> its square root.
    real(qp), parameter :: shortest = 1.0e-7_qp, limit_margin = 1.0e-4_qp
+   !> Of a margin that is no further below zero before it comes back nobody can tell, by a deck's 16 digits, that its
+   !> branches do not cross: the program takes circuits closer than 1E-7 for crossing ones.
+   real(qp), parameter :: almost_crossing = 1.0e-12_qp
    !> Nearer to a singularity than this a slide may be far off on its way to infinity, which is not followed.
    real(qp), parameter :: too_near = 1.0e-6_qp
    !> The sine of the angle from a change point within which an antiparallelogram may be so fast.
@@ -69,7 +72,7 @@ contains
       end do
       call set_trigonometry(m%b)
       allocate (m%status(size(s%groups)), source=int(is_followed))
-      allocate (m%margin(size(s%groups)), m%slope(size(s%groups)), source=0.0_qp)
+      allocate (m%margin(size(s%groups)), m%slope(size(s%groups)), m%bow(size(s%groups)), source=0.0_qp)
       allocate (m%lowest(size(s%groups)), source=huge(1.0_qp))
       allocate (m%sign(size(s%groups)), source=0)
       allocate (m%crossed(size(s%groups)), m%has_branched(size(s%groups)), source=.false.)
@@ -166,6 +169,8 @@ contains
       m%status(k) = is_unknown
       if (g%drives(2) >= g%drives(1)) return
       if (m%margin(k) < limit_margin .and. (g%form == form_any .or. m%slope(k)*h < 0.0_qp)) m%status(k) = is_lost
+      if (m%bow(k) <= 0.0_qp) return
+      if (m%slope(k)**2/(2.0_qp*m%bow(k)) - m%margin(k) < almost_crossing) m%status(k) = is_unknown
    end subroutine lose
 
    !> `trial` goes on by `h`. `failed`: the first group that the step was too long for, 0 for none.
@@ -261,6 +266,7 @@ contains
          .and. abs(margin%dd*h**2) <= max(margin%v, before)
       trial%margin(k) = margin%v
       trial%slope(k) = margin%d
+      trial%bow(k) = margin%dd
    end subroutine follow_dyad
 
    !> A parallelogram on its branch: past each change point straight on, but past the first one after the time of a
