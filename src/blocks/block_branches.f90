@@ -28,7 +28,7 @@ module block_branches
    !> distance d are distinguished from crossing ones where d^2 is above the product of the two, 1E-14.
    real(wp), parameter :: short_step = max(1.0e-4_wp, 0.75_wp*sqrt(sqrt(epsilon(1.0_wp))))
    real(wp), parameter :: right_part = max(1.0e-6_wp, 0.7_wp*epsilon(1.0_wp)**0.375_wp), max_wrong = 1.0e-2_wp
-   !> A substep may be longer where the pivots before and beyond are together less than this part of the Lipschitz
+   !> A substep may be longer where the pivots at its ends are together less than this part of the Lipschitz
    !> constant: where a crank in line with a base is almost as long, the coupler is so fast that short substeps
    !> would all end where rounding leaves no velocities. Three widths of that zone are enough; of more, circuits that
    !> do not meet, of lengths that are off by 1E-13, would be taken for crossing ones.
@@ -78,28 +78,28 @@ contains
 
    !> The substep was short, and its prediction, off by `correction`, right to so small a part of it that the motion
    !> found last is on the branch that goes on smoothly, beyond change points too. Close to them rounding has made the
-   !> prediction wrong by lipschitz/pivot^2, as it does the rates. A longer substep past a change point has to be right
-   !> to a part that is smaller as its square, by which the same circuits are distinguished.
+   !> prediction wrong by lipschitz/pivot^2, as it does the rates. A longer substep has to be right to a part that is
+   !> smaller as its square, by which the same circuits are distinguished.
    pure logical function is_short_and_right(e, correction) result(is)
       type(block_engine_t), intent(in) :: e
       real(wp), intent(in) :: correction
       real(wp) :: rounded(size(e%moving)), right
-      logical :: crosses
+      logical :: crosses, is_short
       integer :: k
 
       crosses = any(e%crossed)
-      is = e%change <= short_step .or. crosses
-      if (.not. is) return
+      is = crosses
       do k = 1, size(e%moving)
          associate (i => e%moving(k))
-            associate (before => e%followed(i)%pivot, lipschitz => e%blocks%list(i)%lipschitz)
-               rounded(k) = rounding*lipschitz/before**2
-               if (e%crossed(i)) is = is .and. (e%change <= short_step &
-                  .or. before + e%found(i)%pivot <= short_pivots*lipschitz)
-            end associate
+            is_short = e%change <= short_step .or. e%followed(i)%pivot + e%found(i)%pivot &
+               <= short_pivots*e%blocks%list(i)%lipschitz
+            if (e%crossed(i)) is = is .and. is_short
+            if (.not. crosses) is = is .or. is_short
          end associate
       end do
+      if (.not. is) return
       right = right_part*(short_step/max(short_step, e%change))**2
+      rounded = rounding*e%blocks%list(e%moving)%lipschitz/e%followed(e%moving)%pivot**2
       if (crosses) then
          right = right + minval(rounded, mask=e%crossed(e%moving))
       else

@@ -14,7 +14,7 @@ module error_estimate
    use block_method, only: block_method_t
    use block_engine, only: block_engine_t, make_block_engine, set_drive_values
    use blocks, only: body_vector_t, slide_t, block_loop_t
-   use perturbed_deck, only: sample_count, perturbation, perturbed, perturbed_instant, round_loops
+   use perturbed_deck, only: sample_count, all_samples, perturbation, perturbed, perturbed_instant, round_loops
    implicit none
    private
    public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, row_estimate, row_error, largest_errors
@@ -55,13 +55,14 @@ module error_estimate
       !> (length, angle or slide, derivative) The rounding error of a sum of numbers as large as the largest of the
       !> rows.
       real(wp) :: of_sums(3, 0:2) = 0.0_wp
-      type(motion_t), allocatable :: samples(:)   !< (-repeat_count:sample_count)
+      type(motion_t), allocatable :: samples(:)   !< (-repeat_count:sample_count or all_samples)
    end type error_estimate_t
 
-   !> Engines of the deck (0) and of its perturbed decks; the characteristic length and rate of the mechanism.
+   !> Engines of the deck (0) and of its perturbed decks, more of them where errors are asked for; the characteristic
+   !> length and rate of the mechanism.
    type :: estimator_t
       real(wp) :: length = 1.0_wp, rate = 1.0_wp   !< in the deck's units
-      type(block_engine_t), allocatable :: engine(:)   !< (0:sample_count)
+      type(block_engine_t), allocatable :: engine(:)   !< (0:sample_count or all_samples)
    end type estimator_t
 
 contains
@@ -103,20 +104,21 @@ contains
       logical, intent(in) :: always
       type(error_estimate_t), intent(inout) :: found
       class(block_method_t), intent(in), optional :: e
-      integer :: k
+      integer :: k, last
 
       found%taken = .false.
       found%asked = always
       found%in_doubt = is_in_doubt(s, m, rcond, q, e)
       if (.not. (always .or. found%in_doubt)) return
       if (q%known < 0 .and. .not. allocated(q%link_known)) return
+      last = merge(all_samples, sample_count, always)
       if (.not. allocated(found%samples)) then
-         allocate (found%samples(-repeat_count:sample_count))
+         allocate (found%samples(-repeat_count:last))
          found%samples(:) = new_motion(size(m%links))
       end if
-      call make_engines(s, m, q, e)
+      call make_engines(s, m, q, last, e)
       if (.not. s%engine(0)%blocks%solvable) return
-      do k = -repeat_count, sample_count
+      do k = -repeat_count, last
          associate (engine => s%engine(max(0, k)))
             if (present(e)) then
                ! The perturbed deck's unit may be the next power of two.
@@ -132,7 +134,7 @@ contains
             end if
          end associate
       end do
-      found%taken = found%samples(0)%known /= unusable .and. any(found%samples(1:)%known /= unusable)
+      found%taken = found%samples(0)%known /= unusable .and. any(found%samples(1:sample_count)%known /= unusable)
       if (found%taken) found%of_sums = errors_of_sums(m, found%samples(0), s%length)
    end subroutine take_samples
 
@@ -167,21 +169,23 @@ contains
       largest = max(maxval(abs(x(:2, :)))/length, maxval(abs(x(3, :))))
    end function largest
 
-   !> The engines of `m`, for the angles and slides of `e`; without it they are those of the position `q`.
-   subroutine make_engines(s, m, q, e)
+   !> The engines of `m` and of its perturbed decks up to number `last`, for the angles and slides of `e`; without it
+   !> they are those of the position `q`.
+   subroutine make_engines(s, m, q, last, e)
       type(estimator_t), intent(inout) :: s
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
+      integer, intent(in) :: last
       class(block_method_t), intent(in), optional :: e
       type(mechanism_t) :: deck
       integer :: k
 
       if (present(e) .and. allocated(s%engine)) return
       if (allocated(s%engine)) deallocate (s%engine)
-      allocate (s%engine(0:sample_count))
+      allocate (s%engine(0:last))
       deck = m
       if (.not. present(e)) call place_links(deck, q%position)
-      do k = 0, sample_count
+      do k = 0, last
          call make_block_engine(s%engine(k), perturbed(deck, k))
       end do
    end subroutine make_engines
@@ -253,7 +257,7 @@ contains
       real(wp) :: error(3, 0:2), scale(-1:1)
       type(row_t) :: middle, one
       logical :: zero(3, 0:2), lost(3, 0:2)
-      integer :: k, known
+      integer :: k, last, known
 
       error = 0.0_wp
       lost = .false.
@@ -268,9 +272,11 @@ contains
       known = middle%known
       zero = abs(middle%value) <= 0.0_wp
       ! Where the Jacobian has no inverse, a position changes with the root of what the deck changes by.
+      last = sample_count
+      if (present(own) .and. s%asked) last = all_samples
       scale = [own_in_tables, 0.0_wp, 1.0_wp/merge(roundings, sqrt(roundings), known > 0)]
       if (present(own)) scale(-1) = own
-      do k = lbound(s%samples, 1), ubound(s%samples, 1)
+      do k = -repeat_count, last
          if (k == 0 .or. s%samples(k)%known == unusable) cycle
          ! Next to a limit of the motion, half of the perturbed decks have no position.
          one = row_of(m, s%samples(k), request)
