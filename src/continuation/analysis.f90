@@ -11,7 +11,7 @@ module analysis
    use convergence, only: convergence_t, ended_inconsistent, ended_unsought
    use block_engine, only: block_engine_t
    use block_diagnostics, only: start_diagnostics, limit_diagnostic
-   use at_bifurcation, only: stand_on
+   use at_bifurcation, only: stand_on, pass_standstill
    use following, only: following_t, step_record_t, make_following, continue_to, is_too_far, has_too_many_substeps, &
       go_on_from, go_back, place_t, note_place, return_to, limits_t, note_limit, lies_beyond, diagnostics_of_limit
    implicit none
@@ -56,6 +56,7 @@ contains
       real(wp), intent(in) :: t
       type(motion_t), intent(inout) :: found
       type(step_record_t) :: step
+      type(diagnostic_t), allocatable :: list(:)
 
       call come_back(a)
       if (allocated(found%diagnostics)) deallocate (found%diagnostics)
@@ -65,10 +66,11 @@ contains
          return
       end if
       call continue_to(a%following_t, t, step)
-      if (allocated(step%passed)) call add_diagnostics(step%passed, found)
+      if (.not. step%arrived) call pass_standstill(a%following_t, t, step, list)
       if (step%arrived) then
-         call arrive(a, step, found)
+         call arrive(a, step, list, found)
       else
+         if (allocated(step%passed)) call add_diagnostics(step%passed, found)
          call give_up(a, t, step, found)
       end if
       if (found%known == 2) then
@@ -124,19 +126,21 @@ contains
       a%left%is_left = .false.
    end subroutine come_back
 
-   !> The motion found at the end of `step`.
-   subroutine arrive(a, step, found)
+   !> The motion found at the end of `step`; `list`: what there is to say of it if it stands on a change point.
+   subroutine arrive(a, step, list, found)
       type(analysis_t), intent(inout) :: a
       type(step_record_t), intent(inout) :: step
+      type(diagnostic_t), allocatable, intent(inout) :: list(:)
       type(motion_t), intent(inout) :: found
-      type(diagnostic_t), allocatable :: list(:)
 
       call get_motion(a, found)
-      if (a%convergence%singular) then
+      if (a%convergence%singular .and. .not. step%stands) then
          call stand_on(a%following_t, found%t, step, list, step%stands)
-         if (step%stands) call get_motion(a, found)
-         call add_diagnostics(list, found)
+         if (.not. step%stands) call pass_standstill(a%following_t, found%t, step, list)
+         if (step%stands .or. .not. a%convergence%singular) call get_motion(a, found)
       end if
+      if (allocated(step%passed)) call add_diagnostics(step%passed, found)
+      if (allocated(list)) call add_diagnostics(list, found)
       call judge_branch(a, step)
       if (.not. a%has_begun .or. (.not. a%follows .and. found%known == 2)) call diagnose_start(a, found)
    end subroutine arrive
