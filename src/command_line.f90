@@ -8,11 +8,12 @@ module command_line
    private
    public :: options_t, to_standard_output, word_t, read_command, read_words, help_text
    public :: file_option_t, file_options
-   public :: out_listing, out_csv, out_log, out_svg, out_animation, out_table, out_plot_table, out_plot_script, out_last
+   public :: out_listing, out_csv, out_log, out_summary, out_svg, out_animation, out_table
+   public :: out_plot_table, out_plot_script, out_last
 
    !> The outputs that are files, and `out_last`, the last of them.
    enum, bind(c)
-      enumerator :: out_listing = 1, out_csv, out_log, out_svg, out_animation, out_table
+      enumerator :: out_listing = 1, out_csv, out_log, out_summary, out_svg, out_animation, out_table
       enumerator :: out_plot_table, out_plot_script
       enumerator :: out_last = out_plot_script
    end enum
@@ -31,6 +32,7 @@ module command_line
       file_option_t('-o'), &
       file_option_t('--csv'), &
       file_option_t('--log'), &
+      file_option_t('--summary', needs_motion=.true.), &
       file_option_t('--svg', needs_motion=.true.), &
       file_option_t('--animate', needs_motion=.true.), &
       file_option_t('--table', needs_motion=.true., each_set=.true.), &
@@ -71,6 +73,7 @@ module command_line
       '  --no-listing         no listing', &
       '  --csv FILE           the results with '//csv_digits//' digits, comma-separated', &
       '  --log FILE           the log of the solver, a line per instant', &
+      '  --summary FILE       a row for each variant of a set with VARY cards', &
       '  --svg FILE           a picture of the mechanism and paths of points', &
       '  --animate FILE       the same with the mechanism in motion', &
       '  --table FILE         a row an instant, a column a quantity', &

@@ -1,50 +1,37 @@
 !> One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later. Sets are independent of
 !> one another, and long jobs compute them in several processes.
 module job
-   use failures, only: failure_t, status_solved, status_flagged, status_signal
+   use failures, only: failure_t, fail, status_rejected, status_solved, status_flagged, status_signal
    use mechanism, only: mechanism_t, request_pole, instant_count, instant, with_all_links
    use structure, only: findings_t, check_structure
    use deck, only: read_deck, share_t
-   use text_output, only: output_t
    use progress, only: progress_t, start_progress, show_progress, end_progress
    use system_calls, only: watch_signals, signal_received, broken_pipe_kills, signal_pipe
-   use listing, only: layout_t, new_layout, listing_head, listing_instant, listing_end, listing_broken_off
+   use listing, only: new_layout, listing_head
    use listing_diagnostics, only: remarks_text
-   use csv, only: csv_head, csv_instant
-   use table, only: table_t, new_table, table_head, table_instant
+   use csv, only: csv_head
+   use table, only: new_table, table_head
    use plot_script, only: put_script
    use drawing, only: drawing_t, new_drawing, record_instant
    use picture_frames, only: picture_candidates
    use picture_page, only: picture_head
    use picture, only: put_pictures
    use animation, only: film_of, put_animations, max_intervals
-   use solver_log, only: log_head, log_instant
-   use convergence, only: convergence_t
-   use branch_certificate, only: branch_t
-   use points, only: strides, any_due
-   use answers, only: answers_t, new_answers, take_instant, put_answers
+   use solver_log, only: log_head
+   use answers, only: answers_t
+   use variant_rows, only: variant_row_t
+   use instants, only: writers_t, run_motion
+   use variants, only: run_variants
    use numerals, only: whole
-   use set_motion, only: is_flagged, has_words
-   use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set, sense_set, set_record, &
-      set_errors, set_closure_error, set_closing_diagnostics
-   use command_line, only: options_t, to_standard_output, out_listing, out_csv, out_log, out_svg, out_animation, &
-      out_table, out_plot_table, out_plot_script
+   use set_analysis, only: set_analysis_t, make_set_analysis, advance_set
+   use command_line, only: options_t, file_options, to_standard_output, out_listing, out_csv, out_log, out_svg, &
+      out_animation, out_table, out_plot_table, out_plot_script, out_last
    use shares, only: run_shares, end_share
    use processes, only: processor_count
-   use outputs, only: outputs_t, open_outputs, flush_outputs, close_outputs, is_over, is_broken_pipe, set_suffix
+   use outputs, only: open_outputs, flush_outputs, close_outputs, is_over, is_broken_pipe, set_suffix
    implicit none
    private
    public :: run_job
-
-   !> The job's outputs, and what they keep from instant to instant.
-   type, extends(outputs_t) :: writers_t
-      type(progress_t) :: progress
-      integer :: first = 1, last = 0                !< the sets that the command asks for
-      integer :: own_first = 1, own_last = 0        !< those that this process computes
-      type(layout_t) :: layout                      !< of the listing of the set at hand
-      type(table_t) :: table                        !< of the set at hand
-      type(drawing_t), allocatable :: drawings(:), films(:)   !< (first:last)
-   end type writers_t
 
    !> Links times instants from which on more than one process is made: about a hundredth of a second.
    real, parameter :: least_work = 2.0e4
@@ -67,7 +54,9 @@ contains
       is_child = .false.
       call start_progress(o%progress, .not. options%quiet, any(to_standard_output(options%files)))
       share = share_t(options%share, options%shares)
-      call read_deck(options%deck, sets, message, failure, share)
+      call read_deck(options%deck, sets, message, failure, share, o%variations)
+      o%varies = share%varies
+      if (.not. allocated(failure)) call check_variants(options, o%varies, failure)
       if (.not. allocated(failure)) call check_structure(sets, findings, failure)
       if (allocated(failure) .and. len(message) == 0) message = said_of(options, sets)//' *** '//failure%text
       if (.not. allocated(failure)) then
@@ -100,6 +89,20 @@ contains
       if (is_child) call end_share(status, message)
    end subroutine run_job
 
+   !> A table has columns for one motion, not for those of the variants of a deck that `varies`.
+   subroutine check_variants(options, varies, failure)
+      type(options_t), intent(in) :: options
+      logical, intent(in) :: varies
+      type(failure_t), allocatable, intent(out) :: failure
+      integer :: k
+
+      if (.not. varies) return
+      do k = 1, out_last
+         if (file_options(k)%each_set .and. allocated(options%files(k)%text)) call fail(failure, status_rejected, &
+            'OPTION '//trim(file_options(k)%word)//' TAKES NO DECK WITH VARY CARDS: USE --summary OR --csv')
+      end do
+   end subroutine check_variants
+
    !> How many processes compute `sets`: one where they take no time, or are to be drawn on one page.
    integer function process_count(options, sets) result(n)
       type(options_t), intent(in) :: options
@@ -108,7 +111,7 @@ contains
       integer :: i
 
       n = options%jobs
-      work = sum([(real(instant_count(sets(i)))*size(sets(i)%links), i=1, size(sets))])
+      work = sum([(real(instant_count(sets(i)))*max(1, sets(i)%variants)*size(sets(i)%links), i=1, size(sets))])
       if (n == 0) n = merge(processor_count(), 1, work > least_work)
       if (options%check .or. allocated(options%files(out_svg)%text) .or. &
          allocated(options%files(out_animation)%text)) n = 1
@@ -155,7 +158,7 @@ contains
       integer :: i, every
 
       if (o%asked(out_csv) .and. options%share == 1 .and. o%own_first == o%first) &
-         call csv_head(o%files(out_csv, 0), options%errors)
+         call csv_head(o%files(out_csv, 0), options%errors, o%varies)
       if (o%asked(out_svg)) call picture_head(o%files(out_svg, 0))
       if (o%asked(out_svg)) allocate (o%drawings(o%first:o%last))
       if (o%asked(out_animation)) call picture_head(o%files(out_animation, 0))
@@ -213,7 +216,7 @@ contains
       call move_alloc(fine%centrodes, d%centrodes)
    end subroutine draw_centrodes
 
-   !> Solves and writes set number `i`, `m`, instant by instant.
+   !> Solves and writes set number `i`, `m`.
    subroutine run_set(options, m, i, findings, o, status)
       type(options_t), intent(in) :: options
       type(mechanism_t), intent(in) :: m
@@ -221,32 +224,21 @@ contains
       type(findings_t), intent(inout) :: findings
       type(writers_t), intent(inout) :: o
       integer, intent(inout) :: status
-      type(set_analysis_t) :: a
+      type(variant_row_t) :: counts
       type(answers_t) :: asked
-      integer, allocatable :: every(:)
-      integer :: k, flagged
+      integer :: k
 
       call write_heads(options, m, i, findings, o)
       if (options%check .or. is_over(o, i)) return
-      call make_set_analysis(m, a, findings)
-      if (o%asked(out_listing)) call new_answers(m, a, asked)
-      flagged = 0
-      every = strides(m)
-      do k = 0, instant_count(m) - 1
-         call advance_set(a, instant(m, k))
-         if (is_flagged(a%now)) flagged = flagged + 1
-         call write_instant(options, m, i, k, any_due(m, every, k), a, o)
-         call take_instant(asked, m, a, k)
-         if (o%progress%shown) &
-            call show_progress(o%progress, 'SET '//whole(i)//': INSTANT', k, instant_count(m) - 1)
-         if (.not. is_over(o, i)) cycle
-         if (o%asked(out_listing)) call listing_broken_off(o%files(out_listing, 0), m, k)
-         return
-      end do
-      if (o%asked(out_listing)) call put_answers(o%files(out_listing, 0), o%layout, asked, m, a)
-      if (o%asked(out_listing)) call listing_end(o%files(out_listing, 0), m, instant_count(m) - flagged, flagged, &
-         a%certificate_counts, set_closure_error(a), set_closing_diagnostics(a, m))
-      if (flagged > 0) status = status_flagged
+      if (m%variants == 0) then
+         call run_motion(options, m, i, findings, .true., o, counts, asked)
+         if (counts%flagged > 0) status = status_flagged
+      else
+         do k = 1, size(o%variations)
+            if (o%variations(k)%set%mechanism%set_number == i) &
+               call run_variants(options, m, i, findings%parts, o%variations(k), o, status)
+         end do
+      end if
    end subroutine run_set
 
    !> Writes what stands before the first instant of set number `i`, `m`.
@@ -262,7 +254,7 @@ contains
          call listing_head(o%files(out_listing, 0), m, findings)
       end if
       if (options%check) return
-      if (o%asked(out_log)) call log_head(o%files(out_log, 0), m, options%errors)
+      if (o%asked(out_log) .and. m%variants == 0) call log_head(o%files(out_log, 0), m, options%errors)
       if (o%asked(out_table) .or. o%asked(out_plot_table)) o%table = new_table(m)
       if (o%asked(out_table)) call table_head(o%files(out_table, i), o%table)
       if (o%asked(out_plot_table)) call table_head(o%files(out_plot_table, i), o%table)
@@ -271,41 +263,4 @@ contains
       call flush_outputs(o, i)
    end subroutine write_heads
 
-   !> Writes instant number `k` of set number `i`, `m`, to which `a` has advanced; `due`: PRINT asks for it. Only the
-   !> listing, and estimates that are asked for, need samples.
-   subroutine write_instant(options, m, i, k, due, a, o)
-      type(options_t), intent(in) :: options
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i, k
-      logical, intent(in) :: due
-      type(set_analysis_t), intent(inout) :: a
-      type(writers_t), intent(inout) :: o
-
-      if (options%errors .or. (due .and. o%asked(out_listing))) call sample_set(a, options%errors)
-      if (due .and. (o%asked(out_listing) .or. o%asked(out_csv))) call sense_set(a)
-      if (o%asked(out_listing) .and. (due .or. has_words(a%now))) &
-         call listing_instant(o%files(out_listing, 0), o%layout, m, a%now, k)
-      if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv, 0), m, a%now, k)
-      if (o%asked(out_table) .and. due) call table_instant(o%files(out_table, i), o%table, m, a%now)
-      if (o%asked(out_plot_table) .and. due) call table_instant(o%files(out_plot_table, i), o%table, m, a%now)
-      if (o%asked(out_log)) call put_log(o%files(out_log, 0), options, m, a, k)
-   end subroutine write_instant
-
-   !> The line of instant number `k` in the log.
-   subroutine put_log(log, options, m, a, k)
-      type(output_t), intent(inout) :: log
-      type(options_t), intent(in) :: options
-      type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(in) :: a
-      integer, intent(in) :: k
-      type(convergence_t) :: record
-      type(branch_t) :: branch
-
-      call set_record(a, record, branch)
-      if (options%errors) then
-         call log_instant(log, k, instant(m, k), record, branch, set_errors(a))
-      else
-         call log_instant(log, k, instant(m, k), record, branch)
-      end if
-   end subroutine put_log
 end module job

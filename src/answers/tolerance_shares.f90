@@ -7,7 +7,7 @@ module tolerance_shares
    use names, only: subject_name
    use set_motion, only: set_motion_t
    use sensitivities, only: has_tolerances, ground_sensitivities, worst_case, root_of_squares
-   use listing_layout, only: layout_t, digits_t, digits_of, dimension_of, name_length, unit_of
+   use listing_layout, only: layout_t, digits_t, digits_of, dimension_of, name_length, unit_of, column_text
    use listing_tables, only: time_text
    use text_output, only: output_t, put
    use numerals, only: fixed, whole, numeral_length
@@ -163,17 +163,6 @@ contains
          text = trim(adjustl(fixed(x/size_of, decimals, d%power(what, k))))
       end function value_text
    end subroutine put_quantity
-
-   !> What `line`, of the head of a table, has over column `c` of derivative `k`, without blanks around it.
-   pure function column_text(line, c, k) result(text)
-      character(*), intent(in) :: line
-      integer, intent(in) :: c, k
-      character(:), allocatable :: text
-
-      associate (before => name_length + numeral_length*(3*k + c - 1))
-         text = trim(adjustl(line(before + 1:before + numeral_length)))
-      end associate
-   end function column_text
 
    !> A line for each number of `m` with a share of note, the largest first: share, name, sensitivity (the quantity is
    !> divided by `size_of`), tolerance.

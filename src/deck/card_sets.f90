@@ -17,8 +17,9 @@ module card_sets
    use numerals, only: whole
    implicit none
    private
-   public :: card_set_t, begin_set, append_card, read_small_letters, build_bodies, look_up, match_word
-   public :: add_card_error, add_card_remark
+   public :: card_set_t, vary_card_t, begin_set, begin_mechanism, append_card
+   public :: read_small_letters, build_bodies, look_up, match_word
+   public :: add_card_error, add_parsed_error, add_card_remark
 
    !> The links, the points or the pairs of a set.
    type :: named_t
@@ -26,11 +27,18 @@ module card_sets
       type(name_table_t) :: table                   !< from their names to their places in `card`
    end type named_t
 
+   !> A VARY card, and the number of the card whose numbers vary.
+   type :: vary_card_t
+      type(parsed_card_t) :: card
+      integer :: below = 0                          !< 0: no card is above it
+   end type vary_card_t
+
    type :: card_set_t
       integer :: count = 0                          !< cards so far
       type(parsed_card_t), allocatable :: cards(:)  !< (count) and room for more
       integer :: number_of(0:form_end) = 0          !< cards of each form
       logical :: names_certain = .true.             !< of every card: no unknown name can be one that was misread
+      type(vary_card_t), allocatable :: vary(:)     !< the VARY cards, once they are apart from the others
       type(card_t) :: small                         !< the first card with small letters; its number is 0: none
       real(wp) :: angle_unit = 1.0_wp               !< the deck's unit of angles in radians
       type(named_t) :: named(request_link:request_pair)
@@ -48,18 +56,32 @@ contains
    subroutine begin_set(set, number)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: number
-      integer :: kind
 
       set%count = 0
+      if (allocated(set%vary)) deallocate (set%vary)
       set%number_of = 0
       set%names_certain = .true.
       set%small = card_t()
+      call begin_mechanism(set, number)
+   end subroutine begin_set
+
+   !> Makes `set`, the set of computations `number`, ready to build its mechanism from its cards, or to build it again.
+   subroutine begin_mechanism(set, number)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: number
+      integer :: k, kind
+
+      do k = 1, set%count
+         set%cards(k)%drive = 0
+         set%cards(k)%term = 0
+         set%cards(k)%point = 0
+      end do
       set%angle_unit = 1.0_wp
       do kind = request_link, request_pair
          set%named(kind) = named_t()
       end do
       set%mechanism = mechanism_t(set_number=number)
-   end subroutine begin_set
+   end subroutine begin_mechanism
 
    !> Appends a card. Errors: status_system, if there is no memory for it.
    subroutine append_card(set, card, failure)
@@ -341,12 +363,21 @@ contains
       integer, intent(in) :: k, field
       character(*), intent(in), optional :: more
 
-      associate (card => set%cards(k))
-         if (any(card%on_star .and. field == [real_1, real_2, real_3])) then
-            call add_field_error(set%errors, code, card%star, wide_fields(field - label_c), more)
-         else
-            call add_field_error(set%errors, code, card%card, card_fields(field), more)
-         end if
-      end associate
+      call add_parsed_error(set%errors, code, set%cards(k), field, more)
    end subroutine add_card_error
+
+   !> The same for `card`, to `errors`.
+   subroutine add_parsed_error(errors, code, card, field, more)
+      type(input_errors_t), intent(inout) :: errors
+      type(error_code_t), intent(in) :: code
+      type(parsed_card_t), intent(in) :: card
+      integer, intent(in) :: field
+      character(*), intent(in), optional :: more
+
+      if (any(card%on_star .and. field == [real_1, real_2, real_3])) then
+         call add_field_error(errors, code, card%star, wide_fields(field - label_c), more)
+      else
+         call add_field_error(errors, code, card%card, card_fields(field), more)
+      end if
+   end subroutine add_parsed_error
 end module card_sets

@@ -3,17 +3,18 @@
 module deck
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: label_length
-   use mechanism, only: mechanism_t, method_words, method_newton
+   use mechanism, only: mechanism_t
    use card_reader, only: parsed_card_t, read_card, read_star
    use card_sets, only: card_set_t, begin_set, append_card, read_small_letters, build_bodies
-   use cards, only: card_t, card_fields, wide_fields, card_name, label_a, real_1, field_text, small_field, &
-      is_passed_over, find_form, form_name, reals_of, form_title, form_units, form_link, form_time, form_at, &
-      form_method, form_print, form_pole, form_curve, form_end
+   use deck_variants, only: variation_t, set_apart, build_variation, take_values
+   use cards, only: card_t, card_fields, card_name, small_field, is_passed_over, find_form, form_link, form_time, &
+      form_at, form_vary, form_end
    use deck_drives, only: build_drives, check_terms
    use deck_options, only: build_options, build_requests, build_branches
    use deck_centres, only: build_centres, check_centres
    use deck_tolerances, only: build_tolerances
    use deck_remarks, only: check_unused, check_angles, check_guides
+   use deck_echo, only: build_echo
    use deck_source, only: source_t, open_source, next_card, close_source
    use system_calls, only: identity_t, identity_of_path
    use failures, only: failure_t, fail, status_rejected
@@ -22,7 +23,7 @@ module deck
    use numerals, only: whole
    implicit none
    private
-   public :: read_deck, share_t, share_end
+   public :: read_deck, share_t, share_end, build_variant
 
    !> The largest number of cards, with comments and blank cards.
    integer, parameter :: max_cards = 2000000
@@ -32,35 +33,32 @@ module deck
       integer :: number = 1, count = 1
       integer :: first = 1, last = 0              !< numbers of its sets; set by `read_deck`
       integer :: sets = 0                         !< of the whole deck; the same
+      logical :: varies = .false.                 !< the deck has VARY cards; the same
    end type share_t
 
    !> What has been read so far.
    type :: progress_t
       type(mechanism_t), allocatable :: sets(:)   !< (closed) and room for more
+      type(variation_t), allocatable :: variations(:)   !< of the sets with VARY cards
       integer :: closed = 0                       !< number of those that have their END
       integer :: passed = 0                       !< sets before the first of them
       type(card_set_t) :: set                     !< the open set, and the errors of the deck
       integer :: errors_before = 0                !< errors of the deck before the open set
    end type progress_t
 
-   !> The echo: its characters in a line, and in a real.
-   integer, parameter :: line_length = 119, real_width = 25
-   !> Column of the first label, column of the first real, and columns from one label to the next.
-   integer, parameter :: label_column = 10, real_column = 37, label_step = 9
-   character(*), parameter :: default_mark = '(DEFAULT)'
-
 contains
 
    !> Reads the deck in the file `path` ('' or '-': standard input). `sets` (number of sets): of size 0 on any failure.
    !> `report`: all error messages, lines joined by new_line('a'); '' if there are none. Errors: status_rejected
    !> (`report` says why) or status_system. `share`: only its sets are wanted. Of a file only they are read: errors of
-   !> other sets are not found. A pipe is read wholly.
-   subroutine read_deck(path, sets, report, failure, share)
+   !> other sets are not found. A pipe is read wholly. `variations`: of the sets that have VARY cards.
+   subroutine read_deck(path, sets, report, failure, share, variations)
       character(*), intent(in) :: path
       type(mechanism_t), allocatable, intent(out) :: sets(:)
       character(:), allocatable, intent(out) :: report
       type(failure_t), allocatable, intent(out) :: failure
       type(share_t), intent(inout), optional :: share
+      type(variation_t), allocatable, intent(out), optional :: variations(:)
       type(progress_t) :: progress
       type(source_t) :: source
       integer :: errors, first, last
@@ -68,7 +66,7 @@ contains
       first = 1
       last = huge(last)
       if (present(share)) call find_share(path, share, first, last)
-      allocate (progress%sets(4))
+      allocate (progress%sets(4), progress%variations(0))
       progress%passed = first - 1
       call begin_set(progress%set, first)
       call open_source(source, path, failure)
@@ -82,6 +80,8 @@ contains
       if (.not. allocated(failure) .and. errors > 0) &
          call fail(failure, status_rejected, 'THE DECK IS REJECTED, ERRORS: '//whole(errors))
       if (allocated(failure)) progress%closed = 0
+      if (present(share)) share%varies = share%varies .or. size(progress%variations) > 0
+      if (present(variations)) call move_alloc(progress%variations, variations)
       if (present(share)) then
          if (share%sets == 0) call divide(share, progress%closed)
          ! Of a pipe all sets are there.
@@ -107,7 +107,7 @@ contains
       id = identity_of_path(path)
       if (share%count == 1 .or. .not. id%regular) return
       call open_source(source, path, failure)
-      if (.not. allocated(failure)) call pass_sets(source, huge(passed), failure, passed)
+      if (.not. allocated(failure)) call pass_sets(source, huge(passed), failure, passed, share%varies)
       call close_source(source)
       if (allocated(failure) .or. passed == 0) return
       call divide(share, passed)
@@ -132,14 +132,16 @@ contains
       share_end = int(int(count, int64)*k/n)
    end function share_end
 
-   !> Passes over the next `count` sets, or as many as there are: `passed`. Errors: status_system.
-   subroutine pass_sets(source, count, failure, passed)
+   !> Passes over the next `count` sets, or as many as there are: `passed`. `varies` becomes true at a VARY card.
+   !> Errors: status_system.
+   subroutine pass_sets(source, count, failure, passed, varies)
       type(source_t), intent(inout) :: source
       integer, intent(in) :: count
       type(failure_t), allocatable, intent(out) :: failure
       integer, intent(out), optional :: passed
+      logical, intent(inout), optional :: varies
       type(card_t) :: card
-      integer :: n
+      integer :: n, form
       logical :: found
 
       n = 0
@@ -147,7 +149,9 @@ contains
          call next_card(source, card, found, failure)
          if (.not. found .or. card%number > max_cards) exit
          if (is_passed_over(card)) cycle
-         if (find_form(card%text(:label_length)) == form_end) n = n + 1
+         form = find_form(card%text(:label_length))
+         if (form == form_end) n = n + 1
+         if (present(varies)) varies = varies .or. form == form_vary
       end do
       if (present(passed)) passed = n
    end subroutine pass_sets
@@ -216,16 +220,13 @@ contains
    !> for what nothing uses and for what looks wrong: a card with an error could make others look so.
    subroutine close_set(progress)
       type(progress_t), intent(inout) :: progress
+      type(variation_t) :: variation
 
       associate (set => progress%set)
          call read_small_letters(set)
-         call build_options(set)
-         call build_bodies(set)
-         call build_drives(set)
-         call build_requests(set)
-         call build_centres(set)
-         call build_branches(set)
-         call build_tolerances(set)
+         call set_apart(set)
+         call build_mechanism(set)
+         call build_variation(set, variation)
          if (error_count(set%errors) == progress%errors_before) then
             call check_terms(set)
             call check_unused(set)
@@ -233,6 +234,7 @@ contains
             call check_angles(set)
             call check_guides(set)
             call build_echo(set)
+            if (set%mechanism%variants > 0) progress%variations = [progress%variations, variation]
          end if
          call take_remarks(set%errors, set%mechanism%remarks)
          progress%errors_before = error_count(set%errors)
@@ -240,6 +242,40 @@ contains
       call append_set(progress)
       call begin_set(progress%set, progress%passed + progress%closed + 1)
    end subroutine close_set
+
+   !> Builds the mechanism of `set` from its cards.
+   subroutine build_mechanism(set)
+      type(card_set_t), intent(inout) :: set
+
+      call build_options(set)
+      call build_bodies(set)
+      call build_drives(set)
+      call build_requests(set)
+      call build_centres(set)
+      call build_branches(set)
+      call build_tolerances(set)
+   end subroutine build_mechanism
+
+   !> Builds variant number `n` (1 to v%total) of `v` as the mechanism `m`, like a deck in which its numbers are typed.
+   !> `message`: its first error, '' if there is none.
+   subroutine build_variant(v, n, m, message)
+      type(variation_t), intent(inout) :: v
+      integer, intent(in) :: n
+      type(mechanism_t), intent(out) :: m
+      character(:), allocatable, intent(out) :: message
+
+      call take_values(v, n)
+      call build_mechanism(v%set)
+      if (error_count(v%set%errors) == 0) then
+         call check_terms(v%set)
+         call check_centres(v%set)
+      end if
+      message = error_report(v%set%errors)
+      message = message(max(1, index(message, 'E')):index(message//new_line('a'), new_line('a')) - 1)
+      m = v%set%mechanism
+      m%variants = v%total
+      m%variant = n
+   end subroutine build_variant
 
    !> Appends the mechanism of the open set to the closed ones.
    subroutine append_set(progress)
@@ -266,82 +302,4 @@ contains
       if (sum(set%number_of([form_time, form_at])) == 0) &
          call add_field_error(set%errors, time_missing, closing, card_fields(card_name))
    end subroutine check_missing
-
-   !> Builds `set`%mechanism%echo, the cards as they were understood with the values in use: a line for each card but
-   !> TITLE, and one for each default that no card replaces.
-   subroutine build_echo(set)
-      type(card_set_t), intent(inout) :: set
-      integer :: k, n
-
-      associate (m => set%mechanism)
-         allocate (m%echo(set%count + 3))
-         n = 0
-         do k = 1, set%count
-            if (set%cards(k)%form == form_title) cycle
-            n = n + 1
-            m%echo(n) = card_line(set%cards(k), m%length_unit, m%time_unit)
-         end do
-         call add_default(form_units, [m%length_unit, 'RAD     ', m%time_unit])
-         call add_default(form_method, [character(label_length) :: method_words(method_newton), '', ''])
-         call add_default(form_print, [character(label_length) :: 'LINKS', '', '1'])
-         m%echo = m%echo(1:n)
-      end associate
-
-   contains
-
-      !> Adds the line of a form that has no card in the set: its defaults.
-      subroutine add_default(form, labels)
-         integer, intent(in) :: form
-         character(label_length), intent(in) :: labels(3)
-
-         if (set%number_of(form) > 0) return
-         n = n + 1
-         set%mechanism%echo(n) = head_line(form, labels)
-         set%mechanism%echo(n)(line_length - len(default_mark) + 1:) = default_mark
-      end subroutine add_default
-   end subroutine build_echo
-
-   !> The line of one card. A blank real is shown as 0.0, its value; a blank field of AT has none.
-   pure function card_line(card, length_unit, time_unit) result(line)
-      type(parsed_card_t), intent(in) :: card
-      character(label_length), intent(in) :: length_unit, time_unit
-      character(line_length) :: line
-      character(label_length) :: labels(3)
-      character(real_width) :: text
-      integer :: i, column
-
-      labels = card%label
-      if (any(card%form == [form_print, form_pole, form_curve]) .and. labels(3) == '') labels(3) = '1'
-      if (card%form == form_units) then
-         labels(1) = length_unit
-         if (labels(2) == '') labels(2) = 'RAD'
-         labels(3) = time_unit
-      end if
-      line = head_line(card%form, labels)
-      do i = 1, reals_of(card%form, card%label(label_a))
-         if (card%on_star(i)) then
-            text = field_text(card%star, wide_fields(i))
-         else if (card%given(i)) then
-            text = field_text(card%card, card_fields(real_1 + i - 1))
-         else
-            text = merge('   ', '0.0', card%form == form_at)
-         end if
-         column = real_column + (i - 1)*real_width
-         line(column:column + real_width - 1) = text
-      end do
-   end function card_line
-
-   !> The name and the labels of a card, in the columns of the echo.
-   pure function head_line(form, labels) result(line)
-      integer, intent(in) :: form
-      character(label_length), intent(in) :: labels(3)
-      character(line_length) :: line
-      integer :: i, column
-
-      line = form_name(form)
-      do i = 1, 3
-         column = label_column + (i - 1)*label_step
-         line(column:column + label_length - 1) = labels(i)
-      end do
-   end function head_line
 end module deck

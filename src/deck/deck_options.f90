@@ -8,7 +8,7 @@ module deck_options
    use card_sets, only: card_set_t, look_up, match_word, add_card_error
    use cards, only: title_field, card_name, label_a, label_b, label_c, real_1, real_2, forms, form_unknown, &
       form_title, form_units, form_lang, form_time, form_at, form_method, form_print, form_extremes, &
-      form_range, form_branch
+      form_range, form_branch, form_vary
    use input_errors, only: card_repeated, lang_kind, units_angle, units_place, method_kind, tolerance_range, &
       time_point, number_range, field_blank, print_kind, print_all_name, print_repeated, print_nothing, extremes_time, &
       extremes_ground, branch_ground, branch_method, branch_repeated
@@ -165,7 +165,8 @@ contains
          allocate (number(maxval(sizes), request_link:request_pair), source=0)
       end associate
       n = 0
-      if (set%number_of(form_print) == 0) call request_all(request_t(request_link))
+      if (set%number_of(form_print) == 0) &
+         call request_all(request_t(request_link, every=merge(0, 1, set%number_of(form_vary) > 0)))
       do k = 1, set%count
          if (set%cards(k)%form == form_print .and. set%cards(k)%valid) call read_print(k)
       end do

@@ -13,7 +13,7 @@ module deck_tolerances
    use numerals, only: whole
    implicit none
    private
-   public :: build_tolerances
+   public :: build_tolerances, number_on_card
 
    !> What the numbers R1 to R3 of a card are called.
    character(12), parameter :: ground_words(3) = [character(12) :: 'X', 'Y', 'PHI'], &
@@ -121,6 +121,20 @@ contains
          text = field_text(card%card, card_fields(real_1 + i - 1))
       end if
    end function number_text
+
+   !> Number `i` of card `k` of any form, as `number_of` knows it.
+   function number_on_card(set, k, i) result(one)
+      type(card_set_t), intent(in) :: set
+      integer, intent(in) :: k, i
+      type(tolerance_t) :: one
+      type(place_t) :: at
+      integer :: j
+
+      do j = 1, k
+         call follow_drives(set, j, at)
+      end do
+      one = number_of(set, k, i, at)
+   end function number_on_card
 
    !> Number `i` of card `k`, its tolerance still open; its kind is 0 where it takes none. `at`: the drive and term that
    !> card `k` belongs to, if it does.

@@ -92,6 +92,16 @@ module input_errors
       point_unknown = error_code_t(52, 'NO POINT HAS THIS NAME', own_layout), &
       pair_unknown = error_code_t(53, 'NO PAIR HAS THIS NAME', own_layout), &
       link_unused = error_code_t(54, 'NO PAIR AND NO DRIVE USES THIS LINK, AND NO OTHER LINK MOVES')
+   ! Numbers that vary.
+   type(error_code_t), parameter, public :: &
+      vary_alone = error_code_t(55, 'MUST STAND BELOW THE CARD WHOSE NUMBER VARIES, OF A BODY, DRIVE OR TIME'), &
+      vary_number = error_code_t(56, 'IS NO NUMBER OF THE CARD ABOVE; WRITE R1, R2 OR R3', own_layout), &
+      vary_count = error_code_t(57, 'IS NOT LIST, AND NOT A WHOLE NUMBER OF VALUES FROM 1 UP TO', own_layout), &
+      vary_equal = error_code_t(58, 'FROM AND TO ARE EQUAL'), &
+      vary_one = error_code_t(59, 'ONE VALUE HAS NO TO'), &
+      vary_twice = error_code_t(62, 'THIS NUMBER VARIES ALREADY; FIRST ON CARD'), &
+      vary_tie = error_code_t(63, 'NUMBERS THAT ARE TIED HAVE AS MANY VALUES; OTHER COUNT ON CARD'), &
+      vary_many = error_code_t(64, 'THE GRID HAS TOO MANY VARIANTS; ALLOWED:')
    ! Pairs and drives.
    type(error_code_t), parameter, public :: &
       pair_one_link = error_code_t(60, 'JOINS TWO POINTS OF ONE LINK', own_layout), &

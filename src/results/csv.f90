@@ -16,7 +16,7 @@ module csv
    use numerals, only: whole, full, put_full, full_length
    implicit none
    private
-   public :: csv_head, csv_instant, add_name
+   public :: csv_head, csv_instant, add_name, marks
 
    character(12), parameter :: marks(0:4) = [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE', 'OPEN']
    character(5), parameter :: kinds_of_row(3) = ['LINK ', 'POINT', 'PAIR ']
@@ -29,27 +29,36 @@ module csv
 
 contains
 
-   !> The names of the columns; with `errors`, those of the error estimates after them.
-   subroutine csv_head(o, errors)
+   !> The names of the columns; with `errors`, those of the error estimates after them; where a set of the deck
+   !> `varies`, the number of the variant behind that of the set.
+   subroutine csv_head(o, errors, varies)
       type(output_t), intent(inout) :: o
       logical, intent(in) :: errors
+      logical, intent(in), optional :: varies
 
-      call add(o, 'set,step,t,kind,name,x,y,phi,vx,vy,vphi,ax,ay,aphi,mark')
+      call add(o, 'set,')
+      if (present(varies)) call add(o, trim(merge('variant,', '        ', varies)))
+      call add(o, 'step,t,kind,name,x,y,phi,vx,vy,vphi,ax,ay,aphi,mark')
       if (errors) call add(o, ',ex,ey,ephi,evx,evy,evphi,eax,eay,eaphi')
       call put(o, '')
    end subroutine csv_head
 
    !> The rows of instant number `step` (0, 1, ...) of the motions `s` of `m` that the deck asks for there, with their
-   !> errors where these are asked for.
-   subroutine csv_instant(o, m, s, step)
+   !> errors where these are asked for. `varies`: as in the head.
+   subroutine csv_instant(o, m, s, step, varies)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(in) :: s
       integer, intent(in) :: step
+      logical, intent(in), optional :: varies
       character(:), allocatable :: start
       integer :: i, c
 
-      start = whole(m%set_number)//','//whole(step)//','//full(s%motions(1)%t)//','
+      start = whole(m%set_number)//','
+      if (present(varies)) then
+         if (varies) start = start//whole(m%variant)//','
+      end if
+      start = start//whole(step)//','//full(s%motions(1)%t)//','
       do i = 1, size(m%requests)
          if (.not. is_due(m, m%requests(i), step)) cycle
          c = s%parts%part(i)

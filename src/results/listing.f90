@@ -221,6 +221,7 @@ contains
       type(certificate_counts_t), intent(in) :: certificate_counts
       real(wp), intent(in), optional :: closure_error
       type(diagnostic_t), intent(in), optional :: diagnostics(:)
+      character(:), allocatable :: end_of
 
       call put(o, '')
       if (present(closure_error)) then
@@ -232,8 +233,9 @@ contains
             //', '//phrase(say_passed, m%polish)//' '//whole(c%passed) &
             //', '//phrase(say_uncertain, m%polish)//' '//whole(c%uncertain))
       end associate
-      call put(o, ' '//phrase(say_end, m%polish)//' '//whole(m%set_number) &
-         //':  '//phrase(say_solved, m%polish)//' '//whole(solved) &
+      end_of = ' '//phrase(say_end, m%polish)//' '//whole(m%set_number)
+      if (m%variant > 0) end_of = ' '//phrase(say_end_variant, m%polish)//' '//whole(m%variant)
+      call put(o, end_of//':  '//phrase(say_solved, m%polish)//' '//whole(solved) &
          //', '//phrase(say_flagged, m%polish)//' '//whole(flagged))
       call put(o, '')
    end subroutine listing_end

@@ -16,7 +16,7 @@ module listing_layout
    implicit none
    private
    public :: layout_t, head_drive_t, new_layout, digits_t, digits_of, column_powers, head_lines
-   public :: name_length, row_length, has_column, dimension_of, angle_unit, unit_of
+   public :: name_length, row_length, has_column, dimension_of, angle_unit, unit_of, choose_digits, column_text
 
    integer, parameter :: digits_after_first = 6
    !> Characters before a row's numbers, and of a whole row.
@@ -297,6 +297,17 @@ contains
             line(name_length + 1 + numeral_length*(k - 1):name_length + numeral_length*k) = adjustr(word)
       end do
    end function in_columns
+
+   !> What `line`, of the head of a table, has over column `c` of derivative `k`, without blanks around it.
+   pure function column_text(line, c, k) result(text)
+      character(*), intent(in) :: line
+      integer, intent(in) :: c, k
+      character(:), allocatable :: text
+
+      associate (before => name_length + numeral_length*(3*k + c - 1))
+         text = trim(adjustl(line(before + 1:before + numeral_length)))
+      end associate
+   end function column_text
 
    !> The deck's unit of angles.
    pure character(label_length) function angle_unit(m)

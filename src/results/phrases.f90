@@ -119,6 +119,16 @@ module phrases
       say_linear_acceleration = phrase_t('ACCELERATION', 'PRZYSPIESZENIE'), &
       say_angular_velocity = phrase_t('ANGULAR VELOCITY', 'PREDKOSC KATOWA'), &
       say_angular_acceleration = phrase_t('ANGULAR ACCELERATION', 'PRZYSPIESZENIE KATOWE'), &
+      say_variant = phrase_t('VARIANT', 'WARIANT'), &
+      say_variants = phrase_t('VARIANTS', 'WARIANTY'), &
+      say_end_variant = phrase_t('END OF VARIANT', 'KONIEC WARIANTU'), &
+      say_instants = phrase_t('INSTANTS', 'CHWILE'), &
+      say_are_solved = phrase_t('SOLVED', 'ROZWIAZANE'), &
+      say_first_flag = phrase_t('FIRST FLAG', 'ZAZN. PIERWSZA'), &
+      say_at_time = phrase_t('AT T', 'W T'), &
+      say_one_range = phrase_t('RANGE', 'ZAKRES'), &
+      say_whole_turns = phrase_t('CLOSES IN TURNS', 'OBROTY DO ZAMKNIECIA'), &
+      say_broken_variant = phrase_t('THE RUN WAS BROKEN OFF AFTER VARIANT', 'OBLICZENIA PRZERWANO PO WARIANCIE'), &
       say_broken_off = phrase_t('THE RUN WAS BROKEN OFF AFTER INSTANT', 'OBLICZENIA PRZERWANO PO CHWILI')
    ! Remarks about a deck.
    type(phrase_t), parameter, public :: &

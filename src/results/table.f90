@@ -20,7 +20,7 @@ module table
    use numerals, only: put_full, full_length
    implicit none
    private
-   public :: table_t, column_t, new_table, table_head, table_instant
+   public :: table_t, column_t, new_table, table_head, table_instant, dotted
 
    !> A column after those of time and drives.
    type :: column_t

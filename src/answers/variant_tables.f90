@@ -1,0 +1,253 @@
+!> The rows of variants as text: lines of the listing, and of a file with all digits (--summary).
+module variant_tables
+   use kinds, only: wp
+   use constants, only: in_degrees
+   use mechanism, only: mechanism_t
+   use motion, only: mark_none
+   use listing, only: words_of_mark
+   use listing_layout, only: layout_t
+   use listing_tables, only: known_text
+   use listing_diagnostics, only: put_diagnostics
+   use csv, only: add_name
+   use text_output, only: output_t, put, add
+   use numerals, only: whole, full
+   use variant_rows
+   use phrases
+   implicit none
+   private
+   public :: summary_head, summary_row, put_variant, put_variant_heads, put_variant_row, &
+      put_variants_end, put_broken_off
+
+   !> Characters of a line, of the number of a variant, and at least of a column.
+   integer, parameter :: line_length = 120, number_length = 10, least_width = 12
+   character(1), parameter :: no_cell = '-'
+
+contains
+
+   !> The names of the columns.
+   subroutine summary_head(o, s)
+      type(output_t), intent(inout) :: o
+      type(summary_t), intent(in) :: s
+      integer :: i
+
+      call add(o, 'set')
+      do i = 1, size(s%columns)
+         call add(o, ',')
+         call add_name(o, trim(s%columns(i)%name))
+      end do
+      call put(o, '')
+   end subroutine summary_head
+
+   !> The row `r` of the set `m` with all digits; what there is not is empty.
+   subroutine summary_row(o, s, m, r)
+      type(output_t), intent(inout) :: o
+      type(summary_t), intent(in) :: s
+      type(mechanism_t), intent(in) :: m
+      type(variant_row_t), intent(in) :: r
+      integer :: i
+
+      call add(o, whole(m%set_number))
+      do i = 1, size(s%columns)
+         call add(o, ',')
+         associate (cell => r%cells(i))
+            select case (cell%kind)
+            case (cell_count)
+               call add(o, whole(nint(cell%value)))
+            case (cell_number)
+               if (s%columns(i)%angular .and. m%degrees) then
+                  call add(o, full(in_degrees(cell%value)))
+               else
+                  call add(o, full(cell%value))
+               end if
+            case (cell_unbounded)
+               call add(o, trim(merge('-inf', 'inf ', cell%value < 0.0_wp)))
+            case (cell_word)
+               call add_name(o, trim(cell%word))
+            end select
+         end associate
+      end do
+      call put(o, '')
+   end subroutine summary_row
+
+   !> The lines over the tables of one variant, that of the row `r`: its number and its values.
+   subroutine put_variant(o, l, s, m, r)
+      type(output_t), intent(inout) :: o
+      type(layout_t), intent(in) :: l
+      type(summary_t), intent(in) :: s
+      type(mechanism_t), intent(in) :: m
+      type(variant_row_t), intent(in) :: r
+      character(:), allocatable :: line, item
+      integer :: i
+
+      call put(o, '')
+      line = ' '//phrase(say_variant, m%polish)//' '//whole(r%number)
+      do i = 2, s%numbers + 1
+         associate (c => s%columns(i))
+            item = '   '//trim(c%heads(1))//' '//trim(c%heads(2))//' = ' &
+               //trim(cell_text(l, m, c, r%cells(i))//' '//unit_text(c))
+         end associate
+         if (len(line) + len(item) > line_length) then
+            call put(o, line)
+            line = ' '
+         end if
+         line = line//item
+      end do
+      call put(o, line)
+   end subroutine put_variant
+
+   !> The power of ten and the unit of a column.
+   function unit_text(c) result(text)
+      type(summary_column_t), intent(in) :: c
+      character(:), allocatable :: text
+
+      text = trim(c%unit)
+      if (c%power /= 0) text = trim('10**'//whole(c%power)//' '//text)
+   end function unit_text
+
+   !> The heads of the table: for each of its lines of columns the names, powers of ten and units.
+   subroutine put_variant_heads(o, s)
+      type(output_t), intent(inout) :: o
+      type(summary_t), intent(in) :: s
+      integer :: first, last, k, i
+      character(:), allocatable :: line
+
+      call put(o, '')
+      first = 2
+      do while (first <= size(s%columns))
+         last = last_column(s, first)
+         do k = 1, 4
+            line = right(head_text(s%columns(1), k), number_length)
+            do i = first, last
+               if (s%columns(i)%printed) line = line//right(head_text(s%columns(i), k), width(s%columns(i)))
+            end do
+            if (len_trim(line) > 0) call put(o, trim(line))
+         end do
+         first = next_column(s, last + 1)
+      end do
+   end subroutine put_variant_heads
+
+   !> Line `k` over the column `c`: its two heads, its power of ten, its unit.
+   function head_text(c, k) result(text)
+      type(summary_column_t), intent(in) :: c
+      integer, intent(in) :: k
+      character(:), allocatable :: text
+
+      text = trim(c%unit)
+      if (k < 3) text = trim(c%heads(min(k, 2)))
+      if (k == 3) text = ''
+      if (k == 3 .and. c%power /= 0) text = '10**'//whole(c%power)
+   end function head_text
+
+   !> The lines of the row `r`, and below them why there is not all of it.
+   subroutine put_variant_row(o, l, s, m, r)
+      type(output_t), intent(inout) :: o
+      type(layout_t), intent(in) :: l
+      type(summary_t), intent(in) :: s
+      type(mechanism_t), intent(in) :: m
+      type(variant_row_t), intent(in) :: r
+      integer :: first, last, i
+      character(:), allocatable :: line
+
+      first = 2
+      do while (first <= size(s%columns))
+         last = last_column(s, first)
+         line = right(whole(r%number), number_length)
+         do i = first, last
+            if (s%columns(i)%printed) line = line//right(cell_text(l, m, s%columns(i), r%cells(i)), width(s%columns(i)))
+         end do
+         call put(o, line)
+         first = next_column(s, last + 1)
+      end do
+      if (r%rejected /= '') call put(o, ' *** '//r%rejected)
+      if (r%limit%kind /= 0) then
+         call put_diagnostics(o, m, [r%limit])
+      else if (r%mark /= mark_none) then
+         call put(o, ' *** '//words_of_mark(r%mark, r%singularity, m%polish))
+      end if
+   end subroutine put_variant_row
+
+   !> The last line of a set of variants.
+   subroutine put_variants_end(o, m)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+
+      call put(o, '')
+      call put(o, ' '//phrase(say_end, m%polish)//' '//whole(m%set_number)//':  '//phrase(say_variants, m%polish)//' ' &
+         //whole(m%variants))
+      call put(o, '')
+   end subroutine put_variants_end
+
+   !> The last line, where a run ends before its time, after variant `n`.
+   subroutine put_broken_off(o, m, n)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: n
+
+      call put(o, '')
+      call put(o, ' *** '//phrase(say_broken_variant, m%polish)//' '//whole(n))
+   end subroutine put_broken_off
+
+   !> The first printed column from `i` on; past the last one where there is none.
+   pure integer function next_column(s, i) result(next)
+      type(summary_t), intent(in) :: s
+      integer, intent(in) :: i
+
+      do next = i, size(s%columns)
+         if (s%columns(next)%printed) return
+      end do
+   end function next_column
+
+   !> The last column of the line that begins with column `first`.
+   pure integer function last_column(s, first) result(last)
+      type(summary_t), intent(in) :: s
+      integer, intent(in) :: first
+      integer :: used
+
+      used = number_length + width(s%columns(first))
+      do last = first, size(s%columns) - 1
+         if (.not. s%columns(last + 1)%printed) cycle
+         used = used + width(s%columns(last + 1))
+         if (used > line_length) return
+      end do
+   end function last_column
+
+   !> Characters of a column in the listing.
+   pure integer function width(c)
+      type(summary_column_t), intent(in) :: c
+
+      width = max(least_width, maxval(len_trim(c%heads)) + 2, len_trim(c%unit) + 2)
+   end function width
+
+   !> A cell in the listing, without blanks.
+   function cell_text(l, m, c, cell) result(text)
+      type(layout_t), intent(in) :: l
+      type(mechanism_t), intent(in) :: m
+      type(summary_column_t), intent(in) :: c
+      type(cell_t), intent(in) :: cell
+      character(:), allocatable :: text
+      real(wp) :: unit
+
+      unit = merge(l%angle, 1.0_wp, c%angular)
+      select case (cell%kind)
+      case (cell_none)
+         text = no_cell
+      case (cell_count)
+         text = whole(nint(cell%value))
+      case (cell_number)
+         text = known_text(cell%value/unit, c%decimals, c%power, cell%error/unit)
+      case (cell_unbounded)
+         text = phrase(say_unbounded, m%polish)
+      case (cell_word)
+         text = trim(cell%word)
+      end select
+   end function cell_text
+
+   !> `text` at the end of `n` characters, or of more if it is longer.
+   pure function right(text, n) result(field)
+      character(*), intent(in) :: text
+      integer, intent(in) :: n
+      character(max(n, len(text))) :: field
+
+      field = repeat(' ', len(field) - len(text))//text
+   end function right
+end module variant_tables

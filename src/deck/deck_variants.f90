@@ -1,0 +1,314 @@
+!> The VARY cards of a set: each gives a range or a list of values to a number of the card above it. A variant is the
+!> set's cards with other numbers, built like those of any set: so the pairs of a drawing, turns a minute, degrees and
+!> all checks are right by themselves. Numbers that do not run together make a grid; the last runs fastest.
+module deck_variants
+   use, intrinsic :: iso_fortran_env, only: int64
+   use kinds, only: wp, label_length
+   use mechanism, only: tolerance_t
+   use card_sets, only: card_set_t, vary_card_t, begin_mechanism, add_parsed_error
+   use card_reader, only: parsed_card_t
+   use cards, only: card_name, label_a, label_b, label_c, real_1, real_2, real_3, forms, card_columns, card_fields, &
+      form_unknown, form_ground, form_link, form_point, form_prism, form_joint, form_drive, form_add, form_rise, &
+      form_toler, form_time, form_vary, form_name, reals_of
+   use deck_tolerances, only: number_on_card
+   use failures, only: capitals
+   use input_errors, only: input_errors_t, error_code_t, error_count, vary_alone, vary_number, vary_count, vary_equal, &
+      vary_one, vary_twice, vary_tie, vary_many, field_blank, field_unused, add_blank
+   use numbers, only: read_whole
+   use numerals, only: whole
+   implicit none
+   private
+   public :: variation_t, varied_t, set_apart, build_variation, take_values, values_of_variant
+
+   !> The largest number of variants of a set.
+   integer, parameter :: max_variants = 10000000
+   character(*), parameter :: list_word = 'LIST'
+   character(2), parameter :: number_words(3) = ['R1', 'R2', 'R3']
+   !> The cards whose numbers can vary.
+   integer, parameter :: varied_forms(*) = [form_ground, form_link, form_point, form_prism, form_joint, form_drive, &
+      form_add, form_rise, form_time]
+
+   !> A number that varies.
+   type :: varied_t
+      integer :: card = 0, place = 0                !< its card in the set, and which of its three reals it is
+      integer :: vary = 0                           !< its first VARY card
+      integer :: axis = 0                           !< the axis of the grid along which it runs
+      integer :: count = 0                          !< number of its values
+      real(wp) :: first = 0.0_wp, last = 0.0_wp     !< of a range, in the deck's units
+      real(wp), allocatable :: list(:)              !< (count) of a list
+      character(4*label_length) :: owner = ''       !< the card and what it defines: POINT A, ANGLE CRANK HARMONIC 1
+      character(2*label_length) :: word = ''        !< what the card calls the number: XI, AMPLITUDE
+      character(2*label_length + 5) :: unit = ''        !< of the deck; blank where it is not known
+   end type varied_t
+
+   !> The variants of a set.
+   type :: variation_t
+      type(card_set_t) :: set                       !< its cards; their numbers are those of the variant built last
+      type(varied_t), allocatable :: numbers(:)
+      integer, allocatable :: counts(:)             !< (axes) of values
+      integer :: total = 0                          !< of variants
+   end type variation_t
+
+contains
+
+   !> Takes the VARY cards of `set` out of its cards, so that these are what they would be without them.
+   subroutine set_apart(set)
+      type(card_set_t), intent(inout) :: set
+      integer :: k, n, kept
+
+      if (set%number_of(form_vary) == 0) return
+      allocate (set%vary(set%number_of(form_vary)))
+      n = 0
+      kept = 0
+      do k = 1, set%count
+         if (set%cards(k)%form == form_vary) then
+            n = n + 1
+            set%vary(n) = vary_card_t(set%cards(k), kept)
+         else
+            kept = kept + 1
+            if (kept < k) set%cards(kept) = set%cards(k)
+         end if
+      end do
+      set%count = kept
+   end subroutine set_apart
+
+   !> Builds `v` from the VARY cards of `set`, whose mechanism is there, and sets set%mechanism%variants; nothing
+   !> without such cards. Errors: those of the cards. Where the set has an error, `v` is of no use.
+   subroutine build_variation(set, v)
+      type(card_set_t), intent(inout) :: set
+      type(variation_t), intent(out) :: v
+      integer :: i
+
+      if (.not. allocated(set%vary)) return
+      allocate (v%numbers(0), v%counts(0))
+      do i = 1, size(set%vary)
+         if (set%vary(i)%card%valid) call take_card(set, i, v)
+      end do
+      call count_variants(set, v)
+      set%mechanism%variants = max(1, v%total)
+      if (error_count(set%errors) > 0) return
+      v%set = set
+   end subroutine build_variation
+
+   !> Takes VARY card number `i`: a number that varies, or more values of the list above it.
+   subroutine take_card(set, i, v)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: i
+      type(variation_t), intent(inout) :: v
+      type(varied_t) :: one
+      integer :: n
+
+      associate (card => set%vary(i)%card, above => one%card)
+         one%card = card_above(set, set%vary(i)%below)
+         one%vary = i
+         one%place = findloc(number_words, capitals(card%label(label_a)(:3)), dim=1)
+         if (above == 0) then
+            call complain(vary_alone, card_name)
+            return
+         end if
+         if (set%cards(above)%form == form_unknown) return
+         if (all(set%cards(above)%form /= varied_forms)) then
+            call complain(vary_alone, card_name)
+            return
+         end if
+         if (one%place == 0 .or. one%place > reals_of(set%cards(above)%form, set%cards(above)%label(label_a))) then
+            call complain(vary_number, label_a)
+            return
+         end if
+         call read_values(set, card, one)
+         if (one%count == 0) return
+         n = findloc(v%numbers%card == above .and. v%numbers%place == one%place, .true., dim=1)
+         if (n == 0) then
+            call name_number(set, one)
+            call find_axis(set, v, one)
+            v%numbers = [v%numbers, one]
+         else if (continues(set, i) .and. allocated(one%list)) then
+            v%numbers(n)%list = [v%numbers(n)%list, one%list]
+            v%numbers(n)%count = size(v%numbers(n)%list)
+         else
+            call complain(vary_twice, label_a, whole(set%vary(v%numbers(n)%vary)%card%card%number))
+         end if
+      end associate
+
+   contains
+
+      !> Adds the error `code` about `field`.
+      subroutine complain(code, field, more)
+         type(error_code_t), intent(in) :: code
+         integer, intent(in) :: field
+         character(*), intent(in), optional :: more
+
+         call add_parsed_error(set%errors, code, set%vary(i)%card, field, more)
+      end subroutine complain
+   end subroutine take_card
+
+   !> Card `k`, or the one above it whose tolerances it gives; 0: none.
+   pure integer function card_above(set, k) result(above)
+      type(card_set_t), intent(in) :: set
+      integer, intent(in) :: k
+
+      do above = k, 1, -1
+         if (set%cards(above)%form /= form_toler) return
+      end do
+   end function card_above
+
+   !> VARY card number `i` gives more values of the list on the one above it.
+   pure logical function continues(set, i)
+      type(card_set_t), intent(in) :: set
+      integer, intent(in) :: i
+
+      continues = .false.
+      if (i == 1) return
+      associate (now => set%vary(i), before => set%vary(i - 1))
+         continues = now%below == before%below .and. all(capitals(now%card%label) == capitals(before%card%label))
+      end associate
+   end function continues
+
+   !> The values on the VARY `card`, as those of `one`; its count stays 0 where there is an error.
+   subroutine read_values(set, card, one)
+      type(card_set_t), intent(inout) :: set
+      type(parsed_card_t), intent(in) :: card
+      type(varied_t), intent(inout) :: one
+      type(error_code_t) :: error
+      integer :: count_given, place
+
+      if (capitals(card%label(label_b)) == list_word) then
+         one%list = pack(card%real, card%given)
+         one%count = size(one%list)
+         if (one%count == 0) call add_parsed_error(set%errors, add_blank, card, card_name)
+         return
+      end if
+      call read_whole(trim(card%label(label_b)), count_given, error, place)
+      if (error%number > 0 .or. count_given < 1 .or. count_given > max_variants) then
+         call add_parsed_error(set%errors, vary_count, card, label_b, whole(max_variants))
+      else if (card%given(3)) then
+         call add_parsed_error(set%errors, field_unused, card, real_3)
+      else if (.not. any(card%given(1:2))) then
+         call add_parsed_error(set%errors, field_blank, card, real_1)
+      else if (count_given == 1 .and. card%given(2)) then
+         call add_parsed_error(set%errors, vary_one, card, real_2)
+      else if (count_given > 1 .and. .not. abs(card%real(2) - card%real(1)) > 0.0_wp) then
+         call add_parsed_error(set%errors, vary_equal, card, real_2)
+      else
+         one%count = count_given
+         one%first = card%real(1)
+         one%last = card%real(2)
+      end if
+   end subroutine read_values
+
+   !> The axis along which `one` runs: of its own, or that of the first number with the same name of a tie.
+   subroutine find_axis(set, v, one)
+      type(card_set_t), intent(in) :: set
+      type(variation_t), intent(inout) :: v
+      type(varied_t), intent(inout) :: one
+      integer :: i
+
+      associate (tie => set%vary(one%vary)%card%label(label_c))
+         do i = 1, size(v%numbers)
+            if (tie /= '' .and. capitals(set%vary(v%numbers(i)%vary)%card%label(label_c)) == capitals(tie)) &
+               one%axis = v%numbers(i)%axis
+         end do
+      end associate
+      if (one%axis > 0) return
+      v%counts = [v%counts, 0]
+      one%axis = size(v%counts)
+   end subroutine find_axis
+
+   !> Sets v%counts and v%total. Numbers that are tied must have equal counts; the grid must not be too large.
+   subroutine count_variants(set, v)
+      type(card_set_t), intent(inout) :: set
+      type(variation_t), intent(inout) :: v
+      integer(int64) :: total
+      integer :: i, first
+
+      total = 1
+      do i = 1, size(v%numbers)
+         associate (one => v%numbers(i), card => set%vary(v%numbers(i)%vary)%card)
+            first = findloc(v%numbers%axis, one%axis, dim=1)
+            if (first < i) then
+               if (one%count /= v%numbers(first)%count) call add_parsed_error(set%errors, vary_tie, card, label_c, &
+                  whole(set%vary(v%numbers(first)%vary)%card%card%number))
+               cycle
+            end if
+            v%counts(one%axis) = one%count
+            total = total*one%count
+            if (total > max_variants) then
+               call add_parsed_error(set%errors, vary_many, card, label_b, whole(max_variants))
+               return
+            end if
+         end associate
+      end do
+      v%total = int(total)
+   end subroutine count_variants
+
+   !> The name and the unit of `one`: those of a number that takes a tolerance, or what the layout of its card says.
+   subroutine name_number(set, one)
+      type(card_set_t), intent(in) :: set
+      type(varied_t), intent(inout) :: one
+      type(tolerance_t) :: number
+      character(card_columns) :: layout
+      character(:), allocatable :: name
+      integer :: border
+
+      associate (card => set%cards(one%card), field => card_fields(real_1 + one%place - 1), m => set%mechanism)
+         number = number_on_card(set, one%card, one%place)
+         name = trim(number%name)
+         one%unit = number%unit_name
+         if (number%kind == 0) then
+            layout = forms(card%form)%layout
+            name = trim(form_name(card%form))//' '//trim(adjustl(layout(field%first:field%last)))
+            if (card%form == form_time) one%unit = m%time_unit
+            if (any(card%form == [form_ground, form_link])) then
+               name = trim(form_name(card%form))//' '//trim(card%label(label_a))//' '//layout(field%first:field%last)
+               if (one%place == 3) one%unit = merge('DEG', 'RAD', m%degrees)
+            end if
+         end if
+      end associate
+      name = trim(name)
+      border = index(name, ' ', back=.true.)
+      one%owner = name(:border - 1)
+      one%word = name(border + 1:)
+   end subroutine name_number
+
+   !> Gives the cards of `v` the numbers of variant `n`, ready to be built.
+   subroutine take_values(v, n)
+      type(variation_t), intent(inout) :: v
+      integer, intent(in) :: n
+      type(input_errors_t) :: none
+      real(wp) :: values(size(v%numbers))
+      integer :: i
+
+      values = values_of_variant(v, n)
+      do i = 1, size(values)
+         v%set%cards(v%numbers(i)%card)%real(v%numbers(i)%place) = values(i)
+      end do
+      v%set%errors = none
+      call begin_mechanism(v%set, v%set%mechanism%set_number)
+   end subroutine take_values
+
+   !> The values (numbers) of variant `n` (1 to v%total), in the deck's units. The last of a range is exact.
+   pure function values_of_variant(v, n) result(values)
+      type(variation_t), intent(in) :: v
+      integer, intent(in) :: n
+      real(wp) :: values(size(v%numbers))
+      integer :: place(size(v%counts)), rest, i, k
+
+      rest = n - 1
+      do i = size(place), 1, -1
+         place(i) = mod(rest, v%counts(i))
+         rest = rest/v%counts(i)
+      end do
+      do i = 1, size(values)
+         associate (one => v%numbers(i))
+            k = place(one%axis)
+            if (allocated(one%list)) then
+               values(i) = one%list(k + 1)
+            else if (k > 0 .and. k == one%count - 1) then
+               values(i) = one%last
+            else
+               values(i) = one%first + (one%last - one%first)*real(k, wp)/real(max(1, one%count - 1), wp)
+            end if
+         end associate
+      end do
+   end function values_of_variant
+end module deck_variants
