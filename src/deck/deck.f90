@@ -271,7 +271,9 @@ contains
          call check_centres(v%set)
       end if
       message = error_report(v%set%errors)
-      message = message(max(1, index(message, 'E')):index(message//new_line('a'), new_line('a')) - 1)
+      ! The lines before it show the card.
+      if (len(message) > 0) message = message(index(message, ' *** ') + 5:)
+      message = message(:index(message//new_line('a'), new_line('a')) - 1)
       m = v%set%mechanism
       m%variants = v%total
       m%variant = n

@@ -1,0 +1,203 @@
+#!/bin/sh
+# Variants (VARY cards): values and their order; rows against closed forms, and against decks with the numbers typed in; what
+# is refused; memory.
+BUILD=${BUILD:-build}
+. tests/counting.sh
+
+case $BUILD in
+/*) kinmat=$BUILD/kinmat ;;
+*) kinmat=$PWD/$BUILD/kinmat ;;
+esac
+w=$BUILD/variants
+rm -rf "$w" && mkdir -p "$w" || exit 3
+
+vary() { card VARY "$@"; }
+# four_bar AFTER-CRANK AFTER-COUPLER AFTER-ROCKER AFTER-BASE CARD...: lengths 1.0, 3.5, 3.0, 4.0, with cards below them
+four_bar() {
+   card UNITS M DEG S; card GROUND BASE; card LINK CRANK
+   card LINK COUPLER '' '' 1.0 0.0 55.0; card LINK ROCKER '' '' 4.0 0.0 110.0
+   card POINT A0 BASE; card POINT B0 BASE '' 4.0; echo "$4"
+   card POINT A0-CR CRANK; card POINT A-CR CRANK '' 1.0; echo "$1"
+   card POINT A-CO COUPLER; card POINT B-CO COUPLER '' 3.5; echo "$2"
+   card POINT B0-RO ROCKER; card POINT B-RO ROCKER '' 3.0; echo "$3"
+   card REVOLUTE A0 A0-CR PAIR-A0; card REVOLUTE A-CR A-CO PAIR-A; card REVOLUTE B-CO B-RO PAIR-B
+   card REVOLUTE B0-RO B0 PAIR-B0; card DRIVE ANGLE CRANK '' 0.0 30.0
+   shift 4
+   printf '%s\n' "$@"
+   echo END
+}
+turn=$(card TIME 24 '' '' 0.0 12.0)
+# rows FILE NAME...: the columns with these names of a summary, without the head
+rows() {
+   file=$1
+   shift
+   awk -F, -v names="$*" '
+      NR == 1 { n = split(names, name, " "); for (i = 1; i <= NF; i++) place[$i] = i
+         for (i = 1; i <= n; i++) if (!place[name[i]]) print "no column " name[i]; next }
+      { line = $(place[name[1]]); for (i = 2; i <= n; i++) line = line " " $(place[name[i]]); print line }' "$file"
+}
+# worst FILE FORM: the largest |$1 - form|, in units of 1E-9, of rows of numbers; the program FORM sets `form` from the others
+worst() { awk "function acos(c) { return atan2(sqrt(1 - c*c), c) } { $2; d = \$1 - form; if (d < 0) d = -d
+   if (d > most) most = d } END { print NR, (most < 1e-9 ? \"agree\" : \"differ by \" most) }" "$1"; }
+# run NAME: the deck $w/NAME.deck, its listing and its summary
+run() {
+   "$kinmat" "$w/$1.deck" -o "$w/$1.lst" --summary "$w/$1.csv" > "$w/$1.out" 2>&1
+   status=$?
+   equal "$1: lines over 120 columns, NaN" '' "$(awk 'length > 120' "$w/$1.lst"; grep -iw nan "$w/$1.lst" "$w/$1.csv")"
+}
+
+# Values: a range, a list of four values on two cards, tied to it; a grid, the last number runs fastest.
+four_bar "$(vary R1 4 A 0.5 1.25)" "$(vary R1 2 '' 3.25 3.5)" "$(vary R1 LIST A 3.0 2.75 2.5; vary R1 LIST A 2.625)" '' \
+   "$turn" > "$w/order.deck"
+run order
+equal 'order: status' 0 $status
+rows "$w/order.csv" variant POINT.A-CR.XI POINT.B-RO.XI POINT.B-CO.XI | awk '{ print $1, $2 + 0, $3 + 0, $4 + 0 }' > "$w/order"
+printf '%s\n' '1 0.5 3 3.25' '2 0.5 3 3.5' '3 0.75 2.75 3.25' '4 0.75 2.75 3.5' '5 1 2.5 3.25' '6 1 2.5 3.5' \
+   '7 1.25 2.625 3.25' '8 1.25 2.625 3.5' > "$w/order.expected"
+same 'order of the values' "$w/order.expected" "$w/order"
+
+# The swing of a rocker by the law of cosines: its extremes are where crank a and coupler b are in line, stretched or folded,
+# at the angle acos((c^2 + g^2 - (b +- a)^2)/(2 c g)) of the rocker c with the ground g.
+four_bar "$(vary R1 5 '' 0.5 1.25)" "$(vary R1 4 '' 3.25 3.75)" "$(vary R1 3 '' 2.75 3.25)" '' "$turn" \
+   "$(card EXTREMES LINKS ROCKER)" "$(card EXTREMES PAIRS PAIR-B)" > "$w/swing.deck"
+run swing
+equal 'swing: status' 0 $status
+swing='a = $2; b = $3; c = $4; g = 4'
+for side in max:- min:+; do
+   rows "$w/swing.csv" ROCKER.phi.${side%:*} POINT.A-CR.XI POINT.B-CO.XI POINT.B-RO.XI > "$w/swing"
+   equal "swing, ${side%:*}" '60 agree' "$(worst "$w/swing" "$swing; pi = atan2(0, -1)
+      form = 180/pi*(pi - acos((c*c + g*g - (b ${side#*:} a)^2)/(2*c*g)))")"
+done
+# The transmission angle is least or greatest where the crank lies along the ground: between b and c against g -+ a. The angle
+# of the pair is that from the coupler to the rocker, which are drawn from their common point B in opposite senses.
+for side in min:- max:+; do
+   rows "$w/swing.csv" PAIR-B.theta.${side%:*} POINT.A-CR.XI POINT.B-CO.XI POINT.B-RO.XI > "$w/swing"
+   equal "transmission angle, ${side%:*}" '60 agree' "$(worst "$w/swing" "$swing
+      form = 180/atan2(0, -1)*acos((b*b + c*c - (g ${side#*:} a)^2)/(2*b*c))")"
+done
+
+# Grashof: a crank a turns fully if, and only if, a + g < b + c and |a - g| > |b - c|; otherwise its limits are where coupler
+# and rocker are in line. None of these lengths is at the border.
+four_bar "$(vary R1 7 '' 0.55 5.15)" "$(vary R1 5 '' 1.5 4.75)" "$(vary R1 4 '' 1.75 3.25)" "$(vary R1 2 '' 2.8 4.0)" \
+   "$(card TIME 1 '' '' 0.0 0.1)" "$(card RANGE)" > "$w/grashof.deck"
+run grashof
+rows "$w/grashof.csv" range.turns.ANGLE.CRANK flagged POINT.A-CR.XI POINT.B-CO.XI POINT.B-RO.XI POINT.B0.XI > "$w/grashof"
+equal 'Grashof: variants, wrong ones' '280 0' "$(awk '
+   function size(x) { return x < 0 ? -x : x }
+   NF == 6 && $2 == 0 { full = $3 + $6 < $4 + $5 && size($3 - $6) > size($4 - $5); if (full != ($1 == 1)) wrong++ }
+   END { print NR, wrong + 0 }' "$w/grashof")"
+equal 'Grashof: of both kinds' yes "$(awk 'NF == 6 { $1 == 1 ? full++ : part++ } END { print (full > 20 && part > 20 ? "yes" : full " " part) }' \
+   "$w/grashof")"
+
+# A slider-crank off its line by e: the stroke is sqrt((l + r)^2 - e^2) - sqrt((l - r)^2 - e^2). The offset is that of the
+# PRISM card; the rate is given in turns a minute, and TIME is tied to it so that each run is one turn.
+{
+   card UNITS MM DEG S; card GROUND BASE; card LINK CRANK; card LINK ROD '' '' 30.0 0.0 -10.0; card LINK PISTON '' '' 120.0
+   card POINT O BASE; card POINT O1 CRANK; card POINT A1 CRANK '' 30.0; vary R1 3 '' 20.0 40.0
+   card POINT A2 ROD; card POINT B2 ROD '' 100.0; vary R1 4 '' 90.0 120.0; card POINT B PISTON
+   card REVOLUTE O O1 PAIR-O; card REVOLUTE A1 A2 PAIR-A; card REVOLUTE B2 B PAIR-B
+   card PRISM O B GUIDE 0.0 10.0; vary R2 LIST '' -10.0 0.0 12.5
+   card DRIVE ANGLE CRANK RPM 0.0 60.0; vary R2 2 RATE 60.0 120.0
+   card TIME 24 '' '' 0.0 1.0; vary R2 2 RATE 1.0 0.5
+   card EXTREMES PAIRS GUIDE; card PRINT PAIRS GUIDE 12; card END
+} > "$w/slider.deck"
+run slider
+equal 'slider: status' 0 $status
+rows "$w/slider.csv" GUIDE.s.max GUIDE.s.min POINT.A1.XI POINT.B2.XI PRISM.GUIDE.H | awk '{ $1 = sprintf("%.15g", $1 - $2); print }' > "$w/stroke"
+equal 'stroke of a slider' '72 agree' "$(worst "$w/stroke" 'r = $3; l = $4; e = $5
+   form = sqrt((l + r)^2 - e*e) - sqrt((l - r)^2 - e*e)')"
+rows "$w/slider.csv" ANGLE.CRANK.RATE TIME.T1 GUIDE.s.max.ANGLE.CRANK | awk '{ print ($1*$2 == 60 && $3 >= 0 && $3 <= 360) }' \
+   | sort | uniq -c | tr -s ' ' > "$w/tied"
+equal 'rate and time are tied' ' 72 1' "$(cat "$w/tied")"
+equal 'slider: tables of each variant' '72 72 216' "$(awk '/^ VARIANT [0-9]+ / { a++ } /^ END OF VARIANT/ { b++ } /^ INSTANT / { c++ }
+   END { print a, b, c }' "$w/slider.lst")"
+
+# A row is that of the deck with the numbers typed in, and so are the tables and the CSV of a variant.
+typed() { sed -e '/^VARY    R1      3 /d' -e '/^VARY    R1      4 /d' -e '/LIST/d' -e 's/^\(POINT   A1 .*\) 30.0/\1 40.0/' \
+   -e 's/^\(POINT   B2 .*\) 100.0/\1 110.0/' -e 's/^\(PRISM .*\) 10.0/\1 12.5/' -e "$1" "$w/slider.deck"; }
+typed 's/^\(VARY    R2  \)    2       RATE.*\( 60.0\|  1.0\) .*/\1    1                \2/' > "$w/typed.deck"
+run typed
+rows "$w/slider.csv" variant POINT.A1.XI POINT.B2.XI PRISM.GUIDE.H ANGLE.CRANK.RATE \
+   | awk '$2 == 40 && $3 == 110 && $4 == 12.5 && $5 == 60 { print $1 }' > "$w/number"
+equal 'typed in: one variant' 1 "$(grep -c . "$w/number")"
+number=$(cat "$w/number")
+all=$(head -n 1 "$w/slider.csv" | tr ',' '\n' | sed -n '/^solved/,$p' | tr '\n' ' ')
+rows "$w/slider.csv" variant $all | sed -n "s/^$number //p" > "$w/row"
+rows "$w/typed.csv" $all > "$w/row.typed"
+same 'typed in: the row' "$w/row.typed" "$w/row"
+typed '/^VARY/d' > "$w/plain.deck"
+"$kinmat" "$w/slider.deck" --no-listing --csv "$w/all.csv"
+"$kinmat" "$w/plain.deck" -o "$w/plain.lst" --csv "$w/plain.csv"
+awk -F, -v OFS=, -v n="$number" 'NR == 1 || $2 == n { for (i = 2; i < NF; i++) $i = $(i + 1); NF--; print }' "$w/all.csv" \
+   > "$w/variant.csv"
+same 'typed in: CSV' "$w/plain.csv" "$w/variant.csv"
+sed -n "/^ VARIANT $number /,/^ END OF VARIANT/p" "$w/slider.lst" | sed '1,/^$/d;$d' > "$w/variant.lst"
+sed -n '/^ RESULTS/,/^ END OF SET/p' "$w/plain.lst" | sed '1,/^$/d;$d' > "$w/plain.tables"
+same 'typed in: tables' "$w/plain.tables" "$w/variant.lst"
+
+# A drawing: a joint that moves takes the lengths of both its links with it.
+{
+   card UNITS M DEG S; card GROUND BASE; card LINK CRANK; card LINK COUPLER; card LINK ROCKER
+   card JOINT A0 BASE CRANK 0.5; card JOINT A CRANK COUPLER 0.0 1.0; card JOINT B COUPLER ROCKER 3.0 2.75
+   vary R1 3 '' 2.75 3.25; card JOINT B0 ROCKER BASE 4.0; card DRIVE ANGLE CRANK '' '' -30.0; card TIME 2 '' '' 0.0 1.0
+   card PRINT POINTS B 2; card LANG PL; card END
+} > "$w/drawing.deck"
+"$kinmat" "$w/drawing.deck" --csv "$w/drawing.csv" -o "$w/drawing.lst"
+equal 'a joint of a drawing' '2.75 2.75;3 2.75;3.25 2.75;' "$(awk -F, '$3 == 0 { printf "%.6g %.6g;", $7, $8 }' "$w/drawing.csv")"
+equal 'in Polish' '3 1' "$(awk '/^ WARIANT [0-9]+ / { a++ } /^ KONIEC KOMPLETU 1:  WARIANTY 3/ { b++ } END { print a, b }' \
+   "$w/drawing.lst")"
+
+# What cannot be computed is a row that says so, and the run goes on: no position, a limit, a number that a check refuses.
+four_bar "$(vary R1 LIST '' 1.0 20.0 3.75)" '' '' '' "$turn" "$(card EXTREMES LINKS ROCKER)" > "$w/impossible.deck"
+run impossible
+equal 'impossible: status' 2 $status
+rows "$w/impossible.csv" variant solved flagged flag.t flag.mark > "$w/impossible"
+equal 'impossible: rows' '1 25 0  ;2 0 25 0 NO-POSITION;3 7 18 NO-POSITION;' "$(awk '{ $4 = $4 == "" ? "" : $4 + 0
+   if ($1 == 3) print $1, $2, $3, $5; else print }' "$w/impossible" | sed 's/1 25 0.*/1 25 0  /' | tr '\n' ';')"
+# The limit is where b and c are in line: cos(phi) = (a^2 + g^2 - (b + c)^2)/(2 a g).
+rows "$w/impossible.csv" limit.value variant | sed -n 's/ 3$//p' > "$w/limit"
+equal 'impossible: limit' '1 agree' "$(worst "$w/limit" 'form = 180/atan2(0, -1)*acos((14.0625 + 16 - 42.25)/30)')"
+{
+   four_bar '' '' '' '' | sed '/^END/d'
+   card RISE CYCLOID '' '' 1.0 2.0 20.0; vary R2 LIST '' 2.0 -1.0 1.0; echo "$turn"; card END
+} > "$w/refused.deck"
+run refused
+equal 'refused: status' 2 $status
+equal 'refused: rows' '1 25 0 ;2 0 0 E067;3 25 0 ;' "$(rows "$w/refused.csv" variant solved flagged flag.mark | tr '\n' ';')"
+equal 'refused: words' 1 "$(grep -c '^ \*\*\* E067 .*A RISE NEEDS A DURATION ABOVE 0.0' "$w/refused.lst")"
+
+# told NAME WORDS CARD...: the words of the refusal of the four-bar linkage with cards before and below its crank
+told() {
+   { [ -z "$5" ] || echo "$5"; four_bar "$3" "$4" '' '' "$turn"; } > "$w/deck"
+   "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
+   equal "$1: status" 1 $?
+   equal "$1" "$2" "$(sed -n 's/^ \*\*\* \(E[0-9]*\)  CARD [0-9]*  COLUMN [0-9]*  FIELD [A-Z0-9-]*: /\1 /p' "$w/err")"
+}
+told 'no card above' 'E055 "VARY" MUST STAND BELOW THE CARD WHOSE NUMBER VARIES, OF A BODY, DRIVE OR TIME' '' '' "$(vary R1 2 '' 1.0 2.0)"
+told 'a card without numbers' 'E055 "VARY" MUST STAND BELOW THE CARD WHOSE NUMBER VARIES, OF A BODY, DRIVE OR TIME' '' '' \
+   "$(card LANG EN; vary R1 2 '' 1.0 2.0)"
+told 'no such number' 'E056 "R3" IS NO NUMBER OF THE CARD ABOVE; WRITE R1, R2 OR R3' "$(vary R3 2 '' 1.0 2.0)"
+told 'no number' 'E056 "XI" IS NO NUMBER OF THE CARD ABOVE; WRITE R1, R2 OR R3' "$(vary XI 2 '' 1.0 2.0)"
+told 'no count' 'E057 "0" IS NOT LIST, AND NOT A WHOLE NUMBER OF VALUES FROM 1 UP TO 10000000' "$(vary R1 0 '' 1.0 2.0)"
+told 'a count with a point' 'E057 "2.0" IS NOT LIST, AND NOT A WHOLE NUMBER OF VALUES FROM 1 UP TO 10000000' "$(vary R1 2.0 '' 1.0 2.0)"
+told 'equal ends' 'E058 "2.0" FROM AND TO ARE EQUAL' "$(vary R1 3 '' 2.0 2.0)"
+told 'one value with an end' 'E059 "2.0" ONE VALUE HAS NO TO' "$(vary R1 1 '' 1.0 2.0)"
+told 'twice' 'E062 "R1" THIS NUMBER VARIES ALREADY; FIRST ON CARD 11' "$(vary R1 3 '' 1.0 2.0; vary R1 2 '' 1.0 2.0)"
+told 'a list of two ties' 'E062 "R1" THIS NUMBER VARIES ALREADY; FIRST ON CARD 11' "$(vary R1 LIST A 1.0; vary R1 LIST B 1.0)"
+told 'unequal ties' 'E063 "A" NUMBERS THAT ARE TIED HAVE AS MANY VALUES; OTHER COUNT ON CARD 11' "$(vary R1 3 A 1.0 2.0)" \
+   "$(vary R1 2 A 3.0 3.5)"
+told 'a grid too large' 'E064 "3163" THE GRID HAS TOO MANY VARIANTS; ALLOWED: 10000000' "$(vary R1 3163 '' 1.0 2.0)" \
+   "$(vary R1 3163 '' 3.0 3.5)"
+told 'a third value' 'E019 "3.0" THIS CARD DOES NOT USE THIS FIELD' "$(vary R1 2 '' 1.0 2.0 3.0)"
+told 'an empty list' 'E078 "VARY" GIVES NO NUMBERS' "$(vary R1 LIST)"
+told 'no values' 'E034 THIS FIELD MUST NOT BE BLANK' "$(vary R1 3)"
+"$kinmat" "$w/order.deck" --no-listing --table "$w/table.csv" > "$w/out" 2>&1
+equal 'no table: status' 1 $?
+equal 'no table' ' *** OPTION --table TAKES NO DECK WITH VARY CARDS: USE --summary OR --csv' "$(cat "$w/out")"
+
+# Memory does not grow with the variants: 40 times as many need no more room than is free for a few.
+four_bar "$(vary R1 50 '' 0.5 1.25)" "$(vary R1 40 '' 3.25 3.75)" '' '' "$(card TIME 1 '' '' 0.0 1.0)" > "$w/many.deck"
+(ulimit -v 200000; "$kinmat" "$w/many.deck" --no-listing --summary "$w/many.csv") > "$w/out" 2>&1
+equal '2000 variants: status' 0 $?
+equal '2000 variants: rows' 2000 "$(rows "$w/many.csv" solved | grep -c '^2$')"
+conclude
