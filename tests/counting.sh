@@ -1,11 +1,19 @@
 # To be sourced: counts checks and words what fails. The counts live in a file, since a check may end a pipe. Numbers have
-# a point, whatever the user's language.
+# a point, whatever the user's language. `kinmat` and `debug` are the command in both builds, from whatever directory it is
+# called; `w` is an empty directory for the files of the test.
+BUILD=${BUILD:-build}
+case $BUILD in
+/*) kinmat=$BUILD/kinmat debug=$BUILD/debug/kinmat ;;
+*) kinmat=$PWD/$BUILD/kinmat debug=$PWD/$BUILD/debug/kinmat ;;
+esac
+w=$BUILD/$(basename "$0" .sh)
+rm -rf "$w" && mkdir -p "$w" || exit 3
 LC_ALL=C
 # One thread for a BLAS that would take all, with room and time of its own for each.
 OPENBLAS_NUM_THREADS=1
 export LC_ALL OPENBLAS_NUM_THREADS
 counts=$BUILD/counts.$(basename "$0" .sh)
-mkdir -p "$BUILD" && : > "$counts" || exit 3
+: > "$counts" || exit 3
 pass() { echo passed >> "$counts"; }
 miss() { echo failed >> "$counts"; echo "FAILED: $*"; }
 

@@ -1,9 +1,7 @@
 #!/bin/sh
 # The tool behind `make mutants`: the changes that it makes of a few lines, and what it says of five mutants of a small program.
-BUILD=${BUILD:-build}
 . tests/counting.sh
-tiny=$BUILD/mutants_test
-rm -rf "$tiny"
+tiny=$w
 mkdir -p "$tiny/src/base" "$tiny/docs" "$tiny/input" "$tiny/expected" "$tiny/tests/mutants" "$tiny/tests/system" || exit 3
 
 # Strings, comments, use statements, headings and declarations stay.

@@ -1,15 +1,8 @@
 #!/bin/sh
 # --study on one small deck: what its table must show whatever the clock says, and what the option refuses. Errors are
 # those against kinmat-quad, whose own are measured against closed forms by `make quad-check`.
-BUILD=${BUILD:-build}
 . tests/counting.sh
 
-case $BUILD in
-/*) kinmat=$BUILD/kinmat; debug=$BUILD/debug/kinmat ;;
-*) kinmat=$PWD/$BUILD/kinmat; debug=$PWD/$BUILD/debug/kinmat ;;
-esac
-w=$BUILD/study_short
-rm -rf "$w" && mkdir -p "$w" || exit 3
 awk '{ print } /^END/ { exit }' input/four_bar.deck > "$w/four_bar.deck"
 mkdir "$w/tmp"
 TMPDIR=$w/tmp

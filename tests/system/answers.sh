@@ -1,15 +1,7 @@
 #!/bin/sh
 # The answers of the cards EXTREMES and RANGE: extremes against closed forms in real128, which search by values alone;
 # ranges against the law of cosines, to ten digits.
-BUILD=${BUILD:-build}
 . tests/counting.sh
-
-case $BUILD in
-/*) kinmat=$BUILD/kinmat ;;
-*) kinmat=$PWD/$BUILD/kinmat ;;
-esac
-w=$BUILD/answers
-rm -rf "$w" && mkdir -p "$w" || exit 3
 
 # with DECK CARD...: the deck of input/ with these cards before each END
 with() {

@@ -1,15 +1,7 @@
 #!/bin/sh
 # The cards POLE and CURVE: tables against closed forms in real128, by both methods and in other units; the theorems of
 # Kennedy and of Euler and Savary, which know no velocities; the CSV; what is refused.
-BUILD=${BUILD:-build}
 . tests/counting.sh
-
-case $BUILD in
-/*) kinmat=$BUILD/kinmat ;;
-*) kinmat=$PWD/$BUILD/kinmat ;;
-esac
-w=$BUILD/centres
-rm -rf "$w" && mkdir -p "$w" || exit 3
 
 # with DECK CARD...: the deck of input/ with these cards before each END
 with() {

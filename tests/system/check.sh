@@ -1,7 +1,6 @@
 #!/bin/sh
 # make check: every deck of input/ is run and its listing compared, byte for byte, with expected/, which closed forms
 # have printed; those closed forms are run again, so that expected/ cannot drift from them.
-BUILD=${BUILD:-build}
 . tests/counting.sh
 
 for deck in input/*.deck; do

@@ -1,15 +1,7 @@
 #!/bin/sh
 # The command as a user calls it: where a deck comes from and where results go, exit statuses, the exact words of every
 # refusal, and that results do not depend on the build, the unit of length, the share or the linear algebra library.
-BUILD=${BUILD:-build}
 . tests/counting.sh
-
-case $BUILD in
-/*) kinmat=$BUILD/kinmat; debug=$BUILD/debug/kinmat ;;
-*) kinmat=$PWD/$BUILD/kinmat; debug=$PWD/$BUILD/debug/kinmat ;;
-esac
-w=$BUILD/command
-rm -rf "$w" && mkdir -p "$w" || exit 3
 
 # refused NAME STATUS SENTENCE ARGUMENT...: status and sentence of a call that prints no listing
 refused() {

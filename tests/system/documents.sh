@@ -6,15 +6,8 @@
 #    ```deck               a deck; it must run with exit status 0
 #    ```listing [DECK]     what the deck above, or the file DECK, prints; a line ... stands for lines left out
 #    ```refusal FILE SED   what the command says of FILE's first deck after it is changed by the sed expression
-BUILD=${BUILD:-build}
 . tests/counting.sh
 
-case $BUILD in
-/*) kinmat=$BUILD/kinmat ;;
-*) kinmat=$PWD/$BUILD/kinmat ;;
-esac
-w=$BUILD/documents
-rm -rf "$w" && mkdir -p "$w" || exit 3
 manual=docs/manual.md
 documents='README.md docs/manual.md docs/method.md docs/evidence.md'
 

@@ -1,11 +1,7 @@
 #!/bin/sh
 # What drives do between two instants: decks in few steps, compared at their instants with the same deck in fifty times
 # as many. A law that goes out and comes back within a step must be followed out and back.
-BUILD=${BUILD:-build}
 . tests/counting.sh
-kin=$BUILD/kinmat
-work=$BUILD/drives
-mkdir -p "$work"
 
 # four_bar CRANK COUPLER ROCKER BASE PHI: a crank-driven four-bar whose crank begins at PHI, without its drive
 four_bar() {
@@ -45,57 +41,57 @@ ends() { LC_ALL=C printf 'TIME    %s\n*       %-24s%s\nEND\n' "$1" "$2" "$3"; }
 # compare NAME FROM TO STEPS FLAGGED: the deck NAME.part in STEPS steps and in fifty times as many; so many instants of
 # the first are without a position, and wherever both have one it is the same
 compare() {
-   { cat "$work/$1.part"; ends "$4" "$2" "$3"; } > "$work/$1.deck"
-   { cat "$work/$1.part"; ends $(($4*50)) "$2" "$3"; } > "$work/$1.fine.deck"
+   { cat "$w/$1.part"; ends "$4" "$2" "$3"; } > "$w/$1.deck"
+   { cat "$w/$1.part"; ends $(($4*50)) "$2" "$3"; } > "$w/$1.fine.deck"
    for deck in "$1" "$1.fine"; do
-      "$kin" "$work/$deck.deck" -o "$work/$deck.lst" --csv "$work/$deck.csv" 2> "$work/$deck.err"
-      echo $? >> "$work/$deck.err"
+      "$kinmat" "$w/$deck.deck" -o "$w/$deck.lst" --csv "$w/$deck.csv" 2> "$w/$deck.err"
+      echo $? >> "$w/$deck.err"
    done
-   equal "$1: flagged" "$5" "$(sed -n 's/^ END OF SET.*FLAGGED //p' "$work/$1.lst")"
+   equal "$1: flagged" "$5" "$(sed -n 's/^ END OF SET.*FLAGGED //p' "$w/$1.lst")"
    equal "$1: other than in small steps" '' "$(LC_ALL=C awk -F, 'FNR == NR { if (FNR > 1) fine[$2 "," $5] = $0; next }
       FNR > 1 { split(fine[$2*50 "," $5], other, ",")
          if (($6 == "") != (other[6] == "")) { print; next }
          for (i = 6; i <= 8; i++) if ($i != "" && ($i - other[i])^2 > 1e-14*(1 + $i^2)) { print; next } }' \
-      "$work/$1.fine.csv" "$work/$1.csv" | head -n 4)"
+      "$w/$1.fine.csv" "$w/$1.csv" | head -n 4)"
 }
 
 # A four-bar whose crank, from 0.7, can rise to 0.8127: cams below and beyond that, by one step a cam.
-{ four_bar 2 1.5 1.5 4 0.7; angle 0.7; cam 0.10; } > "$work/cam_below.part"
+{ four_bar 2 1.5 1.5 4 0.7; angle 0.7; cam 0.10; } > "$w/cam_below.part"
 compare cam_below 0.0 4.0 4 0
-{ four_bar 2 1.5 1.5 4 0.7; angle 0.7; cam 0.14; } > "$work/cam_beyond.part"
+{ four_bar 2 1.5 1.5 4 0.7; angle 0.7; cam 0.14; } > "$w/cam_beyond.part"
 compare cam_beyond 0.0 4.0 4 4
-equal 'cam_beyond: its limit' 1 "$(grep -c 'LIMIT OF MOTION AT T = 4.12745' "$work/cam_beyond.lst")"
+equal 'cam_beyond: its limit' 1 "$(grep -c 'LIMIT OF MOTION AT T = 4.12745' "$w/cam_beyond.lst")"
 # The same of rises by each law.
 for law in CYCLOID 3-4-5 HARMONIC PARABOLA; do
-   { four_bar 2 1.5 1.5 4 0.7; angle 0.7; rises $law 0.10; } > "$work/$law.below.part"
+   { four_bar 2 1.5 1.5 4 0.7; angle 0.7; rises $law 0.10; } > "$w/$law.below.part"
    compare $law.below 0.0 4.0 4 0
-   { four_bar 2 1.5 1.5 4 0.7; angle 0.7; rises $law 0.14; } > "$work/$law.beyond.part"
+   { four_bar 2 1.5 1.5 4 0.7; angle 0.7; rises $law 0.14; } > "$w/$law.beyond.part"
    compare $law.beyond 0.0 4.0 4 4
-   { four_bar 1 3.5 3 4 0.5; angle 0.5; rises $law 30.0; } > "$work/$law.turning.part"
+   { four_bar 1 3.5 3 4 0.5; angle 0.5; rises $law 30.0; } > "$w/$law.turning.part"
    compare $law.turning 0.0 4.0 4 0
 done
 # A harmonic of exactly one period a step, on the same four-bar and on one whose crank turns fully.
-{ four_bar 2 1.5 1.5 4 0.7; angle 0.7; added HARMONIC -0.10 6.2831853071795862 0.0; } > "$work/period_below.part"
+{ four_bar 2 1.5 1.5 4 0.7; angle 0.7; added HARMONIC -0.10 6.2831853071795862 0.0; } > "$w/period_below.part"
 compare period_below 0.0 4.0 4 0
-{ four_bar 2 1.5 1.5 4 0.7; angle 0.7; added HARMONIC 0.14 6.2831853071795862 0.0; } > "$work/period_beyond.part"
+{ four_bar 2 1.5 1.5 4 0.7; angle 0.7; added HARMONIC 0.14 6.2831853071795862 0.0; } > "$w/period_beyond.part"
 compare period_beyond 0.0 4.0 4 4
-{ four_bar 1 3.5 3 4 0.5; angle 0.5; added HARMONIC 30.0 6.2831853071795862 0.0; } > "$work/period_turning.part"
+{ four_bar 1 3.5 3 4 0.5; angle 0.5; added HARMONIC 30.0 6.2831853071795862 0.0; } > "$w/period_turning.part"
 compare period_turning 0.0 4.0 4 0
 # 0.001/t^2 turns the crank by a thousand radians at first, and then hardly any more.
-{ four_bar 1 3.5 3 4 1000.5; angle 0.5; added POWER 1.0E-3 -2.0; } > "$work/power.part"
+{ four_bar 1 3.5 3 4 1000.5; angle 0.5; added POWER 1.0E-3 -2.0; } > "$w/power.part"
 compare power 0.001 10.001 10 0
 # A root rises most steeply where it begins.
-{ four_bar 1 3.5 3 4 0.5; angle 0.5; added POWER 20.0 0.5; } > "$work/root.part"
+{ four_bar 1 3.5 3 4 0.5; angle 0.5; added POWER 20.0 0.5; } > "$w/root.part"
 compare root 0.000001 4.0 4 0
 
 # Three cylinders go round a cusp between t = 0 and 1, each by little: the assembly at t = 1 is the other one. Later a
 # limit is met.
-sed '/^TIME/,$d' tests/system/decks/cusp.deck > "$work/cusp.part"
-echo 'PRINT   LINKS   PLAT' >> "$work/cusp.part"
+sed '/^TIME/,$d' tests/system/decks/cusp.deck > "$w/cusp.part"
+echo 'PRINT   LINKS   PLAT' >> "$w/cusp.part"
 compare cusp 0.0 2.0 2 1
 # A parallelogram on a link that turns, its crank driven against that link, each by a law that bends: straight on past its
 # change point.
-cat > "$work/on_a_turning_link.part" <<'DECK'
+cat > "$w/on_a_turning_link.part" <<'DECK'
 TITLE   PARALLELOGRAM ON A TURNING LINK
 GROUND  BASE
 LINK    ARM                     0.0             0.0             0.3
@@ -122,12 +118,12 @@ DRIVE   RELANGLEARM     CRANK   -0.7            1.0             -0.6
 PRINT   LINKS
 DECK
 compare on_a_turning_link 0.0 1.25 4 0
-equal 'on_a_turning_link: its change point' 1 "$(grep -c 'CHANGE POINT AT .*, LINKS COUPLER, ROCKER: GO ON' "$work/on_a_turning_link.lst")"
+equal 'on_a_turning_link: its change point' 1 "$(grep -c 'CHANGE POINT AT .*, LINKS COUPLER, ROCKER: GO ON' "$w/on_a_turning_link.lst")"
 equal 'on_a_turning_link: coupler parallel to its base' '' "$(LC_ALL=C awk -F, '$5 == "ARM" { phi = $8 }
-   $5 == "COUPLER" && ($8 == "" || ($8 - phi)^2 > 1e-24)' "$work/on_a_turning_link.csv")"
+   $5 == "COUPLER" && ($8 == "" || ($8 - phi)^2 > 1e-24)' "$w/on_a_turning_link.csv")"
 # A parallelogram on moving links takes its other branch, on which a dyad on its coupler goes many times as far as that.
-"$kin" tests/system/decks/branch_below_dyad.deck > "$work/branch_below_dyad.lst"
-equal 'branch_below_dyad: its other branch' 1 "$(grep -c 'CHANGE POINT AT .*, LINKS L22, L21: TAKE' "$work/branch_below_dyad.lst")"
-equal 'branch_below_dyad: flagged' 0 "$(sed -n 's/^ END OF SET.*FLAGGED //p' "$work/branch_below_dyad.lst")"
-equal 'cusp: the other assembly' 1 "$(grep -c '^ PLAT *8\.85715 *-8\.19202 ' "$work/cusp.lst")"
+"$kinmat" tests/system/decks/branch_below_dyad.deck > "$w/branch_below_dyad.lst"
+equal 'branch_below_dyad: its other branch' 1 "$(grep -c 'CHANGE POINT AT .*, LINKS L22, L21: TAKE' "$w/branch_below_dyad.lst")"
+equal 'branch_below_dyad: flagged' 0 "$(sed -n 's/^ END OF SET.*FLAGGED //p' "$w/branch_below_dyad.lst")"
+equal 'cusp: the other assembly' 1 "$(grep -c '^ PLAT *8\.85715 *-8\.19202 ' "$w/cusp.lst")"
 conclude

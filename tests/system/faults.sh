@@ -1,17 +1,8 @@
 #!/bin/sh
 # Wrong decks and wrong mechanisms: what is said of them, by name. Whole decks through the command; the numbers in the
 # words are closed forms. Every deck runs in both builds and with both linear algebra libraries: the same bytes.
-BUILD=${BUILD:-build}
 . tests/counting.sh
 
-case $BUILD in
-/*) home=$BUILD ;;
-*) home=$PWD/$BUILD ;;
-esac
-kinmat=$home/kinmat
-debug=$home/debug/kinmat
-w=$BUILD/faults
-rm -rf "$w" && mkdir -p "$w" || exit 3
 lapack=/usr/lib/x86_64-linux-gnu/lapack:/usr/lib/x86_64-linux-gnu/blas
 openblas=/usr/lib/x86_64-linux-gnu/openblas-pthread
 both=no

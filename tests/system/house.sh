@@ -1,7 +1,6 @@
 #!/bin/sh
 # The sources: a file uses only files of its own folder and of folders before it, as src/README.md lists them; only main
 # stops or prints; lines and files keep their size.
-BUILD=${BUILD:-build}
 . tests/counting.sh
 
 sources=$(find src -name '*.f90' -o -name '*.F90' | LC_ALL=C sort)

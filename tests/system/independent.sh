@@ -1,17 +1,7 @@
 #!/bin/sh
 # A mechanism's numbers do not depend on what else is in its deck: alone, and beside a copy of 1E-12, 1E-6, 1E6 and 1E12
 # times its size, before it or after it in the deck, its rows in the CSV are the same bytes, with their errors.
-LC_ALL=C
-export LC_ALL
-BUILD=${BUILD:-build}
 . tests/counting.sh
-
-case $BUILD in
-/*) kinmat=$BUILD/kinmat ;;
-*) kinmat=$PWD/$BUILD/kinmat ;;
-esac
-w=$BUILD/independent
-rm -rf "$w" && mkdir -p "$w" || exit 3
 
 # link, point, joint, drive: cards of one mechanism, whose names end in
 # $mark and whose lengths are in units of 10**$unit

@@ -1,10 +1,7 @@
 #!/bin/sh
 # What `make install` leaves: the command, its man page, and a library with modules that another program can use.
-BUILD=${BUILD:-build}
 . tests/counting.sh
 
-w=$BUILD/installed
-rm -rf "$w" && mkdir -p "$w" || exit 3
 "${MAKE:-make}" --no-print-directory BUILD="$BUILD" DESTDIR="$w" PREFIX=/usr install > "$w/out" 2>&1
 equal 'make install: status' 0 $?
 equal 'make install: directories' 'bin include lib share ' "$(ls "$w/usr" | tr '\n' ' ')"

@@ -1,7 +1,6 @@
 #!/bin/sh
 # make quad-check, make single-check: every deck of input/ by a build of that kind of real, its results against the closed
 # forms, and from double on its listing against expected/, byte for byte. All links are asked for, at all instants.
-BUILD=${BUILD:-build}
 . tests/counting.sh
 
 case $KIND in
@@ -13,15 +12,13 @@ equal '--version' "KINMAT 1.0, $real" "$("$BUILD/kinmat" --version)"
 equal '--help' "Real numbers: $real." "$("$BUILD/kinmat" --help | tail -n 1)"
 equal '--help: digits' "the results with $digits digits" "$("$BUILD/kinmat" --help | grep -o 'the results with [0-9]* digits')"
 
-rm -rf "$BUILD/kind"
-mkdir -p "$BUILD/kind"
 for deck in input/*.deck; do
    name=$(basename "$deck" .deck)
    awk '/^PRINT   LINKS/ { next }
       /^PRINT   ALL/ { $0 = "PRINT   ALL"; all = 1 }
       /^END/ { if (!all) print "PRINT   LINKS"; all = 0 }
-      { print }' "$deck" > "$BUILD/kind/$name.deck"
-   "$BUILD/kinmat" --csv "$BUILD/kind/$name.csv" "$BUILD/kind/$name.deck" > "$BUILD/kind/$name.lst" 2> "$BUILD/kind/$name.err"
+      { print }' "$deck" > "$w/$name.deck"
+   "$BUILD/kinmat" --csv "$w/$name.csv" "$w/$name.deck" > "$w/$name.lst" 2> "$w/$name.err"
    status=$?
    # Whether 24 bits tell which way leads on from a change point is a matter of the last bit: of the processor and of LAPACK.
    # Where they do not, instants are marked; the results that there are must be right all the same (kind_errors).
@@ -31,7 +28,7 @@ for deck in input/*.deck; do
    esac
    # A gap of 1E-6 and less beside 4 is next to none in 24 bits.
    case "$KIND $name" in 'single dead_point'*)
-      rm "$BUILD/kind/$name.deck"
+      rm "$w/$name.deck"
       continue
    esac
    equal "$name: exit status" "$(grep -qE ' (FLAGGED|ZAZNACZONE) [1-9]' "expected/$name.lst" && echo 2 || echo 0)" "$status"
@@ -44,15 +41,15 @@ done
 # The other methods come to the same.
 for name in four_bar crank_slider; do
    for method in DENSE MATRIX; do
-      deck=$BUILD/kind/$name.$method.deck
-      awk -v method=$method '/^METHOD/ { next } /^END/ { print "METHOD  " method } { print }' "$BUILD/kind/$name.deck" > "$deck"
+      deck=$w/$name.$method.deck
+      awk -v method=$method '/^METHOD/ { next } /^END/ { print "METHOD  " method } { print }' "$w/$name.deck" > "$deck"
       "$BUILD/kinmat" --csv "${deck%deck}csv" "$deck" > "${deck%deck}lst"
       equal "$name, METHOD $method: exit status" 0 $?
    done
 done
 equal 'digits of the CSV' "$digits" \
-   "$(awk -F, 'NR == 4 { sub(/E.*/, "", $8); gsub(/[^0-9]/, "", $8); print length($8) }' "$BUILD/kind/four_bar.csv")"
-"$BUILD/release/kind_errors" "$BUILD/kind"/*.deck > "$BUILD/kind_errors.txt"
+   "$(awk -F, 'NR == 4 { sub(/E.*/, "", $8); gsub(/[^0-9]/, "", $8); print length($8) }' "$w/four_bar.csv")"
+"$BUILD/release/kind_errors" "$w"/*.deck > "$BUILD/kind_errors.txt"
 cat "$BUILD/kind_errors.txt"
 equal 'results against the closed forms' ', 0 failed' "$(sed -n '$s/.* passed//p' "$BUILD/kind_errors.txt")"
 conclude

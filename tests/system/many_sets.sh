@@ -4,9 +4,7 @@
 BUILD=${BUILD:-build}
 case $BUILD in /*) ;; *) BUILD=$PWD/$BUILD ;; esac
 . tests/counting.sh
-w=$BUILD/many_sets
-kinmat=$BUILD/kinmat
-rm -rf "$w" && mkdir -p "$w" || exit 3
+
 here=$PWD
 # Sets of several decks, eleven in all, of unequal length.
 for deck in four_bar yoke jansen four_bar crank_slider; do

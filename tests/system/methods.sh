@@ -1,12 +1,8 @@
 #!/bin/sh
 # METHOD DENSE and METHOD MATRIX against METHOD NEWTON: each instant is that of the blocks, turns included, or marked. With
 # both linear algebra libraries: the same instants are marked.
-BUILD=${BUILD:-build}
 . tests/counting.sh
 
-kinmat=$BUILD/kinmat
-w=$BUILD/methods
-rm -rf "$w" && mkdir -p "$w" || exit 3
 lapack=/usr/lib/x86_64-linux-gnu/lapack:/usr/lib/x86_64-linux-gnu/blas
 openblas=/usr/lib/x86_64-linux-gnu/openblas-pthread
 

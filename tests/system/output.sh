@@ -1,15 +1,10 @@
 #!/bin/sh
 # What is printed arrives, or it is said that it does not: closed descriptors, one file under two names, writes that fail,
 # signals, broken pipes, decks that cannot be read.
-BUILD=${BUILD:-build}
 . tests/counting.sh
 
-case $BUILD in
-/*) kinmat=$BUILD/kinmat; debug=$BUILD/debug/kinmat ;;
-*) kinmat=$PWD/$BUILD/kinmat; debug=$PWD/$BUILD/debug/kinmat ;;
-esac
 home=$PWD
-rm -rf "$BUILD/output" && mkdir -p "$BUILD/output" && cd "$BUILD/output" || exit 3
+cd "$w" || exit 3
 case $counts in /*) ;; *) counts=$home/$counts ;; esac
 case $BUILD in /*) ;; *) BUILD=$home/$BUILD ;; esac
 

@@ -1,11 +1,6 @@
 #!/bin/sh
 # Pictures and animations: of every deck of input/, well-formed XML, with the joints where the CSV has them; what is refused.
-BUILD=${BUILD:-build}
 . tests/counting.sh
-
-kinmat=$BUILD/kinmat
-w=$BUILD/pictures
-rm -rf "$w" && mkdir -p "$w" || exit 3
 
 # tags FILE: what is wrong with its tags and characters
 tags() { awk '

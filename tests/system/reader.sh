@@ -2,10 +2,8 @@
 # A reader of its own for the listings: every number of expected/ and of decks that print what no deck of input/ does is the
 # value of the CSV, rounded to the digits that are printed, and the rows are those that the PRINT cards ask for. Then listings
 # with a fault are read, each of which it must find.
-BUILD=${BUILD:-build}
 . tests/counting.sh
-w=$BUILD/reader
-rm -rf "$w" && mkdir -p "$w" || exit 3
+
 reader=$BUILD/release/read_listing
 
 # read_one NAME LISTING: against $w/NAME.csv; the counts go to a file

@@ -8,12 +8,8 @@
 #    relations.sh --short                 a third of the changes of each deck of input/, and of ten decks by the dice
 #    relations.sh --random COUNT [FIRST]  decks of tests/fuzz/fuzz_mechanisms, COUNT of them from seed FIRST on; those that
 #                                         fail are kept
-export LC_ALL=C
-BUILD=${BUILD:-build}
 . tests/counting.sh
-kin=$BUILD/kinmat
-work=$BUILD/relations
-rm -rf "$work" && mkdir -p "$work" || exit 3
+
 # Of the changes of deck number n those with a number k, k + n divisible by `every`.
 every=1
 n=0
@@ -25,7 +21,7 @@ changed() {
 }
 
 # run CHANGE: its results with errors
-run() { "$kin" "$w/$1.deck" --errors --csv "$w/$1.csv" -o "$w/$1.lst" 2> "$w/$1.err"; }
+run() { "$kinmat" "$w/$1.deck" --errors --csv "$w/$1.csv" -o "$w/$1.lst" 2> "$w/$1.err"; }
 
 # differing CHANGE MAP: what the run says, or what is different in its results
 differing() {
@@ -36,7 +32,7 @@ differing() {
 # relate DECK: changes of it against the deck
 relate() {
    deck=$(basename "$1" .deck)
-   w=$work/$deck
+   w=$w/$deck
    mkdir -p "$w"
    awk -v change=whole -v map=/dev/null -f tests/system/relation_deck.awk "$1" > "$w/whole.deck"
    run whole
@@ -55,10 +51,10 @@ relate() {
 # random COUNT FIRST
 random() {
    for seed in $(seq "$2" $(($2 + $1 - 1))); do
-      "$BUILD/release/fuzz_mechanisms" --deck "$seed" "$work/$seed.deck" || exit 3
+      "$BUILD/release/fuzz_mechanisms" --deck "$seed" "$w/$seed.deck" || exit 3
       failed_before=$(grep -c failed "$counts")
-      relate "$work/$seed.deck"
-      [ "$(grep -c failed "$counts")" -gt "$failed_before" ] || rm -r "$work/$seed" "$work/$seed.deck"
+      relate "$w/$seed.deck"
+      [ "$(grep -c failed "$counts")" -gt "$failed_before" ] || rm -r "$w/$seed" "$w/$seed.deck"
    done
 }
 
@@ -72,7 +68,7 @@ case $1 in
 esac
 
 # Axes that are not known to be others make differences.
-w=$work/four_bar
+w=$w/four_bar
 [ -d "$w" ] || relate input/four_bar.deck
 changed axes "$w/whole.deck"
 run axes

@@ -1,17 +1,7 @@
 #!/bin/sh
 # What a singular position is: a change point, where velocities exist and are not unique, a dead point, where none are
 # finite, or what cannot be told. By every method, whatever the unit of length; and of independent mechanisms each.
-LC_ALL=C
-export LC_ALL
-BUILD=${BUILD:-build}
 . tests/counting.sh
-
-case $BUILD in
-/*) kinmat=$BUILD/kinmat ;;
-*) kinmat=$PWD/$BUILD/kinmat ;;
-esac
-w=$BUILD/singular
-rm -rf "$w" && mkdir -p "$w" || exit 3
 
 # link, point, joint, slide: cards of one mechanism, whose names end in
 # $mark and whose lengths are in units of 10**$unit m

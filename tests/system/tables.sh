@@ -1,11 +1,6 @@
 #!/bin/sh
 # Tables: of every deck of input/ one a set, whose cells are those of the CSV; what is refused.
-BUILD=${BUILD:-build}
 . tests/counting.sh
-
-kinmat=$BUILD/kinmat
-w=$BUILD/tables
-rm -rf "$w" && mkdir -p "$w" || exit 3
 
 # cells TABLE CSV SET: what is wrong in the table of a set; then how many cells the CSV has, those
 # counted that a row leaves out since another one before them does not exist

@@ -1,10 +1,7 @@
 #!/bin/sh
 # A deck with all its lengths times a power of ten prints the same digits: every deck of input/, from millionths to
 # millions. The lengths are changed in the text of the cards, by their exponents, so that no decimal is rounded.
-BUILD=${BUILD:-build}
 . tests/counting.sh
-w=$BUILD/units
-mkdir -p "$w" || exit 3
 
 # enlarged K DECK: the deck with its lengths times 10**K. A card with * in column 1 has the numbers of the card above it.
 enlarged() {

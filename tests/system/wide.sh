@@ -1,11 +1,7 @@
 #!/bin/sh
 # Wide blocks, solved by KLU, at instants whose velocities do not exist: on a change point of another mechanism of the
 # same deck, and where the block's own Jacobian has no inverse that could be told from rounding.
-BUILD=${BUILD:-build}
 . tests/counting.sh
-kin=$BUILD/kinmat
-work=$BUILD/wide
-mkdir -p "$work"
 
 # differing NAME: rows of both.csv that are in NAME.csv too, but with other numbers: by more than 1E-7 where both have
 # some, or where a position is in one alone
@@ -17,15 +13,15 @@ differing() {
             if (($i == "" || other[i] == "") && (i > 8 || $i == other[i])) continue
             if ($i == "" || other[i] == "" || ($i - other[i])^2 > 1e-14*(1 + $i^2)) { print; break }
          } }
-      END { print rows " rows" }' "$work/$1.csv" "$work/both.csv"
+      END { print rows " rows" }' "$w/$1.csv" "$w/both.csv"
 }
 
 # A lattice (one block of 49 unknowns) beside a parallelogram whose ninth instant is on its change point: each as it is
 # alone; velocities are asked for where both tell them.
-tests/make_deck lattice 5 18 | grep -v '^PRINT\|^END' > "$work/lattice.part"
-grep '^TIME' -A 1 "$work/lattice.part" | grep -v '^\*' > "$work/time.part"
-grep -v '^TIME' "$work/lattice.part" > "$work/bodies.part"
-cat > "$work/parallelogram.part" <<'DECK'
+tests/make_deck lattice 5 18 | grep -v '^PRINT\|^END' > "$w/lattice.part"
+grep '^TIME' -A 1 "$w/lattice.part" | grep -v '^\*' > "$w/time.part"
+grep -v '^TIME' "$w/lattice.part" > "$w/bodies.part"
+cat > "$w/parallelogram.part" <<'DECK'
 LINK    CRANK                   10.0            0.0             3.12
 LINK    COUPLER                 8.0             0.03            0.0
 LINK    ROCKER                  14.0            0.0             3.12
@@ -44,25 +40,25 @@ REVOLUTEB0-RO   B0      PAIR-B0
 DRIVE   ANGLE   CRANK
 *       3.12588469033979299E+00 1.00000000000000000E+00
 DECK
-printf 'PRINT   LINKS\nEND\n' > "$work/end.part"
-cat "$work/bodies.part" "$work/parallelogram.part" "$work/time.part" "$work/end.part" > "$work/both.deck"
-cat "$work/bodies.part" "$work/time.part" "$work/end.part" > "$work/lattice.deck"
+printf 'PRINT   LINKS\nEND\n' > "$w/end.part"
+cat "$w/bodies.part" "$w/parallelogram.part" "$w/time.part" "$w/end.part" > "$w/both.deck"
+cat "$w/bodies.part" "$w/time.part" "$w/end.part" > "$w/lattice.deck"
 { printf 'TITLE   ALONE\nUNITS   M       RAD     S\nGROUND  BASE\n'
-  cat "$work/parallelogram.part" "$work/time.part" "$work/end.part"; } > "$work/parallelogram.deck"
+  cat "$w/parallelogram.part" "$w/time.part" "$w/end.part"; } > "$w/parallelogram.deck"
 for deck in both lattice parallelogram; do
-   "$kin" "$work/$deck.deck" -o "$work/$deck.lst" --csv "$work/$deck.csv" 2> "$work/$deck.err"
-   echo $? >> "$work/$deck.err"
+   "$kinmat" "$w/$deck.deck" -o "$w/$deck.lst" --csv "$w/$deck.csv" 2> "$w/$deck.err"
+   echo $? >> "$w/$deck.err"
 done
-equal 'a change point beside a wide block: status' 2 "$(tail -n 1 "$work/both.err")"
-equal 'the wide block alone: status' 0 "$(tail -n 1 "$work/lattice.err")"
-equal 'the change point is passed' 1 "$(grep -c 'CHANGE POINTS PASSED 1,' "$work/both.lst")"
+equal 'a change point beside a wide block: status' 2 "$(tail -n 1 "$w/both.err")"
+equal 'the wide block alone: status' 0 "$(tail -n 1 "$w/lattice.err")"
+equal 'the change point is passed' 1 "$(grep -c 'CHANGE POINTS PASSED 1,' "$w/both.lst")"
 equal 'the wide block beside the change point' '931 rows' "$(differing lattice)"
 equal 'the change point beside the wide block' '57 rows' "$(differing parallelogram)"
 
 # A net of 449 rods: all legs turn as the first one, 1 + t, whether or not velocities are told.
-tests/make_deck lattice 15 300 > "$work/net.deck"
-"$kin" "$work/net.deck" -o /dev/null --csv "$work/net.csv" 2> "$work/net.err"
+tests/make_deck lattice 15 300 > "$w/net.deck"
+"$kinmat" "$w/net.deck" -o /dev/null --csv "$w/net.csv" 2> "$w/net.err"
 status=$?
 equal 'a wide block without velocities: status' 2 "$status"
-equal 'its legs' '' "$(LC_ALL=C awk -F, 'NR > 1 && $4 ~ /^"?L[0-9]/ && $8 != "" && ($8 - 1 - $3)^2 > 1e-16' "$work/net.csv" | head -n 3)"
+equal 'its legs' '' "$(LC_ALL=C awk -F, 'NR > 1 && $4 ~ /^"?L[0-9]/ && $8 != "" && ($8 - 1 - $3)^2 > 1e-16' "$w/net.csv" | head -n 3)"
 conclude
