@@ -40,7 +40,7 @@ modules := $(filter-out main,$(basename $(notdir $(sources))))
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))
 vpath %.F90 $(sort $(dir $(sources)))
 
-.PHONY: all example pictures kinds run test check forms errors kind-check quad-check single-check bench bench-short bench-against hard hard-short study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms relations mutants expected install install-kinds clean
+.PHONY: all example pictures kinds run test check forms errors kind-check quad-check single-check bench bench-short bench-against hard hard-short study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms relations tolerances mutants expected install install-kinds clean
 all: $(BUILD)/kinmat
 
 run: $(BUILD)/kinmat
@@ -192,6 +192,10 @@ fuzz-mechanisms: $(BUILD)/release/fuzz_mechanisms
 # Relations between runs of all decks of input/, or of N made by the dice, from seed SEED on.
 relations: $(BUILD)/kinmat $(BUILD)/release/fuzz_mechanisms
 	BUILD=$(BUILD) tests/system/relations.sh $(if $(N),--random $(N) $(or $(SEED),1))
+
+# Tolerances against N decks with all numbers off by chance.
+tolerances: $(BUILD)/kinmat
+	BUILD=$(BUILD) tests/system/tolerances.sh $(or $(N),10000)
 
 # Faults made by chance in the sources, N=200 of them, one at a time: which do the unit tests and `make check` not see?
 mutants:
