@@ -3,7 +3,8 @@
 # millions. The lengths are changed in the text of the cards, by their exponents, so that no decimal is rounded.
 . tests/counting.sh
 
-# enlarged K DECK: the deck with its lengths times 10**K. A card with * in column 1 has the numbers of the card above it.
+# enlarged K DECK: the deck with its lengths times 10**K. A card with * in column 1 has the numbers of the card above it,
+# TOLER their tolerances.
 enlarged() {
    awk -v k="$1" '
       function scaled(text,  e, i) {
@@ -25,7 +26,8 @@ enlarged() {
       /^[$]/ || /^ *$/ || /^TITLE/ { print; next }
       {
          line = sprintf("%-80s", $0); star = line ~ /^\*/
-         if (!star) { split(substr(line, 1, 8), c, " "); split(substr(line, 9, 8), f, " "); which = lengths(c[1], f[1]) }
+         if (!star) { split(substr(line, 1, 8), c, " "); split(substr(line, 9, 8), f, " ") }
+         if (!star && c[1] != "TOLER") which = lengths(c[1], f[1])
          width = star ? 24 : 16; first = star ? 9 : 33
          out = substr(line, 1, first - 1)
          for (n = 0; n < 3; n++) {
