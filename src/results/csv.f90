@@ -24,8 +24,8 @@ module csv
    character(6), parameter :: kinds_of_centre(0:2, request_pole:request_curve) = reshape([character(6) :: &
       'POLE', 'POLE-I', 'POLE-J', 'CURVE', 'CENTRE', 'RADIUS'], [3, 2])
    !> Why a centre has no place, by its state.
-   character(11), parameter :: marks_of_centre(centre_finite:centre_resting) = [character(11) :: &
-      '', 'AT-INFINITY', 'AT-REST', 'AT-REST']
+   character(8), parameter :: marks_of_centre(centre_finite:centre_resting) = [character(8) :: &
+      '', 'INFINITE', 'AT-REST', 'AT-REST']
 
 contains
 

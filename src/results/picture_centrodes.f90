@@ -106,6 +106,7 @@ contains
       last = last_of(p, centrode%side)
       n = 0
       do k = 1, last - 1
+         from = 0.0_wp
          to = -1.0_wp
          if (centrode%side(k)*centrode%side(k + 1) == 1) &
             call find_inside(p(:, k), p(:, k + 1), c%low, c%high, from, to)
