@@ -40,7 +40,7 @@ modules := $(filter-out main,$(basename $(notdir $(sources))))
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))
 vpath %.F90 $(sort $(dir $(sources)))
 
-.PHONY: all example pictures kinds run test check forms errors kind-check quad-check single-check bench bench-short bench-against hard hard-short study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms relations tolerances mutants expected install install-kinds clean
+.PHONY: all example pictures kinds run test check forms errors kind-check quad-check single-check bench bench-short bench-against bench-peers hard hard-short study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms relations tolerances mutants expected install install-kinds clean
 all: $(BUILD)/kinmat
 
 run: $(BUILD)/kinmat
@@ -146,6 +146,10 @@ bench-short: $(BUILD)/release/bench
 # Whole runs of this program against the program at the commit REF: make bench-against REF=HEAD~1
 bench-against: $(BUILD)/kinmat
 	BUILD=$(BUILD) REF='$(REF)' tests/bench/bench_against.sh
+
+# Time and error of other programs beside this one: they come from the index of Python packages.
+bench-peers: $(BUILD)/kinmat $(BUILD)/timed/bench
+	BUILD=$(BUILD) tests/bench/peers.sh
 
 # The method of 1987, measured: tables on standard output, docs/matrix_1987.png drawn anew (gnuplot-nox).
 study-1987: $(BUILD)/timed/matrix_1987

@@ -6,17 +6,19 @@
 !>    bench chains DECKS                 time a step of the chains in the directory DECKS
 !>    bench reading [DECK]               time to read and analyse a deck, and memory; the table's head
 !>    bench process DECKS KINMAT         time of the whole command
+!>    bench scene NAME [N DECKS]         a line for another program: the time of a step of input/NAME.deck, or of a chain,
+!>                                       by the closed form and by the blocks, in ns; characteristic length and rate
 !>    bench results DECKS STEPS DECK...  results compared, no clock; exit status 1 if any differ
 program bench
    use bench_results, only: judge_all
-   use bench_tables, only: steps_table, coarse_table, chains_table
+   use bench_tables, only: steps_table, coarse_table, chains_table, scene_line
    use bench_elimination, only: elimination_table, judge_elimination
    use bench_whole, only: reading_head, reading_row, process_table
    implicit none
    character(200), allocatable :: arguments(:)
    integer :: i, steps, count, failed
 
-   allocate (arguments(max(3, command_argument_count())))
+   allocate (arguments(max(4, command_argument_count())))
    do i = 1, size(arguments)
       call get_command_argument(i, arguments(i))
    end do
@@ -37,6 +39,8 @@ program bench
       if (arguments(2) /= '') call reading_row(trim(arguments(2)))
    case ('process')
       call process_table(trim(arguments(2)), trim(arguments(3)))
+   case ('scene')
+      call scene_line(trim(arguments(2)), trim(arguments(3)), trim(arguments(4)))
    case ('results')
       read (arguments(3), *) steps
       call judge_all(arguments(4:), trim(arguments(2)), steps, failed)

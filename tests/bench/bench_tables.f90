@@ -12,7 +12,7 @@ module bench_tables
    use bench_timing, only: job_t, measure
    implicit none
    private
-   public :: steps_table, coarse_table, chains_table
+   public :: steps_table, coarse_table, chains_table, scene_line
 
    integer, parameter :: repeats = 15
    !> Seconds of one measurement, at least: many clock ticks, yet often less than what another process is given at once.
@@ -199,6 +199,24 @@ contains
          figure(ratio%median), figure(ratio%least), figure(ratio%most), figure(b%least/c%least), figure(d%median), &
          figure(1000.0_wp*time_ready(by_method(s, method_newton))), e%worst
    end subroutine print_chain
+
+   !> Prints the time of a step of one scene by the closed form and by the blocks, in ns, the least of three, and its
+   !> characteristic length and rate. `number`: empty for input/`name`.deck, else that of the chain `name` in `decks`.
+   subroutine scene_line(name, number, decks)
+      character(*), intent(in) :: name, number, decks
+      type(scene_t) :: scene(1)
+      type(job_t) :: jobs(2)
+      integer :: n
+
+      if (number == '') then
+         scene(1) = new_scene('input/'//name//'.deck', name, 1)
+      else
+         read (number, *) n
+         scene(1) = chain_scene(decks, name, n)
+      end if
+      jobs = [job_t(1, by_closed_form), job_t(1, method_newton)]
+      print '(4es24.16)', nano*minval(measure(scene, jobs, 3, least), dim=2), scene%length, scene%rate
+   end subroutine scene_line
 
    !> Seconds from a mechanism to the readiness for its first step.
    real(wp) function time_ready(m) result(time)
