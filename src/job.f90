@@ -1,10 +1,11 @@
 !> One job: deck in, listing out. Solve an instant, write an instant; nothing is kept for later. Sets are independent of
 !> one another, and long jobs compute them in several processes.
 module job
+   use, intrinsic :: iso_fortran_env, only: int64
    use failures, only: failure_t, fail, status_rejected, status_solved, status_flagged, status_signal
    use mechanism, only: mechanism_t, request_pole, instant_count, instant, with_all_links
    use structure, only: findings_t, check_structure
-   use deck, only: read_deck, share_t
+   use deck, only: read_deck, share_t, variants_before
    use progress, only: progress_t, start_progress, show_progress, end_progress
    use system_calls, only: watch_signals, signal_received, broken_pipe_kills, signal_pipe
    use listing, only: new_layout, listing_head
@@ -56,21 +57,23 @@ contains
       share = share_t(options%share, options%shares)
       call read_deck(options%deck, sets, message, failure, share, o%variations)
       o%varies = share%varies
-      if (.not. allocated(failure)) call check_variants(options, o%varies, failure)
+      if (.not. allocated(failure) .and. o%varies) call check_variants(options, sets, failure)
       if (.not. allocated(failure)) call check_structure(sets, findings, failure)
       if (allocated(failure) .and. len(message) == 0) message = said_of(options, sets)//' *** '//failure%text
       if (.not. allocated(failure)) then
          o%first = share%first
          o%last = share%last
+         if (o%varies) o%first = 1
+         if (o%varies) o%last = size(sets)
          call open_outputs(options, o%first, o%last, share%sets, o, failure)
       end if
       if (.not. allocated(failure)) then
          call watch_signals
-         o%own_first = o%first
-         o%own_last = o%last
+         o%own_first = share%first
+         o%own_last = share%last
          associate (processes => process_count(options, sets))
-            if (processes > 1) call run_shares(o, o%own_first, o%own_last, processes, o%progress, is_child, status, &
-               message)
+            if (processes > 1) call run_shares(o, o%own_first, o%own_last, processes, &
+               trim(merge('VARIANTS', 'SETS    ', o%varies)), o%progress, is_child, status, message)
             if (is_child) o%progress%shown = .false.
             if (processes == 1 .or. is_child) call run_sets(options, sets, findings, o, status)
          end associate
@@ -89,14 +92,19 @@ contains
       if (is_child) call end_share(status, message)
    end subroutine run_job
 
-   !> A table has columns for one motion, not for those of the variants of a deck that `varies`.
-   subroutine check_variants(options, varies, failure)
+   !> Of a deck with VARY cards there is no table, which has columns for one motion, and no picture of a part.
+   !> Their numbers must be whole numbers of the default kind.
+   subroutine check_variants(options, sets, failure)
       type(options_t), intent(in) :: options
-      logical, intent(in) :: varies
+      type(mechanism_t), intent(in) :: sets(:)
       type(failure_t), allocatable, intent(out) :: failure
       integer :: k
 
-      if (.not. varies) return
+      if (sum(int(max(1, sets%variants), int64)) > huge(1)) call fail(failure, status_rejected, &
+         'TOO MANY VARIANTS IN ALL SETS: DIVIDE THE DECK')
+      if (options%shares > 1 .and. (allocated(options%files(out_svg)%text) .or. &
+         allocated(options%files(out_animation)%text))) call fail(failure, status_rejected, &
+         'OPTION --sets DIVIDES THE VARIANTS OF A DECK WITH VARY CARDS: DRAW IT WITHOUT')
       do k = 1, out_last
          if (file_options(k)%each_set .and. allocated(options%files(k)%text)) call fail(failure, status_rejected, &
             'OPTION '//trim(file_options(k)%word)//' TAKES NO DECK WITH VARY CARDS: USE --summary OR --csv')
@@ -115,7 +123,7 @@ contains
       if (n == 0) n = merge(processor_count(), 1, work > least_work)
       if (options%check .or. allocated(options%files(out_svg)%text) .or. &
          allocated(options%files(out_animation)%text)) n = 1
-      n = max(1, min(n, size(sets)))
+      n = max(1, min(n, variants_before(sets, size(sets) + 1)))
    end function process_count
 
    !> The remarks about `sets`, each line ended by new_line('a'), for where they stand in no listing; '' for --quiet.
@@ -155,16 +163,21 @@ contains
       type(findings_t), intent(inout) :: findings(o%first:)
       integer, intent(inout) :: status
       type(mechanism_t) :: film
-      integer :: i, every
+      integer :: i, every, before
 
-      if (o%asked(out_csv) .and. options%share == 1 .and. o%own_first == o%first) &
+      if (o%asked(out_csv) .and. options%share == 1 .and. o%own_first == 1) &
          call csv_head(o%files(out_csv, 0), options%errors, o%varies)
       if (o%asked(out_svg)) call picture_head(o%files(out_svg, 0))
       if (o%asked(out_svg)) allocate (o%drawings(o%first:o%last))
       if (o%asked(out_animation)) call picture_head(o%files(out_animation, 0))
       if (o%asked(out_animation)) allocate (o%films(o%first:o%last))
-      do i = o%own_first, o%own_last
-         call run_set(options, sets(i), i, findings(i), o, status)
+      before = o%first - 1
+      do i = o%first, o%last
+         associate (count => max(1, sets(i)%variants))
+            if (before < o%own_last .and. before + count >= o%own_first) call run_set(options, sets(i), i, &
+               o%own_first - before, o%own_last - before, findings(i), o, status)
+            before = before + count
+         end associate
          if (is_over(o, i)) exit
          if (o%asked(out_svg)) call draw_set(sets(i), picture_candidates, 1, o%drawings(i), o%progress)
          if (o%asked(out_svg) .and. any(sets(i)%requests%kind == request_pole)) &
@@ -216,11 +229,11 @@ contains
       call move_alloc(fine%centrodes, d%centrodes)
    end subroutine draw_centrodes
 
-   !> Solves and writes set number `i`, `m`.
-   subroutine run_set(options, m, i, findings, o, status)
+   !> Solves and writes set number `i`, `m`: of its variants those from `first` to `last`, as far as it has them.
+   subroutine run_set(options, m, i, first, last, findings, o, status)
       type(options_t), intent(in) :: options
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i
+      integer, intent(in) :: i, first, last
       type(findings_t), intent(inout) :: findings
       type(writers_t), intent(inout) :: o
       integer, intent(inout) :: status
@@ -228,7 +241,7 @@ contains
       type(answers_t) :: asked
       integer :: k
 
-      call write_heads(options, m, i, findings, o)
+      if (first <= 1) call write_heads(options, m, i, findings, o)
       if (options%check .or. is_over(o, i)) return
       if (m%variants == 0) then
          call run_motion(options, m, i, findings, .true., o, counts, asked)
@@ -236,7 +249,8 @@ contains
       else
          do k = 1, size(o%variations)
             if (o%variations(k)%set%mechanism%set_number == i) &
-               call run_variants(options, m, i, findings%parts, o%variations(k), o, status)
+               call run_variants(options, m, i, max(1, first), min(m%variants, last), findings%parts, &
+                  o%variations(k), o, status)
          end do
       end if
    end subroutine run_set

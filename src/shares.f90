@@ -1,5 +1,6 @@
-!> A job's sets in several processes: each computes some sets that follow one another, a share, and writes to temporary
-!> files, which are joined in the deck's order. The first share writes to the job's files themselves.
+!> A job's sets, or their variants, in several processes: each computes some that follow one another, a share, and
+!> writes to temporary files, which are joined in the deck's order. The first share writes to the job's files
+!> themselves.
 !>
 !> Rejected: threads. gfortran 12 keeps the lengths of character results in static memory, where threads write over each
 !> other's: of 2000 sets in two threads, two listings had words cut short.
@@ -27,7 +28,8 @@ module shares
    integer, parameter :: block_length = 65536
 
    type :: part_t
-      integer :: first = 1, last = 0                        !< its sets
+      character(8) :: kind = 'SETS'                         !< what is shared: SETS or VARIANTS
+      integer :: first = 1, last = 0                        !< their numbers
       integer :: process = 0                                !< its number while it is running
       integer :: status = -1                                !< its exit status; -1: it has not ended
       integer(c_int) :: files(message_file:out_last) = -1   !< its temporary files; negative: none
@@ -38,14 +40,15 @@ module shares
 
 contains
 
-   !> Computes the sets `first` to `last` in at most `processes` processes. It returns more than once: in each child
-   !> `is_child` is true, `first` and `last` are its share, to be computed and ended by `end_share`; in the parent it
-   !> returns when all shares have ended and their text is in `o`. `status`: then the exit status; `message`: what to
-   !> say of an error.
-   subroutine run_shares(o, first, last, processes, progress, is_child, status, message)
+   !> Computes the sets, or the variants (`kind`: SETS or VARIANTS), `first` to `last` in at most `processes` processes.
+   !> It returns more than once: in each child `is_child` is true, `first` and `last` are its share, to be computed and
+   !> ended by `end_share`; in the parent it returns when all shares have ended and their text is in `o`. `status`: then
+   !> the exit status; `message`: what to say of an error.
+   subroutine run_shares(o, first, last, processes, kind, progress, is_child, status, message)
       class(outputs_t), intent(inout) :: o
       integer, intent(inout) :: first, last
       integer, intent(in) :: processes
+      character(*), intent(in) :: kind
       type(progress_t), intent(inout) :: progress
       logical, intent(out) :: is_child
       integer, intent(inout) :: status
@@ -54,6 +57,7 @@ contains
       integer :: begun, joined
       logical :: stops
 
+      list%kind = kind
       call divide(first, last, list)
       is_child = .false.
       begun = 0
@@ -79,7 +83,7 @@ contains
             joined = joined + 1
             ! After a share that was broken off nothing is written.
             if (status < status_system) call join_share(o, list(joined), status, message)
-            call show_progress(progress, 'SETS: NUMBER', list(joined)%last, last)
+            call show_progress(progress, kind//': NUMBER', list(joined)%last, last)
          end do
       end do
       call forget_files(o, 1, 0)
@@ -216,11 +220,11 @@ contains
       text = block(:max(0, read_bytes(descriptor, block)))
    end subroutine read_block
 
-   !> SETS 5 TO 8
+   !> SETS 5 TO 8, or VARIANTS 5 TO 8
    pure function sets_text(s) result(text)
       type(part_t), intent(in) :: s
       character(:), allocatable :: text
 
-      text = ' SETS '//whole(s%first)//' TO '//whole(s%last)
+      text = ' '//trim(s%kind)//' '//whole(s%first)//' TO '//whole(s%last)
    end function sets_text
 end module shares

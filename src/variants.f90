@@ -25,11 +25,12 @@ module variants
 
 contains
 
-   !> Solves and writes the variants `v` of set number `i`, `m`, whose independent mechanisms are `parts`.
-   subroutine run_variants(options, m, i, parts, v, o, status)
+   !> Solves and writes the variants `first` to `last` of `v`, those of set number `i`, `m`, whose independent
+   !> mechanisms are `parts`.
+   subroutine run_variants(options, m, i, first, last, parts, v, o, status)
       type(options_t), intent(in) :: options
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i
+      integer, intent(in) :: i, first, last
       type(parts_t), intent(in) :: parts
       type(variation_t), intent(inout) :: v
       type(writers_t), intent(inout) :: o
@@ -44,9 +45,10 @@ contains
       full = any(m%requests%every > 0)
       layout = new_layout(m)
       summary = new_summary(m, parts, layout, v)
-      if (o%asked(out_summary)) call summary_head(o%files(out_summary, 0), summary)
-      if (o%asked(out_listing) .and. .not. full) call put_variant_heads(o%files(out_listing, 0), summary)
-      do n = 1, v%total
+      if (o%asked(out_summary) .and. first == 1) call summary_head(o%files(out_summary, 0), summary)
+      if (o%asked(out_listing) .and. first == 1 .and. .not. full) &
+         call put_variant_heads(o%files(out_listing, 0), summary)
+      do n = first, last
          row = new_row(summary, v, n)
          if (o%asked(out_listing) .and. full) &
             call put_variant(o%files(out_listing, 0), layout, summary, m, row)
@@ -61,7 +63,7 @@ contains
          if (o%progress%shown) call show_progress(o%progress, 'SET '//whole(i)//': VARIANT', n, v%total)
       end do
       if (.not. o%asked(out_listing)) return
-      if (n <= v%total) call put_broken_off(o%files(out_listing, 0), m, n - 1)
+      if (n <= last) call put_broken_off(o%files(out_listing, 0), m, n - 1)
       if (n > v%total) call put_variants_end(o%files(out_listing, 0), m)
    end subroutine run_variants
 

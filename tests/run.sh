@@ -28,7 +28,7 @@ parts() {
    estimates of errors|57|"$MAKE" --no-print-directory errors
    units of length|751|tests/system/units.sh
    the methods against one another|8|tests/system/methods.sh
-   variants|66|tests/system/variants.sh
+   variants|81|tests/system/variants.sh
    tolerances|22|tests/system/tolerances.sh
    extremes and ranges|34|tests/system/answers.sh
    independent mechanisms|106|tests/system/independent.sh

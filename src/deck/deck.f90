@@ -23,17 +23,18 @@ module deck
    use numerals, only: whole
    implicit none
    private
-   public :: read_deck, share_t, share_end, build_variant
+   public :: read_deck, share_t, share_end, variants_before, build_variant
 
    !> The largest number of cards, with comments and blank cards.
    integer, parameter :: max_cards = 2000000
 
-   !> A share of a deck's sets: the `number`-th of `count`. The shares one after another are all sets.
+   !> A share of a deck's sets, or of its variants where the deck has VARY cards: the `number`-th of `count`. The shares
+   !> one after another are all of them.
    type :: share_t
       integer :: number = 1, count = 1
-      integer :: first = 1, last = 0              !< numbers of its sets; set by `read_deck`
+      integer :: first = 1, last = 0              !< numbers of its sets or variants; set by `read_deck`
       integer :: sets = 0                         !< of the whole deck; the same
-      logical :: varies = .false.                 !< the deck has VARY cards; the same
+      logical :: varies = .false.                 !< it has VARY cards: all sets are read; the same
    end type share_t
 
    !> What has been read so far.
@@ -84,8 +85,14 @@ contains
       if (present(variations)) call move_alloc(progress%variations, variations)
       if (present(share)) then
          if (share%sets == 0) call divide(share, progress%closed)
-         ! Of a pipe all sets are there.
-         sets = progress%sets(share%first - progress%passed:min(progress%closed, share%last - progress%passed))
+         if (share%varies) then
+            sets = progress%sets(1:progress%closed)
+            call divide(share, variants_before(sets, size(sets) + 1))
+            share%sets = size(sets)
+         else
+            ! Of a pipe all sets are there.
+            sets = progress%sets(share%first - progress%passed:min(progress%closed, share%last - progress%passed))
+         end if
       else if (progress%closed == size(progress%sets)) then
          call move_alloc(progress%sets, sets)
       else
@@ -109,7 +116,7 @@ contains
       call open_source(source, path, failure)
       if (.not. allocated(failure)) call pass_sets(source, huge(passed), failure, passed, share%varies)
       call close_source(source)
-      if (allocated(failure) .or. passed == 0) return
+      if (allocated(failure) .or. passed == 0 .or. share%varies) return
       call divide(share, passed)
       first = share%first
       if (share%last < passed) last = share%last
@@ -124,6 +131,14 @@ contains
       share%first = share_end(sets, share%number - 1, share%count) + 1
       share%last = share_end(sets, share%number, share%count)
    end subroutine divide
+
+   !> The number of variants of `sets` before set number `i`; a set without VARY cards counts as one.
+   pure integer function variants_before(sets, i) result(n)
+      type(mechanism_t), intent(in) :: sets(:)
+      integer, intent(in) :: i
+
+      n = sum(max(1, sets(:i - 1)%variants))
+   end function variants_before
 
    !> The last set of share `k` of `n` shares of `count` sets.
    pure integer function share_end(count, k, n)

@@ -195,6 +195,28 @@ told 'no values' 'E034 THIS FIELD MUST NOT BE BLANK' "$(vary R1 3)"
 equal 'no table: status' 1 $?
 equal 'no table' ' *** OPTION --table TAKES NO DECK WITH VARY CARDS: USE --summary OR --csv' "$(cat "$w/out")"
 
+# In several processes, and in shares: the same bytes. Three sets, one of them without VARY cards.
+{
+   cat "$w/slider.deck"; four_bar '' '' '' '' "$(card TIME 2 '' '' 0.0 1.0)"
+   sed 's/^VARY    R1      2 /VARY    R1      5 /' "$w/order.deck"
+} > "$w/three.deck"
+"$kinmat" "$w/three.deck" --jobs 1 -o "$w/one.lst" --summary "$w/one.csv" --csv "$w/one.all" --log "$w/one.log"
+equal 'one process' '0 72 20' "$? $(awk -F, '$1 == 1 { a++ } $1 == 3 { b++ } END { print a, b }' "$w/one.csv")"
+for jobs in 2 7; do
+   "$kinmat" "$w/three.deck" --jobs $jobs -o "$w/some.lst" --summary "$w/some.csv" --csv "$w/some.all" --log "$w/some.log"
+   for kind in lst csv all log; do same "$jobs processes: $kind" "$w/one.$kind" "$w/some.$kind"; done
+done
+for kind in lst csv all log; do : > "$w/joined.$kind"; done
+for k in 1 2 3 4 5; do
+   "$kinmat" "$w/three.deck" --jobs 1 --sets $k/5 -o "$w/some.lst" --summary "$w/some.csv" --csv "$w/some.all" --log "$w/some.log"
+   for kind in lst csv all log; do cat "$w/some.$kind" >> "$w/joined.$kind"; done
+done
+for kind in lst csv all log; do same "five shares: $kind" "$w/one.$kind" "$w/joined.$kind"; done
+"$kinmat" "$w/three.deck" --sets 1/5 --no-listing --svg "$w/x.svg" > "$w/out" 2>&1
+equal 'no picture of a share' ' *** OPTION --sets DIVIDES THE VARIANTS OF A DECK WITH VARY CARDS: DRAW IT WITHOUT' "$(cat "$w/out")"
+"$kinmat" "$w/three.deck" --no-listing --svg "$w/three.svg" --animate "$w/moving.svg"
+equal 'a picture of the numbers of the deck' 0 $?
+
 # Memory does not grow with the variants: 40 times as many need no more room than is free for a few.
 four_bar "$(vary R1 50 '' 0.5 1.25)" "$(vary R1 40 '' 3.25 3.75)" '' '' "$(card TIME 1 '' '' 0.0 1.0)" > "$w/many.deck"
 (ulimit -v 200000; "$kinmat" "$w/many.deck" --no-listing --summary "$w/many.csv") > "$w/out" 2>&1
