@@ -139,15 +139,19 @@ contains
       type(findings_t), intent(inout) :: f
       type(mechanism_t) :: pairs_only
       integer :: part(size(m%links)), owner(size(f%many_drives)), i
-      integer, allocatable :: spare(:)
+      integer, allocatable :: spare(:), many(:)
 
       pairs_only = m
       pairs_only%drives = m%drives(:0)
       part = part_of_links(m)
       spare = redundant_in_parts(m, part) - redundant_in_parts(pairs_only, part)
       owner = [(part_of_drive(m, part, f%many_drives(i)), i=1, size(owner))]
+      allocate (many(size(spare)), source=0)
+      do i = 1, size(owner)
+         many(owner(i)) = many(owner(i)) + 1
+      end do
       ! The pairs of a mechanism that moves against its count leave no drive: those are not too many.
-      where (spare >= [(count(owner == i), i=1, size(spare))]) spare = 0
+      where (spare >= many) spare = 0
       f%spare_drives = sum(spare)
       f%spare_among = pack(f%many_drives, spare(owner) > 0)
    end subroutine find_spare_drives
@@ -165,6 +169,7 @@ contains
       redundant = 0
       do i = 1, size(unknown_of)
          if (unknown_of(i) > 0) cycle
+         k = 0
          if (c%pair(i) > 0) k = part_of_pair(m, part, c%pair(i))
          if (c%drive(i) > 0) k = part_of_drive(m, part, c%drive(i))
          if (k > 0) redundant(k) = redundant(k) + 1
