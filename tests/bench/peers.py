@@ -131,9 +131,11 @@ def casadi_step(scene, method):
             f = q[:2] + ca.mtimes(ca.horzcat(d, ca.vertcat(-d[1], d[0])), two(rest[1]))/ca.norm_2(d)
             z[name] = ca.Function('f', [q, qd, qdd], [f, rate(f), rate(rate(f))])(*given)
             continue
-        distances = [(x - q[:2], rest[1])] if kind == 'meet' else [(x - q[:2], rest[0])]
-        g = [ca.dot(d, d) - r**2 for d, r in distances + ([(x - q[2:], rest[2])] if kind == 'meet' else [])]
-        g = ca.vertcat(*g, *([x[1] - rest[1]] if kind == 'slide' else []))
+        square = lambda d, r: ca.dot(d, d) - r**2
+        if kind == 'meet':
+            g = ca.vertcat(square(x - q[:2], rest[1]), square(x - q[2:], rest[2]))
+        else:
+            g = ca.vertcat(square(x - q[:2], rest[0]), x[1] - rest[1])
         root = ca.rootfinder('root', method, {'x': x, 'p': q, 'g': g}, {'abstol': 1e-14})
         jacobian, drift = ca.jacobian(g, x), ca.jtimes(g, q, qd)
         first = ca.Function('first', [x, q, qd], [ca.solve(jacobian, -drift)])
@@ -274,7 +276,6 @@ def windows_loops(scene):
 
 LOOPS = {'four-bar': four_bar_loops, 'out of reach': four_bar_loops, 'yoke': yoke_loops, '10 windows': windows_loops}
 
-
 BY_HAND = 'equations (the user writes them), condition, check of the branch'
 # Name, function, bound of its errors, what it does not give.
 PEERS = [('KINMAT', kinmat, 1e-13, ''),
@@ -309,7 +310,7 @@ def first_turn(scene, make, true, length, rate):
         ready = time.perf_counter() - begun
         seconds, *found = turn(scene.steps)
     errors = [np.max(np.abs(f - e))/(length*rate**k) for k, (f, e) in enumerate(zip(found, true))]
-    return ready, turn, seconds, errors, len(warned) > 0
+    return ready, turn, seconds, errors, any(issubclass(w.category, RuntimeWarning) for w in warned)
 
 
 def figure(x):
