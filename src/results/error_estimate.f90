@@ -14,7 +14,8 @@ module error_estimate
    use block_method, only: block_method_t
    use block_engine, only: block_engine_t, make_block_engine, set_drive_values
    use blocks, only: body_vector_t, slide_t, block_loop_t
-   use perturbed_deck, only: sample_count, all_samples, perturbation, perturbed, perturbed_instant, round_loops
+   use perturbed_deck, only: sample_count, all_samples, perturbation, perturbed, perturbed_instant, round_loops, &
+      largest_place
    implicit none
    private
    public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, row_estimate, row_error, largest_errors
@@ -62,6 +63,7 @@ module error_estimate
    !> length and rate of the mechanism.
    type :: estimator_t
       real(wp) :: length = 1.0_wp, rate = 1.0_wp   !< in the deck's units
+      real(wp) :: place = 0.0_wp                   !< the largest number in the place of a point of the ground, likewise
       type(block_engine_t), allocatable :: engine(:)   !< (0:sample_count or all_samples)
    end type estimator_t
 
@@ -74,6 +76,7 @@ contains
 
       s%length = characteristic_length(m)
       s%rate = characteristic_rate(m, s%length)
+      s%place = largest_place(m)
    end subroutine make_estimator
 
    !> How far the motion `q` of `m` is known, which the `engine` has found, by a matrix of the reciprocal condition
@@ -128,7 +131,7 @@ contains
             end if
             engine%state%u(2:)%value = engine%state%u(2:)%value + nudge
             if (k < 0) then
-               call solve_rounded(engine, k, q%t, q%known < 0, found%samples(k))
+               call solve_rounded(engine, k, s%place, q%t, q%known < 0, found%samples(k))
             else
                call solve_again(engine, perturbed_instant(q%t, k), q%known < 0, found%samples(k))
             end if
@@ -191,10 +194,10 @@ contains
    end subroutine make_engines
 
    !> The motion of `e` at `t` with the roundings of sample `k`; `e` keeps its loops.
-   subroutine solve_rounded(e, k, t, only_driven, q)
+   subroutine solve_rounded(e, k, place, t, only_driven, q)
       type(block_engine_t), intent(inout) :: e
       integer, intent(in) :: k
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: place, t
       logical, intent(in) :: only_driven
       type(motion_t), intent(inout) :: q
       type(body_vector_t), allocatable :: vectors(:)
@@ -204,7 +207,7 @@ contains
       vectors = e%blocks%body_vectors
       slides = e%blocks%slides
       loops = e%blocks%loops
-      call round_loops(e%blocks, k)
+      call round_loops(e%blocks, k, place/e%length)
       call solve_again(e, perturbed_instant(t, k), only_driven, q)
       call move_alloc(vectors, e%blocks%body_vectors)
       call move_alloc(slides, e%blocks%slides)

@@ -7,7 +7,8 @@ module perturbed_deck
    use mechanism, only: mechanism_t, drive_t, plane_origin, pair_prismatic, term_power, term_table, drive_relangle
    implicit none
    private
-   public :: perturbed, perturbed_instant, perturbation, sample_count, all_samples, round_loops
+   public :: perturbed, perturbed_instant, perturbation, sample_count, all_samples, round_loops, &
+      largest_place
 
    !> Relative; many roundings, so that those of the calculation itself are small beside it, and so little that
    !> 2.3E-12 from a dead point the change is at most 1.6 times that in proportion.
@@ -94,9 +95,12 @@ contains
    end function size_of_place
 
    !> Moves each vector of the loops of `b` up or down by a rounding, by chance as sample `k` < 0 has it.
-   pure subroutine round_loops(b, k)
+   !> The part of a loop that the ground gives is the difference of two places on it, and rounded as these are: `place`
+   !> is the largest, in solver lengths.
+   pure subroutine round_loops(b, k, place)
       type(blocks_t), intent(inout) :: b
       integer, intent(in) :: k
+      real(wp), intent(in) :: place
       type(dice_t) :: dice
       real(wp) :: v(2)
       integer :: i
@@ -104,25 +108,41 @@ contains
       dice = dice_t(-seed*k, -seed*k)
       do i = 1, size(b%body_vectors)
          v = [b%body_vectors(i)%x, b%body_vectors(i)%y]
-         call round_vector(v, dice)
+         call round_vector(v, norm2(v), dice)
          b%body_vectors(i)%x = v(1)
          b%body_vectors(i)%y = v(2)
       end do
       do i = 1, size(b%slides)
-         call round_vector(b%slides(i)%body_vector, dice)
+         call round_vector(b%slides(i)%body_vector, norm2(b%slides(i)%body_vector), dice)
       end do
       do i = 1, size(b%loops)
-         call round_vector(b%loops(i)%ground, dice)
+         associate (g => b%loops(i))
+            if (any(abs(g%ground) > 0.0_wp)) call round_vector(g%ground, max(norm2(g%ground), place/g%unit), dice)
+         end associate
       end do
    end subroutine round_loops
 
-   !> Moves `v` by a rounding of its length, along and across.
-   pure subroutine round_vector(v, dice)
+   !> Moves `v` by a rounding of `size_of`, along and across.
+   pure subroutine round_vector(v, size_of, dice)
       real(wp), intent(inout) :: v(2)
+      real(wp), intent(in) :: size_of
       type(dice_t), intent(inout) :: dice
 
-      call shift(v, spread(norm2(v)*epsilon(1.0_wp)/perturbation, 1, 2), dice)
+      call shift(v, spread(size_of*epsilon(1.0_wp)/perturbation, 1, 2), dice)
    end subroutine round_vector
+
+   !> The largest number, in the deck's unit, that the place of a point of the ground is a sum of.
+   pure real(wp) function largest_place(m) result(largest)
+      type(mechanism_t), intent(in) :: m
+      real(wp) :: origin(2)
+      integer :: i
+
+      origin = plane_origin(m)
+      largest = 0.0_wp
+      do i = 1, size(m%points)
+         if (m%links(m%points(i)%link)%ground) largest = max(largest, size_of_place(m, i, origin))
+      end do
+   end function largest_place
 
    !> Perturbs a prismatic pair's guide: alpha and beta (rad), offset (length).
    pure subroutine shift_guide(alpha, offset, beta, dice)
