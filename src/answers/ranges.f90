@@ -25,6 +25,8 @@ module ranges
    real(wp), parameter :: step_of_angle = pi/36.0_wp, step_of_length = 0.05_wp
    integer, parameter :: max_turns = 12
    real(wp), parameter :: max_lengths = 100.0_wp
+   !> How close its end is looked for.
+   real(wp), parameter :: closest = max(1.0e-12_wp, 4.0_wp*epsilon(1.0_wp))
    !> A motion closes where positions agree to this part of a radian and of the characteristic length.
    real(wp), parameter :: closes_to = max(1.0e-7_wp, 1.0e6_wp*epsilon(1.0_wp))
    !> The ends of a range.
@@ -178,7 +180,9 @@ contains
          if (allocated(now%diagnostics)) r%change_points = r%change_points &
             + count(now%diagnostics%kind == diagnostic_change .and. .not. now%diagnostics%here)
          if (now%known < 0) then
-            call take_limit(now, a%t, value, rate, side, r)
+            t = a%t
+            call close_in(a, step, t, now)
+            call take_limit(now, t, value, rate, side, r)
             return
          end if
          if (.not. is_angle .or. mod(k, steps_a_turn) /= 0 .or. now%known < 2) cycle
@@ -188,6 +192,31 @@ contains
       end do
       r%limit(side)%value = value + rate*t
    end subroutine follow
+
+   !> The motion was found at the time `t`, and not a `step` later. Where no limit is told, as so close to a change
+   !> point that rounding leaves none, the last time is looked for at which there is a motion: `t`, and `now` after it.
+   subroutine close_in(a, step, t, now)
+      type(analysis_t), intent(inout) :: a
+      real(wp), intent(in) :: step
+      real(wp), intent(inout) :: t
+      type(motion_t), intent(inout) :: now
+      real(wp) :: part
+
+      part = step
+      do while (.not. tells_limit(now) .and. part > closest)
+         part = 0.5_wp*part
+         call advance(a, t + part, now)
+         if (now%known >= 0) t = t + part
+      end do
+   end subroutine close_in
+
+   !> Some diagnostic of `q` is a limit.
+   pure logical function tells_limit(q) result(tells)
+      type(motion_t), intent(in) :: q
+
+      tells = .false.
+      if (allocated(q%diagnostics)) tells = any(q%diagnostics%kind == diagnostic_limit)
+   end function tells_limit
 
    !> The motion ends before that asked for in `now`, shortly after `t`.
    subroutine take_limit(now, t, value, rate, side, r)

@@ -98,6 +98,12 @@ for method in NEWTON DENSE; do
    MAX  $(limit "$(angle 2 4 4.5)") DEG   LINKS COUPLER, ROCKER AT THE LIMIT, IN LINE"
 done
 
+# Near Grashof's limit, 3 + 0.75 longer than 1.1 + 2.649997 by 3E-6: crank, coupler and rocker are almost in line at the ends.
+four_bar 3.0 1.1 2.649997 0.75 CRANK 50.0 -35.8 38.6 50.0 > "$w/deck"
+"$kinmat" "$w/deck" > "$w/out"
+equal 'near the limit of Grashof' "-$(limit "$(angle 3 0.75 3.749997)") $(limit "$(angle 3 0.75 3.749997)")" \
+   "$(awk '/^   (MIN|MAX) / { printf "%s%s", sep, $2; sep = " " }' "$w/out")"
+
 # A parallelogram passes its two change points a turn on the smooth branch.
 with parallelogram_at "$(card RANGE)" > "$w/deck"
 range 'a parallelogram' ' ANGLE CRANK
