@@ -56,6 +56,7 @@ contains
             ends = ends + 1
          end if
          if (starts(line, ' BRANCH: ') .or. starts(line, ' GALAZ: ')) tables = .false.
+         if (starts(line, ' TOLERANCES: ') .or. starts(line, ' TOLERANCJE: ')) tables = .false.
          if (tables .and. starts(line, ' *** ')) flagged = flagged + merge(0, 1, is_remark(line))
          if (line_is_wrong(line, tables) .and. wrong == '') wrong = 'LISTING: '//trim(line)
       end do

@@ -55,8 +55,26 @@ contains
          if (rows%due(i)) rows%due(i) = mod(k, m%requests(i)%every) == 0 .or. k == instant_count(m) - 1
          if (rows%due(i)) call read_row(unit, m, k, i, rows, wrong)
          if (allocated(wrong)) return
+         if (rows%due(i) .and. allocated(m%tolerances)) call pass_tolerances(unit)
       end do
    end subroutine read_instant
+
+   !> What tolerances make of the row above: rows whose kind has two words.
+   subroutine pass_tolerances(unit)
+      integer, intent(in) :: unit
+      character(600) :: line
+      character(cell_length) :: cell(cells)
+      integer :: status, count_of
+
+      do
+         read (unit, '(a)', iostat=status) line
+         if (status /= 0) exit
+         call split(line, cell, count_of)
+         if (index(trim(cell(4)), ' ') > 0) cycle
+         backspace (unit)
+         exit
+      end do
+   end subroutine pass_tolerances
 
    !> The row of request `i`.
    subroutine read_row(unit, m, k, i, rows, wrong)

@@ -14,7 +14,7 @@ equal '--help: digits' "the results with $digits digits" "$("$BUILD/kinmat" --he
 
 for deck in input/*.deck; do
    name=$(basename "$deck" .deck)
-   awk '/^PRINT   LINKS/ { next }
+   awk '/^PRINT   LINKS/ || /^TOLER/ { next }
       /^PRINT   ALL/ { $0 = "PRINT   ALL"; all = 1 }
       /^END/ { if (!all) print "PRINT   LINKS"; all = 0 }
       { print }' "$deck" > "$w/$name.deck"
