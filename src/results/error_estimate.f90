@@ -193,7 +193,7 @@ contains
       end do
    end subroutine make_engines
 
-   !> The motion of `e` at `t` with the roundings of sample `k`; `e` keeps its loops.
+   !> The motion of `e` at `t` with the roundings of sample `k`; `e` keeps its loops. `place`: see `estimator_t`.
    subroutine solve_rounded(e, k, place, t, only_driven, q)
       type(block_engine_t), intent(inout) :: e
       integer, intent(in) :: k
