@@ -30,7 +30,7 @@ parts() {
    the methods against one another|8|tests/system/methods.sh
    variants|81|tests/system/variants.sh
    tolerances|22|tests/system/tolerances.sh
-   extremes and ranges|34|tests/system/answers.sh
+   extremes and ranges|35|tests/system/answers.sh
    independent mechanisms|106|tests/system/independent.sh
    what a singular position is|211|tests/system/singular.sh
    poles and curves|37|tests/system/centres.sh

@@ -19,6 +19,8 @@ module extremes
    !> that no table shows may be as large: the earlier one counts. A derivative below the second is a zero that rounding
    !> has moved.
    real(wp), parameter :: alike = 1.0e5_wp*epsilon(1.0_wp), noise_part = 64.0_wp*epsilon(1.0_wp)
+   !> A value with a larger error has no digits in a table.
+   real(wp), parameter :: badly_known = 1.0e-3_wp
    !> A motion is cyclic if its end differs from its beginning by less, in the same units.
    real(wp), parameter :: closes_to = max(1.0e-9_wp, 1.0e5_wp*epsilon(1.0_wp))
    !> The first index of the extremes.
@@ -146,6 +148,8 @@ contains
             better = .not. e%exists .or. gain > alike*x%size_of(c, k, q) + e%error + sample%error(k)
             if (at_zero .and. .not. (better .or. e%is_located)) better = gain >= -alike*x%size_of(c, k, q) &
                .and. abs(sample%t - e%t) <= step_of(m)
+            ! Of a value of which almost nothing is known, the least that it can be counts.
+            if (e%error > badly_known*x%size_of(c, k, q)) better = better .or. gain + e%error > sample%error(k)
             ! A one-sided limit is known less well than the number itself.
             better = better .or. (abs(sample%t - e%t) <= 0.0_wp .and. sample%error(k) < e%error)
             if (better) e = extreme_t(exists=.true., is_located=at_zero, t=sample%t, &
