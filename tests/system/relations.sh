@@ -9,6 +9,7 @@
 #    relations.sh --random COUNT [FIRST]  decks of tests/fuzz/fuzz_mechanisms, COUNT of them from seed FIRST on; those that
 #                                         fail are kept
 . tests/counting.sh
+work=$w
 
 # Of the changes of deck number n those with a number k, k + n divisible by `every`.
 every=1
@@ -32,7 +33,7 @@ differing() {
 # relate DECK: changes of it against the deck
 relate() {
    deck=$(basename "$1" .deck)
-   w=$w/$deck
+   w=$work/$deck
    mkdir -p "$w"
    awk -v change=whole -v map=/dev/null -f tests/system/relation_deck.awk "$1" > "$w/whole.deck"
    run whole
@@ -51,10 +52,10 @@ relate() {
 # random COUNT FIRST
 random() {
    for seed in $(seq "$2" $(($2 + $1 - 1))); do
-      "$BUILD/release/fuzz_mechanisms" --deck "$seed" "$w/$seed.deck" || exit 3
+      "$BUILD/release/fuzz_mechanisms" --deck "$seed" "$work/$seed.deck" || exit 3
       failed_before=$(grep -c failed "$counts")
-      relate "$w/$seed.deck"
-      [ "$(grep -c failed "$counts")" -gt "$failed_before" ] || rm -r "$w/$seed" "$w/$seed.deck"
+      relate "$work/$seed.deck"
+      [ "$(grep -c failed "$counts")" -gt "$failed_before" ] || rm -r "$work/$seed" "$work/$seed.deck"
    done
 }
 
@@ -68,8 +69,8 @@ case $1 in
 esac
 
 # Axes that are not known to be others make differences.
-w=$w/four_bar
-[ -d "$w" ] || relate input/four_bar.deck
+w=$work/four_bar
+[ -f "$w/whole.deck" ] || relate input/four_bar.deck
 changed axes "$w/whole.deck"
 run axes
 grep -v '^link' "$w/axes.map" > "$w/no_axes.map"
