@@ -144,7 +144,7 @@ module input_errors
       extremes_time = error_code_t(98, 'EXTREMES NEEDS A TIME CARD: IT SEARCHES BETWEEN ITS INSTANTS'), &
       extremes_ground = error_code_t(99, 'BELONGS TO THE GROUND: IT DOES NOT MOVE'), &
       centre_still = error_code_t(100, 'THERE IS NO RELATIVE MOTION: BOTH ARE OF ONE LINK, OR OF THE GROUND'), &
-      centre_apart = error_code_t(101, 'IS IN ANOTHER INDEPENDENT MECHANISM: NAME A GROUND LINK INSTEAD')
+      centre_apart = error_code_t(107, 'IS IN ANOTHER INDEPENDENT MECHANISM: NAME A GROUND LINK INSTEAD')
 
 contains
 

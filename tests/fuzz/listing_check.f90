@@ -5,9 +5,15 @@ module listing_check
    public :: check_listing, check_protocol, next_word
 
    integer, parameter :: width = 400
-   character(8), parameter :: heads(*) = [character(8) :: 'X', 'Y', 'PHI', 'FI', 'VX', 'VY', 'VPHI', 'VFI', 'AX', &
-      'AY', &
-      'APHI', 'AFI', 'SLIDE', 'ANGLE', 'PRZESUW', 'KAT', 'RATE', '2ND', 'PREDKOSC', 'PRZYSP.']
+   character(9), parameter :: heads(*) = [character(9) :: 'X', 'Y', 'PHI', 'FI', 'VX', 'VY', 'VPHI', 'VFI', 'AX', &
+      'AY', 'APHI', 'AFI', 'SLIDE', 'ANGLE', 'PRZESUW', 'KAT', 'RATE', '2ND', 'PREDKOSC', 'PRZYSP.', 'XI-I', 'KSI-I', &
+      'ETA-I', 'XI-J', 'KSI-J', 'ETA-J', 'DIRECTION', 'KIERUNEK', 'TANGENT', 'STYCZNA', 'RADIUS', 'PROMIEN', &
+      'X-CENTRE', 'X-SRODKA', 'Y-CENTRE', 'Y-SRODKA']
+   !> Words in the place of a number.
+   character(10), parameter :: words_for_none(*) = [character(10) :: 'NONE', 'BRAK', 'INFINITE', 'NIESKONCZ.', 'AT', &
+      'REST', 'W', 'SPOCZYNKU']
+   !> Columns of the names of a row; of one with two names.
+   integer, parameter :: one_name = 9, two_names = 18
    character(70), parameter :: marks(*) = [character(70) :: 'NO POSITION FOUND', 'NIE ZNALEZIONO POLOZENIA', &
       'JACOBIAN SINGULAR: NO UNIQUE VELOCITIES', 'JAKOBIAN OSOBLIWY: BRAK JEDNOZNACZNYCH PREDKOSCI', &
       'CHANGE POINT: VELOCITIES NOT UNIQUE', 'PUNKT ZMIANY: PREDKOSCI NIEJEDNOZNACZNE', &
@@ -41,11 +47,13 @@ contains
       character(width) :: line
       integer :: unit, status, ends
       logical :: tables
+      integer :: names
 
       wrong = ''
       flagged = 0
       ends = 0
       tables = .false.
+      names = one_name
       open (newunit=unit, file=path, status='old', action='read', iostat=status)
       do while (status == 0)
          read (unit, '(a)', iostat=status) line
@@ -58,15 +66,18 @@ contains
          if (starts(line, ' BRANCH: ') .or. starts(line, ' GALAZ: ')) tables = .false.
          if (starts(line, ' TOLERANCES: ') .or. starts(line, ' TOLERANCJE: ')) tables = .false.
          if (tables .and. starts(line, ' *** ')) flagged = flagged + merge(0, 1, is_remark(line))
-         if (line_is_wrong(line, tables) .and. wrong == '') wrong = 'LISTING: '//trim(line)
+         if (are_heads(line(two_names + 1:)) .and. line(two_names + 1:) /= '' .and. line(:one_name) /= '') &
+            names = merge(two_names, one_name, any(line(:8) == [character(8) :: ' POLE', ' CURVE', ' BIEGUN', ' TOR']))
+         if (line_is_wrong(line, tables, names) .and. wrong == '') wrong = 'LISTING: '//trim(line)
       end do
       if (ends /= sets) wrong = 'LISTING: NOT ALL SETS COME TO THEIR END'
       close (unit)
    end subroutine check_listing
 
-   logical function line_is_wrong(line, tables) result(wrong)
+   logical function line_is_wrong(line, tables, names) result(wrong)
       character(*), intent(in) :: line
       logical, intent(in) :: tables
+      integer, intent(in) :: names
 
       wrong = len_trim(line) > 120 .or. index(line, 'NaN') > 0 .or. index(line, 'Infinity') > 0
       if (wrong .or. line == '') return
@@ -81,7 +92,7 @@ contains
       else if (line(:10) == '') then
          wrong = index(line, '****') > 0
       else
-         wrong = .not. (are_numbers(line(10:)) .or. are_heads(line(10:)))
+         wrong = .not. (are_numbers(line(names + 1:)) .or. are_heads(line(names + 1:)))
       end if
    end function line_is_wrong
 
@@ -128,7 +139,7 @@ contains
          call next_word(text, first, last)
          if (first == 0) return
          associate (word => text(first:last))
-            if (word == 'NONE' .or. word == 'BRAK') cycle
+            if (any(words_for_none == word)) cycle
             are_numbers = verify(word, '0123456789.E+-?') == 0 .and. scan(word, '0123456789?') > 0
             if (word(1:1) == '-') are_numbers = are_numbers .and. verify(word, '-0.?') > 0
             if (.not. are_numbers) return

@@ -4,7 +4,8 @@ module csv_rows
    use kinds, only: wp
    use csv_cells, only: cells, cell_length, split, whole_text
    use quad_jet, only: qp, jet_t, degree_q, constant_jet
-   use mechanism, only: mechanism_t, instant_count, request_link, request_point, request_pair, pair_prismatic
+   use mechanism, only: mechanism_t, instant_count, request_link, request_point, request_pair, &
+      request_pole, pair_prismatic
    use jet_closure, only: body_jet_t
    implicit none
    private
@@ -53,11 +54,40 @@ contains
          ! Requests for extremes alone have no rows.
          rows%due(i) = m%requests(i)%every > 0
          if (rows%due(i)) rows%due(i) = mod(k, m%requests(i)%every) == 0 .or. k == instant_count(m) - 1
+         if (rows%due(i) .and. m%requests(i)%kind >= request_pole) then
+            call pass_centre(unit, m, i, wrong)
+            rows%due(i) = .false.
+         end if
          if (rows%due(i)) call read_row(unit, m, k, i, rows, wrong)
          if (allocated(wrong)) return
          if (rows%due(i) .and. allocated(m%tolerances)) call pass_tolerances(unit)
       end do
    end subroutine read_instant
+
+   !> The three rows of a pole or a curve, request `i`, which have numbers and marks of their own.
+   subroutine pass_centre(unit, m, i, wrong)
+      integer, intent(in) :: unit, i
+      type(mechanism_t), intent(in) :: m
+      character(:), allocatable, intent(inout) :: wrong
+      character(8), parameter :: kinds(3, 2) = reshape([character(8) :: 'POLE', 'POLE-I', 'POLE-J', &
+         'CURVE', 'CENTRE', 'RADIUS'], [3, 2])
+      character(600) :: line
+      character(cell_length) :: cell(cells)
+      integer :: n, k, status
+
+      do n = 1, 3
+         read (unit, '(a)', iostat=status) line
+         if (status /= 0) call blame(wrong, 'CSV: A ROW IS MISSING')
+         if (status /= 0) return
+         call split(line, cell, status)
+         if (cell(4) /= kinds(n, m%requests(i)%kind - request_pole + 1)) &
+            call blame(wrong, 'CSV: '//trim(cell(4))//' IS NOT '//kinds(n, m%requests(i)%kind - request_pole + 1))
+         do k = 6, 14
+            if (verify(trim(cell(k)), '0123456789+-.E') > 0) &
+               call blame(wrong, 'CSV: "'//trim(cell(k))//'" IS NO NUMBER')
+         end do
+      end do
+   end subroutine pass_centre
 
    !> What tolerances make of the row above: rows whose kind has two words.
    subroutine pass_tolerances(unit)
