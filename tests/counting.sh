@@ -31,4 +31,8 @@ conclude() {
 }
 
 # card NAME A B C R1 R2 R3: one card of a deck
-card() { printf '%-8s%-8s%-8s%-8s%-16s%-16s%-16s\n' "$1" "$2" "$3" "$4" "$5" "$6" "$7" | sed 's/ *$//'; }
+card() {
+   card=$(printf '%-8s%-8s%-8s%-8s%-16s%-16s%-16s.' "$1" "$2" "$3" "$4" "$5" "$6" "$7")
+   card=${card%.}
+   echo "${card%"${card##*[! ]}"}"
+}

@@ -164,7 +164,7 @@ refusal() {
 refusal 'a link and itself' "$(card POLE CRANK CRANK)" E100
 refusal 'a point in its own link' "$(card CURVE B-CO COUPLER)" E100
 refusal 'a point of the ground' "$(card CURVE A0)" E100
-refusal 'two mechanisms' "$(card POLE CRANK-1 PISTON)" E101 two_loops
+refusal 'two mechanisms' "$(card POLE CRANK-1 PISTON)" E107 two_loops
 refusal 'no second link' "$(card POLE CRANK)" E034
 refusal 'no such link' "$(card POLE BASE ROD)" E051
 refusal 'no such point' "$(card CURVE X)" E052

@@ -17,6 +17,7 @@ printf 'module c\n   use b, only: x\nend module c\n' > "$BUILD/order/src/deck/c.
 equal 'an arrow the wrong way and a circle are found' 'base/a: USES deck/b,b: IN A CIRCLE' \
    "$(cd "$BUILD/order" && awk -v order='base deck' -f "$OLDPWD/tests/system/folders.awk" src/base/a.f90 src/deck/b.f90 src/deck/c.f90 |
    tr '\n' ',' | sed 's/,$//')"
+equal 'tests that cannot be run' '' "$(find tests/system -name '*.sh' ! -perm -u=x)"
 equal 'lines over 120 columns' '' "$(awk 'length > 120 { print FILENAME ":" FNR }' $sources)"
 equal 'stop or print outside main' '' \
    "$(grep -nE '^ *((error +)?stop( |$)|print +[^=]*$|write *[(] *[*])' $sources | grep -v '^src/main.f90')"

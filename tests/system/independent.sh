@@ -5,7 +5,7 @@
 
 # link, point, joint, drive: cards of one mechanism, whose names end in
 # $mark and whose lengths are in units of 10**$unit
-long() { awk -v x="${1:-0.0}" -v e="$unit" 'BEGIN { print (x == 0) ? "0.0" : sprintf("%.8fE%d", x, e) }'; }
+long() { case $1 in '' | 0.0) echo 0.0 ;; *) printf '%.8fE%d\n' "$1" "$unit" ;; esac; }
 ground() { card GROUND "$1$mark" '' '' "$(long "$2")" "$(long "$3")" 0.0; }
 link() { card LINK "$1$mark" '' '' "$(long "$2")" "$(long "$3")" "$4"; }
 point() { card POINT "$1$mark" "$2$mark" '' "$(long "$3")" "$(long "$4")"; }

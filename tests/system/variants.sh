@@ -1,15 +1,7 @@
 #!/bin/sh
 # Variants (VARY cards): values and their order; rows against closed forms, and against decks with the numbers typed in; what
 # is refused; memory.
-BUILD=${BUILD:-build}
 . tests/counting.sh
-
-case $BUILD in
-/*) kinmat=$BUILD/kinmat ;;
-*) kinmat=$PWD/$BUILD/kinmat ;;
-esac
-w=$BUILD/variants
-rm -rf "$w" && mkdir -p "$w" || exit 3
 
 vary() { card VARY "$@"; }
 # four_bar AFTER-CRANK AFTER-COUPLER AFTER-ROCKER AFTER-BASE CARD...: lengths 1.0, 3.5, 3.0, 4.0, with cards below them
