@@ -36,3 +36,13 @@ card() {
    card=${card%.}
    echo "${card%"${card##*[! ]}"}"
 }
+
+# with DECK CARD...: the deck of input/ with these cards before each END
+with() {
+   deck=$1
+   shift
+   printf '%s\n' "$@" > "$w/cards"
+   awk -v cards="$w/cards" '
+      /^END/ { while ((getline line < cards) > 0) print line; close(cards) }
+      { print }' "input/$deck.deck"
+}

@@ -1,7 +1,7 @@
 !> Child processes, each a copy of this one, and the files that they hand over.
 module processes
    use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_long, c_size_t, c_char, c_null_char
-   use system_calls, only: signal_received
+   use system_calls, only: signal_received, remove_file
    implicit none
    private
    public :: processor_count, fork_process, wait_for_child, interrupt_child, end_process, killed, temporary_file, &
@@ -53,11 +53,6 @@ module processes
          import :: c_int, c_char
          character(kind=c_char), intent(inout) :: template(*)
       end function mkstemp
-      !> unlink(2): takes a file's name away.
-      integer(c_int) function unlink(path) bind(c)
-         import :: c_int, c_char
-         character(kind=c_char), intent(in) :: path(*)
-      end function unlink
       !> lseek(2): where in a file the next byte is read or written.
       integer(c_long) function lseek(descriptor, offset, whence) bind(c)
          import :: c_int, c_long
@@ -130,7 +125,6 @@ contains
    integer(c_int) function temporary_file() result(descriptor)
       character(:), allocatable :: path
       integer :: length
-      integer(c_int) :: ignored
 
       call get_environment_variable('TMPDIR', length=length)
       allocate (character(length) :: path)
@@ -138,7 +132,7 @@ contains
       if (length == 0) path = '/tmp'
       path = path//'/kinmat-XXXXXX'//c_null_char
       descriptor = mkstemp(path)
-      if (descriptor >= 0) ignored = unlink(path)
+      if (descriptor >= 0) call remove_file(path(:len(path) - 1))
    end function temporary_file
 
    !> The next byte read from `descriptor` is its first one.

@@ -244,26 +244,8 @@ contains
             one%unit_name = set%mechanism%time_unit
          end if
       case default
-         if (card%label(label_a) == term_words(term_table)) then
-            ! The times of a table are those at which its values are meant.
-            if (one%place == 1) return
-            word = 'ROW '//whole(row)
-            one%place = row
-         else if (card%label(label_a) == term_words(term_power)) then
-            ! The power says what kind of function it is.
-            if (one%place == 2) return
-            word = 'FACTOR'
-            one%powers(2) = -card%real(2)
-            one%unit_name = value//time//'**R2'
-         else
-            word = harmonic_words(one%place)
-            if (one%place > 1) then
-               one%unit = set%angle_unit
-               one%powers = [0.0_wp, real(one%place - 3, wp)]
-               one%unit_name = angle
-               if (one%place == 2) one%unit_name = trim(angle)//time
-            end if
-         end if
+         call take_term(set, card, row, value//time, angle, one, word)
+         if (.not. allocated(word)) return
       end select
       one%kind = number_drive
       one%name = trim(drive%label(label_a))//' '//drive%label(label_b)
@@ -271,4 +253,35 @@ contains
       if (card%form /= form_drive) one%name = trim(one%name)//' '//trim(card%label(label_a))//' '//whole(one%term)
       one%name = trim(one%name)//' '//word
    end subroutine take_law
+
+   !> The same of the ADD card `card`: the unit and the `word` of its number, which stays unallocated where that takes
+   !> no tolerance. `rate`: the name of the unit of the drive's rate.
+   subroutine take_term(set, card, row, rate, angle, one, word)
+      type(card_set_t), intent(in) :: set
+      type(parsed_card_t), intent(in) :: card
+      integer, intent(in) :: row
+      character(*), intent(in) :: rate, angle
+      type(tolerance_t), intent(inout) :: one
+      character(:), allocatable, intent(out) :: word
+
+      if (card%label(label_a) == term_words(term_table)) then
+         ! The times of a table are those at which its values are meant.
+         if (one%place == 1) return
+         word = 'ROW '//whole(row)
+         one%place = row
+      else if (card%label(label_a) == term_words(term_power)) then
+         ! The power says what kind of function it is.
+         if (one%place == 2) return
+         word = 'FACTOR'
+         one%powers(2) = -card%real(2)
+         one%unit_name = rate//'**R2'
+      else
+         word = harmonic_words(one%place)
+         if (one%place == 1) return
+         one%unit = set%angle_unit
+         one%powers = [0.0_wp, real(one%place - 3, wp)]
+         one%unit_name = angle
+         if (one%place == 2) one%unit_name = trim(angle)//'/'//trim(set%mechanism%time_unit)
+      end if
+   end subroutine take_term
 end module deck_tolerances

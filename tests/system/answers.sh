@@ -3,15 +3,6 @@
 # ranges against the law of cosines, to ten digits.
 . tests/counting.sh
 
-# with DECK CARD...: the deck of input/ with these cards before each END
-with() {
-   deck=$1
-   shift
-   printf '%s\n' "$@" > "$w/cards"
-   awk -v cards="$w/cards" '
-      /^END/ { while ((getline line < cards) > 0) print line; close(cards) }
-      { print }' "input/$deck.deck"
-}
 # extremes FILE: the tables of extremes
 extremes() { awk '/^ (EXTREMES|EKSTREMA)  / { on = 1 } /^ (BRANCH|GALAZ):/ { on = 0 } on' "$1"; }
 

@@ -3,15 +3,6 @@
 # Kennedy and of Euler and Savary, which know no velocities; the CSV; what is refused.
 . tests/counting.sh
 
-# with DECK CARD...: the deck of input/ with these cards before each END
-with() {
-   deck=$1
-   shift
-   printf '%s\n' "$@" > "$w/cards"
-   awk -v cards="$w/cards" '
-      /^END/ { while ((getline line < cards) > 0) print line; close(cards) }
-      { print }' "input/$deck.deck"
-}
 # cards DECK: poles of links that are joined and of some that are not, paths in the plane and in links that move
 cards() {
    case $1 in
