@@ -1,0 +1,167 @@
+!> How exactly the numbers of the blocks are those of the mechanism: lengths of all vectors, and bounds of what the
+!> roundings of their sums, of sines and cosines, and of the deck's decimals make of them.
+!>
+!> The exact mechanism is any whose numbers differ from those of `mechanism_t` by at most four roundings each: the deck's
+!> decimals are one. What the structure takes for zero (vectors that cancel but for rounding) is zero. Sines and cosines
+!> of the library are taken to be right within two units in the last place; all other operations round to nearest.
+module proof_data
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, pair_prismatic
+   use links_tree, only: tree_t, new_tree
+   use loop_equations, only: equations_t, new_equations
+   use blocks, only: blocks_t, loop_angles
+   implicit none
+   private
+   public :: proof_data_t, new_proof_data, angle_errors, rounding
+
+   !> One rounding error, with room: half of it is the bound of one operation.
+   real(wp), parameter :: rounding = epsilon(1.0_wp)
+   !> Of a number of the deck: so many roundings, those of its decimals and units.
+   real(wp), parameter :: of_number = 4.0_wp*rounding
+   !> Of the components of a vector that turns, and of its derivatives: sine and cosine, products and their sum.
+   real(wp), parameter :: of_vector = 8.0_wp*rounding
+
+   !> Weights bound errors of vectors, in the unit of their loop, as parts of the unit vectors that turn them.
+   type :: proof_data_t
+      real(wp), allocatable :: length(:), weight(:)                !< (body vectors)
+      real(wp), allocatable :: slide_length(:), slide_weight(:)    !< (slides) of their directions
+      real(wp), allocatable :: ground_length(:), ground_weight(:)  !< (loops) of what is fixed
+      real(wp), allocatable :: direction_length(:), direction_weight(:)   !< (loops) of that on which they are projected
+      real(wp), allocatable :: constant_weight(:)                  !< (rows)
+   end type proof_data_t
+
+contains
+
+   !> Those of the blocks `b` of `m`, whose unit of length is `length`.
+   function new_proof_data(m, b, length) result(d)
+      type(mechanism_t), intent(in) :: m
+      type(blocks_t), intent(in) :: b
+      real(wp), intent(in) :: length
+      type(proof_data_t) :: d
+      type(tree_t) :: t
+      type(equations_t) :: q
+      real(wp), allocatable :: angle(:), sums(:)
+      integer :: i, m1, k, loop
+
+      t = new_tree(m)
+      q = new_equations(m, t, length, traced=.true.)
+      angle = angle_errors(m, t)
+      allocate (d%length(size(b%body_vectors)), d%weight(size(b%body_vectors)), d%slide_length(size(b%slides)), &
+         d%slide_weight(size(b%slides)), d%ground_length(size(b%loops)), d%ground_weight(size(b%loops)), &
+         d%direction_length(size(b%loops)), d%direction_weight(size(b%loops)), d%constant_weight(size(b%rows)), &
+         source=0.0_wp)
+      allocate (sums(0:t%orientations), source=0.0_wp)
+      do i = 1, size(b%list)
+         do m1 = b%list(i)%first_loop, b%list(i)%last_loop
+            associate (g => b%loops(m1))
+               if (g%kind == loop_angles) cycle
+               loop = loop_of(q, b%rows(b%list(i)%first_row + max(g%row_x, g%row_y) - 1))
+               call add_terms(m, t, q, loop, angle, sums)
+               do k = g%first_vector, g%last_vector
+                  d%length(k) = up(hypot(b%body_vectors(k)%x, b%body_vectors(k)%y))
+                  d%weight(k) = up(terms_of(m1)*d%length(k) + sums(b%body_vectors(k)%orientation)/(length*g%unit))
+               end do
+               do k = g%first_slide, g%last_slide
+                  d%slide_length(k) = up(norm2(b%slides(k)%body_vector))
+                  d%slide_weight(k) = up((terms_of(m1) + of_vector + maxval(angle))*d%slide_length(k))
+               end do
+               d%ground_length(m1) = up(norm2(g%ground))
+               d%ground_weight(m1) = up(terms_of(m1)*d%ground_length(m1) + sums(0)/(length*g%unit))
+               d%direction_length(m1) = up(norm2(g%direction))
+               d%direction_weight(m1) = up((2.0_wp*of_vector + maxval(angle))*d%direction_length(m1))
+               sums = 0.0_wp
+            end associate
+         end do
+         do k = b%list(i)%first_row, b%list(i)%last_row
+            d%constant_weight(k) = up(2.0_wp*of_number*abs(b%rows(k)%constant))
+            if (b%rows(k)%angular) d%constant_weight(k) = d%constant_weight(k) + 2.0_wp*maxval(angle)
+         end do
+      end do
+
+   contains
+
+      !> Of a vector and its share in the sum of loop `m1`.
+      pure real(wp) function terms_of(m1)
+         integer, intent(in) :: m1
+
+         associate (g => b%loops(m1))
+            terms_of = of_vector + rounding*(2 + g%last_vector - g%first_vector + g%last_slide - g%first_slide)
+         end associate
+      end function terms_of
+   end function new_proof_data
+
+   !> `x` rounded up.
+   elemental real(wp) function up(x)
+      real(wp), intent(in) :: x
+
+      up = x*(1.0_wp + 16.0_wp*rounding)
+   end function up
+
+   !> The vector loop of the equation that `row` belongs to.
+   pure integer function loop_of(q, row) result(loop)
+      use blocks, only: row_t
+      type(equations_t), intent(in) :: q
+      type(row_t), intent(in) :: row
+      integer :: i
+
+      loop = 0
+      do i = 1, q%count
+         if (q%list(i)%vector_loop == 0 .or. q%list(i)%pair /= row%pair) cycle
+         if (row%pair == 0 .and. q%list(i)%drive /= row%drive) cycle
+         loop = q%list(i)%vector_loop
+         return
+      end do
+   end function loop_of
+
+   !> (0:orientations) Bounds of the errors of the angles of links against their orientations, sums of the deck's; and
+   !> of the directions of guides.
+   function angle_errors(m, t) result(angle)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      real(wp) :: angle(0:t%orientations)
+      integer :: k, joints(0:t%orientations)
+
+      angle = 0.0_wp
+      joints = 1
+      do k = 1, size(m%links)
+         if (m%links(k)%ground) angle(0) = max(angle(0), abs(m%links(k)%position(3)))
+      end do
+      do k = 1, size(m%pairs)
+         if (m%pairs(k)%kind /= pair_prismatic) cycle
+         associate (o => t%orientation(m%points(m%pairs(k)%point_i)%link))
+            angle(o) = angle(o) + abs(m%pairs(k)%beta) + abs(m%pairs(k)%alpha)
+            joints(o) = joints(o) + 1
+         end associate
+      end do
+      angle = (of_number + joints*rounding)*angle
+   end function angle_errors
+
+   !> Adds to `sums` (0:orientations) what is open of the terms of vector loop `loop`, in the deck's unit of length.
+   !> `angle`: see `angle_errors`.
+   subroutine add_terms(m, t, q, loop, angle, sums)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      type(equations_t), intent(in) :: q
+      integer, intent(in) :: loop
+      real(wp), intent(in) :: angle(0:)
+      real(wp), intent(inout) :: sums(0:)
+      integer :: i, o, count
+
+      associate (p => q%vector_loops)
+         count = p%first_term(loop + 1) - p%first_term(loop)
+         do i = p%first_term(loop), p%first_term(loop + 1) - 1
+            associate (point => abs(p%making%terms(1, i)), pair => abs(p%making%terms(2, i)))
+               if (point > 0) then
+                  o = t%orientation(m%points(point)%link)
+                  sums(o) = sums(o) + norm2(m%points(point)%offset)*(of_number + of_vector + count*rounding + angle(o))
+                  if (m%links(m%points(point)%link)%ground) sums(o) = sums(o) + (of_number + count*rounding) &
+                     *(norm2(m%links(m%points(point)%link)%position(:2)) + norm2(t%origin))
+               else
+                  o = t%orientation(m%points(m%pairs(pair)%point_i)%link)
+                  sums(o) = sums(o) + abs(m%pairs(pair)%offset)*(of_number + of_vector + count*rounding + angle(o))
+               end if
+            end associate
+         end do
+      end associate
+   end subroutine add_terms
+end module proof_data

@@ -1,0 +1,272 @@
+!> Bounds of the equations of a block and of their derivatives by time, from bounds of the motion of its unknowns: how
+!> large what is added up can be, what its rounding leaves open, and by how much errors of the motion change it.
+!>
+!> A vector R(phi) d and its derivatives are no longer than |d| times those of the unit vector e^(i phi); products follow
+!> by Leibniz' rule. So lengths alone are added, no sine or cosine of an interval.
+module row_bounds
+   use kinds, only: wp
+   use blocks, only: blocks_t, loop_components, loop_projection
+   use proof_data, only: proof_data_t, rounding
+   implicit none
+   private
+   public :: jets_t, new_jets, turn, turn_errors, bound_rows, bound_jacobian, bound_growth
+
+   integer, parameter, public :: highest = 4     !< derivative by time
+   real(wp), parameter :: binomial(0:4, 0:4) = reshape(real([ &
+      1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 1, 2, 1, 0, 0, 1, 3, 3, 1, 0, 1, 4, 6, 4, 1], wp), [5, 5])
+
+   !> Bounds of derivatives 0 to 4 of each unknown, (0:4, 0:unknowns), and of the unit vector that it turns.
+   type :: jets_t
+      real(wp), allocatable :: own(:, :), own_error(:, :)      !< of the unknown, and of its error
+      real(wp), allocatable :: turn(:, :), turn_error(:, :)    !< of the unit vector, and of its error
+      real(wp), allocatable :: drive(:, :), drive_error(:, :)  !< (0:2, 0:drives) of the drives
+   end type jets_t
+
+contains
+
+   !> Room for `unknowns` and `drives`, at rest and exact.
+   pure function new_jets(unknowns, drives) result(j)
+      integer, intent(in) :: unknowns, drives
+      type(jets_t) :: j
+
+      allocate (j%own(0:highest, 0:unknowns), j%own_error(0:highest, 0:unknowns), j%turn(0:highest, 0:unknowns), &
+         j%turn_error(0:highest, 0:unknowns), j%drive(0:2, 0:drives), j%drive_error(0:2, 0:drives), source=0.0_wp)
+      j%turn(0, :) = 1.0_wp
+   end function new_jets
+
+   !> Bounds of the derivatives of e^(i phi), from those `f` of phi.
+   pure function turn(f) result(b)
+      real(wp), intent(in) :: f(0:highest)
+      real(wp) :: b(0:highest)
+
+      b(0) = 1.0_wp
+      b(1) = f(1)
+      b(2) = f(1)**2 + f(2)
+      b(3) = f(1)**3 + 3.0_wp*f(1)*f(2) + f(3)
+      b(4) = f(1)**4 + 6.0_wp*f(1)**2*f(2) + 3.0_wp*f(2)**2 + 4.0_wp*f(1)*f(3) + f(4)
+   end function turn
+
+   !> Bounds of the errors of its derivatives 0 to 2, where those of phi, no larger than `f`, are off by `e`.
+   pure function turn_errors(f, e) result(b)
+      real(wp), intent(in) :: f(0:highest), e(0:highest)
+      real(wp) :: b(0:highest)
+
+      b = 0.0_wp
+      b(0) = e(0)
+      b(1) = e(1) + (f(1) + e(1))*e(0)
+      b(2) = e(2) + (f(2) + e(2))*e(0) + (2.0_wp*f(1) + e(1))*e(1) + (f(1) + e(1))**2*e(0)
+   end function turn_errors
+
+   !> Of derivative `order` of the rows of block `i`: `size_of` bounds the sum of the lengths of all terms, `open` what
+   !> rounding and the deck's numbers leave open of it, `error` what errors of the motion change in it; each (rows).
+   pure subroutine bound_rows(d, b, i, j, order, size_of, open, error)
+      type(proof_data_t), intent(in) :: d
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i, order
+      type(jets_t), intent(in) :: j
+      real(wp), intent(out) :: size_of(:), open(:), error(:)
+      real(wp) :: x(3)
+      integer :: m, k, row
+
+      size_of = 0.0_wp
+      open = 0.0_wp
+      error = 0.0_wp
+      do m = b%list(i)%first_loop, b%list(i)%last_loop
+         associate (g => b%loops(m))
+            select case (g%kind)
+            case (loop_components)
+               x = loop_bounds(d, b, m, j, order)
+            case (loop_projection)
+               x = projection_bounds(d, b, m, j, order)
+            case default
+               x = [1.0_wp, 4.0_wp*rounding, 0.0_wp]*(j%own(order, g%orientation) + j%own(order, g%less)) &
+                  + [0.0_wp, 0.0_wp, 1.0_wp]*(j%own_error(order, g%orientation) + j%own_error(order, g%less))
+            end select
+            if (g%row_x > 0) call put(x, size_of(g%row_x), open(g%row_x), error(g%row_x))
+            if (g%row_y > 0) call put(x, size_of(g%row_y), open(g%row_y), error(g%row_y))
+         end associate
+      end do
+      do k = b%list(i)%first_row, b%list(i)%last_row
+         row = k - b%list(i)%first_row + 1
+         if (order == 0) size_of(row) = size_of(row) + abs(b%rows(k)%constant)
+         if (order == 0) open(row) = open(row) + d%constant_weight(k)
+         if (order > 2) cycle
+         size_of(row) = size_of(row) + j%drive(order, b%rows(k)%drive)
+         open(row) = open(row) + 4.0_wp*rounding*(size_of(row) + j%drive(order, b%rows(k)%drive))
+         error(row) = error(row) + j%drive_error(order, b%rows(k)%drive)
+      end do
+   end subroutine bound_rows
+
+   !> Puts the three bounds `x` where they belong.
+   pure subroutine put(x, size_of, open, error)
+      real(wp), intent(in) :: x(3)
+      real(wp), intent(out) :: size_of, open, error
+
+      size_of = x(1)
+      open = x(2)
+      error = x(3)
+   end subroutine put
+
+   !> The same (3) of the vector that closes loop `m`.
+   pure function loop_bounds(d, b, m, j, order) result(x)
+      type(proof_data_t), intent(in) :: d
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: m, order
+      type(jets_t), intent(in) :: j
+      real(wp) :: x(3), p, e
+      integer :: k, a
+
+      x = 0.0_wp
+      if (order == 0) x(:2) = [d%ground_length(m), d%ground_weight(m)]
+      do k = b%loops(m)%first_vector, b%loops(m)%last_vector
+         associate (o => b%body_vectors(k)%orientation)
+            x(1) = x(1) + d%length(k)*j%turn(order, o)
+            x(2) = x(2) + d%weight(k)*j%turn(order, o)
+            x(3) = x(3) + d%length(k)*j%turn_error(order, o)
+         end associate
+      end do
+      do k = b%loops(m)%first_slide, b%loops(m)%last_slide
+         associate (o => b%slides(k)%orientation, u => b%slides(k)%unknown)
+            p = 0.0_wp
+            e = 0.0_wp
+            do a = 0, order
+               p = p + binomial(a, order)*j%own(a, u)*j%turn(order - a, o)
+               e = e + binomial(a, order)*(j%own(a, u)*j%turn_error(order - a, o) &
+                  + j%own_error(a, u)*(j%turn(order - a, o) + j%turn_error(order - a, o)))
+            end do
+            x = x + [d%slide_length(k)*p, d%slide_weight(k)*p, d%slide_length(k)*e]
+         end associate
+      end do
+   end function loop_bounds
+
+   !> The same (3) of the projection of loop `m`.
+   pure function projection_bounds(d, b, m, j, order) result(x)
+      type(proof_data_t), intent(in) :: d
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: m, order
+      type(jets_t), intent(in) :: j
+      real(wp) :: x(3), y(3)
+      integer :: a
+
+      x = 0.0_wp
+      do a = 0, order
+         y = loop_bounds(d, b, m, j, a)
+         associate (f => j%turn(order - a, b%loops(m)%orientation), &
+            e => j%turn_error(order - a, b%loops(m)%orientation))
+            x = x + binomial(a, order)*[d%direction_length(m)*y(1)*f, &
+               (d%direction_length(m)*y(2) + d%direction_weight(m)*y(1))*f, &
+               d%direction_length(m)*(y(1)*e + y(3)*(f + e))]
+         end associate
+      end do
+   end function projection_bounds
+
+   !> By how much the rows of the Jacobian of block `i` can differ (sums of the entries' differences, (rows)) from those
+   !> computed where unknowns are off by `off` (0:unknowns), slides no longer than `slide` (0:unknowns) there.
+   pure function bound_jacobian(d, b, i, off, slide) result(rows)
+      type(proof_data_t), intent(in) :: d
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: off(0:), slide(0:)
+      real(wp) :: rows(b%list(i)%shape%rows), row, f, whole, change, one
+      integer :: m, k
+
+      rows = 0.0_wp
+      do m = b%list(i)%first_loop, b%list(i)%last_loop
+         associate (g => b%loops(m))
+            if (g%kind /= loop_components .and. g%kind /= loop_projection) cycle
+            ! A projection turns once more.
+            f = 0.0_wp
+            if (g%kind == loop_projection) f = off(g%orientation)
+            row = 0.0_wp
+            do k = g%first_own, g%last_vector
+               row = row + d%length(k)*(off(b%body_vectors(k)%orientation) + f) + 2.0_wp*d%weight(k)
+            end do
+            do k = g%first_slide, g%last_slide
+               associate (s => b%slides(k))
+                  one = d%slide_length(k)*(off(s%orientation) + f) + 2.0_wp*d%slide_weight(k)
+                  if (s%column > 0) row = row + one
+                  if (s%orientation_column > 0) row = row + (slide(s%unknown) + off(s%unknown))*one &
+                     + d%slide_length(k)*off(s%unknown)
+               end associate
+            end do
+            if (g%kind == loop_projection) then
+               row = row*(d%direction_length(m) + d%direction_weight(m)) + d%direction_weight(m)*own_length(d, b, m, slide)
+               if (g%orientation_column > 0) then
+                  whole = d%ground_length(m)
+                  change = d%ground_weight(m)
+                  do k = g%first_vector, g%last_vector
+                     whole = whole + d%length(k)
+                     change = change + d%length(k)*off(b%body_vectors(k)%orientation) + d%weight(k)
+                  end do
+                  do k = g%first_slide, g%last_slide
+                     associate (s => b%slides(k))
+                        whole = whole + d%slide_length(k)*(slide(s%unknown) + off(s%unknown))
+                        change = change + d%slide_length(k)*(off(s%unknown) + (slide(s%unknown) + off(s%unknown)) &
+                           *off(s%orientation)) + d%slide_weight(k)*(slide(s%unknown) + off(s%unknown))
+                     end associate
+                  end do
+                  row = row + d%direction_length(m)*(change + whole*f) + d%direction_weight(m)*whole
+               end if
+            end if
+            if (g%row_x > 0) rows(g%row_x) = row
+            if (g%row_y > 0) rows(g%row_y) = row
+         end associate
+      end do
+   end function bound_jacobian
+
+   !> The sum of the entries of loop `m` by its own vectors and slides, no longer than `slide` (0:unknowns).
+   pure real(wp) function own_length(d, b, m, slide) result(whole)
+      type(proof_data_t), intent(in) :: d
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: m
+      real(wp), intent(in) :: slide(0:)
+      integer :: k
+
+      whole = 0.0_wp
+      do k = b%loops(m)%first_own, b%loops(m)%last_vector
+         whole = whole + d%length(k)
+      end do
+      do k = b%loops(m)%first_slide, b%loops(m)%last_slide
+         whole = whole + d%slide_length(k)*(1.0_wp + slide(b%slides(k)%unknown))
+      end do
+   end function own_length
+
+   !> A bound of |J(x) - J(z)|/|x - z| for each row (rows) of block `i`, maximum norm: the sum of its second derivatives,
+   !> where slides are no longer than `slide` (0:unknowns).
+   pure function bound_growth(d, b, i, slide) result(rows)
+      type(proof_data_t), intent(in) :: d
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: slide(0:)
+      real(wp) :: rows(b%list(i)%shape%rows), row, own
+      integer :: m, k
+
+      rows = 0.0_wp
+      do m = b%list(i)%first_loop, b%list(i)%last_loop
+         associate (g => b%loops(m))
+            if (g%kind /= loop_components .and. g%kind /= loop_projection) cycle
+            row = sum(d%length(g%first_own:g%last_vector)) + sum(d%weight(g%first_own:g%last_vector))
+            own = row
+            do k = g%first_slide, g%last_slide
+               associate (s => b%slides(k), l => d%slide_length(k) + d%slide_weight(k))
+                  if (s%orientation_column > 0) row = row + l*slide(s%unknown)
+                  if (s%orientation_column > 0 .and. s%column > 0) row = row + 2.0_wp*l
+                  if (s%orientation_column > 0) own = own + l*slide(s%unknown)
+                  if (s%column > 0) own = own + l
+               end associate
+            end do
+            if (g%kind == loop_projection .and. g%orientation_column > 0) then
+               ! Twice with its own direction, and twice in the direction alone.
+               row = row + 2.0_wp*own + d%ground_length(m) + d%ground_weight(m) &
+                  + sum(d%length(g%first_vector:g%last_vector)) + sum(d%weight(g%first_vector:g%last_vector))
+               do k = g%first_slide, g%last_slide
+                  row = row + (d%slide_length(k) + d%slide_weight(k))*slide(b%slides(k)%unknown)
+               end do
+            end if
+            if (g%kind == loop_projection) row = row*(d%direction_length(m) + d%direction_weight(m))
+            if (g%row_x > 0) rows(g%row_x) = row
+            if (g%row_y > 0) rows(g%row_y) = row
+         end associate
+      end do
+   end function bound_growth
+end module row_bounds
