@@ -1,9 +1,10 @@
 !> How exactly the numbers of the blocks are those of the mechanism: lengths of all vectors, and bounds of what the
 !> roundings of their sums, of sines and cosines, and of the deck's decimals make of them.
 !>
-!> The exact mechanism is any whose numbers differ from those of `mechanism_t` by at most four roundings each: the deck's
-!> decimals are one. What the structure takes for zero (vectors that cancel but for rounding) is zero. Sines and cosines
-!> of the library are taken to be right within two units in the last place; all other operations round to nearest.
+!> The exact mechanism is any whose numbers differ from those of `mechanism_t` by at most four roundings each: the
+!> deck's decimals are one. What the structure takes for zero (vectors that cancel but for rounding) is zero. Sines and
+!> cosines of the library are taken to be right within two units in the last place; all other operations round to
+!> nearest.
 module proof_data
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_prismatic

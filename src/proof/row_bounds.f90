@@ -1,8 +1,8 @@
 !> Bounds of the equations of a block and of their derivatives by time, from bounds of the motion of its unknowns: how
 !> large what is added up can be, what its rounding leaves open, and by how much errors of the motion change it.
 !>
-!> A vector R(phi) d and its derivatives are no longer than |d| times those of the unit vector e^(i phi); products follow
-!> by Leibniz' rule. So lengths alone are added, no sine or cosine of an interval.
+!> A vector R(phi) d and its derivatives are no longer than |d| times those of the unit vector e^(i phi); products
+!> follow by Leibniz' rule. So lengths alone are added, no sine or cosine of an interval.
 module row_bounds
    use kinds, only: wp
    use blocks, only: blocks_t, loop_components, loop_projection
@@ -167,7 +167,7 @@ contains
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       real(wp), intent(in) :: off(0:), slide(0:)
-      real(wp) :: rows(b%list(i)%shape%rows), row, f, whole, change, one
+      real(wp) :: rows(b%list(i)%shape%rows), row, f
       integer :: m, k
 
       rows = 0.0_wp
@@ -182,37 +182,62 @@ contains
                row = row + d%length(k)*(off(b%body_vectors(k)%orientation) + f) + 2.0_wp*d%weight(k)
             end do
             do k = g%first_slide, g%last_slide
-               associate (s => b%slides(k))
-                  one = d%slide_length(k)*(off(s%orientation) + f) + 2.0_wp*d%slide_weight(k)
-                  if (s%column > 0) row = row + one
-                  if (s%orientation_column > 0) row = row + (slide(s%unknown) + off(s%unknown))*one &
-                     + d%slide_length(k)*off(s%unknown)
-               end associate
+               row = row + slide_change(d, b, k, f, off, slide)
             end do
-            if (g%kind == loop_projection) then
-               row = row*(d%direction_length(m) + d%direction_weight(m)) + d%direction_weight(m)*own_length(d, b, m, slide)
-               if (g%orientation_column > 0) then
-                  whole = d%ground_length(m)
-                  change = d%ground_weight(m)
-                  do k = g%first_vector, g%last_vector
-                     whole = whole + d%length(k)
-                     change = change + d%length(k)*off(b%body_vectors(k)%orientation) + d%weight(k)
-                  end do
-                  do k = g%first_slide, g%last_slide
-                     associate (s => b%slides(k))
-                        whole = whole + d%slide_length(k)*(slide(s%unknown) + off(s%unknown))
-                        change = change + d%slide_length(k)*(off(s%unknown) + (slide(s%unknown) + off(s%unknown)) &
-                           *off(s%orientation)) + d%slide_weight(k)*(slide(s%unknown) + off(s%unknown))
-                     end associate
-                  end do
-                  row = row + d%direction_length(m)*(change + whole*f) + d%direction_weight(m)*whole
-               end if
-            end if
+            if (g%kind == loop_projection) row = row*d%direction_length(m) &
+               + d%direction_weight(m)*(row + own_length(d, b, m, slide))
+            if (g%orientation_column > 0) row = row + direction_change(d, b, m, off, slide)
             if (g%row_x > 0) rows(g%row_x) = row
             if (g%row_y > 0) rows(g%row_y) = row
          end associate
       end do
    end function bound_jacobian
+
+   !> The same of the entries of slide number `k`, whose projection turns by `f` more.
+   pure real(wp) function slide_change(d, b, k, f, off, slide) result(change)
+      type(proof_data_t), intent(in) :: d
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: k
+      real(wp), intent(in) :: f, off(0:), slide(0:)
+      real(wp) :: guide
+
+      change = 0.0_wp
+      associate (s => b%slides(k))
+         guide = d%slide_length(k)*(off(s%orientation) + f) + 2.0_wp*d%slide_weight(k)
+         if (s%column > 0) change = guide
+         if (s%orientation_column > 0) change = change + (slide(s%unknown) + off(s%unknown))*guide &
+            + d%slide_length(k)*off(s%unknown)
+      end associate
+   end function slide_change
+
+   !> The same of the entry of loop `m` by the own angle that turns its direction: the whole loop, projected.
+   pure real(wp) function direction_change(d, b, m, off, slide) result(change)
+      type(proof_data_t), intent(in) :: d
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: m
+      real(wp), intent(in) :: off(0:), slide(0:)
+      real(wp) :: whole, length
+      integer :: k
+
+      associate (g => b%loops(m))
+         whole = d%ground_length(m)
+         change = d%ground_weight(m)
+         do k = g%first_vector, g%last_vector
+            whole = whole + d%length(k)
+            change = change + d%length(k)*off(b%body_vectors(k)%orientation) + d%weight(k)
+         end do
+         do k = g%first_slide, g%last_slide
+            associate (s => b%slides(k))
+               length = slide(s%unknown) + off(s%unknown)
+               whole = whole + d%slide_length(k)*length
+               change = change + d%slide_length(k)*(off(s%unknown) + length*off(s%orientation)) &
+                  + d%slide_weight(k)*length
+            end associate
+         end do
+         change = (d%direction_length(m) + d%direction_weight(m))*(change + whole*off(g%orientation)) &
+            + d%direction_weight(m)*whole
+      end associate
+   end function direction_change
 
    !> The sum of the entries of loop `m` by its own vectors and slides, no longer than `slide` (0:unknowns).
    pure real(wp) function own_length(d, b, m, slide) result(whole)
@@ -231,42 +256,56 @@ contains
       end do
    end function own_length
 
-   !> A bound of |J(x) - J(z)|/|x - z| for each row (rows) of block `i`, maximum norm: the sum of its second derivatives,
-   !> where slides are no longer than `slide` (0:unknowns).
+   !> A bound of |J(x) - J(z)|/|x - z| for each row (rows) of block `i`, maximum norm: the sum of its second
+   !> derivatives, where slides are no longer than `slide` (0:unknowns).
    pure function bound_growth(d, b, i, slide) result(rows)
       type(proof_data_t), intent(in) :: d
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       real(wp), intent(in) :: slide(0:)
-      real(wp) :: rows(b%list(i)%shape%rows), row, own
+      real(wp) :: rows(b%list(i)%shape%rows), row, first, l
       integer :: m, k
 
       rows = 0.0_wp
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          associate (g => b%loops(m))
             if (g%kind /= loop_components .and. g%kind /= loop_projection) cycle
+            ! The sums of its second and of its first derivatives; those of a turning vector are as long as itself.
             row = sum(d%length(g%first_own:g%last_vector)) + sum(d%weight(g%first_own:g%last_vector))
-            own = row
+            first = row
             do k = g%first_slide, g%last_slide
-               associate (s => b%slides(k), l => d%slide_length(k) + d%slide_weight(k))
+               associate (s => b%slides(k))
+                  l = d%slide_length(k) + d%slide_weight(k)
                   if (s%orientation_column > 0) row = row + l*slide(s%unknown)
                   if (s%orientation_column > 0 .and. s%column > 0) row = row + 2.0_wp*l
-                  if (s%orientation_column > 0) own = own + l*slide(s%unknown)
-                  if (s%column > 0) own = own + l
+                  if (s%orientation_column > 0) first = first + l*slide(s%unknown)
+                  if (s%column > 0) first = first + l
                end associate
             end do
-            if (g%kind == loop_projection .and. g%orientation_column > 0) then
-               ! Twice with its own direction, and twice in the direction alone.
-               row = row + 2.0_wp*own + d%ground_length(m) + d%ground_weight(m) &
-                  + sum(d%length(g%first_vector:g%last_vector)) + sum(d%weight(g%first_vector:g%last_vector))
-               do k = g%first_slide, g%last_slide
-                  row = row + (d%slide_length(k) + d%slide_weight(k))*slide(b%slides(k)%unknown)
-               end do
-            end if
+            ! With the direction: twice the first ones, and the loop itself.
+            if (g%kind == loop_projection .and. g%orientation_column > 0) row = row + 2.0_wp*first &
+               + whole_length(d, b, m, slide)
             if (g%kind == loop_projection) row = row*(d%direction_length(m) + d%direction_weight(m))
             if (g%row_x > 0) rows(g%row_x) = row
             if (g%row_y > 0) rows(g%row_y) = row
          end associate
       end do
    end function bound_growth
+
+   !> The sum of the lengths of all that is in loop `m`, slides no longer than `slide` (0:unknowns).
+   pure real(wp) function whole_length(d, b, m, slide) result(whole)
+      type(proof_data_t), intent(in) :: d
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: m
+      real(wp), intent(in) :: slide(0:)
+      integer :: k
+
+      associate (g => b%loops(m))
+         whole = d%ground_length(m) + d%ground_weight(m) + sum(d%length(g%first_vector:g%last_vector)) &
+            + sum(d%weight(g%first_vector:g%last_vector))
+         do k = g%first_slide, g%last_slide
+            whole = whole + (d%slide_length(k) + d%slide_weight(k))*slide(b%slides(k)%unknown)
+         end do
+      end associate
+   end function whole_length
 end module row_bounds
