@@ -60,7 +60,8 @@ contains
 
       allocate (list(0))
       crossed = e%crossed
-      passed = is_short_and_right(e, correction)
+      ! A prediction that leaps too far is not solved at all.
+      passed = any(crossed) .and. is_short_and_right(e, correction)
       do k = 1, size(e%moving)
          if (.not. passed) return
          associate (i => e%moving(k), before => e%history%t(0))

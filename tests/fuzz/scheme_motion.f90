@@ -43,6 +43,9 @@ module scheme_motion
    real(qp), parameter :: too_near = 1.0e-6_qp
    !> The sine of the angle from a change point within which an antiparallelogram may be so fast.
    real(qp), parameter :: whip = 0.3_qp
+   !> A BRANCH card whose time lies so near to that of a change point, by the sine of the angle there, may mean it or not:
+   !> the program knows that time to a substep of 1E-4 rad.
+   real(qp), parameter :: same_time = 3.0e-4_qp
    !> More steps than this are not taken.
    integer, parameter :: most_tries = 5000
    !> Kantorovich's ratio with 3 for the bend of the equations: 0.5 would do.
@@ -279,7 +282,7 @@ contains
       type(motion_t), intent(inout) :: trial
       logical, intent(out) :: fits
       type(jet_t) :: phi, sine, before
-      real(qp) :: predicted(g%links(1):g%links(2)), longest
+      real(qp) :: predicted(g%links(1):g%links(2)), longest, at
       logical :: passes
 
       predicted = trial%b(g%links(1):g%links(2))%phi%v
@@ -291,8 +294,11 @@ contains
       call place_parallelogram(s, g, trial%b, phi, trial%crossed(k), sine)
       passes = trial%lowest(k) < huge(1.0_qp) .and. sine%v*before%v < 0.0_qp
       ! The time of the passage, by the chord.
-      if (passes .and. .not. trial%has_branched(k) .and. abs(g%branch_after) < huge(1.0_qp)) &
-         passes = (trial%t + h*before%v/(before%v - sine%v) - g%branch_after)*h > 0.0_qp
+      if (passes .and. .not. trial%has_branched(k) .and. abs(g%branch_after) < huge(1.0_qp)) then
+         at = trial%t + h*before%v/(before%v - sine%v)
+         if (abs((at - g%branch_after)*sine%d) < same_time) trial%status(k) = is_unknown
+         passes = (at - g%branch_after)*h > 0.0_qp
+      end if
       if (passes .and. .not. trial%has_branched(k) .and. g%branch_after < huge(1.0_qp)) then
          trial%crossed(k) = .not. trial%crossed(k)
          trial%has_branched(k) = .true.
