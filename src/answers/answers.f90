@@ -1,5 +1,5 @@
-!> What a set asks of its motion beyond tables at instants: the cards EXTREMES, RANGE and TOLER. A set that asks for
-!> nothing costs nothing.
+!> What a set asks of its motion beyond tables at instants: the cards EXTREMES, RANGE, ASSEMBLY and TOLER. A set that
+!> asks for nothing costs nothing.
 module answers
    use mechanism, only: mechanism_t
    use set_analysis, only: set_analysis_t
@@ -11,6 +11,7 @@ module answers
    use extremes_table, only: put_extremes
    use tolerance_shares, only: shares_t, new_shares, note_tolerances, put_shares
    use ranges, only: range_t, find_ranges, put_ranges
+   use assembly_table, only: assembly_answer_t, find_answer, put_assemblies
    implicit none
    private
    public :: answers_t, new_answers, take_instant, put_answers
@@ -18,11 +19,13 @@ module answers
    type :: answers_t
       logical :: extremes_asked = .false.
       logical :: ranges_asked = .false.
+      logical :: assemblies_asked = .false.
       logical :: shares_asked = .false.
       type(extremes_t) :: extremes
       type(dwells_t) :: dwells
       type(shares_t) :: shares
       type(range_t), allocatable :: ranges(:)       !< (drives that have one), in the numbers of the set
+      type(assembly_answer_t), allocatable :: assemblies(:)   !< (parts)
    end type answers_t
 
 contains
@@ -35,6 +38,7 @@ contains
 
       a%extremes_asked = any(m%requests%extremes)
       a%ranges_asked = m%ranges
+      a%assemblies_asked = m%assemblies
       a%shares_asked = allocated(m%tolerances)
       if (a%shares_asked) call new_shares(m, a%shares)
       allocate (a%ranges(0))
@@ -51,6 +55,7 @@ contains
       integer, intent(in) :: k
 
       if (a%ranges_asked .and. k == 0) call find_ranges(s, a%ranges)
+      if (a%assemblies_asked .and. k == 0) call find_answer(s, a%assemblies)
       if (a%shares_asked) call note_tolerances(a%shares, m, s%now, k)
       if (.not. a%extremes_asked .or. k > m%steps) return
       call note_instant(a%extremes, m, s, k)
@@ -71,6 +76,7 @@ contains
          call put_extremes(o, l, m, s, a%extremes, dwells)
       end if
       if (a%ranges_asked) call put_ranges(o, m, a%ranges)
+      if (a%assemblies_asked) call put_assemblies(o, l, m, s, a%assemblies)
       if (a%shares_asked) call put_shares(o, l, a%shares, m, s%now)
    end subroutine put_answers
 end module answers

@@ -86,6 +86,30 @@ module phrases
       say_range = phrase_t('RANGES OF THE DRIVES, EACH ALONE', 'ZAKRESY NAPEDOW, KAZDY OSOBNO'), &
       say_all = phrase_t('ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS', 'PELNY: BEZ KRESU, RUCH SIE ZAMYKA; OBROTY'), &
       say_no_limit = phrase_t('NO LIMIT AS FAR AS', 'BEZ KRESU CO NAJMNIEJ DO'), &
+      say_assemblies = phrase_t('ASSEMBLIES', 'MONTAZE'), &
+      say_assembly = phrase_t('ASSEMBLY', 'MONTAZ'), &
+      say_mechanism = phrase_t('INDEPENDENT MECHANISM', 'NIEZALEZNY MECHANIZM'), &
+      say_block = phrase_t('BLOCK', 'BLOK'), &
+      say_unknowns = phrase_t('UNKNOWNS', 'NIEWIADOME'), &
+      say_paths = phrase_t('PATHS', 'SCIEZKI'), &
+      say_finite = phrase_t('FINITE', 'SKONCZONE'), &
+      say_at_infinity = phrase_t('AT INFINITY', 'W NIESKONCZONOSCI'), &
+      say_failed = phrase_t('FAILED', 'NIEUDANE'), &
+      say_partial = phrase_t('NOT OF ALL EQUATIONS', 'NIE WSZYSTKICH ROWNAN'), &
+      say_real = phrase_t('REAL', 'RZECZYWISTE'), &
+      say_distance = phrase_t('DISTANCE', 'ODLEGLOSC'), &
+      say_determinants = phrase_t('DETERMINANTS', 'WYZNACZNIKI'), &
+      say_chosen = phrase_t('CHOSEN BY THE ESTIMATE', 'WYBRANY PRZEZ PRZYBLIZENIE'), &
+      say_nearer_assembly = phrase_t('THE ESTIMATE IS NEARER TO ASSEMBLY', &
+         'PRZYBLIZENIE JEST BLIZEJ MONTAZU'), &
+      say_not_chosen = phrase_t('THAN TO THE ONE CHOSEN,', 'NIZ WYBRANEGO,'), &
+      say_more_assemblies = phrase_t('THERE ARE MORE ASSEMBLIES THAN', 'MONTAZY JEST WIECEJ NIZ'), &
+      say_wide_block = phrase_t('TOO MANY UNKNOWNS IN ONE BLOCK TO FIND ALL ASSEMBLIES', &
+         'ZA DUZO NIEWIADOMYCH W BLOKU, BY ZNALEZC WSZYSTKIE MONTAZE'), &
+      say_curve_of_assemblies = phrase_t('CAN MOVE WITH THE DRIVES HELD: NOT ALL ASSEMBLIES ARE SEPARATE', &
+         'RUSZAJA SIE PRZY STALYCH NAPEDACH: MONTAZE NIE SA OSOBNE'), &
+      say_paths_failed = phrase_t('ASSEMBLIES MAY BE MISSING: PATHS NOT FOLLOWED TO THEIR END:', &
+         'MOZE BRAKOWAC MONTAZY: SCIEZKI BEZ KONCA:'), &
       say_worst = phrase_t('WORST', 'NAJGOR.'), &
       say_shares = phrase_t('TOLERANCES: SHARES OF THE NUMBERS WHERE THE RSS IS GREATEST', &
          'TOLERANCJE: UDZIALY LICZB PRZY NAJWIEKSZYM RSS'), &

@@ -1,0 +1,212 @@
+!> Card ASSEMBLY: all assemblies at the first instant. Each is printed as the LINK cards with which a run takes it.
+module assembly_table
+   use kinds, only: wp, label_length
+   use constants, only: degree, without_turns
+   use mechanism, only: mechanism_t, instant, plane_origin
+   use motion, only: motion_t
+   use scales, only: characteristic_length
+   use names, only: listed
+   use cards, only: ruler_card
+   use assemblies, only: assemblies_t, assembly_t, assembly_block_t, find_assemblies, max_assemblies
+   use set_analysis, only: set_analysis_t
+   use listing_layout, only: layout_t
+   use listing_tables, only: time_text
+   use text_output, only: output_t, put
+   use numerals, only: whole
+   use phrases
+   implicit none
+   private
+   public :: assembly_answer_t, find_answer, put_assemblies
+
+   !> The assemblies of one independent mechanism.
+   type :: assembly_answer_t
+      type(assemblies_t) :: all_of_them
+      integer :: chosen = 0                  !< the number of that which the estimate chooses; 0: none
+   end type assembly_answer_t
+
+   !> The chosen assembly is the one at this distance from the motion at most, in rad and characteristic lengths: an
+   !> iteration near a dead point has half of all digits.
+   real(wp), parameter :: same_place = max(1.0e-5_wp, 16.0_wp*sqrt(epsilon(1.0_wp)))
+   !> Characters of a number on a card, with a blank before it.
+   integer, parameter :: number_width = 15
+
+contains
+
+   !> The assemblies (parts) of the mechanisms of the set that `s` analyses, at its first instant.
+   subroutine find_answer(s, answer)
+      type(set_analysis_t), intent(in) :: s
+      type(assembly_answer_t), allocatable, intent(out) :: answer(:)
+      integer :: c
+
+      allocate (answer(size(s%now%own)))
+      do c = 1, size(answer)
+         associate (m => s%now%own(c))
+            call find_assemblies(m, instant(m, 0), answer(c)%all_of_them)
+            answer(c)%chosen = place_of(m, s%now%motions(c), answer(c)%all_of_them%list)
+         end associate
+      end do
+   end subroutine find_answer
+
+   !> The number of the motion `q` in `list`; 0: it is none of them.
+   pure integer function place_of(m, q, list) result(k)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      type(assembly_t), intent(in) :: list(:)
+      real(wp) :: d(3, size(m%links))
+
+      if (q%known < 0) k = 0
+      if (q%known < 0) return
+      do k = size(list), 1, -1
+         d = list(k)%position - q%position
+         d(:2, :) = d(:2, :)/characteristic_length(m)
+         d(3, :) = without_turns(d(3, :))
+         if (all(abs(d) <= same_place)) return
+      end do
+   end function place_of
+
+   !> The lines of the assemblies (parts) of the set `m` that `s` analyses.
+   subroutine put_assemblies(o, l, m, s, answer)
+      type(output_t), intent(inout) :: o
+      type(layout_t), intent(in) :: l
+      type(mechanism_t), intent(in) :: m
+      type(set_analysis_t), intent(in) :: s
+      type(assembly_answer_t), intent(in) :: answer(:)
+      integer :: c, k
+
+      call put(o, '')
+      call put(o, ' '//phrase(say_assemblies, m%polish)//'   T = '//time_text(l, instant(m, 0))//l%behind_time)
+      do c = 1, size(answer)
+         associate (own => s%now%own(c), all_of_them => answer(c)%all_of_them)
+            if (size(answer) > 1) call put(o, ' '//phrase(say_mechanism, m%polish)//' '//whole(c))
+            do k = 1, size(all_of_them%blocks)
+               call put_block(o, own, k, all_of_them%blocks(k))
+            end do
+            call put_remarks(o, own, answer(c))
+            do k = 1, size(all_of_them%list)
+               call put_assembly(o, own, k, all_of_them, k == answer(c)%chosen)
+            end do
+         end associate
+      end do
+   end subroutine put_assemblies
+
+   !> The line of block number `k`, with its paths, and what there is to say of it.
+   subroutine put_block(o, m, k, one)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: k
+      type(assembly_block_t), intent(in) :: one
+      character(:), allocatable :: links, text
+
+      links = phrase(merge(say_link, say_links, size(one%links) == 1), m%polish)
+      if (size(one%links) > 0) links = links//' '//listed(m%links(one%links)%name)
+      call put(o, '   '//phrase(say_block, m%polish)//' '//whole(k)//': '//links)
+      text = '      '//phrase(say_unknowns, m%polish)//' '//whole(one%unknowns)//'   ' &
+         //phrase(say_paths, m%polish)//' '//whole(one%paths)//' = ' &
+         //whole(one%finite)//' '//phrase(say_finite, m%polish)//' + '//whole(one%infinite) &
+         //' '//phrase(say_at_infinity, m%polish)//' + '//whole(one%failed)//' '//phrase(say_failed, m%polish)
+      if (one%partial > 0) text = text//' + '//whole(one%partial)//' '//phrase(say_partial, m%polish)
+      call put(o, text//'   '//phrase(say_real, m%polish)//' '//whole(one%real))
+      if (one%is_wide) call put(o, ' *** '//links//': '//phrase(say_wide_block, m%polish))
+      if (one%moves) call put(o, ' *** '//links//': '//phrase(say_curve_of_assemblies, m%polish))
+      if (one%failed > 0) call put(o, ' *** '//links//': '//phrase(say_paths_failed, m%polish)//' '//whole(one%failed))
+   end subroutine put_block
+
+   !> What there is to say of all assemblies of the mechanism `m`.
+   subroutine put_remarks(o, m, answer)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(assembly_answer_t), intent(in) :: answer
+
+      associate (list => answer%all_of_them%list, chosen => answer%chosen)
+         if (answer%all_of_them%are_more) call put(o, ' *** '//phrase(say_more_assemblies, m%polish)//' ' &
+            //whole(max_assemblies))
+         if (size(list) == 0) call put(o, '   '//phrase(say_none, m%polish))
+         if (chosen > 1) then
+            if (list(1)%distance < list(chosen)%distance) call put(o, ' --- '//phrase(say_nearer_assembly, m%polish) &
+               //' 1: '//distance_text(list(1))//', '//phrase(say_not_chosen, m%polish)//' '//whole(chosen)//': ' &
+               //distance_text(list(chosen)))
+         end if
+      end associate
+   end subroutine put_remarks
+
+   !> The distance of assembly `one` from the estimate.
+   function distance_text(one) result(text)
+      type(assembly_t), intent(in) :: one
+      character(:), allocatable :: text
+      character(12) :: number
+
+      write (number, '(f12.4)') one%distance
+      text = trim(adjustl(number))
+   end function distance_text
+
+   !> Assembly number `k` of `a` as LINK cards.
+   subroutine put_assembly(o, m, k, a, is_chosen)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: k
+      type(assemblies_t), intent(in) :: a
+      logical, intent(in) :: is_chosen
+      character(:), allocatable :: text
+      character(label_length) :: name
+      real(wp) :: place(2, size(m%links)), largest, phi
+      integer :: i
+
+      associate (one => a%list(k))
+         text = ' '//phrase(say_assembly, m%polish)//' '//whole(k)//'   '//phrase(say_distance, m%polish)//' = ' &
+            //distance_text(one)
+         if (size(a%blocks) > 0) text = text//'   '//phrase(say_determinants, m%polish)//' '
+         do i = 1, size(a%blocks)
+            text = text//sign_text(a%blocks(i), one%sign_of(a%blocks(i)%block))
+         end do
+         if (is_chosen) text = text//'   '//phrase(say_chosen, m%polish)
+         call put(o, '')
+         call put(o, text)
+         do i = 1, size(m%links)
+            place(:, i) = one%position(:2, i) + plane_origin(m)
+         end do
+         largest = max(characteristic_length(m), maxval(abs(place)))
+         call put(o, ruler_card())
+         do i = 1, size(m%links)
+            if (m%links(i)%ground) cycle
+            associate (estimate => m%links(i)%position(3))
+               phi = estimate + without_turns(one%position(3, i) - estimate)
+               if (m%degrees) phi = phi/degree
+            end associate
+            name = m%links(i)%name
+            call put(o, 'LINK    '//name//repeat(' ', 16)//number_text(place(1, i), largest) &
+               //number_text(place(2, i), largest)//number_text(phi, 1000.0_wp))
+         end do
+      end associate
+   end subroutine put_assembly
+
+   !> The sign of the determinant of a block: 0 where it is singular, a point where it has more equations than unknowns.
+   pure character(1) function sign_text(block, sign_of) result(text)
+      type(assembly_block_t), intent(in) :: block
+      integer, intent(in) :: sign_of
+
+      text = '0'
+      if (sign_of > 0) text = '+'
+      if (sign_of < 0) text = '-'
+      if (block%is_redundant) text = '.'
+   end function sign_text
+
+   !> `x` in the columns of a card, with as many digits as fit; none of rounding beside `largest`.
+   function number_text(x, largest) result(text)
+      real(wp), intent(in) :: x, largest
+      character(number_width + 1) :: text
+      character(16) :: form
+      real(wp) :: unit, rounded
+      integer :: power
+
+      power = floor(log10(largest))
+      unit = 10.0_wp**(power - 9)
+      rounded = anint(x/unit)
+      if (abs(rounded) <= 0.0_wp) rounded = 0.0_wp
+      if (power >= -3 .and. power <= 8) then
+         write (form, '(a, i0, a)') '(f16.', min(9 - power, 11), ')'
+      else
+         form = '(es16.8)'
+      end if
+      write (text, form) rounded*unit
+   end function number_text
+end module assembly_table

@@ -1,0 +1,201 @@
+!> All assemblies of a mechanism at one instant: a tree, in which each assembly of the earlier blocks gives the next one
+!> its problem. A block is solved anew only where something that it builds on has changed.
+module assemblies
+   use kinds, only: wp
+   use constants, only: without_turns
+   use mechanism, only: mechanism_t
+   use motion, only: motion_t, new_motion
+   use block_engine, only: block_engine_t, make_block_engine, set_drive_values
+   use block_needs, only: largest_known
+   use block_state, only: set_values
+   use link_motion, only: move_links
+   use block_assemblies, only: block_positions_t, find_positions, max_group
+   implicit none
+   private
+   public :: assembly_t, assembly_block_t, assemblies_t, find_assemblies, max_assemblies
+
+   !> More are not looked for.
+   integer, parameter :: max_assemblies = 1000
+   !> Places count as off by no more than this part of the characteristic length, as where an estimate chooses.
+   real(wp), parameter :: far_place = 0.25_wp
+
+   !> An assembly.
+   type :: assembly_t
+      real(wp), allocatable :: value(:)         !< (0:unknowns) of the blocks, see `block_state`
+      real(wp), allocatable :: position(:, :)   !< (3, links) x, y in the deck's unit from `plane_origin`, phi in rad
+      integer, allocatable :: sign_of(:)        !< (blocks) of the determinant; 0: singular
+      real(wp) :: distance = 0.0_wp             !< from the deck's estimate, see `distance_from`
+   end type assembly_t
+
+   !> What was found of a block that iterates, in all assemblies of what it builds on. Of its paths: see
+   !> `block_positions_t`.
+   type :: assembly_block_t
+      integer :: block = 0                      !< its number
+      integer, allocatable :: links(:)          !< that its unknowns turn or move
+      integer :: unknowns = 0, solved = 0       !< of the block; how many times it was solved
+      integer :: group = 0                      !< unknowns of a group: see max_group of `block_assemblies`
+      integer :: paths = 0, finite = 0, infinite = 0, failed = 0, partial = 0, real = 0
+      logical :: is_wide = .false.              !< too wide: not solved
+      logical :: is_redundant = .false.         !< more equations than unknowns: no determinant
+      logical :: moves = .false.                !< it can move with its drives held: its positions are not separate
+   end type assembly_block_t
+
+   type :: assemblies_t
+      type(assembly_t), allocatable :: list(:)         !< nearest to the estimate first
+      type(assembly_block_t), allocatable :: blocks(:) !< that iterate, in solving order
+      logical :: are_more = .false.                    !< than max_assemblies
+   end type assemblies_t
+
+contains
+
+   !> All assemblies `a` of `m`, one independent mechanism with a structure that can be solved, at the time `t`.
+   subroutine find_assemblies(m, t, a)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: t
+      type(assemblies_t), intent(out) :: a
+      type(block_engine_t) :: e
+
+      allocate (a%list(0), a%blocks(0))
+      call make_block_engine(e, m)
+      if (.not. e%blocks%solvable) return
+      call set_drive_values(e, t)
+      call name_blocks(e, a)
+      if (any(a%blocks%is_wide)) return
+      call search(e, a)
+      call sort(a)
+   end subroutine find_assemblies
+
+   !> The blocks that iterate, with their links.
+   subroutine name_blocks(e, a)
+      type(block_engine_t), intent(in) :: e
+      type(assemblies_t), intent(inout) :: a
+      type(assembly_block_t) :: one
+      integer :: i, k
+
+      do i = 1, size(e%blocks%list)
+         if (e%blocks%list(i)%direct) cycle
+         one%block = i
+         one%unknowns = e%blocks%list(i)%shape%n
+         one%is_redundant = e%blocks%list(i)%shape%rows > e%blocks%list(i)%shape%n
+         one%links = pack([(k, k=1, size(e%orientation_of))], &
+            [(any(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last) == e%orientation_of(k)), &
+            k=1, size(e%orientation_of))])
+         a%blocks = [a%blocks, one]
+      end do
+   end subroutine name_blocks
+
+   !> Goes through all choices of a position for each block. `changed`: of each unknown the number of the choice that
+   !> changed it last; `seen`: of each block the same, when it was solved.
+   subroutine search(e, a)
+      type(block_engine_t), intent(inout) :: e
+      type(assemblies_t), intent(inout) :: a
+      type(block_positions_t) :: found(size(e%blocks%list))
+      integer :: chosen(size(found)), seen(size(found)), changed(0:e%blocks%unknowns), choice, i
+
+      chosen = 0
+      seen = -1
+      changed = 0
+      choice = 0
+      i = 1
+      do while (i >= 1)
+         if (i > size(found)) then
+            if (size(a%list) == max_assemblies) a%are_more = .true.
+            if (a%are_more) return
+            call note_assembly(e, found, chosen, a)
+            i = i - 1
+            cycle
+         end if
+         if (chosen(i) == 0 .and. largest_known(e%blocks, i, changed) > seen(i)) then
+            call find_positions(e%blocks, i, e%tolerance, e%work, e%state, found(i))
+            seen(i) = choice
+            call count_paths(i, found(i), a)
+         end if
+         chosen(i) = chosen(i) + 1
+         if (chosen(i) > size(found(i)%sign_of)) then
+            chosen(i) = 0
+            i = i - 1
+            cycle
+         end if
+         call set_values(e%blocks, i, found(i)%x(:, chosen(i)), e%state)
+         choice = choice + 1
+         changed(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last)) = choice
+         i = i + 1
+      end do
+   end subroutine search
+
+   !> Adds what was `found` of block `i` to its counts.
+   pure subroutine count_paths(i, found, a)
+      integer, intent(in) :: i
+      type(block_positions_t), intent(in) :: found
+      type(assemblies_t), intent(inout) :: a
+      integer :: k
+
+      do k = 1, size(a%blocks)
+         associate (one => a%blocks(k))
+            if (one%block /= i) cycle
+            one%solved = one%solved + 1
+            one%group = max(one%group, found%group)
+            one%paths = one%paths + found%paths
+            one%finite = one%finite + found%finite
+            one%infinite = one%infinite + found%infinite
+            one%failed = one%failed + found%failed
+            one%partial = one%partial + found%partial
+            one%real = one%real + size(found%sign_of)
+            one%moves = one%moves .or. found%moves
+            one%is_wide = one%is_wide .or. found%group > max_group
+         end associate
+      end do
+   end subroutine count_paths
+
+   !> Adds the assembly that `e` has now.
+   subroutine note_assembly(e, found, chosen, a)
+      type(block_engine_t), intent(in) :: e
+      type(block_positions_t), intent(in) :: found(:)
+      integer, intent(in) :: chosen(:)
+      type(assemblies_t), intent(inout) :: a
+      type(assembly_t) :: one
+      type(motion_t) :: q
+      logical :: finite
+      integer :: i
+
+      q = new_motion(size(e%estimate, 2))
+      call move_links(e%whole, e%state, e%length, q, finite)
+      allocate (one%value(0:e%blocks%unknowns))
+      one%value(:) = e%state%u%value
+      one%position = q%position
+      one%sign_of = [(found(i)%sign_of(chosen(i)), i=1, size(found))]
+      one%distance = distance_from(e, one%position)
+      a%list = [a%list, one]
+   end subroutine note_assembly
+
+   !> How far the links at `position` (3, links) are from the deck's estimate: the root of the sum of squares of angles,
+   !> in rad, and of distances, in characteristic lengths.
+   pure real(wp) function distance_from(e, position) result(distance)
+      type(block_engine_t), intent(in) :: e
+      real(wp), intent(in) :: position(:, :)
+      integer :: i
+
+      distance = 0.0_wp
+      do i = 1, size(position, 2)
+         distance = distance + min(sum(((position(:2, i) - e%estimate(:2, i))/e%span)**2), far_place**2) &
+            + without_turns(position(3, i) - e%estimate(3, i))**2
+      end do
+      distance = sqrt(distance)
+   end function distance_from
+
+   !> Puts the nearest assembly first; of those that are alike, in the order in which they were found.
+   pure subroutine sort(a)
+      type(assemblies_t), intent(inout) :: a
+      type(assembly_t) :: one
+      integer :: i, k
+
+      do i = 2, size(a%list)
+         one = a%list(i)
+         do k = i - 1, 1, -1
+            if (a%list(k)%distance <= one%distance) exit
+            a%list(k + 1) = a%list(k)
+         end do
+         a%list(k + 1) = one
+      end do
+   end subroutine sort
+end module assemblies

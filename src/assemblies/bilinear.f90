@@ -1,0 +1,134 @@
+!> Systems of 2p equations x^T C y = 0 in two groups of p unknowns each, in homogeneous coordinates x and y (0:p). With
+!> coefficients by chance they have C(2p, p) solutions (the two-homogeneous number of Bezout), some of them at infinity.
+!> Those with p = 1 are solved in closed form.
+module bilinear
+   use kinds, only: wp
+   implicit none
+   private
+   public :: bilinear_t, end_t, ends_t, values_at, derivatives_at, solve_quadratic, path_count, &
+      finiteness, infinity_level
+
+   !> Solutions are at infinity where plane . x = 0, or the same of y with the conjugate of the plane.
+   type :: bilinear_t
+      integer :: p = 0                                !< unknowns of each group
+      complex(wp), allocatable :: c(:, :, :)          !< (0:p, 0:p, 2p); the largest element of each is about 1
+      complex(wp), allocatable :: plane(:)            !< (0:p)
+   end type bilinear_t
+
+   !> A solution, up to a factor of x and one of y.
+   type :: end_t
+      complex(wp), allocatable :: x(:), y(:)          !< (p + 1) the homogeneous one first
+      logical :: is_singular = .false.                !< several solutions in one, or a point of a curve of solutions
+   end type end_t
+
+   !> All solutions: paths = size(list) + infinite + failed, where singular ones count as often as paths lead to them.
+   type :: ends_t
+      integer :: paths = 0
+      integer :: infinite = 0                         !< paths that lead to infinity
+      integer :: failed = 0                           !< paths that could not be followed to their end
+      type(end_t), allocatable :: list(:)             !< finite ones
+   end type ends_t
+
+   !> A discriminant below this part of its terms is zero.
+   real(wp), parameter :: zero_level = 256.0_wp*epsilon(1.0_wp)
+   !> Solutions nearer to infinity than this are there: no slide is a million times as long as its loop.
+   real(wp), parameter :: infinity_level = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
+
+contains
+
+   !> C(2p, p).
+   pure integer function path_count(p)
+      integer, intent(in) :: p
+      integer :: k
+
+      path_count = 1
+      do k = 1, p
+         path_count = path_count*(p + k)/k
+      end do
+   end function path_count
+
+   !> (2p) The values of the equations of `b` at (`x`, `y`).
+   pure function values_at(b, x, y) result(f)
+      type(bilinear_t), intent(in) :: b
+      complex(wp), intent(in) :: x(0:), y(0:)
+      complex(wp) :: f(2*b%p)
+      integer :: j, k
+
+      do j = 1, 2*b%p
+         f(j) = 0.0_wp
+         do k = 0, b%p
+            f(j) = f(j) + sum(x*b%c(:, k, j))*y(k)
+         end do
+      end do
+   end function values_at
+
+   !> (2p, 2p + 2) Their derivatives with respect to x and y.
+   pure function derivatives_at(b, x, y) result(a)
+      type(bilinear_t), intent(in) :: b
+      complex(wp), intent(in) :: x(0:), y(0:)
+      complex(wp) :: a(2*b%p, 2*b%p + 2)
+      integer :: j, k
+
+      do j = 1, 2*b%p
+         do k = 0, b%p
+            a(j, b%p + 2 + k) = sum(x*b%c(:, k, j))
+            a(j, 1 + k) = sum(b%c(k, :, j)*y)
+         end do
+      end do
+   end function derivatives_at
+
+   !> How far (x, y) is from infinity: 0 there, about 1 where no coordinate is large.
+   pure real(wp) function finiteness(b, x, y)
+      type(bilinear_t), intent(in) :: b
+      complex(wp), intent(in) :: x(0:), y(0:)
+
+      finiteness = min(abs(sum(b%plane*x))/maxval(abs(x)), abs(sum(conjg(b%plane)*y))/maxval(abs(y)))
+   end function finiteness
+
+   !> The solutions of `b` with p = 1. `moves`: every x is part of one.
+   subroutine solve_quadratic(b, ends, moves)
+      type(bilinear_t), intent(in) :: b
+      type(ends_t), intent(out) :: ends
+      logical, intent(out) :: moves
+      complex(wp) :: q(0:2), root, x(0:1), r(0:1, 2), y(0:1)
+      real(wp) :: size_of
+      logical :: is_double
+      integer :: k
+
+      ends%paths = 2
+      allocate (ends%list(0))
+      ! The two rows x^T C are parallel where their determinant, a quadratic form in x, is zero.
+      associate (c => b%c)
+         q(0) = c(0, 0, 1)*c(0, 1, 2) - c(0, 1, 1)*c(0, 0, 2)
+         q(1) = c(0, 0, 1)*c(1, 1, 2) + c(1, 0, 1)*c(0, 1, 2) - c(0, 1, 1)*c(1, 0, 2) - c(1, 1, 1)*c(0, 0, 2)
+         q(2) = c(1, 0, 1)*c(1, 1, 2) - c(1, 1, 1)*c(1, 0, 2)
+      end associate
+      size_of = maxval(abs(q))
+      moves = size_of <= zero_level
+      if (moves) ends%paths = 0
+      if (moves) return
+      is_double = abs(q(1)**2 - 4.0_wp*q(0)*q(2)) <= zero_level*size_of**2
+      root = 0.0_wp
+      if (.not. is_double) root = sqrt(q(1)**2 - 4.0_wp*q(0)*q(2))
+      if (real(conjg(q(1))*root) < 0.0_wp) root = -root
+      do k = 1, 2
+         ! (x_1 : x_0) = (-q_1 - root : 2 q_2) = (2 q_0 : -q_1 + root), and with the other sign of the root.
+         x = [2.0_wp*q(2), -q(1) - root]
+         if (k == 2) x = [-q(1) - root, 2.0_wp*q(0)]
+         if (is_double .and. abs(q(2)) < abs(q(0))) x = [-q(1), 2.0_wp*q(0)]
+         if (is_double .and. abs(q(2)) >= abs(q(0))) x = [2.0_wp*q(2), -q(1)]
+         r(:, 1) = x(0)*b%c(0, :, 1) + x(1)*b%c(1, :, 1)
+         r(:, 2) = x(0)*b%c(0, :, 2) + x(1)*b%c(1, :, 2)
+         if (sum(abs(r(:, 2))) > sum(abs(r(:, 1)))) r(:, 1) = r(:, 2)
+         y = [r(1, 1), -r(0, 1)]
+         if (sum(abs(y)) <= zero_level*sum(abs(x))) then
+            moves = .true.
+            ends%failed = ends%failed + 1
+         else if (finiteness(b, x, y) > infinity_level) then
+            ends%list = [ends%list, end_t([x], [y], is_double)]
+         else
+            ends%infinite = ends%infinite + 1
+         end if
+      end do
+   end subroutine solve_quadratic
+end module bilinear

@@ -1,0 +1,144 @@
+!> All real positions of one block, for given positions of the earlier ones: in closed form where its equations leave
+!> one unknown in each group, otherwise as the ends of paths. Each is corrected by the block's own Newton method.
+module block_assemblies
+   use kinds, only: wp
+   use constants, only: without_turns
+   use convergence, only: convergence_t, is_solved
+   use blocks, only: blocks_t
+   use block_state, only: state_t, set_values, values_of
+   use block_solver, only: workspace_t, solve_block
+   use block_rank, only: gauss_newton_step, moving_unknowns
+   use bilinear, only: end_t, ends_t, solve_quadratic
+   use homotopy, only: follow_paths
+   use block_bilinear, only: block_form_t, make_form, solves_all, real_values
+   implicit none
+   private
+   public :: block_positions_t, find_positions, max_group
+
+   !> Unknowns of a group at most: C(12, 6) = 924 paths.
+   integer, parameter :: max_group = 6
+   !> Real solutions have conjugate groups to this part; Newton's method moves them by no more (rad, block's lengths).
+   real(wp), parameter :: real_level = 8.0_wp*sqrt(epsilon(1.0_wp)), near = sqrt(real_level)
+   !> The same of singular solutions, of which rounding leaves fewer digits.
+   real(wp), parameter :: singular_level = sqrt(real_level), singular_near = 10.0_wp*singular_level
+   !> Positions that differ by less are one.
+   real(wp), parameter :: alike = real_level, singular_alike = singular_near
+   integer, parameter :: singular_steps = 6
+
+   !> What was found of one block. Of the paths: paths = finite + infinite + failed + partial.
+   type :: block_positions_t
+      real(wp), allocatable :: x(:, :)          !< (unknowns of the block, positions)
+      integer, allocatable :: sign_of(:)        !< (positions) of the determinant; 0: singular
+      integer :: group = 0                      !< unknowns of a group: see max_group
+      integer :: paths = 0, finite = 0, infinite = 0, failed = 0
+      integer :: partial = 0                    !< their ends are no solutions of all equations, which are too many
+      logical :: moves = .false.                !< some positions are not separate: it can move with its drives held
+   end type block_positions_t
+
+contains
+
+   !> All positions `found` of block `i` for the values that `s` has of earlier blocks and drives; its own values in `s`
+   !> change. `tolerance`, `w`: as of `solve_block`.
+   subroutine find_positions(b, i, tolerance, w, s, found)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: tolerance
+      type(workspace_t), intent(inout) :: w
+      type(state_t), intent(inout) :: s
+      type(block_positions_t), intent(out) :: found
+      type(convergence_t) :: c
+      type(block_form_t) :: f
+      type(ends_t) :: ends
+      real(wp) :: change
+      integer :: k
+
+      allocate (found%x(b%list(i)%shape%n, 0), found%sign_of(0))
+      if (b%list(i)%direct) then
+         change = 0.0_wp
+         call solve_block(b, i, tolerance, w, s, c, change)
+         found%x = reshape(values_of(b, i, s), [1, 1])
+         found%sign_of = [1]
+         return
+      end if
+      call make_form(b, i, s, f)
+      found%group = f%system%p
+      found%moves = f%is_lacking
+      if (f%is_lacking .or. f%is_impossible .or. found%group > max_group) return
+      call find_ends(f, ends, found%moves)
+      found%paths = ends%paths
+      found%infinite = ends%infinite
+      found%failed = ends%failed
+      do k = 1, size(ends%list)
+         if (solves_all(f, ends%list(k))) then
+            found%finite = found%finite + 1
+            call take_end(b, i, tolerance, f, ends%list(k), w, s, found)
+         else
+            found%partial = found%partial + 1
+         end if
+      end do
+   end subroutine find_positions
+
+   !> All solutions of the system of `f`.
+   subroutine find_ends(f, ends, moves)
+      type(block_form_t), intent(in) :: f
+      type(ends_t), intent(out) :: ends
+      logical, intent(inout) :: moves
+
+      if (f%system%p == 0) then
+         ends%paths = 1
+         ends%list = [end_t([(1.0_wp, 0.0_wp)], [(1.0_wp, 0.0_wp)])]
+      else if (f%system%p == 1) then
+         call solve_quadratic(f%system, ends, moves)
+      else
+         call follow_paths(f%system, ends)
+      end if
+   end subroutine find_ends
+
+   !> Adds the position of block `i` at the solution `e` to those `found`, if it is real and new.
+   subroutine take_end(b, i, tolerance, f, e, w, s, found)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: tolerance
+      type(block_form_t), intent(in) :: f
+      type(end_t), intent(in) :: e
+      type(workspace_t), intent(inout) :: w
+      type(state_t), intent(inout) :: s
+      type(block_positions_t), intent(inout) :: found
+      type(convergence_t) :: c
+      real(wp) :: x(f%n), change, residual
+      logical :: is_real
+      integer :: k
+
+      call real_values(f, e, merge(singular_level, real_level, e%is_singular), x, is_real)
+      if (.not. is_real) return
+      call set_values(b, i, x, s)
+      ! At a singular solution Newton's method would lose the way.
+      do k = 1, merge(singular_steps, 0, e%is_singular)
+         call gauss_newton_step(b, i, s, residual)
+      end do
+      change = 0.0_wp
+      call solve_block(b, i, tolerance, w, s, c, change)
+      if (.not. is_solved(c) .or. apart(b, i, values_of(b, i, s), x) > merge(singular_near, near, e%is_singular)) then
+         found%failed = found%failed + 1
+         found%finite = found%finite - 1
+         return
+      end if
+      x = values_of(b, i, s)
+      do k = 1, size(found%x, 2)
+         if (apart(b, i, x, found%x(:, k)) <= merge(singular_alike, alike, e%is_singular .or. c%singular)) return
+      end do
+      found%x = reshape([found%x, x], [f%n, size(found%x, 2) + 1])
+      found%sign_of = [found%sign_of, merge(0, c%determinant, c%singular)]
+      if (c%singular) found%moves = found%moves .or. any(moving_unknowns(b, i, s))
+   end subroutine take_end
+
+   !> The largest difference of the values `x` and `y` of block `i`, of angles without whole turns.
+   pure real(wp) function apart(b, i, x, y)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: x(:), y(:)
+
+      apart = maxval(merge(abs(without_turns(x - y)), abs(x - y), &
+         b%unknown(b%list(i)%first:b%list(i)%last) <= b%orientations))
+   end function apart
+end module block_assemblies

@@ -1,0 +1,382 @@
+!> The equations of a block as a bilinear system in isotropic coordinates (Wampler, J. Mech. Des. 121 (1999) 387-391):
+!> a direction phi is the pair w = exp(i phi), w' = exp(-i phi) with w w' = 1, a slide s along it the pair z = s w,
+!> z' = s w' with z w' = z' w. A vector loop is then linear in (w, z), its conjugate linear in (w', z'): both are
+!> eliminated. What is left is linear in each of the two groups: the products above, projections (a loop times a
+!> direction), and single components (a loop and its conjugate).
+module block_bilinear
+   use kinds, only: wp
+   use complex_lu, only: find_null_space
+   use blocks, only: blocks_t, block_loop_t, loop_components, loop_projection, loop_angles
+   use block_state, only: state_t, find_known_parts
+   use bilinear, only: bilinear_t, end_t
+   implicit none
+   private
+   public :: block_form_t, make_form, solves_all, real_values
+
+   !> Unknown k of the block is unknown base(k) + offset(k); base 0 is none: the unknown is known.
+   type :: block_form_t
+      integer :: n = 0, q = 0                         !< unknowns of the block; directions and slides of one group
+      integer, allocatable :: base(:)                 !< (n)
+      real(wp), allocatable :: offset(:)              !< (n) in rad, or the unit of the slide
+      integer, allocatable :: place(:)                !< (0:n) number of the direction or slide of a base in its group
+      integer, allocatable :: turns(:)                !< (q) of a slide the number of its direction; 0: a known one
+      complex(wp), allocatable :: basis(:, :)         !< (0:q, 0:p) of directions and slides from the system's unknowns
+      logical :: is_lacking = .false.                 !< fewer equations than unknowns, where earlier blocks are now
+      logical :: is_impossible = .false.              !< its linear equations contradict one another
+      type(bilinear_t) :: system
+      complex(wp), allocatable :: more(:, :, :)       !< (0:p, 0:p, any number) equations that are too many
+   end type block_form_t
+
+   complex(wp), parameter :: i_unit = (0.0_wp, 1.0_wp)
+   !> Coefficients below this part of the largest are rounding.
+   real(wp), parameter :: zero_level = 4096.0_wp*epsilon(1.0_wp)
+   !> Equations that are too many hold to this part of their terms: lengths have 11 digits, a double root half of all.
+   real(wp), parameter :: solved_level = max(1.0e-6_wp, 16.0_wp*sqrt(epsilon(1.0_wp)))
+
+   !> Equations in the making.
+   type :: draft_t
+      integer :: linear = 0, bilinear = 0
+      complex(wp), allocatable :: a(:, :)             !< (0:q, linear): sum over k of a_k x_k = 0
+      complex(wp), allocatable :: c(:, :, :)          !< (0:q, 0:q, bilinear)
+   end type draft_t
+
+contains
+
+   !> The form of block `i` of `b`, for the values that `s` has of earlier blocks and drives.
+   subroutine make_form(b, i, s, f)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(state_t), intent(inout) :: s
+      type(block_form_t), intent(out) :: f
+      type(draft_t) :: d
+      integer :: m, rows
+
+      call find_known_parts(b, i, s)
+      call merge_angles(b, i, s, f)
+      call number_places(b, i, f)
+      rows = b%list(i)%shape%rows
+      allocate (d%a(0:f%q, rows), d%c(0:f%q, 0:f%q, rows + f%q), source=(0.0_wp, 0.0_wp))
+      do m = b%list(i)%first_loop, b%list(i)%last_loop
+         if (b%loops(m)%kind /= loop_angles) call add_loop(b, i, m, s, f, d)
+      end do
+      call add_pairs(f, d)
+      call reduce(f, d)
+   end subroutine make_form
+
+   !> Angles and slides that differ by what is given, as drives RELANGLE ask, are one unknown.
+   subroutine merge_angles(b, i, s, f)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(state_t), intent(in) :: s
+      type(block_form_t), intent(inout) :: f
+      integer :: m, k, first, second
+      real(wp) :: apart, first_offset, second_offset
+
+      f%n = b%list(i)%shape%n
+      allocate (f%base(f%n), source=[(k, k=1, f%n)])
+      allocate (f%offset(f%n), source=0.0_wp)
+      do m = b%list(i)%first_loop, b%list(i)%last_loop
+         associate (g => b%loops(m))
+            if (g%kind /= loop_angles) cycle
+            call resolve(g%orientation_column, g%orientation, first, first_offset)
+            call resolve(g%less_column, g%less, second, second_offset)
+            apart = given(b, i, g%row_x, s) - first_offset + second_offset
+         end associate
+         ! first = second + apart: the later one gives way.
+         if (first == second) cycle
+         if (first > second) call replace(first, second, apart)
+         if (second > first) call replace(second, first, -apart)
+      end do
+
+   contains
+
+      !> The base and offset of unknown number `u` of all, in column `column` of the block.
+      subroutine resolve(column, u, base, offset)
+         integer, intent(in) :: column, u
+         integer, intent(out) :: base
+         real(wp), intent(out) :: offset
+
+         base = 0
+         offset = s%u(u)%value
+         if (column == 0) return
+         base = f%base(column)
+         offset = f%offset(column)
+      end subroutine resolve
+
+      !> What stood on base `old` stands on `new`, which is less by `more`.
+      subroutine replace(old, new, more)
+         integer, intent(in) :: old, new
+         real(wp), intent(in) :: more
+
+         where (f%base == old)
+            f%offset = f%offset + more
+            f%base = new
+         end where
+      end subroutine replace
+   end subroutine merge_angles
+
+   !> What row `row` of block `i` asks for: its constant and its drive's value.
+   pure real(wp) function given(b, i, row, s)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i, row
+      type(state_t), intent(in) :: s
+
+      associate (r => b%rows(b%list(i)%first_row + row - 1))
+         given = r%constant + s%drive_value(0, r%drive)
+      end associate
+   end function given
+
+   !> Numbers the directions and slides of a group, and finds the direction of each slide.
+   subroutine number_places(b, i, f)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(block_form_t), intent(inout) :: f
+      integer :: k, m
+
+      allocate (f%place(0:f%n), f%turns(f%n), source=0)
+      do k = 1, f%n
+         if (f%base(k) /= k) cycle
+         f%q = f%q + 1
+         f%place(k) = f%q
+      end do
+      f%turns = -1
+      do m = b%list(i)%first_loop, b%list(i)%last_loop
+         do k = b%loops(m)%first_slide, b%loops(m)%last_slide
+            associate (slide => b%slides(k))
+               if (slide%column == 0) cycle
+               if (f%base(slide%column) == 0) cycle
+               f%turns(f%place(slide%column)) = 0
+               if (slide%orientation_column > 0) f%turns(f%place(slide%column)) = f%place(f%base( &
+                  slide%orientation_column))
+            end associate
+         end do
+      end do
+   end subroutine number_places
+
+   !> The direction of unknown number `u` of all, in column `column` of the block: `factor` times direction `at` of the
+   !> group; 0: known.
+   subroutine find_direction(f, column, u, s, at, factor)
+      type(block_form_t), intent(in) :: f
+      integer, intent(in) :: column, u
+      type(state_t), intent(in) :: s
+      integer, intent(out) :: at
+      complex(wp), intent(out) :: factor
+
+      at = 0
+      factor = cmplx(s%u(u)%c, s%u(u)%s, wp)
+      if (column == 0) return
+      factor = exp(i_unit*f%offset(column))
+      if (f%base(column) > 0) at = f%place(f%base(column))
+   end subroutine find_direction
+
+   !> (0:q) Loop `m`, as a linear form of the group.
+   function linear_form(b, m, s, f) result(l)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: m
+      type(state_t), intent(in) :: s
+      type(block_form_t), intent(in) :: f
+      complex(wp) :: l(0:f%q), factor
+      integer :: k, at
+      real(wp) :: value
+
+      l = 0.0_wp
+      l(0) = cmplx(s%loop(m)%known(1, 0), s%loop(m)%known(2, 0), wp)
+      do k = b%loops(m)%first_own, b%loops(m)%last_vector
+         associate (d => b%body_vectors(k))
+            call find_direction(f, d%column, d%orientation, s, at, factor)
+            l(at) = l(at) + factor*cmplx(d%x, d%y, wp)
+         end associate
+      end do
+      do k = b%loops(m)%first_slide, b%loops(m)%last_slide
+         associate (e => b%slides(k))
+            call find_direction(f, e%orientation_column, e%orientation, s, at, factor)
+            factor = factor*cmplx(e%body_vector(1), e%body_vector(2), wp)
+            value = s%u(e%unknown)%value
+            if (e%column > 0) then
+               value = f%offset(e%column)
+               if (f%base(e%column) > 0) then
+                  at = f%place(f%base(e%column))
+                  value = 1.0_wp
+               end if
+            end if
+            l(at) = l(at) + factor*value
+         end associate
+      end do
+   end function linear_form
+
+   !> Adds the equations of loop `m` of block `i`.
+   subroutine add_loop(b, i, m, s, f, d)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i, m
+      type(state_t), intent(in) :: s
+      type(block_form_t), intent(in) :: f
+      type(draft_t), intent(inout) :: d
+      complex(wp) :: l(0:f%q), factor
+      integer :: at, other
+
+      l = linear_form(b, m, s, f)
+      associate (g => b%loops(m))
+         if (g%kind == loop_projection) then
+            call find_direction(f, g%orientation_column, g%orientation, s, at, factor)
+            factor = factor*cmplx(g%direction(1), g%direction(2), wp)
+            call add_real_part(l, at, factor, given(b, i, g%row_x, s), d)
+            return
+         end if
+         other = partner(b, i, m, s, f)
+         if (g%row_x > 0 .and. (g%row_y > 0 .or. other > 0)) then
+            l(0) = l(0) - given(b, i, g%row_x, s)
+            if (g%row_y > 0) l(0) = l(0) - i_unit*given(b, i, g%row_y, s)
+            if (g%row_y == 0) l(0) = l(0) - i_unit*given(b, i, b%loops(other)%row_y, s)
+            d%linear = d%linear + 1
+            d%a(:, d%linear) = l
+         else if (g%row_x > 0) then
+            call add_real_part(l, 0, (1.0_wp, 0.0_wp), given(b, i, g%row_x, s), d)
+         else if (other == 0) then
+            call add_real_part(l, 0, i_unit, given(b, i, g%row_y, s), d)
+         end if
+      end associate
+   end subroutine add_loop
+
+   !> The loop of block `i` with the other component of loop `m`, of which this one asks for x or y alone: drives X and
+   !> Y of one point. 0: none.
+   integer function partner(b, i, m, s, f) result(other)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i, m
+      type(state_t), intent(in) :: s
+      type(block_form_t), intent(in) :: f
+      integer :: k
+
+      other = 0
+      do k = b%list(i)%first_loop, b%list(i)%last_loop
+         associate (g => b%loops(m), h => b%loops(k))
+            if (h%kind /= loop_components) cycle
+            if ((g%row_x > 0 .eqv. h%row_x > 0) .or. (g%row_y > 0 .eqv. h%row_y > 0)) cycle
+            if (all(abs(linear_form(b, m, s, f) - linear_form(b, k, s, f)) <= 0.0_wp)) other = k
+         end associate
+      end do
+   end function partner
+
+   !> Adds Re(l conj(factor w)) = value, w direction number `at` of the group; 0: 1.
+   subroutine add_real_part(l, at, factor, value, d)
+      complex(wp), intent(in) :: l(0:), factor
+      integer, intent(in) :: at
+      real(wp), intent(in) :: value
+      type(draft_t), intent(inout) :: d
+
+      d%bilinear = d%bilinear + 1
+      associate (c => d%c(:, :, d%bilinear))
+         ! associate loses the lower bound: element 1 is that of 1.
+         c(:, at + 1) = c(:, at + 1) + 0.5_wp*l*conjg(factor)
+         c(at + 1, :) = c(at + 1, :) + 0.5_wp*conjg(l)*factor
+         c(1, 1) = c(1, 1) - value
+      end associate
+   end subroutine add_real_part
+
+   !> Adds w w' = 1 and z w' = z' w, and puts 1 for w w' in the other equations.
+   subroutine add_pairs(f, d)
+      type(block_form_t), intent(in) :: f
+      type(draft_t), intent(inout) :: d
+      integer :: k, j
+
+      do k = 1, f%q
+         if (f%turns(k) < 0) then
+            do j = 1, d%bilinear
+               d%c(0, 0, j) = d%c(0, 0, j) + d%c(k, k, j)
+               d%c(k, k, j) = 0.0_wp
+            end do
+         end if
+      end do
+      do k = 1, f%q
+         d%bilinear = d%bilinear + 1
+         if (f%turns(k) < 0) then
+            d%c(k, k, d%bilinear) = 1.0_wp
+            d%c(0, 0, d%bilinear) = -1.0_wp
+         else
+            d%c(k, f%turns(k), d%bilinear) = 1.0_wp
+            d%c(f%turns(k), k, d%bilinear) = -1.0_wp
+         end if
+      end do
+   end subroutine add_pairs
+
+   !> Eliminates the linear equations; of more bilinear ones than unknowns, takes combinations.
+   subroutine reduce(f, d)
+      type(block_form_t), intent(inout) :: f
+      type(draft_t), intent(in) :: d
+      complex(wp), allocatable :: basis(:, :), c(:, :, :)
+      real(wp) :: size_of
+      integer :: p, j, k, count_of
+
+      call find_null_space(transpose(d%a(:, :d%linear)), zero_level, basis)
+      p = size(basis, 2) - 1
+      allocate (f%basis(0:f%q, 0:p))
+      f%basis(:, :) = basis
+      allocate (c(0:p, 0:p, d%bilinear))
+      count_of = 0
+      do j = 1, d%bilinear
+         associate (one => d%c(:, :, j))
+            c(:, :, count_of + 1) = matmul(transpose(basis), matmul(one, conjg(basis)))
+            size_of = maxval(abs(one))*maxval([0.0_wp, abs(basis)])**2
+         end associate
+         if (maxval([0.0_wp, abs(c(:, :, count_of + 1))]) <= zero_level*size_of) cycle
+         count_of = count_of + 1
+         c(:, :, count_of) = c(:, :, count_of)/maxval(abs(c(:, :, count_of)))
+      end do
+      f%system%p = p
+      f%is_impossible = maxval([0.0_wp, abs(basis(1, :))]) <= 0.0_wp
+      f%is_lacking = count_of < 2*p
+      if (f%is_impossible .or. f%is_lacking) return
+      allocate (f%system%c(0:p, 0:p, 2*p), source=(0.0_wp, 0.0_wp))
+      allocate (f%system%plane(0:p))
+      f%system%plane(:) = f%basis(0, :)
+      f%more = c(:, :, 2*p + 1:count_of)
+      do j = 1, 2*p
+         f%system%c(:, :, j) = c(:, :, j)
+         do k = 2*p + 1, count_of
+            f%system%c(:, :, j) = f%system%c(:, :, j) + cos(real(j*k, wp))*c(:, :, k)
+         end do
+         f%system%c(:, :, j) = f%system%c(:, :, j)/maxval(abs(f%system%c(:, :, j)))
+      end do
+   end subroutine reduce
+
+   !> The solution `e` of the combinations that are solved is one of all equations.
+   pure logical function solves_all(f, e)
+      type(block_form_t), intent(in) :: f
+      type(end_t), intent(in) :: e
+      integer :: j
+
+      solves_all = .true.
+      do j = 1, size(f%more, 3)
+         solves_all = solves_all .and. abs(sum(e%x*matmul(f%more(:, :, j), e%y))) <= solved_level*maxval(abs(e%x)) &
+            *maxval(abs(e%y))
+      end do
+   end function solves_all
+
+   !> (n) The unknowns of the block at the solution `e`. `is_real`: x and y are conjugate, as far as rounding can tell.
+   subroutine real_values(f, e, level, x, is_real)
+      type(block_form_t), intent(in) :: f
+      type(end_t), intent(in) :: e
+      real(wp), intent(in) :: level
+      real(wp), intent(out) :: x(:)
+      logical, intent(out) :: is_real
+      complex(wp) :: w(0:f%q), v(0:f%q)
+      integer :: k
+
+      w = matmul(f%basis, e%x)
+      v = matmul(conjg(f%basis), e%y)
+      w = w/w(0)
+      v = conjg(v/v(0))
+      is_real = maxval(abs(w - v)) <= level*maxval(abs(w))
+      w = 0.5_wp*(w + v)
+      do k = 1, f%n
+         x(k) = f%offset(k)
+         if (f%base(k) == 0) cycle
+         associate (at => f%place(f%base(k)))
+            if (f%turns(at) < 0) then
+               x(k) = x(k) + atan2(aimag(w(at)), real(w(at)))
+            else
+               x(k) = x(k) + real(w(at)*conjg(w(f%turns(at))))
+            end if
+         end associate
+      end do
+   end subroutine real_values
+end module block_bilinear

@@ -1,0 +1,106 @@
+!> Small systems of linear equations with complex coefficients, and null spaces. Written out for all kinds of reals: at
+!> the sizes of `assemblies`, up to 14 unknowns, the calls of ZGESV take as long as its work, and the paths followed
+!> there are the same with every LAPACK.
+module complex_lu
+   use kinds, only: wp
+   implicit none
+   private
+   public :: factor_complex, solve_complex, find_null_space
+
+contains
+
+   !> LU factors of `a` (n, n) in its place, with partial pivoting; `pivots` (n): the rows exchanged. `is_singular`: a
+   !> pivot is zero.
+   pure subroutine factor_complex(n, a, pivots, is_singular)
+      integer, intent(in) :: n
+      complex(wp), intent(inout) :: a(n, n)
+      integer, intent(out) :: pivots(n)
+      logical, intent(out) :: is_singular
+      complex(wp) :: row(n)
+      integer :: i, k
+
+      is_singular = .false.
+      do k = 1, n
+         pivots(k) = k - 1 + maxloc(abs(real(a(k:, k))) + abs(aimag(a(k:, k))), 1)
+         if (pivots(k) /= k) then
+            row = a(k, :)
+            a(k, :) = a(pivots(k), :)
+            a(pivots(k), :) = row
+         end if
+         if (abs(a(k, k)) <= tiny(1.0_wp)) then
+            is_singular = .true.
+            return
+         end if
+         a(k + 1:, k) = a(k + 1:, k)/a(k, k)
+         do i = k + 1, n
+            a(k + 1:, i) = a(k + 1:, i) - a(k + 1:, k)*a(k, i)
+         end do
+      end do
+   end subroutine factor_complex
+
+   !> Solves for `b` (n) with the factors of `factor_complex`.
+   pure subroutine solve_complex(n, a, pivots, b)
+      integer, intent(in) :: n
+      complex(wp), intent(in) :: a(n, n)
+      integer, intent(in) :: pivots(n)
+      complex(wp), intent(inout) :: b(n)
+      complex(wp) :: one
+      integer :: k
+
+      do k = 1, n
+         one = b(pivots(k))
+         b(pivots(k)) = b(k)
+         b(k) = one
+      end do
+      do k = 1, n
+         b(k + 1:) = b(k + 1:) - a(k + 1:, k)*b(k)
+      end do
+      do k = n, 1, -1
+         b(k) = b(k)/a(k, k)
+         b(:k - 1) = b(:k - 1) - a(:k - 1, k)*b(k)
+      end do
+   end subroutine solve_complex
+
+   !> The null space of `a` (rows, columns): `basis` (columns, any number). Complete pivoting over the columns from 2
+   !> on, the first one last of all; what is below `level` of the largest element counts as zero.
+   pure subroutine find_null_space(a, level, basis)
+      complex(wp), intent(in) :: a(:, :)
+      real(wp), intent(in) :: level
+      complex(wp), allocatable, intent(out) :: basis(:, :)
+      complex(wp) :: w(size(a, 1), size(a, 2)), row(size(a, 2))
+      integer :: pivot_column(size(a, 1)), at(2), rank, k, i, free
+      logical :: is_free(size(a, 2))
+      real(wp) :: zero
+
+      w = a
+      is_free = .true.
+      rank = 0
+      zero = level*maxval([0.0_wp, abs(a)])
+      do k = 1, min(size(a, 1), size(a, 2))
+         at = 0
+         if (k <= size(a, 1)) at = maxloc(abs(w(k:, 2:)), spread(is_free(2:), 1, size(a, 1) - k + 1)) + [k - 1, 1]
+         if (at(2) < 2 .or. .not. any(is_free(2:))) at = [k - 1 + maxloc(abs(w(k:, 1)), 1), 1]
+         if (at(2) > 1) then
+            if (abs(w(at(1), at(2))) <= zero) at = [k - 1 + maxloc(abs(w(k:, 1)), 1), 1]
+         end if
+         if (.not. is_free(at(2)) .or. abs(w(at(1), at(2))) <= zero) exit
+         rank = k
+         row = w(at(1), :)/w(at(1), at(2))
+         w(at(1), :) = w(k, :)
+         w(k, :) = row
+         pivot_column(k) = at(2)
+         is_free(at(2)) = .false.
+         do i = 1, size(a, 1)
+            if (i /= k) w(i, :) = w(i, :) - w(i, at(2))*w(k, :)
+         end do
+      end do
+      allocate (basis(size(a, 2), size(a, 2) - rank), source=(0.0_wp, 0.0_wp))
+      k = 0
+      do free = 1, size(a, 2)
+         if (.not. is_free(free)) cycle
+         k = k + 1
+         basis(free, k) = 1.0_wp
+         basis(pivot_column(:rank), k) = -w(:rank, free)
+      end do
+   end subroutine find_null_space
+end module complex_lu
