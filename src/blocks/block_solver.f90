@@ -4,22 +4,26 @@
 !> A residual at the rounding level has nothing to correct, and DGESV then gives the velocities at once; a larger
 !> one gives a correction first, and where that is at the rounding level the velocities follow from its factors.
 !> So one assembly and one factorization a step are the rule, from a start that is right already. A Jacobian one
-!> correction d away leaves errors of order d in the rates: no larger d is accepted.
+!> correction d away leaves errors of order d in the rates: no larger d is accepted. After a larger, but small one the
+!> factors serve again for two unknowns, with the difference of the Jacobians mended: a coarse step needs no second
+!> DGESV.
 !>
 !> Where equations are too many, all of them are solved, in the sense of least squares (Gauss and Newton): which of
 !> them could be spared changes along the motion. By how much they contradict one another is the closure error.
 module block_solver
    use kinds, only: wp
    use klu, only: klu_t
-   use block_matrix, only: shape_t, solve_first, solve_again, pivot_range, inverse_norm, entries_of, work_length
+   use block_matrix, only: shape_t, nearby_t, solve_first, solve_again, solve_nearby, stay_near, set_aside, &
+      pivot_range, inverse_norm, entries_of, work_length
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, &
       ended_diverged, ended_inconsistent
    use blocks, only: blocks_t
    use block_state, only: state_t, set_direction, rotate_direction, find_known_parts
    use block_equations, only: assemble_block, right_hand_side, largest_rates
+   use closure_errors, only: note_closure_error, is_inconsistent, contradict
    implicit none
    private
-   public :: workspace_t, make_workspace, solve_block, note_closure_error, contradict
+   public :: workspace_t, make_workspace, solve_block
 
    !> Residuals relative to the largest value. Below the first there is nothing to correct; above the second,
    !> rounding of angles and of their sines alone explains no residual.
@@ -41,20 +45,12 @@ module block_solver
    integer, parameter :: iteration_limit = 60
    !> 1 over this squared is within the range of reals.
    real(wp), parameter :: min_inverse = epsilon(1.0_wp)**2
-   !> Closure errors that differ by less than this part are alike.
-   real(wp), parameter :: alike = 1.0e-4_wp
-   !> Positions may contradict one another by this, in characteristic lengths and radians, as data of 11 digits do.
-   real(wp), parameter :: inconsistent_level = max(1.0e-10_wp, 64.0_wp*epsilon(1.0_wp))
-   !> Rates may by this part of them, which a condition makes larger.
-   real(wp), parameter :: open_rates = max(1.0e-8_wp, 4096.0_wp*epsilon(1.0_wp))
-   !> Beside what is known the body vectors of a loop may be so short that rounding opens it by more: by so many
-   !> roundings of what is known.
-   real(wp), parameter :: roundings = 64.0_wp, rate_roundings = 4096.0_wp
 
    !> Room for the widest block, and the factors of each sparse one. Never copied: see klu_t.
    type :: workspace_t
       real(wp), allocatable :: a(:), r(:), start(:), work(:)
       integer, allocatable :: pivots(:), iwork(:)
+      type(nearby_t) :: near                      !< the Jacobian, where `a` holds the factors of one beside it
       type(klu_t), allocatable :: sparse(:)       !< (0:patterns), 0 for dense blocks
    end type workspace_t
 
@@ -99,7 +95,7 @@ contains
          return
       end if
       call solve(b, i, b%list(i)%shape, tolerance, w%a, w%r, w%start, w%work, w%pivots, &
-         w%sparse(b%list(i)%shape%pattern), s, c, correction)
+         w%near, w%sparse(b%list(i)%shape%pattern), s, c, correction)
       if (c%ended /= ended_converged .and. c%ended /= ended_stalled) return
       if (b%list(i)%shape%rows > b%list(i)%shape%n .and. is_inconsistent(c)) then
          c%ended = ended_inconsistent
@@ -126,15 +122,16 @@ contains
       call set_direction(b, b%unknown(b%list(i)%first), s)
    end subroutine solve_direct
 
-   !> Newton's method; where it ends with a position, `r`(:, 2) holds the velocities and `a` the factors. Where the
-   !> Jacobian there has no inverse, c%singular says so.
-   subroutine solve(b, i, shape, tolerance, a, r, start, work, pivots, k, s, c, correction)
+   !> Newton's method; where it ends with a position, `r`(:, 2) holds the velocities and `a` the factors, of the
+   !> Jacobian there or of one beside that in `near`. Where the Jacobian there has no inverse, c%singular says so.
+   subroutine solve(b, i, shape, tolerance, a, r, start, work, pivots, near, k, s, c, correction)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(shape_t), intent(in) :: shape
       real(wp), intent(in) :: tolerance
       real(wp), intent(inout) :: a(*), r(shape%rows, 2), start(shape%n), work(*)
       integer, intent(inout) :: pivots(*)
+      type(nearby_t), intent(inout) :: near
       type(klu_t), intent(inout) :: k
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
@@ -146,6 +143,7 @@ contains
       call begin_block(b, i, shape%n, s, start, size_of)
       before = huge(before)
       coarse = b%list(i)%coarse
+      near%distance = 0.0_wp
       c = convergence_t(ended=ended_limit)
       do iteration = 1, iteration_limit
          if (.not. size_of <= angle_limit) then
@@ -154,17 +152,18 @@ contains
          end if
          c%iterations = iteration
          call assemble_block(b, i, s, a, r)
+         if (near%distance > 0.0_wp) call set_aside(a, near)
          c%residual = maxval(abs(r(:, 1)))
          if (shape%rows > shape%n) call note_closure_error(b, i, r, c)
          if (c%residual <= closed_level*max(size_of, coarse)) then
             c%step = 0.0_wp
             c%ended = ended_converged
             call right_hand_side(b, i, 1, s, r(:, 2))
-            call solve_first(shape, a, k, pivots, work, r(:, 2), info)
+            call solve_assembled(shape, a, k, pivots, near, work, r(:, 2), info)
             c%singular = info > 0
             exit
          end if
-         call solve_first(shape, a, k, pivots, work, r, info)
+         call solve_assembled(shape, a, k, pivots, near, work, r, info)
          if (info > 0) then
             c%singular = c%residual <= max(rounding_level*max(size_of, coarse), tolerance)
             c%ended = merge(ended_stalled, ended_singular, c%singular)
@@ -178,14 +177,50 @@ contains
             if (is_right) c%ended = ended_converged
          end if
          before = c%step
-         if (c%ended == ended_limit) cycle
+         if (c%ended == ended_limit) then
+            call stay_near(shape, a, pivots, b%list(i)%lipschitz*c%step, near)
+            cycle
+         end if
          call right_hand_side(b, i, 1, s, r(:, 2))
-         call solve_again(shape, a, k, pivots, work, r(:, 2))
+         call solve_from_factors(shape, a, k, pivots, near, work, r(:, 2))
          exit
       end do
       if (c%iterations > 1 .or. c%step > 0.0_wp) c%change = largest_change(b, i, shape%n, s, start)
       correction = max(correction, c%change)
    end subroutine solve
+
+   !> Solves for `v` (rows) with the Jacobian just assembled: `info` > 0, it has no inverse.
+   subroutine solve_assembled(shape, a, k, pivots, near, work, v, info)
+      type(shape_t), intent(in) :: shape
+      real(wp), intent(inout) :: a(*), work(*), v(*)
+      type(klu_t), intent(inout) :: k
+      integer, intent(inout) :: pivots(*)
+      type(nearby_t), intent(in) :: near
+      integer, intent(out) :: info
+
+      info = 0
+      if (near%distance > 0.0_wp) then
+         call solve_nearby(near, v)
+      else
+         call solve_first(shape, a, k, pivots, work, v, info)
+      end if
+   end subroutine solve_assembled
+
+   !> Solves for `v` (rows) with the Jacobian of the position just found: from its factors, or those of one beside it.
+   subroutine solve_from_factors(shape, a, k, pivots, near, work, v)
+      type(shape_t), intent(in) :: shape
+      real(wp), intent(in) :: a(*)
+      type(klu_t), intent(inout) :: k
+      integer, intent(in) :: pivots(*)
+      type(nearby_t), intent(in) :: near
+      real(wp), intent(inout) :: work(*), v(*)
+
+      if (near%distance > 0.0_wp) then
+         call solve_nearby(near, v)
+      else
+         call solve_again(shape, a, k, pivots, work, v)
+      end if
+   end subroutine solve_from_factors
 
    !> Rounding is all that is left to correct, and the position stays; among equations that contradict one another
    !> it is their gap.
@@ -278,7 +313,7 @@ contains
             s%u(b%unknown(b%list(i)%first + k - 1))%rate = w%r(rows + k)
          end do
          call right_hand_side(b, i, 2, s, w%r)
-         call solve_again(b%list(i)%shape, w%a, w%sparse(b%list(i)%shape%pattern), w%pivots, w%work, w%r)
+         call solve_from_factors(b%list(i)%shape, w%a, w%sparse(b%list(i)%shape%pattern), w%pivots, w%near, w%work, w%r)
          do k = 1, n
             s%u(b%unknown(b%list(i)%first + k - 1))%acceleration = w%r(k)
          end do
@@ -329,71 +364,4 @@ contains
       end do
       c%singular = inverse*inverse*b%list(i)%lipschitz*rounding_level*size_of >= largest_error
    end subroutine judge
-
-   !> The pair or drive that is open the most by the residuals `r`: a revolute pair by the distance of its points. Of
-   !> those that are open alike the last pair of the deck, or the last drive: rounding shall not choose.
-   pure subroutine note_closure_error(b, i, r, c)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      real(wp), intent(in) :: r(*)
-      type(convergence_t), intent(inout) :: c
-      real(wp) :: largest
-      integer :: m
-
-      largest = 0.0_wp
-      do m = b%list(i)%first_loop, b%list(i)%last_loop
-         largest = max(largest, opening(b, m, r)/level_of(b, m))
-      end do
-      c%closure_error = 0.0_wp
-      c%inconsistent_pair = 0
-      c%inconsistent_drive = 0
-      do m = b%list(i)%first_loop, b%list(i)%last_loop
-         associate (row => b%rows(b%list(i)%first_row + max(b%loops(m)%row_x, b%loops(m)%row_y) - 1))
-            if (opening(b, m, r)/level_of(b, m) < (1.0_wp - alike)*largest) cycle
-            if (row%pair < c%inconsistent_pair .or. (row%pair == 0 .and. row%drive < c%inconsistent_drive)) cycle
-            c%closure_error = opening(b, m, r)
-            c%closure_error_level = level_of(b, m)
-            c%closure_error_unit = b%loops(m)%unit
-            c%closure_error_is_angle = row%angular
-            c%inconsistent_pair = row%pair
-            c%inconsistent_drive = row%drive
-         end associate
-      end do
-   end subroutine note_closure_error
-
-   !> The closure error of `c` is more than rounding.
-   pure logical function is_inconsistent(c)
-      type(convergence_t), intent(in) :: c
-
-      is_inconsistent = c%closure_error > inconsistent_level*c%closure_error_level
-   end function is_inconsistent
-
-   !> How many times as large as usual the closure error of loop `m` may be.
-   pure real(wp) function level_of(b, m)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: m
-
-      level_of = max(1.0_wp, b%loops(m)%coarse*(roundings*epsilon(1.0_wp)/inconsistent_level))
-   end function level_of
-
-   !> By how much loop `m` is open.
-   pure real(wp) function opening(b, m, r)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: m
-      real(wp), intent(in) :: r(*)
-
-      associate (g => b%loops(m))
-         opening = 0.0_wp
-         if (g%row_x > 0) opening = abs(r(g%row_x))
-         if (g%row_y > 0) opening = hypot(opening, r(g%row_y))
-      end associate
-   end function opening
-
-   !> Equations that leave `open` of their rates contradict one another; `size_of`: numbers of this size have gone into
-   !> them; `coarse`: of the block.
-   pure logical function contradict(open, size_of, coarse)
-      real(wp), intent(in) :: open(:), size_of, coarse
-
-      contradict = norm2(open) > max(open_rates, rate_roundings*epsilon(1.0_wp)*coarse)*size_of
-   end function contradict
 end module block_solver

@@ -9,7 +9,7 @@ module levenberg_marquardt
    use blocks, only: blocks_t
    use block_state, only: state_t, set_values, values_of, find_known_parts
    use block_equations, only: assemble_dense
-   use block_solver, only: note_closure_error
+   use closure_errors, only: note_closure_error
    implicit none
    private
    public :: levenberg_marquardt_solve, levenberg_marquardt_held, golden_numbers

@@ -9,6 +9,7 @@ module block_matrix
    implicit none
    private
    public :: shape_t, is_sparse_better, entries_of, solve_first, solve_again, pivot_range, inverse_norm, work_length
+   public :: nearby_t, stay_near, set_aside, solve_nearby
 
    !> `pattern` = 0: dense, by columns. Otherwise sparse and square: the number of its pattern, and its entries, in the
    !> order of the pattern.
@@ -16,11 +17,24 @@ module block_matrix
       integer :: rows = 0, n = 0, pattern = 0, entries = 0
    end type shape_t
 
+   !> A dense matrix of two rows beside the one that is factored.
+   type :: nearby_t
+      real(wp) :: a(4) = 0.0_wp                  !< the matrix, by columns
+      real(wp) :: factors(4) = 0.0_wp            !< of the other, while the matrix is assembled
+      real(wp) :: inverse(4) = 0.0_wp            !< of the other
+      real(wp) :: distance = 0.0_wp              !< |A0^-1 (A - A0)| at most, A0 being factored; 0: `a` is not in use
+   end type nearby_t
+
    !> From this many unknowns on KLU is not slower than DGESV (lattices, reference LAPACK and OpenBLAS).
    integer, parameter :: min_sparse = merge(12, huge(1), klu_serves)
    !> A solution leaves this part of what its equations add up: more, and the pivots of the matrix before are no longer
    !> good for this one.
    real(wp), parameter :: stale = 128.0_wp*epsilon(1.0_wp)
+   !> A matrix that differs from the factored one by more than this part is factored itself: mending the difference
+   !> takes as long.
+   real(wp), parameter :: max_distance = 1.0e-4_wp
+   !> A relative error below this is lost in that of a factorization.
+   real(wp), parameter :: lost = 0.125_wp*epsilon(1.0_wp)
    !> Columns that DGEQRF takes together.
    integer, parameter :: panel = 32
 
@@ -123,6 +137,57 @@ contains
       end if
    end subroutine solve_again
 
+   !> The matrix of shape `s` whose factors are in `a` changes by `change` at most, or once more: `near` can be it,
+   !> unless it is better factored itself.
+   pure subroutine stay_near(s, a, pivots, change, near)
+      type(shape_t), intent(in) :: s
+      real(wp), intent(in) :: a(*), change
+      integer, intent(in) :: pivots(*)
+      type(nearby_t), intent(inout) :: near
+
+      if (s%n /= 2 .or. s%rows /= 2) return
+      near%factors = a(:4)
+      near%inverse = [a(4) + a(2)*a(3), -a(1)*a(2), -a(3), a(1)]/(a(1)*a(4))
+      if (pivots(1) == 2) near%inverse = near%inverse([3, 4, 1, 2])
+      near%distance = near%distance + change*inverse_norm_of_two(a)
+      if (.not. near%distance <= max_distance) near%distance = 0.0_wp
+   end subroutine stay_near
+
+   !> The changed matrix, now in `a`, goes to `near`, and the factors come back.
+   pure subroutine set_aside(a, near)
+      real(wp), intent(inout) :: a(*)
+      type(nearby_t), intent(inout) :: near
+
+      near%a = a(:4)
+      a(:4) = near%factors
+   end subroutine set_aside
+
+   !> Solves `near` x = `b` (2) with the inverse of the matrix beside it, by iterative refinement (Higham, Accuracy and
+   !> Stability of Numerical Algorithms, 2002, ch. 12): each pass takes the error down by the distance of the two, to
+   !> what a factorization of its own would leave.
+   pure subroutine solve_nearby(near, b)
+      type(nearby_t), intent(in) :: near
+      real(wp), intent(inout) :: b(2)
+      real(wp) :: x(2), error
+
+      x = times(near%inverse, b)
+      error = near%distance
+      do while (error > lost)
+         x = x + times(near%inverse, b - times(near%a, x))
+         error = error*near%distance
+      end do
+      b = x
+   end subroutine solve_nearby
+
+   !> `a` (4, by columns) times `x`.
+   pure function times(a, x) result(y)
+      real(wp), intent(in) :: a(4), x(2)
+      real(wp) :: y(2)
+
+      y(1) = a(1)*x(1) + a(3)*x(2)
+      y(2) = a(2)*x(1) + a(4)*x(2)
+   end function times
+
    !> DGETRS for two unknowns and one right-hand side, in the order of its operations: the call itself takes many times
    !> as long. `exchanged`: the rows of the matrix were.
    pure subroutine substitute(a, exchanged, b)
@@ -189,13 +254,20 @@ contains
       else if (s%n == 1) then
          inverse_norm = 1.0_wp/abs(a(1))
       else if (s%n == 2) then
-         ! The factors are l = a(2), u = a(1), a(3), a(4); columns are swapped by the pivots, row sums are not.
-         inverse_norm = max(abs(a(4) + a(3)*a(2)) + abs(a(3)), abs(a(1)*a(2)) + abs(a(1)))/abs(a(1)*a(4))
+         inverse_norm = inverse_norm_of_two(a)
       else
          call gecon('I', s%n, a, s%n, 1.0_wp, rcond, work, iwork, info)
          inverse_norm = 1.0_wp/max(rcond, tiny(rcond))
       end if
    end function inverse_norm
+
+   !> The same of two unknowns, from the factors l = `a`(2), u = a(1), a(3), a(4): columns are swapped by the pivots,
+   !> row sums are not.
+   pure real(wp) function inverse_norm_of_two(a) result(norm)
+      real(wp), intent(in) :: a(4)
+
+      norm = max(abs(a(4) + a(3)*a(2)) + abs(a(3)), abs(a(1)*a(2)) + abs(a(1)))/abs(a(1)*a(4))
+   end function inverse_norm_of_two
 
    !> The same of sparse factors; `v`, `x`, `signs` (n): room.
    real(wp) function sparse_norm(n, k, v, x, signs) result(norm)
