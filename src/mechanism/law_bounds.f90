@@ -25,10 +25,12 @@ module law_bounds
 contains
 
    !> The bounds of `law` between the times `t1` and `t2`, in either order. A table continues beyond its ends with its
-   !> last pieces; a power that is not defined somewhere in the interval has no bounds.
-   pure function bounds_of(law, t1, t2) result(b)
+   !> last pieces; a power that is not defined somewhere in the interval has no bounds. `one_instant`: the interval is
+   !> one instant and its roundings, at which accelerations that jump are those of `drive_motion`.
+   pure function bounds_of(law, t1, t2, one_instant) result(b)
       type(law_t), intent(in) :: law
       real(wp), intent(in) :: t1, t2
+      logical, intent(in), optional :: one_instant
       type(bounds_t) :: b
       real(wp) :: from, to
       integer :: i
@@ -45,7 +47,7 @@ contains
          case (term_table)
             call add(table(law%splines(i), from, to), b)
          case (term_cycloid:term_parabola)
-            call add(rise(law%drive%terms(i), from, to), b)
+            call add(rise(law%drive%terms(i), from, to, one_instant), b)
          end select
       end do
    end function bounds_of
@@ -234,10 +236,11 @@ contains
    end subroutine widen_by_piece_at
 
    !> The bounds of the rise `term`: its values at both ends and at the places in between where any law has an extreme
-   !> of a derivative. At a joint an acceleration may have two values.
-   pure function rise(term, from, to) result(b)
+   !> of a derivative. At a joint an acceleration may have two values, but not at `one_instant`.
+   pure function rise(term, from, to, one_instant) result(b)
       type(term_t), intent(in) :: term
       real(wp), intent(in) :: from, to
+      logical, intent(in), optional :: one_instant
       type(bounds_t) :: b
       !> Of the acceleration of the 3-4-5 polynomial, (3 -+ sqrt(3))/6; of the others, and their joints.
       real(wp), parameter :: aside = sqrt(3.0_wp)/6.0_wp
@@ -251,6 +254,7 @@ contains
       u2 = (to - term%r(1))/term%r(2)
       call widen_by_rise(b, term, u1, u1 + width)
       call widen_by_rise(b, term, u2, u2 + width)
+      if (present(one_instant)) return
       do i = 1, size(places)
          if (places(i) < u1 - width .or. places(i) > u2 + width) cycle
          call widen_by_rise(b, term, places(i), places(i) - 0.1_wp)

@@ -16,17 +16,17 @@ module position_proof
    use block_state, only: state_t, new_state, set_direction, find_known_parts
    use block_equations, only: assemble_dense, right_hand_side
    use block_engine, only: block_engine_t
-   use proof_data, only: proof_data_t, new_proof_data, rounding
+   use proof_data, only: proof_data_t, new_proof_data, table_errors, rounding
    use row_bounds, only: jets_t, new_jets, turn, turn_errors, bound_rows, bound_jacobian, bound_growth
    use contraction, only: contraction_t, contract, radius_of, applied, max_radius
    implicit none
    private
-   public :: prover_t, placed_t, make_prover, new_placed, take_state, prove_position, prove_block, choose_rows
+   public :: prover_t, placed_t, make_prover, new_placed, take_state, prove_position, prove_block, contract_block
 
    !> Times, too, are numbers of the deck.
-   real(wp), parameter :: of_time = 4.0_wp*rounding
+   real(wp), parameter, public :: of_time = 4.0_wp*rounding
    !> Enlarges a sum of a few numbers by more than its roundings.
-   real(wp), parameter :: room = 1.0_wp + 32.0_wp*rounding
+   real(wp), parameter, public :: room = 1.0_wp + 32.0_wp*rounding
 
    !> What the proofs of a mechanism need.
    type :: prover_t
@@ -35,6 +35,7 @@ module position_proof
       type(jets_t) :: jets                        !< their bounds
       type(contraction_t) :: contraction          !< of the block proved last
       integer, allocatable :: rows(:)             !< (unknowns) the independent equations of block 1, if it has too many
+      real(wp), allocatable :: table_error(:, :)  !< (0:2, drives) of the splines of their tables, in block units
    end type prover_t
 
    !> A position, and what is proved of it, in the units of the blocks.
@@ -43,6 +44,7 @@ module position_proof
       real(wp), allocatable :: x(:, :)            !< (0:2, 0:unknowns) values, rates, accelerations
       real(wp), allocatable :: error(:, :)        !< (0:2, 0:unknowns) the exact ones differ by no more
       real(wp), allocatable :: drive(:, :)        !< (0:2, 0:drives) the drives' values, rates and accelerations
+      real(wp), allocatable :: drive_error(:, :)  !< (0:2, 0:drives) those of their exact laws differ by no more
       real(wp), allocatable :: open(:, :)         !< (0:1, rows) |F| and |dF/dt| at these values of all unknowns
       real(wp), allocatable :: unique(:)          !< (blocks) within this distance there is no other solution
       real(wp), allocatable :: gap(:)             !< (blocks) by how much redundant equations stay open at most
@@ -56,10 +58,15 @@ contains
       type(prover_t), intent(out) :: p
       type(mechanism_t), intent(in) :: m
       type(block_engine_t), intent(in) :: e
+      integer :: i
 
       p%data = new_proof_data(m, e%blocks, e%length)
       p%state = new_state(e%blocks, size(m%drives))
       p%jets = new_jets(e%blocks%unknowns, size(m%drives))
+      allocate (p%table_error(0:2, size(m%drives)))
+      do i = 1, size(m%drives)
+         p%table_error(:, i) = table_errors(e%laws(i))*e%unit_of(i)
+      end do
    end subroutine make_prover
 
    !> Room for a position of the blocks `b` with so many `drives`.
@@ -68,8 +75,9 @@ contains
       integer, intent(in) :: drives
       type(placed_t) :: q
 
-      allocate (q%x(0:2, 0:b%unknowns), q%error(0:2, 0:b%unknowns), q%drive(0:2, 0:drives), q%open(0:1, size(b%rows)), &
-         q%unique(size(b%list)), q%gap(size(b%list)), source=0.0_wp)
+      allocate (q%x(0:2, 0:b%unknowns), q%error(0:2, 0:b%unknowns), q%drive(0:2, 0:drives), &
+         q%drive_error(0:2, 0:drives), q%open(0:1, size(b%rows)), q%unique(size(b%list)), q%gap(size(b%list)), &
+         source=0.0_wp)
       allocate (q%is_proved(size(b%list)), source=.false.)
    end function new_placed
 
@@ -84,7 +92,10 @@ contains
       logical, intent(out) :: is_proved
       integer :: k
 
-      call take_state(p, e, e%state, t, q)
+      ! As sections: assignments to the whole would ask for shapes first.
+      p%state%u(:) = e%state%u(:)
+      p%state%drive_value(:, :) = e%state%drive_value(:, :)
+      call take_state(p, e, t, q)
       is_proved = .true.
       do k = 1, size(list)
          call prove_block(p, e%blocks, list(k), 2, q)
@@ -93,12 +104,11 @@ contains
       end do
    end subroutine prove_position
 
-   !> Takes the values of `s` as the position `q` at the time `t`, nothing of it proved, and for the proofs at hand; of
-   !> the drives bounds by their laws.
-   subroutine take_state(p, e, s, t, q)
+   !> Takes the values of p%state as the position `q` at the time `t`, nothing of it proved; bounds of the drives by
+   !> their laws.
+   subroutine take_state(p, e, t, q)
       type(prover_t), intent(inout) :: p
       type(block_engine_t), intent(in) :: e
-      type(state_t), intent(in) :: s
       real(wp), intent(in) :: t
       type(placed_t), intent(inout) :: q
       type(bounds_t) :: law
@@ -107,18 +117,17 @@ contains
       q%t = t
       q%is_proved = .false.
       do u = 0, e%blocks%unknowns
-         p%state%u(u) = s%u(u)
          ! The solver may have turned a direction by a small angle; here its rounding counts.
          call set_direction(e%blocks, u, p%state)
-         q%x(:, u) = [s%u(u)%value, s%u(u)%rate, s%u(u)%acceleration]
+         q%x(:, u) = [p%state%u(u)%value, p%state%u(u)%rate, p%state%u(u)%acceleration]
       end do
       do i = 1, size(e%laws)
-         p%state%drive_value(:, i) = s%drive_value(:, i)
-         q%drive(:, i) = s%drive_value(:, i)
-         law = bounds_of(e%laws(i), t - of_time*abs(t), t + of_time*abs(t))
+         q%drive(:, i) = p%state%drive_value(:, i)
+         law = bounds_of(e%laws(i), t - of_time*abs(t), t + of_time*abs(t), one_instant=.true.)
          p%jets%drive(:, i) = abs(q%drive(:, i))
          p%jets%drive_error(:, i) = (max(law%high*e%unit_of(i) - q%drive(:, i), q%drive(:, i) - law%low*e%unit_of(i)) &
-            + 4.0_wp*rounding*abs(q%drive(:, i)))*room
+            + 4.0_wp*rounding*abs(q%drive(:, i)) + p%table_error(:, i))*room
+         q%drive_error(:, i) = p%jets%drive_error(:, i)
       end do
    end subroutine take_state
 
@@ -229,31 +238,49 @@ contains
       integer, intent(in) :: i
       real(wp), intent(in) :: a(:, :), g(:)
       type(placed_t), intent(inout) :: q
-      real(wp) :: off(size(g)), growth(size(g)), x(size(a, 2)), radius, slide(0:b%unknowns)
+      real(wp) :: x(size(a, 2)), radius
 
-      associate (c => p%contraction, own => b%unknown(b%list(i)%first:b%list(i)%last), n => size(a, 2))
-         slide = p%jets%own(0, :) + q%error(0, :)
-         slide(own) = slide(own) + max_radius
-         off = bound_jacobian(p%data, b, i, q%error(0, :), slide)
-         growth = bound_growth(p%data, b, i, slide)
-         if (size(g) > n) then
-            call choose_rows(a, p%rows)
-            call contract(a(p%rows, :), off(p%rows), growth(p%rows), c)
-            x = applied(c, g(p%rows))
-         else
-            call contract(a, off, growth, c)
-            x = applied(c, g)
-         end if
-         radius = 0.0_wp
-         if (n > 0) radius = radius_of(c, maxval(x))
-         q%is_proved(i) = c%exists .and. radius >= 0.0_wp
+      associate (c => p%contraction, own => b%unknown(b%list(i)%first:b%list(i)%last))
+         call contract_block(p, b, i, a, g, q%error(0, :), x, radius, q%gap(i))
+         q%is_proved(i) = radius >= 0.0_wp
          if (.not. q%is_proved(i)) return
          q%error(0, own) = (x + (c%off + c%z2*radius)*radius)*room
          q%unique(i) = min(max_radius, (1.0_wp - c%z1)/max(c%z2, tiny(1.0_wp))*(1.0_wp - 32.0_wp*rounding))
-         q%gap(i) = 0.0_wp
-         if (size(g) > n) q%gap(i) = maxval((g + (sum(abs(a), dim=2) + off + growth*radius)*radius)*room)
       end associate
    end subroutine prove_values
+
+   !> The contraction of block `i`, whose Jacobian is `a` (rows, n) at the place at hand and may be off as where
+   !> unknowns are `off` (0:unknowns) from there; its equations are no larger than `g` (rows). `x` (n): |A| `g`;
+   !> `radius`: of the ball that holds exactly one solution, -1 where none is proved; `gap`: by how much
+   !> redundant equations stay open in
+   !> that ball at most.
+   subroutine contract_block(p, b, i, a, g, off, x, radius, gap)
+      type(prover_t), intent(inout) :: p
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: a(:, :), g(:), off(0:)
+      real(wp), intent(out) :: x(:), radius, gap
+      real(wp) :: change(size(g)), growth(size(g)), slide(0:b%unknowns)
+
+      associate (c => p%contraction, own => b%unknown(b%list(i)%first:b%list(i)%last), n => size(a, 2))
+         slide = p%jets%own(0, :) + p%jets%own_error(0, :)
+         slide(own) = slide(own) + max_radius
+         change = bound_jacobian(p%data, b, i, off, slide)
+         growth = bound_growth(p%data, b, i, slide)
+         gap = 0.0_wp
+         if (size(g) > n) then
+            call choose_rows(a, p%rows)
+            call contract(a(p%rows, :), change(p%rows), growth(p%rows), c)
+            if (c%exists) x = applied(c, g(p%rows))
+         else
+            call contract(a, change, growth, c)
+            if (c%exists) x = applied(c, g)
+         end if
+         radius = -1.0_wp
+         if (c%exists) radius = radius_of(c, max(0.0_wp, maxval(x)))
+         if (size(g) > n) gap = maxval((g + (sum(abs(a), dim=2) + change + growth*radius)*radius)*room)
+      end associate
+   end subroutine contract_block
 
    !> Bounds (n) of the errors of the derivatives of one order of block `i`, whose equations leave `g` (rows); `values`
    !> (n): those of its values.

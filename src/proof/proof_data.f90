@@ -8,12 +8,13 @@
 module proof_data
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_prismatic
+   use drives, only: law_t
    use links_tree, only: tree_t, new_tree
    use loop_equations, only: equations_t, new_equations
    use blocks, only: blocks_t, loop_angles
    implicit none
    private
-   public :: proof_data_t, new_proof_data, angle_errors, rounding
+   public :: proof_data_t, new_proof_data, angle_errors, table_errors, rounding
 
    !> One rounding error, with room: half of it is the bound of one operation.
    real(wp), parameter :: rounding = epsilon(1.0_wp)
@@ -165,4 +166,32 @@ contains
          end do
       end associate
    end subroutine add_terms
+
+   !> (0:2) By how much the splines of the tables of `law` and their derivatives can differ from the exact ones through
+   !> these knots, in the drive's unit. With r what the equations of the second derivatives M leave, which are
+   !> diagonally dominant, |dM| <= max |r_i|/(h_(i-1) + h_i).
+   pure function table_errors(law) result(error)
+      type(law_t), intent(in) :: law
+      real(wp) :: error(0:2), of_m, r, h(2)
+      integer :: i, k
+
+      error = 0.0_wp
+      do k = 1, size(law%splines)
+         if (.not. allocated(law%splines(k)%x)) cycle
+         associate (x => law%splines(k)%x, y => law%splines(k)%y, m => law%splines(k)%m)
+            of_m = 0.0_wp
+            do i = 2, size(x) - 1
+               h = [x(i) - x(i - 1), x(i + 1) - x(i)]
+               r = abs(h(1)*m(i - 1) + 2.0_wp*(h(1) + h(2))*m(i) + h(2)*m(i + 1) &
+                  - 6.0_wp*((y(i + 1) - y(i))/h(2) - (y(i) - y(i - 1))/h(1))) &
+                  + 16.0_wp*rounding*(1.0_wp + maxval(abs(x(i - 1:i + 1)))/minval(h)) &
+                  *(2.0_wp*sum(h)*maxval(abs(m(i - 1:i + 1))) + 24.0_wp*maxval(abs(y(i - 1:i + 1)))/minval(h))
+               of_m = max(of_m, r/sum(h))
+            end do
+            h(1) = maxval(x(2:) - x(:size(x) - 1))
+            error = error + of_m*[h(1)**2, h(1), 1.0_wp]
+         end associate
+      end do
+      error = up(error)
+   end function table_errors
 end module proof_data
