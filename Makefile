@@ -40,7 +40,7 @@ modules := $(filter-out main,$(basename $(notdir $(sources))))
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))
 vpath %.F90 $(sort $(dir $(sources)))
 
-.PHONY: all example pictures kinds run test check forms errors kind-check quad-check single-check bench bench-short bench-against bench-peers hard hard-short study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms relations tolerances mutants expected install install-kinds clean
+.PHONY: all example pictures kinds run test check forms errors kind-check quad-check single-check bench bench-short bench-against bench-peers hard hard-short study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants expected install install-kinds clean
 all: $(BUILD)/kinmat
 
 run: $(BUILD)/kinmat
@@ -192,6 +192,10 @@ fuzz-short: $(BUILD)/debug/fuzz
 # Mechanisms made by chance, with their motion in real128: N of them, from seed SEED on.
 fuzz-mechanisms: $(BUILD)/release/fuzz_mechanisms
 	BUILD=$(BUILD) tests/fuzz/fuzz_mechanisms.sh $(or $(N),10000) $(or $(SEED),1)
+
+# Extremes of N mechanisms made by chance, from seed SEED on, against runs in steps 16 times finer.
+fuzz-extremes: $(BUILD)/kinmat $(BUILD)/release/fuzz_mechanisms
+	BUILD=$(BUILD) tests/fuzz/fuzz_extremes.sh $(or $(N),200) $(or $(SEED),1)
 
 # Relations between runs of all decks of input/, or of N made by the dice, from seed SEED on.
 relations: $(BUILD)/kinmat $(BUILD)/release/fuzz_mechanisms

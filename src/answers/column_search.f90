@@ -1,254 +1,292 @@
-!> Searches for extremes of each column of each row between one node and those before it.
+!> Searches for extremes of each column of each row between two nodes.
 !>
-!> Between two nodes a coordinate has an extreme where its velocity is zero, a velocity where its acceleration is, and
-!> an acceleration where its five-point difference is. Each zero lies between two times at which that derivative has
-!> opposite signs, and is found there by motions at times between the instants. The differences beside both nodes tell
-!> whether the acceleration has an extreme between them, and three nodes whether it has one beside the middle one;
-!> where it has another sign there, its two zeros are searched for, and likewise those of the velocity. So none is
-!> missed of an acceleration that has at most one extreme in a step.
+!> Between two times a coordinate has an extreme where its velocity is zero, a velocity where its acceleration is, and
+!> an acceleration where the derivative of the polynomial through five of its values is. Each zero lies between two
+!> times at which that derivative has opposite signs, and is found there by motions at times between the instants.
+!>
+!> A part between two nodes is halved until all accelerations are simple there: the cubic with their values and
+!> derivatives at the ends gives the value in the middle, and has one extreme at most. So none is missed of an
+!> acceleration that has at most one extreme in each of these parts; where halving ends sooner, that is noted.
 module column_search
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use points, only: coordinates_of
    use set_analysis, only: set_analysis_t
-   use nodes, only: node_t, node_at
-   use zero_search, only: sample_t, column_t, find_zero, differ_in_sign
-   use extremes, only: extremes_t, offer, count_turn, alike, noise_part, step_of
+   use nodes, only: node_t, node_at, is_known, beside_joint
+   use zero_search, only: sample_t, column_t, find_zero, differ_in_sign, slope_in, noise_part
+   use extremes, only: extremes_t, offer, count_turn, note_interval, step_of
    implicit none
    private
    public :: add_node
 
-   !> The step of the five-point difference, whose error goes with its fourth power, in steps of TIME; and how much
-   !> longer it may be in short steps, in rad or lengths.
+   !> The step of the stencil at a zero, in steps of TIME; how much longer it may be in short steps, in rad or lengths;
+   !> and the longest that it may be, as a part of the interval. Where it proves too long, `find_zero` shortens it.
    real(wp), parameter :: difference_part = 1.0_wp/256.0_wp, difference_angle = 1.0e-3_wp, max_part = 1.0_wp/8.0_wp
-   !> Nodes closer to each other, in steps of TIME, have no derivatives of accelerations between them.
-   real(wp), parameter :: least_part = 1.0_wp/16.0_wp
+   !> The same step for the derivatives at the ends of a part: half of `max_part`, since these must have the right sign.
+   real(wp), parameter :: end_part = 1.0_wp/16.0_wp
+   !> By how much the cubic may miss the value in the middle, as a part of the variation; and how much steeper a
+   !> monotonic cubic may be at its ends than on average (Fritsch and Carlson, SIAM J. Numer. Anal. 17, 1980).
+   real(wp), parameter :: misses_by = 1.0_wp/8.0_wp, steeper_by = 3.0_wp
+   !> Smaller features of an acceleration, in characteristic ones, are passed over: no table shows them.
+   real(wp), parameter :: overlooked = sqrt(epsilon(1.0_wp))
+   !> Errors of the cubic in the middle, in those of an acceleration: of differences over a sixteenth, from both ends.
+   real(wp), parameter :: errors_of_cubic = 64.0_wp
+   !> Shorter parts, in steps of TIME, are not halved, nor more than so many in one step: a pole of the motion takes 40.
+   real(wp), parameter :: shortest_part = 2.0_wp**(-20)
+   integer, parameter :: max_halvings = 120
+
+   !> What was found of a column: an extreme of its derivative number `order`.
+   type :: found_t
+      integer :: order = 0
+      type(sample_t) :: at
+   end type found_t
 
 contains
 
-   !> Takes `node` of mechanism `c`, and searches between it and the last two.
+   !> Takes `node` of mechanism `c`, and searches between it and the last one of which all is known.
    subroutine add_node(x, m, s, c, node)
       type(extremes_t), intent(inout) :: x
       type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
       type(node_t), intent(in) :: node
-      real(wp) :: jerk(3, size(x%asked), 2), step
-      integer :: i, j, k
 
-      associate (track => x%tracks(c))
-         step = 0.0_wp
-         if (size(track%last) > 0) call find_jerks(x, m, s, c, track%last(1), node, jerk, step)
-         do i = 1, size(track%rows)
-            associate (q => track%rows(i))
-               do j = 1, coordinates_of(m%requests(x%asked(q))%kind)
-                  do k = 0, node%known(q)
-                     call offer(x, m, q, j, k, sample_of(node, q, j), .false.)
-                  end do
-                  if (node%known(q) < 2) cycle
-                  call count_turn(x, q, j, node%value(j, 1, q))
-                  call search_column(x, m, s, q, column_t(x%asked(q), j, step), [node_t :: node, track%last], &
-                     jerk(j, q, :), track%turned(j, q))
-               end do
-            end associate
-         end do
-         track%last = [node_t :: node, track%last(:min(size(track%last), 1))]
-      end associate
+      if (allocated(x%tracks(c)%last) .and. is_known(node, x%tracks(c)%rows)) &
+         call search_part(x, m, s, c, x%tracks(c)%last, node)
+      call take_node(x, m, c, node)
+      if (is_known(node, x%tracks(c)%rows)) x%tracks(c)%last = node
    end subroutine add_node
 
-   !> Searches for extremes of the `column` of row `q` between the first of the `nodes`, latest first, and the others.
-   !> `jerk` (2): see `find_jerks`. `turned`: an extreme of the acceleration was found between the second and the third,
-   !> and then between the first and the second.
-   subroutine search_column(x, m, s, q, column, nodes, jerk, turned)
+   !> The values of `node` of mechanism `c` may be extremes.
+   subroutine take_node(x, m, c, node)
       type(extremes_t), intent(inout) :: x
       type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: q
-      type(column_t), intent(in) :: column
-      type(node_t), intent(in) :: nodes(:)
-      real(wp), intent(in) :: jerk(2)
-      logical, intent(inout) :: turned
-      type(sample_t) :: now, before, earlier
-      type(column_t) :: c
-      logical :: turned_before
-
-      turned_before = turned
-      turned = .false.
-      if (size(nodes) < 2) return
-      before = sample_of(nodes(2), q, column%column)
-      if (.not. before%exists) return
-      now = sample_of(nodes(1), q, column%column)
-      c = column
-      c%noise(:2) = max(noise_part*x%size_of(column%column, :, q), now%error, before%error)
-      call search_velocity(x, m, s, q, c, before, now)
-      call search_turn(x, m, s, q, c, before, now, jerk, turned)
-      if (size(nodes) < 3 .or. turned .or. turned_before) return
-      earlier = sample_of(nodes(3), q, column%column)
-      if (earlier%exists) call search_acceleration(x, m, s, q, c, earlier, before, now)
-   end subroutine search_column
-
-   !> Column `c` of row `q` of `node`.
-   pure type(sample_t) function sample_of(node, q, c) result(sample)
+      integer, intent(in) :: c
       type(node_t), intent(in) :: node
-      integer, intent(in) :: q, c
+      integer :: i, j, k
 
-      sample = sample_t(node%t, node%value(c, :, q), node%error(c, :, q), node%known(q) == 2)
-   end function sample_of
+      do i = 1, size(x%tracks(c)%rows)
+         associate (q => x%tracks(c)%rows(i))
+            do j = 1, coordinates_of(m%requests(x%asked(q))%kind)
+               do k = 0, node%known(q)
+                  call offer(x, m, q, j, k, sample_of(node, q, j), .false.)
+               end do
+               if (node%known(q) == 2) call count_turn(x, q, j, node%value(j, 1, q))
+            end do
+         end associate
+      end do
+   end subroutine take_node
 
-   !> Extremes of the coordinate between `a` and `b`, whose accelerations have one sign.
-   subroutine search_coordinate(x, m, s, q, column, a, b)
+   !> Searches between the nodes `a` and `b` of mechanism `c`, in halves where accelerations are not simple.
+   recursive subroutine search_part(x, m, s, c, a, b)
       type(extremes_t), intent(inout) :: x
-      type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: q
-      type(column_t), intent(in) :: column
-      type(sample_t), intent(in) :: a, b
-      type(sample_t) :: zero
-
-      if (.not. changes_sign(column, 1, a, b)) return
-      call find_zero(s, column, 1, 0.0_wp, a, b, zero)
-      if (zero%exists) call offer(x, m, q, column%column, 0, zero, .true.)
-   end subroutine search_coordinate
-
-   !> Extremes of the velocity between `a` and `b`, and of the coordinate on either side of them.
-   subroutine search_velocity(x, m, s, q, column, a, b)
-      type(extremes_t), intent(inout) :: x
-      type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: q
-      type(column_t), intent(in) :: column
-      type(sample_t), intent(in) :: a, b
-      type(sample_t) :: zero
-
-      if (changes_sign(column, 2, a, b)) call find_zero(s, column, 2, 0.0_wp, a, b, zero)
-      if (zero%exists) then
-         call offer(x, m, q, column%column, 1, zero, .true.)
-         call search_coordinate(x, m, s, q, column, a, zero)
-         call search_coordinate(x, m, s, q, column, zero, b)
-      else
-         call search_coordinate(x, m, s, q, column, a, b)
-      end if
-   end subroutine search_velocity
-
-   !> An extreme of the acceleration between `a` and `d`, if it is the largest or least at `b`: it may be beside `b`.
-   subroutine search_acceleration(x, m, s, q, column, a, b, d)
-      type(extremes_t), intent(inout) :: x
-      type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: q
-      type(column_t), intent(in) :: column
-      type(sample_t), intent(in) :: a, b, d
-      type(column_t) :: c
-      real(wp) :: error(0:2)
-      logical :: found
-
-      error = max(a%error, b%error, d%error)
-      associate (up => b%f(2) - a%f(2), down => b%f(2) - d%f(2), &
-                 open => alike*x%size_of(column%column, 2, q) + error(2))
-         ! Beside an extreme halfway between two instants both have the same value.
-         if (max(abs(up), abs(down)) <= open) return
-         if (differ_in_sign(up, down) .and. min(abs(up), abs(down)) > open) return
-      end associate
-      c = column
-      c%step = difference_step(x, step_of(m), q, c%column, min(abs(b%t - a%t), abs(d%t - b%t)))
-      if (c%step > 0.0_wp) call take_turn(x, m, s, q, c, a, d, error, found)
-   end subroutine search_acceleration
-
-   !> Takes the extreme of the acceleration between `a` and `b`, if it is `found`; where the acceleration has another
-   !> sign there, the extremes of the velocity on either side. `error` (0:2) of the values about it.
-   subroutine take_turn(x, m, s, q, column, a, b, error, found)
-      type(extremes_t), intent(inout) :: x
-      type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: q
-      type(column_t), intent(in) :: column
-      type(sample_t), intent(in) :: a, b
-      real(wp), intent(in) :: error(0:2)
-      logical, intent(out) :: found
-      type(column_t) :: c
-      type(sample_t) :: zero
-
-      c = column
-      c%noise(3) = c%noise(2)/c%step
-      call find_zero(s, c, 3, 0.0_wp, sample_t(t=a%t + 2.0_wp*x%way*c%step), &
-         sample_t(t=b%t - 2.0_wp*x%way*c%step), zero)
-      found = zero%exists
-      if (.not. found) return
-      zero%error = max(zero%error, error)
-      call offer(x, m, q, c%column, 2, zero, .true.)
-      if (.not. (changes_sign(c, 2, a, zero) .and. changes_sign(c, 2, zero, b))) return
-      call search_velocity(x, m, s, q, c, a, zero)
-      call search_velocity(x, m, s, q, c, zero, b)
-   end subroutine take_turn
-
-   !> An extreme of the acceleration between `a` and `b` where its derivatives `jerk` beside both have different signs;
-   !> `found`: there is one.
-   subroutine search_turn(x, m, s, q, column, a, b, jerk, found)
-      type(extremes_t), intent(inout) :: x
-      type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: q
-      type(column_t), intent(in) :: column
-      type(sample_t), intent(in) :: a, b
-      real(wp), intent(in) :: jerk(2)
-      logical, intent(out) :: found
-
-      found = .false.
-      if (column%step <= 0.0_wp) return
-      if (differ_in_sign(jerk(1), jerk(2)) .and. minval(abs(jerk)) > column%noise(2)/column%step) &
-         call take_turn(x, m, s, q, column, a, b, max(a%error, b%error), found)
-   end subroutine search_turn
-
-   !> The derivatives (3, asked, 2) of the accelerations between the nodes `a` and `b` of mechanism `c`, two steps of
-   !> the difference from either; `step`: that, 0 where the nodes are close to each other or some motion does not exist.
-   subroutine find_jerks(x, m, s, c, a, b, jerk, step)
-      type(extremes_t), intent(in) :: x
       type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
       type(node_t), intent(in) :: a, b
-      real(wp), intent(out) :: jerk(:, :, :), step
-      type(node_t) :: near(3)
+      type(node_t) :: middle
+      real(wp) :: jerk(3, size(x%asked), 2)
+      real(wp) :: shortest
+      logical :: simple
+
+      shortest = max(shortest_part*step_of(m), 2.0_wp*beside_joint(m, a%t))
+      associate (track => x%tracks(c), length => abs(b%t - a%t))
+         if (length <= shortest) return
+         middle = node_at(x%asked, s, c, a%t + 0.5_wp*(b%t - a%t), .false.)
+         if (.not. is_known(middle, track%rows)) then
+            call note_interval(x%open, x%way, a%t, b%t, shortest)
+            return
+         end if
+         call find_jerks(x, s, c, a, b, jerk, simple)
+         if (simple) simple = are_simple(x, m, c, [node_t :: a, middle, b], jerk)
+         if (.not. simple .and. track%halvings < max_halvings .and. length > 2.0_wp*shortest) then
+            track%halvings = track%halvings + 1
+            call search_part(x, m, s, c, a, middle)
+            call take_node(x, m, c, middle)
+            call search_part(x, m, s, c, middle, b)
+            return
+         end if
+         if (.not. simple) call note_interval(x%open, x%way, a%t, b%t, shortest)
+         call take_node(x, m, c, middle)
+         call search_columns(x, m, s, c, [node_t :: a, middle, b], jerk)
+      end associate
+   end subroutine search_part
+
+   !> Searches for extremes of all columns of mechanism `c` between the first and the last of three `nodes`; `jerk`: see
+   !> `find_jerks`.
+   subroutine search_columns(x, m, s, c, nodes, jerk)
+      type(extremes_t), intent(inout) :: x
+      type(mechanism_t), intent(in) :: m
+      type(set_analysis_t), intent(inout) :: s
+      integer, intent(in) :: c
+      type(node_t), intent(in) :: nodes(:)
+      real(wp), intent(in) :: jerk(:, :, :)
+      type(sample_t) :: points(size(nodes))
+      type(found_t), allocatable :: found(:)
+      type(column_t) :: column
+      integer :: i, j, k
+
+      do i = 1, size(x%tracks(c)%rows)
+         associate (q => x%tracks(c)%rows(i))
+            do j = 1, coordinates_of(m%requests(x%asked(q))%kind)
+               points = [(sample_of(nodes(k), q, j), k=1, size(nodes))]
+               column = column_t(x%asked(q), j, step_of_stencil(x, m, q, j, abs(nodes(3)%t - nodes(1)%t)))
+               do k = 0, 2
+                  column%noise(k) = max(noise_part*x%size_of(j, k, q), maxval(points%error(k)))
+               end do
+               call search_column(s, column, points, jerk(j, q, :), found)
+               do k = 1, size(found)
+                  call offer(x, m, q, j, found(k)%order, found(k)%at, .true.)
+               end do
+            end do
+         end associate
+      end do
+   end subroutine search_columns
+
+   !> Column `j` of row `q` of `node`.
+   pure type(sample_t) function sample_of(node, q, j) result(sample)
+      type(node_t), intent(in) :: node
+      integer, intent(in) :: q, j
+
+      sample = sample_t(node%t, node%value(j, :, q), node%error(j, :, q), node%known(q) == 2)
+   end function sample_of
+
+   !> What is `found` of column `c` between the first and the last of three `points`: an extreme of the acceleration,
+   !> if its derivatives `jerk` at both ends have different signs; of the velocity, one on either side of that at most;
+   !> of the coordinate, one on either side of each of these.
+   subroutine search_column(s, c, points, jerk, found)
+      type(set_analysis_t), intent(inout) :: s
+      type(column_t), intent(in) :: c
+      type(sample_t), intent(in) :: points(3)
+      real(wp), intent(in) :: jerk(2)
+      type(found_t), allocatable, intent(out) :: found(:)
+      type(sample_t), allocatable :: path(:)
+      type(sample_t) :: turn
+      integer :: order, i, n
+
+      allocate (found(0))
+      path = points
+      if (differ_in_sign(jerk(1), jerk(2)) .and. minval(abs(jerk))*end_part*abs(points(3)%t - points(1)%t) &
+         > c%noise(2)) call find_zero(s, c, 3, 0.0_wp, points(1), points(3), turn)
+      if (turn%exists) then
+         turn%error = max(turn%error, points(1)%error, points(3)%error)
+         found = [found_t(2, turn)]
+         call insert(turn, path)
+      end if
+      do order = 2, 1, -1
+         n = size(found)
+         call find_zeros(s, c, order, path, found)
+         do i = n + 1, size(found)
+            call insert(found(i)%at, path)
+         end do
+      end do
+   end subroutine search_column
+
+   !> Adds to `found` the zeros of derivative number `order` (1, 2) of the column `c`, one at most between two points
+   !> of the `path` at which it is more than rounding.
+   subroutine find_zeros(s, c, order, path, found)
+      type(set_analysis_t), intent(inout) :: s
+      type(column_t), intent(in) :: c
+      integer, intent(in) :: order
+      type(sample_t), intent(in) :: path(:)
+      type(found_t), allocatable, intent(inout) :: found(:)
+      type(sample_t) :: zero
+      integer :: i, last
+
+      last = 0
+      do i = 1, size(path)
+         if (abs(path(i)%f(order)) <= c%noise(order)) cycle
+         if (last > 0) then
+            call find_zero(s, c, order, 0.0_wp, path(last), path(i), zero)
+            if (zero%exists) found = [found, found_t(order - 1, zero)]
+         end if
+         last = i
+      end do
+   end subroutine find_zeros
+
+   !> Adds `point`, which is between the ends of the `path`, in its order.
+   pure subroutine insert(point, path)
+      type(sample_t), intent(in) :: point
+      type(sample_t), allocatable, intent(inout) :: path(:)
+      integer :: n
+
+      n = count((path%t - point%t)*(path(size(path))%t - path(1)%t) < 0.0_wp)
+      path = [path(:n), point, path(n + 1:)]
+   end subroutine insert
+
+   !> The derivatives (3, asked, 2) of the accelerations at the nodes `a` and `b` of mechanism `c`, by their values
+   !> between these; `known`: there is a motion at all of the times.
+   subroutine find_jerks(x, s, c, a, b, jerk, known)
+      type(extremes_t), intent(in) :: x
+      type(set_analysis_t), intent(inout) :: s
+      integer, intent(in) :: c
+      type(node_t), intent(in) :: a, b
+      real(wp), intent(out) :: jerk(:, :, :)
+      logical, intent(out) :: known
+      type(node_t) :: near(0:4)
       real(wp) :: h
-      integer :: i, k
+      integer :: i, j, k, q
 
       jerk = 0.0_wp
-      step = 0.0_wp
-      if (abs(b%t - a%t) < least_part*step_of(m)) return
-      associate (rows => x%tracks(c)%rows)
-         if (any(a%known(rows) < 2 .or. b%known(rows) < 2)) return
-         h = x%way*difference_step(x, step_of(m), rows(1), 1, 0.5_wp*abs(b%t - a%t))
-         do k = 1, 2
-            if (k == 2) h = -h
-            do i = 1, 3
-               near(i) = node_at(x%asked, s, c, merge(a%t, b%t, k == 1) + h*merge(i, i + 1, i == 1), .false.)
-               if (any(near(i)%known(rows) < 2)) return
-            end do
-            jerk(:, :, k) = 8.0_wp*(near(2)%value(:, 2, :) - near(1)%value(:, 2, :)) - near(3)%value(:, 2, :)
-            if (k == 1) jerk(:, :, k) = (jerk(:, :, k) + a%value(:, 2, :))/(12.0_wp*h)
-            if (k == 2) jerk(:, :, k) = (jerk(:, :, k) + b%value(:, 2, :))/(12.0_wp*h)
+      do k = 1, 2
+         h = merge(end_part, -end_part, k == 1)*(b%t - a%t)
+         near(0) = a
+         if (k == 2) near(0) = b
+         do i = 1, 4
+            near(i) = node_at(x%asked, s, c, near(0)%t + i*h, .false.)
+            known = is_known(near(i), x%tracks(c)%rows)
+            if (.not. known) return
          end do
-      end associate
-      step = abs(h)
+         do q = 1, size(jerk, 2)
+            do j = 1, 3
+               jerk(j, q, k) = slope_in([(near(i)%value(j, 2, q), i=0, 4)], 0.0_wp)/h
+            end do
+         end do
+      end do
    end subroutine find_jerks
 
-   !> The step of the difference for column `c` of row `q`, nodes being `apart` and instants a `step` of TIME.
-   pure real(wp) function difference_step(x, step, q, c, apart)
+   !> The accelerations of mechanism `c` at the `nodes`, two ends and the middle, and their derivatives `jerk` at the
+   !> ends are those of simple curves.
+   pure logical function are_simple(x, m, c, nodes, jerk)
       type(extremes_t), intent(in) :: x
-      real(wp), intent(in) :: step, apart
-      integer, intent(in) :: q, c
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: c
+      type(node_t), intent(in) :: nodes(3)
+      real(wp), intent(in) :: jerk(:, :, :)
+      real(wp) :: open
+      integer :: i, j, k
 
-      difference_step = max(difference_part*step, difference_angle*x%size_of(c, 0, q)/x%size_of(c, 1, q))
-      difference_step = min(difference_step, max_part*apart)
-   end function difference_step
+      are_simple = .true.
+      do i = 1, size(x%tracks(c)%rows)
+         associate (q => x%tracks(c)%rows(i))
+            do j = 1, coordinates_of(m%requests(x%asked(q))%kind)
+               open = overlooked*x%size_of(j, 2, q) + errors_of_cubic*maxval([(nodes(k)%error(j, 2, q), k=1, 3)])
+               are_simple = are_simple .and. is_simple([(nodes(k)%value(j, 2, q), k=1, 3)], &
+                  jerk(j, q, :)*(nodes(3)%t - nodes(1)%t), open)
+            end do
+         end associate
+      end do
+   end function are_simple
 
-   !> Derivative number `k` (1, 2) of the column `c` changes its sign between `a` and `b`, by more than rounding.
-   pure logical function changes_sign(c, k, a, b)
-      type(column_t), intent(in) :: c
-      integer, intent(in) :: k
-      type(sample_t), intent(in) :: a, b
+   !> The cubic with the values `f`(1) and `f`(3) and the derivatives `d` at the ends of an interval of the length 1 has
+   !> about the value `f`(2) in the middle, and one extreme inside at most; what is less than `open` counts for nothing.
+   pure logical function is_simple(f, d, open)
+      real(wp), intent(in) :: f(3), d(2), open
 
-      changes_sign = differ_in_sign(a%f(k), b%f(k)) .and. min(abs(a%f(k)), abs(b%f(k))) > c%noise(k)
-   end function changes_sign
+      is_simple = abs(f(2) - 0.5_wp*(f(1) + f(3)) - 0.125_wp*(d(1) - d(2))) <= misses_by*(maxval(f) - minval(f)) + open
+      if (differ_in_sign(d(1), d(2)) .or. maxval(abs(d)) <= open) return
+      is_simple = is_simple .and. maxval(d*sign(1.0_wp, f(3) - f(1))) > 0.0_wp &
+         .and. maxval(abs(d)) <= steeper_by*abs(f(3) - f(1)) + open
+   end function is_simple
 
+   !> The step of the stencil for column `j` of row `q` in an interval of the `length`.
+   pure real(wp) function step_of_stencil(x, m, q, j, length) result(step)
+      type(extremes_t), intent(in) :: x
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: q, j
+      real(wp), intent(in) :: length
+
+      step = max(difference_part*step_of(m), difference_angle*x%size_of(j, 0, q)/x%size_of(j, 1, q))
+      step = min(step, max_part*length)
+   end function step_of_stencil
 end module column_search

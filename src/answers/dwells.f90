@@ -4,8 +4,8 @@ module dwells
    use mechanism, only: mechanism_t
    use points, only: coordinates_of
    use set_analysis, only: set_analysis_t
-   use zero_search, only: sample_t, column_t, find_zero
-   use extremes, only: extremes_t, least, greatest, is_angle, is_cyclic, is_covered, noise_part
+   use zero_search, only: sample_t, column_t, find_zero, noise_part
+   use extremes, only: extremes_t, least, greatest, is_angle, is_cyclic, is_covered
    implicit none
    private
    public :: dwells_t, dwell_t, new_dwells, note_position, find_dwells
@@ -132,7 +132,7 @@ contains
          end do
          if (passed > d%last) return
          call find_zero(s, column_t(x%asked(w%asked), w%column, &
-            noise=noise_part*[x%size_of(w%column, :, w%asked), 0.0_wp]), 0, level, inside, outside, zero)
+            noise=noise_part*x%size_of(w%column, :, w%asked)), 0, level, inside, outside, zero)
          ! The level is known as far as the extreme.
          error = zero%t_error
          if (zero%error(0) > 0.0_wp) error = error*(1.0_wp + e%error/zero%error(0))

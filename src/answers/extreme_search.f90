@@ -3,7 +3,7 @@
 !>
 !> A step is divided where not all of the motion exists: at change points and at a limit of the motion, and it has such
 !> an end at an instant without all of its motion. Each piece has nodes up to beside that place, and the one-sided
-!> limits there may be extremes.
+!> limits there may be extremes. What is closer is not searched, and the table says so.
 module extreme_search
    use kinds, only: wp
    use mechanism, only: mechanism_t, instant
@@ -11,12 +11,18 @@ module extreme_search
    use diagnostics, only: diagnostic_change, diagnostic_limit
    use points, only: coordinates_of
    use set_analysis, only: set_analysis_t
-   use nodes, only: node_t, node_at, times_between, limits_of, places, places_beside
-   use extremes, only: extremes_t, offer_limits, note_gap, step_of
+   use nodes, only: node_t, one_sided_t, node_at, is_known, times_between, limits_of, places, places_beside
+   use extremes, only: extremes_t, offer_limits, note_interval, step_of
    use column_search, only: add_node
    implicit none
    private
    public :: note_instant
+
+   !> Limits with smaller errors are good enough. Otherwise they are tried from this much nearer to a change point,
+   !> where roundings grow, or farther from a limit of the motion, beside which some of it may not be found; so many
+   !> times at most.
+   real(wp), parameter :: well_known = max(1.0e-7_wp, 1.0e3_wp*epsilon(1.0_wp)), nearer = 0.25_wp, farther = 4.0_wp
+   integer, parameter :: max_nearer = 5, max_farther = 8
 
    !> An end of a piece of a step: whether not all of the motion exists there, and whether it is a change point.
    type :: end_t
@@ -48,7 +54,7 @@ contains
             call add_node(x, m, s, c, now)
             track%instant = now
             track%at_change = s%now%motions(c)%singularity == singular_change
-            if (any(now%known(track%rows) < 2)) call note_gap(x, now%t, now%t)
+            if (.not. is_known(now, track%rows)) call note_interval(x%gaps, x%way, now%t, now%t, 0.0_wp)
          end associate
       end do
    end subroutine note_instant
@@ -70,19 +76,19 @@ contains
          if (s%now%motions(c)%known >= 0) ends = [ends, now%t]
          if (any(track%instant%known(track%rows) < 0)) ends = [real(wp) ::]
          from = t1
-         is_open = any(track%instant%known(track%rows) < 2)
+         track%halvings = 0
+         is_open = .not. is_known(track%instant, track%rows)
          is_change = track%at_change
          do i = 1, size(ends)
-            to_open = i < size(ends) .or. is_limit .or. any(now%known(track%rows) < 2)
+            to_open = i < size(ends) .or. is_limit .or. .not. is_known(now, track%rows)
             to_change = i < size(ends) .or. (s%now%motions(c)%singularity == singular_change .and. .not. is_limit)
             call search_piece(x, m, s, c, times_between(track%joints, m, k), end_t(from, is_open, is_change), &
                end_t(ends(i), to_open, to_change))
             is_open = .true.
             is_change = .true.
             from = ends(i)
-            if (i < size(ends)) track%last = [node_t ::]
          end do
-         if (abs(now%t - from) > 0.0_wp) call note_gap(x, from, now%t)
+         if (abs(now%t - from) > 0.0_wp) call note_interval(x%gaps, x%way, from, now%t, 0.0_wp)
       end associate
    end subroutine search_step
 
@@ -125,46 +131,101 @@ contains
       low = from%t
       high = to%t
       if (from%is_open) then
-         beside = places_beside(from%t, to%t, step_of(m), from%is_change)
+         if (allocated(x%tracks(c)%last)) deallocate (x%tracks(c)%last)
+         call take_limits(x, m, s, c, from, to%t, beside)
          low = beside(places)
-         call take_limits(x, m, s, c, from, beside)
          call look_at(x, m, s, c, beside(1), .true.)
+         call note_interval(x%open, x%way, from%t, merge(beside(1), to%t, allocated(x%tracks(c)%last)), 0.0_wp)
          call look_at(x, m, s, c, low, .true.)
       end if
-      beside = places_beside(to%t, from%t, step_of(m), to%is_change)
-      if (to%is_open) high = beside(places)
+      if (to%is_open) then
+         call take_limits(x, m, s, c, to, from%t, beside)
+         high = beside(places)
+      end if
       do i = 1, size(times)
          if ((times(i) - low)*x%way > 0.0_wp .and. (high - times(i))*x%way > 0.0_wp) &
             call look_at(x, m, s, c, times(i), .false.)
       end do
       if (.not. to%is_open) return
-      call take_limits(x, m, s, c, to, beside)
       call look_at(x, m, s, c, high, .true.)
       call look_at(x, m, s, c, beside(1), .true.)
+      low = from%t
+      if (allocated(x%tracks(c)%last)) low = x%tracks(c)%last%t
+      call note_interval(x%open, x%way, low, to%t, 0.0_wp)
    end subroutine search_piece
 
-   !> The one-sided limits at the end `at` of a piece, by the motion at the times `beside`, may be extremes.
-   subroutine take_limits(x, m, s, c, at, beside)
+   !> The one-sided limits at the end `at` of a piece to `other` may be extremes, by the motion at the times `beside`:
+   !> of those that were tried the ones from which the limits are known best.
+   subroutine take_limits(x, m, s, c, at, other, beside)
       type(extremes_t), intent(inout) :: x
       type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
       type(end_t), intent(in) :: at
-      real(wp), intent(in) :: beside(places)
+      real(wp), intent(in) :: other
+      real(wp), intent(out) :: beside(places)
+      type(one_sided_t) :: limits, best
+      real(wp) :: times(places), least_error
+      integer :: i, try
+
+      least_error = huge(1.0_wp)
+      do try = 0, merge(max_nearer, max_farther, at%is_change)
+         times = places_beside(at%t, other, step_of(m), at%is_change, merge(nearer, farther, at%is_change)**try)
+         call find_limits(x, s, c, times, at%is_change, limits)
+         if (largest_error(x, c, limits) < least_error) then
+            least_error = largest_error(x, c, limits)
+            best = limits
+            beside = times
+         end if
+         if (least_error < well_known) exit
+      end do
+      if (.not. allocated(best%value)) then
+         beside = times
+         return
+      end if
+      do i = 1, size(x%tracks(c)%rows)
+         associate (q => x%tracks(c)%rows(i))
+            call offer_limits(x, q, coordinates_of(m%requests(x%asked(q))%kind), at%t, best)
+         end associate
+      end do
+   end subroutine take_limits
+
+   !> The one-sided `limits` by the motion of mechanism `c` at the `times`; not allocated, if it does not exist at some.
+   subroutine find_limits(x, s, c, times, is_change, limits)
+      type(extremes_t), intent(in) :: x
+      type(set_analysis_t), intent(inout) :: s
+      integer, intent(in) :: c
+      real(wp), intent(in) :: times(places)
+      logical, intent(in) :: is_change
+      type(one_sided_t), intent(out) :: limits
       type(node_t) :: near(places)
       integer :: i
 
       do i = 1, places
-         near(i) = node_at(x%asked, s, c, beside(i), .true.)
-         if (any(near(i)%known(x%tracks(c)%rows) < 2)) return
+         near(i) = node_at(x%asked, s, c, times(i), .true.)
+         if (.not. is_known(near(i), x%tracks(c)%rows)) return
       end do
+      limits = limits_of(near, is_change, x%size_of)
+   end subroutine find_limits
+
+   !> The largest error of those `limits` of the rows of mechanism `c` that have a bound, in characteristic values or
+   !> as a part of larger ones; without limits the largest number.
+   pure real(wp) function largest_error(x, c, limits) result(largest)
+      type(extremes_t), intent(in) :: x
+      integer, intent(in) :: c
+      type(one_sided_t), intent(in) :: limits
+      integer :: i
+
+      largest = huge(1.0_wp)
+      if (.not. allocated(limits%value)) return
+      largest = 0.0_wp
       do i = 1, size(x%tracks(c)%rows)
          associate (q => x%tracks(c)%rows(i))
-            call offer_limits(x, q, coordinates_of(m%requests(x%asked(q))%kind), at%t, limits_of(near, &
-               at%is_change, x%size_of))
+            largest = max(largest, maxval(limits%error(:, :, q)/max(x%size_of(:, :, q), abs(limits%value(:, :, q))), &
+               mask=limits%has_bound(:, :, q)))
          end associate
       end do
-   end subroutine take_limits
+   end function largest_error
 
    !> Takes a node at the time `t`; `always`: see `node_at`.
    subroutine look_at(x, m, s, c, t, always)
@@ -177,10 +238,10 @@ contains
       type(node_t) :: node
 
       node = node_at(x%asked, s, c, t, always)
-      if (any(node%known(x%tracks(c)%rows) < 2)) then
-         call note_gap(x, t, t)
-      else
+      if (is_known(node, x%tracks(c)%rows)) then
          call add_node(x, m, s, c, node)
+      else
+         call note_interval(x%gaps, x%way, t, t, 0.0_wp)
       end if
    end subroutine look_at
 end module extreme_search

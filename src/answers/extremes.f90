@@ -9,16 +9,15 @@ module extremes
    use points, only: is_fixed, coordinates_of
    use set_analysis, only: set_analysis_t
    use nodes, only: node_t, one_sided_t
-   use zero_search, only: sample_t
+   use zero_search, only: sample_t, noise_part
    implicit none
    private
    public :: extremes_t, extreme_t, track_t, gap_t, least, greatest, new_extremes, offer, offer_limits, count_turn, &
-      note_gap, alike, noise_part, step_of, stroke_times, is_cyclic, is_covered, is_angle
+      note_interval, step_of, stroke_times, is_cyclic, is_covered, is_angle
 
    !> Values that differ by less, in characteristic lengths or rad and rates, are alike, since errors
-   !> that no table shows may be as large: the earlier one counts. A derivative below the second is a zero that rounding
-   !> has moved.
-   real(wp), parameter :: alike = 1.0e5_wp*epsilon(1.0_wp), noise_part = 64.0_wp*epsilon(1.0_wp)
+   !> that no table shows may be as large: the earlier one counts.
+   real(wp), parameter :: alike = 1.0e5_wp*epsilon(1.0_wp)
    !> A value with a larger error has no digits in a table.
    real(wp), parameter :: badly_known = 1.0e-3_wp
    !> A motion is cyclic if its end differs from its beginning by less, in the same units.
@@ -42,11 +41,11 @@ module extremes
       logical :: drives_close = .false.                !< its drives are at the end of the run as at its beginning
       logical :: at_change = .false.                   !< the last instant is at a change point
       type(node_t) :: first, instant                   !< nodes of the first instant and of the last one
-      type(node_t), allocatable :: last(:)             !< the last two nodes, latest first
-      logical, allocatable :: turned(:, :)             !< (3, asked) the acceleration has turned between them
+      type(node_t), allocatable :: last                !< the last node with all of the motion, of this piece
+      integer :: halvings = 0                          !< of parts of this step
    end type track_t
 
-   !> An interval of time in which not all of the motion is known.
+   !> An interval of time.
    type :: gap_t
       real(wp) :: from = 0.0_wp, to = 0.0_wp
    end type gap_t
@@ -59,7 +58,8 @@ module extremes
       integer, allocatable :: turns(:, :)              !< (3, asked) changes of sign of the velocity
       integer, allocatable :: first_sign(:, :), last_sign(:, :) !< (3, asked) of the velocity: the first, the latest
       type(track_t), allocatable :: tracks(:)          !< (independent mechanisms)
-      type(gap_t), allocatable :: gaps(:)              !< (any number) in the order of the run
+      type(gap_t), allocatable :: gaps(:)              !< (any number) in which not all is known, in the run's order
+      type(gap_t), allocatable :: open(:)              !< (any number) in which extremes may be missed
       real(wp) :: way = 1.0_wp                         !< of the run: -1 backwards in time
    end type extremes_t
 
@@ -77,13 +77,13 @@ contains
       n = size(x%asked)
       x%part = s%now%parts%part(x%asked)
       x%way = sign(1.0_wp, m%t1 - m%t0)
-      allocate (x%size_of(3, 0:2, n), x%found(least:greatest, 3, 0:2, n), x%gaps(0), x%tracks(size(s%now%own)))
+      allocate (x%size_of(3, 0:2, n), x%found(least:greatest, 3, 0:2, n), x%gaps(0), x%open(0))
+      allocate (x%tracks(size(s%now%own)))
       allocate (x%turns(3, n), x%first_sign(3, n), x%last_sign(3, n), source=0)
       do c = 1, size(x%tracks)
          associate (track => x%tracks(c), own => s%now%own(c))
             track%rows = pack([(q, q=1, n)], x%part == c)
-            allocate (track%last(0), track%joints(0), track%turned(3, n))
-            track%turned = .false.
+            allocate (track%joints(0))
             if (size(track%rows) == 0) cycle
             do i = 1, size(own%drives)
                track%joints = [track%joints, joints_of(own%drives(i))]
@@ -158,7 +158,8 @@ contains
       end do
    end subroutine offer
 
-   !> So may the one-sided `limits` of the numbers of `row` at the time `t`; `columns`: how many it has.
+   !> So may the one-sided `limits` of the numbers of `row` at the time `t`, unless they are badly known; `columns`: how
+   !> many it has.
    pure subroutine offer_limits(x, row, columns, t, limits)
       type(extremes_t), intent(inout) :: x
       integer, intent(in) :: row, columns
@@ -174,6 +175,7 @@ contains
                           error => limits%error(c, k, row), has_bound => limits%has_bound(c, k, row))
                   gain = (value - e%value)*merge(-1.0_wp, 1.0_wp, which == least)
                   if (.not. e%has_bound) cycle
+                  if (error > badly_known*max(x%size_of(c, k, row), abs(value)) .and. has_bound) cycle
                   if (has_bound) then
                      if (e%exists .and. gain <= alike*x%size_of(c, k, row) + e%error + error) cycle
                   else
@@ -200,24 +202,27 @@ contains
       x%last_sign(c, q) = this
    end subroutine count_turn
 
-   !> Notes that from the time `from` to `to` not all is known; gaps that meet are one.
-   pure subroutine note_gap(x, from, to)
-      type(extremes_t), intent(inout) :: x
-      real(wp), intent(in) :: from, to
+   !> Adds to the `list` the interval of time `from` .. `to`, in a run of the direction `way`; intervals that are not
+   !> more than `apart_by` apart are one.
+   pure subroutine note_interval(list, way, from, to, apart_by)
+      type(gap_t), allocatable, intent(inout) :: list(:)
+      real(wp), intent(in) :: way, from, to, apart_by
+      type(gap_t), allocatable :: joined(:)
+      logical :: apart(size(list)), before(size(list))
+      real(wp) :: low, high
       integer :: n
 
-      n = size(x%gaps)
-      if (n > 0) then
-         associate (g => x%gaps(n))
-            if ((g%to - from)*x%way >= 0.0_wp) then
-               g%from = x%way*min(x%way*g%from, x%way*from)
-               g%to = x%way*max(x%way*g%to, x%way*to)
-               return
-            end if
-         end associate
-      end if
-      x%gaps = [x%gaps, gap_t(from, to)]
-   end subroutine note_gap
+      before = (list%to - from)*way < -apart_by
+      apart = before .or. (to - list%from)*way < -apart_by
+      low = min(way*from, minval(way*list%from, mask=.not. apart))
+      high = max(way*to, maxval(way*list%to, mask=.not. apart))
+      n = count(before)
+      allocate (joined(count(apart) + 1))
+      joined(:n) = list(:n)
+      joined(n + 1) = gap_t(way*low, way*high)
+      joined(n + 2:) = list(size(list) - size(joined) + n + 2:)
+      call move_alloc(joined, list)
+   end subroutine note_interval
 
    !> All of the motion is known, but for single instants.
    pure logical function is_covered(x)

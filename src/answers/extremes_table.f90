@@ -12,7 +12,7 @@ module extremes_table
    use text_output, only: output_t, put
    use numerals, only: numeral_length
    use known_digits, only: unknown_digit
-   use extremes, only: extremes_t, extreme_t, least, greatest, stroke_times, is_angle
+   use extremes, only: extremes_t, extreme_t, gap_t, least, greatest, stroke_times, is_angle
    use dwells, only: dwell_t
    use phrases
    implicit none
@@ -50,7 +50,8 @@ contains
          end associate
       end do
       if (table%masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, m%polish))
-      if (size(x%gaps) > 0) call put(o, ' --- '//gaps_text(l, m, x))
+      call put_gaps(o, l, m, x%open, say_may_be_missed)
+      call put_gaps(o, l, m, x%gaps, say_not_covered)
    end subroutine put_extremes
 
    !> The rows of asked row `q`; `first`: see `first_drive`. `masked`: as in `table_t`.
@@ -172,24 +173,25 @@ contains
       call put(o, line)
    end subroutine put_dwell
 
-   !> The times and intervals that the extremes `x` do not cover.
-   function gaps_text(l, m, x) result(text)
+   !> The line `say` about the intervals of the `list`, if there are any.
+   subroutine put_gaps(o, l, m, list, say)
+      type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(mechanism_t), intent(in) :: m
-      type(extremes_t), intent(in) :: x
+      type(gap_t), intent(in) :: list(:)
+      type(phrase_t), intent(in) :: say
       character(:), allocatable :: text
       integer :: i
 
-      text = phrase(say_not_covered, m%polish)
-      do i = 1, min(size(x%gaps), max_gaps)
-         associate (g => x%gaps(i))
-            if (i > 1) text = text//','
-            text = text//' '//time_text(l, g%from)
-            if (abs(g%to - g%from) > 0.0_wp) text = text//' .. '//time_text(l, g%to)
-         end associate
+      if (size(list) == 0) return
+      text = ' --- '//phrase(say, m%polish)
+      do i = 1, min(size(list), max_gaps)
+         if (i > 1) text = text//','
+         text = text//' '//time_text(l, list(i)%from)
+         if (abs(list(i)%to - list(i)%from) > 0.0_wp) text = text//' .. '//time_text(l, list(i)%to)
       end do
-      text = text//l%behind_time//more(max(0, size(x%gaps) - max_gaps), m%polish)
-   end function gaps_text
+      call put(o, text//l%behind_time//more(max(0, size(list) - max_gaps), m%polish))
+   end subroutine put_gaps
 
    !> The name of column `c` of request `i`.
    pure function column_name(m, i, c) result(name)

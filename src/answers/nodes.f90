@@ -12,12 +12,10 @@ module nodes
    use set_analysis, only: set_analysis_t, rows_at
    implicit none
    private
-   public :: node_t, node_at, times_between, one_sided_t, limits_of, places, places_beside
+   public :: node_t, node_at, is_known, times_between, beside_joint, one_sided_t, limits_of, places, places_beside
 
-   !> How far from an end or a joint the next node is, in steps of TIME: so that an extreme beside it is seen.
-   real(wp), parameter :: beside_part = 1.0_wp/1024.0_wp
-   !> Just before a joint, in parts of the time or of the run: `drives` takes what is nearer as the joint itself.
-   real(wp), parameter :: just_before = 65536.0_wp*epsilon(1.0_wp)
+   !> Just beside a joint, in parts of the time or of the run: `drives` takes what is nearer as the joint itself.
+   real(wp), parameter :: joint_part = 65536.0_wp*epsilon(1.0_wp)
    !> The places beside a time, and how far the nearest is from it, in steps of TIME. At a change point rounding errors
    !> of accelerations are divided by the square of that distance, and the polynomial leaves its fifth power; at a limit
    !> of the motion it leaves the power 5/2.
@@ -76,6 +74,14 @@ contains
       end do
    end function node_at
 
+   !> All of the motion of the `rows` of `node` is known.
+   pure logical function is_known(node, rows)
+      type(node_t), intent(in) :: node
+      integer, intent(in) :: rows(:)
+
+      is_known = all(node%known(rows) == 2)
+   end function is_known
+
    !> A node of `n` rows of which nothing is known yet.
    pure type(node_t) function empty_node(n) result(node)
       integer, intent(in) :: n
@@ -84,30 +90,36 @@ contains
       allocate (node%value(3, 0:2, n), node%error(3, 0:2, n), source=0.0_wp)
    end function empty_node
 
-   !> The times of the nodes between instants number `k` - 1 and `k`, in their order: on either side of each of the
-   !> `joints` of the drives' laws, and beside the ends of the run.
+   !> The times of the nodes between instants number `k` - 1 and `k`, in their order: at each of the `joints` of the
+   !> drives' laws and on either side of it.
    pure function times_between(joints, m, k) result(times)
       real(wp), intent(in) :: joints(:)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k
       real(wp), allocatable :: times(:)
-      real(wp) :: t1, t2, h
+      real(wp) :: t1, h, beside
       integer :: i
 
       t1 = instant(m, k - 1)
-      t2 = instant(m, k)
-      h = t2 - t1
+      h = instant(m, k) - t1
       allocate (times(0))
-      if (k == 1) times = [t1 + beside_part*h]
-      if (k == m%steps) times = [times, t2 - beside_part*h]
       do i = 1, size(joints)
          associate (t => joints(i))
-            times = [times, t - sign(just_before*max(abs(t), abs(m%t1 - m%t0)), h), t, t + beside_part*h]
+            beside = sign(beside_joint(m, t), h)
+            times = [times, t - beside, t, t + beside]
          end associate
       end do
       times = pack(times, (times - t1)/h > 0.0_wp .and. (times - t1)/h < 1.0_wp)
       call sort_along(times, h)
    end function times_between
+
+   !> How far from a joint at the time `t` are the nodes just beside it.
+   pure real(wp) function beside_joint(m, t)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: t
+
+      beside_joint = joint_part*max(abs(t), abs(m%t1 - m%t0))
+   end function beside_joint
 
    !> Sorts `times` upwards where `h` > 0, otherwise downwards.
    pure subroutine sort_along(times, h)
@@ -126,14 +138,15 @@ contains
       end do
    end subroutine sort_along
 
-   !> Times beside `t`, a change point or a limit, the nearest first, on the side of `from`; `step` of TIME.
-   pure function places_beside(t, from, step, is_change) result(times)
-      real(wp), intent(in) :: t, from, step
+   !> Times beside `t`, a change point or a limit, the nearest first, on the side of `from`; `step` of TIME; `farther`
+   !> than usual by this factor.
+   pure function places_beside(t, from, step, is_change, farther) result(times)
+      real(wp), intent(in) :: t, from, step, farther
       logical, intent(in) :: is_change
       real(wp) :: times(places), nearest
       integer :: i
 
-      nearest = min(merge(beside_change, beside_limit, is_change)*step, abs(from - t)/(2*places**2))
+      nearest = min(farther*merge(beside_change, beside_limit, is_change)*step, abs(from - t)/(2*places**2))
       times = t + sign(nearest, from - t)*[(i**2, i=1, places)]
    end function places_beside
 

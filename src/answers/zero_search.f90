@@ -6,9 +6,13 @@ module zero_search
    use set_analysis, only: set_analysis_t, rows_at
    implicit none
    private
-   public :: sample_t, column_t, look, find_zero, differ_in_sign
+   public :: sample_t, column_t, look, find_zero, differ_in_sign, slope_in, noise_part
 
+   !> Smaller derivatives, in characteristic ones or the largest about them, are zeros that rounding has moved.
+   real(wp), parameter :: noise_part = 64.0_wp*epsilon(1.0_wp)
    integer, parameter :: max_iterations = 100
+   !> A stencil that is too long is shortened by this.
+   real(wp), parameter :: shorter = 0.25_wp
    !> A bracket as narrow as so many roundings of the time is closed.
    real(wp), parameter :: closed = 4.0_wp
    !> The slope at a zero is that to the nearest value that is so many times the noise.
@@ -25,12 +29,12 @@ module zero_search
       real(wp) :: t_error = 0.0_wp      !< of the time of a zero
    end type sample_t
 
-   !> Which number: its column (1 to 3) in the row of a request of the set; `step`: of the difference that stands for
-   !> the third derivative, in the unit of time; `noise` (0:3): rounding errors of its derivatives.
+   !> Which number: its column (1 to 3) in the row of a request of the set; `step`: of the stencil that gives the third
+   !> derivative, in the unit of time; `noise` (0:2): rounding errors of its derivatives.
    type :: column_t
       integer :: request = 0, column = 0
       real(wp) :: step = 0.0_wp
-      real(wp) :: noise(0:3) = 0.0_wp
+      real(wp) :: noise(0:2) = 0.0_wp
    end type column_t
 
 contains
@@ -61,6 +65,9 @@ contains
    !> opposite signs there. The method of false position with halved values (Illinois: Dowell and Jarratt, BIT 11,
    !> 1971). Where a time between has no motion, the nearest known one is the zero. `zero`%exists is false where the
    !> signs were the same. Its time is off by the error of what is zero over its slope.
+   !>
+   !> The third derivative is that of the polynomial of degree four through accelerations at five times between `a` and
+   !> `b`. A stencil whose derivative at the zero differs from that of a shorter one by more than rounding is too long.
    subroutine find_zero(s, c, order, level, a, b, zero)
       type(set_analysis_t), intent(inout) :: s
       type(column_t), intent(in) :: c
@@ -68,62 +75,85 @@ contains
       real(wp), intent(in) :: level
       type(sample_t), intent(in) :: a, b
       type(sample_t), intent(out) :: zero
-      real(wp) :: t, t1, t2, g1, g2, g, last, width, slope, of_zero
+      real(wp) :: t, t_shorter, g, step, noise, width, slope
       real(wp) :: times(max_iterations + 2), values(max_iterations + 2)
-      integer :: i, n
-      logical :: known(2)
+      integer :: n
+      logical :: is_found
 
-      t1 = a%t
-      t2 = b%t
-      known = .true.
-      width = 0.0_wp
-      n = 0
-      if (order < 3) then
-         g1 = a%f(order) - level
-         g2 = b%f(order) - level
-      else
-         call evaluate(t1, g1, known(1))
-         call evaluate(t2, g2, known(2))
-      end if
-      if (.not. (all(known) .and. differ_in_sign(g1, g2))) return
-      call note(t1, g1)
-      call note(t2, g2)
-      last = t2
-      t = t1
-      do i = 1, max_iterations
-         t = t2 - g2*((t2 - t1)/(g2 - g1))
-         if (.not. (t - t1)*(t2 - t) > 0.0_wp) t = t1 + 0.5_wp*(t2 - t1)
-         if (min(abs(t2 - t1), abs(t - last)) <= closed*spacing(max(abs(t1), abs(t2)))) exit
-         last = t
-         call evaluate(t, g, known(1))
-         if (.not. known(1)) then
-            width = abs(t2 - t1)
-            t = t2
-            exit
-         end if
-         if (abs(g) <= 0.0_wp) exit
-         call note(t, g)
-         if (differ_in_sign(g, g2)) then
-            t1 = t2
-            g1 = g2
-         else
-            g1 = 0.5_wp*g1
-         end if
-         t2 = t
-         g2 = g
+      step = sign(c%step, b%t - a%t)
+      call close_in(t, width, is_found)
+      if (.not. is_found) return
+      do while (order == 3)
+         step = shorter*step
+         call evaluate(t, g, is_found)
+         if (is_found) is_found = abs(g) > noise_of_stencil() .and. abs(step) > noise_part*max(abs(a%t), abs(b%t))
+         if (is_found) call close_in(t_shorter, width, is_found)
+         if (.not. is_found) exit
+         t = t_shorter
       end do
+      if (order == 3) step = step/shorter
       call look(s, c, t, zero, .true.)
+      noise = c%noise(min(order, 2))
+      if (order == 3) noise = noise_of_stencil()
       slope = slope_at(t)
       zero%t_error = width + epsilon(1.0_wp)*max(abs(a%t), abs(b%t))
       if (slope > 0.0_wp) then
-         of_zero = zero%error(min(order, 2))
-         if (order == 3) of_zero = of_zero/c%step
-         zero%t_error = zero%t_error + (of_zero + rounding_part*c%noise(order))/slope
+         zero%t_error = zero%t_error + (zero%error(min(order, 2))/merge(abs(step), 1.0_wp, order == 3) &
+            + rounding_part*noise)/slope
       else
          zero%t_error = abs(b%t - a%t)
       end if
 
    contains
+
+      !> The zero `t`, if it is found; it is open by `width`.
+      subroutine close_in(t, width, is_found)
+         real(wp), intent(out) :: t, width
+         logical, intent(out) :: is_found
+         real(wp) :: t1, t2, g1, g2, g, last
+         integer :: i
+         logical :: known
+
+         t = a%t
+         t1 = a%t
+         t2 = b%t
+         width = 0.0_wp
+         n = 0
+         call evaluate(t1, g1, is_found)
+         if (is_found) call evaluate(t2, g2, is_found)
+         if (is_found) is_found = differ_in_sign(g1, g2)
+         if (.not. is_found) return
+         call note(t1, g1)
+         call note(t2, g2)
+         last = t2
+         do i = 1, max_iterations
+            t = t2 - g2*((t2 - t1)/(g2 - g1))
+            if (.not. (t - t1)*(t2 - t) > 0.0_wp) t = t1 + 0.5_wp*(t2 - t1)
+            if (min(abs(t2 - t1), abs(t - last)) <= closed*spacing(max(abs(t1), abs(t2)))) exit
+            last = t
+            call evaluate(t, g, known)
+            if (.not. known) then
+               width = abs(t2 - t1)
+               t = t2
+               exit
+            end if
+            if (abs(g) <= 0.0_wp) exit
+            call note(t, g)
+            if (differ_in_sign(g, g2)) then
+               t1 = t2
+               g1 = g2
+            else
+               g1 = 0.5_wp*g1
+            end if
+            t2 = t
+            g2 = g
+         end do
+      end subroutine close_in
+
+      !> The rounding error of a derivative by the stencil.
+      real(wp) function noise_of_stencil()
+         noise_of_stencil = max(c%noise(2), noise_part*max(abs(a%f(2)), abs(b%f(2))))/abs(step)
+      end function noise_of_stencil
 
       !> Notes the value `g` at a `time`.
       subroutine note(time, g)
@@ -143,7 +173,7 @@ contains
          slope = 0.0_wp
          nearest = huge(1.0_wp)
          do k = 1, n
-            if (abs(values(k)) <= above_noise*c%noise(order) .or. abs(times(k) - time) >= nearest) cycle
+            if (abs(values(k)) <= above_noise*noise .or. abs(times(k) - time) >= nearest) cycle
             if (abs(times(k) - time) <= 0.0_wp) cycle
             nearest = abs(times(k) - time)
             slope = abs(values(k))/nearest
@@ -155,22 +185,40 @@ contains
          real(wp), intent(in) :: time
          real(wp), intent(out) :: g
          logical, intent(out) :: known
-         type(sample_t) :: at(-2:2)
+         type(sample_t) :: at
+         real(wp) :: first, f(0:4)
          integer :: k
 
+         known = .true.
          if (order < 3) then
-            call look(s, c, time, at(0))
-            g = at(0)%f(order) - level
-            known = at(0)%exists
+            at = a
+            if (abs(time - a%t) > 0.0_wp) at = b
+            if (abs(time - at%t) > 0.0_wp) call look(s, c, time, at)
+            g = at%f(order) - level
+            known = at%exists
             return
          end if
-         do k = -2, 2
-            if (k /= 0) call look(s, c, time + k*c%step, at(k))
+         first = time - 2.0_wp*step
+         if ((first - a%t)*step < 0.0_wp) first = a%t
+         if ((b%t - 4.0_wp*step - first)*step < 0.0_wp) first = b%t - 4.0_wp*step
+         do k = 0, 4
+            call look(s, c, first + k*step, at)
+            known = known .and. at%exists
+            f(k) = at%f(2)
          end do
-         g = (8.0_wp*(at(1)%f(2) - at(-1)%f(2)) - (at(2)%f(2) - at(-2)%f(2)))/(12.0_wp*c%step)
-         known = all(at([-2, -1, 1, 2])%exists)
+         g = slope_in(f, (time - first)/step)/step
       end subroutine evaluate
    end subroutine find_zero
+
+   !> The derivative at `u` of the polynomial of degree four that has the values `f` at 0, 1, 2, 3 and 4: Newton's
+   !> formula of forward differences.
+   pure real(wp) function slope_in(f, u) result(slope)
+      real(wp), intent(in) :: f(0:4), u
+
+      slope = f(1) - f(0) + (u - 0.5_wp)*(f(2) - 2.0_wp*f(1) + f(0)) &
+         + (0.5_wp*u**2 - u + 1.0_wp/3.0_wp)*(f(3) - 3.0_wp*(f(2) - f(1)) - f(0)) &
+         + (u**3/6.0_wp - 0.75_wp*u**2 + 11.0_wp*u/12.0_wp - 0.25_wp)*(f(4) - 4.0_wp*(f(3) + f(1)) + 6.0_wp*f(2) + f(0))
+   end function slope_in
 
    !> One is positive, the other negative.
    pure logical function differ_in_sign(x, y)

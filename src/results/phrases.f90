@@ -82,6 +82,7 @@ module phrases
       say_dwell = phrase_t('DWELL', 'POSTOJ'), &
       say_not_covered = phrase_t('NOT COVERED, SINCE NOT ALL OF THE MOTION IS KNOWN: T =', &
          'NIE OBJETO, BO NIE CALY RUCH JEST ZNANY: T ='), &
+      say_may_be_missed = phrase_t('EXTREMES MAY BE MISSED WITHIN T =', 'EKSTREMA MOGA BYC POMINIETE W T ='), &
       say_unbounded = phrase_t('UNBOUNDED', 'NIEOGRAN.'), &
       say_range = phrase_t('RANGES OF THE DRIVES, EACH ALONE', 'ZAKRESY NAPEDOW, KAZDY OSOBNO'), &
       say_all = phrase_t('ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS', 'PELNY: BEZ KRESU, RUCH SIE ZAMYKA; OBROTY'), &

@@ -20,6 +20,9 @@ module hand_extremes
    real(qp), parameter :: alike = 1.0e-12_qp, closes_to = 1.0e-9_qp
    real(qp), parameter :: golden = 0.61803398874989484820458683436563811772_qp
 
+   !> How close to a change point the program's search comes, in steps of TIME.
+   real(qp), parameter :: beside_change = 1.0_qp/256.0_qp
+
    !> The rows asked for at the times of a grid.
    type :: grid_t
       character(:), allocatable :: name                !< of the deck
@@ -44,8 +47,7 @@ contains
       type(hand_scales_t), intent(in) :: scales
       logical, intent(in) :: flagged(0:)
       type(grid_t) :: g
-      character(:), allocatable :: line
-      integer :: i, q, kind
+      integer :: q, kind
 
       g = grid_of(name, m)
       call put(o, '')
@@ -59,15 +61,36 @@ contains
          end associate
       end do
       if (.not. any(flagged)) return
-      line = trim(merge(' --- NIE OBJETO, BO NIE CALY RUCH JEST ZNANY: T =          ', &
-                        ' --- NOT COVERED, SINCE NOT ALL OF THE MOTION IS KNOWN: T =', m%polish))
+      call put_gaps(o, m, scales, g, flagged, beside_change, merge(' --- EKSTREMA MOGA BYC POMINIETE W T =', &
+                                                                   ' --- EXTREMES MAY BE MISSED WITHIN T =', m%polish))
+      call put_gaps(o, m, scales, g, flagged, 0.0_qp, merge(' --- NIE OBJETO, BO NIE CALY RUCH JEST ZNANY: T =          ', &
+                                                       ' --- NOT COVERED, SINCE NOT ALL OF THE MOTION IS KNOWN: T =', m%polish))
+   end subroutine put_extremes_by_hand
+
+   !> A line with the times of the `flagged` instants behind its `head`, or with the interval of twice the `part` of a step
+   !> about each, inside the run.
+   subroutine put_gaps(o, m, scales, g, flagged, part, head)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(hand_scales_t), intent(in) :: scales
+      type(grid_t), intent(in) :: g
+      logical, intent(in) :: flagged(0:)
+      real(qp), intent(in) :: part
+      character(*), intent(in) :: head
+      character(:), allocatable :: line
+      real(qp) :: beside
+      integer :: i
+
+      line = trim(head)
+      beside = part*refined*(g%t(1) - g%t(0))
       do i = 0, m%steps
          if (.not. flagged(i)) cycle
          if (line(len(line):) /= '=') line = line//','
-         line = line//' '//instant_text(scales, g%t(i*refined))
+         line = line//' '//instant_text(scales, g%t(i*refined) - merge(beside, 0.0_qp, i > 0))
+         if (part > 0.0_qp) line = line//' .. '//instant_text(scales, g%t(i*refined) + merge(beside, 0.0_qp, i < m%steps))
       end do
       call put(o, line//' '//trim(m%time_unit))
-   end subroutine put_extremes_by_hand
+   end subroutine put_gaps
 
    !> The line over the table: the run, and the drives at both of its ends.
    subroutine put_times(o, m, scales, g)
