@@ -14,12 +14,12 @@ module block_solver
    use kinds, only: wp
    use klu, only: klu_t
    use block_matrix, only: shape_t, nearby_t, solve_first, solve_again, solve_nearby, stay_near, set_aside, &
-      pivot_range, inverse_norm, entries_of, work_length
+      pivot_range, inverse_norm, spread_by_inverse, entries_of, work_length
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, &
       ended_diverged, ended_inconsistent
    use blocks, only: blocks_t
    use block_state, only: state_t, set_direction, rotate_direction, find_known_parts
-   use block_equations, only: assemble_block, right_hand_side, largest_rates
+   use block_equations, only: assemble_block, right_hand_side, largest_rates, rounded_sizes, second_order_bounds
    use closure_errors, only: note_closure_error, is_inconsistent, contradict
    implicit none
    private
@@ -363,5 +363,22 @@ contains
          size_of = max(size_of, abs(s%u(b%unknown(k))%value))
       end do
       c%singular = inverse*inverse*b%list(i)%lipschitz*rounding_level*size_of >= largest_error
+      if (c%singular) c%singular = is_beyond_linear(b, i, n, w, s)
    end subroutine judge
+
+   !> The same with all rows and unknowns in sizes of their own, for blocks of very different ones: what the rows hold
+   !> beyond their linear part moves an unknown by a part of its uncertainty |J^-1| h that is too large.
+   logical function is_beyond_linear(b, i, n, w, s) result(is)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i, n
+      type(workspace_t), intent(inout) :: w
+      type(state_t), intent(in) :: s
+      real(wp) :: off(n), more(n)
+
+      associate (shape => b%list(i)%shape, k => b%list(i)%shape%pattern)
+         call spread_by_inverse(shape, w%a, w%sparse(k), w%pivots, w%work, rounding_level*rounded_sizes(b, i, s), off)
+         call spread_by_inverse(shape, w%a, w%sparse(k), w%pivots, w%work, second_order_bounds(b, i, s, off), more)
+      end associate
+      is = .not. all(more < largest_error*off)
+   end function is_beyond_linear
 end module block_solver

@@ -16,7 +16,7 @@ module dense_engine
    use block_engine, only: block_engine_t, make_block_engine
    use pose, only: system_t, pose_t, new_system, new_pose, add_to_links
    use closure_equations, only: find_drive_values, remainder
-   use position_iteration, only: solve_newton, solve_matrix
+   use position_iteration, only: solve_newton, solve_matrix, rounding_level
    use root_distance, only: coordinates_t, new_coordinates, distance, kantorovich, kantorovich_bound
    use dense_start, only: by_blocks, find_start
    use constants, only: without_turns
@@ -24,8 +24,11 @@ module dense_engine
    private
    public :: dense_engine_t, make_dense_engine, solve_velocity, solve_acceleration
 
-   !> The position is known to eps/rcond, and so the Jacobian; below the root of eps no digit of a velocity is certain.
+   !> The position is known to eps/rcond, and so the Jacobian; below the root of eps no digit of a velocity is certain,
+   !> unless small links beside large ones are all that makes the condition bad.
    real(wp), parameter :: min_condition = 4.0_wp*sqrt(epsilon(1.0_wp))
+   !> Relative error of the velocities, by what rounding leaves open in the position, that is too large to print them.
+   real(wp), parameter :: largest_error = 0.05_wp
    !> A change over the distance of the next root, at least: below it the root is the only one as near, and near enough.
    real(wp), parameter :: certain = 0.5_wp
    !> A bound of the Kantorovich ratio that is below this needs no closer look: ratios matter from 0.1 on.
@@ -150,13 +153,16 @@ contains
    subroutine judge(e, c)
       class(dense_engine_t), intent(inout) :: e
       type(convergence_t), intent(inout) :: c
-      real(wp) :: k
+      real(wp) :: k, gain
 
       if (c%singular) return
       call reciprocal_condition(e%factors, c%reciprocal_condition)
       c%determinant = determinant_sign(e%factors)
-      c%singular = c%reciprocal_condition <= min_condition
-      if (c%singular) return
+      if (c%reciprocal_condition <= min_condition) then
+         call kantorovich(e%system, e%coordinates, e%factors, e%pose, k, gain)
+         c%singular = .not. k*gain*rounding_level*max(1.0_wp, maxval(abs(e%pose%q))) < largest_error
+         if (c%singular) return
+      end if
       c%kantorovich_ratio = kantorovich_bound(e%system, e%coordinates, e%pose, c%change, &
          c%reciprocal_condition*e%factors%norm)
       if (c%kantorovich_ratio <= small_kantorovich_ratio) return

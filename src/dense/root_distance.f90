@@ -127,29 +127,43 @@ contains
       end function slot_bound
    end function jacobian_lipschitz
 
-   !> K at pose `p`, from the factors `f` of the Jacobian there: no other root is within 2/K, by `distance`.
-   subroutine kantorovich(s, c, f, p, k)
+   !> K at pose `p`, from the factors `f` of the Jacobian there: no other root is within 2/K, by `distance`. `gain`:
+   !> residuals of 1 change a coordinate by so much at most.
+   subroutine kantorovich(s, c, f, p, k, gain)
       type(system_t), intent(in) :: s
       type(coordinates_t), intent(in) :: c
       type(factors_t), intent(in) :: f
       type(pose_t), intent(in) :: p
       real(wp), intent(out) :: k
-      real(wp) :: g(s%n, size(c%angles) + 2*size(c%slots)), bound(s%n)
-      integer :: m, slot
+      real(wp), intent(out), optional :: gain
+      real(wp) :: g(s%n, size(c%angles) + 2*size(c%slots))
 
       k = 0.0_wp
+      if (present(gain)) gain = 0.0_wp
       if (size(g) == 0) return
-      bound = jacobian_lipschitz(s, c, p)
       call set_coordinates(s, c, g)
       call solve_transposed(f, g)
+      k = largest_sum(s, c, g, jacobian_lipschitz(s, c, p))
+      if (present(gain)) gain = largest_sum(s, c, g, spread(1.0_wp, 1, s%n))
+   end subroutine kantorovich
+
+   !> The largest over the coordinates of the sum over the rows of |y_k| L_k: `y` (n, angles + 2 slots) is J^-T g, the
+   !> rows' L_k are `bound` (n).
+   pure real(wp) function largest_sum(s, c, y, bound) result(largest)
+      type(system_t), intent(in) :: s
+      type(coordinates_t), intent(in) :: c
+      real(wp), intent(in) :: y(:, :), bound(:)
+      integer :: m, slot
+
+      largest = 0.0_wp
       do m = 1, size(c%angles)
-         k = max(k, row_sum(s, g(:, m), bound))
+         largest = max(largest, row_sum(s, y(:, m), bound))
       end do
       do slot = 1, size(c%slots)
          m = size(c%angles) + 2*slot
-         k = max(k, hypot(row_sum(s, g(:, m - 1), bound), row_sum(s, g(:, m), bound)))
+         largest = max(largest, hypot(row_sum(s, y(:, m - 1), bound), row_sum(s, y(:, m), bound)))
       end do
-   end subroutine kantorovich
+   end function largest_sum
 
    !> More than K times `change`, from the condition alone: no row sum of the inverse is more than n times its largest
    !> column sum, of which DGECON gives a third or more, and a slot has two rows. `condition`: the reciprocal condition

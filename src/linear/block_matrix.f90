@@ -9,7 +9,7 @@ module block_matrix
    implicit none
    private
    public :: shape_t, is_sparse_better, entries_of, solve_first, solve_again, pivot_range, inverse_norm, work_length
-   public :: nearby_t, stay_near, set_aside, solve_nearby
+   public :: nearby_t, stay_near, set_aside, solve_nearby, spread_by_inverse
 
    !> `pattern` = 0: dense, by columns. Otherwise sparse and square: the number of its pattern, and its entries, in the
    !> order of the pattern.
@@ -305,4 +305,25 @@ contains
          norm = max(norm, sum(abs(a(k, k:s%n))))
       end do
    end function triangle_norm
+
+   !> |A^-1| h for the vector `h` (rows), as `spread` (n), from the factors, column by column.
+   subroutine spread_by_inverse(s, a, k, pivots, work, h, spread)
+      type(shape_t), intent(in) :: s
+      real(wp), intent(in) :: a(*)
+      type(klu_t), intent(inout) :: k
+      integer, intent(in) :: pivots(*)
+      real(wp), intent(inout) :: work(*)
+      real(wp), intent(in) :: h(:)
+      real(wp), intent(out) :: spread(:)
+      real(wp) :: column(s%rows)
+      integer :: j
+
+      spread = 0.0_wp
+      do j = 1, s%rows
+         column = 0.0_wp
+         column(j) = h(j)
+         call solve_again(s, a, k, pivots, work, column)
+         spread = spread + abs(column(:s%n))
+      end do
+   end subroutine spread_by_inverse
 end module block_matrix
