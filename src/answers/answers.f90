@@ -1,5 +1,5 @@
-!> What a set asks of its motion beyond tables at instants: the cards EXTREMES, RANGE, ASSEMBLY and TOLER. A set that
-!> asks for nothing costs nothing.
+!> What a set asks of its motion beyond tables at instants: the cards EXTREMES, RANGE, ASSEMBLY, CIRCUITS and TOLER. A
+!> set that asks for nothing costs nothing.
 module answers
    use mechanism, only: mechanism_t
    use set_analysis, only: set_analysis_t
@@ -12,6 +12,8 @@ module answers
    use tolerance_shares, only: shares_t, new_shares, note_tolerances, put_shares
    use ranges, only: range_t, find_ranges, put_ranges
    use assembly_table, only: assembly_answer_t, find_answer, put_assemblies
+   use circuit_branches, only: circuits_t
+   use circuits_table, only: find_all_circuits, put_circuits
    implicit none
    private
    public :: answers_t, new_answers, take_instant, put_answers
@@ -26,6 +28,7 @@ module answers
       type(shares_t) :: shares
       type(range_t), allocatable :: ranges(:)       !< (drives that have one), in the numbers of the set
       type(assembly_answer_t), allocatable :: assemblies(:)   !< (parts)
+      type(circuits_t), allocatable :: circuits(:)  !< (drives that are set free) likewise; not allocated: not asked
    end type answers_t
 
 contains
@@ -56,6 +59,7 @@ contains
 
       if (a%ranges_asked .and. k == 0) call find_ranges(s, a%ranges)
       if (a%assemblies_asked .and. k == 0) call find_answer(s, a%assemblies)
+      if (m%circuits .and. k == 0) call find_all_circuits(s, a%circuits)
       if (a%shares_asked) call note_tolerances(a%shares, m, s%now, k)
       if (.not. a%extremes_asked .or. k > m%steps) return
       call note_instant(a%extremes, m, s, k)
@@ -77,6 +81,7 @@ contains
       end if
       if (a%ranges_asked) call put_ranges(o, m, a%ranges)
       if (a%assemblies_asked) call put_assemblies(o, l, m, s, a%assemblies)
+      if (allocated(a%circuits)) call put_circuits(o, m, a%circuits)
       if (a%shares_asked) call put_shares(o, l, a%shares, m, s%now)
    end subroutine put_answers
 end module answers

@@ -11,8 +11,8 @@ module cards
    public :: forms, form_name, find_form, nearest_form, reals_of
    public :: form_unknown, form_title, form_units, form_lang, form_ground, form_link, form_point, form_revolute
    public :: form_prism, form_joint, form_drive, form_add, form_rise, form_toler, form_time, form_at
-   public :: form_method, form_print, form_extremes, form_range, form_pole, form_curve, form_branch, form_vary
-   public :: form_assembly, form_end
+   public :: form_method, form_print, form_extremes, form_range, form_circuits, form_pole, form_curve, form_branch
+   public :: form_vary, form_assembly, form_end
 
    !> Columns of a card.
    integer, parameter :: card_columns = 80
@@ -62,8 +62,8 @@ module cards
    enum, bind(c)
       enumerator :: form_unknown = 0, form_title, form_units, form_lang, form_ground, form_link, form_point
       enumerator :: form_revolute, form_prism, form_joint, form_drive, form_add, form_rise, form_toler, form_time
-      enumerator :: form_at, form_method, form_print, form_extremes, form_range, form_pole, form_curve, form_branch
-      enumerator :: form_vary, form_assembly, form_end
+      enumerator :: form_at, form_method, form_print, form_extremes, form_range, form_circuits, form_pole, form_curve
+      enumerator :: form_branch, form_vary, form_assembly, form_end
    end enum
 
    !> The text of TITLE is not a label.
@@ -87,6 +87,7 @@ module cards
       form_t('Llw', 0, .false., 'PRINT   KIND    NAME    EVERY'), &
       form_t('Ll-', 2, .false., 'EXTREMESKIND    NAME            DWELL LENGTH    DWELL ANGLE'), &
       form_t('---', 0, .true.,  'RANGE'), &
+      form_t('---', 0, .true.,  'CIRCUITS'), &
       form_t('LLw', 0, .false., 'POLE    LINK-I  LINK-J  EVERY'), &
       form_t('Llw', 0, .false., 'CURVE   POINT   LINK    EVERY'), &
       form_t('l--', 1, .false., 'BRANCH  LINK                    T'), &

@@ -1,5 +1,5 @@
 !> The cards of a set that define no bodies and no drives: the options TITLE, UNITS, LANG and METHOD, the instants TIME
-!> and AT, and the requests PRINT, EXTREMES, RANGE, ASSEMBLY and BRANCH.
+!> and AT, and the requests PRINT, EXTREMES, RANGE, CIRCUITS, ASSEMBLY and BRANCH.
 module deck_options
    use kinds, only: wp
    use constants, only: degree
@@ -8,7 +8,7 @@ module deck_options
    use card_sets, only: card_set_t, look_up, match_word, add_card_error
    use cards, only: title_field, card_name, label_a, label_b, label_c, real_1, real_2, forms, form_unknown, &
       form_title, form_units, form_lang, form_time, form_at, form_method, form_print, form_extremes, &
-      form_range, form_branch, form_vary, form_assembly
+      form_range, form_circuits, form_branch, form_vary, form_assembly
    use input_errors, only: card_repeated, lang_kind, units_angle, units_place, method_kind, tolerance_range, &
       time_point, number_range, field_blank, print_kind, print_all_name, print_repeated, print_nothing, extremes_time, &
       extremes_ground, branch_ground, branch_method, branch_repeated
@@ -54,6 +54,8 @@ contains
                m%ranges = .true.
             case (form_assembly)
                m%assemblies = .true.
+            case (form_circuits)
+               m%circuits = .true.
             case (form_time)
                if (card%valid) call read_time(set, k)
             end select

@@ -138,6 +138,7 @@ module mechanism
       real(wp) :: tolerance = 0.0_wp         !< relative; 0: that of the method
       logical :: ranges = .false.            !< the ranges of the drives are asked for
       logical :: assemblies = .false.        !< all assemblies at the first instant are asked for
+      logical :: circuits = .false.          !< the circuits of the mechanism are asked for
       integer :: predictor = own_predictor   !< order of the predictor of a step, 0 to 3; no card sets it
       logical :: keeps_references = .false.  !< method_matrix: keeps those of the first instant; no card sets it
       integer :: variants = 0                !< of its VARY cards; 0: it has none
@@ -224,13 +225,14 @@ contains
       end do
    end subroutine place_links
 
-   !> Whether each link (links) is needed by a request of `m`; ranges, assemblies and tolerances need all of them.
+   !> Whether each link (links) is needed by a request of `m`; ranges, circuits, assemblies and tolerances need all of
+   !> them.
    pure function wanted_links(m) result(wanted)
       type(mechanism_t), intent(in) :: m
       logical :: wanted(size(m%links))
       integer :: i
 
-      wanted = m%ranges .or. m%assemblies .or. allocated(m%tolerances)
+      wanted = m%ranges .or. m%circuits .or. m%assemblies .or. allocated(m%tolerances)
       do i = 1, size(m%requests)
          associate (k => m%requests(i)%subject)
             select case (m%requests(i)%kind)

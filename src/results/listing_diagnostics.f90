@@ -10,7 +10,7 @@ module listing_diagnostics
    use phrases
    implicit none
    private
-   public :: limit_words, put_diagnostics, put_singular, put_closure_error, remarks_text
+   public :: limit_words, measure, put_diagnostics, put_singular, put_closure_error, remarks_text
 
    integer, parameter :: line_length = 120
    !> What concerns the results.

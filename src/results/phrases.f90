@@ -118,6 +118,18 @@ module phrases
       say_jams = phrase_t('REDUNDANT EQUATIONS LEAVE NO ROOM FOR ITS TOLERANCE', &
          'ROWNANIA NADLICZBOWE NIE DOPUSZCZAJA TOLERANCJI')
    type(phrase_t), parameter, public :: &
+      say_circuits = phrase_t('CIRCUITS AND BRANCHES', 'OBWODY I GALEZIE'), &
+      say_circuit = phrase_t('CIRCUIT', 'OBWOD'), &
+      say_lost = phrase_t('NOT FOLLOWED BEYOND', 'NIE SLEDZONO POZA'), &
+      say_dead_points = phrase_t('DEAD POINTS', 'PUNKTY MARTWE'), &
+      say_change_points = phrase_t('CHANGE POINTS', 'PUNKTY ZMIANY'), &
+      say_no_circuits = phrase_t('NOT OF A MECHANISM WITH REDUNDANT EQUATIONS', &
+         'NIE DLA MECHANIZMU Z ROWNANIAMI NADLICZBOWYMI'), &
+      say_circuits_missing = phrase_t('CIRCUITS MAY BE MISSING: NOT ALL ASSEMBLIES ARE KNOWN', &
+         'MOZE BRAKOWAC OBWODOW: NIE WSZYSTKIE MONTAZE SA ZNANE'), &
+      say_start_singular = phrase_t('THE FIRST INSTANT IS A CHANGE POINT: BEGIN ASIDE FROM IT', &
+         'PIERWSZA CHWILA LEZY W PUNKCIE ZMIANY: ZACZNIJ OBOK')
+   type(phrase_t), parameter, public :: &
       say_pole = phrase_t('POLE', 'BIEGUN'), &
       say_curve = phrase_t('CURVE', 'TOR'), &
       say_xi = phrase_t('XI', 'KSI'), &

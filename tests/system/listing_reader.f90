@@ -102,6 +102,7 @@ contains
          call expand_requests(set%deck)
       else if (table%results .and. (table%is_over .or. starts(line, ' EXTREMES ', ' EKSTREMA ') &
          .or. starts(line, ' RANGES OF THE DRIVES', ' ZAKRESY NAPEDOW') &
+         .or. starts(line, ' CIRCUITS AND ', ' OBWODY I ') &
          .or. starts(line, ' TOLERANCES: ', ' TOLERANCJE: '))) then
          table%is_over = .true.
       else if (starts(line, ' INSTANT ', ' CHWILA ') .and. table%results) then

@@ -6,7 +6,7 @@ module deck_samples
    use deck, only: read_deck
    implicit none
    private
-   public :: row, sample, replaced, inserted, read_lines, read_bytes, sentences, remarks_of, set_of
+   public :: row, sample, replaced, inserted, read_lines, read_bytes, sentences, remarks_of, set_of, four_bar
 
    !> The deck under test, beside the program; every reading deletes it.
    character(*), parameter :: deck_file = 'unit_test_deck.tmp'
@@ -36,6 +36,21 @@ contains
                row('REVOLUTE', 'A0', 'A1', 'O'), row('DRIVE', 'ANGLE', 'CRANK', r2='1.0'), &
                row('TIME', '10', r1='0.0', r2='1.0'), row('END')]
    end function sample
+
+   !> A four-bar with the base 4 and these lengths, its crank driven from `start`; the rocker above.
+   pure function four_bar(crank, coupler, rocker, start, phi_coupler, phi_rocker, driven) result(lines)
+      character(*), intent(in) :: crank, coupler, rocker, start, phi_coupler, phi_rocker, driven
+      character(80) :: lines(19)
+
+      lines = [row('GROUND', 'BASE'), row('LINK', 'CRANK', r3=start), row('LINK', 'COUPLER', r3=phi_coupler), &
+         row('LINK', 'ROCKER', r1='4.0', r3=phi_rocker), row('POINT', 'A0', 'BASE'), row('POINT', 'B0', 'BASE', r1='4.0'), &
+         row('POINT', 'A0-CR', 'CRANK'), row('POINT', 'A-CR', 'CRANK', r1=crank), row('POINT', 'A-CO', 'COUPLER'), &
+         row('POINT', 'B-CO', 'COUPLER', r1=coupler), row('POINT', 'B0-RO', 'ROCKER'), &
+         row('POINT', 'B-RO', 'ROCKER', r1=rocker), row('REVOLUTE', 'A0', 'A0-CR', 'PA0'), &
+         row('REVOLUTE', 'A-CR', 'A-CO', 'PA'), row('REVOLUTE', 'B-CO', 'B-RO', 'PB'), &
+         row('REVOLUTE', 'B0', 'B0-RO', 'PB0'), row('DRIVE', 'ANGLE', driven, r1=start, r2='0.5'), &
+         row('TIME', '2', r1='0.0', r2='0.1'), row('END')]
+   end function four_bar
 
    !> The sample with `line` in place of card `k`.
    pure function replaced(k, line) result(lines)

@@ -1,0 +1,310 @@
+!> One circuit: the curve of positions followed by its length from one of them, both ways where it does not close.
+!> Dead points are where the drive's derivative by the length changes its sign. At a change point no step is certified:
+!> it is passed in the direction of the tangent.
+module circuit_trace
+   use kinds, only: wp
+   use circuit_curve, only: curve_t, curve_point_t, step_along, step_between, lies_between, reversed, offset_from
+   use pose, only: add_to_links
+   implicit none
+   private
+   public :: circuit_t, change_point_t, trace, find_root, of_slope, of_value, end_closed, end_far, end_lost
+
+   !> A certified step below this means a change point: other positions are so near that rounding tells them apart no
+   !> better.
+   real(wp), parameter :: least_step = epsilon(1.0_wp)**0.375_wp
+   !> Across a change point certified steps are longer or shorter by less than this factor, and the tangent turns less.
+   real(wp), parameter :: alike = 3.0_wp, straight = 0.1_wp
+   !> A slide that has gone so many lengths is followed no further.
+   real(wp), parameter :: far = 100.0_wp
+   integer, parameter :: max_points = 50000, max_iterations = 100
+   !> Rounding makes the tangent uncertain by some roundings over the square of the certified step, and with it the
+   !> sense in which the drive moves.
+   real(wp), parameter :: unsure = 16.0_wp*epsilon(1.0_wp)
+
+   !> How a circuit ends: it closes, a slide goes to infinity, or it can be followed no further.
+   enum, bind(c)
+      enumerator :: end_closed = 1, end_far, end_lost
+   end enum
+   !> What a root is looked for of: the drive's derivative, its second one, or its value less a level.
+   enum, bind(c)
+      enumerator :: of_value = 0, of_slope, of_bend
+   end enum
+
+   !> A position at which circuits meet, between two points of one of them.
+   type :: change_point_t
+      integer :: after = 0                     !< the number of the point before it
+      real(wp), allocatable :: q(:, :)         !< (3, links) its place
+      real(wp), allocatable :: tangent(:)      !< (coordinates) of the circuit
+      real(wp) :: value = 0.0_wp               !< of the drive
+   end type change_point_t
+
+   type :: circuit_t
+      type(curve_point_t), allocatable :: points(:)     !< along it; of a closed one the last is the first
+      integer :: ends(2) = end_lost                     !< how it ends at the first and at the last point
+      logical :: rests = .false.                        !< the drive does not move on it
+      real(wp) :: shift = 0.0_wp                        !< whole turns (rad) to be added to the drive's values
+      type(change_point_t), allocatable :: changes(:)
+   end type circuit_t
+
+contains
+
+   !> The circuit of the curve `c` through the point `start`.
+   subroutine trace(c, start, circuit)
+      type(curve_t), intent(inout) :: c
+      type(curve_point_t), intent(in) :: start
+      type(circuit_t), intent(out) :: circuit
+      type(circuit_t) :: back
+      integer :: n, i
+
+      call follow(c, start, circuit)
+      if (circuit%ends(2) == end_closed) then
+         circuit%ends(1) = end_closed
+         ! Of a dead point at the start only the neighbours tell.
+         n = size(circuit%points)
+         circuit%points([1, n])%is_dead = sense(circuit%points)*sense(circuit%points(n:1:-1)) < 0
+         call begin_at_dead_point(circuit)
+      else
+         call follow(c, reversed(start), back)
+         n = size(back%points)
+         circuit%ends(1) = back%ends(2)
+         circuit%changes%after = circuit%changes%after + n - 1
+         back%changes%after = n - back%changes%after
+         circuit%points(1)%is_dead = sense(circuit%points)*sense(back%points) > 0
+         circuit%points = [[(reversed(back%points(i)), i=n, 2, -1)], circuit%points]
+         circuit%changes = [back%changes, circuit%changes]
+      end if
+      circuit%rests = .not. any(is_sure(circuit%points))
+   end subroutine trace
+
+   !> Follows the curve from `start` in the sense of its tangent to its end.
+   subroutine follow(c, start, circuit)
+      type(curve_t), intent(inout) :: c
+      type(curve_point_t), intent(in) :: start
+      type(circuit_t), intent(out) :: circuit
+      type(curve_point_t) :: a, b, again
+      integer :: n, sure
+      logical :: ok, closes, leaves
+
+      allocate (circuit%points(64), circuit%changes(0))
+      n = 0
+      sure = 0
+      a = start
+      leaves = .false.
+      call append(circuit, n, a)
+      if (is_sure(a)) sure = 1
+      do while (n < max_points)
+         leaves = leaves .and. a%reach < 2.0_wp*least_step
+         if (a%reach >= least_step .or. leaves) then
+            call certified_step(c, a, b, ok)
+         else
+            call pass_change_point(c, circuit, n, b, ok)
+            leaves = .true.
+         end if
+         if (.not. ok) exit
+         closes = .false.
+         if (n > 1) call lies_between(c, a, step_between(c, a, b), start%q, again, closes)
+         if (closes) b = again
+         call find_dead_points(c, circuit, n, sure, b)
+         call append(circuit, n, b)
+         if (is_sure(b)) sure = n
+         if (closes) circuit%ends(2) = end_closed
+         if (maxval(abs(b%q(:2, :))) > far) circuit%ends(2) = end_far
+         if (circuit%ends(2) /= end_lost) exit
+         a = b
+      end do
+      circuit%points = circuit%points(:n)
+   end subroutine follow
+
+   !> Whether the sense in which the drive moves is known at `p`.
+   pure elemental logical function is_sure(p)
+      type(curve_point_t), intent(in) :: p
+
+      is_sure = abs(p%value(1))*p%reach**2 > unsure
+   end function is_sure
+
+   !> 1 or -1: the sense in which the drive moves at the first of `points` at which it is known; 0 where there is none.
+   pure integer function sense(points)
+      type(curve_point_t), intent(in) :: points(:)
+      integer :: k
+
+      sense = 0
+      do k = 1, size(points)
+         if (.not. is_sure(points(k))) cycle
+         sense = nint(sign(1.0_wp, points(k)%value(1)))
+         return
+      end do
+   end function sense
+
+   !> The longest certified step from `a` that Newton's method takes, to `b`.
+   subroutine certified_step(c, a, b, ok)
+      type(curve_t), intent(inout) :: c
+      type(curve_point_t), intent(in) :: a
+      type(curve_point_t), intent(out) :: b
+      logical, intent(out) :: ok
+      real(wp) :: h
+
+      h = a%reach
+      do
+         call step_along(c, a, h, b, ok)
+         if (ok .or. h < 0.1_wp*least_step) return
+         h = 0.5_wp*h
+      end do
+   end subroutine certified_step
+
+   !> From the last of the `n` points of `circuit` across the change point ahead to `b`, as far behind it: certified
+   !> steps shrink in proportion to the distance from it.
+   subroutine pass_change_point(c, circuit, n, b, ok)
+      type(curve_t), intent(inout) :: c
+      type(circuit_t), intent(inout) :: circuit
+      integer, intent(in) :: n
+      type(curve_point_t), intent(out) :: b
+      logical, intent(out) :: ok
+      type(change_point_t) :: change
+      real(wp) :: shrinks, h
+
+      ok = .false.
+      if (n < 2) return
+      associate (before => circuit%points(n - 1), a => circuit%points(n))
+         shrinks = a%reach/before%reach
+         if (shrinks >= 1.0_wp) return
+         h = 2.0_wp*step_between(c, before, a)*shrinks/(1.0_wp - shrinks)
+         call step_along(c, a, h, b, ok)
+         if (.not. ok) return
+         ok = b%reach < alike*a%reach .and. a%reach < alike*b%reach &
+            .and. norm2(b%tangent - a%tangent) < straight
+         if (.not. ok) return
+         change%after = n
+         change%q = a%q
+         change%tangent = a%tangent
+         call add_to_links(c%closure, 0.5_wp*offset_from(c, a%q, b%q, .false.), change%q)
+         change%value = 0.5_wp*(a%value(0) + b%value(0))
+      end associate
+      circuit%changes = [circuit%changes, change]
+   end subroutine pass_change_point
+
+   !> Appends or marks the dead points between point `sure`, the last of the `n` points at which the drive's sense is
+   !> known, and `b`. Where they are no neighbours it turns back too near to a change point to tell the two apart.
+   subroutine find_dead_points(c, circuit, n, sure, b)
+      type(curve_t), intent(inout) :: c
+      type(circuit_t), intent(inout) :: circuit
+      integer, intent(inout) :: n
+      integer, intent(in) :: sure
+      type(curve_point_t), intent(in) :: b
+      integer :: k
+
+      if (sure == 0 .or. .not. is_sure(b)) return
+      if (sure == n) then
+         call append_dead_points(c, circuit, n, b)
+      else if (circuit%points(sure)%value(1)*b%value(1) < 0.0_wp) then
+         k = sure + minloc(circuit%points(sure + 1:n)%reach, dim=1)
+         circuit%points(k)%is_dead = .true.
+      end if
+   end subroutine find_dead_points
+
+   !> Appends the dead points between the last of the `n` points and `b`: one where the drive's derivative changes its
+   !> sign; two where it does so and back, about the place at which it is least.
+   recursive subroutine append_dead_points(c, circuit, n, b)
+      type(curve_t), intent(inout) :: c
+      type(circuit_t), intent(inout) :: circuit
+      integer, intent(inout) :: n
+      type(curve_point_t), intent(in) :: b
+      type(curve_point_t) :: a, p
+      logical :: ok
+
+      a = circuit%points(n)
+      if (a%value(1)*b%value(1) < 0.0_wp) then
+         call find_root(c, a, b, of_slope, 0.0_wp, p, ok)
+         p%is_dead = .true.
+         if (ok) call append(circuit, n, p)
+      else if (a%value(1)*a%value(2) < 0.0_wp .and. b%value(1)*b%value(2) > 0.0_wp) then
+         call find_root(c, a, b, of_bend, 0.0_wp, p, ok)
+         if (ok) ok = a%value(1)*p%value(1) < 0.0_wp
+         if (.not. ok) return
+         call append_dead_points(c, circuit, n, p)
+         call append(circuit, n, p)
+         call append_dead_points(c, circuit, n, b)
+      end if
+   end subroutine append_dead_points
+
+   !> The point `p` between the neighbours `a` and `b` at which the drive's derivative number `order` (of_value,
+   !> of_slope, of_bend) is `level`: there they are on both sides of it. The method of false position with halved values
+   !> (Illinois: Dowell and Jarratt, BIT 11, 1971). `ok`: it was found.
+   subroutine find_root(c, a, b, order, level, p, ok)
+      type(curve_t), intent(inout) :: c
+      type(curve_point_t), intent(in) :: a, b
+      integer, intent(in) :: order
+      real(wp), intent(in) :: level
+      type(curve_point_t), intent(out) :: p
+      logical, intent(out) :: ok
+      real(wp) :: h1, h2, h, g1, g2, g
+      integer :: i
+
+      h1 = 0.0_wp
+      h2 = step_between(c, a, b)
+      g1 = a%value(order) - level
+      g2 = b%value(order) - level
+      do i = 1, max_iterations
+         h = h1
+         if (abs(g2 - g1) > 0.0_wp) h = h2 - g2*((h2 - h1)/(g2 - g1))
+         if (.not. (h - h1)*(h2 - h) >= 0.0_wp) h = 0.5_wp*(h1 + h2)
+         call step_along(c, a, h, p, ok)
+         if (.not. ok) return
+         g = p%value(order) - level
+         if (abs(g) <= 0.0_wp .or. abs(h2 - h1) <= 4.0_wp*epsilon(1.0_wp)) return
+         if (abs(h - h2) <= epsilon(1.0_wp)) return
+         if (g*g2 < 0.0_wp) then
+            h1 = h2
+            g1 = g2
+         else
+            g1 = 0.5_wp*g1
+         end if
+         h2 = h
+         g2 = g
+      end do
+   end subroutine find_root
+
+   !> Lets a closed circuit begin, and end, at its first dead point.
+   subroutine begin_at_dead_point(circuit)
+      type(circuit_t), intent(inout) :: circuit
+      type(curve_point_t), allocatable :: p(:)
+      real(wp) :: turns(3, size(circuit%points(1)%q, 2)), turned
+      integer :: first, n, i
+
+      n = size(circuit%points)
+      first = findloc(circuit%points%is_dead, .true., dim=1)
+      if (first <= 1) return
+      turns = circuit%points(n)%q - circuit%points(1)%q
+      turned = circuit%points(n)%value(0) - circuit%points(1)%value(0)
+      allocate (p(n))
+      do i = 1, n
+         if (first + i - 1 <= n) then
+            p(i) = circuit%points(first + i - 1)
+         else
+            ! The first point is the last one.
+            p(i) = circuit%points(first + i - n)
+            p(i)%q = p(i)%q + turns
+            p(i)%value(0) = p(i)%value(0) + turned
+         end if
+      end do
+      call move_alloc(p, circuit%points)
+      do i = 1, size(circuit%changes)
+         circuit%changes(i)%after = modulo(circuit%changes(i)%after - first, n - 1) + 1
+      end do
+   end subroutine begin_at_dead_point
+
+   !> Appends `p` to the `n` points of `circuit`.
+   subroutine append(circuit, n, p)
+      type(circuit_t), intent(inout) :: circuit
+      integer, intent(inout) :: n
+      type(curve_point_t), intent(in) :: p
+      type(curve_point_t), allocatable :: more(:)
+
+      if (n == size(circuit%points)) then
+         allocate (more(2*n))
+         more(:n) = circuit%points
+         call move_alloc(more, circuit%points)
+      end if
+      n = n + 1
+      circuit%points(n) = p
+   end subroutine append
+end module circuit_trace

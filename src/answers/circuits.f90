@@ -1,0 +1,166 @@
+!> Card CIRCUITS: the whole motion of a mechanism with one free drive (Chase and Mirth, Circuits and branches of
+!> single-degree-of-freedom planar linkages, Journal of Mechanical Design 115, 1993). A circuit is what the mechanism
+!> reaches without being taken apart, the drive free to turn back at dead points; its branches lie between dead points.
+!>
+!> A circuit is traced from each assembly that is on none of those known: the deck's own, all others of the first
+!> instant, those of the crossings at change points, and all assemblies at drive values over its whole range: one that
+!> lies between two of these values alone is not found.
+module circuits
+   use kinds, only: wp
+   use constants, only: pi
+   use mechanism, only: mechanism_t
+   use scales, only: characteristic_length
+   use motion, only: motion_t
+   use assemblies, only: assemblies_t, find_assemblies
+   use circuit_curve, only: curve_point_t, make_curve, is_curve, start_point, step_between, lies_between, passes
+   use circuit_trace, only: circuit_t, trace
+   use circuit_crossing, only: other_circuit
+   use circuit_branches, only: circuits_t, add_branches, add_assemblies, add_meetings, &
+      number_assemblies
+   use circuit_limits, only: name_limits, held_at
+   implicit none
+   private
+   public :: find_circuits, free_drives
+
+   !> More are not looked for.
+   integer, parameter :: max_circuits = 1000
+   !> Values of the drive at which all assemblies are found: for an angle each 5 deg, fewer where that takes more than
+   !> so many paths.
+   integer, parameter :: most_values = 72, least_values = 4, max_paths = 1000
+
+contains
+
+   !> The circuits of `m`, one independent mechanism, at whose first instant `start` is its motion; drive number `drive`
+   !> is free, the others keep their values.
+   subroutine find_circuits(m, start, drive, found)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: start
+      integer, intent(in) :: drive
+      type(circuits_t), intent(out) :: found
+      type(curve_point_t) :: p
+      type(assemblies_t) :: all_of_them
+      logical :: ok
+      integer :: i
+
+      found%drive = drive
+      allocate (found%list(0), found%branches(0), found%dead(0), found%assemblies(0), found%meetings(0))
+      call make_curve(found%curve, m, drive, start%t)
+      found%is_curve = is_curve(found%curve)
+      if (.not. found%is_curve) return
+      call start_point(found%curve, start%position, p, ok)
+      if (ok) call add_circuits(found, p)
+      call find_assemblies(m, start%t, all_of_them)
+      call add_through(found, all_of_them)
+      call search_whole_range(m, start%t, found, all_of_them)
+      do i = 1, size(found%list)
+         call add_branches(found, i)
+         call add_assemblies(found, i)
+         call add_meetings(found, i)
+      end do
+      call number_assemblies(found, all_of_them%list)
+      call name_limits(m, start%t, found)
+   end subroutine find_circuits
+
+   !> Adds the circuits through assemblies. Some may be missing where not all assemblies are known.
+   subroutine add_through(found, all_of_them)
+      type(circuits_t), intent(inout) :: found
+      type(assemblies_t), intent(in) :: all_of_them
+      type(curve_point_t) :: p
+      integer :: k
+      logical :: ok
+
+      found%is_complete = found%is_complete .and. .not. (all_of_them%are_more .or. any(all_of_them%blocks%is_wide) &
+         .or. any(all_of_them%blocks%failed > 0))
+      do k = 1, size(all_of_them%list)
+         call start_point(found%curve, all_of_them%list(k)%position, p, ok)
+         if (ok) call add_circuits(found, p)
+      end do
+   end subroutine add_through
+
+   !> Adds the circuits through the assemblies of `m` at values of the drive over its whole range: a turn, or as far as
+   !> all links together reach. `first`: the assemblies at the time `t`, which say what an evaluation costs.
+   subroutine search_whole_range(m, t, found, first)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: t
+      type(circuits_t), intent(inout) :: found
+      type(assemblies_t), intent(in) :: first
+      type(mechanism_t) :: held
+      type(assemblies_t) :: more
+      real(wp) :: from, range
+      integer :: k, n
+
+      if (any(first%blocks%is_wide)) return
+      n = max(least_values, min(most_values, max_paths/max(1, sum(first%blocks%paths))))
+      held = held_at(m, t)
+      from = held%drives(found%drive)%polynomial(1)
+      range = 2.0_wp*pi
+      if (.not. found%curve%is_angle) then
+         range = 2.0_wp*characteristic_length(m)*count(.not. m%links%ground)
+         from = from - 0.5_wp*range
+      end if
+      do k = 1, n - 1
+         held%drives(found%drive)%polynomial(1) = from + range*real(k, wp)/real(n, wp)
+         call find_assemblies(held, 0.0_wp, more)
+         call add_through(found, more)
+      end do
+   end subroutine search_whole_range
+
+   !> The drives of `m` that are set free, each alone: those that move; if none does, all.
+   pure function free_drives(m) result(list)
+      type(mechanism_t), intent(in) :: m
+      integer, allocatable :: list(:)
+      logical :: moves
+      integer :: i
+
+      allocate (list(0))
+      do i = 1, size(m%drives)
+         moves = any(abs(m%drives(i)%polynomial(2:)) > 0.0_wp)
+         if (allocated(m%drives(i)%terms)) moves = moves .or. size(m%drives(i)%terms) > 0
+         if (moves) list = [list, i]
+      end do
+      if (size(list) == 0) list = [(i, i=1, size(m%drives))]
+   end function free_drives
+
+   !> Adds the circuit through `p`, unless it is known, and those that it meets.
+   recursive subroutine add_circuits(found, p)
+      type(circuits_t), intent(inout) :: found
+      type(curve_point_t), intent(in) :: p
+      type(circuit_t), allocatable :: more(:)
+      type(curve_point_t) :: other
+      integer :: n, k
+      logical :: ok
+
+      n = size(found%list) + 1
+      if (n > max_circuits .or. is_known(found, p)) return
+      allocate (more(n))
+      more(:n - 1) = found%list
+      call trace(found%curve, p, more(n))
+      call move_alloc(more, found%list)
+      do k = 1, size(found%list(n)%changes)
+         associate (circuit => found%list(n))
+            call other_circuit(found%curve, circuit%points(circuit%changes(k)%after), circuit%changes(k), other, ok)
+         end associate
+         if (ok) call add_circuits(found, other)
+      end do
+   end subroutine add_circuits
+
+   !> Whether some circuit goes through `p`.
+   logical function is_known(found, p)
+      type(circuits_t), intent(inout) :: found
+      type(curve_point_t), intent(in) :: p
+      type(curve_point_t) :: again
+      integer :: i, k
+
+      is_known = .false.
+      do i = 1, size(found%list)
+         associate (points => found%list(i)%points)
+            do k = 1, size(points) - 1
+               if (.not. passes(found%curve, points(k), points(k + 1), p%value(0))) cycle
+               call lies_between(found%curve, points(k), step_between(found%curve, points(k), points(k + 1)), p%q, &
+                  again, is_known)
+               if (is_known) return
+            end do
+         end associate
+      end do
+   end function is_known
+end module circuits

@@ -1,0 +1,211 @@
+!> The answer to the card CIRCUITS in the listing: a row for each branch, then the dead points and the change points.
+module circuits_table
+   use kinds, only: wp
+   use mechanism, only: mechanism_t
+   use diagnostics, only: diagnostic_t, diagnostic_limit
+   use set_analysis, only: set_analysis_t
+   use set_motion, only: in_set
+   use circuit_trace, only: circuit_t, end_closed, end_far, end_lost
+   use circuit_branches, only: circuits_t, branch_t, turns_of
+   use circuits, only: find_circuits, free_drives
+   use names, only: drive_name
+   use text_output, only: output_t, put
+   use numerals, only: whole
+   use listing_diagnostics, only: limit_words, measure
+   use phrases
+   implicit none
+   private
+   public :: find_all_circuits, put_circuits
+
+   !> The ends of the columns of circuit, branch, sign and assemblies; the range of the drive follows.
+   integer, parameter :: column_ends(4) = [9, 17, 22, 34]
+   !> Where a branch has no dead point: a slide goes to infinity, or the circuit could not be followed.
+   type(phrase_t), parameter :: end_words(end_far:end_lost) = [say_no_limit, say_lost]
+   !> A value below this is rounding of 0, in rad and in lengths of the order of 1.
+   real(wp), parameter :: rounding = 1.0e5_wp*epsilon(1.0_wp)
+
+contains
+
+   !> The circuits of each free drive of the set that `s` analyses, in the numbers of the set, from its first instant;
+   !> none of a mechanism that has no position there.
+   subroutine find_all_circuits(s, list)
+      type(set_analysis_t), intent(in) :: s
+      type(circuits_t), allocatable, intent(out) :: list(:)
+      type(circuits_t), allocatable :: more(:)
+      integer, allocatable :: drives(:)
+      integer :: c, i, k, n
+
+      allocate (list(0))
+      do c = 1, size(s%now%own)
+         if (s%now%motions(c)%known < 0) cycle
+         drives = free_drives(s%now%own(c))
+         do i = 1, size(drives)
+            n = size(list)
+            allocate (more(n + 1))
+            more(:n) = list
+            call find_circuits(s%now%own(c), s%now%motions(c), drives(i), more(n + 1))
+            more(n + 1)%drive = s%now%parts%list(c)%drives(drives(i))
+            do k = 1, size(more(n + 1)%dead)
+               more(n + 1)%dead(k)%limit = in_set(more(n + 1)%dead(k)%limit, s%now%parts%list(c))
+            end do
+            call move_alloc(more, list)
+         end do
+      end do
+   end subroutine find_all_circuits
+
+   !> Writes the circuits `list` of `m` at the end of a set.
+   subroutine put_circuits(o, m, list)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(circuits_t), intent(in) :: list(:)
+      character(:), allocatable :: head
+      integer :: i
+
+      head = ' '//phrase(say_circuits, m%polish)
+      call put(o, '')
+      if (size(list) == 0) then
+         call put(o, head)
+         call put(o, '   '//phrase(say_none, m%polish))
+      end if
+      do i = 1, size(list)
+         if (i > 1) call put(o, '')
+         call put(o, head//', '//phrase(say_drive, m%polish)//' '//trim(drive_name(m, m%drives(list(i)%drive))))
+         if (.not. list(i)%is_curve) then
+            call put(o, '   '//phrase(say_no_circuits, m%polish))
+         else if (size(list(i)%list) == 0) then
+            call put(o, '   '//phrase(say_start_singular, m%polish))
+         else
+            if (.not. list(i)%is_complete) call put(o, ' *** '//phrase(say_circuits_missing, m%polish))
+            call put_branches(o, m, list(i))
+            call put_dead_points(o, m, list(i))
+            call put_change_points(o, m, list(i))
+         end if
+      end do
+   end subroutine put_circuits
+
+   !> A row for each branch of `found`.
+   subroutine put_branches(o, m, found)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(circuits_t), intent(in) :: found
+      character(1), parameter :: signs(-1:1) = ['-', '*', '+']
+      character(column_ends(4)) :: row
+      character(:), allocatable :: numbers
+      integer :: k, i
+
+      row = ' '//phrase(say_circuit, m%polish)
+      row(column_ends(1) + 1:) = phrase(say_branch, m%polish)
+      row(column_ends(2) + 1:) = 'DET'
+      row(column_ends(3) + 1:) = phrase(say_assemblies, m%polish)
+      call put(o, row//phrase(say_one_range, m%polish))
+      do k = 1, size(found%branches)
+         associate (b => found%branches(k))
+            numbers = ''
+            do i = 1, size(found%assemblies)
+               if (found%assemblies(i)%branch == k) numbers = numbers//' '//whole(found%assemblies(i)%number)
+            end do
+            row = ' '//whole(b%circuit)
+            row(column_ends(1) + 1:) = whole(k)
+            row(column_ends(2) + 1:) = ' '//signs(b%sign)
+            row(column_ends(3) + 1:) = numbers(2:)
+            call put(o, row//range_words(m, found, b))
+         end associate
+      end do
+   end subroutine put_branches
+
+   !> The range of the drive on branch `b`.
+   function range_words(m, found, b) result(text)
+      type(mechanism_t), intent(in) :: m
+      type(circuits_t), intent(in) :: found
+      type(branch_t), intent(in) :: b
+      character(:), allocatable :: text
+      character(3), parameter :: side_words(2) = ['MIN', 'MAX']
+      integer :: side
+
+      associate (circuit => found%list(b%circuit))
+         if (circuit%rests) then
+            text = phrase(say_at_rest, m%polish)//' '//value_words(b%range(1), '(es17.9)')
+         else if (all(circuit%ends == end_closed) .and. all(b%dead == 0)) then
+            text = phrase(say_all, m%polish)//' '//whole(turns_of(circuit))
+         else
+            text = ''
+            do side = 1, 2
+               text = text//side_words(side)//'  '
+               if (b%dead(side) == 0) text = text//phrase(end_words(end_of(b, circuit, side)), m%polish)//' '
+               text = text//value_words(b%range(side), '(es17.9)')
+               if (side == 1) text = text//'   '
+            end do
+         end if
+      end associate
+
+   contains
+
+      !> How `circuit` ends where its branch `b` has no dead point on a `side`.
+      pure integer function end_of(b, circuit, side)
+         type(branch_t), intent(in) :: b
+         type(circuit_t), intent(in) :: circuit
+         integer, intent(in) :: side
+         logical :: rises
+
+         rises = circuit%points(b%first)%value(0) < circuit%points(b%last)%value(0)
+         end_of = circuit%ends(merge(side, 3 - side, rises))
+      end function end_of
+
+      !> The drive's value `x` with its unit.
+      function value_words(x, form) result(words)
+         real(wp), intent(in) :: x
+         character(*), intent(in) :: form
+         character(:), allocatable :: words
+
+         words = measure(m, diagnostic_t(kind=diagnostic_limit, is_angle=found%curve%is_angle, value=known(x)), form)
+      end function value_words
+   end function range_words
+
+   !> A line for each dead point: the drive's value, links, and the branches that end there.
+   subroutine put_dead_points(o, m, found)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(circuits_t), intent(in) :: found
+      type(diagnostic_t) :: limit
+      integer :: d, k
+      character(:), allocatable :: numbers
+
+      if (size(found%dead) > 0) call put(o, ' '//phrase(say_dead_points, m%polish))
+      do d = 1, size(found%dead)
+         limit = found%dead(d)%limit
+         limit%value = known(limit%value)
+         numbers = ''
+         do k = 1, size(found%branches)
+            if (any(found%branches(k)%dead == d)) numbers = numbers//' '//whole(k)
+         end do
+         call put(o, '   '//phrase(say_branch, m%polish)//numbers//'   '//limit_words(m, limit))
+      end do
+   end subroutine put_dead_points
+
+   !> A line for each change point: the circuits that meet there, and the drive's value.
+   subroutine put_change_points(o, m, found)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(circuits_t), intent(in) :: found
+      character(:), allocatable :: numbers
+      integer :: i, k
+
+      if (size(found%meetings) > 0) call put(o, ' '//phrase(say_change_points, m%polish))
+      do i = 1, size(found%meetings)
+         numbers = ''
+         do k = 1, size(found%list)
+            if (found%meetings(i)%circuits(k)) numbers = numbers//' '//whole(k)
+         end do
+         call put(o, '   '//phrase(say_circuit, m%polish)//numbers//'   '//measure(m, diagnostic_t( &
+            kind=diagnostic_limit, is_angle=found%curve%is_angle, value=merge(0.0_wp, found%meetings(i)%value, &
+            abs(found%meetings(i)%value) <= sqrt(epsilon(1.0_wp)))), '(es13.5)'))
+      end do
+   end subroutine put_change_points
+
+   !> `x` (rad or length), 0 where it is rounding alone.
+   pure real(wp) function known(x)
+      real(wp), intent(in) :: x
+
+      known = merge(0.0_wp, x, abs(x) <= rounding)
+   end function known
+end module circuits_table

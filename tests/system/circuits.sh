@@ -1,0 +1,104 @@
+#!/bin/sh
+# The card CIRCUITS: circuits, branches and ranges of four-bars and crank-sliders by Grashof's condition and the law of
+# cosines, to ten digits; change points; what has no circuits.
+. tests/counting.sh
+
+# circuits: the lines of the answer for $w/deck
+circuits() { "$kinmat" "$w/deck" 2>&1 | awk '/^ (CIRCUITS AND|OBWODY I) / { on = 1 } /^ (BRANCH|GALAZ|LARGEST GAP)/ && on { exit } on && NF > 0'; }
+# found NAME EXPECTED: these lines
+found() { equal "$1" "$2" "$(circuits)"; }
+# angle A B C: between the sides A and B of a triangle, opposite C, in degrees
+angle() { awk -v a="$1" -v b="$2" -v c="$3" 'BEGIN { x = (a*a + b*b - c*c)/(2*a*b)
+   printf "%.12f", atan2(sqrt(1 - x*x), x)*45/atan2(1, 1) }'; }
+# limit VALUE: ten digits
+limit() { awk -v x="$1" 'BEGIN { printf "%.9E", x }'; }
+
+# four_bar CRANK COUPLER ROCKER BASE DRIVEN PHI-CRANK PHI-COUPLER PHI-ROCKER VALUE: a four-bar with CIRCUITS
+four_bar() {
+   card UNITS M DEG S
+   card GROUND BASE
+   card LINK CRANK '' '' 0.0 0.0 "$6"
+   card LINK COUPLER '' '' "$1" 0.0 "$7"
+   card LINK ROCKER '' '' "$4" 0.0 "$8"
+   card POINT A0 BASE; card POINT B0 BASE '' "$4"
+   card POINT C1 CRANK; card POINT C2 CRANK '' "$1"
+   card POINT D1 COUPLER; card POINT D2 COUPLER '' "$2"
+   card POINT E1 ROCKER; card POINT E2 ROCKER '' "$3"
+   card REVOLUTE A0 C1 P1; card REVOLUTE C2 D1 P2; card REVOLUTE D2 E2 P3; card REVOLUTE B0 E1 P4
+   card DRIVE ANGLE "$5" '' "$9" 30.0
+   card AT '' '' '' 0.0
+   card CIRCUITS
+   card END
+}
+head=' CIRCUIT BRANCH  DET  ASSEMBLIES  RANGE'
+all='ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS'
+
+# Grashof: 1 + 4 < 3.5 + 3, the shortest link turns fully, in either of two circuits.
+four_bar 1.0 3.5 3.0 4.0 CRANK 0.0 55.0 110.0 0.0 > "$w/deck"
+found 'a crank' " CIRCUITS AND BRANCHES, DRIVE ANGLE CRANK
+$head
+ 1       1        -   1           $all 1
+ 2       2        +   2           $all 1"
+
+# Its rocker: between the two positions with crank and coupler in line, and their mirror images.
+four_bar 1.0 3.5 3.0 4.0 ROCKER 85.0 35.0 120.0 120.0 > "$w/deck"
+least=$(awk -v a="$(angle 3 4 4.5)" 'BEGIN { printf "%.12f", 180 - a }')
+greatest=$(awk -v a="$(angle 3 4 2.5)" 'BEGIN { printf "%.12f", 180 - a }')
+one="MIN  $(limit "$least") DEG   MAX  $(limit "$greatest") DEG"
+other="MIN  $(limit "$(awk -v x="$greatest" 'BEGIN { printf "%.12f", 360 - x }')") DEG   MAX  $(
+   limit "$(awk -v x="$least" 'BEGIN { printf "%.12f", 360 - x }')") DEG"
+lined='LINKS CRANK, COUPLER AT THE LIMIT, IN LINE'
+found 'a rocker' " CIRCUITS AND BRANCHES, DRIVE ANGLE ROCKER
+$head
+ 1       1        +   1           $one
+ 1       2        -   2           $one
+ 2       3        -               $other
+ 2       4        +               $other
+ DEAD POINTS
+   BRANCH 1 2   $(limit "$greatest") DEG   $lined
+   BRANCH 1 2   $(limit "$least") DEG   $lined
+   BRANCH 3 4   ${other##*MAX  }   $lined
+   BRANCH 3 4   $(echo "$other" | awk '{ print $2 }') DEG   $lined"
+
+# 1.5 + 4 > 2 + 3: no link turns fully, and there is one circuit; in Polish.
+four_bar 2.0 1.5 3.0 4.0 CRANK 57.0 20.0 105.0 57.0 | sed "s/^CIRCUITS/&\n$(card LANG PL)/" > "$w/deck"
+found 'a triple rocker, in Polish' " OBWODY I GALEZIE, NAPED ANGLE CRANK
+ OBWOD   GALAZ   DET  MONTAZE     ZAKRES
+ 1       1        +   2           MIN  -$(limit "$(angle 2 4 4.5)") DEG   MAX  $(limit "$(angle 2 4 4.5)") DEG
+ 1       2        -   1           MIN  -$(limit "$(angle 2 4 4.5)") DEG   MAX  $(limit "$(angle 2 4 4.5)") DEG
+ PUNKTY MARTWE
+   GALAZ 1 2   $(limit "$(angle 2 4 4.5)") DEG   OGNIWA COUPLER, ROCKER NA KRESIE RUCHU, W JEDNEJ LINII
+   GALAZ 1 2   -$(limit "$(angle 2 4 4.5)") DEG   OGNIWA COUPLER, ROCKER NA KRESIE RUCHU, W JEDNEJ LINII"
+
+# A parallelogram and its antiparallelogram meet, also where the first instant is the change point.
+for deck in parallelogram parallelogram_at; do
+   with $deck "$(card CIRCUITS)" > "$w/deck"
+   equal "$deck" "$(printf '1 1\n2 2')" "$(circuits | awk '/MOTION CLOSES; TURNS 1$/ { print $1, $2 }')"
+   equal "$deck: change points" '   CIRCUIT 1 2   0.00000E+00 DEG
+   CIRCUIT 1 2   1.80000E+02 DEG' "$(circuits | awk '/^   CIRCUIT/' | sort)"
+done
+
+# A kite whose crank is as long as the base: a circuit on which it rests.
+four_bar 4.0 2.0 2.0 4.0 CRANK 30.0 -20.0 -110.0 30.0 > "$w/deck"
+equal 'a drive at rest' ' 2       3        *               AT REST 0.000000000E+00 DEG' "$(circuits | grep 'AT REST')"
+
+# The five-bar has a table for each drive that moves.
+with five_bar "$(card CIRCUITS)" > "$w/deck"
+equal 'two drives' ' CIRCUITS AND BRANCHES, DRIVE ANGLE LEFT
+ CIRCUITS AND BRANCHES, DRIVE RELANGLE LEFT RIGHT' "$(circuits | grep DRIVE)"
+
+# A slide as the drive; both senses of the cylinder close, as assemblies do.
+with cylinder "$(card CIRCUITS)" > "$w/deck"
+equal 'a cylinder' 'MIN 5.882158401E-01 M MAX 3.427499398E+00 M
+MIN -3.427499398E+00 M MAX -5.882158401E-01 M' "$(circuits | awk '/MIN/ { sub(/.*MIN/, "MIN"); $1 = $1; print }' | uniq)"
+
+# Redundant pairs, and no position.
+with parallel_cranks "$(card CIRCUITS)" > "$w/deck"
+found 'redundant equations' ' CIRCUITS AND BRANCHES, DRIVE ANGLE CRANK-1
+   NOT OF A MECHANISM WITH REDUNDANT EQUATIONS'
+four_bar 1.0 1.0 1.0 4.0 CRANK 0.0 0.0 0.0 0.0 > "$w/deck"
+found 'no position' ' CIRCUITS AND BRANCHES
+   NONE'
+sed 's/^CIRCUITS/&CRANK/' "$w/deck" > "$w/wrong"
+equal 'a field' yes "$("$kinmat" "$w/wrong" 2>&1 | grep -q 'E019' && echo yes)"
+conclude
