@@ -8,19 +8,20 @@ module command_line
    private
    public :: options_t, to_standard_output, word_t, read_command, read_words, help_text
    public :: file_option_t, file_options
-   public :: out_listing, out_csv, out_log, out_summary, out_svg, out_animation, out_table
+   public :: out_listing, out_csv, out_log, out_summary, out_svg, out_animation, out_circuits, out_table
    public :: out_plot_table, out_plot_script, out_last
 
    !> The outputs that are files, and `out_last`, the last of them.
    enum, bind(c)
-      enumerator :: out_listing = 1, out_csv, out_log, out_summary, out_svg, out_animation, out_table
+      enumerator :: out_listing = 1, out_csv, out_log, out_summary, out_svg, out_animation, out_circuits
+      enumerator :: out_table
       enumerator :: out_plot_table, out_plot_script
       enumerator :: out_last = out_plot_script
    end enum
 
    !> An option that names the file of an output.
    type :: file_option_t
-      character(9) :: word = ''
+      character(10) :: word = ''
       character(9) :: in_directory = ''      !< of an option that names a directory: the file in it
       logical :: needs_motion = .false.      !< there is nothing to write if only the deck is analysed
       logical :: each_set = .false.          !< each set has a file of its own
@@ -35,6 +36,7 @@ module command_line
       file_option_t('--summary', needs_motion=.true.), &
       file_option_t('--svg', needs_motion=.true.), &
       file_option_t('--animate', needs_motion=.true.), &
+      file_option_t('--circuits', needs_motion=.true.), &
       file_option_t('--table', needs_motion=.true., each_set=.true.), &
       file_option_t('--plot', 'table.csv', needs_motion=.true., each_set=.true.), &
       file_option_t('--plot', 'plot.gp', needs_motion=.true., each_set=.true.)]
@@ -76,6 +78,7 @@ module command_line
       '  --summary FILE       a row for each variant of a set with VARY cards', &
       '  --svg FILE           a picture of the mechanism and paths of points', &
       '  --animate FILE       the same with the mechanism in motion', &
+      '  --circuits FILE      diagrams of the circuits that CIRCUITS asks for', &
       '  --table FILE         a row an instant, a column a quantity', &
       '  --plot DIR           that table and a script in the directory DIR:', &
       '                       gnuplot DIR/plot.gp draws it', &

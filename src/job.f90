@@ -17,6 +17,9 @@ module job
    use picture_frames, only: picture_candidates
    use picture_page, only: picture_head
    use picture, only: put_pictures
+   use circuit_branches, only: circuits_t
+   use circuits_table, only: find_all_circuits
+   use circuits_picture, only: circuit_page_t, add_to_page, put_circuit_page
    use animation, only: film_of, put_animations, max_intervals
    use solver_log, only: log_head
    use answers, only: answers_t
@@ -26,7 +29,7 @@ module job
    use numerals, only: whole
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set
    use command_line, only: options_t, file_options, to_standard_output, out_listing, out_csv, out_log, out_svg, &
-      out_animation, out_table, out_plot_table, out_plot_script, out_last
+      out_animation, out_circuits, out_table, out_plot_table, out_plot_script, out_last
    use shares, only: run_shares, end_share
    use processes, only: processor_count
    use outputs, only: open_outputs, flush_outputs, close_outputs, is_over, is_broken_pipe, set_suffix
@@ -58,6 +61,10 @@ contains
       call read_deck(options%deck, sets, message, failure, share, o%variations)
       o%varies = share%varies
       if (.not. allocated(failure) .and. o%varies) call check_variants(options, sets, failure)
+      if (.not. allocated(failure) .and. allocated(options%files(out_circuits)%text)) then
+         if (.not. any(sets%circuits)) call fail(failure, status_rejected, &
+            'OPTION --circuits NEEDS A SET WITH A CIRCUITS CARD')
+      end if
       if (.not. allocated(failure)) call check_structure(sets, findings, failure)
       if (allocated(failure) .and. len(message) == 0) message = said_of(options, sets)//' *** '//failure%text
       if (.not. allocated(failure)) then
@@ -122,7 +129,7 @@ contains
       work = sum([(real(instant_count(sets(i)))*max(1, sets(i)%variants)*size(sets(i)%links), i=1, size(sets))])
       if (n == 0) n = merge(processor_count(), 1, work > least_work)
       if (options%check .or. allocated(options%files(out_svg)%text) .or. &
-         allocated(options%files(out_animation)%text)) n = 1
+         allocated(options%files(out_animation)%text) .or. allocated(options%files(out_circuits)%text)) n = 1
       n = max(1, min(n, variants_before(sets, size(sets) + 1)))
    end function process_count
 
@@ -163,6 +170,7 @@ contains
       type(findings_t), intent(inout) :: findings(o%first:)
       integer, intent(inout) :: status
       type(mechanism_t) :: film
+      type(circuit_page_t) :: page
       integer :: i, every, before
 
       if (o%asked(out_csv) .and. options%share == 1 .and. o%own_first == 1) &
@@ -170,6 +178,7 @@ contains
       if (o%asked(out_svg)) call picture_head(o%files(out_svg, 0))
       if (o%asked(out_svg)) allocate (o%drawings(o%first:o%last))
       if (o%asked(out_animation)) call picture_head(o%files(out_animation, 0))
+      if (o%asked(out_circuits)) call picture_head(o%files(out_circuits, 0))
       if (o%asked(out_animation)) allocate (o%films(o%first:o%last))
       before = o%first - 1
       do i = o%first, o%last
@@ -186,11 +195,13 @@ contains
             call film_of(sets(i), film, every)
             call draw_set(film, max_intervals + 1, every, o%films(i), o%progress)
          end if
+         if (o%asked(out_circuits) .and. sets(i)%circuits) call draw_circuits(sets(i), page)
       end do
       ! Sets that were broken off are not drawn.
       associate (done => sets(o%first:i - 1))
          if (o%asked(out_svg)) call put_pictures(o%files(out_svg, 0), done, o%drawings(o%first:i - 1))
          if (o%asked(out_animation)) call put_animations(o%files(out_animation, 0), done, o%films(o%first:i - 1))
+         if (o%asked(out_circuits)) call put_circuit_page(o%files(out_circuits, 0), page)
       end associate
    end subroutine run_sets
 
@@ -214,6 +225,19 @@ contains
          if (signal_received() > 0) return
       end do
    end subroutine draw_set
+
+   !> Adds the circuits of `m` to `page`. As a picture it has an analysis of its own.
+   subroutine draw_circuits(m, page)
+      type(mechanism_t), intent(in) :: m
+      type(circuit_page_t), intent(inout) :: page
+      type(set_analysis_t) :: a
+      type(circuits_t), allocatable :: found(:)
+
+      call make_set_analysis(m, a)
+      call advance_set(a, instant(m, 0))
+      call find_all_circuits(a, found)
+      call add_to_page(page, m, a, found)
+   end subroutine draw_circuits
 
    !> Replaces the centrodes of the drawing `d` of `m` by finer ones: the deck's instants may be far apart.
    subroutine draw_centrodes(m, d, progress)

@@ -31,7 +31,7 @@ parts() {
    variants|81|tests/system/variants.sh
    tolerances|22|tests/system/tolerances.sh
    extremes and ranges|35|tests/system/answers.sh
-   circuits|13|tests/system/circuits.sh
+   circuits|23|tests/system/circuits.sh
    independent mechanisms|106|tests/system/independent.sh
    what a singular position is|211|tests/system/singular.sh
    poles and curves|37|tests/system/centres.sh

@@ -50,6 +50,7 @@ module circuit_branches
 
    type :: circuits_t
       integer :: drive = 0                     !< the number of the free one
+      integer :: part = 1                      !< the number of its independent mechanism
       logical :: is_curve = .true.             !< no equations are redundant
       logical :: is_complete = .true.          !< all assemblies were known wherever they were asked for
       type(curve_t) :: curve

@@ -44,6 +44,7 @@ contains
             allocate (more(n + 1))
             more(:n) = list
             call find_circuits(s%now%own(c), s%now%motions(c), drives(i), more(n + 1))
+            more(n + 1)%part = c
             more(n + 1)%drive = s%now%parts%list(c)%drives(drives(i))
             do k = 1, size(more(n + 1)%dead)
                more(n + 1)%dead(k)%limit = in_set(more(n + 1)%dead(k)%limit, s%now%parts%list(c))

@@ -99,6 +99,25 @@ found 'redundant equations' ' CIRCUITS AND BRANCHES, DRIVE ANGLE CRANK-1
 four_bar 1.0 1.0 1.0 4.0 CRANK 0.0 0.0 0.0 0.0 > "$w/deck"
 found 'no position' ' CIRCUITS AND BRANCHES
    NONE'
+# Diagrams: of the coupler and the rocker of a parallelogram, each with two circuits that meet twice; of the crank itself none.
+with parallelogram "$(card CIRCUITS)" > "$w/deck"
+"$kinmat" --no-listing --circuits "$w/svg" "$w/deck"
+equal 'diagrams' 2 "$(grep -c '<g class="circuits" data-drive="ANGLE CRANK">' "$w/svg")"
+equal 'their circuits' '1 2 1 2' "$(sed -n 's/.*data-circuit="\([0-9]*\)".*/\1/p' "$w/svg" | xargs)"
+equal 'their change points' 8 "$(grep -c 'class="change"' "$w/svg")"
+equal 'their assemblies' '1 2 1 2' "$(sed -n 's/.*class="assembly".*>\([0-9]*\)<.*/\1/p' "$w/svg" | xargs)"
+equal 'as many ends as beginnings' "$(grep -cE '<(g|svg|text)[ >]' "$w/svg")" "$(grep -cE '</(g|svg|text)>' "$w/svg")"
+equal 'numbers' '' "$(grep -niE '[" ,](nan|inf)|[*]{3}' "$w/svg" | grep -v '{')"
+# A triple rocker has dots at both dead points.
+four_bar 2.0 1.5 3.0 4.0 CRANK 57.0 20.0 105.0 57.0 > "$w/deck"
+"$kinmat" --circuits "$w/svg" "$w/deck" > "$w/listing"
+equal 'dead points' 6 "$(grep -c 'class="dead"' "$w/svg")"
+"$kinmat" "$w/deck" | cmp -s - "$w/listing"
+equal 'the listing with diagrams' 0 $?
+"$kinmat" --circuits "$w/svg" input/four_bar.deck > "$w/listing" 2>&1
+equal 'no card: status' 1 $?
+equal 'no card' ' *** OPTION --circuits NEEDS A SET WITH A CIRCUITS CARD' "$(cat "$w/listing")"
+four_bar 1.0 1.0 1.0 4.0 CRANK 0.0 0.0 0.0 0.0 > "$w/deck"
 sed 's/^CIRCUITS/&CRANK/' "$w/deck" > "$w/wrong"
 equal 'a field' yes "$("$kinmat" "$w/wrong" 2>&1 | grep -q 'E019' && echo yes)"
 conclude
