@@ -1,6 +1,7 @@
 !> Card ASSEMBLY: all assemblies at the first instant. Each is printed as the LINK cards with which a run takes it.
 module assembly_table
    use kinds, only: wp, label_length
+   use planar, only: point_of
    use constants, only: degree, without_turns
    use mechanism, only: mechanism_t, instant, plane_origin
    use motion, only: motion_t
@@ -27,8 +28,16 @@ module assembly_table
    !> The chosen assembly is the one at this distance from the motion at most, in rad and characteristic lengths: an
    !> iteration near a dead point has half of all digits.
    real(wp), parameter :: same_place = max(1.0e-5_wp, 16.0_wp*sqrt(epsilon(1.0_wp)))
-   !> Characters of a number on a card, with a blank before it.
-   integer, parameter :: number_width = 15
+   !> A smaller ratio of distances is more than rounding.
+   real(wp), parameter :: less = 0.999_wp
+   !> Characters of a number on a card.
+   integer, parameter :: number_width = 16
+   !> Digits of an estimate, and of numbers that are dimensions, of the largest number.
+   integer, parameter :: estimate_digits = 10, drawing_digits = 13
+   !> Angles have as many digits after the point as this one, in rad or degrees.
+   real(wp), parameter :: largest_angle = 100.0_wp
+   !> An estimate is not nearer to another assembly if it is as good as this.
+   real(wp), parameter :: fine = 1.0e-4_wp
 
 contains
 
@@ -122,8 +131,9 @@ contains
             //whole(max_assemblies))
          if (size(list) == 0) call put(o, '   '//phrase(say_none, m%polish))
          if (chosen > 1) then
-            if (list(1)%distance < list(chosen)%distance) call put(o, ' --- '//phrase(say_nearer_assembly, m%polish) &
-               //' 1: '//distance_text(list(1))//', '//phrase(say_not_chosen, m%polish)//' '//whole(chosen)//': ' &
+            if (list(1)%distance < less*list(chosen)%distance .and. list(chosen)%distance > fine) &
+               call put(o, ' --- '//phrase(say_nearer_assembly, m%polish)//' 1: ' &
+               //distance_text(list(1))//', '//phrase(say_not_chosen, m%polish)//' '//whole(chosen)//': ' &
                //distance_text(list(chosen)))
          end if
       end associate
@@ -139,7 +149,7 @@ contains
       text = trim(adjustl(number))
    end function distance_text
 
-   !> Assembly number `k` of `a` as LINK cards.
+   !> Assembly number `k` of `a` of the mechanism `m`.
    subroutine put_assembly(o, m, k, a, is_chosen)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
@@ -147,8 +157,6 @@ contains
       type(assemblies_t), intent(in) :: a
       logical, intent(in) :: is_chosen
       character(:), allocatable :: text
-      character(label_length) :: name
-      real(wp) :: place(2, size(m%links)), largest, phi
       integer :: i
 
       associate (one => a%list(k))
@@ -158,26 +166,56 @@ contains
          do i = 1, size(a%blocks)
             text = text//sign_text(a%blocks(i), one%sign_of(a%blocks(i)%block))
          end do
+         text = text//'   '//phrase(merge(say_assembly_proved, say_assembly_open, one%is_proved), m%polish)
          if (is_chosen) text = text//'   '//phrase(say_chosen, m%polish)
          call put(o, '')
          call put(o, text)
-         do i = 1, size(m%links)
-            place(:, i) = one%position(:2, i) + plane_origin(m)
-         end do
-         largest = max(characteristic_length(m), maxval(abs(place)))
-         call put(o, ruler_card())
-         do i = 1, size(m%links)
-            if (m%links(i)%ground) cycle
-            associate (estimate => m%links(i)%position(3))
-               phi = estimate + without_turns(one%position(3, i) - estimate)
-               if (m%degrees) phi = phi/degree
-            end associate
-            name = m%links(i)%name
-            call put(o, 'LINK    '//name//repeat(' ', 16)//number_text(place(1, i), largest) &
-               //number_text(place(2, i), largest)//number_text(phi, 1000.0_wp))
-         end do
+         call put_cards(o, m, one)
       end associate
    end subroutine put_assembly
+
+   !> The LINK cards of assembly `one` of `m`. Where JOINT cards give the dimensions, LINK cards are a part of them:
+   !> both stand there, as of a drawing of this assembly.
+   subroutine put_cards(o, m, one)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(assembly_t), intent(in) :: one
+      character(label_length) :: names(3)
+      real(wp) :: position(3, size(m%links)), largest
+      logical :: is_joint(size(m%pairs))
+      integer :: i, digits
+
+      do i = 1, size(m%links)
+         position(:, i) = one%position(:, i) + [plane_origin(m), 0.0_wp]
+         associate (estimate => m%links(i)%position(3))
+            position(3, i) = estimate + without_turns(one%position(3, i) - estimate)
+         end associate
+      end do
+      largest = max(characteristic_length(m), maxval(abs(position(:2, :))))
+      ! Of all points only the two of a JOINT card have the same name.
+      is_joint = m%points(m%pairs%point_i)%name == m%points(m%pairs%point_j)%name
+      digits = estimate_digits + max(0, floor(log10(largest/characteristic_length(m))))
+      if (any(is_joint)) digits = drawing_digits
+      digits = min(digits, drawing_digits)
+      call put(o, ruler_card())
+      do i = 1, size(m%links)
+         if (m%links(i)%ground) cycle
+         names(1) = m%links(i)%name
+         call put(o, 'LINK    '//names(1)//repeat(' ', 16)//number_text(position(1, i), largest, digits) &
+            //number_text(position(2, i), largest, digits) &
+            //number_text(position(3, i)/merge(degree, 1.0_wp, m%degrees), largest_angle, digits))
+      end do
+      do i = 1, size(m%pairs)
+         if (.not. is_joint(i)) cycle
+         associate (p => m%points(m%pairs(i)%point_i), q => m%points(m%pairs(i)%point_j))
+            names = [m%pairs(i)%name, m%links(p%link)%name, m%links(q%link)%name]
+            associate (place => point_of(position(:, p%link), p%offset))
+               call put(o, 'JOINT   '//names(1)//names(2)//names(3)//number_text(place(1), largest, digits) &
+                  //number_text(place(2), largest, digits))
+            end associate
+         end associate
+      end do
+   end subroutine put_cards
 
    !> The sign of the determinant of a block: 0 where it is singular, a point where it has more equations than unknowns.
    pure character(1) function sign_text(block, sign_of) result(text)
@@ -190,23 +228,22 @@ contains
       if (block%is_redundant) text = '.'
    end function sign_text
 
-   !> `x` in the columns of a card, with as many digits as fit; none of rounding beside `largest`.
-   function number_text(x, largest) result(text)
+   !> `x` in the columns of a card: so many `digits` of `largest`, and none of rounding.
+   function number_text(x, largest, digits) result(text)
       real(wp), intent(in) :: x, largest
-      character(number_width + 1) :: text
+      integer, intent(in) :: digits
+      character(number_width) :: text
       character(16) :: form
       real(wp) :: unit, rounded
       integer :: power
 
       power = floor(log10(largest))
-      unit = 10.0_wp**(power - 9)
+      unit = 10.0_wp**(power - digits + 1)
       rounded = anint(x/unit)
       if (abs(rounded) <= 0.0_wp) rounded = 0.0_wp
-      if (power >= -3 .and. power <= 8) then
-         write (form, '(a, i0, a)') '(f16.', min(9 - power, 11), ')'
-      else
-         form = '(es16.8)'
-      end if
+      form = '(es16.8)'
+      if (power >= 0 .and. power < digits) write (form, '(a, i0, a)') '(f16.', digits - 1 - power, ')'
+      if (power < 0 .and. digits - 1 - power <= 13) write (form, '(a, i0, a)') '(f16.', digits - 1 - power, ')'
       write (text, form) rounded*unit
    end function number_text
 end module assembly_table

@@ -1,5 +1,5 @@
 !> All assemblies of a mechanism at one instant: a tree, in which each assembly of the earlier blocks gives the next one
-!> its problem. A block is solved anew only where something that it builds on has changed.
+!> its problem. A block is solved anew only where something that it builds on has changed. Each assembly is proved.
 module assemblies
    use kinds, only: wp
    use constants, only: without_turns
@@ -9,6 +9,7 @@ module assemblies
    use block_needs, only: largest_known
    use block_state, only: set_values
    use link_motion, only: move_links
+   use position_proof, only: prover_t, placed_t, make_prover, new_placed, take_state, prove_block
    use block_assemblies, only: block_positions_t, find_positions, max_group
    implicit none
    private
@@ -18,12 +19,15 @@ module assemblies
    integer, parameter :: max_assemblies = 1000
    !> Places count as off by no more than this part of the characteristic length, as where an estimate chooses.
    real(wp), parameter :: far_place = 0.25_wp
+   !> Distances that differ by less than this part are alike.
+   real(wp), parameter :: alike = sqrt(epsilon(1.0_wp))
 
    !> An assembly.
    type :: assembly_t
       real(wp), allocatable :: value(:)         !< (0:unknowns) of the blocks, see `block_state`
       real(wp), allocatable :: position(:, :)   !< (3, links) x, y in the deck's unit from `plane_origin`, phi in rad
       integer, allocatable :: sign_of(:)        !< (blocks) of the determinant; 0: singular
+      logical :: is_proved = .false.            !< near these values there is exactly one solution, see `position_proof`
       real(wp) :: distance = 0.0_wp             !< from the deck's estimate, see `distance_from`
    end type assembly_t
 
@@ -61,7 +65,7 @@ contains
       call set_drive_values(e, t)
       call name_blocks(e, a)
       if (any(a%blocks%is_wide)) return
-      call search(e, a)
+      call search(m, e, t, a)
       call sort(a)
    end subroutine find_assemblies
 
@@ -86,12 +90,18 @@ contains
 
    !> Goes through all choices of a position for each block. `changed`: of each unknown the number of the choice that
    !> changed it last; `seen`: of each block the same, when it was solved.
-   subroutine search(e, a)
+   subroutine search(m, e, t, a)
+      type(mechanism_t), intent(in) :: m
       type(block_engine_t), intent(inout) :: e
+      real(wp), intent(in) :: t
       type(assemblies_t), intent(inout) :: a
       type(block_positions_t) :: found(size(e%blocks%list))
+      type(prover_t) :: p
+      type(placed_t) :: q
       integer :: chosen(size(found)), seen(size(found)), changed(0:e%blocks%unknowns), choice, i
 
+      call make_prover(p, m, e)
+      q = new_placed(e%blocks, size(m%drives))
       chosen = 0
       seen = -1
       changed = 0
@@ -101,7 +111,13 @@ contains
          if (i > size(found)) then
             if (size(a%list) == max_assemblies) a%are_more = .true.
             if (a%are_more) return
-            call note_assembly(e, found, chosen, a)
+            call take_state(p, e, e%state, t, q)
+            do i = 1, size(found)
+               call prove_block(p, e%blocks, i, 0, q)
+               if (.not. q%is_proved(i)) exit
+            end do
+            call note_assembly(e, found, chosen, all(q%is_proved), a)
+            i = size(found) + 1
             i = i - 1
             cycle
          end if
@@ -148,10 +164,11 @@ contains
    end subroutine count_paths
 
    !> Adds the assembly that `e` has now.
-   subroutine note_assembly(e, found, chosen, a)
+   subroutine note_assembly(e, found, chosen, is_proved, a)
       type(block_engine_t), intent(in) :: e
       type(block_positions_t), intent(in) :: found(:)
       integer, intent(in) :: chosen(:)
+      logical, intent(in) :: is_proved
       type(assemblies_t), intent(inout) :: a
       type(assembly_t) :: one
       type(motion_t) :: q
@@ -164,6 +181,7 @@ contains
       one%value(:) = e%state%u%value
       one%position = q%position
       one%sign_of = [(found(i)%sign_of(chosen(i)), i=1, size(found))]
+      one%is_proved = is_proved
       one%distance = distance_from(e, one%position)
       a%list = [a%list, one]
    end subroutine note_assembly
@@ -192,7 +210,7 @@ contains
       do i = 2, size(a%list)
          one = a%list(i)
          do k = i - 1, 1, -1
-            if (a%list(k)%distance <= one%distance) exit
+            if (a%list(k)%distance <= one%distance*(1.0_wp + alike)) exit
             a%list(k + 1) = a%list(k)
          end do
          a%list(k + 1) = one

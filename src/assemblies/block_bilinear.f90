@@ -6,7 +6,7 @@
 module block_bilinear
    use kinds, only: wp
    use complex_lu, only: find_null_space
-   use blocks, only: blocks_t, block_loop_t, loop_components, loop_projection, loop_angles
+   use blocks, only: blocks_t, block_loop_t, loop_projection, loop_angles
    use block_state, only: state_t, find_known_parts
    use bilinear, only: bilinear_t, end_t
    implicit none
@@ -33,11 +33,20 @@ module block_bilinear
    !> Equations that are too many hold to this part of their terms: lengths have 11 digits, a double root half of all.
    real(wp), parameter :: solved_level = max(1.0e-6_wp, 16.0_wp*sqrt(epsilon(1.0_wp)))
 
+   !> Re(l conj(factor w)) = value, w direction number `at` of the group; 0: 1.
+   type :: projection_t
+      complex(wp), allocatable :: l(:)                !< (q + 1) a linear form, its constant part first
+      complex(wp) :: factor = 1.0_wp
+      integer :: at = 0
+      real(wp) :: value = 0.0_wp
+   end type projection_t
+
    !> Equations in the making.
    type :: draft_t
       integer :: linear = 0, bilinear = 0
       complex(wp), allocatable :: a(:, :)             !< (0:q, linear): sum over k of a_k x_k = 0
       complex(wp), allocatable :: c(:, :, :)          !< (0:q, 0:q, bilinear)
+      type(projection_t), allocatable :: projections(:)
    end type draft_t
 
 contains
@@ -55,10 +64,12 @@ contains
       call merge_angles(b, i, s, f)
       call number_places(b, i, f)
       rows = b%list(i)%shape%rows
+      allocate (d%projections(0))
       allocate (d%a(0:f%q, rows), d%c(0:f%q, 0:f%q, rows + f%q), source=(0.0_wp, 0.0_wp))
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          if (b%loops(m)%kind /= loop_angles) call add_loop(b, i, m, s, f, d)
       end do
+      call add_projections(d)
       call add_pairs(f, d)
       call reduce(f, d)
    end subroutine make_form
@@ -204,7 +215,7 @@ contains
       end do
    end function linear_form
 
-   !> Adds the equations of loop `m` of block `i`.
+   !> Adds the equations of loop `m` of block `i`: each a projection of the loop.
    subroutine add_loop(b, i, m, s, f, d)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, m
@@ -212,63 +223,82 @@ contains
       type(block_form_t), intent(in) :: f
       type(draft_t), intent(inout) :: d
       complex(wp) :: l(0:f%q), factor
-      integer :: at, other
+      integer :: at
 
       l = linear_form(b, m, s, f)
       associate (g => b%loops(m))
          if (g%kind == loop_projection) then
             call find_direction(f, g%orientation_column, g%orientation, s, at, factor)
             factor = factor*cmplx(g%direction(1), g%direction(2), wp)
-            call add_real_part(l, at, factor, given(b, i, g%row_x, s), d)
+            d%projections = [d%projections, projection_t([l], factor, at, given(b, i, g%row_x, s))]
             return
          end if
-         other = partner(b, i, m, s, f)
-         if (g%row_x > 0 .and. (g%row_y > 0 .or. other > 0)) then
-            l(0) = l(0) - given(b, i, g%row_x, s)
-            if (g%row_y > 0) l(0) = l(0) - i_unit*given(b, i, g%row_y, s)
-            if (g%row_y == 0) l(0) = l(0) - i_unit*given(b, i, b%loops(other)%row_y, s)
-            d%linear = d%linear + 1
-            d%a(:, d%linear) = l
-         else if (g%row_x > 0) then
-            call add_real_part(l, 0, (1.0_wp, 0.0_wp), given(b, i, g%row_x, s), d)
-         else if (other == 0) then
-            call add_real_part(l, 0, i_unit, given(b, i, g%row_y, s), d)
-         end if
+         if (g%row_x > 0) d%projections = [d%projections, projection_t([l], 1.0_wp, 0, given(b, i, g%row_x, s))]
+         if (g%row_y > 0) d%projections = [d%projections, projection_t([l], i_unit, 0, given(b, i, g%row_y, s))]
       end associate
    end subroutine add_loop
 
-   !> The loop of block `i` with the other component of loop `m`, of which this one asks for x or y alone: drives X and
-   !> Y of one point. 0: none.
-   integer function partner(b, i, m, s, f) result(other)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i, m
-      type(state_t), intent(in) :: s
-      type(block_form_t), intent(in) :: f
+   !> Two projections of one loop on different directions that turn together are one linear equation: the components of
+   !> a closed loop, or a slide that is driven and its guide. The others are bilinear.
+   subroutine add_projections(d)
+      type(draft_t), intent(inout) :: d
+      logical :: is_done(size(d%projections))
+      integer :: j, k
+
+      is_done = .false.
+      do j = 1, size(is_done)
+         do k = j + 1, size(is_done)
+            if (is_done(j) .or. is_done(k)) cycle
+            if (.not. are_of_one_loop(d%projections(j), d%projections(k))) cycle
+            call add_whole_loop(d%projections(j), d%projections(k), d)
+            is_done([j, k]) = .true.
+         end do
+         if (.not. is_done(j)) call add_real_part(d%projections(j), d)
+      end do
+   end subroutine add_projections
+
+   !> `one` and `other` project the same loop, in whatever unit, on directions that differ and turn together.
+   pure logical function are_of_one_loop(one, other)
+      type(projection_t), intent(in) :: one, other
+
+      are_of_one_loop = one%at == other%at .and. abs(aimag(conjg(one%factor)*other%factor)) > sqrt(zero_level) .and. &
+         maxval(abs(other%l - ratio(one, other)*one%l)) <= zero_level*maxval(abs(other%l))
+   end function are_of_one_loop
+
+   !> The loop of `other` over that of `one`, if they are the same one.
+   pure real(wp) function ratio(one, other)
+      type(projection_t), intent(in) :: one, other
       integer :: k
 
-      other = 0
-      do k = b%list(i)%first_loop, b%list(i)%last_loop
-         associate (g => b%loops(m), h => b%loops(k))
-            if (h%kind /= loop_components) cycle
-            if ((g%row_x > 0 .eqv. h%row_x > 0) .or. (g%row_y > 0 .eqv. h%row_y > 0)) cycle
-            if (all(abs(linear_form(b, m, s, f) - linear_form(b, k, s, f)) <= 0.0_wp)) other = k
-         end associate
-      end do
-   end function partner
+      k = maxloc(abs(one%l), 1)
+      ratio = real(other%l(k)/one%l(k))
+   end function ratio
 
-   !> Adds Re(l conj(factor w)) = value, w direction number `at` of the group; 0: 1.
-   subroutine add_real_part(l, at, factor, value, d)
-      complex(wp), intent(in) :: l(0:), factor
-      integer, intent(in) :: at
-      real(wp), intent(in) :: value
+   !> Adds the loop l = r w for which Re(r conj(one%factor)) and Re(r conj(other%factor)) are the values of both.
+   subroutine add_whole_loop(one, other, d)
+      type(projection_t), intent(in) :: one, other
+      type(draft_t), intent(inout) :: d
+      complex(wp) :: r
+      real(wp) :: value
+
+      value = other%value/ratio(one, other)
+      r = i_unit*(value*one%factor - one%value*other%factor)/aimag(conjg(one%factor)*other%factor)
+      d%linear = d%linear + 1
+      d%a(:, d%linear) = one%l
+      d%a(one%at, d%linear) = d%a(one%at, d%linear) - r
+   end subroutine add_whole_loop
+
+   !> Adds the projection `one` as it is.
+   subroutine add_real_part(one, d)
+      type(projection_t), intent(in) :: one
       type(draft_t), intent(inout) :: d
 
       d%bilinear = d%bilinear + 1
-      associate (c => d%c(:, :, d%bilinear))
+      associate (c => d%c(:, :, d%bilinear), at => one%at + 1)
          ! associate loses the lower bound: element 1 is that of 1.
-         c(:, at + 1) = c(:, at + 1) + 0.5_wp*l*conjg(factor)
-         c(at + 1, :) = c(at + 1, :) + 0.5_wp*conjg(l)*factor
-         c(1, 1) = c(1, 1) - value
+         c(:, at) = c(:, at) + 0.5_wp*one%l*conjg(one%factor)
+         c(at, :) = c(at, :) + 0.5_wp*conjg(one%l)*one%factor
+         c(1, 1) = c(1, 1) - one%value
       end associate
    end subroutine add_real_part
 

@@ -100,6 +100,8 @@ module phrases
       say_real = phrase_t('REAL', 'RZECZYWISTE'), &
       say_distance = phrase_t('DISTANCE', 'ODLEGLOSC'), &
       say_determinants = phrase_t('DETERMINANTS', 'WYZNACZNIKI'), &
+      say_assembly_proved = phrase_t('PROVED', 'UDOWODNIONY'), &
+      say_assembly_open = phrase_t('NOT PROVED', 'NIEUDOWODNIONY'), &
       say_chosen = phrase_t('CHOSEN BY THE ESTIMATE', 'WYBRANY PRZEZ PRZYBLIZENIE'), &
       say_nearer_assembly = phrase_t('THE ESTIMATE IS NEARER TO ASSEMBLY', &
          'PRZYBLIZENIE JEST BLIZEJ MONTAZU'), &
