@@ -9,7 +9,7 @@ module assemblies
    use block_needs, only: largest_known
    use block_state, only: set_values
    use link_motion, only: move_links
-   use position_proof, only: prover_t, placed_t, make_prover, new_placed, take_state, prove_block
+   use position_proof, only: prover_t, placed_t, make_prover, new_placed, prove_position
    use block_assemblies, only: block_positions_t, find_positions, max_group
    implicit none
    private
@@ -98,7 +98,8 @@ contains
       type(block_positions_t) :: found(size(e%blocks%list))
       type(prover_t) :: p
       type(placed_t) :: q
-      integer :: chosen(size(found)), seen(size(found)), changed(0:e%blocks%unknowns), choice, i
+      integer :: chosen(size(found)), seen(size(found)), changed(0:e%blocks%unknowns), choice, i, k
+      logical :: is_proved
 
       call make_prover(p, m, e)
       q = new_placed(e%blocks, size(m%drives))
@@ -111,13 +112,8 @@ contains
          if (i > size(found)) then
             if (size(a%list) == max_assemblies) a%are_more = .true.
             if (a%are_more) return
-            call take_state(p, e, e%state, t, q)
-            do i = 1, size(found)
-               call prove_block(p, e%blocks, i, 0, q)
-               if (.not. q%is_proved(i)) exit
-            end do
-            call note_assembly(e, found, chosen, all(q%is_proved), a)
-            i = size(found) + 1
+            call prove_position(p, e, t, [(k, k=1, size(found))], q, is_proved)
+            call note_assembly(e, found, chosen, is_proved, a)
             i = i - 1
             cycle
          end if

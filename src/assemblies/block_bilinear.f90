@@ -6,20 +6,16 @@
 module block_bilinear
    use kinds, only: wp
    use complex_lu, only: find_null_space
-   use blocks, only: blocks_t, block_loop_t, loop_projection, loop_angles
+   use blocks, only: blocks_t, loop_projection, loop_angles
    use block_state, only: state_t, find_known_parts
+   use isotropic, only: group_t, make_group, given, find_direction, linear_form, i_unit
    use bilinear, only: bilinear_t, end_t
    implicit none
    private
    public :: block_form_t, make_form, solves_all, real_values
 
-   !> Unknown k of the block is unknown base(k) + offset(k); base 0 is none: the unknown is known.
-   type :: block_form_t
-      integer :: n = 0, q = 0                         !< unknowns of the block; directions and slides of one group
-      integer, allocatable :: base(:)                 !< (n)
-      real(wp), allocatable :: offset(:)              !< (n) in rad, or the unit of the slide
-      integer, allocatable :: place(:)                !< (0:n) number of the direction or slide of a base in its group
-      integer, allocatable :: turns(:)                !< (q) of a slide the number of its direction; 0: a known one
+   !> The system of a block, from whose solutions its unknowns follow.
+   type, extends(group_t) :: block_form_t
       complex(wp), allocatable :: basis(:, :)         !< (0:q, 0:p) of directions and slides from the system's unknowns
       logical :: is_lacking = .false.                 !< fewer equations than unknowns, where earlier blocks are now
       logical :: is_impossible = .false.              !< its linear equations contradict one another
@@ -27,7 +23,6 @@ module block_bilinear
       complex(wp), allocatable :: more(:, :, :)       !< (0:p, 0:p, any number) equations that are too many
    end type block_form_t
 
-   complex(wp), parameter :: i_unit = (0.0_wp, 1.0_wp)
    !> Coefficients below this part of the largest are rounding.
    real(wp), parameter :: zero_level = 4096.0_wp*epsilon(1.0_wp)
    !> Equations that are too many hold to this part of their terms: lengths have 11 digits, a double root half of all.
@@ -61,8 +56,7 @@ contains
       integer :: m, rows
 
       call find_known_parts(b, i, s)
-      call merge_angles(b, i, s, f)
-      call number_places(b, i, f)
+      call make_group(b, i, s, f%group_t)
       rows = b%list(i)%shape%rows
       allocate (d%projections(0))
       allocate (d%a(0:f%q, rows), d%c(0:f%q, 0:f%q, rows + f%q), source=(0.0_wp, 0.0_wp))
@@ -74,147 +68,6 @@ contains
       call reduce(f, d)
    end subroutine make_form
 
-   !> Angles and slides that differ by what is given, as drives RELANGLE ask, are one unknown.
-   subroutine merge_angles(b, i, s, f)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      type(state_t), intent(in) :: s
-      type(block_form_t), intent(inout) :: f
-      integer :: m, k, first, second
-      real(wp) :: apart, first_offset, second_offset
-
-      f%n = b%list(i)%shape%n
-      allocate (f%base(f%n), source=[(k, k=1, f%n)])
-      allocate (f%offset(f%n), source=0.0_wp)
-      do m = b%list(i)%first_loop, b%list(i)%last_loop
-         associate (g => b%loops(m))
-            if (g%kind /= loop_angles) cycle
-            call resolve(g%orientation_column, g%orientation, first, first_offset)
-            call resolve(g%less_column, g%less, second, second_offset)
-            apart = given(b, i, g%row_x, s) - first_offset + second_offset
-         end associate
-         ! first = second + apart: the later one gives way.
-         if (first == second) cycle
-         if (first > second) call replace(first, second, apart)
-         if (second > first) call replace(second, first, -apart)
-      end do
-
-   contains
-
-      !> The base and offset of unknown number `u` of all, in column `column` of the block.
-      subroutine resolve(column, u, base, offset)
-         integer, intent(in) :: column, u
-         integer, intent(out) :: base
-         real(wp), intent(out) :: offset
-
-         base = 0
-         offset = s%u(u)%value
-         if (column == 0) return
-         base = f%base(column)
-         offset = f%offset(column)
-      end subroutine resolve
-
-      !> What stood on base `old` stands on `new`, which is less by `more`.
-      subroutine replace(old, new, more)
-         integer, intent(in) :: old, new
-         real(wp), intent(in) :: more
-
-         where (f%base == old)
-            f%offset = f%offset + more
-            f%base = new
-         end where
-      end subroutine replace
-   end subroutine merge_angles
-
-   !> What row `row` of block `i` asks for: its constant and its drive's value.
-   pure real(wp) function given(b, i, row, s)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i, row
-      type(state_t), intent(in) :: s
-
-      associate (r => b%rows(b%list(i)%first_row + row - 1))
-         given = r%constant + s%drive_value(0, r%drive)
-      end associate
-   end function given
-
-   !> Numbers the directions and slides of a group, and finds the direction of each slide.
-   subroutine number_places(b, i, f)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      type(block_form_t), intent(inout) :: f
-      integer :: k, m
-
-      allocate (f%place(0:f%n), f%turns(f%n), source=0)
-      do k = 1, f%n
-         if (f%base(k) /= k) cycle
-         f%q = f%q + 1
-         f%place(k) = f%q
-      end do
-      f%turns = -1
-      do m = b%list(i)%first_loop, b%list(i)%last_loop
-         do k = b%loops(m)%first_slide, b%loops(m)%last_slide
-            associate (slide => b%slides(k))
-               if (slide%column == 0) cycle
-               if (f%base(slide%column) == 0) cycle
-               f%turns(f%place(slide%column)) = 0
-               if (slide%orientation_column > 0) f%turns(f%place(slide%column)) = f%place(f%base( &
-                  slide%orientation_column))
-            end associate
-         end do
-      end do
-   end subroutine number_places
-
-   !> The direction of unknown number `u` of all, in column `column` of the block: `factor` times direction `at` of the
-   !> group; 0: known.
-   subroutine find_direction(f, column, u, s, at, factor)
-      type(block_form_t), intent(in) :: f
-      integer, intent(in) :: column, u
-      type(state_t), intent(in) :: s
-      integer, intent(out) :: at
-      complex(wp), intent(out) :: factor
-
-      at = 0
-      factor = cmplx(s%u(u)%c, s%u(u)%s, wp)
-      if (column == 0) return
-      factor = exp(i_unit*f%offset(column))
-      if (f%base(column) > 0) at = f%place(f%base(column))
-   end subroutine find_direction
-
-   !> (0:q) Loop `m`, as a linear form of the group.
-   function linear_form(b, m, s, f) result(l)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: m
-      type(state_t), intent(in) :: s
-      type(block_form_t), intent(in) :: f
-      complex(wp) :: l(0:f%q), factor
-      integer :: k, at
-      real(wp) :: value
-
-      l = 0.0_wp
-      l(0) = cmplx(s%loop(m)%known(1, 0), s%loop(m)%known(2, 0), wp)
-      do k = b%loops(m)%first_own, b%loops(m)%last_vector
-         associate (d => b%body_vectors(k))
-            call find_direction(f, d%column, d%orientation, s, at, factor)
-            l(at) = l(at) + factor*cmplx(d%x, d%y, wp)
-         end associate
-      end do
-      do k = b%loops(m)%first_slide, b%loops(m)%last_slide
-         associate (e => b%slides(k))
-            call find_direction(f, e%orientation_column, e%orientation, s, at, factor)
-            factor = factor*cmplx(e%body_vector(1), e%body_vector(2), wp)
-            value = s%u(e%unknown)%value
-            if (e%column > 0) then
-               value = f%offset(e%column)
-               if (f%base(e%column) > 0) then
-                  at = f%place(f%base(e%column))
-                  value = 1.0_wp
-               end if
-            end if
-            l(at) = l(at) + factor*value
-         end associate
-      end do
-   end function linear_form
-
    !> Adds the equations of loop `m` of block `i`: each a projection of the loop.
    subroutine add_loop(b, i, m, s, f, d)
       type(blocks_t), intent(in) :: b
@@ -225,10 +78,10 @@ contains
       complex(wp) :: l(0:f%q), factor
       integer :: at
 
-      l = linear_form(b, m, s, f)
+      l = linear_form(b, m, s, f%group_t)
       associate (g => b%loops(m))
          if (g%kind == loop_projection) then
-            call find_direction(f, g%orientation_column, g%orientation, s, at, factor)
+            call find_direction(f%group_t, g%orientation_column, g%orientation, s, at, factor)
             factor = factor*cmplx(g%direction(1), g%direction(2), wp)
             d%projections = [d%projections, projection_t([l], factor, at, given(b, i, g%row_x, s))]
             return
