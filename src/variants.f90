@@ -1,6 +1,6 @@
-!> The variants of a set with VARY cards, one after another: each is made when its turn comes, starts from the deck's
-!> own estimate and leaves a row. So the row is the same whatever the others are, and memory does not grow with them.
-!> A variant that cannot be computed is a row that says so.
+!> The variants of a set with VARY cards: each is made when its turn comes, starts from the deck's own estimate and
+!> leaves a row. So the row is the same whatever the others are, and memory does not grow with them. Where rows alone
+!> are asked for, some are solved together. A variant that cannot be computed is a row that says so.
 module variants
    use mechanism, only: mechanism_t
    use independent, only: parts_t
@@ -16,7 +16,9 @@ module variants
    use variant_tables, only: summary_head, summary_row, put_variant, put_variant_heads, put_variant_row, &
       put_variants_end, put_broken_off
    use numerals, only: whole
-   use command_line, only: options_t, out_listing, out_log, out_summary
+   use lane_runs, only: lane_run_t, begin_run, run_lanes, width
+   use lane_state, only: lanes_t
+   use command_line, only: options_t, out_listing, out_csv, out_log, out_summary
    use outputs, only: is_over
    use instants, only: writers_t, run_motion
    implicit none
@@ -37,35 +39,127 @@ contains
       integer, intent(inout) :: status
       type(layout_t) :: layout
       type(summary_t) :: summary
-      type(variant_row_t) :: row
-      type(mechanism_t) :: variant(1)
       logical :: full
       integer :: n
 
+      n = first
       full = any(m%requests%every > 0)
       layout = new_layout(m)
       summary = new_summary(m, parts, layout, v)
       if (o%asked(out_summary) .and. first == 1) call summary_head(o%files(out_summary, 0), summary)
       if (o%asked(out_listing) .and. first == 1 .and. .not. full) &
          call put_variant_heads(o%files(out_listing, 0), summary)
-      do n = first, last
-         row = new_row(summary, v, n)
-         if (o%asked(out_listing) .and. full) &
-            call put_variant(o%files(out_listing, 0), layout, summary, m, row)
-         call run_variant(options, i, full, v, summary, variant, row, o)
-         if (is_over(o, i)) exit
-         if (o%asked(out_summary)) call summary_row(o%files(out_summary, 0), summary, m, row)
-         if (o%asked(out_listing)) then
-            if (full) call put_variant_heads(o%files(out_listing, 0), summary)
-            call put_variant_row(o%files(out_listing, 0), layout, summary, m, row)
-         end if
-         if (row%flagged > 0 .or. row%rejected /= '') status = status_flagged
-         if (o%progress%shown) call show_progress(o%progress, 'SET '//whole(i)//': VARIANT', n, v%total)
-      end do
+      if (full .or. o%asked(out_csv) .or. o%asked(out_log)) then
+         call run_each(options, m, i, last, full, v, summary, layout, n, o, status)
+      else
+         call run_together(m, i, last, v, summary, layout, n, o, status)
+      end if
       if (.not. o%asked(out_listing)) return
       if (n <= last) call put_broken_off(o%files(out_listing, 0), m, n - 1)
       if (n > v%total) call put_variants_end(o%files(out_listing, 0), m)
    end subroutine run_variants
+
+   !> Solves and writes the variants `n` to `last` of `v` one after another; `n`: the first that is not written.
+   subroutine run_each(options, m, i, last, full, v, summary, layout, n, o, status)
+      type(options_t), intent(in) :: options
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i, last
+      logical, intent(in) :: full
+      type(variation_t), intent(inout) :: v
+      type(summary_t), intent(in) :: summary
+      type(layout_t), intent(in) :: layout
+      integer, intent(inout) :: n
+      type(writers_t), intent(inout) :: o
+      integer, intent(inout) :: status
+      type(variant_row_t) :: row
+      type(mechanism_t) :: variant(1)
+
+      do while (n <= last)
+         row = new_row(summary, v, n)
+         if (o%asked(out_listing) .and. full) &
+            call put_variant(o%files(out_listing, 0), layout, summary, m, row)
+         call run_variant(options, i, full, v, summary, variant, row, o)
+         if (is_over(o, i)) return
+         if (o%asked(out_listing) .and. full) call put_variant_heads(o%files(out_listing, 0), summary)
+         call write_row(m, i, v, summary, layout, row, o, status)
+         n = n + 1
+      end do
+   end subroutine run_each
+
+   !> The same of rows alone, as many variants at a time as there are lanes.
+   subroutine run_together(m, i, last, v, summary, layout, n, o, status)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i, last
+      type(variation_t), intent(inout) :: v
+      type(summary_t), intent(in) :: summary
+      type(layout_t), intent(in) :: layout
+      integer, intent(inout) :: n
+      type(writers_t), intent(inout) :: o
+      integer, intent(inout) :: status
+      type(lane_run_t), allocatable :: runs(:)
+      type(lanes_t) :: lanes
+      integer :: k, count
+
+      allocate (runs(width))
+      do while (n <= last)
+         count = min(width, last - n + 1)
+         do k = 1, count
+            runs(k)%row = new_row(summary, v, n + k - 1)
+            call start(v, runs(k))
+         end do
+         call run_lanes(runs(:count), lanes)
+         do k = 1, count
+            if (is_over(o, i)) return
+            call fill_row(summary, runs(k)%m, runs(k)%asked, runs(k)%row)
+            call write_row(m, i, v, summary, layout, runs(k)%row, o, status)
+            n = n + 1
+         end do
+      end do
+   end subroutine run_together
+
+   !> Makes the variant of `v` whose row `r` has, unless it is refused.
+   subroutine start(v, r)
+      type(variation_t), intent(inout) :: v
+      type(lane_run_t), intent(inout) :: r
+      type(mechanism_t) :: variant(1)
+      type(findings_t), allocatable :: findings(:)
+
+      call make_variant(v, r%row, variant, findings)
+      r%m = variant(1)
+      r%is_over = r%row%rejected /= ''
+      if (.not. r%is_over) call begin_run(r, findings(1))
+   end subroutine start
+
+   !> Makes the variant of `v` whose `row` this is, and finds its structure; what the checks say stands in the row.
+   subroutine make_variant(v, row, variant, findings)
+      type(variation_t), intent(inout) :: v
+      type(variant_row_t), intent(inout) :: row
+      type(mechanism_t), intent(out) :: variant(1)
+      type(findings_t), allocatable, intent(out) :: findings(:)
+      type(failure_t), allocatable :: failure
+
+      call build_variant(v, row%number, variant(1), row%rejected)
+      if (row%rejected /= '') return
+      call check_structure(variant, findings, failure)
+      if (allocated(failure)) row%rejected = failure%text(:index(failure%text//new_line('a'), new_line('a')) - 1)
+   end subroutine make_variant
+
+   !> Writes the `row` of a variant.
+   subroutine write_row(m, i, v, summary, layout, row, o, status)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i
+      type(variation_t), intent(in) :: v
+      type(summary_t), intent(in) :: summary
+      type(layout_t), intent(in) :: layout
+      type(variant_row_t), intent(in) :: row
+      type(writers_t), intent(inout) :: o
+      integer, intent(inout) :: status
+
+      if (o%asked(out_summary)) call summary_row(o%files(out_summary, 0), summary, m, row)
+      if (o%asked(out_listing)) call put_variant_row(o%files(out_listing, 0), layout, summary, m, row)
+      if (row%flagged > 0 .or. row%rejected /= '') status = status_flagged
+      if (o%progress%shown) call show_progress(o%progress, 'SET '//whole(i)//': VARIANT', row%number, v%total)
+   end subroutine write_row
 
    !> Solves and writes the variant of `v` whose `row` this is, of set number `i`: it is variant(1) now. `full`: its
    !> tables are asked for.
@@ -79,14 +173,9 @@ contains
       type(variant_row_t), intent(inout) :: row
       type(writers_t), intent(inout) :: o
       type(findings_t), allocatable :: findings(:)
-      type(failure_t), allocatable :: failure
       type(answers_t) :: asked
 
-      call build_variant(v, row%number, variant(1), row%rejected)
-      if (row%rejected == '') then
-         call check_structure(variant, findings, failure)
-         if (allocated(failure)) row%rejected = failure%text(:index(failure%text//new_line('a'), new_line('a')) - 1)
-      end if
+      call make_variant(v, row, variant, findings)
       if (row%rejected == '') then
          if (full .and. o%asked(out_listing)) o%layout = new_layout(variant(1))
          if (o%asked(out_log)) call log_head(o%files(out_log, 0), variant(1), options%errors)

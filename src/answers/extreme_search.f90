@@ -16,7 +16,7 @@ module extreme_search
    use column_search, only: add_node
    implicit none
    private
-   public :: note_instant
+   public :: note_instant, note_start
 
    !> Limits with smaller errors are good enough. Otherwise they are tried from this much nearer to a change point,
    !> where roundings grow, or farther from a limit of the motion, beside which some of it may not be found; so many
@@ -58,6 +58,27 @@ contains
          end associate
       end do
    end subroutine note_instant
+
+   !> Takes the instant to which `s` has advanced as one before which nothing is searched for: up to there all numbers
+   !> and their derivatives have gone on as they went at the last instant that was taken.
+   subroutine note_start(x, m, s)
+      type(extremes_t), intent(inout) :: x
+      type(mechanism_t), intent(in) :: m
+      type(set_analysis_t), intent(inout) :: s
+      type(node_t) :: now
+      integer :: c
+
+      do c = 1, size(x%tracks)
+         associate (track => x%tracks(c))
+            if (size(track%rows) == 0) cycle
+            if (allocated(track%last)) deallocate (track%last)
+            now = node_at(x%asked, s, c, s%now%motions(c)%t, .false.)
+            call add_node(x, m, s, c, now)
+            track%instant = now
+            track%at_change = .false.
+         end associate
+      end do
+   end subroutine note_start
 
    !> Searches between the last instant of mechanism `c` and instant number `k`, `now`.
    subroutine search_step(x, m, s, c, k, now)

@@ -13,7 +13,7 @@ module extremes
    implicit none
    private
    public :: extremes_t, extreme_t, track_t, gap_t, least, greatest, new_extremes, offer, offer_limits, count_turn, &
-      note_interval, step_of, stroke_times, is_cyclic, is_covered, is_angle
+      note_interval, step_of, stroke_times, is_cyclic, is_covered, is_angle, alike
 
    !> Values that differ by less, in characteristic lengths or rad and rates, are alike, since errors
    !> that no table shows may be as large: the earlier one counts.

@@ -23,7 +23,7 @@ module block_solver
    use closure_errors, only: note_closure_error, is_inconsistent, contradict
    implicit none
    private
-   public :: workspace_t, make_workspace, solve_block
+   public :: workspace_t, make_workspace, solve_block, closed_level, step_tolerance, suspicious_pivot
 
    !> Residuals relative to the largest value. Below the first there is nothing to correct; above the second,
    !> rounding of angles and of their sines alone explains no residual.

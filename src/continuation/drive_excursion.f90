@@ -15,7 +15,7 @@ module drive_excursion
    implicit none
    private
    public :: drive_excursion_t, new_drive_excursion, substep_allowed, likely_excursion, excursion, steps_at_least, &
-      largest_rate
+      largest_rate, judge_step
 
    !> The largest excursion off the chord, in radians or characteristic lengths. What a position allows is mostly
    !> less, and follows from its Jacobian; this bounds what becomes of it in links far down a chain.
@@ -80,6 +80,21 @@ contains
          end if
       end do
    end function substep_allowed
+
+   !> `is_plain`: steps of the size `step`, anywhere between the instants, need not be divided because of the drives;
+   !> `away`: bounds their `likely_excursion`.
+   pure subroutine judge_step(p, step, away, is_plain)
+      type(drive_excursion_t), intent(in) :: p
+      real(wp), intent(in) :: step
+      real(wp), intent(out) :: away
+      logical, intent(out) :: is_plain
+
+      away = 0.0_wp
+      is_plain = abs(step) <= p%longest .and. p%curve < huge(1.0_wp)
+      if (.not. is_plain) return
+      away = 0.125_wp*step**2*p%curve
+      is_plain = away <= largest_excursion
+   end subroutine judge_step
 
    !> An upper bound of the `excursion` below, at hardly any cost.
    pure real(wp) function likely_excursion(p, t1, t2) result(away)

@@ -20,7 +20,7 @@ module following
    private
    public :: following_t, step_record_t, make_following, continue_to, is_too_far, has_too_many_substeps, go_on_from, &
       go_back, place_t, note_place, return_to
-   public :: limits_t, note_limit, lies_beyond, diagnostics_of_limit
+   public :: limits_t, note_limit, lies_beyond, diagnostics_of_limit, largest_correction, max_kantorovich_ratio
 
    !> The largest correction, in the characteristic length and in radians, of a predicted position that still counts as
    !> the continuation of the motion; where the prediction is off by more, the step is divided.

@@ -18,7 +18,8 @@ module error_estimate
       largest_place
    implicit none
    private
-   public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, row_estimate, row_error, largest_errors
+   public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, row_estimate, row_error, largest_errors, &
+      is_in_doubt
 
    !> The perturbed decks differ by an error of as many roundings as the perturbation is long; a number of the deck, and
    !> with it every sum and product, is off by half a rounding. `caution`: for how few the decks are.
@@ -183,8 +184,10 @@ contains
       type(mechanism_t) :: deck
       integer :: k
 
-      if (present(e) .and. allocated(s%engine)) return
-      if (allocated(s%engine)) deallocate (s%engine)
+      if (allocated(s%engine)) then
+         if (present(e) .and. ubound(s%engine, 1) >= last) return
+         deallocate (s%engine)
+      end if
       allocate (s%engine(0:last))
       deck = m
       if (.not. present(e)) call place_links(deck, q%position)

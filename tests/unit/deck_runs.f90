@@ -5,7 +5,7 @@ module deck_runs
    use job, only: run_job
    implicit none
    private
-   public :: run_t, run_cards, remarks, csv_cell, csv_number, slider, pushed_slider
+   public :: run_t, run_cards, remarks, csv_cell, csv_number, taken, slider, pushed_slider
 
    character(*), parameter :: deck_file = 'unit_test_run.tmp', listing_file = 'unit_test_run_listing.tmp', &
       csv_file = 'unit_test_run_csv.tmp', log_file = 'unit_test_run_log.tmp', film_file = 'unit_test_run_film.tmp'

@@ -1,0 +1,306 @@
+!> Several variants of a set, whose rows alone are asked for, solved together. Each begins by the ordinary engine; lanes
+!> take over after three instants, and go on as long as they can certify each step. The ordinary engine comes in again
+!> where a lane is refused and where a number of EXTREMES may have an extreme: there it goes back two instants, from
+!> the motions that the lane remembers, and searches as ever. What happens in one lane depends on that lane alone.
+module lane_runs
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, method_newton, request_link, request_point, request_pair, instant, instant_count
+   use motion, only: mark_none
+   use structure, only: findings_t
+   use points, only: row_t, row_of
+   use predictor, only: is_even
+   use drive_excursion, only: judge_step
+   use analysis, only: come_back
+   use block_engine, only: block_engine_t
+   use block_method, only: block_method_t
+   use error_estimate, only: is_in_doubt
+   use set_analysis, only: set_analysis_t, make_set_analysis, advance_set
+   use extreme_search, only: note_start
+   use answers, only: answers_t, new_answers, take_instant
+   use variant_rows, only: variant_row_t, note_flag
+   use system_calls, only: signal_received
+   use lane_sines, only: width
+   use lane_state, only: lanes_t, is_covered, make_lanes, load_lane, unload_lane, slot_of, depth
+   use lane_steps, only: judgement_t, solve_lanes, accept_lanes, keep_lane
+   use lane_watch, only: watch_t, new_watch, look_on, fine_prediction
+   implicit none
+   private
+   public :: lane_run_t, begin_run, run_lanes, width
+
+   !> Instants that the ordinary engine solves from where a lane is refused, at first: three, which a prediction takes;
+   !> twice as many each time.
+   integer, parameter :: first_patience = 3
+   !> What steps may differ by, at the bounds of what drives allow.
+   real(wp), parameter :: slack = 1.0e-6_wp
+
+   !> A variant, and how far it has come.
+   type :: lane_run_t
+      type(mechanism_t) :: m
+      type(variant_row_t) :: row
+      type(answers_t) :: asked
+      type(set_analysis_t) :: s
+      type(watch_t) :: watch
+      integer :: at = -1                    !< the last instant solved
+      integer :: counted = -1               !< the last instant that the row has counted
+      integer :: noted = -1                 !< the last instant that EXTREMES have taken
+      integer :: seen = -1                  !< the last instant that the watch has seen
+      integer :: patience = first_patience
+      logical :: is_laned = .false.         !< a lane has it
+      logical :: is_over = .true.           !< nothing is left to do
+   end type lane_run_t
+
+contains
+
+   !> Solves the first instants of the variant r%m, whose structure is `findings`.
+   subroutine begin_run(r, findings)
+      type(lane_run_t), intent(inout) :: r
+      type(findings_t), intent(inout) :: findings
+
+      call make_set_analysis(r%m, r%s, findings)
+      call new_answers(r%m, r%s, r%asked)
+      if (r%asked%extremes_asked) r%watch = new_watch(r%asked%extremes)
+      r%at = -1
+      r%counted = -1
+      r%noted = -1
+      r%seen = -1
+      r%patience = first_patience
+      r%is_over = .false.
+      r%is_laned = .false.
+   end subroutine begin_run
+
+   !> Solves all `runs` that are not over, at most as many as there are lanes, to their ends, or to a signal.
+   subroutine run_lanes(runs, l)
+      type(lane_run_t), intent(inout) :: runs(:)
+      type(lanes_t), intent(inout) :: l
+      type(judgement_t) :: j
+      real(wp) :: t(width)
+      logical :: turned
+      integer :: i
+
+      do i = 1, size(runs)
+         call take_over(runs(i), l, i)
+      end do
+      if (any(runs%is_laned)) call fill_lanes(runs, l)
+      do while (any(runs%is_laned) .and. signal_received() == 0)
+         ! Lanes without a variant stay where they are.
+         t = l%t(:, l%newest)
+         do i = 1, size(runs)
+            if (runs(i)%is_laned) t(i) = instant(runs(i)%m, runs(i)%at + 1)
+         end do
+         call solve_lanes(l, t, j)
+         do i = 1, size(runs)
+            if (.not. runs(i)%is_laned) cycle
+            if (j%refused(i) > 0.5_wp) runs(i)%patience = 2*runs(i)%patience
+            turned = j%refused(i) > 0.5_wp .or. is_last_step(runs(i))
+            if (runs(i)%asked%extremes_asked .and. .not. turned) call watch_lane(runs(i), l, i, j%correction(i), turned)
+            if (turned) then
+               call go_on_from_lane(runs(i), l, i, j%refused(i) > 0.5_wp)
+               call keep_lane(l, i)
+               t(i) = l%t(i, l%newest)
+            else
+               call count_instant(runs(i))
+            end if
+         end do
+         call accept_lanes(l, t)
+         do i = 1, size(runs)
+            call take_over(runs(i), l, i)
+         end do
+      end do
+   end subroutine run_lanes
+
+   !> Beside the end of the TIME card EXTREMES take more than instants, and beyond it there may be instants of their
+   !> own.
+   pure logical function is_last_step(r)
+      type(lane_run_t), intent(in) :: r
+
+      is_last_step = r%at + 1 == r%m%steps .and. (r%asked%extremes_asked .or. instant_count(r%m) - 1 > r%m%steps)
+   end function is_last_step
+
+   !> The next instant of `r` is solved and regular.
+   pure subroutine count_instant(r)
+      type(lane_run_t), intent(inout) :: r
+
+      r%at = r%at + 1
+      r%counted = r%at
+      r%row%solved = r%row%solved + 1
+      r%is_over = r%at == instant_count(r%m) - 1
+      r%is_laned = .not. r%is_over
+   end subroutine count_instant
+
+   !> Lane `i` takes over `r`, unless it has it or `r` is over, as soon as it can; until then the engine solves it.
+   subroutine take_over(r, l, i)
+      type(lane_run_t), intent(inout) :: r
+      type(lanes_t), intent(inout) :: l
+      integer, intent(in) :: i
+
+      do while (.not. (r%is_over .or. r%is_laned) .and. signal_received() == 0)
+         call load_run(r, l, i, r%is_laned)
+         if (r%is_laned) return
+         if (r%at >= 2) r%patience = 2*r%patience
+         call by_engine(r, r%at + 1, r%at + r%patience, .false.)
+      end do
+   end subroutine take_over
+
+   !> Loads lane `i` with the motions of `r`, if they are such as lanes need: `is_done`.
+   subroutine load_run(r, l, i, is_done)
+      type(lane_run_t), intent(inout) :: r
+      type(lanes_t), intent(inout) :: l
+      integer, intent(in) :: i
+      logical, intent(out) :: is_done
+      real(wp) :: step, away
+
+      is_done = .false.
+      if (r%at < 2 .or. r%at >= r%m%steps .or. .not. may_be_laned(r)) return
+      step = instant(r%m, r%at + 1) - instant(r%m, r%at)
+      associate (a => r%s%list(1))
+         call come_back(a)
+         if (.not. a%follows .or. a%limits%later%known .or. a%limits%earlier%known) return
+         call judge_step(a%drives, (1.0_wp + slack)*step, away, is_done)
+         if (.not. is_done) return
+         is_done = .false.
+         select type (e => a%engine)
+         class is (block_engine_t)
+            if (.not. is_covered(e)) return
+            if (.not. is_even(e%history, step)) return
+            if (.not. allocated(l%moving)) call make_lanes(l, e)
+            call load_lane(l, i, e, is_done)
+            l%excursion(i) = away
+         end select
+      end associate
+   end subroutine load_run
+
+   !> One mechanism by METHOD NEWTON, whose last instant has all of its motion, and rows that lanes can watch.
+   pure logical function may_be_laned(r)
+      type(lane_run_t), intent(in) :: r
+
+      may_be_laned = size(r%s%list) == 1 .and. r%m%method == method_newton
+      if (.not. may_be_laned) return
+      may_be_laned = r%s%now%motions(1)%known == 2 .and. r%s%now%motions(1)%mark == mark_none
+      if (r%asked%extremes_asked) may_be_laned = may_be_laned .and. all(r%m%requests(r%asked%extremes%asked)%kind &
+         == request_link .or. r%m%requests(r%asked%extremes%asked)%kind == request_point &
+         .or. r%m%requests(r%asked%extremes%asked)%kind == request_pair)
+   end function may_be_laned
+
+   !> Lanes that no variant has do what one of them does: their numbers must be numbers.
+   subroutine fill_lanes(runs, l)
+      type(lane_run_t), intent(inout) :: runs(:)
+      type(lanes_t), intent(inout) :: l
+      integer :: i, k
+      logical :: is_done
+
+      k = findloc(runs%is_laned, .true., dim=1)
+      do i = 1, width
+         if (i <= size(runs)) then
+            if (runs(i)%is_laned) cycle
+         end if
+         call load_run(runs(k), l, i, is_done)
+      end do
+   end subroutine fill_lanes
+
+   !> Instants `first` to `last` of `r`, as far as there are such, by the engine. `starts`: EXTREMES begin anew there.
+   subroutine by_engine(r, first, last, starts)
+      type(lane_run_t), intent(inout) :: r
+      integer, intent(in) :: first, last
+      logical, intent(in) :: starts
+      logical :: turned
+      integer :: k
+
+      do k = first, min(last, instant_count(r%m) - 1)
+         call advance_set(r%s, instant(r%m, k))
+         if (k > r%counted) call note_flag(r%row, r%s)
+         r%counted = max(k, r%counted)
+         if (starts .and. k == first) then
+            call note_start(r%asked%extremes, r%m, r%s)
+         else
+            call take_instant(r%asked, r%m, r%s, k)
+         end if
+         r%noted = k
+         r%at = k
+         if (r%asked%extremes_asked .and. k > r%seen .and. may_be_laned(r)) &
+            call look_on(r%watch, r%asked%extremes, rows_of(r), turned)
+         r%seen = max(k, r%seen)
+         if (signal_received() > 0) return
+      end do
+      r%is_over = r%at == instant_count(r%m) - 1
+   end subroutine by_engine
+
+   !> The rows of `r` that EXTREMES ask for, by the motion found last.
+   pure function rows_of(r) result(rows)
+      type(lane_run_t), intent(in) :: r
+      type(row_t) :: rows(size(r%asked%extremes%asked))
+      integer :: i
+
+      do i = 1, size(rows)
+         rows(i) = row_of(r%s%now%own(1), r%s%now%motions(1), &
+            r%s%now%own(1)%requests(r%s%now%parts%number(r%asked%extremes%asked(i))))
+      end do
+   end function rows_of
+
+   !> The engine goes on with `r`, where lane `i` has not found the next instant (`is_refused`) or the extremes before
+   !> it.
+   subroutine go_on_from_lane(r, l, i, is_refused)
+      type(lane_run_t), intent(inout) :: r
+      type(lanes_t), intent(in) :: l
+      integer, intent(in) :: i
+      logical, intent(in) :: is_refused
+      integer :: first, last
+      logical :: starts
+
+      starts = .false.
+      first = r%at + 1
+      if (r%asked%extremes_asked) then
+         first = max(r%at - 1, r%noted + 1)
+         starts = first > r%noted + 1
+      end if
+      last = r%at + 2
+      if (is_refused) last = r%at + r%patience
+      associate (a => r%s%list(1))
+         call come_back(a)
+         select type (e => a%engine)
+         class is (block_engine_t)
+            call unload_lane(l, i, r%at + 1 - first, e)
+            a%t = e%history%t(0)
+         end select
+      end associate
+      r%is_laned = .false.
+      call by_engine(r, first, last, starts)
+   end subroutine go_on_from_lane
+
+   !> Whether the engine must look at the step of `r` that lane `i` has made: `turned`.
+   subroutine watch_lane(r, l, i, correction, turned)
+      type(lane_run_t), intent(inout) :: r
+      type(lanes_t), intent(in) :: l
+      integer, intent(in) :: i
+      real(wp), intent(in) :: correction
+      logical, intent(out) :: turned
+      logical :: finite
+      integer :: u, k
+
+      turned = correction > fine_prediction
+      associate (joints => r%asked%extremes%tracks(1)%joints, t1 => l%t(i, l%newest))
+         if (size(joints) > 0) turned = turned .or. &
+            any((joints - t1)*(instant(r%m, r%at + 1) - joints) >= 0.0_wp)
+      end associate
+      if (turned) return
+      select type (e => r%s%list(1)%engine)
+      class is (block_method_t)
+         do u = 1, e%blocks%unknowns
+            associate (x => e%state%u(u))
+               x%value = l%u(i, 1, u)
+               x%rate = l%u(i, 2, u)
+               x%acceleration = l%u(i, 3, u)
+               x%c = l%u(i, 4, u)
+               x%s = l%u(i, 5, u)
+            end associate
+         end do
+         do k = 1, size(l%moving)
+            e%found(l%moving(k))%pivot = l%pivot(i, l%moving(k), slot_of(l, depth - 1))
+         end do
+         call e%get_motion(r%s%now%motions(1), finite)
+         turned = .not. finite .or. is_in_doubt(r%s%estimators(1), r%s%now%own(1), 1.0_wp, r%s%now%motions(1), e)
+      end select
+      if (turned) return
+      call look_on(r%watch, r%asked%extremes, rows_of(r), turned)
+      r%seen = r%at + 1
+   end subroutine watch_lane
+end module lane_runs

@@ -1,0 +1,243 @@
+!> The motions of several mechanisms of one structure, each in a lane: what `block_engine` has of one, as arrays whose
+!> first index is the lane. A lane takes over from an engine that has followed three motions at equal steps, and gives
+!> back to it the motion of one of its last instants.
+module lane_state
+   use kinds, only: wp
+   use block_matrix, only: shape_t
+   use mechanism, only: own_predictor
+   use blocks, only: blocks_t, block_loop_t
+   use predictor, only: history_t
+   use drives, only: law_t
+   use block_engine, only: block_engine_t
+   use lane_sines, only: width
+   use lane_elimination, only: max_order
+   implicit none
+   private
+   public :: lanes_t, is_covered, make_lanes, load_lane, unload_lane, slot_of, depth
+
+   !> Motions that a lane remembers: the last three are needed to predict, and two before to go back to.
+   integer, parameter :: depth = 5
+
+   !> Lengths of each lane in the unit of its own engine. Of `blocks` all that is no number of kind `wp` counts.
+   type :: lanes_t
+      type(blocks_t) :: blocks
+      integer, allocatable :: moving(:), predicted(:)
+      logical :: is_polynomial = .true.                 !< no law of any lane has terms
+      type(law_t), allocatable :: laws(:, :)            !< (drives, lanes)
+      real(wp), allocatable :: polynomial(:, :, :)      !< (lanes, 3, drives)
+      real(wp), allocatable :: unit_of(:, :)            !< (lanes, drives) see `block_engine_t`
+      real(wp), allocatable :: lipschitz(:, :), coarse(:, :)    !< (lanes, blocks)
+      real(wp), allocatable :: constant(:, :)           !< (lanes, rows)
+      real(wp), allocatable :: ground(:, :, :), direction(:, :, :)   !< (lanes, 2, loops)
+      real(wp), allocatable :: vector(:, :, :)          !< (lanes, 2, body vectors)
+      real(wp), allocatable :: along(:, :, :)           !< (lanes, 2, slides)
+      real(wp) :: t(width, 0:depth - 1) = 0.0_wp        !< times, as below
+      real(wp) :: step(width) = 0.0_wp                  !< to the next instant
+      real(wp) :: excursion(width) = 0.0_wp             !< of the drives in it
+      !> The motions that are remembered, the latest in the slot `newest`, those before it in the slots after it.
+      integer :: newest = 0
+      real(wp), allocatable :: past(:, :, :, :)         !< (lanes, 3, 0:unknowns, 0:depth-1) value, rate, acceleration
+      real(wp), allocatable :: pivot(:, :, :), inverse(:, :, :) !< (lanes, blocks, 0:depth-1) as in `block_engine`
+      real(wp), allocatable :: sign_of(:, :)            !< (lanes, blocks)
+      !> The motion found last.
+      real(wp), allocatable :: u(:, :, :)               !< (lanes, 5, 0:unknowns) as `unknown_t`: value, rate, ...
+      real(wp), allocatable :: drive(:, :, :)           !< (lanes, 0:2, 0:drives)
+      real(wp), allocatable :: known(:, :, :, :)        !< (lanes, 2, 0:2, loops)
+      real(wp), allocatable :: open(:, :, :), f(:, :, :)        !< (lanes, 2, loops)
+      real(wp), allocatable :: own(:, :, :)             !< (lanes, 2, body vectors)
+      real(wp), allocatable :: guide(:, :, :)           !< (lanes, 2, slides)
+   end type lanes_t
+
+contains
+
+   !> The lanes can take over from `e`: its blocks are of at most `max_order` unknowns, as many as equations, and it
+   !> follows three motions at equal steps.
+   pure logical function is_covered(e)
+      type(block_engine_t), intent(in) :: e
+      integer :: k
+
+      is_covered = digits(1.0_wp) == 53 .and. e%blocks%redundant == 0 .and. size(e%history%predicted) > 0
+      if (.not. is_covered) return
+      is_covered = e%history%filled == 3 .and. e%history%order == own_predictor .and. .not. e%tolerance > 0.0_wp
+      do k = 1, size(e%moving)
+         associate (shape => e%blocks%list(e%moving(k))%shape)
+            is_covered = is_covered .and. shape%n <= max_order .and. shape%rows == shape%n .and. shape%pattern == 0
+         end associate
+      end do
+   end function is_covered
+
+   !> Lanes for engines with the structure of `e`.
+   subroutine make_lanes(l, e)
+      type(lanes_t), intent(out) :: l
+      type(block_engine_t), intent(in) :: e
+
+      l%blocks = e%blocks
+      l%moving = e%moving
+      l%predicted = e%history%predicted
+      associate (b => l%blocks, drives => size(e%laws))
+         allocate (l%laws(drives, width), l%polynomial(width, 3, drives), l%unit_of(width, drives))
+         allocate (l%lipschitz(width, size(b%list)), l%coarse(width, size(b%list)), l%sign_of(width, size(b%list)))
+         allocate (l%constant(width, size(b%rows)))
+         allocate (l%ground(width, 2, size(b%loops)), l%direction(width, 2, size(b%loops)))
+         allocate (l%vector(width, 2, size(b%body_vectors)), l%along(width, 2, size(b%slides)))
+         allocate (l%past(width, 3, 0:b%unknowns, 0:depth - 1), l%u(width, 5, 0:b%unknowns), source=0.0_wp)
+         allocate (l%pivot(width, size(b%list), 0:depth - 1), l%inverse(width, size(b%list), 0:depth - 1), &
+            source=1.0_wp)
+         allocate (l%drive(width, 0:2, 0:drives), l%known(width, 2, 0:2, size(b%loops)), source=0.0_wp)
+         allocate (l%open(width, 2, size(b%loops)), l%f(width, 2, size(b%loops)), source=0.0_wp)
+         allocate (l%own(width, 2, size(b%body_vectors)), l%guide(width, 2, size(b%slides)), source=0.0_wp)
+      end associate
+   end subroutine make_lanes
+
+   !> Fills `lane` with the mechanism and the motions of `e`; `is_alike` is false where its structure is another one.
+   !> What follows from the time step is the caller's.
+   subroutine load_lane(l, lane, e, is_alike)
+      type(lanes_t), intent(inout) :: l
+      integer, intent(in) :: lane
+      type(block_engine_t), intent(in) :: e
+      logical, intent(out) :: is_alike
+      integer :: i, k
+
+      is_alike = is_same_structure(l%blocks, e%blocks)
+      if (is_alike) is_alike = size(l%moving) == size(e%moving) .and. size(l%laws, 1) == size(e%laws)
+      if (is_alike) is_alike = all(l%moving == e%moving)
+      if (.not. is_alike) return
+      do i = 1, size(e%laws)
+         l%laws(i, lane) = e%laws(i)
+         l%polynomial(lane, :, i) = e%laws(i)%drive%polynomial
+         l%unit_of(lane, i) = e%unit_of(i)
+      end do
+      l%is_polynomial = .true.
+      do k = 1, width
+         do i = 1, size(e%laws)
+            if (allocated(l%laws(i, k)%splines)) l%is_polynomial = l%is_polynomial .and. size(l%laws(i, k)%splines) == 0
+         end do
+      end do
+      call load_numbers(l, lane, e%blocks)
+      do i = 0, e%blocks%unknowns
+         associate (u => e%state%u(i))
+            l%u(lane, :, i) = [u%value, u%rate, u%acceleration, u%c, u%s]
+         end associate
+      end do
+      call load_history(l, lane, e)
+   end subroutine load_lane
+
+   !> Fills `lane` with the numbers of the blocks `b`.
+   subroutine load_numbers(l, lane, b)
+      type(lanes_t), intent(inout) :: l
+      integer, intent(in) :: lane
+      type(blocks_t), intent(in) :: b
+      integer :: i
+
+      l%lipschitz(lane, :) = b%list%lipschitz
+      l%coarse(lane, :) = b%list%coarse
+      l%constant(lane, :) = b%rows%constant
+      l%vector(lane, 1, :) = b%body_vectors%x
+      l%vector(lane, 2, :) = b%body_vectors%y
+      do i = 1, size(b%loops)
+         l%ground(lane, :, i) = b%loops(i)%ground
+         l%direction(lane, :, i) = b%loops(i)%direction
+      end do
+      do i = 1, size(b%slides)
+         l%along(lane, :, i) = b%slides(i)%body_vector
+      end do
+   end subroutine load_numbers
+
+   !> Fills `lane` with the motions that `e` remembers; of those before the latest it has no values.
+   subroutine load_history(l, lane, e)
+      type(lanes_t), intent(inout) :: l
+      integer, intent(in) :: lane
+      type(block_engine_t), intent(in) :: e
+      integer :: k, i, slot
+
+      do k = 0, 2
+         slot = slot_of(l, k)
+         l%t(lane, slot) = e%history%t(k)
+         do i = 1, size(l%predicted)
+            associate (past => e%history%past(l%predicted(i)))
+               l%past(lane, :, l%predicted(i), slot) = [past%value, past%rate(k), past%acceleration(k)]
+            end associate
+         end do
+      end do
+      l%sign_of(lane, :) = e%followed%sign_of
+      l%pivot(lane, :, l%newest) = e%followed%pivot
+      l%inverse(lane, :, l%newest) = e%followed%inverse
+   end subroutine load_history
+
+   !> Gives `e` the motion of `lane`, `back` instants before the latest: as the one that it follows.
+   subroutine unload_lane(l, lane, back, e)
+      type(lanes_t), intent(in) :: l
+      integer, intent(in) :: lane, back
+      type(block_engine_t), intent(inout) :: e
+      integer :: k, i, u
+
+      do k = 0, 2
+         associate (slot => slot_of(l, back + k))
+            e%history%t(k) = l%t(lane, slot)
+            do i = 1, size(l%predicted)
+               u = l%predicted(i)
+               if (k == 0) e%history%past(u)%value = l%past(lane, 1, u, slot)
+               e%history%past(u)%rate(k) = l%past(lane, 2, u, slot)
+               e%history%past(u)%acceleration(k) = l%past(lane, 3, u, slot)
+            end do
+         end associate
+      end do
+      e%history%filled = 3
+      associate (slot => slot_of(l, back))
+         e%followed%sign_of = nint(l%sign_of(lane, :))
+         e%followed%pivot = l%pivot(lane, :, slot)
+         e%followed%inverse = l%inverse(lane, :, slot)
+      end associate
+   end subroutine unload_lane
+
+   !> The slot of the motion `back` instants before the latest.
+   pure integer function slot_of(l, back)
+      type(lanes_t), intent(in) :: l
+      integer, intent(in) :: back
+
+      slot_of = modulo(l%newest + back, depth)
+   end function slot_of
+
+   !> The blocks `a` and `b` differ in their numbers alone.
+   pure logical function is_same_structure(a, b) result(same)
+      type(blocks_t), intent(in) :: a, b
+      integer :: i
+
+      same = all([a%orientations, a%unknowns, size(a%list), size(a%rows), size(a%loops), size(a%body_vectors), &
+         size(a%slides)] == [b%orientations, b%unknowns, size(b%list), size(b%rows), size(b%loops), &
+         size(b%body_vectors), size(b%slides)])
+      if (.not. same) return
+      same = all(a%unknown == b%unknown) .and. all(a%rows%drive == b%rows%drive) &
+         .and. all(a%rows%other == b%rows%other) .and. all(abs(a%rows%sign_of - b%rows%sign_of) < 1.0_wp)
+      do i = 1, size(a%list)
+         associate (p => a%list(i), q => b%list(i))
+            same = same .and. (p%direct .eqv. q%direct) .and. all([p%first, p%last, p%first_row, p%last_row, &
+               p%first_loop, p%last_loop, p%shape%rows, p%shape%n, p%shape%pattern] == [q%first, q%last, q%first_row, &
+               q%last_row, q%first_loop, q%last_loop, q%shape%rows, q%shape%n, q%shape%pattern])
+         end associate
+      end do
+      do i = 1, size(a%loops)
+         same = same .and. all(whole_numbers(a%loops(i)) == whole_numbers(b%loops(i)))
+      end do
+      do i = 1, size(a%body_vectors)
+         associate (p => a%body_vectors(i), q => b%body_vectors(i))
+            same = same .and. all([p%orientation, p%column, p%at] == [q%orientation, q%column, q%at])
+         end associate
+      end do
+      do i = 1, size(a%slides)
+         associate (p => a%slides(i), q => b%slides(i))
+            same = same .and. all([p%orientation, p%orientation_column, p%unknown, p%column, p%at, p%orientation_at] &
+               == [q%orientation, q%orientation_column, q%unknown, q%column, q%at, q%orientation_at])
+         end associate
+      end do
+   end function is_same_structure
+
+   !> What a loop has that are no reals.
+   pure function whole_numbers(g) result(list)
+      type(block_loop_t), intent(in) :: g
+      integer :: list(14)
+
+      list = [g%kind, g%row_x, g%row_y, g%first_vector, g%first_own, g%last_vector, g%first_slide, g%last_slide, &
+         g%orientation, g%orientation_column, g%less, g%less_column, g%orientation_at, g%less_at]
+   end function whole_numbers
+end module lane_state

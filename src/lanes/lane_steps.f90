@@ -1,0 +1,302 @@
+!> One instant in all lanes: predicted, solved, certified as `block_solver` and `following` do it. Whatever these would
+!> look at more closely (a long substep, small pivots, another sign of a determinant, a Kantorovich ratio above the
+!> largest, more than a few iterations, numbers out of range) is no matter for lanes: such a lane is refused, and the
+!> engine from which it came solves that instant. Lanes never look at one another.
+module lane_steps
+   use kinds, only: wp
+   use predictor, only: largest_change
+   use block_solver, only: closed_level, step_tolerance, suspicious_pivot
+   use following, only: largest_correction, max_kantorovich_ratio
+   use drives, only: drive_motion
+   use lane_sines, only: width, max_angle
+   use lane_elimination, only: factor, substitute, pivots_of, inverse_norm
+   use lane_state, only: lanes_t, slot_of, depth
+   use lane_equations, only: set_lane_direction, find_lane_known, assemble_lanes, lane_right_hand_side
+   implicit none
+   private
+   public :: judgement_t, solve_lanes, accept_lanes, keep_lane
+
+   !> What takes more iterations is refused.
+   integer, parameter :: max_iterations = 5
+   !> The weights of the quintic of `predictor`.
+   real(wp), parameter :: v0 = -949.0_wp/240.0_wp, v1 = 608.0_wp/240.0_wp, v2 = 581.0_wp/240.0_wp, &
+      a0 = 637.0_wp/240.0_wp, a1 = 1080.0_wp/240.0_wp, a2 = 173.0_wp/240.0_wp
+
+   !> What each lane's motion is worth.
+   type :: judgement_t
+      real(wp) :: refused(width) = 0.0_wp      !< above 0: it is no continuation that lanes can certify
+      real(wp) :: correction(width) = 0.0_wp   !< the largest change of a predicted value, rad or unit of length
+      real(wp) :: ratio(width) = 0.0_wp        !< Kantorovich's, without the excursions of the drives
+      real(wp) :: growth(width) = 0.0_wp       !< of that ratio with them
+   end type judgement_t
+
+contains
+
+   !> Solves all lanes at the times `t`, each a step after its latest motion.
+   subroutine solve_lanes(l, t, j)
+      type(lanes_t), intent(inout) :: l
+      real(wp), intent(in) :: t(width)
+      type(judgement_t), intent(out) :: j
+      integer :: k, i
+
+      call set_drives(l, t)
+      call predict_lanes(l, t, j)
+      do k = 1, size(l%moving)
+         i = l%moving(k)
+         if (l%blocks%list(i)%direct) then
+            call solve_direct(l, i)
+         else
+            call solve_block(l, i, l%blocks%list(i)%shape%n, j)
+         end if
+      end do
+      ! Comparisons that are false where something is no number.
+      j%refused = j%refused + merge(0.0_wp, 1.0_wp, j%correction <= largest_correction) &
+         + merge(0.0_wp, 1.0_wp, j%ratio + j%growth*l%excursion <= max_kantorovich_ratio)
+   end subroutine solve_lanes
+
+   !> Value, rate and acceleration of the drives.
+   subroutine set_drives(l, t)
+      type(lanes_t), intent(inout) :: l
+      real(wp), intent(in) :: t(width)
+      integer :: i, lane
+
+      do i = 1, size(l%laws, 1)
+         if (l%is_polynomial) then
+            call set_polynomial(l%polynomial(1, 1, i), l%unit_of(1, i), t, l%drive(1, 0, i))
+         else
+            do lane = 1, width
+               l%drive(lane, :, i) = drive_motion(l%laws(i, lane), t(lane))*l%unit_of(lane, i)
+            end do
+         end if
+      end do
+   end subroutine set_drives
+
+   !> The same of a polynomial `c`.
+   pure subroutine set_polynomial(c, unit, t, drive)
+      real(wp), intent(in) :: c(width, 3), unit(width), t(width)
+      real(wp), intent(inout) :: drive(width, 0:2)
+      integer :: l
+
+      do l = 1, width
+         drive(l, 0) = (c(l, 1) + t(l)*(c(l, 2) + t(l)*c(l, 3)/2.0_wp))*unit(l)
+         drive(l, 1) = (c(l, 2) + t(l)*c(l, 3))*unit(l)
+         drive(l, 2) = c(l, 3)*unit(l)
+      end do
+   end subroutine set_polynomial
+
+   !> The values expected at `t`: see `predictor`.
+   subroutine predict_lanes(l, t, j)
+      type(lanes_t), intent(inout) :: l
+      real(wp), intent(in) :: t(width)
+      type(judgement_t), intent(inout) :: j
+      real(wp) :: step(width)
+      integer :: k
+
+      step = t - l%t(:, l%newest)
+      do k = 1, size(l%predicted)
+         associate (i => l%predicted(k))
+            call predict_one(step, l%past(1, 1, i, slot_of(l, 0)), l%past(1, 1, i, slot_of(l, 1)), &
+               l%past(1, 1, i, slot_of(l, 2)), l%u(1, 1, i), j%refused)
+         end associate
+      end do
+   end subroutine predict_lanes
+
+   !> The value `u`, from the motions `p` (latest), `q` and `r`; too large a change is refused.
+   pure subroutine predict_one(step, p, q, r, u, refused)
+      real(wp), intent(in) :: step(width), p(width, 3), q(width, 3), r(width, 3)
+      real(wp), intent(inout) :: u(width), refused(width)
+      real(wp) :: d
+      integer :: l
+
+      do l = 1, width
+         d = step(l)*(v0*p(l, 2) + v1*q(l, 2) + v2*r(l, 2) + step(l)*(a0*p(l, 3) + a1*q(l, 3) + a2*r(l, 3)))
+         u(l) = p(l, 1) + d
+         refused(l) = refused(l) + merge(0.0_wp, 1.0_wp, abs(d) <= largest_change)
+      end do
+   end subroutine predict_one
+
+   !> A drive's own unknown.
+   subroutine solve_direct(l, i)
+      type(lanes_t), intent(inout) :: l
+      integer, intent(in) :: i
+      integer :: u
+
+      u = l%blocks%unknown(l%blocks%list(i)%first)
+      associate (row => l%blocks%rows(l%blocks%list(i)%first_row))
+         call take_drive(row%sign_of, l%constant(1, l%blocks%list(i)%first_row), l%drive(1, 0, row%drive), &
+            l%u(1, 1, row%other), l%u(1, 1, u))
+      end associate
+      call set_lane_direction(l, u)
+   end subroutine solve_direct
+
+   !> u = other + sign_of (constant + drive), and its derivatives.
+   pure subroutine take_drive(sign_of, constant, drive, other, u)
+      real(wp), intent(in) :: sign_of, constant(width), drive(width, 0:2), other(width, 5)
+      real(wp), intent(inout) :: u(width, 5)
+      integer :: l
+
+      do l = 1, width
+         u(l, 1) = other(l, 1) + sign_of*(constant(l) + drive(l, 0))
+         u(l, 2) = other(l, 2) + sign_of*drive(l, 1)
+         u(l, 3) = other(l, 3) + sign_of*drive(l, 2)
+      end do
+   end subroutine take_drive
+
+   !> Solves block `i`, of `n` unknowns: position, velocities, accelerations.
+   subroutine solve_block(l, i, n, j)
+      type(lanes_t), intent(inout) :: l
+      integer, intent(in) :: i, n
+      type(judgement_t), intent(inout) :: j
+      real(wp) :: a(width, n*n), d(width, n), exchanged(width, 3), start(width, n), change(width)
+      integer :: k
+
+      do k = 1, n
+         associate (u => l%blocks%unknown(l%blocks%list(i)%first + k - 1))
+            start(:, k) = l%u(:, 1, u)
+            j%refused = j%refused + merge(0.0_wp, 1.0_wp, abs(start(:, k)) <= max_angle)
+            call set_lane_direction(l, u)
+         end associate
+      end do
+      call find_lane_known(l, i)
+      call iterate(l, i, n, a, d, exchanged, j)
+      change = 0.0_wp
+      do k = 1, n
+         associate (u => l%blocks%unknown(l%blocks%list(i)%first + k - 1))
+            call turn(u <= l%blocks%orientations, d(1, k), start(1, k), l%u(1, 1, u), change)
+         end associate
+      end do
+      j%correction = max(j%correction, change)
+      call judge(l, i, n, a, exchanged, change, j)
+      call find_rates(l, i, n, a, exchanged)
+   end subroutine solve_block
+
+   !> Newton's method in all lanes. Those that are done keep their values, so that what comes after their last iteration
+   !> is the same however long the others take: `a`: the factors, `d`: the last corrections, not applied yet.
+   subroutine iterate(l, i, n, a, d, exchanged, j)
+      type(lanes_t), intent(inout) :: l
+      integer, intent(in) :: i, n
+      real(wp), intent(out) :: a(width, n*n), d(width, n), exchanged(width, 3)
+      type(judgement_t), intent(inout) :: j
+      real(wp) :: size_of(width), residual(width), going(width)
+      integer :: iteration, k
+
+      do iteration = 1, max_iterations
+         call assemble_lanes(l, i, n, a, d)
+         size_of = max(1.0_wp, l%coarse(:, i))
+         residual = 0.0_wp
+         do k = 1, n
+            size_of = max(size_of, abs(l%u(:, 1, l%blocks%unknown(l%blocks%list(i)%first + k - 1))))
+            residual = max(residual, abs(d(:, k)))
+         end do
+         call factor(n, a, exchanged)
+         call substitute(n, a, exchanged, d)
+         going = 0.0_wp
+         do k = 1, n
+            ! A residual of rounding has nothing to correct.
+            d(:, k) = merge(0.0_wp, d(:, k), residual <= closed_level*size_of)
+            going = going + merge(0.0_wp, 1.0_wp, abs(d(:, k)) <= step_tolerance &
+               *max(1.0_wp, l%coarse(:, i), abs(l%u(:, 1, l%blocks%unknown(l%blocks%list(i)%first + k - 1)) - d(:, k))))
+         end do
+         going = merge(going, 0.0_wp, j%refused < 0.5_wp)
+         if (.not. any(going > 0.5_wp)) return
+         do k = 1, n
+            associate (u => l%blocks%unknown(l%blocks%list(i)%first + k - 1))
+               l%u(:, 1, u) = l%u(:, 1, u) - merge(d(:, k), 0.0_wp, going > 0.5_wp)
+               call set_lane_direction(l, u)
+            end associate
+         end do
+      end do
+      j%refused = j%refused + going
+   end subroutine iterate
+
+   !> Applies the last correction `d` of an unknown, an angle or not; `change`: the largest from its `start`.
+   pure subroutine turn(is_angle, d, start, u, change)
+      logical, intent(in) :: is_angle
+      real(wp), intent(in) :: d(width), start(width)
+      real(wp), intent(inout) :: u(width, 5), change(width)
+      real(wp) :: c
+      integer :: l
+
+      do l = 1, width
+         u(l, 1) = u(l, 1) - d(l)
+         change(l) = max(change(l), abs(u(l, 1) - start(l)))
+      end do
+      if (.not. is_angle) return
+      do l = 1, width
+         c = u(l, 4)
+         u(l, 4) = c + d(l)*u(l, 5)
+         u(l, 5) = u(l, 5) - d(l)*c
+      end do
+   end subroutine turn
+
+   !> See `judge` in `block_solver`, and what the engine and the continuation make of it. `change`: of the block's
+   !> values.
+   subroutine judge(l, i, n, a, exchanged, change, j)
+      type(lanes_t), intent(inout) :: l
+      integer, intent(in) :: i, n
+      real(wp), intent(in) :: a(width, n*n), exchanged(width, 3), change(width)
+      type(judgement_t), intent(inout) :: j
+      real(wp), dimension(width) :: least, largest, sign_of, inverse, before
+      integer :: lane
+
+      call pivots_of(n, a, exchanged, least, largest, sign_of)
+      if (n == 1) largest = l%lipschitz(:, i)
+      call inverse_norm(n, a, exchanged, inverse)
+      before = l%inverse(:, i, l%newest)
+      do lane = 1, width
+         j%refused(lane) = j%refused(lane) + merge(0.0_wp, 1.0_wp, least(lane) >= suspicious_pivot*max(largest(lane), &
+            1.0_wp)) + merge(0.0_wp, 1.0_wp, sign_of(lane)*l%sign_of(lane, i) > 0.0_wp)
+         j%ratio(lane) = max(j%ratio(lane), change(lane)*l%lipschitz(lane, i)*inverse(lane))
+         j%growth(lane) = max(j%growth(lane), l%lipschitz(lane, i)*max(inverse(lane), before(lane))**2)
+      end do
+      associate (next => slot_of(l, depth - 1))
+         l%pivot(:, i, next) = least
+         l%inverse(:, i, next) = inverse
+      end associate
+   end subroutine judge
+
+   !> Velocities and accelerations of block `i`, from its factors.
+   subroutine find_rates(l, i, n, a, exchanged)
+      type(lanes_t), intent(inout) :: l
+      integer, intent(in) :: i, n
+      real(wp), intent(in) :: a(width, n*n), exchanged(width, 3)
+      real(wp) :: v(width, n)
+      integer :: k, order
+
+      do order = 1, 2
+         call lane_right_hand_side(l, i, n, order, v)
+         call substitute(n, a, exchanged, v)
+         do k = 1, n
+            l%u(:, order + 1, l%blocks%unknown(l%blocks%list(i)%first + k - 1)) = v(:, k)
+         end do
+      end do
+   end subroutine find_rates
+
+   !> The motions found last, at `t`, are now the latest of their lanes.
+   subroutine accept_lanes(l, t)
+      type(lanes_t), intent(inout) :: l
+      real(wp), intent(in) :: t(width)
+      integer :: k
+
+      l%newest = slot_of(l, depth - 1)
+      l%t(:, l%newest) = t
+      do k = 1, size(l%predicted)
+         l%past(:, :, l%predicted(k), l%newest) = l%u(:, :3, l%predicted(k))
+      end do
+   end subroutine accept_lanes
+
+   !> Puts `lane` back to its latest motion, as if that had been found last.
+   subroutine keep_lane(l, lane)
+      type(lanes_t), intent(inout) :: l
+      integer, intent(in) :: lane
+      integer :: k
+
+      do k = 1, size(l%predicted)
+         l%u(lane, :3, l%predicted(k)) = l%past(lane, :, l%predicted(k), l%newest)
+      end do
+      associate (next => slot_of(l, depth - 1))
+         l%pivot(lane, :, next) = l%pivot(lane, :, l%newest)
+         l%inverse(lane, :, next) = l%inverse(lane, :, l%newest)
+      end associate
+   end subroutine keep_lane
+end module lane_steps
