@@ -86,7 +86,8 @@ contains
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       real(wp) :: phi(size(m%links))
-      real(wp) :: u(0:t%orientations), v(0:t%orientations), before, after, change, length
+      real(wp), dimension(0:t%orientations) :: u, v, w
+      real(wp) :: before, after, length
       logical, allocatable :: placed(:)
       integer, allocatable :: order(:)
       integer :: i, sweep
@@ -103,8 +104,9 @@ contains
       v = u
       order = by_orientation(t)
       do sweep = 1, max_sweeps
-         call minimize_closure_errors(m, t, order, min_form_part*length**2, v, placed, change)
-         if (change <= good_part) exit
+         w = v
+         call minimize_closure_errors(m, t, order, min_form_part*length**2, v, placed)
+         if (maxval(abs(without_turns(v - w))) <= good_part) exit
       end do
       v = u + without_turns(v - u)
       before = largest_opening(m, t, u, placed)
@@ -136,19 +138,17 @@ contains
    end function by_orientation
 
    !> Gives each orientation class the angle of the least closure errors, unless the form is below `least_form` at all
-   !> angles. `placed` (points): their places are known, then also those of the class; `change`: the largest, in rad.
-   subroutine minimize_closure_errors(m, t, order, least_form, u, placed, change)
+   !> angles. `placed` (points): their places are known, then also those of the class.
+   subroutine minimize_closure_errors(m, t, order, least_form, u, placed)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       integer, intent(in) :: order(:)
       real(wp), intent(in) :: least_form
       real(wp), intent(inout) :: u(0:)
       logical, intent(inout) :: placed(:)
-      real(wp), intent(out) :: change
-      real(wp) :: e(5), found
+      real(wp) :: e(5)
       integer :: i, k, orientation
 
-      change = 0.0_wp
       e = 0.0_wp
       do i = 1, size(order)
          orientation = t%orientation(order(i))
@@ -161,9 +161,7 @@ contains
             if (t%orientation(order(i + 1)) == orientation) cycle
          end if
          if (maxval(abs(e)) > least_form) then
-            found = least(e, u(orientation))
-            change = max(change, abs(without_turns(found - u(orientation))))
-            u(orientation) = found
+            u(orientation) = least(e, u(orientation))
             where (t%orientation(m%points%link) == orientation) placed = .true.
          end if
          e = 0.0_wp
