@@ -116,6 +116,9 @@ contains
       if (.not. (always .or. found%in_doubt)) return
       if (q%known < 0 .and. .not. allocated(q%link_known)) return
       last = merge(all_samples, sample_count, always)
+      if (allocated(found%samples)) then
+         if (ubound(found%samples, 1) < last) deallocate (found%samples)
+      end if
       if (.not. allocated(found%samples)) then
          allocate (found%samples(-repeat_count:last))
          found%samples(:) = new_motion(size(m%links))

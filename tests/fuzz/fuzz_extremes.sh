@@ -15,7 +15,9 @@ mkdir -p "$work" || exit 3
 # deck_of DECK STEPS CARD: the deck with so many steps and this card instead of its requests
 deck_of() {
    awk -v n="$2" -v card="$3" '
-      /^(EXTREMES|PRINT|AT|VARY|POLE|CURVE|TOLER)/ { next }
+      /^[*]/ && dropped { next }
+      { dropped = /^(EXTREMES|PRINT|AT|VARY|POLE|CURVE|TOLER)/ }
+      dropped { next }
       /^TIME/ { printf "%-8s%-24d%s\n", "TIME", n, substr($0, 33); next }
       /^END/ { print card }
       { print }' "$1"
