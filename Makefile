@@ -40,7 +40,7 @@ modules := $(filter-out main,$(basename $(notdir $(sources))))
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))
 vpath %.F90 $(sort $(dir $(sources)))
 
-.PHONY: all example pictures kinds run test check forms errors kind-check quad-check single-check bench bench-short bench-against bench-peers hard hard-short study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants expected install install-kinds clean
+.PHONY: all example pictures kinds run test check forms errors proofs kind-check quad-check single-check bench bench-short bench-against bench-peers hard hard-short study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants expected install install-kinds clean
 all: $(BUILD)/kinmat
 
 run: $(BUILD)/kinmat
@@ -124,6 +124,10 @@ forms: $(BUILD)/release/check_forms
 
 # The program's own estimates of its errors against the closed forms.
 errors: $(BUILD)/release/error_estimates
+	$< $(decks)
+
+# What PROVE proves of them: every step but those of a list, and no bound below the true error.
+proofs: $(BUILD)/release/proof_bounds
 	$< $(decks)
 
 check: $(BUILD)/kinmat $(references)
@@ -217,7 +221,7 @@ TEST_HELPERS := $(unit_helpers:%=$(BUILD)/debug/%.o)
 include tests/pfunit/tests.mk
 
 # What the parts of `make test` need is made beforehand, many at a time; the parts run one after another.
-checkers := check_forms error_estimates compare_digits hard matrix_1987 bench fuzz_mechanisms read_listing
+checkers := check_forms error_estimates proof_bounds compare_digits hard matrix_1987 bench fuzz_mechanisms read_listing
 test: $(addprefix $(BUILD)/,kinmat example debug/kinmat $(checkers:%=release/%) debug/fuzz kinmat-quad kinmat-single \
    quad/release/kind_errors single/release/kind_errors tests$(if $(PFUNIT_DIR),/pfunit)/unit) $(references)
 	BUILD=$(BUILD) MAKE='$(MAKE)' FC='$(FC)' tests/run.sh

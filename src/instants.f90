@@ -16,9 +16,10 @@ module instants
    use answers, only: answers_t, new_answers, take_instant, put_answers
    use variant_rows, only: variant_row_t, note_flag
    use numerals, only: whole
+   use motion_proof, only: holds
    use set_motion, only: has_words
-   use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set, sense_set, set_record, &
-      set_errors, set_closure_error, set_closing_diagnostics
+   use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set, sense_set, prove_set, &
+      set_record, set_errors, set_closure_error, set_closing_diagnostics
    use command_line, only: options_t, out_listing, out_csv, out_log, out_table, out_plot_table
    use outputs, only: outputs_t, is_over
    implicit none
@@ -62,9 +63,13 @@ contains
       every = strides(m)
       do k = 0, instant_count(m) - 1
          call advance_set(a, instant(m, k))
+         if (m%proves) then
+            call prove_set(a)
+            if (.not. all(holds(a%now%proofs))) row%unproved = row%unproved + 1
+         end if
          call note_flag(row, a)
          call write_instant(options, m, i, k, any_due(m, every, k), lists, a, o)
-         call take_instant(asked, m, a, k)
+         call take_instant(asked, m, a, k, any_due(m, every, k))
          if (o%progress%shown .and. m%variants == 0) &
             call show_progress(o%progress, 'SET '//whole(i)//': INSTANT', k, instant_count(m) - 1)
          if (.not. is_over(o, i)) cycle

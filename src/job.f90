@@ -269,7 +269,7 @@ contains
       if (options%check .or. is_over(o, i)) return
       if (m%variants == 0) then
          call run_motion(options, m, i, findings, .true., o, counts, asked)
-         if (counts%flagged > 0) status = status_flagged
+         if (counts%flagged + counts%unproved > 0) status = status_flagged
       else
          do k = 1, size(o%variations)
             if (o%variations(k)%set%mechanism%set_number == i) &

@@ -49,7 +49,7 @@ contains
       if (o%asked(out_summary) .and. first == 1) call summary_head(o%files(out_summary, 0), summary)
       if (o%asked(out_listing) .and. first == 1 .and. .not. full) &
          call put_variant_heads(o%files(out_listing, 0), summary)
-      if (full .or. o%asked(out_csv) .or. o%asked(out_log)) then
+      if (full .or. m%proves .or. o%asked(out_csv) .or. o%asked(out_log)) then
          call run_each(options, m, i, last, full, v, summary, layout, n, o, status)
       else
          call run_together(m, i, last, v, summary, layout, n, o, status)
@@ -157,7 +157,7 @@ contains
 
       if (o%asked(out_summary)) call summary_row(o%files(out_summary, 0), summary, m, row)
       if (o%asked(out_listing)) call put_variant_row(o%files(out_listing, 0), layout, summary, m, row)
-      if (row%flagged > 0 .or. row%rejected /= '') status = status_flagged
+      if (row%flagged + row%unproved > 0 .or. row%rejected /= '') status = status_flagged
       if (o%progress%shown) call show_progress(o%progress, 'SET '//whole(i)//': VARIANT', row%number, v%total)
    end subroutine write_row
 

@@ -26,6 +26,7 @@ parts() {
    the reader of listings|93|tests/system/reader.sh
    the documents|300|tests/system/documents.sh
    estimates of errors|57|"$MAKE" --no-print-directory errors
+   proofs|160|"$BUILD/release/proof_bounds" input/*.deck
    units of length|751|tests/system/units.sh
    the methods against one another|8|tests/system/methods.sh
    variants|81|tests/system/variants.sh

@@ -1,5 +1,5 @@
-!> What a set asks of its motion beyond tables at instants: the cards EXTREMES, RANGE, ASSEMBLY, CIRCUITS and TOLER. A
-!> set that asks for nothing costs nothing.
+!> What a set asks of its motion beyond tables at instants: the cards EXTREMES, RANGE, ASSEMBLY, CIRCUITS, TOLER
+!> and PROVE. A set that asks for nothing costs nothing.
 module answers
    use mechanism, only: mechanism_t
    use set_analysis, only: set_analysis_t
@@ -14,6 +14,7 @@ module answers
    use assembly_table, only: assembly_answer_t, find_answer, put_assemblies
    use circuit_branches, only: circuits_t
    use circuits_table, only: find_all_circuits, put_circuits
+   use proof_table, only: proof_table_t, new_proof_table, note_proof, put_proofs
    implicit none
    private
    public :: answers_t, new_answers, take_instant, put_answers
@@ -23,9 +24,11 @@ module answers
       logical :: ranges_asked = .false.
       logical :: assemblies_asked = .false.
       logical :: shares_asked = .false.
+      logical :: proofs_asked = .false.
       type(extremes_t) :: extremes
       type(dwells_t) :: dwells
       type(shares_t) :: shares
+      type(proof_table_t) :: proofs
       type(range_t), allocatable :: ranges(:)       !< (drives that have one), in the numbers of the set
       type(assembly_answer_t), allocatable :: assemblies(:)   !< (parts)
       type(circuits_t), allocatable :: circuits(:)  !< (drives that are set free) likewise; not allocated: not asked
@@ -44,6 +47,8 @@ contains
       a%assemblies_asked = m%assemblies
       a%shares_asked = allocated(m%tolerances)
       if (a%shares_asked) call new_shares(m, a%shares)
+      a%proofs_asked = m%proves
+      if (a%proofs_asked) call new_proof_table(m, a%proofs)
       allocate (a%ranges(0))
       if (.not. a%extremes_asked) return
       call new_extremes(m, s, a%extremes)
@@ -51,12 +56,15 @@ contains
    end subroutine new_answers
 
    !> Takes instant number `k` of `m`, to which `s` has advanced, and what is asked for between it and those before.
-   subroutine take_instant(a, m, s, k)
+   !> `due`: it is printed.
+   subroutine take_instant(a, m, s, k, due)
       type(answers_t), intent(inout) :: a
       type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: k
+      logical, intent(in) :: due
 
+      if (a%proofs_asked) call note_proof(a%proofs, m, s, k, due)
       if (a%ranges_asked .and. k == 0) call find_ranges(s, a%ranges)
       if (a%assemblies_asked .and. k == 0) call find_answer(s, a%assemblies)
       if (m%circuits .and. k == 0) call find_all_circuits(s, a%circuits)
@@ -83,5 +91,6 @@ contains
       if (a%assemblies_asked) call put_assemblies(o, l, m, s, a%assemblies)
       if (allocated(a%circuits)) call put_circuits(o, m, a%circuits)
       if (a%shares_asked) call put_shares(o, l, a%shares, m, s%now)
+      if (a%proofs_asked) call put_proofs(o, l, a%proofs, m)
    end subroutine put_answers
 end module answers

@@ -64,6 +64,7 @@ module variant_rows
       type(cell_t), allocatable :: cells(:)         !< (columns)
       character(:), allocatable :: rejected         !< the error for which it is not computed; '' for none
       integer :: solved = 0, flagged = 0            !< instants
+      integer :: unproved = 0                       !< instants that are not proved, where a card asks for it
       integer :: mark = mark_none, singularity = 0  !< of the first flagged instant
       real(wp) :: t = 0.0_wp                        !< its time
       type(diagnostic_t) :: limit                   !< the first limit; its kind is 0: none

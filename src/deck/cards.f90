@@ -12,7 +12,7 @@ module cards
    public :: form_unknown, form_title, form_units, form_lang, form_ground, form_link, form_point, form_revolute
    public :: form_prism, form_joint, form_drive, form_add, form_rise, form_toler, form_time, form_at
    public :: form_method, form_print, form_extremes, form_range, form_circuits, form_pole, form_curve, form_branch
-   public :: form_vary, form_assembly, form_end
+   public :: form_vary, form_assembly, form_prove, form_end
 
    !> Columns of a card.
    integer, parameter :: card_columns = 80
@@ -63,7 +63,7 @@ module cards
       enumerator :: form_unknown = 0, form_title, form_units, form_lang, form_ground, form_link, form_point
       enumerator :: form_revolute, form_prism, form_joint, form_drive, form_add, form_rise, form_toler, form_time
       enumerator :: form_at, form_method, form_print, form_extremes, form_range, form_circuits, form_pole, form_curve
-      enumerator :: form_branch, form_vary, form_assembly, form_end
+      enumerator :: form_branch, form_vary, form_assembly, form_prove, form_end
    end enum
 
    !> The text of TITLE is not a label.
@@ -93,6 +93,7 @@ module cards
       form_t('l--', 1, .false., 'BRANCH  LINK                    T'), &
       form_t('LLl', 3, .false., 'VARY    R1/2/3  N/LIST  TIE     FROM/VALUE      TO/VALUE        VALUE'), &
       form_t('---', 0, .true.,  'ASSEMBLY'), &
+      form_t('---', 0, .true.,  'PROVE'), &
       form_t('---', 0, .false., 'END')]
    type(exception_t), parameter :: exceptions(*) = &
       [exception_t(form_add, 'POWER', 2), exception_t(form_add, 'TABLE', 2)]

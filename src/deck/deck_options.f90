@@ -8,10 +8,10 @@ module deck_options
    use card_sets, only: card_set_t, look_up, match_word, add_card_error
    use cards, only: title_field, card_name, label_a, label_b, label_c, real_1, real_2, forms, form_unknown, &
       form_title, form_units, form_lang, form_time, form_at, form_method, form_print, form_extremes, &
-      form_range, form_circuits, form_branch, form_vary, form_assembly
+      form_range, form_circuits, form_branch, form_vary, form_assembly, form_prove
    use input_errors, only: card_repeated, lang_kind, units_angle, units_place, method_kind, tolerance_range, &
       time_point, number_range, field_blank, print_kind, print_all_name, print_repeated, print_nothing, extremes_time, &
-      extremes_ground, branch_ground, branch_method, branch_repeated
+      extremes_ground, branch_ground, newton_needed, branch_repeated
    use names, only: name_table_t, put_name, find_name
    use numerals, only: whole
    implicit none
@@ -56,12 +56,18 @@ contains
                m%assemblies = .true.
             case (form_circuits)
                m%circuits = .true.
+            case (form_prove)
+               m%proves = .true.
             case (form_time)
                if (card%valid) call read_time(set, k)
             end select
          end associate
       end do
       call read_instants(set)
+      do k = 1, set%count
+         if (set%cards(k)%form == form_prove .and. set%mechanism%method /= method_newton) &
+            call add_card_error(set, newton_needed, k, card_name)
+      end do
       if (set%mechanism%degrees) set%angle_unit = degree
    end subroutine build_options
 
@@ -317,7 +323,7 @@ contains
       integer, intent(in) :: k
       type(branch_request_t), intent(out) :: request
 
-      if (set%mechanism%method /= method_newton) call add_card_error(set, branch_method, k, card_name)
+      if (set%mechanism%method /= method_newton) call add_card_error(set, newton_needed, k, card_name)
       call look_up(set, request_link, k, label_a, request%link)
       if (request%link > 0) then
          if (set%mechanism%links(request%link)%ground) call add_card_error(set, branch_ground, k, label_a)

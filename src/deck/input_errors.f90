@@ -130,7 +130,7 @@ module input_errors
    type(error_code_t), parameter, public :: &
       time_point = error_code_t(85, 'T0 AND T1 ARE EQUAL'), &
       branch_ground = error_code_t(86, 'A GROUND LINK HAS NO OTHER BRANCH'), &
-      branch_method = error_code_t(87, 'A BRANCH CARD NEEDS METHOD NEWTON'), &
+      newton_needed = error_code_t(87, 'THIS CARD NEEDS METHOD NEWTON'), &
       branch_repeated = error_code_t(88, 'THIS BRANCH CARD IS REPEATED; FIRST ON CARD'), &
       units_place = error_code_t(89, 'IS A UNIT OF ANGLES: IT BELONGS IN COLUMNS 17-24 (LABEL-B)', own_layout), &
       lang_kind = error_code_t(90, 'IS NOT EN OR PL', own_layout), &

@@ -212,7 +212,7 @@ contains
          if (starts .and. k == first) then
             call note_start(r%asked%extremes, r%m, r%s)
          else
-            call take_instant(r%asked, r%m, r%s, k)
+            call take_instant(r%asked, r%m, r%s, k, .true.)
          end if
          r%noted = k
          r%at = k

@@ -137,6 +137,7 @@ module mechanism
       integer :: method = method_newton      !< method_newton, method_matrix or method_dense
       real(wp) :: tolerance = 0.0_wp         !< relative; 0: that of the method
       logical :: ranges = .false.            !< the ranges of the drives are asked for
+      logical :: proves = .false.            !< a proof of each step is asked for
       logical :: assemblies = .false.        !< all assemblies at the first instant are asked for
       logical :: circuits = .false.          !< the circuits of the mechanism are asked for
       integer :: predictor = own_predictor   !< order of the predictor of a step, 0 to 3; no card sets it
@@ -225,14 +226,14 @@ contains
       end do
    end subroutine place_links
 
-   !> Whether each link (links) is needed by a request of `m`; ranges, circuits, assemblies and tolerances need all of
-   !> them.
+   !> Whether each link (links) is needed by a request of `m`; ranges, circuits, proofs, assemblies and tolerances need
+   !> all of them.
    pure function wanted_links(m) result(wanted)
       type(mechanism_t), intent(in) :: m
       logical :: wanted(size(m%links))
       integer :: i
 
-      wanted = m%ranges .or. m%circuits .or. m%assemblies .or. allocated(m%tolerances)
+      wanted = m%ranges .or. m%circuits .or. m%proves .or. m%assemblies .or. allocated(m%tolerances)
       do i = 1, size(m%requests)
          associate (k => m%requests(i)%subject)
             select case (m%requests(i)%kind)

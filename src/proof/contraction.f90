@@ -75,7 +75,9 @@ contains
       do k = 1, c%n
          x = x + c%inverse(:, k)*v(k)
       end do
-      x = x*(1.0_wp + (16 + c%n)*rounding) + tiny(1.0_wp)
+      x = x*(1.0_wp + (16 + c%n)*rounding)
+      ! For products that underflow; what is at rest is so exactly.
+      if (any(v > 0.0_wp)) x = x + tiny(1.0_wp)
    end function applied
 
    !> The radius of the least ball about the centre, where |A| |F| <= `eta`, that is mapped into itself; -1: none.

@@ -14,7 +14,7 @@ module proof_data
    use blocks, only: blocks_t, loop_angles
    implicit none
    private
-   public :: proof_data_t, new_proof_data, angle_errors, table_errors, rounding
+   public :: proof_data_t, new_proof_data, angle_errors, table_errors, rounding, of_number, of_vector
 
    !> One rounding error, with room: half of it is the bound of one operation.
    real(wp), parameter :: rounding = epsilon(1.0_wp)

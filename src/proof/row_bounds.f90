@@ -9,7 +9,7 @@ module row_bounds
    use proof_data, only: proof_data_t, rounding
    implicit none
    private
-   public :: jets_t, new_jets, turn, turn_errors, bound_rows, bound_jacobian, bound_growth
+   public :: jets_t, new_jets, turn, turn_errors, product_error, bound_rows, bound_jacobian, bound_growth
 
    integer, parameter, public :: highest = 4     !< derivative by time
    real(wp), parameter :: binomial(0:4, 0:4) = reshape(real([ &
@@ -113,8 +113,8 @@ contains
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: m, order
       type(jets_t), intent(in) :: j
-      real(wp) :: x(3), p, e
-      integer :: k, a
+      real(wp) :: x(3), open
+      integer :: k
 
       x = 0.0_wp
       if (order == 0) x(:2) = [d%ground_length(m), d%ground_weight(m)]
@@ -127,17 +127,35 @@ contains
       end do
       do k = b%loops(m)%first_slide, b%loops(m)%last_slide
          associate (o => b%slides(k)%orientation, u => b%slides(k)%unknown)
-            p = 0.0_wp
-            e = 0.0_wp
-            do a = 0, order
-               p = p + binomial(a, order)*j%own(a, u)*j%turn(order - a, o)
-               e = e + binomial(a, order)*(j%own(a, u)*j%turn_error(order - a, o) &
-                  + j%own_error(a, u)*(j%turn(order - a, o) + j%turn_error(order - a, o)))
-            end do
-            x = x + [d%slide_length(k)*p, d%slide_weight(k)*p, d%slide_length(k)*e]
+            open = 0.0_wp
+            call product_error(order, j%own(:, u), j%own_error(:, u), j%turn(:, o), j%turn_error(:, o), &
+               d%slide_length(k), 0.0_wp, x(1), x(3))
+            call product_error(order, j%own(:, u), j%own_error(:, u), j%turn(:, o), j%turn_error(:, o), &
+               d%slide_weight(k), 0.0_wp, x(2), open)
          end associate
       end do
    end function loop_bounds
+
+   !> Adds to `size_of` and `error` those of derivative `order` of a product: a vector of the `length` along a unit
+   !> vector that turns, by derivatives no larger than `f` and with errors up to `fe`, times a number with `s` and `se`
+   !> (0:highest). `weight`: what rounding leaves open of the product, as a part of its unit.
+   pure subroutine product_error(order, s, se, f, fe, length, weight, size_of, error)
+      integer, intent(in) :: order
+      real(wp), dimension(0:highest), intent(in) :: s, se, f, fe
+      real(wp), intent(in) :: length, weight
+      real(wp), intent(inout) :: size_of, error
+      real(wp) :: p, e
+      integer :: a
+
+      p = 0.0_wp
+      e = 0.0_wp
+      do a = 0, order
+         p = p + binomial(a, order)*s(a)*f(order - a)
+         e = e + binomial(a, order)*(s(a)*fe(order - a) + se(a)*(f(order - a) + fe(order - a)))
+      end do
+      size_of = size_of + length*p
+      error = error + length*e + weight*p
+   end subroutine product_error
 
    !> The same (3) of the projection of loop `m`.
    pure function projection_bounds(d, b, m, j, order) result(x)

@@ -28,7 +28,6 @@ module step_proof
       integer :: parts = 0                        !< proved
       integer :: tries = 0                        !< tubes tried
       real(wp) :: radius = 0.0_wp                 !< the largest of its tubes, in radians and block units
-      real(wp) :: gap = 0.0_wp                    !< by how much redundant equations stay open at most
       integer :: block = 0                        !< that is not proved
       real(wp) :: t = 0.0_wp                      !< the middle of the part that is not
    end type step_proof_t
@@ -74,7 +73,6 @@ contains
       if (s%tube%is_proved) then
          proof%parts = proof%parts + 1
          proof%radius = max(proof%radius, maxval(s%tube%radius))
-         proof%gap = max(proof%gap, s%tube%gap)
          return
       end if
       proof%block = s%tube%block

@@ -27,7 +27,6 @@ module tube_proof
    type :: tube_t
       logical :: is_proved = .false.
       integer :: block = 0                        !< that is not
-      real(wp) :: gap = 0.0_wp                    !< by how much redundant equations stay open at most
       real(wp), allocatable :: radius(:)          !< (0:unknowns)
       real(wp), allocatable :: off(:)             !< (0:unknowns) the farthest place of the curve from its middle
    end type tube_t
@@ -52,7 +51,6 @@ contains
       type(tube_t), intent(inout) :: tube
       integer :: k, u
 
-      tube%gap = 0.0_wp
       tube%radius = 0.0_wp
       tube%is_proved = .true.
       do k = 1, size(list)
@@ -185,7 +183,6 @@ contains
             tube%block = i
             return
          end if
-         tube%gap = max(tube%gap, gap)
          do k = block%first, block%last
             tube%radius(b%unknown(k)) = radius
             call open_curve(p, b, b%unknown(k), tube)

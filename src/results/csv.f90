@@ -11,6 +11,7 @@ module csv
    use known_digits, only: nothing_known
    use error_estimate, only: error_estimate_t, row_error
    use sensitivities, only: has_tolerances, ground_sensitivities, worst_case, root_of_squares
+   use link_bounds, only: row_bound
    use set_motion, only: set_motion_t, row_in_set
    use text_output, only: output_t, put, add
    use numerals, only: whole, full, put_full, full_length
@@ -69,6 +70,7 @@ contains
             call add_row(o, start, m, s%motions(1), m%requests(i), error_estimate_t(asked=s%errors(1)%asked))
          end if
          if (has_tolerances(m, m%requests(i))) call add_tolerances(o, start, m, s, i)
+         if (c > 0 .and. m%requests(i)%kind < request_pole) call add_bound(o, start, m, s, i)
       end do
    end subroutine csv_instant
 
@@ -164,6 +166,28 @@ contains
             spread(spread(nothing_known, 1, 3), 2, 3), m%degrees, marks(row%mark))
       end subroutine add_one
    end subroutine add_sensitivities
+
+   !> The bounds of the errors of the row of request number `i` that are proved, if proofs are asked for.
+   subroutine add_bound(o, start, m, s, i)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: start
+      type(mechanism_t), intent(in) :: m
+      type(set_motion_t), intent(in) :: s
+      integer, intent(in) :: i
+      type(row_t) :: row
+
+      associate (c => s%parts%part(i))
+         associate (own => s%own(c), proof => s%proofs(c), request => s%own(c)%requests(s%parts%number(i)))
+            if (.not. proof%taken) return
+            row = row_of(own, s%motions(c), request)
+            if (.not. proof%is_proved) row%known = -1
+            if (proof%is_proved) row%value = row_bound(own, s%motions(c), proof%links, request)
+            call add(o, start)
+            call add_cells(o, trim(kinds_of_row(row%kind))//' BOUND', row, numbers_of(row), s%errors(c)%asked, &
+               spread(spread(nothing_known, 1, 3), 2, 3), m%degrees, marks(row%mark))
+         end associate
+      end associate
+   end subroutine add_bound
 
    !> The three rows of a pole or curve: each has one third of the numbers under x, y, phi.
    subroutine add_centre(o, start, row, there, asked, error, degrees)

@@ -132,6 +132,16 @@ module phrases
       say_start_singular = phrase_t('THE FIRST INSTANT IS A CHANGE POINT: BEGIN ASIDE FROM IT', &
          'PIERWSZA CHWILA LEZY W PUNKCIE ZMIANY: ZACZNIJ OBOK')
    type(phrase_t), parameter, public :: &
+      say_proof = phrase_t('PROOF: ONE MOTION ALONE IN A TUBE ALONG EACH STEP; BOUNDS OF ERRORS', &
+         'DOWOD: JEDYNY RUCH W RURZE WZDLUZ KAZDEGO KROKU; GRANICE BLEDOW'), &
+      say_parts = phrase_t('PARTS', 'CZESCI'), &
+      say_tube = phrase_t('TUBE', 'RURA'), &
+      say_proved = phrase_t('INSTANTS PROVED', 'CHWILE DOWIEDZIONE'), &
+      say_not_proved = phrase_t('NOT PROVED', 'BEZ DOWODU'), &
+      say_gap = phrase_t('GAP', 'NIEZGODNOSC'), &
+      say_change_inside = phrase_t('THE STEP PASSES A CHANGE POINT', 'KROK PRZECHODZI PRZEZ PUNKT ZMIANY'), &
+      say_near_singular = phrase_t('JACOBIAN TOO NEAR TO SINGULAR', 'JAKOBIAN ZBYT BLISKI OSOBLIWEMU')
+   type(phrase_t), parameter, public :: &
       say_pole = phrase_t('POLE', 'BIEGUN'), &
       say_curve = phrase_t('CURVE', 'TOR'), &
       say_xi = phrase_t('XI', 'KSI'), &

@@ -10,6 +10,8 @@ module set_analysis
    use branch_requests, only: branch_requests_t, new_branch_requests, unused
    use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, row_estimate, &
       largest_errors
+   use motion_proof, only: motion_prover_t, prove_motion
+   use link_bounds, only: largest_bounds
    use sensitivities, only: sensor_t, make_sensor, find_sensitivities
    use set_motion, only: set_motion_t, new_set_motion
    use motion, only: motion_t, new_motion
@@ -18,8 +20,8 @@ module set_analysis
    use diagnosis, only: opinion_t, ask_blocks
    implicit none
    private
-   public :: set_analysis_t, make_set_analysis, advance_set, rows_at, sample_set, sense_set, set_record, &
-      set_errors, set_closure_error, set_closing_diagnostics, iterations_of
+   public :: set_analysis_t, make_set_analysis, advance_set, rows_at, sample_set, sense_set, prove_set, set_record, &
+      set_errors, set_bounds, set_closure_error, set_closing_diagnostics, iterations_of
 
    type :: set_analysis_t
       type(set_motion_t) :: now                             !< the motion found last, and how far it is known
@@ -27,6 +29,7 @@ module set_analysis
       type(opinion_t), allocatable :: opinions(:)           !< (parts)
       type(estimator_t), allocatable :: estimators(:)       !< (parts)
       type(sensor_t), allocatable :: sensors(:)             !< (parts)
+      type(motion_prover_t), allocatable :: provers(:)      !< (parts)
       type(certificate_counts_t) :: certificate_counts      !< of all instants
    end type set_analysis_t
 
@@ -42,7 +45,7 @@ contains
 
       call new_set_motion(m, s%now, findings)
       associate (n => s%now%parts%count)
-         allocate (s%list(n), s%opinions(n), s%estimators(n), s%sensors(n))
+         allocate (s%list(n), s%opinions(n), s%estimators(n), s%sensors(n), s%provers(n))
       end associate
       do c = 1, size(s%list)
          if (present(findings)) then
@@ -142,6 +145,30 @@ contains
             s%now%sensitivities(c))
       end do
    end subroutine sense_set
+
+   !> Proves the motion found last, and the step to it; before any other motion is looked at.
+   subroutine prove_set(s)
+      type(set_analysis_t), intent(inout) :: s
+      integer :: c
+
+      do c = 1, size(s%list)
+         call prove_motion(s%provers(c), s%now%own(c), s%list(c)%engine, s%now%motions(c), s%now%proofs(c))
+      end do
+   end subroutine prove_set
+
+   !> The largest bounds (0:2) of the errors of any link that are proved, in the characteristic length and rate of its
+   !> mechanism.
+   pure function set_bounds(s) result(largest)
+      type(set_analysis_t), intent(in) :: s
+      real(wp) :: largest(0:2)
+      integer :: c
+
+      largest = 0.0_wp
+      do c = 1, size(s%list)
+         if (s%now%proofs(c)%is_proved) largest = max(largest, &
+            largest_bounds(s%now%proofs(c)%links, s%estimators(c)%length, s%estimators(c)%rate))
+      end do
+   end function set_bounds
 
    !> How the instant was found, and on which branch: of several mechanisms the worst.
    pure subroutine set_record(s, record, branch)

@@ -9,6 +9,7 @@ module set_motion
    use points, only: row_t, row_of
    use error_estimate, only: error_estimate_t
    use sensitivities, only: sensitivities_t
+   use motion_proof, only: motion_proof_t
    implicit none
    private
    public :: set_motion_t, new_set_motion, one_motion, is_flagged, has_words, in_set, put_together, row_in_set
@@ -20,6 +21,7 @@ module set_motion
       type(motion_t), allocatable :: motions(:)         !< (parts)
       type(error_estimate_t), allocatable :: errors(:)  !< (parts)
       type(sensitivities_t), allocatable :: sensitivities(:)   !< (parts)
+      type(motion_proof_t), allocatable :: proofs(:)    !< (parts)
    end type set_motion_t
 
 contains
@@ -43,7 +45,8 @@ contains
          allocate (s%own(1))
          s%own(1) = mechanism_of(m, s%parts%list(1))
       end if
-      allocate (s%motions(s%parts%count), s%errors(s%parts%count), s%sensitivities(s%parts%count))
+      allocate (s%motions(s%parts%count), s%errors(s%parts%count), s%sensitivities(s%parts%count), &
+         s%proofs(s%parts%count))
       do c = 1, size(s%own)
          s%motions(c) = new_motion(size(s%own(c)%links))
       end do
@@ -57,7 +60,7 @@ contains
       type(set_motion_t) :: s
 
       call take_whole(m, s%parts)
-      allocate (s%own(1), s%motions(1), s%errors(1), s%sensitivities(1))
+      allocate (s%own(1), s%motions(1), s%errors(1), s%sensitivities(1), s%proofs(1))
       s%own(1) = m
       s%motions(1) = q
       s%errors(1) = errors

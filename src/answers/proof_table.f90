@@ -1,0 +1,209 @@
+!> What card PROVE has proved: a line for each printed instant, with what led to it since the one before; why instants
+!> are not proved; and the counts.
+module proof_table
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, instant
+   use motion, only: mark_none
+   use branch_certificate, only: branch_crossed
+   use motion_proof, only: holds
+   use names, only: listed
+   use set_analysis, only: set_analysis_t, set_bounds
+   use listing, only: words_of_mark
+   use listing_layout, only: layout_t
+   use listing_tables, only: time_text
+   use text_output, only: output_t, put
+   use numerals, only: whole
+   use phrases
+   implicit none
+   private
+   public :: proof_table_t, new_proof_table, note_proof, put_proofs
+
+   !> Of a printed instant, and the steps to it from the last one.
+   type :: line_t
+      integer :: step = 0                        !< number of the instant
+      logical :: is_proved = .true.
+      integer :: parts = 0                       !< into which the steps were divided
+      real(wp) :: tube = 0.0_wp                  !< largest radius, in rad and units of the blocks
+      real(wp) :: bounds(0:2) = 0.0_wp           !< of errors, in the characteristic length and rate
+   end type line_t
+
+   !> Why an instant is not proved.
+   type :: reason_t
+      integer :: step = 0
+      character(:), allocatable :: words
+      real(wp) :: t = 0.0_wp                     !< the time that they end with, if `at_time`
+      logical :: at_time = .false.
+   end type reason_t
+
+   type :: proof_table_t
+      type(line_t), allocatable :: lines(:)      !< with room behind
+      integer :: count = 0                       !< of them; the next one is in the making
+      type(reason_t), allocatable :: reasons(:)  !< the first ones
+      integer :: instants = 0, proved = 0        !< in all
+      real(wp) :: gap = 0.0_wp                   !< of redundant equations at most, in units of the blocks
+   end type proof_table_t
+
+   !> So many reasons are written; of more, the number.
+   integer, parameter :: max_reasons = 50
+   integer, parameter :: number_width = 12
+
+contains
+
+   !> Before the first instant of `m`.
+   subroutine new_proof_table(m, p)
+      type(mechanism_t), intent(in) :: m
+      type(proof_table_t), intent(out) :: p
+
+      allocate (p%lines(max(2, m%steps + size(m%at) + 2)), p%reasons(0))
+   end subroutine new_proof_table
+
+   !> Takes what is proved of instant number `k` of `m`, to which `s` has advanced; `due`: it is printed.
+   subroutine note_proof(p, m, s, k, due)
+      type(proof_table_t), intent(inout) :: p
+      type(mechanism_t), intent(in) :: m
+      type(set_analysis_t), intent(in) :: s
+      integer, intent(in) :: k
+      logical, intent(in) :: due
+      integer :: c
+
+      p%instants = p%instants + 1
+      associate (line => p%lines(p%count + 1))
+         do c = 1, size(s%now%proofs)
+            associate (proof => s%now%proofs(c))
+               line%parts = line%parts + proof%step%parts
+               line%tube = max(line%tube, proof%step%radius)
+               if (proof%is_proved) p%gap = max(p%gap, proof%gap)
+               if (holds(proof)) cycle
+               line%is_proved = .false.
+               if (size(p%reasons) < max_reasons) p%reasons = [p%reasons, reason_of(m, s, c, k)]
+            end associate
+         end do
+         if (all(holds(s%now%proofs))) p%proved = p%proved + 1
+         if (.not. due) return
+         line%step = k
+         line%bounds = set_bounds(s)
+         p%count = p%count + 1
+      end associate
+   end subroutine note_proof
+
+   !> Why instant number `k` of `m` is not proved of independent mechanism number `c`.
+   function reason_of(m, s, c, k) result(r)
+      type(mechanism_t), intent(in) :: m
+      type(set_analysis_t), intent(in) :: s
+      integer, intent(in) :: c, k
+      type(reason_t) :: r
+
+      r%step = k
+      associate (proof => s%now%proofs(c), q => s%now%motions(c), own => s%now%own(c))
+         if (q%mark /= mark_none) then
+            r%words = words_of_mark(q%mark, q%singularity, m%polish)
+         else if (s%list(c)%branch%kind == branch_crossed) then
+            r%words = phrase(say_change_inside, m%polish)
+         else
+            r%words = phrase(say_near_singular, m%polish)
+            if (proof%is_proved) then
+               r%words = r%words//', T ='
+               r%at_time = .true.
+               r%t = proof%step%t
+            end if
+            if (allocated(proof%failed)) then
+               if (size(proof%failed) > 0) r%words = phrase(say_links, m%polish)//' ' &
+                  //listed(own%links(proof%failed)%name)//': '//r%words
+            end if
+         end if
+      end associate
+   end function reason_of
+
+   !> Writes all of it after the last instant of `m`; `l`: the layout of its tables.
+   subroutine put_proofs(o, l, p, m)
+      type(output_t), intent(inout) :: o
+      type(layout_t), intent(in) :: l
+      type(proof_table_t), intent(in) :: p
+      type(mechanism_t), intent(in) :: m
+      character(:), allocatable :: gap
+      integer :: i
+
+      call put(o, '')
+      call put(o, ' '//phrase(say_proof, m%polish))
+      call put(o, right(phrase(say_instant, m%polish))//right('T')//right(phrase(say_parts, m%polish)) &
+         //right(phrase(say_tube, m%polish))//right(phrase(say_position, m%polish)) &
+         //right(phrase(say_velocity, m%polish))//'  '//right(phrase(say_acceleration, m%polish)))
+      do i = 1, p%count
+         call put_line(o, l, p%lines(i), m)
+      end do
+      do i = 1, size(p%reasons)
+         call put_reason(o, l, p%reasons(i), m)
+      end do
+      if (p%instants - p%proved > size(p%reasons)) call put(o, ' *** '//phrase(say_not_proved, m%polish) &
+         //': '//whole(p%instants - p%proved))
+      gap = ''
+      if (p%gap > 0.0_wp) gap = ',  '//phrase(say_gap, m%polish)//' '//rounded_up(p%gap)
+      call put(o, ' '//phrase(say_proved, m%polish)//' '//whole(p%proved)//' / '//whole(p%instants) &
+         //',  '//phrase(say_parts, m%polish)//' '//whole(sum(p%lines(:p%count)%parts)) &
+         //',  '//phrase(say_tube, m%polish)//' '//rounded_up(maxval([0.0_wp, p%lines(:p%count)%tube]))//gap)
+   end subroutine put_proofs
+
+   !> A line of the table.
+   subroutine put_line(o, l, line, m)
+      type(output_t), intent(inout) :: o
+      type(layout_t), intent(in) :: l
+      type(line_t), intent(in) :: line
+      type(mechanism_t), intent(in) :: m
+      character(:), allocatable :: start
+
+      start = right(whole(line%step))//right(time_text(l, instant(m, line%step)))
+      if (.not. line%is_proved) then
+         call put(o, start//'   '//phrase(say_not_proved, m%polish))
+      else
+         call put(o, start//right(whole(line%parts))//right(rounded_up(line%tube))//right(rounded_up(line%bounds(0))) &
+            //right(rounded_up(line%bounds(1)))//'  '//right(rounded_up(line%bounds(2))))
+      end if
+   end subroutine put_line
+
+   !> Why an instant is not proved.
+   subroutine put_reason(o, l, r, m)
+      type(output_t), intent(inout) :: o
+      type(layout_t), intent(in) :: l
+      type(reason_t), intent(in) :: r
+      type(mechanism_t), intent(in) :: m
+      character(:), allocatable :: text
+
+      text = ' *** '//phrase(say_instant, m%polish)//' '//whole(r%step)//', T = '//time_text(l, instant(m, r%step)) &
+         //': '//phrase(say_not_proved, m%polish)//': '//r%words
+      if (r%at_time) text = text//' '//time_text(l, r%t)
+      call put(o, text)
+   end subroutine put_reason
+
+   !> `text` at the right of a column.
+   pure function right(text) result(column)
+      character(*), intent(in) :: text
+      character(max(number_width, len(text) + 1)) :: column
+
+      column = text
+      column = adjustr(column)
+   end function right
+
+   !> `x` with one digit, rounded up; 0 is exact.
+   pure function rounded_up(x) result(text)
+      real(wp), intent(in) :: x
+      character(:), allocatable :: text
+      character(12) :: line
+      real(wp) :: large
+      integer :: power, digit
+
+      if (.not. x > 0.0_wp) then
+         text = '0'
+         return
+      end if
+      ! Numbers next to the end of the range are none.
+      large = min(max(x, tiny(x)/epsilon(x)**2), huge(x)*epsilon(x)**2)
+      power = floor(log10(large))
+      digit = max(1, ceiling(large/10.0_wp**power))
+      if (digit > 9) then
+         digit = 1
+         power = power + 1
+      end if
+      write (line, '(i0,a,sp,i0.2)') digit, '.E', power
+      text = trim(line)
+   end function rounded_up
+end module proof_table
