@@ -40,7 +40,7 @@ modules := $(filter-out main,$(basename $(notdir $(sources))))
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))
 vpath %.F90 $(sort $(dir $(sources)))
 
-.PHONY: all example pictures kinds run test check forms errors proofs kind-check quad-check single-check bench bench-short bench-against bench-peers hard hard-short study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants expected install install-kinds clean
+.PHONY: all example pictures kinds run test check forms errors proofs kind-check quad-check single-check bench bench-short bench-against bench-peers hard hard-short circuits study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants expected install install-kinds clean
 all: $(BUILD)/kinmat
 
 run: $(BUILD)/kinmat
@@ -170,6 +170,10 @@ hard: $(BUILD)/release/hard
 hard-short: $(BUILD)/release/hard
 	BUILD=$(BUILD) tests/oracle/hard.sh short
 
+# Circuits of 300 four-bars and crank-sliders made by chance against closed forms.
+circuits: $(BUILD)/release/circuits_by_chance
+	$<
+
 # Speed against error of six scenes: kinmat --study for each, times beside the closed forms where there are such, and
 # docs/speed_against_error.png and .svg drawn anew (gnuplot-nox).
 study: kinds $(BUILD)/timed/study_ratio
@@ -221,7 +225,7 @@ TEST_HELPERS := $(unit_helpers:%=$(BUILD)/debug/%.o)
 include tests/pfunit/tests.mk
 
 # What the parts of `make test` need is made beforehand, many at a time; the parts run one after another.
-checkers := check_forms error_estimates proof_bounds compare_digits hard matrix_1987 bench fuzz_mechanisms read_listing
+checkers := check_forms error_estimates proof_bounds compare_digits hard matrix_1987 bench fuzz_mechanisms read_listing circuits_by_chance
 test: $(addprefix $(BUILD)/,kinmat example debug/kinmat $(checkers:%=release/%) debug/fuzz kinmat-quad kinmat-single \
    quad/release/kind_errors single/release/kind_errors tests$(if $(PFUNIT_DIR),/pfunit)/unit) $(references)
 	BUILD=$(BUILD) MAKE='$(MAKE)' FC='$(FC)' tests/run.sh

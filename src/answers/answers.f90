@@ -67,7 +67,7 @@ contains
       if (a%proofs_asked) call note_proof(a%proofs, m, s, k, due)
       if (a%ranges_asked .and. k == 0) call find_ranges(s, a%ranges)
       if (a%assemblies_asked .and. k == 0) call find_answer(s, a%assemblies)
-      if (m%circuits .and. k == 0) call find_all_circuits(s, a%circuits)
+      if (m%circuits .and. m%variants == 0 .and. k == 0) call find_all_circuits(s, a%circuits)
       if (a%shares_asked) call note_tolerances(a%shares, m, s%now, k)
       if (.not. a%extremes_asked .or. k > m%steps) return
       call note_instant(a%extremes, m, s, k)
