@@ -30,6 +30,8 @@ module lane_runs
    !> Instants that the ordinary engine solves from where a lane is refused, at first: three, which a prediction takes;
    !> twice as many each time.
    integer, parameter :: first_patience = 3
+   !> The steps in which extremes are searched for where a lane does not say how many.
+   integer, parameter :: max_searched = 2
    !> What steps may differ by, at the bounds of what drives allow.
    real(wp), parameter :: slack = 1.0e-6_wp
 
@@ -74,8 +76,7 @@ contains
       type(lanes_t), intent(inout) :: l
       type(judgement_t) :: j
       real(wp) :: t(width)
-      logical :: turned
-      integer :: i
+      integer :: i, steps
 
       do i = 1, size(runs)
          call take_over(runs(i), l, i)
@@ -90,11 +91,17 @@ contains
          call solve_lanes(l, t, j)
          do i = 1, size(runs)
             if (.not. runs(i)%is_laned) cycle
-            if (j%refused(i) > 0.5_wp) runs(i)%patience = 2*runs(i)%patience
-            turned = j%refused(i) > 0.5_wp .or. is_last_step(runs(i))
-            if (runs(i)%asked%extremes_asked .and. .not. turned) call watch_lane(runs(i), l, i, j%correction(i), turned)
-            if (turned) then
-               call go_on_from_lane(runs(i), l, i, j%refused(i) > 0.5_wp)
+            steps = 0
+            if (j%refused(i) > 0.5_wp) then
+               steps = max_searched
+               runs(i)%patience = 2*runs(i)%patience
+            else if (is_last_step(runs(i))) then
+               steps = max_searched
+            else if (runs(i)%asked%extremes_asked) then
+               call watch_lane(runs(i), l, i, j%correction(i), steps)
+            end if
+            if (steps > 0) then
+               call go_on_from_lane(runs(i), l, i, steps, j%refused(i) > 0.5_wp)
                call keep_lane(l, i)
                t(i) = l%t(i, l%newest)
             else
@@ -202,8 +209,7 @@ contains
       type(lane_run_t), intent(inout) :: r
       integer, intent(in) :: first, last
       logical, intent(in) :: starts
-      logical :: turned
-      integer :: k
+      integer :: k, steps
 
       do k = first, min(last, instant_count(r%m) - 1)
          call advance_set(r%s, instant(r%m, k))
@@ -217,7 +223,7 @@ contains
          r%noted = k
          r%at = k
          if (r%asked%extremes_asked .and. k > r%seen .and. may_be_laned(r)) &
-            call look_on(r%watch, r%asked%extremes, rows_of(r), turned)
+            call look_on(r%watch, r%asked%extremes, rows_of(r), steps)
          r%seen = max(k, r%seen)
          if (signal_received() > 0) return
       end do
@@ -236,12 +242,12 @@ contains
       end do
    end function rows_of
 
-   !> The engine goes on with `r`, where lane `i` has not found the next instant (`is_refused`) or the extremes before
-   !> it.
-   subroutine go_on_from_lane(r, l, i, is_refused)
+   !> The engine goes on with `r`, where lane `i` has not found the next instant (`is_refused`) or extremes may be in
+   !> the last `steps`.
+   subroutine go_on_from_lane(r, l, i, steps, is_refused)
       type(lane_run_t), intent(inout) :: r
       type(lanes_t), intent(in) :: l
-      integer, intent(in) :: i
+      integer, intent(in) :: i, steps
       logical, intent(in) :: is_refused
       integer :: first, last
       logical :: starts
@@ -249,10 +255,10 @@ contains
       starts = .false.
       first = r%at + 1
       if (r%asked%extremes_asked) then
-         first = max(r%at - 1, r%noted + 1)
+         first = max(r%at + 1 - steps, r%noted + 1)
          starts = first > r%noted + 1
       end if
-      last = r%at + 2
+      last = r%at + 1
       if (is_refused) last = r%at + r%patience
       associate (a => r%s%list(1))
          call come_back(a)
@@ -266,16 +272,17 @@ contains
       call by_engine(r, first, last, starts)
    end subroutine go_on_from_lane
 
-   !> Whether the engine must look at the step of `r` that lane `i` has made: `turned`.
-   subroutine watch_lane(r, l, i, correction, turned)
+   !> At so many `steps` of `r` the engine must look, of which lane `i` has made the last.
+   subroutine watch_lane(r, l, i, correction, steps)
       type(lane_run_t), intent(inout) :: r
       type(lanes_t), intent(in) :: l
       integer, intent(in) :: i
       real(wp), intent(in) :: correction
-      logical, intent(out) :: turned
-      logical :: finite
+      integer, intent(out) :: steps
+      logical :: finite, turned
       integer :: u, k
 
+      steps = max_searched
       turned = correction > fine_prediction
       associate (joints => r%asked%extremes%tracks(1)%joints, t1 => l%t(i, l%newest))
          if (size(joints) > 0) turned = turned .or. &
@@ -300,7 +307,7 @@ contains
          turned = .not. finite .or. is_in_doubt(r%s%estimators(1), r%s%now%own(1), 1.0_wp, r%s%now%motions(1), e)
       end select
       if (turned) return
-      call look_on(r%watch, r%asked%extremes, rows_of(r), turned)
+      call look_on(r%watch, r%asked%extremes, rows_of(r), steps)
       r%seen = r%at + 1
    end subroutine watch_lane
 end module lane_runs

@@ -36,32 +36,32 @@ contains
       end associate
    end function new_watch
 
-   !> Takes the `rows` (asked) of the next instant; `turned`: one of them has.
-   pure subroutine look_on(w, x, rows, turned)
+   !> Takes the `rows` (asked) of the next instant. `steps`: in so many of the last steps one of them may have turned: a
+   !> sign changes in the last one, an acceleration that begins to rise may have been at its least before that.
+   pure subroutine look_on(w, x, rows, steps)
       type(watch_t), intent(inout) :: w
       type(extremes_t), intent(in) :: x
       type(row_t), intent(in) :: rows(:)
-      logical, intent(out) :: turned
+      integer, intent(out) :: steps
       integer :: q, c, k, now
       real(wp) :: change
 
-      turned = .false.
+      steps = 0
       do q = 1, size(rows)
          do c = 1, 3
             do k = 1, 2
                now = 0
                if (abs(rows(q)%value(c, k)) > noise_part*x%size_of(c, k, q)) &
                   now = merge(1, -1, rows(q)%value(c, k) > 0.0_wp)
-               turned = turned .or. now /= w%signs(c, k, q)
+               if (now /= w%signs(c, k, q)) steps = max(1, steps)
                w%signs(c, k, q) = now
             end do
-            turned = turned .or. .not. is_simple(w%differences(:, c, q), rows(q)%value(c, 2), &
-               overlooked*x%size_of(c, 2, q))
+            if (.not. is_simple(w%differences(:, c, q), rows(q)%value(c, 2), overlooked*x%size_of(c, 2, q))) steps = 2
             call take_difference(rows(q)%value(c, 2), w%differences(:, c, q))
             change = rows(q)%value(c, 2) - w%acceleration(c, q)
             if (.not. abs(change) > alike*x%size_of(c, 2, q)) cycle
             now = merge(1, -1, change > 0.0_wp)
-            turned = turned .or. now /= w%trend(c, q)
+            if (now /= w%trend(c, q)) steps = 2
             w%trend(c, q) = now
             w%acceleration(c, q) = rows(q)%value(c, 2)
          end do

@@ -34,6 +34,7 @@ bits() {
 }
 if [ "$1" = short ]; then
    bits 100000
+   "$bench" sines 100000 || exit 1
    exec "$bench" results "$decks" 24 input/*.deck
 fi
 
@@ -46,6 +47,8 @@ echo " LIBRARIES:" $libraries
 "$bench" steps || exit 3
 "$bench" elimination || exit 3
 bits 10000000
+"$bench" sines 10000000 || exit 1
+"$bench" lanes "$decks" || exit 3
 "$bench" chains "$decks" || exit 3
 "$bench" reading || exit 3
 for name in windows_5000 arm_10000 windows_50000 arm_100000; do
