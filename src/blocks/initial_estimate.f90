@@ -20,8 +20,8 @@ module initial_estimate
 
    !> Angles from the places are taken where their largest closure error is below `closed_part` of the characteristic
    !> length and below `better_part` of that of the deck's angles, and where an angle differs by more than `far_angle`
-   !> (rad).
-   real(wp), parameter :: closed_part = 0.1_wp, better_part = 0.2_wp, far_angle = 1.0_wp
+   !> (rad). A link that lies so differently is open at its pairs by about its size: by `open_part` of that at least.
+   real(wp), parameter :: closed_part = 0.1_wp, better_part = 0.2_wp, far_angle = 1.0_wp, open_part = 0.25_wp
    !> A deck with closure errors below this part of the length needs no other angles.
    real(wp), parameter :: good_part = 1.0e-3_wp
    !> Body vectors this short, squared, give no direction.
@@ -112,6 +112,7 @@ contains
       before = largest_opening(m, t, u, placed)
       after = largest_opening(m, t, v, placed)
       if (after > min(closed_part*length, better_part*before) .or. maxval(abs(v - u)) <= far_angle) return
+      if (.not. is_contradicted(m, t, u, abs(v - u) > far_angle, placed)) return
       do i = 1, size(m%links)
          if (t%orientation(i) > 0) phi(i) = phi(i) + (v(t%orientation(i)) - u(t%orientation(i)))
       end do
@@ -269,6 +270,29 @@ contains
       end associate
    end function form
 
+   !> Some pair of a link of the classes `changed` (0:classes), both sides of which are `placed` (points), is open by
+   !> more than a part of that link's size there, from the places of the deck and the angles `u`.
+   pure logical function is_contradicted(m, t, u, changed, placed) result(is)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      real(wp), intent(in) :: u(0:)
+      logical, intent(in) :: changed(0:), placed(:)
+      real(wp) :: size_of
+      integer :: k, side, ends(2)
+
+      is = .false.
+      do k = 1, size(m%pairs)
+         ends = [m%pairs(k)%point_i, m%pairs(k)%point_j]
+         if (.not. all(placed(ends))) cycle
+         do side = 1, 2
+            if (.not. changed(t%orientation(m%points(ends(side))%link))) cycle
+            size_of = norm2(m%points(ends(side))%offset)
+            if (m%pairs(k)%kind /= pair_revolute) size_of = size_of + norm2(closure_error_of(m, t, u, k))
+            is = is .or. opening_of(m, t, u, k) > open_part*size_of
+         end do
+      end do
+   end function is_contradicted
+
    !> The largest distance, from the places of the deck and the angles `u`, by which a pair is open of which both sides
    !> are `placed` (points).
    pure real(wp) function largest_opening(m, t, u, placed) result(largest)
@@ -276,24 +300,42 @@ contains
       type(tree_t), intent(in) :: t
       real(wp), intent(in) :: u(0:)
       logical, intent(in) :: placed(:)
-      real(wp) :: closure_error(2), none(2)
       integer :: k
 
       largest = 0.0_wp
-      none = 0.0_wp
       do k = 1, size(m%pairs)
-         if (.not. (placed(m%pairs(k)%point_i) .and. placed(m%pairs(k)%point_j))) cycle
-         closure_error = 0.0_wp
-         call split(m, t, m%pairs(k)%point_i, -1, 1.0_wp, u, closure_error, none)
-         call split(m, t, m%pairs(k)%point_j, -1, -1.0_wp, u, closure_error, none)
-         if (m%pairs(k)%kind == pair_revolute) then
-            largest = max(largest, norm2(closure_error))
-         else
-            associate (u_i => u(t%orientation(m%points(m%pairs(k)%point_i)%link)))
-               largest = max(largest, abs(dot_product(closure_error, rotated(normal(m, t, k), direction(u_i))) &
-                  - m%pairs(k)%offset))
-            end associate
-         end if
+         if (placed(m%pairs(k)%point_i) .and. placed(m%pairs(k)%point_j)) largest = max(largest, opening_of(m, t, u, k))
       end do
    end function largest_opening
+
+   !> The distance by which pair `k` is open.
+   pure real(wp) function opening_of(m, t, u, k) result(opening)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      real(wp), intent(in) :: u(0:)
+      integer, intent(in) :: k
+
+      if (m%pairs(k)%kind == pair_revolute) then
+         opening = norm2(closure_error_of(m, t, u, k))
+      else
+         associate (u_i => u(t%orientation(m%points(m%pairs(k)%point_i)%link)))
+            opening = abs(dot_product(closure_error_of(m, t, u, k), rotated(normal(m, t, k), direction(u_i))) &
+               - m%pairs(k)%offset)
+         end associate
+      end if
+   end function opening_of
+
+   !> (2) From the one point of pair `k` to the other.
+   pure function closure_error_of(m, t, u, k) result(closure_error)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      real(wp), intent(in) :: u(0:)
+      integer, intent(in) :: k
+      real(wp) :: closure_error(2), none(2)
+
+      closure_error = 0.0_wp
+      none = 0.0_wp
+      call split(m, t, m%pairs(k)%point_i, -1, 1.0_wp, u, closure_error, none)
+      call split(m, t, m%pairs(k)%point_j, -1, -1.0_wp, u, closure_error, none)
+   end function closure_error_of
 end module initial_estimate

@@ -51,6 +51,9 @@ module scheme_motion
    !> Kantorovich's ratio with 3 for the bend of the equations: 0.5 would do.
    real(qp), parameter :: safe_ratio = 0.02_qp, bend = 3.0_qp
    real(qp), parameter :: rough = 1.0e-14_qp, exact = max(1.0e-26_qp, 256*epsilon(1.0_qp))
+   !> A base whose ends are places so far away, in its own size, is rounded: whether the branches of a parallelogram on it
+   !> cross nobody can tell.
+   real(qp), parameter :: farthest = 1.0e4_qp
    !> At the first instant the assembly, rounded as the deck is, is so near; beside lengths much larger than those of a
    !> group, of its own ground link perhaps, so many roundings of them.
    real(qp), parameter :: rounding = 1.0e-7_qp, of_largest = 64.0_qp*epsilon(1.0_real64)
@@ -89,6 +92,7 @@ contains
          largest = max(largest, maxval(abs(s%links(l)%at(:2))))
       end do
       do k = 1, size(s%groups)
+         if (s%groups(k)%form == form_parallelogram .and. largest > farthest*s%groups(k)%scale) m%status(k) = is_unknown
          do l = s%groups(k)%links(1), s%groups(k)%links(2)
             associate (b => m%b(l), at => s%links(l)%at, u => s%groups(k)%scale)
                if (max(abs(b%x%v - at(1)), abs(b%y%v - at(2)))/u + abs(b%phi%v - at(3)) &
