@@ -32,7 +32,7 @@ parts() {
    variants|81|tests/system/variants.sh
    tolerances|22|tests/system/tolerances.sh
    extremes and ranges|35|tests/system/answers.sh
-   circuits|23|tests/system/circuits.sh
+   circuits|24|tests/system/circuits.sh
    circuits by chance|40|"$BUILD/release/circuits_by_chance" 40
    independent mechanisms|106|tests/system/independent.sh
    what a singular position is|211|tests/system/singular.sh

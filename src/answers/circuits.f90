@@ -30,8 +30,8 @@ module circuits
 
 contains
 
-   !> The circuits of `m`, one independent mechanism, at whose first instant `start` is its motion; drive number `drive`
-   !> is free, the others keep their values.
+   !> The circuits of `m`, one independent mechanism with the motion `start` at its first instant, known or not; drive
+   !> number `drive` is free, the others keep their values.
    subroutine find_circuits(m, start, drive, found)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: start
@@ -47,8 +47,10 @@ contains
       call make_curve(found%curve, m, drive, start%t)
       found%is_curve = is_curve(found%curve)
       if (.not. found%is_curve) return
-      call start_point(found%curve, start%position, p, ok)
-      if (ok) call add_circuits(found, p)
+      if (start%known >= 0) then
+         call start_point(found%curve, start%position, p, ok)
+         if (ok) call add_circuits(found, p)
+      end if
       call find_assemblies(m, start%t, all_of_them)
       call add_through(found, all_of_them)
       call search_whole_range(m, start%t, found, all_of_them)

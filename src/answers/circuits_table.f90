@@ -26,8 +26,7 @@ module circuits_table
 
 contains
 
-   !> The circuits of each free drive of the set that `s` analyses, in the numbers of the set, from its first instant;
-   !> none of a mechanism that has no position there.
+   !> The circuits of each free drive of the set that `s` analyses, in the numbers of the set, from its first instant.
    subroutine find_all_circuits(s, list)
       type(set_analysis_t), intent(in) :: s
       type(circuits_t), allocatable, intent(out) :: list(:)
@@ -37,7 +36,6 @@ contains
 
       allocate (list(0))
       do c = 1, size(s%now%own)
-         if (s%now%motions(c)%known < 0) cycle
          drives = free_drives(s%now%own(c))
          do i = 1, size(drives)
             n = size(list)
@@ -64,19 +62,15 @@ contains
 
       head = ' '//phrase(say_circuits, m%polish)
       call put(o, '')
-      if (size(list) == 0) then
-         call put(o, head)
-         call put(o, '   '//phrase(say_none, m%polish))
-      end if
       do i = 1, size(list)
          if (i > 1) call put(o, '')
          call put(o, head//', '//phrase(say_drive, m%polish)//' '//trim(drive_name(m, m%drives(list(i)%drive))))
+         if (.not. list(i)%is_complete) call put(o, ' *** '//phrase(say_circuits_missing, m%polish))
          if (.not. list(i)%is_curve) then
             call put(o, '   '//phrase(say_no_circuits, m%polish))
          else if (size(list(i)%list) == 0) then
-            call put(o, '   '//phrase(say_start_singular, m%polish))
+            call put(o, '   '//phrase(say_none, m%polish))
          else
-            if (.not. list(i)%is_complete) call put(o, ' *** '//phrase(say_circuits_missing, m%polish))
             call put_branches(o, m, list(i))
             call put_dead_points(o, m, list(i))
             call put_change_points(o, m, list(i))

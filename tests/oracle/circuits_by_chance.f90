@@ -179,8 +179,22 @@ contains
             if (taken(k)) exit
          end do
       end do
-      ok = ok .and. all(taken)
+      ok = ok .and. all(taken) .and. size(found%list) == circuits_from_output(m, s)
    end function six_bar_agrees
+
+   !> The number of circuits of the six-bar `m`, analysed by `s`, where its output is driven instead of the crank: the
+   !> circuits are the same, whichever link is driven.
+   integer function circuits_from_output(m, s) result(n)
+      type(mechanism_t), intent(in) :: m
+      type(set_analysis_t), intent(in) :: s
+      type(mechanism_t) :: other
+      type(circuits_t) :: found
+
+      other = m
+      other%drives = [angle_drive(6, s%now%motions(1)%position(3, 6), 1.0_wp, 0.0_wp)]
+      call find_circuits(other, s%now%motions(1), 1, found)
+      n = size(found%list)
+   end function circuits_from_output
 
    !> Whether two ranges of the drive are one; of a full turn, whether both are.
    pure logical function is_branch(a, b)

@@ -97,8 +97,12 @@ with parallel_cranks "$(card CIRCUITS)" > "$w/deck"
 found 'redundant equations' ' CIRCUITS AND BRANCHES, DRIVE ANGLE CRANK-1
    NOT OF A MECHANISM WITH REDUNDANT EQUATIONS'
 four_bar 1.0 1.0 1.0 4.0 CRANK 0.0 0.0 0.0 0.0 > "$w/deck"
-found 'no position' ' CIRCUITS AND BRANCHES
+found 'no position anywhere' ' CIRCUITS AND BRANCHES, DRIVE ANGLE CRANK
    NONE'
+# No position at the first instant, and a circuit elsewhere: the triple rocker beyond its limit.
+four_bar 2.0 1.5 3.0 4.0 CRANK 120.0 20.0 105.0 120.0 > "$w/deck"
+equal 'no position at the first instant' ' 1       1        +               MIN  -9.089528299E+01 DEG   MAX  9.089528299E+01 DEG
+ 1       2        -               MIN  -9.089528299E+01 DEG   MAX  9.089528299E+01 DEG' "$(circuits | grep MIN)"
 # Diagrams: of the coupler and the rocker of a parallelogram, each with two circuits that meet twice; of the crank itself none.
 with parallelogram "$(card CIRCUITS)" > "$w/deck"
 "$kinmat" --no-listing --circuits "$w/svg" "$w/deck"
