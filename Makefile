@@ -40,7 +40,7 @@ modules := $(filter-out main,$(basename $(notdir $(sources))))
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))
 vpath %.F90 $(sort $(dir $(sources)))
 
-.PHONY: all example pictures kinds run test check forms errors proofs kind-check quad-check single-check bench bench-short bench-against bench-peers hard hard-short circuits study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants expected install install-kinds clean
+.PHONY: all example pictures kinds run test check forms errors proofs fool-proofs kind-check quad-check single-check bench bench-short bench-against bench-peers hard hard-short circuits study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants expected install install-kinds clean
 all: $(BUILD)/kinmat
 
 run: $(BUILD)/kinmat
@@ -129,6 +129,10 @@ errors: $(BUILD)/release/error_estimates
 # What PROVE proves of them: every step but those of a list, and no bound below the true error.
 proofs: $(BUILD)/release/proof_bounds
 	$< $(decks)
+
+# Attempts to have something false proved.
+fool-proofs: $(BUILD)/release/fool_proofs
+	$< 100000
 
 check: $(BUILD)/kinmat $(references)
 	BUILD=$(BUILD) tests/system/check.sh
@@ -225,7 +229,7 @@ TEST_HELPERS := $(unit_helpers:%=$(BUILD)/debug/%.o)
 include tests/pfunit/tests.mk
 
 # What the parts of `make test` need is made beforehand, many at a time; the parts run one after another.
-checkers := check_forms error_estimates proof_bounds compare_digits hard matrix_1987 bench fuzz_mechanisms read_listing circuits_by_chance
+checkers := check_forms error_estimates proof_bounds fool_proofs compare_digits hard matrix_1987 bench fuzz_mechanisms read_listing circuits_by_chance
 test: $(addprefix $(BUILD)/,kinmat example debug/kinmat $(checkers:%=release/%) debug/fuzz kinmat-quad kinmat-single \
    quad/release/kind_errors single/release/kind_errors tests$(if $(PFUNIT_DIR),/pfunit)/unit) $(references)
 	BUILD=$(BUILD) MAKE='$(MAKE)' FC='$(FC)' tests/run.sh

@@ -18,7 +18,7 @@ parts() {
    what is installed|11|tests/system/install.sh
    many sets|7|tests/system/many_sets.sh
    what is printed arrives|205|tests/system/output.sh
-   unit tests|905|"$MAKE" --no-print-directory unit
+   unit tests|916|"$MAKE" --no-print-directory unit
    the stand-in|75|"$MAKE" --no-print-directory unit-stand-in
    the sources|60|tests/system/house.sh
    the closed forms|818|"$BUILD/release/check_forms" input/*.deck
@@ -27,6 +27,7 @@ parts() {
    the documents|300|tests/system/documents.sh
    estimates of errors|57|"$MAKE" --no-print-directory errors
    proofs|160|"$BUILD/release/proof_bounds" input/*.deck
+   nothing false is proved|2000|"$BUILD/release/fool_proofs" 2000
    units of length|751|tests/system/units.sh
    the methods against one another|8|tests/system/methods.sh
    variants|81|tests/system/variants.sh

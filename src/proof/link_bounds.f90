@@ -34,7 +34,9 @@ contains
       integer :: i
 
       t = new_tree(m)
-      angle = angle_errors(m, t)
+      ! A function's result would bring its own lower bound.
+      allocate (angle(0:t%orientations))
+      angle(:) = angle_errors(m, t)
       associate (n => size(e%whole%links))
          allocate (l%length(3, n), l%weight(3, n), l%angle(n), source=0.0_wp)
       end associate

@@ -47,7 +47,9 @@ contains
 
       t = new_tree(m)
       q = new_equations(m, t, length, traced=.true.)
-      angle = angle_errors(m, t)
+      ! A function's result would bring its own lower bound.
+      allocate (angle(0:t%orientations))
+      angle(:) = angle_errors(m, t)
       allocate (d%length(size(b%body_vectors)), d%weight(size(b%body_vectors)), d%slide_length(size(b%slides)), &
          d%slide_weight(size(b%slides)), d%ground_length(size(b%loops)), d%ground_weight(size(b%loops)), &
          d%direction_length(size(b%loops)), d%direction_weight(size(b%loops)), d%constant_weight(size(b%rows)), &

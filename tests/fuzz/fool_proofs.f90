@@ -1,0 +1,224 @@
+!> Tests. `fool_proofs [ATTEMPTS [SEED]]`: tries to have something false proved. Mechanisms with two assemblies, many of them
+!> near to change points or dead points by 1E-3 to 1E-14, are put into positions that are right, nearly right or wrong;
+!> steps lead to the same or the other assembly, through places where there is none, and with drives that go there and back
+!> between both ends. What is proved is held against closed forms in real128. The last line is `N passed, N failed`: an
+!> attempt is passed where nothing false is proved.
+program fool_proofs
+   use kinds, only: wp
+   use quad_jet, only: qp
+   use arguments, only: argument, number
+   use dice, only: dice_t, new_dice, throw, chance, between
+   use block_engine, only: block_engine_t, make_block_engine, set_drive_values
+   use mechanism, only: mechanism_t
+   use position_proof, only: prover_t, placed_t, make_prover, new_placed, prove_position
+   use step_proof, only: step_prover_t, step_proof_t, make_step_prover, prove_step
+   use fool_scenes, only: fool_t, new_mechanism, unknown_links, place_at, scene_four_bar, scene_inverted
+   implicit none
+
+   !> Between the ends of a step so many places are looked at.
+   integer, parameter :: samples = 200
+   real(qp), parameter :: small = 1.0e-9_qp
+   !> What differences in real128 leave of second derivatives.
+   real(qp), parameter :: of_differences = 1.0e-13_qp
+   integer :: attempts, seed, i, positions, steps, false_ones
+   type(dice_t) :: dice
+
+   attempts = 2000
+   seed = 1
+   if (command_argument_count() > 0) attempts = number(argument(1))
+   if (command_argument_count() > 1) seed = number(argument(2))
+   positions = 0
+   steps = 0
+   false_ones = 0
+   do i = 1, attempts
+      dice = new_dice(seed*1000003 + i)
+      call attempt(i)
+   end do
+   print '(a,i0,a,i0,a)', ' PROVED: ', positions, ' POSITIONS, ', steps, ' STEPS'
+   if (20*steps < attempts .or. 2*positions < attempts) false_ones = false_ones + 1
+   print '(i0,a,i0,a)', attempts - false_ones, ' passed, ', false_ones, ' failed'
+   if (false_ones > 0) stop 1, quiet=.true.
+
+contains
+
+   subroutine attempt(i)
+      integer, intent(in) :: i
+      type(fool_t) :: f
+      type(mechanism_t) :: m
+      type(block_engine_t), allocatable :: e
+      type(prover_t) :: p
+      type(step_prover_t), allocatable :: s
+      type(placed_t) :: q(2)
+      type(step_proof_t) :: proof
+      real(wp) :: t(2)
+      integer :: sign_of(2), k
+      logical :: is_proved(2), wrong
+
+      f = some_mechanism()
+      t(1) = between(dice, -3.0_wp, 3.0_wp)
+      t(2) = t(1) + 10.0_wp**between(dice, -4.0_wp, 0.5_wp)/max(abs(f%rate), 0.1_wp)
+      ! There and back.
+      if (chance(dice, 0.4_wp)) then
+         f%swing = 10.0_wp**between(dice, -2.0_wp, 0.5_wp)
+         f%frequency = throw(dice, 3)*acos(-1.0_wp)/(t(2) - t(1))
+         f%phase = -f%frequency*t(1)
+      end if
+      sign_of = merge(1, -1, chance(dice, 0.5_wp))
+      if (chance(dice, 0.25_wp)) sign_of(2) = -sign_of(2)
+      m = new_mechanism(f)
+      allocate (e, s)
+      call make_block_engine(e, m)
+      call make_prover(p, m, e)
+      call make_step_prover(s, e)
+      wrong = .false.
+      do k = 1, 2
+         q(k) = new_placed(e%blocks, 1)
+         call put_there(f, e, t(k), sign_of(k))
+         call prove_position(p, e, t(k), e%needed, q(k), is_proved(k))
+         if (.not. is_proved(k)) cycle
+         positions = positions + 1
+         if (is_false(f, e, q(k), sign_of(k))) then
+            print '(a,i0,a,i0)', ' ATTEMPT ', i, ': A FALSE POSITION IS PROVED, SCENE ', f%scene
+            wrong = .true.
+         end if
+      end do
+      if (all(is_proved)) then
+         call prove_step(p, s, e, e%needed, q(1), q(2), proof)
+         if (proof%is_proved) steps = steps + 1
+         if (proof%is_proved .and. (sign_of(1) /= sign_of(2) .or. .not. exists_between(f, t, sign_of(1)))) then
+            print '(a,i0,a,i0)', ' ATTEMPT ', i, ': A FALSE STEP IS PROVED, SCENE ', f%scene
+            wrong = .true.
+         end if
+      end if
+      if (wrong) false_ones = false_ones + 1
+   end subroutine attempt
+
+   !> Often such that its two assemblies nearly meet, or that it is in line somewhere.
+   function some_mechanism() result(f)
+      type(fool_t) :: f
+      real(wp) :: off
+
+      f%scene = throw(dice, 3)
+      f%length = [between(dice, 0.3_wp, 1.5_wp), between(dice, 0.5_wp, 3.0_wp), between(dice, 0.0_wp, 2.0_wp), 1.0_wp]
+      if (f%scene == scene_four_bar) f%length(3:) = [between(dice, 0.5_wp, 3.0_wp), between(dice, 0.5_wp, 4.0_wp)]
+      f%angle = between(dice, -4.0_wp, 4.0_wp)
+      f%rate = between(dice, -2.0_wp, 2.0_wp)
+      if (chance(dice, 0.5_wp)) return
+      off = (2*throw(dice, 2) - 3)*10.0_wp**between(dice, -14.0_wp, -3.0_wp)
+      associate (l => f%length)
+         select case (f%scene)
+         case (scene_four_bar)
+            ! A parallelogram, a kite, or Grashof's limit.
+            select case (throw(dice, 3))
+            case (1)
+               l(3:4) = [l(1) + off, l(2)]
+            case (2)
+               l(3) = l(2) + off
+               l(4) = l(1)
+            case default
+               l(4) = max(0.1_wp, l(2) + l(3) - l(1) + off)
+            end select
+         case (scene_inverted)
+            l(3) = abs(l(1) - l(2)) + off
+         case default
+            l(3) = max(0.0_wp, l(2) - l(1) + off)
+         end select
+      end associate
+   end function some_mechanism
+
+   !> Puts the engine where the assembly `s` is at `t`; `s` becomes 0 where that is wrong by more than a little.
+   subroutine put_there(f, e, t, s)
+      type(fool_t), intent(in) :: f
+      type(block_engine_t), intent(inout) :: e
+      real(wp), intent(in) :: t
+      integer, intent(inout) :: s
+      real(qp) :: x(2, -1:1), margin
+      real(wp) :: off
+      integer, allocatable :: links(:)
+      integer :: k
+
+      call set_drive_values(e, t)
+      associate (u => e%state%u(e%orientation_of(2)))
+         u%value = e%state%drive_value(0, 1)
+         u%rate = e%state%drive_value(1, 1)
+         u%acceleration = e%state%drive_value(2, 1)
+      end associate
+      do k = -1, 1
+         call place_at(f, t + k*small, s, x(:, k), margin)
+         if (margin <= 0.0_qp) x(:, k) = between(dice, -3.0_wp, 3.0_wp)
+      end do
+      off = 0.0_wp
+      if (chance(dice, 0.3_wp)) off = 10.0_wp**between(dice, -15.0_wp, 0.0_wp)
+      links = unknown_links(f)
+      do k = 1, size(links)
+         associate (u => e%state%u(e%orientation_of(links(k))))
+            u%value = real(x(k, 0), wp) + off*between(dice, -1.0_wp, 1.0_wp)
+            u%rate = real(without_turns(x(k, 1) - x(k, -1))/(2.0_qp*small), wp)
+            ! Any: its bound is then as large.
+            u%acceleration = between(dice, -1.0_wp, 1.0_wp)
+         end associate
+      end do
+   end subroutine put_there
+
+   !> No assembly lies within the bounds of `q` with all of its derivatives; otherwise `s` is its sign.
+   logical function is_false(f, e, q, s)
+      type(fool_t), intent(in) :: f
+      type(block_engine_t), intent(in) :: e
+      type(placed_t), intent(in) :: q
+      integer, intent(inout) :: s
+      real(qp) :: x(2, -1:1), margin(-1:1), motion(0:2)
+      integer, allocatable :: links(:)
+      integer :: sign_of, k
+      logical :: holds
+
+      is_false = .true.
+      s = 0
+      links = unknown_links(f)
+      do sign_of = -1, 1, 2
+         do k = -1, 1
+            call place_at(f, q%t + k*small, sign_of, x(:, k), margin(k))
+         end do
+         if (margin(0) <= 0.0_qp) cycle
+         holds = .true.
+         do k = 1, size(links)
+            associate (u => e%orientation_of(links(k)))
+               motion(0) = x(k, 0)
+               motion(1) = without_turns(x(k, 1) - x(k, -1))/(2.0_qp*small)
+               motion(2) = (without_turns(x(k, 1) - x(k, 0)) - without_turns(x(k, 0) - x(k, -1)))/small**2
+               motion(0) = q%x(0, u) + without_turns(motion(0) - q%x(0, u))
+               holds = holds .and. abs(motion(0) - q%x(0, u)) <= q%error(0, u)
+               ! Where a difference leaves the assembly there is none.
+               if (minval(margin) > 1.0e-6_qp) holds = holds &
+                  .and. abs(motion(1) - q%x(1, u)) <= q%error(1, u) + of_differences &
+                  .and. abs(motion(2) - q%x(2, u)) <= q%error(2, u) + of_differences*1.0e3_qp
+            end associate
+         end do
+         if (.not. holds) cycle
+         is_false = .false.
+         s = sign_of
+      end do
+   end function is_false
+
+   !> The assembly `s` exists at all samples between the times `t` (2).
+   logical function exists_between(f, t, s)
+      type(fool_t), intent(in) :: f
+      real(wp), intent(in) :: t(2)
+      integer, intent(in) :: s
+      real(qp) :: x(2), margin
+      integer :: k
+
+      exists_between = .true.
+      do k = 0, samples
+         call place_at(f, t(1) + (t(2) - t(1))*real(k, qp)/samples, s, x, margin)
+         exists_between = exists_between .and. margin > 0.0_qp
+      end do
+   end function exists_between
+
+   !> An angle, or a difference of angles, less whole turns.
+   pure real(qp) function without_turns(x)
+      real(qp), intent(in) :: x
+      real(qp), parameter :: turn = 2.0_qp*acos(-1.0_qp)
+
+      without_turns = x - turn*anint(x/turn)
+   end function without_turns
+end program fool_proofs
