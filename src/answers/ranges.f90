@@ -84,7 +84,8 @@ contains
             else
                do side = low, high
                   if (r%has_limit(side)) then
-                     call put(o, '   '//side_words(side)//'  '//limit_words(m, r%limit(side)))
+                     call put(o, '   '//side_words(side)//'  '//limit_words(m, r%limit(side)) &
+                        //reason(r%limit(side), m%polish))
                   else
                      call put(o, '   '//side_words(side)//'  '//phrase(say_no_limit, m%polish)//' ' &
                         //limit_words(m, r%limit(side)))
@@ -95,6 +96,18 @@ contains
          end associate
       end do
    end subroutine put_ranges
+
+   !> Why a `limit` has no links, or ''.
+   pure function reason(limit, polish) result(text)
+      type(diagnostic_t), intent(in) :: limit
+      logical, intent(in) :: polish
+      character(:), allocatable :: text
+
+      text = ''
+      if (limit%links(1) > 0) return
+      text = phrase(say_close, polish)
+      text = '   '//text
+   end function reason
 
    !> The range of drive number `drive` of `m`, one independent mechanism at the motion `start` of its first instant.
    subroutine find_range(m, start, drive, r)

@@ -5,7 +5,7 @@ module analysis
    use structure, only: structure_t
    use motion, only: motion_t, forget_links, known_of, mark_none, mark_not_converged, mark_singular, mark_overflow, &
       mark_inconsistent, singular_unclear
-   use diagnostics, only: diagnostic_t, diagnostic_inconsistent, diagnostic_long
+   use diagnostics, only: diagnostic_t, diagnostic_inconsistent, diagnostic_long, diagnostic_close
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, branch_none, branch_first, branch_same, &
       branch_crossed
    use convergence, only: convergence_t, ended_inconsistent, ended_unsought
@@ -237,6 +237,7 @@ contains
          select type (e => a%engine)
          class is (block_engine_t)
             list = limit_diagnostic(e, t)
+            if (size(list) == 0 .and. a%follows .and. step%blocked) list = [diagnostic_t(kind=diagnostic_close, t=a%t)]
          end select
       end if
       if (allocated(step%dead_end)) then

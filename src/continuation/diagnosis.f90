@@ -5,7 +5,8 @@ module diagnosis
    use kinds, only: wp
    use mechanism, only: mechanism_t, place_links, wanted_links
    use motion, only: motion_t, new_motion, mark_not_converged, mark_singular
-   use diagnostics, only: diagnostic_t, diagnostic_inconsistent, diagnostic_limit, diagnostic_far_estimate, &
+   use diagnostics, only: diagnostic_t, diagnostic_inconsistent, diagnostic_limit, diagnostic_close, &
+      diagnostic_far_estimate, &
       diagnostic_second, diagnostic_mobile, diagnostic_idle, diagnostic_repeated, diagnostic_method
    use convergence, only: ended_elsewhere
    use structure, only: structure_t
@@ -80,7 +81,7 @@ contains
          call make_analysis(b, by_blocks(m), structure)
       end if
       call advance(b, found%t, q)
-      call pass_on(q, [diagnostic_inconsistent, diagnostic_limit], found)
+      call pass_on(q, [diagnostic_inconsistent, diagnostic_limit, diagnostic_close], found)
       if (q%known < 0 .or. is_known) return
       call pass_on(q, [diagnostic_mobile, diagnostic_idle, diagnostic_repeated], found)
       if (allocated(found%diagnostics)) then

@@ -5,7 +5,8 @@ module diagnostics
    private
    public :: diagnostic_t, new_diagnostic, max_links, remark_t
    public :: diagnostic_inconsistent, diagnostic_limit, diagnostic_far_estimate, diagnostic_second, &
-      diagnostic_redundant, diagnostic_mobile, diagnostic_change, diagnostic_long, diagnostic_unused, &
+      diagnostic_redundant, diagnostic_mobile, diagnostic_change, diagnostic_long, diagnostic_close, &
+      diagnostic_unused, &
       diagnostic_dead_end, diagnostic_idle, diagnostic_repeated, diagnostic_method, diagnostic_singular
    public :: remark_small_letters, remark_title_long, remark_title_letters, remark_touching, remark_link_unused, &
       remark_point_unused, remark_radians, remark_guide, remark_jumps, remark_more
@@ -25,6 +26,7 @@ module diagnostics
       enumerator :: diagnostic_idle             !< the pairs already fix what `drive` drives
       enumerator :: diagnostic_repeated         !< other drives already give what `drive` drives
       enumerator :: diagnostic_method           !< another method finds a position
+      enumerator :: diagnostic_close            !< at `t` the motion is blocked, and no limit is told
       enumerator :: diagnostic_singular         !< the position of `links` is singular: a part of its mark's sentence
    end enum
 

@@ -15,7 +15,7 @@ module listing_diagnostics
    integer, parameter :: line_length = 120
    !> What concerns the results.
    integer, parameter :: of_results(*) = [diagnostic_inconsistent, diagnostic_limit, diagnostic_mobile, &
-      diagnostic_long, diagnostic_unused, diagnostic_dead_end, diagnostic_idle, diagnostic_repeated]
+      diagnostic_long, diagnostic_close, diagnostic_unused, diagnostic_dead_end, diagnostic_idle, diagnostic_repeated]
    !> A closure error below this, in parts of the characteristic length, is rounding: no two computers have the same.
    real(wp), parameter :: min_closure_error = max(1.0e-13_wp, 400.0_wp*epsilon(1.0_wp))
 
@@ -151,6 +151,8 @@ contains
             //phrase(say_no_change, m%polish)
       case (diagnostic_long)
          text = phrase(say_way, m%polish)//' '//number(r%t, '(es13.5)')//' '//phrase(say_too_long, m%polish)
+      case (diagnostic_close)
+         text = phrase(say_blocked, m%polish)//' '//number(r%t, '(es17.9)')//': '//phrase(say_close, m%polish)
       case (diagnostic_idle)
          text = owner(m, r)//' '//phrase(say_idle, m%polish)
       case (diagnostic_repeated)

@@ -68,6 +68,8 @@ module phrases
       say_way = phrase_t('THE MOTION FROM T =', 'DROGA OD CHWILI T ='), &
       say_too_long = phrase_t('IS TOO LONG TO FOLLOW: ASK FOR INSTANTS CLOSER TOGETHER', &
          'JEST ZA DLUGA, PODAJ CHWILE BLIZSZE SIEBIE'), &
+      say_blocked = phrase_t('THE MOTION IS FOLLOWED TO T =', 'RUCH SLEDZONO DO CHWILI T ='), &
+      say_close = phrase_t('LIMIT OR CHANGE POINT, TOO CLOSE TO TELL', 'KRES LUB PUNKT ZMIANY, ZBYT BLISKO'), &
       say_branch = phrase_t('BRANCH', 'GALAZ'), &
       say_followed = phrase_t('INSTANTS FOLLOWED', 'CHWILE SLEDZONE'), &
       say_passed = phrase_t('CHANGE POINTS PASSED', 'PUNKTY ZMIANY'), &

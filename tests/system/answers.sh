@@ -95,6 +95,16 @@ four_bar 3.0 1.1 2.649997 0.75 CRANK 50.0 -35.8 38.6 50.0 > "$w/deck"
 equal 'near the limit of Grashof' "-$(limit "$(angle 3 0.75 3.749997)") $(limit "$(angle 3 0.75 3.749997)")" \
    "$(awk '/^   (MIN|MAX) / { printf "%s%s", sep, $2; sep = " " }' "$w/out")"
 
+# Closer than rounding can tell, 1E-10: the ends to 1E-6 degrees, with the reason, which a run to there gives as well.
+method=NEWTON
+four_bar 3.0 1.1 2.6499999999 0.75 CRANK 50.0 -35.8 38.6 50.0 > "$w/deck"
+"$kinmat" "$w/deck" > "$w/out"
+equal 'at the limit of Grashof' 'MIN 0 MAX 0' "$(awk -v a="$(angle 3 0.75 3.7499999999)" '/^   (MIN|MAX) / && /DEG   LIMIT OR CHANGE POINT, TOO CLOSE TO TELL$/ {
+   d = ($2 < 0 ? -$2 : $2) - a; printf "%s%s %d", sep, $1, ((d < 0 ? -d : d) > 1e-6); sep = " " }' "$w/out")"
+sed "s/^AT .*/$(card TIME 100 '' '' 0.0 5.0)/" "$w/deck" > "$w/run.deck"
+equal 'at the limit of Grashof: a run' ' *** THE MOTION IS FOLLOWED TO T = 4.33329...E+00: LIMIT OR CHANGE POINT, TOO CLOSE TO TELL' \
+   "$("$kinmat" "$w/run.deck" | sed -n 's/^\( .*T = 4.33329\)[0-9]*\(.* TOO CLOSE .*\)/\1...\2/p')"
+
 # A parallelogram passes its two change points a turn on the smooth branch.
 with parallelogram_at "$(card RANGE)" > "$w/deck"
 range 'a parallelogram' ' ANGLE CRANK
