@@ -171,7 +171,7 @@ contains
       integer, intent(inout) :: status
       type(mechanism_t) :: film
       type(circuit_page_t) :: page
-      integer :: i, every, before
+      integer :: i, every, before, varied
 
       if (o%asked(out_csv) .and. options%share == 1 .and. o%own_first == 1) &
          call csv_head(o%files(out_csv, 0), options%errors, o%varies)
@@ -181,9 +181,11 @@ contains
       if (o%asked(out_circuits)) call picture_head(o%files(out_circuits, 0))
       if (o%asked(out_animation)) allocate (o%films(o%first:o%last))
       before = o%first - 1
+      varied = 0
       do i = o%first, o%last
+         if (sets(i)%variants > 0) varied = varied + 1
          associate (count => max(1, sets(i)%variants))
-            if (before < o%own_last .and. before + count >= o%own_first) call run_set(options, sets(i), i, &
+            if (before < o%own_last .and. before + count >= o%own_first) call run_set(options, sets(i), i, varied, &
                o%own_first - before, o%own_last - before, findings(i), o, status)
             before = before + count
          end associate
@@ -254,16 +256,16 @@ contains
    end subroutine draw_centrodes
 
    !> Solves and writes set number `i`, `m`: of its variants those from `first` to `last`, as far as it has them.
-   subroutine run_set(options, m, i, first, last, findings, o, status)
+   !> `varied`: how many sets have VARY cards up to this one.
+   subroutine run_set(options, m, i, varied, first, last, findings, o, status)
       type(options_t), intent(in) :: options
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i, first, last
+      integer, intent(in) :: i, varied, first, last
       type(findings_t), intent(inout) :: findings
       type(writers_t), intent(inout) :: o
       integer, intent(inout) :: status
       type(variant_row_t) :: counts
       type(answers_t) :: asked
-      integer :: k
 
       if (first <= 1) call write_heads(options, m, i, findings, o)
       if (options%check .or. is_over(o, i)) return
@@ -271,11 +273,8 @@ contains
          call run_motion(options, m, i, findings, .true., o, counts, asked)
          if (counts%flagged + counts%unproved > 0) status = status_flagged
       else
-         do k = 1, size(o%variations)
-            if (o%variations(k)%set%mechanism%set_number == i) &
-               call run_variants(options, m, i, max(1, first), min(m%variants, last), findings%parts, &
-                  o%variations(k), o, status)
-         end do
+         call run_variants(options, m, i, max(1, first), min(m%variants, last), findings%parts, o%variations(varied), &
+            o, status)
       end if
    end subroutine run_set
 

@@ -40,7 +40,8 @@ module deck
    !> What has been read so far.
    type :: progress_t
       type(mechanism_t), allocatable :: sets(:)   !< (closed) and room for more
-      type(variation_t), allocatable :: variations(:)   !< of the sets with VARY cards
+      type(variation_t), allocatable :: variations(:)   !< (1:varying and room) of the sets with VARY cards
+      integer :: varying = 0                     !< sets with VARY cards
       integer :: closed = 0                       !< number of those that have their END
       integer :: passed = 0                       !< sets before the first of them
       type(card_set_t) :: set                     !< the open set, and the errors of the deck
@@ -81,8 +82,8 @@ contains
       if (.not. allocated(failure) .and. errors > 0) &
          call fail(failure, status_rejected, 'THE DECK IS REJECTED, ERRORS: '//whole(errors))
       if (allocated(failure)) progress%closed = 0
-      if (present(share)) share%varies = share%varies .or. size(progress%variations) > 0
-      if (present(variations)) call move_alloc(progress%variations, variations)
+      if (present(share)) share%varies = share%varies .or. progress%varying > 0
+      if (present(variations)) variations = progress%variations(:progress%varying)
       if (present(share)) then
          if (share%sets == 0) call divide(share, progress%closed)
          if (share%varies) then
@@ -249,7 +250,7 @@ contains
             call check_angles(set)
             call check_guides(set)
             call build_echo(set)
-            if (set%mechanism%variants > 0) progress%variations = [progress%variations, variation]
+            if (set%mechanism%variants > 0) call append_variation(progress, variation)
          end if
          call take_remarks(set%errors, set%mechanism%remarks)
          progress%errors_before = error_count(set%errors)
@@ -257,6 +258,21 @@ contains
       call append_set(progress)
       call begin_set(progress%set, progress%passed + progress%closed + 1)
    end subroutine close_set
+
+   !> Appends `variation`; where there is no room, it is doubled.
+   subroutine append_variation(progress, variation)
+      type(progress_t), intent(inout) :: progress
+      type(variation_t), intent(in) :: variation
+      type(variation_t), allocatable :: larger(:)
+
+      if (progress%varying == size(progress%variations)) then
+         allocate (larger(max(4, 2*progress%varying)))
+         larger(:progress%varying) = progress%variations
+         call move_alloc(larger, progress%variations)
+      end if
+      progress%varying = progress%varying + 1
+      progress%variations(progress%varying) = variation
+   end subroutine append_variation
 
    !> Builds the mechanism of `set` from its cards.
    subroutine build_mechanism(set)

@@ -7,6 +7,7 @@ module solver_log
    use branch_certificate, only: branch_t, branch_word
    use text_output, only: output_t, put
    use numerals, only: whole
+   use scientific_numerals, only: put_scientific, put_integer
    use known_digits, only: nothing_known
    implicit none
    private
@@ -42,20 +43,31 @@ contains
       type(branch_t), intent(in) :: b
       real(wp), intent(in), optional :: errors(0:2)
       character(200) :: line
-      integer :: k
+      integer :: k, last
 
-      write (line, '(i8,es25.16e3,a10,i6,3es11.3,es22.3,i13,a9,i10,es13.3)') step, t, adjustr(ending(c)), &
-         c%iterations, c%residual, c%step, c%rate, c%reciprocal_condition, c%determinant, adjustr(branch_word(b)), &
-         b%substeps, b%kantorovich_ratio
+      call put_integer(step, line(:8))
+      call put_scientific(t, 16, 3, line(9:33))
+      line(34:43) = ' '//adjustr(ending(c))
+      call put_integer(c%iterations, line(44:49))
+      call put_scientific(c%residual, 3, 2, line(50:60))
+      call put_scientific(c%step, 3, 2, line(61:71))
+      call put_scientific(c%rate, 3, 2, line(72:82))
+      call put_scientific(c%reciprocal_condition, 3, 2, line(83:104))
+      call put_integer(c%determinant, line(105:117))
+      line(118:126) = '  '//adjustr(branch_word(b))
+      call put_integer(b%substeps, line(127:136))
+      call put_scientific(b%kantorovich_ratio, 3, 2, line(137:149))
+      last = 149
       if (present(errors)) then
          do k = 0, 2
             if (errors(k) < nothing_known) then
-               write (line(len_trim(line) + 1:), '(es12.2e3)') errors(k)
+               call put_scientific(errors(k), 2, 3, line(last + 1:last + 12))
             else
-               line(len_trim(line) + 1:) = '        NONE'
+               line(last + 1:last + 12) = '        NONE'
             end if
+            last = last + 12
          end do
       end if
-      call put(o, trim(line))
+      call put(o, line(:last))
    end subroutine log_instant
 end module solver_log
