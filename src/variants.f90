@@ -13,8 +13,8 @@ module variants
    use solver_log, only: log_head
    use answers, only: answers_t
    use variant_rows, only: summary_t, variant_row_t, new_summary, new_row, fill_row
-   use variant_tables, only: summary_head, summary_row, put_variant, put_variant_heads, put_variant_row, &
-      put_variants_end, put_broken_off
+   use variant_tables, only: summary_head, summary_row, put_variant, put_variant_heads, put_note_of_shares, &
+      put_variant_row, put_variants_end, put_broken_off
    use numerals, only: whole
    use lane_runs, only: lane_run_t, begin_run, run_lanes, width
    use lane_state, only: lanes_t
@@ -47,8 +47,10 @@ contains
       layout = new_layout(m)
       summary = new_summary(m, parts, layout, v)
       if (o%asked(out_summary) .and. first == 1) call summary_head(o%files(out_summary, 0), summary)
-      if (o%asked(out_listing) .and. first == 1 .and. .not. full) &
+      if (o%asked(out_listing) .and. first == 1 .and. .not. full) then
+         call put_note_of_shares(o%files(out_listing, 0), m)
          call put_variant_heads(o%files(out_listing, 0), summary)
+      end if
       if (full .or. m%proves .or. o%asked(out_csv) .or. o%asked(out_log)) then
          call run_each(options, m, i, last, full, v, summary, layout, n, o, status)
       else

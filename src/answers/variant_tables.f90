@@ -15,7 +15,7 @@ module variant_tables
    use phrases
    implicit none
    private
-   public :: summary_head, summary_row, put_variant, put_variant_heads, put_variant_row, &
+   public :: summary_head, summary_row, put_variant, put_variant_heads, put_note_of_shares, put_variant_row, &
       put_variants_end, put_broken_off
 
    !> Characters of a line, of the number of a variant, and at least of a column.
@@ -176,6 +176,16 @@ contains
          //whole(m%variants))
       call put(o, '')
    end subroutine put_variants_end
+
+   !> Of a set with tolerances but no tables of its variants: where their shares are to be had.
+   subroutine put_note_of_shares(o, m)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+
+      if (.not. allocated(m%tolerances)) return
+      call put(o, '')
+      call put(o, ' --- '//phrase(say_shares_elsewhere, m%polish))
+   end subroutine put_note_of_shares
 
    !> The last line, where a run ends before its time, after variant `n`.
    subroutine put_broken_off(o, m, n)

@@ -177,6 +177,8 @@ module phrases
       say_at_time = phrase_t('AT T', 'W T'), &
       say_one_range = phrase_t('RANGE', 'ZAKRES'), &
       say_whole_turns = phrase_t('CLOSES IN TURNS', 'OBROTY DO ZAMKNIECIA'), &
+      say_shares_elsewhere = phrase_t('TOLERANCES: SHARES STAND IN THE TABLES OF EACH VARIANT, SEE CARD PRINT', &
+         'TOLERANCJE: UDZIALY SA W TABLICACH WARIANTU, PATRZ KARTA PRINT'), &
       say_broken_variant = phrase_t('THE RUN WAS BROKEN OFF AFTER VARIANT', 'OBLICZENIA PRZERWANO PO WARIANCIE'), &
       say_broken_off = phrase_t('THE RUN WAS BROKEN OFF AFTER INSTANT', 'OBLICZENIA PRZERWANO PO CHWILI')
    ! Remarks about a deck.

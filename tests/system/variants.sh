@@ -187,6 +187,14 @@ told 'no values' 'E034 THIS FIELD MUST NOT BE BLANK' "$(vary R1 3)"
 equal 'no table: status' 1 $?
 equal 'no table' ' *** OPTION --table TAKES NO DECK WITH VARY CARDS: USE --summary OR --csv' "$(cat "$w/out")"
 
+# Shares of tolerances have no columns in the table: it says where they are.
+for print in '' "$(card PRINT PAIRS PAIR-B0)"; do
+   four_bar "$(card TOLER '' '' '' 0.01; vary R1 2 '' 0.5 0.75)" '' '' '' "$turn" "$print" | sed '/^$/d' > "$w/toler.deck"
+   "$kinmat" "$w/toler.deck" > "$w/toler.lst"
+   equal "tolerances of variants, $print" "$([ -n "$print" ] && echo '0 2' || echo '1 0')" \
+      "$(grep -c '^ --- TOLERANCES: SHARES STAND IN THE TABLES' "$w/toler.lst") $(grep -c '^ TOLERANCES: SHARES OF' "$w/toler.lst")"
+done
+
 # In several processes, and in shares: the same bytes. Three sets, one of them without VARY cards.
 {
    cat "$w/slider.deck"; four_bar '' '' '' '' "$(card TIME 2 '' '' 0.0 1.0)"
