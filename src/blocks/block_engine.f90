@@ -17,7 +17,8 @@ module block_engine
    use block_solver, only: workspace_t, make_workspace, solve_block
    use first_position, only: solve_first_block, remove_turns
    use block_rank, only: jacobian_of, relative_sign
-   use link_motion, only: chain_t, new_chain, move_links, mark_links, missing_nothing, missing_rates, missing_all
+   use link_motion, only: chain_t, new_chain, move_links, move_found_links, mark_links, missing_nothing, &
+      missing_rates, missing_all
    implicit none
    private
    public :: block_engine_t, block_checkpoint_t, positions_t
@@ -356,7 +357,6 @@ contains
       type(motion_t), intent(inout) :: found
       integer :: missing(0:e%blocks%unknowns), k
       type(convergence_t) :: c
-      type(chain_t) :: part
       real(wp) :: correction
       logical :: finite
 
@@ -373,10 +373,7 @@ contains
          end associate
       end do
       call mark_links(e%chain, missing, found)
-      ! What the state has of the others need not be a number.
-      part = e%chain
-      part%links = pack(part%links, found%link_known(part%links%link) == 2)
-      call move_links(part, e%state, e%length, found, finite)
+      call move_found_links(e%chain, found%link_known < 2, e%state, e%length, found, finite)
    end subroutine get_driven_links
 
    !> What is missing of the unknowns of block `i`: what its `own` equations leave out, or what it builds on lacks.

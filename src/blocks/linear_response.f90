@@ -41,7 +41,7 @@ contains
       integer :: i
 
       r%tree = new_tree(m)
-      r%equations = new_equations(m, r%tree, 1.0_wp, traced=.true.)
+      r%equations = new_equations(m, r%tree, 1.0_wp)
       allocate (r%loop_of_pair(0:size(m%pairs)), r%loop_of_drive(0:size(m%drives)), source=0)
       do i = 1, r%equations%count
          associate (q => r%equations%list(i))

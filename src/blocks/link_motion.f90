@@ -12,11 +12,13 @@ module link_motion
    use block_state, only: unknown_t, state_t
    implicit none
    private
-   public :: chain_t, new_chain, move_links, mark_links, missing_nothing, missing_rates, missing_all
+   public :: chain_t, chain_link_t, new_chain, move_links, move_found_links, mark_links, missing_nothing, &
+      missing_rates, missing_all
 
-   !> A moving link. Numbers are 0 for the ground, for no slide and for no root.
+   !> A moving link. Numbers are 0 for the ground, for no pair, no slide and no root.
    type :: chain_link_t
       integer :: link = 0, parent = 0
+      integer :: pair = 0                               !< that joins them
       integer :: orientation = 0, parent_orientation = 0 !< the unknowns that rotate them
       integer :: slide = 0                              !< its unknown
       integer :: root = 0                               !< the unknown that is its x; y is the next
@@ -89,6 +91,7 @@ contains
          h%root = first_slide + t%slides + 2*t%root(link) - 1
          return
       end if
+      h%pair = t%parent_joint(link)
       h%place = place_on_tree(m, t, 1.0_wp, link)
       h%has_body_vector = any(abs(h%place%body_vector) > 0.0_wp)
       h%parent_orientation = t%orientation(t%parent(link))
@@ -112,6 +115,21 @@ contains
       end do
       call move_chain(size(c%links), c%links, s%u, length, q%position, q%velocity, q%acceleration, finite)
    end subroutine move_links
+
+   !> The same of links that are not `lost` (links): what the state has of the others need not be a number.
+   pure subroutine move_found_links(c, lost, s, length, q, finite)
+      type(chain_t), intent(in) :: c
+      logical, intent(in) :: lost(:)
+      type(state_t), intent(in) :: s
+      real(wp), intent(in) :: length
+      type(motion_t), intent(inout) :: q
+      logical, intent(out) :: finite
+      type(chain_t) :: part
+
+      part = c
+      part%links = pack(part%links, .not. lost(part%links%link))
+      call move_links(part, s, length, q, finite)
+   end subroutine move_found_links
 
    !> The same for the moving links, on plain arrays, which cost no descriptors.
    pure subroutine move_chain(n, links, u, length, p, v, a, finite)

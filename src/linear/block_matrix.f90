@@ -8,7 +8,8 @@ module block_matrix
    use klu, only: klu_t, klu_serves, factor, factor_likewise, solve, solve_transposed, pivots_of, multiply
    implicit none
    private
-   public :: shape_t, is_sparse_better, entries_of, solve_first, solve_again, pivot_range, inverse_norm, work_length
+   public :: shape_t, is_sparse_better, entries_of, solve_first, solve_again, solve_many, pivot_range, inverse_norm, &
+      work_length
    public :: nearby_t, stay_near, set_aside, solve_nearby, spread_by_inverse
 
    !> `pattern` = 0: dense, by columns. Otherwise sparse and square: the number of its pattern, and its entries, in the
@@ -187,6 +188,58 @@ contains
       y(1) = a(1)*x(1) + a(3)*x(2)
       y(2) = a(2)*x(1) + a(4)*x(2)
    end function times
+
+   !> The same for `lanes` right-hand sides `b` (lanes, rows): each step for all of them, where `a` is dense and square.
+   subroutine solve_many(s, a, k, pivots, work, lanes, b)
+      type(shape_t), intent(in) :: s
+      real(wp), intent(in) :: a(*)
+      type(klu_t), intent(inout) :: k
+      integer, intent(in) :: pivots(*), lanes
+      real(wp), intent(inout) :: work(*), b(lanes, s%rows)
+      real(wp), allocatable :: all_of_them(:, :)
+      integer :: i
+
+      if (s%pattern == 0 .and. s%rows == s%n) then
+         call substitute_many(s%n, a, pivots, lanes, b)
+         return
+      end if
+      all_of_them = transpose(b)
+      if (s%pattern > 0) then
+         call solve(k, all_of_them, lanes)
+      else
+         do i = 1, lanes
+            call solve_again(s, a, k, pivots, work, all_of_them(:, i))
+         end do
+      end if
+      b = transpose(all_of_them)
+   end subroutine solve_many
+
+   !> The substitutions of DGETRS, with the factors `a` and the `pivots` of DGETRF.
+   pure subroutine substitute_many(n, a, pivots, lanes, b)
+      integer, intent(in) :: n, pivots(n), lanes
+      real(wp), intent(in) :: a(n, n)
+      real(wp), intent(inout) :: b(lanes, n)
+      real(wp) :: row(lanes)
+      integer :: i, j
+
+      do i = 1, n
+         if (pivots(i) == i) cycle
+         row = b(:, i)
+         b(:, i) = b(:, pivots(i))
+         b(:, pivots(i)) = row
+      end do
+      do i = 1, n
+         do j = i + 1, n
+            b(:, j) = b(:, j) - a(j, i)*b(:, i)
+         end do
+      end do
+      do i = n, 1, -1
+         b(:, i) = b(:, i)/a(i, i)
+         do j = 1, i - 1
+            b(:, j) = b(:, j) - a(j, i)*b(:, i)
+         end do
+      end do
+   end subroutine substitute_many
 
    !> DGETRS for two unknowns and one right-hand side, in the order of its operations: the call itself takes many times
    !> as long. `exchanged`: the rows of the matrix were.

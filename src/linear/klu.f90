@@ -157,13 +157,16 @@ contains
       if (k%common%status == 0) info = 0
    end subroutine factor_likewise
 
-   !> `b` (n): the right-hand side, then the solution.
-   subroutine solve(k, b)
+   !> `b` (n): the right-hand side, then the solution; or so `many` of them (n, many).
+   subroutine solve(k, b, many)
       type(klu_t), intent(inout) :: k
       real(wp), intent(inout), target :: b(*)
-      integer(c_int) :: done
+      integer, intent(in), optional :: many
+      integer(c_int) :: count_of, done
 
-      done = klu_solve(k%symbolic, k%numeric, order_of(k), 1_c_int, c_loc(b), k%common)
+      count_of = 1
+      if (present(many)) count_of = int(many, c_int)
+      done = klu_solve(k%symbolic, k%numeric, order_of(k), count_of, c_loc(b), k%common)
    end subroutine solve
 
    !> The same with the matrix transposed.

@@ -33,7 +33,7 @@ module drives
    end type law_t
 
    !> An instant that is before a joint by less than this part of the rise's times is meant to be at it: decimals,
-   !> quotients of TIME, and the `perturbation` of error estimates put it up to twice 256 roundings aside. Instants of
+   !> quotients of TIME, and error estimates put it up to twice 256 roundings aside. Instants of
    !> doubles are as far off in real128.
    real(wp), parameter :: joint_part = 1024.0_wp*max(epsilon(1.0_wp), real(epsilon(1.0_dp), wp))
 

@@ -64,10 +64,12 @@ contains
    end function any_due
 
    !> The row of `request`, as far as the motion `q` is known. What belongs to the ground is known at every instant.
-   pure function row_of(m, q, request) result(row)
+   !> `changes` (3, 0:2, links): those of x, y, phi and their derivatives; this `part` of them is added to the motion.
+   pure function row_of(m, q, request, changes, part) result(row)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       type(request_t), intent(in) :: request
+      real(wp), intent(in), optional :: changes(:, 0:, :), part
       type(row_t) :: row
 
       row%kind = request%kind
@@ -80,9 +82,8 @@ contains
                row%value(:, 0) = m%links(i)%position
                return
             end if
-            row%value(:, 0) = q%position(:, i) + [q%origin, 0.0_wp]
-            row%value(:, 1) = q%velocity(:, i)
-            row%value(:, 2) = q%acceleration(:, i)
+            row%value = link_motion(q, i, changes, part)
+            row%value(:2, 0) = row%value(:2, 0) + q%origin
          case (request_point)
             row%name = m%points(i)%name
             call note_known(m, q, m%points(i)%link, row)
@@ -90,44 +91,45 @@ contains
                row%value(:2, 0) = point_of(m%links(m%points(i)%link)%position, m%points(i)%offset)
                return
             end if
-            row%value(:2, :) = point_motion(m, q, i)
+            row%value(:2, :) = point_motion(m, q, i, changes, part)
             row%value(:2, 0) = row%value(:2, 0) + q%origin
          case (request_pair)
             row%name = m%pairs(i)%name
             row%angular = m%pairs(i)%kind /= pair_prismatic
             call note_known(m, q, m%points(m%pairs(i)%point_i)%link, row)
             call note_known(m, q, m%points(m%pairs(i)%point_j)%link, row)
-            row%value(1, :) = pair_motion(m, q, m%pairs(i))
+            row%value(1, :) = pair_motion(m, q, m%pairs(i), changes, part)
          case (request_pole)
             row%name = trim(m%links(request%second)%name)//' '//m%links(i)%name
             call note_known(m, q, i, row)
             call note_known(m, q, request%second, row)
             if (row%known < 1) return
-            call take_centre(pole_of(link_motion(q, request%second), link_motion(q, i), request%length, request%rate), &
-               row)
+            call take_centre(pole_of(link_motion(q, request%second, changes, part), link_motion(q, i, changes, part), &
+               request%length, request%rate), row)
             row%value(:2, 0) = row%value(:2, 0) + q%origin
          case (request_curve)
-            call take_curve(m, q, request, row)
+            call take_curve(m, q, request, row, changes, part)
          end select
       end associate
    end function row_of
 
    !> The numbers of the `row` of the path of a point: in the axes of the link from which it is seen, or in the fixed
-   !> plane.
-   pure subroutine take_curve(m, q, request, row)
+   !> plane. `changes`, `part`: as in `row_of`, here and below.
+   pure subroutine take_curve(m, q, request, row, changes, part)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       type(request_t), intent(in) :: request
       type(row_t), intent(inout) :: row
+      real(wp), intent(in), optional :: changes(:, 0:, :), part
       real(wp) :: p(2, 0:2)
 
       row%name = m%points(request%subject)%name
       call note_known(m, q, m%points(request%subject)%link, row)
-      p = point_motion(m, q, request%subject)
+      p = point_motion(m, q, request%subject, changes, part)
       if (request%second > 0) then
          row%name = trim(m%points(request%subject)%name)//' '//m%links(request%second)%name
          call note_known(m, q, request%second, row)
-         p = seen_from(link_motion(q, request%second), p)
+         p = seen_from(link_motion(q, request%second, changes, part), p)
       end if
       if (row%known < 2) p(:, max(0, row%known + 1):) = 0.0_wp
       call take_centre(curve_of(p, request%length, request%rate), row)
@@ -147,14 +149,16 @@ contains
    end subroutine take_centre
 
    !> Position, velocity and acceleration (3, 0:2) of link number `i`.
-   pure function link_motion(q, i) result(x)
+   pure function link_motion(q, i, changes, part) result(x)
       type(motion_t), intent(in) :: q
       integer, intent(in) :: i
+      real(wp), intent(in), optional :: changes(:, 0:, :), part
       real(wp) :: x(3, 0:2)
 
       x(:, 0) = q%position(:, i)
       x(:, 1) = q%velocity(:, i)
       x(:, 2) = q%acceleration(:, i)
+      if (present(changes)) x = x + part*changes(:, :, i)
    end function link_motion
 
    !> Whether `row` has the number (c, k) of its values: x, y, phi (c) of the k-th derivative, as far as it is known; of
@@ -230,44 +234,44 @@ contains
 
    !> Place from the motion's origin, velocity and acceleration (2, 0:2) of point number `i`, at u from its link's
    !> origin o:  p = o + u,  p' = o' + phi' u_t,  p'' = o'' + phi'' u_t - phi'^2 u,  u_t = (-u_y, u_x).
-   pure function point_motion(m, q, i) result(p)
+   pure function point_motion(m, q, i, changes, part) result(p)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       integer, intent(in) :: i
-      real(wp) :: p(2, 0:2), u(2), u_t(2)
+      real(wp), intent(in), optional :: changes(:, 0:, :), part
+      real(wp) :: p(2, 0:2), x(3, 0:2), u(2), u_t(2)
 
-      associate (k => m%points(i)%link)
-         u = rotated(m%points(i)%offset, direction(q%position(3, k)))
-         u_t = quarter_turn(u)
-         p(:, 0) = q%position(:2, k) + u
-         p(:, 1) = q%velocity(:2, k) + q%velocity(3, k)*u_t
-         p(:, 2) = q%acceleration(:2, k) + q%acceleration(3, k)*u_t - q%velocity(3, k)**2*u
-      end associate
+      x = link_motion(q, m%points(i)%link, changes, part)
+      u = rotated(m%points(i)%offset, direction(x(3, 0)))
+      u_t = quarter_turn(u)
+      p(:, 0) = x(:2, 0) + u
+      p(:, 1) = x(:2, 1) + x(3, 1)*u_t
+      p(:, 2) = x(:2, 2) + x(3, 2)*u_t - x(3, 1)**2*u
    end function point_motion
 
    !> Value and derivatives (0:2) of `pair`: the slide x_w = (Q - P) . e of a prismatic pair, eq. (3) and (4), or the
    !> relative angle phi_j - phi_i of a revolute pair.
-   pure function pair_motion(m, q, pair) result(s)
+   pure function pair_motion(m, q, pair, changes, part) result(s)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       type(pair_t), intent(in) :: pair
-      real(wp) :: s(0:2), d(2, 0:2), e(2), n(2)
+      real(wp), intent(in), optional :: changes(:, 0:, :), part
+      real(wp) :: s(0:2), x(3, 0:2), y(3, 0:2), d(2, 0:2), e(2), n(2)
 
-      associate (i => m%points(pair%point_i)%link, j => m%points(pair%point_j)%link)
-         if (pair%kind /= pair_prismatic) then
-            s = [q%position(3, j) - q%position(3, i), q%velocity(3, j) - q%velocity(3, i), &
-               q%acceleration(3, j) - q%acceleration(3, i)]
-            return
-         end if
-         d = point_motion(m, q, pair%point_j) - point_motion(m, q, pair%point_i)
-         e = direction(q%position(3, i) + pair%alpha)
-         n = quarter_turn(e)
-         associate (rate => q%velocity(3, i), alpha => q%acceleration(3, i))
-            s(0) = dot_product(d(:, 0), e)
-            s(1) = dot_product(d(:, 1), e) + rate*dot_product(d(:, 0), n)
-            s(2) = dot_product(d(:, 2), e) + alpha*dot_product(d(:, 0), n) &
-               + 2.0_wp*rate*dot_product(d(:, 1), n) - rate**2*s(0)
-         end associate
+      x = link_motion(q, m%points(pair%point_i)%link, changes, part)
+      if (pair%kind /= pair_prismatic) then
+         y = link_motion(q, m%points(pair%point_j)%link, changes, part)
+         s = y(3, :) - x(3, :)
+         return
+      end if
+      d = point_motion(m, q, pair%point_j, changes, part) - point_motion(m, q, pair%point_i, changes, part)
+      e = direction(x(3, 0) + pair%alpha)
+      n = quarter_turn(e)
+      associate (rate => x(3, 1), alpha => x(3, 2))
+         s(0) = dot_product(d(:, 0), e)
+         s(1) = dot_product(d(:, 1), e) + rate*dot_product(d(:, 0), n)
+         s(2) = dot_product(d(:, 2), e) + alpha*dot_product(d(:, 0), n) + 2.0_wp*rate*dot_product(d(:, 1), n) &
+            - rate**2*s(0)
       end associate
    end function pair_motion
 end module points

@@ -46,7 +46,7 @@ contains
       integer :: i, m1, k, loop
 
       t = new_tree(m)
-      q = new_equations(m, t, length, traced=.true.)
+      q = new_equations(m, t, length)
       ! A function's result would bring its own lower bound.
       allocate (angle(0:t%orientations))
       angle(:) = angle_errors(m, t)

@@ -174,7 +174,7 @@ contains
       doubt = 0.0_wp
       if (.not. (errors%taken .and. errors%in_doubt)) return
       row = row_of(m, q, request)
-      error = row_estimate(m, errors, request)
+      error = row_estimate(m, errors, q, request)
       size_of = max(maxval(abs(row%value), dim=1), tiny(1.0_wp))
       doubt = min(maxval(error, dim=1), size_of)/size_of
       doubt = [maxval(doubt(:1)), maxval(doubt), doubt_growth*maxval(doubt)]

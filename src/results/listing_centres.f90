@@ -107,7 +107,7 @@ contains
 
       row = row_of(m, q, request)
       error = 0.0_wp
-      if (errors%taken .and. errors%in_doubt) error = row_estimate(m, errors, request)
+      if (errors%taken .and. errors%in_doubt) error = row_estimate(m, errors, q, request)
       numbers = numbers_of(request%kind)
       associate (first => index(row%name, ' '))
          line = ' '//row%name(:first)

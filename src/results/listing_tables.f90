@@ -183,7 +183,7 @@ contains
          row = row_of(m, q, request)
          call put_heads(o, l, d, row%kind, table)
          if (errors%taken .and. errors%in_doubt) then
-            call put_row(o, l, d, row, row_estimate(m, errors, request), table%masked)
+            call put_row(o, l, d, row, row_estimate(m, errors, q, request), table%masked)
          else
             call put_row(o, l, d, row)
          end if

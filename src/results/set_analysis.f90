@@ -116,7 +116,7 @@ contains
          call estimate_errors(s%estimators(c), own, a%engine, a%convergence%reciprocal_condition, q, always, estimate)
          if (.not. estimate%taken) return
          do i = 1, size(list)
-            error(:, :, i) = row_estimate(own, estimate, own%requests(s%now%parts%number(list(i))))
+            error(:, :, i) = row_estimate(own, estimate, q, own%requests(s%now%parts%number(list(i))))
          end do
       end associate
    end subroutine rows_at

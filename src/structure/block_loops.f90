@@ -99,6 +99,7 @@ contains
       f%loops = f%loops + 1
       associate (block_loop => b%loops(f%loops))
          block_loop%kind = kind
+         block_loop%vector_loop = i
          block_loop%first_vector = f%body_vectors + 1
          if (i > 0) call add_body_vectors(p, i, .false., b, f)
          block_loop%first_own = f%body_vectors + 1

@@ -49,6 +49,7 @@ module blocks
       integer :: first_slide = 1, last_slide = 0  !< its slides
       integer :: orientation = 0, orientation_column = 0   !< projection: turns with it; angles: the first
       integer :: less = 0, less_column = 0        !< angles: the one subtracted
+      integer :: vector_loop = 0                  !< its number before the blocks were made; 0: none
       integer :: orientation_at = 0, less_at = 0        !< where their entries stand in the Jacobian
       real(wp) :: direction(2) = 0.0_wp           !< projection: in the axes of its orientation
       real(wp) :: ground(2) = 0.0_wp              !< the loop's fixed part
@@ -82,5 +83,6 @@ module blocks
       type(body_vector_t), allocatable :: body_vectors(:)
       type(slide_t), allocatable :: slides(:)
       type(pattern_t), allocatable :: patterns(:) !< of the blocks with a sparse Jacobian
+      integer, allocatable :: first_term(:), terms(:, :)   !< of the vector loops: see `vector_loops_t`
    end type blocks_t
 end module blocks

@@ -41,22 +41,18 @@ module loop_equations
 
 contains
 
-   !> The equations of `m` on its tree `t`, lengths in units of `length`. `traced`: with the terms of the loops.
-   function new_equations(m, t, length, traced) result(e)
+   !> The equations of `m` on its tree `t`, lengths in units of `length`.
+   function new_equations(m, t, length) result(e)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       real(wp), intent(in) :: length
-      logical, intent(in), optional :: traced
       type(equations_t) :: e
       type(search_t) :: s
       integer, allocatable :: pairs(:)
       integer :: i
-      logical :: with_terms
 
       allocate (e%list(2*size(m%pairs) + size(m%drives) + size(t%surplus)))
-      with_terms = .false.
-      if (present(traced)) with_terms = traced
-      e%vector_loops = new_vector_loops(m, t, with_terms)
+      e%vector_loops = new_vector_loops(m, t)
       s = new_search(m, t)
       pairs = closing_pairs(m, t)
       do i = 1, size(pairs)

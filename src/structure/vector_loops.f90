@@ -35,31 +35,29 @@ module vector_loops
       integer, allocatable :: first_slide(:), slide_orientation(:), slide_number(:)
       real(wp), allocatable :: slide_body_vector(:, :)   !< (2, slides) e with its sign
       type(builder_t) :: making                      !< the next one
-      !> If they are traced: loop p is the sum of the terms making%terms(:, first_term(p):first_term(p + 1) - 1), each
-      !> a point (its number, 0), from its link's origin, or a prismatic pair's P - Q (0, its number), with their signs.
+      !> Loop p is the sum of the terms making%terms(:, first_term(p):first_term(p + 1) - 1), each a point (its number,
+      !> 0), from its link's origin, or a prismatic pair's P - Q (0, its number), with their signs.
       integer, allocatable :: first_term(:)
    end type vector_loops_t
 
 contains
 
-   !> No loop yet, and room for those of `m` on its tree `t`. `traced`: it is noted of what terms they are sums.
-   function new_vector_loops(m, t, traced) result(p)
+   !> No loop yet, and room for those of `m` on its tree `t`.
+   function new_vector_loops(m, t) result(p)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
-      logical, intent(in) :: traced
       type(vector_loops_t) :: p
       integer :: most
 
       most = size(m%pairs) + size(m%drives) + 1
-      allocate (p%first_vector(most), p%first_slide(most), source=1)
+      allocate (p%first_vector(most), p%first_slide(most), p%first_term(most), source=1)
       allocate (p%vector_orientation(most), p%body_vector(2, most), p%slide_orientation(most), p%slide_number(most), &
          p%slide_body_vector(2, most))
       associate (b => p%making)
          allocate (b%sum(2, 0:t%orientations), b%largest(0:t%orientations), b%orientations(t%orientations + 1))
          allocate (b%met(0:t%orientations), source=.false.)
          allocate (b%slide_orientation(8), b%slide(8), b%slide_body_vector(2, 8))
-         if (traced) allocate (b%terms(2, 4*most), p%first_term(most))
-         if (traced) p%first_term(1) = 1
+         allocate (b%terms(2, 4*most))
       end associate
    end function new_vector_loops
 
@@ -127,12 +125,11 @@ contains
       end associate
    end subroutine cross
 
-   !> Notes a term of the loop in the making, if loops are traced.
+   !> Notes a term of the loop in the making.
    subroutine note_term(b, term)
       type(builder_t), intent(inout) :: b
       integer, intent(in) :: term(2)
 
-      if (.not. allocated(b%terms)) return
       b%term_count = b%term_count + 1
       if (b%term_count > size(b%terms, 2)) b%terms = reshape([b%terms, b%terms], [2, 2*size(b%terms, 2)])
       b%terms(:, b%term_count) = term
@@ -208,7 +205,7 @@ contains
       p%count = p%count + 1
       p%first_vector(p%count + 1) = body_vectors + 1
       p%first_slide(p%count + 1) = slides + 1
-      if (allocated(p%first_term)) p%first_term(p%count + 1) = b%term_count + 1
+      p%first_term(p%count + 1) = b%term_count + 1
    end subroutine store
 
    !> Room for so many body vectors and slides, doubled where it runs out.

@@ -1,7 +1,6 @@
 !> Tests. What rounding leaves open of the numbers of a deck next to a dead point, as the manual defines it: by how much
-!> its closed form in real128 changes where all numbers of its cards are off by 256 roundings, up or down, eight times,
-!> by a generator of signs that is written down here again. The derivatives of the closed form by each number say the
-!> same of errors in proportion.
+!> its closed form in real128 changes, to first order, where all numbers of its cards are off by a rounding, up or down,
+!> in eight ways, by a generator that is written down here again.
 module hand_estimates
    use, intrinsic :: iso_fortran_env, only: int64, real64
    use mechanism, only: mechanism_t, pair_prismatic
@@ -11,14 +10,14 @@ module hand_estimates
    use hand_scales, only: length_by_hand
    implicit none
    private
-   public :: estimates_by_hand, linear_estimates
+   public :: estimates_by_hand
 
-   integer, parameter :: sample_count = 8
+   integer, parameter :: directions = 8
+   !> In the last of them all numbers of a kind are off alike.
+   integer, parameter :: apart = 6
    !> Of so few samples the largest may be too small; a sum is off by so many roundings of its largest number.
    real(qp), parameter :: caution = 2.5_qp, sum_roundings = 1.5_qp
    real(qp), parameter :: rounding = real(epsilon(1.0_real64), qp)
-   !> By so many roundings each number is off.
-   real(qp), parameter :: roundings = 256.0_qp
    !> Small beside the distance from the dead point, large beside a rounding of real128.
    real(qp), parameter :: difference = 1.0e-19_qp
 
@@ -26,35 +25,22 @@ module hand_estimates
    !> the guide, the piston's value, rate and acceleration at t = 0, and the instant.
    integer, parameter :: number_count = 9
 
-   !> Park and Miller's generator of signs.
-   integer(int64), parameter :: multiplier = 16807, modulus = 2147483647, seed = 198709
+   !> The generator: a table of numbers by chance, of so many rows; twelve directions in a row, of which four are not of
+   !> cards.
+   integer(int64), parameter :: multiplier = 16807, modulus = 2147483647
+   integer, parameter :: rows = 251, row_length = 12
+   real(qp), parameter :: least = 0.4_qp, range = 0.8_qp
+   integer, parameter :: of_point = 0, of_pair = 31, of_drive = 62, of_time = 93
 
 contains
 
-   !> The errors (3, 0:2, requests) at `t` of the piston-driven slider `m`.
+   !> The errors (3, 0:2, requests) at `t` of the piston-driven slider `m`, by the derivatives of the closed form.
    function estimates_by_hand(m, t) result(error)
-      type(mechanism_t), intent(in) :: m
-      real(qp), intent(in) :: t
-      real(qp), dimension(3, 0:2, size(m%requests)) :: error, middle
-      real(qp) :: numbers(number_count), sizes(number_count)
-      integer :: k
-
-      call take_numbers(m, t, numbers, sizes)
-      middle = rows_of(m, numbers)
-      error = 0.0_qp
-      do k = 1, sample_count
-         error = max(error, abs(rows_of(m, numbers + roundings*rounding*sizes*signs_of(m, k)) - middle))
-      end do
-      error = with_sums(m, middle, error/roundings)
-   end function estimates_by_hand
-
-   !> The same by the derivatives of the closed form, number by number of the deck.
-   function linear_estimates(m, t) result(error)
       type(mechanism_t), intent(in) :: m
       real(qp), intent(in) :: t
       real(qp), dimension(3, 0:2, size(m%requests)) :: error, change
       real(qp) :: slope(3, 0:2, size(m%requests), number_count), numbers(number_count), sizes(number_count), &
-         step(number_count), signs(number_count)
+         step(number_count), parts(number_count)
       integer :: i, k
 
       call take_numbers(m, t, numbers, sizes)
@@ -64,16 +50,16 @@ contains
          slope(:, :, :, i) = (rows_of(m, numbers + step) - rows_of(m, numbers - step))/(2.0_qp*difference)
       end do
       error = 0.0_qp
-      do k = 1, sample_count
-         signs = signs_of(m, k)
+      do k = 1, directions
+         parts = parts_of(m, k)
          change = 0.0_qp
          do i = 1, number_count
-            change = change + slope(:, :, :, i)*(signs(i)*rounding*sizes(i))
+            change = change + slope(:, :, :, i)*(parts(i)*rounding*sizes(i))
          end do
          error = max(error, abs(change))
       end do
       error = with_sums(m, rows_of(m, numbers), error)
-   end function linear_estimates
+   end function estimates_by_hand
 
    !> The estimate for changes of one rounding (`change`) of the rows `value` (both: 3, 0:2, requests). What stands
    !> still is known without a sum.
@@ -101,7 +87,7 @@ contains
       sizes = abs(numbers)
       sizes(1:2) = norm2(numbers(1:2))
       sizes(3:4) = norm2(numbers(3:4))
-      sizes(5) = max(1.0_qp, sizes(5))
+      sizes(5) = 1.0_qp
    end subroutine take_numbers
 
    !> The rows (3, 0:2, requests) with other `numbers` of the deck.
@@ -118,44 +104,38 @@ contains
       end do
    end function rows_of
 
-   !> The signs of sample `k`. Each number of a card takes the generator on: three of a GROUND, two of a POINT, three of
-   !> a PRISM, three of a DRIVE card. In every second sample all cards of a kind begin at the same place.
-   function signs_of(m, k) result(sign_of)
+   !> The parts of a rounding by which the numbers are off in direction `k`: each by its kind, the number of its card
+   !> and its place on it.
+   function parts_of(m, k) result(parts)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k
-      real(qp) :: sign_of(number_count), drawn(3)
-      integer(int64) :: state
+      real(qp) :: parts(number_count)
       integer :: i
 
-      state = seed*k
-      do i = 1, count(m%links%ground)
-         call draw(1, drawn)
+      do i = 0, 1
+         parts(1 + i) = drawn(of_point, findloc(m%points%name == 'PIN-CR', .true., dim=1), i)
+         parts(3 + i) = drawn(of_point, findloc(m%points%name == 'EYE', .true., dim=1), i)
       end do
-      do i = 1, size(m%points)
-         call draw(2, drawn(:2))
-         if (m%points(i)%name == 'PIN-CR') sign_of(1:2) = drawn(:2)
-         if (m%points(i)%name == 'EYE') sign_of(3:4) = drawn(:2)
-      end do
-      call draw(3, drawn)
-      sign_of(5) = drawn(1)
-      call draw(4, sign_of(6:8))
-      sign_of(9) = merge(1.0_qp, -1.0_qp, mod(k, 4) >= 2)
+      parts(5) = drawn(of_pair, findloc(m%pairs%kind, pair_prismatic, dim=1), 2)
+      parts(6:8) = [(drawn(of_drive, 1, i), i=1, 3)]
+      parts(9) = drawn(of_time, 0, 0)
 
    contains
 
-      !> The signs of a card of kind number `kind`.
-      subroutine draw(kind, drawn)
-         integer, intent(in) :: kind
-         real(qp), intent(out) :: drawn(:)
-         integer :: j
+      !> That of the number at `place` of card number `card` of the `kind`.
+      real(qp) function drawn(kind, card, place)
+         integer, intent(in) :: kind, card, place
+         integer(int64) :: n, state
+         real(qp) :: chance
 
-         if (mod(k, 2) == 0) state = mod(multiplier*(seed*k + seed*kind), modulus)
-         do j = 1, size(drawn)
-            state = mod(multiplier*state, modulus)
-            drawn(j) = merge(1.0_qp, -1.0_qp, 2*state > modulus)
-         end do
-      end subroutine draw
-   end function signs_of
+         n = kind + place
+         if (k <= apart) n = mod(n + 7*card, int(rows, int64))
+         n = n*row_length + k
+         state = mod(multiplier*mod(n*n*n, modulus), modulus)
+         chance = (2.0_qp*state - modulus)/modulus
+         drawn = sign(least + range*abs(chance), chance)
+      end function drawn
+   end function parts_of
 
    !> The rounding errors of the sums that rows are made of, as large as the largest number in any of them. A velocity
    !> is a sum of products of a length and an angular velocity, an acceleration of those with the square of one.
