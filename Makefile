@@ -40,7 +40,7 @@ modules := $(filter-out main,$(basename $(notdir $(sources))))
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))
 vpath %.F90 $(sort $(dir $(sources)))
 
-.PHONY: all example pictures kinds run test check forms errors proofs fool-proofs kind-check quad-check single-check bench bench-short bench-against bench-peers hard hard-short circuits study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants expected install install-kinds clean
+.PHONY: all assembly-peers example pictures kinds run test check forms errors proofs fool-proofs kind-check quad-check single-check bench bench-short bench-against bench-peers hard hard-short circuits study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants expected install install-kinds clean
 all: $(BUILD)/kinmat
 
 run: $(BUILD)/kinmat
@@ -159,6 +159,11 @@ bench-against: $(BUILD)/kinmat
 bench-peers: $(BUILD)/kinmat $(BUILD)/timed/bench
 	BUILD=$(BUILD) tests/bench/peers.sh
 
+# Counts of assemblies by PHCpack, for tests/system/assemblies.sh (Debian's package phcpack): a quarter of an hour.
+assembly-peers: $(BUILD)/release/random_blocks
+	BUILD=$(BUILD) tests/oracle/assembly_peers.sh 1 100 > tests/validation/assemblies.txt.new
+	mv tests/validation/assemblies.txt.new tests/validation/assemblies.txt
+
 # The method of 1987, measured: tables on standard output, docs/matrix_1987.png drawn anew (gnuplot-nox).
 study-1987: $(BUILD)/timed/matrix_1987
 	$< tables
@@ -175,7 +180,7 @@ hard-short: $(BUILD)/release/hard
 	BUILD=$(BUILD) tests/oracle/hard.sh short
 
 # Circuits of 300 four-bars and crank-sliders made by chance against closed forms.
-circuits: $(BUILD)/release/circuits_by_chance
+circuits: $(BUILD)/release/circuits_by_chance random_blocks
 	$<
 
 # Speed against error of six scenes: kinmat --study for each, times beside the closed forms where there are such, and

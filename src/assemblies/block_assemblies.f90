@@ -90,7 +90,7 @@ contains
       else if (f%system%p == 1) then
          call solve_quadratic(f%system, ends, moves)
       else
-         call follow_paths(f%system, ends)
+         call follow_paths(f%system, ends, moves)
       end if
    end subroutine find_ends
 

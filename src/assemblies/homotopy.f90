@@ -42,14 +42,17 @@ module homotopy
    !> Ends that differ by less, in parts of z, are one; all paths are followed anew, with steps so much shorter.
    real(wp), parameter :: alike = max(1.0e-8_wp, sqrt(epsilon(1.0_wp)))
    real(wp), parameter :: shorter = 1.0e-2_wp
+   !> Singular ends that differ by less may be one: four that meet are known to the fourth root of the last t.
+   real(wp), parameter :: blurred = 1.0e-2_wp
    integer, parameter :: max_rounds = 3
 
 contains
 
-   !> The `ends` of all paths of `f`, p from 1.
-   subroutine follow_paths(f, ends)
+   !> The `ends` of all paths of `f`, p from 1. `moves`: some are points of a curve of solutions.
+   subroutine follow_paths(f, ends, moves)
       type(bilinear_t), intent(in) :: f
       type(ends_t), intent(out) :: ends
+      logical, intent(out) :: moves
       type(paths_t) :: h
       type(ends_t) :: found
       integer :: round
@@ -59,6 +62,14 @@ contains
          call follow_all(h, found)
          if (round == 1 .or. worth(found) > worth(ends)) ends = found
          if (found%failed == 0) exit
+      end do
+      moves = .false.
+      if (.not. any(ends%list%is_singular)) return
+      ! Paths from another start come to the same solutions, but to other points of a curve.
+      call make_start(f, max_rounds + 1, h)
+      call follow_all(h, found)
+      do round = 1, size(ends%list)
+         if (ends%list(round)%is_singular) moves = moves .or. .not. is_among(f, ends%list(round), found%list)
       end do
 
    contains
@@ -71,6 +82,23 @@ contains
       end function worth
    end subroutine follow_paths
 
+   !> A singular solution of `list` is that of `e`, as far as rounding leaves it known.
+   logical function is_among(f, e, list)
+      type(bilinear_t), intent(in) :: f
+      type(end_t), intent(in) :: e, list(:)
+      complex(wp) :: x(f%p + 1), y(f%p + 1)
+      integer :: k
+
+      is_among = .false.
+      do k = 1, size(list)
+         if (.not. list(k)%is_singular) cycle
+         x = list(k)%x*(sum(f%plane*e%x)/sum(f%plane*list(k)%x))
+         y = list(k)%y*(sum(conjg(f%plane)*e%y)/sum(conjg(f%plane)*list(k)%y))
+         is_among = is_among .or. (maxval(abs(x - e%x)) <= blurred*maxval(abs(x)) .and. &
+            maxval(abs(y - e%y)) <= blurred*maxval(abs(y)))
+      end do
+   end function is_among
+
    !> The start of round number `round`: each has a chance of its own.
    subroutine make_start(f, round, h)
       type(bilinear_t), intent(in) :: f
@@ -79,7 +107,7 @@ contains
       integer :: seed, j, k
 
       h%f = f
-      h%careful = shorter**(round - 1)
+      h%careful = shorter**mod(round - 1, max_rounds)
       allocate (h%a(0:f%p, 2*f%p), h%b(0:f%p, 2*f%p), h%patch(0:f%p, 2))
       seed = 1987*round
       do j = 1, 2*f%p

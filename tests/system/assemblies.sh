@@ -1,0 +1,95 @@
+#!/bin/sh
+# Card ASSEMBLY: the counts of another program, the LINK cards that it prints, other units and another order of cards.
+. tests/counting.sh
+
+# assemblies DECK: what the listing says of them
+assemblies() { "$kinmat" --quiet "$1" 2>&1 | awk '/^ (ASSEMBLIES|MONTAZE) / { on = 1 } /^ (BRANCH|GALAZ|RANGES|LARGEST)/ { on = 0 } on'; }
+
+# Blocks made by chance: as many solutions, and as many of them real, as PHCpack finds. The table has 100 of them.
+last=${1:-30}
+equal 'blocks in the table' 100 "$(grep -c . tests/validation/assemblies.txt)"
+while read -r seed links finite real; do
+   [ "$seed" -le "$last" ] || break
+   "$BUILD/release/random_blocks" "$seed" deck > "$w/block.deck"
+   equal "block $seed, $links links" "$finite FINITE, 0 FAILED, $real REAL" "$(assemblies "$w/block.deck" |
+      sed -n 's/.* PATHS [0-9]* = \([0-9]*\) FINITE + [0-9]* AT INFINITY + \([0-9]*\) FAILED   REAL \([0-9]*\)/\1 FINITE, \2 FAILED, \3 REAL/p')"
+done < tests/validation/assemblies.txt
+
+# pasted DECK K: the deck with the LINK and JOINT cards of its assembly K in place of its own
+pasted() {
+   assemblies "$1" | awk -v k="$2" '/^ (ASSEMBLY|MONTAZ) / { on = $2 == k } on && /^(LINK|JOINT) /' > "$w/cards"
+   awk -v cards="$w/cards" '
+      BEGIN { while ((getline line < cards) > 0) { own[substr(line, 1, 16)] = line } }
+      { key = substr(sprintf("%-16s", $0), 1, 16) }
+      key in own { print own[key]; next } { print }' "$1"
+}
+
+# Each assembly, pasted, is the one that a run takes: the deck of one set (the first of the deck of input/).
+# taken DECK NUMBER [SET]
+taken() {
+   awk -v set="${3:-1}" 'BEGIN { n = 1 } n == set; /^END/ { n++ }' "input/$1.deck" | awk '/^END/ { print "ASSEMBLY" } { print }' > "$w/$1.deck"
+   equal "$1: assemblies" "$2" "$(assemblies "$w/$1.deck" | grep -c '^ ASSEMBLY ')"
+   assemblies "$w/$1.deck" | awk '/^ ASSEMBLY / { sub(/   CHOSEN.*/, ""); sub(/DISTANCE = [0-9.]*/, ""); print $0 }' > "$w/$1.rows"
+   for k in $(seq "$2"); do
+      pasted "$w/$1.deck" "$k" > "$w/pasted.deck"
+      equal "$1: assembly $k is taken" "$(sed -n "s/^ ASSEMBLY $k  *//p" "$w/$1.rows")" \
+         "$(assemblies "$w/pasted.deck" | sed -n 's/^ ASSEMBLY 1   DISTANCE = 0.00[0-9]*  *\(.*\)   CHOSEN BY THE ESTIMATE/\1/p')"
+   done
+}
+taken four_bar 2
+taken crank_slider 2
+taken inverted_slider 2
+taken drawing 2 2
+taken far_small 2
+taken stephenson_output 2
+taken three_rrr_cranks 2
+taken three_rrr 8
+taken cognates 2
+taken double_parallelogram 1
+# In other units, and with the cards in another order, the same assemblies.
+rows() { assemblies "$1" | awk '/^ ASSEMBLY/ { sub(/DETERMINANTS [-+.0]*/, "") } /^ ASSEMBLY|UNKNOWNS/'; }
+angles() { assemblies "$1" | awk '/^LINK/ { print substr($0, 9, 8), substr($0, 65) }'; }
+rows "$w/three_rrr_cranks.deck" > "$w/rows"
+angles "$w/three_rrr_cranks.deck" > "$w/angles"
+awk '/^(LINK|POINT|GROUND) / { head = sprintf("%-32s", substr($0, 1, 32)); x = substr($0, 33, 16) + 0; y = substr($0, 49, 16) + 0
+      printf "%s%-16.9E%-16.9E%s\n", head, x*1e6, y*1e6, substr($0, 65); next } { print }' "$w/three_rrr_cranks.deck" > "$w/large.deck"
+rows "$w/large.deck" > "$w/large.rows"
+angles "$w/large.deck" > "$w/large.angles"
+same 'a million times as large: assemblies' "$w/rows" "$w/large.rows"
+same 'a million times as large: angles' "$w/angles" "$w/large.angles"
+{ grep -v '^END' "$w/three_rrr_cranks.deck" | sed '1!G;h;$!d'; card END; } > "$w/order.deck"
+rows "$w/order.deck" | sed 's/LINKS.*//' > "$w/order.rows"
+angles "$w/order.deck" | sort > "$w/order.angles"
+sort "$w/angles" > "$w/sorted.angles"
+same 'another order: assemblies' "$w/rows" "$w/order.rows"
+same 'another order: angles' "$w/sorted.angles" "$w/order.angles"
+
+# A block of more than 12 unknowns is named, and nothing is listed of it; a linkage that can move with its drives held is named.
+# A ring of seven links, each with a leg to the ground.
+{
+   card GROUND BASE
+   for k in 1 2 3 4 5 6 7; do
+      card LINK R$k; card LINK L$k
+      card POINT A$k BASE '' "$k.0"; card POINT B$k L$k; card POINT C$k L$k '' 2.0
+      card POINT D$k R$k; card POINT E$k R$k '' 1.0 0.3; card POINT F$k R$k '' 1.5
+      card REVOLUTE A$k B$k U$k; card REVOLUTE C$k E$k V$k; card REVOLUTE F$k D$((k % 7 + 1)) W$k
+   done
+   card AT '' '' '' 0.0; card ASSEMBLY; card END
+} > "$w/wide.deck"
+equal 'a wide block' ' *** LINKS R1, L1, R2, L2, R3, L3, R4, L4 AND 6 MORE: TOO MANY UNKNOWNS IN ONE BLOCK TO FIND ALL ASSEMBLIES,   NONE' \
+   "$(assemblies "$w/wide.deck" | grep -E '\*\*\*|NONE' | tr '\n' ',' | sed 's/,$//')"
+with peaucellier "$(card ASSEMBLY)" > "$w/peaucellier.deck"
+equal 'bars that turn freely' ' *** LINKS BAR-AP, BAR-BP: NOT ALL SOLUTIONS ARE SEPARATE, THEY MAY MOVE WITH THE DRIVES HELD' \
+   "$(assemblies "$w/peaucellier.deck" | grep -F '***')"
+
+# A poor estimate: the listing tells that another assembly is nearer.
+awk '/^LINK / { $0 = sprintf("%-64s0.0", substr($0, 1, 64)) } /^END/ { print "ASSEMBLY" } { print }' input/inverted_slider.deck > "$w/poor.deck"
+equal 'a poor estimate' ' --- THE ESTIMATE IS NEARER TO ASSEMBLY 1: 1.2758, THAN TO THE ONE CHOSEN, 2: 4.0964' \
+   "$(assemblies "$w/poor.deck" | grep -F -- ' ---')"
+
+# Polish; two cards; a card that costs nothing where there is no listing.
+with four_bar "$(card LANG PL)" "$(card ASSEMBLY)" > "$w/polish.deck"
+equal 'in Polish' 'MONTAZE WYBRANY' "$("$kinmat" "$w/polish.deck" | grep -oE 'MONTAZE  |WYBRANY' | head -n 2 | tr -s ' \n' ' ' | sed 's/ $//')"
+with four_bar "$(card ASSEMBLY)" "$(card ASSEMBLY)" > "$w/twice.deck"
+equal 'two cards, in each of two sets' 2 "$("$kinmat" "$w/twice.deck" 2>&1 | grep -c E013)"
+conclude
