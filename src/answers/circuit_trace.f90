@@ -3,6 +3,7 @@
 !> it is passed in the direction of the tangent.
 module circuit_trace
    use kinds, only: wp
+   use system_calls, only: signal_received
    use circuit_curve, only: curve_t, curve_point_t, step_along, step_between, lies_between, reversed, offset_from
    use pose, only: add_to_links
    implicit none
@@ -54,7 +55,7 @@ contains
       type(curve_point_t), intent(in) :: start
       type(circuit_t), intent(out) :: circuit
       type(circuit_t) :: back
-      integer :: n, i
+      integer :: n
 
       call follow(c, start, circuit)
       if (circuit%ends(2) == end_closed) then
@@ -65,16 +66,30 @@ contains
          call begin_at_dead_point(circuit)
       else
          call follow(c, reversed(start), back)
-         n = size(back%points)
-         circuit%ends(1) = back%ends(2)
-         circuit%changes%after = circuit%changes%after + n - 1
-         back%changes%after = n - back%changes%after
          circuit%points(1)%is_dead = sense(circuit%points)*sense(back%points) > 0
-         circuit%points = [[(reversed(back%points(i)), i=n, 2, -1)], circuit%points]
-         circuit%changes = [back%changes, circuit%changes]
+         call join(circuit, back)
       end if
       circuit%rests = .not. any(is_sure(circuit%points))
    end subroutine trace
+
+   !> Puts what lies `back` from the first point of `circuit` before it.
+   subroutine join(circuit, back)
+      type(circuit_t), intent(inout) :: circuit, back
+      type(curve_point_t), allocatable :: points(:)
+      integer :: n, i
+
+      n = size(back%points)
+      allocate (points(n - 1 + size(circuit%points)))
+      do i = 1, n - 1
+         points(i) = reversed(back%points(n + 1 - i))
+      end do
+      points(n:) = circuit%points
+      call move_alloc(points, circuit%points)
+      circuit%ends(1) = back%ends(2)
+      circuit%changes%after = circuit%changes%after + n - 1
+      back%changes%after = n - back%changes%after
+      circuit%changes = [back%changes, circuit%changes]
+   end subroutine join
 
    !> Follows the curve from `start` in the sense of its tangent to its end.
    subroutine follow(c, start, circuit)
@@ -100,7 +115,7 @@ contains
             call pass_change_point(c, circuit, n, b, ok)
             leaves = .true.
          end if
-         if (.not. ok) exit
+         if (.not. ok .or. signal_received() > 0) exit
          closes = .false.
          if (n > 1) call lies_between(c, a, step_between(c, a, b), start%q, again, closes)
          if (closes) b = again

@@ -3,12 +3,13 @@
 !> reaches without being taken apart, the drive free to turn back at dead points; its branches lie between dead points.
 !>
 !> A circuit is traced from each assembly that is on none of those known: the deck's own, all others of the first
-!> instant, those of the crossings at change points, and all assemblies at drive values over its whole range: one that
-!> lies between two of these values alone is not found.
+!> instant, those of the crossings at change points, and all assemblies at values over the whole range of the drive, and
+!> at angles of each link: a circuit between all of these is not found.
 module circuits
    use kinds, only: wp
+   use system_calls, only: signal_received
    use constants, only: pi
-   use mechanism, only: mechanism_t
+   use mechanism, only: mechanism_t, drive_t, drive_angle
    use scales, only: characteristic_length
    use motion, only: motion_t
    use assemblies, only: assemblies_t, find_assemblies
@@ -24,9 +25,9 @@ module circuits
 
    !> More are not looked for.
    integer, parameter :: max_circuits = 1000
-   !> Values of the drive at which all assemblies are found: for an angle each 5 deg, fewer where that takes more than
-   !> so many paths.
-   integer, parameter :: most_values = 72, least_values = 4, max_paths = 1000
+   !> Values of the drive at which all assemblies are found, for an angle each 5 deg, and of the angle of each link;
+   !> fewer where that takes more than so many paths.
+   integer, parameter :: most_values = 72, link_values = 8, max_paths = 1000
 
 contains
 
@@ -74,25 +75,24 @@ contains
       found%is_complete = found%is_complete .and. .not. (all_of_them%are_more .or. any(all_of_them%blocks%is_wide) &
          .or. any(all_of_them%blocks%failed > 0))
       do k = 1, size(all_of_them%list)
+         if (signal_received() > 0) return
          call start_point(found%curve, all_of_them%list(k)%position, p, ok)
          if (ok) call add_circuits(found, p)
       end do
    end subroutine add_through
 
    !> Adds the circuits through the assemblies of `m` at values of the drive over its whole range: a turn, or as far as
-   !> all links together reach. `first`: the assemblies at the time `t`, which say what an evaluation costs.
+   !> all links together reach; and at angles of each link that moves, driven instead: a circuit that is narrow in the
+   !> drive is mostly wide in some link. `first`: the assemblies at the time `t`.
    subroutine search_whole_range(m, t, found, first)
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: t
       type(circuits_t), intent(inout) :: found
       type(assemblies_t), intent(in) :: first
       type(mechanism_t) :: held
-      type(assemblies_t) :: more
       real(wp) :: from, range
-      integer :: k, n
+      integer :: k
 
-      if (any(first%blocks%is_wide)) return
-      n = max(least_values, min(most_values, max_paths/max(1, sum(first%blocks%paths))))
       held = held_at(m, t)
       from = held%drives(found%drive)%polynomial(1)
       range = 2.0_wp*pi
@@ -100,12 +100,40 @@ contains
          range = 2.0_wp*characteristic_length(m)*count(.not. m%links%ground)
          from = from - 0.5_wp*range
       end if
-      do k = 1, n - 1
-         held%drives(found%drive)%polynomial(1) = from + range*real(k, wp)/real(n, wp)
-         call find_assemblies(held, 0.0_wp, more)
-         call add_through(found, more)
+      if (.not. any(first%blocks%is_wide)) call search(held, from, range, most_values, found)
+      do k = 1, size(m%links)
+         if (m%links(k)%ground) cycle
+         held%drives(found%drive) = drive_t(kind=drive_angle, subject=k)
+         from = 0.0_wp
+         if (size(found%list) > 0) from = found%list(1)%points(1)%q(3, k)
+         call search(held, from, 2.0_wp*pi, link_values, found)
       end do
    end subroutine search_whole_range
+
+   !> Adds the circuits through the assemblies of `m` at up to `most` values of the drive that is free in `found`, over
+   !> a `range` that begins at `from`; fewer where that takes many paths.
+   subroutine search(m, from, range, most, found)
+      type(mechanism_t), intent(inout) :: m
+      real(wp), intent(in) :: from, range
+      integer, intent(in) :: most
+      type(circuits_t), intent(inout) :: found
+      type(assemblies_t) :: more
+      logical :: complete
+      integer :: k, n
+
+      complete = found%is_complete
+      n = most
+      k = 0
+      do while (k < n .and. signal_received() == 0)
+         m%drives(found%drive)%polynomial(1) = from + range*real(k, wp)/real(n, wp)
+         call find_assemblies(m, 0.0_wp, more)
+         call add_through(found, more)
+         if (k == 0) n = min(most, max_paths/max(1, sum(more%blocks%paths)))
+         k = k + 1
+      end do
+      ! Searched beyond the first instant: what is found is more than was promised.
+      found%is_complete = complete
+   end subroutine search
 
    !> The drives of `m` that are set free, each alone: those that move; if none does, all.
    pure function free_drives(m) result(list)

@@ -21,7 +21,7 @@ module circuits_picture
    !> The diagrams of one drive.
    type :: diagrams_t
       character(:), allocatable :: title, drive, drive_unit, circuit   !< words
-      character(:), allocatable :: names(:)        !< (charts) of the numbers
+      character(40), allocatable :: names(:)       !< (charts) of the numbers
       type(chart_t), allocatable :: charts(:)
    end type diagrams_t
 
@@ -67,7 +67,7 @@ contains
             own%drive = findloc(s%now%parts%list(own%part)%drives, own%drive, dim=1)
             if (size(own%list) > 0) call make_charts(s, own%part, own, d%charts)
             d%drive_unit = unit_of(m, own%curve%is_angle)
-            allocate (character(40) :: d%names(size(d%charts)))
+            allocate (d%names(size(d%charts)))
             do k = 1, size(d%charts)
                d%names(k) = name_of(s%now%own(own%part), d%charts(k))
             end do

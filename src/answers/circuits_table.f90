@@ -22,7 +22,7 @@ module circuits_table
    !> Where a branch has no dead point: a slide goes to infinity, or the circuit could not be followed.
    type(phrase_t), parameter :: end_words(end_far:end_lost) = [say_no_limit, say_lost]
    !> A value below this is rounding of 0, in rad and in lengths of the order of 1.
-   real(wp), parameter :: rounding = 1.0e5_wp*epsilon(1.0_wp)
+   real(wp), parameter :: rounding = 1.0e3_wp*epsilon(1.0_wp)
 
 contains
 
