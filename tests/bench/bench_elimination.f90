@@ -63,7 +63,7 @@ contains
       end do
       own = [spread_of(1.0e9_wp*time(1, :)), spread_of(1.0e9_wp*time(2, :))]
       ratio = spread_of(time(1, :)/time(2, :))
-      print '(a)', '', ' TWO EQUATIONS: DGESV, AND ITS OPERATIONS WRITTEN OUT, WHICH NO STEP USES', &
+      print '(a)', '', ' TWO EQUATIONS: DGESV, AND ITS OPERATIONS WRITTEN OUT, WHICH LANES USE', &
          ' RATIO: DGESV over the other in the same repeat; NS: the middle time', '', &
          '  DGESV NS  WRITTEN NS     RATIO   LEAST    MOST'
       print '(2x, a8, 4x, a8, 2x, 3a8)', figure(own(1)%median), figure(own(2)%median), figure(ratio%median), &
