@@ -137,27 +137,36 @@ contains
       if (p%instants - p%proved > size(p%reasons)) call put(o, ' *** '//phrase(say_not_proved, m%polish) &
          //': '//whole(p%instants - p%proved))
       gap = ''
-      if (p%gap > 0.0_wp) gap = ',  '//phrase(say_gap, m%polish)//' '//rounded_up(p%gap)
+      if (p%gap > 0.0_wp) gap = ',  '//phrase(say_gap, m%polish)//' '//trim(rounded_up(p%gap))
       call put(o, ' '//phrase(say_proved, m%polish)//' '//whole(p%proved)//' / '//whole(p%instants) &
          //',  '//phrase(say_parts, m%polish)//' '//whole(sum(p%lines(:p%count)%parts)) &
-         //',  '//phrase(say_tube, m%polish)//' '//rounded_up(maxval([0.0_wp, p%lines(:p%count)%tube]))//gap)
+         //',  '//phrase(say_tube, m%polish)//' '//trim(rounded_up(maxval([0.0_wp, p%lines(:p%count)%tube])))//gap)
    end subroutine put_proofs
 
-   !> A line of the table.
+   !> A line of the table: there are as many as instants, so it is put together in place.
    subroutine put_line(o, l, line, m)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(line_t), intent(in) :: line
       type(mechanism_t), intent(in) :: m
-      character(:), allocatable :: start
+      character(7*number_width + 2) :: text
+      integer :: k
 
-      start = right(whole(line%step))//right(time_text(l, instant(m, line%step)))
+      text = ''
+      text(:number_width) = right(whole(line%step))
+      text(number_width + 1:2*number_width) = right(time_text(l, instant(m, line%step)))
       if (.not. line%is_proved) then
-         call put(o, start//'   '//phrase(say_not_proved, m%polish))
-      else
-         call put(o, start//right(whole(line%parts))//right(rounded_up(line%tube))//right(rounded_up(line%bounds(0))) &
-            //right(rounded_up(line%bounds(1)))//'  '//right(rounded_up(line%bounds(2))))
+         text(2*number_width + 4:) = phrase(say_not_proved, m%polish)
+         call put(o, text(:len_trim(text)))
+         return
       end if
+      text(2*number_width + 1:3*number_width) = right(whole(line%parts))
+      text(3*number_width + 1:4*number_width) = right(rounded_up(line%tube))
+      do k = 0, 1
+         text((4 + k)*number_width + 1:(5 + k)*number_width) = right(rounded_up(line%bounds(k)))
+      end do
+      text(6*number_width + 3:) = right(rounded_up(line%bounds(2)))
+      call put(o, text)
    end subroutine put_line
 
    !> Why an instant is not proved.
@@ -177,24 +186,21 @@ contains
    !> `text` at the right of a column.
    pure function right(text) result(column)
       character(*), intent(in) :: text
-      character(max(number_width, len(text) + 1)) :: column
+      character(number_width) :: column
 
-      column = text
-      column = adjustr(column)
+      column = ''
+      column(max(1, number_width + 1 - len_trim(text)):) = text
    end function right
 
    !> `x` with one digit, rounded up; 0 is exact.
    pure function rounded_up(x) result(text)
       real(wp), intent(in) :: x
-      character(:), allocatable :: text
-      character(12) :: line
+      character(8) :: text
       real(wp) :: large
-      integer :: power, digit
+      integer :: power, digit, last
 
-      if (.not. x > 0.0_wp) then
-         text = '0'
-         return
-      end if
+      text = '0'
+      if (.not. x > 0.0_wp) return
       ! Numbers next to the end of the range are none.
       large = min(max(x, tiny(x)/epsilon(x)**2), huge(x)*epsilon(x)**2)
       power = floor(log10(large))
@@ -203,7 +209,10 @@ contains
          digit = 1
          power = power + 1
       end if
-      write (line, '(i0,a,sp,i0.2)') digit, '.E', power
-      text = trim(line)
+      text = achar(iachar('0') + digit)//'.E'//merge('-', '+', power < 0)
+      last = abs(power)
+      if (last > 999) last = 999
+      if (last > 99) text(5:) = achar(iachar('0') + last/100)
+      text(len_trim(text) + 1:) = achar(iachar('0') + mod(last/10, 10))//achar(iachar('0') + mod(last, 10))
    end function rounded_up
 end module proof_table

@@ -18,6 +18,8 @@ module contraction
 
    !> No ball is larger: slides grow no more in it. In radians and units of the block.
    real(wp), parameter :: max_radius = 0.25_wp
+   !> A map that contracts less is not used: 1 less its rate is a divisor.
+   real(wp), parameter :: max_rate = 0.999_wp
 
    !> Of one block; |A| enlarged by the room for roundings.
    type :: contraction_t
@@ -92,7 +94,7 @@ contains
       if (.not. root > 0.0_wp) return
       r = 2.0_wp*eta/(1.0_wp - c%z1 + sqrt(root))*(1.0_wp + 1.0e-3_wp)
       if (.not. ((eta + r*(c%z1 + 0.5_wp*c%z2*r))*(1.0_wp + 32.0_wp*rounding) <= r .and. &
-         (c%z1 + c%z2*r)*(1.0_wp + 32.0_wp*rounding) < 1.0_wp .and. r <= max_radius)) r = -1.0_wp
+         c%z1 + c%z2*r <= max_rate .and. r <= max_radius)) r = -1.0_wp
    end function radius_of
 
    !> `a` becomes about the inverse of `jacobian`; `exists`: it has one.

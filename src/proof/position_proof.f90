@@ -244,7 +244,7 @@ contains
          call contract_block(p, b, i, a, g, q%error(0, :), x, radius, q%gap(i))
          q%is_proved(i) = radius >= 0.0_wp
          if (.not. q%is_proved(i)) return
-         q%error(0, own) = (x + (c%off + c%z2*radius)*radius)*room
+         q%error(0, own) = min(radius, (x + (c%off + c%z2*radius)*radius)*room)
          q%unique(i) = min(max_radius, (1.0_wp - c%z1)/max(c%z2, tiny(1.0_wp))*(1.0_wp - 32.0_wp*rounding))
       end associate
    end subroutine prove_values

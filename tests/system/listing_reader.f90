@@ -103,6 +103,7 @@ contains
       else if (table%results .and. (table%is_over .or. starts(line, ' EXTREMES ', ' EKSTREMA ') &
          .or. starts(line, ' RANGES OF THE DRIVES', ' ZAKRESY NAPEDOW') &
          .or. starts(line, ' CIRCUITS AND ', ' OBWODY I ') &
+         .or. starts(line, ' PROOF: ', ' DOWOD: ') &
          .or. starts(line, ' TOLERANCES: ', ' TOLERANCJE: '))) then
          table%is_over = .true.
       else if (starts(line, ' INSTANT ', ' CHWILA ') .and. table%results) then

@@ -184,7 +184,7 @@ function put_joint(  first, second, x1, x2) {
 
 function change_card(  n) {
    n = name ~ /^(POINT|TIME)$/ || name == "ADD" && a != "HARMONIC" ? 2 : name == "BRANCH" ? 1 : 3
-   if (change == "whole" && name ~ /^(PRINT|LANG|EXTREMES|RANGE|TOLER|POLE|CURVE)$/) return
+   if (change == "whole" && name ~ /^(PRINT|LANG|EXTREMES|RANGE|TOLER|POLE|CURVE|PROVE)$/) return
    if (change == "whole" && name == "JOINT") { put_joint(); return }
    if (change ~ /^(middle|back)$/ && name ~ /^(TIME|AT|BRANCH)$/) return
    if (name == "TIME" && change ~ /^[37]$/) card = sprintf("%-8s%-8s%s", "TIME", change*a, substr(card, 17))
