@@ -32,7 +32,7 @@ parts() {
    the methods against one another|8|tests/system/methods.sh
    variants|81|tests/system/variants.sh
    tolerances|22|tests/system/tolerances.sh
-   extremes and ranges|37|tests/system/answers.sh
+   extremes and ranges|43|tests/system/answers.sh
    circuits|24|tests/system/circuits.sh
    circuits by chance|40|"$BUILD/release/circuits_by_chance" 40
    all assemblies|70|tests/system/assemblies.sh

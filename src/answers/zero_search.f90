@@ -13,6 +13,8 @@ module zero_search
    integer, parameter :: max_iterations = 100
    !> A stencil that is too long is shortened by this.
    real(wp), parameter :: shorter = 0.25_wp
+   !> So often where it has derivatives of one sign at both ends.
+   integer, parameter :: max_shortenings = 3
    !> A bracket as narrow as so many roundings of the time is closed.
    real(wp), parameter :: closed = 4.0_wp
    !> The slope at a zero is that to the nearest value that is so many times the noise.
@@ -77,11 +79,15 @@ contains
       type(sample_t), intent(out) :: zero
       real(wp) :: t, t_shorter, g, step, noise, width, slope
       real(wp) :: times(max_iterations + 2), values(max_iterations + 2)
-      integer :: n
+      integer :: n, i
       logical :: is_found
 
       step = sign(c%step, b%t - a%t)
-      call close_in(t, width, is_found)
+      do i = 1, max_shortenings
+         call close_in(t, width, is_found)
+         if (is_found .or. order < 3) exit
+         step = shorter*step
+      end do
       if (.not. is_found) return
       do while (order == 3)
          step = shorter*step

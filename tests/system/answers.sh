@@ -23,6 +23,28 @@ for deck in four_bar five_bar crank_slider; do
    same "$deck, METHOD DENSE" "$w/newton" "$w/dense"
 done
 
+# DENSE ends at a change point: up to there it gives the table of NEWTON. Redundant equations it refuses.
+for method in NEWTON DENSE; do
+   with parallelogram_at "$(card EXTREMES ALL)" "$(card METHOD $method)" | sed "s/^TIME .*/$(card TIME 15 '' '' 0.0 15.0)/" \
+      > "$w/deck"
+   "$kinmat" "$w/deck" > "$w/listing" 2>&1
+   extremes "$w/listing" > "$w/$method"
+done
+same 'parallelogram_at before its change point, METHOD DENSE' "$w/NEWTON" "$w/DENSE"
+with dixon "$(card EXTREMES ALL)" "$(card METHOD DENSE)" > "$w/deck"
+equal 'dixon, METHOD DENSE' 'E104' "$("$kinmat" "$w/deck" 2>&1 | sed -n 's/^ [*]* *\(E[0-9][0-9][0-9]\) .*/\1/p')"
+
+# A whole turn in one step of TIME: it is halved, and the table is the same; backwards the strokes change places.
+sed "s/^TIME .*/$(card TIME 1 '' '' 0.0 12.0)/" input/stroke.deck > "$w/deck"
+"$kinmat" "$w/deck" > "$w/listing" 2>&1
+extremes "$w/listing" > "$w/one"
+extremes expected/stroke.lst > "$w/small"
+same 'a turn in one step' "$w/small" "$w/one"
+sed "s/^TIME .*/$(card TIME 24 '' '' 12.0 0.0)/" input/stroke.deck > "$w/deck"
+"$kinmat" "$w/deck" > "$w/listing" 2>&1
+equal 'backwards' "$(awk '/^  (MIN-MAX|MAX-MIN|RATIO) / { print $2 }' "$w/small" | sort)" \
+   "$(extremes "$w/listing" | awk '/^  (MIN-MAX|MAX-MIN|RATIO) / { print $2 }' | sort)"
+
 # In other units of length and time the numbers have the same digits.
 awk '/^(LINK|POINT) / { head = sprintf("%-32s", substr($0, 1, 32)); x = substr($0, 33, 16) + 0; y = substr($0, 49, 16) + 0
       printf "%s%-16.6E%-16.6E%s\n", head, x*1e6, y*1e6, substr($0, 65); next } { print }' input/stroke.deck > "$w/large.deck"
@@ -104,6 +126,52 @@ equal 'at the limit of Grashof' 'MIN 0 MAX 0' "$(awk -v a="$(angle 3 0.75 3.7499
 sed "s/^AT .*/$(card TIME 100 '' '' 0.0 5.0)/" "$w/deck" > "$w/run.deck"
 equal 'at the limit of Grashof: a run' ' *** THE MOTION IS FOLLOWED TO T = 4.33329...E+00: LIMIT OR CHANGE POINT, TOO CLOSE TO TELL' \
    "$("$kinmat" "$w/run.deck" | sed -n 's/^\( .*T = 4.33329\)[0-9]*\(.* TOO CLOSE .*\)/\1...\2/p')"
+
+# Watt II: a crank-rocker 1, 3.5, 3 on 4, whose rocker is the crank of a second four-bar with 1.9 and 2.3 on a base of 2: that
+# one ends where these are in line, 4.2 from the end of the first rocker to the last pivot. That rocker's angle follows by the
+# law of cosines, and both angles of the crank by the triangle of crank and coupler.
+{
+   four_bar 1.0 3.5 3.0 4.0 CRANK 60.0 36.0 103.0 60.0 | grep -v '^\(AT\|RANGE\|END\|DRIVE\)'
+   card LINK COUPLER2 '' '' 3.3 2.9 -26.0; card LINK ROCKER2 '' '' 6.0 0.0 115.0
+   card POINT G0 BASE '' 6.0
+   card POINT F1 COUPLER2; card POINT F2 COUPLER2 '' 1.9; card POINT G1 ROCKER2; card POINT G2 ROCKER2 '' 2.3
+   card REVOLUTE E2 F1 P5; card REVOLUTE F2 G2 P6; card REVOLUTE G0 G1 P7
+   card DRIVE ANGLE CRANK '' 60.0 30.0; card AT '' '' '' 0.0; card RANGE; card END
+} > "$w/deck"
+ends=$(awk 'function arccos(x) { return atan2(sqrt(1 - x*x), x) }
+   BEGIN { cosine = -(4.2^2 - 3^2 - 2^2)/(2*3*2); x = 4 + 3*cosine; y = 3*sqrt(1 - cosine^2); d = sqrt(x*x + y*y)
+      middle = atan2(y, x); half = arccos((1 + d*d - 3.5^2)/(2*d)); degree = atan2(1, 1)/45
+      printf "%.9E %.9E", (middle - half)/degree, (middle + half)/degree }')
+range 'Watt II' " ANGLE CRANK
+   MIN  ${ends% *} DEG   LINKS COUPLER2, ROCKER2 AT THE LIMIT, IN LINE
+   MAX  ${ends#* } DEG   LINKS COUPLER2, ROCKER2 AT THE LIMIT, IN LINE"
+
+# Stephenson III: a dyad 2.6, 1.9 from the point (1.75, 1.25) of that coupler to (5, 1): it is in line where that point's path is
+# 4.5 from there, found by bisection on the path in closed form.
+{
+   four_bar 1.0 3.5 3.0 4.0 CRANK 60.0 36.0 103.0 60.0 | grep -v '^\(AT\|RANGE\|END\|DRIVE\)'
+   card LINK COUPLER2 '' '' 1.2 2.9 -11.0; card LINK ROCKER2 '' '' 5.0 1.0 132.0
+   card POINT G0 BASE '' 5.0 1.0; card POINT C COUPLER '' 1.75 1.25
+   card POINT F1 COUPLER2; card POINT F2 COUPLER2 '' 2.6; card POINT G1 ROCKER2; card POINT G2 ROCKER2 '' 1.9
+   card REVOLUTE C F1 P5; card REVOLUTE F2 G2 P6; card REVOLUTE G0 G1 P7
+   card DRIVE ANGLE CRANK '' 60.0 30.0; card AT '' '' '' 0.0; card RANGE; card END
+} > "$w/deck"
+ends=$(awk 'function arccos(x) { return atan2(sqrt(1 - x*x), x) }
+   function apart(phi,  x, y, d, turn) {
+      x = 4 - cos(phi); y = -sin(phi); d = sqrt(x*x + y*y); turn = atan2(y, x) + arccos((3.5^2 + d*d - 3^2)/(2*3.5*d))
+      x = cos(phi) + 1.75*cos(turn) - 1.25*sin(turn) - 5; y = sin(phi) + 1.75*sin(turn) + 1.25*cos(turn) - 1
+      return sqrt(x*x + y*y) - 4.5
+   }
+   function limit(way,  a, b, c) {
+      degree = atan2(1, 1)/45
+      for (b = 60*degree; apart(b) < 0; b += way*degree) a = b
+      while ((c = (a + b)/2) != a && c != b) if (apart(c) < 0) a = c; else b = c
+      return a/degree
+   }
+   BEGIN { printf "%.9E %.9E", limit(-1), limit(1) }')
+range 'Stephenson III' " ANGLE CRANK
+   MIN  ${ends% *} DEG   LINKS COUPLER2, ROCKER2 AT THE LIMIT, IN LINE
+   MAX  ${ends#* } DEG   LINKS COUPLER2, ROCKER2 AT THE LIMIT, IN LINE"
 
 # A parallelogram passes its two change points a turn on the smooth branch.
 with parallelogram_at "$(card RANGE)" > "$w/deck"
