@@ -23,6 +23,7 @@ module job
    use animation, only: film_of, put_animations, max_intervals
    use solver_log, only: log_head
    use answers, only: answers_t
+   use assembly_table, only: draw_assemblies
    use variant_rows, only: variant_row_t
    use instants, only: writers_t, run_motion
    use variants, only: run_variants
@@ -191,6 +192,7 @@ contains
          end associate
          if (is_over(o, i)) exit
          if (o%asked(out_svg)) call draw_set(sets(i), picture_candidates, 1, o%drawings(i), o%progress)
+         if (o%asked(out_svg) .and. sets(i)%assemblies) call draw_all_assemblies(sets(i), o%drawings(i))
          if (o%asked(out_svg) .and. any(sets(i)%requests%kind == request_pole)) &
             call draw_centrodes(sets(i), o%drawings(i), o%progress)
          if (o%asked(out_animation)) then
@@ -240,6 +242,17 @@ contains
       call find_all_circuits(a, found)
       call add_to_page(page, m, a, found)
    end subroutine draw_circuits
+
+   !> Puts all assemblies of `m` at its first instant in the place of the frames of its drawing `d`.
+   subroutine draw_all_assemblies(m, d)
+      type(mechanism_t), intent(in) :: m
+      type(drawing_t), intent(inout) :: d
+      type(set_analysis_t) :: a
+
+      call make_set_analysis(m, a)
+      call advance_set(a, instant(m, 0))
+      call draw_assemblies(a, d)
+   end subroutine draw_all_assemblies
 
    !> Replaces the centrodes of the drawing `d` of `m` by finer ones: the deck's instants may be far apart.
    subroutine draw_centrodes(m, d, progress)

@@ -10,6 +10,7 @@ module assembly_table
    use cards, only: ruler_card
    use assemblies, only: assemblies_t, assembly_t, assembly_block_t, find_assemblies, max_assemblies
    use set_analysis, only: set_analysis_t
+   use drawing, only: drawing_t, snapshot_t
    use listing_layout, only: layout_t
    use listing_tables, only: time_text
    use text_output, only: output_t, put
@@ -17,7 +18,7 @@ module assembly_table
    use phrases
    implicit none
    private
-   public :: assembly_answer_t, find_answer, put_assemblies
+   public :: assembly_answer_t, find_answer, put_assemblies, draw_assemblies
 
    !> The assemblies of one independent mechanism.
    type :: assembly_answer_t
@@ -97,6 +98,51 @@ contains
          end associate
       end do
    end subroutine put_assemblies
+
+   !> Puts the assemblies of the set that `s` analyses, at its first instant, in the place of the frames of its drawing
+   !> `d`: the one chosen first, then the others of one mechanism after another.
+   subroutine draw_assemblies(s, d)
+      type(set_analysis_t), intent(in) :: s
+      type(drawing_t), intent(inout) :: d
+      type(assembly_answer_t), allocatable :: answer(:)
+      type(snapshot_t), allocatable :: frames(:)
+      type(snapshot_t) :: one
+      integer :: c, k
+
+      call find_answer(s, answer)
+      one = d%frame(1)
+      do c = 1, size(answer)
+         if (size(answer(c)%all_of_them%list) > 0) call place(max(1, answer(c)%chosen))
+      end do
+      frames = [one]
+      do c = 1, size(answer)
+         do k = 1, size(answer(c)%all_of_them%list)
+            one = frames(1)
+            if (k == max(1, answer(c)%chosen)) cycle
+            call place(k)
+            frames = [frames, one]
+         end do
+      end do
+      call move_alloc(frames, d%frame)
+      d%frames = size(d%frame)
+      d%assemblies = .true.
+
+   contains
+
+      !> Puts the links of mechanism `c` where assembly number `number` has them.
+      subroutine place(number)
+         integer, intent(in) :: number
+         integer :: i
+
+         associate (links => s%now%parts%list(c)%links, own => s%now%own(c))
+            do i = 1, size(links)
+               one%place(:, links(i)) = answer(c)%all_of_them%list(number)%position(:, i) &
+                  + [plane_origin(own) - d%origin, 0.0_wp]
+               one%known(links(i)) = .true.
+            end do
+         end associate
+      end subroutine place
+   end subroutine draw_assemblies
 
    !> The line of block number `k`, with its paths, and what there is to say of it.
    subroutine put_block(o, m, k, one)

@@ -84,6 +84,7 @@ module drawing
       integer :: frames = 0                  !< recorded so far
       integer :: frame_stride = 1            !< every so many instants, and the last one, are frames
       type(snapshot_t), allocatable :: frame(:)
+      logical :: assemblies = .false.        !< the frames are assemblies at one instant, the one chosen first
       type(curve_t), allocatable :: curves(:)
       type(centrode_t), allocatable :: centrodes(:)
       type(guide_t), allocatable :: guides(:)

@@ -161,6 +161,7 @@ module phrases
       say_method = phrase_t('METHOD NEWTON FINDS A POSITION', 'METODA NEWTON ZNAJDUJE POLOZENIE'), &
       say_elsewhere = phrase_t('THE ITERATION ENDS AT ANOTHER ASSEMBLY', 'ITERACJA KONCZY SIE W INNYM MONTAZU'), &
       say_faint = phrase_t('FAINT: T =', 'BLADO: T ='), &
+      say_faint_assemblies = phrase_t('FAINT: THE OTHER ASSEMBLIES', 'BLADO: POZOSTALE MONTAZE'), &
       say_last_position = phrase_t('IN RED THE LAST POSITION, T =', 'NA CZERWONO OSTATNIE POLOZENIE, T ='), &
       say_flagged_in_all = phrase_t('FLAGGED INSTANTS IN ALL:', 'CHWILE ZAZNACZONE RAZEM:'), &
       say_position = phrase_t('POSITION', 'POLOZENIE'), &

@@ -29,13 +29,18 @@ contains
       type(drawing_t), intent(in) :: drawings(:)
       type(canvas_t) :: c(size(drawings))
       type(choice_t) :: choice(size(drawings))
-      integer :: top(size(drawings) + 1), i
+      integer :: top(size(drawings) + 1), i, k
 
       top(1) = 0
       do i = 1, size(drawings)
          choice(i)%centrodes = .true.
-         choice(i)%best = clearest(sets(i), drawings(i))
-         choice(i)%faint = faint_frames(sets(i), drawings(i), choice(i)%best)
+         if (drawings(i)%assemblies) then
+            choice(i)%best = 1
+            choice(i)%faint = [(k, k=2, drawings(i)%frames)]
+         else
+            choice(i)%best = clearest(sets(i), drawings(i))
+            choice(i)%faint = faint_frames(sets(i), drawings(i), choice(i)%best)
+         end if
          call view_of(sets(i), drawings(i), choice(i), top(i), c(i), top(i + 1))
       end do
       call svg_head(o, width, max(1, top(size(top))))
@@ -144,7 +149,7 @@ contains
       end associate
    end function moves
 
-   !> At the foot: the instant that is drawn, and those that are faint.
+   !> At the foot: the instant that is drawn, and those, or the assemblies, that are faint.
    subroutine put_times(o, m, d, choice, bottom)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
@@ -164,8 +169,10 @@ contains
          if (i > 1) others = others//', '
          others = others//fitted(d%frame(choice%faint(i))%t)
       end do
-      if (len(others) > 0) call put_words(o, [real(32 + 9*len(now), wp), y], 'start', 'class="between"', &
-         phrase(say_faint, m%polish)//' '//others)
+      others = phrase(say_faint, m%polish)//' '//others
+      if (d%assemblies) others = phrase(say_faint_assemblies, m%polish)
+      if (size(choice%faint) > 0) &
+         call put_words(o, [real(32 + 9*len(now), wp), y], 'start', 'class="between"', others)
    end subroutine put_times
 
 end module picture

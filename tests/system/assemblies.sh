@@ -87,6 +87,10 @@ awk '/^LINK / { $0 = sprintf("%-64s0.0", substr($0, 1, 64)) } /^END/ { print "AS
 equal 'a poor estimate' ' --- THE ESTIMATE IS NEARER TO ASSEMBLY 1: 1.2758, THAN TO THE ONE CHOSEN, 2: 4.0964' \
    "$(assemblies "$w/poor.deck" | grep -F -- ' ---')"
 
+# The picture has a faint outline for each assembly that is not chosen, and says so.
+"$kinmat" --quiet --no-listing --svg "$w/picture.svg" "$w/three_rrr.deck"
+equal 'the picture: words' 1 "$(grep -c 'FAINT: THE OTHER ASSEMBLIES' "$w/picture.svg")"
+
 # Polish; two cards; a card that costs nothing where there is no listing.
 with four_bar "$(card LANG PL)" "$(card ASSEMBLY)" > "$w/polish.deck"
 equal 'in Polish' 'MONTAZE WYBRANY' "$("$kinmat" "$w/polish.deck" | grep -oE 'MONTAZE  |WYBRANY' | head -n 2 | tr -s ' \n' ' ' | sed 's/ $//')"
