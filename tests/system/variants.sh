@@ -195,6 +195,16 @@ for print in '' "$(card PRINT PAIRS PAIR-B0)"; do
       "$(grep -c '^ --- TOLERANCES: SHARES STAND IN THE TABLES' "$w/toler.lst") $(grep -c '^ TOLERANCES: SHARES OF' "$w/toler.lst")"
 done
 
+# Rows alone are solved in lanes, otherwise by the engine: as they are printed they are the same.
+for name in 'EXTREMES LINKS' RANGE PROVE; do
+   four_bar "$(vary R1 9 '' 0.5 2.9)" '' '' '' "$(card TIME 90 '' '' 0.0 12.0)" "$(card $name)" > "$w/lanes.deck"
+   "$kinmat" "$w/lanes.deck" -o "$w/lanes.lst" > "$w/lanes.out" 2>&1
+   status=$?
+   "$kinmat" "$w/lanes.deck" -o "$w/engine.lst" --log "$w/engine.log" > "$w/lanes.out" 2>&1
+   equal "$name: status by lanes" "$?" "$status"
+   same "$name: rows by lanes and by the engine" "$w/engine.lst" "$w/lanes.lst"
+done
+
 # In several processes, and in shares: the same bytes. Three sets, one of them without VARY cards.
 {
    cat "$w/slider.deck"; four_bar '' '' '' '' "$(card TIME 2 '' '' 0.0 1.0)"
