@@ -77,7 +77,7 @@ contains
       real(wp), intent(in) :: level
       type(sample_t), intent(in) :: a, b
       type(sample_t), intent(out) :: zero
-      real(wp) :: t, t_shorter, g, step, noise, width, slope
+      real(wp) :: t, t_shorter, g, last_g, step, noise, width, slope
       real(wp) :: times(max_iterations + 2), values(max_iterations + 2)
       integer :: n, i
       logical :: is_found
@@ -89,9 +89,13 @@ contains
          step = shorter*step
       end do
       if (.not. is_found) return
+      last_g = huge(1.0_wp)
       do while (order == 3)
          step = shorter*step
          call evaluate(t, g, is_found)
+         ! What does not get less with the stencil is rounding.
+         if (is_found) is_found = abs(g) < shorter*last_g
+         last_g = abs(g)
          if (is_found) is_found = abs(g) > noise_of_stencil() .and. abs(step) > noise_part*max(abs(a%t), abs(b%t))
          if (is_found) call close_in(t_shorter, width, is_found)
          if (.not. is_found) exit
