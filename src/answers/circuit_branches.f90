@@ -17,7 +17,7 @@ module circuit_branches
    !> Near a dead point card ASSEMBLY knows half of all digits.
    real(wp), parameter :: alike = max(1.0e-5_wp, 16.0_wp*sqrt(epsilon(1.0_wp)))
    !> A drive's value is that of a point up to this difference, in rad and lengths.
-   real(wp), parameter :: rounding = 1.0e4_wp*epsilon(1.0_wp)
+   real(wp), parameter :: rounding = 1.0e3_wp*epsilon(1.0_wp)
 
    !> A piece of a circuit between dead points.
    type :: branch_t

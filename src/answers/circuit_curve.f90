@@ -32,7 +32,7 @@ module circuit_curve
    !> A drive that moves by less along the curve is near a dead point.
    real(wp), parameter :: slow = 1.0e-3_wp
    !> Two positions are one up to this difference, in rad and lengths.
-   real(wp), parameter :: same = max(1.0e-7_wp, 1.0e6_wp*epsilon(1.0_wp))
+   real(wp), parameter :: same = max(1.0e-7_wp, 1.0e2_wp*epsilon(1.0_wp))
 
    type :: curve_t
       type(system_t) :: closure               !< all pairs, and the drives that are held

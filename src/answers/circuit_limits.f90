@@ -13,7 +13,7 @@ module circuit_limits
    public :: name_limits, held_at
 
    !> A limit found by both methods is one up to this difference, in rad and lengths.
-   real(wp), parameter :: agrees = max(1.0e-6_wp, 1.0e6_wp*epsilon(1.0_wp))
+   real(wp), parameter :: agrees = max(1.0e-6_wp, 1.0e3_wp*epsilon(1.0_wp))
 
 contains
 
