@@ -82,11 +82,13 @@ contains
       character(:), allocatable, intent(out) :: report
       type(failure_t), allocatable, intent(out) :: failure
       character(:), allocatable :: bytes
-      integer :: i
+      integer :: i, last
 
-      bytes = ''
+      allocate (character(sum(len_trim(lines)) + size(lines)) :: bytes)
+      last = 0
       do i = 1, size(lines)
-         bytes = bytes//trim(lines(i))//achar(10)
+         bytes(last + 1:last + len_trim(lines(i)) + 1) = trim(lines(i))//achar(10)
+         last = last + len_trim(lines(i)) + 1
       end do
       call read_bytes(bytes, sets, report, failure)
    end subroutine read_lines
