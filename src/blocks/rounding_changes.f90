@@ -11,7 +11,8 @@ module rounding_changes
    use block_solver, only: workspace_t
    use block_engine, only: block_engine_t
    use drives, only: law_t
-   use card_roundings, only: directions, rounding, number_point, number_pair, parts_of_number
+   use card_roundings, only: directions, rounding, number_point, number_pair, number_link, &
+      parts_of_number
    implicit none
    private
    public :: rounding_response_t, change_loop, change_projection, change_vector, change_slide, change_card
@@ -132,6 +133,7 @@ contains
       real(wp) :: x(directions), y(directions), c(2), size_of_card, part
       integer :: card, kind
 
+      if (order == 0 .and. point /= 0) call change_ground(m, point, scale, g)
       kind = merge(number_point, number_pair, point /= 0)
       card = abs(point + pair)
       size_of_card = r%sizes(merge(card, size(m%points) + card, point /= 0))*scale
@@ -157,6 +159,23 @@ contains
       g(:, 2) = g(:, 2) + c(2)*x + c(1)*y
       size_of = size_of + part*size_of_card
    end subroutine change_card
+
+   !> The same of the place of the link of point number |`point`| if that is on the ground: all its points are off alike.
+   pure subroutine change_ground(m, point, scale, g)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: point
+      real(wp), intent(in) :: scale
+      real(wp), intent(inout) :: g(directions, 2)
+      real(wp) :: change
+      integer :: i, k
+
+      i = m%points(abs(point))%link
+      if (.not. m%links(i)%ground) return
+      do k = 1, 2
+         change = abs(m%links(i)%position(k))*scale
+         g(:, k) = g(:, k) + sign(rounding*change, real(point, wp))*parts_of_number(number_link, i, k - 1)
+      end do
+   end subroutine change_ground
 
    !> `v` (directions): derivative number `order` of the change of the projection of loop number `k`, with the other
    !> sign, as far as it is known: of g . f, where f turns with an orientation and is off as the angle of `pair` is.

@@ -9,7 +9,7 @@ module card_roundings
    use law_changes, only: law_change
    implicit none
    private
-   public :: directions, card_directions, roundings, rounding, number_point, number_pair, number_drive, number_time, &
+   public :: directions, card_directions, roundings, rounding, number_point, number_pair, number_drive, number_time, number_link, &
       parts_of_number, parts_of_own, card_sizes, law_tables, drive_changes
 
    !> Of eight numbers by chance the largest is seldom a small one; of four, more often.
@@ -23,7 +23,7 @@ module card_roundings
    real(wp), parameter :: least = 0.4_wp, most = 1.2_wp
 
    !> What the number is on.
-   integer, parameter :: number_point = 0, number_pair = 31, number_drive = 62, number_time = 93
+   integer, parameter :: number_point = 0, number_pair = 31, number_drive = 62, number_time = 93, number_link = 124
 
    !> Numbers by chance, a prime number of them; a cubic congruence modulo the prime of Park and Miller's generator.
    integer, parameter :: rows = 251
