@@ -201,7 +201,9 @@ contains
          error = max(error, part*change)
          zero = zero .and. change <= 0.0_wp
       end do
-      ! A coordinate of what stands still is zero without a sum.
+      ! A coordinate of what stands still is zero without a sum; an angle may be one that cancels.
+      if (request%kind == request_link) zero(3, 0) = .false.
+      if (request%kind == request_pair .and. row%angular) zero(1, 0) = .false.
       error = merge(0.0_wp, caution*error + error_of_sums(s%of_sums, request, row), zero)
       if (request%kind < request_pole) error(:, row%known + 1:) = nothing_known
       error = merge(nothing_known, error, lost)
