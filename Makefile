@@ -234,7 +234,7 @@ TEST_HELPERS := $(unit_helpers:%=$(BUILD)/debug/%.o)
 include tests/pfunit/tests.mk
 
 # What the parts of `make test` need is made beforehand, many at a time; the parts run one after another.
-checkers := check_forms error_estimates proof_bounds fool_proofs compare_digits hard matrix_1987 bench fuzz_mechanisms read_listing circuits_by_chance
+checkers := check_forms error_estimates proof_bounds fool_proofs compare_digits hard matrix_1987 bench fuzz_mechanisms read_listing circuits_by_chance random_blocks
 test: $(addprefix $(BUILD)/,kinmat example debug/kinmat $(checkers:%=release/%) debug/fuzz kinmat-quad kinmat-single \
    quad/release/kind_errors single/release/kind_errors tests$(if $(PFUNIT_DIR),/pfunit)/unit) $(references)
 	BUILD=$(BUILD) MAKE='$(MAKE)' FC='$(FC)' tests/run.sh
