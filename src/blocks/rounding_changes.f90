@@ -160,7 +160,8 @@ contains
       size_of = size_of + part*size_of_card
    end subroutine change_card
 
-   !> The same of the place of the link of point number |`point`| if that is on the ground: all its points are off alike.
+   !> The same of the place of the link of point number |`point`| if that is on the ground: all its points are off
+   !> alike.
    pure subroutine change_ground(m, point, scale, g)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: point

@@ -9,8 +9,8 @@ module card_roundings
    use law_changes, only: law_change
    implicit none
    private
-   public :: directions, card_directions, roundings, rounding, number_point, number_pair, number_drive, number_time, number_link, &
-      parts_of_number, parts_of_own, card_sizes, law_tables, drive_changes
+   public :: directions, card_directions, roundings, rounding, number_point, number_pair, number_drive, number_time, &
+      number_link, parts_of_number, parts_of_own, card_sizes, law_tables, drive_changes
 
    !> Of eight numbers by chance the largest is seldom a small one; of four, more often.
    integer, parameter :: card_directions = 8, own_directions = 4, directions = card_directions + own_directions
@@ -25,14 +25,10 @@ module card_roundings
    !> What the number is on.
    integer, parameter :: number_point = 0, number_pair = 31, number_drive = 62, number_time = 93, number_link = 124
 
-   !> Numbers by chance, a prime number of them; a cubic congruence modulo the prime of Park and Miller's generator.
+   !> Rows of numbers by chance, a prime number of them, each of a cubic congruence modulo the prime of Park and Miller's
+   !> generator.
    integer, parameter :: rows = 251
    integer(int64), parameter :: multiplier = 16807_int64, modulus = 2147483647_int64
-   integer(int64) :: n  !< index of the constructors below, never set: gfortran 12 rejects its declaration inside
-   real(wp), parameter :: chance(directions*rows) = [(real(2_int64*mod(multiplier*mod(n**3, modulus), modulus) &
-      - modulus, wp)/real(modulus, wp), n=1, directions*rows)]
-   real(wp), parameter :: parts(directions, 0:rows - 1) = reshape(sign(least + (most - least)*abs(chance), chance), &
-      [directions, rows])
 
 contains
 
@@ -41,9 +37,10 @@ contains
    pure function parts_of_number(kind, card, k) result(r)
       integer, intent(in) :: kind, card, k
       real(wp) :: r(directions)
+      integer :: i
 
-      r(:apart) = parts(:apart, modulo(7*card + kind + k, rows))
-      r(apart + 1:card_directions) = parts(apart + 1:card_directions, kind + k)
+      r(:apart) = part([(i, i=1, apart)], modulo(7*card + kind + k, rows))
+      r(apart + 1:card_directions) = part([(i, i=apart + 1, card_directions)], kind + k)
       r(card_directions + 1:) = 0.0_wp
    end function parts_of_number
 
@@ -51,10 +48,23 @@ contains
    pure function parts_of_own(k) result(r)
       integer, intent(in) :: k
       real(wp) :: r(directions)
+      integer :: i
 
       r(:card_directions) = 0.0_wp
-      r(card_directions + 1:) = parts(card_directions + 1:, modulo(k, rows))
+      r(card_directions + 1:) = part([(i, i=card_directions + 1, directions)], modulo(k, rows))
    end function parts_of_own
+
+   !> The part in direction `i` of `row` 0, 1, ... of the numbers by chance.
+   elemental real(wp) function part(i, row)
+      integer, intent(in) :: i, row
+      integer(int64) :: n
+      real(wp) :: share
+
+      n = int(directions*row + i, int64)
+      n = mod(multiplier*mod(n**3, modulus), modulus)
+      share = real(2_int64*n - modulus, wp)/real(modulus, wp)
+      part = sign(least + (most - least)*abs(share), share)
+   end function part
 
    !> The sizes (points + pairs) that the roundings of points go by, along and across, since a link is turned by an
    !> angle that is rounded; and of the offsets of prismatic pairs. A place on the ground is counted from the plane's
