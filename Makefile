@@ -80,6 +80,9 @@ include $(BUILD)/depends.mk
 endif
 $(foreach build,$(builds),$(eval $(call build_in,$(build))))
 
+# What tests/ has of its own computes little: it is compiled with less optimization, in half the time.
+$(patsubst %.f90,$(BUILD)/release/%.o,$(notdir $(helpers))): private release := $(patsubst -O2,-O1,$(filter -O%,$(RELEASE)))
+
 $(BUILD)/kinmat: $(BUILD)/release/kinmat
 	cp $< $@
 

@@ -25,7 +25,7 @@ module card_roundings
    !> What the number is on.
    integer, parameter :: number_point = 0, number_pair = 31, number_drive = 62, number_time = 93, number_link = 124
 
-   !> Rows of numbers by chance, a prime number of them, each of a cubic congruence modulo the prime of Park and Miller's
+   !> Rows of numbers by chance, a prime number of them: a cubic congruence modulo the prime of Park and Miller's
    !> generator.
    integer, parameter :: rows = 251
    integer(int64), parameter :: multiplier = 16807_int64, modulus = 2147483647_int64
