@@ -202,7 +202,7 @@ contains
       end do
    end function find_form
 
-   !> The form whose name differs from `name` by at most two letters and by less than half of its own letters; otherwise
+   !> The form whose name differs from `name` by at most two letters and by at most half of its own letters; otherwise
    !> form_unknown.
    pure integer function nearest_form(name) result(nearest)
       character(*), intent(in) :: name
@@ -212,7 +212,7 @@ contains
       least = 3
       do form = 1, size(forms)
          distance = edits(trim(capitals(name)), trim(form_name(form)))
-         if (distance >= least .or. 2*distance > len_trim(form_name(form)) + 1) cycle
+         if (distance >= least .or. 2*distance > len_trim(form_name(form))) cycle
          least = distance
          nearest = form
       end do

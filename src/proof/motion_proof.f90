@@ -122,7 +122,6 @@ contains
       call move_alloc(a%drive, b%drive)
       call move_alloc(a%drive_error, b%drive_error)
       call move_alloc(a%open, b%open)
-      call move_alloc(a%unique, b%unique)
       call move_alloc(a%gap, b%gap)
       call move_alloc(a%is_proved, b%is_proved)
    end subroutine hand_over

@@ -46,7 +46,6 @@ module position_proof
       real(wp), allocatable :: drive(:, :)        !< (0:2, 0:drives) the drives' values, rates and accelerations
       real(wp), allocatable :: drive_error(:, :)  !< (0:2, 0:drives) those of their exact laws differ by no more
       real(wp), allocatable :: open(:, :)         !< (0:1, rows) |F| and |dF/dt| at these values of all unknowns
-      real(wp), allocatable :: unique(:)          !< (blocks) within this distance there is no other solution
       real(wp), allocatable :: gap(:)             !< (blocks) by how much redundant equations stay open at most
       logical, allocatable :: is_proved(:)        !< (blocks)
    end type placed_t
@@ -76,7 +75,7 @@ contains
       type(placed_t) :: q
 
       allocate (q%x(0:2, 0:b%unknowns), q%error(0:2, 0:b%unknowns), q%drive(0:2, 0:drives), &
-         q%drive_error(0:2, 0:drives), q%open(0:1, size(b%rows)), q%unique(size(b%list)), q%gap(size(b%list)), &
+         q%drive_error(0:2, 0:drives), q%open(0:1, size(b%rows)), q%gap(size(b%list)), &
          source=0.0_wp)
       allocate (q%is_proved(size(b%list)), source=.false.)
    end function new_placed
@@ -187,7 +186,6 @@ contains
          r(0) = r(0) + p%data%constant_weight(b%list(i)%first_row)
          q%open(:, b%list(i)%first_row) = r(:1)*room
          q%error(:, u) = (r + p%jets%drive_error(:, row%drive) + q%error(:, row%other))*room
-         q%unique(i) = huge(1.0_wp)
       end associate
    end subroutine prove_direct
 
@@ -245,7 +243,6 @@ contains
          q%is_proved(i) = radius >= 0.0_wp
          if (.not. q%is_proved(i)) return
          q%error(0, own) = min(radius, (x + (c%off + c%z2*radius)*radius)*room)
-         q%unique(i) = min(max_radius, (1.0_wp - c%z1)/max(c%z2, tiny(1.0_wp))*(1.0_wp - 32.0_wp*rounding))
       end associate
    end subroutine prove_values
 

@@ -219,8 +219,10 @@ contains
       character(row_length) :: row
       real(dp) :: times(3)
       integer :: unit, status, untimed, i, set, steps
+      logical :: is_open
 
       open (newunit=unit, file=path, action='read', iostat=status)
+      is_open = status == 0
       if (status == 0) read (unit, '(a)', iostat=status) row
       do i = 1, size(outcomes)
          if (status == 0) read (unit, '(a)', iostat=status) row
@@ -230,7 +232,7 @@ contains
          if (status == 0 .and. untimed == 0) outcomes(i)%time = times*micro
       end do
       complete = status == 0 .and. set == size(outcomes)
-      if (complete) close (unit)
+      if (is_open) close (unit)
    end subroutine read_times
 
    !> Makes the folder `name`, whose last six letters become others.

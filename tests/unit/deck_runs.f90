@@ -1,14 +1,14 @@
 !> Whole runs of small decks inside the unit tests: the cards, and what the run prints.
 module deck_runs
    use kinds, only: wp
-   use command_line, only: options_t, out_listing, out_csv, out_log, out_animation
+   use command_line, only: options_t, out_listing, out_csv, out_log
    use job, only: run_job
    implicit none
    private
    public :: run_t, run_cards, remarks, csv_cell, csv_number, taken, slider, pushed_slider
 
    character(*), parameter :: deck_file = 'unit_test_run.tmp', listing_file = 'unit_test_run_listing.tmp', &
-      csv_file = 'unit_test_run_csv.tmp', log_file = 'unit_test_run_log.tmp', film_file = 'unit_test_run_film.tmp'
+      csv_file = 'unit_test_run_csv.tmp', log_file = 'unit_test_run_log.tmp', other_file = 'unit_test_run_other.tmp'
    character(1), parameter :: nl = achar(10)
    character(*), parameter :: columns = 'set,step,t,kind,name,x,y,phi,vx,vy,vphi,ax,ay,aphi,mark,ex,ey,ephi,evx,evy,evphi,'// &
       'eax,eay,eaphi,'
@@ -21,12 +21,13 @@ module deck_runs
 
 contains
 
-   !> Runs the deck of these cards; `errors`: with estimates of the errors; `film`: its animation.
-   subroutine run_cards(cards, r, errors, film)
+   !> Runs the deck of these cards; `errors`: with estimates of the errors; `text`: its output file number `other`.
+   subroutine run_cards(cards, r, errors, other, text)
       character(*), intent(in) :: cards(:)
       type(run_t), intent(out) :: r
       logical, intent(in), optional :: errors
-      character(:), allocatable, intent(out), optional :: film
+      integer, intent(in), optional :: other
+      character(:), allocatable, intent(out), optional :: text
       type(options_t) :: options
       integer :: unit, i
 
@@ -41,12 +42,12 @@ contains
       options%files(out_log)%text = log_file
       options%show = ''
       if (present(errors)) options%errors = errors
-      if (present(film)) options%files(out_animation)%text = film_file
+      if (present(other)) options%files(other)%text = other_file
       call run_job(options, r%status, r%message)
       r%listing = taken(listing_file)
       r%csv = taken(csv_file)
       r%log = taken(log_file)
-      if (present(film)) film = taken(film_file)
+      if (present(text)) text = taken(other_file)
       open (newunit=unit, file=deck_file)
       close (unit, status='delete')
    end subroutine run_cards
