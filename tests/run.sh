@@ -33,7 +33,7 @@ parts() {
    variants|89|tests/system/variants.sh
    tolerances|22|tests/system/tolerances.sh
    extremes and ranges|43|tests/system/answers.sh
-   circuits|24|tests/system/circuits.sh
+   circuits|27|tests/system/circuits.sh
    circuits by chance|40|"$BUILD/release/circuits_by_chance" 40
    all assemblies|70|tests/system/assemblies.sh
    independent mechanisms|106|tests/system/independent.sh

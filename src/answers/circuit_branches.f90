@@ -8,7 +8,7 @@ module circuit_branches
    use circuit_trace, only: circuit_t, find_root, of_value, end_closed
    implicit none
    private
-   public :: circuits_t, branch_t, dead_point_t, circuit_assembly_t, meeting_t
+   public :: circuits_t, branch_t, no_sign, dead_point_t, circuit_assembly_t, meeting_t
    public :: add_branches, add_assemblies, add_meetings, number_assemblies, turns_of
 
    real(wp), parameter :: turn = 2.0_wp*pi
@@ -19,13 +19,16 @@ module circuit_branches
    !> A drive's value is that of a point up to this difference, in rad and lengths.
    real(wp), parameter :: rounding = 1.0e3_wp*epsilon(1.0_wp)
 
+   integer, parameter :: no_sign = 2
+
    !> A piece of a circuit between dead points.
    type :: branch_t
       integer :: circuit = 0
       integer :: first = 0, last = 0           !< its first and last point on the circuit
       integer :: dead(2) = 0                   !< the dead points at its least and greatest value; 0: none
       real(wp) :: range(2) = 0.0_wp            !< the drive's least and greatest value on it (rad or deck's length)
-      integer :: sign = 0                      !< of the Jacobian's determinant; 0: it changes, at change points
+      !> Of the Jacobian's determinant; 0: it changes, at change points; no_sign: there are too many equations.
+      integer :: sign = 0
    end type branch_t
 
    type :: dead_point_t
@@ -51,7 +54,7 @@ module circuit_branches
    type :: circuits_t
       integer :: drive = 0                     !< the number of the free one
       integer :: part = 1                      !< the number of its independent mechanism
-      logical :: is_curve = .true.             !< no equations are redundant
+      logical :: is_held = .false.             !< its other drives let nothing move
       logical :: is_complete = .true.          !< all assemblies were known wherever they were asked for
       type(curve_t) :: curve
       type(circuit_t), allocatable :: list(:)

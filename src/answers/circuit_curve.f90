@@ -1,5 +1,7 @@
 !> The curve of all positions of a mechanism whose one drive is set free: its pairs and its other drives, at rest, are
-!> one equation less than it has coordinates. Lengths are those of METHOD DENSE's system.
+!> one equation less than it has coordinates. Of more, those that are most independent where the curve is at the moment
+!> are solved: every position of the curve satisfies them too, and what is unique by them is unique by all. The others
+!> are looked at. Lengths are those of METHOD DENSE's system.
 !>
 !> With the tangent t as one more row the Jacobian B = (F_q, t) is regular at dead points too; it is singular at change
 !> points alone. K of `root_distance`, taken from B, bounds how fast B^-1 B changes: along t, up to the distance u/K in
@@ -18,9 +20,9 @@ module circuit_curve
    use root_distance, only: coordinates_t, new_coordinates, kantorovich, distance
    implicit none
    private
-   public :: curve_t, curve_point_t, make_curve, is_curve, start_point, find_point, step_along, step_between, &
-      lies_between, passes, second_derivative, factor_at, &
-      reversed, offset_from, same_place, drive_value, deck_position, curve_position
+   public :: curve_t, curve_point_t, make_curve, is_redundant, start_point, find_point, step_along, step_between, &
+      lies_between, second_derivative, factor_at, &
+      offset_from, same_place, same, drive_value, deck_position, curve_position
 
    !> u of above, less than 1/2: K of slides is taken at the start of a step, and they grow.
    real(wp), parameter :: certified = 0.25_wp
@@ -29,16 +31,20 @@ module circuit_curve
    integer, parameter :: max_iterations = 12
    !> A correction below this is rounding, and one that no longer shrinks is so below the second one.
    real(wp), parameter :: converged = 16.0_wp*epsilon(1.0_wp), stalled = sqrt(epsilon(1.0_wp))
-   !> A drive that moves by less along the curve is near a dead point.
-   real(wp), parameter :: slow = 1.0e-3_wp
    !> Two positions are one up to this difference, in rad and lengths.
    real(wp), parameter :: same = max(1.0e-7_wp, 1.0e2_wp*epsilon(1.0_wp))
+   !> Equations that are too many hold to this, in rad and lengths: twice what the engine allows.
+   real(wp), parameter :: fits = max(2.0e-10_wp, 1.0e3_wp*epsilon(1.0_wp))
+   !> Equations that are too many let the mechanism move where they change by less along the curve.
+   real(wp), parameter :: moves = sqrt(same)
 
    type :: curve_t
       type(system_t) :: closure               !< all pairs, and the drives that are held
       type(system_t) :: driven                !< with the one drive that is free
       type(coordinates_t) :: free             !< in which the equations are not linear
       real(wp), allocatable :: held(:)        !< (drives held) their values
+      integer, allocatable :: row(:)          !< (coordinates - 1) the equations that are solved
+      logical :: is_held = .false.            !< at some position its pairs and other drives let nothing move
       logical :: is_angle = .true.            !< the free drive is that of an angle
       real(wp) :: first = 0.0_wp              !< its value at the first instant
       type(pose_t) :: pose                    !< of the position found last
@@ -89,57 +95,40 @@ contains
       c%free = new_coordinates(c%closure)
       c%pose = new_pose(c%closure, m)
       c%factors = new_factors(c%closure%n)
+      c%row = [(i, i=1, c%closure%n - 1)]
    end subroutine make_curve
 
-   !> Whether the equations are one less than the coordinates: none of them is redundant by count.
-   pure logical function is_curve(c)
+   !> The equations: two of each pair, one of each drive that is held.
+   pure integer function equations_of(c)
       type(curve_t), intent(in) :: c
 
-      is_curve = 2*size(c%closure%pairs) + size(c%closure%laws) == c%closure%n - 1
-   end function is_curve
+      equations_of = 2*size(c%closure%pairs) + size(c%closure%laws)
+   end function equations_of
 
-   !> The point `p` of the curve at the links' `position` (3, links), in the deck's unit and counted from its origin;
-   !> `toward` (coordinates), if present: the tangent has its sense. `ok`: it was found, and is regular.
-   subroutine start_point(c, position, p, ok, toward)
+   !> Some equations are too many, by count.
+   pure logical function is_redundant(c)
+      type(curve_t), intent(in) :: c
+
+      is_redundant = equations_of(c) > c%closure%n - 1
+   end function is_redundant
+
+   !> The point `p` of the curve at the links' `position` (3, links), in the deck's unit and from its origin. Its
+   !> tangent has the sense in which the drive grows, unless it is at rest. `ok`: it was found, and is regular.
+   subroutine start_point(c, position, p, ok)
       type(curve_t), intent(inout) :: c
       real(wp), intent(in) :: position(:, :)
       type(curve_point_t), intent(out) :: p
       logical, intent(out) :: ok
-      real(wp), intent(in), optional :: toward(:)
-      real(wp) :: row(1, c%closure%n), q(3, size(position, 2))
+      real(wp) :: row(1, c%closure%n), q(3, size(position, 2)), along(c%closure%n)
 
       q = curve_position(c, position)
       c%pose%q = q
       call set_pose(c%closure, c%pose)
       row = 0.0_wp
+      call choose_rows(c, row(1, :), along)
       call drive_row(c%driven, c%pose, 1, row, 1)
-      if (present(toward)) row(1, :) = toward
-      call find_point(c, q, row(1, :), p, ok)
-      if (.not. ok) call find_by_coordinates(c, q, p, ok)
-      if (.not. ok) return
-      ! Near a dead point the drive's row lets rounding move the position along the curve.
-      if (abs(p%value(1)) >= slow) return
-      row(1, :) = p%tangent
-      call find_point(c, q, row(1, :), p, ok)
+      call find_point(c, q, sign(1.0_wp, dot_product(row(1, :), along))*along, p, ok)
    end subroutine start_point
-
-   !> The same, with one coordinate after the other held.
-   subroutine find_by_coordinates(c, q, p, ok)
-      type(curve_t), intent(inout) :: c
-      real(wp), intent(in) :: q(:, :)
-      type(curve_point_t), intent(out) :: p
-      logical, intent(out) :: ok
-      real(wp) :: row(c%closure%n)
-      integer :: i
-
-      ok = .false.
-      do i = 1, c%closure%n
-         row = 0.0_wp
-         row(i) = 1.0_wp
-         call find_point(c, q, row, p, ok)
-         if (ok) return
-      end do
-   end subroutine find_by_coordinates
 
    !> The point `b` of the curve at the distance `h` from `a` along its tangent; `ok`: it is regular, and where the
    !> tangent and the bend of `a` let it be expected.
@@ -182,30 +171,6 @@ contains
       if (lies) call step_along(c, a, along, b, lies)
       if (lies) lies = same_place(c, b%q, q)
    end subroutine lies_between
-
-   !> Whether the drive has the `value`, but for whole turns, between the neighbours `a` and `b`, or nearly there.
-   pure logical function passes(c, a, b, value)
-      type(curve_t), intent(in) :: c
-      type(curve_point_t), intent(in) :: a, b
-      real(wp), intent(in) :: value
-      real(wp) :: least, greatest
-
-      least = min(a%value(0), b%value(0)) - same
-      greatest = max(a%value(0), b%value(0)) + same
-      passes = value >= least .and. value <= greatest
-      if (c%is_angle) passes = modulo(value - least, 2.0_wp*pi) <= greatest - least
-   end function passes
-
-   !> `p`, its tangent turned round.
-   pure function reversed(p) result(r)
-      type(curve_point_t), intent(in) :: p
-      type(curve_point_t) :: r
-
-      r = p
-      r%tangent = -p%tangent
-      r%value(1) = -p%value(1)
-      r%sign = -p%sign
-   end function reversed
 
    !> The coordinates of the position `b` less those of `a` (3, links), without whole turns if `turns_off`.
    pure function offset_from(c, a, b, turns_off) result(x)
@@ -278,6 +243,7 @@ contains
 
       c%pose%q = q
       call set_pose(c%closure, c%pose)
+      call choose_rows(c, border)
       call correct(c, border, ok)
       if (.not. ok) return
       p%q = c%pose%q
@@ -290,28 +256,56 @@ contains
       type(curve_t), intent(inout) :: c
       real(wp), intent(in) :: q(:, :), x(:)
       real(wp), intent(out) :: f(:)
-      real(wp) :: v(3, size(q, 2))
+      real(wp) :: v(3, size(q, 2)), all_of_them(equations_of(c))
 
       c%pose%q = q
       call set_pose(c%closure, c%pose)
       v = 0.0_wp
       call add_to_links(c%closure, x, v)
-      call remainder(c%closure, c%pose, v, f)
-      f(c%closure%n) = 0.0_wp
+      call remainder(c%closure, c%pose, v, all_of_them)
+      f = [all_of_them(c%row), 0.0_wp]
    end subroutine second_derivative
+
+   !> Chooses the equations that are solved: of more than are needed, one after another, that with the largest part
+   !> across `border` (coordinates) and all those before it. `left` (coordinates): the direction across all of them.
+   subroutine choose_rows(c, border, left)
+      type(curve_t), intent(inout) :: c
+      real(wp), intent(in) :: border(:)
+      real(wp), intent(out), optional :: left(:)
+      real(wp) :: a(equations_of(c) + c%closure%n, c%closure%n), across(c%closure%n)
+      integer :: i, row
+
+      if (.not. (is_redundant(c) .or. present(left))) return
+      associate (m => equations_of(c))
+         a(m + 1:, :) = 0.0_wp
+         do i = 1, c%closure%n
+            a(m + i, i) = 1.0_wp
+         end do
+         call jacobian(c%closure, c%pose, a(:m, :))
+         across = border/max(tiny(1.0_wp), norm2(border))
+         do i = 0, size(c%row)
+            if (i > 0) across = a(row, :)/max(tiny(1.0_wp), norm2(a(row, :)))
+            a = a - spread(matmul(a, across), 2, size(across))*spread(across, 1, size(a, 1))
+            if (i > 0 .and. is_redundant(c)) c%row(i) = row
+            row = maxloc(sum(a(:m, :)**2, dim=2), dim=1)
+         end do
+         row = m + maxloc(sum(a(m + 1:, :)**2, dim=2), dim=1)
+      end associate
+      if (present(left)) left = a(row, :)/max(tiny(1.0_wp), norm2(a(row, :)))
+   end subroutine choose_rows
 
    !> Newton's method from `c%pose`, with the row `border` at rest.
    subroutine correct(c, border, ok)
       type(curve_t), intent(inout) :: c
       real(wp), intent(in) :: border(:)
       logical, intent(out) :: ok
-      real(wp) :: r(c%closure%n), change, before
+      real(wp) :: r(c%closure%n), all_of_them(equations_of(c)), change, before
       integer :: i, info
 
       before = huge(before)
       do i = 1, max_iterations
-         call residual(c%closure, c%pose, c%held, r(:c%closure%n - 1))
-         r(c%closure%n) = 0.0_wp
+         call residual(c%closure, c%pose, c%held, all_of_them)
+         r = [all_of_them(c%row), 0.0_wp]
          call factor_with(c, border, info)
          ok = info == 0
          if (.not. ok) return
@@ -321,11 +315,13 @@ contains
          if (.not. ok) return
          call add_to_links(c%closure, -r, c%pose%q)
          call set_pose(c%closure, c%pose)
-         if (change <= converged*max(1.0_wp, maxval(abs(c%pose%q)))) return
-         ok = change <= stalled
-         if (ok .and. change > 0.5_wp*before) return
+         ok = change <= converged*max(1.0_wp, maxval(abs(c%pose%q)))
+         if (.not. ok) ok = change <= stalled .and. change > 0.5_wp*before
+         if (ok) exit
          before = change
       end do
+      ok = change <= stalled
+      if (ok .and. is_redundant(c)) ok = maxval(abs(all_of_them)) <= fits
    end subroutine correct
 
    !> The factors in `c` are those at the position `q` (3, links) with `border` (coordinates) as the last row.
@@ -336,6 +332,7 @@ contains
 
       c%pose%q = q
       call set_pose(c%closure, c%pose)
+      call choose_rows(c, border)
       call factor_with(c, border, info)
    end subroutine factor_at
 
@@ -344,8 +341,10 @@ contains
       type(curve_t), intent(inout) :: c
       real(wp), intent(in) :: border(:)
       integer, intent(out) :: info
+      real(wp) :: a(equations_of(c), c%closure%n)
 
-      call jacobian(c%closure, c%pose, c%factors%a)
+      call jacobian(c%closure, c%pose, a)
+      c%factors%a(:c%closure%n - 1, :) = a(c%row, :)
       c%factors%a(c%closure%n, :) = border
       call factor(c%factors, info)
    end subroutine factor_with
@@ -367,12 +366,12 @@ contains
       call solve(c%factors, x)
       p%tangent = x/norm2(x)
       call factor_with(c, p%tangent, info)
-      ok = info == 0
+      ok = info == 0 .and. .not. is_held(c, p%tangent)
+      c%is_held = c%is_held .or. (info == 0 .and. .not. ok)
       if (.not. ok) return
       along = 0.0_wp
       call add_to_links(c%closure, p%tangent, along)
-      call remainder(c%closure, c%pose, along, x)
-      x(c%closure%n) = 0.0_wp
+      call second_derivative(c, p%q, p%tangent, x)
       x = -x
       call solve(c%factors, x)
       p%bend = x
@@ -381,10 +380,21 @@ contains
       p%value(0) = drive_residual(c%driven, c%pose, 1, 0.0_wp)
       p%value(1) = dot_product(row(1, :), p%tangent)
       p%value(2) = dot_product(row(1, :), p%bend) + drive_remainder(c%driven, c%pose, along, 1)
-      call kantorovich(c%closure, c%free, c%factors, c%pose, k)
+      call kantorovich(c%closure, c%free, c%factors, c%pose, k, rows=c%row)
       speed = distance(c%closure, c%free, 0.0_wp*along, along)
       p%reach = max_step
       if (speed > 0.0_wp) p%reach = min(certified/max(k, tiny(k)), max_step)/speed
       p%sign = determinant_sign(c%factors)
    end subroutine take_derivatives
+
+   !> Whether equations that are too many let nothing move in the direction `tangent` (coordinates) from `c%pose`.
+   pure logical function is_held(c, tangent)
+      type(curve_t), intent(in) :: c
+      real(wp), intent(in) :: tangent(:)
+      real(wp) :: a(equations_of(c), c%closure%n)
+
+      is_held = .false.
+      if (is_redundant(c)) call jacobian(c%closure, c%pose, a)
+      if (is_redundant(c)) is_held = maxval(abs(matmul(a, tangent))) > moves
+   end function is_held
 end module circuit_curve

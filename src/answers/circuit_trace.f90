@@ -4,11 +4,11 @@
 module circuit_trace
    use kinds, only: wp
    use system_calls, only: signal_received
-   use circuit_curve, only: curve_t, curve_point_t, step_along, step_between, lies_between, reversed, offset_from
+   use circuit_curve, only: curve_t, curve_point_t, step_along, step_between, lies_between, offset_from
    use pose, only: add_to_links
    implicit none
    private
-   public :: circuit_t, change_point_t, trace, find_root, of_slope, of_value, end_closed, end_far, end_lost
+   public :: circuit_t, change_point_t, trace, least_step, find_root, of_slope, of_value, end_closed, end_far, end_lost
 
    !> A certified step below this means a change point: other positions are so near that rounding tells them apart no
    !> better.
@@ -71,6 +71,17 @@ contains
       end if
       circuit%rests = .not. any(is_sure(circuit%points))
    end subroutine trace
+
+   !> `p`, its tangent turned round.
+   pure function reversed(p) result(r)
+      type(curve_point_t), intent(in) :: p
+      type(curve_point_t) :: r
+
+      r = p
+      r%tangent = -p%tangent
+      r%value(1) = -p%value(1)
+      r%sign = -p%sign
+   end function reversed
 
    !> Puts what lies `back` from the first point of `circuit` before it.
    subroutine join(circuit, back)

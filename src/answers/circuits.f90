@@ -13,10 +13,11 @@ module circuits
    use scales, only: characteristic_length
    use motion, only: motion_t
    use assemblies, only: assemblies_t, find_assemblies
-   use circuit_curve, only: curve_point_t, make_curve, is_curve, start_point, step_between, lies_between, passes
-   use circuit_trace, only: circuit_t, trace
+   use circuit_curve, only: curve_t, curve_point_t, make_curve, is_redundant, start_point, step_between, lies_between, &
+      same
+   use circuit_trace, only: circuit_t, trace, least_step
    use circuit_crossing, only: other_circuit
-   use circuit_branches, only: circuits_t, add_branches, add_assemblies, add_meetings, &
+   use circuit_branches, only: circuits_t, no_sign, add_branches, add_assemblies, add_meetings, &
       number_assemblies
    use circuit_limits, only: name_limits, held_at
    implicit none
@@ -46,8 +47,6 @@ contains
       found%drive = drive
       allocate (found%list(0), found%branches(0), found%dead(0), found%assemblies(0), found%meetings(0))
       call make_curve(found%curve, m, drive, start%t)
-      found%is_curve = is_curve(found%curve)
-      if (.not. found%is_curve) return
       if (start%known >= 0) then
          call start_point(found%curve, start%position, p, ok)
          if (ok) call add_circuits(found, p)
@@ -60,7 +59,9 @@ contains
          call add_assemblies(found, i)
          call add_meetings(found, i)
       end do
+      found%is_held = found%curve%is_held .and. size(found%list) == 0
       call number_assemblies(found, all_of_them%list)
+      if (is_redundant(found%curve)) found%branches%sign = no_sign
       call name_limits(m, start%t, found)
    end subroutine find_circuits
 
@@ -151,7 +152,8 @@ contains
       if (size(list) == 0) list = [(i, i=1, size(m%drives))]
    end function free_drives
 
-   !> Adds the circuit through `p`, unless it is known, and those that it meets.
+   !> Adds the circuit through `p`, unless it is known, and those that it meets. From a change point the sense is not
+   !> known in which circuits go on: others are found from elsewhere.
    recursive subroutine add_circuits(found, p)
       type(circuits_t), intent(inout) :: found
       type(curve_point_t), intent(in) :: p
@@ -161,7 +163,8 @@ contains
       logical :: ok
 
       n = size(found%list) + 1
-      if (n > max_circuits .or. is_known(found, p)) return
+      if (n > max_circuits .or. p%reach < least_step) return
+      if (is_known(found, p)) return
       allocate (more(n))
       more(:n - 1) = found%list
       call trace(found%curve, p, more(n))
@@ -193,4 +196,17 @@ contains
          end associate
       end do
    end function is_known
+
+   !> Whether the drive has the `value`, but for whole turns, between the neighbours `a` and `b`, or nearly there.
+   pure logical function passes(c, a, b, value)
+      type(curve_t), intent(in) :: c
+      type(curve_point_t), intent(in) :: a, b
+      real(wp), intent(in) :: value
+      real(wp) :: least, greatest
+
+      least = min(a%value(0), b%value(0)) - same
+      greatest = max(a%value(0), b%value(0)) + same
+      passes = value >= least .and. value <= greatest
+      if (c%is_angle) passes = modulo(value - least, 2.0_wp*pi) <= greatest - least
+   end function passes
 end module circuits

@@ -6,7 +6,7 @@ module circuits_table
    use set_analysis, only: set_analysis_t
    use set_motion, only: in_set
    use circuit_trace, only: circuit_t, end_closed, end_far, end_lost
-   use circuit_branches, only: circuits_t, branch_t, turns_of
+   use circuit_branches, only: circuits_t, branch_t, no_sign, turns_of
    use circuits, only: find_circuits, free_drives
    use names, only: drive_name
    use text_output, only: output_t, put
@@ -66,8 +66,8 @@ contains
          if (i > 1) call put(o, '')
          call put(o, head//', '//phrase(say_drive, m%polish)//' '//trim(drive_name(m, m%drives(list(i)%drive))))
          if (.not. list(i)%is_complete) call put(o, ' *** '//phrase(say_circuits_missing, m%polish))
-         if (.not. list(i)%is_curve) then
-            call put(o, '   '//phrase(say_no_circuits, m%polish))
+         if (list(i)%is_held) then
+            call put(o, '   '//phrase(say_held, m%polish))
          else if (size(list(i)%list) == 0) then
             call put(o, '   '//phrase(say_none, m%polish))
          else
@@ -83,7 +83,7 @@ contains
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(circuits_t), intent(in) :: found
-      character(1), parameter :: signs(-1:1) = ['-', '*', '+']
+      character(1), parameter :: signs(-1:no_sign) = ['-', '*', '+', '.']
       character(column_ends(4)) :: row
       character(:), allocatable :: numbers
       integer :: k, i

@@ -82,12 +82,12 @@ contains
    end function distance
 
    !> Bounds (n) of what the rows hold beyond their linear part at pose `p`: L_k of above. The two rows of a revolute
-   !> pair have one bound, that of their vector.
+   !> pair have one bound, that of their vector. Where there are more rows than unknowns, of all of them.
    pure function jacobian_lipschitz(s, c, p) result(bound)
       type(system_t), intent(in) :: s
       type(coordinates_t), intent(in) :: c
       type(pose_t), intent(in) :: p
-      real(wp) :: bound(s%n)
+      real(wp) :: bound(max(s%n, 2*size(s%pairs) + size(s%laws)))
       integer :: k, row
 
       bound = 0.0_wp
@@ -128,22 +128,32 @@ contains
    end function jacobian_lipschitz
 
    !> K at pose `p`, from the factors `f` of the Jacobian there: no other root is within 2/K, by `distance`. `gain`:
-   !> residuals of 1 change a coordinate by so much at most.
-   subroutine kantorovich(s, c, f, p, k, gain)
+   !> residuals of 1 change a coordinate by so much at most. `rows`: those of the system that the first rows of the
+   !> matrix are, the others are linear; by default they are the same.
+   subroutine kantorovich(s, c, f, p, k, gain, rows)
       type(system_t), intent(in) :: s
       type(coordinates_t), intent(in) :: c
       type(factors_t), intent(in) :: f
       type(pose_t), intent(in) :: p
       real(wp), intent(out) :: k
       real(wp), intent(out), optional :: gain
-      real(wp) :: g(s%n, size(c%angles) + 2*size(c%slots))
+      integer, intent(in), optional :: rows(:)
+      real(wp) :: g(s%n, size(c%angles) + 2*size(c%slots)), bound(max(s%n, 2*size(s%pairs) + size(s%laws))), &
+         y(size(bound), size(g, 2))
 
       k = 0.0_wp
       if (present(gain)) gain = 0.0_wp
       if (size(g) == 0) return
       call set_coordinates(s, c, g)
       call solve_transposed(f, g)
-      k = largest_sum(s, c, g, jacobian_lipschitz(s, c, p))
+      bound = jacobian_lipschitz(s, c, p)
+      if (present(rows)) then
+         y = 0.0_wp
+         y(rows, :) = g(:size(rows), :)
+         k = largest_sum(s, c, y, bound)
+      else
+         k = largest_sum(s, c, g, bound)
+      end if
       if (present(gain)) gain = largest_sum(s, c, g, spread(1.0_wp, 1, s%n))
    end subroutine kantorovich
 

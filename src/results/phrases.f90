@@ -127,8 +127,7 @@ module phrases
       say_lost = phrase_t('NOT FOLLOWED BEYOND', 'NIE SLEDZONO POZA'), &
       say_dead_points = phrase_t('DEAD POINTS', 'PUNKTY MARTWE'), &
       say_change_points = phrase_t('CHANGE POINTS', 'PUNKTY ZMIANY'), &
-      say_no_circuits = phrase_t('NOT OF A MECHANISM WITH REDUNDANT EQUATIONS', &
-         'NIE DLA MECHANIZMU Z ROWNANIAMI NADLICZBOWYMI'), &
+      say_held = phrase_t('THE OTHER DRIVES LET NOTHING MOVE', 'POZOSTALE NAPEDY NICZEMU NIE DAJA RUCHU'), &
       say_circuits_missing = phrase_t('CIRCUITS MAY BE MISSING: NOT ALL ASSEMBLIES ARE KNOWN', &
          'MOZE BRAKOWAC OBWODOW: NIE WSZYSTKIE MONTAZE SA ZNANE')
    type(phrase_t), parameter, public :: &

@@ -92,10 +92,32 @@ with cylinder "$(card CIRCUITS)" > "$w/deck"
 equal 'a cylinder' 'MIN 5.882158401E-01 M MAX 3.427499398E+00 M
 MIN -3.427499398E+00 M MAX -5.882158401E-01 M' "$(circuits | awk '/MIN/ { sub(/.*MIN/, "MIN"); $1 = $1; print }' | uniq)"
 
-# Redundant pairs, and no position.
+# Redundant pairs. A third crank takes a parallelogram its change points, and with them the antiparallelogram; a carriage in
+# two guides goes through as in one; drives that are held and agree hold the mechanism. Of Dixon's bars x, y on their axes, with
+# x1^2 + y1^2 = 64^2 and so on: y3^2 = 29^2 - x1^2 ends the motion at the angles of (29, y1) and (29, y2); of 6 signs two
+# change, and half of the others are the same turned by 180 deg: 8 circuits.
 with parallel_cranks "$(card CIRCUITS)" > "$w/deck"
-found 'redundant equations' ' CIRCUITS AND BRANCHES, DRIVE ANGLE CRANK-1
-   NOT OF A MECHANISM WITH REDUNDANT EQUATIONS'
+found 'three cranks' " CIRCUITS AND BRANCHES, DRIVE ANGLE CRANK-1
+$head
+ 1       1        .   1           $all 1"
+with two_guides "$(card CIRCUITS)" > "$w/deck"
+found 'two guides' " CIRCUITS AND BRANCHES, DRIVE ANGLE CRANK
+$head
+ 1       1        .   1           $all 1
+ 2       2        .   2           $all 1"
+with parallel_cranks "$(card CIRCUITS)" | awk '/^DRIVE/ { print; sub(/CRANK-1/, "CRANK-2") } { print }' > "$w/deck"
+found 'two drives that agree' ' CIRCUITS AND BRANCHES, DRIVE ANGLE CRANK-1
+   THE OTHER DRIVES LET NOTHING MOVE
+ CIRCUITS AND BRANCHES, DRIVE ANGLE CRANK-2
+   THE OTHER DRIVES LET NOTHING MOVE'
+with dixon "$(card CIRCUITS)" > "$w/deck"
+ends=$(awk 'BEGIN { b = atan2(sqrt(64^2 - 29^2), 29); c = atan2(sqrt(41^2 - 29^2), 29); degree = atan2(1, 1)/45
+   printf "8 MIN -%.9E DEG MAX -%.9E DEG,8 MIN -%.9E DEG MAX %.9E DEG", 360 - (b + c)/degree, (b + c)/degree, (b - c)/degree,
+      (b - c)/degree }')
+equal "Dixon's bars" "$ends" "$(circuits | awk '/MIN/ { sub(/.*MIN/, "MIN"); $1 = $1; print }' | uniq -c | awk '{ $1 = $1; print }' |
+   tr '\n' ',' | sed 's/,$//')"
+
+# No position.
 four_bar 1.0 1.0 1.0 4.0 CRANK 0.0 0.0 0.0 0.0 > "$w/deck"
 found 'no position anywhere' ' CIRCUITS AND BRANCHES, DRIVE ANGLE CRANK
    NONE'
