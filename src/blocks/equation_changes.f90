@@ -121,7 +121,7 @@ contains
 
       g = 0.0_wp
       dg = 0.0_wp
-      associate (first => r%equations%vector_loops%first_term, terms => r%equations%vector_loops%making%terms)
+      associate (first => r%equations%vector_loops%first_term, terms => r%equations%vector_loops%terms)
          do i = first(k), first(k + 1) - 1
             if (terms(1, i) /= 0) then
                call find_arm(r, m, e, abs(terms(1, i)), d, x, dx)

@@ -155,7 +155,7 @@ contains
          orientation = t%orientation(order(i))
          if (orientation == 0) cycle
          do k = t%near%first(order(i)), t%near%first(order(i) + 1) - 1
-            if (is_reported(m, t, t%near%pairs(k), orientation, placed)) call add_pair(m, t, t%near%pairs(k), &
+            if (is_reported(m, t, t%near%member(k), orientation, placed)) call add_pair(m, t, t%near%member(k), &
                orientation, u, e)
          end do
          if (i < size(order)) then

@@ -13,7 +13,8 @@ module mechanism
    public :: request_link, request_point, request_pair, request_pole, request_curve
    public :: number_ground, number_point, number_joint, number_pair, number_drive
    public :: method_newton, method_matrix, method_dense, method_words, own_predictor
-   public :: instant_count, instant, find_instants, wanted_links, with_all_links, plane_origin, place_links
+   public :: instant_count, instant, find_instants, pair_links, drive_links, request_links, wanted_links
+   public :: with_all_links, plane_origin, place_links
 
    integer, parameter :: pair_revolute = 1   !< REVOLUTE: eq. (7), (8)
    integer, parameter :: pair_prismatic = 2  !< PRISM: eq. (9), (10)
@@ -226,6 +227,42 @@ contains
       end do
    end subroutine place_links
 
+   !> The links i and j of `pair`.
+   pure function pair_links(m, pair) result(links)
+      type(mechanism_t), intent(in) :: m
+      type(pair_t), intent(in) :: pair
+      integer :: links(2)
+
+      links = m%points([pair%point_i, pair%point_j])%link
+   end function pair_links
+
+   !> The links of what `drive` drives; of fewer than three some are there again.
+   pure function drive_links(m, drive) result(links)
+      type(mechanism_t), intent(in) :: m
+      type(drive_t), intent(in) :: drive
+      integer :: links(3)
+
+      links = request_links(m, request_t(driven_kinds(drive%kind), drive%subject, second=drive%second))
+   end function drive_links
+
+   !> The links whose motion `request` is about, and from which it is seen; of fewer than three some are there again.
+   pure function request_links(m, request) result(links)
+      type(mechanism_t), intent(in) :: m
+      type(request_t), intent(in) :: request
+      integer :: links(3)
+
+      select case (request%kind)
+      case (request_link, request_pole)
+         links = request%subject
+      case (request_point, request_curve)
+         links = m%points(request%subject)%link
+      case default
+         links(:2) = pair_links(m, m%pairs(request%subject))
+         links(3) = links(2)
+      end select
+      if (request%second > 0) links(3) = request%second
+   end function request_links
+
    !> Whether each link (links) is needed by a request of `m`; ranges, circuits, proofs, assemblies and tolerances need
    !> all of them.
    pure function wanted_links(m) result(wanted)
@@ -235,18 +272,7 @@ contains
 
       wanted = m%ranges .or. m%circuits .or. m%proves .or. m%assemblies .or. allocated(m%tolerances)
       do i = 1, size(m%requests)
-         associate (k => m%requests(i)%subject)
-            select case (m%requests(i)%kind)
-            case (request_link, request_pole)
-               wanted(k) = .true.
-            case (request_point, request_curve)
-               wanted(m%points(k)%link) = .true.
-            case (request_pair)
-               wanted(m%points(m%pairs(k)%point_i)%link) = .true.
-               wanted(m%points(m%pairs(k)%point_j)%link) = .true.
-            end select
-            if (m%requests(i)%second > 0) wanted(m%requests(i)%second) = .true.
-         end associate
+         wanted(request_links(m, m%requests(i))) = .true.
       end do
    end function wanted_links
 

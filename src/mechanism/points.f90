@@ -4,7 +4,8 @@ module points
    use kinds, only: wp, label_length
    use constants, only: pi
    use mechanism, only: mechanism_t, request_t, pair_t, pair_prismatic, request_link, request_point, request_pair, &
-      request_pole, request_curve, instant_count
+      request_pole, request_curve, instant_count, request_links
+   use names, only: subject_name
    use instant_centres, only: centre_t, pole_of, curve_of, seen_from, centre_finite, centre_infinite, centre_resting
    use planar, only: direction, rotated, quarter_turn, point_of
    use motion, only: motion_t, known_of, mark_of, mark_none
@@ -73,48 +74,58 @@ contains
       type(row_t) :: row
 
       row%kind = request%kind
+      row%name = request_name(m, request)
+      call note_known(m, q, request, row)
       associate (i => request%subject)
          select case (request%kind)
          case (request_link)
-            row%name = m%links(i)%name
-            call note_known(m, q, i, row)
             if (m%links(i)%ground) then
                row%value(:, 0) = m%links(i)%position
                return
             end if
             row%value = link_motion(q, i, changes, part)
-            row%value(:2, 0) = row%value(:2, 0) + q%origin
          case (request_point)
-            row%name = m%points(i)%name
-            call note_known(m, q, m%points(i)%link, row)
             if (m%links(m%points(i)%link)%ground) then
                row%value(:2, 0) = point_of(m%links(m%points(i)%link)%position, m%points(i)%offset)
                return
             end if
             row%value(:2, :) = point_motion(m, q, i, changes, part)
-            row%value(:2, 0) = row%value(:2, 0) + q%origin
          case (request_pair)
-            row%name = m%pairs(i)%name
             row%angular = m%pairs(i)%kind /= pair_prismatic
-            call note_known(m, q, m%points(m%pairs(i)%point_i)%link, row)
-            call note_known(m, q, m%points(m%pairs(i)%point_j)%link, row)
             row%value(1, :) = pair_motion(m, q, m%pairs(i), changes, part)
+            return
          case (request_pole)
-            row%name = trim(m%links(request%second)%name)//' '//m%links(i)%name
-            call note_known(m, q, i, row)
-            call note_known(m, q, request%second, row)
             if (row%known < 1) return
             call take_centre(pole_of(link_motion(q, request%second, changes, part), link_motion(q, i, changes, part), &
                request%length, request%rate), row)
-            row%value(:2, 0) = row%value(:2, 0) + q%origin
          case (request_curve)
             call take_curve(m, q, request, row, changes, part)
+            if (request%second > 0) return
+            row%value(:2, 1) = row%value(:2, 1) + q%origin
          end select
+         row%value(:2, 0) = row%value(:2, 0) + q%origin
       end associate
    end function row_of
 
-   !> The numbers of the `row` of the path of a point: in the axes of the link from which it is seen, or in the fixed
-   !> plane. `changes`, `part`: as in `row_of`, here and below.
+   !> The name of the link, point or pair that `request` is about; of a pole or curve both names.
+   pure function request_name(m, request) result(name)
+      type(mechanism_t), intent(in) :: m
+      type(request_t), intent(in) :: request
+      character(2*label_length + 1) :: name
+
+      select case (request%kind)
+      case (request_pole)
+         name = trim(m%links(request%second)%name)//' '//m%links(request%subject)%name
+      case (request_curve)
+         name = m%points(request%subject)%name
+         if (request%second > 0) name = trim(name)//' '//m%links(request%second)%name
+      case default
+         name = subject_name(m, request%kind, request%subject)
+      end select
+   end function request_name
+
+   !> The numbers of the `row` of the path of a point, without the motion's origin: in the axes of the link from which
+   !> it is seen, or in the fixed plane. `changes`, `part`: as in `row_of`, here and below.
    pure subroutine take_curve(m, q, request, row, changes, part)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
@@ -123,19 +134,10 @@ contains
       real(wp), intent(in), optional :: changes(:, 0:, :), part
       real(wp) :: p(2, 0:2)
 
-      row%name = m%points(request%subject)%name
-      call note_known(m, q, m%points(request%subject)%link, row)
       p = point_motion(m, q, request%subject, changes, part)
-      if (request%second > 0) then
-         row%name = trim(m%points(request%subject)%name)//' '//m%links(request%second)%name
-         call note_known(m, q, request%second, row)
-         p = seen_from(link_motion(q, request%second, changes, part), p)
-      end if
+      if (request%second > 0) p = seen_from(link_motion(q, request%second, changes, part), p)
       if (row%known < 2) p(:, max(0, row%known + 1):) = 0.0_wp
       call take_centre(curve_of(p, request%length, request%rate), row)
-      if (request%second > 0) return
-      row%value(:2, 0) = row%value(:2, 0) + q%origin
-      row%value(:2, 1) = row%value(:2, 1) + q%origin
    end subroutine take_curve
 
    !> Puts the centre `c` into `row`.
@@ -209,27 +211,23 @@ contains
       type(mechanism_t), intent(in) :: m
       type(request_t), intent(in) :: request
 
-      select case (request%kind)
-      case (request_link)
-         is_fixed = m%links(request%subject)%ground
-      case (request_point)
-         is_fixed = m%links(m%points(request%subject)%link)%ground
-      case default
-         is_fixed = .false.
-      end select
+      is_fixed = all(m%links(request_links(m, request))%ground)
    end function is_fixed
 
-   !> Reduces what is known of `row` to what is known of `link`.
-   pure subroutine note_known(m, q, link, row)
+   !> Reduces what is known of `row` to what is known of the links of its `request`.
+   pure subroutine note_known(m, q, request, row)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
-      integer, intent(in) :: link
+      type(request_t), intent(in) :: request
       type(row_t), intent(inout) :: row
+      integer :: links(3), i
 
-      if (m%links(link)%ground) return
-      if (known_of(q, link) >= row%known) return
-      row%known = known_of(q, link)
-      row%mark = mark_of(q, link)
+      links = request_links(m, request)
+      do i = 1, size(links)
+         if (m%links(links(i))%ground .or. known_of(q, links(i)) >= row%known) cycle
+         row%known = known_of(q, links(i))
+         row%mark = mark_of(q, links(i))
+      end do
    end subroutine note_known
 
    !> Place from the motion's origin, velocity and acceleration (2, 0:2) of point number `i`, at u from its link's

@@ -154,7 +154,7 @@ contains
       associate (p => q%vector_loops)
          count = p%first_term(loop + 1) - p%first_term(loop)
          do i = p%first_term(loop), p%first_term(loop + 1) - 1
-            associate (point => abs(p%making%terms(1, i)), pair => abs(p%making%terms(2, i)))
+            associate (point => abs(p%terms(1, i)), pair => abs(p%terms(2, i)))
                if (point > 0) then
                   o = t%orientation(m%points(point)%link)
                   sums(o) = sums(o) + norm2(m%points(point)%offset)*(of_number + of_vector + count*rounding + angle(o))

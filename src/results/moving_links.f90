@@ -4,7 +4,7 @@ module moving_links
    use kinds, only: wp
    use constants, only: in_degrees, without_turns
    use mechanism, only: mechanism_t
-   use independent, only: sorted_t, sorted
+   use grouping, only: sorted_t, sorted
    use planar, only: point_of
    use drawing, only: drawing_t, snapshot_t
    use canvas, only: canvas_t, to_pixels

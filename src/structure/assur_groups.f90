@@ -12,6 +12,7 @@
 !> drive moves along its guide is joined to its rod there, and would be in one group with rod and crank.
 module assur_groups
    use kinds, only: wp
+   use grouping, only: sorted_t, sorted, members
    use mechanism, only: mechanism_t, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
    use matching, only: incidence_t, find_blocks
    implicit none
@@ -60,8 +61,8 @@ contains
                call note_component(p, along(:, 2))
                call note_component(q, along(:, 2))
             else
-               call note_angle(m%points(p)%link)
-               call note_angle(m%points(q)%link)
+               call note(m%points(p)%link, 3)
+               call note(m%points(q)%link, 3)
                call close_equation(i, 0)
                call note_projection(i, across=.true.)
             end if
@@ -72,10 +73,10 @@ contains
          associate (subject => m%drives(i)%subject)
             select case (m%drives(i)%kind)
             case (drive_angle)
-               call note_angle(subject)
+               call note(subject, 3)
             case (drive_relangle)
-               call note_angle(subject)
-               call note_angle(m%drives(i)%second)
+               call note(subject, 3)
+               call note(m%drives(i)%second, 3)
             case (drive_x)
                call note_component(subject, along(:, 1))
             case (drive_y)
@@ -97,13 +98,6 @@ contains
          n = n + 1
          c%incidence%unknown(n) = 3*moving(link) - 3 + coordinate
       end subroutine note
-
-      !> The angle of `link` stands in the equation at hand.
-      subroutine note_angle(link)
-         integer, intent(in) :: link
-
-         call note(link, 3)
-      end subroutine note_angle
 
       !> The component of point `p` along the fixed direction `e`.
       subroutine note_component(p, e)
@@ -175,6 +169,7 @@ contains
       logical, intent(in) :: over(:), wanted(:)
       type(group_t), allocatable :: groups(:)
       type(incidence_t) :: waits
+      type(sorted_t) :: by_group
       integer, allocatable :: first(:), member(:), of_link(:), order(:)
       integer :: i, e
 
@@ -186,10 +181,11 @@ contains
       end do
       order = numbers(m, waits, first, member, of_link)
       allocate (groups(maxval([0, order])))
+      by_group = sorted(order(of_link), size(groups))
       do i = 1, size(groups)
-         groups(i)%needed = .false.
+         groups(i)%links = members(by_group, i)
+         groups(i)%needed = any(wanted(groups(i)%links))
       end do
-      call share_out_links(of_link, order, wanted, groups)
       do e = 1, size(unknown_of)
          if (c%drive(e) == 0 .or. c%incidence%first(e) == c%incidence%first(e + 1)) cycle
          i = c%link_of(merge(c%incidence%unknown(c%incidence%first(e)), unknown_of(e), over(e)))
@@ -255,56 +251,29 @@ contains
       type(incidence_t), intent(in) :: waits
       integer, intent(in) :: first(:), member(:), of_link(:)
       integer, allocatable :: order(:)
-      integer :: depth(size(first) - 1), before(size(first) + 1), i, k, n
+      type(sorted_t) :: by_depth
+      integer :: depth(size(first) - 1), i, k, n
 
       depth = 0
-      before = 0
       do i = 1, size(depth)
+         if (m%links(member(first(i)))%ground) cycle
          do k = first(i), first(i + 1) - 1
-            if (m%links(member(k))%ground) cycle
             do n = waits%first(member(k)), waits%first(member(k) + 1) - 1
                if (of_link(waits%unknown(n)) /= i) depth(i) = max(depth(i), depth(of_link(waits%unknown(n))))
             end do
          end do
-         if (m%links(member(first(i)))%ground) cycle
          depth(i) = depth(i) + 1
-         before(depth(i) + 1) = before(depth(i) + 1) + 1
       end do
-      do i = 2, size(before)
-         before(i) = before(i) + before(i - 1)
-      end do
+      by_depth = sorted(depth(of_link), size(depth))
       allocate (order(size(depth)), source=0)
-      do i = 1, size(of_link)
-         if (order(of_link(i)) > 0 .or. m%links(i)%ground) cycle
-         before(depth(of_link(i))) = before(depth(of_link(i))) + 1
-         order(of_link(i)) = before(depth(of_link(i)))
+      n = 0
+      do i = 1, size(by_depth%member)
+         associate (component => of_link(by_depth%member(i)))
+            if (order(component) == 0) n = n + 1
+            if (order(component) == 0) order(component) = n
+         end associate
       end do
    end function numbers
-
-   !> The links of each group, in the deck's order, and which groups hold `wanted` links.
-   subroutine share_out_links(of_link, order, wanted, groups)
-      integer, intent(in) :: of_link(:), order(:)
-      logical, intent(in) :: wanted(:)
-      type(group_t), intent(inout) :: groups(:)
-      integer :: members(size(groups)), i, g
-
-      members = 0
-      do i = 1, size(of_link)
-         g = order(of_link(i))
-         if (g > 0) members(g) = members(g) + 1
-      end do
-      do g = 1, size(groups)
-         allocate (groups(g)%links(members(g)))
-      end do
-      members = 0
-      do i = 1, size(of_link)
-         g = order(of_link(i))
-         if (g == 0) cycle
-         members(g) = members(g) + 1
-         groups(g)%links(members(g)) = i
-         groups(g)%needed = groups(g)%needed .or. wanted(i)
-      end do
-   end subroutine share_out_links
 
    !> What a needed group builds on is needed.
    subroutine spread_need(waits, of_link, order, groups)

@@ -88,7 +88,7 @@ contains
       end associate
    end subroutine add_row
 
-   !> Vector loop `i`, 0 for none, as the block with the columns of `f` has it.
+   !> Vector loop `i`, 0 for one without vectors, as the block with the columns of `f` has it.
    subroutine add_block_loop(p, i, kind, b, f)
       type(vector_loops_t), intent(in) :: p
       integer, intent(in) :: i, kind
@@ -101,23 +101,21 @@ contains
          block_loop%kind = kind
          block_loop%vector_loop = i
          block_loop%first_vector = f%body_vectors + 1
-         if (i > 0) call add_body_vectors(p, i, .false., b, f)
+         call add_body_vectors(p, i, .false., b, f)
          block_loop%first_own = f%body_vectors + 1
-         if (i > 0) call add_body_vectors(p, i, .true., b, f)
+         call add_body_vectors(p, i, .true., b, f)
          block_loop%last_vector = f%body_vectors
          block_loop%first_slide = f%slides + 1
-         if (i > 0) then
-            do k = p%first_vector(i), p%first_vector(i + 1) - 1
-               if (p%vector_orientation(k) == 0) block_loop%ground = block_loop%ground + p%body_vector(:, k)
-            end do
-            do k = p%first_slide(i), p%first_slide(i + 1) - 1
-               f%slides = f%slides + 1
-               b%slides(f%slides) = slide_t(orientation=p%slide_orientation(k), &
-                  orientation_column=f%column(p%slide_orientation(k)), &
-                  unknown=b%orientations + p%slide_number(k), column=f%column(b%orientations + p%slide_number(k)), &
-                  body_vector=p%slide_body_vector(:, k))
-            end do
-         end if
+         do k = p%first_vector(i), p%first_vector(i + 1) - 1
+            if (p%vector_orientation(k) == 0) block_loop%ground = block_loop%ground + p%body_vector(:, k)
+         end do
+         do k = p%first_slide(i), p%first_slide(i + 1) - 1
+            f%slides = f%slides + 1
+            b%slides(f%slides) = slide_t(orientation=p%slide_orientation(k), &
+               orientation_column=f%column(p%slide_orientation(k)), &
+               unknown=b%orientations + p%slide_number(k), column=f%column(b%orientations + p%slide_number(k)), &
+               body_vector=p%slide_body_vector(:, k))
+         end do
          block_loop%last_slide = f%slides
       end associate
    end subroutine add_block_loop
@@ -172,7 +170,6 @@ contains
       slides = 0
       do i = 1, e%count
          associate (p => e%vector_loops, k => e%list(i)%vector_loop)
-            if (k == 0) cycle
             body_vectors = body_vectors + p%first_vector(k + 1) - p%first_vector(k)
             slides = slides + p%first_slide(k + 1) - p%first_slide(k)
          end associate

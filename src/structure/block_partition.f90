@@ -53,8 +53,8 @@ contains
       end do
       call fill_rows(e, member, b)
       call fill_block_loops(e, member, b)
-      b%first_term = e%vector_loops%first_term(:e%vector_loops%count + 1)
-      b%terms = e%vector_loops%making%terms(:, :e%vector_loops%making%term_count)
+      b%first_term = e%vector_loops%first_term(1:e%vector_loops%count + 1)
+      b%terms = e%vector_loops%terms(:, :e%vector_loops%term_count)
       allocate (b%unit(0:b%unknowns), source=1.0_wp)
       call find_places(b)
    end function new_blocks

@@ -6,16 +6,12 @@
 !> no unknown, one in the tree a slide. Of the numbers of the deck only constant angles are used to build it.
 module links_tree
    use kinds, only: wp
-   use planar, only: direction, rotated
-   use mechanism, only: mechanism_t, pair_prismatic, pair_revolute, plane_origin
+   use planar, only: direction, rotated, quarter_turn
+   use grouping, only: sorted_t, sorted
+   use mechanism, only: mechanism_t, pair_prismatic, pair_revolute, pair_links, plane_origin
    implicit none
    private
    public :: tree_t, new_tree, other_link, place_t, place_on_tree, point_in_drawing, guide
-
-   !> Pairs by link: those of link i are pairs(first(i)), ..., pairs(first(i + 1) - 1).
-   type :: neighbours_t
-      integer, allocatable :: first(:), pairs(:)
-   end type neighbours_t
 
    type :: tree_t
       integer :: orientations = 0           !< angles that are unknown; orientation 0 is the ground's
@@ -30,7 +26,7 @@ module links_tree
       integer, allocatable :: root(:)       !< (links) number of its part; 0: joined to the ground
       integer, allocatable :: order(:)      !< (links) from the ground outwards: parents come first
       integer, allocatable :: slide(:)      !< (pairs) number of its slide; 0: none
-      type(neighbours_t) :: near
+      type(sorted_t) :: near               !< the pairs of each link
       integer, allocatable :: surplus(:)    !< prismatic pairs whose angle other prismatic pairs already fix
    end type tree_t
 
@@ -50,59 +46,32 @@ contains
 
       t%origin = plane_origin(m)
       t%near = neighbours(m)
-      call find_orientations(m, t%near, t)
-      call grow(m, t%near, t)
+      call find_orientations(m, t)
+      call grow(m, t)
    end function new_tree
 
    !> The pairs of each link.
    pure function neighbours(m) result(near)
       type(mechanism_t), intent(in) :: m
-      type(neighbours_t) :: near
-      integer :: fill(size(m%links)), k, side, link
+      type(sorted_t) :: near
+      integer :: k
 
-      allocate (near%first(size(m%links) + 1), near%pairs(2*size(m%pairs)))
-      fill = 0
-      do k = 1, size(m%pairs)
-         do side = 1, 2
-            link = link_of(m, k, side)
-            fill(link) = fill(link) + 1
-         end do
-      end do
-      near%first(1) = 1
-      do link = 1, size(m%links)
-         near%first(link + 1) = near%first(link) + fill(link)
-      end do
-      fill = near%first(:size(m%links))
-      do k = 1, size(m%pairs)
-         do side = 1, 2
-            link = link_of(m, k, side)
-            near%pairs(fill(link)) = k
-            fill(link) = fill(link) + 1
-         end do
-      end do
+      near = sorted([(pair_links(m, m%pairs(k)), k=1, size(m%pairs))], size(m%links))
+      near%member = (near%member + 1)/2
    end function neighbours
-
-   !> Link i (side 1) or j (side 2) of pair `k`.
-   pure integer function link_of(m, k, side)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: k, side
-
-      link_of = m%points(merge(m%pairs(k)%point_i, m%pairs(k)%point_j, side == 1))%link
-   end function link_of
 
    !> The link at the other end of pair `k` of `link`.
    pure integer function other_link(m, k, link) result(other)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k, link
 
-      other = link_of(m, k, 1) + link_of(m, k, 2) - link
+      other = sum(pair_links(m, m%pairs(k))) - link
    end function other_link
 
    !> Orientations and angle offsets: a walk over prismatic pairs alone, first from the ground links, then from
    !> every link not yet seen.
-   subroutine find_orientations(m, near, t)
+   subroutine find_orientations(m, t)
       type(mechanism_t), intent(in) :: m
-      type(neighbours_t), intent(in) :: near
       type(tree_t), intent(inout) :: t
       integer :: queue(size(m%links)), last, link
       logical :: used(size(m%pairs))
@@ -119,21 +88,20 @@ contains
          t%orientation(link) = 0
          t%angle_offset(link) = m%links(link)%position(3)
       end do
-      call spread_orientation(m, near, queue, last, used, t)
+      call spread_orientation(m, queue, last, used, t)
       do link = 1, size(m%links)
          if (t%orientation(link) >= 0) cycle
          t%orientations = t%orientations + 1
          t%orientation(link) = t%orientations
          last = 1
          queue(1) = link
-         call spread_orientation(m, near, queue, last, used, t)
+         call spread_orientation(m, queue, last, used, t)
       end do
    end subroutine find_orientations
 
    !> Gives the orientation of the `last` links in the queue to all links that prismatic pairs join to them.
-   subroutine spread_orientation(m, near, queue, last, used, t)
+   subroutine spread_orientation(m, queue, last, used, t)
       type(mechanism_t), intent(in) :: m
-      type(neighbours_t), intent(in) :: near
       integer, intent(inout) :: queue(:), last
       logical, intent(inout) :: used(:)
       type(tree_t), intent(inout) :: t
@@ -143,8 +111,8 @@ contains
       do while (next <= last)
          link = queue(next)
          next = next + 1
-         do i = near%first(link), near%first(link + 1) - 1
-            k = near%pairs(i)
+         do i = t%near%first(link), t%near%first(link + 1) - 1
+            k = t%near%member(i)
             if (m%pairs(k)%kind /= pair_prismatic .or. used(k)) cycle
             used(k) = .true.
             far = other_link(m, k, link)
@@ -153,8 +121,8 @@ contains
                cycle
             end if
             t%orientation(far) = t%orientation(link)
-            t%angle_offset(far) = t%angle_offset(link) + merge(m%pairs(k)%beta, -m%pairs(k)%beta, link_of(m, k, &
-               1) == link)
+            t%angle_offset(far) = t%angle_offset(link) &
+               + merge(m%pairs(k)%beta, -m%pairs(k)%beta, m%points(m%pairs(k)%point_i)%link == link)
             last = last + 1
             queue(last) = far
          end do
@@ -162,9 +130,8 @@ contains
    end subroutine spread_orientation
 
    !> Joins every link to the tree, breadth first; a prismatic pair is taken only where no revolute pair reaches on.
-   subroutine grow(m, near, t)
+   subroutine grow(m, t)
       type(mechanism_t), intent(in) :: m
-      type(neighbours_t), intent(in) :: near
       type(tree_t), intent(inout) :: t
       integer :: last, revolute_next, prismatic_next, link
       logical :: attached
@@ -181,10 +148,10 @@ contains
       link = 1
       do
          if (revolute_next <= last) then
-            call attach_neighbours(m, near, pair_revolute, t%order(revolute_next), t, last, attached)
+            call attach_neighbours(m, pair_revolute, t%order(revolute_next), t, last, attached)
             revolute_next = revolute_next + 1
          else if (prismatic_next <= last) then
-            call attach_neighbours(m, near, pair_prismatic, t%order(prismatic_next), t, last, attached)
+            call attach_neighbours(m, pair_prismatic, t%order(prismatic_next), t, last, attached)
             if (.not. attached) prismatic_next = prismatic_next + 1
          else
             do while (link <= size(m%links))
@@ -200,9 +167,8 @@ contains
    end subroutine grow
 
    !> Joins to `link` those of its neighbours that its pairs of one kind reach: all revolute ones, one prismatic one.
-   subroutine attach_neighbours(m, near, kind, link, t, last, attached)
+   subroutine attach_neighbours(m, kind, link, t, last, attached)
       type(mechanism_t), intent(in) :: m
-      type(neighbours_t), intent(in) :: near
       integer, intent(in) :: kind, link
       type(tree_t), intent(inout) :: t
       integer, intent(inout) :: last
@@ -210,8 +176,8 @@ contains
       integer :: i, k
 
       attached = .false.
-      do i = near%first(link), near%first(link + 1) - 1
-         k = near%pairs(i)
+      do i = t%near%first(link), t%near%first(link + 1) - 1
+         k = t%near%member(i)
          if (m%pairs(k)%kind /= kind) cycle
          if (t%depth(other_link(m, k, link)) >= 0) cycle
          call attach(t, last, other_link(m, k, link), link, k)
@@ -268,8 +234,8 @@ contains
       real(wp) :: e(2), angle
 
       angle = t%angle_offset(m%points(m%pairs(k)%point_i)%link) + m%pairs(k)%alpha
-      e = [cos(angle), sin(angle)]
-      if (across) e = [-e(2), e(1)]
+      e = direction(angle)
+      if (across) e = quarter_turn(e)
    end function guide
 
    !> Point number `i` in the axes of its link's orientation, from the link's origin; of a ground link, its place

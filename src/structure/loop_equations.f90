@@ -5,7 +5,9 @@
 module loop_equations
    use kinds, only: wp
    use constants, only: without_turns
-   use mechanism, only: mechanism_t, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
+   use grouping, only: sorted_t, sorted
+   use mechanism, only: mechanism_t, pair_links, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, &
+      drive_slide
    use links_tree, only: tree_t, guide
    use tree_paths, only: search_t, new_search, find_path, find_path_down, close_pair
    use vector_loops, only: vector_loops_t, new_vector_loops, add_vector_loop
@@ -72,24 +74,16 @@ contains
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       integer, allocatable :: pairs(:)
-      integer :: fill(0:2*maxval(t%depth) + 1), k, sum_of
+      type(sorted_t) :: s
+      integer :: depth(size(m%pairs)), links(2), k
 
-      allocate (pairs(size(m%pairs)))
-      fill = 0
       do k = 1, size(m%pairs)
-         sum_of = t%depth(m%points(m%pairs(k)%point_i)%link) + t%depth(m%points(m%pairs(k)%point_j)%link)
-         if (.not. is_in_tree(m, t, k)) fill(sum_of + 1) = fill(sum_of + 1) + 1
+         links = pair_links(m, m%pairs(k))
+         ! Those of the tree are left out.
+         depth(k) = merge(0, 1 + sum(t%depth(links)), any(t%parent_joint(links) == k))
       end do
-      do k = 1, ubound(fill, 1)
-         fill(k) = fill(k) + fill(k - 1)
-      end do
-      pairs = pairs(:fill(ubound(fill, 1)))
-      do k = 1, size(m%pairs)
-         if (is_in_tree(m, t, k)) cycle
-         sum_of = t%depth(m%points(m%pairs(k)%point_i)%link) + t%depth(m%points(m%pairs(k)%point_j)%link)
-         fill(sum_of) = fill(sum_of) + 1
-         pairs(fill(sum_of)) = k
-      end do
+      s = sorted(depth, 1 + 2*maxval(t%depth))
+      pairs = s%member
    end function closing_pairs
 
    !> The equations of pair `k`, which closes a loop.
@@ -154,16 +148,6 @@ contains
       end associate
    end subroutine add_drive
 
-   !> Pair `k` joins a link to its parent.
-   pure logical function is_in_tree(m, t, k)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      integer, intent(in) :: k
-
-      is_in_tree = t%parent_joint(m%points(m%pairs(k)%point_i)%link) == k &
-         .or. t%parent_joint(m%points(m%pairs(k)%point_j)%link) == k
-   end function is_in_tree
-
    !> By how much prismatic pair `k` differs from the angle that other prismatic pairs give its links; whole turns are
    !> no difference.
    pure real(wp) function misfit(m, t, k)
@@ -171,9 +155,10 @@ contains
       type(tree_t), intent(in) :: t
       integer, intent(in) :: k
 
-      misfit = m%pairs(k)%beta + t%angle_offset(m%points(m%pairs(k)%point_i)%link) &
-         - t%angle_offset(m%points(m%pairs(k)%point_j)%link)
-      misfit = without_turns(misfit)
+      associate (pair => m%pairs(k))
+         misfit = without_turns(pair%beta + t%angle_offset(m%points(pair%point_i)%link) &
+            - t%angle_offset(m%points(pair%point_j)%link))
+      end associate
    end function misfit
 
    !> Appends `equation` to `e`.

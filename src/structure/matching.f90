@@ -9,9 +9,10 @@
 !> Rejected: btf_maxtrans, btf_strongcomp and cs_dmperm of SuiteSparse. They find the same blocks, but with the unknowns
 !> of a block in other orders, and with these the last digits of results change in 5 to 35 of 56 decks.
 module matching
+   use grouping, only: sorted_t, sorted
    implicit none
    private
-   public :: incidence_t, match, find_blocks, overdetermined, underdetermined
+   public :: incidence_t, owners, match, find_blocks, overdetermined, underdetermined
 
    !> Unknowns of equation e: unknown(first(e)), ..., unknown(first(e + 1) - 1), each once.
    type :: incidence_t
@@ -21,114 +22,108 @@ module matching
 
 contains
 
+   !> The equation of each entry of g%unknown.
+   pure function owners(g) result(equation)
+      type(incidence_t), intent(in) :: g
+      integer :: equation(g%first(g%equations + 1) - 1), e
+
+      do e = 1, g%equations
+         equation(g%first(e):g%first(e + 1) - 1) = e
+      end do
+   end function owners
+
    !> `unknown_of` (equations): the unknown matched with each equation, 0 for none; `equation_of` (unknowns) likewise.
    subroutine match(g, unknown_of, equation_of)
       type(incidence_t), intent(in) :: g
       integer, allocatable, intent(out) :: unknown_of(:), equation_of(:)
-      integer :: look(g%equations), seen(g%equations), i, e
+      ! Of each equation: where the look ahead for a free unknown stands, never set back, and the last search that came
+      ! to it. Of the search at hand: its path of equations, and the place of the next unknown of each.
+      integer :: look(g%equations), seen(g%equations), path(g%equations), next(g%equations)
+      integer :: i, e
 
       allocate (unknown_of(g%equations), equation_of(g%unknowns), source=0)
       do e = 1, g%equations
          do i = g%first(e), g%first(e + 1) - 1
             if (equation_of(g%unknown(i)) /= 0) cycle
-            call join(e, g%unknown(i), unknown_of, equation_of)
+            call join(e, g%unknown(i))
             exit
          end do
       end do
       look = g%first(:g%equations)
       seen = 0
       do e = 1, g%equations
-         if (unknown_of(e) == 0) call augment(g, e, look, seen, unknown_of, equation_of)
+         if (unknown_of(e) == 0) call augment(e)
       end do
-   end subroutine match
 
-   !> Matches equation `e` with unknown `u`.
-   subroutine join(e, u, unknown_of, equation_of)
-      integer, intent(in) :: e, u
-      integer, intent(inout) :: unknown_of(:), equation_of(:)
+   contains
 
-      unknown_of(e) = u
-      equation_of(u) = e
-   end subroutine join
+      !> Matches equation `e` with unknown `u`.
+      subroutine join(e, u)
+         integer, intent(in) :: e, u
 
-   !> Looks for a path from equation `start` to a free unknown and swaps the matching along it. `look`
-   !> (equations): where the look ahead for a free unknown stands, never set back; `seen` (equations): visited in
-   !> the search of that number.
-   subroutine augment(g, start, look, seen, unknown_of, equation_of)
-      type(incidence_t), intent(in) :: g
-      integer, intent(in) :: start
-      integer, intent(inout) :: look(:), seen(:), unknown_of(:), equation_of(:)
-      integer, allocatable :: path(:), next(:)
-      integer :: depth, free, e
+         unknown_of(e) = u
+         equation_of(u) = e
+      end subroutine join
 
-      allocate (path(64), next(64))
-      depth = 1
-      path(1) = start
-      next(1) = g%first(start)
-      seen(start) = start
-      do while (depth > 0)
-         e = path(depth)
-         free = free_unknown(g, e, look, equation_of)
-         if (free > 0) then
-            call swap(g, path(:depth), next(:depth), free, unknown_of, equation_of)
-            return
-         end if
-         call go_deeper(g, seen, start, equation_of, path, next, depth)
-      end do
-   end subroutine augment
+      !> Looks for a path from equation `start` to a free unknown. Every equation of it takes the unknown of the one
+      !> after it, the last the free one.
+      subroutine augment(start)
+         integer, intent(in) :: start
+         integer :: depth, free
 
-   !> A free unknown of equation `e`, 0 for none.
-   integer function free_unknown(g, e, look, equation_of) result(u)
-      type(incidence_t), intent(in) :: g
-      integer, intent(in) :: e, equation_of(:)
-      integer, intent(inout) :: look(:)
+         depth = 0
+         call visit(start, start, depth)
+         do while (depth > 0)
+            free = free_unknown(path(depth))
+            if (free > 0) exit
+            call go_deeper(start, depth)
+         end do
+         if (depth == 0) return
+         call join(path(depth), free)
+         do depth = depth - 1, 1, -1
+            call join(path(depth), g%unknown(next(depth) - 1))
+         end do
+      end subroutine augment
 
-      do while (look(e) < g%first(e + 1))
-         u = g%unknown(look(e))
-         look(e) = look(e) + 1
-         if (equation_of(u) == 0) return
-      end do
-      u = 0
-   end function free_unknown
+      !> The path of search `number` goes on to equation `e`.
+      subroutine visit(e, number, depth)
+         integer, intent(in) :: e, number
+         integer, intent(inout) :: depth
 
-   !> One step of the search: to an equation not yet seen, or back.
-   subroutine go_deeper(g, seen, mark, equation_of, path, next, depth)
-      type(incidence_t), intent(in) :: g
-      integer, intent(inout) :: seen(:), depth
-      integer, intent(in) :: mark, equation_of(:)
-      integer, allocatable, intent(inout) :: path(:), next(:)
-      integer :: e, further
-
-      e = path(depth)
-      do while (next(depth) < g%first(e + 1))
-         further = equation_of(g%unknown(next(depth)))
-         next(depth) = next(depth) + 1
-         if (seen(further) == mark) cycle
-         seen(further) = mark
-         if (depth == size(path)) then
-            path = [path, path]
-            next = [next, next]
-         end if
          depth = depth + 1
-         path(depth) = further
-         next(depth) = g%first(further)
-         return
-      end do
-      depth = depth - 1
-   end subroutine go_deeper
+         path(depth) = e
+         next(depth) = g%first(e)
+         seen(e) = number
+      end subroutine visit
 
-   !> Every equation of the path takes the unknown of the one after it, the last the free one.
-   subroutine swap(g, path, next, free, unknown_of, equation_of)
-      type(incidence_t), intent(in) :: g
-      integer, intent(in) :: path(:), next(:), free
-      integer, intent(inout) :: unknown_of(:), equation_of(:)
-      integer :: i
+      !> A free unknown of equation `e`, 0 for none.
+      integer function free_unknown(e) result(u)
+         integer, intent(in) :: e
 
-      call join(path(size(path)), free, unknown_of, equation_of)
-      do i = size(path) - 1, 1, -1
-         call join(path(i), g%unknown(next(i) - 1), unknown_of, equation_of)
-      end do
-   end subroutine swap
+         do while (look(e) < g%first(e + 1))
+            u = g%unknown(look(e))
+            look(e) = look(e) + 1
+            if (equation_of(u) == 0) return
+         end do
+         u = 0
+      end function free_unknown
+
+      !> One step of search `number`: to an equation not yet seen, or back.
+      subroutine go_deeper(number, depth)
+         integer, intent(in) :: number
+         integer, intent(inout) :: depth
+         integer :: e
+
+         do while (next(depth) < g%first(path(depth) + 1))
+            e = equation_of(g%unknown(next(depth)))
+            next(depth) = next(depth) + 1
+            if (seen(e) == number) cycle
+            call visit(e, number, depth)
+            return
+         end do
+         depth = depth - 1
+      end subroutine go_deeper
+   end subroutine match
 
    !> The blocks of a perfect matching: equations `member`(first(b)), ..., member(first(b + 1) - 1) are block b,
    !> solved for the unknowns matched with them. A block needs unknowns of earlier blocks only. No equation: no
@@ -220,8 +215,7 @@ contains
    end subroutine find_blocks
 
    !> (equations) The part with too many equations, of a largest matching: those without an unknown, and all that
-   !> stand for unknowns of theirs, again and again (Dulmage and Mendelsohn, Can. J. Math. 10, 1958). It needs no
-   !> other unknowns.
+   !> stand for unknowns of theirs, again and again. It needs no other unknowns.
    function overdetermined(g, unknown_of, equation_of) result(over)
       type(incidence_t), intent(in) :: g
       integer, intent(in) :: unknown_of(:), equation_of(:)
@@ -245,76 +239,17 @@ contains
       end do
    end function overdetermined
 
-   !> (unknowns) What has too few equations: 0 for what is determined; the others have the number of the first free
-   !> unknown that equations join them with. It is in no other equations.
-   function underdetermined(g, unknown_of, equation_of) result(part)
+   !> (unknowns) The part with too few equations, of a largest matching: the free unknowns, and all that could be free
+   !> in their place. Turned round, too few equations are too many.
+   function underdetermined(g, unknown_of, equation_of) result(loose)
       type(incidence_t), intent(in) :: g
       integer, intent(in) :: unknown_of(:), equation_of(:)
-      integer :: part(g%unknowns)
-      type(incidence_t) :: h
-      integer :: u
       logical :: loose(g%unknowns)
+      integer :: owner(g%first(g%equations + 1) - 1)
+      type(sorted_t) :: s
 
-      h = turned_round(g)
-      ! Turned round, too few equations are too many: those that could be free in place of the free ones.
-      loose = overdetermined(h, equation_of, unknown_of)
-      part = 0
-      do u = 1, g%unknowns
-         if (equation_of(u) == 0 .and. part(u) == 0) call spread(g, h, u, loose, part)
-      end do
+      owner = owners(g)
+      s = sorted(g%unknown(:size(owner)), g%unknowns)
+      loose = overdetermined(incidence_t(g%unknowns, g%equations, s%first, owner(s%member)), equation_of, unknown_of)
    end function underdetermined
-
-   !> The equations of each unknown.
-   pure function turned_round(g) result(h)
-      type(incidence_t), intent(in) :: g
-      type(incidence_t) :: h
-      integer :: fill(g%unknowns), e, i
-
-      h%equations = g%unknowns
-      h%unknowns = g%equations
-      allocate (h%first(g%unknowns + 1), h%unknown(g%first(g%equations + 1) - 1))
-      fill = 0
-      do i = 1, size(h%unknown)
-         fill(g%unknown(i)) = fill(g%unknown(i)) + 1
-      end do
-      h%first(1) = 1
-      do i = 1, g%unknowns
-         h%first(i + 1) = h%first(i) + fill(i)
-      end do
-      fill = h%first(:g%unknowns)
-      do e = 1, g%equations
-         do i = g%first(e), g%first(e + 1) - 1
-            h%unknown(fill(g%unknown(i))) = e
-            fill(g%unknown(i)) = fill(g%unknown(i)) + 1
-         end do
-      end do
-   end function turned_round
-
-   !> Gives number `start` to all loose unknowns that equations join with it, one after another.
-   pure subroutine spread(g, h, start, loose, part)
-      type(incidence_t), intent(in) :: g, h
-      integer, intent(in) :: start
-      logical, intent(in) :: loose(:)
-      integer, intent(inout) :: part(:)
-      integer, allocatable :: stack(:)
-      integer :: i, k, u, top
-
-      allocate (stack(64))
-      top = 1
-      stack(1) = start
-      part(start) = start
-      do while (top > 0)
-         u = stack(top)
-         top = top - 1
-         do i = h%first(u), h%first(u + 1) - 1
-            do k = g%first(h%unknown(i)), g%first(h%unknown(i) + 1) - 1
-               if (.not. loose(g%unknown(k)) .or. part(g%unknown(k)) > 0) cycle
-               part(g%unknown(k)) = start
-               if (top == size(stack)) stack = [stack, stack]
-               top = top + 1
-               stack(top) = g%unknown(k)
-            end do
-         end do
-      end do
-   end subroutine spread
 end module matching

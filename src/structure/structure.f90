@@ -9,11 +9,12 @@ module structure
    use failures, only: failure_t, fail, status_rejected
    use numerals, only: whole
    use names, only: drive_name, listed
-   use mechanism, only: mechanism_t, pair_revolute, pair_prismatic, wanted_links, method_newton
-   use matching, only: match, overdetermined, underdetermined
+   use grouping, only: sorted_t, sorted, members, once, joined
+   use mechanism, only: mechanism_t, pair_links, drive_links, pair_revolute, pair_prismatic, wanted_links, method_newton
+   use matching, only: match, owners, overdetermined, underdetermined
    use assur_groups, only: closure_t, new_closure, group_t, groups_of
    use scales, only: solver_length, power_of_two
-   use independent, only: sorted_t, sorted, parts_t, find_parts, part_of_links, part_of_pair, part_of_drive
+   use independent, only: parts_t, find_parts, part_of_links
    use links_tree, only: tree_t, new_tree
    use loop_equations, only: new_equations
    use blocks, only: blocks_t
@@ -115,8 +116,7 @@ contains
       f%many_pairs = pack(c%pair, over .and. c%pair > 0)
       f%many_drives = pack(c%drive, over .and. c%drive > 0)
       if (size(f%many_drives) > 1) call find_spare_drives(m, f)
-      f%lacking = parts_that_lack(m, c%link_of, underdetermined(c%incidence, unknown_of, equation_of), &
-         equation_of)
+      f%lacking = parts_that_lack(m, c, underdetermined(c%incidence, unknown_of, equation_of), equation_of)
       if (size(f%lacking) > 0) return
       call find_parts(m, f%parts, f%own)
       allocate (f%structures(f%parts%count))
@@ -145,7 +145,7 @@ contains
       pairs_only%drives = m%drives(:0)
       part = part_of_links(m)
       spare = redundant_in_parts(m, part) - redundant_in_parts(pairs_only, part)
-      owner = [(part_of_drive(m, part, f%many_drives(i)), i=1, size(owner))]
+      owner = [(maxval(part(drive_links(m, m%drives(f%many_drives(i))))), i=1, size(owner))]
       allocate (many(size(spare)), source=0)
       do i = 1, size(owner)
          many(owner(i)) = many(owner(i)) + 1
@@ -170,62 +170,45 @@ contains
       do i = 1, size(unknown_of)
          if (unknown_of(i) > 0) cycle
          k = 0
-         if (c%pair(i) > 0) k = part_of_pair(m, part, c%pair(i))
-         if (c%drive(i) > 0) k = part_of_drive(m, part, c%drive(i))
+         if (c%pair(i) > 0) k = maxval(part(pair_links(m, m%pairs(c%pair(i)))))
+         if (c%drive(i) > 0) k = maxval(part(drive_links(m, m%drives(c%drive(i)))))
          if (k > 0) redundant(k) = redundant(k) + 1
       end do
    end function redundant_in_parts
 
-   !> The parts of `m` that still can move. `part` (unknowns): the number of its part, 0 for what cannot move;
-   !> parts with a link in common are one. Time proportional to the unknowns.
-   function parts_that_lack(m, link_of, part, equation_of) result(parts)
+   !> The parts of `m` that still can move: the links of coordinates that have too few equations (`loose`), those in one
+   !> part that such coordinates in one equation join. `equation_of` (unknowns): the matching of the closure `c`.
+   function parts_that_lack(m, c, loose, equation_of) result(parts)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: link_of(:), part(:), equation_of(:)
+      type(closure_t), intent(in) :: c
+      logical, intent(in) :: loose(:)
+      integer, intent(in) :: equation_of(:)
       type(underdetermined_t), allocatable :: parts(:)
-      integer :: first(size(m%links)), parent(size(part)), number(size(part)), u, i, n
-      integer, allocatable :: links(:)
+      logical :: can_move(size(m%links))
+      integer, allocatable :: unknown(:), part(:)
       type(sorted_t) :: by_part
+      integer :: i
 
-      first = 0
-      parent = [(u, u=1, size(part))]
-      do u = 1, size(part)
-         if (part(u) == 0) cycle
-         if (first(link_of(u)) == 0) first(link_of(u)) = part(u)
-         parent(top(part(u))) = top(first(link_of(u)))
+      can_move = .false.
+      can_move(pack(c%link_of, loose)) = .true.
+      associate (g => c%incidence)
+         unknown = g%unknown(:g%first(g%equations + 1) - 1)
+         ! Behind the links the equations.
+         part = joined([can_move, spread(.true., 1, g%equations)], c%link_of(pack(unknown, loose(unknown))), &
+            size(m%links) + pack(owners(g), loose(unknown)))
+      end associate
+      part = part(:size(m%links))
+      allocate (parts(maxval([0, part])))
+      by_part = sorted(part, size(parts))
+      do i = 1, size(parts)
+         parts(i)%links = members(by_part, i)
       end do
-      links = pack([(i, i=1, size(first))], first > 0)
-      number = 0
-      n = 0
-      do i = 1, size(links)
-         u = top(first(links(i)))
-         if (number(u) == 0) n = n + 1
-         if (number(u) == 0) number(u) = n
-         first(links(i)) = number(u)
-      end do
-      allocate (parts(n))
-      by_part = sorted(first(links), n)
-      do i = 1, n
-         parts(i)%links = links(by_part%member(by_part%first(i):by_part%first(i + 1) - 1))
-      end do
-      do u = 1, size(part)
-         if (part(u) == 0 .or. equation_of(u) > 0) cycle
-         associate (p => parts(number(top(part(u)))))
-            p%degrees_of_freedom = p%degrees_of_freedom + 1
+      do i = 1, size(equation_of)
+         if (equation_of(i) > 0) cycle
+         associate (degrees => parts(part(c%link_of(i)))%degrees_of_freedom)
+            degrees = degrees + 1
          end associate
       end do
-
-   contains
-
-      !> The part that stands for all that are one with part `k`.
-      integer function top(k)
-         integer, intent(in) :: k
-
-         top = k
-         do while (parent(top) /= top)
-            parent(top) = parent(parent(top))
-            top = parent(top)
-         end do
-      end function top
    end function parts_that_lack
 
    !> The same by unknowns of the tree that found no equation: two links that a prismatic pair joins have one angle.
@@ -384,12 +367,4 @@ contains
       text = text//trim(merge(' DRIVE ', ' DRIVES', size(f%many_drives) == 1))//' '//drives_listed(m, f%many_drives)
    end function surplus
 
-   !> The first of each run of equal numbers.
-   pure function once(list) result(short)
-      integer, intent(in) :: list(:)
-      integer, allocatable :: short(:)
-      integer :: i
-
-      short = pack(list, [(i == 1 .or. list(max(i - 1, 1)) /= list(i), i=1, size(list))])
-   end function once
 end module structure

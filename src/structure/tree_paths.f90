@@ -54,8 +54,7 @@ contains
 
       s%length = 0
       i = link
-      do while (i > 0)
-         if (t%parent(i) == 0) exit
+      do while (t%parent(i) > 0)
          s%length = s%length + 1
          s%pairs(s%length) = t%parent_joint(i)
          i = t%parent(i)
@@ -97,7 +96,7 @@ contains
          do n = first(side), level_end
             link = s%queue(n, side)
             do k = t%near%first(link), t%near%first(link + 1) - 1
-               p = t%near%pairs(k)
+               p = t%near%member(k)
                if (s%open(p)) call reach(side, node(m, other_link(m, p, link)), p)
                if (meeting >= 0) return
             end do

@@ -1,0 +1,106 @@
+!> Numbers 1, 2, ... in groups: sorted by the group of each, or joined by pairs. Time and memory are in proportion to
+!> the numbers and pairs.
+module grouping
+   implicit none
+   private
+   public :: sorted_t, sorted, sorted_numbers, members, once, joined
+
+   !> Numbers sorted by group: those of group k are member(first(k)), ..., member(first(k + 1) - 1), increasing.
+   type :: sorted_t
+      integer, allocatable :: first(:), member(:)
+   end type sorted_t
+
+contains
+
+   !> The numbers 1, 2, ... sorted by `group`, which is 1 to `groups`; those of group 0 are left out.
+   pure function sorted(group, groups) result(s)
+      integer, intent(in) :: group(:), groups
+      type(sorted_t) :: s
+      integer :: next(0:groups), i
+
+      next = 0
+      do i = 1, size(group)
+         next(group(i)) = next(group(i)) + 1
+      end do
+      allocate (s%first(groups + 1), s%member(sum(next(1:))), source=1)
+      do i = 1, groups
+         s%first(i + 1) = s%first(i) + next(i)
+      end do
+      next(1:) = s%first(:groups)
+      do i = 1, size(group)
+         if (group(i) == 0) cycle
+         s%member(next(group(i))) = i
+         next(group(i)) = next(group(i)) + 1
+      end do
+   end function sorted
+
+   !> `number`(k) > 0 is in `group`(k), which is 1 to `groups`, or 0: left out. A number may be in several groups, and
+   !> more than once in one.
+   pure function sorted_numbers(number, group, groups) result(s)
+      integer, intent(in) :: number(:), group(:), groups
+      type(sorted_t) :: s, by_number
+
+      by_number = sorted(number, maxval([0, number]))
+      s = sorted(group(by_number%member), groups)
+      s%member = number(by_number%member(s%member))
+   end function sorted_numbers
+
+   !> The numbers of group `k`.
+   pure function members(s, k) result(list)
+      type(sorted_t), intent(in) :: s
+      integer, intent(in) :: k
+      integer, allocatable :: list(:)
+
+      list = s%member(s%first(k):s%first(k + 1) - 1)
+   end function members
+
+   !> The first of each run of equal numbers in `list`.
+   pure function once(list) result(short)
+      integer, intent(in) :: list(:)
+      integer, allocatable :: short(:)
+      integer :: i
+
+      short = pack(list, [(i == 1 .or. list(max(i - 1, 1)) /= list(i), i=1, size(list))])
+   end function once
+
+   !> (size(counts)) The groups of the numbers that `counts`, after `a`(k) and `b`(k) (any number of pairs) are in one,
+   !> in the order of their least members. A number that does not count is in group 0, and joins nothing.
+   pure function joined(counts, a, b) result(group)
+      logical, intent(in) :: counts(:)
+      integer, intent(in) :: a(:), b(:)
+      integer :: group(size(counts)), parent(size(counts)), i, k, root_a, root_b
+
+      parent = [(i, i=1, size(counts))]
+      do k = 1, size(a)
+         if (.not. (counts(a(k)) .and. counts(b(k)))) cycle
+         call find_root(parent, a(k), root_a)
+         call find_root(parent, b(k), root_b)
+         parent(max(root_a, root_b)) = min(root_a, root_b)
+      end do
+      group = 0
+      k = 0
+      do i = 1, size(counts)
+         if (.not. counts(i)) cycle
+         if (parent(i) == i) then
+            k = k + 1
+            group(i) = k
+         else
+            ! The parent is a smaller number: its group is known.
+            group(i) = group(parent(i))
+         end if
+      end do
+   end function joined
+
+   !> The `root` of the tree of number `i`. The path to it is halved.
+   pure subroutine find_root(parent, i, root)
+      integer, intent(inout) :: parent(:)
+      integer, intent(in) :: i
+      integer, intent(out) :: root
+
+      root = i
+      do while (parent(root) /= root)
+         parent(root) = parent(parent(root))
+         root = parent(root)
+      end do
+   end subroutine find_root
+end module grouping
