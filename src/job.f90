@@ -202,11 +202,9 @@ contains
          if (o%asked(out_circuits) .and. sets(i)%circuits) call draw_circuits(sets(i), page)
       end do
       ! Sets that were broken off are not drawn.
-      associate (done => sets(o%first:i - 1))
-         if (o%asked(out_svg)) call put_pictures(o%files(out_svg, 0), done, o%drawings(o%first:i - 1))
-         if (o%asked(out_animation)) call put_animations(o%files(out_animation, 0), done, o%films(o%first:i - 1))
-         if (o%asked(out_circuits)) call put_circuit_page(o%files(out_circuits, 0), page)
-      end associate
+      if (o%asked(out_svg)) call put_pictures(o%files(out_svg, 0), o%drawings(o%first:i - 1))
+      if (o%asked(out_animation)) call put_animations(o%files(out_animation, 0), o%films(o%first:i - 1))
+      if (o%asked(out_circuits)) call put_circuit_page(o%files(out_circuits, 0), page)
    end subroutine run_sets
 
    !> Records the drawing `d` of `m`, of at most `frames` frames; `every` as in `new_drawing`. It has an analysis of its
@@ -223,7 +221,7 @@ contains
       call make_set_analysis(with_all_links(m), a)
       do k = 0, instant_count(m) - 1
          call advance_set(a, instant(m, k))
-         call record_instant(d, m, a%now, k)
+         call record_instant(d, a%now, k)
          if (progress%shown) &
             call show_progress(progress, 'PICTURE OF SET '//whole(m%set_number)//': INSTANT', k, instant_count(m) - 1)
          if (signal_received() > 0) return

@@ -10,8 +10,7 @@ module circuits_picture
    use circuit_chart, only: chart_t, axis_t, make_charts
    use picture_parts, only: color_of
    use picture_page, only: width, fitted
-   use svg, only: svg_head, svg_end, put_group, put_group_end, put_polyline, put_polygon, put_circle, put_words, &
-      put_window, put_window_end
+   use svg, only: svg_head, put_end, put_group, put_line, put_circle, put_words, put_window
    use text_output, only: output_t
    use phrases
    implicit none
@@ -132,7 +131,7 @@ contains
             end do
          end associate
       end do
-      call svg_end(o)
+      call put_end(o, 'svg')
    end subroutine put_circuit_page
 
    !> Names of the circuits in their colours, in a line at the pixel `y`, as far as there is room.
@@ -172,12 +171,12 @@ contains
             call put_group(o, 'class="circuit" data-circuit="'//whole(i)//'" style="stroke:'//color_of(i)//'"', &
                d%circuit//' '//whole(i))
             call put_trace(o, chart, i, extent)
-            call put_group_end(o)
+            call put_end(o, 'g')
          end do
-         call put_window_end(o)
-         call put_polygon(o, reshape([corner, corner(1) + extent(1), corner(2), corner + extent, corner(1), &
+         call put_end(o, 'svg')
+         call put_line(o, 'polygon', reshape([corner, corner(1) + extent(1), corner(2), corner + extent, corner(1), &
             corner(2) + extent(2)], [2, 4]), 'style="stroke:#222;stroke-width:1"')
-         call put_group_end(o)
+         call put_end(o, 'g')
       end associate
    end subroutine put_chart
 
@@ -200,7 +199,7 @@ contains
          end do
          do x = low(1), high(1)
             do y = low(2), high(2)
-               call put_polyline(o, pixels_of(t%p, [x, y]), 'class="curve" style="stroke:'//color_of(i)//'"')
+               call put_line(o, 'polyline', pixels_of(t%p, [x, y]), 'class="curve" style="stroke:'//color_of(i)//'"')
             end do
          end do
          do k = 1, size(t%dead, 2)
@@ -265,11 +264,11 @@ contains
          x = (real(i, wp)*step - axis%low)/max(tiny(x), axis%high - axis%low)
          if (k == 1) then
             p = corner + extent*[x, 1.0_wp]
-            call put_polyline(o, reshape([p, p + [0.0_wp, tick]], [2, 2]), 'style="stroke:#222;stroke-width:1"')
+            call put_line(o, 'polyline', reshape([p, p + [0.0_wp, tick]], [2, 2]), 'style="stroke:#222;stroke-width:1"')
             call put_words(o, p + [0.0_wp, tick + 13.0_wp], 'middle', 'class="between"', fitted(real(i, wp)*step))
          else
             p = corner + extent*[0.0_wp, 1.0_wp - x]
-            call put_polyline(o, reshape([p, p - [tick, 0.0_wp]], [2, 2]), 'style="stroke:#222;stroke-width:1"')
+            call put_line(o, 'polyline', reshape([p, p - [tick, 0.0_wp]], [2, 2]), 'style="stroke:#222;stroke-width:1"')
             call put_words(o, p + [-tick - 4.0_wp, 4.0_wp], 'end', 'class="between"', fitted(real(i, wp)*step))
          end if
       end do

@@ -9,14 +9,13 @@ module animation
    use names, only: drive_name
    use numerals, only: full, whole
    use drawing, only: drawing_t, max_positions
-   use canvas, only: canvas_t
+   use canvas, only: canvas_t, make_canvas
    use picture_frames, only: closes
    use picture_parts, only: put_flagged, put_guide, put_ground, put_block
    use picture, only: put_curves
-   use picture_page, only: choice_t, view_of, put_set_head, put_flags, put_scale, flag_lines, fitted, width, line_height
+   use picture_page, only: place_canvas, put_set_head, put_flags, put_scale, flag_lines, fitted, width, line_height
    use moving_links, only: course_t, put_moving, put_moving_links
-   use svg, only: svg_head, svg_end, put_group, put_group_end, put_window, put_window_end, put_circle, put_polyline, &
-      put_words
+   use svg, only: svg_head, put_end, put_group, put_window, put_circle, put_line, put_words
    use text_output, only: output_t
    use listing, only: words_of_mark
    implicit none
@@ -60,76 +59,72 @@ contains
       end if
    end subroutine film_of
 
-   !> Writes the animation of the `sets`, one below the other, as `films` has recorded them.
-   subroutine put_animations(o, sets, films)
-      type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: sets(:)
-      type(drawing_t), intent(in) :: films(:)
-      type(canvas_t) :: c(size(films))
-      integer :: top(size(films) + 1), i, k
+   !> Writes the animation of the sets that `films` have recorded, one below the other.
+   subroutine put_animations(o, films)
+      type(output_t), intent(inout), target :: o
+      type(drawing_t), intent(in), target :: films(:)
+      type(canvas_t) :: page(size(films))
+      integer :: top, i, k
 
-      top(1) = 0
+      top = 0
       do i = 1, size(films)
-         call view_of(sets(i), films(i), choice_t(min(1, films(i)%frames), [(k, k=1, films(i)%frames)]), top(i), c(i), &
-            top(i + 1))
-         top(i + 1) = top(i + 1) + bar_room
+         call make_canvas(o, films(i), page(i))
+         page(i)%best = min(1, films(i)%frames)
+         page(i)%faint = [(k, k=1, films(i)%frames)]
+         call place_canvas(page(i), top)
+         top = page(i)%bottom + bar_room
       end do
-      call svg_head(o, width, max(1, top(size(top))))
+      call svg_head(o, width, max(1, top))
       do i = 1, size(films)
-         if (films(i)%frames > 0) call put_film(o, c(i), sets(i), films(i), top(i), top(i + 1) - bar_room)
+         if (films(i)%frames > 0) call put_film(page(i))
       end do
-      call svg_end(o)
+      call put_end(o, 'svg')
    end subroutine put_animations
 
-   !> One set, from the pixel `top` to the bar of the time below `bottom`.
-   subroutine put_film(o, c, m, d, top, bottom)
-      type(output_t), intent(inout) :: o
+   !> One set, with the bar of the time below.
+   subroutine put_film(c)
       type(canvas_t), intent(inout) :: c
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
-      integer, intent(in) :: top, bottom
       type(course_t) :: course
       integer :: i
 
-      course = course_of(m, d)
-      call put_set_head(o, c, m, d, d%frame(1)%t, top)
-      call put_curves(o, c, m, d)
-      do i = 1, size(d%flags)
-         call put_flagged(o, c, m, d, d%flags(i)%last)
+      course = course_of(c%d)
+      call put_set_head(c, c%d%frame(1)%t)
+      call put_curves(c)
+      do i = 1, size(c%d%flags)
+         call put_flagged(c, c%d%flags(i)%last)
       end do
-      call put_ground(o, c, m, d)
-      do i = 1, size(d%guides)
-         if (m%links(d%guides(i)%carrier)%ground) call put_guide(o, c, m, d%guides(i), d%now)
+      call put_ground(c)
+      do i = 1, size(c%d%guides)
+         if (c%m%links(c%d%guides(i)%carrier)%ground) call put_guide(c, c%d%guides(i))
       end do
-      call put_group(o, 'class="film" data-frames="'//whole(d%frames)//'" data-keys="'//whole(size(course%frame)) &
-         //'" data-end="'//full(d%frame(d%frames)%t)//'"', '')
-      call put_moving_links(o, c, m, d, course)
-      call put_group_end(o)
-      do i = 1, size(d%guides)
-         if (m%links(d%guides(i)%block)%ground) call put_block(o, c, m, d%guides(i), d%now)
+      call put_group(c%o, 'class="film" data-frames="'//whole(c%d%frames)//'" data-keys="'//whole(size(course%frame)) &
+         //'" data-end="'//full(c%d%frame(c%d%frames)%t)//'"', '')
+      call put_moving_links(c, course)
+      call put_end(c%o, 'g')
+      do i = 1, size(c%d%guides)
+         if (c%m%links(c%d%guides(i)%block)%ground) call put_block(c, c%d%guides(i))
       end do
-      call put_clock(o, m, d, course, bottom - 16 - line_height*flag_lines(d))
-      call put_flags(o, m, d, bottom)
-      call put_bar(o, d, course, real(bottom, wp))
-      call put_scale(o, c, m)
-      call put_group_end(o)
+      call put_clock(c, course)
+      call put_flags(c)
+      call put_bar(c, course)
+      call put_scale(c)
+      call put_end(c%o, 'g')
    end subroutine put_film
 
    !> The motion begins anew after its end: at once where it has come back, otherwise after a pause. It is not shown
    !> backwards: drives do not run so.
-   function course_of(m, d) result(course)
-      type(mechanism_t), intent(in) :: m
+   function course_of(d) result(course)
       type(drawing_t), intent(in) :: d
       type(course_t) :: course
       integer :: i, k, pause
 
       pause = 0
-      if (.not. closes(m, d)) pause = nint(real(d%frames - 1, wp)*pause_seconds/motion_seconds)
+      if (.not. closes(d)) pause = nint(real(d%frames - 1, wp)*pause_seconds/motion_seconds)
       course%frame = [(min(k, d%frames), k=1, d%frames + pause)]
       course%seconds = motion_seconds*real(max(1, d%frames + pause - 1), wp)/real(max(1, d%frames - 1), wp)
       do k = 2, d%frames
-         do i = 1, size(m%links)
-            if (m%links(i)%ground .or. .not. (d%frame(k)%known(i) .and. d%frame(k - 1)%known(i))) cycle
+         do i = 1, size(d%m%links)
+            if (d%m%links(i)%ground .or. .not. (d%frame(k)%known(i) .and. d%frame(k - 1)%known(i))) cycle
             if (abs(without_turns(d%frame(k)%place(3, i) - d%frame(k - 1)%place(3, i))) > max_turn) &
                course%smooth = .false.
          end do
@@ -137,83 +132,79 @@ contains
    end function course_of
 
    !> The time and the values of drives, in red with its words where the instant is flagged: a column of lines behind a
-   !> window of one line, with its foot at the pixel `y`.
-   subroutine put_clock(o, m, d, course, y)
-      type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
+   !> window of one line.
+   subroutine put_clock(c, course)
+      type(canvas_t), intent(in) :: c
       type(course_t), intent(in) :: course
-      integer, intent(in) :: y
       real(wp) :: up(2, size(course%frame))
-      real(wp) :: value(min(max_drives, size(m%drives)), d%frames)
+      real(wp) :: value(min(max_drives, size(c%m%drives)), c%d%frames)
       character(:), allocatable :: words
-      integer :: k, i
+      integer :: k, i, y
 
-      value = drive_values(m, d)
-      call put_window(o, real([14, y - line_height + 5], wp), real([width - 28, line_height], wp))
-      call put_group(o, 'class="clock"', '')
+      y = c%bottom - 16 - line_height*flag_lines(c%d)
+      value = drive_values(c%d)
+      call put_window(c%o, real([14, y - line_height + 5], wp), real([width - 28, line_height], wp))
+      call put_group(c%o, 'class="clock"', '')
       up(1, :) = 0.0_wp
       up(2, :) = -real(line_height*(course%frame - 1), wp)
-      call put_moving(o, course, 'animateTransform attributeName="transform" type="translate"', up, .false.)
-      do k = 1, d%frames
-         associate (s => d%frame(k))
-            words = 'T = '//fitted(s%t)//' '//trim(m%time_unit)
+      call put_moving(c%o, course, 'animateTransform attributeName="transform" type="translate"', up, .false.)
+      do k = 1, c%d%frames
+         associate (s => c%d%frame(k))
+            words = 'T = '//fitted(s%t)//' '//trim(c%m%time_unit)
             do i = 1, size(value, 1)
-               words = words//', '//trim(drive_name(m, m%drives(i)))//' = '//fitted(value(i, k))
+               words = words//', '//trim(drive_name(c%m, c%m%drives(i)))//' = '//fitted(value(i, k))
             end do
-            if (s%mark /= mark_none) words = words//': '//words_of_mark(s%mark, s%singularity, m%polish)
-            call put_words(o, real([0, line_height*k - 5], wp), 'start', &
+            if (s%mark /= mark_none) words = words//': '//words_of_mark(s%mark, s%singularity, c%m%polish)
+            call put_words(c%o, real([0, line_height*k - 5], wp), 'start', &
                trim(merge('class="time flag"', 'class="time"     ', s%mark /= mark_none)), words)
          end associate
       end do
-      call put_group_end(o)
-      call put_window_end(o)
+      call put_end(c%o, 'g')
+      call put_end(c%o, 'svg')
    end subroutine put_clock
 
    !> The values of the first drives at the frames, angles in the deck's unit. Rounding errors of a 0 are not shown.
-   function drive_values(m, d) result(value)
-      type(mechanism_t), intent(in) :: m
+   function drive_values(d) result(value)
       type(drawing_t), intent(in) :: d
-      real(wp) :: value(min(max_drives, size(m%drives)), d%frames), f(0:2)
+      real(wp) :: value(min(max_drives, size(d%m%drives)), d%frames), f(0:2)
       type(law_t) :: law
       integer :: i, k
 
       do i = 1, size(value, 1)
-         law = new_law(m%drives(i))
+         law = new_law(d%m%drives(i))
          do k = 1, d%frames
             f = drive_motion(law, d%frame(k)%t)
             value(i, k) = f(0)
          end do
-         if (m%degrees .and. all(m%drives(i)%kind /= [drive_x, drive_y, drive_slide])) &
+         if (d%m%degrees .and. all(d%m%drives(i)%kind /= [drive_x, drive_y, drive_slide])) &
             value(i, :) = in_degrees(value(i, :))
          where (abs(value(i, :)) < not_shown*maxval(abs(value(i, :)))) value(i, :) = 0.0_wp
       end do
    end function drive_values
 
-   !> The bar on which the time passes, at the pixel `y`, with red marks at flagged instants.
-   subroutine put_bar(o, d, course, y)
-      type(output_t), intent(inout) :: o
-      type(drawing_t), intent(in) :: d
+   !> The bar on which the time passes, with red marks at flagged instants.
+   subroutine put_bar(c, course)
+      type(canvas_t), intent(in) :: c
       type(course_t), intent(in) :: course
-      real(wp), intent(in) :: y
-      real(wp) :: x, last, first(2)
+      real(wp) :: x, y, last, first(2)
       integer :: k
 
+      y = real(c%bottom, wp)
       first = [bar_ends(1), y]
-      call put_polyline(o, reshape([first, bar_ends(2), y], [2, 2]), 'class="time"')
+      call put_line(c%o, 'polyline', reshape([first, bar_ends(2), y], [2, 2]), 'class="time"')
       last = -1.0_wp
-      do k = 1, size(d%flagged_at)
-         x = along_bar(d, d%flagged_at(k))
+      do k = 1, size(c%d%flagged_at)
+         x = along_bar(c%d, c%d%flagged_at(k))
          if (abs(x - last) < 1.0_wp) cycle
          last = x
-         call put_polyline(o, reshape([x, y - mark_height, x, y + mark_height], [2, 2]), 'class="mark"')
+         call put_line(c%o, 'polyline', reshape([x, y - mark_height, x, y + mark_height], [2, 2]), 'class="mark"')
       end do
-      call put_group(o, 'class="now"', '')
-      call put_moving(o, course, 'animateTransform attributeName="transform" type="translate"', &
-         reshape([(along_bar(d, d%frame(course%frame(k))%t) - first(1), 0.0_wp, k=1, size(course%frame))], &
+      call put_group(c%o, 'class="now"', '')
+      call put_moving(c%o, course, 'animateTransform attributeName="transform" type="translate"', &
+         reshape([(along_bar(c%d, c%d%frame(course%frame(k))%t) - first(1), 0.0_wp, k=1, size(course%frame))], &
          [2, size(course%frame)]), course%smooth)
-      call put_circle(o, first, dot_radius, 'class="point"')
-      call put_group_end(o)
+      call put_circle(c%o, first, dot_radius, 'class="point"')
+      call put_end(c%o, 'g')
    end subroutine put_bar
 
    !> Where the time `t` is on the bar (pixel).

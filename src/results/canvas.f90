@@ -2,15 +2,26 @@
 !> it.
 module canvas
    use kinds, only: wp
+   use mechanism, only: mechanism_t
+   use drawing, only: drawing_t, snapshot_t
+   use text_output, only: output_t
    implicit none
    private
-   public :: canvas_t, to_pixels, add_line, add_box, find_clear_place, cover_of, find_inside
+   public :: canvas_t, make_canvas, to_pixels, add_line, add_box, find_clear_place, cover_of, find_inside
 
    !> Size of the letters of a name: mean width and height of capitals, in pixels.
    real(wp), parameter, public :: letter_width = 8.7_wp, letter_height = 9.0_wp
 
-   !> A place p of the deck is at shift + scale (x, -y) in pixels, where x and y are counted from `origin`.
+   !> What a set is drawn on. A place p of the drawing is at shift + scale (x, -y) in pixels.
    type :: canvas_t
+      type(output_t), pointer :: o => null()      !< where it is written
+      type(drawing_t), pointer :: d => null()     !< what is recorded of the set
+      type(mechanism_t), pointer :: m => null()   !< the set
+      type(snapshot_t) :: s                  !< the position that is drawn in full
+      integer :: best = 0                    !< the frame that is drawn in full; 0 for none
+      integer, allocatable :: faint(:)       !< frames that are faint
+      logical :: centrodes = .false.         !< they are drawn
+      integer :: top = 0, bottom = 0         !< pixels where it begins, and above which it ends
       real(wp) :: scale = 1.0_wp             !< pixels in a unit of length
       real(wp) :: shift(2) = 0.0_wp
       real(wp) :: low(2) = 0.0_wp, high(2) = 0.0_wp   !< names stay between these
@@ -32,6 +43,18 @@ module canvas
    real(wp), parameter :: near = 4.0_wp
 
 contains
+
+   !> The canvas `c` for the drawing `d`, which has its last known position, to be written to `o`.
+   subroutine make_canvas(o, d, c)
+      type(output_t), intent(inout), target :: o
+      type(drawing_t), intent(in), target :: d
+      type(canvas_t), intent(out) :: c
+
+      c%o => o
+      c%d => d
+      c%m => d%m
+      c%s = d%now
+   end subroutine make_canvas
 
    !> The pixel (2) of the place `p` (2), which is counted from the drawing's origin.
    pure function to_pixels(c, p) result(q)

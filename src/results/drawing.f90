@@ -3,7 +3,7 @@
 !> Places are counted from the set's first ground link, in the deck's unit of length.
 module drawing
    use kinds, only: wp
-   use mechanism, only: mechanism_t, pair_t, request_point, request_pole, pair_prismatic, &
+   use mechanism, only: mechanism_t, request_point, request_pole, pair_prismatic, &
       instant_count, plane_origin
    use planar, only: direction, quarter_turn, point_of
    use motion, only: known_of, mark_none, singular_unclear
@@ -73,7 +73,9 @@ module drawing
       type(snapshot_t) :: last               !< `known`: of the links concerned
    end type flag_t
 
+   !> What is recorded of the set `m`.
    type :: drawing_t
+      type(mechanism_t) :: m
       real(wp) :: origin(2) = 0.0_wp         !< of the places, in the deck's coordinates
       integer :: stride = 1                  !< every so many instants of TIME are in a curve
       integer :: every = 1                   !< each so many instants of TIME are the deck's; 0: none
@@ -102,6 +104,7 @@ contains
       type(drawing_t) :: d
       integer :: i, n, places
 
+      d%m = m
       d%every = every
       d%origin = plane_origin(m)
       d%now = snapshot_of_ground(m, d%origin)
@@ -209,53 +212,51 @@ contains
       end associate
    end function guide_of
 
-   !> Takes what the picture needs of instant number `k` (0, 1, ...) of the motion `s` of `m`.
-   subroutine record_instant(d, m, s, k)
+   !> Takes what the picture needs of instant number `k` (0, 1, ...) of the motion `s`.
+   subroutine record_instant(d, s, k)
       type(drawing_t), intent(inout) :: d
-      type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(in) :: s
       integer, intent(in) :: k
       type(snapshot_t) :: before, now
       integer :: c, i
 
       before = d%now
-      now = snapshot_of_ground(m, d%origin)
+      now = snapshot_of_ground(d%m, d%origin)
       now%t = s%motions(1)%t
       do c = size(s%own), 1, -1
-         if (s%motions(c)%mark /= mark_none .and. is_own(d, m, k)) then
+         if (s%motions(c)%mark /= mark_none .and. is_own(d, k)) then
             now%mark = s%motions(c)%mark
             now%singularity = s%motions(c)%singularity
          end if
          associate (links => s%parts%list(c)%links, q => s%motions(c))
             do i = 1, size(links)
-               if (m%links(links(i))%ground .or. known_of(q, i) < 0) cycle
+               if (d%m%links(links(i))%ground .or. known_of(q, i) < 0) cycle
                now%place(:, links(i)) = q%position(:, i) + [q%origin - d%origin, 0.0_wp]
                now%known(links(i)) = all(abs(now%place(:2, links(i))) < max_place)
             end do
          end associate
       end do
-      do i = 1, size(m%links)
+      do i = 1, size(d%m%links)
          if (.not. now%known(i)) cycle
          d%now%place(:, i) = now%place(:, i)
          d%now%known(i) = .true.
       end do
       d%now%t = now%t
-      call record_centres(d, m, s, k, now)
-      call record_slides(d%guides, m, now)
-      call record_curves(d, m, s, k)
-      if (is_own(d, m, k)) call record_flags(d, s, now, before)
-      if (k >= frame_instants(m) .or. (mod(k, d%frame_stride) /= 0 .and. k < frame_instants(m) - 1)) return
+      call record_centres(d, s, k, now)
+      call record_slides(d%guides, d%m, now)
+      call record_curves(d, s, k)
+      if (is_own(d, k)) call record_flags(d, s, now, before)
+      if (k >= frame_instants(d%m) .or. (mod(k, d%frame_stride) /= 0 .and. k < frame_instants(d%m) - 1)) return
       d%frames = d%frames + 1
       d%frame(d%frames) = now
    end subroutine record_instant
 
    !> Whether instant number `k` (0, 1, ...) is one of the deck's.
-   pure logical function is_own(d, m, k)
+   pure logical function is_own(d, k)
       type(drawing_t), intent(in) :: d
-      type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k
 
-      is_own = k > m%steps
+      is_own = k > d%m%steps
       if (.not. is_own .and. d%every > 0) is_own = mod(k, d%every) == 0
    end function is_own
 
@@ -286,15 +287,14 @@ contains
    end subroutine record_slides
 
    !> The places of the curves at instant number `k`, if it is one of theirs.
-   subroutine record_curves(d, m, s, k)
+   subroutine record_curves(d, s, k)
       type(drawing_t), intent(inout) :: d
-      type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(in) :: s
       integer, intent(in) :: k
       real(wp) :: p(2, 0:2)
       integer :: i, n, c, local
 
-      if (k > m%steps .or. (mod(k, d%stride) /= 0 .and. k < m%steps)) return
+      if (k > d%m%steps .or. (mod(k, d%stride) /= 0 .and. k < d%m%steps)) return
       n = place_number(d, k)
       do i = 1, size(d%curves)
          associate (curve => d%curves(i))
@@ -313,9 +313,8 @@ contains
    end subroutine record_curves
 
    !> Puts the instant centres into `now`, and into their centrodes if instant number `k` is one of theirs.
-   subroutine record_centres(d, m, s, k, now)
+   subroutine record_centres(d, s, k, now)
       type(drawing_t), intent(inout) :: d
-      type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(in) :: s
       integer, intent(in) :: k
       type(snapshot_t), intent(inout) :: now
@@ -323,9 +322,9 @@ contains
       integer :: i, n
 
       n = 0
-      if (k <= m%steps .and. (mod(k, d%stride) == 0 .or. k == m%steps)) n = place_number(d, k)
+      if (k <= d%m%steps .and. (mod(k, d%stride) == 0 .or. k == d%m%steps)) n = place_number(d, k)
       do i = 1, size(d%centrodes)
-         row = row_in_set(m, s, d%centrodes(i)%request)
+         row = row_in_set(d%m, s, d%centrodes(i)%request)
          now%has_centre(i) = has_number(row, 1, 0) .and. all(abs(row%value(:2, :)) < max_place)
          if (.not. now%has_centre(i)) cycle
          now%centre(:, i) = row%value(:2, 0) - d%origin

@@ -3,14 +3,13 @@
 module moving_links
    use kinds, only: wp
    use constants, only: in_degrees, without_turns
-   use mechanism, only: mechanism_t
    use grouping, only: sorted_t, sorted
    use planar, only: point_of
-   use drawing, only: drawing_t, snapshot_t
-   use canvas, only: canvas_t, to_pixels
+   use drawing, only: drawing_t
+   use canvas, only: canvas_t, make_canvas, to_pixels
    use picture_parts, only: put_body, put_guide, put_block, put_joint, put_dot, dots_of
    use picture_page, only: fitted
-   use svg, only: put_group, put_group_end, put_values, pixels, attribute
+   use svg, only: put_group, put_end, put_values, pixels, attribute
    use text_output, only: output_t
    implicit none
    private
@@ -33,25 +32,22 @@ module moving_links
       type(sorted_t) :: rods, blocks         !< guides
       type(sorted_t) :: dots                 !< points
       integer, allocatable :: joint_at(:)    !< (pairs) the point of the link with which the joint moves
-      type(snapshot_t) :: rest               !< all links in their own axes
+      type(canvas_t) :: own                  !< for each link in turn, in its own axes
    end type cargo_t
 
 contains
 
-   !> All moving links of `m`.
-   subroutine put_moving_links(o, c, m, d, course)
-      type(output_t), intent(inout) :: o
+   !> All moving links.
+   subroutine put_moving_links(c, course)
       type(canvas_t), intent(in) :: c
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
       type(course_t), intent(in) :: course
       type(cargo_t) :: cargo
-      integer :: order(size(m%links)), i
+      integer :: order(size(c%m%links)), i
 
-      order = order_of(d)
-      call find_cargo(m, d, order, cargo)
+      order = order_of(c%d)
+      call find_cargo(c, order, cargo)
       do i = 1, size(order)
-         call put_link(o, c, m, d, course, cargo, order(i))
+         call put_link(c, course, cargo, order(i))
       end do
    end subroutine put_moving_links
 
@@ -74,93 +70,90 @@ contains
       end do
    end function order_of
 
-   !> What moves with each link of `m`, which are drawn in `order`: a joint moves with the later one of its links.
-   subroutine find_cargo(m, d, order, cargo)
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
+   !> What moves with each of the links, which are drawn in `order`: a joint moves with the later one of its links.
+   subroutine find_cargo(c, order, cargo)
+      type(canvas_t), intent(in) :: c
       integer, intent(in) :: order(:)
       type(cargo_t), intent(out) :: cargo
-      integer :: rank(size(m%links)), owner(size(m%points)), i
+      integer :: rank(size(c%m%links)), owner(size(c%m%points)), i
 
       rank(order) = [(i, i=1, size(order))]
-      where (m%links%ground) rank = 0
-      cargo%joint_at = m%pairs%point_i
-      do i = 1, size(m%pairs)
-         if (rank(m%points(m%pairs(i)%point_j)%link) > rank(m%points(m%pairs(i)%point_i)%link)) &
-            cargo%joint_at(i) = m%pairs(i)%point_j
+      where (c%m%links%ground) rank = 0
+      cargo%joint_at = c%m%pairs%point_i
+      do i = 1, size(c%m%pairs)
+         if (rank(c%m%points(c%m%pairs(i)%point_j)%link) > rank(c%m%points(c%m%pairs(i)%point_i)%link)) &
+            cargo%joint_at(i) = c%m%pairs(i)%point_j
       end do
-      cargo%joints = sorted(m%points(cargo%joint_at)%link, size(m%links))
-      cargo%rods = sorted(d%guides%carrier, size(m%links))
-      cargo%blocks = sorted(d%guides%block, size(m%links))
+      cargo%joints = sorted(c%m%points(cargo%joint_at)%link, size(c%m%links))
+      cargo%rods = sorted(c%d%guides%carrier, size(c%m%links))
+      cargo%blocks = sorted(c%d%guides%block, size(c%m%links))
       owner = 0
-      owner(dots_of(m)) = m%points(dots_of(m))%link
-      cargo%dots = sorted(owner, size(m%links))
-      allocate (cargo%rest%place(3, size(m%links)), source=0.0_wp)
-      allocate (cargo%rest%known(size(m%links)), source=.true.)
+      owner(dots_of(c%m)) = c%m%points(dots_of(c%m))%link
+      cargo%dots = sorted(owner, size(c%m%links))
+      call make_canvas(c%o, c%d, cargo%own)
+      cargo%own%scale = c%scale
+      cargo%own%s%place = 0.0_wp
+      cargo%own%s%known = .true.
    end subroutine find_cargo
 
    !> The moving `link` with what it carries. It turns about a corner of its own: its origin may be far away.
-   subroutine put_link(o, c, m, d, course, cargo, link)
-      type(output_t), intent(inout) :: o
+   subroutine put_link(c, course, cargo, link)
       type(canvas_t), intent(in) :: c
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
       type(course_t), intent(in) :: course
-      type(cargo_t), intent(in) :: cargo
+      type(cargo_t), intent(inout) :: cargo
       integer, intent(in) :: link
       real(wp) :: place(2, size(course%frame)), angle(1, size(course%frame)), position(3), turned
       integer :: k, last
 
-      if (m%links(link)%ground .or. size(d%outlines(link)%corner, 2) == 0) return
-      last = findloc([(d%frame(k)%known(link), k=1, d%frames)], .true., dim=1)
+      if (c%m%links(link)%ground .or. size(c%d%outlines(link)%corner, 2) == 0) return
+      last = findloc([(c%d%frame(k)%known(link), k=1, c%d%frames)], .true., dim=1)
       if (last == 0) return
       turned = 0.0_wp
       do k = 1, size(course%frame)
-         if (d%frame(course%frame(k))%known(link)) last = course%frame(k)
-         position = d%frame(last)%place(:, link)
-         place(:, k) = to_pixels(c, point_of(position, d%outlines(link)%corner(:, 1)))
+         if (c%d%frame(course%frame(k))%known(link)) last = course%frame(k)
+         position = c%d%frame(last)%place(:, link)
+         place(:, k) = to_pixels(c, point_of(position, c%d%outlines(link)%corner(:, 1)))
          turned = turned + without_turns(position(3) - turned)
          angle(1, k) = turned
       end do
       angle = -in_degrees(angle)
-      call put_group(o, 'class="link" '//attribute('data-link', trim(m%links(link)%name))//' transform="translate(' &
-         //pixels(place(1, 1))//' '//pixels(place(2, 1))//')"', trim(m%links(link)%name))
-      call put_moving(o, course, 'animateTransform attributeName="transform" type="translate"', place, course%smooth)
-      call put_opacity(o, d, course, link)
-      call put_group(o, 'transform="rotate('//pixels(angle(1, 1))//')"', '')
-      call put_moving(o, course, 'animateTransform attributeName="transform" type="rotate"', angle, course%smooth)
-      call put_carried(o, c, m, d, cargo, link)
-      call put_group_end(o)
-      call put_group_end(o)
+      call put_group(c%o, 'class="link" '//attribute('data-link', trim(c%m%links(link)%name)) &
+         //' transform="translate('//pixels(place(1, 1))//' '//pixels(place(2, 1))//')"', trim(c%m%links(link)%name))
+      call put_moving(c%o, course, 'animateTransform attributeName="transform" type="translate"', place, course%smooth)
+      call put_opacity(c, course, link)
+      call put_group(c%o, 'transform="rotate('//pixels(angle(1, 1))//')"', '')
+      call put_moving(c%o, course, 'animateTransform attributeName="transform" type="rotate"', angle, course%smooth)
+      call put_carried(cargo, link)
+      call put_end(c%o, 'g')
+      call put_end(c%o, 'g')
    end subroutine put_link
 
    !> The `link` in its own axes, in pixels from its first corner: guides, body, blocks, joints and other points.
-   subroutine put_carried(o, c, m, d, cargo, link)
-      type(output_t), intent(inout) :: o
-      type(canvas_t), intent(in) :: c
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
-      type(cargo_t), intent(in) :: cargo
+   subroutine put_carried(cargo, link)
+      type(cargo_t), intent(inout) :: cargo
       integer, intent(in) :: link
-      type(canvas_t) :: own
       integer :: i, k
 
-      own%scale = c%scale
-      own%shift = -c%scale*d%outlines(link)%corner(:, 1)*[1.0_wp, -1.0_wp]
-      do i = cargo%rods%first(link), cargo%rods%first(link + 1) - 1
-         call put_guide(o, own, m, d%guides(cargo%rods%member(i)), cargo%rest)
-      end do
-      call put_body(o, own, m, d, cargo%rest, link)
-      do i = cargo%blocks%first(link), cargo%blocks%first(link + 1) - 1
-         call put_block(o, own, m, d%guides(cargo%blocks%member(i)), cargo%rest)
-      end do
-      do i = cargo%joints%first(link), cargo%joints%first(link + 1) - 1
-         k = cargo%joints%member(i)
-         call put_joint(o, own, m, cargo%rest, k, cargo%joint_at(k))
-      end do
-      do i = cargo%dots%first(link), cargo%dots%first(link + 1) - 1
-         call put_dot(o, own, m, cargo%rest, cargo%dots%member(i))
-      end do
+      associate (c => cargo%own)
+         c%shift = -c%scale*c%d%outlines(link)%corner(:, 1)*[1.0_wp, -1.0_wp]
+         ! No name stands on it.
+         c%lines = 0
+         c%boxes = 0
+         do i = cargo%rods%first(link), cargo%rods%first(link + 1) - 1
+            call put_guide(c, c%d%guides(cargo%rods%member(i)))
+         end do
+         call put_body(c, link)
+         do i = cargo%blocks%first(link), cargo%blocks%first(link + 1) - 1
+            call put_block(c, c%d%guides(cargo%blocks%member(i)))
+         end do
+         do i = cargo%joints%first(link), cargo%joints%first(link + 1) - 1
+            k = cargo%joints%member(i)
+            call put_joint(c, k, cargo%joint_at(k))
+         end do
+         do i = cargo%dots%first(link), cargo%dots%first(link + 1) - 1
+            call put_dot(c, cargo%dots%member(i))
+         end do
+      end associate
    end subroutine put_carried
 
    !> An animated attribute: `values` (:, keys) in turn, with what is between them if `smooth`.
@@ -180,17 +173,16 @@ contains
    end subroutine put_moving
 
    !> Makes `link` pale where it has no position.
-   subroutine put_opacity(o, d, course, link)
-      type(output_t), intent(inout) :: o
-      type(drawing_t), intent(in) :: d
+   subroutine put_opacity(c, course, link)
+      type(canvas_t), intent(in) :: c
       type(course_t), intent(in) :: course
       integer, intent(in) :: link
       real(wp) :: opacity(1, size(course%frame))
       integer :: k
 
       do k = 1, size(course%frame)
-         opacity(1, k) = merge(1.0_wp, pale, d%frame(course%frame(k))%known(link))
+         opacity(1, k) = merge(1.0_wp, pale, c%d%frame(course%frame(k))%known(link))
       end do
-      if (any(opacity < 1.0_wp)) call put_moving(o, course, 'animate attributeName="opacity"', opacity, .false.)
+      if (any(opacity < 1.0_wp)) call put_moving(c%o, course, 'animate attributeName="opacity"', opacity, .false.)
    end subroutine put_opacity
 end module moving_links

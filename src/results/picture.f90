@@ -2,18 +2,17 @@
 !> of the points that PRINT asks for, the centrodes that POLE asks for, flagged positions, names, and a scale.
 module picture
    use kinds, only: wp
-   use mechanism, only: mechanism_t
-   use drawing, only: drawing_t, snapshot_t
+   use drawing, only: drawing_t
    use outline, only: is_same_place
    use picture_frames, only: clearest, faint_frames
-   use canvas, only: canvas_t
+   use canvas, only: canvas_t, make_canvas
    use picture_parts, only: put_body, put_outlines, put_flagged, put_guide, put_ground, put_block, put_joint, put_dot, &
       put_path, dots_of, color_of, joint_point
    use picture_drives, only: put_drives
    use picture_centrodes, only: put_centrodes, put_centres
    use picture_names, only: put_names
-   use picture_page, only: choice_t, view_of, put_set_head, put_flags, put_scale, flag_lines, fitted, width, line_height
-   use svg, only: svg_head, svg_end, put_group, put_group_end, put_words
+   use picture_page, only: place_canvas, put_set_head, put_flags, put_scale, flag_lines, fitted, width, line_height
+   use svg, only: svg_head, put_end, put_group, put_words
    use text_output, only: output_t
    use phrases
    implicit none
@@ -22,108 +21,95 @@ module picture
 
 contains
 
-   !> Writes the picture of the `sets` as `drawings` has recorded them.
-   subroutine put_pictures(o, sets, drawings)
-      type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: sets(:)
-      type(drawing_t), intent(in) :: drawings(:)
-      type(canvas_t) :: c(size(drawings))
-      type(choice_t) :: choice(size(drawings))
-      integer :: top(size(drawings) + 1), i, k
+   !> Writes the picture of the sets that the `drawings` have recorded.
+   subroutine put_pictures(o, drawings)
+      type(output_t), intent(inout), target :: o
+      type(drawing_t), intent(in), target :: drawings(:)
+      type(canvas_t) :: page(size(drawings))
+      integer :: top, i, k
 
-      top(1) = 0
+      top = 0
       do i = 1, size(drawings)
-         choice(i)%centrodes = .true.
-         if (drawings(i)%assemblies) then
-            choice(i)%best = 1
-            choice(i)%faint = [(k, k=2, drawings(i)%frames)]
-         else
-            choice(i)%best = clearest(sets(i), drawings(i))
-            choice(i)%faint = faint_frames(sets(i), drawings(i), choice(i)%best)
-         end if
-         call view_of(sets(i), drawings(i), choice(i), top(i), c(i), top(i + 1))
+         associate (c => page(i), d => drawings(i))
+            call make_canvas(o, drawings(i), c)
+            c%centrodes = .true.
+            c%best = 1
+            c%faint = [(k, k=2, d%frames)]
+            if (.not. d%assemblies) then
+               c%best = clearest(d)
+               c%faint = faint_frames(d, c%best)
+            end if
+            if (c%best > 0) c%s = d%frame(c%best)
+            call place_canvas(c, top)
+            top = c%bottom
+         end associate
       end do
-      call svg_head(o, width, max(1, top(size(top))))
-      do i = 1, size(drawings)
-         call put_set(o, c(i), sets(i), drawings(i), choice(i), top(i), top(i + 1))
+      call svg_head(o, width, max(1, top))
+      do i = 1, size(page)
+         call put_set(page(i))
       end do
-      call svg_end(o)
+      call put_end(o, 'svg')
    end subroutine put_pictures
 
-   !> One set, from the pixel `top` to above `bottom`.
-   subroutine put_set(o, c, m, d, choice, top, bottom)
-      type(output_t), intent(inout) :: o
+   !> One set.
+   subroutine put_set(c)
       type(canvas_t), intent(inout) :: c
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
-      type(choice_t), intent(in) :: choice
-      integer, intent(in) :: top, bottom
-      type(snapshot_t) :: s
       integer :: i
 
-      s = d%now
-      if (choice%best > 0) s = d%frame(choice%best)
-      call put_set_head(o, c, m, d, s%t, top)
-      call put_group(o, 'class="faint"', '')
-      do i = 1, size(choice%faint)
-         call put_outlines(o, c, m, d, d%frame(choice%faint(i)))
+      call put_set_head(c, c%s%t)
+      call put_group(c%o, 'class="faint"', '')
+      do i = 1, size(c%faint)
+         call put_outlines(c, c%d%frame(c%faint(i)))
       end do
-      call put_group_end(o)
-      call put_curves(o, c, m, d)
-      call put_centrodes(o, c, m, d, s)
-      do i = 1, size(d%flags)
-         call put_flagged(o, c, m, d, d%flags(i)%last)
+      call put_end(c%o, 'g')
+      call put_curves(c)
+      call put_centrodes(c)
+      do i = 1, size(c%d%flags)
+         call put_flagged(c, c%d%flags(i)%last)
       end do
-      call put_mechanism(o, c, m, d, s)
-      call put_drives(o, c, m, d, s)
-      call put_centres(o, c, m, d, s)
-      call put_names(o, c, m, d, s)
-      call put_times(o, m, d, choice, bottom)
-      call put_flags(o, m, d, bottom)
-      call put_scale(o, c, m)
-      call put_group_end(o)
+      call put_mechanism(c)
+      call put_drives(c)
+      call put_centres(c)
+      call put_names(c)
+      call put_times(c)
+      call put_flags(c)
+      call put_scale(c)
+      call put_end(c%o, 'g')
    end subroutine put_set
 
    !> The paths of the points.
-   subroutine put_curves(o, c, m, d)
-      type(output_t), intent(inout) :: o
+   subroutine put_curves(c)
       type(canvas_t), intent(inout) :: c
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
       integer :: i
 
-      do i = 1, size(d%curves)
-         if (moves(d, i)) call put_path(o, c, d%curves(i), trim(m%points(d%curves(i)%point)%name), &
-            color_of(m%points(d%curves(i)%point)%link))
+      do i = 1, size(c%d%curves)
+         if (moves(c%d, i)) call put_path(c, c%d%curves(i), trim(c%m%points(c%d%curves(i)%point)%name), &
+            color_of(c%m%points(c%d%curves(i)%point)%link))
       end do
    end subroutine put_curves
 
-   !> Ground, links and pairs in full at the position `s`.
-   subroutine put_mechanism(o, c, m, d, s)
-      type(output_t), intent(inout) :: o
+   !> Ground, links and pairs in full.
+   subroutine put_mechanism(c)
       type(canvas_t), intent(inout) :: c
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
-      type(snapshot_t), intent(in) :: s
       integer, allocatable :: dots(:)
       integer :: i
 
-      dots = dots_of(m)
-      call put_ground(o, c, m, d)
-      do i = 1, size(d%guides)
-         call put_guide(o, c, m, d%guides(i), s)
+      dots = dots_of(c%m)
+      call put_ground(c)
+      do i = 1, size(c%d%guides)
+         call put_guide(c, c%d%guides(i))
       end do
-      do i = 1, size(m%links)
-         call put_body(o, c, m, d, s, i)
+      do i = 1, size(c%m%links)
+         call put_body(c, i)
       end do
-      do i = 1, size(d%guides)
-         call put_block(o, c, m, d%guides(i), s)
+      do i = 1, size(c%d%guides)
+         call put_block(c, c%d%guides(i))
       end do
-      do i = 1, size(m%pairs)
-         call put_joint(o, c, m, s, i, joint_point(m, s%known, i))
+      do i = 1, size(c%m%pairs)
+         call put_joint(c, i, joint_point(c%m, c%s%known, i))
       end do
       do i = 1, size(dots)
-         call put_dot(o, c, m, s, dots(i))
+         call put_dot(c, dots(i))
       end do
    end subroutine put_mechanism
 
@@ -150,29 +136,24 @@ contains
    end function moves
 
    !> At the foot: the instant that is drawn, and those, or the assemblies, that are faint.
-   subroutine put_times(o, m, d, choice, bottom)
-      type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
-      type(choice_t), intent(in) :: choice
-      integer, intent(in) :: bottom
+   subroutine put_times(c)
+      type(canvas_t), intent(in) :: c
       character(:), allocatable :: now, others
       real(wp) :: y
       integer :: i
 
-      if (choice%best == 0) return
-      y = real(bottom - 16 - line_height*flag_lines(d), wp)
-      now = 'T = '//fitted(d%frame(choice%best)%t)//' '//trim(m%time_unit)
-      call put_words(o, [14.0_wp, y], 'start', 'class="time"', now)
+      if (c%best == 0) return
+      y = real(c%bottom - 16 - line_height*flag_lines(c%d), wp)
+      now = 'T = '//fitted(c%d%frame(c%best)%t)//' '//trim(c%m%time_unit)
+      call put_words(c%o, [14.0_wp, y], 'start', 'class="time"', now)
       others = ''
-      do i = 1, size(choice%faint)
+      do i = 1, size(c%faint)
          if (i > 1) others = others//', '
-         others = others//fitted(d%frame(choice%faint(i))%t)
+         others = others//fitted(c%d%frame(c%faint(i))%t)
       end do
-      others = phrase(say_faint, m%polish)//' '//others
-      if (d%assemblies) others = phrase(say_faint_assemblies, m%polish)
-      if (size(choice%faint) > 0) &
-         call put_words(o, [real(32 + 9*len(now), wp), y], 'start', 'class="between"', others)
+      others = phrase(say_faint, c%m%polish)//' '//others
+      if (c%d%assemblies) others = phrase(say_faint_assemblies, c%m%polish)
+      if (size(c%faint) > 0) &
+         call put_words(c%o, [real(32 + 9*len(now), wp), y], 'start', 'class="between"', others)
    end subroutine put_times
-
 end module picture

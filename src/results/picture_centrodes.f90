@@ -4,11 +4,10 @@ module picture_centrodes
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use planar, only: point_of
-   use drawing, only: drawing_t, snapshot_t, centrode_t
+   use drawing, only: centrode_t
    use canvas, only: canvas_t, to_pixels, add_line, add_box, find_clear_place, find_inside
    use picture_parts, only: color_of
-   use svg, only: put_group, put_group_end, put_circle, put_polyline, put_words, attribute
-   use text_output, only: output_t
+   use svg, only: put_group, put_end, put_circle, put_line, put_words, attribute
    implicit none
    private
    public :: put_centrodes, put_centres
@@ -24,47 +23,39 @@ module picture_centrodes
 
 contains
 
-   !> The centrodes of all poles at the position `s`.
-   subroutine put_centrodes(o, c, m, d, s)
-      type(output_t), intent(inout) :: o
+   !> The centrodes of all poles.
+   subroutine put_centrodes(c)
       type(canvas_t), intent(inout) :: c
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
-      type(snapshot_t), intent(in) :: s
       integer :: i, side
 
-      do i = 1, size(d%centrodes)
+      do i = 1, size(c%d%centrodes)
          do side = 1, 2
-            associate (link => d%centrodes(i)%link(side))
-               if (s%known(link)) call put_centrode(o, c, d%centrodes(i), side, s%place(:, link), &
-                  pair_name(m, d%centrodes(i)), link_color(m, link))
+            associate (link => c%d%centrodes(i)%link(side))
+               if (c%s%known(link)) call put_centrode(c, c%d%centrodes(i), side, pair_name(c%m, c%d%centrodes(i)), &
+                  link_color(c%m, link))
             end associate
          end do
       end do
    end subroutine put_centrodes
 
-   !> A ring and the names of both links at each instant centre at the position `s`, where the picture has room for it.
-   subroutine put_centres(o, c, m, d, s)
-      type(output_t), intent(inout) :: o
+   !> A ring and the names of both links at each instant centre, where the picture has room for it.
+   subroutine put_centres(c)
       type(canvas_t), intent(inout) :: c
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
-      type(snapshot_t), intent(in) :: s
       character(:), allocatable :: name, color
       real(wp) :: p(2, 1), start(2)
       integer :: i
 
-      do i = 1, size(d%centrodes)
-         if (.not. s%has_centre(i)) cycle
-         p(:, 1) = to_pixels(c, s%centre(:, i))
+      do i = 1, size(c%d%centrodes)
+         if (.not. c%s%has_centre(i)) cycle
+         p(:, 1) = to_pixels(c, c%s%centre(:, i))
          if (any(p(:, 1) < c%low) .or. any(p(:, 1) > c%high)) cycle
-         name = pair_name(m, d%centrodes(i))
-         color = link_color(m, d%centrodes(i)%link(2))
-         call put_circle(o, p(:, 1), centre_radius, 'class="centre" style="stroke:'//color//'"')
-         call put_circle(o, p(:, 1), 1.0_wp, 'class="point"')
+         name = pair_name(c%m, c%d%centrodes(i))
+         color = link_color(c%m, c%d%centrodes(i)%link(2))
+         call put_circle(c%o, p(:, 1), centre_radius, 'class="centre" style="stroke:'//color//'"')
+         call put_circle(c%o, p(:, 1), 1.0_wp, 'class="point"')
          call add_box(c, p(:, 1) - centre_radius, p(:, 1) + centre_radius)
          call find_clear_place(c, p, len(name), clear, start)
-         call put_words(o, start, 'start', 'class="link" style="fill:'//color//'"', name)
+         call put_words(c%o, start, 'start', 'class="link" style="fill:'//color//'"', name)
       end do
    end subroutine put_centres
 
@@ -87,21 +78,19 @@ contains
       if (.not. m%links(i)%ground) color = color_of(i)
    end function link_color
 
-   !> The centrode in link I or J (`side` 1 or 2) at `position` (3): lines from place to place, as far as they are in
+   !> The centrode in link I or J (`side` 1 or 2): lines from place to place, as far as they are in
    !> the picture. Where the sense of the relative turn changes, the centre has passed through infinity.
-   subroutine put_centrode(o, c, centrode, side, position, name, color)
-      type(output_t), intent(inout) :: o
+   subroutine put_centrode(c, centrode, side, name, color)
       type(canvas_t), intent(inout) :: c
       type(centrode_t), intent(in) :: centrode
       integer, intent(in) :: side
-      real(wp), intent(in) :: position(3)
       character(*), intent(in) :: name, color
       real(wp) :: line(2, size(centrode%side) + 1), p(2, size(centrode%side)), from, to
       integer :: k, n, last
 
-      call put_group(o, attribute('data-centrode', name), name)
+      call put_group(c%o, attribute('data-centrode', name), name)
       do k = 1, size(centrode%side)
-         p(:, k) = to_pixels(c, point_of(position, centrode%place(:, k, side)))
+         p(:, k) = to_pixels(c, point_of(c%s%place(:, centrode%link(side)), centrode%place(:, k, side)))
       end do
       last = last_of(p, centrode%side)
       n = 0
@@ -120,11 +109,11 @@ contains
             call add_line(c, line(:, n - 1), line(:, n), centrode_weight)
          end if
          if (n > 0 .and. (to < 1.0_wp .or. k == last - 1)) then
-            call put_polyline(o, line(:, :n), 'class="centrode" style="stroke:'//color//'"')
+            call put_line(c%o, 'polyline', line(:, :n), 'class="centrode" style="stroke:'//color//'"')
             n = 0
          end if
       end do
-      call put_group_end(o)
+      call put_end(c%o, 'g')
    end subroutine put_centrode
 
    !> The number of the last of the places `p` (2, :), in pixels, before the centrode comes back to its first place and

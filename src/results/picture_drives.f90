@@ -7,10 +7,10 @@ module picture_drives
    use planar, only: quarter_turn
    use drives, only: drive_motion, new_law
    use names, only: drive_name
-   use drawing, only: drawing_t, snapshot_t, point_place
+   use drawing, only: point_place
    use canvas, only: canvas_t, to_pixels, add_line, cover_of, tie
    use picture_parts, only: corner_pixels, direction_in_picture, half_block
-   use svg, only: put_group, put_group_end, put_polyline, put_polygon
+   use svg, only: put_group, put_end, put_line
    use text_output, only: output_t
    implicit none
    private
@@ -29,53 +29,45 @@ module picture_drives
 
 contains
 
-   !> An arrow for each drive, in the sense in which it moves at the position `s`.
-   subroutine put_drives(o, c, m, d, s)
-      type(output_t), intent(inout) :: o
+   !> An arrow for each drive, in the sense in which it moves at the position that is drawn.
+   subroutine put_drives(c)
       type(canvas_t), intent(inout) :: c
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
-      type(snapshot_t), intent(in) :: s
       real(wp) :: sense
       integer :: i
 
-      do i = 1, size(m%drives)
-         sense = sense_of(m%drives(i), s%t)
-         call put_group(o, 'class="drives"', trim(drive_name(m, m%drives(i))))
-         select case (m%drives(i)%kind)
+      do i = 1, size(c%m%drives)
+         sense = sense_of(c%m%drives(i), c%s%t)
+         call put_group(c%o, 'class="drives"', trim(drive_name(c%m, c%m%drives(i))))
+         select case (c%m%drives(i)%kind)
          case (drive_angle)
-            if (s%known(m%drives(i)%subject)) call put_arc(o, c, m, d, s, 0, m%drives(i)%subject, sense)
+            if (c%s%known(c%m%drives(i)%subject)) call put_arc(c, 0, c%m%drives(i)%subject, sense)
          case (drive_relangle)
-            if (s%known(m%drives(i)%subject) .and. s%known(m%drives(i)%second)) &
-               call put_arc(o, c, m, d, s, m%drives(i)%subject, m%drives(i)%second, sense)
+            if (c%s%known(c%m%drives(i)%subject) .and. c%s%known(c%m%drives(i)%second)) &
+               call put_arc(c, c%m%drives(i)%subject, c%m%drives(i)%second, sense)
          case (drive_x, drive_y)
-            if (s%known(m%points(m%drives(i)%subject)%link)) call put_arrow(o, c, &
-               to_pixels(c, point_place(m, s, m%drives(i)%subject)), &
-               sense*merge([1.0_wp, 0.0_wp], [0.0_wp, -1.0_wp], m%drives(i)%kind == drive_x), .true.)
+            if (c%s%known(c%m%points(c%m%drives(i)%subject)%link)) call put_arrow(c, &
+               to_pixels(c, point_place(c%m, c%s, c%m%drives(i)%subject)), &
+               sense*merge([1.0_wp, 0.0_wp], [0.0_wp, -1.0_wp], c%m%drives(i)%kind == drive_x), .true.)
          case (drive_slide)
-            call put_slide(o, c, m, d, s, m%drives(i)%subject, sense)
+            call put_slide(c, c%m%drives(i)%subject, sense)
          end select
-         call put_group_end(o)
+         call put_end(c%o, 'g')
       end do
    end subroutine put_drives
 
    !> The arrow of a SLIDE drive of pair number `pair`, beside its block.
-   subroutine put_slide(o, c, m, d, s, pair, sense)
-      type(output_t), intent(inout) :: o
+   subroutine put_slide(c, pair, sense)
       type(canvas_t), intent(inout) :: c
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
-      type(snapshot_t), intent(in) :: s
       integer, intent(in) :: pair
       real(wp), intent(in) :: sense
       real(wp) :: e(2)
       integer :: k
 
-      do k = 1, size(d%guides)
-         associate (g => d%guides(k))
-            if (g%pair /= pair .or. .not. (s%known(g%carrier) .and. s%known(g%block))) cycle
-            e = sense*real(g%sense, wp)*direction_in_picture(s%place(3, g%carrier) + g%angle)
-            call put_arrow(o, c, to_pixels(c, point_place(m, s, g%point)), e, .false.)
+      do k = 1, size(c%d%guides)
+         associate (g => c%d%guides(k))
+            if (g%pair /= pair .or. .not. (c%s%known(g%carrier) .and. c%s%known(g%block))) cycle
+            e = sense*real(g%sense, wp)*direction_in_picture(c%s%place(3, g%carrier) + g%angle)
+            call put_arrow(c, to_pixels(c, point_place(c%m, c%s, g%point)), e, .false.)
          end associate
       end do
    end subroutine put_slide
@@ -93,22 +85,18 @@ contains
 
    !> An arc about a joint of `link` with an arrow: about its joint with `base`, 0 for the ground, otherwise about its
    !> first joint.
-   subroutine put_arc(o, c, m, d, s, base, link, sense)
-      type(output_t), intent(inout) :: o
+   subroutine put_arc(c, base, link, sense)
       type(canvas_t), intent(inout) :: c
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
-      type(snapshot_t), intent(in) :: s
       integer, intent(in) :: base, link
       real(wp), intent(in) :: sense
       real(wp) :: center(2), start, best(2, 0:arc_pieces), e(2), cover, least
       integer :: k, point
 
-      point = joint_with(m, base, link)
-      center = to_pixels(c, s%place(:2, link))
-      if (point > 0) center = to_pixels(c, point_place(m, s, point))
-      start = s%place(3, link)
-      associate (corners => corner_pixels(c, d%outlines(link), s%place(:, link)))
+      point = joint_with(c%m, base, link)
+      center = to_pixels(c, c%s%place(:2, link))
+      if (point > 0) center = to_pixels(c, point_place(c%m, c%s, point))
+      start = c%s%place(3, link)
+      associate (corners => corner_pixels(c, c%d%outlines(link), c%s%place(:, link)))
          if (size(corners, 2) > 1) then
             e = sum(corners, dim=2)/real(size(corners, 2), wp) - center
             if (norm2(e) > 1.0_wp) start = atan2(-e(2), e(1))
@@ -124,9 +112,9 @@ contains
       do k = 1, arc_pieces
          call add_line(c, best(:, k - 1), best(:, k), arrow_weight)
       end do
-      call put_polyline(o, best, 'class="drive"')
+      call put_line(c%o, 'polyline', best, 'class="drive"')
       e = best(:, arc_pieces) - center
-      call put_tip(o, best(:, arc_pieces), -sense*quarter_turn(e)/norm2(e))
+      call put_tip(c%o, best(:, arc_pieces), -sense*quarter_turn(e)/norm2(e))
    end subroutine put_arc
 
    !> The places (2, 0:arc_pieces) of an arc about the pixel `center` (2), from `start` over `angle` (rad).
@@ -166,8 +154,7 @@ contains
 
    !> A straight arrow in the direction `e` (2) beside the pixel `p` (2) or, if it may be `ahead` of it, there: where it
    !> covers least.
-   subroutine put_arrow(o, c, p, e, ahead)
-      type(output_t), intent(inout) :: o
+   subroutine put_arrow(c, p, e, ahead)
       type(canvas_t), intent(inout) :: c
       real(wp), intent(in) :: p(2), e(2)
       logical, intent(in) :: ahead
@@ -186,8 +173,8 @@ contains
          least = cover
          best = ends
       end do
-      call put_polyline(o, best, 'class="drive"')
-      call put_tip(o, best(:, 2), e)
+      call put_line(c%o, 'polyline', best, 'class="drive"')
+      call put_tip(c%o, best(:, 2), e)
       call add_line(c, best(:, 1), best(:, 2) + tip_length*e, arrow_weight)
    end subroutine put_arrow
 
@@ -196,7 +183,7 @@ contains
       type(output_t), intent(inout) :: o
       real(wp), intent(in) :: p(2), e(2)
 
-      call put_polygon(o, reshape([p + tip_length*e, p + tip_half*quarter_turn(e), p - tip_half*quarter_turn(e)], &
-         [2, 3]), 'class="tip"')
+      call put_line(o, 'polygon', reshape([p + tip_length*e, p + tip_half*quarter_turn(e), &
+         p - tip_half*quarter_turn(e)], [2, 3]), 'class="tip"')
    end subroutine put_tip
 end module picture_drives

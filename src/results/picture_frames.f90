@@ -1,7 +1,7 @@
 !> Which frames of a drawing a picture shows: the one in which the mechanism is read best, and a few others.
 module picture_frames
    use kinds, only: wp
-   use mechanism, only: mechanism_t, pair_revolute
+   use mechanism, only: pair_revolute
    use planar, only: cross, direction, point_of
    use drawing, only: drawing_t, snapshot_t, point_place
    use outline, only: corners_at, distance_to
@@ -30,8 +30,7 @@ module picture_frames
 contains
 
    !> The number of the frame that is drawn in full: of those of which most links are known the clearest; 0 for none.
-   integer function clearest(m, d) result(best)
-      type(mechanism_t), intent(in) :: m
+   integer function clearest(d) result(best)
       type(drawing_t), intent(in) :: d
       real(wp) :: crowded, least
       integer :: i, known
@@ -42,7 +41,7 @@ contains
       do i = 1, d%frames
          associate (s => d%frame(i))
             if (count(s%known) < known) cycle
-            crowded = crowded_joints(m, d, s)
+            crowded = crowded_joints(d, s)
             if (count(s%known) == known .and. crowded > least - much_clearer) cycle
             known = count(s%known)
             least = crowded
@@ -52,29 +51,29 @@ contains
    end function clearest
 
    !> How many joints are crowded at the position `s`: each by 1 on another's bar, by 0 at `clear_distance` from it.
-   real(wp) function crowded_joints(m, d, s) result(crowded)
-      type(mechanism_t), intent(in) :: m
+   real(wp) function crowded_joints(d, s) result(crowded)
       type(drawing_t), intent(in) :: d
       type(snapshot_t), intent(in) :: s
       real(wp) :: extent, p(2)
       integer :: i, k, own(2), point
 
       crowded = 0.0_wp
-      extent = extent_of(m, d, s)
-      if (size(m%links) > max_links .or. .not. extent > 0.0_wp) return
-      do i = 1, size(m%pairs)
-         point = joint_point(m, s%known, i)
+      extent = extent_of(d, s)
+      if (size(d%m%links) > max_links .or. .not. extent > 0.0_wp) return
+      do i = 1, size(d%m%pairs)
+         point = joint_point(d%m, s%known, i)
          if (point == 0) cycle
-         own = m%points([m%pairs(i)%point_i, m%pairs(i)%point_j])%link
-         p = point_place(m, s, point)/extent
-         do k = 1, size(m%links)
-            if (m%links(k)%ground .or. any(own == k) .or. .not. s%known(k) .or. size(d%outlines(k)%corner, 2) < 2) cycle
+         own = d%m%points([d%m%pairs(i)%point_i, d%m%pairs(i)%point_j])%link
+         p = point_place(d%m, s, point)/extent
+         do k = 1, size(d%m%links)
+            if (d%m%links(k)%ground .or. any(own == k) .or. .not. s%known(k) .or. size(d%outlines(k)%corner, 2) < 2) &
+               cycle
             associate (corners => corners_at(d%outlines(k), s%place(:, k))/extent)
                crowded = crowded + max(nearness(distance_to(corners, p, 0.0_wp)), &
                   merge(in_line, 0.0_wp, size(corners, 2) == 2)*nearness(distance_to(corners, p, 1.0_wp)))
             end associate
          end do
-         if (m%pairs(i)%kind /= pair_revolute) cycle
+         if (d%m%pairs(i)%kind /= pair_revolute) cycle
          do k = 1, size(d%guides)
             associate (g => d%guides(k))
                if (.not. s%known(g%carrier) .or. any(own == g%block)) cycle
@@ -93,8 +92,7 @@ contains
    end function nearness
 
    !> The larger side of what the known moving links cover at the position `s`.
-   pure real(wp) function extent_of(m, d, s) result(extent)
-      type(mechanism_t), intent(in) :: m
+   pure real(wp) function extent_of(d, s) result(extent)
       type(drawing_t), intent(in) :: d
       type(snapshot_t), intent(in) :: s
       real(wp) :: low(2), high(2)
@@ -102,8 +100,8 @@ contains
 
       low = huge(1.0_wp)
       high = -huge(1.0_wp)
-      do i = 1, size(m%links)
-         if (m%links(i)%ground .or. .not. s%known(i)) cycle
+      do i = 1, size(d%m%links)
+         if (d%m%links(i)%ground .or. .not. s%known(i)) cycle
          associate (p => corners_at(d%outlines(i), s%place(:, i)))
             low = min(low, minval(p, dim=2))
             high = max(high, maxval(p, dim=2))
@@ -115,46 +113,42 @@ contains
 
    !> The numbers of the frames that are faint beside frame `best`: evenly spaced, without those that are like it or
    !> like one another.
-   function faint_frames(m, d, best) result(list)
-      type(mechanism_t), intent(in) :: m
+   function faint_frames(d, best) result(list)
       type(drawing_t), intent(in) :: d
       integer, intent(in) :: best
       integer, allocatable :: list(:)
       integer :: i, j, k, n
 
       allocate (list(0))
-      n = max(min_faint, min(max_faint, faint_links/max(1, count(.not. m%links%ground))))
+      n = max(min_faint, min(max_faint, faint_links/max(1, count(.not. d%m%links%ground))))
       do i = 0, n
          ! Where the motion comes back, the last frame is the first one again.
-         k = 1 + i*(d%frames - 1)/merge(n + 1, n, closes(m, d))
-         if (is_like(m, d, k, best)) cycle
-         if (any([(is_like(m, d, k, list(j)), j=1, size(list))])) cycle
+         k = 1 + i*(d%frames - 1)/merge(n + 1, n, closes(d))
+         if (is_like(d, k, best)) cycle
+         if (any([(is_like(d, k, list(j)), j=1, size(list))])) cycle
          list = [list, k]
       end do
    end function faint_frames
 
    !> Whether the motion of the moving links ends where it has begun.
-   logical function closes(m, d)
-      type(mechanism_t), intent(in) :: m
+   logical function closes(d)
       type(drawing_t), intent(in) :: d
 
       closes = .false.
-      if (d%frames > 2) closes = distance(m, d, 1, d%frames) < come_back
+      if (d%frames > 2) closes = distance(d, 1, d%frames) < come_back
    end function closes
 
    !> Whether frames `i` and `j` would cover one another.
-   logical function is_like(m, d, i, j)
-      type(mechanism_t), intent(in) :: m
+   logical function is_like(d, i, j)
       type(drawing_t), intent(in) :: d
       integer, intent(in) :: i, j
 
-      is_like = distance(m, d, i, j) < alike
+      is_like = distance(d, i, j) < alike
    end function is_like
 
    !> The largest distance of a corner between frames `i` and `j`, in parts of the mechanism; 1 if one of them lacks a
    !> link.
-   real(wp) function distance(m, d, i, j)
-      type(mechanism_t), intent(in) :: m
+   real(wp) function distance(d, i, j)
       type(drawing_t), intent(in) :: d
       integer, intent(in) :: i, j
       real(wp) :: extent
@@ -163,9 +157,9 @@ contains
       distance = 1.0_wp
       if (any(d%frame(i)%known .neqv. d%frame(j)%known)) return
       distance = 0.0_wp
-      extent = extent_of(m, d, d%frame(i))
-      do k = 1, size(m%links)
-         if (m%links(k)%ground .or. .not. d%frame(i)%known(k)) cycle
+      extent = extent_of(d, d%frame(i))
+      do k = 1, size(d%m%links)
+         if (d%m%links(k)%ground .or. .not. d%frame(i)%known(k)) cycle
          associate (p => corners_at(d%outlines(k), d%frame(i)%place(:, k)), &
             q => corners_at(d%outlines(k), d%frame(j)%place(:, k)))
             if (size(p) > 0) distance = max(distance, maxval(abs(p - q)))

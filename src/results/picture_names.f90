@@ -2,11 +2,10 @@
 module picture_names
    use kinds, only: wp, label_length
    use mechanism, only: mechanism_t, pair_revolute, request_point
-   use drawing, only: drawing_t, snapshot_t, point_place
+   use drawing, only: point_place
    use canvas, only: canvas_t, to_pixels, find_clear_place
    use picture_parts, only: corner_pixels, color_of
    use svg, only: put_words
-   use text_output, only: output_t
    implicit none
    private
    public :: put_names
@@ -22,17 +21,13 @@ module picture_names
 
 contains
 
-   !> The names of the points that are known at `s`, then those of the moving links.
-   subroutine put_names(o, c, m, d, s)
-      type(output_t), intent(inout) :: o
+   !> The names of the points that are known, then those of the moving links.
+   subroutine put_names(c)
       type(canvas_t), intent(inout) :: c
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
-      type(snapshot_t), intent(in) :: s
 
-      if (size(m%links) > max_names .or. size(m%points) > max_names) return
-      call put_points(o, c, m, s, is_used(m), is_printed(m))
-      call put_links(o, c, m, d, s)
+      if (size(c%m%links) > max_names .or. size(c%m%points) > max_names) return
+      call put_points(c, is_used(c%m), is_printed(c%m))
+      call put_links(c)
    end subroutine put_names
 
    !> (points) Whether a point may have its name in the picture: of moving links all, of the ground those of joints. The
@@ -59,45 +54,38 @@ contains
 
    !> A name for each place, first for those of points that are `printed` (points): of the points there a printed one,
    !> of several the one with the shortest name, the first of these. The name of its link would stand there twice.
-   subroutine put_points(o, c, m, s, used, printed)
-      type(output_t), intent(inout) :: o
+   subroutine put_points(c, used, printed)
       type(canvas_t), intent(inout) :: c
-      type(mechanism_t), intent(in) :: m
-      type(snapshot_t), intent(in) :: s
       logical, intent(in) :: used(:), printed(:)
-      logical :: open(size(m%points))
-      real(wp) :: p(2, size(m%points)), start(2)
+      logical :: open(size(c%m%points))
+      real(wp) :: p(2, size(c%m%points)), start(2)
       integer :: i, best
 
-      open = used .and. s%known(m%points%link)
-      do i = 1, size(m%points)
-         if (open(i)) p(:, i) = to_pixels(c, point_place(m, s, i))
+      open = used .and. c%s%known(c%m%points%link)
+      do i = 1, size(c%m%points)
+         if (open(i)) p(:, i) = to_pixels(c, point_place(c%m, c%s, i))
       end do
       do while (any(open))
-         best = minloc(len_trim(m%points%name) + merge(0, label_length + 1, printed), dim=1, mask=open)
-         do i = 1, size(m%points)
+         best = minloc(len_trim(c%m%points%name) + merge(0, label_length + 1, printed), dim=1, mask=open)
+         do i = 1, size(c%m%points)
             if (open(i)) open(i) = any(abs(p(:, i) - p(:, best)) > together)
          end do
-         if (m%points(best)%name == m%links(m%points(best)%link)%name) cycle
-         call find_clear_place(c, p(:, best:best), len_trim(m%points(best)%name), clear_of_point, start)
-         call put_words(o, start, 'start', 'class="name"', trim(m%points(best)%name))
+         if (c%m%points(best)%name == c%m%links(c%m%points(best)%link)%name) cycle
+         call find_clear_place(c, p(:, best:best), len_trim(c%m%points(best)%name), clear_of_point, start)
+         call put_words(c%o, start, 'start', 'class="name"', trim(c%m%points(best)%name))
       end do
    end subroutine put_points
 
    !> The names of the moving links, each in its color: beside a bar, in or beside a polygon.
-   subroutine put_links(o, c, m, d, s)
-      type(output_t), intent(inout) :: o
+   subroutine put_links(c)
       type(canvas_t), intent(inout) :: c
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
-      type(snapshot_t), intent(in) :: s
       real(wp), allocatable :: p(:, :), q(:, :)
       real(wp) :: start(2)
       integer :: i, k, n
 
-      do i = 1, size(m%links)
-         if (m%links(i)%ground .or. .not. s%known(i)) cycle
-         p = corner_pixels(c, d%outlines(i), s%place(:, i))
+      do i = 1, size(c%m%links)
+         if (c%m%links(i)%ground .or. .not. c%s%known(i)) cycle
+         p = corner_pixels(c, c%d%outlines(i), c%s%place(:, i))
          n = size(p, 2)
          if (n == 0) cycle
          if (n == 1) then
@@ -111,8 +99,8 @@ contains
                end associate
             end do
          end if
-         call find_clear_place(c, q, len_trim(m%links(i)%name), clear_of_link, start)
-         call put_words(o, start, 'start', 'class="link" style="fill:'//color_of(i)//'"', trim(m%links(i)%name))
+         call find_clear_place(c, q, len_trim(c%m%links(i)%name), clear_of_link, start)
+         call put_words(c%o, start, 'start', 'class="link" style="fill:'//color_of(i)//'"', trim(c%m%links(i)%name))
          deallocate (q)
       end do
    end subroutine put_links

@@ -7,13 +7,13 @@ module picture_page
    use drawing, only: drawing_t, snapshot_t, flag_t, point_place
    use canvas, only: canvas_t
    use picture_parts, only: guide_ends
-   use svg, only: put_group, put_polyline, put_words
+   use svg, only: put_group, put_line, put_words, without_zeros
    use text_output, only: output_t, put
    use listing, only: words_of_mark
    use phrases
    implicit none
    private
-   public :: choice_t, picture_head, view_of, put_set_head, put_flags, put_scale, flag_lines, fitted
+   public :: picture_head, place_canvas, put_set_head, put_flags, put_scale, flag_lines, fitted
 
    integer, parameter, public :: width = 800
    !> Room around what is drawn, for names and supports; largest and least height of what is drawn.
@@ -28,13 +28,6 @@ module picture_page
    !> The length of the scale bar, at most.
    real(wp), parameter :: max_bar = 150.0_wp
 
-   !> The frames of a drawing that a picture shows.
-   type :: choice_t
-      integer :: best = 0                    !< in full; 0 for none
-      integer, allocatable :: faint(:)
-      logical :: centrodes = .false.         !< they are drawn
-   end type choice_t
-
 contains
 
    !> The first line of a file that holds a picture.
@@ -44,60 +37,57 @@ contains
       call put(o, '<?xml version="1.0" encoding="US-ASCII"?>')
    end subroutine picture_head
 
-   !> Where the set `m` is drawn: the canvas `c` of a picture that begins at the pixel `top` and ends above `bottom`.
-   !> The scale has three digits, the height is even and the shift whole: rounding errors of the results do not move the
-   !> picture, and none of these is near a tie for what is symmetric or has few digits.
-   subroutine view_of(m, d, choice, top, c, bottom)
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
-      type(choice_t), intent(in) :: choice
+   !> Places the canvas `c` on the page, from the pixel `top` on, and what it shows on the canvas. The scale has three
+   !> digits, the height is even and the shift whole: rounding errors of the results do not move the picture, and none
+   !> of these is near a tie for what is symmetric or has few digits.
+   subroutine place_canvas(c, top)
+      type(canvas_t), intent(inout) :: c
       integer, intent(in) :: top
-      type(canvas_t), intent(out) :: c
-      integer, intent(out) :: bottom
       real(wp) :: low(2), high(2), size_of_it(2), room
       integer :: height
 
-      call find_extent(m, d, choice, low, high)
+      call find_extent(c, low, high)
       size_of_it = high - low
       room = real(width, wp) - 2.0_wp*margin
       c%scale = 1.0_wp
       if (any(size_of_it > 0.0_wp)) c%scale = rounded_down(1.0_wp/max(size_of_it(1)/room, size_of_it(2)/max_height))
       height = 2*ceiling(0.5_wp*max(min_height, c%scale*size_of_it(2)) + margin - tie)
-      bottom = top + above + height + below + line_height*flag_lines(d)
+      c%top = top
+      c%bottom = top + above + height + below + line_height*flag_lines(c%d)
       c%shift = anint([0.5_wp*real(width, wp) - c%scale*(low(1) + 0.5_wp*size_of_it(1)), &
          real(top + above, wp) + 0.5_wp*real(height, wp) + c%scale*(low(2) + 0.5_wp*size_of_it(2))])
       c%low = [4.0_wp, real(top + above, wp)]
       c%high = [real(width - 4, wp), real(top + above + height, wp)]
-   end subroutine view_of
+   end subroutine place_canvas
 
-   !> The corners `low` and `high` (2) of what the picture shows of `m`.
-   subroutine find_extent(m, d, choice, low, high)
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
-      type(choice_t), intent(in) :: choice
+   !> The corners `low` and `high` (2) of what the picture shows.
+   subroutine find_extent(c, low, high)
+      type(canvas_t), intent(in) :: c
       real(wp), intent(out) :: low(2), high(2)
       integer :: i, k
 
       low = huge(1.0_wp)
       high = -huge(1.0_wp)
-      if (choice%best > 0) call widen_by_links(m, d, d%frame(choice%best), .true., low, high)
-      do i = 1, size(choice%faint)
-         call widen_by_links(m, d, d%frame(choice%faint(i)), .false., low, high)
-      end do
-      do i = 1, size(d%flags)
-         call widen_by_links(m, d, d%flags(i)%last, .false., low, high)
-      end do
-      call widen_by_links(m, d, d%now, .false., low, high, ground=.true.)
-      do i = 1, size(d%curves)
-         do k = 1, size(d%curves(i)%known)
-            if (d%curves(i)%known(k) >= 0) call widen(d%curves(i)%place(:, k), low, high)
+      associate (d => c%d)
+         if (c%best > 0) call widen_by_links(d, d%frame(c%best), .true., low, high)
+         do i = 1, size(c%faint)
+            call widen_by_links(d, d%frame(c%faint(i)), .false., low, high)
          end do
-      end do
+         do i = 1, size(d%flags)
+            call widen_by_links(d, d%flags(i)%last, .false., low, high)
+         end do
+         call widen_by_links(d, d%now, .false., low, high, ground=.true.)
+         do i = 1, size(d%curves)
+            do k = 1, size(d%curves(i)%known)
+               if (d%curves(i)%known(k) >= 0) call widen(d%curves(i)%place(:, k), low, high)
+            end do
+         end do
+      end associate
       if (.not. all(low <= high)) then
          low = 0.0_wp
          high = 0.0_wp
       end if
-      if (choice%centrodes .and. choice%best > 0) call widen_by_centrodes(d, d%frame(choice%best), low, high)
+      if (c%centrodes .and. c%best > 0) call widen_by_centrodes(c%d, c%d%frame(c%best), low, high)
    end subroutine find_extent
 
    !> Widens the box from `low` to `high` (2) by the instant centres at `s` and by what there is of their centrodes in
@@ -136,27 +126,26 @@ contains
 
    !> Widens the box from `low` to `high` (2) by the links that are known at `s`: moving ones, with guides where these
    !> are drawn, or the `ground` as far as pairs use it.
-   subroutine widen_by_links(m, d, s, guides, low, high, ground)
-      type(mechanism_t), intent(in) :: m
+   subroutine widen_by_links(d, s, guides, low, high, ground)
       type(drawing_t), intent(in) :: d
       type(snapshot_t), intent(in) :: s
       logical, intent(in) :: guides
       real(wp), intent(inout) :: low(2), high(2)
       logical, intent(in), optional :: ground
-      logical :: is_wanted(size(m%points))
+      logical :: is_wanted(size(d%m%points))
       real(wp) :: ends(2, 2)
       integer :: i
 
-      is_wanted = .not. m%links(m%points%link)%ground .and. .not. present(ground)
+      is_wanted = .not. d%m%links(d%m%points%link)%ground .and. .not. present(ground)
       if (present(ground)) then
-         do i = 1, size(m%pairs)
-            is_wanted([m%pairs(i)%point_i, m%pairs(i)%point_j]) = .true.
+         do i = 1, size(d%m%pairs)
+            is_wanted([d%m%pairs(i)%point_i, d%m%pairs(i)%point_j]) = .true.
          end do
-         is_wanted = is_wanted .and. m%links(m%points%link)%ground
+         is_wanted = is_wanted .and. d%m%links(d%m%points%link)%ground
          is_wanted(d%guides%pivot) = .false.
       end if
-      do i = 1, size(m%points)
-         if (is_wanted(i) .and. s%known(m%points(i)%link)) call widen(point_place(m, s, i), low, high)
+      do i = 1, size(d%m%points)
+         if (is_wanted(i) .and. s%known(d%m%points(i)%link)) call widen(point_place(d%m, s, i), low, high)
       end do
       if (.not. guides) return
       do i = 1, size(d%guides)
@@ -164,7 +153,7 @@ contains
          ends = guide_ends(d%guides(i), s)
          call widen(ends(:, 1), low, high)
          call widen(ends(:, 2), low, high)
-         if (.not. m%links(d%guides(i)%carrier)%ground) &
+         if (.not. d%m%links(d%guides(i)%carrier)%ground) &
             call widen(point_of(s%place(:, d%guides(i)%carrier), d%guides(i)%foot), low, high)
       end do
    end subroutine widen_by_links
@@ -188,19 +177,17 @@ contains
       if (e < 0) rounded_down = aint(x*(1.0_wp + tie)/10.0_wp**(-e))*10.0_wp**(-e)
    end function rounded_down
 
-   !> Begins the group of a set, with its title at the pixel `top`. `t`: the instant that is drawn.
-   subroutine put_set_head(o, c, m, d, t, top)
-      type(output_t), intent(inout) :: o
+   !> Begins the group of a set, with its title. `t`: the instant that is drawn.
+   subroutine put_set_head(c, t)
       type(canvas_t), intent(in) :: c
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
       real(wp), intent(in) :: t
-      integer, intent(in) :: top
 
-      call put_group(o, 'class="set" data-set="'//whole(m%set_number)//'" data-scale="'//full(c%scale)//'" data-x="' &
-         //fitted(c%shift(1))//'" data-y="'//fitted(c%shift(2))//'" data-origin="'//full(d%origin(1))//' ' &
-         //full(d%origin(2))//'" data-t="'//full(t)//'"', trim(m%title))
-      call put_words(o, real([14, top + 24], wp), 'start', 'class="title"', trim(whole(m%set_number)//'.  '//m%title))
+      call put_group(c%o, 'class="set" data-set="'//whole(c%m%set_number)//'" data-scale="'//full(c%scale) &
+         //'" data-x="'//fitted(c%shift(1))//'" data-y="'//fitted(c%shift(2)) &
+         //'" data-origin="'//full(c%d%origin(1))//' '//full(c%d%origin(2))//'" data-t="'//full(t)//'"', &
+         trim(c%m%title))
+      call put_words(c%o, real([14, c%top + 24], wp), 'start', 'class="title"', &
+         trim(whole(c%m%set_number)//'.  '//c%m%title))
    end subroutine put_set_head
 
    !> The lines of words about flagged instants: one for each that is drawn, and one where there are more.
@@ -211,23 +198,20 @@ contains
       if (d%flagged > size(d%flags)) flag_lines = flag_lines + 1
    end function flag_lines
 
-   !> Below it: the flagged instants, and what is drawn of them.
-   subroutine put_flags(o, m, d, bottom)
-      type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
-      integer, intent(in) :: bottom
+   !> Below the picture: the flagged instants, and what is drawn of them.
+   subroutine put_flags(c)
+      type(canvas_t), intent(in) :: c
       character(:), allocatable :: words
       integer :: i
 
-      do i = 1, flag_lines(d)
-         if (i > size(d%flags)) then
-            words = phrase(say_flagged_in_all, m%polish)//' '//whole(d%flagged)
+      do i = 1, flag_lines(c%d)
+         if (i > size(c%d%flags)) then
+            words = phrase(say_flagged_in_all, c%m%polish)//' '//whole(c%d%flagged)
          else
-            words = words_of_flag(m, d%flags(i))
+            words = words_of_flag(c%m, c%d%flags(i))
          end if
-         call put_words(o, real([14, bottom - 16 - line_height*(flag_lines(d) - i)], wp), 'start', 'class="flag"', &
-            words)
+         call put_words(c%o, real([14, c%bottom - 16 - line_height*(flag_lines(c%d) - i)], wp), 'start', &
+            'class="flag"', words)
       end do
    end subroutine put_flags
 
@@ -243,10 +227,8 @@ contains
    end function words_of_flag
 
    !> The scale bar, at the foot on the right: 1, 2 or 5 times a power of ten units of length.
-   subroutine put_scale(o, c, m)
-      type(output_t), intent(inout) :: o
+   subroutine put_scale(c)
       type(canvas_t), intent(in) :: c
-      type(mechanism_t), intent(in) :: m
       real(wp) :: length, y, x
       integer :: e
 
@@ -260,9 +242,10 @@ contains
       x = real(width - 24, wp)
       y = c%high(2) + 16.0_wp
       associate (from => x - length*c%scale)
-         call put_polyline(o, reshape([from, y - 4.0_wp, from, y + 4.0_wp, from, y, x, y, x, y - 4.0_wp, &
+         call put_line(c%o, 'polyline', reshape([from, y - 4.0_wp, from, y + 4.0_wp, from, y, x, y, x, y - 4.0_wp, &
             x, y + 4.0_wp], [2, 6]), 'class="scale"')
-         call put_words(o, [from - 8.0_wp, y + 4.0_wp], 'end', 'class="time"', fitted(length)//' '//trim(m%length_unit))
+         call put_words(c%o, [from - 8.0_wp, y + 4.0_wp], 'end', 'class="time"', &
+            fitted(length)//' '//trim(c%m%length_unit))
       end associate
    end subroutine put_scale
 
@@ -282,15 +265,4 @@ contains
          text = without_zeros(fixed(x, 5 - e, 0))
       end if
    end function fitted
-
-   !> The number `digits` without zeros at the end of its decimals.
-   pure function without_zeros(digits) result(text)
-      character(*), intent(in) :: digits
-      character(:), allocatable :: text
-
-      text = trim(adjustl(digits))
-      if (index(text, '.') == 0) return
-      text = text(:verify(text, '0', back=.true.))
-      if (text(len(text):) == '.') text = text(:len(text) - 1)
-   end function without_zeros
 end module picture_page

@@ -4,10 +4,10 @@ module picture_parts
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_revolute
    use planar, only: direction, quarter_turn, point_of
-   use drawing, only: drawing_t, snapshot_t, curve_t, guide_t, point_place
+   use drawing, only: snapshot_t, curve_t, guide_t, point_place
    use outline, only: outline_t, corners_at
    use canvas, only: canvas_t, to_pixels, add_line, add_box
-   use svg, only: put_group, put_group_end, put_circle, put_polyline, put_polygon, put_curve, attribute
+   use svg, only: put_group, put_end, put_circle, put_line, put_curve, attribute
    use text_output, only: output_t
    implicit none
    private
@@ -39,27 +39,23 @@ contains
    end function color_of
 
    !> Link number `i`, which moves, in full at the position `s`: a bar, or a polygon.
-   subroutine put_body(o, c, m, d, s, i)
-      type(output_t), intent(inout) :: o
+   subroutine put_body(c, i)
       type(canvas_t), intent(inout) :: c
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
-      type(snapshot_t), intent(in) :: s
       integer, intent(in) :: i
-      real(wp) :: p(2, size(d%outlines(i)%corner, 2))
+      real(wp) :: p(2, size(c%d%outlines(i)%corner, 2))
 
-      if (m%links(i)%ground .or. .not. s%known(i) .or. size(p, 2) < 2) return
-      p = corner_pixels(c, d%outlines(i), s%place(:, i))
-      call put_group(o, 'style="stroke:'//color_of(i)//'"', trim(m%links(i)%name))
+      if (c%m%links(i)%ground .or. .not. c%s%known(i) .or. size(p, 2) < 2) return
+      p = corner_pixels(c, c%d%outlines(i), c%s%place(:, i))
+      call put_group(c%o, 'style="stroke:'//color_of(i)//'"', trim(c%m%links(i)%name))
       if (size(p, 2) == 2) then
-         call put_polyline(o, p, 'class="bar" style="stroke:'//color_of(i)//'"')
-         call put_polyline(o, p, 'class="core"')
+         call put_line(c%o, 'polyline', p, 'class="bar" style="stroke:'//color_of(i)//'"')
+         call put_line(c%o, 'polyline', p, 'class="core"')
          call add_line(c, p(:, 1), p(:, 2), 1.5_wp)
       else
-         call put_polygon(o, p, 'class="body" style="stroke:'//color_of(i)//';fill:'//color_of(i)//'"')
+         call put_line(c%o, 'polygon', p, 'class="body" style="stroke:'//color_of(i)//';fill:'//color_of(i)//'"')
          call add_outline(c, p)
       end if
-      call put_group_end(o)
+      call put_end(c%o, 'g')
    end subroutine put_body
 
    !> Notes the sides of the polygon `p` (2, :).
@@ -74,44 +70,38 @@ contains
    end subroutine add_outline
 
    !> The moving links as thin lines at the position `s`.
-   subroutine put_outlines(o, c, m, d, s)
-      type(output_t), intent(inout) :: o
+   subroutine put_outlines(c, s)
       type(canvas_t), intent(in) :: c
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
       type(snapshot_t), intent(in) :: s
       integer :: i
 
-      do i = 1, size(m%links)
-         if (m%links(i)%ground .or. .not. s%known(i)) cycle
-         associate (p => corner_pixels(c, d%outlines(i), s%place(:, i)))
-            if (size(p, 2) == 2) call put_polyline(o, p, 'class="thin"')
-            if (size(p, 2) > 2) call put_polygon(o, p, 'class="thin"')
+      do i = 1, size(c%m%links)
+         if (c%m%links(i)%ground .or. .not. s%known(i)) cycle
+         associate (p => corner_pixels(c, c%d%outlines(i), s%place(:, i)))
+            if (size(p, 2) == 2) call put_line(c%o, 'polyline', p, 'class="thin"')
+            if (size(p, 2) > 2) call put_line(c%o, 'polygon', p, 'class="thin"')
          end associate
       end do
    end subroutine put_outlines
 
    !> The flagged position `s`: thin lines, and rings about the joints, which show where the lines are covered.
-   subroutine put_flagged(o, c, m, d, s)
-      type(output_t), intent(inout) :: o
+   subroutine put_flagged(c, s)
       type(canvas_t), intent(inout) :: c
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
       type(snapshot_t), intent(in) :: s
       integer :: i
 
-      call put_group(o, 'class="flagged"', '')
-      call put_outlines(o, c, m, d, s)
-      do i = 1, size(m%links)
-         if (m%links(i)%ground .or. .not. s%known(i)) cycle
-         call add_outline(c, corner_pixels(c, d%outlines(i), s%place(:, i)))
+      call put_group(c%o, 'class="flagged"', '')
+      call put_outlines(c, s)
+      do i = 1, size(c%m%links)
+         if (c%m%links(i)%ground .or. .not. s%known(i)) cycle
+         call add_outline(c, corner_pixels(c, c%d%outlines(i), s%place(:, i)))
       end do
-      do i = 1, size(m%pairs)
-         associate (point => joint_point(m, s%known, i))
-            if (point > 0) call put_circle(o, to_pixels(c, point_place(m, s, point)), ring_radius, 'class="ring"')
+      do i = 1, size(c%m%pairs)
+         associate (point => joint_point(c%m, s%known, i))
+            if (point > 0) call put_circle(c%o, to_pixels(c, point_place(c%m, s, point)), ring_radius, 'class="ring"')
          end associate
       end do
-      call put_group_end(o)
+      call put_end(c%o, 'g')
    end subroutine put_flagged
 
    !> The corners (2, :) of the outline `h` of a link at `position` (x, y, phi), in pixels.
@@ -130,26 +120,23 @@ contains
 
    !> The guide `g` at the position `s`: a line over the range of the slide. The ground's has a hatch. That of a moving
    !> link is a rod that begins where the perpendicular from its pivot meets it.
-   subroutine put_guide(o, c, m, g, s)
-      type(output_t), intent(inout) :: o
+   subroutine put_guide(c, g)
       type(canvas_t), intent(inout) :: c
-      type(mechanism_t), intent(in) :: m
       type(guide_t), intent(in) :: g
-      type(snapshot_t), intent(in) :: s
       real(wp) :: e(2), pivot(2), foot(2), ends(2, 2), from, to
       real(wp), allocatable :: p(:, :)
 
-      if (.not. s%known(g%carrier) .or. g%high < g%low) return
-      e = direction_in_picture(s%place(3, g%carrier) + g%angle)
-      pivot = to_pixels(c, point_place(m, s, g%pivot))
-      foot = to_pixels(c, point_of(s%place(:, g%carrier), g%foot))
+      if (.not. c%s%known(g%carrier) .or. g%high < g%low) return
+      e = direction_in_picture(c%s%place(3, g%carrier) + g%angle)
+      pivot = to_pixels(c, point_place(c%m, c%s, g%pivot))
+      foot = to_pixels(c, point_of(c%s%place(:, g%carrier), g%foot))
       from = c%scale*g%low
       to = c%scale*g%high
-      call put_group(o, 'class="guide"', trim(m%pairs(g%pair)%name))
-      if (m%links(g%carrier)%ground) then
+      call put_group(c%o, 'class="guide"', trim(c%m%pairs(g%pair)%name))
+      if (c%m%links(g%carrier)%ground) then
          ends = reshape([foot + (from - beyond)*e, foot + (to + beyond)*e], [2, 2])
-         call put_hatch(o, ends(:, 1), ends(:, 2), sign(1.0_wp, e(1))*quarter_turn(e))
-         call put_polyline(o, ends, 'class="guide"')
+         call put_hatch(c%o, ends(:, 1), ends(:, 2), sign(1.0_wp, e(1))*quarter_turn(e))
+         call put_line(c%o, 'polyline', ends, 'class="guide"')
       else
          ends = reshape([foot + min(from - rod_beyond, 0.0_wp)*e, foot + max(to + rod_beyond, 0.0_wp)*e], [2, 2])
          p = ends
@@ -157,10 +144,10 @@ contains
             p = reshape([ends(:, 1), foot, pivot, foot, ends(:, 2)], [2, 5])
             call add_line(c, pivot, foot, 1.0_wp)
          end if
-         call put_polyline(o, p, 'class="rod" style="stroke:'//color_of(g%carrier)//'"')
-         call put_polyline(o, p, 'class="slot"')
+         call put_line(c%o, 'polyline', p, 'class="rod" style="stroke:'//color_of(g%carrier)//'"')
+         call put_line(c%o, 'polyline', p, 'class="slot"')
       end if
-      call put_group_end(o)
+      call put_end(c%o, 'g')
       call add_line(c, ends(:, 1), ends(:, 2), 1.0_wp)
    end subroutine put_guide
 
@@ -196,71 +183,62 @@ contains
       e = (q - p)/norm2(q - p)
       do k = 1, n
          start = p + real(k, wp)*(q - p)/real(n, wp)
-         call put_polyline(o, reshape([start, start + hatch_length*(side - e)], [2, 2]), 'class="hatch"')
+         call put_line(o, 'polyline', reshape([start, start + hatch_length*(side - e)], [2, 2]), 'class="hatch"')
       end do
    end subroutine put_hatch
 
    !> A support under each point of the ground that a revolute pair joins.
-   subroutine put_ground(o, c, m, d)
-      type(output_t), intent(inout) :: o
+   subroutine put_ground(c)
       type(canvas_t), intent(inout) :: c
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(in) :: d
       real(wp) :: p(2), base(2, 2)
       integer :: i, point
 
-      do i = 1, size(m%pairs)
-         if (m%pairs(i)%kind /= pair_revolute) cycle
-         point = m%pairs(i)%point_i
-         if (.not. m%links(m%points(point)%link)%ground) point = m%pairs(i)%point_j
-         if (.not. m%links(m%points(point)%link)%ground) cycle
-         p = to_pixels(c, point_place(m, d%now, point))
+      do i = 1, size(c%m%pairs)
+         if (c%m%pairs(i)%kind /= pair_revolute) cycle
+         point = c%m%pairs(i)%point_i
+         if (.not. c%m%links(c%m%points(point)%link)%ground) point = c%m%pairs(i)%point_j
+         if (.not. c%m%links(c%m%points(point)%link)%ground) cycle
+         p = to_pixels(c, point_place(c%m, c%d%now, point))
          base = reshape([p + [-half_support, support_height], p + [half_support, support_height]], [2, 2])
-         call put_group(o, 'class="ground"', trim(m%links(m%points(point)%link)%name))
-         call put_polygon(o, reshape([p, base], [2, 3]), 'class="support"')
+         call put_group(c%o, 'class="ground"', trim(c%m%links(c%m%points(point)%link)%name))
+         call put_line(c%o, 'polygon', reshape([p, base], [2, 3]), 'class="support"')
          base(1, :) = base(1, :) + [-4.0_wp, 4.0_wp]
-         call put_hatch(o, base(:, 1), base(:, 2), [0.0_wp, 1.0_wp])
-         call put_polyline(o, base, 'class="support"')
-         call put_group_end(o)
+         call put_hatch(c%o, base(:, 1), base(:, 2), [0.0_wp, 1.0_wp])
+         call put_line(c%o, 'polyline', base, 'class="support"')
+         call put_end(c%o, 'g')
          call add_box(c, p - [half_support, 0.0_wp], p + [half_support, support_height + hatch_length])
       end do
    end subroutine put_ground
 
    !> The block on the guide `g` at the position `s`.
-   subroutine put_block(o, c, m, g, s)
-      type(output_t), intent(inout) :: o
+   subroutine put_block(c, g)
       type(canvas_t), intent(inout) :: c
-      type(mechanism_t), intent(in) :: m
       type(guide_t), intent(in) :: g
-      type(snapshot_t), intent(in) :: s
       real(wp) :: p(2), u(2), v(2)
       character(7) :: color
 
-      if (.not. s%known(g%block)) return
-      p = to_pixels(c, point_place(m, s, g%point))
-      u = half_block(1)*direction_in_picture(s%place(3, g%block) + g%block_angle)
+      if (.not. c%s%known(g%block)) return
+      p = to_pixels(c, point_place(c%m, c%s, g%point))
+      u = half_block(1)*direction_in_picture(c%s%place(3, g%block) + g%block_angle)
       v = half_block(2)*quarter_turn(u)/half_block(1)
       color = color_of(g%block)
-      if (m%links(g%block)%ground) color = '#dddddd'
-      call put_group(o, 'class="slider"', trim(m%pairs(g%pair)%name))
-      call put_polygon(o, reshape([p - u - v, p + u - v, p + u + v, p - u + v], [2, 4]), &
+      if (c%m%links(g%block)%ground) color = '#dddddd'
+      call put_group(c%o, 'class="slider"', trim(c%m%pairs(g%pair)%name))
+      call put_line(c%o, 'polygon', reshape([p - u - v, p + u - v, p + u + v, p - u + v], [2, 4]), &
          'class="block" style="fill:'//color//'"')
-      call put_group_end(o)
+      call put_end(c%o, 'g')
       call add_box(c, p - abs(u) - abs(v), p + abs(u) + abs(v))
    end subroutine put_block
 
    !> The joint of pair number `i`, if that is a revolute pair, at its `point` at the position `s`; 0 for none.
-   subroutine put_joint(o, c, m, s, i, point)
-      type(output_t), intent(inout) :: o
+   subroutine put_joint(c, i, point)
       type(canvas_t), intent(inout) :: c
-      type(mechanism_t), intent(in) :: m
-      type(snapshot_t), intent(in) :: s
       integer, intent(in) :: i, point
       real(wp) :: p(2)
 
-      if (m%pairs(i)%kind /= pair_revolute .or. point == 0) return
-      p = to_pixels(c, point_place(m, s, point))
-      call put_circle(o, p, joint_radius, 'class="joint" '//attribute('data-pair', trim(m%pairs(i)%name)))
+      if (c%m%pairs(i)%kind /= pair_revolute .or. point == 0) return
+      p = to_pixels(c, point_place(c%m, c%s, point))
+      call put_circle(c%o, p, joint_radius, 'class="joint" '//attribute('data-pair', trim(c%m%pairs(i)%name)))
       call add_box(c, p - joint_radius, p + joint_radius)
    end subroutine put_joint
 
@@ -300,30 +278,26 @@ contains
    end function dots_of
 
    !> As a dot point number `i` at the position `s`.
-   subroutine put_dot(o, c, m, s, i)
-      type(output_t), intent(inout) :: o
+   subroutine put_dot(c, i)
       type(canvas_t), intent(inout) :: c
-      type(mechanism_t), intent(in) :: m
-      type(snapshot_t), intent(in) :: s
       integer, intent(in) :: i
       real(wp) :: p(2)
 
-      if (.not. s%known(m%points(i)%link)) return
-      p = to_pixels(c, point_place(m, s, i))
-      call put_circle(o, p, point_radius, 'class="point" '//attribute('data-point', trim(m%points(i)%name)))
+      if (.not. c%s%known(c%m%points(i)%link)) return
+      p = to_pixels(c, point_place(c%m, c%s, i))
+      call put_circle(c%o, p, point_radius, 'class="point" '//attribute('data-point', trim(c%m%points(i)%name)))
       call add_box(c, p - point_radius, p + point_radius)
    end subroutine put_dot
 
    !> The path `curve` of a point called `name`, in pieces where it is not known.
-   subroutine put_path(o, c, curve, name, color)
-      type(output_t), intent(inout) :: o
+   subroutine put_path(c, curve, name, color)
       type(canvas_t), intent(inout) :: c
       type(curve_t), intent(in) :: curve
       character(*), intent(in) :: name, color
       integer :: first, last, n
 
       n = size(curve%known)
-      call put_group(o, attribute('data-path', name), name)
+      call put_group(c%o, attribute('data-path', name), name)
       first = 1
       do while (first < n)
          last = first
@@ -331,15 +305,14 @@ contains
             if (any(curve%known(last:last + 1) < 0)) exit
             last = last + 1
          end do
-         if (last > first) call put_piece(o, c, curve, first, last, color)
+         if (last > first) call put_piece(c, curve, first, last, color)
          first = last + 1
       end do
-      call put_group_end(o)
+      call put_end(c%o, 'g')
    end subroutine put_path
 
    !> The places `first` to `last` of the path: cubics with the velocities at their ends.
-   subroutine put_piece(o, c, curve, first, last, color)
-      type(output_t), intent(inout) :: o
+   subroutine put_piece(c, curve, first, last, color)
       type(canvas_t), intent(inout) :: c
       type(curve_t), intent(in) :: curve
       integer, intent(in) :: first, last
@@ -360,6 +333,6 @@ contains
             norm2(to(:, k) - p(:, k + 1)) <= far)
          call add_line(c, p(:, k), p(:, k + 1), curve_weight)
       end do
-      call put_curve(o, p, from, to, straight, 'class="curve" style="stroke:'//color//'"')
+      call put_curve(c%o, p, from, to, straight, 'class="curve" style="stroke:'//color//'"')
    end subroutine put_piece
 end module picture_parts

@@ -6,8 +6,8 @@ module svg
    use numerals, only: fixed, whole
    implicit none
    private
-   public :: svg_head, svg_end, put_group, put_group_end, put_circle, put_polyline, put_polygon, put_curve, put_words, &
-      put_values, put_window, put_window_end, pixels, escaped, attribute
+   public :: svg_head, put_group, put_window, put_end, put_circle, put_line, put_curve, put_words, put_values, pixels, &
+      without_zeros, escaped, attribute
 
    !> The classes of the elements. Widths and sizes are in pixels.
    character(*), parameter :: style(*) = [character(118) :: &
@@ -62,13 +62,6 @@ contains
       call put(o, '<rect width="'//whole(width)//'" height="'//whole(height)//'" fill="#fff"/>')
    end subroutine svg_head
 
-   !> Ends the picture.
-   subroutine svg_end(o)
-      type(output_t), intent(inout) :: o
-
-      call put(o, '</svg>')
-   end subroutine svg_end
-
    !> Begins a group of elements with the attributes `attributes`; `title`, if not '', is what a viewer says of it.
    subroutine put_group(o, attributes, title)
       type(output_t), intent(inout) :: o
@@ -78,12 +71,13 @@ contains
       if (len(title) > 0) call put(o, '<title>'//escaped(title)//'</title>')
    end subroutine put_group
 
-   !> Ends the group begun last.
-   subroutine put_group_end(o)
+   !> Ends the `element` begun last: 'g' a group, 'svg' a picture.
+   subroutine put_end(o, element)
       type(output_t), intent(inout) :: o
+      character(*), intent(in) :: element
 
-      call put(o, '</g>')
-   end subroutine put_group_end
+      call put(o, '</'//element//'>')
+   end subroutine put_end
 
    !> A circle about `p` (2).
    subroutine put_circle(o, p, radius, attributes)
@@ -94,38 +88,14 @@ contains
       call put(o, '<circle cx="'//pixels(p(1))//'" cy="'//pixels(p(2))//'" r="'//pixels(radius)//'" '//attributes//'/>')
    end subroutine put_circle
 
-   !> A line through the places `p` (2, :).
-   subroutine put_polyline(o, p, attributes)
-      type(output_t), intent(inout) :: o
-      real(wp), intent(in) :: p(:, :)
-      character(*), intent(in) :: attributes
-
-      call put_places(o, '<polyline', p, attributes)
-   end subroutine put_polyline
-
-   !> A closed line through the places `p` (2, :).
-   subroutine put_polygon(o, p, attributes)
-      type(output_t), intent(inout) :: o
-      real(wp), intent(in) :: p(:, :)
-      character(*), intent(in) :: attributes
-
-      call put_places(o, '<polygon', p, attributes)
-   end subroutine put_polygon
-
-   !> An element that has its `points`.
-   subroutine put_places(o, element, p, attributes)
+   !> A line through the places `p` (2, :): the `element` 'polyline', or 'polygon', which closes it.
+   subroutine put_line(o, element, p, attributes)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: element, attributes
       real(wp), intent(in) :: p(:, :)
-      integer :: i
 
-      call add(o, element//' '//attributes//' points="')
-      do i = 1, size(p, 2)
-         if (i > 1) call add(o, ' ')
-         call add(o, pixels(p(1, i))//','//pixels(p(2, i)))
-      end do
-      call put(o, '"/>')
-   end subroutine put_places
+      call put_columns(o, element//' '//attributes//' points="', p, ',', ' ')
+   end subroutine put_line
 
    !> A curve through the places `p` (2, :). From each to the next leads a cubic with the control points `from` and `to`
    !> (2, size - 1), or a straight line where `straight` (size - 1).
@@ -163,18 +133,28 @@ contains
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: element
       real(wp), intent(in) :: values(:, :)
+
+      call put_columns(o, element//' values="', values, ' ', ';')
+   end subroutine put_values
+
+   !> An element that `begins` so and has the columns of `values` (:, :) in an attribute: `inside` stands between the
+   !> numbers of a column, `between` between columns.
+   subroutine put_columns(o, begins, values, inside, between)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: begins, inside, between
+      real(wp), intent(in) :: values(:, :)
       integer :: i, k
 
-      call add(o, '<'//element//' values="')
+      call add(o, '<'//begins)
       do k = 1, size(values, 2)
-         if (k > 1) call add(o, ';')
+         if (k > 1) call add(o, between)
          do i = 1, size(values, 1)
-            if (i > 1) call add(o, ' ')
+            if (i > 1) call add(o, inside)
             call add(o, pixels(values(i, k)))
          end do
       end do
       call put(o, '"/>')
-   end subroutine put_values
+   end subroutine put_columns
 
    !> Begins a picture in the picture: what follows is seen from the place `p` (2) on, over `extent` (2), and has its
    !> places from there.
@@ -185,13 +165,6 @@ contains
       call put(o, '<svg x="'//pixels(p(1))//'" y="'//pixels(p(2))//'" width="'//pixels(extent(1))//'" height="' &
          //pixels(extent(2))//'" overflow="hidden">')
    end subroutine put_window
-
-   !> Ends it.
-   subroutine put_window_end(o)
-      type(output_t), intent(inout) :: o
-
-      call put(o, '</svg>')
-   end subroutine put_window_end
 
    !> The place `p` (2) in a path.
    pure function place(p) result(text)
@@ -206,10 +179,19 @@ contains
       real(wp), intent(in) :: x
       character(:), allocatable :: text
 
-      text = trim(adjustl(fixed(x + tie, 2, 0)))
+      text = without_zeros(fixed(x + tie, 2, 0))
+   end function pixels
+
+   !> The number `digits` without zeros at the end of its decimals.
+   pure function without_zeros(digits) result(text)
+      character(*), intent(in) :: digits
+      character(:), allocatable :: text
+
+      text = trim(adjustl(digits))
+      if (index(text, '.') == 0) return
       text = text(:verify(text, '0', back=.true.))
       if (text(len(text):) == '.') text = text(:len(text) - 1)
-   end function pixels
+   end function without_zeros
 
    !> The attribute `name` with `value`.
    pure function attribute(name, value) result(text)
