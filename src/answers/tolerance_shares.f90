@@ -79,8 +79,8 @@ contains
       real(wp) :: root(3, 0:2), worst(3, 0:2)
       integer :: c, k
 
-      root = root_of_squares(m, s)
-      worst = worst_case(m, s)
+      root = root_of_squares(m%tolerances, s)
+      worst = worst_case(m%tolerances, s)
       do k = 0, known
          do c = 1, 3
             associate (one => list(c, k))

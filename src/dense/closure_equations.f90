@@ -3,18 +3,38 @@
 !> Equations: two of every pair, (7), (8) or (9), (10), then one of every drive. One assembly serves Newton and the
 !> paper's own iteration: where the pose is frozen, its slopes are the coefficients of (16) and the matrix is A of (20).
 !> The one file that knows the kinds of pairs and of drives.
+!>
+!> Revolute pair of links i and j: the joint is point P of link i and point Q of link j. With the body vectors
+!> u = R(phi_i) (xi_P, eta_P) and w = R(phi_j) (xi_Q, eta_Q) from each link's own origin:
+!>    x_i + u_x - x_j - w_x = 0        (7), there with u = a_i (cos phi_i, sin phi_i)
+!>    y_i + u_y - y_j - w_y = 0        (8)
+!> Derivatives by phi are the slopes of the body vectors: u' = (-u_y, u_x). The second derivative by time is
+!> J a + (-phi_i'^2 u + phi_j'^2 w): its second part is the acceleration remainder.
+!> The pair alone is never singular: its x and y columns hold +1 and -1.
+!>
+!> Prismatic pair: point P of link i and point Q of link j; the guide lies in link i. Its direction
+!> e = (cos theta, sin theta), theta = phi_i + alpha, and its normal n = (-sin theta, cos theta) turn with link i.
+!> With d = P - Q:
+!>    d . n = h                 (9), in which the print has sin phi_j for one sin phi_i; (6) and (16) are right
+!>    phi_j - phi_i = beta      (10)
+!> and the slide of (3), (4) is x_w = -d . e. Both are projections d . f on a vector f that turns with link i: the pair
+!> has f = n, the SLIDE drive f = -e.
+!>    (d . f)'  = d' . f + phi_i' d . f',                f' = (-f_y, f_x)
+!>    (d . f)'' = d'' . f + phi_i'' d . f' + 2 phi_i' d' . f' - phi_i'^2 d . f
+!> where d' = v + slope_u phi_i' and so on. Rejected: the closure with the slide as a further unknown, (3) and (4);
+!> it costs one equation and one unknown a pair and prints nothing that the projection does not.
 module closure_equations
    use kinds, only: wp
    use constants, only: pi
+   use planar, only: rotated, quarter_turn, cross
    use mechanism, only: pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
    use drives, only: drive_motion
-   use pose, only: system_t, pose_t, normal_angle
-   use pair_rows, only: revolute_jacobian, revolute_remainder, projection_residual, closure_error, normal, along, &
-      projection_row, moving_projection
+   use pose, only: system_t, pose_t, normal_angle, secants
    implicit none
    private
-   public :: residual, jacobian, remainder
-   public :: find_drive_values, drive_residual, drive_row, drive_remainder, place
+   public :: residual, jacobian, remainder, find_drive_values
+   public :: drive_residual, drive_row, drive_remainder, place
+   public :: closure_error, normal, along, projection_row, projection_remainder, frozen_gradient
 
 contains
 
@@ -24,18 +44,14 @@ contains
       type(pose_t), intent(in) :: p
       real(wp), intent(in) :: driven(:)
       real(wp), intent(out) :: r(:)
-      real(wp) :: d(2)
       integer :: k
 
       do k = 1, size(s%pairs)
-         associate (pair => s%pairs(k))
-            d = closure_error(s, p, pair%point_i, pair%point_j)
-            if (pair%kind == pair_revolute) then
-               r(2*k - 1:2*k) = d
-            else
-               r(2*k - 1) = projection_residual(d, normal(s, p, k), pair%offset)
-               r(2*k) = p%q(3, s%link_of(pair%point_j)) - p%q(3, s%link_of(pair%point_i)) - pair%beta
-            end if
+         associate (pair => s%pairs(k), d => r(2*k - 1:2*k))
+            d = closure_error(s, p, k)
+            if (pair%kind == pair_revolute) cycle
+            d = [dot_product(d, normal(s, p, k)) - pair%offset, &
+               p%q(3, s%link_of(pair%point_j)) - p%q(3, s%link_of(pair%point_i)) - pair%beta]
          end associate
       end do
       do k = 1, size(s%laws)
@@ -48,20 +64,19 @@ contains
       type(system_t), intent(in) :: s
       type(pose_t), intent(in) :: p
       real(wp), intent(out) :: a(:, :)
-      real(wp) :: rows(2, 6)
       integer :: k
 
       a = 0.0_wp
       do k = 1, size(s%pairs)
-         associate (pair => s%pairs(k))
-            if (pair%kind == pair_revolute) then
-               rows = revolute_jacobian(p%slope(:, pair%point_i), p%slope(:, pair%point_j))
+         associate (u => p%slope(:, s%pairs(k)%point_i), w => p%slope(:, s%pairs(k)%point_j))
+            if (s%pairs(k)%kind == pair_revolute) then
+               call place_both(s, a, 2*k - 1, k, [1.0_wp, 0.0_wp, u(1), -1.0_wp, 0.0_wp, -w(1)])
+               call place_both(s, a, 2*k, k, [0.0_wp, 1.0_wp, u(2), 0.0_wp, -1.0_wp, -w(2)])
             else
-               rows(1, :) = projection_row(s, p, k, normal(s, p, k), normal_angle(s, p, k), p%guide_zeros(:, k))
-               rows(2, :) = [0.0_wp, 0.0_wp, -1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp]
+               call place_both(s, a, 2*k - 1, k, projection_row(s, p, k, normal(s, p, k), normal_angle(s, p, k), &
+                  p%guide_zeros(:, k)))
+               call place_both(s, a, 2*k, k, [0.0_wp, 0.0_wp, -1.0_wp, 0.0_wp, 0.0_wp, 1.0_wp])
             end if
-            call place_both(s, a, 2*k - 1, k, rows(1, :))
-            call place_both(s, a, 2*k, k, rows(2, :))
          end associate
       end do
       do k = 1, size(s%laws)
@@ -80,14 +95,11 @@ contains
 
       gamma = 0.0_wp
       do k = 1, size(s%pairs)
-         associate (a => s%pairs(k)%point_i, b => s%pairs(k)%point_j)
-            if (s%pairs(k)%kind == pair_revolute) then
-               gamma(2*k - 1:2*k) = revolute_remainder(p%body_vector(:, a), v(3, s%link_of(a)), &
-                  p%body_vector(:, b), v(3, s%link_of(b)))
-            else
-               gamma(2*k - 1) = moving_projection(s, p, v, k, normal(s, p, k))
-            end if
-         end associate
+         if (s%pairs(k)%kind == pair_revolute) then
+            gamma(2*k - 1:2*k) = turning_part(s, p, v, k)
+         else
+            gamma(2*k - 1) = projection_remainder(s, p, v, k, normal(s, p, k))
+         end if
       end do
       do k = 1, size(s%laws)
          gamma(2*size(s%pairs) + k) = drive_remainder(s, p, v, k)
@@ -103,11 +115,19 @@ contains
 
       do i = 1, size(s%laws)
          f(:, i) = drive_motion(s%laws(i), t)
-         if (s%laws(i)%drive%kind == drive_x) f(1, i) = f(1, i) - s%origin(1)
-         if (s%laws(i)%drive%kind == drive_y) f(1, i) = f(1, i) - s%origin(2)
-         if (any(s%laws(i)%drive%kind == [drive_x, drive_y, drive_slide])) f(:, i) = f(:, i)/s%length
+         associate (kind => s%laws(i)%drive%kind)
+            if (any(kind == [drive_x, drive_y])) f(1, i) = f(1, i) - s%origin(axis_of(kind))
+            if (any(kind == [drive_x, drive_y, drive_slide])) f(:, i) = f(:, i)/s%length
+         end associate
       end do
    end subroutine find_drive_values
+
+   !> The coordinate that a drive of this `kind`, X or Y, gives.
+   pure integer function axis_of(kind)
+      integer, intent(in) :: kind
+
+      axis_of = merge(1, 2, kind == drive_x)
+   end function axis_of
 
    !> The coordinate of drive `k` less its value `driven`.
    pure real(wp) function drive_residual(s, p, k, driven) result(r)
@@ -116,23 +136,19 @@ contains
       integer, intent(in) :: k
       real(wp), intent(in) :: driven
 
-      r = 0.0_wp
-      associate (subject => s%laws(k)%drive%subject)
-         select case (s%laws(k)%drive%kind)
+      associate (drive => s%laws(k)%drive, subject => s%laws(k)%drive%subject, axis => axis_of(s%laws(k)%drive%kind))
+         select case (drive%kind)
          case (drive_angle)
-            r = p%q(3, subject) - driven
-         case (drive_x)
-            r = p%q(1, s%link_of(subject)) + p%body_vector(1, subject) - driven
-         case (drive_y)
-            r = p%q(2, s%link_of(subject)) + p%body_vector(2, subject) - driven
+            r = p%q(3, subject)
+         case (drive_x, drive_y)
+            r = p%q(axis, s%link_of(subject)) + p%body_vector(axis, subject)
          case (drive_relangle)
-            r = p%q(3, s%laws(k)%drive%second) - p%q(3, subject) - driven
-         case (drive_slide)
-            associate (pair => s%pairs(subject))
-               r = projection_residual(closure_error(s, p, pair%point_i, pair%point_j), along(s, p, subject), driven)
-            end associate
+            r = p%q(3, drive%second) - p%q(3, subject)
+         case default
+            r = dot_product(closure_error(s, p, subject), along(s, p, subject))
          end select
       end associate
+      r = r - driven
    end function drive_residual
 
    !> Adds the coefficients of drive `k` to `row` of `a` (n, n).
@@ -141,18 +157,20 @@ contains
       type(pose_t), intent(in) :: p
       integer, intent(in) :: k, row
       real(wp), intent(inout) :: a(:, :)
+      real(wp) :: coefficients(3)
 
-      associate (subject => s%laws(k)%drive%subject)
-         select case (s%laws(k)%drive%kind)
+      coefficients = [0.0_wp, 0.0_wp, 1.0_wp]
+      associate (drive => s%laws(k)%drive, subject => s%laws(k)%drive%subject, axis => axis_of(s%laws(k)%drive%kind))
+         select case (drive%kind)
          case (drive_angle)
-            call place(s, a, row, subject, [0.0_wp, 0.0_wp, 1.0_wp])
-         case (drive_x)
-            call place(s, a, row, s%link_of(subject), [1.0_wp, 0.0_wp, p%slope(1, subject)])
-         case (drive_y)
-            call place(s, a, row, s%link_of(subject), [0.0_wp, 1.0_wp, p%slope(2, subject)])
+            call place(s, a, row, subject, coefficients)
+         case (drive_x, drive_y)
+            coefficients(axis) = 1.0_wp
+            coefficients(3) = p%slope(axis, subject)
+            call place(s, a, row, s%link_of(subject), coefficients)
          case (drive_relangle)
-            call place(s, a, row, s%laws(k)%drive%second, [0.0_wp, 0.0_wp, 1.0_wp])
-            call place(s, a, row, subject, [0.0_wp, 0.0_wp, -1.0_wp])
+            call place(s, a, row, drive%second, coefficients)
+            call place(s, a, row, subject, -coefficients)
          case (drive_slide)
             call place_both(s, a, row, subject, projection_row(s, p, subject, along(s, p, subject), &
                normal_angle(s, p, subject) + pi/2.0_wp, p%slide_zeros(:, k)))
@@ -168,15 +186,10 @@ contains
       integer, intent(in) :: k
 
       gamma = 0.0_wp
-      associate (subject => s%laws(k)%drive%subject)
-         select case (s%laws(k)%drive%kind)
-         case (drive_x)
-            gamma = -v(3, s%link_of(subject))**2*p%body_vector(1, subject)
-         case (drive_y)
-            gamma = -v(3, s%link_of(subject))**2*p%body_vector(2, subject)
-         case (drive_slide)
-            gamma = moving_projection(s, p, v, subject, along(s, p, subject))
-         end select
+      associate (subject => s%laws(k)%drive%subject, kind => s%laws(k)%drive%kind)
+         if (any(kind == [drive_x, drive_y])) &
+            gamma = -v(3, s%link_of(subject))**2*p%body_vector(axis_of(kind), subject)
+         if (kind == drive_slide) gamma = projection_remainder(s, p, v, subject, along(s, p, subject))
       end associate
    end function drive_remainder
 
@@ -202,4 +215,98 @@ contains
          if (c > 0) a(row, c:c + 2) = a(row, c:c + 2) + coefficients
       end associate
    end subroutine place
+
+   !> P - Q (2) of pair `k` in the pose `p`.
+   pure function closure_error(s, p, k) result(d)
+      type(system_t), intent(in) :: s
+      type(pose_t), intent(in) :: p
+      integer, intent(in) :: k
+      real(wp) :: d(2)
+
+      associate (a => s%pairs(k)%point_i, b => s%pairs(k)%point_j)
+         d = (p%q(:2, s%link_of(a)) - p%q(:2, s%link_of(b))) + (p%body_vector(:, a) - p%body_vector(:, b))
+      end associate
+   end function closure_error
+
+   !> Normal n of the guide of pair `k`.
+   pure function normal(s, p, k) result(n)
+      type(system_t), intent(in) :: s
+      type(pose_t), intent(in) :: p
+      integer, intent(in) :: k
+      real(wp) :: n(2)
+
+      n = quarter_turn(-along(s, p, k))
+   end function normal
+
+   !> Minus the direction e of the guide of pair `k`: the slide is the projection of P - Q on it.
+   pure function along(s, p, k) result(f)
+      type(system_t), intent(in) :: s
+      type(pose_t), intent(in) :: p
+      integer, intent(in) :: k
+      real(wp) :: f(2)
+
+      f = -rotated(s%guide(:, k), p%direction(:, s%link_of(s%pairs(k)%point_i)))
+   end function along
+
+   !> Row (6) by x_i, y_i, phi_i, x_j, y_j, phi_j of the projection of prismatic pair `k` on `f` (2), which has the
+   !> angle `psi` and in the frozen form the reference angles `zeros` (2).
+   pure function projection_row(s, p, k, f, psi, zeros) result(row)
+      type(system_t), intent(in) :: s
+      type(pose_t), intent(in) :: p
+      integer, intent(in) :: k
+      real(wp), intent(in) :: f(2), psi, zeros(2)
+      real(wp) :: row(6), g(3), d(2)
+
+      d = closure_error(s, p, k)
+      g = [f(1), f(2), cross(f, d)]
+      if (p%frozen) g = frozen_gradient(d, f, secants(psi, zeros))
+      associate (u => p%slope(:, s%pairs(k)%point_i), w => p%slope(:, s%pairs(k)%point_j))
+         row = [g(1), g(2), g(3) + dot_product(g(:2), u), -g(1), -g(2), -dot_product(g(:2), w)]
+      end associate
+   end function projection_row
+
+   !> Frozen coefficients (3) of d . f instead of its derivatives, as in (16): of the two products d_x f_x
+   !> and d_y f_y the one whose f is nearer to zero becomes d s(h) h, with `secant` (2) the ratios f/h, h counted from
+   !> the nearest zero of f; the other keeps its sine or cosine as the coefficient of d. With x and y columns
+   !> alone, as printed, the slot of the yoke mechanism makes the matrix singular at every position.
+   pure function frozen_gradient(d, f, secant) result(g)
+      real(wp), intent(in) :: d(2), f(2), secant(2)
+      real(wp) :: g(3)
+
+      if (abs(f(2)) <= abs(f(1))) then
+         g = [f(1), 0.0_wp, d(2)*secant(2)]
+      else
+         g = [0.0_wp, f(2), d(1)*secant(1)]
+      end if
+   end function frozen_gradient
+
+   !> Acceleration remainder of the projection of prismatic pair `k` on `f` (2), at velocities `v` (3, links).
+   pure real(wp) function projection_remainder(s, p, v, k, f) result(gamma)
+      type(system_t), intent(in) :: s
+      type(pose_t), intent(in) :: p
+      real(wp), intent(in) :: v(:, :), f(2)
+      integer, intent(in) :: k
+      real(wp) :: velocity(2)
+
+      associate (a => s%pairs(k)%point_i, b => s%pairs(k)%point_j)
+         associate (i => s%link_of(a), j => s%link_of(b), u => p%body_vector(:, a), w => p%body_vector(:, b))
+            velocity = v(:2, i) - v(:2, j) + v(3, i)*quarter_turn(u) - v(3, j)*quarter_turn(w)
+            gamma = dot_product(turning_part(s, p, v, k), f) &
+               + v(3, i)*(2.0_wp*cross(f, velocity) - v(3, i)*dot_product(closure_error(s, p, k), f))
+         end associate
+      end associate
+   end function projection_remainder
+
+   !> What the second derivative of P - Q (2) of pair `k` holds beside the accelerations: -phi_i'^2 u + phi_j'^2 w.
+   pure function turning_part(s, p, v, k) result(gamma)
+      type(system_t), intent(in) :: s
+      type(pose_t), intent(in) :: p
+      real(wp), intent(in) :: v(:, :)
+      integer, intent(in) :: k
+      real(wp) :: gamma(2)
+
+      associate (a => s%pairs(k)%point_i, b => s%pairs(k)%point_j)
+         gamma = v(3, s%link_of(b))**2*p%body_vector(:, b) - v(3, s%link_of(a))**2*p%body_vector(:, a)
+      end associate
+   end function turning_part
 end module closure_equations

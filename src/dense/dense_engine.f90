@@ -40,6 +40,15 @@ module dense_engine
    !> Where the Jacobian has no inverse a position is known to the root of eps; a root this near is that position.
    real(wp), parameter :: same_place = min(1.0e4_wp*sqrt(epsilon(1.0_wp)), 1.0e-2_wp)
 
+   !> All that the next step depends on: the motions that are followed, and that found last, with the signs of their
+   !> determinants.
+   type, extends(engine_checkpoint_t) :: place_t
+      type(motion_t) :: now                      !< the motion found last
+      type(motion_t) :: last                     !< the one that is followed
+      type(motion_t) :: before                   !< the one before, where the order is 3
+      integer :: determinant_now = 0, determinant = 0   !< signs at `now` and `last`
+   end type place_t
+
    !> Lengths in the system's unit.
    type, extends(engine_t) :: dense_engine_t
       private
@@ -52,10 +61,7 @@ module dense_engine
       real(wp), allocatable :: estimated(:, :)   !< (3, links) the deck's positions
       real(wp), allocatable :: start(:, :)       !< (3, links) where the last search began
       type(factors_t) :: factors
-      type(motion_t) :: now                      !< the motion found last
-      type(motion_t) :: last                     !< the one that is followed
-      type(motion_t) :: before                   !< the one before, where the order is 3
-      integer :: determinant_now = 0, determinant = 0   !< signs at `now` and `last`
+      type(place_t) :: at
       real(wp), allocatable :: drive_values(:, :) !< (3, drives) value, rate, acceleration
       logical :: has_missed = .false.            !< the assembly meant at an earlier instant was not found
       integer :: method = 0                      !< method_dense or method_matrix
@@ -72,12 +78,6 @@ module dense_engine
       procedure :: followed_position
       procedure :: block_structure
    end type dense_engine_t
-
-   !> The motion that is followed, and that found last, with the signs of their determinants.
-   type, extends(engine_checkpoint_t) :: place_t
-      type(motion_t) :: last, before, now
-      integer :: determinant = 0, determinant_now = 0
-   end type place_t
 
 contains
 
@@ -97,9 +97,9 @@ contains
       e%estimated = e%pose%q
       e%start = e%estimated
       e%factors = new_factors(e%system%n)
-      e%now = new_motion(size(m%links))
-      e%last = e%now
-      e%before = e%now
+      e%at%now = new_motion(size(m%links))
+      e%at%last = e%at%now
+      e%at%before = e%at%now
       allocate (e%drive_values(3, size(m%drives)))
       e%method = m%method
       e%order = m%predictor
@@ -115,12 +115,12 @@ contains
       real(wp), intent(out) :: correction
       logical, intent(out) :: same
 
-      e%now%t = t
+      e%at%now%t = t
       same = .true.
       call find_drive_values(e%system, t, e%drive_values)
       if (follows) then
          e%start = continued(e, t)
-         same = maxval(abs(e%start - e%last%position)) <= largest_change
+         same = maxval(abs(e%start - e%at%last%position)) <= largest_change
          if (same) call search(e, e%start, c)
       else
          call search_first(e, t, c)
@@ -128,7 +128,7 @@ contains
       correction = maxval(abs(e%pose%q - e%start))
       if (.not. (same .and. is_solved(c))) return
       call solve_rates(e, c)
-      if (follows .and. .not. c%singular) same = e%determinant_now == e%determinant
+      if (follows .and. .not. c%singular) same = e%at%determinant_now == e%at%determinant
    end subroutine solve
 
    !> The position by the method's iteration from `start` (3, links), and how far it is from there.
@@ -216,11 +216,13 @@ contains
       class(dense_engine_t), intent(inout) :: e
       type(convergence_t), intent(inout) :: c
 
-      e%now%position = e%pose%q
+      e%at%now%position = e%pose%q
       if (c%singular) return
-      e%determinant_now = c%determinant
-      call solve_velocity(e%system, e%factors, e%drive_values(2, :), e%now%velocity)
-      call solve_acceleration(e%system, e%factors, e%pose, e%drive_values(3, :), e%now%velocity, e%now%acceleration)
+      e%at%determinant_now = c%determinant
+      associate (now => e%at%now)
+         call solve_velocity(e%system, e%factors, e%drive_values(2, :), now%velocity)
+         call solve_acceleration(e%system, e%factors, e%pose, e%drive_values(3, :), now%velocity, now%acceleration)
+      end associate
    end subroutine solve_rates
 
    !> Velocities `v` (3, links) from the drives' rates `rate` (drives), by the factors `f` of the Jacobian:
@@ -263,12 +265,12 @@ contains
    subroutine accept(e)
       class(dense_engine_t), intent(inout) :: e
 
-      if (e%order == 3 .and. e%determinant /= 0) then
-         e%before = e%last
-         e%before%known = 2
+      if (e%order == 3 .and. e%at%determinant /= 0) then
+         e%at%before = e%at%last
+         e%at%before%known = 2
       end if
-      e%last = e%now
-      e%determinant = e%determinant_now
+      e%at%last = e%at%now
+      e%at%determinant = e%at%determinant_now
    end subroutine accept
 
    !> See `engine`.
@@ -279,11 +281,7 @@ contains
       if (.not. allocated(c)) allocate (place_t :: c)
       select type (c)
       type is (place_t)
-         c%last = e%last
-         c%before = e%before
-         c%determinant = e%determinant
-         c%now = e%now
-         c%determinant_now = e%determinant_now
+         c = e%at
       end select
    end subroutine checkpoint
 
@@ -292,16 +290,18 @@ contains
       class(dense_engine_t), intent(inout) :: e
       class(engine_checkpoint_t), intent(in) :: c
       logical, intent(in) :: keeps_found
+      type(motion_t) :: now
+      integer :: sign_now
 
+      now = e%at%now
+      sign_now = e%at%determinant_now
       select type (c)
       type is (place_t)
-         e%last = c%last
-         e%before = c%before
-         e%determinant = c%determinant
-         if (keeps_found) return
-         e%now = c%now
-         e%determinant_now = c%determinant_now
+         e%at = c
       end select
+      if (.not. keeps_found) return
+      e%at%now = now
+      e%at%determinant_now = sign_now
    end subroutine restore
 
    !> See `engine`; the range of the results is not looked at.
@@ -312,9 +312,9 @@ contains
 
       finite = .false.
       found%origin = e%system%origin
-      found%position = e%now%position
-      found%velocity = e%now%velocity
-      found%acceleration = e%now%acceleration
+      found%position = e%at%now%position
+      found%velocity = e%at%now%velocity
+      found%acceleration = e%at%now%acceleration
       found%position(:2, :) = e%system%length*found%position(:2, :)
       found%velocity(:2, :) = e%system%length*found%velocity(:2, :)
       found%acceleration(:2, :) = e%system%length*found%acceleration(:2, :)
@@ -323,9 +323,9 @@ contains
    !> The position (3, links) that is followed, in the deck's unit from the origin of the plane.
    pure function followed_position(e) result(q)
       class(dense_engine_t), intent(in) :: e
-      real(wp) :: q(3, size(e%last%position, 2))
+      real(wp) :: q(3, size(e%at%last%position, 2))
 
-      q = e%last%position*spread([e%system%length, e%system%length, 1.0_wp], 2, size(q, 2))
+      q = e%at%last%position*spread([e%system%length, e%system%length, 1.0_wp], 2, size(q, 2))
    end function followed_position
 
    !> The structure of the mechanism as the blocks solve it: it is built once, and each block engine takes a copy.
@@ -375,9 +375,9 @@ contains
    pure function continued(e, t) result(q)
       class(dense_engine_t), intent(in) :: e
       real(wp), intent(in) :: t
-      real(wp) :: q(3, size(e%last%position, 2)), w(3)
+      real(wp) :: q(3, size(e%at%last%position, 2)), w(3)
 
-      associate (last => e%last, before => e%before)
+      associate (last => e%at%last, before => e%at%before)
          if (e%order == own_predictor) then
             q = last%position + (t - last%t)*(last%velocity + 0.5_wp*(t - last%t)*last%acceleration)
          else

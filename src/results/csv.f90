@@ -4,15 +4,13 @@
 module csv
    use kinds, only: wp
    use constants, only: in_degrees
-   use mechanism, only: mechanism_t, request_t, request_pole, request_curve
-   use motion, only: motion_t
-   use points, only: row_t, row_of, has_number, is_due
+   use mechanism, only: mechanism_t, request_pole, request_curve
+   use points, only: row_t, has_number, is_due
    use instant_centres, only: centre_finite, centre_resting
    use known_digits, only: nothing_known
-   use error_estimate, only: error_estimate_t, row_error
-   use sensitivities, only: has_tolerances, ground_sensitivities, worst_case, root_of_squares
+   use sensitivities, only: has_tolerances, worst_case, root_of_squares
    use link_bounds, only: row_bound
-   use set_motion, only: set_motion_t, row_in_set
+   use set_motion, only: set_motion_t, row_in_set, error_in_set, spread_t, spread_in_set
    use text_output, only: output_t, put, add
    use numerals, only: whole, full, put_full, full_length
    implicit none
@@ -53,50 +51,110 @@ contains
       integer, intent(in) :: step
       logical, intent(in), optional :: varies
       character(:), allocatable :: start
-      integer :: i, c
+      type(row_t) :: row
+      real(wp) :: error(3, 0:2)
+      logical :: asked
+      integer :: i
 
       start = whole(m%set_number)//','
       if (present(varies)) then
          if (varies) start = start//whole(m%variant)//','
       end if
       start = start//whole(step)//','//full(s%motions(1)%t)//','
+      asked = s%errors(1)%asked
+      error = 0.0_wp
       do i = 1, size(m%requests)
          if (.not. is_due(m, m%requests(i), step)) cycle
-         c = s%parts%part(i)
-         if (c > 0) then
-            call add_row(o, start, s%own(c), s%motions(c), s%own(c)%requests(s%parts%number(i)), s%errors(c))
-         else
-            ! A row of the ground is known by the deck alone.
-            call add_row(o, start, m, s%motions(1), m%requests(i), error_estimate_t(asked=s%errors(1)%asked))
+         row = row_in_set(m, s, i)
+         if (asked) error = error_in_set(m, s, i)
+         if (row%kind >= request_pole) then
+            call add_centre()
+            cycle
          end if
-         if (has_tolerances(m, m%requests(i))) call add_tolerances(o, start, m, s, i)
-         if (c > 0 .and. m%requests(i)%kind < request_pole) call add_bound(o, start, m, s, i)
+         call add_row(trim(kinds_of_row(row%kind)), row, numbers_of(row), error, marks(row%mark))
+         if (has_tolerances(m, m%requests(i))) call add_spreads(spread_in_set(m, s, i))
+         if (s%parts%part(i) > 0) call add_bound(s%parts%part(i), s%parts%number(i))
       end do
-   end subroutine csv_instant
 
-   !> The row that `request` asks for, or its three rows, each with the cells `start` before it.
-   subroutine add_row(o, start, m, q, request, errors)
-      type(output_t), intent(inout) :: o
-      character(*), intent(in) :: start
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      type(request_t), intent(in) :: request
-      type(error_estimate_t), intent(in) :: errors
-      type(row_t) :: row
-      real(wp) :: error(3, 0:2)
-      logical :: there(3, 0:2)
+   contains
 
-      row = row_of(m, q, request)
-      there = numbers_of(row)
-      error = 0.0_wp
-      if (errors%asked) error = row_error(m, errors, q, request)
-      if (row%kind < request_pole) then
+      !> A row: its `kind` and name, the values that are `there` (3, 0:2), its `mark`; their errors where asked.
+      subroutine add_row(kind, row, there, error, mark)
+         character(*), intent(in) :: kind, mark
+         type(row_t), intent(in) :: row
+         logical, intent(in) :: there(3, 0:2)
+         real(wp), intent(in) :: error(3, 0:2)
+
          call add(o, start)
-         call add_cells(o, kinds_of_row(row%kind), row, there, errors%asked, error, m%degrees, marks(row%mark))
-      else
-         call add_centre(o, start, row, there, errors%asked, error, m%degrees)
-      end if
-   end subroutine add_row
+         call add_name(o, kind(:len_trim(kind)))
+         call add(o, ',')
+         call add_name(o, row%name(:len_trim(row%name)))
+         call add_values(o, row, there, m%degrees)
+         call add(o, ',')
+         call add(o, mark(:len_trim(mark)))
+         if (asked) call add_errors(o, row, there, error, m%degrees)
+         call put(o, '')
+      end subroutine add_row
+
+      !> The three rows of a pole or curve: each has one third of the numbers under x, y, phi.
+      subroutine add_centre()
+         type(row_t) :: third
+         logical :: there(3, 0:2)
+         character(12) :: mark
+         integer :: k
+
+         there = numbers_of(row)
+         do k = 0, 2
+            third = row
+            third%value(:, 0) = row%value(:, k)
+            mark = marks(row%mark)
+            if (mark == '' .and. .not. all(there(:, k))) mark = marks_of_centre(row%state)
+            call add_row(kinds_of_centre(k, row%kind), third, reshape(there(:, k), [3, 3], [.false.]), &
+               reshape(error(:, k), [3, 3], [0.0_wp]), mark)
+         end do
+      end subroutine add_centre
+
+      !> What tolerances do to the row, with its sensitivities `x`: its worst case, its root of the sum of squares, and
+      !> its sensitivity to each number.
+      subroutine add_spreads(x)
+         type(spread_t), intent(in) :: x
+         integer :: d
+
+         call add_other('WORST', x%known, worst_case(x%tolerances, x%of))
+         call add_other('RSS', x%known, root_of_squares(x%tolerances, x%of))
+         do d = 1, size(x%tolerances)
+            call add_other('PER '//trim(x%tolerances(d)%name), x%known, x%of(:, :, d))
+         end do
+      end subroutine add_spreads
+
+      !> The bounds of the errors of the row, request number `k` of part `c`, that are proved, if proofs are asked for.
+      subroutine add_bound(c, k)
+         integer, intent(in) :: c, k
+
+         associate (proof => s%proofs(c))
+            if (.not. proof%taken) return
+            if (proof%is_proved) then
+               call add_other('BOUND', row%known, row_bound(s%own(c), s%motions(c), proof%links, s%own(c)%requests(k)))
+            else
+               call add_other('BOUND', -1, row%value)
+            end if
+         end associate
+      end subroutine add_bound
+
+      !> What `word` says of the row: values (3, 0:2), as far as they are `known`; they have no errors.
+      subroutine add_other(word, known, value)
+         character(*), intent(in) :: word
+         integer, intent(in) :: known
+         real(wp), intent(in) :: value(:, :)
+         type(row_t) :: other
+
+         other = row
+         other%known = known
+         other%value = value
+         call add_row(trim(kinds_of_row(row%kind))//' '//word, other, numbers_of(other), &
+            spread(spread(nothing_known, 1, 3), 2, 3), marks(row%mark))
+      end subroutine add_other
+   end subroutine csv_instant
 
    !> Which of its numbers (3, 0:2) `row` has.
    pure function numbers_of(row) result(there)
@@ -110,125 +168,6 @@ contains
          end do
       end do
    end function numbers_of
-
-   !> What tolerances do to the row of request number `i`: its worst case, its root of the sum of squares, and its
-   !> sensitivity to each number. `start`: the cells before the kind.
-   subroutine add_tolerances(o, start, m, s, i)
-      type(output_t), intent(inout) :: o
-      character(*), intent(in) :: start
-      type(mechanism_t), intent(in) :: m
-      type(set_motion_t), intent(in) :: s
-      integer, intent(in) :: i
-      type(row_t) :: row
-      integer :: c
-
-      c = s%parts%part(i)
-      row = row_in_set(m, s, i)
-      if (c == 0) then
-         call add_sensitivities(o, start, m, row, ground_sensitivities(m, m%requests(i)), s%errors(1)%asked)
-      else
-         associate (k => s%parts%number(i), found => s%sensitivities(c))
-            row%known = found%known(k)
-            call add_sensitivities(o, start, s%own(c), row, found%of(:, :, :, k), s%errors(c)%asked)
-         end associate
-      end if
-   end subroutine add_tolerances
-
-   !> The same of `row` with the sensitivities `s` (3, 0:2, numbers) of `m`. `asked`: errors have columns, which stay
-   !> empty.
-   subroutine add_sensitivities(o, start, m, row, s, asked)
-      type(output_t), intent(inout) :: o
-      character(*), intent(in) :: start
-      type(mechanism_t), intent(in) :: m
-      type(row_t), intent(in) :: row
-      real(wp), intent(in) :: s(:, 0:, :)
-      logical, intent(in) :: asked
-      integer :: d
-
-      call add_one('WORST', worst_case(m, s))
-      call add_one('RSS', root_of_squares(m, s))
-      do d = 1, size(m%tolerances)
-         call add_one('PER '//trim(m%tolerances(d)%name), s(:, :, d))
-      end do
-
-   contains
-
-      !> The row of what `word` says, with its values (3, 0:2).
-      subroutine add_one(word, value)
-         character(*), intent(in) :: word
-         real(wp), intent(in) :: value(:, :)
-         type(row_t) :: one
-
-         one = row
-         one%value = value
-         call add(o, start)
-         call add_cells(o, trim(kinds_of_row(row%kind))//' '//word, one, numbers_of(one), asked, &
-            spread(spread(nothing_known, 1, 3), 2, 3), m%degrees, marks(row%mark))
-      end subroutine add_one
-   end subroutine add_sensitivities
-
-   !> The bounds of the errors of the row of request number `i` that are proved, if proofs are asked for.
-   subroutine add_bound(o, start, m, s, i)
-      type(output_t), intent(inout) :: o
-      character(*), intent(in) :: start
-      type(mechanism_t), intent(in) :: m
-      type(set_motion_t), intent(in) :: s
-      integer, intent(in) :: i
-      type(row_t) :: row
-
-      associate (c => s%parts%part(i))
-         associate (own => s%own(c), proof => s%proofs(c), request => s%own(c)%requests(s%parts%number(i)))
-            if (.not. proof%taken) return
-            row = row_of(own, s%motions(c), request)
-            if (.not. proof%is_proved) row%known = -1
-            if (proof%is_proved) row%value = row_bound(own, s%motions(c), proof%links, request)
-            call add(o, start)
-            call add_cells(o, trim(kinds_of_row(row%kind))//' BOUND', row, numbers_of(row), s%errors(c)%asked, &
-               spread(spread(nothing_known, 1, 3), 2, 3), m%degrees, marks(row%mark))
-         end associate
-      end associate
-   end subroutine add_bound
-
-   !> The three rows of a pole or curve: each has one third of the numbers under x, y, phi.
-   subroutine add_centre(o, start, row, there, asked, error, degrees)
-      type(output_t), intent(inout) :: o
-      character(*), intent(in) :: start
-      type(row_t), intent(in) :: row
-      logical, intent(in) :: there(3, 0:2), asked, degrees
-      real(wp), intent(in) :: error(3, 0:2)
-      type(row_t) :: third
-      character(12) :: mark
-      integer :: k
-
-      do k = 0, 2
-         third = row
-         third%value(:, 0) = row%value(:, k)
-         mark = marks(row%mark)
-         if (mark == '' .and. .not. all(there(:, k))) mark = marks_of_centre(row%state)
-         call add(o, start)
-         call add_cells(o, kinds_of_centre(k, row%kind), third, reshape(there(:, k), [3, 3], [.false.]), asked, &
-            reshape(error(:, k), [3, 3], [0.0_wp]), degrees, mark)
-      end do
-   end subroutine add_centre
-
-   !> The cells of a row from its `kind` on: its name, the values that are `there` (3, 0:2), its `mark`; their errors
-   !> (3, 0:2) where `asked`.
-   subroutine add_cells(o, kind, row, there, asked, error, degrees, mark)
-      type(output_t), intent(inout) :: o
-      character(*), intent(in) :: kind, mark
-      type(row_t), intent(in) :: row
-      logical, intent(in) :: there(3, 0:2), asked, degrees
-      real(wp), intent(in) :: error(3, 0:2)
-
-      call add_name(o, kind(:len_trim(kind)))
-      call add(o, ',')
-      call add_name(o, row%name(:len_trim(row%name)))
-      call add_values(o, row, there, degrees)
-      call add(o, ',')
-      call add(o, mark(:len_trim(mark)))
-      if (asked) call add_errors(o, row, there, error, degrees)
-      call put(o, '')
-   end subroutine add_cells
 
    !> Nine values, a comma before each; empty where they are not `there` (3, 0:2).
    subroutine add_values(o, row, there, degrees)

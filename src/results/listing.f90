@@ -2,15 +2,14 @@
 !> It takes finished data and depends on nothing else: two correct programs print the same bytes.
 module listing
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_t
-   use motion, only: motion_t, mark_none, mark_singular, mark_inconsistent, singular_unclear, singular_dead
+   use mechanism, only: mechanism_t
+   use motion, only: mark_none, mark_singular, mark_inconsistent, singular_unclear, singular_dead
    use structure, only: findings_t, group_t, spare_drives_text
    use branch_certificate, only: certificate_counts_t
    use diagnostics, only: diagnostic_t
-   use points, only: is_due, row_t, row_of
-   use error_estimate, only: error_estimate_t, row_estimate
-   use sensitivities, only: has_tolerances, ground_sensitivities
-   use set_motion, only: set_motion_t, is_flagged, in_set, row_in_set
+   use points, only: is_due, row_t
+   use sensitivities, only: has_tolerances
+   use set_motion, only: set_motion_t, is_flagged, in_set, row_in_set, doubt_in_set, spread_in_set
    use listing_layout, only: layout_t, new_layout
    use listing_tables, only: table_t, put_instant, put_requested, put_spreads
    use listing_diagnostics, only: put_diagnostics, put_singular, put_closure_error, remarks_text
@@ -113,20 +112,18 @@ contains
       type(set_motion_t), intent(in) :: s
       integer, intent(in) :: step
       type(table_t) :: table
+      type(row_t) :: row
+      real(wp) :: error(3, 0:2)
       integer :: i, c, k
 
       do i = 1, size(m%requests)
          if (.not. is_due(m, m%requests(i), step)) cycle
          if (table%kind == 0) call put_instant(o, l, s%motions(1)%t, step)
-         c = s%parts%part(i)
-         if (c > 0) then
-            call put_requested(o, l, i, s%own(c), s%motions(c), s%own(c)%requests(s%parts%number(i)), s%errors(c), &
-               table)
-         else
-            ! A row of the ground is known by the deck alone.
-            call put_requested(o, l, i, m, s%motions(1), m%requests(i), error_estimate_t(), table)
-         end if
-         if (has_tolerances(m, m%requests(i))) call put_tolerances(o, l, i, m, s, table)
+         row = row_in_set(m, s, i)
+         error = doubt_in_set(s, i)
+         call put_requested(o, l, m, i, row, error, table)
+         if (has_tolerances(m, m%requests(i))) call put_spreads(o, l, m, i, row, spread_in_set(m, s, i), &
+            doubt_of(row, error), table)
       end do
       if (table%kind == 0 .and. is_flagged(s)) call put_instant(o, l, s%motions(1)%t, step)
       call put_marks(o, m, s)
@@ -138,43 +135,13 @@ contains
       end do
    end subroutine listing_instant
 
-   !> What tolerances do to the row of request number `i`.
-   subroutine put_tolerances(o, l, i, m, s, table)
-      type(output_t), intent(inout) :: o
-      type(layout_t), intent(in) :: l
-      integer, intent(in) :: i
-      type(mechanism_t), intent(in) :: m
-      type(set_motion_t), intent(in) :: s
-      type(table_t), intent(inout) :: table
-      integer :: c, k
+   !> The part (0:2) of a sensitivity of `row`, of which `error` (3, 0:2) is unknown, that rounding leaves open. A
+   !> sensitivity of a position is lost as a velocity is, one of a velocity as an acceleration.
+   pure function doubt_of(row, error) result(doubt)
+      type(row_t), intent(in) :: row
+      real(wp), intent(in) :: error(3, 0:2)
+      real(wp) :: doubt(0:2), size_of(0:2)
 
-      c = s%parts%part(i)
-      if (c == 0) then
-         call put_spreads(o, l, i, m, row_in_set(m, s, i), ground_sensitivities(m, m%requests(i)), 2, &
-            [0.0_wp, 0.0_wp, 0.0_wp], table)
-      else
-         k = s%parts%number(i)
-         associate (found => s%sensitivities(c))
-            call put_spreads(o, l, i, s%own(c), row_in_set(m, s, i), found%of(:, :, :, k), found%known(k), &
-               doubt_of(s%own(c), s%motions(c), s%own(c)%requests(k), s%errors(c)), table)
-         end associate
-      end if
-   end subroutine put_tolerances
-
-   !> The part (0:2) of a sensitivity of the row that `request` asks for that rounding leaves open. A sensitivity of a
-   !> position is lost as a velocity is, one of a velocity as an acceleration.
-   pure function doubt_of(m, q, request, errors) result(doubt)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      type(request_t), intent(in) :: request
-      type(error_estimate_t), intent(in) :: errors
-      real(wp) :: doubt(0:2), error(3, 0:2), size_of(0:2)
-      type(row_t) :: row
-
-      doubt = 0.0_wp
-      if (.not. (errors%taken .and. errors%in_doubt)) return
-      row = row_of(m, q, request)
-      error = row_estimate(m, errors, q, request)
       size_of = max(maxval(abs(row%value), dim=1), tiny(1.0_wp))
       doubt = min(maxval(error, dim=1), size_of)/size_of
       doubt = [maxval(doubt(:1)), maxval(doubt), doubt_growth*maxval(doubt)]

@@ -2,11 +2,9 @@
 !> links, and tangent, radius and centre of curvature of the path of a point.
 module listing_centres
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_t, request_pole, request_curve
-   use motion, only: motion_t
-   use points, only: row_t, row_of, has_number, centre_numbers
+   use mechanism, only: mechanism_t, request_pole, request_curve
+   use points, only: row_t, has_number, centre_numbers
    use instant_centres, only: centre_finite, centre_infinite
-   use error_estimate, only: error_estimate_t, row_estimate
    use listing_layout, only: layout_t, digits_t, dimension_of, angle_unit
    use text_output, only: output_t, put
    use numerals, only: whole, numeral_length
@@ -88,27 +86,21 @@ contains
       line(last - len_trim(word) + 1:last) = word
    end subroutine put_end
 
-   !> The row that `request` asks for of the motion `q` of `m`, with the digits `d`. `errors`: how far the motion is
-   !> known. `masked` becomes true where a digit is not.
-   subroutine put_centre(o, l, d, m, q, request, errors, masked)
+   !> The `row` of a pole or curve of the set `m`, of which `error` (3, 0:2) is unknown, with the digits `d`. `masked`
+   !> becomes true where a digit is not known.
+   subroutine put_centre(o, l, d, m, row, error, masked)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(digits_t), intent(in) :: d
       type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      type(request_t), intent(in) :: request
-      type(error_estimate_t), intent(in) :: errors
+      type(row_t), intent(in) :: row
+      real(wp), intent(in) :: error(3, 0:2)
       logical, intent(inout) :: masked
-      type(row_t) :: row
-      real(wp) :: error(3, 0:2)
       character(line_length) :: line
       integer, allocatable :: numbers(:, :)
       integer :: i
 
-      row = row_of(m, q, request)
-      error = 0.0_wp
-      if (errors%taken .and. errors%in_doubt) error = row_estimate(m, errors, q, request)
-      numbers = numbers_of(request%kind)
+      numbers = numbers_of(row%kind)
       associate (first => index(row%name, ' '))
          line = ' '//row%name(:first)
          line(names_length/2 + 1:) = ' '//row%name(first + 1:)

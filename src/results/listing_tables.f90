@@ -2,12 +2,11 @@
 module listing_tables
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_t, request_pair, request_pole
+   use mechanism, only: mechanism_t, request_pair, request_pole
    use drives, only: drive_motion
-   use motion, only: motion_t
-   use points, only: row_t, row_of
-   use error_estimate, only: error_estimate_t, row_estimate
+   use points, only: row_t
    use sensitivities, only: worst_case, root_of_squares
+   use set_motion, only: spread_t
    use text_output, only: output_t, put
    use numerals, only: put_fixed, put_whole, numeral_length
    use known_digits, only: put_known, unknown_digit
@@ -158,48 +157,41 @@ contains
       text = trim(adjustl(field))
    end function known_text
 
-   !> The row that `request`, number `i` of the set, asks for of the motion `q` of `m`, under heads of its own where it
-   !> is another table's. `errors`: how far the motion is known.
-   subroutine put_requested(o, l, i, m, q, request, errors, table)
+   !> The `row` of request number `i` of the set `m`, of which `error` (3, 0:2) is unknown, under heads of its own where
+   !> it is another table's.
+   subroutine put_requested(o, l, m, i, row, error, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      integer, intent(in) :: i
       type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      type(request_t), intent(in) :: request
-      type(error_estimate_t), intent(in) :: errors
+      integer, intent(in) :: i
+      type(row_t), intent(in) :: row
+      real(wp), intent(in) :: error(3, 0:2)
       type(table_t), intent(inout) :: table
-      type(row_t) :: row
 
       associate (d => digits_of(l, i))
-         if (request%kind >= request_pole) then
-            if (request%kind /= table%kind .or. (l%mixed .and. table%power(1) /= d%power(1, 0))) &
-               call put_centre_heads(o, d, m, request%kind)
-            table%kind = request%kind
-            table%power(1) = d%power(1, 0)
-            call put_centre(o, l, d, m, q, request, errors, table%masked)
+         if (row%kind < request_pole) then
+            call put_heads(o, l, d, row%kind, table)
+            call put_row(o, l, d, row, error, table%masked)
             return
          end if
-         row = row_of(m, q, request)
-         call put_heads(o, l, d, row%kind, table)
-         if (errors%taken .and. errors%in_doubt) then
-            call put_row(o, l, d, row, row_estimate(m, errors, q, request), table%masked)
-         else
-            call put_row(o, l, d, row)
-         end if
+         if (row%kind /= table%kind .or. (l%mixed .and. table%power(1) /= d%power(1, 0))) &
+            call put_centre_heads(o, d, m, row%kind)
+         table%kind = row%kind
+         table%power(1) = d%power(1, 0)
+         call put_centre(o, l, d, m, row, error, table%masked)
       end associate
    end subroutine put_requested
 
-   !> What the tolerances of `m` do to the row of request number `i` of the set, of the given kind, with the
-   !> sensitivities `s` (3, 0:2, numbers), of which as much is known as `known` says: the worst case, and the root of
-   !> the sum of squares. `doubt`: the part of each that rounding leaves open.
-   subroutine put_spreads(o, l, i, m, row, s, known, doubt, table)
+   !> What the tolerances do to the `row` of request number `i` of the set `m`, with its sensitivities `s`: the worst
+   !> case, and the root of the sum of squares. `doubt`: the part (0:2) of each that rounding leaves open.
+   subroutine put_spreads(o, l, m, i, row, s, doubt, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      integer, intent(in) :: i, known
       type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i
       type(row_t), intent(in) :: row
-      real(wp), intent(in) :: s(:, 0:, :), doubt(0:)
+      type(spread_t), intent(in) :: s
+      real(wp), intent(in) :: doubt(0:)
       type(table_t), intent(inout) :: table
       type(digits_t) :: d
       type(row_t) :: one
@@ -207,12 +199,12 @@ contains
       d = digits_of(l, i)
       d%decimals = d%decimals + l%more_decimals
       one = row
-      one%known = known
+      one%known = s%known
       one%name = ' '//phrase(say_worst, m%polish)
-      one%value = worst_case(m, s)
+      one%value = worst_case(s%tolerances, s%of)
       call put_row(o, l, d, one, one%value*spread(doubt, 1, 3), table%masked)
       one%name = ' RSS'
-      one%value = root_of_squares(m, s)
+      one%value = root_of_squares(s%tolerances, s%of)
       call put_row(o, l, d, one, one%value*spread(doubt, 1, 3), table%masked)
    end subroutine put_spreads
 
@@ -238,15 +230,15 @@ contains
       table%kind = kind
    end subroutine put_heads
 
-   !> One row with the digits `d`: what is not known is a word, what the row does not have is blank. `error` (3, 0:2),
-   !> where it is given, is unknown of the numbers; `masked`: a digit of some row is masked.
+   !> One row with the digits `d`: what is not known is a word, what the row does not have is blank. `error` (3, 0:2) is
+   !> unknown of the numbers; `masked`: a digit of some row is masked.
    subroutine put_row(o, l, d, row, error, masked)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(digits_t), intent(in) :: d
       type(row_t), intent(in) :: row
-      real(wp), intent(in), optional :: error(3, 0:2)
-      logical, intent(inout), optional :: masked
+      real(wp), intent(in) :: error(3, 0:2)
+      logical, intent(inout) :: masked
       character(row_length) :: line
       real(wp) :: size_of(2)
       integer :: k, c, i, used, last, unit
@@ -271,7 +263,7 @@ contains
                i = merge(1, c, row%kind == request_pair)
                if (k > row%known) then
                   field = l%none
-               else if (present(error)) then
+               else if (error(i, k) > 0.0_wp) then
                   call put_known(row%value(i, k)/size_of(unit), error(i, k)/size_of(unit), d%decimals(unit, k), &
                      d%power(unit, k), field)
                else
@@ -280,7 +272,7 @@ contains
             end associate
          end do
       end do
-      if (present(masked)) masked = masked .or. index(line(name_length + 1:last), unknown_digit) > 0
+      masked = masked .or. index(line(name_length + 1:last), unknown_digit) > 0
       call put(o, line(:last))
    end subroutine put_row
 end module listing_tables

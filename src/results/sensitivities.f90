@@ -5,8 +5,8 @@ module sensitivities
    use kinds, only: wp
    use planar, only: direction
    use jets, only: turning, turning_change, dotted
-   use mechanism, only: mechanism_t, request_t, request_link, request_point, request_pair, number_drive, &
-      pair_prismatic, place_links
+   use mechanism, only: mechanism_t, tolerance_t, request_t, request_link, request_point, request_pair, &
+      number_drive, pair_prismatic, place_links
    use number_changes, only: change_t, change_of
    use law_changes, only: law_change, smooth_order
    use motion, only: motion_t, new_motion
@@ -239,30 +239,30 @@ contains
       end do
    end function ground_sensitivities
 
-   !> The largest change (3, 0:2) of a row with the sensitivities `s` (3, 0:2, numbers) that the tolerances of `m`
+   !> The largest change (3, 0:2) of a row with the sensitivities `s` (3, 0:2, numbers) that the `tolerances` (numbers)
    !> allow.
-   pure function worst_case(m, s) result(x)
-      type(mechanism_t), intent(in) :: m
+   pure function worst_case(tolerances, s) result(x)
+      type(tolerance_t), intent(in) :: tolerances(:)
       real(wp), intent(in) :: s(:, 0:, :)
       real(wp) :: x(3, 0:2)
       integer :: d
 
       x = 0.0_wp
-      do d = 1, size(m%tolerances)
-         x = x + abs(s(:, :, d))*m%tolerances(d)%size_of
+      do d = 1, size(tolerances)
+         x = x + abs(s(:, :, d))*tolerances(d)%size_of
       end do
    end function worst_case
 
    !> The root (3, 0:2) of the sum of the squares of its changes by one tolerance at a time.
-   pure function root_of_squares(m, s) result(x)
-      type(mechanism_t), intent(in) :: m
+   pure function root_of_squares(tolerances, s) result(x)
+      type(tolerance_t), intent(in) :: tolerances(:)
       real(wp), intent(in) :: s(:, 0:, :)
       real(wp) :: x(3, 0:2)
       integer :: c, k
 
       do k = 0, 2
          do c = 1, 3
-            x(c, k) = norm2(s(c, k, :)*m%tolerances%size_of)
+            x(c, k) = norm2(s(c, k, :)*tolerances%size_of)
          end do
       end do
    end function root_of_squares

@@ -1,18 +1,20 @@
 !> The motion of a set at one instant, as the writers take it: that of each of its independent mechanisms (its
 !> parts), how far it is known, and where to find the row that a request asks for.
 module set_motion
-   use mechanism, only: mechanism_t
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, tolerance_t
    use motion, only: motion_t, new_motion, mark_none
    use diagnostics, only: diagnostic_t
    use independent, only: part_t, parts_t, find_parts, mechanism_of
    use structure, only: findings_t
    use points, only: row_t, row_of
-   use error_estimate, only: error_estimate_t
-   use sensitivities, only: sensitivities_t
+   use error_estimate, only: error_estimate_t, row_estimate, row_error
+   use sensitivities, only: sensitivities_t, ground_sensitivities
    use motion_proof, only: motion_proof_t
    implicit none
    private
    public :: set_motion_t, new_set_motion, one_motion, is_flagged, has_words, in_set, put_together, row_in_set
+   public :: doubt_in_set, error_in_set, spread_t, spread_in_set
 
    !> A set that is one mechanism is one part, with the numbers of the set.
    type :: set_motion_t
@@ -23,6 +25,13 @@ module set_motion
       type(sensitivities_t), allocatable :: sensitivities(:)   !< (parts)
       type(motion_proof_t), allocatable :: proofs(:)    !< (parts)
    end type set_motion_t
+
+   !> The sensitivities of a row to the numbers with tolerances, and these.
+   type :: spread_t
+      integer :: known = 2                              !< as of a row: -1 none of them exists
+      real(wp), allocatable :: of(:, :, :)              !< (3, 0:2, numbers)
+      type(tolerance_t), allocatable :: tolerances(:)   !< (numbers)
+   end type spread_t
 
 contains
 
@@ -134,6 +143,52 @@ contains
       if (c > 0) row = row_of(s%own(c), s%motions(c), s%own(c)%requests(s%parts%number(i)))
       if (c == 0) row = row_of(m, s%motions(1), m%requests(i))
    end function row_in_set
+
+   !> What rounding leaves open (3, 0:2) of the row of request number `i`; 0 where no digit of a table is in doubt.
+   pure function doubt_in_set(s, i) result(error)
+      type(set_motion_t), intent(in) :: s
+      integer, intent(in) :: i
+      real(wp) :: error(3, 0:2)
+
+      error = 0.0_wp
+      if (s%parts%part(i) == 0) return
+      associate (c => s%parts%part(i))
+         if (s%errors(c)%taken .and. s%errors(c)%in_doubt) error = row_estimate(s%own(c), s%errors(c), s%motions(c), &
+            s%own(c)%requests(s%parts%number(i)))
+      end associate
+   end function doubt_in_set
+
+   !> The estimated error (3, 0:2) of the row of request number `i` of `m`, where errors are asked for.
+   pure function error_in_set(m, s, i) result(error)
+      type(mechanism_t), intent(in) :: m
+      type(set_motion_t), intent(in) :: s
+      integer, intent(in) :: i
+      real(wp) :: error(3, 0:2)
+      integer :: c
+
+      c = s%parts%part(i)
+      if (c > 0) error = row_error(s%own(c), s%errors(c), s%motions(c), s%own(c)%requests(s%parts%number(i)))
+      if (c == 0) error = row_error(m, error_estimate_t(), s%motions(1), m%requests(i))
+   end function error_in_set
+
+   !> The sensitivities of the row of request number `i` of `m`.
+   function spread_in_set(m, s, i) result(x)
+      type(mechanism_t), intent(in) :: m
+      type(set_motion_t), intent(in) :: s
+      integer, intent(in) :: i
+      type(spread_t) :: x
+
+      if (s%parts%part(i) == 0) then
+         x%of = ground_sensitivities(m, m%requests(i))
+         x%tolerances = m%tolerances
+      else
+         associate (found => s%sensitivities(s%parts%part(i)), k => s%parts%number(i))
+            x%known = found%known(k)
+            x%of = found%of(:, :, :, k)
+            x%tolerances = s%own(s%parts%part(i))%tolerances
+         end associate
+      end if
+   end function spread_in_set
 
    !> The diagnostic `r` of a part in the numbers of the set.
    pure type(diagnostic_t) function in_set(r, part)
