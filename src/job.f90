@@ -31,7 +31,7 @@ module job
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set
    use command_line, only: options_t, file_options, to_standard_output, out_listing, out_csv, out_log, out_svg, &
       out_animation, out_circuits, out_table, out_plot_table, out_plot_script, out_last
-   use shares, only: run_shares, end_share
+   use shares, only: share_of_job_t, run_shares, next_part, end_share
    use processes, only: processor_count
    use outputs, only: open_outputs, flush_outputs, close_outputs, is_over, is_broken_pipe, set_suffix
    implicit none
@@ -53,10 +53,9 @@ contains
       type(failure_t), allocatable :: failure
       type(writers_t) :: o
       type(share_t) :: share
-      logical :: is_child
+      type(share_of_job_t) :: own
 
       status = status_solved
-      is_child = .false.
       call start_progress(o%progress, .not. options%quiet, any(to_standard_output(options%files)))
       share = share_t(options%share, options%shares)
       call read_deck(options%deck, sets, message, failure, share, o%variations)
@@ -77,27 +76,29 @@ contains
       end if
       if (.not. allocated(failure)) then
          call watch_signals
-         o%own_first = share%first
-         o%own_last = share%last
+         own%kind = trim(merge('VARIANTS', 'SETS    ', o%varies))
+         own%first = share%first
+         own%last = share%last
          associate (processes => process_count(options, sets))
-            if (processes > 1) call run_shares(o, o%own_first, o%own_last, processes, &
-               trim(merge('VARIANTS', 'SETS    ', o%varies)), o%progress, is_child, status, message)
-            if (is_child) o%progress%shown = .false.
-            if (processes == 1 .or. is_child) call run_sets(options, sets, findings, o, status)
+            if (processes > 1) call run_shares(o, own, processes, o%progress, status, message)
          end associate
+         if (own%is_child) o%progress%shown = .false.
+         do while (next_part(o, own, o%own_first, o%own_last))
+            call run_sets(options, sets, findings, o, status)
+         end do
          call end_progress(o%progress)
          call close_outputs(o, failure)
       end if
       if (allocated(failure)) then
          status = failure%status
          if (len(message) == 0) message = ' *** '//failure%text
-      else if (len(message) == 0 .and. .not. (o%asked(out_listing) .or. is_child)) then
+      else if (len(message) == 0 .and. .not. (o%asked(out_listing) .or. own%is_child)) then
          message = said_of(options, sets)
          ! The end of the last line comes with the message.
          message = message(:max(0, len(message) - 1))
       end if
       call look_at_signals(o, status, message)
-      if (is_child) call end_share(status, message)
+      if (own%is_child) call end_share(o, own, status, message)
    end subroutine run_job
 
    !> Of a deck with VARY cards there is no table, which has columns for one motion, and no picture of a part.

@@ -103,14 +103,14 @@ contains
       end do
    end subroutine flush_outputs
 
-   !> Leaves the files of all sets but those from `first` to `last` to other processes.
+   !> Leaves the files of the sets from `first` to `last` to other processes.
    subroutine forget_files(o, first, last)
       class(outputs_t), intent(inout) :: o
       integer, intent(in) :: first, last
       integer :: i
 
-      do i = 1, ubound(o%files, 2)
-         if (i < first .or. i > last) call forget_output(o%files(:, i))
+      do i = first, min(last, ubound(o%files, 2))
+         call forget_output(o%files(:, i))
       end do
    end subroutine forget_files
 

@@ -1,6 +1,7 @@
-!> A job's sets, or their variants, in several processes: each computes some that follow one another, a share, and
-!> writes to temporary files, which are joined in the deck's order. The first share writes to the job's files
-!> themselves.
+!> A job's sets, or their variants, in several processes. They are divided into parts that follow one another, of which
+!> each process computes every so many-th. Its text stays in memory until the part before it has been written: a ring of
+!> pipes hands the turn to write from process to process. One that dies or is broken off closes its pipe, and nothing
+!> more is written.
 !>
 !> Rejected: threads. gfortran 12 keeps the lengths of character results in static memory, where threads write over each
 !> other's: of 2000 sets in two threads, two listings had words cut short.
@@ -9,222 +10,256 @@ module shares
    use failures, only: capitals, status_solved, status_system
    use deck, only: share_end
    use numerals, only: whole
-   use processes, only: fork_process, wait_for_child, interrupt_child, end_process, temporary_file, &
-      from_beginning, killed
+   use processes, only: make_pipe, has_input, fork_process, wait_for_child, interrupt_child, end_process, &
+      killed
    use system_calls, only: read_bytes, write_bytes, close_descriptor, signal_received, note_all_signals, last_error, &
       reason_of
-   use text_output, only: add, has_failed
+   use text_output, only: write_block, take_turn, has_failed, turn_lost
    use progress, only: progress_t, show_progress
    use outputs, only: outputs_t, forget_files
-   use command_line, only: out_last
    implicit none
    private
-   public :: run_shares, end_share
+   public :: share_of_job_t, run_shares, next_part, end_share
 
-   !> Shares for each process: of sets that take unequal times the last ones end together.
-   integer, parameter :: shares_a_process = 4
-   !> The temporary file of a share's message.
-   integer, parameter :: message_file = 0
-   integer, parameter :: block_length = 65536
+   !> Parts for each process: of sets that take unequal times the last ones end together.
+   integer, parameter :: parts_a_process = 64
+   !> The least variants in a part: they fill the lanes.
+   integer, parameter :: least_variants = 8
+   !> Milliseconds after which the parent looks whether a signal has come.
+   integer, parameter :: look_time = 500
+   !> What a child reports to its parent: that a part is written, or, after its message, that it ends.
+   character(1), parameter :: part_written = achar(1), end_of_message = achar(2)
 
-   type :: part_t
-      character(8) :: kind = 'SETS'                         !< what is shared: SETS or VARIANTS
-      integer :: first = 1, last = 0                        !< their numbers
-      integer :: process = 0                                !< its number while it is running
-      integer :: status = -1                                !< its exit status; -1: it has not ended
-      integer(c_int) :: files(message_file:out_last) = -1   !< its temporary files; negative: none
-   end type part_t
-
-   !> In a child: the file that takes its message.
-   integer(c_int) :: own_message = -1
+   !> What this process computes.
+   type :: share_of_job_t
+      character(:), allocatable :: kind             !< SETS or VARIANTS
+      integer :: first = 1, last = 0                !< all of them
+      integer :: parts = 1                          !< so many parts there are; in the parent of other processes none
+      integer :: part = 0                           !< the one at hand
+      integer :: processes = 1
+      logical :: is_child = .false.
+      integer(c_int) :: turn = -1, next_turn = -1   !< pipes: a byte for each output, and one; see `text_output`
+      integer(c_int) :: report = -1                 !< a pipe to or from the parent
+   end type share_of_job_t
 
 contains
 
-   !> Computes the sets, or the variants (`kind`: SETS or VARIANTS), `first` to `last` in at most `processes` processes.
-   !> It returns more than once: in each child `is_child` is true, `first` and `last` are its share, to be computed and
-   !> ended by `end_share`; in the parent it returns when all shares have ended and their text is in `o`. `status`: then
+   !> Computes the sets or variants of `s` in `processes` processes. It returns more than once: in each child, to
+   !> compute the parts that `next_part` gives and to end by `end_share`; in the parent when all is done. `status`: then
    !> the exit status; `message`: what to say of an error.
-   subroutine run_shares(o, first, last, processes, kind, progress, is_child, status, message)
+   subroutine run_shares(o, s, processes, progress, status, message)
       class(outputs_t), intent(inout) :: o
-      integer, intent(inout) :: first, last
+      type(share_of_job_t), intent(inout) :: s
       integer, intent(in) :: processes
-      character(*), intent(in) :: kind
       type(progress_t), intent(inout) :: progress
-      logical, intent(out) :: is_child
       integer, intent(inout) :: status
       character(:), allocatable, intent(inout) :: message
-      type(part_t) :: list(min(last - first + 1, shares_a_process*processes))
-      integer :: begun, joined
-      logical :: stops
+      integer :: list(processes), k
+      integer(c_int) :: last_turn, report
 
-      list%kind = kind
-      call divide(first, last, list)
-      is_child = .false.
-      begun = 0
-      joined = 0
-      do
-         stops = status >= status_system .or. signal_received() > 0 .or. any(has_failed(o%files(:, 0)))
-         if (stops) call interrupt_all(list)
-         if (count(list%process > 0) < processes .and. begun < size(list) .and. .not. stops) then
-            begun = begun + 1
-            call begin_share(o, list(begun), begun == 1, is_child, message)
-            if (is_child) then
-               first = list(begun)%first
-               last = list(begun)%last
-               return
-            end if
-         else if (joined < begun) then
-            call end_one(list)
-         else
-            exit
-         end if
-         do while (joined < begun)
-            if (list(joined + 1)%status < 0) exit
-            joined = joined + 1
-            ! After a share that was broken off nothing is written.
-            if (status < status_system) call join_share(o, list(joined), status, message)
-            call show_progress(progress, kind//': NUMBER', list(joined)%last, last)
-         end do
+      associate (count => s%last - s%first + 1)
+         s%parts = count
+         if (s%kind == 'VARIANTS') s%parts = count/least_variants
+         s%parts = min(count, max(processes, min(s%parts, parts_a_process*processes)))
+      end associate
+      s%processes = processes
+      call make_pipe(s%report, report)
+      call make_pipe(s%turn, last_turn)
+      if (s%turn >= 0) call pass_turn(o, last_turn)
+      do k = 1, processes
+         list(k) = -1
+         if (k == processes) s%next_turn = last_turn
+         if (s%report < 0 .or. s%turn < 0) exit
+         call make_child(o, s, k, report, last_turn, list(k))
+         if (s%is_child) return
+         if (list(k) < 0) exit
       end do
-      call forget_files(o, 1, 0)
+      if (k <= processes) then
+         status = status_system
+         message = ' *** NO PROCESS FOR'//text_of(s, k)//' ('//capitals(reason_of(last_error()))//')'
+         call interrupt_all(list(:k - 1))
+         call close_one(last_turn)
+      end if
+      call close_one(s%turn)
+      call close_one(report)
+      call forget_files(o, s%first, s%last)
+      call follow(s, list(:min(k, processes)), progress, status, message)
+      s%parts = 0
    end subroutine run_shares
 
-   !> Divides the sets `first` to `last` among the shares of `list`.
-   pure subroutine divide(first, last, list)
-      integer, intent(in) :: first, last
-      type(part_t), intent(inout) :: list(:)
-      integer :: k
-
-      do k = 1, size(list)
-         list(k)%first = first + share_end(last - first + 1, k - 1, size(list))
-         list(k)%last = first + share_end(last - first + 1, k, size(list)) - 1
-      end do
-   end subroutine divide
-
-   !> Makes a process for the share `s`, which writes to temporary files unless it is the `first_one`. Where that fails
-   !> the share has ended, and `message` says why.
-   subroutine begin_share(o, s, first_one, is_child, message)
+   !> Makes process number `k`, whose number among all processes is `child`, negative if there is none. s%turn: in its
+   !> parent that of the next process from now on.
+   subroutine make_child(o, s, k, report, last_turn, child)
       class(outputs_t), intent(inout) :: o
-      type(part_t), intent(inout) :: s
-      logical, intent(in) :: first_one
-      logical, intent(out) :: is_child
-      character(:), allocatable, intent(inout) :: message
-      logical :: needed(message_file:out_last)
-      integer :: k
+      type(share_of_job_t), intent(inout) :: s
+      integer, intent(in) :: k
+      integer(c_int), intent(in) :: report, last_turn
+      integer, intent(out) :: child
+      integer(c_int) :: next
 
-      needed = [.true., (allocated(o%files(k, 0)%buffer) .and. .not. first_one, k=1, out_last)]
-      do k = message_file, out_last
-         if (needed(k)) s%files(k) = temporary_file()
-         if (needed(k) .and. s%files(k) < 0) exit
-      end do
-      is_child = .false.
-      if (k > out_last) then
-         s%process = fork_process()
-         is_child = s%process == 0
-         if (is_child) call become_share(o, s)
-         ! What the first share has emptied is not emptied again.
-         if (.not. is_child) o%files(:, 0)%emptied = .true.
-         if (s%process >= 0) return
+      next = -1
+      child = -1
+      if (k < s%processes) call make_pipe(next, s%next_turn)
+      if (s%next_turn < 0) return
+      child = fork_process()
+      s%is_child = child == 0
+      if (s%is_child) then
+         call note_all_signals
+         call close_one(s%report)
+         s%report = report
+         if (k < s%processes) call close_one(last_turn)
+         if (k < s%processes) call close_one(next)
+         s%part = k - s%processes
+         call forget_others(o, s, k)
+      else
+         call close_one(s%turn)
+         call close_one(s%next_turn)
+         s%turn = next
+         ! What the first process has emptied is not emptied again.
+         if (child > 0) o%files(:, 0)%emptied = .true.
       end if
-      s%status = status_system
-      message = ' *** NO PROCESS FOR'//sets_text(s)//' ('//capitals(reason_of(last_error()))//')'
-   end subroutine begin_share
+   end subroutine make_child
 
-   !> In the child: the outputs are those of share `s` alone.
-   subroutine become_share(o, s)
+   !> Leaves to other processes the files of those sets that process number `k` does not compute.
+   subroutine forget_others(o, s, k)
       class(outputs_t), intent(inout) :: o
-      type(part_t), intent(in) :: s
+      type(share_of_job_t), intent(in) :: s
+      integer, intent(in) :: k
+      integer :: p
+
+      do p = 1, s%parts
+         if (modulo(p - k, s%processes) /= 0) call forget_files(o, first_of(s, p), first_of(s, p + 1) - 1)
+      end do
+   end subroutine forget_others
+
+   !> Ends the part at hand, if there is one, and begins the next: `first` to `last`. False where there is none, or the
+   !> job is over.
+   logical function next_part(o, s, first, last)
+      class(outputs_t), intent(inout) :: o
+      type(share_of_job_t), intent(inout) :: s
+      integer, intent(out) :: first, last
+
+      if (s%part > 0 .and. s%is_child) call end_part(o, s)
+      s%part = s%part + s%processes
+      first = first_of(s, s%part)
+      last = first_of(s, s%part + 1) - 1
+      next_part = s%part <= s%parts .and. signal_received() == 0 .and. .not. any(has_failed(o%files))
+      if (next_part .and. s%is_child) o%files(:, 0)%turn = s%turn
+   end function next_part
+
+   !> Writes the text of the part at hand as soon as its turn has come, and passes the turn on unless the job is over.
+   subroutine end_part(o, s)
+      class(outputs_t), intent(inout) :: o
+      type(share_of_job_t), intent(inout) :: s
+      integer(c_int) :: turn
+      integer(c_size_t) :: written
       integer :: k
 
-      call forget_files(o, s%first, s%last)
-      do k = 1, out_last
-         if (s%files(k) < 0) cycle
-         o%files(k, 0)%descriptor = s%files(k)
-         o%files(k, 0)%emptied = .true.
-         ! What of shares before it is not written yet is the parent's.
-         o%files(k, 0)%used = 0
-         o%files(k, 0)%path = 'A TEMPORARY FILE'
+      do k = 1, size(o%files, 1)
+         if (allocated(o%files(k, 0)%buffer)) call write_block(o%files(k, 0))
       end do
-      own_message = s%files(message_file)
-      call note_all_signals
-   end subroutine become_share
+      turn = s%turn
+      call take_turn(turn, o%files(1, 0)%error)
+      if (signal_received() > 0 .or. any(has_failed(o%files))) return
+      written = write_bytes(s%report, part_written)
+      if (s%part == s%parts) return
+      call pass_turn(o, s%next_turn)
+   end subroutine end_part
 
-   !> Ends the child: its parent takes over the exit `status` and the `message`.
-   subroutine end_share(status, message)
+   !> Gives the turn to the process that reads from `pipe`.
+   subroutine pass_turn(o, pipe)
+      class(outputs_t), intent(in) :: o
+      integer(c_int), intent(in) :: pipe
+      integer(c_size_t) :: written
+      integer :: k
+
+      written = write_bytes(pipe, repeat('.', 1 + count([(allocated(o%files(k, 0)%buffer), k=1, size(o%files, 1))])))
+   end subroutine pass_turn
+
+   !> Ends the child: its parent takes over the exit `status` and the `message`, unless its turn has never come.
+   subroutine end_share(o, s, status, message)
+      class(outputs_t), intent(in) :: o
+      type(share_of_job_t), intent(in) :: s
       integer, intent(in) :: status
       character(*), intent(in) :: message
       integer(c_size_t) :: written
 
-      written = write_bytes(own_message, message)
+      if (any(o%files%error == turn_lost)) call end_process(status_solved)
+      if (len(message) > 0) written = write_bytes(s%report, message//end_of_message)
       call end_process(status)
    end subroutine end_share
 
-   !> Waits until one of the shares ends, or a signal comes.
-   subroutine end_one(list)
-      type(part_t), intent(inout) :: list(:)
-      integer :: process, status, k
+   !> Waits for the children of `list`, takes over the first `message`, and finds the `status` of the whole.
+   subroutine follow(s, list, progress, status, message)
+      type(share_of_job_t), intent(in) :: s
+      integer, intent(in) :: list(:)
+      type(progress_t), intent(inout) :: progress
+      integer, intent(inout) :: status
+      character(:), allocatable, intent(inout) :: message
+      character(4096) :: block
+      character(:), allocatable :: said
+      integer :: ended, k, p, i, n
 
-      call wait_for_child(process, status)
-      k = 0
-      if (process > 0) k = findloc(list%process, process, dim=1)
-      if (k == 0) return
-      list(k)%process = 0
-      list(k)%status = status
-   end subroutine end_one
+      p = 0
+      said = ''
+      do while (s%report >= 0)
+         if (signal_received() > 0) call interrupt_all(list)
+         if (.not. has_input(s%report, look_time)) cycle
+         n = read_bytes(s%report, block)
+         if (n <= 0) exit
+         do i = 1, n
+            if (block(i:i) /= part_written) said = said//block(i:i)
+            if (block(i:i) == part_written) p = p + 1
+         end do
+         if (p > 0) call show_progress(progress, s%kind//': NUMBER', first_of(s, p + 1) - 1, s%last)
+      end do
+      if (len(message) == 0 .and. len(said) > 0) message = said(:index(said, end_of_message) - 1)
+      do k = 1, size(list)
+         if (list(k) <= 0) cycle
+         call wait_for_child(list(k), ended)
+         if (ended >= killed .and. status < status_system) then
+            ! The first of its parts that is not written.
+            message = ' *** THE PROCESS FOR'//text_of(s, p + 1 + modulo(k - p - 1, s%processes)) &
+               //' WAS ENDED BY SIGNAL '//whole(ended - killed)
+            status = status_system
+         else if (ended < killed) then
+            status = max(status, ended)
+         end if
+      end do
+   end subroutine follow
 
-   !> Asks all processes that are running to end.
+   !> Asks all processes of `list` to end.
    subroutine interrupt_all(list)
-      type(part_t), intent(in) :: list(:)
+      integer, intent(in) :: list(:)
       integer :: k
 
       do k = 1, size(list)
-         if (list(k)%process > 0) call interrupt_child(list(k)%process)
+         if (list(k) > 0) call interrupt_child(list(k))
       end do
    end subroutine interrupt_all
 
-   !> Appends the text of the share `s`, which has ended, to the outputs, and takes over its `status` and `message`.
-   subroutine join_share(o, s, status, message)
-      class(outputs_t), intent(inout) :: o
-      type(part_t), intent(inout) :: s
-      integer, intent(inout) :: status
-      character(:), allocatable, intent(inout) :: message
-      character(:), allocatable :: text
-      integer :: k
+   !> Closes one end of a pipe, unless it has none.
+   subroutine close_one(descriptor)
+      integer(c_int), intent(in) :: descriptor
       logical :: closed
 
-      do k = message_file, out_last
-         if (s%files(k) < 0) cycle
-         call from_beginning(s%files(k))
-         do
-            call read_block(s%files(k), text)
-            if (len(text) == 0) exit
-            if (k == message_file) message = message//text
-            if (k > message_file) call add(o%files(k, 0), text)
-         end do
-         closed = close_descriptor(s%files(k))
-      end do
-      if (s%status >= killed) then
-         message = ' *** THE PROCESS FOR'//sets_text(s)//' WAS ENDED BY SIGNAL '//whole(s%status - killed)
-         status = status_system
-      else if (s%status /= status_solved) then
-         status = s%status
-      end if
-   end subroutine join_share
+      if (descriptor >= 0) closed = close_descriptor(descriptor)
+   end subroutine close_one
 
-   !> The next `text` in the file `descriptor`; '' at its end.
-   subroutine read_block(descriptor, text)
-      integer(c_int), intent(in) :: descriptor
-      character(:), allocatable, intent(out) :: text
-      character(block_length) :: block
+   !> The first set or variant of part `p`, of those beyond the last one the number after the last.
+   pure integer function first_of(s, p)
+      type(share_of_job_t), intent(in) :: s
+      integer, intent(in) :: p
 
-      text = block(:max(0, read_bytes(descriptor, block)))
-   end subroutine read_block
+      first_of = s%first + share_end(s%last - s%first + 1, min(p, s%parts + 1) - 1, max(1, s%parts))
+   end function first_of
 
-   !> SETS 5 TO 8, or VARIANTS 5 TO 8
-   pure function sets_text(s) result(text)
-      type(part_t), intent(in) :: s
+   !> SETS 5 TO 8, or VARIANTS 5 TO 8: part `p`.
+   pure function text_of(s, p) result(text)
+      type(share_of_job_t), intent(in) :: s
+      integer, intent(in) :: p
       character(:), allocatable :: text
 
-      text = ' '//trim(s%kind)//' '//whole(s%first)//' TO '//whole(s%last)
-   end function sets_text
+      text = ' '//s%kind//' '//whole(first_of(s, p))//' TO '//whole(first_of(s, p + 1) - 1)
+   end function text_of
 end module shares

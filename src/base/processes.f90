@@ -1,38 +1,47 @@
-!> Child processes, each a copy of this one, and the files that they hand over.
+!> Child processes, each a copy of this one, and the pipes between them.
 module processes
-   use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_long, c_size_t, c_char, c_null_char
-   use system_calls, only: signal_received, remove_file
+   use, intrinsic :: iso_c_binding, only: c_int, c_int16_t, c_int64_t, c_long, c_size_t
    implicit none
    private
-   public :: processor_count, fork_process, wait_for_child, interrupt_child, end_process, killed, temporary_file, &
-      from_beginning
+   public :: processor_count, make_pipe, has_input, fork_process, wait_for_child, interrupt_child, end_process, killed
 
    !> What `wait_for_child` adds to the number of the signal that has killed a child.
    integer, parameter :: killed = 1000
 
-   !> SIGTERM; WNOHANG of waitpid, SEEK_SET of lseek, PR_SET_PDEATHSIG of prctl.
-   integer(c_int), parameter :: signal_terminate = 15, at_once = 1, seek_set = 0, when_parent_ends = 1
-   !> Microseconds between two looks at the children.
-   integer(c_int), parameter :: pause = 500
+   !> SIGTERM; PR_SET_PDEATHSIG of prctl.
+   integer(c_int), parameter :: signal_terminate = 15, when_parent_ends = 1
    !> Bits of a set of processors, as sched_getaffinity takes it.
    integer, parameter :: processor_words = 16
+
+   !> What poll is asked about a descriptor: whether there is input.
+   type, bind(c) :: poll_t
+      integer(c_int) :: descriptor = -1
+      integer(c_int16_t) :: asked = 1, found = 0
+   end type poll_t
 
    interface
       !> fork(2): 0 in the child, its number in the parent, negative for an error.
       integer(c_int) function fork() bind(c)
          import :: c_int
       end function fork
-      !> waitpid(2): the number of a child that has ended, 0 where none has, -1 for an error.
+      !> poll(2): waits for input or the end of input, at most so many milliseconds: 0 if there is none, -1 at a signal.
+      integer(c_int) function poll(list, count, milliseconds) bind(c)
+         import :: c_int, c_long, poll_t
+         type(poll_t), intent(inout) :: list(*)
+         integer(c_long), value :: count
+         integer(c_int), value :: milliseconds
+      end function poll
+      !> pipe(2): makes a pipe, whose ends are read from and written to; 0, or -1 for an error.
+      integer(c_int) function pipe(ends) bind(c)
+         import :: c_int
+         integer(c_int), intent(out) :: ends(2)
+      end function pipe
+      !> waitpid(2): waits until the child has ended, -1 for an error.
       integer(c_int) function waitpid(child, status, options) bind(c)
          import :: c_int
          integer(c_int), value :: child, options
          integer(c_int), intent(out) :: status
       end function waitpid
-      !> usleep(3): waits so many microseconds.
-      integer(c_int) function usleep(microseconds) bind(c)
-         import :: c_int
-         integer(c_int), value :: microseconds
-      end function usleep
       !> prctl(2): what this process does on an occasion.
       integer(c_int) function prctl(occasion, number) bind(c)
          import :: c_int
@@ -48,17 +57,6 @@ module processes
          import :: c_int
          integer(c_int), value :: status
       end subroutine exit_at_once
-      !> mkstemp(3): makes and opens a file whose name ends in letters of its own instead of XXXXXX.
-      integer(c_int) function mkstemp(template) bind(c)
-         import :: c_int, c_char
-         character(kind=c_char), intent(inout) :: template(*)
-      end function mkstemp
-      !> lseek(2): where in a file the next byte is read or written.
-      integer(c_long) function lseek(descriptor, offset, whence) bind(c)
-         import :: c_int, c_long
-         integer(c_int), value :: descriptor, whence
-         integer(c_long), value :: offset
-      end function lseek
       !> sched_getaffinity(2): the processors that this process may use.
       integer(c_int) function sched_getaffinity(process, length, mask) bind(c)
          import :: c_int, c_size_t, c_int64_t
@@ -80,6 +78,26 @@ contains
          processor_count = max(1, sum(popcnt(mask)))
    end function processor_count
 
+   !> Makes a pipe. `reads` and `writes`: the descriptors of its ends, negative for an error, see `last_error`.
+   subroutine make_pipe(reads, writes)
+      integer(c_int), intent(out) :: reads, writes
+      integer(c_int) :: ends(2)
+
+      if (pipe(ends) /= 0) ends = -1
+      reads = ends(1)
+      writes = ends(2)
+   end subroutine make_pipe
+
+   !> Whether `descriptor` has input or has come to its end, now or, unless a signal comes, in so many milliseconds.
+   logical function has_input(descriptor, milliseconds)
+      integer(c_int), intent(in) :: descriptor
+      integer, intent(in) :: milliseconds
+      type(poll_t) :: list(1)
+
+      list%descriptor = descriptor
+      has_input = poll(list, 1_c_long, int(milliseconds, c_int)) > 0
+   end function has_input
+
    !> Makes a child, a copy of this process, which ends when this one does. The result is 0 in the child, its number in
    !> the parent, negative for an error.
    integer function fork_process()
@@ -89,18 +107,15 @@ contains
       if (fork_process == 0) ignored = prctl(when_parent_ends, signal_terminate)
    end function fork_process
 
-   !> Waits until a child has ended or a signal has come. `child`: its number, 0 for none; `status`: its exit status, or
-   !> `killed` + the number of the signal that has killed it.
+   !> Waits until the process `child` has ended. `status`: its exit status, or `killed` + the number of the signal that
+   !> has killed it.
    subroutine wait_for_child(child, status)
-      integer, intent(out) :: child, status
+      integer, intent(in) :: child
+      integer, intent(out) :: status
       integer(c_int) :: ended, ignored
 
-      do
-         child = waitpid(-1_c_int, ended, at_once)
-         if (child /= 0 .or. signal_received() > 0) exit
-         ignored = usleep(pause)
-      end do
-      child = max(0, child)
+      ended = 0
+      ignored = waitpid(int(child, c_int), ended, 0_c_int)
       status = ishft(iand(ended, 65535), -8)
       if (iand(ended, 127) /= 0) status = killed + iand(ended, 127)
    end subroutine wait_for_child
@@ -119,27 +134,4 @@ contains
 
       call exit_at_once(int(status, c_int))
    end subroutine end_process
-
-   !> Opens a file without a name, in the directory that TMPDIR names, /tmp without it. The result is its descriptor,
-   !> negative for an error, see `last_error`.
-   integer(c_int) function temporary_file() result(descriptor)
-      character(:), allocatable :: path
-      integer :: length
-
-      call get_environment_variable('TMPDIR', length=length)
-      allocate (character(length) :: path)
-      if (length > 0) call get_environment_variable('TMPDIR', path)
-      if (length == 0) path = '/tmp'
-      path = path//'/kinmat-XXXXXX'//c_null_char
-      descriptor = mkstemp(path)
-      if (descriptor >= 0) call remove_file(path(:len(path) - 1))
-   end function temporary_file
-
-   !> The next byte read from `descriptor` is its first one.
-   subroutine from_beginning(descriptor)
-      integer(c_int), intent(in) :: descriptor
-      integer(c_long) :: place
-
-      place = lseek(descriptor, 0_c_long, seek_set)
-   end subroutine from_beginning
 end module processes

@@ -1,23 +1,32 @@
 !> Lines to a file or to standard output, in large blocks of whole lines. A failed write is an error, never a crash. A
-!> file keeps its old contents until the first block is written.
+!> file keeps its old contents until the first block is written. Where processes write to one file in turn, text stays
+!> in memory until the turn has come.
 module text_output
    use, intrinsic :: iso_c_binding, only: c_int, c_size_t
    use failures, only: failure_t, fail, capitals, status_system, status_rejected
    use system_calls, only: identity_t, identity_of_path, identity_of_descriptor, same_file, open_to_write, &
-      write_bytes, close_descriptor, empty_file, remove_file, last_error, reason_of, closed_descriptor, broken_pipe
+      read_bytes, write_bytes, close_descriptor, empty_file, remove_file, last_error, reason_of, closed_descriptor, &
+      broken_pipe
+   use processes, only: has_input
    implicit none
    private
    public :: output_t, open_output, check_apart, put, add, flush_output, close_output, forget_output, abandon_output
-   public :: has_failed, has_broken_pipe
+   public :: take_turn, write_block, has_failed, has_broken_pipe, turn_lost
 
    integer, parameter :: block_length = 65536
+   !> So many characters wait in memory for their turn to be written; more wait for it at once.
+   integer, parameter :: max_held = 2**27
+   !> The error of an output whose turn will never come: the process before it has ended.
+   integer, parameter :: turn_lost = -1
    integer(c_int), parameter :: standard_input = 0, standard_output = 1
 
-   !> An open output. `close_output` reports a failed write; all that follows such a write is dropped.
+   !> An open output. `close_output` reports a failed write; all that follows such a write is dropped. `turn`: a pipe
+   !> that has a byte for each output of this process when its turn to write has come; negative: it has.
    type :: output_t
       integer(c_int) :: descriptor = standard_output
       character(:), allocatable :: path      !< '' for standard output
-      character(:), allocatable :: buffer    !< (block_length) what is not written yet; not allocated: no open output
+      integer(c_int) :: turn = -1            !< see above
+      character(:), allocatable :: buffer    !< (block_length or more) what is not written yet; not allocated: not open
       integer :: used = 0                    !< characters in the buffer
       logical :: made = .false.              !< the file did not exist before
       logical :: emptied = .false.           !< the old contents of the file are gone
@@ -85,7 +94,7 @@ contains
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: line
 
-      if (len(line) >= block_length - o%used) then
+      if (len(line) >= len(o%buffer) - o%used) then
          call add(o, line)
          call add(o, new_line('a'))
          return
@@ -100,9 +109,12 @@ contains
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: text
 
-      if (len(text) > block_length - o%used) call write_lines(o)
-      if (len(text) > block_length - o%used) call write_block(o)
-      if (len(text) > block_length) then
+      do while (len(text) > len(o%buffer) - o%used .and. is_held(o))
+         o%buffer = o%buffer//o%buffer
+      end do
+      if (len(text) > len(o%buffer) - o%used) call write_lines(o)
+      if (len(text) > len(o%buffer) - o%used) call write_block(o)
+      if (len(text) > len(o%buffer)) then
          call write_text(o, text)
          return
       end if
@@ -110,11 +122,20 @@ contains
       o%used = o%used + len(text)
    end subroutine add
 
-   !> Writes the buffer at once: a reader that waits has its lines, and a write error shows.
+   !> Text must wait for its turn, and there is room for it.
+   logical function is_held(o)
+      type(output_t), intent(in) :: o
+
+      is_held = .false.
+      if (o%turn >= 0 .and. len(o%buffer) < max_held) is_held = .not. has_input(o%turn, 0)
+   end function is_held
+
+   !> Writes the buffer at once, unless it must wait for its turn: a reader that waits has its lines, and a write error
+   !> shows.
    subroutine flush_output(o)
       type(output_t), intent(inout) :: o
 
-      call write_block(o)
+      if (.not. is_held(o)) call write_block(o)
    end subroutine flush_output
 
    !> Whether a write has failed: further results would be lost.
@@ -175,7 +196,7 @@ contains
       o%used = o%used - last
    end subroutine write_lines
 
-   !> Writes all of the buffer.
+   !> Writes all of the buffer, when its turn has come.
    subroutine write_block(o)
       type(output_t), intent(inout) :: o
 
@@ -189,7 +210,8 @@ contains
       character(*), intent(in) :: text
       integer(c_size_t) :: written, done
 
-      if (.not. o%emptied) call empty(o)
+      if (o%turn >= 0) call take_turn(o%turn, o%error)
+      if (.not. (o%emptied .or. has_failed(o))) call empty(o)
       done = 0
       do while (done < len(text) .and. .not. has_failed(o))
          written = write_bytes(o%descriptor, text(done + 1:))
@@ -197,6 +219,16 @@ contains
          done = done + written
       end do
    end subroutine write_text
+
+   !> Waits for the turn that the pipe `turn` gives, which is none then; `error` becomes turn_lost where it never comes.
+   subroutine take_turn(turn, error)
+      integer(c_int), intent(inout) :: turn
+      integer, intent(inout) :: error
+      character(1) :: byte
+
+      if (read_bytes(turn, byte) /= 1) error = turn_lost
+      turn = -1
+   end subroutine take_turn
 
    !> Deletes the old contents of the file; devices and pipes have none.
    subroutine empty(o)

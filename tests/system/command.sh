@@ -234,7 +234,32 @@ for jobs in 1 2 3 8; do
 done
 "$kinmat" "$w/m.deck" --sets 2/2 --jobs 2 > "$w/out"
 "$kinmat" "$w/m.deck" --sets 2/2 | same '--jobs with --sets' - "$w/out"
-TMPDIR=/nonexistent refused '--jobs: no place for its files' 3 ' *** NO PROCESS FOR SETS 1 TO 1 (NO SUCH FILE OR DIRECTORY)' "$w/m.deck" --jobs 2 -o "$w/out"
+sh -c 'ulimit -n 6; exec "$0" "$1" --jobs 2' "$kinmat" "$w/m.deck" > "$w/out" 2> "$w/err"
+equal '--jobs: no pipes: status' 3 $?
+equal '--jobs: no pipes' ' *** NO PROCESS FOR SETS 1 TO 1 (TOO MANY OPEN FILES)' "$(cat "$w/err")"
+# A process that is killed while it waits for its turn: the one before it cannot go on, since nobody reads its output.
+sed 's/^TIME .*/TIME    360                     0.0             12.0/' input/four_bar.deck > "$w/long.deck"
+cat "$w/long.deck" "$w/long.deck" > "$w/four.deck"
+mkfifo "$w/pipe"
+"$kinmat" "$w/four.deck" --jobs 2 > "$w/pipe" 2> "$w/err" &
+job=$!
+exec 5< "$w/pipe"
+children=
+waited=0
+until [ "${children#* }" != "$children" ] || [ $waited -ge 200 ]; do
+   sleep 0.02
+   waited=$((waited + 1))
+   children=$(cat /proc/$job/task/$job/children 2> /dev/null)
+   children=${children% }
+done
+kill -KILL "${children#* }"
+"$kinmat" "$w/four.deck" --sets 1/4 > "$w/one.lst"
+cat <&5 > "$w/out"
+exec 5<&-
+wait $job
+equal '--jobs: a process is killed: status' 3 $?
+equal '--jobs: a process is killed' ' *** THE PROCESS FOR SETS 2 TO 2 WAS ENDED BY SIGNAL 9' "$(cat "$w/err")"
+same '--jobs: what was written before' "$w/one.lst" "$w/out"
 for jobs in 0 x 1025 -1 1.5 ''; do
    refused "--jobs '$jobs'" 1 ' *** OPTION --jobs NEEDS A WHOLE NUMBER FROM 1 TO 1024' "$w/m.deck" --jobs "$jobs"
 done
