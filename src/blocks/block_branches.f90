@@ -147,7 +147,7 @@ contains
       crossed(i) = .false.
       same = .not. any(e%crossed .and. .not. crossed)
       found = is_solved(c) .and. same .and. .not. c%singular .and. correction <= 0.5_wp*abs(away) &
-         .and. c%closure_error <= max_closure_part*abs(curvature)*away**2
+         .and. c%open%value <= max_closure_part*abs(curvature)*away**2
       e%history%filled = 0
 
    contains

@@ -7,7 +7,7 @@ module block_engine
    use links_tree, only: tree_t
    use structure, only: structure_t, new_structure
    use initial_estimate, only: estimated_values
-   use drives, only: law_t, new_law, drive_motion
+   use drives, only: new_law, drive_motion
    use convergence, only: convergence_t, is_solved, gather, ended_converged, ended_singular
    use engine, only: engine_t, engine_checkpoint_t
    use predictor, only: history_t, new_history, remember, predict, largest_change
@@ -45,7 +45,6 @@ module block_engine
       integer, allocatable :: needed(:), moving(:)      !< blocks that are solved at first, and at every step
       type(chain_t) :: chain                            !< of the links that are asked for
       type(chain_t) :: whole                            !< of all links
-      type(law_t), allocatable :: laws(:)               !< (drives)
       real(wp), allocatable :: unit_of(:)               !< (drives) of the value, in the deck's unit of length, or 1
       logical, allocatable :: is_angle(:)               !< (drives)
       integer, allocatable :: orientation_of(:)         !< (links)

@@ -70,7 +70,7 @@ contains
       call e%block_engine_t%solve(t, .false., c, correction, same)
       if (c%ended == ended_inconsistent) return
       c = before
-      c%closure_error = 0.0_wp
+      c%open%value = 0.0_wp
    end subroutine measure_closure_error
 
    !> The largest rate of an unknown of the motion that is followed.

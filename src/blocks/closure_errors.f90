@@ -1,7 +1,7 @@
 !> By how much the equations of a redundant block contradict one another, in position and in its derivatives.
 module closure_errors
    use kinds, only: wp
-   use convergence, only: convergence_t
+   use convergence, only: convergence_t, closure_error_t
    use blocks, only: blocks_t
    implicit none
    private
@@ -33,19 +33,15 @@ contains
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          largest = max(largest, opening(b, m, r)/level_of(b, m))
       end do
-      c%closure_error = 0.0_wp
-      c%inconsistent_pair = 0
-      c%inconsistent_drive = 0
+      c%open%value = 0.0_wp
+      c%open%pair = 0
+      c%open%drive = 0
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          associate (row => b%rows(b%list(i)%first_row + max(b%loops(m)%row_x, b%loops(m)%row_y) - 1))
             if (opening(b, m, r)/level_of(b, m) < (1.0_wp - alike)*largest) cycle
-            if (row%pair < c%inconsistent_pair .or. (row%pair == 0 .and. row%drive < c%inconsistent_drive)) cycle
-            c%closure_error = opening(b, m, r)
-            c%closure_error_level = level_of(b, m)
-            c%closure_error_unit = b%loops(m)%unit
-            c%closure_error_is_angle = row%angular
-            c%inconsistent_pair = row%pair
-            c%inconsistent_drive = row%drive
+            if (row%pair < c%open%pair .or. (row%pair == 0 .and. row%drive < c%open%drive)) cycle
+            c%open = closure_error_t(opening(b, m, r), row%angular, b%loops(m)%unit, level_of(b, m), row%pair, &
+               row%drive)
          end associate
       end do
    end subroutine note_closure_error
@@ -54,7 +50,7 @@ contains
    pure logical function is_inconsistent(c)
       type(convergence_t), intent(in) :: c
 
-      is_inconsistent = c%closure_error > inconsistent_level*c%closure_error_level
+      is_inconsistent = c%open%value > inconsistent_level*c%open%level
    end function is_inconsistent
 
    !> How many times as large as usual the closure error of loop `m` may be.

@@ -5,7 +5,7 @@ module convergence
    private
    public :: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
       ended_inconsistent, ended_unsought, ended_elsewhere
-   public :: ending, is_solved, take_closure_error, gather
+   public :: closure_error_t, ending, is_solved, gather
 
    integer, parameter :: ended_converged = 1   !< residual and step within the tolerance
    integer, parameter :: ended_stalled = 2     !< residual at rounding level, steps shrink no more: solved
@@ -15,6 +15,15 @@ module convergence
    integer, parameter :: ended_inconsistent = 6        !< too many equations, and they contradict one another
    integer, parameter :: ended_unsought = 7    !< known beforehand to be out of reach: no iteration
    integer, parameter :: ended_elsewhere = 8   !< at another assembly than the estimated one
+
+   !> By how much an equation is not satisfied.
+   type :: closure_error_t
+      real(wp) :: value = 0.0_wp               !< in the unit of length or rad
+      logical :: is_angle = .false.
+      real(wp) :: unit = 1.0_wp                !< that unit of length, in the one of the mechanism
+      real(wp) :: level = 1.0_wp               !< how many times as coarse as usual its rows are rounded, 1 at least
+      integer :: pair = 0, drive = 0           !< whose equation it is; 0: none
+   end type closure_error_t
 
    !> How a position was solved for.
    type :: convergence_t
@@ -32,12 +41,8 @@ module convergence
       real(wp) :: growth = 0.0_wp              !< of that ratio with the excursion of the drives
       logical :: is_certain = .false.          !< a prediction so right in a substep so short leaves no other branch
       logical :: singular = .false.            !< position found where the Jacobian has no inverse
-      real(wp) :: closure_error = 0.0_wp !< of the equation that is open the most, in the unit of length or rad
-      logical :: closure_error_is_angle = .false.
-      real(wp) :: closure_error_unit = 1.0_wp            !< that unit of length, in the one of the mechanism
-      real(wp) :: closure_error_level = 1.0_wp !< how many times as coarse as usual its rows are rounded, 1 at least
+      type(closure_error_t) :: open            !< the equation that is open the most
       logical :: rates_open = .false.          !< they agree in position, but not in its derivatives
-      integer :: inconsistent_pair = 0, inconsistent_drive = 0 !< whose equation that is; 0: none
    end type convergence_t
 
 contains
@@ -48,19 +53,6 @@ contains
 
       is_solved = c%ended == ended_converged .or. c%ended == ended_stalled
    end function is_solved
-
-   !> Gives `c` the closure error of `from`, with what it belongs to.
-   pure subroutine take_closure_error(from, c)
-      type(convergence_t), intent(in) :: from
-      type(convergence_t), intent(inout) :: c
-
-      c%closure_error = from%closure_error
-      c%closure_error_is_angle = from%closure_error_is_angle
-      c%closure_error_unit = from%closure_error_unit
-      c%closure_error_level = from%closure_error_level
-      c%inconsistent_pair = from%inconsistent_pair
-      c%inconsistent_drive = from%inconsistent_drive
-   end subroutine take_closure_error
 
    !> The record of the whole: the largest of each count, the worst of each ending.
    pure subroutine gather(one, c)
@@ -73,7 +65,7 @@ contains
       c%step = max(c%step, one%step)
       c%reciprocal_condition = min(c%reciprocal_condition, one%reciprocal_condition)
       c%determinant = c%determinant*one%determinant
-      if (one%closure_error > c%closure_error) call take_closure_error(one, c)
+      if (one%open%value > c%open%value) c%open = one%open
       c%singular = c%singular .or. one%singular
       c%rates_open = c%rates_open .or. one%rates_open
    end subroutine gather

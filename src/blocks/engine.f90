@@ -3,6 +3,7 @@
 !> checkpoint.
 module engine
    use kinds, only: wp
+   use drives, only: law_t
    use motion, only: motion_t
    use convergence, only: convergence_t
    implicit none
@@ -16,6 +17,7 @@ module engine
 
    type, abstract :: engine_t
       real(wp) :: length = 1.0_wp              !< the unit of its lengths, a power of two in the deck's unit
+      type(law_t), allocatable :: laws(:)      !< (drives) of METHOD NEWTON
       real(wp) :: excursion = 0.0_wp           !< of the drives off their chords on the next substep, rad or that unit
       integer :: redundant = 0                 !< equations that could be spared
       logical :: is_certified = .true.         !< positions it follows carry the certificate of `branch_certificate`

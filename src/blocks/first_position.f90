@@ -3,7 +3,7 @@
 !> made worse: what Newton's method alone has found stands where nothing nearer is found.
 module first_position
    use kinds, only: wp
-   use convergence, only: convergence_t, is_solved, take_closure_error
+   use convergence, only: convergence_t, is_solved
    use constants, only: without_turns
    use blocks, only: blocks_t, loop_angles
    use block_state, only: state_t, set_values, values_of
@@ -246,7 +246,7 @@ contains
          call solve_block(b, i, tolerance, w, s, c, change)
          if (is_solved(c) .or. reached) return
       end if
-      call take_closure_error(nearest, c)
+      c%open = nearest%open
    end subroutine come_near
 
    !> Start number `k` around `start`.

@@ -9,6 +9,7 @@
 !> Two links that meet far from both origins keep the angles of the deck: they may lie on either side.
 module initial_estimate
    use kinds, only: wp
+   use grouping, only: sorted_t, sorted
    use planar, only: direction, rotated, quarter_turn, cross, point_of
    use constants, only: pi, without_turns
    use mechanism, only: mechanism_t, pair_revolute
@@ -89,7 +90,7 @@ contains
       real(wp), dimension(0:t%orientations) :: u, v, w
       real(wp) :: before, after, length
       logical, allocatable :: placed(:)
-      integer, allocatable :: order(:)
+      type(sorted_t) :: classes
       integer :: i, sweep
 
       phi = m%links%position(3)
@@ -102,10 +103,10 @@ contains
       placed = m%links(m%points%link)%ground .or. hypot(m%points%offset(1), m%points%offset(2)) <= short_part*length
       if (largest_opening(m, t, u, spread(.true., 1, size(m%points))) <= good_part*length) return
       v = u
-      order = by_orientation(t)
+      classes = sorted(t%orientation, t%orientations)
       do sweep = 1, max_sweeps
          w = v
-         call minimize_closure_errors(m, t, order, min_form_part*length**2, v, placed)
+         call minimize_closure_errors(m, t, classes, min_form_part*length**2, v, placed)
          if (maxval(abs(without_turns(v - w))) <= good_part) exit
       end do
       v = u + without_turns(v - u)
@@ -118,54 +119,31 @@ contains
       end do
    end function estimated_directions
 
-   !> The links in the order of their orientation classes.
-   pure function by_orientation(t) result(order)
-      type(tree_t), intent(in) :: t
-      integer, allocatable :: order(:)
-      integer :: fill(0:t%orientations + 1), i
-
-      fill = 0
-      do i = 1, size(t%orientation)
-         fill(t%orientation(i) + 1) = fill(t%orientation(i) + 1) + 1
-      end do
-      do i = 1, t%orientations + 1
-         fill(i) = fill(i) + fill(i - 1)
-      end do
-      allocate (order(size(t%orientation)))
-      do i = 1, size(t%orientation)
-         fill(t%orientation(i)) = fill(t%orientation(i)) + 1
-         order(fill(t%orientation(i))) = i
-      end do
-   end function by_orientation
-
-   !> Gives each orientation class the angle of the least closure errors, unless the form is below `least_form` at all
-   !> angles. `placed` (points): their places are known, then also those of the class.
-   subroutine minimize_closure_errors(m, t, order, least_form, u, placed)
+   !> Gives each of the orientation `classes` the angle of the least closure errors, unless the form is below
+   !> `least_form` at all angles. `placed` (points): their places are known, then also those of the class.
+   subroutine minimize_closure_errors(m, t, classes, least_form, u, placed)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
-      integer, intent(in) :: order(:)
+      type(sorted_t), intent(in) :: classes
       real(wp), intent(in) :: least_form
       real(wp), intent(inout) :: u(0:)
       logical, intent(inout) :: placed(:)
       real(wp) :: e(5)
       integer :: i, k, orientation
 
-      e = 0.0_wp
-      do i = 1, size(order)
-         orientation = t%orientation(order(i))
-         if (orientation == 0) cycle
-         do k = t%near%first(order(i)), t%near%first(order(i) + 1) - 1
-            if (is_reported(m, t, t%near%member(k), orientation, placed)) call add_pair(m, t, t%near%member(k), &
-               orientation, u, e)
-         end do
-         if (i < size(order)) then
-            if (t%orientation(order(i + 1)) == orientation) cycle
-         end if
-         if (maxval(abs(e)) > least_form) then
-            u(orientation) = least(e, u(orientation))
-            where (t%orientation(m%points%link) == orientation) placed = .true.
-         end if
+      do orientation = 1, t%orientations
          e = 0.0_wp
+         do i = classes%first(orientation), classes%first(orientation + 1) - 1
+            associate (link => classes%member(i))
+               do k = t%near%first(link), t%near%first(link + 1) - 1
+                  if (is_reported(m, t, t%near%member(k), orientation, placed)) &
+                     call add_pair(m, t, t%near%member(k), orientation, u, e)
+               end do
+            end associate
+         end do
+         if (maxval(abs(e)) <= least_form) cycle
+         u(orientation) = least(e, u(orientation))
+         where (t%orientation(m%points%link) == orientation) placed = .true.
       end do
    end subroutine minimize_closure_errors
 

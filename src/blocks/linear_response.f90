@@ -19,8 +19,8 @@ module linear_response
    use block_engine, only: block_engine_t
    use convergence, only: convergence_t, is_solved
    use link_motion, only: missing_nothing, missing_all
-   use equation_changes, only: response_t, pair_residual, drive_residual, find_arm, find_gap, angle_change, &
-      root_unknown, unit_of
+   use equation_changes, only: response_t, varied_t, pair_residual, drive_residual, arm_of, gap_of, angle_change, &
+      root_unknown
    implicit none
    private
    public :: make_response, respond
@@ -40,6 +40,7 @@ contains
       type(change_t), intent(in) :: changes(:)
       integer :: i
 
+      r%m = m
       r%tree = new_tree(m)
       r%equations = new_equations(m, r%tree, 1.0_wp)
       allocate (r%loop_of_pair(0:size(m%pairs)), r%loop_of_drive(0:size(m%drives)), source=0)
@@ -56,7 +57,7 @@ contains
          r%angle(:, i) = angle_changes(m, changes(i))
       end do
       associate (unknowns => r%tree%orientations + r%tree%slides + 2*r%tree%roots)
-         allocate (r%u(0:2, 0:unknowns, size(changes)), source=0.0_wp)
+         allocate (r%now(0:2, 0:unknowns), r%u(0:2, 0:unknowns, size(changes)), source=0.0_wp)
          allocate (r%missing(0:unknowns), source=missing_nothing)
       end associate
       allocate (r%links(3, 0:2, size(m%links), size(changes)), source=0.0_wp)
@@ -81,12 +82,11 @@ contains
       angle = t%angle_offset
    end function angle_changes
 
-   !> Finds the responses at the position and the time of the engine `e` of `m`, which it solves for once more.
+   !> Finds the responses at the position and the time of the engine `e`, which it solves for once more.
    !> `drives` (0:2, drives, directions): the changes of the drives' values, rates and accelerations. `only_driven`: no
    !> more is known than what drives alone move.
-   subroutine respond(r, m, e, drives, only_driven)
+   subroutine respond(r, e, drives, only_driven)
       type(response_t), intent(inout) :: r
-      type(mechanism_t), intent(in) :: m
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: drives(0:, :, :)
       logical, intent(in) :: only_driven
@@ -98,6 +98,7 @@ contains
       r%u = 0.0_wp
       r%jams = .false.
       correction = 0.0_wp
+      call take_values(r, e, [(k, k=0, e%blocks%unknowns)])
       ! A change may bring in an angle that a block does not hold: all of them are found first.
       do pass = 1, 2
          r%missing(1:) = missing_all
@@ -110,21 +111,44 @@ contains
                if (is_found) then
                   c = convergence_t()
                   call solve_block(e%blocks, i, 0.0_wp, e%work, e%state, c, correction)
+                  call take_values(r, e, e%blocks%unknown(block%first:block%last))
                   is_found = is_solved(c) .and. .not. (c%singular .or. c%rates_open)
                end if
-               if (is_found .and. pass == 2) call respond_block(r, m, e, drives, i, is_found)
+               if (is_found .and. pass == 2) call respond_block(r, e, drives, i, is_found)
                if (.not. is_found) r%missing(e%blocks%unknown(block%first:block%last)) = missing_all
             end associate
          end do
       end do
-      call move_links(r, m, e)
+      call move_links(r)
    end subroutine respond
+
+   !> The values, rates and accelerations of the `unknowns` in the engine `e`, in the deck's unit.
+   pure subroutine take_values(r, e, unknowns)
+      type(response_t), intent(inout) :: r
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: unknowns(:)
+      integer :: k
+
+      do k = 1, size(unknowns)
+         associate (u => e%state%u(unknowns(k)))
+            r%now(:, unknowns(k)) = unit_of(e, unknowns(k))*[u%value, u%rate, u%acceleration]
+         end associate
+      end do
+   end subroutine take_values
+
+   !> The unit of unknown `u` in the deck's: 1 of an angle.
+   pure real(wp) function unit_of(e, u)
+      type(block_engine_t), intent(in) :: e
+      integer, intent(in) :: u
+
+      unit_of = 1.0_wp
+      if (u > e%blocks%orientations) unit_of = e%length*e%blocks%unit(u)
+   end function unit_of
 
    !> The responses of block `i`, by the factors that the solver has left. `is_found`: redundant equations allow all
    !> changes.
-   subroutine respond_block(r, m, e, drives, i, is_found)
+   subroutine respond_block(r, e, drives, i, is_found)
       type(response_t), intent(inout) :: r
-      type(mechanism_t), intent(in) :: m
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: drives(0:, :, :)
       integer, intent(in) :: i
@@ -135,7 +159,7 @@ contains
       associate (block => e%blocks%list(i), shape => e%blocks%list(i)%shape)
          do order = 0, 2
             do d = 1, size(r%changes)
-               call find_residual(r, m, e, drives(:, :, d), i, d, order, v)
+               call find_residual(r, e, drives(:, :, d), i, d, order, v)
                v = -v
                limit = max(contradiction*maxval(abs(v)), roundings*size_of(r%changes(d), drives(0, :, d), e))
                if (.not. block%direct) call solve_again(shape, e%work%a, e%work%sparse(shape%pattern), e%work%pivots, &
@@ -165,9 +189,8 @@ contains
 
    !> `v` (rows): derivative number `order` of the change of the equations of block `i` in direction `d`, as far as it
    !> is known, in the units of the block; of a direct one, that of its unknown. `drives` (0:2, drives).
-   subroutine find_residual(r, m, e, drives, i, d, order, v)
+   subroutine find_residual(r, e, drives, i, d, order, v)
       type(response_t), intent(in) :: r
-      type(mechanism_t), intent(in) :: m
       type(block_engine_t), intent(in) :: e
       real(wp), intent(in) :: drives(0:, :)
       integer, intent(in) :: i, d, order
@@ -208,26 +231,24 @@ contains
          real(wp) :: change(0:2)
 
          if (row%pair > 0) then
-            change = pair_residual(r, m, e, row, axis, d)
+            change = pair_residual(r, row, axis, d)
          else
-            change = drive_residual(r, m, e, row%drive, d) - drives(:, row%drive)
+            change = drive_residual(r, row%drive, d) - drives(:, row%drive)
          end if
          x = change(order)
       end function residual
    end subroutine find_residual
 
    !> The changes of the links, along the tree: P - Q of a revolute pair is 0, of a prismatic pair h n - s e.
-   subroutine move_links(r, m, e)
+   subroutine move_links(r)
       type(response_t), intent(inout) :: r
-      type(mechanism_t), intent(in) :: m
-      type(block_engine_t), intent(in) :: e
       integer :: d, i, link
 
       do d = 1, size(r%changes)
          do i = 1, size(r%tree%order)
             link = r%tree%order(i)
             r%links(3, :, link, d) = angle_change(r, link, d)
-            if (m%links(link)%ground) then
+            if (r%m%links(link)%ground) then
                r%links(:, :, link, d) = 0.0_wp
                r%links(:, 0, link, d) = r%changes(d)%ground(:, link)
             else if (r%tree%parent(link) == 0) then
@@ -235,32 +256,33 @@ contains
                   r%links(:2, :, link, d) = transpose(r%u(:, u:u + 1, d))
                end associate
             else
-               r%links(:2, :, link, d) = place_change(r, m, e, link, d)
+               r%links(:2, :, link, d) = place_change(r, link, d)
             end if
          end do
       end do
    end subroutine move_links
 
    !> The change (2, 0:2) of the origin of `link`, from that of its parent.
-   function place_change(r, m, e, link, d) result(dx)
+   function place_change(r, link, d) result(dx)
       type(response_t), intent(in) :: r
-      type(mechanism_t), intent(in) :: m
-      type(block_engine_t), intent(in) :: e
       integer, intent(in) :: link, d
-      real(wp) :: dx(2, 0:2), x(2, 0:2), other(2, 0:2), own(2, 0:2), gap(2, 0:2)
+      real(wp) :: dx(2, 0:2)
+      type(varied_t) :: other, own, gap
       logical :: is_i
       integer :: point
 
-      associate (pair => m%pairs(r%tree%parent_joint(link)))
-         is_i = m%points(pair%point_i)%link == link
+      associate (pair => r%m%pairs(r%tree%parent_joint(link)))
+         is_i = r%m%points(pair%point_i)%link == link
          point = merge(pair%point_j, pair%point_i, is_i)
-         call find_arm(r, m, e, point, d, x, other)
-         call find_arm(r, m, e, merge(pair%point_i, pair%point_j, is_i), d, x, own)
-         dx = other - own
-         if (.not. m%links(m%points(point)%link)%ground) dx = dx + r%links(:2, :, m%points(point)%link, d)
+         other = arm_of(r, point, d)
+         own = arm_of(r, merge(pair%point_i, pair%point_j, is_i), d)
+         dx = other%dx - own%dx
+         associate (base => r%m%points(point)%link)
+            if (.not. r%m%links(base)%ground) dx = dx + r%links(:2, :, base, d)
+         end associate
          if (pair%kind /= pair_prismatic) return
-         call find_gap(r, m, e, r%tree%parent_joint(link), d, x, gap)
-         dx = dx + merge(1.0_wp, -1.0_wp, is_i)*gap
+         gap = gap_of(r, r%tree%parent_joint(link), d)
+         dx = dx + merge(1.0_wp, -1.0_wp, is_i)*gap%dx
       end associate
    end function place_change
 end module linear_response

@@ -8,12 +8,12 @@ module analysis
    use diagnostics, only: diagnostic_t, diagnostic_inconsistent, diagnostic_long, diagnostic_close
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, branch_none, branch_first, branch_same, &
       branch_crossed
-   use convergence, only: convergence_t, ended_inconsistent, ended_unsought
+   use convergence, only: convergence_t, closure_error_t, ended_inconsistent, ended_unsought
    use block_engine, only: block_engine_t
    use block_diagnostics, only: start_diagnostics, limit_diagnostic
    use at_bifurcation, only: stand_on, pass_standstill
    use following, only: following_t, step_record_t, make_following, continue_to, is_too_far, has_too_many_substeps, &
-      go_on_from, go_back, place_t, note_place, return_to, limits_t, note_limit, lies_beyond, diagnostics_of_limit
+      go_on_from, go_back, place_t, note_place, return_to, limits_t, note_limit, limit_before
    implicit none
    private
    public :: analysis_t, make_analysis, advance, look_at, come_back, redundancy_error
@@ -61,7 +61,7 @@ contains
       call come_back(a)
       if (allocated(found%diagnostics)) deallocate (found%diagnostics)
       found%t = t
-      if (lies_beyond(a%limits, t) .or. is_too_far(a%following_t, t)) then
+      if (limit_before(a%limits, t) > 0 .or. is_too_far(a%following_t, t)) then
          call pass_over(a, t, found)
          return
       end if
@@ -93,7 +93,7 @@ contains
       logical :: finite
 
       is_found = .false.
-      if (.not. a%follows .or. lies_beyond(a%limits, t)) return
+      if (.not. a%follows .or. limit_before(a%limits, t) > 0) return
       if (.not. a%left%is_left) then
          call note_place(a%following_t, a%left%place)
          a%left%convergence = a%convergence
@@ -159,7 +159,7 @@ contains
       if (a%convergence%ended == ended_inconsistent) then
          ! Of equations that contradict one another a drive is one: not even the links that it moves have a position.
          call cut(found, -1, mark_inconsistent)
-         a%max_closure_error = max(a%max_closure_error, a%convergence%closure_error)
+         a%max_closure_error = max(a%max_closure_error, a%convergence%open%value)
       else
          call cut(found, -1, mark_not_converged)
          call a%engine%get_driven_links(t, found)
@@ -178,8 +178,8 @@ contains
       a%convergence = convergence_t(ended=ended_unsought)
       a%branch = branch_t()
       if (.not. a%is_lost) then
-         if (lies_beyond(a%limits, t)) then
-            call add_diagnostics(diagnostics_of_limit(a%limits, t), found)
+         if (limit_before(a%limits, t) > 0) then
+            call add_diagnostics(a%limits%side(limit_before(a%limits, t))%diagnostics, found)
          else
             call add_diagnostics([diagnostic_t(kind=diagnostic_long, t=a%t)], found)
          end if
@@ -231,8 +231,8 @@ contains
 
       allocate (list(0))
       inconsistent = a%convergence%ended == ended_inconsistent
-      if (a%convergence%closure_error > 0.0_wp .and. (inconsistent .or. .not. a%follows)) then
-         call add_diagnostics([inconsistency(a%convergence, a%engine%length)], found)
+      if (a%convergence%open%value > 0.0_wp .and. (inconsistent .or. .not. a%follows)) then
+         call add_diagnostics([inconsistency(a%convergence%open, a%engine%length)], found)
       else
          select type (e => a%engine)
          class is (block_engine_t)
@@ -248,14 +248,14 @@ contains
       if (a%follows .and. .not. inconsistent) call note_limit(a%limits, a%place%t, a%t, t, step%blocked, list)
    end subroutine diagnose_end
 
-   !> The equation with the largest closure error, by the record `c` of an engine with the unit `length`.
-   pure type(diagnostic_t) function inconsistency(c, length) result(r)
-      type(convergence_t), intent(in) :: c
+   !> The equation `open` the most, in an engine with the unit `length`.
+   pure type(diagnostic_t) function inconsistency(open, length) result(r)
+      type(closure_error_t), intent(in) :: open
       real(wp), intent(in) :: length
 
-      r = diagnostic_t(kind=diagnostic_inconsistent, pair=c%inconsistent_pair, drive=c%inconsistent_drive, &
-         is_angle=c%closure_error_is_angle, value=c%closure_error)
-      if (.not. r%is_angle) r%value = c%closure_error*(length*c%closure_error_unit)
+      r = diagnostic_t(kind=diagnostic_inconsistent, pair=open%pair, drive=open%drive, is_angle=open%is_angle, &
+         value=open%value)
+      if (.not. r%is_angle) r%value = open%value*(length*open%unit)
    end function inconsistency
 
    !> Adds the diagnostics `list` to those of `found`; those are not allocated where there are none.
@@ -275,7 +275,7 @@ contains
       logical :: finite
 
       call a%engine%get_motion(found, finite)
-      a%max_closure_error = max(a%max_closure_error, a%convergence%closure_error)
+      a%max_closure_error = max(a%max_closure_error, a%convergence%open%value)
       call cut(found, 2, mark_none)
       if (a%convergence%singular) call cut(found, 0, mark_singular)
       if (a%convergence%rates_open) call cut(found, 0, mark_inconsistent)

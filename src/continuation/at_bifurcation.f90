@@ -2,7 +2,7 @@
 !> the two branches has its own. And the passage through a change point at which the drive stops or turns.
 module at_bifurcation
    use kinds, only: wp
-   use drive_excursion, only: drive_excursion_t, largest_rate
+   use drive_excursion, only: drive_excursion_t, largest_derivative
    use drives, only: law_t, new_law, drive_motion
    use law_bounds, only: bounds_t, bounds_of
    use mechanism, only: drive_t
@@ -69,7 +69,7 @@ contains
       integer :: k
 
       h = abs(t - f%t)/3.0_wp
-      fastest = max(max_rate(f%engine), min(largest_rate(f%drives, f%t, t), sqrt(huge(1.0_wp))))
+      fastest = max(max_rate(f%engine), min(largest_derivative(f%drives, 1, f%t, t), sqrt(huge(1.0_wp))))
       if (h*fastest > short_step) h = short_step/fastest
       h = sign(h, t - f%t)
       arrived = abs(h) > 0.0_wp
@@ -114,7 +114,7 @@ contains
       allocate (list(0))
       if (.not. f%follows .or. max_rate(f%engine) < 0.0_wp) return
       near = merge(t, f%t, step%arrived)
-      laws = laws_of(f)
+      laws = f%engine%laws
       drive = stopping_drive(laws, f%drives%first, f%drives%last, merge(f%place%t, f%t, step%tries > 1), near, t)
       if (drive == 0) return
       near = standstill(laws(drive), near, t)
@@ -125,7 +125,7 @@ contains
       drives = f%drives
       call follow_by_value(f, laws, drive, near, t, step, list, passed, stands)
       f%drives = drives
-      call put_laws(f, laws)
+      f%engine%laws = laws
       if (passed .and. .not. stands) call take_up(f, t, passed)
       step%stands = passed .and. stands
       step%arrived = passed .or. step%arrived
@@ -138,28 +138,6 @@ contains
       f%branch_requests = branch_requests
       f%convergence = found
    end subroutine pass_standstill
-
-   !> The laws of the drives of the engine, which has blocks.
-   function laws_of(f) result(laws)
-      type(following_t), intent(in) :: f
-      type(law_t), allocatable :: laws(:)
-
-      select type (e => f%engine)
-      class is (block_method_t)
-         laws = e%laws
-      end select
-   end function laws_of
-
-   !> Gives it these laws.
-   subroutine put_laws(f, laws)
-      type(following_t), intent(inout) :: f
-      type(law_t), intent(in) :: laws(:)
-
-      select type (e => f%engine)
-      class is (block_method_t)
-         e%laws = laws
-      end select
-   end subroutine put_laws
 
    !> The only drive whose value changes between the times `from` and `t`, if it is almost at rest at the time `near`;
    !> 0: none. `first`, `last`: all instants.
@@ -236,7 +214,7 @@ contains
          held(i) = straight_law(laws(i), value(1), 0.0_wp)
       end do
       held(drive) = straight_law(laws(drive), at_near(1) - rate*near, rate)
-      call put_laws(f, held)
+      f%engine%laws = held
       f%drives%laws = held
       ! The bounds that it knows are those of the deck's laws.
       f%drives%first = huge(1.0_wp)
@@ -305,5 +283,4 @@ contains
       b = bounds_of(law, from, to)
       rate = max(-b%low(1), b%high(1))
    end function largest_rate_of
-
 end module at_bifurcation

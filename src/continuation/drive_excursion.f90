@@ -15,7 +15,7 @@ module drive_excursion
    implicit none
    private
    public :: drive_excursion_t, new_drive_excursion, substep_allowed, likely_excursion, excursion, steps_at_least, &
-      largest_rate, judge_step
+      largest_derivative, judge_step
 
    !> The largest excursion off the chord, in radians or characteristic lengths. What a position allows is mostly
    !> less, and follows from its Jacobian; this bounds what becomes of it in links far down a chain.
@@ -39,7 +39,7 @@ contains
       type(mechanism_t), intent(in) :: m
       logical, intent(in) :: depends
       type(drive_excursion_t) :: p
-      real(wp) :: length
+      real(wp) :: length, rate
       integer :: i, n
 
       n = merge(size(m%drives), 0, depends)
@@ -52,8 +52,10 @@ contains
       end do
       call find_instants(m, p%first, p%last)
       if (p%first > p%last) return
-      p%longest = reciprocal(largest(p, 1, p%first, p%last))
-      p%curve = largest(p, 2, p%first, p%last)
+      rate = largest_derivative(p, 1, p%first, p%last)
+      p%longest = huge(1.0_wp)
+      if (rate > largest_change/huge(1.0_wp)) p%longest = largest_change/rate
+      p%curve = largest_derivative(p, 2, p%first, p%last)
    end function new_drive_excursion
 
    !> The part of the `substep` from `t` on that the drives allow at once.
@@ -169,16 +171,9 @@ contains
       end do
    end function steps_at_least
 
-   !> Bounds the rate of every drive between `t1` and `t2`, in radians or characteristic lengths a unit of time.
-   pure real(wp) function largest_rate(p, t1, t2) result(rate)
-      type(drive_excursion_t), intent(in) :: p
-      real(wp), intent(in) :: t1, t2
-
-      rate = largest(p, 1, t1, t2)
-   end function largest_rate
-
-   !> The largest derivative number `k` of any drive between `t1` and `t2`; huge: no bound.
-   pure real(wp) function largest(p, k, t1, t2)
+   !> Bounds derivative number `k` of every drive between `t1` and `t2`, in radians or characteristic lengths; huge: no
+   !> bound.
+   pure real(wp) function largest_derivative(p, k, t1, t2) result(largest)
       type(drive_excursion_t), intent(in) :: p
       integer, intent(in) :: k
       real(wp), intent(in) :: t1, t2
@@ -194,15 +189,7 @@ contains
             largest = max(largest, p%unit(i)*max(-b%low(k), b%high(k)))
          end if
       end do
-   end function largest
-
-   !> The time in which a drive at `rate` changes by `largest_change`.
-   pure real(wp) function reciprocal(rate)
-      real(wp), intent(in) :: rate
-
-      reciprocal = huge(1.0_wp)
-      if (rate > largest_change/huge(1.0_wp)) reciprocal = largest_change/rate
-   end function reciprocal
+   end function largest_derivative
 
    !> `t1` and `t2` lie within the time of all instants.
    pure logical function is_within(p, t1, t2)

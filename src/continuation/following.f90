@@ -20,7 +20,7 @@ module following
    private
    public :: following_t, step_record_t, make_following, continue_to, is_too_far, has_too_many_substeps, go_on_from, &
       go_back, place_t, note_place, return_to
-   public :: limits_t, note_limit, lies_beyond, diagnostics_of_limit, largest_correction, max_kantorovich_ratio
+   public :: limits_t, note_limit, limit_before, largest_correction, max_kantorovich_ratio
 
    !> The largest correction, in the characteristic length and in radians, of a predicted position that still counts as
    !> the continuation of the motion; where the prediction is off by more, the step is divided.
@@ -78,9 +78,9 @@ module following
       type(diagnostic_t), allocatable :: diagnostics(:)
    end type limit_t
 
-   !> The limits of the motion that is followed.
+   !> The limits of the motion that is followed: the earlier and the later one.
    type :: limits_t
-      type(limit_t) :: earlier, later
+      type(limit_t) :: side(2)
    end type limits_t
 
 contains
@@ -273,39 +273,23 @@ contains
       real(wp), intent(in) :: place, reached, t
       logical, intent(in) :: blocked
       type(diagnostic_t), intent(in) :: diagnostics(:)
-      type(limit_t) :: this
 
       if (abs(t - place) <= 0.0_wp) return
-      this%known = .true.
-      this%t = t
-      if (blocked) this%t = reached + near_part*(t - place)
-      this%diagnostics = diagnostics
-      if (t > place) then
-         limits%later = this
-      else
-         limits%earlier = this
-      end if
+      associate (limit => limits%side(merge(2, 1, t > place)))
+         limit%known = .true.
+         limit%t = t
+         if (blocked) limit%t = reached + near_part*(t - place)
+         limit%diagnostics = diagnostics
+      end associate
    end subroutine note_limit
 
-   !> The instant `t` lies beyond a limit that is known.
-   pure logical function lies_beyond(limits, t)
+   !> The limit beyond which the instant `t` lies, as a number of a side; 0: none that is known.
+   pure integer function limit_before(limits, t) result(k)
       type(limits_t), intent(in) :: limits
       real(wp), intent(in) :: t
 
-      lies_beyond = (limits%later%known .and. t >= limits%later%t) &
-         .or. (limits%earlier%known .and. t <= limits%earlier%t)
-   end function lies_beyond
-
-   !> What there is to say of the limit before `t`, which lies beyond it.
-   pure function diagnostics_of_limit(limits, t) result(list)
-      type(limits_t), intent(in) :: limits
-      real(wp), intent(in) :: t
-      type(diagnostic_t), allocatable :: list(:)
-
-      if (limits%later%known .and. t >= limits%later%t) then
-         list = limits%later%diagnostics
-      else
-         list = limits%earlier%diagnostics
-      end if
-   end function diagnostics_of_limit
+      do k = 2, 1, -1
+         if (limits%side(k)%known .and. merge(t >= limits%side(k)%t, t <= limits%side(k)%t, k == 2)) return
+      end do
+   end function limit_before
 end module following

@@ -4,7 +4,7 @@
 module error_estimate
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_t, request_link, request_point, request_pair, request_pole, &
-      request_curve, place_links
+      request_links, place_links
    use motion, only: motion_t, new_motion
    use points, only: row_t, row_of, difference, is_fixed
    use sum_errors, only: sum_roundings, errors_of_sums, error_of_sums, lost_numbers, growth_in_centres
@@ -188,7 +188,7 @@ contains
       if (s%asked) error = nothing_known
       if (.not. s%taken) return
       error = nothing_known
-      if (any_lost(m, s%lost, request)) return
+      if (any(s%lost(request_links(m, request)))) return
       row = row_of(m, q, request)
       error = 0.0_wp
       lost = .false.
@@ -233,25 +233,6 @@ contains
       change = difference(up, down)/(2.0_wp*step)
       if (request%kind >= request_pole) lost = lost .or. lost_numbers(up, row) .or. lost_numbers(down, row)
    end subroutine find_change
-
-   !> Nothing is known of the changes of some link in the row that `request` asks for. `lost` (links).
-   pure logical function any_lost(m, lost, request)
-      type(mechanism_t), intent(in) :: m
-      logical, intent(in) :: lost(:)
-      type(request_t), intent(in) :: request
-
-      select case (request%kind)
-      case (request_pair)
-         associate (pair => m%pairs(request%subject))
-            any_lost = lost(m%points(pair%point_i)%link) .or. lost(m%points(pair%point_j)%link)
-         end associate
-      case (request_point, request_curve)
-         any_lost = lost(m%points(request%subject)%link)
-      case default
-         any_lost = lost(request%subject)
-      end select
-      if (request%second > 0) any_lost = any_lost .or. lost(request%second)
-   end function any_lost
 
    !> What rounding leaves open of the place (3) of a ground link or of a point on one: a sum of numbers of cards.
    pure function fixed_error(m, request) result(error)

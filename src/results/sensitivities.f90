@@ -64,7 +64,7 @@ contains
       if (.not. found%taken) return
       call take_position(s, m, e, q)
       call set_drive_values(s%engine, q%t)
-      call respond(s%response, m, s%engine, drive_changes(m, q%t, order), q%known < 0)
+      call respond(s%response, s%engine, drive_changes(m, q%t, order), q%known < 0)
       again = new_motion(size(m%links))
       again%t = q%t
       again%known = 2
