@@ -249,7 +249,6 @@ contains
       type(set_analysis_t) :: a
 
       call make_set_analysis(m, a)
-      call advance_set(a, instant(m, 0))
       call draw_assemblies(a, d)
    end subroutine draw_all_assemblies
 

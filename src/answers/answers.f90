@@ -11,7 +11,7 @@ module answers
    use extremes_table, only: put_extremes
    use tolerance_shares, only: shares_t, new_shares, note_tolerances, put_shares
    use ranges, only: range_t, find_ranges, put_ranges
-   use assembly_table, only: assembly_answer_t, find_answer, put_assemblies
+   use assembly_table, only: put_assemblies
    use circuit_branches, only: circuits_t
    use circuits_table, only: find_all_circuits, put_circuits
    use proof_table, only: proof_table_t, new_proof_table, note_proof, put_proofs
@@ -22,7 +22,6 @@ module answers
    type :: answers_t
       logical :: extremes_asked = .false.
       logical :: ranges_asked = .false.
-      logical :: assemblies_asked = .false.
       logical :: shares_asked = .false.
       logical :: proofs_asked = .false.
       type(extremes_t) :: extremes
@@ -30,7 +29,7 @@ module answers
       type(shares_t) :: shares
       type(proof_table_t) :: proofs
       type(range_t), allocatable :: ranges(:)       !< (drives that have one), in the numbers of the set
-      type(assembly_answer_t), allocatable :: assemblies(:)   !< (parts)
+      integer :: assemblies = -1                    !< of all parts, where they are asked for and all are known
       type(circuits_t), allocatable :: circuits(:)  !< (drives that are set free) likewise; not allocated: not asked
    end type answers_t
 
@@ -41,12 +40,15 @@ contains
       type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(in) :: s
       type(answers_t), intent(out) :: a
+      integer :: c
 
       a%extremes_asked = any(m%requests%extremes)
       a%ranges_asked = m%ranges
-      a%assemblies_asked = m%assemblies
       a%shares_asked = allocated(m%tolerances)
       if (a%shares_asked) call new_shares(m, a%shares)
+      if (m%assemblies) then
+         if (all(s%assemblies%is_known)) a%assemblies = sum([(size(s%assemblies(c)%list), c=1, size(s%assemblies))])
+      end if
       a%proofs_asked = m%proves
       if (a%proofs_asked) call new_proof_table(m, a%proofs)
       allocate (a%ranges(0))
@@ -66,7 +68,6 @@ contains
 
       if (a%proofs_asked) call note_proof(a%proofs, m, s, k, due)
       if (a%ranges_asked .and. k == 0) call find_ranges(s, a%ranges)
-      if (a%assemblies_asked .and. k == 0) call find_answer(s, a%assemblies)
       if (m%circuits .and. m%variants == 0 .and. k == 0) call find_all_circuits(s, a%circuits)
       if (a%shares_asked) call note_tolerances(a%shares, m, s%now, k)
       if (.not. a%extremes_asked .or. k > m%steps) return
@@ -88,7 +89,7 @@ contains
          call put_extremes(o, l, m, s, a%extremes, dwells)
       end if
       if (a%ranges_asked) call put_ranges(o, m, a%ranges)
-      if (a%assemblies_asked) call put_assemblies(o, l, m, s, a%assemblies)
+      if (m%assemblies) call put_assemblies(o, l, m, s)
       if (allocated(a%circuits)) call put_circuits(o, m, a%circuits)
       if (a%shares_asked) call put_shares(o, l, a%shares, m, s%now)
       if (a%proofs_asked) call put_proofs(o, l, a%proofs, m)

@@ -4,11 +4,10 @@ module assembly_table
    use planar, only: point_of
    use constants, only: degree, without_turns
    use mechanism, only: mechanism_t, instant, plane_origin
-   use motion, only: motion_t
    use scales, only: characteristic_length
    use names, only: listed
    use cards, only: ruler_card
-   use assemblies, only: assemblies_t, assembly_t, assembly_block_t, find_assemblies, max_assemblies
+   use assemblies, only: assemblies_t, assembly_t, assembly_block_t, max_assemblies
    use set_analysis, only: set_analysis_t
    use drawing, only: drawing_t, snapshot_t
    use listing_layout, only: layout_t
@@ -18,82 +17,37 @@ module assembly_table
    use phrases
    implicit none
    private
-   public :: assembly_answer_t, find_answer, put_assemblies, draw_assemblies
+   public :: put_assemblies, draw_assemblies
 
-   !> The assemblies of one independent mechanism.
-   type :: assembly_answer_t
-      type(assemblies_t) :: all_of_them
-      integer :: chosen = 0                  !< the number of that which the estimate chooses; 0: none
-   end type assembly_answer_t
-
-   !> The chosen assembly is the one at this distance from the motion at most, in rad and characteristic lengths: an
-   !> iteration near a dead point has half of all digits.
-   real(wp), parameter :: same_place = max(1.0e-5_wp, 16.0_wp*sqrt(epsilon(1.0_wp)))
-   !> A smaller ratio of distances is more than rounding.
-   real(wp), parameter :: less = 0.999_wp
    !> Characters of a number on a card.
    integer, parameter :: number_width = 16
    !> Digits of an estimate, and of numbers that are dimensions, of the largest number.
    integer, parameter :: estimate_digits = 10, drawing_digits = 13
    !> Angles have as many digits after the point as this one, in rad or degrees.
    real(wp), parameter :: largest_angle = 100.0_wp
-   !> An estimate is not nearer to another assembly if it is as good as this.
-   real(wp), parameter :: fine = 1.0e-4_wp
 
 contains
 
-   !> The assemblies (parts) of the mechanisms of the set that `s` analyses, at its first instant.
-   subroutine find_answer(s, answer)
-      type(set_analysis_t), intent(in) :: s
-      type(assembly_answer_t), allocatable, intent(out) :: answer(:)
-      integer :: c
-
-      allocate (answer(size(s%now%own)))
-      do c = 1, size(answer)
-         associate (m => s%now%own(c))
-            call find_assemblies(m, instant(m, 0), answer(c)%all_of_them)
-            answer(c)%chosen = place_of(m, s%now%motions(c), answer(c)%all_of_them%list)
-         end associate
-      end do
-   end subroutine find_answer
-
-   !> The number of the motion `q` in `list`; 0: it is none of them.
-   pure integer function place_of(m, q, list) result(k)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      type(assembly_t), intent(in) :: list(:)
-      real(wp) :: d(3, size(m%links))
-
-      if (q%known < 0) k = 0
-      if (q%known < 0) return
-      do k = size(list), 1, -1
-         d = list(k)%position - q%position
-         d(:2, :) = d(:2, :)/characteristic_length(m)
-         d(3, :) = without_turns(d(3, :))
-         if (all(abs(d) <= same_place)) return
-      end do
-   end function place_of
-
-   !> The lines of the assemblies (parts) of the set `m` that `s` analyses.
-   subroutine put_assemblies(o, l, m, s, answer)
+   !> The lines of the assemblies of the set `m` that `s` analyses.
+   subroutine put_assemblies(o, l, m, s)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(in) :: s
-      type(assembly_answer_t), intent(in) :: answer(:)
       integer :: c, k
 
       call put(o, '')
       call put(o, ' '//phrase(say_assemblies, m%polish)//'   T = '//time_text(l, instant(m, 0))//l%behind_time)
-      do c = 1, size(answer)
-         associate (own => s%now%own(c), all_of_them => answer(c)%all_of_them)
-            if (size(answer) > 1) call put(o, ' '//phrase(say_mechanism, m%polish)//' '//whole(c))
-            do k = 1, size(all_of_them%blocks)
-               call put_block(o, own, k, all_of_them%blocks(k))
+      do c = 1, size(s%assemblies)
+         associate (own => s%now%own(c), a => s%assemblies(c))
+            if (size(s%assemblies) > 1) call put(o, ' '//phrase(say_mechanism, m%polish)//' '//whole(c))
+            do k = 1, size(a%blocks)
+               call put_block(o, own, k, a%blocks(k))
             end do
-            call put_remarks(o, own, answer(c))
-            do k = 1, size(all_of_them%list)
-               call put_assembly(o, own, k, all_of_them, k == answer(c)%chosen)
+            if (a%are_more) call put(o, ' *** '//phrase(say_more_assemblies, m%polish)//' '//whole(max_assemblies))
+            if (size(a%list) == 0) call put(o, '   '//phrase(say_none, m%polish))
+            do k = 1, size(a%list)
+               call put_assembly(o, own, k, a)
             end do
          end associate
       end do
@@ -104,21 +58,19 @@ contains
    subroutine draw_assemblies(s, d)
       type(set_analysis_t), intent(in) :: s
       type(drawing_t), intent(inout) :: d
-      type(assembly_answer_t), allocatable :: answer(:)
       type(snapshot_t), allocatable :: frames(:)
       type(snapshot_t) :: one
       integer :: c, k
 
-      call find_answer(s, answer)
       one = d%frame(1)
-      do c = 1, size(answer)
-         if (size(answer(c)%all_of_them%list) > 0) call place(max(1, answer(c)%chosen))
+      do c = 1, size(s%assemblies)
+         if (size(s%assemblies(c)%list) > 0) call place(max(1, s%assemblies(c)%chosen))
       end do
       frames = [one]
-      do c = 1, size(answer)
-         do k = 1, size(answer(c)%all_of_them%list)
+      do c = 1, size(s%assemblies)
+         do k = 1, size(s%assemblies(c)%list)
             one = frames(1)
-            if (k == max(1, answer(c)%chosen)) cycle
+            if (k == max(1, s%assemblies(c)%chosen)) cycle
             call place(k)
             frames = [frames, one]
          end do
@@ -136,7 +88,7 @@ contains
 
          associate (links => s%now%parts%list(c)%links, own => s%now%own(c))
             do i = 1, size(links)
-               one%place(:, links(i)) = answer(c)%all_of_them%list(number)%position(:, i) &
+               one%place(:, links(i)) = s%assemblies(c)%list(number)%position(:, i) &
                   + [plane_origin(own) - d%origin, 0.0_wp]
                one%known(links(i)) = .true.
             end do
@@ -166,25 +118,6 @@ contains
       if (one%failed > 0) call put(o, ' *** '//links//': '//phrase(say_paths_failed, m%polish)//' '//whole(one%failed))
    end subroutine put_block
 
-   !> What there is to say of all assemblies of the mechanism `m`.
-   subroutine put_remarks(o, m, answer)
-      type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(assembly_answer_t), intent(in) :: answer
-
-      associate (list => answer%all_of_them%list, chosen => answer%chosen)
-         if (answer%all_of_them%are_more) call put(o, ' *** '//phrase(say_more_assemblies, m%polish)//' ' &
-            //whole(max_assemblies))
-         if (size(list) == 0) call put(o, '   '//phrase(say_none, m%polish))
-         if (chosen > 1) then
-            if (list(1)%distance < less*list(chosen)%distance .and. list(chosen)%distance > fine) &
-               call put(o, ' --- '//phrase(say_nearer_assembly, m%polish)//' 1: ' &
-               //distance_text(list(1))//', '//phrase(say_not_chosen, m%polish)//' '//whole(chosen)//': ' &
-               //distance_text(list(chosen)))
-         end if
-      end associate
-   end subroutine put_remarks
-
    !> The distance of assembly `one` from the estimate.
    function distance_text(one) result(text)
       type(assembly_t), intent(in) :: one
@@ -196,12 +129,11 @@ contains
    end function distance_text
 
    !> Assembly number `k` of `a` of the mechanism `m`.
-   subroutine put_assembly(o, m, k, a, is_chosen)
+   subroutine put_assembly(o, m, k, a)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k
       type(assemblies_t), intent(in) :: a
-      logical, intent(in) :: is_chosen
       character(:), allocatable :: text
       integer :: i
 
@@ -213,7 +145,7 @@ contains
             text = text//sign_text(a%blocks(i), one%sign_of(a%blocks(i)%block))
          end do
          text = text//'   '//phrase(merge(say_assembly_proved, say_assembly_open, one%is_proved), m%polish)
-         if (is_chosen) text = text//'   '//phrase(say_chosen, m%polish)
+         if (k == a%chosen) text = text//'   '//phrase(say_chosen, m%polish)
          call put(o, '')
          call put(o, text)
          call put_cards(o, m, one)

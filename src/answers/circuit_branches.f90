@@ -3,8 +3,8 @@ module circuit_branches
    use kinds, only: wp
    use constants, only: pi
    use diagnostics, only: diagnostic_t, diagnostic_limit
-   use circuit_curve, only: curve_t, curve_point_t, same_place, drive_value, curve_position
-   use assemblies, only: assembly_t
+   use circuit_curve, only: curve_t, curve_point_t, same_place, drive_value, deck_position
+   use assemblies, only: assembly_t, number_of
    use circuit_trace, only: circuit_t, find_root, of_value, end_closed
    implicit none
    private
@@ -14,8 +14,6 @@ module circuit_branches
    real(wp), parameter :: turn = 2.0_wp*pi
    !> More than rounding of an angle in turns: ties between whole turns always fall on one side.
    real(wp), parameter :: tie = 1.0e-6_wp
-   !> Near a dead point card ASSEMBLY knows half of all digits.
-   real(wp), parameter :: alike = max(1.0e-5_wp, 16.0_wp*sqrt(epsilon(1.0_wp)))
    !> A drive's value is that of a point up to this difference, in rad and lengths.
    real(wp), parameter :: rounding = 1.0e3_wp*epsilon(1.0_wp)
 
@@ -238,10 +236,8 @@ contains
       next = size(list)
       do k = 1, size(found%assemblies)
          associate (one => found%assemblies(k))
-            do j = 1, size(list)
-               if (same_place(found%curve, one%q, curve_position(found%curve, list(j)%position), alike)) exit
-            end do
-            if (j > size(list)) then
+            j = number_of(deck_position(found%curve, one%q), list, found%curve%closure%length)
+            if (j == 0) then
                next = next + 1
                j = next
             else if (turn_round == 0) then

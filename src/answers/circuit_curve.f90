@@ -22,7 +22,7 @@ module circuit_curve
    private
    public :: curve_t, curve_point_t, make_curve, is_redundant, start_point, find_point, step_along, step_between, &
       lies_between, second_derivative, factor_at, &
-      offset_from, same_place, same, drive_value, deck_position, curve_position
+      offset_from, same_place, same, drive_value, deck_position
 
    !> u of above, less than 1/2: K of slides is taken at the start of a step, and they grow.
    real(wp), parameter :: certified = 0.25_wp
@@ -121,7 +121,8 @@ contains
       logical, intent(out) :: ok
       real(wp) :: row(1, c%closure%n), q(3, size(position, 2)), along(c%closure%n)
 
-      q = curve_position(c, position)
+      q = position
+      q(:2, :) = q(:2, :)/c%closure%length
       c%pose%q = q
       call set_pose(c%closure, c%pose)
       row = 0.0_wp
@@ -189,16 +190,12 @@ contains
       end do
    end function offset_from
 
-   !> Whether two positions (3, links) are one, but for whole turns, up to `difference`, if present.
-   pure logical function same_place(c, a, b, difference)
+   !> Whether two positions (3, links) are one, but for whole turns.
+   pure logical function same_place(c, a, b)
       type(curve_t), intent(in) :: c
       real(wp), intent(in) :: a(:, :), b(:, :)
-      real(wp), intent(in), optional :: difference
-      real(wp) :: limit
 
-      limit = same
-      if (present(difference)) limit = difference
-      same_place = maxval(abs(offset_from(c, a, b, .true.))) <= limit
+      same_place = maxval(abs(offset_from(c, a, b, .true.))) <= same
    end function same_place
 
    !> The value `x` of the free drive in the deck's unit.
@@ -212,16 +209,6 @@ contains
       if (c%driven%laws(1)%drive%kind == drive_x) value = value + c%closure%origin(1)
       if (c%driven%laws(1)%drive%kind == drive_y) value = value + c%closure%origin(2)
    end function drive_value
-
-   !> The `position` (3, links) in the deck's unit, counted from its origin, in that of the curve.
-   pure function curve_position(c, position) result(q)
-      type(curve_t), intent(in) :: c
-      real(wp), intent(in) :: position(:, :)
-      real(wp) :: q(3, size(position, 2))
-
-      q = position
-      q(:2, :) = position(:2, :)/c%closure%length
-   end function curve_position
 
    !> The links' position (3, links) `q` in the deck's unit, counted from its origin.
    pure function deck_position(c, q) result(position)

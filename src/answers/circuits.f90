@@ -33,14 +33,15 @@ module circuits
 contains
 
    !> The circuits of `m`, one independent mechanism with the motion `start` at its first instant, known or not; drive
-   !> number `drive` is free, the others keep their values.
-   subroutine find_circuits(m, start, drive, found)
+   !> number `drive` is free, the others keep their values. `first`: the assemblies there, if they are known already.
+   subroutine find_circuits(m, start, drive, found, first)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: start
       integer, intent(in) :: drive
       type(circuits_t), intent(out) :: found
-      type(curve_point_t) :: p
+      type(assemblies_t), intent(in), optional :: first
       type(assemblies_t) :: all_of_them
+      type(curve_point_t) :: p
       logical :: ok
       integer :: i
 
@@ -51,7 +52,11 @@ contains
          call start_point(found%curve, start%position, p, ok)
          if (ok) call add_circuits(found, p)
       end if
-      call find_assemblies(m, start%t, all_of_them)
+      if (present(first)) then
+         all_of_them = first
+      else
+         call find_assemblies(m, start%t, all_of_them)
+      end if
       call add_through(found, all_of_them)
       call search_whole_range(m, start%t, found, all_of_them)
       do i = 1, size(found%list)
@@ -73,8 +78,7 @@ contains
       integer :: k
       logical :: ok
 
-      found%is_complete = found%is_complete .and. .not. (all_of_them%are_more .or. any(all_of_them%blocks%is_wide) &
-         .or. any(all_of_them%blocks%failed > 0))
+      found%is_complete = found%is_complete .and. all_of_them%is_known
       do k = 1, size(all_of_them%list)
          if (signal_received() > 0) return
          call start_point(found%curve, all_of_them%list(k)%position, p, ok)

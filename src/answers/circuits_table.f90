@@ -41,7 +41,11 @@ contains
             n = size(list)
             allocate (more(n + 1))
             more(:n) = list
-            call find_circuits(s%now%own(c), s%now%motions(c), drives(i), more(n + 1))
+            if (allocated(s%assemblies)) then
+               call find_circuits(s%now%own(c), s%now%motions(c), drives(i), more(n + 1), s%assemblies(c))
+            else
+               call find_circuits(s%now%own(c), s%now%motions(c), drives(i), more(n + 1))
+            end if
             more(n + 1)%part = c
             more(n + 1)%drive = s%now%parts%list(c)%drives(drives(i))
             do k = 1, size(more(n + 1)%dead)

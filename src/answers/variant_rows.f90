@@ -1,5 +1,4 @@
-!> The summary of a set with VARY cards: a row for each variant, with the values of the numbers that vary, how many
-!> instants are solved and flagged, the first flagged one, the first limit, and what EXTREMES and RANGE ask for.
+!> The summary of a set with VARY cards: a row for each variant, with its values and what is asked of its motion.
 module variant_rows
    use kinds, only: wp, label_length
    use constants, only: in_degrees
@@ -101,6 +100,8 @@ contains
       call add_column(s, summary_column_t('limit.drive'))
       call add_column(s, summary_column_t('limit.value'))
       if (m%ranges) call add_ranges(s, m, l)
+      if (m%assemblies) call add_column(s, summary_column_t('assemblies', .true., &
+         heads_of(phrase(say_assemblies, m%polish), '')))
       call add_extremes(s, m, parts, l)
 
    contains
@@ -332,6 +333,8 @@ contains
          call take_ranges(asked%ranges, r%cells(n + 1:n + 3*size(m%drives)))
          n = n + 3*size(m%drives)
       end if
+      if (m%assemblies) call next(cell_t(merge(cell_none, cell_count, asked%assemblies < 0), &
+         real(asked%assemblies, wp)))
       do i = 1, size(s%extremes%columns)
          associate (c => s%extremes%columns(i))
             do which = least, greatest
@@ -390,8 +393,7 @@ contains
             do side = low, high
                if (list(i)%has_limit(side)) cells(n + side) = cell_t(cell_number, list(i)%limit(side)%value)
             end do
-            cells(n + 3) = cell_t(cell_count, 0.0_wp)
-            if (list(i)%is_all) cells(n + 3) = cell_t(cell_count, real(list(i)%turns, wp))
+            cells(n + 3) = cell_t(cell_count, real(merge(list(i)%turns, 0, list(i)%is_all), wp))
          end associate
       end do
    end subroutine take_ranges

@@ -1,11 +1,14 @@
 !> All assemblies of a mechanism at one instant: a tree, in which each assembly of the earlier blocks gives the next one
 !> its problem. A block is solved anew only where something that it builds on has changed. Each assembly is proved.
+!> Where all are known, a run begins in the one that is nearest to the deck's estimate.
 module assemblies
    use kinds, only: wp
    use constants, only: without_turns
-   use mechanism, only: mechanism_t
+   use mechanism, only: mechanism_t, plane_origin
    use motion, only: motion_t, new_motion
+   use convergence, only: convergence_t, is_solved
    use block_engine, only: block_engine_t, make_block_engine, set_drive_values
+   use assembly_choice, only: solve_first
    use block_needs, only: largest_known
    use block_state, only: set_values
    use link_motion, only: move_links
@@ -13,7 +16,7 @@ module assemblies
    use block_assemblies, only: block_positions_t, find_positions, max_group
    implicit none
    private
-   public :: assembly_t, assembly_block_t, assemblies_t, find_assemblies, max_assemblies
+   public :: assembly_t, assembly_block_t, assemblies_t, find_assemblies, find_nearest, number_of, max_assemblies
 
    !> More are not looked for.
    integer, parameter :: max_assemblies = 1000
@@ -21,6 +24,12 @@ module assemblies
    real(wp), parameter :: far_place = 0.25_wp
    !> Distances that differ by less than this part are alike.
    real(wp), parameter :: alike = sqrt(epsilon(1.0_wp))
+   !> A smaller ratio of distances is more than rounding, if the larger one is more than `fine`: estimates as good are
+   !> meant.
+   real(wp), parameter :: less = 0.999_wp, fine = 1.0e-4_wp
+   !> Positions that differ by no more, in rad and characteristic lengths, may be one: an iteration near a dead point
+   !> has half of all digits.
+   real(wp), parameter :: same_place = max(1.0e-5_wp, 16.0_wp*sqrt(epsilon(1.0_wp)))
 
    !> An assembly.
    type :: assembly_t
@@ -48,6 +57,8 @@ module assemblies
       type(assembly_t), allocatable :: list(:)         !< nearest to the estimate first
       type(assembly_block_t), allocatable :: blocks(:) !< that iterate, in solving order
       logical :: are_more = .false.                    !< than max_assemblies
+      integer :: chosen = 0                            !< the number of that in which a run begins; 0: none of them
+      logical :: is_known = .true.                     !< they are all that there are, but for `moves` of blocks
    end type assemblies_t
 
 contains
@@ -64,10 +75,67 @@ contains
       if (.not. e%blocks%solvable) return
       call set_drive_values(e, t)
       call name_blocks(e, a)
-      if (any(a%blocks%is_wide)) return
       call search(m, e, t, a)
       call sort(a)
+      a%is_known = .not. (a%are_more .or. any(a%blocks%is_wide .or. a%blocks%failed > 0))
    end subroutine find_assemblies
+
+   !> The same, and which of them a run begins in: that which the estimate of `m` chooses, unless it chooses none, or
+   !> another one is nearer, and all are known. Then the nearest is the estimate of `m` from now on.
+   subroutine find_nearest(m, t, a)
+      type(mechanism_t), intent(inout) :: m
+      real(wp), intent(in) :: t
+      type(assemblies_t), intent(out) :: a
+      type(block_engine_t) :: e
+      type(convergence_t) :: c
+      type(motion_t) :: q
+      real(wp) :: correction
+      logical :: unused
+      integer :: i
+
+      call find_assemblies(m, t, a)
+      if (size(a%list) == 0) return
+      call make_block_engine(e, m)
+      call solve_first(e, t, c, correction, unused)
+      if (is_solved(c)) then
+         q = new_motion(size(m%links))
+         call move_links(e%whole, e%state, e%length, q, unused)
+         a%chosen = number_of(q%position, a%list, e%span)
+      end if
+      if (.not. (a%is_known .and. a%list(1)%is_proved)) return
+      if (a%chosen > 0) then
+         associate (distance => a%list(a%chosen)%distance)
+            if (distance <= fine .or. a%list(1)%distance >= less*distance) return
+         end associate
+      end if
+      a%chosen = 1
+      do i = 1, size(m%links)
+         if (m%links(i)%ground) cycle
+         associate (estimate => m%links(i)%position, found => a%list(1)%position(:, i))
+            estimate = [found(:2) + plane_origin(m), estimate(3) + without_turns(found(3) - estimate(3))]
+         end associate
+      end do
+   end subroutine find_nearest
+
+   !> The number in `list` of the `position` (3, links), that of all that it may be which is nearest to it, whole turns
+   !> not counted; 0: it is none of them. `length`: the characteristic one, in the unit of `position`.
+   pure integer function number_of(position, list, length) result(number)
+      real(wp), intent(in) :: position(:, :), length
+      type(assembly_t), intent(in) :: list(:)
+      real(wp) :: off(3, size(position, 2)), nearest
+      integer :: k
+
+      number = 0
+      nearest = same_place
+      do k = 1, size(list)
+         off = list(k)%position - position
+         off(:2, :) = off(:2, :)/length
+         off(3, :) = without_turns(off(3, :))
+         if (maxval(abs(off)) > nearest) cycle
+         nearest = maxval(abs(off))
+         number = k
+      end do
+   end function number_of
 
    !> The blocks that iterate, with their links.
    subroutine name_blocks(e, a)

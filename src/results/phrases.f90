@@ -105,9 +105,6 @@ module phrases
       say_assembly_proved = phrase_t('PROVED', 'UDOWODNIONY'), &
       say_assembly_open = phrase_t('NOT PROVED', 'NIEUDOWODNIONY'), &
       say_chosen = phrase_t('CHOSEN BY THE ESTIMATE', 'WYBRANY PRZEZ PRZYBLIZENIE'), &
-      say_nearer_assembly = phrase_t('THE ESTIMATE IS NEARER TO ASSEMBLY', &
-         'PRZYBLIZENIE JEST BLIZEJ MONTAZU'), &
-      say_not_chosen = phrase_t('THAN TO THE ONE CHOSEN,', 'NIZ WYBRANEGO,'), &
       say_more_assemblies = phrase_t('THERE ARE MORE ASSEMBLIES THAN', 'MONTAZY JEST WIECEJ NIZ'), &
       say_wide_block = phrase_t('TOO MANY UNKNOWNS IN ONE BLOCK TO FIND ALL ASSEMBLIES', &
          'ZA DUZO NIEWIADOMYCH W BLOKU, BY ZNALEZC WSZYSTKIE MONTAZE'), &

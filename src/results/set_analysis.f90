@@ -2,7 +2,7 @@
 !> change points and flags. Of the set the worst of them is reported.
 module set_analysis
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton
+   use mechanism, only: mechanism_t, method_newton, instant
    use structure, only: findings_t
    use diagnostics, only: diagnostic_t
    use convergence, only: convergence_t, is_solved, gather
@@ -16,6 +16,7 @@ module set_analysis
    use set_motion, only: set_motion_t, new_set_motion
    use motion, only: motion_t, new_motion
    use points, only: row_t, row_of
+   use assemblies, only: assemblies_t, find_nearest
    use analysis, only: analysis_t, make_analysis, advance, look_at, come_back, redundancy_error
    use diagnosis, only: opinion_t, ask_blocks
    implicit none
@@ -30,13 +31,15 @@ module set_analysis
       type(estimator_t), allocatable :: estimators(:)       !< (parts)
       type(sensor_t), allocatable :: sensors(:)             !< (parts)
       type(motion_prover_t), allocatable :: provers(:)      !< (parts)
+      type(assemblies_t), allocatable :: assemblies(:)      !< (parts) at the first instant, where they are asked for
       type(certificate_counts_t) :: certificate_counts      !< of all instants
    end type set_analysis_t
 
 contains
 
    !> Ready for the first instant of `m`, whose equations are as many as its unknowns. `findings`: those of its
-   !> structure, which give up what the engines need; without them it is found anew.
+   !> structure, which give up what the engines need; without them it is found anew. Where all assemblies are asked
+   !> for, it begins in the nearest.
    subroutine make_set_analysis(m, s, findings)
       type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(out) :: s
@@ -47,7 +50,9 @@ contains
       associate (n => s%now%parts%count)
          allocate (s%list(n), s%opinions(n), s%estimators(n), s%sensors(n), s%provers(n))
       end associate
+      if (m%assemblies) allocate (s%assemblies(size(s%list)))
       do c = 1, size(s%list)
+         if (m%assemblies) call find_nearest(s%now%own(c), instant(m, 0), s%assemblies(c))
          if (present(findings)) then
             call make_analysis(s%list(c), s%now%own(c), findings%structures(c))
          else

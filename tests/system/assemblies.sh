@@ -82,10 +82,30 @@ with peaucellier "$(card ASSEMBLY)" > "$w/peaucellier.deck"
 equal 'bars that turn freely' ' *** LINKS BAR-AP, BAR-BP: NOT ALL SOLUTIONS ARE SEPARATE, THEY MAY MOVE WITH THE DRIVES HELD' \
    "$(assemblies "$w/peaucellier.deck" | grep -F '***')"
 
-# A poor estimate: the listing tells that another assembly is nearer.
-awk '/^LINK / { $0 = sprintf("%-64s0.0", substr($0, 1, 64)) } /^END/ { print "ASSEMBLY" } { print }' input/inverted_slider.deck > "$w/poor.deck"
-equal 'a poor estimate' ' --- THE ESTIMATE IS NEARER TO ASSEMBLY 1: 1.2758, THAN TO THE ONE CHOSEN, 2: 4.0964' \
-   "$(assemblies "$w/poor.deck" | grep -F -- ' ---')"
+# Poor estimates, all angles 0: with the card the run begins in the nearest assembly, whose LINK cards give the same motion, and
+# without it in another; the other methods, and the deck of bars that would turn freely, likewise.
+motion() { "$kinmat" --quiet "$1" | awk '/^ INSTANT/ { on = 1 } /^ (ASSEMBLIES|BRANCH)/ { on = 0 } on && !/ ---/'; }
+for deck in inverted_slider stephenson_output peaucellier; do
+   awk '/^LINK / { $0 = sprintf("%-64s0.0", substr($0, 1, 64)) } { print }' "input/$deck.deck" > "$w/poor.deck"
+   motion "$w/poor.deck" > "$w/without"
+   sed -i "s/^END/$(card ASSEMBLY)\n&/" "$w/poor.deck"
+   motion "$w/poor.deck" > "$w/with"
+   pasted "$w/poor.deck" 1 | sed '/^ASSEMBLY/d' > "$w/pasted.deck"
+   motion "$w/pasted.deck" > "$w/motion"
+   same "$deck: the nearest" "$w/motion" "$w/with"
+   cmp -s "$w/without" "$w/with"
+   equal "$deck: another one without the card" 1 $?
+   [ "$deck" = inverted_slider ] || continue
+   sed 's/^ASSEMBLY/METHOD  DENSE\n&/' "$w/poor.deck" > "$w/dense.deck"
+   motion "$w/dense.deck" > "$w/dense"
+   same "$deck: the nearest, METHOD DENSE" "$w/with" "$w/dense"
+done
+
+# Beside VARY a column with their number: none where the tip of the crank is less than 3.5 - 3 from the rocker's pivot, 1 at this
+# limit, otherwise 2.
+with stroke "$(card ASSEMBLY)" | sed "s/^POINT   A-CR .*/&\n$(card VARY R1 LIST '' 3.75 3.5 2.5)/" > "$w/vary.deck"
+"$kinmat" --quiet --summary "$w/summary" "$w/vary.deck" > "$w/listing"
+equal 'beside VARY' 'assemblies 0 1 2' "$(awk -F , 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "assemblies") k = i } { print $k }' "$w/summary" | xargs)"
 
 # The picture has a faint outline for each assembly that is not chosen, and says so.
 "$kinmat" --quiet --no-listing --svg "$w/picture.svg" "$w/three_rrr.deck"
