@@ -153,7 +153,7 @@ contains
          v%numbers = v%numbers + 1
          allowed = of_told*row%error(i) + bits*abs(truth(c)) + nothing*unit(c)
          if (.not. row%is_told(i)) allowed = untold*max(abs(truth(c)), unit(c))
-         off = abs(row%value(i) - truth(c))/allowed
+         off = abs(row%value(i) - truth(c))/max(allowed, tiny(allowed))
          v%worst(k) = max(v%worst(k), off)
          if (.not. off <= 1.0_qp) call blame(v, 'COLUMN '//achar(iachar('0') + i)//' OF '//where(row)//': '// &
             told(row%value(i))//' FOR '//told(truth(c))//', ERROR TOLD '//told(row%error(i)))

@@ -51,7 +51,7 @@ n_files == 1 && f[1] == "slide" { slides[f[2] " " f[3]] = 1 }
 n_files == 1 && f[1] == "degrees" { degrees[f[2]] = 1 }
 n_files == 1 && f[1] == "matrix" { matrix[f[2]] = 1 }
 n_files == 1 || /^set,/ { next }
-n_files == 2 { row[$1 "," $2 "," $4 "," $5] = $0; n_rows++; next }
+n_files == 2 { row[$1 "," $2 "," $4 "," $5] = $0; n_rows++; if ($15 == "NO-POSITION") lost[$1 " " $2] = 1; next }
 {
    key = $1 "," step_there() "," $4 "," $5
    # Where there are more steps, instants of AT cards have other numbers.
@@ -59,8 +59,12 @@ n_files == 2 { row[$1 "," $2 "," $4 "," $5] = $0; n_rows++; next }
    split(row[key], a, ",")
    if (size(a[3] - $3/(change == "units" ? 60 : 1)) > 1e-9*size(a[3])) next
    compared++
-   # Whether the iteration of METHOD MATRIX converges is a matter of steps and axes.
-   if (a[15] != $15) { if (!($1 in matrix)) print "flag " key " " a[15] " " $15; next }
+   # Whether the iteration of METHOD MATRIX converges is a matter of steps and axes; and where others have no position, whether
+   # a link is reached by links alone that drives move is one of the order of cards.
+   if (a[15] != $15) {
+      if (!($1 in matrix || change == "turned" && ($1 " " $2) in lost)) print "flag " key " " a[15] " " $15
+      next
+   }
    unit = ($1 in degrees) ? atan2(0, -1)/180 : 1
    back_to_deck()
    for (c = 6; c <= 14; c++) {
