@@ -14,19 +14,19 @@ parts() {
    single precision|62|"$MAKE" --no-print-directory single-check
    speed against error|80|"$MAKE" --no-print-directory study-short
    results of the methods|97|"$MAKE" --no-print-directory bench-short
-   the command|420|tests/system/command.sh
+   the command|426|tests/system/command.sh
    what is installed|11|tests/system/install.sh
    many sets|7|tests/system/many_sets.sh
    what is printed arrives|205|tests/system/output.sh
    unit tests|1050|"$MAKE" --no-print-directory unit
    the stand-in|75|"$MAKE" --no-print-directory unit-stand-in
    the sources|60|tests/system/house.sh
-   the closed forms|818|"$BUILD/release/check_forms" input/*.deck
-   make check|548|tests/system/check.sh
+   the closed forms|830|"$BUILD/release/check_forms" input/*.deck
+   make check|556|tests/system/check.sh
    the reader of listings|93|tests/system/reader.sh
    the documents|300|tests/system/documents.sh
    estimates of errors|57|"$MAKE" --no-print-directory errors
-   proofs|160|"$BUILD/release/proof_bounds" input/*.deck
+   proofs|162|"$BUILD/release/proof_bounds" input/*.deck
    nothing false is proved|2000|"$BUILD/release/fool_proofs" 2000
    units of length|751|tests/system/units.sh
    the methods against one another|8|tests/system/methods.sh

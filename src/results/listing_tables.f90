@@ -266,13 +266,13 @@ contains
                else if (error(i, k) > 0.0_wp) then
                   call put_known(row%value(i, k)/size_of(unit), error(i, k)/size_of(unit), d%decimals(unit, k), &
                      d%power(unit, k), field)
+                  masked = masked .or. index(field, unknown_digit) > 0
                else
                   call put_fixed(row%value(i, k)/size_of(unit), d%decimals(unit, k), d%power(unit, k), field)
                end if
             end associate
          end do
       end do
-      masked = masked .or. index(line(name_length + 1:last), unknown_digit) > 0
       call put(o, line(:last))
    end subroutine put_row
 end module listing_tables

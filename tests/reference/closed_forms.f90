@@ -4,7 +4,7 @@ module closed_forms
    use structure, only: findings_t
    use quad_jet, only: qp
    use closed_forms_dyads, only: body_t
-   use closed_forms_linkages, only: four_bar, drawing, rise_dwell, drag_link, peaucellier, five_bar, pantograph
+   use closed_forms_linkages, only: four_bar, crank_rockers, drawing, rise_dwell, drag_link, peaucellier, five_bar, pantograph
    use closed_forms_sliders, only: yoke, crank_slider, scotch_yoke, whitworth, cylinder, trammel
    use closed_forms_legs, only: andrews, jansen
    use closed_forms_sixbars, only: watt, watt_output, stephenson, stephenson_output, klann, grounds
@@ -31,6 +31,7 @@ module closed_forms
    type(count_t), parameter :: counts(*) = [ &
       count_t('yoke', 6, 5, 2, 1), count_t('jarzmowy', 6, 5, 2, 1), count_t('yoke_mirrored', 6, 5, 2, 1), &
       count_t('four_bar', 4, 4, 0, 1), count_t('stroke', 4, 4, 0, 1), &
+      count_t('crank_rockers', 4, 4, 0, 1), &
       count_t('tolerances', 4, 4, 0, 1), count_t('guide_tolerances', 4, 3, 1, 1), &
       count_t('poles', 4, 4, 0, 1), count_t('cardan', 4, 2, 2, 1), count_t('rise_dwell', 4, 4, 0, 1), &
       count_t('drawing', 4, 4, 0, 1), &
@@ -62,7 +63,7 @@ module closed_forms
 
 contains
 
-   !> The links of the mechanism `name` at the time `t`, in its set number `set`; none for an unknown name.
+   !> The links of the mechanism `name` at the time `t`, in its set number `set`, or in that variant of its only set; none for an unknown name.
    !> The angles are on any branch: whoever asks brings them to the branch wanted.
    pure function closed_form(name, set, t) result(links)
       character(*), intent(in) :: name
@@ -77,6 +78,8 @@ contains
          links = yoke(set, t, -1.0_qp)
       case ('four_bar', 'stroke')
          links = four_bar(set, t)
+      case ('crank_rockers')
+         links = crank_rockers(set, t)
       case ('tolerances')
          links = tolerant_links(1, t)
       case ('guide_tolerances')

@@ -8,7 +8,10 @@ module closed_forms_linkages
    use closed_forms_dyads, only: place_t, body_t, fixed_place, body, place_on, polar, direction, third_corner
    implicit none
    private
-   public :: four_bar, drawing, rise_dwell, drag_link, peaucellier, five_bar, pantograph
+   public :: four_bar, crank_rockers, drawing, rise_dwell, drag_link, peaucellier, five_bar, pantograph
+
+   !> Crank, coupler and rocker of the crank-rocker.
+   real(qp), parameter :: sizes(3) = [1.0_qp, 3.5_qp, 3.0_qp]
 
 contains
 
@@ -21,11 +24,23 @@ contains
 
       time = time_jet(t)
       if (set == 1) then
-         links = crank_rocker(30.0_qp*degree_q*time, 1.0_qp)
+         links = crank_rocker(30.0_qp*degree_q*time, 1.0_qp, sizes)
       else
-         links = crank_rocker(0.5_qp + time + 0.25_qp*sin(2.0_qp*time + 0.5_qp), -1.0_qp)
+         links = crank_rocker(0.5_qp + time + 0.25_qp*sin(2.0_qp*time + 0.5_qp), -1.0_qp, sizes)
       end if
    end function four_bar
+
+   !> The variant number `n` of the open crank-rocker: three cranks, each with its coupler, and two rockers for each.
+   pure function crank_rockers(n, t) result(links)
+      integer, intent(in) :: n
+      real(qp), intent(in) :: t
+      type(body_t) :: links(4)
+
+      associate (k => (n - 1)/2)
+         links = crank_rocker(30.0_qp*degree_q*time_jet(t), 1.0_qp, [0.5_qp*(k + 1), 3.5_qp - 0.25_qp*k, &
+                                                                     merge(2.75_qp, 3.0_qp, modulo(n, 2) == 1)])
+      end associate
+   end function crank_rockers
 
    !> Four-bar linkage A0 A B B0 as it is drawn, with B to the right of A B0; the axes of the links lie in those of the
    !> drawing. In set 2 the origin of the rocker's axes is drawn at B0.
@@ -75,20 +90,20 @@ contains
          phi = 30.0_qp + rise_jet(trim(rise_words(set)), 0.3_qp, 1.2_qp, 61.64_qp, t) &
             - rise_jet(trim(rise_words(set)), 2.1_qp, 0.6_qp, 61.64_qp, t)
       end if
-      links = crank_rocker(phi*degree_q, 1.0_qp)
+      links = crank_rocker(phi*degree_q, 1.0_qp, sizes)
    end function rise_dwell
 
-   !> Crank-rocker with the crank's angle `phi`; `side` 1: open, -1: crossed.
-   pure function crank_rocker(phi, side) result(links)
+   !> Crank-rocker with the crank's angle `phi`; `side` 1: open, -1: crossed; `lengths` of crank, coupler and rocker.
+   pure function crank_rocker(phi, side, lengths) result(links)
       type(jet_t), intent(in) :: phi
-      real(qp), intent(in) :: side
+      real(qp), intent(in) :: side, lengths(3)
       type(body_t) :: links(4)
       type(place_t) :: a0, b0, a, b
 
       a0 = fixed_place(0.0_qp, 0.0_qp)
       b0 = fixed_place(4.0_qp, 0.0_qp)
-      a = polar(a0, 1.0_qp, phi)
-      b = third_corner(a, b0, constant_jet(3.5_qp**2), constant_jet(3.0_qp**2), side)
+      a = polar(a0, lengths(1), phi)
+      b = third_corner(a, b0, constant_jet(lengths(2)**2), constant_jet(lengths(3)**2), side)
       links = [body('BASE', a0, constant_jet(0.0_qp)), body('CRANK', a0, phi), &
                body('COUPLER', a, direction(a, b)), body('ROCKER', b0, direction(b0, b))]
    end function crank_rocker

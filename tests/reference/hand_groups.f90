@@ -55,6 +55,7 @@ module hand_groups
       statement_t('yoke_mirrored', 0, '*CRANK; BLOCK LEVER; ROD RAM'), &
       statement_t('four_bar', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('stroke', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('crank_rockers', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('tolerances', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('guide_tolerances', 0, '*CRANK; ROD PISTON'), &
       statement_t('poles', 0, '*CRANK; COUPLER ROCKER'), &

@@ -22,7 +22,7 @@ contains
       real(qp) :: phi
       integer :: k, i
 
-      found = closed_form(name, m%set_number, t)
+      found = closed_form(name, merge(m%variant, m%set_number, m%variant > 0), t)
       fault = ''
       if (size(found) /= size(m%links)) fault = 'THE CLOSED FORM AND THE DECK DIFFER IN THEIR LINKS'
       do i = 1, size(found)

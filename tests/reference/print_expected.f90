@@ -10,9 +10,15 @@ program print_expected
    use structure, only: findings_t
    use branch_certificate, only: certificate_counts_t
    use hand_groups, only: groups_by_hand, redundant_by_hand, passages_by_hand
-   use deck, only: read_deck
+   use deck, only: read_deck, build_variant
+   use deck_variants, only: variation_t
+   use independent, only: parts_t, find_parts
+   use listing_layout, only: layout_t
+   use answers, only: answers_t
+   use variant_rows, only: summary_t, variant_row_t, new_summary, new_row, fill_row
+   use variant_tables, only: put_variant, put_variant_heads, put_variant_row, put_variants_end
    use text_output, only: output_t, open_output, close_output
-   use listing, only: listing_head, listing_end
+   use listing, only: new_layout, listing_head, listing_end
    use listing_diagnostics, only: put_diagnostics
    use quad_jet, only: qp
    use hand_scales, only: hand_scales_t, scales_by_hand
@@ -28,31 +34,82 @@ program print_expected
    character(500) :: path
    character(:), allocatable :: name, report
    type(mechanism_t), allocatable :: sets(:)
+   type(variation_t), allocatable :: variations(:)
    type(failure_t), allocatable :: failure
    type(output_t) :: o
-   integer :: i
+   integer :: i, varied
 
    call get_command_argument(1, path)
    name = deck_name(trim(path))
    if (size(closed_form(name, 1, 0.0_qp)) == 0) call give_up('NO CLOSED FORM FOR THE DECK '//trim(path))
-   call read_deck(trim(path), sets, report, failure)
+   call read_deck(trim(path), sets, report, failure, variations=variations)
    if (allocated(failure)) call give_up(failure%text//new_line('a')//report)
    call open_output(o, '', failure)
+   varied = 0
    do i = 1, size(sets)
-      call print_set(o, name, sets(i))
+      call print_head(o, name, sets(i))
+      if (sets(i)%variants == 0) then
+         call print_motion(o, name, sets(i))
+      else
+         varied = varied + 1
+         call print_variants(o, name, sets(i), variations(varied))
+      end if
    end do
    call close_output(o, failure)
    if (allocated(failure)) call give_up(failure%text)
 
 contains
 
-   !> The listing of one set.
-   subroutine print_set(o, name, m)
+   !> The deck and the structure of one set.
+   subroutine print_head(o, name, m)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: name
+      type(mechanism_t), intent(in) :: m
+      type(findings_t) :: findings
+
+      findings = hand_count(name)
+      findings%groups = groups_by_hand(name, m)
+      call listing_head(o, m, findings)
+   end subroutine print_head
+
+   !> The variants `v` of the set `m`: of each its tables and its row. No question but PRINT is asked.
+   subroutine print_variants(o, name, m, v)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: name
+      type(mechanism_t), intent(in) :: m
+      type(variation_t), intent(inout) :: v
+      type(layout_t) :: layout
+      type(summary_t) :: summary
+      type(variant_row_t) :: row
+      type(mechanism_t) :: variant
+      type(parts_t) :: parts
+      type(mechanism_t), allocatable :: own(:)
+      type(answers_t) :: nothing
+      integer :: n
+
+      layout = new_layout(m)
+      call find_parts(m, parts, own)
+      summary = new_summary(m, parts, layout, v)
+      do n = 1, m%variants
+         call build_variant(v, n, variant, report)
+         if (report /= '') call give_up(report)
+         row = new_row(summary, v, n)
+         call put_variant(o, layout, summary, m, row)
+         call print_motion(o, name, variant)
+         row%solved = instant_count(variant)
+         call fill_row(summary, variant, nothing, row)
+         call put_variant_heads(o, summary)
+         call put_variant_row(o, layout, summary, m, row)
+      end do
+      call put_variants_end(o, m)
+   end subroutine print_variants
+
+   !> The motion of one set or variant.
+   subroutine print_motion(o, name, m)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: name
       type(mechanism_t), intent(in) :: m
       type(hand_scales_t) :: scales
-      type(findings_t) :: findings
       type(certificate_counts_t) :: tally
       type(diagnostic_t), allocatable :: diagnostics(:)
       type(body_t) :: links(size(m%links))
@@ -63,9 +120,6 @@ contains
       integer :: k
 
       scales = scales_by_hand(m)
-      findings = hand_count(name)
-      findings%groups = groups_by_hand(name, m)
-      call listing_head(o, m, findings)
       links%phi%v = real(m%links%position(3), qp)
       was_flagged = .false.
       do k = 0, instant_count(m) - 1
@@ -99,7 +153,7 @@ contains
       if (allocated(m%tolerances)) call put_shares_by_hand(o, m, scales)
       call listing_end(o, m, count(.not. was_flagged), count(was_flagged), tally, &
          closure_error=merge(0.0_wp, -1.0_wp, size(redundant_by_hand(name, m)) > 0))
-   end subroutine print_set
+   end subroutine print_motion
 
    !> The numbers of the links of `r`.
    function links_of(r) result(list)

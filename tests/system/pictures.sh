@@ -106,7 +106,7 @@ moving() { awk -F, '
    /class="joint"/ { joint($0) }
    END { print joints + 0, (checked > 0) }' "$1" "$2" "$3"; }
 
-for deck in input/*.deck; do
+for deck in $(grep -L '^VARY' input/*.deck); do
    name=$(basename "$deck" .deck)
    sed -e '/^PRINT/d' -e 's/^END.*/PRINT   ALL\n&/' "$deck" > "$w/$name.deck"
    "$kinmat" "$deck" --svg "$w/$name.svg" --animate "$w/$name.moving.svg" > "$w/$name.lst" 2> "$w/$name.err"

@@ -63,9 +63,9 @@ case $1 in
 --random) random "$2" "${3:-1}" ;;
 --short)
    every=3
-   for path in input/*.deck; do relate "$path"; done
+   for path in $(grep -L '^VARY' input/*.deck); do relate "$path"; done
    random 10 1 ;;
-*) for path in ${*:-input/*.deck}; do relate "$path"; done ;;
+*) for path in ${*:-$(grep -L '^VARY' input/*.deck)}; do relate "$path"; done ;;
 esac
 
 # Axes that are not known to be others make differences.

@@ -55,7 +55,7 @@ cells() { awk -F, -v set="$3" '
       print found + 0
    }' "$1" "$2"; }
 
-for deck in input/*.deck; do
+for deck in $(grep -L '^VARY' input/*.deck); do
    name=$(basename "$deck" .deck)
    sets=$(grep -c '^END' "$deck")
    "$kinmat" "$deck" --csv "$w/$name.csv" --table "$w/$name.table.csv" > "$w/lst" 2> "$w/err"

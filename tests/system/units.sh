@@ -50,7 +50,7 @@ digits() {
       print line }' "$1"
 }
 
-for deck in input/*.deck; do
+for deck in $(grep -L '^VARY' input/*.deck); do
    name=$(basename "$deck" .deck)
    digits "expected/$name.lst" > "$w/wanted"
    equal "$name: rows are compared" yes "$([ "$(wc -l < "$w/wanted")" -gt 10 ] && echo yes)"
