@@ -18,7 +18,7 @@ module block_branches
    use block_rank, only: min_direction, residual_of, gauss_newton_step
    use block_engine, only: block_engine_t, solve_again, set_drive_values
    use block_diagnostics, only: links_of
-   use branch_requests, only: branch_requests_t, are_there, decide
+   use branch_requests, only: branch_requests_t, decide
    implicit none
    private
    public :: pass, extrapolate, is_short_and_right
@@ -67,7 +67,7 @@ contains
          associate (i => e%moving(k), before => e%history%t(0))
             if (.not. crossed(i)) cycle
             r = change_point(e, i, t)
-            if (are_there(requests)) then
+            if (size(requests%cards) > 0) then
                call decide(requests, i, links_of(e, i), before, t, r%t, r%other)
                if (r%other) call take_other_branch(e, i, c, passed)
             end if

@@ -22,7 +22,7 @@ module block_engine
    implicit none
    private
    public :: block_engine_t, block_checkpoint_t, positions_t
-   public :: make_block_engine, solve_again, solve_each, begin_record, set_drive_values
+   public :: make_block_engine, solve_again, solve_each, begin_record, set_drive_values, slide_units
 
    !> Positions of one block (unknowns, any number).
    type :: positions_t
@@ -385,4 +385,13 @@ contains
          missing(e%blocks%unknown(block%first:block%last)) = max(own, largest_known(e%blocks, i, missing))
       end associate
    end subroutine note_block
+
+   !> (0:unknowns) The unit of each slide in the deck's; 1 of an angle.
+   pure function slide_units(e) result(unit)
+      type(block_engine_t), intent(in) :: e
+      real(wp) :: unit(0:e%blocks%unknowns)
+
+      unit = e%blocks%unit
+      unit(e%blocks%orientations + 1:) = unit(e%blocks%orientations + 1:)*e%length
+   end function slide_units
 end module block_engine

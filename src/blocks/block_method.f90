@@ -4,7 +4,7 @@ module block_method
    use kinds, only: wp
    use motion, only: motion_t
    use convergence, only: convergence_t, is_solved, ended_inconsistent
-   use block_engine, only: block_engine_t
+   use block_engine, only: block_engine_t, slide_units
    use assembly_choice, only: solve_first
    use block_branches, only: is_short_and_right
    use singularity, only: judge_position
@@ -104,13 +104,4 @@ contains
 
       other%state%u%value = e%state%u%value*(slide_units(e%block_engine_t)/slide_units(other))
    end subroutine copy_values
-
-   !> (0:unknowns) The unit of each slide in the deck's; 1 of an angle.
-   pure function slide_units(e) result(unit)
-      type(block_engine_t), intent(in) :: e
-      real(wp) :: unit(0:e%blocks%unknowns)
-
-      unit = e%blocks%unit
-      unit(e%blocks%orientations + 1:) = unit(e%blocks%orientations + 1:)*e%length
-   end function slide_units
 end module block_method

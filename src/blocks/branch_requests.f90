@@ -6,7 +6,7 @@ module branch_requests
    use diagnostics, only: diagnostic_t, diagnostic_unused
    implicit none
    private
-   public :: branch_requests_t, new_branch_requests, are_there, decide, unused
+   public :: branch_requests_t, new_branch_requests, decide, unused
 
    !> The listing gives the time of a change point to six digits; so may a card.
    real(wp), parameter :: digits_of_time = 1.0e-5_wp
@@ -40,13 +40,6 @@ contains
       end if
       allocate (c%used(size(c%cards)), source=.false.)
    end function new_branch_requests
-
-   !> There are BRANCH cards.
-   pure logical function are_there(c)
-      type(branch_requests_t), intent(in) :: c
-
-      are_there = size(c%cards) > 0
-   end function are_there
 
    !> Whether `block`, which moves the `links`, takes the `other` branch at its change point between the times `before`
    !> and `t`, about at `at`.

@@ -29,6 +29,7 @@ module equation_changes
       integer, allocatable :: loop_of_pair(:), loop_of_drive(:)   !< 0: it closes none
       type(change_t), allocatable :: changes(:)  !< (directions)
       real(wp), allocatable :: angle(:, :)       !< (links, directions) of its angle from that of its orientation
+      real(wp), allocatable :: unit(:)           !< (0:unknowns) of a slide in the deck's; 1 of an angle
       real(wp), allocatable :: now(:, :)         !< (0:2, 0:unknowns)
       real(wp), allocatable :: u(:, :, :)        !< (0:2, 0:unknowns, directions) changes of these
       real(wp), allocatable :: links(:, :, :, :) !< (3, 0:2, links, directions) of x, y, phi

@@ -56,6 +56,7 @@ contains
       real(wp), allocatable, intent(out), optional :: others(:, :)
       type(search_t) :: g
       real(wp) :: change
+      logical :: is_near
 
       g%i = i
       g%tolerance = tolerance
@@ -73,7 +74,9 @@ contains
       call solve_from_here(b, w, s, g)
       call look_aside(b, w, s, g)
       call set_values(b, i, g%start, s)
-      if (is_branch_jump(g)) then
+      is_near = size(g%found, 2) > 0
+      if (is_near) is_near = maxval(abs(g%found(:, 1) - g%start)) <= branch_jump
+      if (.not. is_near) then
          call come_near(b, i, tolerance, w, s, c)
          call note_position(b, s, c, g)
       end if
@@ -99,14 +102,6 @@ contains
       farthest = plausible*nearest
       if (nearest > fine) farthest = max(farthest, reach)
    end function farthest
-
-   !> No position was found near the start.
-   pure logical function is_branch_jump(g)
-      type(search_t), intent(in) :: g
-
-      is_branch_jump = .true.
-      if (size(g%found, 2) > 0) is_branch_jump = maxval(abs(g%found(:, 1) - g%start)) > branch_jump
-   end function is_branch_jump
 
    !> Solves the block from the values of `s`, and notes what was found.
    subroutine solve_from_here(b, w, s, g)

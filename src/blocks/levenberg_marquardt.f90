@@ -68,7 +68,8 @@ contains
       w%best = start
       least = huge(least)
       do k = 0, max_starts - 1
-         call set_values(b, i, start + spread_start(k, size(start)), s)
+         ! Off by nothing at first, then by more and more, up to half a turn.
+         call set_values(b, i, start + 3.0_wp*real(k, wp)/real(max_starts, wp)*golden_numbers(k, size(start)), s)
          call descend(b, i, near, w, s, found)
          if (found < least) then
             least = found
@@ -126,14 +127,6 @@ contains
       allocate (w%a(entries_of(w%shape)), w%b(entries_of(w%damped)), w%work(work_length(w%damped)))
       allocate (w%r(w%damped%rows), w%d(w%damped%rows), w%x(shape%n), w%best(shape%n), w%pivots(shape%n))
    end subroutine make_room
-
-   !> By how much start number `k` is off: nothing at first, then more and more, up to half a turn.
-   pure function spread_start(k, n) result(d)
-      integer, intent(in) :: k, n
-      real(wp) :: d(n)
-
-      d = 3.0_wp*real(k, wp)/real(max_starts, wp)*golden_numbers(k, n)
-   end function spread_start
 
    !> The `n` numbers of row `k` of a sequence that fills the interval from -1 to 1 evenly.
    pure function golden_numbers(k, n) result(x)

@@ -16,7 +16,7 @@ module linear_response
    use block_needs, only: largest_known
    use block_matrix, only: solve_again
    use block_solver, only: solve_block
-   use block_engine, only: block_engine_t
+   use block_engine, only: block_engine_t, slide_units
    use convergence, only: convergence_t, is_solved
    use link_motion, only: missing_nothing, missing_all
    use equation_changes, only: response_t, varied_t, pair_residual, drive_residual, arm_of, gap_of, angle_change, &
@@ -57,7 +57,7 @@ contains
          r%angle(:, i) = angle_changes(m, changes(i))
       end do
       associate (unknowns => r%tree%orientations + r%tree%slides + 2*r%tree%roots)
-         allocate (r%now(0:2, 0:unknowns), r%u(0:2, 0:unknowns, size(changes)), source=0.0_wp)
+         allocate (r%unit(0:unknowns), r%now(0:2, 0:unknowns), r%u(0:2, 0:unknowns, size(changes)), source=0.0_wp)
          allocate (r%missing(0:unknowns), source=missing_nothing)
       end associate
       allocate (r%links(3, 0:2, size(m%links), size(changes)), source=0.0_wp)
@@ -98,6 +98,8 @@ contains
       r%u = 0.0_wp
       r%jams = .false.
       correction = 0.0_wp
+      ! A function's result would bring its own lower bound.
+      r%unit(:) = slide_units(e)
       call take_values(r, e, [(k, k=0, e%blocks%unknowns)])
       ! A change may bring in an angle that a block does not hold: all of them are found first.
       do pass = 1, 2
@@ -131,19 +133,10 @@ contains
 
       do k = 1, size(unknowns)
          associate (u => e%state%u(unknowns(k)))
-            r%now(:, unknowns(k)) = unit_of(e, unknowns(k))*[u%value, u%rate, u%acceleration]
+            r%now(:, unknowns(k)) = r%unit(unknowns(k))*[u%value, u%rate, u%acceleration]
          end associate
       end do
    end subroutine take_values
-
-   !> The unit of unknown `u` in the deck's: 1 of an angle.
-   pure real(wp) function unit_of(e, u)
-      type(block_engine_t), intent(in) :: e
-      integer, intent(in) :: u
-
-      unit_of = 1.0_wp
-      if (u > e%blocks%orientations) unit_of = e%length*e%blocks%unit(u)
-   end function unit_of
 
    !> The responses of block `i`, by the factors that the solver has left. `is_found`: redundant equations allow all
    !> changes.
@@ -167,7 +160,7 @@ contains
                if (order == 0 .and. any(abs(v(shape%n + 1:shape%rows)) > limit)) r%jams(d) = .true.
                do k = 1, shape%n
                   associate (u => e%blocks%unknown(block%first + k - 1))
-                     r%u(order, u, d) = v(k)*unit_of(e, u)
+                     r%u(order, u, d) = v(k)*r%unit(u)
                   end associate
                end do
             end do
@@ -201,7 +194,7 @@ contains
       associate (block => e%blocks%list(i))
          if (block%direct) then
             associate (row => e%blocks%rows(block%first_row))
-               v(1) = row%sign_of*residual(row, 1)/unit_of(e, e%blocks%unknown(block%first))
+               v(1) = row%sign_of*residual(row, 1)/r%unit(e%blocks%unknown(block%first))
             end associate
             return
          end if

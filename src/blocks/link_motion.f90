@@ -153,7 +153,12 @@ contains
             end associate
             if (h%slide > 0) call add_slide(h%place%slide_body_vector, u(h%parent_orientation), u(h%slide), length, &
                p(1, k), v(1, k), a(1, k))
-            if (h%root > 0) call set_root(u(h%root), length*h%root_unit, p(1, k), v(1, k), a(1, k))
+            ! A link that no pair joins to the ground has unknowns of its own for x and y.
+            if (h%root > 0) then
+               p(:2, k) = length*h%root_unit*u(h%root:h%root + 1)%value
+               v(:2, k) = length*h%root_unit*u(h%root:h%root + 1)%rate
+               a(:2, k) = length*h%root_unit*u(h%root:h%root + 1)%acceleration
+            end if
             if (h%parent > 0) then
                p(:2, k) = p(:2, k) + p(:2, h%parent)
                v(:2, k) = v(:2, k) + v(:2, h%parent)
@@ -211,17 +216,6 @@ contains
       v = v + u%rate*e + u%value*f%rate*e_t
       a = a + u%acceleration*e + 2.0_wp*u%rate*f%rate*e_t + u%value*(f%acceleration*e_t - f%rate**2*e)
    end subroutine add_slide
-
-   !> A link that no pair joins to the ground has unknowns of its own for x and y.
-   pure subroutine set_root(u, length, p, v, a)
-      type(unknown_t), intent(in) :: u(2)
-      real(wp), intent(in) :: length(2)
-      real(wp), intent(inout) :: p(2), v(2), a(2)
-
-      p = length*u%value
-      v = length*u%rate
-      a = length*u%acceleration
-   end subroutine set_root
 
    !> Says of each link of `found` how much of it is known and why no more, from what is `missing` (0:unknowns) of the
    !> unknowns by which it and its parents move; links outside the chain count as known.

@@ -148,6 +148,7 @@ contains
    pure real(wp) function cover(c, low, high)
       type(canvas_t), intent(in) :: c
       real(wp), intent(in) :: low(2), high(2)
+      real(wp) :: from, to
       integer :: i
 
       cover = 0.0_wp
@@ -156,19 +157,10 @@ contains
          if (all(c%box(:2, i) < high) .and. all(c%box(3:, i) > low)) cover = cover + over_name
       end do
       do i = 1, c%lines
-         cover = cover + c%line(5, i)*length_inside(c%line(:2, i), c%line(3:4, i), low, high)
+         call find_inside(c%line(:2, i), c%line(3:4, i), low, high, from, to)
+         if (to > from) cover = cover + c%line(5, i)*((to - from)*norm2(c%line(3:4, i) - c%line(:2, i)))
       end do
    end function cover
-
-   !> The length of the line from `p` to `q` (2) inside the box from `low` to `high` (2).
-   pure real(wp) function length_inside(p, q, low, high) result(length)
-      real(wp), intent(in) :: p(2), q(2), low(2), high(2)
-      real(wp) :: from, to
-
-      length = 0.0_wp
-      call find_inside(p, q, low, high, from, to)
-      if (to > from) length = (to - from)*norm2(q - p)
-   end function length_inside
 
    !> Which part of the line from `p` to `q` (2) is inside the box from `low` to `high` (2): that between the parts
    !> `from` and `to` of its length; none where `to` is not above `from`. After Liang and Barsky.

@@ -87,7 +87,9 @@ contains
       end if
       time = max(abs(m%t0), abs(m%t1), maxval([0.0_wp, abs(m%at)]))
       if (time > 0.0_wp) call choose_digits(log10(time), l%time_decimals, l%time_power)
-      if (allocated(m%tolerances)) l%more_decimals = decimals_for(relative_tolerance(m))
+      ! What a tolerance changes has four digits.
+      if (allocated(m%tolerances)) &
+         l%more_decimals = max(0, 3 - digits_after_first - floor(log10(relative_tolerance(m))))
       do k = 1, size(l%names)
          l%names(k) = column_names(k, m%polish)
       end do
@@ -206,13 +208,6 @@ contains
       if (k < -2 .or. k > 4) power = 3*floor(real(k, wp)/3.0_wp + margin)
       decimals = digits_after_first - (k - power)
    end subroutine choose_digits
-
-   !> Decimals that a number takes beside its own for its change by `part` of it to have four digits.
-   pure integer function decimals_for(part) result(more_decimals)
-      real(wp), intent(in) :: part
-
-      more_decimals = max(0, 3 - digits_after_first - floor(log10(part)))
-   end function decimals_for
 
    !> The lines over rows of the given `kind` with the digits `d`, joined by new_line('a'): names, powers of ten where
    !> there are any, units.

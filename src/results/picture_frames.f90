@@ -124,8 +124,8 @@ contains
       do i = 0, n
          ! Where the motion comes back, the last frame is the first one again.
          k = 1 + i*(d%frames - 1)/merge(n + 1, n, closes(d))
-         if (is_like(d, k, best)) cycle
-         if (any([(is_like(d, k, list(j)), j=1, size(list))])) cycle
+         if (distance(d, k, best) < alike) cycle
+         if (any([(distance(d, k, list(j)) < alike, j=1, size(list))])) cycle
          list = [list, k]
       end do
    end function faint_frames
@@ -137,14 +137,6 @@ contains
       closes = .false.
       if (d%frames > 2) closes = distance(d, 1, d%frames) < come_back
    end function closes
-
-   !> Whether frames `i` and `j` would cover one another.
-   logical function is_like(d, i, j)
-      type(drawing_t), intent(in) :: d
-      integer, intent(in) :: i, j
-
-      is_like = distance(d, i, j) < alike
-   end function is_like
 
    !> The largest distance of a corner between frames `i` and `j`, in parts of the mechanism; 1 if one of them lacks a
    !> link.

@@ -1,10 +1,9 @@
 !> The page of a picture: where each set is drawn, and what stands around the mechanism: title, flagged instants, scale.
 module picture_page
    use kinds, only: wp
-   use mechanism, only: mechanism_t
    use planar, only: point_of
    use numerals, only: full, whole, fixed
-   use drawing, only: drawing_t, snapshot_t, flag_t, point_place
+   use drawing, only: drawing_t, snapshot_t, point_place
    use canvas, only: canvas_t
    use picture_parts, only: guide_ends
    use svg, only: put_group, put_line, put_words, without_zeros
@@ -198,7 +197,7 @@ contains
       if (d%flagged > size(d%flags)) flag_lines = flag_lines + 1
    end function flag_lines
 
-   !> Below the picture: the flagged instants, and what is drawn of them.
+   !> Below the picture: when and why instants are flagged, and what is drawn of them.
    subroutine put_flags(c)
       type(canvas_t), intent(in) :: c
       character(:), allocatable :: words
@@ -208,23 +207,16 @@ contains
          if (i > size(c%d%flags)) then
             words = phrase(say_flagged_in_all, c%m%polish)//' '//whole(c%d%flagged)
          else
-            words = words_of_flag(c%m, c%d%flags(i))
+            associate (flag => c%d%flags(i))
+               words = 'T = '//fitted(flag%t)//': '//words_of_mark(flag%mark, flag%singularity, c%m%polish)
+               if (flag%earlier .and. any(flag%last%known)) &
+                  words = words//'; '//phrase(say_last_position, c%m%polish)//' '//fitted(flag%last%t)
+            end associate
          end if
          call put_words(c%o, real([14, c%bottom - 16 - line_height*(flag_lines(c%d) - i)], wp), 'start', &
             'class="flag"', words)
       end do
    end subroutine put_flags
-
-   !> When and why an instant is flagged, and what is drawn of it.
-   function words_of_flag(m, flag) result(words)
-      type(mechanism_t), intent(in) :: m
-      type(flag_t), intent(in) :: flag
-      character(:), allocatable :: words
-
-      words = 'T = '//fitted(flag%t)//': '//words_of_mark(flag%mark, flag%singularity, m%polish)
-      if (flag%earlier .and. any(flag%last%known)) &
-         words = words//'; '//phrase(say_last_position, m%polish)//' '//fitted(flag%last%t)
-   end function words_of_flag
 
    !> The scale bar, at the foot on the right: 1, 2 or 5 times a power of ten units of length.
    subroutine put_scale(c)

@@ -9,8 +9,8 @@
 module table
    use kinds, only: wp, label_length
    use constants, only: in_degrees
-   use mechanism, only: mechanism_t, request_link, request_point, request_pair, request_pole, request_curve, &
-      pair_prismatic, drive_angle, drive_relangle
+   use mechanism, only: mechanism_t, request_t, request_link, request_point, request_pair, request_pole, &
+      request_curve, pair_prismatic, drive_angle, drive_relangle
    use drives, only: law_t, new_law, drive_motion
    use names, only: name_table_t, put_name, find_name, drive_name
    use points, only: row_t, has_number, centre_numbers, coordinates_of
@@ -43,7 +43,7 @@ module table
 
    !> What the columns of a derivative add to the name of a link or point, a prismatic pair, a revolute pair. Those of
    !> pairs are not those of links, whose names pairs may have.
-   character(4), parameter :: link_words(3, 0:2) = reshape([character(4) :: &
+   character(5), parameter :: link_words(3, 0:2) = reshape([character(5) :: &
       'x', 'y', 'phi', 'vx', 'vy', 'vphi', 'ax', 'ay', 'aphi'], [3, 3])
    character(5), parameter :: slide_words(0:2) = [character(5) :: 's', 'v', 'a']
    character(5), parameter :: turn_words(0:2) = [character(5) :: 'theta', 'omega', 'alpha']
@@ -58,6 +58,8 @@ contains
    function new_table(m) result(t)
       type(mechanism_t), intent(in) :: m
       type(table_t) :: t
+      type(name_table_t) :: links
+      logical :: turns
       integer :: i, k, c, n, row
 
       allocate (t%laws(size(m%drives)), t%drives(size(m%drives)))
@@ -67,15 +69,23 @@ contains
       end do
       t%angular = m%drives%kind == drive_angle .or. m%drives%kind == drive_relangle
       allocate (t%columns(3*sum(coordinates_of(m%requests%kind), mask=m%requests%every > 0)))
+      do i = 1, size(m%requests)
+         if (m%requests(i)%kind == request_link .and. m%requests(i)%every > 0) &
+            call put_name(links, m%links(m%requests(i)%subject)%name, i, k)
+      end do
       n = 0
       do k = 0, 2
          row = 0
          do i = 1, size(m%requests)
             if (m%requests(i)%every == 0 .or. m%requests(i)%kind >= request_pole) cycle
             row = row + 1
+            turns = .false.
+            if (m%requests(i)%kind == request_pair) turns = m%pairs(m%requests(i)%subject)%kind /= pair_prismatic
             do c = 1, coordinates_of(m%requests(i)%kind)
                n = n + 1
-               t%columns(n) = column_t(i, row, k, c, c == 3)
+               t%columns(n) = column_t(i, row, k, c, c == 3 .or. turns)
+               t%columns(n)%name = name_of(m, m%requests(i), links)//'.'//merge(merge(turn_words(k), slide_words(k), &
+                  turns), link_words(c, k), m%requests(i)%kind == request_pair)
             end do
          end do
       end do
@@ -87,65 +97,38 @@ contains
                associate (number => centre_numbers(:, c, k))
                   t%columns(n) = column_t(i, 0, number(2), number(1), number(1) == 3)
                end associate
+               t%columns(n)%name = name_of(m, m%requests(i), links)//'.'//centre_words(c, k)
             end do
          end do
       end do
-      call name_columns(m, t%columns)
-      call name_centres(m, t%columns)
    end function new_table
 
-   !> The names of the columns of poles and curves.
-   subroutine name_centres(m, columns)
+   !> What the names of the columns of `request` begin with. A point that has the name of one of the `links` in the
+   !> table has that of its own link before it.
+   function name_of(m, request, links) result(name)
       type(mechanism_t), intent(in) :: m
-      type(column_t), intent(inout) :: columns(:)
+      type(request_t), intent(in) :: request
+      type(name_table_t), intent(in) :: links
       character(:), allocatable :: name
-      integer :: i, c
 
-      do i = 1, size(columns)
-         associate (request => m%requests(columns(i)%request))
-            if (request%kind < request_pole) cycle
-            if (request%kind == request_pole) then
-               name = 'POLE.'//trim(m%links(request%second)%name)//'.'//trim(m%links(request%subject)%name)
-            else
-               name = 'CURVE.'//trim(m%points(request%subject)%name)
-               if (request%second > 0) name = name//'.'//trim(m%links(request%second)%name)
-            end if
-            do c = 1, size(centre_words, 1)
-               if (all(centre_numbers(:, c, request%kind) == [columns(i)%coordinate, columns(i)%order])) &
-                  columns(i)%name = name//'.'//centre_words(c, request%kind)
-            end do
-         end associate
-      end do
-   end subroutine name_centres
-
-   !> The names of the columns, and which of a pair are angles. A point that has the name of a link in the table has
-   !> that of its own link before it.
-   subroutine name_columns(m, columns)
-      type(mechanism_t), intent(in) :: m
-      type(column_t), intent(inout) :: columns(:)
-      type(name_table_t) :: links
-      integer :: i, earlier
-
-      do i = 1, size(m%requests)
-         if (m%requests(i)%kind == request_link .and. m%requests(i)%every > 0) &
-            call put_name(links, m%links(m%requests(i)%subject)%name, i, earlier)
-      end do
-      do i = 1, size(columns)
-         associate (c => columns(i), subject => m%requests(columns(i)%request)%subject)
-            select case (m%requests(c%request)%kind)
-            case (request_link)
-               c%name = trim(m%links(subject)%name)//'.'//link_words(c%coordinate, c%order)
-            case (request_point)
-               c%name = trim(m%points(subject)%name)//'.'//link_words(c%coordinate, c%order)
-               if (find_name(links, m%points(subject)%name) > 0) &
-                  c%name = trim(m%links(m%points(subject)%link)%name)//'.'//c%name
-            case (request_pair)
-               c%angular = m%pairs(subject)%kind /= pair_prismatic
-               c%name = trim(m%pairs(subject)%name)//'.'//merge(turn_words(c%order), slide_words(c%order), c%angular)
-            end select
-         end associate
-      end do
-   end subroutine name_columns
+      associate (subject => request%subject)
+         select case (request%kind)
+         case (request_link)
+            name = trim(m%links(subject)%name)
+         case (request_point)
+            name = trim(m%points(subject)%name)
+            if (find_name(links, m%points(subject)%name) > 0) &
+               name = trim(m%links(m%points(subject)%link)%name)//'.'//name
+         case (request_pair)
+            name = trim(m%pairs(subject)%name)
+         case (request_pole)
+            name = 'POLE.'//trim(m%links(request%second)%name)//'.'//trim(m%links(subject)%name)
+         case default
+            name = 'CURVE.'//trim(m%points(subject)%name)
+            if (request%second > 0) name = name//'.'//trim(m%links(request%second)%name)
+         end select
+      end associate
+   end function name_of
 
    !> `name` with a dot for each blank inside.
    pure function dotted(name) result(text)
