@@ -78,17 +78,14 @@ contains
       type(diagnostic_t), allocatable :: list(:)
       type(diagnostic_t) :: r
       integer, allocatable :: rows(:)
-      integer :: k, i, found
+      integer :: k, found
 
       allocate (list(0))
       rows = redundant_rows(e%blocks, 1, e%state)
       do k = size(rows), 1, -1
          r = diagnostic_t(kind=diagnostic_redundant, pair=e%blocks%rows(rows(k))%pair, &
             drive=e%blocks%rows(rows(k))%drive)
-         found = 0
-         do i = 1, size(list)
-            if (list(i)%pair == r%pair .and. list(i)%drive == r%drive) found = i
-         end do
+         found = findloc(list%pair == r%pair .and. list%drive == r%drive, .true., dim=1)
          if (found > 0) then
             list(found)%equations = list(found)%equations + 1
          else

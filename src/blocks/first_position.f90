@@ -33,14 +33,6 @@ module first_position
    !> Up to so many unknowns other starts are tried.
    integer, parameter :: max_unknowns = 4
 
-   !> The search for positions of block `i` around the estimate `start` (n), in radians and lengths of the block.
-   type :: search_t
-      integer :: i = 0                                  !< number of the block
-      real(wp) :: tolerance = 0.0_wp                    !< of the corrections
-      real(wp), allocatable :: start(:)
-      real(wp), allocatable :: found(:, :)              !< (n, any number), nearest to the start first
-   end type search_t
-
 contains
 
    !> Solves block `i` as `solve_block` does, from any estimate in the values of `s`: the position that is nearest to
@@ -54,37 +46,100 @@ contains
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
       real(wp), allocatable, intent(out), optional :: others(:, :)
-      type(search_t) :: g
-      real(wp) :: change
+      real(wp) :: start(b%list(i)%last - b%list(i)%first + 1), change
+      real(wp), allocatable :: found(:, :)              ! (n, any number), nearest to the start first
       logical :: is_near
 
-      g%i = i
-      g%tolerance = tolerance
-      g%start = values_of(b, i, s)
+      start = values_of(b, i, s)
       change = 0.0_wp
       call solve_block(b, i, tolerance, w, s, c, change)
       if (b%list(i)%direct .or. is_certain(c)) return
-      allocate (g%found(size(g%start), 0))
-      call note_position(b, s, c, g)
-      call set_values(b, i, g%start, s)
+      allocate (found(size(start), 0))
+      call note_position(c)
+      call set_values(b, i, start, s)
       call follow_path(b, i, w, s)
-      call solve_from_here(b, w, s, g)
-      call set_values(b, i, g%start, s)
+      call solve_from_here()
+      call set_values(b, i, start, s)
       call levenberg_marquardt_held(b, i, near, s)
-      call solve_from_here(b, w, s, g)
-      call look_aside(b, w, s, g)
-      call set_values(b, i, g%start, s)
-      is_near = size(g%found, 2) > 0
-      if (is_near) is_near = maxval(abs(g%found(:, 1) - g%start)) <= branch_jump
+      call solve_from_here()
+      call look_aside()
+      call set_values(b, i, start, s)
+      is_near = size(found, 2) > 0
+      if (is_near) is_near = maxval(abs(found(:, 1) - start)) <= branch_jump
       if (.not. is_near) then
          call come_near(b, i, tolerance, w, s, c)
-         call note_position(b, s, c, g)
+         call note_position(c)
       end if
-      call look_across(b, w, s, g)
-      if (size(g%found, 2) == 0) return
-      call set_values(b, i, g%found(:, 1), s)
+      call look_across()
+      if (size(found, 2) == 0) return
+      call set_values(b, i, found(:, 1), s)
       call solve_block(b, i, tolerance, w, s, c, change)
-      if (present(others)) others = g%found(:, 2:)
+      if (present(others)) others = found(:, 2:)
+
+   contains
+
+      !> Solves the block from the values of `s`, and notes what was found.
+      subroutine solve_from_here()
+         type(convergence_t) :: c
+         real(wp) :: change
+
+         change = 0.0_wp
+         call solve_block(b, i, tolerance, w, s, c, change)
+         call note_position(c)
+      end subroutine solve_from_here
+
+      !> Newton's method and the descent may both pass the position that is nearest to a distant start: others are
+      !> looked for from around it.
+      subroutine look_aside()
+         integer :: k
+
+         if (size(start) > max_unknowns) return
+         do k = 1, 2*size(start)
+            call set_values(b, i, beside(start, k), s)
+            call solve_from_here()
+         end do
+      end subroutine look_aside
+
+      !> Near a fold positions come in pairs: the other one of each that was found, until there is no nearer one.
+      subroutine look_across()
+         real(wp) :: from(size(start))
+         logical :: is_there
+         integer :: round, number
+
+         do round = 1, max_rounds
+            if (size(found, 2) == 0) return
+            from = found(:, 1)
+            do number = 1, 2
+               call set_values(b, i, from, s)
+               call cross_fold(b, i, number, w, s, is_there)
+               if (is_there) call solve_from_here()
+            end do
+            if (maxval(abs(found(:, 1) - from)) <= 0.0_wp) return
+         end do
+      end subroutine look_across
+
+      !> Puts the position of `s`, if `c` says that it is one, in its place among those found, unless it is there
+      !> already; without the whole turns by which its angles have passed the start, where no equation counts them.
+      subroutine note_position(c)
+         type(convergence_t), intent(in) :: c
+         real(wp) :: x(size(start))
+         integer :: k
+
+         if (.not. is_solved(c)) return
+         x = values_of(b, i, s)
+         associate (block => b%list(i))
+            if (all(b%loops(block%first_loop:block%last_loop)%kind /= loop_angles)) then
+               where (b%unknown(block%first:block%last) <= b%orientations) x = start + without_turns(x - start)
+            end if
+         end associate
+         do k = 1, size(found, 2)
+            if (maxval(abs(found(:, k) - x)) <= alike*max(1.0_wp, maxval(abs(x)))) return
+         end do
+         do k = 1, size(found, 2)
+            if (norm2(x - start) < 0.999_wp*norm2(found(:, k) - start)) exit
+         end do
+         found = reshape([found(:, :k - 1), x, found(:, k:)], [size(x), size(found, 2) + 1])
+      end subroutine note_position
    end subroutine solve_first_block
 
    !> No other position can be meant: two of them are at least 2/(|J^-1| Lipschitz constant) apart.
@@ -102,92 +157,6 @@ contains
       farthest = plausible*nearest
       if (nearest > fine) farthest = max(farthest, reach)
    end function farthest
-
-   !> Solves the block from the values of `s`, and notes what was found.
-   subroutine solve_from_here(b, w, s, g)
-      type(blocks_t), intent(in) :: b
-      type(workspace_t), intent(inout) :: w
-      type(state_t), intent(inout) :: s
-      type(search_t), intent(inout) :: g
-      type(convergence_t) :: c
-      real(wp) :: change
-
-      change = 0.0_wp
-      call solve_block(b, g%i, g%tolerance, w, s, c, change)
-      call note_position(b, s, c, g)
-   end subroutine solve_from_here
-
-   !> Newton's method and the descent may both pass the position that is nearest to a distant start: others are looked
-   !> for from around it.
-   subroutine look_aside(b, w, s, g)
-      type(blocks_t), intent(in) :: b
-      type(workspace_t), intent(inout) :: w
-      type(state_t), intent(inout) :: s
-      type(search_t), intent(inout) :: g
-      integer :: k
-
-      if (size(g%start) > max_unknowns) return
-      do k = 1, 2*size(g%start)
-         call set_values(b, g%i, beside(g%start, k), s)
-         call solve_from_here(b, w, s, g)
-      end do
-   end subroutine look_aside
-
-   !> Near a fold positions come in pairs: the other one of each that was found, until there is no nearer one.
-   subroutine look_across(b, w, s, g)
-      type(blocks_t), intent(in) :: b
-      type(workspace_t), intent(inout) :: w
-      type(state_t), intent(inout) :: s
-      type(search_t), intent(inout) :: g
-      real(wp), allocatable :: from(:)
-      logical :: is_there
-      integer :: round, number
-
-      do round = 1, max_rounds
-         if (size(g%found, 2) == 0) return
-         from = g%found(:, 1)
-         do number = 1, 2
-            call set_values(b, g%i, from, s)
-            call cross_fold(b, g%i, number, w, s, is_there)
-            if (is_there) call solve_from_here(b, w, s, g)
-         end do
-         if (maxval(abs(g%found(:, 1) - from)) <= 0.0_wp) return
-      end do
-   end subroutine look_across
-
-   !> Puts the position of `s`, if `c` says that it is one, in its place among those found, unless it is there already.
-   pure subroutine note_position(b, s, c, g)
-      type(blocks_t), intent(in) :: b
-      type(state_t), intent(in) :: s
-      type(convergence_t), intent(in) :: c
-      type(search_t), intent(inout) :: g
-      real(wp) :: x(size(g%start))
-      integer :: k
-
-      if (.not. is_solved(c)) return
-      x = values_of(b, g%i, s)
-      call remove_own_turns(b, g%i, g%start, x)
-      do k = 1, size(g%found, 2)
-         if (maxval(abs(g%found(:, k) - x)) <= alike*max(1.0_wp, maxval(abs(x)))) return
-      end do
-      do k = 1, size(g%found, 2)
-         if (norm2(x - g%start) < 0.999_wp*norm2(g%found(:, k) - g%start)) exit
-      end do
-      g%found = reshape([g%found(:, :k - 1), x, g%found(:, k:)], [size(x), size(g%found, 2) + 1])
-   end subroutine note_position
-
-   !> Takes the whole turns off the angles of `x` by which they have passed `start`, where no equation counts them.
-   pure subroutine remove_own_turns(b, i, start, x)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      real(wp), intent(in) :: start(:)
-      real(wp), intent(inout) :: x(:)
-
-      associate (block => b%list(i))
-         if (any(b%loops(block%first_loop:block%last_loop)%kind == loop_angles)) return
-         where (b%unknown(block%first:block%last) <= b%orientations) x = start + without_turns(x - start)
-      end associate
-   end subroutine remove_own_turns
 
    !> Takes whole turns off the `estimated` angles (0:unknowns) of the blocks `list`, where a drive with a value of
    !> `drive_value` (0:drives) fixes them: they close nothing, and would have to be travelled.

@@ -89,7 +89,7 @@ contains
       real(wp) :: phi(size(m%links))
       real(wp), dimension(0:t%orientations) :: u, v, w
       real(wp) :: before, after, length
-      logical, allocatable :: placed(:)
+      logical, allocatable :: placed(:)         ! (points) their places are known
       type(sorted_t) :: classes
       integer :: i, sweep
 
@@ -101,118 +101,166 @@ contains
       length = solver_length(m)
       allocate (placed(size(m%points)))
       placed = m%links(m%points%link)%ground .or. hypot(m%points%offset(1), m%points%offset(2)) <= short_part*length
-      if (largest_opening(m, t, u, spread(.true., 1, size(m%points))) <= good_part*length) return
+      if (largest_opening(u, spread(.true., 1, size(m%points))) <= good_part*length) return
       v = u
       classes = sorted(t%orientation, t%orientations)
       do sweep = 1, max_sweeps
          w = v
-         call minimize_closure_errors(m, t, classes, min_form_part*length**2, v, placed)
+         call minimize_closure_errors(v)
          if (maxval(abs(without_turns(v - w))) <= good_part) exit
       end do
       v = u + without_turns(v - u)
-      before = largest_opening(m, t, u, placed)
-      after = largest_opening(m, t, v, placed)
+      before = largest_opening(u, placed)
+      after = largest_opening(v, placed)
       if (after > min(closed_part*length, better_part*before) .or. maxval(abs(v - u)) <= far_angle) return
-      if (.not. is_contradicted(m, t, u, abs(v - u) > far_angle, placed)) return
+      if (.not. is_contradicted(abs(v - u) > far_angle)) return
       do i = 1, size(m%links)
          if (t%orientation(i) > 0) phi(i) = phi(i) + (v(t%orientation(i)) - u(t%orientation(i)))
       end do
-   end function estimated_directions
 
-   !> Gives each of the orientation `classes` the angle of the least closure errors, unless the form is below
-   !> `least_form` at all angles. `placed` (points): their places are known, then also those of the class.
-   subroutine minimize_closure_errors(m, t, classes, least_form, u, placed)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      type(sorted_t), intent(in) :: classes
-      real(wp), intent(in) :: least_form
-      real(wp), intent(inout) :: u(0:)
-      logical, intent(inout) :: placed(:)
-      real(wp) :: e(5)
-      integer :: i, k, orientation
+   contains
 
-      do orientation = 1, t%orientations
-         e = 0.0_wp
-         do i = classes%first(orientation), classes%first(orientation + 1) - 1
-            associate (link => classes%member(i))
-               do k = t%near%first(link), t%near%first(link + 1) - 1
-                  if (is_reported(m, t, t%near%member(k), orientation, placed)) &
-                     call add_pair(m, t, t%near%member(k), orientation, u, e)
-               end do
-            end associate
+      !> Gives each of the orientation `classes` in `u` (0:classes) the angle of the least closure errors, unless the
+      !> form is small at all angles. Then the places of its points are known as well.
+      subroutine minimize_closure_errors(u)
+         real(wp), intent(inout) :: u(0:)
+         real(wp) :: e(5)
+         integer :: i, k, orientation
+
+         do orientation = 1, t%orientations
+            e = 0.0_wp
+            do i = classes%first(orientation), classes%first(orientation + 1) - 1
+               associate (link => classes%member(i))
+                  do k = t%near%first(link), t%near%first(link + 1) - 1
+                     if (is_reported(t%near%member(k), orientation)) &
+                        call add_pair(t%near%member(k), orientation, u, e)
+                  end do
+               end associate
+            end do
+            if (maxval(abs(e)) <= min_form_part*length**2) cycle
+            u(orientation) = least(e, u(orientation))
+            where (t%orientation(m%points%link) == orientation) placed = .true.
          end do
-         if (maxval(abs(e)) <= least_form) cycle
-         u(orientation) = least(e, u(orientation))
-         where (t%orientation(m%points%link) == orientation) placed = .true.
-      end do
-   end subroutine minimize_closure_errors
+      end subroutine minimize_closure_errors
 
-   !> The other side of pair `k` of `orientation`, if it is of another class, has its place.
-   pure logical function is_reported(m, t, k, orientation, placed)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      integer, intent(in) :: k, orientation
-      logical, intent(in) :: placed(:)
+      !> The other side of pair `k` of `orientation`, if it is of another class, has its place.
+      pure logical function is_reported(k, orientation)
+         integer, intent(in) :: k, orientation
 
-      associate (i => m%pairs(k)%point_i, j => m%pairs(k)%point_j)
-         is_reported = (placed(i) .or. t%orientation(m%points(i)%link) == orientation) &
-            .and. (placed(j) .or. t%orientation(m%points(j)%link) == orientation)
-      end associate
-   end function is_reported
+         associate (i => m%pairs(k)%point_i, j => m%pairs(k)%point_j)
+            is_reported = (placed(i) .or. t%orientation(m%points(i)%link) == orientation) &
+               .and. (placed(j) .or. t%orientation(m%points(j)%link) == orientation)
+         end associate
+      end function is_reported
 
-   !> Adds what pair `k` gives to the form `e` of `orientation`.
-   pure subroutine add_pair(m, t, k, orientation, u, e)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      integer, intent(in) :: k, orientation
-      real(wp), intent(in) :: u(0:)
-      real(wp), intent(inout) :: e(5)
-      real(wp) :: fixed(2), body_vector(2), n(2), a, b, h
+      !> Adds what pair `k` gives to the form `e` of `orientation`.
+      pure subroutine add_pair(k, orientation, u, e)
+         integer, intent(in) :: k, orientation
+         real(wp), intent(in) :: u(0:)
+         real(wp), intent(inout) :: e(5)
+         real(wp) :: fixed(2), body_vector(2), n(2), a, b, h
 
-      fixed = 0.0_wp
-      body_vector = 0.0_wp
-      call split(m, t, m%pairs(k)%point_i, orientation, 1.0_wp, u, fixed, body_vector)
-      call split(m, t, m%pairs(k)%point_j, orientation, -1.0_wp, u, fixed, body_vector)
-      if (m%pairs(k)%kind == pair_revolute) then
-         e(1) = e(1) + 2.0_wp*dot_product(fixed, body_vector)
-         e(2) = e(2) + 2.0_wp*cross(body_vector, fixed)
-      else
-         n = normal(m, t, k)
-         a = dot_product(fixed, n)
-         b = cross(n, fixed)
-         h = dot_product(body_vector, n) - m%pairs(k)%offset
-         e = e + [2.0_wp*h*a, 2.0_wp*h*b, a*a, 2.0_wp*a*b, b*b]
-      end if
-   end subroutine add_pair
+         fixed = 0.0_wp
+         body_vector = 0.0_wp
+         call split(m%pairs(k)%point_i, orientation, 1.0_wp, u, fixed, body_vector)
+         call split(m%pairs(k)%point_j, orientation, -1.0_wp, u, fixed, body_vector)
+         if (m%pairs(k)%kind == pair_revolute) then
+            e(1) = e(1) + 2.0_wp*dot_product(fixed, body_vector)
+            e(2) = e(2) + 2.0_wp*cross(body_vector, fixed)
+         else
+            n = normal(k)
+            a = dot_product(fixed, n)
+            b = cross(n, fixed)
+            h = dot_product(body_vector, n) - m%pairs(k)%offset
+            e = e + [2.0_wp*h*a, 2.0_wp*h*b, a*a, 2.0_wp*a*b, b*b]
+         end if
+      end subroutine add_pair
 
-   !> Adds `sign_of` times the place of `point` to what stays where it is and what turns with `orientation`.
-   pure subroutine split(m, t, point, orientation, sign_of, u, fixed, body_vector)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      integer, intent(in) :: point, orientation
-      real(wp), intent(in) :: sign_of, u(0:)
-      real(wp), intent(inout) :: fixed(2), body_vector(2)
-      integer :: link
+      !> Adds `sign_of` times the place of `point` to what stays where it is and what turns with `orientation`.
+      pure subroutine split(point, orientation, sign_of, u, fixed, body_vector)
+         integer, intent(in) :: point, orientation
+         real(wp), intent(in) :: sign_of, u(0:)
+         real(wp), intent(inout) :: fixed(2), body_vector(2)
+         integer :: link
 
-      link = m%points(point)%link
-      fixed = fixed + sign_of*m%links(link)%position(:2)
-      if (t%orientation(link) == orientation) then
-         body_vector = body_vector + sign_of*rotated(m%points(point)%offset, direction(t%angle_offset(link)))
-      else
-         fixed = fixed + sign_of*rotated(m%points(point)%offset, &
-            direction(t%angle_offset(link) + u(t%orientation(link))))
-      end if
-   end subroutine split
+         link = m%points(point)%link
+         fixed = fixed + sign_of*m%links(link)%position(:2)
+         if (t%orientation(link) == orientation) then
+            body_vector = body_vector + sign_of*rotated(m%points(point)%offset, direction(t%angle_offset(link)))
+         else
+            fixed = fixed + sign_of*rotated(m%points(point)%offset, &
+               direction(t%angle_offset(link) + u(t%orientation(link))))
+         end if
+      end subroutine split
 
-   !> (2) The normal of the guide of pair `k` in the axes of its orientation class.
-   pure function normal(m, t, k) result(n)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      integer, intent(in) :: k
-      real(wp) :: n(2)
+      !> (2) The normal of the guide of pair `k` in the axes of its orientation class.
+      pure function normal(k) result(n)
+         integer, intent(in) :: k
+         real(wp) :: n(2)
 
-      n = quarter_turn(direction(t%angle_offset(m%points(m%pairs(k)%point_i)%link) + m%pairs(k)%alpha))
-   end function normal
+         n = quarter_turn(direction(t%angle_offset(m%points(m%pairs(k)%point_i)%link) + m%pairs(k)%alpha))
+      end function normal
+
+      !> Some pair of a link of the classes `changed` (0:classes), both sides of which have their places, is open by
+      !> more than a part of that link's size there, from the places and angles of the deck.
+      pure logical function is_contradicted(changed) result(is)
+         logical, intent(in) :: changed(0:)
+         real(wp) :: size_of
+         integer :: k, side, ends(2)
+
+         is = .false.
+         do k = 1, size(m%pairs)
+            ends = [m%pairs(k)%point_i, m%pairs(k)%point_j]
+            if (.not. all(placed(ends))) cycle
+            do side = 1, 2
+               if (.not. changed(t%orientation(m%points(ends(side))%link))) cycle
+               size_of = norm2(m%points(ends(side))%offset)
+               if (m%pairs(k)%kind /= pair_revolute) size_of = size_of + norm2(closure_error_of(u, k))
+               is = is .or. opening_of(u, k) > open_part*size_of
+            end do
+         end do
+      end function is_contradicted
+
+      !> The largest distance, from the places of the deck and the angles `u`, by which a pair is open of which both
+      !> sides are `placed` (points).
+      pure real(wp) function largest_opening(u, placed) result(largest)
+         real(wp), intent(in) :: u(0:)
+         logical, intent(in) :: placed(:)
+         integer :: k
+
+         largest = 0.0_wp
+         do k = 1, size(m%pairs)
+            if (placed(m%pairs(k)%point_i) .and. placed(m%pairs(k)%point_j)) largest = max(largest, opening_of(u, k))
+         end do
+      end function largest_opening
+
+      !> The distance by which pair `k` is open.
+      pure real(wp) function opening_of(u, k) result(opening)
+         real(wp), intent(in) :: u(0:)
+         integer, intent(in) :: k
+
+         if (m%pairs(k)%kind == pair_revolute) then
+            opening = norm2(closure_error_of(u, k))
+         else
+            associate (u_i => u(t%orientation(m%points(m%pairs(k)%point_i)%link)))
+               opening = abs(dot_product(closure_error_of(u, k), rotated(normal(k), direction(u_i))) &
+                  - m%pairs(k)%offset)
+            end associate
+         end if
+      end function opening_of
+
+      !> (2) From the one point of pair `k` to the other.
+      pure function closure_error_of(u, k) result(closure_error)
+         real(wp), intent(in) :: u(0:)
+         integer, intent(in) :: k
+         real(wp) :: closure_error(2), none(2)
+
+         closure_error = 0.0_wp
+         none = 0.0_wp
+         call split(m%pairs(k)%point_i, -1, 1.0_wp, u, closure_error, none)
+         call split(m%pairs(k)%point_j, -1, -1.0_wp, u, closure_error, none)
+      end function closure_error_of
+   end function estimated_directions
 
    !> The angle at which the form `e` is least, `start` where it is about as small.
    pure real(wp) function least(e, start) result(u)
@@ -247,73 +295,4 @@ contains
          form = e(1)*c + e(2)*s + e(3)*c*c + e(4)*c*s + e(5)*s*s
       end associate
    end function form
-
-   !> Some pair of a link of the classes `changed` (0:classes), both sides of which are `placed` (points), is open by
-   !> more than a part of that link's size there, from the places of the deck and the angles `u`.
-   pure logical function is_contradicted(m, t, u, changed, placed) result(is)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      real(wp), intent(in) :: u(0:)
-      logical, intent(in) :: changed(0:), placed(:)
-      real(wp) :: size_of
-      integer :: k, side, ends(2)
-
-      is = .false.
-      do k = 1, size(m%pairs)
-         ends = [m%pairs(k)%point_i, m%pairs(k)%point_j]
-         if (.not. all(placed(ends))) cycle
-         do side = 1, 2
-            if (.not. changed(t%orientation(m%points(ends(side))%link))) cycle
-            size_of = norm2(m%points(ends(side))%offset)
-            if (m%pairs(k)%kind /= pair_revolute) size_of = size_of + norm2(closure_error_of(m, t, u, k))
-            is = is .or. opening_of(m, t, u, k) > open_part*size_of
-         end do
-      end do
-   end function is_contradicted
-
-   !> The largest distance, from the places of the deck and the angles `u`, by which a pair is open of which both sides
-   !> are `placed` (points).
-   pure real(wp) function largest_opening(m, t, u, placed) result(largest)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      real(wp), intent(in) :: u(0:)
-      logical, intent(in) :: placed(:)
-      integer :: k
-
-      largest = 0.0_wp
-      do k = 1, size(m%pairs)
-         if (placed(m%pairs(k)%point_i) .and. placed(m%pairs(k)%point_j)) largest = max(largest, opening_of(m, t, u, k))
-      end do
-   end function largest_opening
-
-   !> The distance by which pair `k` is open.
-   pure real(wp) function opening_of(m, t, u, k) result(opening)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      real(wp), intent(in) :: u(0:)
-      integer, intent(in) :: k
-
-      if (m%pairs(k)%kind == pair_revolute) then
-         opening = norm2(closure_error_of(m, t, u, k))
-      else
-         associate (u_i => u(t%orientation(m%points(m%pairs(k)%point_i)%link)))
-            opening = abs(dot_product(closure_error_of(m, t, u, k), rotated(normal(m, t, k), direction(u_i))) &
-               - m%pairs(k)%offset)
-         end associate
-      end if
-   end function opening_of
-
-   !> (2) From the one point of pair `k` to the other.
-   pure function closure_error_of(m, t, u, k) result(closure_error)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      real(wp), intent(in) :: u(0:)
-      integer, intent(in) :: k
-      real(wp) :: closure_error(2), none(2)
-
-      closure_error = 0.0_wp
-      none = 0.0_wp
-      call split(m, t, m%pairs(k)%point_i, -1, 1.0_wp, u, closure_error, none)
-      call split(m, t, m%pairs(k)%point_j, -1, -1.0_wp, u, closure_error, none)
-   end function closure_error_of
 end module initial_estimate

@@ -118,30 +118,24 @@ contains
    pure subroutine choose_references(s, p)
       type(system_t), intent(in) :: s
       type(pose_t), intent(inout) :: p
+      integer :: i
 
       p%frozen = .true.
-      if (.not. (p%keeps .and. p%has_chosen)) call take_nearest_zeros(s, p)
+      if (.not. (p%keeps .and. p%has_chosen)) then
+         do i = 1, size(s%link_of)
+            p%zeros(:, i) = nearest_zeros(body_vector_angle(s, p, i))
+         end do
+         do i = 1, size(s%pairs)
+            p%guide_zeros(:, i) = nearest_zeros(normal_angle(s, p, i))
+         end do
+         do i = 1, size(s%laws)
+            if (s%laws(i)%drive%kind == drive_slide) &
+               p%slide_zeros(:, i) = nearest_zeros(normal_angle(s, p, s%laws(i)%drive%subject) + pi/2.0_wp)
+         end do
+      end if
       p%has_chosen = .true.
       call set_pose(s, p)
    end subroutine choose_references
-
-   !> The reference angle of every row.
-   pure subroutine take_nearest_zeros(s, p)
-      type(system_t), intent(in) :: s
-      type(pose_t), intent(inout) :: p
-      integer :: i
-
-      do i = 1, size(s%link_of)
-         p%zeros(:, i) = nearest_zeros(body_vector_angle(s, p, i))
-      end do
-      do i = 1, size(s%pairs)
-         p%guide_zeros(:, i) = nearest_zeros(normal_angle(s, p, i))
-      end do
-      do i = 1, size(s%laws)
-         if (s%laws(i)%drive%kind == drive_slide) &
-            p%slide_zeros(:, i) = nearest_zeros(normal_angle(s, p, s%laws(i)%drive%subject) + pi/2.0_wp)
-      end do
-   end subroutine take_nearest_zeros
 
    !> Adds the unknowns' vector `x` (n) to the coordinates `q` (3, links); ground links stay as they are.
    pure subroutine add_to_links(s, x, q)

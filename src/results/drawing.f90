@@ -188,26 +188,25 @@ contains
       type(outline_t), intent(in) :: outlines(:)
       integer, intent(in) :: i
       type(guide_t) :: g
+      integer :: ends(2), k
+      real(wp) :: angles(2)
 
-      g%pair = i
-      associate (pair => m%pairs(i), li => m%points(m%pairs(i)%point_i)%link, lj => m%points(m%pairs(i)%point_j)%link)
-         if (.not. m%links(li)%ground .and. (m%links(lj)%ground .or. &
-            (size(outlines(li)%corner, 2) == 1 .and. size(outlines(lj)%corner, 2) > 1))) then
-            g%carrier = lj
-            g%block = li
-            g%point = pair%point_i
-            g%pivot = pair%point_j
-            g%angle = pair%alpha - pair%beta
-            g%block_angle = pair%alpha
-            g%sense = -1
-         else
-            g%carrier = li
-            g%block = lj
-            g%point = pair%point_j
-            g%pivot = pair%point_i
-            g%angle = pair%alpha
-            g%block_angle = pair%alpha - pair%beta
-         end if
+      associate (pair => m%pairs(i))
+         ends = [pair%point_i, pair%point_j]
+         angles = [pair%alpha, pair%alpha - pair%beta]
+         associate (li => m%points(ends(1))%link, lj => m%points(ends(2))%link)
+            k = 1
+            if (.not. m%links(li)%ground .and. (m%links(lj)%ground .or. &
+               (size(outlines(li)%corner, 2) == 1 .and. size(outlines(lj)%corner, 2) > 1))) k = 2
+         end associate
+         g%pair = i
+         g%pivot = ends(k)
+         g%point = ends(3 - k)
+         g%carrier = m%points(g%pivot)%link
+         g%block = m%points(g%point)%link
+         g%angle = angles(k)
+         g%block_angle = angles(3 - k)
+         g%sense = 3 - 2*k
          g%foot = m%points(g%pivot)%offset - real(g%sense, wp)*pair%offset*quarter_turn(direction(g%angle))
       end associate
    end function guide_of

@@ -133,21 +133,19 @@ contains
    pure integer function joint_with(m, base, link) result(point)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: base, link
-      integer :: i, own, other
+      integer :: i, k, ends(2)
 
       point = 0
       do i = 1, size(m%pairs)
          if (m%pairs(i)%kind /= pair_revolute) cycle
-         own = m%pairs(i)%point_i
-         other = m%pairs(i)%point_j
-         if (m%points(own)%link /= link) then
-            own = m%pairs(i)%point_j
-            other = m%pairs(i)%point_i
-         end if
-         if (m%points(own)%link /= link) cycle
-         if (point == 0) point = own
-         if (m%points(other)%link /= base .and. .not. (base == 0 .and. m%links(m%points(other)%link)%ground)) cycle
-         point = own
+         ends = [m%pairs(i)%point_i, m%pairs(i)%point_j]
+         k = findloc(m%points(ends)%link, link, dim=1)
+         if (k == 0) cycle
+         if (point == 0) point = ends(k)
+         associate (other => m%points(ends(3 - k))%link)
+            if (other /= base .and. .not. (base == 0 .and. m%links(other)%ground)) cycle
+         end associate
+         point = ends(k)
          return
       end do
    end function joint_with

@@ -163,61 +163,52 @@ contains
          case (request_link)
             dx = links(:, :, i)
          case (request_point)
-            dx(:2, :) = point_change(m, q, i, change, links)
+            dx(:2, :) = point_change(i)
          case default
-            dx(1, :) = pair_change(m, q, i, change, links)
+            dx(1, :) = pair_change(i)
          end select
       end associate
+
+   contains
+
+      !> The same (2, 0:2) of point number `i`.
+      pure function point_change(i) result(dx)
+         integer, intent(in) :: i
+         real(wp) :: dx(2, 0:2)
+
+         associate (link => m%points(i)%link)
+            dx = links(:2, :, link) + arm_change(m%points(i)%offset, change%point(:, i), angle_of(link), &
+               links(3, :, link))
+         end associate
+      end function point_change
+
+      !> The angle (0:2) of `link`.
+      pure function angle_of(link) result(f)
+         integer, intent(in) :: link
+         real(wp) :: f(0:2)
+
+         f = [m%links(link)%position(3), 0.0_wp, 0.0_wp]
+         if (.not. m%links(link)%ground) f = [q%position(3, link), q%velocity(3, link), q%acceleration(3, link)]
+      end function angle_of
+
+      !> The same (0:2) of pair number `k`: phi_j - phi_i, or (Q - P) . e.
+      pure function pair_change(k) result(ds)
+         integer, intent(in) :: k
+         real(wp) :: ds(0:2), f(0:2), df(0:2), e(2)
+
+         associate (pair => m%pairs(k), i => m%points(m%pairs(k)%point_i)%link, j => m%points(m%pairs(k)%point_j)%link)
+            ds = links(3, :, j) - links(3, :, i)
+            if (pair%kind /= pair_prismatic) return
+            f = angle_of(i)
+            df = links(3, :, i)
+            df(0) = df(0) + change%pair(1, k)
+            e = direction(f(0) + pair%alpha)
+            ds = dotted(point_change(pair%point_j) - point_change(pair%point_i), turning(e, f)) &
+               + dotted(point_motion(m, q, pair%point_j) - point_motion(m, q, pair%point_i), &
+               turning_change(e, [0.0_wp, 0.0_wp], f, df))
+         end associate
+      end function pair_change
    end function row_change
-
-   !> The same (2, 0:2) of point number `i`.
-   pure function point_change(m, q, i, change, links) result(dx)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      integer, intent(in) :: i
-      type(change_t), intent(in) :: change
-      real(wp), intent(in) :: links(:, 0:, :)
-      real(wp) :: dx(2, 0:2)
-
-      associate (link => m%points(i)%link)
-         dx = links(:2, :, link) + arm_change(m%points(i)%offset, change%point(:, i), angle_of(m, q, link), &
-            links(3, :, link))
-      end associate
-   end function point_change
-
-   !> The angle (0:2) of `link`.
-   pure function angle_of(m, q, link) result(f)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      integer, intent(in) :: link
-      real(wp) :: f(0:2)
-
-      f = [m%links(link)%position(3), 0.0_wp, 0.0_wp]
-      if (.not. m%links(link)%ground) f = [q%position(3, link), q%velocity(3, link), q%acceleration(3, link)]
-   end function angle_of
-
-   !> The same (0:2) of pair number `k`: phi_j - phi_i, or (Q - P) . e.
-   pure function pair_change(m, q, k, change, links) result(ds)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      integer, intent(in) :: k
-      type(change_t), intent(in) :: change
-      real(wp), intent(in) :: links(:, 0:, :)
-      real(wp) :: ds(0:2), f(0:2), df(0:2), e(2)
-
-      associate (pair => m%pairs(k), i => m%points(m%pairs(k)%point_i)%link, j => m%points(m%pairs(k)%point_j)%link)
-         ds = links(3, :, j) - links(3, :, i)
-         if (pair%kind /= pair_prismatic) return
-         f = angle_of(m, q, i)
-         df = links(3, :, i)
-         df(0) = df(0) + change%pair(1, k)
-         e = direction(f(0) + pair%alpha)
-         ds = dotted(point_change(m, q, pair%point_j, change, links) &
-            - point_change(m, q, pair%point_i, change, links), turning(e, f)) &
-            + dotted(point_motion(m, q, pair%point_j) - point_motion(m, q, pair%point_i), &
-            turning_change(e, [0.0_wp, 0.0_wp], f, df))
-      end associate
-   end function pair_change
 
    !> The sensitivities (3, 0:2, numbers) of the row of the ground that `request` asks for.
    function ground_sensitivities(m, request) result(s)

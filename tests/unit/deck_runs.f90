@@ -3,6 +3,7 @@ module deck_runs
    use kinds, only: wp
    use command_line, only: options_t, out_listing, out_csv, out_log
    use job, only: run_job
+   use written, only: taken
    implicit none
    private
    public :: run_t, run_cards, remarks, csv_cell, csv_number, taken, slider, pushed_slider
@@ -162,22 +163,4 @@ contains
       time(49:64) = t1
       cards = [character(80) :: slider(crank, rod), drive, time, 'PRINT   LINKS', 'METHOD  '//method, 'END']
    end function pushed_slider
-
-   !> The bytes of a file, which is deleted; '' where there is none.
-   function taken(path) result(text)
-      character(*), intent(in) :: path
-      character(:), allocatable :: text
-      integer :: unit, length
-      logical :: exists
-
-      text = ''
-      inquire (file=path, exist=exists)
-      if (.not. exists) return
-      open (newunit=unit, file=path, access='stream', form='unformatted', status='old')
-      inquire (unit=unit, size=length)
-      deallocate (text)
-      allocate (character(length) :: text)
-      if (length > 0) read (unit) text
-      close (unit, status='delete')
-   end function taken
 end module deck_runs
