@@ -28,7 +28,8 @@ module card_reader
       real(wp) :: real(3) = 0.0_wp              !< in the deck's units; 0 where the field is blank
       logical :: given(3) = .false.             !< which of them are not blank
       logical :: on_star(3) = .false.           !< which of them are on the `*` card
-      integer :: drive = 0, term = 0            !< the first card of a term: the numbers of drive and term; 0: any other
+      !> Of a card of a drive's law the numbers of drive, term and row of its table; of the DRIVE card term and row 0.
+      integer :: drive = 0, term = 0, row = 0
       integer :: point = 0                      !< of a JOINT card: the number of its first point
    end type parsed_card_t
 

@@ -6,9 +6,9 @@ module card_sets
    use mechanism, only: mechanism_t, link_t, point_t, pair_t, pair_prismatic, request_link, &
       request_point, request_pair
    use diagnostics, only: remark_small_letters
-   use cards, only: card_t, card_fields, wide_fields, field_text, first_column, small_field, label_a, label_b, &
-      label_c, real_1, real_2, real_3, form_ground, form_link, form_point, form_revolute, form_prism, form_joint, &
-      form_end
+   use cards, only: card_t, field_t, card_fields, wide_fields, field_text, first_column, small_field, label_a, &
+      label_b, label_c, real_1, real_2, real_3, form_ground, form_link, form_point, form_revolute, form_prism, &
+      form_joint, form_end
    use card_reader, only: parsed_card_t
    use failures, only: failure_t, fail, capitals, status_system
    use input_errors, only: error_code_t, input_errors_t, add_field_error, add_remark, link_unknown, &
@@ -19,7 +19,7 @@ module card_sets
    private
    public :: card_set_t, vary_card_t, begin_set, begin_mechanism, append_card
    public :: read_small_letters, build_bodies, look_up, match_word
-   public :: add_card_error, add_parsed_error, add_card_remark
+   public :: add_card_error, add_parsed_error, add_card_remark, text_of
 
    !> The links, the points or the pairs of a set.
    type :: named_t
@@ -73,7 +73,6 @@ contains
 
       do k = 1, set%count
          set%cards(k)%drive = 0
-         set%cards(k)%term = 0
          set%cards(k)%point = 0
       end do
       set%angle_unit = 1.0_wp
@@ -336,27 +335,18 @@ contains
       if (place == 0 .and. set%cards(k)%valid) call add_card_error(set, code, k, label_a)
    end subroutine match_word
 
-   !> Adds the remark `kind` about `field` (label_a to real_3) of card `k`; a real may be on its `*` card.
+   !> Adds the remark `kind` about `field` (label_a to real_3) of card `k`.
    subroutine add_card_remark(set, kind, k, field)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: kind, k, field
+      type(card_t) :: on
+      type(field_t) :: at
 
-      associate (card => set%cards(k))
-         if (any(card%on_star .and. field == [real_1, real_2, real_3])) then
-            associate (wide => wide_fields(field - label_c))
-               call add_remark(set%errors, kind, card%star, first_column(card%star, wide), field_text(card%star, wide))
-            end associate
-         else
-            associate (narrow => card_fields(field))
-               call add_remark(set%errors, kind, card%card, first_column(card%card, narrow), &
-                               field_text(card%card, narrow))
-            end associate
-         end if
-      end associate
+      call find_field(set%cards(k), field, on, at)
+      call add_remark(set%errors, kind, on, first_column(on, at), field_text(on, at))
    end subroutine add_card_remark
 
-   !> Adds the error `code` about `field` (card_name, label_a to real_3) of card `k`; a real may be on its `*` card.
-   !> `more` ends the sentence.
+   !> Adds the error `code` about `field` (card_name, label_a to real_3) of card `k`. `more` ends the sentence.
    subroutine add_card_error(set, code, k, field, more)
       type(card_set_t), intent(inout) :: set
       type(error_code_t), intent(in) :: code
@@ -374,10 +364,36 @@ contains
       integer, intent(in) :: field
       character(*), intent(in), optional :: more
 
-      if (any(card%on_star .and. field == [real_1, real_2, real_3])) then
-         call add_field_error(errors, code, card%star, wide_fields(field - label_c), more)
-      else
-         call add_field_error(errors, code, card%card, card_fields(field), more)
-      end if
+      type(card_t) :: on
+      type(field_t) :: at
+
+      call find_field(card, field, on, at)
+      call add_field_error(errors, code, on, at, more)
    end subroutine add_parsed_error
+
+   !> The text in `field` (card_name, label_a to real_3) of `card`.
+   pure function text_of(card, field) result(text)
+      type(parsed_card_t), intent(in) :: card
+      integer, intent(in) :: field
+      character(:), allocatable :: text
+      type(card_t) :: on
+      type(field_t) :: at
+
+      call find_field(card, field, on, at)
+      text = field_text(on, at)
+   end function text_of
+
+   !> Where `field` of `card` stands: `on` the card itself or, a real, on the `*` card below it, `at` these columns.
+   pure subroutine find_field(card, field, on, at)
+      type(parsed_card_t), intent(in) :: card
+      integer, intent(in) :: field
+      type(card_t), intent(out) :: on
+      type(field_t), intent(out) :: at
+
+      on = card%card
+      at = card_fields(field)
+      if (.not. any(card%on_star .and. field == [real_1, real_2, real_3])) return
+      on = card%star
+      at = wide_fields(field - label_c)
+   end subroutine find_field
 end module card_sets

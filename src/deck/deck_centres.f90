@@ -16,27 +16,24 @@ contains
    !> Unknown names and repeated cards are errors.
    subroutine build_centres(set)
       type(card_set_t), intent(inout) :: set
-      type(request_t) :: requests(set%number_of(form_pole) + set%number_of(form_curve)), one
+      type(request_t) :: requests(set%number_of(form_pole) + set%number_of(form_curve))
       integer :: card_of(size(requests)), form, k, i, n
 
-      if (size(requests) == 0) return
       n = 0
       do form = form_pole, form_curve
          do k = 1, set%count
             if (set%cards(k)%form /= form .or. .not. set%cards(k)%valid) cycle
-            call read_centre(set, k, one)
-            do i = 1, n
-               if (requests(i)%kind /= one%kind .or. requests(i)%subject /= one%subject &
-                  .or. requests(i)%second /= one%second .or. one%subject == 0) cycle
-               call add_card_error(set, print_repeated, k, label_a, whole(set%cards(card_of(i))%card%number))
-               exit
-            end do
             n = n + 1
-            requests(n) = one
             card_of(n) = k
+            call read_centre(set, k, requests(n))
+            associate (one => requests(n), earlier => requests(:n - 1))
+               i = findloc(one%subject > 0 .and. earlier%kind == one%kind .and. earlier%subject == one%subject &
+                  .and. earlier%second == one%second, .true., dim=1)
+            end associate
+            if (i > 0) call add_card_error(set, print_repeated, k, label_a, whole(set%cards(card_of(i))%card%number))
          end do
       end do
-      set%mechanism%requests = [set%mechanism%requests, requests(:n)]
+      if (n > 0) set%mechanism%requests = [set%mechanism%requests, requests(:n)]
    end subroutine build_centres
 
    !> What the POLE or CURVE card `k` asks for. A name that is unknown is number 0.

@@ -5,9 +5,9 @@ module deck_drives
    use kinds, only: wp, label_length
    use constants, only: pi
    use diagnostics, only: remark_jumps
-   use mechanism, only: mechanism_t, drive_t, term_t, instant, find_instants, drive_angle, drive_relangle, &
-      drive_slide, drive_words, driven_kinds, term_harmonic, term_power, term_table, term_words, term_cycloid, &
-      term_cosine, rise_words, pair_revolute, request_link
+   use mechanism, only: mechanism_t, drive_t, term_t, drive_links, instant, find_instants, drive_angle, &
+      drive_relangle, drive_slide, drive_words, driven_kinds, term_harmonic, term_power, term_table, term_words, &
+      term_cycloid, term_cosine, rise_words, pair_revolute, request_link
    use card_reader, only: parsed_card_t
    use card_sets, only: card_set_t, look_up, match_word, add_card_error, add_card_remark
    use cards, only: card_name, label_a, label_b, label_c, real_1, real_2, form_unknown, form_drive, form_add, &
@@ -17,7 +17,7 @@ module deck_drives
       table_range, power_negative, power_zero, power_large, rise_law, rise_duration, rpm_unit
    implicit none
    private
-   public :: build_drives, check_terms, turns_a_minute, turns_unit, continues_table
+   public :: build_drives, check_terms, turns_a_minute, turns_unit
 
    !> Turns a minute: the word on a DRIVE card, and a minute in the units of time that are known.
    character(label_length), parameter :: turns_a_minute = 'RPM'
@@ -99,25 +99,21 @@ contains
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: k
       type(drive_t), intent(in) :: drive
-      integer :: link
+      type(error_code_t), parameter :: ground_errors(drive_angle:drive_relangle) = &
+         [drive_ground, drive_ground_point, drive_ground_point, drive_grounds]
+      integer :: links(3), label
 
       if (drive%subject == 0) return
-      if (drive%kind == drive_relangle) then
-         if (drive%second == drive%subject) then
-            call add_card_error(set, drive_one_link, k, label_c)
-         else if (drive%second > 0) then
-            if (all(set%mechanism%links([drive%subject, drive%second])%ground)) &
-               call add_card_error(set, drive_grounds, k, label_c)
-         end if
-      else if (drive%kind == drive_angle) then
-         if (set%mechanism%links(drive%subject)%ground) call add_card_error(set, drive_ground, k, label_b)
-      else if (drive%kind == drive_slide) then
+      label = merge(label_c, label_b, drive%kind == drive_relangle)
+      if (drive%kind == drive_slide) then
          if (set%mechanism%pairs(drive%subject)%kind == pair_revolute) &
-            call add_card_error(set, drive_revolute, k, label_b)
+            call add_card_error(set, drive_revolute, k, label)
+      else if (drive%second == drive%subject) then
+         call add_card_error(set, drive_one_link, k, label)
       else
-         link = set%mechanism%points(drive%subject)%link
-         if (link == 0) return
-         if (set%mechanism%links(link)%ground) call add_card_error(set, drive_ground_point, k, label_b)
+         links = drive_links(set%mechanism, drive)
+         if (any(links == 0) .or. (drive%kind == drive_relangle .and. drive%second == 0)) return
+         if (all(set%mechanism%links(links)%ground)) call add_card_error(set, ground_errors(drive%kind), k, label)
       end if
    end subroutine check_subject
 
@@ -142,49 +138,42 @@ contains
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: k, d
       type(drive_t), intent(inout) :: drive
-      integer :: i, n, last
+      integer :: i, above, n, row, last
 
-      do last = k, set%count - 1
-         if (.not. (is_term(set, last + 1) .or. set%cards(last + 1)%form == form_toler)) exit
-      end do
-      allocate (drive%terms(count([(begins_term(set, i), i=k + 1, last)])))
+      set%cards(k)%drive = d
       n = 0
-      do i = k + 1, last
-         if (.not. begins_term(set, i)) cycle
-         n = n + 1
+      row = 0
+      above = k
+      last = k
+      do i = k + 1, set%count
+         if (set%cards(i)%form == form_toler) cycle
+         if (.not. is_term(set, i)) exit
+         row = row + 1
+         if (.not. (is_row(set%cards(i)) .and. is_row(set%cards(above)))) then
+            row = 1
+            n = n + 1
+         end if
          set%cards(i)%drive = d
          set%cards(i)%term = n
-         if (set%cards(i)%form == form_rise) then
-            call build_rise(set, i, unit_of(set, drive), drive%terms(n))
-         else
-            call build_term(set, i, unit_of(set, drive), drive%terms(n))
-         end if
+         set%cards(i)%row = row
+         above = i
+         last = i
+      end do
+      allocate (drive%terms(n))
+      do i = k + 1, last
+         if (set%cards(i)%form == form_toler .or. set%cards(i)%row > 1) cycle
+         associate (term => drive%terms(set%cards(i)%term))
+            if (set%cards(i)%form == form_rise) then
+               call build_rise(set, i, unit_of(set, drive), term)
+            else if (is_row(set%cards(i))) then
+               call build_table(set, pack([(row, row=i, last)], set%cards(i:last)%form == form_add &
+                  .and. set%cards(i:last)%term == set%cards(i)%term), unit_of(set, drive), term)
+            else
+               call build_term(set, i, unit_of(set, drive), term)
+            end if
+         end associate
       end do
    end subroutine build_terms
-
-   !> Whether a term begins with card `k`.
-   pure logical function begins_term(set, k)
-      type(card_set_t), intent(in) :: set
-      integer, intent(in) :: k
-
-      begins_term = .false.
-      if (is_term(set, k)) begins_term = .not. continues_table(set, k)
-   end function begins_term
-
-   !> Whether card `k` is another row of the table to which the card above it belongs; TOLER cards stand between them.
-   pure logical function continues_table(set, k)
-      type(card_set_t), intent(in) :: set
-      integer, intent(in) :: k
-      integer :: above
-
-      continues_table = .false.
-      if (.not. is_row(set%cards(k))) return
-      above = k - 1
-      do while (set%cards(above)%form == form_toler .and. above > 1)
-         above = above - 1
-      end do
-      continues_table = is_row(set%cards(above))
-   end function continues_table
 
    !> Whether `card` is a row of a table.
    elemental logical function is_row(card)
@@ -204,9 +193,6 @@ contains
       call match_word(set, k, term_words, add_kind, kind)
       associate (card => set%cards(k))
          select case (kind)
-         case (term_table)
-            call build_table(set, k, unit, term)
-            return
          case (term_harmonic)
             term%r = card%real*[unit, set%angle_unit, set%angle_unit]
          case (term_power)
@@ -234,16 +220,14 @@ contains
       end associate
    end subroutine build_rise
 
-   !> The table whose first row is the ADD card `first`, as `term`. `unit`: that of its values.
-   subroutine build_table(set, first, unit, term)
+   !> The table on the ADD cards `rows`, as `term`. `unit`: that of its values.
+   subroutine build_table(set, rows, unit, term)
       type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: first
+      integer, intent(in) :: rows(:)
       real(wp), intent(in) :: unit
       type(term_t), intent(inout) :: term
-      integer, allocatable :: rows(:)
       integer :: i
 
-      rows = rows_of_table(set, first)
       term%kind = term_table
       term%knots = set%cards(rows)%real(1)
       term%values = set%cards(rows)%real(2)*unit
@@ -258,24 +242,8 @@ contains
             end if
          end associate
       end do
-      if (size(rows) == 1) call add_card_error(set, table_short, first, label_a)
+      if (size(rows) == 1) call add_card_error(set, table_short, rows(1), label_a)
    end subroutine build_table
-
-   !> The cards of the table whose first row is card `first`.
-   pure function rows_of_table(set, first) result(rows)
-      type(card_set_t), intent(in) :: set
-      integer, intent(in) :: first
-      integer, allocatable :: rows(:)
-      integer :: k, last
-
-      last = first
-      do k = first + 1, set%count
-         if (set%cards(k)%form == form_toler) cycle
-         if (.not. is_row(set%cards(k))) exit
-         last = k
-      end do
-      rows = pack([(k, k=first, last)], is_row(set%cards(first:last)))
-   end function rows_of_table
 
    !> Adds an error for each term that, with its first two derivatives, does not exist at all instants. The set has no
    !> other error.
@@ -286,7 +254,7 @@ contains
 
       call find_instants(set%mechanism, first, last)
       do k = 1, set%count
-         if (set%cards(k)%term > 0) call check_term(set, k, first, last)
+         if (set%cards(k)%drive > 0 .and. set%cards(k)%row == 1) call check_term(set, k, first, last)
       end do
    end subroutine check_terms
 

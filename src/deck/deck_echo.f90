@@ -3,9 +3,9 @@ module deck_echo
    use kinds, only: label_length
    use mechanism, only: method_words, method_newton
    use card_reader, only: parsed_card_t
-   use card_sets, only: card_set_t
-   use cards, only: card_fields, wide_fields, label_a, real_1, field_text, form_name, reals_of, form_title, &
-      form_units, form_at, form_method, form_print, form_pole, form_curve, form_vary
+   use card_sets, only: card_set_t, text_of
+   use cards, only: label_a, real_1, form_name, reals_of, form_title, form_units, form_at, form_method, form_print, &
+      form_pole, form_curve, form_vary
    implicit none
    private
    public :: build_echo
@@ -80,13 +80,8 @@ contains
       end if
       line = head_line(card%form, labels)
       do i = 1, reals_of(card%form, card%label(label_a))
-         if (card%on_star(i)) then
-            text = field_text(card%star, wide_fields(i))
-         else if (card%given(i)) then
-            text = field_text(card%card, card_fields(real_1 + i - 1))
-         else
-            text = merge('   ', '0.0', any(card%form == [form_at, form_vary]))
-         end if
+         text = merge('   ', '0.0', any(card%form == [form_at, form_vary]))
+         if (card%given(i)) text = text_of(card, real_1 + i - 1)
          column = real_column + (i - 1)*real_width
          line(column:column + real_width - 1) = text
       end do

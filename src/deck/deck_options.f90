@@ -308,11 +308,9 @@ contains
          n = n + 1
          card_of(n) = k
          call read_branch(set, k, requests(n))
-         do i = 1, n - 1
-            if (requests(i)%link /= requests(n)%link .or. abs(requests(i)%t - requests(n)%t) > 0.0_wp) cycle
-            call add_card_error(set, branch_repeated, k, card_name, whole(set%cards(card_of(i))%card%number))
-            exit
-         end do
+         i = findloc(requests(:n - 1)%link == requests(n)%link &
+            .and. .not. abs(requests(:n - 1)%t - requests(n)%t) > 0.0_wp, .true., dim=1)
+         if (i > 0) call add_card_error(set, branch_repeated, k, card_name, whole(set%cards(card_of(i))%card%number))
       end do
       set%mechanism%branch_requests = requests(:n)
    end subroutine build_branches

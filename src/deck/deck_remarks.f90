@@ -5,11 +5,11 @@ module deck_remarks
    use constants, only: pi
    use planar, only: direction, quarter_turn, point_of
    use diagnostics, only: remark_link_unused, remark_point_unused, remark_radians, remark_guide
-   use mechanism, only: mechanism_t, pair_prismatic, drive_words, driven_kinds, drive_angle, drive_relangle, &
-      request_link, request_point, request_pair, request_curve
+   use mechanism, only: mechanism_t, drive_links, used_points, pair_prismatic, drive_words, driven_kinds, drive_angle, &
+      drive_relangle, request_link, request_point, request_pair, request_curve
    use scales, only: solver_length
    use card_sets, only: card_set_t, add_card_error, add_card_remark
-   use cards, only: label_a, label_c, real_1, real_3, form_ground, form_link, form_prism, form_drive, form_rise
+   use cards, only: label_a, label_c, real_1, form_ground, form_link, form_prism, form_drive, form_rise
    use input_errors, only: link_unused
    implicit none
    private
@@ -29,7 +29,12 @@ contains
       logical :: link(size(set%mechanism%links)), point(size(set%mechanism%points))
       integer :: i
 
-      call find_used(set%mechanism, link, point)
+      point = used_points(set%mechanism)
+      link = .false.
+      link(pack(set%mechanism%points%link, point)) = .true.
+      do i = 1, size(set%mechanism%drives)
+         link(drive_links(set%mechanism, set%mechanism%drives(i))) = .true.
+      end do
       associate (m => set%mechanism, card_of_link => set%named(request_link)%card)
          if (.not. any(link .and. .not. m%links%ground)) &
             call add_card_error(set, link_unused, card_of_link(findloc(m%links%ground, .false., dim=1)), label_a)
@@ -37,34 +42,13 @@ contains
             if (.not. link(i)) call add_card_remark(set, remark_link_unused, card_of_link(i), label_a)
          end do
          where (.not. link) m%links%ground = .true.
-         associate (requests => m%requests)
-            point(pack(requests%subject, requests%kind == request_point .or. requests%kind == request_curve)) = .true.
-         end associate
+         point(pack(m%requests%subject, &
+            m%requests%kind == request_point .or. m%requests%kind == request_curve)) = .true.
       end associate
       do i = 1, size(point)
          if (.not. point(i)) call add_card_remark(set, remark_point_unused, set%named(request_point)%card(i), label_a)
       end do
    end subroutine check_unused
-
-   !> The links `link` (links) and points `point` (points) of `m` that a pair or a drive uses.
-   pure subroutine find_used(m, link, point)
-      type(mechanism_t), intent(in) :: m
-      logical, intent(out) :: link(:), point(:)
-      integer :: i
-
-      link = .false.
-      point = .false.
-      point(m%pairs%point_i) = .true.
-      point(m%pairs%point_j) = .true.
-      do i = 1, size(m%drives)
-         associate (drive => m%drives(i))
-            if (driven_kinds(drive%kind) == request_point) point(drive%subject) = .true.
-            if (driven_kinds(drive%kind) == request_link) link(drive%subject) = .true.
-            if (drive%kind == drive_relangle) link(drive%second) = .true.
-         end associate
-      end do
-      link(pack(m%points%link, point)) = .true.
-   end subroutine find_used
 
    !> A remark on the first angle in radians that looks like degrees: beyond a turn, up to two turns of degrees, a whole
    !> number or a half.

@@ -7,9 +7,9 @@ module deck_variants
    use mechanism, only: tolerance_t
    use card_sets, only: card_set_t, vary_card_t, begin_mechanism, add_parsed_error
    use card_reader, only: parsed_card_t
-   use cards, only: card_name, label_a, label_b, label_c, real_1, real_2, real_3, forms, card_columns, card_fields, &
-      form_unknown, form_ground, form_link, form_point, form_prism, form_joint, form_drive, form_add, form_rise, &
-      form_toler, form_time, form_vary, form_name, reals_of
+   use cards, only: card_name, label_a, label_b, label_c, real_1, real_2, real_3, form_unknown, form_ground, &
+      form_link, form_point, form_prism, form_joint, form_drive, form_add, form_rise, form_toler, form_time, &
+      form_vary, reals_of
    use deck_tolerances, only: number_on_card
    use failures, only: capitals
    use input_errors, only: input_errors_t, error_code_t, error_count, vary_alone, vary_number, vary_count, vary_equal, &
@@ -241,33 +241,18 @@ contains
       v%total = int(total)
    end subroutine count_variants
 
-   !> The name and the unit of `one`: those of a number that takes a tolerance, or what the layout of its card says.
+   !> The name and the unit of `one`.
    subroutine name_number(set, one)
       type(card_set_t), intent(in) :: set
       type(varied_t), intent(inout) :: one
       type(tolerance_t) :: number
-      character(card_columns) :: layout
-      character(:), allocatable :: name
       integer :: border
 
-      associate (card => set%cards(one%card), field => card_fields(real_1 + one%place - 1), m => set%mechanism)
-         number = number_on_card(set, one%card, one%place)
-         name = trim(number%name)
-         one%unit = number%unit_name
-         if (number%kind == 0) then
-            layout = forms(card%form)%layout
-            name = trim(form_name(card%form))//' '//trim(adjustl(layout(field%first:field%last)))
-            if (card%form == form_time) one%unit = m%time_unit
-            if (any(card%form == [form_ground, form_link])) then
-               name = trim(form_name(card%form))//' '//trim(card%label(label_a))//' '//layout(field%first:field%last)
-               if (one%place == 3) one%unit = merge('DEG', 'RAD', m%degrees)
-            end if
-         end if
-      end associate
-      name = trim(name)
-      border = index(name, ' ', back=.true.)
-      one%owner = name(:border - 1)
-      one%word = name(border + 1:)
+      number = number_on_card(set, one%card, one%place)
+      border = index(trim(number%name), ' ', back=.true.)
+      one%owner = number%name(:border - 1)
+      one%word = number%name(border + 1:)
+      one%unit = number%unit_name
    end subroutine name_number
 
    !> Gives the cards of `v` the numbers of variant `n`, ready to be built.

@@ -4,7 +4,7 @@
 module instant_centres
    use kinds, only: wp
    use constants, only: pi
-   use planar, only: direction, rotated, quarter_turn, cross
+   use planar, only: rotated, quarter_turn, cross
    implicit none
    private
    public :: centre_t, pole_of, curve_of, seen_from, pole_rate

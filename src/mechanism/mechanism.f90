@@ -13,7 +13,7 @@ module mechanism
    public :: request_link, request_point, request_pair, request_pole, request_curve
    public :: number_ground, number_point, number_joint, number_pair, number_drive
    public :: method_newton, method_matrix, method_dense, method_words, own_predictor
-   public :: instant_count, instant, find_instants, pair_links, drive_links, request_links, wanted_links
+   public :: instant_count, instant, find_instants, pair_links, drive_links, request_links, wanted_links, used_points
    public :: with_all_links, plane_origin, place_links
 
    integer, parameter :: pair_revolute = 1   !< REVOLUTE: eq. (7), (8)
@@ -275,6 +275,20 @@ contains
          wanted(request_links(m, m%requests(i))) = .true.
       end do
    end function wanted_links
+
+   !> Whether a pair or a drive uses each point (points) of `m`.
+   pure function used_points(m) result(used)
+      type(mechanism_t), intent(in) :: m
+      logical :: used(size(m%points))
+      integer :: i
+
+      used = .false.
+      used(m%pairs%point_i) = .true.
+      used(m%pairs%point_j) = .true.
+      do i = 1, size(m%drives)
+         if (driven_kinds(m%drives(i)%kind) == request_point) used(m%drives(i)%subject) = .true.
+      end do
+   end function used_points
 
    !> `m` with requests for all its moving links, after its own.
    pure function with_all_links(m) result(all_links)

@@ -4,7 +4,8 @@ module scales
    use kinds, only: wp
    use planar, only: point_of
    use drives, only: drive_rate
-   use mechanism, only: mechanism_t, drive_t, pair_prismatic, drive_x, drive_y, drive_slide, plane_origin
+   use mechanism, only: mechanism_t, drive_t, pair_prismatic, drive_x, drive_y, drive_slide, plane_origin, &
+      used_points
    implicit none
    private
    public :: characteristic_length, solver_length, characteristic_rate, power_of_two, is_length, relative_tolerance
@@ -24,16 +25,8 @@ contains
    !> The same for the equations: points that no pair and no drive uses do not count, unless there is no other length.
    pure real(wp) function solver_length(m) result(length)
       type(mechanism_t), intent(in) :: m
-      logical :: counts(size(m%points))
-      integer :: i
 
-      counts = .false.
-      counts(m%pairs%point_i) = .true.
-      counts(m%pairs%point_j) = .true.
-      do i = 1, size(m%drives)
-         if (any(m%drives(i)%kind == [drive_x, drive_y])) counts(m%drives(i)%subject) = .true.
-      end do
-      length = largest_length(m, counts)
+      length = largest_length(m, used_points(m))
       if (.not. is_usable(length)) length = characteristic_length(m)
    end function solver_length
 
