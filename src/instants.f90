@@ -92,7 +92,7 @@ contains
       type(writers_t), intent(inout) :: o
 
       if (options%errors .or. (due .and. lists)) call sample_set(a, options%errors)
-      if (due .and. (lists .or. o%asked(out_csv))) call sense_set(a)
+      if (due .and. (lists .or. any(o%asked([out_csv, out_table, out_plot_table])))) call sense_set(a)
       if (lists .and. (due .or. has_words(a%now))) &
          call listing_instant(o%files(out_listing, 0), o%layout, m, a%now, k)
       if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv, 0), m, a%now, k, o%varies)

@@ -28,7 +28,7 @@ parts() {
    estimates of errors|57|"$MAKE" --no-print-directory errors
    proofs|162|"$BUILD/release/proof_bounds" input/*.deck
    nothing false is proved|2000|"$BUILD/release/fool_proofs" 2000
-   units of length|751|tests/system/units.sh
+   units|786|tests/system/units.sh
    the methods against one another|8|tests/system/methods.sh
    variants|89|tests/system/variants.sh
    tolerances|22|tests/system/tolerances.sh

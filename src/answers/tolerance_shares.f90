@@ -2,11 +2,11 @@
 !> squares is greatest, the share of each number in the sum of squares, the largest first.
 module tolerance_shares
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_pair, pair_prismatic
+   use mechanism, only: mechanism_t, request_pair, request_pole, pair_prismatic
    use points, only: is_due, coordinates_of
    use names, only: subject_name
-   use set_motion, only: set_motion_t
-   use sensitivities, only: has_tolerances, ground_sensitivities, worst_case, root_of_squares
+   use set_motion, only: set_motion_t, spread_t, spread_in_set
+   use sensitivities, only: has_tolerances, worst_case, root_of_squares
    use listing_layout, only: layout_t, digits_t, digits_of, dimension_of, name_length, unit_of, column_text
    use listing_tables, only: time_text
    use text_output, only: output_t, put
@@ -56,13 +56,9 @@ contains
 
       do i = 1, size(m%requests)
          if (.not. is_due(m, m%requests(i), k) .or. .not. has_tolerances(m, m%requests(i))) cycle
-         c = s%parts%part(i)
-         if (c == 0) then
-            call take_row(a%list(:, :, i), m, ground_sensitivities(m, m%requests(i)), 2, s%motions(1)%t)
-            cycle
-         end if
-         associate (found => s%sensitivities(c), n => s%parts%number(i))
-            call take_row(a%list(:, :, i), s%own(c), found%of(:, :, :, n), found%known(n), s%motions(c)%t)
+         c = max(1, s%parts%part(i))
+         call take_row(a%list(:, :, i), spread_in_set(m, s, i), s%motions(c)%t)
+         associate (found => s%sensitivities(c))
             do d = 1, size(found%jams)
                if (found%jams(d)) a%jams = a%jams .or. m%tolerances%name == s%own(c)%tolerances(d)%name
             end do
@@ -70,25 +66,24 @@ contains
       end do
    end subroutine note_tolerances
 
-   !> Takes the sensitivities `s` (3, 0:2, numbers), as far as they are `known`, of a row at the time `t`.
-   pure subroutine take_row(list, m, s, known, t)
+   !> Takes the sensitivities `x` of a row at the time `t`.
+   pure subroutine take_row(list, x, t)
       type(share_t), intent(inout) :: list(:, 0:)
-      type(mechanism_t), intent(in) :: m
-      real(wp), intent(in) :: s(:, 0:, :), t
-      integer, intent(in) :: known
+      type(spread_t), intent(in) :: x
+      real(wp), intent(in) :: t
       real(wp) :: root(3, 0:2), worst(3, 0:2)
       integer :: c, k
 
-      root = root_of_squares(m%tolerances, s)
-      worst = worst_case(m%tolerances, s)
-      do k = 0, known
+      root = root_of_squares(x%tolerances, x%of)
+      worst = worst_case(x%tolerances, x%of)
+      do k = 0, x%known
          do c = 1, 3
             associate (one => list(c, k))
                if (allocated(one%s) .and. root(c, k) <= one%root*(1.0_wp + alike)) cycle
                one%root = root(c, k)
                one%worst = worst(c, k)
                one%t = t
-               one%s = s(c, k, :)
+               one%s = x%of(c, lbound(x%of, 2) + k, :)
             end associate
          end do
       end do
@@ -105,6 +100,7 @@ contains
 
       call put(o, '')
       call put(o, ' '//phrase(say_shares, m%polish))
+      if (any(m%requests%kind >= request_pole)) call put(o, ' --- '//phrase(say_no_shares, m%polish))
       do d = 1, size(a%jams)
          if (a%jams(d)) call put(o, ' *** '//trim(m%tolerances(d)%name)//': '//phrase(say_jams, m%polish))
       end do

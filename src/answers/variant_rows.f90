@@ -192,10 +192,10 @@ contains
       asked = m
       asked%requests = m%requests(requests)
       asked%requests%every = 1
+      if (allocated(asked%tolerances)) deallocate (asked%tolerances)
       s%extremes = new_table(asked)
       allocate (s%drives(size(requests)), source=min(1, size(m%drives)))
-      do i = 1, size(requests)
-         if (parts%count == 1) exit
+      do i = 1, merge(0, size(requests), parts%count == 1)
          associate (own => parts%list(parts%part(requests(i)))%drives)
             s%drives(i) = 0
             if (size(own) > 0) s%drives(i) = own(1)

@@ -28,9 +28,6 @@ module listing
    type(phrase_t), parameter :: singular_words(singular_unclear:singular_dead) = &
       [say_singular, say_change_point, say_dead_point]
    integer, parameter :: links_a_line = 10
-   !> Beside a dead point the sensitivity of an acceleration loses no more digits than the acceleration, but for a
-   !> constant.
-   real(wp), parameter :: doubt_growth = 4.0_wp
 
 contains
 
@@ -122,8 +119,7 @@ contains
          row = row_in_set(m, s, i)
          error = doubt_in_set(s, i)
          call put_requested(o, l, m, i, row, error, table)
-         if (has_tolerances(m, m%requests(i))) call put_spreads(o, l, m, i, row, spread_in_set(m, s, i), &
-            doubt_of(row, error), table)
+         if (has_tolerances(m, m%requests(i))) call put_spreads(o, l, m, i, row, spread_in_set(m, s, i), table)
       end do
       if (table%kind == 0 .and. is_flagged(s)) call put_instant(o, l, s%motions(1)%t, step)
       call put_marks(o, m, s)
@@ -134,18 +130,6 @@ contains
             size(s%motions(c)%diagnostics))])
       end do
    end subroutine listing_instant
-
-   !> The part (0:2) of a sensitivity of `row`, of which `error` (3, 0:2) is unknown, that rounding leaves open. A
-   !> sensitivity of a position is lost as a velocity is, one of a velocity as an acceleration.
-   pure function doubt_of(row, error) result(doubt)
-      type(row_t), intent(in) :: row
-      real(wp), intent(in) :: error(3, 0:2)
-      real(wp) :: doubt(0:2), size_of(0:2)
-
-      size_of = max(maxval(abs(row%value), dim=1), tiny(1.0_wp))
-      doubt = min(maxval(error, dim=1), size_of)/size_of
-      doubt = [maxval(doubt(:1)), maxval(doubt), doubt_growth*maxval(doubt)]
-   end function doubt_of
 
    !> Why some part of `s` has not all of its motion, each reason once, and of singular positions each with its links.
    subroutine put_marks(o, m, s)

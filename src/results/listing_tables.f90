@@ -183,15 +183,14 @@ contains
    end subroutine put_requested
 
    !> What the tolerances do to the `row` of request number `i` of the set `m`, with its sensitivities `s`: the worst
-   !> case, and the root of the sum of squares. `doubt`: the part (0:2) of each that rounding leaves open.
-   subroutine put_spreads(o, l, m, i, row, s, doubt, table)
+   !> case, and the root of the sum of squares.
+   subroutine put_spreads(o, l, m, i, row, s, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: i
       type(row_t), intent(in) :: row
       type(spread_t), intent(in) :: s
-      real(wp), intent(in) :: doubt(0:)
       type(table_t), intent(inout) :: table
       type(digits_t) :: d
       type(row_t) :: one
@@ -202,10 +201,11 @@ contains
       one%known = s%known
       one%name = ' '//phrase(say_worst, m%polish)
       one%value = worst_case(s%tolerances, s%of)
-      call put_row(o, l, d, one, one%value*spread(doubt, 1, 3), table%masked)
+      call put_row(o, l, d, one, worst_case(s%tolerances, s%error), table%masked)
       one%name = ' RSS'
       one%value = root_of_squares(s%tolerances, s%of)
-      call put_row(o, l, d, one, one%value*spread(doubt, 1, 3), table%masked)
+      ! The difference of two roots is no larger than the root of the differences.
+      call put_row(o, l, d, one, root_of_squares(s%tolerances, s%error), table%masked)
    end subroutine put_spreads
 
    !> The heads over rows of this `kind` with the digits `d`, unless they stand there: names, powers of ten where there

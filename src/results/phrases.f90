@@ -115,6 +115,7 @@ module phrases
       say_worst = phrase_t('WORST', 'NAJGOR.'), &
       say_shares = phrase_t('TOLERANCES: SHARES OF THE NUMBERS WHERE THE RSS IS GREATEST', &
          'TOLERANCJE: UDZIALY LICZB PRZY NAJWIEKSZYM RSS'), &
+      say_no_shares = phrase_t('POLES AND CURVES HAVE NO TOLERANCES', 'BIEGUNY I TORY NIE MAJA TOLERANCJI'), &
       say_small_shares = phrase_t('SMALLER SHARES:', 'MNIEJSZE UDZIALY:'), &
       say_jams = phrase_t('REDUNDANT EQUATIONS LEAVE NO ROOM FOR ITS TOLERANCE', &
          'ROWNANIA NADLICZBOWE NIE DOPUSZCZAJA TOLERANCJI')

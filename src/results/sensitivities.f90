@@ -1,6 +1,7 @@
 !> The first-order sensitivities of the rows of a motion to the numbers that have tolerances, at one instant, and what
 !> the tolerances make of them: the worst case, the sum of |s| times the tolerance, and the root of the sum of squares.
-!> The linear response is that of METHOD NEWTON's blocks, whatever method has found the position.
+!> The linear response is that of METHOD NEWTON's blocks, whatever method has found the position. Sensitivities of the
+!> same mechanism with all numbers off by roundings tell how far they are known.
 module sensitivities
    use kinds, only: wp
    use planar, only: direction
@@ -9,6 +10,9 @@ module sensitivities
       number_drive, pair_prismatic, place_links
    use number_changes, only: change_t, change_of
    use law_changes, only: law_change, smooth_order
+   use card_roundings, only: parts_of_number, number_point, number_pair, number_link, number_of_drive => number_drive, &
+      rounding, roundings
+   use known_digits, only: nothing_known
    use motion, only: motion_t, new_motion
    use points, only: row_t, row_of, point_motion
    use engine, only: engine_t
@@ -26,15 +30,25 @@ module sensitivities
    type :: sensitivities_t
       logical :: taken = .false.                     !< some number has a tolerance
       real(wp), allocatable :: of(:, :, :, :)        !< (3, 0:2, numbers, requests)
+      real(wp), allocatable :: error(:, :, :, :)     !< likewise: what rounding leaves open of them
       integer, allocatable :: known(:)               !< (requests) as of a row: -1 none of them exists
       logical, allocatable :: jams(:)                !< (numbers) redundant equations do not allow it to change
    end type sensitivities_t
 
-   !> What an independent mechanism needs for them.
-   type :: sensor_t
+   !> Directions of roundings: of four numbers by chance the largest is seldom below a third of what it may be.
+   integer, parameter :: samples = 4
+   real(wp), parameter :: caution = 4.0_wp
+
+   !> The response of a mechanism, its numbers as they are or off by roundings.
+   type :: perturbed_t
       type(response_t) :: response
       type(block_engine_t) :: engine
-      logical :: is_ready = .false.
+      logical :: is_made = .false., is_ready = .false.   !< the response; the engine
+   end type perturbed_t
+
+   !> What an independent mechanism needs for them.
+   type :: sensor_t
+      type(perturbed_t) :: list(0:samples)           !< number 0 has the numbers of the deck
    end type sensor_t
 
 contains
@@ -43,48 +57,136 @@ contains
    subroutine make_sensor(s, m)
       type(sensor_t), intent(out) :: s
       type(mechanism_t), intent(in) :: m
-      integer :: i
 
-      if (.not. allocated(m%tolerances)) return
-      call make_response(s%response, m, [(change_of(m, m%tolerances(i)), i=1, size(m%tolerances))])
+      if (allocated(m%tolerances)) call make_perturbed(s%list(0), m, 0)
    end subroutine make_sensor
 
-   !> The sensitivities of all requests of `m` at its motion `q`, which the engine `e` has found.
-   subroutine find_sensitivities(s, m, e, q, found)
+   !> `m` with its numbers off in direction `k` of roundings, if it is not 0.
+   subroutine make_perturbed(s, m, k)
+      type(perturbed_t), intent(inout) :: s
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: k
+      type(mechanism_t) :: off
+      integer :: i
+
+      off = m
+      if (k > 0) call put_off(off, k)
+      call make_response(s%response, off, [(change_of(m, m%tolerances(i)), i=1, size(m%tolerances))])
+      s%is_made = .true.
+   end subroutine make_perturbed
+
+   !> Puts the numbers of `m` off in direction `k` of roundings.
+   pure subroutine put_off(m, k)
+      type(mechanism_t), intent(inout) :: m
+      integer, intent(in) :: k
+      integer :: i
+
+      do i = 1, size(m%points)
+         call change(m%points(i)%offset, number_point, i)
+      end do
+      do i = 1, size(m%pairs)
+         associate (pair => m%pairs(i))
+            if (pair%kind /= pair_prismatic) cycle
+            call change_one(pair%alpha, number_pair, i, 0)
+            call change_one(pair%offset, number_pair, i, 1)
+            call change_one(pair%beta, number_pair, i, 2)
+         end associate
+      end do
+      do i = 1, size(m%links)
+         if (m%links(i)%ground) call change(m%links(i)%position, number_link, i)
+      end do
+      do i = 1, size(m%drives)
+         call change(m%drives(i)%polynomial, number_of_drive, i)
+      end do
+
+   contains
+
+      !> The numbers `x` of card number `card` of a kind.
+      pure subroutine change(x, kind, card)
+         real(wp), intent(inout) :: x(:)
+         integer, intent(in) :: kind, card
+         integer :: j
+
+         do j = 1, size(x)
+            call change_one(x(j), kind, card, j - 1)
+         end do
+      end subroutine change
+
+      !> Number `j` = 0, 1, ... of it.
+      pure subroutine change_one(x, kind, card, j)
+         real(wp), intent(inout) :: x
+         integer, intent(in) :: kind, card, j
+
+         associate (part => parts_of_number(kind, card, j))
+            x = x*(1.0_wp + rounding*part(k))
+         end associate
+      end subroutine change_one
+   end subroutine put_off
+
+   !> The sensitivities of all requests of `m` at its motion `q`, which the engine `e` has found. `in_doubt`: rounding
+   !> may leave digits of them open.
+   subroutine find_sensitivities(s, m, e, q, in_doubt, found)
       type(sensor_t), intent(inout) :: s
       type(mechanism_t), intent(in) :: m
       class(engine_t), intent(in) :: e
       type(motion_t), intent(in) :: q
+      logical, intent(in) :: in_doubt
+      type(sensitivities_t), intent(inout) :: found
+      type(sensitivities_t) :: other
+      integer :: i, k
+
+      found%taken = allocated(m%tolerances)
+      if (.not. found%taken) return
+      call sense(s%list(0), e, q, q%t, found)
+      if (.not. allocated(found%error)) allocate (found%error, mold=found%of)
+      found%error = 0.0_wp
+      if (.not. in_doubt) return
+      do k = 1, samples
+         if (.not. s%list(k)%is_made) call make_perturbed(s%list(k), m, k)
+         call sense(s%list(k), e, q, q%t + rounding*abs(q%t), other)
+         found%error = max(found%error, caution*abs(other%of - found%of)/roundings)
+         do i = 1, size(m%requests)
+            if (other%known(i) < found%known(i)) found%error(:, other%known(i) + 1:, :, i) = nothing_known
+         end do
+      end do
+   end subroutine find_sensitivities
+
+   !> Those of the mechanism of `s` at the time `t`, from the motion `q`.
+   subroutine sense(s, e, q, t, found)
+      type(perturbed_t), intent(inout) :: s
+      class(engine_t), intent(in) :: e
+      type(motion_t), intent(in) :: q
+      real(wp), intent(in) :: t
       type(sensitivities_t), intent(inout) :: found
       type(motion_t) :: again
       logical :: finite
       integer :: i, d, order
 
-      found%taken = allocated(m%tolerances)
-      if (.not. found%taken) return
-      call take_position(s, m, e, q)
-      call set_drive_values(s%engine, q%t)
-      call respond(s%response, s%engine, drive_changes(m, q%t, order), q%known < 0)
-      again = new_motion(size(m%links))
-      again%t = q%t
-      again%known = 2
-      call s%engine%get_motion(again, finite)
-      call mark_links(s%engine%chain, s%response%missing, again)
-      if (.not. allocated(found%of)) then
-         allocate (found%of(3, 0:2, size(m%tolerances), size(m%requests)), found%known(size(m%requests)))
-      end if
-      found%jams = s%response%jams
-      found%of = 0.0_wp
-      do i = 1, size(m%requests)
-         found%known(i) = known_of_row(m, q, again, m%requests(i))
-         if (found%known(i) < 0 .or. m%requests(i)%kind > request_pair) cycle
-         found%known(i) = order
-         do d = 1, size(m%tolerances)
-            found%of(:, :, d, i) = row_change(m, again, m%requests(i), s%response%changes(d), &
-               s%response%links(:, :, :, d))*m%tolerances(d)%unit
+      call take_position(s, e, q)
+      call set_drive_values(s%engine, t)
+      associate (m => s%response%m)
+         call respond(s%response, s%engine, drive_changes(m, t, order), q%known < 0)
+         again = new_motion(size(m%links))
+         again%t = t
+         again%known = 2
+         call s%engine%get_motion(again, finite)
+         call mark_links(s%engine%chain, s%response%missing, again)
+         if (.not. allocated(found%of)) then
+            allocate (found%of(3, 0:2, size(m%tolerances), size(m%requests)), found%known(size(m%requests)))
+         end if
+         found%jams = s%response%jams
+         found%of = 0.0_wp
+         do i = 1, size(m%requests)
+            found%known(i) = known_of_row(m, q, again, m%requests(i))
+            if (found%known(i) < 0 .or. m%requests(i)%kind > request_pair) cycle
+            found%known(i) = order
+            do d = 1, size(m%tolerances)
+               found%of(:, :, d, i) = row_change(m, again, m%requests(i), s%response%changes(d), &
+                  s%response%links(:, :, :, d))*m%tolerances(d)%unit
+            end do
          end do
-      end do
-   end subroutine find_sensitivities
+      end associate
+   end subroutine sense
 
    !> What `request` asks for has sensitivities: some number of `m` has a tolerance, and it is no pole and no curve.
    pure logical function has_tolerances(m, request)
@@ -107,21 +209,18 @@ contains
    end function known_of_row
 
    !> Puts the engine of `s` at the position of `q`.
-   subroutine take_position(s, m, e, q)
-      type(sensor_t), intent(inout) :: s
-      type(mechanism_t), intent(in) :: m
+   subroutine take_position(s, e, q)
+      type(perturbed_t), intent(inout) :: s
       class(engine_t), intent(in) :: e
       type(motion_t), intent(in) :: q
-      type(mechanism_t) :: placed
 
       select type (e)
       class is (block_method_t)
-         if (.not. s%is_ready) call make_block_engine(s%engine, m)
+         if (.not. s%is_ready) call make_block_engine(s%engine, s%response%m)
          s%engine%state%u = e%state%u
       class default
-         placed = m
-         call place_links(placed, q%position)
-         call make_block_engine(s%engine, placed)
+         call place_links(s%response%m, q%position)
+         call make_block_engine(s%engine, s%response%m)
          s%engine%state%u%value = s%engine%estimated
       end select
       s%is_ready = .true.

@@ -147,7 +147,7 @@ contains
 
       do c = 1, size(s%list)
          call find_sensitivities(s%sensors(c), s%now%own(c), s%list(c)%engine, s%now%motions(c), &
-            s%now%sensitivities(c))
+            s%now%errors(c)%taken .and. s%now%errors(c)%in_doubt, s%now%sensitivities(c))
       end do
    end subroutine sense_set
 

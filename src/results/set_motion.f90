@@ -29,7 +29,7 @@ module set_motion
    !> The sensitivities of a row to the numbers with tolerances, and these.
    type :: spread_t
       integer :: known = 2                              !< as of a row: -1 none of them exists
-      real(wp), allocatable :: of(:, :, :)              !< (3, 0:2, numbers)
+      real(wp), allocatable :: of(:, :, :), error(:, :, :)   !< (3, 0:2, numbers) and what is unknown of them
       type(tolerance_t), allocatable :: tolerances(:)   !< (numbers)
    end type spread_t
 
@@ -180,11 +180,13 @@ contains
 
       if (s%parts%part(i) == 0) then
          x%of = ground_sensitivities(m, m%requests(i))
+         x%error = 0.0_wp*x%of
          x%tolerances = m%tolerances
       else
          associate (found => s%sensitivities(s%parts%part(i)), k => s%parts%number(i))
             x%known = found%known(k)
             x%of = found%of(:, :, :, k)
+            x%error = found%error(:, :, :, k)
             x%tolerances = s%own(s%parts%part(i))%tolerances
          end associate
       end if

@@ -1,6 +1,6 @@
 !> The results as a table (--table): a row for each instant at which PRINT asks for anything, a column for each
 !> quantity; time first, then the drives, then all positions, velocities and accelerations that PRINT asks for, with
-!> all digits; then curves and poles, which have no place where it is at infinity.
+!> all digits; what tolerances do to them; then curves and poles, which have no place where it is at infinity.
 !>
 !> pandas, R and spreadsheets part the cells of a row at commas, gnuplot at blanks: between two cells are both, and no
 !> blanks in the heading, which gnuplot skips. The units are those of the deck. A row ends before the first value that
@@ -14,7 +14,8 @@ module table
    use drives, only: law_t, new_law, drive_motion
    use names, only: name_table_t, put_name, find_name, drive_name
    use points, only: row_t, has_number, centre_numbers, coordinates_of
-   use set_motion, only: set_motion_t, row_in_set
+   use sensitivities, only: has_tolerances, worst_case, root_of_squares
+   use set_motion, only: set_motion_t, row_in_set, spread_t, spread_in_set
    use csv, only: add_name
    use text_output, only: output_t, put, add
    use numerals, only: put_full, full_length
@@ -30,6 +31,7 @@ module table
       integer :: order = 0                          !< of the derivative: 0, 1 or 2; of a pole or curve as in `centre_t`
       integer :: coordinate = 1                     !< 1, 2 or 3: x, y, phi; of a pair 1
       logical :: angular = .false.                  !< an angle or a derivative of one
+      integer :: spread = 0                         !< by tolerances: 1 worst case, 2 root of squares; 0: none
       character(2*label_length + 12) :: name = ''   !< ROCKER.phi, TIP.vx, SLOT.v, POLE.BASE.COUPLER.x
    end type column_t
 
@@ -47,6 +49,7 @@ module table
       'x', 'y', 'phi', 'vx', 'vy', 'vphi', 'ax', 'ay', 'aphi'], [3, 3])
    character(5), parameter :: slide_words(0:2) = [character(5) :: 's', 'v', 'a']
    character(5), parameter :: turn_words(0:2) = [character(5) :: 'theta', 'omega', 'alpha']
+   character(6), parameter :: spread_words(0:2) = [character(6) :: '', '.worst', '.rss']
    !> What the columns of a pole add to the names of both links, those of a curve to that of the point, in the order of
    !> `centre_numbers`.
    character(7), parameter :: centre_words(6, request_pole:request_curve) = reshape([character(7) :: &
@@ -60,7 +63,7 @@ contains
       type(table_t) :: t
       type(name_table_t) :: links
       logical :: turns
-      integer :: i, k, c, n, row
+      integer :: i, k, c, n, row, spread
 
       allocate (t%laws(size(m%drives)), t%drives(size(m%drives)))
       do i = 1, size(m%drives)
@@ -68,24 +71,31 @@ contains
          t%drives(i) = dotted(drive_name(m, m%drives(i)))
       end do
       t%angular = m%drives%kind == drive_angle .or. m%drives%kind == drive_relangle
-      allocate (t%columns(3*sum(coordinates_of(m%requests%kind), mask=m%requests%every > 0)))
+      associate (numbers => 3*coordinates_of(m%requests%kind), rows => m%requests%every > 0)
+         n = sum(numbers, mask=rows)
+         if (allocated(m%tolerances)) n = n + 2*sum(numbers, mask=rows .and. m%requests%kind < request_pole)
+         allocate (t%columns(n))
+      end associate
       do i = 1, size(m%requests)
          if (m%requests(i)%kind == request_link .and. m%requests(i)%every > 0) &
             call put_name(links, m%links(m%requests(i)%subject)%name, i, k)
       end do
       n = 0
-      do k = 0, 2
-         row = 0
-         do i = 1, size(m%requests)
-            if (m%requests(i)%every == 0 .or. m%requests(i)%kind >= request_pole) cycle
-            row = row + 1
-            turns = .false.
-            if (m%requests(i)%kind == request_pair) turns = m%pairs(m%requests(i)%subject)%kind /= pair_prismatic
-            do c = 1, coordinates_of(m%requests(i)%kind)
-               n = n + 1
-               t%columns(n) = column_t(i, row, k, c, c == 3 .or. turns)
-               t%columns(n)%name = name_of(m, m%requests(i), links)//'.'//merge(merge(turn_words(k), slide_words(k), &
-                  turns), link_words(c, k), m%requests(i)%kind == request_pair)
+      do spread = 0, merge(2, 0, allocated(m%tolerances))
+         do k = 0, 2
+            row = 0
+            do i = 1, size(m%requests)
+               if (m%requests(i)%every == 0 .or. m%requests(i)%kind >= request_pole) cycle
+               row = row + 1
+               turns = .false.
+               if (m%requests(i)%kind == request_pair) turns = m%pairs(m%requests(i)%subject)%kind /= pair_prismatic
+               do c = 1, coordinates_of(m%requests(i)%kind)
+                  n = n + 1
+                  t%columns(n) = column_t(i, merge(row, 0, spread == 0), k, c, c == 3 .or. turns, spread)
+                  t%columns(n)%name = name_of(m, m%requests(i), links)//'.'//trim(merge(merge(turn_words(k), &
+                     slide_words(k), turns), link_words(c, k), m%requests(i)%kind == request_pair)) &
+                     //spread_words(spread)
+               end do
             end do
          end do
       end do
@@ -166,7 +176,8 @@ contains
       type(table_t), intent(in) :: t
       type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(in) :: s
-      type(row_t), allocatable :: rows(:)
+      type(row_t), allocatable :: rows(:, :)
+      type(spread_t) :: x
       real(wp) :: f(3)
       integer :: i
 
@@ -175,14 +186,19 @@ contains
          f = drive_motion(t%laws(i), s%motions(1)%t)
          call add_cell(o, ', ', f(1), m%degrees .and. t%angular(i))
       end do
-      allocate (rows(size(m%requests)))
-      do i = 1, size(rows)
-         rows(i) = row_in_set(m, s, i)
+      allocate (rows(0:2, size(m%requests)))
+      do i = 1, size(m%requests)
+         rows(:, i) = row_in_set(m, s, i)
+         if (m%requests(i)%every == 0 .or. .not. has_tolerances(m, m%requests(i))) cycle
+         x = spread_in_set(m, s, i)
+         rows(1:, i)%known = x%known
+         rows(1, i)%value = worst_case(x%tolerances, x%of)
+         rows(2, i)%value = root_of_squares(x%tolerances, x%of)
       end do
       do i = 1, size(t%columns)
-         associate (c => t%columns(i))
-            if (.not. has_number(rows(c%request), c%coordinate, c%order)) exit
-            call add_cell(o, ', ', rows(c%request)%value(c%coordinate, c%order), m%degrees .and. c%angular)
+         associate (c => t%columns(i), row => rows(t%columns(i)%spread, t%columns(i)%request))
+            if (.not. has_number(row, c%coordinate, c%order)) exit
+            call add_cell(o, ', ', row%value(c%coordinate, c%order), m%degrees .and. c%angular)
          end associate
       end do
       call put(o, '')

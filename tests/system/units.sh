@@ -1,48 +1,13 @@
 #!/bin/sh
 # A deck with all its lengths times a power of ten prints the same digits: every deck of input/, from millionths to
-# millions. The lengths are changed in the text of the cards, by their exponents, so that no decimal is rounded.
+# millions. So do the answers of the cards EXTREMES, RANGE, POLE, CURVE and TOLER, by NEWTON and DENSE, with other units of
+# time as well; in radians they are the same numbers.
 . tests/counting.sh
-
-# enlarged K DECK: the deck with its lengths times 10**K. A card with * in column 1 has the numbers of the card above it,
-# TOLER their tolerances.
-enlarged() {
-   awk -v k="$1" '
-      function scaled(text,  e, i) {
-         gsub(/ /, "", text)
-         if (text == "") return text
-         text = toupper(text); i = index(text, "E")
-         e = i ? substr(text, i + 1) + k : k
-         return (i ? substr(text, 1, i - 1) : text) "E" e
-      }
-      # Which of the three numbers of a card are lengths.
-      function lengths(card, form) {
-         if (card == "GROUND" || card == "LINK" || card == "POINT" || card == "JOINT") return "110"
-         if (card == "PRISM") return "010"
-         if (card == "DRIVE") { driven = form ~ /^(X|Y|SLIDE)$/; return driven ? "111" : "000" }
-         if (card == "ADD" && driven) return form == "TABLE" ? "010" : "100"
-         if (card == "RISE" && driven) return "001"
-         return "000"
-      }
-      /^[$]/ || /^ *$/ || /^TITLE/ { print; next }
-      {
-         line = sprintf("%-80s", $0); star = line ~ /^\*/
-         if (!star) { split(substr(line, 1, 8), c, " "); split(substr(line, 9, 8), f, " ") }
-         if (!star && c[1] != "TOLER") which = lengths(c[1], f[1])
-         width = star ? 24 : 16; first = star ? 9 : 33
-         out = substr(line, 1, first - 1)
-         for (n = 0; n < 3; n++) {
-            field = substr(line, first + n*width, width)
-            if (substr(which, n + 1, 1) == 1) field = scaled(field)
-            out = out sprintf("%-" width "s", field)
-         }
-         sub(/ *$/, "", out); print out
-      }' "$2"
-}
 
 # digits LISTING: its rows of numbers without points, leading zeros and powers of ten.
 digits() {
    awk '/^ RESULTS|^ WYNIKI/ { told = 1 } /^ SET OF |^ KOMPLET / { told = 0 }
-        told && NF > 1 && $NF ~ /^(-?[0-9.?]+(E[-+][0-9]+)?|NONE)$/ && $1 !~ /^(INSTANT|CHWILA|END|KONIEC)/ {
+        told && NF > 1 && $NF ~ /^(-?[0-9.?]+(E[-+][0-9]+)?|NONE|INFINITE|UNBOUNDED|REST)$/ && $1 !~ /^(INSTANT|CHWILA|END|KONIEC)/ {
       line = $1
       for (i = 2; i <= NF; i++) {
          minus = $i ~ /^-/ ? "-" : ""; gsub(/[-.]/, "", $i); sub(/^0+/, "", $i); line = line " " minus $i
@@ -58,12 +23,64 @@ for deck in $(grep -L '^VARY' input/*.deck); do
    # Their largest numbers take all the room of a column; in tenths and hundreds there is none for as many decimals.
    case $name in far_small|dead_point_*) powers='-6 -3 3 6' ;; esac
    for k in $powers; do
-      enlarged $k "$deck" > "$w/deck"
+      awk -v long=$k -f tests/system/other_units.awk "$deck" > "$w/deck"
       "$BUILD/kinmat" "$w/deck" > "$w/lst" 2> "$w/err"
       status=$?
       equal "$name times 10**$k: status" "$(grep -qE ' (FLAGGED|ZAZNACZONE) [1-9]' "expected/$name.lst" && echo 2 || echo 0)" $status
       digits "$w/lst" > "$w/out"
       same "$name times 10**$k: the same digits" "$w/wanted" "$w/out"
+   done
+done
+
+# asked METHOD DECK LINK LINK LINK POINT: its first set, all cards in it, poles and curves of these, tolerances of all points
+# and drives; TIME of one variant, so that --summary has extremes and ranges in 17 digits.
+asked() {
+   with "$2" "$(card METHOD "$1")" "$(card EXTREMES ALL '' '' 0.01 1.0)" "$(card RANGE)" "$(card POLE BASE "$3")" \
+      "$(card POLE "$4" "$5")" "$(card CURVE "$6")" "$(card CURVE "$6" "$4")" |
+      if [ "$1 $2" = 'DENSE parallelogram_at' ]; then sed "s/^TIME .*/$(card TIME 15 '' '' 0.0 15.0)/"; else cat; fi |
+      awk '/^END/ { print; exit } { print } /^TIME/ { printf "VARY    R2      LIST            %s\n", substr($0, 49, 16) }
+         /^(POINT|DRIVE)/ { print "TOLER                           0.01            0.02" }'
+}
+# answers LISTING: the digits of its tables; ranges; shares of tolerances, and sensitivities without powers of ten.
+answers() {
+   digits "$1"
+   awk '/^RANGES|^   (MIN|MAX|ALL)|CHANGE POINTS PASSED/ { print } / %  / { sub(/ S = +/, "S "); sub(/E.*/, ""); print }' "$1"
+}
+# as_degrees UNIT FILE: the numbers of a CSV or summary, those of angles times UNIT, and sensitivities to angles over it.
+as_degrees() {
+   awk -F, -v u="$1" '
+      FNR == 1 { n = split($0, head, ","); next }
+      { for (i = 1; i <= n; i++) {
+         x = $i
+         if (x ~ /^-?[0-9.E+-]+$/) {
+            if (head[i] ~ /(phi|theta|omega|alpha)([.](min|max))?$|ANGLE[.][A-Z0-9.-]*$/ && head[i] !~ /turns/ || i > 6 && $5 ~ /^PAIR/) x *= u
+            if (i > 6 && $5 ~ / PER (REL)?ANGLE/) x /= u
+            x = sprintf("%.9f", x)
+         }
+         printf "%s%s", x, i < n ? "," : "\n" } }' "$2" | sed 's/-\(0[.]0*\(,\|$\)\)/\1/g'
+}
+for deck in 'four_bar COUPLER CRANK ROCKER C' 'five_bar ROD-L LEFT RIGHT C' 'dixon BAR-33 BAR-12 BAR-21 B3-33' \
+   'parallelogram_at COUPLER CRANK ROCKER B-CO'; do
+   for method in NEWTON DENSE; do
+      # Redundant equations DENSE refuses; at a change point it ends.
+      [ "$method ${deck%% *}" != 'DENSE dixon' ] || continue
+      name="${deck%% *}, $method"
+      asked $method $deck > "$w/whole.deck"
+      "$BUILD/kinmat" --csv "$w/whole.csv" --summary "$w/whole.sum" "$w/whole.deck" > "$w/whole" 2>&1
+      answers "$w/whole" > "$w/wanted"
+      for units in 'long=3 late=0' 'long=-3 late=2' 'long=0 late=-3'; do
+         awk -v ${units% *} -v ${units#* } -f tests/system/other_units.awk "$w/whole.deck" > "$w/deck"
+         "$BUILD/kinmat" "$w/deck" > "$w/lst" 2>&1
+         answers "$w/lst" > "$w/out"
+         same "$name, $units" "$w/wanted" "$w/out"
+      done
+      awk -v radians=1 -f tests/system/other_units.awk "$w/whole.deck" > "$w/deck"
+      "$BUILD/kinmat" --csv "$w/rad.csv" --summary "$w/rad.sum" "$w/deck" > "$w/lst" 2>&1
+      for file in csv sum; do
+         as_degrees 1 "$w/whole.$file" > "$w/wanted.$file"
+         as_degrees 57.295779513082320877 "$w/rad.$file" > "$w/out.$file"
+         same "$name, radians, $file" "$w/wanted.$file" "$w/out.$file"
+      done
    done
 done
 conclude
