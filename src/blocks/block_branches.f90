@@ -13,7 +13,7 @@ module block_branches
    use diagnostics, only: diagnostic_t, new_diagnostic, diagnostic_change, diagnostic_dead_end
    use convergence, only: convergence_t, is_solved
    use predictor, only: predict, is_even
-   use block_state, only: set_values
+   use block_state, only: set_values, values_of
    use block_solver, only: solve_block
    use block_rank, only: min_direction, residual_of, gauss_newton_step
    use block_engine, only: block_engine_t, solve_again, set_drive_values
@@ -133,7 +133,7 @@ contains
       logical :: same, crossed(size(e%crossed))
 
       crossed = e%crossed
-      x = e%state%u(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))%value
+      x = values_of(e%blocks, i, e%state)
       call min_direction(e%blocks, i, e%state, least, left, direction)
       curvature = second_difference()
       found = abs(curvature)*furthest > 2.0_wp*least
@@ -142,8 +142,7 @@ contains
       call set_values(e%blocks, i, x + away*direction, e%state)
       call solve_again(e, c, correction, same)
       ! By the correction of this block alone: what builds on it moves by any multiple of that.
-      correction = maxval(abs(e%state%u(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))%value &
-         - (x + away*direction)))
+      correction = maxval(abs(values_of(e%blocks, i, e%state) - (x + away*direction)))
       crossed(i) = .false.
       same = .not. any(e%crossed .and. .not. crossed)
       found = is_solved(c) .and. same .and. .not. c%singular .and. correction <= 0.5_wp*abs(away) &
@@ -184,21 +183,19 @@ contains
       call predict(e%history, t, e%state%u, change)
       smooth = .true.
       do k = 1, size(e%moving)
-         associate (i => e%moving(k), u => e%blocks%unknown)
-            x = e%state%u(u(e%blocks%list(i)%first:e%blocks%list(i)%last))%value
+         associate (i => e%moving(k))
+            x = values_of(e%blocks, i, e%state)
             call solve_block(e%blocks, i, e%tolerance, e%work, e%state, c, change)
             if (.not. (smooth .and. is_solved(c))) return
             if (e%blocks%list(i)%direct) cycle
             e%is_singular(i) = c%singular
             if (.not. c%singular) cycle
             singular(i) = .true.
-            associate (found => e%state%u(u(e%blocks%list(i)%first:e%blocks%list(i)%last)))
-               smooth = maxval(abs(found%value - x)) <= same_place
-               ! Off the direction that the equations leave undetermined they are exact.
-               call set_values(e%blocks, i, x, e%state)
-               call gauss_newton_step(e%blocks, i, e%state, far)
-               smooth = smooth .and. maxval(abs(found%value - x)) <= same_place
-            end associate
+            smooth = maxval(abs(values_of(e%blocks, i, e%state) - x)) <= same_place
+            ! Off the direction that the equations leave undetermined they are exact.
+            call set_values(e%blocks, i, x, e%state)
+            call gauss_newton_step(e%blocks, i, e%state, far)
+            smooth = smooth .and. maxval(abs(values_of(e%blocks, i, e%state) - x)) <= same_place
          end associate
       end do
       if (.not. smooth) return

@@ -288,7 +288,8 @@ contains
       end do
    end function null_drives
 
-   !> The Jacobian `a` (rows, unknowns) of all blocks of `list` together, and whose rows these are (0: a pair's).
+   !> The Jacobian `a` (rows, unknowns) of all blocks of `list` together, and whose rows these are (0: a pair's). The
+   !> coefficients of an unknown of an earlier block are what its rate 1 alone leaves to the rates of a block.
    subroutine fill(b, list, s, a, drive_of)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: list(:)
@@ -296,87 +297,51 @@ contains
       real(wp), allocatable, intent(out) :: a(:, :)
       integer, allocatable, intent(out) :: drive_of(:)
       type(state_t) :: unit
-      integer :: column(0:b%unknowns), n, k, u
+      real(wp), allocatable :: own(:), r(:)
+      integer, allocatable :: unknowns(:)
+      integer :: column(0:b%unknowns), row, n, k, c
 
       unit = s
       unit%u%rate = 0.0_wp
       unit%drive_value = 0.0_wp
-      n = 0
-      column = 0
-      allocate (drive_of(0))
+      allocate (unknowns(0), drive_of(0))
       do k = 1, size(list)
          associate (block => b%list(list(k)))
-            column(b%unknown(block%first:block%last)) = [(n + u, u=1, block%last - block%first + 1)]
-            n = n + block%last - block%first + 1
+            unknowns = [unknowns, b%unknown(block%first:block%last)]
             drive_of = [drive_of, b%rows(block%first_row:block%last_row)%drive]
          end associate
       end do
-      allocate (a(size(drive_of), n), source=0.0_wp)
-      call fill_own(b, list, column, unit, a)
-      do u = 1, b%unknowns
-         if (column(u) == 0) cycle
-         unit%u(u)%rate = 1.0_wp
-         call fill_given(b, list, column(u), unit, a)
-         unit%u(u)%rate = 0.0_wp
-      end do
-   end subroutine fill
-
-   !> What each block of `list` has of its own unknowns and, where it is direct, of the other.
-   subroutine fill_own(b, list, column, s, a)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: list(:), column(0:)
-      type(state_t), intent(inout) :: s
-      real(wp), intent(inout) :: a(:, :)
-      real(wp), allocatable :: own(:), r(:)
-      integer :: k, row
-
-      row = 0
-      do k = 1, size(list)
-         associate (block => b%list(list(k)))
-            associate (rows => block%last_row - block%first_row + 1, n => block%last - block%first + 1)
-               if (block%direct) then
-                  a(row + 1, column(b%unknown(block%first))) = 1.0_wp
-                  associate (other => column(b%rows(block%first_row)%other))
-                     if (other > 0) a(row + 1, other) = -1.0_wp
-                  end associate
-               else
-                  allocate (own(rows*n), r(rows))
-                  call find_known_parts(b, list(k), s)
-                  call assemble_dense(b, list(k), s, own, r)
-                  a(row + 1:row + rows, column(b%unknown(block%first:block%last))) = reshape(own, [rows, n])
-                  deallocate (own, r)
-               end if
-               row = row + rows
-            end associate
-         end associate
-      end do
-   end subroutine fill_own
-
-   !> Column `c`, where it belongs to an earlier block: the unknown that alone has a rate in `s`, and that is 1.
-   subroutine fill_given(b, list, c, s, a)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: list(:), c
-      type(state_t), intent(inout) :: s
-      real(wp), intent(inout) :: a(:, :)
-      real(wp) :: rates(size(a, 1))
-      integer :: k, row, n
-
+      column = 0
+      column(unknowns) = [(c, c=1, size(unknowns))]
+      allocate (a(size(drive_of), size(unknowns)), source=0.0_wp)
       row = 0
       n = 0
       do k = 1, size(list)
-         associate (block => b%list(list(k)))
-            associate (rows => block%last_row - block%first_row + 1)
-               if (c <= n .and. .not. block%direct) then
-                  call find_known_parts(b, list(k), s)
-                  call right_hand_side(b, list(k), 1, s, rates)
-                  a(row + 1:row + rows, c) = -rates(:rows)
-               end if
-               row = row + rows
-               n = n + block%last - block%first + 1
-            end associate
+         associate (block => b%list(list(k)), rows => b%list(list(k))%last_row - b%list(list(k))%first_row + 1, &
+            width => b%list(list(k))%last - b%list(list(k))%first + 1)
+            if (block%direct) then
+               a(row + 1, n + 1) = 1.0_wp
+               c = column(b%rows(block%first_row)%other)
+               if (c > 0) a(row + 1, c) = -1.0_wp
+            else
+               allocate (own(rows*width), r(rows))
+               call find_known_parts(b, list(k), unit)
+               call assemble_dense(b, list(k), unit, own, r)
+               a(row + 1:row + rows, n + 1:n + width) = reshape(own, [rows, width])
+               do c = 1, n
+                  unit%u(unknowns(c))%rate = 1.0_wp
+                  call find_known_parts(b, list(k), unit)
+                  call right_hand_side(b, list(k), 1, unit, r)
+                  a(row + 1:row + rows, c) = -r
+                  unit%u(unknowns(c))%rate = 0.0_wp
+               end do
+               deallocate (own, r)
+            end if
+            row = row + rows
+            n = n + width
          end associate
       end do
-   end subroutine fill_given
+   end subroutine fill
 
    !> Makes entry `d` of column `c` of `y` 1, that of all others 0; the columns from `c` on may change places.
    pure subroutine eliminate(y, d, c)

@@ -44,7 +44,7 @@ contains
          if (a%follows) then
             last = e%followed_position()
          else
-            structure = e%block_structure()
+            structure = e%structure
          end if
       class default
          return

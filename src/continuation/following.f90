@@ -288,8 +288,8 @@ contains
       type(limits_t), intent(in) :: limits
       real(wp), intent(in) :: t
 
-      do k = 2, 1, -1
-         if (limits%side(k)%known .and. merge(t >= limits%side(k)%t, t <= limits%side(k)%t, k == 2)) return
-      end do
+      k = 0
+      if (limits%side(1)%known .and. t <= limits%side(1)%t) k = 1
+      if (limits%side(2)%known .and. t >= limits%side(2)%t) k = 2
    end function limit_before
 end module following

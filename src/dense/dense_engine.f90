@@ -54,7 +54,7 @@ module dense_engine
       private
       type(system_t) :: system
       type(mechanism_t) :: by_blocks             !< to be solved by blocks, at the first instant
-      type(structure_t) :: structure             !< of that
+      type(structure_t), public :: structure     !< of that: it is built once, and each block engine takes a copy
       type(block_engine_t), allocatable :: blocks !< of that, for the links that drives alone move; made when needed
       type(coordinates_t) :: coordinates         !< whose changes the Kantorovich ratio bounds
       type(pose_t) :: pose                       !< workspace of the position that is searched for
@@ -76,7 +76,6 @@ module dense_engine
       procedure :: checkpoint
       procedure :: restore
       procedure :: followed_position
-      procedure :: block_structure
    end type dense_engine_t
 
 contains
@@ -327,14 +326,6 @@ contains
 
       q = e%at%last%position*spread([e%system%length, e%system%length, 1.0_wp], 2, size(q, 2))
    end function followed_position
-
-   !> The structure of the mechanism as the blocks solve it: it is built once, and each block engine takes a copy.
-   pure function block_structure(e) result(s)
-      class(dense_engine_t), intent(in) :: e
-      type(structure_t) :: s
-
-      s = e%structure
-   end function block_structure
 
    !> See `engine`. There is one Jacobian for all links: without its inverse the links are known that drives alone move.
    subroutine get_link_flags(e, found)

@@ -1,5 +1,6 @@
-!> The parts of a picture: links, guides, blocks, joints, ground, curves. What is drawn in full is noted on the
-!> canvas, so that names keep clear of it. The symbols' sizes are in pixels.
+!> The parts of a picture: links, guides, blocks, joints, ground, curves, at the position that the canvas shows where no
+!> other is given. What is drawn in full is noted on the canvas, so that names keep clear of it. The symbols' sizes are
+!> in pixels.
 module picture_parts
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_revolute
@@ -38,7 +39,7 @@ contains
       color = colors(1 + modulo(i - 1, size(colors)))
    end function color_of
 
-   !> Link number `i`, which moves, in full at the position `s`: a bar, or a polygon.
+   !> Link number `i`, which moves, in full: a bar, or a polygon.
    subroutine put_body(c, i)
       type(canvas_t), intent(inout) :: c
       integer, intent(in) :: i
@@ -118,7 +119,7 @@ contains
       end do
    end function corner_pixels
 
-   !> The guide `g` at the position `s`: a line over the range of the slide. The ground's has a hatch. That of a moving
+   !> The guide `g`: a line over the range of the slide. The ground's has a hatch. That of a moving
    !> link is a rod that begins where the perpendicular from its pivot meets it.
    subroutine put_guide(c, g)
       type(canvas_t), intent(inout) :: c
@@ -210,7 +211,7 @@ contains
       end do
    end subroutine put_ground
 
-   !> The block on the guide `g` at the position `s`.
+   !> The block on the guide `g`.
    subroutine put_block(c, g)
       type(canvas_t), intent(inout) :: c
       type(guide_t), intent(in) :: g
@@ -230,7 +231,7 @@ contains
       call add_box(c, p - abs(u) - abs(v), p + abs(u) + abs(v))
    end subroutine put_block
 
-   !> The joint of pair number `i`, if that is a revolute pair, at its `point` at the position `s`; 0 for none.
+   !> The joint of pair number `i`, if that is a revolute pair, at its `point`; 0 for none.
    subroutine put_joint(c, i, point)
       type(canvas_t), intent(inout) :: c
       integer, intent(in) :: i, point
@@ -277,7 +278,7 @@ contains
       list = pack([(i, i=1, size(is_dot))], is_dot)
    end function dots_of
 
-   !> As a dot point number `i` at the position `s`.
+   !> Point number `i` as a dot.
    subroutine put_dot(c, i)
       type(canvas_t), intent(inout) :: c
       integer, intent(in) :: i

@@ -2,7 +2,7 @@
 !> the listing never does.
 module solver_log
    use kinds, only: wp
-   use mechanism, only: mechanism_t, method_newton, method_dense, method_matrix
+   use mechanism, only: mechanism_t, method_words
    use convergence, only: convergence_t, ending
    use branch_certificate, only: branch_t, branch_word
    use text_output, only: output_t, put
@@ -20,12 +20,8 @@ contains
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       logical, intent(in) :: errors
-      character(6) :: method
 
-      if (m%method == method_newton) method = 'NEWTON'
-      if (m%method == method_dense) method = 'DENSE'
-      if (m%method == method_matrix) method = 'MATRIX'
-      call put(o, ' SET '//whole(m%set_number)//'   METHOD '//trim(method))
+      call put(o, ' SET '//whole(m%set_number)//'   METHOD '//trim(method_words(m%method)))
       call put(o, trim('    STEP                        T     ENDED  ITER   RESIDUAL       STEP       RATE' &
          //'  RECIPROCAL CONDITION  SIGN OF DET   BRANCH  SUBSTEPS  KANTOROVICH'// &
          merge('  ERROR OF X  ERROR OF V  ERROR OF A', repeat(' ', 36), errors)))
