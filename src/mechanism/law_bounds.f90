@@ -15,8 +15,8 @@ module law_bounds
    !> An interval for each derivative of a law.
    type :: bounds_t
       !> Of the derivatives 0 to 2, in the drive's unit (length or rad) and the deck's unit of time. -huge, huge: no
-      !> bound.
-      real(wp) :: low(0:2) = 0.0_wp, high(0:2) = 0.0_wp
+      !> bound; huge, -huge: no value.
+      real(wp) :: low(0:2) = huge(1.0_wp), high(0:2) = -huge(1.0_wp)
    end type bounds_t
 
    !> Rounding error of a value relative to the sum of the absolute values of its terms: some ten operations.
@@ -58,7 +58,6 @@ contains
       type(bounds_t) :: b
       real(wp) :: t
 
-      call clear(b)
       call widen_by_polynomial(b, c, from)
       call widen_by_polynomial(b, c, to)
       if (abs(c(3)) <= 0.0_wp) return
@@ -83,7 +82,6 @@ contains
       real(wp) :: u1, u2, low, high, magnitude
       integer :: k
 
-      call clear(b)
       u1 = min(r(2)*from, r(2)*to) + r(3)
       u2 = max(r(2)*from, r(2)*to) + r(3)
       magnitude = max(1.0_wp, abs(r(2)*from), abs(r(2)*to)) + abs(r(3))
@@ -122,30 +120,24 @@ contains
       end function holds_phase
    end subroutine sine
 
-   !> The bounds of r1 t^r2.
+   !> The bounds of r1 t^r2. On either side of t = 0 each derivative is monotonic.
    pure function power(r, from, to) result(b)
       real(wp), intent(in) :: r(3), from, to
       type(bounds_t) :: b
+      real(wp) :: c
+      integer :: k
 
-      call clear(b)
-      call widen_by_power(b, 0, r(1), r(2), from, to)
-      call widen_by_power(b, 1, r(1)*r(2), r(2) - 1.0_wp, from, to)
-      call widen_by_power(b, 2, r(1)*r(2)*(r(2) - 1.0_wp), r(2) - 2.0_wp, from, to)
+      c = r(1)
+      do k = 0, 2
+         call widen_by_power(b, k, c, r(2) - k, from)
+         call widen_by_power(b, k, c, r(2) - k, to)
+         if (from < 0.0_wp .and. to > 0.0_wp) call widen_by_power(b, k, c, r(2) - k, 0.0_wp)
+         c = c*(r(2) - k)
+      end do
    end function power
 
-   !> Widens `b` by c t^p, which is derivative `k`. On either side of t = 0 it is monotonic.
-   pure subroutine widen_by_power(b, k, c, p, from, to)
-      type(bounds_t), intent(inout) :: b
-      integer, intent(in) :: k
-      real(wp), intent(in) :: c, p, from, to
-
-      call widen_by_power_at(b, k, c, p, from)
-      call widen_by_power_at(b, k, c, p, to)
-      if (from < 0.0_wp .and. to > 0.0_wp) call widen_by_power_at(b, k, c, p, 0.0_wp)
-   end subroutine widen_by_power
-
    !> Widens `b` by c t^p, which is derivative `k`, at the time `t`.
-   pure subroutine widen_by_power_at(b, k, c, p, t)
+   pure subroutine widen_by_power(b, k, c, p, t)
       type(bounds_t), intent(inout) :: b
       integer, intent(in) :: k
       real(wp), intent(in) :: c, p, t
@@ -156,7 +148,7 @@ contains
          b%low(k) = -huge(1.0_wp)
          b%high(k) = huge(1.0_wp)
       end if
-   end subroutine widen_by_power_at
+   end subroutine widen_by_power
 
    !> Whether c t^p is defined and within the range of reals.
    pure logical function is_finite(c, p, t)
@@ -180,7 +172,6 @@ contains
       type(bounds_t) :: b
       integer :: i, first, last
 
-      call clear(b)
       first = piece_at(s, from)
       last = piece_at(s, to)
       do i = first, last
@@ -248,7 +239,6 @@ contains
       real(wp) :: u1, u2, width
       integer :: i
 
-      call clear(b)
       width = joint_width(term)
       u1 = (from - term%r(1))/term%r(2)
       u2 = (to - term%r(1))/term%r(2)
@@ -280,14 +270,6 @@ contains
          call widen(b, k, factor*s(k + 1), merge(0.0_wp, abs(factor)*8.0_wp**k, dwells .and. abs(s(k + 1)) <= 0.0_wp))
       end do
    end subroutine widen_by_rise
-
-   !> The bounds of no value at all.
-   pure subroutine clear(b)
-      type(bounds_t), intent(out) :: b
-
-      b%low = huge(1.0_wp)
-      b%high = -huge(1.0_wp)
-   end subroutine clear
 
    !> Widens the bounds of derivative `k` by `value`, whose terms have absolute values with the sum `magnitude`.
    pure subroutine widen(b, k, value, magnitude)

@@ -294,15 +294,9 @@ contains
    pure function with_all_links(m) result(all_links)
       type(mechanism_t), intent(in) :: m
       type(mechanism_t) :: all_links
-      integer :: i, n
+      integer :: i
 
       all_links = m
-      n = size(m%requests)
-      deallocate (all_links%requests)
-      allocate (all_links%requests(n + size(m%links)))
-      all_links%requests(:n) = m%requests
-      do i = 1, size(m%links)
-         all_links%requests(n + i) = request_t(request_link, i)
-      end do
+      all_links%requests = [m%requests, (request_t(request_link, i), i=1, size(m%links))]
    end function with_all_links
 end module mechanism

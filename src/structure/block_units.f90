@@ -7,7 +7,7 @@
 module block_units
    use kinds, only: wp
    use scales, only: power_of_two
-   use blocks, only: blocks_t, block_loop_t, row_t, loop_angles, loop_projection
+   use blocks, only: blocks_t, block_loop_t, body_vector_t, loop_angles, loop_projection
    use block_loops, only: lipschitz_of
    implicit none
    private
@@ -48,14 +48,8 @@ contains
 
       associate (g => b%loops(m))
          if (g%kind == loop_angles) return
-         own = 0.0_wp
-         known = max(abs(g%ground(1)), abs(g%ground(2)))
-         do k = g%first_vector, g%first_own - 1
-            known = max(known, abs(b%body_vectors(k)%x), abs(b%body_vectors(k)%y))
-         end do
-         do k = g%first_own, g%last_vector
-            own = max(own, abs(b%body_vectors(k)%x), abs(b%body_vectors(k)%y))
-         end do
+         known = max(maxval(abs(g%ground)), largest(b%body_vectors(g%first_vector:g%first_own - 1)))
+         own = largest(b%body_vectors(g%first_own:g%last_vector))
          do k = g%first_slide, g%last_slide
             if (b%slides(k)%column == 0) known = max(known, b%unit(b%slides(k)%unknown))
          end do
@@ -65,6 +59,13 @@ contains
          g%coarse = known
       end associate
    end subroutine measure
+
+   !> The largest component of `vectors`; 0 of none.
+   pure real(wp) function largest(vectors)
+      type(body_vector_t), intent(in) :: vectors(:)
+
+      largest = max(0.0_wp, maxval(abs(vectors%x)), maxval(abs(vectors%y)))
+   end function largest
 
    !> Loops `g` of one block that are not much smaller than the largest get its unit: the weights of their rows are then
    !> the same where equations are too many. What is known is from now on in the loop's unit.
@@ -110,13 +111,19 @@ contains
    pure subroutine divide(b, first_row, m)
       type(blocks_t), intent(inout) :: b
       integer, intent(in) :: first_row, m
-      integer :: k
+      integer :: k, side
 
       associate (g => b%loops(m))
          ! A slide by itself.
          if (g%kind == loop_angles) g%unit = b%unit(g%orientation)
-         if (g%row_x > 0) call divide_row(g%unit, b%rows(first_row + g%row_x - 1))
-         if (g%row_y > 0) call divide_row(g%unit, b%rows(first_row + g%row_y - 1))
+         do side = 1, 2
+            k = merge(g%row_x, g%row_y, side == 1)
+            if (k == 0) cycle
+            associate (row => b%rows(first_row + k - 1))
+               row%unit = g%unit
+               row%constant = row%constant/g%unit
+            end associate
+         end do
          if (g%kind == loop_angles) return
          g%ground = g%ground/g%unit
          b%body_vectors(g%first_vector:g%last_vector)%x = b%body_vectors(g%first_vector:g%last_vector)%x/g%unit
@@ -127,12 +134,4 @@ contains
       end associate
    end subroutine divide
 
-   !> Gives `row` its `unit`.
-   pure subroutine divide_row(unit, row)
-      real(wp), intent(in) :: unit
-      type(row_t), intent(inout) :: row
-
-      row%unit = unit
-      row%constant = row%constant/unit
-   end subroutine divide_row
 end module block_units

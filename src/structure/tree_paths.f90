@@ -148,16 +148,9 @@ contains
             k = s%via(2*n + side - 1)
             s%length = s%length + 1
             s%pairs(s%length) = k
-            n = before(k, n)
+            ! The node at the other end.
+            n = node(m, m%points(m%pairs(k)%point_i)%link) + node(m, m%points(m%pairs(k)%point_j)%link) - n
          end do
       end subroutine go_back
-
-      !> The node at the other end of pair `k`.
-      integer function before(k, n)
-         integer, intent(in) :: k, n
-
-         before = node(m, m%points(m%pairs(k)%point_i)%link)
-         if (before == n) before = node(m, m%points(m%pairs(k)%point_j)%link)
-      end function before
    end subroutine collect
 end module tree_paths
