@@ -42,7 +42,7 @@ parts() {
    pictures|1128|tests/system/pictures.sh
    tables|218|tests/system/tables.sh
    the digits|1|tests/system/digits.sh
-   wide blocks|7|tests/system/wide.sh
+   wide blocks|9|tests/system/wide.sh
    drives between instants|48|tests/system/drives.sh
    decks made by chance|1000|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 1000
    relations between runs|300|tests/system/relations.sh --short

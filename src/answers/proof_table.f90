@@ -101,6 +101,7 @@ contains
             r%words = phrase(say_change_inside, m%polish)
          else
             r%words = phrase(say_near_singular, m%polish)
+            if (proof%too_many > 0) r%words = phrase(say_too_wide, m%polish)//' '//whole(proof%too_many)
             if (proof%is_proved) then
                r%words = r%words//', T ='
                r%at_time = .true.

@@ -6,7 +6,8 @@ module motion_proof
    use motion, only: motion_t
    use engine, only: engine_t
    use block_method, only: block_method_t
-   use position_proof, only: prover_t, placed_t, make_prover, new_placed, prove_position
+   use position_proof, only: prover_t, placed_t, make_prover, new_placed, prove_position, &
+      max_unknowns
    use step_proof, only: step_prover_t, step_proof_t, make_step_prover, prove_step
    use link_bounds, only: link_bounds_t, new_link_bounds, bound_links
    implicit none
@@ -16,11 +17,12 @@ module motion_proof
    !> What the proofs of a mechanism need and keep. Never copied: see step_prover_t.
    type :: motion_prover_t
       logical :: is_ready = .false.
-      logical :: has_begun = .false.              !< `from` is proved
+      logical :: has_begun = .false.              !< a position is proved
       type(prover_t) :: prover
       type(step_prover_t) :: step_prover
       type(link_bounds_t) :: links
-      type(placed_t) :: from, to                  !< the last position that was proved, and the one at hand
+      type(placed_t) :: at(2)                     !< the last position that was proved, and the one at hand
+      integer :: now = 1                          !< which of them is at hand
    end type motion_prover_t
 
    !> What is proved of an instant.
@@ -32,6 +34,7 @@ module motion_proof
       real(wp) :: gap = 0.0_wp                    !< of redundant equations at the instant, at most, in block units
       real(wp), allocatable :: links(:, :, :)     !< (3, 0:2, links) bounds of their errors, in the deck's units and rad
       integer, allocatable :: failed(:)           !< the links of the block that is not proved
+      integer :: too_many = 0                     !< its unknowns, if they are too many
    end type motion_proof_t
 
 contains
@@ -55,28 +58,31 @@ contains
             call make_prover(p%prover, m, e%block_engine_t)
             call make_step_prover(p%step_prover, e%block_engine_t)
             p%links = new_link_bounds(m, e%block_engine_t)
-            p%from = new_placed(e%blocks, size(m%drives))
-            p%to = p%from
+            p%at(1) = new_placed(e%blocks, size(m%drives))
+            p%at(2) = p%at(1)
             p%is_ready = .true.
             allocate (found%links(3, 0:2, size(m%links)))
          end if
          if (allocated(found%failed)) deallocate (found%failed)
          if (q%known < 2) return
-         call prove_position(p%prover, e%block_engine_t, q%t, e%needed, p%to, found%is_proved)
+         call prove_position(p%prover, e%block_engine_t, q%t, e%needed, p%at(p%now), found%is_proved)
          if (found%is_proved) then
             call bound_links(p%links, e%block_engine_t, p%prover%jets, found%links)
-            found%gap = maxval(p%to%gap(e%needed))
+            found%gap = maxval(p%at(p%now)%gap(e%needed))
             found%has_step = p%has_begun
             if (found%has_step) &
-               call prove_step(p%prover, p%step_prover, e%block_engine_t, e%needed, p%from, p%to, found%step)
-            call exchange(p%from, p%to)
+               call prove_step(p%prover, p%step_prover, e%block_engine_t, e%needed, p%at(3 - p%now), p%at(p%now), &
+               found%step)
+            p%now = 3 - p%now
             p%has_begun = .true.
             if (.not. found%has_step .or. found%step%is_proved) return
             k = found%step%block
          else
-            k = e%needed(findloc(p%to%is_proved(e%needed), .false., dim=1))
+            k = e%needed(findloc(p%at(p%now)%is_proved(e%needed), .false., dim=1))
          end if
-         if (k > 0) found%failed = links_of_block(e, k)
+         if (k == 0) return
+         found%failed = links_of_block(e, k)
+         if (e%blocks%list(k)%shape%n > max_unknowns) found%too_many = e%blocks%list(k)%shape%n
       end select
    end subroutine prove_motion
 
@@ -101,28 +107,4 @@ contains
       end do
       links = pack([(i, i=1, size(of_block))], of_block)
    end function links_of_block
-
-   !> Each becomes the other.
-   subroutine exchange(a, b)
-      type(placed_t), intent(inout) :: a, b
-      type(placed_t) :: keep
-
-      call hand_over(a, keep)
-      call hand_over(b, a)
-      call hand_over(keep, b)
-   end subroutine exchange
-
-   !> `b` becomes `a`, which is then empty.
-   subroutine hand_over(a, b)
-      type(placed_t), intent(inout) :: a, b
-
-      b%t = a%t
-      call move_alloc(a%x, b%x)
-      call move_alloc(a%error, b%error)
-      call move_alloc(a%drive, b%drive)
-      call move_alloc(a%drive_error, b%drive_error)
-      call move_alloc(a%open, b%open)
-      call move_alloc(a%gap, b%gap)
-      call move_alloc(a%is_proved, b%is_proved)
-   end subroutine hand_over
 end module motion_proof

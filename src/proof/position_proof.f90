@@ -17,8 +17,8 @@ module position_proof
    use block_equations, only: assemble_dense, right_hand_side
    use block_engine, only: block_engine_t
    use proof_data, only: proof_data_t, new_proof_data, table_errors, rounding
-   use row_bounds, only: jets_t, new_jets, turn, turn_errors, bound_rows, bound_jacobian, bound_growth
-   use contraction, only: contraction_t, contract, radius_of, applied, max_radius
+   use row_bounds, only: jets_t, new_jets, turn, turn_errors, bound_rows, bound_jacobian
+   use contraction, only: contraction_t, contract, radius_of, apply
    implicit none
    private
    public :: prover_t, placed_t, make_prover, new_placed, take_state, prove_position, prove_block, contract_block
@@ -27,13 +27,27 @@ module position_proof
    real(wp), parameter, public :: of_time = 4.0_wp*rounding
    !> Enlarges a sum of a few numbers by more than its roundings.
    real(wp), parameter, public :: room = 1.0_wp + 32.0_wp*rounding
+   !> A block of more unknowns is not proved: all n^2 entries of its inverse take a tenth of a second for each part of a
+   !> step, of which there may be a thousand.
+   integer, parameter, public :: max_unknowns = 500
+
+   !> What the proof of a block computes; nothing is allocated of a direct block, or one that is too wide.
+   type :: block_work_t
+      real(wp), allocatable :: a(:, :)            !< (rows, n) Jacobian
+      real(wp), allocatable :: r(:, :)            !< (rows, 0:2) what its equations and their derivatives leave
+      !> (rows) bounds of the equations, and see `bound_rows`, `bound_jacobian`
+      real(wp), allocatable, dimension(:) :: g, size_of, open, error, change, growth
+      real(wp), allocatable :: x(:)               !< (n) |A| g
+      real(wp) :: within = 0.0_wp                 !< the largest bound of the errors of its values
+      type(contraction_t) :: contraction
+   end type block_work_t
 
    !> What the proofs of a mechanism need.
    type :: prover_t
       type(proof_data_t) :: data
       type(state_t) :: state                      !< the values of the proof at hand
       type(jets_t) :: jets                        !< their bounds
-      type(contraction_t) :: contraction          !< of the block proved last
+      type(block_work_t), allocatable :: work(:)  !< (blocks)
       integer, allocatable :: rows(:)             !< (unknowns) the independent equations of block 1, if it has too many
       real(wp), allocatable :: table_error(:, :)  !< (0:2, drives) of the splines of their tables, in block units
    end type prover_t
@@ -65,6 +79,14 @@ contains
       allocate (p%table_error(0:2, size(m%drives)))
       do i = 1, size(m%drives)
          p%table_error(:, i) = table_errors(e%laws(i))*e%unit_of(i)
+      end do
+      allocate (p%work(size(e%blocks%list)))
+      do i = 1, size(e%blocks%list)
+         associate (w => p%work(i), n => e%blocks%list(i)%shape%n, rows => e%blocks%list(i)%shape%rows)
+            if (e%blocks%list(i)%direct .or. n > max_unknowns) cycle
+            allocate (w%a(rows, n), w%r(rows, 0:2), w%g(rows), w%size_of(rows), w%open(rows), w%error(rows), &
+               w%change(rows), w%growth(rows), w%x(n))
+         end associate
       end do
    end subroutine make_prover
 
@@ -137,44 +159,68 @@ contains
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, order
       type(placed_t), intent(inout) :: q
-      real(wp) :: a(b%list(i)%shape%rows, b%list(i)%shape%n), r(b%list(i)%shape%rows, 0:2), g(b%list(i)%shape%rows), &
-         size_of(b%list(i)%shape%rows), open(b%list(i)%shape%rows), error(b%list(i)%shape%rows)
       integer :: k
 
-      associate (block => b%list(i), own => b%unknown(b%list(i)%first:b%list(i)%last))
-         q%error(:, own) = 0.0_wp
-         q%is_proved(i) = .true.
+      associate (block => b%list(i), w => p%work(i))
+         do k = block%first, block%last
+            call bound_values(p%state, b, b%unknown(k), p%jets)
+            q%error(:, b%unknown(k)) = 0.0_wp
+         end do
          q%gap(i) = 0.0_wp
-         if (block%direct) then
-            call prove_direct(p, b, i, q)
-            call bound_unknowns(b, own, q, p)
-            return
-         end if
-         call bound_unknowns(b, own, q, p)
-         call find_residuals(p, b, i, a, r)
+         q%is_proved(i) = block%direct .or. allocated(w%a)
+         if (block%direct) call prove_direct(p, b, i, q)
+         if (block%direct .or. .not. q%is_proved(i)) return
+         call find_residuals(b, i, p%state, w%a, w%r)
          do k = 0, order
-            call bound_rows(p%data, b, i, p%jets, k, size_of, open, error)
-            g = (abs(r(:, k)) + open)*room
-            if (k < 2) q%open(k, block%first_row:block%last_row) = g
-            g = (g + error)*room
-            if (k == 0) then
-               call prove_values(p, b, i, a, g, q)
-               if (.not. q%is_proved(i)) return
-            else
-               q%error(k, own) = derivative_errors(p, b, i, g, q%error(0, own))
-            end if
-            call bound_unknowns(b, own, q, p)
+            call bound_rows(p%data, b, i, p%jets, k, w%size_of, w%open, w%error)
+            w%g(:) = (abs(w%r(:, k)) + w%open)*room
+            if (k < 2) q%open(k, block%first_row:block%last_row) = w%g
+            w%g(:) = (w%g + w%error)*room
+            if (k == 0) call prove_values(p, b, i, q)
+            if (k > 0) call bound_derivatives(p, b, i, k, q)
+            if (.not. q%is_proved(i)) return
          end do
       end associate
    end subroutine prove_block
 
+   !> Bounds of the motion of unknown `u` as it is in `s`, without errors.
+   pure subroutine bound_values(s, b, u, j)
+      type(state_t), intent(in) :: s
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: u
+      type(jets_t), intent(inout) :: j
+
+      j%own(0, u) = abs(s%u(u)%value)
+      j%own(1, u) = abs(s%u(u)%rate)
+      j%own(2, u) = abs(s%u(u)%acceleration)
+      j%own(3:, u) = 0.0_wp
+      j%own_error(:, u) = 0.0_wp
+      if (u > b%orientations) return
+      j%turn(:, u) = turn(j%own(:, u))
+      j%turn_error(:, u) = 0.0_wp
+   end subroutine bound_values
+
+   !> Derivative `order` of unknown `u` is off by no more than `error`.
+   pure subroutine note_error(b, u, order, error, q, j)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: u, order
+      real(wp), intent(in) :: error
+      type(placed_t), intent(inout) :: q
+      type(jets_t), intent(inout) :: j
+
+      q%error(order, u) = error
+      j%own_error(order, u) = error
+      if (u <= b%orientations) j%turn_error(:, u) = turn_errors(j%own(:, u), j%own_error(:, u))
+   end subroutine note_error
+
    !> Proves the direct block `i`: its unknown is another one and a drive.
    subroutine prove_direct(p, b, i, q)
-      type(prover_t), intent(in) :: p
+      type(prover_t), intent(inout) :: p
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(placed_t), intent(inout) :: q
       real(wp) :: x(0:2), given(0:2), known(0:2), size_of(0:2), r(0:2)
+      integer :: k
 
       associate (row => b%rows(b%list(i)%first_row), u => b%unknown(b%list(i)%first))
          x = [p%state%u(u)%value, p%state%u(u)%rate, p%state%u(u)%acceleration]
@@ -185,120 +231,114 @@ contains
          r = abs(x - known - row%sign_of*given) + 4.0_wp*rounding*size_of
          r(0) = r(0) + p%data%constant_weight(b%list(i)%first_row)
          q%open(:, b%list(i)%first_row) = r(:1)*room
-         q%error(:, u) = (r + p%jets%drive_error(:, row%drive) + q%error(:, row%other))*room
+         r = (r + p%jets%drive_error(:, row%drive) + q%error(:, row%other))*room
+         do k = 0, 2
+            call note_error(b, u, k, r(k), q, p%jets)
+         end do
       end associate
    end subroutine prove_direct
 
-   !> The bounds of the motion of the unknowns `list`, as far as it is known.
-   pure subroutine bound_unknowns(b, list, q, p)
+   !> Jacobian `a` (rows, n) of block `i` and what its equations and their first and second derivatives leave, `r`
+   !> (rows, 0:2), at the state `s`.
+   subroutine find_residuals(b, i, s, a, r)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: list(:)
-      type(placed_t), intent(in) :: q
-      type(prover_t), intent(inout) :: p
+      integer, intent(in) :: i
+      type(state_t), intent(inout) :: s
+      real(wp), intent(out) :: a(b%list(i)%shape%rows, *), r(b%list(i)%shape%rows, 0:2)
       integer :: k
 
-      do k = 1, size(list)
-         associate (u => list(k), j => p%jets)
-            j%own(:, u) = 0.0_wp
-            j%own_error(:, u) = 0.0_wp
-            j%own(:2, u) = abs([p%state%u(u)%value, p%state%u(u)%rate, p%state%u(u)%acceleration])
-            j%own_error(:2, u) = q%error(:, u)
-            if (u > b%orientations) cycle
-            j%turn(:, u) = turn(j%own(:, u))
-            j%turn_error(:, u) = turn_errors(j%own(:, u), j%own_error(:, u))
+      call find_known_parts(b, i, s)
+      call assemble_dense(b, i, s, a, r)
+      call right_hand_side(b, i, 1, s, r(:, 1))
+      call right_hand_side(b, i, 2, s, r(:, 2))
+      do k = 1, b%list(i)%shape%n
+         associate (u => s%u(b%unknown(b%list(i)%first + k - 1)))
+            r(:, 1) = r(:, 1) - a(:, k)*u%rate
+            r(:, 2) = r(:, 2) - a(:, k)*u%acceleration
          end associate
       end do
-   end subroutine bound_unknowns
-
-   !> Jacobian `a` (rows, n) of block `i` and what its equations and their first and second derivatives leave, `r`
-   !> (rows, 0:2), at the values of p%state.
-   subroutine find_residuals(p, b, i, a, r)
-      type(prover_t), intent(inout) :: p
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      real(wp), intent(out) :: a(:, :), r(:, 0:)
-      real(wp) :: given(size(r, 1))
-
-      call find_known_parts(b, i, p%state)
-      call assemble_dense(b, i, p%state, a, r(:, 0))
-      associate (own => p%state%u(b%unknown(b%list(i)%first:b%list(i)%last)))
-         call right_hand_side(b, i, 1, p%state, given)
-         r(:, 1) = matmul(a, own%rate) - given
-         call right_hand_side(b, i, 2, p%state, given)
-         r(:, 2) = matmul(a, own%acceleration) - given
-      end associate
    end subroutine find_residuals
 
-   !> Proves the values of block `i` with the Jacobian `a` (rows, n), where its equations are no larger than `g` (rows).
-   subroutine prove_values(p, b, i, a, g, q)
+   !> Proves the values of block `i`, whose equations are no larger than its bounds g.
+   subroutine prove_values(p, b, i, q)
       type(prover_t), intent(inout) :: p
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
-      real(wp), intent(in) :: a(:, :), g(:)
       type(placed_t), intent(inout) :: q
-      real(wp) :: x(size(a, 2)), radius
+      real(wp) :: radius, error
+      integer :: k
 
-      associate (c => p%contraction, own => b%unknown(b%list(i)%first:b%list(i)%last))
-         call contract_block(p, b, i, a, g, q%error(0, :), x, radius, q%gap(i))
-         q%is_proved(i) = radius >= 0.0_wp
-         if (.not. q%is_proved(i)) return
-         q%error(0, own) = min(radius, (x + (c%off + c%z2*radius)*radius)*room)
+      call contract_block(p, b, i, p%jets%own_error(0, :), radius, q%gap(i))
+      q%is_proved(i) = radius >= 0.0_wp
+      if (.not. q%is_proved(i)) return
+      associate (w => p%work(i), c => p%work(i)%contraction, own => b%unknown(b%list(i)%first:b%list(i)%last))
+         w%within = 0.0_wp
+         do k = 1, size(w%x)
+            error = min(radius, (w%x(k) + (c%off(k) + c%z2*radius)*radius)*room)
+            w%within = max(w%within, error)
+            call note_error(b, own(k), 0, error, q, p%jets)
+         end do
       end associate
    end subroutine prove_values
 
-   !> The contraction of block `i`, whose Jacobian is `a` (rows, n) at the place at hand and may be off as where
-   !> unknowns are `off` (0:unknowns) from there; its equations are no larger than `g` (rows). `x` (n): |A| `g`;
-   !> `radius`: of the ball that holds exactly one solution, -1 where none is proved; `gap`: by how much
-   !> redundant equations stay open in
-   !> that ball at most.
-   subroutine contract_block(p, b, i, a, g, off, x, radius, gap)
+   !> The contraction of block `i`, whose Jacobian was computed at the place at hand and may be off as where unknowns
+   !> are `off` (0:unknowns) from there; its equations are no larger than its bounds g. `radius`: of the ball that holds
+   !> exactly one solution, -1 where none is proved; `gap`: by how much redundant equations stay open in it at most.
+   subroutine contract_block(p, b, i, off, radius, gap)
       type(prover_t), intent(inout) :: p
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
-      real(wp), intent(in) :: a(:, :), g(:), off(0:)
-      real(wp), intent(out) :: x(:), radius, gap
-      real(wp) :: change(size(g)), growth(size(g)), slide(0:b%unknowns)
+      real(wp), intent(in) :: off(0:)
+      real(wp), intent(out) :: radius, gap
 
-      associate (c => p%contraction, own => b%unknown(b%list(i)%first:b%list(i)%last), n => size(a, 2))
-         slide = p%jets%own(0, :) + p%jets%own_error(0, :)
-         slide(own) = slide(own) + max_radius
-         change = bound_jacobian(p%data, b, i, off, slide)
-         growth = bound_growth(p%data, b, i, slide)
-         gap = 0.0_wp
-         if (size(g) > n) then
-            call choose_rows(a, p%rows)
-            call contract(a(p%rows, :), change(p%rows), growth(p%rows), c)
-            if (c%exists) x = applied(c, g(p%rows))
+      associate (w => p%work(i), c => p%work(i)%contraction, n => size(p%work(i)%x))
+         call bound_jacobian(p%data, b, i, p%jets, off, w%change, w%growth)
+         if (size(w%g) > n) then
+            call choose_rows(w%a, p%rows)
+            call contract(n, w%a(p%rows, :), w%change(p%rows), w%growth(p%rows), c)
          else
-            call contract(a, change, growth, c)
-            if (c%exists) x = applied(c, g)
+            call contract(n, w%a, w%change, w%growth, c)
          end if
+         gap = 0.0_wp
          radius = -1.0_wp
-         if (c%exists) radius = radius_of(c, max(0.0_wp, maxval(x)))
-         if (size(g) > n) gap = maxval((g + (sum(abs(a), dim=2) + change + growth*radius)*radius)*room)
+         if (.not. c%exists) return
+         call apply_to_bounds(p%rows, w)
+         ! What is not a number lies in no ball.
+         if (all(w%x <= 1.0_wp)) radius = radius_of(c, max(0.0_wp, maxval(w%x)))
+         if (size(w%g) > n) gap = maxval((w%g + (sum(abs(w%a), dim=2) + w%change + w%growth*radius)*radius)*room)
       end associate
    end subroutine contract_block
 
-   !> Bounds (n) of the errors of the derivatives of one order of block `i`, whose equations leave `g` (rows); `values`
-   !> (n): those of its values.
-   pure function derivative_errors(p, b, i, g, values) result(error)
-      type(prover_t), intent(in) :: p
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      real(wp), intent(in) :: g(:), values(:)
-      real(wp) :: error(size(values)), x(size(values)), largest
+   !> `w%x` becomes |A| g, of the equations that are taken: all or `rows` (n).
+   pure subroutine apply_to_bounds(rows, w)
+      integer, allocatable, intent(in) :: rows(:)
+      type(block_work_t), intent(inout) :: w
 
-      if (size(error) == 0) return
-      associate (c => p%contraction)
-         if (b%list(i)%shape%rows > size(error)) then
-            x = applied(c, g(p%rows))
-         else
-            x = applied(c, g)
-         end if
-         largest = maxval(x)/(1.0_wp - c%z1 - c%z2*maxval(values))*room
-         error = (x + (c%off + c%z2*maxval(values))*largest)*room
+      if (size(w%g) > size(w%x)) then
+         call apply(w%contraction, w%g(rows), w%x)
+      else
+         call apply(w%contraction, w%g, w%x)
+      end if
+   end subroutine apply_to_bounds
+
+   !> Bounds of the errors of the derivatives of one `order` of block `i`, whose equations leave its bounds g.
+   subroutine bound_derivatives(p, b, i, order, q)
+      type(prover_t), intent(inout) :: p
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i, order
+      type(placed_t), intent(inout) :: q
+      real(wp) :: largest
+      integer :: k
+
+      associate (w => p%work(i), c => p%work(i)%contraction, own => b%unknown(b%list(i)%first:b%list(i)%last))
+         call apply_to_bounds(p%rows, w)
+         q%is_proved(i) = all(w%x <= huge(1.0_wp))
+         largest = maxval(w%x)/(1.0_wp - c%z1 - c%z2*w%within)*room
+         do k = 1, size(w%x)
+            call note_error(b, own(k), order, (w%x(k) + (c%off(k) + c%z2*w%within)*largest)*room, q, p%jets)
+         end do
       end associate
-   end function derivative_errors
+   end subroutine bound_derivatives
 
    !> `rows` (n): of the equations with the Jacobian `a` (any number, n) those that Gauss' elimination takes, with the
    !> largest pivots, in their order.

@@ -5,11 +5,12 @@
 !> follow by Leibniz' rule. So lengths alone are added, no sine or cosine of an interval.
 module row_bounds
    use kinds, only: wp
-   use blocks, only: blocks_t, loop_components, loop_projection
+   use blocks, only: blocks_t, slide_t, loop_components, loop_projection
    use proof_data, only: proof_data_t, rounding
+   use contraction, only: max_radius
    implicit none
    private
-   public :: jets_t, new_jets, turn, turn_errors, product_error, bound_rows, bound_jacobian, bound_growth
+   public :: jets_t, new_jets, turn, turn_errors, product_error, bound_rows, bound_jacobian
 
    integer, parameter, public :: highest = 4     !< derivative by time
    real(wp), parameter :: binomial(0:4, 0:4) = reshape(real([ &
@@ -64,33 +65,31 @@ contains
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, order
       type(jets_t), intent(in) :: j
-      real(wp), intent(out) :: size_of(:), open(:), error(:)
+      real(wp), intent(out) :: size_of(*), open(*), error(*)
       real(wp) :: x(3)
       integer :: m, k, row
 
-      size_of = 0.0_wp
-      open = 0.0_wp
-      error = 0.0_wp
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          associate (g => b%loops(m))
             select case (g%kind)
             case (loop_components)
-               x = loop_bounds(d, b, m, j, order)
+               call bound_loop(d, b, m, j, order, x)
             case (loop_projection)
-               x = projection_bounds(d, b, m, j, order)
+               call bound_projection(d, b, m, j, order, x)
             case default
-               x = [1.0_wp, 4.0_wp*rounding, 0.0_wp]*(j%own(order, g%orientation) + j%own(order, g%less)) &
-                  + [0.0_wp, 0.0_wp, 1.0_wp]*(j%own_error(order, g%orientation) + j%own_error(order, g%less))
+               x(1) = j%own(order, g%orientation) + j%own(order, g%less)
+               x(2) = 4.0_wp*rounding*x(1)
+               x(3) = j%own_error(order, g%orientation) + j%own_error(order, g%less)
             end select
             if (g%row_x > 0) call put(x, size_of(g%row_x), open(g%row_x), error(g%row_x))
             if (g%row_y > 0) call put(x, size_of(g%row_y), open(g%row_y), error(g%row_y))
          end associate
       end do
+      if (order > 2) return
       do k = b%list(i)%first_row, b%list(i)%last_row
          row = k - b%list(i)%first_row + 1
          if (order == 0) size_of(row) = size_of(row) + abs(b%rows(k)%constant)
          if (order == 0) open(row) = open(row) + d%constant_weight(k)
-         if (order > 2) cycle
          size_of(row) = size_of(row) + j%drive(order, b%rows(k)%drive)
          open(row) = open(row) + 4.0_wp*rounding*(size_of(row) + j%drive(order, b%rows(k)%drive))
          error(row) = error(row) + j%drive_error(order, b%rows(k)%drive)
@@ -107,17 +106,19 @@ contains
       error = x(3)
    end subroutine put
 
-   !> The same (3) of the vector that closes loop `m`.
-   pure function loop_bounds(d, b, m, j, order) result(x)
+   !> The same, `x` (3), of the vector that closes loop `m`.
+   pure subroutine bound_loop(d, b, m, j, order, x)
       type(proof_data_t), intent(in) :: d
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: m, order
       type(jets_t), intent(in) :: j
-      real(wp) :: x(3), open
+      real(wp), intent(out) :: x(3)
+      real(wp) :: open
       integer :: k
 
       x = 0.0_wp
-      if (order == 0) x(:2) = [d%ground_length(m), d%ground_weight(m)]
+      if (order == 0) x(1) = d%ground_length(m)
+      if (order == 0) x(2) = d%ground_weight(m)
       do k = b%loops(m)%first_vector, b%loops(m)%last_vector
          associate (o => b%body_vectors(k)%orientation)
             x(1) = x(1) + d%length(k)*j%turn(order, o)
@@ -134,7 +135,7 @@ contains
                d%slide_weight(k), 0.0_wp, x(2), open)
          end associate
       end do
-   end function loop_bounds
+   end subroutine bound_loop
 
    !> Adds to `size_of` and `error` those of derivative `order` of a product: a vector of the `length` along a unit
    !> vector that turns, by derivatives no larger than `f` and with errors up to `fe`, times a number with `s` and `se`
@@ -157,173 +158,141 @@ contains
       error = error + length*e + weight*p
    end subroutine product_error
 
-   !> The same (3) of the projection of loop `m`.
-   pure function projection_bounds(d, b, m, j, order) result(x)
+   !> The same, `x` (3), of the projection of loop `m`.
+   pure subroutine bound_projection(d, b, m, j, order, x)
       type(proof_data_t), intent(in) :: d
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: m, order
       type(jets_t), intent(in) :: j
-      real(wp) :: x(3), y(3)
+      real(wp), intent(out) :: x(3)
+      real(wp) :: y(3)
       integer :: a
 
       x = 0.0_wp
       do a = 0, order
-         y = loop_bounds(d, b, m, j, a)
-         associate (f => j%turn(order - a, b%loops(m)%orientation), &
-            e => j%turn_error(order - a, b%loops(m)%orientation))
-            x = x + binomial(a, order)*[d%direction_length(m)*y(1)*f, &
-               (d%direction_length(m)*y(2) + d%direction_weight(m)*y(1))*f, &
-               d%direction_length(m)*(y(1)*e + y(3)*(f + e))]
+         call bound_loop(d, b, m, j, a, y)
+         associate (length => binomial(a, order)*d%direction_length(m), &
+            f => j%turn(order - a, b%loops(m)%orientation), e => j%turn_error(order - a, b%loops(m)%orientation))
+            x(1) = x(1) + length*y(1)*f
+            x(2) = x(2) + (length*y(2) + binomial(a, order)*d%direction_weight(m)*y(1))*f
+            x(3) = x(3) + length*(y(1)*e + y(3)*(f + e))
          end associate
       end do
-   end function projection_bounds
+   end subroutine bound_projection
 
-   !> By how much the rows of the Jacobian of block `i` can differ (sums of the entries' differences, (rows)) from those
-   !> computed where unknowns are off by `off` (0:unknowns), slides no longer than `slide` (0:unknowns) there.
-   pure function bound_jacobian(d, b, i, off, slide) result(rows)
+   !> Of the Jacobian of block `i`, for each row (rows): `change`, by how much it can differ (the sum of its entries'
+   !> differences) from that computed where unknowns are off by `off` (0:unknowns); and `growth`, a bound of
+   !> |J(x) - J(z)|/|x - z|, maximum norm, the sum of its second derivatives. Unknowns are within `j` or, those of the
+   !> block, within `max_radius` of it.
+   pure subroutine bound_jacobian(d, b, i, j, off, change, growth)
       type(proof_data_t), intent(in) :: d
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
-      real(wp), intent(in) :: off(0:), slide(0:)
-      real(wp) :: rows(b%list(i)%shape%rows), row, f
-      integer :: m, k
+      type(jets_t), intent(in) :: j
+      real(wp), intent(in) :: off(0:)
+      real(wp), intent(out) :: change(*), growth(*)
+      real(wp) :: x(2)
+      integer :: m
 
-      rows = 0.0_wp
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          associate (g => b%loops(m))
-            if (g%kind /= loop_components .and. g%kind /= loop_projection) cycle
-            ! A projection turns once more.
-            f = 0.0_wp
-            if (g%kind == loop_projection) f = off(g%orientation)
-            row = 0.0_wp
-            do k = g%first_own, g%last_vector
-               row = row + d%length(k)*(off(b%body_vectors(k)%orientation) + f) + 2.0_wp*d%weight(k)
-            end do
-            do k = g%first_slide, g%last_slide
-               row = row + slide_change(d, b, k, f, off, slide)
-            end do
-            if (g%kind == loop_projection) row = row*d%direction_length(m) &
-               + d%direction_weight(m)*(row + own_length(d, b, m, slide))
-            if (g%orientation_column > 0) row = row + direction_change(d, b, m, off, slide)
-            if (g%row_x > 0) rows(g%row_x) = row
-            if (g%row_y > 0) rows(g%row_y) = row
+            x = 0.0_wp
+            if (g%kind == loop_components .or. g%kind == loop_projection) &
+               call bound_entries(d, b, m, j, off, x(1), x(2))
+            if (g%row_x > 0) change(g%row_x) = x(1)
+            if (g%row_x > 0) growth(g%row_x) = x(2)
+            if (g%row_y > 0) change(g%row_y) = x(1)
+            if (g%row_y > 0) growth(g%row_y) = x(2)
          end associate
       end do
-   end function bound_jacobian
+   end subroutine bound_jacobian
 
-   !> The same of the entries of slide number `k`, whose projection turns by `f` more.
-   pure real(wp) function slide_change(d, b, k, f, off, slide) result(change)
-      type(proof_data_t), intent(in) :: d
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: k
-      real(wp), intent(in) :: f, off(0:), slide(0:)
-      real(wp) :: guide
-
-      change = 0.0_wp
-      associate (s => b%slides(k))
-         guide = d%slide_length(k)*(off(s%orientation) + f) + 2.0_wp*d%slide_weight(k)
-         if (s%column > 0) change = guide
-         if (s%orientation_column > 0) change = change + (slide(s%unknown) + off(s%unknown))*guide &
-            + d%slide_length(k)*off(s%unknown)
-      end associate
-   end function slide_change
-
-   !> The same of the entry of loop `m` by the own angle that turns its direction: the whole loop, projected.
-   pure real(wp) function direction_change(d, b, m, off, slide) result(change)
+   !> The same of a row of loop `m`.
+   pure subroutine bound_entries(d, b, m, j, off, change, growth)
       type(proof_data_t), intent(in) :: d
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: m
-      real(wp), intent(in) :: off(0:), slide(0:)
-      real(wp) :: whole, length
+      type(jets_t), intent(in) :: j
+      real(wp), intent(in) :: off(0:)
+      real(wp), intent(out) :: change, growth
+      real(wp) :: first, turn, guide, length
       integer :: k
 
       associate (g => b%loops(m))
-         whole = d%ground_length(m)
-         change = d%ground_weight(m)
-         do k = g%first_vector, g%last_vector
-            whole = whole + d%length(k)
-            change = change + d%length(k)*off(b%body_vectors(k)%orientation) + d%weight(k)
+         ! A projection turns once more.
+         turn = 0.0_wp
+         if (g%kind == loop_projection) turn = off(g%orientation)
+         change = 0.0_wp
+         ! The sum of first derivatives; second ones of a turning vector are as long.
+         first = 0.0_wp
+         do k = g%first_own, g%last_vector
+            change = change + d%length(k)*(off(b%body_vectors(k)%orientation) + turn) + 2.0_wp*d%weight(k)
+            first = first + (d%length(k) + d%weight(k))
          end do
+         growth = first
          do k = g%first_slide, g%last_slide
-            associate (s => b%slides(k))
-               length = slide(s%unknown) + off(s%unknown)
-               whole = whole + d%slide_length(k)*length
-               change = change + d%slide_length(k)*(off(s%unknown) + length*off(s%orientation)) &
-                  + d%slide_weight(k)*length
+            associate (s => b%slides(k), whole => d%slide_length(k) + d%slide_weight(k))
+               length = slide_length(j, s)
+               guide = d%slide_length(k)*(off(s%orientation) + turn) + 2.0_wp*d%slide_weight(k)
+               if (s%column > 0) then
+                  change = change + guide
+                  first = first + whole
+               end if
+               if (s%orientation_column > 0) then
+                  change = change + (length + off(s%unknown))*guide + d%slide_length(k)*off(s%unknown)
+                  first = first + whole*length
+                  growth = growth + whole*length
+                  if (s%column > 0) growth = growth + 2.0_wp*whole
+               end if
             end associate
          end do
-         change = (d%direction_length(m) + d%direction_weight(m))*(change + whole*off(g%orientation)) &
-            + d%direction_weight(m)*whole
+         if (g%kind == loop_projection) call project(d, b, m, j, off, first, change, growth)
       end associate
-   end function direction_change
+   end subroutine bound_entries
 
-   !> The sum of the entries of loop `m` by its own vectors and slides, no longer than `slide` (0:unknowns).
-   pure real(wp) function own_length(d, b, m, slide) result(whole)
+   !> What a projection makes of the bounds of the entries of loop `m`; `first`: their sum.
+   pure subroutine project(d, b, m, j, off, first, change, growth)
       type(proof_data_t), intent(in) :: d
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: m
-      real(wp), intent(in) :: slide(0:)
+      type(jets_t), intent(in) :: j
+      real(wp), intent(in) :: off(0:), first
+      real(wp), intent(inout) :: change, growth
+      real(wp) :: whole, whole_change, length
       integer :: k
 
-      whole = 0.0_wp
-      do k = b%loops(m)%first_own, b%loops(m)%last_vector
-         whole = whole + d%length(k)
-      end do
-      do k = b%loops(m)%first_slide, b%loops(m)%last_slide
-         whole = whole + d%slide_length(k)*(1.0_wp + slide(b%slides(k)%unknown))
-      end do
-   end function own_length
-
-   !> A bound of |J(x) - J(z)|/|x - z| for each row (rows) of block `i`, maximum norm: the sum of its second
-   !> derivatives, where slides are no longer than `slide` (0:unknowns).
-   pure function bound_growth(d, b, i, slide) result(rows)
-      type(proof_data_t), intent(in) :: d
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      real(wp), intent(in) :: slide(0:)
-      real(wp) :: rows(b%list(i)%shape%rows), row, first, l
-      integer :: m, k
-
-      rows = 0.0_wp
-      do m = b%list(i)%first_loop, b%list(i)%last_loop
-         associate (g => b%loops(m))
-            if (g%kind /= loop_components .and. g%kind /= loop_projection) cycle
-            ! The sums of its second and of its first derivatives; those of a turning vector are as long as itself.
-            row = sum(d%length(g%first_own:g%last_vector)) + sum(d%weight(g%first_own:g%last_vector))
-            first = row
+      associate (g => b%loops(m), direction => d%direction_length(m) + d%direction_weight(m))
+         change = change*direction + d%direction_weight(m)*first
+         if (g%orientation_column > 0) then
+            ! The entry of the angle that turns the direction is the whole loop, projected.
+            whole = d%ground_length(m) + d%ground_weight(m)
+            whole_change = d%ground_weight(m)
+            do k = g%first_vector, g%last_vector
+               whole = whole + d%length(k) + d%weight(k)
+               whole_change = whole_change + d%length(k)*off(b%body_vectors(k)%orientation) + d%weight(k)
+            end do
             do k = g%first_slide, g%last_slide
                associate (s => b%slides(k))
-                  l = d%slide_length(k) + d%slide_weight(k)
-                  if (s%orientation_column > 0) row = row + l*slide(s%unknown)
-                  if (s%orientation_column > 0 .and. s%column > 0) row = row + 2.0_wp*l
-                  if (s%orientation_column > 0) first = first + l*slide(s%unknown)
-                  if (s%column > 0) first = first + l
+                  length = slide_length(j, s) + off(s%unknown)
+                  whole = whole + (d%slide_length(k) + d%slide_weight(k))*length
+                  whole_change = whole_change + d%slide_length(k)*(off(s%unknown) + length*off(s%orientation)) &
+                     + d%slide_weight(k)*length
                end associate
             end do
-            ! With the direction: twice the first ones, and the loop itself.
-            if (g%kind == loop_projection .and. g%orientation_column > 0) row = row + 2.0_wp*first &
-               + whole_length(d, b, m, slide)
-            if (g%kind == loop_projection) row = row*(d%direction_length(m) + d%direction_weight(m))
-            if (g%row_x > 0) rows(g%row_x) = row
-            if (g%row_y > 0) rows(g%row_y) = row
-         end associate
-      end do
-   end function bound_growth
-
-   !> The sum of the lengths of all that is in loop `m`, slides no longer than `slide` (0:unknowns).
-   pure real(wp) function whole_length(d, b, m, slide) result(whole)
-      type(proof_data_t), intent(in) :: d
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: m
-      real(wp), intent(in) :: slide(0:)
-      integer :: k
-
-      associate (g => b%loops(m))
-         whole = d%ground_length(m) + d%ground_weight(m) + sum(d%length(g%first_vector:g%last_vector)) &
-            + sum(d%weight(g%first_vector:g%last_vector))
-         do k = g%first_slide, g%last_slide
-            whole = whole + (d%slide_length(k) + d%slide_weight(k))*slide(b%slides(k)%unknown)
-         end do
+            change = change + direction*(whole_change + whole*off(g%orientation)) + d%direction_weight(m)*whole
+            ! Twice the first derivatives, and the loop itself.
+            growth = growth + 2.0_wp*first + whole
+         end if
+         growth = growth*direction
       end associate
-   end function whole_length
+   end subroutine project
+
+   !> A bound of the slide `s`.
+   pure real(wp) function slide_length(j, s) result(length)
+      type(jets_t), intent(in) :: j
+      type(slide_t), intent(in) :: s
+
+      length = j%own(0, s%unknown) + j%own_error(0, s%unknown)
+      if (s%column > 0) length = length + max_radius
+   end function slide_length
 end module row_bounds

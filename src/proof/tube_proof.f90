@@ -69,6 +69,21 @@ contains
       end do
    end subroutine prove_tube
 
+   !> Of the cubic with the values and rates `x0` and `x1` (0:1) at both ends of an interval of the length `h`: control
+   !> points, which bound a polynomial, of its first and second derivatives by the part of the interval. `inexact`: what
+   !> rounding leaves open of the first ones.
+   pure subroutine find_control_points(h, x0, x1, first, second, inexact)
+      real(wp), intent(in) :: h, x0(0:1), x1(0:1)
+      real(wp), intent(out) :: first(3), second(2), inexact
+
+      first(1) = h*x0(1)
+      first(3) = h*x1(1)
+      first(2) = 3.0_wp*(x1(0) - x0(0)) - first(1) - first(3)
+      second(1) = 2.0_wp*(first(2) - first(1))
+      second(2) = 2.0_wp*(first(3) - first(2))
+      inexact = 32.0_wp*rounding*(abs(x0(0)) + abs(x1(0)) + abs(first(1)) + abs(first(3)))
+   end subroutine find_control_points
+
    !> The middle of the cubic of unknown `u` in p%state, and bounds of its derivatives by the part of the interval.
    subroutine set_curve(p, b, u, from, to, tube)
       type(prover_t), intent(inout) :: p
@@ -76,18 +91,15 @@ contains
       integer, intent(in) :: u
       type(placed_t), intent(in) :: from, to
       type(tube_t), intent(inout) :: tube
-      real(wp) :: v(2), middle, inexact, own(0:4)
+      real(wp) :: first(3), second(2), inexact, own(0:4)
 
-      v = (to%t - from%t)*[from%x(1, u), to%x(1, u)]
-      middle = 3.0_wp*(to%x(0, u) - from%x(0, u)) - v(1) - v(2)
-      inexact = 8.0_wp*rounding*(abs(from%x(0, u)) + abs(to%x(0, u)) + abs(v(1)) + abs(v(2)))
-      p%state%u(u)%value = 0.5_wp*(from%x(0, u) + to%x(0, u)) + 0.125_wp*(v(1) - v(2))
+      call find_control_points(to%t - from%t, from%x(:1, u), to%x(:1, u), first, second, inexact)
+      p%state%u(u)%value = 0.5_wp*(from%x(0, u) + to%x(0, u)) + 0.125_wp*(first(1) - first(3))
       call set_direction(b, u, p%state)
-      ! The control points of a polynomial bound it.
-      own(0) = max(abs(from%x(0, u)), abs(to%x(0, u))) + max(abs(v(1)), abs(v(2)))
-      own(1) = max(abs(v(1)), abs(middle), abs(v(2))) + 4.0_wp*inexact
-      own(2) = 2.0_wp*max(abs(middle - v(1)), abs(v(2) - middle)) + 8.0_wp*inexact
-      own(3) = 2.0_wp*abs(v(1) + v(2) - 2.0_wp*middle) + 16.0_wp*inexact
+      own(0) = max(abs(from%x(0, u)), abs(to%x(0, u))) + max(abs(first(1)), abs(first(3)))
+      own(1) = max(abs(first(1)), abs(first(2)), abs(first(3))) + inexact
+      own(2) = max(abs(second(1)), abs(second(2))) + 2.0_wp*inexact
+      own(3) = abs(second(2) - second(1)) + 4.0_wp*inexact
       own(4) = 0.0_wp
       p%jets%own(:, u) = own
       p%jets%own_error(:, u) = 0.0_wp
@@ -104,22 +116,19 @@ contains
       type(block_engine_t), intent(in) :: e
       type(placed_t), intent(in) :: from, to
       type(bounds_t) :: law
-      real(wp) :: h, v(2), d, inexact, bend(2), late
+      real(wp) :: h, first(3), second(2), inexact, late
       integer :: i
 
       h = to%t - from%t
       late = of_time*max(abs(from%t), abs(to%t))
       do i = 1, size(e%laws)
          law = bounds_of(e%laws(i), min(from%t, to%t) - late, max(from%t, to%t) + late)
-         v = h*[from%drive(1, i), to%drive(1, i)]
-         d = 3.0_wp*(to%drive(0, i) - from%drive(0, i)) - v(1) - v(2)
-         bend = [min(d - v(1), v(2) - d), max(d - v(1), v(2) - d)]*2.0_wp
-         inexact = 32.0_wp*rounding*(abs(from%drive(0, i)) + abs(to%drive(0, i)) + abs(v(1)) + abs(v(2))) &
-            + 4.0_wp*max(from%drive_error(0, i), to%drive_error(0, i)) &
+         call find_control_points(h, from%drive(:1, i), to%drive(:1, i), first, second, inexact)
+         inexact = inexact + 4.0_wp*max(from%drive_error(0, i), to%drive_error(0, i)) &
             + 2.0_wp*(abs(h)*max(from%drive_error(1, i), to%drive_error(1, i)) &
             + 2.0_wp*late*max(abs(from%drive(1, i)), abs(to%drive(1, i)))) + 0.125_wp*h**2*p%table_error(2, i)
-         p%jets%drive_error(0, i) = (0.125_wp*max(0.0_wp, law%high(2)*e%unit_of(i)*h**2 - bend(1), &
-            bend(2) - law%low(2)*e%unit_of(i)*h**2) + inexact)*room
+         p%jets%drive_error(0, i) = (0.125_wp*max(0.0_wp, law%high(2)*e%unit_of(i)*h**2 - minval(second), &
+            maxval(second) - law%low(2)*e%unit_of(i)*h**2) + inexact)*room
       end do
    end subroutine bound_drives
 
@@ -139,7 +148,7 @@ contains
    end subroutine prove_direct
 
    !> What Hermite's interpolation makes of what row `row` leaves open at both ends.
-   pure elemental real(wp) function ends_open(from, to, row)
+   pure real(wp) function ends_open(from, to, row)
       type(placed_t), intent(in) :: from, to
       integer, intent(in) :: row
 
@@ -166,18 +175,19 @@ contains
       integer, intent(in) :: i
       type(placed_t), intent(in) :: from, to
       type(tube_t), intent(inout) :: tube
-      real(wp) :: a(b%list(i)%shape%rows, b%list(i)%shape%n), x(b%list(i)%shape%n), radius, gap
-      real(wp), dimension(b%list(i)%shape%rows) :: r, g, size_of, open, error
+      real(wp) :: radius, gap
       integer :: k
 
-      associate (block => b%list(i))
-         call bound_rows(p%data, b, i, p%jets, 4, size_of, open, error)
-         g = (size_of + open)/384.0_wp
-         call bound_rows(p%data, b, i, p%jets, 0, size_of, open, error)
-         g = (g + error + ends_open(from, to, [(k, k=block%first_row, block%last_row)]))*room
+      associate (block => b%list(i), w => p%work(i))
+         call bound_rows(p%data, b, i, p%jets, 4, w%size_of, w%open, w%error)
+         w%g(:) = (w%size_of + w%open)/384.0_wp
+         call bound_rows(p%data, b, i, p%jets, 0, w%size_of, w%open, w%error)
+         do k = 1, size(w%g)
+            w%g(k) = (w%g(k) + w%error(k) + ends_open(from, to, block%first_row + k - 1))*room
+         end do
          call find_known_parts(b, i, p%state)
-         call assemble_dense(b, i, p%state, a, r)
-         call contract_block(p, b, i, a, g, tube%off, x, radius, gap)
+         call assemble_dense(b, i, p%state, w%a, w%r)
+         call contract_block(p, b, i, tube%off, radius, gap)
          tube%is_proved = radius >= 0.0_wp
          if (.not. tube%is_proved) then
             tube%block = i

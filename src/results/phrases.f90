@@ -137,7 +137,8 @@ module phrases
       say_not_proved = phrase_t('NOT PROVED', 'BEZ DOWODU'), &
       say_gap = phrase_t('GAP', 'NIEZGODNOSC'), &
       say_change_inside = phrase_t('THE STEP PASSES A CHANGE POINT', 'KROK PRZECHODZI PRZEZ PUNKT ZMIANY'), &
-      say_near_singular = phrase_t('JACOBIAN TOO NEAR TO SINGULAR', 'JAKOBIAN ZBYT BLISKI OSOBLIWEMU')
+      say_near_singular = phrase_t('JACOBIAN TOO NEAR TO SINGULAR', 'JAKOBIAN ZBYT BLISKI OSOBLIWEMU'), &
+      say_too_wide = phrase_t('BLOCK TOO WIDE, UNKNOWNS', 'BLOK ZBYT SZEROKI, NIEWIADOMYCH')
    type(phrase_t), parameter, public :: &
       say_pole = phrase_t('POLE', 'BIEGUN'), &
       say_curve = phrase_t('CURVE', 'TOR'), &

@@ -1,23 +1,35 @@
-!> Tests. Three mechanisms with one block of two assemblies each, whose motion has a closed form in real128: a four-bar, an
-!> inverted slider and an offset crank-slider. The sign of the assembly is that of the determinant.
+!> Tests. Mechanisms with one block each, whose motion has a closed form in real128: a four-bar, an inverted slider and an
+!> offset crank-slider; an arm that turns and slides, driven by the place of its end; a cylinder that drives a lever; and
+!> two guides on a crank, at an angle to each other. All but the last have two assemblies, whose sign is that of the
+!> determinant. Unknowns are angles and, of the arm and the guides, slides.
 module fool_scenes
    use kinds, only: wp
    use quad_jet, only: qp
    use mechanism, only: mechanism_t, link_t, point_t, pair_t, drive_t, term_t, request_t, pair_revolute, pair_prismatic, &
-      drive_angle, term_harmonic, request_link
+      drive_angle, drive_x, drive_y, drive_slide, term_harmonic, request_link
+   use links_tree, only: tree_t, new_tree
+   use block_engine, only: block_engine_t
    implicit none
    private
-   public :: fool_t, new_mechanism, unknown_links, crank_at, place_at, scene_four_bar, scene_inverted, scene_slider
+   public :: fool_t, new_mechanism, find_unknowns, place_at
+   public :: scene_four_bar, scene_inverted, scene_slider, scene_arm, scene_cylinder, scene_guides
 
    integer, parameter :: scene_four_bar = 1   !< crank, coupler, rocker, base
    integer, parameter :: scene_inverted = 2   !< crank, distance of the pivots, offset of the slot
    integer, parameter :: scene_slider = 3     !< crank, rod, height of the guide
+   integer, parameter :: scene_arm = 4        !< -, height of the end, offset of the guide; driven: x of the end
+   integer, parameter :: scene_cylinder = 5   !< lever, distance of the pivots, offset of the piston; driven: the slide
+   integer, parameter :: scene_guides = 6     !< -, distance of the pivots, -, angle of the guides; driven: the crank
 
-   !> A mechanism, and the law of its crank: angle + rate t + swing sin(frequency t + phase).
+   !> A mechanism, and the law of its drive: angle + rate t + swing sin(frequency t + phase).
    type :: fool_t
       integer :: scene = scene_four_bar
       real(wp) :: length(4) = 1.0_wp
       real(wp) :: angle = 0.0_wp, rate = 1.0_wp, swing = 0.0_wp, frequency = 1.0_wp, phase = 0.0_wp
+      integer, allocatable :: unknowns(:)     !< of the block, as its engine numbers them
+      integer :: slide = 0                    !< which of these is a slide; 0: none
+      integer :: pair = 0                     !< whose slide it is
+      real(wp) :: unit = 1.0_wp               !< of that
    end type fool_t
 
 contains
@@ -43,6 +55,22 @@ contains
                point_t('AC', 2, [l(1), 0.0_wp]), point_t('B0L', 3, origin), point_t('P', 4, origin)]
             m%pairs = [revolute(1, 3), revolute(4, 6), revolute(2, 5), &
                pair_t(pair_prismatic, 'GUIDE', 5, 6, 0.0_wp, l(3), 0.0_wp)]
+         case (scene_arm)
+            m%links = [link_t('BASE', .true.), link_t('ARM'), link_t('BLOCK')]
+            m%points = [point_t('B0', 1, origin), point_t('B0L', 2, origin), point_t('P', 3, origin)]
+            m%pairs = [revolute(1, 2), pair_t(pair_prismatic, 'GUIDE', 2, 3, 0.0_wp, l(3), 0.0_wp)]
+         case (scene_cylinder)
+            m%links = [link_t('BASE', .true.), link_t('CYLINDER'), link_t('PISTON'), link_t('LEVER')]
+            m%points = [point_t('A0', 1, origin), point_t('B0', 1, [l(2), 0.0_wp]), point_t('A0C', 2, origin), &
+               point_t('P', 3, origin), point_t('B0L', 4, origin), point_t('PL', 4, [l(1), 0.0_wp])]
+            m%pairs = [revolute(1, 3), revolute(4, 6), revolute(2, 5), &
+               pair_t(pair_prismatic, 'GUIDE', 3, 4, 0.0_wp, l(3), 0.0_wp)]
+         case (scene_guides)
+            m%links = [link_t('BASE', .true.), link_t('CRANK'), link_t('BLOCK'), link_t('TURNED')]
+            m%points = [point_t('A0', 1, origin), point_t('B0', 1, [l(2), 0.0_wp]), point_t('A0C', 2, origin), &
+               point_t('P', 3, origin), point_t('Q', 4, origin)]
+            m%pairs = [revolute(1, 3), revolute(2, 5), pair_t(pair_prismatic, 'G1', 3, 4, 0.0_wp, 0.0_wp, 0.0_wp), &
+               pair_t(pair_prismatic, 'G2', 4, 5, l(4), 0.0_wp, 0.0_wp)]
          case default
             m%links = [link_t('BASE', .true.), link_t('CRANK'), link_t('ROD'), link_t('PISTON')]
             m%points = [point_t('A0', 1, origin), point_t('G', 1, [0.0_wp, l(3)]), point_t('A0C', 2, origin), &
@@ -53,9 +81,13 @@ contains
          end select
       end associate
       m%drives = [drive_t(drive_angle, 2, 0, [f%angle, f%rate, 0.0_wp])]
+      if (f%scene == scene_cylinder) m%drives(1)%kind = drive_slide
+      if (f%scene == scene_cylinder) m%drives(1)%subject = 4
+      if (f%scene == scene_arm) m%drives = [drive_t(drive_x, 3, 0, [f%angle, f%rate, 0.0_wp]), &
+         drive_t(drive_y, 3, 0, [f%length(2), 0.0_wp, 0.0_wp])]
       allocate (m%drives(1)%terms(1))
       m%drives(1)%terms(1) = term_t(term_harmonic, [f%swing, f%frequency, f%phase])
-      m%requests = [(request_t(request_link, i), i=2, 4)]
+      m%requests = [(request_t(request_link, i), i=2, size(m%links))]
       allocate (m%at(1), source=0.0_wp)
       allocate (m%echo(0), m%branch_requests(0))
    end function new_mechanism
@@ -67,16 +99,36 @@ contains
       pair = pair_t(pair_revolute, 'R', i, j)
    end function revolute
 
-   !> The links whose angles the block finds.
-   function unknown_links(f) result(links)
-      type(fool_t), intent(in) :: f
-      integer, allocatable :: links(:)
+   !> The unknowns of the block of `f`, which is `m` with the engine `e`.
+   subroutine find_unknowns(m, e, f)
+      type(mechanism_t), intent(in) :: m
+      type(block_engine_t), intent(in) :: e
+      type(fool_t), intent(inout) :: f
+      type(tree_t) :: t
 
-      links = [3]
-      if (f%scene == scene_four_bar) links = [3, 4]
-   end function unknown_links
+      select case (f%scene)
+      case (scene_four_bar)
+         f%unknowns = e%orientation_of(3:4)
+      case (scene_arm)
+         f%unknowns = [e%orientation_of(2), 0]
+         f%slide = 2
+         f%pair = 2
+      case (scene_cylinder)
+         f%unknowns = e%orientation_of([2, 4])
+      case (scene_guides)
+         t = new_tree(m)
+         f%unknowns = [0]
+         f%slide = 1
+         f%pair = merge(3, 4, t%slide(3) > 0)
+      case default
+         f%unknowns = e%orientation_of([3])
+      end select
+      if (f%slide == 0) return
+      f%unknowns(f%slide) = e%blocks%orientations + 1
+      f%unit = e%length*e%blocks%unit(f%unknowns(f%slide))
+   end subroutine find_unknowns
 
-   !> The crank's angle at `t`.
+   !> The driven number at `t`.
    pure real(qp) function crank_at(f, t) result(angle)
       type(fool_t), intent(in) :: f
       real(qp), intent(in) :: t
@@ -84,7 +136,7 @@ contains
       angle = f%angle + f%rate*t + f%swing*sin(f%frequency*t + f%phase)
    end function crank_at
 
-   !> The angles of the unknown links at the time `t` in the assembly of the sign `s`; `margin` > 0: they exist.
+   !> The unknowns at the time `t` in the assembly of the sign `s`, a slide in its unit; `margin` > 0: they exist.
    subroutine place_at(f, t, s, angles, margin)
       type(fool_t), intent(in) :: f
       real(qp), intent(in) :: t
@@ -116,6 +168,24 @@ contains
             if (margin <= 0.0_qp) return
             angles(1) = atan2(d(2), d(1)) + asin(l(3)/sqrt(square))
             if (s < 0) angles(1) = atan2(d(2), d(1)) + acos(-1.0_qp) - asin(l(3)/sqrt(square))
+         case (scene_arm)
+            d = [crank, real(l(2), qp)]
+            square = sum(d**2)
+            margin = square - real(l(3), qp)**2
+            if (margin <= 0.0_qp) return
+            angles(1) = atan2(d(2), d(1)) + asin(l(3)/sqrt(square))
+            if (s < 0) angles(1) = atan2(d(2), d(1)) + acos(-1.0_qp) - asin(l(3)/sqrt(square))
+            angles(2) = s*sqrt(margin)/f%unit
+         case (scene_cylinder)
+            square = crank**2 + real(l(3), qp)**2
+            x = (square + real(l(2), qp)**2 - real(l(1), qp)**2)/(2.0_qp*l(2))
+            margin = square - x**2
+            if (margin <= 0.0_qp) return
+            angles(1) = atan2(s*sqrt(margin), x) - atan2(-real(l(3), qp), crank)
+            angles(2) = atan2(s*sqrt(margin), x - l(2))
+         case (scene_guides)
+            margin = 1.0_qp
+            angles(1) = merge(l(2)*sin(crank + l(4)), -l(2)*sin(crank), f%pair == 3)/sin(real(l(4), qp))/f%unit
          case default
             x = l(3) - a(2)
             margin = real(l(2), qp)**2 - x**2

@@ -61,4 +61,10 @@ tests/make_deck lattice 15 300 > "$w/net.deck"
 status=$?
 equal 'a wide block beside a change point: status' 0 "$status"
 equal 'its legs' '' "$(LC_ALL=C awk -F, 'NR > 1 && $4 ~ /^"?L[0-9]/ && $8 != "" && (($8 - 1 - $3)^2 > 1e-16 || ($11 - 1)^2 > 1e-12)' "$w/net.csv" | head -n 3)"
+
+# Up to 500 unknowns are proved (lattice: 49), more are not, and it says so.
+sed 's/^END/PROVE\nEND/' "$w/lattice.deck" > "$w/narrow.deck"
+tests/make_deck lattice 17 300 | sed 's/^TIME    300 /TIME    1   /; s/^END/PROVE\nEND/' > "$w/net.deck"
+equal 'a lattice is proved' '19 / 19' "$("$kinmat" "$w/narrow.deck" 2> "$w/net.err" | sed -n 's/^ INSTANTS PROVED \(.*\),  PARTS.*/\1/p')"
+equal 'a net is too wide for a proof' 2 "$("$kinmat" "$w/net.deck" 2> "$w/net.err" | grep -c ': NOT PROVED: LINKS .* MORE: BLOCK TOO WIDE, UNKNOWNS 577$')"
 conclude
