@@ -92,7 +92,7 @@ contains
       logical, intent(out) :: moves
       complex(wp) :: q(0:2), root, x(0:1), r(0:1, 2), y(0:1)
       real(wp) :: size_of
-      logical :: is_double
+      type(end_t) :: e
       integer :: k
 
       ends%paths = 2
@@ -107,16 +107,16 @@ contains
       moves = size_of <= zero_level
       if (moves) ends%paths = 0
       if (moves) return
-      is_double = abs(q(1)**2 - 4.0_wp*q(0)*q(2)) <= zero_level*size_of**2
+      e%is_singular = abs(q(1)**2 - 4.0_wp*q(0)*q(2)) <= zero_level*size_of**2
       root = 0.0_wp
-      if (.not. is_double) root = sqrt(q(1)**2 - 4.0_wp*q(0)*q(2))
+      if (.not. e%is_singular) root = sqrt(q(1)**2 - 4.0_wp*q(0)*q(2))
       if (real(conjg(q(1))*root) < 0.0_wp) root = -root
       do k = 1, 2
          ! (x_1 : x_0) = (-q_1 - root : 2 q_2) = (2 q_0 : -q_1 + root), and with the other sign of the root.
          x = [2.0_wp*q(2), -q(1) - root]
          if (k == 2) x = [-q(1) - root, 2.0_wp*q(0)]
-         if (is_double .and. abs(q(2)) < abs(q(0))) x = [-q(1), 2.0_wp*q(0)]
-         if (is_double .and. abs(q(2)) >= abs(q(0))) x = [2.0_wp*q(2), -q(1)]
+         if (e%is_singular .and. abs(q(2)) < abs(q(0))) x = [-q(1), 2.0_wp*q(0)]
+         if (e%is_singular .and. abs(q(2)) >= abs(q(0))) x = [2.0_wp*q(2), -q(1)]
          r(:, 1) = x(0)*b%c(0, :, 1) + x(1)*b%c(1, :, 1)
          r(:, 2) = x(0)*b%c(0, :, 2) + x(1)*b%c(1, :, 2)
          if (sum(abs(r(:, 2))) > sum(abs(r(:, 1)))) r(:, 1) = r(:, 2)
@@ -125,7 +125,9 @@ contains
             moves = .true.
             ends%failed = ends%failed + 1
          else if (finiteness(b, x, y) > infinity_level) then
-            ends%list = [ends%list, end_t([x], [y], is_double)]
+            e%x = x
+            e%y = y
+            ends%list = [ends%list, e]
          else
             ends%infinite = ends%infinite + 1
          end if

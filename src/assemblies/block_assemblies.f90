@@ -86,7 +86,9 @@ contains
 
       if (f%system%p == 0) then
          ends%paths = 1
-         ends%list = [end_t([(1.0_wp, 0.0_wp)], [(1.0_wp, 0.0_wp)])]
+         allocate (ends%list(1))
+         ends%list(1)%x = [(1.0_wp, 0.0_wp)]
+         ends%list(1)%y = ends%list(1)%x
       else if (f%system%p == 1) then
          call solve_quadratic(f%system, ends, moves)
       else

@@ -75,20 +75,29 @@ contains
       type(state_t), intent(in) :: s
       type(block_form_t), intent(in) :: f
       type(draft_t), intent(inout) :: d
-      complex(wp) :: l(0:f%q), factor
-      integer :: at
+      type(projection_t) :: one
 
-      l = linear_form(b, m, s, f%group_t)
+      allocate (one%l(f%q + 1))
+      one%l(:) = linear_form(b, m, s, f%group_t)
       associate (g => b%loops(m))
          if (g%kind == loop_projection) then
-            call find_direction(f%group_t, g%orientation_column, g%orientation, s, at, factor)
-            factor = factor*cmplx(g%direction(1), g%direction(2), wp)
-            d%projections = [d%projections, projection_t([l], factor, at, given(b, i, g%row_x, s))]
-            return
+            call find_direction(f%group_t, g%orientation_column, g%orientation, s, one%at, one%factor)
+            one%factor = one%factor*cmplx(g%direction(1), g%direction(2), wp)
          end if
-         if (g%row_x > 0) d%projections = [d%projections, projection_t([l], 1.0_wp, 0, given(b, i, g%row_x, s))]
-         if (g%row_y > 0) d%projections = [d%projections, projection_t([l], i_unit, 0, given(b, i, g%row_y, s))]
+         if (g%row_x > 0) call add(g%row_x)
+         one%factor = i_unit
+         if (g%row_y > 0) call add(g%row_y)
       end associate
+
+   contains
+
+      !> Adds the projection for row number `row` of the block.
+      subroutine add(row)
+         integer, intent(in) :: row
+
+         one%value = given(b, i, row, s)
+         d%projections = [d%projections, one]
+      end subroutine add
    end subroutine add_loop
 
    !> Two projections of one loop on different directions that turn together are one linear equation: the components of
