@@ -12,6 +12,7 @@ module closed_forms
    use closed_forms_bars, only: chebyshev, kite, antiparallelogram, hart, two_loops
    use closed_forms_slides, only: crank_inline, inverted_slider, oldham
    use closed_forms_overconstrained, only: parallel_cranks, double_parallelogram, two_guides, cognates, dixon
+   use closed_forms_assemblies, only: platform_assemblies, platform, triple_rocker
    use closed_forms_branches, only: parallelogram_branch, antiparallelogram_branch, kite_branch, scott_russell_branch
    use closed_forms_published, only: ten_plates, teaching_four_bar, watt_i
    use hand_tolerances, only: tolerant_links
@@ -59,7 +60,8 @@ module closed_forms
       count_t('near_equal_rod', 4, 3, 1, 1), count_t('dead_point_6', 4, 3, 1, 1), &
       count_t('dead_point_9', 4, 3, 1, 1), count_t('dead_point_12', 4, 3, 1, 1), &
       count_t('far_small', 4, 4, 0, 1), count_t('many_turns', 4, 4, 0, 1), &
-      count_t('ten_plates', 11, 12, 2, 2), count_t('teaching_four_bar', 4, 4, 0, 1), count_t('watt_i', 6, 7, 0, 1)]
+      count_t('ten_plates', 11, 12, 2, 2), count_t('teaching_four_bar', 4, 4, 0, 1), count_t('watt_i', 6, 7, 0, 1), &
+      count_t('platform', 5, 6, 0, 0), count_t('triple_rocker', 4, 4, 0, 1)]
 
 contains
 
@@ -215,6 +217,13 @@ contains
          links = teaching_four_bar(t)
       case ('watt_i')
          links = watt_i(set, t)
+      case ('platform')
+         ! Of its assemblies that with the angle nearest to 60 deg.
+         associate (all => platform_assemblies())
+            links = platform(all(:, minloc(abs(all(3, :) - 1.05_qp), dim=1)))
+         end associate
+      case ('triple_rocker')
+         links = triple_rocker(t, 1.0_qp)
       case default
          allocate (links(0))
       end select

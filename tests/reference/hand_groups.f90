@@ -113,6 +113,8 @@ module hand_groups
       statement_t('ten_plates', 0, '*C1 C3 C4; *C2 C5 C6; C7 C8; C9 C10'), &
       statement_t('teaching_four_bar', 0, '*ABH; BCFG CDEI'), &
       statement_t('watt_i', 0, '*AB; BCD CFG; DE EF'), &
+      statement_t('platform', 0, 'PLATFORM LEG-1 LEG-2 LEG-3'), &
+      statement_t('triple_rocker', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('far_small', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('scott_russell', 0, '*CRANK; BAR SHOE'), &
       statement_t('scott_russell_at', 0, '*CRANK; BAR SHOE'), &

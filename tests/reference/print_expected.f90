@@ -30,6 +30,7 @@ program print_expected
    use hand_links, only: move_links_to
    use hand_tolerances, only: put_shares_by_hand
    use hand_extremes, only: put_extremes_by_hand
+   use hand_assemblies, only: put_assemblies_by_hand, put_circuits_by_hand
    implicit none
    character(500) :: path
    character(:), allocatable :: name, report
@@ -150,6 +151,8 @@ contains
          tally%uncertain = instant_count(m) - 1
       end if
       if (any(m%requests%extremes)) call put_extremes_by_hand(o, name, m, scales, was_flagged)
+      if (m%assemblies) call put_assemblies_by_hand(o, name, m, scales)
+      if (m%circuits) call put_circuits_by_hand(o, name, m)
       if (allocated(m%tolerances)) call put_shares_by_hand(o, m, scales)
       call listing_end(o, m, count(.not. was_flagged), count(was_flagged), tally, &
          closure_error=merge(0.0_wp, -1.0_wp, size(redundant_by_hand(name, m)) > 0))
