@@ -102,7 +102,7 @@ contains
          call expand_requests(set%deck)
       else if (table%results .and. (table%is_over .or. starts(line, ' EXTREMES ', ' EKSTREMA ') &
          .or. starts(line, ' RANGES OF THE DRIVES', ' ZAKRESY NAPEDOW') &
-         .or. starts(line, ' CIRCUITS AND ', ' OBWODY I ') &
+         .or. starts(line, ' CIRCUITS AND ', ' OBWODY I ') .or. starts(line, ' ASSEMBLIES ', ' MONTAZE ') &
          .or. starts(line, ' PROOF: ', ' DOWOD: ') &
          .or. starts(line, ' TOLERANCES: ', ' TOLERANCJE: '))) then
          table%is_over = .true.
