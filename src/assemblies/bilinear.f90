@@ -125,8 +125,8 @@ contains
             moves = .true.
             ends%failed = ends%failed + 1
          else if (finiteness(b, x, y) > infinity_level) then
-            e%x = x
-            e%y = y
+            e%x = [x]
+            e%y = [y]
             ends%list = [ends%list, e]
          else
             ends%infinite = ends%infinite + 1

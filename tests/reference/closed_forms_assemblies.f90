@@ -36,11 +36,11 @@ contains
       x = product_of(s(:, 2), q(:, 1)) - product_of(s(:, 1), q(:, 2))
       y = product_of(p(:, 2), s(:, 1)) - product_of(p(:, 1), s(:, 2))
       f = product_of(x, x) + product_of(y, y) - leg(1)**2*product_of(d, d)
-      do k = 6, 0, -1
-         sextic(k) = f(k + 2)
-         if (k <= 4) sextic(k) = sextic(k) - sextic(k + 2)
+      do k = 8, 2, -1
+         f(k - 2) = f(k - 2) - f(k)
       end do
-      if (abs(f(0) - sextic(0)) + abs(f(1) - sextic(1)) > 1.0e-24_qp*maxval(abs(f))) error stop 'NO FACTOR 1 + T^2'
+      sextic = f(2:)
+      if (maxval(abs(f(:1))) > 1.0e-24_qp*maxval(abs(f))) error stop 'NO FACTOR 1 + T^2'
       roots = real_roots(sextic)
       allocate (position(3, size(roots)))
       do k = 1, size(roots)
