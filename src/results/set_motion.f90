@@ -13,7 +13,7 @@ module set_motion
    use motion_proof, only: motion_proof_t
    implicit none
    private
-   public :: set_motion_t, new_set_motion, one_motion, is_flagged, has_words, in_set, put_together, row_in_set
+   public :: set_motion_t, new_set_motion, take_whole, is_flagged, has_words, in_set, put_together, row_in_set
    public :: doubt_in_set, error_in_set, spread_t, spread_in_set
 
    !> A set that is one mechanism is one part, with the numbers of the set.
@@ -60,20 +60,6 @@ contains
          s%motions(c) = new_motion(size(s%own(c)%links))
       end do
    end subroutine new_set_motion
-
-   !> The motion `q` of all of `m`, and how far it is known, as a set of one part.
-   function one_motion(m, q, errors) result(s)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      type(error_estimate_t), intent(in) :: errors
-      type(set_motion_t) :: s
-
-      call take_whole(m, s%parts)
-      allocate (s%own(1), s%motions(1), s%errors(1), s%sensitivities(1), s%proofs(1))
-      s%own(1) = m
-      s%motions(1) = q
-      s%errors(1) = errors
-   end function one_motion
 
    !> All of `m` as one part.
    pure subroutine take_whole(m, parts)
