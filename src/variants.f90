@@ -4,8 +4,8 @@
 module variants
    use mechanism, only: mechanism_t
    use independent, only: parts_t
-   use structure, only: findings_t, check_structure
-   use failures, only: failure_t, status_flagged
+   use structure, only: findings_t, find_structure_again, faults_text
+   use failures, only: status_flagged
    use deck, only: build_variant
    use deck_variants, only: variation_t
    use progress, only: show_progress
@@ -74,13 +74,14 @@ contains
       type(writers_t), intent(inout) :: o
       integer, intent(inout) :: status
       type(variant_row_t) :: row
-      type(mechanism_t) :: variant(1)
+      type(mechanism_t) :: variant
+      type(findings_t) :: findings
 
       do while (n <= last)
          row = new_row(summary, v, n)
          if (o%asked(out_listing) .and. full) &
             call put_variant(o%files(out_listing, 0), layout, summary, m, row)
-         call run_variant(options, i, full, v, summary, variant, row, o)
+         call run_variant(options, i, full, v, summary, variant, findings, row, o)
          if (is_over(o, i)) return
          if (o%asked(out_listing) .and. full) call put_variant_heads(o%files(out_listing, 0), summary)
          call write_row(m, i, v, summary, layout, row, o, status)
@@ -100,6 +101,7 @@ contains
       integer, intent(inout) :: status
       type(lane_run_t), allocatable :: runs(:)
       type(lanes_t) :: lanes
+      type(findings_t) :: findings
       integer :: k, count
 
       allocate (runs(width))
@@ -107,7 +109,7 @@ contains
          count = min(width, last - n + 1)
          do k = 1, count
             runs(k)%row = new_row(summary, v, n + k - 1)
-            call start(v, runs(k))
+            call start(v, findings, runs(k))
          end do
          call run_lanes(runs(:count), lanes)
          do k = 1, count
@@ -119,31 +121,31 @@ contains
       end do
    end subroutine run_together
 
-   !> Makes the variant of `v` whose row `r` has, unless it is refused.
-   subroutine start(v, r)
+   !> Makes the variant of `v` whose row `r` has, unless it is refused; `findings`: as below.
+   subroutine start(v, findings, r)
       type(variation_t), intent(inout) :: v
+      type(findings_t), intent(inout) :: findings
       type(lane_run_t), intent(inout) :: r
-      type(mechanism_t) :: variant(1)
-      type(findings_t), allocatable :: findings(:)
 
-      call make_variant(v, r%row, variant, findings)
-      r%m = variant(1)
+      call make_variant(v, r%row, r%m, findings)
       r%is_over = r%row%rejected /= ''
-      if (.not. r%is_over) call begin_run(r, findings(1))
+      if (.not. r%is_over) call begin_run(r, findings)
    end subroutine start
 
-   !> Makes the variant of `v` whose `row` this is, and finds its structure; what the checks say stands in the row.
+   !> Makes the variant of `v` whose `row` this is, and finds its structure, starting from the `findings` of the one
+   !> before; what the checks say stands in the row.
    subroutine make_variant(v, row, variant, findings)
       type(variation_t), intent(inout) :: v
       type(variant_row_t), intent(inout) :: row
-      type(mechanism_t), intent(out) :: variant(1)
-      type(findings_t), allocatable, intent(out) :: findings(:)
-      type(failure_t), allocatable :: failure
+      type(mechanism_t), intent(out) :: variant
+      type(findings_t), intent(inout) :: findings
+      character(:), allocatable :: faults
 
-      call build_variant(v, row%number, variant(1), row%rejected)
+      call build_variant(v, row%number, variant, row%rejected)
       if (row%rejected /= '') return
-      call check_structure(variant, findings, failure)
-      if (allocated(failure)) row%rejected = failure%text(:index(failure%text//new_line('a'), new_line('a')) - 1)
+      call find_structure_again(variant, findings)
+      faults = faults_text(variant, findings, variant%set_number)
+      row%rejected = faults(:index(faults//new_line('a'), new_line('a')) - 1)
    end subroutine make_variant
 
    !> Writes the `row` of a variant.
@@ -163,26 +165,26 @@ contains
       if (o%progress%shown) call show_progress(o%progress, 'SET '//whole(i)//': VARIANT', row%number, v%total)
    end subroutine write_row
 
-   !> Solves and writes the variant of `v` whose `row` this is, of set number `i`: it is variant(1) now. `full`: its
-   !> tables are asked for.
-   subroutine run_variant(options, i, full, v, summary, variant, row, o)
+   !> Solves and writes the variant of `v` whose `row` this is, of set number `i`: it is `variant` now. `full`: its
+   !> tables are asked for. `findings`: as above.
+   subroutine run_variant(options, i, full, v, summary, variant, findings, row, o)
       type(options_t), intent(in) :: options
       integer, intent(in) :: i
       logical, intent(in) :: full
       type(variation_t), intent(inout) :: v
       type(summary_t), intent(in) :: summary
-      type(mechanism_t), intent(out) :: variant(1)
+      type(mechanism_t), intent(out) :: variant
+      type(findings_t), intent(inout) :: findings
       type(variant_row_t), intent(inout) :: row
       type(writers_t), intent(inout) :: o
-      type(findings_t), allocatable :: findings(:)
       type(answers_t) :: asked
 
       call make_variant(v, row, variant, findings)
       if (row%rejected == '') then
-         if (full .and. o%asked(out_listing)) o%layout = new_layout(variant(1))
-         if (o%asked(out_log)) call log_head(o%files(out_log, 0), variant(1), options%errors)
-         call run_motion(options, variant(1), i, findings(1), full, o, row, asked)
+         if (full .and. o%asked(out_listing)) o%layout = new_layout(variant)
+         if (o%asked(out_log)) call log_head(o%files(out_log, 0), variant, options%errors)
+         call run_motion(options, variant, i, findings, full, o, row, asked)
       end if
-      call fill_row(summary, variant(1), asked, row)
+      call fill_row(summary, variant, asked, row)
    end subroutine run_variant
 end module variants

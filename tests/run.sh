@@ -30,7 +30,7 @@ parts() {
    nothing false is proved|2000|"$BUILD/release/fool_proofs" 2000
    units|786|tests/system/units.sh
    the methods against one another|8|tests/system/methods.sh
-   variants|89|tests/system/variants.sh
+   variants|91|tests/system/variants.sh
    tolerances|22|tests/system/tolerances.sh
    extremes and ranges|43|tests/system/answers.sh
    circuits|27|tests/system/circuits.sh

@@ -46,12 +46,18 @@ module block_solver
    !> 1 over this squared is within the range of reals.
    real(wp), parameter :: min_inverse = epsilon(1.0_wp)**2
 
-   !> Room for the widest block, and the factors of each sparse one. Never copied: see klu_t.
-   type :: workspace_t
-      real(wp), allocatable :: a(:), r(:), start(:), work(:)
+   !> The Jacobian of a block, then its factors, or those of one beside it; room for the widest block. Never copied: see
+   !> klu_t.
+   type :: block_factors_t
+      real(wp), allocatable :: a(:), work(:)
       integer, allocatable :: pivots(:), iwork(:)
       type(nearby_t) :: near                      !< the Jacobian, where `a` holds the factors of one beside it
       type(klu_t), allocatable :: sparse(:)       !< (0:patterns), 0 for dense blocks
+   end type block_factors_t
+
+   !> The same, and the right-hand sides and first values of a block.
+   type, extends(block_factors_t) :: workspace_t
+      real(wp), allocatable :: r(:), start(:)
    end type workspace_t
 
 contains
@@ -94,8 +100,7 @@ contains
          c%ended = ended_converged
          return
       end if
-      call solve(b, i, b%list(i)%shape, tolerance, w%a, w%r, w%start, w%work, w%pivots, &
-         w%near, w%sparse(b%list(i)%shape%pattern), s, c, correction)
+      call solve(b, i, b%list(i)%shape, tolerance, w%block_factors_t, w%r, w%start, s, c, correction)
       if (c%ended /= ended_converged .and. c%ended /= ended_stalled) return
       if (b%list(i)%shape%rows > b%list(i)%shape%n .and. is_inconsistent(c)) then
          c%ended = ended_inconsistent
@@ -122,17 +127,15 @@ contains
       call set_direction(b, b%unknown(b%list(i)%first), s)
    end subroutine solve_direct
 
-   !> Newton's method; where it ends with a position, `r`(:, 2) holds the velocities and `a` the factors, of the
-   !> Jacobian there or of one beside that in `near`. Where the Jacobian there has no inverse, c%singular says so.
-   subroutine solve(b, i, shape, tolerance, a, r, start, work, pivots, near, k, s, c, correction)
+   !> Newton's method; where it ends with a position, `r`(:, 2) holds the velocities and `f` the factors, of the
+   !> Jacobian there or of one beside it. Where the Jacobian there has no inverse, c%singular says so.
+   subroutine solve(b, i, shape, tolerance, f, r, start, s, c, correction)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(shape_t), intent(in) :: shape
       real(wp), intent(in) :: tolerance
-      real(wp), intent(inout) :: a(*), r(shape%rows, 2), start(shape%n), work(*)
-      integer, intent(inout) :: pivots(*)
-      type(nearby_t), intent(inout) :: near
-      type(klu_t), intent(inout) :: k
+      type(block_factors_t), intent(inout) :: f
+      real(wp), intent(inout) :: r(shape%rows, 2), start(shape%n)
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
       real(wp), intent(inout) :: correction
@@ -143,7 +146,7 @@ contains
       call begin_block(b, i, shape%n, s, start, size_of)
       before = huge(before)
       coarse = b%list(i)%coarse
-      near%distance = 0.0_wp
+      f%near%distance = 0.0_wp
       c = convergence_t(ended=ended_limit)
       do iteration = 1, iteration_limit
          if (.not. size_of <= angle_limit) then
@@ -151,19 +154,19 @@ contains
             return
          end if
          c%iterations = iteration
-         call assemble_block(b, i, s, a, r)
-         if (near%distance > 0.0_wp) call set_aside(a, near)
+         call assemble_block(b, i, s, f%a, r)
+         if (f%near%distance > 0.0_wp) call set_aside(f%a, f%near)
          c%residual = maxval(abs(r(:, 1)))
          if (shape%rows > shape%n) call note_closure_error(b, i, r, c)
          if (c%residual <= closed_level*max(size_of, coarse)) then
             c%step = 0.0_wp
             c%ended = ended_converged
             call right_hand_side(b, i, 1, s, r(:, 2))
-            call solve_assembled(shape, a, k, pivots, near, work, r(:, 2), info)
+            call solve_for(shape, .true., f, r(:, 2), info)
             c%singular = info > 0
             exit
          end if
-         call solve_assembled(shape, a, k, pivots, near, work, r, info)
+         call solve_for(shape, .true., f, r, info)
          if (info > 0) then
             c%singular = c%residual <= max(rounding_level*max(size_of, coarse), tolerance)
             c%ended = merge(ended_stalled, ended_singular, c%singular)
@@ -178,49 +181,35 @@ contains
          end if
          before = c%step
          if (c%ended == ended_limit) then
-            call stay_near(shape, a, pivots, b%list(i)%lipschitz*c%step, near)
+            call stay_near(shape, f%a, f%pivots, b%list(i)%lipschitz*c%step, f%near)
             cycle
          end if
          call right_hand_side(b, i, 1, s, r(:, 2))
-         call solve_from_factors(shape, a, k, pivots, near, work, r(:, 2))
+         call solve_for(shape, .false., f, r(:, 2), info)
          exit
       end do
       if (c%iterations > 1 .or. c%step > 0.0_wp) c%change = largest_change(b, i, shape%n, s, start)
       correction = max(correction, c%change)
    end subroutine solve
 
-   !> Solves for `v` (rows) with the Jacobian just assembled: `info` > 0, it has no inverse.
-   subroutine solve_assembled(shape, a, k, pivots, near, work, v, info)
+   !> Solves for `v` (rows) with the Jacobian just assembled (`is_new`: `info` > 0, it has no inverse), or that of the
+   !> position just found: from its factors, or those of one beside it.
+   subroutine solve_for(shape, is_new, f, v, info)
       type(shape_t), intent(in) :: shape
-      real(wp), intent(inout) :: a(*), work(*), v(*)
-      type(klu_t), intent(inout) :: k
-      integer, intent(inout) :: pivots(*)
-      type(nearby_t), intent(in) :: near
+      logical, intent(in) :: is_new
+      type(block_factors_t), intent(inout) :: f
+      real(wp), intent(inout) :: v(*)
       integer, intent(out) :: info
 
       info = 0
-      if (near%distance > 0.0_wp) then
-         call solve_nearby(near, v)
+      if (f%near%distance > 0.0_wp) then
+         call solve_nearby(f%near, v)
+      else if (is_new) then
+         call solve_first(shape, f%a, f%sparse(shape%pattern), f%pivots, f%work, v, info)
       else
-         call solve_first(shape, a, k, pivots, work, v, info)
+         call solve_again(shape, f%a, f%sparse(shape%pattern), f%pivots, f%work, v)
       end if
-   end subroutine solve_assembled
-
-   !> Solves for `v` (rows) with the Jacobian of the position just found: from its factors, or those of one beside it.
-   subroutine solve_from_factors(shape, a, k, pivots, near, work, v)
-      type(shape_t), intent(in) :: shape
-      real(wp), intent(in) :: a(*)
-      type(klu_t), intent(inout) :: k
-      integer, intent(in) :: pivots(*)
-      type(nearby_t), intent(in) :: near
-      real(wp), intent(inout) :: work(*), v(*)
-
-      if (near%distance > 0.0_wp) then
-         call solve_nearby(near, v)
-      else
-         call solve_again(shape, a, k, pivots, work, v)
-      end if
-   end subroutine solve_from_factors
+   end subroutine solve_for
 
    !> Rounding is all that is left to correct, and the position stays; among equations that contradict one another
    !> it is their gap.
@@ -313,7 +302,7 @@ contains
             s%u(b%unknown(b%list(i)%first + k - 1))%rate = w%r(rows + k)
          end do
          call right_hand_side(b, i, 2, s, w%r)
-         call solve_from_factors(b%list(i)%shape, w%a, w%sparse(b%list(i)%shape%pattern), w%pivots, w%near, w%work, w%r)
+         call solve_for(b%list(i)%shape, .false., w%block_factors_t, w%r, k)
          do k = 1, n
             s%u(b%unknown(b%list(i)%first + k - 1))%acceleration = w%r(k)
          end do

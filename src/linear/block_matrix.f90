@@ -24,6 +24,7 @@ module block_matrix
       real(wp) :: factors(4) = 0.0_wp            !< of the other, while the matrix is assembled
       real(wp) :: inverse(4) = 0.0_wp            !< of the other
       real(wp) :: distance = 0.0_wp              !< |A0^-1 (A - A0)| at most, A0 being factored; 0: `a` is not in use
+      integer :: passes = 0                      !< of refinement, until what is left is lost
    end type nearby_t
 
    !> From this many unknowns on KLU is not slower than DGESV (lattices, reference LAPACK and OpenBLAS).
@@ -145,6 +146,7 @@ contains
       real(wp), intent(in) :: a(*), change
       integer, intent(in) :: pivots(*)
       type(nearby_t), intent(inout) :: near
+      real(wp) :: error
 
       if (s%n /= 2 .or. s%rows /= 2) return
       near%factors = a(:4)
@@ -152,6 +154,12 @@ contains
       if (pivots(1) == 2) near%inverse = near%inverse([3, 4, 1, 2])
       near%distance = near%distance + change*inverse_norm_of_two(a)
       if (.not. near%distance <= max_distance) near%distance = 0.0_wp
+      near%passes = 0
+      error = near%distance
+      do while (error > lost)
+         near%passes = near%passes + 1
+         error = error*near%distance
+      end do
    end subroutine stay_near
 
    !> The changed matrix, now in `a`, goes to `near`, and the factors come back.
@@ -169,13 +177,12 @@ contains
    pure subroutine solve_nearby(near, b)
       type(nearby_t), intent(in) :: near
       real(wp), intent(inout) :: b(2)
-      real(wp) :: x(2), error
+      real(wp) :: x(2)
+      integer :: k
 
       x = times(near%inverse, b)
-      error = near%distance
-      do while (error > lost)
+      do k = 1, near%passes
          x = x + times(near%inverse, b - times(near%a, x))
-         error = error*near%distance
       end do
       b = x
    end subroutine solve_nearby

@@ -11,7 +11,7 @@ module structure
    use names, only: drive_name, listed
    use grouping, only: sorted_t, sorted, members, once, joined
    use mechanism, only: mechanism_t, pair_links, drive_links, pair_revolute, pair_prismatic, wanted_links, method_newton
-   use matching, only: match, owners, overdetermined, underdetermined
+   use matching, only: match, is_same_incidence, owners, overdetermined, underdetermined
    use assur_groups, only: closure_t, new_closure, group_t, groups_of
    use scales, only: solver_length, power_of_two
    use independent, only: parts_t, find_parts, part_of_links
@@ -23,7 +23,7 @@ module structure
    implicit none
    private
    public :: structure_t, findings_t, group_t, underdetermined_t, new_structure, count_degrees_of_freedom, &
-      find_structure, check_structure, faults_text, spare_drives_text
+      find_structure, find_structure_again, check_structure, faults_text, spare_drives_text
 
    !> Links that still can move, and the drives that they lack.
    type :: underdetermined_t
@@ -59,6 +59,7 @@ module structure
       type(parts_t) :: parts                            !< which link, point, pair and drive is in which
       type(mechanism_t), allocatable :: own(:)          !< (parts) each as a set of its own; none where there is one
       type(structure_t), allocatable :: structures(:)   !< (parts)
+      type(closure_t), allocatable :: closure           !< where it is solvable: which coordinate is in which equation
    end type findings_t
 
    !> So many parts are named; of more, the number is given.
@@ -102,35 +103,52 @@ contains
    function find_structure(m) result(f)
       type(mechanism_t), intent(in) :: m
       type(findings_t) :: f
+
+      call find_structure_again(m, f)
+   end function find_structure
+
+   !> The same of a mechanism that differs in numbers alone from the one with the findings `f`, if there are such: where
+   !> each closure equation has the coordinates that it had, all findings stand but the blocks, which have numbers.
+   subroutine find_structure_again(m, f)
+      type(mechanism_t), intent(in) :: m
+      type(findings_t), intent(inout) :: f
       type(closure_t) :: c
       type(structure_t) :: whole
       integer, allocatable :: unknown_of(:), equation_of(:)
       logical, allocatable :: over(:)
+      logical :: stands
       integer :: k
 
-      f = count_degrees_of_freedom(m)
       c = new_closure(m)
-      call match(c%incidence, unknown_of, equation_of)
-      over = overdetermined(c%incidence, unknown_of, equation_of)
-      f%redundant = count(unknown_of == 0)
-      f%many_pairs = pack(c%pair, over .and. c%pair > 0)
-      f%many_drives = pack(c%drive, over .and. c%drive > 0)
-      if (size(f%many_drives) > 1) call find_spare_drives(m, f)
-      f%lacking = parts_that_lack(m, c, underdetermined(c%incidence, unknown_of, equation_of), equation_of)
-      if (size(f%lacking) > 0) return
+      stands = allocated(f%closure)
+      if (stands) stands = is_same_incidence(c%incidence, f%closure%incidence)
+      if (.not. stands) then
+         f = count_degrees_of_freedom(m)
+         call match(c%incidence, unknown_of, equation_of)
+         over = overdetermined(c%incidence, unknown_of, equation_of)
+         f%redundant = count(unknown_of == 0)
+         f%many_pairs = pack(c%pair, over .and. c%pair > 0)
+         f%many_drives = pack(c%drive, over .and. c%drive > 0)
+         if (size(f%many_drives) > 1) call find_spare_drives(m, f)
+         f%lacking = parts_that_lack(m, c, underdetermined(c%incidence, unknown_of, equation_of), equation_of)
+         if (size(f%lacking) > 0) return
+         f%groups = groups_of(m, c, unknown_of, equation_of, over, wanted_links(m))
+         f%closure = c
+      end if
       call find_parts(m, f%parts, f%own)
+      if (allocated(f%structures)) deallocate (f%structures)
       allocate (f%structures(f%parts%count))
       if (f%parts%count == 1) f%structures(1) = new_structure(m)
       do k = 1, size(f%own)
          f%structures(k) = new_structure(f%own(k))
       end do
-      if (.not. all([(f%structures(k)%blocks%solvable, k=1, size(f%structures))])) then
-         whole = new_structure(m)
-         f%lacking = parts_on_tree(m, whole%tree, whole%blocks%free)
-      end if
-      f%solvable = size(f%lacking) == 0
-      if (f%solvable) f%groups = groups_of(m, c, unknown_of, equation_of, over, wanted_links(m))
-   end function find_structure
+      f%solvable = all([(f%structures(k)%blocks%solvable, k=1, size(f%structures))])
+      if (f%solvable) return
+      whole = new_structure(m)
+      f%lacking = parts_on_tree(m, whole%tree, whole%blocks%free)
+      deallocate (f%groups, f%closure)
+      allocate (f%groups(0))
+   end subroutine find_structure_again
 
    !> Of `f` the drives that are too many: in each independent mechanism of `m` as many as there are equations that are
    !> too many with its drives and not without.

@@ -227,6 +227,17 @@ equal 'no picture of a share' ' *** OPTION --sets DIVIDES THE VARIANTS OF A DECK
 "$kinmat" "$w/three.deck" --no-listing --svg "$w/three.svg" --animate "$w/moving.svg"
 equal 'a picture of the numbers of the deck' 0 $?
 
+# What a variant keeps of the structure of the one before: lengths of zero, with which links lack a drive, and a drive at rest.
+four_bar "$(vary R1 LIST '' 1.0 0.0 0.5)" "$(vary R1 LIST '' 3.5 0.0)" "$(vary R1 LIST '' 0.0 3.0)" '' "$turn" \
+   "$(card EXTREMES PAIRS PAIR-B0)" | sed 's/^DRIVE .*/&\nVARY    R2      LIST            30.0            0.0/' > "$w/zeros.deck"
+"$kinmat" "$w/zeros.deck" --jobs 1 --no-listing --summary "$w/one.csv" > "$w/out" 2>&1
+equal 'lengths of zero: variants refused' 18 "$(grep -c ',E101,' "$w/one.csv")"
+for k in 1 2 3 4 5 6 7 8; do
+   "$kinmat" "$w/zeros.deck" --jobs 1 --sets $k/8 --no-listing --summary "$w/some.csv" > "$w/out" 2>&1
+   cat "$w/some.csv"
+done > "$w/joined.csv"
+same 'lengths of zero: eight shares' "$w/one.csv" "$w/joined.csv"
+
 # Memory does not grow with the variants: 40 times as many need no more room than is free for a few.
 four_bar "$(vary R1 50 '' 0.5 1.25)" "$(vary R1 40 '' 3.25 3.75)" '' '' "$(card TIME 1 '' '' 0.0 1.0)" > "$w/many.deck"
 (ulimit -v 200000; "$kinmat" "$w/many.deck" --no-listing --summary "$w/many.csv") > "$w/out" 2>&1
