@@ -46,3 +46,33 @@ with() {
       /^END/ { while ((getline line < cards) > 0) print line; close(cards) }
       { print }' "input/$deck.deck"
 }
+
+# rejected NAME STATUS WORDS ARGUMENT...: the command ends with this status and these words, and prints no listing
+rejected() {
+   name=$1; status=$2; words=$3
+   shift 3
+   "$kinmat" "$@" > "$w/out" 2> "$w/err"
+   equal "$name: status" "$status" $?
+   equal "$name: sentence" "$words" "$(cat "$w/err")"
+   equal "$name: no listing" '' "$(cat "$w/out")"
+}
+
+# still_four_bar CRANK COUPLER ROCKER BASE DRIVEN PHI-CRANK PHI-COUPLER PHI-ROCKER VALUE CARD...: a four-bar at one instant,
+# with these cards before END
+still_four_bar() {
+   card UNITS M DEG S
+   card GROUND BASE
+   card LINK CRANK '' '' 0.0 0.0 "$6"
+   card LINK COUPLER '' '' "$1" 0.0 "$7"
+   card LINK ROCKER '' '' "$4" 0.0 "$8"
+   card POINT A0 BASE; card POINT B0 BASE '' "$4"
+   card POINT C1 CRANK; card POINT C2 CRANK '' "$1"
+   card POINT D1 COUPLER; card POINT D2 COUPLER '' "$2"
+   card POINT E1 ROCKER; card POINT E2 ROCKER '' "$3"
+   card REVOLUTE A0 C1 P1; card REVOLUTE C2 D1 P2; card REVOLUTE D2 E2 P3; card REVOLUTE B0 E1 P4
+   card DRIVE ANGLE "$5" '' "$9" 30.0
+   card AT '' '' '' 0.0
+   shift 9
+   printf '%s\n' "$@"
+   card END
+}

@@ -68,24 +68,8 @@ grep -v '^EXTREMES' input/stroke.deck > "$w/without.deck"
 same 'the CSV with and without EXTREMES' "$w/without.csv" "$w/with.csv"
 same 'the CSV with and without the search' "$w/without.csv" "$w/listed.csv"
 
-# four_bar CRANK COUPLER ROCKER BASE DRIVEN PHI-CRANK PHI-COUPLER PHI-ROCKER VALUE: a four-bar with RANGE
-four_bar() {
-   card UNITS M DEG S
-   card GROUND BASE
-   card LINK CRANK '' '' 0.0 0.0 "$6"
-   card LINK COUPLER '' '' "$1" 0.0 "$7"
-   card LINK ROCKER '' '' "$4" 0.0 "$8"
-   card POINT A0 BASE; card POINT B0 BASE '' "$4"
-   card POINT C1 CRANK; card POINT C2 CRANK '' "$1"
-   card POINT D1 COUPLER; card POINT D2 COUPLER '' "$2"
-   card POINT E1 ROCKER; card POINT E2 ROCKER '' "$3"
-   card REVOLUTE A0 C1 P1; card REVOLUTE C2 D1 P2; card REVOLUTE D2 E2 P3; card REVOLUTE B0 E1 P4
-   card DRIVE ANGLE "$5" '' "$9" 30.0
-   card AT '' '' '' 0.0
-   card METHOD "${method:-NEWTON}"
-   card RANGE
-   card END
-}
+# four_bar, as still_four_bar: with RANGE
+four_bar() { still_four_bar "$@" "$(card METHOD "${method:-NEWTON}")" RANGE; }
 # range NAME EXPECTED: the lines between the head of the ranges and the next blank line, for $w/deck
 range() { equal "$1" "$2" "$("$kinmat" "$w/deck" 2>&1 | awk '/^ RANGES/ { on = 1; next } /^$/ { on = 0 } on')"; }
 # angle A B C: between the sides A and B of a triangle, opposite C, in degrees

@@ -13,23 +13,8 @@ angle() { awk -v a="$1" -v b="$2" -v c="$3" 'BEGIN { x = (a*a + b*b - c*c)/(2*a*
 # limit VALUE: ten digits
 limit() { awk -v x="$1" 'BEGIN { printf "%.9E", x }'; }
 
-# four_bar CRANK COUPLER ROCKER BASE DRIVEN PHI-CRANK PHI-COUPLER PHI-ROCKER VALUE: a four-bar with CIRCUITS
-four_bar() {
-   card UNITS M DEG S
-   card GROUND BASE
-   card LINK CRANK '' '' 0.0 0.0 "$6"
-   card LINK COUPLER '' '' "$1" 0.0 "$7"
-   card LINK ROCKER '' '' "$4" 0.0 "$8"
-   card POINT A0 BASE; card POINT B0 BASE '' "$4"
-   card POINT C1 CRANK; card POINT C2 CRANK '' "$1"
-   card POINT D1 COUPLER; card POINT D2 COUPLER '' "$2"
-   card POINT E1 ROCKER; card POINT E2 ROCKER '' "$3"
-   card REVOLUTE A0 C1 P1; card REVOLUTE C2 D1 P2; card REVOLUTE D2 E2 P3; card REVOLUTE B0 E1 P4
-   card DRIVE ANGLE "$5" '' "$9" 30.0
-   card AT '' '' '' 0.0
-   card CIRCUITS
-   card END
-}
+# four_bar, as still_four_bar: with CIRCUITS
+four_bar() { still_four_bar "$@" CIRCUITS; }
 head=' CIRCUIT BRANCH  DET  ASSEMBLIES  RANGE'
 all='ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS'
 

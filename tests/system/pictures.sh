@@ -232,20 +232,17 @@ sed -e '/^END/q' -e 's/^TITLE.*/TITLE   A < B \& "C"/' input/four_bar.deck > "$w
 equal 'a title with characters of XML' '' "$(tags "$w/title.svg")"
 equal 'a title with characters of XML: text' 2 "$(grep -c 'A &lt; B &amp; &quot;C&quot;' "$w/title.svg")"
 
-# The words of the command.
-refused() { expected=$2; want=$3; name=$1; shift 3; "$kinmat" "$@" > "$w/out" 2> "$w/err"
-   equal "$name: status" "$expected" $?; equal "$name: sentence" "$want" "$(cat "$w/err")"; equal "$name: no listing" '' "$(cat "$w/out")"; }
 cp input/four_bar.deck "$w/own.deck"
 for option in --svg --animate; do
-   refused "$option without a file" 1 " *** OPTION $option NEEDS A FILE NAME" "$w/own.deck" $option
-   refused "$option twice" 1 " *** OPTION $option IS GIVEN TWICE" "$w/own.deck" $option "$w/a" $option "$w/b"
-   refused "$option and --check" 1 " *** OPTION --check COMPUTES NO MOTION, WHICH $option NEEDS" "$w/own.deck" $option "$w/a" --check
-   refused "$option and --study" 1 ' *** OPTION --study GOES WITH NO OTHER OPTION BUT -o AND --quiet' "$w/own.deck" $option "$w/a" --study
-   refused "$option to the file of the CSV" 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own.deck" --csv "$w/a" $option "$w/./a"
-   refused "$option to the file of the listing" 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own.deck" -o "$w/a" $option "$w/a"
-   refused "$option to the deck" 1 " *** THE DECK $w/own.deck WOULD BE OVERWRITTEN" "$w/own.deck" $option "$w/own.deck"
+   rejected "$option without a file" 1 " *** OPTION $option NEEDS A FILE NAME" "$w/own.deck" $option
+   rejected "$option twice" 1 " *** OPTION $option IS GIVEN TWICE" "$w/own.deck" $option "$w/a" $option "$w/b"
+   rejected "$option and --check" 1 " *** OPTION --check COMPUTES NO MOTION, WHICH $option NEEDS" "$w/own.deck" $option "$w/a" --check
+   rejected "$option and --study" 1 ' *** OPTION --study GOES WITH NO OTHER OPTION BUT -o AND --quiet' "$w/own.deck" $option "$w/a" --study
+   rejected "$option to the file of the CSV" 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own.deck" --csv "$w/a" $option "$w/./a"
+   rejected "$option to the file of the listing" 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own.deck" -o "$w/a" $option "$w/a"
+   rejected "$option to the deck" 1 " *** THE DECK $w/own.deck WOULD BE OVERWRITTEN" "$w/own.deck" $option "$w/own.deck"
    same "$option to the deck: it is as it was" input/four_bar.deck "$w/own.deck"
-   refused "$option to a file that cannot be" 3 ' *** FILE /nonexistent/x CANNOT BE OPENED FOR WRITING (NO SUCH FILE OR DIRECTORY)' \
+   rejected "$option to a file that cannot be" 3 ' *** FILE /nonexistent/x CANNOT BE OPENED FOR WRITING (NO SUCH FILE OR DIRECTORY)' \
       "$w/own.deck" $option /nonexistent/x
    equal "$option: no file is made by what is refused" '' "$(ls "$w/a" 2> /dev/null)"
    if [ -w /dev/full ]; then
@@ -258,5 +255,5 @@ for option in --svg --animate; do
    equal "$option, a share without sets" '' "$(tags "$w/share.svg")"
    equal "$option, a share without sets: none" 0 "$(grep -c '<g class="set"' "$w/share.svg")"
 done
-refused '--svg and --animate to one file' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own.deck" --animate "$w/a" --svg "$w/a"
+rejected '--svg and --animate to one file' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own.deck" --animate "$w/a" --svg "$w/a"
 conclude

@@ -116,33 +116,30 @@ else
    echo 'skipped: pictures of gnuplot (not installed)'
 fi
 
-# The words of the command.
-refused() { expected=$2; want=$3; name=$1; shift 3; "$kinmat" "$@" > "$w/out" 2> "$w/err"
-   equal "$name: status" "$expected" $?; equal "$name: sentence" "$want" "$(cat "$w/err")"; equal "$name: no listing" '' "$(cat "$w/out")"; }
 cp input/four_bar.deck "$w/own-1.deck"
-refused '--table without a file' 1 ' *** OPTION --table NEEDS A FILE NAME' "$w/own-1.deck" --table
-refused '--table twice' 1 ' *** OPTION --table IS GIVEN TWICE' "$w/own-1.deck" --table "$w/a" --table "$w/b"
-refused '--table and --check' 1 ' *** OPTION --check COMPUTES NO MOTION, WHICH --table NEEDS' "$w/own-1.deck" --table "$w/a" --check
-refused '--table and --time' 1 ' *** OPTION --time GOES WITH NO OTHER OPTION BUT -o AND --quiet' "$w/own-1.deck" --table "$w/a" --time
-refused 'two tables on standard output' 1 ' *** STANDARD OUTPUT TAKES THE TABLE OF ONE SET: CHOOSE THE K-TH OF 2 WITH --sets K/2' \
+rejected '--table without a file' 1 ' *** OPTION --table NEEDS A FILE NAME' "$w/own-1.deck" --table
+rejected '--table twice' 1 ' *** OPTION --table IS GIVEN TWICE' "$w/own-1.deck" --table "$w/a" --table "$w/b"
+rejected '--table and --check' 1 ' *** OPTION --check COMPUTES NO MOTION, WHICH --table NEEDS' "$w/own-1.deck" --table "$w/a" --check
+rejected '--table and --time' 1 ' *** OPTION --time GOES WITH NO OTHER OPTION BUT -o AND --quiet' "$w/own-1.deck" --table "$w/a" --time
+rejected 'two tables on standard output' 1 ' *** STANDARD OUTPUT TAKES THE TABLE OF ONE SET: CHOOSE THE K-TH OF 2 WITH --sets K/2' \
    "$w/own-1.deck" --table -
-refused 'the table of a set is another output' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own-1.deck" --table "$w/a.x" --csv "$w/a-2.x"
-refused 'the table of a set is the deck' 1 " *** THE DECK $w/own-1.deck WOULD BE OVERWRITTEN" "$w/own-1.deck" --table "$w/own.deck"
+rejected 'the table of a set is another output' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own-1.deck" --table "$w/a.x" --csv "$w/a-2.x"
+rejected 'the table of a set is the deck' 1 " *** THE DECK $w/own-1.deck WOULD BE OVERWRITTEN" "$w/own-1.deck" --table "$w/own.deck"
 same 'the table of a set is the deck: it is as it was' input/four_bar.deck "$w/own-1.deck"
-refused '--table to a file that cannot be' 3 ' *** FILE /nonexistent/x-1 CANNOT BE OPENED FOR WRITING (NO SUCH FILE OR DIRECTORY)' \
+rejected '--table to a file that cannot be' 3 ' *** FILE /nonexistent/x-1 CANNOT BE OPENED FOR WRITING (NO SUCH FILE OR DIRECTORY)' \
    "$w/own-1.deck" --table /nonexistent/x
-refused '--plot without a directory' 1 ' *** OPTION --plot NEEDS A DIRECTORY' "$w/own-1.deck" --plot
-refused '--plot -' 1 ' *** OPTION --plot NEEDS A DIRECTORY' "$w/own-1.deck" --plot -
-refused '--plot twice' 1 ' *** OPTION --plot IS GIVEN TWICE' "$w/own-1.deck" --plot "$w/a" --plot "$w/b"
-refused '--plot and --check' 1 ' *** OPTION --check COMPUTES NO MOTION, WHICH --plot NEEDS' --check "$w/own-1.deck" --plot "$w/a"
-refused '--plot and --study' 1 ' *** OPTION --study GOES WITH NO OTHER OPTION BUT -o AND --quiet' --study "$w/own-1.deck" --plot "$w/a"
-refused '--plot where no directory can be made' 3 ' *** DIRECTORY /nonexistent/x CANNOT BE MADE (NO SUCH FILE OR DIRECTORY)' \
+rejected '--plot without a directory' 1 ' *** OPTION --plot NEEDS A DIRECTORY' "$w/own-1.deck" --plot
+rejected '--plot -' 1 ' *** OPTION --plot NEEDS A DIRECTORY' "$w/own-1.deck" --plot -
+rejected '--plot twice' 1 ' *** OPTION --plot IS GIVEN TWICE' "$w/own-1.deck" --plot "$w/a" --plot "$w/b"
+rejected '--plot and --check' 1 ' *** OPTION --check COMPUTES NO MOTION, WHICH --plot NEEDS' --check "$w/own-1.deck" --plot "$w/a"
+rejected '--plot and --study' 1 ' *** OPTION --study GOES WITH NO OTHER OPTION BUT -o AND --quiet' --study "$w/own-1.deck" --plot "$w/a"
+rejected '--plot where no directory can be made' 3 ' *** DIRECTORY /nonexistent/x CANNOT BE MADE (NO SUCH FILE OR DIRECTORY)' \
    "$w/own-1.deck" --plot /nonexistent/x
-refused '--plot in the place of a file' 3 " *** FILE $w/own-1.deck/table-1.csv CANNOT BE OPENED FOR WRITING (NOT A DIRECTORY)" \
+rejected '--plot in the place of a file' 3 " *** FILE $w/own-1.deck/table-1.csv CANNOT BE OPENED FOR WRITING (NOT A DIRECTORY)" \
    "$w/own-1.deck" --plot "$w/own-1.deck"
-refused '--plot, and one of its files' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own-1.deck" --plot "$w/plot_yoke" \
+rejected '--plot, and one of its files' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own-1.deck" --plot "$w/plot_yoke" \
    --csv "$w/plot_yoke/plot-2.gp"
-refused 'a command with --plot' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own-1.deck" --plot "$w/a" --csv "$w/b" --log "$w/b"
+rejected 'a command with --plot' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own-1.deck" --plot "$w/a" --csv "$w/b" --log "$w/b"
 equal 'no file is made by what is refused' '' "$(ls "$w"/a "$w"/a.x "$w"/a-* "$w/b" "$w/own-2.deck" 2> /dev/null)"
 if [ -w /dev/full ]; then
    "$kinmat" "$w/own-1.deck" --sets 1/2 --table /dev/full > "$w/out" 2> "$w/err"
