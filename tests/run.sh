@@ -31,8 +31,8 @@ parts() {
    units|786|tests/system/units.sh
    the methods against one another|8|tests/system/methods.sh
    variants|91|tests/system/variants.sh
-   tolerances|22|tests/system/tolerances.sh
-   extremes and ranges|43|tests/system/answers.sh
+   tolerances|23|tests/system/tolerances.sh
+   extremes and ranges|46|tests/system/answers.sh
    circuits|27|tests/system/circuits.sh
    circuits by chance|40|"$BUILD/release/circuits_by_chance" 40
    all assemblies|77|tests/system/assemblies.sh

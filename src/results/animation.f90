@@ -14,8 +14,9 @@ module animation
    use picture_parts, only: put_flagged, put_guide, put_ground, put_block
    use picture, only: put_curves
    use picture_page, only: place_canvas, put_set_head, put_flags, put_scale, flag_lines, fitted, width, line_height
-   use moving_links, only: course_t, put_moving, put_moving_links
-   use svg, only: svg_head, put_end, put_group, put_window, put_circle, put_line, put_words
+   use picture_centrodes, only: put_centrodes
+   use moving_links, only: course_t, put_moving, put_moving_links, put_moving_centres
+   use svg, only: svg_head, put_end, put_group, put_window, put_circle, put_line, put_words, pixels
    use text_output, only: output_t
    use listing, only: words_of_mark
    implicit none
@@ -71,6 +72,7 @@ contains
          call make_canvas(o, films(i), page(i))
          page(i)%best = min(1, films(i)%frames)
          page(i)%faint = [(k, k=1, films(i)%frames)]
+         page(i)%centrodes = .true.
          call place_canvas(page(i), top)
          top = page(i)%bottom + bar_room
       end do
@@ -97,10 +99,23 @@ contains
       do i = 1, size(c%d%guides)
          if (c%m%links(c%d%guides(i)%carrier)%ground) call put_guide(c, c%d%guides(i))
       end do
+      do i = 1, size(c%m%links)
+         if (c%m%links(i)%ground) call put_centrodes(c, i)
+      end do
+      ! A centrode in a link that moves may run through the pictures of other sets.
+      if (size(c%d%centrodes) > 0) then
+         call put_window(c%o, c%low, c%high - c%low)
+         call put_group(c%o, 'transform="translate('//pixels(-c%low(1))//' '//pixels(-c%low(2))//')"', '')
+      end if
       call put_group(c%o, 'class="film" data-frames="'//whole(c%d%frames)//'" data-keys="'//whole(size(course%frame)) &
          //'" data-end="'//full(c%d%frame(c%d%frames)%t)//'"', '')
       call put_moving_links(c, course)
+      call put_moving_centres(c, course)
       call put_end(c%o, 'g')
+      if (size(c%d%centrodes) > 0) then
+         call put_end(c%o, 'g')
+         call put_end(c%o, 'svg')
+      end if
       do i = 1, size(c%d%guides)
          if (c%m%links(c%d%guides(i)%block)%ground) call put_block(c, c%d%guides(i))
       end do

@@ -1,5 +1,6 @@
 !> The moving links of an animation: each is a group that is moved and turned through the frames of a drawing (SMIL).
-!> The browser interpolates between two frames, place and angle evenly.
+!> The browser interpolates between two frames, place and angle evenly. Centrodes move with their links, and a ring at
+!> each instant centre.
 module moving_links
    use kinds, only: wp
    use constants, only: in_degrees, without_turns
@@ -8,12 +9,13 @@ module moving_links
    use drawing, only: drawing_t
    use canvas, only: canvas_t, make_canvas, to_pixels
    use picture_parts, only: put_body, put_guide, put_block, put_joint, put_dot, dots_of
-   use picture_page, only: fitted
+   use picture_centrodes, only: put_centrodes, put_ring, pair_name
+   use picture_page, only: fitted, width
    use svg, only: put_group, put_end, put_values, pixels, attribute
    use text_output, only: output_t
    implicit none
    private
-   public :: course_t, put_moving, put_moving_links
+   public :: course_t, put_moving, put_moving_links, put_moving_centres
 
    !> How the frames follow one another.
    type :: course_t
@@ -136,12 +138,15 @@ contains
 
       associate (c => cargo%own)
          c%shift = -c%scale*c%d%outlines(link)%corner(:, 1)*[1.0_wp, -1.0_wp]
+         c%low = -real(width, wp)
+         c%high = real(width, wp)
          ! No name stands on it.
          c%lines = 0
          c%boxes = 0
          do i = cargo%rods%first(link), cargo%rods%first(link + 1) - 1
             call put_guide(c, c%d%guides(cargo%rods%member(i)))
          end do
+         call put_centrodes(c, link)
          call put_body(c, link)
          do i = cargo%blocks%first(link), cargo%blocks%first(link + 1) - 1
             call put_block(c, c%d%guides(cargo%blocks%member(i)))
@@ -155,6 +160,36 @@ contains
          end do
       end associate
    end subroutine put_carried
+
+   !> A ring at each instant centre, none where this is at infinity or leaves the picture.
+   subroutine put_moving_centres(c, course)
+      type(canvas_t), intent(in) :: c
+      type(course_t), intent(in) :: course
+      real(wp) :: place(2, 0:size(course%frame)), opacity(1, size(course%frame))
+      character(:), allocatable :: name
+      integer :: i, k
+
+      do i = 1, size(c%d%centrodes)
+         place(:, 0) = c%low
+         do k = 1, size(course%frame)
+            associate (s => c%d%frame(course%frame(k)))
+               place(:, k) = to_pixels(c, s%centre(:, i))
+               opacity(1, k) = merge(1.0_wp, 0.0_wp, s%has_centre(i) .and. all(place(:, k) >= c%low &
+                  .and. place(:, k) <= c%high))
+            end associate
+            if (opacity(1, k) < 1.0_wp) place(:, k) = place(:, k - 1)
+         end do
+         if (all(opacity < 1.0_wp)) cycle
+         name = pair_name(c%m, c%d%centrodes(i))
+         call put_group(c%o, attribute('data-pole', name)//' transform="translate('//pixels(place(1, 1))//' ' &
+            //pixels(place(2, 1))//')"', name)
+         call put_moving(c%o, course, 'animateTransform attributeName="transform" type="translate"', place(:, 1:), &
+            course%smooth)
+         if (any(opacity < 1.0_wp)) call put_moving(c%o, course, 'animate attributeName="opacity"', opacity, .false.)
+         call put_ring(c, i, [0.0_wp, 0.0_wp])
+         call put_end(c%o, 'g')
+      end do
+   end subroutine put_moving_centres
 
    !> An animated attribute: `values` (:, keys) in turn, with what is between them if `smooth`.
    subroutine put_moving(o, course, element, values, smooth)

@@ -10,7 +10,7 @@ module picture_centrodes
    use svg, only: put_group, put_end, put_circle, put_line, put_words, attribute
    implicit none
    private
-   public :: put_centrodes, put_centres
+   public :: put_centrodes, put_centres, put_ring, pair_name
 
    !> The ring of an instant centre, in pixels, and how far its name stays from what is drawn.
    real(wp), parameter :: centre_radius = 4.0_wp, clear = 4.0_wp
@@ -23,14 +23,18 @@ module picture_centrodes
 
 contains
 
-   !> The centrodes of all poles.
-   subroutine put_centrodes(c)
+   !> The centrodes of all poles; those that lie in link number `own` alone, if it is given.
+   subroutine put_centrodes(c, own)
       type(canvas_t), intent(inout) :: c
+      integer, intent(in), optional :: own
       integer :: i, side
 
       do i = 1, size(c%d%centrodes)
          do side = 1, 2
             associate (link => c%d%centrodes(i)%link(side))
+               if (present(own)) then
+                  if (link /= own) cycle
+               end if
                if (c%s%known(link)) call put_centrode(c, c%d%centrodes(i), side, pair_name(c%m, c%d%centrodes(i)), &
                   link_color(c%m, link))
             end associate
@@ -41,7 +45,7 @@ contains
    !> A ring and the names of both links at each instant centre, where the picture has room for it.
    subroutine put_centres(c)
       type(canvas_t), intent(inout) :: c
-      character(:), allocatable :: name, color
+      character(:), allocatable :: name
       real(wp) :: p(2, 1), start(2)
       integer :: i
 
@@ -50,14 +54,24 @@ contains
          p(:, 1) = to_pixels(c, c%s%centre(:, i))
          if (any(p(:, 1) < c%low) .or. any(p(:, 1) > c%high)) cycle
          name = pair_name(c%m, c%d%centrodes(i))
-         color = link_color(c%m, c%d%centrodes(i)%link(2))
-         call put_circle(c%o, p(:, 1), centre_radius, 'class="centre" style="stroke:'//color//'"')
-         call put_circle(c%o, p(:, 1), 1.0_wp, 'class="point"')
+         call put_ring(c, i, p(:, 1))
          call add_box(c, p(:, 1) - centre_radius, p(:, 1) + centre_radius)
          call find_clear_place(c, p, len(name), clear, start)
-         call put_words(c%o, start, 'start', 'class="link" style="fill:'//color//'"', name)
+         call put_words(c%o, start, 'start', 'class="link" style="fill:'//link_color(c%m, &
+            c%d%centrodes(i)%link(2))//'"', name)
       end do
    end subroutine put_centres
+
+   !> The ring of the instant centre of pole number `i` at the pixel `p` (2).
+   subroutine put_ring(c, i, p)
+      type(canvas_t), intent(in) :: c
+      integer, intent(in) :: i
+      real(wp), intent(in) :: p(2)
+
+      call put_circle(c%o, p, centre_radius, 'class="centre" style="stroke:' &
+         //link_color(c%m, c%d%centrodes(i)%link(2))//'"')
+      call put_circle(c%o, p, 1.0_wp, 'class="point"')
+   end subroutine put_ring
 
    !> The names of both links.
    pure function pair_name(m, centrode) result(name)

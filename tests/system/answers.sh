@@ -157,17 +157,27 @@ range 'Stephenson III' " ANGLE CRANK
    MIN  ${ends% *} DEG   LINKS COUPLER2, ROCKER2 AT THE LIMIT, IN LINE
    MAX  ${ends#* } DEG   LINKS COUPLER2, ROCKER2 AT THE LIMIT, IN LINE"
 
+# Dixon's nine bars: x(i)**2 of the points A and y(j)**2 of the points B, on two lines at right angles, grow by what the others
+# lose. The angle at A1 of B1 and B2 is least where B3 is on the line of the A, and the three bars to it in line.
+with dixon "$(card RANGE)" > "$w/deck"
+equal 'Dixon' "$(awk 'BEGIN { a = (atan2(sqrt(64^2 - 29^2), 29) + atan2(sqrt(41^2 - 29^2), 29))*45/atan2(1, 1)
+   printf "%.9E %.9E", a - 360, -a }')" "$("$kinmat" "$w/deck" | awk '/^   (MIN|MAX) / { printf "%s%s", sep, $2; sep = " " }')"
+
 # A parallelogram passes its two change points a turn on the smooth branch.
-with parallelogram_at "$(card RANGE)" > "$w/deck"
-range 'a parallelogram' ' ANGLE CRANK
+for method in NEWTON DENSE; do
+   with parallelogram_at "$(card RANGE)" "$(card METHOD $method)" > "$w/deck"
+   range "a parallelogram, $method" ' ANGLE CRANK
    ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS 1
    CHANGE POINTS PASSED 2'
+done
 # Each of the two cranks of a five-bar alone.
-with five_bar "$(card RANGE)" > "$w/deck"
-range 'a five-bar' ' ANGLE LEFT
+for method in NEWTON DENSE; do
+   with five_bar "$(card RANGE)" "$(card METHOD $method)" > "$w/deck"
+   range "a five-bar, $method" ' ANGLE LEFT
    ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS 1
  RELANGLE LEFT RIGHT
    ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS 1'
+done
 
 # refusal NAME CARD CODE: the deck stroke with this card
 refusal() {

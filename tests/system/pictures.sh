@@ -133,6 +133,15 @@ for deck in $(grep -L '^VARY' input/*.deck); do
    equal "$svg: at most 2 MB" yes "$([ "$(wc -c < "$svg")" -le 2000000 ] && echo yes)"
 done
 
+# The rings of an animation begin where the CSV has the poles, but for those outside of the picture.
+"$kinmat" --no-listing --csv "$w/poles.csv" input/poles.deck
+equal 'rings of an animation' '3 rings, 0 off' "$(awk '
+   FNR == NR { split($0, f, ","); if (f[2] == 0 && f[4] == "POLE") { name = f[5]; sub(/ /, "-", name); x[f[1], name] = f[6]; y[f[1], name] = f[7] } next }
+   /data-set=/ { split($0, part, "\""); set = part[4]; scale = part[6]; x0 = part[8]; y0 = part[10] }
+   /data-pole=/ { split($0, part, "\""); split(part[4], at, /[( )]/); rings++
+      dx = at[2] - x0 - scale*x[set, part[2]]; dy = at[3] - y0 + scale*y[set, part[2]]; off += dx*dx + dy*dy > 1e-3 }
+   END { print rings " rings, " off + 0 " off" }' "$w/poles.csv" "$w/poles.moving.svg")"
+
 # centrodes SVG: of each centrode its width in units of length, its lines, how far it leaves the picture, and whether it
 # goes through the ring of its instant centre; of the first set.
 centrodes() { awk '

@@ -81,6 +81,10 @@ equal 'redundant equations that do not: status' 0 $?
 equal 'redundant equations that do not: numbers named' yes "$(grep -c 'LEAVE NO ROOM' "$w/listing" | awk '$1 > 10 { print "yes" }')"
 equal 'redundant equations that do not: no sensitivities' '' "$(grep -E '^  (WORST|RSS)' "$w/listing" | grep '[0-9]')"
 
+# Poles and curves have none, which the listing says.
+awk '/^END/ { print "POLE    BASE    ROCKER"; print; exit } { print }' input/tolerances.deck > "$w/poles.deck"
+equal 'poles' ' --- POLES AND CURVES HAVE NO TOLERANCES' "$("$kinmat" "$w/poles.deck" | grep 'POLES AND CURVES')"
+
 # The same mechanism in millimetres: a thousand times the numbers.
 awk '/^(POINT|GROUND|TOLER|LINK) / {
       line = $0
