@@ -270,12 +270,12 @@ contains
    end subroutine add_table
 
    !> A parallelogram of `bars` bars on a link, in numbers whose sums are exact; two of them may take the other branch
-   !> past a change point.
-   subroutine add_parallelogram(d, bars, way, branches)
+   !> past a change point. Where more of them stand `in_line`, they all come to it at once.
+   subroutine add_parallelogram(d, bars, way, branches, in_line)
       type(draft_t), intent(inout) :: d
       integer, intent(in) :: bars
       real(qp), intent(in) :: way
-      logical, intent(in) :: branches
+      logical, intent(in) :: branches, in_line
       integer :: base, first, k, l
       real(qp) :: pivot(2), arm(2, bars), length, unit
 
@@ -286,6 +286,7 @@ contains
       arm(:, 1) = 0.0_qp
       do k = 2, bars
          arm(:, k) = unit*anint(d%size/unit*[number(d, 0.5_qp, 2.0_qp), number(d, -1.5_qp, 1.5_qp)]*(-1)**k)
+         if (in_line) arm(:, k) = arm(:, 2)*(k/2)*(-1)**k
       end do
       length = double(d%size*number(d, 0.5_qp, 2.0_qp))
       do k = 1, bars + 1

@@ -30,13 +30,13 @@ program fuzz_mechanisms
 
 contains
 
-   !> Every tenth deck has two sets.
+   !> Every tenth chain of dyads has two sets, and some of the others.
    function schemes_of(seed) result(s)
       integer, intent(in) :: seed
       type(scheme_t), allocatable :: s(:)
 
       s = [random_scheme(seed, 1)]
-      if (modulo(seed, 10) == 7) s = [s, random_scheme(seed, 2)]
+      if (modulo(seed, 10) == 7 .or. modulo(seed, 30) == 11 .or. modulo(seed, 60) == 40) s = [s, random_scheme(seed, 2)]
    end function schemes_of
 
    subroutine write_deck(s, path)

@@ -110,6 +110,7 @@ contains
       do k = 1, groups
          if (class == class_wide .and. k == 1) then
             call add_some(d, merge(14, 15, chance(d%dice, 0.5_wp)), class)
+            if (chance(d%dice, 0.3_wp)) call add_some(d, merge(17, 18, chance(d%dice, 0.5_wp)), class)
          else if (class /= class_triads) then
             call add_some(d, merge(3, throw(d%dice, 2), chance(d%dice, 0.8_wp)), class)
          else
@@ -171,10 +172,12 @@ contains
       case (12)
          call add_table(d, min(way, 0.8_qp))
       case (13)
-         call add_parallelogram(d, throw(d%dice, 3) + 1, min(10.0_qp*way, 8.0_qp), .false.)
+         call add_parallelogram(d, throw(d%dice, 3) + 1, min(10.0_qp*way, 8.0_qp), .false., .false.)
       case (16)
          ! A BRANCH card is for the change points of one way in time, and for METHOD NEWTON.
-         call add_parallelogram(d, 2, min(10.0_qp*way, 8.0_qp), size(d%s%at) == 0 .and. d%s%method == '')
+         call add_parallelogram(d, 2, min(10.0_qp*way, 8.0_qp), size(d%s%at) == 0 .and. d%s%method == '', .false.)
+      case (17, 18)
+         call add_parallelogram(d, 9 + throw(d%dice, 6), min(10.0_qp*way, 8.0_qp), .false., kind == 17)
       case (14)
          call add_plates(d, 4 + throw(d%dice, 4))
       case default
