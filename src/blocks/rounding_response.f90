@@ -85,7 +85,6 @@ contains
          r%drive(:, :, k) = drive_changes(e%laws(k), k, q%t, r%tables)*e%unit_of(k)
          if (again) r%state%drive_value(0:2, k) = drive_motion(e%laws(k), q%t)*e%unit_of(k)
       end do
-      if (again) r%state%u(2:)%value = r%state%u(2:)%value + nudge
       r%missing = missing_nothing
       do k = 1, size(e%needed)
          associate (i => e%needed(k), block => e%blocks%list(e%needed(k)))
@@ -93,6 +92,9 @@ contains
                .and. (block%direct .or. .not. only_driven)
             inverse = e%found(i)%inverse
             is_singular = e%is_singular(i)
+            ! A singular position stays: beside it the Jacobian has an inverse.
+            if (again .and. .not. is_singular) r%state%u(e%blocks%unknown(block%first:block%last))%value &
+               = r%state%u(e%blocks%unknown(block%first:block%last))%value + nudge
             if (is_found .and. again) call solve_block_again(r, e, i, inverse, is_singular, is_found)
             if (is_found .and. block%direct) then
                call respond_direct(r, e, i)
