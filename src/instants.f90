@@ -95,7 +95,7 @@ contains
       if (due .and. (lists .or. any(o%asked([out_csv, out_table, out_plot_table])))) call sense_set(a)
       if (lists .and. (due .or. has_words(a%now))) &
          call listing_instant(o%files(out_listing, 0), o%layout, m, a%now, k)
-      if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv, 0), m, a%now, k, o%varies)
+      if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv, 0), m, a%now, k, o%varies, a%assemblies)
       if (o%asked(out_table) .and. due) call table_instant(o%files(out_table, i), o%table, m, a%now)
       if (o%asked(out_plot_table) .and. due) call table_instant(o%files(out_plot_table, i), o%table, m, a%now)
       if (o%asked(out_log)) call put_log(o%files(out_log, 0), options, m, a, k)

@@ -35,7 +35,7 @@ parts() {
    extremes and ranges|46|tests/system/answers.sh
    circuits|27|tests/system/circuits.sh
    circuits by chance|40|"$BUILD/release/circuits_by_chance" 40
-   all assemblies|77|tests/system/assemblies.sh
+   all assemblies|79|tests/system/assemblies.sh
    independent mechanisms|106|tests/system/independent.sh
    what a singular position is|211|tests/system/singular.sh
    poles and curves|37|tests/system/centres.sh

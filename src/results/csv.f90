@@ -5,7 +5,9 @@ module csv
    use kinds, only: wp
    use constants, only: in_degrees
    use mechanism, only: mechanism_t, request_pole, request_curve
-   use points, only: row_t, has_number, is_due
+   use motion, only: motion_t, new_motion
+   use points, only: row_t, row_of, has_number, is_due
+   use assemblies, only: assemblies_t
    use instant_centres, only: centre_finite, centre_resting
    use known_digits, only: nothing_known
    use sensitivities, only: has_tolerances, worst_case, root_of_squares
@@ -43,13 +45,15 @@ contains
    end subroutine csv_head
 
    !> The rows of instant number `step` (0, 1, ...) of the motions `s` of `m` that the deck asks for there, with their
-   !> errors where these are asked for. `varies`: as in the head.
-   subroutine csv_instant(o, m, s, step, varies)
+   !> errors where these are asked for. `varies`: as in the head. `assemblies` (parts), where they are asked for: those
+   !> of the first instant.
+   subroutine csv_instant(o, m, s, step, varies, assemblies)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(in) :: s
       integer, intent(in) :: step
       logical, intent(in), optional :: varies
+      type(assemblies_t), intent(in), optional :: assemblies(:)
       character(:), allocatable :: start
       type(row_t) :: row
       real(wp) :: error(3, 0:2)
@@ -73,7 +77,9 @@ contains
          end if
          call add_row(trim(kinds_of_row(row%kind)), row, numbers_of(row), error, marks(row%mark))
          if (has_tolerances(m, m%requests(i))) call add_spreads(spread_in_set(m, s, i))
-         if (s%parts%part(i) > 0) call add_bound(s%parts%part(i), s%parts%number(i))
+         if (s%parts%part(i) == 0) cycle
+         call add_bound(s%parts%part(i), s%parts%number(i))
+         if (present(assemblies) .and. step == 0) call add_assemblies(s%parts%part(i), s%parts%number(i))
       end do
 
    contains
@@ -140,6 +146,24 @@ contains
             end if
          end associate
       end subroutine add_bound
+
+      !> The row, request number `k` of part `c`, in each assembly at the first instant; none has errors.
+      subroutine add_assemblies(c, k)
+         integer, intent(in) :: c, k
+         type(motion_t) :: q
+         type(row_t) :: other
+         integer :: number
+
+         q = new_motion(size(s%own(c)%links))
+         q%known = 0
+         q%origin = s%motions(c)%origin
+         do number = 1, size(assemblies(c)%list)
+            q%position = assemblies(c)%list(number)%position
+            other = row_of(s%own(c), q, s%own(c)%requests(k))
+            call add_row(trim(kinds_of_row(row%kind))//' ASSEMBLY '//whole(number), other, numbers_of(other), &
+               spread(spread(nothing_known, 1, 3), 2, 3), '')
+         end do
+      end subroutine add_assemblies
 
       !> What `word` says of the row: values (3, 0:2), as far as they are `known`; they have no errors.
       subroutine add_other(word, known, value)

@@ -107,6 +107,14 @@ with stroke "$(card ASSEMBLY)" | sed "s/^POINT   A-CR .*/&\n$(card VARY R1 LIST 
 "$kinmat" --quiet --summary "$w/summary" "$w/vary.deck" > "$w/listing"
 equal 'beside VARY' 'assemblies 0 1 2' "$(awk -F , 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "assemblies") k = i } { print $k }' "$w/summary" | xargs)"
 
+# In the CSV a row for each assembly, as the LINK cards have it; the first is the row itself.
+"$kinmat" --quiet --csv "$w/rows.csv" input/platform.deck > "$w/listing"
+awk '/^ASSEM|^ ASSEM/ { n = $2 } n && /^LINK +PLATFORM/ { printf "%s %.6f %.6f %.5f\n", n, $3, $4, $5 }' "$w/listing" > "$w/rows"
+awk -F , '$4 ~ /^LINK ASSEMBLY/ && $5 == "PLATFORM" { sub(/.* /, "", $4); printf "%s %.6f %.6f %.5f\n", $4, $6, $7, $8 }' "$w/rows.csv" > "$w/found"
+same 'rows of the CSV' "$w/rows" "$w/found"
+equal 'the chosen one' 1 "$(awk -F , '$5 == "PLATFORM" && $4 == "LINK" { first = sprintf("%.9f %.9f", $6, $8) }
+   $5 == "PLATFORM" && $4 == "LINK ASSEMBLY 1" { print first == sprintf("%.9f %.9f", $6, $8) }' "$w/rows.csv")"
+
 # The picture has a faint outline for each assembly that is not chosen, and says so.
 "$kinmat" --quiet --no-listing --svg "$w/picture.svg" "$w/three_rrr.deck"
 equal 'the picture: words' 1 "$(grep -c 'FAINT: THE OTHER ASSEMBLIES' "$w/picture.svg")"
