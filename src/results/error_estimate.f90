@@ -135,7 +135,8 @@ contains
       call move_found_links(e%chain, found%lost, r%state, e%length, found%solved, finite)
    end subroutine take_changes
 
-   !> Some digit could be in doubt: a pivot is small, or a number large.
+   !> Some digit could be in doubt: a pivot is small, or a number large. Where rates do not exist, blocks have found the
+   !> position to the last digits all the same; all equations at once (no `e`) have lost up to half of them.
    pure logical function is_in_doubt(s, m, rcond, q, e)
       type(estimator_t), intent(in) :: s
       type(mechanism_t), intent(in) :: m
@@ -144,7 +145,7 @@ contains
       class(block_method_t), intent(in), optional :: e
       real(wp) :: size_of
 
-      is_in_doubt = .false.
+      is_in_doubt = q%known >= 0 .and. q%known < 2 .and. .not. present(e)
       if (q%known < 2) return
       ! Several ground links that stand far away are rounded as coarsely as far places are.
       size_of = max(largest(q%position, s%length), maxval(abs(q%origin))/s%length, &

@@ -53,7 +53,8 @@ contains
       close (unit, status='delete')
    end subroutine run_cards
 
-   !> The lines of the listing that begin with three stars or three dashes, each with its end.
+   !> The lines of the listing that begin with three stars or three dashes, each with its end; not the one that tells what
+   !> `?` is.
    function remarks(r) result(text)
       type(run_t), intent(in) :: r
       character(:), allocatable :: text
@@ -63,8 +64,8 @@ contains
       first = 1
       do while (first <= len(r%listing))
          last = first + index(r%listing(first:), nl) - 1
-         if (r%listing(first:min(first + 4, last)) == ' *** ' .or. r%listing(first:min(first + 4, last)) == ' --- ') &
-            text = text//r%listing(first:last)
+         if ((r%listing(first:min(first + 4, last)) == ' *** ' .or. r%listing(first:min(first + 4, last)) == ' --- ') &
+            .and. index(r%listing(first:last), ' --- ?:') /= 1) text = text//r%listing(first:last)
          first = last + 1
       end do
    end function remarks
