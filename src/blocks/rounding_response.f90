@@ -28,7 +28,7 @@ module rounding_response
    use rounding_changes, only: rounding_response_t, change_loop, change_projection, change_vector, change_slide, &
       change_card
    use card_roundings, only: directions, rounding, roundings, number_pair, number_drive, parts_of_number, &
-      parts_of_own, card_sizes, law_tables, drive_changes
+      parts_of_own, parts_of_any, card_sizes, law_tables, drive_changes
    implicit none
    private
    public :: rounding_response_t, make_rounding_response, respond_to_roundings
@@ -157,7 +157,8 @@ contains
 
    !> The response of block `i`, whose Jacobian has the `inverse` (maximum norm). `is_found`: the changes are small
    !> enough. Where the Jacobian `is_singular`, a position changes with the root of what the equations change by, which
-   !> are about as curved as their units are long; rates have no response there.
+   !> are about as curved as their units are long, no two unknowns alike: what is the difference of two changes as well.
+   !> Rates have no response there.
    subroutine respond_block(r, m, e, i, inverse, is_singular, is_found)
       type(rounding_response_t), intent(inout) :: r
       type(mechanism_t), intent(in) :: m
@@ -166,7 +167,7 @@ contains
       real(wp), intent(in) :: inverse
       logical, intent(in) :: is_singular
       logical, intent(out) :: is_found
-      real(wp) :: v(directions, max(1, e%blocks%list(i)%shape%rows))
+      real(wp) :: v(directions, max(1, e%blocks%list(i)%shape%rows)), root
       integer :: order, k, info
 
       associate (block => e%blocks%list(i), shape => e%blocks%list(i)%shape, w => r%work)
@@ -182,7 +183,10 @@ contains
          do order = 0, merge(0, 2, is_singular .or. info > 0)
             call find_residuals(r, m, e, i, order, v)
             if (is_singular .or. info > 0) then
-               v = roundings*sqrt(maxval(abs(v))/roundings)
+               root = roundings*sqrt(maxval(abs(v))/roundings)
+               do k = 1, shape%n
+                  v(:, k) = root*parts_of_any(e%blocks%unknown(block%first + k - 1))
+               end do
             else
                call solve_many(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, directions, v)
                if (order == 0) is_found = maxval(abs(v(:, :shape%n)))*block%lipschitz*inverse <= max_part*roundings

@@ -10,7 +10,7 @@ module card_roundings
    implicit none
    private
    public :: directions, card_directions, roundings, rounding, number_point, number_pair, number_drive, number_time, &
-      number_link, parts_of_number, parts_of_own, card_sizes, law_tables, drive_changes
+      number_link, parts_of_number, parts_of_own, parts_of_any, card_sizes, law_tables, drive_changes
 
    !> Of eight numbers by chance the largest is seldom a small one; of four, more often.
    integer, parameter :: card_directions = 8, own_directions = 4, directions = card_directions + own_directions
@@ -53,6 +53,15 @@ contains
       r(:card_directions) = 0.0_wp
       r(card_directions + 1:) = part([(i, i=card_directions + 1, directions)], modulo(k, rows))
    end function parts_of_own
+
+   !> The parts (directions) by which unknown `k` is off in every direction, whatever its errors come from.
+   pure function parts_of_any(k) result(r)
+      integer, intent(in) :: k
+      real(wp) :: r(directions)
+      integer :: i
+
+      r = part([(i, i=1, directions)], modulo(k, rows))
+   end function parts_of_any
 
    !> The part in direction `i` of `row` 0, 1, ... of the numbers by chance.
    elemental real(wp) function part(i, row)

@@ -10,7 +10,8 @@
 #    beside     a four-bar linkage of another size and speed is in each set
 #    middle     begun in the middle: with the second half of the instants, from the positions at the first of these
 #    back       with the instants in the opposite order, from the positions at the last one
-# The last three take what they need from `csv`, results of the deck, and from `lst`, its listing. `map` says what one must
+# The last three take what they need from `csv`, results of the deck, and from `lst`, its listing; they have no ASSEMBLY card,
+# since other assemblies are there. No change has CIRCUITS cards. `map` says what one must
 # know to compare results: "start SET STEP", the instant of the deck with which the changed one begins; "link SET NAME XI
 # ETA PHI", the new axes of a link in the old ones; "pair SET NAME PHI", by how much its angle is larger; "slide SET NAME",
 # a prismatic pair; "degrees SET", "matrix SET", a set in degrees, by METHOD MATRIX. The numbers of a card and of its *
@@ -184,13 +185,14 @@ function put_joint(  first, second, x1, x2) {
 
 function change_card(  n) {
    n = name ~ /^(POINT|TIME)$/ || name == "ADD" && a != "HARMONIC" ? 2 : name == "BRANCH" ? 1 : 3
-   if (change == "whole" && name ~ /^(PRINT|LANG|EXTREMES|RANGE|TOLER|POLE|CURVE|PROVE)$/) return
+   if (change == "whole" && name ~ /^(PRINT|LANG|EXTREMES|RANGE|TOLER|POLE|CURVE|PROVE|CIRCUITS)$/) return
    if (change == "whole" && name == "JOINT") { put_joint(); return }
    if (change ~ /^(middle|back)$/ && name ~ /^(TIME|AT|BRANCH)$/) return
+   if (change ~ /^(middle|back|beside)$/ && name == "ASSEMBLY") return
    if (name == "TIME" && change ~ /^[37]$/) card = sprintf("%-8s%-8s%s", "TIME", change*a, substr(card, 17))
    # A card of which nothing is known here is refused.
    if (name !~ /^(GROUND|LINK|POINT|PRISM|DRIVE|ADD|RISE|TIME|AT|BRANCH)$/) {
-      put((name ~ /^(TITLE|UNITS|LANG|METHOD|REVOLUTE|PRINT)$/ ? "" : "?") card)
+      put((name ~ /^(TITLE|UNITS|LANG|METHOD|REVOLUTE|PRINT|ASSEMBLY)$/ ? "" : "?") card)
       return
    }
    if (name == "AT") while (n > 1 && !is_given(n)) n--

@@ -1,7 +1,8 @@
 # awk -v change=CHANGE -f relation_rows.awk MAP CSV CHANGED: rows of the results of a deck (CSV) and of the deck changed by
 # relation_deck.awk (CHANGED, with its MAP) that differ by more than both tell of their errors, and rows flagged in one alone.
 # An error is known to a small factor only, and a row's numbers are rounded; where no error is told a number is not compared.
-BEGIN { FS = ","; factor = 30; rounding = 1e-14 }
+# Of assemblies none is told: they are the same, and in the same order, to `of_assembly` of their numbers but for full turns.
+BEGIN { FS = ","; factor = 30; rounding = 1e-14; of_assembly = 1e-11 }
 function size(x) { return x < 0 ? -x : x }
 
 # The number of the instant in the deck.
@@ -27,19 +28,30 @@ function to_old_axes(  key, phi, x, y, s, c, w, reach, e, ew) {
    e = reach*($24*unit + size($14*unit)*e + 2*size(w)*ew + w*w*e)
    $22 += e; $23 += e
 }
+# The row at hand of an assembly has the errors that are allowed, and the full turns of the deck's.
+function compare_assembly(  c, turns) {
+   for (c = 6; c <= 8; c++) {
+      if ($c == "") continue
+      $(c + 10) = a[c + 10] = of_assembly*(size(a[c]) + 1)/(2*factor)
+      if (c == 8 || kind == "PAIR" && !(($1 " " $5) in slides)) {
+         turns = (a[c] - $c)*unit/(2*atan2(0, -1))
+         $c += int(turns + (turns < 0 ? -0.5 : 0.5))*2*atan2(0, -1)/unit
+      }
+   }
+}
 # The row at hand as it would be in the deck.
 function back_to_deck(  c, f) {
    for (c = 6; c <= 14; c++) {
       if ($c == "") continue
       f = 1
-      if (change == "units") f = ($4 == "PAIR" && !(($1 " " $5) in slides) || (c - 6) % 3 == 2 ? 1 : 25.4)/60^int((c - 6)/3)
+      if (change == "units") f = (kind == "PAIR" && !(($1 " " $5) in slides) || (c - 6) % 3 == 2 ? 1 : 25.4)/60^int((c - 6)/3)
       $c /= f; $(c + 10) = $(c + 10)/f
       # A relative angle is turned round, a slide is not.
-      if (change == "mirrored" && ($4 == "PAIR" ? !(($1 " " $5) in slides) : (c - 6) % 3 > 0)) $c = -$c
-      if (change == "moved" && $4 != "PAIR" && c < 8) $c -= c == 6 ? 3 : -2
+      if (change == "mirrored" && (kind == "PAIR" ? !(($1 " " $5) in slides) : (c - 6) % 3 > 0)) $c = -$c
+      if (change == "moved" && kind != "PAIR" && c < 8) $c -= c == 6 ? 3 : -2
    }
-   if (change == "axes" && $4 == "LINK" && $6 != "") to_old_axes()
-   if (change == "axes" && $4 == "PAIR" && $6 != "") $6 -= pair_turn[$1 " " $5]
+   if (change == "axes" && kind == "LINK" && $6 != "") to_old_axes()
+   if (change == "axes" && kind == "PAIR" && $6 != "") $6 -= pair_turn[$1 " " $5]
 }
 
 FILENAME != file { file = FILENAME; n_files++ }
@@ -51,10 +63,12 @@ n_files == 1 && f[1] == "slide" { slides[f[2] " " f[3]] = 1 }
 n_files == 1 && f[1] == "degrees" { degrees[f[2]] = 1 }
 n_files == 1 && f[1] == "matrix" { matrix[f[2]] = 1 }
 n_files == 1 || /^set,/ { next }
+/ ASSEMBLY / && change ~ /^(middle|back|beside)$/ { next }
 n_files == 2 { row[$1 "," $2 "," $4 "," $5] = $0; n_rows++; if ($15 == "NO-POSITION") lost[$1 " " $2] = 1; next }
 {
    key = $1 "," step_there() "," $4 "," $5
    # Where there are more steps, instants of AT cards have other numbers.
+   if ($4 ~ / ASSEMBLY / && !(key in row)) print "one more: " key
    if (!(key in row)) next
    split(row[key], a, ",")
    if (size(a[3] - $3/(change == "units" ? 60 : 1)) > 1e-9*size(a[3])) next
@@ -66,7 +80,9 @@ n_files == 2 { row[$1 "," $2 "," $4 "," $5] = $0; n_rows++; if ($15 == "NO-POSIT
       next
    }
    unit = ($1 in degrees) ? atan2(0, -1)/180 : 1
+   kind = $4; sub(/ .*/, "", kind)
    back_to_deck()
+   if ($4 ~ / ASSEMBLY /) compare_assembly()
    for (c = 6; c <= 14; c++) {
       if ($c == "" || a[c] == "" || a[c + 10] == "" || $(c + 10) == "") continue
       numbers++

@@ -75,4 +75,14 @@ changed axes "$w/whole.deck"
 run axes
 grep -v '^link' "$w/axes.map" > "$w/no_axes.map"
 equal 'differences are seen' 3 "$(differing axes "$w/no_axes.map" | grep -c '1,0,LINK,.* column')"
+# Assemblies in another order, and one more of them, are seen as well.
+w=$work/triple_rocker
+[ -f "$w/whole.deck" ] || relate input/triple_rocker.deck
+changed moved "$w/whole.deck"
+run moved
+cp "$w/moved.csv" "$w/two.csv"
+sed 's/ASSEMBLY 1/ASSEMBLY 0/; s/ASSEMBLY 2/ASSEMBLY 1/; s/ASSEMBLY 0/ASSEMBLY 2/' "$w/two.csv" > "$w/moved.csv"
+equal 'another order of assemblies is seen' 3 "$(differing moved "$w/moved.map" | grep -c ' column')"
+sed 's/ASSEMBLY 2/&/p; s/ASSEMBLY 2/ASSEMBLY 3/' "$w/two.csv" > "$w/moved.csv"
+equal 'one more assembly is seen' 3 "$(differing moved "$w/moved.map" | grep -c 'one more')"
 conclude
