@@ -119,11 +119,14 @@ contains
       end do
    end subroutine add_projections
 
-   !> `one` and `other` project the same loop, in whatever unit, on directions that differ and turn together.
+   !> `one` and `other` project the same loop, of more than nothing and in whatever unit, on directions that differ and
+   !> turn together.
    pure logical function are_of_one_loop(one, other)
       type(projection_t), intent(in) :: one, other
 
       are_of_one_loop = one%at == other%at .and. abs(aimag(conjg(one%factor)*other%factor)) > sqrt(zero_level) .and. &
+         minval([maxval(abs(one%l)), maxval(abs(other%l))]) > 0.0_wp
+      if (are_of_one_loop) are_of_one_loop = &
          maxval(abs(other%l - ratio(one, other)*one%l)) <= zero_level*maxval(abs(other%l))
    end function are_of_one_loop
 

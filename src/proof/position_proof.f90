@@ -333,7 +333,7 @@ contains
       associate (w => p%work(i), c => p%work(i)%contraction, own => b%unknown(b%list(i)%first:b%list(i)%last))
          call apply_to_bounds(p%rows, w)
          q%is_proved(i) = all(w%x <= huge(1.0_wp))
-         largest = maxval(w%x)/(1.0_wp - c%z1 - c%z2*w%within)*room
+         largest = max(0.0_wp, maxval(w%x))/(1.0_wp - c%z1 - c%z2*w%within)*room
          do k = 1, size(w%x)
             call note_error(b, own(k), order, (w%x(k) + (c%off(k) + c%z2*w%within)*largest)*room, q, p%jets)
          end do

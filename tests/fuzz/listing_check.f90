@@ -67,6 +67,7 @@ contains
          end if
          if (starts(line, ' BRANCH: ') .or. starts(line, ' GALAZ: ')) tables = .false.
          if (starts(line, ' TOLERANCES: ') .or. starts(line, ' TOLERANCJE: ')) tables = .false.
+         if (starts(line, ' ASSEMBLIES ') .or. starts(line, ' MONTAZE ')) tables = .false.
          if (tables .and. starts(line, ' *** ')) flagged = flagged + merge(0, 1, is_remark(line))
          if (are_heads(line(two_names + 1:)) .and. line(two_names + 1:) /= '' .and. line(:one_name) /= '') &
             names = merge(two_names, one_name, any(line(:8) == [character(8) :: ' POLE', ' CURVE', ' BIEGUN', ' TOR']))

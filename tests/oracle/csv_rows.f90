@@ -60,7 +60,7 @@ contains
          end if
          if (rows%due(i)) call read_row(unit, m, k, i, rows, wrong)
          if (allocated(wrong)) return
-         if (rows%due(i) .and. allocated(m%tolerances)) call pass_tolerances(unit)
+         if (rows%due(i) .and. (allocated(m%tolerances) .or. (m%assemblies .and. k == 0))) call pass_others(unit)
       end do
    end subroutine read_instant
 
@@ -89,8 +89,8 @@ contains
       end do
    end subroutine pass_centre
 
-   !> What tolerances make of the row above: rows whose kind has two words.
-   subroutine pass_tolerances(unit)
+   !> What tolerances make of the row above, and the same of other assemblies: rows whose kind has several words.
+   subroutine pass_others(unit)
       integer, intent(in) :: unit
       character(600) :: line
       character(cell_length) :: cell(cells)
@@ -104,7 +104,7 @@ contains
          backspace (unit)
          exit
       end do
-   end subroutine pass_tolerances
+   end subroutine pass_others
 
    !> The row of request `i`.
    subroutine read_row(unit, m, k, i, rows, wrong)

@@ -44,10 +44,37 @@ contains
       roots = real_roots(sextic)
       allocate (position(3, size(roots)))
       do k = 1, size(roots)
-         position(:, k) = [value_of(x, roots(k))/value_of(d, roots(k)), value_of(y, roots(k))/value_of(d, roots(k)), &
-            2.0_qp*atan(roots(k))]
+         position(:, k) = refined([value_of(x, roots(k))/value_of(d, roots(k)), value_of(y, roots(k))/value_of(d, roots(k)), &
+            2.0_qp*atan(roots(k))])
       end do
    end function platform_assemblies
+
+   !> The position `at` after a step of Newton's method on the lengths of the legs: the coefficients of the polynomial have lost
+   !> two digits.
+   pure function refined(at) result(position)
+      real(qp), intent(in) :: at(3)
+      real(qp) :: position(3), joint(2), turned(2), rows(3, 3), gap(3), one(3, 3)
+      integer :: k
+
+      do k = 1, 3
+         turned = [plate(1, k)*cos(at(3)) - plate(2, k)*sin(at(3)), plate(1, k)*sin(at(3)) + plate(2, k)*cos(at(3))]
+         joint = at(:2) + turned - base(:, k)
+         rows(k, :) = [joint, joint(2)*turned(1) - joint(1)*turned(2)]
+         gap(k) = 0.5_qp*(leg(k)**2 - sum(joint**2))
+      end do
+      do k = 1, 3
+         one = rows
+         one(:, k) = gap
+         position(k) = at(k) + determinant(one)/determinant(rows)
+      end do
+   end function refined
+
+   pure real(qp) function determinant(a)
+      real(qp), intent(in) :: a(3, 3)
+
+      determinant = a(1, 1)*(a(2, 2)*a(3, 3) - a(2, 3)*a(3, 2)) - a(1, 2)*(a(2, 1)*a(3, 3) - a(2, 3)*a(3, 1)) &
+         + a(1, 3)*(a(2, 1)*a(3, 2) - a(2, 2)*a(3, 1))
+   end function determinant
 
    !> (1 + t^2)(a cos phi + b sin phi + c), t = tan(phi/2).
    pure function half_angle(a, b, c) result(p)
