@@ -27,7 +27,7 @@ BEGIN {
    if (!star) { split(substr(line, 1, 8), c, " "); split(substr(line, 9, 8), f, " ") }
    width = star ? 24 : 16; first = star ? 9 : 33
    if (!star && c[1] !~ /^(TOLER|VARY)$/) { split("", kind); split(kinds_of(c[1], f[1]), kind, " ") }
-   if (c[1] == "VARY" && !star) kind[1] = kind[2] = kind[3] = kind[substr(f[1], 2)]
+   if (c[1] == "VARY" && !star) { varied = kind[substr(f[1], 2) + 0]; for (n = 1; n <= 3; n++) kind[n] = varied }
    labels = substr(line, 1, first - 1); numbers = exact = ""; turned = 0
    for (n = 1; n <= 3; n++) {
       split("", part); split(kind[n], part, "/")
