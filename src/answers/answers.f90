@@ -7,7 +7,7 @@ module answers
    use text_output, only: output_t
    use extremes, only: extremes_t, new_extremes
    use extreme_search, only: note_instant
-   use dwells, only: dwells_t, dwell_t, new_dwells, note_position, find_dwells
+   use dwells, only: dwell_t, find_dwells
    use extremes_table, only: put_extremes
    use tolerance_shares, only: shares_t, new_shares, note_tolerances, put_shares
    use ranges, only: range_t, find_ranges, put_ranges
@@ -25,7 +25,6 @@ module answers
       logical :: shares_asked = .false.
       logical :: proofs_asked = .false.
       type(extremes_t) :: extremes
-      type(dwells_t) :: dwells
       type(shares_t) :: shares
       type(proof_table_t) :: proofs
       type(range_t), allocatable :: ranges(:)       !< (drives that have one), in the numbers of the set
@@ -54,7 +53,6 @@ contains
       allocate (a%ranges(0))
       if (.not. a%extremes_asked) return
       call new_extremes(m, s, a%extremes)
-      call new_dwells(m, a%extremes, a%dwells)
    end subroutine new_answers
 
    !> Takes instant number `k` of `m`, to which `s` has advanced, and what is asked for between it and those before.
@@ -72,7 +70,6 @@ contains
       if (a%shares_asked) call note_tolerances(a%shares, m, s%now, k)
       if (.not. a%extremes_asked .or. k > m%steps) return
       call note_instant(a%extremes, m, s, k)
-      call note_position(a%dwells, a%extremes, k)
    end subroutine take_instant
 
    !> Writes the answers after the last instant.
@@ -85,7 +82,7 @@ contains
       type(dwell_t), allocatable :: dwells(:)
 
       if (a%extremes_asked) then
-         call find_dwells(a%dwells, m, a%extremes, s, dwells)
+         call find_dwells(m, a%extremes, s, dwells)
          call put_extremes(o, l, m, s, a%extremes, dwells)
       end if
       if (a%ranges_asked) call put_ranges(o, m, a%ranges)

@@ -12,6 +12,7 @@ module extremes
    use zero_search, only: sample_t, noise_part
    implicit none
    private
+   public :: place_t, keep_place
    public :: extremes_t, extreme_t, track_t, gap_t, least, greatest, new_extremes, offer, offer_limits, count_turn, &
       note_interval, step_of, stroke_times, is_cyclic, is_covered, is_angle, alike
 
@@ -50,6 +51,12 @@ module extremes
       real(wp) :: from = 0.0_wp, to = 0.0_wp
    end type gap_t
 
+   !> The coordinate `column` of the asked row number `asked` at the time `t`.
+   type :: place_t
+      integer :: asked = 0, column = 0
+      real(wp) :: t = 0.0_wp, value = 0.0_wp
+   end type place_t
+
    type :: extremes_t
       integer, allocatable :: asked(:)                 !< the requests of the set for extremes, but those of the ground
       integer, allocatable :: part(:)                  !< (asked) their independent mechanisms
@@ -60,6 +67,8 @@ module extremes
       type(track_t), allocatable :: tracks(:)          !< (independent mechanisms)
       type(gap_t), allocatable :: gaps(:)              !< (any number) in which not all is known, in the run's order
       type(gap_t), allocatable :: open(:)              !< (any number) in which extremes may be missed
+      type(place_t), allocatable :: places(:)          !< (1:place and room) nodes and extremes of what may dwell
+      integer :: place = 0
       real(wp) :: way = 1.0_wp                         !< of the run: -1 backwards in time
    end type extremes_t
 
@@ -77,7 +86,7 @@ contains
       n = size(x%asked)
       x%part = s%now%parts%part(x%asked)
       x%way = sign(1.0_wp, m%t1 - m%t0)
-      allocate (x%size_of(3, 0:2, n), x%found(least:greatest, 3, 0:2, n), x%gaps(0), x%open(0))
+      allocate (x%size_of(3, 0:2, n), x%found(least:greatest, 3, 0:2, n), x%gaps(0), x%open(0), x%places(8))
       allocate (x%tracks(size(s%now%own)))
       allocate (x%turns(3, n), x%first_sign(3, n), x%last_sign(3, n), source=0)
       do c = 1, size(x%tracks)
@@ -157,6 +166,21 @@ contains
          end associate
       end do
    end subroutine offer
+
+   !> Keeps column `c` of row `q` in `sample`, if its dwells are asked for.
+   pure subroutine keep_place(x, m, q, c, sample)
+      type(extremes_t), intent(inout) :: x
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: q, c
+      type(sample_t), intent(in) :: sample
+
+      associate (request => m%requests(x%asked(q)))
+         if (request%dwell(merge(2, 1, is_angle(m, request, c))) <= 0.0_wp) return
+      end associate
+      if (x%place == size(x%places)) x%places = [x%places, x%places]
+      x%place = x%place + 1
+      x%places(x%place) = place_t(q, c, sample%t, sample%f(0))
+   end subroutine keep_place
 
    !> So may the one-sided `limits` of the numbers of `row` at the time `t`, unless they are badly known; `columns`: how
    !> many it has.
