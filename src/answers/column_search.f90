@@ -63,15 +63,17 @@ contains
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: c
       type(node_t), intent(in) :: node
+      type(sample_t) :: sample
       integer :: i, j, k
 
       do i = 1, size(x%tracks(c)%rows)
          associate (q => x%tracks(c)%rows(i))
             do j = 1, coordinates_of(m%requests(x%asked(q))%kind)
+               sample = sample_of(node, q, j)
                do k = 0, node%known(q)
-                  call offer(x, m, q, j, k, sample_of(node, q, j), .false.)
+                  call offer(x, m, q, j, k, sample, .false.)
                end do
-               if (node%known(q) >= 0) call keep_place(x, m, q, j, sample_of(node, q, j))
+               if (node%known(q) >= 0) call keep_place(x, m, q, j, sample)
                if (node%known(q) == 2) call count_turn(x, q, j, node%value(j, 1, q))
             end do
          end associate
