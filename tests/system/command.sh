@@ -3,16 +3,6 @@
 # refusal, and that results do not depend on the build, the unit of length, the share or the linear algebra library.
 . tests/counting.sh
 
-# refused NAME STATUS SENTENCE ARGUMENT...: status and sentence of a call that prints no listing
-refused() {
-   name=$1; status=$2; sentence=$3
-   shift 3
-   "$kinmat" "$@" > "$w/out" 2> "$w/err"
-   equal "$name: status" "$status" $?
-   equal "$name: sentence" "$sentence" "$(head -n 2 "$w/err")"
-   equal "$name: standard output" '' "$(head -n 2 "$w/out")"
-}
-
 # four_bar CRANK COUPLER ROCKER BASE PHI-CRANK PHI-COUPLER PHI-ROCKER: bodies and pairs of a four-bar linkage
 four_bar() {
    card GROUND BASE '' '' 0.0 0.0 0.0
@@ -157,8 +147,8 @@ same '--svg -' "$w/m.svg" "$w/out"
 same '--csv - and -o: the CSV' "$w/m.csv" "$w/out"
 same '--csv - and -o: the listing' "$w/m.lst" "$w/o.lst"
 equal 'no file is called -' '' "$(ls ./- 2> /dev/null)"
-refused 'two outputs to standard output' 1 ' *** STANDARD OUTPUT TAKES ONE OUTPUT: -o OR --csv' "$w/m.deck" --csv - -o -
-refused 'two others to standard output' 1 ' *** STANDARD OUTPUT TAKES ONE OUTPUT: --csv OR --log' --log - "$w/m.deck" --csv -
+rejected 'two outputs to standard output' 1 ' *** STANDARD OUTPUT TAKES ONE OUTPUT: -o OR --csv' "$w/m.deck" --csv - -o -
+rejected 'two others to standard output' 1 ' *** STANDARD OUTPUT TAKES ONE OUTPUT: --csv OR --log' --log - "$w/m.deck" --csv -
 
 # --no-listing: the other outputs, messages and statuses are the same.
 "$kinmat" "$w/m.deck" --no-listing > "$w/out" 2> "$w/err"
@@ -167,7 +157,7 @@ equal '--no-listing: nothing is printed' '' "$(cat "$w/out" "$w/err")"
 "$kinmat" --no-listing "$w/m.deck" --csv "$w/o.csv" --log "$w/o.log" > "$w/out"
 same '--no-listing: the CSV' "$w/m.csv" "$w/o.csv"
 same '--no-listing: the log' "$w/m.log" "$w/o.log"
-refused '--no-listing and -o' 1 ' *** OPTION --no-listing LEAVES OUT THE LISTING, WHICH -o ASKS FOR' "$w/m.deck" --no-listing -o "$w/x"
+rejected '--no-listing and -o' 1 ' *** OPTION --no-listing LEAVES OUT THE LISTING, WHICH -o ASKS FOR' "$w/m.deck" --no-listing -o "$w/x"
 
 # --quiet: no remarks on standard error, but errors.
 sed 's/^PRINT /print /' "$w/m.deck" > "$w/remark.deck"
@@ -219,9 +209,9 @@ done
 "$kinmat" "$w/m.deck" --sets 1/2 > "$w/share.lst"
 equal '--sets 1/2: its sets' 1 "$(grep -c 'SET OF COMPUTATIONS' "$w/share.lst")"
 for share in 0/2 3/2 x 1 1/ /2 1/2/3 -1/2 1/0 1.0/2 ''; do
-   refused "--sets '$share'" 1 ' *** OPTION --sets NEEDS K/N WITH 1 <= K <= N, SUCH AS 1/4' "$w/m.deck" --sets "$share"
+   rejected "--sets '$share'" 1 ' *** OPTION --sets NEEDS K/N WITH 1 <= K <= N, SUCH AS 1/4' "$w/m.deck" --sets "$share"
 done
-refused '--sets without a word' 1 ' *** OPTION --sets NEEDS K/N WITH 1 <= K <= N, SUCH AS 1/4' "$w/m.deck" --sets
+rejected '--sets without a word' 1 ' *** OPTION --sets NEEDS K/N WITH 1 <= K <= N, SUCH AS 1/4' "$w/m.deck" --sets
 
 # --jobs: the sets in several processes give the same bytes, and end as one process does.
 for jobs in 1 2 3 8; do
@@ -261,9 +251,9 @@ equal '--jobs: a process is killed: status' 3 $?
 equal '--jobs: a process is killed' ' *** THE PROCESS FOR SETS 2 TO 2 WAS ENDED BY SIGNAL 9' "$(cat "$w/err")"
 same '--jobs: what was written before' "$w/one.lst" "$w/out"
 for jobs in 0 x 1025 -1 1.5 ''; do
-   refused "--jobs '$jobs'" 1 ' *** OPTION --jobs NEEDS A WHOLE NUMBER FROM 1 TO 1024' "$w/m.deck" --jobs "$jobs"
+   rejected "--jobs '$jobs'" 1 ' *** OPTION --jobs NEEDS A WHOLE NUMBER FROM 1 TO 1024' "$w/m.deck" --jobs "$jobs"
 done
-refused '--study with --jobs' 1 ' *** OPTION --study GOES WITH NO OTHER OPTION BUT -o AND --quiet' "$w/m.deck" --study --jobs 2
+rejected '--study with --jobs' 1 ' *** OPTION --study GOES WITH NO OTHER OPTION BUT -o AND --quiet' "$w/m.deck" --study --jobs 2
 
 # A share of a file reads no other sets; a pipe is read wholly.
 { cat "$w/m.deck"; echo 'WRONG'; echo END; } > "$w/wrong.deck"
@@ -288,18 +278,18 @@ JOINT   PAIR    LINK-I  LINK-J  X               Y' "$("$kinmat" --ruler JOINT)"
 equal '--ruler CARD, in small letters and before the option' "$("$kinmat" --ruler DRIVE)" "$("$kinmat" drive --ruler)"
 equal '--ruler CARD: every card' '' "$(for name in $("$kinmat" --ruler NOCARD 2>&1 | sed 's/.*CARDS ARE //'); do
    "$kinmat" --ruler "$name" | sed -n 2p | grep -q "^$name" || echo "$name"; done)"
-refused '--ruler with no card' 1 ' *** OPTION --ruler: NO CARD HAS THE NAME x.deck; CARDS ARE TITLE UNITS LANG GROUND LINK POINT REVOLUTE PRISM JOINT DRIVE ADD RISE TOLER TIME AT METHOD PRINT EXTREMES RANGE CIRCUITS POLE CURVE BRANCH VARY ASSEMBLY PROVE END' --ruler x.deck
+rejected '--ruler with no card' 1 ' *** OPTION --ruler: NO CARD HAS THE NAME x.deck; CARDS ARE TITLE UNITS LANG GROUND LINK POINT REVOLUTE PRISM JOINT DRIVE ADD RISE TOLER TIME AT METHOD PRINT EXTREMES RANGE CIRCUITS POLE CURVE BRANCH VARY ASSEMBLY PROVE END' --ruler x.deck
 
 # Refused commands: status 1 or 3, one sentence, no listing.
-refused 'unknown option' 1 ' *** OPTION --nope IS UNKNOWN; SEE kinmat --help' --nope "$w/m.deck"
-refused 'unknown option after the deck' 1 ' *** OPTION --nope IS UNKNOWN; SEE kinmat --help' "$w/m.deck" --nope
-refused 'two decks' 1 ' *** MORE THAN ONE DECK IS NAMED: one AND two' one two
-refused 'empty word' 1 ' *** AN EMPTY WORD IS NO DECK' ''
-refused '-o without a file' 1 ' *** OPTION -o NEEDS A FILE NAME' "$w/m.deck" -o
-refused '--csv with an empty file name' 1 ' *** OPTION --csv NEEDS A FILE NAME' "$w/m.deck" --csv ''
-refused '--log twice' 1 ' *** OPTION --log IS GIVEN TWICE' "$w/m.deck" --log "$w/a" --log "$w/b"
-refused 'missing file' 3 " *** FILE $w/no.deck DOES NOT EXIST" "$w/no.deck"
-refused 'deck is a directory' 3 " *** FILE $w IS A DIRECTORY" "$w"
+rejected 'unknown option' 1 ' *** OPTION --nope IS UNKNOWN; SEE kinmat --help' --nope "$w/m.deck"
+rejected 'unknown option after the deck' 1 ' *** OPTION --nope IS UNKNOWN; SEE kinmat --help' "$w/m.deck" --nope
+rejected 'two decks' 1 ' *** MORE THAN ONE DECK IS NAMED: one AND two' one two
+rejected 'empty word' 1 ' *** AN EMPTY WORD IS NO DECK' ''
+rejected '-o without a file' 1 ' *** OPTION -o NEEDS A FILE NAME' "$w/m.deck" -o
+rejected '--csv with an empty file name' 1 ' *** OPTION --csv NEEDS A FILE NAME' "$w/m.deck" --csv ''
+rejected '--log twice' 1 ' *** OPTION --log IS GIVEN TWICE' "$w/m.deck" --log "$w/a" --log "$w/b"
+rejected 'missing file' 3 " *** FILE $w/no.deck DOES NOT EXIST" "$w/no.deck"
+rejected 'deck is a directory' 3 " *** FILE $w IS A DIRECTORY" "$w"
 "$kinmat" < "$w" > "$w/out" 2> "$w/err"
 equal 'standard input is a directory: status' 3 $?
 equal 'standard input is a directory: sentence' ' *** STANDARD INPUT IS A DIRECTORY' "$(cat "$w/err")"
@@ -362,7 +352,7 @@ ln -s own.deck "$w/link.deck"
 for option in -o --csv --log --svg; do
    for path in own.deck ./own.deck link.deck; do
       cp "$w/m.deck" "$w/own.deck"
-      refused "$option $path, the deck" 1 " *** THE DECK $w/own.deck WOULD BE OVERWRITTEN" "$w/own.deck" $option "$w/$path"
+      rejected "$option $path, the deck" 1 " *** THE DECK $w/own.deck WOULD BE OVERWRITTEN" "$w/own.deck" $option "$w/$path"
       same "$option $path, the deck is as it was" "$w/m.deck" "$w/own.deck"
    done
 done
@@ -371,17 +361,17 @@ cp "$w/m.deck" "$w/own.deck"
 equal 'the deck on standard input: status' 1 $?
 equal 'the deck on standard input: sentence' ' *** THE DECK ON STANDARD INPUT WOULD BE OVERWRITTEN' "$(head -n 2 "$w/err")"
 same 'the deck on standard input is as it was' "$w/m.deck" "$w/own.deck"
-refused 'one file for two outputs' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/m.deck" -o "$w/x" --csv "$w/x"
-refused 'one file for csv and log' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/m.deck" --log "$w/x" --csv "$w/x"
+rejected 'one file for two outputs' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/m.deck" -o "$w/x" --csv "$w/x"
+rejected 'one file for csv and log' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/m.deck" --log "$w/x" --csv "$w/x"
 equal 'one file for two outputs: not made' '' "$(ls "$w/x" 2> /dev/null)"
 : > "$w/x"
-refused 'one existing file by two paths' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/m.deck" -o "$w/x" --csv "$w/./x"
+rejected 'one existing file by two paths' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/m.deck" -o "$w/x" --csv "$w/./x"
 "$kinmat" "$w/m.deck" -o /dev/null --csv /dev/null --log /dev/null 2> "$w/err"
 equal '/dev/null may serve for all' 0 $?
 
 # Drives and freedoms.
 { card TITLE 'NO DRIVE'; four_bar 1.0 3.5 3.0 4.0 0.0 0.9 1.9; card TIME 2 '' '' 0.0 2.0; card END; } > "$w/few.deck"
-refused 'no drive' 1 ' *** E101  SET 1: LINKS CRANK, COUPLER, ROCKER: 1 FREEDOM LEFT, ADD A DRIVE
+rejected 'no drive' 1 ' *** E101  SET 1: LINKS CRANK, COUPLER, ROCKER: 1 FREEDOM LEFT, ADD A DRIVE
  *** E103  SET 1: W = 12 COORDINATES LESS R = 11 EQUATIONS LEAVE S = 1 DEGREES OF FREEDOM, DRIVES ARE 0' \
    "$w/few.deck"
 { PHI=0.0 RATE=1.0; one_set 1.0 3.5 3.0 4.0 0.0 0.9 1.9; card DRIVE ANGLE ROCKER '' 0.5 1.0 0.0; card END; } > "$w/many.deck"
