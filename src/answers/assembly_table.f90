@@ -1,8 +1,7 @@
 !> Card ASSEMBLY: all assemblies at the first instant. Each is printed as the LINK cards with which a run takes it.
 module assembly_table
    use kinds, only: wp, label_length
-   use planar, only: point_of
-   use constants, only: degree, without_turns
+   use planar, only: point_of, degree, without_turns
    use mechanism, only: mechanism_t, instant, plane_origin
    use scales, only: characteristic_length
    use names, only: listed

@@ -1,7 +1,7 @@
 !> Branches, dead points, assemblies and change points of the circuits of a mechanism.
 module circuit_branches
    use kinds, only: wp
-   use constants, only: pi
+   use planar, only: pi
    use diagnostics, only: diagnostic_t, diagnostic_limit
    use circuit_curve, only: curve_t, curve_point_t, same_place, drive_value, deck_position
    use assemblies, only: assembly_t, number_of

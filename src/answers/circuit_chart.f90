@@ -2,7 +2,7 @@
 !> circuits, over the drive.
 module circuit_chart
    use kinds, only: wp
-   use constants, only: pi, degree, without_turns
+   use planar, only: pi, degree, without_turns
    use mechanism, only: mechanism_t, request_t, request_link, request_point, request_pair, drive_angle
    use motion, only: motion_t, new_motion
    use points, only: row_t, row_of, coordinates_of

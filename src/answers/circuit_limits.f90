@@ -1,7 +1,7 @@
 !> The links at the dead points of circuits: those that card RANGE finds there, from the middle of each branch.
 module circuit_limits
    use kinds, only: wp
-   use constants, only: without_turns
+   use planar, only: without_turns
    use mechanism, only: mechanism_t
    use motion, only: motion_t, new_motion
    use drives, only: new_law, drive_motion

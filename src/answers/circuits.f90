@@ -8,7 +8,7 @@
 module circuits
    use kinds, only: wp
    use system_calls, only: signal_received
-   use constants, only: pi
+   use planar, only: pi
    use mechanism, only: mechanism_t, drive_t, drive_angle
    use scales, only: characteristic_length
    use motion, only: motion_t

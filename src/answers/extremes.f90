@@ -2,7 +2,7 @@
 !> `extreme_search` has come; the times of the forward and the return stroke of a cyclic motion.
 module extremes
    use kinds, only: wp
-   use constants, only: without_turns
+   use planar, only: without_turns
    use mechanism, only: mechanism_t, request_t, request_link, request_pair, pair_prismatic
    use scales, only: characteristic_length, characteristic_rate, is_length
    use drives, only: new_law, drive_motion, joints_of

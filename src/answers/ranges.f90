@@ -3,7 +3,7 @@
 !> made whole turns, every link is where it was.
 module ranges
    use kinds, only: wp
-   use constants, only: pi, without_turns
+   use planar, only: pi, without_turns
    use mechanism, only: mechanism_t, request_t, request_link, method_newton, place_links
    use motion, only: motion_t, new_motion
    use diagnostics, only: diagnostic_t, diagnostic_limit, diagnostic_change

@@ -1,7 +1,7 @@
 !> The summary of a set with VARY cards: a row for each variant, with its values and what is asked of its motion.
 module variant_rows
    use kinds, only: wp, label_length
-   use constants, only: in_degrees
+   use planar, only: in_degrees
    use mechanism, only: mechanism_t, request_pair, pair_prismatic, driven_kinds, request_link
    use motion, only: mark_none
    use diagnostics, only: diagnostic_t, diagnostic_limit

@@ -1,7 +1,7 @@
 !> The rows of variants as text: lines of the listing, and of a file with all digits (--summary).
 module variant_tables
    use kinds, only: wp
-   use constants, only: in_degrees
+   use planar, only: in_degrees
    use mechanism, only: mechanism_t
    use motion, only: mark_none
    use listing, only: words_of_mark

@@ -3,7 +3,7 @@
 !> Where all are known, a run begins in the one that is nearest to the deck's estimate.
 module assemblies
    use kinds, only: wp
-   use constants, only: without_turns
+   use planar, only: without_turns
    use mechanism, only: mechanism_t, plane_origin
    use motion, only: motion_t, new_motion
    use convergence, only: convergence_t, is_solved

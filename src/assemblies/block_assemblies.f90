@@ -2,7 +2,7 @@
 !> one unknown in each group, otherwise as the ends of paths. Each is corrected by the block's own Newton method.
 module block_assemblies
    use kinds, only: wp
-   use constants, only: without_turns
+   use planar, only: without_turns
    use convergence, only: convergence_t, is_solved
    use blocks, only: blocks_t
    use block_state, only: state_t, set_values, values_of

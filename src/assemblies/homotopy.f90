@@ -9,7 +9,7 @@
 !> Coordinates are homogeneous, x . u = 1 and y . v = 1 with u and v by chance: paths to infinity have ends as others.
 module homotopy
    use kinds, only: wp
-   use constants, only: pi
+   use planar, only: pi
    use complex_lu, only: factor_complex, solve_complex
    use bilinear, only: bilinear_t, end_t, ends_t, values_at, derivatives_at, path_count, finiteness, infinity_level
    implicit none

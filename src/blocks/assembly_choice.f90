@@ -8,7 +8,7 @@ module assembly_choice
    use kinds, only: wp
    use convergence, only: convergence_t, is_solved
    use motion, only: motion_t, new_motion
-   use constants, only: without_turns
+   use planar, only: without_turns
    use block_state, only: unknown_t, set_values
    use block_solver, only: solve_block
    use block_needs, only: largest_known

@@ -5,7 +5,7 @@ module block_diagnostics
    use diagnostics, only: diagnostic_t, new_diagnostic, diagnostic_limit, diagnostic_second, diagnostic_redundant, &
       diagnostic_mobile, diagnostic_idle, diagnostic_repeated, diagnostic_far_estimate, diagnostic_singular
    use motion, only: motion_t
-   use constants, only: without_turns
+   use planar, only: without_turns
    use block_needs, only: largest_known, blocks_below
    use block_rank, only: redundant_rows, moving_unknowns, judge_drives
    use block_state, only: state_t

@@ -5,8 +5,7 @@
 !> vectors that cancel are left out, which need not cancel after the change.
 module equation_changes
    use kinds, only: wp
-   use planar, only: direction, rotated
-   use jets, only: turning, turning_change, scaled, dotted, turned
+   use planar, only: direction, rotated, turning, turning_change, scaled, dotted, turned
    use mechanism, only: mechanism_t, pair_revolute, drive_angle, drive_relangle, drive_x, drive_y
    use number_changes, only: change_t
    use links_tree, only: tree_t

@@ -4,7 +4,7 @@
 module first_position
    use kinds, only: wp
    use convergence, only: convergence_t, is_solved
-   use constants, only: without_turns
+   use planar, only: without_turns
    use blocks, only: blocks_t, loop_angles
    use block_state, only: state_t, set_values, values_of
    use block_solver, only: workspace_t, solve_block

@@ -10,8 +10,7 @@
 module initial_estimate
    use kinds, only: wp
    use grouping, only: sorted_t, sorted
-   use planar, only: direction, rotated, quarter_turn, cross, point_of
-   use constants, only: pi, without_turns
+   use planar, only: direction, rotated, quarter_turn, cross, point_of, pi, without_turns
    use mechanism, only: mechanism_t, pair_revolute
    use scales, only: solver_length
    use links_tree, only: tree_t

@@ -3,8 +3,7 @@
 !> changes of the unknowns.
 module rounding_changes
    use kinds, only: wp
-   use planar, only: rotated, quarter_turn, add_rotating
-   use jets, only: turning, scaled
+   use planar, only: rotated, quarter_turn, add_rotating, turning, scaled
    use mechanism, only: mechanism_t
    use blocks, only: blocks_t, block_loop_t
    use block_state, only: state_t

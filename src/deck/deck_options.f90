@@ -2,7 +2,7 @@
 !> and AT, and the requests PRINT, EXTREMES, RANGE, CIRCUITS, ASSEMBLY and BRANCH.
 module deck_options
    use kinds, only: wp
-   use constants, only: degree
+   use planar, only: degree
    use mechanism, only: request_t, branch_request_t, request_link, request_point, request_pair, method_newton, &
       method_words
    use card_sets, only: card_set_t, look_up, match_word, add_card_error

@@ -2,8 +2,7 @@
 !> radians, a guide that is off by a right angle.
 module deck_remarks
    use kinds, only: wp
-   use constants, only: pi
-   use planar, only: direction, quarter_turn, point_of
+   use planar, only: pi, direction, quarter_turn, point_of
    use diagnostics, only: remark_link_unused, remark_point_unused, remark_radians, remark_guide
    use mechanism, only: mechanism_t, drive_links, used_points, pair_prismatic, drive_words, driven_kinds, drive_angle, &
       drive_relangle, request_link, request_point, request_pair, request_curve

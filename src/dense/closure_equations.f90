@@ -25,8 +25,7 @@
 !> it costs one equation and one unknown a pair and prints nothing that the projection does not.
 module closure_equations
    use kinds, only: wp
-   use constants, only: pi
-   use planar, only: rotated, quarter_turn, cross
+   use planar, only: pi, rotated, quarter_turn, cross
    use mechanism, only: pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
    use drives, only: drive_motion
    use pose, only: system_t, pose_t, normal_angle, secants

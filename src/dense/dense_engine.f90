@@ -19,7 +19,7 @@ module dense_engine
    use position_iteration, only: solve_newton, solve_matrix, rounding_level
    use root_distance, only: coordinates_t, new_coordinates, distance, kantorovich, kantorovich_bound
    use dense_start, only: by_blocks, find_start
-   use constants, only: without_turns
+   use planar, only: without_turns
    implicit none
    private
    public :: dense_engine_t, make_dense_engine, solve_velocity, solve_acceleration

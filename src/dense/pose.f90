@@ -10,8 +10,7 @@
 !> sin(h)/h is 1 there.
 module pose
    use kinds, only: wp
-   use planar, only: rotated, quarter_turn
-   use constants, only: pi
+   use planar, only: rotated, quarter_turn, pi
    use mechanism, only: mechanism_t, pair_t, drive_slide, plane_origin
    use scales, only: solver_length, power_of_two
    use drives, only: law_t, new_law

@@ -12,7 +12,7 @@
 module drives
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
-   use constants, only: pi
+   use planar, only: pi
    use linear_solver, only: solve_tridiagonal
    use mechanism, only: drive_t, term_t, term_harmonic, term_power, term_table, term_cycloid, term_345, term_cosine, &
       term_parabola

@@ -3,8 +3,7 @@
 !> unit.
 module instant_centres
    use kinds, only: wp
-   use constants, only: pi
-   use planar, only: rotated, quarter_turn, cross
+   use planar, only: pi, rotated, quarter_turn, cross
    implicit none
    private
    public :: centre_t, pole_of, curve_of, seen_from, pole_rate

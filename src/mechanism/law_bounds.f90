@@ -5,7 +5,7 @@
 !> extremes.
 module law_bounds
    use kinds, only: wp
-   use constants, only: pi
+   use planar, only: pi
    use mechanism, only: term_t, term_harmonic, term_power, term_table, term_cycloid, term_parabola
    use drives, only: law_t, monomial, spline_t, piece_at, piece_value, rise_shape, joint_width
    implicit none

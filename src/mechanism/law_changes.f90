@@ -2,7 +2,7 @@
 !> with respect to that number, in closed form.
 module law_changes
    use kinds, only: wp
-   use constants, only: pi
+   use planar, only: pi
    use mechanism, only: drive_t, term_t, term_harmonic, term_power, term_table, term_cycloid, term_345, term_cosine, &
       term_parabola
    use drives, only: monomial, rise_shape, joint_width, joint_distance, new_spline, spline_value

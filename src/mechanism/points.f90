@@ -2,12 +2,11 @@
 !> curvature.
 module points
    use kinds, only: wp, label_length
-   use constants, only: pi
    use mechanism, only: mechanism_t, request_t, pair_t, pair_prismatic, request_link, request_point, request_pair, &
       request_pole, request_curve, instant_count, request_links
    use names, only: subject_name
    use instant_centres, only: centre_t, pole_of, curve_of, seen_from, centre_finite, centre_infinite, centre_resting
-   use planar, only: direction, rotated, quarter_turn, point_of
+   use planar, only: pi, direction, rotated, quarter_turn, point_of
    use motion, only: motion_t, known_of, mark_of, mark_none
    implicit none
    private

@@ -2,7 +2,7 @@
 !> points, with the time below, and a bar on which it passes.
 module animation
    use kinds, only: wp
-   use constants, only: in_degrees, without_turns
+   use planar, only: in_degrees, without_turns
    use mechanism, only: mechanism_t, drive_x, drive_y, drive_slide
    use drives, only: law_t, drive_motion, new_law
    use motion, only: mark_none

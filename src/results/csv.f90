@@ -3,7 +3,7 @@
 !> curve has three rows.
 module csv
    use kinds, only: wp
-   use constants, only: in_degrees
+   use planar, only: in_degrees
    use mechanism, only: mechanism_t, request_pole, request_curve
    use motion, only: motion_t, new_motion
    use points, only: row_t, row_of, has_number, is_due

@@ -1,7 +1,7 @@
 !> Diagnostics in words: three stars before what concerns the results, three dashes before what is good to know.
 module listing_diagnostics
    use kinds, only: wp
-   use constants, only: degree
+   use planar, only: degree
    use mechanism, only: mechanism_t
    use diagnostics
    use names, only: drive_name, listed

@@ -5,7 +5,7 @@
 !> millimetres and in kilometres prints the same digits.
 module listing_layout
    use kinds, only: wp, label_length
-   use constants, only: degree
+   use planar, only: degree
    use mechanism, only: mechanism_t, request_link, request_pair, driven_kinds
    use independent, only: parts_t, find_parts
    use drives, only: law_t, new_law

@@ -3,9 +3,8 @@
 !> each instant centre.
 module moving_links
    use kinds, only: wp
-   use constants, only: in_degrees, without_turns
    use grouping, only: sorted_t, sorted
-   use planar, only: point_of
+   use planar, only: in_degrees, without_turns, point_of
    use drawing, only: drawing_t
    use canvas, only: canvas_t, make_canvas, to_pixels
    use picture_parts, only: put_body, put_guide, put_block, put_joint, put_dot, dots_of

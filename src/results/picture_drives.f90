@@ -1,10 +1,9 @@
 !> The drives of a picture: an arrow for each, in the sense of its motion, an arc for an angle. Sizes are in pixels.
 module picture_drives
    use kinds, only: wp
-   use constants, only: degree
    use mechanism, only: mechanism_t, drive_t, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, &
       drive_slide
-   use planar, only: quarter_turn
+   use planar, only: degree, quarter_turn
    use drives, only: drive_motion, new_law
    use names, only: drive_name
    use drawing, only: point_place

@@ -2,7 +2,7 @@
 !> over each drive, lengths beside angles. A picture shows some links, points or pairs, the next one those that follow.
 module plot_script
    use kinds, only: wp
-   use constants, only: in_degrees
+   use planar, only: in_degrees
    use mechanism, only: mechanism_t, instant_count
    use scales, only: characteristic_length, characteristic_rate
    use names, only: drive_name

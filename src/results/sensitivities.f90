@@ -4,8 +4,7 @@
 !> same mechanism with all numbers off by roundings tell how far they are known.
 module sensitivities
    use kinds, only: wp
-   use planar, only: direction
-   use jets, only: turning, turning_change, dotted
+   use planar, only: direction, turning, turning_change, dotted
    use mechanism, only: mechanism_t, tolerance_t, request_t, request_link, request_point, request_pair, &
       number_drive, pair_prismatic, place_links
    use number_changes, only: change_t, change_of

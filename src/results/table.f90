@@ -8,7 +8,7 @@
 !> no mixture of commas and blanks gives to all of them.
 module table
    use kinds, only: wp, label_length
-   use constants, only: in_degrees
+   use planar, only: in_degrees
    use mechanism, only: mechanism_t, request_t, request_link, request_point, request_pair, request_pole, &
       request_curve, pair_prismatic, drive_angle, drive_relangle
    use drives, only: law_t, new_law, drive_motion

@@ -4,7 +4,7 @@
 !> its point, a drive SLIDE the projection along the guide.
 module loop_equations
    use kinds, only: wp
-   use constants, only: without_turns
+   use planar, only: without_turns
    use grouping, only: sorted_t, sorted
    use mechanism, only: mechanism_t, pair_links, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, &
       drive_slide

@@ -8,7 +8,7 @@ module bench_scenes
    use deck, only: read_deck
    use scales, only: characteristic_length, characteristic_rate
    use analysis, only: analysis_t, make_analysis, advance
-   use constants, only: degree
+   use planar, only: degree
    use quad_jet, only: qp
    use closed_forms_dyads, only: body_t
    use closed_forms, only: closed_form

@@ -3,7 +3,7 @@
 !> last line is `N passed, N failed`.
 program circuits_by_chance
    use kinds, only: wp
-   use constants, only: pi, without_turns
+   use planar, only: pi, without_turns
    use mechanism, only: mechanism_t, link_t, point_t, pair_t, request_t, request_link, pair_revolute
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set
    use circuit_trace, only: end_closed

@@ -7,8 +7,7 @@
 !> exp(i phi), and the conjugates of both: no tree, no loops, no slides. What is linear in (X, w) alone is eliminated.
 program random_blocks
    use kinds, only: wp, label_length
-   use constants, only: pi
-   use planar, only: rotated, direction
+   use planar, only: pi, rotated, direction
    use mechanism, only: mechanism_t, link_t, point_t, pair_t, drive_t, request_t, pair_revolute, pair_prismatic
    use structure, only: findings_t, find_structure
    use complex_lu, only: find_null_space
