@@ -7,7 +7,7 @@ module circuit_chart
    use motion, only: motion_t, new_motion
    use points, only: row_t, row_of, coordinates_of
    use set_analysis, only: set_analysis_t
-   use circuit_curve, only: curve_point_t, deck_position, drive_value
+   use circuit_curve, only: deck_position, drive_value
    use circuit_branches, only: circuits_t
    implicit none
    private

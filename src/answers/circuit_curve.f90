@@ -9,7 +9,7 @@
 !> u < 1/2 the curve beside each place of t is unique: a step of that length cannot jump to another circuit.
 module circuit_curve
    use kinds, only: wp
-   use planar, only: pi, without_turns
+   use planar, only: without_turns
    use mechanism, only: mechanism_t, drive_x, drive_y
    use scales, only: is_length
    use linear_solver, only: factors_t, new_factors, factor, solve, determinant_sign

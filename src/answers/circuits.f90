@@ -5,24 +5,41 @@
 !> A circuit is traced from each assembly that is on none of those known: the deck's own, all others of the first
 !> instant, those of the crossings at change points, and all assemblies at values over the whole range of the drive, and
 !> at angles of each link: a circuit between all of these is not found.
+!>
+!> The links at dead points are those that card RANGE finds there, from the middle of each branch.
+!>
+!> Another circuit through a change point: there the equations' Jacobian with the tangent t as one more row has a left
+!> null vector w and a right one k, and directions x = a t + b k of curves satisfy w . F_qq[x, x] = 0, of second degree
+!> in a/b; t is one of them.
 module circuits
    use kinds, only: wp
    use system_calls, only: signal_received
-   use planar, only: pi
+   use planar, only: pi, without_turns
    use mechanism, only: mechanism_t, drive_t, drive_angle
    use scales, only: characteristic_length
-   use motion, only: motion_t
+   use motion, only: motion_t, new_motion
    use assemblies, only: assemblies_t, find_assemblies
    use circuit_curve, only: curve_t, curve_point_t, make_curve, is_redundant, start_point, step_between, lies_between, &
-      same
-   use circuit_trace, only: circuit_t, trace, least_step
-   use circuit_crossing, only: other_circuit
-   use circuit_branches, only: circuits_t, no_sign, add_branches, add_assemblies, add_meetings, &
-      number_assemblies
-   use circuit_limits, only: name_limits, held_at
+      same, drive_value, deck_position, find_point, second_derivative, factor_at
+   use circuit_trace, only: circuit_t, trace, least_step, change_point_t
+   use circuit_branches, only: circuits_t, no_sign, add_branches, add_assemblies, add_meetings, number_assemblies, &
+      branch_t
+   use drives, only: new_law, drive_motion
+   use ranges, only: range_t, find_range, low, high
+   use linear_solver, only: solve, solve_transposed
+   use pose, only: add_to_links
    implicit none
    private
-   public :: find_circuits, free_drives
+   public :: find_circuits, free_drives, name_limits, held_at, other_circuit
+
+   !> So far from the change point the other circuit is looked for, in rad and lengths; there it is off its tangent by
+   !> less than this part of the distance.
+   real(wp), parameter :: aside = 1.0e-3_wp, straight = 0.1_wp
+   !> A coefficient is zero below this part of the others: the null vectors are known to the root of the rounding.
+   real(wp), parameter :: zero = epsilon(1.0_wp)**0.25_wp
+
+   !> A limit found by both methods is one up to this difference, in rad and lengths.
+   real(wp), parameter :: agrees = max(1.0e-6_wp, 1.0e3_wp*epsilon(1.0_wp))
 
    !> More are not looked for.
    integer, parameter :: max_circuits = 1000
@@ -213,4 +230,126 @@ contains
       passes = value >= least .and. value <= greatest
       if (c%is_angle) passes = modulo(value - least, 2.0_wp*pi) <= greatest - least
    end function passes
+
+   !> Names the links at the dead points of `m`. Drives that are held have their values of the time `t`.
+   subroutine name_limits(m, t, found)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: t
+      type(circuits_t), intent(inout) :: found
+      type(mechanism_t) :: held
+      type(motion_t) :: middle
+      type(range_t) :: r
+      integer :: b, side
+
+      held = held_at(m, t)
+      middle = new_motion(size(m%links))
+      do b = 1, size(found%branches)
+         if (all(found%branches(b)%dead == 0) .or. found%list(found%branches(b)%circuit)%rests) cycle
+         if (all(found%dead(pack(found%branches(b)%dead, found%branches(b)%dead > 0))%limit%links(1) > 0)) cycle
+         call set_middle(found, found%branches(b), held, middle)
+         call find_range(held, middle, found%drive, r)
+         do side = low, high
+            if (found%branches(b)%dead(side) == 0 .or. .not. r%has_limit(side)) cycle
+            associate (dead => found%dead(found%branches(b)%dead(side))%limit)
+               if (dead%links(1) > 0 .or. abs(off_by(found%curve, r%limit(side)%value - dead%value)) > agrees) cycle
+               r%limit(side)%value = dead%value
+               dead = r%limit(side)
+            end associate
+         end do
+      end do
+   end subroutine name_limits
+
+   !> `m` with all drives at rest at their values of the time `t`.
+   function held_at(m, t) result(held)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: t
+      type(mechanism_t) :: held
+      real(wp) :: f(3)
+      integer :: i
+
+      held = m
+      do i = 1, size(m%drives)
+         f = drive_motion(new_law(m%drives(i)), t)
+         held%drives(i)%polynomial = [f(1), 0.0_wp, 0.0_wp]
+         if (allocated(held%drives(i)%terms)) deallocate (held%drives(i)%terms)
+      end do
+   end function held_at
+
+   !> Puts `middle` where the drive moves the fastest on branch `b`, with the drive of `held` there.
+   subroutine set_middle(found, b, held, middle)
+      type(circuits_t), intent(in) :: found
+      type(branch_t), intent(in) :: b
+      type(mechanism_t), intent(inout) :: held
+      type(motion_t), intent(inout) :: middle
+      integer :: k
+
+      associate (points => found%list(b%circuit)%points)
+         k = b%first - 1 + maxloc(abs(points(b%first:b%last)%value(1)), dim=1)
+         middle%position = deck_position(found%curve, points(k)%q)
+         held%drives(found%drive)%polynomial(1) = drive_value(found%curve, points(k)%value(0))
+      end associate
+   end subroutine set_middle
+
+   !> A difference `x` of the drive's values in rad, without whole turns, or in lengths of the curve.
+   pure real(wp) function off_by(c, x)
+      type(curve_t), intent(in) :: c
+      real(wp), intent(in) :: x
+
+      off_by = x/c%closure%length
+      if (c%is_angle) off_by = without_turns(x)
+   end function off_by
+
+   !> The point `p` of the other circuit through `change` of the curve `c`; `before`: the point of the circuit before
+   !> it. `ok`: there is one.
+   subroutine other_circuit(c, before, change, p, ok)
+      type(curve_t), intent(inout) :: c
+      type(curve_point_t), intent(in) :: before
+      type(change_point_t), intent(in) :: change
+      type(curve_point_t), intent(out) :: p
+      logical, intent(out) :: ok
+      real(wp), dimension(c%closure%n) :: w, k, x, f_t, f_k, f_sum
+      real(wp) :: mixed, along_k, q(3, size(change%q, 2))
+
+      call null_vectors(c, before, w, k, ok)
+      if (.not. ok) return
+      associate (t => change%tangent)
+         call second_derivative(c, change%q, t, f_t)
+         call second_derivative(c, change%q, k, f_k)
+         call second_derivative(c, change%q, t + k, f_sum)
+         mixed = 0.5_wp*dot_product(w, f_sum - f_t - f_k)
+         along_k = dot_product(w, f_k)
+         ok = abs(mixed) > zero*max(norm2(f_t), norm2(f_k), norm2(f_sum))
+         if (.not. ok) return
+         x = k - along_k/(2.0_wp*mixed)*t
+      end associate
+      x = x/norm2(x)
+      q = change%q
+      call add_to_links(c%closure, aside*x, q)
+      call find_point(c, q, x, p, ok)
+      if (ok) ok = maxval(abs(p%q - q)) <= straight*aside
+   end subroutine other_circuit
+
+   !> The null vectors `w`, left, and `k`, right, of the equations' Jacobian with the tangent as its last row, which is
+   !> nearly singular at `before`: two steps of inverse iteration.
+   subroutine null_vectors(c, before, w, k, ok)
+      type(curve_t), intent(inout) :: c
+      type(curve_point_t), intent(in) :: before
+      real(wp), intent(out) :: w(:), k(:)
+      logical, intent(out) :: ok
+      real(wp) :: left(size(w), 1)
+      integer :: info, i
+
+      call factor_at(c, before%q, before%tangent, info)
+      ok = info == 0
+      if (.not. ok) return
+      k = [(1.0_wp/real(i, wp), i=1, size(k))]
+      left(:, 1) = k
+      do i = 1, 2
+         call solve(c%factors, k)
+         k = k/norm2(k)
+         call solve_transposed(c%factors, left)
+         left = left/norm2(left)
+      end do
+      w = left(:, 1)
+   end subroutine null_vectors
 end module circuits

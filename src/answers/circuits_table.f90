@@ -2,7 +2,7 @@
 module circuits_table
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use diagnostics, only: diagnostic_t, diagnostic_limit
+   use motion, only: diagnostic_t, diagnostic_limit
    use set_analysis, only: set_analysis_t
    use set_motion, only: in_set
    use circuit_trace, only: circuit_t, end_closed, end_far, end_lost

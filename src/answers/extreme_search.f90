@@ -7,8 +7,7 @@
 module extreme_search
    use kinds, only: wp
    use mechanism, only: mechanism_t, instant
-   use motion, only: motion_t, singular_change
-   use diagnostics, only: diagnostic_change, diagnostic_limit
+   use motion, only: motion_t, singular_change, diagnostic_change, diagnostic_limit
    use points, only: coordinates_of
    use set_analysis, only: set_analysis_t
    use nodes, only: node_t, one_sided_t, node_at, is_known, times_between, limits_of, places, places_beside

@@ -7,7 +7,7 @@ module extremes_table
    use names, only: subject_name
    use points, only: coordinates_of
    use set_analysis, only: set_analysis_t
-   use listing_layout, only: layout_t, digits_t, digits_of, has_column, dimension_of, name_length, row_length
+   use listing_layout, only: layout_t, digits_t, digits_of, has_column, name_length, row_length
    use listing_tables, only: table_t, put_times, put_heads, time_text, drive_text, known_text
    use text_output, only: output_t, put
    use numerals, only: numeral_length

@@ -5,8 +5,7 @@ module ranges
    use kinds, only: wp
    use planar, only: pi, without_turns
    use mechanism, only: mechanism_t, request_t, request_link, method_newton, place_links
-   use motion, only: motion_t, new_motion
-   use diagnostics, only: diagnostic_t, diagnostic_limit, diagnostic_change
+   use motion, only: motion_t, new_motion, diagnostic_t, diagnostic_limit, diagnostic_change
    use drives, only: new_law, drive_motion
    use scales, only: is_length, characteristic_length
    use analysis, only: analysis_t, make_analysis, advance

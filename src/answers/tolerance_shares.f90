@@ -10,7 +10,7 @@ module tolerance_shares
    use listing_layout, only: layout_t, digits_t, digits_of, dimension_of, name_length, unit_of, column_text
    use listing_tables, only: time_text
    use text_output, only: output_t, put
-   use numerals, only: fixed, whole, numeral_length
+   use numerals, only: fixed, whole
    use phrases
    implicit none
    private

@@ -3,8 +3,7 @@ module variant_rows
    use kinds, only: wp, label_length
    use planar, only: in_degrees
    use mechanism, only: mechanism_t, request_pair, pair_prismatic, driven_kinds, request_link
-   use motion, only: mark_none
-   use diagnostics, only: diagnostic_t, diagnostic_limit
+   use motion, only: mark_none, diagnostic_t, diagnostic_limit
    use drives, only: new_law, drive_motion
    use names, only: drive_name, subject_name
    use points, only: is_fixed
@@ -18,7 +17,6 @@ module variant_rows
    use extremes, only: extreme_t, least, greatest
    use ranges, only: range_t, low, high
    use answers, only: answers_t
-   use numerals, only: whole
    use phrases
    implicit none
    private

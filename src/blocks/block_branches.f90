@@ -10,7 +10,7 @@
 !> is followed goes through it smoothly, so that three motions before it give it in full.
 module block_branches
    use kinds, only: wp
-   use diagnostics, only: diagnostic_t, new_diagnostic, diagnostic_change, diagnostic_dead_end
+   use motion, only: diagnostic_t, new_diagnostic, diagnostic_change, diagnostic_dead_end
    use convergence, only: convergence_t, is_solved
    use predictor, only: predict, is_even
    use block_state, only: set_values, values_of

@@ -2,9 +2,8 @@
 module block_diagnostics
    use kinds, only: wp
    use drives, only: drive_motion
-   use diagnostics, only: diagnostic_t, new_diagnostic, diagnostic_limit, diagnostic_second, diagnostic_redundant, &
-      diagnostic_mobile, diagnostic_idle, diagnostic_repeated, diagnostic_far_estimate, diagnostic_singular
-   use motion, only: motion_t
+   use motion, only: diagnostic_t, new_diagnostic, diagnostic_limit, diagnostic_second, diagnostic_redundant, &
+      diagnostic_mobile, diagnostic_idle, diagnostic_repeated, diagnostic_far_estimate, diagnostic_singular, motion_t
    use planar, only: without_turns
    use block_needs, only: largest_known, blocks_below
    use block_rank, only: redundant_rows, moving_unknowns, judge_drives

@@ -15,12 +15,11 @@ module block_solver
    use klu, only: klu_t
    use block_matrix, only: shape_t, nearby_t, solve_first, solve_again, solve_nearby, stay_near, set_aside, &
       pivot_range, inverse_norm, spread_by_inverse, entries_of, work_length
-   use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, &
-      ended_diverged, ended_inconsistent
+   use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
+      ended_inconsistent, note_closure_error, is_inconsistent, contradict
    use blocks, only: blocks_t
    use block_state, only: state_t, set_direction, rotate_direction, find_known_parts
    use block_equations, only: assemble_block, right_hand_side, largest_rates, rounded_sizes, second_order_bounds
-   use closure_errors, only: note_closure_error, is_inconsistent, contradict
    implicit none
    private
    public :: workspace_t, make_workspace, solve_block, closed_level, step_tolerance, suspicious_pivot

@@ -3,7 +3,7 @@
 module branch_requests
    use kinds, only: wp
    use mechanism, only: mechanism_t, branch_request_t
-   use diagnostics, only: diagnostic_t, diagnostic_unused
+   use motion, only: diagnostic_t, diagnostic_unused
    implicit none
    private
    public :: branch_requests_t, new_branch_requests, decide, unused

@@ -5,11 +5,10 @@ module levenberg_marquardt
    use kinds, only: wp
    use block_matrix, only: shape_t, entries_of, work_length, solve_first
    use klu, only: klu_t
-   use convergence, only: convergence_t
+   use convergence, only: convergence_t, note_closure_error
    use blocks, only: blocks_t
    use block_state, only: state_t, set_values, values_of, find_known_parts
    use block_equations, only: assemble_dense
-   use closure_errors, only: note_closure_error
    implicit none
    private
    public :: levenberg_marquardt_solve, levenberg_marquardt_held, golden_numbers

@@ -4,8 +4,7 @@ module analysis
    use mechanism, only: mechanism_t
    use structure, only: structure_t
    use motion, only: motion_t, forget_links, known_of, mark_none, mark_not_converged, mark_singular, mark_overflow, &
-      mark_inconsistent, singular_unclear
-   use diagnostics, only: diagnostic_t, diagnostic_inconsistent, diagnostic_long, diagnostic_close
+      mark_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_long, diagnostic_close
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, branch_none, branch_first, branch_same, &
       branch_crossed
    use convergence, only: convergence_t, closure_error_t, ended_inconsistent, ended_unsought

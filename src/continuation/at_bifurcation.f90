@@ -6,7 +6,7 @@ module at_bifurcation
    use drives, only: law_t, new_law, drive_motion
    use law_bounds, only: bounds_t, bounds_of
    use mechanism, only: drive_t
-   use diagnostics, only: diagnostic_t
+   use motion, only: diagnostic_t
    use branch_requests, only: branch_requests_t
    use convergence, only: convergence_t, is_solved
    use engine, only: engine_t

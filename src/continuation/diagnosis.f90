@@ -4,10 +4,9 @@
 module diagnosis
    use kinds, only: wp
    use mechanism, only: mechanism_t, place_links, wanted_links
-   use motion, only: motion_t, new_motion, mark_not_converged, mark_singular
-   use diagnostics, only: diagnostic_t, diagnostic_inconsistent, diagnostic_limit, diagnostic_close, &
-      diagnostic_far_estimate, &
-      diagnostic_second, diagnostic_mobile, diagnostic_idle, diagnostic_repeated, diagnostic_method
+   use motion, only: motion_t, new_motion, mark_not_converged, mark_singular, diagnostic_t, diagnostic_inconsistent, &
+      diagnostic_limit, diagnostic_close, diagnostic_far_estimate, diagnostic_second, diagnostic_mobile, &
+      diagnostic_idle, diagnostic_repeated, diagnostic_method
    use convergence, only: ended_elsewhere
    use structure, only: structure_t
    use dense_start, only: by_blocks

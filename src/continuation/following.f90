@@ -5,7 +5,7 @@ module following
    use kinds, only: wp
    use structure, only: structure_t
    use mechanism, only: mechanism_t, method_newton
-   use diagnostics, only: diagnostic_t, diagnostic_dead_end
+   use motion, only: diagnostic_t, diagnostic_dead_end
    use branch_certificate, only: branch_t
    use drive_excursion, only: drive_excursion_t, new_drive_excursion, substep_allowed, likely_excursion, excursion, &
       steps_at_least

@@ -2,7 +2,7 @@
 !> What is harmless is a remark, all else an error.
 module card_reader
    use kinds, only: wp, label_length
-   use diagnostics, only: remark_title_long, remark_title_letters, remark_touching
+   use mechanism, only: remark_title_long, remark_title_letters, remark_touching
    use cards, only: card_t, field_t, card_fields, wide_fields, title_field, card_name, label_a, label_c, field_text, &
       first_column, card_columns, forms, form_name, form_unknown, form_title, reals_of, find_form, nearest_form
    use input_errors, only: error_code_t, input_errors_t, add_error, add_field_error, add_remark, error_count, is_full, &

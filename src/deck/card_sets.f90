@@ -3,9 +3,8 @@
 module card_sets
    use kinds, only: wp
    use planar, only: direction, rotated
-   use mechanism, only: mechanism_t, link_t, point_t, pair_t, pair_prismatic, request_link, &
-      request_point, request_pair
-   use diagnostics, only: remark_small_letters
+   use mechanism, only: mechanism_t, link_t, point_t, pair_t, pair_prismatic, request_link, request_point, &
+      request_pair, remark_small_letters
    use cards, only: card_t, field_t, card_fields, wide_fields, field_text, first_column, small_field, label_a, &
       label_b, label_c, real_1, real_2, real_3, form_ground, form_link, form_point, form_revolute, form_prism, &
       form_joint, form_end

@@ -13,8 +13,7 @@ module deck
    use deck_options, only: build_options, build_requests, build_branches
    use deck_centres, only: build_centres, check_centres
    use deck_tolerances, only: build_tolerances
-   use deck_remarks, only: check_unused, check_angles, check_guides
-   use deck_echo, only: build_echo
+   use deck_remarks, only: check_unused, check_angles, check_guides, build_echo
    use deck_source, only: source_t, open_source, next_card, close_source
    use system_calls, only: identity_t, identity_of_path
    use failures, only: failure_t, fail, status_rejected

@@ -4,7 +4,7 @@ module deck_drives
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp, label_length
    use planar, only: pi
-   use diagnostics, only: remark_jumps
+   use mechanism, only: remark_jumps
    use mechanism, only: mechanism_t, drive_t, term_t, drive_links, instant, find_instants, drive_angle, &
       drive_relangle, drive_slide, drive_words, driven_kinds, term_harmonic, term_power, term_table, term_words, &
       term_cycloid, term_cosine, rise_words, pair_revolute, request_link

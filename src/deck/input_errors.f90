@@ -3,7 +3,7 @@
 !> alone. Remarks are collected beside the errors; they reject nothing.
 module input_errors
    use kinds, only: wp, label_length
-   use diagnostics, only: remark_t, remark_more
+   use mechanism, only: remark_t, remark_more
    use cards, only: card_t, field_t, card_columns, field_text, first_column, forms, find_form, form_unknown, &
       form_link, form_time, form_end
    use numerals, only: whole

@@ -3,10 +3,8 @@
 !> back to it the motion of one of its last instants.
 module lane_state
    use kinds, only: wp
-   use block_matrix, only: shape_t
    use mechanism, only: own_predictor
    use blocks, only: blocks_t, block_loop_t
-   use predictor, only: history_t
    use drives, only: law_t
    use block_engine, only: block_engine_t
    use lane_sines, only: width

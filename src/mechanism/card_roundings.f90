@@ -6,7 +6,7 @@ module card_roundings
    use mechanism, only: mechanism_t, drive_t, term_t, plane_origin, pair_prismatic, term_power, term_table, &
       term_cycloid, drive_relangle
    use drives, only: law_t, new_law, drive_motion, joint_distance
-   use law_changes, only: law_change
+   use number_changes, only: law_change
    implicit none
    private
    public :: directions, card_directions, roundings, rounding, number_point, number_pair, number_drive, number_time, &

@@ -2,7 +2,6 @@
 !> others read it. Lengths and times are in the deck's units, angles in radians.
 module mechanism
    use kinds, only: wp, label_length, title_length
-   use diagnostics, only: remark_t
    implicit none
    private
    public :: link_t, point_t, pair_t, term_t, drive_t, request_t, branch_request_t, tolerance_t, settings_t, mechanism_t
@@ -15,6 +14,8 @@ module mechanism
    public :: method_newton, method_matrix, method_dense, method_words, own_predictor
    public :: instant_count, instant, find_instants, pair_links, drive_links, request_links, wanted_links, used_points
    public :: with_all_links, plane_origin, place_links
+   public :: remark_t, remark_small_letters, remark_title_long, remark_title_letters, remark_touching, &
+      remark_link_unused, remark_point_unused, remark_radians, remark_guide, remark_jumps, remark_more
 
    integer, parameter :: pair_revolute = 1   !< REVOLUTE: eq. (7), (8)
    integer, parameter :: pair_prismatic = 2  !< PRISM: eq. (9), (10)
@@ -59,6 +60,27 @@ module mechanism
    character(label_length), parameter :: method_words(3) = [character(label_length) :: 'NEWTON', 'MATRIX', 'DENSE']
 
    integer, parameter :: own_predictor = -1  !< the predictor of the method
+
+   !> The kinds of remarks: what a deck has that is harmless, or likely not what was meant.
+   enum, bind(c)
+      enumerator :: remark_small_letters = 1    !< small letters are read as capitals
+      enumerator :: remark_title_long           !< a title is cut
+      enumerator :: remark_title_letters        !< a title has letters that are not ASCII
+      enumerator :: remark_touching             !< two numbers touch
+      enumerator :: remark_link_unused          !< no pair and no drive uses a link: it rests
+      enumerator :: remark_point_unused         !< no pair, drive or PRINT card uses a point
+      enumerator :: remark_radians              !< an angle in radians looks like one in degrees
+      enumerator :: remark_guide                !< a guide fits its points if it is turned by a right angle
+      enumerator :: remark_jumps                !< the acceleration of a rise jumps
+      enumerator :: remark_more                 !< there are more remarks, `text` says how many
+   end enum
+
+   !> A remark about `text`, which begins at `column` of a card.
+   type :: remark_t
+      integer :: kind = 0                      !< remark_small_letters, ...
+      integer :: card = 0, column = 0          !< number of the card in the deck, and column
+      character(24) :: text = ''
+   end type remark_t
 
    !> A rigid link, with axes of its own.
    type :: link_t

@@ -3,10 +3,9 @@
 module listing
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use motion, only: mark_none, mark_singular, mark_inconsistent, singular_unclear, singular_dead
+   use motion, only: mark_none, mark_singular, mark_inconsistent, singular_unclear, singular_dead, diagnostic_t
    use structure, only: findings_t, group_t, spare_drives_text
    use branch_certificate, only: certificate_counts_t
-   use diagnostics, only: diagnostic_t
    use points, only: is_due, row_t
    use sensitivities, only: has_tolerances
    use set_motion, only: set_motion_t, is_flagged, in_set, row_in_set, doubt_in_set, spread_in_set

@@ -2,8 +2,8 @@
 module listing_diagnostics
    use kinds, only: wp
    use planar, only: degree
-   use mechanism, only: mechanism_t
-   use diagnostics
+   use mechanism, only: mechanism_t, remark_t, remark_small_letters, remark_more
+   use motion
    use names, only: drive_name, listed
    use numerals, only: whole
    use text_output, only: output_t, put

@@ -7,8 +7,7 @@ module sensitivities
    use planar, only: direction, turning, turning_change, dotted
    use mechanism, only: mechanism_t, tolerance_t, request_t, request_link, request_point, request_pair, &
       number_drive, pair_prismatic, place_links
-   use number_changes, only: change_t, change_of
-   use law_changes, only: law_change, smooth_order
+   use number_changes, only: change_t, change_of, law_change, smooth_order
    use card_roundings, only: parts_of_number, number_point, number_pair, number_link, number_of_drive => number_drive, &
       rounding, roundings
    use known_digits, only: nothing_known

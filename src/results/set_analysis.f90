@@ -4,7 +4,6 @@ module set_analysis
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton, instant
    use structure, only: findings_t
-   use diagnostics, only: diagnostic_t
    use convergence, only: convergence_t, is_solved, gather
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, worst_branch
    use branch_requests, only: branch_requests_t, new_branch_requests, unused
@@ -14,7 +13,7 @@ module set_analysis
    use link_bounds, only: largest_bounds
    use sensitivities, only: sensor_t, make_sensor, find_sensitivities
    use set_motion, only: set_motion_t, new_set_motion
-   use motion, only: motion_t, new_motion
+   use motion, only: diagnostic_t, motion_t, new_motion
    use points, only: row_t, row_of
    use assemblies, only: assemblies_t, find_nearest
    use analysis, only: analysis_t, make_analysis, advance, look_at, come_back, redundancy_error

@@ -3,8 +3,7 @@
 module set_motion
    use kinds, only: wp
    use mechanism, only: mechanism_t, tolerance_t
-   use motion, only: motion_t, new_motion, mark_none
-   use diagnostics, only: diagnostic_t
+   use motion, only: motion_t, new_motion, mark_none, diagnostic_t
    use independent, only: part_t, parts_t, find_parts, mechanism_of
    use structure, only: findings_t
    use points, only: row_t, row_of

@@ -53,7 +53,7 @@ module blocks
       integer :: orientation_at = 0, less_at = 0        !< where their entries stand in the Jacobian
       real(wp) :: direction(2) = 0.0_wp           !< projection: in the axes of its orientation
       real(wp) :: ground(2) = 0.0_wp              !< the loop's fixed part
-      real(wp) :: unit = 1.0_wp                   !< of its lengths: see block_units
+      real(wp) :: unit = 1.0_wp                   !< of its lengths: see block_partition
       real(wp) :: coarse = 1.0_wp                 !< what is known over the unit, 1 at least
    end type block_loop_t
 

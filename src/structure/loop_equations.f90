@@ -9,8 +9,8 @@ module loop_equations
    use mechanism, only: mechanism_t, pair_links, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, &
       drive_slide
    use links_tree, only: tree_t, guide
-   use tree_paths, only: search_t, new_search, find_path, find_path_down, close_pair
-   use vector_loops, only: vector_loops_t, new_vector_loops, add_vector_loop
+   use vector_loops, only: search_t, new_search, find_path, find_path_down, close_pair, vector_loops_t, &
+      new_vector_loops, add_vector_loop
    use matching, only: incidence_t
    implicit none
    private

@@ -18,8 +18,7 @@ module structure
    use links_tree, only: tree_t, new_tree
    use loop_equations, only: new_equations
    use blocks, only: blocks_t
-   use block_partition, only: new_blocks
-   use block_units, only: find_units
+   use block_partition, only: new_blocks, find_units
    implicit none
    private
    public :: structure_t, findings_t, group_t, underdetermined_t, new_structure, count_degrees_of_freedom, &

@@ -4,7 +4,7 @@ module hand_groups
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use structure, only: group_t
-   use diagnostics, only: diagnostic_t, new_diagnostic, diagnostic_redundant, diagnostic_change
+   use motion, only: diagnostic_t, new_diagnostic, diagnostic_redundant, diagnostic_change
    implicit none
    private
    public :: groups_by_hand, redundant_by_hand, passages_by_hand

@@ -6,7 +6,7 @@ program print_expected
    use kinds, only: wp
    use failures, only: failure_t
    use mechanism, only: mechanism_t, instant_count, instant, method_newton, drive_angle
-   use diagnostics, only: diagnostic_t
+   use motion, only: diagnostic_t
    use structure, only: findings_t
    use branch_certificate, only: certificate_counts_t
    use hand_groups, only: groups_by_hand, redundant_by_hand, passages_by_hand
