@@ -89,14 +89,13 @@ contains
       type(block_engine_t) :: e
       type(convergence_t) :: c
       type(motion_t) :: q
-      real(wp) :: correction
       logical :: unused
       integer :: i
 
       call find_assemblies(m, t, a)
       if (size(a%list) == 0) return
       call make_block_engine(e, m)
-      call solve_first(e, t, c, correction, unused)
+      call solve_first(e, t, c)
       if (is_solved(c)) then
          q = new_motion(size(m%links))
          call move_links(e%whole, e%state, e%length, q, unused)

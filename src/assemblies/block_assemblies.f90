@@ -49,13 +49,11 @@ contains
       type(convergence_t) :: c
       type(block_form_t) :: f
       type(ends_t) :: ends
-      real(wp) :: change
       integer :: k
 
       allocate (found%x(b%list(i)%shape%n, 0), found%sign_of(0))
       if (b%list(i)%direct) then
-         change = 0.0_wp
-         call solve_block(b, i, tolerance, w, s, c, change)
+         call solve_block(b, i, tolerance, w, s, c)
          found%x = reshape(values_of(b, i, s), [1, 1])
          found%sign_of = [1]
          return
@@ -107,7 +105,7 @@ contains
       type(state_t), intent(inout) :: s
       type(block_positions_t), intent(inout) :: found
       type(convergence_t) :: c
-      real(wp) :: x(f%n), change, residual
+      real(wp) :: x(f%n), residual
       logical :: is_real
       integer :: k
 
@@ -118,8 +116,7 @@ contains
       do k = 1, merge(singular_steps, 0, e%is_singular)
          call gauss_newton_step(b, i, s, residual)
       end do
-      change = 0.0_wp
-      call solve_block(b, i, tolerance, w, s, c, change)
+      call solve_block(b, i, tolerance, w, s, c)
       if (.not. is_solved(c) .or. apart(b, i, values_of(b, i, s), x) > merge(singular_near, near, e%is_singular)) then
          found%failed = found%failed + 1
          found%finite = found%finite - 1

@@ -41,19 +41,17 @@ module assembly_choice
 contains
 
    !> Solves for the first motion at `t`, as `solve` of `block_engine` does without one that is followed.
-   subroutine solve_first(e, t, c, correction, same)
+   subroutine solve_first(e, t, c)
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       type(convergence_t), intent(out) :: c
-      real(wp), intent(out) :: correction
-      logical, intent(out) :: same
 
-      call e%solve(t, .false., c, correction, same)
+      call e%solve(t, .false., c)
       if (.not. e%blocks%solvable) return
       if (.not. any(has_others(e%others(e%needed)))) return
       call choose(e)
       call begin_record(e, c)
-      call solve_each(e, e%needed, .false., c, correction, same)
+      call solve_each(e, e%needed, .false., c)
    end subroutine solve_first
 
    !> The block has other positions than the one chosen.
@@ -167,11 +165,9 @@ contains
       logical, intent(in) :: is_near
       type(trial_t), intent(inout) :: t
       type(convergence_t) :: c
-      real(wp) :: change
 
-      change = 0.0_wp
       if (is_near) then
-         call solve_block(e%blocks, i, e%tolerance, e%work, e%state, c, change)
+         call solve_block(e%blocks, i, e%tolerance, e%work, e%state, c)
       else
          call solve_first_block(e%blocks, i, e%tolerance, e%work, e%state, c, t%others(i)%x)
       end if

@@ -43,27 +43,25 @@ module block_branches
 
 contains
 
-   !> Passes the change points before `t`, each as the BRANCH cards have it: `requests`. `correction`: of the prediction
-   !> of the motion found last. `list`: a diagnostic for each. `passed`: the motion found last, with its record `c`, is
-   !> that which goes on; otherwise the list says why there is none, or is empty where a determinant has changed its
-   !> sign without a change point.
-   subroutine pass(e, t, correction, requests, c, list, passed)
+   !> Passes the change points before `t`, each as the BRANCH cards have it: `requests`. `list`: a diagnostic for each.
+   !> c%keeps_signs: the motion found last, with its record `c`, is that which goes on; otherwise the list says why
+   !> there is none, or is empty where a determinant has changed its sign without a change point.
+   subroutine pass(e, t, requests, c, list)
       type(block_engine_t), intent(inout) :: e
-      real(wp), intent(in) :: t, correction
+      real(wp), intent(in) :: t
       type(branch_requests_t), intent(inout) :: requests
       type(convergence_t), intent(inout) :: c
       type(diagnostic_t), allocatable, intent(out) :: list(:)
-      logical, intent(out) :: passed
       type(diagnostic_t) :: r
-      logical :: crossed(size(e%crossed))
+      logical :: crossed(size(e%crossed)), passed
       integer :: k
 
       allocate (list(0))
       crossed = e%crossed
       ! A prediction that leaps too far is not solved at all.
-      passed = any(crossed) .and. is_short_and_right(e, correction)
+      passed = any(crossed) .and. is_short_and_right(e, c%change)
       do k = 1, size(e%moving)
-         if (.not. passed) return
+         if (.not. passed) exit
          associate (i => e%moving(k), before => e%history%t(0))
             if (.not. crossed(i)) cycle
             r = change_point(e, i, t)
@@ -75,6 +73,7 @@ contains
             list = [list, r]
          end associate
       end do
+      c%keeps_signs = passed
    end subroutine pass
 
    !> The substep was short, and its prediction, off by `correction`, right to so small a part of it that the motion
@@ -140,7 +139,7 @@ contains
       if (.not. found) return
       away = -2.0_wp*least/curvature
       call set_values(e%blocks, i, x + away*direction, e%state)
-      call solve_again(e, c, correction, same)
+      call solve_again(e, c)
       ! By the correction of this block alone: what builds on it moves by any multiple of that.
       correction = maxval(abs(values_of(e%blocks, i, e%state) - (x + away*direction)))
       crossed(i) = .false.
@@ -185,7 +184,7 @@ contains
       do k = 1, size(e%moving)
          associate (i => e%moving(k))
             x = values_of(e%blocks, i, e%state)
-            call solve_block(e%blocks, i, e%tolerance, e%work, e%state, c, change)
+            call solve_block(e%blocks, i, e%tolerance, e%work, e%state, c)
             if (.not. (smooth .and. is_solved(c))) return
             if (e%blocks%list(i)%direct) cycle
             e%is_singular(i) = c%singular

@@ -181,16 +181,12 @@ contains
    end function iterated_unknowns
 
    !> See `engine`; of the first motion each block by itself is the nearest to its estimate. `c`: of the worst block.
-   subroutine solve(e, t, follows, c, correction, same)
+   subroutine solve(e, t, follows, c)
       class(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       logical, intent(in) :: follows
       type(convergence_t), intent(out) :: c
-      real(wp), intent(out) :: correction
-      logical, intent(out) :: same
 
-      correction = 0.0_wp
-      same = .true.
       c%ended = ended_singular
       if (.not. e%blocks%solvable) return
       e%t = t
@@ -198,12 +194,12 @@ contains
       call begin_record(e, c)
       if (follows) then
          call predict(e%history, t, e%state%u, e%change)
-         same = e%change <= largest_change
-         if (same) call solve_each(e, e%moving, follows, c, correction, same)
+         c%keeps_signs = e%change <= largest_change
+         if (c%keeps_signs) call solve_each(e, e%moving, follows, c)
       else
          call remove_turns(e%blocks, e%needed, e%state%drive_value(0, :), e%estimated)
          e%state%u%value = e%estimated
-         call solve_each(e, e%needed, follows, c, correction, same)
+         call solve_each(e, e%needed, follows, c)
       end if
    end subroutine solve
 
@@ -219,16 +215,12 @@ contains
    end subroutine set_drive_values
 
    !> Solves the moving blocks once more, from where they are now.
-   subroutine solve_again(e, c, correction, same)
+   subroutine solve_again(e, c)
       type(block_engine_t), intent(inout) :: e
       type(convergence_t), intent(out) :: c
-      real(wp), intent(out) :: correction
-      logical, intent(out) :: same
 
-      correction = 0.0_wp
-      same = .true.
       call begin_record(e, c)
-      call solve_each(e, e%moving, .true., c, correction, same)
+      call solve_each(e, e%moving, .true., c)
    end subroutine solve_again
 
    !> The record `c` before the first block.
@@ -243,24 +235,23 @@ contains
    end subroutine begin_record
 
    !> Solves the blocks of `list` in turn, up to the first without a position; arguments as in `solve`.
-   subroutine solve_each(e, list, follows, c, correction, same)
+   subroutine solve_each(e, list, follows, c)
       type(block_engine_t), intent(inout) :: e
       integer, intent(in) :: list(:)
       logical, intent(in) :: follows
       type(convergence_t), intent(inout) :: c
-      real(wp), intent(inout) :: correction
-      logical, intent(inout) :: same
       type(convergence_t) :: one
       integer :: k, i
 
       do k = 1, size(list)
          i = list(k)
          if (follows) then
-            call solve_block(e%blocks, i, e%tolerance, e%work, e%state, one, correction)
+            call solve_block(e%blocks, i, e%tolerance, e%work, e%state, one)
          else
             call solve_first_block(e%blocks, i, e%tolerance, e%work, e%state, one, e%others(i)%x)
          end if
          if (e%blocks%list(i)%direct) cycle
+         if (follows) c%change = max(c%change, one%change)
          if (follows .and. is_solved(one) .and. e%blocks%list(i)%shape%rows > e%blocks%list(i)%shape%n) &
             one%determinant = e%followed(i)%sign_of*relative_sign(e%blocks, i, e%jacobian, e%state)
          call gather(one, c)
@@ -273,7 +264,7 @@ contains
             c%growth = max(c%growth, e%blocks%list(i)%lipschitz*max(one%inverse, e%followed(i)%inverse)**2)
          e%found(i) = jacobian_t(one%determinant, one%min_pivot, one%inverse)
          if (.not. follows .or. one%determinant == e%followed(i)%sign_of) cycle
-         same = .false.
+         c%keeps_signs = .false.
          e%crossed(i) = .true.
       end do
    end subroutine solve_each
@@ -356,19 +347,17 @@ contains
       type(motion_t), intent(inout) :: found
       integer :: missing(0:e%blocks%unknowns), k
       type(convergence_t) :: c
-      real(wp) :: correction
       logical :: finite
 
       if (.not. e%blocks%solvable) return
       call set_drive_values(e, t)
       missing = missing_nothing
-      correction = 0.0_wp
       do k = 1, size(e%needed)
          associate (i => e%needed(k))
             call note_block(e, i, merge(missing_nothing, missing_all, e%blocks%list(i)%direct), missing)
             if (.not. e%blocks%list(i)%direct) cycle
             if (missing(e%blocks%unknown(e%blocks%list(i)%first)) == missing_nothing) &
-               call solve_block(e%blocks, i, e%tolerance, e%work, e%state, c, correction)
+               call solve_block(e%blocks, i, e%tolerance, e%work, e%state, c)
          end associate
       end do
       call mark_links(e%chain, missing, found)

@@ -26,20 +26,18 @@ module block_method
 contains
 
    !> See `engine`.
-   subroutine solve(e, t, follows, c, correction, same)
+   subroutine solve(e, t, follows, c)
       class(block_method_t), intent(inout) :: e
       real(wp), intent(in) :: t
       logical, intent(in) :: follows
       type(convergence_t), intent(out) :: c
-      real(wp), intent(out) :: correction
-      logical, intent(out) :: same
 
       e%state%excursion = e%excursion
       if (follows) then
-         call e%block_engine_t%solve(t, follows, c, correction, same)
-         if (e%excursion > 0.0_wp .and. is_solved(c)) c%is_certain = is_short_and_right(e%block_engine_t, correction)
+         call e%block_engine_t%solve(t, follows, c)
+         if (e%excursion > 0.0_wp .and. is_solved(c)) c%is_certain = is_short_and_right(e%block_engine_t, c%change)
       else
-         call solve_first(e%block_engine_t, t, c, correction, same)
+         call solve_first(e%block_engine_t, t, c)
       end if
    end subroutine solve
 
@@ -61,13 +59,11 @@ contains
       real(wp), intent(in) :: t
       type(convergence_t), intent(inout) :: c
       type(convergence_t) :: before
-      real(wp) :: correction
-      logical :: same
 
       before = c
-      call e%block_engine_t%solve(t, .true., c, correction, same)
+      call e%block_engine_t%solve(t, .true., c)
       if (c%ended == ended_inconsistent) return
-      call e%block_engine_t%solve(t, .false., c, correction, same)
+      call e%block_engine_t%solve(t, .false., c)
       if (c%ended == ended_inconsistent) return
       c = before
       c%open%value = 0.0_wp

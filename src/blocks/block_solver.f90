@@ -84,22 +84,21 @@ contains
    end subroutine make_workspace
 
    !> Solves block `i` for value, rate and acceleration of its unknowns, the values starting from those of `s`.
-   !> `c`: how it ended; `correction`: the largest change of a value, where it is larger than before.
-   subroutine solve_block(b, i, tolerance, w, s, c, correction)
+   !> `c`: how it ended.
+   subroutine solve_block(b, i, tolerance, w, s, c)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       real(wp), intent(in) :: tolerance
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
-      real(wp), intent(inout) :: correction
 
       if (b%list(i)%direct) then
          call solve_direct(b, i, s)
          c%ended = ended_converged
          return
       end if
-      call solve(b, i, b%list(i)%shape, tolerance, w%block_factors_t, w%r, w%start, s, c, correction)
+      call solve(b, i, b%list(i)%shape, tolerance, w%block_factors_t, w%r, w%start, s, c)
       if (c%ended /= ended_converged .and. c%ended /= ended_stalled) return
       if (b%list(i)%shape%rows > b%list(i)%shape%n .and. is_inconsistent(c)) then
          c%ended = ended_inconsistent
@@ -128,7 +127,7 @@ contains
 
    !> Newton's method; where it ends with a position, `r`(:, 2) holds the velocities and `f` the factors, of the
    !> Jacobian there or of one beside it. Where the Jacobian there has no inverse, c%singular says so.
-   subroutine solve(b, i, shape, tolerance, f, r, start, s, c, correction)
+   subroutine solve(b, i, shape, tolerance, f, r, start, s, c)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(shape_t), intent(in) :: shape
@@ -137,7 +136,6 @@ contains
       real(wp), intent(inout) :: r(shape%rows, 2), start(shape%n)
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
-      real(wp), intent(inout) :: correction
       real(wp) :: before, size_of, coarse
       integer :: info, iteration
       logical :: is_right
@@ -188,7 +186,6 @@ contains
          exit
       end do
       if (c%iterations > 1 .or. c%step > 0.0_wp) c%change = largest_change(b, i, shape%n, s, start)
-      correction = max(correction, c%change)
    end subroutine solve
 
    !> Solves for `v` (rows) with the Jacobian just assembled (`is_new`: `info` > 0, it has no inverse), or that of the

@@ -52,6 +52,7 @@ module convergence
       real(wp) :: inverse = 0.0_wp             !< |J^-1| there
       real(wp) :: growth = 0.0_wp              !< of that ratio with the excursion of the drives
       logical :: is_certain = .false.          !< a prediction so right in a substep so short leaves no other branch
+      logical :: keeps_signs = .true.          !< the determinants have those of the motion that is followed
       logical :: singular = .false.            !< position found where the Jacobian has no inverse
       type(closure_error_t) :: open            !< the equation that is open the most
       logical :: rates_open = .false.          !< they agree in position, but not in its derivatives

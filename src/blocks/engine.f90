@@ -35,16 +35,13 @@ module engine
 
    abstract interface
       !> Solves for the motion at `t`, from the one accepted last (`follows`) or from the deck's estimate. `c`: how it
-      !> ended, `correction`: the largest change (rad, `length`) of a predicted value, `same`: the determinants have
-      !> kept their signs.
-      subroutine solve_interface(e, t, follows, c, correction, same)
+      !> ended, with the largest change (rad, `length`) of a predicted value.
+      subroutine solve_interface(e, t, follows, c)
          import :: engine_t, wp, convergence_t
          class(engine_t), intent(inout) :: e
          real(wp), intent(in) :: t
          logical, intent(in) :: follows
          type(convergence_t), intent(out) :: c
-         real(wp), intent(out) :: correction
-         logical, intent(out) :: same
       end subroutine solve_interface
 
       !> The motion found last becomes the one that is followed.
@@ -102,9 +99,7 @@ contains
       class(engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       type(convergence_t), intent(inout) :: c
-      real(wp) :: correction
-      logical :: same
 
-      call e%solve(t, .true., c, correction, same)
+      call e%solve(t, .true., c)
    end subroutine measure_closure_error
 end module engine

@@ -46,13 +46,12 @@ contains
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
       real(wp), allocatable, intent(out), optional :: others(:, :)
-      real(wp) :: start(b%list(i)%last - b%list(i)%first + 1), change
+      real(wp) :: start(b%list(i)%last - b%list(i)%first + 1)
       real(wp), allocatable :: found(:, :)              ! (n, any number), nearest to the start first
       logical :: is_near
 
       start = values_of(b, i, s)
-      change = 0.0_wp
-      call solve_block(b, i, tolerance, w, s, c, change)
+      call solve_block(b, i, tolerance, w, s, c)
       if (b%list(i)%direct .or. is_certain(c)) return
       allocate (found(size(start), 0))
       call note_position(c)
@@ -73,7 +72,7 @@ contains
       call look_across()
       if (size(found, 2) == 0) return
       call set_values(b, i, found(:, 1), s)
-      call solve_block(b, i, tolerance, w, s, c, change)
+      call solve_block(b, i, tolerance, w, s, c)
       if (present(others)) others = found(:, 2:)
 
    contains
@@ -81,10 +80,8 @@ contains
       !> Solves the block from the values of `s`, and notes what was found.
       subroutine solve_from_here()
          type(convergence_t) :: c
-         real(wp) :: change
 
-         change = 0.0_wp
-         call solve_block(b, i, tolerance, w, s, c, change)
+         call solve_block(b, i, tolerance, w, s, c)
          call note_position(c)
       end subroutine solve_from_here
 
@@ -194,20 +191,18 @@ contains
       type(convergence_t), intent(inout) :: c
       type(convergence_t) :: nearest
       real(wp), allocatable :: nearly_closed(:)
-      real(wp) :: change
       logical :: reached
 
-      change = 0.0_wp
       nearest = c
       call levenberg_marquardt_solve(b, i, near, s, nearest, reached)
       nearly_closed = values_of(b, i, s)
-      call solve_block(b, i, tolerance, w, s, c, change)
+      call solve_block(b, i, tolerance, w, s, c)
       if (is_solved(c)) return
       if (reached) then
          ! Close to a limit, and perhaps beyond it.
          call set_values(b, i, nearly_closed, s)
          call levenberg_marquardt_solve(b, i, closed, s, nearest, reached)
-         call solve_block(b, i, tolerance, w, s, c, change)
+         call solve_block(b, i, tolerance, w, s, c)
          if (is_solved(c) .or. reached) return
       end if
       c%open = nearest%open
@@ -232,7 +227,7 @@ contains
       type(state_t), intent(in) :: s
       type(state_t) :: other
       type(convergence_t) :: c
-      real(wp) :: x(size(start)), found(size(start)), change
+      real(wp) :: x(size(start)), found(size(start))
       integer :: k
 
       has = .false.
@@ -242,8 +237,7 @@ contains
       other = s
       do k = 1, 2*size(start)
          call set_values(b, i, beside(start, k), other)
-         change = 0.0_wp
-         call solve_block(b, i, tolerance, w, other, c, change)
+         call solve_block(b, i, tolerance, w, other, c)
          if (.not. is_solved(c)) cycle
          x = values_of(b, i, other)
          has = maxval(abs(x - found)) > distinct .and. norm2(x - start) < nearly*norm2(found - start)

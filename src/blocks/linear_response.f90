@@ -91,13 +91,11 @@ contains
       real(wp), intent(in) :: drives(0:, :, :)
       logical, intent(in) :: only_driven
       type(convergence_t) :: c
-      real(wp) :: correction
       integer :: pass, k
       logical :: is_found
 
       r%u = 0.0_wp
       r%jams = .false.
-      correction = 0.0_wp
       ! A function's result would bring its own lower bound.
       r%unit(:) = slide_units(e)
       call take_values(r, e, [(k, k=0, e%blocks%unknowns)])
@@ -112,7 +110,7 @@ contains
                is_found = largest_known(e%blocks, i, r%missing) == missing_nothing
                if (is_found) then
                   c = convergence_t()
-                  call solve_block(e%blocks, i, 0.0_wp, e%work, e%state, c, correction)
+                  call solve_block(e%blocks, i, 0.0_wp, e%work, e%state, c)
                   call take_values(r, e, e%blocks%unknown(block%first:block%last))
                   is_found = is_solved(c) .and. .not. (c%singular .or. c%rates_open)
                end if

@@ -122,10 +122,8 @@ contains
       real(wp), intent(out) :: inverse
       logical, intent(out) :: is_singular, is_found
       type(convergence_t) :: c
-      real(wp) :: correction
 
-      correction = 0.0_wp
-      call solve_block(e%blocks, i, 0.0_wp, r%work, r%state, c, correction)
+      call solve_block(e%blocks, i, 0.0_wp, r%work, r%state, c)
       inverse = c%inverse
       is_singular = c%singular
       is_found = is_solved(c) .and. .not. c%rates_open

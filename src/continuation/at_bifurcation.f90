@@ -248,7 +248,6 @@ contains
       type(following_t), intent(inout) :: f
       real(wp), intent(in) :: t
       logical, intent(out) :: passed
-      real(wp) :: correction
 
       select type (e => f%engine)
       class is (block_method_t)
@@ -256,8 +255,8 @@ contains
          e%history%filled = 1
       end select
       f%t = t
-      call f%engine%solve(t, .true., f%convergence, correction, passed)
-      passed = passed .and. is_solved(f%convergence) .and. .not. f%convergence%singular
+      call f%engine%solve(t, .true., f%convergence)
+      passed = f%convergence%keeps_signs .and. is_solved(f%convergence) .and. .not. f%convergence%singular
       if (passed) call go_on_from(f, t)
    end subroutine take_up
 

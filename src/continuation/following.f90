@@ -154,21 +154,20 @@ contains
       real(wp), intent(in) :: t
       type(step_record_t), intent(inout) :: step
       logical, intent(out) :: accepted
-      real(wp) :: correction
-      logical :: same
 
       if (f%follows) f%engine%excursion = likely_excursion(f%drives, f%t, t)
-      call f%engine%solve(t, f%follows, f%convergence, correction, same)
+      call f%engine%solve(t, f%follows, f%convergence)
       f%iterations = f%iterations + f%convergence%iterations
       accepted = is_solved(f%convergence)
       if (.not. f%follows) return
-      accepted = accepted .and. correction <= largest_correction
+      accepted = accepted .and. f%convergence%change <= largest_correction
       ! Beside a change point the inverse grows as substeps shrink, and what drives add by leaving their chords never
       ! becomes small: no substep would come across.
       if (accepted .and. f%engine%excursion > 0.0_wp .and. .not. f%convergence%is_certain) call add_excursion(f, t)
       accepted = accepted .and. f%convergence%kantorovich_ratio <= max_kantorovich_ratio
-      if (accepted .and. .not. (same .or. f%convergence%singular)) call pass_change_points(f, t, correction, step, same)
-      accepted = accepted .and. same .and. f%convergence%kantorovich_ratio <= max_kantorovich_ratio
+      if (accepted .and. .not. (f%convergence%keeps_signs .or. f%convergence%singular)) &
+         call pass_change_points(f, t, step)
+      accepted = accepted .and. f%convergence%keeps_signs .and. f%convergence%kantorovich_ratio <= max_kantorovich_ratio
       if (.not. accepted) return
       step%branch%substeps = step%branch%substeps + 1
       step%branch%kantorovich_ratio = max(step%branch%kantorovich_ratio, f%convergence%kantorovich_ratio)
@@ -188,19 +187,17 @@ contains
       end associate
    end subroutine add_excursion
 
-   !> A determinant has changed its sign before `t`: `passed`, if at change points, and the motion goes on beyond them.
-   subroutine pass_change_points(f, t, correction, step, passed)
+   !> A determinant has changed its sign before `t`. At change points beyond which the motion goes on that is none.
+   subroutine pass_change_points(f, t, step)
       type(following_t), intent(inout) :: f
-      real(wp), intent(in) :: t, correction
+      real(wp), intent(in) :: t
       type(step_record_t), intent(inout) :: step
-      logical, intent(out) :: passed
       type(diagnostic_t), allocatable :: list(:)
 
-      passed = .false.
       select type (e => f%engine)
       class is (block_engine_t)
-         call pass(e, t, correction, f%branch_requests, f%convergence, list, passed)
-         if (passed) then
+         call pass(e, t, f%branch_requests, f%convergence, list)
+         if (f%convergence%keeps_signs) then
             if (.not. allocated(step%passed)) allocate (step%passed(0))
             step%passed = [step%passed, list]
          else if (size(list) > 0) then

@@ -106,28 +106,27 @@ contains
    end subroutine make_dense_engine
 
    !> See `engine`.
-   subroutine solve(e, t, follows, c, correction, same)
+   subroutine solve(e, t, follows, c)
       class(dense_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       logical, intent(in) :: follows
       type(convergence_t), intent(out) :: c
-      real(wp), intent(out) :: correction
-      logical, intent(out) :: same
+      logical :: is_near
 
       e%at%now%t = t
-      same = .true.
       call find_drive_values(e%system, t, e%drive_values)
       if (follows) then
          e%start = continued(e, t)
-         same = maxval(abs(e%start - e%at%last%position)) <= largest_change
-         if (same) call search(e, e%start, c)
+         is_near = maxval(abs(e%start - e%at%last%position)) <= largest_change
+         if (is_near) call search(e, e%start, c)
+         c%keeps_signs = is_near
       else
          call search_first(e, t, c)
       end if
-      correction = maxval(abs(e%pose%q - e%start))
-      if (.not. (same .and. is_solved(c))) return
+      c%change = maxval(abs(e%pose%q - e%start))
+      if (.not. (c%keeps_signs .and. is_solved(c))) return
       call solve_rates(e, c)
-      if (follows .and. .not. c%singular) same = e%at%determinant_now == e%at%determinant
+      if (follows .and. .not. c%singular) c%keeps_signs = e%at%determinant_now == e%at%determinant
    end subroutine solve
 
    !> The position by the method's iteration from `start` (3, links), and how far it is from there.

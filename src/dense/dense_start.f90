@@ -43,13 +43,12 @@ contains
       type(structure_t) :: own
       type(convergence_t) :: c
       type(motion_t) :: q
-      real(wp) :: correction
       logical :: unused
 
       q = new_motion(size(m%links))
       own = structure
       call make_block_engine(e, m, own)
-      call solve_first(e, t, c, correction, unused)
+      call solve_first(e, t, c)
       is_found = e%blocks%solvable .and. is_solved(c)
       assembly = estimate
       if (.not. e%blocks%solvable) return
@@ -66,16 +65,14 @@ contains
    subroutine return_to_estimate(e)
       type(block_engine_t), intent(inout) :: e
       type(convergence_t) :: c
-      real(wp) :: correction
       integer :: k
 
-      correction = 0.0_wp
       do k = 1, size(e%needed)
          associate (i => e%needed(k))
             associate (unknowns => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
                call set_values(e%blocks, i, e%estimated(unknowns), e%state)
             end associate
-            if (e%blocks%list(i)%direct) call solve_block(e%blocks, i, 0.0_wp, e%work, e%state, c, correction)
+            if (e%blocks%list(i)%direct) call solve_block(e%blocks, i, 0.0_wp, e%work, e%state, c)
          end associate
       end do
    end subroutine return_to_estimate

@@ -97,17 +97,15 @@ contains
       type(placed_t), intent(inout) :: middle
       logical, intent(out) :: is_found
       type(convergence_t) :: c
-      real(wp) :: correction
       integer :: i, k
 
       do i = 1, size(e%laws)
          p%state%drive_value(0:2, i) = drive_motion(e%laws(i), t)*e%unit_of(i)
       end do
-      correction = 0.0_wp
       is_found = .false.
       do k = 1, size(list)
          c = convergence_t()
-         call solve_block(e%blocks, list(k), e%tolerance, s%work, p%state, c, correction)
+         call solve_block(e%blocks, list(k), e%tolerance, s%work, p%state, c)
          if (.not. is_solved(c) .or. c%singular .or. c%rates_open) return
       end do
       call take_state(p, e, t, middle)

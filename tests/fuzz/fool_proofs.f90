@@ -156,13 +156,12 @@ contains
       integer, intent(inout) :: s
       type(convergence_t) :: c
       real(qp) :: x(2, -1:1), margin, h
-      real(wp) :: off, correction
+      real(wp) :: off
       integer :: k
 
       call set_drive_values(e, t)
-      correction = 0.0_wp
       do k = 1, size(e%blocks%list)
-         if (e%blocks%list(k)%direct) call solve_block(e%blocks, k, e%tolerance, prover%work, e%state, c, correction)
+         if (e%blocks%list(k)%direct) call solve_block(e%blocks, k, e%tolerance, prover%work, e%state, c)
       end do
       h = small/max(1.0_wp, f%frequency)
       do k = -1, 1
