@@ -109,10 +109,13 @@ contains
          if (maxval(abs(without_turns(v - w))) <= good_part) exit
       end do
       v = u + without_turns(v - u)
-      before = largest_opening(u, placed)
+      if (maxval(abs(v - u)) <= far_angle) return
+      ! Of what is open, only what small changes of other angles do not close contradicts an angle.
+      w = merge(u, v, abs(v - u) > far_angle)
+      before = largest_opening(w, placed)
       after = largest_opening(v, placed)
-      if (after > min(closed_part*length, better_part*before) .or. maxval(abs(v - u)) <= far_angle) return
-      if (.not. is_contradicted(abs(v - u) > far_angle)) return
+      if (after > min(closed_part*length, better_part*before)) return
+      if (.not. is_contradicted(w, abs(v - u) > far_angle)) return
       do i = 1, size(m%links)
          if (t%orientation(i) > 0) phi(i) = phi(i) + (v(t%orientation(i)) - u(t%orientation(i)))
       end do
@@ -201,8 +204,9 @@ contains
       end function normal
 
       !> Some pair of a link of the classes `changed` (0:classes), both sides of which have their places, is open by
-      !> more than a part of that link's size there, from the places and angles of the deck.
-      pure logical function is_contradicted(changed) result(is)
+      !> more than a part of that link's size there, from the places of the deck and the angles `u`.
+      pure logical function is_contradicted(u, changed) result(is)
+         real(wp), intent(in) :: u(0:)
          logical, intent(in) :: changed(0:)
          real(wp) :: size_of
          integer :: k, side, ends(2)

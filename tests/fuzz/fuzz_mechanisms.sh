@@ -1,6 +1,6 @@
 #!/bin/sh
-# make fuzz-mechanisms: mechanisms by the dice whose motion is known in real128, COUNT of them from seed FIRST on, in chunks,
-# as many at a time as there are processors. Three of four are chains of dyads, one of five has triads or tetrads, and one of
+# make fuzz-mechanisms: mechanisms by the dice whose motion is known in real128, COUNT of them from seed FIRST on, and some
+# known ones, in chunks, as many at a time as there are processors. Three of four are chains of dyads, one of five has triads or tetrads, and one of
 # twenty a group of 12 to 18 links. The deck of each that fails is kept. The last line is "N passed, N failed".
 #
 #    tests/fuzz/fuzz_mechanisms.sh COUNT [FIRST]       runs them
@@ -11,6 +11,9 @@ BUILD=${BUILD:-build}
 work=$BUILD/mechanisms
 driver=$BUILD/release/fuzz_mechanisms
 chunk=${FUZZ_CHUNK:-200}
+# Seeds that have found faults: a parallelogram of four cranks with links of a hundredth of its size in one block, whose
+# velocities were worse than told; a small dyad on a long link, turned by the wrong angle of that one.
+known='668292 1010852 1004109'
 mkdir -p "$work" || exit 3
 
 # run_chunk FIRST LAST: the driver again behind every seed at which it does not come back
@@ -54,11 +57,16 @@ esac
 count=${1:-1000}
 first=${2:-1}
 last=$((first + count - 1))
-seq "$first" "$chunk" "$last" | while read -r a; do
-   b=$((a + chunk - 1))
-   [ "$b" -gt "$last" ] && b=$last
-   echo "$a $b"
-done | xargs -P "${FUZZ_JOBS:-$(nproc)}" -n 2 "$0" --chunk > "$work/results"
+{
+   for a in $known; do
+      echo "$a $a"
+   done
+   seq "$first" "$chunk" "$last" | while read -r a; do
+      b=$((a + chunk - 1))
+      [ "$b" -gt "$last" ] && b=$last
+      echo "$a $b"
+   done
+} | xargs -P "${FUZZ_JOBS:-$(nproc)}" -n 2 "$0" --chunk > "$work/results"
 
 grep '^FAILED' "$work/results" | sort -k 3 -n
 awk '
