@@ -102,7 +102,7 @@ contains
       real(wp), intent(in) :: t
       type(step_record_t), intent(inout) :: step
       type(diagnostic_t), allocatable, intent(out) :: list(:)
-      type(place_t) :: before
+      type(place_t) :: before, reached
       type(branch_requests_t) :: branch_requests
       type(convergence_t) :: found
       type(drive_excursion_t) :: drives
@@ -118,6 +118,7 @@ contains
       drive = stopping_drive(laws, f%drives%first, f%drives%last, merge(f%place%t, f%t, step%tries > 1), near, t)
       if (drive == 0) return
       near = standstill(laws(drive), near, t)
+      call note_place(f, reached)
       call go_back(f, step)
       call note_place(f, before)
       branch_requests = f%branch_requests
@@ -130,9 +131,14 @@ contains
       step%stands = passed .and. stands
       step%arrived = passed .or. step%arrived
       if (passed .and. .not. stands) return
-      f%t = before%t
-      call f%engine%restore(before%engine, keeps_found=passed)
-      if (passed) return
+      f%t = merge(before%t, reached%t, passed)
+      if (passed) then
+         call f%engine%restore(before%engine, keeps_found=.true.)
+         return
+      end if
+      ! As the step has ended: that tells where the limit is, and which.
+      call f%engine%restore(reached%engine, keeps_found=.false.)
+      f%place = before
       deallocate (list)
       allocate (list(0))
       f%branch_requests = branch_requests
