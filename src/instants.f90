@@ -68,7 +68,7 @@ contains
             if (.not. all(holds(a%now%proofs))) row%unproved = row%unproved + 1
          end if
          call note_flag(row, a)
-         call write_instant(options, m, i, k, any_due(m, every, k), lists, a, o)
+         call write_instant(any_due(m, every, k))
          call take_instant(asked, m, a, k, any_due(m, every, k))
          if (o%progress%shown .and. m%variants == 0) &
             call show_progress(o%progress, 'SET '//whole(i)//': INSTANT', k, instant_count(m) - 1)
@@ -79,43 +79,36 @@ contains
       if (lists) call put_answers(o%files(out_listing, 0), o%layout, asked, m, a)
       if (lists) call listing_end(o%files(out_listing, 0), m, row%solved, row%flagged, &
          a%certificate_counts, set_closure_error(a), set_closing_diagnostics(a, m))
+
+   contains
+
+      !> Writes instant number `k` of set number `i`, `m`, to which `a` has advanced; `due`: PRINT asks for it; `lists`:
+      !> what there is of it stands in the listing. Only that, and estimates that are asked for, need samples.
+      subroutine write_instant(due)
+         logical, intent(in) :: due
+
+         if (options%errors .or. (due .and. lists)) call sample_set(a, options%errors)
+         if (due .and. (lists .or. any(o%asked([out_csv, out_table, out_plot_table])))) call sense_set(a)
+         if (lists .and. (due .or. has_words(a%now))) &
+            call listing_instant(o%files(out_listing, 0), o%layout, m, a%now, k)
+         if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv, 0), m, a%now, k, o%varies, a%assemblies)
+         if (o%asked(out_table) .and. due) call table_instant(o%files(out_table, i), o%table, m, a%now)
+         if (o%asked(out_plot_table) .and. due) call table_instant(o%files(out_plot_table, i), o%table, m, a%now)
+         if (o%asked(out_log)) call put_log(o%files(out_log, 0))
+      end subroutine write_instant
+
+      !> The line of instant number `k` in the log.
+      subroutine put_log(log)
+         type(output_t), intent(inout) :: log
+         type(convergence_t) :: record
+         type(branch_t) :: branch
+
+         call set_record(a, record, branch)
+         if (options%errors) then
+            call log_instant(log, k, instant(m, k), record, branch, set_errors(a))
+         else
+            call log_instant(log, k, instant(m, k), record, branch)
+         end if
+      end subroutine put_log
    end subroutine run_motion
-
-   !> Writes instant number `k` of set number `i`, `m`, to which `a` has advanced; `due`: PRINT asks for it; `lists`:
-   !> what there is of it stands in the listing. Only that, and estimates that are asked for, need samples.
-   subroutine write_instant(options, m, i, k, due, lists, a, o)
-      type(options_t), intent(in) :: options
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i, k
-      logical, intent(in) :: due, lists
-      type(set_analysis_t), intent(inout) :: a
-      type(writers_t), intent(inout) :: o
-
-      if (options%errors .or. (due .and. lists)) call sample_set(a, options%errors)
-      if (due .and. (lists .or. any(o%asked([out_csv, out_table, out_plot_table])))) call sense_set(a)
-      if (lists .and. (due .or. has_words(a%now))) &
-         call listing_instant(o%files(out_listing, 0), o%layout, m, a%now, k)
-      if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv, 0), m, a%now, k, o%varies, a%assemblies)
-      if (o%asked(out_table) .and. due) call table_instant(o%files(out_table, i), o%table, m, a%now)
-      if (o%asked(out_plot_table) .and. due) call table_instant(o%files(out_plot_table, i), o%table, m, a%now)
-      if (o%asked(out_log)) call put_log(o%files(out_log, 0), options, m, a, k)
-   end subroutine write_instant
-
-   !> The line of instant number `k` in the log.
-   subroutine put_log(log, options, m, a, k)
-      type(output_t), intent(inout) :: log
-      type(options_t), intent(in) :: options
-      type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(in) :: a
-      integer, intent(in) :: k
-      type(convergence_t) :: record
-      type(branch_t) :: branch
-
-      call set_record(a, record, branch)
-      if (options%errors) then
-         call log_instant(log, k, instant(m, k), record, branch, set_errors(a))
-      else
-         call log_instant(log, k, instant(m, k), record, branch)
-      end if
-   end subroutine put_log
 end module instants

@@ -70,67 +70,124 @@ contains
          list(k) = -1
          if (k == processes) s%next_turn = last_turn
          if (s%report < 0 .or. s%turn < 0) exit
-         call make_child(o, s, k, report, last_turn, list(k))
+         call make_child(list(k))
          if (s%is_child) return
          if (list(k) < 0) exit
       end do
       if (k <= processes) then
          status = status_system
-         message = ' *** NO PROCESS FOR'//text_of(s, k)//' ('//capitals(reason_of(last_error()))//')'
+         message = ' *** NO PROCESS FOR'//text_of(k)//' ('//capitals(reason_of(last_error()))//')'
          call interrupt_all(list(:k - 1))
          call close_one(last_turn)
       end if
       call close_one(s%turn)
       call close_one(report)
       call forget_files(o, s%first, s%last)
-      call follow(s, list(:min(k, processes)), progress, status, message)
+      call follow(list(:min(k, processes)), message)
       s%parts = 0
+
+   contains
+
+      !> Makes process number `k`, whose number among all processes is `child`, negative if there is none. s%turn: in
+      !> its parent that of the next process from now on.
+      subroutine make_child(child)
+         integer, intent(out) :: child
+         integer(c_int) :: next
+
+         next = -1
+         child = -1
+         if (k < s%processes) call make_pipe(next, s%next_turn)
+         if (s%next_turn < 0) return
+         child = fork_process()
+         s%is_child = child == 0
+         if (s%is_child) then
+            call note_all_signals
+            call close_one(s%report)
+            s%report = report
+            if (k < s%processes) call close_one(last_turn)
+            if (k < s%processes) call close_one(next)
+            s%part = k - s%processes
+            call forget_others()
+         else
+            call close_one(s%turn)
+            call close_one(s%next_turn)
+            s%turn = next
+            ! What the first process has emptied is not emptied again.
+            if (child > 0) o%files(:, 0)%emptied = .true.
+         end if
+      end subroutine make_child
+
+      !> Leaves to other processes the files of those sets that process number `k` does not compute.
+      subroutine forget_others()
+         integer :: p
+
+         do p = 1, s%parts
+            if (modulo(p - k, s%processes) /= 0) call forget_files(o, first_of(s, p), first_of(s, p + 1) - 1)
+         end do
+      end subroutine forget_others
+
+      !> Waits for the children of `list`, takes over the first `message`, and finds the `status` of the whole.
+      subroutine follow(list, message)
+         integer, intent(in) :: list(:)
+         character(:), allocatable, intent(inout) :: message
+         character(4096) :: block
+         character(:), allocatable :: said
+         integer :: ended, k, p, i, n
+
+         p = 0
+         said = ''
+         do while (s%report >= 0)
+            if (signal_received() > 0) call interrupt_all(list)
+            if (.not. has_input(s%report, look_time)) cycle
+            n = read_bytes(s%report, block)
+            if (n <= 0) exit
+            do i = 1, n
+               if (block(i:i) /= part_written) said = said//block(i:i)
+               if (block(i:i) == part_written) p = p + 1
+            end do
+            if (p > 0) call show_progress(progress, s%kind//': NUMBER', first_of(s, p + 1) - 1, s%last)
+         end do
+         if (len(message) == 0 .and. len(said) > 0) message = said(:index(said, end_of_message) - 1)
+         do k = 1, size(list)
+            if (list(k) <= 0) cycle
+            call wait_for_child(list(k), ended)
+            if (ended >= killed .and. status < status_system) then
+               ! The first of its parts that is not written.
+               message = ' *** THE PROCESS FOR'//text_of(p + 1 + modulo(k - p - 1, s%processes)) &
+                  //' WAS ENDED BY SIGNAL '//whole(ended - killed)
+               status = status_system
+            else if (ended < killed) then
+               status = max(status, ended)
+            end if
+         end do
+      end subroutine follow
+
+      !> Asks all processes of `list` to end.
+      subroutine interrupt_all(list)
+         integer, intent(in) :: list(:)
+         integer :: k
+
+         do k = 1, size(list)
+            if (list(k) > 0) call interrupt_child(list(k))
+         end do
+      end subroutine interrupt_all
+
+      !> Closes one end of a pipe, unless it has none.
+      subroutine close_one(descriptor)
+         integer(c_int), intent(in) :: descriptor
+         logical :: closed
+
+         if (descriptor >= 0) closed = close_descriptor(descriptor)
+      end subroutine close_one
+
+      !> SETS 5 TO 8, or VARIANTS 5 TO 8: part `p`.
+      pure function text_of(p) result(text)
+         integer, intent(in) :: p
+         character(:), allocatable :: text
+
+         text = ' '//s%kind//' '//whole(first_of(s, p))//' TO '//whole(first_of(s, p + 1) - 1)
+      end function text_of
    end subroutine run_shares
-
-   !> Makes process number `k`, whose number among all processes is `child`, negative if there is none. s%turn: in its
-   !> parent that of the next process from now on.
-   subroutine make_child(o, s, k, report, last_turn, child)
-      class(outputs_t), intent(inout) :: o
-      type(share_of_job_t), intent(inout) :: s
-      integer, intent(in) :: k
-      integer(c_int), intent(in) :: report, last_turn
-      integer, intent(out) :: child
-      integer(c_int) :: next
-
-      next = -1
-      child = -1
-      if (k < s%processes) call make_pipe(next, s%next_turn)
-      if (s%next_turn < 0) return
-      child = fork_process()
-      s%is_child = child == 0
-      if (s%is_child) then
-         call note_all_signals
-         call close_one(s%report)
-         s%report = report
-         if (k < s%processes) call close_one(last_turn)
-         if (k < s%processes) call close_one(next)
-         s%part = k - s%processes
-         call forget_others(o, s, k)
-      else
-         call close_one(s%turn)
-         call close_one(s%next_turn)
-         s%turn = next
-         ! What the first process has emptied is not emptied again.
-         if (child > 0) o%files(:, 0)%emptied = .true.
-      end if
-   end subroutine make_child
-
-   !> Leaves to other processes the files of those sets that process number `k` does not compute.
-   subroutine forget_others(o, s, k)
-      class(outputs_t), intent(inout) :: o
-      type(share_of_job_t), intent(in) :: s
-      integer, intent(in) :: k
-      integer :: p
-
-      do p = 1, s%parts
-         if (modulo(p - k, s%processes) /= 0) call forget_files(o, first_of(s, p), first_of(s, p + 1) - 1)
-      end do
-   end subroutine forget_others
 
    !> Ends the part at hand, if there is one, and begins the next: `first` to `last`. False where there is none, or the
    !> job is over.
@@ -189,63 +246,6 @@ contains
       call end_process(status)
    end subroutine end_share
 
-   !> Waits for the children of `list`, takes over the first `message`, and finds the `status` of the whole.
-   subroutine follow(s, list, progress, status, message)
-      type(share_of_job_t), intent(in) :: s
-      integer, intent(in) :: list(:)
-      type(progress_t), intent(inout) :: progress
-      integer, intent(inout) :: status
-      character(:), allocatable, intent(inout) :: message
-      character(4096) :: block
-      character(:), allocatable :: said
-      integer :: ended, k, p, i, n
-
-      p = 0
-      said = ''
-      do while (s%report >= 0)
-         if (signal_received() > 0) call interrupt_all(list)
-         if (.not. has_input(s%report, look_time)) cycle
-         n = read_bytes(s%report, block)
-         if (n <= 0) exit
-         do i = 1, n
-            if (block(i:i) /= part_written) said = said//block(i:i)
-            if (block(i:i) == part_written) p = p + 1
-         end do
-         if (p > 0) call show_progress(progress, s%kind//': NUMBER', first_of(s, p + 1) - 1, s%last)
-      end do
-      if (len(message) == 0 .and. len(said) > 0) message = said(:index(said, end_of_message) - 1)
-      do k = 1, size(list)
-         if (list(k) <= 0) cycle
-         call wait_for_child(list(k), ended)
-         if (ended >= killed .and. status < status_system) then
-            ! The first of its parts that is not written.
-            message = ' *** THE PROCESS FOR'//text_of(s, p + 1 + modulo(k - p - 1, s%processes)) &
-               //' WAS ENDED BY SIGNAL '//whole(ended - killed)
-            status = status_system
-         else if (ended < killed) then
-            status = max(status, ended)
-         end if
-      end do
-   end subroutine follow
-
-   !> Asks all processes of `list` to end.
-   subroutine interrupt_all(list)
-      integer, intent(in) :: list(:)
-      integer :: k
-
-      do k = 1, size(list)
-         if (list(k) > 0) call interrupt_child(list(k))
-      end do
-   end subroutine interrupt_all
-
-   !> Closes one end of a pipe, unless it has none.
-   subroutine close_one(descriptor)
-      integer(c_int), intent(in) :: descriptor
-      logical :: closed
-
-      if (descriptor >= 0) closed = close_descriptor(descriptor)
-   end subroutine close_one
-
    !> The first set or variant of part `p`, of those beyond the last one the number after the last.
    pure integer function first_of(s, p)
       type(share_of_job_t), intent(in) :: s
@@ -253,13 +253,4 @@ contains
 
       first_of = s%first + share_end(s%last - s%first + 1, min(p, s%parts + 1) - 1, max(1, s%parts))
    end function first_of
-
-   !> SETS 5 TO 8, or VARIANTS 5 TO 8: part `p`.
-   pure function text_of(s, p) result(text)
-      type(share_of_job_t), intent(in) :: s
-      integer, intent(in) :: p
-      character(:), allocatable :: text
-
-      text = ' '//s%kind//' '//whole(first_of(s, p))//' TO '//whole(first_of(s, p + 1) - 1)
-   end function text_of
 end module shares

@@ -52,139 +52,108 @@ contains
          call put_variant_heads(o%files(out_listing, 0), summary)
       end if
       if (full .or. m%proves .or. o%asked(out_csv) .or. o%asked(out_log)) then
-         call run_each(options, m, i, last, full, v, summary, layout, n, o, status)
+         call run_each()
       else
-         call run_together(m, i, last, v, summary, layout, n, o, status)
+         call run_together()
       end if
       if (.not. o%asked(out_listing)) return
       if (n <= last) call put_broken_off(o%files(out_listing, 0), m, n - 1)
       if (n > v%total) call put_variants_end(o%files(out_listing, 0), m)
-   end subroutine run_variants
 
-   !> Solves and writes the variants `n` to `last` of `v` one after another; `n`: the first that is not written.
-   subroutine run_each(options, m, i, last, full, v, summary, layout, n, o, status)
-      type(options_t), intent(in) :: options
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i, last
-      logical, intent(in) :: full
-      type(variation_t), intent(inout) :: v
-      type(summary_t), intent(in) :: summary
-      type(layout_t), intent(in) :: layout
-      integer, intent(inout) :: n
-      type(writers_t), intent(inout) :: o
-      integer, intent(inout) :: status
-      type(variant_row_t) :: row
-      type(mechanism_t) :: variant
-      type(findings_t) :: findings
+   contains
 
-      do while (n <= last)
-         row = new_row(summary, v, n)
-         if (o%asked(out_listing) .and. full) &
-            call put_variant(o%files(out_listing, 0), layout, summary, m, row)
-         call run_variant(options, i, full, v, summary, variant, findings, row, o)
-         if (is_over(o, i)) return
-         if (o%asked(out_listing) .and. full) call put_variant_heads(o%files(out_listing, 0), summary)
-         call write_row(m, i, v, summary, layout, row, o, status)
-         n = n + 1
-      end do
-   end subroutine run_each
+      !> Solves and writes the variants `n` to `last` of `v` one after another; `n`: the first that is not written.
+      subroutine run_each()
+         type(variant_row_t) :: row
+         type(mechanism_t) :: variant
+         type(findings_t) :: findings
 
-   !> The same of rows alone, as many variants at a time as there are lanes.
-   subroutine run_together(m, i, last, v, summary, layout, n, o, status)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i, last
-      type(variation_t), intent(inout) :: v
-      type(summary_t), intent(in) :: summary
-      type(layout_t), intent(in) :: layout
-      integer, intent(inout) :: n
-      type(writers_t), intent(inout) :: o
-      integer, intent(inout) :: status
-      type(lane_run_t), allocatable :: runs(:)
-      type(lanes_t) :: lanes
-      type(findings_t) :: findings
-      integer :: k, count
-
-      allocate (runs(width))
-      do while (n <= last)
-         count = min(width, last - n + 1)
-         do k = 1, count
-            runs(k)%row = new_row(summary, v, n + k - 1)
-            call start(v, findings, runs(k))
-         end do
-         call run_lanes(runs(:count), lanes)
-         do k = 1, count
+         do while (n <= last)
+            row = new_row(summary, v, n)
+            if (o%asked(out_listing) .and. full) &
+               call put_variant(o%files(out_listing, 0), layout, summary, m, row)
+            call run_variant(variant, findings, row)
             if (is_over(o, i)) return
-            call fill_row(summary, runs(k)%m, runs(k)%asked, runs(k)%row)
-            call write_row(m, i, v, summary, layout, runs(k)%row, o, status)
+            if (o%asked(out_listing) .and. full) call put_variant_heads(o%files(out_listing, 0), summary)
+            call write_row(row)
             n = n + 1
          end do
-      end do
-   end subroutine run_together
+      end subroutine run_each
 
-   !> Makes the variant of `v` whose row `r` has, unless it is refused; `findings`: as below.
-   subroutine start(v, findings, r)
-      type(variation_t), intent(inout) :: v
-      type(findings_t), intent(inout) :: findings
-      type(lane_run_t), intent(inout) :: r
+      !> The same of rows alone, as many variants at a time as there are lanes.
+      subroutine run_together()
+         type(lane_run_t), allocatable :: runs(:)
+         type(lanes_t) :: lanes
+         type(findings_t) :: findings
+         integer :: k, count
 
-      call make_variant(v, r%row, r%m, findings)
-      r%is_over = r%row%rejected /= ''
-      if (.not. r%is_over) call begin_run(r, findings)
-   end subroutine start
+         allocate (runs(width))
+         do while (n <= last)
+            count = min(width, last - n + 1)
+            do k = 1, count
+               runs(k)%row = new_row(summary, v, n + k - 1)
+               call start(findings, runs(k))
+            end do
+            call run_lanes(runs(:count), lanes)
+            do k = 1, count
+               if (is_over(o, i)) return
+               call fill_row(summary, runs(k)%m, runs(k)%asked, runs(k)%row)
+               call write_row(runs(k)%row)
+               n = n + 1
+            end do
+         end do
+      end subroutine run_together
 
-   !> Makes the variant of `v` whose `row` this is, and finds its structure, starting from the `findings` of the one
-   !> before; what the checks say stands in the row.
-   subroutine make_variant(v, row, variant, findings)
-      type(variation_t), intent(inout) :: v
-      type(variant_row_t), intent(inout) :: row
-      type(mechanism_t), intent(out) :: variant
-      type(findings_t), intent(inout) :: findings
-      character(:), allocatable :: faults
+      !> Makes the variant of `v` whose row `r` has, unless it is refused; `findings`: as below.
+      subroutine start(findings, r)
+         type(findings_t), intent(inout) :: findings
+         type(lane_run_t), intent(inout) :: r
 
-      call build_variant(v, row%number, variant, row%rejected)
-      if (row%rejected /= '') return
-      call find_structure_again(variant, findings)
-      faults = faults_text(variant, findings, variant%set_number)
-      row%rejected = faults(:index(faults//new_line('a'), new_line('a')) - 1)
-   end subroutine make_variant
+         call make_variant(r%row, r%m, findings)
+         r%is_over = r%row%rejected /= ''
+         if (.not. r%is_over) call begin_run(r, findings)
+      end subroutine start
 
-   !> Writes the `row` of a variant.
-   subroutine write_row(m, i, v, summary, layout, row, o, status)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i
-      type(variation_t), intent(in) :: v
-      type(summary_t), intent(in) :: summary
-      type(layout_t), intent(in) :: layout
-      type(variant_row_t), intent(in) :: row
-      type(writers_t), intent(inout) :: o
-      integer, intent(inout) :: status
+      !> Makes the variant of `v` whose `row` this is, and finds its structure, starting from the `findings` of the one
+      !> before; what the checks say stands in the row.
+      subroutine make_variant(row, variant, findings)
+         type(variant_row_t), intent(inout) :: row
+         type(mechanism_t), intent(out) :: variant
+         type(findings_t), intent(inout) :: findings
+         character(:), allocatable :: faults
 
-      if (o%asked(out_summary)) call summary_row(o%files(out_summary, 0), summary, m, row)
-      if (o%asked(out_listing)) call put_variant_row(o%files(out_listing, 0), layout, summary, m, row)
-      if (row%flagged + row%unproved > 0 .or. row%rejected /= '') status = status_flagged
-      if (o%progress%shown) call show_progress(o%progress, 'SET '//whole(i)//': VARIANT', row%number, v%total)
-   end subroutine write_row
+         call build_variant(v, row%number, variant, row%rejected)
+         if (row%rejected /= '') return
+         call find_structure_again(variant, findings)
+         faults = faults_text(variant, findings, variant%set_number)
+         row%rejected = faults(:index(faults//new_line('a'), new_line('a')) - 1)
+      end subroutine make_variant
 
-   !> Solves and writes the variant of `v` whose `row` this is, of set number `i`: it is `variant` now. `full`: its
-   !> tables are asked for. `findings`: as above.
-   subroutine run_variant(options, i, full, v, summary, variant, findings, row, o)
-      type(options_t), intent(in) :: options
-      integer, intent(in) :: i
-      logical, intent(in) :: full
-      type(variation_t), intent(inout) :: v
-      type(summary_t), intent(in) :: summary
-      type(mechanism_t), intent(out) :: variant
-      type(findings_t), intent(inout) :: findings
-      type(variant_row_t), intent(inout) :: row
-      type(writers_t), intent(inout) :: o
-      type(answers_t) :: asked
+      !> Solves and writes the variant of `v` whose `row` this is, of set number `i`: it is `variant` now. `full`: its
+      !> tables are asked for. `findings`: as above.
+      subroutine run_variant(variant, findings, row)
+         type(mechanism_t), intent(out) :: variant
+         type(findings_t), intent(inout) :: findings
+         type(variant_row_t), intent(inout) :: row
+         type(answers_t) :: asked
 
-      call make_variant(v, row, variant, findings)
-      if (row%rejected == '') then
-         if (full .and. o%asked(out_listing)) o%layout = new_layout(variant)
-         if (o%asked(out_log)) call log_head(o%files(out_log, 0), variant, options%errors)
-         call run_motion(options, variant, i, findings, full, o, row, asked)
-      end if
-      call fill_row(summary, variant, asked, row)
-   end subroutine run_variant
+         call make_variant(row, variant, findings)
+         if (row%rejected == '') then
+            if (full .and. o%asked(out_listing)) o%layout = new_layout(variant)
+            if (o%asked(out_log)) call log_head(o%files(out_log, 0), variant, options%errors)
+            call run_motion(options, variant, i, findings, full, o, row, asked)
+         end if
+         call fill_row(summary, variant, asked, row)
+      end subroutine run_variant
+
+      !> Writes the `row` of a variant.
+      subroutine write_row(row)
+         type(variant_row_t), intent(in) :: row
+
+         if (o%asked(out_summary)) call summary_row(o%files(out_summary, 0), summary, m, row)
+         if (o%asked(out_listing)) call put_variant_row(o%files(out_listing, 0), layout, summary, m, row)
+         if (row%flagged + row%unproved > 0 .or. row%rejected /= '') status = status_flagged
+         if (o%progress%shown) call show_progress(o%progress, 'SET '//whole(i)//': VARIANT', row%number, v%total)
+      end subroutine write_row
+   end subroutine run_variants
 end module variants

@@ -116,22 +116,22 @@ contains
       sure = 0
       a = start
       leaves = .false.
-      call append(circuit, n, a)
+      call append(a)
       if (is_sure(a)) sure = 1
       do while (n < max_points)
          leaves = leaves .and. a%reach < 2.0_wp*least_step
          if (a%reach >= least_step .or. leaves) then
-            call certified_step(c, a, b, ok)
+            call certified_step(b)
          else
-            call pass_change_point(c, circuit, n, b, ok)
+            call pass_change_point(b)
             leaves = .true.
          end if
          if (.not. ok .or. signal_received() > 0) exit
          closes = .false.
          if (n > 1) call lies_between(c, a, step_between(c, a, b), start%q, again, closes)
          if (closes) b = again
-         call find_dead_points(c, circuit, n, sure, b)
-         call append(circuit, n, b)
+         call find_dead_points()
+         call append(b)
          if (is_sure(b)) sure = n
          if (closes) circuit%ends(2) = end_closed
          if (maxval(abs(b%q(:2, :))) > far) circuit%ends(2) = end_far
@@ -139,6 +139,98 @@ contains
          a = b
       end do
       circuit%points = circuit%points(:n)
+
+   contains
+
+      !> The longest certified step from `a` that Newton's method takes, to `b`.
+      subroutine certified_step(b)
+         type(curve_point_t), intent(out) :: b
+         real(wp) :: h
+
+         h = a%reach
+         do
+            call step_along(c, a, h, b, ok)
+            if (ok .or. h < 0.1_wp*least_step) return
+            h = 0.5_wp*h
+         end do
+      end subroutine certified_step
+
+      !> From the last of the `n` points of `circuit` across the change point ahead to `b`, as far behind it: certified
+      !> steps shrink in proportion to the distance from it.
+      subroutine pass_change_point(b)
+         type(curve_point_t), intent(out) :: b
+         type(change_point_t) :: change
+         real(wp) :: shrinks, h
+
+         ok = .false.
+         if (n < 2) return
+         associate (before => circuit%points(n - 1), a => circuit%points(n))
+            shrinks = a%reach/before%reach
+            if (shrinks >= 1.0_wp) return
+            h = 2.0_wp*step_between(c, before, a)*shrinks/(1.0_wp - shrinks)
+            call step_along(c, a, h, b, ok)
+            if (.not. ok) return
+            ok = b%reach < alike*a%reach .and. a%reach < alike*b%reach &
+               .and. norm2(b%tangent - a%tangent) < straight
+            if (.not. ok) return
+            change%after = n
+            change%q = a%q
+            change%tangent = a%tangent
+            call add_to_links(c%closure, 0.5_wp*offset_from(c, a%q, b%q, .false.), change%q)
+            change%value = 0.5_wp*(a%value(0) + b%value(0))
+         end associate
+         circuit%changes = [circuit%changes, change]
+      end subroutine pass_change_point
+
+      !> Appends or marks the dead points between point `sure`, the last of the `n` points at which the drive's sense is
+      !> known, and `b`. Where they are no neighbours it turns back too near to a change point to tell the two apart.
+      subroutine find_dead_points()
+         integer :: k
+
+         if (sure == 0 .or. .not. is_sure(b)) return
+         if (sure == n) then
+            call append_dead_points(b)
+         else if (circuit%points(sure)%value(1)*b%value(1) < 0.0_wp) then
+            k = sure + minloc(circuit%points(sure + 1:n)%reach, dim=1)
+            circuit%points(k)%is_dead = .true.
+         end if
+      end subroutine find_dead_points
+
+      !> Appends the dead points between the last of the `n` points and `b`: one where the drive's derivative changes
+      !> its sign; two where it does so and back, about the place at which it is least.
+      recursive subroutine append_dead_points(b)
+         type(curve_point_t), intent(in) :: b
+         type(curve_point_t) :: a, p
+         logical :: ok
+
+         a = circuit%points(n)
+         if (a%value(1)*b%value(1) < 0.0_wp) then
+            call find_root(c, a, b, of_slope, 0.0_wp, p, ok)
+            p%is_dead = .true.
+            if (ok) call append(p)
+         else if (a%value(1)*a%value(2) < 0.0_wp .and. b%value(1)*b%value(2) > 0.0_wp) then
+            call find_root(c, a, b, of_bend, 0.0_wp, p, ok)
+            if (ok) ok = a%value(1)*p%value(1) < 0.0_wp
+            if (.not. ok) return
+            call append_dead_points(p)
+            call append(p)
+            call append_dead_points(b)
+         end if
+      end subroutine append_dead_points
+
+      !> Appends `p` to the `n` points of `circuit`.
+      subroutine append(p)
+         type(curve_point_t), intent(in) :: p
+         type(curve_point_t), allocatable :: more(:)
+
+         if (n == size(circuit%points)) then
+            allocate (more(2*n))
+            more(:n) = circuit%points
+            call move_alloc(more, circuit%points)
+         end if
+         n = n + 1
+         circuit%points(n) = p
+      end subroutine append
    end subroutine follow
 
    !> Whether the sense in which the drive moves is known at `p`.
@@ -160,97 +252,6 @@ contains
          return
       end do
    end function sense
-
-   !> The longest certified step from `a` that Newton's method takes, to `b`.
-   subroutine certified_step(c, a, b, ok)
-      type(curve_t), intent(inout) :: c
-      type(curve_point_t), intent(in) :: a
-      type(curve_point_t), intent(out) :: b
-      logical, intent(out) :: ok
-      real(wp) :: h
-
-      h = a%reach
-      do
-         call step_along(c, a, h, b, ok)
-         if (ok .or. h < 0.1_wp*least_step) return
-         h = 0.5_wp*h
-      end do
-   end subroutine certified_step
-
-   !> From the last of the `n` points of `circuit` across the change point ahead to `b`, as far behind it: certified
-   !> steps shrink in proportion to the distance from it.
-   subroutine pass_change_point(c, circuit, n, b, ok)
-      type(curve_t), intent(inout) :: c
-      type(circuit_t), intent(inout) :: circuit
-      integer, intent(in) :: n
-      type(curve_point_t), intent(out) :: b
-      logical, intent(out) :: ok
-      type(change_point_t) :: change
-      real(wp) :: shrinks, h
-
-      ok = .false.
-      if (n < 2) return
-      associate (before => circuit%points(n - 1), a => circuit%points(n))
-         shrinks = a%reach/before%reach
-         if (shrinks >= 1.0_wp) return
-         h = 2.0_wp*step_between(c, before, a)*shrinks/(1.0_wp - shrinks)
-         call step_along(c, a, h, b, ok)
-         if (.not. ok) return
-         ok = b%reach < alike*a%reach .and. a%reach < alike*b%reach &
-            .and. norm2(b%tangent - a%tangent) < straight
-         if (.not. ok) return
-         change%after = n
-         change%q = a%q
-         change%tangent = a%tangent
-         call add_to_links(c%closure, 0.5_wp*offset_from(c, a%q, b%q, .false.), change%q)
-         change%value = 0.5_wp*(a%value(0) + b%value(0))
-      end associate
-      circuit%changes = [circuit%changes, change]
-   end subroutine pass_change_point
-
-   !> Appends or marks the dead points between point `sure`, the last of the `n` points at which the drive's sense is
-   !> known, and `b`. Where they are no neighbours it turns back too near to a change point to tell the two apart.
-   subroutine find_dead_points(c, circuit, n, sure, b)
-      type(curve_t), intent(inout) :: c
-      type(circuit_t), intent(inout) :: circuit
-      integer, intent(inout) :: n
-      integer, intent(in) :: sure
-      type(curve_point_t), intent(in) :: b
-      integer :: k
-
-      if (sure == 0 .or. .not. is_sure(b)) return
-      if (sure == n) then
-         call append_dead_points(c, circuit, n, b)
-      else if (circuit%points(sure)%value(1)*b%value(1) < 0.0_wp) then
-         k = sure + minloc(circuit%points(sure + 1:n)%reach, dim=1)
-         circuit%points(k)%is_dead = .true.
-      end if
-   end subroutine find_dead_points
-
-   !> Appends the dead points between the last of the `n` points and `b`: one where the drive's derivative changes its
-   !> sign; two where it does so and back, about the place at which it is least.
-   recursive subroutine append_dead_points(c, circuit, n, b)
-      type(curve_t), intent(inout) :: c
-      type(circuit_t), intent(inout) :: circuit
-      integer, intent(inout) :: n
-      type(curve_point_t), intent(in) :: b
-      type(curve_point_t) :: a, p
-      logical :: ok
-
-      a = circuit%points(n)
-      if (a%value(1)*b%value(1) < 0.0_wp) then
-         call find_root(c, a, b, of_slope, 0.0_wp, p, ok)
-         p%is_dead = .true.
-         if (ok) call append(circuit, n, p)
-      else if (a%value(1)*a%value(2) < 0.0_wp .and. b%value(1)*b%value(2) > 0.0_wp) then
-         call find_root(c, a, b, of_bend, 0.0_wp, p, ok)
-         if (ok) ok = a%value(1)*p%value(1) < 0.0_wp
-         if (.not. ok) return
-         call append_dead_points(c, circuit, n, p)
-         call append(circuit, n, p)
-         call append_dead_points(c, circuit, n, b)
-      end if
-   end subroutine append_dead_points
 
    !> The point `p` between the neighbours `a` and `b` at which the drive's derivative number `order` (of_value,
    !> of_slope, of_bend) is `level`: there they are on both sides of it. The method of false position with halved values
@@ -317,20 +318,4 @@ contains
          circuit%changes(i)%after = modulo(circuit%changes(i)%after - first, n - 1) + 1
       end do
    end subroutine begin_at_dead_point
-
-   !> Appends `p` to the `n` points of `circuit`.
-   subroutine append(circuit, n, p)
-      type(circuit_t), intent(inout) :: circuit
-      integer, intent(inout) :: n
-      type(curve_point_t), intent(in) :: p
-      type(curve_point_t), allocatable :: more(:)
-
-      if (n == size(circuit%points)) then
-         allocate (more(2*n))
-         more(:n) = circuit%points
-         call move_alloc(more, circuit%points)
-      end if
-      n = n + 1
-      circuit%points(n) = p
-   end subroutine append
 end module circuit_trace

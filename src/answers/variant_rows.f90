@@ -81,9 +81,9 @@ contains
 
       s%numbers = size(v%numbers)
       allocate (s%columns(0))
-      call add_column(s, summary_column_t('variant', .true., heads_of(phrase(say_variant, m%polish), '')))
+      call add_column(summary_column_t('variant', .true., heads_of(phrase(say_variant, m%polish), '')))
       do i = 1, size(v%numbers)
-         call add_column(s, varied_column(v%numbers(i)))
+         call add_column(varied_column(v%numbers(i)))
       end do
       blank%printed = .true.
       call add_named('solved', say_instants, say_are_solved)
@@ -92,15 +92,15 @@ contains
       blank%decimals = l%time_decimals
       blank%power = l%time_power
       call add_named('flag.t', say_first_flag, say_at_time)
-      call add_drive(s, m, l, min(1, size(m%drives)), 'flag', heads_of('', ''))
-      call add_column(s, summary_column_t('flag.mark'))
-      call add_column(s, summary_column_t('limit.t'))
-      call add_column(s, summary_column_t('limit.drive'))
-      call add_column(s, summary_column_t('limit.value'))
-      if (m%ranges) call add_ranges(s, m, l)
-      if (m%assemblies) call add_column(s, summary_column_t('assemblies', .true., &
-         heads_of(phrase(say_assemblies, m%polish), '')))
-      call add_extremes(s, m, parts, l)
+      call add_drive(min(1, size(m%drives)), 'flag', heads_of('', ''))
+      call add_column(summary_column_t('flag.mark'))
+      call add_column(summary_column_t('limit.t'))
+      call add_column(summary_column_t('limit.drive'))
+      call add_column(summary_column_t('limit.value'))
+      if (m%ranges) call add_ranges()
+      if (m%assemblies) call add_column(summary_column_t('assemblies', .true., heads_of(phrase(say_assemblies, &
+         m%polish), '')))
+      call add_extremes()
 
    contains
 
@@ -111,148 +111,135 @@ contains
 
          blank%name = name
          blank%heads = heads_of(phrase(first, m%polish), phrase(second, m%polish))
-         call add_column(s, blank)
+         call add_column(blank)
       end subroutine add_named
-   end function new_summary
 
-   !> Two lines over a column. (A constructor of character expressions has wrong bytes by gfortran 12.)
-   pure function heads_of(first, second) result(heads)
-      character(*), intent(in) :: first, second
-      character(3*label_length) :: heads(2)
+      !> Two lines over a column. (A constructor of character expressions has wrong bytes by gfortran 12.)
+      pure function heads_of(first, second) result(heads)
+         character(*), intent(in) :: first, second
+         character(3*label_length) :: heads(2)
 
-      heads(1) = first
-      heads(2) = second
-   end function heads_of
+         heads(1) = first
+         heads(2) = second
+      end function heads_of
 
-   !> Adds the column `c`.
-   subroutine add_column(s, c)
-      type(summary_t), intent(inout) :: s
-      type(summary_column_t), intent(in) :: c
+      !> Adds the column `c`.
+      subroutine add_column(c)
+         type(summary_column_t), intent(in) :: c
 
-      s%columns = [s%columns, c]
-   end subroutine add_column
+         s%columns = [s%columns, c]
+      end subroutine add_column
 
-   !> The column of the number `one`.
-   function varied_column(one) result(c)
-      type(varied_t), intent(in) :: one
-      type(summary_column_t) :: c
-      real(wp) :: largest
+      !> The column of the number `one`.
+      function varied_column(one) result(c)
+         type(varied_t), intent(in) :: one
+         type(summary_column_t) :: c
+         real(wp) :: largest
 
-      c%printed = .true.
-      c%name = dotted(trim(one%owner)//' '//one%word)
-      c%heads = heads_of(one%owner, one%word)
-      c%unit = one%unit
-      largest = max(abs(one%first), abs(one%last))
-      if (allocated(one%list)) largest = maxval(abs(one%list))
-      call choose_digits(log10(max(largest, tiny(1.0_wp))), c%decimals, c%power)
-      if (.not. largest > 0.0_wp) c%power = 0
-   end function varied_column
-
-   !> Adds the column of the values of drive number `d` (0: none, the column is empty), whose name begins with `start`;
-   !> `heads`: the lines over it, blank where it is in the file alone.
-   subroutine add_drive(s, m, l, d, start, heads)
-      type(summary_t), intent(inout) :: s
-      type(mechanism_t), intent(in) :: m
-      type(layout_t), intent(in) :: l
-      integer, intent(in) :: d
-      character(*), intent(in) :: start, heads(2)
-      type(summary_column_t) :: c
-
-      c%name = start//'.drive'
-      if (d > 0) then
-         c%name = start//'.'//dotted(drive_name(m, m%drives(d)))
-         c%angular = driven_kinds(m%drives(d)%kind) == request_link
-         c%printed = any(heads /= '')
-         c%heads = heads
-         c%unit = merge(angle_unit(m), m%length_unit, c%angular)
-         if (d <= size(l%drives)) then
-            c%decimals = l%drives(d)%decimals
-            c%power = l%drives(d)%power
-         end if
-      end if
-      call add_column(s, c)
-   end subroutine add_drive
-
-   !> Adds the columns of what EXTREMES asks for.
-   subroutine add_extremes(s, m, parts, l)
-      type(summary_t), intent(inout) :: s
-      type(mechanism_t), intent(in) :: m
-      type(parts_t), intent(in) :: parts
-      type(layout_t), intent(in) :: l
-      type(mechanism_t) :: asked
-      type(summary_column_t) :: c
-      integer, allocatable :: requests(:)
-      integer :: i, which
-      character(3), parameter :: words(least:greatest) = ['MIN', 'MAX'], endings(least:greatest) = ['min', 'max']
-
-      requests = pack([(i, i=1, size(m%requests))], &
-         m%requests%extremes .and. .not. [(is_fixed(m, m%requests(i)), i=1, size(m%requests))])
-      asked = m
-      asked%requests = m%requests(requests)
-      asked%requests%every = 1
-      if (allocated(asked%tolerances)) deallocate (asked%tolerances)
-      s%extremes = new_table(asked)
-      allocate (s%drives(size(requests)), source=min(1, size(m%drives)))
-      do i = 1, merge(0, size(requests), parts%count == 1)
-         associate (own => parts%list(parts%part(requests(i)))%drives)
-            s%drives(i) = 0
-            if (size(own) > 0) s%drives(i) = own(1)
-         end associate
-      end do
-      do i = 1, size(s%extremes%columns)
-         associate (column => s%extremes%columns(i))
-            do which = least, greatest
-               c = extreme_column(m, l, asked%requests(column%request)%subject, requests(column%request), &
-                  column%coordinate, column%order, column%angular)
-               c%name = trim(column%name)//'.'//endings(which)
-               c%heads(2) = trim(c%heads(2))//' '//words(which)
-               call add_column(s, c)
-               call add_column(s, summary_column_t(trim(c%name)//'.t'))
-               call add_drive(s, m, l, s%drives(column%request), trim(c%name), heads_of('', ''))
-            end do
-         end associate
-      end do
-   end subroutine add_extremes
-
-   !> The column of coordinate `coordinate`, derivative `k`, of request number `i` of `m`, which is about `subject`.
-   function extreme_column(m, l, subject, i, coordinate, k, angular) result(c)
-      type(mechanism_t), intent(in) :: m
-      type(layout_t), intent(in) :: l
-      integer, intent(in) :: subject, i, coordinate, k
-      logical, intent(in) :: angular
-      type(summary_column_t) :: c
-      type(digits_t) :: d
-      integer :: place
-
-      place = coordinate
-      associate (kind => m%requests(i)%kind)
-         if (kind == request_pair) place = merge(1, 3, m%pairs(subject)%kind == pair_prismatic)
          c%printed = .true.
-         c%heads = heads_of(subject_name(m, kind, subject), column_text(l%names(kind), place, k))
-         c%unit = column_text(l%units(1, kind), place, k)//column_text(l%units(2, kind), place, k)
-      end associate
-      c%angular = angular
-      d = digits_of(l, i)
-      c%decimals = d%decimals(dimension_of(place), k)
-      c%power = d%power(dimension_of(place), k)
-   end function extreme_column
+         c%name = dotted(trim(one%owner)//' '//one%word)
+         c%heads = heads_of(one%owner, one%word)
+         c%unit = one%unit
+         largest = max(abs(one%first), abs(one%last))
+         if (allocated(one%list)) largest = maxval(abs(one%list))
+         call choose_digits(log10(max(largest, tiny(1.0_wp))), c%decimals, c%power)
+         if (.not. largest > 0.0_wp) c%power = 0
+      end function varied_column
 
-   !> Adds the columns of the ranges of all drives.
-   subroutine add_ranges(s, m, l)
-      type(summary_t), intent(inout) :: s
-      type(mechanism_t), intent(in) :: m
-      type(layout_t), intent(in) :: l
-      character(:), allocatable :: word
-      integer :: d
+      !> Adds the column of the values of drive number `d` (0: none, the column is empty), whose name begins with
+      !> `start`; `heads`: the lines over it, blank where it is in the file alone.
+      subroutine add_drive(d, start, heads)
+         integer, intent(in) :: d
+         character(*), intent(in) :: start, heads(2)
+         type(summary_column_t) :: c
 
-      word = phrase(say_one_range, m%polish)
-      do d = 1, size(m%drives)
-         call add_drive(s, m, l, d, 'range.min', heads_of(drive_name(m, m%drives(d)), word//' MIN'))
-         call add_drive(s, m, l, d, 'range.max', heads_of(drive_name(m, m%drives(d)), word//' MAX'))
-         call add_column(s, summary_column_t('range.turns.'//dotted(drive_name(m, m%drives(d))), .true., &
-            heads_of(drive_name(m, m%drives(d)), phrase(say_whole_turns, m%polish))))
-      end do
-   end subroutine add_ranges
+         c%name = start//'.drive'
+         if (d > 0) then
+            c%name = start//'.'//dotted(drive_name(m, m%drives(d)))
+            c%angular = driven_kinds(m%drives(d)%kind) == request_link
+            c%printed = any(heads /= '')
+            c%heads = heads
+            c%unit = merge(angle_unit(m), m%length_unit, c%angular)
+            if (d <= size(l%drives)) then
+               c%decimals = l%drives(d)%decimals
+               c%power = l%drives(d)%power
+            end if
+         end if
+         call add_column(c)
+      end subroutine add_drive
+
+      !> Adds the columns of what EXTREMES asks for.
+      subroutine add_extremes()
+         type(mechanism_t) :: asked
+         type(summary_column_t) :: c
+         integer, allocatable :: requests(:)
+         integer :: i, which
+         character(3), parameter :: words(least:greatest) = ['MIN', 'MAX'], endings(least:greatest) = ['min', 'max']
+
+         requests = pack([(i, i=1, size(m%requests))], &
+            m%requests%extremes .and. .not. [(is_fixed(m, m%requests(i)), i=1, size(m%requests))])
+         asked = m
+         asked%requests = m%requests(requests)
+         asked%requests%every = 1
+         if (allocated(asked%tolerances)) deallocate (asked%tolerances)
+         s%extremes = new_table(asked)
+         allocate (s%drives(size(requests)), source=min(1, size(m%drives)))
+         do i = 1, merge(0, size(requests), parts%count == 1)
+            associate (own => parts%list(parts%part(requests(i)))%drives)
+               s%drives(i) = 0
+               if (size(own) > 0) s%drives(i) = own(1)
+            end associate
+         end do
+         do i = 1, size(s%extremes%columns)
+            associate (column => s%extremes%columns(i))
+               do which = least, greatest
+                  c = extreme_column(asked%requests(column%request)%subject, requests(column%request), &
+                     column%coordinate, column%order, column%angular)
+                  c%name = trim(column%name)//'.'//endings(which)
+                  c%heads(2) = trim(c%heads(2))//' '//words(which)
+                  call add_column(c)
+                  call add_column(summary_column_t(trim(c%name)//'.t'))
+                  call add_drive(s%drives(column%request), trim(c%name), heads_of('', ''))
+               end do
+            end associate
+         end do
+      end subroutine add_extremes
+
+      !> The column of coordinate `coordinate`, derivative `k`, of request number `i` of `m`, which is about `subject`.
+      function extreme_column(subject, i, coordinate, k, angular) result(c)
+         integer, intent(in) :: subject, i, coordinate, k
+         logical, intent(in) :: angular
+         type(summary_column_t) :: c
+         type(digits_t) :: d
+         integer :: place
+
+         place = coordinate
+         associate (kind => m%requests(i)%kind)
+            if (kind == request_pair) place = merge(1, 3, m%pairs(subject)%kind == pair_prismatic)
+            c%printed = .true.
+            c%heads = heads_of(subject_name(m, kind, subject), column_text(l%names(kind), place, k))
+            c%unit = column_text(l%units(1, kind), place, k)//column_text(l%units(2, kind), place, k)
+         end associate
+         c%angular = angular
+         d = digits_of(l, i)
+         c%decimals = d%decimals(dimension_of(place), k)
+         c%power = d%power(dimension_of(place), k)
+      end function extreme_column
+
+      !> Adds the columns of the ranges of all drives.
+      subroutine add_ranges()
+         character(:), allocatable :: word
+         integer :: d
+
+         word = phrase(say_one_range, m%polish)
+         do d = 1, size(m%drives)
+            call add_drive(d, 'range.min', heads_of(drive_name(m, m%drives(d)), word//' MIN'))
+            call add_drive(d, 'range.max', heads_of(drive_name(m, m%drives(d)), word//' MAX'))
+            call add_column(summary_column_t('range.turns.'//dotted(drive_name(m, m%drives(d))), .true., &
+               heads_of(drive_name(m, m%drives(d)), phrase(say_whole_turns, m%polish))))
+         end do
+      end subroutine add_ranges
+   end function new_summary
 
    !> The row of variant `n` of `v`, with its values alone.
    function new_row(s, v, n) result(r)

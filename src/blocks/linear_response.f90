@@ -98,7 +98,7 @@ contains
       r%jams = .false.
       ! A function's result would bring its own lower bound.
       r%unit(:) = slide_units(e)
-      call take_values(r, e, [(k, k=0, e%blocks%unknowns)])
+      call take_values([(k, k=0, e%blocks%unknowns)])
       ! A change may bring in an angle that a block does not hold: all of them are found first.
       do pass = 1, 2
          r%missing(1:) = missing_all
@@ -111,72 +111,113 @@ contains
                if (is_found) then
                   c = convergence_t()
                   call solve_block(e%blocks, i, 0.0_wp, e%work, e%state, c)
-                  call take_values(r, e, e%blocks%unknown(block%first:block%last))
+                  call take_values(e%blocks%unknown(block%first:block%last))
                   is_found = is_solved(c) .and. .not. (c%singular .or. c%rates_open)
                end if
-               if (is_found .and. pass == 2) call respond_block(r, e, drives, i, is_found)
+               if (is_found .and. pass == 2) call respond_block(i)
                if (.not. is_found) r%missing(e%blocks%unknown(block%first:block%last)) = missing_all
             end associate
          end do
       end do
-      call move_links(r)
-   end subroutine respond
+      call move_links()
 
-   !> The values, rates and accelerations of the `unknowns` in the engine `e`, in the deck's unit.
-   pure subroutine take_values(r, e, unknowns)
-      type(response_t), intent(inout) :: r
-      type(block_engine_t), intent(in) :: e
-      integer, intent(in) :: unknowns(:)
-      integer :: k
+   contains
 
-      do k = 1, size(unknowns)
-         associate (u => e%state%u(unknowns(k)))
-            r%now(:, unknowns(k)) = r%unit(unknowns(k))*[u%value, u%rate, u%acceleration]
-         end associate
-      end do
-   end subroutine take_values
+      !> The values, rates and accelerations of the `unknowns` in the engine `e`, in the deck's unit.
+      subroutine take_values(unknowns)
+         integer, intent(in) :: unknowns(:)
+         integer :: k
 
-   !> The responses of block `i`, by the factors that the solver has left. `is_found`: redundant equations allow all
-   !> changes.
-   subroutine respond_block(r, e, drives, i, is_found)
-      type(response_t), intent(inout) :: r
-      type(block_engine_t), intent(inout) :: e
-      real(wp), intent(in) :: drives(0:, :, :)
-      integer, intent(in) :: i
-      logical, intent(out) :: is_found
-      real(wp) :: v(max(1, e%blocks%list(i)%shape%rows)), limit
-      integer :: order, d, k
+         do k = 1, size(unknowns)
+            associate (u => e%state%u(unknowns(k)))
+               r%now(:, unknowns(k)) = r%unit(unknowns(k))*[u%value, u%rate, u%acceleration]
+            end associate
+         end do
+      end subroutine take_values
 
-      associate (block => e%blocks%list(i), shape => e%blocks%list(i)%shape)
-         do order = 0, 2
-            do d = 1, size(r%changes)
-               call find_residual(r, e, drives(:, :, d), i, d, order, v)
-               v = -v
-               limit = max(contradiction*maxval(abs(v)), roundings*size_of(r%changes(d), drives(0, :, d), e))
-               if (.not. block%direct) call solve_again(shape, e%work%a, e%work%sparse(shape%pattern), e%work%pivots, &
-                  e%work%work, v)
-               if (order == 0 .and. any(abs(v(shape%n + 1:shape%rows)) > limit)) r%jams(d) = .true.
-               do k = 1, shape%n
-                  associate (u => e%blocks%unknown(block%first + k - 1))
-                     r%u(order, u, d) = v(k)*r%unit(u)
-                  end associate
+      !> The responses of block `i`, by the factors that the solver has left. `is_found`: redundant equations allow all
+      !> changes.
+      subroutine respond_block(i)
+         integer, intent(in) :: i
+         real(wp) :: v(max(1, e%blocks%list(i)%shape%rows)), limit
+         integer :: order, d, k
+
+         associate (block => e%blocks%list(i), shape => e%blocks%list(i)%shape)
+            do order = 0, 2
+               do d = 1, size(r%changes)
+                  call find_residual(r, e, drives(:, :, d), i, d, order, v)
+                  v = -v
+                  limit = max(contradiction*maxval(abs(v)), roundings*size_of(r%changes(d), drives(0, :, d), e))
+                  if (.not. block%direct) call solve_again(shape, e%work%a, e%work%sparse(shape%pattern), &
+                     e%work%pivots, e%work%work, v)
+                  if (order == 0 .and. any(abs(v(shape%n + 1:shape%rows)) > limit)) r%jams(d) = .true.
+                  do k = 1, shape%n
+                     associate (u => e%blocks%unknown(block%first + k - 1))
+                        r%u(order, u, d) = v(k)*r%unit(u)
+                     end associate
+                  end do
                end do
             end do
+            is_found = shape%rows == shape%n .or. .not. any(r%jams)
+         end associate
+      end subroutine respond_block
+
+      !> The largest of the numbers of `change` and of the `drives` (drives), in the units of `e`.
+      pure real(wp) function size_of(change, drives, e)
+         type(change_t), intent(in) :: change
+         real(wp), intent(in) :: drives(:)
+         type(block_engine_t), intent(in) :: e
+
+         size_of = max(maxval(abs(change%ground(:2, :)))/e%length, maxval(abs(change%ground(3, :))), &
+            maxval(abs(change%point))/e%length, maxval(abs(change%pair(2, :)))/e%length, &
+            maxval(abs(change%pair(1::2, :))), maxval(abs(drives)/merge(1.0_wp, e%length, e%is_angle)))
+      end function size_of
+
+      !> The changes of the links, along the tree: P - Q of a revolute pair is 0, of a prismatic pair h n - s e.
+      subroutine move_links()
+         integer :: d, i, link
+
+         do d = 1, size(r%changes)
+            do i = 1, size(r%tree%order)
+               link = r%tree%order(i)
+               r%links(3, :, link, d) = angle_change(r, link, d)
+               if (r%m%links(link)%ground) then
+                  r%links(:, :, link, d) = 0.0_wp
+                  r%links(:, 0, link, d) = r%changes(d)%ground(:, link)
+               else if (r%tree%parent(link) == 0) then
+                  associate (u => root_unknown(r, r%tree%root(link)))
+                     r%links(:2, :, link, d) = transpose(r%u(:, u:u + 1, d))
+                  end associate
+               else
+                  r%links(:2, :, link, d) = place_change(link, d)
+               end if
+            end do
          end do
-         is_found = shape%rows == shape%n .or. .not. any(r%jams)
-      end associate
-   end subroutine respond_block
+      end subroutine move_links
 
-   !> The largest of the numbers of `change` and of the `drives` (drives), in the units of `e`.
-   pure real(wp) function size_of(change, drives, e)
-      type(change_t), intent(in) :: change
-      real(wp), intent(in) :: drives(:)
-      type(block_engine_t), intent(in) :: e
+      !> The change (2, 0:2) of the origin of `link`, from that of its parent.
+      function place_change(link, d) result(dx)
+         integer, intent(in) :: link, d
+         real(wp) :: dx(2, 0:2)
+         type(varied_t) :: other, own, gap
+         logical :: is_i
+         integer :: point
 
-      size_of = max(maxval(abs(change%ground(:2, :)))/e%length, maxval(abs(change%ground(3, :))), &
-         maxval(abs(change%point))/e%length, maxval(abs(change%pair(2, :)))/e%length, &
-         maxval(abs(change%pair(1::2, :))), maxval(abs(drives)/merge(1.0_wp, e%length, e%is_angle)))
-   end function size_of
+         associate (pair => r%m%pairs(r%tree%parent_joint(link)))
+            is_i = r%m%points(pair%point_i)%link == link
+            point = merge(pair%point_j, pair%point_i, is_i)
+            other = arm_of(r, point, d)
+            own = arm_of(r, merge(pair%point_i, pair%point_j, is_i), d)
+            dx = other%dx - own%dx
+            associate (base => r%m%points(point)%link)
+               if (.not. r%m%links(base)%ground) dx = dx + r%links(:2, :, base, d)
+            end associate
+            if (pair%kind /= pair_prismatic) return
+            gap = gap_of(r, r%tree%parent_joint(link), d)
+            dx = dx + merge(1.0_wp, -1.0_wp, is_i)*gap%dx
+         end associate
+      end function place_change
+   end subroutine respond
 
    !> `v` (rows): derivative number `order` of the change of the equations of block `i` in direction `d`, as far as it
    !> is known, in the units of the block; of a direct one, that of its unknown. `drives` (0:2, drives).
@@ -229,51 +270,4 @@ contains
          x = change(order)
       end function residual
    end subroutine find_residual
-
-   !> The changes of the links, along the tree: P - Q of a revolute pair is 0, of a prismatic pair h n - s e.
-   subroutine move_links(r)
-      type(response_t), intent(inout) :: r
-      integer :: d, i, link
-
-      do d = 1, size(r%changes)
-         do i = 1, size(r%tree%order)
-            link = r%tree%order(i)
-            r%links(3, :, link, d) = angle_change(r, link, d)
-            if (r%m%links(link)%ground) then
-               r%links(:, :, link, d) = 0.0_wp
-               r%links(:, 0, link, d) = r%changes(d)%ground(:, link)
-            else if (r%tree%parent(link) == 0) then
-               associate (u => root_unknown(r, r%tree%root(link)))
-                  r%links(:2, :, link, d) = transpose(r%u(:, u:u + 1, d))
-               end associate
-            else
-               r%links(:2, :, link, d) = place_change(r, link, d)
-            end if
-         end do
-      end do
-   end subroutine move_links
-
-   !> The change (2, 0:2) of the origin of `link`, from that of its parent.
-   function place_change(r, link, d) result(dx)
-      type(response_t), intent(in) :: r
-      integer, intent(in) :: link, d
-      real(wp) :: dx(2, 0:2)
-      type(varied_t) :: other, own, gap
-      logical :: is_i
-      integer :: point
-
-      associate (pair => r%m%pairs(r%tree%parent_joint(link)))
-         is_i = r%m%points(pair%point_i)%link == link
-         point = merge(pair%point_j, pair%point_i, is_i)
-         other = arm_of(r, point, d)
-         own = arm_of(r, merge(pair%point_i, pair%point_j, is_i), d)
-         dx = other%dx - own%dx
-         associate (base => r%m%points(point)%link)
-            if (.not. r%m%links(base)%ground) dx = dx + r%links(:2, :, base, d)
-         end associate
-         if (pair%kind /= pair_prismatic) return
-         gap = gap_of(r, r%tree%parent_joint(link), d)
-         dx = dx + merge(1.0_wp, -1.0_wp, is_i)*gap%dx
-      end associate
-   end function place_change
 end module linear_response

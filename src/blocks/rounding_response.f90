@@ -95,11 +95,11 @@ contains
             ! A singular position stays: beside it the Jacobian has an inverse.
             if (again .and. .not. is_singular) r%state%u(e%blocks%unknown(block%first:block%last))%value &
                = r%state%u(e%blocks%unknown(block%first:block%last))%value + nudge
-            if (is_found .and. again) call solve_block_again(r, e, i, inverse, is_singular, is_found)
+            if (is_found .and. again) call solve_block_again(i)
             if (is_found .and. block%direct) then
-               call respond_direct(r, e, i)
+               call respond_direct(i)
             else if (is_found) then
-               call respond_block(r, m, e, i, inverse, is_singular, is_found)
+               call respond_block(i)
             end if
             if (.not. is_found) r%missing(e%blocks%unknown(block%first:block%last)) = missing_all
          end associate
@@ -110,197 +110,178 @@ contains
          call mark_links(e%chain, r%missing, marked)
          lost = marked%link_known < 2
       end if
-      call move_links(r, m, e, q, lost, links)
-   end subroutine respond_to_roundings
+      call move_links()
 
-   !> Solves block `i` from where `r%state` is. `inverse`: of its Jacobian, in the maximum norm; `is_singular`: it has
-   !> none.
-   subroutine solve_block_again(r, e, i, inverse, is_singular, is_found)
-      type(rounding_response_t), intent(inout) :: r
-      class(block_engine_t), intent(in) :: e
-      integer, intent(in) :: i
-      real(wp), intent(out) :: inverse
-      logical, intent(out) :: is_singular, is_found
-      type(convergence_t) :: c
+   contains
 
-      call solve_block(e%blocks, i, 0.0_wp, r%work, r%state, c)
-      inverse = c%inverse
-      is_singular = c%singular
-      is_found = is_solved(c) .and. .not. c%rates_open
-   end subroutine solve_block_again
+      !> Solves block `i` from where `r%state` is. `inverse`: of its Jacobian, in the maximum norm; `is_singular`: it
+      !> has none.
+      subroutine solve_block_again(i)
+         integer, intent(in) :: i
+         type(convergence_t) :: c
 
-   !> The response of the direct block `i`: unknown = other + sign_of (constant + value).
-   subroutine respond_direct(r, e, i)
-      type(rounding_response_t), intent(inout) :: r
-      class(block_engine_t), intent(in) :: e
-      integer, intent(in) :: i
+         call solve_block(e%blocks, i, 0.0_wp, r%work, r%state, c)
+         inverse = c%inverse
+         is_singular = c%singular
+         is_found = is_solved(c) .and. .not. c%rates_open
+      end subroutine solve_block_again
 
-      associate (row => e%blocks%rows(e%blocks%list(i)%first_row), u => e%blocks%unknown(e%blocks%list(i)%first))
-         r%u(:, :, u) = r%u(:, :, row%other) + row%sign_of*r%drive(:, :, row%drive)
-         r%u(:, 0, u) = r%u(:, 0, u) + row%sign_of*change_of_constant(row) &
-            + rounding*abs(r%state%u(u)%value)*parts_of_own(u)
-         r%u(:, 1, u) = r%u(:, 1, u) + rounding*abs(r%state%u(u)%rate)*parts_of_own(u + 1)
-         r%u(:, 2, u) = r%u(:, 2, u) + rounding*abs(r%state%u(u)%acceleration)*parts_of_own(u + 2)
-      end associate
-   end subroutine respond_direct
+      !> The response of the direct block `i`: unknown = other + sign_of (constant + value).
+      subroutine respond_direct(i)
+         integer, intent(in) :: i
 
-   !> By how much the constant of `row` is off (directions): a sum of angles of the deck, or the offset of a guide.
-   pure function change_of_constant(row) result(change)
-      type(row_t), intent(in) :: row
-      real(wp) :: change(directions)
+         associate (row => e%blocks%rows(e%blocks%list(i)%first_row), u => e%blocks%unknown(e%blocks%list(i)%first))
+            r%u(:, :, u) = r%u(:, :, row%other) + row%sign_of*r%drive(:, :, row%drive)
+            r%u(:, 0, u) = r%u(:, 0, u) + row%sign_of*change_of_constant(row) &
+               + rounding*abs(r%state%u(u)%value)*parts_of_own(u)
+            r%u(:, 1, u) = r%u(:, 1, u) + rounding*abs(r%state%u(u)%rate)*parts_of_own(u + 1)
+            r%u(:, 2, u) = r%u(:, 2, u) + rounding*abs(r%state%u(u)%acceleration)*parts_of_own(u + 2)
+         end associate
+      end subroutine respond_direct
 
-      change = rounding*abs(row%constant)*parts_of_number(merge(number_drive, number_pair, row%drive > 0), &
-         max(row%drive, row%pair), 0)
-   end function change_of_constant
+      !> By how much the constant of `row` is off (directions): a sum of angles of the deck, or the offset of a guide.
+      pure function change_of_constant(row) result(change)
+         type(row_t), intent(in) :: row
+         real(wp) :: change(directions)
 
-   !> The response of block `i`, whose Jacobian has the `inverse` (maximum norm). `is_found`: the changes are small
-   !> enough. Where the Jacobian `is_singular`, a position changes with the root of what the equations change by, which
-   !> are about as curved as their units are long, no two unknowns alike: what is the difference of two changes as well.
-   !> Rates have no response there.
-   subroutine respond_block(r, m, e, i, inverse, is_singular, is_found)
-      type(rounding_response_t), intent(inout) :: r
-      type(mechanism_t), intent(in) :: m
-      class(block_engine_t), intent(in) :: e
-      integer, intent(in) :: i
-      real(wp), intent(in) :: inverse
-      logical, intent(in) :: is_singular
-      logical, intent(out) :: is_found
-      real(wp) :: v(directions, max(1, e%blocks%list(i)%shape%rows)), root
-      real(wp), allocatable :: jacobian(:, :)
-      integer :: order, k, info
+         change = rounding*abs(row%constant)*parts_of_number(merge(number_drive, number_pair, row%drive > 0), &
+            max(row%drive, row%pair), 0)
+      end function change_of_constant
 
-      associate (block => e%blocks%list(i), shape => e%blocks%list(i)%shape, w => r%work)
-         is_found = .true.
-         if (shape%n == 0) return
-         do k = block%first, block%last
-            r%u(:, :, e%blocks%unknown(k)) = 0.0_wp
-         end do
-         call find_known_parts(e%blocks, i, r%state)
-         call assemble_block(e%blocks, i, r%state, w%a, w%r)
-         info = 0
-         if (shape%rows > shape%n) jacobian = reshape(w%a(:shape%rows*shape%n), [shape%rows, shape%n])
-         if (.not. is_singular) call solve_first(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, w%r, info)
-         if (allocated(jacobian) .and. .not. is_singular .and. info == 0) call refine_rates(r, e, i, jacobian)
-         do order = 0, merge(0, 2, is_singular .or. info > 0)
-            call find_residuals(r, m, e, i, order, v)
-            if (is_singular .or. info > 0) then
-               root = roundings*sqrt(maxval(abs(v))/roundings)
+      !> The response of block `i`, whose Jacobian has the `inverse` (maximum norm). `is_found`: the changes are small
+      !> enough. Where the Jacobian `is_singular`, a position changes with the root of what the equations change by,
+      !> which are about as curved as their units are long, no two unknowns alike: what is the difference of two changes
+      !> as well. Rates have no response there.
+      subroutine respond_block(i)
+         integer, intent(in) :: i
+         real(wp) :: v(directions, max(1, e%blocks%list(i)%shape%rows)), root
+         real(wp), allocatable :: jacobian(:, :)
+         integer :: order, k, info
+
+         associate (block => e%blocks%list(i), shape => e%blocks%list(i)%shape, w => r%work)
+            is_found = .true.
+            if (shape%n == 0) return
+            do k = block%first, block%last
+               r%u(:, :, e%blocks%unknown(k)) = 0.0_wp
+            end do
+            call find_known_parts(e%blocks, i, r%state)
+            call assemble_block(e%blocks, i, r%state, w%a, w%r)
+            info = 0
+            if (shape%rows > shape%n) jacobian = reshape(w%a(:shape%rows*shape%n), [shape%rows, shape%n])
+            if (.not. is_singular) call solve_first(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, w%r, info)
+            if (allocated(jacobian) .and. .not. is_singular .and. info == 0) call refine_rates(e, i, jacobian)
+            do order = 0, merge(0, 2, is_singular .or. info > 0)
+               call find_residuals(e, i, order, v)
+               if (is_singular .or. info > 0) then
+                  root = roundings*sqrt(maxval(abs(v))/roundings)
+                  do k = 1, shape%n
+                     v(:, k) = root*parts_of_any(e%blocks%unknown(block%first + k - 1))
+                  end do
+               else
+                  call solve_many(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, directions, v)
+                  if (order == 0) is_found = maxval(abs(v(:, :shape%n)))*block%lipschitz*inverse <= max_part*roundings
+               end if
                do k = 1, shape%n
-                  v(:, k) = root*parts_of_any(e%blocks%unknown(block%first + k - 1))
+                  r%u(:, order, e%blocks%unknown(block%first + k - 1)) = v(:, k)
                end do
-            else
-               call solve_many(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, directions, v)
-               if (order == 0) is_found = maxval(abs(v(:, :shape%n)))*block%lipschitz*inverse <= max_part*roundings
-            end if
-            do k = 1, shape%n
-               r%u(:, order, e%blocks%unknown(block%first + k - 1)) = v(:, k)
             end do
-         end do
-      end associate
-   end subroutine respond_block
+         end associate
+      end subroutine respond_block
 
-   !> The rates of block `i` again, by iterative refinement with the factors of its `jacobian`. Orthogonal factors leave
-   !> errors by the largest of all rows; one pass leaves those of each row (Higham, Accuracy and Stability of Numerical
-   !> Algorithms, 2002, ch. 20).
-   subroutine refine_rates(r, e, i, jacobian)
-      type(rounding_response_t), intent(inout) :: r
-      class(block_engine_t), intent(in) :: e
-      integer, intent(in) :: i
-      real(wp), intent(in) :: jacobian(:, :)
-      integer :: order, k
+      !> The rates of block `i` again, by iterative refinement with the factors of its `jacobian`. Orthogonal factors
+      !> leave errors by the largest of all rows; one pass leaves those of each row (Higham, Accuracy and Stability of
+      !> Numerical Algorithms, 2002, ch. 20).
+      subroutine refine_rates(e, i, jacobian)
+         class(block_engine_t), intent(in) :: e
+         integer, intent(in) :: i
+         real(wp), intent(in) :: jacobian(:, :)
+         integer :: order, k
 
-      associate (block => e%blocks%list(i), shape => e%blocks%list(i)%shape, w => r%work)
-         do order = 1, 2
-            call right_hand_side(e%blocks, i, order, r%state, w%r)
-            do k = 1, shape%n
-               associate (u => r%state%u(e%blocks%unknown(block%first + k - 1)))
-                  w%r(:shape%rows) = w%r(:shape%rows) - merge(u%rate, u%acceleration, order == 1)*jacobian(:, k)
-               end associate
-            end do
-            call solve_again(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, w%r)
-            do k = 1, shape%n
-               associate (u => r%state%u(e%blocks%unknown(block%first + k - 1)))
-                  if (order == 1) u%rate = u%rate + w%r(k)
-                  if (order == 2) u%acceleration = u%acceleration + w%r(k)
-               end associate
-            end do
-         end do
-      end associate
-   end subroutine refine_rates
-
-   !> `v` (directions, rows): derivative number `order` of the changes of the equations of block `i`, with the other
-   !> sign, as far as they are known.
-   subroutine find_residuals(r, m, e, i, order, v)
-      type(rounding_response_t), intent(in) :: r
-      type(mechanism_t), intent(in) :: m
-      class(block_engine_t), intent(in) :: e
-      integer, intent(in) :: i, order
-      real(wp), intent(out) :: v(:, :)
-      real(wp) :: g(directions, 2), sizes(size(v, 2)), size_of
-      integer :: k, row
-
-      sizes = 0.0_wp
-      associate (b => e%blocks, block => e%blocks%list(i))
-         do k = block%first_loop, block%last_loop
-            associate (loop => e%blocks%loops(k))
-               select case (loop%kind)
-               case (loop_components)
-                  call change_loop(r, m, e, loop, order, g, size_of)
-                  if (loop%row_x > 0) v(:, loop%row_x) = -g(:, 1)
-                  if (loop%row_y > 0) v(:, loop%row_y) = -g(:, 2)
-                  if (loop%row_x > 0) sizes(loop%row_x) = size_of
-                  if (loop%row_y > 0) sizes(loop%row_y) = size_of
-               case (loop_projection)
-                  associate (row => b%rows(block%first_row + loop%row_x - 1))
-                     call change_projection(r, m, e, k, guide_of(m, row%pair, row%drive), order, v(:, loop%row_x), &
-                        sizes(loop%row_x))
+         associate (block => e%blocks%list(i), shape => e%blocks%list(i)%shape, w => r%work)
+            do order = 1, 2
+               call right_hand_side(e%blocks, i, order, r%state, w%r)
+               do k = 1, shape%n
+                  associate (u => r%state%u(e%blocks%unknown(block%first + k - 1)))
+                     w%r(:shape%rows) = w%r(:shape%rows) - merge(u%rate, u%acceleration, order == 1)*jacobian(:, k)
                   end associate
-               case default
-                  v(:, loop%row_x) = r%u(:, order, loop%less) - r%u(:, order, loop%orientation)
-               end select
+               end do
+               call solve_again(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, w%r)
+               do k = 1, shape%n
+                  associate (u => r%state%u(e%blocks%unknown(block%first + k - 1)))
+                     if (order == 1) u%rate = u%rate + w%r(k)
+                     if (order == 2) u%acceleration = u%acceleration + w%r(k)
+                  end associate
+               end do
+            end do
+         end associate
+      end subroutine refine_rates
+
+      !> `v` (directions, rows): derivative number `order` of the changes of the equations of block `i`, with the other
+      !> sign, as far as they are known.
+      subroutine find_residuals(e, i, order, v)
+         class(block_engine_t), intent(in) :: e
+         integer, intent(in) :: i, order
+         real(wp), intent(out) :: v(:, :)
+         real(wp) :: g(directions, 2), sizes(size(v, 2)), size_of
+         integer :: k, row
+
+         sizes = 0.0_wp
+         associate (b => e%blocks, block => e%blocks%list(i))
+            do k = block%first_loop, block%last_loop
+               associate (loop => e%blocks%loops(k))
+                  select case (loop%kind)
+                  case (loop_components)
+                     call change_loop(r, m, e, loop, order, g, size_of)
+                     if (loop%row_x > 0) v(:, loop%row_x) = -g(:, 1)
+                     if (loop%row_y > 0) v(:, loop%row_y) = -g(:, 2)
+                     if (loop%row_x > 0) sizes(loop%row_x) = size_of
+                     if (loop%row_y > 0) sizes(loop%row_y) = size_of
+                  case (loop_projection)
+                     associate (row => b%rows(block%first_row + loop%row_x - 1))
+                        call change_projection(r, m, e, k, guide_of(row%pair, row%drive), order, v(:, loop%row_x), &
+                           sizes(loop%row_x))
+                     end associate
+                  case default
+                     v(:, loop%row_x) = r%u(:, order, loop%less) - r%u(:, order, loop%orientation)
+                  end select
+               end associate
+            end do
+            ! Orthogonal factors mix all rows.
+            if (block%shape%rows > block%shape%n) sizes = maxval(sizes)
+            do k = block%first_row, block%last_row
+               row = k - block%first_row + 1
+               v(:, row) = v(:, row) + r%drive(:, order, b%rows(k)%drive) + rounding*sizes(row)*parts_of_own(3*k &
+                  + order)
+               if (order == 0) v(:, row) = v(:, row) + change_of_constant(b%rows(k))
+            end do
+         end associate
+      end subroutine find_residuals
+
+      !> The prismatic pair on whose guide `pair`, or if that is 0 the slide of `drive`, is measured.
+      pure integer function guide_of(pair, drive)
+         integer, intent(in) :: pair, drive
+
+         guide_of = pair
+         if (pair == 0) guide_of = m%drives(drive)%subject
+      end function guide_of
+
+      !> The changes `links` (directions, 3, 0:2, links) of the motion `q` of the links that are not `lost`, along the
+      !> tree.
+      subroutine move_links()
+         integer :: i
+
+         do i = 1, size(e%chain%ground)
+            links(:, :, :, e%chain%ground(i)) = 0.0_wp
+         end do
+         do i = 1, size(e%chain%links)
+            associate (h => e%chain%links(i))
+               if (lost(h%link)) cycle
+               call move_link(r, m, e, h, q, links)
+               links(:, 3, :, h%link) = r%u(:, :, h%orientation)
             end associate
          end do
-         ! Orthogonal factors mix all rows.
-         if (block%shape%rows > block%shape%n) sizes = maxval(sizes)
-         do k = block%first_row, block%last_row
-            row = k - block%first_row + 1
-            v(:, row) = v(:, row) + r%drive(:, order, b%rows(k)%drive) + rounding*sizes(row)*parts_of_own(3*k + order)
-            if (order == 0) v(:, row) = v(:, row) + change_of_constant(b%rows(k))
-         end do
-      end associate
-   end subroutine find_residuals
-
-   !> The prismatic pair on whose guide `pair`, or if that is 0 the slide of `drive`, is measured.
-   pure integer function guide_of(m, pair, drive)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: pair, drive
-
-      guide_of = pair
-      if (pair == 0) guide_of = m%drives(drive)%subject
-   end function guide_of
-
-   !> The changes `links` (directions, 3, 0:2, links) of the motion `q` of the links that are not `lost`, along the
-   !> tree.
-   subroutine move_links(r, m, e, q, lost, links)
-      type(rounding_response_t), intent(in) :: r
-      type(mechanism_t), intent(in) :: m
-      class(block_engine_t), intent(in) :: e
-      type(motion_t), intent(in) :: q
-      logical, intent(in) :: lost(:)
-      real(wp), intent(out) :: links(:, :, 0:, :)
-      integer :: i
-
-      do i = 1, size(e%chain%ground)
-         links(:, :, :, e%chain%ground(i)) = 0.0_wp
-      end do
-      do i = 1, size(e%chain%links)
-         associate (h => e%chain%links(i))
-            if (lost(h%link)) cycle
-            call move_link(r, m, e, h, q, links)
-            links(:, 3, :, h%link) = r%u(:, :, h%orientation)
-         end associate
-      end do
-   end subroutine move_links
+      end subroutine move_links
+   end subroutine respond_to_roundings
 
    !> The changes of the place of the link of `h` in `links`, those of its parent known.
    subroutine move_link(r, m, e, h, q, links)

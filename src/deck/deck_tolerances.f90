@@ -97,8 +97,8 @@ contains
          select case (card%form)
          case (form_ground, form_link)
             one%subject = findloc(set%named(request_link)%card, k, dim=1)
-            if (i == 3) call take_angle(set, one)
-            if (card%form == form_ground .and. .not. has_joint(set, one%subject)) one%kind = number_ground
+            if (i == 3) call take_angle()
+            if (card%form == form_ground .and. .not. has_joint(one%subject)) one%kind = number_ground
          case (form_point)
             one%kind = number_point
             one%subject = findloc(set%named(request_point)%card, k, dim=1)
@@ -108,101 +108,96 @@ contains
          case (form_prism)
             one%kind = number_pair
             one%subject = findloc(set%named(request_pair)%card, k, dim=1)
-            if (i /= 2) call take_angle(set, one)
+            if (i /= 2) call take_angle()
          case (form_time)
             one%unit_name = set%mechanism%time_unit
          case (form_drive, form_add, form_rise)
             if (card%drive > 0) &
-               call take_law(set, set%cards(findloc(set%cards(:set%count)%drive, card%drive, dim=1)), card, one)
+               call take_law(set%cards(findloc(set%cards(:set%count)%drive, card%drive, dim=1)), card)
          end select
       end associate
+
+   contains
+
+      !> Number `one` is an angle.
+      pure subroutine take_angle()
+
+         one%unit = set%angle_unit
+         one%powers = 0.0_wp
+         one%unit_name = merge('DEG', 'RAD', set%mechanism%degrees)
+      end subroutine take_angle
+
+      !> A JOINT card gives its place in the drawing: what the axes of a ground link change then is no dimension.
+      pure logical function has_joint(link)
+         integer, intent(in) :: link
+
+         has_joint = any(set%mechanism%points%link == link &
+            .and. set%cards(set%named(request_point)%card)%form == form_joint)
+      end function has_joint
+
+      !> Number `one` is on `card`, a card of the law of the drive on the card `drive`: its kind, name and unit.
+      subroutine take_law(drive, card)
+         type(parsed_card_t), intent(in) :: drive, card
+         character(:), allocatable :: time, word
+         integer :: kind
+
+         kind = findloc(drive_words, drive%label(label_a), dim=1)
+         if (kind == 0) return
+         one%subject = card%drive
+         one%term = card%term
+         if (driven_kinds(kind) == request_link) call take_angle()
+         time = '/'//trim(set%mechanism%time_unit)
+         word = number_word(card%form, one%place)
+         select case (card%form)
+         case (form_drive)
+            one%powers(2) = real(1 - one%place, wp)
+            if (one%place > 1) one%unit_name = trim(one%unit_name)//time//merge('**2', '   ', one%place == 3)
+            if (one%place == 2 .and. card%label(label_c) == turns_a_minute) then
+               one%unit_name = turns_a_minute
+               one%unit = turns_unit(set)
+            end if
+         case (form_rise)
+            if (one%place < 3) then
+               one%unit = 1.0_wp
+               one%powers = [0.0_wp, 1.0_wp]
+               one%unit_name = set%mechanism%time_unit
+            end if
+         case default
+            call take_term(card, time, word)
+            if (.not. allocated(word)) return
+         end select
+         one%kind = number_drive
+         one%name = trim(drive%label(label_a))//' '//drive%label(label_b)
+         if (kind == drive_relangle) one%name = trim(one%name)//' '//drive%label(label_c)
+         if (card%form /= form_drive) one%name = trim(one%name)//' '//trim(card%label(label_a))//' '//whole(one%term)
+         one%name = trim(one%name)//' '//word
+      end subroutine take_law
+
+      !> The same of the ADD card `card`: the unit and the `word` of its number, which becomes unallocated where that
+      !> takes no tolerance. `time`: how the name of a rate's unit ends.
+      subroutine take_term(card, time, word)
+         type(parsed_card_t), intent(in) :: card
+         character(*), intent(in) :: time
+         character(:), allocatable, intent(out) :: word
+
+         if (card%label(label_a) == term_words(term_table)) then
+            ! The times of a table are those at which its values are meant.
+            if (one%place == 1) return
+            word = 'ROW '//whole(card%row)
+            one%place = card%row
+         else if (card%label(label_a) == term_words(term_power)) then
+            ! The power says what kind of function it is.
+            if (one%place == 2) return
+            word = 'FACTOR'
+            one%powers(2) = -card%real(2)
+            one%unit_name = trim(one%unit_name)//time//'**R2'
+         else
+            word = harmonic_words(one%place)
+            if (one%place == 1) return
+            call take_angle()
+            one%powers(2) = real(one%place - 3, wp)
+            if (one%place == 2) one%unit_name = trim(one%unit_name)//time
+         end if
+      end subroutine take_term
    end function number_on_card
-
-   !> Number `one` is an angle.
-   pure subroutine take_angle(set, one)
-      type(card_set_t), intent(in) :: set
-      type(tolerance_t), intent(inout) :: one
-
-      one%unit = set%angle_unit
-      one%powers = 0.0_wp
-      one%unit_name = merge('DEG', 'RAD', set%mechanism%degrees)
-   end subroutine take_angle
-
-   !> A JOINT card gives its place in the drawing: what the axes of a ground link change then is no dimension.
-   pure logical function has_joint(set, link)
-      type(card_set_t), intent(in) :: set
-      integer, intent(in) :: link
-
-      has_joint = any(set%mechanism%points%link == link &
-         .and. set%cards(set%named(request_point)%card)%form == form_joint)
-   end function has_joint
-
-   !> Number `one` is on `card`, a card of the law of the drive on the card `drive`: its kind, name and unit.
-   subroutine take_law(set, drive, card, one)
-      type(card_set_t), intent(in) :: set
-      type(parsed_card_t), intent(in) :: drive, card
-      type(tolerance_t), intent(inout) :: one
-      character(:), allocatable :: time, word
-      integer :: kind
-
-      kind = findloc(drive_words, drive%label(label_a), dim=1)
-      if (kind == 0) return
-      one%subject = card%drive
-      one%term = card%term
-      if (driven_kinds(kind) == request_link) call take_angle(set, one)
-      time = '/'//trim(set%mechanism%time_unit)
-      word = number_word(card%form, one%place)
-      select case (card%form)
-      case (form_drive)
-         one%powers(2) = real(1 - one%place, wp)
-         if (one%place > 1) one%unit_name = trim(one%unit_name)//time//merge('**2', '   ', one%place == 3)
-         if (one%place == 2 .and. card%label(label_c) == turns_a_minute) then
-            one%unit_name = turns_a_minute
-            one%unit = turns_unit(set)
-         end if
-      case (form_rise)
-         if (one%place < 3) then
-            one%unit = 1.0_wp
-            one%powers = [0.0_wp, 1.0_wp]
-            one%unit_name = set%mechanism%time_unit
-         end if
-      case default
-         call take_term(set, card, time, one, word)
-         if (.not. allocated(word)) return
-      end select
-      one%kind = number_drive
-      one%name = trim(drive%label(label_a))//' '//drive%label(label_b)
-      if (kind == drive_relangle) one%name = trim(one%name)//' '//drive%label(label_c)
-      if (card%form /= form_drive) one%name = trim(one%name)//' '//trim(card%label(label_a))//' '//whole(one%term)
-      one%name = trim(one%name)//' '//word
-   end subroutine take_law
-
-   !> The same of the ADD card `card`: the unit and the `word` of its number, which becomes unallocated where that takes
-   !> no tolerance. `time`: how the name of a rate's unit ends.
-   subroutine take_term(set, card, time, one, word)
-      type(card_set_t), intent(in) :: set
-      type(parsed_card_t), intent(in) :: card
-      character(*), intent(in) :: time
-      type(tolerance_t), intent(inout) :: one
-      character(:), allocatable, intent(out) :: word
-
-      if (card%label(label_a) == term_words(term_table)) then
-         ! The times of a table are those at which its values are meant.
-         if (one%place == 1) return
-         word = 'ROW '//whole(card%row)
-         one%place = card%row
-      else if (card%label(label_a) == term_words(term_power)) then
-         ! The power says what kind of function it is.
-         if (one%place == 2) return
-         word = 'FACTOR'
-         one%powers(2) = -card%real(2)
-         one%unit_name = trim(one%unit_name)//time//'**R2'
-      else
-         word = harmonic_words(one%place)
-         if (one%place == 1) return
-         call take_angle(set, one)
-         one%powers(2) = real(one%place - 3, wp)
-         if (one%place == 2) one%unit_name = trim(one%unit_name)//time
-      end if
-   end subroutine take_term
 end module deck_tolerances

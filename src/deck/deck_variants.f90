@@ -99,7 +99,7 @@ contains
       integer :: n
 
       associate (card => set%vary(i)%card, above => one%card)
-         one%card = card_above(set, set%vary(i)%below)
+         one%card = card_above(set%vary(i)%below)
          one%vary = i
          one%place = findloc(number_words, capitals(card%label(label_a)(:3)), dim=1)
          if (above == 0) then
@@ -115,14 +115,14 @@ contains
             call complain(vary_number, label_a)
             return
          end if
-         call read_values(set, card, one)
+         call read_values(card)
          if (one%count == 0) return
          n = findloc(v%numbers%card == above .and. v%numbers%place == one%place, .true., dim=1)
          if (n == 0) then
-            call name_number(set, one)
-            call find_axis(set, v, one)
+            call name_number()
+            call find_axis()
             v%numbers = [v%numbers, one]
-         else if (continues(set, i) .and. allocated(one%list)) then
+         else if (continues() .and. allocated(one%list)) then
             v%numbers(n)%list = [v%numbers(n)%list, one%list]
             v%numbers(n)%count = size(v%numbers(n)%list)
          else
@@ -140,79 +140,83 @@ contains
 
          call add_parsed_error(set%errors, code, set%vary(i)%card, field, more)
       end subroutine complain
-   end subroutine take_card
 
-   !> Card `k`, or the one above it whose tolerances it gives; 0: none.
-   pure integer function card_above(set, k) result(above)
-      type(card_set_t), intent(in) :: set
-      integer, intent(in) :: k
+      !> Card `k`, or the one above it whose tolerances it gives; 0: none.
+      pure integer function card_above(k) result(above)
+         integer, intent(in) :: k
 
-      do above = k, 1, -1
-         if (set%cards(above)%form /= form_toler) return
-      end do
-   end function card_above
-
-   !> VARY card number `i` gives more values of the list on the one above it.
-   pure logical function continues(set, i)
-      type(card_set_t), intent(in) :: set
-      integer, intent(in) :: i
-
-      continues = .false.
-      if (i == 1) return
-      associate (now => set%vary(i), before => set%vary(i - 1))
-         continues = now%below == before%below .and. all(capitals(now%card%label) == capitals(before%card%label))
-      end associate
-   end function continues
-
-   !> The values on the VARY `card`, as those of `one`; its count stays 0 where there is an error.
-   subroutine read_values(set, card, one)
-      type(card_set_t), intent(inout) :: set
-      type(parsed_card_t), intent(in) :: card
-      type(varied_t), intent(inout) :: one
-      type(error_code_t) :: error
-      integer :: count_given, place
-
-      if (capitals(card%label(label_b)) == list_word) then
-         one%list = pack(card%real, card%given)
-         one%count = size(one%list)
-         if (one%count == 0) call add_parsed_error(set%errors, add_blank, card, card_name)
-         return
-      end if
-      call read_whole(trim(card%label(label_b)), count_given, error, place)
-      if (error%number > 0 .or. count_given < 1 .or. count_given > max_variants) then
-         call add_parsed_error(set%errors, vary_count, card, label_b, whole(max_variants))
-      else if (card%given(3)) then
-         call add_parsed_error(set%errors, field_unused, card, real_3)
-      else if (.not. any(card%given(1:2))) then
-         call add_parsed_error(set%errors, field_blank, card, real_1)
-      else if (count_given == 1 .and. card%given(2)) then
-         call add_parsed_error(set%errors, vary_one, card, real_2)
-      else if (count_given > 1 .and. .not. abs(card%real(2) - card%real(1)) > 0.0_wp) then
-         call add_parsed_error(set%errors, vary_equal, card, real_2)
-      else
-         one%count = count_given
-         one%first = card%real(1)
-         one%last = card%real(2)
-      end if
-   end subroutine read_values
-
-   !> The axis along which `one` runs: of its own, or that of the first number with the same name of a tie.
-   subroutine find_axis(set, v, one)
-      type(card_set_t), intent(in) :: set
-      type(variation_t), intent(inout) :: v
-      type(varied_t), intent(inout) :: one
-      integer :: i
-
-      associate (tie => set%vary(one%vary)%card%label(label_c))
-         do i = 1, size(v%numbers)
-            if (tie /= '' .and. capitals(set%vary(v%numbers(i)%vary)%card%label(label_c)) == capitals(tie)) &
-               one%axis = v%numbers(i)%axis
+         do above = k, 1, -1
+            if (set%cards(above)%form /= form_toler) return
          end do
-      end associate
-      if (one%axis > 0) return
-      v%counts = [v%counts, 0]
-      one%axis = size(v%counts)
-   end subroutine find_axis
+      end function card_above
+
+      !> VARY card number `i` gives more values of the list on the one above it.
+      pure logical function continues()
+
+         continues = .false.
+         if (i == 1) return
+         associate (now => set%vary(i), before => set%vary(i - 1))
+            continues = now%below == before%below .and. all(capitals(now%card%label) == capitals(before%card%label))
+         end associate
+      end function continues
+
+      !> The values on the VARY `card`, as those of `one`; its count stays 0 where there is an error.
+      subroutine read_values(card)
+         type(parsed_card_t), intent(in) :: card
+         type(error_code_t) :: error
+         integer :: count_given, place
+
+         if (capitals(card%label(label_b)) == list_word) then
+            one%list = pack(card%real, card%given)
+            one%count = size(one%list)
+            if (one%count == 0) call add_parsed_error(set%errors, add_blank, card, card_name)
+            return
+         end if
+         call read_whole(trim(card%label(label_b)), count_given, error, place)
+         if (error%number > 0 .or. count_given < 1 .or. count_given > max_variants) then
+            call add_parsed_error(set%errors, vary_count, card, label_b, whole(max_variants))
+         else if (card%given(3)) then
+            call add_parsed_error(set%errors, field_unused, card, real_3)
+         else if (.not. any(card%given(1:2))) then
+            call add_parsed_error(set%errors, field_blank, card, real_1)
+         else if (count_given == 1 .and. card%given(2)) then
+            call add_parsed_error(set%errors, vary_one, card, real_2)
+         else if (count_given > 1 .and. .not. abs(card%real(2) - card%real(1)) > 0.0_wp) then
+            call add_parsed_error(set%errors, vary_equal, card, real_2)
+         else
+            one%count = count_given
+            one%first = card%real(1)
+            one%last = card%real(2)
+         end if
+      end subroutine read_values
+
+      !> The axis along which `one` runs: of its own, or that of the first number with the same name of a tie.
+      subroutine find_axis()
+         integer :: i
+
+         associate (tie => set%vary(one%vary)%card%label(label_c))
+            do i = 1, size(v%numbers)
+               if (tie /= '' .and. capitals(set%vary(v%numbers(i)%vary)%card%label(label_c)) == capitals(tie)) &
+                  one%axis = v%numbers(i)%axis
+            end do
+         end associate
+         if (one%axis > 0) return
+         v%counts = [v%counts, 0]
+         one%axis = size(v%counts)
+      end subroutine find_axis
+
+      !> The name and the unit of `one`.
+      subroutine name_number()
+         type(tolerance_t) :: number
+         integer :: border
+
+         number = number_on_card(set, one%card, one%place)
+         border = index(trim(number%name), ' ', back=.true.)
+         one%owner = number%name(:border - 1)
+         one%word = number%name(border + 1:)
+         one%unit = number%unit_name
+      end subroutine name_number
+   end subroutine take_card
 
    !> Sets v%counts and v%total. Numbers that are tied must have equal counts; the grid must not be too large.
    subroutine count_variants(set, v)
@@ -240,20 +244,6 @@ contains
       end do
       v%total = int(total)
    end subroutine count_variants
-
-   !> The name and the unit of `one`.
-   subroutine name_number(set, one)
-      type(card_set_t), intent(in) :: set
-      type(varied_t), intent(inout) :: one
-      type(tolerance_t) :: number
-      integer :: border
-
-      number = number_on_card(set, one%card, one%place)
-      border = index(trim(number%name), ' ', back=.true.)
-      one%owner = number%name(:border - 1)
-      one%word = number%name(border + 1:)
-      one%unit = number%unit_name
-   end subroutine name_number
 
    !> Gives the cards of `v` the numbers of variant `n`, ready to be built.
    subroutine take_values(v, n)

@@ -223,7 +223,7 @@ contains
       now = snapshot_of_ground(d%m, d%origin)
       now%t = s%motions(1)%t
       do c = size(s%own), 1, -1
-         if (s%motions(c)%mark /= mark_none .and. is_own(d, k)) then
+         if (s%motions(c)%mark /= mark_none .and. is_own()) then
             now%mark = s%motions(c)%mark
             now%singularity = s%motions(c)%singularity
          end if
@@ -241,23 +241,111 @@ contains
          d%now%known(i) = .true.
       end do
       d%now%t = now%t
-      call record_centres(d, s, k, now)
-      call record_slides(d%guides, d%m, now)
-      call record_curves(d, s, k)
-      if (is_own(d, k)) call record_flags(d, s, now, before)
+      call record_centres()
+      call record_slides(d%guides, d%m)
+      call record_curves()
+      if (is_own()) call record_flags()
       if (k >= frame_instants(d%m) .or. (mod(k, d%frame_stride) /= 0 .and. k < frame_instants(d%m) - 1)) return
       d%frames = d%frames + 1
       d%frame(d%frames) = now
+
+   contains
+
+      !> Whether instant number `k` (0, 1, ...) is one of the deck's.
+      pure logical function is_own()
+
+         is_own = k > d%m%steps
+         if (.not. is_own .and. d%every > 0) is_own = mod(k, d%every) == 0
+      end function is_own
+
+      !> Widens the ranges of the slides.
+      pure subroutine record_slides(guides, m)
+         type(guide_t), intent(inout) :: guides(:)
+         type(mechanism_t), intent(in) :: m
+         real(wp) :: along
+         integer :: i
+
+         do i = 1, size(guides)
+            associate (g => guides(i))
+               if (.not. (now%known(g%carrier) .and. now%known(g%block))) cycle
+               along = dot_product(point_place(m, now, g%point) - point_place(m, now, g%pivot), &
+                  direction(now%place(3, g%carrier) + g%angle))
+               g%low = min(g%low, along)
+               g%high = max(g%high, along)
+            end associate
+         end do
+      end subroutine record_slides
+
+      !> The places of the curves at instant number `k`, if it is one of theirs.
+      subroutine record_curves()
+         real(wp) :: p(2, 0:2)
+         integer :: i, n, c, local
+
+         if (k > d%m%steps .or. (mod(k, d%stride) /= 0 .and. k < d%m%steps)) return
+         n = place_number(d, k)
+         do i = 1, size(d%curves)
+            associate (curve => d%curves(i))
+               c = s%parts%part(curve%request)
+               if (c == 0) cycle
+               local = s%own(c)%requests(s%parts%number(curve%request))%subject
+               curve%t(n) = s%motions(c)%t
+               curve%known(n) = known_of(s%motions(c), s%own(c)%points(local)%link)
+               if (curve%known(n) < 0) cycle
+               p = point_motion(s%own(c), s%motions(c), local)
+               curve%place(:, n) = p(:, 0) + (s%motions(c)%origin - d%origin)
+               curve%velocity(:, n) = p(:, 1)
+               if (any(abs(curve%place(:, n)) > max_place)) curve%known(n) = -1
+            end associate
+         end do
+      end subroutine record_curves
+
+      !> Puts the instant centres into `now`, and into their centrodes if instant number `k` is one of theirs.
+      subroutine record_centres()
+         type(row_t) :: row
+         integer :: i, n
+
+         n = 0
+         if (k <= d%m%steps .and. (mod(k, d%stride) == 0 .or. k == d%m%steps)) n = place_number(d, k)
+         do i = 1, size(d%centrodes)
+            row = row_in_set(d%m, s, d%centrodes(i)%request)
+            now%has_centre(i) = has_number(row, 1, 0) .and. all(abs(row%value(:2, :)) < max_place)
+            if (.not. now%has_centre(i)) cycle
+            now%centre(:, i) = row%value(:2, 0) - d%origin
+            if (n == 0) cycle
+            d%centrodes(i)%place(:, n, :) = row%value(:2, 1:2)
+            d%centrodes(i)%side(n) = merge(1, -1, row%weight > 0.0_wp)
+         end do
+         d%now%centre = now%centre
+         d%now%has_centre = now%has_centre
+      end subroutine record_centres
+
+      !> Notes the first of the instants that a part is flagged for one reason. `before`: the last known positions.
+      subroutine record_flags()
+         type(flag_t) :: flag
+         integer :: c
+
+         if (size(d%mark) == 0) d%mark = spread(mark_none, 1, size(s%motions))
+         if (is_flagged(s)) d%flagged = d%flagged + 1
+         if (is_flagged(s) .and. size(d%flagged_at) < max_places) d%flagged_at = [d%flagged_at, now%t]
+         do c = 1, size(s%motions)
+            if (s%motions(c)%mark /= d%mark(c) .and. s%motions(c)%mark /= mark_none &
+               .and. size(d%flags) < max_flags) then
+               associate (links => s%parts%list(c)%links)
+                  flag%t = now%t
+                  flag%mark = s%motions(c)%mark
+                  flag%singularity = s%motions(c)%singularity
+                  flag%earlier = .not. all(now%known(links))
+                  flag%last = now
+                  if (flag%earlier) flag%last = before
+                  flag%last%known = .false.
+                  flag%last%known(links) = merge(before%known(links), now%known(links), flag%earlier)
+                  d%flags = [d%flags, flag]
+               end associate
+            end if
+            d%mark(c) = s%motions(c)%mark
+         end do
+      end subroutine record_flags
    end subroutine record_instant
-
-   !> Whether instant number `k` (0, 1, ...) is one of the deck's.
-   pure logical function is_own(d, k)
-      type(drawing_t), intent(in) :: d
-      integer, intent(in) :: k
-
-      is_own = k > d%m%steps
-      if (.not. is_own .and. d%every > 0) is_own = mod(k, d%every) == 0
-   end function is_own
 
    !> The number of instants from which frames are taken: those of TIME, or where there is none those of AT.
    pure integer function frame_instants(m)
@@ -265,104 +353,6 @@ contains
 
       frame_instants = merge(m%steps + 1, instant_count(m), m%steps >= 0)
    end function frame_instants
-
-   !> Widens the ranges of the slides.
-   pure subroutine record_slides(guides, m, now)
-      type(guide_t), intent(inout) :: guides(:)
-      type(mechanism_t), intent(in) :: m
-      type(snapshot_t), intent(in) :: now
-      real(wp) :: along
-      integer :: i
-
-      do i = 1, size(guides)
-         associate (g => guides(i))
-            if (.not. (now%known(g%carrier) .and. now%known(g%block))) cycle
-            along = dot_product(point_place(m, now, g%point) - point_place(m, now, g%pivot), &
-               direction(now%place(3, g%carrier) + g%angle))
-            g%low = min(g%low, along)
-            g%high = max(g%high, along)
-         end associate
-      end do
-   end subroutine record_slides
-
-   !> The places of the curves at instant number `k`, if it is one of theirs.
-   subroutine record_curves(d, s, k)
-      type(drawing_t), intent(inout) :: d
-      type(set_motion_t), intent(in) :: s
-      integer, intent(in) :: k
-      real(wp) :: p(2, 0:2)
-      integer :: i, n, c, local
-
-      if (k > d%m%steps .or. (mod(k, d%stride) /= 0 .and. k < d%m%steps)) return
-      n = place_number(d, k)
-      do i = 1, size(d%curves)
-         associate (curve => d%curves(i))
-            c = s%parts%part(curve%request)
-            if (c == 0) cycle
-            local = s%own(c)%requests(s%parts%number(curve%request))%subject
-            curve%t(n) = s%motions(c)%t
-            curve%known(n) = known_of(s%motions(c), s%own(c)%points(local)%link)
-            if (curve%known(n) < 0) cycle
-            p = point_motion(s%own(c), s%motions(c), local)
-            curve%place(:, n) = p(:, 0) + (s%motions(c)%origin - d%origin)
-            curve%velocity(:, n) = p(:, 1)
-            if (any(abs(curve%place(:, n)) > max_place)) curve%known(n) = -1
-         end associate
-      end do
-   end subroutine record_curves
-
-   !> Puts the instant centres into `now`, and into their centrodes if instant number `k` is one of theirs.
-   subroutine record_centres(d, s, k, now)
-      type(drawing_t), intent(inout) :: d
-      type(set_motion_t), intent(in) :: s
-      integer, intent(in) :: k
-      type(snapshot_t), intent(inout) :: now
-      type(row_t) :: row
-      integer :: i, n
-
-      n = 0
-      if (k <= d%m%steps .and. (mod(k, d%stride) == 0 .or. k == d%m%steps)) n = place_number(d, k)
-      do i = 1, size(d%centrodes)
-         row = row_in_set(d%m, s, d%centrodes(i)%request)
-         now%has_centre(i) = has_number(row, 1, 0) .and. all(abs(row%value(:2, :)) < max_place)
-         if (.not. now%has_centre(i)) cycle
-         now%centre(:, i) = row%value(:2, 0) - d%origin
-         if (n == 0) cycle
-         d%centrodes(i)%place(:, n, :) = row%value(:2, 1:2)
-         d%centrodes(i)%side(n) = merge(1, -1, row%weight > 0.0_wp)
-      end do
-      d%now%centre = now%centre
-      d%now%has_centre = now%has_centre
-   end subroutine record_centres
-
-   !> Notes the first of the instants that a part is flagged for one reason. `before`: the last known positions.
-   subroutine record_flags(d, s, now, before)
-      type(drawing_t), intent(inout) :: d
-      type(set_motion_t), intent(in) :: s
-      type(snapshot_t), intent(in) :: now, before
-      type(flag_t) :: flag
-      integer :: c
-
-      if (size(d%mark) == 0) d%mark = spread(mark_none, 1, size(s%motions))
-      if (is_flagged(s)) d%flagged = d%flagged + 1
-      if (is_flagged(s) .and. size(d%flagged_at) < max_places) d%flagged_at = [d%flagged_at, now%t]
-      do c = 1, size(s%motions)
-         if (s%motions(c)%mark /= d%mark(c) .and. s%motions(c)%mark /= mark_none .and. size(d%flags) < max_flags) then
-            associate (links => s%parts%list(c)%links)
-               flag%t = now%t
-               flag%mark = s%motions(c)%mark
-               flag%singularity = s%motions(c)%singularity
-               flag%earlier = .not. all(now%known(links))
-               flag%last = now
-               if (flag%earlier) flag%last = before
-               flag%last%known = .false.
-               flag%last%known(links) = merge(before%known(links), now%known(links), flag%earlier)
-               d%flags = [d%flags, flag]
-            end associate
-         end if
-         d%mark(c) = s%motions(c)%mark
-      end do
-   end subroutine record_flags
 
    !> Place (2) of point number `i` at the position `s`.
    pure function point_place(m, s, i) result(p)

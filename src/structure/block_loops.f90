@@ -37,7 +37,7 @@ contains
       type(filling_t) :: f
       integer :: i, k
 
-      call reserve(e, b, f)
+      call reserve()
       do i = 1, size(b%list)
          associate (block => b%list(i))
             block%first_loop = f%loops + 1
@@ -46,7 +46,7 @@ contains
                   f%column(b%unknown(k)) = k - block%first + 1
                end do
                do k = block%first_row, block%last_row
-                  call add_row(e, e%list(member(k)), k - block%first_row + 1, block%first_loop, b, f)
+                  call add_row(e%list(member(k)), k - block%first_row + 1, block%first_loop)
                end do
                f%column(b%unknown(block%first:block%last)) = 0
             end if
@@ -54,88 +54,99 @@ contains
             block%lipschitz = lipschitz_of(b, block)
          end associate
       end do
-   end subroutine fill_block_loops
 
-   !> Row `row`, in a loop of its own unless x and y of one vector loop share it.
-   subroutine add_row(e, equation, row, first_loop, b, f)
-      type(equations_t), intent(in) :: e
-      type(equation_t), intent(in) :: equation
-      integer, intent(in) :: row, first_loop
-      type(blocks_t), intent(inout) :: b
-      type(filling_t), intent(inout) :: f
+   contains
 
-      if (any(equation%kind == [equation_x, equation_y])) then
-         if (f%latest(equation%vector_loop) < first_loop) then
-            call add_block_loop(e%vector_loops, equation%vector_loop, loop_components, b, f)
-            f%latest(equation%vector_loop) = f%loops
+      !> Row `row`, in a loop of its own unless x and y of one vector loop share it.
+      subroutine add_row(equation, row, first_loop)
+         type(equation_t), intent(in) :: equation
+         integer, intent(in) :: row, first_loop
+
+         if (any(equation%kind == [equation_x, equation_y])) then
+            if (f%latest(equation%vector_loop) < first_loop) then
+               call add_block_loop(e%vector_loops, equation%vector_loop, loop_components)
+               f%latest(equation%vector_loop) = f%loops
+            end if
+            associate (block_loop => b%loops(f%latest(equation%vector_loop)))
+               if (equation%kind == equation_x) block_loop%row_x = row
+               if (equation%kind == equation_y) block_loop%row_y = row
+            end associate
+            return
          end if
-         associate (block_loop => b%loops(f%latest(equation%vector_loop)))
-            if (equation%kind == equation_x) block_loop%row_x = row
-            if (equation%kind == equation_y) block_loop%row_y = row
+         call add_block_loop(e%vector_loops, equation%vector_loop, merge(loop_projection, loop_angles, &
+            equation%kind == equation_projection))
+         associate (block_loop => b%loops(f%loops))
+            block_loop%row_x = row
+            block_loop%orientation = equation%orientation
+            if (equation%kind == equation_slide) block_loop%orientation = b%orientations + equation%orientation
+            block_loop%orientation_column = f%column(block_loop%orientation)
+            block_loop%direction = equation%direction
+            block_loop%less = equation%less
+            block_loop%less_column = f%column(equation%less)
          end associate
-         return
-      end if
-      call add_block_loop(e%vector_loops, equation%vector_loop, &
-         merge(loop_projection, loop_angles, equation%kind == equation_projection), b, f)
-      associate (block_loop => b%loops(f%loops))
-         block_loop%row_x = row
-         block_loop%orientation = equation%orientation
-         if (equation%kind == equation_slide) block_loop%orientation = b%orientations + equation%orientation
-         block_loop%orientation_column = f%column(block_loop%orientation)
-         block_loop%direction = equation%direction
-         block_loop%less = equation%less
-         block_loop%less_column = f%column(equation%less)
-      end associate
-   end subroutine add_row
+      end subroutine add_row
 
-   !> Vector loop `i`, 0 for one without vectors, as the block with the columns of `f` has it.
-   subroutine add_block_loop(p, i, kind, b, f)
-      type(vector_loops_t), intent(in) :: p
-      integer, intent(in) :: i, kind
-      type(blocks_t), intent(inout) :: b
-      type(filling_t), intent(inout) :: f
-      integer :: k
+      !> Vector loop `i`, 0 for one without vectors, as the block with the columns of `f` has it.
+      subroutine add_block_loop(p, i, kind)
+         type(vector_loops_t), intent(in) :: p
+         integer, intent(in) :: i, kind
+         integer :: k
 
-      f%loops = f%loops + 1
-      associate (block_loop => b%loops(f%loops))
-         block_loop%kind = kind
-         block_loop%vector_loop = i
-         block_loop%first_vector = f%body_vectors + 1
-         call add_body_vectors(p, i, .false., b, f)
-         block_loop%first_own = f%body_vectors + 1
-         call add_body_vectors(p, i, .true., b, f)
-         block_loop%last_vector = f%body_vectors
-         block_loop%first_slide = f%slides + 1
+         f%loops = f%loops + 1
+         associate (block_loop => b%loops(f%loops))
+            block_loop%kind = kind
+            block_loop%vector_loop = i
+            block_loop%first_vector = f%body_vectors + 1
+            call add_body_vectors(p, i, .false.)
+            block_loop%first_own = f%body_vectors + 1
+            call add_body_vectors(p, i, .true.)
+            block_loop%last_vector = f%body_vectors
+            block_loop%first_slide = f%slides + 1
+            do k = p%first_vector(i), p%first_vector(i + 1) - 1
+               if (p%vector_orientation(k) == 0) block_loop%ground = block_loop%ground + p%body_vector(:, k)
+            end do
+            do k = p%first_slide(i), p%first_slide(i + 1) - 1
+               f%slides = f%slides + 1
+               b%slides(f%slides) = slide_t(orientation=p%slide_orientation(k), &
+                  orientation_column=f%column(p%slide_orientation(k)), &
+                  unknown=b%orientations + p%slide_number(k), column=f%column(b%orientations + p%slide_number(k)), &
+                  body_vector=p%slide_body_vector(:, k))
+            end do
+            block_loop%last_slide = f%slides
+         end associate
+      end subroutine add_block_loop
+
+      !> Body vectors of vector loop `i`: those of the block's `own` orientations, or the known ones.
+      subroutine add_body_vectors(p, i, own)
+         type(vector_loops_t), intent(in) :: p
+         integer, intent(in) :: i
+         logical, intent(in) :: own
+         integer :: k
+
          do k = p%first_vector(i), p%first_vector(i + 1) - 1
-            if (p%vector_orientation(k) == 0) block_loop%ground = block_loop%ground + p%body_vector(:, k)
+            if (p%vector_orientation(k) == 0 .or. (f%column(p%vector_orientation(k)) > 0 .neqv. own)) cycle
+            f%body_vectors = f%body_vectors + 1
+            b%body_vectors(f%body_vectors) = body_vector_t(orientation=p%vector_orientation(k), &
+               column=f%column(p%vector_orientation(k)), x=p%body_vector(1, k), y=p%body_vector(2, k))
          end do
-         do k = p%first_slide(i), p%first_slide(i + 1) - 1
-            f%slides = f%slides + 1
-            b%slides(f%slides) = slide_t(orientation=p%slide_orientation(k), &
-               orientation_column=f%column(p%slide_orientation(k)), &
-               unknown=b%orientations + p%slide_number(k), column=f%column(b%orientations + p%slide_number(k)), &
-               body_vector=p%slide_body_vector(:, k))
+      end subroutine add_body_vectors
+
+      !> Room for all loops: a vector loop whose two components lie in different blocks is in both.
+      subroutine reserve()
+         integer :: body_vectors, slides, i
+
+         body_vectors = 0
+         slides = 0
+         do i = 1, e%count
+            associate (p => e%vector_loops, k => e%list(i)%vector_loop)
+               body_vectors = body_vectors + p%first_vector(k + 1) - p%first_vector(k)
+               slides = slides + p%first_slide(k + 1) - p%first_slide(k)
+            end associate
          end do
-         block_loop%last_slide = f%slides
-      end associate
-   end subroutine add_block_loop
-
-   !> Body vectors of vector loop `i`: those of the block's `own` orientations, or the known ones.
-   subroutine add_body_vectors(p, i, own, b, f)
-      type(vector_loops_t), intent(in) :: p
-      integer, intent(in) :: i
-      logical, intent(in) :: own
-      type(blocks_t), intent(inout) :: b
-      type(filling_t), intent(inout) :: f
-      integer :: k
-
-      do k = p%first_vector(i), p%first_vector(i + 1) - 1
-         if (p%vector_orientation(k) == 0 .or. (f%column(p%vector_orientation(k)) > 0 .neqv. own)) cycle
-         f%body_vectors = f%body_vectors + 1
-         b%body_vectors(f%body_vectors) = body_vector_t(orientation=p%vector_orientation(k), &
-            column=f%column(p%vector_orientation(k)), x=p%body_vector(1, k), y=p%body_vector(2, k))
-      end do
-   end subroutine add_body_vectors
+         allocate (b%loops(e%count), b%body_vectors(body_vectors), b%slides(slides))
+         allocate (f%column(0:b%unknowns), f%latest(0:e%vector_loops%count), source=0)
+      end subroutine reserve
+   end subroutine fill_block_loops
 
    !> A bound of |J(x) - J(z)|/|x - z| in the maximum norm: for a row, the sum of its second derivatives. Slides count
    !> with the length of their unit; a projection turns once more with its own orientation.
@@ -158,25 +169,6 @@ contains
          end associate
       end do
    end function lipschitz_of
-
-   !> Room for all loops: a vector loop whose two components lie in different blocks is in both.
-   subroutine reserve(e, b, f)
-      type(equations_t), intent(in) :: e
-      type(blocks_t), intent(inout) :: b
-      type(filling_t), intent(inout) :: f
-      integer :: body_vectors, slides, i
-
-      body_vectors = 0
-      slides = 0
-      do i = 1, e%count
-         associate (p => e%vector_loops, k => e%list(i)%vector_loop)
-            body_vectors = body_vectors + p%first_vector(k + 1) - p%first_vector(k)
-            slides = slides + p%first_slide(k + 1) - p%first_slide(k)
-         end associate
-      end do
-      allocate (b%loops(e%count), b%body_vectors(body_vectors), b%slides(slides))
-      allocate (f%column(0:b%unknowns), f%latest(0:e%vector_loops%count), source=0)
-   end subroutine reserve
 
    !> The places of all entries of `b`, and the patterns of the blocks whose Jacobian is best sparse.
    pure subroutine find_places(b)

@@ -56,119 +56,105 @@ contains
       allocate (e%list(2*size(m%pairs) + size(m%drives) + size(t%surplus)))
       e%vector_loops = new_vector_loops(m, t)
       s = new_search(m, t)
-      pairs = closing_pairs(m, t)
+      pairs = closing_pairs()
       do i = 1, size(pairs)
-         call add_pair(m, t, length, pairs(i), s, e)
+         call add_pair(pairs(i))
          call close_pair(m, pairs(i), s)
       end do
       do i = 1, size(t%surplus)
-         call add(e, equation_t(equation_angle, pair=t%surplus(i), constant=misfit(m, t, t%surplus(i))))
+         call add(equation_t(equation_angle, pair=t%surplus(i), constant=misfit(t%surplus(i))))
       end do
       do i = 1, size(m%drives)
-         call add_drive(m, t, length, i, s, e)
+         call add_drive(i)
       end do
-   end function new_equations
 
-   !> The pairs that are not in the tree, those near the ground first.
-   function closing_pairs(m, t) result(pairs)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      integer, allocatable :: pairs(:)
-      type(sorted_t) :: s
-      integer :: depth(size(m%pairs)), links(2), k
+   contains
 
-      do k = 1, size(m%pairs)
-         links = pair_links(m, m%pairs(k))
-         ! Those of the tree are left out.
-         depth(k) = merge(0, 1 + sum(t%depth(links)), any(t%parent_joint(links) == k))
-      end do
-      s = sorted(depth, 1 + 2*maxval(t%depth))
-      pairs = s%member
-   end function closing_pairs
+      !> The pairs that are not in the tree, those near the ground first.
+      function closing_pairs() result(pairs)
+         integer, allocatable :: pairs(:)
+         type(sorted_t) :: s
+         integer :: depth(size(m%pairs)), links(2), k
 
-   !> The equations of pair `k`, which closes a loop.
-   subroutine add_pair(m, t, length, k, s, e)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      real(wp), intent(in) :: length
-      integer, intent(in) :: k
-      type(search_t), intent(inout) :: s
-      type(equations_t), intent(inout) :: e
+         do k = 1, size(m%pairs)
+            links = pair_links(m, m%pairs(k))
+            ! Those of the tree are left out.
+            depth(k) = merge(0, 1 + sum(t%depth(links)), any(t%parent_joint(links) == k))
+         end do
+         s = sorted(depth, 1 + 2*maxval(t%depth))
+         pairs = s%member
+      end function closing_pairs
 
-      associate (p => m%pairs(k), n => e%vector_loops%count)
-         call find_path(m, t, m%points(p%point_i)%link, m%points(p%point_j)%link, s)
-         call add_vector_loop(m, t, length, p%point_i, p%point_j, s, e%vector_loops)
-         if (p%kind == pair_revolute) then
-            call add(e, equation_t(equation_x, vector_loop=n, pair=k))
-            call add(e, equation_t(equation_y, vector_loop=n, pair=k))
-         else
-            call add(e, equation_t(equation_projection, vector_loop=n, pair=k, &
-               orientation=t%orientation(m%points(p%point_i)%link), &
-               direction=guide(m, t, k, across=.true.), constant=p%offset/length))
-         end if
-      end associate
-   end subroutine add_pair
+      !> The equations of pair `k`, which closes a loop.
+      subroutine add_pair(k)
+         integer, intent(in) :: k
 
-   !> The equation of drive `k`.
-   subroutine add_drive(m, t, length, k, s, e)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      real(wp), intent(in) :: length
-      integer, intent(in) :: k
-      type(search_t), intent(inout) :: s
-      type(equations_t), intent(inout) :: e
-      integer :: axis
-
-      associate (i => m%drives(k)%subject, j => m%drives(k)%second, n => e%vector_loops%count)
-         select case (m%drives(k)%kind)
-         case (drive_angle)
-            call add(e, equation_t(equation_angle, drive=k, orientation=t%orientation(i), constant=-t%angle_offset(i)))
-         case (drive_relangle)
-            call add(e, equation_t(equation_angle, drive=k, orientation=t%orientation(j), less=t%orientation(i), &
-               constant=t%angle_offset(i) - t%angle_offset(j)))
-         case (drive_x, drive_y)
-            call find_path_down(t, m%points(i)%link, s)
-            call add_vector_loop(m, t, length, i, 0, s, e%vector_loops)
-            axis = merge(1, 2, m%drives(k)%kind == drive_x)
-            call add(e, equation_t(merge(equation_x, equation_y, axis == 1), vector_loop=n, drive=k, &
-               constant=-t%origin(axis)/length))
-         case (drive_slide)
-            if (t%slide(i) > 0) then
-               call add(e, equation_t(equation_slide, drive=k, orientation=t%slide(i)))
-               return
+         associate (p => m%pairs(k), n => e%vector_loops%count)
+            call find_path(m, t, m%points(p%point_i)%link, m%points(p%point_j)%link, s)
+            call add_vector_loop(m, t, length, p%point_i, p%point_j, s, e%vector_loops)
+            if (p%kind == pair_revolute) then
+               call add(equation_t(equation_x, vector_loop=n, pair=k))
+               call add(equation_t(equation_y, vector_loop=n, pair=k))
+            else
+               call add(equation_t(equation_projection, vector_loop=n, pair=k, &
+                  orientation=t%orientation(m%points(p%point_i)%link), direction=guide(m, t, k, across=.true.), &
+                  constant=p%offset/length))
             end if
-            associate (p => m%pairs(i)%point_i, q => m%pairs(i)%point_j)
-               call find_path(m, t, m%points(p)%link, m%points(q)%link, s)
-               call add_vector_loop(m, t, length, p, q, s, e%vector_loops)
-               call add(e, equation_t(equation_projection, vector_loop=n, drive=k, &
-                  orientation=t%orientation(m%points(p)%link), &
-                  direction=-guide(m, t, i, across=.false.)))
-            end associate
-         end select
-      end associate
-   end subroutine add_drive
+         end associate
+      end subroutine add_pair
 
-   !> By how much prismatic pair `k` differs from the angle that other prismatic pairs give its links; whole turns are
-   !> no difference.
-   pure real(wp) function misfit(m, t, k)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      integer, intent(in) :: k
+      !> The equation of drive `k`.
+      subroutine add_drive(k)
+         integer, intent(in) :: k
+         integer :: axis
 
-      associate (pair => m%pairs(k))
-         misfit = without_turns(pair%beta + t%angle_offset(m%points(pair%point_i)%link) &
-            - t%angle_offset(m%points(pair%point_j)%link))
-      end associate
-   end function misfit
+         associate (i => m%drives(k)%subject, j => m%drives(k)%second, n => e%vector_loops%count)
+            select case (m%drives(k)%kind)
+            case (drive_angle)
+               call add(equation_t(equation_angle, drive=k, orientation=t%orientation(i), constant=-t%angle_offset(i)))
+            case (drive_relangle)
+               call add(equation_t(equation_angle, drive=k, orientation=t%orientation(j), less=t%orientation(i), &
+                  constant=t%angle_offset(i) - t%angle_offset(j)))
+            case (drive_x, drive_y)
+               call find_path_down(t, m%points(i)%link, s)
+               call add_vector_loop(m, t, length, i, 0, s, e%vector_loops)
+               axis = merge(1, 2, m%drives(k)%kind == drive_x)
+               call add(equation_t(merge(equation_x, equation_y, axis == 1), vector_loop=n, drive=k, &
+                  constant=-t%origin(axis)/length))
+            case (drive_slide)
+               if (t%slide(i) > 0) then
+                  call add(equation_t(equation_slide, drive=k, orientation=t%slide(i)))
+                  return
+               end if
+               associate (p => m%pairs(i)%point_i, q => m%pairs(i)%point_j)
+                  call find_path(m, t, m%points(p)%link, m%points(q)%link, s)
+                  call add_vector_loop(m, t, length, p, q, s, e%vector_loops)
+                  call add(equation_t(equation_projection, vector_loop=n, drive=k, &
+                     orientation=t%orientation(m%points(p)%link), direction=-guide(m, t, i, across=.false.)))
+               end associate
+            end select
+         end associate
+      end subroutine add_drive
 
-   !> Appends `equation` to `e`.
-   subroutine add(e, equation)
-      type(equations_t), intent(inout) :: e
-      type(equation_t), intent(in) :: equation
+      !> By how much prismatic pair `k` differs from the angle that other prismatic pairs give its links; whole turns
+      !> are no difference.
+      pure real(wp) function misfit(k)
+         integer, intent(in) :: k
 
-      e%count = e%count + 1
-      e%list(e%count) = equation
-   end subroutine add
+         associate (pair => m%pairs(k))
+            misfit = without_turns(pair%beta + t%angle_offset(m%points(pair%point_i)%link) &
+               - t%angle_offset(m%points(pair%point_j)%link))
+         end associate
+      end function misfit
+
+      !> Appends `equation` to `e`.
+      subroutine add(equation)
+         type(equation_t), intent(in) :: equation
+
+         e%count = e%count + 1
+         e%list(e%count) = equation
+      end subroutine add
+   end function new_equations
 
    !> Which unknown is in which equation: 1 to `orientations` angles, then slides.
    function incidence(e, orientations, unknowns) result(g)

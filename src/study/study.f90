@@ -141,7 +141,7 @@ contains
       call show_progress(progress, 'PART', 3, parts)
       if (.not. allocated(failure)) call ask('kinmat-single', 'REAL32', kind_single)
       if (allocated(failure)) return
-      call solve_rows(m, truth, progress, rows)
+      call solve_rows()
       call put_rows(o, p, rows)
       call put_estimates(o, m, p, truth)
 
@@ -161,49 +161,43 @@ contains
             return
          end if
          do i = 1, size(chosen)
-            call take_outcome(m, truth, outcomes(i), rows(chosen(i)))
+            call take_outcome(outcomes(i), rows(chosen(i)))
          end do
       end subroutine ask
-   end subroutine study_set
 
-   !> Fills `row` from the outcome of its trial: errors against the truth, iterations, times.
-   subroutine take_outcome(m, truth, one, row)
-      type(mechanism_t), intent(in) :: m
-      type(truth_t), intent(in) :: truth
-      type(outcome_t), intent(in) :: one
-      type(row_t), intent(inout) :: row
+      !> Fills `row` from the outcome of its trial: errors against the truth, iterations, times.
+      subroutine take_outcome(one, row)
+         type(outcome_t), intent(in) :: one
+         type(row_t), intent(inout) :: row
 
-      row%errors = errors_of(truth, m, row%trial, one)
-      row%iterations = one%iterations
-      if (allocated(one%time)) row%time = one%time
-   end subroutine take_outcome
+         row%errors = errors_of(truth, m, row%trial, one)
+         row%iterations = one%iterations
+         if (allocated(one%time)) row%time = one%time
+      end subroutine take_outcome
 
-   !> The rows in double precision. What is measured is measured in turn, repeat by repeat.
-   subroutine solve_rows(m, truth, progress, rows)
-      type(mechanism_t), intent(in) :: m
-      type(truth_t), intent(in) :: truth
-      type(progress_t), intent(inout) :: progress
-      type(row_t), intent(inout) :: rows(:)
-      type(outcome_t) :: one
-      real(dp) :: seconds(size(rows))
-      integer :: i, k
+      !> The rows in double precision. What is measured is measured in turn, repeat by repeat.
+      subroutine solve_rows()
+         type(outcome_t) :: one
+         real(dp) :: seconds(size(rows))
+         integer :: i, k
 
-      do i = 1, size(rows)
-         associate (t => rows(i)%trial)
-            if (t%kind /= kind_double) cycle
-            call march(trial_mechanism(m, t), real(trial_instants(m, t), wp), t%stride, one, seconds(i))
-            call take_outcome(m, truth, one, rows(i))
-            rows(i)%time = spread(0.0_dp, 1, merge(repeats, 0, can_be_timed(one, t%last)))
-         end associate
-      end do
-      do k = 1, repeats
-         call show_progress(progress, 'MEASUREMENT', k, repeats)
          do i = 1, size(rows)
             associate (t => rows(i)%trial)
-               if (t%kind == kind_double .and. k <= size(rows(i)%time)) rows(i)%time(k) = &
-                  step_time(trial_mechanism(m, t), real(trial_instants(m, t), wp), seconds(i))
+               if (t%kind /= kind_double) cycle
+               call march(trial_mechanism(m, t), real(trial_instants(m, t), wp), t%stride, one, seconds(i))
+               call take_outcome(one, rows(i))
+               rows(i)%time = spread(0.0_dp, 1, merge(repeats, 0, can_be_timed(one, t%last)))
             end associate
          end do
-      end do
-   end subroutine solve_rows
+         do k = 1, repeats
+            call show_progress(progress, 'MEASUREMENT', k, repeats)
+            do i = 1, size(rows)
+               associate (t => rows(i)%trial)
+                  if (t%kind == kind_double .and. k <= size(rows(i)%time)) rows(i)%time(k) = &
+                     step_time(trial_mechanism(m, t), real(trial_instants(m, t), wp), seconds(i))
+               end associate
+            end do
+         end do
+      end subroutine solve_rows
+   end subroutine study_set
 end module study
