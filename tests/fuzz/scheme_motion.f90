@@ -217,8 +217,8 @@ contains
                return
             end if
             trial%lowest(k) = min(trial%lowest(k), trial%margin(k))
-            if (trial%margin(k) < too_near .and. any(g%form == [form_any, form_prp, form_rpp])) trial%status(k) = &
-               is_unknown
+            if (trial%margin(k) < merge(too_near, almost_crossing, any(g%form == [form_any, form_prp, form_rpp])) &
+               .and. g%form /= form_parallelogram) trial%status(k) = is_unknown
          end associate
       end do
    end subroutine place_groups
