@@ -1,7 +1,8 @@
 #!/bin/sh
 # make fuzz-mechanisms: mechanisms by the dice whose motion is known in real128, COUNT of them from seed FIRST on, and some
-# known ones, in chunks, as many at a time as there are processors. Three of four are chains of dyads, one of five has triads or tetrads, and one of
-# twenty a group of 12 to 18 links. The deck of each that fails is kept. The last line is "N passed, N failed".
+# known ones, in chunks, as many at a time as there are processors. Three of four are chains of dyads, one of five has
+# triads or tetrads, and one of twenty a group of 12 to 18 links. The deck of each that fails is kept. The last line is
+# "N passed, N failed".
 #
 #    tests/fuzz/fuzz_mechanisms.sh COUNT [FIRST]       runs them
 #    tests/fuzz/fuzz_mechanisms.sh --seed SEED         writes the deck of one seed to $BUILD/mechanisms/SEED.deck and runs it
@@ -12,8 +13,8 @@ work=$BUILD/mechanisms
 driver=$BUILD/release/fuzz_mechanisms
 chunk=${FUZZ_CHUNK:-200}
 # Seeds that have found faults: a parallelogram of four cranks with links of a hundredth of its size in one block, whose
-# velocities were worse than told; a small dyad on a long link, turned by the wrong angle of that one; a
-# limit where the drive is slow; the other branch of a parallelogram that a dyad near its dead point builds on.
+# velocities were worse than told; a small dyad on a long link, turned by the wrong angle of that one; a limit where the
+# drive is slow; the other branch of a parallelogram that a dyad near its dead point builds on.
 known='668292 1010852 1004109 739164 658817'
 mkdir -p "$work" || exit 3
 

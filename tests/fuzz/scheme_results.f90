@@ -14,7 +14,7 @@ module scheme_results
    real(qp), parameter :: of_told = 3.0_qp
    !> The last bits of a number.
    real(qp), parameter :: bits = 4.0_qp*epsilon(1.0_real64)
-   !> Where it tells no errors, as of links that move at instants at which others do not: this part of a number.
+   !> Of what is fixed it tells no errors: this part of a number.
    real(qp), parameter :: untold = 1.0e-8_qp
    !> A number that is zero, of the size of its mechanism.
    real(qp), parameter :: nothing = max(1.0e-20_qp, 256*epsilon(1.0_qp))
@@ -32,6 +32,13 @@ module scheme_results
       logical :: known(9) = .false., is_told(9) = .false.
       character(12) :: mark = ''
    end type row_t
+
+   !> Of each group (groups), up to now.
+   type :: so_far_t
+      logical, allocatable :: found(:)         !< had positions wherever one was asked for
+      logical, allocatable :: told(:)          !< errors were told of all its numbers: otherwise nothing is known of them,
+                                               !< as behind dyads much smaller than what moves them
+   end type so_far_t
 
    type :: verdict_t
       character(:), allocatable :: text        !< the first thing that is wrong
@@ -51,7 +58,7 @@ contains
       type(row_t) :: row
       type(motion_t) :: m, regular
       integer :: unit, status, set, step
-      logical, allocatable :: began(:)
+      type(so_far_t) :: so_far
       logical :: at_end
 
       open (newunit=unit, file=path, status='old', action='read', iostat=status)
@@ -62,20 +69,20 @@ contains
       do while (.not. allocated(v%text))
          call read_row(unit, row, at_end, v)
          if (at_end .or. allocated(v%text)) exit
-         if (row%set /= set .or. row%step /= step) call begin_instant(s, row, set, step, m, regular, began, v)
-         if (.not. allocated(v%text)) call judge_row(s(set), m, row, began, v)
+         if (row%set /= set .or. row%step /= step) call begin_instant(s, row, set, step, m, regular, so_far, v)
+         if (.not. allocated(v%text)) call judge_row(s(set), m, row, so_far, v)
       end do
       close (unit)
       if (set /= size(s)) call blame(v, 'SETS ARE MISSING')
    end subroutine judge
 
-   !> The motion `m` at the instant of `row`, `regular` the last one of all groups; `began` (groups): see `judge_row`.
-   subroutine begin_instant(s, row, set, step, m, regular, began, v)
+   !> The motion `m` at the instant of `row`, `regular` the last one of all groups.
+   subroutine begin_instant(s, row, set, step, m, regular, so_far, v)
       type(scheme_t), intent(in) :: s(:)
       type(row_t), intent(in) :: row
       integer, intent(inout) :: set, step
       type(motion_t), intent(inout) :: m, regular
-      logical, allocatable, intent(inout) :: began(:)
+      type(so_far_t), intent(inout) :: so_far
       type(verdict_t), intent(inout) :: v
       character(:), allocatable :: problem
       integer :: k
@@ -89,7 +96,8 @@ contains
          if (allocated(problem)) call blame(v, 'THE TRUTH: '//problem)
          if (allocated(problem)) return
          regular = m
-         began = [(.true., k=1, size(s(set)%groups))]
+         so_far%found = [(.true., k=1, size(s(set)%groups))]
+         so_far%told = so_far%found
       end if
       ! Beyond a limit nothing is lost for an instant before it.
       if (size(s(set)%at) > 0) m = regular
@@ -99,41 +107,41 @@ contains
       if (.not. closes(s(set), m)) call blame(v, 'THE TRUTH DOES NOT CLOSE AT '//where(row))
    end subroutine begin_instant
 
-   !> A row against the motion `m`. `began` (groups): had positions wherever one was asked for, up to now. METHOD MATRIX may
-   !> find the first one at a later instant, from the deck's estimate: no limit before it keeps it from that.
-   subroutine judge_row(s, m, row, began, v)
+   !> A row against the motion `m`. After an instant without a position METHOD MATRIX may find another assembly, from the
+   !> deck's estimate, and says so: no limit keeps it from that.
+   subroutine judge_row(s, m, row, so_far, v)
       type(scheme_t), intent(in) :: s
       type(motion_t), intent(in) :: m
       type(row_t), intent(in) :: row
-      logical, intent(inout) :: began(:)
+      type(so_far_t), intent(inout) :: so_far
       type(verdict_t), intent(inout) :: v
       type(jet_t) :: truth(3)
       real(qp) :: scale, unit(3)
       integer :: group(2), status
-      logical :: is_safe
 
       group = groups_of(s, row)
       if (any(group > 0)) status = maxval(m%status(pack(group, group > 0)))
       if (.not. any(group > 0)) status = is_followed
       if (status == is_lost) then
          v%lost = v%lost + 1
-         if (row%known(1) .and. .not. (s%method == 'MATRIX' .and. .not. began(maxval(group)))) &
+         if (row%known(1) .and. .not. (s%method == 'MATRIX' .and. .not. so_far%found(maxval(group)))) &
             call blame(v, 'A POSITION BEYOND A LIMIT: '//where(row))
          return
       else if (status /= is_followed) then
          v%unknown = v%unknown + 1
          return
       end if
-      if (row%mark /= '') call judge_flag(s, m, group, row, v)
-      if (any(group > 0)) began(maxval(group)) = began(maxval(group)) .and. row%known(1)
-      if (any(group > 0) .and. s%method == 'MATRIX') then
-         if (.not. began(maxval(group))) then
-            v%unknown = v%unknown + 1
-            return
-         end if
+      if (row%mark /= '') call judge_flag(s, m, group, row, so_far, v)
+      if (any(group > 0)) then
+         associate (k => maxval(group))
+            so_far%told(k) = so_far%told(k) .and. .not. any(row%known .and. .not. row%is_told)
+            so_far%found(k) = so_far%found(k) .and. row%known(1)
+            if (s%method == 'MATRIX' .and. .not. so_far%found(k)) then
+               v%unknown = v%unknown + 1
+               return
+            end if
+         end associate
       end if
-      is_safe = .true.
-      if (any(group > 0)) is_safe = is_regular(s, m, group)
       truth = true_values(s, m, row)
       ! Of a point of the ground the sum of its own numbers is rounded, and no error is told.
       scale = 1.0_qp
@@ -141,26 +149,26 @@ contains
          + norm2(s%points(row%number)%offset))*bits/nothing
       if (any(group > 0)) scale = maxval(s%groups(pack(group, group > 0))%scale)
       unit = [scale, scale, 1.0_qp/angle_unit(s)]
-      call compare(truth%v, row, 0, unit, is_safe, v)
+      call compare(truth%v, row, 0, unit, any(group > 0), v)
       if (.not. any(group > 0)) return
-      call compare(truth%d, row, 1, unit/s%span, is_safe, v)
-      call compare(truth%dd, row, 2, unit/s%span**2, is_safe, v)
+      call compare(truth%d, row, 1, unit/s%span, .true., v)
+      call compare(truth%dd, row, 2, unit/s%span**2, .true., v)
    end subroutine judge_row
 
-   !> Numbers of derivative `k`, as far as they are there; `unit`: their size. Near a singularity, unless `is_safe`, an
-   !> error that is not told says that nothing is known of the number.
-   subroutine compare(truth, row, k, unit, is_safe, v)
+   !> Numbers of derivative `k`, as far as they are there; `unit`: their size. Where it `moves` an error that
+   !> is not told says that nothing is known of the number.
+   subroutine compare(truth, row, k, unit, moves, v)
       real(qp), intent(in) :: truth(3), unit(3)
       type(row_t), intent(in) :: row
       integer, intent(in) :: k
-      logical, intent(in) :: is_safe
+      logical, intent(in) :: moves
       type(verdict_t), intent(inout) :: v
       real(qp) :: off, allowed
       integer :: c, i
 
       do c = 1, 3
          i = 3*k + c
-         if (.not. row%known(i) .or. .not. (is_safe .or. row%is_told(i))) cycle
+         if (.not. row%known(i) .or. (moves .and. .not. row%is_told(i))) cycle
          v%numbers = v%numbers + 1
          allowed = of_told*row%error(i) + bits*abs(truth(c)) + nothing*unit(c)
          if (.not. row%is_told(i)) allowed = untold*max(abs(truth(c)), unit(c))
@@ -171,33 +179,35 @@ contains
       end do
    end subroutine compare
 
-   !> A flag where the truth is known: needless, unless its mechanism has been near a singularity, or METHOD DENSE was
-   !> to pass a change point.
-   subroutine judge_flag(s, m, group, row, v)
+   !> A flag where the truth is known: needless, unless its mechanism has been near a singularity, nothing
+   !> was known of it, or METHOD DENSE was to pass a change point.
+   subroutine judge_flag(s, m, group, row, so_far, v)
       type(scheme_t), intent(in) :: s
       type(motion_t), intent(in) :: m
       integer, intent(in) :: group(2)
       type(row_t), intent(in) :: row
+      type(so_far_t), intent(in) :: so_far
       type(verdict_t), intent(inout) :: v
 
-      if (s%method == 'MATRIX' .or. .not. is_regular(s, m, group)) then
+      if (s%method == 'MATRIX' .or. .not. is_regular(s, m, group, so_far%told)) then
          v%flagged = v%flagged + 1
       else
          call blame(v, 'A NEEDLESS FLAG '//trim(row%mark)//': '//where(row))
       end if
    end subroutine judge_flag
 
-   !> No group of the mechanism of `group` has been near a singularity.
-   pure logical function is_regular(s, m, group) result(is)
+   !> No group of the mechanism of `group` has been near a singularity, and all errors were `told` (groups).
+   pure logical function is_regular(s, m, group, told) result(is)
       type(scheme_t), intent(in) :: s
       type(motion_t), intent(in) :: m
       integer, intent(in) :: group(2)
+      logical, intent(in) :: told(:)
       integer :: k
 
       is = .true.
       do k = 1, size(s%groups)
          if (s%groups(k)%part /= s%groups(maxval(group))%part) cycle
-         is = is .and. m%status(k) == is_followed .and. m%lowest(k) > safe_margin
+         is = is .and. told(k) .and. m%status(k) == is_followed .and. m%lowest(k) > safe_margin
          if (s%groups(k)%form == form_parallelogram) is = is .and. s%method /= 'DENSE' &
             .and. abs(m%sine(k)%v) > beside_change
       end do
