@@ -41,7 +41,7 @@ module following
    real(wp), parameter :: small_substep = 1.0e-3_wp
    !> A substep that ends so near a change point that there are no velocities is made longer, to end beyond it, at most
    !> so many times: shorter ones would come up to that place and never across.
-   integer, parameter :: max_longer = 4
+   integer, parameter :: max_longer = 8
    !> An instant lies beyond a limit if it is further behind the place where the motion was blocked than this part of
    !> the step.
    real(wp), parameter :: near_part = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
