@@ -142,68 +142,186 @@ contains
             if (file_options(k)%word == words(i)%text) exit
          end do
          if (k <= out_last) then
-            call take_file(words, i, k, options%files, failure)
+            call take_file(options%files, failure)
          else
-            call take_word(words, i, has_deck, options, failure)
+            call take_word(failure)
          end if
          i = i + 1
       end do
-      if (.not. allocated(failure)) call check_study(options, failure)
-      if (.not. allocated(failure)) call check_files(options, failure)
+      if (.not. allocated(failure)) call check_study(failure)
+      if (.not. allocated(failure)) call check_files(failure)
       if (.not. allocated(failure) .and. options%show == 'RULER' .and. len(options%deck) > 0 .and. &
           find_form(options%deck) == form_unknown) call fail(failure, status_rejected, &
          'OPTION --ruler: NO CARD HAS THE NAME '//options%deck//'; CARDS ARE '//card_names())
       if (.not. (options%no_listing .or. any(to_standard_output(options%files)) &
          .or. allocated(options%files(out_listing)%text))) options%files(out_listing)%text = ''
+
+   contains
+
+      !> The names of all cards, with blanks between them.
+      pure function card_names() result(text)
+         character(:), allocatable :: text
+         integer :: form
+
+         text = ''
+         do form = 1, size(forms)
+            text = trim(text//' '//form_name(form))
+         end do
+         text = text(2:)
+      end function card_names
+
+      !> Takes word number `i` of those that name no file of an output.
+      subroutine take_word(failure)
+         type(failure_t), allocatable, intent(out) :: failure
+
+         select case (words(i)%text)
+         case ('--sets')
+            call take_share(failure)
+         case ('--jobs')
+            call take_jobs(options%jobs, failure)
+         case ('--errors')
+            options%errors = .true.
+         case ('--no-listing')
+            options%no_listing = .true.
+         case ('--quiet')
+            options%quiet = .true.
+         case ('--study')
+            options%study = .true.
+         case ('--time')
+            options%time = .true.
+         case ('--check')
+            options%check = .true.
+         case ('--help', '-h')
+            options%show = 'HELP'
+         case ('--version')
+            options%show = 'VERSION'
+         case ('--ruler')
+            options%show = 'RULER'
+         case default
+            call take_deck(words(i)%text, options%deck, failure)
+         end select
+      end subroutine take_word
+
+      !> Two outputs on standard output could not be told apart; without motion there is nothing to draw.
+      subroutine check_files(failure)
+         type(failure_t), allocatable, intent(out) :: failure
+         integer :: k, first
+
+         if (options%no_listing .and. allocated(options%files(out_listing)%text)) &
+            call fail(failure, status_rejected, 'OPTION --no-listing LEAVES OUT THE LISTING, WHICH -o ASKS FOR')
+         first = findloc(to_standard_output(options%files), .true., dim=1)
+         do k = 1, out_last
+            if (to_standard_output(options%files(k)) .and. k > first) &
+               call fail(failure, status_rejected, 'STANDARD OUTPUT TAKES ONE OUTPUT: ' &
+                  //trim(file_options(first)%word)//' OR '//trim(file_options(k)%word))
+            if (options%check .and. file_options(k)%needs_motion .and. allocated(options%files(k)%text)) &
+               call fail(failure, status_rejected, 'OPTION --check COMPUTES NO MOTION, WHICH ' &
+                  //trim(file_options(k)%word)//' NEEDS')
+            if (allocated(failure)) return
+         end do
+      end subroutine check_files
+
+      !> A study and times are no listing; a study reads its deck more than once.
+      subroutine check_study(failure)
+         type(failure_t), allocatable, intent(out) :: failure
+         integer :: k
+
+         if (.not. (options%study .or. options%time) .or. len(options%show) > 0) return
+         if (any([(allocated(options%files(k)%text), k=out_listing + 1, out_last)]) .or. options%errors &
+            .or. options%check .or. options%no_listing .or. options%shares > 1 .or. options%jobs > 0 &
+            .or. (options%study .and. options%time)) then
+            call fail(failure, status_rejected, 'OPTION '//trim(merge('--study', '--time ', options%study)) &
+               //' GOES WITH NO OTHER OPTION BUT -o AND --quiet')
+         else if (options%study .and. (len(options%deck) == 0 .or. options%deck == '/dev/stdin')) then
+            call fail(failure, status_rejected, 'OPTION --study NEEDS THE DECK AS A FILE')
+         end if
+      end subroutine check_study
+
+      !> Takes `word` as the deck. Errors: a second deck, an empty word, an unknown option.
+      subroutine take_deck(word, deck, failure)
+         character(*), intent(in) :: word
+         character(:), allocatable, intent(inout) :: deck
+         type(failure_t), allocatable, intent(out) :: failure
+
+         if (len(word) == 0) then
+            call fail(failure, status_rejected, 'AN EMPTY WORD IS NO DECK')
+         else if (word(1:1) == '-' .and. word /= '-') then
+            call fail(failure, status_rejected, 'OPTION '//word//' IS UNKNOWN; SEE kinmat --help')
+         else if (has_deck) then
+            call fail(failure, status_rejected, 'MORE THAN ONE DECK IS NAMED: '//deck//' AND '//word)
+         else
+            deck = word
+            if (word == '-') deck = ''
+            has_deck = .true.
+         end if
+      end subroutine take_deck
+
+      !> The name after word number `i`, which is the option of output number `k`: of a file, `-` for standard output,
+      !> or of a directory. All `files` of the option have it.
+      subroutine take_file(files, failure)
+         type(word_t), intent(inout) :: files(:)
+         type(failure_t), allocatable, intent(out) :: failure
+         character(:), allocatable :: path
+         integer :: j
+         logical :: of_file
+
+         of_file = len_trim(file_options(k)%in_directory) == 0
+         path = ''
+         if (i < size(words)) path = words(i + 1)%text
+         if (len(path) == 0 .or. (path == '-' .and. .not. of_file)) then
+            call fail(failure, status_rejected, 'OPTION '//words(i)%text//' NEEDS A ' &
+               //trim(merge('FILE NAME', 'DIRECTORY', of_file)))
+         else if (allocated(files(k)%text)) then
+            call fail(failure, status_rejected, 'OPTION '//words(i)%text//' IS GIVEN TWICE')
+         end if
+         if (path == '-') path = ''
+         do j = 1, out_last
+            if (file_options(j)%word == file_options(k)%word) files(j)%text = path
+         end do
+         i = i + 1
+      end subroutine take_file
+
+      !> The K/N after option number `i`.
+      subroutine take_share(failure)
+         type(failure_t), allocatable, intent(out) :: failure
+         character(:), allocatable :: word
+         integer :: slash
+
+         word = ''
+         if (i < size(words)) word = words(i + 1)%text
+         i = i + 1
+         slash = index(word, '/')
+         options%share = 0
+         if (is_whole(word(:max(0, slash - 1))) .and. is_whole(word(slash + 1:))) then
+            read (word(:slash - 1), *) options%share
+            read (word(slash + 1:), *) options%shares
+         end if
+         if (options%share < 1 .or. options%share > options%shares) &
+            call fail(failure, status_rejected, 'OPTION --sets NEEDS K/N WITH 1 <= K <= N, SUCH AS 1/4')
+      end subroutine take_share
+
+      !> The number after option number `i`.
+      subroutine take_jobs(jobs, failure)
+         integer, intent(out) :: jobs
+         type(failure_t), allocatable, intent(out) :: failure
+         character(:), allocatable :: word
+
+         word = ''
+         if (i < size(words)) word = words(i + 1)%text
+         i = i + 1
+         jobs = 0
+         if (is_whole(word)) read (word, *) jobs
+         if (jobs < 1 .or. jobs > max_jobs) &
+            call fail(failure, status_rejected, 'OPTION --jobs NEEDS A WHOLE NUMBER FROM 1 TO '//whole(max_jobs))
+      end subroutine take_jobs
+
+      !> `word` is a whole number of at most 8 digits without a sign.
+      pure logical function is_whole(word)
+         character(*), intent(in) :: word
+
+         is_whole = len(word) > 0 .and. len(word) < 9 .and. verify(word, '0123456789') == 0
+      end function is_whole
    end subroutine read_words
-
-   !> The names of all cards, with blanks between them.
-   pure function card_names() result(text)
-      character(:), allocatable :: text
-      integer :: form
-
-      text = ''
-      do form = 1, size(forms)
-         text = trim(text//' '//form_name(form))
-      end do
-      text = text(2:)
-   end function card_names
-
-   !> Takes word number `i` of those that name no file of an output.
-   subroutine take_word(words, i, has_deck, options, failure)
-      type(word_t), intent(in) :: words(:)
-      integer, intent(inout) :: i
-      logical, intent(inout) :: has_deck
-      type(options_t), intent(inout) :: options
-      type(failure_t), allocatable, intent(out) :: failure
-
-      select case (words(i)%text)
-      case ('--sets')
-         call take_share(words, i, options, failure)
-      case ('--jobs')
-         call take_jobs(words, i, options%jobs, failure)
-      case ('--errors')
-         options%errors = .true.
-      case ('--no-listing')
-         options%no_listing = .true.
-      case ('--quiet')
-         options%quiet = .true.
-      case ('--study')
-         options%study = .true.
-      case ('--time')
-         options%time = .true.
-      case ('--check')
-         options%check = .true.
-      case ('--help', '-h')
-         options%show = 'HELP'
-      case ('--version')
-         options%show = 'VERSION'
-      case ('--ruler')
-         options%show = 'RULER'
-      case default
-         call take_deck(words(i)%text, has_deck, options%deck, failure)
-      end select
-   end subroutine take_word
 
    !> Whether `file` is asked for, as standard output.
    elemental logical function to_standard_output(file)
@@ -212,135 +330,4 @@ contains
       to_standard_output = .false.
       if (allocated(file%text)) to_standard_output = len(file%text) == 0
    end function to_standard_output
-
-   !> Two outputs on standard output could not be told apart; without motion there is nothing to draw.
-   subroutine check_files(options, failure)
-      type(options_t), intent(in) :: options
-      type(failure_t), allocatable, intent(out) :: failure
-      integer :: k, first
-
-      if (options%no_listing .and. allocated(options%files(out_listing)%text)) &
-         call fail(failure, status_rejected, 'OPTION --no-listing LEAVES OUT THE LISTING, WHICH -o ASKS FOR')
-      first = findloc(to_standard_output(options%files), .true., dim=1)
-      do k = 1, out_last
-         if (to_standard_output(options%files(k)) .and. k > first) &
-            call fail(failure, status_rejected, 'STANDARD OUTPUT TAKES ONE OUTPUT: '//trim(file_options(first)%word) &
-               //' OR '//trim(file_options(k)%word))
-         if (options%check .and. file_options(k)%needs_motion .and. allocated(options%files(k)%text)) &
-            call fail(failure, status_rejected, 'OPTION --check COMPUTES NO MOTION, WHICH ' &
-               //trim(file_options(k)%word)//' NEEDS')
-         if (allocated(failure)) return
-      end do
-   end subroutine check_files
-
-   !> A study and times are no listing; a study reads its deck more than once.
-   subroutine check_study(options, failure)
-      type(options_t), intent(in) :: options
-      type(failure_t), allocatable, intent(out) :: failure
-      integer :: k
-
-      if (.not. (options%study .or. options%time) .or. len(options%show) > 0) return
-      if (any([(allocated(options%files(k)%text), k=out_listing + 1, out_last)]) .or. options%errors &
-         .or. options%check .or. options%no_listing .or. options%shares > 1 .or. options%jobs > 0 &
-         .or. (options%study .and. options%time)) then
-         call fail(failure, status_rejected, 'OPTION '//trim(merge('--study', '--time ', options%study)) &
-            //' GOES WITH NO OTHER OPTION BUT -o AND --quiet')
-      else if (options%study .and. (len(options%deck) == 0 .or. options%deck == '/dev/stdin')) then
-         call fail(failure, status_rejected, 'OPTION --study NEEDS THE DECK AS A FILE')
-      end if
-   end subroutine check_study
-
-   !> Takes `word` as the deck. Errors: a second deck, an empty word, an unknown option.
-   subroutine take_deck(word, has_deck, deck, failure)
-      character(*), intent(in) :: word
-      logical, intent(inout) :: has_deck
-      character(:), allocatable, intent(inout) :: deck
-      type(failure_t), allocatable, intent(out) :: failure
-
-      if (len(word) == 0) then
-         call fail(failure, status_rejected, 'AN EMPTY WORD IS NO DECK')
-      else if (word(1:1) == '-' .and. word /= '-') then
-         call fail(failure, status_rejected, 'OPTION '//word//' IS UNKNOWN; SEE kinmat --help')
-      else if (has_deck) then
-         call fail(failure, status_rejected, 'MORE THAN ONE DECK IS NAMED: '//deck//' AND '//word)
-      else
-         deck = word
-         if (word == '-') deck = ''
-         has_deck = .true.
-      end if
-   end subroutine take_deck
-
-   !> The name after word number `i`, which is the option of output number `k`: of a file, `-` for standard output, or
-   !> of a directory. All `files` of the option have it.
-   subroutine take_file(words, i, k, files, failure)
-      type(word_t), intent(in) :: words(:)
-      integer, intent(inout) :: i
-      integer, intent(in) :: k
-      type(word_t), intent(inout) :: files(:)
-      type(failure_t), allocatable, intent(out) :: failure
-      character(:), allocatable :: path
-      integer :: j
-      logical :: of_file
-
-      of_file = len_trim(file_options(k)%in_directory) == 0
-      path = ''
-      if (i < size(words)) path = words(i + 1)%text
-      if (len(path) == 0 .or. (path == '-' .and. .not. of_file)) then
-         call fail(failure, status_rejected, 'OPTION '//words(i)%text//' NEEDS A ' &
-            //trim(merge('FILE NAME', 'DIRECTORY', of_file)))
-      else if (allocated(files(k)%text)) then
-         call fail(failure, status_rejected, 'OPTION '//words(i)%text//' IS GIVEN TWICE')
-      end if
-      if (path == '-') path = ''
-      do j = 1, out_last
-         if (file_options(j)%word == file_options(k)%word) files(j)%text = path
-      end do
-      i = i + 1
-   end subroutine take_file
-
-   !> The K/N after option number `i`.
-   subroutine take_share(words, i, options, failure)
-      type(word_t), intent(in) :: words(:)
-      integer, intent(inout) :: i
-      type(options_t), intent(inout) :: options
-      type(failure_t), allocatable, intent(out) :: failure
-      character(:), allocatable :: word
-      integer :: slash
-
-      word = ''
-      if (i < size(words)) word = words(i + 1)%text
-      i = i + 1
-      slash = index(word, '/')
-      options%share = 0
-      if (is_whole(word(:max(0, slash - 1))) .and. is_whole(word(slash + 1:))) then
-         read (word(:slash - 1), *) options%share
-         read (word(slash + 1:), *) options%shares
-      end if
-      if (options%share < 1 .or. options%share > options%shares) &
-         call fail(failure, status_rejected, 'OPTION --sets NEEDS K/N WITH 1 <= K <= N, SUCH AS 1/4')
-   end subroutine take_share
-
-   !> The number after option number `i`.
-   subroutine take_jobs(words, i, jobs, failure)
-      type(word_t), intent(in) :: words(:)
-      integer, intent(inout) :: i
-      integer, intent(out) :: jobs
-      type(failure_t), allocatable, intent(out) :: failure
-      character(:), allocatable :: word
-
-      word = ''
-      if (i < size(words)) word = words(i + 1)%text
-      i = i + 1
-      jobs = 0
-      if (is_whole(word)) read (word, *) jobs
-      if (jobs < 1 .or. jobs > max_jobs) &
-         call fail(failure, status_rejected, 'OPTION --jobs NEEDS A WHOLE NUMBER FROM 1 TO '//whole(max_jobs))
-   end subroutine take_jobs
-
-   !> `word` is a whole number of at most 8 digits without a sign.
-   pure logical function is_whole(word)
-      character(*), intent(in) :: word
-
-      is_whole = len(word) > 0 .and. len(word) < 9 .and. verify(word, '0123456789') == 0
-   end function is_whole
 end module command_line

@@ -25,8 +25,7 @@ module job
    use answers, only: answers_t
    use assembly_table, only: draw_assemblies
    use variant_rows, only: variant_row_t
-   use instants, only: writers_t, run_motion
-   use variants, only: run_variants
+   use set_runs, only: writers_t, run_motion, run_variants
    use numerals, only: whole
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set
    use command_line, only: options_t, file_options, to_standard_output, out_listing, out_csv, out_log, out_svg, &

@@ -75,42 +75,79 @@ contains
          else if (size(list(i)%list) == 0) then
             call put(o, '   '//phrase(say_none, m%polish))
          else
-            call put_branches(o, m, list(i))
-            call put_dead_points(o, m, list(i))
-            call put_change_points(o, m, list(i))
+            call put_branches(list(i))
+            call put_dead_points(list(i))
+            call put_change_points(list(i))
          end if
       end do
-   end subroutine put_circuits
 
-   !> A row for each branch of `found`.
-   subroutine put_branches(o, m, found)
-      type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(circuits_t), intent(in) :: found
-      character(1), parameter :: signs(-1:no_sign) = ['-', '*', '+', '.']
-      character(column_ends(4)) :: row
-      character(:), allocatable :: numbers
-      integer :: k, i
+   contains
 
-      row = ' '//phrase(say_circuit, m%polish)
-      row(column_ends(1) + 1:) = phrase(say_branch, m%polish)
-      row(column_ends(2) + 1:) = 'DET'
-      row(column_ends(3) + 1:) = phrase(say_assemblies, m%polish)
-      call put(o, row//phrase(say_one_range, m%polish))
-      do k = 1, size(found%branches)
-         associate (b => found%branches(k))
+      !> A row for each branch of `found`.
+      subroutine put_branches(found)
+         type(circuits_t), intent(in) :: found
+         character(1), parameter :: signs(-1:no_sign) = ['-', '*', '+', '.']
+         character(column_ends(4)) :: row
+         character(:), allocatable :: numbers
+         integer :: k, i
+
+         row = ' '//phrase(say_circuit, m%polish)
+         row(column_ends(1) + 1:) = phrase(say_branch, m%polish)
+         row(column_ends(2) + 1:) = 'DET'
+         row(column_ends(3) + 1:) = phrase(say_assemblies, m%polish)
+         call put(o, row//phrase(say_one_range, m%polish))
+         do k = 1, size(found%branches)
+            associate (b => found%branches(k))
+               numbers = ''
+               do i = 1, size(found%assemblies)
+                  if (found%assemblies(i)%branch == k) numbers = numbers//' '//whole(found%assemblies(i)%number)
+               end do
+               row = ' '//whole(b%circuit)
+               row(column_ends(1) + 1:) = whole(k)
+               row(column_ends(2) + 1:) = ' '//signs(b%sign)
+               row(column_ends(3) + 1:) = numbers(2:)
+               call put(o, row//range_words(m, found, b))
+            end associate
+         end do
+      end subroutine put_branches
+
+      !> A line for each dead point: the drive's value, links, and the branches that end there.
+      subroutine put_dead_points(found)
+         type(circuits_t), intent(in) :: found
+         type(diagnostic_t) :: limit
+         integer :: d, k
+         character(:), allocatable :: numbers
+
+         if (size(found%dead) > 0) call put(o, ' '//phrase(say_dead_points, m%polish))
+         do d = 1, size(found%dead)
+            limit = found%dead(d)%limit
+            limit%value = known(limit%value)
             numbers = ''
-            do i = 1, size(found%assemblies)
-               if (found%assemblies(i)%branch == k) numbers = numbers//' '//whole(found%assemblies(i)%number)
+            do k = 1, size(found%branches)
+               if (any(found%branches(k)%dead == d)) numbers = numbers//' '//whole(k)
             end do
-            row = ' '//whole(b%circuit)
-            row(column_ends(1) + 1:) = whole(k)
-            row(column_ends(2) + 1:) = ' '//signs(b%sign)
-            row(column_ends(3) + 1:) = numbers(2:)
-            call put(o, row//range_words(m, found, b))
-         end associate
-      end do
-   end subroutine put_branches
+            call put(o, '   '//phrase(say_branch, m%polish)//numbers//'   '//limit_words(m, limit))
+         end do
+      end subroutine put_dead_points
+
+      !> A line for each change point: the circuits that meet there, and the drive's value.
+      subroutine put_change_points(found)
+         type(circuits_t), intent(in) :: found
+         character(:), allocatable :: numbers
+         integer :: i, k
+
+         if (size(found%meetings) > 0) call put(o, ' '//phrase(say_change_points, m%polish))
+         do i = 1, size(found%meetings)
+            numbers = ''
+            do k = 1, size(found%list)
+               if (found%meetings(i)%circuits(k)) numbers = numbers//' '//whole(k)
+            end do
+            call put(o, '   '//phrase(say_circuit, m%polish)//numbers//'   '//measure(m, diagnostic_t( &
+               kind=diagnostic_limit, is_angle=found%curve%is_angle, value=merge(0.0_wp, found%meetings(i)%value, &
+               abs(found%meetings(i)%value) <= sqrt(epsilon(1.0_wp)))), '(es13.5)'))
+         end do
+      end subroutine put_change_points
+   end subroutine put_circuits
 
    !> The range of the drive on branch `b`.
    function range_words(m, found, b) result(text)
@@ -159,47 +196,6 @@ contains
          words = measure(m, diagnostic_t(kind=diagnostic_limit, is_angle=found%curve%is_angle, value=known(x)), form)
       end function value_words
    end function range_words
-
-   !> A line for each dead point: the drive's value, links, and the branches that end there.
-   subroutine put_dead_points(o, m, found)
-      type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(circuits_t), intent(in) :: found
-      type(diagnostic_t) :: limit
-      integer :: d, k
-      character(:), allocatable :: numbers
-
-      if (size(found%dead) > 0) call put(o, ' '//phrase(say_dead_points, m%polish))
-      do d = 1, size(found%dead)
-         limit = found%dead(d)%limit
-         limit%value = known(limit%value)
-         numbers = ''
-         do k = 1, size(found%branches)
-            if (any(found%branches(k)%dead == d)) numbers = numbers//' '//whole(k)
-         end do
-         call put(o, '   '//phrase(say_branch, m%polish)//numbers//'   '//limit_words(m, limit))
-      end do
-   end subroutine put_dead_points
-
-   !> A line for each change point: the circuits that meet there, and the drive's value.
-   subroutine put_change_points(o, m, found)
-      type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(circuits_t), intent(in) :: found
-      character(:), allocatable :: numbers
-      integer :: i, k
-
-      if (size(found%meetings) > 0) call put(o, ' '//phrase(say_change_points, m%polish))
-      do i = 1, size(found%meetings)
-         numbers = ''
-         do k = 1, size(found%list)
-            if (found%meetings(i)%circuits(k)) numbers = numbers//' '//whole(k)
-         end do
-         call put(o, '   '//phrase(say_circuit, m%polish)//numbers//'   '//measure(m, diagnostic_t( &
-            kind=diagnostic_limit, is_angle=found%curve%is_angle, value=merge(0.0_wp, found%meetings(i)%value, &
-            abs(found%meetings(i)%value) <= sqrt(epsilon(1.0_wp)))), '(es13.5)'))
-      end do
-   end subroutine put_change_points
 
    !> `x` (rad or length), 0 where it is rounding alone.
    pure real(wp) function known(x)

@@ -9,7 +9,7 @@ module assemblies
    use convergence, only: convergence_t, is_solved
    use block_engine, only: block_engine_t, make_block_engine, set_drive_values
    use assembly_choice, only: solve_first
-   use block_needs, only: largest_known
+   use blocks, only: largest_known
    use block_state, only: set_values
    use link_motion, only: move_links
    use position_proof, only: prover_t, placed_t, make_prover, new_placed, prove_position

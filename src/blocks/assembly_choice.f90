@@ -11,7 +11,7 @@ module assembly_choice
    use planar, only: without_turns
    use block_state, only: unknown_t, set_values
    use block_solver, only: solve_block
-   use block_needs, only: largest_known
+   use blocks, only: largest_known
    use first_position, only: solve_first_block, farthest
    use link_motion, only: move_links
    use block_engine, only: block_engine_t, positions_t, solve_each, begin_record

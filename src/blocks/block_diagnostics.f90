@@ -5,7 +5,7 @@ module block_diagnostics
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_limit, diagnostic_second, diagnostic_redundant, &
       diagnostic_mobile, diagnostic_idle, diagnostic_repeated, diagnostic_far_estimate, diagnostic_singular, motion_t
    use planar, only: without_turns
-   use block_needs, only: largest_known, blocks_below
+   use blocks, only: largest_known, blocks_below
    use block_rank, only: redundant_rows, moving_unknowns, judge_drives
    use block_state, only: state_t
    use first_position, only: has_second_position
@@ -178,18 +178,91 @@ contains
       if (e%history%filled == 0) return
       do k = 1, size(e%moving)
          if (e%blocks%list(e%moving(k))%direct) cycle
-         left = time_to_limit(e, e%moving(k), t)
-         if (abs(left) <= 0.0_wp) left = time_to_infinity(e, e%moving(k), t)
+         left = time_to_limit(e%moving(k))
+         if (abs(left) <= 0.0_wp) left = time_to_infinity(e%moving(k))
          if (abs(left) <= 0.0_wp) cycle
          associate (i => e%moving(k), block => e%blocks%list(e%moving(k)))
             r = new_diagnostic(diagnostic_limit, links_of(e, e%moving(k)))
             r%in_line = is_in_line(e, i, r, e%history%past%value)
             r%t = e%history%t(0) + left
-            call name_drive(e, i, r)
+            call name_drive(i)
          end associate
          list = [r]
          return
       end do
+
+   contains
+
+      !> The time from the motion that is followed to the limit t* of block `i` before `t`; 0 where none is near. Close
+      !> to t* the fastest unknown is x* + c sqrt(t* - t), so t* - t = x'/(2 x''), with an error of higher order.
+      pure real(wp) function time_to_limit(i) result(left)
+         integer, intent(in) :: i
+         integer :: fastest
+
+         left = 0.0_wp
+         associate (past => e%history%past, step => t - e%history%t(0), &
+                    u => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
+            if (size(u) == 0) return
+            fastest = u(maxloc(abs(past(u)%acceleration(0)), dim=1))
+            if (abs(past(fastest)%acceleration(0)) <= 0.0_wp) return
+            left = 0.5_wp*past(fastest)%rate(0)/past(fastest)%acceleration(0)
+            if (left*sign(1.0_wp, step) <= 0.0_wp .or. abs(left) > near_part*abs(step)) left = 0.0_wp
+         end associate
+      end function time_to_limit
+
+      !> The time from the motion that is followed to the instant t* before `t` at which a slide of block `i` is
+      !> infinite, since its guide comes to be parallel to another; 0 where none is. Close to t* the slide s is c/(t* -
+      !> t) and a constant, so t* - t = 2 s'/s'', and s s''/s'^2 is about 2.
+      pure real(wp) function time_to_infinity(i) result(left)
+         integer, intent(in) :: i
+         real(wp) :: to_go
+         integer :: k
+
+         left = 0.0_wp
+         do k = e%blocks%list(i)%first, e%blocks%list(i)%last
+            associate (x => e%history%past(e%blocks%unknown(k)), step => t - e%history%t(0))
+               if (e%blocks%unknown(k) <= e%blocks%orientations .or. .not. abs(x%rate(0)) > 0.0_wp) cycle
+               if (abs(x%value) < far_slide) cycle
+               if (abs(x%value*x%acceleration(0)/x%rate(0)**2 - 2.0_wp) > as_a_pole) cycle
+               to_go = 2.0_wp*x%rate(0)/x%acceleration(0)
+               if (to_go*sign(1.0_wp, step) > 0.0_wp .and. abs(to_go) < abs(step)) left = to_go
+            end associate
+         end do
+      end function time_to_infinity
+
+      !> The first drive that moves block `i` at r%t; where all stand still, the first that could.
+      subroutine name_drive(i)
+         integer, intent(in) :: i
+         real(wp) :: f(3)
+         integer :: d
+
+         do d = 1, size(e%laws)
+            if (.not. is_moved_by(i, d)) cycle
+            f = drive_motion(e%laws(d), r%t)
+            if (r%drive > 0 .and. abs(f(2)) <= 0.0_wp) cycle
+            r%drive = d
+            r%value = f(1)
+            r%is_angle = e%is_angle(d)
+            if (abs(f(2)) > 0.0_wp) return
+         end do
+      end subroutine name_drive
+
+      !> Drive `d` is in block `i` or in one that it builds on.
+      pure logical function is_moved_by(i, d)
+         integer, intent(in) :: i, d
+         integer :: mark(0:e%blocks%unknowns), k
+
+         mark = 0
+         is_moved_by = .false.
+         do k = 1, size(e%moving)
+            associate (block => e%blocks%list(e%moving(k)))
+               is_moved_by = any(e%blocks%rows(block%first_row:block%last_row)%drive == d) &
+                  .or. largest_known(e%blocks, e%moving(k), mark) > 0
+               if (e%moving(k) == i) return
+               mark(e%blocks%unknown(block%first:block%last)) = merge(1, 0, is_moved_by)
+            end associate
+         end do
+      end function is_moved_by
    end function limit_diagnostic
 
    !> The links of block `i`, which is singular at the position found last, and whether they are in line.
@@ -201,47 +274,6 @@ contains
       r = new_diagnostic(diagnostic_singular, links_of(e, i))
       r%in_line = is_in_line(e, i, r, e%state%u%value)
    end function singular_links
-
-   !> The time from the motion that is followed to the limit t* of block `i` before `t`; 0 where none is near. Close
-   !> to t* the fastest unknown is x* + c sqrt(t* - t), so t* - t = x'/(2 x''), with an error of higher order.
-   pure real(wp) function time_to_limit(e, i, t) result(left)
-      type(block_engine_t), intent(in) :: e
-      integer, intent(in) :: i
-      real(wp), intent(in) :: t
-      integer :: fastest
-
-      left = 0.0_wp
-      associate (past => e%history%past, step => t - e%history%t(0), &
-                 u => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
-         if (size(u) == 0) return
-         fastest = u(maxloc(abs(past(u)%acceleration(0)), dim=1))
-         if (abs(past(fastest)%acceleration(0)) <= 0.0_wp) return
-         left = 0.5_wp*past(fastest)%rate(0)/past(fastest)%acceleration(0)
-         if (left*sign(1.0_wp, step) <= 0.0_wp .or. abs(left) > near_part*abs(step)) left = 0.0_wp
-      end associate
-   end function time_to_limit
-
-   !> The time from the motion that is followed to the instant t* before `t` at which a slide of block `i` is infinite,
-   !> since its guide comes to be parallel to another; 0 where none is. Close to t* the slide s is c/(t* - t) and a
-   !> constant, so t* - t = 2 s'/s'', and s s''/s'^2 is about 2.
-   pure real(wp) function time_to_infinity(e, i, t) result(left)
-      type(block_engine_t), intent(in) :: e
-      integer, intent(in) :: i
-      real(wp), intent(in) :: t
-      real(wp) :: to_go
-      integer :: k
-
-      left = 0.0_wp
-      do k = e%blocks%list(i)%first, e%blocks%list(i)%last
-         associate (x => e%history%past(e%blocks%unknown(k)), step => t - e%history%t(0))
-            if (e%blocks%unknown(k) <= e%blocks%orientations .or. .not. abs(x%rate(0)) > 0.0_wp) cycle
-            if (abs(x%value) < far_slide) cycle
-            if (abs(x%value*x%acceleration(0)/x%rate(0)**2 - 2.0_wp) > as_a_pole) cycle
-            to_go = 2.0_wp*x%rate(0)/x%acceleration(0)
-            if (to_go*sign(1.0_wp, step) > 0.0_wp .and. abs(to_go) < abs(step)) left = to_go
-         end associate
-      end do
-   end function time_to_infinity
 
    !> The two links of `r`, all that block `i` moves, share a revolute pair, and their body vectors are parallel where
    !> the unknowns have the values `value` (0:unknowns).
@@ -271,41 +303,4 @@ contains
          end do
       end do
    end function is_in_line
-
-   !> The first drive that moves block `i` at r%t; where all stand still, the first that could.
-   subroutine name_drive(e, i, r)
-      type(block_engine_t), intent(in) :: e
-      integer, intent(in) :: i
-      type(diagnostic_t), intent(inout) :: r
-      real(wp) :: f(3)
-      integer :: d
-
-      do d = 1, size(e%laws)
-         if (.not. is_moved_by(e, i, d)) cycle
-         f = drive_motion(e%laws(d), r%t)
-         if (r%drive > 0 .and. abs(f(2)) <= 0.0_wp) cycle
-         r%drive = d
-         r%value = f(1)
-         r%is_angle = e%is_angle(d)
-         if (abs(f(2)) > 0.0_wp) return
-      end do
-   end subroutine name_drive
-
-   !> Drive `d` is in block `i` or in one that it builds on.
-   pure logical function is_moved_by(e, i, d)
-      type(block_engine_t), intent(in) :: e
-      integer, intent(in) :: i, d
-      integer :: mark(0:e%blocks%unknowns), k
-
-      mark = 0
-      is_moved_by = .false.
-      do k = 1, size(e%moving)
-         associate (block => e%blocks%list(e%moving(k)))
-            is_moved_by = any(e%blocks%rows(block%first_row:block%last_row)%drive == d) &
-               .or. largest_known(e%blocks, e%moving(k), mark) > 0
-            if (e%moving(k) == i) return
-            mark(e%blocks%unknown(block%first:block%last)) = merge(1, 0, is_moved_by)
-         end associate
-      end do
-   end function is_moved_by
 end module block_diagnostics

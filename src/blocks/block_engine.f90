@@ -11,8 +11,7 @@ module block_engine
    use convergence, only: convergence_t, is_solved, gather, ended_converged, ended_singular
    use engine, only: engine_t, engine_checkpoint_t
    use predictor, only: history_t, new_history, remember, predict, largest_change
-   use blocks, only: blocks_t
-   use block_needs, only: moving_blocks, needed_blocks, largest_known
+   use blocks, only: blocks_t, moving_blocks, needed_blocks, largest_known
    use block_state, only: state_t, new_state
    use block_solver, only: workspace_t, make_workspace, solve_block
    use first_position, only: solve_first_block, remove_turns

@@ -252,108 +252,104 @@ contains
       repeated = .false.
       pivot = 0
       if (sum(b%list(list)%last - b%list(list)%first + 1) > max_unknowns) return
-      y = null_drives(b, list, s, size(idle))
+      y = null_drives(size(idle))
       do d = size(idle), 1, -1
          k = count(pivot > 0)
          if (k == size(y, 2)) exit
          if (maxval(abs(y(d, k + 1:))) <= zero_level) cycle
          pivot(d) = k + 1
-         call eliminate(y, d, k + 1)
+         call eliminate(k + 1)
       end do
       do d = 1, size(idle)
          if (pivot(d) == 0) cycle
          repeated(d) = count(abs(y(:, pivot(d))) > zero_level) > 1
          idle(d) = .not. repeated(d)
       end do
-   end subroutine judge_drives
 
-   !> The components of drives in the left null vectors, as columns (drives, vectors).
-   function null_drives(b, list, s, drives) result(y)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: list(:), drives
-      type(state_t), intent(in) :: s
-      real(wp), allocatable :: y(:, :)
-      real(wp), allocatable :: a(:, :)
-      integer, allocatable :: drive_of(:)
-      type(values_t) :: v
-      integer :: k
+   contains
 
-      call fill(b, list, s, a, drive_of)
-      v%rows = size(a, 1)
-      v%n = size(a, 2)
-      call decompose(a, 0.0_wp, v)
-      allocate (y(drives, v%rows - v%rank), source=0.0_wp)
-      do k = 1, v%rows
-         if (drive_of(k) > 0) y(drive_of(k), :) = v%left(k, v%rank + 1:)
-      end do
-   end function null_drives
+      !> The components of drives in the left null vectors, as columns (drives, vectors).
+      function null_drives(drives) result(y)
+         integer, intent(in) :: drives
+         real(wp), allocatable :: y(:, :)
+         real(wp), allocatable :: a(:, :)
+         integer, allocatable :: drive_of(:)
+         type(values_t) :: v
+         integer :: k
 
-   !> The Jacobian `a` (rows, unknowns) of all blocks of `list` together, and whose rows these are (0: a pair's). The
-   !> coefficients of an unknown of an earlier block are what its rate 1 alone leaves to the rates of a block.
-   subroutine fill(b, list, s, a, drive_of)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: list(:)
-      type(state_t), intent(in) :: s
-      real(wp), allocatable, intent(out) :: a(:, :)
-      integer, allocatable, intent(out) :: drive_of(:)
-      type(state_t) :: unit
-      real(wp), allocatable :: own(:), r(:)
-      integer, allocatable :: unknowns(:)
-      integer :: column(0:b%unknowns), row, n, k, c
+         call fill(a, drive_of)
+         v%rows = size(a, 1)
+         v%n = size(a, 2)
+         call decompose(a, 0.0_wp, v)
+         allocate (y(drives, v%rows - v%rank), source=0.0_wp)
+         do k = 1, v%rows
+            if (drive_of(k) > 0) y(drive_of(k), :) = v%left(k, v%rank + 1:)
+         end do
+      end function null_drives
 
-      unit = s
-      unit%u%rate = 0.0_wp
-      unit%drive_value = 0.0_wp
-      allocate (unknowns(0), drive_of(0))
-      do k = 1, size(list)
-         associate (block => b%list(list(k)))
-            unknowns = [unknowns, b%unknown(block%first:block%last)]
-            drive_of = [drive_of, b%rows(block%first_row:block%last_row)%drive]
-         end associate
-      end do
-      column = 0
-      column(unknowns) = [(c, c=1, size(unknowns))]
-      allocate (a(size(drive_of), size(unknowns)), source=0.0_wp)
-      row = 0
-      n = 0
-      do k = 1, size(list)
-         associate (block => b%list(list(k)), rows => b%list(list(k))%last_row - b%list(list(k))%first_row + 1, &
-            width => b%list(list(k))%last - b%list(list(k))%first + 1)
-            if (block%direct) then
-               a(row + 1, n + 1) = 1.0_wp
-               c = column(b%rows(block%first_row)%other)
-               if (c > 0) a(row + 1, c) = -1.0_wp
-            else
-               allocate (own(rows*width), r(rows))
-               call find_known_parts(b, list(k), unit)
-               call assemble_dense(b, list(k), unit, own, r)
-               a(row + 1:row + rows, n + 1:n + width) = reshape(own, [rows, width])
-               do c = 1, n
-                  unit%u(unknowns(c))%rate = 1.0_wp
+      !> The Jacobian `a` (rows, unknowns) of all blocks of `list` together, and whose rows these are (0: a pair's). The
+      !> coefficients of an unknown of an earlier block are what its rate 1 alone leaves to the rates of a block.
+      subroutine fill(a, drive_of)
+         real(wp), allocatable, intent(out) :: a(:, :)
+         integer, allocatable, intent(out) :: drive_of(:)
+         type(state_t) :: unit
+         real(wp), allocatable :: own(:), r(:)
+         integer, allocatable :: unknowns(:)
+         integer :: column(0:b%unknowns), row, n, k, c
+
+         unit = s
+         unit%u%rate = 0.0_wp
+         unit%drive_value = 0.0_wp
+         allocate (unknowns(0), drive_of(0))
+         do k = 1, size(list)
+            associate (block => b%list(list(k)))
+               unknowns = [unknowns, b%unknown(block%first:block%last)]
+               drive_of = [drive_of, b%rows(block%first_row:block%last_row)%drive]
+            end associate
+         end do
+         column = 0
+         column(unknowns) = [(c, c=1, size(unknowns))]
+         allocate (a(size(drive_of), size(unknowns)), source=0.0_wp)
+         row = 0
+         n = 0
+         do k = 1, size(list)
+            associate (block => b%list(list(k)), rows => b%list(list(k))%last_row - b%list(list(k))%first_row + 1, &
+               width => b%list(list(k))%last - b%list(list(k))%first + 1)
+               if (block%direct) then
+                  a(row + 1, n + 1) = 1.0_wp
+                  c = column(b%rows(block%first_row)%other)
+                  if (c > 0) a(row + 1, c) = -1.0_wp
+               else
+                  allocate (own(rows*width), r(rows))
                   call find_known_parts(b, list(k), unit)
-                  call right_hand_side(b, list(k), 1, unit, r)
-                  a(row + 1:row + rows, c) = -r
-                  unit%u(unknowns(c))%rate = 0.0_wp
-               end do
-               deallocate (own, r)
-            end if
-            row = row + rows
-            n = n + width
-         end associate
-      end do
-   end subroutine fill
+                  call assemble_dense(b, list(k), unit, own, r)
+                  a(row + 1:row + rows, n + 1:n + width) = reshape(own, [rows, width])
+                  do c = 1, n
+                     unit%u(unknowns(c))%rate = 1.0_wp
+                     call find_known_parts(b, list(k), unit)
+                     call right_hand_side(b, list(k), 1, unit, r)
+                     a(row + 1:row + rows, c) = -r
+                     unit%u(unknowns(c))%rate = 0.0_wp
+                  end do
+                  deallocate (own, r)
+               end if
+               row = row + rows
+               n = n + width
+            end associate
+         end do
+      end subroutine fill
 
-   !> Makes entry `d` of column `c` of `y` 1, that of all others 0; the columns from `c` on may change places.
-   pure subroutine eliminate(y, d, c)
-      real(wp), intent(inout) :: y(:, :)
-      integer, intent(in) :: d, c
-      integer :: at, k
+      !> Makes entry `d` of column `c` of `y` 1, that of all others 0; the columns from `c` on may change places.
+      subroutine eliminate(c)
+         integer, intent(in) :: c
+         integer :: at, k
 
-      at = c - 1 + maxloc(abs(y(d, c:)), dim=1)
-      y(:, [c, at]) = y(:, [at, c])
-      y(:, c) = y(:, c)/y(d, c)
-      do k = 1, size(y, 2)
-         if (k /= c) y(:, k) = y(:, k) - y(:, c)*y(d, k)
-      end do
-   end subroutine eliminate
+         at = c - 1 + maxloc(abs(y(d, c:)), dim=1)
+         y(:, [c, at]) = y(:, [at, c])
+         y(:, c) = y(:, c)/y(d, c)
+         do k = 1, size(y, 2)
+            if (k /= c) y(:, k) = y(:, k) - y(:, c)*y(d, k)
+         end do
+      end subroutine eliminate
+   end subroutine judge_drives
 end module block_rank

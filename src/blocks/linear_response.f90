@@ -12,8 +12,7 @@ module linear_response
    use number_changes, only: change_t
    use links_tree, only: tree_t, new_tree
    use loop_equations, only: new_equations
-   use blocks, only: row_t
-   use block_needs, only: largest_known
+   use blocks, only: row_t, largest_known
    use block_matrix, only: solve_again
    use block_solver, only: solve_block
    use block_engine, only: block_engine_t, slide_units

@@ -15,8 +15,7 @@ module rounding_response
    use planar, only: rotated
    use mechanism, only: mechanism_t
    use motion, only: motion_t, new_motion
-   use blocks, only: row_t, loop_components, loop_projection
-   use block_needs, only: largest_known
+   use blocks, only: row_t, loop_components, loop_projection, largest_known
    use block_matrix, only: solve_first, solve_again, solve_many
    use block_state, only: new_state, find_known_parts
    use block_solver, only: make_workspace, solve_block

@@ -6,8 +6,7 @@
 module singularity
    use kinds, only: wp
    use motion, only: singular_unclear, singular_change, singular_dead
-   use blocks, only: blocks_t, block_loop_t, loop_projection, loop_angles
-   use block_needs, only: largest_known
+   use blocks, only: blocks_t, block_loop_t, loop_projection, loop_angles, largest_known
    use block_state, only: state_t, unknown_t, find_known_parts
    use block_equations, only: right_hand_side
    use block_rank, only: values_t, decomposed, moving_unknowns

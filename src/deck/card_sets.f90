@@ -149,136 +149,128 @@ contains
       type(card_set_t), intent(inout) :: set
       integer :: n
 
-      set%named(request_link)%card = cards_of(set, [form_ground, form_link])
-      set%named(request_point)%card = cards_of(set, [form_point, form_joint, form_joint])
-      set%named(request_pair)%card = cards_of(set, [form_revolute, form_prism, form_joint])
+      set%named(request_link)%card = cards_of([form_ground, form_link])
+      set%named(request_point)%card = cards_of([form_point, form_joint, form_joint])
+      set%named(request_pair)%card = cards_of([form_revolute, form_prism, form_joint])
       allocate (set%mechanism%links(size(set%named(request_link)%card)))
       allocate (set%mechanism%points(size(set%named(request_point)%card)))
       allocate (set%mechanism%pairs(size(set%named(request_pair)%card)))
       do n = 1, size(set%mechanism%links)
-         call build_link(set, n)
+         call build_link()
       end do
       do n = 1, size(set%mechanism%points)
-         call build_point(set, n)
+         call build_point()
       end do
       do n = 1, size(set%mechanism%pairs)
-         call build_pair(set, n)
+         call build_pair()
       end do
+
+   contains
+
+      !> Link number `n`, of a GROUND or LINK card.
+      subroutine build_link()
+
+         associate (card => set%cards(set%named(request_link)%card(n)))
+            set%mechanism%links(n) = link_t(name=card%label(label_a), ground=card%form == form_ground, &
+               position=card%real*[1.0_wp, 1.0_wp, set%angle_unit])
+         end associate
+         call define_name(request_link, label_a)
+      end subroutine build_link
+
+      !> Point number `n`, of a POINT card. The links are there.
+      subroutine build_point()
+         integer :: k, link
+
+         k = set%named(request_point)%card(n)
+         if (set%cards(k)%form == form_joint) then
+            call build_joint_point()
+            return
+         end if
+         call define_name(request_point, label_a)
+         call look_up(set, request_link, k, label_b, link)
+         set%mechanism%points(n) = point_t(name=set%cards(k)%label(label_a), link=link, offset=set%cards(k)%real(1:2))
+      end subroutine build_point
+
+      !> Point number `n`, one of the two of a JOINT card, which gives their place in the drawing: its place in the axes
+      !> of its link follows from where the link's card puts these. Both have the name of the card; it stands for the
+      !> point of the first link that is not ground.
+      subroutine build_joint_point()
+         integer :: k, link
+         logical :: is_first, is_ground
+
+         k = set%named(request_point)%card(n)
+         is_first = set%cards(k)%point == 0
+         if (is_first) set%cards(k)%point = n
+         call look_up(set, request_link, k, merge(label_b, label_c, is_first), link)
+         associate (m => set%mechanism, place => set%cards(k)%real(1:2))
+            m%points(n) = point_t(name=set%cards(k)%label(label_a), link=link, offset=place)
+            if (link > 0) m%points(n)%offset = &
+               rotated(place - m%links(link)%position(:2), direction(-m%links(link)%position(3)))
+            link = m%points(set%cards(k)%point)%link
+            is_ground = .false.
+            if (link > 0) is_ground = m%links(link)%ground
+         end associate
+         if (is_first .neqv. is_ground) call define_name(request_point, label_a)
+      end subroutine build_joint_point
+
+      !> Pair number `n`, of a REVOLUTE, PRISM or JOINT card. The points are there. It must join two links, not both of
+      !> them ground.
+      subroutine build_pair()
+         integer :: k, i, j
+
+         k = set%named(request_pair)%card(n)
+         if (set%cards(k)%form == form_joint) then
+            i = set%cards(k)%point
+            j = i + 1
+         else
+            call look_up(set, request_point, k, label_a, i)
+            call look_up(set, request_point, k, label_b, j)
+         end if
+         associate (card => set%cards(k), pair => set%mechanism%pairs(n))
+            pair = pair_t(name=card%label(name_field(card%form)), point_i=i, point_j=j)
+            if (card%form == form_prism) pair = pair_t(pair_prismatic, pair%name, i, j, card%real(1)*set%angle_unit, &
+               card%real(2), card%real(3)*set%angle_unit)
+         end associate
+         call define_name(request_pair, name_field(set%cards(k)%form))
+         if (i == 0 .or. j == 0) return
+         i = set%mechanism%points(i)%link
+         j = set%mechanism%points(j)%link
+         if (i == 0 .or. j == 0) return
+         if (i == j) then
+            call add_card_error(set, pair_one_link, k, label_c, trim(set%mechanism%links(i)%name))
+         else if (set%mechanism%links(i)%ground .and. set%mechanism%links(j)%ground) then
+            call add_card_error(set, pair_grounds, k, label_c)
+         end if
+      end subroutine build_pair
+
+      !> The numbers of all cards of the forms `forms_asked`, in the order of the deck; twice those of a form that is
+      !> there twice.
+      pure function cards_of(forms_asked) result(list)
+         integer, intent(in) :: forms_asked(:)
+         integer :: list(sum(set%number_of(forms_asked)))
+         integer :: k, n, many
+
+         n = 0
+         do k = 1, set%count
+            many = count(set%cards(k)%form == forms_asked)
+            list(n + 1:n + many) = k
+            n = n + many
+         end do
+      end function cards_of
+
+      !> Enters the name in label `i` (label_a to label_c) of the card of link, point or pair (`kind`) number `n`. A
+      !> name that is there already is an error.
+      subroutine define_name(kind, i)
+         integer, intent(in) :: kind, i
+         integer :: k, earlier
+
+         k = set%named(kind)%card(n)
+         if (set%cards(k)%label(i) == '') return
+         call put_name(set%named(kind)%table, set%cards(k)%label(i), n, earlier)
+         if (earlier == 0) return
+         call add_card_error(set, name_repeated, k, i, whole(set%cards(set%named(kind)%card(earlier))%card%number))
+      end subroutine define_name
    end subroutine build_bodies
-
-   !> Link number `n`, of a GROUND or LINK card.
-   subroutine build_link(set, n)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: n
-
-      associate (card => set%cards(set%named(request_link)%card(n)))
-         set%mechanism%links(n) = link_t(name=card%label(label_a), ground=card%form == form_ground, &
-            position=card%real*[1.0_wp, 1.0_wp, set%angle_unit])
-      end associate
-      call define_name(set, request_link, n, label_a)
-   end subroutine build_link
-
-   !> Point number `n`, of a POINT card. The links are there.
-   subroutine build_point(set, n)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: n
-      integer :: k, link
-
-      k = set%named(request_point)%card(n)
-      if (set%cards(k)%form == form_joint) then
-         call build_joint_point(set, n)
-         return
-      end if
-      call define_name(set, request_point, n, label_a)
-      call look_up(set, request_link, k, label_b, link)
-      set%mechanism%points(n) = point_t(name=set%cards(k)%label(label_a), link=link, offset=set%cards(k)%real(1:2))
-   end subroutine build_point
-
-   !> Point number `n`, one of the two of a JOINT card, which gives their place in the drawing: its place in the axes of
-   !> its link follows from where the link's card puts these. Both have the name of the card; it stands for the point
-   !> of the first link that is not ground.
-   subroutine build_joint_point(set, n)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: n
-      integer :: k, link
-      logical :: is_first, is_ground
-
-      k = set%named(request_point)%card(n)
-      is_first = set%cards(k)%point == 0
-      if (is_first) set%cards(k)%point = n
-      call look_up(set, request_link, k, merge(label_b, label_c, is_first), link)
-      associate (m => set%mechanism, place => set%cards(k)%real(1:2))
-         m%points(n) = point_t(name=set%cards(k)%label(label_a), link=link, offset=place)
-         if (link > 0) m%points(n)%offset = &
-            rotated(place - m%links(link)%position(:2), direction(-m%links(link)%position(3)))
-         link = m%points(set%cards(k)%point)%link
-         is_ground = .false.
-         if (link > 0) is_ground = m%links(link)%ground
-      end associate
-      if (is_first .neqv. is_ground) call define_name(set, request_point, n, label_a)
-   end subroutine build_joint_point
-
-   !> Pair number `n`, of a REVOLUTE, PRISM or JOINT card. The points are there. It must join two links, not both of
-   !> them ground.
-   subroutine build_pair(set, n)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: n
-      integer :: k, i, j
-
-      k = set%named(request_pair)%card(n)
-      if (set%cards(k)%form == form_joint) then
-         i = set%cards(k)%point
-         j = i + 1
-      else
-         call look_up(set, request_point, k, label_a, i)
-         call look_up(set, request_point, k, label_b, j)
-      end if
-      associate (card => set%cards(k), pair => set%mechanism%pairs(n))
-         pair = pair_t(name=card%label(name_field(card%form)), point_i=i, point_j=j)
-         if (card%form == form_prism) pair = pair_t(pair_prismatic, pair%name, i, j, card%real(1)*set%angle_unit, &
-            card%real(2), card%real(3)*set%angle_unit)
-      end associate
-      call define_name(set, request_pair, n, name_field(set%cards(k)%form))
-      if (i == 0 .or. j == 0) return
-      i = set%mechanism%points(i)%link
-      j = set%mechanism%points(j)%link
-      if (i == 0 .or. j == 0) return
-      if (i == j) then
-         call add_card_error(set, pair_one_link, k, label_c, trim(set%mechanism%links(i)%name))
-      else if (set%mechanism%links(i)%ground .and. set%mechanism%links(j)%ground) then
-         call add_card_error(set, pair_grounds, k, label_c)
-      end if
-   end subroutine build_pair
-
-   !> The numbers of all cards of the forms `forms_asked`, in the order of the deck; twice those of a form that is there
-   !> twice.
-   pure function cards_of(set, forms_asked) result(list)
-      type(card_set_t), intent(in) :: set
-      integer, intent(in) :: forms_asked(:)
-      integer :: list(sum(set%number_of(forms_asked)))
-      integer :: k, n, many
-
-      n = 0
-      do k = 1, set%count
-         many = count(set%cards(k)%form == forms_asked)
-         list(n + 1:n + many) = k
-         n = n + many
-      end do
-   end function cards_of
-
-   !> Enters the name in label `i` (label_a to label_c) of the card of link, point or pair (`kind`) number `n`. A name
-   !> that is there already is an error.
-   subroutine define_name(set, kind, n, i)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: kind, n, i
-      integer :: k, earlier
-
-      k = set%named(kind)%card(n)
-      if (set%cards(k)%label(i) == '') return
-      call put_name(set%named(kind)%table, set%cards(k)%label(i), n, earlier)
-      if (earlier == 0) return
-      call add_card_error(set, name_repeated, k, i, whole(set%cards(set%named(kind)%card(earlier))%card%number))
-   end subroutine define_name
 
    !> The number `n` of the link, point or pair (`kind`) that label `i` (label_a to label_c) of card `k` names. 0: the
    !> label is blank, which is an error of its own, or unknown, an error unless a card that could define it was not

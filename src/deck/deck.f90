@@ -10,8 +10,7 @@ module deck
    use cards, only: card_t, card_fields, card_name, small_field, is_passed_over, find_form, form_link, form_time, &
       form_at, form_vary, form_end
    use deck_drives, only: build_drives, check_terms
-   use deck_options, only: build_options, build_requests, build_branches
-   use deck_centres, only: build_centres, check_centres
+   use deck_options, only: build_options, build_requests, build_branches, build_centres, check_centres
    use deck_tolerances, only: build_tolerances
    use deck_remarks, only: check_unused, check_angles, check_guides, build_echo
    use deck_source, only: source_t, open_source, next_card, close_source

@@ -39,53 +39,193 @@ contains
       do k = 1, set%count
          if (set%cards(k)%form == form_drive) then
             n = n + 1
-            call build_drive(set, k, drive)
-            call build_terms(set, k, n, drive)
+            call build_drive(drive)
+            call build_terms(n)
             set%mechanism%drives(n) = drive
-         else if (is_term(set, k)) then
+         else if (is_term(k)) then
             ! A card with a wrong name may have been a DRIVE card.
             if (all(above /= [form_drive, form_add, form_rise, form_unknown])) &
                call add_card_error(set, add_alone, k, card_name)
          end if
          if (set%cards(k)%form /= form_toler) above = set%cards(k)%form
       end do
+
+   contains
+
+      !> The `drive` of the DRIVE card `k`: its kind, what it drives, and its polynomial.
+      subroutine build_drive(drive)
+         type(drive_t), intent(out) :: drive
+         integer :: kind
+
+         associate (card => set%cards(k))
+            call match_word(set, k, drive_words, drive_kind, kind)
+            if (kind == 0) return
+            drive%kind = kind
+            drive%polynomial = card%real*unit_of(drive)
+            if (kind == drive_angle .and. card%label(label_c) == turns_a_minute) then
+               call take_turns(drive%polynomial(2))
+            else if (kind /= drive_relangle .and. card%label(label_c) /= '' .and. card%valid) then
+               call add_card_error(set, field_unused, k, label_c)
+            end if
+            call look_up(set, driven_kinds(kind), k, label_b, drive%subject)
+            if (kind == drive_relangle) then
+               call look_up(set, request_link, k, label_c, drive%second)
+               if (card%label(label_c) == '' .and. card%valid) call add_card_error(set, field_blank, k, label_c)
+            end if
+         end associate
+         call check_subject(drive)
+      end subroutine build_drive
+
+      !> The rate of the DRIVE card `k`, in turns a minute, as `rate` in radians a unit of time.
+      subroutine take_turns(rate)
+         real(wp), intent(out) :: rate
+
+         if (all(time_words /= set%mechanism%time_unit)) call add_card_error(set, rpm_unit, k, label_c)
+         rate = set%cards(k)%real(2)*turns_unit(set)
+      end subroutine take_turns
+
+      !> Adds an error if what the DRIVE card `k` drives cannot be driven, as far as it is known.
+      subroutine check_subject(drive)
+         type(drive_t), intent(in) :: drive
+         type(error_code_t), parameter :: ground_errors(drive_angle:drive_relangle) = &
+            [drive_ground, drive_ground_point, drive_ground_point, drive_grounds]
+         integer :: links(3), label
+
+         if (drive%subject == 0) return
+         label = merge(label_c, label_b, drive%kind == drive_relangle)
+         if (drive%kind == drive_slide) then
+            if (set%mechanism%pairs(drive%subject)%kind == pair_revolute) &
+               call add_card_error(set, drive_revolute, k, label)
+         else if (drive%second == drive%subject) then
+            call add_card_error(set, drive_one_link, k, label)
+         else
+            links = drive_links(set%mechanism, drive)
+            if (any(links == 0) .or. (drive%kind == drive_relangle .and. drive%second == 0)) return
+            if (all(set%mechanism%links(links)%ground)) call add_card_error(set, ground_errors(drive%kind), k, label)
+         end if
+      end subroutine check_subject
+
+      !> The unit of the coordinate of `drive`: the deck's unit of angles in radians, or 1 for lengths.
+      pure real(wp) function unit_of(drive) result(unit)
+         type(drive_t), intent(in) :: drive
+
+         unit = merge(set%angle_unit, 1.0_wp, driven_kinds(drive%kind) == request_link)
+      end function unit_of
+
+      !> Whether card `k` gives a term of the drive above it.
+      pure logical function is_term(k)
+         integer, intent(in) :: k
+
+         is_term = any(set%cards(k)%form == [form_add, form_rise])
+      end function is_term
+
+      !> The terms of drive number `d`, from the ADD and RISE cards that follow its card `k`.
+      subroutine build_terms(d)
+         integer, intent(in) :: d
+         integer :: i, above, n, row, last
+
+         set%cards(k)%drive = d
+         n = 0
+         row = 0
+         above = k
+         last = k
+         do i = k + 1, set%count
+            if (set%cards(i)%form == form_toler) cycle
+            if (.not. is_term(i)) exit
+            row = row + 1
+            if (.not. (is_row(set%cards(i)) .and. is_row(set%cards(above)))) then
+               row = 1
+               n = n + 1
+            end if
+            set%cards(i)%drive = d
+            set%cards(i)%term = n
+            set%cards(i)%row = row
+            above = i
+            last = i
+         end do
+         allocate (drive%terms(n))
+         do i = k + 1, last
+            if (set%cards(i)%form == form_toler .or. set%cards(i)%row > 1) cycle
+            associate (term => drive%terms(set%cards(i)%term))
+               if (set%cards(i)%form == form_rise) then
+                  call build_rise(i, unit_of(drive), term)
+               else if (is_row(set%cards(i))) then
+                  call build_table(pack([(row, row=i, last)], set%cards(i:last)%form == form_add &
+                     .and. set%cards(i:last)%term == set%cards(i)%term), unit_of(drive), term)
+               else
+                  call build_term(i, unit_of(drive), term)
+               end if
+            end associate
+         end do
+      end subroutine build_terms
+
+      !> Whether `card` is a row of a table.
+      elemental logical function is_row(card)
+         type(parsed_card_t), intent(in) :: card
+
+         is_row = card%form == form_add .and. card%label(label_a) == term_words(term_table)
+      end function is_row
+
+      !> The `term` that begins with the ADD card `k`. `unit`: that of the driven coordinate.
+      subroutine build_term(k, unit, term)
+         integer, intent(in) :: k
+         real(wp), intent(in) :: unit
+         type(term_t), intent(inout) :: term
+         integer :: kind
+
+         call match_word(set, k, term_words, add_kind, kind)
+         associate (card => set%cards(k))
+            select case (kind)
+            case (term_harmonic)
+               term%r = card%real*[unit, set%angle_unit, set%angle_unit]
+            case (term_power)
+               term%kind = term_power
+               term%r = card%real*[unit, 1.0_wp, 1.0_wp]
+            end select
+            if (card%valid .and. .not. any(card%given)) call add_card_error(set, add_blank, k, card_name)
+         end associate
+      end subroutine build_term
+
+      !> The rise of the RISE card `k`, as `term`. `unit`: that of its lift.
+      subroutine build_rise(k, unit, term)
+         integer, intent(in) :: k
+         real(wp), intent(in) :: unit
+         type(term_t), intent(inout) :: term
+         integer :: law
+
+         call match_word(set, k, rise_words, rise_law, law)
+         associate (card => set%cards(k))
+            term%kind = term_cycloid + max(law, 1) - 1
+            term%r = card%real*[1.0_wp, 1.0_wp, unit]
+            if (card%valid .and. card%real(2) <= 0.0_wp) call add_card_error(set, rise_duration, k, real_2)
+            if (term%kind >= term_cosine) call add_card_remark(set, remark_jumps, k, label_a)
+         end associate
+      end subroutine build_rise
+
+      !> The table on the ADD cards `rows`, as `term`. `unit`: that of its values.
+      subroutine build_table(rows, unit, term)
+         integer, intent(in) :: rows(:)
+         real(wp), intent(in) :: unit
+         type(term_t), intent(inout) :: term
+         integer :: i
+
+         term%kind = term_table
+         term%knots = set%cards(rows)%real(1)
+         term%values = set%cards(rows)%real(2)*unit
+         do i = 1, size(rows)
+            associate (k => rows(i), above => rows(max(1, i - 1)))
+               if (.not. set%cards(k)%valid) cycle
+               if (.not. any(set%cards(k)%given)) then
+                  call add_card_error(set, add_blank, k, card_name)
+               else if (i > 1) then
+                  if (set%cards(above)%valid .and. set%cards(k)%real(1) <= set%cards(above)%real(1)) &
+                     call add_card_error(set, table_order, k, real_1)
+               end if
+            end associate
+         end do
+         if (size(rows) == 1) call add_card_error(set, table_short, rows(1), label_a)
+      end subroutine build_table
    end subroutine build_drives
-
-   !> The `drive` of the DRIVE card `k`: its kind, what it drives, and its polynomial.
-   subroutine build_drive(set, k, drive)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: k
-      type(drive_t), intent(out) :: drive
-      integer :: kind
-
-      associate (card => set%cards(k))
-         call match_word(set, k, drive_words, drive_kind, kind)
-         if (kind == 0) return
-         drive%kind = kind
-         drive%polynomial = card%real*unit_of(set, drive)
-         if (kind == drive_angle .and. card%label(label_c) == turns_a_minute) then
-            call take_turns(set, k, drive%polynomial(2))
-         else if (kind /= drive_relangle .and. card%label(label_c) /= '' .and. card%valid) then
-            call add_card_error(set, field_unused, k, label_c)
-         end if
-         call look_up(set, driven_kinds(kind), k, label_b, drive%subject)
-         if (kind == drive_relangle) then
-            call look_up(set, request_link, k, label_c, drive%second)
-            if (card%label(label_c) == '' .and. card%valid) call add_card_error(set, field_blank, k, label_c)
-         end if
-      end associate
-      call check_subject(set, k, drive)
-   end subroutine build_drive
-
-   !> The rate of the DRIVE card `k`, in turns a minute, as `rate` in radians a unit of time.
-   subroutine take_turns(set, k, rate)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: k
-      real(wp), intent(out) :: rate
-
-      if (all(time_words /= set%mechanism%time_unit)) call add_card_error(set, rpm_unit, k, label_c)
-      rate = set%cards(k)%real(2)*turns_unit(set)
-   end subroutine take_turns
 
    !> A turn a minute in radians a unit of time.
    pure real(wp) function turns_unit(set)
@@ -93,157 +233,6 @@ contains
 
       turns_unit = 2.0_wp*pi/minutes(max(1, findloc(time_words, set%mechanism%time_unit, dim=1)))
    end function turns_unit
-
-   !> Adds an error if what the DRIVE card `k` drives cannot be driven, as far as it is known.
-   subroutine check_subject(set, k, drive)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: k
-      type(drive_t), intent(in) :: drive
-      type(error_code_t), parameter :: ground_errors(drive_angle:drive_relangle) = &
-         [drive_ground, drive_ground_point, drive_ground_point, drive_grounds]
-      integer :: links(3), label
-
-      if (drive%subject == 0) return
-      label = merge(label_c, label_b, drive%kind == drive_relangle)
-      if (drive%kind == drive_slide) then
-         if (set%mechanism%pairs(drive%subject)%kind == pair_revolute) &
-            call add_card_error(set, drive_revolute, k, label)
-      else if (drive%second == drive%subject) then
-         call add_card_error(set, drive_one_link, k, label)
-      else
-         links = drive_links(set%mechanism, drive)
-         if (any(links == 0) .or. (drive%kind == drive_relangle .and. drive%second == 0)) return
-         if (all(set%mechanism%links(links)%ground)) call add_card_error(set, ground_errors(drive%kind), k, label)
-      end if
-   end subroutine check_subject
-
-   !> The unit of the coordinate of `drive`: the deck's unit of angles in radians, or 1 for lengths.
-   pure real(wp) function unit_of(set, drive) result(unit)
-      type(card_set_t), intent(in) :: set
-      type(drive_t), intent(in) :: drive
-
-      unit = merge(set%angle_unit, 1.0_wp, driven_kinds(drive%kind) == request_link)
-   end function unit_of
-
-   !> Whether card `k` gives a term of the drive above it.
-   pure logical function is_term(set, k)
-      type(card_set_t), intent(in) :: set
-      integer, intent(in) :: k
-
-      is_term = any(set%cards(k)%form == [form_add, form_rise])
-   end function is_term
-
-   !> The terms of drive number `d`, from the ADD and RISE cards that follow its card `k`.
-   subroutine build_terms(set, k, d, drive)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: k, d
-      type(drive_t), intent(inout) :: drive
-      integer :: i, above, n, row, last
-
-      set%cards(k)%drive = d
-      n = 0
-      row = 0
-      above = k
-      last = k
-      do i = k + 1, set%count
-         if (set%cards(i)%form == form_toler) cycle
-         if (.not. is_term(set, i)) exit
-         row = row + 1
-         if (.not. (is_row(set%cards(i)) .and. is_row(set%cards(above)))) then
-            row = 1
-            n = n + 1
-         end if
-         set%cards(i)%drive = d
-         set%cards(i)%term = n
-         set%cards(i)%row = row
-         above = i
-         last = i
-      end do
-      allocate (drive%terms(n))
-      do i = k + 1, last
-         if (set%cards(i)%form == form_toler .or. set%cards(i)%row > 1) cycle
-         associate (term => drive%terms(set%cards(i)%term))
-            if (set%cards(i)%form == form_rise) then
-               call build_rise(set, i, unit_of(set, drive), term)
-            else if (is_row(set%cards(i))) then
-               call build_table(set, pack([(row, row=i, last)], set%cards(i:last)%form == form_add &
-                  .and. set%cards(i:last)%term == set%cards(i)%term), unit_of(set, drive), term)
-            else
-               call build_term(set, i, unit_of(set, drive), term)
-            end if
-         end associate
-      end do
-   end subroutine build_terms
-
-   !> Whether `card` is a row of a table.
-   elemental logical function is_row(card)
-      type(parsed_card_t), intent(in) :: card
-
-      is_row = card%form == form_add .and. card%label(label_a) == term_words(term_table)
-   end function is_row
-
-   !> The `term` that begins with the ADD card `k`. `unit`: that of the driven coordinate.
-   subroutine build_term(set, k, unit, term)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: k
-      real(wp), intent(in) :: unit
-      type(term_t), intent(inout) :: term
-      integer :: kind
-
-      call match_word(set, k, term_words, add_kind, kind)
-      associate (card => set%cards(k))
-         select case (kind)
-         case (term_harmonic)
-            term%r = card%real*[unit, set%angle_unit, set%angle_unit]
-         case (term_power)
-            term%kind = term_power
-            term%r = card%real*[unit, 1.0_wp, 1.0_wp]
-         end select
-         if (card%valid .and. .not. any(card%given)) call add_card_error(set, add_blank, k, card_name)
-      end associate
-   end subroutine build_term
-
-   !> The rise of the RISE card `k`, as `term`. `unit`: that of its lift.
-   subroutine build_rise(set, k, unit, term)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: k
-      real(wp), intent(in) :: unit
-      type(term_t), intent(inout) :: term
-      integer :: law
-
-      call match_word(set, k, rise_words, rise_law, law)
-      associate (card => set%cards(k))
-         term%kind = term_cycloid + max(law, 1) - 1
-         term%r = card%real*[1.0_wp, 1.0_wp, unit]
-         if (card%valid .and. card%real(2) <= 0.0_wp) call add_card_error(set, rise_duration, k, real_2)
-         if (term%kind >= term_cosine) call add_card_remark(set, remark_jumps, k, label_a)
-      end associate
-   end subroutine build_rise
-
-   !> The table on the ADD cards `rows`, as `term`. `unit`: that of its values.
-   subroutine build_table(set, rows, unit, term)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: rows(:)
-      real(wp), intent(in) :: unit
-      type(term_t), intent(inout) :: term
-      integer :: i
-
-      term%kind = term_table
-      term%knots = set%cards(rows)%real(1)
-      term%values = set%cards(rows)%real(2)*unit
-      do i = 1, size(rows)
-         associate (k => rows(i), above => rows(max(1, i - 1)))
-            if (.not. set%cards(k)%valid) cycle
-            if (.not. any(set%cards(k)%given)) then
-               call add_card_error(set, add_blank, k, card_name)
-            else if (i > 1) then
-               if (set%cards(above)%valid .and. set%cards(k)%real(1) <= set%cards(above)%real(1)) &
-                  call add_card_error(set, table_order, k, real_1)
-            end if
-         end associate
-      end do
-      if (size(rows) == 1) call add_card_error(set, table_short, rows(1), label_a)
-   end subroutine build_table
 
    !> Adds an error for each term that, with its first two derivatives, does not exist at all instants. The set has no
    !> other error.

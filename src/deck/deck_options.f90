@@ -1,22 +1,23 @@
 !> The cards of a set that define no bodies and no drives: the options TITLE, UNITS, LANG and METHOD, the instants TIME
-!> and AT, and the requests PRINT, EXTREMES, RANGE, CIRCUITS, ASSEMBLY and BRANCH.
+!> and AT, and the requests PRINT, EXTREMES, RANGE, CIRCUITS, ASSEMBLY, BRANCH, POLE and CURVE.
 module deck_options
    use kinds, only: wp
    use planar, only: degree
    use mechanism, only: request_t, branch_request_t, request_link, request_point, request_pair, method_newton, &
-      method_words
+      method_words, request_pole, request_curve
    use card_sets, only: card_set_t, look_up, match_word, add_card_error
    use cards, only: title_field, card_name, label_a, label_b, label_c, real_1, real_2, forms, form_unknown, &
-      form_title, form_units, form_lang, form_time, form_at, form_method, form_print, form_extremes, &
-      form_range, form_circuits, form_branch, form_vary, form_assembly, form_prove
+      form_title, form_units, form_lang, form_time, form_at, form_method, form_print, form_extremes, form_range, &
+      form_circuits, form_branch, form_vary, form_assembly, form_prove, form_pole, form_curve
    use input_errors, only: card_repeated, lang_kind, units_angle, units_place, method_kind, tolerance_range, &
       time_point, number_range, field_blank, print_kind, print_all_name, print_repeated, print_nothing, extremes_time, &
-      extremes_ground, branch_ground, newton_needed, branch_repeated
+      extremes_ground, branch_ground, newton_needed, branch_repeated, centre_still, centre_apart
    use names, only: name_table_t, put_name, find_name
    use numerals, only: whole
+   use independent, only: part_of_links
    implicit none
    private
-   public :: build_options, build_requests, build_branches
+   public :: build_options, build_requests, build_branches, build_centres, check_centres
 
    !> The largest number of steps that the field of a TIME card can hold.
    integer, parameter :: max_steps = 99999999
@@ -37,19 +38,19 @@ contains
       type(card_set_t), intent(inout) :: set
       integer :: k, place
 
-      call check_repeats(set)
+      call check_repeats()
       do k = 1, set%count
          associate (card => set%cards(k), m => set%mechanism)
             select case (card%form)
             case (form_title)
                m%title = card%card%text(title_field%first:title_field%last)
             case (form_units)
-               call read_units(set, k)
+               call read_units()
             case (form_lang)
                call match_word(set, k, ['EN', 'PL'], lang_kind, place)
                m%polish = place == 2
             case (form_method)
-               call read_method(set, k)
+               call read_method()
             case (form_range)
                m%ranges = .true.
             case (form_assembly)
@@ -59,106 +60,101 @@ contains
             case (form_prove)
                m%proves = .true.
             case (form_time)
-               if (card%valid) call read_time(set, k)
+               if (card%valid) call read_time()
             end select
          end associate
       end do
-      call read_instants(set)
+      call read_instants()
       do k = 1, set%count
          if (set%cards(k)%form == form_prove .and. set%mechanism%method /= method_newton) &
             call add_card_error(set, newton_needed, k, card_name)
       end do
       if (set%mechanism%degrees) set%angle_unit = degree
-   end subroutine build_options
 
-   !> Adds an error for each repetition of a card that is allowed once in a set.
-   subroutine check_repeats(set)
-      type(card_set_t), intent(inout) :: set
-      integer :: first(size(forms)), form, k
+   contains
 
-      first = 0
-      do k = 1, set%count
-         form = set%cards(k)%form
-         if (form == form_unknown) cycle
-         if (.not. forms(form)%once) cycle
-         if (first(form) == 0) first(form) = k
-         if (first(form) < k) &
-            call add_card_error(set, card_repeated, k, card_name, whole(set%cards(first(form))%card%number))
-      end do
-   end subroutine check_repeats
+      !> Adds an error for each repetition of a card that is allowed once in a set.
+      subroutine check_repeats()
+         integer :: first(size(forms)), form, k
 
-   !> The UNITS card `k`.
-   subroutine read_units(set, k)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: k
-      integer :: i
-
-      associate (label => set%cards(k)%label, m => set%mechanism)
-         if (label(label_a) /= '') m%length_unit = label(label_a)
-         if (label(label_c) /= '') m%time_unit = label(label_c)
-         m%degrees = label(label_b) == 'DEG'
-         if (.not. set%cards(k)%valid) return
-         ! DEG as the unit of length would leave all angles in radians.
-         do i = label_a, label_c, 2
-            if (any(label(i) == angle_words)) call add_card_error(set, units_place, k, i)
+         first = 0
+         do k = 1, set%count
+            form = set%cards(k)%form
+            if (form == form_unknown) cycle
+            if (.not. forms(form)%once) cycle
+            if (first(form) == 0) first(form) = k
+            if (first(form) < k) &
+               call add_card_error(set, card_repeated, k, card_name, whole(set%cards(first(form))%card%number))
          end do
-         if (all(label(label_b) /= ['   ', 'RAD', 'DEG'])) call add_card_error(set, units_angle, k, label_b)
-      end associate
-   end subroutine read_units
+      end subroutine check_repeats
 
-   !> The METHOD card `k`.
-   subroutine read_method(set, k)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: k
-      integer :: method
+      !> The UNITS card `k`.
+      subroutine read_units()
+         integer :: i
 
-      if (.not. set%cards(k)%valid) return
-      call match_word(set, k, method_words, method_kind, method)
-      if (method > 0) set%mechanism%method = method
-      associate (tolerance => set%cards(k)%real(1))
-         set%mechanism%tolerance = tolerance
-         if (tolerance < 0.0_wp .or. tolerance > max_tolerance .or. &
-             (tolerance > 0.0_wp .and. tolerance <= min_tolerance)) call add_card_error(set, tolerance_range, k, real_1)
-      end associate
-   end subroutine read_method
-
-   !> The TIME card `k`.
-   subroutine read_time(set, k)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: k
-
-      associate (card => set%cards(k), m => set%mechanism)
-         if (card%whole < 1 .or. card%whole > max_steps) then
-            call add_card_error(set, number_range, k, label_a, '1 TO '//whole(max_steps))
-         else if (.not. any(card%given(1:2))) then
-            call add_card_error(set, field_blank, k, real_2)
-         else if (.not. abs(card%real(2) - card%real(1)) > 0.0_wp) then
-            call add_card_error(set, time_point, k, real_2)
-         else
-            m%steps = card%whole
-            m%t0 = card%real(1)
-            m%t1 = card%real(2)
-         end if
-      end associate
-   end subroutine read_time
-
-   !> The instants of the AT cards, in their order.
-   subroutine read_instants(set)
-      type(card_set_t), intent(inout) :: set
-      real(wp) :: instants(3*set%number_of(form_at))
-      integer :: k, n
-
-      n = 0
-      do k = 1, set%count
-         if (set%cards(k)%form /= form_at) cycle
-         associate (card => set%cards(k), more => count(set%cards(k)%given))
-            if (card%valid .and. more == 0) call add_card_error(set, field_blank, k, real_1)
-            instants(n + 1:n + more) = pack(card%real, card%given)
-            n = n + more
+         associate (label => set%cards(k)%label, m => set%mechanism)
+            if (label(label_a) /= '') m%length_unit = label(label_a)
+            if (label(label_c) /= '') m%time_unit = label(label_c)
+            m%degrees = label(label_b) == 'DEG'
+            if (.not. set%cards(k)%valid) return
+            ! DEG as the unit of length would leave all angles in radians.
+            do i = label_a, label_c, 2
+               if (any(label(i) == angle_words)) call add_card_error(set, units_place, k, i)
+            end do
+            if (all(label(label_b) /= ['   ', 'RAD', 'DEG'])) call add_card_error(set, units_angle, k, label_b)
          end associate
-      end do
-      set%mechanism%at = instants(:n)
-   end subroutine read_instants
+      end subroutine read_units
+
+      !> The METHOD card `k`.
+      subroutine read_method()
+         integer :: method
+
+         if (.not. set%cards(k)%valid) return
+         call match_word(set, k, method_words, method_kind, method)
+         if (method > 0) set%mechanism%method = method
+         associate (tolerance => set%cards(k)%real(1))
+            set%mechanism%tolerance = tolerance
+            if (tolerance < 0.0_wp .or. tolerance > max_tolerance .or. &
+                (tolerance > 0.0_wp .and. tolerance <= min_tolerance)) call add_card_error(set, tolerance_range, k, &
+                   real_1)
+         end associate
+      end subroutine read_method
+
+      !> The TIME card `k`.
+      subroutine read_time()
+
+         associate (card => set%cards(k), m => set%mechanism)
+            if (card%whole < 1 .or. card%whole > max_steps) then
+               call add_card_error(set, number_range, k, label_a, '1 TO '//whole(max_steps))
+            else if (.not. any(card%given(1:2))) then
+               call add_card_error(set, field_blank, k, real_2)
+            else if (.not. abs(card%real(2) - card%real(1)) > 0.0_wp) then
+               call add_card_error(set, time_point, k, real_2)
+            else
+               m%steps = card%whole
+               m%t0 = card%real(1)
+               m%t1 = card%real(2)
+            end if
+         end associate
+      end subroutine read_time
+
+      !> The instants of the AT cards, in their order.
+      subroutine read_instants()
+         real(wp) :: instants(3*set%number_of(form_at))
+         integer :: k, n
+
+         n = 0
+         do k = 1, set%count
+            if (set%cards(k)%form /= form_at) cycle
+            associate (card => set%cards(k), more => count(set%cards(k)%given))
+               if (card%valid .and. more == 0) call add_card_error(set, field_blank, k, real_1)
+               instants(n + 1:n + more) = pack(card%real, card%given)
+               n = n + more
+            end associate
+         end do
+         set%mechanism%at = instants(:n)
+      end subroutine read_instants
+   end subroutine build_options
 
    !> Builds `set`%mechanism%requests from the PRINT cards, in their order, and from the EXTREMES cards. For a subject
    !> of several PRINT cards or several EXTREMES cards the first one counts. Without a PRINT card, all links that are
@@ -329,4 +325,73 @@ contains
       if (.not. set%cards(k)%given(1)) call add_card_error(set, field_blank, k, real_1)
       request%t = set%cards(k)%real(1)
    end subroutine read_branch
+
+   !> Adds to `set`%mechanism%requests what the POLE cards ask for, then what the CURVE cards do, both in their order.
+   !> Unknown names and repeated cards are errors.
+   subroutine build_centres(set)
+      type(card_set_t), intent(inout) :: set
+      type(request_t) :: requests(set%number_of(form_pole) + set%number_of(form_curve))
+      integer :: card_of(size(requests)), form, k, i, n
+
+      n = 0
+      do form = form_pole, form_curve
+         do k = 1, set%count
+            if (set%cards(k)%form /= form .or. .not. set%cards(k)%valid) cycle
+            n = n + 1
+            card_of(n) = k
+            call read_centre(set, k, requests(n))
+            associate (one => requests(n), earlier => requests(:n - 1))
+               i = findloc(one%subject > 0 .and. earlier%kind == one%kind .and. earlier%subject == one%subject &
+                  .and. earlier%second == one%second, .true., dim=1)
+            end associate
+            if (i > 0) call add_card_error(set, print_repeated, k, label_a, whole(set%cards(card_of(i))%card%number))
+         end do
+      end do
+      if (n > 0) set%mechanism%requests = [set%mechanism%requests, requests(:n)]
+   end subroutine build_centres
+
+   !> What the POLE or CURVE card `k` asks for. A name that is unknown is number 0.
+   subroutine read_centre(set, k, one)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: k
+      type(request_t), intent(out) :: one
+
+      one%every = merge(set%cards(k)%whole, 1, set%cards(k)%whole_given)
+      if (one%every < 1) call add_card_error(set, number_range, k, label_c, '1 AND UP')
+      if (set%cards(k)%form == form_pole) then
+         one%kind = request_pole
+         call look_up(set, request_link, k, label_a, one%second)
+         call look_up(set, request_link, k, label_b, one%subject)
+      else
+         one%kind = request_curve
+         call look_up(set, request_point, k, label_a, one%subject)
+         call look_up(set, request_link, k, label_b, one%second)
+      end if
+   end subroutine read_centre
+
+   !> Of a set without errors: each pole and curve must be of two links that move relative to one another, in one
+   !> independent mechanism. A link that nothing uses is ground by now.
+   subroutine check_centres(set)
+      type(card_set_t), intent(inout) :: set
+      type(request_t) :: one
+      integer, allocatable :: part(:)
+      integer :: k, link, part_i, part_j
+
+      if (set%number_of(form_pole) + set%number_of(form_curve) == 0) return
+      part = part_of_links(set%mechanism)
+      do k = 1, set%count
+         if (all(set%cards(k)%form /= [form_pole, form_curve])) cycle
+         call read_centre(set, k, one)
+         link = one%subject
+         if (one%kind == request_curve) link = set%mechanism%points(link)%link
+         part_j = part(link)
+         part_i = 0
+         if (one%second > 0) part_i = part(one%second)
+         if (link == one%second .or. max(part_i, part_j) == 0) then
+            call add_card_error(set, centre_still, k, card_name)
+         else if (part_i /= part_j .and. min(part_i, part_j) > 0) then
+            call add_card_error(set, centre_apart, k, label_b)
+         end if
+      end do
+   end subroutine check_centres
 end module deck_options

@@ -42,76 +42,72 @@ contains
 
       rows = maxval([0, table%columns%row])
       pages = min(max_pages, (rows + page_rows - 1)/page_rows)
-      call put_beginning(o, m, table, suffix)
+      call put_beginning()
       call put(o, 'do for [over = 1:'//whole(1 + size(m%drives))//'] {')
       do i = 1, pages
-         call put_page(o, m, table, i)
+         call put_page(i)
       end do
       call put(o, '}')
       if (rows > pages*page_rows) call put(o, '# The other columns of the table, from ' &
          //whole(2 + size(m%drives))//' on, are drawn in the same way.')
-   end subroutine put_script
 
-   !> What holds for all pictures. A script finds the table beside itself, wherever gnuplot is started.
-   subroutine put_beginning(o, m, table, suffix)
-      type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(table_t), intent(in) :: table
-      character(*), intent(in) :: suffix
-      integer :: i
+   contains
 
-      call put(o, '# gnuplot plot'//suffix//'.gp draws table'//suffix//'.csv: over time in time'//suffix &
-         //'.svg and more, over the drives in drive'//suffix//'.svg and more')
-      call put(o, 'here = ARG0')
-      call put(o, 'while (here ne "" && here[strlen(here):] ne "/") { here = here[1:strlen(here) - 1] }')
-      call put(o, 'table = here."table'//suffix//'.csv"')
-      call put(o, '# The column on the abscissa: its picture and its name.')
-      call put(o, 'picture(c) = here.(c == 1 ? "time" : c == 2 ? "drive" : sprintf("drive%d", c - 1))."'//suffix//'"')
-      call add(o, 'abscissa(c) = c == 1 ? '//quoted('T ['//trim(m%time_unit)//']'))
-      do i = 1, size(m%drives)
-         call add(o, ' : c == '//whole(i + 1)//' ? '//quoted(trim(drive_name(m, m%drives(i)))//' [' &
-            //unit_of(m, table%angular(i), 0)//']'))
-      end do
-      call put(o, ' : ""')
-      call put(o, 'set terminal svg size 1200,1200 noenhanced background rgb "white"')
-      call put(o, 'set style data '//trim(merge('linespoints', 'lines      ', instant_count(m) <= max_marked)))
-      do i = 1, page_rows
-         call put(o, 'set linetype '//whole(i)//' linecolor rgb "'//colors(i) &
-            //'" linewidth 1.5 pointtype 7 pointsize 0.3')
-      end do
-      call put(o, 'set key above maxcols 4 samplen 2')
-      call put(o, 'set grid linecolor rgb "#dddddd"')
-      call put(o, 'set autoscale xfix')
-      call put(o, 'set lmargin 14')
-      call put(o, 'set rmargin 3')
-   end subroutine put_beginning
+      !> What holds for all pictures. A script finds the table beside itself, wherever gnuplot is started.
+      subroutine put_beginning()
+         integer :: i
 
-   !> The picture of the `page`-th links, points and pairs over the column `over`.
-   subroutine put_page(o, m, table, page)
-      type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      type(table_t), intent(in) :: table
-      integer, intent(in) :: page
-      character(:), allocatable :: ending
-      logical :: is_there(2)
-      integer :: k, i
-
-      ending = ''
-      if (page > 1) ending = '-page'//whole(page)
-      associate (own => table%columns%row > (page - 1)*page_rows .and. table%columns%row <= page*page_rows)
-         is_there = [any(own .and. .not. table%columns%angular), any(own .and. table%columns%angular)]
-         call put(o, '   set output picture(over)."'//ending//'.svg"')
-         call put(o, '   set multiplot layout 3,'//whole(count(is_there))//' title '//quoted(trim(m%title)) &
-            //' font ",16"')
-         do k = 0, 2
-            call put(o, trim(merge('   set xlabel abscissa(over)', '   unset xlabel             ', k == 2)))
-            do i = 1, 2
-               if (is_there(i)) call put_panel(o, m, table, own .and. table%columns%order == k, k, i == 2)
-            end do
+         call put(o, '# gnuplot plot'//suffix//'.gp draws table'//suffix//'.csv: over time in time'//suffix &
+            //'.svg and more, over the drives in drive'//suffix//'.svg and more')
+         call put(o, 'here = ARG0')
+         call put(o, 'while (here ne "" && here[strlen(here):] ne "/") { here = here[1:strlen(here) - 1] }')
+         call put(o, 'table = here."table'//suffix//'.csv"')
+         call put(o, '# The column on the abscissa: its picture and its name.')
+         call put(o, &
+            'picture(c) = here.(c == 1 ? "time" : c == 2 ? "drive" : sprintf("drive%d", c - 1))."'//suffix//'"')
+         call add(o, 'abscissa(c) = c == 1 ? '//quoted('T ['//trim(m%time_unit)//']'))
+         do i = 1, size(m%drives)
+            call add(o, ' : c == '//whole(i + 1)//' ? '//quoted(trim(drive_name(m, m%drives(i)))//' [' &
+               //unit_of(m, table%angular(i), 0)//']'))
          end do
-         call put(o, '   unset multiplot')
-      end associate
-   end subroutine put_page
+         call put(o, ' : ""')
+         call put(o, 'set terminal svg size 1200,1200 noenhanced background rgb "white"')
+         call put(o, 'set style data '//trim(merge('linespoints', 'lines      ', instant_count(m) <= max_marked)))
+         do i = 1, page_rows
+            call put(o, 'set linetype '//whole(i)//' linecolor rgb "'//colors(i) &
+               //'" linewidth 1.5 pointtype 7 pointsize 0.3')
+         end do
+         call put(o, 'set key above maxcols 4 samplen 2')
+         call put(o, 'set grid linecolor rgb "#dddddd"')
+         call put(o, 'set autoscale xfix')
+         call put(o, 'set lmargin 14')
+         call put(o, 'set rmargin 3')
+      end subroutine put_beginning
+
+      !> The picture of the `page`-th links, points and pairs over the column `over`.
+      subroutine put_page(page)
+         integer, intent(in) :: page
+         character(:), allocatable :: ending
+         logical :: is_there(2)
+         integer :: k, i
+
+         ending = ''
+         if (page > 1) ending = '-page'//whole(page)
+         associate (own => table%columns%row > (page - 1)*page_rows .and. table%columns%row <= page*page_rows)
+            is_there = [any(own .and. .not. table%columns%angular), any(own .and. table%columns%angular)]
+            call put(o, '   set output picture(over)."'//ending//'.svg"')
+            call put(o, '   set multiplot layout 3,'//whole(count(is_there))//' title '//quoted(trim(m%title)) &
+               //' font ",16"')
+            do k = 0, 2
+               call put(o, trim(merge('   set xlabel abscissa(over)', '   unset xlabel             ', k == 2)))
+               do i = 1, 2
+                  if (is_there(i)) call put_panel(o, m, table, own .and. table%columns%order == k, k, i == 2)
+               end do
+            end do
+            call put(o, '   unset multiplot')
+         end associate
+      end subroutine put_page
+   end subroutine put_script
 
    !> The panel of those of the columns `own` that are, or are not, `angular`: derivatives of order `k`. It is left
    !> empty where the first of them has no values: the table then has none of the others.

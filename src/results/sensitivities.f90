@@ -135,56 +135,103 @@ contains
 
       found%taken = allocated(m%tolerances)
       if (.not. found%taken) return
-      call sense(s%list(0), e, q, q%t, found)
+      call sense(s%list(0), q%t, found)
       if (.not. allocated(found%error)) allocate (found%error, mold=found%of)
       found%error = 0.0_wp
       if (.not. in_doubt) return
       do k = 1, samples
          if (.not. s%list(k)%is_made) call make_perturbed(s%list(k), m, k)
-         call sense(s%list(k), e, q, q%t + rounding*abs(q%t), other)
+         call sense(s%list(k), q%t + rounding*abs(q%t), other)
          found%error = max(found%error, caution*abs(other%of - found%of)/roundings)
          do i = 1, size(m%requests)
             if (other%known(i) < found%known(i)) found%error(:, other%known(i) + 1:, :, i) = nothing_known
          end do
       end do
-   end subroutine find_sensitivities
 
-   !> Those of the mechanism of `s` at the time `t`, from the motion `q`.
-   subroutine sense(s, e, q, t, found)
-      type(perturbed_t), intent(inout) :: s
-      class(engine_t), intent(in) :: e
-      type(motion_t), intent(in) :: q
-      real(wp), intent(in) :: t
-      type(sensitivities_t), intent(inout) :: found
-      type(motion_t) :: again
-      logical :: finite
-      integer :: i, d, order
+   contains
 
-      call take_position(s, e, q)
-      call set_drive_values(s%engine, t)
-      associate (m => s%response%m)
-         call respond(s%response, s%engine, drive_changes(m, t, order), q%known < 0)
-         again = new_motion(size(m%links))
-         again%t = t
-         again%known = 2
-         call s%engine%get_motion(again, finite)
-         call mark_links(s%engine%chain, s%response%missing, again)
-         if (.not. allocated(found%of)) then
-            allocate (found%of(3, 0:2, size(m%tolerances), size(m%requests)), found%known(size(m%requests)))
-         end if
-         found%jams = s%response%jams
-         found%of = 0.0_wp
-         do i = 1, size(m%requests)
-            found%known(i) = known_of_row(m, q, again, m%requests(i))
-            if (found%known(i) < 0 .or. m%requests(i)%kind > request_pair) cycle
-            found%known(i) = order
-            do d = 1, size(m%tolerances)
-               found%of(:, :, d, i) = row_change(m, again, m%requests(i), s%response%changes(d), &
-                  s%response%links(:, :, :, d))*m%tolerances(d)%unit
+      !> Those of the mechanism of `s` at the time `t`, from the motion `q`.
+      subroutine sense(s, t, found)
+         type(perturbed_t), intent(inout) :: s
+         real(wp), intent(in) :: t
+         type(sensitivities_t), intent(inout) :: found
+         type(motion_t) :: again
+         logical :: finite
+         integer :: i, d, order
+
+         call take_position(s)
+         call set_drive_values(s%engine, t)
+         associate (m => s%response%m)
+            call respond(s%response, s%engine, drive_changes(t, order), q%known < 0)
+            again = new_motion(size(m%links))
+            again%t = t
+            again%known = 2
+            call s%engine%get_motion(again, finite)
+            call mark_links(s%engine%chain, s%response%missing, again)
+            if (.not. allocated(found%of)) then
+               allocate (found%of(3, 0:2, size(m%tolerances), size(m%requests)), found%known(size(m%requests)))
+            end if
+            found%jams = s%response%jams
+            found%of = 0.0_wp
+            do i = 1, size(m%requests)
+               found%known(i) = known_of_row(again, m%requests(i))
+               if (found%known(i) < 0 .or. m%requests(i)%kind > request_pair) cycle
+               found%known(i) = order
+               do d = 1, size(m%tolerances)
+                  found%of(:, :, d, i) = row_change(m, again, m%requests(i), s%response%changes(d), &
+                     s%response%links(:, :, :, d))*m%tolerances(d)%unit
+               end do
             end do
+         end associate
+      end subroutine sense
+
+      !> All of a row must exist, in the motion `q` and in the same motion found `again`, for any of its sensitivities
+      !> to.
+      pure integer function known_of_row(again, request) result(known)
+         type(motion_t), intent(in) :: again
+         type(request_t), intent(in) :: request
+         type(row_t) :: row, second
+
+         row = row_of(m, q, request)
+         second = row_of(m, again, request)
+         known = merge(2, -1, min(row%known, second%known) == 2)
+      end function known_of_row
+
+      !> Puts the engine of `s` at the position of `q`.
+      subroutine take_position(s)
+         type(perturbed_t), intent(inout) :: s
+
+         select type (e)
+         class is (block_method_t)
+            if (.not. s%is_ready) call make_block_engine(s%engine, s%response%m)
+            s%engine%state%u = e%state%u
+         class default
+            call place_links(s%response%m, q%position)
+            call make_block_engine(s%engine, s%response%m)
+            s%engine%state%u%value = s%engine%estimated
+         end select
+         s%is_ready = .true.
+      end subroutine take_position
+
+      !> (0:2, drives, numbers) The changes of the laws of the drives of `m` with its numbers at the time `t`. `order`:
+      !> that of the highest derivatives, 0 to 2, of which this exists for all of them.
+      function drive_changes(t, order) result(changes)
+         real(wp), intent(in) :: t
+         integer, intent(out) :: order
+         real(wp) :: changes(0:2, size(m%drives), size(m%tolerances))
+         integer :: d
+
+         changes = 0.0_wp
+         order = 2
+         do d = 1, size(m%tolerances)
+            associate (one => m%tolerances(d))
+               if (one%kind /= number_drive) cycle
+               changes(:, one%subject, d) = law_change(m%drives(one%subject), one%term, one%place, t)
+               order = min(order, smooth_order(m%drives(one%subject), one%term, one%place, t))
+            end associate
          end do
-      end associate
-   end subroutine sense
+      end function drive_changes
+   end subroutine find_sensitivities
 
    !> What `request` asks for has sensitivities: some number of `m` has a tolerance, and it is no pole and no curve.
    pure logical function has_tolerances(m, request)
@@ -193,56 +240,6 @@ contains
 
       has_tolerances = allocated(m%tolerances) .and. request%kind <= request_pair
    end function has_tolerances
-
-   !> All of a row must exist, in the motion `q` and in the same motion found `again`, for any of its sensitivities to.
-   pure integer function known_of_row(m, q, again, request) result(known)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q, again
-      type(request_t), intent(in) :: request
-      type(row_t) :: row, second
-
-      row = row_of(m, q, request)
-      second = row_of(m, again, request)
-      known = merge(2, -1, min(row%known, second%known) == 2)
-   end function known_of_row
-
-   !> Puts the engine of `s` at the position of `q`.
-   subroutine take_position(s, e, q)
-      type(perturbed_t), intent(inout) :: s
-      class(engine_t), intent(in) :: e
-      type(motion_t), intent(in) :: q
-
-      select type (e)
-      class is (block_method_t)
-         if (.not. s%is_ready) call make_block_engine(s%engine, s%response%m)
-         s%engine%state%u = e%state%u
-      class default
-         call place_links(s%response%m, q%position)
-         call make_block_engine(s%engine, s%response%m)
-         s%engine%state%u%value = s%engine%estimated
-      end select
-      s%is_ready = .true.
-   end subroutine take_position
-
-   !> (0:2, drives, numbers) The changes of the laws of the drives of `m` with its numbers at the time `t`. `order`:
-   !> that of the highest derivatives, 0 to 2, of which this exists for all of them.
-   function drive_changes(m, t, order) result(changes)
-      type(mechanism_t), intent(in) :: m
-      real(wp), intent(in) :: t
-      integer, intent(out) :: order
-      real(wp) :: changes(0:2, size(m%drives), size(m%tolerances))
-      integer :: d
-
-      changes = 0.0_wp
-      order = 2
-      do d = 1, size(m%tolerances)
-         associate (one => m%tolerances(d))
-            if (one%kind /= number_drive) cycle
-            changes(:, one%subject, d) = law_change(m%drives(one%subject), one%term, one%place, t)
-            order = min(order, smooth_order(m%drives(one%subject), one%term, one%place, t))
-         end associate
-      end do
-   end function drive_changes
 
    !> The change (3, 0:2) of the row of `request` of the motion `q` of `m`, where its numbers change by `change`, and
    !> its links by `links` (3, 0:2, links).

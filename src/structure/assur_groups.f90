@@ -179,7 +179,7 @@ contains
       do i = 1, size(first) - 1
          of_link(member(first(i):first(i + 1) - 1)) = i
       end do
-      order = numbers(m, waits, first, member, of_link)
+      order = numbers()
       allocate (groups(maxval([0, order])))
       by_group = sorted(order(of_link), size(groups))
       do i = 1, size(groups)
@@ -191,7 +191,51 @@ contains
          i = c%link_of(merge(c%incidence%unknown(c%incidence%first(e)), unknown_of(e), over(e)))
          groups(order(of_link(i)))%driven = .true.
       end do
-      call spread_need(waits, of_link, order, groups)
+      call spread_need()
+
+   contains
+
+      !> (components) The number of each component of links among the groups; 0 for ground links.
+      function numbers() result(order)
+         integer, allocatable :: order(:)
+         type(sorted_t) :: by_depth
+         integer :: depth(size(first) - 1), i, k, n
+
+         depth = 0
+         do i = 1, size(depth)
+            if (m%links(member(first(i)))%ground) cycle
+            do k = first(i), first(i + 1) - 1
+               do n = waits%first(member(k)), waits%first(member(k) + 1) - 1
+                  if (of_link(waits%unknown(n)) /= i) depth(i) = max(depth(i), depth(of_link(waits%unknown(n))))
+               end do
+            end do
+            depth(i) = depth(i) + 1
+         end do
+         by_depth = sorted(depth(of_link), size(depth))
+         allocate (order(size(depth)), source=0)
+         n = 0
+         do i = 1, size(by_depth%member)
+            associate (component => of_link(by_depth%member(i)))
+               if (order(component) == 0) n = n + 1
+               if (order(component) == 0) order(component) = n
+            end associate
+         end do
+      end function numbers
+
+      !> What a needed group builds on is needed.
+      subroutine spread_need()
+         integer :: g, i, n, other
+
+         do g = size(groups), 1, -1
+            if (.not. groups(g)%needed) cycle
+            do i = 1, size(groups(g)%links)
+               do n = waits%first(groups(g)%links(i)), waits%first(groups(g)%links(i) + 1) - 1
+                  other = order(of_link(waits%unknown(n)))
+                  if (other > 0) groups(other)%needed = .true.
+               end do
+            end do
+         end do
+      end subroutine spread_need
    end function groups_of
 
    !> For which links each link waits; a ground link for none. The links of the part `over` wait for its first
@@ -244,52 +288,4 @@ contains
          w%unknown(n) = other
       end subroutine wait_for
    end function waiting
-
-   !> (components) The number of each component of links among the groups; 0 for ground links.
-   function numbers(m, waits, first, member, of_link) result(order)
-      type(mechanism_t), intent(in) :: m
-      type(incidence_t), intent(in) :: waits
-      integer, intent(in) :: first(:), member(:), of_link(:)
-      integer, allocatable :: order(:)
-      type(sorted_t) :: by_depth
-      integer :: depth(size(first) - 1), i, k, n
-
-      depth = 0
-      do i = 1, size(depth)
-         if (m%links(member(first(i)))%ground) cycle
-         do k = first(i), first(i + 1) - 1
-            do n = waits%first(member(k)), waits%first(member(k) + 1) - 1
-               if (of_link(waits%unknown(n)) /= i) depth(i) = max(depth(i), depth(of_link(waits%unknown(n))))
-            end do
-         end do
-         depth(i) = depth(i) + 1
-      end do
-      by_depth = sorted(depth(of_link), size(depth))
-      allocate (order(size(depth)), source=0)
-      n = 0
-      do i = 1, size(by_depth%member)
-         associate (component => of_link(by_depth%member(i)))
-            if (order(component) == 0) n = n + 1
-            if (order(component) == 0) order(component) = n
-         end associate
-      end do
-   end function numbers
-
-   !> What a needed group builds on is needed.
-   subroutine spread_need(waits, of_link, order, groups)
-      type(incidence_t), intent(in) :: waits
-      integer, intent(in) :: of_link(:), order(:)
-      type(group_t), intent(inout) :: groups(:)
-      integer :: g, i, n, other
-
-      do g = size(groups), 1, -1
-         if (.not. groups(g)%needed) cycle
-         do i = 1, size(groups(g)%links)
-            do n = waits%first(groups(g)%links(i)), waits%first(groups(g)%links(i) + 1) - 1
-               other = order(of_link(waits%unknown(n)))
-               if (other > 0) groups(other)%needed = .true.
-            end do
-         end do
-      end do
-   end subroutine spread_need
 end module assur_groups

@@ -54,69 +54,65 @@ contains
       b%list%first_row = b%list%first
       b%list%last_row = b%list%last
       b%unknown = unknown_of(member)
-      if (b%redundant > 0) call put_first(over, unknown_of, b, member)
+      if (b%redundant > 0) call put_first(over)
       allocate (b%block_of(b%unknowns))
       do i = 1, size(b%list)
          b%block_of(b%unknown(b%list(i)%first:b%list(i)%last)) = i
       end do
-      call fill_rows(e, member, b)
+      call fill_rows()
       call fill_block_loops(e, member, b)
       b%first_term = e%vector_loops%first_term(1:e%vector_loops%count + 1)
       b%terms = e%vector_loops%terms(:, :e%vector_loops%term_count)
       allocate (b%unit(0:b%unknowns), source=1.0_wp)
       call find_places(b)
-   end function new_blocks
 
-   !> Puts the block of the equations that are `over` before the others: it needs nothing of them.
-   subroutine put_first(over, unknown_of, b, member)
-      logical, intent(in) :: over(:)
-      integer, intent(in) :: unknown_of(:)
-      type(blocks_t), intent(inout) :: b
-      integer, allocatable, intent(inout) :: member(:)
-      type(block_t) :: block
-      integer, allocatable :: rows(:)
-      integer :: i
+   contains
 
-      rows = pack([(i, i=1, size(over))], over)
-      block%last_row = size(rows)
-      block%last = count(unknown_of(rows) > 0)
-      block%shape = shape_t(rows=block%last_row, n=block%last)
-      b%list%first = b%list%first + block%last
-      b%list%last = b%list%last + block%last
-      b%list%first_row = b%list%first_row + block%last_row
-      b%list%last_row = b%list%last_row + block%last_row
-      b%list = [block, b%list]
-      b%unknown = [pack(unknown_of(rows), unknown_of(rows) > 0), b%unknown]
-      member = [rows, member]
-   end subroutine put_first
+      !> Puts the block of the equations that are `over` before the others: it needs nothing of them.
+      subroutine put_first(over)
+         logical, intent(in) :: over(:)
+         type(block_t) :: block
+         integer, allocatable :: rows(:)
+         integer :: i
 
-   !> Drives, constants, and which blocks need no iteration.
-   subroutine fill_rows(e, member, b)
-      type(equations_t), intent(in) :: e
-      integer, intent(in) :: member(:)
-      type(blocks_t), intent(inout) :: b
-      integer :: i, k
+         rows = pack([(i, i=1, size(over))], over)
+         block%last_row = size(rows)
+         block%last = count(unknown_of(rows) > 0)
+         block%shape = shape_t(rows=block%last_row, n=block%last)
+         b%list%first = b%list%first + block%last
+         b%list%last = b%list%last + block%last
+         b%list%first_row = b%list%first_row + block%last_row
+         b%list%last_row = b%list%last_row + block%last_row
+         b%list = [block, b%list]
+         b%unknown = [pack(unknown_of(rows), unknown_of(rows) > 0), b%unknown]
+         member = [rows, member]
+      end subroutine put_first
 
-      allocate (b%rows(size(member)))
-      do i = 1, size(b%list)
-         do k = b%list(i)%first_row, b%list(i)%last_row
-            associate (equation => e%list(member(k)), row => b%rows(k))
-               row%drive = equation%drive
-               row%pair = equation%pair
-               row%angular = equation%kind == equation_angle
-               row%constant = equation%constant
-               b%list(i)%direct = any(equation%kind == [equation_angle, equation_slide]) &
-                  .and. b%list(i)%shape%rows == 1 .and. b%list(i)%shape%n == 1
-               if (.not. (b%list(i)%direct .and. row%angular)) cycle
-               ! phi_orientation - phi_less = constant + value, solved for the one that is unknown.
-               row%other = equation%less
-               if (b%unknown(b%list(i)%first) /= equation%less) cycle
-               row%other = equation%orientation
-               row%sign_of = -1.0_wp
-            end associate
+      !> Drives, constants, and which blocks need no iteration.
+      subroutine fill_rows()
+         integer :: i, k
+
+         allocate (b%rows(size(member)))
+         do i = 1, size(b%list)
+            do k = b%list(i)%first_row, b%list(i)%last_row
+               associate (equation => e%list(member(k)), row => b%rows(k))
+                  row%drive = equation%drive
+                  row%pair = equation%pair
+                  row%angular = equation%kind == equation_angle
+                  row%constant = equation%constant
+                  b%list(i)%direct = any(equation%kind == [equation_angle, equation_slide]) &
+                     .and. b%list(i)%shape%rows == 1 .and. b%list(i)%shape%n == 1
+                  if (.not. (b%list(i)%direct .and. row%angular)) cycle
+                  ! phi_orientation - phi_less = constant + value, solved for the one that is unknown.
+                  row%other = equation%less
+                  if (b%unknown(b%list(i)%first) /= equation%less) cycle
+                  row%other = equation%orientation
+                  row%sign_of = -1.0_wp
+               end associate
+            end do
          end do
-      end do
-   end subroutine fill_rows
+      end subroutine fill_rows
+   end function new_blocks
 
    !> Divides the rows of all blocks of `b`, filled in one unit of length, by units of their own, and its slides.
    pure subroutine find_units(b)

@@ -45,20 +45,150 @@ contains
       type(tree_t) :: t
 
       t%origin = plane_origin(m)
-      t%near = neighbours(m)
-      call find_orientations(m, t)
-      call grow(m, t)
+      t%near = neighbours()
+      call find_orientations()
+      call grow()
+
+   contains
+
+      !> The pairs of each link.
+      pure function neighbours() result(near)
+         type(sorted_t) :: near
+         integer :: k
+
+         near = sorted([(pair_links(m, m%pairs(k)), k=1, size(m%pairs))], size(m%links))
+         near%member = (near%member + 1)/2
+      end function neighbours
+
+      !> Orientations and angle offsets: a walk over prismatic pairs alone, first from the ground links, then from
+      !> every link not yet seen.
+      subroutine find_orientations()
+         integer :: queue(size(m%links)), last, link
+         logical :: used(size(m%pairs))
+
+         allocate (t%orientation(size(m%links)), source=-1)
+         allocate (t%angle_offset(size(m%links)), source=0.0_wp)
+         allocate (t%surplus(0))
+         used = .false.
+         last = 0
+         do link = 1, size(m%links)
+            if (.not. m%links(link)%ground) cycle
+            last = last + 1
+            queue(last) = link
+            t%orientation(link) = 0
+            t%angle_offset(link) = m%links(link)%position(3)
+         end do
+         call spread_orientation(m, queue, last, used)
+         do link = 1, size(m%links)
+            if (t%orientation(link) >= 0) cycle
+            t%orientations = t%orientations + 1
+            t%orientation(link) = t%orientations
+            last = 1
+            queue(1) = link
+            call spread_orientation(m, queue, last, used)
+         end do
+      end subroutine find_orientations
+
+      !> Gives the orientation of the `last` links in the queue to all links that prismatic pairs join to them.
+      subroutine spread_orientation(m, queue, last, used)
+         type(mechanism_t), intent(in) :: m
+         integer, intent(inout) :: queue(:), last
+         logical, intent(inout) :: used(:)
+         integer :: next, link, far, i, k
+
+         next = 1
+         do while (next <= last)
+            link = queue(next)
+            next = next + 1
+            do i = t%near%first(link), t%near%first(link + 1) - 1
+               k = t%near%member(i)
+               if (m%pairs(k)%kind /= pair_prismatic .or. used(k)) cycle
+               used(k) = .true.
+               far = other_link(m, k, link)
+               if (t%orientation(far) >= 0) then
+                  t%surplus = [t%surplus, k]
+                  cycle
+               end if
+               t%orientation(far) = t%orientation(link)
+               t%angle_offset(far) = t%angle_offset(link) &
+                  + merge(m%pairs(k)%beta, -m%pairs(k)%beta, m%points(m%pairs(k)%point_i)%link == link)
+               last = last + 1
+               queue(last) = far
+            end do
+         end do
+      end subroutine spread_orientation
+
+      !> Joins every link to the tree, breadth first; a prismatic pair is taken only where no revolute pair reaches on.
+      subroutine grow()
+         integer :: last, revolute_next, prismatic_next, link
+         logical :: attached
+
+         allocate (t%parent_joint(size(m%links)), t%parent(size(m%links)), t%root(size(m%links)), source=0)
+         allocate (t%depth(size(m%links)), source=-1)
+         allocate (t%order(size(m%links)), t%slide(size(m%pairs)), source=0)
+         last = 0
+         do link = 1, size(m%links)
+            if (m%links(link)%ground) call attach(last, link, 0, 0)
+         end do
+         revolute_next = 1
+         prismatic_next = 1
+         link = 1
+         do
+            if (revolute_next <= last) then
+               call attach_neighbours(pair_revolute, t%order(revolute_next), last, attached)
+               revolute_next = revolute_next + 1
+            else if (prismatic_next <= last) then
+               call attach_neighbours(pair_prismatic, t%order(prismatic_next), last, attached)
+               if (.not. attached) prismatic_next = prismatic_next + 1
+            else
+               do while (link <= size(m%links))
+                  if (t%depth(link) < 0) exit
+                  link = link + 1
+               end do
+               if (link > size(m%links)) exit
+               t%roots = t%roots + 1
+               t%root(link) = t%roots
+               call attach(last, link, 0, 0)
+            end if
+         end do
+      end subroutine grow
+
+      !> Joins to `link` those of its neighbours that its pairs of one kind reach: all revolute ones, one prismatic one.
+      subroutine attach_neighbours(kind, link, last, attached)
+         integer, intent(in) :: kind, link
+         integer, intent(inout) :: last
+         logical, intent(out) :: attached
+         integer :: i, k
+
+         attached = .false.
+         do i = t%near%first(link), t%near%first(link + 1) - 1
+            k = t%near%member(i)
+            if (m%pairs(k)%kind /= kind) cycle
+            if (t%depth(other_link(m, k, link)) >= 0) cycle
+            call attach(last, other_link(m, k, link), link, k)
+            attached = .true.
+            if (kind == pair_revolute) cycle
+            t%slides = t%slides + 1
+            t%slide(k) = t%slides
+            return
+         end do
+      end subroutine attach_neighbours
+
+      !> `link` is next in the tree, joined to its `parent` by `pair`; 0 for the ground and for roots.
+      subroutine attach(last, link, parent, pair)
+         integer, intent(inout) :: last
+         integer, intent(in) :: link, parent, pair
+
+         last = last + 1
+         t%order(last) = link
+         t%parent(link) = parent
+         t%parent_joint(link) = pair
+         t%depth(link) = 0
+         if (parent == 0) return
+         t%depth(link) = t%depth(parent) + 1
+         t%root(link) = t%root(parent)
+      end subroutine attach
    end function new_tree
-
-   !> The pairs of each link.
-   pure function neighbours(m) result(near)
-      type(mechanism_t), intent(in) :: m
-      type(sorted_t) :: near
-      integer :: k
-
-      near = sorted([(pair_links(m, m%pairs(k)), k=1, size(m%pairs))], size(m%links))
-      near%member = (near%member + 1)/2
-   end function neighbours
 
    !> The link at the other end of pair `k` of `link`.
    pure integer function other_link(m, k, link) result(other)
@@ -67,143 +197,6 @@ contains
 
       other = sum(pair_links(m, m%pairs(k))) - link
    end function other_link
-
-   !> Orientations and angle offsets: a walk over prismatic pairs alone, first from the ground links, then from
-   !> every link not yet seen.
-   subroutine find_orientations(m, t)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(inout) :: t
-      integer :: queue(size(m%links)), last, link
-      logical :: used(size(m%pairs))
-
-      allocate (t%orientation(size(m%links)), source=-1)
-      allocate (t%angle_offset(size(m%links)), source=0.0_wp)
-      allocate (t%surplus(0))
-      used = .false.
-      last = 0
-      do link = 1, size(m%links)
-         if (.not. m%links(link)%ground) cycle
-         last = last + 1
-         queue(last) = link
-         t%orientation(link) = 0
-         t%angle_offset(link) = m%links(link)%position(3)
-      end do
-      call spread_orientation(m, queue, last, used, t)
-      do link = 1, size(m%links)
-         if (t%orientation(link) >= 0) cycle
-         t%orientations = t%orientations + 1
-         t%orientation(link) = t%orientations
-         last = 1
-         queue(1) = link
-         call spread_orientation(m, queue, last, used, t)
-      end do
-   end subroutine find_orientations
-
-   !> Gives the orientation of the `last` links in the queue to all links that prismatic pairs join to them.
-   subroutine spread_orientation(m, queue, last, used, t)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(inout) :: queue(:), last
-      logical, intent(inout) :: used(:)
-      type(tree_t), intent(inout) :: t
-      integer :: next, link, far, i, k
-
-      next = 1
-      do while (next <= last)
-         link = queue(next)
-         next = next + 1
-         do i = t%near%first(link), t%near%first(link + 1) - 1
-            k = t%near%member(i)
-            if (m%pairs(k)%kind /= pair_prismatic .or. used(k)) cycle
-            used(k) = .true.
-            far = other_link(m, k, link)
-            if (t%orientation(far) >= 0) then
-               t%surplus = [t%surplus, k]
-               cycle
-            end if
-            t%orientation(far) = t%orientation(link)
-            t%angle_offset(far) = t%angle_offset(link) &
-               + merge(m%pairs(k)%beta, -m%pairs(k)%beta, m%points(m%pairs(k)%point_i)%link == link)
-            last = last + 1
-            queue(last) = far
-         end do
-      end do
-   end subroutine spread_orientation
-
-   !> Joins every link to the tree, breadth first; a prismatic pair is taken only where no revolute pair reaches on.
-   subroutine grow(m, t)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(inout) :: t
-      integer :: last, revolute_next, prismatic_next, link
-      logical :: attached
-
-      allocate (t%parent_joint(size(m%links)), t%parent(size(m%links)), t%root(size(m%links)), source=0)
-      allocate (t%depth(size(m%links)), source=-1)
-      allocate (t%order(size(m%links)), t%slide(size(m%pairs)), source=0)
-      last = 0
-      do link = 1, size(m%links)
-         if (m%links(link)%ground) call attach(t, last, link, 0, 0)
-      end do
-      revolute_next = 1
-      prismatic_next = 1
-      link = 1
-      do
-         if (revolute_next <= last) then
-            call attach_neighbours(m, pair_revolute, t%order(revolute_next), t, last, attached)
-            revolute_next = revolute_next + 1
-         else if (prismatic_next <= last) then
-            call attach_neighbours(m, pair_prismatic, t%order(prismatic_next), t, last, attached)
-            if (.not. attached) prismatic_next = prismatic_next + 1
-         else
-            do while (link <= size(m%links))
-               if (t%depth(link) < 0) exit
-               link = link + 1
-            end do
-            if (link > size(m%links)) exit
-            t%roots = t%roots + 1
-            t%root(link) = t%roots
-            call attach(t, last, link, 0, 0)
-         end if
-      end do
-   end subroutine grow
-
-   !> Joins to `link` those of its neighbours that its pairs of one kind reach: all revolute ones, one prismatic one.
-   subroutine attach_neighbours(m, kind, link, t, last, attached)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: kind, link
-      type(tree_t), intent(inout) :: t
-      integer, intent(inout) :: last
-      logical, intent(out) :: attached
-      integer :: i, k
-
-      attached = .false.
-      do i = t%near%first(link), t%near%first(link + 1) - 1
-         k = t%near%member(i)
-         if (m%pairs(k)%kind /= kind) cycle
-         if (t%depth(other_link(m, k, link)) >= 0) cycle
-         call attach(t, last, other_link(m, k, link), link, k)
-         attached = .true.
-         if (kind == pair_revolute) cycle
-         t%slides = t%slides + 1
-         t%slide(k) = t%slides
-         return
-      end do
-   end subroutine attach_neighbours
-
-   !> `link` is next in the tree, joined to its `parent` by `pair`; 0 for the ground and for roots.
-   subroutine attach(t, last, link, parent, pair)
-      type(tree_t), intent(inout) :: t
-      integer, intent(inout) :: last
-      integer, intent(in) :: link, parent, pair
-
-      last = last + 1
-      t%order(last) = link
-      t%parent(link) = parent
-      t%parent_joint(link) = pair
-      t%depth(link) = 0
-      if (parent == 0) return
-      t%depth(link) = t%depth(parent) + 1
-      t%root(link) = t%root(parent)
-   end subroutine attach
 
    !> Where `link` is, seen from its parent; lengths in units of `length`.
    pure function place_on_tree(m, t, length, link) result(p)

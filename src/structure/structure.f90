@@ -128,8 +128,8 @@ contains
          f%redundant = count(unknown_of == 0)
          f%many_pairs = pack(c%pair, over .and. c%pair > 0)
          f%many_drives = pack(c%drive, over .and. c%drive > 0)
-         if (size(f%many_drives) > 1) call find_spare_drives(m, f)
-         f%lacking = parts_that_lack(m, c, underdetermined(c%incidence, unknown_of, equation_of), equation_of)
+         if (size(f%many_drives) > 1) call find_spare_drives()
+         f%lacking = parts_that_lack(underdetermined(c%incidence, unknown_of, equation_of))
          if (size(f%lacking) > 0) return
          f%groups = groups_of(m, c, unknown_of, equation_of, over, wanted_links(m))
          f%closure = c
@@ -144,117 +144,113 @@ contains
       f%solvable = all([(f%structures(k)%blocks%solvable, k=1, size(f%structures))])
       if (f%solvable) return
       whole = new_structure(m)
-      f%lacking = parts_on_tree(m, whole%tree, whole%blocks%free)
+      f%lacking = parts_on_tree(whole%tree, whole%blocks%free)
       deallocate (f%groups, f%closure)
       allocate (f%groups(0))
-   end subroutine find_structure_again
 
-   !> Of `f` the drives that are too many: in each independent mechanism of `m` as many as there are equations that are
-   !> too many with its drives and not without.
-   subroutine find_spare_drives(m, f)
-      type(mechanism_t), intent(in) :: m
-      type(findings_t), intent(inout) :: f
-      type(mechanism_t) :: pairs_only
-      integer :: part(size(m%links)), owner(size(f%many_drives)), i
-      integer, allocatable :: spare(:), many(:)
+   contains
 
-      pairs_only = m
-      pairs_only%drives = m%drives(:0)
-      part = part_of_links(m)
-      spare = redundant_in_parts(m, part) - redundant_in_parts(pairs_only, part)
-      owner = [(maxval(part(drive_links(m, m%drives(f%many_drives(i))))), i=1, size(owner))]
-      allocate (many(size(spare)), source=0)
-      do i = 1, size(owner)
-         many(owner(i)) = many(owner(i)) + 1
-      end do
-      ! The pairs of a mechanism that moves against its count leave no drive: those are not too many.
-      where (spare >= many) spare = 0
-      f%spare_drives = sum(spare)
-      f%spare_among = pack(f%many_drives, spare(owner) > 0)
-   end subroutine find_spare_drives
+      !> Of `f` the drives that are too many: in each independent mechanism of `m` as many as there are equations that
+      !> are too many with its drives and not without.
+      subroutine find_spare_drives()
+         type(mechanism_t) :: pairs_only
+         integer :: part(size(m%links)), owner(size(f%many_drives)), i
+         integer, allocatable :: spare(:), many(:)
 
-   !> (mechanisms) How many equations of each independent mechanism of `m` are too many. `part` (links): its number.
-   function redundant_in_parts(m, part) result(redundant)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: part(:)
-      integer :: redundant(maxval(part)), i, k
-      type(closure_t) :: c
-      integer, allocatable :: unknown_of(:), equation_of(:)
+         pairs_only = m
+         pairs_only%drives = m%drives(:0)
+         part = part_of_links(m)
+         spare = redundant_in_parts(m, part) - redundant_in_parts(pairs_only, part)
+         owner = [(maxval(part(drive_links(m, m%drives(f%many_drives(i))))), i=1, size(owner))]
+         allocate (many(size(spare)), source=0)
+         do i = 1, size(owner)
+            many(owner(i)) = many(owner(i)) + 1
+         end do
+         ! The pairs of a mechanism that moves against its count leave no drive: those are not too many.
+         where (spare >= many) spare = 0
+         f%spare_drives = sum(spare)
+         f%spare_among = pack(f%many_drives, spare(owner) > 0)
+      end subroutine find_spare_drives
 
-      c = new_closure(m)
-      call match(c%incidence, unknown_of, equation_of)
-      redundant = 0
-      do i = 1, size(unknown_of)
-         if (unknown_of(i) > 0) cycle
-         k = 0
-         if (c%pair(i) > 0) k = maxval(part(pair_links(m, m%pairs(c%pair(i)))))
-         if (c%drive(i) > 0) k = maxval(part(drive_links(m, m%drives(c%drive(i)))))
-         if (k > 0) redundant(k) = redundant(k) + 1
-      end do
-   end function redundant_in_parts
+      !> (mechanisms) How many equations of each independent mechanism of `m` are too many. `part` (links): its number.
+      function redundant_in_parts(m, part) result(redundant)
+         type(mechanism_t), intent(in) :: m
+         integer, intent(in) :: part(:)
+         integer :: redundant(maxval(part)), i, k
+         type(closure_t) :: c
+         integer, allocatable :: unknown_of(:), equation_of(:)
 
-   !> The parts of `m` that still can move: the links of coordinates that have too few equations (`loose`), those in one
-   !> part that such coordinates in one equation join. `equation_of` (unknowns): the matching of the closure `c`.
-   function parts_that_lack(m, c, loose, equation_of) result(parts)
-      type(mechanism_t), intent(in) :: m
-      type(closure_t), intent(in) :: c
-      logical, intent(in) :: loose(:)
-      integer, intent(in) :: equation_of(:)
-      type(underdetermined_t), allocatable :: parts(:)
-      logical :: can_move(size(m%links))
-      integer, allocatable :: unknown(:), part(:)
-      type(sorted_t) :: by_part
-      integer :: i
+         c = new_closure(m)
+         call match(c%incidence, unknown_of, equation_of)
+         redundant = 0
+         do i = 1, size(unknown_of)
+            if (unknown_of(i) > 0) cycle
+            k = 0
+            if (c%pair(i) > 0) k = maxval(part(pair_links(m, m%pairs(c%pair(i)))))
+            if (c%drive(i) > 0) k = maxval(part(drive_links(m, m%drives(c%drive(i)))))
+            if (k > 0) redundant(k) = redundant(k) + 1
+         end do
+      end function redundant_in_parts
 
-      can_move = .false.
-      can_move(pack(c%link_of, loose)) = .true.
-      associate (g => c%incidence)
-         unknown = g%unknown(:g%first(g%equations + 1) - 1)
-         ! Behind the links the equations.
-         part = joined([can_move, spread(.true., 1, g%equations)], c%link_of(pack(unknown, loose(unknown))), &
-            size(m%links) + pack(owners(g), loose(unknown)))
-      end associate
-      part = part(:size(m%links))
-      allocate (parts(maxval([0, part])))
-      by_part = sorted(part, size(parts))
-      do i = 1, size(parts)
-         parts(i)%links = members(by_part, i)
-      end do
-      do i = 1, size(equation_of)
-         if (equation_of(i) > 0) cycle
-         associate (degrees => parts(part(c%link_of(i)))%degrees_of_freedom)
-            degrees = degrees + 1
+      !> The parts of `m` that still can move: the links of coordinates that have too few equations (`loose`), those in
+      !> one part that such coordinates in one equation join. `equation_of` (unknowns): the matching of the closure `c`.
+      function parts_that_lack(loose) result(parts)
+         logical, intent(in) :: loose(:)
+         type(underdetermined_t), allocatable :: parts(:)
+         logical :: can_move(size(m%links))
+         integer, allocatable :: unknown(:), part(:)
+         type(sorted_t) :: by_part
+         integer :: i
+
+         can_move = .false.
+         can_move(pack(c%link_of, loose)) = .true.
+         associate (g => c%incidence)
+            unknown = g%unknown(:g%first(g%equations + 1) - 1)
+            ! Behind the links the equations.
+            part = joined([can_move, spread(.true., 1, g%equations)], c%link_of(pack(unknown, loose(unknown))), &
+               size(m%links) + pack(owners(g), loose(unknown)))
          end associate
-      end do
-   end function parts_that_lack
+         part = part(:size(m%links))
+         allocate (parts(maxval([0, part])))
+         by_part = sorted(part, size(parts))
+         do i = 1, size(parts)
+            parts(i)%links = members(by_part, i)
+         end do
+         do i = 1, size(equation_of)
+            if (equation_of(i) > 0) cycle
+            associate (degrees => parts(part(c%link_of(i)))%degrees_of_freedom)
+               degrees = degrees + 1
+            end associate
+         end do
+      end function parts_that_lack
 
-   !> The same by unknowns of the tree that found no equation: two links that a prismatic pair joins have one angle.
-   function parts_on_tree(m, t, free) result(parts)
-      type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      integer, intent(in) :: free(:)
-      type(underdetermined_t), allocatable :: parts(:)
-      type(underdetermined_t) :: one
-      integer :: i, k
-      logical :: is_free(size(m%links))
+      !> The same by unknowns of the tree that found no equation: two links that a prismatic pair joins have one angle.
+      function parts_on_tree(t, free) result(parts)
+         type(tree_t), intent(in) :: t
+         integer, intent(in) :: free(:)
+         type(underdetermined_t), allocatable :: parts(:)
+         type(underdetermined_t) :: one
+         integer :: i, k
+         logical :: is_free(size(m%links))
 
-      allocate (parts(0))
-      do k = 1, size(free)
-         if (free(k) <= t%orientations) then
-            is_free = t%orientation == free(k)
-         else if (free(k) <= t%orientations + t%slides) then
-            do i = 1, size(m%links)
-               is_free(i) = .false.
-               if (t%parent_joint(i) > 0) is_free(i) = t%slide(t%parent_joint(i)) == free(k) - t%orientations
-            end do
-         else
-            is_free = t%root == (free(k) - t%orientations - t%slides + 1)/2
-         end if
-         one%links = pack([(i, i=1, size(m%links))], is_free)
-         one%degrees_of_freedom = 1
-         parts = [parts, one]
-      end do
-   end function parts_on_tree
+         allocate (parts(0))
+         do k = 1, size(free)
+            if (free(k) <= t%orientations) then
+               is_free = t%orientation == free(k)
+            else if (free(k) <= t%orientations + t%slides) then
+               do i = 1, size(m%links)
+                  is_free(i) = .false.
+                  if (t%parent_joint(i) > 0) is_free(i) = t%slide(t%parent_joint(i)) == free(k) - t%orientations
+               end do
+            else
+               is_free = t%root == (free(k) - t%orientations - t%slides + 1)/2
+            end if
+            one%links = pack([(i, i=1, size(m%links))], is_free)
+            one%degrees_of_freedom = 1
+            parts = [parts, one]
+         end do
+      end function parts_on_tree
+   end subroutine find_structure_again
 
    !> Every link of every set can be found: `findings` (sets).
    subroutine check_structure(sets, findings, failure)

@@ -11,9 +11,8 @@ module study
       has_failed
    use numerals, only: whole
    use progress, only: progress_t, start_progress, show_progress, end_progress
-   use timing, only: median
-   use trials, only: outcome_t, kind_single, kind_double, kind_quad, repeats, trial_mechanism, &
-      trial_instants, march, can_be_timed, step_time
+   use trials, only: median, outcome_t, kind_single, kind_double, kind_quad, repeats, trial_mechanism, trial_instants, &
+      march, can_be_timed, step_time
    use companion, only: ask_companion
    use true_errors, only: truth_t, new_truth, errors_of, put_estimates
    use study_plan, only: plan_t, new_plan, plan_trials, truth_trial

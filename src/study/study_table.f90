@@ -5,8 +5,7 @@ module study_table
    use mechanism, only: mechanism_t, instant_count, method_newton, method_dense, own_predictor
    use text_output, only: output_t, put
    use numerals, only: whole
-   use timing, only: median
-   use trials, only: trial_t, kind_single, kind_double, kind_quad
+   use trials, only: median, trial_t, kind_single, kind_double, kind_quad
    use true_errors, only: errors_t, truth_t
    use study_plan, only: plan_t, section_kinds
    implicit none

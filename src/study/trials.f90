@@ -5,17 +5,16 @@
 !> fewer digits rounds them, and that is a part of its error, as is the rounding of the deck's numbers. With twice the
 !> steps every second instant is the same one, to the last bit.
 module trials
-   use, intrinsic :: iso_fortran_env, only: dp => real64, qp => real128
+   use, intrinsic :: iso_fortran_env, only: dp => real64, qp => real128, int64
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_t, request_link, instant, method_newton, own_predictor
    use motion, only: motion_t, new_motion
    use set_motion, only: put_together, is_flagged
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, iterations_of
-   use timing, only: seconds
    implicit none
    private
-   public :: trial_t, outcome_t, kind_single, kind_double, kind_quad, repeats
-   public :: samples_of, trial_mechanism, trial_instants, march, can_be_timed, step_time
+   public :: trial_t, outcome_t, kind_single, kind_double, kind_quad, repeats, samples_of, trial_mechanism, &
+      trial_instants, march, can_be_timed, step_time, seconds, median
 
    !> The program that makes a trial: kinmat-single, kinmat, kinmat-quad.
    integer, parameter :: kind_single = 1, kind_double = 2, kind_quad = 3
@@ -167,4 +166,33 @@ contains
       end do
       time = time/(real(passes, dp)*last)
    end function step_time
+
+   !> The clock (s), from some instant.
+   real(dp) function seconds()
+      integer(int64) :: ticks, per_second
+
+      call system_clock(ticks, per_second)
+      seconds = real(ticks, dp)/real(per_second, dp)
+   end function seconds
+
+   !> The median of `x`; 0 if x is empty.
+   pure real(dp) function median(x)
+      real(dp), intent(in) :: x(:)
+      real(dp) :: sorted(size(x)), one
+      integer :: i, k
+
+      median = 0.0_dp
+      if (size(x) == 0) return
+      sorted = x
+      do i = 2, size(x)
+         one = sorted(i)
+         do k = i - 1, 1, -1
+            if (sorted(k) <= one) exit
+            sorted(k + 1) = sorted(k)
+         end do
+         sorted(k + 1) = one
+      end do
+      i = (size(x) + 1)/2
+      median = 0.5_dp*(sorted(i) + sorted(size(x) + 1 - i))
+   end function median
 end module trials
