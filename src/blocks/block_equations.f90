@@ -159,8 +159,9 @@ contains
    end subroutine slide_entries
 
    !> Right-hand side `v` (rows) for the velocities (`order` 1) or, once these are known, the accelerations (2) of
-   !> block `i`: the drives' derivatives less what is given. Closure errors, directions and rotated body vectors are
-   !> those of the last `assemble_block`.
+   !> block `i`: the drives' derivatives less what is given. An equation of two angles, one of them of an earlier block,
+   !> would be a direct block: to such an equation nothing is given. Closure errors, directions and rotated body vectors
+   !> are those of the last `assemble_block`.
    pure subroutine right_hand_side(b, i, order, s, v)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, order
@@ -181,8 +182,6 @@ contains
                if (block_loop%row_y > 0) v(block_loop%row_y) = v(block_loop%row_y) - g(2)
             case (loop_projection)
                v(block_loop%row_x) = v(block_loop%row_x) - projected_part(b, block_loop, m, order, s)
-            case default
-               call subtract_angles(block_loop, order, s, v)
             end select
          end associate
       end do
@@ -222,19 +221,6 @@ contains
          largest = max(largest, abs([s%u(u)%rate, s%u(u)%acceleration]))
       end subroutine take
    end function largest_rates
-
-   !> Angles of earlier blocks in an equation of two angles.
-   pure subroutine subtract_angles(g, order, s, v)
-      type(block_loop_t), intent(in) :: g
-      integer, intent(in) :: order
-      type(state_t), intent(in) :: s
-      real(wp), intent(inout) :: v(*)
-
-      if (g%orientation_column == 0) &
-         v(g%row_x) = v(g%row_x) - merge(s%u(g%orientation)%rate, s%u(g%orientation)%acceleration, order == 1)
-      if (g%less_column == 0) &
-         v(g%row_x) = v(g%row_x) + merge(s%u(g%less)%rate, s%u(g%less)%acceleration, order == 1)
-   end subroutine subtract_angles
 
    !> The part of g' (order 1) or g'' (order 2) of loop `m` that holds no unknown of that order.
    pure function given_part(b, block_loop, m, order, s) result(g)

@@ -204,9 +204,6 @@ contains
                call find_given(l, m, order, g)
                v(:, p%row_x) = v(:, p%row_x) - (g(:, 1)*l%f(:, 1, m) + g(:, 2)*l%f(:, 2, m))
                if (p%orientation > 0) call subtract_turning(l, m, order, v(:, p%row_x))
-            else
-               if (p%orientation_column == 0) v(:, p%row_x) = v(:, p%row_x) - l%u(:, order + 1, p%orientation)
-               if (p%less_column == 0) v(:, p%row_x) = v(:, p%row_x) + l%u(:, order + 1, p%less)
             end if
          end associate
       end do
