@@ -13,7 +13,7 @@ module block_branches
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_change, diagnostic_dead_end
    use convergence, only: convergence_t, is_solved
    use predictor, only: predict, is_even
-   use block_state, only: set_values, values_of
+   use block_state, only: unknown_t, set_values, values_of
    use block_solver, only: solve_block
    use block_rank, only: min_direction, residual_of, gauss_newton_step
    use block_engine, only: block_engine_t, solve_again, set_drive_values
@@ -38,6 +38,10 @@ module block_branches
    real(wp), parameter :: trial = max(1.0e-4_wp, sqrt(sqrt(epsilon(1.0_wp)))), furthest = 0.05_wp
    !> Redundant equations are satisfied there to more than the second order in the distance.
    real(wp), parameter :: max_closure_part = 0.01_wp
+   !> What builds on a block follows it to its other branch in so many parts that Kantorovich's ratio of each is about
+   !> the first: above the other it could come to another root.
+   real(wp), parameter :: max_part_ratio = 0.05_wp, max_ratio = 0.1_wp
+   integer, parameter :: max_parts = 64
    !> The position found from the equations, and that extrapolated, are the same where they differ by less.
    real(wp), parameter :: same_place = 64.0_wp*sqrt(epsilon(1.0_wp))
 
@@ -128,10 +132,12 @@ contains
       type(convergence_t), intent(inout) :: c
       logical, intent(out) :: found
       real(wp) :: direction(e%blocks%list(i)%shape%n), left(e%blocks%list(i)%shape%rows), x(e%blocks%list(i)%shape%n)
-      real(wp) :: least, curvature, away, correction
+      real(wp) :: y(e%blocks%list(i)%shape%n), least, curvature, away, correction
+      type(unknown_t) :: before(lbound(e%state%u, 1):ubound(e%state%u, 1))
       logical :: same, crossed(size(e%crossed))
 
       crossed = e%crossed
+      before = e%state%u
       x = values_of(e%blocks, i, e%state)
       call min_direction(e%blocks, i, e%state, least, left, direction)
       curvature = second_difference()
@@ -140,6 +146,13 @@ contains
       away = -2.0_wp*least/curvature
       call set_values(e%blocks, i, x + away*direction, e%state)
       call solve_again(e, c)
+      if (is_solved(c) .and. c%kantorovich_ratio > max_ratio) then
+         y = values_of(e%blocks, i, e%state)
+         e%state%u(:) = before
+         call go_in_parts(1 + int(min(c%kantorovich_ratio/max_part_ratio, real(max_parts, wp))), y - x, found)
+         if (.not. found) return
+         call solve_again(e, c)
+      end if
       ! By the correction of this block alone: what builds on it moves by any multiple of that.
       correction = maxval(abs(values_of(e%blocks, i, e%state) - (x + away*direction)))
       crossed(i) = .false.
@@ -149,6 +162,26 @@ contains
       e%history%filled = 0
 
    contains
+
+      !> The position of what builds on the block, which goes to its other branch, by `way`, in so many `parts`.
+      subroutine go_in_parts(parts, way, is_followed)
+         integer, intent(in) :: parts
+         real(wp), intent(in) :: way(:)
+         logical, intent(out) :: is_followed
+         type(convergence_t) :: one
+         integer :: p, k
+
+         is_followed = .true.
+         do p = 1, parts
+            call set_values(e%blocks, i, x + way*p/parts, e%state)
+            do k = 1, size(e%moving)
+               if (e%moving(k) <= i) cycle
+               call solve_block(e%blocks, e%moving(k), e%tolerance, e%work, e%state, one)
+               is_followed = is_followed .and. is_solved(one) .and. one%kantorovich_ratio <= max_ratio
+               if (.not. is_followed) return
+            end do
+         end do
+      end subroutine go_in_parts
 
       !> w . r''[k, k]
       real(wp) function second_difference() result(second)

@@ -28,9 +28,6 @@ module following
    !> The same over the distance of the next root, by the Jacobian and its Lipschitz constant: near a change point
    !> another branch passes close by, with the sign of the determinant that this one had before.
    real(wp), parameter :: max_kantorovich_ratio = 0.1_wp
-   !> On the other branch what builds on a block has jumped, at one instant, by any multiple of how far the branches are
-   !> apart, which is as much as rounding needs to tell them apart: 1/2 leaves one root (Newton and Kantorovich).
-   real(wp), parameter :: max_switch_ratio = 0.25_wp
    !> A substep smaller than this part of the longest one, or of what is left to go, cannot be made: the motion is
    !> blocked there. So many substeps at most are tried.
    real(wp), parameter :: min_substep = max(1.0e-10_wp, 4.0_wp*epsilon(1.0_wp))
@@ -200,7 +197,7 @@ contains
       select type (e => f%engine)
       class is (block_engine_t)
          call pass(e, t, f%branch_requests, f%convergence, list)
-         if (f%convergence%keeps_signs .and. f%convergence%kantorovich_ratio > max_switch_ratio) then
+         if (f%convergence%keeps_signs .and. f%convergence%kantorovich_ratio > max_kantorovich_ratio) then
             f%convergence%keeps_signs = .false.
          else if (f%convergence%keeps_signs) then
             if (.not. allocated(step%passed)) allocate (step%passed(0))
