@@ -205,7 +205,7 @@ contains
       do k = 0, instant_count(m) - 1
          call advance_set(a, instant(m, k))
          if (m%proves) then
-            call prove_set(a)
+            call prove_set(a, any_due(m, every, k))
             if (.not. all(holds(a%now%proofs))) row%unproved = row%unproved + 1
          end if
          call note_flag(row, a)

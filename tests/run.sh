@@ -30,10 +30,10 @@ parts() {
    nothing false is proved|2000|"$BUILD/release/fool_proofs" 2000
    units|786|tests/system/units.sh
    the methods against one another|8|tests/system/methods.sh
-   variants|91|tests/system/variants.sh
+   variants|94|tests/system/variants.sh
    tolerances|23|tests/system/tolerances.sh
    extremes and ranges|46|tests/system/answers.sh
-   circuits|27|tests/system/circuits.sh
+   circuits|30|tests/system/circuits.sh
    circuits by chance|40|"$BUILD/release/circuits_by_chance" 40
    all assemblies|79|tests/system/assemblies.sh
    independent mechanisms|106|tests/system/independent.sh
@@ -42,7 +42,7 @@ parts() {
    pictures|1128|tests/system/pictures.sh
    tables|218|tests/system/tables.sh
    the digits|1|tests/system/digits.sh
-   wide blocks|9|tests/system/wide.sh
+   wide blocks|10|tests/system/wide.sh
    drives between instants|48|tests/system/drives.sh
    decks made by chance|1000|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 1000
    relations between runs|300|tests/system/relations.sh --short

@@ -1,6 +1,7 @@
 !> What card PROVE has proved: a line for each printed instant, with what led to it since the one before; why instants
 !> are not proved; and the counts.
 module proof_table
+   use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
    use mechanism, only: mechanism_t, instant
    use motion, only: mark_none
@@ -12,7 +13,7 @@ module proof_table
    use listing_layout, only: layout_t
    use listing_tables, only: time_text
    use text_output, only: output_t, put
-   use numerals, only: whole
+   use numerals, only: whole, put_whole, put_fixed, put_digits, numeral_length
    use phrases
    implicit none
    private
@@ -151,22 +152,24 @@ contains
       type(line_t), intent(in) :: line
       type(mechanism_t), intent(in) :: m
       character(7*number_width + 2) :: text
-      integer :: k
+      character(numeral_length) :: time
+      integer :: k, first
 
       text = ''
-      text(:number_width) = right(whole(line%step))
-      text(number_width + 1:2*number_width) = right(time_text(l, instant(m, line%step)))
+      call put_whole(int(line%step, int64), text(:number_width), first)
+      call put_fixed(instant(m, line%step), l%time_decimals, l%time_power, time)
+      text(2*number_width + 1 - numeral_length:2*number_width) = adjustr(time)
       if (.not. line%is_proved) then
          text(2*number_width + 4:) = phrase(say_not_proved, m%polish)
          call put(o, text(:len_trim(text)))
          return
       end if
-      text(2*number_width + 1:3*number_width) = right(whole(line%parts))
-      text(3*number_width + 1:4*number_width) = right(rounded_up(line%tube))
+      call put_whole(int(line%parts, int64), text(2*number_width + 1:3*number_width), first)
+      call put_rounded_up(line%tube, text(3*number_width + 1:4*number_width))
       do k = 0, 1
-         text((4 + k)*number_width + 1:(5 + k)*number_width) = right(rounded_up(line%bounds(k)))
+         call put_rounded_up(line%bounds(k), text((4 + k)*number_width + 1:(5 + k)*number_width))
       end do
-      text(6*number_width + 3:) = right(rounded_up(line%bounds(2)))
+      call put_rounded_up(line%bounds(2), text(6*number_width + 3:))
       call put(o, text)
    end subroutine put_line
 
@@ -197,10 +200,20 @@ contains
    pure function rounded_up(x) result(text)
       real(wp), intent(in) :: x
       character(8) :: text
-      real(wp) :: large
-      integer :: power, digit, last
 
-      text = '0'
+      text = ''
+      call put_rounded_up(x, text)
+      text = adjustl(text)
+   end function rounded_up
+
+   !> The same at the end of `text`, which is blank: there are as many as instants.
+   pure subroutine put_rounded_up(x, text)
+      real(wp), intent(in) :: x
+      character(*), intent(inout) :: text
+      real(wp) :: large
+      integer :: power, digit, last, point
+
+      text(len(text):) = '0'
       if (.not. x > 0.0_wp) return
       ! Numbers next to the end of the range are none.
       large = min(max(x, tiny(x)/epsilon(x)**2), huge(x)*epsilon(x)**2)
@@ -210,10 +223,11 @@ contains
          digit = 1
          power = power + 1
       end if
-      text = achar(iachar('0') + digit)//'.E'//merge('-', '+', power < 0)
-      last = abs(power)
-      if (last > 999) last = 999
-      if (last > 99) text(5:) = achar(iachar('0') + last/100)
-      text(len_trim(text) + 1:) = achar(iachar('0') + mod(last/10, 10))//achar(iachar('0') + mod(last, 10))
-   end function rounded_up
+      last = min(abs(power), 999)
+      point = len(text) - merge(5, 4, last > 99)
+      text(point - 1:point - 1) = achar(iachar('0') + digit)
+      text(point:point + 1) = '.E'
+      text(point + 2:point + 2) = merge('-', '+', power < 0)
+      call put_digits(int(last, int64), text(point + 3:))
+   end subroutine put_rounded_up
 end module proof_table

@@ -61,7 +61,7 @@ module variant_rows
       type(cell_t), allocatable :: cells(:)         !< (columns)
       character(:), allocatable :: rejected         !< the error for which it is not computed; '' for none
       integer :: solved = 0, flagged = 0            !< instants
-      integer :: unproved = 0                       !< instants that are not proved, where a card asks for it
+      integer :: unproved = 0                       !< instants that are not proved, with their steps, if a card asks
       integer :: mark = mark_none, singularity = 0  !< of the first flagged instant
       real(wp) :: t = 0.0_wp                        !< its time
       type(diagnostic_t) :: limit                   !< the first limit; its kind is 0: none
@@ -100,6 +100,8 @@ contains
       if (m%ranges) call add_ranges()
       if (m%assemblies) call add_column(summary_column_t('assemblies', .true., heads_of(phrase(say_assemblies, &
          m%polish), '')))
+      if (m%proves) call add_column(summary_column_t('unproved', .true., heads_of(phrase(say_instants, m%polish), &
+         phrase(say_not_proved, m%polish))))
       call add_extremes()
 
    contains
@@ -250,8 +252,7 @@ contains
       real(wp) :: values(s%numbers)
       integer :: i
 
-      r%number = n
-      r%rejected = ''
+      r = variant_row_t(number=n, rejected='')
       allocate (r%cells(size(s%columns)))
       r%cells(1) = cell_t(cell_count, real(n, wp))
       values = values_of_variant(v, n)
@@ -320,6 +321,7 @@ contains
       end if
       if (m%assemblies) call next(cell_t(merge(cell_none, cell_count, asked%assemblies < 0), &
          real(asked%assemblies, wp)))
+      if (m%proves) call next(cell_t(cell_count, real(r%unproved, wp)))
       do i = 1, size(s%extremes%columns)
          associate (c => s%extremes%columns(i))
             do which = least, greatest

@@ -27,7 +27,8 @@ module contraction
       real(wp), allocatable :: inverse(:, :)      !< (n, n) |A|
       real(wp), allocatable :: off(:)             !< (n) row sums of |1 - A J| at the centre
       real(wp) :: z1 = 0.0_wp, z2 = 0.0_wp        !< see above
-      real(wp), allocatable, private :: v(:), x(:)   !< (n) room for sums
+      real(wp) :: norm = 0.0_wp                   !< the largest row sum of |A|
+      real(wp), allocatable, private :: v(:), x(:), y(:)   !< (n) room for sums
    end type contraction_t
 
 contains
@@ -38,90 +39,119 @@ contains
       integer, intent(in) :: n
       real(wp), intent(in) :: jacobian(n, n), change(n), growth(n)
       type(contraction_t), intent(inout) :: c
+      integer :: k
 
-      if (.not. allocated(c%inverse)) allocate (c%inverse(n, n), c%off(n), c%v(n), c%x(n))
-      call invert(n, jacobian, c%inverse, c%exists)
-      if (.not. c%exists) return
-      call find_off(n, jacobian, change, c%inverse, c%v, c%x, c%off)
-      call apply(c, growth, c%x)
+      if (.not. allocated(c%inverse)) allocate (c%inverse(n, n), c%off(n), c%v(n), c%x(n), c%y(n))
       c%z1 = 0.0_wp
       c%z2 = 0.0_wp
-      if (n > 0) c%z1 = maxval(c%off)
-      if (n > 0) c%z2 = maxval(c%x)
-      c%exists = all(c%off < 1.0_wp) .and. all(c%x <= huge(1.0_wp))
+      c%norm = 0.0_wp
+      c%exists = .true.
+      if (n == 0) return
+      call invert(n, jacobian, c%inverse, c%exists)
+      if (.not. c%exists) return
+      if (n == 2) then
+         call find_off_of_two(jacobian, change, growth, c%inverse, c%y, c%off)
+      else
+         call find_off(n, jacobian, change, growth, c%inverse, c%v, c%x, c%y, c%off)
+      end if
+      c%z1 = maxval(c%off)
+      c%z2 = maxval(c%y)
+      call apply(c, [(1.0_wp, k=1, n)], c%x)
+      c%norm = maxval(c%x)
+      c%exists = all(c%off < 1.0_wp) .and. all(c%y <= huge(1.0_wp))
    end subroutine contract
 
-   !> `off` (n): the row sums of |1 - A J|, where rows of the Jacobian J (n, n) can be off by `change` (n). `a` (n, n):
-   !> A, afterwards |A| with the room for roundings. `v`, `x`: room.
-   pure subroutine find_off(n, jacobian, change, a, v, x, off)
+   !> `off` (n): the row sums of |1 - A J|, where rows of the Jacobian J (n, n) can be off by `change` (n); `grown` (n):
+   !> |A| `growth` (n). `a` (n, n): A, afterwards |A| with the room for roundings. `v`, `x`: room.
+   pure subroutine find_off(n, jacobian, change, growth, a, v, x, grown, off)
       integer, intent(in) :: n
-      real(wp), intent(in) :: jacobian(n, n), change(n)
+      real(wp), intent(in) :: jacobian(n, n), change(n), growth(n)
       real(wp), intent(inout) :: a(n, n)
-      real(wp), intent(out) :: v(n), x(n), off(n)
+      real(wp), intent(out) :: v(n), x(n), grown(n), off(n)
       real(wp) :: room
       integer :: i, k
 
-      v = 0.0_wp
-      off = 0.0_wp
       do k = 1, n
-         x = 0.0_wp
-         x(k) = -1.0_wp
-         do i = 1, n
-            if (abs(jacobian(i, k)) <= 0.0_wp) cycle
-            x = x + a(:, i)*jacobian(i, k)
-            v(i) = v(i) + abs(jacobian(i, k))
+         x = a(:, 1)*jacobian(1, k)
+         x(k) = x(k) - 1.0_wp
+         do i = 2, n
+            if (abs(jacobian(i, k)) > 0.0_wp) x = x + a(:, i)*jacobian(i, k)
          end do
-         off = off + abs(x)
+         if (k == 1) then
+            off = abs(x)
+            v = abs(jacobian(:, 1))
+         else
+            off = off + abs(x)
+            v = v + abs(jacobian(:, k))
+         end if
       end do
       room = 1.0_wp + (64 + 4*n)*rounding
-      a = abs(a)*room
-      ! What rounding leaves open of n + 1 terms.
-      v = change + (n + 2)*rounding*v
-      call multiply(n, a, v, x)
-      off = (off + (n + 2)*rounding + x)*room
+      do k = 1, n
+         a(:, k) = abs(a(:, k))*room
+         ! What rounding leaves open of n + 1 terms.
+         v(k) = change(k) + (n + 2)*rounding*v(k)
+      end do
+      x = a(:, 1)*v(1)
+      grown = a(:, 1)*growth(1)
+      do k = 2, n
+         x = x + a(:, k)*v(k)
+         grown = grown + a(:, k)*growth(k)
+      end do
+      ! Room, too, for products that underflow.
+      off = (off + (n + 2)*rounding + x)*(room*room)
+      grown = grown*room + tiny(1.0_wp)
    end subroutine find_off
+
+   !> The same of two unknowns, as most blocks have.
+   pure subroutine find_off_of_two(jacobian, change, growth, a, grown, off)
+      real(wp), intent(in) :: jacobian(2, 2), change(2), growth(2)
+      real(wp), intent(inout) :: a(2, 2)
+      real(wp), intent(out) :: grown(2), off(2)
+      real(wp), parameter :: room = 1.0_wp + 72.0_wp*rounding
+      real(wp) :: b(2), v(2)
+
+      b(1) = abs(a(1, 1)*jacobian(1, 1) + a(1, 2)*jacobian(2, 1) - 1.0_wp) &
+         + abs(a(1, 1)*jacobian(1, 2) + a(1, 2)*jacobian(2, 2))
+      b(2) = abs(a(2, 1)*jacobian(1, 1) + a(2, 2)*jacobian(2, 1)) &
+         + abs(a(2, 1)*jacobian(1, 2) + a(2, 2)*jacobian(2, 2) - 1.0_wp)
+      v(1) = change(1) + 4.0_wp*rounding*(abs(jacobian(1, 1)) + abs(jacobian(1, 2)))
+      v(2) = change(2) + 4.0_wp*rounding*(abs(jacobian(2, 1)) + abs(jacobian(2, 2)))
+      a = abs(a)*room
+      off(1) = (b(1) + 4.0_wp*rounding + a(1, 1)*v(1) + a(1, 2)*v(2))*room**2
+      off(2) = (b(2) + 4.0_wp*rounding + a(2, 1)*v(1) + a(2, 2)*v(2))*room**2
+      grown(1) = (a(1, 1)*growth(1) + a(1, 2)*growth(2))*room + tiny(1.0_wp)
+      grown(2) = (a(2, 1)*growth(1) + a(2, 2)*growth(2))*room + tiny(1.0_wp)
+   end subroutine find_off_of_two
 
    !> `x` (n): |A| `v` (n), rounded up.
    pure subroutine apply(c, v, x)
       type(contraction_t), intent(in) :: c
-      real(wp), intent(in) :: v(*)
-      real(wp), intent(out) :: x(*)
+      real(wp), intent(in) :: v(size(c%off))
+      real(wp), intent(out) :: x(size(c%off))
+      integer :: k
 
-      call multiply(size(c%off), c%inverse, v, x)
+      if (size(x) == 0) return
+      x = c%inverse(:, 1)*v(1)
+      do k = 2, size(x)
+         x = x + c%inverse(:, k)*v(k)
+      end do
+      x = x*(1.0_wp + (16 + size(x))*rounding)
+      ! For products that underflow; what is at rest is so exactly.
+      if (any(v > 0.0_wp)) x = x + tiny(1.0_wp)
    end subroutine apply
 
-   !> The same of the matrix `a` (n, n).
-   pure subroutine multiply(n, a, v, x)
-      integer, intent(in) :: n
-      real(wp), intent(in) :: a(n, n), v(n)
-      real(wp), intent(out) :: x(n)
-      integer :: k
-      logical :: moves
-
-      x = 0.0_wp
-      moves = .false.
-      do k = 1, n
-         x = x + a(:, k)*v(k)
-         moves = moves .or. v(k) > 0.0_wp
-      end do
-      x = x*(1.0_wp + (16 + n)*rounding)
-      ! For products that underflow; what is at rest is so exactly.
-      if (moves) x = x + tiny(1.0_wp)
-   end subroutine multiply
-
-   !> The radius of the least ball about the centre, where |A| |F| <= `eta`, that is mapped into itself; -1: none.
-   pure real(wp) function radius_of(c, eta) result(r)
-      type(contraction_t), intent(in) :: c
-      real(wp), intent(in) :: eta
+   !> The radius of the least ball about the centre, where |A| |F| <= `eta`, that is mapped into itself with these `z1`
+   !> and `z2`; -1: none.
+   pure real(wp) function radius_of(z1, z2, eta) result(r)
+      real(wp), intent(in) :: z1, z2, eta
       real(wp) :: root
 
       r = -1.0_wp
-      if (.not. c%exists) return
-      root = (1.0_wp - c%z1)**2 - 2.0_wp*c%z2*eta
-      if (.not. root > 0.0_wp) return
-      r = 2.0_wp*eta/(1.0_wp - c%z1 + sqrt(root))*(1.0_wp + 1.0e-3_wp)
-      if (.not. ((eta + r*(c%z1 + 0.5_wp*c%z2*r))*(1.0_wp + 32.0_wp*rounding) <= r .and. &
-         c%z1 + c%z2*r <= max_rate .and. r <= max_radius)) r = -1.0_wp
+      root = (1.0_wp - z1)**2 - 2.0_wp*z2*eta
+      if (.not. (root > 0.0_wp .and. z1 < 1.0_wp)) return
+      r = 2.0_wp*eta/(1.0_wp - z1 + sqrt(root))*(1.0_wp + 1.0e-3_wp)
+      if (.not. ((eta + r*(z1 + 0.5_wp*z2*r))*(1.0_wp + 32.0_wp*rounding) <= r .and. &
+         z1 + z2*r <= max_rate .and. r <= max_radius)) r = -1.0_wp
    end function radius_of
 
    !> `a` becomes about the inverse of `jacobian`, both (n, n); `exists`: it has one.
@@ -159,8 +189,5 @@ contains
          call solve_transposed(f, a)
          a = transpose(a)
       end select
-      do k = 1, n
-         exists = exists .and. all(abs(a(:, k)) <= huge(1.0_wp))
-      end do
    end subroutine invert
 end module contraction

@@ -81,35 +81,35 @@ contains
       type(link_bounds_t), intent(in) :: l
       type(block_engine_t), intent(in) :: e
       type(jets_t), intent(in) :: j
-      real(wp), intent(out) :: error(:, 0:, :)
-      real(wp) :: size_of(0:2, 0:size(error, 3)), x(0:2), y(0:2)
+      real(wp), intent(out), contiguous :: error(:, 0:, :)
+      real(wp) :: size_of(0:2, 0:size(error, 3)), x, y
       integer :: i, k
 
       error = 0.0_wp
-      size_of = 0.0_wp
+      size_of(:, 0) = 0.0_wp
       do i = 1, size(e%whole%links)
-         associate (h => e%whole%links(i), p => e%whole%links(i)%parent_orientation, o => e%whole%links(i)%orientation)
-            x = l%length(1, i)*j%turn_error(:2, p) + l%weight(1, i)*j%turn(:2, p) &
-               + l%length(2, i)*j%turn_error(:2, o) + l%weight(2, i)*j%turn(:2, o)
-            y = l%length(1, i)*j%turn(:2, p) + l%length(2, i)*j%turn(:2, o)
-            if (h%slide > 0) then
-               do k = 0, 2
-                  call product_error(k, j%own(:, h%slide), j%own_error(:, h%slide), j%turn(:, p), j%turn_error(:, p), &
-                     l%length(3, i), l%weight(3, i), y(k), x(k))
-               end do
-            end if
-            if (h%root > 0) then
-               y = e%length*maxval(h%root_unit)*max(j%own(:2, h%root), j%own(:2, h%root + 1))
-               x = e%length*maxval(h%root_unit)*max(j%own_error(:2, h%root), j%own_error(:2, h%root + 1))
-            end if
-            if (h%parent > 0) x = x + error(1, :, h%parent)
-            size_of(:, h%link) = y + size_of(:, h%parent)
-            x = (x + 8.0_wp*rounding*size_of(:, h%link))*(1.0_wp + 64.0_wp*rounding)
-            error(1, :, h%link) = x
-            error(2, :, h%link) = x
-            error(3, :, h%link) = j%own_error(:2, o)*(1.0_wp + 16.0_wp*rounding)
-            error(3, 0, h%link) = error(3, 0, h%link) + l%angle(i) &
-               + 2.0_wp*rounding*(j%own(0, o) + abs(h%angle_offset))
+         associate (h => e%whole%links(i), p => e%whole%links(i)%parent_orientation, &
+            o => e%whole%links(i)%orientation, own => e%whole%links(i)%link, reach => l%length(:, i), &
+            weight => l%weight(:, i))
+            do k = 0, 2
+               x = reach(1)*j%turn_error(k, p) + weight(1)*j%turn(k, p) + reach(2)*j%turn_error(k, o) &
+                  + weight(2)*j%turn(k, o)
+               y = reach(1)*j%turn(k, p) + reach(2)*j%turn(k, o)
+               if (h%slide > 0) call product_error(k, j%own(:, h%slide), j%own_error(:, h%slide), j%turn(:, p), &
+                  j%turn_error(:, p), reach(3), weight(3), y, x)
+               if (h%root > 0) then
+                  y = e%length*maxval(h%root_unit)*max(j%own(k, h%root), j%own(k, h%root + 1))
+                  x = e%length*maxval(h%root_unit)*max(j%own_error(k, h%root), j%own_error(k, h%root + 1))
+               end if
+               if (h%parent > 0) x = x + error(1, k, h%parent)
+               y = y + size_of(k, h%parent)
+               size_of(k, own) = y
+               x = (x + 8.0_wp*rounding*y)*(1.0_wp + 64.0_wp*rounding)
+               error(1, k, own) = x
+               error(2, k, own) = x
+               error(3, k, own) = j%own_error(k, o)*(1.0_wp + 16.0_wp*rounding)
+            end do
+            error(3, 0, own) = error(3, 0, own) + l%angle(i) + 2.0_wp*rounding*(j%own(0, o) + abs(h%angle_offset))
          end associate
       end do
    end subroutine bound_links
@@ -144,11 +144,15 @@ contains
    pure function largest_bounds(links, length, rate) result(largest)
       real(wp), intent(in) :: links(:, 0:, :), length, rate
       real(wp) :: largest(0:2)
-      integer :: k
+      integer :: i, k
 
-      do k = 0, 2
-         largest(k) = max(maxval(links(:2, k, :))/length, maxval(links(3, k, :)))/rate**k
+      largest = 0.0_wp
+      do i = 1, size(links, 3)
+         do k = 0, 2
+            largest(k) = max(largest(k), max(links(1, k, i), links(2, k, i))/length, links(3, k, i))
+         end do
       end do
+      largest = largest/rate**[0, 1, 2]
    end function largest_bounds
 
    !> What rounding leaves open of a place near `x` (2) counted from the first ground link, when that is added.

@@ -32,19 +32,22 @@ module motion_proof
       logical :: has_step = .false.               !< a step leads to it from a position that was proved
       type(step_proof_t) :: step
       real(wp) :: gap = 0.0_wp                    !< of redundant equations at the instant, at most, in block units
-      real(wp), allocatable :: links(:, :, :)     !< (3, 0:2, links) bounds of their errors, in the deck's units and rad
+      !> (3, 0:2, links) bounds of their errors, in the deck's units and rad, where they are asked for
+      real(wp), allocatable :: links(:, :, :)
       integer, allocatable :: failed(:)           !< the links of the block that is not proved
       integer :: too_many = 0                     !< its unknowns, if they are too many
    end type motion_proof_t
 
 contains
 
-   !> Proves the motion `q` of `m` that the engine `e` has found, and the step to it.
-   subroutine prove_motion(p, m, e, q, found)
+   !> Proves the motion `q` of `m` that the engine `e` has found, and the step to it. `bounded`: with bounds of all that
+   !> is computed; otherwise of positions alone, as the step needs them.
+   subroutine prove_motion(p, m, e, q, bounded, found)
       type(motion_prover_t), intent(inout) :: p
       type(mechanism_t), intent(in) :: m
       class(engine_t), intent(in) :: e
       type(motion_t), intent(in) :: q
+      logical, intent(in) :: bounded
       type(motion_proof_t), intent(inout) :: found
       integer :: k
 
@@ -65,9 +68,10 @@ contains
          end if
          if (allocated(found%failed)) deallocate (found%failed)
          if (q%known < 2) return
-         call prove_position(p%prover, e%block_engine_t, q%t, e%needed, p%at(p%now), found%is_proved)
+         call prove_position(p%prover, e%block_engine_t, q%t, e%needed, p%at(p%now), found%is_proved, &
+            merge(2, 0, bounded))
          if (found%is_proved) then
-            call bound_links(p%links, e%block_engine_t, p%prover%jets, found%links)
+            if (bounded) call bound_links(p%links, e%block_engine_t, p%prover%jets, found%links)
             found%gap = maxval(p%at(p%now)%gap(e%needed))
             found%has_step = p%has_begun
             if (found%has_step) &
@@ -82,7 +86,8 @@ contains
          end if
          if (k == 0) return
          found%failed = links_of_block(e, k)
-         if (e%blocks%list(k)%shape%n > max_unknowns) found%too_many = e%blocks%list(k)%shape%n
+         if (e%blocks%list(k)%shape%n > max_unknowns .or. found%step%is_broken_off) &
+            found%too_many = e%blocks%list(k)%shape%n
       end select
    end subroutine prove_motion
 

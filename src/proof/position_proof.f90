@@ -17,7 +17,7 @@ module position_proof
    use block_equations, only: assemble_dense, right_hand_side
    use block_engine, only: block_engine_t
    use proof_data, only: proof_data_t, new_proof_data, table_errors, rounding
-   use row_bounds, only: jets_t, new_jets, turn, turn_errors, bound_rows, bound_jacobian
+   use row_bounds, only: jets_t, new_jets, note_turn_error, bound_rows, bound_changes, bound_jacobian
    use contraction, only: contraction_t, contract, radius_of, apply
    implicit none
    private
@@ -35,8 +35,8 @@ module position_proof
    type :: block_work_t
       real(wp), allocatable :: a(:, :)            !< (rows, n) Jacobian
       real(wp), allocatable :: r(:, :)            !< (rows, 0:2) what its equations and their derivatives leave
-      !> (rows) bounds of the equations, and see `bound_rows`, `bound_jacobian`
-      real(wp), allocatable, dimension(:) :: g, size_of, open, error, change, growth
+      !> (rows) bounds of the equations, and see `bound_rows`, `bound_changes`, `bound_jacobian`
+      real(wp), allocatable, dimension(:) :: g, open, error, change, growth
       real(wp), allocatable :: x(:)               !< (n) |A| g
       real(wp) :: within = 0.0_wp                 !< the largest bound of the errors of its values
       type(contraction_t) :: contraction
@@ -61,6 +61,7 @@ module position_proof
       real(wp), allocatable :: drive_error(:, :)  !< (0:2, 0:drives) those of their exact laws differ by no more
       real(wp), allocatable :: open(:, :)         !< (0:1, rows) |F| and |dF/dt| at these values of all unknowns
       real(wp), allocatable :: gap(:)             !< (blocks) by how much redundant equations stay open at most
+      real(wp), allocatable :: norm(:), z1(:)     !< (blocks) the largest row sum of |A|, and z1, of their contractions
       logical, allocatable :: is_proved(:)        !< (blocks)
    end type placed_t
 
@@ -84,7 +85,7 @@ contains
       do i = 1, size(e%blocks%list)
          associate (w => p%work(i), n => e%blocks%list(i)%shape%n, rows => e%blocks%list(i)%shape%rows)
             if (e%blocks%list(i)%direct .or. n > max_unknowns) cycle
-            allocate (w%a(rows, n), w%r(rows, 0:2), w%g(rows), w%size_of(rows), w%open(rows), w%error(rows), &
+            allocate (w%a(rows, n), w%r(rows, 0:2), w%g(rows), w%open(rows), w%error(rows), &
                w%change(rows), w%growth(rows), w%x(n))
          end associate
       end do
@@ -97,29 +98,33 @@ contains
       type(placed_t) :: q
 
       allocate (q%x(0:2, 0:b%unknowns), q%error(0:2, 0:b%unknowns), q%drive(0:2, 0:drives), &
-         q%drive_error(0:2, 0:drives), q%open(0:1, size(b%rows)), q%gap(size(b%list)), &
-         source=0.0_wp)
+         q%drive_error(0:2, 0:drives), q%open(0:1, size(b%rows)), q%gap(size(b%list)), q%norm(size(b%list)), &
+         q%z1(size(b%list)), source=0.0_wp)
       allocate (q%is_proved(size(b%list)), source=.false.)
    end function new_placed
 
    !> Proves position, velocity and acceleration of the blocks `list`, in solving order, at the time `t` and the values
-   !> that the engine `e` has found. `is_proved`: of all of them; the first that is not ends the proof.
-   subroutine prove_position(p, e, t, list, q, is_proved)
+   !> that the engine `e` has found. `is_proved`: of all of them; the first that is not ends the proof. `order`: up to
+   !> this derivative alone, 0 to 2.
+   subroutine prove_position(p, e, t, list, q, is_proved, order)
       type(prover_t), intent(inout) :: p
       type(block_engine_t), intent(in) :: e
       real(wp), intent(in) :: t
       integer, intent(in) :: list(:)
       type(placed_t), intent(inout) :: q
       logical, intent(out) :: is_proved
-      integer :: k
+      integer, intent(in), optional :: order
+      integer :: k, highest
 
+      highest = 2
+      if (present(order)) highest = order
       ! As sections: assignments to the whole would ask for shapes first.
       p%state%u(:) = e%state%u(:)
       p%state%drive_value(:, :) = e%state%drive_value(:, :)
       call take_state(p, e, t, q)
       is_proved = .true.
       do k = 1, size(list)
-         call prove_block(p, e%blocks, list(k), 2, q)
+         call prove_block(p, e%blocks, list(k), highest, q)
          is_proved = q%is_proved(list(k))
          if (.not. is_proved) return
       end do
@@ -153,7 +158,7 @@ contains
    end subroutine take_state
 
    !> Proves block `i` at the values of p%state, whose earlier blocks `q` has proved: the values of its unknowns and,
-   !> up to `order` (0 to 2), their derivatives. Result: what `q` has of this block.
+   !> up to `order` (0 to 2), their derivatives. Result: what `q` has of this block, `open` whatever the order.
    subroutine prove_block(p, b, i, order, q)
       type(prover_t), intent(inout) :: p
       type(blocks_t), intent(in) :: b
@@ -170,11 +175,13 @@ contains
          q%is_proved(i) = block%direct .or. allocated(w%a)
          if (block%direct) call prove_direct(p, b, i, q)
          if (block%direct .or. .not. q%is_proved(i)) return
-         call find_residuals(b, i, p%state, w%a, w%r)
-         do k = 0, order
-            call bound_rows(p%data, b, i, p%jets, k, w%size_of, w%open, w%error)
+         call find_residuals(b, i, max(1, order), p%state, w%a, w%r)
+         do k = 0, max(1, order)
+            call bound_rows(p%data, b, i, p%jets, k, w%open)
             w%g(:) = (abs(w%r(:, k)) + w%open)*room
             if (k < 2) q%open(k, block%first_row:block%last_row) = w%g
+            if (k > order) exit
+            call bound_changes(p%data, b, i, p%jets, k, w%error)
             w%g(:) = (w%g + w%error)*room
             if (k == 0) call prove_values(p, b, i, q)
             if (k > 0) call bound_derivatives(p, b, i, k, q)
@@ -193,11 +200,12 @@ contains
       j%own(0, u) = abs(s%u(u)%value)
       j%own(1, u) = abs(s%u(u)%rate)
       j%own(2, u) = abs(s%u(u)%acceleration)
-      j%own(3:, u) = 0.0_wp
-      j%own_error(:, u) = 0.0_wp
+      j%own_error(:2, u) = 0.0_wp
       if (u > b%orientations) return
-      j%turn(:, u) = turn(j%own(:, u))
-      j%turn_error(:, u) = 0.0_wp
+      ! See `turn`.
+      j%turn(1, u) = j%own(1, u)
+      j%turn(2, u) = j%own(1, u)**2 + j%own(2, u)
+      j%turn_error(:2, u) = 0.0_wp
    end subroutine bound_values
 
    !> Derivative `order` of unknown `u` is off by no more than `error`.
@@ -210,7 +218,7 @@ contains
 
       q%error(order, u) = error
       j%own_error(order, u) = error
-      if (u <= b%orientations) j%turn_error(:, u) = turn_errors(j%own(:, u), j%own_error(:, u))
+      if (u <= b%orientations) call note_turn_error(order, j%own(:, u), j%own_error(:, u), j%turn_error(:, u))
    end subroutine note_error
 
    !> Proves the direct block `i`: its unknown is another one and a drive.
@@ -238,11 +246,11 @@ contains
       end associate
    end subroutine prove_direct
 
-   !> Jacobian `a` (rows, n) of block `i` and what its equations and their first and second derivatives leave, `r`
+   !> Jacobian `a` (rows, n) of block `i` and what its equations and their derivatives up to `order` (1 or 2) leave, `r`
    !> (rows, 0:2), at the state `s`.
-   subroutine find_residuals(b, i, s, a, r)
+   subroutine find_residuals(b, i, order, s, a, r)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
+      integer, intent(in) :: i, order
       type(state_t), intent(inout) :: s
       real(wp), intent(out) :: a(b%list(i)%shape%rows, *), r(b%list(i)%shape%rows, 0:2)
       integer :: k
@@ -250,11 +258,11 @@ contains
       call find_known_parts(b, i, s)
       call assemble_dense(b, i, s, a, r)
       call right_hand_side(b, i, 1, s, r(:, 1))
-      call right_hand_side(b, i, 2, s, r(:, 2))
+      if (order > 1) call right_hand_side(b, i, 2, s, r(:, 2))
       do k = 1, b%list(i)%shape%n
          associate (u => s%u(b%unknown(b%list(i)%first + k - 1)))
             r(:, 1) = r(:, 1) - a(:, k)*u%rate
-            r(:, 2) = r(:, 2) - a(:, k)*u%acceleration
+            if (order > 1) r(:, 2) = r(:, 2) - a(:, k)*u%acceleration
          end associate
       end do
    end subroutine find_residuals
@@ -272,6 +280,8 @@ contains
       q%is_proved(i) = radius >= 0.0_wp
       if (.not. q%is_proved(i)) return
       associate (w => p%work(i), c => p%work(i)%contraction, own => b%unknown(b%list(i)%first:b%list(i)%last))
+         q%norm(i) = c%norm
+         q%z1(i) = c%z1
          w%within = 0.0_wp
          do k = 1, size(w%x)
             error = min(radius, (w%x(k) + (c%off(k) + c%z2*radius)*radius)*room)
@@ -304,7 +314,7 @@ contains
          if (.not. c%exists) return
          call apply_to_bounds(p%rows, w)
          ! What is not a number lies in no ball.
-         if (all(w%x <= 1.0_wp)) radius = radius_of(c, max(0.0_wp, maxval(w%x)))
+         if (all(w%x <= 1.0_wp)) radius = radius_of(c%z1, c%z2, max(0.0_wp, maxval(w%x)))
          if (size(w%g) > n) gap = maxval((w%g + (sum(abs(w%a), dim=2) + w%change + w%growth*radius)*radius)*room)
       end associate
    end subroutine contract_block

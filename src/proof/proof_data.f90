@@ -22,6 +22,8 @@ module proof_data
    real(wp), parameter :: of_number = 4.0_wp*rounding
    !> Of the components of a vector that turns, and of its derivatives: sine and cosine, products and their sum.
    real(wp), parameter :: of_vector = 8.0_wp*rounding
+   !> Of a row: its sum with a drive and a constant, and its projection.
+   real(wp), parameter :: of_row = 4.0_wp*rounding
 
    !> Weights bound errors of vectors, in the unit of their loop, as parts of the unit vectors that turn them.
    type :: proof_data_t
@@ -89,7 +91,7 @@ contains
          integer, intent(in) :: m1
 
          associate (g => b%loops(m1))
-            terms_of = of_vector + rounding*(2 + g%last_vector - g%first_vector + g%last_slide - g%first_slide)
+            terms_of = of_vector + of_row + rounding*(2 + g%last_vector - g%first_vector + g%last_slide - g%first_slide)
          end associate
       end function terms_of
    end function new_proof_data

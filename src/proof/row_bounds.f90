@@ -10,9 +10,12 @@ module row_bounds
    use contraction, only: max_radius
    implicit none
    private
-   public :: jets_t, new_jets, turn, turn_errors, product_error, bound_rows, bound_jacobian
+   public :: jets_t, new_jets, turn, turn_errors, note_turn_error, product_error, bound_rows, bound_changes, &
+      bound_loops, bound_jacobian
 
    integer, parameter, public :: highest = 4     !< derivative by time
+   !> What of rows is bounded: what rounding and the deck's numbers leave open, that and the size, or changes by errors.
+   integer, parameter, public :: of_rounding = 1, of_all = 2, of_errors = 3
    real(wp), parameter :: binomial(0:4, 0:4) = reshape(real([ &
       1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 1, 2, 1, 0, 0, 1, 3, 3, 1, 0, 1, 4, 6, 4, 1], wp), [5, 5])
 
@@ -51,91 +54,163 @@ contains
    pure function turn_errors(f, e) result(b)
       real(wp), intent(in) :: f(0:highest), e(0:highest)
       real(wp) :: b(0:highest)
+      integer :: k
 
       b = 0.0_wp
-      b(0) = e(0)
-      b(1) = e(1) + (f(1) + e(1))*e(0)
-      b(2) = e(2) + (f(2) + e(2))*e(0) + (2.0_wp*f(1) + e(1))*e(1) + (f(1) + e(1))**2*e(0)
+      do k = 0, 2
+         call note_turn_error(k, f, e, b)
+      end do
    end function turn_errors
 
-   !> Of derivative `order` of the rows of block `i`: `size_of` bounds the sum of the lengths of all terms, `open` what
-   !> rounding and the deck's numbers leave open of it, `error` what errors of the motion change in it; each (rows).
-   pure subroutine bound_rows(d, b, i, j, order, size_of, open, error)
+   !> Bounds `b` of the errors of its derivatives 0 to 2, where those of phi, no larger than `f`, are off by `e`: that
+   !> of derivative `order`, after those of lower ones, and of the next one what comes of these alone.
+   pure subroutine note_turn_error(order, f, e, b)
+      integer, intent(in) :: order
+      real(wp), intent(in) :: f(0:highest), e(0:highest)
+      real(wp), intent(inout) :: b(0:highest)
+
+      select case (order)
+      case (0)
+         b(0) = e(0)
+         b(1) = f(1)*e(0)
+      case (1)
+         b(1) = e(1) + (f(1) + e(1))*e(0)
+         b(2) = f(2)*e(0) + (2.0_wp*f(1) + e(1))*e(1) + (f(1) + e(1))**2*e(0)
+      case default
+         b(2) = b(2) + e(2)*(1.0_wp + e(0))
+      end select
+   end subroutine note_turn_error
+
+   !> `open` (rows): what rounding and the deck's numbers leave open of derivative `order` (0 to 2) of the rows of block
+   !> `i`.
+   pure subroutine bound_rows(d, b, i, j, order, open)
       type(proof_data_t), intent(in) :: d
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, order
       type(jets_t), intent(in) :: j
-      real(wp), intent(out) :: size_of(*), open(*), error(*)
-      real(wp) :: x(3)
-      integer :: m, k, row
+      real(wp), intent(out) :: open(*)
+      integer :: k, row
 
-      do m = b%list(i)%first_loop, b%list(i)%last_loop
-         associate (g => b%loops(m))
-            select case (g%kind)
-            case (loop_components)
-               call bound_loop(d, b, m, j, order, x)
-            case (loop_projection)
-               call bound_projection(d, b, m, j, order, x)
-            case default
-               x(1) = j%own(order, g%orientation) + j%own(order, g%less)
-               x(2) = 4.0_wp*rounding*x(1)
-               x(3) = j%own_error(order, g%orientation) + j%own_error(order, g%less)
-            end select
-            if (g%row_x > 0) call put(x, size_of(g%row_x), open(g%row_x), error(g%row_x))
-            if (g%row_y > 0) call put(x, size_of(g%row_y), open(g%row_y), error(g%row_y))
-         end associate
-      end do
-      if (order > 2) return
+      call bound_loops(of_rounding, d, b, i, j, order, open)
       do k = b%list(i)%first_row, b%list(i)%last_row
          row = k - b%list(i)%first_row + 1
-         if (order == 0) size_of(row) = size_of(row) + abs(b%rows(k)%constant)
-         if (order == 0) open(row) = open(row) + d%constant_weight(k)
-         size_of(row) = size_of(row) + j%drive(order, b%rows(k)%drive)
-         open(row) = open(row) + 4.0_wp*rounding*(size_of(row) + j%drive(order, b%rows(k)%drive))
-         error(row) = error(row) + j%drive_error(order, b%rows(k)%drive)
+         if (order == 0) open(row) = open(row) + d%constant_weight(k) + 4.0_wp*rounding*abs(b%rows(k)%constant)
+         if (b%rows(k)%drive > 0) open(row) = open(row) + 8.0_wp*rounding*j%drive(order, b%rows(k)%drive)
       end do
    end subroutine bound_rows
 
-   !> Puts the three bounds `x` where they belong.
-   pure subroutine put(x, size_of, open, error)
-      real(wp), intent(in) :: x(3)
-      real(wp), intent(out) :: size_of, open, error
+   !> `error` (rows): by how much errors of the motion change derivative `order` (0 to 2) of the rows of block `i`.
+   pure subroutine bound_changes(d, b, i, j, order, error)
+      type(proof_data_t), intent(in) :: d
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i, order
+      type(jets_t), intent(in) :: j
+      real(wp), intent(out) :: error(*)
+      integer :: k, row
 
-      size_of = x(1)
-      open = x(2)
-      error = x(3)
-   end subroutine put
+      call bound_loops(of_errors, d, b, i, j, order, error)
+      do k = b%list(i)%first_row, b%list(i)%last_row
+         row = k - b%list(i)%first_row + 1
+         if (b%rows(k)%drive > 0) error(row) = error(row) + j%drive_error(order, b%rows(k)%drive)
+      end do
+   end subroutine bound_changes
 
-   !> The same, `x` (3), of the vector that closes loop `m`.
-   pure subroutine bound_loop(d, b, m, j, order, x)
+   !> `bound` (rows) of derivative `order` of the rows of block `i`, as `what` says, without drives and constants.
+   pure subroutine bound_loops(what, d, b, i, j, order, bound)
+      integer, intent(in) :: what, i, order
+      type(proof_data_t), intent(in) :: d
+      type(blocks_t), intent(in) :: b
+      type(jets_t), intent(in) :: j
+      real(wp), intent(out) :: bound(*)
+      real(wp) :: x
+      integer :: m
+
+      do m = b%list(i)%first_loop, b%list(i)%last_loop
+         associate (g => b%loops(m))
+            x = 0.0_wp
+            select case (g%kind)
+            case (loop_components)
+               if (what == of_all) x = loop_size(d, b, m, j, order)
+               if (what == of_errors) x = loop_change(d, b, m, j, order)
+               if (what /= of_errors) x = x + loop_open(d, b, m, j, order)
+            case (loop_projection)
+               if (what == of_all) x = projection_size(d, b, m, j, order)
+               if (what == of_errors) x = projection_change(d, b, m, j, order)
+               if (what /= of_errors) x = x + projection_open(d, b, m, j, order)
+            case default
+               if (what == of_errors) x = j%own_error(order, g%orientation) + j%own_error(order, g%less)
+               if (what == of_all) x = j%own(order, g%orientation) + j%own(order, g%less)
+               if (what /= of_errors) x = x + 8.0_wp*rounding*(j%own(order, g%orientation) + j%own(order, g%less))
+            end select
+            if (g%row_x > 0) bound(g%row_x) = x
+            if (g%row_y > 0) bound(g%row_y) = x
+         end associate
+      end do
+   end subroutine bound_loops
+
+   !> A bound of derivative `order` of the vector that closes loop `m`.
+   pure real(wp) function loop_size(d, b, m, j, order)
       type(proof_data_t), intent(in) :: d
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: m, order
       type(jets_t), intent(in) :: j
-      real(wp), intent(out) :: x(3)
-      real(wp) :: open
+
+      loop_size = loop_sum(b, m, j, order, d%length, d%slide_length)
+      if (order == 0) loop_size = loop_size + d%ground_length(m)
+   end function loop_size
+
+   !> What rounding and the deck's numbers leave open of it.
+   pure real(wp) function loop_open(d, b, m, j, order)
+      type(proof_data_t), intent(in) :: d
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: m, order
+      type(jets_t), intent(in) :: j
+
+      loop_open = loop_sum(b, m, j, order, d%weight, d%slide_weight)
+      if (order == 0) loop_open = loop_open + d%ground_weight(m)
+   end function loop_open
+
+   !> The sum over the vectors and slides of loop `m` of derivative `order`, each times its number of `vectors` and
+   !> `slides`.
+   pure real(wp) function loop_sum(b, m, j, order, vectors, slides)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: m, order
+      type(jets_t), intent(in) :: j
+      real(wp), intent(in) :: vectors(*), slides(*)
       integer :: k
 
-      x = 0.0_wp
-      if (order == 0) x(1) = d%ground_length(m)
-      if (order == 0) x(2) = d%ground_weight(m)
+      loop_sum = 0.0_wp
       do k = b%loops(m)%first_vector, b%loops(m)%last_vector
-         associate (o => b%body_vectors(k)%orientation)
-            x(1) = x(1) + d%length(k)*j%turn(order, o)
-            x(2) = x(2) + d%weight(k)*j%turn(order, o)
-            x(3) = x(3) + d%length(k)*j%turn_error(order, o)
-         end associate
+         loop_sum = loop_sum + vectors(k)*j%turn(order, b%body_vectors(k)%orientation)
       end do
       do k = b%loops(m)%first_slide, b%loops(m)%last_slide
          associate (o => b%slides(k)%orientation, u => b%slides(k)%unknown)
-            open = 0.0_wp
-            call product_error(order, j%own(:, u), j%own_error(:, u), j%turn(:, o), j%turn_error(:, o), &
-               d%slide_length(k), 0.0_wp, x(1), x(3))
-            call product_error(order, j%own(:, u), j%own_error(:, u), j%turn(:, o), j%turn_error(:, o), &
-               d%slide_weight(k), 0.0_wp, x(2), open)
+            loop_sum = loop_sum + slides(k)*sum(binomial(:order, order)*j%own(:order, u)*j%turn(order:0:-1, o))
          end associate
       end do
-   end subroutine bound_loop
+   end function loop_sum
+
+   !> By how much errors of the motion change it.
+   pure real(wp) function loop_change(d, b, m, j, order) result(error)
+      type(proof_data_t), intent(in) :: d
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: m, order
+      type(jets_t), intent(in) :: j
+      real(wp) :: size_of
+      integer :: k
+
+      error = 0.0_wp
+      do k = b%loops(m)%first_vector, b%loops(m)%last_vector
+         error = error + d%length(k)*j%turn_error(order, b%body_vectors(k)%orientation)
+      end do
+      do k = b%loops(m)%first_slide, b%loops(m)%last_slide
+         associate (o => b%slides(k)%orientation, u => b%slides(k)%unknown)
+            size_of = 0.0_wp
+            call product_error(order, j%own(:, u), j%own_error(:, u), j%turn(:, o), j%turn_error(:, o), &
+               d%slide_length(k), 0.0_wp, size_of, error)
+         end associate
+      end do
+   end function loop_change
 
    !> Adds to `size_of` and `error` those of derivative `order` of a product: a vector of the `length` along a unit
    !> vector that turns, by derivatives no larger than `f` and with errors up to `fe`, times a number with `s` and `se`
@@ -158,27 +233,53 @@ contains
       error = error + length*e + weight*p
    end subroutine product_error
 
-   !> The same, `x` (3), of the projection of loop `m`.
-   pure subroutine bound_projection(d, b, m, j, order, x)
+   !> A bound of derivative `order` of the projection of loop `m`.
+   pure real(wp) function projection_size(d, b, m, j, order) result(size_of)
       type(proof_data_t), intent(in) :: d
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: m, order
       type(jets_t), intent(in) :: j
-      real(wp), intent(out) :: x(3)
-      real(wp) :: y(3)
       integer :: a
 
-      x = 0.0_wp
+      size_of = 0.0_wp
       do a = 0, order
-         call bound_loop(d, b, m, j, a, y)
-         associate (length => binomial(a, order)*d%direction_length(m), &
-            f => j%turn(order - a, b%loops(m)%orientation), e => j%turn_error(order - a, b%loops(m)%orientation))
-            x(1) = x(1) + length*y(1)*f
-            x(2) = x(2) + (length*y(2) + binomial(a, order)*d%direction_weight(m)*y(1))*f
-            x(3) = x(3) + length*(y(1)*e + y(3)*(f + e))
+         size_of = size_of + binomial(a, order)*j%turn(order - a, b%loops(m)%orientation)*d%direction_length(m) &
+            *loop_size(d, b, m, j, a)
+      end do
+   end function projection_size
+
+   !> What rounding and the deck's numbers leave open of it.
+   pure real(wp) function projection_open(d, b, m, j, order) result(open)
+      type(proof_data_t), intent(in) :: d
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: m, order
+      type(jets_t), intent(in) :: j
+      integer :: a
+
+      open = 0.0_wp
+      do a = 0, order
+         open = open + binomial(a, order)*j%turn(order - a, b%loops(m)%orientation) &
+            *(d%direction_length(m)*loop_open(d, b, m, j, a) + d%direction_weight(m)*loop_size(d, b, m, j, a))
+      end do
+   end function projection_open
+
+   !> By how much errors of the motion change it.
+   pure real(wp) function projection_change(d, b, m, j, order) result(error)
+      type(proof_data_t), intent(in) :: d
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: m, order
+      type(jets_t), intent(in) :: j
+      integer :: a
+
+      error = 0.0_wp
+      do a = 0, order
+         associate (f => j%turn(order - a, b%loops(m)%orientation), &
+            e => j%turn_error(order - a, b%loops(m)%orientation))
+            error = error + binomial(a, order)*d%direction_length(m)*(loop_size(d, b, m, j, a)*e &
+               + loop_change(d, b, m, j, a)*(f + e))
          end associate
       end do
-   end subroutine bound_projection
+   end function projection_change
 
    !> Of the Jacobian of block `i`, for each row (rows): `change`, by how much it can differ (the sum of its entries'
    !> differences) from that computed where unknowns are off by `off` (0:unknowns); and `growth`, a bound of

@@ -12,9 +12,11 @@ module step_proof
    private
    public :: step_prover_t, step_proof_t, make_step_prover, prove_step
 
-   !> A step is divided into so many parts at most, none less than this part of it.
-   integer, parameter :: max_parts = 1024
+   !> So many tubes are tried of a step at most, none shorter than this part of it.
+   integer, parameter :: max_tries = 1024
    real(wp), parameter :: min_part = 1.0e-6_wp
+   !> And fewer of wide blocks, whose inverses take about so many products: some seconds.
+   real(wp), parameter :: max_products = 1.0e9_wp
 
    !> What it needs beside the prover of positions. Never copied: see workspace_t.
    type :: step_prover_t
@@ -30,6 +32,7 @@ module step_proof
       real(wp) :: radius = 0.0_wp                 !< the largest of its tubes, in radians and block units
       integer :: block = 0                        !< that is not proved
       real(wp) :: t = 0.0_wp                      !< the middle of the part that is not
+      logical :: is_broken_off = .false.          !< blocks are too wide for more tries
    end type step_proof_t
 
 contains
@@ -77,7 +80,8 @@ contains
       end if
       proof%block = s%tube%block
       proof%t = 0.5_wp*(from%t + to%t)
-      proof%is_proved = abs(to%t - from%t) > shortest .and. proof%tries < max_parts
+      proof%is_broken_off = proof%tries >= max_products/sum(real(e%blocks%list(list)%shape%n, wp)**3)
+      proof%is_proved = abs(to%t - from%t) > shortest .and. proof%tries < max_tries .and. .not. proof%is_broken_off
       if (.not. proof%is_proved) return
       allocate (middle)
       middle = new_placed(e%blocks, size(e%laws))
@@ -110,7 +114,7 @@ contains
       end do
       call take_state(p, e, t, middle)
       do k = 1, size(list)
-         call prove_block(p, e%blocks, list(k), 1, middle)
+         call prove_block(p, e%blocks, list(k), 0, middle)
          if (.not. middle%is_proved(list(k))) return
       end do
       is_found = .true.

@@ -6,9 +6,13 @@
 !>    |F| <= max |F_end| + h/4 max |F'_end| + h^4/384 max |F''''|      (error of Hermite's interpolation)
 !>
 !> F and F' at the ends are of the size of rounding, F'''' is bounded by lengths and the derivatives of the cubics, and
-!> what earlier blocks leave open comes to it. A is the inverse of the Jacobian in the middle. Exactly one solution for
-!> each time in a ball about the curve, with a regular Jacobian: so these are one continuous path. Tubes of adjoining
-!> intervals have balls about the same centre where they meet, so one holds the other, and their paths are one.
+!> what earlier blocks leave open comes to it. Exactly one solution for each time in a ball about the curve, with a
+!> regular Jacobian: so these are one continuous path. Tubes of adjoining intervals have balls about the same centre
+!> where they meet, so one holds the other, and their paths are one.
+!>
+!> First each half of the interval is tried with the inverse A of its own end, from the proof of the position there, by
+!> the norms of both: nothing is computed on the curve. If that is not enough, A is the inverse of the Jacobian in the
+!> middle.
 module tube_proof
    use kinds, only: wp
    use law_bounds, only: bounds_t, bounds_of
@@ -17,7 +21,8 @@ module tube_proof
    use block_equations, only: assemble_dense
    use block_engine, only: block_engine_t
    use proof_data, only: rounding
-   use row_bounds, only: turn, bound_rows
+   use row_bounds, only: turn, bound_loops, bound_changes, bound_jacobian, of_all, highest
+   use contraction, only: radius_of
    use position_proof, only: prover_t, placed_t, contract_block, room, of_time
    implicit none
    private
@@ -41,18 +46,20 @@ contains
       allocate (tube%radius(0:b%unknowns), tube%off(0:b%unknowns), source=0.0_wp)
    end function new_tube
 
-   !> Proves the motion of the blocks `list`, in solving order, between the positions `from` and `to`; p%state is then
-   !> in the middle of the curve.
+   !> Proves the motion of the blocks `list`, in solving order, between the positions `from` and `to`. If that fails,
+   !> p%state is then in the middle of the curve.
    subroutine prove_tube(p, e, list, from, to, tube)
       type(prover_t), intent(inout) :: p
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: list(:)
       type(placed_t), intent(in) :: from, to
       type(tube_t), intent(inout) :: tube
+      logical :: is_set
       integer :: k, u
 
       tube%radius = 0.0_wp
       tube%is_proved = .true.
+      is_set = .false.
       do k = 1, size(list)
          do u = e%blocks%list(list(k))%first, e%blocks%list(list(k))%last
             call set_curve(p, e%blocks, e%blocks%unknown(u), from, to, tube)
@@ -63,7 +70,11 @@ contains
          if (e%blocks%list(list(k))%direct) then
             call prove_direct(p, e%blocks, list(k), from, to, tube)
          else
-            call prove_block(p, e%blocks, list(k), from, to, tube)
+            call prove_by_ends(p, e%blocks, list(k), from, to, tube)
+            if (tube%is_proved) cycle
+            if (.not. is_set) call set_middle(p, e%blocks, list, from, to)
+            is_set = .true.
+            call prove_by_middle(p, e%blocks, list(k), tube)
          end if
          if (.not. tube%is_proved) return
       end do
@@ -84,7 +95,26 @@ contains
       inexact = 32.0_wp*rounding*(abs(x0(0)) + abs(x1(0)) + abs(first(1)) + abs(first(3)))
    end subroutine find_control_points
 
-   !> The middle of the cubic of unknown `u` in p%state, and bounds of its derivatives by the part of the interval.
+   !> The middle of the cubics of the unknowns of the blocks `list` in p%state.
+   subroutine set_middle(p, b, list, from, to)
+      type(prover_t), intent(inout) :: p
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: list(:)
+      type(placed_t), intent(in) :: from, to
+      integer :: k, i
+
+      do k = 1, size(list)
+         do i = b%list(list(k))%first, b%list(list(k))%last
+            associate (u => b%unknown(i))
+               p%state%u(u)%value = 0.5_wp*(from%x(0, u) + to%x(0, u)) &
+                  + 0.125_wp*(to%t - from%t)*(from%x(1, u) - to%x(1, u))
+               call set_direction(b, u, p%state)
+            end associate
+         end do
+      end do
+   end subroutine set_middle
+
+   !> Bounds of the derivatives of the cubic of unknown `u` by the part of the interval.
    subroutine set_curve(p, b, u, from, to, tube)
       type(prover_t), intent(inout) :: p
       type(blocks_t), intent(in) :: b
@@ -94,19 +124,17 @@ contains
       real(wp) :: first(3), second(2), inexact, own(0:4)
 
       call find_control_points(to%t - from%t, from%x(:1, u), to%x(:1, u), first, second, inexact)
-      p%state%u(u)%value = 0.5_wp*(from%x(0, u) + to%x(0, u)) + 0.125_wp*(first(1) - first(3))
-      call set_direction(b, u, p%state)
       own(0) = max(abs(from%x(0, u)), abs(to%x(0, u))) + max(abs(first(1)), abs(first(3)))
       own(1) = max(abs(first(1)), abs(first(2)), abs(first(3))) + inexact
       own(2) = max(abs(second(1)), abs(second(2))) + 2.0_wp*inexact
       own(3) = abs(second(2) - second(1)) + 4.0_wp*inexact
       own(4) = 0.0_wp
       p%jets%own(:, u) = own
-      p%jets%own_error(:, u) = 0.0_wp
+      p%jets%own_error(0, u) = 0.0_wp
       tube%off(u) = (0.5_wp*own(1) + inexact)*room
       if (u > b%orientations) return
       p%jets%turn(:, u) = turn(own)
-      p%jets%turn_error(:, u) = 0.0_wp
+      p%jets%turn_error(0, u) = 0.0_wp
    end subroutine set_curve
 
    !> How far the laws of the drives can be from the cubics with their values and rates at both ends: by the range of
@@ -168,35 +196,71 @@ contains
       if (u <= b%orientations) p%jets%turn_error(0, u) = tube%radius(u)
    end subroutine open_curve
 
-   !> Block `i`, whose earlier blocks are proved.
-   subroutine prove_block(p, b, i, from, to, tube)
+   !> Block `i`, whose earlier blocks are proved, by what was proved at the ends; work%g are bounds of its equations on
+   !> the curve.
+   subroutine prove_by_ends(p, b, i, from, to, tube)
       type(prover_t), intent(inout) :: p
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(placed_t), intent(in) :: from, to
       type(tube_t), intent(inout) :: tube
-      real(wp) :: radius, gap
+      real(wp) :: g, change, growth
       integer :: k
 
-      associate (block => b%list(i), w => p%work(i))
-         call bound_rows(p%data, b, i, p%jets, 4, w%size_of, w%open, w%error)
-         w%g(:) = (w%size_of + w%open)/384.0_wp
-         call bound_rows(p%data, b, i, p%jets, 0, w%size_of, w%open, w%error)
+      associate (block => b%list(i), w => p%work(i), norm => max(from%norm(i), to%norm(i))*room)
+         call bound_loops(of_all, p%data, b, i, p%jets, highest, w%g)
+         call bound_changes(p%data, b, i, p%jets, 0, w%error)
          do k = 1, size(w%g)
-            w%g(k) = (w%g(k) + w%error(k) + ends_open(from, to, block%first_row + k - 1))*room
+            w%g(k) = (w%g(k)/384.0_wp + w%error(k) + ends_open(from, to, block%first_row + k - 1))*room
          end do
+         call bound_jacobian(p%data, b, i, p%jets, tube%off, w%change, w%growth)
+         ! Which equations are taken of too many may differ from end to end. What is not a number proves nothing.
+         tube%is_proved = size(w%g) == size(w%x)
+         g = 0.0_wp
+         change = 0.0_wp
+         growth = 0.0_wp
+         do k = 1, size(w%g)
+            tube%is_proved = tube%is_proved .and. w%g(k) + w%change(k) + w%growth(k) <= huge(1.0_wp)
+            g = max(g, w%g(k))
+            change = max(change, w%change(k))
+            growth = max(growth, w%growth(k))
+         end do
+         if (tube%is_proved) call note_radius(p, b, i, radius_of((max(from%z1(i), to%z1(i)) + norm*change)*room, &
+            norm*growth*room, norm*g*room), tube)
+      end associate
+   end subroutine prove_by_ends
+
+   !> The same by the Jacobian in the middle of the curve, where p%state is; work%g is as above.
+   subroutine prove_by_middle(p, b, i, tube)
+      type(prover_t), intent(inout) :: p
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(tube_t), intent(inout) :: tube
+      real(wp) :: radius, gap
+
+      associate (w => p%work(i))
          call find_known_parts(b, i, p%state)
          call assemble_dense(b, i, p%state, w%a, w%r)
          call contract_block(p, b, i, tube%off, radius, gap)
-         tube%is_proved = radius >= 0.0_wp
-         if (.not. tube%is_proved) then
-            tube%block = i
-            return
-         end if
-         do k = block%first, block%last
-            tube%radius(b%unknown(k)) = radius
-            call open_curve(p, b, b%unknown(k), tube)
-         end do
+         call note_radius(p, b, i, radius, tube)
       end associate
-   end subroutine prove_block
+   end subroutine prove_by_middle
+
+   !> The tube of block `i` has the `radius`; below 0 it is not proved.
+   subroutine note_radius(p, b, i, radius, tube)
+      type(prover_t), intent(inout) :: p
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: radius
+      type(tube_t), intent(inout) :: tube
+      integer :: k
+
+      tube%is_proved = radius >= 0.0_wp
+      tube%block = i
+      if (.not. tube%is_proved) return
+      do k = b%list(i)%first, b%list(i)%last
+         tube%radius(b%unknown(k)) = radius
+         call open_curve(p, b, b%unknown(k), tube)
+      end do
+   end subroutine note_radius
 end module tube_proof

@@ -151,12 +151,14 @@ contains
    end subroutine sense_set
 
    !> Proves the motion found last, and the step to it; before any other motion is looked at.
-   subroutine prove_set(s)
+   subroutine prove_set(s, bounded)
       type(set_analysis_t), intent(inout) :: s
+      logical, intent(in) :: bounded
       integer :: c
 
       do c = 1, size(s%list)
-         call prove_motion(s%provers(c), s%now%own(c), s%list(c)%engine, s%now%motions(c), s%now%proofs(c))
+         call prove_motion(s%provers(c), s%now%own(c), s%list(c)%engine, s%now%motions(c), bounded, &
+            s%now%proofs(c))
       end do
    end subroutine prove_set
 

@@ -74,7 +74,7 @@ contains
       first = -1
       do k = 0, instant_count(m) - 1
          call advance_set(a, instant(m, k))
-         call prove_set(a)
+         call prove_set(a, .true.)
          if (.not. all(holds(a%now%proofs))) open = open + 1
          if (all(holds(a%now%proofs)) .eqv. is_exception(name, k)) wrong = wrong + 1
          do c = 1, size(a%now%own)

@@ -102,6 +102,28 @@ ends=$(awk 'BEGIN { b = atan2(sqrt(64^2 - 29^2), 29); c = atan2(sqrt(41^2 - 29^2
 equal "Dixon's bars" "$ends" "$(circuits | awk '/MIN/ { sub(/.*MIN/, "MIN"); $1 = $1; print }' | uniq -c | awk '{ $1 = $1; print }' |
    tr '\n' ',' | sed 's/,$//')"
 
+# Published limits of linkages whose driven link rocks, in degrees from the place drawn (PMKS-Web): Stephenson III goes from -58
+# to 41 in steps of 1, and no step farther (MATLAB, PMKS_Verification, case stephenson_iii_example_2), its Watt I from -5 to 5;
+# an eight-bar with one block of six links goes through more than a turn, from -435.1 to 8.9 (PMKSWeb, wideSwingRockerFixture).
+# linkage JOINTS: as drawn, each joint with its links and its place; the second link of the first joint is driven
+linkage() {
+   card UNITS M DEG S; card GROUND BASE
+   echo "$1" | tr ';' '\n' | awk '{ for (i = 2; i < 4; i++) if ($i != "BASE" && !seen[$i]++) printf "%-8s%s\n", "LINK", $i }'
+   echo "$1" | tr ';' '\n' | awk '{ printf "%-8s%-8s%-8s%-8s%-16s%s\n", "JOINT", $1, $2, $3, $4, $5 }'
+   card DRIVE ANGLE "$(echo "$1" | awk '{ print $3; exit }')"; card AT '' '' '' 0.0; card CIRCUITS; card END
+}
+# swing FORMAT LESS: the limits of the branch with assembly 1, that which is drawn, less so many degrees
+swing() {
+   circuits | awk -v format="$1 $1" -v less="$2" '/ MIN / { has = 0; for (i = 4; $i != "MIN"; i++) has = has || $i == 1
+      if (has) printf format, $(i + 1) - less, $(i + 4) - less }'
+}
+linkage 'A BASE AB 7.0 4.0;B AB BCE 5.0 16.0;C BCE CD 25.0 25.0;D CD BASE 23.0 10.0;E BCE EF 18.0 35.0;F EF FG 43.0 32.0;G FG BASE 45.0 17.0' > "$w/deck"
+equal 'Stephenson III, published' '-58 41' "$(swing %d 0)"
+linkage 'A BASE AB -3.74 -2.41;B AB BCD -2.72 0.91;C BCD CFG 1.58 0.43;D BCD DE -0.24 4.01;E DE EF 5.08 5.31;F EF CFG 8.14 3.35;G CFG BASE 7.32 -3.51' > "$w/deck"
+equal 'Watt I, published' '-5 5' "$(swing %d 0)"
+linkage 'A BASE ACD -0.154 0.528;B BASE BFJ 6.17 0.0;C ACD CE 0.97 2.123;D ACD DHI 0.841 0.28;E CE EFG 2.641 3.107;F EFG BFJ 6.17 3.107;G EFG GH 4.665 2.031;H DHI GH 3.141 1.303;I DHI IJ 3.954 -0.407;J BFJ IJ 3.881 1.886' > "$w/deck"
+equal 'an eight-bar, published, a turn farther' '-435.1 8.9' "$(swing %.1f 360)"
+
 # No position.
 four_bar 1.0 1.0 1.0 4.0 CRANK 0.0 0.0 0.0 0.0 > "$w/deck"
 found 'no position anywhere' ' CIRCUITS AND BRANCHES, DRIVE ANGLE CRANK

@@ -205,6 +205,14 @@ for name in 'EXTREMES LINKS' RANGE PROVE; do
    same "$name: rows by lanes and by the engine" "$w/engine.lst" "$w/lanes.lst"
 done
 
+# With PROVE a column says how many instants are not proved: none of a crank that turns fully; of one that ends at a dead
+# point those beyond it, and at most the last step before it.
+four_bar "$(vary R1 2 '' 0.5 2.9)" '' '' '' "$(card TIME 90 '' '' 0.0 12.0)" "$(card PROVE)" > "$w/proved.deck"
+"$kinmat" "$w/proved.deck" --summary "$w/proved.csv" > "$w/proved.lst"
+equal 'proofs of variants' '0 0;1 1;' "$(rows "$w/proved.csv" flagged unproved | awk '{ printf "%d %d;", ($1 > 0), ($2 > 0 && ($2 == $1 || $2 == $1 + 1)) }')"
+equal 'proofs of variants: in the listing' 1 "$(grep -c '  NOT PROVED$' "$w/proved.lst")"
+equal 'proofs of variants: the same' "$(rows "$w/proved.csv" unproved | xargs)" "$(awk '/^         [12] / { print $NF }' "$w/proved.lst" | xargs)"
+
 # In several processes, and in shares: the same bytes. Three sets, one of them without VARY cards.
 {
    cat "$w/slider.deck"; four_bar '' '' '' '' "$(card TIME 2 '' '' 0.0 1.0)"

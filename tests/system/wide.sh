@@ -66,5 +66,8 @@ equal 'its legs' '' "$(LC_ALL=C awk -F, 'NR > 1 && $4 ~ /^"?L[0-9]/ && $8 != "" 
 sed 's/^END/PROVE\nEND/' "$w/lattice.deck" > "$w/narrow.deck"
 tests/make_deck lattice 17 300 | sed 's/^TIME    300 /TIME    1   /; s/^END/PROVE\nEND/' > "$w/net.deck"
 equal 'a lattice is proved' '19 / 19' "$("$kinmat" "$w/narrow.deck" 2> "$w/net.err" | sed -n 's/^ INSTANTS PROVED \(.*\),  PARTS.*/\1/p')"
+# Of 449 unknowns, near the limit, a step that must be divided is broken off after some tries, in seconds.
+tests/make_deck lattice 15 300 | sed 's/^TIME    300 .*/TIME    1                       0.0             0.3/; s/^END/PROVE\nEND/' > "$w/divided.deck"
+equal 'a step of many unknowns is broken off' 1 "$("$kinmat" "$w/divided.deck" 2> "$w/net.err" | grep -c 'BLOCK TOO WIDE, UNKNOWNS 449, T = ')"
 equal 'a net is too wide for a proof' 2 "$("$kinmat" "$w/net.deck" 2> "$w/net.err" | grep -c ': NOT PROVED: LINKS .* MORE: BLOCK TOO WIDE, UNKNOWNS 577$')"
 conclude
