@@ -117,16 +117,6 @@ contains
       if (one%failed > 0) call put(o, ' *** '//links//': '//phrase(say_paths_failed, m%polish)//' '//whole(one%failed))
    end subroutine put_block
 
-   !> The distance of assembly `one` from the estimate.
-   function distance_text(one) result(text)
-      type(assembly_t), intent(in) :: one
-      character(:), allocatable :: text
-      character(12) :: number
-
-      write (number, '(f12.4)') one%distance
-      text = trim(adjustl(number))
-   end function distance_text
-
    !> Assembly number `k` of `a` of the mechanism `m`.
    subroutine put_assembly(o, m, k, a)
       type(output_t), intent(inout) :: o
@@ -134,11 +124,13 @@ contains
       integer, intent(in) :: k
       type(assemblies_t), intent(in) :: a
       character(:), allocatable :: text
+      character(12) :: distance
       integer :: i
 
       associate (one => a%list(k))
+         write (distance, '(f12.4)') one%distance
          text = ' '//phrase(say_assembly, m%polish)//' '//whole(k)//'   '//phrase(say_distance, m%polish)//' = ' &
-            //distance_text(one)
+            //trim(adjustl(distance))
          if (size(a%blocks) > 0) text = text//'   '//phrase(say_determinants, m%polish)//' '
          do i = 1, size(a%blocks)
             text = text//sign_text(a%blocks(i), one%sign_of(a%blocks(i)%block))

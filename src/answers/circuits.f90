@@ -24,13 +24,12 @@ module circuits
    use circuit_trace, only: circuit_t, trace, least_step, change_point_t
    use circuit_branches, only: circuits_t, no_sign, add_branches, add_assemblies, add_meetings, number_assemblies, &
       branch_t
-   use drives, only: new_law, drive_motion
-   use ranges, only: range_t, find_range, low, high
+   use ranges, only: range_t, find_range, held_at, low, high
    use linear_solver, only: solve, solve_transposed
    use pose, only: add_to_links
    implicit none
    private
-   public :: find_circuits, free_drives, name_limits, held_at, other_circuit
+   public :: find_circuits, free_drives, name_limits, other_circuit
 
    !> So far from the change point the other circuit is looked for, in rad and lengths; there it is off its tangent by
    !> less than this part of the distance.
@@ -258,22 +257,6 @@ contains
          end do
       end do
    end subroutine name_limits
-
-   !> `m` with all drives at rest at their values of the time `t`.
-   function held_at(m, t) result(held)
-      type(mechanism_t), intent(in) :: m
-      real(wp), intent(in) :: t
-      type(mechanism_t) :: held
-      real(wp) :: f(3)
-      integer :: i
-
-      held = m
-      do i = 1, size(m%drives)
-         f = drive_motion(new_law(m%drives(i)), t)
-         held%drives(i)%polynomial = [f(1), 0.0_wp, 0.0_wp]
-         if (allocated(held%drives(i)%terms)) deallocate (held%drives(i)%terms)
-      end do
-   end function held_at
 
    !> Puts `middle` where the drive moves the fastest on branch `b`, with the drive of `held` there.
    subroutine set_middle(found, b, held, middle)

@@ -48,7 +48,7 @@ contains
             if (k == 0) then
                track%first = now
             else
-               call search_step(x, m, s, c, k, now)
+               call search_step()
             end if
             call add_node(x, m, s, c, now)
             track%instant = now
@@ -56,6 +56,173 @@ contains
             if (.not. is_known(now, track%rows)) call note_interval(x%gaps, x%way, now%t, now%t, 0.0_wp)
          end associate
       end do
+
+   contains
+
+      !> Searches between the last instant of mechanism `c` and instant number `k`, `now`.
+      subroutine search_step()
+         real(wp), allocatable :: ends(:)
+         real(wp) :: from
+         logical :: is_open, is_change, is_limit, to_open, to_change
+         integer :: i
+
+         associate (track => x%tracks(c), t1 => x%tracks(c)%instant%t)
+            call find_ends(s%now%motions(c), t1, x%way, ends, is_limit)
+            if (s%now%motions(c)%known >= 0) ends = [ends, now%t]
+            if (any(track%instant%known(track%rows) < 0)) ends = [real(wp) ::]
+            from = t1
+            track%halvings = 0
+            is_open = .not. is_known(track%instant, track%rows)
+            is_change = track%at_change
+            do i = 1, size(ends)
+               to_open = i < size(ends) .or. is_limit .or. .not. is_known(now, track%rows)
+               to_change = i < size(ends) .or. (s%now%motions(c)%singularity == singular_change .and. .not. is_limit)
+               call search_piece(times_between(track%joints, m, k), end_t(from, is_open, is_change), end_t(ends(i), &
+                  to_open, to_change))
+               is_open = .true.
+               is_change = .true.
+               from = ends(i)
+            end do
+            if (abs(now%t - from) > 0.0_wp) call note_interval(x%gaps, x%way, from, now%t, 0.0_wp)
+         end associate
+      end subroutine search_step
+
+      !> The times after `from` at which the motion `q` says that a change point was passed, or its limit was reached:
+      !> that is the last.
+      pure subroutine find_ends(q, from, way, ends, is_limit)
+         type(motion_t), intent(in) :: q
+         real(wp), intent(in) :: from, way
+         real(wp), allocatable, intent(out) :: ends(:)
+         logical, intent(out) :: is_limit
+         real(wp) :: last
+         integer :: i
+
+         allocate (ends(0))
+         is_limit = .false.
+         if (.not. allocated(q%diagnostics)) return
+         last = from
+         do i = 1, size(q%diagnostics)
+            associate (d => q%diagnostics(i))
+               if (d%kind /= diagnostic_limit .and. .not. (d%kind == diagnostic_change .and. .not. d%here)) cycle
+               if ((d%t - last)*way <= 0.0_wp .or. (q%t - d%t)*way <= 0.0_wp) cycle
+               ends = [ends, d%t]
+               last = d%t
+               is_limit = d%kind == diagnostic_limit
+            end associate
+         end do
+      end subroutine find_ends
+
+      !> Searches between the ends `from` and `to`, with nodes at those of the `times` that are between.
+      subroutine search_piece(times, from, to)
+         real(wp), intent(in) :: times(:)
+         type(end_t), intent(in) :: from, to
+         real(wp) :: low, high, beside(places)
+         integer :: i
+
+         low = from%t
+         high = to%t
+         if (from%is_open) then
+            if (allocated(x%tracks(c)%last)) deallocate (x%tracks(c)%last)
+            call take_limits(from, to%t, beside)
+            low = beside(places)
+            call look_at(beside(1), .true.)
+            call note_interval(x%open, x%way, from%t, merge(beside(1), to%t, allocated(x%tracks(c)%last)), 0.0_wp)
+            call look_at(low, .true.)
+         end if
+         if (to%is_open) then
+            call take_limits(to, from%t, beside)
+            high = beside(places)
+         end if
+         do i = 1, size(times)
+            if ((times(i) - low)*x%way > 0.0_wp .and. (high - times(i))*x%way > 0.0_wp) &
+               call look_at(times(i), .false.)
+         end do
+         if (.not. to%is_open) return
+         call look_at(high, .true.)
+         call look_at(beside(1), .true.)
+         low = from%t
+         if (allocated(x%tracks(c)%last)) low = x%tracks(c)%last%t
+         call note_interval(x%open, x%way, low, to%t, 0.0_wp)
+      end subroutine search_piece
+
+      !> The one-sided limits at the end `at` of a piece to `other` may be extremes, by the motion at the times
+      !> `beside`: of those that were tried the ones from which the limits are known best.
+      subroutine take_limits(at, other, beside)
+         type(end_t), intent(in) :: at
+         real(wp), intent(in) :: other
+         real(wp), intent(out) :: beside(places)
+         type(one_sided_t) :: limits, best
+         real(wp) :: times(places), least_error
+         integer :: i, try
+
+         least_error = huge(1.0_wp)
+         do try = 0, merge(max_nearer, max_farther, at%is_change)
+            times = places_beside(at%t, other, step_of(m), at%is_change, merge(nearer, farther, at%is_change)**try)
+            call find_limits(times, at%is_change, limits)
+            if (largest_error(limits) < least_error) then
+               least_error = largest_error(limits)
+               best = limits
+               beside = times
+            end if
+            if (least_error < well_known) exit
+         end do
+         if (.not. allocated(best%value)) then
+            beside = times
+            return
+         end if
+         do i = 1, size(x%tracks(c)%rows)
+            associate (q => x%tracks(c)%rows(i))
+               call offer_limits(x, q, coordinates_of(m%requests(x%asked(q))%kind), at%t, best)
+            end associate
+         end do
+      end subroutine take_limits
+
+      !> The one-sided `limits` by the motion of mechanism `c` at the `times`; not allocated, if it does not exist at
+      !> some.
+      subroutine find_limits(times, is_change, limits)
+         real(wp), intent(in) :: times(places)
+         logical, intent(in) :: is_change
+         type(one_sided_t), intent(out) :: limits
+         type(node_t) :: near(places)
+         integer :: i
+
+         do i = 1, places
+            near(i) = node_at(x%asked, s, c, times(i), .true.)
+            if (.not. is_known(near(i), x%tracks(c)%rows)) return
+         end do
+         limits = limits_of(near, is_change, x%size_of)
+      end subroutine find_limits
+
+      !> The largest error of those `limits` of the rows of mechanism `c` that have a bound, in characteristic values or
+      !> as a part of larger ones; without limits the largest number.
+      pure real(wp) function largest_error(limits) result(largest)
+         type(one_sided_t), intent(in) :: limits
+         integer :: i
+
+         largest = huge(1.0_wp)
+         if (.not. allocated(limits%value)) return
+         largest = 0.0_wp
+         do i = 1, size(x%tracks(c)%rows)
+            associate (q => x%tracks(c)%rows(i))
+               largest = max(largest, maxval(limits%error(:, :, q)/max(x%size_of(:, :, q), &
+                  abs(limits%value(:, :, q))), mask=limits%has_bound(:, :, q)))
+            end associate
+         end do
+      end function largest_error
+
+      !> Takes a node at the time `t`; `always`: see `node_at`.
+      subroutine look_at(t, always)
+         real(wp), intent(in) :: t
+         logical, intent(in) :: always
+         type(node_t) :: node
+
+         node = node_at(x%asked, s, c, t, always)
+         if (is_known(node, x%tracks(c)%rows)) then
+            call add_node(x, m, s, c, node)
+         else
+            call note_interval(x%gaps, x%way, t, t, 0.0_wp)
+         end if
+      end subroutine look_at
    end subroutine note_instant
 
    !> Takes the instant to which `s` has advanced as one before which nothing is searched for: up to there all numbers
@@ -78,190 +245,4 @@ contains
          end associate
       end do
    end subroutine note_start
-
-   !> Searches between the last instant of mechanism `c` and instant number `k`, `now`.
-   subroutine search_step(x, m, s, c, k, now)
-      type(extremes_t), intent(inout) :: x
-      type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: c, k
-      type(node_t), intent(in) :: now
-      real(wp), allocatable :: ends(:)
-      real(wp) :: from
-      logical :: is_open, is_change, is_limit, to_open, to_change
-      integer :: i
-
-      associate (track => x%tracks(c), t1 => x%tracks(c)%instant%t)
-         call find_ends(s%now%motions(c), t1, x%way, ends, is_limit)
-         if (s%now%motions(c)%known >= 0) ends = [ends, now%t]
-         if (any(track%instant%known(track%rows) < 0)) ends = [real(wp) ::]
-         from = t1
-         track%halvings = 0
-         is_open = .not. is_known(track%instant, track%rows)
-         is_change = track%at_change
-         do i = 1, size(ends)
-            to_open = i < size(ends) .or. is_limit .or. .not. is_known(now, track%rows)
-            to_change = i < size(ends) .or. (s%now%motions(c)%singularity == singular_change .and. .not. is_limit)
-            call search_piece(x, m, s, c, times_between(track%joints, m, k), end_t(from, is_open, is_change), &
-               end_t(ends(i), to_open, to_change))
-            is_open = .true.
-            is_change = .true.
-            from = ends(i)
-         end do
-         if (abs(now%t - from) > 0.0_wp) call note_interval(x%gaps, x%way, from, now%t, 0.0_wp)
-      end associate
-   end subroutine search_step
-
-   !> The times after `from` at which the motion `q` says that a change point was passed, or its limit was reached: that
-   !> is the last.
-   pure subroutine find_ends(q, from, way, ends, is_limit)
-      type(motion_t), intent(in) :: q
-      real(wp), intent(in) :: from, way
-      real(wp), allocatable, intent(out) :: ends(:)
-      logical, intent(out) :: is_limit
-      real(wp) :: last
-      integer :: i
-
-      allocate (ends(0))
-      is_limit = .false.
-      if (.not. allocated(q%diagnostics)) return
-      last = from
-      do i = 1, size(q%diagnostics)
-         associate (d => q%diagnostics(i))
-            if (d%kind /= diagnostic_limit .and. .not. (d%kind == diagnostic_change .and. .not. d%here)) cycle
-            if ((d%t - last)*way <= 0.0_wp .or. (q%t - d%t)*way <= 0.0_wp) cycle
-            ends = [ends, d%t]
-            last = d%t
-            is_limit = d%kind == diagnostic_limit
-         end associate
-      end do
-   end subroutine find_ends
-
-   !> Searches between the ends `from` and `to`, with nodes at those of the `times` that are between.
-   subroutine search_piece(x, m, s, c, times, from, to)
-      type(extremes_t), intent(inout) :: x
-      type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: c
-      real(wp), intent(in) :: times(:)
-      type(end_t), intent(in) :: from, to
-      real(wp) :: low, high, beside(places)
-      integer :: i
-
-      low = from%t
-      high = to%t
-      if (from%is_open) then
-         if (allocated(x%tracks(c)%last)) deallocate (x%tracks(c)%last)
-         call take_limits(x, m, s, c, from, to%t, beside)
-         low = beside(places)
-         call look_at(x, m, s, c, beside(1), .true.)
-         call note_interval(x%open, x%way, from%t, merge(beside(1), to%t, allocated(x%tracks(c)%last)), 0.0_wp)
-         call look_at(x, m, s, c, low, .true.)
-      end if
-      if (to%is_open) then
-         call take_limits(x, m, s, c, to, from%t, beside)
-         high = beside(places)
-      end if
-      do i = 1, size(times)
-         if ((times(i) - low)*x%way > 0.0_wp .and. (high - times(i))*x%way > 0.0_wp) &
-            call look_at(x, m, s, c, times(i), .false.)
-      end do
-      if (.not. to%is_open) return
-      call look_at(x, m, s, c, high, .true.)
-      call look_at(x, m, s, c, beside(1), .true.)
-      low = from%t
-      if (allocated(x%tracks(c)%last)) low = x%tracks(c)%last%t
-      call note_interval(x%open, x%way, low, to%t, 0.0_wp)
-   end subroutine search_piece
-
-   !> The one-sided limits at the end `at` of a piece to `other` may be extremes, by the motion at the times `beside`:
-   !> of those that were tried the ones from which the limits are known best.
-   subroutine take_limits(x, m, s, c, at, other, beside)
-      type(extremes_t), intent(inout) :: x
-      type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: c
-      type(end_t), intent(in) :: at
-      real(wp), intent(in) :: other
-      real(wp), intent(out) :: beside(places)
-      type(one_sided_t) :: limits, best
-      real(wp) :: times(places), least_error
-      integer :: i, try
-
-      least_error = huge(1.0_wp)
-      do try = 0, merge(max_nearer, max_farther, at%is_change)
-         times = places_beside(at%t, other, step_of(m), at%is_change, merge(nearer, farther, at%is_change)**try)
-         call find_limits(x, s, c, times, at%is_change, limits)
-         if (largest_error(x, c, limits) < least_error) then
-            least_error = largest_error(x, c, limits)
-            best = limits
-            beside = times
-         end if
-         if (least_error < well_known) exit
-      end do
-      if (.not. allocated(best%value)) then
-         beside = times
-         return
-      end if
-      do i = 1, size(x%tracks(c)%rows)
-         associate (q => x%tracks(c)%rows(i))
-            call offer_limits(x, q, coordinates_of(m%requests(x%asked(q))%kind), at%t, best)
-         end associate
-      end do
-   end subroutine take_limits
-
-   !> The one-sided `limits` by the motion of mechanism `c` at the `times`; not allocated, if it does not exist at some.
-   subroutine find_limits(x, s, c, times, is_change, limits)
-      type(extremes_t), intent(in) :: x
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: c
-      real(wp), intent(in) :: times(places)
-      logical, intent(in) :: is_change
-      type(one_sided_t), intent(out) :: limits
-      type(node_t) :: near(places)
-      integer :: i
-
-      do i = 1, places
-         near(i) = node_at(x%asked, s, c, times(i), .true.)
-         if (.not. is_known(near(i), x%tracks(c)%rows)) return
-      end do
-      limits = limits_of(near, is_change, x%size_of)
-   end subroutine find_limits
-
-   !> The largest error of those `limits` of the rows of mechanism `c` that have a bound, in characteristic values or
-   !> as a part of larger ones; without limits the largest number.
-   pure real(wp) function largest_error(x, c, limits) result(largest)
-      type(extremes_t), intent(in) :: x
-      integer, intent(in) :: c
-      type(one_sided_t), intent(in) :: limits
-      integer :: i
-
-      largest = huge(1.0_wp)
-      if (.not. allocated(limits%value)) return
-      largest = 0.0_wp
-      do i = 1, size(x%tracks(c)%rows)
-         associate (q => x%tracks(c)%rows(i))
-            largest = max(largest, maxval(limits%error(:, :, q)/max(x%size_of(:, :, q), abs(limits%value(:, :, q))), &
-               mask=limits%has_bound(:, :, q)))
-         end associate
-      end do
-   end function largest_error
-
-   !> Takes a node at the time `t`; `always`: see `node_at`.
-   subroutine look_at(x, m, s, c, t, always)
-      type(extremes_t), intent(inout) :: x
-      type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: c
-      real(wp), intent(in) :: t
-      logical, intent(in) :: always
-      type(node_t) :: node
-
-      node = node_at(x%asked, s, c, t, always)
-      if (is_known(node, x%tracks(c)%rows)) then
-         call add_node(x, m, s, c, node)
-      else
-         call note_interval(x%gaps, x%way, t, t, 0.0_wp)
-      end if
-   end subroutine look_at
 end module extreme_search

@@ -36,231 +36,203 @@ contains
       type(extremes_t), intent(in) :: x
       type(dwell_t), intent(in) :: dwells(:)
       type(table_t) :: table
-      integer :: q, k
+      type(digits_t) :: d
+      integer :: q, k, drive
 
       call put_times(o, l, ' '//phrase(say_extremes, m%polish), [m%t0, m%t1])
       do q = 1, size(x%asked)
          associate (i => x%asked(q))
             call put_heads(o, l, digits_of(l, i), m%requests(i)%kind, table)
-            call put_subject(o, l, digits_of(l, i), m, first_drive(l, s, i), x, q, table%masked)
+            d = digits_of(l, i)
+            drive = first_drive(i)
+            call put_subject()
             do k = 1, size(dwells)
-               if (dwells(k)%asked == q) &
-                  call put_dwell(o, l, digits_of(l, i), m, first_drive(l, s, i), i, dwells(k), table%masked)
+               if (dwells(k)%asked == q) call put_dwell(i, dwells(k))
             end do
          end associate
       end do
       if (table%masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, m%polish))
-      call put_gaps(o, l, m, x%open, say_may_be_missed)
-      call put_gaps(o, l, m, x%gaps, say_not_covered)
-   end subroutine put_extremes
+      call put_gaps(x%open, say_may_be_missed)
+      call put_gaps(x%gaps, say_not_covered)
 
-   !> The rows of asked row `q`; `first`: see `first_drive`. `masked`: as in `table_t`.
-   subroutine put_subject(o, l, d, m, first, x, q, masked)
-      type(output_t), intent(inout) :: o
-      type(layout_t), intent(in) :: l
-      type(digits_t), intent(in) :: d
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: first, q
-      type(extremes_t), intent(in) :: x
-      logical, intent(inout) :: masked
-      character(numeral_length), dimension(3, 0:2) :: value, time, drive
-      integer :: which, c, k
+   contains
 
-      associate (request => m%requests(x%asked(q)))
-         call put(o, ' '//trim(subject_name(m, request%kind, request%subject)))
-         do which = least, greatest
-            value = ''
-            time = ''
-            drive = ''
-            do k = 0, 2
-               do c = 1, coordinates_of(request%kind)
-                  associate (e => x%found(which, c, k, q))
-                     value(c, k) = value_text(l, d, m, e, is_angle(m, request, c), k)
-                     if (.not. e%exists) cycle
-                     time(c, k) = time_text(l, e%t, e%t_error)
-                     if (first > 0) drive(c, k) = drive_text(l%drives(first), e%t, e%t_error)
-                  end associate
+      !> The rows of asked row `q`.
+      subroutine put_subject()
+         character(numeral_length), dimension(3, 0:2) :: value, time, driven
+         integer :: which, c, k
+
+         associate (request => m%requests(x%asked(q)))
+            call put(o, ' '//trim(subject_name(m, request%kind, request%subject)))
+            do which = least, greatest
+               value = ''
+               time = ''
+               driven = ''
+               do k = 0, 2
+                  do c = 1, coordinates_of(request%kind)
+                     associate (e => x%found(which, c, k, q))
+                        value(c, k) = value_text(e, is_angle(m, request, c), k)
+                        if (.not. e%exists) cycle
+                        time(c, k) = time_text(l, e%t, e%t_error)
+                        if (drive > 0) driven(c, k) = drive_text(l%drives(drive), e%t, e%t_error)
+                     end associate
+                  end do
                end do
+               call put_fields(request, extreme_words(which), value)
+               call put_fields(request, 'T', time)
+               if (drive > 0) call put_fields(request, trim(subject_name(m, driven_kinds(m%drives(drive)%kind), &
+                  m%drives(drive)%subject)), driven)
             end do
-            call put_fields(m, request, extreme_words(which), value, masked, o)
-            call put_fields(m, request, 'T', time, masked, o)
-            if (first > 0) call put_fields(m, request, trim(subject_name(m, driven_kinds(m%drives(first)%kind), &
-               m%drives(first)%subject)), drive, masked, o)
+         end associate
+         call put_strokes()
+      end subroutine put_subject
+
+      !> The value of the extreme `e` of a length or an angle, or of derivative number `k` of one: or that there is
+      !> none.
+      function value_text(e, angular, k) result(text)
+         type(extreme_t), intent(in) :: e
+         logical, intent(in) :: angular
+         integer, intent(in) :: k
+         character(:), allocatable :: text
+
+         if (.not. e%exists) then
+            text = trim(adjustl(l%none))
+         else if (.not. e%has_bound) then
+            text = phrase(say_unbounded, m%polish)
+         else
+            text = number_text(e%value, e%error, angular, k)
+         end if
+      end function value_text
+
+      !> The stroke of each coordinate, and where the motion is cyclic the times of both strokes and their ratio, the
+      !> longer over the shorter.
+      subroutine put_strokes()
+         character(numeral_length), dimension(3, 0:2) :: stroke, forward, return, ratio
+         real(wp) :: times(2), error
+         integer :: c
+
+         stroke = ''
+         forward = ''
+         return = ''
+         ratio = ''
+         associate (request => m%requests(x%asked(q)))
+            do c = 1, coordinates_of(request%kind)
+               associate (e => x%found(:, c, 0, q))
+                  if (.not. all(e%exists .and. e%has_bound)) cycle
+                  stroke(c, 0) = number_text(e(greatest)%value - e(least)%value, sum(e%error), is_angle(m, &
+                     request, c), 0)
+                  times = stroke_times(x, m, q, c)
+                  if (any(times <= 0.0_wp)) cycle
+                  error = sum(e%t_error)
+               end associate
+               forward(c, 0) = time_text(l, times(1), error)
+               return(c, 0) = time_text(l, times(2), error)
+               error = error*sum(times)/minval(times)**2
+               ratio(c, 0) = known_text(maxval(times)/minval(times), ratio_decimals, 0, error)
+            end do
+            call put_fields(request, phrase(say_stroke, m%polish), stroke)
+            if (all(forward == '')) return
+            call put_fields(request, 'MIN-MAX', forward)
+            call put_fields(request, 'MAX-MIN', return)
+            call put_fields(request, phrase(say_ratio, m%polish), ratio)
+         end associate
+      end subroutine put_strokes
+
+      !> A line for a dwell: of which coordinate, within what distance of what, from when to when.
+      subroutine put_dwell(i, dwell)
+         integer, intent(in) :: i
+         type(dwell_t), intent(in) :: dwell
+         character(:), allocatable :: line
+
+         line = ' '//phrase(say_dwell, m%polish)//'  '//column_name(i, dwell%column)//'  ' &
+            //extreme_words(dwell%which)//' +- ' &
+            //number_text(dwell%distance, 0.0_wp, is_angle(m, m%requests(i), dwell%column), 0) &
+            //'   T = '//time_text(l, dwell%from, dwell%error(1))//' .. '//time_text(l, dwell%to, dwell%error(2))
+         if (drive > 0) line = line//'   '//trim(subject_name(m, driven_kinds(m%drives(drive)%kind), &
+            m%drives(drive)%subject))//' = '//drive_text(l%drives(drive), dwell%from, dwell%error(1))//' .. ' &
+            //drive_text(l%drives(drive), dwell%to, dwell%error(2))
+         table%masked = table%masked .or. index(line, unknown_digit) > 0
+         call put(o, line)
+      end subroutine put_dwell
+
+      !> The line `say` about the intervals of the `list`, if there are any.
+      subroutine put_gaps(list, say)
+         type(gap_t), intent(in) :: list(:)
+         type(phrase_t), intent(in) :: say
+         character(:), allocatable :: text
+         integer :: i
+
+         if (size(list) == 0) return
+         text = ' --- '//phrase(say, m%polish)
+         do i = 1, min(size(list), max_gaps)
+            if (i > 1) text = text//','
+            text = text//' '//time_text(l, list(i)%from)
+            if (abs(list(i)%to - list(i)%from) > 0.0_wp) text = text//' .. '//time_text(l, list(i)%to)
          end do
-      end associate
-      call put_strokes(o, l, d, m, x, q, masked)
-   end subroutine put_subject
+         call put(o, text//l%behind_time//more(max(0, size(list) - max_gaps), m%polish))
+      end subroutine put_gaps
 
-   !> The value of the extreme `e` of a length or an angle, or of derivative number `k` of one: or that there is none.
-   function value_text(l, d, m, e, angular, k) result(text)
-      type(layout_t), intent(in) :: l
-      type(digits_t), intent(in) :: d
-      type(mechanism_t), intent(in) :: m
-      type(extreme_t), intent(in) :: e
-      logical, intent(in) :: angular
-      integer, intent(in) :: k
-      character(:), allocatable :: text
+      !> The name of column `c` of request `i`.
+      pure function column_name(i, c) result(name)
+         integer, intent(in) :: i, c
+         character(:), allocatable :: name
 
-      if (.not. e%exists) then
-         text = trim(adjustl(l%none))
-      else if (.not. e%has_bound) then
-         text = phrase(say_unbounded, m%polish)
-      else
-         text = number_text(l, d, e%value, e%error, angular, k)
-      end if
-   end function value_text
+         if (m%requests(i)%kind == request_pair) then
+            name = phrase(say_slide, m%polish)
+            if (is_angle(m, m%requests(i), c)) name = phrase(say_angle, m%polish)
+         else
+            name = 'X'
+            if (c == 2) name = 'Y'
+            if (c == 3) name = phrase(say_phi, m%polish)
+         end if
+      end function column_name
 
-   !> The stroke of each coordinate, and where the motion is cyclic the times of both strokes and their ratio, the
-   !> longer over the shorter.
-   subroutine put_strokes(o, l, d, m, x, q, masked)
-      type(output_t), intent(inout) :: o
-      type(layout_t), intent(in) :: l
-      type(digits_t), intent(in) :: d
-      type(mechanism_t), intent(in) :: m
-      type(extremes_t), intent(in) :: x
-      integer, intent(in) :: q
-      logical, intent(inout) :: masked
-      character(numeral_length), dimension(3, 0:2) :: stroke, forward, return, ratio
-      real(wp) :: times(2), error
-      integer :: c
+      !> A row of `fields` (3, 0:2), those of `request`, with a label before it.
+      subroutine put_fields(request, label, fields)
+         type(request_t), intent(in) :: request
+         character(*), intent(in) :: label
+         character(numeral_length), intent(in) :: fields(3, 0:2)
+         character(row_length) :: line
+         integer :: c, k, i
 
-      stroke = ''
-      forward = ''
-      return = ''
-      ratio = ''
-      associate (request => m%requests(x%asked(q)))
-         do c = 1, coordinates_of(request%kind)
-            associate (e => x%found(:, c, 0, q))
-               if (.not. all(e%exists .and. e%has_bound)) cycle
-               stroke(c, 0) = number_text(l, d, e(greatest)%value - e(least)%value, sum(e%error), &
-                  is_angle(m, request, c), 0)
-               times = stroke_times(x, m, q, c)
-               if (any(times <= 0.0_wp)) cycle
-               error = sum(e%t_error)
-            end associate
-            forward(c, 0) = time_text(l, times(1), error)
-            return(c, 0) = time_text(l, times(2), error)
-            error = error*sum(times)/minval(times)**2
-            ratio(c, 0) = known_text(maxval(times)/minval(times), ratio_decimals, 0, error)
+         line = '  '//label
+         if (len(label) > 7) line = ' '//label
+         do k = 0, 2
+            do c = 1, 3
+               if (.not. has_column(c, request%kind)) cycle
+               i = c
+               if (request%kind == request_pair) i = merge(1, 2, (c == 3) .eqv. is_angle(m, request, 1))
+               associate (first => name_length + numeral_length*(3*k + c - 1))
+                  line(first + 1:first + numeral_length) = adjustr(fields(i, k))
+               end associate
+            end do
          end do
-         call put_fields(m, request, phrase(say_stroke, m%polish), stroke, masked, o)
-         if (all(forward == '')) return
-         call put_fields(m, request, 'MIN-MAX', forward, masked, o)
-         call put_fields(m, request, 'MAX-MIN', return, masked, o)
-         call put_fields(m, request, phrase(say_ratio, m%polish), ratio, masked, o)
-      end associate
-   end subroutine put_strokes
+         table%masked = table%masked .or. index(line(name_length + 1:), unknown_digit) > 0
+         call put(o, line(:len_trim(line)))
+      end subroutine put_fields
 
-   !> A line for a dwell: of which coordinate, within what distance of what, from when to when.
-   subroutine put_dwell(o, l, d, m, drive, i, dwell, masked)
-      type(output_t), intent(inout) :: o
-      type(layout_t), intent(in) :: l
-      type(digits_t), intent(in) :: d
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: drive, i
-      type(dwell_t), intent(in) :: dwell
-      logical, intent(inout) :: masked
-      character(:), allocatable :: line
+      !> A length or angle, or its derivative number `k`, with the digits of the table, without blanks; `error` is
+      !> unknown of it.
+      pure function number_text(value, error, angular, k) result(text)
+         real(wp), intent(in) :: value, error
+         logical, intent(in) :: angular
+         integer, intent(in) :: k
+         character(:), allocatable :: text
 
-      line = ' '//phrase(say_dwell, m%polish)//'  '//column_name(m, i, dwell%column)//'  ' &
-         //extreme_words(dwell%which)//' +- ' &
-         //number_text(l, d, dwell%distance, 0.0_wp, is_angle(m, m%requests(i), dwell%column), 0) &
-         //'   T = '//time_text(l, dwell%from, dwell%error(1))//' .. '//time_text(l, dwell%to, dwell%error(2))
-      if (drive > 0) line = line//'   '//trim(subject_name(m, driven_kinds(m%drives(drive)%kind), &
-         m%drives(drive)%subject))//' = '//drive_text(l%drives(drive), dwell%from, dwell%error(1))//' .. ' &
-         //drive_text(l%drives(drive), dwell%to, dwell%error(2))
-      masked = masked .or. index(line, unknown_digit) > 0
-      call put(o, line)
-   end subroutine put_dwell
+         associate (unit => merge(l%angle, 1.0_wp, angular), what => merge(2, 1, angular))
+            text = known_text(value/unit, d%decimals(what, k), d%power(what, k), error/unit)
+         end associate
+      end function number_text
 
-   !> The line `say` about the intervals of the `list`, if there are any.
-   subroutine put_gaps(o, l, m, list, say)
-      type(output_t), intent(inout) :: o
-      type(layout_t), intent(in) :: l
-      type(mechanism_t), intent(in) :: m
-      type(gap_t), intent(in) :: list(:)
-      type(phrase_t), intent(in) :: say
-      character(:), allocatable :: text
-      integer :: i
+      !> The first drive of the mechanism that request `i` asks about; 0: none, or it does not stand over the table.
+      pure integer function first_drive(i)
+         integer, intent(in) :: i
 
-      if (size(list) == 0) return
-      text = ' --- '//phrase(say, m%polish)
-      do i = 1, min(size(list), max_gaps)
-         if (i > 1) text = text//','
-         text = text//' '//time_text(l, list(i)%from)
-         if (abs(list(i)%to - list(i)%from) > 0.0_wp) text = text//' .. '//time_text(l, list(i)%to)
-      end do
-      call put(o, text//l%behind_time//more(max(0, size(list) - max_gaps), m%polish))
-   end subroutine put_gaps
-
-   !> The name of column `c` of request `i`.
-   pure function column_name(m, i, c) result(name)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i, c
-      character(:), allocatable :: name
-
-      if (m%requests(i)%kind == request_pair) then
-         name = phrase(say_slide, m%polish)
-         if (is_angle(m, m%requests(i), c)) name = phrase(say_angle, m%polish)
-      else
-         name = 'X'
-         if (c == 2) name = 'Y'
-         if (c == 3) name = phrase(say_phi, m%polish)
-      end if
-   end function column_name
-
-   !> A row of `fields` (3, 0:2), those of `request`, with a label before it. `masked`: as in `table_t`.
-   subroutine put_fields(m, request, label, fields, masked, o)
-      type(mechanism_t), intent(in) :: m
-      type(request_t), intent(in) :: request
-      character(*), intent(in) :: label
-      character(numeral_length), intent(in) :: fields(3, 0:2)
-      logical, intent(inout) :: masked
-      type(output_t), intent(inout) :: o
-      character(row_length) :: line
-      integer :: c, k, i
-
-      line = '  '//label
-      if (len(label) > 7) line = ' '//label
-      do k = 0, 2
-         do c = 1, 3
-            if (.not. has_column(c, request%kind)) cycle
-            i = c
-            if (request%kind == request_pair) i = merge(1, 2, (c == 3) .eqv. is_angle(m, request, 1))
-            associate (first => name_length + numeral_length*(3*k + c - 1))
-               line(first + 1:first + numeral_length) = adjustr(fields(i, k))
-            end associate
-         end do
-      end do
-      masked = masked .or. index(line(name_length + 1:), unknown_digit) > 0
-      call put(o, line(:len_trim(line)))
-   end subroutine put_fields
-
-   !> A length or angle, or its derivative number `k`, with the digits of the table, without blanks; `error` is unknown
-   !> of it.
-   pure function number_text(l, d, value, error, angular, k) result(text)
-      type(layout_t), intent(in) :: l
-      type(digits_t), intent(in) :: d
-      real(wp), intent(in) :: value, error
-      logical, intent(in) :: angular
-      integer, intent(in) :: k
-      character(:), allocatable :: text
-
-      associate (unit => merge(l%angle, 1.0_wp, angular), what => merge(2, 1, angular))
-         text = known_text(value/unit, d%decimals(what, k), d%power(what, k), error/unit)
-      end associate
-   end function number_text
-
-   !> The first drive of the mechanism that request `i` asks about; 0: none, or it does not stand over the table.
-   pure integer function first_drive(l, s, i)
-      type(layout_t), intent(in) :: l
-      type(set_analysis_t), intent(in) :: s
-      integer, intent(in) :: i
-
-      first_drive = 0
-      associate (part => s%now%parts%list(s%now%parts%part(i)))
-         if (size(part%drives) > 0) first_drive = part%drives(1)
-         if (first_drive > size(l%drives)) first_drive = 0
-      end associate
-   end function first_drive
+         first_drive = 0
+         associate (part => s%now%parts%list(s%now%parts%part(i)))
+            if (size(part%drives) > 0) first_drive = part%drives(1)
+            if (first_drive > size(l%drives)) first_drive = 0
+         end associate
+      end function first_drive
+   end subroutine put_extremes
 end module extremes_table

@@ -18,7 +18,7 @@ module ranges
    use phrases
    implicit none
    private
-   public :: range_t, find_range, find_ranges, put_ranges, low, high
+   public :: range_t, find_range, find_ranges, put_ranges, held_at, low, high
 
    !> Instants along the drive, in rad or characteristic lengths, and how far it is followed each way.
    real(wp), parameter :: step_of_angle = pi/36.0_wp, step_of_length = 0.05_wp
@@ -114,26 +114,27 @@ contains
       type(motion_t), intent(in) :: start
       integer, intent(in) :: drive
       type(range_t), intent(out) :: r
-      real(wp) :: value, unit
+      type(mechanism_t) :: held
+      real(wp) :: unit
       integer :: side
 
       r%drive = drive
-      value = value_of(m, drive, start%t)
+      held = held_at(m, start%t)
       unit = 1.0_wp
       if (is_length(m%drives(drive))) unit = characteristic_length(m)
       do side = low, high
-         call follow(along(m, start, drive, value, merge(-unit, unit, side == low)), value, &
-            merge(-unit, unit, side == low), side, r)
+         call follow(along(held, start, drive, merge(-unit, unit, side == low)), &
+            held%drives(drive)%polynomial(1), merge(-unit, unit, side == low), side, r)
          if (r%is_all) return
       end do
    end subroutine find_range
 
-   !> `m` at `start`, with drive number `drive` at `value` + `rate` t, the other ones held.
-   function along(m, start, drive, value, rate) result(d)
+   !> `m`, whose drives are held, at `start`, with drive number `drive` at this `rate`.
+   function along(m, start, drive, rate) result(d)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: start
       integer, intent(in) :: drive
-      real(wp), intent(in) :: value, rate
+      real(wp), intent(in) :: rate
       type(mechanism_t) :: d
       integer :: i
 
@@ -143,27 +144,28 @@ contains
       d%requests = [(request_t(request_link, i), i=1, size(m%links))]
       if (allocated(d%branch_requests)) deallocate (d%branch_requests)
       call place_links(d, start%position)
-      do i = 1, size(d%drives)
-         d%drives(i)%polynomial = [value_of(m, i, start%t), 0.0_wp, 0.0_wp]
-         if (allocated(d%drives(i)%terms)) deallocate (d%drives(i)%terms)
-      end do
-      d%drives(drive)%polynomial = [value, rate, 0.0_wp]
+      d%drives(drive)%polynomial(2) = rate
       d%steps = 1
       d%t0 = 0.0_wp
       d%t1 = merge(max_lengths, 2.0_wp*pi*max_turns, is_length(m%drives(drive)))
       d%at = [real(wp) ::]
    end function along
 
-   !> The value of drive number `i` of `m` at the time `t`.
-   real(wp) function value_of(m, i, t) result(value)
+   !> `m` with all drives at rest at their values of the time `t`.
+   function held_at(m, t) result(held)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i
       real(wp), intent(in) :: t
+      type(mechanism_t) :: held
       real(wp) :: f(3)
+      integer :: i
 
-      f = drive_motion(new_law(m%drives(i)), t)
-      value = f(1)
-   end function value_of
+      held = m
+      do i = 1, size(m%drives)
+         f = drive_motion(new_law(m%drives(i)), t)
+         held%drives(i)%polynomial = [f(1), 0.0_wp, 0.0_wp]
+         if (allocated(held%drives(i)%terms)) deallocate (held%drives(i)%terms)
+      end do
+   end function held_at
 
    !> Follows the drive of `d`, which is at `value` + `rate` t, to its end on one `side`.
    subroutine follow(d, value, rate, side, r)
@@ -193,74 +195,68 @@ contains
             + count(now%diagnostics%kind == diagnostic_change .and. .not. now%diagnostics%here)
          if (now%known < 0) then
             t = a%t
-            call close_in(a, step, t, now)
-            call take_limit(now, t, value, rate, side, r)
+            call close_in()
+            call take_limit()
             return
          end if
          if (.not. is_angle .or. mod(k, steps_a_turn) /= 0 .or. now%known < 2) cycle
-         r%is_all = is_closed(d, first, now)
+         r%is_all = is_closed(d)
          r%turns = k/steps_a_turn
          if (r%is_all) return
       end do
       r%limit(side)%value = value + rate*t
+
+   contains
+
+      !> The motion was found at the time `t`, and not a `step` later. Where no limit is told, as so close to a change
+      !> point that rounding leaves none, the last time is looked for at which there is a motion: `t`, and `now` after
+      !> it.
+      subroutine close_in()
+         real(wp) :: part
+
+         part = step
+         do while (.not. tells_limit(now) .and. part > closest)
+            part = 0.5_wp*part
+            call advance(a, t + part, now)
+            if (now%known >= 0) t = t + part
+         end do
+      end subroutine close_in
+
+      !> Some diagnostic of `q` is a limit.
+      pure logical function tells_limit(q) result(tells)
+         type(motion_t), intent(in) :: q
+
+         tells = .false.
+         if (allocated(q%diagnostics)) tells = any(q%diagnostics%kind == diagnostic_limit)
+      end function tells_limit
+
+      !> The motion ends before that asked for in `now`, shortly after `t`.
+      subroutine take_limit()
+         integer :: i
+
+         r%has_limit(side) = .true.
+         r%limit(side)%value = value + rate*t
+         if (.not. allocated(now%diagnostics)) return
+         do i = 1, size(now%diagnostics)
+            if (now%diagnostics(i)%kind /= diagnostic_limit) cycle
+            associate (found => r%limit(side))
+               found%links = now%diagnostics(i)%links
+               found%more = now%diagnostics(i)%more
+               found%in_line = now%diagnostics(i)%in_line
+               found%value = value + rate*now%diagnostics(i)%t
+            end associate
+         end do
+      end subroutine take_limit
+
+      !> Every link of `m` is in the same place in both motions, but for whole turns.
+      pure logical function is_closed(m)
+         type(mechanism_t), intent(in) :: m
+         real(wp) :: d(3, size(m%links))
+
+         d = now%position - first%position
+         d(:2, :) = d(:2, :)/characteristic_length(m)
+         d(3, :) = without_turns(d(3, :))
+         is_closed = all(abs(d) <= closes_to)
+      end function is_closed
    end subroutine follow
-
-   !> The motion was found at the time `t`, and not a `step` later. Where no limit is told, as so close to a change
-   !> point that rounding leaves none, the last time is looked for at which there is a motion: `t`, and `now` after it.
-   subroutine close_in(a, step, t, now)
-      type(analysis_t), intent(inout) :: a
-      real(wp), intent(in) :: step
-      real(wp), intent(inout) :: t
-      type(motion_t), intent(inout) :: now
-      real(wp) :: part
-
-      part = step
-      do while (.not. tells_limit(now) .and. part > closest)
-         part = 0.5_wp*part
-         call advance(a, t + part, now)
-         if (now%known >= 0) t = t + part
-      end do
-   end subroutine close_in
-
-   !> Some diagnostic of `q` is a limit.
-   pure logical function tells_limit(q) result(tells)
-      type(motion_t), intent(in) :: q
-
-      tells = .false.
-      if (allocated(q%diagnostics)) tells = any(q%diagnostics%kind == diagnostic_limit)
-   end function tells_limit
-
-   !> The motion ends before that asked for in `now`, shortly after `t`.
-   subroutine take_limit(now, t, value, rate, side, r)
-      type(motion_t), intent(in) :: now
-      real(wp), intent(in) :: t, value, rate
-      integer, intent(in) :: side
-      type(range_t), intent(inout) :: r
-      integer :: i
-
-      r%has_limit(side) = .true.
-      r%limit(side)%value = value + rate*t
-      if (.not. allocated(now%diagnostics)) return
-      do i = 1, size(now%diagnostics)
-         if (now%diagnostics(i)%kind /= diagnostic_limit) cycle
-         associate (found => r%limit(side))
-            found%links = now%diagnostics(i)%links
-            found%more = now%diagnostics(i)%more
-            found%in_line = now%diagnostics(i)%in_line
-            found%value = value + rate*now%diagnostics(i)%t
-         end associate
-      end do
-   end subroutine take_limit
-
-   !> Every link of `m` is in the same place in both motions, but for whole turns.
-   pure logical function is_closed(m, first, now)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: first, now
-      real(wp) :: d(3, size(m%links))
-
-      d = now%position - first%position
-      d(:2, :) = d(:2, :)/characteristic_length(m)
-      d(3, :) = without_turns(d(3, :))
-      is_closed = all(abs(d) <= closes_to)
-   end function is_closed
 end module ranges

@@ -5,7 +5,7 @@ module variant_tables
    use mechanism, only: mechanism_t
    use motion, only: mark_none
    use listing, only: words_of_mark
-   use listing_layout, only: layout_t
+   use listing_layout, only: layout_t, unit_of
    use listing_tables, only: known_text
    use listing_diagnostics, only: put_diagnostics
    use csv, only: add_name
@@ -84,7 +84,7 @@ contains
       do i = 2, s%numbers + 1
          associate (c => s%columns(i))
             item = '   '//trim(c%heads(1))//' '//trim(c%heads(2))//' = ' &
-               //trim(cell_text(l, m, c, r%cells(i))//' '//unit_text(c))
+               //trim(cell_text(l, m, c, r%cells(i))//' '//unit_of(c%power, trim(c%unit)))
          end associate
          if (len(line) + len(item) > line_length) then
             call put(o, line)
@@ -94,15 +94,6 @@ contains
       end do
       call put(o, line)
    end subroutine put_variant
-
-   !> The power of ten and the unit of a column.
-   function unit_text(c) result(text)
-      type(summary_column_t), intent(in) :: c
-      character(:), allocatable :: text
-
-      text = trim(c%unit)
-      if (c%power /= 0) text = trim('10**'//whole(c%power)//' '//text)
-   end function unit_text
 
    !> The heads of the table: for each of its lines of columns the names, powers of ten and units.
    subroutine put_variant_heads(o, s)

@@ -164,7 +164,7 @@ contains
       type(name_table_t) :: seen(0:3)               ! for each word, the names on earlier cards of the same form
       type(request_t), allocatable :: requests(:)
       integer, allocatable :: number(:, :)          ! (number, kind) its request, 0: none yet
-      integer :: k, n
+      integer :: k, n, every
 
       associate (sizes => [size(set%mechanism%links), size(set%mechanism%points), size(set%mechanism%pairs)])
          allocate (requests(sum(sizes)))
@@ -174,7 +174,10 @@ contains
       if (set%number_of(form_print) == 0) &
          call request_all(request_t(request_link, every=merge(0, 1, set%number_of(form_vary) > 0)))
       do k = 1, set%count
-         if (set%cards(k)%form == form_print .and. set%cards(k)%valid) call read_print(k)
+         if (set%cards(k)%form /= form_print .or. .not. set%cards(k)%valid) cycle
+         every = merge(set%cards(k)%whole, 1, set%cards(k)%whole_given)
+         if (every < 1) call add_card_error(set, number_range, k, label_c, '1 AND UP')
+         call read_subjects(k, request_t(every=every))
       end do
       seen = name_table_t()
       do k = 1, set%count
@@ -183,16 +186,6 @@ contains
       set%mechanism%requests = requests(:n)
 
    contains
-
-      !> The PRINT card `k`.
-      subroutine read_print(k)
-         integer, intent(in) :: k
-         integer :: every
-
-         every = merge(set%cards(k)%whole, 1, set%cards(k)%whole_given)
-         if (every < 1) call add_card_error(set, number_range, k, label_c, '1 AND UP')
-         call read_subjects(k, request_t(every=every))
-      end subroutine read_print
 
       !> The EXTREMES card `k`.
       subroutine read_extremes(k)

@@ -66,7 +66,12 @@ contains
       integer :: columns, length
 
       call have_more(source, found, failure)
-      if (source%after_return .and. found) call pass_feed(source, found, failure)
+      if (source%after_return .and. found) then
+         ! A line feed after a carriage return belongs to the line before.
+         if (source%buffer(source%at:source%at) == line_feed) source%at = source%at + 1
+         source%after_return = .false.
+         call have_more(source, found, failure)
+      end if
       if (.not. found) return
       source%lines = source%lines + 1
       card%number = source%lines
@@ -85,17 +90,6 @@ contains
       source%after_return = source%buffer(source%at + length:source%at + length) == carriage_return
       source%at = source%at + length + 1
    end subroutine next_card
-
-   !> Skips a line feed after a carriage return, which belongs to the line before. `more`: as in have_more.
-   subroutine pass_feed(source, more, failure)
-      type(source_t), intent(inout) :: source
-      logical, intent(out) :: more
-      type(failure_t), allocatable, intent(out) :: failure
-
-      if (source%buffer(source%at:source%at) == line_feed) source%at = source%at + 1
-      source%after_return = .false.
-      call have_more(source, more, failure)
-   end subroutine pass_feed
 
    !> Closes the file of `source`; standard input stays open.
    subroutine close_source(source)

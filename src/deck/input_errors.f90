@@ -14,6 +14,9 @@ module input_errors
 
    !> Number of errors that are printed, and of remarks of a set; the rest is only counted.
    integer, parameter :: max_printed = 50
+   !> Below a card, for its columns and one ten more.
+   character(*), parameter :: ruler = &
+      '....+....1....+....2....+....3....+....4....+....5....+....6....+....7....+....8....+....9'
    !> The layout of an error's own card.
    integer, parameter :: own_layout = -1
 
@@ -263,20 +266,9 @@ contains
       call add_line(errors, head//printable(shown))
       margin = repeat(' ', len(head) - 1)//'|'
       tens = min(max(len(shown)/10, (column + 9)/10), card_columns/10 + 1)
-      call add_line(errors, margin//ruler(tens))
+      call add_line(errors, margin//ruler(:10*tens))
       if (column <= 10*tens) call add_line(errors, margin//repeat(' ', column - 1)//'^')
    end subroutine add_picture
-
-   !> ....+....1....+....2 and so on, for `tens` tens of columns.
-   pure function ruler(tens) result(text)
-      integer, intent(in) :: tens
-      character(10*tens) :: text
-      integer :: i
-
-      do i = 1, tens
-         text(10*i - 9:10*i) = '....+....'//achar(iachar('0') + modulo(i, 10))
-      end do
-   end function ruler
 
    !> `text` with ? for each byte that is not printable ASCII, so that every column stays one character wide.
    pure function printable(text) result(shown)

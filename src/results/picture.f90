@@ -2,7 +2,7 @@
 !> of the points that PRINT asks for, the centrodes that POLE asks for, flagged positions, names, and a scale.
 module picture
    use kinds, only: wp, label_length
-   use mechanism, only: mechanism_t, pair_revolute, request_point
+   use mechanism, only: pair_revolute, request_point
    use drawing, only: drawing_t, point_place
    use outline, only: is_same_place
    use picture_frames, only: clearest, faint_frames
@@ -79,7 +79,10 @@ contains
       call put_mechanism(c)
       call put_drives(c)
       call put_centres(c)
-      call put_names(c)
+      if (max(size(c%m%links), size(c%m%points)) <= max_names) then
+         call put_points(c)
+         call put_links(c)
+      end if
       call put_times(c)
       call put_flags(c)
       call put_scale(c)
@@ -166,47 +169,23 @@ contains
          call put_words(c%o, [real(32 + 9*len(now), wp), y], 'start', 'class="between"', others)
    end subroutine put_times
 
-   !> The names of the points that are known, then those of the moving links.
-   subroutine put_names(c)
+   !> A name for each place of points that are known: of moving links all, of the ground those of joints, since the
+   !> point of the ground from which a slide is counted need not lie on the guide. Of the points there one that PRINT
+   !> asks for, of several the one with the shortest name, the first of these. The name of its link would stand there
+   !> twice.
+   subroutine put_points(c)
       type(canvas_t), intent(inout) :: c
-
-      if (size(c%m%links) > max_names .or. size(c%m%points) > max_names) return
-      call put_points(c, is_used(c%m), is_printed(c%m))
-      call put_links(c)
-   end subroutine put_names
-
-   !> (points) Whether a point may have its name in the picture: of moving links all, of the ground those of joints. The
-   !> point of the ground from which a slide is counted need not lie on the guide.
-   pure function is_used(m) result(used)
-      type(mechanism_t), intent(in) :: m
-      logical :: used(size(m%points))
-      integer :: i
-
-      used = .not. m%links(m%points%link)%ground
-      do i = 1, size(m%pairs)
-         if (m%pairs(i)%kind == pair_revolute) used([m%pairs(i)%point_i, m%pairs(i)%point_j]) = .true.
-      end do
-   end function is_used
-
-   !> (points) Whether PRINT asks for it.
-   pure function is_printed(m) result(printed)
-      type(mechanism_t), intent(in) :: m
-      logical :: printed(size(m%points))
-
-      printed = .false.
-      printed(pack(m%requests%subject, m%requests%kind == request_point)) = .true.
-   end function is_printed
-
-   !> A name for each place, first for those of points that are `printed` (points): of the points there a printed one,
-   !> of several the one with the shortest name, the first of these. The name of its link would stand there twice.
-   subroutine put_points(c, used, printed)
-      type(canvas_t), intent(inout) :: c
-      logical, intent(in) :: used(:), printed(:)
-      logical :: open(size(c%m%points))
+      logical, dimension(size(c%m%points)) :: open, printed
       real(wp) :: p(2, size(c%m%points)), start(2)
       integer :: i, best
 
-      open = used .and. c%s%known(c%m%points%link)
+      open = .not. c%m%links(c%m%points%link)%ground
+      do i = 1, size(c%m%pairs)
+         if (c%m%pairs(i)%kind == pair_revolute) open([c%m%pairs(i)%point_i, c%m%pairs(i)%point_j]) = .true.
+      end do
+      open = open .and. c%s%known(c%m%points%link)
+      printed = .false.
+      printed(pack(c%m%requests%subject, c%m%requests%kind == request_point)) = .true.
       do i = 1, size(c%m%points)
          if (open(i)) p(:, i) = to_pixels(c, point_place(c%m, c%s, i))
       end do

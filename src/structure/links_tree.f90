@@ -43,22 +43,15 @@ contains
    function new_tree(m) result(t)
       type(mechanism_t), intent(in) :: m
       type(tree_t) :: t
+      integer :: k
 
       t%origin = plane_origin(m)
-      t%near = neighbours()
+      t%near = sorted([(pair_links(m, m%pairs(k)), k=1, size(m%pairs))], size(m%links))
+      t%near%member = (t%near%member + 1)/2
       call find_orientations()
       call grow()
 
    contains
-
-      !> The pairs of each link.
-      pure function neighbours() result(near)
-         type(sorted_t) :: near
-         integer :: k
-
-         near = sorted([(pair_links(m, m%pairs(k)), k=1, size(m%pairs))], size(m%links))
-         near%member = (near%member + 1)/2
-      end function neighbours
 
       !> Orientations and angle offsets: a walk over prismatic pairs alone, first from the ground links, then from
       !> every link not yet seen.
