@@ -62,82 +62,74 @@ contains
       found%group = f%system%p
       found%moves = f%is_lacking
       if (f%is_lacking .or. f%is_impossible .or. found%group > max_group) return
-      call find_ends(f, ends, found%moves)
+      call find_ends(ends, found%moves)
       found%paths = ends%paths
       found%infinite = ends%infinite
       found%failed = ends%failed
       do k = 1, size(ends%list)
          if (solves_all(f, ends%list(k))) then
             found%finite = found%finite + 1
-            call take_end(b, i, tolerance, f, ends%list(k), w, s, found)
+            call take_end(ends%list(k))
          else
             found%partial = found%partial + 1
          end if
       end do
+
+   contains
+
+      !> All solutions of the system of `f`.
+      subroutine find_ends(ends, moves)
+         type(ends_t), intent(out) :: ends
+         logical, intent(inout) :: moves
+
+         if (f%system%p == 0) then
+            ends%paths = 1
+            allocate (ends%list(1))
+            ends%list(1)%x = [(1.0_wp, 0.0_wp)]
+            ends%list(1)%y = ends%list(1)%x
+         else if (f%system%p == 1) then
+            call solve_quadratic(f%system, ends, moves)
+         else
+            call follow_paths(f%system, ends, moves)
+         end if
+      end subroutine find_ends
+
+      !> Adds the position of block `i` at the solution `e` to those `found`, if it is real and new.
+      subroutine take_end(e)
+         type(end_t), intent(in) :: e
+         type(convergence_t) :: c
+         real(wp) :: x(f%n), residual
+         logical :: is_real
+         integer :: k
+
+         call real_values(f, e, merge(singular_level, real_level, e%is_singular), x, is_real)
+         if (.not. is_real) return
+         call set_values(b, i, x, s)
+         ! At a singular solution Newton's method would lose the way.
+         do k = 1, merge(singular_steps, 0, e%is_singular)
+            call gauss_newton_step(b, i, s, residual)
+         end do
+         call solve_block(b, i, tolerance, w, s, c)
+         if (.not. is_solved(c) .or. apart(values_of(b, i, s), x) > merge(singular_near, near, e%is_singular)) then
+            found%failed = found%failed + 1
+            found%finite = found%finite - 1
+            return
+         end if
+         x = values_of(b, i, s)
+         do k = 1, size(found%x, 2)
+            if (apart(x, found%x(:, k)) <= merge(singular_alike, alike, e%is_singular .or. c%singular)) return
+         end do
+         found%x = reshape([found%x, x], [f%n, size(found%x, 2) + 1])
+         found%sign_of = [found%sign_of, merge(0, c%determinant, c%singular)]
+         if (c%singular) found%moves = found%moves .or. any(moving_unknowns(b, i, s))
+      end subroutine take_end
+
+      !> The largest difference of the values `x` and `y` of block `i`, of angles without whole turns.
+      pure real(wp) function apart(x, y)
+         real(wp), intent(in) :: x(:), y(:)
+
+         apart = maxval(merge(abs(without_turns(x - y)), abs(x - y), &
+            b%unknown(b%list(i)%first:b%list(i)%last) <= b%orientations))
+      end function apart
    end subroutine find_positions
-
-   !> All solutions of the system of `f`.
-   subroutine find_ends(f, ends, moves)
-      type(block_form_t), intent(in) :: f
-      type(ends_t), intent(out) :: ends
-      logical, intent(inout) :: moves
-
-      if (f%system%p == 0) then
-         ends%paths = 1
-         allocate (ends%list(1))
-         ends%list(1)%x = [(1.0_wp, 0.0_wp)]
-         ends%list(1)%y = ends%list(1)%x
-      else if (f%system%p == 1) then
-         call solve_quadratic(f%system, ends, moves)
-      else
-         call follow_paths(f%system, ends, moves)
-      end if
-   end subroutine find_ends
-
-   !> Adds the position of block `i` at the solution `e` to those `found`, if it is real and new.
-   subroutine take_end(b, i, tolerance, f, e, w, s, found)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      real(wp), intent(in) :: tolerance
-      type(block_form_t), intent(in) :: f
-      type(end_t), intent(in) :: e
-      type(workspace_t), intent(inout) :: w
-      type(state_t), intent(inout) :: s
-      type(block_positions_t), intent(inout) :: found
-      type(convergence_t) :: c
-      real(wp) :: x(f%n), residual
-      logical :: is_real
-      integer :: k
-
-      call real_values(f, e, merge(singular_level, real_level, e%is_singular), x, is_real)
-      if (.not. is_real) return
-      call set_values(b, i, x, s)
-      ! At a singular solution Newton's method would lose the way.
-      do k = 1, merge(singular_steps, 0, e%is_singular)
-         call gauss_newton_step(b, i, s, residual)
-      end do
-      call solve_block(b, i, tolerance, w, s, c)
-      if (.not. is_solved(c) .or. apart(b, i, values_of(b, i, s), x) > merge(singular_near, near, e%is_singular)) then
-         found%failed = found%failed + 1
-         found%finite = found%finite - 1
-         return
-      end if
-      x = values_of(b, i, s)
-      do k = 1, size(found%x, 2)
-         if (apart(b, i, x, found%x(:, k)) <= merge(singular_alike, alike, e%is_singular .or. c%singular)) return
-      end do
-      found%x = reshape([found%x, x], [f%n, size(found%x, 2) + 1])
-      found%sign_of = [found%sign_of, merge(0, c%determinant, c%singular)]
-      if (c%singular) found%moves = found%moves .or. any(moving_unknowns(b, i, s))
-   end subroutine take_end
-
-   !> The largest difference of the values `x` and `y` of block `i`, of angles without whole turns.
-   pure real(wp) function apart(b, i, x, y)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      real(wp), intent(in) :: x(:), y(:)
-
-      apart = maxval(merge(abs(without_turns(x - y)), abs(x - y), &
-         b%unknown(b%list(i)%first:b%list(i)%last) <= b%orientations))
-   end function apart
 end module block_assemblies

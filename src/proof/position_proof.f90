@@ -168,14 +168,14 @@ contains
 
       associate (block => b%list(i), w => p%work(i))
          do k = block%first, block%last
-            call bound_values(p%state, b, b%unknown(k), p%jets)
+            call bound_values(p%state, b%unknown(k), p%jets)
             q%error(:, b%unknown(k)) = 0.0_wp
          end do
          q%gap(i) = 0.0_wp
          q%is_proved(i) = block%direct .or. allocated(w%a)
-         if (block%direct) call prove_direct(p, b, i, q)
+         if (block%direct) call prove_direct()
          if (block%direct .or. .not. q%is_proved(i)) return
-         call find_residuals(b, i, max(1, order), p%state, w%a, w%r)
+         call find_residuals(max(1, order), p%state, w%a, w%r)
          do k = 0, max(1, order)
             call bound_rows(p%data, b, i, p%jets, k, w%open)
             w%g(:) = (abs(w%r(:, k)) + w%open)*room
@@ -183,113 +183,119 @@ contains
             if (k > order) exit
             call bound_changes(p%data, b, i, p%jets, k, w%error)
             w%g(:) = (w%g + w%error)*room
-            if (k == 0) call prove_values(p, b, i, q)
-            if (k > 0) call bound_derivatives(p, b, i, k, q)
+            if (k == 0) call prove_values()
+            if (k > 0) call bound_derivatives(k)
             if (.not. q%is_proved(i)) return
          end do
       end associate
-   end subroutine prove_block
 
-   !> Bounds of the motion of unknown `u` as it is in `s`, without errors.
-   pure subroutine bound_values(s, b, u, j)
-      type(state_t), intent(in) :: s
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: u
-      type(jets_t), intent(inout) :: j
+   contains
 
-      j%own(0, u) = abs(s%u(u)%value)
-      j%own(1, u) = abs(s%u(u)%rate)
-      j%own(2, u) = abs(s%u(u)%acceleration)
-      j%own_error(:2, u) = 0.0_wp
-      if (u > b%orientations) return
-      ! See `turn`.
-      j%turn(1, u) = j%own(1, u)
-      j%turn(2, u) = j%own(1, u)**2 + j%own(2, u)
-      j%turn_error(:2, u) = 0.0_wp
-   end subroutine bound_values
+      !> Bounds of the motion of unknown `u` as it is in `s`, without errors.
+      pure subroutine bound_values(s, u, j)
+         type(state_t), intent(in) :: s
+         integer, intent(in) :: u
+         type(jets_t), intent(inout) :: j
 
-   !> Derivative `order` of unknown `u` is off by no more than `error`.
-   pure subroutine note_error(b, u, order, error, q, j)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: u, order
-      real(wp), intent(in) :: error
-      type(placed_t), intent(inout) :: q
-      type(jets_t), intent(inout) :: j
+         j%own(0, u) = abs(s%u(u)%value)
+         j%own(1, u) = abs(s%u(u)%rate)
+         j%own(2, u) = abs(s%u(u)%acceleration)
+         j%own_error(:2, u) = 0.0_wp
+         if (u > b%orientations) return
+         ! See `turn`.
+         j%turn(1, u) = j%own(1, u)
+         j%turn(2, u) = j%own(1, u)**2 + j%own(2, u)
+         j%turn_error(:2, u) = 0.0_wp
+      end subroutine bound_values
 
-      q%error(order, u) = error
-      j%own_error(order, u) = error
-      if (u <= b%orientations) call note_turn_error(order, j%own(:, u), j%own_error(:, u), j%turn_error(:, u))
-   end subroutine note_error
+      !> Derivative `order` of unknown `u` is off by no more than `error`.
+      subroutine note_error(u, order, error, j)
+         integer, intent(in) :: u, order
+         real(wp), intent(in) :: error
+         type(jets_t), intent(inout) :: j
 
-   !> Proves the direct block `i`: its unknown is another one and a drive.
-   subroutine prove_direct(p, b, i, q)
-      type(prover_t), intent(inout) :: p
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      type(placed_t), intent(inout) :: q
-      real(wp) :: x(0:2), given(0:2), known(0:2), size_of(0:2), r(0:2)
-      integer :: k
+         q%error(order, u) = error
+         j%own_error(order, u) = error
+         if (u <= b%orientations) call note_turn_error(order, j%own(:, u), j%own_error(:, u), j%turn_error(:, u))
+      end subroutine note_error
 
-      associate (row => b%rows(b%list(i)%first_row), u => b%unknown(b%list(i)%first))
-         x = [p%state%u(u)%value, p%state%u(u)%rate, p%state%u(u)%acceleration]
-         known = [p%state%u(row%other)%value, p%state%u(row%other)%rate, p%state%u(row%other)%acceleration]
-         given = p%state%drive_value(:, row%drive)
-         given(0) = given(0) + row%constant
-         size_of = abs(x) + abs(known) + p%jets%drive(:, row%drive) + abs(row%constant)*[1.0_wp, 0.0_wp, 0.0_wp]
-         r = abs(x - known - row%sign_of*given) + 4.0_wp*rounding*size_of
-         r(0) = r(0) + p%data%constant_weight(b%list(i)%first_row)
-         q%open(:, b%list(i)%first_row) = r(:1)*room
-         r = (r + p%jets%drive_error(:, row%drive) + q%error(:, row%other))*room
-         do k = 0, 2
-            call note_error(b, u, k, r(k), q, p%jets)
-         end do
-      end associate
-   end subroutine prove_direct
+      !> Proves the direct block `i`: its unknown is another one and a drive.
+      subroutine prove_direct()
+         real(wp) :: x(0:2), given(0:2), known(0:2), size_of(0:2), r(0:2)
+         integer :: k
 
-   !> Jacobian `a` (rows, n) of block `i` and what its equations and their derivatives up to `order` (1 or 2) leave, `r`
-   !> (rows, 0:2), at the state `s`.
-   subroutine find_residuals(b, i, order, s, a, r)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i, order
-      type(state_t), intent(inout) :: s
-      real(wp), intent(out) :: a(b%list(i)%shape%rows, *), r(b%list(i)%shape%rows, 0:2)
-      integer :: k
-
-      call find_known_parts(b, i, s)
-      call assemble_dense(b, i, s, a, r)
-      call right_hand_side(b, i, 1, s, r(:, 1))
-      if (order > 1) call right_hand_side(b, i, 2, s, r(:, 2))
-      do k = 1, b%list(i)%shape%n
-         associate (u => s%u(b%unknown(b%list(i)%first + k - 1)))
-            r(:, 1) = r(:, 1) - a(:, k)*u%rate
-            if (order > 1) r(:, 2) = r(:, 2) - a(:, k)*u%acceleration
+         associate (row => b%rows(b%list(i)%first_row), u => b%unknown(b%list(i)%first))
+            x = [p%state%u(u)%value, p%state%u(u)%rate, p%state%u(u)%acceleration]
+            known = [p%state%u(row%other)%value, p%state%u(row%other)%rate, p%state%u(row%other)%acceleration]
+            given = p%state%drive_value(:, row%drive)
+            given(0) = given(0) + row%constant
+            size_of = abs(x) + abs(known) + p%jets%drive(:, row%drive) + abs(row%constant)*[1.0_wp, 0.0_wp, 0.0_wp]
+            r = abs(x - known - row%sign_of*given) + 4.0_wp*rounding*size_of
+            r(0) = r(0) + p%data%constant_weight(b%list(i)%first_row)
+            q%open(:, b%list(i)%first_row) = r(:1)*room
+            r = (r + p%jets%drive_error(:, row%drive) + q%error(:, row%other))*room
+            do k = 0, 2
+               call note_error(u, k, r(k), p%jets)
+            end do
          end associate
-      end do
-   end subroutine find_residuals
+      end subroutine prove_direct
 
-   !> Proves the values of block `i`, whose equations are no larger than its bounds g.
-   subroutine prove_values(p, b, i, q)
-      type(prover_t), intent(inout) :: p
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      type(placed_t), intent(inout) :: q
-      real(wp) :: radius, error
-      integer :: k
+      !> Jacobian `a` (rows, n) of block `i` and what its equations and their derivatives up to `order` (1 or 2) leave,
+      !> `r` (rows, 0:2), at the state `s`.
+      subroutine find_residuals(order, s, a, r)
+         integer, intent(in) :: order
+         type(state_t), intent(inout) :: s
+         real(wp), intent(out) :: a(b%list(i)%shape%rows, *), r(b%list(i)%shape%rows, 0:2)
+         integer :: k
 
-      call contract_block(p, b, i, p%jets%own_error(0, :), radius, q%gap(i))
-      q%is_proved(i) = radius >= 0.0_wp
-      if (.not. q%is_proved(i)) return
-      associate (w => p%work(i), c => p%work(i)%contraction, own => b%unknown(b%list(i)%first:b%list(i)%last))
-         q%norm(i) = c%norm
-         q%z1(i) = c%z1
-         w%within = 0.0_wp
-         do k = 1, size(w%x)
-            error = min(radius, (w%x(k) + (c%off(k) + c%z2*radius)*radius)*room)
-            w%within = max(w%within, error)
-            call note_error(b, own(k), 0, error, q, p%jets)
+         call find_known_parts(b, i, s)
+         call assemble_dense(b, i, s, a, r)
+         call right_hand_side(b, i, 1, s, r(:, 1))
+         if (order > 1) call right_hand_side(b, i, 2, s, r(:, 2))
+         do k = 1, b%list(i)%shape%n
+            associate (u => s%u(b%unknown(b%list(i)%first + k - 1)))
+               r(:, 1) = r(:, 1) - a(:, k)*u%rate
+               if (order > 1) r(:, 2) = r(:, 2) - a(:, k)*u%acceleration
+            end associate
          end do
-      end associate
-   end subroutine prove_values
+      end subroutine find_residuals
+
+      !> Proves the values of block `i`, whose equations are no larger than its bounds g.
+      subroutine prove_values()
+         real(wp) :: radius, error
+         integer :: k
+
+         call contract_block(p, b, i, p%jets%own_error(0, :), radius, q%gap(i))
+         q%is_proved(i) = radius >= 0.0_wp
+         if (.not. q%is_proved(i)) return
+         associate (w => p%work(i), c => p%work(i)%contraction, own => b%unknown(b%list(i)%first:b%list(i)%last))
+            q%norm(i) = c%norm
+            q%z1(i) = c%z1
+            w%within = 0.0_wp
+            do k = 1, size(w%x)
+               error = min(radius, (w%x(k) + (c%off(k) + c%z2*radius)*radius)*room)
+               w%within = max(w%within, error)
+               call note_error(own(k), 0, error, p%jets)
+            end do
+         end associate
+      end subroutine prove_values
+
+      !> Bounds of the errors of the derivatives of one `order` of block `i`, whose equations leave its bounds g.
+      subroutine bound_derivatives(order)
+         integer, intent(in) :: order
+         real(wp) :: largest
+         integer :: k
+
+         associate (w => p%work(i), c => p%work(i)%contraction, own => b%unknown(b%list(i)%first:b%list(i)%last))
+            call apply_to_bounds(p%rows, w)
+            q%is_proved(i) = all(w%x <= huge(1.0_wp))
+            largest = max(0.0_wp, maxval(w%x))/(1.0_wp - c%z1 - c%z2*w%within)*room
+            do k = 1, size(w%x)
+               call note_error(own(k), order, (w%x(k) + (c%off(k) + c%z2*w%within)*largest)*room, p%jets)
+            end do
+         end associate
+      end subroutine bound_derivatives
+   end subroutine prove_block
 
    !> The contraction of block `i`, whose Jacobian was computed at the place at hand and may be off as where unknowns
    !> are `off` (0:unknowns) from there; its equations are no larger than its bounds g. `radius`: of the ball that holds
@@ -330,25 +336,6 @@ contains
          call apply(w%contraction, w%g, w%x)
       end if
    end subroutine apply_to_bounds
-
-   !> Bounds of the errors of the derivatives of one `order` of block `i`, whose equations leave its bounds g.
-   subroutine bound_derivatives(p, b, i, order, q)
-      type(prover_t), intent(inout) :: p
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i, order
-      type(placed_t), intent(inout) :: q
-      real(wp) :: largest
-      integer :: k
-
-      associate (w => p%work(i), c => p%work(i)%contraction, own => b%unknown(b%list(i)%first:b%list(i)%last))
-         call apply_to_bounds(p%rows, w)
-         q%is_proved(i) = all(w%x <= huge(1.0_wp))
-         largest = max(0.0_wp, maxval(w%x))/(1.0_wp - c%z1 - c%z2*w%within)*room
-         do k = 1, size(w%x)
-            call note_error(b, own(k), order, (w%x(k) + (c%off(k) + c%z2*w%within)*largest)*room, q, p%jets)
-         end do
-      end associate
-   end subroutine bound_derivatives
 
    !> `rows` (n): of the equations with the Jacobian `a` (any number, n) those that Gauss' elimination takes, with the
    !> largest pivots, in their order.

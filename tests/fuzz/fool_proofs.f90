@@ -11,7 +11,7 @@ program fool_proofs
    use block_engine, only: block_engine_t, make_block_engine, set_drive_values
    use mechanism, only: mechanism_t
    use position_proof, only: prover_t, placed_t, make_prover, new_placed, prove_position
-   use step_proof, only: step_prover_t, step_proof_t, make_step_prover, prove_step
+   use motion_proof, only: step_prover_t, step_proof_t, make_step_prover, prove_step
    use block_solver, only: solve_block
    use convergence, only: convergence_t
    use fool_scenes, only: fool_t, new_mechanism, find_unknowns, place_at, scene_four_bar, scene_inverted, scene_slider, &
