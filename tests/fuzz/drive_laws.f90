@@ -1,5 +1,6 @@
 !> Tests. The laws of drives as jets in real128, from the numbers of the deck: a polynomial and one term of each form.
 module drive_laws
+   use, intrinsic :: iso_fortran_env, only: real64
    use quad_jet, only: qp, jet_t, time_jet, operator(+), operator(-), operator(*), sin
    use rise_laws, only: rise_jet
    implicit none
@@ -19,6 +20,9 @@ module drive_laws
       real(qp), allocatable :: time(:), value(:) !< rows of a table
       real(qp), allocatable :: bend(:)         !< second derivatives of the spline at the rows
    end type law_t
+
+   !> An instant that is before the joint of a rise by less than this part of its times is at it, as the manual says.
+   real(qp), parameter :: joint_part = 1024.0_qp*epsilon(1.0_real64)
 
 contains
 
@@ -40,7 +44,7 @@ contains
       case (term_table)
          f = f + spline_jet(law, t)
       case (term_rise)
-         f = f + rise_jet(trim(law%word), law%r(1), law%r(2), law%r(3), t)
+         f = f + rise_jet(trim(law%word), law%r(1), law%r(2), law%r(3), t, joint_part)
       end select
       f = angle_unit*f
    end function law_jet

@@ -7,21 +7,27 @@ module rise_laws
    public :: rise_jet, peak_rate, rise_words
 
    character(8), parameter :: rise_words(4) = [character(8) :: 'CYCLOID', '3-4-5', 'HARMONIC', 'PARABOLA']
-   !> An instant that is before a joint by less than this part of the rise's times is meant to be at it.
+   !> An instant that is before a joint by less than this part of the rise's times is meant to be at it, if it has the
+   !> digits of a single.
    real(qp), parameter :: joint_part = 1.0e-6_qp
 
 contains
 
-   !> 0, `lift` s((t - `start`)/`duration`), `lift`. Where the acceleration of `law` jumps it is that from the right.
-   pure type(jet_t) function rise_jet(law, start, duration, lift, t) result(f)
+   !> 0, `lift` s((t - `start`)/`duration`), `lift`. Where the acceleration of `law` jumps it is that from the right;
+   !> `part`: as `joint_part`, of instants that have more digits.
+   pure type(jet_t) function rise_jet(law, start, duration, lift, t, part) result(f)
       character(*), intent(in) :: law
       real(qp), intent(in) :: start, duration, lift, t
+      real(qp), intent(in), optional :: part
       type(jet_t) :: u, right
+      real(qp) :: width
 
       u = (time_jet(t) - start)/duration
       f = lift*piece(law, u, u%v)
       if (law /= 'HARMONIC' .and. law /= 'PARABOLA') return
-      right = lift*piece(law, u, u%v + joint_part*(1.0_qp + abs(start)/duration))
+      width = joint_part
+      if (present(part)) width = part
+      right = lift*piece(law, u, u%v + width*(1.0_qp + abs(start)/duration))
       f%dd = right%dd
    end function rise_jet
 
