@@ -11,12 +11,12 @@ function put(line, d,    k, text, star) {
    for (k = 1; k <= 3; k++) {
       text = substr(line, 17 + 16 * k, 16)
       gsub(/ /, "", text)
-      if (d[k] != 0) text = sprintf("%.15E", text + d[k])
+      if (d[k] != 0) text = n ? sprintf("%.15E", text + d[k]) : sprintf("%." decimals "f", text + d[k])
       star = star sprintf("%-24s", text)
    }
    print star
 }
-BEGIN { seed = 19870923; if (!h) h = 1e-5 }
+BEGIN { seed = 19870923; decimals = 2 - log(h ? h : 1)/log(10) }
 /^END/ { exit }
 /^TOLER/ {
    for (k = 1; k <= 3; k++) {

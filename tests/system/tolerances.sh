@@ -6,13 +6,13 @@ BUILD=${BUILD:-build}
 . tests/counting.sh
 sets=${1:-400}
 case $BUILD in
-/*) kinmat=$BUILD/kinmat ;;
-*) kinmat=$PWD/$BUILD/kinmat ;;
+/*) kinmat=$BUILD/kinmat quad=$BUILD/kinmat-quad ;;
+*) kinmat=$PWD/$BUILD/kinmat quad=$PWD/$BUILD/kinmat-quad ;;
 esac
 w=$BUILD/tolerances
 rm -rf "$w" && mkdir -p "$w" || exit 3
 
-# toleranced FORMS: the first set of the deck on standard input, with a tolerance for each number of the cards FORMS
+# toleranced FORMS: the first set of the deck on standard input, with a small tolerance for each number of the cards FORMS
 toleranced() {
    awk -v forms=" $1 " '
       /^END/ { print; exit }
@@ -20,15 +20,41 @@ toleranced() {
       { print; name = substr($0, 1, 8); gsub(/ /, "", name) }
       index(forms, " " name " ") {
          three = name ~ /^(GROUND|PRISM|DRIVE)$/
-         printf "TOLER                           0.01            0.02%s\n", three ? "            0.03" : ""
+         printf "TOLER                           0.0005          0.0010%s\n", three ? "          0.0015" : ""
       }'
 }
-# differences NAME DECK STEP: the sensitivities of the deck are differences of decks whose numbers are off by STEP
+# differences NAME DECK STEP ALLOWED: the sensitivities of the deck, as those of the `methods`, are central differences, in
+# real128, of the motions of decks whose numbers are off by STEP. They differ by ALLOWED at most, in the unit of either, or
+# as a part of larger ones. The two motions are subtracted by the first ten digits and the rest of each number: in one real
+# the digits in which they differ would be lost.
+methods=NEWTON
 differences() {
-   "$kinmat" --no-listing --quiet --csv "$w/found.csv" "$2" > "$w/out" 2>&1
    awk -v h="$3" -f tests/system/perturbed_sets.awk "$2" > "$w/sets.deck"
-   "$kinmat" --no-listing --quiet --csv "$w/sets.csv" "$w/sets.deck" > "$w/out" 2>&1
-   equal "$1" "0 off" "$(awk -F, -v h="$3" '
+   "$quad" --no-listing --quiet --csv "$w/sets.csv" "$w/sets.deck" > "$w/out" 2>&1
+   for method in $methods; do
+      awk -v method="$method" '/^METHOD/ { next } /^(AT|TIME)/ && !done { printf "%-8s%s\n", "METHOD", method; done = 1 } { print }' \
+         "$2" > "$w/deck"
+      "$kinmat" --no-listing --quiet --csv "$w/found.csv" "$w/deck" > "$w/out" 2>&1
+      equal "$1, METHOD $method" "0 off" "$(awk -F, -v h="$3" -v allowed="$4" '
+      # The sign, the exponent, and the digits of x: of the first ten an integer, of the rest a part of one.
+      function take_apart(x, of) {
+         of["sign"] = sub(/^-/, "", x) ? -1 : 1
+         of["power"] = substr(x, index(x, "E") + 1) + 0
+         sub(/E.*/, "", x)
+         sub(/[.]/, "", x)
+         of["digits"] = x
+      }
+      function shift(of, n) { for (; n > 0; n--) { of["digits"] = "0" of["digits"]; of["power"]++ } }
+      function difference(x, y) {
+         take_apart(x, of_x)
+         take_apart(y, of_y)
+         if (x + 0 == 0) of_x["power"] = of_y["power"]
+         if (y + 0 == 0) of_y["power"] = of_x["power"]
+         shift(of_x, of_y["power"] - of_x["power"])
+         shift(of_y, of_x["power"] - of_y["power"])
+         return (of_x["sign"]*substr(of_x["digits"], 1, 10) - of_y["sign"]*substr(of_y["digits"], 1, 10) \
+            + (of_x["sign"]*("0." substr(of_x["digits"], 11)) - of_y["sign"]*("0." substr(of_y["digits"], 11))))*10^(of_x["power"] - 9)
+      }
       FNR == 1 { file++; next }
       { key = $2 "," $4 "," $5 }
       file == 1 && $4 ~ / PER / {
@@ -43,38 +69,47 @@ differences() {
          for (c = 6; c <= 14; c++) {
             if (s[key, number, c] == "" || $c == "") continue
             if ($1 % 2) { up[key, c] = $c; continue }
-            d = (up[key, c] - $c) / (2 * h)
+            d = difference(up[key, c], $c)/(2*h)
             e = s[key, number, c] - d
             if (e < 0) e = -e
+            e /= 1 + (d < 0 ? -d : d)
             compared++
-            if (e > 2e-6 * (1 + (d < 0 ? -d : d))) off++
+            if (e > allowed) off++
          }
       }
       END { print compared ? off + 0 : "nothing compared," , "off" }' "$w/found.csv" "$w/sets.csv")"
+   done
+}
+# at TIMES: the deck on standard input, at these times alone
+at() {
+   awk -v card="$(card AT '' '' '' "$@")" '/^(AT|TIME)/ { next } /^END/ { print card } { print }'
 }
 
 for deck in four_bar five_bar yoke; do
-   toleranced 'GROUND POINT PRISM DRIVE' < "input/$deck.deck" | awk '/^TIME/ { print "AT                              0.7             2.3"; next }
-      { print }' > "$w/$deck.deck"
-   differences "$deck" "$w/$deck.deck" 1e-5
-   for method in DENSE MATRIX; do
-      sed "s/^AT /METHOD  $method\\
-AT /" "$w/$deck.deck" > "$w/other.deck"
-      differences "$deck, METHOD $method" "$w/other.deck" 1e-5
-   done
+   toleranced 'GROUND POINT PRISM DRIVE' < "input/$deck.deck" | at 0.7 2.3 > "$w/$deck.deck"
+   methods='NEWTON DENSE MATRIX'
+   differences "$deck" "$w/$deck.deck" 1e-7 1e-12
+   awk -v long=3 -v late=1 -f tests/system/other_units.awk "$w/$deck.deck" > "$w/units.deck"
+   methods='NEWTON DENSE'
+   differences "$deck in other units" "$w/units.deck" 1e-8 1e-12
 done
 toleranced 'JOINT POINT DRIVE' < input/drawing.deck > "$w/drawing.deck"
-differences 'a drawing' "$w/drawing.deck" 1e-5
-differences 'in millimetres, radians' input/guide_tolerances.deck 1e-4
+differences 'a drawing' "$w/drawing.deck" 1e-7 1e-12
+differences 'in millimetres, radians' input/guide_tolerances.deck 1e-7 1e-12
 # Five degrees from a change point, and on it: there is nothing.
-toleranced 'POINT' < input/parallelogram_at.deck | awk '/^TIME/ { print "AT                              10.0            15.5            16.0"; next }
-   { print }' > "$w/beside.deck"
-differences 'beside a change point' "$w/beside.deck" 1e-6
+toleranced 'POINT' < input/parallelogram_at.deck | at 10.0 15.5 16.0 > "$w/beside.deck"
+differences 'beside a change point' "$w/beside.deck" 1e-9 1e-11
+awk -v long=3 -v late=1 -f tests/system/other_units.awk "$w/beside.deck" > "$w/units.deck"
+differences 'beside a change point in other units' "$w/units.deck" 1e-8 1e-12
+methods=NEWTON
+"$kinmat" --no-listing --quiet --csv "$w/found.csv" "$w/beside.deck" > "$w/out" 2>&1
 equal 'on a change point' 0 "$(awk -F, '$2 == 2 && $4 ~ /RSS/ && $5 != "CRANK" && $6 $7 $8 $9 $12 != "" { n++ } END { print n + 0 }' "$w/found.csv")"
 equal 'on a change point, the driven crank' yes "$(awk -F, '$2 == 2 && $4 == "LINK RSS" && $5 == "CRANK" && $14 != "" { print "yes" }' "$w/found.csv")"
 # Nine bars that move because their lengths are what they are: the place of the whole and its drive may change, no length.
-toleranced 'GROUND DRIVE' < input/dixon.deck | awk '/^TIME/ { print "AT                              0.7             2.3"; next } { print }' > "$w/dixon.deck"
-differences 'redundant equations that agree' "$w/dixon.deck" 1e-5
+toleranced 'GROUND DRIVE' < input/dixon.deck | at 0.7 2.3 > "$w/dixon.deck"
+differences 'redundant equations that agree' "$w/dixon.deck" 1e-7 1e-12
+awk -v long=3 -v late=1 -f tests/system/other_units.awk "$w/dixon.deck" > "$w/units.deck"
+differences 'redundant equations in other units' "$w/units.deck" 1e-8 1e-12
 toleranced 'DRIVE POINT' < input/dixon.deck > "$w/dixon.deck"
 "$kinmat" "$w/dixon.deck" > "$w/listing" 2>&1
 equal 'redundant equations that do not: status' 0 $?
@@ -113,8 +148,12 @@ equal 'in millimetres: shares' "$(sed -n 's/^ *\([0-9.]* %\).*/\1/p' "$w/small.l
 
 # By chance: the variance of each quantity over the square of its root of squares is 1, within five standard errors of a
 # variance of so many numbers. What is of second order in the tolerances is a thousandth of it at most.
-for deck in tolerances guide_tolerances; do
-   sed 's/^TIME .*/AT                              2.0             5.0/' "input/$deck.deck" > "$w/base.deck"
+for deck in tolerances guide_tolerances four_bar five_bar dixon parallelogram_at; do
+   case $deck in
+   *_tolerances | tolerances) cat "input/$deck.deck" ;;
+   dixon) toleranced 'GROUND DRIVE' < input/dixon.deck ;;
+   *) toleranced 'GROUND POINT DRIVE' < "input/$deck.deck" ;;
+   esac | at 2.0 5.0 > "$w/base.deck"
    awk -v n="$sets" -f tests/system/perturbed_sets.awk "$w/base.deck" > "$w/sets.deck"
    "$kinmat" --no-listing --quiet --csv "$w/base.csv" "$w/base.deck"
    "$kinmat" --no-listing --quiet --csv "$w/sets.csv" "$w/sets.deck"
@@ -125,7 +164,7 @@ for deck in tolerances guide_tolerances; do
       file == 2 {
          for (c = 6; c <= 14; c++) {
             key = $2 "," $4 "," $5 SUBSEP c
-            if (root[key] > 1e-9) { d = ($c - middle[key]) / root[key]; sum[key] += d; square[key] += d * d }
+            if (root[key] > 1e-9 && $c != "") { d = ($c - middle[key]) / root[key]; sum[key] += d; square[key] += d * d }
          }
       }
       END {
