@@ -222,7 +222,7 @@ relations: $(BUILD)/kinmat $(BUILD)/release/fuzz_mechanisms
 	BUILD=$(BUILD) tests/system/relations.sh $(if $(N),--random $(N) $(or $(SEED),1))
 
 # Tolerances against N decks with all numbers off by chance.
-tolerances: $(BUILD)/kinmat
+tolerances: $(BUILD)/kinmat $(BUILD)/kinmat-quad
 	BUILD=$(BUILD) tests/system/tolerances.sh $(or $(N),10000)
 
 # Faults made by chance in the sources, N=200 of them, one at a time: which do the unit tests and `make check` not see?

@@ -31,7 +31,7 @@ parts() {
    units|786|tests/system/units.sh
    the methods against one another|8|tests/system/methods.sh
    variants|94|tests/system/variants.sh
-   tolerances|23|tests/system/tolerances.sh
+   tolerances|39|tests/system/tolerances.sh
    extremes and ranges|46|tests/system/answers.sh
    circuits|30|tests/system/circuits.sh
    circuits by chance|40|"$BUILD/release/circuits_by_chance" 40
