@@ -86,12 +86,9 @@ $(patsubst %.f90,$(BUILD)/release/%.o,$(notdir $(helpers))): private release := 
 $(BUILD)/kinmat: $(BUILD)/release/kinmat
 	cp $< $@
 
-# The pictures of the documents, drawn anew: of the first deck of README.md and of two of input/.
+# The pictures of the documents, drawn anew.
 pictures: $(BUILD)/kinmat
-	mkdir -p docs/pictures
-	awk '/^```deck/ { on = 1; next } /^```/ && on { exit } on' README.md | $(BUILD)/kinmat --svg docs/pictures/four_bar.svg > /dev/null
-	$(BUILD)/kinmat --no-listing --animate docs/pictures/jansen_moving.svg input/jansen.deck
-	for name in yoke jansen cardan; do sed '/^END/q' input/$$name.deck | $(BUILD)/kinmat --svg docs/pictures/$$name.svg > /dev/null || exit 1; done
+	docs/pictures.sh $< docs/pictures
 
 # A program of one's own with the modules.
 example: $(BUILD)/example

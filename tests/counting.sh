@@ -76,3 +76,9 @@ still_four_bar() {
    printf '%s\n' "$@"
    card END
 }
+
+# angle A B C: between the sides A and B of a triangle, opposite C, in degrees
+angle() { awk -v a="$1" -v b="$2" -v c="$3" 'BEGIN { x = (a*a + b*b - c*c)/(2*a*b)
+   printf "%.12f", atan2(sqrt(1 - x*x), x)*45/atan2(1, 1) }'; }
+# limit VALUE: ten digits
+limit() { awk -v x="$1" 'BEGIN { printf "%.9E", x }'; }

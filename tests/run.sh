@@ -22,7 +22,7 @@ parts() {
    the stand-in|75|"$MAKE" --no-print-directory unit-stand-in
    the sources|60|tests/system/house.sh
    the closed forms|830|"$BUILD/release/check_forms" input/*.deck
-   make check|556|tests/system/check.sh
+   make check|1000|tests/system/check.sh
    the reader of listings|93|tests/system/reader.sh
    the documents|300|tests/system/documents.sh
    estimates of errors|57|"$MAKE" --no-print-directory errors
@@ -30,20 +30,15 @@ parts() {
    nothing false is proved|2000|"$BUILD/release/fool_proofs" 2000
    units|786|tests/system/units.sh
    the methods against one another|8|tests/system/methods.sh
-   variants|94|tests/system/variants.sh
    tolerances|39|tests/system/tolerances.sh
-   extremes and ranges|46|tests/system/answers.sh
-   circuits|30|tests/system/circuits.sh
+   extremes|31|tests/system/answers.sh
    circuits by chance|40|"$BUILD/release/circuits_by_chance" 40
    all assemblies|79|tests/system/assemblies.sh
    independent mechanisms|106|tests/system/independent.sh
-   what a singular position is|211|tests/system/singular.sh
    poles and curves|37|tests/system/centres.sh
    pictures|1128|tests/system/pictures.sh
    tables|218|tests/system/tables.sh
    the digits|1|tests/system/digits.sh
-   wide blocks|10|tests/system/wide.sh
-   drives between instants|48|tests/system/drives.sh
    decks made by chance|1000|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 1000
    relations between runs|300|tests/system/relations.sh --short
    mechanisms of a known motion|156|tests/fuzz/fuzz_mechanisms.sh 150

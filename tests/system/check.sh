@@ -1,6 +1,7 @@
 #!/bin/sh
 # make check: every deck of input/ is run and its listing compared, byte for byte, with expected/, which closed forms
-# have printed; those closed forms are run again, so that expected/ cannot drift from them.
+# have printed; those closed forms are run again, so that expected/ cannot drift from them. Then the scripts below that
+# have closed forms of their own and take a second or two.
 . tests/counting.sh
 
 for deck in input/*.deck; do
@@ -61,4 +62,17 @@ compare watt_i 'MATLAB R2024a' '1650 numbers'
 sed 's/8.295521e-01/8.295523e-01/' tests/validation/ten_plates.csv > "$BUILD/ten_plates.wrong"
 equal 'one wrong digit is seen' 'C10 x at 0: 8.295523e-01 is off by 3.88' \
    "$(awk -f tests/validation/compare.awk "$BUILD/ten_plates.wrong" "$BUILD/ten_plates.csv" | grep '^C10 x')"
+
+# The pictures of the documents are those that the program draws.
+docs/pictures.sh "$kinmat" "$w" > "$w/pictures.txt" 2>&1
+equal 'pictures: status' 0 $?
+for picture in docs/pictures/*.svg; do same "$picture" "$picture" "$w/${picture##*/}"; done
+
+# What cards ask for, by closed forms and by the cards' own numbers: each script counts its checks, and they count here.
+for part in ranges circuits drives singular variants wide; do
+   BUILD=$BUILD "tests/system/$part.sh" > "$w/$part.txt"
+   equal "$part: status" 0 $?
+   sed '$d' "$w/$part.txt"
+   cat "$BUILD/counts.$part" >> "$counts"
+done
 conclude

@@ -7,11 +7,6 @@
 circuits() { "$kinmat" "$w/deck" 2>&1 | awk '/^ (CIRCUITS AND|OBWODY I) / { on = 1 } /^ (BRANCH|GALAZ|LARGEST GAP)/ && on { exit } on && NF > 0'; }
 # found NAME EXPECTED: these lines
 found() { equal "$1" "$2" "$(circuits)"; }
-# angle A B C: between the sides A and B of a triangle, opposite C, in degrees
-angle() { awk -v a="$1" -v b="$2" -v c="$3" 'BEGIN { x = (a*a + b*b - c*c)/(2*a*b)
-   printf "%.12f", atan2(sqrt(1 - x*x), x)*45/atan2(1, 1) }'; }
-# limit VALUE: ten digits
-limit() { awk -v x="$1" 'BEGIN { printf "%.9E", x }'; }
 
 # four_bar, as still_four_bar: with CIRCUITS
 four_bar() { still_four_bar "$@" CIRCUITS; }

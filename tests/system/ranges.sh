@@ -1,0 +1,100 @@
+#!/bin/sh
+# The answer of the card RANGE: against the law of cosines and paths in closed form, to ten digits.
+. tests/counting.sh
+
+# four_bar, as still_four_bar: with RANGE
+four_bar() { still_four_bar "$@" "$(card METHOD "${method:-NEWTON}")" RANGE; }
+# range NAME EXPECTED: the lines between the head of the ranges and the next blank line, for $w/deck
+range() { equal "$1" "$2" "$("$kinmat" "$w/deck" 2>&1 | awk '/^ RANGES/ { on = 1; next } /^$/ { on = 0 } on')"; }
+
+for method in NEWTON DENSE; do
+   # Grashof: 1 + 4 < 3.5 + 3, the shortest link turns fully.
+   four_bar 1.0 3.5 3.0 4.0 CRANK 0.0 55.0 110.0 0.0 > "$w/deck"
+   range "a crank, $method" " ANGLE CRANK
+   ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS 1"
+   # Its rocker: between the two positions with crank and coupler in line.
+   four_bar 1.0 3.5 3.0 4.0 ROCKER 85.0 35.0 120.0 120.0 > "$w/deck"
+   range "a rocker, $method" " ANGLE ROCKER
+   MIN  $(limit "$(awk -v a="$(angle 3 4 4.5)" 'BEGIN { printf "%.12f", 180 - a }')") DEG   LINKS CRANK, COUPLER AT THE LIMIT, IN LINE
+   MAX  $(limit "$(awk -v a="$(angle 3 4 2.5)" 'BEGIN { printf "%.12f", 180 - a }')") DEG   LINKS CRANK, COUPLER AT THE LIMIT, IN LINE"
+   # 1.5 + 4 > 2 + 3: no link turns fully; coupler and rocker in line, on either side of the base.
+   four_bar 2.0 1.5 3.0 4.0 CRANK 57.0 20.0 105.0 57.0 > "$w/deck"
+   range "a triple rocker, $method" " ANGLE CRANK
+   MIN  $(limit "-$(angle 2 4 4.5)") DEG   LINKS COUPLER, ROCKER AT THE LIMIT, IN LINE
+   MAX  $(limit "$(angle 2 4 4.5)") DEG   LINKS COUPLER, ROCKER AT THE LIMIT, IN LINE"
+done
+
+# Near Grashof's limit, 3 + 0.75 longer than 1.1 + 2.649997 by 3E-6: crank, coupler and rocker are almost in line at the ends.
+four_bar 3.0 1.1 2.649997 0.75 CRANK 50.0 -35.8 38.6 50.0 > "$w/deck"
+"$kinmat" "$w/deck" > "$w/out"
+equal 'near the limit of Grashof' "-$(limit "$(angle 3 0.75 3.749997)") $(limit "$(angle 3 0.75 3.749997)")" \
+   "$(awk '/^   (MIN|MAX) / { printf "%s%s", sep, $2; sep = " " }' "$w/out")"
+
+# Watt II: a crank-rocker 1, 3.5, 3 on 4, whose rocker is the crank of a second four-bar with 1.9 and 2.3 on a base of 2: that
+# one ends where these are in line, 4.2 from the end of the first rocker to the last pivot. That rocker's angle follows by the
+# law of cosines, and both angles of the crank by the triangle of crank and coupler.
+{
+   four_bar 1.0 3.5 3.0 4.0 CRANK 60.0 36.0 103.0 60.0 | grep -v '^\(AT\|RANGE\|END\|DRIVE\)'
+   card LINK COUPLER2 '' '' 3.3 2.9 -26.0; card LINK ROCKER2 '' '' 6.0 0.0 115.0
+   card POINT G0 BASE '' 6.0
+   card POINT F1 COUPLER2; card POINT F2 COUPLER2 '' 1.9; card POINT G1 ROCKER2; card POINT G2 ROCKER2 '' 2.3
+   card REVOLUTE E2 F1 P5; card REVOLUTE F2 G2 P6; card REVOLUTE G0 G1 P7
+   card DRIVE ANGLE CRANK '' 60.0 30.0; card AT '' '' '' 0.0; card RANGE; card END
+} > "$w/deck"
+ends=$(awk 'function arccos(x) { return atan2(sqrt(1 - x*x), x) }
+   BEGIN { cosine = -(4.2^2 - 3^2 - 2^2)/(2*3*2); x = 4 + 3*cosine; y = 3*sqrt(1 - cosine^2); d = sqrt(x*x + y*y)
+      middle = atan2(y, x); half = arccos((1 + d*d - 3.5^2)/(2*d)); degree = atan2(1, 1)/45
+      printf "%.9E %.9E", (middle - half)/degree, (middle + half)/degree }')
+range 'Watt II' " ANGLE CRANK
+   MIN  ${ends% *} DEG   LINKS COUPLER2, ROCKER2 AT THE LIMIT, IN LINE
+   MAX  ${ends#* } DEG   LINKS COUPLER2, ROCKER2 AT THE LIMIT, IN LINE"
+
+# Stephenson III: a dyad 2.6, 1.9 from the point (1.75, 1.25) of that coupler to (5, 1): it is in line where that point's path is
+# 4.5 from there, found by bisection on the path in closed form.
+{
+   four_bar 1.0 3.5 3.0 4.0 CRANK 60.0 36.0 103.0 60.0 | grep -v '^\(AT\|RANGE\|END\|DRIVE\)'
+   card LINK COUPLER2 '' '' 1.2 2.9 -11.0; card LINK ROCKER2 '' '' 5.0 1.0 132.0
+   card POINT G0 BASE '' 5.0 1.0; card POINT C COUPLER '' 1.75 1.25
+   card POINT F1 COUPLER2; card POINT F2 COUPLER2 '' 2.6; card POINT G1 ROCKER2; card POINT G2 ROCKER2 '' 1.9
+   card REVOLUTE C F1 P5; card REVOLUTE F2 G2 P6; card REVOLUTE G0 G1 P7
+   card DRIVE ANGLE CRANK '' 60.0 30.0; card AT '' '' '' 0.0; card RANGE; card END
+} > "$w/deck"
+ends=$(awk 'function arccos(x) { return atan2(sqrt(1 - x*x), x) }
+   function apart(phi,  x, y, d, turn) {
+      x = 4 - cos(phi); y = -sin(phi); d = sqrt(x*x + y*y); turn = atan2(y, x) + arccos((3.5^2 + d*d - 3^2)/(2*3.5*d))
+      x = cos(phi) + 1.75*cos(turn) - 1.25*sin(turn) - 5; y = sin(phi) + 1.75*sin(turn) + 1.25*cos(turn) - 1
+      return sqrt(x*x + y*y) - 4.5
+   }
+   function limit(way,  a, b, c) {
+      degree = atan2(1, 1)/45
+      for (b = 60*degree; apart(b) < 0; b += way*degree) a = b
+      while ((c = (a + b)/2) != a && c != b) if (apart(c) < 0) a = c; else b = c
+      return a/degree
+   }
+   BEGIN { printf "%.9E %.9E", limit(-1), limit(1) }')
+range 'Stephenson III' " ANGLE CRANK
+   MIN  ${ends% *} DEG   LINKS COUPLER2, ROCKER2 AT THE LIMIT, IN LINE
+   MAX  ${ends#* } DEG   LINKS COUPLER2, ROCKER2 AT THE LIMIT, IN LINE"
+
+# Dixon's nine bars: x(i)**2 of the points A and y(j)**2 of the points B, on two lines at right angles, grow by what the others
+# lose. The angle at A1 of B1 and B2 is least where B3 is on the line of the A, and the three bars to it in line.
+with dixon "$(card RANGE)" > "$w/deck"
+equal 'Dixon' "$(awk 'BEGIN { a = (atan2(sqrt(64^2 - 29^2), 29) + atan2(sqrt(41^2 - 29^2), 29))*45/atan2(1, 1)
+   printf "%.9E %.9E", a - 360, -a }')" "$("$kinmat" "$w/deck" | awk '/^   (MIN|MAX) / { printf "%s%s", sep, $2; sep = " " }')"
+
+# A parallelogram passes its two change points a turn on the smooth branch.
+for method in NEWTON DENSE; do
+   with parallelogram_at "$(card RANGE)" "$(card METHOD $method)" > "$w/deck"
+   range "a parallelogram, $method" ' ANGLE CRANK
+   ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS 1
+   CHANGE POINTS PASSED 2'
+done
+# Each of the two cranks of a five-bar alone.
+for method in NEWTON DENSE; do
+   with five_bar "$(card RANGE)" "$(card METHOD $method)" > "$w/deck"
+   range "a five-bar, $method" ' ANGLE LEFT
+   ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS 1
+ RELANGLE LEFT RIGHT
+   ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS 1'
+done
+conclude
