@@ -8,6 +8,7 @@ module circuit_chart
    use points, only: row_t, row_of, coordinates_of
    use set_analysis, only: set_analysis_t
    use circuit_curve, only: deck_position, drive_value
+   use circuit_trace, only: end_closed
    use circuit_branches, only: circuits_t
    implicit none
    private
@@ -97,7 +98,7 @@ contains
       type(motion_t) :: q
       type(row_t) :: row
       real(wp) :: first, low(2), high(2), unit(2)
-      integer :: i, k
+      integer :: i, k, n
 
       q = new_motion(size(s%now%own(c)%links))
       q%known = 0
@@ -121,7 +122,9 @@ contains
             t%p(2, :) = t%p(2, :) - first
             low = min(low, minval(t%p, dim=2))
             high = max(high, maxval(t%p, dim=2))
-            t%dead = t%p(:, pack([(k, k=1, size(points))], points%is_dead))
+            ! The last point of a closed circuit is the first.
+            n = size(points) - merge(1, 0, found%list(i)%ends(1) == end_closed)
+            t%dead = t%p(:, pack([(k, k=1, n)], points(:n)%is_dead))
             allocate (t%changes(2, size(found%list(i)%changes)))
             do k = 1, size(found%list(i)%changes)
                t%changes(:, k) = place(found%list(i)%changes(k)%value, found%list(i)%changes(k)%q, i) - [0.0_wp, first]

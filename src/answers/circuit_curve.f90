@@ -260,7 +260,8 @@ contains
       real(wp), intent(in) :: border(:)
       real(wp), intent(out), optional :: left(:)
       real(wp) :: a(equations_of(c) + c%closure%n, c%closure%n), across(c%closure%n)
-      integer :: i, row
+      real(wp) :: along(equations_of(c) + c%closure%n)
+      integer :: i, k, row
 
       if (.not. (is_redundant(c) .or. present(left))) return
       associate (m => equations_of(c))
@@ -272,7 +273,10 @@ contains
          across = border/max(tiny(1.0_wp), norm2(border))
          do i = 0, size(c%row)
             if (i > 0) across = a(row, :)/max(tiny(1.0_wp), norm2(a(row, :)))
-            a = a - spread(matmul(a, across), 2, size(across))*spread(across, 1, size(a, 1))
+            along = matmul(a, across)
+            do k = 1, size(across)
+               a(:, k) = a(:, k) - along*across(k)
+            end do
             if (i > 0 .and. is_redundant(c)) c%row(i) = row
             row = maxloc(sum(a(:m, :)**2, dim=2), dim=1)
          end do

@@ -5,7 +5,7 @@ module bilinear
    use kinds, only: wp
    implicit none
    private
-   public :: bilinear_t, end_t, ends_t, values_at, derivatives_at, solve_quadratic, path_count, &
+   public :: bilinear_t, end_t, ends_t, derivatives_at, solve_quadratic, path_count, &
       finiteness, infinity_level
 
    !> Solutions are at infinity where plane . x = 0, or the same of y with the conjugate of the plane.
@@ -47,22 +47,7 @@ contains
       end do
    end function path_count
 
-   !> (2p) The values of the equations of `b` at (`x`, `y`).
-   pure function values_at(b, x, y) result(f)
-      type(bilinear_t), intent(in) :: b
-      complex(wp), intent(in) :: x(0:), y(0:)
-      complex(wp) :: f(2*b%p)
-      integer :: j, k
-
-      do j = 1, 2*b%p
-         f(j) = 0.0_wp
-         do k = 0, b%p
-            f(j) = f(j) + sum(x*b%c(:, k, j))*y(k)
-         end do
-      end do
-   end function values_at
-
-   !> (2p, 2p + 2) Their derivatives with respect to x and y.
+   !> (2p, 2p + 2) Derivatives of the 2p functions with respect to x and y; those by y, times y, are the functions.
    pure function derivatives_at(b, x, y) result(a)
       type(bilinear_t), intent(in) :: b
       complex(wp), intent(in) :: x(0:), y(0:)

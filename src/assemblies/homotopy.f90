@@ -11,7 +11,7 @@ module homotopy
    use kinds, only: wp
    use planar, only: pi
    use complex_lu, only: factor_complex, solve_complex
-   use bilinear, only: bilinear_t, end_t, ends_t, values_at, derivatives_at, path_count, finiteness, infinity_level
+   use bilinear, only: bilinear_t, end_t, ends_t, derivatives_at, path_count, finiteness, infinity_level
    implicit none
    private
    public :: follow_paths
@@ -370,9 +370,11 @@ contains
 
       associate (p => h%f%p)
          associate (x => z(:p + 1), y => z(p + 2:))
-            r(:2*p) = values_at(h%f, x, y)
-            a(:2*p, :) = (1.0_wp - t)*derivatives_at(h%f, x, y)
+            a(:2*p, :) = derivatives_at(h%f, x, y)
             do j = 1, 2*p
+               ! The derivatives by y, times y, are the values.
+               r(j) = sum(a(j, p + 2:)*y)
+               a(j, :) = (1.0_wp - t)*a(j, :)
                left = sum(h%a(:, j)*x)
                right = sum(h%b(:, j)*y)
                g(j) = left*right
