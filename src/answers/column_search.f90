@@ -7,16 +7,12 @@
 !> A part between two nodes is halved until all accelerations are simple there: the cubic with their values and
 !> derivatives at the ends gives the value in the middle, and has one extreme at most. So none is missed of an
 !> acceleration that has at most one extreme in each of these parts; where halving ends sooner, that is noted.
-!>
-!> Of many rows zeros are found on curves through motions that all of them share, so that the time goes with the number
-!> of rows; of those numbers that their curves do not meet, and of few rows, by motions at the times that are tried.
 module column_search
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use points, only: coordinates_of
    use set_analysis, only: set_analysis_t
    use nodes, only: node_t, node_at, is_known, beside_joint
-   use curves, only: curve_t, curve_places, check_places, make_curve
    use zero_search, only: sample_t, column_t, find_zero, differ_in_sign, slope_in, noise_part
    use extremes, only: extremes_t, keep_place, offer, count_turn, note_interval, step_of
    implicit none
@@ -26,11 +22,8 @@ module column_search
    !> The step of the stencil at a zero, in steps of TIME; how much longer it may be in short steps, in rad or lengths;
    !> and the longest that it may be, as a part of the interval. Where it proves too long, `find_zero` shortens it.
    real(wp), parameter :: difference_part = 1.0_wp/256.0_wp, difference_angle = 1.0e-3_wp, max_part = 1.0_wp/8.0_wp
-   !> The same step for the derivatives at the ends of a part, the distance of the first two of `curve_places`: half of
-   !> `max_part`, since these must have the right sign.
+   !> The same step for the derivatives at the ends of a part: half of `max_part`, since these must have the right sign.
    real(wp), parameter :: end_part = 1.0_wp/16.0_wp
-   !> The middle of the places of a part.
-   integer, parameter :: mid = 6
    !> By how much the cubic may miss the value in the middle, as a part of the variation; and how much steeper a
    !> monotonic cubic may be at its ends than on average (Fritsch and Carlson, SIAM J. Numer. Anal. 17, 1980).
    real(wp), parameter :: misses_by = 1.0_wp/8.0_wp, steeper_by = 3.0_wp
@@ -41,8 +34,6 @@ module column_search
    !> Shorter parts, in steps of TIME, are not halved, nor more than so many in one step: a pole of the motion takes 40.
    real(wp), parameter :: shortest_part = 2.0_wp**(-20)
    integer, parameter :: max_halvings = 120
-   !> So many rows take curves: a dozen motions more for a part, and each zero of a column takes some ten otherwise.
-   integer, parameter :: many_rows = 12
 
    !> What was found of a column: an extreme of its derivative number `order`.
    type :: found_t
@@ -96,7 +87,7 @@ contains
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
       type(node_t), intent(in) :: a, b
-      type(node_t) :: nodes(0:12)
+      type(node_t) :: middle
       real(wp) :: jerk(3, size(x%asked), 2)
       real(wp) :: shortest
       logical :: simple
@@ -104,91 +95,48 @@ contains
       shortest = max(shortest_part*step_of(m), 2.0_wp*beside_joint(m, a%t))
       associate (track => x%tracks(c), length => abs(b%t - a%t))
          if (length <= shortest) return
-         nodes(0) = a
-         nodes(12) = b
-         call find_nodes(x, s, c, [mid], nodes, simple)
-         if (.not. simple) then
+         middle = node_at(x%asked, s, c, a%t + 0.5_wp*(b%t - a%t), .false.)
+         if (.not. is_known(middle, track%rows)) then
             call note_interval(x%open, x%way, a%t, b%t, shortest)
             return
          end if
-         call find_nodes(x, s, c, [1, 2, 3, 4, 11, 10, 9, 8], nodes, simple)
-         jerk = 0.0_wp
-         if (simple) then
-            call find_jerks(nodes, jerk)
-            simple = are_simple(x, m, c, nodes(0:12:mid), jerk)
-         end if
+         call find_jerks(x, s, c, a, b, jerk, simple)
+         if (simple) simple = are_simple(x, m, c, [node_t :: a, middle, b], jerk)
          if (.not. simple .and. track%halvings < max_halvings .and. length > 2.0_wp*shortest) then
             track%halvings = track%halvings + 1
-            call search_part(x, m, s, c, a, nodes(mid))
-            call take_node(x, m, c, nodes(mid))
-            call search_part(x, m, s, c, nodes(mid), b)
+            call search_part(x, m, s, c, a, middle)
+            call take_node(x, m, c, middle)
+            call search_part(x, m, s, c, middle, b)
             return
          end if
          if (.not. simple) call note_interval(x%open, x%way, a%t, b%t, shortest)
-         call take_node(x, m, c, nodes(mid))
-         call search_columns(x, m, s, c, nodes, jerk, simple .and. size(track%rows) >= many_rows)
+         call take_node(x, m, c, middle)
+         call search_columns(x, m, s, c, [node_t :: a, middle, b], jerk)
       end associate
    end subroutine search_part
 
-   !> Looks at those of the `nodes` of mechanism `c` that are number `which`, between the first and the last; `known`:
-   !> all of the motion is known there.
-   subroutine find_nodes(x, s, c, which, nodes, known)
-      type(extremes_t), intent(in) :: x
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: c, which(:)
-      type(node_t), intent(inout) :: nodes(0:12)
-      logical, intent(out) :: known
-      integer :: i
-
-      do i = 1, size(which)
-         nodes(which(i)) = node_at(x%asked, s, c, time_at(nodes, real(curve_places(which(i)), wp)), .false.)
-         known = is_known(nodes(which(i)), x%tracks(c)%rows)
-         if (.not. known) return
-      end do
-   end subroutine find_nodes
-
-   !> The time at a `place` between the first and the last of the `nodes`, in sixteenths.
-   pure real(wp) function time_at(nodes, place) result(t)
-      type(node_t), intent(in) :: nodes(0:12)
-      real(wp), intent(in) :: place
-
-      ! From the nearer end.
-      if (place <= 8.0_wp) then
-         t = nodes(0)%t + place*end_part*(nodes(12)%t - nodes(0)%t)
-      else
-         t = nodes(12)%t - (16.0_wp - place)*end_part*(nodes(12)%t - nodes(0)%t)
-      end if
-   end function time_at
-
-   !> Searches for extremes of all columns of mechanism `c` between the first and the last of the `nodes`, with curves
-   !> if `shared`, which needs more nodes; `jerk`: see `find_jerks`.
-   subroutine search_columns(x, m, s, c, nodes, jerk, shared)
+   !> Searches for extremes of all columns of mechanism `c` between the first and the last of three `nodes`; `jerk`: see
+   !> `find_jerks`.
+   subroutine search_columns(x, m, s, c, nodes, jerk)
       type(extremes_t), intent(inout) :: x
       type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
-      type(node_t), intent(inout) :: nodes(0:12)
+      type(node_t), intent(in) :: nodes(:)
       real(wp), intent(in) :: jerk(:, :, :)
-      logical, intent(in) :: shared
-      type(node_t) :: checks(3)
-      type(sample_t) :: points(3)
+      type(sample_t) :: points(size(nodes))
       type(found_t), allocatable :: found(:)
       type(column_t) :: column
       integer :: i, j, k
-      logical :: with_curves
 
-      with_curves = shared
-      if (with_curves) call find_nodes(x, s, c, [5, 7], nodes, with_curves)
-      if (with_curves) call find_checks(x, s, c, nodes, checks, with_curves)
       do i = 1, size(x%tracks(c)%rows)
          associate (q => x%tracks(c)%rows(i))
             do j = 1, coordinates_of(m%requests(x%asked(q))%kind)
-               points = [(sample_of(nodes(k), q, j), k=0, 12, mid)]
-               column = column_t(x%asked(q), j, step_of_stencil(x, m, q, j, abs(nodes(12)%t - nodes(0)%t)))
+               points = [(sample_of(nodes(k), q, j), k=1, size(nodes))]
+               column = column_t(x%asked(q), j, step_of_stencil(x, m, q, j, abs(nodes(3)%t - nodes(1)%t)))
                do k = 0, 2
                   column%noise(k) = max(noise_part*x%size_of(j, k, q), maxval(points%error(k)))
                end do
-               if (with_curves) call put_on_curve(nodes, checks, q, j, column)
                call search_column(s, column, points, jerk(j, q, :), found)
                do k = 1, size(found)
                   call offer(x, m, q, j, found(k)%order, found(k)%at, .true.)
@@ -198,48 +146,6 @@ contains
          end associate
       end do
    end subroutine search_columns
-
-   !> Looks at mechanism `c`, with errors, where curves through the `nodes` are checked: at `check_places`, and in the
-   !> middle; `known`: all of the motion is known there.
-   subroutine find_checks(x, s, c, nodes, checks, known)
-      type(extremes_t), intent(in) :: x
-      type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: c
-      type(node_t), intent(in) :: nodes(0:12)
-      type(node_t), intent(out) :: checks(3)
-      logical, intent(out) :: known
-      real(wp) :: at(3)
-      integer :: i
-
-      at = [check_places, 8.0_wp]
-      do i = 1, 3
-         checks(i) = node_at(x%asked, s, c, time_at(nodes, at(i)), .true.)
-         known = is_known(checks(i), x%tracks(c)%rows)
-         if (.not. known) return
-      end do
-   end subroutine find_checks
-
-   !> Gives the `column`, number `j` of row `q`, a curve, if one meets the `checks`; `noise`, and what is unknown
-   !> there, are open, of large numbers their roundings as well.
-   subroutine put_on_curve(nodes, checks, q, j, column)
-      type(node_t), intent(in) :: nodes(0:12), checks(3)
-      integer, intent(in) :: q, j
-      type(column_t), intent(inout) :: column
-      type(curve_t) :: curve
-      real(wp) :: f(0:2, 0:12), error(0:2)
-      integer :: k
-      logical :: fits
-
-      do k = 0, 12
-         f(:, k) = nodes(k)%value(j, :, q)
-      end do
-      error = max(checks(1)%error(j, :, q), checks(2)%error(j, :, q), checks(3)%error(j, :, q))
-      call make_curve(nodes(0)%t, nodes(12)%t - nodes(0)%t, f, &
-         reshape([checks(1)%value(j, :, q), checks(2)%value(j, :, q)], [3, 2]), &
-         max(column%noise, noise_part*maxval(abs(f), dim=2)) + error, curve, fits)
-      curve%error = curve%error + error
-      if (fits) column%curve = curve
-   end subroutine put_on_curve
 
    !> Column `j` of row `q` of `node`.
    pure type(sample_t) function sample_of(node, q, j) result(sample)
@@ -312,19 +218,33 @@ contains
       path = [path(:n), point, path(n + 1:)]
    end subroutine insert
 
-   !> The derivatives (3, asked, 2) of the accelerations at the first and the last of the `nodes`, by the values between
-   !> these.
-   pure subroutine find_jerks(nodes, jerk)
-      type(node_t), intent(in) :: nodes(0:12)
+   !> The derivatives (3, asked, 2) of the accelerations at the nodes `a` and `b` of mechanism `c`, by their values
+   !> between these; `known`: there is a motion at all of the times.
+   subroutine find_jerks(x, s, c, a, b, jerk, known)
+      type(extremes_t), intent(in) :: x
+      type(set_analysis_t), intent(inout) :: s
+      integer, intent(in) :: c
+      type(node_t), intent(in) :: a, b
       real(wp), intent(out) :: jerk(:, :, :)
+      logical, intent(out) :: known
+      type(node_t) :: near(0:4)
       real(wp) :: h
-      integer :: i, j, q
+      integer :: i, j, k, q
 
-      h = end_part*(nodes(12)%t - nodes(0)%t)
-      do q = 1, size(jerk, 2)
-         do j = 1, 3
-            jerk(j, q, 1) = slope_in([(nodes(i)%value(j, 2, q), i=0, 4)], 0.0_wp)/h
-            jerk(j, q, 2) = slope_in([(nodes(i)%value(j, 2, q), i=12, 8, -1)], 0.0_wp)/(-h)
+      jerk = 0.0_wp
+      do k = 1, 2
+         h = merge(end_part, -end_part, k == 1)*(b%t - a%t)
+         near(0) = a
+         if (k == 2) near(0) = b
+         do i = 1, 4
+            near(i) = node_at(x%asked, s, c, near(0)%t + i*h, .false.)
+            known = is_known(near(i), x%tracks(c)%rows)
+            if (.not. known) return
+         end do
+         do q = 1, size(jerk, 2)
+            do j = 1, 3
+               jerk(j, q, k) = slope_in([(near(i)%value(j, 2, q), i=0, 4)], 0.0_wp)/h
+            end do
          end do
       end do
    end subroutine find_jerks

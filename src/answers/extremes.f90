@@ -79,8 +79,7 @@ contains
       type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(in) :: s
       type(extremes_t), intent(out) :: x
-      real(wp) :: length, rate
-      integer :: i, c, k, q, n
+      integer :: i, c, q, n
 
       x%asked = pack([(i, i=1, size(m%requests))], m%requests%extremes .and. .not. [(is_fixed(m, m%requests(i)), i=1, &
          size(m%requests))])
@@ -99,17 +98,28 @@ contains
                track%joints = [track%joints, joints_of(own%drives(i))]
             end do
             track%drives_close = drives_close(own)
-            length = characteristic_length(own)
-            rate = characteristic_rate(own, length)
             do i = 1, size(track%rows)
-               do k = 1, 3
-                  x%size_of(k, :, track%rows(i)) = [1.0_wp, rate, rate**2] &
-                     *merge(1.0_wp, length, is_angle(m, m%requests(x%asked(track%rows(i))), k))
-               end do
+               x%size_of(:, :, track%rows(i)) = sizes_of(own, m, m%requests(x%asked(track%rows(i))))
             end do
          end associate
       end do
    end subroutine new_extremes
+
+   !> The characteristic values (3, 0:2) of the columns of `request` of the set `m`, which is in the mechanism `own`.
+   pure function sizes_of(own, m, request) result(size_of)
+      type(mechanism_t), intent(in) :: own, m
+      type(request_t), intent(in) :: request
+      real(wp) :: size_of(3, 0:2), length, rate
+      integer :: c, k
+
+      length = characteristic_length(own)
+      rate = characteristic_rate(own, length)
+      do k = 0, 2
+         do c = 1, 3
+            size_of(c, k) = merge(1.0_wp, length, is_angle(m, request, c))*rate**k
+         end do
+      end do
+   end function sizes_of
 
    !> Column `c` of `request` holds angles.
    pure logical function is_angle(m, request, c)

@@ -4,7 +4,6 @@ module zero_search
    use kinds, only: wp
    use points, only: row_t
    use set_analysis, only: set_analysis_t, rows_at
-   use curves, only: curve_t, on_curve
    implicit none
    private
    public :: sample_t, column_t, look, find_zero, differ_in_sign, slope_in, noise_part
@@ -33,13 +32,11 @@ module zero_search
    end type sample_t
 
    !> Which number: its column (1 to 3) in the row of a request of the set; `step`: of the stencil that gives the third
-   !> derivative, in the unit of time; `noise` (0:2): rounding errors of its derivatives; `curve`: where it is known
-   !> without more motions, all times that are asked for being on it.
+   !> derivative, in the unit of time; `noise` (0:2): rounding errors of its derivatives.
    type :: column_t
       integer :: request = 0, column = 0
       real(wp) :: step = 0.0_wp
       real(wp) :: noise(0:2) = 0.0_wp
-      type(curve_t), allocatable :: curve
    end type column_t
 
 contains
@@ -55,12 +52,6 @@ contains
       real(wp) :: error(3, 0:2, 1)
 
       sample%t = t
-      if (allocated(c%curve)) then
-         sample%f = on_curve(c%curve, t)
-         sample%error = c%curve%error
-         sample%exists = .true.
-         return
-      end if
       associate (part => s%now%parts%part(c%request))
          if (present(with_errors)) then
             call rows_at(s, part, [c%request], t, row, sample%exists, with_errors, error)
