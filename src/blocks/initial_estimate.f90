@@ -110,12 +110,13 @@ contains
       end do
       v = u + without_turns(v - u)
       if (maxval(abs(v - u)) <= far_angle) return
-      ! Of what is open, only what small changes of other angles do not close contradicts an angle.
+      ! Of what is open, only what small changes of other angles do not close contradicts an angle; what they open does
+      ! not.
       w = merge(u, v, abs(v - u) > far_angle)
-      before = largest_opening(w, placed)
+      before = min(largest_opening(u, placed), largest_opening(w, placed))
       after = largest_opening(v, placed)
       if (after > min(closed_part*length, better_part*before)) return
-      if (.not. is_contradicted(w, abs(v - u) > far_angle)) return
+      if (.not. (is_contradicted(u, abs(v - u) > far_angle) .and. is_contradicted(w, abs(v - u) > far_angle))) return
       do i = 1, size(m%links)
          if (t%orientation(i) > 0) phi(i) = phi(i) + (v(t%orientation(i)) - u(t%orientation(i)))
       end do
@@ -203,24 +204,31 @@ contains
          n = quarter_turn(direction(t%angle_offset(m%points(m%pairs(k)%point_i)%link) + m%pairs(k)%alpha))
       end function normal
 
-      !> Some pair of a link of the classes `changed` (0:classes), both sides of which have their places, is open by
-      !> more than a part of that link's size there, from the places of the deck and the angles `u`.
+      !> A link of the classes `changed` (0:classes) has a pair, both sides of which have their places, that is open by
+      !> more than a part of that link's size, from the places of the deck and the angles `u`. Its size is the longest
+      !> vector to such a pair: how far a pair beside its origin is open says nothing of its angle.
       pure logical function is_contradicted(u, changed) result(is)
          real(wp), intent(in) :: u(0:)
          logical, intent(in) :: changed(0:)
-         real(wp) :: size_of
-         integer :: k, side, ends(2)
+         real(wp) :: size_of, open, arm
+         integer :: link, k
 
          is = .false.
-         do k = 1, size(m%pairs)
-            ends = [m%pairs(k)%point_i, m%pairs(k)%point_j]
-            if (.not. all(placed(ends))) cycle
-            do side = 1, 2
-               if (.not. changed(t%orientation(m%points(ends(side))%link))) cycle
-               size_of = norm2(m%points(ends(side))%offset)
-               if (m%pairs(k)%kind /= pair_revolute) size_of = size_of + norm2(closure_error_of(u, k))
-               is = is .or. opening_of(u, k) > open_part*size_of
+         do link = 1, size(m%links)
+            if (.not. changed(t%orientation(link))) cycle
+            size_of = 0.0_wp
+            open = 0.0_wp
+            do k = t%near%first(link), t%near%first(link + 1) - 1
+               associate (pair => t%near%member(k), i => m%pairs(t%near%member(k))%point_i, &
+                          j => m%pairs(t%near%member(k))%point_j)
+                  if (.not. (placed(i) .and. placed(j))) cycle
+                  arm = norm2(m%points(merge(i, j, m%points(i)%link == link))%offset)
+                  if (m%pairs(pair)%kind /= pair_revolute) arm = arm + norm2(closure_error_of(u, pair))
+                  size_of = max(size_of, arm)
+                  open = max(open, opening_of(u, pair))
+               end associate
             end do
+            is = is .or. open > open_part*size_of
          end do
       end function is_contradicted
 

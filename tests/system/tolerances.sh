@@ -152,7 +152,7 @@ equal 'in millimetres: shares' "$(sed -n 's/^ *\([0-9.]* %\).*/\1/p' "$w/small.l
 for deck in tolerances guide_tolerances four_bar five_bar dixon parallelogram_at; do
    case $deck in
    *_tolerances | tolerances) cat "input/$deck.deck" ;;
-   dixon | parallelogram_at) toleranced 'GROUND DRIVE' < "input/$deck.deck" ;;
+   dixon) toleranced 'GROUND DRIVE' < input/dixon.deck ;;
    *) toleranced 'GROUND POINT DRIVE' < "input/$deck.deck" ;;
    esac | at 0.0 2.0 5.0 > "$w/base.deck"
    awk -v n="$sets" -f tests/system/perturbed_sets.awk "$w/base.deck" > "$w/sets.deck"
