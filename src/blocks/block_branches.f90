@@ -11,7 +11,7 @@
 module block_branches
    use kinds, only: wp
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_change, diagnostic_dead_end
-   use convergence, only: convergence_t, is_solved
+   use convergence, only: convergence_t, is_solved, max_kantorovich_ratio
    use predictor, only: predict, is_even
    use block_state, only: unknown_t, set_values, values_of
    use block_solver, only: solve_block
@@ -39,8 +39,8 @@ module block_branches
    !> Redundant equations are satisfied there to more than the second order in the distance.
    real(wp), parameter :: max_closure_part = 0.01_wp
    !> What builds on a block follows it to its other branch in so many parts that Kantorovich's ratio of each is about
-   !> the first: above the other it could come to another root.
-   real(wp), parameter :: max_part_ratio = 0.05_wp, max_ratio = 0.1_wp
+   !> this, half of what it may be.
+   real(wp), parameter :: max_part_ratio = 0.05_wp
    integer, parameter :: max_parts = 64
    !> The position found from the equations, and that extrapolated, are the same where they differ by less.
    real(wp), parameter :: same_place = 64.0_wp*sqrt(epsilon(1.0_wp))
@@ -146,7 +146,7 @@ contains
       away = -2.0_wp*least/curvature
       call set_values(e%blocks, i, x + away*direction, e%state)
       call solve_again(e, c)
-      if (is_solved(c) .and. c%kantorovich_ratio > max_ratio) then
+      if (is_solved(c) .and. c%kantorovich_ratio > max_kantorovich_ratio) then
          y = values_of(e%blocks, i, e%state)
          e%state%u(:) = before
          call go_in_parts(1 + int(min(c%kantorovich_ratio/max_part_ratio, real(max_parts, wp))), y - x, found)
@@ -177,7 +177,7 @@ contains
             do k = 1, size(e%moving)
                if (e%moving(k) <= i) cycle
                call solve_block(e%blocks, e%moving(k), e%tolerance, e%work, e%state, one)
-               is_followed = is_followed .and. is_solved(one) .and. one%kantorovich_ratio <= max_ratio
+               is_followed = is_followed .and. is_solved(one) .and. one%kantorovich_ratio <= max_kantorovich_ratio
                if (.not. is_followed) return
             end do
          end do

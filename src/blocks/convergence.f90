@@ -9,6 +9,10 @@ module convergence
       ended_inconsistent, ended_unsought, ended_elsewhere, closure_error_t, ending, is_solved, gather, &
       note_closure_error, is_inconsistent, contradict
 
+   !> The largest change of a predicted position over the distance of the next root, by the Jacobian and its Lipschitz
+   !> constant, that still counts as the continuation of a motion: near a change point another branch passes close by,
+   !> with the sign of the determinant that this one had before.
+   real(wp), parameter, public :: max_kantorovich_ratio = 0.1_wp
    !> Closure errors that differ by less than this part are alike.
    real(wp), parameter :: alike = 1.0e-4_wp
    !> Positions may contradict one another by this, in characteristic lengths and radians, as data of 11 digits do.

@@ -9,7 +9,7 @@ module following
    use branch_certificate, only: branch_t
    use drive_excursion, only: drive_excursion_t, new_drive_excursion, substep_allowed, likely_excursion, excursion, &
       steps_at_least
-   use convergence, only: convergence_t, is_solved
+   use convergence, only: convergence_t, is_solved, max_kantorovich_ratio
    use branch_requests, only: branch_requests_t, new_branch_requests
    use engine, only: engine_t, engine_checkpoint_t
    use block_engine, only: block_engine_t, make_block_engine
@@ -20,14 +20,11 @@ module following
    private
    public :: following_t, step_record_t, make_following, continue_to, is_too_far, has_too_many_substeps, go_on_from, &
       go_back, place_t, note_place, return_to
-   public :: limits_t, note_limit, limit_before, largest_correction, max_kantorovich_ratio
+   public :: limits_t, note_limit, limit_before, largest_correction
 
    !> The largest correction, in the characteristic length and in radians, of a predicted position that still counts as
    !> the continuation of the motion; where the prediction is off by more, the step is divided.
    real(wp), parameter :: largest_correction = 0.1_wp
-   !> The same over the distance of the next root, by the Jacobian and its Lipschitz constant: near a change point
-   !> another branch passes close by, with the sign of the determinant that this one had before.
-   real(wp), parameter :: max_kantorovich_ratio = 0.1_wp
    !> A substep smaller than this part of the longest one, or of what is left to go, cannot be made: the motion is
    !> blocked there. So many substeps at most are tried.
    real(wp), parameter :: min_substep = max(1.0e-10_wp, 4.0_wp*epsilon(1.0_wp))

@@ -6,7 +6,8 @@ module lane_steps
    use kinds, only: wp
    use predictor, only: largest_change
    use block_solver, only: closed_level, step_tolerance, suspicious_pivot
-   use following, only: largest_correction, max_kantorovich_ratio
+   use convergence, only: max_kantorovich_ratio
+   use following, only: largest_correction
    use drives, only: drive_motion
    use lane_sines, only: width, max_angle
    use lane_elimination, only: factor, substitute, pivots_of, inverse_norm
