@@ -22,7 +22,7 @@ parts() {
    the stand-in|75|"$MAKE" --no-print-directory unit-stand-in
    the sources|60|tests/system/house.sh
    the closed forms|830|"$BUILD/release/check_forms" input/*.deck
-   make check|1000|tests/system/check.sh
+   make check|1075|tests/system/check.sh
    the reader of listings|93|tests/system/reader.sh
    the documents|300|tests/system/documents.sh
    estimates of errors|57|"$MAKE" --no-print-directory errors
