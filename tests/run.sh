@@ -10,6 +10,7 @@ parts() {
    if [ -n "$PARTS" ]; then cat "$PARTS"; return; fi
    sed 's/^ *//' <<'END'
    faults by name|560|tests/system/faults.sh
+   make check|2570|tests/system/check.sh
    real128|124|"$MAKE" --no-print-directory quad-check
    single precision|62|"$MAKE" --no-print-directory single-check
    speed against error|80|"$MAKE" --no-print-directory study-short
@@ -22,22 +23,16 @@ parts() {
    the stand-in|75|"$MAKE" --no-print-directory unit-stand-in
    the sources|60|tests/system/house.sh
    the closed forms|830|"$BUILD/release/check_forms" input/*.deck
-   make check|1075|tests/system/check.sh
    the reader of listings|93|tests/system/reader.sh
    the documents|300|tests/system/documents.sh
    estimates of errors|57|"$MAKE" --no-print-directory errors
    proofs|162|"$BUILD/release/proof_bounds" input/*.deck
    nothing false is proved|2000|"$BUILD/release/fool_proofs" 2000
    units|786|tests/system/units.sh
-   the methods against one another|8|tests/system/methods.sh
    tolerances|39|tests/system/tolerances.sh
    extremes|31|tests/system/answers.sh
    circuits by chance|40|"$BUILD/release/circuits_by_chance" 40
    all assemblies|79|tests/system/assemblies.sh
-   independent mechanisms|106|tests/system/independent.sh
-   poles and curves|37|tests/system/centres.sh
-   pictures|1128|tests/system/pictures.sh
-   tables|218|tests/system/tables.sh
    the digits|1|tests/system/digits.sh
    decks made by chance|1000|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 1000
    relations between runs|300|tests/system/relations.sh --short

@@ -84,7 +84,7 @@ equal 'pictures: status' 0 $?
 for picture in docs/pictures/*.svg; do same "$picture" "$picture" "$w/${picture##*/}"; done
 
 # What cards ask for, by closed forms and by the cards' own numbers: each script counts its checks, and they count here.
-for part in ranges circuits drives singular variants wide; do
+for part in ranges circuits drives singular variants wide centres tables independent methods pictures; do
    BUILD=$BUILD "tests/system/$part.sh" > "$w/$part.txt"
    equal "$part: status" 0 $?
    sed '$d' "$w/$part.txt"
