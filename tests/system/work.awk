@@ -12,7 +12,7 @@ function put_log() {
 FNR == 1 { put_log() }
 $1 ~ /^[0-9]+$/ {
    instants++; iterations += $4; substeps += $11; ratio += $12; signs += $9
-   if ($8 < least) least = $8
+   if ($8 < least) least = $8 < 1e-9 ? 0 : $8
    if ($10 != word) put_branch()
    word = $10; many++
 }
