@@ -36,21 +36,23 @@ done
 # What the solver does for each deck, by its logs, is what it did: tests/system/work.txt. This is no truth: it guards the cost
 # of a run, and what nobody sees in a listing, against changes that nobody means. Where a change is meant and right, what is
 # found here takes the place of the old: cp build/check/work.txt tests/system/work.txt. Each deck is run in two steps as well,
-# which the solver has to divide, by two methods, and from estimates that are 70 deg off, by turns to either side; but for two
-# decks whose iterations are those of their roundings.
+# which the solver has to divide: with a proof, by another method, and from estimates that are 70 deg off, by turns to either
+# side; but for two decks whose iterations are those of their roundings.
 for deck in input/*.deck tests/system/decks/*.deck; do
    name=$(basename "$deck" .deck)
    case $name in dense_first_instant_chaotic|peaucellier) continue;; esac
-   awk '/^TIME/ { $0 = "TIME    2       " substr($0, 17) } { print }' "$deck" > "$w/wide.deck"
-   "$BUILD/kinmat" --no-listing --quiet --log "$w/$name.wide.log" "$w/wide.deck" > "$w/wide.txt" 2>&1
-   sed -e '/^METHOD/d' -e 's/^END.*/METHOD  DENSE\n&/' "$w/wide.deck" > "$w/dense.deck"
-   "$BUILD/kinmat" --no-listing --quiet --log "$w/$name.dense.log" "$w/dense.deck" > "$w/dense.txt" 2>&1
+   awk '/^TIME/ { $0 = "TIME    2       " substr($0, 17) } ! /^METHOD/ { print }' "$deck" > "$w/wide.deck"
+   sed 's/^END.*/PROVE\n&/' "$w/wide.deck" > "$w/proof.deck"
+   sed 's/^END.*/METHOD  DENSE\n&/' "$w/wide.deck" > "$w/dense.deck"
    awk '/^UNITS/ { off = $0 ~ /RAD/ ? atan2(1, 1)*70/45 : 70 }
       /^LINK/ { off = -off; $0 = sprintf("%-48s%.6f", substr($0, 1, 48), substr($0, 49, 16) + off) }
       { print }' "$w/wide.deck" > "$w/rough.deck"
-   "$BUILD/kinmat" --no-listing --quiet --log "$w/$name.rough.log" "$w/rough.deck" > "$w/rough.txt" 2>&1
+   for way in proof dense rough; do
+      "$BUILD/kinmat" --quiet -o "$w/$name.$way.lst" --log "$w/$name.$way.log" "$w/$way.deck" > "$w/way.txt" 2>&1
+   done
 done
 awk -f tests/system/work.awk "$w"/*.log > "$w/work.txt"
+(cd "$w" && grep -E 'INSTANTS PROVED|CHWILE DOWIEDZIONE' ./*.proof.lst) >> "$w/work.txt"
 same 'the work of the solver' tests/system/work.txt "$w/work.txt"
 
 # The manual's first deck: the tip of a crank of length 0.25 at 6.28 rad/s.
