@@ -10,7 +10,7 @@ parts() {
    if [ -n "$PARTS" ]; then cat "$PARTS"; return; fi
    sed 's/^ *//' <<'END'
    faults by name|560|tests/system/faults.sh
-   make check|2680|tests/system/check.sh
+   make check|2640|tests/system/check.sh
    real128|124|"$MAKE" --no-print-directory quad-check
    single precision|62|"$MAKE" --no-print-directory single-check
    speed against error|80|"$MAKE" --no-print-directory study-short
@@ -32,6 +32,7 @@ parts() {
    tolerances|39|tests/system/tolerances.sh
    extremes|31|tests/system/answers.sh
    circuits by chance|40|"$BUILD/release/circuits_by_chance" 40
+   poles and curves|37|tests/system/centres.sh
    all assemblies|79|tests/system/assemblies.sh
    the digits|1|tests/system/digits.sh
    decks made by chance|1000|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 1000
