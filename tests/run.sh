@@ -30,9 +30,9 @@ parts() {
    nothing false is proved|2000|"$BUILD/release/fool_proofs" 2000
    units|786|tests/system/units.sh
    tolerances|39|tests/system/tolerances.sh
-   extremes|31|tests/system/answers.sh
+   extremes|33|tests/system/answers.sh
    circuits by chance|40|"$BUILD/release/circuits_by_chance" 40
-   poles and curves|37|tests/system/centres.sh
+   poles and curves|38|tests/system/centres.sh
    all assemblies|79|tests/system/assemblies.sh
    the digits|1|tests/system/digits.sh
    decks made by chance|1000|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 1000

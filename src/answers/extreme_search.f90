@@ -10,7 +10,8 @@ module extreme_search
    use motion, only: motion_t, singular_change, diagnostic_change, diagnostic_limit
    use points, only: coordinates_of
    use set_analysis, only: set_analysis_t
-   use nodes, only: node_t, one_sided_t, node_at, is_known, times_between, limits_of, places, places_beside
+   use nodes, only: node_t, one_sided_t, node_at, is_known, times_between, beside_joint, limits_of, places, &
+      places_beside
    use extremes, only: extremes_t, offer_limits, note_interval, step_of
    use column_search, only: add_node
    implicit none
@@ -88,7 +89,7 @@ contains
       end subroutine search_step
 
       !> The times after `from` at which the motion `q` says that a change point was passed, or its limit was reached:
-      !> that is the last.
+      !> that is the last. A change point that is later only by rounding is the same one, or at `from` itself.
       pure subroutine find_ends(q, from, way, ends, is_limit)
          type(motion_t), intent(in) :: q
          real(wp), intent(in) :: from, way
@@ -104,7 +105,8 @@ contains
          do i = 1, size(q%diagnostics)
             associate (d => q%diagnostics(i))
                if (d%kind /= diagnostic_limit .and. .not. (d%kind == diagnostic_change .and. .not. d%here)) cycle
-               if ((d%t - last)*way <= 0.0_wp .or. (q%t - d%t)*way <= 0.0_wp) cycle
+               if ((d%t - last)*way <= merge(beside_joint(m, last), 0.0_wp, d%kind == diagnostic_change)) cycle
+               if ((q%t - d%t)*way <= 0.0_wp) cycle
                ends = [ends, d%t]
                last = d%t
                is_limit = d%kind == diagnostic_limit

@@ -102,7 +102,7 @@ contains
    pure function curve_of(p, length, rate) result(c)
       real(wp), intent(in) :: p(2, 0:2), length, rate
       type(centre_t) :: c
-      real(wp) :: v(2), a(2), speed, size_of_weight
+      real(wp) :: v(2), a(2), speed
 
       ! In units of the mechanism, cubes do not overflow.
       v = p(:, 1)/(length*rate)
@@ -118,9 +118,9 @@ contains
          return
       end if
       c%weight = cross(v, a)
-      size_of_weight = speed*(speed**2 + norm2(a))
-      if (abs(c%weight) <= negligible*size_of_weight) c%state = centre_infinite
-      c%weight = sign(max(abs(c%weight), least*size_of_weight), c%weight)
+      ! Not in parts of |v| |a|: near its end of a stroke a point is slow, and its acceleration nearly all tangential.
+      if (abs(c%weight) <= negligible*speed**3) c%state = centre_infinite
+      c%weight = sign(max(abs(c%weight), least*speed**3), c%weight)
       c%value(:2, 1) = p(:, 0) + quarter_turn(v)*(length*speed**2/c%weight)
       c%value(1, 2) = length*speed**3/abs(c%weight)
    end function curve_of
