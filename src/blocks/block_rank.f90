@@ -31,6 +31,10 @@ module block_rank
       real(wp), allocatable :: r(:)               !< (rows) the block's residual
    end type values_t
 
+   !> A column of a Jacobian that has changed by more than this part of its length, by 44 deg, has turned too far, and so
+   !> have ranges between which the product of the cosines is smaller.
+   real(wp), parameter :: max_turn = 0.75_wp, min_cosines = 0.5_wp
+
 contains
 
    !> The rows of block `i`, counted in b%rows, that could be spared at the position of `s`: of those that depend on one
@@ -133,26 +137,68 @@ contains
    end function jacobian_of
 
    !> 1 if block `i`, with more rows than unknowns, is on the same side of its change points as the Jacobian `before`
-   !> (rows*n), -1 if not: sign of the determinant of the product of that, transposed, and the present one. With as many
-   !> rows as unknowns it would be the product of the two signs.
+   !> (rows*n), -1 if not: the sign of the determinant of that, transposed, times the present one. With as many rows as
+   !> unknowns it would be the product of the two signs. It is -1 also where columns or the ranges of the two have turned
+   !> so far that the determinant could have changed its sign by that alone: over the roots of those of each with itself
+   !> it is the product of the cosines between the ranges.
    integer function relative_sign(b, i, before, s) result(side)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       real(wp), intent(in) :: before(:)
       type(state_t), intent(inout) :: s
-      real(wp) :: product(b%list(i)%shape%n, b%list(i)%shape%n)
-      integer :: pivots(b%list(i)%shape%n), info, k
+      real(wp), dimension(b%list(i)%shape%rows, b%list(i)%shape%n) :: old, new
+      real(wp) :: cosines, old_size, new_size
+      integer :: sides(2), positive
 
-      associate (rows => b%list(i)%shape%rows, n => b%list(i)%shape%n)
-         product = matmul(transpose(reshape(before, [rows, n])), reshape(jacobian_of(b, i, s), [rows, n]))
-         side = 1
-         if (n == 0) return
-         call getrf(n, n, product, n, pivots, info)
-         do k = 1, n
-            if ((product(k, k) < 0.0_wp) .neqv. (pivots(k) /= k)) side = -side
-         end do
-      end associate
+      old = reshape(before, shape(old))
+      new = reshape(jacobian_of(b, i, s), shape(new))
+      side = -1
+      if (any(norm2(new - old, dim=1) > max_turn*norm2(old, dim=1))) return
+      call find_range(old, sides(1))
+      call find_range(new, sides(2))
+      call find_determinant(matmul(transpose(old), old), old_size, positive)
+      call find_determinant(matmul(transpose(new), new), new_size, positive)
+      call find_determinant(matmul(transpose(old), new), cosines, side)
+      side = side*product(sides)
+      if (cosines < 0.5_wp*(old_size + new_size) + log(min_cosines)) side = -1
    end function relative_sign
+
+   !> Replaces the columns of `a` (rows, n) by others of the same range, the lower factor of Gauss's elimination, which is
+   !> well conditioned where `a` is not; `side`: the sign of the determinant of the other factor.
+   subroutine find_range(a, side)
+      real(wp), intent(inout) :: a(:, :)
+      integer, intent(out) :: side
+      integer :: pivots(size(a, 2)), order(size(a, 1)), info, k
+
+      call getrf(size(a, 1), size(a, 2), a, size(a, 1), pivots, info)
+      side = 1
+      order = [(k, k=1, size(a, 1))]
+      do k = 1, size(a, 2)
+         if (a(k, k) < 0.0_wp) side = -side
+         a(:k - 1, k) = 0.0_wp
+         a(k, k) = 1.0_wp
+         order([k, pivots(k)]) = order([pivots(k), k])
+      end do
+      a(order, :) = a
+   end subroutine find_range
+
+   !> The logarithm of the determinant of `a` (n, n), and its sign.
+   subroutine find_determinant(a, log_of, side)
+      real(wp), intent(in) :: a(:, :)
+      real(wp), intent(out) :: log_of
+      integer, intent(out) :: side
+      real(wp) :: factors(size(a, 1), size(a, 1))
+      integer :: pivots(size(a, 1)), info, k
+
+      factors = a
+      if (size(a) > 0) call getrf(size(a, 1), size(a, 1), factors, size(a, 1), pivots, info)
+      log_of = 0.0_wp
+      side = 1
+      do k = 1, size(a, 1)
+         log_of = log_of + log(max(abs(factors(k, k)), tiny(1.0_wp)))
+         if ((factors(k, k) < 0.0_wp) .neqv. (pivots(k) /= k)) side = -side
+      end do
+   end subroutine find_determinant
 
    !> The least singular value of the Jacobian of block `i` with its vectors `left` (rows) and `right` (n).
    subroutine min_direction(b, i, s, least, left, right)
