@@ -7,6 +7,8 @@
 !> Rejected: a polynomial through earlier positions as well. It gains an order, but brings their rounding back
 !> many times over, and a start that is wrong by rounding alone costs a second factorization.
 !>
+!> Beside a change point rounding spoils accelerations, and the first of these formulas takes an earlier one.
+!>
 !> For comparison (--study) the order can be given: x_0 alone, with its velocity, with its acceleration as well, and
 !> with the third derivative as the difference of two accelerations.
 module predictor
@@ -22,6 +24,9 @@ module predictor
    real(wp), parameter :: largest_change = 1.0_wp
    real(wp), parameter :: weight(0:2) = [-949.0_wp, 608.0_wp, 581.0_wp]/240.0_wp
    real(wp), parameter :: weight2(0:2) = [637.0_wp, 1080.0_wp, 173.0_wp]/240.0_wp
+   !> An acceleration does not serve a prediction that it makes uncertain by more than this part of the change: that
+   !> could come nearer to another branch than to its own.
+   real(wp), parameter :: largest_part = 0.01_wp
    !> Steps that differ by less, relatively, count as equal: instants are rounded too.
    real(wp), parameter :: equal_step = max(1.0e-6_wp, 4096.0_wp*epsilon(1.0_wp))
 
@@ -36,6 +41,7 @@ module predictor
       integer :: order = own_predictor                  !< 0 to 3, or as above
       integer :: filled = 0                             !< motions that are there, 0 to 3
       real(wp) :: t(0:2) = 0.0_wp                       !< their times, the latest first
+      real(wp) :: uncertain(0:2) = 0.0_wp               !< their accelerations, in parts of velocities in a unit of time
       type(past_t), allocatable :: past(:)              !< (0:unknowns)
    end type history_t
 
@@ -50,14 +56,16 @@ contains
       allocate (h%past(0:n))
    end function new_history
 
-   !> Makes the motion `u` (0:unknowns) at `t` the latest.
-   pure subroutine remember(h, t, u)
+   !> Makes the motion `u` (0:unknowns) at `t` the latest. `uncertain`: its accelerations, in parts of velocities in a
+   !> unit of time.
+   pure subroutine remember(h, t, u, uncertain)
       type(history_t), intent(inout) :: h
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t, uncertain
       type(unknown_t), intent(in) :: u(0:)
       integer :: i, k
 
       h%t = [t, h%t(0), h%t(1)]
+      h%uncertain = [uncertain, h%uncertain(0), h%uncertain(1)]
       do k = 1, size(h%predicted)
          i = h%predicted(k)
          associate (x => h%past(i))
@@ -77,12 +85,17 @@ contains
       type(unknown_t), intent(inout) :: u(0:)
       real(wp), intent(out) :: change
       real(wp) :: step, d, w(3)
-      integer :: i, k
+      integer :: i, k, known
       logical :: even
 
       change = 0.0_wp
       step = t - h%t(0)
       even = is_even(h, step)
+      known = 0
+      if (any(h%uncertain*abs(step) > largest_part)) then
+         even = .false.
+         known = findloc(h%uncertain(:h%filled - 1)*abs(step) <= largest_part, .true., dim=1) - 1
+      end if
       if (h%order /= own_predictor) w = order_weights(h%order, step, merge(h%t(0) - h%t(1), 0.0_wp, h%filled > 1))
       do k = 1, size(h%predicted)
          i = h%predicted(k)
@@ -93,7 +106,8 @@ contains
                d = step*(weight(0)*v(0) + weight(1)*v(1) + weight(2)*v(2) &
                   + step*(weight2(0)*a(0) + weight2(1)*a(1) + weight2(2)*a(2)))
             else
-               d = step*(v(0) + 0.5_wp*step*a(0))
+               d = step*v(0)
+               if (known >= 0) d = step*(v(0) + 0.5_wp*step*a(known))
             end if
          end associate
          u(i)%value = h%past(i)%value + d

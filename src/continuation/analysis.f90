@@ -197,8 +197,7 @@ contains
       a%branch = step%branch
       if (.not. a%follows) then
          a%branch%kind = branch_first
-      else if ((a%convergence%singular .and. .not. step%stands) .or. step%is_uncertain &
-         .or. .not. a%engine%is_certified) then
+      else if ((a%convergence%singular .and. .not. step%stands) .or. .not. a%engine%is_certified) then
          a%branch%kind = branch_none
       else
          a%branch%kind = merge(branch_crossed, branch_same, passed > 0)

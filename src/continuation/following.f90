@@ -36,10 +36,6 @@ module following
    !> A substep that ends so near a change point that there are no velocities is made longer, to end beyond it, at most
    !> so many times: shorter ones would come up to that place and never across.
    integer, parameter :: max_longer = 8
-   !> So close to a change point, by the Lipschitz constant of a Jacobian over the square of its pivot, positions are
-   !> uncertain by this part of their distance from the other branch, velocities by that part of what the branches
-   !> differ by, and accelerations by as much over the time to the change point, which may be a thousandth of a substep.
-   real(wp), parameter :: spoilt = 2.0e-4_wp/epsilon(1.0_wp)
    !> An instant lies beyond a limit if it is further behind the place where the motion was blocked than this part of
    !> the step.
    real(wp), parameter :: near_part = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
@@ -67,7 +63,6 @@ module following
       logical :: arrived = .false.               !< at the instant asked for
       logical :: blocked = .false.               !< at a place from which no substep could be made
       logical :: stands = .false.                !< on a change point, from shortly before which it is followed
-      logical :: is_uncertain = .false.          !< a substep began where rounding spoils rates
       integer :: tries = 0                       !< substeps tried
       type(branch_t) :: branch                   !< what was verified of the substeps made
       type(diagnostic_t), allocatable :: passed(:), dead_end(:)   !< change points; not allocated: none
@@ -140,7 +135,6 @@ contains
          if (step%tries == 1) call note_place(f, f%place)
          grows = accepted .and. (longer < max_longer .or. .not. f%convergence%singular)
          accepted = accepted .and. .not. f%convergence%singular
-         if (accepted) step%is_uncertain = step%is_uncertain .or. is_spoilt(f)
          if (accepted) call go_on_from(f, here)
          if (.not. f%follows) exit
          if (.not. is_solved(f%convergence) .and. abs(substep) <= small_substep*longest) failures = failures + 1
@@ -150,18 +144,6 @@ contains
          if (step%blocked .or. failures > max_failures) exit
       end do
    end subroutine continue_to
-
-   !> Rounding spoils the rates of the motion found last: a prediction by them could come nearer to another branch than
-   !> to its own.
-   logical function is_spoilt(f)
-      type(following_t), intent(in) :: f
-
-      is_spoilt = .false.
-      select type (e => f%engine)
-      class is (block_method_t)
-         is_spoilt = e%roundings_grow(1.0_wp, spoilt)
-      end select
-   end function is_spoilt
 
    !> Solves for the motion at `t`; `accepted`: it is the continuation of the one that is followed, or the first.
    subroutine attempt(f, t, step, accepted)
