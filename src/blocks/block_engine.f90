@@ -10,7 +10,7 @@ module block_engine
    use drives, only: new_law, drive_motion
    use convergence, only: convergence_t, is_solved, gather, ended_converged, ended_singular
    use engine, only: engine_t, engine_checkpoint_t
-   use predictor, only: history_t, new_history, remember, predict, largest_change
+   use predictor, only: history_t, new_history, remember, predict, largest_change, uncertain_part
    use blocks, only: blocks_t, moving_blocks, needed_blocks, largest_known
    use block_state, only: state_t, new_state
    use block_solver, only: workspace_t, make_workspace, solve_block
@@ -81,11 +81,6 @@ module block_engine
       logical, allocatable :: crossed(:)
       real(wp) :: t = 0.0_wp, change = 0.0_wp
    end type block_checkpoint_t
-
-   !> Accelerations that are uncertain by this part of the largest are known well enough.
-   real(wp), parameter :: known_part = 0.01_wp
-   !> With a pivot above, rounding leaves no acceleration uncertain by a part that a substep can feel.
-   real(wp), parameter :: certain_pivot = epsilon(1.0_wp)**0.2_wp
 
 contains
 
@@ -277,33 +272,11 @@ contains
    subroutine accept(e)
       class(block_engine_t), intent(inout) :: e
 
-      call remember(e%history, e%t, e%state%u, uncertain_part(e))
+      call remember(e%history, e%t, e%state%u, uncertain_part(e%blocks, e%moving, e%found%pivot, e%state%u))
       ! As a section: an assignment to the whole would ask for its shape first.
       e%followed(:) = e%found(:)
       if (e%blocks%redundant > 0) e%jacobian = jacobian_of(e%blocks, 1, e%state)
    end subroutine accept
-
-   !> How uncertain the accelerations of the motion found last are, as a part of the velocities in a unit of time. With
-   !> the pivot p of a block, whose Jacobian's Lipschitz constant is L, positions are known to eps/p, and the other branch
-   !> is about p/L away: the velocities v are uncertain by the quotient of the two, in parts of v, and the accelerations
-   !> by that over p/L, in parts of v^2. At dead points they grow as the velocities do: there they are known.
-   pure real(wp) function uncertain_part(e) result(part)
-      type(block_engine_t), intent(in) :: e
-      real(wp) :: v, uncertain
-      integer :: k
-
-      part = 0.0_wp
-      do k = 1, size(e%moving)
-         associate (block => e%blocks%list(e%moving(k)), p => e%found(e%moving(k))%pivot)
-            if (block%direct .or. p > certain_pivot) cycle
-            associate (u => e%state%u(e%blocks%unknown(block%first:block%last)))
-               v = maxval(abs(u%rate))
-               uncertain = epsilon(1.0_wp)*block%lipschitz**2*v/max(p, epsilon(1.0_wp))**3
-               if (uncertain*v > known_part*maxval(abs(u%acceleration))) part = max(part, uncertain)
-            end associate
-         end associate
-      end do
-   end function uncertain_part
 
    !> See `engine`: the motion of the links that are asked for.
    subroutine get_motion(e, found, finite)

@@ -31,8 +31,7 @@ module block_rank
       real(wp), allocatable :: r(:)               !< (rows) the block's residual
    end type values_t
 
-   !> A column of a Jacobian that has changed by more than this part of its length, by 44 deg, has turned too far, and so
-   !> have ranges between which the product of the cosines is smaller.
+   !> Too far: a column of a Jacobian that changes by this part of its length, 44 deg, and a product of cosines below.
    real(wp), parameter :: max_turn = 0.75_wp, min_cosines = 0.5_wp
 
 contains
@@ -137,10 +136,9 @@ contains
    end function jacobian_of
 
    !> 1 if block `i`, with more rows than unknowns, is on the same side of its change points as the Jacobian `before`
-   !> (rows*n), -1 if not: the sign of the determinant of that, transposed, times the present one. With as many rows as
-   !> unknowns it would be the product of the two signs. It is -1 also where columns or the ranges of the two have turned
-   !> so far that the determinant could have changed its sign by that alone: over the roots of those of each with itself
-   !> it is the product of the cosines between the ranges.
+   !> (rows*n), -1 if not: the sign of the determinant of that, transposed, times the present one. It is -1 also where
+   !> columns or ranges of the two have turned so far that this alone could have changed the sign: the determinant over
+   !> the roots of those of each with itself is the product of the cosines between the ranges.
    integer function relative_sign(b, i, before, s) result(side)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
@@ -163,8 +161,8 @@ contains
       if (cosines < 0.5_wp*(old_size + new_size) + log(min_cosines)) side = -1
    end function relative_sign
 
-   !> Replaces the columns of `a` (rows, n) by others of the same range, the lower factor of Gauss's elimination, which is
-   !> well conditioned where `a` is not; `side`: the sign of the determinant of the other factor.
+   !> Replaces the columns of `a` (rows, n) by others of the same range, the lower factor of Gauss's elimination, well
+   !> conditioned where `a` is not; `side`: the sign of the determinant of the upper factor.
    subroutine find_range(a, side)
       real(wp), intent(inout) :: a(:, :)
       integer, intent(out) :: side

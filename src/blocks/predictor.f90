@@ -14,10 +14,11 @@
 module predictor
    use kinds, only: wp
    use mechanism, only: own_predictor
+   use blocks, only: blocks_t
    use block_state, only: unknown_t
    implicit none
    private
-   public :: history_t, new_history, remember, predict, is_even, largest_change, order_weights
+   public :: history_t, new_history, remember, predict, is_even, largest_change, order_weights, uncertain_part
 
    !> The largest predicted change, in radians and in the unit of length, that one step may have: beyond it a
    !> prediction that agrees with a position may do so by chance.
@@ -27,6 +28,10 @@ module predictor
    !> An acceleration does not serve a prediction that it makes uncertain by more than this part of the change: that
    !> could come nearer to another branch than to its own.
    real(wp), parameter :: largest_part = 0.01_wp
+   !> Accelerations that are uncertain by less than this part of the largest are known.
+   real(wp), parameter :: known_part = 0.01_wp
+   !> With a pivot above, rounding leaves no acceleration uncertain by a part that a substep can feel.
+   real(wp), parameter :: certain_pivot = epsilon(1.0_wp)**0.2_wp
    !> Steps that differ by less, relatively, count as equal: instants are rounded too.
    real(wp), parameter :: equal_step = max(1.0e-6_wp, 4096.0_wp*epsilon(1.0_wp))
 
@@ -114,6 +119,31 @@ contains
          change = max(change, abs(d))
       end do
    end subroutine predict
+
+   !> How uncertain the accelerations of the motion `u` (0:unknowns) are, as a part of the velocities in a unit of time,
+   !> in the worst block of `list`. With its `pivot` (blocks) p, whose Jacobian's Lipschitz constant is L, positions are
+   !> known to eps/p, and the other branch is about p/L away: the velocities v are uncertain by the quotient of the two,
+   !> in parts of v, and the accelerations by that over p/L, in parts of v^2. At dead points they grow as the velocities
+   !> do, and are known.
+   pure real(wp) function uncertain_part(b, list, pivot, u) result(part)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: list(:)
+      real(wp), intent(in) :: pivot(:)
+      type(unknown_t), intent(in) :: u(0:)
+      real(wp) :: v, uncertain
+      integer :: k
+
+      part = 0.0_wp
+      do k = 1, size(list)
+         associate (block => b%list(list(k)), p => pivot(list(k)))
+            if (block%direct .or. p > certain_pivot) cycle
+            v = maxval(abs(u(b%unknown(block%first:block%last))%rate))
+            uncertain = epsilon(1.0_wp)*block%lipschitz**2*v/max(p, epsilon(1.0_wp))**3
+            if (uncertain*v > known_part*maxval(abs(u(b%unknown(block%first:block%last))%acceleration))) &
+               part = max(part, uncertain)
+         end associate
+      end do
+   end function uncertain_part
 
    !> Weights (3) of the velocity, the acceleration and the last change of the acceleration in a start of the given
    !> `order`, 0 to 3, `step` after the latest motion; `before`: the step that led to it, 0.0 where there was none.
