@@ -24,8 +24,9 @@ module ranges
    real(wp), parameter :: step_of_angle = pi/36.0_wp, step_of_length = 0.05_wp
    integer, parameter :: max_turns = 12
    real(wp), parameter :: max_lengths = 100.0_wp
-   !> How close its end is looked for.
-   real(wp), parameter :: closest = max(1.0e-12_wp, 4.0_wp*epsilon(1.0_wp))
+   !> How close its end is looked for where none is told. Reason: rounding leaves the root of a rounding open there, and
+   !> each try takes as long as the whole way to it.
+   real(wp), parameter :: closest = max(1.0e-9_wp, 4.0_wp*epsilon(1.0_wp))
    !> A motion closes where positions agree to this part of a radian and of the characteristic length.
    real(wp), parameter :: closes_to = max(1.0e-7_wp, 1.0e6_wp*epsilon(1.0_wp))
    !> The ends of a range.
