@@ -7,6 +7,7 @@
 !> polynomial through these five in s^2 or in s; or it grows without bound, as velocities do at a limit, with 1/s.
 module nodes
    use kinds, only: wp
+   use known_digits, only: nothing_known
    use mechanism, only: mechanism_t, instant
    use points, only: row_t
    use set_analysis, only: set_analysis_t, rows_at
@@ -74,12 +75,13 @@ contains
       end do
    end function node_at
 
-   !> All of the motion of the `rows` of `node` is known.
+   !> All of the motion of the `rows` of `node` is known, and of no number all digits are open: such a one
+   !> cannot be told to be an extreme, nor to be none.
    pure logical function is_known(node, rows)
       type(node_t), intent(in) :: node
       integer, intent(in) :: rows(:)
 
-      is_known = all(node%known(rows) == 2)
+      is_known = all(node%known(rows) == 2) .and. all(node%error(:, :, rows) < nothing_known)
    end function is_known
 
    !> A node of `n` rows of which nothing is known yet.
