@@ -21,8 +21,7 @@ module circuit_curve
    implicit none
    private
    public :: curve_t, curve_point_t, make_curve, is_redundant, start_point, find_point, step_along, step_between, &
-      lies_between, second_derivative, factor_at, &
-      offset_from, same_place, same, drive_value, deck_position
+      lies_between, beside, second_derivative, factor_at, offset_from, same_place, drive_value, deck_position
 
    !> u of above, less than 1/2: K of slides is taken at the start of a step, and they grow.
    real(wp), parameter :: certified = 0.25_wp
@@ -33,6 +32,9 @@ module circuit_curve
    real(wp), parameter :: converged = 16.0_wp*epsilon(1.0_wp), stalled = sqrt(epsilon(1.0_wp))
    !> Two positions are one up to this difference, in rad and lengths.
    real(wp), parameter :: same = max(1.0e-7_wp, 1.0e2_wp*epsilon(1.0_wp))
+   !> A position off the curve by less than this part of the certified step is on it, for the curve is unique there:
+   !> rounding of the dimensions, where equations are too many, makes the positions differ by more than `same`.
+   real(wp), parameter :: unique = 0.1_wp
    !> Equations that are too many hold to this, in rad and lengths: twice what the engine allows.
    real(wp), parameter :: fits = max(2.0e-10_wp, 1.0e3_wp*epsilon(1.0_wp))
    !> Equations that are too many let the mechanism move where they change by less along the curve.
@@ -155,8 +157,15 @@ contains
       h = dot_product(a%tangent, offset_from(c, a%q, b%q, .false.))
    end function step_between
 
-   !> Whether the position `q` (3, links) is on the curve at a distance from 0 to `h` along the tangent of `a`; whole
-   !> turns of links do not count. `b`: the point of the curve there.
+   !> A position so far from the curve beside its point `a` is on it, in rad and lengths.
+   pure elemental real(wp) function beside(a)
+      type(curve_point_t), intent(in) :: a
+
+      beside = max(same, unique*a%reach)
+   end function beside
+
+   !> Whether the position `q` (3, links) is on the curve at a distance from 0 to `h` along the tangent of `a`, or
+   !> beside its end; whole turns of links do not count. `b`: the point of the curve there.
    subroutine lies_between(c, a, h, q, b, lies)
       type(curve_t), intent(inout) :: c
       type(curve_point_t), intent(in) :: a
@@ -167,10 +176,10 @@ contains
 
       x = offset_from(c, a%q, q, .true.)
       along = dot_product(a%tangent, x)
-      lies = along >= -same .and. along <= h + same
-      if (lies) lies = maxval(abs(x - along*a%tangent)) <= h + same
+      lies = along >= -same .and. along <= h + beside(a)
+      if (lies) lies = maxval(abs(x - along*a%tangent)) <= h + beside(a)
       if (lies) call step_along(c, a, along, b, lies)
-      if (lies) lies = same_place(c, b%q, q)
+      if (lies) lies = maxval(abs(offset_from(c, b%q, q, .true.))) <= beside(b)
    end subroutine lies_between
 
    !> The coordinates of the position `b` less those of `a` (3, links), without whole turns if `turns_off`.

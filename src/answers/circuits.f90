@@ -20,7 +20,7 @@ module circuits
    use motion, only: motion_t, new_motion
    use assemblies, only: assemblies_t, find_assemblies
    use circuit_curve, only: curve_t, curve_point_t, make_curve, is_redundant, start_point, step_between, lies_between, &
-      same, drive_value, deck_position, find_point, second_derivative, factor_at
+      beside, drive_value, deck_position, find_point, second_derivative, factor_at
    use circuit_trace, only: circuit_t, trace, least_step, change_point_t
    use circuit_branches, only: circuits_t, no_sign, add_branches, add_assemblies, add_meetings, number_assemblies, &
       branch_t
@@ -183,7 +183,7 @@ contains
       logical :: ok
 
       n = size(found%list) + 1
-      if (n > max_circuits .or. p%reach < least_step) return
+      if (n > max_circuits .or. p%reach < least_step .or. signal_received() > 0) return
       if (is_known(found, p)) return
       allocate (more(n))
       more(:n - 1) = found%list
@@ -224,8 +224,8 @@ contains
       real(wp), intent(in) :: value
       real(wp) :: least, greatest
 
-      least = min(a%value(0), b%value(0)) - same
-      greatest = max(a%value(0), b%value(0)) + same
+      least = min(a%value(0), b%value(0)) - beside(a)
+      greatest = max(a%value(0), b%value(0)) + beside(a)
       passes = value >= least .and. value <= greatest
       if (c%is_angle) passes = modulo(value - least, 2.0_wp*pi) <= greatest - least
    end function passes
@@ -243,6 +243,7 @@ contains
       held = held_at(m, t)
       middle = new_motion(size(m%links))
       do b = 1, size(found%branches)
+         if (signal_received() > 0) return
          if (all(found%branches(b)%dead == 0) .or. found%list(found%branches(b)%circuit)%rests) cycle
          if (all(found%dead(pack(found%branches(b)%dead, found%branches(b)%dead > 0))%limit%links(1) > 0)) cycle
          call set_middle(found, found%branches(b), held, middle)

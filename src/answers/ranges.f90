@@ -3,6 +3,7 @@
 !> made whole turns, every link is where it was.
 module ranges
    use kinds, only: wp
+   use system_calls, only: signal_received
    use planar, only: pi, without_turns
    use mechanism, only: mechanism_t, request_t, request_link, method_newton, place_links
    use motion, only: motion_t, new_motion, diagnostic_t, diagnostic_limit, diagnostic_change
@@ -190,6 +191,7 @@ contains
       r%limit(side) = diagnostic_t(kind=diagnostic_limit, drive=r%drive, is_angle=is_angle, value=value)
       if (first%known < 0) return
       do k = 1, nint(d%t1/step)
+         if (signal_received() > 0) return
          t = step*k
          call advance(a, t, now)
          if (allocated(now%diagnostics)) r%change_points = r%change_points &
@@ -216,7 +218,7 @@ contains
          real(wp) :: part
 
          part = step
-         do while (.not. tells_limit(now) .and. part > closest)
+         do while (.not. tells_limit(now) .and. part > closest .and. signal_received() == 0)
             part = 0.5_wp*part
             call advance(a, t + part, now)
             if (now%known >= 0) t = t + part
