@@ -24,6 +24,7 @@ module assembly_table
    integer, parameter :: estimate_digits = 10, drawing_digits = 13
    !> Angles have as many digits after the point as this one, in rad or degrees.
    real(wp), parameter :: largest_angle = 100.0_wp
+   real(wp), parameter :: small_angle = max(1.0e-12_wp, 16.0_wp*epsilon(1.0_wp))
 
 contains
 
@@ -156,8 +157,9 @@ contains
 
       do i = 1, size(m%links)
          position(:, i) = one%position(:, i) + [plane_origin(m), 0.0_wp]
+         ! Whatever rounding makes of half a turn, it is one forward.
          associate (estimate => m%links(i)%position(3))
-            position(3, i) = estimate + without_turns(one%position(3, i) - estimate)
+            position(3, i) = estimate + without_turns(one%position(3, i) - estimate - small_angle) + small_angle
          end associate
       end do
       largest = max(characteristic_length(m), maxval(abs(position(:2, :))))
