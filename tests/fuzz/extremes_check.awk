@@ -1,7 +1,8 @@
 # extremes_check.awk LISTING CSV: no number of the CSV, a run in finer steps with --errors, lies beyond its extreme in the
 # listing's table, by more than a unit of the last digit that the table knows and twice the CSV's own error. A line for each
 # column that fails: how far it is off, in those units; then one of counts. Instants that the table says it does not cover
-# are passed over. What the table does not know at all (only question marks) is counted.
+# are passed over, and so is a set without a position at its first instant: runs in other steps begin at other instants
+# then, perhaps in other assemblies. What the table does not know at all (only question marks) is counted.
 function unit_of(text,  mantissa, at, power, dot, last) {
    mantissa = text; power = 0; at = index(text, "E")
    if (at) { mantissa = substr(text, 1, at - 1); power = substr(text, at + 1) + 0 }
@@ -63,8 +64,9 @@ file == 1 && /^  (MIN|MAX)  / {
 file == 1 || FNR == 1 { next }
 {
    split($0, a, ",")
-   if (a[1] != last_set) { split("", seen); last_set = a[1] }
-   covered = is_covered(a[1] + 0, a[3] + 0)
+   if (a[1] != last_set) { split("", seen); last_set = a[1]; begins_later = 0; has_begun = 0 }
+   if (!has_begun && a[6] != "") { has_begun = 1; begins_later = a[2] > 0 }
+   covered = !begins_later && is_covered(a[1] + 0, a[3] + 0)
    for (i = 1; i <= 9; i++) {
       if (a[5 + i] == "") continue
       j = i
