@@ -64,8 +64,8 @@ file == 1 && /^  (MIN|MAX)  / {
 file == 1 || FNR == 1 { next }
 {
    split($0, a, ",")
-   if (a[1] != last_set) { split("", seen); last_set = a[1]; begins_later = 0; has_begun = 0 }
-   if (!has_begun && a[6] != "") { has_begun = 1; begins_later = a[2] > 0 }
+   if (a[1] != last_set) { split("", seen); last_set = a[1]; begins_later = 0 }
+   if (a[2] == 0 && a[4] == "LINK" && a[6] == "") begins_later = 1
    covered = !begins_later && is_covered(a[1] + 0, a[3] + 0)
    for (i = 1; i <= 9; i++) {
       if (a[5 + i] == "") continue
