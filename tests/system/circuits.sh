@@ -119,6 +119,23 @@ equal 'Watt I, published' '-5 5' "$(swing %d 0)"
 linkage 'A BASE ACD -0.154 0.528;B BASE BFJ 6.17 0.0;C ACD CE 0.97 2.123;D ACD DHI 0.841 0.28;E CE EFG 2.641 3.107;F EFG BFJ 6.17 3.107;G EFG GH 4.665 2.031;H DHI GH 3.141 1.303;I DHI IJ 3.954 -0.407;J BFJ IJ 3.881 1.886' > "$w/deck"
 equal 'an eight-bar, published, a turn farther' '-435.1 8.9' "$(swing %.1f 360)"
 
+# Two mechanisms, each with a crank that turns: the crank-rocker 1, 3.5, 3, 4 is one of Grashof's, and the crank 1.5 is
+# shorter than its rod 4. Their assemblies are counted each by themselves.
+turns='ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS 1'
+both() {
+   printf ' CIRCUITS AND BRANCHES, DRIVE ANGLE %s\n CIRCUIT BRANCH  DET  ASSEMBLIES  RANGE\n' "$1"
+   printf ' 1       1        -   1           %s\n 2       2        +   2           %s\n' "$turns" "$turns"
+}
+with two_loops "$(card CIRCUITS)" > "$w/deck"
+found 'independent mechanisms' "$(both CRANK-1; both CRANK-2)"
+# A crank alone has nothing to be assembled.
+{ card GROUND BASE; card LINK CRANK '' '' 0.0 0.0 10.0; card POINT A0 BASE; card POINT A0C CRANK; card REVOLUTE A0 A0C P
+  card DRIVE ANGLE CRANK '' 10.0 36.0; card TIME 2 '' '' 0.0 2.0; card CIRCUITS; card END; } > "$w/deck"
+equal 'no unknown' " 1       1        +   1           $turns" "$(circuits | sed '1,2d')"
+# Sets of one deck: a triple rocker after them.
+{ with two_loops "$(card CIRCUITS)"; four_bar 2.0 1.5 3.0 4.0 CRANK 57.0 20.0 105.0 57.0; } > "$w/deck"
+equal 'several sets' '4 2' "$("$kinmat" "$w/deck" | awk '/TURNS 1/ { turn++ } / MIN / { limit++ } END { print turn, limit }')"
+
 # No position.
 four_bar 1.0 1.0 1.0 4.0 CRANK 0.0 0.0 0.0 0.0 > "$w/deck"
 found 'no position anywhere' ' CIRCUITS AND BRANCHES, DRIVE ANGLE CRANK
