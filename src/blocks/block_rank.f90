@@ -31,8 +31,8 @@ module block_rank
       real(wp), allocatable :: r(:)               !< (rows) the block's residual
    end type values_t
 
-   !> Too far: a column of a Jacobian that changes by this part of its length, 44 deg, and a product of cosines below.
-   real(wp), parameter :: max_turn = 0.75_wp, min_cosines = 0.5_wp
+   !> The cosine between columns of two Jacobians, and the product of those between their ranges, that are not too far.
+   real(wp), parameter :: min_cosine = 0.7_wp
 
 contains
 
@@ -151,14 +151,14 @@ contains
       old = reshape(before, shape(old))
       new = reshape(jacobian_of(b, i, s), shape(new))
       side = -1
-      if (any(norm2(new - old, dim=1) > max_turn*norm2(old, dim=1))) return
+      if (any(sum(new*old, dim=1) < min_cosine*norm2(new, dim=1)*norm2(old, dim=1))) return
       call find_range(old, sides(1))
       call find_range(new, sides(2))
       call find_determinant(matmul(transpose(old), old), old_size, positive)
       call find_determinant(matmul(transpose(new), new), new_size, positive)
       call find_determinant(matmul(transpose(old), new), cosines, side)
       side = side*product(sides)
-      if (cosines < 0.5_wp*(old_size + new_size) + log(min_cosines)) side = -1
+      if (cosines < 0.5_wp*(old_size + new_size) + log(min_cosine)) side = -1
    end function relative_sign
 
    !> Replaces the columns of `a` (rows, n) by others of the same range, the lower factor of Gauss's elimination, well

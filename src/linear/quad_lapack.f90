@@ -22,25 +22,25 @@ contains
       if (info == 0) call getrs('N', n, nrhs, a, lda, ipiv, b, ldb, info)
    end subroutine gesv
 
-   !> Factors `a` (n, n) in place, row k exchanged with row `ipiv`(k).
+   !> Factors `a` (m, n), m >= n, in place, row k exchanged with row `ipiv`(k).
    pure subroutine getrf(m, n, a, lda, ipiv, info)
       integer, intent(in) :: m, n, lda
       real(qp), intent(inout) :: a(lda, *)
       integer, intent(out) :: ipiv(*), info
       integer :: j, k
 
-      info = merge(0, -1, m == n)
+      info = merge(0, -1, m >= n)
       if (info < 0) return
       do k = 1, n
-         ipiv(k) = k - 1 + maxloc(abs(a(k:n, k)), dim=1)
+         ipiv(k) = k - 1 + maxloc(abs(a(k:m, k)), dim=1)
          if (abs(a(ipiv(k), k)) <= 0.0_qp) then
             if (info == 0) info = k
             cycle
          end if
          if (ipiv(k) /= k) a([k, ipiv(k)], :n) = a([ipiv(k), k], :n)
-         a(k + 1:n, k) = a(k + 1:n, k)/a(k, k)
+         a(k + 1:m, k) = a(k + 1:m, k)/a(k, k)
          do j = k + 1, n
-            a(k + 1:n, j) = a(k + 1:n, j) - a(k, j)*a(k + 1:n, k)
+            a(k + 1:m, j) = a(k + 1:m, j) - a(k, j)*a(k + 1:m, k)
          end do
       end do
    end subroutine getrf
