@@ -10,7 +10,7 @@ parts() {
    if [ -n "$PARTS" ]; then cat "$PARTS"; return; fi
    sed 's/^ *//' <<'END'
    faults by name|560|tests/system/faults.sh
-   make check|2640|tests/system/check.sh
+   make check|2620|tests/system/check.sh
    real128|124|"$MAKE" --no-print-directory quad-check
    single precision|62|"$MAKE" --no-print-directory single-check
    speed against error|80|"$MAKE" --no-print-directory study-short
