@@ -24,6 +24,7 @@ module assembly_table
    integer, parameter :: estimate_digits = 10, drawing_digits = 13
    !> Angles have as many digits after the point as this one, in rad or degrees.
    real(wp), parameter :: largest_angle = 100.0_wp
+   !> A turn that rounding may add to an angle.
    real(wp), parameter :: small_angle = max(1.0e-12_wp, 16.0_wp*epsilon(1.0_wp))
 
 contains
