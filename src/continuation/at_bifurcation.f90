@@ -207,8 +207,9 @@ contains
       logical, intent(out) :: passed, stands
       type(law_t) :: held(size(laws))
       type(step_record_t) :: one
-      real(wp) :: value(3), at_near(3), rate, from, v
+      real(wp) :: value(3), at_near(3), rate, from, v, at
       integer :: i
+      logical :: turned
 
       if (.not. allocated(step%passed)) allocate (step%passed(0))
       from = f%t
@@ -227,25 +228,43 @@ contains
       f%drives%last = -huge(1.0_wp)
       call take_up(f, v, passed)
       stands = .false.
+      turned = .false.
       do i = 1, value_steps
-         if (.not. passed) return
-         value = drive_motion(laws(drive), from + (t - from)*i/value_steps)
-         v = near + (value(1) - at_near(1))/rate
-         stands = .false.
-         if (abs(v - f%t) <= 0.0_wp) cycle
-         call continue_to(f, v, one)
-         passed = one%arrived
-         stands = passed .and. f%convergence%singular
-         if (allocated(one%passed)) step%passed = [step%passed, one%passed]
-         if (stands .and. i < value_steps) then
-            call go_back(f, one)
-         else if (passed .and. .not. stands) then
-            call go_on_from(f, v)
+         at = from + (t - from)*i/value_steps
+         ! A limit short of the value at which the drive turns is passed by none of the others.
+         if (.not. turned .and. (at - near)*(near - from) > 0.0_wp) then
+            turned = .true.
+            call go_to(near, .false.)
          end if
+         call go_to(at, i == value_steps)
+         if (.not. passed) return
       end do
       if (.not. stands) return
       call stand_on(f, v, one, list, passed)
       list%t = t
+
+   contains
+
+      !> Follows the motion to the value that the drive has `at` this time, the `last` or not.
+      subroutine go_to(at, last)
+         real(wp), intent(in) :: at
+         logical, intent(in) :: last
+
+         if (.not. passed) return
+         value = drive_motion(laws(drive), at)
+         v = near + (value(1) - at_near(1))/rate
+         stands = .false.
+         if (abs(v - f%t) <= 0.0_wp) return
+         call continue_to(f, v, one)
+         passed = one%arrived
+         stands = passed .and. f%convergence%singular
+         if (allocated(one%passed)) step%passed = [step%passed, one%passed]
+         if (stands .and. .not. last) then
+            call go_back(f, one)
+         else if (passed .and. .not. stands) then
+            call go_on_from(f, v)
+         end if
+      end subroutine go_to
    end subroutine follow_by_value
 
    !> The motion that is followed becomes that at the time `t`, where the drives have the same values. `passed`: so it

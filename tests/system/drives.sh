@@ -126,4 +126,12 @@ equal 'on_a_turning_link: coupler parallel to its base' '' "$(LC_ALL=C awk -F, '
 equal 'branch_below_dyad: its other branch' 1 "$(grep -c 'CHANGE POINT AT .*, LINKS L22, L21: TAKE' "$w/branch_below_dyad.lst")"
 equal 'branch_below_dyad: flagged' 0 "$(sed -n 's/^ END OF SET.*FLAGGED //p' "$w/branch_below_dyad.lst")"
 equal 'cusp: the other assembly' 1 "$(grep -c '^ PLAT *8\.85715 *-8\.19202 ' "$w/cusp.lst")"
+
+# A drive that turns just beyond a limit and comes back before the next instant: the triple rocker 2, 1.5, 3, 4 ends where
+# cos = (2^2 + 4^2 - 4.5^2)/16, at 90.89528299 deg, and the drive goes up to 90.9: sin(pi t) = 33.89528299/33.9 there.
+{ still_four_bar 2.0 1.5 3.0 4.0 CRANK 57.0 20.0 105.0 57.0 | grep -vE '^(AT|DRIVE|END)'
+  card DRIVE ANGLE CRANK '' 57.0; card ADD HARMONIC '' '' 33.9 180.0; card TIME 1 '' '' 0.0 0.955; card END; } > "$w/deck"
+equal 'beyond a limit and back between two instants' \
+   ' *** LIMIT OF MOTION AT T = 4.946898857E-01, DRIVE ANGLE CRANK = 9.089528299E+01 DEG' \
+   "$("$kinmat" "$w/deck" 2>&1 | grep 'LIMIT OF')"
 conclude
