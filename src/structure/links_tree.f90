@@ -11,7 +11,8 @@ module links_tree
    use mechanism, only: mechanism_t, pair_prismatic, pair_revolute, pair_links, plane_origin
    implicit none
    private
-   public :: tree_t, new_tree, other_link, place_t, place_on_tree, point_in_drawing, guide
+   public :: tree_t, new_tree, other_link, place_t, place_on_tree, point_in_drawing, offset_in_drawing, &
+      ground_place, guide
 
    type :: tree_t
       integer :: orientations = 0           !< angles that are unknown; orientation 0 is the ground's
@@ -233,9 +234,29 @@ contains
       integer, intent(in) :: i
       real(wp) :: v(2)
 
-      associate (link => m%points(i)%link, offset => m%points(i)%offset)
-         v = rotated(offset, direction(t%angle_offset(link)))/length
-         if (m%links(link)%ground) v = v + (m%links(link)%position(:2) - t%origin)/length
-      end associate
+      v = offset_in_drawing(m, t, length, i)
+      if (m%links(m%points(i)%link)%ground) v = v + ground_place(m, t, length, m%points(i)%link)
    end function point_in_drawing
+
+   !> Point number `i` from the origin of its link, in the axes of the link's orientation.
+   pure function offset_in_drawing(m, t, length, i) result(v)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      real(wp), intent(in) :: length
+      integer, intent(in) :: i
+      real(wp) :: v(2)
+
+      v = rotated(m%points(i)%offset, direction(t%angle_offset(m%points(i)%link)))/length
+   end function offset_in_drawing
+
+   !> The place of ground `link` from the origin of all places.
+   pure function ground_place(m, t, length, link) result(v)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      real(wp), intent(in) :: length
+      integer, intent(in) :: link
+      real(wp) :: v(2)
+
+      v = (m%links(link)%position(:2) - t%origin)/length
+   end function ground_place
 end module links_tree

@@ -12,7 +12,7 @@
 module vector_loops
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_prismatic, pair_revolute
-   use links_tree, only: tree_t, point_in_drawing, guide, other_link
+   use links_tree, only: tree_t, offset_in_drawing, ground_place, guide, other_link
    implicit none
    private
    public :: vector_loops_t, new_vector_loops, add_vector_loop, search_t, new_search, find_path, find_path_down, &
@@ -46,6 +46,9 @@ module vector_loops
       !> component that was added to it.
       integer, allocatable :: vector_of(:)
       real(wp), allocatable :: largest(:)
+      !> Of the loop in the making: the places of ground links, which are summed apart from their points. Between points
+      !> of one link they cancel, wherever that stands, and leave no rounding of their size.
+      real(wp) :: places(2) = 0.0_wp
    end type vector_loops_t
 
 contains
@@ -74,36 +77,30 @@ contains
       integer, intent(in) :: p, q
       type(search_t), intent(in) :: s
       type(vector_loops_t), intent(inout) :: loops
-      real(wp) :: v(2)
       integer :: link, i
 
       link = m%points(p)%link
-      v = point_in_drawing(m, t, length, p)
-      call add_term(loops, [p, 0])
+      call add_point(m, t, length, p, 1.0_wp, loops)
       do i = 1, s%length
-         call cross(m, t, length, s%pairs(i), link, v, loops)
+         call cross(m, t, length, s%pairs(i), link, loops)
       end do
       if (q > 0) then
-         ! Not their difference: the largest that was added tells which sums are rounding alone.
-         call add_body_vector(loops, t%orientation(link), -point_in_drawing(m, t, length, q))
-         call add_term(loops, [-q, 0])
+         call add_point(m, t, length, q, -1.0_wp, loops)
       else if (t%root(link) > 0) then
          call add_slide(loops, 0, t%slides + 2*t%root(link) - 1, [1.0_wp, 0.0_wp])
          call add_slide(loops, 0, t%slides + 2*t%root(link), [0.0_wp, 1.0_wp])
       end if
-      call add_body_vector(loops, t%orientation(link), v)
       call close_loop(loops)
    end subroutine add_vector_loop
 
-   !> Goes from place `v` of `link` through `pair` to the link at its other end, which becomes `link`. Ground
+   !> Goes from a place of `link` through `pair` to the link at its other end, which becomes `link`. Ground
    !> links are one: the pair may be another one's than that of the ground link reached.
-   subroutine cross(m, t, length, pair, link, v, loops)
+   subroutine cross(m, t, length, pair, link, loops)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       real(wp), intent(in) :: length
       integer, intent(in) :: pair
       integer, intent(inout) :: link
-      real(wp), intent(inout) :: v(2)
       type(vector_loops_t), intent(inout) :: loops
       integer :: exit_point, entry_point
       real(wp) :: sign_of
@@ -113,10 +110,7 @@ contains
          forward = is_on(m, k%point_i, link)
          exit_point = merge(k%point_i, k%point_j, forward)
          entry_point = merge(k%point_j, k%point_i, forward)
-         call add_body_vector(loops, t%orientation(link), v)
-         call add_body_vector(loops, t%orientation(link), -point_in_drawing(m, t, length, exit_point))
-         call add_term(loops, [-exit_point, 0])
-         call add_term(loops, [entry_point, 0])
+         call add_point(m, t, length, exit_point, -1.0_wp, loops)
          if (k%kind == pair_prismatic) then
             ! P - Q = h n - s e, all in the orientation that the two links share.
             sign_of = merge(1.0_wp, -1.0_wp, forward)
@@ -125,7 +119,7 @@ contains
             call add_body_vector(loops, t%orientation(link), sign_of*k%offset/length*guide(m, t, pair, across=.true.))
          end if
          link = m%points(entry_point)%link
-         v = point_in_drawing(m, t, length, entry_point)
+         call add_point(m, t, length, entry_point, 1.0_wp, loops)
       end associate
    end subroutine cross
 
@@ -136,6 +130,26 @@ contains
 
       is_on = m%points(i)%link == link .or. (m%links(m%points(i)%link)%ground .and. m%links(link)%ground)
    end function is_on
+
+   !> Adds point number `i`, from its link's origin, with a sign to the loop in the making. Never the difference of two
+   !> points: the largest that was added tells which sums are rounding alone.
+   subroutine add_point(m, t, length, i, sign_of, p)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      real(wp), intent(in) :: length, sign_of
+      integer, intent(in) :: i
+      type(vector_loops_t), intent(inout) :: p
+      real(wp) :: place(2)
+
+      call add_term(p, [merge(i, -i, sign_of > 0.0_wp), 0])
+      associate (link => m%points(i)%link)
+         call add_body_vector(p, t%orientation(link), sign_of*offset_in_drawing(m, t, length, i))
+         if (.not. m%links(link)%ground) return
+         place = ground_place(m, t, length, link)
+      end associate
+      p%places = p%places + sign_of*place
+      p%largest(0) = max(p%largest(0), maxval(abs(place)))
+   end subroutine add_point
 
    !> Adds a term to the loop in the making.
    subroutine add_term(p, term)
@@ -194,6 +208,8 @@ contains
       integer :: kept, k
 
       kept = p%first_vector(p%count + 1) - 1
+      if (p%vector_of(0) > 0) p%body_vector(:, p%vector_of(0)) = p%body_vector(:, p%vector_of(0)) + p%places
+      p%places = 0.0_wp
       do k = kept + 1, p%vectors
          associate (orientation => p%vector_orientation(k))
             p%vector_of(orientation) = 0
