@@ -29,6 +29,7 @@ module scheme_motion
       type(jet_t), allocatable :: sine(:)      !< of a parallelogram's angle
       logical, allocatable :: crossed(:)       !< an antiparallelogram
       logical, allocatable :: has_branched(:)
+      logical, allocatable :: was_open(:)      !< a change point was passed at angles so large that it may be refused
    end type motion_t
 
    !> Rad, or lengths, that a drive goes in one step at most.
@@ -54,6 +55,9 @@ module scheme_motion
    !> A base whose ends are places so far away, in its own size, is rounded: whether the branches of a parallelogram on it
    !> cross nobody can tell.
    real(qp), parameter :: farthest = 1.0e4_qp
+   !> Radians beyond which the rounding of angles leaves so wide a place without velocities about a change point that the
+   !> program refuses to pass it: its square is in proportion to the angle.
+   real(qp), parameter :: largest_angle = 15.0_qp
    !> At the first instant the assembly, rounded as the deck is, is so near; beside lengths much larger than those of a
    !> group, of its own ground link perhaps, so many roundings of them.
    real(qp), parameter :: rounding = 1.0e-7_qp, of_largest = 64.0_qp*epsilon(1.0_real64)
@@ -81,7 +85,7 @@ contains
       allocate (m%margin(size(s%groups)), m%slope(size(s%groups)), m%bow(size(s%groups)), source=0.0_qp)
       allocate (m%lowest(size(s%groups)), source=huge(1.0_qp))
       allocate (m%sign(size(s%groups)), source=0)
-      allocate (m%crossed(size(s%groups)), m%has_branched(size(s%groups)), source=.false.)
+      allocate (m%crossed(size(s%groups)), m%has_branched(size(s%groups)), m%was_open(size(s%groups)), source=.false.)
       call place_groups(s, m, 0.0_qp, exact, failed)
       if (failed > 0) then
          problem = 'THE FIRST POSITION IS NOT CLOSED'
@@ -297,6 +301,7 @@ contains
       before = trial%sine(k)
       call place_parallelogram(s, g, trial%b, phi, trial%crossed(k), sine)
       passes = trial%lowest(k) < huge(1.0_qp) .and. sine%v*before%v < 0.0_qp
+      trial%was_open(k) = trial%was_open(k) .or. passes .and. abs(phi%v) > largest_angle
       ! The time of the passage, by the chord.
       if (passes .and. .not. trial%has_branched(k) .and. abs(g%branch_after) < huge(1.0_qp)) then
          at = trial%t + h*before%v/(before%v - sine%v)

@@ -209,7 +209,7 @@ contains
          if (s%groups(k)%part /= s%groups(maxval(group))%part) cycle
          is = is .and. told(k) .and. m%status(k) == is_followed .and. m%lowest(k) > safe_margin
          if (s%groups(k)%form == form_parallelogram) is = is .and. s%method /= 'DENSE' &
-            .and. abs(m%sine(k)%v) > beside_change
+            .and. abs(m%sine(k)%v) > beside_change .and. .not. m%was_open(k)
       end do
    end function is_regular
 
