@@ -222,7 +222,8 @@ contains
       do k = 0, instant_count(m) - 1
          call advance_set(a, instant(m, k))
          call record_instant(d, a%now, k)
-         call show_progress(progress, 'PICTURE OF SET '//whole(m%set_number)//': INSTANT', k, instant_count(m) - 1)
+         if (progress%shown) &
+            call show_progress(progress, 'PICTURE OF SET '//whole(m%set_number)//': INSTANT', k, instant_count(m) - 1)
          if (signal_received() > 0) return
       end do
    end subroutine draw_set

@@ -30,7 +30,7 @@ parts() {
    nothing false is proved|2000|"$BUILD/release/fool_proofs" 2000
    units|786|tests/system/units.sh
    tolerances|39|tests/system/tolerances.sh
-   extremes|33|tests/system/answers.sh
+   extremes|34|tests/system/answers.sh
    circuits by chance|40|"$BUILD/release/circuits_by_chance" 40
    poles and curves|38|tests/system/centres.sh
    all assemblies|79|tests/system/assemblies.sh

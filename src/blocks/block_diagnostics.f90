@@ -19,6 +19,8 @@ module block_diagnostics
    real(wp), parameter :: far_angle = 1.0_wp
    !> A limit is reported where it is no further than this part of the step that could not be made.
    real(wp), parameter :: near_part = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
+   !> At its own limit a block is near singular: its least pivot is below this part of the Lipschitz constant.
+   real(wp), parameter :: near_pivot = 0.05_wp
    !> So many lengths is a slide on its way to infinity, and its derivatives are so near to those of a pole.
    real(wp), parameter :: far_slide = 10.0_wp, as_a_pole = 0.2_wp
    !> Body vectors with a smaller sine between them are in line: the last motion accepted is as far off as the root of
@@ -194,12 +196,14 @@ contains
    contains
 
       !> The time from the motion that is followed to the limit t* of block `i` before `t`; 0 where none is near. Close
-      !> to t* the fastest unknown is x* + c sqrt(t* - t), so t* - t = x'/(2 x''), with an error of higher order.
+      !> to t* the fastest unknown is x* + c sqrt(t* - t), so t* - t = x'/(2 x''), with an error of higher order. A
+      !> block far from singular only follows another with such accelerations, beside a change point perhaps.
       pure real(wp) function time_to_limit(i) result(left)
          integer, intent(in) :: i
          integer :: fastest
 
          left = 0.0_wp
+         if (e%followed(i)%pivot > near_pivot*e%blocks%list(i)%lipschitz) return
          associate (past => e%history%past, step => t - e%history%t(0), &
                     u => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
             if (size(u) == 0) return

@@ -81,6 +81,25 @@ equal 'at the limit of Grashof' 'MIN 0 MAX 0' "$(awk -v a="$(angle 3 0.75 3.7499
 sed "s/^AT .*/$(card TIME 100 '' '' 0.0 5.0)/" "$w/deck" > "$w/run.deck"
 equal 'at the limit of Grashof: a run' ' *** THE MOTION IS FOLLOWED TO T = 4.33329...E+00: LIMIT OR CHANGE POINT, TOO CLOSE TO TELL' \
    "$("$kinmat" "$w/run.deck" | sed -n 's/^\( .*T = 4.33329\)[0-9]*\(.* TOO CLOSE .*\)/\1...\2/p')"
+# A dyad on the coupler of a parallelogram whose lengths are off by 3E-12 follows the accelerations that grow beside the change
+# point: that is no limit of the dyad, which is far from its dead points.
+{
+   card UNITS M DEG S; card GROUND BASE
+   card LINK CRANK '' '' 0.0 0.0 1060.0; card LINK COUPLER '' '' 1.87938524 -0.684040287 0.0
+   card LINK ROCKER '' '' 3.0 0.0 1060.0
+   card LINK D1 '' '' 3.37938524 0.815959713 136.343611; card LINK D2 '' '' 4.54976137 2.76809647 157.025925
+   card POINT A0 BASE; card POINT B0 BASE '' 3.0; card POINT G BASE '' 4.54976137 2.76809647
+   card POINT A1 CRANK; card POINT A2 CRANK '' 2.0; card POINT C1 COUPLER; card POINT C2 COUPLER '' 2.99999999999696
+   card POINT CP COUPLER '' 1.5 1.5; card POINT R1 ROCKER; card POINT R2 ROCKER '' 2.0
+   card POINT Q1 D1; card POINT Q2 D1 '' 6.38221977; card POINT S1 D2; card POINT S2 D2 '' 6.28650173
+   card REVOLUTE A0 A1 K0; card REVOLUTE A2 C1 K1; card REVOLUTE C2 R2 K2; card REVOLUTE B0 R1 K3
+   card REVOLUTE CP Q1 K4; card REVOLUTE Q2 S2 K5; card REVOLUTE G S1 K6
+   card DRIVE ANGLE CRANK '' 1060.0 50.3900617
+   card TIME 12 '' '' 0.0 2.59669322
+   card END
+} > "$w/run.deck"
+equal 'a dyad beside a change point is at no limit' ' *** THE MOTION IS FOLLOWED TO T = 3.96902...E-01: LIMIT OR CHANGE POINT, TOO CLOSE TO TELL' \
+   "$("$kinmat" "$w/run.deck" | grep -E '[*] .*(FOLLOWED|LIMIT)' | sed 's/\(T = 3.96902\)[0-9]*/\1.../')"
 
 # refusal NAME CARD CODE: the deck stroke with this card
 refusal() {
