@@ -22,12 +22,13 @@ place=$(mkdir -p "$BUILD/mutants" && cd "$BUILD/mutants" && pwd) || exit 3
 tab=$(printf '\t')
 awk=${AWK:-awk}
 
-# build TREE KIND TARGET...: make in a tree. Kind `plain`: whatever nobody has set is NaN; kind `traps`: the debug build.
+# build TREE KIND TARGET...: make in a tree. Kind `plain`: whatever nobody has set is NaN, or a whole number that is too large;
+# kind `traps`: the debug build.
 build() {
    tree=$1 kind=$2
    shift 2
    set -- "$@" BUILD="$kind" FC="${FC:-gfortran}"
-   [ "$kind" = traps ] || set -- "$@" DEBUG='-O0 -finit-real=snan -finit-derived'
+   [ "$kind" = traps ] || set -- "$@" DEBUG='-O0 -finit-real=snan -finit-integer=99991 -finit-derived'
    make -s -j1 -C "$tree" "$@" > "$tree/make.log" 2>&1
 }
 
