@@ -3,9 +3,9 @@
 module random_schemes
    use kinds, only: wp
    use quad_jet, only: qp
-   use dice, only: dice_t, new_dice, throw, chance, between, magnitude, disorder
+   use dice, only: dice_t, new_dice, throw, chance, magnitude, disorder
    use schemes, only: scheme_t, double
-   use scheme_draft, only: draft_t, number, add_link, begin_group, end_group
+   use scheme_draft, only: draft_t, number, add_link, end_group
    use draft_groups, only: add_crank, add_slider, add_dyad, add_plates, add_net, add_open_chain, add_floating, &
       add_cylinder, add_table, add_ring, add_parallelogram
    implicit none

@@ -8,7 +8,7 @@
 program random_blocks
    use kinds, only: wp, label_length
    use planar, only: pi, rotated, direction
-   use mechanism, only: mechanism_t, link_t, point_t, pair_t, drive_t, request_t, pair_revolute, pair_prismatic
+   use mechanism, only: mechanism_t, link_t, point_t, pair_t, request_t, pair_revolute, pair_prismatic
    use structure, only: findings_t, find_structure
    use complex_lu, only: find_null_space
    use numerals, only: whole

@@ -2,7 +2,7 @@
 !> (Gosselin and Sefrioui 1991; Merlet, Parallel Robots), a four-bar by the law of cosines. Roots are bracketed by those of
 !> the derivatives, so none is missed.
 module closed_forms_assemblies
-   use quad_jet, only: qp, jet_t, pi_q, degree_q, constant_jet, time_jet, operator(+), operator(*)
+   use quad_jet, only: qp, jet_t, degree_q, constant_jet, time_jet, operator(+), operator(*)
    use closed_forms_dyads, only: place_t, body_t, fixed_place, body, polar, direction, corner
    implicit none
    private

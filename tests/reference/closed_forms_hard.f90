@@ -1,7 +1,6 @@
 !> Tests. Closed forms at positions that are hard to compute: change points, dead points, lengths far below the places,
 !> many turns. The lengths are those of the decks, written out again by hand.
 module closed_forms_hard
-   use mechanism, only: mechanism_t
    use quad_jet, only: qp, jet_t, degree_q, constant_jet, time_jet, operator(+), &
       operator(-), operator(*), operator(/), sqrt, cos
    use closed_forms_dyads, only: place_t, body_t, fixed_place, body, polar, direction, corner, on_line

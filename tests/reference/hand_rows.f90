@@ -2,7 +2,7 @@
 !> and of pairs the angle or the slide.
 module hand_rows
    use mechanism, only: mechanism_t, request_t, request_link, request_point, pair_prismatic
-   use quad_jet, only: qp, jet_t, constant_jet, operator(+), operator(-), operator(*), sin, cos
+   use quad_jet, only: qp, jet_t, operator(+), operator(-), operator(*), sin, cos
    use closed_forms_dyads, only: body_t, place_t, place_on
    implicit none
    private

@@ -5,7 +5,7 @@
 program read_listing
    use, intrinsic :: iso_fortran_env, only: real128
    use csv_cells, only: cells, cell_length, split, whole_text
-   use echoed_deck, only: due_t, kind_of_row
+   use echoed_deck, only: kind_of_row
    use listing_reader, only: row_text_t, set_text_t, next_set
    use printed_numbers, only: printed_t, read_printed, agrees
    implicit none
