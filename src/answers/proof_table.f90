@@ -217,11 +217,12 @@ contains
       if (.not. x > 0.0_wp) return
       ! Numbers next to the end of the range are none.
       large = min(max(x, tiny(x)/epsilon(x)**2), huge(x)*epsilon(x)**2)
-      power = floor(log10(large))
+      ! Of the power of two: its own or one less.
+      power = floor((exponent(large) - 1)*log10(2.0_wp))
       digit = max(1, ceiling(large/10.0_wp**power))
       if (digit > 9) then
-         digit = 1
          power = power + 1
+         digit = max(1, ceiling(large/10.0_wp**power))
       end if
       last = min(abs(power), 999)
       point = len(text) - merge(5, 4, last > 99)

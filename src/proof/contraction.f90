@@ -56,8 +56,11 @@ contains
       end if
       c%z1 = maxval(c%off)
       c%z2 = maxval(c%y)
-      call apply(c, [(1.0_wp, k=1, n)], c%x)
-      c%norm = maxval(c%x)
+      c%x(:) = c%inverse(:, 1)
+      do k = 2, n
+         c%x(:) = c%x + c%inverse(:, k)
+      end do
+      c%norm = maxval(c%x)*(1.0_wp + (16 + n)*rounding)
       c%exists = all(c%off < 1.0_wp) .and. all(c%y <= huge(1.0_wp))
    end subroutine contract
 

@@ -81,11 +81,13 @@ contains
       type(link_bounds_t), intent(in) :: l
       type(block_engine_t), intent(in) :: e
       type(jets_t), intent(in) :: j
-      real(wp), intent(out), contiguous :: error(:, 0:, :)
+      real(wp), intent(out) :: error(3, 0:2, size(e%orientation_of))
       real(wp) :: size_of(0:2, 0:size(error, 3)), x, y
       integer :: i, k
 
-      error = 0.0_wp
+      do i = 1, size(error, 3)
+         error(:, :, i) = 0.0_wp
+      end do
       size_of(:, 0) = 0.0_wp
       do i = 1, size(e%whole%links)
          associate (h => e%whole%links(i), p => e%whole%links(i)%parent_orientation, &
