@@ -33,7 +33,7 @@ parts() {
    extremes|34|tests/system/answers.sh
    circuits by chance|40|"$BUILD/release/circuits_by_chance" 40
    poles and curves|38|tests/system/centres.sh
-   all assemblies|79|tests/system/assemblies.sh
+   all assemblies|81|tests/system/assemblies.sh
    the digits|1|tests/system/digits.sh
    decks made by chance|1000|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 1000
    relations between runs|300|tests/system/relations.sh --short

@@ -24,7 +24,7 @@ module circuits
    use circuit_trace, only: circuit_t, trace, least_step, change_point_t
    use circuit_branches, only: circuits_t, no_sign, add_branches, add_assemblies, add_meetings, number_assemblies, &
       branch_t
-   use ranges, only: range_t, find_range, held_at, low, high
+   use ranges, only: range_t, find_range, is_lost, held_at, low, high
    use linear_solver, only: solve, solve_transposed
    use pose, only: add_to_links
    implicit none
@@ -247,7 +247,9 @@ contains
          if (all(found%branches(b)%dead == 0) .or. found%list(found%branches(b)%circuit)%rests) cycle
          if (all(found%dead(pack(found%branches(b)%dead, found%branches(b)%dead > 0))%limit%links(1) > 0)) cycle
          call set_middle(found, found%branches(b), held, middle)
-         call find_range(held, middle, found%drive, r)
+         call find_range(held, middle, found%drive, r, limits_only=.true.)
+         ! Lost slowly, and so would the others be: their links stay without names.
+         if (is_lost(r, low) .or. is_lost(r, high)) return
          do side = low, high
             if (found%branches(b)%dead(side) == 0 .or. .not. r%has_limit(side)) cycle
             associate (dead => found%dead(found%branches(b)%dead(side))%limit)

@@ -19,7 +19,7 @@ module ranges
    use phrases
    implicit none
    private
-   public :: range_t, find_range, find_ranges, put_ranges, held_at, low, high
+   public :: range_t, find_range, find_ranges, is_lost, put_ranges, held_at, low, high
 
    !> Instants along the drive, in rad or characteristic lengths, and how far it is followed each way.
    real(wp), parameter :: step_of_angle = pi/36.0_wp, step_of_length = 0.05_wp
@@ -111,25 +111,39 @@ contains
    end function reason
 
    !> The range of drive number `drive` of `m`, one independent mechanism at the motion `start` of its first instant.
-   subroutine find_range(m, start, drive, r)
+   !> `limits_only`: where no limit is told, the end is not looked for closely, nor the other one: both take long.
+   subroutine find_range(m, start, drive, r, limits_only)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: start
       integer, intent(in) :: drive
       type(range_t), intent(out) :: r
+      logical, intent(in), optional :: limits_only
       type(mechanism_t) :: held
       real(wp) :: unit
       integer :: side
+      logical :: closely
 
+      closely = .true.
+      if (present(limits_only)) closely = .not. limits_only
       r%drive = drive
       held = held_at(m, start%t)
       unit = 1.0_wp
       if (is_length(m%drives(drive))) unit = characteristic_length(m)
       do side = low, high
          call follow(along(held, start, drive, merge(-unit, unit, side == low)), &
-            held%drives(drive)%polynomial(1), merge(-unit, unit, side == low), side, r)
+            held%drives(drive)%polynomial(1), merge(-unit, unit, side == low), side, closely, r)
          if (r%is_all) return
+         if (.not. closely .and. is_lost(r, side)) return
       end do
    end subroutine find_range
+
+   !> The motion ends on this `side` of `r`, and no limit is told: rounding is too coarse to follow it farther.
+   pure logical function is_lost(r, side)
+      type(range_t), intent(in) :: r
+      integer, intent(in) :: side
+
+      is_lost = r%has_limit(side) .and. r%limit(side)%links(1) == 0
+   end function is_lost
 
    !> `m`, whose drives are held, at `start`, with drive number `drive` at this `rate`.
    function along(m, start, drive, rate) result(d)
@@ -169,11 +183,13 @@ contains
       end do
    end function held_at
 
-   !> Follows the drive of `d`, which is at `value` + `rate` t, to its end on one `side`.
-   subroutine follow(d, value, rate, side, r)
+   !> Follows the drive of `d`, which is at `value` + `rate` t, to its end on one `side`. `closely`: also where no limit
+   !> is told.
+   subroutine follow(d, value, rate, side, closely, r)
       type(mechanism_t), intent(in) :: d
       real(wp), intent(in) :: value, rate
       integer, intent(in) :: side
+      logical, intent(in) :: closely
       type(range_t), intent(inout) :: r
       type(analysis_t) :: a
       type(motion_t) :: first, now
@@ -198,7 +214,7 @@ contains
             + count(now%diagnostics%kind == diagnostic_change .and. .not. now%diagnostics%here)
          if (now%known < 0) then
             t = a%t
-            call close_in()
+            if (closely) call close_in()
             call take_limit()
             return
          end if

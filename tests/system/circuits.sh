@@ -119,6 +119,32 @@ equal 'Watt I, published' '-5 5' "$(swing %d 0)"
 linkage 'A BASE ACD -0.154 0.528;B BASE BFJ 6.17 0.0;C ACD CE 0.97 2.123;D ACD DHI 0.841 0.28;E CE EFG 2.641 3.107;F EFG BFJ 6.17 3.107;G EFG GH 4.665 2.031;H DHI GH 3.141 1.303;I DHI IJ 3.954 -0.407;J BFJ IJ 3.881 1.886' > "$w/deck"
 equal 'an eight-bar, published, a turn farther' '-435.1 8.9' "$(swing %.1f 360)"
 
+# Watt II, whose limits are those of two four-bars one behind the other, by the law of cosines; the lengths are those of a position
+# analysis over a whole turn (D. Ziolkowski, Watt Type II sixbar linkage, MATLAB): crank 70, coupler 100, rocker 90, base 110;
+# 150 from the rocker's pivot 30 degrees behind, 120, 160, and 150 from the crank's pivot to the other. The crank turns fully: 70 +
+# 110 < 100 + 90. The rocker then swings between the two positions with crank and coupler in line, and the last link, which could
+# turn fully by itself, between its angles there.
+crank='A BASE AB 0.0 0.0'
+last='F BASE FG 140.953893118 -51.303021499'
+others='B AB BC 70.0 0.0;C BC CDE 113.75 89.921841062;D CDE BASE 110.0 0.0;E CDE EG 190.347526325 126.665997858;G EG FG 272.743118176 39.425144793'
+linkage "$crank;$others;$last" > "$w/deck"
+equal 'Watt II, a crank' 4 "$(circuits | grep -c 'NO LIMIT, AND THE MOTION CLOSES; TURNS 1$')"
+linkage "$last;$others;$crank" > "$w/deck"
+limits=$(awk 'function root(x) { return sqrt(x) } function acos(x) { return atan2(root(1 - x*x), x) }
+   # The angle of the last link where crank and coupler together reach so far; which side of its four-bar each dyad is on.
+   function angle_at(reach, rocker, dyad,   t, ex, ey, dx, dy, l, x, y) {
+      t = pi - rocker*acos((90^2 + 110^2 - reach^2)/(2*90*110)) - pi/6
+      ex = 110 + 150*cos(t); ey = 150*sin(t); dx = fx - ex; dy = fy - ey; l = root(dx*dx + dy*dy)
+      x = (l*l + 120^2 - 160^2)/(2*l); y = dyad*root(120^2 - x*x)
+      return atan2(ey + (x*dy + y*dx)/l - fy, ex + (x*dx - y*dy)/l - fx)*180/pi - drawn }
+   BEGIN { pi = 4*atan2(1, 1); fx = 150*cos(pi/9); fy = -150*sin(pi/9)
+      drawn = atan2(39.425144793 - fy, 272.743118176 - fx)*180/pi
+      for (rocker = -1; rocker < 2; rocker += 2) for (dyad = -1; dyad < 2; dyad += 2) for (reach = 30; reach < 200; reach += 140)
+         printf "%.5f\n", (angle_at(reach, rocker, dyad) + 720) % 360 }' | sort -n | xargs)
+equal 'Watt II, the last link' "$limits" "$(circuits | awk '/ MIN / { for (i = 1; i <= NF; i++) if ($i == "MIN" || $i == "MAX")
+   printf "%.5f\n", ($(i + 1) + 720) % 360 }' | sort -n | uniq | xargs)"
+equal 'Watt II, its branches' '1 1 2 2 3 3 4 4' "$(circuits | awk '/ MIN / { print $1 }' | xargs)"
+
 # Two mechanisms, each with a crank that turns: the crank-rocker 1, 3.5, 3, 4 is one of Grashof's, and the crank 1.5 is
 # shorter than its rod 4. Their assemblies are counted each by themselves.
 turns='ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS 1'
@@ -165,4 +191,8 @@ equal 'no card' ' *** OPTION --circuits NEEDS A SET WITH A CIRCUITS CARD' "$(cat
 four_bar 1.0 1.0 1.0 4.0 CRANK 0.0 0.0 0.0 0.0 > "$w/deck"
 sed 's/^CIRCUITS/&CRANK/' "$w/deck" > "$w/wrong"
 equal 'a field' yes "$("$kinmat" "$w/wrong" 2>&1 | grep -q 'E019' && echo yes)"
+# A hundred of Dixon's, for minutes: a signal ends them within seconds.
+for k in $(seq 100); do with dixon "$(card CIRCUITS)"; done > "$w/deck"
+timeout -k 15 1 env --default-signal=TERM "$kinmat" --jobs 1 -o "$w/listing" "$w/deck" > /dev/null 2>&1
+equal 'a signal' 124 $?
 conclude
