@@ -83,6 +83,7 @@ contains
       logical, intent(in) :: always
       type(error_estimate_t), intent(inout) :: found
       type(mechanism_t) :: placed
+      integer :: pass
 
       found%taken = .false.
       found%asked = always
@@ -107,7 +108,11 @@ contains
          if (.not. s%engine%blocks%solvable) return
          call make_rounding_response(s%response, m, s%engine)
          s%response%state%u%value = s%engine%estimated
-         call take_changes(s%response, m, s%engine, q, s%length, .true., found)
+         ! An arm that is zero but for its rounding turns with a link that comes later in the solving order: all rates
+         ! are found first.
+         do pass = 1, 2
+            call take_changes(s%response, m, s%engine, q, s%length, .true., found)
+         end do
       end select
    end subroutine estimate_errors
 

@@ -11,6 +11,7 @@ program fuzz_mechanisms
    use, intrinsic :: iso_fortran_env, only: output_unit
    use command_line, only: options_t, out_listing, out_csv
    use job, only: run_job
+   use phrases, only: phrase, say_too_long
    use quad_jet, only: qp
    use schemes, only: scheme_t, write_scheme
    use random_schemes, only: random_scheme, class_of
@@ -105,17 +106,32 @@ contains
 
       s = schemes_of(seed)
       options%deck = directory//'/deck'
-      options%files(out_listing)%text = '/dev/null'
+      options%files(out_listing)%text = directory//'/listing'
       options%files(out_csv)%text = directory//'/csv'
       options%show = ''
       options%errors = .true.
       call write_deck(s, options%deck)
       call run_job(options, status, message)
       if (status == 0 .or. status == 2) then
-         call judge(s, options%files(out_csv)%text, v)
+         call judge(s, options%files(out_csv)%text, has_line(directory//'/listing', phrase(say_too_long, .false.)), v)
          if (status == 0 .and. v%lost + v%flagged > 0 .and. .not. allocated(v%text)) v%text = 'STATUS 0 WITH FLAGS'
       else
          v%text = 'STATUS '//whole_text(status)//': '//message
       end if
    end subroutine run_seed
+
+   !> A line of the file `path` holds `text`.
+   logical function has_line(path, text)
+      character(*), intent(in) :: path, text
+      character(200) :: line
+      integer :: unit, status
+
+      has_line = .false.
+      open (newunit=unit, file=path, status='old', action='read', iostat=status)
+      do while (status == 0 .and. .not. has_line)
+         read (unit, '(a)', iostat=status) line
+         if (status == 0) has_line = index(line, text) > 0
+      end do
+      close (unit)
+   end function has_line
 end program fuzz_mechanisms

@@ -22,6 +22,8 @@ module scheme_results
    real(qp), parameter :: safe_margin = 1.0e-4_qp
    !> The sine of the angle from a change point up to which there may be no velocities.
    real(qp), parameter :: beside_change = 1.0e-4_qp
+   !> The one matrix of METHOD DENSE may have no velocities for a group that is smaller than this part of another one.
+   real(qp), parameter :: small_group = 0.01_qp
    integer, parameter :: cells = 24, cell_length = 26
 
    type :: row_t
@@ -50,10 +52,12 @@ module scheme_results
 
 contains
 
-   !> Judges the file `path`, the results of `s`.
-   subroutine judge(s, path, v)
+   !> Judges the file `path`, the results of `s`. `is_too_long`: the listing says of a motion that it takes more substeps
+   !> than are tried.
+   subroutine judge(s, path, is_too_long, v)
       type(scheme_t), intent(in) :: s(:)
       character(*), intent(in) :: path
+      logical, intent(in) :: is_too_long
       type(verdict_t), intent(inout) :: v
       type(row_t) :: row
       type(motion_t) :: m, regular
@@ -70,7 +74,7 @@ contains
          call read_row(unit, row, at_end, v)
          if (at_end .or. allocated(v%text)) exit
          if (row%set /= set .or. row%step /= step) call begin_instant(s, row, set, step, m, regular, so_far, v)
-         if (.not. allocated(v%text)) call judge_row(s(set), m, row, so_far, v)
+         if (.not. allocated(v%text)) call judge_row(s(set), m, row, is_too_long, so_far, v)
       end do
       close (unit)
       if (set /= size(s)) call blame(v, 'SETS ARE MISSING')
@@ -109,10 +113,11 @@ contains
 
    !> A row against the motion `m`. After an instant without a position METHOD MATRIX may find another assembly, from the
    !> deck's estimate, and says so: no limit keeps it from that.
-   subroutine judge_row(s, m, row, so_far, v)
+   subroutine judge_row(s, m, row, is_too_long, so_far, v)
       type(scheme_t), intent(in) :: s
       type(motion_t), intent(in) :: m
       type(row_t), intent(in) :: row
+      logical, intent(in) :: is_too_long
       type(so_far_t), intent(inout) :: so_far
       type(verdict_t), intent(inout) :: v
       type(jet_t) :: truth(3)
@@ -131,7 +136,7 @@ contains
          v%unknown = v%unknown + 1
          return
       end if
-      if (row%mark /= '') call judge_flag(s, m, group, row, so_far, v)
+      if (row%mark /= '') call judge_flag(s, m, group, row, is_too_long, so_far, v)
       if (any(group > 0)) then
          associate (k => maxval(group))
             so_far%told(k) = so_far%told(k) .and. .not. any(row%known .and. .not. row%is_told)
@@ -180,16 +185,23 @@ contains
    end subroutine compare
 
    !> A flag where the truth is known: needless, unless its mechanism has been near a singularity, nothing
-   !> was known of it, or METHOD DENSE was to pass a change point.
-   subroutine judge_flag(s, m, group, row, so_far, v)
+   !> was known of it, its motion is told to be too long, or METHOD DENSE was to pass a change point or has a group much
+   !> smaller than others in its matrix.
+   subroutine judge_flag(s, m, group, row, is_too_long, so_far, v)
       type(scheme_t), intent(in) :: s
       type(motion_t), intent(in) :: m
       integer, intent(in) :: group(2)
       type(row_t), intent(in) :: row
+      logical, intent(in) :: is_too_long
       type(so_far_t), intent(in) :: so_far
       type(verdict_t), intent(inout) :: v
+      logical :: is_allowed
 
-      if (s%method == 'MATRIX' .or. .not. is_regular(s, m, group, so_far%told)) then
+      is_allowed = s%method == 'MATRIX' .or. .not. is_regular(s, m, group, so_far%told)
+      if (row%mark == 'NO-POSITION') is_allowed = is_allowed .or. is_too_long
+      if (row%mark == 'NO-RATES' .and. s%method == 'DENSE') is_allowed = is_allowed &
+         .or. minval(s%groups%scale) < small_group*maxval(s%groups%scale)
+      if (is_allowed) then
          v%flagged = v%flagged + 1
       else
          call blame(v, 'A NEEDLESS FLAG '//trim(row%mark)//': '//where(row))
