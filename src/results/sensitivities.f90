@@ -46,7 +46,7 @@ module sensitivities
 
    !> What an independent mechanism needs for them.
    type :: sensor_t
-      type(perturbed_t) :: list(0:samples)           !< number 0 has the numbers of the deck
+      type(perturbed_t), allocatable :: list(:)      !< (0:samples) number 0 has the numbers of the deck
    end type sensor_t
 
 contains
@@ -56,7 +56,9 @@ contains
       type(sensor_t), intent(out) :: s
       type(mechanism_t), intent(in) :: m
 
-      if (allocated(m%tolerances)) call make_perturbed(s%list(0), m, 0)
+      if (.not. allocated(m%tolerances)) return
+      allocate (s%list(0:samples))
+      call make_perturbed(s%list(0), m, 0)
    end subroutine make_sensor
 
    !> `m` with its numbers off in direction `k` of roundings, if it is not 0.

@@ -93,8 +93,9 @@ without_clock "$w/debug.txt" > "$w/out"
 equal 'debug build: the same errors' '' "$(paste -d '\n' "$w/wanted" "$w/out" | grep -v '^ BLOCKS\|^ DENSE\|^ MATRIX\|  ROUND\|  1.E' \
    | awk 'NR%2 { first = $0; next } $0 != first')"
 
-# Where another position is found, or none, the table says so.
-"$kinmat" --study input/andrews.deck > "$w/andrews.txt" 2> "$w/err"
+# Where another position is found, or none, the table says so: of Andrews' second set.
+awk 'on { print } /^END/ { on = 1 }' input/andrews.deck > "$w/andrews.deck"
+"$kinmat" --study "$w/andrews.deck" > "$w/andrews.txt" 2> "$w/err"
 equal 'Andrews: status' 0 $?
 equal 'Andrews: the matrices at small tolerances' 1 "$(grep -A1 '^ MATRIX  .* ROUNDING' "$w/andrews.txt" | grep -c 'DID NOT CONVERGE' | awk '{ print ($1 > 4) }')"
 
