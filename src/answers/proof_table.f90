@@ -211,19 +211,18 @@ contains
       real(wp), intent(in) :: x
       character(*), intent(inout) :: text
       real(wp) :: large
-      integer :: power, digit, last, point
+      integer :: first, power, digit, last, point
 
       text(len(text):) = '0'
       if (.not. x > 0.0_wp) return
       ! Numbers next to the end of the range are none.
       large = min(max(x, tiny(x)/epsilon(x)**2), huge(x)*epsilon(x)**2)
       ! Of the power of two: its own or one less.
-      power = floor((exponent(large) - 1)*log10(2.0_wp))
-      digit = max(1, ceiling(large/10.0_wp**power))
-      if (digit > 9) then
-         power = power + 1
+      first = floor((exponent(large) - 1)*log10(2.0_wp))
+      do power = first, first + 1
          digit = max(1, ceiling(large/10.0_wp**power))
-      end if
+         if (digit <= 9) exit
+      end do
       last = min(abs(power), 999)
       point = len(text) - merge(5, 4, last > 99)
       text(point - 1:point - 1) = achar(iachar('0') + digit)

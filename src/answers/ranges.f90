@@ -121,19 +121,19 @@ contains
       type(mechanism_t) :: held
       real(wp) :: unit
       integer :: side
-      logical :: closely
+      logical :: only
 
-      closely = .true.
-      if (present(limits_only)) closely = .not. limits_only
+      only = .false.
+      if (present(limits_only)) only = limits_only
       r%drive = drive
       held = held_at(m, start%t)
       unit = 1.0_wp
       if (is_length(m%drives(drive))) unit = characteristic_length(m)
       do side = low, high
          call follow(along(held, start, drive, merge(-unit, unit, side == low)), &
-            held%drives(drive)%polynomial(1), merge(-unit, unit, side == low), side, closely, r)
+            held%drives(drive)%polynomial(1), merge(-unit, unit, side == low), side, only, r)
          if (r%is_all) return
-         if (.not. closely .and. is_lost(r, side)) return
+         if (only .and. is_lost(r, side)) return
       end do
    end subroutine find_range
 
@@ -183,13 +183,13 @@ contains
       end do
    end function held_at
 
-   !> Follows the drive of `d`, which is at `value` + `rate` t, to its end on one `side`. `closely`: also where no limit
-   !> is told.
-   subroutine follow(d, value, rate, side, closely, r)
+   !> Follows the drive of `d`, which is at `value` + `rate` t, to its end on one `side`; `limits_only`: see
+   !> `find_range`.
+   subroutine follow(d, value, rate, side, limits_only, r)
       type(mechanism_t), intent(in) :: d
       real(wp), intent(in) :: value, rate
       integer, intent(in) :: side
-      logical, intent(in) :: closely
+      logical, intent(in) :: limits_only
       type(range_t), intent(inout) :: r
       type(analysis_t) :: a
       type(motion_t) :: first, now
@@ -214,7 +214,7 @@ contains
             + count(now%diagnostics%kind == diagnostic_change .and. .not. now%diagnostics%here)
          if (now%known < 0) then
             t = a%t
-            if (closely) call close_in()
+            if (.not. limits_only) call close_in()
             call take_limit()
             return
          end if
