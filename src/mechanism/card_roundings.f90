@@ -29,6 +29,12 @@ module card_roundings
    !> generator.
    integer, parameter :: rows = 251
    integer(int64), parameter :: multiplier = 16807_int64, modulus = 2147483647_int64
+   integer :: n                                !< of the loop in the next line
+   integer(int64), parameter :: chance(directions*rows) = &
+      mod(multiplier*mod([(int(n, int64)**3, n=1, directions*rows)], modulus), modulus)
+   real(wp), parameter :: share(directions*rows) = real(2_int64*chance - modulus, wp)/real(modulus, wp)
+   real(wp), parameter :: parts(directions, 0:rows - 1) = &
+      reshape(sign(least + (most - least)*abs(share), share), [directions, rows])
 
 contains
 
@@ -37,10 +43,9 @@ contains
    pure function parts_of_number(kind, card, k) result(r)
       integer, intent(in) :: kind, card, k
       real(wp) :: r(directions)
-      integer :: i
 
-      r(:apart) = part([(i, i=1, apart)], modulo(7*card + kind + k, rows))
-      r(apart + 1:card_directions) = part([(i, i=apart + 1, card_directions)], kind + k)
+      r(:apart) = parts(:apart, modulo(7*card + kind + k, rows))
+      r(apart + 1:card_directions) = parts(apart + 1:card_directions, kind + k)
       r(card_directions + 1:) = 0.0_wp
    end function parts_of_number
 
@@ -48,32 +53,18 @@ contains
    pure function parts_of_own(k) result(r)
       integer, intent(in) :: k
       real(wp) :: r(directions)
-      integer :: i
 
       r(:card_directions) = 0.0_wp
-      r(card_directions + 1:) = part([(i, i=card_directions + 1, directions)], modulo(k, rows))
+      r(card_directions + 1:) = parts(card_directions + 1:, modulo(k, rows))
    end function parts_of_own
 
    !> The parts (directions) by which unknown `k` is off in every direction, whatever its errors come from.
    pure function parts_of_any(k) result(r)
       integer, intent(in) :: k
       real(wp) :: r(directions)
-      integer :: i
 
-      r = part([(i, i=1, directions)], modulo(k, rows))
+      r = parts(:, modulo(k, rows))
    end function parts_of_any
-
-   !> The part in direction `i` of `row` 0, 1, ... of the numbers by chance.
-   elemental real(wp) function part(i, row)
-      integer, intent(in) :: i, row
-      integer(int64) :: n
-      real(wp) :: share
-
-      n = int(directions*row + i, int64)
-      n = mod(multiplier*mod(n**3, modulus), modulus)
-      share = real(2_int64*n - modulus, wp)/real(modulus, wp)
-      part = sign(least + (most - least)*abs(share), share)
-   end function part
 
    !> The sizes (points + pairs) that the roundings of points go by, along and across, since a link is turned by an
    !> angle that is rounded; and of the offsets of prismatic pairs. A place on the ground is counted from the plane's

@@ -10,7 +10,8 @@ module points
    use motion, only: motion_t, known_of, mark_of, mark_none
    implicit none
    private
-   public :: row_t, row_of, has_number, difference, centre_numbers, coordinates_of, is_due, strides, any_due, is_fixed
+   public :: row_t, row_of, set_values, has_number, difference, centre_numbers, coordinates_of, is_due, strides, &
+      any_due, is_fixed
    public :: point_motion, pair_motion
 
    !> One row of a table, in the deck's units of length and time and in radians.
@@ -64,17 +65,27 @@ contains
    end function any_due
 
    !> The row of `request`, as far as the motion `q` is known. What belongs to the ground is known at every instant.
-   !> `changes` (3, 0:2, links): those of x, y, phi and their derivatives; this `part` of them is added to the motion.
-   pure function row_of(m, q, request, changes, part) result(row)
+   pure function row_of(m, q, request) result(row)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       type(request_t), intent(in) :: request
-      real(wp), intent(in), optional :: changes(:, 0:, :), part
       type(row_t) :: row
 
       row%kind = request%kind
       row%name = request_name(m, request)
       call note_known(m, q, request, row)
+      call set_values(m, q, request, row)
+   end function row_of
+
+   !> Gives the `row` of `request` its values. `changes` (3, 0:2, links): those of x, y, phi and their derivatives; this
+   !> `part` of them is added to the motion.
+   pure subroutine set_values(m, q, request, row, changes, part)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      type(request_t), intent(in) :: request
+      type(row_t), intent(inout) :: row
+      real(wp), intent(in), optional :: changes(:, 0:, :), part
+
       associate (i => request%subject)
          select case (request%kind)
          case (request_link)
@@ -104,7 +115,7 @@ contains
          end select
          row%value(:2, 0) = row%value(:2, 0) + q%origin
       end associate
-   end function row_of
+   end subroutine set_values
 
    !> The name of the link, point or pair that `request` is about; of a pole or curve both names.
    pure function request_name(m, request) result(name)
@@ -124,7 +135,7 @@ contains
    end function request_name
 
    !> The numbers of the `row` of the path of a point, without the motion's origin: in the axes of the link from which
-   !> it is seen, or in the fixed plane. `changes`, `part`: as in `row_of`, here and below.
+   !> it is seen, or in the fixed plane. `changes`, `part`: as in `set_values`, here and below.
    pure subroutine take_curve(m, q, request, row, changes, part)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q

@@ -6,7 +6,7 @@ module error_estimate
    use mechanism, only: mechanism_t, request_t, request_link, request_point, request_pair, request_pole, &
       request_links, place_links
    use motion, only: motion_t, new_motion
-   use points, only: row_t, row_of, difference, is_fixed
+   use points, only: row_t, row_of, set_values, difference, is_fixed
    use sum_errors, only: sum_roundings, errors_of_sums, error_of_sums, lost_numbers, growth_in_centres
    use known_digits, only: nothing_known
    use scales, only: characteristic_length, characteristic_rate
@@ -181,10 +181,9 @@ contains
       type(motion_t), intent(in) :: q
       type(request_t), intent(in) :: request
       real(wp), intent(in), optional :: own
-      real(wp) :: error(3, 0:2), part, change(3, 0:2)
+      real(wp) :: error(3, 0:2), of_cards(3, 0:2), of_own(3, 0:2), part
       type(row_t) :: row
       logical :: zero(3, 0:2), lost(3, 0:2)
-      integer :: k
 
       error = 0.0_wp
       if (is_fixed(m, request)) then
@@ -196,17 +195,11 @@ contains
       error = nothing_known
       if (any(s%lost(request_links(m, request)))) return
       row = row_of(m, q, request)
-      error = 0.0_wp
-      lost = .false.
-      zero = abs(row%value) <= 0.0_wp
-      do k = 1, directions
-         part = 1.0_wp
-         if (k > card_directions) part = own_in_tables
-         if (k > card_directions .and. present(own)) part = own
-         call find_change(m, q, request, s%changes(k, :, :, :), row, change, lost)
-         error = max(error, part*change)
-         zero = zero .and. change <= 0.0_wp
-      end do
+      call find_changes(m, s, q, request, row, of_cards, of_own, lost)
+      part = own_in_tables
+      if (present(own)) part = own
+      error = max(of_cards, part*of_own)
+      zero = abs(row%value) <= 0.0_wp .and. max(of_cards, of_own) <= 0.0_wp
       ! A coordinate of what stands still is zero without a sum; an angle may be one that cancels.
       if (request%kind == request_link) zero(3, 0) = .false.
       if (request%kind == request_pair .and. row%angular) zero(1, 0) = .false.
@@ -215,30 +208,49 @@ contains
       error = merge(nothing_known, error, lost)
    end function row_estimate
 
-   !> By how much (3, 0:2) a rounding changes the `row` of `request` of the motion `q`, where so many as `roundings`
-   !> change the motion by `links` (3, 0:2, links). `lost` becomes true of what it leaves nothing of.
-   pure subroutine find_change(m, q, request, links, row, change, lost)
+   !> By how much (3, 0:2) a rounding changes the `row` of `request` of the motion `q` at most: one of the deck's
+   !> numbers, `of_cards`, and one of the calculation, `of_own`. `lost`: it leaves nothing of it.
+   pure subroutine find_changes(m, s, q, request, row, of_cards, of_own, lost)
       type(mechanism_t), intent(in) :: m
+      type(error_estimate_t), intent(in) :: s
       type(motion_t), intent(in) :: q
       type(request_t), intent(in) :: request
-      real(wp), intent(in) :: links(:, 0:, :)
       type(row_t), intent(in) :: row
-      real(wp), intent(out) :: change(3, 0:2)
-      logical, intent(inout) :: lost(3, 0:2)
+      real(wp), dimension(3, 0:2), intent(out) :: of_cards, of_own
+      logical, intent(out) :: lost(3, 0:2)
+      real(wp) :: change(3, 0:2, directions)
       type(row_t) :: up, down
       real(wp) :: step
+      integer :: c, k
 
+      lost = .false.
       if (request%kind == request_link) then
-         change = abs(links(:, :, request%subject))/roundings
-         return
+         do k = 0, 2
+            do c = 1, 3
+               change(c, k, :) = abs(s%changes(:, c, k, request%subject))/roundings
+            end do
+         end do
+      else
+         ! To both sides: roundings that change much, but together, leave what depends on ratios as it is.
+         step = merge(few, roundings, request%kind >= request_pole)
+         up = row
+         down = row
+         do k = 1, directions
+            call set_values(m, q, request, up, s%changes(k, :, :, :), step/roundings)
+            call set_values(m, q, request, down, s%changes(k, :, :, :), -step/roundings)
+            change(:, :, k) = difference(up, down)/(2.0_wp*step)
+            if (request%kind >= request_pole) lost = lost .or. lost_numbers(up, row) .or. lost_numbers(down, row)
+         end do
       end if
-      ! To both sides: roundings that change much, but together, leave what depends on ratios as it is.
-      step = merge(few, roundings, request%kind >= request_pole)
-      up = row_of(m, q, request, links, step/roundings)
-      down = row_of(m, q, request, links, -step/roundings)
-      change = difference(up, down)/(2.0_wp*step)
-      if (request%kind >= request_pole) lost = lost .or. lost_numbers(up, row) .or. lost_numbers(down, row)
-   end subroutine find_change
+      of_cards = 0.0_wp
+      of_own = 0.0_wp
+      do k = 1, card_directions
+         of_cards = max(of_cards, change(:, :, k))
+      end do
+      do k = card_directions + 1, directions
+         of_own = max(of_own, change(:, :, k))
+      end do
+   end subroutine find_changes
 
    !> What rounding leaves open of the place (3) of a ground link or of a point on one: a sum of numbers of cards.
    pure function fixed_error(m, request) result(error)
