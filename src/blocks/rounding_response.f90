@@ -73,7 +73,7 @@ contains
       class(block_engine_t), intent(in) :: e
       type(motion_t), intent(in) :: q
       logical, intent(in) :: only_driven, again
-      real(wp), intent(out) :: links(:, :, 0:, :)
+      real(wp), contiguous, intent(out) :: links(:, :, 0:, :)
       logical, intent(out) :: lost(:)
       type(motion_t) :: marked
       integer :: k
@@ -220,7 +220,7 @@ contains
       subroutine find_residuals(e, i, order, v)
          class(block_engine_t), intent(in) :: e
          integer, intent(in) :: i, order
-         real(wp), intent(out) :: v(:, :)
+         real(wp), contiguous, intent(out) :: v(:, :)
          real(wp) :: g(directions, 2), sizes(size(v, 2)), size_of
          integer :: k, row
 
@@ -289,7 +289,7 @@ contains
       class(block_engine_t), intent(in) :: e
       type(chain_link_t), intent(in) :: h
       type(motion_t), intent(in) :: q
-      real(wp), intent(inout) :: links(:, :, 0:, :)
+      real(wp), contiguous, intent(inout) :: links(:, :, 0:, :)
       real(wp) :: g(directions, 2), size_of
       integer :: order, own, c
 
