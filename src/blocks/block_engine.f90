@@ -31,7 +31,7 @@ module block_engine
    !> What the factors of a block's Jacobian say.
    type :: jacobian_t
       integer :: sign_of = 1                            !< of the determinant
-      real(wp) :: pivot = 1.0_wp                        !< the least
+      real(wp) :: pivot = 1.0_wp                        !< the least; 1 of a direct block
       real(wp) :: inverse = 0.0_wp                      !< |J^-1|
    end type jacobian_t
 
@@ -271,8 +271,14 @@ contains
    !> See `engine`.
    subroutine accept(e)
       class(block_engine_t), intent(inout) :: e
+      real(wp) :: uncertain
+      integer :: k
 
-      call remember(e%history, e%t, e%state%u, uncertain_part(e%blocks, e%moving, e%found%pivot, e%state%u))
+      uncertain = 0.0_wp
+      do k = 1, size(e%moving)
+         uncertain = max(uncertain, uncertain_part(e%blocks, e%moving(k), e%found(e%moving(k))%pivot, e%state%u))
+      end do
+      call remember(e%history, e%t, e%state%u, uncertain)
       ! As a section: an assignment to the whole would ask for its shape first.
       e%followed(:) = e%found(:)
       if (e%blocks%redundant > 0) e%jacobian = jacobian_of(e%blocks, 1, e%state)

@@ -120,29 +120,24 @@ contains
       end do
    end subroutine predict
 
-   !> How uncertain the accelerations of the motion `u` (0:unknowns) are, as a part of the velocities in a unit of time,
-   !> in the worst block of `list`. With its `pivot` (blocks) p, whose Jacobian's Lipschitz constant is L, positions are
-   !> known to eps/p, and the other branch is about p/L away: the velocities v are uncertain by the quotient of the two,
-   !> in parts of v, and the accelerations by that over p/L, in parts of v^2. At dead points they grow as the velocities
-   !> do, and are known.
-   pure real(wp) function uncertain_part(b, list, pivot, u) result(part)
+   !> How uncertain the accelerations of block `i` in the motion `u` (0:unknowns) are, as a part of the velocities in a
+   !> unit of time. With its `pivot` p, whose Jacobian's Lipschitz constant is L, positions are known to eps/p, and the
+   !> other branch is about p/L away: the velocities v are uncertain by the quotient of the two, in parts of v, and the
+   !> accelerations by that over p/L, in parts of v^2. At dead points they grow as the velocities do, and are known.
+   pure real(wp) function uncertain_part(b, i, pivot, u) result(part)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: list(:)
-      real(wp), intent(in) :: pivot(:)
+      integer, intent(in) :: i
+      real(wp), intent(in) :: pivot
       type(unknown_t), intent(in) :: u(0:)
-      real(wp) :: v, uncertain
-      integer :: k
+      real(wp) :: v
 
       part = 0.0_wp
-      do k = 1, size(list)
-         associate (block => b%list(list(k)), p => pivot(list(k)))
-            if (block%direct .or. p > certain_pivot) cycle
-            v = maxval(abs(u(b%unknown(block%first:block%last))%rate))
-            uncertain = epsilon(1.0_wp)*block%lipschitz**2*v/max(p, epsilon(1.0_wp))**3
-            if (uncertain*v > known_part*maxval(abs(u(b%unknown(block%first:block%last))%acceleration))) &
-               part = max(part, uncertain)
-         end associate
-      end do
+      if (pivot > certain_pivot) return
+      associate (block => b%list(i))
+         v = maxval(abs(u(b%unknown(block%first:block%last))%rate))
+         part = epsilon(1.0_wp)*block%lipschitz**2*v/max(pivot, epsilon(1.0_wp))**3
+         if (.not. part*v > known_part*maxval(abs(u(b%unknown(block%first:block%last))%acceleration))) part = 0.0_wp
+      end associate
    end function uncertain_part
 
    !> Weights (3) of the velocity, the acceleration and the last change of the acceleration in a start of the given
