@@ -5,8 +5,8 @@ module block_equations
    use kinds, only: wp
    use planar, only: rotated, quarter_turn, cross
    use block_matrix, only: entries_of
-   use blocks, only: blocks_t, block_loop_t, loop_components, loop_projection
-   use block_state, only: state_t, slide_vector
+   use blocks, only: blocks_t, block_loop_t, body_vector_t, loop_components, loop_projection, loop_angles
+   use block_state, only: state_t, unknown_t, slide_vector
    implicit none
    private
    public :: assemble_block, assemble_dense, right_hand_side, largest_rates, rounded_sizes, &
@@ -28,7 +28,10 @@ contains
             select case (g%kind)
             case (loop_components)
                call find_closure_error(b, m, s)
-               call component_rows(b, g, m, s, a, r)
+               call component_rows(g, b%body_vectors, s%own, s%loop(m)%closure_error, a, r)
+               if (g%last_slide < g%first_slide) cycle
+               if (g%row_x > 0) call slide_entries(b, g, 1, [1.0_wp, 0.0_wp], s, a)
+               if (g%row_y > 0) call slide_entries(b, g, 2, [0.0_wp, 1.0_wp], s, a)
             case (loop_projection)
                call find_closure_error(b, m, s)
                call projection_row(b, g, m, s, a, r)
@@ -83,41 +86,49 @@ contains
 
       x = s%loop(m)%known(1, 0)
       y = s%loop(m)%known(2, 0)
-      do k = b%loops(m)%first_own, b%loops(m)%last_vector
-         associate (f => s%u(b%body_vectors(k)%orientation), d => b%body_vectors(k))
-            ! Not `rotated`: this is the innermost loop of a step.
-            s%own(1, k) = f%c*d%x - f%s*d%y
-            s%own(2, k) = f%s*d%x + f%c*d%y
-            x = x + s%own(1, k)
-            y = y + s%own(2, k)
-         end associate
-      end do
+      call turn_vectors(b%loops(m)%first_own, b%loops(m)%last_vector, b%body_vectors, s%u, s%own, x, y)
       do k = b%loops(m)%first_slide, b%loops(m)%last_slide
          s%guide(:, k) = slide_vector(b, k, s)
          x = x + s%u(b%slides(k)%unknown)%value*s%guide(1, k)
          y = y + s%u(b%slides(k)%unknown)%value*s%guide(2, k)
       end do
-      s%loop(m)%closure_error = [x, y]
+      s%loop(m)%closure_error(1) = x
+      s%loop(m)%closure_error(2) = y
    end subroutine find_closure_error
 
-   !> Rows of the x and y components of loop `m`, which is `g`.
-   pure subroutine component_rows(b, g, m, s, a, r)
-      type(blocks_t), intent(in) :: b
+   !> Body vectors number `first` to `last`, rotated by their angles among `u`, go to `own`; x and y grow by their sum.
+   !> On plain arrays, which cost no descriptors: this is the innermost loop of a step.
+   pure subroutine turn_vectors(first, last, vectors, u, own, x, y)
+      integer, intent(in) :: first, last
+      type(body_vector_t), intent(in) :: vectors(*)
+      type(unknown_t), intent(in) :: u(0:*)
+      real(wp), intent(inout) :: own(2, *), x, y
+      integer :: k
+
+      do k = first, last
+         associate (f => u(vectors(k)%orientation), d => vectors(k))
+            own(1, k) = f%c*d%x - f%s*d%y
+            own(2, k) = f%s*d%x + f%c*d%y
+            x = x + own(1, k)
+            y = y + own(2, k)
+         end associate
+      end do
+   end subroutine turn_vectors
+
+   !> Rows of the x and y components of loop `g`, but for its slides.
+   pure subroutine component_rows(g, vectors, own, closure_error, a, r)
       type(block_loop_t), intent(in) :: g
-      integer, intent(in) :: m
-      type(state_t), intent(in) :: s
+      type(body_vector_t), intent(in) :: vectors(*)
+      real(wp), intent(in) :: own(2, *), closure_error(2)
       real(wp), intent(inout) :: a(*), r(*)
       integer :: k
 
-      if (g%row_x > 0) r(g%row_x) = s%loop(m)%closure_error(1)
-      if (g%row_y > 0) r(g%row_y) = s%loop(m)%closure_error(2)
+      if (g%row_x > 0) r(g%row_x) = closure_error(1)
+      if (g%row_y > 0) r(g%row_y) = closure_error(2)
       do k = g%first_own, g%last_vector
-         if (g%row_x > 0) a(b%body_vectors(k)%at(1)) = -s%own(2, k)
-         if (g%row_y > 0) a(b%body_vectors(k)%at(2)) = s%own(1, k)
+         if (g%row_x > 0) a(vectors(k)%at(1)) = -own(2, k)
+         if (g%row_y > 0) a(vectors(k)%at(2)) = own(1, k)
       end do
-      if (g%last_slide < g%first_slide) return
-      if (g%row_x > 0) call slide_entries(b, g, 1, [1.0_wp, 0.0_wp], s, a)
-      if (g%row_y > 0) call slide_entries(b, g, 2, [0.0_wp, 1.0_wp], s, a)
    end subroutine component_rows
 
    !> Row of the projection of loop `m`, which is `g`.
@@ -167,22 +178,22 @@ contains
       integer, intent(in) :: i, order
       type(state_t), intent(in) :: s
       real(wp), intent(out) :: v(*)
-      real(wp) :: g(2)
+      real(wp) :: given(2)
       integer :: k, m
 
       do k = b%list(i)%first_row, b%list(i)%last_row
          v(k - b%list(i)%first_row + 1) = s%drive_value(order, b%rows(k)%drive)
       end do
       do m = b%list(i)%first_loop, b%list(i)%last_loop
-         associate (block_loop => b%loops(m))
-            select case (block_loop%kind)
-            case (loop_components)
-               g = given_part(b, block_loop, m, order, s)
-               if (block_loop%row_x > 0) v(block_loop%row_x) = v(block_loop%row_x) - g(1)
-               if (block_loop%row_y > 0) v(block_loop%row_y) = v(block_loop%row_y) - g(2)
-            case (loop_projection)
-               v(block_loop%row_x) = v(block_loop%row_x) - projected_part(b, block_loop, m, order, s)
-            end select
+         associate (g => b%loops(m))
+            if (g%kind == loop_angles) cycle
+            given = given_part(b, g, m, order, s)
+            if (g%kind == loop_projection) then
+               v(g%row_x) = v(g%row_x) - projected_part(b, g, m, order, s, given)
+            else
+               if (g%row_x > 0) v(g%row_x) = v(g%row_x) - given(1)
+               if (g%row_y > 0) v(g%row_y) = v(g%row_y) - given(2)
+            end if
          end associate
       end do
    end subroutine right_hand_side
@@ -228,21 +239,33 @@ contains
       type(block_loop_t), intent(in) :: block_loop
       integer, intent(in) :: m, order
       type(state_t), intent(in) :: s
-      real(wp) :: g(2), square
+      real(wp) :: g(2)
       integer :: k
 
       g = s%loop(m)%known(:, order)
-      if (order == 2) then
-         do k = block_loop%first_own, block_loop%last_vector
-            square = s%u(b%body_vectors(k)%orientation)%rate**2
-            g(1) = g(1) - square*s%own(1, k)
-            g(2) = g(2) - square*s%own(2, k)
-         end do
-      end if
+      if (order == 2) call subtract_inward(block_loop%first_own, block_loop%last_vector, b%body_vectors, s%u, s%own, g)
       do k = block_loop%first_slide, block_loop%last_slide
          g = g + slide_part(b, k, order, s)
       end do
    end function given_part
+
+   !> Subtracts from `g` what the turned vectors `own`, number `first` to `last`, have of acceleration towards their
+   !> beginnings.
+   pure subroutine subtract_inward(first, last, vectors, u, own, g)
+      integer, intent(in) :: first, last
+      type(body_vector_t), intent(in) :: vectors(*)
+      type(unknown_t), intent(in) :: u(0:*)
+      real(wp), intent(in) :: own(2, *)
+      real(wp), intent(inout) :: g(2)
+      real(wp) :: square
+      integer :: k
+
+      do k = first, last
+         square = u(vectors(k)%orientation)%rate**2
+         g(1) = g(1) - square*own(1, k)
+         g(2) = g(2) - square*own(2, k)
+      end do
+   end subroutine subtract_inward
 
    !> The same of slide number `k`: (s e)' = s' e + s w e',  (s e)'' = s'' e + 2 s' w e' + s (w' e' - w^2 e).
    pure function slide_part(b, k, order, s) result(g)
@@ -266,16 +289,15 @@ contains
       end associate
    end function slide_part
 
-   !> The part of (g . f)' or (g . f)'' of loop `m` that holds no unknown of that order.
-   pure real(wp) function projected_part(b, block_loop, m, order, s) result(v)
+   !> The part of (g . f)' or (g . f)'' of loop `m` that holds no unknown of that order, from that of g' or g'', `g`.
+   pure real(wp) function projected_part(b, block_loop, m, order, s, g) result(v)
       type(blocks_t), intent(in) :: b
       type(block_loop_t), intent(in) :: block_loop
       integer, intent(in) :: m, order
       type(state_t), intent(in) :: s
-      real(wp) :: g(2)
+      real(wp), intent(in) :: g(2)
 
       associate (c => s%u(block_loop%orientation), closure_error => s%loop(m)%closure_error, f => s%loop(m)%f)
-         g = given_part(b, block_loop, m, order, s)
          v = g(1)*f(1) + g(2)*f(2)
          if (block_loop%orientation == 0) return
          if (order == 1) then

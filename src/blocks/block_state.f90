@@ -8,7 +8,7 @@
 module block_state
    use kinds, only: wp
    use planar, only: rotated, add_rotating
-   use blocks, only: blocks_t
+   use blocks, only: blocks_t, block_loop_t, body_vector_t
    implicit none
    private
    public :: unknown_t, state_t, new_state, set_direction, rotate_direction, set_values, values_of, find_known_parts, &
@@ -104,22 +104,30 @@ contains
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
-      integer :: m, k
+      integer :: m
 
       do m = b%list(i)%first_loop, b%list(i)%last_loop
-         associate (g => s%loop(m)%known)
-            g(:, 0) = b%loops(m)%ground
-            g(:, 1) = 0.0_wp
-            g(:, 2) = 0.0_wp
-            do k = b%loops(m)%first_vector, b%loops(m)%first_own - 1
-               associate (f => s%u(b%body_vectors(k)%orientation), d => b%body_vectors(k))
-                  call add_rotating(f%c*d%x - f%s*d%y, f%s*d%x + f%c*d%y, f%rate, f%acceleration, g(:, 0), g(:, 1), &
-                     g(:, 2))
-               end associate
-            end do
-         end associate
+         call find_known_part(b%loops(m), b%body_vectors, s%u, s%loop(m)%known)
       end do
    end subroutine find_known_parts
+
+   !> The same of loop `g`; on plain arrays, which cost no descriptors.
+   pure subroutine find_known_part(g, vectors, u, known)
+      type(block_loop_t), intent(in) :: g
+      type(body_vector_t), intent(in) :: vectors(*)
+      type(unknown_t), intent(in) :: u(0:*)
+      real(wp), intent(out) :: known(2, 0:2)
+      integer :: k
+
+      known(:, 0) = g%ground
+      known(:, 1:) = 0.0_wp
+      do k = g%first_vector, g%first_own - 1
+         associate (f => u(vectors(k)%orientation), d => vectors(k))
+            call add_rotating(f%c*d%x - f%s*d%y, f%s*d%x + f%c*d%y, f%rate, f%acceleration, known(1, 0), known(1, 1), &
+               known(1, 2))
+         end associate
+      end do
+   end subroutine find_known_part
 
    !> R e (2) of slide number `k`: its direction.
    pure function slide_vector(b, k, s) result(e)
