@@ -117,16 +117,20 @@ contains
       type(body_vector_t), intent(in) :: vectors(*)
       type(unknown_t), intent(in) :: u(0:*)
       real(wp), intent(out) :: known(2, 0:2)
+      real(wp) :: x(2), x_t(2), x_tt(2)
       integer :: k
 
-      known(:, 0) = g%ground
-      known(:, 1:) = 0.0_wp
+      x = g%ground
+      x_t = 0.0_wp
+      x_tt = 0.0_wp
       do k = g%first_vector, g%first_own - 1
          associate (f => u(vectors(k)%orientation), d => vectors(k))
-            call add_rotating(f%c*d%x - f%s*d%y, f%s*d%x + f%c*d%y, f%rate, f%acceleration, known(1, 0), known(1, 1), &
-               known(1, 2))
+            call add_rotating(f%c*d%x - f%s*d%y, f%s*d%x + f%c*d%y, f%rate, f%acceleration, x, x_t, x_tt)
          end associate
       end do
+      known(:, 0) = x
+      known(:, 1) = x_t
+      known(:, 2) = x_tt
    end subroutine find_known_part
 
    !> R e (2) of slide number `k`: its direction.

@@ -139,39 +139,38 @@ contains
       real(wp), intent(in) :: length
       real(wp), intent(inout) :: p(3, *), v(3, *), a(3, *)
       logical, intent(out) :: finite
-      real(wp) :: check
+      real(wp) :: x(2), x_t(2), x_tt(2), check
       integer :: i, k
 
       check = 0.0_wp
       do i = 1, n
          associate (h => links(i), f => u(links(i)%orientation))
-            k = h%link
-            call follow_parent(h%place%reach, h%parent_orientation, u(h%parent_orientation), p(1, k), v(1, k), a(1, k))
+            call follow_parent(h%place%reach, h%parent_orientation, u(h%parent_orientation), x, x_t, x_tt)
             associate (d => h%place%body_vector)
                if (h%has_body_vector) call add_rotating(-(f%c*d(1) - f%s*d(2)), -(f%s*d(1) + f%c*d(2)), f%rate, &
-                  f%acceleration, p(1, k), v(1, k), a(1, k))
+                  f%acceleration, x, x_t, x_tt)
             end associate
             if (h%slide > 0) call add_slide(h%place%slide_body_vector, u(h%parent_orientation), u(h%slide), length, &
-               p(1, k), v(1, k), a(1, k))
+               x, x_t, x_tt)
             ! A link that no pair joins to the ground has unknowns of its own for x and y.
             if (h%root > 0) then
-               p(:2, k) = length*h%root_unit*u(h%root:h%root + 1)%value
-               v(:2, k) = length*h%root_unit*u(h%root:h%root + 1)%rate
-               a(:2, k) = length*h%root_unit*u(h%root:h%root + 1)%acceleration
+               x = length*h%root_unit*u(h%root:h%root + 1)%value
+               x_t = length*h%root_unit*u(h%root:h%root + 1)%rate
+               x_tt = length*h%root_unit*u(h%root:h%root + 1)%acceleration
             end if
             if (h%parent > 0) then
-               p(:2, k) = p(:2, k) + p(:2, h%parent)
-               v(:2, k) = v(:2, k) + v(:2, h%parent)
-               a(:2, k) = a(:2, k) + a(:2, h%parent)
+               x = x + p(:2, h%parent)
+               x_t = x_t + v(:2, h%parent)
+               x_tt = x_tt + a(:2, h%parent)
             end if
-            p(3, k) = f%value + h%angle_offset
-            v(3, k) = f%rate
-            a(3, k) = f%acceleration
-            ! Zero, unless something in the sum is infinite or no number.
-            check = check + 0.0_wp*((p(1, k) + p(2, k)) + (v(1, k) + v(2, k)) + ((a(1, k) + a(2, k)) + f%acceleration))
+            k = h%link
+            p(:, k) = [x, f%value + h%angle_offset]
+            v(:, k) = [x_t, f%rate]
+            a(:, k) = [x_tt, f%acceleration]
+            check = check + ((x(1) + x(2)) + (x_t(1) + x_t(2)) + ((x_tt(1) + x_tt(2)) + f%acceleration))
          end associate
       end do
-      finite = check <= 0.0_wp
+      finite = abs(check) <= huge(check)
    end subroutine move_chain
 
    !> From the parent's origin the vector `d` in its axes, which unknown number `orientation`, `f`, rotates.
