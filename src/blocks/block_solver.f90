@@ -17,7 +17,7 @@ module block_solver
       pivot_range, inverse_norm, spread_by_inverse, entries_of, work_length
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
       ended_inconsistent, note_closure_error, is_inconsistent, contradict
-   use blocks, only: blocks_t
+   use blocks, only: blocks_t, block_t
    use block_state, only: state_t, set_direction, rotate_direction, find_known_parts
    use block_equations, only: assemble_block, right_hand_side, largest_rates, rounded_sizes, second_order_bounds
    implicit none
@@ -98,12 +98,12 @@ contains
          c%ended = ended_converged
          return
       end if
-      call solve(b, i, b%list(i)%shape, tolerance, w%block_factors_t, w%r, w%start, s, c)
+      call solve(b, i, b%list(i), tolerance, w%block_factors_t, w%r, w%start, s, c)
       if (c%ended /= ended_converged .and. c%ended /= ended_stalled) return
       if (b%list(i)%shape%rows > b%list(i)%shape%n .and. is_inconsistent(c)) then
          c%ended = ended_inconsistent
       else
-         call finish(b, i, b%list(i)%shape%n, w, s, c)
+         call finish(b, i, b%list(i), w, s, c)
       end if
    end subroutine solve_block
 
@@ -127,22 +127,23 @@ contains
 
    !> Newton's method; where it ends with a position, `r`(:, 2) holds the velocities and `f` the factors, of the
    !> Jacobian there or of one beside it. Where the Jacobian there has no inverse, c%singular says so.
-   subroutine solve(b, i, shape, tolerance, f, r, start, s, c)
+   subroutine solve(b, i, block, tolerance, f, r, start, s, c)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
-      type(shape_t), intent(in) :: shape
+      type(block_t), intent(in) :: block
       real(wp), intent(in) :: tolerance
       type(block_factors_t), intent(inout) :: f
-      real(wp), intent(inout) :: r(shape%rows, 2), start(shape%n)
+      real(wp), intent(inout) :: r(block%shape%rows, 2), start(block%shape%n)
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
       real(wp) :: before, size_of, coarse
       integer :: info, iteration
       logical :: is_right
 
-      call begin_block(b, i, shape%n, s, start, size_of)
+      call begin_block(b, block, s, start, size_of)
+      call find_known_parts(b, i, s)
       before = huge(before)
-      coarse = b%list(i)%coarse
+      coarse = block%coarse
       f%near%distance = 0.0_wp
       c = convergence_t(ended=ended_limit)
       do iteration = 1, iteration_limit
@@ -154,38 +155,38 @@ contains
          call assemble_block(b, i, s, f%a, r)
          if (f%near%distance > 0.0_wp) call set_aside(f%a, f%near)
          c%residual = maxval(abs(r(:, 1)))
-         if (shape%rows > shape%n) call note_closure_error(b, i, r, c)
+         if (block%shape%rows > block%shape%n) call note_closure_error(b, i, r, c)
          if (c%residual <= closed_level*max(size_of, coarse)) then
             c%step = 0.0_wp
             c%ended = ended_converged
             call right_hand_side(b, i, 1, s, r(:, 2))
-            call solve_for(shape, .true., f, r(:, 2), info)
+            call solve_for(block%shape, .true., f, r(:, 2), info)
             c%singular = info > 0
             exit
          end if
-         call solve_for(shape, .true., f, r, info)
+         call solve_for(block%shape, .true., f, r, info)
          if (info > 0) then
             c%singular = c%residual <= max(rounding_level*max(size_of, coarse), tolerance)
             c%ended = merge(ended_stalled, ended_singular, c%singular)
             exit
          end if
-         c%step = maxval(abs(r(:shape%n, 1)))
-         if (is_stalled(shape, c, before, max(size_of, coarse))) then
+         c%step = maxval(abs(r(:block%shape%n, 1)))
+         if (is_stalled(block%shape, c, before, max(size_of, coarse))) then
             c%ended = ended_stalled
          else
-            call move(b, i, shape%n, r, s, c%step, tolerance, size_of, is_right)
+            call move(b, block, r, s, c%step, tolerance, size_of, is_right)
             if (is_right) c%ended = ended_converged
          end if
          before = c%step
          if (c%ended == ended_limit) then
-            call stay_near(shape, f%a, f%pivots, b%list(i)%lipschitz*c%step, f%near)
+            call stay_near(block%shape, f%a, f%pivots, block%lipschitz*c%step, f%near)
             cycle
          end if
          call right_hand_side(b, i, 1, s, r(:, 2))
-         call solve_for(shape, .false., f, r(:, 2), info)
+         call solve_for(block%shape, .false., f, r(:, 2), info)
          exit
       end do
-      if (c%iterations > 1 .or. c%step > 0.0_wp) c%change = largest_change(b, i, shape%n, s, start)
+      if (c%iterations > 1 .or. c%step > 0.0_wp) c%change = largest_change(b, block, s, start)
    end subroutine solve
 
    !> Solves for `v` (rows) with the Jacobian just assembled (`is_new`: `info` > 0, it has no inverse), or that of the
@@ -218,30 +219,29 @@ contains
       if (shape%rows > shape%n) is_stalled = is_stalled .or. (c%step > 0.5_wp*before .and. c%step <= small_turn)
    end function is_stalled
 
-   !> Directions and known parts at the start of the iteration, the values `start`, and the largest value, 1 at least.
-   subroutine begin_block(b, i, n, s, start, size_of)
+   !> Directions at the start of the iteration, the values `start`, and the largest value, 1 at least.
+   subroutine begin_block(b, block, s, start, size_of)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i, n
+      type(block_t), intent(in) :: block
       type(state_t), intent(inout) :: s
-      real(wp), intent(out) :: start(n), size_of
+      real(wp), intent(out) :: start(block%shape%n), size_of
       integer :: k
 
       size_of = 1.0_wp
-      do k = 1, n
-         associate (u => b%unknown(b%list(i)%first + k - 1))
+      do k = 1, block%shape%n
+         associate (u => b%unknown(block%first + k - 1))
             start(k) = s%u(u)%value
             size_of = max(size_of, abs(start(k)))
             call set_direction(b, u, s)
          end associate
       end do
-      call find_known_parts(b, i, s)
    end subroutine begin_block
 
    !> Applies the correction `d`, whose largest is `step`; `size_of`: the largest value, 1 at least. `is_right`: each
    !> was at the rounding level of its own value, or within the `tolerance`: beside a long slide an angle is not.
-   subroutine move(b, i, n, d, s, step, tolerance, size_of, is_right)
+   subroutine move(b, block, d, s, step, tolerance, size_of, is_right)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i, n
+      type(block_t), intent(in) :: block
       real(wp), intent(in) :: d(*)
       type(state_t), intent(inout) :: s
       real(wp), intent(in) :: step, tolerance
@@ -252,12 +252,12 @@ contains
 
       size_of = 1.0_wp
       is_right = .true.
-      do k = 1, n
-         associate (u => b%unknown(b%list(i)%first + k - 1))
+      do k = 1, block%shape%n
+         associate (u => b%unknown(block%first + k - 1))
             s%u(u)%value = s%u(u)%value - d(k)
             own = max(1.0_wp, abs(s%u(u)%value))
             size_of = max(size_of, own)
-            is_right = is_right .and. abs(d(k)) <= max(step_tolerance*max(own, b%list(i)%coarse), tolerance)
+            is_right = is_right .and. abs(d(k)) <= max(step_tolerance*max(own, block%coarse), tolerance)
             if (step <= small_turn) then
                call rotate_direction(b, u, -d(k), s)
             else
@@ -267,45 +267,46 @@ contains
       end do
    end subroutine move
 
-   !> The largest change of the values of block `i` from `start`.
-   pure real(wp) function largest_change(b, i, n, s, start) result(change)
+   !> The largest change of the values of `block` from `start`.
+   pure real(wp) function largest_change(b, block, s, start) result(change)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i, n
+      type(block_t), intent(in) :: block
       type(state_t), intent(in) :: s
-      real(wp), intent(in) :: start(n)
+      real(wp), intent(in) :: start(block%shape%n)
       integer :: k
 
       change = 0.0_wp
-      do k = 1, n
-         change = max(change, abs(s%u(b%unknown(b%list(i)%first + k - 1))%value - start(k)))
+      do k = 1, block%shape%n
+         change = max(change, abs(s%u(b%unknown(block%first + k - 1))%value - start(k)))
       end do
    end function largest_change
 
    !> Velocities and accelerations, unless the Jacobian is near to having no inverse.
-   subroutine finish(b, i, n, w, s, c)
+   subroutine finish(b, i, block, w, s, c)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i, n
+      integer, intent(in) :: i
+      type(block_t), intent(in) :: block
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
       real(wp) :: rates(2)
       integer :: k
 
-      if (.not. c%singular) call judge(b, i, n, w, s, c)
+      if (.not. c%singular) call judge(b, i, block, w, s, c)
       if (c%singular) return
-      associate (rows => b%list(i)%shape%rows)
+      associate (rows => block%shape%rows, n => block%shape%n)
          do k = 1, n
-            s%u(b%unknown(b%list(i)%first + k - 1))%rate = w%r(rows + k)
+            s%u(b%unknown(block%first + k - 1))%rate = w%r(rows + k)
          end do
          call right_hand_side(b, i, 2, s, w%r)
-         call solve_for(b%list(i)%shape, .false., w%block_factors_t, w%r, k)
+         call solve_for(block%shape, .false., w%block_factors_t, w%r, k)
          do k = 1, n
-            s%u(b%unknown(b%list(i)%first + k - 1))%acceleration = w%r(k)
+            s%u(b%unknown(block%first + k - 1))%acceleration = w%r(k)
          end do
          if (rows == n) return
          rates = largest_rates(b, i, s)
-         c%rates_open = contradict(w%r(rows + n + 1:2*rows), rates(1), b%list(i)%coarse) &
-            .or. contradict(w%r(n + 1:rows), max(rates(2), rates(1)**2), b%list(i)%coarse)
+         c%rates_open = contradict(w%r(rows + n + 1:2*rows), rates(1), block%coarse) &
+            .or. contradict(w%r(n + 1:rows), max(rates(2), rates(1)**2), block%coarse)
       end associate
    end subroutine finish
 
@@ -313,41 +314,43 @@ contains
    !> leaves the velocities open: with B = |J^-1| and the residual known to h, the position is known to B h, the
    !> Jacobian to B h times its Lipschitz constant L, the velocities to B times that. Newton and Kantorovich: one root
    !> only where B L change is below 1/2.
-   subroutine judge(b, i, n, w, s, c)
+   subroutine judge(b, i, block, w, s, c)
       type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i, n
+      integer, intent(in) :: i
+      type(block_t), intent(in) :: block
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(in) :: s
       type(convergence_t), intent(inout) :: c
       real(wp) :: least, largest, inverse, size_of
-      integer :: k
+      integer :: k, n
       logical :: suspicious
 
-      k = b%list(i)%shape%pattern
-      call pivot_range(b%list(i)%shape, w%a, w%sparse(k), w%pivots, least, largest, c%determinant)
+      n = block%shape%n
+      k = block%shape%pattern
+      call pivot_range(block%shape, w%a, w%sparse(k), w%pivots, least, largest, c%determinant)
       c%min_pivot = least
       c%reciprocal_condition = 1.0_wp
       if (n == 0) return
       if (n > 1) c%reciprocal_condition = least/largest
-      if (n == 1) largest = b%list(i)%lipschitz
+      if (n == 1) largest = block%lipschitz
       ! All pivots may be small, where links are much shorter than the mechanism.
       suspicious = least < suspicious_pivot*max(largest, 1.0_wp)
       if (n > 2) then
          c%inverse = 1.0_wp/max(least, min_inverse)
-         c%kantorovich_ratio = c%change*b%list(i)%lipschitz*c%inverse
+         c%kantorovich_ratio = c%change*block%lipschitz*c%inverse
          if (.not. suspicious .and. c%kantorovich_ratio <= small_kantorovich_ratio .and. &
-            s%excursion*b%list(i)%lipschitz*c%inverse**2*real(n, wp)**4 <= small_growth) return
+            s%excursion*block%lipschitz*c%inverse**2*real(n, wp)**4 <= small_growth) return
       end if
-      inverse = inverse_norm(b%list(i)%shape, w%a, w%sparse(k), w%work, w%iwork)
+      inverse = inverse_norm(block%shape, w%a, w%sparse(k), w%work, w%iwork)
       c%inverse = min(inverse, 1.0_wp/min_inverse)
-      c%kantorovich_ratio = c%change*b%list(i)%lipschitz*inverse
+      c%kantorovich_ratio = c%change*block%lipschitz*inverse
       if (.not. suspicious) return
       c%reciprocal_condition = min(1.0_wp, 1.0_wp/(inverse*largest))
-      size_of = b%list(i)%coarse
-      do k = b%list(i)%first, b%list(i)%last
+      size_of = block%coarse
+      do k = block%first, block%last
          size_of = max(size_of, abs(s%u(b%unknown(k))%value))
       end do
-      c%singular = inverse*inverse*b%list(i)%lipschitz*rounding_level*size_of >= largest_error
+      c%singular = inverse*inverse*block%lipschitz*rounding_level*size_of >= largest_error
       if (c%singular) c%singular = is_beyond_linear(b, i, n, w, s)
    end subroutine judge
 
