@@ -206,10 +206,13 @@ contains
    pure subroutine set_drive_values(e, t)
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
+      real(wp) :: f(3)
       integer :: i
 
       do i = 1, size(e%laws)
-         e%state%drive_value(0:2, i) = drive_motion(e%laws(i), t)*e%unit_of(i)
+         ! Not at once: the result would be copied before it is multiplied.
+         f = drive_motion(e%laws(i), t)
+         e%state%drive_value(0:2, i) = f*e%unit_of(i)
       end do
    end subroutine set_drive_values
 
