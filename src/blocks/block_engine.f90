@@ -252,22 +252,24 @@ contains
          else
             call solve_first_block(e%blocks, i, e%tolerance, e%work, e%state, one, e%others(i)%x)
          end if
-         if (e%blocks%list(i)%direct) cycle
-         if (follows) c%change = max(c%change, one%change)
-         if (follows .and. is_solved(one) .and. e%blocks%list(i)%shape%rows > e%blocks%list(i)%shape%n) &
-            one%determinant = e%followed(i)%sign_of*relative_sign(e%blocks, i, e%jacobian, e%state)
-         call gather(one, c)
-         if (.not. is_solved(one)) return
-         e%is_singular(i) = one%singular
-         ! At a change point itself the sign is that of rounding.
-         if (one%singular) cycle
-         c%kantorovich_ratio = max(c%kantorovich_ratio, one%kantorovich_ratio)
-         if (e%state%excursion > 0.0_wp) &
-            c%growth = max(c%growth, e%blocks%list(i)%lipschitz*max(one%inverse, e%followed(i)%inverse)**2)
-         e%found(i) = jacobian_t(one%determinant, one%min_pivot, one%inverse)
-         if (.not. follows .or. one%determinant == e%followed(i)%sign_of) cycle
-         c%keeps_signs = .false.
-         e%crossed(i) = .true.
+         associate (block => e%blocks%list(i), found => e%found(i), followed => e%followed(i))
+            if (block%direct) cycle
+            if (follows) c%change = max(c%change, one%change)
+            if (follows .and. is_solved(one) .and. block%shape%rows > block%shape%n) &
+               one%determinant = followed%sign_of*relative_sign(e%blocks, i, e%jacobian, e%state)
+            call gather(one, c)
+            if (.not. is_solved(one)) return
+            e%is_singular(i) = one%singular
+            ! At a change point itself the sign is that of rounding.
+            if (one%singular) cycle
+            c%kantorovich_ratio = max(c%kantorovich_ratio, one%kantorovich_ratio)
+            if (e%state%excursion > 0.0_wp) &
+               c%growth = max(c%growth, block%lipschitz*max(one%inverse, followed%inverse)**2)
+            found = jacobian_t(one%determinant, one%min_pivot, one%inverse)
+            if (.not. follows .or. one%determinant == followed%sign_of) cycle
+            c%keeps_signs = .false.
+            e%crossed(i) = .true.
+         end associate
       end do
    end subroutine solve_each
 

@@ -5,7 +5,7 @@ module block_equations
    use kinds, only: wp
    use planar, only: rotated, quarter_turn, cross
    use block_matrix, only: entries_of
-   use blocks, only: blocks_t, block_loop_t, body_vector_t, loop_components, loop_projection, loop_angles
+   use blocks, only: blocks_t, block_loop_t, body_vector_t, loop_projection, loop_angles
    use block_state, only: state_t, unknown_t, slide_vector
    implicit none
    private
@@ -25,22 +25,22 @@ contains
       a(:entries_of(b%list(i)%shape)) = 0.0_wp
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          associate (g => b%loops(m))
-            select case (g%kind)
-            case (loop_components)
-               call find_closure_error(b, m, s)
-               call component_rows(g, b%body_vectors, s%own, s%loop(m)%closure_error, a, r)
-               if (g%last_slide < g%first_slide) cycle
-               if (g%row_x > 0) call slide_entries(b, g, 1, [1.0_wp, 0.0_wp], s, a)
-               if (g%row_y > 0) call slide_entries(b, g, 2, [0.0_wp, 1.0_wp], s, a)
-            case (loop_projection)
-               call find_closure_error(b, m, s)
-               call projection_row(b, g, m, s, a, r)
-            case default
+            if (g%kind == loop_angles) then
                ! Both may be the same angle.
                r(g%row_x) = s%u(g%orientation)%value - s%u(g%less)%value
                if (g%orientation_at > 0) a(g%orientation_at) = a(g%orientation_at) + 1.0_wp
                if (g%less_at > 0) a(g%less_at) = a(g%less_at) - 1.0_wp
-            end select
+               cycle
+            end if
+            call find_closure_error(b, m, s)
+            if (g%kind == loop_projection) then
+               call projection_row(b, g, m, s, a, r)
+            else
+               call component_rows(g, b%body_vectors, s%own, s%loop(m)%closure_error, a, r)
+               if (g%last_slide < g%first_slide) cycle
+               if (g%row_x > 0) call slide_entries(b, g, 1, [1.0_wp, 0.0_wp], s, a)
+               if (g%row_y > 0) call slide_entries(b, g, 2, [0.0_wp, 1.0_wp], s, a)
+            end if
          end associate
       end do
       do k = b%list(i)%first_row, b%list(i)%last_row
