@@ -83,6 +83,8 @@ $(foreach build,$(builds),$(eval $(call build_in,$(build))))
 
 # What tests/ has of its own computes little: it is compiled with less optimization, in half the time.
 $(patsubst %.f90,$(BUILD)/release/%.o,$(notdir $(helpers))): private release := $(patsubst -O2,-O1,$(filter -O%,$(RELEASE)))
+# The closed forms that `make bench` compares with are compiled as they are fastest, in pairs.
+$(BUILD)/timed/fast_forms.o: private timed := $(filter-out -fno-tree-slp-vectorize,$(RELEASE))
 
 $(BUILD)/kinmat: $(BUILD)/release/kinmat
 	cp $< $@
