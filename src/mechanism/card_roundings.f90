@@ -29,12 +29,12 @@ module card_roundings
    !> generator.
    integer, parameter :: rows = 251
    integer(int64), parameter :: multiplier = 16807_int64, modulus = 2147483647_int64
-   integer :: n                                !< of the loop in the next line
-   integer(int64), parameter :: chance(directions*rows) = &
-      mod(multiplier*mod([(int(n, int64)**3, n=1, directions*rows)], modulus), modulus)
-   real(wp), parameter :: share(directions*rows) = real(2_int64*chance - modulus, wp)/real(modulus, wp)
-   real(wp), parameter :: parts(directions, 0:rows - 1) = &
-      reshape(sign(least + (most - least)*abs(share), share), [directions, rows])
+   integer :: n                                !< of the loop in the next lines
+   !> Written out for each number: operations on whole constant arrays of this size take the compiler seconds.
+   real(wp), parameter :: parts(directions, 0:rows - 1) = reshape([ &
+      (sign(least + (most - least)*abs(real(2_int64*mod(multiplier*int(n, int64)**3, modulus) - modulus, wp) &
+      /real(modulus, wp)), real(2_int64*mod(multiplier*int(n, int64)**3, modulus) - modulus, wp)), &
+      n=1, directions*rows)], [directions, rows])
 
 contains
 
