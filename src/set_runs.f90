@@ -107,12 +107,13 @@ contains
 
       !> The same of rows alone, as many variants at a time as there are lanes.
       subroutine run_together()
-         type(lane_run_t), allocatable :: runs(:)
+         ! Of a class, so that the compiler calls what makes and frees one, and does not write it out for each use.
+         class(lane_run_t), allocatable :: runs(:)
          type(lanes_t) :: lanes
          type(findings_t) :: findings
          integer :: k, count
 
-         allocate (runs(width))
+         allocate (lane_run_t :: runs(width))
          do while (n <= last)
             count = min(width, last - n + 1)
             do k = 1, count

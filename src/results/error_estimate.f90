@@ -57,7 +57,6 @@ module error_estimate
    type :: estimator_t
       real(wp) :: length = 1.0_wp, rate = 1.0_wp
       type(rounding_response_t) :: response
-      type(block_engine_t) :: engine           !< of the position, where no blocks have found it
       logical :: is_ready = .false.            !< for any position, where blocks find it
    end type estimator_t
 
@@ -82,8 +81,6 @@ contains
       type(motion_t), intent(in) :: q
       logical, intent(in) :: always
       type(error_estimate_t), intent(inout) :: found
-      type(mechanism_t) :: placed
-      integer :: pass
 
       found%taken = .false.
       found%asked = always
@@ -102,19 +99,32 @@ contains
          s%response%state%u(:) = engine%state%u
          call take_changes(s%response, m, engine, q, s%length, always, found)
       class default
-         placed = m
-         call place_links(placed, q%position)
-         call make_block_engine(s%engine, placed)
-         if (.not. s%engine%blocks%solvable) return
-         call make_rounding_response(s%response, m, s%engine)
-         s%response%state%u%value = s%engine%estimated
-         ! An arm that is zero but for its rounding turns with a link that comes later in the solving order: all rates
-         ! are found first.
-         do pass = 1, 2
-            call take_changes(s%response, m, s%engine, q, s%length, .true., found)
-         end do
+         call estimate_from_blocks(s, m, q, found)
       end select
    end subroutine estimate_errors
+
+   !> The same where no blocks have found the motion: at its position they are made anew.
+   subroutine estimate_from_blocks(s, m, q, found)
+      type(estimator_t), intent(inout) :: s
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      type(error_estimate_t), intent(inout) :: found
+      type(mechanism_t) :: placed
+      type(block_engine_t) :: blocks
+      integer :: pass
+
+      placed = m
+      call place_links(placed, q%position)
+      call make_block_engine(blocks, placed)
+      if (.not. blocks%blocks%solvable) return
+      call make_rounding_response(s%response, m, blocks)
+      s%response%state%u%value = blocks%estimated
+      ! An arm that is zero but for its rounding turns with a link that comes later in the solving order: all rates are
+      ! found first.
+      do pass = 1, 2
+         call take_changes(s%response, m, blocks, q, s%length, .true., found)
+      end do
+   end subroutine estimate_from_blocks
 
    !> The changes at the motion `q` of `m`, with the blocks of `e`, of the characteristic `length`. `again`: the blocks
    !> are solved once more, to the limit of rounding.

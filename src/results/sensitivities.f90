@@ -40,8 +40,8 @@ module sensitivities
    !> The response of a mechanism, its numbers as they are or off by roundings.
    type :: perturbed_t
       type(response_t) :: response
-      type(block_engine_t) :: engine
-      logical :: is_made = .false., is_ready = .false.   !< the response; the engine
+      class(block_engine_t), allocatable :: engine
+      logical :: is_made = .false.                   !< the response
    end type perturbed_t
 
    !> What an independent mechanism needs for them.
@@ -205,15 +205,22 @@ contains
 
          select type (e)
          class is (block_method_t)
-            if (.not. s%is_ready) call make_block_engine(s%engine, s%response%m)
+            if (.not. allocated(s%engine)) call prepare(s)
             s%engine%state%u = e%state%u
          class default
             call place_links(s%response%m, q%position)
-            call make_block_engine(s%engine, s%response%m)
+            call prepare(s)
             s%engine%state%u%value = s%engine%estimated
          end select
-         s%is_ready = .true.
       end subroutine take_position
+
+      !> Makes the engine of `s` for its mechanism.
+      subroutine prepare(s)
+         type(perturbed_t), intent(inout) :: s
+
+         if (.not. allocated(s%engine)) allocate (block_engine_t :: s%engine)
+         call make_block_engine(s%engine, s%response%m)
+      end subroutine prepare
 
       !> (0:2, drives, numbers) The changes of the laws of the drives of `m` with its numbers at the time `t`. `order`:
       !> that of the highest derivatives, 0 to 2, of which this exists for all of them.

@@ -27,9 +27,10 @@ module set_analysis
       type(set_motion_t) :: now                             !< the motion found last, and how far it is known
       type(analysis_t), allocatable :: list(:)              !< (parts)
       type(opinion_t), allocatable :: opinions(:)           !< (parts)
-      type(estimator_t), allocatable :: estimators(:)       !< (parts)
-      type(sensor_t), allocatable :: sensors(:)             !< (parts)
-      type(motion_prover_t), allocatable :: provers(:)      !< (parts)
+      ! Of classes, so that the compiler calls what frees one, and does not write it out wherever a set is freed.
+      class(estimator_t), allocatable :: estimators(:)      !< (parts)
+      class(sensor_t), allocatable :: sensors(:)            !< (parts)
+      class(motion_prover_t), allocatable :: provers(:)     !< (parts)
       type(assemblies_t), allocatable :: assemblies(:)      !< (parts) at the first instant, where they are asked for
       type(certificate_counts_t) :: certificate_counts      !< of all instants
    end type set_analysis_t
@@ -47,7 +48,10 @@ contains
 
       call new_set_motion(m, s%now, findings)
       associate (n => s%now%parts%count)
-         allocate (s%list(n), s%opinions(n), s%estimators(n), s%sensors(n), s%provers(n))
+         allocate (s%list(n), s%opinions(n))
+         allocate (estimator_t :: s%estimators(n))
+         allocate (sensor_t :: s%sensors(n))
+         allocate (motion_prover_t :: s%provers(n))
       end associate
       if (m%assemblies) allocate (s%assemblies(size(s%list)))
       do c = 1, size(s%list)
