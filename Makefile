@@ -81,8 +81,12 @@ include $(BUILD)/depends.mk
 endif
 $(foreach build,$(builds),$(eval $(call build_in,$(build))))
 
-# What tests/ has of its own computes little: it is compiled with less optimization, in half the time.
-$(patsubst %.f90,$(BUILD)/release/%.o,$(notdir $(helpers))): private release := $(patsubst -O2,-O1,$(filter -O%,$(RELEASE)))
+# Little time is spent in these folders, in what stands in none, and in what tests/ has of its own: they are compiled with
+# less optimization, in half the time.
+cold := $(notdir $(basename $(filter src/deck/% src/answers/% src/study/% $(wildcard src/*.f90),$(sources))))
+less := $(patsubst -O2,-O1,$(patsubst -O1,-O0,$(filter -O%,$(RELEASE))))
+$(patsubst %,$(BUILD)/release/%.o,$(cold) $(notdir $(basename $(helpers)))): private release := $(less)
+$(patsubst %,$(BUILD)/timed/%.o,$(cold)): private timed := $(less)
 # The closed forms that `make bench` compares with are compiled as they are fastest, in pairs.
 $(BUILD)/timed/fast_forms.o: private timed := $(filter-out -fno-tree-slp-vectorize,$(RELEASE))
 
