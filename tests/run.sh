@@ -37,7 +37,7 @@ parts() {
    the digits|1|tests/system/digits.sh
    decks made by chance|1000|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 1000
    relations between runs|300|tests/system/relations.sh --short
-   mechanisms of a known motion|156|tests/fuzz/fuzz_mechanisms.sh 150
+   mechanisms of a known motion|158|tests/fuzz/fuzz_mechanisms.sh 150
    the method of 1987|1000|"$BUILD/release/matrix_1987" short
    what is hard to compute|120|tests/oracle/hard.sh short
    the tool of mutants|8|tests/mutants/self_test.sh

@@ -101,18 +101,18 @@ contains
       end do
       time = measure(scenes, jobs, repeats, least)
       print '(a)', '', ' COARSE STEPS, BLOCKS: RATIO AND NS AS ABOVE', &
-         ' FACTORIZATIONS: a step, of the block that needs most', '', &
-         ' MECHANISM  STEPS A TURN   RATIO   LEAST    MOST      NS  FACTORIZATIONS'
+         ' ITERATIONS: a step, of the block that needs most; after a small correction the factors serve again', '', &
+         ' MECHANISM  STEPS A TURN   RATIO   LEAST    MOST      NS  ITERATIONS'
       do i = 1, size(scenes)
          ratio = spread_of(time(2*i, :)/time(2*i - 1, :))
          own = spread_of(time(2*i, :)*nano)
-         print '(1x, a10, i13, 4a8, f16.2)', scenes(i)%name//repeat(' ', 10), scenes(i)%steps/3, figure(ratio%median), &
-            figure(ratio%least), figure(ratio%most), figure(own%median), factorizations(scenes(i))
+         print '(1x, a10, i13, 4a8, f12.2)', scenes(i)%name//repeat(' ', 10), scenes(i)%steps/3, figure(ratio%median), &
+            figure(ratio%least), figure(ratio%most), figure(own%median), iterations(scenes(i))
       end do
    end subroutine coarse_table
 
-   !> Iterations a step, each of them a factorization.
-   real(wp) function factorizations(s)
+   !> Iterations a step.
+   real(wp) function iterations(s)
       type(scene_t), intent(in) :: s
       type(analysis_t) :: a
       type(motion_t) :: q
@@ -123,8 +123,8 @@ contains
       do k = 0, s%steps
          call advance(a, instant_of(s, k), q)
       end do
-      factorizations = real(a%iterations, wp)/s%steps
-   end function factorizations
+      iterations = real(a%iterations, wp)/s%steps
+   end function iterations
 
    !> The chains of tests/make_deck in the directory `decks`: closed form, blocks and, where they are small, dense.
    subroutine chains_table(decks)
