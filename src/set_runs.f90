@@ -200,8 +200,8 @@ contains
       integer :: k
 
       call make_set_analysis(m, a, findings)
-      if (o%asked(out_listing) .or. m%variants > 0) call new_answers(m, a, asked)
       lists = full .and. o%asked(out_listing)
+      if (o%asked(out_listing) .or. m%variants > 0) call new_answers(m, a, lists, asked)
       every = strides(m)
       do k = 0, instant_count(m) - 1
          call advance_set(a, instant(m, k))

@@ -34,16 +34,18 @@ module answers
 
 contains
 
-   !> Ready for the first instant of `m`; `s`: its analysis.
-   subroutine new_answers(m, s, a)
+   !> Ready for the first instant of `m`; `s`: its analysis. `lists`: its tables are written, which alone have the
+   !> shares of tolerances.
+   subroutine new_answers(m, s, lists, a)
       type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(in) :: s
+      logical, intent(in) :: lists
       type(answers_t), intent(out) :: a
       integer :: c
 
       a%extremes_asked = any(m%requests%extremes)
       a%ranges_asked = m%ranges
-      a%shares_asked = allocated(m%tolerances)
+      a%shares_asked = lists .and. allocated(m%tolerances)
       if (a%shares_asked) call new_shares(m, a%shares)
       if (m%assemblies) then
          if (all(s%assemblies%is_known)) a%assemblies = sum([(size(s%assemblies(c)%list), c=1, size(s%assemblies))])

@@ -65,6 +65,7 @@ contains
       type(set_analysis_t), intent(in) :: s
       integer, intent(in) :: k
       logical, intent(in) :: due
+      type(reason_t) :: reason
       integer :: c
 
       p%instants = p%instants + 1
@@ -76,7 +77,9 @@ contains
                if (proof%is_proved) p%gap = max(p%gap, proof%gap)
                if (holds(proof)) cycle
                line%is_proved = .false.
-               if (size(p%reasons) < max_reasons) p%reasons = [p%reasons, reason_of(m, s, c, k)]
+               if (size(p%reasons) == max_reasons) cycle
+               reason = reason_of(m, s, c, k)
+               p%reasons = [p%reasons, reason]
             end associate
          end do
          if (all(holds(s%now%proofs))) p%proved = p%proved + 1

@@ -61,7 +61,7 @@ module dense_engine
       real(wp), allocatable :: estimated(:, :)   !< (3, links) the deck's positions
       real(wp), allocatable :: start(:, :)       !< (3, links) where the last search began
       type(factors_t) :: factors
-      type(place_t) :: at
+      type(place_t), allocatable :: at
       real(wp), allocatable :: drive_values(:, :) !< (3, drives) value, rate, acceleration
       logical :: has_missed = .false.            !< the assembly meant at an earlier instant was not found
       integer :: method = 0                      !< method_dense or method_matrix
@@ -96,6 +96,7 @@ contains
       e%estimated = e%pose%q
       e%start = e%estimated
       e%factors = new_factors(e%system%n)
+      allocate (e%at)
       e%at%now = new_motion(size(m%links))
       e%at%last = e%at%now
       e%at%before = e%at%now

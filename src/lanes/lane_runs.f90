@@ -59,7 +59,7 @@ contains
       type(findings_t), intent(inout) :: findings
 
       call make_set_analysis(r%m, r%s, findings)
-      call new_answers(r%m, r%s, r%asked)
+      call new_answers(r%m, r%s, .false., r%asked)
       if (r%asked%extremes_asked) r%watch = new_watch(r%asked%extremes)
       r%at = -1
       r%counted = -1

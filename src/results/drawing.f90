@@ -102,6 +102,8 @@ contains
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: max_frames, every
       type(drawing_t) :: d
+      type(curve_t) :: curve
+      type(centrode_t) :: centrode
       integer :: i, n, places
 
       d%m = m
@@ -119,11 +121,15 @@ contains
       do i = 1, size(m%requests)
          if (m%requests(i)%kind /= request_point .or. is_fixed(m, m%requests(i))) cycle
          if (any(d%curves%point == m%requests(i)%subject) .or. size(d%curves) == max_curves) cycle
-         d%curves = [d%curves, new_curve(i, m%requests(i)%subject, places)]
+         ! A function's result within a constructed array would not be freed by gfortran.
+         curve = new_curve(i, m%requests(i)%subject, places)
+         d%curves = [d%curves, curve]
       end do
       allocate (d%centrodes(0))
       do i = 1, size(m%requests)
-         if (m%requests(i)%kind == request_pole) d%centrodes = [d%centrodes, new_centrode(m, i, places)]
+         if (m%requests(i)%kind /= request_pole) cycle
+         centrode = new_centrode(m, i, places)
+         d%centrodes = [d%centrodes, centrode]
       end do
       n = 0
       do i = 1, size(m%pairs)

@@ -67,11 +67,16 @@ contains
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k
       type(mechanism_t) :: off
+      type(change_t) :: changes(size(m%tolerances))
       integer :: i
 
       off = m
       if (k > 0) call put_off(off, k)
-      call make_response(s%response, off, [(change_of(m, m%tolerances(i)), i=1, size(m%tolerances))])
+      ! One by one: of a constructed array gfortran would not free the parts.
+      do i = 1, size(changes)
+         changes(i) = change_of(m, m%tolerances(i))
+      end do
+      call make_response(s%response, off, changes)
       s%is_made = .true.
    end subroutine make_perturbed
 

@@ -88,4 +88,19 @@ for method in NEWTON DENSE; do
    equal "on a change point, $method: rates of the crank" 10.00000 \
       "$(awk '/^ INSTANT/ { crank = "" } /^ CRANK / { crank = $7 } /CHANGE POINT, LINKS COUPLER, ROCKER IN LINE:/ { print crank; exit }' "$w/$method.lst")"
 done
+# What --errors tells by METHOD DENSE and by NEWTON is what the same roundings may cause, a few times more or less, at positions
+# far from those of the deck too: numbers whose told errors differ by more than 10 times, and whether there are many.
+for deck in drag_link whitworth four_bar; do
+   for method in NEWTON DENSE; do
+      sed -e '/^METHOD/d' -e "s/^END.*/METHOD  $method\n&/" "input/$deck.deck" > "$w/told.deck"
+      "$kinmat" "$w/told.deck" --errors --no-listing --csv "$w/told.$method"
+   done
+   equal "$deck: told errors by METHOD DENSE" '0 many' "$(paste -d, "$w/told.NEWTON" "$w/told.DENSE" | awk -F, '
+      NR > 1 { n = NF/2
+         for (i = 16; i <= 24; i++) {
+            if (($i != "") != ($(i + n) != "")) off++
+            if ($i > 0 && $(i + n) > 0) { count++; if ($i > 10*$(i + n) || $(i + n) > 10*$i) off++ } } }
+      END { print off + 0, (count > 500 ? "many" : "few") }')"
+done
+
 conclude

@@ -246,6 +246,14 @@ for k in 1 2 3 4 5 6 7 8; do
 done > "$w/joined.csv"
 same 'lengths of zero: eight shares' "$w/one.csv" "$w/joined.csv"
 
+# The shares of tolerances stand in the tables of a variant: rows alone do without, and are the same.
+four_bar "$(vary R1 3 '' 0.5 1.25)" "$(card TOLER '' '' '' 0.01)" '' '' "$(card TIME 4 '' '' 0.0 1.0; card PRINT ALL)" > "$w/toler.deck"
+"$kinmat" "$w/toler.deck" --summary "$w/tables.csv" > "$w/out"
+equal 'tolerances: status' 0 $?
+"$kinmat" "$w/toler.deck" --no-listing --summary "$w/alone.csv" > "$w/out" 2>&1
+equal 'tolerances, rows alone: status' 0 $?
+same 'tolerances, rows alone' "$w/tables.csv" "$w/alone.csv"
+
 # Memory does not grow with the variants: 40 times as many need no more room than is free for a few.
 four_bar "$(vary R1 50 '' 0.5 1.25)" "$(vary R1 40 '' 3.25 3.75)" '' '' "$(card TIME 1 '' '' 0.0 1.0)" > "$w/many.deck"
 (ulimit -v 200000; "$kinmat" "$w/many.deck" --no-listing --summary "$w/many.csv") > "$w/out" 2>&1
