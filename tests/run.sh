@@ -15,6 +15,7 @@ parts() {
    single precision|62|"$MAKE" --no-print-directory single-check
    speed against error|80|"$MAKE" --no-print-directory study-short
    results of the methods|97|"$MAKE" --no-print-directory bench-short
+   cards and options together|1000|tests/system/together.sh
    the command|426|tests/system/command.sh
    what is installed|11|tests/system/install.sh
    many sets|7|tests/system/many_sets.sh

@@ -1,0 +1,74 @@
+#!/bin/sh
+# Cards and options in pairs: every two of these cards in one deck, in a build with run-time checks. The run ends well, or says
+# which card needs METHOD NEWTON; what else is asked for changes no byte of the listing, of the CSV or of the summary, and
+# variants of which rows alone are asked have those rows.
+. tests/counting.sh
+
+# What stands below a point of the crank, below one of the coupler, or at the end of the set.
+features='vary tolerances branch extremes extremes_of_pairs assembly circuits range prove dense matrix polish at second pole'
+crank() { [ "$1" = vary ] && card VARY R1 3 '' 0.5 1.9; }
+coupler() { [ "$1" = tolerances ] && card TOLER '' '' '' 0.01; }
+others() {
+   case $1 in
+   branch) card BRANCH '' '' '' 3.0;;
+   extremes) card EXTREMES POINTS C;;
+   extremes_of_pairs) card EXTREMES PAIRS;;
+   assembly) card ASSEMBLY;;
+   circuits) card CIRCUITS;;
+   range) card RANGE;;
+   prove) card PROVE;;
+   dense) card METHOD DENSE;;
+   matrix) card METHOD MATRIX;;
+   polish) card LANG PL;;
+   at) card AT '' '' '' 0.5 2.25;;
+   pole) card POLE BASE COUPLER;;
+   second) card LINK ARM '' '' 9.0 0.0 10.0; card POINT Q ARM; card POINT Q0 BASE '' 9.0; card REVOLUTE Q Q0 PAIR-Q
+      card DRIVE ANGLE ARM '' 10.0 5.0;;
+   esac
+}
+# deck A B [LAST...]: a four-bar with both, and the cards LAST
+deck() {
+   card UNITS M DEG S; card GROUND BASE; card LINK CRANK
+   card LINK COUPLER '' '' 1.0 0.0 55.0; card LINK ROCKER '' '' 4.0 0.0 110.0
+   card POINT A0 BASE; card POINT B0 BASE '' 4.0
+   card POINT A0-CR CRANK; card POINT A-CR CRANK '' 1.0; crank "$1"; crank "$2"
+   card POINT A-CO COUPLER; card POINT B-CO COUPLER '' 3.5; coupler "$1"; coupler "$2"
+   card POINT C COUPLER '' 1.0 1.0; card POINT B0-RO ROCKER; card POINT B-RO ROCKER '' 3.0
+   card REVOLUTE A0 A0-CR PAIR-A0; card REVOLUTE A-CR A-CO PAIR-A; card REVOLUTE B-CO B-RO PAIR-B
+   card REVOLUTE B0-RO B0 PAIR-B0; card DRIVE ANGLE CRANK '' 0.0 30.0
+   card TIME 8 '' '' 0.0 4.0
+   others "$1"; others "$2"; [ -z "$3" ] || echo "$3"; card END
+}
+# run NAME OPTION...: the status and, of standard error, the sentences of errors and crashes
+run() {
+   name=$1
+   shift
+   "$debug" "$w/deck" --jobs 1 "$@" > "$w/$name.out" 2> "$w/$name.err"
+   echo "$? $(grep -E '^( [*]{3}|At line|Fortran|Program)' "$w/$name.err" | sed 's/.*THIS CARD NEEDS METHOD NEWTON$/needs NEWTON/')"
+}
+
+rest=$features
+for a in $features; do
+   rest=${rest#* }
+   for b in $rest; do
+      [ "$b" = "$a" ] && continue
+      deck "$a" "$b" "$(card PRINT ALL)" > "$w/deck"
+      said=$(run plain -o "$w/plain.lst")
+      case $said in
+      0\ |2\ ) pass;;
+      '1 needs NEWTON') pass; continue;;
+      *) [ "$a $b" = "dense matrix" ] || miss "$a, $b: $said"; continue;;
+      esac
+      rm -f "$w"/*.csv "$w"/*.sum
+      equal "$a, $b, all outputs" "$said" \
+         "$(run all -o "$w/all.lst" --errors --csv "$w/all.csv" --log "$w/log" --svg "$w/svg" --summary "$w/all.sum")"
+      same "$a, $b: listing beside other outputs" "$w/plain.lst" "$w/all.lst"
+      equal "$a, $b, no listing" "$said" "$(run none --no-listing --errors --csv "$w/none.csv" --summary "$w/none.sum")"
+      same "$a, $b: CSV without a listing" "$w/all.csv" "$w/none.csv"
+      equal "$a, $b, summary alone" "$said" "$(run summary --no-listing --summary "$w/summary.sum")"
+      deck "$a" "$b" > "$w/deck"
+      equal "$a, $b, rows alone" "$said" "$(run rows --no-listing --summary "$w/rows.sum")"
+      for file in none summary rows; do same "$a, $b: summary, $file" "$w/all.sum" "$w/$file.sum"; done
+   done
+done
+conclude
