@@ -20,12 +20,12 @@ module assembly_choice
    public :: solve_first
 
    !> All that is assembled so far.
-   type :: trial_t
+   type :: candidate_t
       type(unknown_t), allocatable :: u(:)              !< (0:unknowns)
       logical, allocatable :: solved(:)                 !< (blocks)
       type(positions_t), allocatable :: others(:)       !< (blocks) what else was found
       real(wp), allocatable :: place(:, :)              !< (3, links) x, y in the deck's unit, phi
-   end type trial_t
+   end type candidate_t
 
    !> Links that differ by more than this, in radians or characteristic lengths, lie differently.
    real(wp), parameter :: apart = max(1.0e-6_wp, sqrt(epsilon(1.0_wp)))
@@ -65,7 +65,7 @@ contains
    !> Puts the best assembly into the values of the engine; notes blocks with another that is about as near.
    subroutine choose(e)
       type(block_engine_t), intent(inout) :: e
-      type(trial_t) :: best
+      type(candidate_t) :: best
       integer :: i, solves
       logical :: again
 
@@ -91,7 +91,7 @@ contains
 
       !> Tries the other positions of block `i`, and makes the best assembly `best`; `again`: more blocks are assembled.
       subroutine try_others()
-         type(trial_t) :: other
+         type(candidate_t) :: other
          real(wp), allocatable :: x(:, :)
          real(wp) :: nearest, cost(2)
          integer :: k
@@ -124,7 +124,7 @@ contains
       !> Assembles block `first` from where it is and those that build on it from the deck's estimate; 0: all.
       subroutine assemble_from(first, t)
          integer, intent(in) :: first
-         type(trial_t), intent(inout) :: t
+         type(candidate_t), intent(inout) :: t
          type(motion_t) :: found
          integer, dimension(0:e%blocks%unknowns) :: open, changed
          integer :: i
@@ -156,7 +156,7 @@ contains
       subroutine assemble_one(i, is_near, t)
          integer, intent(in) :: i
          logical, intent(in) :: is_near
-         type(trial_t), intent(inout) :: t
+         type(candidate_t), intent(inout) :: t
          type(convergence_t) :: c
 
          if (is_near) then
@@ -170,7 +170,7 @@ contains
 
       !> How far two assemblies are from the deck's estimate, by the links that lie differently: the sums of squares.
       function costs(a, b) result(cost)
-         type(trial_t), intent(in) :: a, b
+         type(candidate_t), intent(in) :: a, b
          real(wp) :: cost(2)
          integer :: i
 
@@ -186,7 +186,7 @@ contains
       !> `far_place`.
       pure real(wp) function link_cost(i, t) result(cost)
          integer, intent(in) :: i
-         type(trial_t), intent(in) :: t
+         type(candidate_t), intent(in) :: t
 
          associate (f => e%orientation_of(i))
             cost = min(sum((t%place(:2, i)/e%span - e%estimate(:2, i)/e%span)**2), far_place**2) &
