@@ -8,8 +8,8 @@ module companion
    use, intrinsic :: iso_c_binding, only: c_ptr, c_char, c_associated, c_null_char
    use, intrinsic :: iso_fortran_env, only: dp => real64, qp => real128
    use failures, only: failure_t, fail, status_system, status_rejected
-   use cards, only: card_t, find_form, form_time, form_at, form_method, form_print, form_extremes, form_range, &
-      form_branch, form_end
+   use cards, only: card_t, find_form, form_toler, form_time, form_at, form_method, form_print, form_extremes, &
+      form_range, form_circuits, form_pole, form_curve, form_branch, form_vary, form_prove, form_end
    use deck_source, only: source_t, open_source, next_card, close_source
    use mechanism, only: mechanism_t, method_newton
    use text_output, only: output_t, open_output, put, close_output
@@ -100,15 +100,16 @@ contains
    end function script
 
    !> Writes trial `t` of `m` as a set of computations: its cards as they stand in the file `deck`, but for those of
-   !> method, instants and what is asked of the motion, and of branches, which METHOD NEWTON alone takes. The points and
-   !> pairs are printed too, at the first and the last instant.
+   !> method, instants, variants and what is asked of the motion, and of branches, which METHOD NEWTON alone takes. The
+   !> points and pairs are printed too, at the first and the last instant.
    subroutine put_trial(o, deck, m, t, failure)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: deck
       type(mechanism_t), intent(in) :: m
       type(trial_t), intent(in) :: t
       type(failure_t), allocatable, intent(out) :: failure
-      integer, parameter :: replaced(*) = [form_method, form_time, form_at, form_print, form_extremes, form_range]
+      integer, parameter :: replaced(*) = [form_method, form_time, form_at, form_print, form_extremes, form_range, &
+         form_circuits, form_pole, form_curve, form_toler, form_vary, form_prove]
       real(dp) :: instants(0:t%last)
       type(source_t) :: source
       type(card_t) :: card
