@@ -303,8 +303,10 @@ contains
       passes = trial%lowest(k) < huge(1.0_qp) .and. sine%v*before%v < 0.0_qp
       trial%was_open(k) = trial%was_open(k) .or. passes .and. abs(phi%v) > largest_angle
       ! The time of the passage, by the chord.
+      at = trial%t
+      if (passes) at = at + h*before%v/(before%v - sine%v)
+      if (passes .and. is_named_by_others(s, trial, k, at, h)) trial%status(k) = is_unknown
       if (passes .and. .not. trial%has_branched(k) .and. abs(g%branch_after) < huge(1.0_qp)) then
-         at = trial%t + h*before%v/(before%v - sine%v)
          if (abs((at - g%branch_after)*sine%d) < same_time) trial%status(k) = is_unknown
          passes = (at - g%branch_after)*h > 0.0_qp
       end if
@@ -323,6 +325,30 @@ contains
       trial%sine(k) = sine
       trial%margin(k) = merge(nearly_kite(s, g)**4, 1.0_qp, trial%crossed(k))
    end subroutine follow_parallelogram
+
+   !> At the time `at` of a change point of group `k` a BRANCH card that no change point has served, and whose time is
+   !> passed on the way `h`, names a link of a parallelogram that hangs on this group. Where both are in one block, the
+   !> change point is that link's too.
+   pure logical function is_named_by_others(s, trial, k, at, h) result(is_named)
+      type(scheme_t), intent(in) :: s
+      type(motion_t), intent(in) :: trial
+      integer, intent(in) :: k
+      real(qp), intent(in) :: at, h
+      logical :: hangs(size(s%links))
+      integer :: j
+
+      is_named = .false.
+      hangs = .false.
+      hangs(s%groups(k)%links(1):s%groups(k)%links(2)) = .true.
+      do j = k + 1, size(s%groups)
+         associate (g => s%groups(j))
+            if (.not. any(hangs(g%bases))) cycle
+            hangs(g%links(1):g%links(2)) = .true.
+            is_named = is_named .or. (abs(g%branch_after) < huge(1.0_qp) .and. .not. trial%has_branched(j) &
+               .and. (at - g%branch_after)*h > 0.0_qp)
+         end associate
+      end do
+   end function is_named_by_others
 
    !> By how little the sides of a parallelogram differ. Where they do not, the antiparallelogram is a kite, which at
    !> its change points takes any position; where they hardly do, it goes past them fast: 1 over this is the largest
