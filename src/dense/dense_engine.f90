@@ -61,7 +61,7 @@ module dense_engine
       real(wp), allocatable :: estimated(:, :)   !< (3, links) the deck's positions
       real(wp), allocatable :: start(:, :)       !< (3, links) where the last search began
       type(factors_t) :: factors
-      type(place_t), allocatable :: at
+      type(place_t), allocatable :: at           !< gfortran does not free the parts of one that is not allocatable
       real(wp), allocatable :: drive_values(:, :) !< (3, drives) value, rate, acceleration
       logical :: has_missed = .false.            !< the assembly meant at an earlier instant was not found
       integer :: method = 0                      !< method_dense or method_matrix
