@@ -200,7 +200,9 @@ contains
          read (unit, '(a)', iostat=status) row
          if (status /= 0) return
          read (row, *, iostat=i) place, words
-         if (i == 0 .and. all(place == [set, step]) .and. words(2) == 'LINK') exit
+         ! With card ASSEMBLY the first instant has rows of the other assemblies, too.
+         if (i == 0 .and. all(place == [set, step]) .and. words(2) == 'LINK' .and. &
+            index(row, ',LINK ASSEMBLY ') == 0) exit
       end do
       ! Before the mark, which stands last; a name may hold commas. What is empty stays as it is.
       comma = len_trim(row) + 1
