@@ -77,6 +77,22 @@ still_four_bar() {
    card END
 }
 
+# moving_four_bar AFTER-CRANK AFTER-COUPLER AFTER-ROCKER AFTER-BASE CARD...: lengths 1.0, 3.5, 3.0, 4.0, with cards below them,
+# and others before END
+moving_four_bar() {
+   card UNITS M DEG S; card GROUND BASE; card LINK CRANK
+   card LINK COUPLER '' '' 1.0 0.0 55.0; card LINK ROCKER '' '' 4.0 0.0 110.0
+   card POINT A0 BASE; card POINT B0 BASE '' 4.0; echo "$4"
+   card POINT A0-CR CRANK; card POINT A-CR CRANK '' 1.0; echo "$1"
+   card POINT A-CO COUPLER; card POINT B-CO COUPLER '' 3.5; echo "$2"
+   card POINT B0-RO ROCKER; card POINT B-RO ROCKER '' 3.0; echo "$3"
+   card REVOLUTE A0 A0-CR PAIR-A0; card REVOLUTE A-CR A-CO PAIR-A; card REVOLUTE B-CO B-RO PAIR-B
+   card REVOLUTE B0-RO B0 PAIR-B0; card DRIVE ANGLE CRANK '' 0.0 30.0
+   shift 4
+   printf '%s\n' "$@"
+   echo END
+}
+
 # angle A B C: between the sides A and B of a triangle, opposite C, in degrees
 angle() { awk -v a="$1" -v b="$2" -v c="$3" 'BEGIN { x = (a*a + b*b - c*c)/(2*a*b)
    printf "%.12f", atan2(sqrt(1 - x*x), x)*45/atan2(1, 1) }'; }

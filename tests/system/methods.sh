@@ -6,9 +6,11 @@
 lapack=/usr/lib/x86_64-linux-gnu/lapack:/usr/lib/x86_64-linux-gnu/blas
 openblas=/usr/lib/x86_64-linux-gnu/openblas-pthread
 
+# deck_by METHOD DECK: the deck $w/METHOD.deck, DECK by METHOD
+deck_by() { sed -e '/^METHOD/d' -e "s/^END.*/METHOD  $1\n&/" "$2" > "$w/$1.deck"; }
 # by METHOD DECK [LIBRARY]: the rows of DECK by METHOD, links alone, in $w/METHOD.csv
 by() {
-   sed -e '/^METHOD/d' -e "s/^END.*/METHOD  $1\n&/" "$2" > "$w/$1.deck"
+   deck_by "$1" "$2"
    LD_LIBRARY_PATH=$3 "$kinmat" "$w/$1.deck" -o "$w/$1.lst" --csv "$w/$1.all"
    grep ',LINK,' "$w/$1.all" > "$w/$1.csv"
 }
@@ -92,8 +94,8 @@ done
 # far from those of the deck too: numbers whose told errors differ by more than 10 times, and whether there are many.
 for deck in drag_link whitworth four_bar; do
    for method in NEWTON DENSE; do
-      sed -e '/^METHOD/d' -e "s/^END.*/METHOD  $method\n&/" "input/$deck.deck" > "$w/told.deck"
-      "$kinmat" "$w/told.deck" --errors --no-listing --csv "$w/told.$method"
+      deck_by $method "input/$deck.deck"
+      "$kinmat" "$w/$method.deck" --errors --no-listing --csv "$w/told.$method"
    done
    equal "$deck: told errors by METHOD DENSE" '0 many' "$(paste -d, "$w/told.NEWTON" "$w/told.DENSE" | awk -F, '
       NR > 1 { n = NF/2

@@ -26,18 +26,12 @@ others() {
       card DRIVE ANGLE ARM '' 10.0 5.0;;
    esac
 }
-# deck A B [LAST...]: a four-bar with both, and the cards LAST
+# deck A B CARD...: a four-bar with both, and these cards
 deck() {
-   card UNITS M DEG S; card GROUND BASE; card LINK CRANK
-   card LINK COUPLER '' '' 1.0 0.0 55.0; card LINK ROCKER '' '' 4.0 0.0 110.0
-   card POINT A0 BASE; card POINT B0 BASE '' 4.0
-   card POINT A0-CR CRANK; card POINT A-CR CRANK '' 1.0; crank "$1"; crank "$2"
-   card POINT A-CO COUPLER; card POINT B-CO COUPLER '' 3.5; coupler "$1"; coupler "$2"
-   card POINT C COUPLER '' 1.0 1.0; card POINT B0-RO ROCKER; card POINT B-RO ROCKER '' 3.0
-   card REVOLUTE A0 A0-CR PAIR-A0; card REVOLUTE A-CR A-CO PAIR-A; card REVOLUTE B-CO B-RO PAIR-B
-   card REVOLUTE B0-RO B0 PAIR-B0; card DRIVE ANGLE CRANK '' 0.0 30.0
-   card TIME 8 '' '' 0.0 4.0
-   others "$1"; others "$2"; [ -z "$3" ] || echo "$3"; card END
+   a=$1 b=$2
+   shift 2
+   moving_four_bar "$(crank "$a"; crank "$b")" "$(coupler "$a"; coupler "$b"; card POINT C COUPLER '' 1.0 1.0)" '' '' \
+      "$(card TIME 8 '' '' 0.0 4.0; others "$a"; others "$b")" "$@"
 }
 # run NAME OPTION...: the status and, of standard error, the sentences of errors and crashes
 run() {

@@ -4,20 +4,6 @@
 . tests/counting.sh
 
 vary() { card VARY "$@"; }
-# four_bar AFTER-CRANK AFTER-COUPLER AFTER-ROCKER AFTER-BASE CARD...: lengths 1.0, 3.5, 3.0, 4.0, with cards below them
-four_bar() {
-   card UNITS M DEG S; card GROUND BASE; card LINK CRANK
-   card LINK COUPLER '' '' 1.0 0.0 55.0; card LINK ROCKER '' '' 4.0 0.0 110.0
-   card POINT A0 BASE; card POINT B0 BASE '' 4.0; echo "$4"
-   card POINT A0-CR CRANK; card POINT A-CR CRANK '' 1.0; echo "$1"
-   card POINT A-CO COUPLER; card POINT B-CO COUPLER '' 3.5; echo "$2"
-   card POINT B0-RO ROCKER; card POINT B-RO ROCKER '' 3.0; echo "$3"
-   card REVOLUTE A0 A0-CR PAIR-A0; card REVOLUTE A-CR A-CO PAIR-A; card REVOLUTE B-CO B-RO PAIR-B
-   card REVOLUTE B0-RO B0 PAIR-B0; card DRIVE ANGLE CRANK '' 0.0 30.0
-   shift 4
-   printf '%s\n' "$@"
-   echo END
-}
 turn=$(card TIME 24 '' '' 0.0 12.0)
 # rows FILE NAME...: the columns with these names of a summary, without the head
 rows() {
@@ -39,7 +25,7 @@ run() {
 }
 
 # Values: a range, a list of four values on two cards, tied to it; a grid, the last number runs fastest.
-four_bar "$(vary R1 4 A 0.5 1.25)" "$(vary R1 2 '' 3.25 3.5)" "$(vary R1 LIST A 3.0 2.75 2.5; vary R1 LIST A 2.625)" '' \
+moving_four_bar "$(vary R1 4 A 0.5 1.25)" "$(vary R1 2 '' 3.25 3.5)" "$(vary R1 LIST A 3.0 2.75 2.5; vary R1 LIST A 2.625)" '' \
    "$turn" > "$w/order.deck"
 run order
 equal 'order: status' 0 $status
@@ -50,7 +36,7 @@ same 'order of the values' "$w/order.expected" "$w/order"
 
 # The swing of a rocker by the law of cosines: its extremes are where crank a and coupler b are in line, stretched or folded,
 # at the angle acos((c^2 + g^2 - (b +- a)^2)/(2 c g)) of the rocker c with the ground g.
-four_bar "$(vary R1 5 '' 0.5 1.25)" "$(vary R1 4 '' 3.25 3.75)" "$(vary R1 3 '' 2.75 3.25)" '' "$turn" \
+moving_four_bar "$(vary R1 5 '' 0.5 1.25)" "$(vary R1 4 '' 3.25 3.75)" "$(vary R1 3 '' 2.75 3.25)" '' "$turn" \
    "$(card EXTREMES LINKS ROCKER)" "$(card EXTREMES PAIRS PAIR-B)" > "$w/swing.deck"
 run swing
 equal 'swing: status' 0 $status
@@ -70,7 +56,7 @@ done
 
 # Grashof: a crank a turns fully if, and only if, a + g < b + c and |a - g| > |b - c|; otherwise its limits are where coupler
 # and rocker are in line. None of these lengths is at the border.
-four_bar "$(vary R1 7 '' 0.55 5.15)" "$(vary R1 5 '' 1.5 4.75)" "$(vary R1 4 '' 1.75 3.25)" "$(vary R1 2 '' 2.8 4.0)" \
+moving_four_bar "$(vary R1 7 '' 0.55 5.15)" "$(vary R1 5 '' 1.5 4.75)" "$(vary R1 4 '' 1.75 3.25)" "$(vary R1 2 '' 2.8 4.0)" \
    "$(card TIME 1 '' '' 0.0 0.1)" "$(card RANGE)" > "$w/grashof.deck"
 run grashof
 rows "$w/grashof.csv" range.turns.ANGLE.CRANK flagged POINT.A-CR.XI POINT.B-CO.XI POINT.B-RO.XI POINT.B0.XI > "$w/grashof"
@@ -140,7 +126,7 @@ equal 'in Polish' '3 1' "$(awk '/^ WARIANT [0-9]+ / { a++ } /^ KONIEC KOMPLETU 1
    "$w/drawing.lst")"
 
 # What cannot be computed is a row that says so, and the run goes on: no position, a limit, a number that a check refuses.
-four_bar "$(vary R1 LIST '' 1.0 20.0 3.75)" '' '' '' "$turn" "$(card EXTREMES LINKS ROCKER)" > "$w/impossible.deck"
+moving_four_bar "$(vary R1 LIST '' 1.0 20.0 3.75)" '' '' '' "$turn" "$(card EXTREMES LINKS ROCKER)" > "$w/impossible.deck"
 run impossible
 equal 'impossible: status' 2 $status
 rows "$w/impossible.csv" variant solved flagged flag.t flag.mark > "$w/impossible"
@@ -150,7 +136,7 @@ equal 'impossible: rows' '1 25 0  ;2 0 25 0 NO-POSITION;3 7 18 NO-POSITION;' "$(
 rows "$w/impossible.csv" limit.value variant | sed -n 's/ 3$//p' > "$w/limit"
 equal 'impossible: limit' '1 agree' "$(worst "$w/limit" 'form = 180/atan2(0, -1)*acos((14.0625 + 16 - 42.25)/30)')"
 {
-   four_bar '' '' '' '' | sed '/^END/d'
+   moving_four_bar '' '' '' '' | sed '/^END/d'
    card RISE CYCLOID '' '' 1.0 2.0 20.0; vary R2 LIST '' 2.0 -1.0 1.0; echo "$turn"; card END
 } > "$w/refused.deck"
 run refused
@@ -160,7 +146,7 @@ equal 'refused: words' 1 "$(grep -c '^ \*\*\* E067 .*A RISE NEEDS A DURATION ABO
 
 # told NAME WORDS CARD...: the words of the refusal of the four-bar linkage with cards before and below its crank
 told() {
-   { [ -z "$5" ] || echo "$5"; four_bar "$3" "$4" '' '' "$turn"; } > "$w/deck"
+   { [ -z "$5" ] || echo "$5"; moving_four_bar "$3" "$4" '' '' "$turn"; } > "$w/deck"
    "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
    equal "$1: status" 1 $?
    equal "$1" "$2" "$(sed -n 's/^ \*\*\* \(E[0-9]*\)  CARD [0-9]*  COLUMN [0-9]*  FIELD [A-Z0-9-]*: /\1 /p' "$w/err")"
@@ -189,7 +175,7 @@ equal 'no table' ' *** OPTION --table TAKES NO DECK WITH VARY CARDS: USE --summa
 
 # Shares of tolerances have no columns in the table: it says where they are.
 for print in '' "$(card PRINT PAIRS PAIR-B0)"; do
-   four_bar "$(card TOLER '' '' '' 0.01; vary R1 2 '' 0.5 0.75)" '' '' '' "$turn" "$print" | sed '/^$/d' > "$w/toler.deck"
+   moving_four_bar "$(card TOLER '' '' '' 0.01; vary R1 2 '' 0.5 0.75)" '' '' '' "$turn" "$print" | sed '/^$/d' > "$w/toler.deck"
    "$kinmat" "$w/toler.deck" > "$w/toler.lst"
    equal "tolerances of variants, $print" "$([ -n "$print" ] && echo '0 2' || echo '1 0')" \
       "$(grep -c '^ --- TOLERANCES: SHARES STAND IN THE TABLES' "$w/toler.lst") $(grep -c '^ TOLERANCES: SHARES OF' "$w/toler.lst")"
@@ -197,7 +183,7 @@ done
 
 # Rows alone are solved in lanes, otherwise by the engine: as they are printed they are the same.
 for name in 'EXTREMES LINKS' RANGE PROVE; do
-   four_bar "$(vary R1 9 '' 0.5 2.9)" '' '' '' "$(card TIME 90 '' '' 0.0 12.0)" "$(card $name)" > "$w/lanes.deck"
+   moving_four_bar "$(vary R1 9 '' 0.5 2.9)" '' '' '' "$(card TIME 90 '' '' 0.0 12.0)" "$(card $name)" > "$w/lanes.deck"
    "$kinmat" "$w/lanes.deck" -o "$w/lanes.lst" > "$w/lanes.out" 2>&1
    status=$?
    "$kinmat" "$w/lanes.deck" -o "$w/engine.lst" --log "$w/engine.log" > "$w/lanes.out" 2>&1
@@ -207,7 +193,7 @@ done
 
 # With PROVE a column says how many instants are not proved: none of a crank that turns fully; of one that ends at a dead
 # point those beyond it, and at most the last step before it.
-four_bar "$(vary R1 2 '' 0.5 2.9)" '' '' '' "$(card TIME 90 '' '' 0.0 12.0)" "$(card PROVE)" > "$w/proved.deck"
+moving_four_bar "$(vary R1 2 '' 0.5 2.9)" '' '' '' "$(card TIME 90 '' '' 0.0 12.0)" "$(card PROVE)" > "$w/proved.deck"
 "$kinmat" "$w/proved.deck" --summary "$w/proved.csv" > "$w/proved.lst"
 equal 'proofs of variants' '0 0;1 1;' "$(rows "$w/proved.csv" flagged unproved | awk '{ printf "%d %d;", ($1 > 0), ($2 > 0 && ($2 == $1 || $2 == $1 + 1)) }')"
 equal 'proofs of variants: in the listing' 1 "$(grep -c '  NOT PROVED$' "$w/proved.lst")"
@@ -215,7 +201,7 @@ equal 'proofs of variants: the same' "$(rows "$w/proved.csv" unproved | xargs)" 
 
 # In several processes, and in shares: the same bytes. Three sets, one of them without VARY cards.
 {
-   cat "$w/slider.deck"; four_bar '' '' '' '' "$(card TIME 2 '' '' 0.0 1.0)"
+   cat "$w/slider.deck"; moving_four_bar '' '' '' '' "$(card TIME 2 '' '' 0.0 1.0)"
    sed 's/^VARY    R1      2 /VARY    R1      5 /' "$w/order.deck"
 } > "$w/three.deck"
 "$kinmat" "$w/three.deck" --jobs 1 -o "$w/one.lst" --summary "$w/one.csv" --csv "$w/one.all" --log "$w/one.log"
@@ -236,7 +222,7 @@ equal 'no picture of a share' ' *** OPTION --sets DIVIDES THE VARIANTS OF A DECK
 equal 'a picture of the numbers of the deck' 0 $?
 
 # What a variant keeps of the structure of the one before: lengths of zero, with which links lack a drive, and a drive at rest.
-four_bar "$(vary R1 LIST '' 1.0 0.0 0.5)" "$(vary R1 LIST '' 3.5 0.0)" "$(vary R1 LIST '' 0.0 3.0)" '' "$turn" \
+moving_four_bar "$(vary R1 LIST '' 1.0 0.0 0.5)" "$(vary R1 LIST '' 3.5 0.0)" "$(vary R1 LIST '' 0.0 3.0)" '' "$turn" \
    "$(card EXTREMES PAIRS PAIR-B0)" | sed 's/^DRIVE .*/&\nVARY    R2      LIST            30.0            0.0/' > "$w/zeros.deck"
 "$kinmat" "$w/zeros.deck" --jobs 1 --no-listing --summary "$w/one.csv" > "$w/out" 2>&1
 equal 'lengths of zero: variants refused' 18 "$(grep -c ',E101,' "$w/one.csv")"
@@ -247,7 +233,7 @@ done > "$w/joined.csv"
 same 'lengths of zero: eight shares' "$w/one.csv" "$w/joined.csv"
 
 # The shares of tolerances stand in the tables of a variant: rows alone do without, and are the same.
-four_bar "$(vary R1 3 '' 0.5 1.25)" "$(card TOLER '' '' '' 0.01)" '' '' "$(card TIME 4 '' '' 0.0 1.0; card PRINT ALL)" > "$w/toler.deck"
+moving_four_bar "$(vary R1 3 '' 0.5 1.25)" "$(card TOLER '' '' '' 0.01)" '' '' "$(card TIME 4 '' '' 0.0 1.0; card PRINT ALL)" > "$w/toler.deck"
 "$kinmat" "$w/toler.deck" --summary "$w/tables.csv" > "$w/out"
 equal 'tolerances: status' 0 $?
 "$kinmat" "$w/toler.deck" --no-listing --summary "$w/alone.csv" > "$w/out" 2>&1
@@ -255,7 +241,7 @@ equal 'tolerances, rows alone: status' 0 $?
 same 'tolerances, rows alone' "$w/tables.csv" "$w/alone.csv"
 
 # Memory does not grow with the variants: 40 times as many need no more room than is free for a few.
-four_bar "$(vary R1 50 '' 0.5 1.25)" "$(vary R1 40 '' 3.25 3.75)" '' '' "$(card TIME 1 '' '' 0.0 1.0)" > "$w/many.deck"
+moving_four_bar "$(vary R1 50 '' 0.5 1.25)" "$(vary R1 40 '' 3.25 3.75)" '' '' "$(card TIME 1 '' '' 0.0 1.0)" > "$w/many.deck"
 (ulimit -v 200000; "$kinmat" "$w/many.deck" --no-listing --summary "$w/many.csv") > "$w/out" 2>&1
 equal '2000 variants: status' 0 $?
 equal '2000 variants: rows' 2000 "$(rows "$w/many.csv" solved | grep -c '^2$')"
