@@ -82,12 +82,13 @@ contains
 
    !> The substep was short, and its prediction, off by `correction`, right to so small a part of it that the motion
    !> found last is on the branch that goes on smoothly, beyond change points too. Close to them rounding has made the
-   !> prediction wrong by lipschitz/pivot^2, as it does the rates. A longer substep has to be right to a part that is
-   !> smaller as its square, by which the same circuits are distinguished.
+   !> prediction wrong by lipschitz/pivot^2, as it does the rates: in parts of what drives move by, where that is more
+   !> than what is predicted does. A longer substep has to be right to a part that is smaller as its square, by which
+   !> the same circuits are distinguished.
    pure logical function is_short_and_right(e, correction) result(is)
       type(block_engine_t), intent(in) :: e
       real(wp), intent(in) :: correction
-      real(wp) :: rounded(size(e%moving)), right
+      real(wp) :: rounded(size(e%moving)), right, driven
       logical :: crosses, is_short
       integer :: k
 
@@ -103,13 +104,14 @@ contains
       end do
       if (.not. is) return
       right = right_part*(short_step/max(short_step, e%change))**2
-      rounded = rounding*e%blocks%list(e%moving)%lipschitz/e%followed(e%moving)%pivot**2
+      driven = abs(e%t - e%history%t(0))*maxval(abs(e%state%drive_value(1, :)))
+      rounded = rounding*e%blocks%list(e%moving)%lipschitz/e%followed(e%moving)%pivot**2*max(e%change, driven)
       if (crosses) then
-         right = right + minval(rounded, mask=e%crossed(e%moving))
+         right = right*e%change + minval(rounded, mask=e%crossed(e%moving))
       else
-         right = right + maxval(rounded)
+         right = right*e%change + maxval(rounded)
       end if
-      is = is .and. correction <= min(right, max_wrong)*e%change
+      is = is .and. correction <= min(right, max_wrong*e%change)
    end function is_short_and_right
 
    !> Where block `i` has passed a change point before `t`: the least pivot goes through zero in proportion.

@@ -21,6 +21,8 @@ module block_diagnostics
    real(wp), parameter :: near_part = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
    !> At its own limit a block is near singular: its least pivot is below this part of the Lipschitz constant.
    real(wp), parameter :: near_pivot = 0.05_wp
+   !> At its own limit a block is faster than the drives by more than this factor.
+   real(wp), parameter :: fast = 10.0_wp
    !> So many lengths is a slide on its way to infinity, and its derivatives are so near to those of a pole.
    real(wp), parameter :: far_slide = 10.0_wp, as_a_pole = 0.2_wp
    !> Body vectors with a smaller sine between them are in line: the last motion accepted is as far off as the root of
@@ -197,7 +199,8 @@ contains
 
       !> The time from the motion that is followed to the limit t* of block `i` before `t`; 0 where none is near. Close
       !> to t* the fastest unknown is x* + c sqrt(t* - t), so t* - t = x'/(2 x''), with an error of higher order. A
-      !> block far from singular only follows another with such accelerations, beside a change point perhaps.
+      !> block far from singular only follows another with such accelerations, beside a change point perhaps; there they
+      !> may be those of rounding, while velocities are no larger than those of the drives.
       pure real(wp) function time_to_limit(i) result(left)
          integer, intent(in) :: i
          integer :: fastest
@@ -209,6 +212,8 @@ contains
             if (size(u) == 0) return
             fastest = u(maxloc(abs(past(u)%acceleration(0)), dim=1))
             if (abs(past(fastest)%acceleration(0)) <= 0.0_wp) return
+            if (e%history%uncertain(0) > 0.0_wp .and. &
+               maxval(abs(past(u)%rate(0))) <= fast*maxval(abs(e%state%drive_value(1, :)))) return
             left = 0.5_wp*past(fastest)%rate(0)/past(fastest)%acceleration(0)
             if (left*sign(1.0_wp, step) <= 0.0_wp .or. abs(left) > near_part*abs(step)) left = 0.0_wp
          end associate

@@ -281,7 +281,7 @@ contains
 
       uncertain = 0.0_wp
       do k = 1, size(e%moving)
-         uncertain = max(uncertain, uncertain_part(e%blocks, e%moving(k), e%found(e%moving(k))%pivot, e%state%u))
+         uncertain = max(uncertain, uncertain_part(e%blocks, e%moving(k), e%found(e%moving(k))%pivot, e%state))
       end do
       call remember(e%history, e%t, e%state%u, uncertain)
       ! As a section: an assignment to the whole would ask for its shape first.

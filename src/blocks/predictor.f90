@@ -15,7 +15,7 @@ module predictor
    use kinds, only: wp
    use mechanism, only: own_predictor
    use blocks, only: blocks_t
-   use block_state, only: unknown_t
+   use block_state, only: unknown_t, state_t
    implicit none
    private
    public :: history_t, new_history, remember, predict, is_even, largest_change, order_weights, uncertain_part
@@ -120,23 +120,27 @@ contains
       end do
    end subroutine predict
 
-   !> How uncertain the accelerations of block `i` in the motion `u` (0:unknowns) are, as a part of the velocities in a
-   !> unit of time. With its `pivot` p, whose Jacobian's Lipschitz constant is L, positions are known to eps/p, and the
-   !> other branch is about p/L away: the velocities v are uncertain by the quotient of the two, in parts of v, and the
-   !> accelerations by that over p/L, in parts of v^2. At dead points they grow as the velocities do, and are known.
-   pure real(wp) function uncertain_part(b, i, pivot, u) result(part)
+   !> How uncertain the accelerations of block `i` in the motion `s` are, as a part of its velocities in a unit of
+   !> time. With its `pivot` p, whose Jacobian's Lipschitz constant is L, positions are known to eps/p, and the other
+   !> branch is about p/L away: the velocities are uncertain by the quotient of the two, in parts of v, and the
+   !> accelerations by that over p/L, in parts of v^2; v is the largest velocity, of the block or of a drive. At dead
+   !> points the accelerations grow as the velocities do, and are known.
+   pure real(wp) function uncertain_part(b, i, pivot, s) result(part)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       real(wp), intent(in) :: pivot
-      type(unknown_t), intent(in) :: u(0:)
-      real(wp) :: v
+      type(state_t), intent(in) :: s
+      real(wp) :: v, fastest
 
       part = 0.0_wp
       if (pivot > certain_pivot) return
-      associate (block => b%list(i))
-         v = maxval(abs(u(b%unknown(block%first:block%last))%rate))
-         part = epsilon(1.0_wp)*block%lipschitz**2*v/max(pivot, epsilon(1.0_wp))**3
-         if (.not. part*v > known_part*maxval(abs(u(b%unknown(block%first:block%last))%acceleration))) part = 0.0_wp
+      associate (u => b%unknown(b%list(i)%first:b%list(i)%last))
+         v = maxval(abs(s%u(u)%rate))
+         fastest = max(v, maxval(abs(s%drive_value(1, :))))
+         v = max(v, epsilon(1.0_wp)*fastest)
+         if (.not. v > 0.0_wp) return
+         part = epsilon(1.0_wp)*b%list(i)%lipschitz**2*fastest*(fastest/v)/max(pivot, epsilon(1.0_wp))**3
+         if (.not. part*v > known_part*maxval(abs(s%u(u)%acceleration))) part = 0.0_wp
       end associate
    end function uncertain_part
 
