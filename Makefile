@@ -81,12 +81,17 @@ include $(BUILD)/depends.mk
 endif
 $(foreach build,$(builds),$(eval $(call build_in,$(build))))
 
-# Little time is spent in these folders, in what stands in none, and in what tests/ has of its own: they are compiled with
-# less optimization, in half the time.
-cold := $(notdir $(basename $(filter src/deck/% src/answers/% src/study/% $(wildcard src/*.f90),$(sources))))
+# Nearly all time is spent in `hot`: a step, and its row in a table. In double precision `warm` is optimized by itself,
+# without the link; the rest and what tests/ has of its own are compiled with less optimization, in half the time.
+modules_in = $(notdir $(basename $(filter $(addsuffix /%,$(addprefix src/,$(1))),$(sources))))
+hot  := $(filter-out picture% animation canvas drawing outline plot_script svg,\
+   $(call modules_in,base linear mechanism blocks continuation results))
+warm := $(if $(filter double,$(KIND)),$(call modules_in,structure assemblies dense lanes proof))
 less := $(patsubst -O2,-O1,$(patsubst -O1,-O0,$(filter -O%,$(RELEASE))))
-$(patsubst %,$(BUILD)/release/%.o,$(cold) $(notdir $(basename $(helpers)))): private release := $(less)
-$(patsubst %,$(BUILD)/timed/%.o,$(cold)): private timed := $(less)
+$(patsubst %,$(BUILD)/release/%.o,$(warm)): private release += $(no_lto)
+$(patsubst %,$(BUILD)/timed/%.o,$(warm)): private timed += $(no_lto)
+$(patsubst %,$(BUILD)/release/%.o,$(filter-out $(hot) $(warm),$(modules) main $(notdir $(basename $(helpers))))): private release := $(less)
+$(patsubst %,$(BUILD)/timed/%.o,$(filter-out $(hot) $(warm),$(modules) main)): private timed := $(less)
 # The closed forms that `make bench` compares with are compiled as they are fastest, in pairs.
 $(BUILD)/timed/fast_forms.o: private timed := $(filter-out -fno-tree-slp-vectorize,$(RELEASE))
 
