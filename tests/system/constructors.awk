@@ -1,21 +1,20 @@
 # Array constructors that hold the result of a function whose type has allocatable components: gfortran 12 does not free what
-# they hold. Two passes over the same Fortran files (awk -f constructors.awk pass=1 FILES pass=2 FILES); each place on a line, at the
-# end "functions: N" that are looked for.
+# they hold. Two passes over the same Fortran files (awk -f fortran.awk -f constructors.awk pass=1 FILES pass=2 FILES); each
+# place on a line, at the end "functions: N" that are looked for.
 { code = $0; sub(/!.*/, "", code) }
 pass == 1 && code ~ /^ *type(, *[a-z_, ()]*)? *:: *[a-z_0-9]+ *$/ { inside = code; gsub(/^.*:: *| /, "", inside) }
 pass == 1 && code ~ /^ *end type/ { inside = "" }
 pass == 1 && inside != "" && code ~ /allocatable.*::/ { owns[inside] = 1 }
-pass == 1 && inside != "" && code ~ /^ *type\(.*::/ { part = code; gsub(/^ *type\(|\).*/, "", part); holds[inside] = holds[inside] " " part }
+pass == 1 && inside != "" && code ~ /^ *type\(.*::/ { holds[inside] = holds[inside] " " type_of(code) }
 pass == 1 && code ~ /(^| )function +[a-z_0-9]+ *\(/ && code !~ /end function/ {
    name = code; sub(/^.*function +/, "", name); sub(/ *\(.*/, "", name)
    answer = name
    if (match(code, /result *\([a-z_0-9]+\)/)) { answer = substr(code, RSTART, RLENGTH); gsub(/result *\(|\)/, "", answer) }
-   if (match(code, /type\([a-z_0-9]+\) *function/)) { kind = substr(code, RSTART, RLENGTH); gsub(/type\(|\).*/, "", kind); result_of[name] = kind; answer = "" }
+   if (match(code, /type\([a-z_0-9]+\) *function/)) { result_of[name] = type_of(substr(code, RSTART)); answer = "" }
 }
 pass == 1 && code ~ /^ *end function/ { answer = "" }
 pass == 1 && answer != "" && code ~ /^ *type\(.*::/ {
-   list = code; sub(/^.*:: */, "", list); gsub(/\([^()]*\)| /, "", list)
-   if (index("," list ",", "," answer ",")) { kind = code; gsub(/^ *type\(|\).*/, "", kind); result_of[name] = kind; answer = "" }
+   if (index("," names_of(code) ",", "," answer ",")) { result_of[name] = type_of(code); answer = "" }
 }
 pass == 2 && !ready {
    ready = 1

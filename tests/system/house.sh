@@ -48,8 +48,8 @@ all="$sources $(find tests -name '*.f90' -o -name '*.pf')"
 copy="$BUILD/order/copy.f90"
 printf '   subroutine copy(f, g)\n      type(following_t), intent(inout) :: f, g\n      f%%engine = g%%engine\n' > "$copy"
 equal 'copies of a class are found' "$copy:3: f%engine = g%engine" \
-   "$(awk -f tests/system/copies.awk pass=1 $all "$copy" pass=2 $all "$copy" | grep -v '^holds: ' | tr -s ' ')"
-awk -f tests/system/copies.awk pass=1 $all pass=2 $all | sort > "$BUILD/copies.txt"
+   "$(awk -f tests/system/fortran.awk -f tests/system/copies.awk pass=1 $all "$copy" pass=2 $all "$copy" | grep -v '^holds: ' | tr -s ' ')"
+awk -f tests/system/fortran.awk -f tests/system/copies.awk pass=1 $all pass=2 $all | sort > "$BUILD/copies.txt"
 equal 'copies of objects that hold factors of KLU' '' "$(grep -v '^holds: ' "$BUILD/copies.txt")"
 equal 'types that hold factors of KLU' \
    'analysis_t block_engine_t block_factors_t block_method_t dense_engine_t engine_t estimator_t following_t klu_t lane_run_t motion_prover_t perturbed_t room_t rounding_response_t sensor_t set_analysis_t step_prover_t tested_step_t workspace_t' \
@@ -57,8 +57,8 @@ equal 'types that hold factors of KLU' \
 lost="$BUILD/order/lost.f90"
 printf '   function new_drawing(m) result(d)\n      d%%curves = [d%%curves, new_curve(1, 2, 3)]\n   end function new_drawing\n' > "$lost"
 equal 'what a constructed array would not free is found' "$lost:2: new_curve" \
-   "$(awk -f tests/system/constructors.awk pass=1 $sources "$lost" pass=2 $sources "$lost" | grep -v '^functions: ')"
-awk -f tests/system/constructors.awk pass=1 $sources pass=2 $sources > "$BUILD/constructors.txt"
+   "$(awk -f tests/system/fortran.awk -f tests/system/constructors.awk pass=1 $sources "$lost" pass=2 $sources "$lost" | grep -v '^functions: ')"
+awk -f tests/system/fortran.awk -f tests/system/constructors.awk pass=1 $sources pass=2 $sources > "$BUILD/constructors.txt"
 equal 'what constructed arrays would not free' '' "$(grep -v '^functions: ' "$BUILD/constructors.txt")"
 equal 'functions whose results must be freed: some' yes "$(awk '/^functions: / && $2 > 50 { print "yes" }' "$BUILD/constructors.txt")"
 # make test: a part that looks at nothing, at too little, or ends without its counts, fails.
