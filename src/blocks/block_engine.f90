@@ -228,7 +228,7 @@ contains
    !> The record `c` before the first block.
    subroutine begin_record(e, c)
       type(block_engine_t), intent(inout) :: e
-      type(convergence_t), intent(inout) :: c
+      type(convergence_t), intent(out) :: c
 
       e%crossed = .false.
       c%ended = ended_converged
