@@ -22,7 +22,8 @@ module scheme_results
    real(qp), parameter :: safe_margin = 1.0e-4_qp
    !> The sine of the angle from a change point up to which there may be no velocities.
    real(qp), parameter :: beside_change = 1.0e-4_qp
-   !> The one matrix of METHOD DENSE may have no velocities for a group that is smaller than this part of another one.
+   !> The one matrix of METHOD DENSE, or of redundant equations, may have no velocities for a group that is smaller than this
+   !> part of another one; where they end, so does the motion that is followed.
    real(qp), parameter :: small_group = 0.01_qp
    integer, parameter :: cells = 24, cell_length = 26
 
@@ -185,8 +186,8 @@ contains
    end subroutine compare
 
    !> A flag where the truth is known: needless, unless its mechanism has been near a singularity, nothing
-   !> was known of it, its motion is told to be too long, or METHOD DENSE was to pass a change point or has a group much
-   !> smaller than others in its matrix.
+   !> was known of it, its motion is told to be too long, METHOD DENSE was to pass a change point, or one matrix has a
+   !> group much smaller than others.
    subroutine judge_flag(s, m, group, row, is_too_long, so_far, v)
       type(scheme_t), intent(in) :: s
       type(motion_t), intent(in) :: m
@@ -199,7 +200,7 @@ contains
 
       is_allowed = s%method == 'MATRIX' .or. .not. is_regular(s, m, group, so_far%told)
       if (row%mark == 'NO-POSITION') is_allowed = is_allowed .or. is_too_long
-      if (row%mark == 'NO-RATES' .and. s%method == 'DENSE') is_allowed = is_allowed &
+      if (s%method == 'DENSE' .or. is_redundant(s)) is_allowed = is_allowed &
          .or. minval(s%groups%scale) < small_group*maxval(s%groups%scale)
       if (is_allowed) then
          v%flagged = v%flagged + 1
@@ -207,6 +208,17 @@ contains
          call blame(v, 'A NEEDLESS FLAG '//trim(row%mark)//': '//where(row))
       end if
    end subroutine judge_flag
+
+   !> There are more equations than unknowns: of a group, or since the last pair is one of the others once more.
+   pure logical function is_redundant(s) result(is)
+      type(scheme_t), intent(in) :: s
+      integer :: n
+
+      n = size(s%pairs)
+      is = any(s%groups%redundant)
+      if (n > 0) is = is .or. any(s%pairs(:n - 1)%point_i == s%pairs(n)%point_i &
+         .and. s%pairs(:n - 1)%point_j == s%pairs(n)%point_j)
+   end function is_redundant
 
    !> No group of the mechanism of `group` has been near a singularity, and all errors were `told` (groups).
    pure logical function is_regular(s, m, group, told) result(is)
