@@ -17,6 +17,9 @@ module analysis
    private
    public :: analysis_t, make_analysis, advance, look_at, come_back, redundancy_error
 
+   !> A limit that the motion creeps up to is no further than this part of the way that it has come.
+   real(wp), parameter :: almost_there = 1.0e-3_wp
+
    !> The last instant, while the motion at others is looked at.
    type :: left_t
       logical :: is_left = .false.                         !< the motion followed is at another time
@@ -226,6 +229,7 @@ contains
       type(step_record_t), intent(in) :: step
       type(motion_t), intent(inout) :: found
       type(diagnostic_t), allocatable :: list(:)
+      real(wp) :: ahead
       logical :: inconsistent
 
       allocate (list(0))
@@ -235,14 +239,19 @@ contains
       else
          select type (e => a%engine)
          class is (block_engine_t)
-            list = limit_diagnostic(e, t)
+            ahead = t
+            ! To where a slide is infinite there are more substeps than are tried.
+            if (has_too_many_substeps(step)) &
+               ahead = a%t + sign(min(abs(t - a%t), almost_there*abs(a%t - a%place%t)), t - a%t)
+            list = limit_diagnostic(e, ahead)
             if (size(list) == 0 .and. a%follows .and. step%blocked) list = [diagnostic_t(kind=diagnostic_close, t=a%t)]
          end select
       end if
-      if (allocated(step%dead_end)) then
+      if (has_too_many_substeps(step)) then
+         if (size(list) == 0) list = [diagnostic_t(kind=diagnostic_long, t=a%place%t)]
+      else if (allocated(step%dead_end)) then
          if (size(step%dead_end) > 0) list = step%dead_end
       end if
-      if (has_too_many_substeps(step)) list = [diagnostic_t(kind=diagnostic_long, t=a%place%t)]
       if (.not. a%is_lost) call add_diagnostics(list, found)
       if (a%follows .and. .not. inconsistent) call note_limit(a%limits, a%place%t, a%t, t, step%blocked, list)
    end subroutine diagnose_end
