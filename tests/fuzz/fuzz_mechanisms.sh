@@ -17,7 +17,7 @@ chunk=${FUZZ_CHUNK:-200}
 # drive is slow; the other branch of a parallelogram that a dyad near its dead point builds on; a substep that ended next to
 # where there are no velocities beside a change point; a parallelogram far from the first ground link; rates by METHOD DENSE
 # and MATRIX that hang on arms which are zero but for rounding.
-known='668292 1010852 1004109 739164 1032987 695632 9040787 9651168 9597347'
+known='668292 1010852 1004109 739164 1032987 695632 9040787 9651168 9597347 10034684 9906375 10091989'
 mkdir -p "$work" || exit 3
 
 # run_chunk FIRST LAST: the driver again behind every seed at which it does not come back

@@ -5,7 +5,7 @@ module scheme_motion
    use, intrinsic :: iso_fortran_env, only: real64
    use quad_jet, only: qp, jet_t, constant_jet, operator(+)
    use schemes, only: scheme_t, group_t, body_t, form_any, form_rrr, form_prp, form_rpp, form_parallelogram, &
-      drive_relangle, angle_unit, drive_unit, set_trigonometry, point_on
+      drive_relangle, angle_unit, drive_unit, set_trigonometry, point_on, is_redundant
    use drive_laws, only: law_jet, variation
    use dyad_forms, only: solve_dyad, place_parallelogram
    use group_newton, only: outcome_t, solve_group, residuals
@@ -305,7 +305,7 @@ contains
       ! The time of the passage, by the chord.
       at = trial%t
       if (passes) at = at + h*before%v/(before%v - sine%v)
-      if (passes .and. is_named_by_others(s, trial, k, at, h)) trial%status(k) = is_unknown
+      if (passes) call ask_others(s, trial, k, at, h)
       if (passes .and. .not. trial%has_branched(k) .and. abs(g%branch_after) < huge(1.0_qp)) then
          if (abs((at - g%branch_after)*sine%d) < same_time) trial%status(k) = is_unknown
          passes = (at - g%branch_after)*h > 0.0_qp
@@ -327,28 +327,28 @@ contains
    end subroutine follow_parallelogram
 
    !> At the time `at` of a change point of group `k` a BRANCH card that no change point has served, and whose time is
-   !> passed on the way `h`, names a link of a parallelogram that hangs on this group. Where both are in one block, the
-   !> change point is that link's too.
-   pure logical function is_named_by_others(s, trial, k, at, h) result(is_named)
+   !> passed on the way `h`, may name a link of a parallelogram that hangs on this group. Where both are in one block, the
+   !> change point is that link's too. So it is with any other parallelogram where equations are redundant: those that
+   !> depend on one another are one block. Which branch either group takes is unknown then.
+   pure subroutine ask_others(s, trial, k, at, h)
       type(scheme_t), intent(in) :: s
-      type(motion_t), intent(in) :: trial
+      type(motion_t), intent(inout) :: trial
       integer, intent(in) :: k
       real(qp), intent(in) :: at, h
       logical :: hangs(size(s%links))
       integer :: j
 
-      is_named = .false.
       hangs = .false.
       hangs(s%groups(k)%links(1):s%groups(k)%links(2)) = .true.
-      do j = k + 1, size(s%groups)
+      do j = merge(1, k + 1, is_redundant(s)), size(s%groups)
          associate (g => s%groups(j))
-            if (.not. any(hangs(g%bases))) cycle
+            if (j == k .or. .not. (is_redundant(s) .or. any(hangs(g%bases)))) cycle
             hangs(g%links(1):g%links(2)) = .true.
-            is_named = is_named .or. (abs(g%branch_after) < huge(1.0_qp) .and. .not. trial%has_branched(j) &
-               .and. (at - g%branch_after)*h > 0.0_qp)
+            if (abs(g%branch_after) < huge(1.0_qp) .and. .not. trial%has_branched(j) &
+               .and. (at - g%branch_after)*h > 0.0_qp) trial%status([k, j]) = is_unknown
          end associate
       end do
-   end function is_named_by_others
+   end subroutine ask_others
 
    !> By how little the sides of a parallelogram differ. Where they do not, the antiparallelogram is a kite, which at
    !> its change points takes any position; where they hardly do, it goes past them fast: 1 over this is the largest

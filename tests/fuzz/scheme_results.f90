@@ -3,7 +3,7 @@
 module scheme_results
    use, intrinsic :: iso_fortran_env, only: real64
    use quad_jet, only: qp, jet_t, operator(-), operator(+), operator(*), sin, cos
-   use schemes, only: scheme_t, form_parallelogram, angle_unit, link_at, place
+   use schemes, only: scheme_t, form_parallelogram, angle_unit, link_at, place, is_redundant
    use scheme_motion, only: motion_t, begin_motion, move_to, closes, is_followed, is_lost
    implicit none
    private
@@ -39,6 +39,7 @@ module scheme_results
    !> Of each group (groups), up to now.
    type :: so_far_t
       logical, allocatable :: found(:)         !< had positions wherever one was asked for
+      logical, allocatable :: begun(:)         !< are followed: at the first instant they had velocities
       logical, allocatable :: told(:)          !< errors were told of all its numbers: otherwise nothing is known of them,
                                                !< as behind dyads much smaller than what moves them
    end type so_far_t
@@ -103,6 +104,7 @@ contains
          regular = m
          so_far%found = [(.true., k=1, size(s(set)%groups))]
          so_far%told = so_far%found
+         so_far%begun = so_far%found
       end if
       ! Beyond a limit nothing is lost for an instant before it.
       if (size(s(set)%at) > 0) m = regular
@@ -137,9 +139,17 @@ contains
          v%unknown = v%unknown + 1
          return
       end if
+      if (any(group > 0)) then
+         ! Without them the next instant is found from the deck's estimate, as the first one was.
+         if (.not. so_far%begun(maxval(group))) then
+            v%unknown = v%unknown + 1
+            return
+         end if
+      end if
       if (row%mark /= '') call judge_flag(s, m, group, row, is_too_long, so_far, v)
       if (any(group > 0)) then
          associate (k => maxval(group))
+            if (row%mark == 'NO-RATES' .and. row%step == 0) so_far%begun(k) = .not. may_miss(s)
             so_far%told(k) = so_far%told(k) .and. .not. any(row%known .and. .not. row%is_told)
             so_far%found(k) = so_far%found(k) .and. row%known(1)
             if (s%method == 'MATRIX' .and. .not. so_far%found(k)) then
@@ -200,8 +210,7 @@ contains
 
       is_allowed = s%method == 'MATRIX' .or. .not. is_regular(s, m, group, so_far%told)
       if (row%mark == 'NO-POSITION') is_allowed = is_allowed .or. is_too_long
-      if (s%method == 'DENSE' .or. is_redundant(s)) is_allowed = is_allowed &
-         .or. minval(s%groups%scale) < small_group*maxval(s%groups%scale)
+      is_allowed = is_allowed .or. may_miss(s)
       if (is_allowed) then
          v%flagged = v%flagged + 1
       else
@@ -209,16 +218,13 @@ contains
       end if
    end subroutine judge_flag
 
-   !> There are more equations than unknowns: of a group, or since the last pair is one of the others once more.
-   pure logical function is_redundant(s) result(is)
+   !> One matrix has groups of very different sizes.
+   pure logical function may_miss(s)
       type(scheme_t), intent(in) :: s
-      integer :: n
 
-      n = size(s%pairs)
-      is = any(s%groups%redundant)
-      if (n > 0) is = is .or. any(s%pairs(:n - 1)%point_i == s%pairs(n)%point_i &
-         .and. s%pairs(:n - 1)%point_j == s%pairs(n)%point_j)
-   end function is_redundant
+      may_miss = (s%method == 'DENSE' .or. is_redundant(s)) &
+         .and. minval(s%groups%scale) < small_group*maxval(s%groups%scale)
+   end function may_miss
 
    !> No group of the mechanism of `group` has been near a singularity, and all errors were `told` (groups).
    pure logical function is_regular(s, m, group, told) result(is)

@@ -9,7 +9,7 @@ module schemes
    public :: scheme_t, link_t, point_t, pair_t, drive_t, group_t, body_t
    public :: drive_angle, drive_relangle, drive_x, drive_y, drive_slide
    public :: form_any, form_rrr, form_rrp, form_rpr, form_prp, form_rpp, form_parallelogram
-   public :: angle_unit, point_on, link_at, place, set_trigonometry, drive_unit, write_scheme, double
+   public :: angle_unit, point_on, link_at, place, set_trigonometry, drive_unit, write_scheme, double, is_redundant
 
    enum, bind(c)
       enumerator :: drive_angle = 1, drive_relangle, drive_x, drive_y, drive_slide
@@ -93,6 +93,17 @@ contains
 
       angle_unit = merge(degree_q, 1.0_qp, s%degrees)
    end function angle_unit
+
+   !> There are more equations than unknowns: of a group, or since the last pair is one of the others once more.
+   pure logical function is_redundant(s) result(is)
+      type(scheme_t), intent(in) :: s
+      integer :: n
+
+      n = size(s%pairs)
+      is = any(s%groups%redundant)
+      if (n > 0) is = is .or. any(s%pairs(:n - 1)%point_i == s%pairs(n)%point_i &
+         .and. s%pairs(:n - 1)%point_j == s%pairs(n)%point_j)
+   end function is_redundant
 
    !> In radians or lengths: the unit of what `drive` gives.
    pure real(qp) function drive_unit(s, drive)
