@@ -21,8 +21,10 @@ endif
 LIBS   ?= -lklu $(if $(filter-out quad,$(KIND)),-llapack -lblas)
 
 # No flag here changes a result: no fast-math, no contraction into fused multiply-add.
-# gfortran's "uninitialized" is wrong on every array allocated by assignment.
-COMMON  := -std=f2018 -Wall -Wextra -pedantic -Wno-uninitialized -Wno-maybe-uninitialized -ffp-contract=off
+# gfortran's "uninitialized" is wrong on every array allocated by assignment; functions that need not be asked, where another
+# condition decides, are nothing to warn of.
+COMMON  := -std=f2018 -Wall -Wextra -pedantic -Wno-uninitialized -Wno-maybe-uninitialized -Wno-function-elimination \
+   -ffp-contract=off
 # real128 is the library's work, whatever the flags; the other kinds are for comparison, and compile in half the time.
 # Neighbours are not computed in pairs (SLP): to load as a pair what was stored one by one takes 2 to 9 per cent of a step.
 RELEASE ?= $(if $(filter double,$(KIND)),-O2 -fno-tree-slp-vectorize -flto=auto -ffat-lto-objects,$(if $(filter quad,$(KIND)),-O0,-O1))
