@@ -21,7 +21,7 @@ module block_diagnostics
    real(wp), parameter :: near_part = max(1.0e-6_wp, 64.0_wp*epsilon(1.0_wp))
    !> At its own limit a block is near singular: its least pivot is below this part of the Lipschitz constant.
    real(wp), parameter :: near_pivot = 0.05_wp
-   !> At its own limit a block is faster than the drives by more than this factor.
+   !> And an unknown is faster than the drives, by more than this factor.
    real(wp), parameter :: fast = 10.0_wp
    !> So many lengths is a slide on its way to infinity, and its derivatives are so near to those of a pole.
    real(wp), parameter :: far_slide = 10.0_wp, as_a_pole = 0.2_wp
@@ -200,7 +200,7 @@ contains
       !> The time from the motion that is followed to the limit t* of block `i` before `t`; 0 where none is near. Close
       !> to t* the fastest unknown is x* + c sqrt(t* - t), so t* - t = x'/(2 x''), with an error of higher order. A
       !> block far from singular only follows another with such accelerations, beside a change point perhaps; there they
-      !> may be those of rounding, while velocities are no larger than those of the drives.
+      !> may be those of rounding, while no velocity is much larger than those of the drives.
       pure real(wp) function time_to_limit(i) result(left)
          integer, intent(in) :: i
          integer :: fastest

@@ -1,8 +1,9 @@
 # No object that holds factors of KLU is copied by assignment, or is a function's result: both would share handles.
-# Two passes over the same Fortran files (awk -f fortran.awk -f copies.awk pass=1 FILES pass=2 FILES): the types and their components,
-# of a type or a class, for a class of which one extension holds factors may hold them too;
+# Two passes over the same Fortran files (awk -f fortran.awk -f copies.awk pass=1 FILES pass=2 FILES): the types and their
+# components, of a type or a class, for a class of which one extension holds factors may hold them too;
 # then assignments to whole variables or components of a type that holds a klu_t, directly or in a component, and
 # functions with such results, one a line; at the end the types, "holds: TYPE".
+
 # The type of component `name` of type `t`, or of the type that it extends.
 function component_type(t, name) {
    while (t != "" && !((t " " name) in component)) t = parent[t]
