@@ -50,6 +50,7 @@ contains
       if (.not. e%blocks%solvable) return
       if (.not. any(has_others(e%others(e%needed)))) return
       call choose(e)
+      c = convergence_t()
       call begin_record(e, c)
       call solve_each(e, e%needed, .false., c)
    end subroutine solve_first

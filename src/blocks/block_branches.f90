@@ -13,7 +13,7 @@ module block_branches
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_change, diagnostic_dead_end
    use convergence, only: convergence_t, is_solved, max_kantorovich_ratio
    use predictor, only: predict, is_even
-   use block_state, only: unknown_t, set_values, values_of
+   use block_state, only: unknown_t, set_values, values_of, largest_drive_rate
    use block_solver, only: solve_block
    use block_rank, only: min_direction, residual_of, gauss_newton_step
    use block_engine, only: block_engine_t, solve_again, set_drive_values
@@ -104,7 +104,7 @@ contains
       end do
       if (.not. is) return
       right = right_part*(short_step/max(short_step, e%change))**2
-      driven = abs(e%t - e%history%t(0))*maxval(abs(e%state%drive_value(1, :)))
+      driven = abs(e%t - e%history%t(0))*largest_drive_rate(e%state)
       rounded = rounding*e%blocks%list(e%moving)%lipschitz/e%followed(e%moving)%pivot**2*max(e%change, driven)
       if (crosses) then
          right = right*e%change + minval(rounded, mask=e%crossed(e%moving))

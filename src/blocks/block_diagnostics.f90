@@ -7,7 +7,7 @@ module block_diagnostics
    use planar, only: without_turns
    use blocks, only: largest_known, blocks_below
    use block_rank, only: redundant_rows, moving_unknowns, judge_drives
-   use block_state, only: state_t
+   use block_state, only: state_t, largest_drive_rate
    use first_position, only: has_second_position
    use block_engine, only: block_engine_t
    implicit none
@@ -213,7 +213,7 @@ contains
             fastest = u(maxloc(abs(past(u)%acceleration(0)), dim=1))
             if (abs(past(fastest)%acceleration(0)) <= 0.0_wp) return
             if (e%history%uncertain(0) > 0.0_wp .and. &
-               maxval(abs(past(u)%rate(0))) <= fast*maxval(abs(e%state%drive_value(1, :)))) return
+               maxval(abs(past(u)%rate(0))) <= fast*largest_drive_rate(e%state)) return
             left = 0.5_wp*past(fastest)%rate(0)/past(fastest)%acceleration(0)
             if (left*sign(1.0_wp, step) <= 0.0_wp .or. abs(left) > near_part*abs(step)) left = 0.0_wp
          end associate

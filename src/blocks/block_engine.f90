@@ -225,10 +225,10 @@ contains
       call solve_each(e, e%moving, .true., c)
    end subroutine solve_again
 
-   !> The record `c` before the first block.
+   !> The record `c`, in which nothing is gathered yet, before the first block.
    subroutine begin_record(e, c)
       type(block_engine_t), intent(inout) :: e
-      type(convergence_t), intent(out) :: c
+      type(convergence_t), intent(inout) :: c
 
       e%crossed = .false.
       c%ended = ended_converged

@@ -11,8 +11,8 @@ module block_state
    use blocks, only: blocks_t, block_loop_t, body_vector_t
    implicit none
    private
-   public :: unknown_t, state_t, new_state, set_direction, rotate_direction, set_values, values_of, find_known_parts, &
-      slide_vector
+   public :: unknown_t, state_t, new_state, set_direction, rotate_direction, set_values, values_of, &
+      largest_drive_rate, find_known_parts, slide_vector
 
    !> An unknown, an angle in radians or a slide in its block's unit of length, with its derivatives by time.
    type :: unknown_t
@@ -98,6 +98,13 @@ contains
 
       x = s%u(b%unknown(b%list(i)%first:b%list(i)%last))%value
    end function values_of
+
+   !> The largest rate of a drive, in radians or its block's unit of length by time; 0 without drives.
+   pure real(wp) function largest_drive_rate(s) result(rate)
+      type(state_t), intent(in) :: s
+
+      rate = maxval(abs(s%drive_value(1, :)))
+   end function largest_drive_rate
 
    !> What earlier blocks give to the loops of block `i`: place, velocity, acceleration.
    pure subroutine find_known_parts(b, i, s)

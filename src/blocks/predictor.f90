@@ -15,7 +15,7 @@ module predictor
    use kinds, only: wp
    use mechanism, only: own_predictor
    use blocks, only: blocks_t
-   use block_state, only: unknown_t, state_t
+   use block_state, only: unknown_t, state_t, largest_drive_rate
    implicit none
    private
    public :: history_t, new_history, remember, predict, is_even, largest_change, order_weights, uncertain_part
@@ -136,7 +136,7 @@ contains
       if (pivot > certain_pivot) return
       associate (u => b%unknown(b%list(i)%first:b%list(i)%last))
          v = maxval(abs(s%u(u)%rate))
-         fastest = max(v, maxval(abs(s%drive_value(1, :))))
+         fastest = max(v, largest_drive_rate(s))
          v = max(v, epsilon(1.0_wp)*fastest)
          if (.not. v > 0.0_wp) return
          part = epsilon(1.0_wp)*b%list(i)%lipschitz**2*fastest*(fastest/v)/max(pivot, epsilon(1.0_wp))**3
