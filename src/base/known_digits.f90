@@ -2,7 +2,8 @@
 module known_digits
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
-   use numerals, only: put_fixed, nearest_whole, nearest_by_format, put_with_point, put_whole, numeral_length
+   use decimal_digits, only: nearest_whole, tens
+   use numerals, only: put_fixed, put_with_point, put_whole, put_exponent, numeral_length
    implicit none
    private
    public :: put_known, unknown_digit, nothing_known
@@ -15,9 +16,6 @@ module known_digits
    !> round it to another digit.
    real(wp), parameter :: errors_a_digit = 100.0_wp
 
-   integer :: k  !< index of the constructor below, never set: gfortran 12 rejects its declaration inside
-   integer(int64), parameter :: tens(0:10) = [(10_int64**k, k=0, 10)]
-
 contains
 
    !> `x` as `put_fixed` prints it, of which `error` is unknown: rounded to its last digit that is known, those
@@ -28,7 +26,6 @@ contains
       character(numeral_length), intent(out) :: text
       integer(int64) :: n
       integer :: last
-      logical :: sure
 
       if (error*errors_a_digit <= 10.0_wp**(power - decimals)) then
          call put_fixed(x, decimals, power, text)
@@ -37,8 +34,7 @@ contains
       else
          ! The value is n 10**last as far as it is known; a half is rounded up where it is all that is left.
          last = ceiling(log10(error*errors_a_digit))
-         call nearest_whole(abs(x), -last, n, sure)
-         if (.not. sure) n = nearest_by_format(abs(x), -last)
+         n = nearest_whole(abs(x), -last)
          if (n == 0 .and. abs(x) >= 0.5_wp*10.0_wp**last) n = 1
          text = masked(n, last - power, decimals, x < 0.0_wp .and. n > 0)
          ! All that there is room for is known.
@@ -82,16 +78,16 @@ contains
       character(numeral_length) :: text
       character(20) :: digits
       character(80) :: line
-      character(6) :: shown
+      character(5) :: shown
       integer :: first, known, d
 
       text = ''
       call put_whole(n, digits, first)
       known = len(digits) - first + 1
-      write (shown, '(sp,i6.3)') last + known - 1
+      call put_exponent(last + known - 1, shown)
       digits = digits(first:known + first - 1)//repeat(unknown_digit, len(digits) - known)
       do d = numeral_length - 8, known, -1
-         line = merge('-', ' ', negative)//digits(1:1)//'.'//digits(2:d + 1)//'E'//adjustl(shown)
+         line = merge('-', ' ', negative)//digits(1:1)//'.'//digits(2:d + 1)//'E'//shown
          line = adjustl(line)
          if (len_trim(line) < numeral_length) text = adjustr(line(:numeral_length))
          if (text /= '') return

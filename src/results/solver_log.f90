@@ -8,7 +8,8 @@ module solver_log
    use convergence, only: convergence_t, ending
    use branch_certificate, only: branch_t, branch_word
    use text_output, only: output_t, put
-   use numerals, only: whole, leading_digits, nearest_whole, put_digits, put_whole
+   use decimal_digits, only: leading_digits, tens
+   use numerals, only: whole, put_digits, put_whole
    use known_digits, only: nothing_known
    implicit none
    private
@@ -81,14 +82,7 @@ contains
       n = 0
       e = 0
       sure = abs(x) <= 0.0_wp
-      if (.not. sure) then
-         call leading_digits(abs(x), n, e, sure)
-         if (sure) call nearest_whole(abs(x), decimals - e, n, sure)
-         if (n == 10_int64**(decimals + 1)) then
-            n = n/10
-            e = e + 1
-         end if
-      end if
+      if (.not. sure) call leading_digits(abs(x), decimals + 1, n, e, sure)
       point = len(text) - exponent_digits - 2 - decimals
       sign_of = point - 2
       if (.not. sure .or. abs(e) >= 10**exponent_digits .or. sign_of < 1) then
@@ -96,9 +90,9 @@ contains
          return
       end if
       text = ''
-      call put_digits(mod(n, 10_int64**decimals), text(point + 1:point + decimals))
+      call put_digits(mod(n, tens(decimals)), text(point + 1:point + decimals))
       text(point:point) = '.'
-      call put_digits(n/10_int64**decimals, text(point - 1:point - 1))
+      call put_digits(n/tens(decimals), text(point - 1:point - 1))
       if (sign(1.0_wp, x) < 0.0_wp) text(sign_of:sign_of) = '-'
       text(point + decimals + 1:point + decimals + 2) = merge('E-', 'E+', e < 0)
       call put_digits(int(abs(e), int64), text(point + decimals + 3:))
