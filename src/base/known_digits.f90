@@ -19,16 +19,18 @@ module known_digits
 contains
 
    !> `x` as `put_fixed` prints it, of which `error` is unknown: rounded to its last digit that is known, those
-   !> behind it masked.
-   pure subroutine put_known(x, error, decimals, power, text)
+   !> behind it masked; `masked` becomes true where a digit is.
+   pure subroutine put_known(x, error, decimals, power, text, masked)
       real(wp), intent(in) :: x, error
       integer, intent(in) :: decimals, power
       character(numeral_length), intent(out) :: text
+      logical, intent(inout), optional :: masked
       integer(int64) :: n
       integer :: last
 
       if (error*errors_a_digit <= 10.0_wp**(power - decimals)) then
          call put_fixed(x, decimals, power, text)
+         return
       else if (error > 1.0e-6_wp*nothing_known) then
          text = repeat(' ', numeral_length - 1)//unknown_digit
       else
@@ -36,15 +38,19 @@ contains
          last = ceiling(log10(error*errors_a_digit))
          n = nearest_whole(abs(x), -last)
          if (n == 0 .and. abs(x) >= 0.5_wp*10.0_wp**last) n = 1
-         text = masked(n, last - power, decimals, x < 0.0_wp .and. n > 0)
-         ! All that there is room for is known.
-         if (text == '') call put_fixed(x, decimals, power, text)
+         text = masked_text(n, last - power, decimals, x < 0.0_wp .and. n > 0)
+         if (text == '') then
+            ! All that there is room for is known.
+            call put_fixed(x, decimals, power, text)
+            return
+         end if
       end if
+      if (present(masked)) masked = .true.
    end subroutine put_known
 
    !> `n` 10**`last`, with the sign of what is `negative`, in at most `decimals` decimals; digits worth less than
    !> 10**`last` are masked. Blank where there is no room for a masked digit.
-   pure function masked(n, last, decimals, negative) result(text)
+   pure function masked_text(n, last, decimals, negative) result(text)
       integer(int64), intent(in) :: n
       integer, intent(in) :: last, decimals
       logical, intent(in) :: negative
@@ -68,7 +74,7 @@ contains
       end do
       text = ''
       if (last > 0) text = masked_with_exponent(n, last, negative)
-   end function masked
+   end function masked_text
 
    !> The same with an exponent, as `with_exponent` would print it, n > 0.
    pure function masked_with_exponent(n, last, negative) result(text)

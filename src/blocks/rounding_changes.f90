@@ -10,17 +10,19 @@ module rounding_changes
    use block_solver, only: workspace_t
    use block_engine, only: block_engine_t
    use drives, only: law_t
-   use card_roundings, only: directions, rounding, number_point, number_pair, number_link, &
-      parts_of_number
+   use card_roundings, only: directions, card_directions, rounding, number_pair, parts_of_number
    implicit none
    private
-   public :: rounding_response_t, change_loop, change_projection, change_vector, change_slide, change_card
+   public :: rounding_response_t, change_loop, change_projection, change_vector, change_product, change_slide, change_card
+
+   integer, parameter :: binomial(0:2, 0:2) = reshape([1, 1, 1, 0, 1, 2, 0, 0, 1], [3, 3])
 
    !> `state` is that at which the response is asked for.
    type :: rounding_response_t
       type(state_t) :: state
       type(workspace_t) :: work
       real(wp), allocatable :: sizes(:)          !< (points + pairs) of their numbers, in the deck's unit
+      real(wp), allocatable :: cards(:, :, :)    !< (card_directions, 2, points + pairs) roundings, in the same unit
       integer, allocatable :: pair_of(:)         !< (unknowns) prismatic pair of a slide; 0: none
       type(law_t), allocatable :: tables(:, :)   !< see `law_tables`
       real(wp), allocatable :: drive(:, :, :)    !< (directions, 0:2, 0:drives) as `state` has them
@@ -129,19 +131,18 @@ contains
       integer, intent(in) :: order, point, pair
       real(wp), intent(in) :: scale
       real(wp), intent(inout) :: g(directions, 2), size_of
-      real(wp) :: x(directions), y(directions), c(2), size_of_card, part
-      integer :: card, kind
+      real(wp) :: c(2), part
+      integer :: card, link, k
 
-      if (order == 0 .and. point /= 0) call change_ground(m, point, scale, g)
-      kind = merge(number_point, number_pair, point /= 0)
-      card = abs(point + pair)
-      size_of_card = r%sizes(merge(card, size(m%points) + card, point /= 0))*scale
-      if (.not. size_of_card > 0.0_wp) return
-      x = sign(rounding*size_of_card, real(point + pair, wp))*parts_of_number(kind, card, 0)
-      y = sign(rounding*size_of_card, real(point + pair, wp))*parts_of_number(kind, card, 1)
-      if (point == 0) card = m%pairs(card)%point_i
-      if (point /= 0) card = abs(point)
-      associate (f => r%state%u(e%orientation_of(m%points(card)%link)))
+      if (point /= 0) then
+         card = abs(point)
+         link = m%points(card)%link
+      else
+         card = size(m%points) + abs(pair)
+         link = m%points(m%pairs(abs(pair))%point_i)%link
+      end if
+      if (.not. (r%sizes(card) > 0.0_wp .or. m%links(link)%ground)) return
+      associate (f => r%state%u(e%orientation_of(link)))
          select case (order)
          case (0)
             c = [f%c, f%s]
@@ -154,28 +155,28 @@ contains
             part = abs(f%acceleration) + f%rate**2
          end select
       end associate
-      g(:, 1) = g(:, 1) + c(1)*x - c(2)*y
-      g(:, 2) = g(:, 2) + c(2)*x + c(1)*y
-      size_of = size_of + part*size_of_card
+      c = c*sign(scale, real(point + pair, wp))
+      do k = 1, card_directions
+         g(k, 1) = g(k, 1) + c(1)*r%cards(k, 1, card) - c(2)*r%cards(k, 2, card)
+         g(k, 2) = g(k, 2) + c(2)*r%cards(k, 1, card) + c(1)*r%cards(k, 2, card)
+      end do
+      size_of = size_of + part*scale*r%sizes(card)
    end subroutine change_card
 
-   !> The same of the place of the link of point number |`point`| if that is on the ground: all its points are off
-   !> alike.
-   pure subroutine change_ground(m, point, scale, g)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: point
-      real(wp), intent(in) :: scale
-      real(wp), intent(inout) :: g(directions, 2)
-      real(wp) :: change
-      integer :: i, k
+   !> Derivative number `order` of the change (directions) of the product x . y of two vectors (2, 0:2), which change by
+   !> `dx` and `dy` (directions, 2, 0:2).
+   pure function change_product(order, x, y, dx, dy) result(change)
+      integer, intent(in) :: order
+      real(wp), intent(in) :: x(2, 0:2), y(2, 0:2), dx(directions, 2, 0:2), dy(directions, 2, 0:2)
+      real(wp) :: change(directions)
+      integer :: j
 
-      i = m%points(abs(point))%link
-      if (.not. m%links(i)%ground) return
-      do k = 1, 2
-         change = abs(m%links(i)%position(k))*scale
-         g(:, k) = g(:, k) + sign(rounding*change, real(point, wp))*parts_of_number(number_link, i, k - 1)
+      change = 0.0_wp
+      do j = 0, order
+         change = change + binomial(order, j)*(dx(:, 1, j)*y(1, order - j) + dx(:, 2, j)*y(2, order - j) &
+            + x(1, j)*dy(:, 1, order - j) + x(2, j)*dy(:, 2, order - j))
       end do
-   end subroutine change_ground
+   end function change_product
 
    !> `v` (directions): derivative number `order` of the change of the projection of loop number `k`, with the other
    !> sign, as far as it is known: of g . f, where f turns with an orientation and is off as the angle of `pair` is.
@@ -186,25 +187,23 @@ contains
       class(block_engine_t), intent(in) :: e
       integer, intent(in) :: k, pair, order
       real(wp), intent(out) :: v(directions), size_of
-      real(wp) :: dg(directions, 2), df(directions, 2), angle(directions, 0:2), g(2, 0:2), f(2, 0:2), part
+      real(wp), dimension(directions, 2, 0:2) :: dg, df
+      real(wp) :: angle(directions, 0:2), g(2, 0:2), f(2, 0:2), part
       integer :: j
-      integer, parameter :: binomial(0:2, 0:2) = reshape([1, 1, 1, 0, 1, 2, 0, 0, 1], [3, 3])
 
       associate (loop => e%blocks%loops(k), c => r%state%u(e%blocks%loops(k)%orientation))
          g = closure_motion(e%blocks, k, r%state)
          f = turning(rotated(loop%direction, [c%c, c%s]), [c%value, c%rate, c%acceleration])
          angle = r%u(:, :, loop%orientation)
          angle(:, 0) = angle(:, 0) + rounding*parts_of_number(number_pair, pair, 2)
-         v = 0.0_wp
+         df = 0.0_wp
          size_of = 0.0_wp
          do j = 0, order
-            df = 0.0_wp
-            call change_vector(order - j, f(:, 0), c%rate, c%acceleration, angle, df)
-            call change_loop(r, m, e, loop, j, dg, part)
-            v = v - binomial(order, j)*(dg(:, 1)*f(1, order - j) + dg(:, 2)*f(2, order - j) + g(1, j)*df(:, 1) &
-               + g(2, j)*df(:, 2))
+            call change_vector(j, f(:, 0), c%rate, c%acceleration, angle, df(:, :, j))
+            call change_loop(r, m, e, loop, j, dg(:, :, j), part)
             size_of = size_of + binomial(order, j)*part*norm2(f(:, order - j))
          end do
+         v = -change_product(order, g, f, dg, df)
       end associate
    end subroutine change_projection
 

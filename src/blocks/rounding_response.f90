@@ -27,7 +27,7 @@ module rounding_response
    use rounding_changes, only: rounding_response_t, change_loop, change_projection, change_vector, change_slide, &
       change_card
    use card_roundings, only: directions, rounding, roundings, number_pair, number_drive, parts_of_number, &
-      parts_of_own, parts_of_any, card_sizes, law_tables, drive_changes
+      add_own, parts_of_any, card_sizes, card_changes, law_tables, drive_changes
    implicit none
    private
    public :: rounding_response_t, make_rounding_response, respond_to_roundings
@@ -59,6 +59,7 @@ contains
          end associate
       end do
       r%sizes = card_sizes(m, angle)
+      r%cards = card_changes(m, r%sizes)
       call law_tables(m, r%tables)
       allocate (r%drive(directions, 0:2, 0:size(m%drives)), r%u(directions, 0:2, 0:e%blocks%unknowns), source=0.0_wp)
       allocate (r%missing(0:e%blocks%unknowns), source=missing_nothing)
@@ -131,10 +132,10 @@ contains
 
          associate (row => e%blocks%rows(e%blocks%list(i)%first_row), u => e%blocks%unknown(e%blocks%list(i)%first))
             r%u(:, :, u) = r%u(:, :, row%other) + row%sign_of*r%drive(:, :, row%drive)
-            r%u(:, 0, u) = r%u(:, 0, u) + row%sign_of*change_of_constant(row) &
-               + rounding*abs(r%state%u(u)%value)*parts_of_own(u)
-            r%u(:, 1, u) = r%u(:, 1, u) + rounding*abs(r%state%u(u)%rate)*parts_of_own(u + 1)
-            r%u(:, 2, u) = r%u(:, 2, u) + rounding*abs(r%state%u(u)%acceleration)*parts_of_own(u + 2)
+            r%u(:, 0, u) = r%u(:, 0, u) + row%sign_of*change_of_constant(row)
+            call add_own(r%state%u(u)%value, u, r%u(:, 0, u))
+            call add_own(r%state%u(u)%rate, u + 1, r%u(:, 1, u))
+            call add_own(r%state%u(u)%acceleration, u + 2, r%u(:, 2, u))
          end associate
       end subroutine respond_direct
 
@@ -249,8 +250,8 @@ contains
             if (block%shape%rows > block%shape%n) sizes = maxval(sizes)
             do k = block%first_row, block%last_row
                row = k - block%first_row + 1
-               v(:, row) = v(:, row) + r%drive(:, order, b%rows(k)%drive) + rounding*sizes(row)*parts_of_own(3*k &
-                  + order)
+               v(:, row) = v(:, row) + r%drive(:, order, b%rows(k)%drive)
+               call add_own(sizes(row), 3*k + order, v(:, row))
                if (order == 0) v(:, row) = v(:, row) + change_of_constant(b%rows(k))
             end do
          end associate
@@ -317,7 +318,8 @@ contains
             end if
          end if
          do c = 1, 2
-            links(:, c, order, h%link) = g(:, c) + (rounding*abs(place(c)))*parts_of_own(6*h%link + 2*order + c)
+            links(:, c, order, h%link) = g(:, c)
+            call add_own(place(c), 6*h%link + 2*order + c, links(:, c, order, h%link))
          end do
       end do
 

@@ -10,7 +10,7 @@ module card_roundings
    implicit none
    private
    public :: directions, card_directions, roundings, rounding, number_point, number_pair, number_drive, number_time, &
-      number_link, parts_of_number, parts_of_own, parts_of_any, card_sizes, law_tables, drive_changes
+      number_link, parts_of_number, add_own, parts_of_any, card_sizes, card_changes, law_tables, drive_changes
 
    !> Of eight numbers by chance the largest is seldom a small one; of four, more often.
    integer, parameter :: card_directions = 8, own_directions = 4, directions = card_directions + own_directions
@@ -49,14 +49,16 @@ contains
       r(card_directions + 1:) = 0.0_wp
    end function parts_of_number
 
-   !> The parts (directions) by which result number `k` of a calculation is off: none in the cards' directions.
-   pure function parts_of_own(k) result(r)
+   !> Adds to the changes `x` (directions) the rounding of result number `k` of the calculation, of size `size_of`: none
+   !> in the cards' directions.
+   pure subroutine add_own(size_of, k, x)
+      real(wp), intent(in) :: size_of
       integer, intent(in) :: k
-      real(wp) :: r(directions)
+      real(wp), intent(inout) :: x(directions)
 
-      r(:card_directions) = 0.0_wp
-      r(card_directions + 1:) = parts(card_directions + 1:, modulo(k, rows))
-   end function parts_of_own
+      x(card_directions + 1:) = x(card_directions + 1:) + rounding*abs(size_of)*parts(card_directions + 1:, &
+         modulo(k, rows))
+   end subroutine add_own
 
    !> The parts (directions) by which unknown `k` is off in every direction, whatever its errors come from.
    pure function parts_of_any(k) result(r)
@@ -86,6 +88,29 @@ contains
          sizes(size(m%points) + k) = merge(abs(m%pairs(k)%offset), 0.0_wp, m%pairs(k)%kind == pair_prismatic)
       end do
    end function card_sizes
+
+   !> The roundings (card_directions, 2, points + pairs) of points and offsets by their `sizes`, see `card_sizes`, along
+   !> and across; those of a place on the ground with its link's, with which all its points are off alike.
+   pure function card_changes(m, sizes) result(x)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: sizes(:)
+      real(wp) :: x(card_directions, 2, size(sizes)), r(directions)
+      integer :: i, k
+
+      do k = 1, 2
+         do i = 1, size(m%points)
+            r = sizes(i)*parts_of_number(number_point, i, k - 1)
+            associate (link => m%points(i)%link)
+               if (m%links(link)%ground) r = r + abs(m%links(link)%position(k))*parts_of_number(number_link, link, k - 1)
+            end associate
+            x(:, k, i) = rounding*r(:card_directions)
+         end do
+         do i = 1, size(m%pairs)
+            r = sizes(size(m%points) + i)*parts_of_number(number_pair, i, k - 1)
+            x(:, k, size(m%points) + i) = rounding*r(:card_directions)
+         end do
+      end do
+   end function card_changes
 
    !> Of each of the cards' directions and each drive the law by which the values of its tables are off, `laws`
    !> (card_directions, drives): a spline is linear in its values. A drive without tables has none, and neither has a
@@ -157,11 +182,12 @@ contains
       if (allocated(tables)) call add_tables(tables(:, i))
       f = drive_motion(law, t)
       do k = 0, 2
-         x(:, k) = x(:, k) + rounding*abs(f(k))*parts_of_own(7*i + k)
+         call add_own(f(k), 7*i + k, x(:, k))
       end do
       f = larger(drive_motion(law, t*(1.0_wp + rounding)) - f, f - drive_motion(law, t*(1.0_wp - rounding)))
       do k = 0, 2
-         x(:, k) = x(:, k) + f(k)*(parts_of_number(number_time, 0, 0) + parts_of_own(number_time))
+         x(:, k) = x(:, k) + f(k)*parts_of_number(number_time, 0, 0)
+         call add_own(f(k)/rounding, number_time, x(:, k))
       end do
 
    contains

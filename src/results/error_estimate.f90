@@ -15,10 +15,11 @@ module error_estimate
    use block_engine, only: block_engine_t, make_block_engine
    use link_motion, only: move_found_links
    use card_roundings, only: directions, card_directions, roundings
+   use row_changes, only: change_row
    use rounding_response, only: rounding_response_t, make_rounding_response, respond_to_roundings
    implicit none
    private
-   public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, row_estimate, row_error, largest_errors, &
+   public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, row_estimate, estimate_of, row_error, largest_errors, &
       is_in_doubt
 
    !> A number of the deck, and with it every sum and product, is off by half a rounding. `caution`: for how few the
@@ -182,17 +183,28 @@ contains
       largest = max(maxval(abs(x(:2, :)))/length, maxval(abs(x(3, :))))
    end function largest
 
-   !> What rounding of the deck's numbers leaves open in the row that `request` asks for (3, 0:2) of the motion `q`, in
+   !> What rounding leaves open (3, 0:2) of the row that `request` asks for of the motion `q`.
+   pure function row_estimate(m, s, q, request) result(error)
+      type(mechanism_t), intent(in) :: m
+      type(error_estimate_t), intent(in) :: s
+      type(motion_t), intent(in) :: q
+      type(request_t), intent(in) :: request
+      real(wp) :: error(3, 0:2)
+
+      error = estimate_of(row_of(m, q, request), m, s, q, request)
+   end function row_estimate
+
+   !> What rounding of the deck's numbers leaves open in the `row` that `request` asks for (3, 0:2) of the motion `q`, in
    !> its units: the conditioning of the mechanism, whatever program has solved it. `nothing_known`, where it is so.
    !> `own`: the part of this calculation's own roundings that counts.
-   pure function row_estimate(m, s, q, request, own) result(error)
+   pure function estimate_of(row, m, s, q, request, own) result(error)
+      type(row_t), intent(in) :: row
       type(mechanism_t), intent(in) :: m
       type(error_estimate_t), intent(in) :: s
       type(motion_t), intent(in) :: q
       type(request_t), intent(in) :: request
       real(wp), intent(in), optional :: own
       real(wp) :: error(3, 0:2), of_cards(3, 0:2), of_own(3, 0:2), part
-      type(row_t) :: row
       logical :: zero(3, 0:2), lost(3, 0:2)
 
       error = 0.0_wp
@@ -204,7 +216,6 @@ contains
       if (.not. s%taken) return
       error = nothing_known
       if (any(s%lost(request_links(m, request)))) return
-      row = row_of(m, q, request)
       call find_changes(m, s, q, request, row, of_cards, of_own, lost)
       part = own_in_tables
       if (present(own)) part = own
@@ -216,7 +227,7 @@ contains
       error = merge(0.0_wp, caution*error + error_of_sums(s%of_sums, request, row), zero)
       if (request%kind < request_pole) error(:, row%known + 1:) = nothing_known
       error = merge(nothing_known, error, lost)
-   end function row_estimate
+   end function estimate_of
 
    !> By how much (3, 0:2) a rounding changes the `row` of `request` of the motion `q` at most: one of the deck's
    !> numbers, `of_cards`, and one of the calculation, `of_own`. `lost`: it leaves nothing of it.
@@ -228,39 +239,51 @@ contains
       type(row_t), intent(in) :: row
       real(wp), dimension(3, 0:2), intent(out) :: of_cards, of_own
       logical, intent(out) :: lost(3, 0:2)
-      real(wp) :: change(3, 0:2, directions)
-      type(row_t) :: up, down
-      real(wp) :: step
-      integer :: c, k
+      real(wp) :: x(directions, 3, 0:2)
+      integer :: c, d, k
 
       lost = .false.
-      if (request%kind == request_link) then
-         do k = 0, 2
-            do c = 1, 3
-               change(c, k, :) = abs(s%changes(:, c, k, request%subject))/roundings
-            end do
-         end do
+      if (request%kind < request_pole) then
+         call change_row(m, q, request, s%changes, x)
       else
-         ! To both sides: roundings that change much, but together, leave what depends on ratios as it is.
-         step = merge(few, roundings, request%kind >= request_pole)
-         up = row
-         down = row
-         do k = 1, directions
-            call set_values(m, q, request, up, s%changes(k, :, :, :), step/roundings)
-            call set_values(m, q, request, down, s%changes(k, :, :, :), -step/roundings)
-            change(:, :, k) = difference(up, down)/(2.0_wp*step)
-            if (request%kind >= request_pole) lost = lost .or. lost_numbers(up, row) .or. lost_numbers(down, row)
-         end do
+         call change_centre(m, s, q, request, row, x, lost)
       end if
       of_cards = 0.0_wp
       of_own = 0.0_wp
-      do k = 1, card_directions
-         of_cards = max(of_cards, change(:, :, k))
-      end do
-      do k = card_directions + 1, directions
-         of_own = max(of_own, change(:, :, k))
+      do k = 0, 2
+         do c = 1, 3
+            do d = 1, card_directions
+               of_cards(c, k) = max(of_cards(c, k), abs(x(d, c, k))/roundings)
+            end do
+            do d = card_directions + 1, directions
+               of_own(c, k) = max(of_own(c, k), abs(x(d, c, k))/roundings)
+            end do
+         end do
       end do
    end subroutine find_changes
+
+   !> The changes `x` (directions, 3, 0:2) of the pole or curve `row`. To both sides: roundings that change much, but
+   !> together, leave what depends on ratios as it is.
+   pure subroutine change_centre(m, s, q, request, row, x, lost)
+      type(mechanism_t), intent(in) :: m
+      type(error_estimate_t), intent(in) :: s
+      type(motion_t), intent(in) :: q
+      type(request_t), intent(in) :: request
+      type(row_t), intent(in) :: row
+      real(wp), intent(out) :: x(directions, 3, 0:2)
+      logical, intent(inout) :: lost(3, 0:2)
+      type(row_t) :: up, down
+      integer :: k
+
+      up = row
+      down = row
+      do k = 1, directions
+         call set_values(m, q, request, up, s%changes(k, :, :, :), few/roundings)
+         call set_values(m, q, request, down, s%changes(k, :, :, :), -few/roundings)
+         x(k, :, :) = difference(up, down)*(roundings/(2.0_wp*few))
+         lost = lost .or. lost_numbers(up, row) .or. lost_numbers(down, row)
+      end do
+   end subroutine change_centre
 
    !> What rounding leaves open of the place (3) of a ground link or of a point on one: a sum of numbers of cards.
    pure function fixed_error(m, request) result(error)
@@ -289,9 +312,9 @@ contains
       real(wp) :: error(3, 0:2)
       type(row_t) :: row, solved
 
-      error = row_estimate(m, s, q, request, 1.0_wp)
-      if (.not. s%taken .or. is_fixed(m, request)) return
       row = row_of(m, q, request)
+      error = estimate_of(row, m, s, q, request, 1.0_wp)
+      if (.not. s%taken .or. is_fixed(m, request)) return
       solved = row_of(m, s%solved, request)
       where (error < nothing_known) error = error + difference(row, solved)
       if (request%kind >= request_pole) error = merge(nothing_known, error, lost_numbers(row, solved))

@@ -116,7 +116,7 @@ contains
          if (.not. is_due(m, m%requests(i), step)) cycle
          if (table%kind == 0) call put_instant(o, l, s%motions(1)%t, step)
          row = row_in_set(m, s, i)
-         error = doubt_in_set(s, i)
+         error = doubt_in_set(row, s, i)
          call put_requested(o, l, m, i, row, error, table)
          if (has_tolerances(m, m%requests(i))) call put_spreads(o, l, m, i, row, spread_in_set(m, s, i), table)
       end do

@@ -9,7 +9,7 @@ module listing_tables
    use set_motion, only: spread_t
    use text_output, only: output_t, put
    use numerals, only: put_fixed, put_whole, numeral_length
-   use known_digits, only: put_known, unknown_digit
+   use known_digits, only: put_known
    use listing_layout
    use listing_centres, only: put_centre, put_centre_heads
    use phrases, only: phrase, say_worst
@@ -265,8 +265,7 @@ contains
                   field = l%none
                else if (error(i, k) > 0.0_wp) then
                   call put_known(row%value(i, k)/size_of(unit), error(i, k)/size_of(unit), d%decimals(unit, k), &
-                     d%power(unit, k), field)
-                  masked = masked .or. index(field, unknown_digit) > 0
+                     d%power(unit, k), field, masked)
                else
                   call put_fixed(row%value(i, k)/size_of(unit), d%decimals(unit, k), d%power(unit, k), field)
                end if

@@ -7,7 +7,7 @@ module set_analysis
    use convergence, only: convergence_t, is_solved, gather
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, worst_branch
    use branch_requests, only: branch_requests_t, new_branch_requests, unused
-   use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, row_estimate, &
+   use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of, &
       largest_errors
    use motion_proof, only: motion_prover_t, prove_motion
    use link_bounds, only: largest_bounds
@@ -124,7 +124,7 @@ contains
          call estimate_errors(s%estimators(c), own, a%engine, a%convergence%reciprocal_condition, q, always, estimate)
          if (.not. estimate%taken) return
          do i = 1, size(list)
-            error(:, :, i) = row_estimate(own, estimate, q, own%requests(s%now%parts%number(list(i))))
+            error(:, :, i) = estimate_of(rows(i), own, estimate, q, own%requests(s%now%parts%number(list(i))))
          end do
       end associate
    end subroutine rows_at

@@ -7,7 +7,7 @@ module set_motion
    use independent, only: part_t, parts_t, find_parts, mechanism_of
    use structure, only: findings_t
    use points, only: row_t, row_of
-   use error_estimate, only: error_estimate_t, row_estimate, row_error
+   use error_estimate, only: error_estimate_t, estimate_of, row_error
    use sensitivities, only: sensitivities_t, ground_sensitivities
    use motion_proof, only: motion_proof_t
    implicit none
@@ -129,8 +129,9 @@ contains
       if (c == 0) row = row_of(m, s%motions(1), m%requests(i))
    end function row_in_set
 
-   !> What rounding leaves open (3, 0:2) of the row of request number `i`; 0 where no digit of a table is in doubt.
-   pure function doubt_in_set(s, i) result(error)
+   !> What rounding leaves open (3, 0:2) of the `row` of request number `i`; 0 where no digit of a table is in doubt.
+   pure function doubt_in_set(row, s, i) result(error)
+      type(row_t), intent(in) :: row
       type(set_motion_t), intent(in) :: s
       integer, intent(in) :: i
       real(wp) :: error(3, 0:2)
@@ -138,8 +139,8 @@ contains
       error = 0.0_wp
       if (s%parts%part(i) == 0) return
       associate (c => s%parts%part(i))
-         if (s%errors(c)%taken .and. s%errors(c)%in_doubt) error = row_estimate(s%own(c), s%errors(c), s%motions(c), &
-            s%own(c)%requests(s%parts%number(i)))
+         if (s%errors(c)%taken .and. s%errors(c)%in_doubt) error = estimate_of(row, s%own(c), s%errors(c), &
+            s%motions(c), s%own(c)%requests(s%parts%number(i)))
       end associate
    end function doubt_in_set
 
