@@ -13,7 +13,8 @@ module rounding_changes
    use card_roundings, only: directions, card_directions, rounding, number_pair, parts_of_number
    implicit none
    private
-   public :: rounding_response_t, change_loop, change_projection, change_vector, change_product, change_slide, change_card
+   public :: rounding_response_t, change_loop, change_projection, change_vector, change_product, change_slide, &
+      change_card
 
    integer, parameter :: binomial(0:2, 0:2) = reshape([1, 1, 1, 0, 1, 2, 0, 0, 1], [3, 3])
 

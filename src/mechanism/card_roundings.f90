@@ -100,8 +100,8 @@ contains
       do k = 1, 2
          do i = 1, size(m%points)
             r = sizes(i)*parts_of_number(number_point, i, k - 1)
-            associate (link => m%points(i)%link)
-               if (m%links(link)%ground) r = r + abs(m%links(link)%position(k))*parts_of_number(number_link, link, k - 1)
+            associate (j => m%points(i)%link)
+               if (m%links(j)%ground) r = r + abs(m%links(j)%position(k))*parts_of_number(number_link, j, k - 1)
             end associate
             x(:, k, i) = rounding*r(:card_directions)
          end do

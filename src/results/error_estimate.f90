@@ -19,8 +19,8 @@ module error_estimate
    use rounding_response, only: rounding_response_t, make_rounding_response, respond_to_roundings
    implicit none
    private
-   public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, row_estimate, estimate_of, row_error, largest_errors, &
-      is_in_doubt
+   public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, row_estimate, estimate_of, row_error, &
+      largest_errors, is_in_doubt
 
    !> A number of the deck, and with it every sum and product, is off by half a rounding. `caution`: for how few the
    !> directions are.
@@ -194,8 +194,8 @@ contains
       error = estimate_of(row_of(m, q, request), m, s, q, request)
    end function row_estimate
 
-   !> What rounding of the deck's numbers leaves open in the `row` that `request` asks for (3, 0:2) of the motion `q`, in
-   !> its units: the conditioning of the mechanism, whatever program has solved it. `nothing_known`, where it is so.
+   !> What rounding of the deck's numbers leaves open (3, 0:2) of the `row` that `request` asks for of the motion `q`,
+   !> in its units: the conditioning of the mechanism, whatever program has solved it. `nothing_known`, where it is so.
    !> `own`: the part of this calculation's own roundings that counts.
    pure function estimate_of(row, m, s, q, request, own) result(error)
       type(row_t), intent(in) :: row
