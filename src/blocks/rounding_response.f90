@@ -330,6 +330,7 @@ contains
          real(wp), intent(in) :: d(2)
          integer, intent(in) :: orientation
 
+         if (.not. sum(abs(d)) > 0.0_wp) return
          associate (f => r%state%u(orientation))
             call change_vector(order, rotated(d, [f%c, f%s]), f%rate, f%acceleration, r%u(:, :, orientation), g)
          end associate

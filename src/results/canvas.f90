@@ -157,8 +157,12 @@ contains
          if (all(c%box(:2, i) < high) .and. all(c%box(3:, i) > low)) cover = cover + over_name
       end do
       do i = 1, c%lines
-         call find_inside(c%line(:2, i), c%line(3:4, i), low, high, from, to)
-         if (to > from) cover = cover + c%line(5, i)*((to - from)*norm2(c%line(3:4, i) - c%line(:2, i)))
+         associate (p => c%line(:2, i), q => c%line(3:4, i))
+            ! Most lines are far away, and this is asked very often.
+            if (any(max(p, q) < low) .or. any(min(p, q) > high)) cycle
+            call find_inside(p, q, low, high, from, to)
+            if (to > from) cover = cover + c%line(5, i)*((to - from)*norm2(q - p))
+         end associate
       end do
    end function cover
 
