@@ -70,13 +70,15 @@ contains
    !>
    !> The third derivative is that of the polynomial of degree four through accelerations at five times between `a` and
    !> `b`. A stencil whose derivative at the zero differs from that of a shorter one by more than rounding is too long.
-   subroutine find_zero(s, c, order, level, a, b, zero)
+   !> `ends` (2): the third derivative at `a` and `b`, where it is known.
+   subroutine find_zero(s, c, order, level, a, b, zero, ends)
       type(set_analysis_t), intent(inout) :: s
       type(column_t), intent(in) :: c
       integer, intent(in) :: order
       real(wp), intent(in) :: level
       type(sample_t), intent(in) :: a, b
       type(sample_t), intent(out) :: zero
+      real(wp), intent(in), optional :: ends(2)
       real(wp) :: t, t_shorter, g, last_g, step, noise, width, slope
       real(wp) :: times(max_iterations + 2), values(max_iterations + 2)
       integer :: n, i
@@ -129,8 +131,14 @@ contains
          t2 = b%t
          width = 0.0_wp
          n = 0
-         call evaluate(t1, g1, is_found)
-         if (is_found) call evaluate(t2, g2, is_found)
+         is_found = present(ends)
+         if (is_found) then
+            g1 = ends(1)
+            g2 = ends(2)
+         else
+            call evaluate(t1, g1, is_found)
+            if (is_found) call evaluate(t2, g2, is_found)
+         end if
          if (is_found) is_found = differ_in_sign(g1, g2)
          if (.not. is_found) return
          call note(t1, g1)
@@ -147,7 +155,7 @@ contains
                t = t2
                exit
             end if
-            if (abs(g) <= 0.0_wp) exit
+            if (abs(g) <= merge(noise_of_stencil(), 0.0_wp, order == 3)) exit
             call note(t, g)
             if (differ_in_sign(g, g2)) then
                t1 = t2
