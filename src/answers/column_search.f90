@@ -17,7 +17,7 @@ module column_search
    use extremes, only: extremes_t, keep_place, offer, count_turn, note_interval, step_of
    implicit none
    private
-   public :: add_node, misses_by, overlooked
+   public :: add_node, jerk_at_first, misses_by, overlooked
 
    !> The step of the stencil at a zero, in steps of TIME; how much longer it may be in short steps, in rad or lengths;
    !> and the longest that it may be, as a part of the interval. Where it proves too long, `find_zero` shortens it.
