@@ -155,7 +155,12 @@ contains
                t = t2
                exit
             end if
-            if (abs(g) <= merge(noise_of_stencil(), 0.0_wp, order == 3)) exit
+            ! What is left is rounding: further steps only follow it.
+            if (order == 3) then
+               if (abs(g) <= noise_of_stencil()) exit
+            else if (abs(g) <= rounding_part*c%noise(order)) then
+               exit
+            end if
             call note(t, g)
             if (differ_in_sign(g, g2)) then
                t1 = t2
