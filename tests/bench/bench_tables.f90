@@ -96,6 +96,9 @@ contains
             scenes(i) = new_scene('input/'//trim(deck)//'.deck', trim(deck), 1)
             scenes(i)%step = 12.0_wp/n
             scenes(i)%steps = 3*n
+            ! As by TIME of a deck: beyond its instants the excursions of drives are bounded anew in every step.
+            scenes(i)%m%steps = 3*n
+            scenes(i)%m%t1 = scenes(i)%m%t0 + 3*n*scenes(i)%step
          end associate
          jobs(2*i - 1:2*i) = [job_t(i, by_closed_form), job_t(i, method_newton)]
       end do
