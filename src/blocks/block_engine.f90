@@ -7,7 +7,7 @@ module block_engine
    use links_tree, only: tree_t
    use structure, only: structure_t, new_structure
    use initial_estimate, only: estimated_values
-   use drives, only: new_law, drive_motion
+   use drives, only: new_law, find_drive_motion
    use convergence, only: convergence_t, is_solved, gather, ended_converged, ended_singular
    use engine, only: engine_t, engine_checkpoint_t
    use predictor, only: history_t, new_history, remember, predict, largest_change, uncertain_part
@@ -21,7 +21,7 @@ module block_engine
    implicit none
    private
    public :: block_engine_t, block_checkpoint_t, positions_t
-   public :: make_block_engine, solve_again, solve_each, begin_record, set_drive_values, slide_units
+   public :: make_block_engine, solve_blocks, solve_again, solve_each, begin_record, set_drive_values, slide_units
 
    !> Positions of one block (unknowns, any number).
    type :: positions_t
@@ -60,6 +60,7 @@ module block_engine
       real(wp) :: t = 0.0_wp                            !< the time of the motion found last
       real(wp) :: change = 0.0_wp                       !< the largest change of a value that was predicted
       type(state_t) :: state                            !< its values
+      type(convergence_t) :: one                        !< how the block solved last ended
       type(jacobian_t), allocatable :: found(:)         !< (blocks)
       logical, allocatable :: is_singular(:), crossed(:) !< (blocks) without velocities; with a new sign of determinant
    contains
@@ -167,16 +168,12 @@ contains
    pure function iterated_unknowns(e) result(list)
       type(block_engine_t), intent(in) :: e
       integer, allocatable :: list(:)
-      logical :: iterated(0:e%blocks%unknowns)
-      integer :: k, u
+      logical :: iterated(size(e%blocks%list))
+      integer :: u
 
       iterated = .false.
-      do k = 1, size(e%moving)
-         associate (block => e%blocks%list(e%moving(k)))
-            if (.not. block%direct) iterated(e%blocks%unknown(block%first:block%last)) = .true.
-         end associate
-      end do
-      list = pack([(u, u=0, e%blocks%unknowns)], iterated)
+      iterated(e%moving) = .not. e%blocks%list(e%moving)%direct
+      list = pack([(u, u=1, e%blocks%unknowns)], iterated(e%blocks%block_of))
    end function iterated_unknowns
 
    !> See `engine`; of the first motion each block by itself is the nearest to its estimate. `c`: of the worst block.
@@ -185,6 +182,16 @@ contains
       real(wp), intent(in) :: t
       logical, intent(in) :: follows
       type(convergence_t), intent(out) :: c
+
+      call solve_blocks(e, t, follows, c)
+   end subroutine solve
+
+   !> The same, in a record `c` that is new.
+   subroutine solve_blocks(e, t, follows, c)
+      type(block_engine_t), intent(inout) :: e
+      real(wp), intent(in) :: t
+      logical, intent(in) :: follows
+      type(convergence_t), intent(inout) :: c
 
       c%ended = ended_singular
       if (.not. e%blocks%solvable) return
@@ -200,7 +207,7 @@ contains
          e%state%u%value = e%estimated
          call solve_each(e, e%needed, follows, c)
       end if
-   end subroutine solve
+   end subroutine solve_blocks
 
    !> Value, rate and acceleration of the drives at `t`.
    pure subroutine set_drive_values(e, t)
@@ -210,8 +217,7 @@ contains
       integer :: i
 
       do i = 1, size(e%laws)
-         ! Not at once: the result would be copied before it is multiplied.
-         f = drive_motion(e%laws(i), t)
+         call find_drive_motion(e%laws(i), t, f)
          e%state%drive_value(0:2, i) = f*e%unit_of(i)
       end do
    end subroutine set_drive_values
@@ -242,17 +248,16 @@ contains
       integer, intent(in) :: list(:)
       logical, intent(in) :: follows
       type(convergence_t), intent(inout) :: c
-      type(convergence_t) :: one
       integer :: k, i
 
       do k = 1, size(list)
          i = list(k)
          if (follows) then
-            call solve_block(e%blocks, i, e%tolerance, e%work, e%state, one)
+            call solve_block(e%blocks, i, e%tolerance, e%work, e%state, e%one)
          else
-            call solve_first_block(e%blocks, i, e%tolerance, e%work, e%state, one, e%others(i)%x)
+            call solve_first_block(e%blocks, i, e%tolerance, e%work, e%state, e%one, e%others(i)%x)
          end if
-         associate (block => e%blocks%list(i), found => e%found(i), followed => e%followed(i))
+         associate (block => e%blocks%list(i), one => e%one, found => e%found(i), followed => e%followed(i))
             if (block%direct) cycle
             if (follows) c%change = max(c%change, one%change)
             if (follows .and. is_solved(one) .and. block%shape%rows > block%shape%n) &
@@ -355,7 +360,7 @@ contains
       class(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       type(motion_t), intent(inout) :: found
-      integer :: missing(0:e%blocks%unknowns), k
+      integer :: missing(0:e%blocks%unknowns), k, i
       type(convergence_t) :: c
       logical :: finite
 
@@ -363,12 +368,11 @@ contains
       call set_drive_values(e, t)
       missing = missing_nothing
       do k = 1, size(e%needed)
-         associate (i => e%needed(k))
-            call note_block(e, i, merge(missing_nothing, missing_all, e%blocks%list(i)%direct), missing)
-            if (.not. e%blocks%list(i)%direct) cycle
-            if (missing(e%blocks%unknown(e%blocks%list(i)%first)) == missing_nothing) &
-               call solve_block(e%blocks, i, e%tolerance, e%work, e%state, c)
-         end associate
+         i = e%needed(k)
+         call note_block(e, i, merge(missing_nothing, missing_all, e%blocks%list(i)%direct), missing)
+         if (.not. e%blocks%list(i)%direct) cycle
+         if (missing(e%blocks%unknown(e%blocks%list(i)%first)) == missing_nothing) &
+            call solve_block(e%blocks, i, e%tolerance, e%work, e%state, c)
       end do
       call mark_links(e%chain, missing, found)
       call move_found_links(e%chain, found%link_known < 2, e%state, e%length, found, finite)

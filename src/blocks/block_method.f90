@@ -4,7 +4,7 @@ module block_method
    use kinds, only: wp
    use motion, only: motion_t
    use convergence, only: convergence_t, is_solved, ended_inconsistent
-   use block_engine, only: block_engine_t, slide_units
+   use block_engine, only: block_engine_t, solve_blocks, slide_units
    use assembly_choice, only: solve_first
    use block_branches, only: is_short_and_right
    use singularity, only: judge_position
@@ -34,7 +34,7 @@ contains
 
       e%state%excursion = e%excursion
       if (follows) then
-         call e%block_engine_t%solve(t, follows, c)
+         call solve_blocks(e%block_engine_t, t, follows, c)
          if (e%excursion > 0.0_wp .and. is_solved(c)) c%is_certain = is_short_and_right(e%block_engine_t, c%change)
       else
          call solve_first(e%block_engine_t, t, c)

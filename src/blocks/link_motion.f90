@@ -107,12 +107,9 @@ contains
       real(wp), intent(in) :: length
       type(motion_t), intent(inout) :: q
       logical, intent(out) :: finite
-      integer :: i
 
       q%origin = c%origin
-      do i = 1, size(c%ground)
-         q%position(:, c%ground(i)) = c%ground_position(:, i)
-      end do
+      call put_ground(size(c%ground), c%ground, c%ground_position, q%position)
       call move_chain(size(c%links), c%links, s%u, length, q%position, q%velocity, q%acceleration, finite)
    end subroutine move_links
 
@@ -130,6 +127,21 @@ contains
       part%links = pack(part%links, .not. lost(part%links%link))
       call move_links(part, s, length, q, finite)
    end subroutine move_found_links
+
+   !> Puts the positions `here` of the `n` ground links `links` into those of all, `p`; one by one, since a
+   !> column at once would be a call of its own.
+   pure subroutine put_ground(n, links, here, p)
+      integer, intent(in) :: n, links(n)
+      real(wp), intent(in) :: here(3, n)
+      real(wp), intent(inout) :: p(3, *)
+      integer :: i
+
+      do i = 1, n
+         p(1, links(i)) = here(1, i)
+         p(2, links(i)) = here(2, i)
+         p(3, links(i)) = here(3, i)
+      end do
+   end subroutine put_ground
 
    !> The same for the moving links, on plain arrays, which cost no descriptors.
    pure subroutine move_chain(n, links, u, length, p, v, a, finite)

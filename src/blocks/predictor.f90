@@ -68,7 +68,7 @@ contains
    pure subroutine remember(h, t, u, uncertain)
       type(history_t), intent(inout) :: h
       real(wp), intent(in) :: t, uncertain
-      type(unknown_t), intent(in) :: u(0:)
+      type(unknown_t), intent(in) :: u(0:*)
       integer :: i, k
 
       h%t = [t, h%t(0), h%t(1)]
@@ -89,7 +89,7 @@ contains
    pure subroutine predict(h, t, u, change)
       type(history_t), intent(in) :: h
       real(wp), intent(in) :: t
-      type(unknown_t), intent(inout) :: u(0:)
+      type(unknown_t), intent(inout) :: u(0:*)
       real(wp), intent(out) :: change
       real(wp) :: step, d, w(3)
       integer :: i, k, known

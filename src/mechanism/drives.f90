@@ -19,7 +19,7 @@ module drives
    implicit none
    private
    public :: law_t, new_law, drive_motion, drive_rate, joints_of, monomial, rise_shape, joint_width, joint_distance
-   public :: spline_t, new_spline, spline_value, piece_at, piece_value
+   public :: find_drive_motion, spline_t, new_spline, spline_value, piece_at, piece_value
 
    !> A natural cubic spline, in the units of the drive and of time.
    type :: spline_t
@@ -60,6 +60,15 @@ contains
       type(law_t), intent(in) :: law
       real(wp), intent(in) :: t
       real(wp) :: f(3)
+
+      call find_drive_motion(law, t, f)
+   end function drive_motion
+
+   !> The same, without a result that is copied.
+   pure subroutine find_drive_motion(law, t, f)
+      type(law_t), intent(in) :: law
+      real(wp), intent(in) :: t
+      real(wp), intent(out) :: f(3)
       integer :: i
 
       associate (c => law%drive%polynomial)
@@ -79,7 +88,7 @@ contains
             f = f + rise(law%drive%terms(i), t)
          end select
       end do
-   end function drive_motion
+   end subroutine find_drive_motion
 
    !> r1 sin(r2 t + r3) and its derivatives.
    pure function harmonic(r, t) result(f)

@@ -72,7 +72,6 @@ contains
       real(wp), intent(in) :: t
       integer :: c, passed
 
-      passed = sum(s%list%certificate_counts%passed)
       do c = 1, size(s%list)
          call advance(s%list(c), t, s%now%motions(c))
          if (s%now%own(c)%method /= method_newton) &
@@ -82,7 +81,7 @@ contains
          s%certificate_counts = s%list(1)%certificate_counts
          return
       end if
-      passed = sum(s%list%certificate_counts%passed) - passed
+      passed = sum(s%list%certificate_counts%passed) - s%certificate_counts%passed
       if (all(s%now%motions%known >= 0)) then
          call count_in(s%certificate_counts, worst_branch(s%list%branch), passed)
       else
