@@ -179,8 +179,16 @@ contains
    !> The largest coordinate, lengths in units of `length`.
    pure real(wp) function largest(x, length)
       real(wp), intent(in) :: x(:, :), length
+      real(wp) :: along, angle
+      integer :: i
 
-      largest = max(maxval(abs(x(:2, :)))/length, maxval(abs(x(3, :))))
+      along = 0.0_wp
+      angle = 0.0_wp
+      do i = 1, size(x, 2)
+         along = max(along, abs(x(1, i)), abs(x(2, i)))
+         angle = max(angle, abs(x(3, i)))
+      end do
+      largest = max(along/length, angle)
    end function largest
 
    !> What rounding leaves open (3, 0:2) of the row that `request` asks for of the motion `q`.
