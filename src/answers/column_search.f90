@@ -239,8 +239,7 @@ contains
                do k = 1, 3
                   f(k, :) = nodes(k)%value(j, :, q)*[1.0_wp, h, h**2]
                end do
-               open = max(noise_part*max(x%size_of(j, 0, q), maxval(abs(f(:, 0)))), &
-                  maxval([(nodes(k)%error(j, 0, q), k=1, 3)]))
+               open = max(noise_of(x, nodes, q, j, 0), noise_part*maxval(abs(f(:, 0))))
                jerk(j, q, 1) = jerk_at_first(f, open)/h**3
                ! From the last to the first the rates have the other sign, and so has their second derivative.
                f = f(3:1:-1, :)
@@ -272,22 +271,41 @@ contains
       integer, intent(in) :: c
       type(node_t), intent(in) :: nodes(3)
       real(wp), intent(in) :: jerk(:, :, :)
-      real(wp) :: open, length
+      real(wp) :: open
       integer :: i, j, k
 
       are_simple = .true.
-      length = abs(nodes(3)%t - nodes(1)%t)
       do i = 1, size(x%tracks(c)%rows)
          associate (q => x%tracks(c)%rows(i))
             do j = 1, coordinates_of(m%requests(x%asked(q))%kind)
-               open = overlooked*x%size_of(j, 2, q) + errors_by_rates*maxval([(nodes(k)%error(j, 2, q) &
-                  + max(nodes(k)%error(j, 1, q), noise_part*x%size_of(j, 1, q))/length, k=1, 3)])
+               open = overlooked*x%size_of(j, 2, q) + open_change(x, nodes, q, j)
                are_simple = are_simple .and. is_simple([(nodes(k)%value(j, 2, q), k=1, 3)], &
                   jerk(j, q, :)*(nodes(3)%t - nodes(1)%t), open)
             end do
          end associate
       end do
    end function are_simple
+
+   !> What rounding may leave open of the change of an acceleration between the `nodes`, by its derivative at an end: of
+   !> column `j` of row `q`.
+   pure real(wp) function open_change(x, nodes, q, j) result(open)
+      type(extremes_t), intent(in) :: x
+      type(node_t), intent(in) :: nodes(3)
+      integer, intent(in) :: q, j
+
+      open = errors_by_rates*(noise_of(x, nodes, q, j, 1)/abs(nodes(3)%t - nodes(1)%t) + noise_of(x, nodes, q, j, 2))
+   end function open_change
+
+   !> What rounding may leave open, at most, of derivative number `k` of column `j` of row `q` at the `nodes`.
+   pure real(wp) function noise_of(x, nodes, q, j, k) result(noise)
+      type(extremes_t), intent(in) :: x
+      type(node_t), intent(in) :: nodes(3)
+      integer, intent(in) :: q, j, k
+      integer :: i
+
+      noise = max(noise_part, epsilon(1.0_wp)*maxval(nodes%growth))*x%size_of(j, k, q)
+      noise = max(noise, maxval([(nodes(i)%error(j, k, q), i=1, 3)]))
+   end function noise_of
 
    !> The cubic with the values `f`(1) and `f`(3) and the derivatives `d` at the ends of an interval of the length 1 has
    !> about the value `f`(2) in the middle, and one extreme inside at most; what is less than `open` counts for nothing.

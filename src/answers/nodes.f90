@@ -38,6 +38,7 @@ module nodes
       integer, allocatable :: known(:)                 !< (asked) as in `row_t`; -1 of those of other mechanisms
       real(wp), allocatable :: value(:, :, :)          !< (3, 0:2, asked) in the deck's units and rad
       real(wp), allocatable :: error(:, :, :)          !< of them, where digits of a table could be in doubt
+      real(wp) :: growth = 0.0_wp                      !< by which roundings grow where they could not
    end type node_t
 
    !> The limits (3, 0:2, asked) on one side of a time.
@@ -67,7 +68,7 @@ contains
       node%t = t
       these = pack([(i, i=1, size(asked))], s%now%parts%part(asked) == c)
       allocate (rows(size(these)), error(3, 0:2, size(these)))
-      call rows_at(s, c, asked(these), t, rows, is_found, always, error)
+      call rows_at(s, c, asked(these), t, rows, is_found, always, error, node%growth)
       do i = 1, size(these)
          node%known(these(i)) = rows(i)%known
          node%value(:, :, these(i)) = rows(i)%value

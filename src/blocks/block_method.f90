@@ -13,13 +13,16 @@ module block_method
    private
    public :: block_method_t
 
+   !> With smaller pivots everything is in doubt.
+   real(wp), parameter :: smallest_pivot = epsilon(1.0_wp)**2
+
    type, extends(block_engine_t) :: block_method_t
    contains
       procedure :: solve
       procedure :: get_link_flags
       procedure :: measure_closure_error
       procedure :: max_rate
-      procedure :: roundings_grow
+      procedure :: growth_of_roundings
       procedure :: copy_values
    end type block_method_t
 
@@ -78,20 +81,20 @@ contains
       end associate
    end function max_rate
 
-   !> A rounding grows by more than `limit` in a block whose numbers are `size_of` times the characteristic ones.
-   pure logical function roundings_grow(e, size_of, limit)
+   !> By how much a rounding grows at most in a block, whose numbers are `size_of` times the characteristic ones.
+   pure real(wp) function growth_of_roundings(e, size_of) result(growth)
       class(block_method_t), intent(in) :: e
-      real(wp), intent(in) :: size_of, limit
+      real(wp), intent(in) :: size_of
       integer :: k
 
-      roundings_grow = .false.
+      growth = 0.0_wp
       do k = 1, size(e%needed)
          associate (i => e%needed(k))
-            if (.not. e%blocks%list(i)%direct) roundings_grow = roundings_grow .or. &
-               e%blocks%list(i)%lipschitz*max(1.0_wp, size_of) > limit*min(1.0_wp, e%found(i)%pivot)**2
+            if (.not. e%blocks%list(i)%direct) growth = max(growth, e%blocks%list(i)%lipschitz*max(1.0_wp, size_of) &
+               /max(min(1.0_wp, e%found(i)%pivot), smallest_pivot)**2)
          end associate
       end do
-   end function roundings_grow
+   end function growth_of_roundings
 
    !> The values found last become those of `other`, whose unit of lengths may be another power of two.
    pure subroutine copy_values(e, other)

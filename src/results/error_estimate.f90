@@ -32,7 +32,8 @@ module error_estimate
 
    !> Errors are roundings times |J^-1|^2 times the Lipschitz constant of J times what is asked for; below this many
    !> roundings, and with no number larger than so many characteristic ones, all digits of a table are safe.
-   real(wp), parameter :: safe_growth = 1.0e4_wp, safe_size = 1.0e4_wp
+   real(wp), parameter, public :: safe_growth = 1.0e4_wp
+   real(wp), parameter :: safe_size = 1.0e4_wp
    !> The same by the reciprocal condition of all closure equations at once, whose pivots are no block's.
    real(wp), parameter :: safe_condition = 1.0e-3_wp
 
@@ -44,7 +45,8 @@ module error_estimate
    type :: error_estimate_t
       logical :: taken = .false.             !< `changes` tell something
       logical :: asked = .false.             !< --errors: wanted at every instant
-      logical :: in_doubt = .false.          !< digits of this instant may be lost
+      real(wp) :: growth = 0.0_wp            !< of roundings at this instant; huge where numbers are large
+      logical :: in_doubt = .false.          !< it is so much that digits may be lost
       !> (length, angle or slide, derivative) The rounding error of a sum of numbers as large as the largest of the
       !> rows.
       real(wp) :: of_sums(3, 0:2) = 0.0_wp
@@ -87,10 +89,11 @@ contains
       found%asked = always
       select type (engine)
       class is (block_method_t)
-         found%in_doubt = is_in_doubt(s, m, rcond, q, engine)
+         found%growth = growth_of_errors(s, m, rcond, q, engine)
       class default
-         found%in_doubt = is_in_doubt(s, m, rcond, q)
+         found%growth = growth_of_errors(s, m, rcond, q)
       end select
+      found%in_doubt = found%growth > safe_growth
       if (.not. (always .or. found%in_doubt)) return
       if (q%known < 0 .and. .not. allocated(q%link_known)) return
       select type (engine)
@@ -151,9 +154,20 @@ contains
       call move_found_links(e%chain, found%lost, r%state, e%length, found%solved, finite)
    end subroutine take_changes
 
-   !> Some digit could be in doubt: a pivot is small, or a number large. Where rates do not exist, blocks have found the
-   !> position to the last digits all the same; all equations at once (no `e`) have lost up to half of them.
-   pure logical function is_in_doubt(s, m, rcond, q, e)
+   !> Some digit of the motion `q` of `m`, which the blocks of `e` have found, could be in doubt.
+   pure logical function is_in_doubt(s, m, q, e)
+      type(estimator_t), intent(in) :: s
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      class(block_method_t), intent(in) :: e
+
+      is_in_doubt = growth_of_errors(s, m, 1.0_wp, q, e) > safe_growth
+   end function is_in_doubt
+
+   !> By how much roundings grow at most, where a pivot is small; without limit where a number is large. Where rates do
+   !> not exist, blocks have found the position to the last digits all the same; all equations at once (no `e`) have
+   !> lost up to half of them.
+   pure real(wp) function growth_of_errors(s, m, rcond, q, e) result(growth)
       type(estimator_t), intent(in) :: s
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: rcond
@@ -161,20 +175,21 @@ contains
       class(block_method_t), intent(in), optional :: e
       real(wp) :: size_of
 
-      is_in_doubt = q%known >= 0 .and. q%known < 2 .and. .not. present(e)
+      growth = 0.0_wp
+      if (q%known >= 0 .and. .not. present(e)) growth = huge(growth)
       if (q%known < 2) return
       ! Several ground links that stand far away are rounded as coarsely as far places are.
       size_of = max(largest(q%position, s%length), maxval(abs(q%origin))/s%length, &
          largest(q%velocity, s%length)/s%rate, largest(q%acceleration, s%length)/s%rate**2)
       size_of = max(size_of, growth_in_centres(m, q))
-      is_in_doubt = size_of > safe_size
-      if (is_in_doubt) return
+      growth = huge(growth)
+      if (size_of > safe_size) return
       if (present(e)) then
-         is_in_doubt = e%roundings_grow(size_of, safe_growth)
+         growth = e%growth_of_roundings(size_of)
       else
-         is_in_doubt = rcond < safe_condition
+         growth = safe_growth*(safe_condition/max(rcond, epsilon(rcond)))
       end if
-   end function is_in_doubt
+   end function growth_of_errors
 
    !> The largest coordinate, lengths in units of `length`.
    pure real(wp) function largest(x, length)

@@ -7,7 +7,7 @@ module set_analysis
    use convergence, only: convergence_t, is_solved, gather
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, worst_branch
    use branch_requests, only: branch_requests_t, new_branch_requests, unused
-   use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of, &
+   use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of, safe_growth, &
       largest_errors
    use motion_proof, only: motion_prover_t, prove_motion
    use link_bounds, only: largest_bounds
@@ -92,20 +92,21 @@ contains
    !> The rows (any number) of the requests `list`, all of independent mechanism number `c`, at the last instant or a
    !> time `t` between the instants; nothing else changes. `is_found`: all of them is known. `error` (3, 0:2, rows):
    !> what is unknown of them where digits of a table could be in doubt or `always`, otherwise 0.
-   subroutine rows_at(s, c, list, t, rows, is_found, always, error)
+   subroutine rows_at(s, c, list, t, rows, is_found, always, error, growth)
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c, list(:)
       real(wp), intent(in) :: t
       type(row_t), intent(out) :: rows(size(list))
       logical, intent(out) :: is_found
       logical, intent(in), optional :: always
-      real(wp), intent(out), optional :: error(3, 0:2, size(list))
+      real(wp), intent(out), optional :: error(3, 0:2, size(list)), growth
       type(motion_t) :: q
       type(error_estimate_t) :: estimate
       integer :: i
 
       associate (own => s%now%own(c), a => s%list(c))
          if (present(error)) error = 0.0_wp
+         if (present(growth)) growth = 0.0_wp
          if (abs(t - s%now%motions(c)%t) > 0.0_wp) then
             q = new_motion(size(own%links))
             call look_at(a, t, q, is_found)
@@ -121,6 +122,7 @@ contains
          end do
          if (.not. present(error)) return
          call estimate_errors(s%estimators(c), own, a%engine, a%convergence%reciprocal_condition, q, always, estimate)
+         if (present(growth)) growth = min(estimate%growth, safe_growth)
          if (.not. estimate%taken) return
          do i = 1, size(list)
             error(:, :, i) = estimate_of(rows(i), own, estimate, q, own%requests(s%now%parts%number(list(i))))
