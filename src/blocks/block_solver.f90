@@ -13,7 +13,7 @@
 module block_solver
    use kinds, only: wp
    use klu, only: klu_t
-   use block_matrix, only: shape_t, nearby_t, solve_first, solve_again, solve_nearby, stay_near, set_aside, &
+   use block_matrix, only: shape_t, nearby_t, solve_one, solve_first, solve_again, solve_nearby, stay_near, set_aside, &
       pivot_range, inverse_norm, spread_by_inverse, entries_of, work_length
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
       ended_inconsistent, note_closure_error, is_inconsistent, contradict
@@ -199,7 +199,11 @@ contains
       integer, intent(out) :: info
 
       info = 0
-      if (f%near%distance > 0.0_wp) then
+      if (shape%n == 1 .and. shape%rows == 1) then
+         ! The calls for matrices of any shape take several times as long.
+         f%pivots(1) = 1
+         call solve_one(f%a(1), v(1), info)
+      else if (f%near%distance > 0.0_wp) then
          call solve_nearby(f%near, v)
       else if (is_new) then
          call solve_first(shape, f%a, f%sparse(shape%pattern), f%pivots, f%work, v, info)

@@ -10,7 +10,7 @@ module block_matrix
    private
    public :: shape_t, is_sparse_better, entries_of, solve_first, solve_again, solve_many, pivot_range, inverse_norm, &
       work_length
-   public :: nearby_t, stay_near, set_aside, solve_nearby, spread_by_inverse
+   public :: solve_one, nearby_t, stay_near, set_aside, solve_nearby, spread_by_inverse
 
    !> `pattern` = 0: dense, by columns. Otherwise sparse and square: the number of its pattern, and its entries, in the
    !> order of the pattern.
@@ -87,13 +87,22 @@ contains
          end do
          if (info == 0) call solve_again(s, a, k, pivots, work, b)
       else if (s%n == 1) then
-         if (abs(a(1)) <= 0.0_wp) info = 1
+         call solve_one(a(1), b(1), info)
          pivots(1) = 1
-         if (info == 0) b(1) = b(1)/a(1)
       else
          call gesv(s%n, 1, a, s%n, pivots, b, s%n, info)
       end if
    end subroutine solve_first
+
+   !> The same of one equation with one unknown.
+   pure subroutine solve_one(a, b, info)
+      real(wp), intent(in) :: a
+      real(wp), intent(inout) :: b
+      integer, intent(out) :: info
+
+      info = merge(1, 0, abs(a) <= 0.0_wp)
+      if (info == 0) b = b/a
+   end subroutine solve_one
 
    !> With the pivots of the matrix before, if these still serve. `right`, `left`, `size_of`: room.
    subroutine solve_sparse(n, a, k, right, left, size_of, b, info)
