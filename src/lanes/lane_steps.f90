@@ -10,7 +10,7 @@ module lane_steps
    use following, only: largest_correction
    use drives, only: drive_motion
    use lane_sines, only: width, max_angle
-   use lane_elimination, only: factor, substitute, pivots_of, inverse_norm
+   use lane_elimination, only: max_order, factor, substitute, pivots_of, inverse_norm
    use lane_state, only: lanes_t, slot_of, depth
    use lane_equations, only: set_lane_direction, find_lane_known, assemble_lanes, lane_right_hand_side
    implicit none
@@ -148,7 +148,9 @@ contains
       type(lanes_t), intent(inout) :: l
       integer, intent(in) :: i, n
       type(judgement_t), intent(inout) :: j
-      real(wp) :: a(width, n*n), d(width, n), exchanged(width, 3), start(width, n), change(width)
+      ! Of fixed size: what has to be made for each block takes longer than its elimination.
+      real(wp) :: a(width, max_order**2), d(width, max_order), exchanged(width, 3), start(width, max_order), &
+         change(width)
       integer :: k
 
       do k = 1, n
@@ -261,7 +263,7 @@ contains
       type(lanes_t), intent(inout) :: l
       integer, intent(in) :: i, n
       real(wp), intent(in) :: a(width, n*n), exchanged(width, 3)
-      real(wp) :: v(width, n)
+      real(wp) :: v(width, max_order)
       integer :: k, order
 
       do order = 1, 2
@@ -282,9 +284,17 @@ contains
       l%newest = slot_of(l, depth - 1)
       l%t(:, l%newest) = t
       do k = 1, size(l%predicted)
-         l%past(:, :, l%predicted(k), l%newest) = l%u(:, :3, l%predicted(k))
+         call remember(l%u(1, 1, l%predicted(k)), l%past(1, 1, l%predicted(k), l%newest))
       end do
    end subroutine accept_lanes
+
+   !> Copies value, rate and acceleration.
+   pure subroutine remember(u, past)
+      real(wp), intent(in) :: u(width, 3)
+      real(wp), intent(out) :: past(width, 3)
+
+      past = u
+   end subroutine remember
 
    !> Puts `lane` back to its latest motion, as if that had been found last.
    subroutine keep_lane(l, lane)
