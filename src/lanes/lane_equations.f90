@@ -26,13 +26,21 @@ contains
       integer :: m, k
 
       do m = l%blocks%list(i)%first_loop, l%blocks%list(i)%last_loop
-         l%known(:, :, 0, m) = l%ground(:, :, m)
-         l%known(:, :, 1:2, m) = 0.0_wp
+         call begin_known(l%ground(1, 1, m), l%known(1, 1, 0, m))
          do k = l%blocks%loops(m)%first_vector, l%blocks%loops(m)%first_own - 1
             call add_known(l%vector(1, 1, k), l%u(1, 1, l%blocks%body_vectors(k)%orientation), l%known(1, 1, 0, m))
          end do
       end do
    end subroutine find_lane_known
+
+   !> The sums `known` begin with `ground`, which does not move.
+   pure subroutine begin_known(ground, known)
+      real(wp), intent(in) :: ground(width, 2)
+      real(wp), intent(out) :: known(width, 2, 0:2)
+
+      known(:, :, 0) = ground
+      known(:, :, 1:) = 0.0_wp
+   end subroutine begin_known
 
    !> Adds the body vector `d`, which the unknown `u` rotates.
    pure subroutine add_known(d, u, known)
