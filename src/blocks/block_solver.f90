@@ -201,7 +201,6 @@ contains
       info = 0
       if (shape%n == 1 .and. shape%rows == 1) then
          ! The calls for matrices of any shape take several times as long.
-         f%pivots(1) = 1
          call solve_one(f%a(1), v(1), info)
       else if (f%near%distance > 0.0_wp) then
          call solve_nearby(f%near, v)
@@ -327,11 +326,17 @@ contains
       type(convergence_t), intent(inout) :: c
       real(wp) :: least, largest, inverse, size_of
       integer :: k, n
-      logical :: suspicious
+      logical :: suspicious, is_single
 
       n = block%shape%n
       k = block%shape%pattern
-      call pivot_range(block%shape, w%a, w%sparse(k), w%pivots, least, largest, c%determinant)
+      is_single = n == 1 .and. block%shape%rows == 1
+      if (is_single) then
+         least = abs(w%a(1))
+         c%determinant = merge(-1, 1, w%a(1) < 0.0_wp)
+      else
+         call pivot_range(block%shape, w%a, w%sparse(k), w%pivots, least, largest, c%determinant)
+      end if
       c%min_pivot = least
       c%reciprocal_condition = 1.0_wp
       if (n == 0) return
@@ -345,7 +350,11 @@ contains
          if (.not. suspicious .and. c%kantorovich_ratio <= small_kantorovich_ratio .and. &
             s%excursion*block%lipschitz*c%inverse**2*real(n, wp)**4 <= small_growth) return
       end if
-      inverse = inverse_norm(block%shape, w%a, w%sparse(k), w%work, w%iwork)
+      if (is_single) then
+         inverse = 1.0_wp/least
+      else
+         inverse = inverse_norm(block%shape, w%a, w%sparse(k), w%work, w%iwork)
+      end if
       c%inverse = min(inverse, 1.0_wp/min_inverse)
       c%kantorovich_ratio = c%change*block%lipschitz*inverse
       if (.not. suspicious) return
