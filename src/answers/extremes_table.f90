@@ -39,7 +39,7 @@ contains
       type(digits_t) :: d
       integer :: q, k, drive
 
-      call put_times(o, l, ' '//phrase(say_extremes, m%polish), [m%t0, m%t1])
+      call put_times(o, l, ' '//phrase(say_extremes, m%polish), [m%t0, m%t1], table%masked)
       do q = 1, size(x%asked)
          associate (i => x%asked(q))
             call put_heads(o, l, digits_of(l, i), m%requests(i)%kind, table)

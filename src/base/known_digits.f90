@@ -15,6 +15,9 @@ module known_digits
    !> The last digit that is shown is worth so many errors: otherwise another program, as right as this one, would
    !> round it to another digit.
    real(wp), parameter :: errors_a_digit = 100.0_wp
+   !> Powers of ten: most digits are worth one of these.
+   integer :: n                                !< of the loop in the next line
+   real(wp), parameter :: powers(-12:6) = [(10.0_wp**n, n=-12, 6)]
 
 contains
 
@@ -26,9 +29,16 @@ contains
       character(numeral_length), intent(out) :: text
       logical, intent(inout), optional :: masked
       integer(int64) :: n
+      real(wp) :: digit
       integer :: last
 
-      if (error*errors_a_digit <= 10.0_wp**(power - decimals)) then
+      last = power - decimals
+      if (last < lbound(powers, 1) .or. last > ubound(powers, 1)) then
+         digit = 10.0_wp**last
+      else
+         digit = powers(last)
+      end if
+      if (error*errors_a_digit <= digit) then
          call put_fixed(x, decimals, power, text)
          return
       else if (error > 1.0e-6_wp*nothing_known) then

@@ -15,6 +15,8 @@ module block_method
 
    !> With smaller pivots everything is in doubt.
    real(wp), parameter :: smallest_pivot = epsilon(1.0_wp)**2
+   !> A digit of a rate is worth so many of an angle, at least.
+   real(wp), parameter :: rate_digits = 6.0_wp
 
    type, extends(block_engine_t) :: block_method_t
    contains
@@ -23,6 +25,7 @@ module block_method
       procedure :: measure_closure_error
       procedure :: max_rate
       procedure :: growth_of_roundings
+      procedure :: growth_of_angles
       procedure :: copy_values
    end type block_method_t
 
@@ -81,20 +84,36 @@ contains
       end associate
    end function max_rate
 
-   !> By how much a rounding grows at most in a block, whose numbers are `size_of` times the characteristic ones.
-   pure real(wp) function growth_of_roundings(e, size_of) result(growth)
+   !> By how much a rounding grows at most in a block, whose numbers are the characteristic ones.
+   pure real(wp) function growth_of_roundings(e) result(growth)
       class(block_method_t), intent(in) :: e
-      real(wp), intent(in) :: size_of
       integer :: k
 
       growth = 0.0_wp
       do k = 1, size(e%needed)
          associate (i => e%needed(k))
-            if (.not. e%blocks%list(i)%direct) growth = max(growth, e%blocks%list(i)%lipschitz*max(1.0_wp, size_of) &
-               /max(min(1.0_wp, e%found(i)%pivot), smallest_pivot)**2)
+            if (.not. e%blocks%list(i)%direct) growth = max(growth, &
+               e%blocks%list(i)%lipschitz/max(min(1.0_wp, e%found(i)%pivot), smallest_pivot)**2)
          end associate
       end do
    end function growth_of_roundings
+
+   !> The same of an angle's rounding, in positions or, over `rate_digits`, in accelerations: with 1/p for the inverse
+   !> of the Jacobian and L for its Lipschitz constant 1/p, L/p^2 and L^2/p^3.
+   pure real(wp) function growth_of_angles(e) result(growth)
+      class(block_method_t), intent(in) :: e
+      real(wp) :: inverse
+      integer :: k
+
+      growth = 1.0_wp
+      do k = 1, size(e%needed)
+         associate (block => e%blocks%list(e%needed(k)))
+            if (block%direct) cycle
+            inverse = 1.0_wp/max(min(1.0_wp, e%found(e%needed(k))%pivot), smallest_pivot)
+            growth = max(growth, block%coarse*inverse*max(1.0_wp, (block%lipschitz*inverse)**2/rate_digits))
+         end associate
+      end do
+   end function growth_of_angles
 
    !> The values found last become those of `other`, whose unit of lengths may be another power of two.
    pure subroutine copy_values(e, other)

@@ -13,7 +13,7 @@ module lane_runs
    use analysis, only: come_back
    use block_engine, only: block_engine_t
    use block_method, only: block_method_t
-   use error_estimate, only: is_in_doubt
+   use digits_in_doubt, only: is_in_doubt
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set
    use extreme_search, only: note_start
    use answers, only: answers_t, new_answers, take_instant

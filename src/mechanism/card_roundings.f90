@@ -187,7 +187,7 @@ contains
       f = larger(drive_motion(law, t*(1.0_wp + rounding)) - f, f - drive_motion(law, t*(1.0_wp - rounding)))
       do k = 0, 2
          x(:, k) = x(:, k) + f(k)*parts_of_number(number_time, 0, 0)
-         call add_own(f(k)/rounding, number_time, x(:, k))
+         x(card_directions + 1:, k) = x(card_directions + 1:, k) + f(k)*parts(card_directions + 1:, number_time)
       end do
 
    contains

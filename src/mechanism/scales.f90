@@ -8,7 +8,8 @@ module scales
       used_points
    implicit none
    private
-   public :: characteristic_length, solver_length, characteristic_rate, power_of_two, is_length, relative_tolerance
+   public :: characteristic_length, solver_length, characteristic_rate, power_of_two, is_length, relative_tolerance, &
+      latest_time
 
 contains
 
@@ -82,17 +83,21 @@ contains
    pure real(wp) function characteristic_rate(m, length) result(rate)
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: length
-      real(wp) :: t
       integer :: i
 
-      t = max(abs(m%t0), abs(m%t1))
-      if (size(m%at) > 0) t = max(t, maxval(abs(m%at)))
       rate = 0.0_wp
       do i = 1, size(m%drives)
-         rate = max(rate, drive_rate(m%drives(i), t)/merge(length, 1.0_wp, is_length(m%drives(i))))
+         rate = max(rate, drive_rate(m%drives(i), latest_time(m))/merge(length, 1.0_wp, is_length(m%drives(i))))
       end do
       if (.not. is_usable(rate)) rate = 1.0_wp
    end function characteristic_rate
+
+   !> The largest |t| of an instant.
+   pure real(wp) function latest_time(m) result(t)
+      type(mechanism_t), intent(in) :: m
+
+      t = max(abs(m%t0), abs(m%t1), maxval([0.0_wp, abs(m%at)]))
+   end function latest_time
 
    !> The largest tolerance of `m`, as a part of the characteristic length and rate; `m` has one.
    pure real(wp) function relative_tolerance(m) result(part)

@@ -7,9 +7,9 @@ module error_estimate
       request_links, place_links
    use motion, only: motion_t, new_motion
    use points, only: row_t, row_of, set_values, difference, is_fixed
-   use sum_errors, only: sum_roundings, errors_of_sums, error_of_sums, lost_numbers, growth_in_centres
+   use sum_errors, only: sum_roundings, errors_of_sums, error_of_sums, lost_numbers
    use known_digits, only: nothing_known
-   use scales, only: characteristic_length, characteristic_rate
+   use digits_in_doubt, only: sizes_t, sizes_of, find_growth
    use engine, only: engine_t
    use block_method, only: block_method_t
    use block_engine, only: block_engine_t, make_block_engine
@@ -19,8 +19,7 @@ module error_estimate
    use rounding_response, only: rounding_response_t, make_rounding_response, respond_to_roundings
    implicit none
    private
-   public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, row_estimate, estimate_of, row_error, &
-      largest_errors, is_in_doubt
+   public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of, row_error, largest_errors
 
    !> A number of the deck, and with it every sum and product, is off by half a rounding. `caution`: for how few the
    !> directions are.
@@ -29,13 +28,6 @@ module error_estimate
    !> A digit of a table is worth a hundred errors of what the deck leaves open, which is the same for all programs; the
    !> program's own errors may be as large as the digit.
    real(wp), parameter :: own_in_tables = 0.01_wp
-
-   !> Errors are roundings times |J^-1|^2 times the Lipschitz constant of J times what is asked for; below this many
-   !> roundings, and with no number larger than so many characteristic ones, all digits of a table are safe.
-   real(wp), parameter, public :: safe_growth = 1.0e4_wp
-   real(wp), parameter :: safe_size = 1.0e4_wp
-   !> The same by the reciprocal condition of all closure equations at once, whose pivots are no block's.
-   real(wp), parameter :: safe_condition = 1.0e-3_wp
 
    !> Instant centres and centres of curvature are compared at so many roundings to either side.
    real(wp), parameter :: few = 4.0_wp
@@ -56,9 +48,8 @@ module error_estimate
       type(motion_t) :: solved               !< the motion to the limit of rounding, where errors are asked for
    end type error_estimate_t
 
-   !> What the estimates of a mechanism need; its characteristic length and rate in the deck's units.
-   type :: estimator_t
-      real(wp) :: length = 1.0_wp, rate = 1.0_wp
+   !> What the estimates of a mechanism need.
+   type, extends(sizes_t) :: estimator_t
       type(rounding_response_t) :: response
       logical :: is_ready = .false.            !< for any position, where blocks find it
    end type estimator_t
@@ -70,8 +61,7 @@ contains
       type(estimator_t), intent(out) :: s
       type(mechanism_t), intent(in) :: m
 
-      s%length = characteristic_length(m)
-      s%rate = characteristic_rate(m, s%length)
+      s%sizes_t = sizes_of(m)
    end subroutine make_estimator
 
    !> How far the motion `q` of `m` is known, which the `engine` has found, by a matrix of the reciprocal condition
@@ -89,11 +79,10 @@ contains
       found%asked = always
       select type (engine)
       class is (block_method_t)
-         found%growth = growth_of_errors(s, m, rcond, q, engine)
+         call find_growth(s, m, rcond, q, found%growth, found%in_doubt, engine)
       class default
-         found%growth = growth_of_errors(s, m, rcond, q)
+         call find_growth(s, m, rcond, q, found%growth, found%in_doubt)
       end select
-      found%in_doubt = found%growth > safe_growth
       if (.not. (always .or. found%in_doubt)) return
       if (q%known < 0 .and. .not. allocated(q%link_known)) return
       select type (engine)
@@ -153,69 +142,6 @@ contains
       found%solved%known = 2
       call move_found_links(e%chain, found%lost, r%state, e%length, found%solved, finite)
    end subroutine take_changes
-
-   !> Some digit of the motion `q` of `m`, which the blocks of `e` have found, could be in doubt.
-   pure logical function is_in_doubt(s, m, q, e)
-      type(estimator_t), intent(in) :: s
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      class(block_method_t), intent(in) :: e
-
-      is_in_doubt = growth_of_errors(s, m, 1.0_wp, q, e) > safe_growth
-   end function is_in_doubt
-
-   !> By how much roundings grow at most, where a pivot is small; without limit where a number is large. Where rates do
-   !> not exist, blocks have found the position to the last digits all the same; all equations at once (no `e`) have
-   !> lost up to half of them.
-   pure real(wp) function growth_of_errors(s, m, rcond, q, e) result(growth)
-      type(estimator_t), intent(in) :: s
-      type(mechanism_t), intent(in) :: m
-      real(wp), intent(in) :: rcond
-      type(motion_t), intent(in) :: q
-      class(block_method_t), intent(in), optional :: e
-      real(wp) :: size_of
-
-      growth = 0.0_wp
-      if (q%known >= 0 .and. .not. present(e)) growth = huge(growth)
-      if (q%known < 2) return
-      ! Several ground links that stand far away are rounded as coarsely as far places are.
-      size_of = max(largest(q%position, s%length), maxval(abs(q%origin))/s%length, &
-         largest(q%velocity, s%length)/s%rate, largest(q%acceleration, s%length)/s%rate**2)
-      size_of = max(size_of, growth_in_centres(m, q))
-      growth = huge(growth)
-      if (size_of > safe_size) return
-      if (present(e)) then
-         growth = e%growth_of_roundings(size_of)
-      else
-         growth = safe_growth*(safe_condition/max(rcond, epsilon(rcond)))
-      end if
-   end function growth_of_errors
-
-   !> The largest coordinate, lengths in units of `length`.
-   pure real(wp) function largest(x, length)
-      real(wp), intent(in) :: x(:, :), length
-      real(wp) :: along, angle
-      integer :: i
-
-      along = 0.0_wp
-      angle = 0.0_wp
-      do i = 1, size(x, 2)
-         along = max(along, abs(x(1, i)), abs(x(2, i)))
-         angle = max(angle, abs(x(3, i)))
-      end do
-      largest = max(along/length, angle)
-   end function largest
-
-   !> What rounding leaves open (3, 0:2) of the row that `request` asks for of the motion `q`.
-   pure function row_estimate(m, s, q, request) result(error)
-      type(mechanism_t), intent(in) :: m
-      type(error_estimate_t), intent(in) :: s
-      type(motion_t), intent(in) :: q
-      type(request_t), intent(in) :: request
-      real(wp) :: error(3, 0:2)
-
-      error = estimate_of(row_of(m, q, request), m, s, q, request)
-   end function row_estimate
 
    !> What rounding of the deck's numbers leaves open (3, 0:2) of the `row` that `request` asks for of the motion `q`,
    !> in its units: the conditioning of the mechanism, whatever program has solved it. `nothing_known`, where it is so.

@@ -114,13 +114,13 @@ contains
 
       do i = 1, size(m%requests)
          if (.not. is_due(m, m%requests(i), step)) cycle
-         if (table%kind == 0) call put_instant(o, l, s%motions(1)%t, step)
+         if (table%kind == 0) call put_instant(o, l, s%motions(1)%t, step, table%masked)
          row = row_in_set(m, s, i)
          error = doubt_in_set(row, s, i)
          call put_requested(o, l, m, i, row, error, table)
          if (has_tolerances(m, m%requests(i))) call put_spreads(o, l, m, i, row, spread_in_set(m, s, i), table)
       end do
-      if (table%kind == 0 .and. is_flagged(s)) call put_instant(o, l, s%motions(1)%t, step)
+      if (table%kind == 0 .and. is_flagged(s)) call put_instant(o, l, s%motions(1)%t, step, table%masked)
       call put_marks(o, m, s)
       if (table%masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, m%polish))
       do c = 1, size(s%motions)

@@ -10,7 +10,8 @@ module listing_layout
    use independent, only: parts_t, find_parts
    use drives, only: law_t, new_law
    use names, only: drive_name
-   use scales, only: characteristic_length, characteristic_rate, relative_tolerance
+   use law_sizes, only: growing_sizes
+   use scales, only: characteristic_length, characteristic_rate, relative_tolerance, latest_time
    use numerals, only: whole, numeral_length
    use phrases
    implicit none
@@ -40,6 +41,7 @@ module listing_layout
       character(:), allocatable :: before, behind
       type(law_t) :: law
       real(wp) :: unit = 1.0_wp            !< length or radians in the unit in which it is printed
+      real(wp) :: size_of(0:1) = 0.0_wp    !< of what is added up to its value, (0) + (1) |t|: see `law_sizes`
       integer :: decimals = digits_after_first, power = 0   !< as in `digits_t`
    end type head_drive_t
 
@@ -85,7 +87,7 @@ contains
          call find_parts(m, new_parts, new_own)
          call take_parts(l, new_parts, new_own)
       end if
-      time = max(abs(m%t0), abs(m%t1), maxval([0.0_wp, abs(m%at)]))
+      time = latest_time(m)
       if (time > 0.0_wp) call choose_digits(log10(time), l%time_decimals, l%time_power)
       ! What a tolerance changes has four digits.
       if (allocated(m%tolerances)) &
@@ -116,6 +118,7 @@ contains
       integer, intent(in) :: k
       type(head_drive_t), intent(out) :: drive
       type(digits_t) :: d
+      real(wp) :: sizes(3, 0:1)
       integer :: what
 
       d = l%digits_t
@@ -124,6 +127,8 @@ contains
       drive%before = '   '//trim(drive_name(m, m%drives(k)))//' = '
       drive%behind = ' '//unit_of(d%power(what, 0), trim(merge(angle_unit(m), m%length_unit, what == 2)))
       drive%law = new_law(m%drives(k))
+      sizes = growing_sizes(drive%law, latest_time(m))
+      drive%size_of = sizes(1, :)
       if (what == 2) drive%unit = l%angle
       drive%decimals = d%decimals(what, 0)
       drive%power = d%power(what, 0)

@@ -18,6 +18,7 @@ module listing_tables
    public :: table_t, put_instant, put_times, put_requested, put_spreads, put_heads, time_text, drive_text, known_text
 
    integer, parameter :: line_length = 120
+   character(4), parameter :: between = ' .. '
 
    !> The table at hand: the kind of its rows, 0 where there is none yet; the powers of ten of its columns; `masked`: a
    !> digit of the instant is.
@@ -31,41 +32,47 @@ contains
 
    !> The line over the tables of instant number `step`, at `t` in the deck's unit: the time and the values of the
    !> drives.
-   subroutine put_instant(o, l, t, step)
+   subroutine put_instant(o, l, t, step, masked)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       real(wp), intent(in) :: t
       integer, intent(in) :: step
+      logical, intent(inout) :: masked
       character(numeral_length) :: number
       integer :: first
 
       call put_whole(int(step, int64), number, first)
-      call put_times(o, l, l%before_instant//number(first:), [t])
+      call put_times(o, l, l%before_instant//number(first:), [t], masked)
    end subroutine put_instant
 
    !> A blank line, and one with `start`, the `times` (1 or 2, in the deck's unit) and the values of the drives then,
    !> which go on in the next line where they are many. Written into lines of their own, since text that grows would
-   !> cost as much as a table.
-   subroutine put_times(o, l, start, times)
+   !> cost as much as a table. `masked`: a digit is.
+   subroutine put_times(o, l, start, times, masked)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       character(*), intent(in) :: start
       real(wp), intent(in) :: times(:)
+      logical, intent(inout) :: masked
       character(line_length) :: line, part
-      integer :: i, used, length
+      integer :: i, k, used, length
 
       call put(o, '')
       used = 0
       call append(start//'   T = ', line, used)
-      call append_numbers(times, l%time_decimals, l%time_power, line, used)
+      do k = 1, size(times)
+         if (k > 1) call append(between, line, used)
+         call append_number(times(k), 0.0_wp, l%time_decimals, l%time_power, line, used, masked)
+      end do
       call append(l%behind_time, line, used)
       do i = 1, size(l%drives)
          length = 0
-         associate (d => l%drives(i))
-            call append(d%before, part, length)
-            call append_numbers(values_of(d, times), d%decimals, d%power, part, length)
-            call append(d%behind, part, length)
-         end associate
+         call append(l%drives(i)%before, part, length)
+         do k = 1, size(times)
+            if (k > 1) call append(between, part, length)
+            call append_drive(l%drives(i), times(k), part, length, masked)
+         end do
+         call append(l%drives(i)%behind, part, length)
          if (i == size(l%drives)) call append(l%more_drives, part, length)
          if (used + length > line_length) then
             call put(o, line(:used))
@@ -87,38 +94,42 @@ contains
       used = used + len(text)
    end subroutine append
 
-   !> The same of the numbers `x` without blanks, dots between them.
-   pure subroutine append_numbers(x, decimals, power, line, used)
-      real(wp), intent(in) :: x(:)
+   !> The same of the number `x`, of which `error` is unknown, without blanks.
+   pure subroutine append_number(x, error, decimals, power, line, used, masked)
+      real(wp), intent(in) :: x, error
       integer, intent(in) :: decimals, power
       character(*), intent(inout) :: line
       integer, intent(inout) :: used
+      logical, intent(inout) :: masked
       character(numeral_length) :: number
-      integer :: i, first
+      integer :: first
 
-      do i = 1, size(x)
-         if (i > 1) call append(' .. ', line, used)
-         call put_fixed(x(i), decimals, power, number)
-         first = 1
-         do while (number(first:first) == ' ')
-            first = first + 1
-         end do
-         call append(number(first:), line, used)
+      if (error > 0.0_wp) then
+         call put_known(x, error, decimals, power, number, masked)
+      else
+         call put_fixed(x, decimals, power, number)
+      end if
+      first = 1
+      do while (number(first:first) == ' ')
+         first = first + 1
       end do
-   end subroutine append_numbers
+      call append(number(first:), line, used)
+   end subroutine append_number
 
-   !> The values of the drive `d` at `times`, in its unit.
-   pure function values_of(d, times) result(x)
+   !> The same of the value of the drive `d` at the time `t`, of which roundings of its numbers and of the time leave
+   !> digits open.
+   pure subroutine append_drive(d, t, line, used, masked)
       type(head_drive_t), intent(in) :: d
-      real(wp), intent(in) :: times(:)
-      real(wp) :: x(size(times)), f(3)
-      integer :: i
+      real(wp), intent(in) :: t
+      character(*), intent(inout) :: line
+      integer, intent(inout) :: used
+      logical, intent(inout) :: masked
+      real(wp) :: f(3), error
 
-      do i = 1, size(times)
-         f = drive_motion(d%law, times(i))
-         x(i) = f(1)/d%unit
-      end do
-   end function values_of
+      f = drive_motion(d%law, t)
+      error = epsilon(1.0_wp)*(d%size_of(0) + d%size_of(1)*abs(t))
+      call append_number(f(1)/d%unit, error/d%unit, d%decimals, d%power, line, used, masked)
+   end subroutine append_drive
 
    !> A time with the digits of the set, without blanks; `error`, where it is given, is unknown of it.
    pure function time_text(l, t, error) result(text)

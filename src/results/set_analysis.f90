@@ -7,8 +7,9 @@ module set_analysis
    use convergence, only: convergence_t, is_solved, gather
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, worst_branch
    use branch_requests, only: branch_requests_t, new_branch_requests, unused
-   use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of, safe_growth, &
+   use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of, &
       largest_errors
+   use digits_in_doubt, only: safe_growth
    use motion_proof, only: motion_prover_t, prove_motion
    use link_bounds, only: largest_bounds
    use sensitivities, only: sensor_t, make_sensor, find_sensitivities
@@ -122,7 +123,7 @@ contains
          end do
          if (.not. present(error)) return
          call estimate_errors(s%estimators(c), own, a%engine, a%convergence%reciprocal_condition, q, always, estimate)
-         if (present(growth)) growth = min(estimate%growth, safe_growth)
+         if (present(growth)) growth = merge(safe_growth, estimate%growth, estimate%in_doubt)
          if (.not. estimate%taken) return
          do i = 1, size(list)
             error(:, :, i) = estimate_of(rows(i), own, estimate, q, own%requests(s%now%parts%number(list(i))))

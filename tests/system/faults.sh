@@ -761,4 +761,14 @@ head -c $((bytes - 1)) "$w/deck" | "$kinmat" > "$w/out"
 equal 'cut after END: status' 0 $?
 (head -c 300 "$w/deck"; sleep 1; tail -c +301 "$w/deck") | "$kinmat" > "$w/slow.out"
 same 'a pipe that halts in the middle of a card' "$w/out" "$w/slow.out"
+
+# A swing of 30 degrees after 1E13 radians: with 60 digits its angle is -10.260604, of which rounding leaves open all but
+# one.
+{ head_of SWING; four_bar '' 0.0 1.0 3.5 3.0 4.0 0.0 55.0 110.0; drive ANGLE CRANK '' 0.0 0.0
+  card ADD HARMONIC '' '' 30.0 57.2957795 0.0; card TIME 2 '' '' 1.0E13 1.0000000001E13; card END; } > "$w/deck"
+"$kinmat" "$w/deck" > "$w/out"
+equal 'a swing after a long time: its drive' ' INSTANT 0   T = 10.00000 10**12 S   ANGLE CRANK = -1?.?????? DEG' \
+   "$(grep 'INSTANT 0' "$w/out")"
+equal 'a swing after a long time: its crank, position' '?.??????' "$(awk '$1 == "CRANK" && NF == 10 { print $4; exit }' "$w/out")"
+equal 'a swing after a long time: all three instants have digits left open' 3 "$(grep -c 'DIGITS THAT ROUNDING LEAVES OPEN' "$w/out")"
 conclude

@@ -1,0 +1,138 @@
+!> By how much roundings grow at most in a motion: whether digits of the tables could be in doubt. The question is asked
+!> at every instant that is printed, and must cost little.
+module digits_in_doubt
+   use kinds, only: wp
+   use mechanism, only: mechanism_t
+   use motion, only: motion_t
+   use drives, only: new_law
+   use law_sizes, only: growing_sizes
+   use scales, only: characteristic_length, characteristic_rate, is_length, latest_time
+   use sum_errors, only: growth_in_centres
+   use block_method, only: block_method_t
+   implicit none
+   private
+   public :: sizes_t, sizes_of, find_growth, is_in_doubt, safe_growth
+
+   !> Errors are roundings times |J^-1|^2 times the Lipschitz constant of J times what is asked for; below this many
+   !> roundings, and with no number larger than so many characteristic ones, all digits of a table are safe.
+   real(wp), parameter :: safe_growth = 1.0e4_wp
+   real(wp), parameter :: safe_size = 1.0e4_wp
+   !> Angles that are no larger than a few radians count as any number does. Of larger ones it is their rounding alone
+   !> that grows, and not what their motion is added up of: so large, times that growth, they may be. A digit of a table
+   !> is worth 1.7E-8 rad, or 1E-7 of the characteristic rate, at least.
+   real(wp), parameter :: usual_angle = 8.0_wp, safe_angle = 1.0e5_wp
+   !> The same by the reciprocal condition of all closure equations at once, whose pivots are no block's.
+   real(wp), parameter :: safe_condition = 1.0e-3_wp
+
+   !> What the numbers of a mechanism are compared with: its characteristic length and rate in the deck's units.
+   type :: sizes_t
+      real(wp) :: length = 1.0_wp, rate = 1.0_wp
+      real(wp) :: law(0:1) = 0.0_wp            !< size of the drives' laws at t = 0, and how it grows with |t|; no units
+   end type sizes_t
+
+contains
+
+   !> The sizes of `m`.
+   function sizes_of(m) result(s)
+      type(mechanism_t), intent(in) :: m
+      type(sizes_t) :: s
+
+      s%length = characteristic_length(m)
+      s%rate = characteristic_rate(m, s%length)
+      s%law = largest_law(m, s%length, s%rate)
+   end function sizes_of
+
+   !> The size of the largest law of a drive of `m` at t = 0, and by how much more it is, over |t|: see `law_sizes`. In
+   !> the characteristic `length` and `rate`.
+   function largest_law(m, length, rate) result(largest)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: length, rate
+      real(wp) :: largest(0:1), sizes(3, 0:1)
+      integer :: i, k
+
+      largest = 0.0_wp
+      do i = 1, size(m%drives)
+         sizes = growing_sizes(new_law(m%drives(i)), latest_time(m))/merge(length, 1.0_wp, is_length(m%drives(i)))
+         do k = 1, 3
+            largest = max(largest, sizes(k, :)/rate**(k - 1))
+         end do
+      end do
+   end function largest_law
+
+   !> Some digit of the motion `q` of `m`, which the blocks of `e` have found, could be in doubt.
+   pure logical function is_in_doubt(s, m, q, e)
+      class(sizes_t), intent(in) :: s
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      class(block_method_t), intent(in) :: e
+      real(wp) :: growth
+
+      call find_growth(s, m, 1.0_wp, q, growth, is_in_doubt, e)
+   end function is_in_doubt
+
+   !> By how much roundings grow at most in the motion `q`, where a pivot is small; without limit where a number is
+   !> large. `in_doubt`: digits may be lost. Where rates do not exist, blocks have found the position to the last digits
+   !> all the same; all equations at once (no `e`) have lost up to half of them.
+   pure subroutine find_growth(s, m, rcond, q, growth, in_doubt, e)
+      class(sizes_t), intent(in) :: s
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: rcond
+      type(motion_t), intent(in) :: q
+      real(wp), intent(out) :: growth
+      logical, intent(out) :: in_doubt
+      class(block_method_t), intent(in), optional :: e
+      real(wp) :: angle, size_of, usual
+
+      growth = merge(huge(growth), 0.0_wp, q%known >= 0 .and. .not. present(e))
+      in_doubt = growth > 0.0_wp
+      if (q%known < 2) return
+      growth = huge(growth)
+      in_doubt = .true.
+      angle = max(largest_angle(q%position), s%law(0) + s%law(1)*abs(q%t))
+      ! Several ground links that stand far away are rounded as coarsely as far places are.
+      size_of = max(1.0_wp, largest_length(q%position)/s%length, maxval(abs(q%origin))/s%length, &
+         largest(q%velocity, s%length)/s%rate, largest(q%acceleration, s%length)/s%rate**2, growth_in_centres(m, q))
+      if (.not. present(e)) size_of = max(size_of, angle)
+      if (size_of > safe_size) return
+      if (present(e)) then
+         usual = max(size_of, min(angle, usual_angle))
+         growth = usual*e%growth_of_roundings()
+         in_doubt = growth > safe_growth
+         if (.not. angle > usual_angle) return
+         in_doubt = in_doubt .or. angle*size_of*e%growth_of_angles() > safe_angle
+         growth = growth*max(1.0_wp, angle/usual)
+      else
+         growth = safe_growth*(safe_condition/max(rcond, epsilon(rcond)))
+         in_doubt = growth > safe_growth
+      end if
+   end subroutine find_growth
+
+   !> The largest coordinate, lengths in units of `length`.
+   pure real(wp) function largest(x, length)
+      real(wp), intent(in) :: x(:, :), length
+
+      largest = max(largest_length(x)/length, largest_angle(x))
+   end function largest
+
+   !> The largest of the lengths in `x` (3, links).
+   pure real(wp) function largest_length(x) result(largest)
+      real(wp), intent(in) :: x(:, :)
+      integer :: i
+
+      largest = 0.0_wp
+      do i = 1, size(x, 2)
+         largest = max(largest, abs(x(1, i)), abs(x(2, i)))
+      end do
+   end function largest_length
+
+   !> The largest of the angles in `x` (3, links).
+   pure real(wp) function largest_angle(x) result(largest)
+      real(wp), intent(in) :: x(:, :)
+      integer :: i
+
+      largest = 0.0_wp
+      do i = 1, size(x, 2)
+         largest = max(largest, abs(x(3, i)))
+      end do
+   end function largest_angle
+end module digits_in_doubt
