@@ -304,7 +304,8 @@ contains
             e%found(l%moving(k))%pivot = l%pivot(i, l%moving(k), slot_of(l, depth - 1))
          end do
          call e%get_motion(r%s%now%motions(1), finite)
-         turned = .not. finite .or. is_in_doubt(r%s%estimators(1), r%s%now%own(1), r%s%now%motions(1), e)
+         turned = .not. finite &
+            .or. is_in_doubt(r%s%estimators(1)%sizes, r%s%now%own(1), r%s%now%motions(1), e)
       end select
       if (turned) return
       call look_on(r%watch, r%asked%extremes, rows_of(r), steps)

@@ -61,7 +61,7 @@ contains
 
    !> Some digit of the motion `q` of `m`, which the blocks of `e` have found, could be in doubt.
    pure logical function is_in_doubt(s, m, q, e)
-      class(sizes_t), intent(in) :: s
+      type(sizes_t), intent(in) :: s
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       class(block_method_t), intent(in) :: e
@@ -74,7 +74,7 @@ contains
    !> large. `in_doubt`: digits may be lost. Where rates do not exist, blocks have found the position to the last digits
    !> all the same; all equations at once (no `e`) have lost up to half of them.
    pure subroutine find_growth(s, m, rcond, q, growth, in_doubt, e)
-      class(sizes_t), intent(in) :: s
+      type(sizes_t), intent(in) :: s
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: rcond
       type(motion_t), intent(in) :: q

@@ -49,7 +49,8 @@ module error_estimate
    end type error_estimate_t
 
    !> What the estimates of a mechanism need.
-   type, extends(sizes_t) :: estimator_t
+   type :: estimator_t
+      type(sizes_t) :: sizes
       type(rounding_response_t) :: response
       logical :: is_ready = .false.            !< for any position, where blocks find it
    end type estimator_t
@@ -61,7 +62,7 @@ contains
       type(estimator_t), intent(out) :: s
       type(mechanism_t), intent(in) :: m
 
-      s%sizes_t = sizes_of(m)
+      s%sizes = sizes_of(m)
    end subroutine make_estimator
 
    !> How far the motion `q` of `m` is known, which the `engine` has found, by a matrix of the reciprocal condition
@@ -79,9 +80,9 @@ contains
       found%asked = always
       select type (engine)
       class is (block_method_t)
-         call find_growth(s, m, rcond, q, found%growth, found%in_doubt, engine)
+         call find_growth(s%sizes, m, rcond, q, found%growth, found%in_doubt, engine)
       class default
-         call find_growth(s, m, rcond, q, found%growth, found%in_doubt)
+         call find_growth(s%sizes, m, rcond, q, found%growth, found%in_doubt)
       end select
       if (.not. (always .or. found%in_doubt)) return
       if (q%known < 0 .and. .not. allocated(q%link_known)) return
@@ -90,7 +91,7 @@ contains
          if (.not. s%is_ready) call make_rounding_response(s%response, m, engine)
          s%is_ready = .true.
          s%response%state%u(:) = engine%state%u
-         call take_changes(s%response, m, engine, q, s%length, always, found)
+         call take_changes(s%response, m, engine, q, s%sizes%length, always, found)
       class default
          call estimate_from_blocks(s, m, q, found)
       end select
@@ -115,7 +116,7 @@ contains
       ! An arm that is zero but for its rounding turns with a link that comes later in the solving order: all rates are
       ! found first.
       do pass = 1, 2
-         call take_changes(s%response, m, blocks, q, s%length, .true., found)
+         call take_changes(s%response, m, blocks, q, s%sizes%length, .true., found)
       end do
    end subroutine estimate_from_blocks
 
