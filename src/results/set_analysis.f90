@@ -178,7 +178,7 @@ contains
       largest = 0.0_wp
       do c = 1, size(s%list)
          if (s%now%proofs(c)%is_proved) largest = max(largest, &
-            largest_bounds(s%now%proofs(c)%links, s%estimators(c)%length, s%estimators(c)%rate))
+            largest_bounds(s%now%proofs(c)%links, s%estimators(c)%sizes%length, s%estimators(c)%sizes%rate))
       end do
    end function set_bounds
 
@@ -214,7 +214,7 @@ contains
       largest = 0.0_wp
       do c = 1, size(s%list)
          largest = max(largest, largest_errors(s%now%own(c), s%now%errors(c), s%now%motions(c), &
-            s%estimators(c)%length, s%estimators(c)%rate))
+            s%estimators(c)%sizes%length, s%estimators(c)%sizes%rate))
       end do
    end function set_errors
 
