@@ -83,12 +83,13 @@ contains
       class(block_method_t), intent(in), optional :: e
       real(wp) :: angle, size_of, usual
 
+      angle = s%law(0) + s%law(1)*abs(q%t)
       growth = merge(huge(growth), 0.0_wp, q%known >= 0 .and. .not. present(e))
-      in_doubt = growth > 0.0_wp
+      in_doubt = growth > 0.0_wp .or. angle > safe_angle
       if (q%known < 2) return
       growth = huge(growth)
       in_doubt = .true.
-      angle = max(largest_angle(q%position), s%law(0) + s%law(1)*abs(q%t))
+      angle = max(angle, largest_angle(q%position))
       ! Several ground links that stand far away are rounded as coarsely as far places are.
       size_of = max(1.0_wp, largest_length(q%position)/s%length, maxval(abs(q%origin))/s%length, &
          largest(q%velocity, s%length)/s%rate, largest(q%acceleration, s%length)/s%rate**2, growth_in_centres(m, q))
