@@ -35,6 +35,8 @@ module column_search
    real(wp), parameter :: overlooked = sqrt(epsilon(1.0_wp))
    !> Shorter parts, in steps of TIME, are not halved, nor more than so many in one step: a pole of the motion takes 40.
    real(wp), parameter :: shortest_part = 2.0_wp**(-20)
+   !> Nor is one that is shorter than this part of the time.
+   real(wp), parameter :: time_part = 1024.0_wp*epsilon(1.0_wp)
    integer, parameter :: max_halvings = 120
 
    !> What was found of a column: an extreme of its derivative number `order`.
@@ -94,9 +96,14 @@ contains
       real(wp) :: shortest
       logical :: simple
 
-      shortest = max(shortest_part*step_of(m), 2.0_wp*beside_joint(m, a%t))
       associate (track => x%tracks(c), length => abs(b%t - a%t))
-         if (length <= shortest) return
+         shortest = max(shortest_part*step_of(m), time_part*max(abs(a%t), abs(b%t)))
+         if (size(track%joints) > 0) shortest = max(shortest, 2.0_wp*beside_joint(m, a%t))
+         if (length <= shortest) then
+            ! Beside a joint there is nothing to be missed.
+            if (length > 0.5_wp*step_of(m)) call note_interval(x%open, x%way, a%t, b%t, shortest)
+            return
+         end if
          middle = node_at(x%asked, s, c, a%t + 0.5_wp*(b%t - a%t), .false.)
          if (.not. is_known(middle, track%rows)) then
             call note_interval(x%open, x%way, a%t, b%t, shortest)

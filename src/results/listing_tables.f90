@@ -116,20 +116,27 @@ contains
       call append(number(first:), line, used)
    end subroutine append_number
 
-   !> The same of the value of the drive `d` at the time `t`, of which roundings of its numbers and of the time leave
-   !> digits open.
+   !> The same of the value of the drive `d` at the time `t`.
    pure subroutine append_drive(d, t, line, used, masked)
       type(head_drive_t), intent(in) :: d
       real(wp), intent(in) :: t
       character(*), intent(inout) :: line
       integer, intent(inout) :: used
       logical, intent(inout) :: masked
-      real(wp) :: f(3), error
+      real(wp) :: f(3)
 
       f = drive_motion(d%law, t)
-      error = epsilon(1.0_wp)*(d%size_of(0) + d%size_of(1)*abs(t))
-      call append_number(f(1)/d%unit, error/d%unit, d%decimals, d%power, line, used, masked)
+      call append_number(f(1)/d%unit, law_error(d, t)/d%unit, d%decimals, d%power, line, used, masked)
    end subroutine append_drive
+
+   !> What roundings of its numbers and of the time `t` leave open of the value of the drive `d`, in radians or the deck's
+   !> unit of length.
+   pure real(wp) function law_error(d, t) result(error)
+      type(head_drive_t), intent(in) :: d
+      real(wp), intent(in) :: t
+
+      error = epsilon(1.0_wp)*(d%size_of(0) + d%size_of(1)*abs(t))
+   end function law_error
 
    !> A time with the digits of the set, without blanks; `error`, where it is given, is unknown of it.
    pure function time_text(l, t, error) result(text)
@@ -149,7 +156,7 @@ contains
       real(wp) :: f(3)
 
       f = drive_motion(d%law, t)/d%unit
-      text = known_text(f(1), d%decimals, d%power, abs(f(2))*error + 0.5_wp*abs(f(3))*error**2)
+      text = known_text(f(1), d%decimals, d%power, law_error(d, t)/d%unit + abs(f(2))*error + 0.5_wp*abs(f(3))*error**2)
    end function drive_text
 
    !> A number without blanks; `error`, where it is given, is unknown of it.
