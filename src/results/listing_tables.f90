@@ -129,8 +129,8 @@ contains
       call append_number(f(1)/d%unit, law_error(d, t)/d%unit, d%decimals, d%power, line, used, masked)
    end subroutine append_drive
 
-   !> What roundings of its numbers and of the time `t` leave open of the value of the drive `d`, in radians or the deck's
-   !> unit of length.
+   !> What roundings of its numbers and of the time `t` leave open of the value of the drive `d`, in radians or the unit of
+   !> length.
    pure real(wp) function law_error(d, t) result(error)
       type(head_drive_t), intent(in) :: d
       real(wp), intent(in) :: t
@@ -156,7 +156,8 @@ contains
       real(wp) :: f(3)
 
       f = drive_motion(d%law, t)/d%unit
-      text = known_text(f(1), d%decimals, d%power, law_error(d, t)/d%unit + abs(f(2))*error + 0.5_wp*abs(f(3))*error**2)
+      text = known_text(f(1), d%decimals, d%power, &
+         law_error(d, t)/d%unit + abs(f(2))*error + 0.5_wp*abs(f(3))*error**2)
    end function drive_text
 
    !> A number without blanks; `error`, where it is given, is unknown of it.

@@ -773,11 +773,11 @@ equal 'a swing after a long time: its crank, position' '?.??????' "$(awk '$1 == 
 equal 'a swing after a long time: all three instants have digits left open' 3 "$(grep -c 'DIGITS THAT ROUNDING LEAVES OPEN' "$w/out")"
 # Between its instants, which are 3E-11 of the time apart, the same crank of 1 turns at 30 degrees: the pin's x is cos 30.
 swing() { head_of SWING; four_bar '' 0.0 1.0 3.5 3.0 4.0 0.0 55.0 110.0; drive ANGLE CRANK '' 0.0 0.0
-  card ADD HARMONIC '' '' 30.0 57.2957795 0.0; card TIME "$1" '' '' "$2" "$3"; card EXTREMES LINK COUPL; card END; }
+  card ADD HARMONIC '' '' 30.0 57.2957795 0.0; card TIME "$1" '' '' "$2" "$3"; card EXTREMES LINKS COUPL; card END; }
 swing 40 1.0E10 1.0000000012E10 > "$w/deck"
 "$kinmat" "$w/deck" | sed -n '/^ EXTREMES/,$p' > "$w/out"
 equal 'a swing after a long time: least x' 0.866025 "$(awk '$1 == "MIN" { print $2; exit }' "$w/out")"
 # Where they are too near to each other to be searched, it is said.
-swing 4000 1.0E12 1.000000000012E12 > "$w/deck"
+swing 4000 1.0E12 1.00000000001E12 > "$w/deck"
 equal 'a swing after too long a time: extremes' 1 "$("$kinmat" "$w/deck" | grep -c 'EXTREMES MAY BE MISSED WITHIN')"
 conclude
