@@ -129,8 +129,8 @@ contains
       call append_number(f(1)/d%unit, law_error(d, t)/d%unit, d%decimals, d%power, line, used, masked)
    end subroutine append_drive
 
-   !> What roundings of its numbers and of the time `t` leave open of the value of the drive `d`, in radians or the unit of
-   !> length.
+   !> What roundings of its numbers and of the time `t` leave open of the value of the drive `d`, in radians or in the
+   !> unit of length.
    pure real(wp) function law_error(d, t) result(error)
       type(head_drive_t), intent(in) :: d
       real(wp), intent(in) :: t
