@@ -6,8 +6,8 @@
 !>    x_0 + h (-949 v_0 + 608 v_1 + 581 v_2)/240 + h^2 (637 a_0 + 1080 a_1 + 173 a_2)/240,  error 0.0112 h^7 x^(7).
 !> Rejected: a polynomial through earlier positions as well. It gains an order, but brings their rounding back
 !> many times over, and a start that is wrong by rounding alone costs a second factorization. And four motions instead
-!> of three, with an error of 0.00291 h^9 x^(9): steps of a degree then need 1.0 iterations instead of 1.6, but take 3
-!> per cent less time, steps of ten degrees no less.
+!> of three, with an error of 0.00291 h^9 x^(9): steps of a degree then need 1.0 iterations instead of 1.6, but take
+!> as long to 3 per cent, and so do steps of ten degrees.
 !>
 !> Beside a change point rounding spoils accelerations, and the first of these formulas takes an earlier one.
 !>
