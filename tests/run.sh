@@ -13,7 +13,7 @@ parts() {
    make check|2620|tests/system/check.sh
    real128|124|"$MAKE" --no-print-directory quad-check
    single precision|62|"$MAKE" --no-print-directory single-check
-   speed against error|80|"$MAKE" --no-print-directory study-short
+   speed against error|79|"$MAKE" --no-print-directory study-short
    results of the methods|97|"$MAKE" --no-print-directory bench-short
    cards and options together|1000|tests/system/together.sh
    the command|426|tests/system/command.sh
@@ -36,9 +36,9 @@ parts() {
    poles and curves|38|tests/system/centres.sh
    all assemblies|81|tests/system/assemblies.sh
    the digits|1|tests/system/digits.sh
-   decks made by chance|1000|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 1000
-   relations between runs|300|tests/system/relations.sh --short
-   mechanisms of a known motion|158|tests/fuzz/fuzz_mechanisms.sh 150
+   decks made by chance|700|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 700
+   relations between runs|220|tests/system/relations.sh --short
+   mechanisms of a known motion|108|tests/fuzz/fuzz_mechanisms.sh 100
    the method of 1987|1000|"$BUILD/release/matrix_1987" short
    what is hard to compute|120|tests/oracle/hard.sh short
    the tool of mutants|8|tests/mutants/self_test.sh
