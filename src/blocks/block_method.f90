@@ -92,8 +92,7 @@ contains
       growth = 0.0_wp
       do k = 1, size(e%needed)
          associate (i => e%needed(k))
-            if (.not. e%blocks%list(i)%direct) growth = max(growth, &
-               e%blocks%list(i)%lipschitz/max(min(1.0_wp, e%found(i)%pivot), smallest_pivot)**2)
+            if (.not. e%blocks%list(i)%direct) growth = max(growth, e%blocks%list(i)%lipschitz/pivot_of(e, i)**2)
          end associate
       end do
    end function growth_of_roundings
@@ -109,11 +108,19 @@ contains
       do k = 1, size(e%needed)
          associate (block => e%blocks%list(e%needed(k)))
             if (block%direct) cycle
-            inverse = 1.0_wp/max(min(1.0_wp, e%found(e%needed(k))%pivot), smallest_pivot)
+            inverse = 1.0_wp/pivot_of(e, e%needed(k))
             growth = max(growth, block%coarse*inverse*max(1.0_wp, (block%lipschitz*inverse)**2/rate_digits))
          end associate
       end do
    end function growth_of_angles
+
+   !> The least pivot of block `i`, 1 at most; roundings do not grow by less.
+   pure real(wp) function pivot_of(e, i) result(pivot)
+      class(block_method_t), intent(in) :: e
+      integer, intent(in) :: i
+
+      pivot = max(min(1.0_wp, e%found(i)%pivot), smallest_pivot)
+   end function pivot_of
 
    !> The values found last become those of `other`, whose unit of lengths may be another power of two.
    pure subroutine copy_values(e, other)

@@ -81,17 +81,18 @@ contains
       real(wp), intent(out) :: growth
       logical, intent(out) :: in_doubt
       class(block_method_t), intent(in), optional :: e
-      real(wp) :: angle, size_of, usual
+      real(wp) :: law, along, angle, size_of, usual
 
-      angle = s%law(0) + s%law(1)*abs(q%t)
+      law = s%law(0) + s%law(1)*abs(q%t)
       growth = merge(huge(growth), 0.0_wp, q%known >= 0 .and. .not. present(e))
-      in_doubt = growth > 0.0_wp .or. angle > safe_angle
+      in_doubt = growth > 0.0_wp .or. law > safe_angle
       if (q%known < 2) return
       growth = huge(growth)
       in_doubt = .true.
-      angle = max(angle, largest_angle(q%position))
+      call find_largest(q%position, along, angle)
+      angle = max(angle, law)
       ! Several ground links that stand far away are rounded as coarsely as far places are.
-      size_of = max(1.0_wp, largest_length(q%position)/s%length, maxval(abs(q%origin))/s%length, &
+      size_of = max(1.0_wp, along/s%length, maxval(abs(q%origin))/s%length, &
          largest(q%velocity, s%length)/s%rate, largest(q%acceleration, s%length)/s%rate**2, growth_in_centres(m, q))
       if (.not. present(e)) size_of = max(size_of, angle)
       if (size_of > safe_size) return
@@ -111,29 +112,23 @@ contains
    !> The largest coordinate, lengths in units of `length`.
    pure real(wp) function largest(x, length)
       real(wp), intent(in) :: x(:, :), length
+      real(wp) :: along, angle
 
-      largest = max(largest_length(x)/length, largest_angle(x))
+      call find_largest(x, along, angle)
+      largest = max(along/length, angle)
    end function largest
 
-   !> The largest of the lengths in `x` (3, links).
-   pure real(wp) function largest_length(x) result(largest)
+   !> The largest of the lengths, `along`, and of the angles in `x` (3, links).
+   pure subroutine find_largest(x, along, angle)
       real(wp), intent(in) :: x(:, :)
+      real(wp), intent(out) :: along, angle
       integer :: i
 
-      largest = 0.0_wp
+      along = 0.0_wp
+      angle = 0.0_wp
       do i = 1, size(x, 2)
-         largest = max(largest, abs(x(1, i)), abs(x(2, i)))
+         along = max(along, abs(x(1, i)), abs(x(2, i)))
+         angle = max(angle, abs(x(3, i)))
       end do
-   end function largest_length
-
-   !> The largest of the angles in `x` (3, links).
-   pure real(wp) function largest_angle(x) result(largest)
-      real(wp), intent(in) :: x(:, :)
-      integer :: i
-
-      largest = 0.0_wp
-      do i = 1, size(x, 2)
-         largest = max(largest, abs(x(3, i)))
-      end do
-   end function largest_angle
+   end subroutine find_largest
 end module digits_in_doubt

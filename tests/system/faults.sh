@@ -762,22 +762,23 @@ equal 'cut after END: status' 0 $?
 (head -c 300 "$w/deck"; sleep 1; tail -c +301 "$w/deck") | "$kinmat" > "$w/slow.out"
 same 'a pipe that halts in the middle of a card' "$w/out" "$w/slow.out"
 
-# A swing of 30 degrees after 1E13 radians: with 60 digits its angle is -10.260604, of which rounding leaves open all but
-# one.
-{ head_of SWING; four_bar '' 0.0 1.0 3.5 3.0 4.0 0.0 55.0 110.0; drive ANGLE CRANK '' 0.0 0.0
-  card ADD HARMONIC '' '' 30.0 57.2957795 0.0; card TIME 2 '' '' 1.0E13 1.0000000001E13; card END; } > "$w/deck"
+# swing STEPS T0 T1 [LINK]: a crank that swings by 30 degrees, one radian of its sine a second; the extremes of LINK
+swing() { head_of SWING; four_bar '' 0.0 1.0 3.5 3.0 4.0 0.0 55.0 110.0; drive ANGLE CRANK '' 0.0 0.0
+  card ADD HARMONIC '' '' 30.0 57.2957795 0.0; card TIME "$1" '' '' "$2" "$3"
+  [ -z "$4" ] || card EXTREMES LINKS "$4"
+  card END; }
+# After 1E13 radians: with 60 digits its angle is -10.260604, of which rounding leaves open all but one.
+swing 2 1.0E13 1.0000000001E13 > "$w/deck"
 "$kinmat" "$w/deck" > "$w/out"
 equal 'a swing after a long time: its drive' ' INSTANT 0   T = 10.00000 10**12 S   ANGLE CRANK = -1?.?????? DEG' \
    "$(grep 'INSTANT 0' "$w/out")"
 equal 'a swing after a long time: its crank, position' '?.??????' "$(awk '$1 == "CRANK" && NF == 10 { print $4; exit }' "$w/out")"
 equal 'a swing after a long time: all three instants have digits left open' 3 "$(grep -c 'DIGITS THAT ROUNDING LEAVES OPEN' "$w/out")"
 # Between its instants, which are 3E-11 of the time apart, the same crank of 1 turns at 30 degrees: the pin's x is cos 30.
-swing() { head_of SWING; four_bar '' 0.0 1.0 3.5 3.0 4.0 0.0 55.0 110.0; drive ANGLE CRANK '' 0.0 0.0
-  card ADD HARMONIC '' '' 30.0 57.2957795 0.0; card TIME "$1" '' '' "$2" "$3"; card EXTREMES LINKS COUPL; card END; }
-swing 40 1.0E10 1.0000000012E10 > "$w/deck"
+swing 40 1.0E10 1.0000000012E10 COUPL > "$w/deck"
 "$kinmat" "$w/deck" | sed -n '/^ EXTREMES/,$p' > "$w/out"
 equal 'a swing after a long time: least x' 0.866025 "$(awk '$1 == "MIN" { print $2; exit }' "$w/out")"
 # Where they are too near to each other to be searched, it is said.
-swing 4000 1.0E12 1.00000000001E12 > "$w/deck"
+swing 4000 1.0E12 1.00000000001E12 COUPL > "$w/deck"
 equal 'a swing after too long a time: extremes' 1 "$("$kinmat" "$w/deck" | grep -c 'EXTREMES MAY BE MISSED WITHIN')"
 conclude
