@@ -53,10 +53,11 @@ contains
       type(chart_t), allocatable, intent(out) :: charts(:)
       type(chart_t), allocatable :: more(:)
       type(chart_t) :: one
-      integer :: i, column, n
+      integer :: i, column, drive, n
       logical :: done
 
       allocate (charts(0))
+      drive = findloc(s%now%parts%list(c)%drives, found%drive, dim=1)
       associate (m => s%now%own(c))
          do i = 1, size(m%requests)
             if (m%requests(i)%every == 0) cycle
@@ -66,7 +67,7 @@ contains
                ! Of a link that turns its angle alone.
                if (done .and. m%requests(i)%kind == request_link) exit
                call make_chart(s, c, found, m%requests(i), column, one, done)
-               if (.not. done .or. is_drive(m, found%drive, m%requests(i), column)) cycle
+               if (.not. done .or. is_drive(m, drive, m%requests(i), column)) cycle
                n = size(charts)
                allocate (more(n + 1))
                more(:n) = charts

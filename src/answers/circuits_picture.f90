@@ -49,7 +49,6 @@ contains
       type(set_analysis_t), intent(in) :: s
       type(circuits_t), intent(in) :: found(:)
       type(diagrams_t), allocatable :: more(:)
-      type(circuits_t) :: own
       integer :: i, k, n
 
       if (.not. allocated(page%list)) allocate (page%list(0))
@@ -62,13 +61,11 @@ contains
             d%circuit = phrase(say_circuit, m%polish)
             d%drive = trim(drive_name(m, m%drives(found(i)%drive)))
             allocate (d%charts(0))
-            own = found(i)
-            own%drive = findloc(s%now%parts%list(own%part)%drives, own%drive, dim=1)
-            if (size(own%list) > 0) call make_charts(s, own%part, own, d%charts)
-            d%drive_unit = unit_of(m, own%curve%is_angle)
+            if (size(found(i)%list) > 0) call make_charts(s, found(i)%part, found(i), d%charts)
+            d%drive_unit = unit_of(m, found(i)%curve%is_angle)
             allocate (d%names(size(d%charts)))
             do k = 1, size(d%charts)
-               d%names(k) = name_of(s%now%own(own%part), d%charts(k))
+               d%names(k) = name_of(s%now%own(found(i)%part), d%charts(k))
             end do
          end associate
          call move_alloc(more, page%list)

@@ -30,28 +30,29 @@ contains
    subroutine find_all_circuits(s, list)
       type(set_analysis_t), intent(in) :: s
       type(circuits_t), allocatable, intent(out) :: list(:)
-      type(circuits_t), allocatable :: more(:)
       integer, allocatable :: drives(:)
       integer :: c, i, k, n
 
-      allocate (list(0))
+      n = 0
+      do c = 1, size(s%now%own)
+         n = n + size(free_drives(s%now%own(c)))
+      end do
+      allocate (list(n))
+      n = 0
       do c = 1, size(s%now%own)
          drives = free_drives(s%now%own(c))
          do i = 1, size(drives)
-            n = size(list)
-            allocate (more(n + 1))
-            more(:n) = list
+            n = n + 1
             if (allocated(s%assemblies)) then
-               call find_circuits(s%now%own(c), s%now%motions(c), drives(i), more(n + 1), s%assemblies(c))
+               call find_circuits(s%now%own(c), s%now%motions(c), drives(i), list(n), s%assemblies(c))
             else
-               call find_circuits(s%now%own(c), s%now%motions(c), drives(i), more(n + 1))
+               call find_circuits(s%now%own(c), s%now%motions(c), drives(i), list(n))
             end if
-            more(n + 1)%part = c
-            more(n + 1)%drive = s%now%parts%list(c)%drives(drives(i))
-            do k = 1, size(more(n + 1)%dead)
-               more(n + 1)%dead(k)%limit = in_set(more(n + 1)%dead(k)%limit, s%now%parts%list(c))
+            list(n)%part = c
+            list(n)%drive = s%now%parts%list(c)%drives(drives(i))
+            do k = 1, size(list(n)%dead)
+               list(n)%dead(k)%limit = in_set(list(n)%dead(k)%limit, s%now%parts%list(c))
             end do
-            call move_alloc(more, list)
          end do
       end do
    end subroutine find_all_circuits

@@ -61,7 +61,7 @@ contains
       type(variation_t), allocatable, intent(out), optional :: variations(:)
       type(progress_t) :: progress
       type(source_t) :: source
-      integer :: errors, first, last
+      integer :: errors, first, last, from, to
 
       first = 1
       last = huge(last)
@@ -82,20 +82,23 @@ contains
       if (allocated(failure)) progress%closed = 0
       if (present(share)) share%varies = share%varies .or. progress%varying > 0
       if (present(variations)) variations = progress%variations(:progress%varying)
+      from = 1
+      to = progress%closed
       if (present(share)) then
          if (share%sets == 0) call divide(share, progress%closed)
          if (share%varies) then
-            sets = progress%sets(1:progress%closed)
-            call divide(share, variants_before(sets, size(sets) + 1))
-            share%sets = size(sets)
+            call divide(share, variants_before(progress%sets(:progress%closed), progress%closed + 1))
+            share%sets = progress%closed
          else
             ! Of a pipe all sets are there.
-            sets = progress%sets(share%first - progress%passed:min(progress%closed, share%last - progress%passed))
+            from = share%first - progress%passed
+            to = min(to, share%last - progress%passed)
          end if
-      else if (progress%closed == size(progress%sets)) then
+      end if
+      if (to - from + 1 == size(progress%sets)) then
          call move_alloc(progress%sets, sets)
       else
-         sets = progress%sets(1:progress%closed)
+         sets = progress%sets(from:to)
       end if
    end subroutine read_deck
 

@@ -43,7 +43,7 @@ module trials
    !> Measurements of a time.
    integer, parameter :: repeats = 9
    !> Seconds that one measurement takes at least: many clock ticks; and at most, as far as a few steps let it.
-   real(dp), parameter :: min_seconds = 0.002_dp, max_seconds = 0.02_dp
+   real(dp), parameter :: min_seconds = 0.0005_dp, max_seconds = 0.01_dp
    integer, parameter :: min_steps = 4
    !> A trial that has found nothing at so many instants from the first on is given up; so is one that fails at some
    !> instants when it has taken so many seconds.

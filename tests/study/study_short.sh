@@ -138,7 +138,7 @@ equal 'a table to the last instant: status' 0 $?
 equal 'a table to the last instant: said' '' "$(cat "$w/out" "$w/err")"
 equal 'a table to the last instant: compared' ' 8 STEPS, 2 LINKS; THE TRUTH: kinmat-quad (REAL128), 129 OF 129 INSTANTS COMPARED' "$(sed -n 2p "$w/table.txt")"
 if [ -c /dev/full ]; then
-   "$kinmat" --study "$w/table.deck" > /dev/full 2> "$w/err"
+   "$kinmat" --time "$w/table.deck" > /dev/full 2> "$w/err"
    equal 'disk full: status' 3 $?
 fi
 
