@@ -11,7 +11,7 @@ module circuits_table
    use names, only: drive_name
    use text_output, only: output_t, put
    use numerals, only: whole
-   use listing_diagnostics, only: limit_words, measure
+   use listing_diagnostics, only: limit_words, measure, value_form
    use phrases
    implicit none
    private
@@ -161,7 +161,7 @@ contains
 
       associate (circuit => found%list(b%circuit))
          if (circuit%rests) then
-            text = phrase(say_at_rest, m%polish)//' '//value_words(b%range(1), '(es17.9)')
+            text = phrase(say_at_rest, m%polish)//' '//value_words(b%range(1), value_form)
          else if (all(circuit%ends == end_closed) .and. all(b%dead == 0)) then
             text = phrase(say_all, m%polish)//' '//whole(turns_of(circuit))
          else
@@ -169,7 +169,7 @@ contains
             do side = 1, 2
                text = text//side_words(side)//'  '
                if (b%dead(side) == 0) text = text//phrase(end_words(end_of(b, circuit, side)), m%polish)//' '
-               text = text//value_words(b%range(side), '(es17.9)')
+               text = text//value_words(b%range(side), value_form)
                if (side == 1) text = text//'   '
             end do
          end if

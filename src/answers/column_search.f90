@@ -13,7 +13,7 @@ module column_search
    use points, only: coordinates_of
    use set_analysis, only: set_analysis_t
    use nodes, only: node_t, node_at, is_known, beside_joint
-   use zero_search, only: sample_t, column_t, find_zero, differ_in_sign, noise_part
+   use zero_search, only: sample_t, column_t, find_zero, look, differ_in_sign, noise_part
    use extremes, only: extremes_t, keep_place, offer, count_turn, note_interval, step_of
    implicit none
    private
@@ -175,14 +175,16 @@ contains
       type(found_t), allocatable, intent(out) :: found(:)
       type(sample_t), allocatable :: path(:)
       type(sample_t) :: turn
-      real(wp) :: length
+      real(wp) :: length, open
       integer :: order, i, n
 
       allocate (found(0))
       path = points
       length = abs(points(3)%t - points(1)%t)
-      if (differ_in_sign(jerk(1), jerk(2)) .and. minval(abs(jerk))*length > errors_by_rates*(c%noise(1)/length &
-         + c%noise(2))) call find_zero(s, c, 3, 0.0_wp, points(1), points(3), turn, jerk)
+      open = errors_by_rates*(c%noise(1)/length + c%noise(2))/length
+      if (differ_in_sign(jerk(1), jerk(2)) .and. minval(abs(jerk)) > open) &
+         call find_zero(s, c, 3, 0.0_wp, points(1), points(3), turn, jerk)
+      if (.not. turn%exists) call turn_by_ends(s, c, points, jerk, open, turn)
       if (turn%exists) then
          turn%error = max(turn%error, points(1)%error, points(3)%error)
          found = [found_t(2, turn)]
@@ -196,6 +198,31 @@ contains
          end do
       end do
    end subroutine search_column
+
+   !> An extreme `turn` of the acceleration between the first and the last of three `points` of column `c`, by its
+   !> derivatives `jerk` at both ends alone, one of which may be zero since rounding leaves them `open`: where the line
+   !> between them is zero. Where accelerations differ by no more than rounding, none is told.
+   subroutine turn_by_ends(s, c, points, jerk, open, turn)
+      type(set_analysis_t), intent(inout) :: s
+      type(column_t), intent(in) :: c
+      type(sample_t), intent(in) :: points(3)
+      real(wp), intent(in) :: jerk(2), open
+      type(sample_t), intent(out) :: turn
+      real(wp) :: change, part, length
+
+      change = abs(jerk(2) - jerk(1))
+      if (.not. change > 0.0_wp .or. maxval(points%f(2)) - minval(points%f(2)) <= 2.0_wp*c%noise(2)) return
+      part = jerk(1)/(jerk(1) - jerk(2))
+      if (abs(part - 0.5_wp) > 0.5_wp + open/change) return
+      part = min(1.0_wp, max(0.0_wp, part))
+      length = points(3)%t - points(1)%t
+      call look(s, c, points(1)%t + part*length, turn, .true.)
+      turn%t_error = abs(length)*min(2.0_wp, open/change)
+      ! No parabola through values at equal distances gets above them by more than an eighth of their second difference.
+      ! These are bounds, and masks allow for a hundred errors: a tenth of a bound is enough.
+      turn%error(2) = turn%error(2) + 0.1_wp*min(0.5_wp*open*turn%t_error, &
+         0.25_wp*abs(points(1)%f(2) - 2.0_wp*points(2)%f(2) + points(3)%f(2)) + c%noise(2))
+   end subroutine turn_by_ends
 
    !> Adds to `found` the zeros of derivative number `order` (1, 2) of the column `c`, one at most between two points
    !> of the `path` at which it is more than rounding.

@@ -7,6 +7,7 @@ module extremes
    use scales, only: characteristic_length, characteristic_rate, is_length
    use drives, only: new_law, drive_motion, joints_of
    use points, only: is_fixed, coordinates_of
+   use digits_in_doubt, only: safe_growth
    use set_analysis, only: set_analysis_t
    use nodes, only: node_t, one_sided_t
    use zero_search, only: sample_t, noise_part
@@ -18,11 +19,11 @@ module extremes
 
    !> Values that differ by less, in characteristic lengths or rad and rates, are alike, since errors
    !> that no table shows may be as large: the earlier one counts.
-   real(wp), parameter :: alike = 1.0e5_wp*epsilon(1.0_wp)
+   real(wp), parameter :: alike = 10.0_wp*safe_growth*epsilon(1.0_wp)
    !> A value with a larger error has no digits in a table.
    real(wp), parameter :: badly_known = 1.0e-3_wp
    !> A motion is cyclic if its end differs from its beginning by less, in the same units.
-   real(wp), parameter :: closes_to = max(1.0e-9_wp, 1.0e5_wp*epsilon(1.0_wp))
+   real(wp), parameter :: closes_to = max(1.0e-9_wp, 1000.0_wp*epsilon(1.0_wp))
    !> The first index of the extremes.
    integer, parameter :: least = 1, greatest = 2
 
@@ -146,7 +147,7 @@ contains
       integer, intent(in) :: q, c, k
       type(sample_t), intent(in) :: sample
       logical, intent(in) :: at_zero
-      real(wp) :: gain
+      real(wp) :: gain, open
       integer :: which
       logical :: better
 
@@ -154,11 +155,13 @@ contains
          associate (e => x%found(which, c, k, q))
             if (.not. e%has_bound) cycle
             gain = (sample%f(k) - e%value)*merge(-1.0_wp, 1.0_wp, which == least)
-            better = .not. e%exists .or. gain > alike*x%size_of(c, k, q) + e%error + sample%error(k)
-            if (at_zero .and. .not. (better .or. e%is_located)) better = gain >= -alike*x%size_of(c, k, q) &
+            open = alike*x%size_of(c, k, q) + e%error + sample%error(k)
+            better = .not. e%exists .or. gain > open
+            if (at_zero .and. .not. (better .or. e%is_located)) better = gain >= -open &
                .and. abs(sample%t - e%t) <= step_of(m)
             ! Of a value of which almost nothing is known, the least that it can be counts.
-            if (e%error > badly_known*x%size_of(c, k, q)) better = better .or. gain + e%error > sample%error(k)
+            if (e%error > badly_known*x%size_of(c, k, q) .and. abs(sample%t - e%t) > e%t_error) &
+               better = better .or. gain + e%error > sample%error(k)
             ! A one-sided limit is known less well than the number itself.
             better = better .or. (abs(sample%t - e%t) <= 0.0_wp .and. sample%error(k) < e%error)
             if (better) e = extreme_t(exists=.true., is_located=at_zero, t=sample%t, &

@@ -29,7 +29,7 @@ module ranges
    !> each try takes as long as the whole way to it.
    real(wp), parameter :: closest = max(1.0e-9_wp, 4.0_wp*epsilon(1.0_wp))
    !> A motion closes where positions agree to this part of a radian and of the characteristic length.
-   real(wp), parameter :: closes_to = max(1.0e-7_wp, 1.0e6_wp*epsilon(1.0_wp))
+   real(wp), parameter :: closes_to = max(1.0e-7_wp, 1000.0_wp*epsilon(1.0_wp))
    !> The ends of a range.
    integer, parameter :: low = 1, high = 2
 

@@ -32,6 +32,8 @@ module tolerance_shares
    integer, parameter :: percent_decimals = 2
    !> Numbers that differ by less than this part are alike: the first counts.
    real(wp), parameter :: alike = max(1.0e-9_wp, 4096.0_wp*epsilon(1.0_wp))
+   !> By this part more, what rounding has left below a half is rounded up.
+   real(wp), parameter :: half_up = max(1.0e-9_wp, 8.0_wp*epsilon(1.0_wp))
    !> Characters of the name of a number before its sensitivity, unless it is longer.
    integer, parameter :: number_name = 36
 
@@ -181,7 +183,7 @@ contains
             write (sensitivity, '(es12.4e3)') share%s(order(j))/size_of
             name = one%name
             ! A half is rounded up, whatever the last bit.
-            call put(o, fixed(100.0_wp*part(order(j))*(1.0_wp + alike), percent_decimals, 0)//' %  ' &
+            call put(o, fixed(100.0_wp*part(order(j))*(1.0_wp + half_up), percent_decimals, 0)//' %  ' &
                //name(:max(number_name, len_trim(name)))//'  S = '//sensitivity//'   +- '//trim(one%text)//' ' &
                //trim(one%unit_name))
          end associate

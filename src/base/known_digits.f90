@@ -41,7 +41,7 @@ contains
       if (error*errors_a_digit <= digit) then
          call put_fixed(x, decimals, power, text)
          return
-      else if (error > 1.0e-6_wp*nothing_known) then
+      else if (.not. error <= 1.0e-6_wp*nothing_known) then
          text = repeat(' ', numeral_length - 1)//unknown_digit
       else
          ! The value is n 10**last as far as it is known; a half is rounded up where it is all that is left.

@@ -1,6 +1,7 @@
 !> By how much roundings grow at most in a motion: whether digits of the tables could be in doubt. The question is asked
 !> at every instant that is printed, and must cost little.
 module digits_in_doubt
+   use, intrinsic :: iso_fortran_env, only: real64
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use motion, only: motion_t
@@ -13,14 +14,16 @@ module digits_in_doubt
    private
    public :: sizes_t, sizes_of, find_growth, is_in_doubt, safe_growth
 
+   !> The tables have the same digits in every kind of real: one that is coarser than real64 allows for fewer roundings.
+   real(wp), parameter :: of_kind = min(1.0_wp, real(epsilon(1.0_real64), wp)/epsilon(1.0_wp))
    !> Errors are roundings times |J^-1|^2 times the Lipschitz constant of J times what is asked for; below this many
    !> roundings, and with no number larger than so many characteristic ones, all digits of a table are safe.
-   real(wp), parameter :: safe_growth = 1.0e4_wp
+   real(wp), parameter :: safe_growth = 1.0e4_wp*of_kind
    real(wp), parameter :: safe_size = 1.0e4_wp
    !> Angles that are no larger than a few radians count as any number does. Of larger ones it is their rounding alone
    !> that grows, and not what their motion is added up of: so large, times that growth, they may be. A digit of a table
    !> is worth 1.7E-8 rad, or 1E-7 of the characteristic rate, at least.
-   real(wp), parameter :: usual_angle = 8.0_wp, safe_angle = 1.0e5_wp
+   real(wp), parameter :: usual_angle = 8.0_wp, safe_angle = 1.0e5_wp*of_kind
    !> The same by the reciprocal condition of all closure equations at once, whose pivots are no block's.
    real(wp), parameter :: safe_condition = 1.0e-3_wp
 
@@ -99,13 +102,13 @@ contains
       if (present(e)) then
          usual = max(size_of, min(angle, usual_angle))
          growth = usual*e%growth_of_roundings()
-         in_doubt = growth > safe_growth
+         in_doubt = max(usual, growth) > safe_growth
          if (.not. angle > usual_angle) return
          in_doubt = in_doubt .or. angle*size_of*e%growth_of_angles() > safe_angle
          growth = growth*max(1.0_wp, angle/usual)
       else
          growth = safe_growth*(safe_condition/max(rcond, epsilon(rcond)))
-         in_doubt = growth > safe_growth
+         in_doubt = max(size_of, growth) > safe_growth
       end if
    end subroutine find_growth
 

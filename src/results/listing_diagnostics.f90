@@ -10,9 +10,11 @@ module listing_diagnostics
    use phrases
    implicit none
    private
-   public :: limit_words, measure, put_diagnostics, put_singular, put_closure_error, remarks_text
+   public :: limit_words, measure, value_form, put_diagnostics, put_singular, put_closure_error, remarks_text
 
    integer, parameter :: line_length = 120
+   !> Where a drive or the time is told closely: ten digits, or as many as a coarser real has.
+   character(*), parameter :: value_form = merge('(es17.9)', '(es17.5)', precision(1.0_wp) >= 10)
    !> What concerns the results.
    integer, parameter :: of_results(*) = [diagnostic_inconsistent, diagnostic_limit, diagnostic_mobile, &
       diagnostic_long, diagnostic_close, diagnostic_unused, diagnostic_dead_end, diagnostic_idle, diagnostic_repeated]
@@ -128,8 +130,8 @@ contains
       case (diagnostic_inconsistent)
          text = owner(m, r)//' '//phrase(say_closure_error_of, m%polish)//' '//measure(m, r, '(es9.2)')
       case (diagnostic_limit)
-         text = phrase(say_limit, m%polish)//' '//number(r%t, '(es17.9)')//', '//owner(m, r)//' = ' &
-            //measure(m, r, '(es17.9)')
+         text = phrase(say_limit, m%polish)//' '//number(r%t, value_form)//', '//owner(m, r)//' = ' &
+            //measure(m, r, value_form)
       case (diagnostic_far_estimate)
          text = links(m, r)//': '//phrase(say_off_by, m%polish)//' '//measure(m, r, '(es9.2)')
       case (diagnostic_second)
@@ -152,7 +154,7 @@ contains
       case (diagnostic_long)
          text = phrase(say_way, m%polish)//' '//number(r%t, '(es13.5)')//' '//phrase(say_too_long, m%polish)
       case (diagnostic_close)
-         text = phrase(say_blocked, m%polish)//' '//number(r%t, '(es17.9)')//': '//phrase(say_close, m%polish)
+         text = phrase(say_blocked, m%polish)//' '//number(r%t, value_form)//': '//phrase(say_close, m%polish)
       case (diagnostic_idle)
          text = owner(m, r)//' '//phrase(say_idle, m%polish)
       case (diagnostic_repeated)
@@ -171,7 +173,7 @@ contains
       type(diagnostic_t), intent(in) :: r
       character(:), allocatable :: text
 
-      text = measure(m, r, '(es17.9)')
+      text = measure(m, r, value_form)
       if (r%links(1) == 0) return
       text = text//'   '//at_limit(m, r)
    end function limit_words
