@@ -38,6 +38,8 @@ module column_search
    !> Nor is one that is shorter than this part of the time.
    real(wp), parameter :: time_part = 1024.0_wp*epsilon(1.0_wp)
    integer, parameter :: max_halvings = 120
+   !> Part of an interval that no table shows.
+   real(wp), parameter :: beside_end = 1.0e-6_wp
 
    !> What was found of a column: an extreme of its derivative number `order`.
    type :: found_t
@@ -200,8 +202,8 @@ contains
    end subroutine search_column
 
    !> An extreme `turn` of the acceleration between the first and the last of three `points` of column `c`, by its
-   !> derivatives `jerk` at both ends alone, one of which may be zero since rounding leaves them `open`: where the line
-   !> between them is zero. Where accelerations differ by no more than rounding, none is told.
+   !> derivatives `jerk` at both ends alone, of which rounding leaves so much `open` that one may be zero: where the
+   !> line between them is zero. Where accelerations differ by no more than rounding, none is told.
    subroutine turn_by_ends(s, c, points, jerk, open, turn)
       type(set_analysis_t), intent(inout) :: s
       type(column_t), intent(in) :: c
@@ -211,10 +213,10 @@ contains
       real(wp) :: change, part, length
 
       change = abs(jerk(2) - jerk(1))
-      if (.not. change > 0.0_wp .or. maxval(points%f(2)) - minval(points%f(2)) <= 2.0_wp*c%noise(2)) return
+      ! What is so near an end is as good as there.
+      if (.not. differ_in_sign(jerk(1), jerk(2)) .or. open <= beside_end*change) return
+      if (maxval(points%f(2)) - minval(points%f(2)) <= 2.0_wp*c%noise(2)) return
       part = jerk(1)/(jerk(1) - jerk(2))
-      if (abs(part - 0.5_wp) > 0.5_wp + open/change) return
-      part = min(1.0_wp, max(0.0_wp, part))
       length = points(3)%t - points(1)%t
       call look(s, c, points(1)%t + part*length, turn, .true.)
       turn%t_error = abs(length)*min(2.0_wp, open/change)
