@@ -9,7 +9,7 @@ export BUILD MAKE
 parts() {
    if [ -n "$PARTS" ]; then cat "$PARTS"; return; fi
    sed 's/^ *//' <<'END'
-   faults by name|560|tests/system/faults.sh
+   faults by name|561|tests/system/faults.sh
    make check|2620|tests/system/check.sh
    real128|124|"$MAKE" --no-print-directory quad-check
    single precision|130|"$MAKE" --no-print-directory single-check
