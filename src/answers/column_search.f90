@@ -14,7 +14,7 @@ module column_search
    use set_analysis, only: set_analysis_t
    use nodes, only: node_t, node_at, is_known, beside_joint
    use zero_search, only: sample_t, column_t, find_zero, look, differ_in_sign, noise_part
-   use extremes, only: extremes_t, keep_place, offer, count_turn, note_interval, step_of
+   use extremes, only: extremes_t, keep_place, offer, count_turn, note_interval, step_of, alike
    implicit none
    private
    public :: add_node, jerk_at_first, misses_by, overlooked
@@ -148,6 +148,7 @@ contains
                do k = 0, 2
                   column%noise(k) = max(noise_part*x%size_of(j, k, q), maxval(points%error(k)))
                end do
+               column%flat = 2.0_wp*max(alike*x%size_of(j, 2, q), column%noise(2))
                call search_column(s, column, points, jerk(j, q, :), found)
                do k = 1, size(found)
                   call offer(x, m, q, j, found(k)%order, found(k)%at, .true.)
@@ -203,7 +204,7 @@ contains
 
    !> An extreme `turn` of the acceleration between the first and the last of three `points` of column `c`, by its
    !> derivatives `jerk` at both ends alone, of which rounding leaves so much `open` that one may be zero: where the
-   !> line between them is zero. Where accelerations differ by no more than rounding, none is told.
+   !> line between them is zero. Where accelerations are alike, none is told.
    subroutine turn_by_ends(s, c, points, jerk, open, turn)
       type(set_analysis_t), intent(inout) :: s
       type(column_t), intent(in) :: c
@@ -215,7 +216,7 @@ contains
       change = abs(jerk(2) - jerk(1))
       ! What is so near an end is as good as there.
       if (.not. differ_in_sign(jerk(1), jerk(2)) .or. open <= beside_end*change) return
-      if (maxval(points%f(2)) - minval(points%f(2)) <= 2.0_wp*c%noise(2)) return
+      if (maxval(points%f(2)) - minval(points%f(2)) <= c%flat) return
       part = jerk(1)/(jerk(1) - jerk(2))
       length = points(3)%t - points(1)%t
       call look(s, c, points(1)%t + part*length, turn, .true.)

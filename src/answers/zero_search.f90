@@ -37,6 +37,7 @@ module zero_search
       integer :: request = 0, column = 0
       real(wp) :: step = 0.0_wp
       real(wp) :: noise(0:2) = 0.0_wp
+      real(wp) :: flat = 0.0_wp       !< accelerations that differ by no more are alike
    end type column_t
 
 contains
