@@ -196,7 +196,7 @@ contains
       type(answers_t), intent(out) :: asked
       type(set_analysis_t) :: a
       integer, allocatable :: every(:)
-      logical :: lists
+      logical :: lists, due
       integer :: k
 
       call make_set_analysis(m, a, findings)
@@ -205,13 +205,14 @@ contains
       every = strides(m)
       do k = 0, instant_count(m) - 1
          call advance_set(a, instant(m, k))
+         due = any_due(m, every, k)
          if (m%proves) then
-            call prove_set(a, any_due(m, every, k))
+            call prove_set(a, due)
             if (.not. all(holds(a%now%proofs))) row%unproved = row%unproved + 1
          end if
          call note_flag(row, a)
-         call write_instant(any_due(m, every, k))
-         call take_instant(asked, m, a, k, any_due(m, every, k))
+         call write_instant(due)
+         call take_instant(asked, m, a, k, due)
          if (o%progress%shown .and. m%variants == 0) &
             call show_progress(o%progress, 'SET '//whole(i)//': INSTANT', k, instant_count(m) - 1)
          if (.not. is_over(o, i)) cycle

@@ -5,12 +5,11 @@ module block_equations
    use kinds, only: wp
    use planar, only: rotated, quarter_turn, cross
    use block_matrix, only: entries_of
-   use blocks, only: blocks_t, block_loop_t, body_vector_t, loop_projection, loop_angles
-   use block_state, only: state_t, unknown_t, slide_vector
+   use blocks, only: blocks_t, row_t, block_loop_t, body_vector_t, slide_t, loop_projection, loop_angles
+   use block_state, only: state_t, unknown_t, loop_state_t
    implicit none
    private
-   public :: assemble_block, assemble_dense, right_hand_side, largest_rates, rounded_sizes, &
-      second_order_bounds
+   public :: assemble_block, assemble_with_velocities, assemble_dense, right_hand_side
 
 contains
 
@@ -20,34 +19,70 @@ contains
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
       real(wp), intent(inout) :: a(*), r(*)
-      integer :: m, k, row
+      real(wp) :: v(b%list(i)%shape%rows)
 
-      a(:entries_of(b%list(i)%shape)) = 0.0_wp
-      do m = b%list(i)%first_loop, b%list(i)%last_loop
-         associate (g => b%loops(m))
-            if (g%kind == loop_angles) then
-               ! Both may be the same angle.
-               r(g%row_x) = s%u(g%orientation)%value - s%u(g%less)%value
-               if (g%orientation_at > 0) a(g%orientation_at) = a(g%orientation_at) + 1.0_wp
-               if (g%less_at > 0) a(g%less_at) = a(g%less_at) - 1.0_wp
-               cycle
-            end if
-            call find_closure_error(b, m, s)
-            if (g%kind == loop_projection) then
-               call projection_row(b, g, m, s, a, r)
-            else
-               call component_rows(g, b%body_vectors, s%own, s%loop(m)%closure_error, a, r)
-               if (g%last_slide < g%first_slide) cycle
-               if (g%row_x > 0) call slide_entries(b, g, 1, [1.0_wp, 0.0_wp], s, a)
-               if (g%row_y > 0) call slide_entries(b, g, 2, [0.0_wp, 1.0_wp], s, a)
-            end if
-         end associate
-      end do
-      do k = b%list(i)%first_row, b%list(i)%last_row
-         row = k - b%list(i)%first_row + 1
-         r(row) = r(row) - b%rows(k)%constant - s%drive_value(0, b%rows(k)%drive)
-      end do
+      call assemble_with_velocities(b, i, s, a, r, v)
    end subroutine assemble_block
+
+   !> The same with the right-hand side `v` (rows) for the velocities there.
+   pure subroutine assemble_with_velocities(b, i, s, a, r, v)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(state_t), intent(inout) :: s
+      real(wp), intent(inout) :: a(*), r(*), v(*)
+      integer :: m
+
+      associate (block => b%list(i))
+         call set_to_zero(entries_of(block%shape), a)
+         do m = block%first_loop, block%last_loop
+            associate (g => b%loops(m))
+               if (g%kind == loop_angles) then
+                  ! Both may be the same angle.
+                  r(g%row_x) = s%u(g%orientation)%value - s%u(g%less)%value
+                  v(g%row_x) = 0.0_wp
+                  if (g%orientation_at > 0) a(g%orientation_at) = a(g%orientation_at) + 1.0_wp
+                  if (g%less_at > 0) a(g%less_at) = a(g%less_at) - 1.0_wp
+               else
+                  call find_closure_error(g, b%body_vectors, b%slides, s%u, s%own, s%guide, s%loop(m)%known, &
+                     s%loop(m)%closure_error)
+                  call position_rows(g, b%body_vectors, b%slides, s%u, s%own, s%guide, s%loop(m), a, r)
+                  call velocity_rows(g, b%slides, s%u, s%guide, s%loop(m), v)
+               end if
+            end associate
+         end do
+         call take_right_sides(block%first_row, block%last_row, b%rows, s%drive_value, r, v)
+      end associate
+   end subroutine assemble_with_velocities
+
+   !> Makes the `n` numbers of `a` zero: of few, where a call would take longer than they do, one by one.
+   pure subroutine set_to_zero(n, a)
+      integer, intent(in) :: n
+      real(wp), intent(inout) :: a(*)
+
+      select case (n)
+      case (1)
+         a(1) = 0.0_wp
+      case (4)
+         a(:4) = 0.0_wp
+      case default
+         a(:n) = 0.0_wp
+      end select
+   end subroutine set_to_zero
+
+   !> Subtracts from `r` what the equations number `first` to `last` are equal to, their constants and the `values` of
+   !> drives, and makes `v` the rates of these less `v`.
+   pure subroutine take_right_sides(first, last, rows, values, r, v)
+      integer, intent(in) :: first, last
+      type(row_t), intent(in) :: rows(*)
+      real(wp), intent(in) :: values(0:2, 0:*)
+      real(wp), intent(inout) :: r(*), v(*)
+      integer :: k
+
+      do k = first, last
+         r(k - first + 1) = r(k - first + 1) - rows(k)%constant - values(0, rows(k)%drive)
+         v(k - first + 1) = values(1, rows(k)%drive) - v(k - first + 1)
+      end do
+   end subroutine take_right_sides
 
    !> The same with all of the Jacobian, zeros as well: `a` (rows, n).
    pure subroutine assemble_dense(b, i, s, a, r)
@@ -76,28 +111,35 @@ contains
       end associate
    end subroutine assemble_dense
 
-   !> The closure error of loop `m`, and the body vectors that the block's own angles rotate.
-   pure subroutine find_closure_error(b, m, s)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: m
-      type(state_t), intent(inout) :: s
+   !> The `closure_error` of loop `g`, of which `known` is known, and the vectors that the block's own angles among `u`
+   !> rotate: `own` and, of slides, `guide`. On plain arrays, which cost no descriptors, as all that a step does often.
+   pure subroutine find_closure_error(g, vectors, slides, u, own, guide, known, closure_error)
+      type(block_loop_t), intent(in) :: g
+      type(body_vector_t), intent(in) :: vectors(*)
+      type(slide_t), intent(in) :: slides(*)
+      type(unknown_t), intent(in) :: u(0:*)
+      real(wp), intent(inout) :: own(2, *), guide(2, *)
+      real(wp), intent(in) :: known(2, 0:2)
+      real(wp), intent(out) :: closure_error(2)
       integer :: k
       real(wp) :: x, y
 
-      x = s%loop(m)%known(1, 0)
-      y = s%loop(m)%known(2, 0)
-      call turn_vectors(b%loops(m)%first_own, b%loops(m)%last_vector, b%body_vectors, s%u, s%own, x, y)
-      do k = b%loops(m)%first_slide, b%loops(m)%last_slide
-         s%guide(:, k) = slide_vector(b, k, s)
-         x = x + s%u(b%slides(k)%unknown)%value*s%guide(1, k)
-         y = y + s%u(b%slides(k)%unknown)%value*s%guide(2, k)
+      x = known(1, 0)
+      y = known(2, 0)
+      call turn_vectors(g%first_own, g%last_vector, vectors, u, own, x, y)
+      do k = g%first_slide, g%last_slide
+         associate (f => u(slides(k)%orientation), s => u(slides(k)%unknown)%value)
+            guide(:, k) = rotated(slides(k)%body_vector, [f%c, f%s])
+            x = x + s*guide(1, k)
+            y = y + s*guide(2, k)
+         end associate
       end do
-      s%loop(m)%closure_error(1) = x
-      s%loop(m)%closure_error(2) = y
+      closure_error(1) = x
+      closure_error(2) = y
    end subroutine find_closure_error
 
    !> Body vectors number `first` to `last`, rotated by their angles among `u`, go to `own`; x and y grow by their sum.
-   !> On plain arrays, which cost no descriptors: this is the innermost loop of a step.
+   !> This is the innermost loop of a step.
    pure subroutine turn_vectors(first, last, vectors, u, own, x, y)
       integer, intent(in) :: first, last
       type(body_vector_t), intent(in) :: vectors(*)
@@ -115,6 +157,29 @@ contains
       end do
    end subroutine turn_vectors
 
+   !> Jacobian and residual in the rows of loop `g`, whose state is `now`.
+   pure subroutine position_rows(g, vectors, slides, u, own, guide, now, a, r)
+      type(block_loop_t), intent(in) :: g
+      type(body_vector_t), intent(in) :: vectors(*)
+      type(slide_t), intent(in) :: slides(*)
+      type(unknown_t), intent(in) :: u(0:*)
+      real(wp), intent(in) :: own(2, *), guide(2, *)
+      type(loop_state_t), intent(inout) :: now
+      real(wp), intent(inout) :: a(*), r(*)
+
+      if (g%kind == loop_projection) then
+         now%f = rotated(g%direction, [u(g%orientation)%c, u(g%orientation)%s])
+         call projection_row(g, vectors, own, now%closure_error, now%f, a, r)
+         if (g%last_slide >= g%first_slide) call slide_entries(g, 1, now%f, slides, u, guide, a)
+         if (g%orientation_at > 0) a(g%orientation_at) = a(g%orientation_at) + cross(now%f, now%closure_error)
+      else
+         call component_rows(g, vectors, own, now%closure_error, a, r)
+         if (g%last_slide < g%first_slide) return
+         if (g%row_x > 0) call slide_entries(g, 1, [1.0_wp, 0.0_wp], slides, u, guide, a)
+         if (g%row_y > 0) call slide_entries(g, 2, [0.0_wp, 1.0_wp], slides, u, guide, a)
+      end if
+   end subroutine position_rows
+
    !> Rows of the x and y components of loop `g`, but for its slides.
    pure subroutine component_rows(g, vectors, own, closure_error, a, r)
       type(block_loop_t), intent(in) :: g
@@ -131,40 +196,35 @@ contains
       end do
    end subroutine component_rows
 
-   !> Row of the projection of loop `m`, which is `g`.
-   pure subroutine projection_row(b, g, m, s, a, r)
-      type(blocks_t), intent(in) :: b
+   !> Row of the projection of loop `g` on `f`, but for its slides and for the turn of `f`.
+   pure subroutine projection_row(g, vectors, own, closure_error, f, a, r)
       type(block_loop_t), intent(in) :: g
-      integer, intent(in) :: m
-      type(state_t), intent(inout) :: s
+      type(body_vector_t), intent(in) :: vectors(*)
+      real(wp), intent(in) :: own(2, *), closure_error(2), f(2)
       real(wp), intent(inout) :: a(*), r(*)
       integer :: k
-      real(wp) :: f(2)
 
-      f = rotated(g%direction, [s%u(g%orientation)%c, s%u(g%orientation)%s])
-      s%loop(m)%f = f
-      r(g%row_x) = s%loop(m)%closure_error(1)*f(1) + s%loop(m)%closure_error(2)*f(2)
+      r(g%row_x) = closure_error(1)*f(1) + closure_error(2)*f(2)
       do k = g%first_own, g%last_vector
-         a(b%body_vectors(k)%at(1)) = cross(s%own(:, k), f)
+         a(vectors(k)%at(1)) = cross(own(:, k), f)
       end do
-      if (g%last_slide >= g%first_slide) call slide_entries(b, g, 1, f, s, a)
-      if (g%orientation_at > 0) a(g%orientation_at) = a(g%orientation_at) + cross(f, s%loop(m)%closure_error)
    end subroutine projection_row
 
    !> What the slides of loop `g` add to its row `row` (1: row_x, 2: row_y), which projects on `f`.
-   pure subroutine slide_entries(b, g, row, f, s, a)
-      type(blocks_t), intent(in) :: b
+   pure subroutine slide_entries(g, row, f, slides, u, guide, a)
       type(block_loop_t), intent(in) :: g
       integer, intent(in) :: row
       real(wp), intent(in) :: f(2)
-      type(state_t), intent(in) :: s
+      type(slide_t), intent(in) :: slides(*)
+      type(unknown_t), intent(in) :: u(0:*)
+      real(wp), intent(in) :: guide(2, *)
       real(wp), intent(inout) :: a(*)
       integer :: k
 
       do k = g%first_slide, g%last_slide
-         associate (at => b%slides(k)%at(row), orientation_at => b%slides(k)%orientation_at(row), e => s%guide(:, k))
+         associate (at => slides(k)%at(row), orientation_at => slides(k)%orientation_at(row), e => guide(:, k))
             if (at > 0) a(at) = a(at) + dot_product(e, f)
-            if (orientation_at > 0) a(orientation_at) = a(orientation_at) - s%u(b%slides(k)%unknown)%value*cross(f, e)
+            if (orientation_at > 0) a(orientation_at) = a(orientation_at) - u(slides(k)%unknown)%value*cross(f, e)
          end associate
       end do
    end subroutine slide_entries
@@ -177,77 +237,95 @@ contains
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, order
       type(state_t), intent(in) :: s
-      real(wp), intent(out) :: v(*)
-      real(wp) :: given(2)
-      integer :: k, m
+      real(wp), intent(inout) :: v(*)
+      integer :: m
 
-      do k = b%list(i)%first_row, b%list(i)%last_row
-         v(k - b%list(i)%first_row + 1) = s%drive_value(order, b%rows(k)%drive)
-      end do
-      do m = b%list(i)%first_loop, b%list(i)%last_loop
-         associate (g => b%loops(m))
-            if (g%kind == loop_angles) cycle
-            given = given_part(b, g, m, order, s)
-            if (g%kind == loop_projection) then
-               v(g%row_x) = v(g%row_x) - projected_part(b, g, m, order, s, given)
-            else
-               if (g%row_x > 0) v(g%row_x) = v(g%row_x) - given(1)
-               if (g%row_y > 0) v(g%row_y) = v(g%row_y) - given(2)
-            end if
-         end associate
-      end do
+      associate (block => b%list(i))
+         do m = block%first_loop, block%last_loop
+            associate (g => b%loops(m))
+               if (g%kind == loop_angles) then
+                  v(g%row_x) = 0.0_wp
+               else if (order == 1) then
+                  call velocity_rows(g, b%slides, s%u, s%guide, s%loop(m), v)
+               else
+                  call acceleration_rows(g, b%body_vectors, b%slides, s%u, s%own, s%guide, s%loop(m), v)
+               end if
+            end associate
+         end do
+         call subtract_from_drives(block%first_row, block%last_row, b%rows, order, s%drive_value, v)
+      end associate
    end subroutine right_hand_side
 
-   !> The largest rate and acceleration of anything that goes into the equations of block `i`: angles, slides, drives,
-   !> known or not.
-   pure function largest_rates(b, i, s) result(largest)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      type(state_t), intent(in) :: s
-      real(wp) :: largest(2)
-      integer :: k, m
-
-      largest = 0.0_wp
-      do k = b%list(i)%first_row, b%list(i)%last_row
-         largest = max(largest, abs(s%drive_value(1:2, b%rows(k)%drive)))
-      end do
-      do m = b%list(i)%first_loop, b%list(i)%last_loop
-         call take(b%loops(m)%orientation)
-         call take(b%loops(m)%less)
-         do k = b%loops(m)%first_vector, b%loops(m)%last_vector
-            call take(b%body_vectors(k)%orientation)
-         end do
-         do k = b%loops(m)%first_slide, b%loops(m)%last_slide
-            call take(b%slides(k)%orientation)
-            call take(b%slides(k)%unknown)
-         end do
-      end do
-
-   contains
-
-      !> Unknown number `u` of all blocks.
-      pure subroutine take(u)
-         integer, intent(in) :: u
-
-         largest = max(largest, abs([s%u(u)%rate, s%u(u)%acceleration]))
-      end subroutine take
-   end function largest_rates
-
-   !> The part of g' (order 1) or g'' (order 2) of loop `m` that holds no unknown of that order.
-   pure function given_part(b, block_loop, m, order, s) result(g)
-      type(blocks_t), intent(in) :: b
-      type(block_loop_t), intent(in) :: block_loop
-      integer, intent(in) :: m, order
-      type(state_t), intent(in) :: s
-      real(wp) :: g(2)
+   !> Makes `v` derivative number `order` of the drives' `values` less `v`, for the equations number `first` to `last`.
+   pure subroutine subtract_from_drives(first, last, rows, order, values, v)
+      integer, intent(in) :: first, last, order
+      type(row_t), intent(in) :: rows(*)
+      real(wp), intent(in) :: values(0:2, 0:*)
+      real(wp), intent(inout) :: v(*)
       integer :: k
 
-      g = s%loop(m)%known(:, order)
-      if (order == 2) call subtract_inward(block_loop%first_own, block_loop%last_vector, b%body_vectors, s%u, s%own, g)
-      do k = block_loop%first_slide, block_loop%last_slide
-         g = g + slide_part(b, k, order, s)
+      do k = first, last
+         v(k - first + 1) = values(order, rows(k)%drive) - v(k - first + 1)
       end do
-   end function given_part
+   end subroutine subtract_from_drives
+
+   !> In the rows of loop `g`, whose state is `now`: the part of g', or of (g . f)', that holds no unknown velocity.
+   pure subroutine velocity_rows(g, slides, u, guide, now, v)
+      type(block_loop_t), intent(in) :: g
+      type(slide_t), intent(in) :: slides(*)
+      type(unknown_t), intent(in) :: u(0:*)
+      real(wp), intent(in) :: guide(2, *)
+      type(loop_state_t), intent(in) :: now
+      real(wp), intent(inout) :: v(*)
+      real(wp) :: given(2)
+      integer :: k
+
+      given(1) = now%known(1, 1)
+      given(2) = now%known(2, 1)
+      do k = g%first_slide, g%last_slide
+         given = given + slide_velocity(slides(k), u, guide(:, k))
+      end do
+      if (g%kind == loop_projection) then
+         v(g%row_x) = given(1)*now%f(1) + given(2)*now%f(2)
+         if (g%orientation > 0 .and. g%orientation_column == 0) v(g%row_x) = v(g%row_x) &
+            + u(g%orientation)%rate*cross(now%f, now%closure_error)
+      else
+         if (g%row_x > 0) v(g%row_x) = given(1)
+         if (g%row_y > 0) v(g%row_y) = given(2)
+      end if
+   end subroutine velocity_rows
+
+   !> The same of g'' or (g . f)'', with the velocities and without unknown accelerations.
+   pure subroutine acceleration_rows(g, vectors, slides, u, own, guide, now, v)
+      type(block_loop_t), intent(in) :: g
+      type(body_vector_t), intent(in) :: vectors(*)
+      type(slide_t), intent(in) :: slides(*)
+      type(unknown_t), intent(in) :: u(0:*)
+      real(wp), intent(in) :: own(2, *), guide(2, *)
+      type(loop_state_t), intent(in) :: now
+      real(wp), intent(inout) :: v(*)
+      real(wp) :: given(2)
+      integer :: k
+
+      given(1) = now%known(1, 2)
+      given(2) = now%known(2, 2)
+      call subtract_inward(g%first_own, g%last_vector, vectors, u, own, given)
+      do k = g%first_slide, g%last_slide
+         given = given + slide_acceleration(slides(k), u, guide(:, k))
+      end do
+      if (g%kind == loop_projection) then
+         v(g%row_x) = given(1)*now%f(1) + given(2)*now%f(2)
+         if (g%orientation == 0) return
+         associate (c => u(g%orientation), closure_error => now%closure_error, f => now%f)
+            given = closure_error_rate(g, vectors, slides, u, own, guide, now)
+            v(g%row_x) = v(g%row_x) + 2.0_wp*c%rate*cross(f, given) - c%rate**2*dot_product(closure_error, f)
+            if (g%orientation_column == 0) v(g%row_x) = v(g%row_x) + c%acceleration*cross(f, closure_error)
+         end associate
+      else
+         if (g%row_x > 0) v(g%row_x) = given(1)
+         if (g%row_y > 0) v(g%row_y) = given(2)
+      end if
+   end subroutine acceleration_rows
 
    !> Subtracts from `g` what the turned vectors `own`, number `first` to `last`, have of acceleration towards their
    !> beginnings.
@@ -267,133 +345,55 @@ contains
       end do
    end subroutine subtract_inward
 
-   !> The same of slide number `k`: (s e)' = s' e + s w e',  (s e)'' = s'' e + 2 s' w e' + s (w' e' - w^2 e).
-   pure function slide_part(b, k, order, s) result(g)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: k, order
-      type(state_t), intent(in) :: s
-      real(wp) :: g(2), e(2), e_t(2)
+   !> The part of the `slide` along the guide `e` in g':  (s e)' = s' e + s w e'.
+   pure function slide_velocity(slide, unknowns, e) result(g)
+      type(slide_t), intent(in) :: slide
+      type(unknown_t), intent(in) :: unknowns(0:*)
+      real(wp), intent(in) :: e(2)
+      real(wp) :: g(2)
 
-      associate (slide => b%slides(k), u => s%u(b%slides(k)%unknown), f => s%u(b%slides(k)%orientation))
-         e = s%guide(:, k)
-         e_t = quarter_turn(e)
+      associate (u => unknowns(slide%unknown), f => unknowns(slide%orientation))
          g = 0.0_wp
-         if (order == 1) then
-            if (slide%column == 0) g = g + u%rate*e
-            if (slide%orientation_column == 0) g = g + u%value*f%rate*e_t
-         else
-            g = 2.0_wp*u%rate*f%rate*e_t - u%value*f%rate**2*e
-            if (slide%column == 0) g = g + u%acceleration*e
-            if (slide%orientation_column == 0) g = g + u%value*f%acceleration*e_t
-         end if
+         if (slide%column == 0) g = g + u%rate*e
+         if (slide%orientation_column == 0) g = g + u%value*f%rate*quarter_turn(e)
       end associate
-   end function slide_part
+   end function slide_velocity
 
-   !> The part of (g . f)' or (g . f)'' of loop `m` that holds no unknown of that order, from that of g' or g'', `g`.
-   pure real(wp) function projected_part(b, block_loop, m, order, s, g) result(v)
-      type(blocks_t), intent(in) :: b
-      type(block_loop_t), intent(in) :: block_loop
-      integer, intent(in) :: m, order
-      type(state_t), intent(in) :: s
-      real(wp), intent(in) :: g(2)
+   !> The same in g'':  (s e)'' = s'' e + 2 s' w e' + s (w' e' - w^2 e).
+   pure function slide_acceleration(slide, unknowns, e) result(g)
+      type(slide_t), intent(in) :: slide
+      type(unknown_t), intent(in) :: unknowns(0:*)
+      real(wp), intent(in) :: e(2)
+      real(wp) :: g(2), e_t(2)
 
-      associate (c => s%u(block_loop%orientation), closure_error => s%loop(m)%closure_error, f => s%loop(m)%f)
-         v = g(1)*f(1) + g(2)*f(2)
-         if (block_loop%orientation == 0) return
-         if (order == 1) then
-            if (block_loop%orientation_column == 0) v = v + c%rate*cross(f, closure_error)
-         else
-            v = v + 2.0_wp*c%rate*cross(f, closure_error_rate(b, block_loop, m, s)) &
-               - c%rate**2*dot_product(closure_error, f)
-            if (block_loop%orientation_column == 0) v = v + c%acceleration*cross(f, closure_error)
-         end if
+      associate (u => unknowns(slide%unknown), f => unknowns(slide%orientation))
+         e_t = quarter_turn(e)
+         g = 2.0_wp*u%rate*f%rate*e_t - u%value*f%rate**2*e
+         if (slide%column == 0) g = g + u%acceleration*e
+         if (slide%orientation_column == 0) g = g + u%value*f%acceleration*e_t
       end associate
-   end function projected_part
+   end function slide_acceleration
 
    !> g' with the velocities of the block itself.
-   pure function closure_error_rate(b, block_loop, m, s) result(g)
-      type(blocks_t), intent(in) :: b
-      type(block_loop_t), intent(in) :: block_loop
-      integer, intent(in) :: m
-      type(state_t), intent(in) :: s
+   pure function closure_error_rate(loop, vectors, slides, u, own, guide, now) result(g)
+      type(block_loop_t), intent(in) :: loop
+      type(body_vector_t), intent(in) :: vectors(*)
+      type(slide_t), intent(in) :: slides(*)
+      type(unknown_t), intent(in) :: u(0:*)
+      real(wp), intent(in) :: own(2, *), guide(2, *)
+      type(loop_state_t), intent(in) :: now
       real(wp) :: g(2), e(2)
       integer :: k
 
-      g = s%loop(m)%known(:, 1)
-      do k = block_loop%first_own, block_loop%last_vector
-         g = g + s%u(b%body_vectors(k)%orientation)%rate*quarter_turn(s%own(:, k))
+      g = now%known(:, 1)
+      do k = loop%first_own, loop%last_vector
+         g = g + u(vectors(k)%orientation)%rate*quarter_turn(own(:, k))
       end do
-      do k = block_loop%first_slide, block_loop%last_slide
-         e = s%guide(:, k)
-         associate (u => s%u(b%slides(k)%unknown))
-            g = g + u%rate*e + u%value*s%u(b%slides(k)%orientation)%rate*quarter_turn(e)
+      do k = loop%first_slide, loop%last_slide
+         e = guide(:, k)
+         associate (s => u(slides(k)%unknown))
+            g = g + s%rate*e + s%value*u(slides(k)%orientation)%rate*quarter_turn(e)
          end associate
       end do
    end function closure_error_rate
-
-   !> (rows) The size of the numbers that each row of block `i` rounds, in the unit of its loop.
-   pure function rounded_sizes(b, i, s) result(sizes)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      type(state_t), intent(in) :: s
-      real(wp) :: sizes(b%list(i)%shape%rows), size_of
-      integer :: m, k
-
-      do m = b%list(i)%first_loop, b%list(i)%last_loop
-         associate (g => b%loops(m))
-            size_of = max(g%coarse, abs(s%u(g%orientation)%value), abs(s%u(g%less)%value))
-            do k = g%first_own, g%last_vector
-               size_of = max(size_of, abs(s%u(b%body_vectors(k)%orientation)%value))
-            end do
-            do k = g%first_slide, g%last_slide
-               associate (slide => b%slides(k))
-                  size_of = max(size_of, abs(s%u(slide%unknown)%value)*norm2(slide%body_vector), &
-                     abs(s%u(slide%orientation)%value))
-               end associate
-            end do
-            if (g%row_x > 0) sizes(g%row_x) = size_of
-            if (g%row_y > 0) sizes(g%row_y) = size_of
-         end associate
-      end do
-   end function rounded_sizes
-
-   !> (rows) Bounds of d . r'' d for changes `d` (n, none negative) of the unknowns of block `i` from the state: twice
-   !> what the rows r hold beyond their linear part. A projection that turns with an angle of the block turns its loop.
-   pure function second_order_bounds(b, i, s, d) result(bounds)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      type(state_t), intent(in) :: s
-      real(wp), intent(in) :: d(:)
-      real(wp) :: bounds(b%list(i)%shape%rows), change(0:size(d)), first, second
-      integer :: m, k
-
-      change = [0.0_wp, d]
-      do m = b%list(i)%first_loop, b%list(i)%last_loop
-         associate (g => b%loops(m))
-            first = 0.0_wp
-            second = 0.0_wp
-            do k = g%first_own, g%last_vector
-               associate (length => hypot(b%body_vectors(k)%x, b%body_vectors(k)%y), &
-                  turn => change(b%body_vectors(k)%column))
-                  first = first + length*turn
-                  second = second + length*turn**2
-               end associate
-            end do
-            do k = g%first_slide, g%last_slide
-               associate (slide => b%slides(k), turn => change(b%slides(k)%orientation_column), &
-                  length => abs(s%u(b%slides(k)%unknown)%value))
-                  first = first + norm2(slide%body_vector)*(change(slide%column) + length*turn)
-                  second = second + norm2(slide%body_vector)*turn*(2.0_wp*change(slide%column) + length*turn)
-               end associate
-            end do
-            if (g%kind == loop_projection) then
-               associate (turn => change(g%orientation_column))
-                  second = second + turn*(2.0_wp*first + norm2(s%loop(m)%closure_error)*turn)
-               end associate
-            end if
-            if (g%row_x > 0) bounds(g%row_x) = second
-            if (g%row_y > 0) bounds(g%row_y) = second
-         end associate
-      end do
-   end function second_order_bounds
 end module block_equations

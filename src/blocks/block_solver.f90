@@ -18,8 +18,9 @@ module block_solver
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
       ended_inconsistent, note_closure_error, is_inconsistent, contradict
    use blocks, only: blocks_t, block_t
-   use block_state, only: state_t, set_direction, rotate_direction, find_known_parts
-   use block_equations, only: assemble_block, right_hand_side, largest_rates, rounded_sizes, second_order_bounds
+   use block_state, only: state_t, set_direction, rotate_direction, set_rates, set_accelerations, find_known_parts
+   use block_equations, only: assemble_with_velocities, right_hand_side
+   use block_sizes, only: largest_rates, rounded_sizes, second_order_bounds
    implicit none
    private
    public :: workspace_t, make_workspace, solve_block, closed_level, step_tolerance, suspicious_pivot
@@ -45,18 +46,13 @@ module block_solver
    !> 1 over this squared is within the range of reals.
    real(wp), parameter :: min_inverse = epsilon(1.0_wp)**2
 
-   !> The Jacobian of a block, then its factors, or those of one beside it; room for the widest block. Never copied: see
-   !> klu_t.
-   type :: block_factors_t
-      real(wp), allocatable :: a(:), work(:)
+   !> The Jacobian of a block, then its factors, or those of one beside it; two right-hand sides, one after the other,
+   !> and first values; room for the widest block. Never copied: see klu_t.
+   type :: workspace_t
+      real(wp), allocatable :: a(:), r(:), start(:), work(:)
       integer, allocatable :: pivots(:), iwork(:)
       type(nearby_t) :: near                      !< the Jacobian, where `a` holds the factors of one beside it
       type(klu_t), allocatable :: sparse(:)       !< (0:patterns), 0 for dense blocks
-   end type block_factors_t
-
-   !> The same, and the right-hand sides and first values of a block.
-   type, extends(block_factors_t) :: workspace_t
-      real(wp), allocatable :: r(:), start(:)
    end type workspace_t
 
 contains
@@ -93,18 +89,20 @@ contains
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
 
-      if (b%list(i)%direct) then
-         call solve_direct(b, i, s)
-         c%ended = ended_converged
-         return
-      end if
-      call solve(b, i, b%list(i), tolerance, w%block_factors_t, w%r, w%start, s, c)
-      if (c%ended /= ended_converged .and. c%ended /= ended_stalled) return
-      if (b%list(i)%shape%rows > b%list(i)%shape%n .and. is_inconsistent(c)) then
-         c%ended = ended_inconsistent
-      else
-         call finish(b, i, b%list(i), w, s, c)
-      end if
+      associate (block => b%list(i))
+         if (block%direct) then
+            call solve_direct(b, i, s)
+            c%ended = ended_converged
+            return
+         end if
+         call solve(b, i, block, tolerance, w, s, c)
+         if (c%ended /= ended_converged .and. c%ended /= ended_stalled) return
+         if (block%shape%rows > block%shape%n .and. is_inconsistent(c)) then
+            c%ended = ended_inconsistent
+         else
+            call finish(b, i, block, w, s, c)
+         end if
+      end associate
    end subroutine solve_block
 
    !> A drive's own unknown: nothing to iterate.
@@ -125,26 +123,26 @@ contains
       call set_direction(b, b%unknown(b%list(i)%first), s)
    end subroutine solve_direct
 
-   !> Newton's method; where it ends with a position, `r`(:, 2) holds the velocities and `f` the factors, of the
-   !> Jacobian there or of one beside it. Where the Jacobian there has no inverse, c%singular says so.
-   subroutine solve(b, i, block, tolerance, f, r, start, s, c)
+   !> Newton's method; where it ends with a position, `w` holds the velocities, in the second half of `r`, and the
+   !> factors of the Jacobian there or of one beside it. Where that Jacobian has no inverse, c%singular says so.
+   subroutine solve(b, i, block, tolerance, w, s, c)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(block_t), intent(in) :: block
       real(wp), intent(in) :: tolerance
-      type(block_factors_t), intent(inout) :: f
-      real(wp), intent(inout) :: r(block%shape%rows, 2), start(block%shape%n)
+      type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
       real(wp) :: before, size_of, coarse
-      integer :: info, iteration
+      integer :: info, iteration, second
       logical :: is_right
 
-      call begin_block(b, block, s, start, size_of)
+      second = block%shape%rows + 1
+      call begin_block(b, block, s, w%start, size_of)
       call find_known_parts(b, i, s)
       before = huge(before)
       coarse = block%coarse
-      f%near%distance = 0.0_wp
+      w%near%distance = 0.0_wp
       c = convergence_t(ended=ended_limit)
       do iteration = 1, iteration_limit
          if (.not. size_of <= angle_limit) then
@@ -152,62 +150,61 @@ contains
             return
          end if
          c%iterations = iteration
-         call assemble_block(b, i, s, f%a, r)
-         if (f%near%distance > 0.0_wp) call set_aside(f%a, f%near)
-         c%residual = maxval(abs(r(:, 1)))
-         if (block%shape%rows > block%shape%n) call note_closure_error(b, i, r, c)
+         call assemble_with_velocities(b, i, s, w%a, w%r, w%r(second))
+         if (w%near%distance > 0.0_wp) call set_aside(w%a, w%near)
+         c%residual = largest_size(block%shape%rows, w%r)
+         if (block%shape%rows > block%shape%n) call note_closure_error(b, i, w%r, c)
          if (c%residual <= closed_level*max(size_of, coarse)) then
             c%step = 0.0_wp
             c%ended = ended_converged
-            call right_hand_side(b, i, 1, s, r(:, 2))
-            call solve_for(block%shape, .true., f, r(:, 2), info)
+            call solve_for(block%shape, .true., w, w%r(second), info)
             c%singular = info > 0
             exit
          end if
-         call solve_for(block%shape, .true., f, r, info)
+         call solve_for(block%shape, .true., w, w%r, info)
          if (info > 0) then
             c%singular = c%residual <= max(rounding_level*max(size_of, coarse), tolerance)
             c%ended = merge(ended_stalled, ended_singular, c%singular)
             exit
          end if
-         c%step = maxval(abs(r(:block%shape%n, 1)))
+         c%step = largest_size(block%shape%n, w%r)
          if (is_stalled(block%shape, c, before, max(size_of, coarse))) then
             c%ended = ended_stalled
          else
-            call move(b, block, r, s, c%step, tolerance, size_of, is_right)
+            call move(b, block, w%r, s, c%step, tolerance, size_of, is_right)
             if (is_right) c%ended = ended_converged
          end if
          before = c%step
          if (c%ended == ended_limit) then
-            call stay_near(block%shape, f%a, f%pivots, block%lipschitz*c%step, f%near)
+            call stay_near(block%shape, w%a, w%pivots, block%lipschitz*c%step, w%near)
             cycle
          end if
-         call right_hand_side(b, i, 1, s, r(:, 2))
-         call solve_for(block%shape, .false., f, r(:, 2), info)
+         call right_hand_side(b, i, 1, s, w%r(second))
+         call solve_for(block%shape, .false., w, w%r(second), info)
          exit
       end do
-      if (c%iterations > 1 .or. c%step > 0.0_wp) c%change = largest_change(b, block, s, start)
+      if (c%iterations > 1 .or. c%step > 0.0_wp) c%change = largest_change(b, block, s, w%start)
    end subroutine solve
 
    !> Solves for `v` (rows) with the Jacobian just assembled (`is_new`: `info` > 0, it has no inverse), or that of the
    !> position just found: from its factors, or those of one beside it.
-   subroutine solve_for(shape, is_new, f, v, info)
+   subroutine solve_for(shape, is_new, w, v, info)
       type(shape_t), intent(in) :: shape
       logical, intent(in) :: is_new
-      type(block_factors_t), intent(inout) :: f
+      type(workspace_t), intent(inout) :: w
       real(wp), intent(inout) :: v(*)
       integer, intent(out) :: info
 
       info = 0
       if (shape%n == 1 .and. shape%rows == 1) then
          ! The calls for matrices of any shape take several times as long.
-         call solve_one(f%a(1), v(1), info)
-      else if (f%near%distance > 0.0_wp) then
-         call solve_nearby(f%near, v)
+         call solve_one(w%a(1), v(1), info)
+      else if (w%near%distance > 0.0_wp) then
+         call solve_nearby(w%near, v)
       else if (is_new) then
-         call solve_first(shape, f%a, f%sparse(shape%pattern), f%pivots, f%work, v, info)
+         call solve_first(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, v, info)
       else
-         call solve_again(shape, f%a, f%sparse(shape%pattern), f%pivots, f%work, v)
+         call solve_again(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, v)
       end if
    end subroutine solve_for
 
@@ -227,7 +224,8 @@ contains
       type(blocks_t), intent(in) :: b
       type(block_t), intent(in) :: block
       type(state_t), intent(inout) :: s
-      real(wp), intent(out) :: start(block%shape%n), size_of
+      real(wp), intent(inout) :: start(*)
+      real(wp), intent(out) :: size_of
       integer :: k
 
       size_of = 1.0_wp
@@ -270,12 +268,24 @@ contains
       end do
    end subroutine move
 
+   !> The largest of the sizes of `n` numbers `x`; no number where the last of them is none.
+   pure real(wp) function largest_size(n, x) result(largest)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: x(*)
+      integer :: k
+
+      largest = 0.0_wp
+      do k = 1, n
+         if (.not. abs(x(k)) <= largest) largest = abs(x(k))
+      end do
+   end function largest_size
+
    !> The largest change of the values of `block` from `start`.
    pure real(wp) function largest_change(b, block, s, start) result(change)
       type(blocks_t), intent(in) :: b
       type(block_t), intent(in) :: block
       type(state_t), intent(in) :: s
-      real(wp), intent(in) :: start(block%shape%n)
+      real(wp), intent(in) :: start(*)
       integer :: k
 
       change = 0.0_wp
@@ -298,14 +308,10 @@ contains
       if (.not. c%singular) call judge(b, i, block, w, s, c)
       if (c%singular) return
       associate (rows => block%shape%rows, n => block%shape%n)
-         do k = 1, n
-            s%u(b%unknown(block%first + k - 1))%rate = w%r(rows + k)
-         end do
+         call set_rates(block%first, block%last, b%unknown, w%r(rows + 1), s%u)
          call right_hand_side(b, i, 2, s, w%r)
-         call solve_for(block%shape, .false., w%block_factors_t, w%r, k)
-         do k = 1, n
-            s%u(b%unknown(block%first + k - 1))%acceleration = w%r(k)
-         end do
+         call solve_for(block%shape, .false., w, w%r, k)
+         call set_accelerations(block%first, block%last, b%unknown, w%r, s%u)
          if (rows == n) return
          rates = largest_rates(b, i, s)
          c%rates_open = contradict(w%r(rows + n + 1:2*rows), rates(1), block%coarse) &

@@ -7,12 +7,12 @@
 !> and a projection on f = R(phi_c) f_0 adds phi_c' g . f' and its derivative, as in `prismatic_pair`.
 module block_state
    use kinds, only: wp
-   use planar, only: rotated, add_rotating
+   use planar, only: add_rotating
    use blocks, only: blocks_t, block_loop_t, body_vector_t
    implicit none
    private
-   public :: unknown_t, state_t, new_state, set_direction, rotate_direction, set_values, values_of, &
-      largest_drive_rate, find_known_parts, slide_vector
+   public :: unknown_t, loop_state_t, state_t, new_state, set_direction, rotate_direction, set_values, set_rates, &
+      set_accelerations, values_of, largest_drive_rate, find_known_parts
 
    !> An unknown, an angle in radians or a slide in its block's unit of length, with its derivatives by time.
    type :: unknown_t
@@ -89,6 +89,30 @@ contains
       end do
    end subroutine set_values
 
+   !> Gives the unknowns with the numbers `unknown`(first:last) among `u` the rates `v`.
+   pure subroutine set_rates(first, last, unknown, v, u)
+      integer, intent(in) :: first, last, unknown(*)
+      real(wp), intent(in) :: v(*)
+      type(unknown_t), intent(inout) :: u(0:*)
+      integer :: k
+
+      do k = first, last
+         u(unknown(k))%rate = v(k - first + 1)
+      end do
+   end subroutine set_rates
+
+   !> The same of accelerations.
+   pure subroutine set_accelerations(first, last, unknown, a, u)
+      integer, intent(in) :: first, last, unknown(*)
+      real(wp), intent(in) :: a(*)
+      type(unknown_t), intent(inout) :: u(0:*)
+      integer :: k
+
+      do k = first, last
+         u(unknown(k))%acceleration = a(k - first + 1)
+      end do
+   end subroutine set_accelerations
+
    !> (n) The values of the unknowns of block `i`.
    pure function values_of(b, i, s) result(x)
       type(blocks_t), intent(in) :: b
@@ -113,9 +137,11 @@ contains
       type(state_t), intent(inout) :: s
       integer :: m
 
-      do m = b%list(i)%first_loop, b%list(i)%last_loop
-         call find_known_part(b%loops(m), b%body_vectors, s%u, s%loop(m)%known)
-      end do
+      associate (block => b%list(i))
+         do m = block%first_loop, block%last_loop
+            call find_known_part(b%loops(m), b%body_vectors, s%u, s%loop(m)%known)
+         end do
+      end associate
    end subroutine find_known_parts
 
    !> The same of loop `g`; on plain arrays, which cost no descriptors.
@@ -139,16 +165,4 @@ contains
       known(:, 1) = x_t
       known(:, 2) = x_tt
    end subroutine find_known_part
-
-   !> R e (2) of slide number `k`: its direction.
-   pure function slide_vector(b, k, s) result(e)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: k
-      type(state_t), intent(in) :: s
-      real(wp) :: e(2)
-
-      associate (f => s%u(b%slides(k)%orientation))
-         e = rotated(b%slides(k)%body_vector, [f%c, f%s])
-      end associate
-   end function slide_vector
 end module block_state

@@ -93,15 +93,15 @@ contains
       real(wp), intent(out) :: change
       real(wp) :: step, d, w(3)
       integer :: i, k, known
-      logical :: even
 
       change = 0.0_wp
       step = t - h%t(0)
-      even = is_even(h, step)
       known = 0
       if (any(h%uncertain*abs(step) > largest_part)) then
-         even = .false.
          known = findloc(h%uncertain(:h%filled - 1)*abs(step) <= largest_part, .true., dim=1) - 1
+      else if (is_even(h, step)) then
+         call predict_evenly(size(h%predicted), h%predicted, h%past, step, u, change)
+         return
       end if
       if (h%order /= own_predictor) w = order_weights(h%order, step, merge(h%t(0) - h%t(1), 0.0_wp, h%filled > 1))
       do k = 1, size(h%predicted)
@@ -109,9 +109,6 @@ contains
          associate (v => h%past(i)%rate, a => h%past(i)%acceleration)
             if (h%order /= own_predictor) then
                d = w(1)*v(0) + w(2)*a(0) + w(3)*(a(0) - a(1))
-            else if (even) then
-               d = step*(weight(0)*v(0) + weight(1)*v(1) + weight(2)*v(2) &
-                  + step*(weight2(0)*a(0) + weight2(1)*a(1) + weight2(2)*a(2)))
             else
                d = step*v(0)
                if (known >= 0) d = step*(v(0) + 0.5_wp*step*a(known))
@@ -121,6 +118,26 @@ contains
          change = max(change, abs(d))
       end do
    end subroutine predict
+
+   !> The same of the `n` unknowns `predicted` from three motions in equal steps, as the `past` (0:unknowns) has them.
+   pure subroutine predict_evenly(n, predicted, past, step, u, change)
+      integer, intent(in) :: n, predicted(n)
+      type(past_t), intent(in) :: past(0:*)
+      real(wp), intent(in) :: step
+      type(unknown_t), intent(inout) :: u(0:*)
+      real(wp), intent(inout) :: change
+      real(wp) :: d
+      integer :: k
+
+      do k = 1, n
+         associate (p => past(predicted(k)))
+            d = step*(weight(0)*p%rate(0) + weight(1)*p%rate(1) + weight(2)*p%rate(2) + step*(weight2(0) &
+               *p%acceleration(0) + weight2(1)*p%acceleration(1) + weight2(2)*p%acceleration(2)))
+            u(predicted(k))%value = p%value + d
+            change = max(change, abs(d))
+         end associate
+      end do
+   end subroutine predict_evenly
 
    !> How uncertain the accelerations of block `i` in the motion `s` are, as a part of its velocities in a unit of
    !> time. With its `pivot` p, whose Jacobian's Lipschitz constant is L, positions are known to eps/p, and the other
