@@ -21,6 +21,8 @@ contains
       real(wp), intent(inout) :: a(*), r(*)
       real(wp) :: v(b%list(i)%shape%rows)
 
+      ! The row of a drive's own unknown is in no loop.
+      v = 0.0_wp
       call assemble_with_velocities(b, i, s, a, r, v)
    end subroutine assemble_block
 
@@ -139,7 +141,6 @@ contains
    end subroutine find_closure_error
 
    !> Body vectors number `first` to `last`, rotated by their angles among `u`, go to `own`; x and y grow by their sum.
-   !> This is the innermost loop of a step.
    pure subroutine turn_vectors(first, last, vectors, u, own, x, y)
       integer, intent(in) :: first, last
       type(body_vector_t), intent(in) :: vectors(*)
