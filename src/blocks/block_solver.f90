@@ -133,7 +133,7 @@ contains
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
-      real(wp) :: before, size_of, coarse
+      real(wp) :: before, size_of
       integer :: info, iteration, second
       logical :: is_right
 
@@ -141,7 +141,6 @@ contains
       call begin_block(b, block, s, w%start, size_of)
       call find_known_parts(b, i, s)
       before = huge(before)
-      coarse = block%coarse
       w%near%distance = 0.0_wp
       c = convergence_t(ended=ended_limit)
       do iteration = 1, iteration_limit
@@ -154,21 +153,21 @@ contains
          if (w%near%distance > 0.0_wp) call set_aside(w%a, w%near)
          c%residual = largest_size(block%shape%rows, w%r)
          if (block%shape%rows > block%shape%n) call note_closure_error(b, i, w%r, c)
-         if (c%residual <= closed_level*max(size_of, coarse)) then
+         if (c%residual <= closed_level*max(size_of, block%coarse)) then
             c%step = 0.0_wp
             c%ended = ended_converged
-            call solve_for(block%shape, .true., w, w%r(second), info)
+            call solve_first_side(block%shape, w, w%r(second), info)
             c%singular = info > 0
             exit
          end if
-         call solve_for(block%shape, .true., w, w%r, info)
+         call solve_first_side(block%shape, w, w%r, info)
          if (info > 0) then
-            c%singular = c%residual <= max(rounding_level*max(size_of, coarse), tolerance)
+            c%singular = c%residual <= max(rounding_level*max(size_of, block%coarse), tolerance)
             c%ended = merge(ended_stalled, ended_singular, c%singular)
             exit
          end if
          c%step = largest_size(block%shape%n, w%r)
-         if (is_stalled(block%shape, c, before, max(size_of, coarse))) then
+         if (is_stalled(block%shape, c, before, max(size_of, block%coarse))) then
             c%ended = ended_stalled
          else
             call move(b, block, w%r, s, c%step, tolerance, size_of, is_right)
@@ -180,33 +179,44 @@ contains
             cycle
          end if
          call right_hand_side(b, i, 1, s, w%r(second))
-         call solve_for(block%shape, .false., w, w%r(second), info)
+         call solve_next_side(block%shape, w, w%r(second))
          exit
       end do
       if (c%iterations > 1 .or. c%step > 0.0_wp) c%change = largest_change(b, block, s, w%start)
    end subroutine solve
 
-   !> Solves for `v` (rows) with the Jacobian just assembled (`is_new`: `info` > 0, it has no inverse), or that of the
-   !> position just found: from its factors, or those of one beside it.
-   subroutine solve_for(shape, is_new, w, v, info)
+   !> Solves for `v` (rows) with the Jacobian just assembled, which is factored unless factors of one beside it serve;
+   !> `info` > 0: it has no inverse. For one equation calls for matrices of any shape take several times as long.
+   subroutine solve_first_side(shape, w, v, info)
       type(shape_t), intent(in) :: shape
-      logical, intent(in) :: is_new
       type(workspace_t), intent(inout) :: w
       real(wp), intent(inout) :: v(*)
       integer, intent(out) :: info
 
       info = 0
       if (shape%n == 1 .and. shape%rows == 1) then
-         ! The calls for matrices of any shape take several times as long.
          call solve_one(w%a(1), v(1), info)
       else if (w%near%distance > 0.0_wp) then
          call solve_nearby(w%near, v)
-      else if (is_new) then
+      else
          call solve_first(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, v, info)
+      end if
+   end subroutine solve_first_side
+
+   !> The same for another right-hand side, from the factors.
+   subroutine solve_next_side(shape, w, v)
+      type(shape_t), intent(in) :: shape
+      type(workspace_t), intent(inout) :: w
+      real(wp), intent(inout) :: v(*)
+
+      if (shape%n == 1 .and. shape%rows == 1) then
+         v(1) = v(1)/w%a(1)
+      else if (w%near%distance > 0.0_wp) then
+         call solve_nearby(w%near, v)
       else
          call solve_again(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, v)
       end if
-   end subroutine solve_for
+   end subroutine solve_next_side
 
    !> Rounding is all that is left to correct, and the position stays; among equations that contradict one another
    !> it is their gap.
@@ -303,14 +313,13 @@ contains
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
       real(wp) :: rates(2)
-      integer :: k
 
       if (.not. c%singular) call judge(b, i, block, w, s, c)
       if (c%singular) return
       associate (rows => block%shape%rows, n => block%shape%n)
          call set_rates(block%first, block%last, b%unknown, w%r(rows + 1), s%u)
          call right_hand_side(b, i, 2, s, w%r)
-         call solve_for(block%shape, .false., w, w%r, k)
+         call solve_next_side(block%shape, w, w%r)
          call set_accelerations(block%first, block%last, b%unknown, w%r, s%u)
          if (rows == n) return
          rates = largest_rates(b, i, s)
