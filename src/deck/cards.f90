@@ -120,12 +120,13 @@ contains
    !> The first of the name and label fields of `card` that has a small letter; 0: none. A title may have them.
    pure integer function small_field(card) result(i)
       type(card_t), intent(in) :: card
+      logical :: is_title
 
-      do i = card_name, label_c
+      is_title = card%text(:label_length) == form_name(form_title)
+      do i = card_name, merge(card_name, label_c, is_title)
          associate (text => card%text(card_fields(i)%first:card_fields(i)%last))
             if (text /= capitals(text)) return
          end associate
-         if (find_form(card%text(:label_length)) == form_title) exit
       end do
       i = 0
    end function small_field
