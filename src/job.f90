@@ -183,7 +183,10 @@ contains
       if (o%asked(out_animation)) allocate (o%films(o%first:o%last))
       before = o%first - 1
       varied = 0
-      do i = o%first, o%last
+      ! Where no set has variants, those before the part at hand need not be passed over.
+      if (.not. o%varies) before = o%own_first - 1
+      do i = before + 1, o%last
+         if (before >= o%own_last) exit
          if (sets(i)%variants > 0) varied = varied + 1
          associate (count => max(1, sets(i)%variants))
             if (before < o%own_last .and. before + count >= o%own_first) call run_set(options, sets(i), i, varied, &

@@ -3,18 +3,21 @@ module outputs
    use failures, only: failure_t, fail, capitals, status_system, status_rejected
    use text_output, only: output_t, open_output, check_apart, flush_output, close_output, forget_output, &
       abandon_output, has_failed, has_broken_pipe
+   use parts_in_turn, only: parts_in_turn_t, write_in_turn
    use system_calls, only: make_directory, remove_directory, last_error, reason_of, signal_received
    use numerals, only: whole
    use command_line, only: options_t, file_options, out_last
    implicit none
    private
-   public :: outputs_t, open_outputs, flush_outputs, forget_files, close_outputs, is_over, is_broken_pipe, set_suffix
+   public :: outputs_t, open_outputs, flush_outputs, flush_sets, write_parts, forget_files, close_outputs
+   public :: is_over, is_broken_pipe, set_suffix
 
    type :: outputs_t
       logical :: asked(out_last) = .false.                  !< the command asks for them: no other is open
       !> (out_last, 0:sets or 0) In column 0 those that all sets share; in column i those of set number i.
       type(output_t), allocatable :: files(:, :)
       character(:), allocatable :: made_directory           !< that was not there before
+      type(parts_in_turn_t) :: parts                        !< of a job in several processes: see `shares`
    end type outputs_t
 
 contains
@@ -102,6 +105,26 @@ contains
          if (o%asked(k)) call flush_output(o%files(k, merge(i, 0, file_options(k)%each_set)))
       end do
    end subroutine flush_outputs
+
+   !> Writes at once what there is for the files of the sets from `first` to `last`.
+   subroutine flush_sets(o, first, last)
+      class(outputs_t), intent(inout) :: o
+      integer, intent(in) :: first, last
+      integer :: k, i
+
+      do i = first, min(last, ubound(o%files, 2))
+         do k = 1, out_last
+            if (allocated(o%files(k, i)%buffer)) call flush_output(o%files(k, i))
+         end do
+      end do
+   end subroutine flush_sets
+
+   !> After an instant, or the row of a variant: writes what may be written.
+   subroutine write_parts(o)
+      class(outputs_t), intent(inout) :: o
+
+      if (o%parts%held) call write_in_turn(o%parts, o%files(:, 0))
+   end subroutine write_parts
 
    !> Leaves the files of the sets from `first` to `last` to other processes.
    subroutine forget_files(o, first, last)

@@ -21,7 +21,7 @@ module set_runs
    use lane_runs, only: lane_run_t, begin_run, run_lanes, width
    use lane_state, only: lanes_t
    use command_line, only: options_t, out_listing, out_csv, out_log, out_summary, out_table, out_plot_table
-   use outputs, only: is_over, outputs_t
+   use outputs, only: is_over, write_parts, outputs_t
    use text_output, only: output_t
    use csv, only: csv_instant
    use table, only: table_t, table_instant
@@ -178,6 +178,7 @@ contains
 
          if (o%asked(out_summary)) call summary_row(o%files(out_summary, 0), summary, m, row)
          if (o%asked(out_listing)) call put_variant_row(o%files(out_listing, 0), layout, summary, m, row)
+         call write_parts(o)
          if (row%flagged + row%unproved > 0 .or. row%rejected /= '') status = status_flagged
          if (o%progress%shown) call show_progress(o%progress, 'SET '//whole(i)//': VARIANT', row%number, v%total)
       end subroutine write_row
@@ -238,6 +239,7 @@ contains
          if (o%asked(out_table) .and. due) call table_instant(o%files(out_table, i), o%table, m, a%now)
          if (o%asked(out_plot_table) .and. due) call table_instant(o%files(out_plot_table, i), o%table, m, a%now)
          if (o%asked(out_log)) call put_log(o%files(out_log, 0))
+         call write_parts(o)
       end subroutine write_instant
 
       !> The line of instant number `k` in the log.

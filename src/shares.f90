@@ -1,7 +1,6 @@
-!> A job's sets, or their variants, in several processes. They are divided into parts that follow one another, of which
-!> each process computes every so many-th. Its text stays in memory until the part before it has been written: a ring of
-!> pipes hands the turn to write from process to process. One that dies or is broken off closes its pipe, and nothing
-!> more is written.
+!> A job's sets, or their variants, in several processes. They are divided into parts that follow one another; whoever
+!> is free takes the next one, and its text stays in memory until the parts before it are written (`parts_in_turn`). One
+!> that dies or is broken off leaves its part undone, and nothing after that is written.
 !>
 !> Rejected: threads. gfortran 12 keeps the lengths of character results in static memory, where threads write over each
 !> other's: of 2000 sets in two threads, two listings had words cut short.
@@ -14,21 +13,23 @@ module shares
       killed
    use system_calls, only: read_bytes, write_bytes, close_descriptor, signal_received, note_all_signals, last_error, &
       reason_of
-   use text_output, only: write_block, take_turn, has_failed, turn_lost
+   use text_output, only: has_failed, turn_lost
+   use turns, only: make_turns, close_turns, parts_taken, parts_done
+   use parts_in_turn, only: begin_part, end_part, write_rest
    use progress, only: progress_t, show_progress
-   use outputs, only: outputs_t, forget_files
+   use outputs, only: outputs_t, flush_sets, forget_files
    implicit none
    private
    public :: share_of_job_t, run_shares, next_part, end_share
 
-   !> Parts for each process: of sets that take unequal times the last ones end together.
-   integer, parameter :: parts_a_process = 64
-   !> The least variants in a part: they fill the lanes.
+   !> Parts for each process: the last ones end together, and text that waits is still in the processor's cache.
+   integer, parameter :: parts_a_process = 256
+   !> A part has as many variants or more: they fill the lanes.
    integer, parameter :: least_variants = 8
-   !> Milliseconds after which the parent looks whether a signal has come.
-   integer, parameter :: look_time = 500
-   !> What a child reports to its parent: that a part is written, or, after its message, that it ends.
-   character(1), parameter :: part_written = achar(1), end_of_message = achar(2)
+   !> Milliseconds after which the parent looks whether a signal has come, and how far the job is.
+   integer, parameter :: look_time = 200
+   !> Ends the message that a child reports to its parent.
+   character(1), parameter :: end_of_message = achar(2)
 
    !> What this process computes.
    type :: share_of_job_t
@@ -36,9 +37,9 @@ module shares
       integer :: first = 1, last = 0                !< all of them
       integer :: parts = 1                          !< so many parts there are; in the parent of other processes none
       integer :: part = 0                           !< the one at hand
-      integer :: processes = 1
+      integer :: unit = 1                           !< all but the last are multiples of so many sets or variants
+      integer :: own_first = 1, own_last = 0        !< the sets or variants of the part at hand
       logical :: is_child = .false.
-      integer(c_int) :: turn = -1, next_turn = -1   !< pipes: a byte for each output, and one; see `text_output`
       integer(c_int) :: report = -1                 !< a pipe to or from the parent
    end type share_of_job_t
 
@@ -55,22 +56,19 @@ contains
       integer, intent(inout) :: status
       character(:), allocatable, intent(inout) :: message
       integer :: list(processes), k
-      integer(c_int) :: last_turn, report
+      integer(c_int) :: report
 
-      associate (count => s%last - s%first + 1)
-         s%parts = count
-         if (s%kind == 'VARIANTS') s%parts = count/least_variants
-         s%parts = min(count, max(processes, min(s%parts, parts_a_process*processes)))
-      end associate
-      s%processes = processes
+      call divide(s, processes)
       call make_pipe(s%report, report)
-      call make_pipe(s%turn, last_turn)
-      if (s%turn >= 0) call pass_turn(o, last_turn)
       do k = 1, processes
          list(k) = -1
-         if (k == processes) s%next_turn = last_turn
-         if (s%report < 0 .or. s%turn < 0) exit
-         call make_child(list(k))
+         if (s%report < 0) exit
+         if (k == 1) then
+            if (.not. make_turns(o%parts%turns)) exit
+         end if
+         list(k) = fork_process()
+         s%is_child = list(k) == 0
+         if (s%is_child) call begin_child()
          if (s%is_child) return
          if (list(k) < 0) exit
       end do
@@ -78,53 +76,32 @@ contains
          status = status_system
          message = ' *** NO PROCESS FOR'//text_of(k)//' ('//capitals(reason_of(last_error()))//')'
          call interrupt_all(list(:k - 1))
-         call close_one(last_turn)
       end if
-      call close_one(s%turn)
       call close_one(report)
-      call forget_files(o, s%first, s%last)
       call follow(list(:min(k, processes)), message)
+      call leave_files()
+      call close_turns(o%parts%turns)
       s%parts = 0
 
    contains
 
-      !> Makes process number `k`, whose number among all processes is `child`, negative if there is none. s%turn: in
-      !> its parent that of the next process from now on.
-      subroutine make_child(child)
-         integer, intent(out) :: child
-         integer(c_int) :: next
+      !> What a child does first.
+      subroutine begin_child()
+         call note_all_signals
+         call close_one(s%report)
+         s%report = report
+         ! Those that it computes no part of are left as they are.
+         o%files(:, 0)%emptied = .true.
+      end subroutine begin_child
 
-         next = -1
-         child = -1
-         if (k < s%processes) call make_pipe(next, s%next_turn)
-         if (s%next_turn < 0) return
-         child = fork_process()
-         s%is_child = child == 0
-         if (s%is_child) then
-            call note_all_signals
-            call close_one(s%report)
-            s%report = report
-            if (k < s%processes) call close_one(last_turn)
-            if (k < s%processes) call close_one(next)
-            s%part = k - s%processes
-            call forget_others()
-         else
-            call close_one(s%turn)
-            call close_one(s%next_turn)
-            s%turn = next
-            ! What the first process has emptied is not emptied again.
-            if (child > 0) o%files(:, 0)%emptied = .true.
-         end if
-      end subroutine make_child
+      !> Leaves to the children the files that they have written.
+      subroutine leave_files()
+         integer :: taken
 
-      !> Leaves to other processes the files of those sets that process number `k` does not compute.
-      subroutine forget_others()
-         integer :: p
-
-         do p = 1, s%parts
-            if (modulo(p - k, s%processes) /= 0) call forget_files(o, first_of(s, p), first_of(s, p + 1) - 1)
-         end do
-      end subroutine forget_others
+         taken = min(parts_taken(o%parts%turns), s%parts)
+         if (taken > 0) o%files(:, 0)%emptied = .true.
+         call forget_files(o, s%first, first_of(s, taken + 1) - 1)
+      end subroutine leave_files
 
       !> Waits for the children of `list`, takes over the first `message`, and finds the `status` of the whole.
       subroutine follow(list, message)
@@ -132,28 +109,25 @@ contains
          character(:), allocatable, intent(inout) :: message
          character(4096) :: block
          character(:), allocatable :: said
-         integer :: ended, k, p, i, n
+         integer :: ended, k, n
 
-         p = 0
          said = ''
          do while (s%report >= 0)
             if (signal_received() > 0) call interrupt_all(list)
-            if (.not. has_input(s%report, look_time)) cycle
-            n = read_bytes(s%report, block)
-            if (n <= 0) exit
-            do i = 1, n
-               if (block(i:i) /= part_written) said = said//block(i:i)
-               if (block(i:i) == part_written) p = p + 1
-            end do
-            if (p > 0) call show_progress(progress, s%kind//': NUMBER', first_of(s, p + 1) - 1, s%last)
+            if (has_input(s%report, look_time)) then
+               n = read_bytes(s%report, block)
+               if (n <= 0) exit
+               said = said//block(:n)
+            end if
+            call show_progress(progress, s%kind//': NUMBER', first_of(s, parts_done(o%parts%turns) + 1) - 1, s%last)
          end do
          if (len(message) == 0 .and. len(said) > 0) message = said(:index(said, end_of_message) - 1)
          do k = 1, size(list)
             if (list(k) <= 0) cycle
             call wait_for_child(list(k), ended)
             if (ended >= killed .and. status < status_system) then
-               ! The first of its parts that is not written.
-               message = ' *** THE PROCESS FOR'//text_of(p + 1 + modulo(k - p - 1, s%processes)) &
+               ! All parts before its own are done.
+               message = ' *** THE PROCESS FOR'//text_of(min(parts_done(o%parts%turns) + 1, s%parts)) &
                   //' WAS ENDED BY SIGNAL '//whole(ended - killed)
                status = status_system
             else if (ended < killed) then
@@ -189,49 +163,64 @@ contains
       end function text_of
    end subroutine run_shares
 
+   !> Divides the sets or variants of `s` for `processes` processes.
+   pure subroutine divide(s, processes)
+      type(share_of_job_t), intent(inout) :: s
+      integer, intent(in) :: processes
+
+      associate (count => s%last - s%first + 1)
+         s%parts = count
+         if (s%kind == 'VARIANTS') then
+            s%parts = min(count, max(processes, count/least_variants))
+            ! Of many, parts are multiples of the lanes; few are divided alike.
+            if (s%parts > least_variants*processes) s%unit = least_variants
+         end if
+         s%parts = min((count - 1)/s%unit + 1, s%parts, parts_a_process*processes)
+      end associate
+      s%own_last = s%first - 1
+   end subroutine divide
+
    !> Ends the part at hand, if there is one, and begins the next: `first` to `last`. False where there is none, or the
-   !> job is over.
+   !> job is over; then all is written.
    logical function next_part(o, s, first, last)
       class(outputs_t), intent(inout) :: o
       type(share_of_job_t), intent(inout) :: s
       integer, intent(out) :: first, last
+      integer :: before
 
-      if (s%part > 0 .and. s%is_child) call end_part(o, s)
-      s%part = s%part + s%processes
+      before = s%own_last
+      if (s%is_child .and. s%part > 0) then
+         call flush_sets(o, s%own_first, s%own_last)
+         call end_part(o%parts, o%files(:, 0), goes_on(o, s))
+      end if
+      next_part = goes_on(o, s)
+      s%part = s%part + 1
+      if (next_part .and. s%is_child) then
+         call begin_part(o%parts, s%parts, o%files(:, 0))
+         s%part = o%parts%part
+      end if
+      next_part = next_part .and. s%part <= s%parts
       first = first_of(s, s%part)
       last = first_of(s, s%part + 1) - 1
-      next_part = s%part <= s%parts .and. signal_received() == 0 .and. .not. any(has_failed(o%files))
-      if (next_part .and. s%is_child) o%files(:, 0)%turn = s%turn
+      s%own_first = first
+      s%own_last = last
+      if (.not. s%is_child) return
+      ! The sets between are those of other processes.
+      call forget_files(o, before + 1, merge(first - 1, s%last, next_part))
+      if (.not. next_part) call write_rest(o%parts, o%files(:, 0))
    end function next_part
 
-   !> Writes the text of the part at hand as soon as its turn has come, and passes the turn on unless the job is over.
-   subroutine end_part(o, s)
-      class(outputs_t), intent(inout) :: o
-      type(share_of_job_t), intent(inout) :: s
-      integer(c_int) :: turn
-      integer(c_size_t) :: written
-      integer :: k
-
-      do k = 1, size(o%files, 1)
-         if (allocated(o%files(k, 0)%buffer)) call write_block(o%files(k, 0))
-      end do
-      turn = s%turn
-      call take_turn(turn, o%files(1, 0)%error)
-      if (signal_received() > 0 .or. any(has_failed(o%files))) return
-      written = write_bytes(s%report, part_written)
-      if (s%part == s%parts) return
-      call pass_turn(o, s%next_turn)
-   end subroutine end_part
-
-   !> Gives the turn to the process that reads from `pipe`.
-   subroutine pass_turn(o, pipe)
+   !> No signal has come, and no write has failed.
+   logical function goes_on(o, s)
       class(outputs_t), intent(in) :: o
-      integer(c_int), intent(in) :: pipe
-      integer(c_size_t) :: written
-      integer :: k
+      type(share_of_job_t), intent(in) :: s
+      integer :: i
 
-      written = write_bytes(pipe, repeat('.', 1 + count([(allocated(o%files(k, 0)%buffer), k=1, size(o%files, 1))])))
-   end subroutine pass_turn
+      goes_on = signal_received() == 0 .and. .not. any(has_failed(o%files(:, 0)))
+      do i = s%own_first, min(s%own_last, ubound(o%files, 2))
+         if (any(has_failed(o%files(:, i)))) goes_on = .false.
+      end do
+   end function goes_on
 
    !> Ends the child: its parent takes over the exit `status` and the `message`, unless its turn has never come.
    subroutine end_share(o, s, status, message)
@@ -251,6 +240,7 @@ contains
       type(share_of_job_t), intent(in) :: s
       integer, intent(in) :: p
 
-      first_of = s%first + share_end(s%last - s%first + 1, min(p, s%parts + 1) - 1, max(1, s%parts))
+      first_of = s%first + s%unit*share_end((s%last - s%first)/s%unit + 1, min(p, s%parts + 1) - 1, max(1, s%parts))
+      first_of = min(first_of, s%last + 1)
    end function first_of
 end module shares

@@ -1,33 +1,29 @@
 !> Lines to a file or to standard output, in large blocks of whole lines. A failed write is an error, never a crash. A
-!> file keeps its old contents until the first block is written. Where processes write to one file in turn, text stays
-!> in memory until the turn has come.
+!> file keeps its old contents until the first block is written. Where processes write to one file in turn, text is held
+!> in memory until the turn has come (`parts_in_turn`).
 module text_output
    use, intrinsic :: iso_c_binding, only: c_int, c_size_t
    use failures, only: failure_t, fail, capitals, status_system, status_rejected
    use system_calls, only: identity_t, identity_of_path, identity_of_descriptor, same_file, open_to_write, &
-      read_bytes, write_bytes, close_descriptor, empty_file, remove_file, last_error, reason_of, closed_descriptor, &
-      broken_pipe
-   use processes, only: has_input
+      write_bytes, close_descriptor, empty_file, remove_file, last_error, reason_of, closed_descriptor, broken_pipe
    implicit none
    private
    public :: output_t, open_output, check_apart, put, add, flush_output, close_output, forget_output, abandon_output
-   public :: take_turn, write_block, has_failed, has_broken_pipe, turn_lost
+   public :: hold_output, held_length, write_held, release_output, drop_held, has_failed, has_broken_pipe, turn_lost
 
    integer, parameter :: block_length = 65536
-   !> So many characters wait in memory for their turn to be written; more wait for it at once.
-   integer, parameter :: max_held = 2**27
    !> The error of an output whose turn will never come: the process before it has ended.
    integer, parameter :: turn_lost = -1
    integer(c_int), parameter :: standard_input = 0, standard_output = 1
 
-   !> An open output. `close_output` reports a failed write; all that follows such a write is dropped. `turn`: a pipe
-   !> that has a byte for each output of this process when its turn to write has come; negative: it has.
+   !> An open output. `close_output` reports a failed write; all that follows such a write is dropped.
    type :: output_t
       integer(c_int) :: descriptor = standard_output
       character(:), allocatable :: path      !< '' for standard output
-      integer(c_int) :: turn = -1            !< see above
-      character(:), allocatable :: buffer    !< (block_length or more) what is not written yet; not allocated: not open
-      integer :: used = 0                    !< characters in the buffer
+      character(:), allocatable :: buffer    !< (block_length or more); not allocated: not open
+      integer :: written = 0, used = 0       !< what is not written yet stands in the buffer between these places
+      integer :: room = block_length         !< so many characters of the buffer are in use
+      logical :: held = .false.              !< its turn to be written has not come: all text stays in the buffer
       logical :: made = .false.              !< the file did not exist before
       logical :: emptied = .false.           !< the old contents of the file are gone
       integer :: error = 0                   !< the system's number of the first write error; 0: none
@@ -94,7 +90,7 @@ contains
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: line
 
-      if (len(line) >= len(o%buffer) - o%used) then
+      if (len(line) >= o%room - o%used) then
          call add(o, line)
          call add(o, new_line('a'))
          return
@@ -109,12 +105,10 @@ contains
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: text
 
-      do while (len(text) > len(o%buffer) - o%used .and. is_held(o))
-         o%buffer = o%buffer//o%buffer
-      end do
-      if (len(text) > len(o%buffer) - o%used) call write_lines(o)
-      if (len(text) > len(o%buffer) - o%used) call write_block(o)
-      if (len(text) > len(o%buffer)) then
+      if (len(text) > o%room - o%used .and. o%held) call make_room(o, len(text))
+      if (len(text) > o%room - o%used) call write_lines(o)
+      if (len(text) > o%room - o%used) call write_block(o)
+      if (len(text) > o%room) then
          call write_text(o, text)
          return
       end if
@@ -122,20 +116,81 @@ contains
       o%used = o%used + len(text)
    end subroutine add
 
-   !> Text must wait for its turn, and there is room for it.
-   logical function is_held(o)
+   !> Makes room for `length` more characters of text that is held: in the place of what is written, if that is a
+   !> quarter of the buffer, otherwise in a larger one.
+   subroutine make_room(o, length)
+      type(output_t), intent(inout) :: o
+      integer, intent(in) :: length
+      character(:), allocatable :: larger
+      integer :: room
+
+      room = len(o%buffer)
+      if (4*o%written < room) room = 2*room
+      o%used = held_length(o)
+      do while (room - o%used < length)
+         room = 2*room
+      end do
+      o%room = room
+      if (room == len(o%buffer)) then
+         o%buffer(:o%used) = o%buffer(o%written + 1:o%written + o%used)
+      else
+         allocate (character(room) :: larger)
+         larger(:o%used) = o%buffer(o%written + 1:o%written + o%used)
+         call move_alloc(larger, o%buffer)
+      end if
+      o%written = 0
+   end subroutine make_room
+
+   !> From now on text is held.
+   elemental subroutine hold_output(o)
+      type(output_t), intent(inout) :: o
+
+      o%held = .true.
+      o%room = len(o%buffer)
+   end subroutine hold_output
+
+   !> How many characters are held, or wait for a block to be full.
+   elemental integer function held_length(o)
       type(output_t), intent(in) :: o
 
-      is_held = .false.
-      if (o%turn >= 0 .and. len(o%buffer) < max_held) is_held = .not. has_input(o%turn, 0)
-   end function is_held
+      held_length = o%used - o%written
+   end function held_length
 
-   !> Writes the buffer at once, unless it must wait for its turn: a reader that waits has its lines, and a write error
-   !> shows.
+   !> Writes the first `length` characters that are held.
+   subroutine write_held(o, length)
+      type(output_t), intent(inout) :: o
+      integer, intent(in) :: length
+
+      call write_text(o, o%buffer(o%written + 1:o%written + length))
+      o%written = o%written + length
+      if (o%written < o%used) return
+      o%written = 0
+      o%used = 0
+   end subroutine write_held
+
+   !> Writes all that is held, and text is held no longer. It then takes the beginning of the buffer alone, which stays
+   !> in the processor's cache.
+   subroutine release_output(o)
+      type(output_t), intent(inout) :: o
+
+      call write_block(o)
+      o%held = .false.
+      o%room = block_length
+   end subroutine release_output
+
+   !> Drops all that is held.
+   elemental subroutine drop_held(o)
+      type(output_t), intent(inout) :: o
+
+      o%written = 0
+      o%used = 0
+   end subroutine drop_held
+
+   !> Writes the buffer at once, unless it is held: a reader that waits has its lines, and a write error shows.
    subroutine flush_output(o)
       type(output_t), intent(inout) :: o
 
-      if (.not. is_held(o)) call write_block(o)
+      if (.not. o%held) call write_block(o)
    end subroutine flush_output
 
    !> Whether a write has failed: further results would be lost.
@@ -196,12 +251,11 @@ contains
       o%used = o%used - last
    end subroutine write_lines
 
-   !> Writes all of the buffer, when its turn has come.
+   !> Writes all of the buffer.
    subroutine write_block(o)
       type(output_t), intent(inout) :: o
 
-      call write_text(o, o%buffer(:o%used))
-      o%used = 0
+      call write_held(o, held_length(o))
    end subroutine write_block
 
    !> Writes all of `text`: the system may take it in several pieces.
@@ -210,7 +264,6 @@ contains
       character(*), intent(in) :: text
       integer(c_size_t) :: written, done
 
-      if (o%turn >= 0) call take_turn(o%turn, o%error)
       if (.not. (o%emptied .or. has_failed(o))) call empty(o)
       done = 0
       do while (done < len(text) .and. .not. has_failed(o))
@@ -219,16 +272,6 @@ contains
          done = done + written
       end do
    end subroutine write_text
-
-   !> Waits for the turn that the pipe `turn` gives, which is none then; `error` becomes turn_lost where it never comes.
-   subroutine take_turn(turn, error)
-      integer(c_int), intent(inout) :: turn
-      integer, intent(inout) :: error
-      character(1) :: byte
-
-      if (read_bytes(turn, byte) /= 1) error = turn_lost
-      turn = -1
-   end subroutine take_turn
 
    !> Deletes the old contents of the file; devices and pipes have none.
    subroutine empty(o)
