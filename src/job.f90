@@ -25,7 +25,8 @@ module job
    use answers, only: answers_t
    use assembly_table, only: draw_assemblies
    use variant_rows, only: variant_row_t
-   use set_runs, only: writers_t, run_motion, run_variants
+   use set_runs, only: writers_t, run_motion, run_variants, are_together
+   use lane_runs, only: width
    use numerals, only: whole
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set
    use command_line, only: options_t, file_options, to_standard_output, out_listing, out_csv, out_log, out_svg, &
@@ -53,6 +54,7 @@ contains
       type(writers_t) :: o
       type(share_t) :: share
       type(share_of_job_t) :: own
+      integer :: i
 
       status = status_solved
       call start_progress(o%progress, .not. options%quiet, any(to_standard_output(options%files)))
@@ -78,6 +80,7 @@ contains
          own%kind = trim(merge('VARIANTS', 'SETS    ', o%varies))
          own%first = share%first
          own%last = share%last
+         if (any([(are_together(sets(i), o), i=1, size(sets))])) own%unit = width
          associate (processes => process_count(options, sets))
             if (processes > 1) call run_shares(o, own, processes, o%progress, status, message)
          end associate

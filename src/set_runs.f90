@@ -35,7 +35,7 @@ module set_runs
       set_record, set_errors, set_closure_error, set_closing_diagnostics
    implicit none
    private
-   public :: run_variants, writers_t, run_motion
+   public :: run_variants, are_together, writers_t, run_motion
 
    !> The job's outputs, and what they keep from instant to instant.
    type, extends(outputs_t) :: writers_t
@@ -76,10 +76,10 @@ contains
          call put_note_of_shares(o%files(out_listing, 0), m)
          call put_variant_heads(o%files(out_listing, 0), summary)
       end if
-      if (full .or. m%proves .or. o%asked(out_csv) .or. o%asked(out_log)) then
-         call run_each()
-      else
+      if (are_together(m, o)) then
          call run_together()
+      else
+         call run_each()
       end if
       if (.not. o%asked(out_listing)) return
       if (n <= last) call put_broken_off(o%files(out_listing, 0), m, n - 1)
@@ -183,6 +183,15 @@ contains
          if (o%progress%shown) call show_progress(o%progress, 'SET '//whole(i)//': VARIANT', row%number, v%total)
       end subroutine write_row
    end subroutine run_variants
+
+   !> Whether rows alone are asked of the variants of `m`: then as many are solved together as there are lanes.
+   pure logical function are_together(m, o)
+      type(mechanism_t), intent(in) :: m
+      class(outputs_t), intent(in) :: o
+
+      are_together = m%variants > 0 .and. .not. (any(m%requests%every > 0) .or. m%proves .or. o%asked(out_csv) &
+         .or. o%asked(out_log))
+   end function are_together
 
    !> Solves and writes set number `i`, `m`, instant by instant; `full`: its tables too. `row`: how many instants are
    !> solved and flagged, and the first of those; `asked`: the answers to its cards.

@@ -22,10 +22,9 @@ module shares
    private
    public :: share_of_job_t, run_shares, next_part, end_share
 
-   !> Parts for each process: the last ones end together, and text that waits is still in the processor's cache.
-   integer, parameter :: parts_a_process = 256
-   !> A part has as many variants or more: they fill the lanes.
-   integer, parameter :: least_variants = 8
+   !> Parts for each process: the last ones end together, and text that waits is still in the processor's cache. Of
+   !> variants solved together there are fewer: a part begins with a structure anew, as long as several of them take.
+   integer, parameter :: parts_a_process = 256, parts_together = 32
    !> Milliseconds after which the parent looks whether a signal has come, and how far the job is.
    integer, parameter :: look_time = 200
    !> Ends the message that a child reports to its parent.
@@ -37,7 +36,7 @@ module shares
       integer :: first = 1, last = 0                !< all of them
       integer :: parts = 1                          !< so many parts there are; in the parent of other processes none
       integer :: part = 0                           !< the one at hand
-      integer :: unit = 1                           !< all but the last are multiples of so many sets or variants
+      integer :: unit = 1                           !< so many variants are solved together
       integer :: own_first = 1, own_last = 0        !< the sets or variants of the part at hand
       logical :: is_child = .false.
       integer(c_int) :: report = -1                 !< a pipe to or from the parent
@@ -169,13 +168,10 @@ contains
       integer, intent(in) :: processes
 
       associate (count => s%last - s%first + 1)
-         s%parts = count
-         if (s%kind == 'VARIANTS') then
-            s%parts = min(count, max(processes, count/least_variants))
-            ! Of many, parts are multiples of the lanes; few are divided alike.
-            if (s%parts > least_variants*processes) s%unit = least_variants
-         end if
-         s%parts = min((count - 1)/s%unit + 1, s%parts, parts_a_process*processes)
+         s%parts = min(count, parts_a_process*processes)
+         if (s%unit > 1) s%parts = min(count, max(processes, count/s%unit), parts_together*processes)
+         ! Few are divided alike.
+         if (s%parts < parts_together*processes) s%unit = 1
       end associate
       s%own_last = s%first - 1
    end subroutine divide
