@@ -78,6 +78,7 @@ contains
       end if
       call close_one(report)
       call follow(list(:min(k, processes)), message)
+      call close_one(s%report)
       call leave_files()
       call close_turns(o%parts%turns)
       s%parts = 0
