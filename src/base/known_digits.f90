@@ -6,7 +6,7 @@ module known_digits
    use numerals, only: put_fixed, put_with_point, put_whole, put_exponent, numeral_length
    implicit none
    private
-   public :: put_known, unknown_digit, nothing_known
+   public :: put_known, unknown_digit, nothing_known, errors_a_digit
 
    !> In the place of a digit that is not known.
    character(1), parameter :: unknown_digit = '?'

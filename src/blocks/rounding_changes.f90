@@ -14,9 +14,12 @@ module rounding_changes
    implicit none
    private
    public :: rounding_response_t, change_loop, change_projection, change_vector, change_product, change_slide, &
-      change_card
+      change_card, closure_motion, max_part
 
    integer, parameter :: binomial(0:2, 0:2) = reshape([1, 1, 1, 0, 1, 2, 0, 0, 1], [3, 3])
+   !> A block's unknowns may change by this part of their distance from the next root of its equations: beyond, the
+   !> first order does not hold.
+   real(wp), parameter :: max_part = 0.05_wp
 
    !> `state` is that at which the response is asked for.
    type :: rounding_response_t

@@ -25,16 +25,13 @@ module rounding_response
    use link_motion, only: chain_link_t, mark_links, missing_nothing, missing_all
    use drives, only: drive_motion
    use rounding_changes, only: rounding_response_t, change_loop, change_projection, change_vector, change_slide, &
-      change_card
+      change_card, max_part
    use card_roundings, only: directions, rounding, roundings, number_pair, number_drive, parts_of_number, &
       add_own, parts_of_any, card_sizes, card_changes, law_tables, drive_changes
    implicit none
    private
    public :: rounding_response_t, make_rounding_response, respond_to_roundings
 
-   !> A block's unknowns may change by this part of their distance from the next root of its equations: beyond, the
-   !> first order does not hold.
-   real(wp), parameter :: max_part = 0.05_wp
    !> From its own position an iteration would end at once, and show nothing of the residual that is left there.
    real(wp), parameter :: nudge = 0.0625_wp*sqrt(epsilon(1.0_wp))
 

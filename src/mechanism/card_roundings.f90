@@ -10,7 +10,8 @@ module card_roundings
    implicit none
    private
    public :: directions, card_directions, roundings, rounding, number_point, number_pair, number_drive, number_time, &
-      number_link, parts_of_number, add_own, parts_of_any, card_sizes, card_changes, law_tables, drive_changes
+      number_link, parts_of_number, add_own, parts_of_any, card_sizes, card_changes, law_tables, drive_changes, &
+      drive_bounds, largest_part, caution, own_in_tables
 
    !> Of eight numbers by chance the largest is seldom a small one; of four, more often.
    integer, parameter :: card_directions = 8, own_directions = 4, directions = card_directions + own_directions
@@ -20,7 +21,13 @@ module card_roundings
    !> Changes are to first order: they count so many roundings, so that rows that are differences of changed motions
    !> lose no digits that matter.
    real(wp), parameter :: roundings = 256.0_wp, rounding = roundings*epsilon(1.0_wp)
-   real(wp), parameter :: least = 0.4_wp, most = 1.2_wp
+   real(wp), parameter :: least = 0.4_wp, largest_part = 1.2_wp
+   !> A number of the deck, and with it every sum and product, is off by half a rounding. `caution`: for how few the
+   !> directions are.
+   real(wp), parameter :: caution = 2.5_wp
+   !> A digit of a table is worth a hundred errors of what the deck leaves open, which is the same for all programs; the
+   !> program's own errors may be as large as the digit.
+   real(wp), parameter :: own_in_tables = 0.01_wp
 
    !> What the number is on.
    integer, parameter :: number_point = 0, number_pair = 31, number_drive = 62, number_time = 93, number_link = 124
@@ -32,7 +39,7 @@ module card_roundings
    integer :: n                                !< of the loop in the next lines
    !> Written out for each number: operations on whole constant arrays of this size take the compiler seconds.
    real(wp), parameter :: parts(directions, 0:rows - 1) = reshape([ &
-      (sign(least + (most - least)*abs(real(2_int64*mod(multiplier*int(n, int64)**3, modulus) - modulus, wp) &
+      (sign(least + (largest_part - least)*abs(real(2_int64*mod(multiplier*int(n, int64)**3, modulus) - modulus, wp) &
       /real(modulus, wp)), real(2_int64*mod(multiplier*int(n, int64)**3, modulus) - modulus, wp)), &
       n=1, directions*rows)], [directions, rows])
 
@@ -220,6 +227,32 @@ contains
          end do
       end subroutine add_tables
    end function drive_changes
+
+   !> Bounds (0:2) of what the cards' directions, and those of the calculation for the part that counts in tables,
+   !> change of value, rate and acceleration of `law`, as above, over `roundings`: for a polynomial of each number and of
+   !> the time, which together are more than what the calculation rounds.
+   function drive_bounds(law, i, t, tables) result(bounds)
+      type(law_t), intent(in) :: law
+      integer, intent(in) :: i
+      real(wp), intent(in) :: t
+      type(law_t), intent(in), allocatable :: tables(:, :)
+      real(wp) :: bounds(0:2), x(directions, 0:2)
+      integer :: k
+
+      if (size(law%drive%terms) == 0) then
+         associate (p => abs(law%drive%polynomial))
+            bounds = [p(1) + 2.0_wp*abs(t)*(p(2) + abs(t)*p(3)), p(2) + 2.0_wp*abs(t)*p(3), p(3)]
+            if (law%drive%kind == drive_relangle) bounds(0) = bounds(0) + 1.0_wp
+         end associate
+         bounds = largest_part*epsilon(1.0_wp)*bounds
+      else
+         x = drive_changes(law, i, t, tables)
+         do k = 0, 2
+            bounds(k) = max(maxval(abs(x(:card_directions, k))), &
+               own_in_tables*maxval(abs(x(card_directions + 1:, k))))/roundings
+         end do
+      end if
+   end function drive_bounds
 
    !> `law_change`; at a joint of a rise the larger of those to either side.
    function law_change_here(drive, term, place, t) result(f)

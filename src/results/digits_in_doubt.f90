@@ -75,8 +75,9 @@ contains
 
    !> By how much roundings grow at most in the motion `q`, where a pivot is small; without limit where a number is
    !> large. `in_doubt`: digits may be lost. Where rates do not exist, blocks have found the position to the last digits
-   !> all the same; all equations at once (no `e`) have lost up to half of them.
-   pure subroutine find_growth(s, m, rcond, q, growth, in_doubt, e)
+   !> all the same; all equations at once (no `e`) have lost up to half of them. `numbers` (length or angle,
+   !> derivative): the largest of `q`, where its accelerations exist.
+   pure subroutine find_growth(s, m, rcond, q, growth, in_doubt, e, numbers)
       type(sizes_t), intent(in) :: s
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: rcond
@@ -84,7 +85,8 @@ contains
       real(wp), intent(out) :: growth
       logical, intent(out) :: in_doubt
       class(block_method_t), intent(in), optional :: e
-      real(wp) :: law, along, angle, size_of, usual
+      real(wp), intent(out), optional :: numbers(2, 0:2)
+      real(wp) :: law, angle, size_of, usual, x(2, 0:2)
 
       law = s%law(0) + s%law(1)*abs(q%t)
       growth = merge(huge(growth), 0.0_wp, q%known >= 0 .and. .not. present(e))
@@ -92,11 +94,14 @@ contains
       if (q%known < 2) return
       growth = huge(growth)
       in_doubt = .true.
-      call find_largest(q%position, along, angle)
-      angle = max(angle, law)
+      call find_largest(size(q%position, 2), q%position, x(:, 0))
+      call find_largest(size(q%position, 2), q%velocity, x(:, 1))
+      call find_largest(size(q%position, 2), q%acceleration, x(:, 2))
+      if (present(numbers)) numbers = x
+      angle = max(x(2, 0), law)
       ! Several ground links that stand far away are rounded as coarsely as far places are.
-      size_of = max(1.0_wp, along/s%length, maxval(abs(q%origin))/s%length, &
-         largest(q%velocity, s%length)/s%rate, largest(q%acceleration, s%length)/s%rate**2, growth_in_centres(m, q))
+      size_of = max(1.0_wp, x(1, 0)/s%length, maxval(abs(q%origin))/s%length, max(x(1, 1)/s%length, x(2, 1))/s%rate, &
+         max(x(1, 2)/s%length, x(2, 2))/s%rate**2, growth_in_centres(m, q))
       if (.not. present(e)) size_of = max(size_of, angle)
       if (size_of > safe_size) return
       if (present(e)) then
@@ -112,26 +117,17 @@ contains
       end if
    end subroutine find_growth
 
-   !> The largest coordinate, lengths in units of `length`.
-   pure real(wp) function largest(x, length)
-      real(wp), intent(in) :: x(:, :), length
-      real(wp) :: along, angle
-
-      call find_largest(x, along, angle)
-      largest = max(along/length, angle)
-   end function largest
-
-   !> The largest of the lengths, `along`, and of the angles in `x` (3, links).
-   pure subroutine find_largest(x, along, angle)
-      real(wp), intent(in) :: x(:, :)
-      real(wp), intent(out) :: along, angle
+   !> The `largest` of the lengths and of the angles in `x` (3, `n`); on a plain array, which costs no descriptor.
+   pure subroutine find_largest(n, x, largest)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: x(3, n)
+      real(wp), intent(out) :: largest(2)
       integer :: i
 
-      along = 0.0_wp
-      angle = 0.0_wp
-      do i = 1, size(x, 2)
-         along = max(along, abs(x(1, i)), abs(x(2, i)))
-         angle = max(angle, abs(x(3, i)))
+      largest = 0.0_wp
+      do i = 1, n
+         largest(1) = max(largest(1), abs(x(1, i)), abs(x(2, i)))
+         largest(2) = max(largest(2), abs(x(3, i)))
       end do
    end subroutine find_largest
 end module digits_in_doubt

@@ -3,31 +3,23 @@
 !> are asked for.
 module error_estimate
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_t, request_link, request_point, request_pair, request_pole, &
-      request_links, place_links
+   use mechanism, only: mechanism_t, request_t, request_link, request_pair, request_pole, request_links, place_links
    use motion, only: motion_t, new_motion
    use points, only: row_t, row_of, set_values, difference, is_fixed
-   use sum_errors, only: sum_roundings, errors_of_sums, error_of_sums, lost_numbers
+   use sum_errors, only: errors_of_sums, error_of_sums, fixed_error, lost_numbers
    use known_digits, only: nothing_known
    use digits_in_doubt, only: sizes_t, sizes_of, find_growth
+   use safe_digits, only: safe_digits_t, make_safe_digits, are_digits_safe
    use engine, only: engine_t
    use block_method, only: block_method_t
    use block_engine, only: block_engine_t, make_block_engine
    use link_motion, only: move_found_links
-   use card_roundings, only: directions, card_directions, roundings
+   use card_roundings, only: directions, card_directions, roundings, caution, own_in_tables
    use row_changes, only: change_row
    use rounding_response, only: rounding_response_t, make_rounding_response, respond_to_roundings
    implicit none
    private
    public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of, row_error, largest_errors
-
-   !> A number of the deck, and with it every sum and product, is off by half a rounding. `caution`: for how few the
-   !> directions are.
-   real(wp), parameter :: caution = 2.5_wp
-
-   !> A digit of a table is worth a hundred errors of what the deck leaves open, which is the same for all programs; the
-   !> program's own errors may be as large as the digit.
-   real(wp), parameter :: own_in_tables = 0.01_wp
 
    !> Instant centres and centres of curvature are compared at so many roundings to either side.
    real(wp), parameter :: few = 4.0_wp
@@ -52,6 +44,7 @@ module error_estimate
    type :: estimator_t
       type(sizes_t) :: sizes
       type(rounding_response_t) :: response
+      type(safe_digits_t) :: safe
       logical :: is_ready = .false.            !< for any position, where blocks find it
    end type estimator_t
 
@@ -66,8 +59,9 @@ contains
    end subroutine make_estimator
 
    !> How far the motion `q` of `m` is known, which the `engine` has found, by a matrix of the reciprocal condition
-   !> `rcond`. `always`: also where no digit of a table is in doubt.
-   subroutine estimate_errors(s, m, engine, rcond, q, always, found)
+   !> `rcond`. `always`: also where no digit of a table is in doubt. `for_tables`: not where bounds show all digits of
+   !> the tables safe.
+   subroutine estimate_errors(s, m, engine, rcond, q, always, found, for_tables)
       type(estimator_t), intent(inout) :: s
       type(mechanism_t), intent(in) :: m
       class(engine_t), intent(in) :: engine
@@ -75,12 +69,14 @@ contains
       type(motion_t), intent(in) :: q
       logical, intent(in) :: always
       type(error_estimate_t), intent(inout) :: found
+      logical, intent(in), optional :: for_tables
+      real(wp) :: numbers(2, 0:2)
 
       found%taken = .false.
       found%asked = always
       select type (engine)
       class is (block_method_t)
-         call find_growth(s%sizes, m, rcond, q, found%growth, found%in_doubt, engine)
+         call find_growth(s%sizes, m, rcond, q, found%growth, found%in_doubt, engine, numbers)
       class default
          call find_growth(s%sizes, m, rcond, q, found%growth, found%in_doubt)
       end select
@@ -88,9 +84,15 @@ contains
       if (q%known < 0 .and. .not. allocated(q%link_known)) return
       select type (engine)
       class is (block_method_t)
-         if (.not. s%is_ready) call make_rounding_response(s%response, m, engine)
+         if (.not. s%is_ready) then
+            call make_rounding_response(s%response, m, engine)
+            call make_safe_digits(s%safe, m, engine, s%response)
+         end if
          s%is_ready = .true.
          s%response%state%u(:) = engine%state%u
+         if (present(for_tables) .and. .not. always) then
+            if (are_digits_safe(s%safe, s%response, m, engine, q, numbers)) return
+         end if
          call take_changes(s%response, m, engine, q, s%sizes%length, always, found)
       class default
          call estimate_from_blocks(s, m, q, found)
@@ -234,23 +236,6 @@ contains
          lost = lost .or. lost_numbers(up, row) .or. lost_numbers(down, row)
       end do
    end subroutine change_centre
-
-   !> What rounding leaves open of the place (3) of a ground link or of a point on one: a sum of numbers of cards.
-   pure function fixed_error(m, request) result(error)
-      type(mechanism_t), intent(in) :: m
-      type(request_t), intent(in) :: request
-      real(wp) :: error(3)
-      type(row_t) :: row
-
-      row = row_of(m, motion_t(), request)
-      error = abs(row%value(:, 0))
-      if (request%kind == request_point) then
-         associate (p => m%points(request%subject))
-            error = max(error, norm2(p%offset), norm2(m%links(p%link)%position(:2)))
-         end associate
-      end if
-      error = merge(sum_roundings*epsilon(1.0_wp)*error, 0.0_wp, abs(row%value(:, 0)) > 0.0_wp)
-   end function fixed_error
 
    !> The estimated error (3, 0:2) of the row of the motion `q`: what rounding leaves open, and how far the row is from
    !> that of the motion solved to the limit of rounding.

@@ -16,7 +16,7 @@ module listing_layout
    use phrases
    implicit none
    private
-   public :: layout_t, head_drive_t, new_layout, digits_t, digits_of, column_powers, head_lines
+   public :: layout_t, head_drive_t, new_layout, digits_t, digits_for, digits_of, column_powers, head_lines
    public :: name_length, row_length, has_column, dimension_of, angle_unit, unit_of, choose_digits, column_text
 
    integer, parameter :: digits_after_first = 6

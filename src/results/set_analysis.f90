@@ -140,7 +140,7 @@ contains
       do c = 1, size(s%list)
          associate (a => s%list(c))
             call estimate_errors(s%estimators(c), s%now%own(c), a%engine, a%convergence%reciprocal_condition, &
-               s%now%motions(c), always, s%now%errors(c))
+               s%now%motions(c), always, s%now%errors(c), for_tables=.true.)
          end associate
       end do
    end subroutine sample_set

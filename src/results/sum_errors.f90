@@ -8,7 +8,7 @@ module sum_errors
    use instant_centres, only: centre_finite, centre_starting
    implicit none
    private
-   public :: errors_of_sums, error_of_sums, lost_numbers, growth_in_centres
+   public :: errors_of_sums, error_of_sums, fixed_error, lost_numbers, growth_in_centres
 
    !> A sum is off by so many roundings of its largest number.
    real(wp), parameter, public :: sum_roundings = 1.5_wp
@@ -84,6 +84,23 @@ contains
       estimate = of_sums([1, 1, 2], :)
       if (row%kind == request_pair) estimate(1, :) = of_sums(merge(2, 3, row%angular), :)
    end function error_of_sums
+
+   !> What rounding leaves open of the place (3) of a ground link or of a point on one: a sum of numbers of cards.
+   pure function fixed_error(m, request) result(error)
+      type(mechanism_t), intent(in) :: m
+      type(request_t), intent(in) :: request
+      real(wp) :: error(3)
+      type(row_t) :: row
+
+      row = row_of(m, motion_t(), request)
+      error = abs(row%value(:, 0))
+      if (request%kind == request_point) then
+         associate (p => m%points(request%subject))
+            error = max(error, norm2(p%offset), norm2(m%links(p%link)%position(:2)))
+         end associate
+      end if
+      error = merge(sum_roundings*epsilon(1.0_wp)*error, 0.0_wp, abs(row%value(:, 0)) > 0.0_wp)
+   end function fixed_error
 
    !> The numbers (3, 0:2) of the pole or curve `row` of which a sample with the row `one` leaves nothing: all, where it
    !> has no such motion; places, where one of the two has its centre at infinity, or rests, and the other not, or they
