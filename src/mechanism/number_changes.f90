@@ -63,10 +63,16 @@ contains
       integer, intent(in) :: term, place
       real(wp), intent(in) :: t
       real(wp) :: f(3)
-      real(wp), parameter :: factorial(0:2) = [1.0_wp, 1.0_wp, 2.0_wp]
 
       if (term == 0) then
-         f = powers(real(place - 1, wp), t)/factorial(place - 1)
+         select case (place)
+         case (1)
+            f = [1.0_wp, 0.0_wp, 0.0_wp]
+         case (2)
+            f = [t, 1.0_wp, 0.0_wp]
+         case default
+            f = [t**2/2.0_wp, t, 1.0_wp]
+         end select
          return
       end if
       associate (one => drive%terms(term))

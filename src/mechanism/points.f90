@@ -10,8 +10,8 @@ module points
    use motion, only: motion_t, known_of, mark_of, mark_none
    implicit none
    private
-   public :: row_t, row_of, set_values, has_number, difference, centre_numbers, coordinates_of, is_due, strides, &
-      any_due, is_fixed
+   public :: row_t, row_of, note_known, set_values, has_number, difference, centre_numbers, coordinates_of, is_due, &
+      strides, any_due, is_fixed
    public :: point_motion, pair_motion
 
    !> One row of a table, in the deck's units of length and time and in radians.

@@ -4,7 +4,7 @@ module sum_errors
    use mechanism, only: mechanism_t, request_t, request_link, request_point, request_pair, request_pole, request_curve
    use known_digits, only: nothing_known
    use motion, only: motion_t, known_of
-   use points, only: row_t, row_of
+   use points, only: row_t, row_of, note_known, set_values
    use instant_centres, only: centre_finite, centre_starting
    implicit none
    private
@@ -63,8 +63,11 @@ contains
       type(row_t) :: row
       integer :: unit
 
-      row = row_of(m, q, request)
+      ! The row without its name.
+      row%kind = request%kind
+      call note_known(m, q, request, row)
       if (row%known < 0) return
+      call set_values(m, q, request, row)
       unit = merge(2, 1, row%angular)
       size_of(unit, :) = max(size_of(unit, :), maxval(abs(row%value(:2, :)), dim=1))
       size_of(2, :) = max(size_of(2, :), abs(row%value(3, :)))
