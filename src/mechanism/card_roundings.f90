@@ -168,7 +168,7 @@ contains
       integer, intent(in) :: i
       real(wp), intent(in) :: t
       type(law_t), intent(in), allocatable :: tables(:, :)
-      real(wp) :: x(directions, 0:2), f(0:2)
+      real(wp) :: x(directions, 0:2), f(0:2), r(directions)
       integer :: j, k
 
       x = 0.0_wp
@@ -192,8 +192,10 @@ contains
          call add_own(f(k), 7*i + k, x(:, k))
       end do
       f = larger(drive_motion(law, t*(1.0_wp + rounding)) - f, f - drive_motion(law, t*(1.0_wp - rounding)))
+      r = parts_of_number(number_time, 0, 0)
       do k = 0, 2
-         x(:, k) = x(:, k) + f(k)*parts_of_number(number_time, 0, 0)
+         if (.not. abs(f(k)) > 0.0_wp) cycle
+         x(:, k) = x(:, k) + f(k)*r
          x(card_directions + 1:, k) = x(card_directions + 1:, k) + f(k)*parts(card_directions + 1:, number_time)
       end do
 
@@ -209,10 +211,11 @@ contains
          size_of = abs(number)
          ! An angle counted from another link is added to that link's, and rounded with it.
          if (term == 0 .and. place == 1 .and. law%drive%kind == drive_relangle) size_of = max(size_of, 1.0_wp)
+         if (.not. size_of > 0.0_wp) return
          f = law_change_here(law%drive, term, place, t)
+         r = parts_of_number(number_drive, i, mod(3*term + place, 30))
          do order = 0, 2
-            x(:, order) = x(:, order) + rounding*size_of*f(order)*parts_of_number(number_drive, i, mod(3*term + place, &
-               30))
+            if (abs(f(order)) > 0.0_wp) x(:, order) = x(:, order) + rounding*size_of*f(order)*r
          end do
       end subroutine add_number
 

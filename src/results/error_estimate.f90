@@ -23,6 +23,8 @@ module error_estimate
 
    !> Instant centres and centres of curvature are compared at so many roundings to either side.
    real(wp), parameter :: few = 4.0_wp
+   !> Bounds that say no take 0.4 of a step: so many instants pass at most before they are asked again.
+   integer, parameter :: longest_pause = 15
 
    !> How far the motion at one instant is known. It is `taken` where digits of the tables could be `in_doubt`, which
    !> are masked then, or where the errors are `asked` for, if anything moves.
@@ -45,6 +47,7 @@ module error_estimate
       type(sizes_t) :: sizes
       type(rounding_response_t) :: response
       type(safe_digits_t) :: safe
+      integer :: pause = 0, next_pause = 0     !< instants until bounds are asked again, and from there on
       logical :: is_ready = .false.            !< for any position, where blocks find it
    end type estimator_t
 
@@ -91,13 +94,30 @@ contains
          s%is_ready = .true.
          s%response%state%u(:) = engine%state%u
          if (present(for_tables) .and. .not. always) then
-            if (are_digits_safe(s%safe, s%response, m, engine, q, numbers)) return
+            if (are_tables_safe(s, m, engine, q, numbers)) return
          end if
          call take_changes(s%response, m, engine, q, s%sizes%length, always, found)
       class default
          call estimate_from_blocks(s, m, q, found)
       end select
    end subroutine estimate_errors
+
+   !> `are_digits_safe`; where they have not been, the next instants are not asked for: the answer is seldom another,
+   !> and the estimate decides.
+   logical function are_tables_safe(s, m, e, q, numbers) result(safe)
+      type(estimator_t), intent(inout) :: s
+      type(mechanism_t), intent(in) :: m
+      class(block_method_t), intent(in) :: e
+      type(motion_t), intent(in) :: q
+      real(wp), intent(in) :: numbers(2, 0:2)
+
+      safe = .false.
+      s%pause = s%pause - 1
+      if (s%pause >= 0) return
+      safe = are_digits_safe(s%safe, s%response, m, e, q, numbers)
+      s%next_pause = merge(0, min(longest_pause, 2*s%next_pause + 1), safe)
+      s%pause = s%next_pause
+   end function are_tables_safe
 
    !> The same where no blocks have found the motion: at its position they are made anew.
    subroutine estimate_from_blocks(s, m, q, found)

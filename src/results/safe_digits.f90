@@ -32,7 +32,8 @@ module safe_digits
       integer, allocatable :: links(:)        !< whose places are shown, of theirs or of a point's
       logical, allocatable :: shows_angle(:)  !< (links)
       real(wp), allocatable :: reaches(:)     !< (links) of the points that are shown
-      integer, allocatable :: joints(:, :)    !< (2, any number) the links of revolute pairs that are shown
+      integer, allocatable :: turned_by(:)    !< (links) their orientations
+      integer, allocatable :: joints(:, :)    !< (2, any number) the same of both links of revolute pairs that are shown
       integer, allocatable :: slides(:)       !< prismatic pairs that are shown
       type(rounding_bounds_t) :: bounds
    end type safe_digits_t
@@ -62,10 +63,12 @@ contains
          s%reach = max(s%reach, norm2(m%points(i)%offset))
       end do
       call find_shown(s, m)
+      s%turned_by = e%orientation_of(s%links)
+      s%joints = reshape(e%orientation_of(reshape(s%joints, [size(s%joints)])), shape(s%joints))
       if (s%may_be) call make_rounding_bounds(s%bounds, m, e, r)
    end subroutine make_safe_digits
 
-   !> What the requests of `m` show.
+   !> What the requests of `m` show; of `joints` the links.
    subroutine find_shown(s, m)
       type(safe_digits_t), intent(inout) :: s
       type(mechanism_t), intent(in) :: m
@@ -134,8 +137,8 @@ contains
       class(block_engine_t), intent(in) :: e
       type(motion_t), intent(in) :: q
       real(wp), intent(in) :: numbers(2, 0:2)
-      real(wp) :: left(3, 0:2), place(0:2), turn(0:2), turns(0:2)
-      integer :: i, k, order
+      real(wp) :: left(3, 0:2)
+      integer :: i
 
       safe = .false.
       if (.not. (s%may_be .and. q%known == 2)) return
@@ -146,28 +149,52 @@ contains
       left(length, :) = s%error(length, :) - left(length, :)/(caution*room)
       left(angle, :) = s%error(angle, :) - left(angle, :)/(caution*room)
       left(slide, :) = s%error(length, :) - left(slide, :)/(caution*room)
-      do i = 1, size(s%links)
-         k = s%links(i)
-         place = s%bounds%place(:, k)
-         turn = s%bounds%u(:, e%orientation_of(k))
-         turns = bound_of_turning(q%velocity(3, k), q%acceleration(3, k), turn)
-         do order = 0, 2
-            safe = safe .and. place(order) + s%reaches(i)*turns(order) <= left(length, order) &
-               .and. (turn(order) <= left(angle, order) .or. .not. s%shows_angle(i))
-         end do
-         if (.not. safe) return
-      end do
-      do i = 1, size(s%joints, 2)
-         turn = s%bounds%u(:, e%orientation_of(s%joints(1, i)))
-         turns = s%bounds%u(:, e%orientation_of(s%joints(2, i)))
-         do order = 0, 2
-            safe = safe .and. turn(order) + turns(order) <= left(angle, order)
-         end do
-      end do
+      safe = are_links_safe(size(s%links), s%links, s%turned_by, s%reaches, s%shows_angle, s%bounds%place, s%bounds%u, &
+         q%velocity, q%acceleration, left)
+      if (safe) safe = are_joints_safe(size(s%joints, 2), s%joints, s%bounds%u, left(angle, :))
+      if (.not. safe) return
       do i = 1, size(s%slides)
          safe = safe .and. all(bound_of_slide(s%bounds, m, e, q, s%slides(i)) <= left(slide, :))
       end do
    end function are_digits_safe
+
+   !> So are those of `n` links and of their points, which are in `reach` of their origins: `list` and `turned_by` (n)
+   !> are the numbers of the links and of their orientations, `place` and `u` the bounds of these, `v` and `a` velocities
+   !> and accelerations of all links; `left` (length, angle or slide; 0:2). On plain arrays, which cost no descriptors.
+   pure logical function are_links_safe(n, list, turned_by, reach, shows_angle, place, u, v, a, left) result(safe)
+      integer, intent(in) :: n, list(n), turned_by(n)
+      real(wp), intent(in) :: reach(n), place(0:2, 0:*), u(0:2, 0:*), v(3, *), a(3, *), left(3, 0:2)
+      logical, intent(in) :: shows_angle(n)
+      real(wp) :: turns(0:2)
+      integer :: i
+
+      safe = .true.
+      do i = 1, n
+         associate (k => list(i), df => u(:, turned_by(i)))
+            turns = bound_of_turning(v(3, k), a(3, k), df)
+            safe = place(0, k) + reach(i)*turns(0) <= left(length, 0) .and. &
+               place(1, k) + reach(i)*turns(1) <= left(length, 1) .and. &
+               place(2, k) + reach(i)*turns(2) <= left(length, 2)
+            if (shows_angle(i)) safe = safe .and. df(0) <= left(angle, 0) .and. df(1) <= left(angle, 1) &
+               .and. df(2) <= left(angle, 2)
+         end associate
+         if (.not. safe) return
+      end do
+   end function are_links_safe
+
+   !> So are those of the angles between the `n` pairs of orientations `joints` (2, n), which change by `u`.
+   pure logical function are_joints_safe(n, joints, u, left) result(safe)
+      integer, intent(in) :: n, joints(2, n)
+      real(wp), intent(in) :: u(0:2, 0:*), left(0:2)
+      integer :: i
+
+      safe = .true.
+      do i = 1, n
+         associate (f => u(:, joints(1, i)), g => u(:, joints(2, i)))
+            safe = safe .and. f(0) + g(0) <= left(0) .and. f(1) + g(1) <= left(1) .and. f(2) + g(2) <= left(2)
+         end associate
+      end do
+   end function are_joints_safe
 
    !> Bounds (0:2) of what changes in the slide of pair number `i`: see `change_of_pair`.
    pure function bound_of_slide(b, m, e, q, i) result(bound)
