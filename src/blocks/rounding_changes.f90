@@ -27,6 +27,7 @@ module rounding_changes
       type(workspace_t) :: work
       real(wp), allocatable :: sizes(:)          !< (points + pairs) of their numbers, in the deck's unit
       real(wp), allocatable :: cards(:, :, :)    !< (card_directions, 2, points + pairs) roundings, in the same unit
+      integer, allocatable :: turned_by(:)       !< (points + pairs) their orientations; -1: exact, a zero
       integer, allocatable :: pair_of(:)         !< (unknowns) prismatic pair of a slide; 0: none
       type(law_t), allocatable :: tables(:, :)   !< see `law_tables`
       real(wp), allocatable :: drive(:, :, :)    !< (directions, 0:2, 0:drives) as `state` has them
@@ -63,7 +64,7 @@ contains
       if (loop%vector_loop == 0) return
       do k = e%blocks%first_term(loop%vector_loop), e%blocks%first_term(loop%vector_loop + 1) - 1
          associate (term => e%blocks%terms(:, k))
-            call change_card(r, m, e, order, term(1), term(2), 1.0_wp/(e%length*loop%unit), g, size_of)
+            call change_card(r, m, order, term(1), term(2), 1.0_wp/(e%length*loop%unit), g, size_of)
          end associate
       end do
    end subroutine change_loop
@@ -128,25 +129,19 @@ contains
 
    !> The same of the numbers of point number |`point`| or, if that is 0, of the offset of pair number |`pair`|, with
    !> their sign; `scale`: 1 over the unit of `g` in that of the deck.
-   pure subroutine change_card(r, m, e, order, point, pair, scale, g, size_of)
+   pure subroutine change_card(r, m, order, point, pair, scale, g, size_of)
       type(rounding_response_t), intent(in) :: r
       type(mechanism_t), intent(in) :: m
-      class(block_engine_t), intent(in) :: e
       integer, intent(in) :: order, point, pair
       real(wp), intent(in) :: scale
       real(wp), intent(inout) :: g(directions, 2), size_of
       real(wp) :: c(2), part
-      integer :: card, link, k
+      integer :: card, k
 
-      if (point /= 0) then
-         card = abs(point)
-         link = m%points(card)%link
-      else
-         card = size(m%points) + abs(pair)
-         link = m%points(m%pairs(abs(pair))%point_i)%link
-      end if
-      if (.not. (r%sizes(card) > 0.0_wp .or. m%links(link)%ground)) return
-      associate (f => r%state%u(e%orientation_of(link)))
+      card = abs(point)
+      if (card == 0) card = size(m%points) + abs(pair)
+      if (r%turned_by(card) < 0) return
+      associate (f => r%state%u(r%turned_by(card)))
          select case (order)
          case (0)
             c = [f%c, f%s]

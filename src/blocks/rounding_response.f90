@@ -57,6 +57,10 @@ contains
       end do
       r%sizes = card_sizes(m, angle)
       r%cards = card_changes(m, r%sizes)
+      r%turned_by = e%orientation_of(m%points([(i, i=1, size(m%points)), m%pairs%point_i])%link)
+      do i = 1, size(r%sizes)
+         if (.not. (r%sizes(i) > 0.0_wp .or. any(abs(r%cards(:, :, i)) > 0.0_wp))) r%turned_by(i) = -1
+      end do
       call law_tables(m, r%tables)
       allocate (r%drive(directions, 0:2, 0:size(m%drives)), r%u(directions, 0:2, 0:e%blocks%unknowns), source=0.0_wp)
       allocate (r%missing(0:e%blocks%unknowns), source=missing_nothing)
@@ -334,14 +338,14 @@ contains
             own = merge(m%pairs(h%pair)%point_i, m%pairs(h%pair)%point_j, &
                m%points(m%pairs(h%pair)%point_i)%link == h%link)
             call add_arm(h%place%reach, h%parent_orientation)
-            call change_card(r, m, e, order, m%pairs(h%pair)%point_i + m%pairs(h%pair)%point_j - own, 0, 1.0_wp, g, &
+            call change_card(r, m, order, m%pairs(h%pair)%point_i + m%pairs(h%pair)%point_j - own, 0, 1.0_wp, g, &
                size_of)
             call add_arm(-h%place%body_vector, h%orientation)
-            call change_card(r, m, e, order, -own, 0, 1.0_wp, g, size_of)
+            call change_card(r, m, order, -own, 0, 1.0_wp, g, size_of)
             if (h%slide > 0) then
                call change_slide(r, order, e%length*h%place%slide_body_vector, h%parent_orientation, h%slide, g, &
                   size_of)
-               call change_card(r, m, e, order, 0, merge(1, -1, own == m%pairs(h%pair)%point_i)*h%pair, 1.0_wp, g, &
+               call change_card(r, m, order, 0, merge(1, -1, own == m%pairs(h%pair)%point_i)*h%pair, 1.0_wp, g, &
                   size_of)
             end if
          end if
