@@ -232,8 +232,8 @@ contains
    end function drive_changes
 
    !> Bounds (0:2) of what the cards' directions, and those of the calculation for the part that counts in tables,
-   !> change of value, rate and acceleration of `law`, as above, over `roundings`: for a polynomial of each number and of
-   !> the time, which together are more than what the calculation rounds.
+   !> change of value, rate and acceleration of `law`, as above, over `roundings`: for a polynomial of each number and
+   !> of the time, which together are more than what the calculation rounds.
    function drive_bounds(law, i, t, tables) result(bounds)
       type(law_t), intent(in) :: law
       integer, intent(in) :: i

@@ -159,25 +159,26 @@ contains
    end function are_digits_safe
 
    !> So are those of `n` links and of their points, which are in `reach` of their origins: `list` and `turned_by` (n)
-   !> are the numbers of the links and of their orientations, `place` and `u` the bounds of these, `v` and `a` velocities
-   !> and accelerations of all links; `left` (length, angle or slide; 0:2). On plain arrays, which cost no descriptors.
+   !> are the numbers of the links and of their orientations, `place` and `u` the bounds of these, `v` and `a` the
+   !> velocities and accelerations of all links; `left` (length, angle or slide; 0:2). On plain arrays, which cost no
+   !> descriptors.
    pure logical function are_links_safe(n, list, turned_by, reach, shows_angle, place, u, v, a, left) result(safe)
       integer, intent(in) :: n, list(n), turned_by(n)
       real(wp), intent(in) :: reach(n), place(0:2, 0:*), u(0:2, 0:*), v(3, *), a(3, *), left(3, 0:2)
       logical, intent(in) :: shows_angle(n)
       real(wp) :: turns(0:2)
-      integer :: i
+      integer :: i, k, f
 
       safe = .true.
       do i = 1, n
-         associate (k => list(i), df => u(:, turned_by(i)))
-            turns = bound_of_turning(v(3, k), a(3, k), df)
-            safe = place(0, k) + reach(i)*turns(0) <= left(length, 0) .and. &
-               place(1, k) + reach(i)*turns(1) <= left(length, 1) .and. &
-               place(2, k) + reach(i)*turns(2) <= left(length, 2)
-            if (shows_angle(i)) safe = safe .and. df(0) <= left(angle, 0) .and. df(1) <= left(angle, 1) &
-               .and. df(2) <= left(angle, 2)
-         end associate
+         k = list(i)
+         f = turned_by(i)
+         turns = bound_of_turning(v(3, k), a(3, k), u(:, f))
+         safe = place(0, k) + reach(i)*turns(0) <= left(length, 0) .and. &
+            place(1, k) + reach(i)*turns(1) <= left(length, 1) .and. &
+            place(2, k) + reach(i)*turns(2) <= left(length, 2)
+         if (shows_angle(i)) safe = safe .and. u(0, f) <= left(angle, 0) .and. u(1, f) <= left(angle, 1) &
+            .and. u(2, f) <= left(angle, 2)
          if (.not. safe) return
       end do
    end function are_links_safe
@@ -186,13 +187,14 @@ contains
    pure logical function are_joints_safe(n, joints, u, left) result(safe)
       integer, intent(in) :: n, joints(2, n)
       real(wp), intent(in) :: u(0:2, 0:*), left(0:2)
-      integer :: i
+      integer :: i, f, g
 
       safe = .true.
       do i = 1, n
-         associate (f => u(:, joints(1, i)), g => u(:, joints(2, i)))
-            safe = safe .and. f(0) + g(0) <= left(0) .and. f(1) + g(1) <= left(1) .and. f(2) + g(2) <= left(2)
-         end associate
+         f = joints(1, i)
+         g = joints(2, i)
+         safe = safe .and. u(0, f) + u(0, g) <= left(0) .and. u(1, f) + u(1, g) <= left(1) &
+            .and. u(2, f) + u(2, g) <= left(2)
       end do
    end function are_joints_safe
 
