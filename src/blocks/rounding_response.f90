@@ -9,7 +9,7 @@
 !>
 !> Not by the exact equations of `linear_response`, one direction at a time: body vectors in `directions` lanes cost as
 !> much as half a step. Not by bounds of absolute values from block to block: they grow along a chain as its numbers do
-!> not.
+!> not, and are only asked first (`rounding_bounds`).
 module rounding_response
    use kinds, only: wp
    use planar, only: rotated
