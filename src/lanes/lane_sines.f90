@@ -15,7 +15,9 @@ module lane_sines
    integer, parameter :: width = 8
    !> Angles up to here have an n of at most 20 digits.
    real(wp), parameter :: max_angle = 1.0e6_wp
-   !> Added and subtracted, it rounds to a whole number.
+   !> Whole numbers of the size of a real, whose first bit, at the place `sign_at`, is its sign.
+   integer, parameter :: sign_at = storage_size(1.0_wp) - 1, bits = (sign_at + 1)/8
+   !> Added, it makes the last bits those of the nearest whole number; subtracted again, it leaves that.
    real(wp), parameter :: whole = 1.5_wp/epsilon(1.0_wp)
    !> pi/2 in three parts.
    real(wp), parameter :: part_1 = 1.57079632673412561417E+00_wp, part_2 = 6.07710050630396597660E-11_wp, &
@@ -34,7 +36,8 @@ contains
    pure subroutine sines(x, c, s)
       real(wp), intent(in) :: x(width)
       real(wp), intent(out) :: c(width), s(width)
-      real(wp) :: n, quadrant, t, u, r, rest, z, half, sine, cosine
+      real(wp) :: n, t, u, r, rest, z, half, sine, cosine
+      integer(bits) :: quadrant, of_sine, of_cosine, exchanged
       integer :: l
 
       if (digits(1.0_wp) /= 53) then
@@ -43,8 +46,9 @@ contains
          return
       end if
       do l = 1, width
-         n = (x(l)*two_over_pi + whole) - whole
-         quadrant = n - 4.0_wp*((n*0.25_wp - 0.375_wp + whole) - whole)
+         n = x(l)*two_over_pi + whole
+         quadrant = transfer(n, quadrant)
+         n = n - whole
          t = x(l) - n*part_1
          u = n*part_2
          r = t - u
@@ -59,10 +63,11 @@ contains
          half = 0.5_wp*z
          u = 1.0_wp - half
          cosine = u + (((1.0_wp - u) - half) + (z*(z*(c1 + z*(c2 + z*(c3 + z*(c4 + z*(c5 + z*c6)))))) - r*rest))
-         t = merge(cosine, sine, abs(abs(quadrant - 2.0_wp) - 1.0_wp) < 0.5_wp)
-         u = merge(sine, cosine, abs(abs(quadrant - 2.0_wp) - 1.0_wp) < 0.5_wp)
-         s(l) = merge(-t, t, quadrant > 1.5_wp)
-         c(l) = merge(-u, u, abs(quadrant - 1.5_wp) < 1.0_wp)
+         of_sine = transfer(sine, of_sine)
+         of_cosine = transfer(cosine, of_cosine)
+         exchanged = iand(ieor(of_sine, of_cosine), -iand(quadrant, 1_bits))
+         s(l) = transfer(ieor(ieor(of_sine, exchanged), ishft(iand(quadrant, 2_bits), sign_at - 1)), z)
+         c(l) = transfer(ieor(ieor(of_cosine, exchanged), ishft(iand(quadrant + 1_bits, 2_bits), sign_at - 1)), z)
       end do
    end subroutine sines
 end module lane_sines
