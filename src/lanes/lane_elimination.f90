@@ -1,12 +1,14 @@
-!> Systems of one, two or three linear equations, one in each lane, by Gauss's elimination with the greatest pivot of
-!> each column: the operations of the reference DGESV, in its order. Rows are exchanged by choosing between numbers, so
-!> that all lanes do the same. A pivot of zero becomes one of rounding, which no certificate takes.
+!> One, two or three linear equations, those of a correction by Newton's method, in each lane, by Gauss's elimination
+!> with the greatest pivot of each column: the operations of the reference DGESV, in its order. Rows are exchanged by
+!> choosing between numbers, so that all lanes do the same. A pivot of zero becomes one of rounding, which no
+!> certificate takes. What can be done in one loop over the lanes stays in the processor, and takes half the time.
 module lane_elimination
    use kinds, only: wp
+   use block_solver, only: closed_level, step_tolerance
    use lane_sines, only: width
    implicit none
    private
-   public :: max_order, factor, substitute, pivots_of, inverse_norm
+   public :: max_order, correct, substitute, judge_factors
 
    !> The largest number of equations.
    integer, parameter :: max_order = 3
@@ -15,23 +17,100 @@ module lane_elimination
 
 contains
 
-   !> Factors of `a` (lanes, n*n by columns), in its place. `exchanged` (lanes, 3): 1 where the first row was exchanged
-   !> with the second, the first with the third, the second with the third; otherwise 0.
-   pure subroutine factor(n, a, exchanged)
+   !> The corrections `d` (lanes, n), to be subtracted from the values `u` (lanes, n), of which the largest is at least
+   !> `coarse`: none where the residuals, `d` before, are of rounding, which have nothing to correct. `a` (lanes, n*n by
+   !> columns): the Jacobian, and then its factors. `exchanged` (lanes, 3): 1 where the first row was exchanged with the
+   !> second, the first with the third, the second with the third; otherwise 0. Those of rows that are not there stay as
+   !> they are. `going`: above 0 where another iteration is needed; not 0 where something is no number.
+   pure subroutine correct(n, coarse, u, a, exchanged, d, going)
       integer, intent(in) :: n
-      real(wp), intent(inout) :: a(width, n*n)
-      real(wp), intent(out) :: exchanged(width, 3)
+      real(wp), intent(in) :: coarse(width), u(width, n)
+      real(wp), intent(inout) :: a(width, n*n), exchanged(width, 3), d(width, n)
+      real(wp), intent(out) :: going(width)
 
       select case (n)
       case (1)
-         exchanged = 0.0_wp
-         call fill_zeros(a(:, 1))
+         call correct_one(coarse, u, a, d, going)
       case (2)
-         call factor_two(a, exchanged)
+         call correct_two(coarse, u, a, exchanged, d, going)
       case (3)
-         call factor_three(a, exchanged)
+         call correct_three(coarse, u, a, exchanged, d, going)
       end select
-   end subroutine factor
+   end subroutine correct
+
+   !> The same of one equation.
+   pure subroutine correct_one(coarse, u, a, d, going)
+      real(wp), intent(in) :: coarse(width), u(width)
+      real(wp), intent(inout) :: a(width), d(width)
+      real(wp), intent(out) :: going(width)
+      real(wp) :: pivot, x
+      integer :: l
+
+      do l = 1, width
+         pivot = merge(a(l), no_pivot, abs(a(l)) > 0.0_wp)
+         x = merge(0.0_wp, d(l), abs(d(l)) <= closed_level*max(coarse(l), abs(u(l))))/pivot
+         a(l) = pivot
+         d(l) = x
+         going(l) = merge(0.0_wp, 1.0_wp, abs(x) <= step_tolerance*max(coarse(l), abs(u(l) - x)))
+      end do
+   end subroutine correct_one
+
+   !> The same of two.
+   pure subroutine correct_two(coarse, u, a, exchanged, d, going)
+      real(wp), intent(in) :: coarse(width), u(width, 2)
+      real(wp), intent(inout) :: a(width, 4), exchanged(width), d(width, 2)
+      real(wp), intent(out) :: going(width)
+      real(wp) :: p1, p2, q1, q2, x, y, residual, rounding
+      integer :: l
+
+      do l = 1, width
+         residual = max(abs(d(l, 1)), abs(d(l, 2)))
+         rounding = closed_level*max(coarse(l), abs(u(l, 1)), abs(u(l, 2)))
+         p1 = merge(a(l, 2), a(l, 1), abs(a(l, 2)) > abs(a(l, 1)))
+         p2 = merge(a(l, 4), a(l, 3), abs(a(l, 2)) > abs(a(l, 1)))
+         q1 = merge(a(l, 1), a(l, 2), abs(a(l, 2)) > abs(a(l, 1)))
+         q2 = merge(a(l, 3), a(l, 4), abs(a(l, 2)) > abs(a(l, 1)))
+         x = merge(d(l, 2), d(l, 1), abs(a(l, 2)) > abs(a(l, 1)))
+         y = merge(d(l, 1), d(l, 2), abs(a(l, 2)) > abs(a(l, 1)))
+         exchanged(l) = merge(1.0_wp, 0.0_wp, abs(a(l, 2)) > abs(a(l, 1)))
+         p1 = p1 + merge(0.0_wp, no_pivot, abs(p1) > 0.0_wp)
+         q1 = q1*(1.0_wp/p1)
+         q2 = q2 - q1*p2
+         q2 = q2 + merge(0.0_wp, no_pivot, abs(q2) > 0.0_wp)
+         a(l, 1) = p1
+         a(l, 2) = q1
+         a(l, 3) = p2
+         a(l, 4) = q2
+         x = merge(0.0_wp, x, residual <= rounding)
+         y = (merge(0.0_wp, y, residual <= rounding) - x*q1)/q2
+         x = (x - y*p2)/p1
+         d(l, 1) = x
+         d(l, 2) = y
+         going(l) = merge(0.0_wp, 1.0_wp, abs(x) <= step_tolerance*max(coarse(l), abs(u(l, 1) - x))) &
+            + merge(0.0_wp, 1.0_wp, abs(y) <= step_tolerance*max(coarse(l), abs(u(l, 2) - y)))
+      end do
+   end subroutine correct_two
+
+   !> The same of three.
+   pure subroutine correct_three(coarse, u, a, exchanged, d, going)
+      real(wp), intent(in) :: coarse(width), u(width, 3)
+      real(wp), intent(inout) :: a(width, 9), exchanged(width, 3), d(width, 3)
+      real(wp), intent(out) :: going(width)
+      real(wp) :: residual(width), rounding(width)
+      integer :: k
+
+      residual = max(abs(d(:, 1)), abs(d(:, 2)), abs(d(:, 3)))
+      rounding = closed_level*max(coarse, abs(u(:, 1)), abs(u(:, 2)), abs(u(:, 3)))
+      do k = 1, 3
+         d(:, k) = merge(0.0_wp, d(:, k), residual <= rounding)
+      end do
+      call factor_three(a, exchanged)
+      call substitute(3, a, exchanged, d)
+      going = 0.0_wp
+      do k = 1, 3
+         going = going + merge(0.0_wp, 1.0_wp, abs(d(:, k)) <= step_tolerance*max(coarse, abs(u(:, k) - d(:, k))))
+      end do
+   end subroutine correct_three
 
    !> Makes every zero of the `pivot` a rounding.
    pure subroutine fill_zeros(pivot)
@@ -40,33 +119,9 @@ contains
       pivot = merge(pivot, no_pivot, abs(pivot) > 0.0_wp)
    end subroutine fill_zeros
 
-   !> The same of two equations.
-   pure subroutine factor_two(a, exchanged)
-      real(wp), intent(inout) :: a(width, 4)
-      real(wp), intent(out) :: exchanged(width, 3)
-      real(wp) :: p1, p2, q1, q2
-      integer :: l
-
-      do l = 1, width
-         p1 = merge(a(l, 2), a(l, 1), abs(a(l, 2)) > abs(a(l, 1)))
-         p2 = merge(a(l, 4), a(l, 3), abs(a(l, 2)) > abs(a(l, 1)))
-         q1 = merge(a(l, 1), a(l, 2), abs(a(l, 2)) > abs(a(l, 1)))
-         q2 = merge(a(l, 3), a(l, 4), abs(a(l, 2)) > abs(a(l, 1)))
-         exchanged(l, 1) = merge(1.0_wp, 0.0_wp, abs(a(l, 2)) > abs(a(l, 1)))
-         p1 = merge(p1, no_pivot, abs(p1) > 0.0_wp)
-         q1 = q1*(1.0_wp/p1)
-         a(l, 1) = p1
-         a(l, 2) = q1
-         a(l, 3) = p2
-         a(l, 4) = q2 - q1*p2
-      end do
-      call fill_zeros(a(:, 4))
-   end subroutine factor_two
-
-   !> The same of three.
+   !> The factors of three equations.
    pure subroutine factor_three(a, exchanged)
-      real(wp), intent(inout) :: a(width, 9)
-      real(wp), intent(out) :: exchanged(width, 3)
+      real(wp), intent(inout) :: a(width, 9), exchanged(width, 3)
       real(wp) :: reciprocal
       integer :: l, c
 
@@ -119,6 +174,7 @@ contains
       integer, intent(in) :: n
       real(wp), intent(in) :: a(width, n*n), exchanged(width, 3)
       real(wp), intent(inout) :: b(width, n)
+      real(wp) :: first, second
       integer :: l
 
       select case (n)
@@ -127,10 +183,12 @@ contains
             b(l, 1) = b(l, 1)/a(l, 1)
          end do
       case (2)
-         call exchange(exchanged(:, 1), b(:, 1), b(:, 2))
          do l = 1, width
-            b(l, 2) = (b(l, 2) - b(l, 1)*a(l, 2))/a(l, 4)
-            b(l, 1) = (b(l, 1) - b(l, 2)*a(l, 3))/a(l, 1)
+            first = merge(b(l, 2), b(l, 1), exchanged(l, 1) > 0.5_wp)
+            second = merge(b(l, 1), b(l, 2), exchanged(l, 1) > 0.5_wp)
+            second = (second - first*a(l, 2))/a(l, 4)
+            b(l, 2) = second
+            b(l, 1) = (first - second*a(l, 3))/a(l, 1)
          end do
       case (3)
          call exchange(exchanged(:, 1), b(:, 1), b(:, 2))
@@ -145,54 +203,55 @@ contains
       end select
    end subroutine substitute
 
-   !> From the factors: the smallest and the largest pivot, and the sign of the determinant.
-   pure subroutine pivots_of(n, a, exchanged, least, largest, sign_of)
+   !> From the factors: the smallest and the largest pivot, the sign of the determinant, and |A^-1| in the maximum norm,
+   !> the largest sum of sizes in a row of the inverse.
+   pure subroutine judge_factors(n, a, exchanged, least, largest, sign_of, inverse)
       integer, intent(in) :: n
       real(wp), intent(in) :: a(width, n*n), exchanged(width, 3)
-      real(wp), intent(out) :: least(width), largest(width), sign_of(width)
-      integer :: l, i
+      real(wp), intent(out) :: least(width), largest(width), sign_of(width), inverse(width)
+      integer :: l
 
-      least = abs(a(:, 1))
-      largest = abs(a(:, 1))
-      sign_of = sign(1.0_wp, a(:, 1))
-      do i = 2, n
+      select case (n)
+      case (1)
          do l = 1, width
-            least(l) = min(least(l), abs(a(l, i + (i - 1)*n)))
-            largest(l) = max(largest(l), abs(a(l, i + (i - 1)*n)))
-            sign_of(l) = sign_of(l)*sign(1.0_wp, a(l, i + (i - 1)*n))
+            least(l) = abs(a(l, 1))
+            largest(l) = abs(a(l, 1))
+            sign_of(l) = sign(1.0_wp, a(l, 1))
+            inverse(l) = 1.0_wp/abs(a(l, 1))
          end do
-      end do
-      do i = 1, merge(3, n - 1, n == 3)
+      case (2)
          do l = 1, width
-            sign_of(l) = sign_of(l)*(1.0_wp - 2.0_wp*exchanged(l, i))
-         end do
-      end do
-   end subroutine pivots_of
-
-   !> |A^-1| in the maximum norm, from the factors: the largest sum of sizes in a row of the inverse.
-   pure subroutine inverse_norm(n, a, exchanged, norm)
-      integer, intent(in) :: n
-      real(wp), intent(in) :: a(width, n*n), exchanged(width, 3)
-      real(wp), intent(out) :: norm(width)
-      real(wp) :: column(width, 3), rows(width, 3)
-      integer :: l, c
-
-      if (n == 1) then
-         norm = 1.0_wp/abs(a(:, 1))
-      else if (n == 2) then
-         do l = 1, width
-            norm(l) = max(abs(a(l, 4) + a(l, 3)*a(l, 2)) + abs(a(l, 3)), abs(a(l, 1)*a(l, 2)) + abs(a(l, 1))) &
+            least(l) = min(abs(a(l, 1)), abs(a(l, 4)))
+            largest(l) = max(abs(a(l, 1)), abs(a(l, 4)))
+            sign_of(l) = sign(1.0_wp, a(l, 1))*sign(1.0_wp, a(l, 4))*(1.0_wp - 2.0_wp*exchanged(l, 1))
+            inverse(l) = max(abs(a(l, 4) + a(l, 3)*a(l, 2)) + abs(a(l, 3)), abs(a(l, 1)*a(l, 2)) + abs(a(l, 1))) &
                /abs(a(l, 1)*a(l, 4))
          end do
-      else
-         rows = 0.0_wp
-         do c = 1, 3
-            column = 0.0_wp
-            column(:, c) = 1.0_wp
-            call substitute(3, a, exchanged, column)
-            rows = rows + abs(column)
+      case (3)
+         do l = 1, width
+            least(l) = min(abs(a(l, 1)), abs(a(l, 5)), abs(a(l, 9)))
+            largest(l) = max(abs(a(l, 1)), abs(a(l, 5)), abs(a(l, 9)))
+            sign_of(l) = sign(1.0_wp, a(l, 1))*sign(1.0_wp, a(l, 5))*sign(1.0_wp, a(l, 9)) &
+               *product(1.0_wp - 2.0_wp*exchanged(l, :))
          end do
-         norm = max(rows(:, 1), rows(:, 2), rows(:, 3))
-      end if
-   end subroutine inverse_norm
+         call invert_three(a, exchanged, inverse)
+      end select
+   end subroutine judge_factors
+
+   !> The norm of the inverse of three equations.
+   pure subroutine invert_three(a, exchanged, norm)
+      real(wp), intent(in) :: a(width, 9), exchanged(width, 3)
+      real(wp), intent(out) :: norm(width)
+      real(wp) :: column(width, 3), rows(width, 3)
+      integer :: c
+
+      rows = 0.0_wp
+      do c = 1, 3
+         column = 0.0_wp
+         column(:, c) = 1.0_wp
+         call substitute(3, a, exchanged, column)
+         rows = rows + abs(column)
+      end do
+      norm = max(rows(:, 1), rows(:, 2), rows(:, 3))
+   end subroutine invert_three
 end module lane_elimination

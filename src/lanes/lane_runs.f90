@@ -20,7 +20,7 @@ module lane_runs
    use variant_rows, only: variant_row_t, note_flag
    use system_calls, only: signal_received
    use lane_sines, only: width
-   use lane_state, only: lanes_t, is_covered, make_lanes, load_lane, unload_lane, slot_of, depth
+   use lane_state, only: lanes_t, is_covered, make_lanes, load_lane, unload_lane, depth
    use lane_steps, only: judgement_t, solve_lanes, accept_lanes, keep_lane
    use lane_watch, only: watch_t, new_watch, look_on, fine_prediction
    implicit none
@@ -51,6 +51,13 @@ module lane_runs
       logical :: is_over = .true.           !< nothing is left to do
    end type lane_run_t
 
+   !> When the next steps of all lanes end: step k at t0 + span (at + k)/all_steps, as `instant` has it.
+   type :: timetable_t
+      real(wp), dimension(width) :: t0 = 0.0_wp, span = 0.0_wp, at = 0.0_wp, all_steps = 1.0_wp
+      real(wp) :: goes_on(width) = 0.0_wp   !< 1 where a variant is
+      integer :: steps = huge(1)            !< after so many a lane must be looked at
+   end type timetable_t
+
 contains
 
    !> Solves the first instants of the variant r%m, whose structure is `findings`.
@@ -75,38 +82,26 @@ contains
       type(lane_run_t), intent(inout) :: runs(:)
       type(lanes_t), intent(inout) :: l
       type(judgement_t) :: j
+      type(timetable_t) :: plan
       real(wp) :: t(width)
-      integer :: i, steps
+      integer :: i, k
 
       do i = 1, size(runs)
          call take_over(runs(i), l, i)
       end do
       if (any(runs%is_laned)) call fill_lanes(runs, l)
       do while (any(runs%is_laned) .and. signal_received() == 0)
-         ! Lanes without a variant stay where they are.
-         t = l%t(:, l%newest)
-         do i = 1, size(runs)
-            if (runs(i)%is_laned) t(i) = instant(runs(i)%m, runs(i)%at + 1)
+         plan = new_timetable(runs, l)
+         do k = 1, plan%steps
+            t = plan%t0 + plan%span*(plan%at + k)/plan%all_steps
+            call solve_lanes(l, t, j)
+            if (k == plan%steps .or. dot_product(j%refused, plan%goes_on) > 0.5_wp .or. signal_received() > 0) exit
+            call accept_lanes(l, t)
          end do
-         call solve_lanes(l, t, j)
          do i = 1, size(runs)
             if (.not. runs(i)%is_laned) cycle
-            steps = 0
-            if (j%refused(i) > 0.5_wp) then
-               steps = max_searched
-               runs(i)%patience = 2*runs(i)%patience
-            else if (is_last_step(runs(i))) then
-               steps = max_searched
-            else if (runs(i)%asked%extremes_asked) then
-               call watch_lane(runs(i), l, i, j%correction(i), steps)
-            end if
-            if (steps > 0) then
-               call go_on_from_lane(runs(i), l, i, steps, j%refused(i) > 0.5_wp)
-               call keep_lane(l, i)
-               t(i) = l%t(i, l%newest)
-            else
-               call count_instant(runs(i))
-            end if
+            call count_instants(runs(i), k - 1)
+            call look_at_step(runs(i), l, i, j, t(i))
          end do
          call accept_lanes(l, t)
          do i = 1, size(runs)
@@ -114,6 +109,54 @@ contains
          end do
       end do
    end subroutine run_lanes
+
+   !> The steps that all lanes can make until one must be looked at. Lanes without a variant stay where they are.
+   pure function new_timetable(runs, l) result(plan)
+      type(lane_run_t), intent(in) :: runs(:)
+      type(lanes_t), intent(in) :: l
+      type(timetable_t) :: plan
+      integer :: i
+
+      plan%t0 = l%t(:, l%slot(0))
+      do i = 1, size(runs)
+         if (.not. runs(i)%is_laned) cycle
+         associate (m => runs(i)%m)
+            plan%t0(i) = m%t0
+            plan%span(i) = m%t1 - m%t0
+            plan%at(i) = real(runs(i)%at, wp)
+            plan%all_steps(i) = real(m%steps, wp)
+            plan%goes_on(i) = 1.0_wp
+            plan%steps = min(plan%steps, merge(1, m%steps - runs(i)%at, runs(i)%asked%extremes_asked))
+         end associate
+      end do
+   end function new_timetable
+
+   !> Lane `i` has made a step of `r`, to the time `t`: it counts, unless the engine must look.
+   subroutine look_at_step(r, l, i, j, t)
+      type(lane_run_t), intent(inout) :: r
+      type(lanes_t), intent(inout) :: l
+      integer, intent(in) :: i
+      type(judgement_t), intent(in) :: j
+      real(wp), intent(inout) :: t
+      integer :: steps
+
+      steps = 0
+      if (j%refused(i) > 0.5_wp) then
+         steps = max_searched
+         r%patience = 2*r%patience
+      else if (is_last_step(r)) then
+         steps = max_searched
+      else if (r%asked%extremes_asked) then
+         call watch_lane(r, l, i, j%correction(i), steps)
+      end if
+      if (steps == 0) then
+         call count_instants(r, 1)
+      else
+         call go_on_from_lane(r, l, i, steps, j%refused(i) > 0.5_wp)
+         call keep_lane(l, i)
+         t = l%t(i, l%slot(0))
+      end if
+   end subroutine look_at_step
 
    !> Beside the end of the TIME card EXTREMES take more than instants, and beyond it there may be instants of their
    !> own.
@@ -123,16 +166,17 @@ contains
       is_last_step = r%at + 1 == r%m%steps .and. (r%asked%extremes_asked .or. instant_count(r%m) - 1 > r%m%steps)
    end function is_last_step
 
-   !> The next instant of `r` is solved and regular.
-   pure subroutine count_instant(r)
+   !> The next `n` instants of `r` are solved and regular.
+   pure subroutine count_instants(r, n)
       type(lane_run_t), intent(inout) :: r
+      integer, intent(in) :: n
 
-      r%at = r%at + 1
+      r%at = r%at + n
       r%counted = r%at
-      r%row%solved = r%row%solved + 1
+      r%row%solved = r%row%solved + n
       r%is_over = r%at == instant_count(r%m) - 1
       r%is_laned = .not. r%is_over
-   end subroutine count_instant
+   end subroutine count_instants
 
    !> Lane `i` takes over `r`, unless it has it or `r` is over, as soon as it can; until then the engine solves it.
    subroutine take_over(r, l, i)
@@ -284,7 +328,7 @@ contains
 
       steps = max_searched
       turned = correction > fine_prediction
-      associate (joints => r%asked%extremes%tracks(1)%joints, t1 => l%t(i, l%newest))
+      associate (joints => r%asked%extremes%tracks(1)%joints, t1 => l%t(i, l%slot(0)))
          if (size(joints) > 0) turned = turned .or. &
             any((joints - t1)*(instant(r%m, r%at + 1) - joints) >= 0.0_wp)
       end associate
@@ -293,15 +337,15 @@ contains
       class is (block_method_t)
          do u = 1, e%blocks%unknowns
             associate (x => e%state%u(u))
-               x%value = l%u(i, 1, u)
-               x%rate = l%u(i, 2, u)
-               x%acceleration = l%u(i, 3, u)
-               x%c = l%u(i, 4, u)
-               x%s = l%u(i, 5, u)
+               x%value = l%u(u)%now(i, 1)
+               x%rate = l%u(u)%now(i, 2)
+               x%acceleration = l%u(u)%now(i, 3)
+               x%c = l%u(u)%now(i, 4)
+               x%s = l%u(u)%now(i, 5)
             end associate
          end do
          do k = 1, size(l%moving)
-            e%found(l%moving(k))%pivot = l%pivot(i, l%moving(k), slot_of(l, depth - 1))
+            e%found(l%moving(k))%pivot = l%block(l%moving(k))%pivot(i, l%slot(depth - 1))
          end do
          call e%get_motion(r%s%now%motions(1), finite)
          turned = .not. finite &

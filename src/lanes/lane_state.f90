@@ -11,10 +11,37 @@ module lane_state
    use lane_elimination, only: max_order
    implicit none
    private
-   public :: lanes_t, is_covered, make_lanes, load_lane, unload_lane, slot_of, depth
+   public :: lanes_t, lane_block_t, is_covered, make_lanes, load_lane, &
+      unload_lane, depth
 
    !> Motions that a lane remembers: the last three are needed to predict, and two before to go back to.
    integer, parameter :: depth = 5
+
+   !> An unknown. What is used together stands together: to find it takes less than in arrays of their own.
+   type :: lane_unknown_t
+      real(wp) :: now(width, 5) = 0.0_wp                !< found last, as `unknown_t`: value, rate, acceleration, c, s
+      real(wp) :: past(width, 3, 0:depth - 1) = 0.0_wp  !< those remembered, by slots
+   end type lane_unknown_t
+
+   !> A block.
+   type :: lane_block_t
+      real(wp), dimension(width) :: lipschitz = 0.0_wp, coarse = 1.0_wp, sign_of = 1.0_wp
+      real(wp), dimension(width, 0:depth - 1) :: pivot = 1.0_wp, inverse = 1.0_wp   !< as in `block_engine`, by slots
+   end type lane_block_t
+
+   !> A body vector, or the direction of a slide.
+   type :: lane_vector_t
+      real(wp) :: d(width, 2) = 0.0_wp                  !< in its axes
+      real(wp) :: turned(width, 2) = 0.0_wp             !< rotated by its unknown, if that is one of the block
+   end type lane_vector_t
+
+   !> A loop.
+   type :: lane_loop_t
+      real(wp) :: ground(width, 2) = 0.0_wp, direction(width, 2) = 0.0_wp
+      !> What earlier blocks give, and its derivatives; to these, what else holds no unknown of that order.
+      real(wp) :: known(width, 2, 0:2) = 0.0_wp
+      real(wp) :: open(width, 2) = 0.0_wp, f(width, 2) = 0.0_wp   !< closure error, direction of the projection
+   end type lane_loop_t
 
    !> Lengths of each lane in the unit of its own engine. Of `blocks` all that is no number of kind `wp` counts.
    type :: lanes_t
@@ -24,26 +51,15 @@ module lane_state
       type(law_t), allocatable :: laws(:, :)            !< (drives, lanes)
       real(wp), allocatable :: polynomial(:, :, :)      !< (lanes, 3, drives)
       real(wp), allocatable :: unit_of(:, :)            !< (lanes, drives) see `block_engine_t`
-      real(wp), allocatable :: lipschitz(:, :), coarse(:, :)    !< (lanes, blocks)
+      real(wp), allocatable :: drive(:, :, :)           !< (lanes, 0:2, 0:drives) found last
       real(wp), allocatable :: constant(:, :)           !< (lanes, rows)
-      real(wp), allocatable :: ground(:, :, :), direction(:, :, :)   !< (lanes, 2, loops)
-      real(wp), allocatable :: vector(:, :, :)          !< (lanes, 2, body vectors)
-      real(wp), allocatable :: along(:, :, :)           !< (lanes, 2, slides)
-      real(wp) :: t(width, 0:depth - 1) = 0.0_wp        !< times, as below
-      real(wp) :: step(width) = 0.0_wp                  !< to the next instant
-      real(wp) :: excursion(width) = 0.0_wp             !< of the drives in it
-      !> The motions that are remembered, the latest in the slot `newest`, those before it in the slots after it.
-      integer :: newest = 0
-      real(wp), allocatable :: past(:, :, :, :)         !< (lanes, 3, 0:unknowns, 0:depth-1) value, rate, acceleration
-      real(wp), allocatable :: pivot(:, :, :), inverse(:, :, :) !< (lanes, blocks, 0:depth-1) as in `block_engine`
-      real(wp), allocatable :: sign_of(:, :)            !< (lanes, blocks)
-      !> The motion found last.
-      real(wp), allocatable :: u(:, :, :)               !< (lanes, 5, 0:unknowns) as `unknown_t`: value, rate, ...
-      real(wp), allocatable :: drive(:, :, :)           !< (lanes, 0:2, 0:drives)
-      real(wp), allocatable :: known(:, :, :, :)        !< (lanes, 2, 0:2, loops)
-      real(wp), allocatable :: open(:, :, :), f(:, :, :)        !< (lanes, 2, loops)
-      real(wp), allocatable :: own(:, :, :)             !< (lanes, 2, body vectors)
-      real(wp), allocatable :: guide(:, :, :)           !< (lanes, 2, slides)
+      real(wp) :: t(width, 0:depth - 1) = 0.0_wp        !< times, by slots
+      real(wp) :: excursion(width) = 0.0_wp             !< of the drives in a step
+      integer :: slot(0:depth - 1) = [0, 1, 2, 3, 4]    !< of the motions remembered, the latest first
+      type(lane_unknown_t), allocatable :: u(:)         !< (0:unknowns)
+      type(lane_block_t), allocatable :: block(:)
+      type(lane_vector_t), allocatable :: vector(:), slide(:)
+      type(lane_loop_t), allocatable :: loop(:)
    end type lanes_t
 
 contains
@@ -74,16 +90,10 @@ contains
       l%predicted = e%history%predicted
       associate (b => l%blocks, drives => size(e%laws))
          allocate (l%laws(drives, width), l%polynomial(width, 3, drives), l%unit_of(width, drives))
-         allocate (l%lipschitz(width, size(b%list)), l%coarse(width, size(b%list)), l%sign_of(width, size(b%list)))
+         allocate (l%drive(width, 0:2, 0:drives), source=0.0_wp)
          allocate (l%constant(width, size(b%rows)))
-         allocate (l%ground(width, 2, size(b%loops)), l%direction(width, 2, size(b%loops)))
-         allocate (l%vector(width, 2, size(b%body_vectors)), l%along(width, 2, size(b%slides)))
-         allocate (l%past(width, 3, 0:b%unknowns, 0:depth - 1), l%u(width, 5, 0:b%unknowns), source=0.0_wp)
-         allocate (l%pivot(width, size(b%list), 0:depth - 1), l%inverse(width, size(b%list), 0:depth - 1), &
-            source=1.0_wp)
-         allocate (l%drive(width, 0:2, 0:drives), l%known(width, 2, 0:2, size(b%loops)), source=0.0_wp)
-         allocate (l%open(width, 2, size(b%loops)), l%f(width, 2, size(b%loops)), source=0.0_wp)
-         allocate (l%own(width, 2, size(b%body_vectors)), l%guide(width, 2, size(b%slides)), source=0.0_wp)
+         allocate (l%u(0:b%unknowns), l%block(size(b%list)), l%loop(size(b%loops)))
+         allocate (l%vector(size(b%body_vectors)), l%slide(size(b%slides)))
       end associate
    end subroutine make_lanes
 
@@ -114,7 +124,7 @@ contains
       call load_numbers(l, lane, e%blocks)
       do i = 0, e%blocks%unknowns
          associate (u => e%state%u(i))
-            l%u(lane, :, i) = [u%value, u%rate, u%acceleration, u%c, u%s]
+            l%u(i)%now(lane, :) = [u%value, u%rate, u%acceleration, u%c, u%s]
          end associate
       end do
       call load_history(l, lane, e)
@@ -127,17 +137,20 @@ contains
       type(blocks_t), intent(in) :: b
       integer :: i
 
-      l%lipschitz(lane, :) = b%list%lipschitz
-      l%coarse(lane, :) = b%list%coarse
       l%constant(lane, :) = b%rows%constant
-      l%vector(lane, 1, :) = b%body_vectors%x
-      l%vector(lane, 2, :) = b%body_vectors%y
+      do i = 1, size(b%list)
+         l%block(i)%lipschitz(lane) = b%list(i)%lipschitz
+         l%block(i)%coarse(lane) = max(1.0_wp, b%list(i)%coarse)
+      end do
+      do i = 1, size(b%body_vectors)
+         l%vector(i)%d(lane, :) = [b%body_vectors(i)%x, b%body_vectors(i)%y]
+      end do
       do i = 1, size(b%loops)
-         l%ground(lane, :, i) = b%loops(i)%ground
-         l%direction(lane, :, i) = b%loops(i)%direction
+         l%loop(i)%ground(lane, :) = b%loops(i)%ground
+         l%loop(i)%direction(lane, :) = b%loops(i)%direction
       end do
       do i = 1, size(b%slides)
-         l%along(lane, :, i) = b%slides(i)%body_vector
+         l%slide(i)%d(lane, :) = b%slides(i)%body_vector
       end do
    end subroutine load_numbers
 
@@ -149,17 +162,19 @@ contains
       integer :: k, i, slot
 
       do k = 0, 2
-         slot = slot_of(l, k)
+         slot = l%slot(k)
          l%t(lane, slot) = e%history%t(k)
          do i = 1, size(l%predicted)
             associate (past => e%history%past(l%predicted(i)))
-               l%past(lane, :, l%predicted(i), slot) = [past%value, past%rate(k), past%acceleration(k)]
+               l%u(l%predicted(i))%past(lane, :, slot) = [past%value, past%rate(k), past%acceleration(k)]
             end associate
          end do
       end do
-      l%sign_of(lane, :) = e%followed%sign_of
-      l%pivot(lane, :, l%newest) = e%followed%pivot
-      l%inverse(lane, :, l%newest) = e%followed%inverse
+      do i = 1, size(l%block)
+         l%block(i)%sign_of(lane) = e%followed(i)%sign_of
+         l%block(i)%pivot(lane, l%slot(0)) = e%followed(i)%pivot
+         l%block(i)%inverse(lane, l%slot(0)) = e%followed(i)%inverse
+      end do
    end subroutine load_history
 
    !> Gives `e` the motion of `lane`, `back` instants before the latest: as the one that it follows.
@@ -170,31 +185,25 @@ contains
       integer :: k, i, u
 
       do k = 0, 2
-         associate (slot => slot_of(l, back + k))
+         associate (slot => l%slot(back + k))
             e%history%t(k) = l%t(lane, slot)
             do i = 1, size(l%predicted)
                u = l%predicted(i)
-               if (k == 0) e%history%past(u)%value = l%past(lane, 1, u, slot)
-               e%history%past(u)%rate(k) = l%past(lane, 2, u, slot)
-               e%history%past(u)%acceleration(k) = l%past(lane, 3, u, slot)
+               if (k == 0) e%history%past(u)%value = l%u(u)%past(lane, 1, slot)
+               e%history%past(u)%rate(k) = l%u(u)%past(lane, 2, slot)
+               e%history%past(u)%acceleration(k) = l%u(u)%past(lane, 3, slot)
             end do
          end associate
       end do
       e%history%filled = 3
-      associate (slot => slot_of(l, back))
-         e%followed%sign_of = nint(l%sign_of(lane, :))
-         e%followed%pivot = l%pivot(lane, :, slot)
-         e%followed%inverse = l%inverse(lane, :, slot)
+      associate (slot => l%slot(back))
+         do i = 1, size(l%block)
+            e%followed(i)%sign_of = nint(l%block(i)%sign_of(lane))
+            e%followed(i)%pivot = l%block(i)%pivot(lane, slot)
+            e%followed(i)%inverse = l%block(i)%inverse(lane, slot)
+         end do
       end associate
    end subroutine unload_lane
-
-   !> The slot of the motion `back` instants before the latest.
-   pure integer function slot_of(l, back)
-      type(lanes_t), intent(in) :: l
-      integer, intent(in) :: back
-
-      slot_of = modulo(l%newest + back, depth)
-   end function slot_of
 
    !> The blocks `a` and `b` differ in their numbers alone.
    pure logical function is_same_structure(a, b) result(same)

@@ -5,13 +5,13 @@
 module lane_steps
    use kinds, only: wp
    use predictor, only: largest_change
-   use block_solver, only: closed_level, step_tolerance, suspicious_pivot
+   use block_solver, only: suspicious_pivot
    use convergence, only: max_kantorovich_ratio
    use following, only: largest_correction
    use drives, only: drive_motion
    use lane_sines, only: width, max_angle
-   use lane_elimination, only: max_order, factor, substitute, pivots_of, inverse_norm
-   use lane_state, only: lanes_t, slot_of, depth
+   use lane_elimination, only: max_order, correct, substitute, judge_factors
+   use lane_state, only: lanes_t, lane_block_t, depth
    use lane_equations, only: set_lane_direction, find_lane_known, assemble_lanes, lane_right_hand_side
    implicit none
    private
@@ -85,7 +85,7 @@ contains
       end do
    end subroutine set_polynomial
 
-   !> The values expected at `t`: see `predictor`.
+   !> The values expected at `t` of all unknowns that are iterated: see `predictor`.
    subroutine predict_lanes(l, t, j)
       type(lanes_t), intent(inout) :: l
       real(wp), intent(in) :: t(width)
@@ -93,16 +93,17 @@ contains
       real(wp) :: step(width)
       integer :: k
 
-      step = t - l%t(:, l%newest)
+      step = t - l%t(:, l%slot(0))
       do k = 1, size(l%predicted)
-         associate (i => l%predicted(k))
-            call predict_one(step, l%past(1, 1, i, slot_of(l, 0)), l%past(1, 1, i, slot_of(l, 1)), &
-               l%past(1, 1, i, slot_of(l, 2)), l%u(1, 1, i), j%refused)
+         associate (u => l%u(l%predicted(k)))
+            call predict_one(step, u%past(1, 1, l%slot(0)), u%past(1, 1, l%slot(1)), u%past(1, 1, l%slot(2)), u%now, &
+               j%refused)
          end associate
+         call set_lane_direction(l, l%predicted(k))
       end do
    end subroutine predict_lanes
 
-   !> The value `u`, from the motions `p` (latest), `q` and `r`; too large a change is refused.
+   !> The value `u`, from the motions `p` (latest), `q` and `r`; too large a change is refused, and too large a value.
    pure subroutine predict_one(step, p, q, r, u, refused)
       real(wp), intent(in) :: step(width), p(width, 3), q(width, 3), r(width, 3)
       real(wp), intent(inout) :: u(width), refused(width)
@@ -112,7 +113,8 @@ contains
       do l = 1, width
          d = step(l)*(v0*p(l, 2) + v1*q(l, 2) + v2*r(l, 2) + step(l)*(a0*p(l, 3) + a1*q(l, 3) + a2*r(l, 3)))
          u(l) = p(l, 1) + d
-         refused(l) = refused(l) + merge(0.0_wp, 1.0_wp, abs(d) <= largest_change)
+         refused(l) = refused(l) + merge(0.0_wp, 1.0_wp, abs(d) <= largest_change) &
+            + merge(0.0_wp, 1.0_wp, abs(p(l, 1) + d) <= max_angle)
       end do
    end subroutine predict_one
 
@@ -125,15 +127,15 @@ contains
       u = l%blocks%unknown(l%blocks%list(i)%first)
       associate (row => l%blocks%rows(l%blocks%list(i)%first_row))
          call take_drive(row%sign_of, l%constant(1, l%blocks%list(i)%first_row), l%drive(1, 0, row%drive), &
-            l%u(1, 1, row%other), l%u(1, 1, u))
+            l%u(row%other)%now, l%u(u)%now)
       end associate
       call set_lane_direction(l, u)
    end subroutine solve_direct
 
    !> u = other + sign_of (constant + drive), and its derivatives.
    pure subroutine take_drive(sign_of, constant, drive, other, u)
-      real(wp), intent(in) :: sign_of, constant(width), drive(width, 0:2), other(width, 5)
-      real(wp), intent(inout) :: u(width, 5)
+      real(wp), intent(in) :: sign_of, constant(width), drive(width, 0:2), other(width, 3)
+      real(wp), intent(inout) :: u(width, 3)
       integer :: l
 
       do l = 1, width
@@ -149,65 +151,51 @@ contains
       integer, intent(in) :: i, n
       type(judgement_t), intent(inout) :: j
       ! Of fixed size: what has to be made for each block takes longer than its elimination.
-      real(wp) :: a(width, max_order**2), d(width, max_order), exchanged(width, 3), start(width, max_order), &
+      real(wp) :: a(width, 0:max_order**2), d(width, 0:max_order), exchanged(width, 3), start(width, max_order), &
          change(width)
       integer :: k
 
       do k = 1, n
-         associate (u => l%blocks%unknown(l%blocks%list(i)%first + k - 1))
-            start(:, k) = l%u(:, 1, u)
-            j%refused = j%refused + merge(0.0_wp, 1.0_wp, abs(start(:, k)) <= max_angle)
-            call set_lane_direction(l, u)
-         end associate
+         start(:, k) = l%u(l%blocks%unknown(l%blocks%list(i)%first + k - 1))%now(:, 1)
       end do
       call find_lane_known(l, i)
-      call iterate(l, i, n, a, d, exchanged, j)
+      call iterate(l, i, n, start, a, d, exchanged, j)
       change = 0.0_wp
       do k = 1, n
          associate (u => l%blocks%unknown(l%blocks%list(i)%first + k - 1))
-            call turn(u <= l%blocks%orientations, d(1, k), start(1, k), l%u(1, 1, u), change)
+            call turn(u <= l%blocks%orientations, d(1, k), start(1, k), l%u(u)%now, change)
          end associate
       end do
-      j%correction = max(j%correction, change)
-      call judge(l, i, n, a, exchanged, change, j)
-      call find_rates(l, i, n, a, exchanged)
+      call judge(n, a(1, 1), exchanged, change, l%slot(0), l%slot(depth - 1), l%block(i), j)
+      call find_rates(l, i, n, a(1, 1), exchanged)
    end subroutine solve_block
 
-   !> Newton's method in all lanes. Those that are done keep their values, so that what comes after their last iteration
-   !> is the same however long the others take: `a`: the factors, `d`: the last corrections, not applied yet.
-   subroutine iterate(l, i, n, a, d, exchanged, j)
+   !> Newton's method in all lanes, from the values `start`. Those that are done keep their values, so that what comes
+   !> after their last iteration is the same however long the others take: `a`: the factors, `d`: the last corrections,
+   !> not applied yet.
+   subroutine iterate(l, i, n, start, a, d, exchanged, j)
       type(lanes_t), intent(inout) :: l
       integer, intent(in) :: i, n
-      real(wp), intent(out) :: a(width, n*n), d(width, n), exchanged(width, 3)
+      real(wp), intent(in) :: start(width, n)
+      real(wp), intent(out) :: a(width, 0:n*n), d(width, 0:n)
+      real(wp), intent(inout) :: exchanged(width, 3)
       type(judgement_t), intent(inout) :: j
-      real(wp) :: size_of(width), residual(width), going(width)
+      real(wp) :: u(width, max_order), going(width)
       integer :: iteration, k
 
+      u(:, :n) = start
       do iteration = 1, max_iterations
-         call assemble_lanes(l, i, n, a, d)
-         size_of = max(1.0_wp, l%coarse(:, i))
-         residual = 0.0_wp
-         do k = 1, n
-            size_of = max(size_of, abs(l%u(:, 1, l%blocks%unknown(l%blocks%list(i)%first + k - 1))))
-            residual = max(residual, abs(d(:, k)))
-         end do
-         call factor(n, a, exchanged)
-         call substitute(n, a, exchanged, d)
-         going = 0.0_wp
-         do k = 1, n
-            ! A residual of rounding has nothing to correct.
-            d(:, k) = merge(0.0_wp, d(:, k), residual <= closed_level*size_of)
-            going = going + merge(0.0_wp, 1.0_wp, abs(d(:, k)) <= step_tolerance &
-               *max(1.0_wp, l%coarse(:, i), abs(l%u(:, 1, l%blocks%unknown(l%blocks%list(i)%first + k - 1)) - d(:, k))))
-         end do
-         going = merge(going, 0.0_wp, j%refused < 0.5_wp)
-         if (.not. any(going > 0.5_wp)) return
-         do k = 1, n
-            associate (u => l%blocks%unknown(l%blocks%list(i)%first + k - 1))
-               l%u(:, 1, u) = l%u(:, 1, u) - merge(d(:, k), 0.0_wp, going > 0.5_wp)
-               call set_lane_direction(l, u)
+         do k = 1, merge(0, n, iteration == 1)
+            associate (unknown => l%blocks%unknown(l%blocks%list(i)%first + k - 1))
+               u(:, k) = u(:, k) - merge(d(:, k), 0.0_wp, going > 0.5_wp)
+               l%u(unknown)%now(:, 1) = u(:, k)
+               call set_lane_direction(l, unknown)
             end associate
          end do
+         call assemble_lanes(l, i, n, a, d)
+         call correct(n, l%block(i)%coarse, u, a(1, 1), exchanged, d(1, 1), going)
+         going = merge(going, 0.0_wp, j%refused < 0.5_wp)
+         if (sum(going) < 0.5_wp) return
       end do
       j%refused = j%refused + going
    end subroutine iterate
@@ -217,60 +205,70 @@ contains
       logical, intent(in) :: is_angle
       real(wp), intent(in) :: d(width), start(width)
       real(wp), intent(inout) :: u(width, 5), change(width)
-      real(wp) :: c
+      real(wp) :: x
       integer :: l
 
       do l = 1, width
-         u(l, 1) = u(l, 1) - d(l)
-         change(l) = max(change(l), abs(u(l, 1) - start(l)))
+         x = u(l, 1) - d(l)
+         u(l, 1) = x
+         change(l) = max(change(l), abs(x - start(l)))
       end do
       if (.not. is_angle) return
       do l = 1, width
-         c = u(l, 4)
-         u(l, 4) = c + d(l)*u(l, 5)
-         u(l, 5) = u(l, 5) - d(l)*c
+         x = u(l, 4)
+         u(l, 4) = x + d(l)*u(l, 5)
+         u(l, 5) = u(l, 5) - d(l)*x
       end do
    end subroutine turn
 
-   !> See `judge` in `block_solver`, and what the engine and the continuation make of it. `change`: of the block's
-   !> values.
-   subroutine judge(l, i, n, a, exchanged, change, j)
-      type(lanes_t), intent(inout) :: l
-      integer, intent(in) :: i, n
+   !> See `judge` in `block_solver`, and what the engine and the continuation make of it. `change`: of the values of
+   !> `block`, from the motion in the slot `before` to that in the slot `next`.
+   pure subroutine judge(n, a, exchanged, change, before, next, block, j)
+      integer, intent(in) :: n, before, next
       real(wp), intent(in) :: a(width, n*n), exchanged(width, 3), change(width)
+      type(lane_block_t), intent(inout) :: block
       type(judgement_t), intent(inout) :: j
-      real(wp), dimension(width) :: least, largest, sign_of, inverse, before
-      integer :: lane
+      real(wp) :: largest(width), sign_of(width)
 
-      call pivots_of(n, a, exchanged, least, largest, sign_of)
-      if (n == 1) largest = l%lipschitz(:, i)
-      call inverse_norm(n, a, exchanged, inverse)
-      before = l%inverse(:, i, l%newest)
-      do lane = 1, width
-         j%refused(lane) = j%refused(lane) + merge(0.0_wp, 1.0_wp, least(lane) >= suspicious_pivot*max(largest(lane), &
-            1.0_wp)) + merge(0.0_wp, 1.0_wp, sign_of(lane)*l%sign_of(lane, i) > 0.0_wp)
-         j%ratio(lane) = max(j%ratio(lane), change(lane)*l%lipschitz(lane, i)*inverse(lane))
-         j%growth(lane) = max(j%growth(lane), l%lipschitz(lane, i)*max(inverse(lane), before(lane))**2)
-      end do
-      associate (next => slot_of(l, depth - 1))
-         l%pivot(:, i, next) = least
-         l%inverse(:, i, next) = inverse
-      end associate
+      call judge_factors(n, a, exchanged, block%pivot(1, next), largest, sign_of, block%inverse(1, next))
+      if (n == 1) then
+         call certify(block%pivot(1, next), block%lipschitz, sign_of, block%sign_of, change, block%lipschitz, &
+            block%inverse(1, next), block%inverse(1, before), j%refused, j%correction, j%ratio, j%growth)
+      else
+         call certify(block%pivot(1, next), largest, sign_of, block%sign_of, change, block%lipschitz, &
+            block%inverse(1, next), block%inverse(1, before), j%refused, j%correction, j%ratio, j%growth)
+      end if
    end subroutine judge
+
+   !> Refuses what has too small a pivot, compared with the `largest`, or a determinant of another sign than before.
+   pure subroutine certify(least, largest, sign_of, side, change, lipschitz, inverse, before, refused, correction, ratio, &
+      growth)
+      real(wp), dimension(width), intent(in) :: least, largest, sign_of, side, change, lipschitz, inverse, before
+      real(wp), dimension(width), intent(inout) :: refused, correction, ratio, growth
+      integer :: l
+
+      do l = 1, width
+         refused(l) = refused(l) + merge(0.0_wp, 1.0_wp, sign_of(l)*side(l) > 0.0_wp) &
+            + merge(0.0_wp, 1.0_wp, least(l) >= suspicious_pivot*max(largest(l), 1.0_wp))
+         correction(l) = max(correction(l), change(l))
+         ratio(l) = max(ratio(l), change(l)*lipschitz(l)*inverse(l))
+         growth(l) = max(growth(l), lipschitz(l)*max(inverse(l), before(l))**2)
+      end do
+   end subroutine certify
 
    !> Velocities and accelerations of block `i`, from its factors.
    subroutine find_rates(l, i, n, a, exchanged)
       type(lanes_t), intent(inout) :: l
       integer, intent(in) :: i, n
       real(wp), intent(in) :: a(width, n*n), exchanged(width, 3)
-      real(wp) :: v(width, max_order)
+      real(wp) :: v(width, 0:max_order)
       integer :: k, order
 
       do order = 1, 2
          call lane_right_hand_side(l, i, n, order, v)
-         call substitute(n, a, exchanged, v)
+         call substitute(n, a, exchanged, v(1, 1))
          do k = 1, n
-            l%u(:, order + 1, l%blocks%unknown(l%blocks%list(i)%first + k - 1)) = v(:, k)
+            l%u(l%blocks%unknown(l%blocks%list(i)%first + k - 1))%now(:, order + 1) = v(:, k)
          end do
       end do
    end subroutine find_rates
@@ -281,10 +279,12 @@ contains
       real(wp), intent(in) :: t(width)
       integer :: k
 
-      l%newest = slot_of(l, depth - 1)
-      l%t(:, l%newest) = t
+      l%slot = [l%slot(depth - 1), l%slot(:depth - 2)]
+      l%t(:, l%slot(0)) = t
       do k = 1, size(l%predicted)
-         call remember(l%u(1, 1, l%predicted(k)), l%past(1, 1, l%predicted(k), l%newest))
+         associate (u => l%u(l%predicted(k)))
+            call remember(u%now, u%past(1, 1, l%slot(0)))
+         end associate
       end do
    end subroutine accept_lanes
 
@@ -303,11 +303,15 @@ contains
       integer :: k
 
       do k = 1, size(l%predicted)
-         l%u(lane, :3, l%predicted(k)) = l%past(lane, :, l%predicted(k), l%newest)
+         associate (u => l%u(l%predicted(k)))
+            u%now(lane, :3) = u%past(lane, :, l%slot(0))
+         end associate
       end do
-      associate (next => slot_of(l, depth - 1))
-         l%pivot(lane, :, next) = l%pivot(lane, :, l%newest)
-         l%inverse(lane, :, next) = l%inverse(lane, :, l%newest)
+      associate (next => l%slot(depth - 1))
+         do k = 1, size(l%block)
+            l%block(k)%pivot(lane, next) = l%block(k)%pivot(lane, l%slot(0))
+            l%block(k)%inverse(lane, next) = l%block(k)%inverse(lane, l%slot(0))
+         end do
       end associate
    end subroutine keep_lane
 end module lane_steps
