@@ -21,27 +21,28 @@ contains
    !> `coarse`: none where the residuals, `d` before, are of rounding, which have nothing to correct. `a` (lanes, n*n by
    !> columns): the Jacobian, and then its factors. `exchanged` (lanes, 3): 1 where the first row was exchanged with the
    !> second, the first with the third, the second with the third; otherwise 0. Those of rows that are not there stay as
-   !> they are. `going`: above 0 where another iteration is needed; not 0 where something is no number.
-   pure subroutine correct(n, coarse, u, a, exchanged, d, going)
+   !> they are. `going`: above 0 where another iteration is needed. `v` (lanes, n): other right-hand sides, then their
+   !> solutions.
+   pure subroutine correct(n, coarse, u, a, exchanged, d, v, going)
       integer, intent(in) :: n
       real(wp), intent(in) :: coarse(width), u(width, n)
-      real(wp), intent(inout) :: a(width, n*n), exchanged(width, 3), d(width, n)
+      real(wp), intent(inout) :: a(width, n*n), exchanged(width, 3), d(width, n), v(width, n)
       real(wp), intent(out) :: going(width)
 
       select case (n)
       case (1)
-         call correct_one(coarse, u, a, d, going)
+         call correct_one(coarse, u, a, d, v, going)
       case (2)
-         call correct_two(coarse, u, a, exchanged, d, going)
+         call correct_two(coarse, u, a, exchanged, d, v, going)
       case (3)
-         call correct_three(coarse, u, a, exchanged, d, going)
+         call correct_three(coarse, u, a, exchanged, d, v, going)
       end select
    end subroutine correct
 
    !> The same of one equation.
-   pure subroutine correct_one(coarse, u, a, d, going)
+   pure subroutine correct_one(coarse, u, a, d, v, going)
       real(wp), intent(in) :: coarse(width), u(width)
-      real(wp), intent(inout) :: a(width), d(width)
+      real(wp), intent(inout) :: a(width), d(width), v(width)
       real(wp), intent(out) :: going(width)
       real(wp) :: pivot, x
       integer :: l
@@ -51,16 +52,17 @@ contains
          x = merge(0.0_wp, d(l), abs(d(l)) <= closed_level*max(coarse(l), abs(u(l))))/pivot
          a(l) = pivot
          d(l) = x
+         v(l) = v(l)/pivot
          going(l) = merge(0.0_wp, 1.0_wp, abs(x) <= step_tolerance*max(coarse(l), abs(u(l) - x)))
       end do
    end subroutine correct_one
 
    !> The same of two.
-   pure subroutine correct_two(coarse, u, a, exchanged, d, going)
+   pure subroutine correct_two(coarse, u, a, exchanged, d, v, going)
       real(wp), intent(in) :: coarse(width), u(width, 2)
-      real(wp), intent(inout) :: a(width, 4), exchanged(width), d(width, 2)
+      real(wp), intent(inout) :: a(width, 4), exchanged(width), d(width, 2), v(width, 2)
       real(wp), intent(out) :: going(width)
-      real(wp) :: p1, p2, q1, q2, x, y, residual, rounding
+      real(wp) :: p1, p2, q1, q2, x, y, first, second, residual, rounding
       integer :: l
 
       do l = 1, width
@@ -72,6 +74,8 @@ contains
          q2 = merge(a(l, 3), a(l, 4), abs(a(l, 2)) > abs(a(l, 1)))
          x = merge(d(l, 2), d(l, 1), abs(a(l, 2)) > abs(a(l, 1)))
          y = merge(d(l, 1), d(l, 2), abs(a(l, 2)) > abs(a(l, 1)))
+         first = merge(v(l, 2), v(l, 1), abs(a(l, 2)) > abs(a(l, 1)))
+         second = merge(v(l, 1), v(l, 2), abs(a(l, 2)) > abs(a(l, 1)))
          exchanged(l) = merge(1.0_wp, 0.0_wp, abs(a(l, 2)) > abs(a(l, 1)))
          p1 = p1 + merge(0.0_wp, no_pivot, abs(p1) > 0.0_wp)
          q1 = q1*(1.0_wp/p1)
@@ -86,15 +90,18 @@ contains
          x = (x - y*p2)/p1
          d(l, 1) = x
          d(l, 2) = y
+         second = (second - first*q1)/q2
+         v(l, 2) = second
+         v(l, 1) = (first - second*p2)/p1
          going(l) = merge(0.0_wp, 1.0_wp, abs(x) <= step_tolerance*max(coarse(l), abs(u(l, 1) - x))) &
             + merge(0.0_wp, 1.0_wp, abs(y) <= step_tolerance*max(coarse(l), abs(u(l, 2) - y)))
       end do
    end subroutine correct_two
 
    !> The same of three.
-   pure subroutine correct_three(coarse, u, a, exchanged, d, going)
+   pure subroutine correct_three(coarse, u, a, exchanged, d, v, going)
       real(wp), intent(in) :: coarse(width), u(width, 3)
-      real(wp), intent(inout) :: a(width, 9), exchanged(width, 3), d(width, 3)
+      real(wp), intent(inout) :: a(width, 9), exchanged(width, 3), d(width, 3), v(width, 3)
       real(wp), intent(out) :: going(width)
       real(wp) :: residual(width), rounding(width)
       integer :: k
@@ -106,6 +113,7 @@ contains
       end do
       call factor_three(a, exchanged)
       call substitute(3, a, exchanged, d)
+      call substitute(3, a, exchanged, v)
       going = 0.0_wp
       do k = 1, 3
          going = going + merge(0.0_wp, 1.0_wp, abs(d(:, k)) <= step_tolerance*max(coarse, abs(u(:, k) - d(:, k))))

@@ -26,6 +26,7 @@ module lane_state
    !> A block.
    type :: lane_block_t
       real(wp), dimension(width) :: lipschitz = 0.0_wp, coarse = 1.0_wp, sign_of = 1.0_wp
+      real(wp) :: constant(width) = 0.0_wp              !< of the equation of a direct one
       real(wp), dimension(width, 0:depth - 1) :: pivot = 1.0_wp, inverse = 1.0_wp   !< as in `block_engine`, by slots
    end type lane_block_t
 
@@ -38,7 +39,9 @@ module lane_state
    !> A loop.
    type :: lane_loop_t
       real(wp) :: ground(width, 2) = 0.0_wp, direction(width, 2) = 0.0_wp
-      !> What earlier blocks give, and its derivatives; to these, what else holds no unknown of that order.
+      real(wp) :: constant(width, 2) = 0.0_wp           !< of its equations
+      integer :: drive(2) = 0                           !< of these; 0: none
+      !> What earlier blocks give, and its derivatives: the second with all that holds no unknown second derivative.
       real(wp) :: known(width, 2, 0:2) = 0.0_wp
       real(wp) :: open(width, 2) = 0.0_wp, f(width, 2) = 0.0_wp   !< closure error, direction of the projection
    end type lane_loop_t
@@ -52,7 +55,6 @@ module lane_state
       real(wp), allocatable :: polynomial(:, :, :)      !< (lanes, 3, drives)
       real(wp), allocatable :: unit_of(:, :)            !< (lanes, drives) see `block_engine_t`
       real(wp), allocatable :: drive(:, :, :)           !< (lanes, 0:2, 0:drives) found last
-      real(wp), allocatable :: constant(:, :)           !< (lanes, rows)
       real(wp) :: t(width, 0:depth - 1) = 0.0_wp        !< times, by slots
       real(wp) :: excursion(width) = 0.0_wp             !< of the drives in a step
       integer :: slot(0:depth - 1) = [0, 1, 2, 3, 4]    !< of the motions remembered, the latest first
@@ -84,6 +86,7 @@ contains
    subroutine make_lanes(l, e)
       type(lanes_t), intent(out) :: l
       type(block_engine_t), intent(in) :: e
+      integer :: i, m
 
       l%blocks = e%blocks
       l%moving = e%moving
@@ -91,9 +94,14 @@ contains
       associate (b => l%blocks, drives => size(e%laws))
          allocate (l%laws(drives, width), l%polynomial(width, 3, drives), l%unit_of(width, drives))
          allocate (l%drive(width, 0:2, 0:drives), source=0.0_wp)
-         allocate (l%constant(width, size(b%rows)))
          allocate (l%u(0:b%unknowns), l%block(size(b%list)), l%loop(size(b%loops)))
          allocate (l%vector(size(b%body_vectors)), l%slide(size(b%slides)))
+         do i = 1, size(b%list)
+            do m = b%list(i)%first_loop, b%list(i)%last_loop
+               if (b%loops(m)%row_x > 0) l%loop(m)%drive(1) = b%rows(b%list(i)%first_row + b%loops(m)%row_x - 1)%drive
+               if (b%loops(m)%row_y > 0) l%loop(m)%drive(2) = b%rows(b%list(i)%first_row + b%loops(m)%row_y - 1)%drive
+            end do
+         end do
       end associate
    end subroutine make_lanes
 
@@ -135,12 +143,18 @@ contains
       type(lanes_t), intent(inout) :: l
       integer, intent(in) :: lane
       type(blocks_t), intent(in) :: b
-      integer :: i
+      integer :: i, m
 
-      l%constant(lane, :) = b%rows%constant
       do i = 1, size(b%list)
          l%block(i)%lipschitz(lane) = b%list(i)%lipschitz
          l%block(i)%coarse(lane) = max(1.0_wp, b%list(i)%coarse)
+         associate (rows => b%rows(b%list(i)%first_row:b%list(i)%last_row))
+            if (b%list(i)%direct) l%block(i)%constant(lane) = rows(1)%constant
+            do m = b%list(i)%first_loop, b%list(i)%last_loop
+               if (b%loops(m)%row_x > 0) l%loop(m)%constant(lane, 1) = rows(b%loops(m)%row_x)%constant
+               if (b%loops(m)%row_y > 0) l%loop(m)%constant(lane, 2) = rows(b%loops(m)%row_y)%constant
+            end do
+         end associate
       end do
       do i = 1, size(b%body_vectors)
          l%vector(i)%d(lane, :) = [b%body_vectors(i)%x, b%body_vectors(i)%y]

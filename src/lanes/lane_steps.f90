@@ -12,7 +12,8 @@ module lane_steps
    use lane_sines, only: width, max_angle
    use lane_elimination, only: max_order, correct, substitute, judge_factors
    use lane_state, only: lanes_t, lane_block_t, depth
-   use lane_equations, only: set_lane_direction, find_lane_known, assemble_lanes, lane_right_hand_side
+   use lane_equations, only: set_lane_direction, find_lane_known, assemble_lanes
+   use lane_rates, only: lane_accelerations
    implicit none
    private
    public :: judgement_t, solve_lanes, accept_lanes, keep_lane
@@ -126,7 +127,7 @@ contains
 
       u = l%blocks%unknown(l%blocks%list(i)%first)
       associate (row => l%blocks%rows(l%blocks%list(i)%first_row))
-         call take_drive(row%sign_of, l%constant(1, l%blocks%list(i)%first_row), l%drive(1, 0, row%drive), &
+         call take_drive(row%sign_of, l%block(i)%constant, l%drive(1, 0, row%drive), &
             l%u(row%other)%now, l%u(u)%now)
       end associate
       call set_lane_direction(l, u)
@@ -151,33 +152,37 @@ contains
       integer, intent(in) :: i, n
       type(judgement_t), intent(inout) :: j
       ! Of fixed size: what has to be made for each block takes longer than its elimination.
-      real(wp) :: a(width, 0:max_order**2), d(width, 0:max_order), exchanged(width, 3), start(width, max_order), &
-         change(width)
+      real(wp) :: a(width, 0:max_order**2), d(width, 0:max_order), v(width, 0:max_order), exchanged(width, 3), &
+         start(width, max_order), change(width)
       integer :: k
 
       do k = 1, n
          start(:, k) = l%u(l%blocks%unknown(l%blocks%list(i)%first + k - 1))%now(:, 1)
       end do
       call find_lane_known(l, i)
-      call iterate(l, i, n, start, a, d, exchanged, j)
+      call iterate(l, i, n, start, a, d, v, exchanged, j)
       change = 0.0_wp
       do k = 1, n
          associate (u => l%blocks%unknown(l%blocks%list(i)%first + k - 1))
-            call turn(u <= l%blocks%orientations, d(1, k), start(1, k), l%u(u)%now, change)
+            call turn(u <= l%blocks%orientations, d(1, k), v(1, k), start(1, k), l%u(u)%now, change)
          end associate
       end do
       call judge(n, a(1, 1), exchanged, change, l%slot(0), l%slot(depth - 1), l%block(i), j)
-      call find_rates(l, i, n, a(1, 1), exchanged)
+      call lane_accelerations(l, i, n, v)
+      call substitute(n, a(1, 1), exchanged, v(1, 1))
+      do k = 1, n
+         l%u(l%blocks%unknown(l%blocks%list(i)%first + k - 1))%now(:, 3) = v(:, k)
+      end do
    end subroutine solve_block
 
    !> Newton's method in all lanes, from the values `start`. Those that are done keep their values, so that what comes
    !> after their last iteration is the same however long the others take: `a`: the factors, `d`: the last corrections,
-   !> not applied yet.
-   subroutine iterate(l, i, n, start, a, d, exchanged, j)
+   !> not applied yet, `v`: the velocities.
+   subroutine iterate(l, i, n, start, a, d, v, exchanged, j)
       type(lanes_t), intent(inout) :: l
       integer, intent(in) :: i, n
       real(wp), intent(in) :: start(width, n)
-      real(wp), intent(out) :: a(width, 0:n*n), d(width, 0:n)
+      real(wp), intent(out) :: a(width, 0:n*n), d(width, 0:n), v(width, 0:n)
       real(wp), intent(inout) :: exchanged(width, 3)
       type(judgement_t), intent(inout) :: j
       real(wp) :: u(width, max_order), going(width)
@@ -192,18 +197,20 @@ contains
                call set_lane_direction(l, unknown)
             end associate
          end do
-         call assemble_lanes(l, i, n, a, d)
-         call correct(n, l%block(i)%coarse, u, a(1, 1), exchanged, d(1, 1), going)
+         call assemble_lanes(l, i, n, a, d, v)
+         call correct(n, l%block(i)%coarse, u, a(1, 1), exchanged, d(1, 1), v(1, 1), going)
+         if (sum(going) < 0.5_wp) return
          going = merge(going, 0.0_wp, j%refused < 0.5_wp)
          if (sum(going) < 0.5_wp) return
       end do
       j%refused = j%refused + going
    end subroutine iterate
 
-   !> Applies the last correction `d` of an unknown, an angle or not; `change`: the largest from its `start`.
-   pure subroutine turn(is_angle, d, start, u, change)
+   !> Applies the last correction `d` of an unknown, an angle or not, and its rate `v`; `change`: the largest from its
+   !> `start`.
+   pure subroutine turn(is_angle, d, v, start, u, change)
       logical, intent(in) :: is_angle
-      real(wp), intent(in) :: d(width), start(width)
+      real(wp), intent(in) :: d(width), v(width), start(width)
       real(wp), intent(inout) :: u(width, 5), change(width)
       real(wp) :: x
       integer :: l
@@ -211,6 +218,7 @@ contains
       do l = 1, width
          x = u(l, 1) - d(l)
          u(l, 1) = x
+         u(l, 2) = v(l)
          change(l) = max(change(l), abs(x - start(l)))
       end do
       if (.not. is_angle) return
@@ -255,23 +263,6 @@ contains
          growth(l) = max(growth(l), lipschitz(l)*max(inverse(l), before(l))**2)
       end do
    end subroutine certify
-
-   !> Velocities and accelerations of block `i`, from its factors.
-   subroutine find_rates(l, i, n, a, exchanged)
-      type(lanes_t), intent(inout) :: l
-      integer, intent(in) :: i, n
-      real(wp), intent(in) :: a(width, n*n), exchanged(width, 3)
-      real(wp) :: v(width, 0:max_order)
-      integer :: k, order
-
-      do order = 1, 2
-         call lane_right_hand_side(l, i, n, order, v)
-         call substitute(n, a, exchanged, v(1, 1))
-         do k = 1, n
-            l%u(l%blocks%unknown(l%blocks%list(i)%first + k - 1))%now(:, order + 1) = v(:, k)
-         end do
-      end do
-   end subroutine find_rates
 
    !> The motions found last, at `t`, are now the latest of their lanes.
    subroutine accept_lanes(l, t)
