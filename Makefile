@@ -93,10 +93,11 @@ warm := $(if $(filter double,$(KIND)),$(call modules_in,structure assemblies den
 less := $(patsubst -O2,-O1,$(patsubst -O1,-O0,$(filter -O%,$(RELEASE))))
 $(patsubst %,$(BUILD)/release/%.o,$(warm)): private release += $(no_lto)
 $(patsubst %,$(BUILD)/timed/%.o,$(warm)): private timed += $(no_lto)
-# Loops over lanes are of four turns at most: without counting them a step takes a tenth less.
+# Loops over lanes are of few turns: without counting them, and without calls to copy so little, a step takes a tenth less.
+lane_flags := -fpeel-loops -fno-tree-loop-distribute-patterns
 lanes := $(if $(filter double,$(KIND)),$(call modules_in,lanes))
-$(patsubst %,$(BUILD)/release/%.o,$(lanes)): private release += -fpeel-loops
-$(patsubst %,$(BUILD)/timed/%.o,$(lanes)): private timed += -fpeel-loops
+$(patsubst %,$(BUILD)/release/%.o,$(lanes)): private release += $(lane_flags)
+$(patsubst %,$(BUILD)/timed/%.o,$(lanes)): private timed += $(lane_flags)
 $(patsubst %,$(BUILD)/release/%.o,$(filter-out $(hot) $(warm),$(modules) main $(notdir $(basename $(helpers))))): private release := $(less)
 $(patsubst %,$(BUILD)/timed/%.o,$(filter-out $(hot) $(warm),$(modules) main)): private timed := $(less)
 # The closed forms that `make bench` compares with are compiled as they are fastest, in pairs.

@@ -282,9 +282,14 @@ contains
    !> Copies value, rate and acceleration.
    pure subroutine remember(u, past)
       real(wp), intent(in) :: u(width, 3)
-      real(wp), intent(out) :: past(width, 3)
+      real(wp), intent(inout) :: past(width, 3)
+      integer :: l
 
-      past = u
+      do l = 1, width
+         past(l, 1) = u(l, 1)
+         past(l, 2) = u(l, 2)
+         past(l, 3) = u(l, 3)
+      end do
    end subroutine remember
 
    !> Puts `lane` back to its latest motion, as if that had been found last.

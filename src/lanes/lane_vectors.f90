@@ -13,9 +13,13 @@ contains
    !> x and y of `from` go `to`.
    pure subroutine copy(from, to)
       real(wp), intent(in) :: from(width, 2)
-      real(wp), intent(out) :: to(width, 2)
+      real(wp), intent(inout) :: to(width, 2)
+      integer :: l
 
-      to = from
+      do l = 1, width
+         to(l, 1) = from(l, 1)
+         to(l, 2) = from(l, 2)
+      end do
    end subroutine copy
 
    !> x and y of the quarter turn of `e`.

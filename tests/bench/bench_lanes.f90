@@ -22,7 +22,7 @@ module bench_lanes
 
 contains
 
-   !> One turn in steps of 0.1 deg of eight variants at a time, whose instants are counted, and with EXTREMES of all
+   !> One turn in steps of 0.1 deg of as many variants at a time as there are lanes, whose instants are counted, and with EXTREMES of all
    !> their links. `decks`: the directory of the chains.
    subroutine lanes_table(decks)
       character(*), intent(in) :: decks
