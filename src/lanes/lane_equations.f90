@@ -67,8 +67,8 @@ contains
       end do
    end subroutine add_known
 
-   !> Jacobian `a` (lanes, n*n by columns) and residual `r` (lanes, n) of block `i`, and the right-hand side `v` (lanes, n)
-   !> for the velocities. The columns 0 of all take what no equation asks for, so that nothing need be asked.
+   !> Jacobian `a` (lanes, n*n by columns) and residual `r` (lanes, n) of block `i`, and the right-hand side `v`
+   !> (lanes, n) for the velocities. The columns 0 of all take what no equation asks for, so that nothing need be asked.
    pure subroutine assemble_lanes(l, i, n, a, r, v)
       type(lanes_t), intent(inout) :: l
       integer, intent(in) :: i, n
@@ -169,7 +169,9 @@ contains
          call take_component(loop%open(1, 2), loop%known(1, 2, 1), loop%constant(1, 2), l%drive(1, 0, loop%drive(2)), &
             r(1, g%row_y), v(1, g%row_y))
          do k = g%first_own, g%last_vector
-            call put_across(l%vector(k)%turned, a(1, l%blocks%body_vectors(k)%at(1)), a(1, l%blocks%body_vectors(k)%at(2)))
+            associate (at => l%blocks%body_vectors(k)%at)
+               call put_across(l%vector(k)%turned, a(1, at(1)), a(1, at(2)))
+            end associate
          end do
          do k = g%first_slide, g%last_slide
             call add_slide_entries(l, k, 1, x_axis, n, a, v(1, g%row_x))
@@ -234,7 +236,8 @@ contains
    !> `f`: the direction `d`, rotated by the unknown `u`. Residual `r` and right-hand side `v`: what is `open` along it,
    !> and its `rate`.
    pure subroutine project(d, u, open, rate, constant, drive, f, r, v)
-      real(wp), intent(in) :: d(width, 2), u(width, 5), open(width, 2), rate(width, 2), constant(width), drive(width, 0:1)
+      real(wp), intent(in) :: d(width, 2), u(width, 5), open(width, 2), rate(width, 2), constant(width), &
+         drive(width, 0:1)
       real(wp), intent(inout) :: f(width, 2), r(width), v(width)
       real(wp) :: x, y
       integer :: l
