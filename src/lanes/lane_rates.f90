@@ -11,8 +11,8 @@ module lane_rates
 
 contains
 
-   !> Right-hand side `v` (lanes, n) for the accelerations of block `i`, once the velocities are known, with the vectors of
-   !> the last `assemble_lanes`: once for each `find_lane_known`, to whose sums it adds.
+   !> Right-hand side `v` (lanes, n) for the accelerations of block `i`, once the velocities are known, with the vectors
+   !> of the last `assemble_lanes`: once for each `find_lane_known`, to whose sums it adds.
    pure subroutine lane_accelerations(l, i, n, v)
       type(lanes_t), intent(inout) :: l
       integer, intent(in) :: i, n
@@ -57,8 +57,8 @@ contains
       end do
    end subroutine add_given
 
-   !> Subtracts from `v` what the rotation of the direction on which loop `m` is projected adds to its second derivative,
-   !> beside unknown ones.
+   !> Subtracts from `v` what the rotation of the direction on which loop `m` is projected adds to its second
+   !> derivative, beside unknown ones.
    pure subroutine subtract_turning(l, m, v)
       type(lanes_t), intent(in) :: l
       integer, intent(in) :: m

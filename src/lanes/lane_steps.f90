@@ -249,8 +249,8 @@ contains
    end subroutine judge
 
    !> Refuses what has too small a pivot, compared with the `largest`, or a determinant of another sign than before.
-   pure subroutine certify(least, largest, sign_of, side, change, lipschitz, inverse, before, refused, correction, ratio, &
-      growth)
+   pure subroutine certify(least, largest, sign_of, side, change, lipschitz, inverse, before, &
+      refused, correction, ratio, growth)
       real(wp), dimension(width), intent(in) :: least, largest, sign_of, side, change, lipschitz, inverse, before
       real(wp), dimension(width), intent(inout) :: refused, correction, ratio, growth
       integer :: l
