@@ -169,10 +169,12 @@ contains
       integer, intent(in) :: processes
 
       associate (count => s%last - s%first + 1)
-         s%parts = min(count, parts_a_process*processes)
-         if (s%unit > 1) s%parts = min(count, max(processes, count/s%unit), parts_together*processes)
-         ! Few are divided alike.
-         if (s%parts < parts_together*processes) s%unit = 1
+         ! A part of one variant more than are solved together takes as long as one of twice as many.
+         s%parts = min((count - 1)/s%unit + 1, merge(parts_together, parts_a_process, s%unit > 1)*processes)
+         if (s%parts < processes) then
+            s%unit = 1
+            s%parts = min(count, processes)
+         end if
       end associate
       s%own_last = s%first - 1
    end subroutine divide

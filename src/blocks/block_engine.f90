@@ -13,7 +13,7 @@ module block_engine
    use predictor, only: history_t, new_history, remember, predict, largest_change, uncertain_part
    use blocks, only: blocks_t, moving_blocks, needed_blocks, largest_known
    use block_state, only: state_t, new_state
-   use block_solver, only: workspace_t, make_workspace, solve_block
+   use block_solver, only: workspace_t, make_workspace, solve_direct, solve_equations
    use first_position, only: solve_first_block, remove_turns
    use block_rank, only: jacobian_of, relative_sign
    use link_motion, only: chain_t, new_chain, move_links, move_found_links, mark_links, missing_nothing, &
@@ -176,7 +176,7 @@ contains
       list = pack([(u, u=1, e%blocks%unknowns)], iterated(e%blocks%block_of))
    end function iterated_unknowns
 
-   !> See `engine`; of the first motion each block by itself is the nearest to its estimate. `c`: of the worst block.
+   !> See `engine`.
    subroutine solve(e, t, follows, c)
       class(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
@@ -186,7 +186,7 @@ contains
       call solve_blocks(e, t, follows, c)
    end subroutine solve
 
-   !> The same, in a record `c` that is new.
+   !> The same, in a record `c` that is new, of the worst block; at first each is the nearest to its estimate.
    subroutine solve_blocks(e, t, follows, c)
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
@@ -252,8 +252,10 @@ contains
 
       do k = 1, size(list)
          i = list(k)
-         if (follows) then
-            call solve_block(e%blocks, i, e%tolerance, e%work, e%state, e%one)
+         if (follows .and. e%blocks%list(i)%direct) then
+            call solve_direct(e%blocks, i, e%state)
+         else if (follows) then
+            call solve_equations(e%blocks, i, e%blocks%list(i), e%tolerance, e%work, e%state, e%one)
          else
             call solve_first_block(e%blocks, i, e%tolerance, e%work, e%state, e%one, e%others(i)%x)
          end if
@@ -361,7 +363,6 @@ contains
       real(wp), intent(in) :: t
       type(motion_t), intent(inout) :: found
       integer :: missing(0:e%blocks%unknowns), k, i
-      type(convergence_t) :: c
       logical :: finite
 
       if (.not. e%blocks%solvable) return
@@ -372,7 +373,7 @@ contains
          call note_block(e, i, merge(missing_nothing, missing_all, e%blocks%list(i)%direct), missing)
          if (.not. e%blocks%list(i)%direct) cycle
          if (missing(e%blocks%unknown(e%blocks%list(i)%first)) == missing_nothing) &
-            call solve_block(e%blocks, i, e%tolerance, e%work, e%state, c)
+            call solve_direct(e%blocks, i, e%state)
       end do
       call mark_links(e%chain, missing, found)
       call move_found_links(e%chain, found%link_known < 2, e%state, e%length, found, finite)
@@ -384,9 +385,8 @@ contains
       integer, intent(in) :: i, own
       integer, intent(inout) :: missing(0:)
 
-      associate (block => e%blocks%list(i))
-         missing(e%blocks%unknown(block%first:block%last)) = max(own, largest_known(e%blocks, i, missing))
-      end associate
+      missing(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last)) &
+         = max(own, largest_known(e%blocks, i, missing))
    end subroutine note_block
 
    !> (0:unknowns) The unit of each slide in the deck's; 1 of an angle.

@@ -23,7 +23,7 @@ module block_solver
    use block_sizes, only: largest_rates, rounded_sizes, second_order_bounds
    implicit none
    private
-   public :: workspace_t, make_workspace, solve_block, closed_level, step_tolerance, suspicious_pivot
+   public :: workspace_t, make_workspace, solve_block, solve_direct, solve_equations, closed_level, step_tolerance, suspicious_pivot
 
    !> Residuals relative to the largest value. Below the first there is nothing to correct; above the second,
    !> rounding of angles and of their sines alone explains no residual.
@@ -89,20 +89,12 @@ contains
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
 
-      associate (block => b%list(i))
-         if (block%direct) then
-            call solve_direct(b, i, s)
-            c%ended = ended_converged
-            return
-         end if
-         call solve(b, i, block, tolerance, w, s, c)
-         if (c%ended /= ended_converged .and. c%ended /= ended_stalled) return
-         if (block%shape%rows > block%shape%n .and. is_inconsistent(c)) then
-            c%ended = ended_inconsistent
-         else
-            call finish(b, i, block, w, s, c)
-         end if
-      end associate
+      if (b%list(i)%direct) then
+         call solve_direct(b, i, s)
+         c%ended = ended_converged
+      else
+         call solve_equations(b, i, b%list(i), tolerance, w, s, c)
+      end if
    end subroutine solve_block
 
    !> A drive's own unknown: nothing to iterate.
@@ -123,9 +115,10 @@ contains
       call set_direction(b, b%unknown(b%list(i)%first), s)
    end subroutine solve_direct
 
-   !> Newton's method; where it ends with a position, `w` holds the velocities, in the second half of `r`, and the
-   !> factors of the Jacobian there or of one beside it. Where that Jacobian has no inverse, c%singular says so.
-   subroutine solve(b, i, block, tolerance, w, s, c)
+   !> The same of `block`, number `i`, which is not direct: Newton's method. Where it ends with a position, `w` holds
+   !> the velocities, in the second half of `r`, and the factors of the Jacobian there or of one beside it. Where that
+   !> Jacobian has no inverse, c%singular says so.
+   subroutine solve_equations(b, i, block, tolerance, w, s, c)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(block_t), intent(in) :: block
@@ -183,7 +176,13 @@ contains
          exit
       end do
       if (c%iterations > 1 .or. c%step > 0.0_wp) c%change = largest_change(b, block, s, w%start)
-   end subroutine solve
+      if (c%ended /= ended_converged .and. c%ended /= ended_stalled) return
+      if (block%shape%rows > block%shape%n .and. is_inconsistent(c)) then
+         c%ended = ended_inconsistent
+      else
+         call finish(b, i, block, w, s, c)
+      end if
+   end subroutine solve_equations
 
    !> Solves for `v` (rows) with the Jacobian just assembled, which is factored unless factors of one beside it serve;
    !> `info` > 0: it has no inverse. For one equation calls for matrices of any shape take several times as long.

@@ -7,7 +7,7 @@ module dense_start
    use structure, only: structure_t
    use convergence, only: convergence_t, is_solved
    use block_state, only: set_values
-   use block_solver, only: solve_block
+   use block_solver, only: solve_direct
    use block_engine, only: block_engine_t, make_block_engine
    use assembly_choice, only: solve_first
    implicit none
@@ -64,7 +64,6 @@ contains
    !> Unknowns that take an iteration get their estimates again; those that drives alone give keep their values.
    subroutine return_to_estimate(e)
       type(block_engine_t), intent(inout) :: e
-      type(convergence_t) :: c
       integer :: k
 
       do k = 1, size(e%needed)
@@ -72,7 +71,7 @@ contains
             associate (unknowns => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
                call set_values(e%blocks, i, e%estimated(unknowns), e%state)
             end associate
-            if (e%blocks%list(i)%direct) call solve_block(e%blocks, i, 0.0_wp, e%work, e%state, c)
+            if (e%blocks%list(i)%direct) call solve_direct(e%blocks, i, e%state)
          end associate
       end do
    end subroutine return_to_estimate
