@@ -194,7 +194,7 @@ contains
 
       line = scientific(x, count - 1)
       e = exponent_of(line)
-      line(2:) = line(3:index(line, 'E') - 1)
+      line = line(1:1)//line(3:index(line, 'E') - 1)
       read (line, '(i18)') n
    end subroutine digits_by_format
 

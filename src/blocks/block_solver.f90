@@ -23,7 +23,8 @@ module block_solver
    use block_sizes, only: largest_rates, rounded_sizes, second_order_bounds
    implicit none
    private
-   public :: workspace_t, make_workspace, solve_block, solve_direct, solve_equations, closed_level, step_tolerance, suspicious_pivot
+   public :: workspace_t, make_workspace, solve_block, solve_direct, solve_equations
+   public :: closed_level, step_tolerance, suspicious_pivot
 
    !> Residuals relative to the largest value. Below the first there is nothing to correct; above the second,
    !> rounding of angles and of their sines alone explains no residual.
