@@ -22,8 +22,8 @@ module bench_lanes
 
 contains
 
-   !> One turn in steps of 0.1 deg of as many variants at a time as there are lanes, whose instants are counted, and with EXTREMES of all
-   !> their links. `decks`: the directory of the chains.
+   !> One turn in steps of 0.1 deg of as many variants at a time as there are lanes, whose instants are counted, and
+   !> with EXTREMES of all their links. `decks`: the directory of the chains.
    subroutine lanes_table(decks)
       character(*), intent(in) :: decks
       type(scene_t) :: scenes(5)
