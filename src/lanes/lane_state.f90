@@ -11,8 +11,7 @@ module lane_state
    use lane_elimination, only: max_order
    implicit none
    private
-   public :: lanes_t, lane_block_t, is_covered, make_lanes, load_lane, &
-      unload_lane, depth
+   public :: lanes_t, lane_block_t, is_covered, make_lanes, load_lane, unload_lane, depth
 
    !> Motions that a lane remembers: the last three are needed to predict, and two before to go back to.
    integer, parameter :: depth = 5
