@@ -28,7 +28,7 @@ COMMON  := -std=f2018 -Wall -Wextra -pedantic -Wno-uninitialized -Wno-maybe-unin
 # real128 is the library's work, whatever the flags; the other kinds are for comparison, and compile in half the time.
 # Two parts at the link are enough for two processors, and have less to exchange than the many of the default.
 # Neighbours are not computed in pairs (SLP): to load as a pair what was stored one by one takes 2 to 9 per cent of a step.
-# Procedures begin with a line of the processor's cache: otherwise what stands before them makes a step up to 8 per cent slower.
+# Procedures begin with a line of the processor's cache: otherwise what stands before them decides on up to 8 per cent of a step.
 RELEASE ?= $(if $(filter double,$(KIND)),-O2 -fno-tree-slp-vectorize -falign-functions=64 -flto=auto --param=lto-partitions=2 -ffat-lto-objects,$(if $(filter quad,$(KIND)),-O0,-O1))
 # Links in two seconds what the optimization at link time takes ten for.
 no_lto  := -fno-lto -fno-use-linker-plugin
