@@ -177,12 +177,7 @@ contains
          exit
       end do
       if (c%iterations > 1 .or. c%step > 0.0_wp) c%change = largest_change(b, block, s, w%start)
-      if (c%ended /= ended_converged .and. c%ended /= ended_stalled) return
-      if (block%shape%rows > block%shape%n .and. is_inconsistent(c)) then
-         c%ended = ended_inconsistent
-      else
-         call finish(b, i, block, w, s, c)
-      end if
+      call finish(b, i, block, w, s, c)
    end subroutine solve_equations
 
    !> Solves for `v` (rows) with the Jacobian just assembled, which is factored unless factors of one beside it serve;
@@ -304,7 +299,8 @@ contains
       end do
    end function largest_change
 
-   !> Velocities and accelerations, unless the Jacobian is near to having no inverse.
+   !> Velocities and accelerations of a position, unless equations contradict one another or the Jacobian is near to
+   !> having no inverse.
    subroutine finish(b, i, block, w, s, c)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
@@ -314,6 +310,9 @@ contains
       type(convergence_t), intent(inout) :: c
       real(wp) :: rates(2)
 
+      if (c%ended /= ended_converged .and. c%ended /= ended_stalled) return
+      if (block%shape%rows > block%shape%n .and. is_inconsistent(c)) c%ended = ended_inconsistent
+      if (c%ended == ended_inconsistent) return
       if (.not. c%singular) call judge(b, i, block, w, s, c)
       if (c%singular) return
       associate (rows => block%shape%rows, n => block%shape%n)
