@@ -16,7 +16,7 @@ module block_solver
    use block_matrix, only: shape_t, nearby_t, solve_one, solve_first, solve_again, solve_nearby, stay_near, set_aside, &
       pivot_range, inverse_norm, spread_by_inverse, entries_of, work_length
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
-      ended_inconsistent, note_closure_error, is_inconsistent, contradict
+      ended_inconsistent, is_solved, note_closure_error, is_inconsistent, contradict
    use blocks, only: blocks_t, block_t
    use block_state, only: state_t, set_direction, rotate_direction, set_rates, set_accelerations, find_known_parts
    use block_equations, only: assemble_with_velocities, right_hand_side
@@ -310,7 +310,7 @@ contains
       type(convergence_t), intent(inout) :: c
       real(wp) :: rates(2)
 
-      if (c%ended /= ended_converged .and. c%ended /= ended_stalled) return
+      if (.not. is_solved(c)) return
       if (block%shape%rows > block%shape%n .and. is_inconsistent(c)) c%ended = ended_inconsistent
       if (c%ended == ended_inconsistent) return
       if (.not. c%singular) call judge(b, i, block, w, s, c)
