@@ -17,17 +17,48 @@ module rounding_bounds
    use block_engine, only: block_engine_t
    use link_motion, only: chain_link_t
    use rounding_changes, only: rounding_response_t, closure_motion, max_part
-   use rounding_parts, only: part_t, arm_t, rounding_bounds_t, can_be_bound, own_part, angle_part
-   use card_roundings, only: own_in_tables, drive_bounds
+   use rounding_parts, only: part_t, arm_t, rounding_parts_t, own_part
+   use card_roundings, only: own_in_tables, largest_part, drive_bounds
    implicit none
    private
-   public :: bound_roundings, bound_of_turning, bound_of_product
+   public :: rounding_bounds_t, make_rounding_bounds, bound_roundings, bound_of_turning, bound_of_product
 
    !> Bounds are larger by this than they are calculated to be, for what is rounded there, and for a change of a drive
    !> by the time that is not quite its rate.
    real(wp), parameter, public :: room = 1.01_wp
+   !> What the rounding of an angle on a card changes of it, over its size.
+   real(wp), parameter :: angle_part = largest_part*epsilon(1.0_wp)
+
+   type :: rounding_bounds_t
+      real(wp), allocatable :: weights(:), inverse(:), change(:), known(:)   !< room for the widest block
+      real(wp), allocatable :: drive(:, :)       !< (0:2, 0:drives) as the state has them
+      real(wp), allocatable :: u(:, :)           !< (0:2, 0:unknowns) of values, rates and accelerations
+      real(wp), allocatable :: place(:, :)       !< (0:2, 0:links) of the length of a place's change, in the deck's unit
+   end type rounding_bounds_t
 
 contains
+
+   !> Room for the bounds of any motion of a mechanism with so many `links`, which `e` solves.
+   subroutine make_rounding_bounds(b, links, e)
+      type(rounding_bounds_t), intent(out) :: b
+      integer, intent(in) :: links
+      class(block_engine_t), intent(in) :: e
+      integer :: i, n
+
+      n = 1
+      do i = 1, size(e%blocks%list)
+         if (can_be_bound(e%blocks%list(i))) n = max(n, e%blocks%list(i)%shape%n)
+      end do
+      allocate (b%weights(n**2), b%inverse(n**2), b%change(n), b%known(3*n))
+      allocate (b%drive(0:2, 0:size(e%laws)), b%u(0:2, 0:e%blocks%unknowns), b%place(0:2, 0:links), source=0.0_wp)
+   end subroutine make_rounding_bounds
+
+   !> The inverse of the Jacobian of `block` takes less time than an estimate would.
+   pure logical function can_be_bound(block)
+      type(block_t), intent(in) :: block
+
+      can_be_bound = block%shape%pattern == 0 .and. block%shape%rows == block%shape%n
+   end function can_be_bound
 
    !> The bounds `b` at the motion `q`, which `e` has found; `r%state` is there. `is_bound`: there are some. Otherwise a
    !> block is wide, singular or has too many rows, or the first order may not hold.
@@ -51,15 +82,15 @@ contains
             if (block%direct) then
                call bound_direct(b, e%blocks, i, r%state%u)
             else if (block%shape%n > 0) then
-               call find_weights(r, e, i, block%shape%n, b%parts(b%first_own(block%first_loop):), b%inverse, &
-                  b%weights, is_bound)
-               if (is_bound) call bound_block(b, r%state, e%blocks, block, block%shape%n, e%found(i)%inverse, &
+               call find_weights(r, e, i, block%shape%n, r%parts%first_own(block%first_loop), b%inverse, b%weights, &
+                  is_bound)
+               if (is_bound) call bound_block(b, r%parts, r%state, e%blocks, block, block%shape%n, e%found(i)%inverse, &
                   b%weights, b%change, b%known, is_bound)
                if (.not. is_bound) return
             end if
          end associate
       end do
-      call bound_places(size(e%chain%links), e%chain%links, b%arms, r%state%u, b%u, e%length, q%position, q%velocity, &
+      call bound_places(size(e%chain%links), e%chain%links, r%parts%arms, r%state%u, b%u, e%length, q%position, q%velocity, &
          q%acceleration, b%place)
       is_bound = .true.
    end subroutine bound_roundings
@@ -82,8 +113,9 @@ contains
 
    !> Of the `n` unknowns of `block`: see `respond_block`. By the `weights` (n, loops) of its loops; `known` (0:2,
    !> loops) is room. `is_bound`: changes are small enough, by the `inverse` of the Jacobian (maximum norm).
-   pure subroutine bound_block(b, s, blocks, block, n, inverse, weights, change, known, is_bound)
+   pure subroutine bound_block(b, p, s, blocks, block, n, inverse, weights, change, known, is_bound)
       type(rounding_bounds_t), intent(inout) :: b
+      type(rounding_parts_t), intent(in) :: p
       type(state_t), intent(in) :: s
       type(blocks_t), intent(in) :: blocks
       type(block_t), intent(in) :: block
@@ -102,9 +134,9 @@ contains
          do k = block%first_loop, block%last_loop
             j = k - block%first_loop + 1
             ! What is known already of the block's own unknowns turns its own vectors; all else is as it was.
-            if (order == 0 .or. .not. b%is_plain(k)) call bound_loop(b, s, blocks, block%first_row, k, known(:, j))
+            if (order == 0 .or. .not. p%is_plain(k)) call bound_loop(b, p, s, blocks, block%first_row, k, known(:, j))
             vector = known(:, j)
-            if (order > 0 .and. b%is_plain(k)) call add_own_vectors(b%first_own(k), b%first(k + 1) - 1, b%parts, s%u, &
+            if (order > 0 .and. p%is_plain(k)) call add_own_vectors(p%first_own(k), p%first(k + 1) - 1, p%parts, s%u, &
                b%u, vector)
             do u = 1, n
                if (j == 1) change(u) = vector(order)*weights(u, j)
@@ -121,12 +153,11 @@ contains
 
    !> By how much a change of 1 of each loop of block `i` changes each of its `n` unknowns at most, at `r%state`:
    !> `weights` (n, loops). Both rows of a loop are the components of a vector: it is the length of the two numbers of
-   !> J^-1, `inverse` (n, n). `parts`: of the only loop, from its own on. `are_found`: the Jacobian has an inverse.
-   subroutine find_weights(r, e, i, n, parts, inverse, weights, are_found)
+   !> J^-1, `inverse` (n, n). `own`: the first own part of the first loop. `are_found`: the Jacobian has an inverse.
+   subroutine find_weights(r, e, i, n, own, inverse, weights, are_found)
       type(rounding_response_t), intent(inout) :: r
       class(block_engine_t), intent(in) :: e
-      integer, intent(in) :: i, n
-      type(part_t), intent(in) :: parts(*)
+      integer, intent(in) :: i, n, own
       real(wp), intent(inout) :: inverse(n, n), weights(n, *)
       logical, intent(out) :: are_found
       integer :: k, j
@@ -136,7 +167,7 @@ contains
             associate (loop => e%blocks%loops(first))
                if (loop%row_y > 0 .and. loop%last_slide < loop%first_slide) then
                   call weigh_dyad(e%blocks%body_vectors(loop%first_own), e%blocks%body_vectors(loop%first_own + 1), &
-                     parts(:2)%length, r%state%u, weights, are_found)
+                     r%parts%parts(own:own + 1)%length, r%state%u, weights, are_found)
                   return
                end if
             end associate
@@ -210,8 +241,9 @@ contains
 
    !> Of what is known of loop number `k`, or of its projection, and of the drives and constants of its rows, of the
    !> block whose rows begin at `first_row`: derivatives (0:2), see `find_residuals`.
-   pure subroutine bound_loop(b, s, blocks, first_row, k, bound)
+   pure subroutine bound_loop(b, p, s, blocks, first_row, k, bound)
       type(rounding_bounds_t), intent(in) :: b
+      type(rounding_parts_t), intent(in) :: p
       type(state_t), intent(in) :: s
       type(blocks_t), intent(in) :: blocks
       integer, intent(in) :: first_row, k
@@ -223,7 +255,7 @@ contains
             bound = b%u(:, loop%less) + b%u(:, loop%orientation)
          else
             bound = 0.0_wp
-            call add_parts(b%first(k), b%first(k + 1) - 1, b%parts, s%u, b%u, bound)
+            call add_parts(p%first(k), p%first(k + 1) - 1, p%parts, s%u, b%u, bound)
             do i = loop%first_slide, loop%last_slide
                associate (d => blocks%slides(i))
                   bound = bound + norm2(d%body_vector)*bound_of_slide(s%u(d%orientation), s%u(d%unknown), &
@@ -277,7 +309,7 @@ contains
    end function bound_of_product
 
    !> Adds to `bound` (0:2) that of the vectors and cards of `parts` number `first` to `last`, which turn with
-   !> orientations among `s` that change by `u`: see `change_vector` and `change_card`. On plain arrays, which cost no
+   !> orientations among `s` that change by `u`: see `change_vector` and `change_cards`. On plain arrays, which cost no
    !> descriptors.
    pure subroutine add_parts(first, last, parts, s, u, bound)
       integer, intent(in) :: first, last
@@ -295,9 +327,9 @@ contains
          k = parts(i)%orientation
          w = abs(s(k)%rate)
          e = abs(s(k)%acceleration) + w*w
-         x = x + (parts(i)%length*u(0, k) + parts(i)%card)
-         v = v + (parts(i)%length*(u(1, k) + w*u(0, k)) + parts(i)%card*w)
-         a = a + (parts(i)%length*(u(2, k) + 2.0_wp*w*u(1, k) + e*u(0, k)) + parts(i)%card*e)
+         x = x + (parts(i)%length*u(0, k) + parts(i)%off)
+         v = v + (parts(i)%length*(u(1, k) + w*u(0, k)) + parts(i)%off*w)
+         a = a + (parts(i)%length*(u(2, k) + 2.0_wp*w*u(1, k) + e*u(0, k)) + parts(i)%off*e)
       end do
       bound = [x, v, a]
    end subroutine add_parts

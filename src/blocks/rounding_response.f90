@@ -15,7 +15,7 @@ module rounding_response
    use planar, only: rotated
    use mechanism, only: mechanism_t
    use motion, only: motion_t, new_motion
-   use blocks, only: row_t, loop_components, loop_projection, largest_known
+   use blocks, only: blocks_t, block_t, row_t, loop_components, loop_projection, largest_known
    use block_matrix, only: solve_first, solve_again, solve_many
    use block_state, only: new_state, find_known_parts
    use block_solver, only: make_workspace, solve_block
@@ -24,10 +24,10 @@ module rounding_response
    use block_engine, only: block_engine_t
    use link_motion, only: chain_link_t, mark_links, missing_nothing, missing_all
    use drives, only: drive_motion
-   use rounding_changes, only: rounding_response_t, change_loop, change_projection, change_vector, change_slide, &
-      change_card, max_part
+   use rounding_parts, only: arm_t, gather_rounding_parts
+   use rounding_changes, only: rounding_response_t, change_loop, change_projection, change_parts, change_slide, max_part
    use card_roundings, only: directions, rounding, roundings, number_pair, number_drive, parts_of_number, &
-      add_own, parts_of_any, card_sizes, card_changes, law_tables, drive_changes
+      add_own, parts_of_any, law_tables, drive_changes
    implicit none
    private
    public :: rounding_response_t, make_rounding_response, respond_to_roundings
@@ -43,7 +43,7 @@ contains
       type(mechanism_t), intent(in) :: m
       class(block_engine_t), intent(in) :: e
       real(wp) :: angle(size(m%links))
-      integer :: i
+      integer :: i, rows
 
       r%state = new_state(e%blocks, size(m%drives))
       call make_workspace(r%work, e%blocks)
@@ -55,15 +55,12 @@ contains
             if (h%slide > 0) r%pair_of(h%slide) = h%pair
          end associate
       end do
-      r%sizes = card_sizes(m, angle)
-      r%cards = card_changes(m, r%sizes)
-      r%turned_by = e%orientation_of(m%points([(i, i=1, size(m%points)), m%pairs%point_i])%link)
-      do i = 1, size(r%sizes)
-         if (.not. (r%sizes(i) > 0.0_wp .or. any(abs(r%cards(:, :, i)) > 0.0_wp))) r%turned_by(i) = -1
-      end do
+      call gather_rounding_parts(r%parts, m, e, angle)
       call law_tables(m, r%tables)
       allocate (r%drive(directions, 0:2, 0:size(m%drives)), r%u(directions, 0:2, 0:e%blocks%unknowns), source=0.0_wp)
       allocate (r%missing(0:e%blocks%unknowns), source=missing_nothing)
+      rows = max(1, maxval(e%blocks%list%shape%rows))
+      allocate (r%v(directions, rows), r%size_of(rows), source=0.0_wp)
    end subroutine make_rounding_response
 
    !> The changes `links` (directions, 3, 0:2, links) of the motion `q` of `m` at `r%state`, which `e` has solved for
@@ -84,7 +81,7 @@ contains
 
       some_missing = .false.
       do k = 1, size(e%laws)
-         r%drive(:, :, k) = drive_changes(e%laws(k), k, q%t, r%tables)*e%unit_of(k)
+         call set_sum(r%drive(:, :, 0), e%unit_of(k), drive_changes(e%laws(k), k, q%t, r%tables), r%drive(:, :, k))
          if (again) r%state%drive_value(0:2, k) = drive_motion(e%laws(k), q%t)*e%unit_of(k)
       end do
       r%missing = missing_nothing
@@ -99,9 +96,9 @@ contains
                = r%state%u(e%blocks%unknown(block%first:block%last))%value + nudge
             if (is_found .and. again) call solve_block_again(i)
             if (is_found .and. block%direct) then
-               call respond_direct(i)
-            else if (is_found) then
-               call respond_block(i)
+               call respond_direct(r, e%blocks%rows(block%first_row), e%blocks%unknown(block%first))
+            else if (is_found .and. block%shape%n > 0) then
+               call respond_block(r, m, e, i, again, is_singular, inverse, is_found)
             end if
             if (.not. is_found) r%missing(e%blocks%unknown(block%first:block%last)) = missing_all
             some_missing = some_missing .or. .not. is_found
@@ -113,7 +110,15 @@ contains
          call mark_links(e%chain, r%missing, marked)
          lost = marked%link_known < 2
       end if
-      call move_links()
+      do k = 1, size(e%chain%ground)
+         links(:, :, :, e%chain%ground(k)) = 0.0_wp
+      end do
+      do k = 1, size(e%chain%links)
+         associate (h => e%chain%links(k), i => e%chain%links(k)%link)
+            if (.not. lost(i)) call move_link(r, h, r%parts%arms(k), e%length, q%position(:, i), q%velocity(:, i), &
+               q%acceleration(:, i), links)
+         end associate
+      end do
 
    contains
 
@@ -128,176 +133,205 @@ contains
          is_singular = c%singular
          is_found = is_solved(c) .and. .not. c%rates_open
       end subroutine solve_block_again
+   end subroutine respond_to_roundings
 
-      !> The response of the direct block `i`: unknown = other + sign_of (constant + value).
-      subroutine respond_direct(i)
-         integer, intent(in) :: i
+   !> The response of unknown number `u` of a direct block with this `row`: u = other + sign_of (constant + value).
+   pure subroutine respond_direct(r, row, u)
+      type(rounding_response_t), intent(inout) :: r
+      type(row_t), intent(in) :: row
+      integer, intent(in) :: u
+      real(wp) :: change(directions)
 
-         associate (row => e%blocks%rows(e%blocks%list(i)%first_row), u => e%blocks%unknown(e%blocks%list(i)%first))
-            r%u(:, :, u) = r%u(:, :, row%other) + row%sign_of*r%drive(:, :, row%drive)
-            if (abs(row%constant) > 0.0_wp) r%u(:, 0, u) = r%u(:, 0, u) + row%sign_of*change_of_constant(row)
-            call add_own(r%state%u(u)%value, u, r%u(:, 0, u))
-            call add_own(r%state%u(u)%rate, u + 1, r%u(:, 1, u))
-            call add_own(r%state%u(u)%acceleration, u + 2, r%u(:, 2, u))
-         end associate
-      end subroutine respond_direct
+      call set_sum(r%u(:, :, row%other), row%sign_of, r%drive(:, :, row%drive), r%u(:, :, u))
+      if (abs(row%constant) > 0.0_wp) then
+         change = change_of_constant(row)
+         r%u(:, 0, u) = r%u(:, 0, u) + row%sign_of*change
+      end if
+      call add_own(r%state%u(u)%value, u, r%u(:, 0, u))
+      call add_own(r%state%u(u)%rate, u + 1, r%u(:, 1, u))
+      call add_own(r%state%u(u)%acceleration, u + 2, r%u(:, 2, u))
+   end subroutine respond_direct
 
-      !> By how much the constant of `row` is off (directions): a sum of angles of the deck, or the offset of a guide.
-      pure function change_of_constant(row) result(change)
-         type(row_t), intent(in) :: row
-         real(wp) :: change(directions)
+   !> `z` = `x` + `times` `y`, of changes (directions, 0:2).
+   pure subroutine set_sum(x, times, y, z)
+      real(wp), intent(in) :: x(3*directions), times, y(3*directions)
+      real(wp), intent(inout) :: z(3*directions)
 
-         change = rounding*abs(row%constant)*parts_of_number(merge(number_drive, number_pair, row%drive > 0), &
-            max(row%drive, row%pair), 0)
-      end function change_of_constant
+      z = x + times*y
+   end subroutine set_sum
 
-      !> The response of block `i`, whose Jacobian has the `inverse` (maximum norm). `is_found`: the changes are small
-      !> enough. Where the Jacobian `is_singular`, a position changes with the root of what the equations change by,
-      !> which are about as curved as their units are long, no two unknowns alike: what is the difference of two changes
-      !> as well. Rates have no response there.
-      subroutine respond_block(i)
-         integer, intent(in) :: i
-         real(wp) :: v(directions, max(1, e%blocks%list(i)%shape%rows)), root
-         real(wp), allocatable :: jacobian(:, :)
-         integer :: order, k, info
-         logical :: is_dyad
+   !> By how much the constant of `row` is off (directions): a sum of angles of the deck, or the offset of a guide.
+   pure function change_of_constant(row) result(change)
+      type(row_t), intent(in) :: row
+      real(wp) :: change(directions)
 
-         associate (block => e%blocks%list(i), shape => e%blocks%list(i)%shape, w => r%work)
-            is_found = .true.
-            if (shape%n == 0) return
-            do k = block%first, block%last
-               r%u(:, :, e%blocks%unknown(k)) = 0.0_wp
-            end do
-            call find_known_parts(e%blocks, i, r%state)
-            call assemble_block(e%blocks, i, r%state, w%a, w%r)
-            info = 0
-            if (shape%rows > shape%n) jacobian = reshape(w%a(:shape%rows*shape%n), [shape%rows, shape%n])
-            is_dyad = shape%n == 2 .and. shape%rows == 2 .and. .not. (again .or. is_singular)
-            if (is_dyad) then
-               if (abs(w%a(1)*w%a(4) - w%a(2)*w%a(3)) <= 0.0_wp) info = 1
-            else if (.not. is_singular) then
-               call solve_first(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, w%r, info)
+      change = rounding*abs(row%constant)*parts_of_number(merge(number_drive, number_pair, row%drive > 0), &
+         max(row%drive, row%pair), 0)
+   end function change_of_constant
+
+   !> The response of block `i`, whose Jacobian has the `inverse` (maximum norm). `is_found`: the changes are small
+   !> enough. Where the Jacobian `is_singular`, a position changes with the root of what the equations change by,
+   !> which are about as curved as their units are long, no two unknowns alike: what is the difference of two changes
+   !> as well. Rates have no response there. `again`: two equations are solved by their factors as well.
+   subroutine respond_block(r, m, e, i, again, is_singular, inverse, is_found)
+      type(rounding_response_t), intent(inout) :: r
+      type(mechanism_t), intent(in) :: m
+      class(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i
+      logical, intent(in) :: again, is_singular
+      real(wp), intent(in) :: inverse
+      logical, intent(out) :: is_found
+      real(wp), allocatable :: jacobian(:, :)
+      integer :: order, k, info
+      logical :: is_dyad
+
+      associate (block => e%blocks%list(i), shape => e%blocks%list(i)%shape, w => r%work)
+         is_found = .true.
+         do k = block%first, block%last
+            r%u(:, :, e%blocks%unknown(k)) = 0.0_wp
+         end do
+         call find_known_parts(e%blocks, i, r%state)
+         call assemble_block(e%blocks, i, r%state, w%a, w%r)
+         info = 0
+         if (shape%rows > shape%n) jacobian = reshape(w%a(:shape%rows*shape%n), [shape%rows, shape%n])
+         is_dyad = shape%n == 2 .and. shape%rows == 2 .and. .not. (again .or. is_singular)
+         if (is_dyad) then
+            if (abs(w%a(1)*w%a(4) - w%a(2)*w%a(3)) <= 0.0_wp) info = 1
+         else if (.not. is_singular) then
+            call solve_first(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, w%r, info)
+         end if
+         if (allocated(jacobian) .and. .not. is_singular .and. info == 0) call refine_rates(r, e, i, jacobian)
+         do order = 0, merge(0, 2, is_singular .or. info > 0)
+            call find_residuals(r, m, e%blocks, block, order)
+            if (is_singular .or. info > 0) then
+               call take_roots(shape%n, shape%rows, e%blocks%unknown(block%first:block%last), r%v)
+            else if (is_dyad) then
+               call solve_two(w%a, r%v)
+            else
+               call solve_many(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, directions, r%v)
             end if
-            if (allocated(jacobian) .and. .not. is_singular .and. info == 0) call refine_rates(e, i, jacobian)
-            do order = 0, merge(0, 2, is_singular .or. info > 0)
-               call find_residuals(e, i, order, v)
-               if (is_singular .or. info > 0) then
-                  root = roundings*sqrt(maxval(abs(v))/roundings)
-                  do k = 1, shape%n
-                     v(:, k) = root*parts_of_any(e%blocks%unknown(block%first + k - 1))
-                  end do
-               else
-                  if (is_dyad) then
-                     call solve_two(w%a, v)
-                  else
-                     call solve_many(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, directions, v)
-                  end if
-                  if (order == 0) is_found = maxval(abs(v(:, :shape%n)))*block%lipschitz*inverse <= max_part*roundings
-               end if
-               do k = 1, shape%n
-                  r%u(:, order, e%blocks%unknown(block%first + k - 1)) = v(:, k)
-               end do
+            if (order == 0 .and. .not. (is_singular .or. info > 0)) &
+               is_found = largest_of(directions*shape%n, r%v)*block%lipschitz*inverse <= max_part*roundings
+            do k = 1, shape%n
+               call copy(r%v(:, k), r%u(:, order, e%blocks%unknown(block%first + k - 1)))
             end do
-         end associate
-      end subroutine respond_block
+         end do
+      end associate
+   end subroutine respond_block
 
-      !> The rates of block `i` again, by iterative refinement with the factors of its `jacobian`. Orthogonal factors
-      !> leave errors by the largest of all rows; one pass leaves those of each row (Higham, Accuracy and Stability of
-      !> Numerical Algorithms, 2002, ch. 20).
-      subroutine refine_rates(e, i, jacobian)
-         class(block_engine_t), intent(in) :: e
-         integer, intent(in) :: i
-         real(wp), intent(in) :: jacobian(:, :)
-         integer :: order, k
+   !> The largest size of the `n` numbers of `x`.
+   pure real(wp) function largest_of(n, x) result(largest)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: x(n)
+      integer :: k
 
-         associate (block => e%blocks%list(i), shape => e%blocks%list(i)%shape, w => r%work)
-            do order = 1, 2
-               call right_hand_side(e%blocks, i, order, r%state, w%r)
-               do k = 1, shape%n
-                  associate (u => r%state%u(e%blocks%unknown(block%first + k - 1)))
-                     w%r(:shape%rows) = w%r(:shape%rows) - merge(u%rate, u%acceleration, order == 1)*jacobian(:, k)
-                  end associate
-               end do
-               call solve_again(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, w%r)
-               do k = 1, shape%n
-                  associate (u => r%state%u(e%blocks%unknown(block%first + k - 1)))
-                     if (order == 1) u%rate = u%rate + w%r(k)
-                     if (order == 2) u%acceleration = u%acceleration + w%r(k)
-                  end associate
-               end do
-            end do
-         end associate
-      end subroutine refine_rates
+      largest = 0.0_wp
+      do k = 1, n
+         largest = max(largest, abs(x(k)))
+      end do
+   end function largest_of
 
-      !> `v` (directions, rows): derivative number `order` of the changes of the equations of block `i`, with the other
-      !> sign, as far as they are known.
-      subroutine find_residuals(e, i, order, v)
-         class(block_engine_t), intent(in) :: e
-         integer, intent(in) :: i, order
-         real(wp), contiguous, intent(out) :: v(:, :)
-         real(wp) :: g(directions, 2), sizes(size(v, 2)), size_of
-         integer :: k, row
+   !> `y` = `x` (directions).
+   pure subroutine copy(x, y)
+      real(wp), intent(in) :: x(directions)
+      real(wp), intent(inout) :: y(directions)
 
-         sizes = 0.0_wp
-         associate (b => e%blocks, block => e%blocks%list(i))
-            do k = block%first_loop, block%last_loop
-               associate (loop => e%blocks%loops(k))
-                  select case (loop%kind)
-                  case (loop_components)
-                     call change_loop(r, m, e, loop, order, g, size_of)
-                     if (loop%row_x > 0) v(:, loop%row_x) = -g(:, 1)
-                     if (loop%row_y > 0) v(:, loop%row_y) = -g(:, 2)
-                     if (loop%row_x > 0) sizes(loop%row_x) = size_of
-                     if (loop%row_y > 0) sizes(loop%row_y) = size_of
-                  case (loop_projection)
-                     associate (row => b%rows(block%first_row + loop%row_x - 1))
-                        call change_projection(r, m, e, k, guide_of(row%pair, row%drive), order, v(:, loop%row_x), &
-                           sizes(loop%row_x))
-                     end associate
-                  case default
-                     v(:, loop%row_x) = r%u(:, order, loop%less) - r%u(:, order, loop%orientation)
-                  end select
+      y = x
+   end subroutine copy
+
+   !> The changes `v` (directions, rows) of the `rows` of equations become those of the `n` unknowns with the numbers
+   !> `unknown`.
+   pure subroutine take_roots(n, rows, unknown, v)
+      integer, intent(in) :: n, rows, unknown(n)
+      real(wp), intent(inout) :: v(directions, *)
+      real(wp) :: root
+      integer :: k
+
+      root = roundings*sqrt(largest_of(directions*rows, v)/roundings)
+      do k = 1, n
+         v(:, k) = root*parts_of_any(unknown(k))
+      end do
+   end subroutine take_roots
+
+   !> The rates of block `i` again, by iterative refinement with the factors of its `jacobian`. Orthogonal factors
+   !> leave errors by the largest of all rows; one pass leaves those of each row (Higham, Accuracy and Stability of
+   !> Numerical Algorithms, 2002, ch. 20).
+   subroutine refine_rates(r, e, i, jacobian)
+      type(rounding_response_t), intent(inout) :: r
+      class(block_engine_t), intent(in) :: e
+      integer, intent(in) :: i
+      real(wp), intent(in) :: jacobian(:, :)
+      integer :: order, k
+
+      associate (block => e%blocks%list(i), shape => e%blocks%list(i)%shape, w => r%work)
+         do order = 1, 2
+            call right_hand_side(e%blocks, i, order, r%state, w%r)
+            do k = 1, shape%n
+               associate (u => r%state%u(e%blocks%unknown(block%first + k - 1)))
+                  w%r(:shape%rows) = w%r(:shape%rows) - merge(u%rate, u%acceleration, order == 1)*jacobian(:, k)
                end associate
             end do
-            ! Orthogonal factors mix all rows.
-            if (block%shape%rows > block%shape%n) sizes = maxval(sizes)
-            do k = block%first_row, block%last_row
-               row = k - block%first_row + 1
-               v(:, row) = v(:, row) + r%drive(:, order, b%rows(k)%drive)
-               call add_own(sizes(row), 3*k + order, v(:, row))
-               if (order == 0 .and. abs(b%rows(k)%constant) > 0.0_wp) &
-                  v(:, row) = v(:, row) + change_of_constant(b%rows(k))
+            call solve_again(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, w%r)
+            do k = 1, shape%n
+               associate (u => r%state%u(e%blocks%unknown(block%first + k - 1)))
+                  if (order == 1) u%rate = u%rate + w%r(k)
+                  if (order == 2) u%acceleration = u%acceleration + w%r(k)
+               end associate
             end do
+         end do
+      end associate
+   end subroutine refine_rates
+
+   !> `r%v` (directions, rows): derivative number `order` of the changes of the equations of `block`, with the other
+   !> sign, as far as they are known. `m`: on whose pairs' guides drives measure.
+   subroutine find_residuals(r, m, b, block, order)
+      type(rounding_response_t), intent(inout) :: r
+      type(mechanism_t), intent(in) :: m
+      type(blocks_t), intent(in) :: b
+      type(block_t), intent(in) :: block
+      integer, intent(in) :: order
+      real(wp) :: g(directions, 2), size_of
+      integer :: k, guide
+
+      do k = block%first_loop, block%last_loop
+         associate (loop => b%loops(k))
+            select case (loop%kind)
+            case (loop_components)
+               call change_loop(r, b, k, order, g, size_of)
+            case (loop_projection)
+               guide = b%rows(block%first_row + loop%row_x - 1)%pair
+               if (guide == 0) guide = m%drives(b%rows(block%first_row + loop%row_x - 1)%drive)%subject
+               call change_projection(r, b, k, guide, order, g(:, 1), size_of)
+            case default
+               g(:, 1) = r%u(:, order, loop%orientation) - r%u(:, order, loop%less)
+               size_of = 0.0_wp
+            end select
+            if (loop%row_x > 0) call set_row(loop%row_x, g(:, 1), size_of)
+            if (loop%row_y > 0) call set_row(loop%row_y, g(:, 2), size_of)
          end associate
-      end subroutine find_residuals
+      end do
+      ! Orthogonal factors mix all rows.
+      if (block%shape%rows > block%shape%n) r%size_of(:block%shape%rows) = maxval(r%size_of(:block%shape%rows))
+      do k = 1, block%shape%rows
+         call add_own(r%size_of(k), 3*(block%first_row + k - 1) + order, r%v(:, k))
+      end do
 
-      !> The prismatic pair on whose guide `pair`, or if that is 0 the slide of `drive`, is measured.
-      pure integer function guide_of(pair, drive)
-         integer, intent(in) :: pair, drive
+   contains
 
-         guide_of = pair
-         if (pair == 0) guide_of = m%drives(drive)%subject
-      end function guide_of
+      !> Row number `row`: the change of its drive, and of its constant, less that of its loop, `x`.
+      subroutine set_row(row, x, size_of)
+         integer, intent(in) :: row
+         real(wp), intent(in) :: x(directions), size_of
+         real(wp) :: v(directions)
 
-      !> The changes `links` (directions, 3, 0:2, links) of the motion `q` of the links that are not `lost`, along the
-      !> tree.
-      subroutine move_links()
-         integer :: i, k
-
-         do i = 1, size(e%chain%ground)
-            links(:, :, :, e%chain%ground(i)) = 0.0_wp
-         end do
-         do i = 1, size(e%chain%links)
-            associate (h => e%chain%links(i))
-               if (lost(h%link)) cycle
-               call move_link(r, m, e, h, q, links)
-               do k = 0, 2
-                  links(:, 3, k, h%link) = r%u(:, k, h%orientation)
-               end do
-            end associate
-         end do
-      end subroutine move_links
-   end subroutine respond_to_roundings
+         associate (own => b%rows(block%first_row + row - 1))
+            v = r%drive(:, order, own%drive) - x
+            if (order == 0 .and. abs(own%constant) > 0.0_wp) v = v + change_of_constant(own)
+         end associate
+         r%v(:, row) = v
+         r%size_of(row) = size_of
+      end subroutine set_row
+   end subroutine find_residuals
 
    !> Solves the two equations whose matrix is `a` (4, by columns) for the right-hand sides `v` (directions, 2): by
    !> its inverse, in a part of the time that factors take. Errors need no more than their first digits.
@@ -315,71 +349,38 @@ contains
       end do
    end subroutine solve_two
 
-   !> The changes of the place of the link of `h` in `links`, those of its parent known.
-   subroutine move_link(r, m, e, h, q, links)
+   !> The changes of the link of `h`, which hangs on its parent by `arm`, in `links` (directions, 3, 0:2, links), those of
+   !> its parent known; `p`, `v` and `a` (3): its place and the derivatives. `length`: the unit of the blocks.
+   pure subroutine move_link(r, h, arm, length, p, v, a, links)
       type(rounding_response_t), intent(in) :: r
-      type(mechanism_t), intent(in) :: m
-      class(block_engine_t), intent(in) :: e
       type(chain_link_t), intent(in) :: h
-      type(motion_t), intent(in) :: q
-      real(wp), contiguous, intent(inout) :: links(:, :, 0:, :)
-      real(wp) :: g(directions, 2), size_of
-      integer :: order, own, c
+      type(arm_t), intent(in) :: arm
+      real(wp), intent(in) :: length, p(3), v(3), a(3)
+      real(wp), intent(inout) :: links(directions, 3, 0:2, *)
+      real(wp) :: g(directions, 2), size_of, place(2, 0:2)
+      integer :: order, c
 
+      place(:, 0) = p(:2)
+      place(:, 1) = v(:2)
+      place(:, 2) = a(:2)
       do order = 0, 2
          g = 0.0_wp
-         size_of = 0.0_wp
          if (h%parent > 0) g = links(:, :2, order, h%parent)
          if (h%root > 0) then
             do c = 1, 2
-               g(:, c) = e%length*h%root_unit(c)*r%u(:, order, h%root + c - 1)
+               g(:, c) = length*h%root_unit(c)*r%u(:, order, h%root + c - 1)
             end do
          else
-            own = merge(m%pairs(h%pair)%point_i, m%pairs(h%pair)%point_j, &
-               m%points(m%pairs(h%pair)%point_i)%link == h%link)
-            call add_arm(h%place%reach, h%parent_orientation)
-            call change_card(r, m, order, m%pairs(h%pair)%point_i + m%pairs(h%pair)%point_j - own, 0, 1.0_wp, g, &
-               size_of)
-            call add_arm(-h%place%body_vector, h%orientation)
-            call change_card(r, m, order, -own, 0, 1.0_wp, g, size_of)
-            if (h%slide > 0) then
-               call change_slide(r, order, e%length*h%place%slide_body_vector, h%parent_orientation, h%slide, g, &
-                  size_of)
-               call change_card(r, m, order, 0, merge(1, -1, own == m%pairs(h%pair)%point_i)*h%pair, 1.0_wp, g, &
-                  size_of)
-            end if
+            call change_parts(order, 1, arm%count, arm%parts, r%state%u, r%u, g, size_of)
+            if (h%slide > 0) call change_slide(order, length*h%place%slide_body_vector, r%pair_of(h%slide), &
+               r%state%u(h%parent_orientation), r%state%u(h%slide), r%u(:, :, h%parent_orientation), &
+               r%u(:, :, h%slide), g, size_of)
          end if
          do c = 1, 2
+            call add_own(place(c, order), 6*h%link + 2*order + c, g(:, c))
             links(:, c, order, h%link) = g(:, c)
-            call add_own(place(c), 6*h%link + 2*order + c, links(:, c, order, h%link))
          end do
+         links(:, 3, order, h%link) = r%u(:, order, h%orientation)
       end do
-
-   contains
-
-      !> Adds what the angle of `orientation` changes of the vector `d` (2) in its axes.
-      subroutine add_arm(d, orientation)
-         real(wp), intent(in) :: d(2)
-         integer, intent(in) :: orientation
-
-         if (.not. sum(abs(d)) > 0.0_wp) return
-         associate (f => r%state%u(orientation))
-            call change_vector(order, rotated(d, [f%c, f%s]), f%rate, f%acceleration, r%u(:, :, orientation), g)
-         end associate
-      end subroutine add_arm
-
-      !> Coordinate `c` of the place of the link, or its derivative.
-      real(wp) function place(c)
-         integer, intent(in) :: c
-
-         select case (order)
-         case (0)
-            place = q%position(c, h%link)
-         case (1)
-            place = q%velocity(c, h%link)
-         case default
-            place = q%acceleration(c, h%link)
-         end select
-      end function place
    end subroutine move_link
 end module rounding_response

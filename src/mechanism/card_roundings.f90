@@ -10,7 +10,7 @@ module card_roundings
    implicit none
    private
    public :: directions, card_directions, roundings, rounding, number_point, number_pair, number_drive, number_time, &
-      number_link, parts_of_number, add_own, parts_of_any, card_sizes, card_changes, law_tables, drive_changes, &
+      number_link, parts_of_number, add_own, parts_of_any, card_sizes, card_change, law_tables, drive_changes, &
       drive_bounds, largest_part, caution, own_in_tables
 
    !> Of eight numbers by chance the largest is seldom a small one; of four, more often.
@@ -96,28 +96,28 @@ contains
       end do
    end function card_sizes
 
-   !> The roundings (card_directions, 2, points + pairs) of points and offsets by their `sizes`, see `card_sizes`, along
-   !> and across; those of a place on the ground with its link's, with which all its points are off alike.
-   pure function card_changes(m, sizes) result(x)
+   !> The roundings (card_directions, 2), along and across, of point number `card` of `m` or, beyond the points, of the
+   !> offset of a pair, by its size among `sizes`, see `card_sizes`; those of a place on the ground with its link's, with
+   !> which all its points are off alike.
+   pure function card_change(m, sizes, card) result(x)
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: sizes(:)
-      real(wp) :: x(card_directions, 2, size(sizes)), r(directions)
-      integer :: i, k
+      integer, intent(in) :: card
+      real(wp) :: x(card_directions, 2), r(directions)
+      integer :: k
 
       do k = 1, 2
-         do i = 1, size(m%points)
-            r = sizes(i)*parts_of_number(number_point, i, k - 1)
-            associate (j => m%points(i)%link)
+         if (card > size(m%points)) then
+            r = sizes(card)*parts_of_number(number_pair, card - size(m%points), k - 1)
+         else
+            r = sizes(card)*parts_of_number(number_point, card, k - 1)
+            associate (j => m%points(card)%link)
                if (m%links(j)%ground) r = r + abs(m%links(j)%position(k))*parts_of_number(number_link, j, k - 1)
             end associate
-            x(:, k, i) = rounding*r(:card_directions)
-         end do
-         do i = 1, size(m%pairs)
-            r = sizes(size(m%points) + i)*parts_of_number(number_pair, i, k - 1)
-            x(:, k, size(m%points) + i) = rounding*r(:card_directions)
-         end do
+         end if
+         x(:, k) = rounding*r(:card_directions)
       end do
-   end function card_changes
+   end function card_change
 
    !> Of each of the cards' directions and each drive the law by which the values of its tables are off, `laws`
    !> (card_directions, drives): a spline is linear in its values. A drive without tables has none, and neither has a

@@ -89,7 +89,7 @@ contains
       class is (block_method_t)
          if (.not. s%is_ready) then
             call make_rounding_response(s%response, m, engine)
-            call make_safe_digits(s%safe, m, engine, s%response)
+            call make_safe_digits(s%safe, m, engine)
          end if
          s%is_ready = .true.
          s%response%state%u(:) = engine%state%u

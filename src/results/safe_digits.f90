@@ -13,8 +13,7 @@ module safe_digits
    use block_engine, only: block_engine_t
    use card_roundings, only: caution
    use rounding_changes, only: rounding_response_t
-   use rounding_parts, only: rounding_bounds_t, make_rounding_bounds
-   use rounding_bounds, only: bound_roundings, bound_of_turning, bound_of_product, room
+   use rounding_bounds, only: rounding_bounds_t, make_rounding_bounds, bound_roundings, bound_of_turning, bound_of_product, room
    implicit none
    private
    public :: safe_digits_t, make_safe_digits, are_digits_safe
@@ -40,13 +39,11 @@ module safe_digits
 
 contains
 
-   !> Ready for the tables of `m`, which `e` solves; `r` has the roundings of its cards. Poles and curves, and what
-   !> tolerances do, are left to the estimate.
-   subroutine make_safe_digits(s, m, e, r)
+   !> Ready for the tables of `m`, which `e` solves. Poles and curves, and what tolerances do, are left to the estimate.
+   subroutine make_safe_digits(s, m, e)
       type(safe_digits_t), intent(out) :: s
       type(mechanism_t), intent(in) :: m
       class(block_engine_t), intent(in) :: e
-      type(rounding_response_t), intent(in) :: r
       type(digits_t) :: d
       integer :: k, i
 
@@ -65,7 +62,7 @@ contains
       call find_shown(s, m)
       s%turned_by = e%orientation_of(s%links)
       s%joints = reshape(e%orientation_of(reshape(s%joints, [size(s%joints)])), shape(s%joints))
-      if (s%may_be) call make_rounding_bounds(s%bounds, m, e, r)
+      if (s%may_be) call make_rounding_bounds(s%bounds, size(m%links), e)
    end subroutine make_safe_digits
 
    !> What the requests of `m` show; of `joints` the links.
