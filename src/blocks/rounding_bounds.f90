@@ -18,7 +18,7 @@ module rounding_bounds
    use link_motion, only: chain_link_t
    use rounding_changes, only: rounding_response_t, closure_motion, max_part
    use rounding_parts, only: part_t, arm_t, rounding_parts_t, own_part
-   use card_roundings, only: own_in_tables, largest_part, drive_bounds
+   use card_roundings, only: largest_part, drive_bounds
    implicit none
    private
    public :: rounding_bounds_t, make_rounding_bounds, bound_roundings, bound_of_turning, bound_of_product
@@ -145,8 +145,7 @@ contains
          end do
          do k = 1, n
             b%u(order, blocks%unknown(block%first + k - 1)) = change(k)
-            ! In the response all of the own roundings count here.
-            if (order == 0) is_bound = is_bound .and. change(k)*(block%lipschitz*inverse) <= own_in_tables*max_part
+            if (order == 0) is_bound = is_bound .and. change(k)*(block%lipschitz*inverse) <= max_part
          end do
       end do
    end subroutine bound_block

@@ -9,7 +9,7 @@ module rounding_changes
    use block_solver, only: workspace_t
    use rounding_parts, only: rounding_parts_t, part_t
    use drives, only: law_t
-   use card_roundings, only: directions, card_directions, rounding, number_pair, parts_of_number
+   use card_roundings, only: directions, rounding, number_pair, parts_of_number, own_in_tables
    implicit none
    private
    public :: rounding_response_t, change_loop, change_projection, change_parts, change_vector, change_product, &
@@ -20,8 +20,9 @@ module rounding_changes
    !> first order does not hold.
    real(wp), parameter :: max_part = 0.05_wp
 
-   !> `state` is that at which the response is asked for.
+   !> `state` is that at which the response is asked for, `own` the part of the calculation's own roundings that counts.
    type :: rounding_response_t
+      real(wp) :: own = own_in_tables
       type(state_t) :: state
       type(workspace_t) :: work
       type(rounding_parts_t) :: parts
@@ -118,7 +119,7 @@ contains
          c = f%acceleration*[-f%s, f%c] - f%rate**2*[f%c, f%s]
          times = abs(f%acceleration) + f%rate**2
       end select
-      do k = 1, card_directions
+      do k = 1, directions
          g(k, 1) = g(k, 1) + c(1)*part%change(k, 1) - c(2)*part%change(k, 2)
          g(k, 2) = g(k, 2) + c(2)*part%change(k, 1) + c(1)*part%change(k, 2)
       end do

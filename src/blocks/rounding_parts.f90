@@ -5,7 +5,7 @@ module rounding_parts
    use mechanism, only: mechanism_t
    use blocks, only: loop_components
    use block_engine, only: block_engine_t
-   use card_roundings, only: card_directions, roundings, largest_part, own_in_tables, card_sizes, card_change
+   use card_roundings, only: directions, roundings, largest_part, own_in_tables, card_sizes, card_change
    implicit none
    private
    public :: part_t, arm_t, rounding_parts_t, gather_rounding_parts
@@ -14,12 +14,12 @@ module rounding_parts
    real(wp), parameter, public :: own_part = 1.5_wp*largest_part*own_in_tables*epsilon(1.0_wp)
 
    !> What turns with one orientation, in its axes: a vector, and the `change` of the numbers it is the sum of in each of
-   !> the cards' directions, of all together as they stand there; the sum of the sizes of these. `off`: no direction
+   !> the directions, of all together as they stand there; the sum of the sizes of these. `off`: no direction
    !> changes it by more over `roundings`, with what is rounded there.
    type :: part_t
       integer :: orientation = 0
       real(wp) :: vector(2) = 0.0_wp, length = 0.0_wp
-      real(wp) :: change(card_directions, 2) = 0.0_wp
+      real(wp) :: change(directions, 2) = 0.0_wp
       real(wp) :: size_of = 0.0_wp, off = 0.0_wp
    end type part_t
 

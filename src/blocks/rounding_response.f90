@@ -81,7 +81,7 @@ contains
 
       some_missing = .false.
       do k = 1, size(e%laws)
-         call set_sum(r%drive(:, :, 0), e%unit_of(k), drive_changes(e%laws(k), k, q%t, r%tables), r%drive(:, :, k))
+         call set_sum(r%drive(:, :, 0), e%unit_of(k), drive_changes(e%laws(k), k, q%t, r%own, r%tables), r%drive(:, :, k))
          if (again) r%state%drive_value(0:2, k) = drive_motion(e%laws(k), q%t)*e%unit_of(k)
       end do
       r%missing = missing_nothing
@@ -147,9 +147,9 @@ contains
          change = change_of_constant(row)
          r%u(:, 0, u) = r%u(:, 0, u) + row%sign_of*change
       end if
-      call add_own(r%state%u(u)%value, u, r%u(:, 0, u))
-      call add_own(r%state%u(u)%rate, u + 1, r%u(:, 1, u))
-      call add_own(r%state%u(u)%acceleration, u + 2, r%u(:, 2, u))
+      call add_own(r%own*r%state%u(u)%value, u, r%u(:, 0, u))
+      call add_own(r%own*r%state%u(u)%rate, u + 1, r%u(:, 1, u))
+      call add_own(r%own*r%state%u(u)%acceleration, u + 2, r%u(:, 2, u))
    end subroutine respond_direct
 
    !> `z` = `x` + `times` `y`, of changes (directions, 0:2).
@@ -313,7 +313,7 @@ contains
       ! Orthogonal factors mix all rows.
       if (block%shape%rows > block%shape%n) r%size_of(:block%shape%rows) = maxval(r%size_of(:block%shape%rows))
       do k = 1, block%shape%rows
-         call add_own(r%size_of(k), 3*(block%first_row + k - 1) + order, r%v(:, k))
+         call add_own(r%own*r%size_of(k), 3*(block%first_row + k - 1) + order, r%v(:, k))
       end do
 
    contains
@@ -377,7 +377,7 @@ contains
                r%u(:, :, h%slide), g, size_of)
          end if
          do c = 1, 2
-            call add_own(place(c, order), 6*h%link + 2*order + c, g(:, c))
+            call add_own(r%own*place(c, order), 6*h%link + 2*order + c, g(:, c))
             links(:, c, order, h%link) = g(:, c)
          end do
          links(:, 3, order, h%link) = r%u(:, order, h%orientation)

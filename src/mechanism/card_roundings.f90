@@ -9,15 +9,15 @@ module card_roundings
    use number_changes, only: law_change
    implicit none
    private
-   public :: directions, card_directions, roundings, rounding, number_point, number_pair, number_drive, number_time, &
+   public :: directions, roundings, rounding, number_point, number_pair, number_drive, number_time, &
       number_link, parts_of_number, add_own, parts_of_any, card_sizes, card_change, law_tables, drive_changes, &
       drive_bounds, largest_part, caution, own_in_tables
 
    !> Of eight numbers by chance the largest is seldom a small one; of four, more often.
-   integer, parameter :: card_directions = 8, own_directions = 4, directions = card_directions + own_directions
+   integer, parameter :: directions = 8
    !> Numbers that are the same on many cards have the same rounding, and a sum of many is rounded the same way again
-   !> and again: in the last of the cards' directions all cards of a kind are off alike.
-   integer, parameter :: apart = card_directions - 2
+   !> and again: in the last of the directions all cards of a kind are off alike.
+   integer, parameter :: apart = directions - 2
    !> Changes are to first order: they count so many roundings, so that rows that are differences of changed motions
    !> lose no digits that matter.
    real(wp), parameter :: roundings = 256.0_wp, rounding = roundings*epsilon(1.0_wp)
@@ -25,46 +25,43 @@ module card_roundings
    !> A number of the deck, and with it every sum and product, is off by half a rounding. `caution`: for how few the
    !> directions are.
    real(wp), parameter :: caution = 2.5_wp
-   !> A digit of a table is worth a hundred errors of what the deck leaves open, which is the same for all programs; the
-   !> program's own errors may be as large as the digit.
+   !> The part of the calculation's own roundings that counts in tables: a digit is worth a hundred errors of what the
+   !> deck leaves open, which is the same for all programs; the program's own errors may be as large as the digit.
    real(wp), parameter :: own_in_tables = 0.01_wp
 
    !> What the number is on.
    integer, parameter :: number_point = 0, number_pair = 31, number_drive = 62, number_time = 93, number_link = 124
 
    !> Rows of numbers by chance, a prime number of them: a cubic congruence modulo the prime of Park and Miller's
-   !> generator.
-   integer, parameter :: rows = 251
+   !> generator. Cards go by the first eight, the calculation's own roundings by the last.
+   integer, parameter :: rows = 251, width = 12, first_own = width - directions + 1
    integer(int64), parameter :: multiplier = 16807_int64, modulus = 2147483647_int64
    integer :: n                                !< of the loop in the next lines
    !> Written out for each number: operations on whole constant arrays of this size take the compiler seconds.
-   real(wp), parameter :: parts(directions, 0:rows - 1) = reshape([ &
+   real(wp), parameter :: parts(width, 0:rows - 1) = reshape([ &
       (sign(least + (largest_part - least)*abs(real(2_int64*mod(multiplier*int(n, int64)**3, modulus) - modulus, wp) &
       /real(modulus, wp)), real(2_int64*mod(multiplier*int(n, int64)**3, modulus) - modulus, wp)), &
-      n=1, directions*rows)], [directions, rows])
+      n=1, width*rows)], [width, rows])
 
 contains
 
    !> The parts (directions) of `rounding` by which number `k` = 0, 1, ... of card number `card` is off. `kind`:
-   !> number_point, ...; none in the directions of the calculation's own roundings.
+   !> number_point, ...
    pure function parts_of_number(kind, card, k) result(r)
       integer, intent(in) :: kind, card, k
       real(wp) :: r(directions)
 
       r(:apart) = parts(:apart, modulo(7*card + kind + k, rows))
-      r(apart + 1:card_directions) = parts(apart + 1:card_directions, kind + k)
-      r(card_directions + 1:) = 0.0_wp
+      r(apart + 1:) = parts(apart + 1:directions, kind + k)
    end function parts_of_number
 
-   !> Adds to the changes `x` (directions) the rounding of result number `k` of the calculation, of size `size_of`: none
-   !> in the cards' directions.
+   !> Adds to the changes `x` (directions) the rounding of result number `k` of the calculation, of size `size_of`.
    pure subroutine add_own(size_of, k, x)
       real(wp), intent(in) :: size_of
       integer, intent(in) :: k
       real(wp), intent(inout) :: x(directions)
 
-      x(card_directions + 1:) = x(card_directions + 1:) + rounding*abs(size_of)*parts(card_directions + 1:, &
-         modulo(k, rows))
+      x = x + rounding*abs(size_of)*parts(first_own:, modulo(k, rows))
    end subroutine add_own
 
    !> The parts (directions) by which unknown `k` is off in every direction, whatever its errors come from.
@@ -72,7 +69,7 @@ contains
       integer, intent(in) :: k
       real(wp) :: r(directions)
 
-      r = parts(:, modulo(k, rows))
+      r = parts(:directions, modulo(k, rows))
    end function parts_of_any
 
    !> The sizes (points + pairs) that the roundings of points go by, along and across, since a link is turned by an
@@ -96,14 +93,14 @@ contains
       end do
    end function card_sizes
 
-   !> The roundings (card_directions, 2), along and across, of point number `card` of `m` or, beyond the points, of the
+   !> The roundings (directions, 2), along and across, of point number `card` of `m` or, beyond the points, of the
    !> offset of a pair, by its size among `sizes`, see `card_sizes`; those of a place on the ground with its link's, with
    !> which all its points are off alike.
    pure function card_change(m, sizes, card) result(x)
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: sizes(:)
       integer, intent(in) :: card
-      real(wp) :: x(card_directions, 2), r(directions)
+      real(wp) :: x(directions, 2), r(directions)
       integer :: k
 
       do k = 1, 2
@@ -115,12 +112,12 @@ contains
                if (m%links(j)%ground) r = r + abs(m%links(j)%position(k))*parts_of_number(number_link, j, k - 1)
             end associate
          end if
-         x(:, k) = rounding*r(:card_directions)
+         x(:, k) = rounding*r
       end do
    end function card_change
 
-   !> Of each of the cards' directions and each drive the law by which the values of its tables are off, `laws`
-   !> (card_directions, drives): a spline is linear in its values. A drive without tables has none, and neither has a
+   !> Of each direction and each drive the law by which the values of its tables are off, `laws`
+   !> (directions, drives): a spline is linear in its values. A drive without tables has none, and neither has a
    !> mechanism without.
    subroutine law_tables(m, laws)
       type(mechanism_t), intent(in) :: m
@@ -133,8 +130,8 @@ contains
       do i = 1, size(m%drives)
          if (.not. allocated(m%drives(i)%terms)) cycle
          if (.not. any(m%drives(i)%terms%kind == term_table)) cycle
-         if (.not. allocated(laws)) allocate (laws(card_directions, size(m%drives)))
-         do d = 1, card_directions
+         if (.not. allocated(laws)) allocate (laws(directions, size(m%drives)))
+         do d = 1, directions
             drive = drive_t(terms=pack(m%drives(i)%terms, m%drives(i)%terms%kind == term_table))
             do j = 1, size(drive%terms)
                sizes = table_sizes(drive%terms(j))
@@ -162,11 +159,12 @@ contains
    end function table_sizes
 
    !> The changes (directions, 0:2) at the time `t` of value, rate and acceleration of `law`, that of drive number `i`:
-   !> by the numbers on its cards, by the time, and by their own rounding. `tables`: see `law_tables`.
-   function drive_changes(law, i, t, tables) result(x)
+   !> by the numbers on its cards, by the time, and, of the calculation's own roundings the part `own`. `tables`: see
+   !> `law_tables`.
+   function drive_changes(law, i, t, own, tables) result(x)
       type(law_t), intent(in) :: law
       integer, intent(in) :: i
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t, own
       type(law_t), intent(in), allocatable :: tables(:, :)
       real(wp) :: x(directions, 0:2), f(0:2), r(directions)
       integer :: j, k
@@ -189,14 +187,12 @@ contains
       if (allocated(tables)) call add_tables(tables(:, i))
       f = drive_motion(law, t)
       do k = 0, 2
-         call add_own(f(k), 7*i + k, x(:, k))
+         call add_own(own*f(k), 7*i + k, x(:, k))
       end do
       f = larger(drive_motion(law, t*(1.0_wp + rounding)) - f, f - drive_motion(law, t*(1.0_wp - rounding)))
-      r = parts_of_number(number_time, 0, 0)
+      r = parts_of_number(number_time, 0, 0) + own*parts(first_own:, number_time)
       do k = 0, 2
-         if (.not. abs(f(k)) > 0.0_wp) cycle
-         x(:, k) = x(:, k) + f(k)*r
-         x(card_directions + 1:, k) = x(card_directions + 1:, k) + f(k)*parts(card_directions + 1:, number_time)
+         if (abs(f(k)) > 0.0_wp) x(:, k) = x(:, k) + f(k)*r
       end do
 
    contains
@@ -219,7 +215,7 @@ contains
          end do
       end subroutine add_number
 
-      !> Adds what the `laws` (card_directions) of tables change.
+      !> Adds what the `laws` (directions) of tables change.
       pure subroutine add_tables(laws)
          type(law_t), intent(in) :: laws(:)
          integer :: d
@@ -231,9 +227,8 @@ contains
       end subroutine add_tables
    end function drive_changes
 
-   !> Bounds (0:2) of what the cards' directions, and those of the calculation for the part that counts in tables,
-   !> change of value, rate and acceleration of `law`, as above, over `roundings`: for a polynomial of each number and
-   !> of the time, which together are more than what the calculation rounds.
+   !> Bounds (0:2) of these changes over `roundings`, with the part of the calculation's own roundings that counts in
+   !> tables: for a polynomial of each number and of the time, which together are more than what the calculation rounds.
    function drive_bounds(law, i, t, tables) result(bounds)
       type(law_t), intent(in) :: law
       integer, intent(in) :: i
@@ -247,12 +242,11 @@ contains
             bounds = [p(1) + 2.0_wp*abs(t)*(p(2) + abs(t)*p(3)), p(2) + 2.0_wp*abs(t)*p(3), p(3)]
             if (law%drive%kind == drive_relangle) bounds(0) = bounds(0) + 1.0_wp
          end associate
-         bounds = largest_part*epsilon(1.0_wp)*bounds
+         bounds = (1.0_wp + own_in_tables)*largest_part*epsilon(1.0_wp)*bounds
       else
-         x = drive_changes(law, i, t, tables)
+         x = drive_changes(law, i, t, own_in_tables, tables)
          do k = 0, 2
-            bounds(k) = max(maxval(abs(x(:card_directions, k))), &
-               own_in_tables*maxval(abs(x(card_directions + 1:, k))))/roundings
+            bounds(k) = maxval(abs(x(:, k)))/roundings
          end do
       end if
    end function drive_bounds

@@ -14,7 +14,7 @@ module error_estimate
    use block_method, only: block_method_t
    use block_engine, only: block_engine_t, make_block_engine
    use link_motion, only: move_found_links
-   use card_roundings, only: directions, card_directions, roundings, caution, own_in_tables
+   use card_roundings, only: directions, roundings, caution, own_in_tables
    use row_changes, only: change_row
    use rounding_response, only: rounding_response_t, make_rounding_response, respond_to_roundings
    implicit none
@@ -38,6 +38,7 @@ module error_estimate
       real(wp) :: of_sums(3, 0:2) = 0.0_wp
       !> (directions, 3, 0:2, links) What `roundings` roundings change of x, y, phi and their derivatives.
       real(wp), allocatable :: changes(:, :, :, :)
+      real(wp), allocatable :: all_own(:, :, :, :)   !< the same with all of the calculation's own; where errors are asked for
       logical, allocatable :: lost(:)        !< (links) nothing is known of their changes
       type(motion_t) :: solved               !< the motion to the limit of rounding, where errors are asked for
    end type error_estimate_t
@@ -154,13 +155,16 @@ contains
       type(error_estimate_t), intent(inout) :: found
       logical :: finite
 
-      if (.not. allocated(found%changes)) then
+      if (.not. allocated(found%changes)) &
          allocate (found%changes(directions, 3, 0:2, size(m%links)), found%lost(size(m%links)))
-      end if
+      r%own = own_in_tables
       call respond_to_roundings(r, m, e, q, q%known < 0, again, found%changes, found%lost)
       found%of_sums = errors_of_sums(m, q, length)
       found%taken = .true.
-      if (.not. again) return
+      if (.not. found%asked) return
+      if (.not. allocated(found%all_own)) allocate (found%all_own, mold=found%changes)
+      r%own = 1.0_wp
+      call respond_to_roundings(r, m, e, q, q%known < 0, again, found%all_own, found%lost)
       found%solved = new_motion(size(m%links))
       found%solved%known = 2
       call move_found_links(e%chain, found%lost, r%state, e%length, found%solved, finite)
@@ -168,15 +172,15 @@ contains
 
    !> What rounding of the deck's numbers leaves open (3, 0:2) of the `row` that `request` asks for of the motion `q`,
    !> in its units: the conditioning of the mechanism, whatever program has solved it. `nothing_known`, where it is so.
-   !> `own`: the part of this calculation's own roundings that counts.
-   pure function estimate_of(row, m, s, q, request, own) result(error)
+   !> `all_own`: with all of this calculation's own roundings.
+   pure function estimate_of(row, m, s, q, request, all_own) result(error)
       type(row_t), intent(in) :: row
       type(mechanism_t), intent(in) :: m
       type(error_estimate_t), intent(in) :: s
       type(motion_t), intent(in) :: q
       type(request_t), intent(in) :: request
-      real(wp), intent(in), optional :: own
-      real(wp) :: error(3, 0:2), of_cards(3, 0:2), of_own(3, 0:2), part
+      logical, intent(in), optional :: all_own
+      real(wp) :: error(3, 0:2), largest(3, 0:2)
       logical :: zero(3, 0:2), lost(3, 0:2)
 
       error = 0.0_wp
@@ -188,60 +192,68 @@ contains
       if (.not. s%taken) return
       error = nothing_known
       if (any(s%lost(request_links(m, request)))) return
-      call find_changes(m, s, q, request, row, of_cards, of_own, lost)
-      part = own_in_tables
-      if (present(own)) part = own
-      error = max(of_cards, part*of_own)
-      zero = abs(row%value) <= 0.0_wp .and. max(of_cards, of_own) <= 0.0_wp
+      if (present(all_own)) then
+         call find_largest(m, q, request, row, s%all_own, largest, lost)
+      else
+         call find_largest(m, q, request, row, s%changes, largest, lost)
+      end if
+      zero = abs(row%value) <= 0.0_wp .and. largest <= 0.0_wp
       ! A coordinate of what stands still is zero without a sum; an angle may be one that cancels.
       if (request%kind == request_link) zero(3, 0) = .false.
       if (request%kind == request_pair .and. row%angular) zero(1, 0) = .false.
-      error = merge(0.0_wp, caution*error + error_of_sums(s%of_sums, request, row), zero)
+      error = merge(0.0_wp, caution*largest + error_of_sums(s%of_sums, request, row), zero)
       if (request%kind < request_pole) error(:, row%known + 1:) = nothing_known
       error = merge(nothing_known, error, lost)
    end function estimate_of
 
-   !> By how much (3, 0:2) a rounding changes the `row` of `request` of the motion `q` at most: one of the deck's
-   !> numbers, `of_cards`, and one of the calculation, `of_own`. `lost`: it leaves nothing of it.
-   pure subroutine find_changes(m, s, q, request, row, of_cards, of_own, lost)
+   !> By how much (3, 0:2) a rounding changes the `row` of `request` of the motion `q` at most, whose links change by
+   !> `links` (directions, 3, 0:2, links). `lost`: it leaves nothing of it.
+   pure subroutine find_largest(m, q, request, row, links, largest, lost)
       type(mechanism_t), intent(in) :: m
-      type(error_estimate_t), intent(in) :: s
       type(motion_t), intent(in) :: q
       type(request_t), intent(in) :: request
       type(row_t), intent(in) :: row
-      real(wp), dimension(3, 0:2), intent(out) :: of_cards, of_own
+      real(wp), intent(in) :: links(directions, 3, 0:2, *)
+      real(wp), intent(out) :: largest(3, 0:2)
       logical, intent(out) :: lost(3, 0:2)
       real(wp) :: x(directions, 3, 0:2)
-      integer :: c, d, k
 
       lost = .false.
-      if (request%kind < request_pole) then
-         call change_row(m, q, request, s%changes, x)
+      if (request%kind == request_link) then
+         call take_largest(links(1, 1, 0, request%subject), largest)
       else
-         call change_centre(m, s, q, request, row, x, lost)
+         if (request%kind < request_pole) then
+            call change_row(m, q, request, links, x)
+         else
+            call change_centre(m, q, request, row, links, x, lost)
+         end if
+         call take_largest(x, largest)
       end if
-      of_cards = 0.0_wp
-      of_own = 0.0_wp
-      do k = 0, 2
-         do c = 1, 3
-            do d = 1, card_directions
-               of_cards(c, k) = max(of_cards(c, k), abs(x(d, c, k))/roundings)
-            end do
-            do d = card_directions + 1, directions
-               of_own(c, k) = max(of_own(c, k), abs(x(d, c, k))/roundings)
-            end do
+   end subroutine find_largest
+
+   !> The `largest` (9) of changes `x` (directions, 9), over `roundings`.
+   pure subroutine take_largest(x, largest)
+      real(wp), intent(in) :: x(directions, 9)
+      real(wp), intent(out) :: largest(9)
+      real(wp) :: half(directions/2)
+      integer :: c, d
+
+      do c = 1, 9
+         do d = 1, directions/2
+            half(d) = max(abs(x(d, c)), abs(x(d + directions/2, c)))
          end do
+         largest(c) = max(max(half(1), half(2)), max(half(3), half(4)))/roundings
       end do
-   end subroutine find_changes
+   end subroutine take_largest
 
    !> The changes `x` (directions, 3, 0:2) of the pole or curve `row`. To both sides: roundings that change much, but
    !> together, leave what depends on ratios as it is.
-   pure subroutine change_centre(m, s, q, request, row, x, lost)
+   pure subroutine change_centre(m, q, request, row, links, x, lost)
       type(mechanism_t), intent(in) :: m
-      type(error_estimate_t), intent(in) :: s
       type(motion_t), intent(in) :: q
       type(request_t), intent(in) :: request
       type(row_t), intent(in) :: row
+      real(wp), intent(in) :: links(directions, 3, 0:2, size(m%links))
       real(wp), intent(out) :: x(directions, 3, 0:2)
       logical, intent(inout) :: lost(3, 0:2)
       type(row_t) :: up, down
@@ -250,8 +262,8 @@ contains
       up = row
       down = row
       do k = 1, directions
-         call set_values(m, q, request, up, s%changes(k, :, :, :), few/roundings)
-         call set_values(m, q, request, down, s%changes(k, :, :, :), -few/roundings)
+         call set_values(m, q, request, up, links(k, :, :, :), few/roundings)
+         call set_values(m, q, request, down, links(k, :, :, :), -few/roundings)
          x(k, :, :) = difference(up, down)*(roundings/(2.0_wp*few))
          lost = lost .or. lost_numbers(up, row) .or. lost_numbers(down, row)
       end do
@@ -268,7 +280,7 @@ contains
       type(row_t) :: row, solved
 
       row = row_of(m, q, request)
-      error = estimate_of(row, m, s, q, request, 1.0_wp)
+      error = estimate_of(row, m, s, q, request, all_own=.true.)
       if (.not. s%taken .or. is_fixed(m, request)) return
       solved = row_of(m, s%solved, request)
       where (error < nothing_known) error = error + difference(row, solved)
