@@ -15,7 +15,7 @@ module rounding_response
    use planar, only: rotated
    use mechanism, only: mechanism_t
    use motion, only: motion_t, new_motion
-   use blocks, only: blocks_t, block_t, row_t, loop_components, loop_projection, largest_known
+   use blocks, only: blocks_t, block_t, row_t, largest_known
    use block_matrix, only: solve_first, solve_again, solve_many
    use block_state, only: new_state, find_known_parts
    use block_solver, only: make_workspace, solve_block
@@ -25,7 +25,7 @@ module rounding_response
    use link_motion, only: chain_link_t, mark_links, missing_nothing, missing_all
    use drives, only: drive_motion
    use rounding_parts, only: arm_t, gather_rounding_parts
-   use rounding_changes, only: rounding_response_t, change_loop, change_projection, change_parts, change_slide, max_part
+   use rounding_changes, only: rounding_response_t, change_loop, add_found_angles, change_parts, change_slide, max_part
    use card_roundings, only: directions, rounding, roundings, number_pair, number_drive, parts_of_number, &
       add_own, parts_of_any, law_tables, drive_changes
    implicit none
@@ -43,7 +43,7 @@ contains
       type(mechanism_t), intent(in) :: m
       class(block_engine_t), intent(in) :: e
       real(wp) :: angle(size(m%links))
-      integer :: i, rows
+      integer :: i, rows, loops
 
       r%state = new_state(e%blocks, size(m%drives))
       call make_workspace(r%work, e%blocks)
@@ -60,7 +60,9 @@ contains
       allocate (r%drive(directions, 0:2, 0:size(m%drives)), r%u(directions, 0:2, 0:e%blocks%unknowns), source=0.0_wp)
       allocate (r%missing(0:e%blocks%unknowns), source=missing_nothing)
       rows = max(1, maxval(e%blocks%list%shape%rows))
-      allocate (r%v(directions, rows), r%size_of(rows), source=0.0_wp)
+      loops = max(1, maxval(e%blocks%list%last_loop - e%blocks%list%first_loop + 1))
+      allocate (r%v(directions, rows), r%row_size(rows), r%g(directions, 2, 0:2, loops), r%loop_size(0:2, loops), &
+         source=0.0_wp)
    end subroutine make_rounding_response
 
    !> The changes `links` (directions, 3, 0:2, links) of the motion `q` of `m` at `r%state`, which `e` has solved for
@@ -290,48 +292,59 @@ contains
       type(blocks_t), intent(in) :: b
       type(block_t), intent(in) :: block
       integer, intent(in) :: order
-      real(wp) :: g(directions, 2), size_of
-      integer :: k, guide
+      integer :: k, j
 
       do k = block%first_loop, block%last_loop
-         associate (loop => b%loops(k))
-            select case (loop%kind)
-            case (loop_components)
-               call change_loop(r, b, k, order, g, size_of)
-            case (loop_projection)
-               guide = b%rows(block%first_row + loop%row_x - 1)%pair
-               if (guide == 0) guide = m%drives(b%rows(block%first_row + loop%row_x - 1)%drive)%subject
-               call change_projection(r, b, k, guide, order, g(:, 1), size_of)
-            case default
-               g(:, 1) = r%u(:, order, loop%orientation) - r%u(:, order, loop%less)
-               size_of = 0.0_wp
-            end select
-            if (loop%row_x > 0) call set_row(loop%row_x, g(:, 1), size_of)
-            if (loop%row_y > 0) call set_row(loop%row_y, g(:, 2), size_of)
+         j = k - block%first_loop + 1
+         associate (loop => b%loops(k), p => r%parts)
+            ! What is found of the block's own angles turns its own vectors; all else is as it was.
+            if (order == 0 .or. .not. p%is_plain(k)) then
+               call change_loop(r, b, k, guide_of(b%rows(block%first_row + loop%row_x - 1)), r%g(:, :, :, j), &
+                  r%loop_size(:, j))
+            else
+               call add_found_angles(order - 1, p%first_own(k), p%first(k + 1) - 1, p%parts, r%state%u, r%u, &
+                  r%g(:, :, :, j))
+            end if
+            if (loop%row_x > 0) call set_row(loop%row_x, r%g(:, 1, order, j), r%loop_size(order, j))
+            if (loop%row_y > 0) call set_row(loop%row_y, r%g(:, 2, order, j), r%loop_size(order, j))
          end associate
       end do
       ! Orthogonal factors mix all rows.
-      if (block%shape%rows > block%shape%n) r%size_of(:block%shape%rows) = maxval(r%size_of(:block%shape%rows))
+      if (block%shape%rows > block%shape%n) r%row_size(:block%shape%rows) = maxval(r%row_size(:block%shape%rows))
       do k = 1, block%shape%rows
-         call add_own(r%own*r%size_of(k), 3*(block%first_row + k - 1) + order, r%v(:, k))
+         call add_own(r%own*r%row_size(k), 3*(block%first_row + k - 1) + order, r%v(:, k))
       end do
 
    contains
+
+      !> The prismatic pair on whose guide `row`, or the slide of its drive, is measured, if it is a projection.
+      pure integer function guide_of(row)
+         type(row_t), intent(in) :: row
+
+         guide_of = row%pair
+         if (row%pair == 0 .and. row%drive > 0) guide_of = m%drives(row%drive)%subject
+      end function guide_of
 
       !> Row number `row`: the change of its drive, and of its constant, less that of its loop, `x`.
       subroutine set_row(row, x, size_of)
          integer, intent(in) :: row
          real(wp), intent(in) :: x(directions), size_of
-         real(wp) :: v(directions)
 
          associate (own => b%rows(block%first_row + row - 1))
-            v = r%drive(:, order, own%drive) - x
-            if (order == 0 .and. abs(own%constant) > 0.0_wp) v = v + change_of_constant(own)
+            call subtract(x, r%drive(:, order, own%drive), r%v(:, row))
+            if (order == 0 .and. abs(own%constant) > 0.0_wp) r%v(:, row) = r%v(:, row) + change_of_constant(own)
          end associate
-         r%v(:, row) = v
-         r%size_of(row) = size_of
+         r%row_size(row) = size_of
       end subroutine set_row
    end subroutine find_residuals
+
+   !> `z` = `y` - `x` (directions).
+   pure subroutine subtract(x, y, z)
+      real(wp), intent(in) :: x(directions), y(directions)
+      real(wp), intent(inout) :: z(directions)
+
+      z = y - x
+   end subroutine subtract
 
    !> Solves the two equations whose matrix is `a` (4, by columns) for the right-hand sides `v` (directions, 2): by
    !> its inverse, in a part of the time that factors take. Errors need no more than their first digits.
@@ -357,30 +370,30 @@ contains
       type(arm_t), intent(in) :: arm
       real(wp), intent(in) :: length, p(3), v(3), a(3)
       real(wp), intent(inout) :: links(directions, 3, 0:2, *)
-      real(wp) :: g(directions, 2), size_of, place(2, 0:2)
-      integer :: order, c
+      real(wp) :: g(directions, 2, 0:2), size_of(0:2)
+      integer :: c, k
 
-      place(:, 0) = p(:2)
-      place(:, 1) = v(:2)
-      place(:, 2) = a(:2)
-      do order = 0, 2
-         g = 0.0_wp
-         if (h%parent > 0) g = links(:, :2, order, h%parent)
-         if (h%root > 0) then
-            do c = 1, 2
-               g(:, c) = length*h%root_unit(c)*r%u(:, order, h%root + c - 1)
-            end do
-         else
-            call change_parts(order, 1, arm%count, arm%parts, r%state%u, r%u, g, size_of)
-            if (h%slide > 0) call change_slide(order, length*h%place%slide_body_vector, r%pair_of(h%slide), &
-               r%state%u(h%parent_orientation), r%state%u(h%slide), r%u(:, :, h%parent_orientation), &
-               r%u(:, :, h%slide), g, size_of)
-         end if
+      g = 0.0_wp
+      size_of = 0.0_wp
+      if (h%parent > 0) g = links(:, :2, :, h%parent)
+      if (h%root > 0) then
          do c = 1, 2
-            call add_own(r%own*place(c, order), 6*h%link + 2*order + c, g(:, c))
-            links(:, c, order, h%link) = g(:, c)
+            g(:, c, :) = length*h%root_unit(c)*r%u(:, :, h%root + c - 1)
          end do
-         links(:, 3, order, h%link) = r%u(:, order, h%orientation)
+      else
+         call change_parts(1, arm%count, arm%parts, r%state%u, r%u, g, size_of)
+         if (h%slide > 0) call change_slide(length*h%place%slide_body_vector, r%pair_of(h%slide), &
+            r%state%u(h%parent_orientation), r%state%u(h%slide), r%u(:, :, h%parent_orientation), r%u(:, :, h%slide), &
+            g, size_of)
+      end if
+      do c = 1, 2
+         call add_own(r%own*p(c), 6*h%link + c, g(:, c, 0))
+         call add_own(r%own*v(c), 6*h%link + 2 + c, g(:, c, 1))
+         call add_own(r%own*a(c), 6*h%link + 4 + c, g(:, c, 2))
+      end do
+      do k = 0, 2
+         links(:, :2, k, h%link) = g(:, :, k)
+         links(:, 3, k, h%link) = r%u(:, k, h%orientation)
       end do
    end subroutine move_link
 end module rounding_response

@@ -61,8 +61,16 @@ contains
       integer, intent(in) :: k
       real(wp), intent(inout) :: x(directions)
 
-      x = x + rounding*abs(size_of)*parts(first_own:, modulo(k, rows))
+      if (abs(size_of) > 0.0_wp) call add_parts(rounding*abs(size_of), parts(first_own, modulo(k, rows)), x)
    end subroutine add_own
+
+   !> Adds `times` the numbers `r` to the changes `x` (directions).
+   pure subroutine add_parts(times, r, x)
+      real(wp), intent(in) :: times, r(directions)
+      real(wp), intent(inout) :: x(directions)
+
+      x = x + times*r
+   end subroutine add_parts
 
    !> The parts (directions) by which unknown `k` is off in every direction, whatever its errors come from.
    pure function parts_of_any(k) result(r)
@@ -192,7 +200,7 @@ contains
       f = larger(drive_motion(law, t*(1.0_wp + rounding)) - f, f - drive_motion(law, t*(1.0_wp - rounding)))
       r = parts_of_number(number_time, 0, 0) + own*parts(first_own:, number_time)
       do k = 0, 2
-         if (abs(f(k)) > 0.0_wp) x(:, k) = x(:, k) + f(k)*r
+         if (abs(f(k)) > 0.0_wp) call add_parts(f(k), r, x(:, k))
       end do
 
    contains
@@ -211,7 +219,7 @@ contains
          f = law_change_here(law%drive, term, place, t)
          r = parts_of_number(number_drive, i, mod(3*term + place, 30))
          do order = 0, 2
-            if (abs(f(order)) > 0.0_wp) x(:, order) = x(:, order) + rounding*size_of*f(order)*r
+            if (abs(f(order)) > 0.0_wp) call add_parts(rounding*size_of*f(order), r, x(:, order))
          end do
       end subroutine add_number
 

@@ -2,12 +2,12 @@
 !> `card_roundings` at once, as they change the motion of the links.
 module row_changes
    use kinds, only: wp
-   use planar, only: direction, rotated, turning
+   use planar, only: direction, turning
    use mechanism, only: mechanism_t, request_t, pair_prismatic, request_link, request_point
    use motion, only: motion_t
    use points, only: point_motion
    use card_roundings, only: directions
-   use rounding_changes, only: change_vector, change_product
+   use rounding_changes, only: change_vector, change_product, no_change
    implicit none
    private
    public :: change_row
@@ -43,16 +43,12 @@ contains
       type(motion_t), intent(in) :: q
       integer, intent(in) :: i
       real(wp), intent(in) :: links(directions, 3, 0:2, *)
-      real(wp) :: x(directions, 2, 0:2), f(directions, 0:2), arm(2)
-      integer :: order
+      real(wp) :: x(directions, 2, 0:2)
 
       associate (k => m%points(i)%link)
-         arm = rotated(m%points(i)%offset, direction(q%position(3, k)))
-         f = links(:, 3, :, k)
          x = links(:, :2, :, k)
-         do order = 0, 2
-            call change_vector(order, arm, q%velocity(3, k), q%acceleration(3, k), f, x(:, :, order))
-         end do
+         call change_vector(m%points(i)%offset, no_change, direction(q%position(3, k)), q%velocity(3, k), &
+            q%acceleration(3, k), links(:, 3, :, k), x)
       end associate
    end function change_of_point
 
@@ -77,8 +73,8 @@ contains
          dp = change_of_point(m, q, pair%point_j, links) - change_of_point(m, q, pair%point_i, links)
          e = turning(direction(q%position(3, k) + pair%alpha), [0.0_wp, q%velocity(3, k), q%acceleration(3, k)])
          de = 0.0_wp
+         call change_vector([1.0_wp, 0.0_wp], no_change, e(:, 0), q%velocity(3, k), q%acceleration(3, k), f, de)
          do order = 0, 2
-            call change_vector(order, e(:, 0), q%velocity(3, k), q%acceleration(3, k), f, de(:, :, order))
             x(:, order) = change_product(order, p, e, dp, de)
          end do
       end associate

@@ -69,7 +69,7 @@ contains
       if (row%known < 0) return
       call set_values(m, q, request, row)
       unit = merge(2, 1, row%angular)
-      size_of(unit, :) = max(size_of(unit, :), maxval(abs(row%value(:2, :)), dim=1))
+      size_of(unit, :) = max(size_of(unit, :), abs(row%value(1, :)), abs(row%value(2, :)))
       size_of(2, :) = max(size_of(2, :), abs(row%value(3, :)))
    end subroutine widen
 
