@@ -15,7 +15,7 @@ module rounding_response
    use planar, only: rotated
    use mechanism, only: mechanism_t
    use motion, only: motion_t, new_motion
-   use blocks, only: blocks_t, block_t, row_t, largest_known
+   use blocks, only: blocks_t, block_t, block_loop_t, row_t, loop_projection, largest_known
    use block_matrix, only: solve_first, solve_again, solve_many
    use block_state, only: new_state, find_known_parts
    use block_solver, only: make_workspace, solve_block
@@ -299,8 +299,7 @@ contains
          associate (loop => b%loops(k), p => r%parts)
             ! What is found of the block's own angles turns its own vectors; all else is as it was.
             if (order == 0 .or. .not. p%is_plain(k)) then
-               call change_loop(r, b, k, guide_of(b%rows(block%first_row + loop%row_x - 1)), r%g(:, :, :, j), &
-                  r%loop_size(:, j))
+               call change_loop(r, b, k, guide_of(loop), r%g(:, :, :, j), r%loop_size(:, j))
             else
                call add_found_angles(order - 1, p%first_own(k), p%first(k + 1) - 1, p%parts, r%state%u, r%u, &
                   r%g(:, :, :, j))
@@ -317,12 +316,16 @@ contains
 
    contains
 
-      !> The prismatic pair on whose guide `row`, or the slide of its drive, is measured, if it is a projection.
-      pure integer function guide_of(row)
-         type(row_t), intent(in) :: row
+      !> The prismatic pair on whose guide `loop`, or the slide of its drive, is measured; 0: it is no projection.
+      pure integer function guide_of(loop)
+         type(block_loop_t), intent(in) :: loop
 
-         guide_of = row%pair
-         if (row%pair == 0 .and. row%drive > 0) guide_of = m%drives(row%drive)%subject
+         guide_of = 0
+         if (loop%kind /= loop_projection) return
+         associate (row => b%rows(block%first_row + loop%row_x - 1))
+            guide_of = row%pair
+            if (row%pair == 0) guide_of = m%drives(row%drive)%subject
+         end associate
       end function guide_of
 
       !> Row number `row`: the change of its drive, and of its constant, less that of its loop, `x`.

@@ -33,7 +33,7 @@ module card_roundings
    integer, parameter :: number_point = 0, number_pair = 31, number_drive = 62, number_time = 93, number_link = 124
 
    !> Rows of numbers by chance, a prime number of them: a cubic congruence modulo the prime of Park and Miller's
-   !> generator. Cards go by the first eight, the calculation's own roundings by the last.
+   !> generator. Cards go by the first eight, all else by the last.
    integer, parameter :: rows = 251, width = 12, first_own = width - directions + 1
    integer(int64), parameter :: multiplier = 16807_int64, modulus = 2147483647_int64
    integer :: n                                !< of the loop in the next lines
@@ -77,7 +77,7 @@ contains
       integer, intent(in) :: k
       real(wp) :: r(directions)
 
-      r = parts(:directions, modulo(k, rows))
+      r = parts(first_own:, modulo(k, rows))
    end function parts_of_any
 
    !> The sizes (points + pairs) that the roundings of points go by, along and across, since a link is turned by an
