@@ -43,8 +43,8 @@ module rounding_changes
 
 contains
 
-   !> The changes `g` (directions, 2, 0:2) of loop number `k` of `blocks` or, in its first component, of its projection on
-   !> a direction that is off as the angle of `guide` is, as far as they are known; `size_of` (0:2): what is added up
+   !> The changes `g` (directions, 2, 0:2) of loop number `k` of `blocks` or, in its first component, of its projection
+   !> on a direction that is off as the angle of `guide` is, as far as they are known; `size_of` (0:2): what is added up
    !> there, signs left aside.
    pure subroutine change_loop(r, blocks, k, guide, g, size_of)
       type(rounding_response_t), intent(in) :: r
@@ -71,8 +71,8 @@ contains
       end associate
    end subroutine change_loop
 
-   !> Adds to `g` (directions, 2, 0:2) and to `size_of` (0:2) what `parts` number `first` to `last` change by, which turn
-   !> with orientations among `s` that change by `u`. On plain arrays, which cost no descriptors.
+   !> Adds to `g` (directions, 2, 0:2) and to `size_of` (0:2) what `parts` number `first` to `last` change by, which
+   !> turn with orientations among `s` that change by `u`. On plain arrays, which cost no descriptors.
    pure subroutine change_parts(first, last, parts, s, u, g, size_of)
       integer, intent(in) :: first, last
       type(part_t), intent(in) :: parts(*)
@@ -95,8 +95,9 @@ contains
       end do
    end subroutine change_parts
 
-   !> Adds to `g` (directions, 2, 0:2) the change of the vector `d` (2) in axes whose x axis is `e` (2) and that turn with
-   !> `rate` and `acceleration`, where it changes by `change` (directions, 2) and the angle by `f` (directions, 0:2).
+   !> Adds to `g` (directions, 2, 0:2) the change of the vector `d` (2) in axes whose x axis is `e` (2) and that turn
+   !> with `rate` and `acceleration`, where it changes by `change` (directions, 2) and the angle by `f` (directions,
+   !> 0:2).
    pure subroutine change_vector(d, change, e, rate, acceleration, f, g)
       real(wp), intent(in) :: d(2), change(directions, 2), e(2), rate, acceleration, f(directions, 0:2)
       real(wp), intent(inout) :: g(directions, 2, 0:2)
@@ -119,8 +120,8 @@ contains
       end do
    end subroutine change_vector
 
-   !> Adds to derivatives `order` + 1 and higher of `g` (directions, 2, 0:2) what derivative number `order` of the angles
-   !> changes there that turn `parts` number `first` to `last`.
+   !> Adds to derivatives `order` + 1 and higher of `g` (directions, 2, 0:2) what derivative number `order` of the
+   !> angles changes there that turn `parts` number `first` to `last`.
    pure subroutine add_found_angles(order, first, last, parts, s, u, g)
       integer, intent(in) :: order, first, last
       type(part_t), intent(in) :: parts(*)
@@ -148,9 +149,9 @@ contains
       end do
    end subroutine add_found_angles
 
-   !> The same of slide `s` times the vector `d` (2) in the axes that turn as `f` does, whose direction is off as the angle
-   !> of `pair` is, if it has one: angle and slide change by `df` and `ds` (directions, 0:2). To `size_of` (0:2), its
-   !> size.
+   !> The same of slide `s` times the vector `d` (2) in the axes that turn as `f` does, whose direction is off as the
+   !> angle of `pair` is, if it has one: angle and slide change by `df` and `ds` (directions, 0:2). To `size_of` (0:2),
+   !> its size.
    pure subroutine change_slide(d, pair, f, s, df, ds, g, size_of)
       integer, intent(in) :: pair
       real(wp), intent(in) :: d(2), df(directions, 0:2), ds(directions, 0:2)
@@ -182,8 +183,8 @@ contains
          + 2.0_wp*abs(s%rate*f%rate) + abs(s%value)*(abs(f%acceleration) + square)]
    end subroutine change_slide
 
-   !> Replaces the first component of the changes `g` of loop number `k`, and what is added up there, `size_of`, by those
-   !> of its projection g . f, where f turns with an orientation and is off as the angle of the pair `guide` is.
+   !> Replaces the first component of the changes `g` of loop number `k`, and what is added up there, `size_of`, by
+   !> those of its projection g . f, where f turns with an orientation and is off as the angle of the pair `guide` is.
    pure subroutine project(r, blocks, k, guide, g, size_of)
       type(rounding_response_t), intent(in) :: r
       type(blocks_t), intent(in) :: blocks

@@ -13,9 +13,9 @@ module rounding_parts
    !> What a rounding of the calculation adds to both components of a vector, over its size: at most the root of two.
    real(wp), parameter, public :: own_part = 1.5_wp*largest_part*own_in_tables*epsilon(1.0_wp)
 
-   !> What turns with one orientation, in its axes: a vector, and the `change` of the numbers it is the sum of in each of
-   !> the directions, of all together as they stand there; the sum of the sizes of these. `off`: no direction
-   !> changes it by more over `roundings`, with what is rounded there.
+   !> What turns with one orientation, in its axes: a vector, and the `change` of the numbers it is the sum of in each
+   !> of the directions, of all together as they stand there; the sum of the sizes of these. `off`: no direction changes
+   !> it by more over `roundings`, with what is rounded there.
    type :: part_t
       integer :: orientation = 0
       real(wp) :: vector(2) = 0.0_wp, length = 0.0_wp
@@ -139,8 +139,8 @@ contains
       end subroutine move_to_end
    end subroutine gather_loop
 
-   !> How link number `i` of the chain hangs on its parent: see `link_motion`. Where both turn with one orientation there
-   !> is one part; a part of which there is nothing is left out.
+   !> How link number `i` of the chain hangs on its parent: see `link_motion`. Where both turn with one orientation
+   !> there is one part; a part of which there is nothing is left out.
    subroutine gather_arm(arm, m, e, sizes, i)
       type(arm_t), intent(inout) :: arm
       type(mechanism_t), intent(in) :: m

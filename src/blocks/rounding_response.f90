@@ -15,7 +15,7 @@ module rounding_response
    use planar, only: rotated
    use mechanism, only: mechanism_t
    use motion, only: motion_t, new_motion
-   use blocks, only: blocks_t, block_t, block_loop_t, row_t, loop_projection, largest_known
+   use blocks, only: row_t, largest_known
    use block_matrix, only: solve_first, solve_again, solve_many
    use block_state, only: new_state, find_known_parts
    use block_solver, only: make_workspace, solve_block
@@ -25,9 +25,9 @@ module rounding_response
    use link_motion, only: chain_link_t, mark_links, missing_nothing, missing_all
    use drives, only: drive_motion
    use rounding_parts, only: arm_t, gather_rounding_parts
-   use rounding_changes, only: rounding_response_t, change_loop, add_found_angles, change_parts, change_slide, max_part
-   use card_roundings, only: directions, rounding, roundings, number_pair, number_drive, parts_of_number, &
-      add_own, parts_of_any, law_tables, drive_changes
+   use rounding_changes, only: rounding_response_t, change_parts, change_slide, max_part
+   use rounding_residuals, only: find_residuals, change_of_constant
+   use card_roundings, only: directions, roundings, add_own, parts_of_any, law_tables, drive_changes
    implicit none
    private
    public :: rounding_response_t, make_rounding_response, respond_to_roundings
@@ -83,7 +83,8 @@ contains
 
       some_missing = .false.
       do k = 1, size(e%laws)
-         call set_sum(r%drive(:, :, 0), e%unit_of(k), drive_changes(e%laws(k), k, q%t, r%own, r%tables), r%drive(:, :, k))
+         call set_sum(r%drive(:, :, 0), e%unit_of(k), drive_changes(e%laws(k), k, q%t, r%own, r%tables), &
+            r%drive(:, :, k))
          if (again) r%state%drive_value(0:2, k) = drive_motion(e%laws(k), q%t)*e%unit_of(k)
       end do
       r%missing = missing_nothing
@@ -161,15 +162,6 @@ contains
 
       z = x + times*y
    end subroutine set_sum
-
-   !> By how much the constant of `row` is off (directions): a sum of angles of the deck, or the offset of a guide.
-   pure function change_of_constant(row) result(change)
-      type(row_t), intent(in) :: row
-      real(wp) :: change(directions)
-
-      change = rounding*abs(row%constant)*parts_of_number(merge(number_drive, number_pair, row%drive > 0), &
-         max(row%drive, row%pair), 0)
-   end function change_of_constant
 
    !> The response of block `i`, whose Jacobian has the `inverse` (maximum norm). `is_found`: the changes are small
    !> enough. Where the Jacobian `is_singular`, a position changes with the root of what the equations change by,
@@ -284,71 +276,6 @@ contains
       end associate
    end subroutine refine_rates
 
-   !> `r%v` (directions, rows): derivative number `order` of the changes of the equations of `block`, with the other
-   !> sign, as far as they are known. `m`: on whose pairs' guides drives measure.
-   subroutine find_residuals(r, m, b, block, order)
-      type(rounding_response_t), intent(inout) :: r
-      type(mechanism_t), intent(in) :: m
-      type(blocks_t), intent(in) :: b
-      type(block_t), intent(in) :: block
-      integer, intent(in) :: order
-      integer :: k, j
-
-      do k = block%first_loop, block%last_loop
-         j = k - block%first_loop + 1
-         associate (loop => b%loops(k), p => r%parts)
-            ! What is found of the block's own angles turns its own vectors; all else is as it was.
-            if (order == 0 .or. .not. p%is_plain(k)) then
-               call change_loop(r, b, k, guide_of(loop), r%g(:, :, :, j), r%loop_size(:, j))
-            else
-               call add_found_angles(order - 1, p%first_own(k), p%first(k + 1) - 1, p%parts, r%state%u, r%u, &
-                  r%g(:, :, :, j))
-            end if
-            if (loop%row_x > 0) call set_row(loop%row_x, r%g(:, 1, order, j), r%loop_size(order, j))
-            if (loop%row_y > 0) call set_row(loop%row_y, r%g(:, 2, order, j), r%loop_size(order, j))
-         end associate
-      end do
-      ! Orthogonal factors mix all rows.
-      if (block%shape%rows > block%shape%n) r%row_size(:block%shape%rows) = maxval(r%row_size(:block%shape%rows))
-      do k = 1, block%shape%rows
-         call add_own(r%own*r%row_size(k), 3*(block%first_row + k - 1) + order, r%v(:, k))
-      end do
-
-   contains
-
-      !> The prismatic pair on whose guide `loop`, or the slide of its drive, is measured; 0: it is no projection.
-      pure integer function guide_of(loop)
-         type(block_loop_t), intent(in) :: loop
-
-         guide_of = 0
-         if (loop%kind /= loop_projection) return
-         associate (row => b%rows(block%first_row + loop%row_x - 1))
-            guide_of = row%pair
-            if (row%pair == 0) guide_of = m%drives(row%drive)%subject
-         end associate
-      end function guide_of
-
-      !> Row number `row`: the change of its drive, and of its constant, less that of its loop, `x`.
-      subroutine set_row(row, x, size_of)
-         integer, intent(in) :: row
-         real(wp), intent(in) :: x(directions), size_of
-
-         associate (own => b%rows(block%first_row + row - 1))
-            call subtract(x, r%drive(:, order, own%drive), r%v(:, row))
-            if (order == 0 .and. abs(own%constant) > 0.0_wp) r%v(:, row) = r%v(:, row) + change_of_constant(own)
-         end associate
-         r%row_size(row) = size_of
-      end subroutine set_row
-   end subroutine find_residuals
-
-   !> `z` = `y` - `x` (directions).
-   pure subroutine subtract(x, y, z)
-      real(wp), intent(in) :: x(directions), y(directions)
-      real(wp), intent(inout) :: z(directions)
-
-      z = y - x
-   end subroutine subtract
-
    !> Solves the two equations whose matrix is `a` (4, by columns) for the right-hand sides `v` (directions, 2): by
    !> its inverse, in a part of the time that factors take. Errors need no more than their first digits.
    pure subroutine solve_two(a, v)
@@ -365,8 +292,8 @@ contains
       end do
    end subroutine solve_two
 
-   !> The changes of the link of `h`, which hangs on its parent by `arm`, in `links` (directions, 3, 0:2, links), those of
-   !> its parent known; `p`, `v` and `a` (3): its place and the derivatives. `length`: the unit of the blocks.
+   !> The changes of the link of `h`, which hangs on its parent by `arm`, in `links` (directions, 3, 0:2, links), those
+   !> of its parent known; `p`, `v` and `a` (3): its place and the derivatives. `length`: the unit of the blocks.
    pure subroutine move_link(r, h, arm, length, p, v, a, links)
       type(rounding_response_t), intent(in) :: r
       type(chain_link_t), intent(in) :: h

@@ -102,8 +102,8 @@ contains
    end function card_sizes
 
    !> The roundings (directions, 2), along and across, of point number `card` of `m` or, beyond the points, of the
-   !> offset of a pair, by its size among `sizes`, see `card_sizes`; those of a place on the ground with its link's, with
-   !> which all its points are off alike.
+   !> offset of a pair, by its size among `sizes`, see `card_sizes`; those of a place on the ground with its link's,
+   !> with which all its points are off alike.
    pure function card_change(m, sizes, card) result(x)
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: sizes(:)

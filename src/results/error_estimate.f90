@@ -38,7 +38,7 @@ module error_estimate
       real(wp) :: of_sums(3, 0:2) = 0.0_wp
       !> (directions, 3, 0:2, links) What `roundings` roundings change of x, y, phi and their derivatives.
       real(wp), allocatable :: changes(:, :, :, :)
-      real(wp), allocatable :: all_own(:, :, :, :)   !< the same with all of the calculation's own; where errors are asked for
+      real(wp), allocatable :: own(:, :, :, :)       !< the calculation's own alone, and all; where errors are asked for
       logical, allocatable :: lost(:)        !< (links) nothing is known of their changes
       type(motion_t) :: solved               !< the motion to the limit of rounding, where errors are asked for
    end type error_estimate_t
@@ -155,16 +155,19 @@ contains
       type(error_estimate_t), intent(inout) :: found
       logical :: finite
 
-      if (.not. allocated(found%changes)) &
-         allocate (found%changes(directions, 3, 0:2, size(m%links)), found%lost(size(m%links)))
+      if (.not. allocated(found%changes)) then
+         allocate (found%changes(directions, 3, 0:2, size(m%links)), source=0.0_wp)
+         allocate (found%lost(size(m%links)))
+      end if
       r%own = own_in_tables
       call respond_to_roundings(r, m, e, q, q%known < 0, again, found%changes, found%lost)
       found%of_sums = errors_of_sums(m, q, length)
       found%taken = .true.
       if (.not. found%asked) return
-      if (.not. allocated(found%all_own)) allocate (found%all_own, mold=found%changes)
-      r%own = 1.0_wp
-      call respond_to_roundings(r, m, e, q, q%known < 0, again, found%all_own, found%lost)
+      if (.not. allocated(found%own)) allocate (found%own, source=found%changes)
+      r%own = 1.0_wp + own_in_tables
+      call respond_to_roundings(r, m, e, q, q%known < 0, again, found%own, found%lost)
+      found%own = found%own - found%changes
       found%solved = new_motion(size(m%links))
       found%solved%known = 2
       call move_found_links(e%chain, found%lost, r%state, e%length, found%solved, finite)
@@ -180,8 +183,8 @@ contains
       type(motion_t), intent(in) :: q
       type(request_t), intent(in) :: request
       logical, intent(in), optional :: all_own
-      real(wp) :: error(3, 0:2), largest(3, 0:2)
-      logical :: lost(3, 0:2)
+      real(wp), dimension(3, 0:2) :: error, largest, of_own
+      logical, dimension(3, 0:2) :: lost, lost_by_own
       integer :: c, k
 
       error = 0.0_wp
@@ -193,10 +196,11 @@ contains
       if (.not. s%taken) return
       error = nothing_known
       if (any(s%lost(request_links(m, request)))) return
+      call find_largest(m, q, request, row, s%changes, largest, lost)
       if (present(all_own)) then
-         call find_largest(m, q, request, row, s%all_own, largest, lost)
-      else
-         call find_largest(m, q, request, row, s%changes, largest, lost)
+         call find_largest(m, q, request, row, s%own, of_own, lost_by_own)
+         largest = max(largest, of_own)
+         lost = lost .or. lost_by_own
       end if
       error = caution*largest + error_of_sums(s%of_sums, request, row)
       do k = 0, 2

@@ -13,7 +13,8 @@ module safe_digits
    use block_engine, only: block_engine_t
    use card_roundings, only: caution
    use rounding_changes, only: rounding_response_t
-   use rounding_bounds, only: rounding_bounds_t, make_rounding_bounds, bound_roundings, bound_of_turning, bound_of_product, room
+   use rounding_bounds, only: rounding_bounds_t, make_rounding_bounds, bound_roundings, bound_of_turning, &
+      bound_of_product, room
    implicit none
    private
    public :: safe_digits_t, make_safe_digits, are_digits_safe
