@@ -63,6 +63,10 @@ contains
       type(row_t) :: row
       integer :: unit
 
+      if (request%kind == request_point) then
+         call widen_by_point(m, q, request%subject, size_of(1, :))
+         return
+      end if
       ! The row without its name.
       row%kind = request%kind
       call note_known(m, q, request, row)
@@ -72,6 +76,27 @@ contains
       size_of(unit, :) = max(size_of(unit, :), abs(row%value(1, :)), abs(row%value(2, :)))
       size_of(2, :) = max(size_of(2, :), abs(row%value(3, :)))
    end subroutine widen
+
+   !> The same of the lengths `size_of` (0:2) by a bound of what point number `i` adds up, which needs no direction.
+   pure subroutine widen_by_point(m, q, i, size_of)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      integer, intent(in) :: i
+      real(wp), intent(inout) :: size_of(0:2)
+      real(wp) :: reach
+
+      associate (k => m%points(i)%link)
+         reach = norm2(m%points(i)%offset)
+         if (m%links(k)%ground) then
+            size_of(0) = max(size_of(0), maxval(abs(m%links(k)%position(:2))) + reach)
+         else if (known_of(q, k) >= 0) then
+            size_of(0) = max(size_of(0), maxval(abs(q%position(:2, k) + q%origin)) + reach)
+            size_of(1) = max(size_of(1), maxval(abs(q%velocity(:2, k))) + abs(q%velocity(3, k))*reach)
+            size_of(2) = max(size_of(2), maxval(abs(q%acceleration(:2, k))) &
+               + (abs(q%acceleration(3, k)) + q%velocity(3, k)**2)*reach)
+         end if
+      end associate
+   end subroutine widen_by_point
 
    !> The rounding errors (3, 0:2) of the sums of `row`, which `request` asks for. `of_sums`: as above.
    pure function error_of_sums(of_sums, request, row) result(estimate)
