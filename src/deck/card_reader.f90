@@ -50,7 +50,8 @@ contains
       before = error_count(errors)
       parsed%card = card
       do i = label_a, label_c
-         parsed%label(i) = adjustl(card%text(card_fields(i)%first:card_fields(i)%last))
+         parsed%label(i) = card%text(card_fields(i)%first:card_fields(i)%last)
+         if (parsed%label(i)(1:1) == ' ') parsed%label(i) = adjustl(parsed%label(i))
       end do
       parsed%form = find_form(card%text(:label_length))
       if (parsed%form == form_title) call read_title(parsed%card, errors)
@@ -60,7 +61,11 @@ contains
       parsed%valid = error_count(errors) == before
       if (.not. parsed%valid .or. parsed%form == form_title) return
       ! The reals, and the labels that the card does not take, may hold the beginning of a number.
-      numeric = [.false., [(forms(parsed%form)%labels(i:i) == '-', i=1, 3)], .true., .true., .true.]
+      numeric = .true.
+      numeric(card_name) = .false.
+      do i = label_a, label_c
+         numeric(i) = forms(parsed%form)%labels(i - card_name:i - card_name) == '-'
+      end do
       call find_cuts(card, card_fields, numeric, cut, errors)
       parsed%names_certain = .not. any(cut(label_a:label_c))
       call read_labels(parsed, cut(label_a:label_c), errors)
@@ -78,11 +83,12 @@ contains
       character(:), allocatable :: typed, title
       integer :: i
 
+      if (card%overrun == 0 .and. first_foreign(card%text) == 0) return
       typed = trim(card%text(title_field%first:))
       if (card%overrun > 0) typed = card%text(title_field%first:) &
          //repeat(' ', min(card%overrun - card_columns - 1, card_columns))//trim(card%beyond)
       title = without_accents(typed)
-      i = findloc([(ichar(typed(i:i)) > 127, i=1, len(typed))], .true., dim=1)
+      i = first_foreign(typed)
       if (i > 0) call add_remark(errors, remark_title_letters, card, title_field%first + i - 1, '')
       ! Of the text beyond the last column only the beginning is known.
       if (len(title) > card_columns - title_field%first + 1 .or. card%beyond(len(card%beyond):) /= ' ') &
@@ -90,6 +96,16 @@ contains
       card%text(title_field%first:) = title
       card%overrun = 0
    end subroutine read_title
+
+   !> The place of the first character of `text` that is not ASCII; 0: all are.
+   pure integer function first_foreign(text) result(i)
+      character(*), intent(in) :: text
+
+      do i = 1, len_trim(text)
+         if (ichar(text(i:i)) > 127) return
+      end do
+      i = 0
+   end function first_foreign
 
    !> `text`, in UTF-8, with the Latin letter for a Latin letter with an accent, plain dashes and quotation marks, and ?
    !> for any other character that is not ASCII.
@@ -165,12 +181,13 @@ contains
       type(input_errors_t), intent(inout) :: errors
       type(error_code_t) :: code
       type(field_t) :: field
-      integer :: column
+      integer :: column, last
 
-      do column = 1, card_columns
+      last = len_trim(card%text)
+      do column = 1, last
          if (card%text(column:column) < ' ' .or. card%text(column:column) > '~') exit
       end do
-      clean = column > card_columns
+      clean = column > last
       if (clean) then
          if (card%overrun > 0) &
             call add_error(errors, past_last_column, card, field_t('PAST-80', 81, 81), card%overrun, card%beyond)
@@ -220,16 +237,18 @@ contains
       type(error_code_t) :: error
       real(wp) :: value
       integer :: i, start, finish, border, place
+      logical :: fills
 
       cut = .false.
       do i = 1, size(fields) - 1
          border = fields(i)%last
          if (cut(i) .or. card%text(border:border) == ' ' .or. card%text(border + 1:border + 1) == ' ') cycle
          start = fields(i)%first + index(card%text(fields(i)%first:border), ' ', back=.true.)
-         finish = border + index(card%text(border + 1:fields(i + 1)%last)//' ', ' ') - 1
          ! Two numbers that fill their fields may touch; the first may have a blank in place of a plus sign.
-         if (start <= fields(i)%first + merge(1, 0, numeric(i))) then
-            if (.not. numeric(i)) cycle
+         fills = start <= fields(i)%first + merge(1, 0, numeric(i))
+         if (fills .and. .not. numeric(i)) cycle
+         finish = end_of_text(card, border + 1, fields(i + 1)%last)
+         if (fills) then
             call read_real(card%text(start:finish), value, error, place)
             if (error%number > 0) cycle
          else if (is_signed(card%text(start:finish), border + 2 - start, numeric(i))) then
@@ -241,6 +260,17 @@ contains
                         whole(border)//' AND '//whole(border + 1))
       end do
    end subroutine find_cuts
+
+   !> The last column of the text that begins in column `first` of `card`, and ends in column `last` at the latest.
+   pure integer function end_of_text(card, first, last) result(column)
+      type(card_t), intent(in) :: card
+      integer, intent(in) :: first, last
+
+      do column = first, last
+         if (card%text(column:column) == ' ') exit
+      end do
+      column = column - 1
+   end function end_of_text
 
    !> Whether a number with a sign begins with the character number `first` of `text`. Where what is before it is a
    !> number too (`numeric`), it must not be the exponent of that; where it is a label, it must be a number without an
@@ -283,7 +313,7 @@ contains
                parsed%whole_given = .true.
                call read_whole(trim(label), parsed%whole, error, place)
                if (error%number > 0) call add_field_error(errors, error, parsed%card, field, place=place)
-            else if (index(trim(label), ' ') > 0) then
+            else if (index(label(:len_trim(label)), ' ') > 0) then
                parsed%names_certain = .false.
                call add_field_error(errors, label_blank_inside, parsed%card, field)
             end if
@@ -303,7 +333,7 @@ contains
          if (i > label_a .and. i <= label_c + 1 .and. index(text(border - 1:border), ' ') == 0) then
             parsed%names_certain = .false.
             first = first_column(parsed%card, card_fields(i - 1))
-            finish = border + index(text(border:card_fields(i)%last)//' ', ' ') - 2
+            finish = end_of_text(parsed%card, border, card_fields(i)%last)
             call add_error(errors, label_long, parsed%card, card_fields(i - 1), first, text(first:finish))
          else
             call add_field_error(errors, field_unused, parsed%card, card_fields(i))
@@ -343,7 +373,7 @@ contains
       integer, intent(in) :: i
       type(input_errors_t), intent(inout) :: errors
       type(error_code_t) :: error
-      integer :: place
+      integer :: first, last, place
 
       if (card%text(field%first:field%last) == '') return
       parsed%given(i) = .true.
@@ -355,7 +385,9 @@ contains
          end if
          return
       end if
-      call read_real(trim(card%text(first_column(card, field):field%last)), parsed%real(i), error, place)
+      first = first_column(card, field)
+      last = first + len_trim(card%text(first:field%last)) - 1
+      call read_real(card%text(first:last), parsed%real(i), error, place)
       if (abs(parsed%real(i)) > max_real) error = number_overflow
       if (abs(parsed%real(i)) > 0.0_wp .and. abs(parsed%real(i)) < min_real) error = number_underflow
       if (error%number > 0) call add_field_error(errors, error, card, field, place=place)

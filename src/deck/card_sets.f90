@@ -18,7 +18,7 @@ module card_sets
    private
    public :: card_set_t, vary_card_t, begin_set, begin_mechanism, append_card
    public :: read_small_letters, build_bodies, look_up, match_word
-   public :: add_card_error, add_parsed_error, add_card_remark, text_of
+   public :: add_card_error, add_parsed_error, add_card_remark, real_text
 
    !> The links, the points or the pairs of a set.
    type :: named_t
@@ -46,6 +46,8 @@ module card_sets
    end type card_set_t
 
    integer, parameter :: first_room = 64
+   !> Characters of the longest text of a real, on a `*` card.
+   integer, parameter :: real_length = wide_fields(1)%last - wide_fields(1)%first + 1
    !> The errors of names that no link, no point, no pair has.
    type(error_code_t), parameter :: unknown(request_link:request_pair) = [link_unknown, point_unknown, pair_unknown]
 
@@ -362,17 +364,18 @@ contains
       call add_field_error(errors, code, on, at, more)
    end subroutine add_parsed_error
 
-   !> The text in `field` (card_name, label_a to real_3) of `card`.
-   pure function text_of(card, field) result(text)
+   !> The text of real number `i` of `card`.
+   pure function real_text(card, i) result(text)
       type(parsed_card_t), intent(in) :: card
-      integer, intent(in) :: field
-      character(:), allocatable :: text
-      type(card_t) :: on
-      type(field_t) :: at
+      integer, intent(in) :: i
+      character(real_length) :: text
 
-      call find_field(card, field, on, at)
-      text = field_text(on, at)
-   end function text_of
+      if (card%on_star(i)) then
+         text = card%star%text(first_column(card%star, wide_fields(i)):wide_fields(i)%last)
+      else
+         text = card%card%text(first_column(card%card, card_fields(label_c + i)):card_fields(label_c + i)%last)
+      end if
+   end function real_text
 
    !> Where `field` of `card` stands: `on` the card itself or, a real, on the `*` card below it, `at` these columns.
    pure subroutine find_field(card, field, on, at)

@@ -1,6 +1,7 @@
 !> One card: its 80 columns, its fields by column, and the forms of cards, that is which fields each card takes. Fields
 !> and forms are declared here and nowhere else: a new card is one enumerator and one line of `forms`.
 module cards
+   use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: label_length
    use failures, only: capitals
    implicit none
@@ -95,6 +96,8 @@ module cards
       form_t('---', 0, .true.,  'ASSEMBLY'), &
       form_t('---', 0, .true.,  'PROVE'), &
       form_t('---', 0, .false., 'END')]
+   !> Their names, each as one number.
+   integer(int64), parameter :: keys(form_end) = transfer(forms%layout(:label_length), [0_int64])
    type(exception_t), parameter :: exceptions(*) = &
       [exception_t(form_add, 'POWER', 2), exception_t(form_add, 'TABLE', 2)]
 
@@ -121,14 +124,15 @@ contains
    pure integer function small_field(card) result(i)
       type(card_t), intent(in) :: card
       logical :: is_title
+      integer :: column
 
       is_title = card%text(:label_length) == form_name(form_title)
-      do i = card_name, merge(card_name, label_c, is_title)
-         associate (text => card%text(card_fields(i)%first:card_fields(i)%last))
-            if (text /= capitals(text)) return
-         end associate
-      end do
       i = 0
+      do column = 1, card_fields(merge(card_name, label_c, is_title))%last
+         if (card%text(column:column) < 'a' .or. card%text(column:column) > 'z') cycle
+         i = findloc(card_fields%last >= column, .true., dim=1)
+         return
+      end do
    end function small_field
 
    !> Whether `card` is a comment ($, # or ! before all else) or blank: such cards are skipped.
@@ -174,14 +178,15 @@ contains
    !> How many real fields a card of `form` takes whose label A is `word`; form_unknown: none.
    pure integer function reals_of(form, word) result(taken)
       integer, intent(in) :: form
-      character(*), intent(in) :: word
+      character(label_length), intent(in) :: word
       integer :: i
 
       taken = 0
       if (form == form_unknown) return
       taken = forms(form)%reals
       do i = 1, size(exceptions)
-         if (exceptions(i)%form == form .and. exceptions(i)%word == capitals(word)) taken = exceptions(i)%reals
+         if (exceptions(i)%form /= form) cycle
+         if (exceptions(i)%word == capitals(word)) taken = exceptions(i)%reals
       end do
    end function reals_of
 
@@ -206,11 +211,16 @@ contains
    !> The form of the cards of the name `name`, in capitals or small letters; or form_unknown.
    pure integer function find_form(name) result(form)
       character(*), intent(in) :: name
-      character(len(name)) :: upper
+      character(label_length) :: upper
+      integer(int64) :: key
 
-      upper = capitals(name)
+      form = form_unknown
+      if (len_trim(name) > label_length) return
+      upper = name
+      upper = capitals(upper)
+      key = transfer(upper, key)
       do form = size(forms), 1, -1
-         if (forms(form)%layout(:label_length) == upper) return
+         if (keys(form) == key) return
       end do
    end function find_form
 

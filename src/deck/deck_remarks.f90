@@ -8,7 +8,7 @@ module deck_remarks
       drive_links, used_points, pair_prismatic, drive_words, driven_kinds, drive_angle, drive_relangle, request_link, &
       request_point, request_pair, request_curve, method_words, method_newton
    use scales, only: solver_length
-   use card_sets, only: card_set_t, add_card_error, add_card_remark, text_of
+   use card_sets, only: card_set_t, add_card_error, add_card_remark, real_text
    use cards, only: label_a, label_c, real_1, form_ground, form_link, form_prism, form_drive, form_rise, form_name, &
       reals_of, form_title, form_units, form_at, form_method, form_print, form_pole, form_curve, form_vary
    use input_errors, only: link_unused
@@ -154,7 +154,7 @@ contains
          type(parsed_card_t), intent(in) :: card
 
          n = n + 1
-         set%mechanism%echo(n) = card_line(card, set%mechanism%length_unit, set%mechanism%time_unit)
+         call write_card(card, set%mechanism%length_unit, set%mechanism%time_unit, set%mechanism%echo(n))
       end subroutine add_line
 
       !> Adds the line of a form that has no card in the set: its defaults.
@@ -164,18 +164,17 @@ contains
 
          if (set%number_of(form) > 0) return
          n = n + 1
-         set%mechanism%echo(n) = head_line(form, labels)
+         call write_head(form, labels, set%mechanism%echo(n))
          set%mechanism%echo(n)(line_length - len(default_mark) + 1:) = default_mark
       end subroutine add_default
    end subroutine build_echo
 
-   !> The line of one card. A blank real is shown as 0.0, its value; a blank field of AT has none.
-   pure function card_line(card, length_unit, time_unit) result(line)
+   !> The `line` of one card. A blank real is shown as 0.0, its value; a blank field of AT has none.
+   pure subroutine write_card(card, length_unit, time_unit, line)
       type(parsed_card_t), intent(in) :: card
       character(label_length), intent(in) :: length_unit, time_unit
-      character(line_length) :: line
+      character(*), intent(out) :: line
       character(label_length) :: labels(3)
-      character(real_width) :: text
       integer :: i, column
 
       labels = card%label
@@ -185,20 +184,22 @@ contains
          if (labels(2) == '') labels(2) = 'RAD'
          labels(3) = time_unit
       end if
-      line = head_line(card%form, labels)
+      call write_head(card%form, labels, line)
       do i = 1, reals_of(card%form, card%label(label_a))
-         text = merge('   ', '0.0', any(card%form == [form_at, form_vary]))
-         if (card%given(i)) text = text_of(card, real_1 + i - 1)
          column = real_column + (i - 1)*real_width
-         line(column:column + real_width - 1) = text
+         if (card%given(i)) then
+            line(column:column + real_width - 1) = real_text(card, i)
+         else if (all(card%form /= [form_at, form_vary])) then
+            line(column:column + real_width - 1) = '0.0'
+         end if
       end do
-   end function card_line
+   end subroutine write_card
 
-   !> The name and the labels of a card, in the columns of the echo.
-   pure function head_line(form, labels) result(line)
+   !> The name and the labels of a card as its `line`, in the columns of the echo.
+   pure subroutine write_head(form, labels, line)
       integer, intent(in) :: form
       character(label_length), intent(in) :: labels(3)
-      character(line_length) :: line
+      character(*), intent(out) :: line
       integer :: i, column
 
       line = form_name(form)
@@ -206,5 +207,5 @@ contains
          column = label_column + (i - 1)*label_step
          line(column:column + label_length - 1) = labels(i)
       end do
-   end function head_line
+   end subroutine write_head
 end module deck_remarks

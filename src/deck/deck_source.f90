@@ -77,19 +77,29 @@ contains
       card%number = source%lines
       columns = 0
       do
-         length = scan(source%buffer(source%at:source%filled), line_feed//carriage_return) - 1
-         if (length >= 0) exit
-         call note(card, source%buffer(source%at:source%filled), columns)
-         source%at = source%filled + 1
+         length = line_length(source%buffer(source%at:source%filled))
+         call note(card, source%buffer(source%at:source%at + length - 1), columns)
+         source%at = source%at + length
+         if (source%at <= source%filled) exit
          call have_more(source, found, failure)
          if (found) cycle
          found = .not. allocated(failure)
          return
       end do
-      call note(card, source%buffer(source%at:source%at + length - 1), columns)
-      source%after_return = source%buffer(source%at + length:source%at + length) == carriage_return
-      source%at = source%at + length + 1
+      source%after_return = source%buffer(source%at:source%at) == carriage_return
+      source%at = source%at + 1
    end subroutine next_card
+
+   !> The number of characters of `text` before the end of a line; all of them, if it has none.
+   pure integer function line_length(text) result(length)
+      character(*), intent(in) :: text
+      character(1) :: c
+
+      do length = 0, len(text) - 1
+         c = text(length + 1:length + 1)
+         if (c == line_feed .or. c == carriage_return) return
+      end do
+   end function line_length
 
    !> Closes the file of `source`; standard input stays open.
    subroutine close_source(source)
@@ -141,7 +151,7 @@ contains
 
       length = max(0, min(len(part), card_columns - columns))
       if (length > 0) card%text(columns + 1:columns + length) = part(:length)
-      call note_beyond(card, part(length + 1:), columns + length)
+      if (length < len(part)) call note_beyond(card, part(length + 1:), columns + length)
       ! The number stays in its range however long a line is.
       columns = min(columns + len(part), huge(columns) - block_length)
    end subroutine note

@@ -4,7 +4,7 @@ module deck_tolerances
    use mechanism, only: tolerance_t, term_words, term_power, term_table, drive_words, drive_relangle, driven_kinds, &
       request_link, request_point, request_pair, number_ground, number_point, number_joint, number_pair, number_drive
    use card_reader, only: parsed_card_t
-   use card_sets, only: card_set_t, text_of, add_card_error
+   use card_sets, only: card_set_t, real_text, add_card_error
    use cards, only: card_name, label_a, label_b, label_c, real_1, forms, form_name, number_word, form_unknown, &
       form_ground, form_link, form_point, form_prism, form_joint, form_drive, form_add, form_rise, form_toler, &
       form_time, reals_of
@@ -71,7 +71,7 @@ contains
                call add_card_error(set, number_range, k, real_1 + i - 1, '0.0 AND UP')
             else if (set%cards(k)%real(i) > 0.0_wp) then
                one%size_of = set%cards(k)%real(i)
-               one%text = text_of(set%cards(k), real_1 + i - 1)
+               one%text = real_text(set%cards(k), i)
                n = n + 1
                list(n) = one
             end if

@@ -21,16 +21,6 @@ module numbers
    !> nearest real: 15 and 22 for 53 bits, since 5**22 < 2**53.
    integer, parameter :: exact_digits = min(precision(1.0_wp), 18)
    integer, parameter :: exact_power = int(digits(1.0_wp)*(log10(2.0)/log10(5.0)))
-   !> A number above largest x 10**308 rounds to infinity, one below smallest x 10**-324 to zero: these are the first
-   !> digits of 2**1024 - 2**970 and of 2**-1075, which no number with fewer digits equals. For kinds other than double,
-   !> the bounds are the whole powers of ten in their range.
-   logical, parameter :: is_double = digits(1.0_wp) == 53
-   integer, parameter :: largest_exponent = merge(308, range(1.0_wp), is_double)
-   integer, parameter :: smallest_exponent = merge(-324, -range(1.0_wp), is_double)
-   character(*), parameter :: largest = &
-      merge('17976931348623158079372897140530341507993413271003', repeat('9', 50), is_double)
-   character(*), parameter :: smallest = &
-      merge('24703282292062327208828439643411068618252990130716', repeat('0', 50), is_double)
    !> Larger exponents are set to this one: far beyond the range, whatever the digits are.
    integer, parameter :: exponent_cap = 100000
 
@@ -43,21 +33,31 @@ contains
       real(wp), intent(out) :: value
       type(error_code_t), intent(out) :: error
       integer, intent(out) :: place
-      character(len(text)) :: digits
-      integer :: n, magnitude, zeros
+      integer(int64) :: mantissa
+      integer :: n, power, letter
+      real(dp) :: double
 
       value = 0.0_wp
-      call split_real(text, digits, n, magnitude, place, error)
+      call split_real(text, mantissa, n, power, letter, place, error)
       place = min(place, len(text))
       if (error%number > 0) return
       place = 1
-      if (scan(text, '.EeDd') == 0) error = number_no_point
-      zeros = verify(digits(:n), '0') - 1
-      if (error%number > 0 .or. zeros < 0) return
-      call check_range(digits(zeros + 1:n), magnitude - zeros, error)
+      if (n == 0) return
+      ! Beyond them a conversion may trap.
+      if (n - 1 + power > range(value)) error = number_overflow
+      if (n - 1 + power < -range(value)) error = number_underflow
       if (error%number > 0) return
-      value = absolute_value(text, digits(zeros + 1:n), magnitude - n)
-      if (text(1:1) == '-') value = -value
+      if (is_one_of(text, letter, 'Dd') .and. abs(n + power) < range(double)) then
+         read (text, '(f80.0)') double
+         value = real(double, wp)
+      else if (n <= exact_digits .and. abs(power) <= exact_power) then
+         value = real(mantissa, wp)
+         if (power > 0) value = value*10.0_wp**power
+         if (power < 0) value = value/10.0_wp**(-power)
+         if (text(1:1) == '-') value = -value
+      else
+         read (text, '(f80.0)') value
+      end if
    end subroutine read_real
 
    !> Reads the whole number `value` from `text`; the other arguments are those of `read_real`.
@@ -86,50 +86,64 @@ contains
       if (error%number == 0) value = int(merge(-sum, sum, text(1:1) == '-'))
    end subroutine read_whole
 
-   !> Splits `text` = 0.digits x 10**magnitude, with `n` digits. `place`: the character at which the grammar stops,
-   !> which is len(text) + 1 if there is no error.
-   pure subroutine split_real(text, digits, n, magnitude, place, error)
+   !> Splits `text` = digits x 10**power. `n`: the number of its digits from the first that is not 0 on; `mantissa`:
+   !> they themselves, or the first ones where there are more than `exact_digits`. `letter`: the place of the letter of
+   !> the exponent, or of the character behind `text`. `place`: the character at which the grammar stops, which is
+   !> len(text) + 1 if there is no error; of a number without a point the first.
+   pure subroutine split_real(text, mantissa, n, power, letter, place, error)
       character(*), intent(in) :: text
-      character(*), intent(out) :: digits
-      integer, intent(out) :: n, magnitude, place
+      integer(int64), intent(out) :: mantissa
+      integer, intent(out) :: n, power, letter, place
       type(error_code_t), intent(out) :: error
-      integer :: first, power, i
+      integer :: first, point, exponent
+      character(1) :: c
 
-      first = merge(2, 1, scan(text(1:1), '+-') == 1)
-      magnitude = digits_from(text, first)
-      place = first + magnitude
-      digits = text(first:place - 1)
-      n = magnitude
-      if (scan(text(place:), '.') == 1) then
-         n = magnitude + digits_from(text, place + 1)
-         digits(magnitude + 1:) = text(place + 1:)
-         place = first + n + 1
-      end if
-      if (n == 0) then
+      first = merge(2, 1, is_one_of(text, 1, '+-'))
+      mantissa = 0_int64
+      n = 0
+      point = 0
+      do place = first, len(text)
+         c = text(place:place)
+         if (c >= '0' .and. c <= '9') then
+            if (n > 0 .or. c > '0') n = n + 1
+            if (n <= exact_digits) mantissa = 10_int64*mantissa + digit(c)
+         else if (c == '.' .and. point == 0) then
+            point = place
+         else
+            exit
+         end if
+      end do
+      letter = place
+      power = 0
+      if (point > 0) power = point + 1 - place
+      if (place == first + merge(1, 0, point > 0)) then
          error = number_no_digits
-      else if (scan(text(place:), 'EeDd') == 1) then
+      else if (is_one_of(text, letter, 'EeDd')) then
          first = place + 1
-         if (scan(text(first:), '+-') == 1) first = first + 1
-         place = first + digits_from(text, first)
-         if (place == first) error = number_exponent
-         power = 0
-         do i = first, place - 1
-            power = min(10*power + digit(text(i:i)), exponent_cap)
+         if (is_one_of(text, first, '+-')) first = first + 1
+         exponent = 0
+         do place = first, len(text)
+            if (text(place:place) < '0' .or. text(place:place) > '9') exit
+            exponent = min(10*exponent + digit(text(place:place)), exponent_cap)
          end do
-         magnitude = magnitude + merge(-power, power, text(first - 1:first - 1) == '-')
+         if (place == first) error = number_exponent
+         power = power + merge(-exponent, exponent, text(first - 1:first - 1) == '-')
+      else if (point == 0 .and. place > len(text)) then
+         error = number_no_point
+         place = 1
+         return
       end if
       if (place <= len(text)) error = error_at(text, place)
    end subroutine split_real
 
-   !> The number of successive digits in `text` from its character `first` on.
-   pure integer function digits_from(text, first) result(n)
-      character(*), intent(in) :: text
-      integer, intent(in) :: first
+   !> Whether the character `text(i:i)`, if there is one, is one of `list`.
+   pure logical function is_one_of(text, i, list)
+      character(*), intent(in) :: text, list
+      integer, intent(in) :: i
 
-      do n = 0, len(text) - first
-         if (text(first + n:first + n) < '0' .or. text(first + n:first + n) > '9') return
-      end do
-   end function digits_from
+      is_one_of = .false.
+      if (i <= len(text)) is_one_of = scan(text(i:i), list) == 1
+   end function is_one_of
 
    !> The error at the character `text(i:i)`, at which the grammar stopped.
    pure function error_at(text, i) result(error)
@@ -155,46 +169,6 @@ contains
       if (word == 'NAN') error = number_nan
       if (word == 'INF') error = number_inf
    end function error_at
-
-   !> Sets `error` if 0.digits x 10**magnitude, with a first digit that is not 0, would round to infinity or zero. The
-   !> digits decide, because a conversion out of range may trap.
-   pure subroutine check_range(digits, magnitude, error)
-      character(*), intent(in) :: digits
-      integer, intent(in) :: magnitude
-      type(error_code_t), intent(out) :: error
-      character(len(largest)) :: first
-      integer :: power
-
-      first = digits//repeat('0', len(first))
-      power = magnitude - 1
-      if (power > largest_exponent .or. (power == largest_exponent .and. first > largest)) error = number_overflow
-      if (power < smallest_exponent .or. (power == smallest_exponent .and. first < smallest)) error = number_underflow
-   end subroutine check_range
-
-   !> The absolute value of `text` = digits x 10**power.
-   pure real(wp) function absolute_value(text, digits, power) result(value)
-      character(*), intent(in) :: text, digits
-      integer, intent(in) :: power
-      integer(int64) :: mantissa
-      integer :: i
-      real(dp) :: double
-
-      if (scan(text, 'Dd') > 0 .and. abs(len(digits) + power) < range(double)) then
-         read (text, '(f80.0)') double
-         value = abs(real(double, wp))
-      else if (len(digits) <= exact_digits .and. abs(power) <= exact_power) then
-         mantissa = 0_int64
-         do i = 1, len(digits)
-            mantissa = 10_int64*mantissa + digit(digits(i:i))
-         end do
-         value = real(mantissa, wp)
-         if (power > 0) value = value*10.0_wp**power
-         if (power < 0) value = value/10.0_wp**(-power)
-      else
-         read (text, '(f80.0)') value
-         value = abs(value)
-      end if
-   end function absolute_value
 
    !> The value of the digit `c`.
    pure integer function digit(c)
