@@ -4,7 +4,7 @@ module job
    use, intrinsic :: iso_fortran_env, only: int64
    use failures, only: failure_t, fail, status_rejected, status_solved, status_flagged, status_signal
    use mechanism, only: mechanism_t, request_pole, instant_count, instant, with_all_links
-   use structure, only: findings_t, check_structure
+   use structure, only: findings_t, check_structure, find_groups
    use deck, only: read_deck, share_t, variants_before
    use progress, only: progress_t, start_progress, show_progress, end_progress
    use system_calls, only: watch_signals, signal_received, broken_pipe_kills, signal_pipe
@@ -299,11 +299,12 @@ contains
       type(options_t), intent(in) :: options
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: i
-      type(findings_t), intent(in) :: findings
+      type(findings_t), intent(inout) :: findings
       type(writers_t), intent(inout) :: o
 
       if (o%asked(out_listing)) then
          o%layout = new_layout(m, findings%parts, findings%own)
+         call find_groups(m, findings)
          call listing_head(o%files(out_listing, 0), m, findings)
       end if
       if (options%check) return

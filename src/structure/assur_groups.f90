@@ -13,8 +13,9 @@
 module assur_groups
    use kinds, only: wp
    use grouping, only: sorted_t, sorted, members
-   use mechanism, only: mechanism_t, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
-   use matching, only: incidence_t, find_blocks
+   use mechanism, only: mechanism_t, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, drive_slide, &
+      wanted_links
+   use matching, only: incidence_t, match, overdetermined, find_blocks
    implicit none
    private
    public :: closure_t, new_closure, group_t, groups_of
@@ -159,20 +160,21 @@ contains
       c%incidence%unknowns = 3*n
    end subroutine number_links
 
-   !> The groups of `m`. `unknown_of` (equations), `equation_of` (unknowns): a matching of its closure `c` in which each
-   !> unknown has an equation; `over` (equations): the part with too many equations, whose links are one group;
-   !> `wanted` (links): named by a table.
-   function groups_of(m, c, unknown_of, equation_of, over, wanted) result(groups)
+   !> The groups of `m`, in whose closure `c` each unknown can have an equation. The links of the part with too many
+   !> equations are one group.
+   function groups_of(m, c) result(groups)
       type(mechanism_t), intent(in) :: m
       type(closure_t), intent(in) :: c
-      integer, intent(in) :: unknown_of(:), equation_of(:)
-      logical, intent(in) :: over(:), wanted(:)
       type(group_t), allocatable :: groups(:)
+      logical :: over(c%incidence%equations), wanted(size(m%links))
       type(incidence_t) :: waits
       type(sorted_t) :: by_group
-      integer, allocatable :: first(:), member(:), of_link(:), order(:)
+      integer, allocatable :: unknown_of(:), equation_of(:), first(:), member(:), of_link(:), order(:)
       integer :: i, e
 
+      call match(c%incidence, unknown_of, equation_of)
+      over = overdetermined(c%incidence, unknown_of, equation_of)
+      wanted = wanted_links(m)
       waits = waiting(m, c, equation_of, over)
       call find_blocks(waits, [(i, i=1, size(m%links))], first, member)
       of_link = member

@@ -232,6 +232,7 @@ contains
       integer :: queue(g%equations), last, next, i, e
 
       over = unknown_of == 0
+      if (.not. any(over)) return
       queue = 0
       last = count(over)
       queue(:last) = pack([(i, i=1, g%equations)], over)

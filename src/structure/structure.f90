@@ -10,7 +10,7 @@ module structure
    use numerals, only: whole
    use names, only: drive_name, listed
    use grouping, only: sorted_t, sorted, members, once, joined
-   use mechanism, only: mechanism_t, pair_links, drive_links, pair_revolute, pair_prismatic, wanted_links, method_newton
+   use mechanism, only: mechanism_t, pair_links, drive_links, pair_revolute, pair_prismatic, method_newton
    use matching, only: match, is_same_incidence, owners, overdetermined, underdetermined
    use assur_groups, only: closure_t, new_closure, group_t, groups_of
    use scales, only: solver_length, power_of_two
@@ -22,7 +22,7 @@ module structure
    implicit none
    private
    public :: structure_t, findings_t, group_t, underdetermined_t, new_structure, count_degrees_of_freedom, &
-      find_structure, find_structure_again, check_structure, faults_text, spare_drives_text
+      find_structure, find_structure_again, find_groups, check_structure, faults_text, spare_drives_text
 
    !> Links that still can move, and the drives that they lack.
    type :: underdetermined_t
@@ -53,7 +53,7 @@ module structure
       integer, allocatable :: spare_among(:)    !< (any number) where there are such drives
       integer :: redundant = 0                  !< equations that are too many, among those of
       integer, allocatable :: many_pairs(:), many_drives(:)
-      type(group_t), allocatable :: groups(:)   !< in solving order; none where it is not
+      type(group_t), allocatable :: groups(:)   !< in solving order, once `find_groups` has been asked for them
       ! Of the independent mechanisms, where nothing is lacking:
       type(parts_t) :: parts                            !< which link, point, pair and drive is in which
       type(mechanism_t), allocatable :: own(:)          !< (parts) each as a set of its own; none where there is one
@@ -95,10 +95,9 @@ contains
       f%equations = 2*(f%revolute + f%prismatic) + 3*f%ground
       f%degrees_of_freedom = f%coordinates - f%equations
       f%drives = size(m%drives)
-      allocate (f%groups(0))
    end function count_degrees_of_freedom
 
-   !> The counts of `m`, its groups, and what its structure lacks or has too much of.
+   !> The counts of `m`, and what its structure lacks or has too much of.
    function find_structure(m) result(f)
       type(mechanism_t), intent(in) :: m
       type(findings_t) :: f
@@ -129,9 +128,11 @@ contains
          f%many_pairs = pack(c%pair, over .and. c%pair > 0)
          f%many_drives = pack(c%drive, over .and. c%drive > 0)
          if (size(f%many_drives) > 1) call find_spare_drives()
-         f%lacking = parts_that_lack(underdetermined(c%incidence, unknown_of, equation_of))
-         if (size(f%lacking) > 0) return
-         f%groups = groups_of(m, c, unknown_of, equation_of, over, wanted_links(m))
+         if (any(equation_of == 0)) then
+            f%lacking = parts_that_lack(underdetermined(c%incidence, unknown_of, equation_of))
+            return
+         end if
+         allocate (f%lacking(0))
          f%closure = c
       end if
       call find_parts(m, f%parts, f%own)
@@ -145,8 +146,7 @@ contains
       if (f%solvable) return
       whole = new_structure(m)
       f%lacking = parts_on_tree(whole%tree, whole%blocks%free)
-      deallocate (f%groups, f%closure)
-      allocate (f%groups(0))
+      deallocate (f%closure)
 
    contains
 
@@ -251,6 +251,16 @@ contains
          end do
       end function parts_on_tree
    end subroutine find_structure_again
+
+   !> Finds the groups of `m`, whose findings `f` are; none where it is not solvable. Only the listing has them, and the
+   !> sets of a long job are checked one after another, but listed by several processes.
+   subroutine find_groups(m, f)
+      type(mechanism_t), intent(in) :: m
+      type(findings_t), intent(inout) :: f
+
+      if (.not. allocated(f%groups)) allocate (f%groups(0))
+      if (allocated(f%closure)) f%groups = groups_of(m, f%closure)
+   end subroutine find_groups
 
    !> Every link of every set can be found: `findings` (sets).
    subroutine check_structure(sets, findings, failure)
