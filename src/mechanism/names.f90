@@ -108,16 +108,17 @@ contains
       end do
    end function slot_of
 
-   !> A number below 2**31 - 1 that depends on every character; products stay below 2**56.
+   !> A number below 2**31 - 1 that depends on every character; sums stay below 2**58.
    pure integer(int64) function hash(key)
       character(label_length), intent(in) :: key
-      integer(int64), parameter :: prime = 2147483647_int64, factor = 16777619_int64
+      integer(int64), parameter :: prime = 2147483647_int64, factor = 131_int64
       integer :: i
 
       hash = 0_int64
       do i = 1, label_length
-         hash = modulo(hash*factor + iachar(key(i:i)), prime)
+         hash = hash*factor + iachar(key(i:i))
       end do
+      hash = modulo(hash, prime)
    end function hash
 
    !> Doubles the number of slots; the names stay.
