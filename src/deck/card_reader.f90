@@ -21,6 +21,7 @@ module card_reader
       type(card_t), allocatable :: star         !< the `*` card below it
       integer :: form = form_unknown            !< its place in `forms`
       logical :: valid = .true.                 !< it and its `*` card have no error of their own
+      logical :: has_small = .false.            !< it may have small letters
       logical :: names_certain = .true.         !< its form and labels are what was meant, valid or not
       character(label_length) :: label(label_a:label_c) = ''
       integer :: whole = 0                      !< the whole number in a label field
@@ -45,17 +46,19 @@ contains
       type(parsed_card_t), intent(out) :: parsed
       type(input_errors_t), intent(inout) :: errors
       logical :: cut(size(card_fields)), numeric(size(card_fields))
-      integer :: before, i
+      integer :: before, last, i
 
       before = error_count(errors)
       parsed%card = card
+      last = len_trim(card%text)
       do i = label_a, label_c
+         if (card_fields(i)%first > last) exit
          parsed%label(i) = card%text(card_fields(i)%first:card_fields(i)%last)
-         if (parsed%label(i)(1:1) == ' ') parsed%label(i) = adjustl(parsed%label(i))
+         if (parsed%label(i)(1:1) <= ' ') parsed%label(i) = adjustl(parsed%label(i))
       end do
       parsed%form = find_form(card%text(:label_length))
       if (parsed%form == form_title) call read_title(parsed%card, errors)
-      call check_characters(parsed%card, parsed%names_certain, errors)
+      call check_characters(parsed%card, parsed%names_certain, parsed%has_small, errors)
       if (error_count(errors) == before .and. parsed%form == form_unknown) call guess_form(card, parsed%form, errors)
       parsed%names_certain = parsed%names_certain .and. parsed%form /= form_unknown
       parsed%valid = error_count(errors) == before
@@ -70,6 +73,7 @@ contains
       parsed%names_certain = .not. any(cut(label_a:label_c))
       call read_labels(parsed, cut(label_a:label_c), errors)
       do i = 1, 3
+         if (card_fields(label_c + i)%first > last) exit
          if (.not. cut(label_c + i)) call read_real_field(parsed, card, card_fields(label_c + i), i, errors)
       end do
       parsed%valid = error_count(errors) == before
@@ -151,10 +155,10 @@ contains
       type(parsed_card_t), intent(inout) :: above
       type(input_errors_t), intent(inout) :: errors
       integer :: before
-      logical :: clean
+      logical :: clean, has_small
 
       before = error_count(errors)
-      call check_characters(card, clean, errors)
+      call check_characters(card, clean, has_small, errors)
       if (error_count(errors) > before) then
          continue
       else if (field_text(card, card_fields(card_name)) /= '*') then
@@ -174,20 +178,24 @@ contains
    end subroutine read_star
 
    !> Adds the first error of a character that is not printable ASCII or is past column 80. `clean`: columns 1 to 80 are
-   !> printable ASCII.
-   subroutine check_characters(card, clean, errors)
+   !> printable ASCII; `has_small`: there may be small letters among them.
+   subroutine check_characters(card, clean, has_small, errors)
       type(card_t), intent(in) :: card
-      logical, intent(out) :: clean
+      logical, intent(out) :: clean, has_small
       type(input_errors_t), intent(inout) :: errors
       type(error_code_t) :: code
       type(field_t) :: field
       integer :: column, last
 
+      has_small = .false.
       last = len_trim(card%text)
       do column = 1, last
+         if (card%text(column:column) >= ' ' .and. card%text(column:column) < 'a') cycle
          if (card%text(column:column) < ' ' .or. card%text(column:column) > '~') exit
+         has_small = .true.
       end do
       clean = column > last
+      has_small = has_small .or. .not. clean
       if (clean) then
          if (card%overrun > 0) &
             call add_error(errors, past_last_column, card, field_t('PAST-80', 81, 81), card%overrun, card%beyond)
@@ -242,7 +250,8 @@ contains
       cut = .false.
       do i = 1, size(fields) - 1
          border = fields(i)%last
-         if (cut(i) .or. card%text(border:border) == ' ' .or. card%text(border + 1:border + 1) == ' ') cycle
+         ! No character comes before the blank, and to ask for equality with it costs a call.
+         if (cut(i) .or. card%text(border:border) <= ' ' .or. card%text(border + 1:border + 1) <= ' ') cycle
          start = fields(i)%first + index(card%text(fields(i)%first:border), ' ', back=.true.)
          ! Two numbers that fill their fields may touch; the first may have a blank in place of a plus sign.
          fills = start <= fields(i)%first + merge(1, 0, numeric(i))
@@ -298,22 +307,24 @@ contains
       logical, intent(in) :: cut(label_a:label_c)
       type(input_errors_t), intent(inout) :: errors
       type(error_code_t) :: error
-      integer :: i, place
+      character(1) :: taken
+      integer :: i, last, place
 
       do i = label_a, label_c
          if (cut(i)) parsed%label(i) = ''
          if (cut(i)) cycle
-         associate (taken => forms(parsed%form)%labels(i - card_name:i - card_name), label => parsed%label(i), &
-                    field => card_fields(i))
-            if (label == '') then
-               if (scan(taken, 'LW') > 0) call add_field_error(errors, field_blank, parsed%card, field)
+         taken = forms(parsed%form)%labels(i - card_name:i - card_name)
+         associate (label => parsed%label(i), field => card_fields(i))
+            last = len_trim(label)
+            if (last == 0) then
+               if (taken == 'L' .or. taken == 'W') call add_field_error(errors, field_blank, parsed%card, field)
             else if (taken == '-') then
                call refuse_field(parsed, i, errors)
-            else if (scan(taken, 'Ww') > 0) then
+            else if (taken == 'W' .or. taken == 'w') then
                parsed%whole_given = .true.
-               call read_whole(trim(label), parsed%whole, error, place)
+               call read_whole(label(:last), parsed%whole, error, place)
                if (error%number > 0) call add_field_error(errors, error, parsed%card, field, place=place)
-            else if (index(label(:len_trim(label)), ' ') > 0) then
+            else if (index(label(:last), ' ') > 0) then
                parsed%names_certain = .false.
                call add_field_error(errors, label_blank_inside, parsed%card, field)
             end if
@@ -373,9 +384,10 @@ contains
       integer, intent(in) :: i
       type(input_errors_t), intent(inout) :: errors
       type(error_code_t) :: error
-      integer :: first, last, place
+      integer :: last, place
 
-      if (card%text(field%first:field%last) == '') return
+      last = len_trim(card%text(:field%last))
+      if (last < field%first) return
       parsed%given(i) = .true.
       if (i > reals_of(parsed%form, parsed%label(label_a))) then
          if (parsed%on_star(i)) then
@@ -385,9 +397,7 @@ contains
          end if
          return
       end if
-      first = first_column(card, field)
-      last = first + len_trim(card%text(first:field%last)) - 1
-      call read_real(card%text(first:last), parsed%real(i), error, place)
+      call read_real(card%text(first_column(card, field):last), parsed%real(i), error, place)
       if (abs(parsed%real(i)) > max_real) error = number_overflow
       if (abs(parsed%real(i)) > 0.0_wp .and. abs(parsed%real(i)) < min_real) error = number_underflow
       if (error%number > 0) call add_field_error(errors, error, card, field, place=place)

@@ -211,17 +211,12 @@ contains
    !> The form of the cards of the name `name`, in capitals or small letters; or form_unknown.
    pure integer function find_form(name) result(form)
       character(*), intent(in) :: name
-      character(label_length) :: upper
-      integer(int64) :: key
+      character(label_length) :: key
 
-      form = form_unknown
-      if (len_trim(name) > label_length) return
-      upper = name
-      upper = capitals(upper)
-      key = transfer(upper, key)
-      do form = size(forms), 1, -1
-         if (keys(form) == key) return
-      end do
+      key = name
+      form = findloc(keys, transfer(key, keys(1)), dim=1)
+      if (form == form_unknown) form = findloc(keys, transfer(capitals(key), keys(1)), dim=1)
+      if (len_trim(name) > label_length) form = form_unknown
    end function find_form
 
    !> The form whose name differs from `name` by at most two letters and by at most half of its own letters; otherwise

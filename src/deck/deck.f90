@@ -221,7 +221,9 @@ contains
             return
          end if
          call read_card(card, parsed, set%errors)
-         if (set%small%number == 0 .and. small_field(card) > 0) set%small = card
+         if (set%small%number == 0 .and. parsed%has_small) then
+            if (small_field(card) > 0) set%small = card
+         end if
          if (parsed%form /= form_end) then
             call append_card(set, parsed, failure)
          else if (set%count == 0) then
@@ -237,13 +239,12 @@ contains
    !> for what nothing uses and for what looks wrong: a card with an error could make others look so.
    subroutine close_set(progress)
       type(progress_t), intent(inout) :: progress
-      type(variation_t) :: variation
 
       associate (set => progress%set)
          call read_small_letters(set)
          call set_apart(set)
          call build_mechanism(set)
-         call build_variation(set, variation)
+         if (allocated(set%vary)) call append_variation(progress)
          if (error_count(set%errors) == progress%errors_before) then
             call check_terms(set)
             call check_unused(set)
@@ -251,7 +252,6 @@ contains
             call check_angles(set)
             call check_guides(set)
             call build_echo(set)
-            if (set%mechanism%variants > 0) call append_variation(progress, variation)
          end if
          call take_remarks(set%errors, set%mechanism%remarks)
          progress%errors_before = error_count(set%errors)
@@ -260,10 +260,10 @@ contains
       call begin_set(progress%set, progress%passed + progress%closed + 1)
    end subroutine close_set
 
-   !> Appends `variation`; where there is no room, it is doubled.
-   subroutine append_variation(progress, variation)
+   !> Appends the variation of the open set; where there is no room, it is doubled. In a deck with an error it is of no
+   !> use.
+   subroutine append_variation(progress)
       type(progress_t), intent(inout) :: progress
-      type(variation_t), intent(in) :: variation
       type(variation_t), allocatable :: larger(:)
 
       if (progress%varying == size(progress%variations)) then
@@ -272,7 +272,7 @@ contains
          call move_alloc(larger, progress%variations)
       end if
       progress%varying = progress%varying + 1
-      progress%variations(progress%varying) = variation
+      call build_variation(progress%set, progress%variations(progress%varying))
    end subroutine append_variation
 
    !> Builds the mechanism of `set` from its cards.

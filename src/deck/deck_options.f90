@@ -326,6 +326,7 @@ contains
       type(request_t) :: requests(set%number_of(form_pole) + set%number_of(form_curve))
       integer :: card_of(size(requests)), form, k, i, n
 
+      if (size(requests) == 0) return
       n = 0
       do form = form_pole, form_curve
          do k = 1, set%count

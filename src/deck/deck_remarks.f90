@@ -97,6 +97,7 @@ contains
       integer :: i
 
       associate (m => set%mechanism)
+         if (set%number_of(form_prism) == 0) return
          length = solver_length(m)
          if (any([(m%pairs(i)%kind /= pair_prismatic .and. opening(m, i, 0.0_wp) > closed*length, &
                    i=1, size(m%pairs))])) return
