@@ -45,7 +45,7 @@ contains
       type(card_t), intent(in) :: card
       type(parsed_card_t), intent(out) :: parsed
       type(input_errors_t), intent(inout) :: errors
-      logical :: cut(size(card_fields)), numeric(size(card_fields))
+      logical :: cut(size(card_fields))
       integer :: before, last, i
 
       before = error_count(errors)
@@ -64,12 +64,7 @@ contains
       parsed%valid = error_count(errors) == before
       if (.not. parsed%valid .or. parsed%form == form_title) return
       ! The reals, and the labels that the card does not take, may hold the beginning of a number.
-      numeric = .true.
-      numeric(card_name) = .false.
-      do i = label_a, label_c
-         numeric(i) = forms(parsed%form)%labels(i - card_name:i - card_name) == '-'
-      end do
-      call find_cuts(card, card_fields, numeric, cut, errors)
+      call find_cuts(card, card_fields, 'L'//forms(parsed%form)%labels//'---', cut, errors)
       parsed%names_certain = .not. any(cut(label_a:label_c))
       call read_labels(parsed, cut(label_a:label_c), errors)
       do i = 1, 3
@@ -234,18 +229,19 @@ contains
    !> Sets `cut` for the `fields` (in the order of their columns, each ending where the next one begins) whose text is
    !> cut by a border, and adds an error for each border. Text is cut if it does not begin at its field and continues
    !> beyond the border. It is also cut if it is a real number together with what follows the border; that is checked
-   !> where `numeric(i)`: field i may hold the beginning of a number. Two full labels side by side are not cut, nor are
-   !> two reals that cannot be one number: two full ones, or any two if the second has a sign, which is a remark.
-   subroutine find_cuts(card, fields, numeric, cut, errors)
+   !> where `taken(i:i)` is -: field i takes no label, and may hold the beginning of a number. Two full labels side by
+   !> side are not cut, nor are two reals that cannot be one number: two full ones, or any two if the second has a sign,
+   !> which is a remark.
+   subroutine find_cuts(card, fields, taken, cut, errors)
       type(card_t), intent(in) :: card
       type(field_t), intent(in) :: fields(:)
-      logical, intent(in) :: numeric(:)
+      character(*), intent(in) :: taken
       logical, intent(out) :: cut(:)
       type(input_errors_t), intent(inout) :: errors
       type(error_code_t) :: error
       real(wp) :: value
       integer :: i, start, finish, border, place
-      logical :: fills
+      logical :: numeric, fills
 
       cut = .false.
       do i = 1, size(fields) - 1
@@ -254,13 +250,14 @@ contains
          if (cut(i) .or. card%text(border:border) <= ' ' .or. card%text(border + 1:border + 1) <= ' ') cycle
          start = fields(i)%first + index(card%text(fields(i)%first:border), ' ', back=.true.)
          ! Two numbers that fill their fields may touch; the first may have a blank in place of a plus sign.
-         fills = start <= fields(i)%first + merge(1, 0, numeric(i))
-         if (fills .and. .not. numeric(i)) cycle
-         finish = end_of_text(card, border + 1, fields(i + 1)%last)
+         numeric = taken(i:i) == '-'
+         fills = start <= fields(i)%first + merge(1, 0, numeric)
+         if (fills .and. .not. numeric) cycle
+         finish = border + index(card%text(border + 1:fields(i + 1)%last)//' ', ' ') - 1
          if (fills) then
             call read_real(card%text(start:finish), value, error, place)
             if (error%number > 0) cycle
-         else if (is_signed(card%text(start:finish), border + 2 - start, numeric(i))) then
+         else if (is_signed(card%text(start:finish), border + 2 - start, numeric)) then
             call add_remark(errors, remark_touching, card, border + 1, card%text(border + 1:finish))
             cycle
          end if
@@ -269,17 +266,6 @@ contains
                         whole(border)//' AND '//whole(border + 1))
       end do
    end subroutine find_cuts
-
-   !> The last column of the text that begins in column `first` of `card`, and ends in column `last` at the latest.
-   pure integer function end_of_text(card, first, last) result(column)
-      type(card_t), intent(in) :: card
-      integer, intent(in) :: first, last
-
-      do column = first, last
-         if (card%text(column:column) == ' ') exit
-      end do
-      column = column - 1
-   end function end_of_text
 
    !> Whether a number with a sign begins with the character number `first` of `text`. Where what is before it is a
    !> number too (`numeric`), it must not be the exponent of that; where it is a label, it must be a number without an
@@ -344,7 +330,7 @@ contains
          if (i > label_a .and. i <= label_c + 1 .and. index(text(border - 1:border), ' ') == 0) then
             parsed%names_certain = .false.
             first = first_column(parsed%card, card_fields(i - 1))
-            finish = end_of_text(parsed%card, border, card_fields(i)%last)
+            finish = border + index(text(border:card_fields(i)%last)//' ', ' ') - 2
             call add_error(errors, label_long, parsed%card, card_fields(i - 1), first, text(first:finish))
          else
             call add_field_error(errors, field_unused, parsed%card, card_fields(i))
@@ -364,7 +350,7 @@ contains
          call add_field_error(errors, star_blank, card, card_fields(card_name))
          return
       end if
-      call find_cuts(card, wide_fields, [.true., .true., .true.], cut, errors)
+      call find_cuts(card, wide_fields, '---', cut, errors)
       do i = 1, 3
          if (cut(i) .or. field_text(card, wide_fields(i)) == '') cycle
          if (above%given(i)) then

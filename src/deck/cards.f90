@@ -124,15 +124,14 @@ contains
    pure integer function small_field(card) result(i)
       type(card_t), intent(in) :: card
       logical :: is_title
-      integer :: column
 
       is_title = card%text(:label_length) == form_name(form_title)
-      i = 0
-      do column = 1, card_fields(merge(card_name, label_c, is_title))%last
-         if (card%text(column:column) < 'a' .or. card%text(column:column) > 'z') cycle
-         i = findloc(card_fields%last >= column, .true., dim=1)
-         return
+      do i = card_name, merge(card_name, label_c, is_title)
+         associate (text => card%text(card_fields(i)%first:card_fields(i)%last))
+            if (text /= capitals(text)) return
+         end associate
       end do
+      i = 0
    end function small_field
 
    !> Whether `card` is a comment ($, # or ! before all else) or blank: such cards are skipped.

@@ -47,7 +47,7 @@ contains
       if (n - 1 + power > range(value)) error = number_overflow
       if (n - 1 + power < -range(value)) error = number_underflow
       if (error%number > 0) return
-      if (is_one_of(text, letter, 'Dd') .and. abs(n + power) < range(double)) then
+      if (scan(text(letter:), 'Dd') == 1 .and. abs(n + power) < range(double)) then
          read (text, '(f80.0)') double
          value = real(double, wp)
       else if (n <= exact_digits .and. abs(power) <= exact_power) then
@@ -98,7 +98,7 @@ contains
       integer :: first, point, exponent
       character(1) :: c
 
-      first = merge(2, 1, is_one_of(text, 1, '+-'))
+      first = merge(2, 1, scan(text(1:1), '+-') == 1)
       mantissa = 0_int64
       n = 0
       point = 0
@@ -118,9 +118,9 @@ contains
       if (point > 0) power = point + 1 - place
       if (place == first + merge(1, 0, point > 0)) then
          error = number_no_digits
-      else if (is_one_of(text, letter, 'EeDd')) then
+      else if (scan(text(letter:), 'EeDd') == 1) then
          first = place + 1
-         if (is_one_of(text, first, '+-')) first = first + 1
+         if (scan(text(first:), '+-') == 1) first = first + 1
          exponent = 0
          do place = first, len(text)
             if (text(place:place) < '0' .or. text(place:place) > '9') exit
@@ -135,15 +135,6 @@ contains
       end if
       if (place <= len(text)) error = error_at(text, place)
    end subroutine split_real
-
-   !> Whether the character `text(i:i)`, if there is one, is one of `list`.
-   pure logical function is_one_of(text, i, list)
-      character(*), intent(in) :: text, list
-      integer, intent(in) :: i
-
-      is_one_of = .false.
-      if (i <= len(text)) is_one_of = scan(text(i:i), list) == 1
-   end function is_one_of
 
    !> The error at the character `text(i:i)`, at which the grammar stopped.
    pure function error_at(text, i) result(error)

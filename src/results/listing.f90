@@ -84,7 +84,8 @@ contains
 
       if (size(groups) > 0) call put(o, ' '//phrase(say_groups, m%polish))
       do i = 1, size(groups)
-         write (head, '(i6)') i
+         head = whole(i)
+         head(:6) = adjustr(head(:6))
          if (groups(i)%driven) head(9:) = phrase(say_driven, m%polish)
          if (.not. groups(i)%needed) head(9:) = phrase(say_not_needed, m%polish)
          do k = 1, size(groups(i)%links)

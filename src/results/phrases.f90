@@ -210,7 +210,8 @@ contains
       logical, intent(in) :: polish
       character(:), allocatable :: text
 
-      text = trim(merge(p%polish, p%english, polish))
+      if (polish) text = p%polish(:len_trim(p%polish))
+      if (.not. polish) text = p%english(:len_trim(p%english))
    end function phrase
 
    !> The end of a list of which `n` are left out: ' AND 3 MORE'; '' where none are.
