@@ -82,12 +82,12 @@ contains
       character(:), allocatable :: typed, title
       integer :: i
 
-      if (card%overrun == 0 .and. first_foreign(card%text) == 0) return
       typed = trim(card%text(title_field%first:))
       if (card%overrun > 0) typed = card%text(title_field%first:) &
          //repeat(' ', min(card%overrun - card_columns - 1, card_columns))//trim(card%beyond)
-      title = without_accents(typed)
-      i = first_foreign(typed)
+      title = typed
+      i = findloc([(ichar(typed(i:i)) > 127, i=1, len(typed))], .true., dim=1)
+      if (i > 0) title = without_accents(typed)
       if (i > 0) call add_remark(errors, remark_title_letters, card, title_field%first + i - 1, '')
       ! Of the text beyond the last column only the beginning is known.
       if (len(title) > card_columns - title_field%first + 1 .or. card%beyond(len(card%beyond):) /= ' ') &
@@ -95,16 +95,6 @@ contains
       card%text(title_field%first:) = title
       card%overrun = 0
    end subroutine read_title
-
-   !> The place of the first character of `text` that is not ASCII; 0: all are.
-   pure integer function first_foreign(text) result(i)
-      character(*), intent(in) :: text
-
-      do i = 1, len_trim(text)
-         if (ichar(text(i:i)) > 127) return
-      end do
-      i = 0
-   end function first_foreign
 
    !> `text`, in UTF-8, with the Latin letter for a Latin letter with an accent, plain dashes and quotation marks, and ?
    !> for any other character that is not ASCII.
