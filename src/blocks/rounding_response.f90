@@ -5,7 +5,7 @@
 !>    F_q dq' = -(F_q q' + F_t)_q dq - (F_q q' + F_t)_p dp,   and once more for dq''.
 !>
 !> Numbers on cards are off in the same way wherever they stand. Beside that each sum of the calculation, of a position,
-!> velocity or acceleration, is off by a rounding of what it adds up.
+!> velocity or acceleration, is off by the part of a rounding of what it adds up that counts.
 !>
 !> Not by the exact equations of `linear_response`, one direction at a time: body vectors in `directions` lanes cost as
 !> much as half a step. Not by bounds of absolute values from block to block: they grow along a chain as its numbers do
@@ -67,14 +67,14 @@ contains
 
    !> The changes `links` (directions, 3, 0:2, links) of the motion `q` of `m` at `r%state`, which `e` has solved for
    !> or, `again`, at the state to which its blocks are solved from there, to the limit of rounding. `only_driven`: no
-   !> more is known than what drives alone move. `lost` (links): nothing is known of their changes.
+   !> more is known than what drives alone move. `lost` (links): nothing is known of their changes, which stay.
    subroutine respond_to_roundings(r, m, e, q, only_driven, again, links, lost)
       type(rounding_response_t), intent(inout) :: r
       type(mechanism_t), intent(in) :: m
       class(block_engine_t), intent(in) :: e
       type(motion_t), intent(in) :: q
       logical, intent(in) :: only_driven, again
-      real(wp), contiguous, intent(out) :: links(:, :, 0:, :)
+      real(wp), contiguous, intent(inout) :: links(:, :, 0:, :)
       logical, intent(out) :: lost(:)
       type(motion_t) :: marked
       integer :: k
