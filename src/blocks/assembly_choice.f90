@@ -51,7 +51,7 @@ contains
       if (.not. any(has_others(e%others(e%needed)))) return
       call choose(e)
       c = convergence_t()
-      call begin_record(e, c)
+      call begin_record(c)
       call solve_each(e, e%needed, .false., c)
    end subroutine solve_first
 

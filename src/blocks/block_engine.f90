@@ -7,7 +7,7 @@ module block_engine
    use links_tree, only: tree_t
    use structure, only: structure_t, new_structure
    use initial_estimate, only: estimated_values
-   use drives, only: new_law, find_drive_motion
+   use drives, only: law_t, new_law, find_drive_motion
    use convergence, only: convergence_t, is_solved, gather, ended_converged, ended_singular
    use engine, only: engine_t, engine_checkpoint_t
    use predictor, only: history_t, new_history, remember, predict, largest_change, uncertain_part
@@ -197,11 +197,15 @@ contains
       if (.not. e%blocks%solvable) return
       e%t = t
       call set_drive_values(e, t)
-      call begin_record(e, c)
+      call begin_record(c)
       if (follows) then
          call predict(e%history, t, e%state%u, e%change)
          c%keeps_signs = e%change <= largest_change
-         if (c%keeps_signs) call solve_each(e, e%moving, follows, c)
+         if (c%keeps_signs) then
+            call solve_each(e, e%moving, follows, c)
+         else
+            e%crossed = .false.
+         end if
       else
          call remove_turns(e%blocks, e%needed, e%state%drive_value(0, :), e%estimated)
          e%state%u%value = e%estimated
@@ -213,30 +217,38 @@ contains
    pure subroutine set_drive_values(e, t)
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
+
+      call find_drive_values(size(e%laws), e%laws, e%unit_of, t, e%state%drive_value)
+   end subroutine set_drive_values
+
+   !> The `values` (0:2, 0:n) of the `n` drives with the `laws` at `t`, each in its `unit`.
+   pure subroutine find_drive_values(n, laws, unit, t, values)
+      integer, intent(in) :: n
+      type(law_t), intent(in) :: laws(n)
+      real(wp), intent(in) :: unit(n), t
+      real(wp), intent(inout) :: values(0:2, 0:n)
       real(wp) :: f(3)
       integer :: i
 
-      do i = 1, size(e%laws)
-         call find_drive_motion(e%laws(i), t, f)
-         e%state%drive_value(0:2, i) = f*e%unit_of(i)
+      do i = 1, n
+         call find_drive_motion(laws(i), t, f)
+         values(:, i) = f*unit(i)
       end do
-   end subroutine set_drive_values
+   end subroutine find_drive_values
 
    !> Solves the moving blocks once more, from where they are now.
    subroutine solve_again(e, c)
       type(block_engine_t), intent(inout) :: e
       type(convergence_t), intent(out) :: c
 
-      call begin_record(e, c)
+      call begin_record(c)
       call solve_each(e, e%moving, .true., c)
    end subroutine solve_again
 
    !> The record `c`, in which nothing is gathered yet, before the first block.
-   subroutine begin_record(e, c)
-      type(block_engine_t), intent(inout) :: e
+   pure subroutine begin_record(c)
       type(convergence_t), intent(inout) :: c
 
-      e%crossed = .false.
       c%ended = ended_converged
       c%reciprocal_condition = 1.0_wp
       c%determinant = 1
@@ -245,37 +257,37 @@ contains
    !> Solves the blocks of `list` in turn, up to the first without a position; arguments as in `solve`.
    subroutine solve_each(e, list, follows, c)
       type(block_engine_t), intent(inout) :: e
-      integer, intent(in) :: list(:)
+      integer, intent(in), contiguous :: list(:)
       logical, intent(in) :: follows
       type(convergence_t), intent(inout) :: c
       integer :: k, i
 
       do k = 1, size(list)
          i = list(k)
-         if (follows .and. e%blocks%list(i)%direct) then
-            call solve_direct(e%blocks, i, e%state)
-         else if (follows) then
-            call solve_equations(e%blocks, i, e%blocks%list(i), e%tolerance, e%work, e%state, e%one)
-         else
-            call solve_first_block(e%blocks, i, e%tolerance, e%work, e%state, e%one, e%others(i)%x)
-         end if
-         associate (block => e%blocks%list(i), one => e%one, found => e%found(i), followed => e%followed(i))
-            if (block%direct) cycle
-            if (follows) c%change = max(c%change, one%change)
-            if (follows .and. is_solved(one) .and. block%shape%rows > block%shape%n) &
-               one%determinant = followed%sign_of*relative_sign(e%blocks, i, e%jacobian, e%state)
+         associate (block => e%blocks%list(i), one => e%one)
+            if (follows .and. block%direct) then
+               call solve_direct(e%blocks, i, e%state)
+               cycle
+            else if (follows) then
+               call solve_equations(e%blocks, i, block, e%tolerance, e%work, e%state, one)
+               c%change = max(c%change, one%change)
+               if (block%shape%rows > block%shape%n .and. is_solved(one)) &
+                  one%determinant = e%followed(i)%sign_of*relative_sign(e%blocks, i, e%jacobian, e%state)
+            else
+               call solve_first_block(e%blocks, i, e%tolerance, e%work, e%state, one, e%others(i)%x)
+               if (block%direct) cycle
+            end if
             call gather(one, c)
             if (.not. is_solved(one)) return
             e%is_singular(i) = one%singular
             ! At a change point itself the sign is that of rounding.
+            e%crossed(i) = follows .and. .not. one%singular .and. one%determinant /= e%followed(i)%sign_of
             if (one%singular) cycle
+            if (e%crossed(i)) c%keeps_signs = .false.
             c%kantorovich_ratio = max(c%kantorovich_ratio, one%kantorovich_ratio)
             if (e%state%excursion > 0.0_wp) &
-               c%growth = max(c%growth, block%lipschitz*max(one%inverse, followed%inverse)**2)
-            found = jacobian_t(one%determinant, one%min_pivot, one%inverse)
-            if (.not. follows .or. one%determinant == followed%sign_of) cycle
-            c%keeps_signs = .false.
-            e%crossed(i) = .true.
+               c%growth = max(c%growth, block%lipschitz*max(one%inverse, e%followed(i)%inverse)**2)
+            e%found(i) = jacobian_t(one%determinant, one%min_pivot, one%inverse)
          end associate
       end do
    end subroutine solve_each
@@ -286,13 +298,15 @@ contains
       real(wp) :: uncertain
       integer :: k
 
+      if (e%history%filled == 0) e%followed = e%found
       uncertain = 0.0_wp
       do k = 1, size(e%moving)
-         uncertain = max(uncertain, uncertain_part(e%blocks, e%moving(k), e%found(e%moving(k))%pivot, e%state))
+         associate (i => e%moving(k))
+            e%followed(i) = e%found(i)
+            uncertain = max(uncertain, uncertain_part(e%blocks, i, e%found(i)%pivot, e%state))
+         end associate
       end do
       call remember(e%history, e%t, e%state%u, uncertain)
-      ! As a section: an assignment to the whole would ask for its shape first.
-      e%followed(:) = e%found(:)
       if (e%blocks%redundant > 0) e%jacobian = jacobian_of(e%blocks, 1, e%state)
    end subroutine accept
 

@@ -6,7 +6,7 @@ module block_equations
    use planar, only: rotated, quarter_turn, cross
    use block_matrix, only: entries_of
    use blocks, only: blocks_t, row_t, block_loop_t, body_vector_t, slide_t, loop_projection, loop_angles
-   use block_state, only: state_t, unknown_t, loop_state_t
+   use block_state, only: state_t, unknown_t, loop_state_t, slide_velocity, slide_acceleration
    implicit none
    private
    public :: assemble_block, assemble_with_velocities, assemble_dense, right_hand_side
@@ -41,18 +41,18 @@ contains
                if (g%kind == loop_angles) then
                   ! Both may be the same angle.
                   r(g%row_x) = s%u(g%orientation)%value - s%u(g%less)%value
-                  v(g%row_x) = 0.0_wp
                   if (g%orientation_at > 0) a(g%orientation_at) = a(g%orientation_at) + 1.0_wp
                   if (g%less_at > 0) a(g%less_at) = a(g%less_at) - 1.0_wp
                else
                   call find_closure_error(g, b%body_vectors, b%slides, s%u, s%own, s%guide, s%loop(m)%known, &
                      s%loop(m)%closure_error)
                   call position_rows(g, b%body_vectors, b%slides, s%u, s%own, s%guide, s%loop(m), a, r)
-                  call velocity_rows(g, b%slides, s%u, s%guide, s%loop(m), v)
                end if
+               call velocity_rows(g, b%slides, s%u, s%guide, s%loop(m), v)
             end associate
          end do
-         call take_right_sides(block%first_row, block%last_row, b%rows, s%drive_value, r, v)
+         if (block%has_right_sides) &
+            call take_right_sides(block%first_row, block%last_row, b%rows, s%drive_value, r, v)
       end associate
    end subroutine assemble_with_velocities
 
@@ -72,7 +72,7 @@ contains
    end subroutine set_to_zero
 
    !> Subtracts from `r` what the equations number `first` to `last` are equal to, their constants and the `values` of
-   !> drives, and makes `v` the rates of these less `v`.
+   !> drives, and adds the rates of these to `v`.
    pure subroutine take_right_sides(first, last, rows, values, r, v)
       integer, intent(in) :: first, last
       type(row_t), intent(in) :: rows(*)
@@ -82,7 +82,7 @@ contains
 
       do k = first, last
          r(k - first + 1) = r(k - first + 1) - rows(k)%constant - values(0, rows(k)%drive)
-         v(k - first + 1) = values(1, rows(k)%drive) - v(k - first + 1)
+         v(k - first + 1) = v(k - first + 1) + values(1, rows(k)%drive)
       end do
    end subroutine take_right_sides
 
@@ -232,8 +232,8 @@ contains
 
    !> Right-hand side `v` (rows) for the velocities (`order` 1) or, once these are known, the accelerations (2) of
    !> block `i`: the drives' derivatives less what is given. An equation of two angles, one of them of an earlier block,
-   !> would be a direct block: to such an equation nothing is given. Closure errors, directions and rotated body vectors
-   !> are those of the last `assemble_block`.
+   !> would be a direct block: to such an equation nothing is given, and its loop has no known part. Closure errors,
+   !> directions and rotated body vectors are those of the last `assemble_block`.
    pure subroutine right_hand_side(b, i, order, s, v)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, order
@@ -242,23 +242,21 @@ contains
       integer :: m
 
       associate (block => b%list(i))
-         do m = block%first_loop, block%last_loop
-            associate (g => b%loops(m))
-               if (g%kind == loop_angles) then
-                  v(g%row_x) = 0.0_wp
-               else if (order == 1) then
-                  call velocity_rows(g, b%slides, s%u, s%guide, s%loop(m), v)
-               else
-                  call acceleration_rows(g, b%body_vectors, b%slides, s%u, s%own, s%guide, s%loop(m), v)
-               end if
-            end associate
-         end do
-         call subtract_from_drives(block%first_row, block%last_row, b%rows, order, s%drive_value, v)
+         if (order == 1) then
+            do m = block%first_loop, block%last_loop
+               call velocity_rows(b%loops(m), b%slides, s%u, s%guide, s%loop(m), v)
+            end do
+         else
+            call acceleration_rows(block%first_loop, block%last_loop, b%loops, b%body_vectors, b%slides, s%u, s%own, &
+               s%guide, s%loop, v)
+         end if
+         if (block%has_right_sides) &
+            call add_drives(block%first_row, block%last_row, b%rows, order, s%drive_value, v)
       end associate
    end subroutine right_hand_side
 
-   !> Makes `v` derivative number `order` of the drives' `values` less `v`, for the equations number `first` to `last`.
-   pure subroutine subtract_from_drives(first, last, rows, order, values, v)
+   !> Adds derivative number `order` of the drives' `values` to `v`, for the equations number `first` to `last`.
+   pure subroutine add_drives(first, last, rows, order, values, v)
       integer, intent(in) :: first, last, order
       type(row_t), intent(in) :: rows(*)
       real(wp), intent(in) :: values(0:2, 0:*)
@@ -266,11 +264,11 @@ contains
       integer :: k
 
       do k = first, last
-         v(k - first + 1) = values(order, rows(k)%drive) - v(k - first + 1)
+         v(k - first + 1) = v(k - first + 1) + values(order, rows(k)%drive)
       end do
-   end subroutine subtract_from_drives
+   end subroutine add_drives
 
-   !> In the rows of loop `g`, whose state is `now`: the part of g', or of (g . f)', that holds no unknown velocity.
+   !> In the rows of loop `g`, whose state is `now`: 0 less the part of g', or of (g . f)', without unknown velocities.
    pure subroutine velocity_rows(g, slides, u, guide, now, v)
       type(block_loop_t), intent(in) :: g
       type(slide_t), intent(in) :: slides(*)
@@ -278,7 +276,7 @@ contains
       real(wp), intent(in) :: guide(2, *)
       type(loop_state_t), intent(in) :: now
       real(wp), intent(inout) :: v(*)
-      real(wp) :: given(2)
+      real(wp) :: given(2), along
       integer :: k
 
       given(1) = now%known(1, 1)
@@ -287,45 +285,48 @@ contains
          given = given + slide_velocity(slides(k), u, guide(:, k))
       end do
       if (g%kind == loop_projection) then
-         v(g%row_x) = given(1)*now%f(1) + given(2)*now%f(2)
-         if (g%orientation > 0 .and. g%orientation_column == 0) v(g%row_x) = v(g%row_x) &
-            + u(g%orientation)%rate*cross(now%f, now%closure_error)
+         along = given(1)*now%f(1) + given(2)*now%f(2)
+         if (g%orientation > 0 .and. g%orientation_column == 0) &
+            along = along + u(g%orientation)%rate*cross(now%f, now%closure_error)
+         v(g%row_x) = 0.0_wp - along
       else
-         if (g%row_x > 0) v(g%row_x) = given(1)
-         if (g%row_y > 0) v(g%row_y) = given(2)
+         if (g%row_x > 0) v(g%row_x) = 0.0_wp - given(1)
+         if (g%row_y > 0) v(g%row_y) = 0.0_wp - given(2)
       end if
    end subroutine velocity_rows
 
-   !> The same of g'' or (g . f)'', with the velocities and without unknown accelerations.
-   pure subroutine acceleration_rows(g, vectors, slides, u, own, guide, now, v)
-      type(block_loop_t), intent(in) :: g
+   !> The same of g'' or (g . f)'', with the velocities and without unknown accelerations, in the rows of the loops number
+   !> `first` to `last`, whose states are `states`.
+   pure subroutine acceleration_rows(first, last, loops, vectors, slides, u, own, guide, states, v)
+      integer, intent(in) :: first, last
+      type(block_loop_t), intent(in) :: loops(*)
       type(body_vector_t), intent(in) :: vectors(*)
       type(slide_t), intent(in) :: slides(*)
       type(unknown_t), intent(in) :: u(0:*)
       real(wp), intent(in) :: own(2, *), guide(2, *)
-      type(loop_state_t), intent(in) :: now
+      type(loop_state_t), intent(in) :: states(*)
       real(wp), intent(inout) :: v(*)
-      real(wp) :: given(2)
-      integer :: k
+      real(wp) :: given(2), along
+      integer :: m, k
 
-      given(1) = now%known(1, 2)
-      given(2) = now%known(2, 2)
-      call subtract_inward(g%first_own, g%last_vector, vectors, u, own, given)
-      do k = g%first_slide, g%last_slide
-         given = given + slide_acceleration(slides(k), u, guide(:, k))
-      end do
-      if (g%kind == loop_projection) then
-         v(g%row_x) = given(1)*now%f(1) + given(2)*now%f(2)
-         if (g%orientation == 0) return
-         associate (c => u(g%orientation), closure_error => now%closure_error, f => now%f)
-            given = closure_error_rate(g, vectors, slides, u, own, guide, now)
-            v(g%row_x) = v(g%row_x) + 2.0_wp*c%rate*cross(f, given) - c%rate**2*dot_product(closure_error, f)
-            if (g%orientation_column == 0) v(g%row_x) = v(g%row_x) + c%acceleration*cross(f, closure_error)
+      do m = first, last
+         associate (g => loops(m), now => states(m))
+            given(1) = now%known(1, 2)
+            given(2) = now%known(2, 2)
+            call subtract_inward(g%first_own, g%last_vector, vectors, u, own, given)
+            do k = g%first_slide, g%last_slide
+               given = given + slide_acceleration(slides(k), u, guide(:, k))
+            end do
+            if (g%kind == loop_projection) then
+               along = given(1)*now%f(1) + given(2)*now%f(2)
+               if (g%orientation > 0) call add_turn(g, vectors, slides, u, own, guide, now, along)
+               v(g%row_x) = 0.0_wp - along
+            else
+               if (g%row_x > 0) v(g%row_x) = 0.0_wp - given(1)
+               if (g%row_y > 0) v(g%row_y) = 0.0_wp - given(2)
+            end if
          end associate
-      else
-         if (g%row_x > 0) v(g%row_x) = given(1)
-         if (g%row_y > 0) v(g%row_y) = given(2)
-      end if
+      end do
    end subroutine acceleration_rows
 
    !> Subtracts from `g` what the turned vectors `own`, number `first` to `last`, have of acceleration towards their
@@ -346,34 +347,22 @@ contains
       end do
    end subroutine subtract_inward
 
-   !> The part of the `slide` along the guide `e` in g':  (s e)' = s' e + s w e'.
-   pure function slide_velocity(slide, unknowns, e) result(g)
-      type(slide_t), intent(in) :: slide
-      type(unknown_t), intent(in) :: unknowns(0:*)
-      real(wp), intent(in) :: e(2)
-      real(wp) :: g(2)
+   !> Adds to `along`, which is g'' . f of the projection `g`, what turns with f:  2 w g' . f' - w^2 g . f + w' g . f'.
+   pure subroutine add_turn(g, vectors, slides, u, own, guide, now, along)
+      type(block_loop_t), intent(in) :: g
+      type(body_vector_t), intent(in) :: vectors(*)
+      type(slide_t), intent(in) :: slides(*)
+      type(unknown_t), intent(in) :: u(0:*)
+      real(wp), intent(in) :: own(2, *), guide(2, *)
+      type(loop_state_t), intent(in) :: now
+      real(wp), intent(inout) :: along
 
-      associate (u => unknowns(slide%unknown), f => unknowns(slide%orientation))
-         g = 0.0_wp
-         if (slide%column == 0) g = g + u%rate*e
-         if (slide%orientation_column == 0) g = g + u%value*f%rate*quarter_turn(e)
+      associate (c => u(g%orientation), closure_error => now%closure_error, f => now%f)
+         along = along + 2.0_wp*c%rate*cross(f, closure_error_rate(g, vectors, slides, u, own, guide, now)) &
+            - c%rate**2*dot_product(closure_error, f)
+         if (g%orientation_column == 0) along = along + c%acceleration*cross(f, closure_error)
       end associate
-   end function slide_velocity
-
-   !> The same in g'':  (s e)'' = s'' e + 2 s' w e' + s (w' e' - w^2 e).
-   pure function slide_acceleration(slide, unknowns, e) result(g)
-      type(slide_t), intent(in) :: slide
-      type(unknown_t), intent(in) :: unknowns(0:*)
-      real(wp), intent(in) :: e(2)
-      real(wp) :: g(2), e_t(2)
-
-      associate (u => unknowns(slide%unknown), f => unknowns(slide%orientation))
-         e_t = quarter_turn(e)
-         g = 2.0_wp*u%rate*f%rate*e_t - u%value*f%rate**2*e
-         if (slide%column == 0) g = g + u%acceleration*e
-         if (slide%orientation_column == 0) g = g + u%value*f%acceleration*e_t
-      end associate
-   end function slide_acceleration
+   end subroutine add_turn
 
    !> g' with the velocities of the block itself.
    pure function closure_error_rate(loop, vectors, slides, u, own, guide, now) result(g)

@@ -18,7 +18,8 @@ module block_solver
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
       ended_inconsistent, is_solved, note_closure_error, is_inconsistent, contradict
    use blocks, only: blocks_t, block_t
-   use block_state, only: state_t, set_direction, rotate_direction, set_rates, set_accelerations, find_known_parts
+   use block_state, only: unknown_t, state_t, set_direction, find_direction, rotate_direction, set_rates, &
+      set_accelerations, find_known_parts
    use block_equations, only: assemble_with_velocities, right_hand_side
    use block_sizes, only: largest_rates, rounded_sizes, second_order_bounds
    implicit none
@@ -132,7 +133,7 @@ contains
       logical :: is_right
 
       second = block%shape%rows + 1
-      call begin_block(b, block, s, w%start, size_of)
+      call begin_block(block%first, block%last, b%unknown, b%orientations, s%u, w%start, size_of)
       call find_known_parts(b, i, s)
       before = huge(before)
       w%near%distance = 0.0_wp
@@ -181,7 +182,7 @@ contains
    end subroutine solve_equations
 
    !> Solves for `v` (rows) with the Jacobian just assembled, which is factored unless factors of one beside it serve;
-   !> `info` > 0: it has no inverse. For one equation calls for matrices of any shape take several times as long.
+   !> `info` > 0: it has no inverse. For one equation a call costs more than its solution.
    subroutine solve_first_side(shape, w, v, info)
       type(shape_t), intent(in) :: shape
       type(workspace_t), intent(inout) :: w
@@ -224,21 +225,21 @@ contains
       if (shape%rows > shape%n) is_stalled = is_stalled .or. (c%step > 0.5_wp*before .and. c%step <= small_turn)
    end function is_stalled
 
-   !> Directions at the start of the iteration, the values `start`, and the largest value, 1 at least.
-   subroutine begin_block(b, block, s, start, size_of)
-      type(blocks_t), intent(in) :: b
-      type(block_t), intent(in) :: block
-      type(state_t), intent(inout) :: s
+   !> Directions at the start of the iteration for the unknowns with the numbers `unknown`(first:last) among `u`, the
+   !> first `angles` of which are angles; the values `start`, and the largest of them, 1 at least.
+   pure subroutine begin_block(first, last, unknown, angles, u, start, size_of)
+      integer, intent(in) :: first, last, unknown(*), angles
+      type(unknown_t), intent(inout) :: u(0:*)
       real(wp), intent(inout) :: start(*)
       real(wp), intent(out) :: size_of
       integer :: k
 
       size_of = 1.0_wp
-      do k = 1, block%shape%n
-         associate (u => b%unknown(block%first + k - 1))
-            start(k) = s%u(u)%value
-            size_of = max(size_of, abs(start(k)))
-            call set_direction(b, u, s)
+      do k = first, last
+         associate (f => u(unknown(k)))
+            start(k - first + 1) = f%value
+            size_of = max(size_of, abs(f%value))
+            if (unknown(k) <= angles) call find_direction(f)
          end associate
       end do
    end subroutine begin_block

@@ -7,12 +7,12 @@
 !> and a projection on f = R(phi_c) f_0 adds phi_c' g . f' and its derivative, as in `prismatic_pair`.
 module block_state
    use kinds, only: wp
-   use planar, only: add_rotating
-   use blocks, only: blocks_t, block_loop_t, body_vector_t
+   use planar, only: add_rotating, quarter_turn
+   use blocks, only: blocks_t, block_loop_t, body_vector_t, slide_t
    implicit none
    private
-   public :: unknown_t, loop_state_t, state_t, new_state, set_direction, rotate_direction, set_values, set_rates, &
-      set_accelerations, values_of, largest_drive_rate, find_known_parts
+   public :: unknown_t, loop_state_t, state_t, new_state, set_direction, find_direction, rotate_direction, set_values, &
+      set_rates, set_accelerations, values_of, largest_drive_rate, find_known_parts, slide_velocity, slide_acceleration
 
    !> An unknown, an angle in radians or a slide in its block's unit of length, with its derivatives by time.
    type :: unknown_t
@@ -56,10 +56,16 @@ contains
       integer, intent(in) :: u
       type(state_t), intent(inout) :: s
 
-      if (u > b%orientations) return
-      s%u(u)%c = cos(s%u(u)%value)
-      s%u(u)%s = sin(s%u(u)%value)
+      if (u <= b%orientations) call find_direction(s%u(u))
    end subroutine set_direction
+
+   !> Cosine and sine of the angle `f`.
+   pure subroutine find_direction(f)
+      type(unknown_t), intent(inout) :: f
+
+      f%c = cos(f%value)
+      f%s = sin(f%value)
+   end subroutine find_direction
 
    !> Cosine and sine of unknown `u` after a change `d` (rad) so small that its square is below rounding.
    pure subroutine rotate_direction(b, u, d, s)
@@ -135,34 +141,63 @@ contains
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(state_t), intent(inout) :: s
-      integer :: m
 
       associate (block => b%list(i))
-         do m = block%first_loop, block%last_loop
-            call find_known_part(b%loops(m), b%body_vectors, s%u, s%loop(m)%known)
-         end do
+         call find_known(block%first_loop, block%last_loop, b%loops, b%body_vectors, s%u, s%loop)
       end associate
    end subroutine find_known_parts
 
-   !> The same of loop `g`; on plain arrays, which cost no descriptors.
-   pure subroutine find_known_part(g, vectors, u, known)
-      type(block_loop_t), intent(in) :: g
+   !> The same of the loops number `first` to `last`; on plain arrays, which cost no descriptors.
+   pure subroutine find_known(first, last, loops, vectors, u, now)
+      integer, intent(in) :: first, last
+      type(block_loop_t), intent(in) :: loops(*)
       type(body_vector_t), intent(in) :: vectors(*)
       type(unknown_t), intent(in) :: u(0:*)
-      real(wp), intent(out) :: known(2, 0:2)
+      type(loop_state_t), intent(inout) :: now(*)
       real(wp) :: x(2), x_t(2), x_tt(2)
-      integer :: k
+      integer :: m, k
 
-      x = g%ground
-      x_t = 0.0_wp
-      x_tt = 0.0_wp
-      do k = g%first_vector, g%first_own - 1
-         associate (f => u(vectors(k)%orientation), d => vectors(k))
-            call add_rotating(f%c*d%x - f%s*d%y, f%s*d%x + f%c*d%y, f%rate, f%acceleration, x, x_t, x_tt)
-         end associate
+      do m = first, last
+         x = loops(m)%ground
+         x_t = 0.0_wp
+         x_tt = 0.0_wp
+         do k = loops(m)%first_vector, loops(m)%first_own - 1
+            associate (f => u(vectors(k)%orientation), d => vectors(k))
+               call add_rotating(f%c*d%x - f%s*d%y, f%s*d%x + f%c*d%y, f%rate, f%acceleration, x, x_t, x_tt)
+            end associate
+         end do
+         now(m)%known(:, 0) = x
+         now(m)%known(:, 1) = x_t
+         now(m)%known(:, 2) = x_tt
       end do
-      known(:, 0) = x
-      known(:, 1) = x_t
-      known(:, 2) = x_tt
-   end subroutine find_known_part
+   end subroutine find_known
+
+   !> The part of the `slide` along the guide `e` in g':  (s e)' = s' e + s w e'.
+   pure function slide_velocity(slide, unknowns, e) result(g)
+      type(slide_t), intent(in) :: slide
+      type(unknown_t), intent(in) :: unknowns(0:*)
+      real(wp), intent(in) :: e(2)
+      real(wp) :: g(2)
+
+      associate (u => unknowns(slide%unknown), f => unknowns(slide%orientation))
+         g = 0.0_wp
+         if (slide%column == 0) g = g + u%rate*e
+         if (slide%orientation_column == 0) g = g + u%value*f%rate*quarter_turn(e)
+      end associate
+   end function slide_velocity
+
+   !> The same in g'':  (s e)'' = s'' e + 2 s' w e' + s (w' e' - w^2 e).
+   pure function slide_acceleration(slide, unknowns, e) result(g)
+      type(slide_t), intent(in) :: slide
+      type(unknown_t), intent(in) :: unknowns(0:*)
+      real(wp), intent(in) :: e(2)
+      real(wp) :: g(2), e_t(2)
+
+      associate (u => unknowns(slide%unknown), f => unknowns(slide%orientation))
+         e_t = quarter_turn(e)
+         g = 2.0_wp*u%rate*f%rate*e_t - u%value*f%rate**2*e
+         if (slide%column == 0) g = g + u%acceleration*e
+         if (slide%orientation_column == 0) g = g + u%value*f%acceleration*e_t
+      end associate
+   end function slide_acceleration
 end module block_state

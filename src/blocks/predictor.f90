@@ -69,16 +69,20 @@ contains
       type(history_t), intent(inout) :: h
       real(wp), intent(in) :: t, uncertain
       type(unknown_t), intent(in) :: u(0:*)
-      integer :: i, k
+      integer :: k
 
       h%t = [t, h%t(0), h%t(1)]
       h%uncertain = [uncertain, h%uncertain(0), h%uncertain(1)]
       do k = 1, size(h%predicted)
-         i = h%predicted(k)
-         associate (x => h%past(i))
-            x%value = u(i)%value
-            x%rate = [u(i)%rate, x%rate(0), x%rate(1)]
-            x%acceleration = [u(i)%acceleration, x%acceleration(0), x%acceleration(1)]
+         associate (x => h%past(h%predicted(k)), now => u(h%predicted(k)))
+            x%value = now%value
+            ! One by one: an array of three would be made first, and copied.
+            x%rate(2) = x%rate(1)
+            x%rate(1) = x%rate(0)
+            x%rate(0) = now%rate
+            x%acceleration(2) = x%acceleration(1)
+            x%acceleration(1) = x%acceleration(0)
+            x%acceleration(0) = now%acceleration
          end associate
       end do
       h%filled = min(h%filled + 1, 3)
@@ -97,7 +101,7 @@ contains
       change = 0.0_wp
       step = t - h%t(0)
       known = 0
-      if (any(h%uncertain*abs(step) > largest_part)) then
+      if (max(h%uncertain(0), h%uncertain(1), h%uncertain(2))*abs(step) > largest_part) then
          known = findloc(h%uncertain(:h%filled - 1)*abs(step) <= largest_part, .true., dim=1) - 1
       else if (is_even(h, step)) then
          call predict_evenly(size(h%predicted), h%predicted, h%past, step, u, change)

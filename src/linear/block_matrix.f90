@@ -73,26 +73,38 @@ contains
       real(wp), intent(inout) :: a(*), work(*), b(*)
       type(klu_t), intent(inout) :: k
       integer, intent(out) :: pivots(*), info
-      integer :: i
 
       info = 0
-      if (s%n == 0) return
-      if (s%pattern > 0) then
-         call solve_sparse(s%n, a, k, work, work(s%n + 1), work(2*s%n + 1), b, info)
-      else if (s%rows > s%n) then
-         call geqrf(s%rows, s%n, a, s%rows, work, work(s%n + 1), s%n*panel, info)
-         do i = s%n, 1, -1
-            pivots(i) = i
-            if (abs(a((i - 1)*s%rows + i)) <= 0.0_wp) info = i
-         end do
-         if (info == 0) call solve_again(s, a, k, pivots, work, b)
+      if (s%rows > s%n .or. s%pattern > 0) then
+         call solve_other(s, a, k, pivots, work, b, info)
+      else if (s%n > 1) then
+         call gesv(s%n, 1, a, s%n, pivots, b, s%n, info)
       else if (s%n == 1) then
          call solve_one(a(1), b(1), info)
          pivots(1) = 1
-      else
-         call gesv(s%n, 1, a, s%n, pivots, b, s%n, info)
       end if
    end subroutine solve_first
+
+   !> The same of a matrix that is sparse, or has more rows than columns.
+   subroutine solve_other(s, a, k, pivots, work, b, info)
+      type(shape_t), intent(in) :: s
+      real(wp), intent(inout) :: a(*), work(*), b(*)
+      type(klu_t), intent(inout) :: k
+      integer, intent(inout) :: pivots(*), info
+      integer :: i
+
+      if (s%n == 0) return
+      if (s%pattern > 0) then
+         call solve_sparse(s%n, a, k, work, work(s%n + 1), work(2*s%n + 1), b, info)
+         return
+      end if
+      call geqrf(s%rows, s%n, a, s%rows, work, work(s%n + 1), s%n*panel, info)
+      do i = s%n, 1, -1
+         pivots(i) = i
+         if (abs(a((i - 1)*s%rows + i)) <= 0.0_wp) info = i
+      end do
+      if (info == 0) call solve_other_again(s, a, k, work, b)
+   end subroutine solve_other
 
    !> The same of one equation with one unknown.
    pure subroutine solve_one(a, b, info)
@@ -133,20 +145,33 @@ contains
       real(wp), intent(inout) :: work(*), b(*)
       integer :: info
 
-      if (s%n == 0) return
-      if (s%pattern > 0) then
-         call solve(k, b)
-      else if (s%rows > s%n) then
-         call ormqr('L', 'T', s%rows, 1, s%n, a, s%rows, work, b, s%rows, work(s%n + 1), s%n*panel, info)
-         call trtrs('U', 'N', 'N', s%n, 1, a, s%rows, b, s%rows, info)
-      else if (s%n == 1) then
-         b(1) = b(1)/a(1)
+      if (s%rows > s%n .or. s%pattern > 0) then
+         call solve_other_again(s, a, k, work, b)
       else if (s%n == 2) then
          call substitute(a, pivots(1) == 2, b)
-      else
+      else if (s%n == 1) then
+         b(1) = b(1)/a(1)
+      else if (s%n > 2) then
          call getrs('N', s%n, 1, a, s%n, pivots, b, s%n, info)
       end if
    end subroutine solve_again
+
+   !> The same of a matrix that is sparse, or has more rows than columns.
+   subroutine solve_other_again(s, a, k, work, b)
+      type(shape_t), intent(in) :: s
+      real(wp), intent(in) :: a(*)
+      type(klu_t), intent(inout) :: k
+      real(wp), intent(inout) :: work(*), b(*)
+      integer :: info
+
+      if (s%n == 0) return
+      if (s%pattern > 0) then
+         call solve(k, b)
+      else
+         call ormqr('L', 'T', s%rows, 1, s%n, a, s%rows, work, b, s%rows, work(s%n + 1), s%n*panel, info)
+         call trtrs('U', 'N', 'N', s%n, 1, a, s%rows, b, s%rows, info)
+      end if
+   end subroutine solve_other_again
 
    !> The matrix of shape `s` whose factors are in `a` changes by `change` at most, or once more: `near` can be it,
    !> unless it is better factored itself.

@@ -94,12 +94,14 @@ contains
 
          allocate (b%rows(size(member)))
          do i = 1, size(b%list)
+            b%list(i)%has_right_sides = .false.
             do k = b%list(i)%first_row, b%list(i)%last_row
                associate (equation => e%list(member(k)), row => b%rows(k))
                   row%drive = equation%drive
                   row%pair = equation%pair
                   row%angular = equation%kind == equation_angle
                   row%constant = equation%constant
+                  if (row%drive > 0 .or. abs(row%constant) > 0.0_wp) b%list(i)%has_right_sides = .true.
                   b%list(i)%direct = any(equation%kind == [equation_angle, equation_slide]) &
                      .and. b%list(i)%shape%rows == 1 .and. b%list(i)%shape%n == 1
                   if (.not. (b%list(i)%direct .and. row%angular)) cycle

@@ -29,6 +29,7 @@ module blocks
       integer :: first_loop = 1, last_loop = 0    !< its vector loops
       type(shape_t) :: shape                      !< of its Jacobian
       logical :: direct = .false.                 !< one equation that is linear with coefficient 1
+      logical :: has_right_sides = .true.         !< not all its equations are = 0
       real(wp) :: coarse = 1.0_wp                 !< the largest of its loops'
       real(wp) :: lipschitz = 0.0_wp              !< bounds the change of its Jacobian over that of its unknowns
    end type block_t
