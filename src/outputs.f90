@@ -14,6 +14,7 @@ module outputs
 
    type :: outputs_t
       logical :: asked(out_last) = .false.                  !< the command asks for them: no other is open
+      integer, allocatable :: asked_list(:)                 !< the numbers of those
       !> (out_last, 0:sets or 0) In column 0 those that all sets share; in column i those of set number i.
       type(output_t), allocatable :: files(:, :)
       character(:), allocatable :: made_directory           !< that was not there before
@@ -33,6 +34,7 @@ contains
       integer :: k, i
 
       o%asked = [(allocated(options%files(k)%text), k=1, out_last)]
+      o%asked_list = pack([(k, k=1, out_last)], o%asked)
       allocate (o%files(out_last, 0:merge(last, 0, any(o%asked .and. file_options%each_set))))
       do k = 1, out_last
          if (.not. o%asked(k)) cycle
@@ -161,9 +163,10 @@ contains
 
       is_over = signal_received() > 0
       ! Only what was asked for: this is asked after every instant.
-      do k = 1, out_last
-         if (.not. o%asked(k)) cycle
-         if (has_failed(o%files(k, merge(i, 0, file_options(k)%each_set)))) is_over = .true.
+      do k = 1, size(o%asked_list)
+         associate (each_set => file_options(o%asked_list(k))%each_set)
+            if (has_failed(o%files(o%asked_list(k), merge(i, 0, each_set)))) is_over = .true.
+         end associate
       end do
    end function is_over
 

@@ -130,7 +130,7 @@ contains
       type(convergence_t), intent(inout) :: c
       real(wp) :: before, size_of
       integer :: info, iteration, second
-      logical :: is_right
+      logical :: is_closed, is_right
 
       second = block%shape%rows + 1
       call begin_block(block%first, block%last, b%unknown, b%orientations, s%u, w%start, size_of)
@@ -148,14 +148,14 @@ contains
          if (w%near%distance > 0.0_wp) call set_aside(w%a, w%near)
          c%residual = largest_size(block%shape%rows, w%r)
          if (block%shape%rows > block%shape%n) call note_closure_error(b, i, w%r, c)
-         if (c%residual <= closed_level*max(size_of, block%coarse)) then
+         is_closed = c%residual <= closed_level*max(size_of, block%coarse)
+         call solve_first_side(block%shape, w, w%r(merge(second, 1, is_closed)), info)
+         if (is_closed) then
             c%step = 0.0_wp
             c%ended = ended_converged
-            call solve_first_side(block%shape, w, w%r(second), info)
             c%singular = info > 0
             exit
          end if
-         call solve_first_side(block%shape, w, w%r, info)
          if (info > 0) then
             c%singular = c%residual <= max(rounding_level*max(size_of, block%coarse), tolerance)
             c%ended = merge(ended_stalled, ended_singular, c%singular)

@@ -24,6 +24,7 @@ module link_motion
       integer :: root = 0                               !< the unknown that is its x; y is the next
       real(wp) :: root_unit(2) = 1.0_wp                 !< of x and y of a root, in the unit of the blocks
       logical :: has_body_vector = .false.              !< its origin is not the point that joins it to the parent
+      logical :: is_plain = .false.                     !< no body vector, no slide, no root
       real(wp) :: angle_offset = 0.0_wp                 !< of the link from its orientation, in rad
       type(place_t) :: place                            !< r, d and e, in the deck's unit of length
    end type chain_link_t
@@ -97,6 +98,7 @@ contains
       h%parent_orientation = t%orientation(t%parent(link))
       if (h%place%slide > 0) h%slide = first_slide + h%place%slide
       if (.not. m%links(t%parent(link))%ground) h%parent = t%parent(link)
+      h%is_plain = h%slide == 0 .and. .not. h%has_body_vector
    end function new_chain_link
 
    !> Puts the motion of the chain's links at state `s` into `q`; `length`: the unit of the slides in the deck's unit.
@@ -158,18 +160,7 @@ contains
       do i = 1, n
          associate (h => links(i), f => u(links(i)%orientation))
             call follow_parent(h%place%reach, h%parent_orientation, u(h%parent_orientation), x, x_t, x_tt)
-            associate (d => h%place%body_vector)
-               if (h%has_body_vector) call add_rotating(-(f%c*d(1) - f%s*d(2)), -(f%s*d(1) + f%c*d(2)), f%rate, &
-                  f%acceleration, x, x_t, x_tt)
-            end associate
-            if (h%slide > 0) call add_slide(h%place%slide_body_vector, u(h%parent_orientation), u(h%slide), length, &
-               x, x_t, x_tt)
-            ! A link that no pair joins to the ground has unknowns of its own for x and y.
-            if (h%root > 0) then
-               x = length*h%root_unit*u(h%root:h%root + 1)%value
-               x_t = length*h%root_unit*u(h%root:h%root + 1)%rate
-               x_tt = length*h%root_unit*u(h%root:h%root + 1)%acceleration
-            end if
+            if (.not. h%is_plain) call add_own_parts(h, u, length, x, x_t, x_tt)
             if (h%parent > 0) then
                x = x + p(:2, h%parent)
                x_t = x_t + v(:2, h%parent)
@@ -184,6 +175,27 @@ contains
       end do
       finite = abs(check) <= huge(check)
    end subroutine move_chain
+
+   !> Adds what link `h` has of its own between its parent and its origin; a link that no pair joins to the ground has
+   !> unknowns of its own for x and y.
+   pure subroutine add_own_parts(h, u, length, x, x_t, x_tt)
+      type(chain_link_t), intent(in) :: h
+      type(unknown_t), intent(in) :: u(0:*)
+      real(wp), intent(in) :: length
+      real(wp), intent(inout) :: x(2), x_t(2), x_tt(2)
+
+      associate (d => h%place%body_vector, f => u(h%orientation))
+         if (h%has_body_vector) call add_rotating(-(f%c*d(1) - f%s*d(2)), -(f%s*d(1) + f%c*d(2)), f%rate, &
+            f%acceleration, x, x_t, x_tt)
+      end associate
+      if (h%slide > 0) &
+         call add_slide(h%place%slide_body_vector, u(h%parent_orientation), u(h%slide), length, x, x_t, x_tt)
+      if (h%root > 0) then
+         x = length*h%root_unit*u(h%root:h%root + 1)%value
+         x_t = length*h%root_unit*u(h%root:h%root + 1)%rate
+         x_tt = length*h%root_unit*u(h%root:h%root + 1)%acceleration
+      end if
+   end subroutine add_own_parts
 
    !> From the parent's origin the vector `d` in its axes, which unknown number `orientation`, `f`, rotates.
    pure subroutine follow_parent(d, orientation, f, p, v, a)

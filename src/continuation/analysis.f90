@@ -328,10 +328,12 @@ contains
       integer, intent(in) :: known, mark
 
       call forget_links(found)
+      if (found%mark /= mark_none) then
+         found%singularity = singular_unclear
+         found%singular_links = diagnostic_t()
+      end if
       found%known = known
       found%mark = mark
-      found%singularity = singular_unclear
-      found%singular_links = diagnostic_t()
    end subroutine cut
 
    !> By how much redundant equations have differed at most, in characteristic lengths or rad; -1 where there are none.
