@@ -295,7 +295,7 @@ contains
       end if
    end subroutine velocity_rows
 
-   !> The same of g'' or (g . f)'', with the velocities and without unknown accelerations, in the rows of the loops number
+   !> The same of g'' or (g . f)'', with the velocities and without unknown accelerations, for all loops from number
    !> `first` to `last`, whose states are `states`.
    pure subroutine acceleration_rows(first, last, loops, vectors, slides, u, own, guide, states, v)
       integer, intent(in) :: first, last

@@ -13,8 +13,8 @@
 module block_solver
    use kinds, only: wp
    use klu, only: klu_t
-   use block_matrix, only: shape_t, nearby_t, solve_one, solve_first, solve_again, solve_nearby, stay_near, set_aside, &
-      pivot_range, inverse_norm, spread_by_inverse, entries_of, work_length
+   use block_matrix, only: shape_t, nearby_t, solve_one, solve_dense, solve_first, substitute, solve_again, &
+      solve_nearby, stay_near, set_aside, pivot_range, inverse_norm, spread_by_inverse, entries_of, work_length
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
       ended_inconsistent, is_solved, note_closure_error, is_inconsistent, contradict
    use blocks, only: blocks_t, block_t
@@ -65,14 +65,9 @@ contains
       type(blocks_t), intent(in) :: b
       integer :: i, entries, rows, length
 
-      entries = 0
-      rows = 0
-      length = 0
-      do i = 1, size(b%list)
-         rows = max(rows, b%list(i)%shape%rows)
-         length = max(length, work_length(b%list(i)%shape))
-         entries = max(entries, entries_of(b%list(i)%shape))
-      end do
+      entries = max(0, maxval(entries_of(b%list%shape)))
+      rows = max(0, maxval(b%list%shape%rows))
+      length = max(0, maxval(work_length(b%list%shape)))
       allocate (w%a(entries), w%r(2*rows), w%start(rows), w%work(length), source=0.0_wp)
       allocate (w%pivots(rows), w%iwork(rows), source=0)
       allocate (w%sparse(0:size(b%patterns)))
@@ -182,7 +177,7 @@ contains
    end subroutine solve_equations
 
    !> Solves for `v` (rows) with the Jacobian just assembled, which is factored unless factors of one beside it serve;
-   !> `info` > 0: it has no inverse. For one equation a call costs more than its solution.
+   !> `info` > 0: it has no inverse. For one or two equations calls for matrices of any shape take longer than they do.
    subroutine solve_first_side(shape, w, v, info)
       type(shape_t), intent(in) :: shape
       type(workspace_t), intent(inout) :: w
@@ -194,6 +189,8 @@ contains
          call solve_one(w%a(1), v(1), info)
       else if (w%near%distance > 0.0_wp) then
          call solve_nearby(w%near, v)
+      else if (shape%pattern == 0 .and. shape%rows == shape%n .and. shape%n > 0) then
+         call solve_dense(shape%n, w%a, w%pivots, v, info)
       else
          call solve_first(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, v, info)
       end if
@@ -209,6 +206,8 @@ contains
          v(1) = v(1)/w%a(1)
       else if (w%near%distance > 0.0_wp) then
          call solve_nearby(w%near, v)
+      else if (shape%n == 2 .and. shape%rows == 2) then
+         call substitute(w%a, w%pivots(1) == 2, v)
       else
          call solve_again(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, v)
       end if

@@ -10,7 +10,7 @@ module block_matrix
    private
    public :: shape_t, is_sparse_better, entries_of, solve_first, solve_again, solve_many, pivot_range, inverse_norm, &
       work_length
-   public :: solve_one, nearby_t, stay_near, set_aside, solve_nearby, spread_by_inverse
+   public :: solve_one, solve_dense, substitute, nearby_t, stay_near, set_aside, solve_nearby, spread_by_inverse
 
    !> `pattern` = 0: dense, by columns. Otherwise sparse and square: the number of its pattern, and its entries, in the
    !> order of the pattern.
@@ -51,7 +51,7 @@ contains
    end function is_sparse_better
 
    !> Numbers that the matrix takes.
-   pure integer function entries_of(s)
+   elemental integer function entries_of(s)
       type(shape_t), intent(in) :: s
 
       entries_of = s%entries
@@ -59,7 +59,7 @@ contains
    end function entries_of
 
    !> Numbers that `work` takes below.
-   pure integer function work_length(s)
+   elemental integer function work_length(s)
       type(shape_t), intent(in) :: s
 
       work_length = merge(4*s%n, s%n*(panel + 4) + s%rows, s%rows == s%n)
@@ -78,12 +78,21 @@ contains
       if (s%rows > s%n .or. s%pattern > 0) then
          call solve_other(s, a, k, pivots, work, b, info)
       else if (s%n > 1) then
-         call gesv(s%n, 1, a, s%n, pivots, b, s%n, info)
+         call solve_dense(s%n, a, pivots, b, info)
       else if (s%n == 1) then
          call solve_one(a(1), b(1), info)
          pivots(1) = 1
       end if
    end subroutine solve_first
+
+   !> The same of a dense matrix of `n` rows and columns, 2 at least.
+   subroutine solve_dense(n, a, pivots, b, info)
+      integer, intent(in) :: n
+      real(wp), intent(inout) :: a(*), b(*)
+      integer, intent(out) :: pivots(*), info
+
+      call gesv(n, 1, a, n, pivots, b, n, info)
+   end subroutine solve_dense
 
    !> The same of a matrix that is sparse, or has more rows than columns.
    subroutine solve_other(s, a, k, pivots, work, b, info)
