@@ -7,7 +7,7 @@ module block_engine
    use links_tree, only: tree_t
    use structure, only: structure_t, new_structure
    use initial_estimate, only: estimated_values
-   use drives, only: law_t, new_law, find_drive_motion
+   use drives, only: new_law, find_drive_motion
    use convergence, only: convergence_t, is_solved, gather, ended_converged, ended_singular
    use engine, only: engine_t, engine_checkpoint_t
    use predictor, only: history_t, new_history, remember, predict, largest_change, uncertain_part
@@ -201,11 +201,8 @@ contains
       if (follows) then
          call predict(e%history, t, e%state%u, e%change)
          c%keeps_signs = e%change <= largest_change
-         if (c%keeps_signs) then
-            call solve_each(e, e%moving, follows, c)
-         else
-            e%crossed = .false.
-         end if
+         if (.not. c%keeps_signs) e%crossed = .false.
+         if (c%keeps_signs) call solve_each(e, e%moving, follows, c)
       else
          call remove_turns(e%blocks, e%needed, e%state%drive_value(0, :), e%estimated)
          e%state%u%value = e%estimated
@@ -217,24 +214,14 @@ contains
    pure subroutine set_drive_values(e, t)
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
-
-      call find_drive_values(size(e%laws), e%laws, e%unit_of, t, e%state%drive_value)
-   end subroutine set_drive_values
-
-   !> The `values` (0:2, 0:n) of the `n` drives with the `laws` at `t`, each in its `unit`.
-   pure subroutine find_drive_values(n, laws, unit, t, values)
-      integer, intent(in) :: n
-      type(law_t), intent(in) :: laws(n)
-      real(wp), intent(in) :: unit(n), t
-      real(wp), intent(inout) :: values(0:2, 0:n)
       real(wp) :: f(3)
       integer :: i
 
-      do i = 1, n
-         call find_drive_motion(laws(i), t, f)
-         values(:, i) = f*unit(i)
+      do i = 1, size(e%laws)
+         call find_drive_motion(e%laws(i), t, f)
+         e%state%drive_value(0:2, i) = f*e%unit_of(i)
       end do
-   end subroutine find_drive_values
+   end subroutine set_drive_values
 
    !> Solves the moving blocks once more, from where they are now.
    subroutine solve_again(e, c)
@@ -301,10 +288,8 @@ contains
       if (e%history%filled == 0) e%followed = e%found
       uncertain = 0.0_wp
       do k = 1, size(e%moving)
-         associate (i => e%moving(k))
-            e%followed(i) = e%found(i)
-            uncertain = max(uncertain, uncertain_part(e%blocks, i, e%found(i)%pivot, e%state))
-         end associate
+         e%followed(e%moving(k)) = e%found(e%moving(k))
+         uncertain = max(uncertain, uncertain_part(e%blocks, e%moving(k), e%found(e%moving(k))%pivot, e%state))
       end do
       call remember(e%history, e%t, e%state%u, uncertain)
       if (e%blocks%redundant > 0) e%jacobian = jacobian_of(e%blocks, 1, e%state)

@@ -13,7 +13,7 @@
 module block_solver
    use kinds, only: wp
    use klu, only: klu_t
-   use block_matrix, only: shape_t, nearby_t, solve_one, solve_dense, solve_first, substitute, solve_again, &
+   use block_matrix, only: shape_t, nearby_t, solve_dense, solve_first, substitute, solve_again, &
       solve_nearby, stay_near, set_aside, pivot_range, inverse_norm, spread_by_inverse, entries_of, work_length
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
       ended_inconsistent, is_solved, note_closure_error, is_inconsistent, contradict
@@ -177,7 +177,7 @@ contains
    end subroutine solve_equations
 
    !> Solves for `v` (rows) with the Jacobian just assembled, which is factored unless factors of one beside it serve;
-   !> `info` > 0: it has no inverse. For one or two equations calls for matrices of any shape take longer than they do.
+   !> `info` > 0: it has no inverse. A dense block is solved without the questions that other shapes need.
    subroutine solve_first_side(shape, w, v, info)
       type(shape_t), intent(in) :: shape
       type(workspace_t), intent(inout) :: w
@@ -185,9 +185,7 @@ contains
       integer, intent(out) :: info
 
       info = 0
-      if (shape%n == 1 .and. shape%rows == 1) then
-         call solve_one(w%a(1), v(1), info)
-      else if (w%near%distance > 0.0_wp) then
+      if (w%near%distance > 0.0_wp) then
          call solve_nearby(w%near, v)
       else if (shape%pattern == 0 .and. shape%rows == shape%n .and. shape%n > 0) then
          call solve_dense(shape%n, w%a, w%pivots, v, info)

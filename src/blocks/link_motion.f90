@@ -160,7 +160,20 @@ contains
       do i = 1, n
          associate (h => links(i), f => u(links(i)%orientation))
             call follow_parent(h%place%reach, h%parent_orientation, u(h%parent_orientation), x, x_t, x_tt)
-            if (.not. h%is_plain) call add_own_parts(h, u, length, x, x_t, x_tt)
+            if (.not. h%is_plain) then
+               associate (d => h%place%body_vector)
+                  if (h%has_body_vector) call add_rotating(-(f%c*d(1) - f%s*d(2)), -(f%s*d(1) + f%c*d(2)), f%rate, &
+                     f%acceleration, x, x_t, x_tt)
+               end associate
+               if (h%slide > 0) call add_slide(h%place%slide_body_vector, u(h%parent_orientation), u(h%slide), length, &
+                  x, x_t, x_tt)
+               ! A link that no pair joins to the ground has unknowns of its own for x and y.
+               if (h%root > 0) then
+                  x = length*h%root_unit*u(h%root:h%root + 1)%value
+                  x_t = length*h%root_unit*u(h%root:h%root + 1)%rate
+                  x_tt = length*h%root_unit*u(h%root:h%root + 1)%acceleration
+               end if
+            end if
             if (h%parent > 0) then
                x = x + p(:2, h%parent)
                x_t = x_t + v(:2, h%parent)
@@ -175,27 +188,6 @@ contains
       end do
       finite = abs(check) <= huge(check)
    end subroutine move_chain
-
-   !> Adds what link `h` has of its own between its parent and its origin; a link that no pair joins to the ground has
-   !> unknowns of its own for x and y.
-   pure subroutine add_own_parts(h, u, length, x, x_t, x_tt)
-      type(chain_link_t), intent(in) :: h
-      type(unknown_t), intent(in) :: u(0:*)
-      real(wp), intent(in) :: length
-      real(wp), intent(inout) :: x(2), x_t(2), x_tt(2)
-
-      associate (d => h%place%body_vector, f => u(h%orientation))
-         if (h%has_body_vector) call add_rotating(-(f%c*d(1) - f%s*d(2)), -(f%s*d(1) + f%c*d(2)), f%rate, &
-            f%acceleration, x, x_t, x_tt)
-      end associate
-      if (h%slide > 0) &
-         call add_slide(h%place%slide_body_vector, u(h%parent_orientation), u(h%slide), length, x, x_t, x_tt)
-      if (h%root > 0) then
-         x = length*h%root_unit*u(h%root:h%root + 1)%value
-         x_t = length*h%root_unit*u(h%root:h%root + 1)%rate
-         x_tt = length*h%root_unit*u(h%root:h%root + 1)%acceleration
-      end if
-   end subroutine add_own_parts
 
    !> From the parent's origin the vector `d` in its axes, which unknown number `orientation`, `f`, rotates.
    pure subroutine follow_parent(d, orientation, f, p, v, a)

@@ -10,7 +10,7 @@ module block_matrix
    private
    public :: shape_t, is_sparse_better, entries_of, solve_first, solve_again, solve_many, pivot_range, inverse_norm, &
       work_length
-   public :: solve_one, solve_dense, substitute, nearby_t, stay_near, set_aside, solve_nearby, spread_by_inverse
+   public :: solve_dense, substitute, nearby_t, stay_near, set_aside, solve_nearby, spread_by_inverse
 
    !> `pattern` = 0: dense, by columns. Otherwise sparse and square: the number of its pattern, and its entries, in the
    !> order of the pattern.
@@ -73,57 +73,38 @@ contains
       real(wp), intent(inout) :: a(*), work(*), b(*)
       type(klu_t), intent(inout) :: k
       integer, intent(out) :: pivots(*), info
-
-      info = 0
-      if (s%rows > s%n .or. s%pattern > 0) then
-         call solve_other(s, a, k, pivots, work, b, info)
-      else if (s%n > 1) then
-         call solve_dense(s%n, a, pivots, b, info)
-      else if (s%n == 1) then
-         call solve_one(a(1), b(1), info)
-         pivots(1) = 1
-      end if
-   end subroutine solve_first
-
-   !> The same of a dense matrix of `n` rows and columns, 2 at least.
-   subroutine solve_dense(n, a, pivots, b, info)
-      integer, intent(in) :: n
-      real(wp), intent(inout) :: a(*), b(*)
-      integer, intent(out) :: pivots(*), info
-
-      call gesv(n, 1, a, n, pivots, b, n, info)
-   end subroutine solve_dense
-
-   !> The same of a matrix that is sparse, or has more rows than columns.
-   subroutine solve_other(s, a, k, pivots, work, b, info)
-      type(shape_t), intent(in) :: s
-      real(wp), intent(inout) :: a(*), work(*), b(*)
-      type(klu_t), intent(inout) :: k
-      integer, intent(inout) :: pivots(*), info
       integer :: i
 
+      info = 0
       if (s%n == 0) return
       if (s%pattern > 0) then
          call solve_sparse(s%n, a, k, work, work(s%n + 1), work(2*s%n + 1), b, info)
-         return
+      else if (s%rows > s%n) then
+         call geqrf(s%rows, s%n, a, s%rows, work, work(s%n + 1), s%n*panel, info)
+         do i = s%n, 1, -1
+            pivots(i) = i
+            if (abs(a((i - 1)*s%rows + i)) <= 0.0_wp) info = i
+         end do
+         if (info == 0) call solve_again(s, a, k, pivots, work, b)
+      else
+         call solve_dense(s%n, a, pivots, b, info)
       end if
-      call geqrf(s%rows, s%n, a, s%rows, work, work(s%n + 1), s%n*panel, info)
-      do i = s%n, 1, -1
-         pivots(i) = i
-         if (abs(a((i - 1)*s%rows + i)) <= 0.0_wp) info = i
-      end do
-      if (info == 0) call solve_other_again(s, a, k, work, b)
-   end subroutine solve_other
+   end subroutine solve_first
 
-   !> The same of one equation with one unknown.
-   pure subroutine solve_one(a, b, info)
-      real(wp), intent(in) :: a
-      real(wp), intent(inout) :: b
-      integer, intent(out) :: info
+   !> The same of a dense matrix of `n` rows and columns, 1 at least. For one equation DGESV takes several times as long.
+   subroutine solve_dense(n, a, pivots, b, info)
+      integer, intent(in) :: n
+      real(wp), intent(inout) :: a(*), b(*)
+      integer, intent(inout) :: pivots(*), info
 
-      info = merge(1, 0, abs(a) <= 0.0_wp)
-      if (info == 0) b = b/a
-   end subroutine solve_one
+      if (n > 1) then
+         call gesv(n, 1, a, n, pivots, b, n, info)
+      else
+         info = merge(1, 0, abs(a(1)) <= 0.0_wp)
+         if (info == 0) b(1) = b(1)/a(1)
+         pivots(1) = 1
+      end if
+   end subroutine solve_dense
 
    !> With the pivots of the matrix before, if these still serve. `right`, `left`, `size_of`: room.
    subroutine solve_sparse(n, a, k, right, left, size_of, b, info)
@@ -154,33 +135,20 @@ contains
       real(wp), intent(inout) :: work(*), b(*)
       integer :: info
 
-      if (s%rows > s%n .or. s%pattern > 0) then
-         call solve_other_again(s, a, k, work, b)
-      else if (s%n == 2) then
-         call substitute(a, pivots(1) == 2, b)
-      else if (s%n == 1) then
-         b(1) = b(1)/a(1)
-      else if (s%n > 2) then
-         call getrs('N', s%n, 1, a, s%n, pivots, b, s%n, info)
-      end if
-   end subroutine solve_again
-
-   !> The same of a matrix that is sparse, or has more rows than columns.
-   subroutine solve_other_again(s, a, k, work, b)
-      type(shape_t), intent(in) :: s
-      real(wp), intent(in) :: a(*)
-      type(klu_t), intent(inout) :: k
-      real(wp), intent(inout) :: work(*), b(*)
-      integer :: info
-
       if (s%n == 0) return
       if (s%pattern > 0) then
          call solve(k, b)
-      else
+      else if (s%rows > s%n) then
          call ormqr('L', 'T', s%rows, 1, s%n, a, s%rows, work, b, s%rows, work(s%n + 1), s%n*panel, info)
          call trtrs('U', 'N', 'N', s%n, 1, a, s%rows, b, s%rows, info)
+      else if (s%n == 1) then
+         b(1) = b(1)/a(1)
+      else if (s%n == 2) then
+         call substitute(a, pivots(1) == 2, b)
+      else
+         call getrs('N', s%n, 1, a, s%n, pivots, b, s%n, info)
       end if
-   end subroutine solve_other_again
+   end subroutine solve_again
 
    !> The matrix of shape `s` whose factors are in `a` changes by `change` at most, or once more: `near` can be it,
    !> unless it is better factored itself.
