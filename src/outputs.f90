@@ -164,9 +164,7 @@ contains
       is_over = signal_received() > 0
       ! Only what was asked for: this is asked after every instant.
       do k = 1, size(o%asked_list)
-         associate (each_set => file_options(o%asked_list(k))%each_set)
-            if (has_failed(o%files(o%asked_list(k), merge(i, 0, each_set)))) is_over = .true.
-         end associate
+         if (has_failed(o%files(o%asked_list(k), merge(i, 0, file_options(o%asked_list(k))%each_set)))) is_over = .true.
       end do
    end function is_over
 

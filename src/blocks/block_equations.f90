@@ -319,7 +319,13 @@ contains
             end do
             if (g%kind == loop_projection) then
                along = given(1)*now%f(1) + given(2)*now%f(2)
-               if (g%orientation > 0) call add_turn(g, vectors, slides, u, own, guide, now, along)
+               if (g%orientation > 0) then
+                  associate (c => u(g%orientation), closure_error => now%closure_error, f => now%f)
+                     given = closure_error_rate(g, vectors, slides, u, own, guide, now)
+                     along = along + 2.0_wp*c%rate*cross(f, given) - c%rate**2*dot_product(closure_error, f)
+                     if (g%orientation_column == 0) along = along + c%acceleration*cross(f, closure_error)
+                  end associate
+               end if
                v(g%row_x) = 0.0_wp - along
             else
                if (g%row_x > 0) v(g%row_x) = 0.0_wp - given(1)
@@ -346,23 +352,6 @@ contains
          g(2) = g(2) - square*own(2, k)
       end do
    end subroutine subtract_inward
-
-   !> Adds to `along`, which is g'' . f of the projection `g`, what turns with f:  2 w g' . f' - w^2 g . f + w' g . f'.
-   pure subroutine add_turn(g, vectors, slides, u, own, guide, now, along)
-      type(block_loop_t), intent(in) :: g
-      type(body_vector_t), intent(in) :: vectors(*)
-      type(slide_t), intent(in) :: slides(*)
-      type(unknown_t), intent(in) :: u(0:*)
-      real(wp), intent(in) :: own(2, *), guide(2, *)
-      type(loop_state_t), intent(in) :: now
-      real(wp), intent(inout) :: along
-
-      associate (c => u(g%orientation), closure_error => now%closure_error, f => now%f)
-         along = along + 2.0_wp*c%rate*cross(f, closure_error_rate(g, vectors, slides, u, own, guide, now)) &
-            - c%rate**2*dot_product(closure_error, f)
-         if (g%orientation_column == 0) along = along + c%acceleration*cross(f, closure_error)
-      end associate
-   end subroutine add_turn
 
    !> g' with the velocities of the block itself.
    pure function closure_error_rate(loop, vectors, slides, u, own, guide, now) result(g)

@@ -91,7 +91,7 @@ contains
       end if
    end subroutine solve_first
 
-   !> The same of a dense matrix of `n` rows and columns, 1 at least. For one equation DGESV takes several times as long.
+   !> The same of a dense matrix of `n` rows and columns, 1 at least. One equation needs no DGESV, which takes long.
    subroutine solve_dense(n, a, pivots, b, info)
       integer, intent(in) :: n
       real(wp), intent(inout) :: a(*), b(*)
