@@ -18,7 +18,7 @@ module set_runs
    use variant_tables, only: summary_head, summary_row, put_variant, put_variant_heads, put_note_of_shares, &
       put_variant_row, put_variants_end, put_broken_off
    use numerals, only: whole
-   use lane_runs, only: lane_run_t, begin_run, run_lanes, width
+   use lane_runs, only: lane_run_t, lend_structure, begin_run, run_lanes, width
    use lane_state, only: lanes_t
    use command_line, only: options_t, out_listing, out_csv, out_log, out_summary, out_table, out_plot_table
    use outputs, only: is_over, write_parts, outputs_t
@@ -135,16 +135,17 @@ contains
          type(findings_t), intent(inout) :: findings
          type(lane_run_t), intent(inout) :: r
 
+         call lend_structure(r, findings)
          call make_variant(r%row, r%m, findings)
          r%is_over = r%row%rejected /= ''
          if (.not. r%is_over) call begin_run(r, findings)
       end subroutine start
 
-      !> Makes the variant of `v` whose `row` this is, and finds its structure, starting from the `findings` of the one
-      !> before; what the checks say stands in the row.
+      !> Makes the variant of `v` whose `row` this is, from the one that `variant` was, and finds its structure, starting
+      !> from the `findings` of the one before; what the checks say stands in the row.
       subroutine make_variant(row, variant, findings)
          type(variant_row_t), intent(inout) :: row
-         type(mechanism_t), intent(out) :: variant
+         type(mechanism_t), intent(inout) :: variant
          type(findings_t), intent(inout) :: findings
          character(:), allocatable :: faults
 
@@ -158,7 +159,7 @@ contains
       !> Solves and writes the variant of `v` whose `row` this is, of set number `i`: it is `variant` now. `full`: its
       !> tables are asked for. `findings`: as above.
       subroutine run_variant(variant, findings, row)
-         type(mechanism_t), intent(out) :: variant
+         type(mechanism_t), intent(inout) :: variant
          type(findings_t), intent(inout) :: findings
          type(variant_row_t), intent(inout) :: row
          type(answers_t) :: asked

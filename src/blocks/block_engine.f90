@@ -11,17 +11,17 @@ module block_engine
    use convergence, only: convergence_t, is_solved, gather, ended_converged, ended_singular
    use engine, only: engine_t, engine_checkpoint_t
    use predictor, only: history_t, new_history, remember, predict, largest_change, uncertain_part
-   use blocks, only: blocks_t, moving_blocks, needed_blocks, largest_known
+   use blocks, only: blocks_t, moving_blocks, needed_blocks, iterated_unknowns, largest_known
    use block_state, only: state_t, new_state
    use block_solver, only: workspace_t, make_workspace, solve_direct, solve_equations
    use first_position, only: solve_first_block, remove_turns
    use block_rank, only: jacobian_of, relative_sign
-   use link_motion, only: chain_t, new_chain, move_links, move_found_links, mark_links, missing_nothing, &
+   use link_motion, only: chain_t, new_chain, put_numbers, move_links, move_found_links, mark_links, missing_nothing, &
       missing_rates, missing_all
    implicit none
    private
    public :: block_engine_t, block_checkpoint_t, positions_t
-   public :: make_block_engine, solve_blocks, solve_again, solve_each, begin_record, set_drive_values, slide_units
+   public :: make_block_engine, put_mechanism, solve_blocks, solve_again, solve_each, begin_record, set_drive_values, slide_units
 
    !> Positions of one block (unknowns, any number).
    type :: positions_t
@@ -116,7 +116,7 @@ contains
       e%needed = needed_blocks(e%blocks, t, wanted_links(m))
       e%moving = pack(e%needed, moving_blocks(e%blocks, e%needed))
       e%state = new_state(e%blocks, size(m%drives))
-      e%history = new_history(e%blocks%unknowns, iterated_unknowns(e))
+      e%history = new_history(e%blocks%unknowns, iterated_unknowns(e%blocks, e%moving))
       e%history%order = m%predictor
       e%depends_on_history = size(e%history%predicted) > 0
       call make_workspace(e%work, e%blocks)
@@ -130,51 +130,49 @@ contains
       allocate (e%joint(2, count(m%pairs%kind == pair_revolute)))
       e%joint(1, :) = m%points(pack(m%pairs%point_i, m%pairs%kind == pair_revolute))%link
       e%joint(2, :) = m%points(pack(m%pairs%point_j, m%pairs%kind == pair_revolute))%link
-      call prepare_drives(e, m)
       associate (n => size(e%blocks%list))
          allocate (e%found(n), e%followed(n), e%others(n))
          allocate (e%crossed(n), e%is_close(n), e%is_singular(n), source=.false.)
       end associate
-      allocate (e%estimate(3, size(m%links)))
+      allocate (e%laws(size(m%drives)), e%is_angle(size(m%drives)), e%unit_of(size(m%drives)))
+      allocate (e%estimate(3, size(m%links)), e%estimated(0:e%blocks%unknowns))
+      call put_estimate(e, m, t)
+   end subroutine prepare
+
+   !> Gives the engine `e`, whose blocks have the numbers of `m` and its tree `t`, all other numbers of these.
+   subroutine put_mechanism(e, m, t)
+      type(block_engine_t), intent(inout) :: e
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+
+      call put_numbers(m, t, e%blocks%orientations, e%chain, e%blocks%unit)
+      call put_numbers(m, t, e%blocks%orientations, e%whole, e%blocks%unit)
+      call put_estimate(e, m, t)
+   end subroutine put_mechanism
+
+   !> The estimate that `m` gives, the laws of its drives and the units of their values.
+   subroutine put_estimate(e, m, t)
+      type(block_engine_t), intent(inout) :: e
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      integer :: i
+
       do i = 1, size(m%links)
          e%estimate(:, i) = m%links(i)%position - [e%chain%origin, 0.0_wp]
       end do
-      ! A function's result would bring its own lower bound.
-      allocate (e%estimated(0:e%blocks%unknowns))
-      e%estimated(:) = estimated_values(m, t, e%length, e%blocks%unknowns)/e%blocks%unit
-   end subroutine prepare
-
-   !> The laws of the drives of `m` and the units of their values.
-   subroutine prepare_drives(e, m)
-      type(block_engine_t), intent(inout) :: e
-      type(mechanism_t), intent(in) :: m
-      integer :: i
-
-      allocate (e%laws(size(m%drives)), e%is_angle(size(m%drives)))
-      allocate (e%unit_of(size(m%drives)), source=1.0_wp)
+      ! As a section: a function's result would bring its own lower bound.
+      e%estimated(:) = estimated_values(m, t, e%length, e%blocks%unknowns, e%span)/e%blocks%unit
       do i = 1, size(m%drives)
          e%laws(i) = new_law(m%drives(i))
          e%is_angle(i) = all(m%drives(i)%kind /= [drive_x, drive_y, drive_slide])
-         if (.not. e%is_angle(i)) e%unit_of(i) = 1.0_wp/e%length
+         e%unit_of(i) = merge(1.0_wp, 1.0_wp/e%length, e%is_angle(i))
       end do
       do i = 1, size(e%blocks%rows)
          associate (row => e%blocks%rows(i))
             if (row%drive > 0) e%unit_of(row%drive) = e%unit_of(row%drive)/row%unit
          end associate
       end do
-   end subroutine prepare_drives
-
-   !> The unknowns of the moving blocks that iterate.
-   pure function iterated_unknowns(e) result(list)
-      type(block_engine_t), intent(in) :: e
-      integer, allocatable :: list(:)
-      logical :: iterated(size(e%blocks%list))
-      integer :: u
-
-      iterated = .false.
-      iterated(e%moving) = .not. e%blocks%list(e%moving)%direct
-      list = pack([(u, u=1, e%blocks%unknowns)], iterated(e%blocks%block_of))
-   end function iterated_unknowns
+   end subroutine put_estimate
 
    !> See `engine`.
    subroutine solve(e, t, follows, c)

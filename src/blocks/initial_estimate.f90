@@ -34,18 +34,20 @@ module initial_estimate
 
 contains
 
-   !> Values (0:unknowns) of angles and slides, lengths in units of `length`.
-   function estimated_values(m, t, length, unknowns) result(value)
+   !> Values (0:unknowns) of angles and slides, lengths in units of `length`. `span`: the characteristic length of `m` for
+   !> its equations, if it is known.
+   function estimated_values(m, t, length, unknowns, span) result(value)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
       real(wp), intent(in) :: length
       integer, intent(in) :: unknowns
+      real(wp), intent(in), optional :: span
       real(wp) :: value(0:unknowns)
       real(wp) :: phi(size(m%links))
       integer :: i, u
 
       value = 0.0_wp
-      phi = estimated_directions(m, t)
+      phi = estimated_directions(m, t, span)
       do i = size(m%links), 1, -1
          if (t%orientation(i) > 0) value(t%orientation(i)) = phi(i) - t%angle_offset(i)
          if (t%root(i) == 0 .or. t%parent(i) > 0) cycle
@@ -81,10 +83,11 @@ contains
       end associate
    end function estimated_place
 
-   !> (links) The estimated angles: those of the deck, or better ones that follow from the places.
-   function estimated_directions(m, t) result(phi)
+   !> (links) The estimated angles: those of the deck, or better ones that follow from the places. `span`: as above.
+   function estimated_directions(m, t, span) result(phi)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
+      real(wp), intent(in), optional :: span
       real(wp) :: phi(size(m%links))
       real(wp), dimension(0:t%orientations) :: u, v, w
       real(wp) :: before, after, length
@@ -97,7 +100,8 @@ contains
       do i = size(m%links), 1, -1
          if (t%orientation(i) > 0) u(t%orientation(i)) = phi(i) - t%angle_offset(i)
       end do
-      length = solver_length(m)
+      if (present(span)) length = span
+      if (.not. present(span)) length = solver_length(m)
       allocate (placed(size(m%points)))
       placed = m%links(m%points%link)%ground .or. hypot(m%points%offset(1), m%points%offset(2)) <= short_part*length
       if (largest_opening(u, spread(.true., 1, size(m%points))) <= good_part*length) return

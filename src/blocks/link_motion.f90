@@ -12,7 +12,7 @@ module link_motion
    use block_state, only: unknown_t, state_t
    implicit none
    private
-   public :: chain_t, chain_link_t, new_chain, move_links, move_found_links, mark_links, missing_nothing, &
+   public :: chain_t, chain_link_t, new_chain, put_numbers, move_links, move_found_links, mark_links, missing_nothing, &
       missing_rates, missing_all
 
    !> A moving link. Numbers are 0 for the ground, for no pair, no slide and no root.
@@ -62,21 +62,34 @@ contains
       end do
       links = pack(t%order, needed(t%order) .and. .not. m%links(t%order)%ground)
       allocate (c%links(size(links)))
-      do i = 1, size(links)
-         c%links(i) = new_chain_link(m, t, links(i), first_slide)
+      c%links%link = links
+      c%ground = pack([(i, i=1, size(wanted))], m%links%ground .and. wanted)
+      allocate (c%ground_position(3, size(c%ground)))
+      call put_numbers(m, t, first_slide, c, unit)
+   end function new_chain
+
+   !> Gives the chain `c` the numbers of `m` and its tree `t`; the other arguments as above.
+   subroutine put_numbers(m, t, first_slide, c, unit)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      integer, intent(in) :: first_slide
+      type(chain_t), intent(inout) :: c
+      real(wp), intent(in), optional :: unit(0:)
+      integer :: i
+
+      do i = 1, size(c%links)
+         c%links(i) = new_chain_link(m, t, c%links(i)%link, first_slide)
          if (.not. present(unit)) cycle
          associate (h => c%links(i))
             if (h%slide > 0) h%place%slide_body_vector = unit(h%slide)*h%place%slide_body_vector
             if (h%root > 0) h%root_unit = unit(h%root:h%root + 1)
          end associate
       end do
-      c%ground = pack([(i, i=1, size(wanted))], m%links%ground .and. wanted)
-      allocate (c%ground_position(3, size(c%ground)))
       do i = 1, size(c%ground)
          c%ground_position(:, i) = m%links(c%ground(i))%position - [t%origin, 0.0_wp]
       end do
       c%origin = t%origin
-   end function new_chain
+   end subroutine put_numbers
 
    !> How `link` follows its parent.
    function new_chain_link(m, t, link, first_slide) result(h)

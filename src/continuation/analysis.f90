@@ -8,6 +8,7 @@ module analysis
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, branch_none, branch_first, branch_same, &
       branch_crossed
    use convergence, only: convergence_t, closure_error_t, ended_inconsistent, ended_unsought
+   use engine, only: engine_t
    use block_engine, only: block_engine_t
    use block_diagnostics, only: start_diagnostics, limit_diagnostic
    use at_bifurcation, only: stand_on, pass_standstill
@@ -15,7 +16,7 @@ module analysis
       go_on_from, go_back, place_t, note_place, return_to, limits_t, note_limit, limit_before
    implicit none
    private
-   public :: analysis_t, make_analysis, advance, look_at, come_back, redundancy_error
+   public :: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back, redundancy_error
 
    !> A limit that the motion creeps up to is no further than this part of the way that it has come.
    real(wp), parameter :: almost_there = 1.0e-3_wp
@@ -50,6 +51,26 @@ contains
 
       call make_following(a%following_t, m, structure)
    end subroutine make_analysis
+
+   !> The same with the engine of `a`, which has given its blocks to `structure`: see `engine_renewal`.
+   subroutine renew_analysis(a, m, structure)
+      type(analysis_t), intent(inout) :: a
+      type(mechanism_t), intent(in) :: m
+      type(structure_t), intent(inout) :: structure
+      class(engine_t), allocatable :: engine
+
+      call move_alloc(a%engine, engine)
+      call begin_again(a)
+
+   contains
+
+      !> Nothing is known of any instant.
+      subroutine begin_again(a)
+         type(analysis_t), intent(out) :: a
+
+         call make_following(a%following_t, m, structure, engine)
+      end subroutine begin_again
+   end subroutine renew_analysis
 
    !> Solves for the instant `t`; `found` is its motion in the deck's units, with what could not be found flagged. Links
    !> that no request needs may be left out.

@@ -43,7 +43,8 @@ contains
       integer :: i, n
 
       n = merge(size(m%drives), 0, depends)
-      length = solver_length(m)
+      length = 1.0_wp
+      if (any(is_length(m%drives(:n)))) length = solver_length(m)
       allocate (p%laws(n))
       allocate (p%unit(n), source=1.0_wp)
       do i = 1, n

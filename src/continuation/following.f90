@@ -14,6 +14,7 @@ module following
    use engine, only: engine_t, engine_checkpoint_t
    use block_engine, only: block_engine_t, make_block_engine
    use block_method, only: block_method_t
+   use engine_renewal, only: renew_block_engine
    use block_branches, only: pass
    use dense_engine, only: dense_engine_t, make_dense_engine
    implicit none
@@ -83,20 +84,27 @@ module following
 contains
 
    !> Ready for the first instant of `m`, whose equations are as many as its unknowns, with the engine of its method.
-   !> `structure`: see `make_block_engine`.
-   subroutine make_following(f, m, structure)
+   !> `structure`: see `make_block_engine`. `engine`: of METHOD NEWTON, one that is to be renewed; it is taken over.
+   subroutine make_following(f, m, structure, engine)
       type(following_t), intent(out) :: f
       type(mechanism_t), intent(in) :: m
       type(structure_t), intent(inout), optional :: structure
+      class(engine_t), allocatable, intent(inout), optional :: engine
 
-      if (m%method == method_newton) then
+      if (present(engine)) then
+         call move_alloc(engine, f%engine)
+      else if (m%method == method_newton) then
          allocate (block_method_t :: f%engine)
       else
          allocate (dense_engine_t :: f%engine)
       end if
       select type (e => f%engine)
       type is (block_method_t)
-         call make_block_engine(e%block_engine_t, m, structure)
+         if (present(engine)) then
+            call renew_block_engine(e%block_engine_t, m, structure)
+         else
+            call make_block_engine(e%block_engine_t, m, structure)
+         end if
       type is (dense_engine_t)
          call make_dense_engine(e, m)
       end select

@@ -6,7 +6,7 @@ module deck
    use mechanism, only: mechanism_t
    use card_reader, only: parsed_card_t, read_card, read_star
    use card_sets, only: card_set_t, begin_set, append_card, read_small_letters, build_bodies
-   use deck_variants, only: variation_t, set_apart, build_variation, take_values
+   use deck_variants, only: variation_t, set_apart, build_variation, take_values, change_numbers
    use cards, only: card_t, card_fields, card_name, small_field, is_passed_over, find_form, form_link, form_time, &
       form_at, form_vary, form_end
    use deck_drives, only: build_drives, check_terms
@@ -289,13 +289,19 @@ contains
    end subroutine build_mechanism
 
    !> Builds variant number `n` (1 to v%total) of `v` as the mechanism `m`, like a deck in which its numbers are typed.
-   !> `message`: its first error, '' if there is none.
+   !> `m` is new, or the last variant built of `v` that it holds. `message`: its first error, '' if there is none.
    subroutine build_variant(v, n, m, message)
       type(variation_t), intent(inout) :: v
       integer, intent(in) :: n
-      type(mechanism_t), intent(out) :: m
+      type(mechanism_t), intent(inout) :: m
       character(:), allocatable, intent(out) :: message
+      logical :: is_done
 
+      if (m%variant > 0) then
+         message = ''
+         call change_numbers(v, n, m, is_done)
+         if (is_done) return
+      end if
       call take_values(v, n)
       call build_mechanism(v%set)
       if (error_count(v%set%errors) == 0) then
@@ -308,7 +314,7 @@ contains
       message = message(:index(message//new_line('a'), new_line('a')) - 1)
       m = v%set%mechanism
       m%variants = v%total
-      m%variant = n
+      m%variant = merge(n, 0, message == '')
    end subroutine build_variant
 
    !> Appends the mechanism of the open set to the closed ones.

@@ -4,7 +4,7 @@
 module deck_variants
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp, label_length
-   use mechanism, only: tolerance_t
+   use mechanism, only: mechanism_t, tolerance_t, number_ground, number_point, number_pair, number_drive
    use card_sets, only: card_set_t, vary_card_t, begin_mechanism, add_parsed_error
    use card_reader, only: parsed_card_t
    use cards, only: card_name, label_a, label_b, label_c, real_1, real_2, real_3, form_unknown, form_ground, &
@@ -18,7 +18,7 @@ module deck_variants
    use numerals, only: whole
    implicit none
    private
-   public :: variation_t, varied_t, set_apart, build_variation, take_values, values_of_variant
+   public :: variation_t, varied_t, set_apart, build_variation, take_values, change_numbers, values_of_variant
 
    !> The largest number of variants of a set.
    integer, parameter :: max_variants = 10000000
@@ -27,6 +27,9 @@ module deck_variants
    !> The cards whose numbers can vary.
    integer, parameter :: varied_forms(*) = [form_ground, form_link, form_point, form_prism, form_joint, form_drive, &
       form_add, form_rise, form_time]
+
+   !> A time of the TIME card, beside the kinds of numbers that can have a tolerance.
+   integer, parameter :: number_time = number_drive + 1
 
    !> A number that varies.
    type :: varied_t
@@ -39,6 +42,11 @@ module deck_variants
       character(4*label_length) :: owner = ''       !< the card and what it defines: POINT A, ANGLE CRANK HARMONIC 1
       character(2*label_length) :: word = ''        !< what the card calls the number: XI, AMPLITUDE
       character(2*label_length + 5) :: unit = ''        !< of the deck; blank where it is not known
+      !> What it is in a mechanism, where it is there once, nothing else of it depends on this number, and no value of it
+      !> is an error: number_ground (x, y or phi of any link), ..., number_time; otherwise 0.
+      integer :: kind = 0
+      integer :: subject = 0                        !< the number of its link, point, pair or drive
+      real(wp) :: factor = 1.0_wp                   !< its unit in those of `mechanism_t`
    end type varied_t
 
    !> The variants of a set.
@@ -215,8 +223,29 @@ contains
          one%owner = number%name(:border - 1)
          one%word = number%name(border + 1:)
          one%unit = number%unit_name
+         one%kind = kind_in(set, one%card, number)
+         one%subject = number%subject
+         one%factor = number%unit
       end subroutine name_number
    end subroutine take_card
+
+   !> The kind of a number that varies, as above: `number` on card `k` of `set`. Points of JOINT cards depend on the
+   !> places of links as well, and whether a term of a drive is defined on those of TIME.
+   pure integer function kind_in(set, k, number) result(kind)
+      type(card_set_t), intent(in) :: set
+      integer, intent(in) :: k
+      type(tolerance_t), intent(in) :: number
+
+      kind = 0
+      select case (set%cards(k)%form)
+      case (form_ground, form_link)
+         if (set%number_of(form_joint) == 0) kind = number_ground
+      case (form_point, form_prism, form_drive)
+         kind = number%kind
+      case (form_time)
+         if (sum(set%number_of([form_add, form_rise])) == 0) kind = number_time
+      end select
+   end function kind_in
 
    !> Sets v%counts and v%total. Numbers that are tied must have equal counts; the grid must not be too large.
    subroutine count_variants(set, v)
@@ -260,6 +289,43 @@ contains
       v%set%errors = none
       call begin_mechanism(v%set, v%set%mechanism%set_number)
    end subroutine take_values
+
+   !> Gives `m`, a variant of `v` without errors, the numbers of variant `n`. `is_done`: it is that variant now; where
+   !> more than these numbers may depend on the cards it is not, and must be built.
+   pure subroutine change_numbers(v, n, m, is_done)
+      type(variation_t), intent(in) :: v
+      integer, intent(in) :: n
+      type(mechanism_t), intent(inout) :: m
+      logical, intent(out) :: is_done
+      real(wp) :: values(size(v%numbers))
+      integer :: i
+
+      is_done = all(v%numbers%kind > 0)
+      if (.not. is_done) return
+      values = values_of_variant(v, n)*v%numbers%factor
+      do i = 1, size(values)
+         associate (k => v%numbers(i)%subject, place => v%numbers(i)%place)
+            select case (v%numbers(i)%kind)
+            case (number_ground)
+               m%links(k)%position(place) = values(i)
+            case (number_point)
+               m%points(k)%offset(place) = values(i)
+            case (number_pair)
+               if (place == 1) m%pairs(k)%alpha = values(i)
+               if (place == 2) m%pairs(k)%offset = values(i)
+               if (place == 3) m%pairs(k)%beta = values(i)
+            case (number_drive)
+               m%drives(k)%polynomial(place) = values(i)
+            case (number_time)
+               if (place == 1) m%t0 = values(i)
+               if (place == 2) m%t1 = values(i)
+            end select
+         end associate
+      end do
+      m%variant = n
+      ! A TIME card of one time is an error.
+      is_done = m%steps < 0 .or. abs(m%t1 - m%t0) > 0.0_wp
+   end subroutine change_numbers
 
    !> The values (numbers) of variant `n` (1 to v%total), in the deck's units. The last of a range is exact.
    pure function values_of_variant(v, n) result(values)

@@ -124,7 +124,7 @@ contains
    end function power_of_two
 
    !> Whether the coordinate of `drive` is a length, not an angle.
-   pure logical function is_length(drive)
+   elemental logical function is_length(drive)
       type(drive_t), intent(in) :: drive
 
       is_length = any(drive%kind == [drive_x, drive_y, drive_slide])

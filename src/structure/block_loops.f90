@@ -11,7 +11,7 @@ module block_loops
       loop_angles
    implicit none
    private
-   public :: fill_block_loops, lipschitz_of, find_places
+   public :: fill_block_loops, put_numbers, lipschitz_of, find_places
 
    !> What has been filled, and the columns of the block being filled; 0: not its own.
    type :: filling_t
@@ -147,6 +147,80 @@ contains
          allocate (f%column(0:b%unknowns), f%latest(0:e%vector_loops%count), source=0)
       end subroutine reserve
    end subroutine fill_block_loops
+
+   !> Gives the rows and loops of `b` the numbers of the equations `e`, in one unit of length. `is_same`: the loops of
+   !> `e` have the body vectors and slides of those of which `b` was made; where they have not, nothing else counts.
+   pure subroutine put_numbers(e, b, is_same)
+      type(equations_t), intent(in) :: e
+      type(blocks_t), intent(inout) :: b
+      logical, intent(out) :: is_same
+      integer :: i, m
+
+      is_same = .true.
+      b%unit = 1.0_wp
+      b%rows%unit = 1.0_wp
+      b%rows%constant = e%list(b%equation)%constant
+      do i = 1, size(b%list)
+         do m = b%list(i)%first_loop, b%list(i)%last_loop
+            associate (g => b%loops(m))
+               g%unit = 1.0_wp
+               g%coarse = 1.0_wp
+               if (g%kind /= loop_components) &
+                  g%direction = e%list(b%equation(b%list(i)%first_row + g%row_x - 1))%direction
+               call put_loop(e%vector_loops, g, b%body_vectors, b%slides, is_same)
+            end associate
+            if (.not. is_same) return
+         end do
+      end do
+   end subroutine put_numbers
+
+   !> The same of loop `g`, with its `vectors` and `slides` among those of all loops. An orientation stands in it once,
+   !> and in the order of its vector loop.
+   pure subroutine put_loop(p, g, vectors, slides, is_same)
+      type(vector_loops_t), intent(in) :: p
+      type(block_loop_t), intent(inout) :: g
+      type(body_vector_t), intent(inout) :: vectors(:)
+      type(slide_t), intent(inout) :: slides(:)
+      logical, intent(out) :: is_same
+      integer :: known, own, at, k
+
+      known = g%first_vector
+      own = g%first_own
+      g%ground = 0.0_wp
+      is_same = g%last_slide - g%first_slide + 1 == p%first_slide(g%vector_loop + 1) - p%first_slide(g%vector_loop)
+      if (.not. is_same) return
+      do k = p%first_vector(g%vector_loop), p%first_vector(g%vector_loop + 1) - 1
+         if (p%vector_orientation(k) == 0) then
+            g%ground = g%ground + p%body_vector(:, k)
+            cycle
+         end if
+         if (is_next(known, g%first_own - 1)) then
+            at = known
+            known = known + 1
+         else
+            is_same = is_next(own, g%last_vector)
+            if (.not. is_same) return
+            at = own
+            own = own + 1
+         end if
+         vectors(at)%x = p%body_vector(1, k)
+         vectors(at)%y = p%body_vector(2, k)
+      end do
+      is_same = known == g%first_own .and. own == g%last_vector + 1
+      do k = g%first_slide, g%last_slide
+         slides(k)%body_vector = p%slide_body_vector(:, p%first_slide(g%vector_loop) + k - g%first_slide)
+      end do
+
+   contains
+
+      !> Vector `k` of the vector loop is number `n`, of those up to `last`.
+      pure logical function is_next(n, last)
+         integer, intent(in) :: n, last
+
+         is_next = n <= last
+         if (is_next) is_next = vectors(n)%orientation == p%vector_orientation(k)
+      end function is_next
+   end subroutine put_loop
 
    !> A bound of |J(x) - J(z)|/|x - z| in the maximum norm: for a row, the sum of its second derivatives. Slides count
    !> with the length of their unit; a projection turns once more with its own orientation.

@@ -9,14 +9,14 @@ module block_partition
    use kinds, only: wp
    use links_tree, only: tree_t
    use block_matrix, only: shape_t
-   use matching, only: incidence_t, match, find_blocks, overdetermined
+   use matching, only: is_same_incidence, match, find_blocks, overdetermined
    use loop_equations, only: equations_t, incidence, equation_angle, equation_slide
    use blocks, only: blocks_t, block_t, block_loop_t, body_vector_t, loop_angles, loop_projection
-   use block_loops, only: fill_block_loops, find_places, lipschitz_of
+   use block_loops, only: fill_block_loops, find_places, lipschitz_of, put_numbers
    use scales, only: power_of_two
    implicit none
    private
-   public :: new_blocks, find_units
+   public :: new_blocks, renew_blocks, find_units
 
    real(wp), parameter :: much_smaller = 0.0625_wp
 
@@ -27,21 +27,20 @@ contains
       type(tree_t), intent(in) :: t
       type(equations_t), intent(in) :: e
       type(blocks_t) :: b
-      type(incidence_t) :: g
       integer, allocatable :: unknown_of(:), equation_of(:), first(:), member(:)
       logical :: over(e%count)
       integer :: i
 
       b%orientations = t%orientations
       b%unknowns = t%orientations + t%slides + 2*t%roots
-      g = incidence(e, b%orientations, b%unknowns)
-      call match(g, unknown_of, equation_of)
+      b%incidence = incidence(e, b%orientations, b%unknowns)
+      call match(b%incidence, unknown_of, equation_of)
       b%free = pack([(i, i=1, b%unknowns)], equation_of == 0)
       b%solvable = size(b%free) == 0
       b%redundant = count(unknown_of == 0)
       if (.not. b%solvable) return
-      over = overdetermined(g, unknown_of, equation_of)
-      call find_blocks(g, equation_of, first, member, over)
+      over = overdetermined(b%incidence, unknown_of, equation_of)
+      call find_blocks(b%incidence, equation_of, first, member, over)
       allocate (b%list(size(first) - 1))
       do i = 1, size(b%list)
          associate (block => b%list(i))
@@ -61,6 +60,7 @@ contains
       end do
       call fill_rows()
       call fill_block_loops(e, member, b)
+      call move_alloc(member, b%equation)
       b%first_term = e%vector_loops%first_term(1:e%vector_loops%count + 1)
       b%terms = e%vector_loops%terms(:, :e%vector_loops%term_count)
       allocate (b%unit(0:b%unknowns), source=1.0_wp)
@@ -115,6 +115,17 @@ contains
          end do
       end subroutine fill_rows
    end function new_blocks
+
+   !> Gives `b`, the blocks of equations that differ from `e` in numbers alone, those of `e`, in one unit of length.
+   !> `is_done`: each equation has the same unknowns and each loop the same body vectors; otherwise `b` is of no use.
+   subroutine renew_blocks(e, b, is_done)
+      type(equations_t), intent(in) :: e
+      type(blocks_t), intent(inout) :: b
+      logical, intent(out) :: is_done
+
+      is_done = is_same_incidence(incidence(e, b%orientations, b%unknowns), b%incidence)
+      if (is_done) call put_numbers(e, b, is_done)
+   end subroutine renew_blocks
 
    !> Divides the rows of all blocks of `b`, filled in one unit of length, by units of their own, and its slides.
    pure subroutine find_units(b)

@@ -12,10 +12,11 @@ module blocks
    use klu, only: pattern_t
    use block_matrix, only: shape_t
    use links_tree, only: tree_t
+   use matching, only: incidence_t
    implicit none
    private
    public :: blocks_t, block_t, row_t, block_loop_t, body_vector_t, slide_t, loop_components, loop_projection, &
-      loop_angles, needed_blocks, moving_blocks, blocks_below, largest_known
+      loop_angles, needed_blocks, moving_blocks, iterated_unknowns, blocks_below, largest_known
 
    integer, parameter :: loop_components = 1  !< x and y of a vector loop, or one of them
    integer, parameter :: loop_projection = 2  !< the projection of a vector loop
@@ -84,11 +85,13 @@ module blocks
       integer, allocatable :: block_of(:)         !< (unknowns)
       real(wp), allocatable :: unit(:)            !< (0:unknowns) of a slide; 1 of an angle
       type(row_t), allocatable :: rows(:)
+      integer, allocatable :: equation(:)         !< (rows) its number before the blocks were made
       type(block_loop_t), allocatable :: loops(:)
       type(body_vector_t), allocatable :: body_vectors(:)
       type(slide_t), allocatable :: slides(:)
       type(pattern_t), allocatable :: patterns(:) !< of the blocks with a sparse Jacobian
       integer, allocatable :: first_term(:), terms(:, :)   !< of the vector loops: see `vector_loops_t`
+      type(incidence_t) :: incidence              !< by which they were made, kept where there are variants
    end type blocks_t
 
 contains
@@ -186,6 +189,19 @@ contains
          end associate
       end do
    end function moving_blocks
+
+   !> The unknowns of those of the blocks `list` that iterate.
+   pure function iterated_unknowns(b, list) result(unknowns)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: list(:)
+      integer, allocatable :: unknowns(:)
+      logical :: iterated(size(b%list))
+      integer :: u
+
+      iterated = .false.
+      iterated(list) = .not. b%list(list)%direct
+      unknowns = pack([(u, u=1, b%unknowns)], iterated(b%block_of))
+   end function iterated_unknowns
 
    !> The largest `mark` (0:unknowns) of what block `i` builds on; 0 at least. Marks of its own unknowns are 0.
    pure integer function largest_known(b, i, mark) result(largest)

@@ -11,7 +11,7 @@ module links_tree
    use mechanism, only: mechanism_t, pair_prismatic, pair_revolute, pair_links, plane_origin
    implicit none
    private
-   public :: tree_t, new_tree, other_link, place_t, place_on_tree, point_in_drawing, offset_in_drawing, &
+   public :: tree_t, new_tree, renew_tree, other_link, place_t, place_on_tree, point_in_drawing, offset_in_drawing, &
       ground_place, guide
 
    type :: tree_t
@@ -183,6 +183,20 @@ contains
          t%root(link) = t%root(parent)
       end subroutine attach
    end function new_tree
+
+   !> Gives `t`, the tree of a mechanism that differs from `m` in numbers alone, those of `m`.
+   subroutine renew_tree(m, t)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(inout) :: t
+
+      if (any(m%pairs%kind == pair_prismatic)) then
+         t = new_tree(m)
+      else
+         ! Each link that moves has an orientation of its own.
+         t%origin = plane_origin(m)
+         t%angle_offset(:) = merge(m%links%position(3), 0.0_wp, m%links%ground)
+      end if
+   end subroutine renew_tree
 
    !> The link at the other end of pair `k` of `link`.
    pure integer function other_link(m, k, link) result(other)

@@ -4,7 +4,7 @@
 !> (12)  r = 2 (n1 + n2) + 3 n3
 !> (13)  s = 3 n - r        (the print subtracts 2 n1 + n2 only)
 module structure
-   use kinds, only: wp, label_length
+   use kinds, only: label_length
    use cards, only: forms, form_ground
    use failures, only: failure_t, fail, status_rejected
    use numerals, only: whole
@@ -13,12 +13,9 @@ module structure
    use mechanism, only: mechanism_t, pair_links, drive_links, pair_revolute, pair_prismatic, method_newton
    use matching, only: match, is_same_incidence, owners, overdetermined, underdetermined
    use assur_groups, only: closure_t, new_closure, group_t, groups_of
-   use scales, only: solver_length, power_of_two
    use independent, only: parts_t, find_parts, part_of_links
-   use links_tree, only: tree_t, new_tree
-   use loop_equations, only: new_equations
-   use blocks, only: blocks_t
-   use block_partition, only: new_blocks, find_units
+   use links_tree, only: tree_t
+   use block_structure, only: structure_t, new_structure, renew_structure
    implicit none
    private
    public :: structure_t, findings_t, group_t, underdetermined_t, new_structure, count_degrees_of_freedom, &
@@ -29,14 +26,6 @@ module structure
       integer, allocatable :: links(:)
       integer :: degrees_of_freedom = 0
    end type underdetermined_t
-
-   !> The structure of one independent mechanism: made once, and handed to its engine, which takes the blocks over.
-   type :: structure_t
-      real(wp) :: span = 1.0_wp                 !< its characteristic length, in the deck's unit
-      real(wp) :: length = 1.0_wp               !< the unit of lengths in the blocks: the power of two next to `span`
-      type(tree_t) :: tree
-      type(blocks_t), allocatable :: blocks
-   end type structure_t
 
    type :: findings_t
       integer :: links = 0        !< n, ground links with them
@@ -69,19 +58,6 @@ module structure
 
 contains
 
-   !> The structure of the independent mechanism `m`. Time and memory proportional to its links, pairs and drives.
-   function new_structure(m) result(s)
-      type(mechanism_t), intent(in) :: m
-      type(structure_t) :: s
-
-      s%span = solver_length(m)
-      s%length = power_of_two(s%span)
-      s%tree = new_tree(m)
-      allocate (s%blocks)
-      s%blocks = new_blocks(s%tree, new_equations(m, s%tree, s%length))
-      if (s%blocks%solvable) call find_units(s%blocks)
-   end function new_structure
-
    !> Counts (12) and (13) of mechanism `m`.
    pure function count_degrees_of_freedom(m) result(f)
       type(mechanism_t), intent(in) :: m
@@ -106,7 +82,7 @@ contains
    end function find_structure
 
    !> The same of a mechanism that differs in numbers alone from the one with the findings `f`, if there are such: where
-   !> each closure equation has the coordinates that it had, all findings stand but the blocks, which have numbers.
+   !> each closure equation has the coordinates that it had, all findings stand but the numbers of the structures.
    subroutine find_structure_again(m, f)
       type(mechanism_t), intent(in) :: m
       type(findings_t), intent(inout) :: f
@@ -135,12 +111,12 @@ contains
          allocate (f%lacking(0))
          f%closure = c
       end if
-      call find_parts(m, f%parts, f%own)
-      if (allocated(f%structures)) deallocate (f%structures)
-      allocate (f%structures(f%parts%count))
-      if (f%parts%count == 1) f%structures(1) = new_structure(m)
+      if (.not. stands .or. f%parts%count > 1) call find_parts(m, f%parts, f%own)
+      if (.not. allocated(f%own)) allocate (f%own(0))
+      if (.not. allocated(f%structures)) allocate (f%structures(f%parts%count))
+      if (f%parts%count == 1) call renew_structure(m, f%structures(1))
       do k = 1, size(f%own)
-         f%structures(k) = new_structure(f%own(k))
+         call renew_structure(f%own(k), f%structures(k))
       end do
       f%solvable = all([(f%structures(k)%blocks%solvable, k=1, size(f%structures))])
       if (f%solvable) return
