@@ -1,7 +1,7 @@
 !> The TOLER cards of a set: each gives tolerances to the numbers of the card above it.
 module deck_tolerances
    use kinds, only: wp
-   use mechanism, only: tolerance_t, term_words, term_power, term_table, drive_words, drive_relangle, driven_kinds, &
+   use mechanism, only: tolerance_t, term_words, term_power, term_table, drive_words, drive_angle, drive_relangle, driven_kinds, &
       request_link, request_point, request_pair, number_ground, number_point, number_joint, number_pair, number_drive
    use card_reader, only: parsed_card_t
    use card_sets, only: card_set_t, real_text, add_card_error
@@ -152,7 +152,7 @@ contains
          case (form_drive)
             one%powers(2) = real(1 - one%place, wp)
             if (one%place > 1) one%unit_name = trim(one%unit_name)//time//merge('**2', '   ', one%place == 3)
-            if (one%place == 2 .and. card%label(label_c) == turns_a_minute) then
+            if (kind == drive_angle .and. one%place == 2 .and. card%label(label_c) == turns_a_minute) then
                one%unit_name = turns_a_minute
                one%unit = turns_unit(set)
             end if

@@ -123,7 +123,8 @@ contains
       type(blocks_t), intent(inout) :: b
       logical, intent(out) :: is_done
 
-      is_done = is_same_incidence(incidence(e, b%orientations, b%unknowns), b%incidence)
+      is_done = b%solvable
+      if (is_done) is_done = is_same_incidence(incidence(e, b%orientations, b%unknowns), b%incidence)
       if (is_done) call put_numbers(e, b, is_done)
    end subroutine renew_blocks
 
