@@ -141,8 +141,8 @@ contains
          if (.not. r%is_over) call begin_run(r, findings)
       end subroutine start
 
-      !> Makes the variant of `v` whose `row` this is, from the one that `variant` was, and finds its structure, starting
-      !> from the `findings` of the one before; what the checks say stands in the row.
+      !> Makes the variant of `v` whose `row` this is, from the one that `variant` was, and finds its structure,
+      !> starting from the `findings` of the one before; what the checks say stands in the row.
       subroutine make_variant(row, variant, findings)
          type(variant_row_t), intent(inout) :: row
          type(mechanism_t), intent(inout) :: variant

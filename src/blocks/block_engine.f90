@@ -21,7 +21,8 @@ module block_engine
    implicit none
    private
    public :: block_engine_t, block_checkpoint_t, positions_t
-   public :: make_block_engine, put_mechanism, solve_blocks, solve_again, solve_each, begin_record, set_drive_values, slide_units
+   public :: make_block_engine, put_mechanism, solve_blocks, solve_again, solve_each, begin_record, set_drive_values, &
+      slide_units
 
    !> Positions of one block (unknowns, any number).
    type :: positions_t

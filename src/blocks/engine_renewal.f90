@@ -1,5 +1,5 @@
-!> An engine used again, for a variant of its mechanism with the same structure: what comes from the structure stays, and
-!> so does the memory of what does not. Its blocks get their new numbers between `give_blocks` and `renew_block_engine`.
+!> An engine used again, for a variant of its mechanism with the same structure: what comes from the structure stays,
+!> and so does the memory of what does not. Its blocks get their new numbers between `give_blocks` and `renew_block_engine`.
 module engine_renewal
    use kinds, only: wp
    use mechanism, only: mechanism_t
@@ -32,8 +32,8 @@ contains
       call move_alloc(e%blocks, structure%blocks)
    end subroutine give_blocks
 
-   !> Ready for the first instant of `m`, as `make_block_engine` makes it; `structure`: that of `m`, with the blocks that
-   !> `e` has given and that were renewed.
+   !> Ready for the first instant of `m`, as `make_block_engine` makes it; `structure`: that of `m`, with the blocks
+   !> that `e` has given and that were renewed.
    subroutine renew_block_engine(e, m, structure)
       type(block_engine_t), intent(inout) :: e
       type(mechanism_t), intent(in) :: m

@@ -34,8 +34,8 @@ module initial_estimate
 
 contains
 
-   !> Values (0:unknowns) of angles and slides, lengths in units of `length`. `span`: the characteristic length of `m` for
-   !> its equations, if it is known.
+   !> Values (0:unknowns) of angles and slides, lengths in units of `length`. `span`: the characteristic length of `m`
+   !> for its equations, if it is known.
    function estimated_values(m, t, length, unknowns, span) result(value)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t

@@ -1,8 +1,9 @@
 !> The TOLER cards of a set: each gives tolerances to the numbers of the card above it.
 module deck_tolerances
    use kinds, only: wp
-   use mechanism, only: tolerance_t, term_words, term_power, term_table, drive_words, drive_angle, drive_relangle, driven_kinds, &
-      request_link, request_point, request_pair, number_ground, number_point, number_joint, number_pair, number_drive
+   use mechanism, only: tolerance_t, term_words, term_power, term_table, drive_words, drive_angle, drive_relangle, &
+      driven_kinds, request_link, request_point, request_pair, number_ground, number_point, number_joint, &
+      number_pair, number_drive
    use card_reader, only: parsed_card_t
    use card_sets, only: card_set_t, real_text, add_card_error
    use cards, only: card_name, label_a, label_b, label_c, real_1, forms, form_name, number_word, form_unknown, &

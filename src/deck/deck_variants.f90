@@ -42,8 +42,8 @@ module deck_variants
       character(4*label_length) :: owner = ''       !< the card and what it defines: POINT A, ANGLE CRANK HARMONIC 1
       character(2*label_length) :: word = ''        !< what the card calls the number: XI, AMPLITUDE
       character(2*label_length + 5) :: unit = ''        !< of the deck; blank where it is not known
-      !> What it is in a mechanism, where it is there once, nothing else of it depends on this number, and no value of it
-      !> is an error: number_ground (x, y or phi of any link), ..., number_time; otherwise 0.
+      !> What it is in a mechanism, where it is there once, nothing else of it depends on this number, and no value of
+      !> it is an error: number_ground (x, y or phi of any link), ..., number_time; otherwise 0.
       integer :: kind = 0
       integer :: subject = 0                        !< the number of its link, point, pair or drive
       real(wp) :: factor = 1.0_wp                   !< its unit in those of `mechanism_t`

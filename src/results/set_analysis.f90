@@ -70,8 +70,8 @@ contains
       end do
    end subroutine make_set_analysis
 
-   !> Gives what the engine of `s`, the analysis of a variant, knows of its structure back to `findings`, those of another
-   !> variant of its set, if it can serve that one too: then `is_given`, and `s` can only be renewed.
+   !> Gives what the engine of `s`, the analysis of a variant, knows of its structure back to `findings`, those of
+   !> another variant of its set, if it can serve that one too: then `is_given`, and `s` can only be renewed.
    subroutine give_structure(s, findings, is_given)
       type(set_analysis_t), intent(inout) :: s
       type(findings_t), intent(inout) :: findings
