@@ -1,5 +1,6 @@
 !> An engine used again, for a variant of its mechanism with the same structure: what comes from the structure stays,
-!> and so does the memory of what does not. Its blocks get their new numbers between `give_blocks` and `renew_block_engine`.
+!> and so does the memory of what does not. Its blocks get their new numbers between `give_blocks` and
+!> `renew_block_engine`.
 module engine_renewal
    use kinds, only: wp
    use mechanism, only: mechanism_t
