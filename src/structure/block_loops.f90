@@ -8,7 +8,7 @@ module block_loops
    use loop_equations, only: equations_t, equation_t, equation_x, equation_y, equation_projection, &
       equation_slide
    use blocks, only: blocks_t, block_t, block_loop_t, body_vector_t, slide_t, loop_components, loop_projection, &
-      loop_angles
+      loop_angles, have_right_sides
    implicit none
    private
    public :: fill_block_loops, put_numbers, lipschitz_of, find_places
@@ -161,6 +161,7 @@ contains
       b%rows%unit = 1.0_wp
       b%rows%constant = e%list(b%equation)%constant
       do i = 1, size(b%list)
+         b%list(i)%has_right_sides = have_right_sides(b%rows(b%list(i)%first_row:b%list(i)%last_row))
          do m = b%list(i)%first_loop, b%list(i)%last_loop
             associate (g => b%loops(m))
                g%unit = 1.0_wp

@@ -11,7 +11,7 @@ module block_partition
    use block_matrix, only: shape_t
    use matching, only: is_same_incidence, match, find_blocks, overdetermined
    use loop_equations, only: equations_t, incidence, equation_angle, equation_slide
-   use blocks, only: blocks_t, block_t, block_loop_t, body_vector_t, loop_angles, loop_projection
+   use blocks, only: blocks_t, block_t, block_loop_t, body_vector_t, loop_angles, loop_projection, have_right_sides
    use block_loops, only: fill_block_loops, find_places, lipschitz_of, put_numbers
    use scales, only: power_of_two
    implicit none
@@ -94,14 +94,12 @@ contains
 
          allocate (b%rows(size(member)))
          do i = 1, size(b%list)
-            b%list(i)%has_right_sides = .false.
             do k = b%list(i)%first_row, b%list(i)%last_row
                associate (equation => e%list(member(k)), row => b%rows(k))
                   row%drive = equation%drive
                   row%pair = equation%pair
                   row%angular = equation%kind == equation_angle
                   row%constant = equation%constant
-                  if (row%drive > 0 .or. abs(row%constant) > 0.0_wp) b%list(i)%has_right_sides = .true.
                   b%list(i)%direct = any(equation%kind == [equation_angle, equation_slide]) &
                      .and. b%list(i)%shape%rows == 1 .and. b%list(i)%shape%n == 1
                   if (.not. (b%list(i)%direct .and. row%angular)) cycle
@@ -112,6 +110,7 @@ contains
                   row%sign_of = -1.0_wp
                end associate
             end do
+            b%list(i)%has_right_sides = have_right_sides(b%rows(b%list(i)%first_row:b%list(i)%last_row))
          end do
       end subroutine fill_rows
    end function new_blocks

@@ -16,7 +16,7 @@ module blocks
    implicit none
    private
    public :: blocks_t, block_t, row_t, block_loop_t, body_vector_t, slide_t, loop_components, loop_projection, &
-      loop_angles, needed_blocks, moving_blocks, iterated_unknowns, blocks_below, largest_known
+      loop_angles, have_right_sides, needed_blocks, moving_blocks, iterated_unknowns, blocks_below, largest_known
 
    integer, parameter :: loop_components = 1  !< x and y of a vector loop, or one of them
    integer, parameter :: loop_projection = 2  !< the projection of a vector loop
@@ -95,6 +95,13 @@ module blocks
    end type blocks_t
 
 contains
+
+   !> One of the equations in `rows` is equal to a constant or a drive's value that is not 0 for certain.
+   pure logical function have_right_sides(rows)
+      type(row_t), intent(in) :: rows(:)
+
+      have_right_sides = any(rows%drive > 0 .or. abs(rows%constant) > 0.0_wp)
+   end function have_right_sides
 
    !> The blocks, in solving order, that the links `wanted` (links) need; equations that are too many are always
    !> looked at.
