@@ -105,6 +105,7 @@ contains
       !> Adds the point or the offset of a pair of `term` (2) to the part that turns as it does.
       subroutine add_term(term)
          integer, intent(in) :: term(2)
+         real(wp) :: change(directions, 2)
          integer :: card, point
 
          card = abs(term(1))
@@ -113,8 +114,11 @@ contains
             card = size(m%points) + abs(term(2))
             point = m%pairs(abs(term(2)))%point_i
          end if
-         if (is_exact(m, sizes, card)) return
-         call add_card(p%parts(part_of(e%orientation_of(m%points(point)%link))), m, sizes, card, sign(1, sum(term)))
+         change = card_change(m, sizes, card)
+         ! Zeros are exact.
+         if (.not. max(sizes(card), maxval(abs(change))) > 0.0_wp) return
+         call add_card(p%parts(part_of(e%orientation_of(m%points(point)%link))), change, sizes(card), &
+            sign(1, sum(term)))
       end subroutine add_term
 
       !> The number of the part that turns with `orientation`: a new one, where there is none yet.
@@ -160,10 +164,10 @@ contains
          associate (pair => m%pairs(h%pair))
             is_i = m%points(pair%point_i)%link == h%link
             own = merge(pair%point_i, pair%point_j, is_i)
-            call add_card(parts(1), m, sizes, pair%point_i + pair%point_j - own, 1)
-            call add_card(parts(of_own), m, sizes, own, -1)
+            call take(1, pair%point_i + pair%point_j - own, 1)
+            call take(of_own, own, -1)
          end associate
-         if (h%slide > 0) call add_card(parts(1), m, sizes, size(m%points) + h%pair, merge(1, -1, is_i))
+         if (h%slide > 0) call take(1, size(m%points) + h%pair, merge(1, -1, is_i))
          if (h%slide > 0) arm%slide = e%length*norm2(h%place%slide_body_vector)
       end associate
       do k = 1, 2
@@ -172,26 +176,25 @@ contains
          arm%count = arm%count + 1
          arm%parts(arm%count) = parts(k)
       end do
+
+   contains
+
+      !> Adds number `card`, with its sign, to part number `k`.
+      subroutine take(k, card, sign_of)
+         integer, intent(in) :: k, card, sign_of
+
+         call add_card(parts(k), card_change(m, sizes, card), sizes(card), sign_of)
+      end subroutine take
    end subroutine gather_arm
 
-   !> The numbers of `card` are zeros, which are exact.
-   pure logical function is_exact(m, sizes, card)
-      type(mechanism_t), intent(in) :: m
-      real(wp), intent(in) :: sizes(:)
-      integer, intent(in) :: card
-
-      is_exact = .not. (sizes(card) > 0.0_wp .or. any(abs(card_change(m, sizes, card)) > 0.0_wp))
-   end function is_exact
-
-   !> Adds number `card` of `m`, a point or the offset of a pair, to `part`, with its sign `sign_of`.
-   pure subroutine add_card(part, m, sizes, card, sign_of)
+   !> Adds a card's `change` (directions, 2) and size to `part`, with its sign `sign_of`.
+   pure subroutine add_card(part, change, size_of, sign_of)
       type(part_t), intent(inout) :: part
-      type(mechanism_t), intent(in) :: m
-      real(wp), intent(in) :: sizes(:)
-      integer, intent(in) :: card, sign_of
+      real(wp), intent(in) :: change(directions, 2), size_of
+      integer, intent(in) :: sign_of
 
-      part%change = part%change + sign_of*card_change(m, sizes, card)
-      part%size_of = part%size_of + sizes(card)
+      part%change = part%change + sign_of*change
+      part%size_of = part%size_of + size_of
    end subroutine add_card
 
    !> Of `part`, whose cards have the unit `scale`, the measures.
