@@ -29,7 +29,8 @@ module block_loops
 
 contains
 
-   !> The loops of all blocks that iterate. `member`: the equations of `e` by block.
+   !> The loops of all blocks that iterate, without their numbers: see `put_numbers`. `member`: the equations of `e` by
+   !> block.
    subroutine fill_block_loops(e, member, b)
       type(equations_t), intent(in) :: e
       integer, intent(in) :: member(:)
@@ -51,7 +52,6 @@ contains
                f%column(b%unknown(block%first:block%last)) = 0
             end if
             block%last_loop = f%loops
-            block%lipschitz = lipschitz_of(b, block)
          end associate
       end do
 
@@ -80,7 +80,6 @@ contains
             block_loop%orientation = equation%orientation
             if (equation%kind == equation_slide) block_loop%orientation = b%orientations + equation%orientation
             block_loop%orientation_column = f%column(block_loop%orientation)
-            block_loop%direction = equation%direction
             block_loop%less = equation%less
             block_loop%less_column = f%column(equation%less)
          end associate
@@ -102,15 +101,11 @@ contains
             call add_body_vectors(p, i, .true.)
             block_loop%last_vector = f%body_vectors
             block_loop%first_slide = f%slides + 1
-            do k = p%first_vector(i), p%first_vector(i + 1) - 1
-               if (p%vector_orientation(k) == 0) block_loop%ground = block_loop%ground + p%body_vector(:, k)
-            end do
             do k = p%first_slide(i), p%first_slide(i + 1) - 1
                f%slides = f%slides + 1
                b%slides(f%slides) = slide_t(orientation=p%slide_orientation(k), &
                   orientation_column=f%column(p%slide_orientation(k)), &
-                  unknown=b%orientations + p%slide_number(k), column=f%column(b%orientations + p%slide_number(k)), &
-                  body_vector=p%slide_body_vector(:, k))
+                  unknown=b%orientations + p%slide_number(k), column=f%column(b%orientations + p%slide_number(k)))
             end do
             block_loop%last_slide = f%slides
          end associate
@@ -127,7 +122,7 @@ contains
             if (p%vector_orientation(k) == 0 .or. (f%column(p%vector_orientation(k)) > 0 .neqv. own)) cycle
             f%body_vectors = f%body_vectors + 1
             b%body_vectors(f%body_vectors) = body_vector_t(orientation=p%vector_orientation(k), &
-               column=f%column(p%vector_orientation(k)), x=p%body_vector(1, k), y=p%body_vector(2, k))
+               column=f%column(p%vector_orientation(k)))
          end do
       end subroutine add_body_vectors
 

@@ -11,7 +11,7 @@ module block_partition
    use block_matrix, only: shape_t
    use matching, only: is_same_incidence, match, find_blocks, overdetermined
    use loop_equations, only: equations_t, incidence, equation_angle, equation_slide
-   use blocks, only: blocks_t, block_t, block_loop_t, body_vector_t, loop_angles, loop_projection, have_right_sides
+   use blocks, only: blocks_t, block_t, block_loop_t, body_vector_t, loop_angles, loop_projection
    use block_loops, only: fill_block_loops, find_places, lipschitz_of, put_numbers
    use scales, only: power_of_two
    implicit none
@@ -28,7 +28,7 @@ contains
       type(equations_t), intent(in) :: e
       type(blocks_t) :: b
       integer, allocatable :: unknown_of(:), equation_of(:), first(:), member(:)
-      logical :: over(e%count)
+      logical :: over(e%count), is_same
       integer :: i
 
       b%orientations = t%orientations
@@ -65,6 +65,10 @@ contains
       b%terms = e%vector_loops%terms(:, :e%vector_loops%term_count)
       allocate (b%unit(0:b%unknowns), source=1.0_wp)
       call find_places(b)
+      call put_numbers(e, b, is_same)
+      do i = 1, size(b%list)
+         b%list(i)%lipschitz = lipschitz_of(b, b%list(i))
+      end do
 
    contains
 
@@ -88,7 +92,7 @@ contains
          member = [rows, member]
       end subroutine put_first
 
-      !> Drives, constants, and which blocks need no iteration.
+      !> Drives, and which blocks need no iteration.
       subroutine fill_rows()
          integer :: i, k
 
@@ -99,7 +103,6 @@ contains
                   row%drive = equation%drive
                   row%pair = equation%pair
                   row%angular = equation%kind == equation_angle
-                  row%constant = equation%constant
                   b%list(i)%direct = any(equation%kind == [equation_angle, equation_slide]) &
                      .and. b%list(i)%shape%rows == 1 .and. b%list(i)%shape%n == 1
                   if (.not. (b%list(i)%direct .and. row%angular)) cycle
@@ -110,7 +113,6 @@ contains
                   row%sign_of = -1.0_wp
                end associate
             end do
-            b%list(i)%has_right_sides = have_right_sides(b%rows(b%list(i)%first_row:b%list(i)%last_row))
          end do
       end subroutine fill_rows
    end function new_blocks
