@@ -24,7 +24,7 @@ module shares
 
    !> Parts for each process: the last ones end together, and text that waits is still in the processor's cache. Of
    !> variants solved together there are fewer: a part begins with a structure anew, as long as several of them take.
-   integer, parameter :: parts_a_process = 256, parts_together = 32
+   integer, parameter :: parts_a_process = 1024, parts_together = 32
    !> Milliseconds after which the parent looks whether a signal has come, and how far the job is.
    integer, parameter :: look_time = 200
    !> Ends the message that a child reports to its parent.
