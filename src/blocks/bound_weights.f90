@@ -6,6 +6,7 @@ module bound_weights
    use block_state, only: unknown_t, find_known_parts
    use block_equations, only: assemble_block
    use block_engine, only: block_engine_t
+   use rounding_parts, only: is_plain_dyad, dyad_jacobian
    use rounding_changes, only: rounding_response_t
    implicit none
    private
@@ -25,14 +26,12 @@ contains
       integer :: k, j
 
       associate (first => e%blocks%list(i)%first_loop, last => e%blocks%list(i)%last_loop)
-         if (n == 2 .and. first == last) then
+         if (is_plain_dyad(r%parts, e%blocks, e%blocks%list(i))) then
             associate (loop => e%blocks%loops(first))
-               if (loop%row_y > 0 .and. loop%last_slide < loop%first_slide) then
-                  call weigh_dyad(e%blocks%body_vectors(loop%first_own), e%blocks%body_vectors(loop%first_own + 1), &
-                     r%parts%parts(own:own + 1)%length, r%state%u, weights, are_found)
-                  return
-               end if
+               call weigh_dyad(e%blocks%body_vectors(loop%first_own:loop%last_vector), r%parts%parts(own:own + 1)%length, &
+                  r%state%u, weights, are_found)
             end associate
+            return
          end if
          call find_inverse(r, e, i, n, inverse, are_found)
          do k = first, last
@@ -49,23 +48,21 @@ contains
       end associate
    end subroutine find_weights
 
-   !> The same of the two body vectors `d` and `h` of a dyad, whose lengths are `length` (2): its Jacobian is their
-   !> quarter turns.
-   pure subroutine weigh_dyad(d, h, length, s, weights, are_found)
-      type(body_vector_t), intent(in) :: d, h
+   !> The same of a dyad whose own body vectors are `vectors`, of the lengths `length` (2).
+   pure subroutine weigh_dyad(vectors, length, s, weights, are_found)
+      type(body_vector_t), intent(in) :: vectors(2)
       real(wp), intent(in) :: length(2)
       type(unknown_t), intent(in) :: s(0:)
       real(wp), intent(inout) :: weights(2)
       logical, intent(out) :: are_found
-      real(wp) :: area
+      real(wp) :: a(4), area
 
-      associate (f => s(d%orientation), g => s(h%orientation))
-         area = abs((f%c*d%x - f%s*d%y)*(g%s*h%x + g%c*h%y) - (f%s*d%x + f%c*d%y)*(g%c*h%x - g%s*h%y))
-      end associate
+      call dyad_jacobian(vectors, s, a)
+      area = abs(a(1)*a(4) - a(2)*a(3))
       are_found = area > 0.0_wp
       if (.not. are_found) return
-      weights(d%column) = length(2)/area
-      weights(h%column) = length(1)/area
+      weights(vectors(1)%column) = length(2)/area
+      weights(vectors(2)%column) = length(1)/area
    end subroutine weigh_dyad
 
    !> The `inverse` (unknown, row) of the Jacobian of block `i`, which has `n` rows, at `r%state`. `is_found`: it has

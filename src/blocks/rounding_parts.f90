@@ -3,12 +3,13 @@
 module rounding_parts
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use blocks, only: loop_components
+   use blocks, only: blocks_t, block_t, body_vector_t, loop_components
+   use block_state, only: unknown_t
    use block_engine, only: block_engine_t
    use card_roundings, only: directions, roundings, largest_part, own_in_tables, card_sizes, card_change
    implicit none
    private
-   public :: part_t, arm_t, rounding_parts_t, gather_rounding_parts
+   public :: part_t, arm_t, rounding_parts_t, gather_rounding_parts, is_plain_dyad, dyad_jacobian
 
    !> What a rounding of the calculation adds to both components of a vector, over its size: at most the root of two.
    real(wp), parameter, public :: own_part = 1.5_wp*largest_part*own_in_tables*epsilon(1.0_wp)
@@ -39,6 +40,32 @@ module rounding_parts
    end type rounding_parts_t
 
 contains
+
+   !> `block` is one vector loop that two angles of its own close: its Jacobian is `dyad_jacobian`.
+   pure logical function is_plain_dyad(p, blocks, block)
+      type(rounding_parts_t), intent(in) :: p
+      type(blocks_t), intent(in) :: blocks
+      type(block_t), intent(in) :: block
+
+      is_plain_dyad = block%shape%n == 2 .and. block%first_loop == block%last_loop
+      if (is_plain_dyad) is_plain_dyad = p%is_plain(block%first_loop) .and. blocks%loops(block%first_loop)%row_y > 0
+   end function is_plain_dyad
+
+   !> The Jacobian `a` (4, by columns) of a dyad whose own body vectors are `vectors`, at the unknowns `s`: their quarter
+   !> turns.
+   pure subroutine dyad_jacobian(vectors, s, a)
+      type(body_vector_t), intent(in) :: vectors(2)
+      type(unknown_t), intent(in) :: s(0:*)
+      real(wp), intent(inout) :: a(4)
+      integer :: k
+
+      do k = 1, 2
+         associate (d => vectors(k), f => s(vectors(k)%orientation))
+            a(d%at(1)) = -(f%s*d%x + f%c*d%y)
+            a(d%at(2)) = f%c*d%x - f%s*d%y
+         end associate
+      end do
+   end subroutine dyad_jacobian
 
    !> The parts `p` of the mechanism `m`, which `e` solves; `angle` (links): see `card_sizes`.
    subroutine gather_rounding_parts(p, m, e, angle)

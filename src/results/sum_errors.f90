@@ -1,7 +1,7 @@
 !> What the roundings of sums leave open of rows, and how they grow in instant centres and centres of curvature.
 module sum_errors
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_t, request_link, request_point, request_pair, request_pole, request_curve
+   use mechanism, only: mechanism_t, request_t, request_point, request_pair, request_pole, request_curve
    use known_digits, only: nothing_known
    use motion, only: motion_t, known_of
    use points, only: row_t, row_of, note_known, set_values
@@ -15,10 +15,10 @@ module sum_errors
 
 contains
 
-   !> The rounding errors (length, angle or slide, derivative) of sums of numbers as large as the largest of the rows of
-   !> the motion `q`; `length`: the characteristic one. What is summed up to a velocity is no smaller than an
-   !> angular velocity times a length, what is summed up to an acceleration has the square of one. A slide is a
-   !> difference of places, which are counted from a ground link, and so are the arms of its derivatives.
+   !> The rounding errors (length, angle or slide, derivative) of sums of numbers as large as the largest of the links
+   !> of the motion `q` and of the rows asked for; `length`: the characteristic one. What is summed up to a velocity is
+   !> no smaller than an angular velocity times a length, what is summed up to an acceleration has the square of one. A
+   !> slide is a difference of places, which are counted from a ground link, and so are the arms of its derivatives.
    pure function errors_of_sums(m, q, length) result(of_sums)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
@@ -28,34 +28,44 @@ contains
       integer :: i
 
       size_of = 0.0_wp
+      do i = 1, size(m%links)
+         if (known_of(q, i) >= 0) call widen_by_link(q%origin, q%position(:, i), q%velocity(:, i), q%acceleration(:, i), &
+            size_of)
+      end do
       do i = 1, size(m%requests)
-         associate (request => m%requests(i))
-            select case (request%kind)
-            case (request_pole)
-               call widen(m, q, request_t(request_link, request%subject), size_of)
-            case (request_curve)
-               call widen(m, q, request_t(request_point, request%subject), size_of)
-            case default
-               call widen(m, q, request, size_of)
-            end select
-            if (request%second > 0) call widen(m, q, request_t(request_link, request%second), size_of)
-         end associate
+         select case (m%requests(i)%kind)
+         case (request_point, request_curve)
+            call widen_by_point(m, q, m%requests(i)%subject, size_of(1, :))
+         case (request_pair)
+            call widen_by_pair(m, q, m%requests(i), size_of)
+         end select
       end do
       size_of(2, 0) = max(size_of(2, 0), 1.0_wp)
-      size_of(1, 0) = max(size_of(1, 0), size_of(2, 0)*length, maxval(abs(q%origin)))
+      size_of(1, 0) = max(size_of(1, 0), size_of(2, 0)*length, abs(q%origin(1)), abs(q%origin(2)))
       size_of(1, 1) = max(size_of(1, 1), size_of(2, 1)*length)
       size_of(:2, 2) = max(size_of(:2, 2), size_of(:2, 1)*size_of(2, 1))
-      size_of(3, 0) = size_of(1, 0)
-      do i = 1, size(m%links)
-         if (known_of(q, i) < 0) cycle
-         size_of(3, 0) = max(size_of(3, 0), maxval(abs(q%position(:2, i))))
-      end do
+      size_of(3, 0) = max(size_of(3, 0), size_of(1, 0))
       size_of(3, 1:) = max(size_of(1, 1:), size_of(3, 0)*size_of(2, 1:))
       of_sums = sum_roundings*epsilon(1.0_wp)*size_of
    end function errors_of_sums
 
-   !> Widens the largest lengths and angles `size_of` (3, 0:2) by the row of `request` in the motion `q`.
-   pure subroutine widen(m, q, request, size_of)
+   !> Widens the largest lengths, angles and places as they are counted, `size_of` (3, 0:2), by a link with the position
+   !> `p`, counted from `origin`, the velocity `v` and the acceleration `a`. On plain arrays, which cost no descriptors.
+   pure subroutine widen_by_link(origin, p, v, a, size_of)
+      real(wp), intent(in) :: origin(2), p(3), v(3), a(3)
+      real(wp), intent(inout) :: size_of(3, 0:2)
+
+      size_of(1, 0) = max(size_of(1, 0), abs(p(1) + origin(1)), abs(p(2) + origin(2)))
+      size_of(1, 1) = max(size_of(1, 1), abs(v(1)), abs(v(2)))
+      size_of(1, 2) = max(size_of(1, 2), abs(a(1)), abs(a(2)))
+      size_of(2, 0) = max(size_of(2, 0), abs(p(3)))
+      size_of(2, 1) = max(size_of(2, 1), abs(v(3)))
+      size_of(2, 2) = max(size_of(2, 2), abs(a(3)))
+      size_of(3, 0) = max(size_of(3, 0), abs(p(1)), abs(p(2)))
+   end subroutine widen_by_link
+
+   !> The same of the lengths and angles by the slide or the angle of the pair that `request` asks for in the motion `q`.
+   pure subroutine widen_by_pair(m, q, request, size_of)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       type(request_t), intent(in) :: request
@@ -63,19 +73,14 @@ contains
       type(row_t) :: row
       integer :: unit
 
-      if (request%kind == request_point) then
-         call widen_by_point(m, q, request%subject, size_of(1, :))
-         return
-      end if
       ! The row without its name.
       row%kind = request%kind
       call note_known(m, q, request, row)
       if (row%known < 0) return
       call set_values(m, q, request, row)
       unit = merge(2, 1, row%angular)
-      size_of(unit, :) = max(size_of(unit, :), abs(row%value(1, :)), abs(row%value(2, :)))
-      size_of(2, :) = max(size_of(2, :), abs(row%value(3, :)))
-   end subroutine widen
+      size_of(unit, :) = max(size_of(unit, :), abs(row%value(1, :)))
+   end subroutine widen_by_pair
 
    !> The same of the lengths `size_of` (0:2) by a bound of what point number `i` adds up, which needs no direction.
    pure subroutine widen_by_point(m, q, i, size_of)
