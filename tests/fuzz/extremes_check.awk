@@ -19,14 +19,17 @@ function unit_of(text,  mantissa, at, power, dot, last) {
 }
 function value_of(text) { gsub(/[?]/, "0", text); return text + 0 }
 function field(i,  f) { f = substr($0, 10 + 12*(i - 1), 12); gsub(/ /, "", f); return f }
-function note_gaps(text,  list, n, i, ends) {
+# A power of ten behind the times holds for all of them.
+function note_gaps(text,  list, n, i, ends, scale) {
    sub(/.*T = /, "", text)
+   scale = 1
+   if (match(text, / 10[*][*]-?[0-9]+/)) scale = 10^substr(text, RSTART + 5, RLENGTH - 5)
    n = split(text, list, ", ")
    for (i = 1; i <= n; i++) {
       split(list[i], ends, " ")
       gaps[set]++
-      from[set, gaps[set]] = value_of(ends[1])
-      to[set, gaps[set]] = value_of(ends[2] == ".." ? ends[3] : ends[1])
+      from[set, gaps[set]] = scale*value_of(ends[1])
+      to[set, gaps[set]] = scale*value_of(ends[2] == ".." ? ends[3] : ends[1])
    }
    if (text ~ /MORE/) all_gaps_known[set] = 0
 }
