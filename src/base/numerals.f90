@@ -166,10 +166,11 @@ contains
       text = adjustl(text)
    end function full_by_format
 
-   !> Writes the last digits of `n` >= 0, as many as `text` is long.
-   pure subroutine put_digits(n, text)
+   !> Writes the last digits of `n` >= 0, as many as `text` is long; `before`: the number of those before them.
+   pure subroutine put_digits(n, text, before)
       integer(int64), intent(in) :: n
       character(*), intent(inout) :: text
+      integer(int64), intent(out), optional :: before
       integer(int64) :: rest, next
       integer :: i, pair
 
@@ -180,7 +181,12 @@ contains
          text(i:i + 1) = pairs(pair + 1:pair + 2)
          rest = next
       end do
-      if (mod(len(text), 2) == 1) text(1:1) = achar(48 + int(rest - 10*(rest/10)))
+      if (mod(len(text), 2) == 1) then
+         next = rest/10
+         text(1:1) = achar(48 + int(rest - 10*next))
+         rest = next
+      end if
+      if (present(before)) before = rest
    end subroutine put_digits
 
    !> Writes all digits of `n` >= 0 at the end of `text`, from its character `first` on.
@@ -208,11 +214,12 @@ contains
       character(*), intent(inout) :: text
       integer, intent(out) :: first
       integer :: point
+      integer(int64) :: rest
 
       point = len(text) - d
-      call put_digits(n, text(point + 1:))
+      call put_digits(n, text(point + 1:), rest)
       text(point:point) = '.'
-      call put_whole(n/tens(d), text(:point - 1), first)
+      call put_whole(rest, text(:point - 1), first)
    end subroutine put_with_point
 
    !> Writes the 17 digits of `n`, a point after the first.

@@ -10,8 +10,8 @@ module points
    use motion, only: motion_t, known_of, mark_of, mark_none
    implicit none
    private
-   public :: row_t, row_of, note_known, set_values, has_number, difference, centre_numbers, coordinates_of, is_due, &
-      strides, any_due, is_fixed
+   public :: row_t, row_of, find_row, note_known, set_values, has_number, difference, centre_numbers, &
+      coordinates_of, is_due, strides, any_due, is_fixed
    public :: point_motion, pair_motion
 
    !> One row of a table, in the deck's units of length and time and in radians.
@@ -26,6 +26,9 @@ module points
       !> x, y, phi (a pair: its value first) and their derivatives; or as in `centre_t`.
       real(wp) :: value(3, 0:2) = 0.0_wp
    end type row_t
+
+   !> A variable: a constant, or intent(out), the compiler makes number by number, and waits for each as it copies them.
+   type(row_t), protected :: new_row = row_t()
 
    !> The numbers (coordinate, derivative or axes) of a pole or curve that are there wherever its centre is finite, in
    !> the order of the tables: x, y in the fixed plane, in link I, in link J; point, tangent, radius, centre.
@@ -71,11 +74,22 @@ contains
       type(request_t), intent(in) :: request
       type(row_t) :: row
 
+      call find_row(m, q, request, row)
+   end function row_of
+
+   !> The same, written to `row`: faster for the many rows of a table, since nothing is copied. What `row` was is gone.
+   pure subroutine find_row(m, q, request, row)
+      type(mechanism_t), intent(in) :: m
+      type(motion_t), intent(in) :: q
+      type(request_t), intent(in) :: request
+      type(row_t), intent(inout) :: row
+
+      row = new_row
       row%kind = request%kind
       row%name = request_name(m, request)
       call note_known(m, q, request, row)
       call set_values(m, q, request, row)
-   end function row_of
+   end subroutine find_row
 
    !> Gives the `row` of `request` its values. `changes` (3, 0:2, links): those of x, y, phi and their derivatives; this
    !> `part` of them is added to the motion.

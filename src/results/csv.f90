@@ -12,7 +12,7 @@ module csv
    use known_digits, only: nothing_known
    use sensitivities, only: has_tolerances, worst_case, root_of_squares
    use link_bounds, only: row_bound
-   use set_motion, only: set_motion_t, row_in_set, error_in_set, spread_t, spread_in_set
+   use set_motion, only: set_motion_t, find_row_in_set, error_in_set, spread_t, spread_in_set
    use text_output, only: output_t, put, add
    use numerals, only: whole, full, put_full, full_length
    implicit none
@@ -69,7 +69,7 @@ contains
       error = 0.0_wp
       do i = 1, size(m%requests)
          if (.not. is_due(m, m%requests(i), step)) cycle
-         row = row_in_set(m, s, i)
+         call find_row_in_set(m, s, i, row)
          if (asked) error = error_in_set(m, s, i)
          if (row%kind >= request_pole) then
             call add_centre()

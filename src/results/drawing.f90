@@ -8,7 +8,7 @@ module drawing
    use planar, only: direction, quarter_turn, point_of
    use motion, only: known_of, mark_none, singular_unclear
    use points, only: row_t, has_number, point_motion, is_fixed
-   use set_motion, only: set_motion_t, is_flagged, row_in_set
+   use set_motion, only: set_motion_t, is_flagged, find_row_in_set
    use outline, only: outline_t, outlines_of
    implicit none
    private
@@ -313,7 +313,7 @@ contains
          n = 0
          if (k <= d%m%steps .and. (mod(k, d%stride) == 0 .or. k == d%m%steps)) n = place_number(d, k)
          do i = 1, size(d%centrodes)
-            row = row_in_set(d%m, s, d%centrodes(i)%request)
+            call find_row_in_set(d%m, s, d%centrodes(i)%request, row)
             now%has_centre(i) = has_number(row, 1, 0) .and. all(abs(row%value(:2, :)) < max_place)
             if (.not. now%has_centre(i)) cycle
             now%centre(:, i) = row%value(:2, 0) - d%origin

@@ -8,7 +8,7 @@ module listing
    use branch_certificate, only: certificate_counts_t
    use points, only: is_due, row_t
    use sensitivities, only: has_tolerances
-   use set_motion, only: set_motion_t, is_flagged, in_set, row_in_set, doubt_in_set, spread_in_set
+   use set_motion, only: set_motion_t, is_flagged, in_set, find_row_in_set, doubt_in_set, spread_in_set
    use listing_layout, only: layout_t, new_layout
    use listing_tables, only: table_t, put_instant, put_requested, put_spreads
    use listing_diagnostics, only: put_diagnostics, put_singular, put_closure_error, remarks_text
@@ -116,7 +116,7 @@ contains
       do i = 1, size(m%requests)
          if (.not. is_due(m, m%requests(i), step)) cycle
          if (table%kind == 0) call put_instant(o, l, s%motions(1)%t, step, table%masked)
-         row = row_in_set(m, s, i)
+         call find_row_in_set(m, s, i, row)
          error = doubt_in_set(row, s, i)
          call put_requested(o, l, m, i, row, error, table)
          if (has_tolerances(m, m%requests(i))) call put_spreads(o, l, m, i, row, spread_in_set(m, s, i), table)

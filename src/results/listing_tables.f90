@@ -259,15 +259,15 @@ contains
       real(wp), intent(in) :: error(3, 0:2)
       logical, intent(inout) :: masked
       character(row_length) :: line
-      real(wp) :: size_of(2)
+      real(wp) :: x, off
       integer :: k, c, i, used, last, unit
       logical :: has(3)
 
-      size_of = [1.0_wp, l%angle]
       has = has_column(:, row%kind)
       ! A pair has one of its two columns, and its value is the first.
       if (row%kind == request_pair) has = [.not. row%angular, .false., row%angular]
-      line(:name_length) = ' '//row%name
+      line(1:1) = ' '
+      line(2:name_length) = row%name
       used = name_length
       do k = 0, 2
          do c = 1, 3
@@ -282,11 +282,19 @@ contains
                i = merge(1, c, row%kind == request_pair)
                if (k > row%known) then
                   field = l%none
-               else if (error(i, k) > 0.0_wp) then
-                  call put_known(row%value(i, k)/size_of(unit), error(i, k)/size_of(unit), d%decimals(unit, k), &
-                     d%power(unit, k), field, masked)
+                  cycle
+               end if
+               x = row%value(i, k)
+               off = error(i, k)
+               ! A division takes long, by 1 too.
+               if (unit == 2) then
+                  x = x/l%angle
+                  off = off/l%angle
+               end if
+               if (off > 0.0_wp) then
+                  call put_known(x, off, d%decimals(unit, k), d%power(unit, k), field, masked)
                else
-                  call put_fixed(row%value(i, k)/size_of(unit), d%decimals(unit, k), d%power(unit, k), field)
+                  call put_fixed(x, d%decimals(unit, k), d%power(unit, k), field)
                end if
             end associate
          end do

@@ -6,13 +6,13 @@ module set_motion
    use motion, only: motion_t, new_motion, mark_none, diagnostic_t
    use independent, only: part_t, parts_t, find_parts, mechanism_of
    use structure, only: findings_t
-   use points, only: row_t, row_of
+   use points, only: row_t, find_row
    use error_estimate, only: error_estimate_t, estimate_of, row_error
    use sensitivities, only: sensitivities_t, ground_sensitivities
    use motion_proof, only: motion_proof_t
    implicit none
    private
-   public :: set_motion_t, new_set_motion, take_whole, is_flagged, has_words, in_set, put_together, row_in_set
+   public :: set_motion_t, new_set_motion, take_whole, is_flagged, has_words, in_set, put_together, find_row_in_set
    public :: doubt_in_set, error_in_set, spread_t, spread_in_set
 
    !> A set that is one mechanism is one part, with the numbers of the set.
@@ -117,17 +117,18 @@ contains
       end do
    end subroutine put_together
 
-   !> The row of request number `i` of `m`. A row of the ground, which is no part's, is known by the deck alone.
-   pure type(row_t) function row_in_set(m, s, i) result(row)
+   !> The `row` of request number `i` of `m`. A row of the ground, which is no part's, is known by the deck alone.
+   pure subroutine find_row_in_set(m, s, i, row)
       type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(in) :: s
       integer, intent(in) :: i
+      type(row_t), intent(inout) :: row
       integer :: c
 
       c = s%parts%part(i)
-      if (c > 0) row = row_of(s%own(c), s%motions(c), s%own(c)%requests(s%parts%number(i)))
-      if (c == 0) row = row_of(m, s%motions(1), m%requests(i))
-   end function row_in_set
+      if (c > 0) call find_row(s%own(c), s%motions(c), s%own(c)%requests(s%parts%number(i)), row)
+      if (c == 0) call find_row(m, s%motions(1), m%requests(i), row)
+   end subroutine find_row_in_set
 
    !> What rounding leaves open (3, 0:2) of the `row` of request number `i`; 0 where no digit of a table is in doubt.
    pure function doubt_in_set(row, s, i) result(error)

@@ -15,7 +15,7 @@ module table
    use names, only: name_table_t, put_name, find_name, drive_name
    use points, only: row_t, has_number, centre_numbers, coordinates_of
    use sensitivities, only: has_tolerances, worst_case, root_of_squares
-   use set_motion, only: set_motion_t, row_in_set, spread_t, spread_in_set
+   use set_motion, only: set_motion_t, find_row_in_set, spread_t, spread_in_set
    use csv, only: add_name
    use text_output, only: output_t, put, add
    use numerals, only: put_full, full_length
@@ -188,7 +188,8 @@ contains
       end do
       allocate (rows(0:2, size(m%requests)))
       do i = 1, size(m%requests)
-         rows(:, i) = row_in_set(m, s, i)
+         call find_row_in_set(m, s, i, rows(0, i))
+         rows(1:, i) = rows(0, i)
          if (m%requests(i)%every == 0 .or. .not. has_tolerances(m, m%requests(i))) cycle
          x = spread_in_set(m, s, i)
          rows(1:, i)%known = x%known
