@@ -7,7 +7,7 @@ module lane_runs
    use mechanism, only: mechanism_t, method_newton, request_link, request_point, request_pair, instant, instant_count
    use motion, only: mark_none
    use structure, only: findings_t
-   use points, only: row_t, row_of
+   use points, only: row_t, find_row
    use predictor, only: is_even
    use drive_excursion, only: judge_step
    use analysis, only: come_back
@@ -42,6 +42,7 @@ module lane_runs
       type(answers_t) :: asked
       type(set_analysis_t) :: s
       type(watch_t) :: watch
+      type(row_t), allocatable :: rows(:)   !< room for those that EXTREMES ask for
       integer :: at = -1                    !< the last instant solved
       integer :: counted = -1               !< the last instant that the row has counted
       integer :: noted = -1                 !< the last instant that EXTREMES have taken
@@ -281,25 +282,27 @@ contains
          end if
          r%noted = k
          r%at = k
-         if (r%asked%extremes_asked .and. k > r%seen .and. may_be_laned(r)) &
-            call look_on(r%watch, r%asked%extremes, rows_of(r), steps)
+         if (r%asked%extremes_asked .and. k > r%seen .and. may_be_laned(r)) call show_rows(r, steps)
          r%seen = max(k, r%seen)
          if (signal_received() > 0) return
       end do
       r%is_over = r%at == instant_count(r%m) - 1
    end subroutine by_engine
 
-   !> The rows of `r` that EXTREMES ask for, by the motion found last.
-   pure function rows_of(r) result(rows)
-      type(lane_run_t), intent(in) :: r
-      type(row_t) :: rows(size(r%asked%extremes%asked))
+   !> Shows the watch of `r` the rows that EXTREMES ask for, by the motion found last; `steps`: see `look_on`.
+   subroutine show_rows(r, steps)
+      type(lane_run_t), intent(inout) :: r
+      integer, intent(out) :: steps
       integer :: i
 
-      do i = 1, size(rows)
-         rows(i) = row_of(r%s%now%own(1), r%s%now%motions(1), &
-            r%s%now%own(1)%requests(r%s%now%parts%number(r%asked%extremes%asked(i))))
-      end do
-   end function rows_of
+      associate (asked => r%asked%extremes%asked, now => r%s%now)
+         if (.not. allocated(r%rows)) allocate (r%rows(size(asked)))
+         do i = 1, size(asked)
+            call find_row(now%own(1), now%motions(1), now%own(1)%requests(now%parts%number(asked(i))), r%rows(i))
+         end do
+      end associate
+      call look_on(r%watch, r%asked%extremes, r%rows, steps)
+   end subroutine show_rows
 
    !> The engine goes on with `r`, where lane `i` has not found the next instant (`is_refused`) or extremes may be in
    !> the last `steps`.
@@ -367,7 +370,7 @@ contains
             .or. is_in_doubt(r%s%estimators(1)%sizes, r%s%now%own(1), r%s%now%motions(1), e)
       end select
       if (turned) return
-      call look_on(r%watch, r%asked%extremes, rows_of(r), steps)
+      call show_rows(r, steps)
       r%seen = r%at + 1
    end subroutine watch_lane
 end module lane_runs

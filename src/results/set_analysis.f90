@@ -15,7 +15,7 @@ module set_analysis
    use sensitivities, only: sensor_t, make_sensor, find_sensitivities
    use set_motion, only: set_motion_t, new_set_motion
    use motion, only: diagnostic_t, motion_t, new_motion
-   use points, only: row_t, row_of
+   use points, only: row_t, find_row
    use assemblies, only: assemblies_t, find_nearest
    use block_engine, only: block_engine_t
    use engine_renewal, only: give_blocks, can_be_renewed
@@ -141,7 +141,7 @@ contains
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c, list(:)
       real(wp), intent(in) :: t
-      type(row_t), intent(out) :: rows(size(list))
+      type(row_t), intent(inout) :: rows(size(list))
       logical, intent(out) :: is_found
       logical, intent(in), optional :: always
       real(wp), intent(out), optional :: error(3, 0:2, size(list)), growth
@@ -163,7 +163,7 @@ contains
             is_found = q%known == 2
          end if
          do i = 1, size(list)
-            rows(i) = row_of(own, q, own%requests(s%now%parts%number(list(i))))
+            call find_row(own, q, own%requests(s%now%parts%number(list(i))), rows(i))
          end do
          if (.not. present(error)) return
          call estimate_errors(s%estimators(c), own, a%engine, a%convergence%reciprocal_condition, q, always, estimate)
