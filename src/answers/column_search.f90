@@ -25,8 +25,9 @@ module column_search
    !> The third derivative, at the first of three places a half apart, of the polynomial of degree 8 that has values,
    !> rates and accelerations at them (Hermite), in this order, and of that of degree 5 by rates and accelerations; the
    !> errors of the second, in those of a rate over the length or of an acceleration.
-   real(wp), parameter :: by_all(9) = [-1188.0_wp, 1536.0_wp, -348.0_wp, -288.0_wp, -192.0_wp, 60.0_wp, -27.0_wp, &
-      48.0_wp, -3.0_wp], by_rates(6) = [-46.0_wp, 32.0_wp, 14.0_wp, -12.0_wp, -16.0_wp, -2.0_wp]
+   real(wp), parameter :: by_all(3, 0:2) = reshape([-1188.0_wp, 1536.0_wp, -348.0_wp, -288.0_wp, -192.0_wp, 60.0_wp, &
+      -27.0_wp, 48.0_wp, -3.0_wp], [3, 3]), &
+      by_rates(3, 2) = reshape([-46.0_wp, 32.0_wp, 14.0_wp, -12.0_wp, -16.0_wp, -2.0_wp], [3, 2])
    real(wp), parameter :: errors_by_rates = sum(abs(by_rates))
    !> By how much the cubic may miss the value in the middle, as a part of the variation; and how much steeper a
    !> monotonic cubic may be at its ends than on average (Fritsch and Carlson, SIAM J. Numer. Anal. 17, 1980).
@@ -93,7 +94,7 @@ contains
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
       type(node_t), intent(in) :: a, b
-      type(node_t) :: middle
+      type(node_t) :: nodes(3)
       real(wp) :: jerk(3, size(x%asked), 2)
       real(wp) :: shortest
       logical :: simple
@@ -106,23 +107,23 @@ contains
             if (length > 0.5_wp*step_of(m)) call note_interval(x%open, x%way, a%t, b%t, shortest)
             return
          end if
-         middle = node_at(x%asked, s, c, a%t + 0.5_wp*(b%t - a%t), .false.)
-         if (.not. is_known(middle, track%rows)) then
+         nodes = [node_t :: a, node_at(x%asked, s, c, a%t + 0.5_wp*(b%t - a%t), .false.), b]
+         if (.not. is_known(nodes(2), track%rows)) then
             call note_interval(x%open, x%way, a%t, b%t, shortest)
             return
          end if
-         jerk = jerks_of(x, m, c, [node_t :: a, middle, b])
-         simple = are_simple(x, m, c, [node_t :: a, middle, b], jerk)
+         jerk = jerks_of(x, m, c, nodes)
+         simple = are_simple(x, m, c, nodes, jerk)
          if (.not. simple .and. track%halvings < max_halvings .and. length > 2.0_wp*shortest) then
             track%halvings = track%halvings + 1
-            call search_part(x, m, s, c, a, middle)
-            call take_node(x, m, c, middle)
-            call search_part(x, m, s, c, middle, b)
+            call search_part(x, m, s, c, a, nodes(2))
+            call take_node(x, m, c, nodes(2))
+            call search_part(x, m, s, c, nodes(2), b)
             return
          end if
          if (.not. simple) call note_interval(x%open, x%way, a%t, b%t, shortest)
-         call take_node(x, m, c, middle)
-         call search_columns(x, m, s, c, [node_t :: a, middle, b], jerk)
+         call take_node(x, m, c, nodes(2))
+         call search_columns(x, m, s, c, nodes, jerk)
       end associate
    end subroutine search_part
 
@@ -295,9 +296,9 @@ contains
       real(wp), intent(in) :: f(3, 0:2), open
       real(wp) :: by_values
 
-      by_values = dot_product(by_all, reshape(f, [9]))
-      jerk = dot_product(by_rates, reshape(f(:, 1:), [6]))
-      if (abs(by_values - jerk) > sum(abs(by_all(:3)))*open) jerk = by_values
+      by_values = sum(by_all*f)
+      jerk = sum(by_rates*f(:, 1:))
+      if (abs(by_values - jerk) > sum(abs(by_all(:, 0)))*open) jerk = by_values
    end function jerk_at_first
 
    !> The accelerations of mechanism `c` at the `nodes`, two ends and the middle, and their derivatives `jerk` at the
