@@ -62,7 +62,7 @@ contains
       integer, intent(in) :: k
       integer(int64), intent(out) :: n
       logical, intent(out) :: sure
-      real(wp) :: p, e, rest
+      real(wp) :: p, e
 
       n = 0
       sure = .false.
@@ -71,10 +71,9 @@ contains
       if (.not. x < 2.0e17_wp*high(-k)) return
       p = x*high(k)
       if (p < plain) then
-         n = int(p, int64)
-         rest = p - real(n, wp)
-         sure = abs(rest - 0.5_wp) > plain_margin*p
-         if (rest > 0.5_wp) n = n + 1
+         ! No question which half it is in, to which there is no rule. Where the sum rounds over a half, that is not sure.
+         n = int(p + 0.5_wp, int64)
+         sure = 0.5_wp - abs(p - real(n, wp)) > plain_margin*p
          if (sure) return
       end if
       ! Here p > 1/4: no denormal number in what follows.
