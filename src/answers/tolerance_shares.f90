@@ -7,7 +7,7 @@ module tolerance_shares
    use names, only: subject_name
    use set_motion, only: set_motion_t, spread_t, spread_in_set
    use sensitivities, only: has_tolerances, worst_case, root_of_squares
-   use listing_layout, only: layout_t, digits_t, digits_of, dimension_of, name_length, unit_of, column_text
+   use listing_layout, only: layout_t, digits_t, dimension_of, name_length, unit_of, column_text
    use listing_tables, only: time_text
    use text_output, only: output_t, put
    use numerals, only: fixed, whole
@@ -138,7 +138,7 @@ contains
          if (request%kind == request_pair) column = merge(1, 3, m%pairs(request%subject)%kind == pair_prismatic)
          what = dimension_of(column)
          size_of = merge(l%angle, 1.0_wp, what == 2)
-         d = digits_of(l, i)
+         d = l%own(l%part(i))
          decimals = d%decimals(what, k) + l%more_decimals
          if (share%root/size_of < 0.5_wp*10.0_wp**(d%power(what, k) - decimals)) return
          unit = unit_of(d%power(what, k), column_text(l%units(1, request%kind), column, k) &

@@ -11,7 +11,7 @@ module variant_rows
    use deck_variants, only: variation_t, varied_t, values_of_variant
    use set_analysis, only: set_analysis_t
    use set_motion, only: in_set, is_flagged
-   use listing_layout, only: layout_t, digits_t, digits_of, dimension_of, column_text, choose_digits, angle_unit
+   use listing_layout, only: layout_t, digits_t, dimension_of, column_text, choose_digits, angle_unit
    use csv, only: marks
    use table, only: table_t, new_table, dotted
    use extremes, only: extreme_t, least, greatest
@@ -223,7 +223,7 @@ contains
             c%unit = column_text(l%units(1, kind), place, k)//column_text(l%units(2, kind), place, k)
          end associate
          c%angular = angular
-         d = digits_of(l, i)
+         d = l%own(l%part(i))
          c%decimals = d%decimals(dimension_of(place), k)
          c%power = d%power(dimension_of(place), k)
       end function extreme_column

@@ -16,7 +16,7 @@ module listing_layout
    use phrases
    implicit none
    private
-   public :: layout_t, head_drive_t, new_layout, digits_t, digits_for, digits_of, column_powers, head_lines
+   public :: layout_t, head_drive_t, new_layout, digits_t, digits_for, column_powers, head_lines
    public :: name_length, row_length, has_column, dimension_of, angle_unit, unit_of, choose_digits, column_text
 
    integer, parameter :: digits_after_first = 6
@@ -47,9 +47,8 @@ module listing_layout
 
    !> The digits of the set, and of each of its independent mechanisms where they are not all the same.
    type, extends(digits_t) :: layout_t
-      type(digits_t), allocatable :: own(:)   !< (parts)
-      integer, allocatable :: part(:)         !< (requests) 0: of the ground
-      integer, allocatable :: drive_part(:)   !< (drives)
+      type(digits_t), allocatable :: own(:)   !< (0:parts) 0: of the set
+      integer, allocatable :: part(:), drive_part(:)   !< (requests), (drives) whose digits they have
       logical :: mixed = .false.              !< their powers of ten differ
       integer :: time_decimals = digits_after_first   !< of the instants, as above
       integer :: time_power = 0
@@ -81,12 +80,16 @@ contains
 
       if (m%degrees) l%angle = degree
       l%digits_t = digits_for(m, l%angle)
+      allocate (l%own(0:0), l%part(size(m%requests)), l%drive_part(size(m%drives)))
+      l%part = 0
+      l%drive_part = 0
       if (present(parts)) then
          call take_parts(l, parts, own)
       else
          call find_parts(m, new_parts, new_own)
          call take_parts(l, new_parts, new_own)
       end if
+      l%own(0) = l%digits_t
       time = latest_time(m)
       if (time > 0.0_wp) call choose_digits(log10(time), l%time_decimals, l%time_power)
       ! What a tolerance changes has four digits.
@@ -121,8 +124,7 @@ contains
       real(wp) :: sizes(3, 0:1)
       integer :: what
 
-      d = l%digits_t
-      if (allocated(l%own)) d = l%own(l%drive_part(k))
+      d = l%own(l%drive_part(k))
       what = merge(2, 1, driven_kinds(m%drives(k)%kind) == request_link)
       drive%before = '   '//trim(drive_name(m, m%drives(k)))//' = '
       drive%behind = ' '//unit_of(d%power(what, 0), trim(merge(angle_unit(m), m%length_unit, what == 2)))
@@ -171,23 +173,14 @@ contains
          largest%decimals = max(largest%decimals, own(c)%decimals)
       end do
       if (.not. l%mixed .and. all(largest%decimals - l%decimals <= 1)) return
-      l%own = own
+      deallocate (l%own)
+      allocate (l%own(0:parts%count))
+      l%own(1:) = own
       l%part = parts%part
-      allocate (l%drive_part(sum([(size(parts%list(c)%drives), c=1, parts%count)])))
       do c = 1, parts%count
          l%drive_part(parts%list(c)%drives) = c
       end do
    end subroutine take_parts
-
-   !> The digits of request number `i`.
-   pure type(digits_t) function digits_of(l, i) result(d)
-      type(layout_t), intent(in) :: l
-      integer, intent(in) :: i
-
-      d = l%digits_t
-      if (.not. allocated(l%own)) return
-      if (l%part(i) > 0) d = l%own(l%part(i))
-   end function digits_of
 
    !> The powers of ten of the columns of rows of the given `kind` (9): what they do not have is 0.
    pure function column_powers(d, kind) result(power)

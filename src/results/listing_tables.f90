@@ -187,7 +187,7 @@ contains
       real(wp), intent(in) :: error(3, 0:2)
       type(table_t), intent(inout) :: table
 
-      associate (d => digits_of(l, i))
+      associate (d => l%own(l%part(i)))
          if (row%kind < request_pole) then
             call put_heads(o, l, d, row%kind, table)
             call put_row(o, l, d, row, error, table%masked)
@@ -214,7 +214,7 @@ contains
       type(digits_t) :: d
       type(row_t) :: one
 
-      d = digits_of(l, i)
+      d = l%own(l%part(i))
       d%decimals = d%decimals + l%more_decimals
       one = row
       one%known = s%known
