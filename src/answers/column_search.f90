@@ -107,7 +107,9 @@ contains
             if (length > 0.5_wp*step_of(m)) call note_interval(x%open, x%way, a%t, b%t, shortest)
             return
          end if
-         nodes = [node_t :: a, node_at(x%asked, s, c, a%t + 0.5_wp*(b%t - a%t), .false.), b]
+         nodes(1) = a
+         nodes(2) = node_at(x%asked, s, c, a%t + 0.5_wp*(b%t - a%t), .false.)
+         nodes(3) = b
          if (.not. is_known(nodes(2), track%rows)) then
             call note_interval(x%open, x%way, a%t, b%t, shortest)
             return

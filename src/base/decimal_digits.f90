@@ -71,7 +71,7 @@ contains
       if (.not. x < 2.0e17_wp*high(-k)) return
       p = x*high(k)
       if (p < plain) then
-         ! No question which half it is in, to which there is no rule. Where the sum rounds over a half, that is not sure.
+         ! In which half the fraction is has no rule, and is no question. Where the sum rounds, that is not sure.
          n = int(p + 0.5_wp, int64)
          sure = 0.5_wp - abs(p - real(n, wp)) > plain_margin*p
          if (sure) return

@@ -28,8 +28,8 @@ contains
       associate (first => e%blocks%list(i)%first_loop, last => e%blocks%list(i)%last_loop)
          if (is_plain_dyad(r%parts, e%blocks, e%blocks%list(i))) then
             associate (loop => e%blocks%loops(first))
-               call weigh_dyad(e%blocks%body_vectors(loop%first_own:loop%last_vector), r%parts%parts(own:own + 1)%length, &
-                  r%state%u, weights, are_found)
+               call weigh_dyad(e%blocks%body_vectors(loop%first_own:loop%last_vector), &
+                  r%parts%parts(own:own + 1)%length, r%state%u, weights, are_found)
             end associate
             return
          end if

@@ -51,8 +51,8 @@ contains
       if (is_plain_dyad) is_plain_dyad = p%is_plain(block%first_loop) .and. blocks%loops(block%first_loop)%row_y > 0
    end function is_plain_dyad
 
-   !> The Jacobian `a` (4, by columns) of a dyad whose own body vectors are `vectors`, at the unknowns `s`: their quarter
-   !> turns.
+   !> The Jacobian `a` (4, by columns) of a dyad whose own body vectors are `vectors`, at the unknowns `s`: their
+   !> quarter turns.
    pure subroutine dyad_jacobian(vectors, s, a)
       type(body_vector_t), intent(in) :: vectors(2)
       type(unknown_t), intent(in) :: s(0:*)

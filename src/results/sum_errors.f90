@@ -29,8 +29,8 @@ contains
 
       size_of = 0.0_wp
       do i = 1, size(m%links)
-         if (known_of(q, i) >= 0) call widen_by_link(q%origin, q%position(:, i), q%velocity(:, i), q%acceleration(:, i), &
-            size_of)
+         if (known_of(q, i) >= 0) call widen_by_link(q%origin, q%position(:, i), q%velocity(:, i), &
+            q%acceleration(:, i), size_of)
       end do
       do i = 1, size(m%requests)
          select case (m%requests(i)%kind)
@@ -64,7 +64,7 @@ contains
       size_of(3, 0) = max(size_of(3, 0), abs(p(1)), abs(p(2)))
    end subroutine widen_by_link
 
-   !> The same of the lengths and angles by the slide or the angle of the pair that `request` asks for in the motion `q`.
+   !> The same of lengths and angles by the slide or the angle of the pair that `request` asks for in the motion `q`.
    pure subroutine widen_by_pair(m, q, request, size_of)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
