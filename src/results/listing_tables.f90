@@ -59,7 +59,8 @@ contains
 
       call put(o, '')
       used = 0
-      call append(start//'   T = ', line, used)
+      call append(start, line, used)
+      call append('   T = ', line, used)
       do k = 1, size(times)
          if (k > 1) call append(between, line, used)
          call append_number(times(k), 0.0_wp, l%time_decimals, l%time_power, line, used, masked)
