@@ -133,14 +133,17 @@ contains
       type(drive_t) :: drive
       real(wp) :: r(directions)
       real(wp), allocatable :: sizes(:)
+      integer, allocatable :: tables(:)
       integer :: i, j, k, d
 
       do i = 1, size(m%drives)
          if (.not. allocated(m%drives(i)%terms)) cycle
-         if (.not. any(m%drives(i)%terms%kind == term_table)) cycle
+         tables = pack([(j, j=1, size(m%drives(i)%terms))], m%drives(i)%terms%kind == term_table)
+         if (size(tables) == 0) cycle
          if (.not. allocated(laws)) allocate (laws(directions, size(m%drives)))
          do d = 1, directions
-            drive = drive_t(terms=pack(m%drives(i)%terms, m%drives(i)%terms%kind == term_table))
+            drive = drive_t()
+            drive%terms = m%drives(i)%terms(tables)
             do j = 1, size(drive%terms)
                sizes = table_sizes(drive%terms(j))
                do k = 1, size(sizes)

@@ -91,14 +91,12 @@ contains
       call set_values(m, q, request, row)
    end subroutine find_row
 
-   !> Gives the `row` of `request` its values. `changes` (3, 0:2, links): those of x, y, phi and their derivatives; this
-   !> `part` of them is added to the motion.
-   pure subroutine set_values(m, q, request, row, changes, part)
+   !> Gives the `row` of `request` its values.
+   pure subroutine set_values(m, q, request, row)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       type(request_t), intent(in) :: request
       type(row_t), intent(inout) :: row
-      real(wp), intent(in), optional :: changes(:, 0:, :), part
 
       associate (i => request%subject)
          select case (request%kind)
@@ -107,23 +105,23 @@ contains
                row%value(:, 0) = m%links(i)%position
                return
             end if
-            row%value = link_motion(q, i, changes, part)
+            row%value = link_motion(q, i)
          case (request_point)
             if (m%links(m%points(i)%link)%ground) then
                row%value(:2, 0) = point_of(m%links(m%points(i)%link)%position, m%points(i)%offset)
                return
             end if
-            row%value(:2, :) = point_motion(m, q, i, changes, part)
+            row%value(:2, :) = point_motion(m, q, i)
          case (request_pair)
             row%angular = m%pairs(i)%kind /= pair_prismatic
-            row%value(1, :) = pair_motion(m, q, m%pairs(i), changes, part)
+            row%value(1, :) = pair_motion(m, q, m%pairs(i))
             return
          case (request_pole)
             if (row%known < 1) return
-            call take_centre(pole_of(link_motion(q, request%second, changes, part), link_motion(q, i, changes, part), &
+            call take_centre(pole_of(link_motion(q, request%second), link_motion(q, i), &
                request%length, request%rate), row)
          case (request_curve)
-            call take_curve(m, q, request, row, changes, part)
+            call take_curve(m, q, request, row)
             if (request%second > 0) return
             row%value(:2, 1) = row%value(:2, 1) + q%origin
          end select
@@ -149,17 +147,16 @@ contains
    end function request_name
 
    !> The numbers of the `row` of the path of a point, without the motion's origin: in the axes of the link from which
-   !> it is seen, or in the fixed plane. `changes`, `part`: as in `set_values`, here and below.
-   pure subroutine take_curve(m, q, request, row, changes, part)
+   !> it is seen, or in the fixed plane.
+   pure subroutine take_curve(m, q, request, row)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       type(request_t), intent(in) :: request
       type(row_t), intent(inout) :: row
-      real(wp), intent(in), optional :: changes(:, 0:, :), part
       real(wp) :: p(2, 0:2)
 
-      p = point_motion(m, q, request%subject, changes, part)
-      if (request%second > 0) p = seen_from(link_motion(q, request%second, changes, part), p)
+      p = point_motion(m, q, request%subject)
+      if (request%second > 0) p = seen_from(link_motion(q, request%second), p)
       if (row%known < 2) p(:, max(0, row%known + 1):) = 0.0_wp
       call take_centre(curve_of(p, request%length, request%rate), row)
    end subroutine take_curve
@@ -175,16 +172,14 @@ contains
    end subroutine take_centre
 
    !> Position, velocity and acceleration (3, 0:2) of link number `i`.
-   pure function link_motion(q, i, changes, part) result(x)
+   pure function link_motion(q, i) result(x)
       type(motion_t), intent(in) :: q
       integer, intent(in) :: i
-      real(wp), intent(in), optional :: changes(:, 0:, :), part
       real(wp) :: x(3, 0:2)
 
       x(:, 0) = q%position(:, i)
       x(:, 1) = q%velocity(:, i)
       x(:, 2) = q%acceleration(:, i)
-      if (present(changes)) x = x + part*changes(:, :, i)
    end function link_motion
 
    !> Whether `row` has the number (c, k) of its values: x, y, phi (c) of the k-th derivative, as far as it is known; of
@@ -256,14 +251,13 @@ contains
 
    !> Place from the motion's origin, velocity and acceleration (2, 0:2) of point number `i`, at u from its link's
    !> origin o:  p = o + u,  p' = o' + phi' u_t,  p'' = o'' + phi'' u_t - phi'^2 u,  u_t = (-u_y, u_x).
-   pure function point_motion(m, q, i, changes, part) result(p)
+   pure function point_motion(m, q, i) result(p)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       integer, intent(in) :: i
-      real(wp), intent(in), optional :: changes(:, 0:, :), part
       real(wp) :: p(2, 0:2), x(3, 0:2), u(2), u_t(2)
 
-      x = link_motion(q, m%points(i)%link, changes, part)
+      x = link_motion(q, m%points(i)%link)
       u = rotated(m%points(i)%offset, direction(x(3, 0)))
       u_t = quarter_turn(u)
       p(:, 0) = x(:2, 0) + u
@@ -273,20 +267,19 @@ contains
 
    !> Value and derivatives (0:2) of `pair`: the slide x_w = (Q - P) . e of a prismatic pair, eq. (3) and (4), or the
    !> relative angle phi_j - phi_i of a revolute pair.
-   pure function pair_motion(m, q, pair, changes, part) result(s)
+   pure function pair_motion(m, q, pair) result(s)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       type(pair_t), intent(in) :: pair
-      real(wp), intent(in), optional :: changes(:, 0:, :), part
       real(wp) :: s(0:2), x(3, 0:2), y(3, 0:2), d(2, 0:2), e(2), n(2)
 
-      x = link_motion(q, m%points(pair%point_i)%link, changes, part)
+      x = link_motion(q, m%points(pair%point_i)%link)
       if (pair%kind /= pair_prismatic) then
-         y = link_motion(q, m%points(pair%point_j)%link, changes, part)
+         y = link_motion(q, m%points(pair%point_j)%link)
          s = y(3, :) - x(3, :)
          return
       end if
-      d = point_motion(m, q, pair%point_j, changes, part) - point_motion(m, q, pair%point_i, changes, part)
+      d = point_motion(m, q, pair%point_j) - point_motion(m, q, pair%point_i)
       e = direction(x(3, 0) + pair%alpha)
       n = quarter_turn(e)
       associate (rate => x(3, 1), alpha => x(3, 2))

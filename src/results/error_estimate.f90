@@ -276,17 +276,37 @@ contains
       real(wp), intent(out) :: x(directions, 3, 0:2)
       logical, intent(inout) :: lost(3, 0:2)
       type(row_t) :: up, down
-      integer :: k
+      type(motion_t) :: above, below
+      integer :: which(3), k, i
 
       up = row
       down = row
+      above = q
+      below = q
+      which = request_links(m, request)
       do k = 1, directions
-         call set_values(m, q, request, up, links(k, :, :, :), few/roundings)
-         call set_values(m, q, request, down, links(k, :, :, :), -few/roundings)
+         do i = 1, size(which)
+            call move_link(q, links(k, :, :, which(i)), few/roundings, which(i), above)
+            call move_link(q, links(k, :, :, which(i)), -few/roundings, which(i), below)
+         end do
+         call set_values(m, above, request, up)
+         call set_values(m, below, request, down)
          x(k, :, :) = difference(up, down)*(roundings/(2.0_wp*few))
          lost = lost .or. lost_numbers(up, row) .or. lost_numbers(down, row)
       end do
    end subroutine change_centre
+
+   !> `moved` becomes the motion `q` with this `part` of the changes `x` (3, 0:2) of link number `i`.
+   pure subroutine move_link(q, x, part, i, moved)
+      type(motion_t), intent(in) :: q
+      real(wp), intent(in) :: x(3, 0:2), part
+      integer, intent(in) :: i
+      type(motion_t), intent(inout) :: moved
+
+      moved%position(:, i) = q%position(:, i) + part*x(:, 0)
+      moved%velocity(:, i) = q%velocity(:, i) + part*x(:, 1)
+      moved%acceleration(:, i) = q%acceleration(:, i) + part*x(:, 2)
+   end subroutine move_link
 
    !> The estimated error (3, 0:2) of the row of the motion `q`: what rounding leaves open, and how far the row is from
    !> that of the motion solved to the limit of rounding.

@@ -165,7 +165,7 @@ contains
       options = options_in(directory)
       call read_deck(options%deck, one, message, failure)
       if (size(one) /= 1) return
-      if (one(1)%tolerance > 0.0_wp) return
+      if (one(1)%tolerance > 0.0_wp .or. one(1)%variants > 0) return
       twice = d
       read (d%line(cards(1))(9:16), *) n
       write (twice%line(cards(1))(9:16), '(i0)') 2*n
