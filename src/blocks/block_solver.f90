@@ -349,9 +349,10 @@ contains
       else
          call pivot_range(block%shape, w%a, w%sparse(k), w%pivots, least, largest, c%determinant)
       end if
-      c%min_pivot = least
+      c%min_pivot = 1.0_wp
       c%reciprocal_condition = 1.0_wp
       if (n == 0) return
+      c%min_pivot = least
       if (n > 1) c%reciprocal_condition = least/largest
       if (n == 1) largest = block%lipschitz
       ! All pivots may be small, where links are much shorter than the mechanism.

@@ -787,4 +787,10 @@ swing 36 1.0E11 1.00000000007E11 COUPL > "$w/deck"
 place=$("$kinmat" "$w/deck" | sed -n '/^ EXTREMES *T/,$p' | awk '$1 == "CRANK" { print $10; exit }')
 equal 'a swing after a long time: where an acceleration is least' yes \
    "$(case $place in '?.??????'|'-2?.??????'|'-18.??????'|'-18.1?????') echo yes ;; *) echo "$place" ;; esac)"
+# A yoke moved by 30 sin(1.5 t), whose block a drive keeps from turning as its slot does: an equation without an unknown, of
+# which no pivot is the least. At t = 6 its crank of 40 is at acos(30 sin(9)/40).
+sed -e '1,/^END/d' -e 's/^DRIVE   SLIDE/DRIVE   ANGLE   BLOCK\n&/' -e 's/^TIME    24/TIME    4 /' input/scotch_yoke.deck > "$w/deck"
+told 'one drive more on a yoke' 0 '0: --- REDUNDANT EQUATION: DRIVE ANGLE BLOCK
+ LARGEST GAP OF REDUNDANT EQUATIONS, OF THE SIZE: BELOW 1.E-13'
+equal 'one drive more on a yoke: its crank' 1.256561 "$(awk '$1 == "CRANK" { p = $4 } END { print p }' "$w/out")"
 conclude
