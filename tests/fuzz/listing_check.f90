@@ -11,7 +11,7 @@ module listing_check
       'X-CENTRE', 'X-SRODKA', 'Y-CENTRE', 'Y-SRODKA']
    !> Words in the place of a number.
    character(10), parameter :: words_for_none(*) = [character(10) :: 'NONE', 'BRAK', 'INFINITE', 'NIESKONCZ.', 'AT', &
-      'REST', 'W', 'SPOCZYNKU']
+      'REST', 'W', 'SPOCZYNKU', 'UNBOUNDED', 'NIEOGRAN.']
    !> Columns of the names of a row; of one with two names.
    integer, parameter :: one_name = 9, two_names = 18
    character(70), parameter :: marks(*) = [character(70) :: 'NO POSITION FOUND', 'NIE ZNALEZIONO POLOZENIA', &
