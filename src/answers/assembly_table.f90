@@ -166,16 +166,17 @@ contains
       largest = max(characteristic_length(m), maxval(abs(position(:2, :))))
       ! Of all points only the two of a JOINT card have the same name.
       is_joint = m%points(m%pairs%point_i)%name == m%points(m%pairs%point_j)%name
-      digits = estimate_digits + max(0, floor(log10(largest/characteristic_length(m))))
+      digits = digits_of(estimate_digits, largest, characteristic_length(m))
       if (any(is_joint)) digits = drawing_digits
-      digits = min(digits, drawing_digits)
       call put(o, ruler_card())
       do i = 1, size(m%links)
          if (m%links(i)%ground) cycle
          names(1) = m%links(i)%name
-         call put(o, 'LINK    '//names(1)//repeat(' ', 16)//number_text(position(1, i), largest, digits) &
-            //number_text(position(2, i), largest, digits) &
-            //number_text(position(3, i)/merge(degree, 1.0_wp, m%degrees), largest_angle, digits))
+         associate (angle => position(3, i)/merge(degree, 1.0_wp, m%degrees))
+            call put(o, 'LINK    '//names(1)//repeat(' ', 16)//number_text(position(1, i), largest, digits) &
+               //number_text(position(2, i), largest, digits) &
+               //number_text(angle, max(largest_angle, abs(angle)), digits_of(digits, abs(angle), largest_angle)))
+         end associate
       end do
       do i = 1, size(m%pairs)
          if (.not. is_joint(i)) cycle
@@ -188,6 +189,15 @@ contains
          end associate
       end do
    end subroutine put_cards
+
+   !> So many digits a number as large as `largest` has that has `digits` where it is no larger than `usual`: as many as
+   !> a card has columns for at most.
+   pure integer function digits_of(digits, largest, usual)
+      integer, intent(in) :: digits
+      real(wp), intent(in) :: largest, usual
+
+      digits_of = min(drawing_digits, digits + floor(log10(max(1.0_wp, largest/usual))))
+   end function digits_of
 
    !> The sign of the determinant of a block: 0 where it is singular, a point where it has more equations than unknowns.
    pure character(1) function sign_text(block, sign_of) result(text)

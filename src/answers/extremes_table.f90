@@ -8,7 +8,7 @@ module extremes_table
    use points, only: coordinates_of
    use set_analysis, only: set_analysis_t
    use listing_layout, only: layout_t, digits_t, has_column, name_length, row_length
-   use listing_tables, only: table_t, put_times, put_heads, time_text, drive_text, known_text
+   use listing_tables, only: line_length, table_t, put_times, put_heads, time_text, drive_text, known_text
    use text_output, only: output_t, put
    use numerals, only: numeral_length
    use known_digits, only: unknown_digit
@@ -155,21 +155,24 @@ contains
          call put(o, line)
       end subroutine put_dwell
 
-      !> The line `say` about the intervals of the `list`, if there are any.
+      !> The line `say` about the intervals of the `list`, if there are any: as many of them as it has room for.
       subroutine put_gaps(list, say)
          type(gap_t), intent(in) :: list(:)
          type(phrase_t), intent(in) :: say
-         character(:), allocatable :: text
+         character(:), allocatable :: text, line, next
          integer :: i
 
-         if (size(list) == 0) return
+         line = ''
          text = ' --- '//phrase(say, m%polish)
          do i = 1, min(size(list), max_gaps)
             if (i > 1) text = text//','
             text = text//' '//time_text(l, list(i)%from)
             if (abs(list(i)%to - list(i)%from) > 0.0_wp) text = text//' .. '//time_text(l, list(i)%to)
+            next = text//l%behind_time//more(size(list) - i, m%polish)
+            if (i > 1 .and. len(next) > line_length) exit
+            line = next
          end do
-         call put(o, text//l%behind_time//more(max(0, size(list) - max_gaps), m%polish))
+         if (len(line) > 0) call put(o, line)
       end subroutine put_gaps
 
       !> The name of column `c` of request `i`.

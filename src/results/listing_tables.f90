@@ -15,7 +15,8 @@ module listing_tables
    use phrases, only: phrase, say_worst
    implicit none
    private
-   public :: table_t, put_instant, put_times, put_requested, put_spreads, put_heads, time_text, drive_text, known_text
+   public :: table_t, put_instant, put_times, put_requested, put_spreads, put_heads, time_text, drive_text, &
+      known_text, line_length
 
    integer, parameter :: line_length = 120
    character(4), parameter :: between = ' .. '

@@ -793,4 +793,16 @@ sed -e '1,/^END/d' -e 's/^DRIVE   SLIDE/DRIVE   ANGLE   BLOCK\n&/' -e 's/^TIME  
 told 'one drive more on a yoke' 0 '0: --- REDUNDANT EQUATION: DRIVE ANGLE BLOCK
  LARGEST GAP OF REDUNDANT EQUATIONS, OF THE SIZE: BELOW 1.E-13'
 equal 'one drive more on a yoke: its crank' 1.256561 "$(awk '$1 == "CRANK" { p = $4 } END { print p }' "$w/out")"
+# An estimate that has turned very often: the cards of an assembly have it in their columns, the same but for whole turns.
+leg() { "$kinmat" "$1" | awk '/^ ASSEMBLY 1 / { on = 1 } on && /^LINK    LEG-1/ { print substr($0, 65, 16); exit }'; }
+sed 's/^\(LINK    LEG-1 .*\)-5.0$/\11.0E8/' input/platform.deck > "$w/deck"
+equal 'an estimate of 1E8 deg: its decimals' 4 "$(leg "$w/deck" | sed 's/.*[.]//' | awk '{ print length($0) }')"
+equal 'an estimate of 1E8 deg: the same direction' yes "$(echo "$(leg input/platform.deck) $(leg "$w/deck")" |
+   awk '{ d = ($2 - $1)/360; d -= int(d + 0.5); print (d < 1e-6 && d > -1e-6 ? "yes" : $0) }')"
+# Many intervals in one line: those that it has room for, and the number of the others. (The tolerance is a coarse one.)
+sed -e 's/^TIME .*/TIME    1                       0.0             3.33333333E-001/' \
+   -e 's/^END/METHOD  NEWTON                  5.01496338E-003\n&/' input/stroke.deck > "$w/deck"
+"$kinmat" "$w/deck" > "$w/out"
+equal 'many intervals: lines over 120 columns' 0 "$(awk 'length > 120' "$w/out" | wc -l | tr -d ' ')"
+equal 'many intervals: the others are counted' 1 "$(grep -c 'EXTREMES MAY BE MISSED WITHIN T = .* S AND [0-9]* MORE$' "$w/out")"
 conclude
