@@ -7,8 +7,8 @@ module extremes_table
    use names, only: subject_name
    use points, only: coordinates_of
    use set_analysis, only: set_analysis_t
-   use listing_layout, only: layout_t, digits_t, has_column, name_length, row_length
-   use listing_tables, only: line_length, table_t, put_times, put_heads, time_text, drive_text, known_text
+   use listing_layout, only: layout_t, digits_t, has_column, line_length, name_length, row_length
+   use listing_tables, only: table_t, put_times, put_heads, time_text, drive_text, known_text
    use text_output, only: output_t, put
    use numerals, only: numeral_length
    use known_digits, only: unknown_digit
@@ -42,8 +42,8 @@ contains
       call put_times(o, l, ' '//phrase(say_extremes, m%polish), [m%t0, m%t1], table%masked)
       do q = 1, size(x%asked)
          associate (i => x%asked(q))
-            call put_heads(o, l, l%own(l%part(i)), m%requests(i)%kind, table)
             d = l%own(l%part(i))
+            call put_heads(o, l, d, m%requests(i)%kind, table)
             drive = first_drive(i)
             call put_subject()
             do k = 1, size(dwells)

@@ -8,11 +8,11 @@ module listing_diagnostics
    use numerals, only: whole
    use text_output, only: output_t, put
    use phrases
+   use listing_layout, only: line_length
    implicit none
    private
    public :: limit_words, measure, value_form, put_diagnostics, put_singular, put_closure_error, remarks_text
 
-   integer, parameter :: line_length = 120
    !> Where a drive or the time is told closely: ten digits, or as many as a coarser real has.
    character(*), parameter :: value_form = merge('(es17.9)', '(es17.5)', precision(1.0_wp) >= 10)
    !> What concerns the results.

@@ -17,9 +17,12 @@ module listing_layout
    implicit none
    private
    public :: layout_t, head_drive_t, new_layout, digits_t, digits_for, column_powers, head_lines
-   public :: name_length, row_length, has_column, dimension_of, angle_unit, unit_of, choose_digits, column_text
+   public :: line_length, name_length, row_length, has_column, dimension_of, angle_unit, unit_of, choose_digits, &
+      column_text
 
    integer, parameter :: digits_after_first = 6
+   !> Characters of a line at most.
+   integer, parameter :: line_length = 120
    !> Characters before a row's numbers, and of a whole row.
    integer, parameter :: name_length = 9, row_length = name_length + 9*numeral_length
    !> Which of the columns x, y, phi each kind of rows has, and whether a column is of lengths (1) or angles (2). A pair

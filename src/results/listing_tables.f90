@@ -16,9 +16,8 @@ module listing_tables
    implicit none
    private
    public :: table_t, put_instant, put_times, put_requested, put_spreads, put_heads, time_text, drive_text, &
-      known_text, line_length
+      known_text
 
-   integer, parameter :: line_length = 120
    character(4), parameter :: between = ' .. '
 
    !> The table at hand: the kind of its rows, 0 where there is none yet; the powers of ten of its columns; `masked`: a

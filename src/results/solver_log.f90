@@ -8,7 +8,7 @@ module solver_log
    use convergence, only: convergence_t, ending
    use branch_certificate, only: branch_t, branch_word
    use text_output, only: output_t, put
-   use decimal_digits, only: leading_digits, tens
+   use decimal_digits, only: leading_digits
    use numerals, only: whole, put_digits, put_whole
    use known_digits, only: nothing_known
    implicit none
@@ -75,7 +75,7 @@ contains
       real(wp), intent(in) :: x
       integer, intent(in) :: decimals, exponent_digits
       character(*), intent(out) :: text
-      integer(int64) :: n
+      integer(int64) :: n, first
       integer :: e, point, sign_of
       logical :: sure
 
@@ -90,9 +90,9 @@ contains
          return
       end if
       text = ''
-      call put_digits(mod(n, tens(decimals)), text(point + 1:point + decimals))
+      call put_digits(n, text(point + 1:point + decimals), first)
       text(point:point) = '.'
-      call put_digits(n/tens(decimals), text(point - 1:point - 1))
+      call put_digits(first, text(point - 1:point - 1))
       if (sign(1.0_wp, x) < 0.0_wp) text(sign_of:sign_of) = '-'
       text(point + decimals + 1:point + decimals + 2) = merge('E-', 'E+', e < 0)
       call put_digits(int(abs(e), int64), text(point + decimals + 3:))
