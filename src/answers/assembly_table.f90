@@ -9,7 +9,7 @@ module assembly_table
    use assemblies, only: assemblies_t, assembly_t, assembly_block_t, max_assemblies
    use set_analysis, only: set_analysis_t
    use drawing, only: drawing_t, snapshot_t
-   use listing_layout, only: layout_t
+   use listing_layout, only: layout_t, put_folded
    use listing_tables, only: time_text
    use text_output, only: output_t, put
    use numerals, only: whole
@@ -26,6 +26,7 @@ module assembly_table
    real(wp), parameter :: largest_angle = 100.0_wp
    !> A turn that rounding may add to an angle.
    real(wp), parameter :: small_angle = max(1.0e-12_wp, 16.0_wp*epsilon(1.0_wp))
+   character(*), parameter :: indent = '      '
 
 contains
 
@@ -106,17 +107,18 @@ contains
       character(:), allocatable :: links, text
 
       links = phrase(merge(say_link, say_links, size(one%links) == 1), m%polish)
-      if (size(one%links) > 0) links = links//' '//listed(m%links(one%links)%name)
-      call put(o, '   '//phrase(say_block, m%polish)//' '//whole(k)//': '//links)
-      text = '      '//phrase(say_unknowns, m%polish)//' '//whole(one%unknowns)//'   ' &
+      if (size(one%links) > 0) links = links//' '//listed(m%links(one%links)%name, m%polish)
+      call put_folded(o, '   '//phrase(say_block, m%polish)//' '//whole(k)//': ', links, indent)
+      text = phrase(say_unknowns, m%polish)//' '//whole(one%unknowns)//'   ' &
          //phrase(say_paths, m%polish)//' '//whole(one%paths)//' = ' &
          //whole(one%finite)//' '//phrase(say_finite, m%polish)//' + '//whole(one%infinite) &
          //' '//phrase(say_at_infinity, m%polish)//' + '//whole(one%failed)//' '//phrase(say_failed, m%polish)
       if (one%partial > 0) text = text//' + '//whole(one%partial)//' '//phrase(say_partial, m%polish)
-      call put(o, text//'   '//phrase(say_real, m%polish)//' '//whole(one%real))
-      if (one%is_wide) call put(o, ' *** '//links//': '//phrase(say_wide_block, m%polish))
-      if (one%moves) call put(o, ' *** '//links//': '//phrase(say_curve_of_assemblies, m%polish))
-      if (one%failed > 0) call put(o, ' *** '//links//': '//phrase(say_paths_failed, m%polish)//' '//whole(one%failed))
+      call put_folded(o, indent, text//'   '//phrase(say_real, m%polish)//' '//whole(one%real))
+      if (one%is_wide) call put_folded(o, ' *** ', links//': '//phrase(say_wide_block, m%polish))
+      if (one%moves) call put_folded(o, ' *** ', links//': '//phrase(say_curve_of_assemblies, m%polish))
+      if (one%failed > 0) call put_folded(o, ' *** ', &
+         links//': '//phrase(say_paths_failed, m%polish)//' '//whole(one%failed))
    end subroutine put_block
 
    !> Assembly number `k` of `a` of the mechanism `m`.

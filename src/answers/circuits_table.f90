@@ -12,6 +12,7 @@ module circuits_table
    use text_output, only: output_t, put
    use numerals, only: whole
    use listing_diagnostics, only: limit_words, measure, value_form
+   use listing_layout, only: put_folded
    use phrases
    implicit none
    private
@@ -106,8 +107,10 @@ contains
                row = ' '//whole(b%circuit)
                row(column_ends(1) + 1:) = whole(k)
                row(column_ends(2) + 1:) = ' '//signs(b%sign)
-               row(column_ends(3) + 1:) = numbers(2:)
-               call put(o, row//range_words(m, found, b))
+               numbers = numbers(2:)
+               ! Where there are more assemblies than the column has room for, the range stands behind them.
+               call put(o, row(:column_ends(3))//numbers//repeat(' ', max(1, column_ends(4) - column_ends(3) &
+                  - len(numbers)))//range_words(m, found, b))
             end associate
          end do
       end subroutine put_branches
@@ -127,7 +130,8 @@ contains
             do k = 1, size(found%branches)
                if (any(found%branches(k)%dead == d)) numbers = numbers//' '//whole(k)
             end do
-            call put(o, '   '//phrase(say_branch, m%polish)//numbers//'   '//limit_words(m, limit))
+            call put_folded(o, '   ', phrase(say_branch, m%polish)//numbers//'   '//&
+               limit_words(m, limit), repeat(' ', 6))
          end do
       end subroutine put_dead_points
 

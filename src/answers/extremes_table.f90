@@ -4,7 +4,7 @@
 module extremes_table
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_t, request_pair, driven_kinds
-   use names, only: subject_name
+   use names, only: subject_name, more
    use points, only: coordinates_of
    use set_analysis, only: set_analysis_t
    use listing_layout, only: layout_t, digits_t, has_column, line_length, name_length, row_length

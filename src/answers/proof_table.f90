@@ -10,7 +10,7 @@ module proof_table
    use names, only: listed
    use set_analysis, only: set_analysis_t, set_bounds
    use listing, only: words_of_mark
-   use listing_layout, only: layout_t
+   use listing_layout, only: layout_t, put_folded
    use listing_tables, only: time_text
    use text_output, only: output_t, put
    use numerals, only: whole, put_whole, put_fixed, put_digits, numeral_length
@@ -113,7 +113,7 @@ contains
             end if
             if (allocated(proof%failed)) then
                if (size(proof%failed) > 0) r%words = phrase(say_links, m%polish)//' ' &
-                  //listed(own%links(proof%failed)%name)//': '//r%words
+                  //listed(own%links(proof%failed)%name, m%polish)//': '//r%words
             end if
          end if
       end associate
@@ -184,10 +184,10 @@ contains
       type(mechanism_t), intent(in) :: m
       character(:), allocatable :: text
 
-      text = ' *** '//phrase(say_instant, m%polish)//' '//whole(r%step)//', T = '//time_text(l, instant(m, r%step)) &
+      text = phrase(say_instant, m%polish)//' '//whole(r%step)//', T = '//time_text(l, instant(m, r%step)) &
          //': '//phrase(say_not_proved, m%polish)//': '//r%words
       if (r%at_time) text = text//' '//time_text(l, r%t)
-      call put(o, text)
+      call put_folded(o, ' *** ', text)
    end subroutine put_reason
 
    !> `text` at the right of a column.

@@ -16,6 +16,7 @@ module ranges
    use text_output, only: output_t, put
    use numerals, only: whole
    use listing_diagnostics, only: limit_words
+   use listing_layout, only: put_folded
    use phrases
    implicit none
    private
@@ -85,8 +86,8 @@ contains
             else
                do side = low, high
                   if (r%has_limit(side)) then
-                     call put(o, '   '//side_words(side)//'  '//limit_words(m, r%limit(side)) &
-                        //reason(r%limit(side), m%polish))
+                     call put_folded(o, '   '//side_words(side)//'  ', limit_words(m, r%limit(side)) &
+                        //reason(r%limit(side), m%polish), repeat(' ', 8))
                   else
                      call put(o, '   '//side_words(side)//'  '//phrase(say_no_limit, m%polish)//' ' &
                         //limit_words(m, r%limit(side)))

@@ -5,7 +5,7 @@ module variant_tables
    use mechanism, only: mechanism_t
    use motion, only: mark_none
    use listing, only: words_of_mark
-   use listing_layout, only: layout_t, unit_of
+   use listing_layout, only: layout_t, line_length, put_folded, unit_of
    use listing_tables, only: known_text
    use listing_diagnostics, only: put_diagnostics
    use csv, only: add_name
@@ -18,8 +18,8 @@ module variant_tables
    public :: summary_head, summary_row, put_variant, put_variant_heads, put_note_of_shares, put_variant_row, &
       put_variants_end, put_broken_off
 
-   !> Characters of a line, of the number of a variant, and at least of a column.
-   integer, parameter :: line_length = 120, number_length = 10, least_width = 12
+   !> Characters of the number of a variant, and at least of a column.
+   integer, parameter :: number_length = 10, least_width = 12
    character(1), parameter :: no_cell = '-'
 
 contains
@@ -149,7 +149,7 @@ contains
          call put(o, line)
          first = next_column(s, last + 1)
       end do
-      if (r%rejected /= '') call put(o, ' *** '//r%rejected)
+      if (r%rejected /= '') call put_folded(o, ' *** ', r%rejected)
       if (r%limit%kind /= 0) then
          call put_diagnostics(o, m, [r%limit])
       else if (r%mark /= mark_none) then

@@ -302,7 +302,7 @@ contains
          if (link > 0) then
             hint = '(A LINK HAS IT)'
             if (any(m%points%link == link)) &
-               hint = '(A LINK HAS IT; ITS POINTS: '//listed(pack(m%points%name, m%points%link == link))//')'
+               hint = '(A LINK HAS IT; ITS POINTS: '//listed(pack(m%points%name, m%points%link == link), .false.)//')'
          else if (point > 0) then
             hint = '(A POINT HAS IT)'
          else if (find_name(set%named(request_pair)%table, card%label(i)) > 0) then

@@ -6,7 +6,7 @@ module names
    use numerals, only: whole
    implicit none
    private
-   public :: name_table_t, put_name, find_name, drive_name, subject_name, listed
+   public :: name_table_t, put_name, find_name, drive_name, subject_name, listed, more
 
    !> Slots of an empty table. At most every second slot is filled.
    integer, parameter :: first_size = 64
@@ -23,8 +23,8 @@ module names
       type(slot_t), allocatable :: slots(:)
    end type name_table_t
 
-   !> The largest number of names in a list; the rest is only counted.
-   integer, parameter :: max_names = 8
+   !> The largest number of names in a list, and of its characters; the rest is only counted. Drives have long names.
+   integer, parameter :: max_names = 8, max_listed = 84
 
 contains
 
@@ -81,18 +81,33 @@ contains
       end select
    end function subject_name
 
-   !> The names `words` (at least one) with commas between them; of many, the first ones and the number of the rest.
-   pure function listed(words) result(text)
+   !> The names `words` (at least one) with commas between them; of many, the first ones and the number of the rest, in
+   !> Polish or in English.
+   pure function listed(words, polish) result(text)
       character(*), intent(in) :: words(:)
+      logical, intent(in) :: polish
       character(:), allocatable :: text
       integer :: i
 
       text = trim(words(1))
       do i = 2, min(size(words), max_names)
+         if (len(text) + 2 + len_trim(words(i)) > max_listed) exit
          text = text//', '//trim(words(i))
       end do
-      if (size(words) > max_names) text = text//' AND '//whole(size(words) - max_names)//' MORE'
+      text = text//more(size(words) - i + 1, polish)
    end function listed
+
+   !> The end of a list of which `n` are left out: ' AND 3 MORE'; '' where none are.
+   pure function more(n, polish) result(text)
+      integer, intent(in) :: n
+      logical, intent(in) :: polish
+      character(:), allocatable :: text
+
+      text = ''
+      if (n == 0) return
+      text = ' AND '//whole(n)//' MORE'
+      if (polish) text = ' I '//whole(n)//' INNE'
+   end function more
 
    !> The slot of `name`, or the free slot where it belongs. There is always a free slot.
    pure integer function slot_of(slots, name) result(k)

@@ -69,7 +69,7 @@ contains
          call put(o, ' '//phrase(say_coordinates, pl)//' W = '//whole(f%coordinates)//';  '//phrase(say_equations, pl) &
             //' R = '//whole(f%equations)//';  '//phrase(say_degrees_of_freedom, pl)//' S = ' &
             //whole(f%degrees_of_freedom)//';  '//phrase(say_drives, pl)//' '//whole(f%drives))
-         if (f%spare_drives > 0) call put(o, ' --- '//phrase(say_spare_drives, pl)//' '//spare_drives_text(m, f))
+         if (f%spare_drives > 0) call put(o, ' --- '//phrase(say_spare_drives, pl)//' '//spare_drives_text(m, f, pl))
       end associate
       if (allocated(f%groups)) call put_groups(o, m, f%groups)
    end subroutine put_structure

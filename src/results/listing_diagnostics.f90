@@ -4,11 +4,11 @@ module listing_diagnostics
    use planar, only: degree
    use mechanism, only: mechanism_t, remark_t, remark_small_letters, remark_more
    use motion
-   use names, only: drive_name, listed
+   use names, only: drive_name, listed, more
    use numerals, only: whole
    use text_output, only: output_t, put
    use phrases
-   use listing_layout, only: line_length
+   use listing_layout, only: put_folded
    implicit none
    private
    public :: limit_words, measure, value_form, put_diagnostics, put_singular, put_closure_error, remarks_text
@@ -66,8 +66,8 @@ contains
       integer :: i
 
       do i = 1, size(list)
-         call put_broken(o, merge(' *** ', ' --- ', any(list(i)%kind == of_results)), words_of(m, list(i)))
-         if (list(i)%kind == diagnostic_limit) call put(o, ' *** '//at_limit(m, list(i)))
+         call put_folded(o, merge(' *** ', ' --- ', any(list(i)%kind == of_results)), words_of(m, list(i)))
+         if (list(i)%kind == diagnostic_limit) call put_folded(o, ' *** ', at_limit(m, list(i)))
       end do
    end subroutine put_diagnostics
 
@@ -83,7 +83,7 @@ contains
       if (all(r%links == 0)) then
          call put(o, ' *** '//words)
       else
-         call put_broken(o, ' *** ', words(:colon - 1)//', '//links(m, r)//in_line(m, r, ' ')//words(colon:))
+         call put_folded(o, ' *** ', words(:colon - 1)//', '//links(m, r)//in_line(m, r, ' ')//words(colon:))
       end if
    end subroutine put_singular
 
@@ -106,18 +106,6 @@ contains
       text = ''
       if (r%in_line) text = before//phrase(say_in_line, m%polish)
    end function in_line
-
-   !> `text` in one line or, where names are many and long, in two; each begins with `mark`.
-   subroutine put_broken(o, mark, text)
-      type(output_t), intent(inout) :: o
-      character(*), intent(in) :: mark, text
-      integer :: last
-
-      last = len(text)
-      if (len(mark) + last > line_length) last = index(text(:line_length - len(mark) + 1), ' ', back=.true.) - 1
-      call put(o, mark//text(:last))
-      if (last < len(text)) call put(o, mark//text(last + 2:))
-   end subroutine put_broken
 
    !> The sentence of diagnostic `r`.
    function words_of(m, r) result(text)
@@ -201,7 +189,7 @@ contains
 
       n = count(r%links > 0)
       text = phrase(merge(say_link, say_links, n == 1), m%polish)
-      if (n > 0) text = text//' '//listed(m%links(r%links(:n))%name)
+      if (n > 0) text = text//' '//listed(m%links(r%links(:n))%name, m%polish)
       text = text//more(r%more, m%polish)
    end function links
 

@@ -9,16 +9,17 @@ module listing_layout
    use mechanism, only: mechanism_t, request_link, request_pair, driven_kinds
    use independent, only: parts_t, find_parts
    use drives, only: law_t, new_law
-   use names, only: drive_name
+   use names, only: drive_name, more
    use law_sizes, only: growing_sizes
    use scales, only: characteristic_length, characteristic_rate, relative_tolerance, latest_time
    use numerals, only: whole, numeral_length
+   use text_output, only: output_t, put
    use phrases
    implicit none
    private
    public :: layout_t, head_drive_t, new_layout, digits_t, digits_for, column_powers, head_lines
    public :: line_length, name_length, row_length, has_column, dimension_of, angle_unit, unit_of, choose_digits, &
-      column_text
+      column_text, put_folded
 
    integer, parameter :: digits_after_first = 6
    !> Characters of a line at most.
@@ -321,4 +322,20 @@ contains
       text = unit
       if (power /= 0) text = '10**'//whole(power)//' '//unit
    end function unit_of
+
+   !> The words `text` behind `mark` in one line or, where names are many and long, in several. Those after the first
+   !> begin with `next`, or with `mark` as well.
+   recursive subroutine put_folded(o, mark, text, next)
+      type(output_t), intent(inout) :: o
+      character(*), intent(in) :: mark, text
+      character(*), intent(in), optional :: next
+      integer :: last
+
+      last = len(text)
+      if (len(mark) + last > line_length) last = index(text(:line_length - len(mark) + 1), ' ', back=.true.) - 1
+      call put(o, mark//trim(text(:last)))
+      if (last == len(text)) return
+      if (present(next)) call put_folded(o, next, text(last + 2:))
+      if (.not. present(next)) call put_folded(o, mark, text(last + 2:))
+   end subroutine put_folded
 end module listing_layout

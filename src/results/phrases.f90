@@ -1,9 +1,8 @@
 !> The words of the listing, English and Polish (without diacritics).
 module phrases
-   use numerals, only: whole
    implicit none
    private
-   public :: phrase_t, phrase, more
+   public :: phrase_t, phrase
 
    !> The same words in both languages.
    type :: phrase_t
@@ -213,16 +212,4 @@ contains
       if (polish) text = p%polish(:len_trim(p%polish))
       if (.not. polish) text = p%english(:len_trim(p%english))
    end function phrase
-
-   !> The end of a list of which `n` are left out: ' AND 3 MORE'; '' where none are.
-   pure function more(n, polish) result(text)
-      integer, intent(in) :: n
-      logical, intent(in) :: polish
-      character(:), allocatable :: text
-
-      text = ''
-      if (n == 0) return
-      text = ' AND '//whole(n)//' MORE'
-      if (polish) text = ' I '//whole(n)//' INNE'
-   end function more
 end module phrases

@@ -307,23 +307,25 @@ contains
          character(*), intent(in) :: to_do
 
          if (f%spare_drives > 0) call add_line('E106  SET '//whole(set)//': TOO MANY DRIVES BY ' &
-            //spare_drives_text(m, f)//'; '//to_do)
+            //spare_drives_text(m, f, .false.)//'; '//to_do)
       end subroutine add_spare_drives
    end function faults_text
 
-   !> How many drives are too many, and among which: 1: ANGLE CRANK, ANGLE ROCKER.
-   function spare_drives_text(m, f) result(text)
+   !> How many drives are too many, and among which, in Polish or in English: 1: ANGLE CRANK, ANGLE ROCKER.
+   function spare_drives_text(m, f, polish) result(text)
       type(mechanism_t), intent(in) :: m
       type(findings_t), intent(in) :: f
+      logical, intent(in) :: polish
       character(:), allocatable :: text
 
-      text = whole(f%spare_drives)//': '//drives_listed(m, f%spare_among)
+      text = whole(f%spare_drives)//': '//drives_listed(m, f%spare_among, polish)
    end function spare_drives_text
 
-   !> The names of the drives with these numbers.
-   function drives_listed(m, numbers) result(text)
+   !> The names of the drives with these numbers, as `listed`.
+   function drives_listed(m, numbers, polish) result(text)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: numbers(:)
+      logical, intent(in) :: polish
       character(:), allocatable :: text
       character(3*label_length + 2) :: drives(size(numbers))
       integer :: i
@@ -331,7 +333,7 @@ contains
       do i = 1, size(drives)
          drives(i) = drive_name(m, m%drives(numbers(i)))
       end do
-      text = listed(drives)
+      text = listed(drives, polish)
    end function drives_listed
 
    !> LINKS A, B: 1 FREEDOM LEFT, ADD A DRIVE
@@ -342,7 +344,7 @@ contains
 
       text = 'LINKS '
       if (size(part%links) == 1) text = 'LINK '
-      text = text//listed(m%links(part%links)%name)//': '
+      text = text//listed(m%links(part%links)%name, .false.)//': '
       if (part%degrees_of_freedom == 1) then
          text = text//'1 FREEDOM LEFT, ADD A DRIVE'
       else
@@ -360,10 +362,11 @@ contains
       pairs = once(f%many_pairs)
       text = 'TOO MANY EQUATIONS BY '//whole(f%redundant)//' AMONG'
       if (size(pairs) > 0) text = text//trim(merge(' PAIR ', ' PAIRS', size(pairs) == 1))//' ' &
-         //listed(m%pairs(pairs)%name)
+         //listed(m%pairs(pairs)%name, .false.)
       if (size(f%many_drives) == 0) return
       if (size(pairs) > 0) text = text//' AND'
-      text = text//trim(merge(' DRIVE ', ' DRIVES', size(f%many_drives) == 1))//' '//drives_listed(m, f%many_drives)
+      text = text//trim(merge(' DRIVE ', ' DRIVES', size(f%many_drives) == 1))//' ' &
+         //drives_listed(m, f%many_drives, .false.)
    end function surplus
 
 end module structure

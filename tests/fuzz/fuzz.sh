@@ -82,7 +82,7 @@ else
    all | while read -r a b; do run_chunk "$a" "$b"; done
 fi > "$BUILD/fuzz/results"
 
-grep -a '^FAILED' "$BUILD/fuzz/results" | sort -k 3 -n | sed 's/^FAILED: SEED \([0-9]*\): .*/&\n   tests\/fuzz.sh --seed \1/'
+grep -a '^FAILED' "$BUILD/fuzz/results" | sort -k 3 -n | sed 's/^FAILED: SEED \([0-9]*\): .*/&\n   tests\/fuzz\/fuzz.sh --seed \1/'
 awk '
    $1 == "SUMS" { passed += $2; failed += $3; for (i = 0; i < 4; i++) ended[i] += $(4 + i)
       instants += $8; closures += $9; ill += $10

@@ -677,6 +677,26 @@ changed '/^DRIVE/ { print "GROUND  WALL"; print "LINK    IDLE"; print "LANG    P
 equal 'links without a use, in Polish: status' 0 $?
 equal 'links without a use, in Polish' ' --- KARTA 18  KOLUMNA 9: "WALL" OGNIWA NIE UZYWA ZADNA PARA ANI NAPED: SPOCZYWA
  --- KARTA 19  KOLUMNA 9: "IDLE" OGNIWA NIE UZYWA ZADNA PARA ANI NAPED: SPOCZYWA' "$(grep '^ ---' "$w/out")"
+
+# However long names are, and in whichever language they are counted, lines keep to their columns and to one language.
+for lang in EN PL; do
+   awk -v lang=$lang '/^UNITS/ { print; printf "%-8s%s\n", "LANG", lang; next }
+      /^TIME/ { print "RANGE\nCIRCUITS\nASSEMBLY" } { gsub(/BAR-[1-3][1-3]  /, "&@"); gsub(/  @/, "-X") } 1' \
+      input/dixon.deck > "$w/deck"
+   "$kinmat" "$w/deck" > "$w/out"
+   equal "long names, $lang: status" 0 $?
+   equal "long names, $lang: lines over 120 columns" '' "$(awk 'length > 120' "$w/out")"
+   mv "$w/out" "$w/$lang"
+done
+equal 'long names: what is left out, in English' '' "$(grep ' I [0-9]* INNE' "$w/EN")"
+equal 'long names: what is left out, in Polish' '' "$(grep ' AND [0-9]* MORE' "$w/PL")"
+equal 'long names: as often' "$(grep -c ' AND [0-9]* MORE' "$w/EN")" "$(grep -c ' I [0-9]* INNE' "$w/PL")"
+{ head_of DRIVEN; four_bar '' $crank_rocker; for i in 1 2 3 4 5; do drive RELANGLE BASE CRANK 0.0 9.0; done; card METHOD NEWTON
+  card LANG PL; until_time 1 1.0; } | sed 's/CRANK   /LONGNAME/' > "$w/deck"
+"$kinmat" "$w/deck" > "$w/out"
+equal 'drives too many, long names' ' --- ZA DUZO NAPEDOW O 4: RELANGLE BASE LONGNAME, RELANGLE BASE LONGNAME, RELANGLE BASE LONGNAME I 2 INNE' \
+   "$(grep -e '---' "$w/out" | head -n 1)"
+
 changed '/^UNITS/ { next } 1'
 "$kinmat" "$w/deck" > "$w/out"
 equal 'degrees without UNITS' ' --- CARD 3  COLUMN 65: "60.0" IS AN ANGLE IN RADIANS: ARE DEGREES MEANT (UNITS DEG)?' \
