@@ -107,10 +107,10 @@ contains
                row = ' '//whole(b%circuit)
                row(column_ends(1) + 1:) = whole(k)
                row(column_ends(2) + 1:) = ' '//signs(b%sign)
-               numbers = numbers(2:)
                ! Where there are more assemblies than the column has room for, the range stands behind them.
-               call put(o, row(:column_ends(3))//numbers//repeat(' ', max(1, column_ends(4) - column_ends(3) &
-                  - len(numbers)))//range_words(m, found, b))
+               numbers = numbers(2:)
+               numbers = row(:column_ends(3))//numbers//repeat(' ', max(1, column_ends(4) - column_ends(3) - len(numbers)))
+               call put_folded(o, numbers, range_words(m, found, b), repeat(' ', len(numbers)))
             end associate
          end do
       end subroutine put_branches

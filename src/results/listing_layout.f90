@@ -323,19 +323,22 @@ contains
       if (power /= 0) text = '10**'//whole(power)//' '//unit
    end function unit_of
 
-   !> The words `text` behind `mark` in one line or, where names are many and long, in several. Those after the first
-   !> begin with `next`, or with `mark` as well.
+   !> The words `text` behind `mark` in one line or, where names are many and long, in several, divided where three blanks
+   !> are, or else one. Lines after the first begin with `next`, or with `mark` as well.
    recursive subroutine put_folded(o, mark, text, next)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: mark, text
       character(*), intent(in), optional :: next
       integer :: last
 
-      last = len(text)
-      if (len(mark) + last > line_length) last = index(text(:line_length - len(mark) + 1), ' ', back=.true.) - 1
-      call put(o, mark//trim(text(:last)))
+      associate (room => line_length - len(mark))
+         last = len(text)
+         if (last > room) last = index(text(:room + 1), '   ', back=.true.) - 1
+         if (last < 1) last = index(text(:room + 1), ' ', back=.true.) - 1
+      end associate
+      call put(o, mark//text(:last))
       if (last == len(text)) return
-      if (present(next)) call put_folded(o, next, text(last + 2:))
-      if (.not. present(next)) call put_folded(o, mark, text(last + 2:))
+      if (present(next)) call put_folded(o, next, trim(adjustl(text(last + 1:))))
+      if (.not. present(next)) call put_folded(o, mark, trim(adjustl(text(last + 1:))))
    end subroutine put_folded
 end module listing_layout

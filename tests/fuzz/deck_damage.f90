@@ -7,6 +7,7 @@ module deck_damage
       drop_line, find_cards, add_note
    use deck_changes, only: pick, is_degrees
    use deck_mutations, only: prepare, change_gently, max_steps
+   use deck_questions, only: ask, lengthen_names, write_in_polish
    implicit none
    private
    public :: deck_of_seed
@@ -46,6 +47,9 @@ contains
       do i = 1, n
          call change_gently(d, r)
       end do
+      if (chance(r, 0.3_wp)) call ask(d, r)
+      if (chance(r, 0.1_wp)) call lengthen_names(d)
+      if (chance(r, 0.1_wp)) call write_in_polish(d)
       if (manner > 7) then
          do i = 1, throw(r, 3)
             call change_to_limits(d, r)

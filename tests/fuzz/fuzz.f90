@@ -124,7 +124,8 @@ contains
       select case (status)
       case (0, 2)
          call judge(options, v, wrong, flagged)
-         if (wrong == '' .and. (flagged > 0 .neqv. status == 2)) wrong = 'STATUS AND MARKS'
+         if (wrong == '' .and. (flagged > 0 .neqv. status == 2) .and. size(find_cards(d, ['VARY    '])) == 0) &
+            wrong = 'STATUS AND MARKS'
          if (wrong == '' .and. message /= '') wrong = 'WORDS ON STANDARD ERROR: '//message
          if (wrong == '' .and. status == 0 .and. mod(seed, twice_every) == 0) call run_twice(d, directory, wrong)
       case (1)

@@ -12,6 +12,9 @@ module listing_check
    !> Words in the place of a number.
    character(10), parameter :: words_for_none(*) = [character(10) :: 'NONE', 'BRAK', 'INFINITE', 'NIESKONCZ.', 'AT', &
       'REST', 'W', 'SPOCZYNKU', 'UNBOUNDED', 'NIEOGRAN.']
+   !> What begins tables of other forms, behind those of the motion.
+   character(14), parameter :: other_heads(*) = [character(14) :: 'BRANCH:', 'GALAZ:', 'TOLERANCES:', 'TOLERANCJE:', &
+      'ASSEMBLIES', 'MONTAZE', 'RANGES OF', 'ZAKRESY', 'CIRCUITS AND', 'OBWODY I', 'PROOF:', 'DOWOD:']
    !> Columns of the names of a row; of one with two names.
    integer, parameter :: one_name = 9, two_names = 18
    character(70), parameter :: marks(*) = [character(70) :: 'NO POSITION FOUND', 'NIE ZNALEZIONO POLOZENIA', &
@@ -47,7 +50,7 @@ contains
       character(:), allocatable, intent(out) :: wrong
       integer, intent(out) :: flagged
       character(width) :: line
-      integer :: unit, status, ends
+      integer :: unit, status, ends, i
       logical :: tables
       integer :: names
 
@@ -65,12 +68,14 @@ contains
             tables = .false.
             ends = ends + 1
          end if
-         if (starts(line, ' BRANCH: ') .or. starts(line, ' GALAZ: ')) tables = .false.
-         if (starts(line, ' TOLERANCES: ') .or. starts(line, ' TOLERANCJE: ')) tables = .false.
-         if (starts(line, ' ASSEMBLIES ') .or. starts(line, ' MONTAZE ')) tables = .false.
+         if (any([(starts(line, ' '//trim(other_heads(i))), i=1, size(other_heads))])) tables = .false.
          if (tables .and. starts(line, ' *** ')) flagged = flagged + merge(0, 1, is_remark(line))
-         if (are_heads(line(two_names + 1:)) .and. line(two_names + 1:) /= '' .and. line(:one_name) /= '') &
-            names = merge(two_names, one_name, any(line(:8) == [character(8) :: ' POLE', ' CURVE', ' BIEGUN', ' TOR']))
+         if (index(line, ': NOT PROVED') + index(line, ': BEZ DOWODU') > 0) flagged = flagged + 1
+         if (any(line(:8) == [character(8) :: ' POLE', ' CURVE', ' BIEGUN', ' TOR'])) then
+            if (are_heads(line(two_names + 1:))) names = two_names
+         else if (line(:one_name) /= '' .and. line(one_name + 1:) /= '' .and. are_heads(line(one_name + 1:))) then
+            names = one_name
+         end if
          if (line_is_wrong(line, tables, names) .and. wrong == '') wrong = 'LISTING: '//trim(line)
       end do
       if (ends /= sets) wrong = 'LISTING: NOT ALL SETS COME TO THEIR END'

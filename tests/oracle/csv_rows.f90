@@ -60,7 +60,8 @@ contains
          end if
          if (rows%due(i)) call read_row(unit, m, k, i, rows, wrong)
          if (allocated(wrong)) return
-         if (rows%due(i) .and. (allocated(m%tolerances) .or. (m%assemblies .and. k == 0))) call pass_others(unit)
+         if (rows%due(i) .and. (allocated(m%tolerances) .or. m%proves .or. (m%assemblies .and. k == 0))) &
+            call pass_others(unit)
       end do
    end subroutine read_instant
 
@@ -89,7 +90,8 @@ contains
       end do
    end subroutine pass_centre
 
-   !> What tolerances make of the row above, and the same of other assemblies: rows whose kind has several words.
+   !> What tolerances make of the row above, its proved bounds, and the same of other assemblies: rows whose kind has
+   !> several words.
    subroutine pass_others(unit)
       integer, intent(in) :: unit
       character(600) :: line

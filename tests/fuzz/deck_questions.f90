@@ -1,0 +1,157 @@
+!> Tests. Cards that ask something of a deck's motion, or change what it is called: answers, variants, tolerances,
+!> names as long as they may be, the listing in Polish.
+module deck_questions
+   use kinds, only: wp
+   use dice, only: dice_t, throw, chance, between
+   use deck_draft, only: draft_t, name_of, label, set_label, real_field, insert_line, find_cards, add_note
+   use deck_changes, only: pick
+   implicit none
+   private
+   public :: ask, lengthen_names, write_in_polish
+
+   character(8), parameter :: with_dimensions(*) = [character(8) :: 'LINK', 'POINT', 'PRISM', 'DRIVE']
+
+contains
+
+   !> One more card that asks for something.
+   subroutine ask(d, r)
+      type(draft_t), intent(inout) :: d
+      type(dice_t), intent(inout) :: r
+      character(8), parameter :: plain(*) = [character(8) :: 'RANGE', 'CIRCUITS', 'ASSEMBLY', 'PROVE']
+      character(8), parameter :: kinds(*) = [character(8) :: 'ALL', 'LINKS', 'POINTS', 'PAIRS']
+      character(80) :: card
+
+      card = ''
+      select case (throw(r, 10))
+      case (1:4)
+         card = plain(throw(r, size(plain)))
+      case (5:6)
+         card = 'EXTREMES'//kinds(throw(r, size(kinds)))
+         if (chance(r, 0.3_wp)) write (card(33:64), '(2es16.8e3)') between(r, 0.0_wp, 1.0_wp), between(r, 0.0_wp, 9.0_wp)
+      case (7)
+         card = 'POLE    '//any_name(d, r, ['GROUND  ', 'LINK    '])//any_name(d, r, ['GROUND  ', 'LINK    '])
+      case (8)
+         card = 'CURVE   '//any_name(d, r, ['POINT   '])//any_name(d, r, ['GROUND  ', 'LINK    '])
+      case (9)
+         card = 'BRANCH'
+         if (chance(r, 0.5_wp)) card(9:16) = any_name(d, r, ['LINK    '])
+         write (card(33:48), '(es16.8e3)') between(r, 0.0_wp, 10.0_wp)
+      case default
+         if (chance(r, 0.5_wp)) call vary(d, r)
+         if (chance(r, 0.5_wp)) call tolerate(d, r)
+      end select
+      if (card == '') return
+      call insert_line(d, last_line(d), card)
+      call add_note(d, 'ASKED: '//card(:24))
+   end subroutine ask
+
+   !> The line of the END card, or the one behind the last.
+   integer function last_line(d)
+      type(draft_t), intent(in) :: d
+
+      do last_line = size(d%line), 1, -1
+         if (name_of(d%line(last_line)) == 'END') return
+      end do
+      last_line = size(d%line) + 1
+   end function last_line
+
+   !> What one of the `cards` is about.
+   function any_name(d, r, cards) result(name)
+      type(draft_t), intent(in) :: d
+      type(dice_t), intent(inout) :: r
+      character(8), intent(in) :: cards(:)
+      character(8) :: name
+      integer :: i
+
+      name = ''
+      i = pick(r, find_cards(d, cards))
+      if (i > 0) name = label(d%line(i), 1)
+   end function any_name
+
+   !> A few values for a number of a card.
+   subroutine vary(d, r)
+      type(draft_t), intent(inout) :: d
+      type(dice_t), intent(inout) :: r
+      character(80) :: card
+      real(wp) :: x, size_of
+      integer :: i, k
+
+      i = pick(r, find_cards(d, with_dimensions))
+      if (i == 0) return
+      k = throw(r, 3)
+      x = real_field(d, i, k)
+      size_of = between(r, -0.3_wp, 0.3_wp)*max(abs(x), 1.0e-3_wp)
+      if (abs(x) > 1.0e60_wp) return
+      write (card, '(a,i0,t17,i0,t33,2es16.8e3)') 'VARY    R', k, throw(r, 20), x - size_of, x + size_of
+      call insert_line(d, behind(d, i), card)
+      call add_note(d, 'VARIED: '//d%line(i)(:16))
+   end subroutine vary
+
+   !> Tolerances of a card's numbers.
+   subroutine tolerate(d, r)
+      type(draft_t), intent(inout) :: d
+      type(dice_t), intent(inout) :: r
+      character(80) :: card
+      integer :: i, k
+
+      i = pick(r, find_cards(d, with_dimensions(2:3)))
+      if (i == 0) return
+      card = 'TOLER'
+      do k = 1, merge(3, 2, name_of(d%line(i)) == 'PRISM')
+         if (chance(r, 0.6_wp)) write (card(16*k + 17:16*k + 32), '(es16.8e3)') between(r, 0.0_wp, 0.1_wp)
+      end do
+      call insert_line(d, behind(d, i), card)
+      call add_note(d, 'TOLERANCES: '//d%line(i)(:16))
+   end subroutine tolerate
+
+   !> The line behind card `i` and its `*` card.
+   pure integer function behind(d, i)
+      type(draft_t), intent(in) :: d
+      integer, intent(in) :: i
+
+      behind = i + 1
+      if (i < size(d%line)) behind = i + merge(2, 1, d%line(i + 1)(1:1) == '*')
+   end function behind
+
+   !> All names of links, points and pairs get the length of a field.
+   subroutine lengthen_names(d)
+      type(draft_t), intent(inout) :: d
+      integer :: i, k
+
+      do i = 1, size(d%line)
+         do k = 1, 3
+            if (is_name(d%line(i), k)) call set_label(d%line(i), k, trim(label(d%line(i), k))//repeat('W', 8))
+         end do
+      end do
+      call add_note(d, 'LONG NAMES')
+   end subroutine lengthen_names
+
+   !> Label `k` of the card `line` is the name of a link, point or pair.
+   pure logical function is_name(line, k)
+      character(*), intent(in) :: line
+      integer, intent(in) :: k
+
+      select case (name_of(line))
+      case ('GROUND', 'LINK', 'BRANCH')
+         is_name = k == 1
+      case ('POINT', 'POLE', 'CURVE')
+         is_name = k <= 2
+      case ('REVOLUTE', 'PRISM', 'JOINT')
+         is_name = .true.
+      case ('DRIVE')
+         is_name = k >= 2 .and. label(line, k) /= 'RPM'
+      case ('PRINT', 'EXTREMES')
+         is_name = k == 2
+      case default
+         is_name = .false.
+      end select
+      is_name = is_name .and. label(line, k) /= ''
+   end function is_name
+
+   !> The listing's headings in Polish.
+   subroutine write_in_polish(d)
+      type(draft_t), intent(inout) :: d
+
+      if (size(find_cards(d, ['LANG    '])) == 0) call insert_line(d, last_line(d), 'LANG    PL')
+   end subroutine write_in_polish
+end module deck_questions
