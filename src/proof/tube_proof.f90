@@ -16,7 +16,7 @@
 module tube_proof
    use kinds, only: wp
    use law_bounds, only: bounds_t, bounds_of
-   use blocks, only: blocks_t
+   use blocks, only: blocks_t, block_t
    use block_state, only: set_direction, find_known_parts
    use block_equations, only: assemble_dense
    use block_engine, only: block_engine_t
@@ -54,7 +54,7 @@ contains
       integer, intent(in) :: list(:)
       type(placed_t), intent(in) :: from, to
       type(tube_t), intent(inout) :: tube
-      logical :: is_set
+      logical :: is_set, unbounded(0:size(e%laws))
       integer :: k, u
 
       tube%radius = 0.0_wp
@@ -67,7 +67,11 @@ contains
       end do
       call bound_drives()
       do k = 1, size(list)
-         if (e%blocks%list(list(k))%direct) then
+         if (is_unbounded(e%blocks%list(list(k)))) then
+            tube%is_proved = .false.
+            tube%block = list(k)
+            if (.not. is_set) call set_middle(e%blocks)
+         else if (e%blocks%list(list(k))%direct) then
             call prove_direct(e%blocks, list(k))
          else
             call prove_by_ends(e%blocks, list(k))
@@ -133,16 +137,22 @@ contains
       end subroutine set_curve
 
       !> How far the laws of the drives can be from the cubics with their values and rates at both ends: by the range of
-      !> their second derivatives.
+      !> their second derivatives, unless these are `unbounded`.
       subroutine bound_drives()
          type(bounds_t) :: law
-         real(wp) :: h, first(3), second(2), inexact, late
+         real(wp) :: h, first(3), second(2), inexact, late, earliest
          integer :: i
 
          h = to%t - from%t
          late = of_time*max(abs(from%t), abs(to%t))
+         ! No rounding moves a time across 0, where some powers begin.
+         earliest = min(from%t, to%t)
+         earliest = merge(max(0.0_wp, earliest - late), earliest - late, earliest >= 0.0_wp)
+         unbounded(0) = .false.
          do i = 1, size(e%laws)
-            law = bounds_of(e%laws(i), min(from%t, to%t) - late, max(from%t, to%t) + late)
+            law = bounds_of(e%laws(i), earliest, max(from%t, to%t) + late)
+            unbounded(i) = max(abs(law%low(2)), abs(law%high(2))) >= huge(1.0_wp)
+            if (unbounded(i)) cycle
             call find_control_points(h, from%drive(:1, i), to%drive(:1, i), first, second, inexact)
             inexact = inexact + 4.0_wp*max(from%drive_error(0, i), to%drive_error(0, i)) &
                + 2.0_wp*(abs(h)*max(from%drive_error(1, i), to%drive_error(1, i)) &
@@ -151,6 +161,13 @@ contains
                maxval(second) - law%low(2)*e%unit_of(i)*h**2) + inexact)*room
          end do
       end subroutine bound_drives
+
+      !> An equation of `block` has a drive whose second derivative has no bounds.
+      pure logical function is_unbounded(block)
+         type(block_t), intent(in) :: block
+
+         is_unbounded = any(unbounded(e%blocks%rows(block%first_row:block%last_row)%drive))
+      end function is_unbounded
 
       !> The direct block `i`: its unknown is another one and a drive, and so are their cubics.
       subroutine prove_direct(b, i)

@@ -9,7 +9,7 @@ module listing_tables
    use set_motion, only: spread_t
    use text_output, only: output_t, put
    use numerals, only: put_fixed, put_whole, numeral_length
-   use known_digits, only: put_known
+   use known_digits, only: put_known, nothing_known
    use listing_layout
    use listing_centres, only: put_centre, put_centre_heads
    use phrases, only: phrase, say_worst
@@ -154,11 +154,14 @@ contains
       type(head_drive_t), intent(in) :: d
       real(wp), intent(in) :: t, error
       character(:), allocatable :: text
-      real(wp) :: f(3)
+      real(wp) :: f(3), unknown
 
       f = drive_motion(d%law, t)/d%unit
-      text = known_text(f(1), d%decimals, d%power, &
-         law_error(d, t)/d%unit + abs(f(2))*error + 0.5_wp*abs(f(3))*error**2)
+      unknown = nothing_known
+      ! No time is as long as the square root, whose square is in the range of reals.
+      if (error < sqrt(nothing_known)) &
+         unknown = law_error(d, t)/d%unit + abs(f(2))*error + 0.5_wp*abs(f(3))*error**2
+      text = known_text(f(1), d%decimals, d%power, unknown)
    end function drive_text
 
    !> A number without blanks; `error`, where it is given, is unknown of it.

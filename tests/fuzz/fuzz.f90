@@ -13,7 +13,8 @@ program fuzz
    use kinds, only: wp
    use failures, only: failure_t
    use mechanism, only: mechanism_t
-   use command_line, only: options_t, out_listing, out_csv, out_log
+   use command_line, only: options_t, out_listing, out_csv, out_log, out_summary, out_svg, out_animation, out_circuits, &
+      out_table, out_plot_table, out_plot_script
    use deck, only: read_deck
    use job, only: run_job
    use deck_draft, only: draft_t, read_sets, write_draft, find_cards
@@ -27,6 +28,13 @@ program fuzz
    integer(c_int), parameter :: patience = 60
    !> Every so many-th deck that is solved is solved in twice as many steps too.
    integer, parameter :: twice_every = 3
+
+   !> Every so many-th deck has all outputs: these, some of which are of one set each, and in these files.
+   integer, parameter :: others_every = 4
+   integer, parameter :: each_set(*) = [out_table, out_plot_table, out_plot_script]
+   integer, parameter :: other_outputs(*) = [each_set, out_summary, out_svg, out_animation, out_circuits]
+   character(9), parameter :: others(*) = [character(9) :: 'table.csv', 'plot.csv', 'plot.gp', 'summary', 'svg', &
+      'film.svg', 'circuits']
 
    interface
       !> After so many seconds the process is ended by the system; 0 takes it back.
@@ -112,12 +120,13 @@ contains
       type(options_t) :: options
       type(draft_t) :: d
       character(:), allocatable :: message
-      integer :: flagged
+      integer :: flagged, k
       integer(c_int) :: left
 
       options = options_in(directory)
       d = deck_of_seed(sets, seed)
       call write_draft(d, options%deck)
+      if (mod(seed, others_every) == 0) call ask_for_others(options, d, directory)
       left = alarm(patience)
       call run_trapped(options, status, message)
       wrong = ''
@@ -127,6 +136,10 @@ contains
          if (wrong == '' .and. (flagged > 0 .neqv. status == 2) .and. size(find_cards(d, ['VARY    '])) == 0) &
             wrong = 'STATUS AND MARKS'
          if (wrong == '' .and. message /= '') wrong = 'WORDS ON STANDARD ERROR: '//message
+         do k = 1, size(others)
+            if (wrong == '' .and. allocated(options%files(other_outputs(k))%text)) &
+               call check_protocol(options%files(other_outputs(k))%text, wrong)
+         end do
          if (wrong == '' .and. status == 0 .and. mod(seed, twice_every) == 0) call run_twice(d, directory, wrong)
       case (1)
          if (index(message, ' *** E') == 0) wrong = 'REFUSED WITHOUT A WORD: '//message
@@ -147,6 +160,22 @@ contains
       options%files(out_log)%text = directory//'/log'
       options%show = ''
    end function options_in
+
+   !> The other outputs, as far as the deck `d` has what they need.
+   subroutine ask_for_others(options, d, directory)
+      type(options_t), intent(inout) :: options
+      type(draft_t), intent(in) :: d
+      character(*), intent(in) :: directory
+      logical :: varies
+      integer :: k
+
+      varies = size(find_cards(d, ['VARY    '])) > 0
+      do k = 1, size(others)
+         if (other_outputs(k) == out_circuits .and. size(find_cards(d, ['CIRCUITS'])) == 0) cycle
+         if (any(other_outputs(k) == each_set) .and. varies) cycle
+         options%files(other_outputs(k))%text = directory//'/'//trim(others(k))
+      end do
+   end subroutine ask_for_others
 
    !> Runs the deck `d` in twice as many steps and compares.
    subroutine run_twice(d, directory, wrong)

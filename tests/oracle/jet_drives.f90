@@ -1,6 +1,7 @@
 !> Tests. The motions of the drives in real128; how large the numbers were that they were added up from (one part in
 !> 2**53 of that is what double precision can be held to); and how much each number of a law counts.
 module jet_drives
+   use, intrinsic :: iso_fortran_env, only: real64
    use kinds, only: wp
    use quad_jet, only: qp, jet_t, time_jet, sin, operator(+), operator(*)
    use rise_laws, only: rise_jet
@@ -9,6 +10,9 @@ module jet_drives
    implicit none
    private
    public :: drive_jet, drive_jets, term_jet, drive_sizes, drive_changes
+
+   !> An instant that is before the joint of a rise by less than this part of its times is at it, as the manual says.
+   real(qp), parameter :: joint_part = 1024.0_qp*max(real(epsilon(1.0_wp), qp), real(epsilon(1.0_real64), qp))
 
 contains
 
@@ -66,7 +70,7 @@ contains
       case (term_table)
          f = spline_jet(x, y, t)
       case (term_cycloid:term_parabola)
-         f = rise_jet(trim(rise_words(kind)), r(1), r(2), r(3), t)
+         f = rise_jet(trim(rise_words(kind)), r(1), r(2), r(3), t, joint_part)
       end select
    end function term_jet
 
