@@ -109,7 +109,8 @@ contains
                row(column_ends(2) + 1:) = ' '//signs(b%sign)
                ! Where there are more assemblies than the column has room for, the range stands behind them.
                numbers = numbers(2:)
-               numbers = row(:column_ends(3))//numbers//repeat(' ', max(1, column_ends(4) - column_ends(3) - len(numbers)))
+               numbers = row(:column_ends(3))//numbers &
+                  //repeat(' ', max(1, column_ends(4) - column_ends(3) - len(numbers)))
                call put_folded(o, numbers, range_words(m, found, b), repeat(' ', len(numbers)))
             end associate
          end do

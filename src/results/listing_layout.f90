@@ -323,8 +323,8 @@ contains
       if (power /= 0) text = '10**'//whole(power)//' '//unit
    end function unit_of
 
-   !> The words `text` behind `mark` in one line or, where names are many and long, in several, divided where three blanks
-   !> are, or else one. Lines after the first begin with `next`, or with `mark` as well.
+   !> The words `text` behind `mark` in one line or, where names are many and long, in several: divided at three blanks,
+   !> or at one where there are no three. Lines after the first begin with `next`, or with `mark` as well.
    recursive subroutine put_folded(o, mark, text, next)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: mark, text

@@ -697,6 +697,13 @@ equal 'long names: as often' "$(grep -c ' AND [0-9]* MORE' "$w/EN")" "$(grep -c 
 equal 'drives too many, long names' ' --- ZA DUZO NAPEDOW O 4: RELANGLE BASE LONGNAME, RELANGLE BASE LONGNAME, RELANGLE BASE LONGNAME I 2 INNE' \
    "$(grep -e '---' "$w/out" | head -n 1)"
 
+# Of an extreme's time nothing is known where a drive is there twice: the drive's value is masked, and nothing overflows.
+awk '/^DRIVE/ { print } /^PRINT/ { print "EXTREMESPOINTS" } 1' input/many_turns.deck > "$w/deck"
+"$kinmat" "$w/deck" > "$w/out"
+"$debug" "$w/deck" > "$w/debug.out"
+equal 'extremes of a drive that is there twice: debug build, status' 0 $?
+same 'extremes of a drive that is there twice: debug build' "$w/out" "$w/debug.out"
+
 changed '/^UNITS/ { next } 1'
 "$kinmat" "$w/deck" > "$w/out"
 equal 'degrees without UNITS' ' --- CARD 3  COLUMN 65: "60.0" IS AN ANGLE IN RADIANS: ARE DEGREES MEANT (UNITS DEG)?' \
