@@ -177,11 +177,14 @@ contains
    subroutine put_hatch(o, p, q, side)
       type(output_t), intent(inout) :: o
       real(wp), intent(in) :: p(2), q(2), side(2)
-      real(wp) :: e(2), start(2)
+      real(wp) :: e(2), start(2), length
       integer :: k, n
 
-      n = max(1, min(200, int(norm2(q - p)/hatch_step)))
-      e = (q - p)/norm2(q - p)
+      length = norm2(q - p)
+      ! What is far out of the picture may have no length left.
+      if (length <= 0.0_wp) return
+      n = max(1, int(min(200.0_wp, length/hatch_step)))
+      e = (q - p)/length
       do k = 1, n
          start = p + real(k, wp)*(q - p)/real(n, wp)
          call put_line(o, 'polyline', reshape([start, start + hatch_length*(side - e)], [2, 2]), 'class="hatch"')

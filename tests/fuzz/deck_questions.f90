@@ -11,6 +11,9 @@ module deck_questions
 
    character(8), parameter :: with_dimensions(*) = [character(8) :: 'LINK', 'POINT', 'PRISM', 'DRIVE']
 
+   !> Circuits are asked of so many links at most.
+   integer, parameter :: most_links = 5
+
 contains
 
    !> One more card that asks for something.
@@ -25,6 +28,8 @@ contains
       select case (throw(r, 10))
       case (1:4)
          card = plain(throw(r, size(plain)))
+         ! The circuits of many links can take minutes.
+         if (card == 'CIRCUITS' .and. size(find_cards(d, ['LINK    '])) > most_links) return
       case (5:6)
          card = 'EXTREMES'//kinds(throw(r, size(kinds)))
          if (chance(r, 0.3_wp)) write (card(33:64), '(2es16.8e3)') between(r, 0.0_wp, 1.0_wp), between(r, 0.0_wp, 9.0_wp)

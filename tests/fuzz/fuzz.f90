@@ -8,7 +8,7 @@
 program fuzz
    use arguments, only: argument, number
    use, intrinsic :: iso_fortran_env, only: output_unit
-   use, intrinsic :: iso_c_binding, only: c_int
+   use, intrinsic :: iso_c_binding, only: c_int, c_funptr, c_null_funptr
    use, intrinsic :: ieee_arithmetic, only: ieee_set_halting_mode, ieee_set_flag, ieee_usual, ieee_all
    use kinds, only: wp
    use failures, only: failure_t
@@ -26,6 +26,7 @@ program fuzz
 
    !> Seconds that one deck may take, of a clock on the wall: the slowest known take 15 on a busy machine.
    integer(c_int), parameter :: patience = 60
+   integer(c_int), parameter :: signal_alarm = 14
    !> Every so many-th deck that is solved is solved in twice as many steps too.
    integer, parameter :: twice_every = 3
 
@@ -42,6 +43,12 @@ program fuzz
          import :: c_int
          integer(c_int), value :: seconds
       end function alarm
+      !> signal(2): what the process does at the signal `number`; a null pointer: what the system does, which ends it.
+      type(c_funptr) function signal(number, action) bind(c)
+         import :: c_int, c_funptr
+         integer(c_int), value :: number
+         type(c_funptr), value :: action
+      end function signal
    end interface
 
    !> What has been run: decks, exit statuses, instants and closures seen, largest residuals.
@@ -51,9 +58,12 @@ program fuzz
    end type sums_t
 
    type(draft_t), allocatable :: sets(:)
+   type(c_funptr) :: before
    integer :: i
 
    call ieee_set_halting_mode(ieee_usual, .false.)
+   ! Who calls this program may have made it ignore the alarm.
+   before = signal(signal_alarm, c_null_funptr)
    allocate (sets(0))
    do i = 4, command_argument_count()
       call read_sets(argument(i), sets)

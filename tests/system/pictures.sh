@@ -270,5 +270,10 @@ for option in --svg --animate; do
    equal "$option, a share without sets" '' "$(tags "$w/share.svg")"
    equal "$option, a share without sets: none" 0 "$(grep -c '<g class="set"' "$w/share.svg")"
 done
+# Beyond the digits of a picture's coordinates a support has no width: it has no hatch.
+sed '/^POINT   C  /s/0\.0   /1.0E16/' input/yoke_mirrored.deck > "$w/far.deck"
+"$kinmat" --quiet "$w/far.deck" --svg "$w/far.svg" > "$w/out"
+equal 'a support very far away: status' 2 $?
+equal 'a support very far away' '' "$(tags "$w/far.svg"; grep -iE 'nan|infinity' "$w/far.svg")"
 rejected '--svg and --animate to one file' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own.deck" --animate "$w/a" --svg "$w/a"
 conclude
