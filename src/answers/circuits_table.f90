@@ -131,8 +131,8 @@ contains
             do k = 1, size(found%branches)
                if (any(found%branches(k)%dead == d)) numbers = numbers//' '//whole(k)
             end do
-            call put_folded(o, '   ', phrase(say_branch, m%polish)//numbers//'   '//&
-               limit_words(m, limit), repeat(' ', 6))
+            call put_folded(o, '   ', phrase(say_branch, m%polish)//numbers//'   '//limit_words(m, limit), &
+               repeat(' ', 6))
          end do
       end subroutine put_dead_points
 

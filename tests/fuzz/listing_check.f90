@@ -4,7 +4,10 @@ module listing_check
    private
    public :: check_listing, check_protocol, next_word
 
-   integer, parameter :: width = 400
+   !> Characters of a line in memory, and of one of the listing at most.
+   integer, parameter :: width = 400, longest = 120
+   !> A line of a sentence that goes on in the next one is shorter by less.
+   integer, parameter :: longest_word = 20
    character(9), parameter :: heads(*) = [character(9) :: 'X', 'Y', 'PHI', 'FI', 'VX', 'VY', 'VPHI', 'VFI', 'AX', &
       'AY', 'APHI', 'AFI', 'SLIDE', 'ANGLE', 'PRZESUW', 'KAT', 'RATE', '2ND', 'PREDKOSC', 'PRZYSP.', 'XI-I', 'KSI-I', &
       'ETA-I', 'XI-J', 'KSI-J', 'ETA-J', 'DIRECTION', 'KIERUNEK', 'TANGENT', 'STYCZNA', 'RADIUS', 'PROMIEN', &
@@ -49,35 +52,51 @@ contains
       integer, intent(in) :: sets
       character(:), allocatable, intent(out) :: wrong
       integer, intent(out) :: flagged
-      character(width) :: line
+      character(width) :: line, before
       integer :: unit, status, ends, i
-      logical :: tables
+      logical :: tables, goes_on, is_wrong
       integer :: names
 
       wrong = ''
       flagged = 0
       ends = 0
       tables = .false.
+      goes_on = .false.
+      before = ''
       names = one_name
       open (newunit=unit, file=path, status='old', action='read', iostat=status)
       do while (status == 0)
          read (unit, '(a)', iostat=status) line
          if (status /= 0) exit
+         if (len_trim(line) > longest .and. wrong == '') wrong = 'LISTING: TOO LONG: '//trim(line)
+         if (goes_on) then
+            if (is_sentence(line)) line = trim(before)//' '//line(6:)
+            if (.not. is_sentence(line) .and. wrong == '') wrong = 'LISTING: '//trim(before)
+         end if
          if (starts(line, ' INSTANT ') .or. starts(line, ' CHWILA ')) tables = .true.
          if (starts(line, ' END OF SET ') .or. starts(line, ' KONIEC KOMPLETU ')) then
             tables = .false.
             ends = ends + 1
          end if
          if (any([(starts(line, ' '//trim(other_heads(i))), i=1, size(other_heads))])) tables = .false.
-         if (tables .and. starts(line, ' *** ')) flagged = flagged + merge(0, 1, is_remark(line))
-         if (index(line, ': NOT PROVED') + index(line, ': BEZ DOWODU') > 0) flagged = flagged + 1
          if (any(line(:8) == [character(8) :: ' POLE', ' CURVE', ' BIEGUN', ' TOR'])) then
             if (are_heads(line(two_names + 1:))) names = two_names
          else if (line(:one_name) /= '' .and. line(one_name + 1:) /= '' .and. are_heads(line(one_name + 1:))) then
             names = one_name
          end if
-         if (line_is_wrong(line, tables, names) .and. wrong == '') wrong = 'LISTING: '//trim(line)
+         is_wrong = line_is_wrong(line, tables, names)
+         if (is_wrong .and. is_sentence(line) .and. len_trim(line) > longest - longest_word .and. .not. goes_on) then
+            ! It may be a part of a long sentence, which goes on in the next line.
+            before = line
+            goes_on = .true.
+            cycle
+         end if
+         goes_on = .false.
+         if (tables .and. starts(line, ' *** ')) flagged = flagged + merge(0, 1, is_remark(line))
+         if (index(line, ': NOT PROVED') + index(line, ': BEZ DOWODU') > 0) flagged = flagged + 1
+         if (is_wrong .and. wrong == '') wrong = 'LISTING: '//trim(line)
       end do
+      if (goes_on .and. wrong == '') wrong = 'LISTING: '//trim(before)
       if (ends /= sets) wrong = 'LISTING: NOT ALL SETS COME TO THEIR END'
       close (unit)
    end subroutine check_listing
@@ -87,7 +106,7 @@ contains
       logical, intent(in) :: tables
       integer, intent(in) :: names
 
-      wrong = len_trim(line) > 120 .or. index(line, 'NaN') > 0 .or. index(line, 'Infinity') > 0
+      wrong = index(line, 'NaN') > 0 .or. index(line, 'Infinity') > 0
       if (wrong .or. line == '') return
       if (.not. tables) then
          wrong = index(line, '****') > 0
@@ -114,6 +133,13 @@ contains
       comma = max(index(text, ', LINK'), index(text, ', OGNIW'))
       if (comma > 0) rest = text(:comma - 1)//text(index(text, ': ', back=.true.):)
    end function without_links
+
+   !> The line is a sentence behind three stars or dashes, or a part of one.
+   pure logical function is_sentence(line)
+      character(*), intent(in) :: line
+
+      is_sentence = starts(line, ' *** ') .or. starts(line, ' --- ')
+   end function is_sentence
 
    !> The line holds the words of a remark.
    pure logical function is_remark(line)
