@@ -23,8 +23,8 @@ module deck_damage
       'RISE', 'TIME', 'AT', 'METHOD']
    character(8), parameter :: with_labels(*) = [character(8) :: 'GROUND', 'LINK', 'POINT', 'REVOLUTE', 'PRISM', &
       'JOINT', 'DRIVE']
-   !> Radians, or lengths: so far drives go in all.
-   real(wp), parameter :: longest_way = 2000.0_wp
+   !> Radians, or lengths: so far drives go in all; where extremes are searched, which takes longer.
+   real(wp), parameter :: longest_way = 2000.0_wp, longest_search = 60.0_wp
    character(*), &
       parameter :: bytes = 'AZ09.+-*$ ,"'//'|eE'//achar(9)//achar(13)//achar(0)//achar(127)//char(195)//char(255)
 
@@ -86,8 +86,9 @@ contains
       type(draft_t), intent(inout) :: d
       integer, allocatable :: cards(:)
       integer :: i, k
-      real(wp) :: t, rate, low, high
+      real(wp) :: t, rate, low, high, longest
 
+      longest = merge(longest_search, longest_way, size(find_cards(d, ['EXTREMES'])) > 0)
       cards = find_cards(d, ['TIME    ', 'AT      '])
       t = 0.0_wp
       do i = 1, size(cards)
@@ -97,12 +98,12 @@ contains
       end do
       if (t > 1.0e60_wp) return
       call find_fastest(d, t, rate)
-      if (rate*t <= longest_way) return
+      if (rate*t <= longest) return
       low = -60.0_wp
       high = log10(t)
       do i = 1, 40
          call find_fastest(d, 10.0_wp**(0.5_wp*(low + high)), rate)
-         if (rate*10.0_wp**(0.5_wp*(low + high)) > longest_way) then
+         if (rate*10.0_wp**(0.5_wp*(low + high)) > longest) then
             high = 0.5_wp*(low + high)
          else
             low = 0.5_wp*(low + high)

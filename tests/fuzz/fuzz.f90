@@ -31,7 +31,7 @@ program fuzz
    integer, parameter :: twice_every = 3
 
    !> Every so many-th deck has all outputs: these, some of which are of one set each, and in these files.
-   integer, parameter :: others_every = 4
+   integer, parameter :: others_every = 25
    integer, parameter :: each_set(*) = [out_table, out_plot_table, out_plot_script]
    integer, parameter :: other_outputs(*) = [each_set, out_summary, out_svg, out_animation, out_circuits]
    character(9), parameter :: others(*) = [character(9) :: 'table.csv', 'plot.csv', 'plot.gp', 'summary', 'svg', &
