@@ -17,6 +17,8 @@ module block_method
    real(wp), parameter :: smallest_pivot = epsilon(1.0_wp)**2
    !> A digit of a rate is worth so many of an angle, at least.
    real(wp), parameter :: rate_digits = 6.0_wp
+   !> What a block knows may be so many times as large as its own vectors before its roundings count for more.
+   real(wp), parameter :: usual_coarse = 16.0_wp
 
    type, extends(block_engine_t) :: block_method_t
    contains
@@ -84,15 +86,21 @@ contains
       end associate
    end function max_rate
 
-   !> By how much a rounding grows at most in a block, whose numbers are the characteristic ones.
+   !> By how much a rounding grows at most in a block, whose numbers are the characteristic ones. Where a block knows
+   !> much larger vectors than its own, their roundings count.
    pure real(wp) function growth_of_roundings(e) result(growth)
       class(block_method_t), intent(in) :: e
+      real(wp) :: inverse
       integer :: k
 
       growth = 0.0_wp
       do k = 1, size(e%needed)
-         associate (i => e%needed(k))
-            if (.not. e%blocks%list(i)%direct) growth = max(growth, e%blocks%list(i)%lipschitz/pivot_of(e, i)**2)
+         associate (block => e%blocks%list(e%needed(k)))
+            if (block%direct) cycle
+            inverse = 1.0_wp/pivot_of(e, e%needed(k))
+            growth = max(growth, block%lipschitz*inverse**2)
+            if (block%coarse > usual_coarse) &
+               growth = max(growth, block%coarse*inverse*max(1.0_wp, block%lipschitz*inverse))
          end associate
       end do
    end function growth_of_roundings
