@@ -4,7 +4,7 @@ module deck_draft
    implicit none
    private
    public :: draft_t, line_length, read_sets, name_of, label, set_label, real_field, set_real, set_full
-   public :: insert_line, drop_line, find_cards, add_note, write_draft
+   public :: insert_line, drop_line, has_star, find_cards, add_note, write_draft
 
    integer, parameter :: line_length = 200
 
@@ -92,6 +92,7 @@ contains
       read (text, '(bn,f40.0)', iostat=status) x
    end subroutine take
 
+   !> A `*` card is below card `i`.
    pure logical function has_star(d, i)
       type(draft_t), intent(in) :: d
       integer, intent(in) :: i

@@ -3,14 +3,14 @@
 module deck_questions
    use kinds, only: wp
    use dice, only: dice_t, throw, chance, between
-   use deck_draft, only: draft_t, name_of, label, set_label, real_field, insert_line, find_cards, add_note
+   use deck_draft, only: draft_t, name_of, label, set_label, real_field, insert_line, has_star, &
+      find_cards, add_note
    use deck_changes, only: pick
    implicit none
    private
    public :: ask, lengthen_names, write_in_polish
 
    character(8), parameter :: with_dimensions(*) = [character(8) :: 'LINK', 'POINT', 'PRISM', 'DRIVE']
-
    !> Circuits are asked of so many links at most.
    integer, parameter :: most_links = 5
 
@@ -114,8 +114,7 @@ contains
       type(draft_t), intent(in) :: d
       integer, intent(in) :: i
 
-      behind = i + 1
-      if (i < size(d%line)) behind = i + merge(2, 1, d%line(i + 1)(1:1) == '*')
+      behind = i + merge(2, 1, has_star(d, i))
    end function behind
 
    !> All names of links, points and pairs get the length of a field.

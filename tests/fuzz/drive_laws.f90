@@ -1,8 +1,7 @@
 !> Tests. The laws of drives as jets in real128, from the numbers of the deck: a polynomial and one term of each form.
 module drive_laws
-   use, intrinsic :: iso_fortran_env, only: real64
    use quad_jet, only: qp, jet_t, time_jet, operator(+), operator(-), operator(*), sin
-   use rise_laws, only: rise_jet
+   use rise_laws, only: rise_jet, fine_joint_part
    implicit none
    private
    public :: law_t, law_jet, set_spline, variation, term_none, term_harmonic, term_power, term_table, term_rise
@@ -20,9 +19,6 @@ module drive_laws
       real(qp), allocatable :: time(:), value(:) !< rows of a table
       real(qp), allocatable :: bend(:)         !< second derivatives of the spline at the rows
    end type law_t
-
-   !> An instant that is before the joint of a rise by less than this part of its times is at it, as the manual says.
-   real(qp), parameter :: joint_part = 1024.0_qp*epsilon(1.0_real64)
 
 contains
 
@@ -44,7 +40,7 @@ contains
       case (term_table)
          f = f + spline_jet(law, t)
       case (term_rise)
-         f = f + rise_jet(trim(law%word), law%r(1), law%r(2), law%r(3), t, joint_part)
+         f = f + rise_jet(trim(law%word), law%r(1), law%r(2), law%r(3), t, fine_joint_part)
       end select
       f = angle_unit*f
    end function law_jet

@@ -1,18 +1,17 @@
 !> Tests. The motions of the drives in real128; how large the numbers were that they were added up from (one part in
 !> 2**53 of that is what double precision can be held to); and how much each number of a law counts.
 module jet_drives
-   use, intrinsic :: iso_fortran_env, only: real64
    use kinds, only: wp
    use quad_jet, only: qp, jet_t, time_jet, sin, operator(+), operator(*)
-   use rise_laws, only: rise_jet
+   use rise_laws, only: rise_jet, fine_joint_part
    use mechanism, only: mechanism_t, drive_t, term_t, term_harmonic, term_power, term_table, term_cycloid, &
       term_parabola, rise_words
    implicit none
    private
    public :: drive_jet, drive_jets, term_jet, drive_sizes, drive_changes
 
-   !> An instant that is before the joint of a rise by less than this part of its times is at it, as the manual says.
-   real(qp), parameter :: joint_part = 1024.0_qp*max(real(epsilon(1.0_wp), qp), real(epsilon(1.0_real64), qp))
+   !> As `fine_joint_part`, or as much as a coarser kind of real needs.
+   real(qp), parameter :: joint_part = max(fine_joint_part, 1024.0_qp*epsilon(1.0_wp))
 
 contains
 

@@ -1,15 +1,18 @@
 !> Tests. The laws of rises in real128: s(u) alone is written down, its derivatives are those of the jets.
 module rise_laws
+   use, intrinsic :: iso_fortran_env, only: real64
    use quad_jet, only: qp, jet_t, pi_q, constant_jet, time_jet, operator(+), operator(-), operator(*), operator(/), sin, &
       cos
    implicit none
    private
-   public :: rise_jet, peak_rate, rise_words
+   public :: rise_jet, peak_rate, rise_words, fine_joint_part
 
    character(8), parameter :: rise_words(4) = [character(8) :: 'CYCLOID', '3-4-5', 'HARMONIC', 'PARABOLA']
    !> An instant that is before a joint by less than this part of the rise's times is meant to be at it, if it has the
    !> digits of a single.
    real(qp), parameter :: joint_part = 1.0e-6_qp
+   !> The same of instants that have the digits of a double, as the manual says.
+   real(qp), parameter :: fine_joint_part = 1024.0_qp*epsilon(1.0_real64)
 
 contains
 
