@@ -3,7 +3,8 @@
 module animation
    use kinds, only: wp
    use planar, only: in_degrees, without_turns
-   use mechanism, only: mechanism_t, drive_x, drive_y, drive_slide
+   use mechanism, only: mechanism_t
+   use scales, only: is_length
    use drives, only: law_t, drive_motion, new_law
    use motion, only: mark_none
    use names, only: drive_name
@@ -15,8 +16,8 @@ module animation
    use picture, only: put_curves
    use picture_page, only: place_canvas, put_set_head, put_flags, put_scale, flag_lines, fitted, width, line_height
    use picture_centrodes, only: put_centrodes
-   use moving_links, only: course_t, put_moving, put_moving_links, put_moving_centres
-   use svg, only: svg_head, put_end, put_group, put_window, put_circle, put_line, put_words, pixels
+   use moving_links, only: course_t, put_moving, shift, put_moving_links, put_moving_centres
+   use svg, only: svg_head, put_end, put_group, put_window, put_circle, put_line, put_words, translation
    use text_output, only: output_t
    use listing, only: words_of_mark
    implicit none
@@ -72,7 +73,6 @@ contains
          call make_canvas(o, films(i), page(i))
          page(i)%best = min(1, films(i)%frames)
          page(i)%faint = [(k, k=1, films(i)%frames)]
-         page(i)%centrodes = .true.
          call place_canvas(page(i), top)
          top = page(i)%bottom + bar_room
       end do
@@ -105,7 +105,7 @@ contains
       ! A centrode in a link that moves may run through the pictures of other sets.
       if (size(c%d%centrodes) > 0) then
          call put_window(c%o, c%low, c%high - c%low)
-         call put_group(c%o, 'transform="translate('//pixels(-c%low(1))//' '//pixels(-c%low(2))//')"', '')
+         call put_group(c%o, translation(-c%low), '')
       end if
       call put_group(c%o, 'class="film" data-frames="'//whole(c%d%frames)//'" data-keys="'//whole(size(course%frame)) &
          //'" data-end="'//full(c%d%frame(c%d%frames)%t)//'"', '')
@@ -162,7 +162,7 @@ contains
       call put_group(c%o, 'class="clock"', '')
       up(1, :) = 0.0_wp
       up(2, :) = -real(line_height*(course%frame - 1), wp)
-      call put_moving(c%o, course, 'animateTransform attributeName="transform" type="translate"', up, .false.)
+      call put_moving(c%o, course, shift, up, .false.)
       do k = 1, c%d%frames
          associate (s => c%d%frame(k))
             words = 'T = '//fitted(s%t)//' '//trim(c%m%time_unit)
@@ -191,8 +191,7 @@ contains
             f = drive_motion(law, d%frame(k)%t)
             value(i, k) = f(0)
          end do
-         if (d%m%degrees .and. all(d%m%drives(i)%kind /= [drive_x, drive_y, drive_slide])) &
-            value(i, :) = in_degrees(value(i, :))
+         if (d%m%degrees .and. .not. is_length(d%m%drives(i))) value(i, :) = in_degrees(value(i, :))
          where (abs(value(i, :)) < not_shown*maxval(abs(value(i, :)))) value(i, :) = 0.0_wp
       end do
    end function drive_values
@@ -215,9 +214,8 @@ contains
          call put_line(c%o, 'polyline', reshape([x, y - mark_height, x, y + mark_height], [2, 2]), 'class="mark"')
       end do
       call put_group(c%o, 'class="now"', '')
-      call put_moving(c%o, course, 'animateTransform attributeName="transform" type="translate"', &
-         reshape([(along_bar(c%d, c%d%frame(course%frame(k))%t) - first(1), 0.0_wp, k=1, size(course%frame))], &
-         [2, size(course%frame)]), course%smooth)
+      call put_moving(c%o, course, shift, reshape([(along_bar(c%d, c%d%frame(course%frame(k))%t) - first(1), 0.0_wp, &
+         k=1, size(course%frame))], [2, size(course%frame)]), course%smooth)
       call put_circle(c%o, first, dot_radius, 'class="point"')
       call put_end(c%o, 'g')
    end subroutine put_bar
@@ -228,12 +226,10 @@ contains
       real(wp), intent(in) :: t
       real(wp) :: part
 
-      x = bar_ends(1)
+      part = 0.0_wp
       associate (t0 => d%frame(1)%t, t1 => d%frame(d%frames)%t)
-         if (abs(t1 - t0) > 0.0_wp) then
-            part = min(1.0_wp, max(0.0_wp, (t - t0)/(t1 - t0)))
-            x = bar_ends(1) + part*(bar_ends(2) - bar_ends(1))
-         end if
+         if (abs(t1 - t0) > 0.0_wp) part = min(1.0_wp, max(0.0_wp, (t - t0)/(t1 - t0)))
       end associate
+      x = bar_ends(1) + part*(bar_ends(2) - bar_ends(1))
    end function along_bar
 end module animation

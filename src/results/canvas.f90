@@ -4,10 +4,11 @@ module canvas
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use drawing, only: drawing_t, snapshot_t
+   use svg, only: put_words
    use text_output, only: output_t
    implicit none
    private
-   public :: canvas_t, make_canvas, to_pixels, add_line, add_box, find_clear_place, cover_of, find_inside
+   public :: canvas_t, make_canvas, to_pixels, add_line, add_box, put_name, cover_of, find_inside
 
    !> Size of the letters of a name: mean width and height of capitals, in pixels.
    real(wp), parameter, public :: letter_width = 8.7_wp, letter_height = 9.0_wp
@@ -20,7 +21,6 @@ module canvas
       type(snapshot_t) :: s                  !< the position that is drawn in full
       integer :: best = 0                    !< the frame that is drawn in full; 0 for none
       integer, allocatable :: faint(:)       !< frames that are faint
-      logical :: centrodes = .false.         !< they are drawn
       integer :: top = 0, bottom = 0         !< pixels where it begins, and above which it ends
       real(wp) :: scale = 1.0_wp             !< pixels in a unit of length
       real(wp) :: shift(2) = 0.0_wp
@@ -98,19 +98,17 @@ contains
       list(:, used) = column
    end subroutine append
 
-   !> The start of the foot line (2) of a name of `length` letters for one of the places `p` (2, :): the candidate, to
-   !> eight sides at several distances, that covers the least of what is drawn, or is nearer to it than `clear`
-   !> (pixels). The name is noted as drawn.
-   subroutine find_clear_place(c, p, length, clear, start)
+   !> Writes the `name` of what is at one of the pixels `p` (2, :), where it covers the least of what is drawn, or is
+   !> nearer to it than `clear` (pixels): of places to eight sides at several distances. It is noted as drawn.
+   subroutine put_name(c, p, clear, attributes, name)
       type(canvas_t), intent(inout) :: c
-      real(wp), intent(in) :: p(:, :)
-      integer, intent(in) :: length
-      real(wp), intent(in) :: clear
-      real(wp), intent(out) :: start(2)
+      real(wp), intent(in) :: p(:, :), clear
+      character(*), intent(in) :: attributes, name
+      real(wp) :: start(2)
       real(wp) :: low(2), high(2), half(2), distance, cost, least
       integer :: i, d, x, y
 
-      half = 0.5_wp*[letter_width*real(length, wp), letter_height]
+      half = 0.5_wp*[letter_width*real(len(name), wp), letter_height]
       least = huge(least)
       start = p(:, 1)
       do d = 1, size(distances)
@@ -129,8 +127,9 @@ contains
             end do
          end do
       end do
+      call put_words(c%o, start, 'start', attributes, name)
       call add_box(c, [start(1), start(2) - 2.0_wp*half(2)], [start(1) + 2.0_wp*half(1), start(2)])
-   end subroutine find_clear_place
+   end subroutine put_name
 
    !> How much of what is drawn the line through the places `p` (2, :) would cover or come near.
    pure real(wp) function cover_of(c, p)

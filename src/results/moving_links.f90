@@ -10,7 +10,7 @@ module moving_links
    use picture_parts, only: put_body, put_guide, put_block, put_joint, put_dot, dots_of
    use picture_centrodes, only: put_centrodes, put_ring, pair_name
    use picture_page, only: fitted, width
-   use svg, only: put_group, put_end, put_values, pixels, attribute
+   use svg, only: put_group, put_end, put_values, pixels, attribute, translation
    use text_output, only: output_t
    implicit none
    private
@@ -23,6 +23,10 @@ module moving_links
       logical :: smooth = .true.             !< there are positions between them
    end type course_t
 
+   !> What of a group is animated.
+   character(*), parameter :: turn = 'animateTransform attributeName="transform" type="rotate"', &
+      opacity = 'animate attributeName="opacity"'
+   character(*), parameter, public :: shift = 'animateTransform attributeName="transform" type="translate"'
    !> What is seen of a link where it has no position; it stays where it was.
    real(wp), parameter :: pale = 0.2_wp
 
@@ -118,12 +122,12 @@ contains
          angle(1, k) = turned
       end do
       angle = -in_degrees(angle)
-      call put_group(c%o, 'class="link" '//attribute('data-link', trim(c%m%links(link)%name)) &
-         //' transform="translate('//pixels(place(1, 1))//' '//pixels(place(2, 1))//')"', trim(c%m%links(link)%name))
-      call put_moving(c%o, course, 'animateTransform attributeName="transform" type="translate"', place, course%smooth)
-      call put_opacity(c, course, link)
+      call put_group(c%o, 'class="link" '//attribute('data-link', trim(c%m%links(link)%name))//' ' &
+         //translation(place(:, 1)), trim(c%m%links(link)%name))
+      call put_moving(c%o, course, shift, place, course%smooth)
+      call put_opacity(c%o, course, [(c%d%frame(course%frame(k))%known(link), k=1, size(course%frame))], pale)
       call put_group(c%o, 'transform="rotate('//pixels(angle(1, 1))//')"', '')
-      call put_moving(c%o, course, 'animateTransform attributeName="transform" type="rotate"', angle, course%smooth)
+      call put_moving(c%o, course, turn, angle, course%smooth)
       call put_carried(cargo, link)
       call put_end(c%o, 'g')
       call put_end(c%o, 'g')
@@ -164,7 +168,8 @@ contains
    subroutine put_moving_centres(c, course)
       type(canvas_t), intent(in) :: c
       type(course_t), intent(in) :: course
-      real(wp) :: place(2, 0:size(course%frame)), opacity(1, size(course%frame))
+      real(wp) :: place(2, 0:size(course%frame))
+      logical :: is_there(size(course%frame))
       character(:), allocatable :: name
       integer :: i, k
 
@@ -173,18 +178,15 @@ contains
          do k = 1, size(course%frame)
             associate (s => c%d%frame(course%frame(k)))
                place(:, k) = to_pixels(c, s%centre(:, i))
-               opacity(1, k) = merge(1.0_wp, 0.0_wp, s%has_centre(i) .and. all(place(:, k) >= c%low &
-                  .and. place(:, k) <= c%high))
+               is_there(k) = s%has_centre(i) .and. all(place(:, k) >= c%low .and. place(:, k) <= c%high)
             end associate
-            if (opacity(1, k) < 1.0_wp) place(:, k) = place(:, k - 1)
+            if (.not. is_there(k)) place(:, k) = place(:, k - 1)
          end do
-         if (all(opacity < 1.0_wp)) cycle
+         if (.not. any(is_there)) cycle
          name = pair_name(c%m, c%d%centrodes(i))
-         call put_group(c%o, attribute('data-pole', name)//' transform="translate('//pixels(place(1, 1))//' ' &
-            //pixels(place(2, 1))//')"', name)
-         call put_moving(c%o, course, 'animateTransform attributeName="transform" type="translate"', place(:, 1:), &
-            course%smooth)
-         if (any(opacity < 1.0_wp)) call put_moving(c%o, course, 'animate attributeName="opacity"', opacity, .false.)
+         call put_group(c%o, attribute('data-pole', name)//' '//translation(place(:, 1)), name)
+         call put_moving(c%o, course, shift, place(:, 1:), course%smooth)
+         call put_opacity(c%o, course, is_there, 0.0_wp)
          call put_ring(c, i, [0.0_wp, 0.0_wp])
          call put_end(c%o, 'g')
       end do
@@ -206,17 +208,14 @@ contains
          //'s" repeatCount="indefinite"', values)
    end subroutine put_moving
 
-   !> Makes `link` pale where it has no position.
-   subroutine put_opacity(c, course, link)
-      type(canvas_t), intent(in) :: c
+   !> Shows a group by this opacity `elsewhere` than at the keys where it `is_there` (keys).
+   subroutine put_opacity(o, course, is_there, elsewhere)
+      type(output_t), intent(inout) :: o
       type(course_t), intent(in) :: course
-      integer, intent(in) :: link
-      real(wp) :: opacity(1, size(course%frame))
-      integer :: k
+      logical, intent(in) :: is_there(:)
+      real(wp), intent(in) :: elsewhere
 
-      do k = 1, size(course%frame)
-         opacity(1, k) = merge(1.0_wp, pale, c%d%frame(course%frame(k))%known(link))
-      end do
-      if (any(opacity < 1.0_wp)) call put_moving(c%o, course, 'animate attributeName="opacity"', opacity, .false.)
+      if (.not. all(is_there)) call put_moving(o, course, opacity, &
+         reshape(merge(1.0_wp, elsewhere, is_there), [1, size(is_there)]), .false.)
    end subroutine put_opacity
 end module moving_links

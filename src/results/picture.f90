@@ -6,7 +6,7 @@ module picture
    use drawing, only: drawing_t, point_place
    use outline, only: is_same_place
    use picture_frames, only: clearest, faint_frames
-   use canvas, only: canvas_t, make_canvas, to_pixels, find_clear_place
+   use canvas, only: canvas_t, make_canvas, to_pixels, put_name
    use picture_parts, only: put_body, put_outlines, put_flagged, put_guide, put_ground, put_block, put_joint, put_dot, &
       put_path, dots_of, color_of, corner_pixels, joint_point
    use picture_drives, only: put_drives
@@ -41,7 +41,6 @@ contains
       do i = 1, size(drawings)
          associate (c => page(i), d => drawings(i))
             call make_canvas(o, drawings(i), c)
-            c%centrodes = .true.
             c%best = 1
             c%faint = [(k, k=2, d%frames)]
             if (.not. d%assemblies) then
@@ -95,8 +94,7 @@ contains
       integer :: i
 
       do i = 1, size(c%d%curves)
-         if (moves(c%d, i)) call put_path(c, c%d%curves(i), trim(c%m%points(c%d%curves(i)%point)%name), &
-            color_of(c%m%points(c%d%curves(i)%point)%link))
+         if (moves(c%d, i)) call put_path(c, c%d%curves(i))
       end do
    end subroutine put_curves
 
@@ -176,7 +174,7 @@ contains
    subroutine put_points(c)
       type(canvas_t), intent(inout) :: c
       logical, dimension(size(c%m%points)) :: open, printed
-      real(wp) :: p(2, size(c%m%points)), start(2)
+      real(wp) :: p(2, size(c%m%points))
       integer :: i, best
 
       open = .not. c%m%links(c%m%points%link)%ground
@@ -195,37 +193,39 @@ contains
             if (open(i)) open(i) = any(abs(p(:, i) - p(:, best)) > together)
          end do
          if (c%m%points(best)%name == c%m%links(c%m%points(best)%link)%name) cycle
-         call find_clear_place(c, p(:, best:best), len_trim(c%m%points(best)%name), clear_of_point, start)
-         call put_words(c%o, start, 'start', 'class="name"', trim(c%m%points(best)%name))
+         call put_name(c, p(:, best:best), clear_of_point, 'class="name"', trim(c%m%points(best)%name))
       end do
    end subroutine put_points
 
    !> The names of the moving links, each in its color: beside a bar, in or beside a polygon.
    subroutine put_links(c)
       type(canvas_t), intent(inout) :: c
-      real(wp), allocatable :: p(:, :), q(:, :)
-      real(wp) :: start(2)
-      integer :: i, k, n
+      real(wp), allocatable :: p(:, :)
+      integer :: i
 
       do i = 1, size(c%m%links)
          if (c%m%links(i)%ground .or. .not. c%s%known(i)) cycle
-         p = corner_pixels(c, c%d%outlines(i), c%s%place(:, i))
-         n = size(p, 2)
-         if (n == 0) cycle
-         if (n == 1) then
-            q = p
-         else
-            allocate (q(2, size(along)*n))
-            do k = 1, n
-               associate (next => p(:, 1 + modulo(k, n)))
-                  q(:, size(along)*(k - 1) + 1:size(along)*k) = &
-                     spread(p(:, k), 2, size(along)) + spread(next - p(:, k), 2, size(along))*spread(along, 1, 2)
-               end associate
-            end do
-         end if
-         call find_clear_place(c, q, len_trim(c%m%links(i)%name), clear_of_link, start)
-         call put_words(c%o, start, 'start', 'class="link" style="fill:'//color_of(i)//'"', trim(c%m%links(i)%name))
-         deallocate (q)
+         p = name_places(corner_pixels(c, c%d%outlines(i), c%s%place(:, i)))
+         if (size(p) > 0) call put_name(c, p, clear_of_link, 'class="link" style="fill:'//color_of(i)//'"', &
+            trim(c%m%links(i)%name))
       end do
    end subroutine put_links
+
+   !> Where the name of a link with the `corners` (2, :) may stand (2, :): along its sides, or at its only place.
+   pure function name_places(corners) result(p)
+      real(wp), intent(in) :: corners(:, :)
+      real(wp), allocatable :: p(:, :)
+      integer :: i, k, n, places
+
+      n = size(corners, 2)
+      places = merge(size(along), 1, n > 1)
+      allocate (p(2, places*n))
+      do k = 1, n
+         associate (side => corners(:, 1 + modulo(k, n)) - corners(:, k))
+            do i = 1, places
+               p(:, places*(k - 1) + i) = corners(:, k) + along(i)*side
+            end do
+         end associate
+      end do
+   end function name_places
 end module picture

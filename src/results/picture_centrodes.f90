@@ -5,9 +5,9 @@ module picture_centrodes
    use mechanism, only: mechanism_t
    use planar, only: point_of
    use drawing, only: centrode_t
-   use canvas, only: canvas_t, to_pixels, add_line, add_box, find_clear_place, find_inside
+   use canvas, only: canvas_t, to_pixels, add_line, add_box, put_name, find_inside
    use picture_parts, only: color_of
-   use svg, only: put_group, put_end, put_circle, put_line, put_words, attribute
+   use svg, only: put_group, put_end, put_circle, put_line, attribute
    implicit none
    private
    public :: put_centrodes, put_centres, put_ring, pair_name
@@ -35,8 +35,7 @@ contains
                if (present(own)) then
                   if (link /= own) cycle
                end if
-               if (c%s%known(link)) call put_centrode(c, c%d%centrodes(i), side, pair_name(c%m, c%d%centrodes(i)), &
-                  link_color(c%m, link))
+               if (c%s%known(link)) call put_centrode(c, c%d%centrodes(i), side)
             end associate
          end do
       end do
@@ -45,20 +44,17 @@ contains
    !> A ring and the names of both links at each instant centre, where the picture has room for it.
    subroutine put_centres(c)
       type(canvas_t), intent(inout) :: c
-      character(:), allocatable :: name
-      real(wp) :: p(2, 1), start(2)
+      real(wp) :: p(2, 1)
       integer :: i
 
       do i = 1, size(c%d%centrodes)
          if (.not. c%s%has_centre(i)) cycle
          p(:, 1) = to_pixels(c, c%s%centre(:, i))
          if (any(p(:, 1) < c%low) .or. any(p(:, 1) > c%high)) cycle
-         name = pair_name(c%m, c%d%centrodes(i))
          call put_ring(c, i, p(:, 1))
          call add_box(c, p(:, 1) - centre_radius, p(:, 1) + centre_radius)
-         call find_clear_place(c, p, len(name), clear, start)
-         call put_words(c%o, start, 'start', 'class="link" style="fill:'//link_color(c%m, &
-            c%d%centrodes(i)%link(2))//'"', name)
+         call put_name(c, p, clear, 'class="link" style="fill:'//link_color(c%m, c%d%centrodes(i)%link(2))//'"', &
+            pair_name(c%m, c%d%centrodes(i)))
       end do
    end subroutine put_centres
 
@@ -94,14 +90,15 @@ contains
 
    !> The centrode in link I or J (`side` 1 or 2): lines from place to place, as far as they are in
    !> the picture. Where the sense of the relative turn changes, the centre has passed through infinity.
-   subroutine put_centrode(c, centrode, side, name, color)
+   subroutine put_centrode(c, centrode, side)
       type(canvas_t), intent(inout) :: c
       type(centrode_t), intent(in) :: centrode
       integer, intent(in) :: side
-      character(*), intent(in) :: name, color
+      character(:), allocatable :: name
       real(wp) :: line(2, size(centrode%side) + 1), p(2, size(centrode%side)), from, to
       integer :: k, n, last
 
+      name = pair_name(c%m, centrode)
       call put_group(c%o, attribute('data-centrode', name), name)
       do k = 1, size(centrode%side)
          p(:, k) = to_pixels(c, point_of(c%s%place(:, centrode%link(side)), centrode%place(:, k, side)))
@@ -113,17 +110,15 @@ contains
          to = -1.0_wp
          if (centrode%side(k)*centrode%side(k + 1) == 1) &
             call find_inside(p(:, k), p(:, k + 1), c%low, c%high, from, to)
-         if (to > from .and. n == 0) then
-            n = 1
-            line(:, 1) = p(:, k) + from*(p(:, k + 1) - p(:, k))
-         end if
          if (to > from) then
-            n = n + 1
+            if (n == 0) line(:, 1) = p(:, k) + from*(p(:, k + 1) - p(:, k))
+            n = max(n, 1) + 1
             line(:, n) = p(:, k) + to*(p(:, k + 1) - p(:, k))
             call add_line(c, line(:, n - 1), line(:, n), centrode_weight)
          end if
          if (n > 0 .and. (to < 1.0_wp .or. k == last - 1)) then
-            call put_line(c%o, 'polyline', line(:, :n), 'class="centrode" style="stroke:'//color//'"')
+            call put_line(c%o, 'polyline', line(:, :n), &
+               'class="centrode" style="stroke:'//link_color(c%m, centrode%link(side))//'"')
             n = 0
          end if
       end do

@@ -63,31 +63,72 @@ contains
    subroutine find_extent(c, low, high)
       type(canvas_t), intent(in) :: c
       real(wp), intent(out) :: low(2), high(2)
+      logical, dimension(size(c%m%points)) :: moves, is_joined
       integer :: i, k
 
+      moves = .not. c%m%links(c%m%points%link)%ground
+      ! Of the ground what pairs use, but not what guides are counted from: it need not lie on them.
+      is_joined = .false.
+      is_joined([c%m%pairs%point_i, c%m%pairs%point_j]) = .true.
+      is_joined(c%d%guides%pivot) = .false.
       low = huge(1.0_wp)
       high = -huge(1.0_wp)
       associate (d => c%d)
-         if (c%best > 0) call widen_by_links(d, d%frame(c%best), .true., low, high)
+         call widen_by_points(d, d%now, is_joined .and. .not. moves, low, high)
+         if (c%best > 0) then
+            call widen_by_points(d, d%frame(c%best), moves, low, high)
+            call widen_by_guides(d, d%frame(c%best), low, high)
+         end if
          do i = 1, size(c%faint)
-            call widen_by_links(d, d%frame(c%faint(i)), .false., low, high)
+            call widen_by_points(d, d%frame(c%faint(i)), moves, low, high)
          end do
          do i = 1, size(d%flags)
-            call widen_by_links(d, d%flags(i)%last, .false., low, high)
+            call widen_by_points(d, d%flags(i)%last, moves, low, high)
          end do
-         call widen_by_links(d, d%now, .false., low, high, ground=.true.)
          do i = 1, size(d%curves)
             do k = 1, size(d%curves(i)%known)
                if (d%curves(i)%known(k) >= 0) call widen(d%curves(i)%place(:, k), low, high)
             end do
          end do
+         if (.not. all(low <= high)) then
+            low = 0.0_wp
+            high = 0.0_wp
+         end if
+         if (c%best > 0) call widen_by_centrodes(d, d%frame(c%best), low, high)
       end associate
-      if (.not. all(low <= high)) then
-         low = 0.0_wp
-         high = 0.0_wp
-      end if
-      if (c%centrodes .and. c%best > 0) call widen_by_centrodes(c%d, c%d%frame(c%best), low, high)
    end subroutine find_extent
+
+   !> Widens the box from `low` to `high` (2) by the points that are `wanted` and known at `s`.
+   subroutine widen_by_points(d, s, wanted, low, high)
+      type(drawing_t), intent(in) :: d
+      type(snapshot_t), intent(in) :: s
+      logical, intent(in) :: wanted(:)
+      real(wp), intent(inout) :: low(2), high(2)
+      integer :: i
+
+      do i = 1, size(wanted)
+         if (wanted(i) .and. s%known(d%m%points(i)%link)) call widen(point_place(d%m, s, i), low, high)
+      end do
+   end subroutine widen_by_points
+
+   !> The same by the guides as they are drawn at `s`.
+   subroutine widen_by_guides(d, s, low, high)
+      type(drawing_t), intent(in) :: d
+      type(snapshot_t), intent(in) :: s
+      real(wp), intent(inout) :: low(2), high(2)
+      real(wp) :: ends(2, 2)
+      integer :: i
+
+      do i = 1, size(d%guides)
+         associate (g => d%guides(i))
+            if (.not. s%known(g%carrier) .or. g%high < g%low) cycle
+            ends = guide_ends(g, s)
+            call widen(ends(:, 1), low, high)
+            call widen(ends(:, 2), low, high)
+            if (.not. d%m%links(g%carrier)%ground) call widen(point_of(s%place(:, g%carrier), g%foot), low, high)
+         end associate
+      end do
+   end subroutine widen_by_guides
 
    !> Widens the box from `low` to `high` (2) by the instant centres at `s` and by what there is of their centrodes in
    !> the box that is wider by `centrode_room` on all sides: they may run to infinity.
@@ -122,40 +163,6 @@ contains
          if (all(p >= wide_low) .and. all(p <= wide_high)) call widen(p, low, high)
       end subroutine widen_inside
    end subroutine widen_by_centrodes
-
-   !> Widens the box from `low` to `high` (2) by the links that are known at `s`: moving ones, with guides where these
-   !> are drawn, or the `ground` as far as pairs use it.
-   subroutine widen_by_links(d, s, guides, low, high, ground)
-      type(drawing_t), intent(in) :: d
-      type(snapshot_t), intent(in) :: s
-      logical, intent(in) :: guides
-      real(wp), intent(inout) :: low(2), high(2)
-      logical, intent(in), optional :: ground
-      logical :: is_wanted(size(d%m%points))
-      real(wp) :: ends(2, 2)
-      integer :: i
-
-      is_wanted = .not. d%m%links(d%m%points%link)%ground .and. .not. present(ground)
-      if (present(ground)) then
-         do i = 1, size(d%m%pairs)
-            is_wanted([d%m%pairs(i)%point_i, d%m%pairs(i)%point_j]) = .true.
-         end do
-         is_wanted = is_wanted .and. d%m%links(d%m%points%link)%ground
-         is_wanted(d%guides%pivot) = .false.
-      end if
-      do i = 1, size(d%m%points)
-         if (is_wanted(i) .and. s%known(d%m%points(i)%link)) call widen(point_place(d%m, s, i), low, high)
-      end do
-      if (.not. guides) return
-      do i = 1, size(d%guides)
-         if (.not. s%known(d%guides(i)%carrier) .or. d%guides(i)%high < d%guides(i)%low) cycle
-         ends = guide_ends(d%guides(i), s)
-         call widen(ends(:, 1), low, high)
-         call widen(ends(:, 2), low, high)
-         if (.not. d%m%links(d%guides(i)%carrier)%ground) &
-            call widen(point_of(s%place(:, d%guides(i)%carrier), d%guides(i)%foot), low, high)
-      end do
-   end subroutine widen_by_links
 
    !> Widens the box from `low` to `high` (2) by the place `p` (2).
    pure subroutine widen(p, low, high)
@@ -245,14 +252,12 @@ contains
    pure function fitted(x) result(text)
       real(wp), intent(in) :: x
       character(:), allocatable :: text
-      character(16) :: exponent
       integer :: e
 
       e = 0
       if (abs(x) > 0.0_wp) e = floor(log10(abs(x)))
       if (abs(x) > 0.0_wp .and. (e < -4 .or. e > 5)) then
-         write (exponent, '(i0)') e
-         text = without_zeros(fixed(x, 5, e))//'E'//trim(exponent)
+         text = without_zeros(fixed(x, 5, e))//'E'//whole(e)
       else
          text = without_zeros(fixed(x, 5 - e, 0))
       end if

@@ -293,14 +293,15 @@ contains
       call add_box(c, p - point_radius, p + point_radius)
    end subroutine put_dot
 
-   !> The path `curve` of a point called `name`, in pieces where it is not known.
-   subroutine put_path(c, curve, name, color)
+   !> The path `curve` of a point, in pieces where it is not known.
+   subroutine put_path(c, curve)
       type(canvas_t), intent(inout) :: c
       type(curve_t), intent(in) :: curve
-      character(*), intent(in) :: name, color
+      character(:), allocatable :: name
       integer :: first, last, n
 
       n = size(curve%known)
+      name = trim(c%m%points(curve%point)%name)
       call put_group(c%o, attribute('data-path', name), name)
       first = 1
       do while (first < n)
@@ -309,18 +310,17 @@ contains
             if (any(curve%known(last:last + 1) < 0)) exit
             last = last + 1
          end do
-         if (last > first) call put_piece(c, curve, first, last, color)
+         if (last > first) call put_piece(c, curve, first, last)
          first = last + 1
       end do
       call put_end(c%o, 'g')
    end subroutine put_path
 
    !> The places `first` to `last` of the path: cubics with the velocities at their ends.
-   subroutine put_piece(c, curve, first, last, color)
+   subroutine put_piece(c, curve, first, last)
       type(canvas_t), intent(inout) :: c
       type(curve_t), intent(in) :: curve
       integer, intent(in) :: first, last
-      character(*), intent(in) :: color
       real(wp) :: p(2, first:last), from(2, first:last - 1), to(2, first:last - 1), third, far
       logical :: straight(first:last - 1)
       integer :: k
@@ -337,6 +337,7 @@ contains
             norm2(to(:, k) - p(:, k + 1)) <= far)
          call add_line(c, p(:, k), p(:, k + 1), curve_weight)
       end do
-      call put_curve(c%o, p, from, to, straight, 'class="curve" style="stroke:'//color//'"')
+      call put_curve(c%o, p, from, to, straight, &
+         'class="curve" style="stroke:'//color_of(c%m%points(curve%point)%link)//'"')
    end subroutine put_piece
 end module picture_parts

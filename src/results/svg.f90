@@ -7,7 +7,7 @@ module svg
    implicit none
    private
    public :: svg_head, put_group, put_window, put_end, put_circle, put_line, put_curve, put_words, put_values, pixels, &
-      without_zeros, escaped, attribute
+      without_zeros, escaped, attribute, translation
 
    !> The classes of the elements. Widths and sizes are in pixels.
    character(*), parameter :: style(*) = [character(118) :: &
@@ -200,6 +200,14 @@ contains
 
       text = name//'="'//escaped(value)//'"'
    end function attribute
+
+   !> The attribute that moves a group by `shift` (2).
+   pure function translation(shift) result(text)
+      real(wp), intent(in) :: shift(2)
+      character(:), allocatable :: text
+
+      text = 'transform="translate('//place(shift)//')"'
+   end function translation
 
    !> `text` as XML takes it; what is not printable ASCII becomes a question mark.
    pure function escaped(text) result(xml)
