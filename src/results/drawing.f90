@@ -104,6 +104,7 @@ contains
       type(drawing_t) :: d
       type(curve_t) :: curve
       type(centrode_t) :: centrode
+      integer, allocatable :: slides(:)
       integer :: i, n, places
 
       d%m = m
@@ -111,13 +112,12 @@ contains
       d%origin = plane_origin(m)
       d%now = snapshot_of_ground(m, d%origin)
       d%outlines = outlines_of(m)
-      allocate (d%flagged_at(0), d%flags(0), d%mark(0), d%curves(0), d%guides(count(m%pairs%kind == pair_prismatic)))
+      allocate (d%flagged_at(0), d%flags(0), d%mark(0), d%curves(0), d%centrodes(0))
       n = max(2, min(max_frames, max_positions/size(m%links)))
       d%frame_stride = max(1, 1 + (frame_instants(m) - 2)/(n - 1))
       allocate (d%frame(1 + max(0, frame_instants(m) + d%frame_stride - 2)/d%frame_stride))
       d%stride = 1 + max(0, m%steps)/max_places
-      places = 0
-      if (m%steps >= 0) places = place_number(d, m%steps)
+      places = place_number(d, m%steps)
       do i = 1, size(m%requests)
          if (m%requests(i)%kind /= request_point .or. is_fixed(m, m%requests(i))) cycle
          if (any(d%curves%point == m%requests(i)%subject) .or. size(d%curves) == max_curves) cycle
@@ -125,26 +125,24 @@ contains
          curve = new_curve(i, m%requests(i)%subject, places)
          d%curves = [d%curves, curve]
       end do
-      allocate (d%centrodes(0))
       do i = 1, size(m%requests)
          if (m%requests(i)%kind /= request_pole) cycle
          centrode = new_centrode(m, i, places)
          d%centrodes = [d%centrodes, centrode]
       end do
-      n = 0
-      do i = 1, size(m%pairs)
-         if (m%pairs(i)%kind /= pair_prismatic) cycle
-         n = n + 1
-         d%guides(n) = guide_of(m, d%outlines, i)
-      end do
+      slides = pack([(i, i=1, size(m%pairs))], m%pairs%kind == pair_prismatic)
+      d%guides = [(guide_of(m, d%outlines, slides(i)), i=1, size(slides))]
    end function new_drawing
 
-   !> The number in a curve of the place at instant `k` (0, 1, ...) of TIME, or of the first one after it.
+   !> The number in a curve of the place at instant `k` (0, 1, ...); 0 for none: every so many of TIME and its last one
+   !> have places.
    pure integer function place_number(d, k)
       type(drawing_t), intent(in) :: d
       integer, intent(in) :: k
 
-      place_number = 1 + (k + d%stride - 1)/d%stride
+      place_number = 0
+      if (k == d%m%steps .or. (k < d%m%steps .and. mod(k, d%stride) == 0)) &
+         place_number = 1 + (k + d%stride - 1)/d%stride
    end function place_number
 
    !> A curve with room for `places`, none known.
@@ -223,7 +221,7 @@ contains
       type(set_motion_t), intent(in) :: s
       integer, intent(in) :: k
       type(snapshot_t) :: before, now
-      integer :: c, i
+      integer :: c, i, n
 
       before = d%now
       now = snapshot_of_ground(d%m, d%origin)
@@ -238,15 +236,14 @@ contains
                if (d%m%links(links(i))%ground .or. known_of(q, i) < 0) cycle
                now%place(:, links(i)) = q%position(:, i) + [q%origin - d%origin, 0.0_wp]
                now%known(links(i)) = all(abs(now%place(:2, links(i))) < max_place)
+               if (.not. now%known(links(i))) cycle
+               d%now%place(:, links(i)) = now%place(:, links(i))
+               d%now%known(links(i)) = .true.
             end do
          end associate
       end do
-      do i = 1, size(d%m%links)
-         if (.not. now%known(i)) cycle
-         d%now%place(:, i) = now%place(:, i)
-         d%now%known(i) = .true.
-      end do
       d%now%t = now%t
+      n = place_number(d, k)
       call record_centres()
       call record_slides(d%guides, d%m)
       call record_curves()
@@ -282,13 +279,12 @@ contains
          end do
       end subroutine record_slides
 
-      !> The places of the curves at instant number `k`, if it is one of theirs.
+      !> The places of the curves, if this instant is one of theirs.
       subroutine record_curves()
          real(wp) :: p(2, 0:2)
-         integer :: i, n, c, local
+         integer :: i, c, local
 
-         if (k > d%m%steps .or. (mod(k, d%stride) /= 0 .and. k < d%m%steps)) return
-         n = place_number(d, k)
+         if (n == 0) return
          do i = 1, size(d%curves)
             associate (curve => d%curves(i))
                c = s%parts%part(curve%request)
@@ -305,13 +301,11 @@ contains
          end do
       end subroutine record_curves
 
-      !> Puts the instant centres into `now`, and into their centrodes if instant number `k` is one of theirs.
+      !> Puts the instant centres into `now`, and into their centrodes if this instant is one of theirs.
       subroutine record_centres()
          type(row_t) :: row
-         integer :: i, n
+         integer :: i
 
-         n = 0
-         if (k <= d%m%steps .and. (mod(k, d%stride) == 0 .or. k == d%m%steps)) n = place_number(d, k)
          do i = 1, size(d%centrodes)
             call find_row_in_set(d%m, s, d%centrodes(i)%request, row)
             now%has_centre(i) = has_number(row, 1, 0) .and. all(abs(row%value(:2, :)) < max_place)

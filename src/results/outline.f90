@@ -115,11 +115,8 @@ contains
    !> The sine of the angle at `a` (2) from `b` (2) to `c` (2), which are other places.
    pure real(wp) function turn_of(a, b, c)
       real(wp), intent(in) :: a(2), b(2), c(2)
-      real(wp) :: u(2), v(2)
 
-      u = (b - a)/norm2(b - a)
-      v = (c - a)/norm2(c - a)
-      turn_of = u(1)*v(2) - u(2)*v(1)
+      turn_of = cross((b - a)/norm2(b - a), (c - a)/norm2(c - a))
    end function turn_of
 
    !> Whether `p` and `q` (2) are one place for the eye, where what is drawn has the given `extent`.

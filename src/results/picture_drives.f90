@@ -13,7 +13,7 @@ module picture_drives
    use text_output, only: output_t
    implicit none
    private
-   public :: put_drives, joint_with
+   public :: put_drives
 
    !> Radius of an arc, length of an arrow, its distance from the place along it and aside, its tip.
    real(wp), parameter :: arc_radius = 24.0_wp, arrow_length = 36.0_wp, arrow_start = 14.0_wp, &
@@ -35,22 +35,23 @@ contains
       integer :: i
 
       do i = 1, size(c%m%drives)
-         sense = sense_of(c%m%drives(i), c%s%t)
-         call put_group(c%o, 'class="drives"', trim(drive_name(c%m, c%m%drives(i))))
-         select case (c%m%drives(i)%kind)
-         case (drive_angle)
-            if (c%s%known(c%m%drives(i)%subject)) call put_arc(c, 0, c%m%drives(i)%subject, sense)
-         case (drive_relangle)
-            if (c%s%known(c%m%drives(i)%subject) .and. c%s%known(c%m%drives(i)%second)) &
-               call put_arc(c, c%m%drives(i)%subject, c%m%drives(i)%second, sense)
-         case (drive_x, drive_y)
-            if (c%s%known(c%m%points(c%m%drives(i)%subject)%link)) call put_arrow(c, &
-               to_pixels(c, point_place(c%m, c%s, c%m%drives(i)%subject)), &
-               sense*merge([1.0_wp, 0.0_wp], [0.0_wp, -1.0_wp], c%m%drives(i)%kind == drive_x), .true.)
-         case (drive_slide)
-            call put_slide(c, c%m%drives(i)%subject, sense)
-         end select
-         call put_end(c%o, 'g')
+         associate (drive => c%m%drives(i), known => c%s%known)
+            sense = sense_of(drive, c%s%t)
+            call put_group(c%o, 'class="drives"', trim(drive_name(c%m, drive)))
+            select case (drive%kind)
+            case (drive_angle)
+               if (known(drive%subject)) call put_arc(c, 0, drive%subject, sense)
+            case (drive_relangle)
+               if (known(drive%subject) .and. known(drive%second)) call put_arc(c, drive%subject, drive%second, sense)
+            case (drive_x, drive_y)
+               if (known(c%m%points(drive%subject)%link)) &
+                  call put_arrow(c, to_pixels(c, point_place(c%m, c%s, drive%subject)), &
+                  sense*merge([1.0_wp, 0.0_wp], [0.0_wp, -1.0_wp], drive%kind == drive_x), .true.)
+            case (drive_slide)
+               call put_slide(c, drive%subject, sense)
+            end select
+            call put_end(c%o, 'g')
+         end associate
       end do
    end subroutine put_drives
 
