@@ -6,7 +6,7 @@ module safe_digits
    use mechanism, only: mechanism_t, request_t, pair_prismatic, request_link, request_point, request_pair, request_pole
    use motion, only: motion_t
    use points, only: row_t, row_of, is_fixed, point_motion
-   use sum_errors, only: fixed_error, sum_roundings
+   use sum_errors, only: fixed_error, roundings_of_sums
    use known_digits, only: errors_a_digit
    use listing_layout, only: digits_t, digits_for
    use scales, only: characteristic_length
@@ -143,10 +143,7 @@ contains
       call bound_roundings(s%bounds, r, e, q, safe)
       if (.not. safe) return
       ! What the sums of rows leave for the response.
-      left = bounds_of_sums(s, q, numbers)
-      left(length, :) = s%error(length, :) - left(length, :)/(caution*room)
-      left(angle, :) = s%error(angle, :) - left(angle, :)/(caution*room)
-      left(slide, :) = s%error(length, :) - left(slide, :)/(caution*room)
+      left = s%error([length, angle, length], :) - bounds_of_sums(s, q, numbers)/(caution*room)
       safe = are_links_safe(size(s%links), s%links, s%turned_by, s%reaches, s%shows_angle, s%bounds%place, s%bounds%u, &
          q%velocity, q%acceleration, left)
       if (safe) safe = are_joints_safe(size(s%joints, 2), s%joints, s%bounds%u, left(angle, :))
@@ -232,9 +229,10 @@ contains
       type(safe_digits_t), intent(in) :: s
       type(motion_t), intent(in) :: q
       real(wp), intent(in) :: numbers(2, 0:2)
-      real(wp) :: sums(3, 0:2), x(2, 0:2), apart(0:2), w, a
+      real(wp) :: sums(3, 0:2), x(3, 0:2), apart(0:2), w, a
 
-      x = numbers
+      x(:2, :) = numbers
+      x(slide, :) = 0.0_wp
       w = x(angle, 1)
       a = x(angle, 2) + w**2
       ! Of points beside their links.
@@ -251,11 +249,6 @@ contains
          x(length, 2) = max(x(length, 2), apart(2) + 2.0_wp*w*apart(1) + a*apart(0))
          x(angle, :) = 2.0_wp*x(angle, :)
       end if
-      x(length, :1) = max(x(length, :1), x(angle, :1)*s%span)
-      x(:, 2) = max(x(:, 2), x(:, 1)*x(angle, 1))
-      sums(:2, :) = x
-      sums(slide, 0) = x(length, 0)
-      sums(slide, 1:) = max(x(length, 1:), x(length, 0)*x(angle, 1:))
-      sums = sum_roundings*epsilon(1.0_wp)*sums
+      sums = roundings_of_sums(x, s%span)
    end function bounds_of_sums
 end module safe_digits
