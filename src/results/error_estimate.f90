@@ -184,8 +184,7 @@ contains
       type(request_t), intent(in) :: request
       logical, intent(in), optional :: all_own
       real(wp), dimension(3, 0:2) :: error, largest, of_own
-      logical, dimension(3, 0:2) :: lost, lost_by_own
-      integer :: c, k
+      logical, dimension(3, 0:2) :: lost, lost_by_own, is_zero
 
       error = 0.0_wp
       if (is_fixed(m, request)) then
@@ -203,27 +202,14 @@ contains
          lost = lost .or. lost_by_own
       end if
       error = caution*largest + error_of_sums(s%of_sums, request, row)
-      do k = 0, 2
-         do c = 1, 3
-            if (abs(row%value(c, k)) > 0.0_wp .or. largest(c, k) > 0.0_wp) cycle
-            ! A coordinate of what stands still is zero without a sum; an angle may be one that cancels.
-            if (k > 0 .or. c /= angle_of(request%kind, row%angular)) error(c, k) = 0.0_wp
-         end do
-      end do
+      ! A coordinate of what stands still is zero without a sum; an angle may be one that cancels.
+      is_zero = .not. (abs(row%value) > 0.0_wp .or. largest > 0.0_wp)
+      if (request%kind == request_link) is_zero(3, 0) = .false.
+      if (request%kind == request_pair .and. row%angular) is_zero(1, 0) = .false.
+      where (is_zero) error = 0.0_wp
       if (request%kind < request_pole) error(:, row%known + 1:) = nothing_known
       if (request%kind >= request_pole) error = merge(nothing_known, error, lost)
    end function estimate_of
-
-   !> Which number of a row of this `kind` is an angle; 0: none that is not a difference of directions. `angular`: a
-   !> pair's is one.
-   pure integer function angle_of(kind, angular)
-      integer, intent(in) :: kind
-      logical, intent(in) :: angular
-
-      angle_of = 0
-      if (kind == request_link) angle_of = 3
-      if (kind == request_pair .and. angular) angle_of = 1
-   end function angle_of
 
    !> By how much (3, 0:2) a rounding changes the `row` of `request` of the motion `q` at most, whose links change by
    !> `links` (directions, 3, 0:2, links). `lost`: it leaves nothing of it.
