@@ -41,7 +41,6 @@ module sensitivities
    type :: perturbed_t
       type(response_t) :: response
       class(block_engine_t), allocatable :: engine
-      logical :: is_made = .false.                   !< the response
    end type perturbed_t
 
    !> What an independent mechanism needs for them.
@@ -56,9 +55,7 @@ contains
       type(sensor_t), intent(out) :: s
       type(mechanism_t), intent(in) :: m
 
-      if (.not. allocated(m%tolerances)) return
-      allocate (s%list(0:samples))
-      call make_perturbed(s%list(0), m, 0)
+      if (allocated(m%tolerances)) allocate (s%list(0:samples))
    end subroutine make_sensor
 
    !> `m` with its numbers off in direction `k` of roundings, if it is not 0.
@@ -77,7 +74,6 @@ contains
          changes(i) = change_of(m, m%tolerances(i))
       end do
       call make_response(s%response, off, changes)
-      s%is_made = .true.
    end subroutine make_perturbed
 
    !> Puts the numbers of `m` off in direction `k` of roundings.
@@ -142,13 +138,12 @@ contains
 
       found%taken = allocated(m%tolerances)
       if (.not. found%taken) return
-      call sense(s%list(0), q%t, found)
+      call sense(s%list(0), 0, q%t, found)
       if (.not. allocated(found%error)) allocate (found%error, mold=found%of)
       found%error = 0.0_wp
       if (.not. in_doubt) return
       do k = 1, samples
-         if (.not. s%list(k)%is_made) call make_perturbed(s%list(k), m, k)
-         call sense(s%list(k), q%t + rounding*abs(q%t), other)
+         call sense(s%list(k), k, q%t + rounding*abs(q%t), other)
          found%error = max(found%error, caution*abs(other%of - found%of)/roundings)
          do i = 1, size(m%requests)
             if (other%known(i) < found%known(i)) found%error(:, other%known(i) + 1:, :, i) = nothing_known
@@ -157,15 +152,17 @@ contains
 
    contains
 
-      !> Those of the mechanism of `s` at the time `t`, from the motion `q`.
-      subroutine sense(s, t, found)
+      !> Those of the mechanism of `s`, off in direction `k` of roundings, at the time `t`, from the motion `q`.
+      subroutine sense(s, k, t, found)
          type(perturbed_t), intent(inout) :: s
+         integer, intent(in) :: k
          real(wp), intent(in) :: t
          type(sensitivities_t), intent(inout) :: found
          type(motion_t) :: again
          logical :: finite
          integer :: i, d, order
 
+         if (.not. allocated(s%response%changes)) call make_perturbed(s, m, k)
          call take_position(s)
          call set_drive_values(s%engine, t)
          associate (m => s%response%m)
@@ -180,9 +177,9 @@ contains
             end if
             found%jams = s%response%jams
             found%of = 0.0_wp
+            found%known = -1
             do i = 1, size(m%requests)
-               found%known(i) = known_of_row(again, m%requests(i))
-               if (found%known(i) < 0 .or. m%requests(i)%kind > request_pair) cycle
+               if (.not. (has_tolerances(m, m%requests(i)) .and. exists(again, m%requests(i)))) cycle
                found%known(i) = order
                do d = 1, size(m%tolerances)
                   found%of(:, :, d, i) = row_change(m, again, m%requests(i), s%response%changes(d), &
@@ -192,17 +189,17 @@ contains
          end associate
       end subroutine sense
 
-      !> All of a row must exist, in the motion `q` and in the same motion found `again`, for any of its sensitivities
-      !> to.
-      pure integer function known_of_row(again, request) result(known)
+      !> All of a row exists, in the motion `q` and in the same motion found `again`, as it must for any of its
+      !> sensitivities to.
+      pure logical function exists(again, request)
          type(motion_t), intent(in) :: again
          type(request_t), intent(in) :: request
          type(row_t) :: row, second
 
          row = row_of(m, q, request)
          second = row_of(m, again, request)
-         known = merge(2, -1, min(row%known, second%known) == 2)
-      end function known_of_row
+         exists = min(row%known, second%known) == 2
+      end function exists
 
       !> Puts the engine of `s` at the position of `q`.
       subroutine take_position(s)
