@@ -6,12 +6,12 @@
 module listing_layout
    use kinds, only: wp, label_length
    use planar, only: degree
-   use mechanism, only: mechanism_t, request_link, request_pair, driven_kinds
+   use mechanism, only: mechanism_t, request_pair
    use independent, only: parts_t, find_parts
    use drives, only: law_t, new_law
    use names, only: drive_name, more
    use law_sizes, only: growing_sizes
-   use scales, only: characteristic_length, characteristic_rate, relative_tolerance, latest_time
+   use scales, only: characteristic_length, characteristic_rate, relative_tolerance, latest_time, is_length
    use numerals, only: whole, numeral_length
    use text_output, only: output_t, put
    use phrases
@@ -129,7 +129,7 @@ contains
       integer :: what
 
       d = l%own(l%drive_part(k))
-      what = merge(2, 1, driven_kinds(m%drives(k)%kind) == request_link)
+      what = merge(1, 2, is_length(m%drives(k)))
       drive%before = '   '//trim(drive_name(m, m%drives(k)))//' = '
       drive%behind = ' '//unit_of(d%power(what, 0), trim(merge(angle_unit(m), m%length_unit, what == 2)))
       drive%law = new_law(m%drives(k))

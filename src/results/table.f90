@@ -10,7 +10,8 @@ module table
    use kinds, only: wp, label_length
    use planar, only: in_degrees
    use mechanism, only: mechanism_t, request_t, request_link, request_point, request_pair, request_pole, &
-      request_curve, pair_prismatic, drive_angle, drive_relangle
+      request_curve, pair_prismatic
+   use scales, only: is_length
    use drives, only: law_t, new_law, drive_motion
    use names, only: name_table_t, put_name, find_name, drive_name
    use points, only: row_t, has_number, centre_numbers, coordinates_of
@@ -62,15 +63,14 @@ contains
       type(mechanism_t), intent(in) :: m
       type(table_t) :: t
       type(name_table_t) :: links
-      logical :: turns
-      integer :: i, k, c, n, row, spread
+      integer :: i, k, n, spread
 
       allocate (t%laws(size(m%drives)), t%drives(size(m%drives)))
       do i = 1, size(m%drives)
          t%laws(i) = new_law(m%drives(i))
          t%drives(i) = dotted(drive_name(m, m%drives(i)))
       end do
-      t%angular = m%drives%kind == drive_angle .or. m%drives%kind == drive_relangle
+      t%angular = .not. is_length(m%drives)
       associate (numbers => 3*coordinates_of(m%requests%kind), rows => m%requests%every > 0)
          n = sum(numbers, mask=rows)
          if (allocated(m%tolerances)) n = n + 2*sum(numbers, mask=rows .and. m%requests%kind < request_pole)
@@ -83,34 +83,55 @@ contains
       n = 0
       do spread = 0, merge(2, 0, allocated(m%tolerances))
          do k = 0, 2
-            row = 0
-            do i = 1, size(m%requests)
-               if (m%requests(i)%every == 0 .or. m%requests(i)%kind >= request_pole) cycle
+            call add_rows(k, spread)
+         end do
+      end do
+      call add_centres(request_curve)
+      call add_centres(request_pole)
+
+   contains
+
+      !> The columns of derivative `k` of links, points and pairs, or what tolerances do to them (`spread`).
+      subroutine add_rows(k, spread)
+         integer, intent(in) :: k, spread
+         logical :: turns
+         character(5) :: word
+         integer :: i, c, row
+
+         row = 0
+         do i = 1, size(m%requests)
+            associate (request => m%requests(i))
+               if (request%every == 0 .or. request%kind >= request_pole) cycle
                row = row + 1
                turns = .false.
-               if (m%requests(i)%kind == request_pair) turns = m%pairs(m%requests(i)%subject)%kind /= pair_prismatic
-               do c = 1, coordinates_of(m%requests(i)%kind)
+               if (request%kind == request_pair) turns = m%pairs(request%subject)%kind /= pair_prismatic
+               do c = 1, coordinates_of(request%kind)
+                  word = link_words(c, k)
+                  if (request%kind == request_pair) word = merge(turn_words(k), slide_words(k), turns)
                   n = n + 1
                   t%columns(n) = column_t(i, merge(row, 0, spread == 0), k, c, c == 3 .or. turns, spread)
-                  t%columns(n)%name = name_of(m, m%requests(i), links)//'.'//trim(merge(merge(turn_words(k), &
-                     slide_words(k), turns), link_words(c, k), m%requests(i)%kind == request_pair)) &
-                     //spread_words(spread)
+                  t%columns(n)%name = name_of(m, request, links)//'.'//trim(word)//spread_words(spread)
                end do
-            end do
+            end associate
          end do
-      end do
-      do k = request_curve, request_pole, -1
+      end subroutine add_rows
+
+      !> The columns of poles or curves, the requests of this `kind`.
+      subroutine add_centres(kind)
+         integer, intent(in) :: kind
+         integer :: i, c
+
          do i = 1, size(m%requests)
-            if (m%requests(i)%kind /= k) cycle
+            if (m%requests(i)%kind /= kind) cycle
             do c = 1, size(centre_numbers, 2)
                n = n + 1
-               associate (number => centre_numbers(:, c, k))
+               associate (number => centre_numbers(:, c, kind))
                   t%columns(n) = column_t(i, 0, number(2), number(1), number(1) == 3)
                end associate
-               t%columns(n)%name = name_of(m, m%requests(i), links)//'.'//centre_words(c, k)
+               t%columns(n)%name = name_of(m, m%requests(i), links)//'.'//centre_words(c, kind)
             end do
          end do
-      end do
+      end subroutine add_centres
    end function new_table
 
    !> What the names of the columns of `request` begin with. A point that has the name of one of the `links` in the
