@@ -27,6 +27,8 @@ module csv
    !> Why a centre has no place, by its state.
    character(8), parameter :: marks_of_centre(centre_finite:centre_resting) = [character(8) :: &
       '', 'INFINITE', 'AT-REST', 'AT-REST']
+   !> Of a row whose errors are not known.
+   real(wp), parameter :: no_errors(3, 0:2) = nothing_known
 
 contains
 
@@ -75,7 +77,7 @@ contains
             call add_centre()
             cycle
          end if
-         call add_row(trim(kinds_of_row(row%kind)), row, numbers_of(row), error, marks(row%mark))
+         call add_row(kinds_of_row(row%kind), row, numbers_of(row), error, marks(row%mark))
          if (has_tolerances(m, m%requests(i))) call add_spreads(spread_in_set(m, s, i))
          if (s%parts%part(i) == 0) cycle
          call add_bound(s%parts%part(i), s%parts%number(i))
@@ -161,7 +163,7 @@ contains
             q%position = assemblies(c)%list(number)%position
             other = row_of(s%own(c), q, s%own(c)%requests(k))
             call add_row(trim(kinds_of_row(row%kind))//' ASSEMBLY '//whole(number), other, numbers_of(other), &
-               spread(spread(nothing_known, 1, 3), 2, 3), '')
+               no_errors, '')
          end do
       end subroutine add_assemblies
 
@@ -175,8 +177,7 @@ contains
          other = row
          other%known = known
          other%value = value
-         call add_row(trim(kinds_of_row(row%kind))//' '//word, other, numbers_of(other), &
-            spread(spread(nothing_known, 1, 3), 2, 3), marks(row%mark))
+         call add_row(trim(kinds_of_row(row%kind))//' '//word, other, numbers_of(other), no_errors, marks(row%mark))
       end subroutine add_other
    end subroutine csv_instant
 

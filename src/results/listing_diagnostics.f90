@@ -8,7 +8,7 @@ module listing_diagnostics
    use numerals, only: whole
    use text_output, only: output_t, put
    use phrases
-   use listing_layout, only: put_folded
+   use listing_layout, only: put_folded, angle_unit
    implicit none
    private
    public :: limit_words, measure, value_form, put_diagnostics, put_singular, put_closure_error, remarks_text
@@ -200,12 +200,10 @@ contains
       character(*), intent(in) :: form
       character(:), allocatable :: text
 
-      if (.not. r%is_angle) then
-         text = number(r%value, form)//' '//trim(m%length_unit)
-      else if (m%degrees) then
-         text = number(r%value/degree, form)//' DEG'
+      if (r%is_angle) then
+         text = number(r%value/merge(degree, 1.0_wp, m%degrees), form)//' '//trim(angle_unit(m))
       else
-         text = number(r%value, form)//' RAD'
+         text = number(r%value, form)//' '//trim(m%length_unit)
       end if
    end function measure
 

@@ -145,8 +145,11 @@ contains
       real(wp), intent(in) :: t
       real(wp), intent(in), optional :: error
       character(:), allocatable :: text
+      real(wp) :: unknown
 
-      text = known_text(t, l%time_decimals, l%time_power, error)
+      unknown = 0.0_wp
+      if (present(error)) unknown = error
+      text = known_text(t, l%time_decimals, l%time_power, unknown)
    end function time_text
 
    !> The value of the drive `d` at the time `t`, without blanks; `error` of the time.
@@ -164,19 +167,14 @@ contains
       text = known_text(f(1), d%decimals, d%power, unknown)
    end function drive_text
 
-   !> A number without blanks; `error`, where it is given, is unknown of it.
+   !> A number without blanks, of which `error` is unknown.
    pure function known_text(x, decimals, power, error) result(text)
-      real(wp), intent(in) :: x
+      real(wp), intent(in) :: x, error
       integer, intent(in) :: decimals, power
-      real(wp), intent(in), optional :: error
       character(:), allocatable :: text
       character(numeral_length) :: field
 
-      if (present(error)) then
-         call put_known(x, error, decimals, power, field)
-      else
-         call put_fixed(x, decimals, power, field)
-      end if
+      call put_known(x, error, decimals, power, field)
       text = trim(adjustl(field))
    end function known_text
 
