@@ -131,18 +131,17 @@ contains
    function course_of(d) result(course)
       type(drawing_t), intent(in) :: d
       type(course_t) :: course
-      integer :: i, k, pause
+      integer :: k, pause
 
       pause = 0
       if (.not. closes(d)) pause = nint(real(d%frames - 1, wp)*pause_seconds/motion_seconds)
       course%frame = [(min(k, d%frames), k=1, d%frames + pause)]
       course%seconds = motion_seconds*real(max(1, d%frames + pause - 1), wp)/real(max(1, d%frames - 1), wp)
       do k = 2, d%frames
-         do i = 1, size(d%m%links)
-            if (d%m%links(i)%ground .or. .not. (d%frame(k)%known(i) .and. d%frame(k - 1)%known(i))) cycle
-            if (abs(without_turns(d%frame(k)%place(3, i) - d%frame(k - 1)%place(3, i))) > max_turn) &
-               course%smooth = .false.
-         end do
+         associate (now => d%frame(k), before => d%frame(k - 1))
+            if (any(now%known .and. before%known .and. &
+               abs(without_turns(now%place(3, :) - before%place(3, :))) > max_turn)) course%smooth = .false.
+         end associate
       end do
    end function course_of
 

@@ -3,7 +3,7 @@
 !> each instant centre.
 module moving_links
    use kinds, only: wp
-   use grouping, only: sorted_t, sorted
+   use grouping, only: sorted_t, sorted, sorted_numbers
    use planar, only: in_degrees, without_turns, point_of
    use drawing, only: drawing_t
    use canvas, only: canvas_t, make_canvas, to_pixels
@@ -59,20 +59,16 @@ contains
    !> The links in the order in which they are drawn: polygons, bars and rods, what is a single point, such as a block.
    function order_of(d) result(order)
       type(drawing_t), intent(in) :: d
-      integer :: order(size(d%outlines)), corners(size(d%outlines)), i, k, n
+      integer, allocatable :: order(:)
+      type(sorted_t) :: by_corners
+      integer :: corners(size(d%outlines)), i
 
       corners = [(min(3, size(d%outlines(i)%corner, 2)), i=1, size(corners))]
       do i = 1, size(d%guides)
          corners(d%guides(i)%carrier) = max(2, corners(d%guides(i)%carrier))
       end do
-      n = 0
-      do k = 3, 0, -1
-         do i = 1, size(order)
-            if (corners(i) /= k) cycle
-            n = n + 1
-            order(n) = i
-         end do
-      end do
+      by_corners = sorted(4 - corners, 4)
+      order = by_corners%member
    end function order_of
 
    !> What moves with each of the links, which are drawn in `order`: a joint moves with the later one of its links.
@@ -80,7 +76,8 @@ contains
       type(canvas_t), intent(in) :: c
       integer, intent(in) :: order(:)
       type(cargo_t), intent(out) :: cargo
-      integer :: rank(size(c%m%links)), owner(size(c%m%points)), i
+      integer, allocatable :: dots(:)
+      integer :: rank(size(c%m%links)), i
 
       rank(order) = [(i, i=1, size(order))]
       where (c%m%links%ground) rank = 0
@@ -92,9 +89,8 @@ contains
       cargo%joints = sorted(c%m%points(cargo%joint_at)%link, size(c%m%links))
       cargo%rods = sorted(c%d%guides%carrier, size(c%m%links))
       cargo%blocks = sorted(c%d%guides%block, size(c%m%links))
-      owner = 0
-      owner(dots_of(c%m)) = c%m%points(dots_of(c%m))%link
-      cargo%dots = sorted(owner, size(c%m%links))
+      dots = dots_of(c%m)
+      cargo%dots = sorted_numbers(dots, c%m%points(dots)%link, size(c%m%links))
       call make_canvas(c%o, c%d, cargo%own)
       cargo%own%scale = c%scale
       cargo%own%s%place = 0.0_wp

@@ -1,6 +1,7 @@
 !> The shape of a link for the eye: the convex hull of its points, in its own axes. How near other places are to it.
 module outline
    use kinds, only: wp
+   use grouping, only: sorted_t, sorted, members
    use mechanism, only: mechanism_t
    use planar, only: cross, point_of
    implicit none
@@ -20,24 +21,16 @@ contains
    pure function outlines_of(m) result(list)
       type(mechanism_t), intent(in) :: m
       type(outline_t) :: list(size(m%links))
-      integer :: i, used(size(m%links))
+      type(sorted_t) :: by_link
+      real(wp) :: offset(2, size(m%points))
+      integer :: i
 
-      used = 0
       do i = 1, size(m%points)
-         used(m%points(i)%link) = used(m%points(i)%link) + 1
+         offset(:, i) = m%points(i)%offset
       end do
+      by_link = sorted(m%points%link, size(m%links))
       do i = 1, size(m%links)
-         allocate (list(i)%corner(2, used(i)))
-      end do
-      used = 0
-      do i = 1, size(m%points)
-         associate (k => m%points(i)%link)
-            used(k) = used(k) + 1
-            list(k)%corner(:, used(k)) = m%points(i)%offset
-         end associate
-      end do
-      do i = 1, size(m%links)
-         list(i)%corner = hull(list(i)%corner)
+         list(i)%corner = hull(offset(:, members(by_link, i)))
       end do
    end function outlines_of
 
@@ -85,10 +78,7 @@ contains
          return
       end if
       extent = maxval(maxval(p, dim=2) - minval(p, dim=2))
-      start = 1
-      do i = 2, size(p, 2)
-         if (p(1, i) < p(1, start) .or. (p(1, i) <= p(1, start) .and. p(2, i) < p(2, start))) start = i
-      end do
+      start = minloc(p(2, :), dim=1, mask=p(1, :) <= minval(p(1, :)))
       n = 0
       last = start
       do

@@ -252,21 +252,13 @@ contains
       type(mechanism_t), intent(in) :: m
       logical, intent(in) :: known(:)
       integer, intent(in) :: i
-
-      integer :: ends(2), k
+      integer :: ends(2), links(2), rank(2)
 
       ends = [m%pairs(i)%point_i, m%pairs(i)%point_j]
+      links = m%points(ends)%link
+      rank = merge(merge(0, links, m%links(links)%ground), -1, known(links))
       point = 0
-      do k = 1, 2
-         associate (link => m%points(ends(k))%link)
-            if (.not. known(link)) cycle
-            if (point > 0) then
-               if (m%links(link)%ground .or. (link < m%points(point)%link .and. &
-                  .not. m%links(m%points(point)%link)%ground)) cycle
-            end if
-            point = ends(k)
-         end associate
-      end do
+      if (any(rank >= 0)) point = ends(maxloc(rank, dim=1))
    end function joint_point
 
    !> The numbers of the points of moving links that no pair joins: they are dots.
@@ -304,12 +296,8 @@ contains
       name = trim(c%m%points(curve%point)%name)
       call put_group(c%o, attribute('data-path', name), name)
       first = 1
-      do while (first < n)
-         last = first
-         do while (last < n)
-            if (any(curve%known(last:last + 1) < 0)) exit
-            last = last + 1
-         end do
+      do last = 1, n
+         if (last < n .and. all(curve%known(last:min(last + 1, n)) >= 0)) cycle
          if (last > first) call put_piece(c, curve, first, last)
          first = last + 1
       end do
