@@ -6,7 +6,7 @@ module safe_digits
    use mechanism, only: mechanism_t, request_t, pair_prismatic, request_link, request_point, request_pair, request_pole
    use motion, only: motion_t
    use points, only: row_t, row_of, is_fixed, point_motion
-   use sum_errors, only: fixed_error, roundings_of_sums
+   use sum_errors, only: fixed_error, round_sums
    use known_digits, only: errors_a_digit
    use listing_layout, only: digits_t, digits_for
    use scales, only: characteristic_length
@@ -225,11 +225,11 @@ contains
    end function bound_of_slide
 
    !> Bounds (length, angle or slide; 0:2) of `errors_of_sums` in the motion `q`, from its largest `numbers`.
-   pure function bounds_of_sums(s, q, numbers) result(sums)
+   pure function bounds_of_sums(s, q, numbers) result(x)
       type(safe_digits_t), intent(in) :: s
       type(motion_t), intent(in) :: q
       real(wp), intent(in) :: numbers(2, 0:2)
-      real(wp) :: sums(3, 0:2), x(3, 0:2), apart(0:2), w, a
+      real(wp) :: x(3, 0:2), apart(0:2), w, a
 
       x(:2, :) = numbers
       x(slide, :) = 0.0_wp
@@ -249,6 +249,6 @@ contains
          x(length, 2) = max(x(length, 2), apart(2) + 2.0_wp*w*apart(1) + a*apart(0))
          x(angle, :) = 2.0_wp*x(angle, :)
       end if
-      sums = roundings_of_sums(x, s%span)
+      call round_sums(s%span, x)
    end function bounds_of_sums
 end module safe_digits

@@ -8,7 +8,7 @@ module sum_errors
    use instant_centres, only: centre_finite, centre_starting
    implicit none
    private
-   public :: errors_of_sums, roundings_of_sums, error_of_sums, fixed_error, lost_numbers, growth_in_centres
+   public :: errors_of_sums, round_sums, error_of_sums, fixed_error, lost_numbers, growth_in_centres
 
    !> A sum is off by so many roundings of its largest number.
    real(wp), parameter :: sum_roundings = 1.5_wp
@@ -17,11 +17,10 @@ contains
 
    !> The rounding errors (length, angle or slide, derivative) of sums of numbers as large as the largest of the links
    !> of the motion `q` and of the rows asked for; `length`: the characteristic one.
-   pure function errors_of_sums(m, q, length) result(of_sums)
+   pure function errors_of_sums(m, q, length) result(size_of)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
       real(wp), intent(in) :: length
-      real(wp) :: of_sums(3, 0:2)
       real(wp) :: size_of(3, 0:2)
       integer :: i
 
@@ -39,25 +38,24 @@ contains
          end select
       end do
       size_of(1, 0) = max(size_of(1, 0), abs(q%origin(1)), abs(q%origin(2)))
-      of_sums = roundings_of_sums(size_of, length)
+      call round_sums(length, size_of)
    end function errors_of_sums
 
-   !> The same of sums of numbers as large as `numbers` (length, angle or place as it is counted, derivative). What is
-   !> summed up to a velocity is no smaller than an angular velocity times a length, what is summed up to an
+   !> The same of sums of numbers as large as `x` (length, angle or place as it is counted, derivative), in their place.
+   !> What is summed up to a velocity is no smaller than an angular velocity times a length, what is summed up to an
    !> acceleration has the square of one. A slide is a difference of places, which are counted from a ground link, and
    !> so are the arms of its derivatives.
-   pure function roundings_of_sums(numbers, length) result(of_sums)
-      real(wp), intent(in) :: numbers(3, 0:2), length
-      real(wp) :: of_sums(3, 0:2), x(3, 0:2)
+   pure subroutine round_sums(length, x)
+      real(wp), intent(in) :: length
+      real(wp), intent(inout) :: x(3, 0:2)
 
-      x = numbers
       x(2, 0) = max(x(2, 0), 1.0_wp)
       x(1, :1) = max(x(1, :1), x(2, :1)*length)
       x(:2, 2) = max(x(:2, 2), x(:2, 1)*x(2, 1))
       x(3, 0) = max(x(3, 0), x(1, 0))
       x(3, 1:) = max(x(1, 1:), x(3, 0)*x(2, 1:))
-      of_sums = sum_roundings*epsilon(1.0_wp)*x
-   end function roundings_of_sums
+      x = sum_roundings*epsilon(1.0_wp)*x
+   end subroutine round_sums
 
    !> Widens the largest lengths, angles and places as they are counted, `size_of` (3, 0:2), by a link with the position
    !> `p`, counted from `origin`, the velocity `v` and the acceleration `a`. On plain arrays, which cost no descriptors.
