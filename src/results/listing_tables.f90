@@ -103,18 +103,13 @@ contains
       integer, intent(inout) :: used
       logical, intent(inout) :: masked
       character(numeral_length) :: number
-      integer :: first
 
       if (error > 0.0_wp) then
          call put_known(x, error, decimals, power, number, masked)
       else
          call put_fixed(x, decimals, power, number)
       end if
-      first = 1
-      do while (number(first:first) == ' ')
-         first = first + 1
-      end do
-      call append(number(first:), line, used)
+      call append(number(verify(number, ' '):), line, used)
    end subroutine append_number
 
    !> The same of the value of the drive `d` at the time `t`.
