@@ -13,8 +13,9 @@
 module block_solver
    use kinds, only: wp
    use klu, only: klu_t
-   use block_matrix, only: shape_t, nearby_t, solve_dense, solve_first, substitute, solve_again, &
-      solve_nearby, stay_near, set_aside, pivot_range, inverse_norm, spread_by_inverse, entries_of, work_length
+   use block_matrix, only: shape_t, solve_dense, solve_first, substitute, solve_again, pivot_range, inverse_norm, &
+      spread_by_inverse, entries_of, work_length
+   use nearby_matrix, only: nearby_t, solve_nearby, stay_near, set_aside
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
       ended_inconsistent, is_solved, note_closure_error, is_inconsistent, contradict
    use blocks, only: blocks_t, block_t

@@ -10,7 +10,7 @@ module block_matrix
    private
    public :: shape_t, is_sparse_better, entries_of, solve_first, solve_again, solve_many, pivot_range, inverse_norm, &
       work_length
-   public :: solve_dense, substitute, nearby_t, stay_near, set_aside, solve_nearby, spread_by_inverse
+   public :: solve_dense, substitute, inverse_norm_of_two, spread_by_inverse
 
    !> `pattern` = 0: dense, by columns. Otherwise sparse and square: the number of its pattern, and its entries, in the
    !> order of the pattern.
@@ -18,25 +18,11 @@ module block_matrix
       integer :: rows = 0, n = 0, pattern = 0, entries = 0
    end type shape_t
 
-   !> A dense matrix of two rows beside the one that is factored.
-   type :: nearby_t
-      real(wp) :: a(4) = 0.0_wp                  !< the matrix, by columns
-      real(wp) :: factors(4) = 0.0_wp            !< of the other, while the matrix is assembled
-      real(wp) :: inverse(4) = 0.0_wp            !< of the other
-      real(wp) :: distance = 0.0_wp              !< |A0^-1 (A - A0)| at most, A0 being factored; 0: `a` is not in use
-      integer :: passes = 0                      !< of refinement, until what is left is lost
-   end type nearby_t
-
    !> From this many unknowns on KLU is not slower than DGESV (lattices, reference LAPACK and OpenBLAS).
    integer, parameter :: min_sparse = merge(12, huge(1), klu_serves)
    !> A solution leaves this part of what its equations add up: more, and the pivots of the matrix before are no longer
    !> good for this one.
    real(wp), parameter :: stale = 128.0_wp*epsilon(1.0_wp)
-   !> A matrix that differs from the factored one by more than this part is factored itself: mending the difference
-   !> takes as long.
-   real(wp), parameter :: max_distance = 1.0e-4_wp
-   !> A relative error below this is lost in that of a factorization.
-   real(wp), parameter :: lost = 0.125_wp*epsilon(1.0_wp)
    !> Columns that DGEQRF takes together.
    integer, parameter :: panel = 32
 
@@ -149,63 +135,6 @@ contains
          call getrs('N', s%n, 1, a, s%n, pivots, b, s%n, info)
       end if
    end subroutine solve_again
-
-   !> The matrix of shape `s` whose factors are in `a` changes by `change` at most, or once more: `near` can be it,
-   !> unless it is better factored itself.
-   pure subroutine stay_near(s, a, pivots, change, near)
-      type(shape_t), intent(in) :: s
-      real(wp), intent(in) :: a(*), change
-      integer, intent(in) :: pivots(*)
-      type(nearby_t), intent(inout) :: near
-      real(wp) :: error
-
-      if (s%n /= 2 .or. s%rows /= 2) return
-      near%factors = a(:4)
-      near%inverse = [a(4) + a(2)*a(3), -a(1)*a(2), -a(3), a(1)]/(a(1)*a(4))
-      if (pivots(1) == 2) near%inverse = near%inverse([3, 4, 1, 2])
-      near%distance = near%distance + change*inverse_norm_of_two(a)
-      if (.not. near%distance <= max_distance) near%distance = 0.0_wp
-      near%passes = 0
-      error = near%distance
-      do while (error > lost)
-         near%passes = near%passes + 1
-         error = error*near%distance
-      end do
-   end subroutine stay_near
-
-   !> The changed matrix, now in `a`, goes to `near`, and the factors come back.
-   pure subroutine set_aside(a, near)
-      real(wp), intent(inout) :: a(*)
-      type(nearby_t), intent(inout) :: near
-
-      near%a = a(:4)
-      a(:4) = near%factors
-   end subroutine set_aside
-
-   !> Solves `near` x = `b` (2) with the inverse of the matrix beside it, by iterative refinement (Higham, Accuracy and
-   !> Stability of Numerical Algorithms, 2002, ch. 12): each pass takes the error down by the distance of the two, to
-   !> what a factorization of its own would leave.
-   pure subroutine solve_nearby(near, b)
-      type(nearby_t), intent(in) :: near
-      real(wp), intent(inout) :: b(2)
-      real(wp) :: x(2)
-      integer :: k
-
-      x = times(near%inverse, b)
-      do k = 1, near%passes
-         x = x + times(near%inverse, b - times(near%a, x))
-      end do
-      b = x
-   end subroutine solve_nearby
-
-   !> `a` (4, by columns) times `x`.
-   pure function times(a, x) result(y)
-      real(wp), intent(in) :: a(4), x(2)
-      real(wp) :: y(2)
-
-      y(1) = a(1)*x(1) + a(3)*x(2)
-      y(2) = a(2)*x(1) + a(4)*x(2)
-   end function times
 
    !> The same for `lanes` right-hand sides `b` (lanes, rows): each step for all of them, where `a` is dense and square.
    subroutine solve_many(s, a, k, pivots, work, lanes, b)
