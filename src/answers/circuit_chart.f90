@@ -17,8 +17,8 @@ module circuit_chart
    !> A number varies if it does so by more than this, in rad or in lengths of the curve.
    real(wp), parameter :: varies = 1.0e-6_wp
    real(wp), parameter :: turn = 2.0_wp*pi
-   !> An axis goes on by this part of its values.
-   real(wp), parameter :: margin = 0.04_wp
+   !> An axis goes on by this part of its values, or of the largest of them where all are the same.
+   real(wp), parameter :: margin = 0.04_wp, least_margin = 4096.0_wp*epsilon(1.0_wp)
 
    !> An axis, in the unit in which numbers are printed.
    type :: axis_t
@@ -193,9 +193,11 @@ contains
    pure subroutine set_axis(axis, low, high, start, unit)
       type(axis_t), intent(inout) :: axis
       real(wp), intent(in) :: low, high, start, unit
+      real(wp) :: beyond
 
-      axis%low = (low - margin*(high - low))/unit
-      axis%high = (high + margin*(high - low))/unit
+      beyond = max(margin*(high - low), least_margin*max(abs(low), abs(high), unit))
+      axis%low = (low - beyond)/unit
+      axis%high = (high + beyond)/unit
       if (.not. axis%is_angle .or. high - low < turn - varies) return
       axis%turn = turn/unit
       axis%low = start/unit

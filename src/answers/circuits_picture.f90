@@ -1,6 +1,7 @@
 !> The picture of circuits as SVG: for each set and drive a diagram of each number over the drive, each circuit in its
 !> own colour; dots are dead points, rings change points, numbers assemblies of the first instant.
 module circuits_picture
+   use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_link, request_point, request_pair
    use names, only: drive_name
@@ -254,11 +255,11 @@ contains
       integer, intent(in) :: k
       real(wp), intent(in) :: corner(2), extent(2)
       real(wp) :: step, x, p(2)
-      integer :: i
+      integer(int64) :: i
 
       step = step_of(axis)
-      do i = ceiling(axis%low/step - 1.0e-6_wp), floor(axis%high/step + 1.0e-6_wp)
-         x = (real(i, wp)*step - axis%low)/max(tiny(x), axis%high - axis%low)
+      do i = ceiling(axis%low/step - 1.0e-6_wp, int64), floor(axis%high/step + 1.0e-6_wp, int64)
+         x = (real(i, wp)*step - axis%low)/(axis%high - axis%low)
          if (k == 1) then
             p = corner + extent*[x, 1.0_wp]
             call put_line(o, 'polyline', reshape([p, p + [0.0_wp, tick]], [2, 2]), 'style="stroke:#222;stroke-width:1"')
