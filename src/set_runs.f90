@@ -241,8 +241,10 @@ contains
       subroutine write_instant(due)
          logical, intent(in) :: due
 
-         if (options%errors .or. (due .and. lists)) call sample_set(a, options%errors)
-         if (due .and. (lists .or. any(o%asked([out_csv, out_table, out_plot_table])))) call sense_set(a)
+         associate (shown => due .and. (lists .or. any(o%asked([out_csv, out_table, out_plot_table]))))
+            if (shown .or. options%errors) call sample_set(a, options%errors)
+            if (shown) call sense_set(a)
+         end associate
          if (lists .and. (due .or. has_words(a%now))) &
             call listing_instant(o%files(out_listing, 0), o%layout, m, a%now, k)
          if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv, 0), m, a%now, k, o%varies, a%assemblies)

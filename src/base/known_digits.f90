@@ -6,7 +6,7 @@ module known_digits
    use numerals, only: put_fixed, put_with_point, put_whole, put_exponent, numeral_length
    implicit none
    private
-   public :: put_known, unknown_digit, nothing_known, errors_a_digit
+   public :: put_known, has_known_digit, unknown_digit, nothing_known, errors_a_digit
 
    !> In the place of a digit that is not known.
    character(1), parameter :: unknown_digit = '?'
@@ -20,6 +20,14 @@ module known_digits
    real(wp), parameter :: powers(-12:6) = [(10.0_wp**n, n=-12, 6)]
 
 contains
+
+   !> A digit of `x` is known, of which `error` is unknown: its first, or it is no large part of `size_of`, that of
+   !> numbers of its kind.
+   elemental logical function has_known_digit(x, error, size_of)
+      real(wp), intent(in) :: x, error, size_of
+
+      has_known_digit = 10.0_wp*error <= max(abs(x), size_of)
+   end function has_known_digit
 
    !> `x` as `put_fixed` prints it, of which `error` is unknown: rounded to its last digit that is known, those
    !> behind it masked; `masked` becomes true where a digit is.

@@ -1,5 +1,5 @@
 !> The results as comma-separated values with 17 digits: the deck's length unit, radians or degrees
-!> as the deck says. A value that does not exist is empty and `mark` says why; a name with a comma is quoted. A pole or
+!> as the deck says. A value that does not exist, or of which no digit is known, is empty and `mark` says why; a name with a comma is quoted. A pole or
 !> curve has three rows.
 module csv
    use kinds, only: wp
@@ -12,7 +12,7 @@ module csv
    use known_digits, only: nothing_known
    use sensitivities, only: has_tolerances, worst_case, root_of_squares
    use link_bounds, only: row_bound
-   use set_motion, only: set_motion_t, find_row_in_set, error_in_set, spread_t, spread_in_set
+   use set_motion, only: set_motion_t, find_row_in_set, known_numbers, error_in_set, spread_t, spread_in_set
    use text_output, only: output_t, put, add
    use numerals, only: whole, full, put_full, full_length
    implicit none
@@ -24,6 +24,9 @@ module csv
    !> The three rows of a pole: in the fixed plane, and in the axes of both links; of a curve.
    character(6), parameter :: kinds_of_centre(0:2, request_pole:request_curve) = reshape([character(6) :: &
       'POLE', 'POLE-I', 'POLE-J', 'CURVE', 'CENTRE', 'RADIUS'], [3, 2])
+   !> The mark where nothing is missing but known digits.
+   character(*), parameter :: mark_unknown = 'UNKNOWN'
+   logical, parameter :: all_known(3, 0:2) = .true.
    !> Why a centre has no place, by its state.
    character(8), parameter :: marks_of_centre(centre_finite:centre_resting) = [character(8) :: &
       '', 'INFINITE', 'AT-REST', 'AT-REST']
@@ -59,7 +62,7 @@ contains
       character(:), allocatable :: start
       type(row_t) :: row
       real(wp) :: error(3, 0:2)
-      logical :: asked
+      logical :: known(3, 0:2), asked
       integer :: i
 
       start = whole(m%set_number)//','
@@ -72,12 +75,13 @@ contains
       do i = 1, size(m%requests)
          if (.not. is_due(m, m%requests(i), step)) cycle
          call find_row_in_set(m, s, i, row)
+         known = known_numbers(row, s, i)
          if (asked) error = error_in_set(m, s, i)
          if (row%kind >= request_pole) then
             call add_centre()
             cycle
          end if
-         call add_row(kinds_of_row(row%kind), row, numbers_of(row), error, marks(row%mark))
+         call add_row(kinds_of_row(row%kind), row, numbers_of(row), known, error, marks(row%mark))
          if (has_tolerances(m, m%requests(i))) call add_spreads(spread_in_set(m, s, i))
          if (s%parts%part(i) == 0) cycle
          call add_bound(s%parts%part(i), s%parts%number(i))
@@ -86,20 +90,25 @@ contains
 
    contains
 
-      !> A row: its `kind` and name, the values that are `there` (3, 0:2), its `mark`; their errors where asked.
-      subroutine add_row(kind, row, there, error, mark)
+      !> A row: its `kind` and name, the values (3, 0:2) that are `there` and `known`, its `mark`; where asked, the
+      !> errors of those that are there.
+      subroutine add_row(kind, row, there, known, error, mark)
          character(*), intent(in) :: kind, mark
          type(row_t), intent(in) :: row
-         logical, intent(in) :: there(3, 0:2)
+         logical, intent(in) :: there(3, 0:2), known(3, 0:2)
          real(wp), intent(in) :: error(3, 0:2)
 
          call add(o, start)
          call add_name(o, kind(:len_trim(kind)))
          call add(o, ',')
          call add_name(o, row%name(:len_trim(row%name)))
-         call add_values(o, row, there, m%degrees)
+         call add_values(o, row, there .and. known, m%degrees)
          call add(o, ',')
-         call add(o, mark(:len_trim(mark)))
+         if (mark == '' .and. any(there .and. .not. known)) then
+            call add(o, mark_unknown)
+         else
+            call add(o, mark(:len_trim(mark)))
+         end if
          if (asked) call add_errors(o, row, there, error, m%degrees)
          call put(o, '')
       end subroutine add_row
@@ -118,7 +127,7 @@ contains
             mark = marks(row%mark)
             if (mark == '' .and. .not. all(there(:, k))) mark = marks_of_centre(row%state)
             call add_row(kinds_of_centre(k, row%kind), third, reshape(there(:, k), [3, 3], [.false.]), &
-               reshape(error(:, k), [3, 3], [0.0_wp]), mark)
+               reshape(known(:, k), [3, 3], [.false.]), reshape(error(:, k), [3, 3], [0.0_wp]), mark)
          end do
       end subroutine add_centre
 
@@ -163,7 +172,7 @@ contains
             q%position = assemblies(c)%list(number)%position
             other = row_of(s%own(c), q, s%own(c)%requests(k))
             call add_row(trim(kinds_of_row(row%kind))//' ASSEMBLY '//whole(number), other, numbers_of(other), &
-               no_errors, '')
+               all_known, no_errors, '')
          end do
       end subroutine add_assemblies
 
@@ -177,7 +186,8 @@ contains
          other = row
          other%known = known
          other%value = value
-         call add_row(trim(kinds_of_row(row%kind))//' '//word, other, numbers_of(other), no_errors, marks(row%mark))
+         call add_row(trim(kinds_of_row(row%kind))//' '//word, other, numbers_of(other), all_known, no_errors, &
+            marks(row%mark))
       end subroutine add_other
    end subroutine csv_instant
 

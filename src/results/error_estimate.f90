@@ -32,6 +32,7 @@ module error_estimate
       logical :: taken = .false.             !< `changes` tell something
       logical :: asked = .false.             !< --errors: wanted at every instant
       real(wp) :: growth = 0.0_wp            !< of roundings at this instant; huge where numbers are large
+      type(sizes_t) :: sizes                 !< what numbers are compared with, where `taken`
       logical :: in_doubt = .false.          !< it is so much that digits may be lost
       !> (length, angle or slide, derivative) The rounding error of a sum of numbers as large as the largest of the
       !> rows.
@@ -97,7 +98,7 @@ contains
          if (present(for_tables) .and. .not. always) then
             if (are_tables_safe(s, m, engine, q, numbers)) return
          end if
-         call take_changes(s%response, m, engine, q, s%sizes%length, always, found)
+         call take_changes(s%response, m, engine, q, s%sizes, always, found)
       class default
          call estimate_from_blocks(s, m, q, found)
       end select
@@ -139,18 +140,18 @@ contains
       ! An arm that is zero but for its rounding turns with a link that comes later in the solving order: all rates are
       ! found first.
       do pass = 1, 2
-         call take_changes(s%response, m, blocks, q, s%sizes%length, .true., found)
+         call take_changes(s%response, m, blocks, q, s%sizes, .true., found)
       end do
    end subroutine estimate_from_blocks
 
-   !> The changes at the motion `q` of `m`, with the blocks of `e`, of the characteristic `length`. `again`: the blocks
+   !> The changes at the motion `q` of `m`, with the blocks of `e` and its characteristic `sizes`. `again`: the blocks
    !> are solved once more, to the limit of rounding.
-   subroutine take_changes(r, m, e, q, length, again, found)
+   subroutine take_changes(r, m, e, q, sizes, again, found)
       type(rounding_response_t), intent(inout) :: r
       type(mechanism_t), intent(in) :: m
       class(block_engine_t), intent(in) :: e
       type(motion_t), intent(in) :: q
-      real(wp), intent(in) :: length
+      type(sizes_t), intent(in) :: sizes
       logical, intent(in) :: again
       type(error_estimate_t), intent(inout) :: found
       logical :: finite
@@ -161,7 +162,8 @@ contains
       end if
       r%own = own_in_tables
       call respond_to_roundings(r, m, e, q, q%known < 0, again, found%changes, found%lost)
-      found%of_sums = errors_of_sums(m, q, length)
+      found%of_sums = errors_of_sums(m, q, sizes%length)
+      found%sizes = sizes
       found%taken = .true.
       if (.not. found%asked) return
       if (.not. allocated(found%own)) allocate (found%own, source=found%changes)

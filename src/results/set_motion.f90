@@ -2,18 +2,19 @@
 !> parts), how far it is known, and where to find the row that a request asks for.
 module set_motion
    use kinds, only: wp
-   use mechanism, only: mechanism_t, tolerance_t
+   use mechanism, only: mechanism_t, tolerance_t, request_pole
    use motion, only: motion_t, new_motion, mark_none, diagnostic_t
    use independent, only: part_t, parts_t, find_parts, mechanism_of
    use structure, only: findings_t
-   use points, only: row_t, find_row
+   use points, only: row_t, find_row, has_number
+   use known_digits, only: has_known_digit
    use error_estimate, only: error_estimate_t, estimate_of, row_error
    use sensitivities, only: sensitivities_t, ground_sensitivities
    use motion_proof, only: motion_proof_t
    implicit none
    private
    public :: set_motion_t, new_set_motion, take_whole, is_flagged, has_words, in_set, put_together, find_row_in_set
-   public :: doubt_in_set, error_in_set, spread_t, spread_in_set
+   public :: doubt_in_set, known_numbers, error_in_set, spread_t, spread_in_set
 
    !> A set that is one mechanism is one part, with the numbers of the set.
    type :: set_motion_t
@@ -144,6 +145,30 @@ contains
             s%motions(c), s%own(c)%requests(s%parts%number(i)))
       end associate
    end function doubt_in_set
+
+   !> Which numbers (3, 0:2) the `row` of request number `i` has and a digit is known of.
+   pure function known_numbers(row, s, i) result(known)
+      type(row_t), intent(in) :: row
+      type(set_motion_t), intent(in) :: s
+      integer, intent(in) :: i
+      logical :: known(3, 0:2)
+      real(wp) :: error(3, 0:2), size_of
+      integer :: c, k
+
+      error = doubt_in_set(row, s, i)
+      do k = 0, 2
+         do c = 1, 3
+            known(c, k) = has_number(row, c, k)
+            if (.not. (known(c, k) .and. error(c, k) > 0.0_wp)) cycle
+            associate (sizes => s%errors(s%parts%part(i))%sizes)
+               size_of = merge(1.0_wp, sizes%length, c == 3 .or. row%angular)
+               ! Poles and curves are places, in other axes.
+               if (row%kind < request_pole) size_of = size_of*sizes%rate**k
+            end associate
+            known(c, k) = has_known_digit(row%value(c, k), error(c, k), size_of)
+         end do
+      end do
+   end function known_numbers
 
    !> The estimated error (3, 0:2) of the row of request number `i` of `m`, where errors are asked for.
    pure function error_in_set(m, s, i) result(error)

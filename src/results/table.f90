@@ -4,7 +4,7 @@
 !>
 !> pandas, R and spreadsheets part the cells of a row at commas, gnuplot at blanks: between two cells are both, and no
 !> blanks in the heading, which gnuplot skips. The units are those of the deck. A row ends before the first value that
-!> does not exist: all four take the cells that are not there for missing values. Rejected: empty cells or NaN, which
+!> does not exist or has no known digit: all four take the cells that are not there for missing values. Rejected: empty cells or NaN, which
 !> no mixture of commas and blanks gives to all of them.
 module table
    use kinds, only: wp, label_length
@@ -16,7 +16,7 @@ module table
    use names, only: name_table_t, put_name, find_name, drive_name
    use points, only: row_t, has_number, centre_numbers, coordinates_of
    use sensitivities, only: has_tolerances, worst_case, root_of_squares
-   use set_motion, only: set_motion_t, find_row_in_set, spread_t, spread_in_set
+   use set_motion, only: set_motion_t, find_row_in_set, known_numbers, spread_t, spread_in_set
    use csv, only: add_name
    use text_output, only: output_t, put, add
    use numerals, only: put_full, full_length
@@ -198,6 +198,7 @@ contains
       type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(in) :: s
       type(row_t), allocatable :: rows(:, :)
+      logical :: known(3, 0:2, size(m%requests))
       type(spread_t) :: x
       real(wp) :: f(3)
       integer :: i
@@ -210,6 +211,7 @@ contains
       allocate (rows(0:2, size(m%requests)))
       do i = 1, size(m%requests)
          call find_row_in_set(m, s, i, rows(0, i))
+         known(:, :, i) = known_numbers(rows(0, i), s, i)
          rows(1:, i) = rows(0, i)
          if (m%requests(i)%every == 0 .or. .not. has_tolerances(m, m%requests(i))) cycle
          x = spread_in_set(m, s, i)
@@ -219,7 +221,7 @@ contains
       end do
       do i = 1, size(t%columns)
          associate (c => t%columns(i), row => rows(t%columns(i)%spread, t%columns(i)%request))
-            if (.not. has_number(row, c%coordinate, c%order)) exit
+            if (.not. (known(c%coordinate, c%order, c%request) .and. has_number(row, c%coordinate, c%order))) exit
             call add_cell(o, ', ', row%value(c%coordinate, c%order), m%degrees .and. c%angular)
          end associate
       end do

@@ -130,7 +130,7 @@ contains
       read (cell(3), '(f48.0)', iostat=status) rows%t
       if (status /= 0) call blame(wrong, 'CSV: TIME: '//trim(line))
       rows%mark = cell(15)(:12)
-      if (all(rows%mark /= [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE', 'OPEN'])) &
+      if (all(rows%mark /= [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE', 'OPEN', 'UNKNOWN'])) &
          call blame(wrong, 'CSV: MARK: '//trim(line))
       call read_values(m, i, cell(6:14), value, known, wrong)
       rows%known = min(rows%known, known)

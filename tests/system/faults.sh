@@ -698,15 +698,28 @@ equal 'drives too many, long names' ' --- ZA DUZO NAPEDOW O 4: RELANGLE BASE LON
    "$(grep -e '---' "$w/out" | head -n 1)"
 
 # A crank whose pivot is very far away, along the guide: the rod's angle is that of sin = (0.5 - sin 15)/3, and roundings of
-# the distance leave fewer and fewer of its digits, which are masked.
+# the distance leave fewer and fewer of its digits, which are masked; where none is left the CSV and the table have no number.
 for far in 1.0E5 1.0E6 1.0E8 1.0E10 1.0E12 1.0E14 1.0E17 1.0E20; do
    { head_of FAR; slider 1.0 3.0 0.0 0.5; drive ANGLE CRANK '' 0.0 60.0; until_time 5 1.25; } \
       | awk -v far=-$far '/^POINT   O  / { $0 = sprintf("%-32s%s", substr($0, 1, 32), far) } 1' > "$w/deck"
-   "$kinmat" --quiet "$w/deck" > "$w/out"
+   "$kinmat" --quiet --csv "$w/csv" --table "$w/table" "$w/deck" > "$w/out"
    equal "a rod $far away: its angle" right "$(awk '/^ ROD/ && ++rows == 2 {
       s = (0.5 - sin(atan2(0, -1)/12))/3; angle = atan2(s, sqrt(1 - s*s))*180/atan2(0, -1)
       known = $4; sub(/[?].*/, "", known); digits = length(known) - index(known, ".")
       print (known == "" || (known - angle)^2 <= (0.51*10^-digits)^2) ? "right" : "wrong: " $4 }' "$w/out")"
+   equal "a rod $far away: CSV and table" right "$(awk '
+      function angle_is(x, mark, off) {
+         off = x - angle
+         # A tenth of a radian.
+         if (x == "" ? mark != "" && mark != "UNKNOWN" : mark == "UNKNOWN" || off*off > 33) wrong = wrong " " x mark
+         if (x == "") unknown++
+      }
+      BEGIN { FS = ", *"; s = (0.5 - sin(atan2(0, -1)/12))/3; angle = atan2(s, sqrt(1 - s*s))*180/atan2(0, -1) }
+      FNR == 1 { for (i = 1; i <= NF; i++) if ($i == "ROD.phi") column = i }
+      /,1,[^,]*,LINK,ROD/ { angle_is($8, $15) }
+      FILENAME ~ /table/ && FNR == 3 { angle_is($column, "") }
+      END { print wrong == "" && unknown == ('$far' >= 1e15 ? 2 : 0) ? "right" : "wrong:" wrong ", unknown: " unknown }
+      ' "$w/csv" "$w/table")"
 done
 
 # Of an extreme's time nothing is known where a drive is there twice: the drive's value is masked, and nothing overflows.
