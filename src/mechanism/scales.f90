@@ -9,7 +9,7 @@ module scales
    implicit none
    private
    public :: characteristic_length, solver_length, characteristic_rate, power_of_two, is_length, relative_tolerance, &
-      latest_time
+      latest_time, shortest_step
 
 contains
 
@@ -98,6 +98,31 @@ contains
 
       t = max(abs(m%t0), abs(m%t1), maxval([0.0_wp, abs(m%at)]))
    end function latest_time
+
+   !> The shortest step from an instant of `m` to the next in the deck's order at another time; the largest number where
+   !> there is none.
+   pure real(wp) function shortest_step(m) result(step)
+      type(mechanism_t), intent(in) :: m
+      real(wp) :: before
+      integer :: i
+
+      step = huge(step)
+      if (m%steps > 0) call take(abs(m%t1 - m%t0)/real(m%steps, wp))
+      before = m%t1
+      do i = 1, size(m%at)
+         if (i > 1 .or. m%steps >= 0) call take(abs(m%at(i) - before))
+         before = m%at(i)
+      end do
+
+   contains
+
+      !> One step.
+      pure subroutine take(length)
+         real(wp), intent(in) :: length
+
+         if (length > 0.0_wp) step = min(step, length)
+      end subroutine take
+   end function shortest_step
 
    !> The largest tolerance of `m`, as a part of the characteristic length and rate; `m` has one.
    pure real(wp) function relative_tolerance(m) result(part)

@@ -1,6 +1,6 @@
-!> The results as comma-separated values with 17 digits: the deck's length unit, radians or degrees
-!> as the deck says. A value that does not exist, or of which no digit is known, is empty and `mark` says why; a name with a comma is quoted. A pole or
-!> curve has three rows.
+!> The results as comma-separated values with 17 digits: the deck's length unit, radians or degrees as the deck says. A
+!> value that does not exist, or of which no digit is known, is empty and `mark` says why; a name with a comma is
+!> quoted. A pole or curve has three rows.
 module csv
    use kinds, only: wp
    use planar, only: in_degrees

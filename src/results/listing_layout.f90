@@ -11,7 +11,8 @@ module listing_layout
    use drives, only: law_t, new_law
    use names, only: drive_name, more
    use law_sizes, only: growing_sizes
-   use scales, only: characteristic_length, characteristic_rate, relative_tolerance, latest_time, is_length
+   use scales, only: characteristic_length, characteristic_rate, relative_tolerance, latest_time, is_length, &
+      shortest_step
    use numerals, only: whole, numeral_length
    use text_output, only: output_t, put
    use phrases
@@ -22,6 +23,8 @@ module listing_layout
       column_text, put_folded
 
    integer, parameter :: digits_after_first = 6
+   !> An order that is a whole number but for rounding counts as one.
+   real(wp), parameter :: margin = max(1.0e-9_wp, 32.0_wp*epsilon(1.0_wp))
    !> Characters of a line at most.
    integer, parameter :: line_length = 120
    !> Characters before a row's numbers, and of a whole row.
@@ -79,7 +82,6 @@ contains
       type(layout_t) :: l
       type(parts_t) :: new_parts
       type(mechanism_t), allocatable :: new_own(:)
-      real(wp) :: time
       integer :: k
 
       if (m%degrees) l%angle = degree
@@ -94,8 +96,7 @@ contains
          call take_parts(l, new_parts, new_own)
       end if
       l%own(0) = l%digits_t
-      time = latest_time(m)
-      if (time > 0.0_wp) call choose_digits(log10(time), l%time_decimals, l%time_power)
+      call choose_time_digits(m, l%time_decimals, l%time_power)
       ! What a tolerance changes has four digits.
       if (allocated(m%tolerances)) &
          l%more_decimals = max(0, 3 - digits_after_first - floor(log10(relative_tolerance(m))))
@@ -117,6 +118,23 @@ contains
       end do
       l%more_drives = more(size(m%drives) - size(l%drives), m%polish)
    end function new_layout
+
+   !> The digits of the times of `m`: as many as other numbers have, and as many as show two digits of its shortest
+   !> step, if there is room for them. So instants that are not the same have other times.
+   pure subroutine choose_time_digits(m, decimals, power)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(inout) :: decimals, power
+      integer :: before, room
+
+      associate (time => latest_time(m))
+         if (.not. time > 0.0_wp) return
+         call choose_digits(log10(time), decimals, power)
+         before = max(1, floor(log10(time)) - power + 1)
+         ! Beside the point, and a blank before it; those before zero have a sign.
+         room = numeral_length - 2 - before - merge(1, 0, min(m%t0, m%t1, minval(m%at)) < 0.0_wp)
+         decimals = max(decimals, min(room, power + 1 + ceiling(-log10(shortest_step(m)) - margin)))
+      end associate
+   end subroutine choose_time_digits
 
    !> Drive number `k` of `m`, ready for the head of an instant.
    subroutine take_drive(l, m, k, drive)
@@ -202,8 +220,6 @@ contains
       real(wp), intent(in) :: order
       integer, intent(out) :: decimals, power
       integer :: k
-      ! An order that is a whole number but for rounding counts as one.
-      real(wp), parameter :: margin = max(1.0e-9_wp, 32.0_wp*epsilon(1.0_wp))
 
       k = floor(order + margin)
       power = 0

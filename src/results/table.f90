@@ -4,8 +4,8 @@
 !>
 !> pandas, R and spreadsheets part the cells of a row at commas, gnuplot at blanks: between two cells are both, and no
 !> blanks in the heading, which gnuplot skips. The units are those of the deck. A row ends before the first value that
-!> does not exist or has no known digit: all four take the cells that are not there for missing values. Rejected: empty cells or NaN, which
-!> no mixture of commas and blanks gives to all of them.
+!> does not exist or has no known digit: all four take the cells that are not there for missing values. Rejected: empty
+!> cells or NaN, which no mixture of commas and blanks gives to all of them.
 module table
    use kinds, only: wp, label_length
    use planar, only: in_degrees
