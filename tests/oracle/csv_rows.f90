@@ -132,7 +132,7 @@ contains
       rows%mark = cell(15)(:12)
       if (all(rows%mark /= [character(12) :: '', 'NO-POSITION', 'NO-RATES', 'TOO-LARGE', 'OPEN', 'UNKNOWN'])) &
          call blame(wrong, 'CSV: MARK: '//trim(line))
-      call read_values(m, i, cell(6:14), value, known, wrong)
+      call read_values(m, i, cell(6:14), rows%mark == 'UNKNOWN', value, known, wrong)
       rows%known = min(rows%known, known)
       if ((rows%mark == '') .neqv. (known == 2)) call blame(wrong, 'CSV: KNOWN VALUES AND MARK: '//trim(line))
       if (allocated(wrong)) return
@@ -170,10 +170,11 @@ contains
 
    !> The numbers of request `i` as jets, angles in radians; `known`: derivatives that are there, -1 for not even
    !> places.
-   subroutine read_values(m, i, cell, value, known, wrong)
+   subroutine read_values(m, i, cell, unknown, value, known, wrong)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: i
       character(*), intent(in) :: cell(9)
+      logical, intent(in) :: unknown
       type(jet_t), intent(out) :: value(3)
       integer, intent(out) :: known
       character(:), allocatable, intent(inout) :: wrong
@@ -200,7 +201,8 @@ contains
          end do
       end do
       known = count(there(1, :)) - 1
-      if (.not. all(there(:columns, :known)) .or. any(there(:, known + 1:)) &
+      if (unknown) known = findloc([(all(there(:columns, k)), k=0, 2)], .false., dim=1) - 2
+      if (.not. all(there(:columns, :known)) .or. (any(there(:, known + 1:)) .and. .not. unknown) &
          .or. any(there(columns + 1:, :))) call blame(wrong, 'CSV: CELLS THAT ARE FULL')
       value%v = number(:, 0)
       value%d = number(:, 1)
