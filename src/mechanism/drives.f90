@@ -265,17 +265,24 @@ contains
       integer, intent(in) :: i
       real(wp), intent(in) :: t
       real(wp) :: f(3)
-      real(wp) :: h, u, w
+      real(wp) :: h, u, w, slope, bend
 
       h = s%x(i + 1) - s%x(i)
       u = t - s%x(i)
       w = s%x(i + 1) - t
-      ! Both ends enter alike: at a knot the value is that of the table.
-      f(1) = (s%m(i)*w**3 + s%m(i + 1)*u**3)/(6.0_wp*h) &
-         + (s%y(i)/h - s%m(i)*h/6.0_wp)*w + (s%y(i + 1)/h - s%m(i + 1)*h/6.0_wp)*u
-      f(2) = (s%m(i + 1)*u**2 - s%m(i)*w**2)/(2.0_wp*h) &
-         + (s%y(i + 1) - s%y(i))/h - (s%m(i + 1) - s%m(i))*h/6.0_wp
-      f(3) = (s%m(i)*w + s%m(i + 1)*u)/h
+      slope = (s%y(i + 1) - s%y(i))/h
+      bend = (s%m(i + 1) - s%m(i))/h
+      ! From the nearer knot: at that the value is that of the table, and beside it, in a piece that is much longer than
+      ! its neighbour, no cubes of the long way cancel.
+      if (u < w) then
+         slope = slope - h*(2.0_wp*s%m(i) + s%m(i + 1))/6.0_wp
+         f = [s%y(i) + u*(slope + u*(s%m(i)/2.0_wp + u*bend/6.0_wp)), slope + u*(s%m(i) + u*bend/2.0_wp), &
+            s%m(i) + u*bend]
+      else
+         slope = slope + h*(s%m(i) + 2.0_wp*s%m(i + 1))/6.0_wp
+         f = [s%y(i + 1) - w*(slope - w*(s%m(i + 1)/2.0_wp - w*bend/6.0_wp)), slope - w*(s%m(i + 1) - w*bend/2.0_wp), &
+            s%m(i + 1) - w*bend]
+      end if
    end function piece_value
 
    !> The i with x(i) <= t <= x(i + 1), by bisection; the first or the last where `t` lies beyond the table.
