@@ -15,6 +15,7 @@ module block_engine
    use block_state, only: state_t, new_state
    use block_solver, only: workspace_t, make_workspace, solve_direct, solve_equations
    use first_position, only: solve_first_block, remove_turns
+   use singular_place, only: settle
    use block_rank, only: jacobian_of, relative_sign
    use link_motion, only: chain_t, new_chain, put_numbers, move_links, move_found_links, mark_links, missing_nothing, &
       missing_rates, missing_all
@@ -58,8 +59,7 @@ module block_engine
       type(history_t) :: history                        !< of the motion that is followed
       type(jacobian_t), allocatable :: followed(:)      !< (blocks) there
       real(wp), allocatable :: jacobian(:)              !< there, of the block with too many rows: (rows*n)
-      real(wp) :: t = 0.0_wp                            !< the time of the motion found last
-      real(wp) :: change = 0.0_wp                       !< the largest change of a value that was predicted
+      real(wp) :: t = 0.0_wp, change = 0.0_wp           !< of the motion found last; the largest of a predicted value
       type(state_t) :: state                            !< its values
       type(convergence_t) :: one                        !< how the block solved last ended
       type(jacobian_t), allocatable :: found(:)         !< (blocks)
@@ -268,6 +268,7 @@ contains
             e%is_singular(i) = one%singular
             ! At a change point itself the sign is that of rounding.
             e%crossed(i) = follows .and. .not. one%singular .and. one%determinant /= e%followed(i)%sign_of
+            if (one%singular) call settle(e%blocks, i, e%state)
             if (one%singular) cycle
             if (e%crossed(i)) c%keeps_signs = .false.
             c%kantorovich_ratio = max(c%kantorovich_ratio, one%kantorovich_ratio)

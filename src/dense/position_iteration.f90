@@ -30,6 +30,8 @@ module position_iteration
    real(wp), parameter :: rounding_level = 12.0_wp*epsilon(1.0_wp)
    !> A step this small leaves the Jacobian, and so the velocities, at the rounding level too.
    real(wp), parameter :: step_tolerance = 16.0_wp*epsilon(1.0_wp)
+   !> Even where the Jacobian has no inverse a residual at the rounding level leaves no more to correct than this.
+   real(wp), parameter :: root_of_rounding = 64.0_wp*sqrt(epsilon(1.0_wp))
    !> An iteration does not return from a residual or step of this many sizes; well below overflow.
    real(wp), parameter :: bound = min(1.0e30_wp, sqrt(sqrt(huge(1.0_wp))))
    !> An angle beyond this has fewer digits after the point than the listing prints.
@@ -110,7 +112,8 @@ contains
          end if
          call solve(f, r)
          c%step = maxval(abs(r))/highest
-         if (c%residual <= rounding_level .and. c%step > max(step_tolerance, tolerance, 0.5_wp*before)) then
+         if (c%residual <= rounding_level .and. &
+            c%step > max(step_tolerance, tolerance, min(0.5_wp*before, root_of_rounding))) then
             ! Rounding is all that is left to correct, and the position stays.
             c%ended = ended_stalled
             exit

@@ -111,4 +111,21 @@ deck NEWTON 0 PL rocker_turns parallelogram far_end > "$w/deck"
 equal 'in Polish' 'JAKOBIAN OSOBLIWY, OGNIWA CR+, CO+ W JEDNEJ LINII: BRAK JEDNOZNACZNYCH PREDKOSCI
 PUNKT ZMIANY, OGNIWA CO++, RO++ W JEDNEJ LINII: PREDKOSCI NIEJEDNOZNACZNE
 PUNKT MARTWY, OGNIWA CR+++, RD+++ W JEDNEJ LINII: BRAK SKONCZONYCH PREDKOSCI' "$(of_instant 0 "$w/out")"
+# The equations determine a singular position to 1E-7 rad only; the digits of its angles are right all the same, from an
+# estimate far away and at the end of a motion. A rocker across the base is reached by the crank that is in line.
+far_end_guessed() { slider 20.0 -10.0 3.5; slide B 4.0 -0.25; }
+far_end_reached() { slider 40.0 -10.0 3.5; slide B 3.7 0.3; }
+parallelogram_guessed() { four_bar 2.0 4.0 2.0 4.0 180.0 15.0 210.0; angle CR 180.0 40.0; }
+rocker_guessed() { four_bar 1.5 3.5 3.0 4.0 60.0 20.0 90.0; angle RO 90.0 -10.0; }
+# angles K WORDS NAME: the angles of its three links at instant K, in degrees
+angles() {
+   deck NEWTON 0 EN "$3" > "$w/deck"
+   "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
+   equal "$3: angles" "$2" \
+      "$(awk -v k="$1" '/^ INSTANT/ { at = $2 } at == k && NF == 10 && $4 ~ /[0-9]/ { printf "%s ", $4 }' "$w/out")"
+}
+angles 0 '0.000000 0.000000 0.000000 ' far_end_guessed
+angles 1 '0.000000 0.000000 0.000000 ' far_end_reached
+angles 0 '180.000000 0.000000 180.000000 ' parallelogram_guessed
+angles 0 '36.869898 36.869898 90.000000 ' rocker_guessed
 conclude
