@@ -195,7 +195,7 @@ contains
       type(analysis_t) :: a
       type(motion_t) :: first, now
       real(wp) :: t, step
-      integer :: k, steps_a_turn
+      integer :: k, steps_a_turn, begin
       logical :: is_angle
 
       is_angle = .not. is_length(d%drives(r%drive))
@@ -207,6 +207,8 @@ contains
       call advance(a, 0.0_wp, first)
       r%limit(side) = diagnostic_t(kind=diagnostic_limit, drive=r%drive, is_angle=is_angle, value=value)
       if (first%known < 0) return
+      ! A position without velocities, as at a change point, is passed by more than one motion: the next one counts.
+      begin = merge(0, -1, first%known == 2)
       do k = 1, nint(d%t1/step)
          if (signal_received() > 0) return
          t = step*k
@@ -219,9 +221,14 @@ contains
             call take_limit()
             return
          end if
-         if (.not. is_angle .or. mod(k, steps_a_turn) /= 0 .or. now%known < 2) cycle
+         if (.not. is_angle .or. now%known < 2) cycle
+         if (begin < 0) then
+            begin = k
+            first = now
+         end if
+         if (k == begin .or. mod(k - begin, steps_a_turn) /= 0) cycle
          r%is_all = is_closed(d)
-         r%turns = k/steps_a_turn
+         r%turns = (k - begin)/steps_a_turn
          if (r%is_all) return
       end do
       r%limit(side)%value = value + rate*t
