@@ -14,15 +14,15 @@ module singular_place
    private
    public :: settle
 
-   !> The step of the second difference, and the largest distance of the place.
+   !> The step of the second difference, and the largest distance of the place, over the root of that.
    real(wp), parameter :: trial = max(1.0e-4_wp, sqrt(sqrt(epsilon(1.0_wp))))
    real(wp), parameter :: furthest = 64.0_wp*sqrt(epsilon(1.0_wp))
    !> What the equations may leave open, of the largest value or of a sum of lengths, which counts as so many: less is
    !> nothing but rounding, more would be no position.
    real(wp), parameter :: closed = 1.5_wp*epsilon(1.0_wp), near = 12.0_wp*epsilon(1.0_wp), sum_size = 3.0_wp
-   !> Part of the Lipschitz constant below which the second derivative counts as zero: along a motion with the drives
-   !> held the Jacobian stays as it is.
-   real(wp), parameter :: least_curvature = 1.0e-3_wp
+   !> Part of the Lipschitz constant below which the second derivative counts as zero, as it is but for the rounding of
+   !> the difference along a motion with the drives held.
+   real(wp), parameter :: least_curvature = 512.0_wp*epsilon(1.0_wp)/trial**2
    !> Of larger blocks it is not asked: see `singularity`.
    integer, parameter :: max_rows = 300
 
@@ -50,8 +50,8 @@ contains
          if (abs(left_open) > closed*level .and. left_open*q < 0.0_wp) &
             call go_to(y + sign(sqrt(-2.0_wp*left_open/q), dot_product(x - y, k))*k)
       end associate
-      if (maxval(abs(y - x)) > furthest .or. maxval(abs(residual_of(b, i, y, s))) > near*level) &
-         call set_values(b, i, x, s)
+      if (maxval(abs(y - x)) > furthest/sqrt(min(1.0_wp, abs(q))) .or. &
+         maxval(abs(residual_of(b, i, y, s))) > near*level) call set_values(b, i, x, s)
 
    contains
 

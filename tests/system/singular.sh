@@ -19,10 +19,10 @@ four_bar() {
    point C1 "CO$mark"; point C2 "CO$mark" "$2"; point R1 "RO$mark"; point R2 "RO$mark" "$3"
    joint A0 A1 PA0; joint A2 C1 PA; joint C2 R2 PB; joint R1 B0 PB0
 }
-# slider PHI-CRANK PHI-ROD X: crank 1, rod 3 and a piston on the line y = 0
+# slider PHI-CRANK PHI-ROD X CRANK: crank 1 unless given, rod 3 and a piston on the line y = 0
 slider() {
    link CR 0.0 0.0 "$1"; link RD 0.0 0.0 "$2"; link PI "$3" 0.0 0.0
-   point O BASE; point O1 "CR$mark"; point A1 "CR$mark" 1.0; point A2 "RD$mark"; point B2 "RD$mark" 3.0; point B "PI$mark"
+   point O BASE; point O1 "CR$mark"; point A1 "CR$mark" "${4:-1.0}"; point A2 "RD$mark"; point B2 "RD$mark" 3.0; point B "PI$mark"
    joint O O1 PO; joint A1 A2 PA; joint B2 B PB
    card PRISM "O$mark" "B$mark" "GU$mark" 0.0 0.0 0.0
 }
@@ -115,6 +115,7 @@ PUNKT MARTWY, OGNIWA CR+++, RD+++ W JEDNEJ LINII: BRAK SKONCZONYCH PREDKOSCI' "$
 # estimate far away and at the end of a motion. A rocker across the base is reached by the crank that is in line.
 far_end_guessed() { slider 20.0 -10.0 3.5; slide B 4.0 -0.25; }
 far_end_reached() { slider 40.0 -10.0 3.5; slide B 3.7 0.3; }
+far_end_of_a_short_crank() { slider 20.0 -10.0 3.0 0.001; slide B 3.001 -0.0001; }
 parallelogram_guessed() { four_bar 2.0 4.0 2.0 4.0 180.0 15.0 210.0; angle CR 180.0 40.0; }
 rocker_guessed() { four_bar 1.5 3.5 3.0 4.0 60.0 20.0 90.0; angle RO 90.0 -10.0; }
 # angles K WORDS NAME: the angles of its three links at instant K, in degrees
@@ -126,6 +127,7 @@ angles() {
 }
 angles 0 '0.000000 0.000000 0.000000 ' far_end_guessed
 angles 1 '0.000000 0.000000 0.000000 ' far_end_reached
+angles 0 '0.000000 0.000000 0.000000 ' far_end_of_a_short_crank
 angles 0 '180.000000 0.000000 180.000000 ' parallelogram_guessed
 angles 0 '36.869898 36.869898 90.000000 ' rocker_guessed
 conclude
