@@ -70,8 +70,7 @@ contains
       if (a%ranges_asked .and. k == 0) call find_ranges(s, a%ranges)
       if (m%circuits .and. m%variants == 0 .and. k == 0) call find_all_circuits(s, a%circuits)
       if (a%shares_asked) call note_tolerances(a%shares, m, s%now, k)
-      if (.not. a%extremes_asked .or. k > m%steps) return
-      call note_instant(a%extremes, m, s, k)
+      if (a%extremes_asked) call note_instant(a%extremes, m, s, k)
    end subroutine take_instant
 
    !> Writes the answers after the last instant.

@@ -14,7 +14,7 @@ module column_search
    use set_analysis, only: set_analysis_t
    use nodes, only: node_t, node_at, is_known, beside_joint
    use zero_search, only: sample_t, column_t, find_zero, look, differ_in_sign, noise_part
-   use extremes, only: extremes_t, keep_place, offer, count_turn, note_interval, step_of, alike
+   use extremes, only: extremes_t, offer, count_turn, note_interval, step_of, alike
    implicit none
    private
    public :: add_node, jerk_at_first, misses_by, overlooked
@@ -80,7 +80,6 @@ contains
                do k = 0, node%known(q)
                   call offer(x, m, q, j, k, sample, .false.)
                end do
-               if (node%known(q) >= 0) call keep_place(x, m, q, j, sample)
                if (node%known(q) == 2) call count_turn(x, q, j, node%value(j, 1, q))
             end do
          end associate
@@ -155,7 +154,6 @@ contains
                call search_column(s, column, points, jerk(j, q, :), found)
                do k = 1, size(found)
                   call offer(x, m, q, j, found(k)%order, found(k)%at, .true.)
-                  if (found(k)%order == 0) call keep_place(x, m, q, j, found(k)%at)
                end do
             end do
          end associate

@@ -4,8 +4,9 @@ module dwells
    use mechanism, only: mechanism_t
    use points, only: coordinates_of
    use set_analysis, only: set_analysis_t
+   use nodes, only: order_along
    use zero_search, only: sample_t, column_t, find_zero, noise_part
-   use extremes, only: extremes_t, place_t, least, greatest, is_angle, is_cyclic, is_covered
+   use extremes, only: extremes_t, place_t, least, greatest, outward, is_angle, is_cyclic, is_covered
    implicit none
    private
    public :: dwell_t, find_dwells
@@ -73,19 +74,10 @@ contains
       type(dwell_t), intent(in) :: w
       type(extremes_t), intent(in) :: x
       type(place_t), allocatable :: path(:)
-      type(place_t) :: one
-      integer :: i, k
 
       path = pack(x%places(:x%place), x%places(:x%place)%asked == w%asked .and. x%places(:x%place)%column == w%column)
       ! They are in order but for extremes beside the middle of a part.
-      do i = 2, size(path)
-         one = path(i)
-         do k = i - 1, 1, -1
-            if ((path(k)%t - one%t)*x%way <= 0.0_wp) exit
-            path(k + 1) = path(k)
-         end do
-         path(k + 1) = one
-      end do
+      path = path(order_along(path%t, x%way))
    end function path_of
 
    !> The time `t` at which the coordinate `w`, followed on its `path` from its extreme along the run (`way` 1) or
@@ -107,7 +99,7 @@ contains
       found = .true.
       error = 0.0_wp
       associate (e => x%found(w%which, w%column, 0, w%asked), n => size(path))
-         level = e%value + merge(w%distance, -w%distance, w%which == least)
+         level = e%value - outward(w%which)*w%distance
          inside = position_at(e%t, e%value)
          k = merge(count((path%t - e%t)*x%way <= 0.0_wp) + 1, count((path%t - e%t)*x%way < 0.0_wp), way > 0)
          do passed = 1, n
@@ -118,7 +110,7 @@ contains
                k = merge(1, n, way > 0)
             end if
             outside = position_at(path(k)%t, path(k)%value)
-            if ((outside%f(0) - level)*merge(1.0_wp, -1.0_wp, w%which == least) > 0.0_wp) exit
+            if ((outside%f(0) - level)*outward(w%which) < 0.0_wp) exit
             inside = outside
             k = k + way
          end do

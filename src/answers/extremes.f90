@@ -13,9 +13,8 @@ module extremes
    use zero_search, only: sample_t, noise_part
    implicit none
    private
-   public :: place_t, keep_place
-   public :: extremes_t, extreme_t, track_t, gap_t, least, greatest, new_extremes, offer, offer_limits, count_turn, &
-      note_interval, step_of, stroke_times, is_cyclic, is_covered, is_angle, alike
+   public :: extremes_t, extreme_t, track_t, gap_t, place_t, least, greatest, outward, requests_of, new_extremes, offer, &
+      offer_limits, count_turn, note_interval, step_of, stroke_times, is_cyclic, is_covered, is_angle, alike
 
    !> Values that differ by less, in characteristic lengths or rad and rates, are alike, since errors
    !> that no table shows may be as large: the earlier one counts.
@@ -26,6 +25,8 @@ module extremes
    real(wp), parameter :: closes_to = max(1.0e-9_wp, 1000.0_wp*epsilon(1.0_wp))
    !> The first index of the extremes.
    integer, parameter :: least = 1, greatest = 2
+   !> The direction in which values are more extreme.
+   real(wp), parameter :: outward(least:greatest) = [-1.0_wp, 1.0_wp]
 
    !> In the deck's units and rad.
    type :: extreme_t
@@ -75,6 +76,16 @@ module extremes
 
 contains
 
+   !> The requests of `m` for extremes, but those of the ground, which does not move.
+   pure function requests_of(m) result(asked)
+      type(mechanism_t), intent(in) :: m
+      integer, allocatable :: asked(:)
+      integer :: i
+
+      asked = pack([(i, i=1, size(m%requests))], &
+         m%requests%extremes .and. .not. [(is_fixed(m, m%requests(i)), i=1, size(m%requests))])
+   end function requests_of
+
    !> Ready for the first instant of `m`; `s`: its analysis, for the independent mechanisms of `m`.
    subroutine new_extremes(m, s, x)
       type(mechanism_t), intent(in) :: m
@@ -82,8 +93,7 @@ contains
       type(extremes_t), intent(out) :: x
       integer :: i, c, q, n
 
-      x%asked = pack([(i, i=1, size(m%requests))], m%requests%extremes .and. .not. [(is_fixed(m, m%requests(i)), i=1, &
-         size(m%requests))])
+      x%asked = requests_of(m)
       n = size(x%asked)
       x%part = s%now%parts%part(x%asked)
       x%way = sign(1.0_wp, m%t1 - m%t0)
@@ -139,8 +149,8 @@ contains
       step_of = abs(m%t1 - m%t0)/real(m%steps, wp)
    end function step_of
 
-   !> Number `k` of `sample`, column `c` of row `q`, may be the least or the greatest. A value `at_zero` of the next
-   !> derivative has its time from that, and replaces a node's beside it.
+   !> Number `k` of `sample`, column `c` of row `q`, may be the least or the greatest; a place is kept, if its dwells
+   !> are asked for. A value `at_zero` of the next derivative has its time from that, and replaces a node's beside it.
    pure subroutine offer(x, m, q, c, k, sample, at_zero)
       type(extremes_t), intent(inout) :: x
       type(mechanism_t), intent(in) :: m
@@ -154,7 +164,7 @@ contains
       do which = least, greatest
          associate (e => x%found(which, c, k, q))
             if (.not. e%has_bound) cycle
-            gain = (sample%f(k) - e%value)*merge(-1.0_wp, 1.0_wp, which == least)
+            gain = (sample%f(k) - e%value)*outward(which)
             open = alike*x%size_of(c, k, q) + e%error + sample%error(k)
             better = .not. e%exists .or. gain > open
             if (at_zero .and. .not. (better .or. e%is_located)) better = gain >= -open &
@@ -168,6 +178,7 @@ contains
                value=sample%f(k), t_error=sample%t_error, error=sample%error(k))
          end associate
       end do
+      if (k == 0) call keep_place(x, m, q, c, sample)
    end subroutine offer
 
    !> Keeps column `c` of row `q` in `sample`, if its dwells are asked for.
@@ -200,7 +211,7 @@ contains
             do which = least, greatest
                associate (e => x%found(which, c, k, row), value => limits%value(c, k, row), &
                           error => limits%error(c, k, row), has_bound => limits%has_bound(c, k, row))
-                  gain = (value - e%value)*merge(-1.0_wp, 1.0_wp, which == least)
+                  gain = (value - e%value)*outward(which)
                   if (.not. e%has_bound) cycle
                   if (error > badly_known*max(x%size_of(c, k, row), abs(value)) .and. has_bound) cycle
                   if (has_bound) then
@@ -274,36 +285,31 @@ contains
       times = abs(period)*[phase, 1.0_wp - phase]
    end function stroke_times
 
-   !> After the last instant: row `q` and the drives of its mechanism are as at the first.
+   !> After the last instant: the drives of the mechanism of row `q`, and the row's positions and velocities, are as at
+   !> the first, but for whole turns.
    pure logical function is_cyclic(x, m, q)
       type(extremes_t), intent(in) :: x
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: q
+      real(wp) :: d(0:1)
+      integer :: known, c
 
       is_cyclic = is_covered(x) .and. x%tracks(x%part(q))%drives_close
-      if (is_cyclic) is_cyclic = closes(x, m, x%tracks(x%part(q)), q)
+      if (.not. is_cyclic) return
+      associate (first => x%tracks(x%part(q))%first, last => x%tracks(x%part(q))%instant)
+         known = min(first%known(q), last%known(q))
+         is_cyclic = known >= 0
+         do c = 1, coordinates_of(m%requests(x%asked(q))%kind)
+            d = last%value(c, :1, q) - first%value(c, :1, q)
+            if (is_angle(m, m%requests(x%asked(q)), c)) d(0) = without_turns(d(0))
+            ! At a change point velocities are not unique.
+            if (known < 1) d(1) = 0.0_wp
+            is_cyclic = is_cyclic .and. all(abs(d) <= closes_to*x%size_of(c, :1, q))
+         end do
+      end associate
    end function is_cyclic
 
-   !> The positions and velocities of row `q` at the end of the run are those at its beginning, but for whole turns.
-   pure logical function closes(x, m, track, q)
-      type(extremes_t), intent(in) :: x
-      type(mechanism_t), intent(in) :: m
-      type(track_t), intent(in) :: track
-      integer, intent(in) :: q
-      real(wp) :: d(0:1)
-      integer :: c
-
-      ! At a change point velocities are not unique.
-      closes = min(track%instant%known(q), track%first%known(q)) >= 0
-      do c = 1, coordinates_of(m%requests(x%asked(q))%kind)
-         d = track%instant%value(c, :1, q) - track%first%value(c, :1, q)
-         if (is_angle(m, m%requests(x%asked(q)), c)) d(0) = without_turns(d(0))
-         if (min(track%instant%known(q), track%first%known(q)) < 1) d(1) = 0.0_wp
-         closes = closes .and. all(abs(d) <= closes_to*x%size_of(c, :1, q))
-      end do
-   end function closes
-
-   !> So are all drives of `m`, with their accelerations.
+   !> The drives of `m` are at the end of the run as at its beginning, with their accelerations, but for whole turns.
    logical function drives_close(m)
       type(mechanism_t), intent(in) :: m
       real(wp) :: d(3), length, rate

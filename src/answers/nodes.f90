@@ -13,7 +13,7 @@ module nodes
    use set_analysis, only: set_analysis_t, rows_at
    implicit none
    private
-   public :: node_t, node_at, is_known, times_between, beside_joint, one_sided_t, limits_of, places, places_beside
+   public :: node_t, node_at, is_known, times_between, beside_joint, order_along, one_sided_t, limits_of, places, places_beside
 
    !> Just beside a joint, in parts of the time or of the run: `drives` takes what is nearer as the joint itself.
    real(wp), parameter :: joint_part = 65536.0_wp*epsilon(1.0_wp)
@@ -113,7 +113,7 @@ contains
          end associate
       end do
       times = pack(times, (times - t1)/h > 0.0_wp .and. (times - t1)/h < 1.0_wp)
-      call sort_along(times, h)
+      times = times(order_along(times, h))
    end function times_between
 
    !> How far from a joint at the time `t` are the nodes just beside it.
@@ -124,22 +124,20 @@ contains
       beside_joint = joint_part*max(abs(t), abs(m%t1 - m%t0))
    end function beside_joint
 
-   !> Sorts `times` upwards where `h` > 0, otherwise downwards.
-   pure subroutine sort_along(times, h)
-      real(wp), intent(inout) :: times(:)
-      real(wp), intent(in) :: h
-      real(wp) :: t
-      integer :: i, k
+   !> The numbers of the `times` in their order, upwards where `h` > 0, otherwise downwards; those that are in order stay
+   !> so, and take no longer than to be looked at.
+   pure function order_along(times, h) result(order)
+      real(wp), intent(in) :: times(:), h
+      integer :: order(size(times)), i, k
 
-      do i = 2, size(times)
-         t = times(i)
+      do i = 1, size(times)
          do k = i - 1, 1, -1
-            if ((times(k) - t)*sign(1.0_wp, h) <= 0.0_wp) exit
-            times(k + 1) = times(k)
+            if ((times(order(k)) - times(i))*sign(1.0_wp, h) <= 0.0_wp) exit
+            order(k + 1) = order(k)
          end do
-         times(k + 1) = t
+         order(k + 1) = i
       end do
-   end subroutine sort_along
+   end function order_along
 
    !> Times beside `t`, a change point or a limit, the nearest first, on the side of `from`; `step` of TIME; `farther`
    !> than usual by this factor.

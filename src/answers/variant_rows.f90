@@ -6,7 +6,6 @@ module variant_rows
    use motion, only: mark_none, diagnostic_t, diagnostic_limit
    use drives, only: new_law, drive_motion
    use names, only: drive_name, subject_name
-   use points, only: is_fixed
    use independent, only: parts_t
    use deck_variants, only: variation_t, varied_t, values_of_variant
    use set_analysis, only: set_analysis_t
@@ -14,7 +13,7 @@ module variant_rows
    use listing_layout, only: layout_t, digits_t, dimension_of, column_text, choose_digits, angle_unit
    use csv, only: marks
    use table, only: table_t, new_table, dotted
-   use extremes, only: extreme_t, least, greatest
+   use extremes, only: extreme_t, least, greatest, outward, requests_of
    use ranges, only: range_t, low, high
    use answers, only: answers_t
    use phrases
@@ -178,8 +177,7 @@ contains
          integer :: i, which
          character(3), parameter :: words(least:greatest) = ['MIN', 'MAX'], endings(least:greatest) = ['min', 'max']
 
-         requests = pack([(i, i=1, size(m%requests))], &
-            m%requests%extremes .and. .not. [(is_fixed(m, m%requests(i)), i=1, size(m%requests))])
+         requests = requests_of(m)
          asked = m
          asked%requests = m%requests(requests)
          asked%requests%every = 1
@@ -352,7 +350,7 @@ contains
 
       if (.not. e%exists) return
       cells(1) = cell_t(cell_number, e%value, e%error)
-      if (.not. e%has_bound) cells(1) = cell_t(cell_unbounded, merge(-1.0_wp, 1.0_wp, which == least))
+      if (.not. e%has_bound) cells(1) = cell_t(cell_unbounded, outward(which))
       cells(2) = cell_t(cell_number, e%t)
       cells(3) = drive_cell(m, d, e%t)
    end subroutine take_extreme
