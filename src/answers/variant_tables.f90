@@ -99,21 +99,20 @@ contains
    subroutine put_variant_heads(o, s)
       type(output_t), intent(inout) :: o
       type(summary_t), intent(in) :: s
-      integer :: first, last, k, i
+      integer, allocatable :: starts(:)
+      integer :: n, k, i
       character(:), allocatable :: line
 
       call put(o, '')
-      first = 2
-      do while (first <= size(s%columns))
-         last = last_column(s, first)
+      starts = line_starts(s)
+      do n = 1, size(starts) - 1
          do k = 1, 4
             line = right(head_text(s%columns(1), k), number_length)
-            do i = first, last
+            do i = starts(n), starts(n + 1) - 1
                if (s%columns(i)%printed) line = line//right(head_text(s%columns(i), k), width(s%columns(i)))
             end do
             if (len_trim(line) > 0) call put(o, trim(line))
          end do
-         first = next_column(s, last + 1)
       end do
    end subroutine put_variant_heads
 
@@ -136,18 +135,17 @@ contains
       type(summary_t), intent(in) :: s
       type(mechanism_t), intent(in) :: m
       type(variant_row_t), intent(in) :: r
-      integer :: first, last, i
+      integer, allocatable :: starts(:)
+      integer :: n, i
       character(:), allocatable :: line
 
-      first = 2
-      do while (first <= size(s%columns))
-         last = last_column(s, first)
+      starts = line_starts(s)
+      do n = 1, size(starts) - 1
          line = right(whole(r%number), number_length)
-         do i = first, last
+         do i = starts(n), starts(n + 1) - 1
             if (s%columns(i)%printed) line = line//right(cell_text(l, m, s%columns(i), r%cells(i)), width(s%columns(i)))
          end do
          call put(o, line)
-         first = next_column(s, last + 1)
       end do
       if (r%rejected /= '') call put_folded(o, ' *** ', r%rejected)
       if (r%limit%kind /= 0) then
@@ -188,29 +186,23 @@ contains
       call put(o, ' *** '//phrase(say_broken_variant, m%polish)//' '//whole(n))
    end subroutine put_broken_off
 
-   !> The first printed column from `i` on; past the last one where there is none.
-   pure integer function next_column(s, i) result(next)
+   !> (lines + 1) The first column of each line, all of which begin with column 1, and one more than the last of all.
+   pure function line_starts(s) result(starts)
       type(summary_t), intent(in) :: s
-      integer, intent(in) :: i
+      integer, allocatable :: starts(:)
+      integer :: used, i
 
-      do next = i, size(s%columns)
-         if (s%columns(next)%printed) return
+      allocate (starts(0))
+      used = line_length
+      do i = 2, size(s%columns)
+         if (.not. s%columns(i)%printed) cycle
+         used = used + width(s%columns(i))
+         if (used <= line_length) cycle
+         starts = [starts, i]
+         used = number_length + width(s%columns(i))
       end do
-   end function next_column
-
-   !> The last column of the line that begins with column `first`.
-   pure integer function last_column(s, first) result(last)
-      type(summary_t), intent(in) :: s
-      integer, intent(in) :: first
-      integer :: used
-
-      used = number_length + width(s%columns(first))
-      do last = first, size(s%columns) - 1
-         if (.not. s%columns(last + 1)%printed) cycle
-         used = used + width(s%columns(last + 1))
-         if (used > line_length) return
-      end do
-   end function last_column
+      starts = [starts, size(s%columns) + 1]
+   end function line_starts
 
    !> Characters of a column in the listing.
    pure integer function width(c)
