@@ -181,44 +181,38 @@ contains
       type(circuits_t), intent(inout) :: found
       integer, intent(in) :: b
       type(curve_point_t), intent(in) :: p
-      type(circuit_assembly_t), allocatable :: more(:)
-      integer :: k, n
+      type(circuit_assembly_t) :: one
+      integer :: k
 
-      n = size(found%assemblies)
-      do k = 1, n
+      do k = 1, size(found%assemblies)
          if (found%branches(found%assemblies(k)%branch)%circuit == found%branches(b)%circuit &
             .and. same_place(found%curve, found%assemblies(k)%q, p%q)) return
       end do
-      allocate (more(n + 1))
-      more(:n) = found%assemblies
-      more(n + 1)%branch = b
-      more(n + 1)%value = drive_value(found%curve, p%value(0) + found%list(found%branches(b)%circuit)%shift)
-      more(n + 1)%q = p%q
-      call move_alloc(more, found%assemblies)
+      one%branch = b
+      one%value = drive_value(found%curve, p%value(0) + found%list(found%branches(b)%circuit)%shift)
+      one%q = p%q
+      found%assemblies = [found%assemblies, one]
    end subroutine add_assembly
 
    !> Adds the change points of circuit number `i`.
    subroutine add_meetings(found, i)
       type(circuits_t), intent(inout) :: found
       integer, intent(in) :: i
-      type(meeting_t), allocatable :: more(:)
-      integer :: k, j, n
+      type(meeting_t) :: one
+      integer :: k, j
 
       do k = 1, size(found%list(i)%changes)
          associate (change => found%list(i)%changes(k))
-            n = size(found%meetings)
-            do j = 1, n
+            do j = 1, size(found%meetings)
                if (same_place(found%curve, found%meetings(j)%q, change%q)) exit
             end do
-            if (j > n) then
-               allocate (more(n + 1))
-               more(:n) = found%meetings
-               more(j)%q = change%q
-               more(j)%value = change%value + found%list(i)%shift
-               if (.not. any(found%list(i)%points%is_dead)) more(j)%value = near_first(found%curve, change%value)
-               more(j)%value = drive_value(found%curve, more(j)%value)
-               allocate (more(j)%circuits(size(found%list)), source=.false.)
-               call move_alloc(more, found%meetings)
+            if (j > size(found%meetings)) then
+               one%q = change%q
+               one%value = change%value + found%list(i)%shift
+               if (.not. any(found%list(i)%points%is_dead)) one%value = near_first(found%curve, change%value)
+               one%value = drive_value(found%curve, one%value)
+               one%circuits = spread(.false., 1, size(found%list))
+               found%meetings = [found%meetings, one]
             end if
             found%meetings(j)%circuits(i) = .true.
          end associate
@@ -275,5 +269,4 @@ contains
       middle = 0.5_wp*(minval(circuit%points%value(0)) + maxval(circuit%points%value(0)))
       shift = near_first(c, middle) - middle
    end function shift_of
-
 end module circuit_branches

@@ -51,9 +51,8 @@ contains
       integer, intent(in) :: c
       type(circuits_t), intent(in) :: found
       type(chart_t), allocatable, intent(out) :: charts(:)
-      type(chart_t), allocatable :: more(:)
       type(chart_t) :: one
-      integer :: i, column, drive, n
+      integer :: i, column, drive
       logical :: done
 
       allocate (charts(0))
@@ -67,12 +66,7 @@ contains
                ! Of a link that turns its angle alone.
                if (done .and. m%requests(i)%kind == request_link) exit
                call make_chart(s, c, found, m%requests(i), column, one, done)
-               if (.not. done .or. is_drive(m, drive, m%requests(i), column)) cycle
-               n = size(charts)
-               allocate (more(n + 1))
-               more(:n) = charts
-               more(n + 1) = one
-               call move_alloc(more, charts)
+               if (done .and. .not. is_drive(m, drive, m%requests(i), column)) charts = [charts, one]
             end do
          end do
       end associate
@@ -168,10 +162,7 @@ contains
          integer, allocatable :: own(:)
          integer :: k
 
-         allocate (own(0))
-         do k = 1, size(found%assemblies)
-            if (found%branches(found%assemblies(k)%branch)%circuit == i) own = [own, k]
-         end do
+         own = pack([(k, k=1, size(found%assemblies))], found%branches(found%assemblies%branch)%circuit == i)
          t%numbers = found%assemblies(own)%number
          allocate (t%assemblies(2, size(own)))
          do k = 1, size(own)

@@ -3,8 +3,8 @@
 module circuits_picture
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_link, request_point, request_pair
-   use names, only: drive_name
+   use mechanism, only: mechanism_t, request_pair
+   use names, only: drive_name, subject_name
    use numerals, only: whole
    use set_analysis, only: set_analysis_t
    use circuit_branches, only: circuits_t
@@ -93,15 +93,8 @@ contains
       text = ''
       if (chart%request%kind /= request_pair) text = trim(columns(chart%column))//' '
       if (chart%column == 3 .and. m%polish) text = 'FI '
-      select case (chart%request%kind)
-      case (request_link)
-         text = text//trim(m%links(chart%request%subject)%name)
-      case (request_point)
-         text = text//trim(m%points(chart%request%subject)%name)
-      case (request_pair)
-         text = text//trim(m%pairs(chart%request%subject)%name)
-      end select
-      text = text//', '//unit_of(m, chart%axes(2)%is_angle)
+      text = text//trim(subject_name(m, chart%request%kind, chart%request%subject))//', ' &
+         //unit_of(m, chart%axes(2)%is_angle)
    end function name_of
 
    !> Writes the page.
@@ -254,21 +247,19 @@ contains
       type(axis_t), intent(in) :: axis
       integer, intent(in) :: k
       real(wp), intent(in) :: corner(2), extent(2)
+      ! From the side to the end of a tick, and to its number.
+      real(wp), parameter :: to_end(2, 2) = reshape([0.0_wp, tick, -tick, 0.0_wp], [2, 2])
+      real(wp), parameter :: to_number(2, 2) = reshape([0.0_wp, tick + 13.0_wp, -tick - 4.0_wp, 4.0_wp], [2, 2])
+      character(6), parameter :: anchors(2) = ['middle', 'end   ']
       real(wp) :: step, x, p(2)
       integer(int64) :: i
 
       step = step_of(axis)
       do i = ceiling(axis%low/step - 1.0e-6_wp, int64), floor(axis%high/step + 1.0e-6_wp, int64)
          x = (real(i, wp)*step - axis%low)/(axis%high - axis%low)
-         if (k == 1) then
-            p = corner + extent*[x, 1.0_wp]
-            call put_line(o, 'polyline', reshape([p, p + [0.0_wp, tick]], [2, 2]), 'style="stroke:#222;stroke-width:1"')
-            call put_words(o, p + [0.0_wp, tick + 13.0_wp], 'middle', 'class="between"', fitted(real(i, wp)*step))
-         else
-            p = corner + extent*[0.0_wp, 1.0_wp - x]
-            call put_line(o, 'polyline', reshape([p, p - [tick, 0.0_wp]], [2, 2]), 'style="stroke:#222;stroke-width:1"')
-            call put_words(o, p + [-tick - 4.0_wp, 4.0_wp], 'end', 'class="between"', fitted(real(i, wp)*step))
-         end if
+         p = corner + extent*merge([x, 1.0_wp], [0.0_wp, 1.0_wp - x], k == 1)
+         call put_line(o, 'polyline', reshape([p, p + to_end(:, k)], [2, 2]), 'style="stroke:#222;stroke-width:1"')
+         call put_words(o, p + to_number(:, k), trim(anchors(k)), 'class="between"', fitted(real(i, wp)*step))
       end do
    end subroutine put_axis
 

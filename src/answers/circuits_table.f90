@@ -34,11 +34,7 @@ contains
       integer, allocatable :: drives(:)
       integer :: c, i, k, n
 
-      n = 0
-      do c = 1, size(s%now%own)
-         n = n + size(free_drives(s%now%own(c)))
-      end do
-      allocate (list(n))
+      allocate (list(sum([(size(free_drives(s%now%own(c))), c=1, size(s%now%own))])))
       n = 0
       do c = 1, size(s%now%own)
          drives = free_drives(s%now%own(c))
@@ -91,7 +87,7 @@ contains
          character(1), parameter :: signs(-1:no_sign) = ['-', '*', '+', '.']
          character(column_ends(4)) :: row
          character(:), allocatable :: numbers
-         integer :: k, i
+         integer :: k
 
          row = ' '//phrase(say_circuit, m%polish)
          row(column_ends(1) + 1:) = phrase(say_branch, m%polish)
@@ -100,10 +96,7 @@ contains
          call put(o, row//phrase(say_one_range, m%polish))
          do k = 1, size(found%branches)
             associate (b => found%branches(k))
-               numbers = ''
-               do i = 1, size(found%assemblies)
-                  if (found%assemblies(i)%branch == k) numbers = numbers//' '//whole(found%assemblies(i)%number)
-               end do
+               numbers = words_of(pack(found%assemblies%number, found%assemblies%branch == k))
                row = ' '//whole(b%circuit)
                row(column_ends(1) + 1:) = whole(k)
                row(column_ends(2) + 1:) = ' '//signs(b%sign)
@@ -121,17 +114,13 @@ contains
          type(circuits_t), intent(in) :: found
          type(diagnostic_t) :: limit
          integer :: d, k
-         character(:), allocatable :: numbers
 
          if (size(found%dead) > 0) call put(o, ' '//phrase(say_dead_points, m%polish))
          do d = 1, size(found%dead)
             limit = found%dead(d)%limit
-            limit%value = known(limit%value)
-            numbers = ''
-            do k = 1, size(found%branches)
-               if (any(found%branches(k)%dead == d)) numbers = numbers//' '//whole(k)
-            end do
-            call put_folded(o, '   ', phrase(say_branch, m%polish)//numbers//'   '//limit_words(m, limit), &
+            limit%value = known(limit%value, rounding)
+            call put_folded(o, '   ', phrase(say_branch, m%polish)//words_of(pack([(k, k=1, size(found%branches))], &
+               [(any(found%branches(k)%dead == d), k=1, size(found%branches))]))//'   '//limit_words(m, limit), &
                repeat(' ', 6))
          end do
       end subroutine put_dead_points
@@ -139,18 +128,13 @@ contains
       !> A line for each change point: the circuits that meet there, and the drive's value.
       subroutine put_change_points(found)
          type(circuits_t), intent(in) :: found
-         character(:), allocatable :: numbers
          integer :: i, k
 
          if (size(found%meetings) > 0) call put(o, ' '//phrase(say_change_points, m%polish))
          do i = 1, size(found%meetings)
-            numbers = ''
-            do k = 1, size(found%list)
-               if (found%meetings(i)%circuits(k)) numbers = numbers//' '//whole(k)
-            end do
-            call put(o, '   '//phrase(say_circuit, m%polish)//numbers//'   '//measure(m, diagnostic_t( &
-               kind=diagnostic_limit, is_angle=found%curve%is_angle, value=merge(0.0_wp, found%meetings(i)%value, &
-               abs(found%meetings(i)%value) <= sqrt(epsilon(1.0_wp)))), '(es13.5)'))
+            call put(o, '   '//phrase(say_circuit, m%polish) &
+               //words_of(pack([(k, k=1, size(found%list))], found%meetings(i)%circuits))//'   ' &
+               //value_words(m, found, known(found%meetings(i)%value, sqrt(epsilon(1.0_wp))), '(es13.5)'))
          end do
       end subroutine put_change_points
    end subroutine put_circuits
@@ -166,7 +150,7 @@ contains
 
       associate (circuit => found%list(b%circuit))
          if (circuit%rests) then
-            text = phrase(say_at_rest, m%polish)//' '//value_words(b%range(1), value_form)
+            text = phrase(say_at_rest, m%polish)//' '//value_words(m, found, known(b%range(1), rounding), value_form)
          else if (all(circuit%ends == end_closed) .and. all(b%dead == 0)) then
             text = phrase(say_all, m%polish)//' '//whole(turns_of(circuit))
          else
@@ -174,7 +158,7 @@ contains
             do side = 1, 2
                text = text//side_words(side)//'  '
                if (b%dead(side) == 0) text = text//phrase(end_words(end_of(b, circuit, side)), m%polish)//' '
-               text = text//value_words(b%range(side), value_form)
+               text = text//value_words(m, found, known(b%range(side), rounding), value_form)
                if (side == 1) text = text//'   '
             end do
          end if
@@ -192,21 +176,35 @@ contains
          rises = circuit%points(b%first)%value(0) < circuit%points(b%last)%value(0)
          end_of = circuit%ends(merge(side, 3 - side, rises))
       end function end_of
-
-      !> The drive's value `x` with its unit.
-      function value_words(x, form) result(words)
-         real(wp), intent(in) :: x
-         character(*), intent(in) :: form
-         character(:), allocatable :: words
-
-         words = measure(m, diagnostic_t(kind=diagnostic_limit, is_angle=found%curve%is_angle, value=known(x)), form)
-      end function value_words
    end function range_words
 
-   !> `x` (rad or length), 0 where it is rounding alone.
-   pure real(wp) function known(x)
+   !> The value `x` (rad or length) of the free drive of `found`, with its unit.
+   function value_words(m, found, x, form) result(words)
+      type(mechanism_t), intent(in) :: m
+      type(circuits_t), intent(in) :: found
       real(wp), intent(in) :: x
+      character(*), intent(in) :: form
+      character(:), allocatable :: words
 
-      known = merge(0.0_wp, x, abs(x) <= rounding)
+      words = measure(m, diagnostic_t(kind=diagnostic_limit, is_angle=found%curve%is_angle, value=x), form)
+   end function value_words
+
+   !> `x` (rad or length), 0 where it is no larger than `error`.
+   pure real(wp) function known(x, error)
+      real(wp), intent(in) :: x, error
+
+      known = merge(0.0_wp, x, abs(x) <= error)
    end function known
+
+   !> The `numbers`, a blank before each.
+   pure function words_of(numbers) result(text)
+      integer, intent(in) :: numbers(:)
+      character(:), allocatable :: text
+      integer :: i
+
+      text = ''
+      do i = 1, size(numbers)
+         text = text//' '//whole(numbers(i))
+      end do
+   end function words_of
 end module circuits_table
