@@ -3,7 +3,8 @@ module circuit_branches
    use kinds, only: wp
    use planar, only: pi
    use motion, only: diagnostic_t, diagnostic_limit
-   use circuit_curve, only: curve_t, curve_point_t, same_place, drive_value, deck_position
+   use curve_equations, only: curve_t, drive_value, deck_position
+   use circuit_curve, only: curve_point_t, same_place
    use assemblies, only: assembly_t, number_of
    use circuit_trace, only: circuit_t, find_root, of_value, end_closed
    implicit none

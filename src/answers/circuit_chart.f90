@@ -7,7 +7,8 @@ module circuit_chart
    use motion, only: motion_t, new_motion
    use points, only: row_t, row_of, coordinates_of
    use set_analysis, only: set_analysis_t
-   use circuit_curve, only: deck_position, drive_value
+   use extremes, only: is_angle
+   use curve_equations, only: deck_position, drive_value
    use circuit_trace, only: end_closed
    use circuit_branches, only: circuits_t
    implicit none
@@ -91,47 +92,25 @@ contains
       type(chart_t), intent(out) :: chart
       logical, intent(out) :: done
       type(motion_t) :: q
-      type(row_t) :: row
-      real(wp) :: first, low(2), high(2), unit(2)
-      integer :: i, k, n
+      real(wp) :: low(2), high(2), unit(2)
+      integer :: i
 
       q = new_motion(size(s%now%own(c)%links))
       q%known = 0
       q%origin = s%now%motions(c)%origin
-      q%position = deck_position(found%curve, found%list(1)%points(1)%q)
-      row = row_of(s%now%own(c), q, request)
       chart%request = request
       chart%column = column
-      chart%axes%is_angle = [found%curve%is_angle, column == 3 .or. row%angular]
+      chart%axes%is_angle = [found%curve%is_angle, is_angle(s%now%own(c), request, column)]
       allocate (chart%traces(size(found%list)))
       low = huge(low)
       high = -huge(high)
       do i = 1, size(found%list)
-         associate (points => found%list(i)%points, t => chart%traces(i))
-            allocate (t%p(2, size(points)))
-            do k = 1, size(points)
-               t%p(:, k) = place(points(k)%value(0), points(k)%q, i)
-            end do
-            first = 0.0_wp
-            if (chart%axes(2)%is_angle) first = t%p(2, 1) - without_turns(t%p(2, 1))
-            t%p(2, :) = t%p(2, :) - first
-            low = min(low, minval(t%p, dim=2))
-            high = max(high, maxval(t%p, dim=2))
-            ! The last point of a closed circuit is the first.
-            n = size(points) - merge(1, 0, found%list(i)%ends(1) == end_closed)
-            t%dead = t%p(:, pack([(k, k=1, n)], points(:n)%is_dead))
-            allocate (t%changes(2, size(found%list(i)%changes)))
-            do k = 1, size(found%list(i)%changes)
-               t%changes(:, k) = place(found%list(i)%changes(k)%value, found%list(i)%changes(k)%q, i) - [0.0_wp, first]
-            end do
-            call take_assemblies(i, first, t)
-         end associate
+         call take_circuit(i, chart%traces(i))
+         low = min(low, minval(chart%traces(i)%p, dim=2))
+         high = max(high, maxval(chart%traces(i)%p, dim=2))
       end do
-      unit = found%curve%closure%length
-      where (chart%axes%is_angle) unit = 1.0_wp
-      done = high(2) - low(2) > varies*unit(2)
-      unit = 1.0_wp
-      where (chart%axes%is_angle .and. s%now%own(c)%degrees) unit = degree
+      done = high(2) - low(2) > varies*merge(1.0_wp, found%curve%closure%length, chart%axes(2)%is_angle)
+      unit = merge(degree, 1.0_wp, chart%axes%is_angle .and. s%now%own(c)%degrees)
       call set_axis(chart%axes(1), low(1), high(1), drive_value(found%curve, found%curve%first) - pi, unit(1))
       call set_axis(chart%axes(2), low(2), high(2), -pi, unit(2))
       do i = 1, size(found%list)
@@ -143,11 +122,38 @@ contains
 
    contains
 
+      !> Circuit number `i`, before units; an angle begins within half a turn of 0.
+      subroutine take_circuit(i, t)
+         integer, intent(in) :: i
+         type(trace_t), intent(inout) :: t
+         real(wp) :: first
+         integer :: k, n
+
+         associate (circuit => found%list(i))
+            n = size(circuit%points)
+            allocate (t%p(2, n), t%changes(2, size(circuit%changes)))
+            do k = 1, n
+               t%p(:, k) = place(circuit%points(k)%value(0), circuit%points(k)%q, i)
+            end do
+            first = 0.0_wp
+            if (chart%axes(2)%is_angle) first = t%p(2, 1) - without_turns(t%p(2, 1))
+            t%p(2, :) = t%p(2, :) - first
+            ! The last point of a closed circuit is the first.
+            if (circuit%ends(1) == end_closed) n = n - 1
+            t%dead = t%p(:, pack([(k, k=1, n)], circuit%points(:n)%is_dead))
+            do k = 1, size(circuit%changes)
+               t%changes(:, k) = place(circuit%changes(k)%value, circuit%changes(k)%q, i) - [0.0_wp, first]
+            end do
+         end associate
+         call take_assemblies(i, first, t)
+      end subroutine take_circuit
+
       !> The drive's value and the number at `value` and `position` on circuit number `i`.
       function place(value, position, i) result(p)
          real(wp), intent(in) :: value, position(:, :)
          integer, intent(in) :: i
          real(wp) :: p(2)
+         type(row_t) :: row
 
          q%position = deck_position(found%curve, position)
          row = row_of(s%now%own(c), q, request)

@@ -4,7 +4,8 @@
 module circuit_trace
    use kinds, only: wp
    use system_calls, only: signal_received
-   use circuit_curve, only: curve_t, curve_point_t, step_along, step_between, lies_between, offset_from
+   use curve_equations, only: curve_t
+   use circuit_curve, only: curve_point_t, step_along, step_between, lies_between, offset_from
    use pose, only: add_to_links
    implicit none
    private

@@ -7,10 +7,6 @@
 !> at angles of each link: a circuit between all of these is not found.
 !>
 !> The links at dead points are those that card RANGE finds there, from the middle of each branch.
-!>
-!> Another circuit through a change point: there the equations' Jacobian with the tangent t as one more row has a left
-!> null vector w and a right one k, and directions x = a t + b k of curves satisfy w . F_qq[x, x] = 0, of second degree
-!> in a/b; t is one of them.
 module circuits
    use kinds, only: wp
    use system_calls, only: signal_received
@@ -19,23 +15,16 @@ module circuits
    use scales, only: characteristic_length
    use motion, only: motion_t, new_motion
    use assemblies, only: assemblies_t, find_assemblies
-   use circuit_curve, only: curve_t, curve_point_t, make_curve, is_redundant, start_point, step_between, lies_between, &
-      beside, drive_value, deck_position, find_point, second_derivative, factor_at
-   use circuit_trace, only: circuit_t, trace, least_step, change_point_t
+   use curve_equations, only: curve_t, make_curve, is_redundant, drive_value, deck_position
+   use circuit_curve, only: curve_point_t, start_point, step_between, lies_between, beside
+   use circuit_trace, only: circuit_t, trace, least_step
+   use circuit_crossing, only: other_circuit
    use circuit_branches, only: circuits_t, no_sign, add_branches, add_assemblies, add_meetings, number_assemblies, &
       branch_t
    use ranges, only: range_t, find_range, is_lost, held_at, low, high
-   use linear_solver, only: solve, solve_transposed
-   use pose, only: add_to_links
    implicit none
    private
-   public :: find_circuits, free_drives, name_limits, other_circuit
-
-   !> So far from the change point the other circuit is looked for, in rad and lengths; there it is off its tangent by
-   !> less than this part of the distance.
-   real(wp), parameter :: aside = 1.0e-3_wp, straight = 0.1_wp
-   !> A coefficient is zero below this part of the others: the null vectors are known to the root of the rounding.
-   real(wp), parameter :: zero = epsilon(1.0_wp)**0.25_wp
+   public :: find_circuits, free_drives, name_limits
 
    !> A limit found by both methods is one up to this difference, in rad and lengths.
    real(wp), parameter :: agrees = max(1.0e-6_wp, 1.0e3_wp*epsilon(1.0_wp))
@@ -284,58 +273,4 @@ contains
       off_by = x/c%closure%length
       if (c%is_angle) off_by = without_turns(x)
    end function off_by
-
-   !> The point `p` of the other circuit through `change` of the curve `c`; `before`: the point of the circuit before
-   !> it. `ok`: there is one.
-   subroutine other_circuit(c, before, change, p, ok)
-      type(curve_t), intent(inout) :: c
-      type(curve_point_t), intent(in) :: before
-      type(change_point_t), intent(in) :: change
-      type(curve_point_t), intent(out) :: p
-      logical, intent(out) :: ok
-      real(wp), dimension(c%closure%n) :: w, k, x, f_t, f_k, f_sum
-      real(wp) :: mixed, along_k, q(3, size(change%q, 2))
-
-      call null_vectors(c, before, w, k, ok)
-      if (.not. ok) return
-      associate (t => change%tangent)
-         call second_derivative(c, change%q, t, f_t)
-         call second_derivative(c, change%q, k, f_k)
-         call second_derivative(c, change%q, t + k, f_sum)
-         mixed = 0.5_wp*dot_product(w, f_sum - f_t - f_k)
-         along_k = dot_product(w, f_k)
-         ok = abs(mixed) > zero*max(norm2(f_t), norm2(f_k), norm2(f_sum))
-         if (.not. ok) return
-         x = k - along_k/(2.0_wp*mixed)*t
-      end associate
-      x = x/norm2(x)
-      q = change%q
-      call add_to_links(c%closure, aside*x, q)
-      call find_point(c, q, x, p, ok)
-      if (ok) ok = maxval(abs(p%q - q)) <= straight*aside
-   end subroutine other_circuit
-
-   !> The null vectors `w`, left, and `k`, right, of the equations' Jacobian with the tangent as its last row, which is
-   !> nearly singular at `before`: two steps of inverse iteration.
-   subroutine null_vectors(c, before, w, k, ok)
-      type(curve_t), intent(inout) :: c
-      type(curve_point_t), intent(in) :: before
-      real(wp), intent(out) :: w(:), k(:)
-      logical, intent(out) :: ok
-      real(wp) :: left(size(w), 1)
-      integer :: info, i
-
-      call factor_at(c, before%q, before%tangent, info)
-      ok = info == 0
-      if (.not. ok) return
-      k = [(1.0_wp/real(i, wp), i=1, size(k))]
-      left(:, 1) = k
-      do i = 1, 2
-         call solve(c%factors, k)
-         k = k/norm2(k)
-         call solve_transposed(c%factors, left)
-         left = left/norm2(left)
-      end do
-      w = left(:, 1)
-   end subroutine null_vectors
 end module circuits
