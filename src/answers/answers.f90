@@ -53,8 +53,7 @@ contains
       a%proofs_asked = m%proves
       if (a%proofs_asked) call new_proof_table(m, a%proofs)
       allocate (a%ranges(0))
-      if (.not. a%extremes_asked) return
-      call new_extremes(m, s, a%extremes)
+      if (a%extremes_asked) call new_extremes(m, s, a%extremes)
    end subroutine new_answers
 
    !> Takes instant number `k` of `m`, to which `s` has advanced, and what is asked for between it and those before.
@@ -83,7 +82,7 @@ contains
       type(dwell_t), allocatable :: dwells(:)
 
       if (a%extremes_asked) then
-         call find_dwells(m, a%extremes, s, dwells)
+         call find_dwells(a%extremes, s, dwells)
          call put_extremes(o, l, m, s, a%extremes, dwells)
       end if
       if (a%ranges_asked) call put_ranges(o, m, a%ranges)

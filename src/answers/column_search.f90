@@ -9,12 +9,10 @@
 !> acceleration that has at most one extreme in each of these parts; where halving ends sooner, that is noted.
 module column_search
    use kinds, only: wp
-   use mechanism, only: mechanism_t
-   use points, only: coordinates_of
    use set_analysis, only: set_analysis_t
    use nodes, only: node_t, node_at, is_known, beside_joint
    use zero_search, only: sample_t, column_t, find_zero, look, differ_in_sign, noise_part
-   use extremes, only: extremes_t, offer, count_turn, note_interval, step_of, alike
+   use extremes, only: extremes_t, offer, count_turn, note_interval, alike
    implicit none
    private
    public :: add_node, jerk_at_first, misses_by, overlooked
@@ -51,23 +49,21 @@ module column_search
 contains
 
    !> Takes `node` of mechanism `c`, and searches between it and the last one of which all is known.
-   subroutine add_node(x, m, s, c, node)
+   subroutine add_node(x, s, c, node)
       type(extremes_t), intent(inout) :: x
-      type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
       type(node_t), intent(in) :: node
 
       if (allocated(x%tracks(c)%last) .and. is_known(node, x%tracks(c)%rows)) &
-         call search_part(x, m, s, c, x%tracks(c)%last, node)
-      call take_node(x, m, c, node)
+         call search_part(x, s, c, x%tracks(c)%last, node)
+      call take_node(x, c, node)
       if (is_known(node, x%tracks(c)%rows)) x%tracks(c)%last = node
    end subroutine add_node
 
    !> The values of `node` of mechanism `c` may be extremes.
-   subroutine take_node(x, m, c, node)
+   subroutine take_node(x, c, node)
       type(extremes_t), intent(inout) :: x
-      type(mechanism_t), intent(in) :: m
       integer, intent(in) :: c
       type(node_t), intent(in) :: node
       type(sample_t) :: sample
@@ -75,10 +71,10 @@ contains
 
       do i = 1, size(x%tracks(c)%rows)
          associate (q => x%tracks(c)%rows(i))
-            do j = 1, coordinates_of(m%requests(x%asked(q))%kind)
+            do j = 1, x%columns(q)
                sample = sample_of(node, q, j)
                do k = 0, node%known(q)
-                  call offer(x, m, q, j, k, sample, .false.)
+                  call offer(x, q, j, k, sample, .false.)
                end do
                if (node%known(q) == 2) call count_turn(x, q, j, node%value(j, 1, q))
             end do
@@ -87,9 +83,8 @@ contains
    end subroutine take_node
 
    !> Searches between the nodes `a` and `b` of mechanism `c`, in halves where accelerations are not simple.
-   recursive subroutine search_part(x, m, s, c, a, b)
+   recursive subroutine search_part(x, s, c, a, b)
       type(extremes_t), intent(inout) :: x
-      type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
       type(node_t), intent(in) :: a, b
@@ -99,11 +94,11 @@ contains
       logical :: simple
 
       associate (track => x%tracks(c), length => abs(b%t - a%t))
-         shortest = max(shortest_part*step_of(m), time_part*max(abs(a%t), abs(b%t)))
-         if (size(track%joints) > 0) shortest = max(shortest, 2.0_wp*beside_joint(m, a%t))
+         shortest = max(shortest_part*x%step, time_part*max(abs(a%t), abs(b%t)))
+         if (size(track%joints) > 0) shortest = max(shortest, 2.0_wp*beside_joint(x%run, a%t))
          if (length <= shortest) then
             ! Beside a joint there is nothing to be missed.
-            if (length > 0.5_wp*step_of(m)) call note_interval(x%open, x%way, a%t, b%t, shortest)
+            if (length > 0.5_wp*x%step) call note_interval(x%open, x%way, a%t, b%t, shortest)
             return
          end if
          nodes(1) = a
@@ -113,26 +108,25 @@ contains
             call note_interval(x%open, x%way, a%t, b%t, shortest)
             return
          end if
-         jerk = jerks_of(x, m, c, nodes)
-         simple = are_simple(x, m, c, nodes, jerk)
+         jerk = jerks_of(x, c, nodes)
+         simple = are_simple(x, c, nodes, jerk)
          if (.not. simple .and. track%halvings < max_halvings .and. length > 2.0_wp*shortest) then
             track%halvings = track%halvings + 1
-            call search_part(x, m, s, c, a, nodes(2))
-            call take_node(x, m, c, nodes(2))
-            call search_part(x, m, s, c, nodes(2), b)
+            call search_part(x, s, c, a, nodes(2))
+            call take_node(x, c, nodes(2))
+            call search_part(x, s, c, nodes(2), b)
             return
          end if
          if (.not. simple) call note_interval(x%open, x%way, a%t, b%t, shortest)
-         call take_node(x, m, c, nodes(2))
-         call search_columns(x, m, s, c, nodes, jerk)
+         call take_node(x, c, nodes(2))
+         call search_columns(x, s, c, nodes, jerk)
       end associate
    end subroutine search_part
 
    !> Searches for extremes of all columns of mechanism `c` between the first and the last of three `nodes`; `jerk`: see
    !> `jerks_of`.
-   subroutine search_columns(x, m, s, c, nodes, jerk)
+   subroutine search_columns(x, s, c, nodes, jerk)
       type(extremes_t), intent(inout) :: x
-      type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
       type(node_t), intent(in) :: nodes(:)
@@ -144,16 +138,16 @@ contains
 
       do i = 1, size(x%tracks(c)%rows)
          associate (q => x%tracks(c)%rows(i))
-            do j = 1, coordinates_of(m%requests(x%asked(q))%kind)
+            do j = 1, x%columns(q)
                points = [(sample_of(nodes(k), q, j), k=1, size(nodes))]
-               column = column_t(x%asked(q), j, step_of_stencil(x, m, q, j, abs(nodes(3)%t - nodes(1)%t)))
+               column = column_t(x%asked(q), j, step_of_stencil(x, q, j, abs(nodes(3)%t - nodes(1)%t)))
                do k = 0, 2
                   column%noise(k) = max(noise_part*x%size_of(j, k, q), maxval(points%error(k)))
                end do
                column%flat = 2.0_wp*max(alike*x%size_of(j, 2, q), column%noise(2))
                call search_column(s, column, points, jerk(j, q, :), found)
                do k = 1, size(found)
-                  call offer(x, m, q, j, found(k)%order, found(k)%at, .true.)
+                  call offer(x, q, j, found(k)%order, found(k)%at, .true.)
                end do
             end do
          end associate
@@ -261,9 +255,8 @@ contains
    end subroutine insert
 
    !> The derivatives (3, asked, 2) of the accelerations of mechanism `c` at the first and the last of three `nodes`.
-   pure function jerks_of(x, m, c, nodes) result(jerk)
+   pure function jerks_of(x, c, nodes) result(jerk)
       type(extremes_t), intent(in) :: x
-      type(mechanism_t), intent(in) :: m
       integer, intent(in) :: c
       type(node_t), intent(in) :: nodes(3)
       real(wp) :: jerk(3, size(x%asked), 2), f(3, 0:2), open, h
@@ -273,7 +266,7 @@ contains
       h = nodes(3)%t - nodes(1)%t
       do i = 1, size(x%tracks(c)%rows)
          associate (q => x%tracks(c)%rows(i))
-            do j = 1, coordinates_of(m%requests(x%asked(q))%kind)
+            do j = 1, x%columns(q)
                do k = 1, 3
                   f(k, :) = nodes(k)%value(j, :, q)*[1.0_wp, h, h**2]
                end do
@@ -303,9 +296,8 @@ contains
 
    !> The accelerations of mechanism `c` at the `nodes`, two ends and the middle, and their derivatives `jerk` at the
    !> ends are those of simple curves.
-   pure logical function are_simple(x, m, c, nodes, jerk)
+   pure logical function are_simple(x, c, nodes, jerk)
       type(extremes_t), intent(in) :: x
-      type(mechanism_t), intent(in) :: m
       integer, intent(in) :: c
       type(node_t), intent(in) :: nodes(3)
       real(wp), intent(in) :: jerk(:, :, :)
@@ -315,7 +307,7 @@ contains
       are_simple = .true.
       do i = 1, size(x%tracks(c)%rows)
          associate (q => x%tracks(c)%rows(i))
-            do j = 1, coordinates_of(m%requests(x%asked(q))%kind)
+            do j = 1, x%columns(q)
                open = overlooked*x%size_of(j, 2, q) + open_change(x, nodes, q, j)
                are_simple = are_simple .and. is_simple([(nodes(k)%value(j, 2, q), k=1, 3)], &
                   jerk(j, q, :)*(nodes(3)%t - nodes(1)%t), open)
@@ -357,13 +349,12 @@ contains
    end function is_simple
 
    !> The step of the stencil for column `j` of row `q` in an interval of the `length`.
-   pure real(wp) function step_of_stencil(x, m, q, j, length) result(step)
+   pure real(wp) function step_of_stencil(x, q, j, length) result(step)
       type(extremes_t), intent(in) :: x
-      type(mechanism_t), intent(in) :: m
       integer, intent(in) :: q, j
       real(wp), intent(in) :: length
 
-      step = max(difference_part*step_of(m), difference_angle*x%size_of(j, 0, q)/x%size_of(j, 1, q))
+      step = max(difference_part*x%step, difference_angle*x%size_of(j, 0, q)/x%size_of(j, 1, q))
       step = min(step, max_part*length)
    end function step_of_stencil
 end module column_search

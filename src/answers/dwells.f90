@@ -1,12 +1,10 @@
 !> The dwells of card EXTREMES: how long a coordinate stays within a distance of its least or greatest value.
 module dwells
    use kinds, only: wp
-   use mechanism, only: mechanism_t
-   use points, only: coordinates_of
    use set_analysis, only: set_analysis_t
    use nodes, only: order_along
    use zero_search, only: sample_t, column_t, find_zero, noise_part
-   use extremes, only: extremes_t, place_t, least, greatest, outward, is_angle, is_cyclic, is_covered
+   use extremes, only: extremes_t, place_t, least, greatest, outward, is_cyclic, is_covered
    implicit none
    private
    public :: dwell_t, find_dwells
@@ -22,10 +20,9 @@ module dwells
 
 contains
 
-   !> The dwells (any number) of the set `m`, which `s` has analysed, after its last instant, by its extremes `x`; none
+   !> The dwells (any number) of the set that `s` has analysed, after its last instant, by its extremes `x`; none
    !> of what never leaves its distance, and none at all where some of the motion between instants is not known.
-   subroutine find_dwells(m, x, s, list)
-      type(mechanism_t), intent(in) :: m
+   subroutine find_dwells(x, s, list)
       type(extremes_t), intent(in) :: x
       type(set_analysis_t), intent(inout) :: s
       type(dwell_t), allocatable, intent(out) :: list(:)
@@ -34,18 +31,15 @@ contains
       allocate (list(0))
       if (.not. is_covered(x)) return
       do q = 1, size(x%asked)
-         associate (request => m%requests(x%asked(q)))
-            do c = 1, coordinates_of(request%kind)
-               call find_two(dwell_t(q, c, distance=request%dwell(merge(2, 1, is_angle(m, request, c)))), m, x, s, list)
-            end do
-         end associate
+         do c = 1, x%columns(q)
+            call find_two(dwell_t(q, c, distance=x%dwell(c, q)), x, s, list)
+         end do
       end do
    end subroutine find_dwells
 
    !> Adds those of one coordinate, `wanted`, to the `list`.
-   subroutine find_two(wanted, m, x, s, list)
+   subroutine find_two(wanted, x, s, list)
       type(dwell_t), intent(in) :: wanted
-      type(mechanism_t), intent(in) :: m
       type(extremes_t), intent(in) :: x
       type(set_analysis_t), intent(inout) :: s
       type(dwell_t), allocatable, intent(inout) :: list(:)
@@ -60,7 +54,7 @@ contains
       if (one%distance <= 0.0_wp .or. stroke <= one%distance) return
       path = path_of(one, x)
       ! A crank that has made whole turns is not where it was.
-      is_cycle = abs(path(size(path))%value - path(1)%value) < 0.5_wp*stroke .and. is_cyclic(x, m, one%asked)
+      is_cycle = abs(path(size(path))%value - path(1)%value) < 0.5_wp*stroke .and. is_cyclic(x, one%asked)
       do which = least, greatest
          one%which = which
          call find_end(one, path, x, s, -1, is_cycle, one%from, one%error(1), found(1))

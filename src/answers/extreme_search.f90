@@ -8,11 +8,10 @@ module extreme_search
    use kinds, only: wp
    use mechanism, only: mechanism_t, instant
    use motion, only: motion_t, singular_change, diagnostic_change, diagnostic_limit
-   use points, only: coordinates_of
    use set_analysis, only: set_analysis_t
    use nodes, only: node_t, one_sided_t, node_at, is_known, times_between, beside_joint, limits_of, places, &
       places_beside
-   use extremes, only: extremes_t, offer_limits, note_interval, step_of
+   use extremes, only: extremes_t, offer_limits, note_interval
    use column_search, only: add_node
    implicit none
    private
@@ -51,7 +50,7 @@ contains
             else
                call search_step()
             end if
-            call add_node(x, m, s, c, now)
+            call add_node(x, s, c, now)
             track%instant = now
             track%at_change = s%now%motions(c)%singularity == singular_change
             if (.not. is_known(now, track%rows)) call note_interval(x%gaps, x%way, now%t, now%t, 0.0_wp)
@@ -105,7 +104,7 @@ contains
          do i = 1, size(q%diagnostics)
             associate (d => q%diagnostics(i))
                if (d%kind /= diagnostic_limit .and. .not. (d%kind == diagnostic_change .and. .not. d%here)) cycle
-               if ((d%t - last)*way <= merge(beside_joint(m, last), 0.0_wp, d%kind == diagnostic_change)) cycle
+               if ((d%t - last)*way <= merge(beside_joint(x%run, last), 0.0_wp, d%kind == diagnostic_change)) cycle
                if ((q%t - d%t)*way <= 0.0_wp) cycle
                ends = [ends, d%t]
                last = d%t
@@ -159,7 +158,7 @@ contains
 
          least_error = huge(1.0_wp)
          do try = 0, merge(max_nearer, max_farther, at%is_change)
-            times = places_beside(at%t, other, step_of(m), at%is_change, merge(nearer, farther, at%is_change)**try)
+            times = places_beside(at%t, other, x%step, at%is_change, merge(nearer, farther, at%is_change)**try)
             call find_limits(times, at%is_change, limits)
             if (largest_error(limits) < least_error) then
                least_error = largest_error(limits)
@@ -173,9 +172,7 @@ contains
             return
          end if
          do i = 1, size(x%tracks(c)%rows)
-            associate (q => x%tracks(c)%rows(i))
-               call offer_limits(x, q, coordinates_of(m%requests(x%asked(q))%kind), at%t, best)
-            end associate
+            call offer_limits(x, x%tracks(c)%rows(i), at%t, best)
          end do
       end subroutine take_limits
 
@@ -220,7 +217,7 @@ contains
 
          node = node_at(x%asked, s, c, t, always)
          if (is_known(node, x%tracks(c)%rows)) then
-            call add_node(x, m, s, c, node)
+            call add_node(x, s, c, node)
          else
             call note_interval(x%gaps, x%way, t, t, 0.0_wp)
          end if
@@ -229,9 +226,8 @@ contains
 
    !> Takes the instant to which `s` has advanced as one before which nothing is searched for: up to there all numbers
    !> and their derivatives have gone on as they went at the last instant that was taken.
-   subroutine note_start(x, m, s)
+   subroutine note_start(x, s)
       type(extremes_t), intent(inout) :: x
-      type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(inout) :: s
       type(node_t) :: now
       integer :: c
@@ -241,7 +237,7 @@ contains
             if (size(track%rows) == 0) cycle
             if (allocated(track%last)) deallocate (track%last)
             now = node_at(x%asked, s, c, s%now%motions(c)%t, .false.)
-            call add_node(x, m, s, c, now)
+            call add_node(x, s, c, now)
             track%instant = now
             track%at_change = .false.
          end associate

@@ -13,8 +13,9 @@ module extremes
    use zero_search, only: sample_t, noise_part
    implicit none
    private
-   public :: extremes_t, extreme_t, track_t, gap_t, place_t, least, greatest, outward, requests_of, new_extremes, offer, &
-      offer_limits, count_turn, note_interval, step_of, stroke_times, is_cyclic, is_covered, is_angle, alike
+   public :: extremes_t, extreme_t, track_t, gap_t, place_t, least, greatest, outward, extreme_words, requests_of, &
+      new_extremes, offer, offer_limits, count_turn, note_interval, stroke_times, is_cyclic, is_covered, is_angle, &
+      column_of, alike
 
    !> Values that differ by less, in characteristic lengths or rad and rates, are alike, since errors
    !> that no table shows may be as large: the earlier one counts.
@@ -25,6 +26,7 @@ module extremes
    real(wp), parameter :: closes_to = max(1.0e-9_wp, 1000.0_wp*epsilon(1.0_wp))
    !> The first index of the extremes.
    integer, parameter :: least = 1, greatest = 2
+   character(3), parameter :: extreme_words(least:greatest) = ['MIN', 'MAX']
    !> The direction in which values are more extreme.
    real(wp), parameter :: outward(least:greatest) = [-1.0_wp, 1.0_wp]
 
@@ -62,6 +64,9 @@ module extremes
    type :: extremes_t
       integer, allocatable :: asked(:)                 !< the requests of the set for extremes, but those of the ground
       integer, allocatable :: part(:)                  !< (asked) their independent mechanisms
+      integer, allocatable :: columns(:)               !< (asked) of their rows
+      logical, allocatable :: is_angle(:, :)           !< (3, asked) a column holds angles
+      real(wp), allocatable :: dwell(:, :)             !< (3, asked) its dwells within this distance; 0: not asked for
       real(wp), allocatable :: size_of(:, :, :)        !< (3, 0:2, asked) characteristic value of each number
       type(extreme_t), allocatable :: found(:, :, :, :) !< (least:greatest, 3, 0:2, asked)
       integer, allocatable :: turns(:, :)              !< (3, asked) changes of sign of the velocity
@@ -71,7 +76,9 @@ module extremes
       type(gap_t), allocatable :: open(:)              !< (any number) in which extremes may be missed
       type(place_t), allocatable :: places(:)          !< (1:place and room) nodes and extremes of what may dwell
       integer :: place = 0
-      real(wp) :: way = 1.0_wp                         !< of the run: -1 backwards in time
+      real(wp) :: run = 0.0_wp                         !< the time of the run, below 0 backwards
+      real(wp) :: way = 1.0_wp                         !< its sign
+      real(wp) :: step = 0.0_wp                        !< a step of the TIME card
    end type extremes_t
 
 contains
@@ -91,15 +98,25 @@ contains
       type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(in) :: s
       type(extremes_t), intent(out) :: x
-      integer :: i, c, q, n
+      real(wp) :: length, rate
+      integer :: i, c, k, q, n
 
       x%asked = requests_of(m)
       n = size(x%asked)
       x%part = s%now%parts%part(x%asked)
-      x%way = sign(1.0_wp, m%t1 - m%t0)
-      allocate (x%size_of(3, 0:2, n), x%found(least:greatest, 3, 0:2, n), x%gaps(0), x%open(0), x%places(8))
-      allocate (x%tracks(size(s%now%own)))
+      x%columns = coordinates_of(m%requests(x%asked)%kind)
+      x%run = m%t1 - m%t0
+      x%way = sign(1.0_wp, x%run)
+      x%step = abs(x%run)/real(m%steps, wp)
+      allocate (x%is_angle(3, n), x%dwell(3, n), x%size_of(3, 0:2, n), x%found(least:greatest, 3, 0:2, n))
+      allocate (x%gaps(0), x%open(0), x%places(8), x%tracks(size(s%now%own)))
       allocate (x%turns(3, n), x%first_sign(3, n), x%last_sign(3, n), source=0)
+      do q = 1, n
+         associate (request => m%requests(x%asked(q)))
+            x%is_angle(:, q) = [(is_angle(m, request, c), c=1, 3)]
+            x%dwell(:, q) = merge(request%dwell(2), request%dwell(1), x%is_angle(:, q))
+         end associate
+      end do
       do c = 1, size(x%tracks)
          associate (track => x%tracks(c), own => s%now%own(c))
             track%rows = pack([(q, q=1, n)], x%part == c)
@@ -109,28 +126,14 @@ contains
                track%joints = [track%joints, joints_of(own%drives(i))]
             end do
             track%drives_close = drives_close(own)
-            do i = 1, size(track%rows)
-               x%size_of(:, :, track%rows(i)) = sizes_of(own, m, m%requests(x%asked(track%rows(i))))
+            length = characteristic_length(own)
+            rate = characteristic_rate(own, length)
+            do k = 0, 2
+               x%size_of(:, k, track%rows) = merge(1.0_wp, length, x%is_angle(:, track%rows))*rate**k
             end do
          end associate
       end do
    end subroutine new_extremes
-
-   !> The characteristic values (3, 0:2) of the columns of `request` of the set `m`, which is in the mechanism `own`.
-   pure function sizes_of(own, m, request) result(size_of)
-      type(mechanism_t), intent(in) :: own, m
-      type(request_t), intent(in) :: request
-      real(wp) :: size_of(3, 0:2), length, rate
-      integer :: c, k
-
-      length = characteristic_length(own)
-      rate = characteristic_rate(own, length)
-      do k = 0, 2
-         do c = 1, 3
-            size_of(c, k) = merge(1.0_wp, length, is_angle(m, request, c))*rate**k
-         end do
-      end do
-   end function sizes_of
 
    !> Column `c` of `request` holds angles.
    pure logical function is_angle(m, request, c)
@@ -142,18 +145,20 @@ contains
       if (request%kind == request_pair) is_angle = m%pairs(request%subject)%kind /= pair_prismatic
    end function is_angle
 
-   !> A step of the TIME card.
-   pure real(wp) function step_of(m)
+   !> The column of the tables that has coordinate `c` of the row of `request`: of a pair one of two.
+   pure integer function column_of(m, request, c) result(column)
       type(mechanism_t), intent(in) :: m
+      type(request_t), intent(in) :: request
+      integer, intent(in) :: c
 
-      step_of = abs(m%t1 - m%t0)/real(m%steps, wp)
-   end function step_of
+      column = c
+      if (request%kind == request_pair) column = merge(3, 1, is_angle(m, request, c))
+   end function column_of
 
    !> Number `k` of `sample`, column `c` of row `q`, may be the least or the greatest; a place is kept, if its dwells
    !> are asked for. A value `at_zero` of the next derivative has its time from that, and replaces a node's beside it.
-   pure subroutine offer(x, m, q, c, k, sample, at_zero)
+   pure subroutine offer(x, q, c, k, sample, at_zero)
       type(extremes_t), intent(inout) :: x
-      type(mechanism_t), intent(in) :: m
       integer, intent(in) :: q, c, k
       type(sample_t), intent(in) :: sample
       logical, intent(in) :: at_zero
@@ -168,7 +173,7 @@ contains
             open = alike*x%size_of(c, k, q) + e%error + sample%error(k)
             better = .not. e%exists .or. gain > open
             if (at_zero .and. .not. (better .or. e%is_located)) better = gain >= -open &
-               .and. abs(sample%t - e%t) <= step_of(m)
+               .and. abs(sample%t - e%t) <= x%step
             ! Of a value of which almost nothing is known, the least that it can be counts.
             if (e%error > badly_known*x%size_of(c, k, q) .and. abs(sample%t - e%t) > e%t_error) &
                better = better .or. gain + e%error > sample%error(k)
@@ -178,36 +183,32 @@ contains
                value=sample%f(k), t_error=sample%t_error, error=sample%error(k))
          end associate
       end do
-      if (k == 0) call keep_place(x, m, q, c, sample)
+      if (k == 0) call keep_place(x, q, c, sample)
    end subroutine offer
 
    !> Keeps column `c` of row `q` in `sample`, if its dwells are asked for.
-   pure subroutine keep_place(x, m, q, c, sample)
+   pure subroutine keep_place(x, q, c, sample)
       type(extremes_t), intent(inout) :: x
-      type(mechanism_t), intent(in) :: m
       integer, intent(in) :: q, c
       type(sample_t), intent(in) :: sample
 
-      associate (request => m%requests(x%asked(q)))
-         if (request%dwell(merge(2, 1, is_angle(m, request, c))) <= 0.0_wp) return
-      end associate
+      if (x%dwell(c, q) <= 0.0_wp) return
       if (x%place == size(x%places)) x%places = [x%places, x%places]
       x%place = x%place + 1
       x%places(x%place) = place_t(q, c, sample%t, sample%f(0))
    end subroutine keep_place
 
-   !> So may the one-sided `limits` of the numbers of `row` at the time `t`, unless they are badly known; `columns`: how
-   !> many it has.
-   pure subroutine offer_limits(x, row, columns, t, limits)
+   !> So may the one-sided `limits` of the numbers of `row` at the time `t`, unless they are badly known.
+   pure subroutine offer_limits(x, row, t, limits)
       type(extremes_t), intent(inout) :: x
-      integer, intent(in) :: row, columns
+      integer, intent(in) :: row
       real(wp), intent(in) :: t
       type(one_sided_t), intent(in) :: limits
       real(wp) :: gain
       integer :: which, c, k
 
       do k = 0, 2
-         do c = 1, columns
+         do c = 1, x%columns(row)
             do which = least, greatest
                associate (e => x%found(which, c, k, row), value => limits%value(c, k, row), &
                           error => limits%error(c, k, row), has_bound => limits%has_bound(c, k, row))
@@ -271,25 +272,22 @@ contains
 
    !> Times from the least to the greatest value of column `c` of row `q` and back, positive, after the last instant:
    !> of a cyclic motion that turns twice, whose run is one period. Otherwise 0.
-   pure function stroke_times(x, m, q, c) result(times)
+   pure function stroke_times(x, q, c) result(times)
       type(extremes_t), intent(in) :: x
-      type(mechanism_t), intent(in) :: m
       integer, intent(in) :: q, c
-      real(wp) :: times(2), period, phase
+      real(wp) :: times(2), phase
 
       times = 0.0_wp
       if (x%turns(c, q) + merge(1, 0, x%first_sign(c, q) /= x%last_sign(c, q)) /= 2) return
-      if (.not. is_cyclic(x, m, q)) return
-      period = m%t1 - m%t0
-      phase = modulo((x%found(greatest, c, 0, q)%t - x%found(least, c, 0, q)%t)/period, 1.0_wp)
-      times = abs(period)*[phase, 1.0_wp - phase]
+      if (.not. is_cyclic(x, q)) return
+      phase = modulo((x%found(greatest, c, 0, q)%t - x%found(least, c, 0, q)%t)/x%run, 1.0_wp)
+      times = abs(x%run)*[phase, 1.0_wp - phase]
    end function stroke_times
 
    !> After the last instant: the drives of the mechanism of row `q`, and the row's positions and velocities, are as at
    !> the first, but for whole turns.
-   pure logical function is_cyclic(x, m, q)
+   pure logical function is_cyclic(x, q)
       type(extremes_t), intent(in) :: x
-      type(mechanism_t), intent(in) :: m
       integer, intent(in) :: q
       real(wp) :: d(0:1)
       integer :: known, c
@@ -299,9 +297,9 @@ contains
       associate (first => x%tracks(x%part(q))%first, last => x%tracks(x%part(q))%instant)
          known = min(first%known(q), last%known(q))
          is_cyclic = known >= 0
-         do c = 1, coordinates_of(m%requests(x%asked(q))%kind)
+         do c = 1, x%columns(q)
             d = last%value(c, :1, q) - first%value(c, :1, q)
-            if (is_angle(m, m%requests(x%asked(q)), c)) d(0) = without_turns(d(0))
+            if (x%is_angle(c, q)) d(0) = without_turns(d(0))
             ! At a change point velocities are not unique.
             if (known < 1) d(1) = 0.0_wp
             is_cyclic = is_cyclic .and. all(abs(d) <= closes_to*x%size_of(c, :1, q))

@@ -5,14 +5,13 @@ module extremes_table
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_t, request_pair, driven_kinds
    use names, only: subject_name, more
-   use points, only: coordinates_of
    use set_analysis, only: set_analysis_t
-   use listing_layout, only: layout_t, digits_t, has_column, line_length, name_length, row_length
+   use listing_layout, only: layout_t, digits_t, line_length, name_length, row_length
    use listing_tables, only: table_t, put_times, put_heads, time_text, drive_text, known_text
    use text_output, only: output_t, put
    use numerals, only: numeral_length
    use known_digits, only: unknown_digit
-   use extremes, only: extremes_t, extreme_t, gap_t, least, greatest, stroke_times, is_angle
+   use extremes, only: extremes_t, extreme_t, gap_t, least, greatest, extreme_words, stroke_times, column_of
    use dwells, only: dwell_t
    use phrases
    implicit none
@@ -21,7 +20,6 @@ module extremes_table
 
    !> Digits after the point of a ratio of times.
    integer, parameter :: ratio_decimals = 6
-   character(3), parameter :: extreme_words(least:greatest) = ['MIN', 'MAX']
    !> Of more gaps only the first are told.
    integer, parameter :: max_gaps = 4
 
@@ -38,6 +36,7 @@ contains
       type(table_t) :: table
       type(digits_t) :: d
       integer :: q, k, drive
+      character(:), allocatable :: driven_name
 
       call put_times(o, l, ' '//phrase(say_extremes, m%polish), [m%t0, m%t1], table%masked)
       do q = 1, size(x%asked)
@@ -45,6 +44,8 @@ contains
             d = l%own(l%part(i))
             call put_heads(o, l, d, m%requests(i)%kind, table)
             drive = first_drive(i)
+            if (drive > 0) driven_name = trim(subject_name(m, driven_kinds(m%drives(drive)%kind), &
+               m%drives(drive)%subject))
             call put_subject()
             do k = 1, size(dwells)
                if (dwells(k)%asked == q) call put_dwell(i, dwells(k))
@@ -69,9 +70,9 @@ contains
                time = ''
                driven = ''
                do k = 0, 2
-                  do c = 1, coordinates_of(request%kind)
+                  do c = 1, x%columns(q)
                      associate (e => x%found(which, c, k, q))
-                        value(c, k) = value_text(e, is_angle(m, request, c), k)
+                        value(c, k) = value_text(e, x%is_angle(c, q), k)
                         if (.not. e%exists) cycle
                         time(c, k) = time_text(l, e%t, e%t_error)
                         if (drive > 0) driven(c, k) = drive_text(l%drives(drive), e%t, e%t_error)
@@ -80,8 +81,7 @@ contains
                end do
                call put_fields(request, extreme_words(which), value)
                call put_fields(request, 'T', time)
-               if (drive > 0) call put_fields(request, trim(subject_name(m, driven_kinds(m%drives(drive)%kind), &
-                  m%drives(drive)%subject)), driven)
+               if (drive > 0) call put_fields(request, driven_name, driven)
             end do
          end associate
          call put_strokes()
@@ -116,12 +116,12 @@ contains
          return = ''
          ratio = ''
          associate (request => m%requests(x%asked(q)))
-            do c = 1, coordinates_of(request%kind)
+            do c = 1, x%columns(q)
                associate (e => x%found(:, c, 0, q))
                   if (.not. all(e%exists .and. e%has_bound)) cycle
-                  stroke(c, 0) = number_text(e(greatest)%value - e(least)%value, sum(e%error), is_angle(m, &
-                     request, c), 0)
-                  times = stroke_times(x, m, q, c)
+                  stroke(c, 0) = number_text(e(greatest)%value - e(least)%value, sum(e%error), &
+                     x%is_angle(c, q), 0)
+                  times = stroke_times(x, q, c)
                   if (any(times <= 0.0_wp)) cycle
                   error = sum(e%t_error)
                end associate
@@ -146,10 +146,10 @@ contains
 
          line = ' '//phrase(say_dwell, m%polish)//'  '//column_name(i, dwell%column)//'  ' &
             //extreme_words(dwell%which)//' +- ' &
-            //number_text(dwell%distance, 0.0_wp, is_angle(m, m%requests(i), dwell%column), 0) &
+            //number_text(dwell%distance, 0.0_wp, x%is_angle(dwell%column, q), 0) &
             //'   T = '//time_text(l, dwell%from, dwell%error(1))//' .. '//time_text(l, dwell%to, dwell%error(2))
-         if (drive > 0) line = line//'   '//trim(subject_name(m, driven_kinds(m%drives(drive)%kind), &
-            m%drives(drive)%subject))//' = '//drive_text(l%drives(drive), dwell%from, dwell%error(1))//' .. ' &
+         if (drive > 0) line = line//'   '//driven_name//' = ' &
+            //drive_text(l%drives(drive), dwell%from, dwell%error(1))//' .. ' &
             //drive_text(l%drives(drive), dwell%to, dwell%error(2))
          table%masked = table%masked .or. index(line, unknown_digit) > 0
          call put(o, line)
@@ -182,7 +182,7 @@ contains
 
          if (m%requests(i)%kind == request_pair) then
             name = phrase(say_slide, m%polish)
-            if (is_angle(m, m%requests(i), c)) name = phrase(say_angle, m%polish)
+            if (x%is_angle(c, q)) name = phrase(say_angle, m%polish)
          else
             name = 'X'
             if (c == 2) name = 'Y'
@@ -196,17 +196,14 @@ contains
          character(*), intent(in) :: label
          character(numeral_length), intent(in) :: fields(3, 0:2)
          character(row_length) :: line
-         integer :: c, k, i
+         integer :: c, k
 
          line = '  '//label
          if (len(label) > 7) line = ' '//label
          do k = 0, 2
-            do c = 1, 3
-               if (.not. has_column(c, request%kind)) cycle
-               i = c
-               if (request%kind == request_pair) i = merge(1, 2, (c == 3) .eqv. is_angle(m, request, 1))
-               associate (first => name_length + numeral_length*(3*k + c - 1))
-                  line(first + 1:first + numeral_length) = adjustr(fields(i, k))
+            do c = 1, x%columns(q)
+               associate (first => name_length + numeral_length*(3*k + column_of(m, request, c) - 1))
+                  line(first + 1:first + numeral_length) = adjustr(fields(c, k))
                end associate
             end do
          end do

@@ -13,7 +13,8 @@ module nodes
    use set_analysis, only: set_analysis_t, rows_at
    implicit none
    private
-   public :: node_t, node_at, is_known, times_between, beside_joint, order_along, one_sided_t, limits_of, places, places_beside
+   public :: node_t, node_at, is_known, times_between, beside_joint, order_along, one_sided_t, limits_of, places, &
+      places_beside
 
    !> Just beside a joint, in parts of the time or of the run: `drives` takes what is nearer as the joint itself.
    real(wp), parameter :: joint_part = 65536.0_wp*epsilon(1.0_wp)
@@ -64,8 +65,11 @@ contains
       integer :: i
       logical :: is_found
 
-      node = empty_node(size(asked))
       node%t = t
+      associate (n => size(asked))
+         allocate (node%known(n), source=-1)
+         allocate (node%value(3, 0:2, n), node%error(3, 0:2, n), source=0.0_wp)
+      end associate
       these = pack([(i, i=1, size(asked))], s%now%parts%part(asked) == c)
       allocate (rows(size(these)), error(3, 0:2, size(these)))
       call rows_at(s, c, asked(these), t, rows, is_found, always, error, node%growth)
@@ -85,14 +89,6 @@ contains
       is_known = all(node%known(rows) == 2) .and. all(node%error(:, :, rows) < nothing_known)
    end function is_known
 
-   !> A node of `n` rows of which nothing is known yet.
-   pure type(node_t) function empty_node(n) result(node)
-      integer, intent(in) :: n
-
-      allocate (node%known(n), source=-1)
-      allocate (node%value(3, 0:2, n), node%error(3, 0:2, n), source=0.0_wp)
-   end function empty_node
-
    !> The times of the nodes between instants number `k` - 1 and `k`, in their order: at each of the `joints` of the
    !> drives' laws and on either side of it.
    pure function times_between(joints, m, k) result(times)
@@ -108,7 +104,7 @@ contains
       allocate (times(0))
       do i = 1, size(joints)
          associate (t => joints(i))
-            beside = sign(beside_joint(m, t), h)
+            beside = sign(beside_joint(m%t1 - m%t0, t), h)
             times = [times, t - beside, t, t + beside]
          end associate
       end do
@@ -116,16 +112,15 @@ contains
       times = times(order_along(times, h))
    end function times_between
 
-   !> How far from a joint at the time `t` are the nodes just beside it.
-   pure real(wp) function beside_joint(m, t)
-      type(mechanism_t), intent(in) :: m
-      real(wp), intent(in) :: t
+   !> How far from a joint at the time `t` are the nodes just beside it, in a run of the time `run`.
+   pure real(wp) function beside_joint(run, t)
+      real(wp), intent(in) :: run, t
 
-      beside_joint = joint_part*max(abs(t), abs(m%t1 - m%t0))
+      beside_joint = joint_part*max(abs(t), abs(run))
    end function beside_joint
 
-   !> The numbers of the `times` in their order, upwards where `h` > 0, otherwise downwards; those that are in order stay
-   !> so, and take no longer than to be looked at.
+   !> The numbers of the `times` in their order, upwards where `h` > 0, otherwise downwards. What is in order already is
+   !> only looked at.
    pure function order_along(times, h) result(order)
       real(wp), intent(in) :: times(:), h
       integer :: order(size(times)), i, k

@@ -2,7 +2,7 @@
 !> squares is greatest, the share of each number in the sum of squares, the largest first.
 module tolerance_shares
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_pair, request_pole, pair_prismatic
+   use mechanism, only: mechanism_t, request_pole
    use points, only: is_due, coordinates_of
    use names, only: subject_name
    use set_motion, only: set_motion_t, spread_t, spread_in_set
@@ -11,6 +11,7 @@ module tolerance_shares
    use listing_tables, only: time_text
    use text_output, only: output_t, put
    use numerals, only: fixed, whole
+   use extremes, only: column_of
    use phrases
    implicit none
    private
@@ -133,9 +134,8 @@ contains
       real(wp) :: size_of
 
       if (.not. allocated(share%s)) return
-      column = c
       associate (request => m%requests(i))
-         if (request%kind == request_pair) column = merge(1, 3, m%pairs(request%subject)%kind == pair_prismatic)
+         column = column_of(m, request, c)
          what = dimension_of(column)
          size_of = merge(l%angle, 1.0_wp, what == 2)
          d = l%own(l%part(i))

@@ -2,7 +2,7 @@
 module variant_rows
    use kinds, only: wp, label_length
    use planar, only: in_degrees
-   use mechanism, only: mechanism_t, request_pair, pair_prismatic, driven_kinds, request_link
+   use mechanism, only: mechanism_t, driven_kinds, request_link
    use motion, only: mark_none, diagnostic_t, diagnostic_limit
    use drives, only: new_law, drive_motion
    use names, only: drive_name, subject_name
@@ -13,7 +13,7 @@ module variant_rows
    use listing_layout, only: layout_t, digits_t, dimension_of, column_text, choose_digits, angle_unit
    use csv, only: marks
    use table, only: table_t, new_table, dotted
-   use extremes, only: extreme_t, least, greatest, outward, requests_of
+   use extremes, only: extreme_t, least, greatest, outward, extreme_words, requests_of, column_of
    use ranges, only: range_t, low, high
    use answers, only: answers_t
    use phrases
@@ -75,45 +75,36 @@ contains
       type(layout_t), intent(in) :: l
       type(variation_t), intent(in) :: v
       type(summary_t) :: s
-      type(summary_column_t) :: blank
       integer :: i
 
       s%numbers = size(v%numbers)
       allocate (s%columns(0))
-      call add_column(summary_column_t('variant', .true., heads_of(phrase(say_variant, m%polish), '')))
+      call add_headed('variant', phrase(say_variant, m%polish), '')
       do i = 1, size(v%numbers)
          call add_column(varied_column(v%numbers(i)))
       end do
-      blank%printed = .true.
-      call add_named('solved', say_instants, say_are_solved)
-      call add_named('flagged', say_instants, say_flagged)
-      blank%unit = m%time_unit
-      blank%decimals = l%time_decimals
-      blank%power = l%time_power
-      call add_named('flag.t', say_first_flag, say_at_time)
+      call add_headed('solved', phrase(say_instants, m%polish), phrase(say_are_solved, m%polish))
+      call add_headed('flagged', phrase(say_instants, m%polish), phrase(say_flagged, m%polish))
+      call add_column(summary_column_t('flag.t', .true., heads_of(phrase(say_first_flag, m%polish), &
+         phrase(say_at_time, m%polish)), m%time_unit, decimals=l%time_decimals, power=l%time_power))
       call add_drive(min(1, size(m%drives)), 'flag', heads_of('', ''))
       call add_column(summary_column_t('flag.mark'))
       call add_column(summary_column_t('limit.t'))
       call add_column(summary_column_t('limit.drive'))
       call add_column(summary_column_t('limit.value'))
       if (m%ranges) call add_ranges()
-      if (m%assemblies) call add_column(summary_column_t('assemblies', .true., heads_of(phrase(say_assemblies, &
-         m%polish), '')))
-      if (m%proves) call add_column(summary_column_t('unproved', .true., heads_of(phrase(say_instants, m%polish), &
-         phrase(say_not_proved, m%polish))))
+      if (m%assemblies) call add_headed('assemblies', phrase(say_assemblies, m%polish), '')
+      if (m%proves) call add_headed('unproved', phrase(say_instants, m%polish), phrase(say_not_proved, m%polish))
       call add_extremes()
 
    contains
 
-      !> Adds a column of the listing.
-      subroutine add_named(name, first, second)
-         character(*), intent(in) :: name
-         type(phrase_t), intent(in) :: first, second
+      !> Adds a column of counts, with two lines over it in the listing.
+      subroutine add_headed(name, first, second)
+         character(*), intent(in) :: name, first, second
 
-         blank%name = name
-         blank%heads = heads_of(phrase(first, m%polish), phrase(second, m%polish))
-         call add_column(blank)
-      end subroutine add_named
+         call add_column(summary_column_t(name, .true., heads_of(first, second)))
+      end subroutine add_headed
 
       !> Two lines over a column. (A constructor of character expressions has wrong bytes by gfortran 12.)
       pure function heads_of(first, second) result(heads)
@@ -175,7 +166,7 @@ contains
          type(summary_column_t) :: c
          integer, allocatable :: requests(:)
          integer :: i, which
-         character(3), parameter :: words(least:greatest) = ['MIN', 'MAX'], endings(least:greatest) = ['min', 'max']
+         character(3), parameter :: endings(least:greatest) = ['min', 'max']
 
          requests = requests_of(m)
          asked = m
@@ -193,10 +184,9 @@ contains
          do i = 1, size(s%extremes%columns)
             associate (column => s%extremes%columns(i))
                do which = least, greatest
-                  c = extreme_column(asked%requests(column%request)%subject, requests(column%request), &
-                     column%coordinate, column%order, column%angular)
+                  c = extreme_column(requests(column%request), column%coordinate, column%order, column%angular)
                   c%name = trim(column%name)//'.'//endings(which)
-                  c%heads(2) = trim(c%heads(2))//' '//words(which)
+                  c%heads(2) = trim(c%heads(2))//' '//extreme_words(which)
                   call add_column(c)
                   call add_column(summary_column_t(trim(c%name)//'.t'))
                   call add_drive(s%drives(column%request), trim(c%name), heads_of('', ''))
@@ -205,19 +195,18 @@ contains
          end do
       end subroutine add_extremes
 
-      !> The column of coordinate `coordinate`, derivative `k`, of request number `i` of `m`, which is about `subject`.
-      function extreme_column(subject, i, coordinate, k, angular) result(c)
-         integer, intent(in) :: subject, i, coordinate, k
+      !> The column of coordinate `coordinate`, derivative `k`, of request number `i` of `m`.
+      function extreme_column(i, coordinate, k, angular) result(c)
+         integer, intent(in) :: i, coordinate, k
          logical, intent(in) :: angular
          type(summary_column_t) :: c
          type(digits_t) :: d
          integer :: place
 
-         place = coordinate
+         place = column_of(m, m%requests(i), coordinate)
          associate (kind => m%requests(i)%kind)
-            if (kind == request_pair) place = merge(1, 3, m%pairs(subject)%kind == pair_prismatic)
             c%printed = .true.
-            c%heads = heads_of(subject_name(m, kind, subject), column_text(l%names(kind), place, k))
+            c%heads = heads_of(subject_name(m, kind, m%requests(i)%subject), column_text(l%names(kind), place, k))
             c%unit = column_text(l%units(1, kind), place, k)//column_text(l%units(2, kind), place, k)
          end associate
          c%angular = angular
@@ -235,8 +224,8 @@ contains
          do d = 1, size(m%drives)
             call add_drive(d, 'range.min', heads_of(drive_name(m, m%drives(d)), word//' MIN'))
             call add_drive(d, 'range.max', heads_of(drive_name(m, m%drives(d)), word//' MAX'))
-            call add_column(summary_column_t('range.turns.'//dotted(drive_name(m, m%drives(d))), .true., &
-               heads_of(drive_name(m, m%drives(d)), phrase(say_whole_turns, m%polish))))
+            call add_headed('range.turns.'//dotted(drive_name(m, m%drives(d))), drive_name(m, m%drives(d)), &
+               phrase(say_whole_turns, m%polish))
          end do
       end subroutine add_ranges
    end function new_summary

@@ -276,7 +276,7 @@ contains
          if (k > r%counted) call note_flag(r%row, r%s)
          r%counted = max(k, r%counted)
          if (starts .and. k == first) then
-            call note_start(r%asked%extremes, r%m, r%s)
+            call note_start(r%asked%extremes, r%s)
          else
             call take_instant(r%asked, r%m, r%s, k, .true.)
          end if
