@@ -158,13 +158,7 @@ contains
       logical :: is_joint(size(m%pairs))
       integer :: i, digits
 
-      do i = 1, size(m%links)
-         position(:, i) = one%position(:, i) + [plane_origin(m), 0.0_wp]
-         ! Whatever rounding makes of half a turn, it is one forward.
-         associate (estimate => m%links(i)%position(3))
-            position(3, i) = estimate + without_turns(one%position(3, i) - estimate - small_angle) + small_angle
-         end associate
-      end do
+      position = deck_position(m, one)
       largest = max(characteristic_length(m), maxval(abs(position(:2, :))))
       ! Of all points only the two of a JOINT card have the same name.
       is_joint = m%points(m%pairs%point_i)%name == m%points(m%pairs%point_j)%name
@@ -192,6 +186,22 @@ contains
       end do
    end subroutine put_cards
 
+   !> (3, links) Assembly `one` as cards of `m` have it: angles within half a turn of the estimate.
+   pure function deck_position(m, one) result(position)
+      type(mechanism_t), intent(in) :: m
+      type(assembly_t), intent(in) :: one
+      real(wp) :: position(3, size(m%links))
+      integer :: i
+
+      do i = 1, size(m%links)
+         position(:, i) = one%position(:, i) + [plane_origin(m), 0.0_wp]
+         ! Whatever rounding makes of half a turn, it is one forward.
+         associate (estimate => m%links(i)%position(3))
+            position(3, i) = estimate + without_turns(one%position(3, i) - estimate - small_angle) + small_angle
+         end associate
+      end do
+   end function deck_position
+
    !> So many digits a number as large as `largest` has that has `digits` where it is no larger than `usual`: as many as
    !> a card has columns for at most.
    pure integer function digits_of(digits, largest, usual)
@@ -205,11 +215,9 @@ contains
    pure character(1) function sign_text(block, sign_of) result(text)
       type(assembly_block_t), intent(in) :: block
       integer, intent(in) :: sign_of
+      character(1), parameter :: signs(-1:1) = ['-', '0', '+']
 
-      text = '0'
-      if (sign_of > 0) text = '+'
-      if (sign_of < 0) text = '-'
-      if (block%is_redundant) text = '.'
+      text = merge('.', signs(sign_of), block%is_redundant)
    end function sign_text
 
    !> `x` in the columns of a card: so many `digits` of `largest`, and none of rounding.
@@ -226,8 +234,7 @@ contains
       rounded = anint(x/unit)
       if (abs(rounded) <= 0.0_wp) rounded = 0.0_wp
       form = '(es16.8)'
-      if (power >= 0 .and. power < digits) write (form, '(a, i0, a)') '(f16.', digits - 1 - power, ')'
-      if (power < 0 .and. digits - 1 - power <= 13) write (form, '(a, i0, a)') '(f16.', digits - 1 - power, ')'
+      if (power < digits .and. digits - 1 - power <= 13) write (form, '(a, i0, a)') '(f16.', digits - 1 - power, ')'
       write (text, form) rounded*unit
    end function number_text
 end module assembly_table

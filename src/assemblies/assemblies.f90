@@ -33,10 +33,9 @@ module assemblies
 
    !> An assembly.
    type :: assembly_t
-      real(wp), allocatable :: value(:)         !< (0:unknowns) of the blocks, see `block_state`
       real(wp), allocatable :: position(:, :)   !< (3, links) x, y in the deck's unit from `plane_origin`, phi in rad
       integer, allocatable :: sign_of(:)        !< (blocks) of the determinant; 0: singular
-      logical :: is_proved = .false.            !< near these values there is exactly one solution, see `position_proof`
+      logical :: is_proved = .false.            !< near it there is exactly one solution, see `position_proof`
       real(wp) :: distance = 0.0_wp             !< from the deck's estimate, see `distance_from`
    end type assembly_t
 
@@ -45,8 +44,7 @@ module assemblies
    type :: assembly_block_t
       integer :: block = 0                      !< its number
       integer, allocatable :: links(:)          !< that its unknowns turn or move
-      integer :: unknowns = 0, solved = 0       !< of the block; how many times it was solved
-      integer :: group = 0                      !< unknowns of a group: see max_group of `block_assemblies`
+      integer :: unknowns = 0                   !< of the block
       integer :: paths = 0, finite = 0, infinite = 0, failed = 0, partial = 0, real = 0
       logical :: is_wide = .false.              !< too wide: not solved
       logical :: is_redundant = .false.         !< more equations than unknowns: no determinant
@@ -212,8 +210,6 @@ contains
       do k = 1, size(a%blocks)
          associate (one => a%blocks(k))
             if (one%block /= i) cycle
-            one%solved = one%solved + 1
-            one%group = max(one%group, found%group)
             one%paths = one%paths + found%paths
             one%finite = one%finite + found%finite
             one%infinite = one%infinite + found%infinite
@@ -240,8 +236,6 @@ contains
 
       q = new_motion(size(e%estimate, 2))
       call move_links(e%whole, e%state, e%length, q, finite)
-      allocate (one%value(0:e%blocks%unknowns))
-      one%value(:) = e%state%u%value
       one%position = q%position
       one%sign_of = [(found(i)%sign_of(chosen(i)), i=1, size(found))]
       one%is_proved = is_proved
