@@ -54,7 +54,7 @@ module circuit_branches
       integer :: drive = 0                     !< the number of the free one
       integer :: part = 1                      !< the number of its independent mechanism
       logical :: is_held = .false.             !< its other drives let nothing move
-      logical :: is_complete = .true.          !< all assemblies were known wherever they were asked for
+      logical :: is_complete = .true.          !< all assemblies of the first instant were known
       type(curve_t) :: curve
       type(circuit_t), allocatable :: list(:)
       type(branch_t), allocatable :: branches(:)

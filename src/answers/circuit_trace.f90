@@ -9,7 +9,7 @@ module circuit_trace
    use pose, only: add_to_links
    implicit none
    private
-   public :: circuit_t, change_point_t, trace, least_step, find_root, of_slope, of_value, end_closed, end_far, end_lost
+   public :: circuit_t, change_point_t, trace, least_step, find_root, of_value, end_closed, end_far, end_lost
 
    !> A certified step below this means a change point: other positions are so near that rounding tells them apart no
    !> better.

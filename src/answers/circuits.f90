@@ -62,6 +62,7 @@ contains
       else
          call find_assemblies(m, start%t, all_of_them)
       end if
+      found%is_complete = all_of_them%is_known
       call add_through(found, all_of_them)
       call search_whole_range(m, start%t, found, all_of_them)
       do i = 1, size(found%list)
@@ -75,7 +76,7 @@ contains
       call name_limits(m, start%t, found)
    end subroutine find_circuits
 
-   !> Adds the circuits through assemblies. Some may be missing where not all assemblies are known.
+   !> Adds the circuits through assemblies.
    subroutine add_through(found, all_of_them)
       type(circuits_t), intent(inout) :: found
       type(assemblies_t), intent(in) :: all_of_them
@@ -83,7 +84,6 @@ contains
       integer :: k
       logical :: ok
 
-      found%is_complete = found%is_complete .and. all_of_them%is_known
       do k = 1, size(all_of_them%list)
          if (signal_received() > 0) return
          call start_point(found%curve, all_of_them%list(k)%position, p, ok)
@@ -128,10 +128,8 @@ contains
       integer, intent(in) :: most
       type(circuits_t), intent(inout) :: found
       type(assemblies_t) :: more
-      logical :: complete
       integer :: k, n
 
-      complete = found%is_complete
       n = most
       k = 0
       do while (k < n .and. signal_received() == 0)
@@ -141,8 +139,6 @@ contains
          if (k == 0) n = min(most, max_paths/max(1, sum(more%blocks%paths)))
          k = k + 1
       end do
-      ! Searched beyond the first instant: what is found is more than was promised.
-      found%is_complete = complete
    end subroutine search
 
    !> The drives of `m` that are set free, each alone: those that move; if none does, all.

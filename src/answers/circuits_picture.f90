@@ -7,6 +7,7 @@ module circuits_picture
    use names, only: drive_name, subject_name
    use numerals, only: whole
    use set_analysis, only: set_analysis_t
+   use listing_layout, only: angle_unit
    use circuit_branches, only: circuits_t
    use circuit_chart, only: chart_t, axis_t, make_charts
    use picture_parts, only: color_of
@@ -79,8 +80,7 @@ contains
       logical, intent(in) :: is_angle
       character(:), allocatable :: text
 
-      text = trim(m%length_unit)
-      if (is_angle) text = trim(merge('DEG', 'RAD', m%degrees))
+      text = trim(merge(angle_unit(m), m%length_unit, is_angle))
    end function unit_of
 
    !> The name of the number of `chart`, with its unit: PHI ROCKER, DEG

@@ -8,6 +8,7 @@ module circuits_table
    use circuit_trace, only: circuit_t, end_closed, end_far, end_lost
    use circuit_branches, only: circuits_t, branch_t, no_sign, turns_of
    use circuits, only: find_circuits, free_drives
+   use ranges, only: side_words
    use names, only: drive_name
    use text_output, only: output_t, put
    use numerals, only: whole
@@ -145,7 +146,6 @@ contains
       type(circuits_t), intent(in) :: found
       type(branch_t), intent(in) :: b
       character(:), allocatable :: text
-      character(3), parameter :: side_words(2) = ['MIN', 'MAX']
       integer :: side
 
       associate (circuit => found%list(b%circuit))

@@ -20,7 +20,7 @@ module ranges
    use phrases
    implicit none
    private
-   public :: range_t, find_range, find_ranges, is_lost, put_ranges, held_at, low, high
+   public :: range_t, find_range, find_ranges, is_lost, put_ranges, held_at, low, high, side_words
 
    !> Instants along the drive, in rad or characteristic lengths, and how far it is followed each way.
    real(wp), parameter :: step_of_angle = pi/36.0_wp, step_of_length = 0.05_wp
@@ -33,6 +33,7 @@ module ranges
    real(wp), parameter :: closes_to = max(1.0e-7_wp, 1000.0_wp*epsilon(1.0_wp))
    !> The ends of a range.
    integer, parameter :: low = 1, high = 2
+   character(3), parameter :: side_words(low:high) = ['MIN', 'MAX']
 
    !> The range of a drive. An end without a limit is the last value to which the drive was followed.
    type :: range_t
@@ -72,7 +73,7 @@ contains
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(range_t), intent(in) :: list(:)
-      character(3), parameter :: side_words(2) = ['MIN', 'MAX']
+      character(:), allocatable :: words
       integer :: i, side
 
       call put(o, '')
@@ -85,12 +86,12 @@ contains
                call put(o, '   '//phrase(say_all, m%polish)//' '//whole(r%turns))
             else
                do side = low, high
+                  words = limit_words(m, r%limit(side))
+                  if (is_lost(r, side)) words = words//'   '//phrase(say_close, m%polish)
                   if (r%has_limit(side)) then
-                     call put_folded(o, '   '//side_words(side)//'  ', limit_words(m, r%limit(side)) &
-                        //reason(r%limit(side), m%polish), repeat(' ', 8))
+                     call put_folded(o, '   '//side_words(side)//'  ', words, repeat(' ', 8))
                   else
-                     call put(o, '   '//side_words(side)//'  '//phrase(say_no_limit, m%polish)//' ' &
-                        //limit_words(m, r%limit(side)))
+                     call put(o, '   '//side_words(side)//'  '//phrase(say_no_limit, m%polish)//' '//words)
                   end if
                end do
             end if
@@ -98,18 +99,6 @@ contains
          end associate
       end do
    end subroutine put_ranges
-
-   !> Why a `limit` has no links, or ''.
-   pure function reason(limit, polish) result(text)
-      type(diagnostic_t), intent(in) :: limit
-      logical, intent(in) :: polish
-      character(:), allocatable :: text
-
-      text = ''
-      if (limit%links(1) > 0) return
-      text = phrase(say_close, polish)
-      text = '   '//text
-   end function reason
 
    !> The range of drive number `drive` of `m`, one independent mechanism at the motion `start` of its first instant.
    !> `limits_only`: where no limit is told, the end is not looked for closely, nor the other one: both take long.
