@@ -8,7 +8,9 @@
 module singular_place
    use kinds, only: wp
    use blocks, only: blocks_t
-   use block_state, only: state_t, set_values, values_of
+   use block_state, only: state_t, set_values, values_of, find_known_parts
+   use block_equations, only: right_hand_side
+   use block_sizes, only: drive_speed, driven_angle
    use block_rank, only: values_t, decomposed, residual_of, gauss_newton_step
    implicit none
    private
@@ -17,8 +19,8 @@ module singular_place
    !> The step of the second difference, and the largest distance of the place, over the root of that.
    real(wp), parameter :: trial = max(1.0e-4_wp, sqrt(sqrt(epsilon(1.0_wp))))
    real(wp), parameter :: furthest = 64.0_wp*sqrt(epsilon(1.0_wp))
-   !> What the equations may leave open, of the largest value or of a sum of lengths, which counts as so many: less is
-   !> nothing but rounding, more would be no position.
+   !> What the equations may leave open, of the largest value, of a sum of lengths, which counts as so many, or of what
+   !> drives and earlier blocks have rounded: less is nothing but rounding, more would be no position.
    real(wp), parameter :: closed = 1.5_wp*epsilon(1.0_wp), near = 12.0_wp*epsilon(1.0_wp), sum_size = 3.0_wp
    !> Part of the Lipschitz constant below which the second derivative counts as zero, as it is but for the rounding of
    !> the difference along a motion with the drives held.
@@ -39,8 +41,9 @@ contains
 
       if (b%list(i)%shape%rows > max_rows .or. size(x) == 0) return
       x = values_of(b, i, s)
-      level = max(sum_size, maxval(abs(x)), b%list(i)%coarse)
+      call find_known_parts(b, i, s)
       v = decomposed(b, i, s)
+      level = max(sum_size, maxval(abs(x)), b%list(i)%coarse, size_of_driven())
       q = curvature()
       call set_values(b, i, x, s)
       if (v%rank < v%n - 1 .or. abs(q) <= least_curvature*b%list(i)%lipschitz) return
@@ -64,6 +67,19 @@ contains
          call gauss_newton_step(b, i, s, before)
          y = values_of(b, i, s)
       end subroutine go_to
+
+      !> The largest angle that drives and earlier blocks give, as far as a rounding of it counts along w: at a dead
+      !> point in full, at a change point, which such an angle leaves as it is to the first order, not at all.
+      real(wp) function size_of_driven()
+         real(wp) :: r(b%list(i)%shape%rows)
+
+         size_of_driven = 0.0_wp
+         associate (speed => drive_speed(b, i, s))
+            if (.not. speed > 0.0_wp) return
+            call right_hand_side(b, i, 1, s, r)
+            size_of_driven = driven_angle(b, i, s)*abs(dot_product(v%left(:, v%n), r))/speed
+         end associate
+      end function size_of_driven
 
       !> q of the module's head, by a second difference of the equations.
       real(wp) function curvature()

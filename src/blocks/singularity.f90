@@ -6,21 +6,20 @@
 module singularity
    use kinds, only: wp
    use motion, only: singular_unclear, singular_change, singular_dead
-   use blocks, only: blocks_t, block_loop_t, loop_projection, loop_angles, largest_known
-   use block_state, only: state_t, unknown_t, find_known_parts
+   use blocks, only: blocks_t, largest_known
+   use block_state, only: state_t, find_known_parts
    use block_equations, only: right_hand_side
+   use block_sizes, only: drive_speed
    use block_rank, only: values_t, decomposed, moving_unknowns
    use block_engine, only: block_engine_t
    implicit none
    private
-   public :: judge_position, block_singularity, has_two_roots, drive_speed
+   public :: judge_position, block_singularity, has_two_roots
 
    !> A part of b along w, over the speeds that enter it, up to which the equations agree; likewise the coefficients
    !> above and their discriminant, up to which they are zero. A singular position is known to the root of the rounding,
    !> and so is w; at a dead point that part is of order 1: the mean of the exponents.
    real(wp), parameter :: agreement = epsilon(1.0_wp)**0.25_wp
-   !> A drive whose speed takes it no further than this before it turns, in rad or lengths, is at rest.
-   real(wp), parameter :: standstill = 64.0_wp*epsilon(1.0_wp)
    !> Of larger blocks it is not asked: the twenty decompositions take a second for these.
    integer, parameter :: max_rows = 300
 
@@ -129,63 +128,4 @@ contains
       largest = maxval(abs(c))
       has_two_roots = largest > agreement*scale .and. c(1)**2 - 4.0_wp*c(0)*c(2) > agreement*largest**2
    end function has_two_roots
-
-   !> The largest speed, in lengths of its loop or rad by time, that drives and earlier blocks give to block `i`.
-   pure real(wp) function drive_speed(b, i, s) result(speed)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      type(state_t), intent(in) :: s
-      integer :: k, m
-
-      speed = 0.0_wp
-      do k = b%list(i)%first_row, b%list(i)%last_row
-         associate (d => b%rows(k)%drive)
-            speed = max(speed, speed_of(s%drive_value(1, d), s%drive_value(2, d)))
-         end associate
-      end do
-      do m = b%list(i)%first_loop, b%list(i)%last_loop
-         speed = max(speed, loop_speed(b, b%loops(m), s))
-      end do
-   end function drive_speed
-
-   !> The largest speed that earlier blocks give to loop `g`.
-   pure real(wp) function loop_speed(b, g, s) result(speed)
-      type(blocks_t), intent(in) :: b
-      type(block_loop_t), intent(in) :: g
-      type(state_t), intent(in) :: s
-      integer :: k
-
-      speed = 0.0_wp
-      do k = g%first_vector, g%first_own - 1
-         associate (d => b%body_vectors(k))
-            speed = max(speed, hypot(d%x, d%y)*rate_of(s%u(d%orientation)))
-         end associate
-      end do
-      do k = g%first_slide, g%last_slide
-         associate (slide => b%slides(k), u => s%u(b%slides(k)%unknown))
-            if (slide%column == 0) speed = max(speed, rate_of(u))
-            if (slide%orientation_column == 0) speed = max(speed, abs(u%value)*rate_of(s%u(slide%orientation)))
-         end associate
-      end do
-      if (g%kind == loop_projection .or. g%kind == loop_angles) then
-         if (g%orientation_column == 0) speed = max(speed, rate_of(s%u(g%orientation)))
-      end if
-      if (g%kind == loop_angles .and. g%less_column == 0) speed = max(speed, rate_of(s%u(g%less)))
-   end function loop_speed
-
-   !> The speed of an unknown of an earlier block.
-   pure real(wp) function rate_of(u)
-      type(unknown_t), intent(in) :: u
-
-      rate_of = speed_of(u%rate, u%acceleration)
-   end function rate_of
-
-   !> The amount of `rate`; 0 at rest, and where rounding alone tells it from the turning point of a motion with this
-   !> `acceleration`: it has rate**2/(2 acceleration) to go to that.
-   pure real(wp) function speed_of(rate, acceleration) result(speed)
-      real(wp), intent(in) :: rate, acceleration
-
-      speed = 0.0_wp
-      if (rate**2 > standstill*abs(acceleration)) speed = abs(rate)
-   end function speed_of
 end module singularity

@@ -117,6 +117,8 @@ far_end_guessed() { slider 20.0 -10.0 3.5; slide B 4.0 -0.25; }
 far_end_reached() { slider 40.0 -10.0 3.5; slide B 3.7 0.3; }
 far_end_of_a_short_crank() { slider 20.0 -10.0 3.0 0.001; slide B 3.001 -0.0001; }
 parallelogram_guessed() { four_bar 2.0 4.0 2.0 4.0 180.0 15.0 210.0; angle CR 180.0 40.0; }
+# And after a hundred turns, whose rounding leaves the equations open by more than theirs.
+rocker_after_turns() { four_bar 1.5 3.5 3.0 4.0 60.0 20.0 36450.0; angle RO 36450.0 -10.0; }
 rocker_guessed() { four_bar 1.5 3.5 3.0 4.0 60.0 20.0 90.0; angle RO 90.0 -10.0; }
 # angles K WORDS NAME: the angles of its three links at instant K, in degrees
 angles() {
@@ -130,4 +132,5 @@ angles 1 '0.000000 0.000000 0.000000 ' far_end_reached
 angles 0 '0.000000 0.000000 0.000000 ' far_end_of_a_short_crank
 angles 0 '180.000000 0.000000 180.000000 ' parallelogram_guessed
 angles 0 '36.869898 36.869898 90.000000 ' rocker_guessed
+angles 0 '36.869898 36.869898 36450.00000 ' rocker_after_turns
 conclude
