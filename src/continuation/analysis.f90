@@ -4,7 +4,8 @@ module analysis
    use mechanism, only: mechanism_t
    use structure, only: structure_t
    use motion, only: motion_t, forget_links, known_of, mark_none, mark_not_converged, mark_singular, mark_overflow, &
-      mark_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_long, diagnostic_close
+      mark_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_long, &
+      diagnostic_close, diagnostic_begins
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, branch_none, branch_first, branch_same, &
       branch_crossed
    use convergence, only: convergence_t, closure_error_t, ended_inconsistent, ended_unsought
@@ -229,12 +230,13 @@ contains
       call count_in(a%certificate_counts, a%branch, passed)
    end subroutine judge_branch
 
-   !> What there is to say of the first motion that was found.
+   !> What there is to say of the first position that was found, and of the first that a motion goes on from.
    subroutine diagnose_start(a, found)
       type(analysis_t), intent(inout) :: a
       type(motion_t), intent(inout) :: found
       type(diagnostic_t), allocatable :: list(:)
 
+      if (a%has_begun) call add_diagnostics([diagnostic_t(kind=diagnostic_begins)], found)
       a%has_begun = .true.
       select type (e => a%engine)
       class is (block_engine_t)

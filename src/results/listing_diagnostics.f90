@@ -124,6 +124,8 @@ contains
          text = links(m, r)//': '//phrase(say_off_by, m%polish)//' '//measure(m, r, '(es9.2)')
       case (diagnostic_second)
          text = links(m, r)//': '//phrase(say_second, m%polish)
+      case (diagnostic_begins)
+         text = phrase(say_begins, m%polish)
       case (diagnostic_redundant)
          text = phrase(say_redundant, m%polish)//': '//owner(m, r)
          if (r%equations > 1) text = phrase(say_redundant_many, m%polish)//': '//whole(r%equations)//' ' &

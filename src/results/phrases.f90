@@ -51,6 +51,8 @@ module phrases
       say_limit = phrase_t('LIMIT OF MOTION AT T =', 'KRES RUCHU W CHWILI T ='), &
       say_in_line = phrase_t('IN LINE', 'W JEDNEJ LINII'), &
       say_off_by = phrase_t('ESTIMATED ANGLE WAS OFF BY', 'KAT PRZYBLIZONY ODBIEGAL O'), &
+      say_begins = phrase_t('THE MOTION BEGINS HERE, AT THE ASSEMBLY NEAREST TO THE ESTIMATE', &
+         'RUCH ZACZYNA SIE TUTAJ, W MONTAZU NAJBLIZSZYM PRZYBLIZENIU'), &
       say_second = phrase_t('ANOTHER ASSEMBLY IS ABOUT AS NEAR', 'INNY MONTAZ JEST PODOBNIE BLISKI'), &
       say_redundant = phrase_t('REDUNDANT EQUATION', 'ROWNANIE NADLICZBOWE'), &
       say_closure_error = phrase_t('LARGEST GAP OF REDUNDANT EQUATIONS, OF THE SIZE:', &

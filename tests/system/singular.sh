@@ -119,6 +119,7 @@ far_end_of_a_short_crank() { slider 20.0 -10.0 3.0 0.001; slide B 3.001 -0.0001;
 parallelogram_guessed() { four_bar 2.0 4.0 2.0 4.0 180.0 15.0 210.0; angle CR 180.0 40.0; }
 # And after a hundred turns, whose rounding leaves the equations open by more than theirs.
 rocker_after_turns() { four_bar 1.5 3.5 3.0 4.0 60.0 20.0 36450.0; angle RO 36450.0 -10.0; }
+parallelogram_begun() { four_bar 2.0 4.0 2.0 4.0 10.0 0.0 10.0; angle CR 10.0 10.0; }
 rocker_guessed() { four_bar 1.5 3.5 3.0 4.0 60.0 20.0 90.0; angle RO 90.0 -10.0; }
 # angles K WORDS NAME: the angles of its three links at instant K, in degrees
 angles() {
@@ -133,4 +134,10 @@ angles 0 '0.000000 0.000000 0.000000 ' far_end_of_a_short_crank
 angles 0 '180.000000 0.000000 180.000000 ' parallelogram_guessed
 angles 0 '36.869898 36.869898 90.000000 ' rocker_guessed
 angles 0 '36.869898 36.869898 36450.00000 ' rocker_after_turns
+# The position at the start does not say how the motion goes on: the estimate does, and the listing says so, once.
+begins=' --- THE MOTION BEGINS HERE, AT THE ASSEMBLY NEAREST TO THE ESTIMATE'
+angles 1 '220.000000 0.000000 220.000000 ' parallelogram_guessed
+equal 'begins beside a change point' "$begins" "$(awk '/^ INSTANT 1/ { at = 1 } at && /---/' "$w/out")"
+angles 0 '10.000000 0.000000 10.000000 ' parallelogram_begun
+equal 'begins at once' '' "$(grep -e "$begins" "$w/out")"
 conclude
