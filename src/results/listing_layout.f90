@@ -339,22 +339,32 @@ contains
       if (power /= 0) text = '10**'//whole(power)//' '//unit
    end function unit_of
 
-   !> The words `text` behind `mark` in one line or, where names are many and long, in several: divided at three blanks,
-   !> or at one where there are no three. Lines after the first begin with `next`, or with `mark` as well.
+   !> The words `text` behind `mark` in one line or, where names are many and long, in several. Lines after the first
+   !> begin with `next`, or with `mark` as well.
    recursive subroutine put_folded(o, mark, text, next)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: mark, text
       character(*), intent(in), optional :: next
       integer :: last
 
-      associate (room => line_length - len(mark))
-         last = len(text)
-         if (last > room) last = index(text(:room + 1), '   ', back=.true.) - 1
-         if (last < 1) last = index(text(:room + 1), ' ', back=.true.) - 1
-      end associate
+      last = length_of_part(text, line_length - len(mark))
       call put(o, mark//text(:last))
       if (last == len(text)) return
       if (present(next)) call put_folded(o, next, trim(adjustl(text(last + 1:))))
       if (.not. present(next)) call put_folded(o, mark, trim(adjustl(text(last + 1:))))
    end subroutine put_folded
+
+   !> So many characters of `text` that there is `room` for: all, those before three blanks or, where there are none,
+   !> to a colon in the second half, or before a blank.
+   pure integer function length_of_part(text, room) result(length)
+      character(*), intent(in) :: text
+      integer, intent(in) :: room
+
+      length = len(text)
+      if (length <= room) return
+      length = index(text(:room + 1), '   ', back=.true.) - 1
+      if (length > 0) return
+      length = index(text(:room + 1), ': ', back=.true.)
+      if (length < room/2) length = index(text(:room + 1), ' ', back=.true.) - 1
+   end function length_of_part
 end module listing_layout
