@@ -120,11 +120,11 @@ contains
    end function new_layout
 
    !> The digits of the times of `m`: as many as other numbers have, and as many as show two digits of its shortest
-   !> step, if there is room for them. So instants that are not the same have other times.
+   !> step, or one, if there is room for them. So instants that are not the same have other times.
    pure subroutine choose_time_digits(m, decimals, power)
       type(mechanism_t), intent(in) :: m
       integer, intent(inout) :: decimals, power
-      integer :: before, room
+      integer :: before, room, needed
 
       associate (time => latest_time(m))
          if (.not. time > 0.0_wp) return
@@ -132,7 +132,8 @@ contains
          before = max(1, floor(log10(time)) - power + 1)
          ! Beside the point, and a blank before it; those before zero have a sign.
          room = numeral_length - 2 - before - merge(1, 0, min(m%t0, m%t1, minval(m%at)) < 0.0_wp)
-         decimals = max(decimals, min(room, power + 1 + ceiling(-log10(shortest_step(m)) - margin)))
+         needed = power + 1 + ceiling(-log10(shortest_step(m)) - margin)
+         if (needed <= room + 1) decimals = max(decimals, min(room, needed))
       end associate
    end subroutine choose_time_digits
 

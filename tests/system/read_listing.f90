@@ -122,9 +122,19 @@ contains
          call compare_number(row%word(i), cell(5 + i), row%power(i), row)
       end do
       if (row%spread /= '') return
-      if ((cell(15) == '') .eqv. any(row%word == 'NONE' .or. row%word == 'BRAK')) &
+      if (cell(15) == 'UNKNOWN') then
+         if (.not. any(has_no_digit(row%word))) call give_up('A NUMBER IS KNOWN: '//trim(line))
+      else if ((cell(15) == '') .eqv. any(row%word == 'NONE' .or. row%word == 'BRAK')) then
          call give_up('THE MARK DOES NOT FIT: '//trim(line))
+      end if
    end subroutine compare_row
+
+   !> All digits of the printed `word` are masked.
+   elemental logical function has_no_digit(word)
+      character(*), intent(in) :: word
+
+      has_no_digit = index(word, '?') > 0 .and. scan(word, '0123456789') == 0
+   end function has_no_digit
 
    !> The printed `word` against the `cell` of the CSV.
    subroutine compare_number(word, cell, power, row)
@@ -137,7 +147,7 @@ contains
 
       p = read_printed(trim(word))
       if (cell == '') then
-         if (.not. p%none) call give_up('PRINTED BUT NOT IN THE CSV: '//trim(word)//' OF '//shown(row))
+         if (.not. (p%none .or. has_no_digit(word))) call give_up('PRINTED BUT NOT IN THE CSV: '//trim(word)//' OF '//shown(row))
          return
       end if
       read (cell, *, iostat=status) x
