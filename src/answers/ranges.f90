@@ -214,8 +214,9 @@ contains
          if (begin < 0) then
             begin = k
             first = now
+            cycle
          end if
-         if (k == begin .or. mod(k - begin, steps_a_turn) /= 0) cycle
+         if (mod(k - begin, steps_a_turn) /= 0) cycle
          r%is_all = is_closed(d)
          r%turns = (k - begin)/steps_a_turn
          if (r%is_all) return

@@ -59,7 +59,7 @@ module block_engine
       type(history_t) :: history                        !< of the motion that is followed
       type(jacobian_t), allocatable :: followed(:)      !< (blocks) there
       real(wp), allocatable :: jacobian(:)              !< there, of the block with too many rows: (rows*n)
-      real(wp) :: t = 0.0_wp, change = 0.0_wp           !< of the motion found last; the largest of a predicted value
+      real(wp) :: t = 0.0_wp, change = 0.0_wp           !< of the motion found last; of a predicted value, at most
       type(state_t) :: state                            !< its values
       type(convergence_t) :: one                        !< how the block solved last ended
       type(jacobian_t), allocatable :: found(:)         !< (blocks)

@@ -8,13 +8,16 @@
 module singular_place
    use kinds, only: wp
    use blocks, only: blocks_t
-   use block_state, only: state_t, set_values, values_of, find_known_parts
+   use block_state, only: state_t, set_values, values_of
    use block_equations, only: right_hand_side
    use block_sizes, only: drive_speed, driven_angle
    use block_rank, only: values_t, decomposed, residual_of, gauss_newton_step
    implicit none
    private
    public :: settle
+
+   !> Of larger blocks it is not asked where they are singular, nor how: twenty decompositions take a second for these.
+   integer, parameter, public :: max_rows = 300
 
    !> The step of the second difference, and the largest distance of the place, over the root of that.
    real(wp), parameter :: trial = max(1.0e-4_wp, sqrt(sqrt(epsilon(1.0_wp))))
@@ -25,13 +28,11 @@ module singular_place
    !> Part of the Lipschitz constant below which the second derivative counts as zero, as it is but for the rounding of
    !> the difference along a motion with the drives held.
    real(wp), parameter :: least_curvature = 512.0_wp*epsilon(1.0_wp)/trial**2
-   !> Of larger blocks it is not asked: see `singularity`.
-   integer, parameter :: max_rows = 300
 
 contains
 
-   !> Moves block `i` from the singular position of `s` to the place where its Jacobian has no inverse, or to the root
-   !> of its equations beside that.
+   !> Moves block `i` from the singular position of `s`, where it has just been solved, to the place where its Jacobian
+   !> has no inverse, or to the root of its equations beside that.
    subroutine settle(b, i, s)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
@@ -41,7 +42,6 @@ contains
 
       if (b%list(i)%shape%rows > max_rows .or. size(x) == 0) return
       x = values_of(b, i, s)
-      call find_known_parts(b, i, s)
       v = decomposed(b, i, s)
       level = max(sum_size, maxval(abs(x)), b%list(i)%coarse, size_of_driven())
       q = curvature()

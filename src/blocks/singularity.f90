@@ -11,6 +11,7 @@ module singularity
    use block_equations, only: right_hand_side
    use block_sizes, only: drive_speed
    use block_rank, only: values_t, decomposed, moving_unknowns
+   use singular_place, only: max_rows
    use block_engine, only: block_engine_t
    implicit none
    private
@@ -20,8 +21,6 @@ module singularity
    !> above and their discriminant, up to which they are zero. A singular position is known to the root of the rounding,
    !> and so is w; at a dead point that part is of order 1: the mean of the exponents.
    real(wp), parameter :: agreement = epsilon(1.0_wp)**0.25_wp
-   !> Of larger blocks it is not asked: the twenty decompositions take a second for these.
-   integer, parameter :: max_rows = 300
 
 contains
 

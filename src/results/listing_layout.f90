@@ -129,7 +129,7 @@ contains
       associate (time => latest_time(m))
          if (.not. time > 0.0_wp) return
          call choose_digits(log10(time), decimals, power)
-         before = max(1, floor(log10(time)) - power + 1)
+         before = max(1, 1 + digits_after_first - decimals)
          ! Beside the point, and a blank before it; those before zero have a sign.
          room = numeral_length - 2 - before - merge(1, 0, min(m%t0, m%t1, minval(m%at)) < 0.0_wp)
          needed = power + 1 + ceiling(-log10(shortest_step(m)) - margin)

@@ -6,7 +6,7 @@ module set_motion
    use motion, only: motion_t, new_motion, mark_none, diagnostic_t
    use independent, only: part_t, parts_t, find_parts, mechanism_of
    use structure, only: findings_t
-   use points, only: row_t, find_row, has_number
+   use points, only: row_t, find_row
    use known_digits, only: has_known_digit
    use error_estimate, only: error_estimate_t, estimate_of, row_error
    use sensitivities, only: sensitivities_t, ground_sensitivities
@@ -146,7 +146,7 @@ contains
       end associate
    end function doubt_in_set
 
-   !> Which numbers (3, 0:2) the `row` of request number `i` has and a digit is known of.
+   !> Of which numbers (3, 0:2) of the `row` of request number `i`, as far as it has them, a digit is known.
    pure function known_numbers(row, s, i) result(known)
       type(row_t), intent(in) :: row
       type(set_motion_t), intent(in) :: s
@@ -156,10 +156,10 @@ contains
       integer :: c, k
 
       error = doubt_in_set(row, s, i)
+      known = .true.
       do k = 0, 2
          do c = 1, 3
-            known(c, k) = has_number(row, c, k)
-            if (.not. (known(c, k) .and. error(c, k) > 0.0_wp)) cycle
+            if (.not. error(c, k) > 0.0_wp) cycle
             associate (sizes => s%errors(s%parts%part(i))%sizes)
                size_of = merge(1.0_wp, sizes%length, c == 3 .or. row%angular)
                ! Poles and curves are places, in other axes.
