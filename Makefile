@@ -45,7 +45,7 @@ modules := $(filter-out main,$(basename $(notdir $(sources))))
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))
 vpath %.F90 $(sort $(dir $(sources)))
 
-.PHONY: all assembly-peers example pictures kinds run test check forms errors proofs fool-proofs kind-check quad-check single-check bench bench-short bench-against bench-peers hard hard-short circuits study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants expected install install-kinds clean
+.PHONY: all assembly-peers example pictures kinds run test check forms errors proofs fool-proofs kind-check quad-check single-check bench bench-short bench-against compare-against bench-peers hard hard-short circuits study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants expected install install-kinds clean
 all: $(BUILD)/kinmat
 
 run: $(BUILD)/kinmat
@@ -175,6 +175,10 @@ bench-short: $(BUILD)/release/bench
 # Whole runs of this program against the program at the commit REF: make bench-against REF=HEAD~1
 bench-against: $(BUILD)/kinmat
 	BUILD=$(BUILD) REF='$(REF)' tests/bench/bench_against.sh
+
+# Answers of this program against those of the program at the commit REF, on N random decks beside those at hand.
+compare-against: $(BUILD)/kinmat $(BUILD)/debug/fuzz $(BUILD)/release/fuzz_mechanisms
+	BUILD=$(BUILD) REF='$(REF)' N='$(or $(N),3000)' SEED='$(or $(SEED),1)' tests/bench/compare_against.sh
 
 # Time and error of other programs beside this one: they come from the index of Python packages.
 bench-peers: $(BUILD)/kinmat $(BUILD)/timed/bench

@@ -10,10 +10,9 @@ LC_ALL=C
 OPENBLAS_NUM_THREADS=1
 export LC_ALL OPENBLAS_NUM_THREADS
 w=$BUILD/against
-rm -rf "$w/source" && mkdir -p "$w/source" || exit 3
-git archive "$REF" | tar -xf - -C "$w/source" || exit 3
-make -C "$w/source" build/kinmat > "$w/build.txt" 2>&1 || { tail -n 5 "$w/build.txt"; exit 3; }
-old=$w/source/build/kinmat
+. tests/bench/program_at.sh
+program_at "$REF" "$w"
+old=$at
 new=$BUILD/kinmat
 
 # many STEPS DECK: its first set with STEPS steps in its own time, of which the first and the last are printed
