@@ -5,19 +5,20 @@ module card_sets
    use planar, only: direction, rotated
    use mechanism, only: mechanism_t, link_t, point_t, pair_t, pair_prismatic, request_link, request_point, &
       request_pair, remark_small_letters
-   use cards, only: card_t, field_t, card_fields, wide_fields, field_text, first_column, small_field, label_a, &
-      label_b, label_c, real_1, real_2, real_3, form_ground, form_link, form_point, form_revolute, form_prism, &
-      form_joint, form_end
+   use cards, only: card_t, field_t, card_fields, wide_fields, field_text, first_column, small_field, card_name, &
+      label_a, label_b, label_c, real_1, real_2, real_3, form_ground, form_link, form_point, form_revolute, &
+      form_prism, form_cylinder, form_joint, form_end
    use card_reader, only: parsed_card_t
    use failures, only: failure_t, fail, capitals, status_system
    use input_errors, only: error_code_t, input_errors_t, add_field_error, add_remark, link_unknown, &
-      point_unknown, pair_unknown, name_repeated, pair_one_link, pair_grounds
+      point_unknown, pair_unknown, name_repeated, pair_one_link, pair_grounds, cylinder_drawing, cylinder_points
+   use drawn_values, only: drawn_pair, coincides
    use names, only: name_table_t, put_name, find_name, listed
    use numerals, only: whole
    implicit none
    private
    public :: card_set_t, vary_card_t, begin_set, begin_mechanism, append_card
-   public :: read_small_letters, build_bodies, look_up, match_word
+   public :: read_small_letters, build_bodies, has_drawing, look_up, match_word
    public :: add_card_error, add_parsed_error, add_card_remark, real_text
 
    !> The links, the points or the pairs of a set.
@@ -112,9 +113,9 @@ contains
    subroutine read_small_letters(set)
       type(card_set_t), intent(inout) :: set
       integer, parameter :: kinds(*) = [request_link, request_link, request_point, request_pair, request_pair, &
-         request_point, request_pair]
-      integer, parameter :: definers(*) = [form_ground, form_link, form_point, form_revolute, form_prism, form_joint, &
-         form_joint]
+         request_pair, request_point, request_pair]
+      integer, parameter :: definers(*) = [form_ground, form_link, form_point, form_revolute, form_prism, &
+         form_cylinder, form_joint, form_joint]
       type(name_table_t) :: typed(request_link:request_pair), upper(request_link:request_pair)
       integer :: k, i, earlier
 
@@ -142,7 +143,7 @@ contains
    pure integer function name_field(form)
       integer, intent(in) :: form
 
-      name_field = merge(label_c, label_a, any(form == [form_revolute, form_prism]))
+      name_field = merge(label_c, label_a, any(form == [form_revolute, form_prism, form_cylinder]))
    end function name_field
 
    !> Builds the links, points and pairs of `set`%mechanism, each kind in the order of its cards. Repeated and unknown
@@ -153,7 +154,7 @@ contains
 
       set%named(request_link)%card = cards_of([form_ground, form_link])
       set%named(request_point)%card = cards_of([form_point, form_joint, form_joint])
-      set%named(request_pair)%card = cards_of([form_revolute, form_prism, form_joint])
+      set%named(request_pair)%card = cards_of([form_revolute, form_prism, form_cylinder, form_joint])
       allocate (set%mechanism%links(size(set%named(request_link)%card)))
       allocate (set%mechanism%points(size(set%named(request_point)%card)))
       allocate (set%mechanism%pairs(size(set%named(request_pair)%card)))
@@ -215,8 +216,8 @@ contains
          if (is_first .neqv. is_ground) call define_name(request_point, label_a)
       end subroutine build_joint_point
 
-      !> Pair number `n`, of a REVOLUTE, PRISM or JOINT card. The points are there. It must join two links, not both of
-      !> them ground.
+      !> Pair number `n`, of a REVOLUTE, PRISM, CYLINDER or JOINT card. The points are there. It must join two links, not
+      !> both of them ground.
       subroutine build_pair()
          integer :: k, i, j
 
@@ -231,8 +232,11 @@ contains
          associate (card => set%cards(k), pair => set%mechanism%pairs(n))
             pair = pair_t(name=card%label(name_field(card%form)), point_i=i, point_j=j)
             if (card%form == form_prism) pair = pair_t(pair_prismatic, pair%name, i, j, card%real(1)*set%angle_unit, &
-               card%real(2), card%real(3)*set%angle_unit)
+               card%real(2), card%real(3)*set%angle_unit, [.false., .not. card%given(2:) .and. has_drawing(set)])
+            if (card%form == form_cylinder) pair = pair_t(pair_prismatic, pair%name, i, j, drawn=.true.)
          end associate
+         if (set%cards(k)%form == form_cylinder .and. .not. has_drawing(set)) &
+            call add_card_error(set, cylinder_drawing, k, card_name)
          call define_name(request_pair, name_field(set%cards(k)%form))
          if (i == 0 .or. j == 0) return
          i = set%mechanism%points(i)%link
@@ -242,8 +246,24 @@ contains
             call add_card_error(set, pair_one_link, k, label_c, trim(set%mechanism%links(i)%name))
          else if (set%mechanism%links(i)%ground .and. set%mechanism%links(j)%ground) then
             call add_card_error(set, pair_grounds, k, label_c)
+         else if (any(set%mechanism%pairs(n)%drawn)) then
+            call take_drawing()
          end if
       end subroutine build_pair
+
+      !> Gives pair number `n` those numbers that it has as drawn. The points of a cylinder must lie apart.
+      subroutine take_drawing()
+         real(wp) :: numbers(3)
+
+         associate (pair => set%mechanism%pairs(n))
+            numbers = drawn_pair(set%mechanism, pair)
+            pair%alpha = numbers(1)
+            pair%offset = numbers(2)
+            pair%beta = numbers(3)
+            if (pair%drawn(1) .and. coincides(set%mechanism, pair)) &
+               call add_card_error(set, cylinder_points, set%named(request_pair)%card(n), label_b)
+         end associate
+      end subroutine take_drawing
 
       !> The numbers of all cards of the forms `forms_asked`, in the order of the deck; twice those of a form that is
       !> there twice.
@@ -273,6 +293,13 @@ contains
          call add_card_error(set, name_repeated, k, i, whole(set%cards(set%named(kind)%card(earlier))%card%number))
       end subroutine define_name
    end subroutine build_bodies
+
+   !> Whether `set` has the coordinates of a drawing, in which a blank number is as drawn.
+   pure logical function has_drawing(set)
+      type(card_set_t), intent(in) :: set
+
+      has_drawing = set%number_of(form_joint) > 0
+   end function has_drawing
 
    !> The number `n` of the link, point or pair (`kind`) that label `i` (label_a to label_c) of card `k` names. 0: the
    !> label is blank, which is an error of its own, or unknown, an error unless a card that could define it was not
@@ -328,15 +355,16 @@ contains
       if (place == 0 .and. set%cards(k)%valid) call add_card_error(set, code, k, label_a)
    end subroutine match_word
 
-   !> Adds the remark `kind` about `field` (label_a to real_3) of card `k`.
-   subroutine add_card_remark(set, kind, k, field)
+   !> Adds the remark `kind` about `field` (label_a to real_3) of card `k`. `value` ends the sentence.
+   subroutine add_card_remark(set, kind, k, field, value)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: kind, k, field
+      character(*), intent(in), optional :: value
       type(card_t) :: on
       type(field_t) :: at
 
       call find_field(set%cards(k), field, on, at)
-      call add_remark(set%errors, kind, on, first_column(on, at), field_text(on, at))
+      call add_remark(set%errors, kind, on, first_column(on, at), field_text(on, at), value)
    end subroutine add_card_remark
 
    !> Adds the error `code` about `field` (card_name, label_a to real_3) of card `k`. `more` ends the sentence.

@@ -11,7 +11,7 @@ module cards
    public :: field_text, first_column, small_field, ruler_card, layout_of, is_passed_over
    public :: forms, form_name, number_word, find_form, nearest_form, reals_of
    public :: form_unknown, form_title, form_units, form_lang, form_ground, form_link, form_point, form_revolute
-   public :: form_prism, form_joint, form_drive, form_add, form_rise, form_toler, form_time, form_at
+   public :: form_prism, form_cylinder, form_joint, form_drive, form_add, form_rise, form_toler, form_time, form_at
    public :: form_method, form_print, form_extremes, form_range, form_circuits, form_pole, form_curve, form_branch
    public :: form_vary, form_assembly, form_prove, form_end
 
@@ -62,7 +62,7 @@ module cards
    !> The form of a card is its place in `forms`.
    enum, bind(c)
       enumerator :: form_unknown = 0, form_title, form_units, form_lang, form_ground, form_link, form_point
-      enumerator :: form_revolute, form_prism, form_joint, form_drive, form_add, form_rise, form_toler, form_time
+      enumerator :: form_revolute, form_prism, form_cylinder, form_joint, form_drive, form_add, form_rise, form_toler, form_time
       enumerator :: form_at, form_method, form_print, form_extremes, form_range, form_circuits, form_pole, form_curve
       enumerator :: form_branch, form_vary, form_assembly, form_prove, form_end
    end enum
@@ -77,6 +77,7 @@ module cards
       form_t('LL-', 2, .false., 'POINT   POINT   LINK            XI              ETA'), &
       form_t('LLL', 0, .false., 'REVOLUTEPOINT-I POINT-J PAIR'), &
       form_t('LLL', 3, .false., 'PRISM   POINT-I POINT-J PAIR    ALPHA           H               BETA'), &
+      form_t('LLL', 0, .false., 'CYLINDERPOINT-P POINT-Q PAIR'), &
       form_t('LLL', 2, .false., 'JOINT   PAIR    LINK-I  LINK-J  X               Y'), &
       form_t('LLl', 3, .false., 'DRIVE   KIND    DRIVEN  2ND/RPM VALUE AT 0.0    RATE            ACCELERATION'), &
       form_t('L--', 3, .false., 'ADD     KIND                    R1              R2              R3'), &

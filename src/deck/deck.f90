@@ -13,6 +13,7 @@ module deck
    use deck_options, only: build_options, build_requests, build_branches, build_centres, check_centres
    use deck_tolerances, only: build_tolerances
    use deck_remarks, only: check_unused, check_angles, check_guides, build_echo
+   use drawing_remarks, only: check_drawing
    use deck_source, only: source_t, open_source, next_card, close_source
    use system_calls, only: identity_t, identity_of_path
    use failures, only: failure_t, fail, status_rejected
@@ -251,6 +252,7 @@ contains
             call check_centres(set)
             call check_angles(set)
             call check_guides(set)
+            if (error_count(set%errors) == progress%errors_before) call check_drawing(set)
             call build_echo(set)
          end if
          call take_remarks(set%errors, set%mechanism%remarks)

@@ -109,6 +109,8 @@ module input_errors
    type(error_code_t), parameter, public :: &
       pair_one_link = error_code_t(60, 'JOINS TWO POINTS OF ONE LINK', own_layout), &
       pair_grounds = error_code_t(61, 'JOINS TWO GROUND LINKS'), &
+      cylinder_drawing = error_code_t(65, 'A CYLINDER NEEDS A DRAWING, THAT IS JOINT CARDS; OTHERWISE USE PRISM'), &
+      cylinder_points = error_code_t(69, 'BOTH POINTS ARE DRAWN AT ONE PLACE: THE CYLINDER HAS NO DIRECTION'), &
       drive_kind = error_code_t(70, 'IS NOT ANGLE, X, Y, RELANGLE OR SLIDE', own_layout), &
       drive_ground = error_code_t(71, 'A GROUND LINK CANNOT BE DRIVEN'), &
       drive_ground_point = error_code_t(72, 'A POINT OF A GROUND LINK CANNOT BE DRIVEN'), &
@@ -202,15 +204,18 @@ contains
       if (errors%count <= max_printed) call add_message(errors, code, ' ', more)
    end subroutine add_deck_error
 
-   !> Adds the remark `kind` about `text` (may be ''), which begins at `column` of `card`.
-   subroutine add_remark(errors, kind, card, column, text)
+   !> Adds the remark `kind` about `text` (may be ''), which begins at `column` of `card`. `value` ends the sentence.
+   subroutine add_remark(errors, kind, card, column, text, value)
       type(input_errors_t), intent(inout) :: errors
       integer, intent(in) :: kind, column
       type(card_t), intent(in) :: card
       character(*), intent(in) :: text
+      character(*), intent(in), optional :: value
 
       errors%remarked = errors%remarked + 1
-      if (errors%remarked <= max_printed) errors%remarks(errors%remarked) = remark_t(kind, card%number, column, text)
+      if (errors%remarked > max_printed) return
+      errors%remarks(errors%remarked) = remark_t(kind, card%number, column, text)
+      if (present(value)) errors%remarks(errors%remarked)%value = value
    end subroutine add_remark
 
    !> Moves the remarks about the open set to `remarks`; not allocated if there are none.

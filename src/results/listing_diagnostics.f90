@@ -24,7 +24,8 @@ module listing_diagnostics
    !> The words of remarks, by their kind.
    type(phrase_t), parameter :: remark_words(remark_small_letters:remark_more) = &
       [say_small_letters, say_title_long, say_title_letters, say_touching, say_link_unused, say_point_unused, &
-      say_radians, say_guide, say_jumps, say_more]
+      say_radians, say_guide, say_jumps, say_drawn_value, say_drawn_offset, say_open, say_off_drawing, &
+      say_near_joints, say_more]
 
 contains
 
@@ -48,7 +49,7 @@ contains
       logical, intent(in) :: polish
       character(:), allocatable :: text
 
-      text = phrase(remark_words(r%kind), polish)
+      text = trim(phrase(remark_words(r%kind), polish)//' '//r%value)
       if (r%kind == remark_more) then
          text = text//' '//trim(r%text)
          return
