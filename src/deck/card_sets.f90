@@ -216,8 +216,8 @@ contains
          if (is_first .neqv. is_ground) call define_name(request_point, label_a)
       end subroutine build_joint_point
 
-      !> Pair number `n`, of a REVOLUTE, PRISM, CYLINDER or JOINT card. The points are there. It must join two links, not
-      !> both of them ground.
+      !> Pair number `n`, of a REVOLUTE, PRISM, CYLINDER or JOINT card. The points are there. It must join two links,
+      !> not both of them ground.
       subroutine build_pair()
          integer :: k, i, j
 

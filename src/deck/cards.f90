@@ -62,9 +62,9 @@ module cards
    !> The form of a card is its place in `forms`.
    enum, bind(c)
       enumerator :: form_unknown = 0, form_title, form_units, form_lang, form_ground, form_link, form_point
-      enumerator :: form_revolute, form_prism, form_cylinder, form_joint, form_drive, form_add, form_rise, form_toler, form_time
-      enumerator :: form_at, form_method, form_print, form_extremes, form_range, form_circuits, form_pole, form_curve
-      enumerator :: form_branch, form_vary, form_assembly, form_prove, form_end
+      enumerator :: form_revolute, form_prism, form_cylinder, form_joint, form_drive, form_add, form_rise, form_toler
+      enumerator :: form_time, form_at, form_method, form_print, form_extremes, form_range, form_circuits, form_pole
+      enumerator :: form_curve, form_branch, form_vary, form_assembly, form_prove, form_end
    end enum
 
    !> The text of TITLE is not a label.

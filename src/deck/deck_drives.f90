@@ -13,9 +13,9 @@ module deck_drives
    use card_sets, only: card_set_t, has_drawing, look_up, match_word, add_card_error, add_card_remark
    use cards, only: card_name, label_a, label_b, label_c, real_1, real_2, form_unknown, form_drive, form_add, &
       form_rise, form_toler, form_end
-   use input_errors, only: error_code_t, error_count, drive_kind, drive_ground, drive_ground_point, drive_grounds, drive_one_link, &
-      drive_revolute, field_blank, field_unused, add_alone, add_kind, add_blank, table_short, table_order, &
-      table_range, power_negative, power_zero, power_large, rise_law, rise_duration, rpm_unit
+   use input_errors, only: error_code_t, error_count, drive_kind, drive_ground, drive_ground_point, drive_grounds, &
+      drive_one_link, drive_revolute, field_blank, field_unused, add_alone, add_kind, add_blank, table_short, &
+      table_order, table_range, power_negative, power_zero, power_large, rise_law, rise_duration, rpm_unit
    implicit none
    private
    public :: build_drives, check_terms, turns_a_minute, turns_unit

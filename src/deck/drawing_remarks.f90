@@ -1,5 +1,5 @@
-!> Remarks on a deck with JOINT cards, whose drawing is the mechanism: numbers that are as drawn, numbers that contradict
-!> the drawing, and joints that may be meant as one point.
+!> Remarks on a deck with JOINT cards, whose drawing is the mechanism: numbers that are as drawn, numbers that
+!> contradict the drawing, and joints that may be meant as one point.
 module drawing_remarks
    use kinds, only: wp
    use planar, only: in_degrees, without_turns, direction

@@ -5,8 +5,8 @@ module number_changes
    use kinds, only: wp
    use planar, only: direction, rotated, quarter_turn, pi
    use mechanism, only: mechanism_t, tolerance_t, number_ground, number_point, number_joint, number_pair, drive_t, &
-      drive_angle, drive_relangle, drive_x, drive_y, pair_prismatic, pair_links, term_t, term_harmonic, term_power, term_table, &
-      term_cycloid, term_345, term_cosine, term_parabola
+      drive_angle, drive_relangle, drive_x, drive_y, pair_prismatic, pair_links, term_t, term_harmonic, term_power, &
+      term_table, term_cycloid, term_345, term_cosine, term_parabola
    use drawn_values, only: drawn_way
    use drives, only: monomial, rise_shape, joint_width, joint_distance, new_spline, spline_value
    implicit none

@@ -225,8 +225,8 @@ contains
       end subroutine prepare
 
       !> (0:2, drives, numbers) The changes of the laws of the drives of `m` with its numbers at the time `t`; those of
-      !> values as drawn are in `bodies` (numbers). `order`: that of the highest derivatives, 0 to 2, of which this exists
-      !> for all of them.
+      !> values as drawn are in `bodies` (numbers). `order`: that of the highest derivatives, 0 to 2, of which this
+      !> exists for all of them.
       function drive_changes(bodies, t, order) result(changes)
          type(change_t), intent(in) :: bodies(:)
          real(wp), intent(in) :: t

@@ -297,7 +297,7 @@ JOINT   PAIR    LINK-I  LINK-J  X               Y' "$("$kinmat" --ruler JOINT)"
 equal '--ruler CARD, in small letters and before the option' "$("$kinmat" --ruler DRIVE)" "$("$kinmat" drive --ruler)"
 equal '--ruler CARD: every card' '' "$(for name in $("$kinmat" --ruler NOCARD 2>&1 | sed 's/.*CARDS ARE //'); do
    "$kinmat" --ruler "$name" | sed -n 2p | grep -q "^$name" || echo "$name"; done)"
-rejected '--ruler with no card' 1 ' *** OPTION --ruler: NO CARD HAS THE NAME x.deck; CARDS ARE TITLE UNITS LANG GROUND LINK POINT REVOLUTE PRISM JOINT DRIVE ADD RISE TOLER TIME AT METHOD PRINT EXTREMES RANGE CIRCUITS POLE CURVE BRANCH VARY ASSEMBLY PROVE END' --ruler x.deck
+rejected '--ruler with no card' 1 ' *** OPTION --ruler: NO CARD HAS THE NAME x.deck; CARDS ARE TITLE UNITS LANG GROUND LINK POINT REVOLUTE PRISM CYLINDER JOINT DRIVE ADD RISE TOLER TIME AT METHOD PRINT EXTREMES RANGE CIRCUITS POLE CURVE BRANCH VARY ASSEMBLY PROVE END' --ruler x.deck
 
 # Refused commands: status 1 or 3, one sentence, no listing.
 rejected 'unknown option' 1 ' *** OPTION --nope IS UNKNOWN; SEE kinmat --help' --nope "$w/m.deck"

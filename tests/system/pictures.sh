@@ -122,14 +122,14 @@ for deck in $(grep -L '^VARY' input/*.deck); do
    "$kinmat" "$w/$name.deck" --svg "$w/$name.all.svg" --csv "$w/$name.csv" > "$w/$name.lst" 2> "$w/$name.err"
    for svg in "$w/$name.svg" "$w/$name.all.svg"; do
       equal "$svg: joints, and how many" "$(grep -cE '^(REVOLUTE|JOINT)' "$deck")" "$(joints "$w/$name.deck" "$w/$name.csv" "$svg")"
-      equal "$svg: blocks on guides" "$(grep -c '^PRISM' "$deck")" "$(grep -c 'class="block"' "$svg")"
+      equal "$svg: blocks on guides" "$(grep -cE '^(PRISM|CYLINDER)' "$deck")" "$(grep -c 'class="block"' "$svg")"
    done
    svg=$w/$name.moving.svg
    equal "$svg: well-formed" '' "$(tags "$svg")"
    xml "$svg"
    equal "$svg: neither script nor reference" '' "$(grep -nE '<script|href|url[(]|<image|on[a-z]+=' "$svg")"
    equal "$svg: numbers" '' "$(grep -niE '[" ,;](nan|inf)|[*]{3}' "$svg" | grep -v '<style\|{')"
-   equal "$svg: blocks on guides" "$(grep -c '^PRISM' "$deck")" "$(grep -c 'class="block"' "$svg")"
+   equal "$svg: blocks on guides" "$(grep -cE '^(PRISM|CYLINDER)' "$deck")" "$(grep -c 'class="block"' "$svg")"
    equal "$svg: joints in motion" "$(grep -cE '^(REVOLUTE|JOINT)' "$deck") 1" "$(moving "$w/$name.deck" "$w/$name.csv" "$svg")"
    equal "$svg: at most 2 MB" yes "$([ "$(wc -c < "$svg")" -le 2000000 ] && echo yes)"
 done
