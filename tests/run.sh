@@ -31,7 +31,7 @@ parts() {
    nothing false is proved|2000|"$BUILD/release/fool_proofs" 2000
    units|786|tests/system/units.sh
    tolerances|49|tests/system/tolerances.sh
-   what is as drawn|106|tests/system/as_drawn.sh
+   what is as drawn|109|tests/system/as_drawn.sh
    extremes|34|tests/system/answers.sh
    circuits by chance|40|"$BUILD/release/circuits_by_chance" 40
    poles and curves|38|tests/system/centres.sh
