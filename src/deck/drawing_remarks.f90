@@ -120,7 +120,7 @@ contains
       logical, allocatable :: is_remarked(:)
       integer, allocatable :: cards(:), list(:)
       real(wp) :: limit, distance
-      integer :: i, j, k, link
+      integer :: i, j, k, link, found
 
       cards = pack([(k, k=1, set%count)], set%cards(:set%count)%form == form_joint)
       allocate (place(2, size(cards)), is_remarked(size(cards)))
@@ -128,6 +128,7 @@ contains
          place(:, i) = set%cards(cards(i))%real(1:2)
       end do
       is_remarked = .false.
+      found = 0
       limit = near*extent(place)
       associate (m => set%mechanism)
          joints_of = sorted([m%points(set%cards(cards)%point)%link, m%points(set%cards(cards)%point + 1)%link], &
@@ -140,13 +141,14 @@ contains
                distance = norm2(place(:, list(i)) - place(:, list(j)))
                if (distance >= limit .or. .not. distance > 0.0_wp) cycle
                k = max(list(i), list(j))
-               if (is_remarked(k) .or. count(is_remarked) >= max_near) exit
+               if (is_remarked(k)) exit
                is_remarked(k) = .true.
+               found = found + 1
                call add_card_remark(set, remark_near_joints, cards(k), label_a, length_text(set%mechanism, distance) &
                   //' ('//trim(set%cards(cards(min(list(i), list(j))))%label(label_a))//')')
                exit
             end do
-            if (count(is_remarked) >= max_near) return
+            if (found == max_near) return
          end do
       end do
    end subroutine check_joints

@@ -40,6 +40,9 @@ taken four_bar 2
 taken crank_slider 2
 taken inverted_slider 2
 taken drawing 2 2
+taken drawn_slider 2
+taken drawn_slider 2 2
+taken drawn_cylinder 2
 taken far_small 2
 taken stephenson_output 2
 taken three_rrr_cranks 2
