@@ -15,8 +15,8 @@ module drawing_remarks
    private
    public :: check_drawing, drawn_text
 
-   !> Characters of a number as drawn: nine digits, or seven with an exponent.
-   integer, parameter :: drawn_text_length = 13
+   !> Digits of a number as drawn, as far as its kind has them; two fewer with an exponent; and its characters.
+   integer, parameter :: drawn_text_digits = min(9, precision(1.0_wp)), drawn_text_length = 13
 
    !> Coordinates measured in a drawing have some four digits: a closure error below this, in rad or in parts of the
    !> characteristic length, contradicts nothing.
@@ -187,8 +187,8 @@ contains
       if (m%degrees) text = trim(drawn_text(in_degrees(x)))//' DEG'
    end function angle_text
 
-   !> `x` with nine digits, zeros at the end left out but for one behind the point; a very small or large one with seven
-   !> digits and an exponent.
+   !> `x` with its digits, zeros at the end left out but for one behind the point; a very small or large one with an
+   !> exponent.
    pure function drawn_text(x) result(text)
       real(wp), intent(in) :: x
       character(drawn_text_length) :: text
@@ -198,12 +198,13 @@ contains
       text = '0.0'
       if (.not. abs(x) > 0.0_wp) return
       if (abs(x) < 1.0e-3_wp .or. abs(x) >= 1.0e8_wp) then
-         write (text, '(es13.6)') x
+         write (form, '(a, i0, a)') '(es13.', drawn_text_digits - 3, ')'
+         write (text, form) x
          if (scan(text, 'E') == 0) write (text, '(es13.5e3)') x
          text = adjustl(text)
          return
       end if
-      write (form, '(a, i0, a)') '(f13.', min(10, 8 - floor(log10(abs(x)))), ')'
+      write (form, '(a, i0, a)') '(f13.', min(10, max(1, drawn_text_digits - 1 - floor(log10(abs(x))))), ')'
       write (text, form) x
       text = adjustl(text)
       last = verify(trim(text), '0', back=.true.)
