@@ -1,18 +1,18 @@
 !> One set of computations while it is read: its cards, the deck's errors, and the mechanism that is built at END: here
 !> its links, points and pairs. A name may be used before the card that defines it, so names are looked up only at END.
 module card_sets
-   use kinds, only: wp
+   use kinds, only: wp, label_length
    use planar, only: direction, rotated
    use mechanism, only: mechanism_t, link_t, point_t, pair_t, pair_prismatic, request_link, request_point, &
       request_pair, remark_small_letters
    use cards, only: card_t, field_t, card_fields, wide_fields, field_text, first_column, small_field, label_a, &
       label_b, label_c, real_1, real_2, real_3, form_ground, form_link, form_point, form_revolute, form_prism, &
-      form_joint, form_end
+      form_joint, form_end, nearest_words, proposal
    use card_reader, only: parsed_card_t
    use failures, only: failure_t, fail, capitals, status_system
-   use input_errors, only: error_code_t, input_errors_t, add_field_error, add_remark, link_unknown, &
+   use input_errors, only: error_code_t, input_errors_t, add_field_error, add_remark, is_full, link_unknown, &
       point_unknown, pair_unknown, name_repeated, pair_one_link, pair_grounds
-   use names, only: name_table_t, put_name, find_name, listed
+   use names, only: name_table_t, put_name, find_name, subject_name, listed
    use numerals, only: whole
    implicit none
    private
@@ -261,7 +261,7 @@ contains
       end function cards_of
 
       !> Enters the name in label `i` (label_a to label_c) of the card of link, point or pair (`kind`) number `n`. A
-      !> name that is there already is an error.
+      !> name that is there already is an error. Of two JOINT cards the error of their points stands for both.
       subroutine define_name(kind, i)
          integer, intent(in) :: kind, i
          integer :: k, earlier
@@ -270,7 +270,10 @@ contains
          if (set%cards(k)%label(i) == '') return
          call put_name(set%named(kind)%table, set%cards(k)%label(i), n, earlier)
          if (earlier == 0) return
-         call add_card_error(set, name_repeated, k, i, whole(set%cards(set%named(kind)%card(earlier))%card%number))
+         associate (first => set%cards(set%named(kind)%card(earlier)))
+            if (kind == request_pair .and. set%cards(k)%form == form_joint .and. first%form == form_joint) return
+            call add_card_error(set, name_repeated, k, i, whole(first%card%number))
+         end associate
       end subroutine define_name
    end subroutine build_bodies
 
@@ -285,17 +288,20 @@ contains
       n = 0
       if (set%cards(k)%label(i) == '') return
       n = find_name(set%named(kind)%table, set%cards(k)%label(i))
-      if (n == 0 .and. set%names_certain) call add_card_error(set, unknown(kind), k, i, hint_for(set, k, i))
+      if (n == 0 .and. set%names_certain) call add_card_error(set, unknown(kind), k, i, hint_for(set, kind, k, i))
    end subroutine look_up
 
-   !> What the unknown name in label `i` (label_a to label_c) of card `k` may be; '' for nothing that is known.
-   function hint_for(set, k, i) result(hint)
+   !> What the name in label `i` (label_a to label_c) of card `k` may be, which no link, point or pair (`kind`) has; ''
+   !> if nothing is known, or if the error is only counted.
+   function hint_for(set, kind, k, i) result(hint)
       type(card_set_t), intent(in) :: set
-      integer, intent(in) :: k, i
+      integer, intent(in) :: kind, k, i
       character(:), allocatable :: hint
-      integer :: link, point
+      character(label_length), allocatable :: names(:)
+      integer :: link, point, n
 
       hint = ''
+      if (is_full(set%errors)) return
       associate (card => set%cards(k), text => set%cards(k)%card%text, field => card_fields(i), m => set%mechanism)
          link = find_name(set%named(request_link)%table, card%label(i))
          point = find_name(set%named(request_point)%table, card%label(i))
@@ -311,6 +317,9 @@ contains
             hint = '(IS IT LONGER THAN 8 LETTERS?)'
          else if (index(text(field%first - 1:field%first), ' ') == 0 .and. i > label_a) then
             hint = '(IS THE NAME BEFORE IT LONGER THAN 8 LETTERS?)'
+         else
+            names = [(subject_name(m, kind, n), n=1, size(set%named(kind)%card))]
+            hint = proposal(names(nearest_words(card%label(i), names)))
          end if
       end associate
    end function hint_for

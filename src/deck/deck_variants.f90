@@ -9,11 +9,11 @@ module deck_variants
    use card_reader, only: parsed_card_t
    use cards, only: card_name, label_a, label_b, label_c, real_1, real_2, real_3, form_unknown, form_ground, &
       form_link, form_point, form_prism, form_joint, form_drive, form_add, form_rise, form_toler, form_time, &
-      form_vary, reals_of
+      form_vary, reals_of, card_fields
    use deck_tolerances, only: number_on_card
    use failures, only: capitals
    use input_errors, only: input_errors_t, error_code_t, error_count, vary_alone, vary_number, vary_count, vary_equal, &
-      vary_one, vary_twice, vary_tie, vary_many, field_blank, field_unused, add_blank
+      vary_one, vary_twice, vary_tie, vary_many, field_blank, field_unused, add_blank, whole_long
    use numbers, only: read_whole
    use numerals, only: whole
    implicit none
@@ -181,7 +181,11 @@ contains
             return
          end if
          call read_whole(trim(card%label(label_b)), count_given, error, place)
-         if (error%number > 0 .or. count_given < 1 .or. count_given > max_variants) then
+         ! The name of a tie does not begin with a digit behind a full count: that count is longer than its field.
+         if (error%number == 0 .and. verify(card%card%text(card_fields(label_b)%last:card_fields(label_c)%first), &
+            '0123456789') == 0) then
+            call add_parsed_error(set%errors, whole_long, card, label_b)
+         else if (error%number > 0 .or. count_given < 1 .or. count_given > max_variants) then
             call add_parsed_error(set%errors, vary_count, card, label_b, whole(max_variants))
          else if (card%given(3)) then
             call add_parsed_error(set%errors, field_unused, card, real_3)

@@ -23,7 +23,7 @@ module input_errors
    !> A kind of error.
    type :: error_code_t
       integer :: number = 0              !< printed as E and three digits; 0: no error
-      character(72) :: sentence = ''
+      character(84) :: sentence = ''
       integer :: layout = form_unknown   !< the form whose layout is printed below the message, or own_layout
    end type error_code_t
 
@@ -79,6 +79,7 @@ module input_errors
       label_blank_inside = error_code_t(35, 'A LABEL HAS NO BLANKS INSIDE', own_layout), &
       number_range = error_code_t(36, 'IS OUT OF THE RANGE'), &
       label_long = error_code_t(37, 'IS TOO LONG: A NAME HAS AT MOST 8 LETTERS', own_layout), &
+      whole_long = error_code_t(38, 'IS TOO LONG: A WHOLE NUMBER HAS AT MOST 8 DIGITS', own_layout), &
       star_first = error_code_t(40, 'NO CARD OF THE SET IS ABOVE THIS ONE'), &
       star_no_reals = error_code_t(41, 'THE CARD ABOVE TAKES NO REALS'), &
       star_second = error_code_t(42, 'IS A SECOND * CARD FOR THE SAME CARD'), &
@@ -97,7 +98,8 @@ module input_errors
       link_unused = error_code_t(54, 'NO PAIR AND NO DRIVE USES THIS LINK, AND NO OTHER LINK MOVES')
    ! Numbers that vary.
    type(error_code_t), parameter, public :: &
-      vary_alone = error_code_t(55, 'MUST STAND BELOW THE CARD WHOSE NUMBER VARIES, OF A BODY, DRIVE OR TIME'), &
+      vary_alone = &
+         error_code_t(55, 'MUST STAND BELOW A GROUND, LINK, POINT, JOINT, PRISM, DRIVE, ADD, RISE OR TIME CARD'), &
       vary_number = error_code_t(56, 'IS NO NUMBER OF THE CARD ABOVE; WRITE R1, R2 OR R3', own_layout), &
       vary_count = error_code_t(57, 'IS NOT LIST, AND NOT A WHOLE NUMBER OF VALUES FROM 1 UP TO', own_layout), &
       vary_equal = error_code_t(58, 'FROM AND TO ARE EQUAL'), &

@@ -83,19 +83,19 @@ crank_rocker='0.0 1.0 3.5 3.0 4.0 14.0 50.0 110.0'
    point O BASE; point Q BASE 4.0; point O1 ONE; point A1 ONE 1.0; point A2 TWO; point B2 TWO 3.0; point C3 THREE
    point B3 THREE 3.0; point Q4 FOUR; point C4 FOUR 1.0
    joint O O1 PO; joint A1 A2 PA; joint B2 B3 PB; joint C3 C4 PC; joint Q4 Q PQ; until_time 2 1.0; } > "$w/deck"
-told 'five-bar without drives' 1 ' *** E101  SET 1: LINKS ONE, TWO, THREE, FOUR: 2 DEGREES OF FREEDOM LEFT, ADD DRIVES
+told 'five-bar without drives' 1 ' *** E101  SET 1: LINKS ONE, TWO, THREE, FOUR: 2 DEGREES OF FREEDOM LEFT, ADD DRIVES OR PAIRS
  *** E103  SET 1: W = 15 COORDINATES LESS R = 13 EQUATIONS LEAVE S = 2 DEGREES OF FREEDOM, DRIVES ARE 0'
 sed 's/^TIME /'"$(drive ANGLE TWO '' 20.0)"'\n&/' "$w/deck" > "$w/one.deck" && mv "$w/one.deck" "$w/deck"
-told 'five-bar with one drive' 1 ' *** E101  SET 1: LINKS ONE, TWO, THREE, FOUR: 1 FREEDOM LEFT, ADD A DRIVE
+told 'five-bar with one drive' 1 ' *** E101  SET 1: LINKS ONE, TWO, THREE, FOUR: 1 FREEDOM LEFT, ADD A DRIVE OR A PAIR
  *** E103  SET 1: W = 15 COORDINATES LESS R = 13 EQUATIONS LEAVE S = 2 DEGREES OF FREEDOM, DRIVES ARE 1'
 { head_of TWO; four_bar 1 $crank_rocker; four_bar 2 1$crank_rocker; until_time 2 1.0; } > "$w/deck"
-told 'two mechanisms without drives' 1 ' *** E101  SET 1: LINKS CRANK1, COUPL1, ROCK1: 1 FREEDOM LEFT, ADD A DRIVE
- *** E101  SET 1: LINKS CRANK2, COUPL2, ROCK2: 1 FREEDOM LEFT, ADD A DRIVE
+told 'two mechanisms without drives' 1 ' *** E101  SET 1: LINKS CRANK1, COUPL1, ROCK1: 1 FREEDOM LEFT, ADD A DRIVE OR A PAIR
+ *** E101  SET 1: LINKS CRANK2, COUPL2, ROCK2: 1 FREEDOM LEFT, ADD A DRIVE OR A PAIR
  *** E103  SET 1: W = 21 COORDINATES LESS R = 19 EQUATIONS LEAVE S = 2 DEGREES OF FREEDOM, DRIVES ARE 0'
 { head_of TWO; four_bar 1 $crank_rocker; four_bar 2 1$crank_rocker
    drive ANGLE CRANK1 '' 14.0 9.0; drive ANGLE ROCK1 '' 99.0 9.0; until_time 2 1.0; } > "$w/deck"
 told 'two drives on one mechanism, none on the other' 1 \
-   ' *** E101  SET 1: LINKS CRANK2, COUPL2, ROCK2: 1 FREEDOM LEFT, ADD A DRIVE
+   ' *** E101  SET 1: LINKS CRANK2, COUPL2, ROCK2: 1 FREEDOM LEFT, ADD A DRIVE OR A PAIR
  *** E102  SET 1: TOO MANY EQUATIONS BY 1 AMONG PAIRS PA01, PA1, PB1, PB01 AND DRIVES ANGLE CRANK1, ANGLE ROCK1
  *** E106  SET 1: TOO MANY DRIVES BY 1: ANGLE CRANK1, ANGLE ROCK1; DRIVE THE LINKS OF E101
  *** E103  SET 1: W = 21 COORDINATES LESS R = 19 EQUATIONS LEAVE S = 2 DEGREES OF FREEDOM, DRIVES ARE 2'
@@ -104,31 +104,64 @@ told 'two drives on one mechanism, none on the other' 1 \
       link "BAR-$i" 0.0 0.0 0.0; point "P$i" "BAR-$i"; point "Q$i" "BAR-$i" 1.0
       if [ $i = 1 ]; then joint P0 P1 J1; else joint "Q$((i - 1))" "P$i" "J$i"; fi
    done; card PRINT POINTS Q10; until_time 2 1.0; } > "$w/deck"
-told 'ten links hang free' 1 ' *** E101  SET 1: LINKS BAR-1, BAR-2, BAR-3, BAR-4, BAR-5, BAR-6, BAR-7, BAR-8 AND 2 MORE: 10 DEGREES OF FREEDOM LEFT, ADD DRIVES
+told 'ten links hang free' 1 ' *** E101  SET 1: LINKS BAR-1, BAR-2, BAR-3, BAR-4, BAR-5, BAR-6, BAR-7, BAR-8 AND 2 MORE: 10 DEGREES OF FREEDOM LEFT, ADD DRIVES OR PAIRS
+ *** E101  SET 1: NO SECOND PAIR HOLDS LINK BAR-10: IS ONE FORGOTTEN?
  *** E103  SET 1: W = 33 COORDINATES LESS R = 23 EQUATIONS LEAVE S = 10 DEGREES OF FREEDOM, DRIVES ARE 0'
 sed 's/^TIME /'"$(drive ANGLE BAR-5 '' 0.0)"'\n&/' "$w/deck" > "$w/one.deck" && mv "$w/one.deck" "$w/deck"
-told 'ten links, the fifth is driven' 1 ' *** E101  SET 1: LINKS BAR-1, BAR-2, BAR-3, BAR-4, BAR-5, BAR-6, BAR-7, BAR-8 AND 2 MORE: 9 DEGREES OF FREEDOM LEFT, ADD DRIVES
+told 'ten links, the fifth is driven' 1 ' *** E101  SET 1: LINKS BAR-1, BAR-2, BAR-3, BAR-4, BAR-5, BAR-6, BAR-7, BAR-8 AND 2 MORE: 9 DEGREES OF FREEDOM LEFT, ADD DRIVES OR PAIRS
+ *** E101  SET 1: NO SECOND PAIR HOLDS LINK BAR-10: IS ONE FORGOTTEN?
  *** E103  SET 1: W = 33 COORDINATES LESS R = 23 EQUATIONS LEAVE S = 10 DEGREES OF FREEDOM, DRIVES ARE 1'
 pendulums() { head_of PENDULUMS; awk -v n="$1" 'BEGIN { print "POINT   O       BASE"; for (i = 1; i <= n; i++)
    printf "LINK    L%d\nPOINT   P%-7dL%-7d        1.0\nREVOLUTEO       P%-7dR%d\n", i, i, i, i, i }'; until_time 2 1.0; }
 pendulums 22 > "$w/deck"
 told 'twenty-two pendulums' 1 "$(awk 'BEGIN { for (i = 1; i <= 20; i++)
-   print " *** E101  SET 1: LINK L" i ": 1 FREEDOM LEFT, ADD A DRIVE" }')
+   print " *** E101  SET 1: LINK L" i ": 1 FREEDOM LEFT, ADD A DRIVE OR A PAIR" }')
  *** E101  SET 1: AND 2 MORE PARTS THAT CAN MOVE
+ *** E101  SET 1: NO SECOND PAIR HOLDS LINKS L1, L2, L3, L4, L5, L6, L7, L8 AND 14 MORE: IS ONE FORGOTTEN?
  *** E103  SET 1: W = 69 COORDINATES LESS R = 47 EQUATIONS LEAVE S = 22 DEGREES OF FREEDOM, DRIVES ARE 0"
+# A forgotten pair, at a link that carries another, and at the ground; a driven link at the end of a chain is none.
+drawn() { head_of DRAWING; card LINK CRANK; card LINK COUPLER; card LINK ROCKER; card JOINT A0 BASE CRANK; card JOINT A CRANK COUPLER 1.0
+   "$@"; drive ANGLE CRANK '' '' 30.0; until_time 2 1.0; }
+left=' *** E103  SET 1: W = 12 COORDINATES LESS R = 9 EQUATIONS LEAVE S = 3 DEGREES OF FREEDOM, DRIVES ARE'
+drawn card JOINT B0 ROCKER BASE 4.0 > "$w/deck"
+told 'no pair of coupler and rocker' 1 " *** E101  SET 1: LINK COUPLER: 1 FREEDOM LEFT, ADD A DRIVE OR A PAIR
+ *** E101  SET 1: LINK ROCKER: 1 FREEDOM LEFT, ADD A DRIVE OR A PAIR
+ *** E101  SET 1: NO SECOND PAIR HOLDS LINKS COUPLER, ROCKER: IS ONE FORGOTTEN?
+$left 1"
+drawn card JOINT B COUPLER ROCKER 3.0 2.5 > "$w/deck"
+told 'no pair of rocker and base' 1 " *** E101  SET 1: LINKS COUPLER, ROCKER: 2 DEGREES OF FREEDOM LEFT, ADD DRIVES OR PAIRS
+ *** E101  SET 1: NO SECOND PAIR HOLDS LINK ROCKER: IS ONE FORGOTTEN?
+$left 1"
+sed 's/^TIME/'"$(drive ANGLE ROCKER '' 0.0)"'\n&/' "$w/deck" > "$w/one.deck" && mv "$w/one.deck" "$w/deck"
+told 'a driven link at the end' 1 " *** E101  SET 1: LINKS COUPLER, ROCKER: 1 FREEDOM LEFT, ADD A DRIVE OR A PAIR
+$left 2"
+# The point of a joint is that of its first link that is not ground: a guide meant for the other one. A press.
+press() { head_of PRESS MM; for link in CRANK COUPLER UPPER LOWER RAM; do card LINK $link; done; card JOINT O BASE CRANK 500.0 400.0
+   card JOINT A CRANK COUPLER 500.0 310.0; card JOINT K COUPLER UPPER 80.0 400.0; card JOINT K2 UPPER LOWER 80.0 400.1
+   card JOINT T BASE UPPER 0.0 800.0; "$@"; card POINT TOP BASE '' 0.0 800.0
+   drive ANGLE CRANK '' '' 360.0; until_time 2 1.0; }
+meant='; PAIR GUIDE HOLDS LINK LOWER AT JOINT R, NOT LINK RAM: FOR RAM NAME A POINT OF ITS OWN'
+guided() { card JOINT R "$@" 0.0 0.0; card PRISM TOP R GUIDE -90.0; }
+press guided LOWER RAM > "$w/deck"
+told 'a guide at a joint that holds the other link' 1 " *** E101  SET 1: LINK RAM: 1 FREEDOM LEFT, ADD A DRIVE OR A PAIR$meant
+ *** E102  SET 1: TOO MANY EQUATIONS BY 1 AMONG PAIRS O, A, K, K2, T, GUIDE AND DRIVE ANGLE CRANK$meant
+ *** E103  SET 1: W = 18 COORDINATES LESS R = 17 EQUATIONS LEAVE S = 1 DEGREES OF FREEDOM, DRIVES ARE 1"
+press guided RAM LOWER > "$w/deck"
+"$kinmat" --check "$w/deck" > "$w/out" 2> "$w/err"
+equal 'a guide at a joint that holds the link meant' "0 " "$? $(cat "$w/err")"
 { pendulums 1; pendulums 1; } > "$w/deck"
-told 'faults of every set' 1 ' *** E101  SET 1: LINK L1: 1 FREEDOM LEFT, ADD A DRIVE
+told 'faults of every set' 1 ' *** E101  SET 1: LINK L1: 1 FREEDOM LEFT, ADD A DRIVE OR A PAIR
  *** E103  SET 1: W = 6 COORDINATES LESS R = 5 EQUATIONS LEAVE S = 1 DEGREES OF FREEDOM, DRIVES ARE 0
- *** E101  SET 2: LINK L1: 1 FREEDOM LEFT, ADD A DRIVE
+ *** E101  SET 2: LINK L1: 1 FREEDOM LEFT, ADD A DRIVE OR A PAIR
  *** E103  SET 2: W = 6 COORDINATES LESS R = 5 EQUATIONS LEAVE S = 1 DEGREES OF FREEDOM, DRIVES ARE 0'
 block() { head_of BLOCK; link BLOCK 0.0 0.0 0.0; point O BASE; point O1 BLOCK; card PRISM O O1 GUIDE 0.0 0.0 0.0
    "$@"; until_time 2 1.0; }
 block drive ANGLE BLOCK '' 0.0 > "$w/deck"
-told 'an angle that a guide keeps is driven' 1 ' *** E101  SET 1: LINK BLOCK: 1 FREEDOM LEFT, ADD A DRIVE
+told 'an angle that a guide keeps is driven' 1 ' *** E101  SET 1: LINK BLOCK: 1 FREEDOM LEFT, ADD A DRIVE OR A PAIR
  *** E102  SET 1: TOO MANY EQUATIONS BY 1 AMONG PAIR GUIDE AND DRIVE ANGLE BLOCK
  *** E103  SET 1: W = 6 COORDINATES LESS R = 5 EQUATIONS LEAVE S = 1 DEGREES OF FREEDOM, DRIVES ARE 1'
 { head_of PIVOT; four_bar '' $crank_rocker; drive X A1 '' 0.0; until_time 2 1.0; } > "$w/deck"
-told 'a drive on a fixed pivot moves nothing' 1 ' *** E101  SET 1: LINKS CRANK, COUPL, ROCK: 1 FREEDOM LEFT, ADD A DRIVE
+told 'a drive on a fixed pivot moves nothing' 1 ' *** E101  SET 1: LINKS CRANK, COUPL, ROCK: 1 FREEDOM LEFT, ADD A DRIVE OR A PAIR
  *** E102  SET 1: TOO MANY EQUATIONS BY 1 AMONG PAIR PA0 AND DRIVE X A1
  *** E103  SET 1: W = 12 COORDINATES LESS R = 11 EQUATIONS LEAVE S = 1 DEGREES OF FREEDOM, DRIVES ARE 1'
 { head_of MATRIX; four_bar '' $crank_rocker; drive ANGLE CRANK '' 14.0 9.0; drive RELANGLE CRANK COUPL 1.0; card METHOD MATRIX
@@ -745,7 +778,7 @@ equal 'a remark without a listing' ' --- CARD 18  COLUMN 9: "TIP" NO PAIR, DRIVE
 changed '/^DRIVE/ { print "POINT   TIP     ROD"; next } 1'
 "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
 equal 'a remark before errors of the structure' ' --- CARD 18  COLUMN 9: "TIP" NO PAIR, DRIVE OR PRINT CARD USES THIS POINT
- *** E101  SET 1: LINKS CRANK, ROD, PISTON: 1 FREEDOM LEFT, ADD A DRIVE' "$(head -n 2 "$w/err")"
+ *** E101  SET 1: LINKS CRANK, ROD, PISTON: 1 FREEDOM LEFT, ADD A DRIVE OR A PAIR' "$(head -n 2 "$w/err")"
 
 # What is not harmless is refused, with the layout of the card.
 # explained NAME AWK LINES: the last lines of what is said
@@ -765,9 +798,9 @@ explained 'a name of nine letters before another' '/^REVOLUTEA1/ { $0 = "REVOLUT
 explained 'a name behind one of nine letters' '/^POINT   B / { $0 = "POINT   B-PISTONRPISTON" } 1' \
    ' *** E051  CARD 13  COLUMN 17  FIELD LABEL-B: "RPISTON" NO LINK HAS THIS NAME (IS THE NAME BEFORE IT LONGER THAN 8 LETTERS?)
  LAYOUT    |POINT   POINT   LINK            XI              ETA
- *** E052  CARD 16  COLUMN 17  FIELD LABEL-B: "B" NO POINT HAS THIS NAME
+ *** E052  CARD 16  COLUMN 17  FIELD LABEL-B: "B" NO POINT HAS THIS NAME (IS IT B2?)
  LAYOUT    |REVOLUTEPOINT-I POINT-J PAIR
- *** E052  CARD 17  COLUMN 17  FIELD LABEL-B: "B" NO POINT HAS THIS NAME
+ *** E052  CARD 17  COLUMN 17  FIELD LABEL-B: "B" NO POINT HAS THIS NAME (IS IT B2?)
  LAYOUT    |PRISM   POINT-I POINT-J PAIR    ALPHA           H               BETA'
 explained 'a pair without a name' '/^REVOLUTEA1/ { $0 = substr($0, 1, 24) } 1' \
    ' *** E034  CARD 15  COLUMN 25  FIELD LABEL-C: THIS FIELD MUST NOT BE BLANK
@@ -781,12 +814,28 @@ explained 'a point for a link' '/^DRIVE/ { sub(/CRANK/, "A1   ") } 1' \
 explained 'a pair for a point' '/^DRIVE/ { sub(/ANGLE   CRANK /, "X       PAIR-A") } 1' \
    ' *** E052  CARD 18  COLUMN 17  FIELD LABEL-B: "PAIR-A" NO POINT HAS THIS NAME (A PAIR HAS IT)
  LAYOUT    |DRIVE   KIND    DRIVEN  2ND/RPM VALUE AT 0.0    RATE            ACCELERATION'
+explained 'letters of a link that are swapped' '/^DRIVE/ { sub(/CRANK/, "CRNAK") } 1' \
+   ' *** E051  CARD 18  COLUMN 17  FIELD LABEL-B: "CRNAK" NO LINK HAS THIS NAME (IS IT CRANK?)
+ LAYOUT    |DRIVE   KIND    DRIVEN  2ND/RPM VALUE AT 0.0    RATE            ACCELERATION'
+explained 'a letter of a pair that is missing' '/^DRIVE/ { print "PRINT   PAIRS   GUDE" } 1' \
+   ' *** E053  CARD 18  COLUMN 17  FIELD LABEL-B: "GUDE" NO PAIR HAS THIS NAME (IS IT GUIDE?)
+ LAYOUT    |PRINT   KIND    NAME    EVERY'
+explained 'a number of more than 16 columns' '/^POINT   B2/ { $0 = "POINT   B2      ROD             3.0000000000000004E-001" } 1' \
+   ' *** E018  CARD 12  COLUMN 33  FIELD REAL-1: "3.0000000000000004E-001" CROSSES THE FIELD BORDER BETWEEN COLUMNS 48 AND 49 (A * CARD BELOW IT TAKES 24 COLUMNS FOR A NUMBER)
+ LAYOUT    |POINT   POINT   LINK            XI              ETA'
+explained 'a number of more than 16 columns, at the end' '/^LINK    ROD/ { $0 = substr($0, 1, 64) "-10.00000000000000001" } 1' \
+   ' *** E014  CARD 5  COLUMN 81  FIELD PAST-80: "00001" IS BEYOND COLUMN 80 (A * CARD BELOW IT TAKES 24 COLUMNS FOR A NUMBER)'
+explained 'too many steps for the field' '/^TIME/ { $0 = "TIME    1000000000              0.0             1.0" } 1' \
+   ' *** E038  CARD 19  COLUMN 9  FIELD LABEL-A: "1000000000" IS TOO LONG: A WHOLE NUMBER HAS AT MOST 8 DIGITS
+ LAYOUT    |TIME    STEPS                   T0              T1'
+explained 'a joint that is there twice' '/^POINT   O / { print "JOINT   HINGE   BASE    CRANK"; print "JOINT   HINGE   BASE    CRANK" } 1' \
+   ' *** E050  CARD 8  COLUMN 9  FIELD LABEL-A: "HINGE" THIS NAME IS REPEATED; FIRST ON CARD 7'
 explained 'no END' '/^END/ { next } 1' \
    ' *** E002  CARD 19  COLUMN 1  FIELD NAME: "TIME" IS THE LAST CARD OF THE DECK: PUT AN END CARD BEHIND IT
  LAYOUT    |END'
 explained 'no GROUND' '/^GROUND/ { sub(/GROUND/, "LINK  ") } 1' ' *** E105  SET 1: NO LINK IS GROUND: GIVE IT A GROUND CARD
  LAYOUT    |GROUND  LINK                    X               Y               PHI
- *** E101  SET 1: LINKS BASE, CRANK, ROD, PISTON: 3 DEGREES OF FREEDOM LEFT, ADD DRIVES
+ *** E101  SET 1: LINKS BASE, CRANK, ROD, PISTON: 3 DEGREES OF FREEDOM LEFT, ADD DRIVES OR PAIRS
  *** E103  SET 1: W = 12 COORDINATES LESS R = 8 EQUATIONS LEAVE S = 4 DEGREES OF FREEDOM, DRIVES ARE 1'
 explained 't to the power 2.5 before t = 0' '/^TIME/ { sub(/0.0/, "-1.0"); print "ADD     POWER                   1.0             2.5" } 1' \
    ' *** E079  CARD 19  COLUMN 9  FIELD LABEL-A: "POWER" FOR T < 0 ONLY WHOLE POWERS EXIST: SHIFT THE TIME; THE INSTANT IS -1.00000E+000
