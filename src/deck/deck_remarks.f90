@@ -22,6 +22,8 @@ module deck_remarks
    !> Column of the first label, column of the first real, and columns from one label to the next.
    integer, parameter :: label_column = 10, real_column = 37, label_step = 9
    character(*), parameter :: default_mark = '(DEFAULT)'
+   !> What the listing has of links whose axes are those of a drawing.
+   character(*), parameter :: angles = 'PHI, VPHI, APHI', of_some = ' OF THOSE WITHOUT NUMBERS'
 
    !> Parts of the characteristic length: an estimate closes a pair to `closed`; a guide at `open` is not met.
    real(wp), parameter :: closed = 0.05_wp, open = 0.3_wp
@@ -133,7 +135,7 @@ contains
       integer :: k, n, i
 
       associate (m => set%mechanism)
-         allocate (m%echo(set%count + set%number_of(form_vary) + 3))
+         allocate (m%echo(set%count + set%number_of(form_vary) + 4))
          n = 0
          do k = 1, set%count
             if (set%cards(k)%form /= form_title) call add_line(set%cards(k))
@@ -145,6 +147,8 @@ contains
          call add_default(form_units, [m%length_unit, 'RAD     ', m%time_unit])
          call add_default(form_method, [character(label_length) :: method_words(method_newton), '', ''])
          if (m%variants == 0) call add_default(form_print, [character(label_length) :: 'LINKS', '', '1'])
+         if (any(m%requests%angle_alone)) call note_angles(m%requests%angle_alone .or. m%requests%kind /= request_link)
+         if (any(m%requests%listed)) call add_default(form_print, [character(label_length) :: 'POINTS', '', '1'])
          m%echo = m%echo(1:n)
       end associate
 
@@ -168,6 +172,16 @@ contains
          call write_head(form, labels, set%mechanism%echo(n))
          set%mechanism%echo(n)(line_length - len(default_mark) + 1:) = default_mark
       end subroutine add_default
+
+      !> Adds to the line of the links printed by default that their angles alone are, of `all` of them or of some.
+      subroutine note_angles(all_of_them)
+         logical, intent(in) :: all_of_them(:)
+
+         associate (line => set%mechanism%echo(n)(real_column:))
+            line(:len(angles)) = angles
+            if (.not. all(all_of_them)) line(len(angles) + 1:len(angles//of_some)) = of_some
+         end associate
+      end subroutine note_angles
    end subroutine build_echo
 
    !> The `line` of one card. A blank real is shown as 0.0, its value; a blank field of AT has none.

@@ -12,7 +12,8 @@ module mechanism
    public :: request_link, request_point, request_pair, request_pole, request_curve
    public :: number_ground, number_point, number_joint, number_pair, number_drive
    public :: method_newton, method_matrix, method_dense, method_words, own_predictor
-   public :: instant_count, instant, find_instants, pair_links, drive_links, request_links, wanted_links, used_points
+   public :: instant_count, instant, find_instants, pair_links, drive_links, request_links, wanted_links, &
+      is_listed_alone, used_points
    public :: with_all_links, plane_origin, place_links
    public :: remark_t, remark_small_letters, remark_title_long, remark_title_letters, remark_touching, &
       remark_link_unused, remark_point_unused, remark_radians, remark_guide, remark_jumps, remark_more
@@ -129,6 +130,8 @@ module mechanism
       real(wp) :: dwell(2) = 0.0_wp          !< (length, rad) its dwells within this distance; 0: not asked for
       integer :: second = 0                  !< the link from which a motion is seen; of a curve 0: the fixed plane
       real(wp) :: length = 1.0_wp, rate = 1.0_wp   !< of a pole or curve: characteristic ones of its mechanism
+      logical :: listed = .false.            !< a row in the listing at every instant, which no card asks for
+      logical :: angle_alone = .false.       !< of a link: the rows of the listing have its angle alone
    end type request_t
 
    !> At the next change point after `t`, `link` takes the other branch; link 0: any links that pass a change point.
@@ -284,6 +287,13 @@ contains
       end select
       if (request%second > 0) links(3) = request%second
    end function request_links
+
+   !> Whether only the listing has rows of `request`, since no card asks for them: no picture, no path.
+   elemental logical function is_listed_alone(request)
+      type(request_t), intent(in) :: request
+
+      is_listed_alone = request%listed .and. .not. request%extremes
+   end function is_listed_alone
 
    !> Whether each link (links) is needed by a request of `m`; ranges, circuits, proofs, assemblies and tolerances need
    !> all of them.

@@ -6,7 +6,7 @@
 module listing_layout
    use kinds, only: wp, label_length
    use planar, only: degree
-   use mechanism, only: mechanism_t, request_pair
+   use mechanism, only: mechanism_t, request_link, request_pair
    use independent, only: parts_t, find_parts
    use drives, only: law_t, new_law
    use names, only: drive_name, more
@@ -19,8 +19,8 @@ module listing_layout
    implicit none
    private
    public :: layout_t, head_drive_t, new_layout, digits_t, digits_for, column_powers, head_lines
-   public :: line_length, name_length, row_length, has_column, dimension_of, angle_unit, unit_of, choose_digits, &
-      column_text, put_folded
+   public :: line_length, name_length, row_length, links_turning, has_column, dimension_of, angle_unit, unit_of, &
+      choose_digits, column_text, put_folded
 
    integer, parameter :: digits_after_first = 6
    !> An order that is a whole number but for rounding counts as one.
@@ -29,10 +29,12 @@ module listing_layout
    integer, parameter :: line_length = 120
    !> Characters before a row's numbers, and of a whole row.
    integer, parameter :: name_length = 9, row_length = name_length + 9*numeral_length
-   !> Which of the columns x, y, phi each kind of rows has, and whether a column is of lengths (1) or angles (2). A pair
-   !> has its slide in the column of x, or its angle in that of phi.
-   logical, parameter :: has_column(3, 3) = reshape([.true., .true., .true., .true., .true., .false., &
-      .true., .false., .true.], [3, 3])
+   !> The kind of tables of links of which only the angle is listed, besides request_link, request_point, request_pair.
+   integer, parameter :: links_turning = 0
+   !> Which of the columns x, y, phi each kind of tables has, and whether a column is of lengths (1) or angles (2). A
+   !> pair has its slide in the column of x, or its angle in that of phi.
+   logical, parameter :: has_column(3, links_turning:request_pair) = reshape([.false., .false., .true., &
+      .true., .true., .true., .true., .true., .false., .true., .false., .true.], [3, 4])
    integer, parameter :: dimension_of(3) = [1, 1, 2]
    !> Of more drives only the first stand at the head of an instant.
    integer, parameter :: max_drives = 6
@@ -61,10 +63,12 @@ module listing_layout
       integer :: time_power = 0
       integer :: more_decimals = 0         !< of what tolerances do to a number, beside those of the number
       real(wp) :: angle = 1.0_wp           !< radians in the unit in which angles are printed
-      character(row_length) :: names(3)    !< of the columns, by the kind of a request
-      character(row_length) :: units(2, 3) !< two lines under them; the second is blank unless units are long
-      character(4*(row_length + 1)) :: heads(3)    !< all lines over rows of a kind, where the parts' are the same
-      integer :: head_length(3) = 0
+      integer :: links_table = request_link   !< the kind of the tables of links
+      ! By the kind of a table:
+      character(row_length) :: names(links_turning:request_pair)      !< of the columns
+      character(row_length) :: units(2, links_turning:request_pair)   !< under them; the second line only where long
+      character(4*(row_length + 1)) :: heads(links_turning:request_pair)   !< all lines, where the parts' are the same
+      integer :: head_length(links_turning:request_pair) = 0
       character(numeral_length) :: none    !< in the place of a number that does not exist
       character(:), allocatable :: before_instant, behind_time    !< of the line over the tables: ' INSTANT ', ' S'
       type(head_drive_t), allocatable :: drives(:)                !< that stand in it
@@ -100,11 +104,13 @@ contains
       ! What a tolerance changes has four digits.
       if (allocated(m%tolerances)) &
          l%more_decimals = max(0, 3 - digits_after_first - floor(log10(relative_tolerance(m))))
-      do k = 1, size(l%names)
+      if (any(m%requests%angle_alone) .and. .not. any(m%requests%kind == request_link .and. m%requests%every > 0 &
+         .and. .not. m%requests%angle_alone)) l%links_table = links_turning
+      do k = links_turning, request_pair
          l%names(k) = column_names(k, m%polish)
       end do
       l%units = unit_lines(m)
-      do k = 1, size(l%heads)
+      do k = links_turning, request_pair
          l%heads(k) = head_lines(l, l%digits_t, k)
          l%head_length(k) = len_trim(l%heads(k))
       end do
@@ -257,7 +263,8 @@ contains
       character(numeral_length) :: words(9)
       integer :: k
       character(1), parameter :: prefix(0:2) = [' ', 'V', 'A']
-      type(phrase_t), parameter :: kind_words(3) = [say_link, say_point, say_pair], &
+      type(phrase_t), parameter :: kind_words(links_turning:request_pair) = &
+         [say_link, say_link, say_point, say_pair], &
          rate_words(0:2) = [phrase_t(), say_rate, say_acceleration]
 
       do k = 0, 2
@@ -276,7 +283,7 @@ contains
    !> by stands in a second line.
    pure function unit_lines(m) result(lines)
       type(mechanism_t), intent(in) :: m
-      character(row_length) :: lines(2, 3)
+      character(row_length) :: lines(2, links_turning:request_pair)
       character(2*label_length + 4), dimension(9) :: unit, per
       integer :: k
 
@@ -290,7 +297,7 @@ contains
          end do
          per = ''
       end if
-      do k = 1, 3
+      do k = links_turning, request_pair
          lines(1, k) = in_columns(unit, k)
          lines(2, k) = in_columns(per, k)
       end do

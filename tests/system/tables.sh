@@ -116,6 +116,61 @@ else
    echo 'skipped: pictures of gnuplot (not installed)'
 fi
 
+# A drawing without a PRINT card: in the listing alone all points and, of links without axes of their own, the angle.
+# drawing CARD...: a four-bar far from the origin, its crank of length 1 at 30 t degrees, with these cards before END
+drawing() { card UNITS M DEG S; card GROUND BASE; card LINK CRANK; card LINK COUPLER; card LINK ROCKER '' '' $rocker
+   card JOINT A0 BASE CRANK 10.0 10.0; card JOINT A CRANK COUPLER 11.0 10.0; card JOINT B COUPLER ROCKER 13.0 12.5
+   card JOINT B0 ROCKER BASE 14.0 10.0; card POINT C COUPLER '' 12.0 12.0; card DRIVE ANGLE CRANK '' '' 30.0
+   card TIME 4 '' '' 0.0 4.0; for more in "$@"; do echo "$more"; done; card END; }
+# listed NAME CARD...: the listing, the CSV, the table and the picture of the drawing
+listed() { name=$1; shift; drawing "$@" > "$w/$name.deck"
+   "$kinmat" "$w/$name.deck" --csv "$w/$name.csv" --table "$w/$name.table" --svg "$w/$name.svg" > "$w/$name.lst" 2> "$w/err"; }
+# rows NAME [HEAD]: the rows of the instants' tables whose head begins with HEAD, or of all
+rows() { awk -v head="$2" '/^ INSTANT/ { on = 0; print "--" } /^ EXTREMES/ { exit } /^ (LINK|POINT|PAIR) / && /X|PHI|SLIDE/ { on = $1; getline; next }
+   on && NF && (head == "" || on == head) && !/^ (BRANCH|END)/' "$w/$1.lst"; }
+rocker=
+listed default
+listed links "$(card PRINT LINKS)"
+listed both "$(card PRINT LINKS)" "$(card PRINT POINTS)"
+listed extremes "$(card EXTREMES LINKS)" "$(card EXTREMES POINTS C)"
+listed extremes_of_links "$(card PRINT LINKS)" "$(card EXTREMES LINKS)" "$(card EXTREMES POINTS C)"
+equal 'a drawing: the columns of links' 'LINK PHI VPHI APHI|DEG DEG/S DEG/S**2' \
+   "$(awk '/^ INSTANT 0/ { on = NR } on && (NR == on + 1 || NR == on + 2) { $1 = $1; printf "%s%s", mark, $0; mark = "|" }' "$w/default.lst")"
+equal 'a drawing: the angles of links' "$(rows links LINK | awk 'NF > 8 { $0 = $1 " " $4 " " $7 " " $10 } 1')" \
+   "$(rows default LINK | awk '{ $1 = $1 } 1')"
+equal 'a drawing: the points are those of PRINT POINTS' "$(rows both POINT)" "$(rows default POINT)"
+equal 'a drawing: the end of the crank' "$(awk 'BEGIN { d = atan2(0, -1)/180
+   for (t = 0; t < 5; t++) printf "%.5f %.5f\n", 10 + cos(30*t*d), 10 + sin(30*t*d) }')" "$(rows default POINT | awk '$1 == "A" { print $2, $3 }')"
+equal 'a drawing: the rows at an instant' 'CRANK COUPLER ROCKER A0 A B B0 C' "$(rows default | awk '/^--/ { n++; next } n == 2 { print $1 }' | tr '\n' ' ' | sed 's/ $//')"
+equal 'a drawing: what is echoed' ' PRINT    LINKS             1        PHI, VPHI, APHI (DEFAULT) PRINT    POINTS            1 (DEFAULT)' \
+   "$(grep '^ PRINT' "$w/default.lst" | sed 's/   *(DEFAULT)/ (DEFAULT)/' | tr -d '\n')"
+for suffix in csv table svg; do
+   same "a drawing: $suffix as with PRINT LINKS" "$w/links.$suffix" "$w/default.$suffix"
+   same "a drawing with EXTREMES: $suffix as with PRINT LINKS" "$w/extremes_of_links.$suffix" "$w/extremes.$suffix"
+done
+equal 'a drawing: EXTREMES LINKS has all columns' "$(awk '/^ EXTREMES   T/ { on = 1 } /^ BRANCH/ { exit } on' "$w/extremes_of_links.lst")" \
+   "$(awk '/^ EXTREMES   T/ { on = 1 } /^ BRANCH/ { exit } on' "$w/extremes.lst")"
+rocker='14.0 10.0 111.0'
+listed own
+listed own_links "$(card PRINT LINKS)"
+equal 'a drawing: a link with axes of its own has all columns' "$(rows own_links LINK | grep -E 'ROCKER|--')" "$(rows own LINK | grep -E 'ROCKER|--')"
+equal 'a drawing: its other links have their angles' "$(rows own_links LINK | awk 'NF > 8 && !/ROCKER/ { print $1, $4, $7, $10 }')" \
+   "$(rows own LINK | awk '!/ROCKER|--/ { $1 = $1; print }')"
+equal 'a drawing with axes of its own: what is echoed' 1 "$(grep -c '^ PRINT    LINKS             1        PHI, VPHI, APHI OF THOSE WITHOUT NUMBERS  *(DEFAULT)$' "$w/own.lst")"
+# Against the closed form of a drawing, without its PRINT card.
+grep -v '^PRINT   ALL' input/drawing.deck > "$w/drawing.deck"
+"$BUILD/release/print_expected" "$w/drawing.deck" > "$w/drawing.expected" 2>&1
+"$kinmat" "$w/drawing.deck" > "$w/drawing.lst" 2>&1
+same 'a drawing: the closed form' "$w/drawing.expected" "$w/drawing.lst"
+equal 'a drawing: the closed form has points that no card asks for' 25 "$(sed '1,/^ END OF SET 1/d' "$w/drawing.expected" | grep -c '^ POINT  *X')"
+rocker=
+# Tolerances, in Polish.
+listed tolerances "$(card LANG PL)" "$(card JOINT D BASE BAR)" "$(card TOLER '' '' '' 0.01)" "$(card LINK BAR)" "$(card DRIVE ANGLE BAR '' '' 1.0)"
+equal 'a drawing with tolerances: rows of its links' "$(printf 'BAR\nNAJGOR.\nRSS')" \
+   "$(awk '/^ CHWILA 0/ { on = 1 } /^ PUNKT/ { exit } on && on++ > 3 { print $1 }' "$w/tolerances.lst" | tail -n 3)"
+equal 'a drawing with tolerances: shares of no column that is not listed' '' "$(grep -E '^ OGNIWO [A-Z]+  [VA]?[XY] ' "$w/tolerances.lst")"
+equal 'a drawing with tolerances: shares of points' yes "$(grep -qE '^ PUNKT D  X ' "$w/tolerances.lst" && echo yes)"
+
 cp input/four_bar.deck "$w/own-1.deck"
 rejected '--table without a file' 1 ' *** OPTION --table NEEDS A FILE NAME' "$w/own-1.deck" --table
 rejected '--table twice' 1 ' *** OPTION --table IS GIVEN TWICE' "$w/own-1.deck" --table "$w/a" --table "$w/b"
