@@ -20,6 +20,7 @@ module listing_tables
 
    character(4), parameter :: between = ' .. '
 
+   !> The kind of a table before its first row.
    integer, parameter :: no_table = -1
 
    !> The table at hand: the kind of its rows; the powers of ten of its columns; `masked`: a digit of the instant is.
