@@ -235,9 +235,10 @@ fuzz-mechanisms: $(BUILD)/release/fuzz_mechanisms
 fuzz-extremes: $(BUILD)/kinmat $(BUILD)/release/fuzz_mechanisms
 	BUILD=$(BUILD) tests/fuzz/fuzz_extremes.sh $(or $(N),200) $(or $(SEED),1)
 
-# Relations between runs of all decks of input/, or of N made by the dice, from seed SEED on.
+# Relations between runs of all decks of input/, or of N made by the dice, from seed SEED on; and of runs and assemblies.
 relations: $(BUILD)/kinmat $(BUILD)/release/fuzz_mechanisms
 	BUILD=$(BUILD) tests/system/relations.sh $(if $(N),--random $(N) $(or $(SEED),1))
+	BUILD=$(BUILD) tests/system/assembly_relations.sh $(if $(N),--random $(N) $(or $(SEED),1))
 
 # Tolerances against N decks with all numbers off by chance.
 tolerances: $(BUILD)/kinmat $(BUILD)/kinmat-quad

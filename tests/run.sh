@@ -38,6 +38,7 @@ parts() {
    the digits|1|tests/system/digits.sh
    decks made by chance|700|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 700
    relations between runs|220|tests/system/relations.sh --short
+   assemblies and runs|450|tests/system/assembly_relations.sh
    mechanisms of a known motion|68|tests/fuzz/fuzz_mechanisms.sh 60
    the method of 1987|1000|"$BUILD/release/matrix_1987" short
    what is hard to compute|120|tests/oracle/hard.sh short

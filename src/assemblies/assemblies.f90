@@ -80,8 +80,9 @@ contains
       a%is_known = .not. (a%are_more .or. any(a%blocks%is_wide .or. a%blocks%failed > 0))
    end subroutine find_assemblies
 
-   !> The same, and which of them a run begins in: that which the estimate of `m` chooses, unless it chooses none, or
-   !> another one is nearer, and all are known. Then the nearest is the estimate of `m` from now on.
+   !> The same, and which of them a run begins in: that which the estimate of `m` chooses, unless another one is nearer
+   !> and all are known. Then the nearest is the estimate of `m` from now on; also where the estimate chooses a position
+   !> that is not separate. Where it chooses another one that was not found, some may be missing.
    subroutine find_nearest(m, t, a)
       type(mechanism_t), intent(inout) :: m
       real(wp), intent(in) :: t
@@ -90,7 +91,6 @@ contains
       type(convergence_t) :: c
       type(motion_t) :: q
       logical :: unused
-      integer :: i
 
       call find_assemblies(m, t, a)
       call make_block_engine(e, m)
@@ -99,23 +99,39 @@ contains
          q = new_motion(size(m%links))
          call move_links(e%whole, e%state, e%length, q, unused)
          a%chosen = number_of(q%position, a%list, e%span)
-         a%is_missed = a%chosen == 0
-         a%is_known = a%is_known .and. .not. a%is_missed
       end if
-      if (size(a%list) == 0 .or. .not. a%is_known) return
-      if (.not. a%list(1)%is_proved) return
-      if (a%chosen > 0) then
-         associate (distance => a%list(a%chosen)%distance)
-            if (distance <= fine .or. a%list(1)%distance >= less*distance) return
-         end associate
-      end if
-      a%chosen = 1
-      do i = 1, size(m%links)
-         if (m%links(i)%ground) cycle
-         associate (estimate => m%links(i)%position, found => a%list(1)%position(:, i))
-            estimate = [found(:2) + plane_origin(m), estimate(3) + without_turns(found(3) - estimate(3))]
-         end associate
-      end do
+      if (is_nearer_one()) call begin_in_nearest()
+      a%is_missed = is_solved(c) .and. a%chosen == 0
+      a%is_known = a%is_known .and. .not. a%is_missed
+
+   contains
+
+      !> All are known, and the first of the list is nearer than where the estimate leads.
+      logical function is_nearer_one() result(is)
+         is = size(a%list) > 0 .and. a%is_known
+         if (is) is = a%list(1)%is_proved
+         if (.not. is) return
+         if (a%chosen == 0) then
+            is = .not. is_solved(c) .or. any(a%blocks%moves)
+         else
+            associate (distance => a%list(a%chosen)%distance)
+               is = distance > fine .and. a%list(1)%distance < less*distance
+            end associate
+         end if
+      end function is_nearer_one
+
+      !> The first of the list is the estimate of `m`.
+      subroutine begin_in_nearest()
+         integer :: i
+
+         a%chosen = 1
+         do i = 1, size(m%links)
+            if (m%links(i)%ground) cycle
+            associate (estimate => m%links(i)%position, found => a%list(1)%position(:, i))
+               estimate = [found(:2) + plane_origin(m), estimate(3) + without_turns(found(3) - estimate(3))]
+            end associate
+         end do
+      end subroutine begin_in_nearest
    end subroutine find_nearest
 
    !> The number in `list` of the `position` (3, links), that of all that it may be which is nearest to it, whole turns
