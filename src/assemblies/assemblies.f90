@@ -154,8 +154,8 @@ contains
       end do
    end function number_of
 
-   !> The blocks that iterate, with their links: those whose angle it solves for, and those that have their place then
-   !> and no earlier; of a block without unknowns those of its pairs and drives.
+   !> The blocks that iterate, with their links: those whose angle it solves for; of a block of slides alone those that
+   !> have their place then and no earlier; of a block without unknowns those of its pairs and drives.
    subroutine name_blocks(m, e, a)
       type(mechanism_t), intent(in) :: m
       type(block_engine_t), intent(in) :: e
@@ -177,7 +177,8 @@ contains
          one%block = i
          one%unknowns = e%blocks%list(i)%shape%n
          one%is_redundant = e%blocks%list(i)%shape%rows > e%blocks%list(i)%shape%n
-         one%links = pack([(k, k=1, size(m%links))], last(1:) == i .or. block_of(e%orientation_of) == i)
+         one%links = pack([(k, k=1, size(m%links))], block_of(e%orientation_of) == i)
+         if (size(one%links) == 0) one%links = pack([(k, k=1, size(m%links))], last(1:) == i)
          if (size(one%links) == 0) one%links = pack([(k, k=1, size(m%links))], is_joined(i))
          a%blocks = [a%blocks, one]
       end do
