@@ -34,7 +34,7 @@ parts() {
    extremes|34|tests/system/answers.sh
    circuits by chance|40|"$BUILD/release/circuits_by_chance" 40
    poles and curves|38|tests/system/centres.sh
-   all assemblies|81|tests/system/assemblies.sh
+   all assemblies|100|tests/system/assemblies.sh
    the digits|1|tests/system/digits.sh
    decks made by chance|700|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 700
    relations between runs|220|tests/system/relations.sh --short

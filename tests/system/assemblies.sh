@@ -54,7 +54,7 @@ taken cognates 2
 taken double_parallelogram 1
 
 # Numbers of cards leave a blank between, whatever their size; what has no room has a * card, and the dimensions stay.
-for scale in 0.3 0.003 3e-6 300.0; do
+for scale in 0.1 0.003 3e-6 300.0; do
    awk -v scale=$scale 'BEGIN { n = 1 } n == 2; /^END/ { n++ }' input/drawing.deck | awk -v scale=$scale '
       /^(LINK|JOINT|POINT) / && substr($0, 33) != "" {
          printf "%s\n*       %-24s%.12E\n", substr($0, 1, 32), sprintf("%.12E", substr($0, 33, 16)*scale), substr($0, 49, 16)*scale; next }
