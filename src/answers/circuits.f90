@@ -17,7 +17,7 @@ module circuits
    use assemblies, only: assemblies_t, find_assemblies
    use curve_equations, only: curve_t, make_curve, is_redundant, drive_value, deck_position
    use circuit_curve, only: curve_point_t, start_point, step_between, lies_between, beside
-   use circuit_trace, only: circuit_t, trace, least_step
+   use circuit_trace, only: circuit_t, trace, come_near, least_step
    use circuit_crossing, only: other_circuit
    use circuit_branches, only: circuits_t, no_sign, add_branches, add_assemblies, add_meetings, number_assemblies, &
       branch_t
@@ -29,6 +29,8 @@ module circuits
    !> A limit found by both methods is one up to this difference, in rad and lengths.
    real(wp), parameter :: agrees = max(1.0e-6_wp, 1.0e3_wp*epsilon(1.0_wp))
 
+   !> A slide is followed farther than it goes in any assembly of the first instant, by this factor.
+   real(wp), parameter :: beyond = 2.0_wp
    !> More are not looked for.
    integer, parameter :: max_circuits = 1000
    !> Values of the drive at which all assemblies are found, for an angle each 5 deg, and of the angle of each link;
@@ -53,14 +55,19 @@ contains
       found%drive = drive
       allocate (found%list(0), found%branches(0), found%dead(0), found%assemblies(0), found%meetings(0))
       call make_curve(found%curve, m, drive, start%t)
-      if (start%known >= 0) then
-         call start_point(found%curve, start%position, p, ok)
-         if (ok) call add_circuits(found, p)
-      end if
       if (present(first)) then
          all_of_them = first
       else
          call find_assemblies(m, start%t, all_of_them)
+      end if
+      do i = 1, size(all_of_them%list)
+         associate (size_of => maxval(abs(all_of_them%list(i)%position(:2, :)))/found%curve%closure%length)
+            found%curve%far = max(found%curve%far, beyond*size_of)
+         end associate
+      end do
+      if (start%known >= 0) then
+         call start_point(found%curve, start%position, p, ok)
+         if (ok) call add_circuits(found, p)
       end if
       found%is_complete = all_of_them%is_known
       call add_through(found, all_of_them)
@@ -163,16 +170,19 @@ contains
       type(circuits_t), intent(inout) :: found
       type(curve_point_t), intent(in) :: p
       type(circuit_t), allocatable :: more(:)
-      type(curve_point_t) :: other
+      type(curve_point_t) :: from, other
       integer :: n, k
       logical :: ok
 
       n = size(found%list) + 1
       if (n > max_circuits .or. p%reach < least_step .or. signal_received() > 0) return
-      if (is_known(found, p)) return
+      from = p
+      call come_near(found%curve, from, ok)
+      if (.not. ok) return
+      if (is_known(found, from)) return
       allocate (more(n))
       more(:n - 1) = found%list
-      call trace(found%curve, p, more(n))
+      call trace(found%curve, from, more(n))
       call move_alloc(more, found%list)
       do k = 1, size(found%list(n)%changes)
          associate (circuit => found%list(n))

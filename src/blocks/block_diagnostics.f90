@@ -219,9 +219,9 @@ contains
          end associate
       end function time_to_limit
 
-      !> The time from the motion that is followed to the instant t* before `t` at which a slide of block `i` is
-      !> infinite, since its guide comes to be parallel to another; 0 where none is. Close to t* the slide s is c/(t* -
-      !> t) and a constant, so t* - t = 2 s'/s'', and s s''/s'^2 is about 2.
+      !> The time from the motion that is followed to the instant t*, `t` itself or before it, at which a slide of block
+      !> `i` is infinite, since its guide comes to be parallel to another; 0 where none is. Close to t* the slide s is
+      !> c/(t* - t) and a constant, so t* - t = 2 s'/s'', and s s''/s'^2 is about 2.
       pure real(wp) function time_to_infinity(i) result(left)
          integer, intent(in) :: i
          real(wp) :: to_go
@@ -234,7 +234,7 @@ contains
                if (abs(x%value) < far_slide) cycle
                if (abs(x%value*x%acceleration(0)/x%rate(0)**2 - 2.0_wp) > as_a_pole) cycle
                to_go = 2.0_wp*x%rate(0)/x%acceleration(0)
-               if (to_go*sign(1.0_wp, step) > 0.0_wp .and. abs(to_go) < abs(step)) left = to_go
+               if (to_go*sign(1.0_wp, step) > 0.0_wp .and. abs(to_go) <= (1.0_wp + near_part)*abs(step)) left = to_go
             end associate
          end do
       end function time_to_infinity

@@ -89,6 +89,7 @@ module phrases
       say_unbounded = phrase_t('UNBOUNDED', 'NIEOGRAN.'), &
       say_range = phrase_t('RANGES OF THE DRIVES, EACH ALONE', 'ZAKRESY NAPEDOW, KAZDY OSOBNO'), &
       say_all = phrase_t('ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS', 'PELNY: BEZ KRESU, RUCH SIE ZAMYKA; OBROTY'), &
+      say_on_the_way = phrase_t('CHANGE POINTS ON THE WAY', 'PUNKTY ZMIANY NA DRODZE'), &
       say_no_limit = phrase_t('NO LIMIT AS FAR AS', 'BEZ KRESU CO NAJMNIEJ DO'), &
       say_assemblies = phrase_t('ASSEMBLIES', 'MONTAZE'), &
       say_assembly = phrase_t('ASSEMBLY', 'MONTAZ'), &

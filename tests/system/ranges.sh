@@ -87,14 +87,14 @@ for method in NEWTON DENSE; do
    with parallelogram_at "$(card RANGE)" "$(card METHOD $method)" > "$w/deck"
    range "a parallelogram, $method" ' ANGLE CRANK
    ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS 1
-   CHANGE POINTS PASSED 2'
+   CHANGE POINTS ON THE WAY 2'
 done
 # So it does from one of them, where its velocities are not unique: the motion on either branch closes after a turn.
 for method in NEWTON DENSE; do
    four_bar 2.0 4.0 2.0 4.0 CRANK 180.0 0.0 180.0 180.0 > "$w/deck"
    range "a parallelogram at its change point, $method" ' ANGLE CRANK
    ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS 1
-   CHANGE POINTS PASSED 2'
+   CHANGE POINTS ON THE WAY 2'
 done
 # Each of the two cranks of a five-bar alone.
 for method in NEWTON DENSE; do

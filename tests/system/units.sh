@@ -44,7 +44,7 @@ asked() {
 # answers LISTING: the digits of its tables; ranges; shares of tolerances, and sensitivities without powers of ten.
 answers() {
    digits "$1"
-   awk '/^RANGES|^   (MIN|MAX|ALL)|CHANGE POINTS PASSED/ { print } / %  / { sub(/ S = +/, "S "); sub(/E.*/, ""); print }' "$1"
+   awk '/^RANGES|^   (MIN|MAX|ALL)|CHANGE POINTS ON THE WAY/ { print } / %  / { sub(/ S = +/, "S "); sub(/E.*/, ""); print }' "$1"
 }
 # as_degrees UNIT FILE: the numbers of a CSV or summary, those of angles times UNIT, and sensitivities to angles over it.
 as_degrees() {
