@@ -266,7 +266,7 @@ contains
             ! To where a slide is infinite there are more substeps than are tried.
             if (has_too_many_substeps(step)) &
                ahead = a%t + sign(min(abs(t - a%t), almost_there*abs(a%t - a%place%t)), t - a%t)
-            list = limit_diagnostic(e, ahead)
+            list = limit_diagnostic(e, ahead, has_too_many_substeps(step))
             if (size(list) == 0 .and. a%follows .and. step%blocked) list = [diagnostic_t(kind=diagnostic_close, t=a%t)]
          end select
       end if
