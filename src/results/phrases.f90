@@ -128,6 +128,8 @@ module phrases
       say_dead_points = phrase_t('DEAD POINTS', 'PUNKTY MARTWE'), &
       say_change_points = phrase_t('CHANGE POINTS', 'PUNKTY ZMIANY'), &
       say_held = phrase_t('THE OTHER DRIVES LET NOTHING MOVE', 'POZOSTALE NAPEDY NICZEMU NIE DAJA RUCHU'), &
+      say_more_circuits = phrase_t('MORE CIRCUITS THAN ARE FOLLOWED: THESE ARE THE FIRST', &
+         'OBWODOW JEST WIECEJ, PODANO PIERWSZE'), &
       say_circuits_missing = phrase_t('CIRCUITS MAY BE MISSING: NOT ALL ASSEMBLIES ARE KNOWN', &
          'MOZE BRAKOWAC OBWODOW: NIE WSZYSTKIE MONTAZE SA ZNANE')
    type(phrase_t), parameter, public :: &
