@@ -26,7 +26,7 @@ module circuit_product
    integer, parameter :: max_states = 20000, max_sorted = 1000
    !> Places count as off by no more, as card ASSEMBLY counts them.
    real(wp), parameter :: far_place = 0.25_wp
-   !> Points of a circuit to be drawn, in a turn or on a branch, and of all circuits and components together.
+   !> Points of a leg to be drawn, and of all legs and components together.
    integer, parameter :: most_drawn = 96, least_drawn = 8, all_drawn = 200000
 
 contains
@@ -44,7 +44,7 @@ contains
       type(circuits_t), intent(inout) :: found
       logical, intent(out) :: ok
       type(walk_t), allocatable :: walks(:)
-      integer :: n_walks, k
+      integer :: n_walks, legs, k
 
       ok = .true.
       n_walks = 0
@@ -59,6 +59,7 @@ contains
       end do
       call add_between()
       if (.not. ok) return
+      legs = sum([(size(walks(k)%legs), k=1, n_walks)])
       do k = 1, n_walks
          call add_circuit(walks(k))
       end do
@@ -283,7 +284,7 @@ contains
          integer :: l, k, n, inside
 
          inside = 1
-         if (draws) inside = max(least_drawn, min(most_drawn, all_drawn/(n_walks*size(components))))
+         if (draws) inside = max(least_drawn, min(most_drawn, all_drawn/(legs*size(components))))
          allocate (circuit%points(1 + size(one%legs)*(inside + 1)))
          begin = 0.0_wp
          n = 1
