@@ -103,8 +103,8 @@ contains
       if (n /= 1) link = 0
    end function driven_link
 
-   !> Makes the branches of component `c` ready; `length`: of the whole mechanism's curve. `is_regular`: its circuits are
-   !> known in full, none of them has a change point or rests, and at no dead point of theirs is the first instant.
+   !> Makes the branches of component `c` ready; `length`: of the whole mechanism's curve. `is_regular`: its circuits
+   !> are all known, none has a change point or rests, and none has a dead point at the first instant.
    subroutine make_regular(c, length, is_regular)
       type(component_t), intent(inout) :: c
       real(wp), intent(in) :: length

@@ -32,9 +32,9 @@ module circuit_product
 contains
 
    !> Adds to `found` the circuits of `m`, whose `components` are regular, with their branches, dead points and
-   !> assemblies. The first of them is that of the position `start` (3, links), if it is known; then come those of the
-   !> assemblies `first` of the first instant, and of the drive's `values`. `draws`: with points for a picture. `ok`: it can be done; two components
-   !> that are at dead points together have a change point, and that is not done here.
+   !> assemblies. The first is that of the position `start` (3, links), if that is known. Those of the assemblies
+   !> `first` of the first instant follow, and those of the drive's `values`. `draws`: with points for a picture.
+   !> `ok`: it can be done: two components that are at dead points together have a change point, which is not done here.
    subroutine multiply(m, components, first, start, values, draws, found, ok)
       type(mechanism_t), intent(in) :: m
       type(component_t), intent(inout) :: components(:)
@@ -175,7 +175,7 @@ contains
          end do
       end subroutine add_at
 
-      !> How far the positions of all combinations of `options` are from the deck's estimate, squared: see card ASSEMBLY.
+      !> Squares of how far all combinations of `options` are from the deck's estimate, as card ASSEMBLY measures it.
       function distances(options, sizes, all_of_them) result(away)
          type(state_t), intent(in) :: options(:)
          integer, intent(in) :: sizes(:), all_of_them
@@ -379,7 +379,7 @@ contains
          end do
       end subroutine add_assemblies
 
-      !> Numbers the assemblies, and gives the branches their signs: where no assembly tells them, those of all equations.
+      !> Numbers the assemblies, and gives the branches their signs: without an assembly those of all equations.
       subroutine set_signs()
          type(curve_point_t) :: p
          real(wp), allocatable :: q(:, :)

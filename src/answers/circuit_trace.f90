@@ -295,8 +295,8 @@ contains
    end function sense
 
    !> The point `p` between the neighbours `a` and `b` at which the drive's derivative number `order` (of_value,
-   !> of_slope, of_bend), or the largest coordinate (of_size), is `level`: there they are on both sides of it. The method of false position with halved values
-   !> (Illinois: Dowell and Jarratt, BIT 11, 1971). `ok`: it was found.
+   !> of_slope, of_bend), or the largest coordinate (of_size), is `level`: there they are on both sides of it. The
+   !> method of false position with halved values (Illinois: Dowell and Jarratt, BIT 11, 1971). `ok`: it was found.
    subroutine find_root(c, a, b, order, level, p, ok)
       type(curve_t), intent(inout) :: c
       type(curve_point_t), intent(in) :: a, b

@@ -1,5 +1,5 @@
-!> A circuit of a mechanism with several components: all of them move with the drive until the first one comes to the end
-!> of its branch. At a dead point that one goes on along its next branch, and all others turn back.
+!> A circuit of a mechanism with several components: all of them move with the drive until the first one comes to the
+!> end of its branch. At a dead point that one goes on along its next branch, and all others turn back.
 module circuit_walk
    use kinds, only: wp
    use planar, only: pi
@@ -59,8 +59,8 @@ contains
 
    contains
 
-      !> The legs of `w` from the state `from` at the end of an upward one, which component `by` has ended: after that if
-      !> `turn` is 1, and back along the leg itself if it is 0. They end where the first of them begins, or at an end.
+      !> The legs of `w` from the state `from` at the end of an upward one, which component `begun_by` has ended: beyond
+      !> the dead point if `turn` is 1, back along that leg if it is 0. They end where the first begins, or at an end.
       subroutine go_on(from, turn, begun_by, w)
          type(state_t), intent(in) :: from
          integer, intent(in) :: turn, begun_by

@@ -26,7 +26,7 @@ module circuits
    use ranges, only: range_t, find_range, is_lost, held_at, low, high
    implicit none
    private
-   public :: find_circuits, free_drives, name_limits
+   public :: find_circuits, find_together, free_drives, name_limits
 
    !> A limit found by both methods is one up to this difference, in rad and lengths.
    real(wp), parameter :: agrees = max(1.0e-6_wp, 1.0e3_wp*epsilon(1.0_wp))
@@ -51,42 +51,37 @@ contains
       logical, intent(in), optional :: draws
       type(assemblies_t) :: all_of_them
       type(component_t), allocatable :: components(:)
-      logical :: ok
+      logical :: with_points, ok
 
       if (present(first)) then
          all_of_them = first
       else
          call find_assemblies(m, start%t, all_of_them)
       end if
+      with_points = .false.
+      if (present(draws)) with_points = draws
       call split(m, drive, components)
       ok = size(components) > 1
-      if (ok) ok = all(components%drive > 0)
-      if (ok) then
-         ok = .false.
-         if (present(draws)) ok = draws
-         call find_by_components(m, start, drive, all_of_them, components, ok, found)
-      end if
+      if (ok) call find_by_components(m, start, drive, all_of_them, components, with_points, ok, found)
       if (.not. ok) call find_together(m, start, drive, all_of_them, found)
    end subroutine find_circuits
 
-   !> Finds the circuits of `m` from those of its `components`. `ok`: in, that points are wanted for a picture; out, that
-   !> it can be done.
-   subroutine find_by_components(m, start, drive, first, components, ok, found)
+   !> Finds the circuits of `m` from those of its `components`; `draws`: with points for a picture. `ok`: this was done.
+   subroutine find_by_components(m, start, drive, first, components, draws, ok, found)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: start
       integer, intent(in) :: drive
       type(assemblies_t), intent(in) :: first
       type(component_t), intent(inout) :: components(:)
-      logical, intent(inout) :: ok
+      logical, intent(in) :: draws
+      logical, intent(out) :: ok
       type(circuits_t), intent(out) :: found
       type(assemblies_t) :: own
       type(motion_t) :: begin
       real(wp) :: from, range
       real(wp), allocatable :: place(:, :)
       integer :: c, k, n
-      logical :: draws
 
-      draws = ok
       call begin_circuits(m, start, drive, first, found)
       do c = 1, size(components)
          associate (one => components(c))

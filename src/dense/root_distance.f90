@@ -83,7 +83,8 @@ contains
       end do
    end subroutine measure_slots
 
-   !> The largest change (rad, units of the coordinates) of these coordinates between the positions `a` and `b` (3, links).
+   !> The largest change, in rad and units of the slots, of these coordinates between the positions `a` and `b`
+   !> (3, links).
    pure real(wp) function distance(s, c, a, b)
       type(system_t), intent(in) :: s
       type(coordinates_t), intent(in) :: c
