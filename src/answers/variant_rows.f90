@@ -4,7 +4,7 @@ module variant_rows
    use planar, only: in_degrees
    use mechanism, only: mechanism_t, driven_kinds, request_link
    use motion, only: mark_none, diagnostic_t, diagnostic_limit
-   use drives, only: new_law, drive_motion
+   use drives, only: new_law, drive_motion, pole_value
    use names, only: drive_name, subject_name
    use independent, only: parts_t
    use deck_variants, only: variation_t, varied_t, values_of_variant
@@ -297,6 +297,7 @@ contains
          if (r%limit%drive > 0) then
             r%cells(n + 2) = cell_t(cell_word, word=drive_name(m, m%drives(r%limit%drive)))
             r%cells(n + 3) = cell_t(cell_number, r%limit%value)
+            if (r%limit%is_pole) r%cells(n + 3) = cell_t(cell_unbounded, sign(1.0_wp, r%limit%value))
             if (r%limit%is_angle .and. m%degrees) r%cells(n + 3)%value = in_degrees(r%limit%value)
          end if
       end if
@@ -352,6 +353,8 @@ contains
       real(wp) :: f(3)
 
       if (d == 0) return
+      cell = cell_t(cell_unbounded, sign(1.0_wp, pole_value(m%drives(d), m%t0)))
+      if (abs(t) <= 0.0_wp .and. abs(pole_value(m%drives(d), m%t0)) > 0.0_wp) return
       f = drive_motion(new_law(m%drives(d)), t)
       cell = cell_t(cell_number, f(1))
    end function drive_cell

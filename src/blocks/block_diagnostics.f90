@@ -23,8 +23,10 @@ module block_diagnostics
    real(wp), parameter :: near_pivot = 0.05_wp
    !> And an unknown is faster than the drives, by more than this factor.
    real(wp), parameter :: fast = 10.0_wp
-   !> So many lengths is a slide on its way to infinity, and its derivatives are so near to those of a pole.
-   real(wp), parameter :: far_slide = 10.0_wp, as_a_pole = 0.2_wp
+   !> So many lengths is a slide on its way to infinity, and its derivatives are so near to those of a pole. Of a slide
+   !> s lengths long they give the time to the pole but for a part of the order 1/s**2: one of `very_far` lengths tells
+   !> it as far ahead as it may be.
+   real(wp), parameter :: far_slide = 10.0_wp, very_far = 1000.0_wp, as_a_pole = 0.2_wp
    !> Body vectors with a smaller sine between them are in line: the last motion accepted is as far off as the root of
    !> its distance in time.
    real(wp), parameter :: parallel = 1.0e-3_wp
@@ -168,11 +170,12 @@ contains
       end do
    end function links_with
 
-   !> The limit of the motion that is followed, if it has one before `t`: that of the first block, in solving order,
-   !> that comes to one; blocks that build on it come to it as well.
-   function limit_diagnostic(e, t) result(list)
+   !> The limit of the motion that is followed, if it has one before the time `near` or, of a slide that is very long
+   !> already, at or before the time `t` of the instant asked for: that of the first block, in solving order, that comes
+   !> to one; blocks that build on it come to it as well.
+   function limit_diagnostic(e, near, t) result(list)
       type(block_engine_t), intent(in) :: e
-      real(wp), intent(in) :: t
+      real(wp), intent(in) :: near, t
       type(diagnostic_t), allocatable :: list(:)
       type(diagnostic_t) :: r
       real(wp) :: left
@@ -197,7 +200,7 @@ contains
 
    contains
 
-      !> The time from the motion that is followed to the limit t* of block `i` before `t`; 0 where none is near. Close
+      !> The time from the motion that is followed to the limit t* of block `i` before `near`; 0 where none is. Close
       !> to t* the fastest unknown is x* + c sqrt(t* - t), so t* - t = x'/(2 x''), with an error of higher order. A
       !> block far from singular only follows another with such accelerations, beside a change point perhaps; there they
       !> may be those of rounding, while no velocity is much larger than those of the drives.
@@ -207,7 +210,7 @@ contains
 
          left = 0.0_wp
          if (e%followed(i)%pivot > near_pivot*e%blocks%list(i)%lipschitz) return
-         associate (past => e%history%past, step => t - e%history%t(0), &
+         associate (past => e%history%past, step => near - e%history%t(0), &
                     u => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
             if (size(u) == 0) return
             fastest = u(maxloc(abs(past(u)%acceleration(0)), dim=1))
@@ -219,19 +222,20 @@ contains
          end associate
       end function time_to_limit
 
-      !> The time from the motion that is followed to the instant t* before `t` at which a slide of block `i` is
-      !> infinite, since its guide comes to be parallel to another; 0 where none is. Close to t* the slide s is c/(t* -
-      !> t) and a constant, so t* - t = 2 s'/s'', and s s''/s'^2 is about 2.
+      !> The time from the motion that is followed to the instant t* at which a slide of block `i` is infinite, since
+      !> its guide comes to be parallel to another; 0 where none is. Close to t* the slide s is c/(t* - t) and a
+      !> constant, so t* - t = 2 s'/s'', and s s''/s'^2 is about 2. An instant on the pole is at t* but for rounding.
       pure real(wp) function time_to_infinity(i) result(left)
          integer, intent(in) :: i
-         real(wp) :: to_go
+         real(wp) :: to_go, step
          integer :: k
 
          left = 0.0_wp
          do k = e%blocks%list(i)%first, e%blocks%list(i)%last
-            associate (x => e%history%past(e%blocks%unknown(k)), step => t - e%history%t(0))
+            associate (x => e%history%past(e%blocks%unknown(k)))
                if (e%blocks%unknown(k) <= e%blocks%orientations .or. .not. abs(x%rate(0)) > 0.0_wp) cycle
                if (abs(x%value) < far_slide) cycle
+               step = (1.0_wp + near_part)*(merge(t, near, abs(x%value) > very_far) - e%history%t(0))
                if (abs(x%value*x%acceleration(0)/x%rate(0)**2 - 2.0_wp) > as_a_pole) cycle
                to_go = 2.0_wp*x%rate(0)/x%acceleration(0)
                if (to_go*sign(1.0_wp, step) > 0.0_wp .and. abs(to_go) < abs(step)) left = to_go

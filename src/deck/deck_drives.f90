@@ -299,8 +299,8 @@ contains
       end associate
    end function is_large
 
-   !> Whether one of the instants of `m` is t = 0. Those of TIME are evenly spaced: only those next to the place where
-   !> their line crosses zero can be.
+   !> Whether one of the instants of `m` is t = 0, but for rounding. Those of TIME are evenly spaced: only those next to
+   !> the place where their line crosses zero can be.
    pure logical function meets_zero(m)
       type(mechanism_t), intent(in) :: m
       integer :: k, near
@@ -310,7 +310,7 @@ contains
       if (min(m%t0, m%t1) > 0.0_wp .or. max(m%t0, m%t1) < 0.0_wp) return
       near = nint(m%steps*(m%t0/(m%t0 - m%t1)))
       do k = max(near - 1, 0), min(near + 1, m%steps)
-         if (.not. abs(instant(m, k)) > 0.0_wp) meets_zero = .true.
+         if (abs(instant(m, k)) <= 4.0_wp*epsilon(1.0_wp)*max(abs(m%t0), abs(m%t1))) meets_zero = .true.
       end do
    end function meets_zero
 end module deck_drives

@@ -235,7 +235,7 @@ contains
             do i = 1, size(links)
                if (d%m%links(links(i))%ground .or. known_of(q, i) < 0) cycle
                now%place(:, links(i)) = q%position(:, i) + [q%origin - d%origin, 0.0_wp]
-               now%known(links(i)) = all(abs(now%place(:2, links(i))) < max_place)
+               now%known(links(i)) = all(abs(now%place(:, links(i))) < max_place)
                if (.not. now%known(links(i))) cycle
                d%now%place(:, links(i)) = now%place(:, links(i))
                d%now%known(links(i)) = .true.

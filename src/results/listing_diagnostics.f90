@@ -67,7 +67,8 @@ contains
 
       do i = 1, size(list)
          call put_folded(o, merge(' *** ', ' --- ', any(list(i)%kind == of_results)), words_of(m, list(i)))
-         if (list(i)%kind == diagnostic_limit) call put_folded(o, ' *** ', at_limit(m, list(i)))
+         if (list(i)%kind == diagnostic_limit .and. .not. list(i)%is_pole) &
+            call put_folded(o, ' *** ', at_limit(m, list(i)))
       end do
    end subroutine put_diagnostics
 
@@ -118,8 +119,12 @@ contains
       case (diagnostic_inconsistent)
          text = owner(m, r)//' '//phrase(say_closure_error_of, m%polish)//' '//measure(m, r, '(es9.2)')
       case (diagnostic_limit)
-         text = phrase(say_limit, m%polish)//' '//number(r%t, value_form)//', '//owner(m, r)//' = ' &
-            //measure(m, r, value_form)
+         if (r%is_pole) then
+            text = phrase(say_law, m%polish)//' '//owner(m, r)//' '//phrase(say_pole_of_law, m%polish)
+         else
+            text = phrase(say_limit, m%polish)//' '//number(r%t, value_form)//', '//owner(m, r)//' = ' &
+               //measure(m, r, value_form)
+         end if
       case (diagnostic_far_estimate)
          text = links(m, r)//': '//phrase(say_off_by, m%polish)//' '//measure(m, r, '(es9.2)')
       case (diagnostic_second)

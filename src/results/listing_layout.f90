@@ -8,7 +8,7 @@ module listing_layout
    use planar, only: degree
    use mechanism, only: mechanism_t, request_pair
    use independent, only: parts_t, find_parts
-   use drives, only: law_t, new_law
+   use drives, only: law_t, new_law, pole_value
    use names, only: drive_name, more
    use law_sizes, only: growing_sizes
    use scales, only: characteristic_length, characteristic_rate, relative_tolerance, latest_time, is_length, &
@@ -47,6 +47,7 @@ module listing_layout
    type :: head_drive_t
       character(:), allocatable :: before, behind
       type(law_t) :: law
+      character(:), allocatable :: infinite   !< the words for its value at the pole of its law, where that has one
       real(wp) :: unit = 1.0_wp            !< length or radians in the unit in which it is printed
       real(wp) :: size_of(0:1) = 0.0_wp    !< of what is added up to its value, (0) + (1) |t|: see `law_sizes`
       integer :: decimals = digits_after_first, power = 0   !< as in `digits_t`
@@ -152,6 +153,7 @@ contains
       drive%before = '   '//trim(drive_name(m, m%drives(k)))//' = '
       drive%behind = ' '//unit_of(d%power(what, 0), trim(merge(angle_unit(m), m%length_unit, what == 2)))
       drive%law = new_law(m%drives(k))
+      if (abs(pole_value(m%drives(k), m%t0)) > 0.0_wp) drive%infinite = phrase(say_infinite, m%polish)
       sizes = growing_sizes(drive%law, latest_time(m))
       drive%size_of = sizes(1, :)
       if (what == 2) drive%unit = l%angle

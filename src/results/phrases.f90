@@ -49,6 +49,8 @@ module phrases
       say_not_needed = phrase_t('NOT NEEDED', 'ZBEDNA'), &
       say_closure_error_of = phrase_t('STAYS OPEN BY', 'POZOSTAJE OTWARTA O'), &
       say_limit = phrase_t('LIMIT OF MOTION AT T =', 'KRES RUCHU W CHWILI T ='), &
+      say_law = phrase_t('LAW OF', 'PRAWO RUCHU:'), &
+      say_pole_of_law = phrase_t('GOES TO INFINITY AT T = 0.0', 'DAZY DO NIESKONCZONOSCI W CHWILI T = 0.0'), &
       say_in_line = phrase_t('IN LINE', 'W JEDNEJ LINII'), &
       say_off_by = phrase_t('ESTIMATED ANGLE WAS OFF BY', 'KAT PRZYBLIZONY ODBIEGAL O'), &
       say_begins = phrase_t('THE MOTION BEGINS HERE, AT THE ASSEMBLY NEAREST TO THE ESTIMATE', &

@@ -174,17 +174,26 @@ contains
       if (k == 2) unit = unit//'/'//trim(m%time_unit)//'**2'
    end function unit_of
 
-   !> `text` as gnuplot takes it, with two of each quotation mark inside.
+   !> `text` as gnuplot takes it, the characters that mean something there by their octal numbers. Reason: in a block a
+   !> string between apostrophes cannot begin with one, and between quotation marks backquotes start a command.
    pure function quoted(text) result(word)
       character(*), intent(in) :: text
       character(:), allocatable :: word
       integer :: i
 
-      word = ''''
+      word = '"'
       do i = 1, len(text)
-         if (text(i:i) == '''') word = word//''''
-         word = word//text(i:i)
+         select case (text(i:i))
+         case ('"')
+            word = word//'\042'
+         case ('\')
+            word = word//'\134'
+         case ('`')
+            word = word//'\140'
+         case default
+            word = word//text(i:i)
+         end select
       end do
-      word = word//''''
+      word = word//'"'
    end function quoted
 end module plot_script

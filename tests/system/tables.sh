@@ -78,7 +78,7 @@ same 'one set of two, on standard output' "$w/four_bar.table-2.csv" "$w/out"
 # --plot: the table, and a script that gnuplot runs from any directory. A picture for time and each drive, of five rows of
 # the listing each. Gaps where the motion has no values; where no instant has any, empty panels.
 sed -e '/^END/q' -e 's/^\(POINT   B-RO    ROCKER  \).*/\1        0.1/' input/four_bar.deck > "$w/nowhere.deck"
-sed -e '/^END/q' -e "s/^TITLE.*/TITLE   A'S \"B\" {x}_2/" -e "s/^\(.*\)CRANK  /\1CRANK' /" input/four_bar.deck > "$w/quotes.deck"
+sed -e '/^END/q' -e "s/^TITLE.*/TITLE   'A'S \"B\" {x}_2 \`touch c\` \\\\n'/" -e "s/^\(.*\)CRANK  /\1CRANK' /" input/four_bar.deck > "$w/quotes.deck"
 for run in 'four_bar 2 5 1' 'yoke 2 14 12' 'xy_table 1 12 4' 'scott_russell_at 1 2 2' 'nowhere 1 2 1' 'quotes 1 2 1'; do
    set -- $run
    deck=input/$1.deck
