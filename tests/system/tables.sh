@@ -102,6 +102,9 @@ if command -v gnuplot > /dev/null; then
       done
       equal "gnuplot, $1: pictures" "$2" "$(ls "$w/plot_$1"/*.svg | wc -l | tr -d ' ')"
    done
+   equal 'gnuplot: a title as it stands' "'A'S \"B\" {x}_2 \`touch c\` \\n'" \
+      "$(sed -n 's/.*<text>\(.*touch.*\)<\/text>.*/\1/p' "$w/plot_quotes/time.svg")"
+   equal 'gnuplot: names in a picture' yes "$(grep -q "<text>CRANK'.vphi<" "$w/plot_quotes/time.svg" && echo yes)"
    mv "$w/plot_scott_russell_at/time.svg" "$w/time.svg"
    (cd "$w/plot_scott_russell_at" && gnuplot plot.gp > /dev/null 2>&1)
    same 'gnuplot, started beside the script' "$w/time.svg" "$w/plot_scott_russell_at/time.svg"
