@@ -180,8 +180,8 @@ contains
          end do
       end subroutine take_limits
 
-      !> The one-sided `limits` at the end `at` by the motion of mechanism `c` at the `times` beside it; not allocated, if it does not exist at
-      !> some.
+      !> The one-sided `limits` at the end `at` by the motion of mechanism `c` at the `times` beside it; not allocated,
+      !> if that does not exist at some.
       subroutine find_limits(times, at, limits)
          real(wp), intent(in) :: times(places)
          type(end_t), intent(in) :: at

@@ -32,8 +32,8 @@ module nodes
    !> What grows by more than this from 2s to s has no bound: 1/s doubles, s^(-2/3) grows by 1.59. That is not asked of
    !> numbers below the second, in characteristic ones.
    real(wp), parameter :: growth = 1.4_wp, small = 1.0e-3_wp
-   !> Before the pole of a law links turn ever faster: of their coordinates only those beyond so many characteristic ones
-   !> go to infinity with the drive, and the others come back.
+   !> Before the pole of a law links turn ever faster: of their coordinates only those beyond so many characteristic
+   !> ones go to infinity with the drive, and the others come back.
    real(wp), parameter :: far = 10.0_wp
 
    !> The rows at one time, of the requests of one independent mechanism.

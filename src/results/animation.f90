@@ -44,8 +44,8 @@ module animation
 contains
 
    !> `m` at the instants of its animation: those of TIME and instants between them, or where there is no TIME between
-   !> the first and the last of AT; none at the pole of a law. `every`: each so many of them are of the deck; 0: none but
-   !> those of AT.
+   !> the first and the last of AT; none at the pole of a law. `every`: each so many of them are of the deck; 0: none
+   !> but those of AT.
    subroutine film_of(m, film, every)
       type(mechanism_t), intent(in) :: m
       type(mechanism_t), intent(out) :: film
