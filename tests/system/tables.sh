@@ -2,16 +2,15 @@
 # Tables: of every deck of input/ one a set, whose cells are those of the CSV; what is refused.
 . tests/counting.sh
 
-# cells TABLE CSV SET: what is wrong in the table of a set; then how many cells the CSV has, those
-# counted that a row leaves out since another one before them does not exist
+# cells TABLE CSV SET: what is wrong in the table of a set; then how many cells of the CSV it has. A row has all columns, and
+# NaN where the cell of the CSV is empty.
 cells() { awk -F, -v set="$3" '
    FILENAME == ARGV[1] && FNR == 1 { columns = NF; for (i = 1; i <= NF; i++) head[i] = $i; if (/ /) print "blanks in the heading"
       for (i = 1; i <= NF; i++) if (seen[$i]++) print "twice: " $i; next }
    FILENAME == ARGV[1] {
       rows++
-      if (NF > columns || gsub(/, /, ",") != NF - 1 || / /) print "row " rows
+      if (NF != columns || / /) print "row " rows
       for (i = 1; i <= NF; i++) table[rows, i] = $i
-      length_of[rows] = NF
       at[$1] = rows
       next
    }
@@ -50,9 +49,9 @@ cells() { awk -F, -v set="$3" '
          for (r = 1; r <= rows; r++) {
             if (!((r, kind, name) in has)) continue
             wanted = csv[r, kind, name, word]
-            if (i <= length_of[r]) { found++; if (table[r, i] != wanted) print head[i] " in row " r ": " table[r, i] " is not " wanted }
-            if (i == length_of[r] + 1 && wanted != "") print "row " r " ends before " wanted
-            if (i > length_of[r] && wanted != "") found++
+            if (wanted != "") found++
+            else wanted = "NaN"
+            if (table[r, i] != wanted) print head[i] " in row " r ": " table[r, i] " is not " wanted
          }
       }
       print found + 0
@@ -74,6 +73,35 @@ for deck in $(grep -L '^VARY' input/*.deck); do
 done
 "$kinmat" input/four_bar.deck --sets 2/2 --table - > "$w/out"
 same 'one set of two, on standard output' "$w/four_bar.table-2.csv" "$w/out"
+
+# A four-bar that cannot go on after instant 2, a wheel that can, and two drives of one name: each row has every column, NaN
+# where a value is missing, and no name stands twice.
+{
+   card UNITS M DEG S; card GROUND BASE
+   for link in CRANK COUPLER ROCKER WHEEL; do card LINK $link; done
+   card JOINT A0 BASE CRANK 0.0 0.0; card JOINT A CRANK COUPLER 2.0 0.0; card JOINT B COUPLER ROCKER 3.0 1.5
+   card JOINT B0 ROCKER BASE 4.0 0.0; card JOINT W0 BASE WHEEL 6.0 0.0
+   for link in CRANK WHEEL WHEEL; do card DRIVE ANGLE $link '' 0.0 30.0; done
+   card POINT RIM WHEEL '' 7.0 0.0; card TIME 4 '' '' 0.0 4.0
+   card PRINT POINTS B; card PRINT POINTS RIM; card END
+} > "$w/missing.deck"
+"$kinmat" --no-listing --table "$w/missing.csv" "$w/missing.deck"
+equal 'what is missing: status' 2 $?
+equal 'what is missing: names of columns' \
+   't,ANGLE.CRANK,ANGLE.WHEEL,ANGLE.WHEEL.2,B.x,B.y,RIM.x,RIM.y,B.vx,B.vy,RIM.vx,RIM.vy,B.ax,B.ay,RIM.ax,RIM.ay' "$(head -n 1 "$w/missing.csv")"
+equal 'what is missing: a row' '3.0000000000000000E+000,9.0000000000000000E+001,9.0000000000000000E+001,9.0000000000000000E+001,NaN,NaN' \
+   "$(sed -n 5p "$w/missing.csv" | cut -d, -f1-6)"
+equal 'what is missing: cells of a row' '16 16 16 16 16 16' "$(awk -F, '{ print NF }' "$w/missing.csv" | xargs)"
+equal 'what is missing: numbers of the last row' 4,6 "$(awk -F, 'NR == 6 { for (i = 1; i <= NF; i++) n[$i == "NaN"]++; print n[0] - 6 "," n[1] }' "$w/missing.csv")"
+sed '/DRIVE   ANGLE   CRANK/s/ 0.0 / 120.0 /' "$w/missing.deck" > "$w/beside.deck"
+"$kinmat" --no-listing --table "$w/beside.csv" --plot "$w/plot_beside" "$w/beside.deck"
+sed -e '/DRIVE   ANGLE   WHEEL/a\
+VARY    R2      LIST            30.0            20.0' -e '/^PRINT/d' "$w/missing.deck" | sed '/^END/i\
+RANGE' > "$w/vary.deck"
+"$kinmat" --no-listing --summary "$w/summary.csv" "$w/vary.deck" 2> "$w/err"
+equal 'a summary: no column has the name of another one' '' "$(head -n 1 "$w/summary.csv" | tr , '\n' | sort | uniq -d)"
+equal 'a summary: the second drive of a name' 'ANGLE.WHEEL.RATE,ANGLE.WHEEL.RATE.2,range.min.ANGLE.WHEEL,range.min.ANGLE.WHEEL.2' \
+   "$(head -n 1 "$w/summary.csv" | tr , '\n' | grep '^[AR].*RATE\|range.min.*WHEEL' | paste -sd,)"
 
 # --plot: the table, and a script that gnuplot runs from any directory. A picture for time and each drive, of five rows of
 # the listing each. Gaps where the motion has no values; where no instant has any, empty panels.
@@ -106,12 +134,17 @@ if command -v gnuplot > /dev/null; then
    (cd "$w/plot_scott_russell_at" && gnuplot plot.gp > /dev/null 2>&1)
    same 'gnuplot, started beside the script' "$w/time.svg" "$w/plot_scott_russell_at/time.svg"
    # The table as it is: 39 instants of the four-bar, those with velocities of a mechanism in its change points.
-   points() { gnuplot -e "set table '$w/points'; plot '$1' using $2; unset table" > /dev/null 2>&1; grep -c ' i$' "$w/points"; }
+   points() { gnuplot -e "set datafile separator ','; set table '$w/points'; plot '$1' using $2; unset table" > /dev/null 2>&1
+      grep -c ' i$' "$w/points"; }
    equal 'gnuplot reads a table: all rows' 39 "$(points "$w/four_bar.table-1.csv" 2:5)"
    equal 'gnuplot reads a table: positions' "$(sed 1d "$w/scott_russell_at.table.csv" | wc -l | tr -d ' ')" \
       "$(points "$w/scott_russell_at.table.csv" 1:5)"
    equal 'gnuplot reads a table: velocities' "$(awk -F, '$4 == "POINT" && $15 == ""' "$w/scott_russell_at.csv" | wc -l | tr -d ' ')" \
       "$(points "$w/scott_russell_at.table.csv" 1:23)"
+   # Where the first quantity of a panel has no value at all, the others are drawn; a gap is where a value is missing.
+   equal 'gnuplot draws what is known beside what is not' '1 5' \
+      "$(gnuplot "$w/plot_beside/plot.gp" 2> "$w/err"; grep -c '<text>RIM.y' "$w/plot_beside/time.svg") $(points "$w/beside.csv" 1:8)"
+   equal 'gnuplot: a gap' 3 "$(points "$w/missing.csv" '"t":"B.x"')"
 else
    echo 'skipped: pictures of gnuplot (not installed)'
 fi
