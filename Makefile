@@ -34,6 +34,13 @@ RELEASE ?= $(if $(filter double,$(KIND)),-O2 -fno-tree-slp-vectorize -falign-fun
 no_lto  := -fno-lto -fno-use-linker-plugin
 DEBUG   ?= -O0 -g -fbacktrace -fcheck=all,no-array-temps -ffpe-trap=invalid,zero,overflow -finit-real=snan -finit-derived
 
+# A command is told in short, such as `FC blocks/block_state.f90 (debug)`: make V=1 shows it whole, make -s nothing of it.
+# $(call say,WORD,FILE,BUILD) stands before a command, $(quiet) before one that says nothing.
+quiet    := $(if $(V),,@)
+silent    = $(findstring s,$(firstword -$(MAKEFLAGS)))
+say       = $(quiet)$(if $(V)$(silent),,echo '$(strip $(1) $(2:src/%=%) $(call in_build,$(filter-out double,$(KIND)) $(filter-out release,$(3))))'; )
+in_build  = $(if $(strip $(1)),($(strip $(1))))
+
 # What kinds.F90 and lapack.F90 are told of the kind.
 KIND_MACROS := $(if $(filter single,$(KIND)),-DREAL_KIND=real32 -DLETTER=s,$(if $(filter quad,$(KIND)),-DREAL_KIND=real128,-DREAL_KIND=real64 -DLETTER=d))
 
@@ -48,8 +55,10 @@ vpath %.F90 $(sort $(dir $(sources)))
 .PHONY: all assembly-peers example pictures kinds run test check forms errors proofs fool-proofs kind-check quad-check single-check bench bench-short bench-against bench-peers hard hard-short circuits study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants expected install install-kinds clean
 all: $(BUILD)/kinmat
 
+# The paper's example at two instants.
 run: $(BUILD)/kinmat
-	$(BUILD)/kinmat input/yoke.deck
+	@$(BUILD)/kinmat docs/first.deck
+	@echo ' THE WHOLE MOTION: $(BUILD)/kinmat input/yoke.deck   ITS PICTURE: $(BUILD)/kinmat --no-listing --svg yoke.svg input/yoke.deck'
 
 # Builds of the same sources, each in its own directory: release for use, debug for the unit tests, fuzz with the
 # sanitizers for `make fuzz`, timed for programs of tests/ that measure time, optimized at link time as kinmat is.
@@ -61,19 +70,18 @@ timed    := $(RELEASE)
 builds   := release debug fuzz timed
 define build_in
 $(BUILD)/$(1)/%.o: %.f90 | $(BUILD)/$(1)
-	$$(FC) $$(COMMON) $$($(1)) -J$(BUILD)/$(1) -c -o $$@ $$<
+	$$(call say,FC,$$<,$(1))$$(FC) $$(COMMON) $$($(1)) -J$(BUILD)/$(1) -c -o $$@ $$<
 $(BUILD)/$(1)/%.o: %.F90 | $(BUILD)/$(1)
-	$$(FC) $$(COMMON) $$($(1)) $$(KIND_MACROS) -J$(BUILD)/$(1) -c -o $$@ $$<
+	$$(call say,FC,$$<,$(1))$$(FC) $$(COMMON) $$($(1)) $$(KIND_MACROS) -J$(BUILD)/$(1) -c -o $$@ $$<
 $(BUILD)/$(1)/libkinmat.a: $(modules:%=$(BUILD)/$(1)/%.o)
-	rm -f $$@
-	$$(AR) cr $$@ $$^
+	$$(call say,AR,$$(@F),$(1))rm -f $$@; $$(AR) cr $$@ $$^
 $(BUILD)/$(1)/kinmat: $(BUILD)/$(1)/main.o $(BUILD)/$(1)/libkinmat.a
-	$$(FC) $$(COMMON) $$($(1)) -o $$@ $$^ $$(LIBS)
+	$$(call say,LD,$$(@F),$(1))$$(FC) $$(COMMON) $$($(1)) -o $$@ $$^ $$(LIBS)
 # The programs of tests/: depends.mk adds the modules of tests/ that each uses.
 $(programs:%=$(BUILD)/$(1)/%): $(BUILD)/$(1)/%: $(BUILD)/$(1)/%.o $(BUILD)/$(1)/libkinmat.a
-	$$(FC) $$(COMMON) $$($(1)) $(if $(filter timed,$(1)),,$(no_lto)) -o $$@ $$(filter %.o,$$^) $(BUILD)/$(1)/libkinmat.a $$(LIBS)
+	$$(call say,LD,$$(@F),$(1))$$(FC) $$(COMMON) $$($(1)) $(if $(filter timed,$(1)),,$(no_lto)) -o $$@ $$(filter %.o,$$^) $(BUILD)/$(1)/libkinmat.a $$(LIBS)
 $(BUILD)/$(1):
-	mkdir -p $$@
+	$$(quiet)mkdir -p $$@
 endef
 
 # Who uses whom, read off the use statements.
@@ -105,7 +113,7 @@ $(patsubst %,$(BUILD)/timed/%.o,$(filter-out $(hot) $(warm),$(modules) main)): p
 $(BUILD)/timed/fast_forms.o: private timed := $(filter-out -fno-tree-slp-vectorize,$(RELEASE))
 
 $(BUILD)/kinmat: $(BUILD)/release/kinmat
-	cp $< $@
+	$(quiet)cp $< $@
 
 # The pictures of the documents, drawn anew.
 pictures: $(BUILD)/kinmat
@@ -116,25 +124,25 @@ example: $(BUILD)/example
 	$(BUILD)/example
 
 $(BUILD)/example: docs/example.f90 $(BUILD)/release/libkinmat.a
-	$(FC) $(COMMON) $(release) $(no_lto) -I$(BUILD)/release -o $@ $^ $(LIBS)
+	$(call say,FC,$<)$(FC) $(COMMON) $(release) $(no_lto) -I$(BUILD)/release -o $@ $^ $(LIBS)
 
 # Beside kinmat, in double precision, kinmat-quad and kinmat-single.
 kinds: $(BUILD)/kinmat $(BUILD)/kinmat-quad $(BUILD)/kinmat-single
 
 $(BUILD)/kinmat-quad $(BUILD)/kinmat-single: $(BUILD)/kinmat-%: always
-	$(MAKE) --no-print-directory KIND=$* BUILD=$(BUILD)/$* $(BUILD)/$*/kinmat
-	cmp -s $(BUILD)/$*/kinmat $@ || cp $(BUILD)/$*/kinmat $@
+	$(quiet)$(MAKE) --no-print-directory KIND=$* BUILD=$(BUILD)/$* $(BUILD)/$*/kinmat
+	$(quiet)cmp -s $(BUILD)/$*/kinmat $@ || cp $(BUILD)/$*/kinmat $@
 .PHONY: always
 
 $(BUILD)/quad/release/kind_errors $(BUILD)/single/release/kind_errors: $(BUILD)/%/release/kind_errors: $(BUILD)/kinmat-% always
-	$(MAKE) --no-print-directory KIND=$* BUILD=$(BUILD)/$* $@
+	$(quiet)$(MAKE) --no-print-directory KIND=$* BUILD=$(BUILD)/$* $@
 
 # Closed forms in real128 print the listings that the program must print, byte for byte.
 decks      := $(sort $(wildcard input/*.deck))
 references := $(decks:input/%.deck=$(BUILD)/expected/%.lst)
 $(BUILD)/expected/%.lst: input/%.deck $(BUILD)/release/print_expected
 	@mkdir -p $(BUILD)/expected
-	$(BUILD)/release/print_expected $< > $@.new && mv $@.new $@
+	$(call say,EXPECTED,$<)$(BUILD)/release/print_expected $< > $@.new && mv $@.new $@
 
 expected: $(references)
 	cp $(references) expected/
@@ -262,7 +270,7 @@ test: $(addprefix $(BUILD)/,kinmat example debug/kinmat $(checkers:%=release/%) 
 
 # The man page: the text of --help in another form.
 $(BUILD)/kinmat.1: $(BUILD)/kinmat docs/man.awk
-	$< --help | awk -v version="$$($< --version | sed 's/,.*//')" -f docs/man.awk > $@.new && mv $@.new $@
+	$(call say,MAN,$(@F))$< --help | awk -v version="$$($< --version | sed 's/,.*//')" -f docs/man.awk > $@.new && mv $@.new $@
 
 # The command with its man page and manual; the modules and their library: gfortran -I PREFIX/include/kinmat ... -lkinmat.
 install: $(BUILD)/kinmat $(BUILD)/kinmat.1

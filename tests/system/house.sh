@@ -39,8 +39,16 @@ plain_make() { env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL make --no-print-directory
 blanks="$BUILD/with a blank"
 rm -rf "$blanks"
 mkdir -p "$blanks" && cp -R Makefile src tests input "$blanks/" && chmod -R u+w "$blanks" || exit 3
-(cd "$blanks" && plain_make -s FC="${FC:-gfortran}" BUILD=built built/debug/cards.o) > "$BUILD/blanks.txt" 2>&1
+(cd "$blanks" && plain_make FC="${FC:-gfortran}" BUILD=built built/debug/cards.o) > "$BUILD/blanks.txt" 2>&1
 equal 'make below a directory with blanks: status' 0 $?
+# A short line a file; make -s prints none, make V=1 whole commands.
+equal 'make: a line a file' 'FC deck/cards.f90 (debug)' "$(sort -u "$BUILD/blanks.txt" | grep cards)"
+equal 'make: no other line' '' "$(grep -vE '^FC [a-z]+/[a-z_]+[.][fF]90 [(]debug[)]$' "$BUILD/blanks.txt")"
+touch "$blanks/src/deck/cards.f90"
+equal 'make -s prints nothing' '' "$(cd "$blanks" && plain_make -s FC="${FC:-gfortran}" BUILD=built built/debug/cards.o 2>&1)"
+touch "$blanks/src/deck/cards.f90"
+equal 'make V=1 prints whole commands' 1 \
+   "$(cd "$blanks" && plain_make V=1 FC="${FC:-gfortran}" BUILD=built built/debug/cards.o 2>&1 | grep -c -- ' -o built/debug/cards.o src/deck/cards.f90$')"
 equal 'make below a directory with blanks: its object' yes "$([ -s "$blanks/built/debug/cards.o" ] && echo yes)"
 equal 'a build directory with blanks is refused' 1 "$(plain_make -n BUILD="$PWD/a b" all 2>&1 | grep -c ' holds blanks')"
 rm -rf "$blanks"
