@@ -13,7 +13,7 @@ module listing_layout
    use law_sizes, only: growing_sizes
    use scales, only: characteristic_length, characteristic_rate, relative_tolerance, latest_time, is_length, &
       shortest_step
-   use numerals, only: whole, numeral_length
+   use numerals, only: whole, numeral_length, max_decimals
    use text_output, only: output_t, put
    use phrases
    implicit none
@@ -85,7 +85,10 @@ contains
       integer :: k
 
       if (m%degrees) l%angle = degree
-      l%digits_t = digits_for(m, l%angle)
+      ! What a tolerance changes has four digits.
+      if (allocated(m%tolerances)) &
+         l%more_decimals = max(0, 3 - digits_after_first - floor(log10(relative_tolerance(m))))
+      l%digits_t = digits_for(m, l%angle, l%more_decimals)
       allocate (l%own(0:0), l%part(size(m%requests)), l%drive_part(size(m%drives)))
       l%part = 0
       l%drive_part = 0
@@ -97,9 +100,6 @@ contains
       end if
       l%own(0) = l%digits_t
       call choose_time_digits(m, l%time_decimals, l%time_power)
-      ! What a tolerance changes has four digits.
-      if (allocated(m%tolerances)) &
-         l%more_decimals = max(0, 3 - digits_after_first - floor(log10(relative_tolerance(m))))
       do k = 1, size(l%names)
          l%names(k) = column_names(k, m%polish)
       end do
@@ -159,19 +159,21 @@ contains
       drive%power = d%power(what, 0)
    end subroutine take_drive
 
-   !> The digits of one mechanism; `angle`: radians in the unit in which angles are printed.
-   pure type(digits_t) function digits_for(m, angle) result(d)
+   !> The digits of one mechanism; `angle`: radians in the unit in which angles are printed; `more`: decimals that some
+   !> rows have in addition.
+   pure type(digits_t) function digits_for(m, angle, more) result(d)
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: angle
+      integer, intent(in), optional :: more
       real(wp) :: length, rate
       integer :: k
 
       length = characteristic_length(m)
       rate = characteristic_rate(m, length)
       do k = 0, 2
-         call choose_digits(log10(length) + k*log10(rate), d%decimals(1, k), d%power(1, k))
+         call choose_digits(log10(length) + k*log10(rate), d%decimals(1, k), d%power(1, k), more)
          call choose_digits(k*log10(rate) + log10(merge(1.0_wp/angle, 1.0_wp, k > 0)), &
-            d%decimals(2, k), d%power(2, k))
+            d%decimals(2, k), d%power(2, k), more)
       end do
    end function digits_for
 
@@ -186,7 +188,7 @@ contains
 
       if (parts%count == 1) return
       do c = 1, size(own)
-         own(c) = digits_for(m(c), l%angle)
+         own(c) = digits_for(m(c), l%angle, l%more_decimals)
       end do
       l%digits_t = own(1)
       largest = own(1)
@@ -216,15 +218,20 @@ contains
       end do
    end function column_powers
 
-   !> Decimals and power of ten for values of order 10**`order`: seven digits, no power as long as they fit.
-   pure subroutine choose_digits(order, decimals, power)
+   !> Decimals and power of ten for values of order 10**`order`: seven digits. No power where all of them, and `more`
+   !> decimals, have room without one: from 0.001 to 9999999.
+   pure subroutine choose_digits(order, decimals, power, more)
       real(wp), intent(in) :: order
       integer, intent(out) :: decimals, power
-      integer :: k
+      integer, intent(in), optional :: more
+      integer :: k, most
 
       k = floor(order + margin)
       power = 0
-      if (k < -2 .or. k > 4) power = 3*floor(real(k, wp)/3.0_wp + margin)
+      most = max_decimals
+      if (present(more)) most = most - more
+      if (digits_after_first - k > most .or. digits_after_first - k < 0) &
+         power = 3*floor(real(k, wp)/3.0_wp + margin)
       decimals = digits_after_first - (k - power)
    end subroutine choose_digits
 

@@ -52,11 +52,11 @@ equal 'backwards' "$(awk '/^  (MIN-MAX|MAX-MIN|RATIO) / { print $2 }' "$w/small"
 
 # In other units of length and time the numbers have the same digits.
 awk '/^(LINK|POINT) / { head = sprintf("%-32s", substr($0, 1, 32)); x = substr($0, 33, 16) + 0; y = substr($0, 49, 16) + 0
-      printf "%s%-16.6E%-16.6E%s\n", head, x*1e6, y*1e6, substr($0, 65); next } { print }' input/stroke.deck > "$w/large.deck"
+      printf "%s%-16.6E%-16.6E%s\n", head, x*1e9, y*1e9, substr($0, 65); next } { print }' input/stroke.deck > "$w/large.deck"
 "$kinmat" "$w/large.deck" > "$w/listing" 2>&1
 extremes "$w/listing" | grep -v '10[*][*]' > "$w/large"
 extremes expected/stroke.lst > "$w/small"
-same 'a million times as large' "$w/small" "$w/large"
+same 'a billion times as large' "$w/small" "$w/large"
 
 # Polish: the same table.
 with stroke "$(card LANG PL)" > "$w/stroke.deck"
