@@ -279,7 +279,8 @@ install: $(BUILD)/kinmat $(BUILD)/kinmat.1
 	install -m 644 $(modules:%=$(BUILD)/release/%.mod) $(DESTDIR)$(PREFIX)/include/kinmat
 	install -m 644 $(BUILD)/release/libkinmat.a $(DESTDIR)$(PREFIX)/lib
 	install -m 644 README.md docs/manual.md docs/example.f90 $(DESTDIR)$(PREFIX)/share/doc/kinmat
-	install -m 644 $(BUILD)/kinmat.1 $(DESTDIR)$(PREFIX)/share/man/man1
+	sed 's|@PREFIX@|$(PREFIX)|' $(BUILD)/kinmat.1 > $(DESTDIR)$(PREFIX)/share/man/man1/kinmat.1
+	chmod 644 $(DESTDIR)$(PREFIX)/share/man/man1/kinmat.1
 
 install-kinds: install kinds
 	install -m 755 $(BUILD)/kinmat-quad $(BUILD)/kinmat-single $(DESTDIR)$(PREFIX)/bin

@@ -23,6 +23,8 @@ equal 'the man page: options are found' yes "$([ "$(wc -l < "$w/options")" -ge 1
 equal 'the man page: options it lacks' '' "$(while read -r option; do tr -d '\\' < "$page" | grep -qF -- "fB$option" || echo "$option"; done < "$w/options")"
 equal 'the man page: its sections' 'NAME SYNOPSIS DESCRIPTION OPTIONS EXIT STATUS SEE ALSO ' "$(sed -n 's/^[.]SH //p' "$page" | tr '\n' ' ')"
 equal 'the man page: exit statuses' '0 1 2 3 ' "$(sed -n '/^.SH EXIT/,$p' "$page" | grep -E '^[0-9]$' | tr '\n' ' ')"
+manual=$(sed -n 's/.*fI\(.*manual[.]md\).*/\1/p' "$page")
+equal 'the man page: the manual where it is' "/usr/share/doc/kinmat/manual.md there" "$manual $([ -s "$w$manual" ] && echo there)"
 equal 'the man page: lines over 120 columns' '' "$(awk 'length > 120' "$page")"
 read_page() { if command -v "$1" > /dev/null; then equal "the man page: $1" '' "$("$@" "$page" 2>&1 > /dev/null)"; else echo "skipped: the man page in $1 (not installed)"; fi; }
 read_page groff -man -Tascii -ww -z
