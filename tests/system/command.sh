@@ -48,7 +48,7 @@ one_set() {
 
 # tables LISTING: what stands after the heads of the sets; rows LISTING: the rows of numbers among that
 tables() { awk '/^ (INSTANT|CHWILA) 0 / { on = 1 } /^ (END OF SET|KONIEC KOMPLETU) / { on = 0 } on' "$1"; }
-rows() { tables "$1" | grep -E '^ [A-Z0-9-]+ +-?[0-9]+[.]'; }
+rows() { tables "$1" | grep -E '^ [A-Z0-9-]+ +-?[0-9]*[.]'; }
 
 deck M EN > "$w/m.deck"
 
