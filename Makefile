@@ -41,7 +41,9 @@ KIND_MACROS := $(if $(filter single,$(KIND)),-DREAL_KIND=real32 -DLETTER=s,$(if 
 sources := $(sort $(shell find src -name '*.f90' -o -name '*.F90'))
 helpers := $(filter-out %/funit.f90,$(sort $(shell find tests -name '*.f90')))
 suites  := $(sort $(shell find tests -name 'test_*.pf'))
-modules := $(filter-out main,$(basename $(notdir $(sources))))
+# Of the command alone: not in the library.
+command := main allocation
+modules := $(filter-out $(command),$(basename $(notdir $(sources))))
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))
 vpath %.F90 $(sort $(dir $(sources)))
 
@@ -67,8 +69,8 @@ $(BUILD)/$(1)/%.o: %.F90 | $(BUILD)/$(1)
 $(BUILD)/$(1)/libkinmat.a: $(modules:%=$(BUILD)/$(1)/%.o)
 	rm -f $$@
 	$$(AR) cr $$@ $$^
-$(BUILD)/$(1)/kinmat: $(BUILD)/$(1)/main.o $(BUILD)/$(1)/libkinmat.a
-	$$(FC) $$(COMMON) $$($(1)) -o $$@ $$^ $$(LIBS)
+$(BUILD)/$(1)/kinmat: $(command:%=$(BUILD)/$(1)/%.o) $(BUILD)/$(1)/libkinmat.a
+	$$(FC) $$(COMMON) $$($(1)) -o $$@ $$^ $$(LIBS) -ldl
 # The programs of tests/: depends.mk adds the modules of tests/ that each uses.
 $(programs:%=$(BUILD)/$(1)/%): $(BUILD)/$(1)/%: $(BUILD)/$(1)/%.o $(BUILD)/$(1)/libkinmat.a
 	$$(FC) $$(COMMON) $$($(1)) $(if $(filter timed,$(1)),,$(no_lto)) -o $$@ $$(filter %.o,$$^) $(BUILD)/$(1)/libkinmat.a $$(LIBS)
@@ -99,8 +101,8 @@ lane_flags := -fpeel-loops -fno-tree-loop-distribute-patterns
 lanes := $(if $(filter double,$(KIND)),$(call modules_in,lanes))
 $(patsubst %,$(BUILD)/release/%.o,$(lanes)): private release += $(lane_flags)
 $(patsubst %,$(BUILD)/timed/%.o,$(lanes)): private timed += $(lane_flags)
-$(patsubst %,$(BUILD)/release/%.o,$(filter-out $(hot) $(warm),$(modules) main $(notdir $(basename $(helpers))))): private release := $(less)
-$(patsubst %,$(BUILD)/timed/%.o,$(filter-out $(hot) $(warm),$(modules) main)): private timed := $(less)
+$(patsubst %,$(BUILD)/release/%.o,$(filter-out $(hot) $(warm),$(modules) $(command) $(notdir $(basename $(helpers))))): private release := $(less)
+$(patsubst %,$(BUILD)/timed/%.o,$(filter-out $(hot) $(warm),$(modules) $(command))): private timed := $(less)
 # The closed forms that `make bench` compares with are compiled as they are fastest, in pairs.
 $(BUILD)/timed/fast_forms.o: private timed := $(filter-out -fno-tree-slp-vectorize,$(RELEASE))
 

@@ -10,7 +10,7 @@ module shares
    use deck, only: share_end
    use numerals, only: whole
    use processes, only: make_pipe, has_input, fork_process, wait_for_child, interrupt_child, end_process, &
-      killed
+      killed, report_to, end_of_message
    use system_calls, only: read_bytes, write_bytes, close_descriptor, signal_received, note_all_signals, last_error, &
       reason_of
    use text_output, only: has_failed, turn_lost
@@ -27,8 +27,6 @@ module shares
    integer, parameter :: parts_a_process = 1024, parts_together = 32
    !> Milliseconds after which the parent looks whether a signal has come, and how far the job is.
    integer, parameter :: look_time = 200
-   !> Ends the message that a child reports to its parent.
-   character(1), parameter :: end_of_message = achar(2)
 
    !> What this process computes.
    type :: share_of_job_t
@@ -90,6 +88,7 @@ contains
          call note_all_signals
          call close_one(s%report)
          s%report = report
+         call report_to(report)
          ! Those that it computes no part of are left as they are.
          o%files(:, 0)%emptied = .true.
       end subroutine begin_child

@@ -9,7 +9,7 @@ module card_sets
       label_b, label_c, real_1, real_2, real_3, form_ground, form_link, form_point, form_revolute, form_prism, &
       form_joint, form_end
    use card_reader, only: parsed_card_t
-   use failures, only: failure_t, fail, capitals, status_system
+   use failures, only: capitals
    use input_errors, only: error_code_t, input_errors_t, add_field_error, add_remark, link_unknown, &
       point_unknown, pair_unknown, name_repeated, pair_one_link, pair_grounds
    use names, only: name_table_t, put_name, find_name, listed
@@ -83,21 +83,15 @@ contains
       set%mechanism = mechanism_t(set_number=number)
    end subroutine begin_mechanism
 
-   !> Appends a card. Errors: status_system, if there is no memory for it.
-   subroutine append_card(set, card, failure)
+   !> Appends a card.
+   subroutine append_card(set, card)
       type(card_set_t), intent(inout) :: set
       type(parsed_card_t), intent(in) :: card
-      type(failure_t), allocatable, intent(out) :: failure
       type(parsed_card_t), allocatable :: larger(:)
-      integer :: status
 
       if (.not. allocated(set%cards)) allocate (set%cards(first_room))
       if (set%count == size(set%cards)) then
-         allocate (larger(2*set%count), stat=status)
-         if (status /= 0) then
-            call fail(failure, status_system, 'NOT ENOUGH MEMORY FOR THE DECK')
-            return
-         end if
+         allocate (larger(2*set%count))
          larger(1:set%count) = set%cards
          call move_alloc(larger, set%cards)
       end if

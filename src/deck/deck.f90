@@ -192,8 +192,7 @@ contains
          end if
          if (is_passed_over(card)) cycle
          last = card
-         call take_card(card, progress, failure)
-         if (allocated(failure)) return
+         call take_card(card, progress)
       end do
       if (last%number == 0 .and. progress%passed == 0 .and. last_set > 0) then
          call add_deck_error(progress%set%errors, deck_empty)
@@ -205,10 +204,9 @@ contains
    end subroutine read_cards
 
    !> Adds `card` to the open set, or closes the set.
-   subroutine take_card(card, progress, failure)
+   subroutine take_card(card, progress)
       type(card_t), intent(in) :: card
       type(progress_t), intent(inout) :: progress
-      type(failure_t), allocatable, intent(out) :: failure
       type(parsed_card_t) :: parsed
 
       associate (set => progress%set)
@@ -225,7 +223,7 @@ contains
             if (small_field(card) > 0) set%small = card
          end if
          if (parsed%form /= form_end) then
-            call append_card(set, parsed, failure)
+            call append_card(set, parsed)
          else if (set%count == 0) then
             call add_field_error(set%errors, set_empty, card, card_fields(card_name))
          else
