@@ -19,6 +19,7 @@ module outputs
       type(output_t), allocatable :: files(:, :)
       character(:), allocatable :: made_directory           !< that was not there before
       type(parts_in_turn_t) :: parts                        !< of a job in several processes: see `shares`
+      logical :: ended = .false.                            !< before its time: the listing says so in its last line
    end type outputs_t
 
 contains

@@ -208,13 +208,13 @@ contains
       if (.not. next_part) call write_rest(o%parts, o%files(:, 0))
    end function next_part
 
-   !> No signal has come, and no write has failed.
+   !> The run has not ended before its time, and no write has failed.
    logical function goes_on(o, s)
       class(outputs_t), intent(in) :: o
       type(share_of_job_t), intent(in) :: s
       integer :: i
 
-      goes_on = signal_received() == 0 .and. .not. any(has_failed(o%files(:, 0)))
+      goes_on = .not. (o%ended .or. any(has_failed(o%files(:, 0))))
       do i = s%own_first, min(s%own_last, ubound(o%files, 2))
          if (any(has_failed(o%files(:, i)))) goes_on = .false.
       end do

@@ -191,13 +191,14 @@ contains
       call put(o, '')
    end subroutine listing_end
 
-   !> The line in the place of what follows instant number `step`, where a run ends before its time.
-   subroutine listing_broken_off(o, m, step)
+   !> Puts the last line of a run that ends before its time: `words` say of which kind the last result is, `number` which.
+   subroutine listing_broken_off(o, m, words, number)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: step
+      type(phrase_t), intent(in) :: words
+      integer, intent(in) :: number
 
       call put(o, '')
-      call put(o, ' *** '//phrase(say_broken_off, m%polish)//' '//whole(step))
+      call put(o, ' *** '//phrase(words, m%polish)//' '//whole(number))
    end subroutine listing_broken_off
 end module listing

@@ -180,7 +180,8 @@ module phrases
       say_shares_elsewhere = phrase_t('TOLERANCES: SHARES STAND IN THE TABLES OF EACH VARIANT, SEE CARD PRINT', &
          'TOLERANCJE: UDZIALY SA W TABLICACH WARIANTU, PATRZ KARTA PRINT'), &
       say_broken_variant = phrase_t('THE RUN WAS BROKEN OFF AFTER VARIANT', 'OBLICZENIA PRZERWANO PO WARIANCIE'), &
-      say_broken_off = phrase_t('THE RUN WAS BROKEN OFF AFTER INSTANT', 'OBLICZENIA PRZERWANO PO CHWILI')
+      say_broken_off = phrase_t('THE RUN WAS BROKEN OFF AFTER INSTANT', 'OBLICZENIA PRZERWANO PO CHWILI'), &
+      say_broken_set = phrase_t('THE RUN WAS BROKEN OFF AFTER SET', 'OBLICZENIA PRZERWANO PO KOMPLECIE')
    ! Remarks about a deck.
    type(phrase_t), parameter, public :: &
       say_card = phrase_t('CARD', 'KARTA'), &
