@@ -266,13 +266,19 @@ test: $(addprefix $(BUILD)/,kinmat example debug/kinmat $(checkers:%=release/%) 
 $(BUILD)/kinmat.1: $(BUILD)/kinmat docs/man.awk
 	$< --help | awk -v version="$$($< --version | sed 's/,.*//')" -f docs/man.awk > $@.new && mv $@.new $@
 
-# The command with its man page and manual; the modules and their library: gfortran -I PREFIX/include/kinmat ... -lkinmat.
+# The command with its man page; the modules and their library: gfortran -I PREFIX/include/kinmat ... -lkinmat; the
+# documents, in folders of the same names as here, so that their links lead somewhere, with the decks.
+documents := $(DESTDIR)$(PREFIX)/share/doc/kinmat
 install: $(BUILD)/kinmat $(BUILD)/kinmat.1
-	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin include/kinmat lib share/doc/kinmat share/man/man1)
+	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin include/kinmat lib share/man/man1) $(addprefix $(documents)/,docs/pictures input src)
 	install -m 755 $(BUILD)/kinmat $(DESTDIR)$(PREFIX)/bin/kinmat
 	install -m 644 $(modules:%=$(BUILD)/release/%.mod) $(DESTDIR)$(PREFIX)/include/kinmat
 	install -m 644 $(BUILD)/release/libkinmat.a $(DESTDIR)$(PREFIX)/lib
-	install -m 644 README.md docs/manual.md docs/example.f90 $(DESTDIR)$(PREFIX)/share/doc/kinmat
+	install -m 644 README.md CHANGELOG.md LICENSE $(documents)
+	install -m 644 $(wildcard docs/*.md docs/*.svg docs/*.png) docs/slurm.sh docs/example.f90 $(documents)/docs
+	install -m 644 $(wildcard docs/pictures/*.svg) $(documents)/docs/pictures
+	install -m 644 $(decks) $(documents)/input
+	install -m 644 src/README.md $(documents)/src
 	install -m 644 $(BUILD)/kinmat.1 $(DESTDIR)$(PREFIX)/share/man/man1
 
 install-kinds: install kinds

@@ -35,6 +35,6 @@ statuses { statuses = statuses " " plain($0); next }
 END {
    print ".SH SEE ALSO"
    print "The manual, with all cards, messages and formats:"
-   print "\\fIPREFIX\\fR/share/doc/kinmat/manual.md, where kinmat is installed below"
+   print "\\fIPREFIX\\fR/share/doc/kinmat/docs/manual.md, where kinmat is installed below"
    print "\\fIPREFIX\\fR (/usr/local)."
 }
