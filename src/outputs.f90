@@ -101,8 +101,8 @@ contains
          //capitals(reason_of(last_error()))//')')
    end subroutine open_directory
 
-   !> The path of output number `k`, for which the command gives `text`; '' is standard output. /dev/null takes the files
-   !> of all sets.
+   !> The path of output number `k`, for which the command gives `text`; '' is standard output. /dev/null takes the
+   !> files of all sets.
    function path_of(k, text, suffix) result(path)
       integer, intent(in) :: k
       character(*), intent(in) :: text, suffix

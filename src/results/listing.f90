@@ -191,7 +191,8 @@ contains
       call put(o, '')
    end subroutine listing_end
 
-   !> Puts the last line of a run that ends before its time: `words` say of which kind the last result is, `number` which.
+   !> Puts the last line of a run that ends before its time: `words` name the kind of the last result, an instant, a
+   !> variant or a set, and `number` tells which.
    subroutine listing_broken_off(o, m, words, number)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
