@@ -17,9 +17,9 @@ parts() {
    results of the methods|97|"$MAKE" --no-print-directory bench-short
    cards and options together|1000|tests/system/together.sh
    the command|426|tests/system/command.sh
-   what is installed|11|tests/system/install.sh
+   what is installed|16|tests/system/install.sh
    many sets|7|tests/system/many_sets.sh
-   what is printed arrives|205|tests/system/output.sh
+   what is printed arrives|270|tests/system/output.sh
    unit tests|1150|"$MAKE" --no-print-directory unit
    the stand-in|75|"$MAKE" --no-print-directory unit-stand-in
    the sources|60|tests/system/house.sh
