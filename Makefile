@@ -34,6 +34,13 @@ RELEASE ?= $(if $(filter double,$(KIND)),-O2 -fno-tree-slp-vectorize -falign-fun
 no_lto  := -fno-lto -fno-use-linker-plugin
 DEBUG   ?= -O0 -g -fbacktrace -fcheck=all,no-array-temps -ffpe-trap=invalid,zero,overflow -finit-real=snan -finit-derived
 
+# A command is told in short, such as `FC blocks/block_state.f90 (debug)`: make V=1 shows it whole, make -s nothing of it.
+# $(call say,WORD,FILE,BUILD) stands before a command, $(quiet) before one that says nothing.
+quiet    := $(if $(V),,@)
+silent    = $(findstring s,$(firstword -$(MAKEFLAGS)))
+say       = $(quiet)$(if $(V)$(silent),,echo '$(strip $(1) $(2:src/%=%) $(call in_build,$(filter-out double,$(KIND)) $(filter-out release,$(3))))'; )
+in_build  = $(if $(strip $(1)),($(strip $(1))))
+
 # What kinds.F90 and lapack.F90 are told of the kind.
 KIND_MACROS := $(if $(filter single,$(KIND)),-DREAL_KIND=real32 -DLETTER=s,$(if $(filter quad,$(KIND)),-DREAL_KIND=real128,-DREAL_KIND=real64 -DLETTER=d))
 
@@ -41,15 +48,19 @@ KIND_MACROS := $(if $(filter single,$(KIND)),-DREAL_KIND=real32 -DLETTER=s,$(if 
 sources := $(sort $(shell find src -name '*.f90' -o -name '*.F90'))
 helpers := $(filter-out %/funit.f90,$(sort $(shell find tests -name '*.f90')))
 suites  := $(sort $(shell find tests -name 'test_*.pf'))
-modules := $(filter-out main,$(basename $(notdir $(sources))))
+# Of the command alone: not in the library.
+command := main allocation
+modules := $(filter-out $(command),$(basename $(notdir $(sources))))
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))
 vpath %.F90 $(sort $(dir $(sources)))
 
 .PHONY: all assembly-peers example pictures kinds run test check forms errors proofs fool-proofs kind-check quad-check single-check bench bench-short bench-against compare-against bench-peers hard hard-short circuits study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants expected install install-kinds clean
 all: $(BUILD)/kinmat
 
+# The paper's example at two instants.
 run: $(BUILD)/kinmat
-	$(BUILD)/kinmat input/yoke.deck
+	@$(BUILD)/kinmat docs/first.deck
+	@echo ' THE WHOLE MOTION: $(BUILD)/kinmat input/yoke.deck   ITS PICTURE: $(BUILD)/kinmat --no-listing --svg yoke.svg input/yoke.deck'
 
 # Builds of the same sources, each in its own directory: release for use, debug for the unit tests, fuzz with the
 # sanitizers for `make fuzz`, timed for programs of tests/ that measure time, optimized at link time as kinmat is.
@@ -61,19 +72,18 @@ timed    := $(RELEASE)
 builds   := release debug fuzz timed
 define build_in
 $(BUILD)/$(1)/%.o: %.f90 | $(BUILD)/$(1)
-	$$(FC) $$(COMMON) $$($(1)) -J$(BUILD)/$(1) -c -o $$@ $$<
+	$$(call say,FC,$$<,$(1))$$(FC) $$(COMMON) $$($(1)) -J$(BUILD)/$(1) -c -o $$@ $$<
 $(BUILD)/$(1)/%.o: %.F90 | $(BUILD)/$(1)
-	$$(FC) $$(COMMON) $$($(1)) $$(KIND_MACROS) -J$(BUILD)/$(1) -c -o $$@ $$<
+	$$(call say,FC,$$<,$(1))$$(FC) $$(COMMON) $$($(1)) $$(KIND_MACROS) -J$(BUILD)/$(1) -c -o $$@ $$<
 $(BUILD)/$(1)/libkinmat.a: $(modules:%=$(BUILD)/$(1)/%.o)
-	rm -f $$@
-	$$(AR) cr $$@ $$^
-$(BUILD)/$(1)/kinmat: $(BUILD)/$(1)/main.o $(BUILD)/$(1)/libkinmat.a
-	$$(FC) $$(COMMON) $$($(1)) -o $$@ $$^ $$(LIBS)
+	$$(call say,AR,$$(@F),$(1))rm -f $$@; $$(AR) cr $$@ $$^
+$(BUILD)/$(1)/kinmat: $(command:%=$(BUILD)/$(1)/%.o) $(BUILD)/$(1)/libkinmat.a
+	$$(call say,LD,$$(@F),$(1))$$(FC) $$(COMMON) $$($(1)) -o $$@ $$^ $$(LIBS) -ldl
 # The programs of tests/: depends.mk adds the modules of tests/ that each uses.
 $(programs:%=$(BUILD)/$(1)/%): $(BUILD)/$(1)/%: $(BUILD)/$(1)/%.o $(BUILD)/$(1)/libkinmat.a
-	$$(FC) $$(COMMON) $$($(1)) $(if $(filter timed,$(1)),,$(no_lto)) -o $$@ $$(filter %.o,$$^) $(BUILD)/$(1)/libkinmat.a $$(LIBS)
+	$$(call say,LD,$$(@F),$(1))$$(FC) $$(COMMON) $$($(1)) $(if $(filter timed,$(1)),,$(no_lto)) -o $$@ $$(filter %.o,$$^) $(BUILD)/$(1)/libkinmat.a $$(LIBS)
 $(BUILD)/$(1):
-	mkdir -p $$@
+	$$(quiet)mkdir -p $$@
 endef
 
 # Who uses whom, read off the use statements.
@@ -99,13 +109,13 @@ lane_flags := -fpeel-loops -fno-tree-loop-distribute-patterns
 lanes := $(if $(filter double,$(KIND)),$(call modules_in,lanes))
 $(patsubst %,$(BUILD)/release/%.o,$(lanes)): private release += $(lane_flags)
 $(patsubst %,$(BUILD)/timed/%.o,$(lanes)): private timed += $(lane_flags)
-$(patsubst %,$(BUILD)/release/%.o,$(filter-out $(hot) $(warm),$(modules) main $(notdir $(basename $(helpers))))): private release := $(less)
-$(patsubst %,$(BUILD)/timed/%.o,$(filter-out $(hot) $(warm),$(modules) main)): private timed := $(less)
+$(patsubst %,$(BUILD)/release/%.o,$(filter-out $(hot) $(warm),$(modules) $(command) $(notdir $(basename $(helpers))))): private release := $(less)
+$(patsubst %,$(BUILD)/timed/%.o,$(filter-out $(hot) $(warm),$(modules) $(command))): private timed := $(less)
 # The closed forms that `make bench` compares with are compiled as they are fastest, in pairs.
 $(BUILD)/timed/fast_forms.o: private timed := $(filter-out -fno-tree-slp-vectorize,$(RELEASE))
 
 $(BUILD)/kinmat: $(BUILD)/release/kinmat
-	cp $< $@
+	$(quiet)cp $< $@
 
 # The pictures of the documents, drawn anew.
 pictures: $(BUILD)/kinmat
@@ -116,25 +126,25 @@ example: $(BUILD)/example
 	$(BUILD)/example
 
 $(BUILD)/example: docs/example.f90 $(BUILD)/release/libkinmat.a
-	$(FC) $(COMMON) $(release) $(no_lto) -I$(BUILD)/release -o $@ $^ $(LIBS)
+	$(call say,FC,$<)$(FC) $(COMMON) $(release) $(no_lto) -I$(BUILD)/release -o $@ $^ $(LIBS)
 
 # Beside kinmat, in double precision, kinmat-quad and kinmat-single.
 kinds: $(BUILD)/kinmat $(BUILD)/kinmat-quad $(BUILD)/kinmat-single
 
 $(BUILD)/kinmat-quad $(BUILD)/kinmat-single: $(BUILD)/kinmat-%: always
-	$(MAKE) --no-print-directory KIND=$* BUILD=$(BUILD)/$* $(BUILD)/$*/kinmat
-	cmp -s $(BUILD)/$*/kinmat $@ || cp $(BUILD)/$*/kinmat $@
+	$(quiet)$(MAKE) --no-print-directory KIND=$* BUILD=$(BUILD)/$* $(BUILD)/$*/kinmat
+	$(quiet)cmp -s $(BUILD)/$*/kinmat $@ || cp $(BUILD)/$*/kinmat $@
 .PHONY: always
 
 $(BUILD)/quad/release/kind_errors $(BUILD)/single/release/kind_errors: $(BUILD)/%/release/kind_errors: $(BUILD)/kinmat-% always
-	$(MAKE) --no-print-directory KIND=$* BUILD=$(BUILD)/$* $@
+	$(quiet)$(MAKE) --no-print-directory KIND=$* BUILD=$(BUILD)/$* $@
 
 # Closed forms in real128 print the listings that the program must print, byte for byte.
 decks      := $(sort $(wildcard input/*.deck))
 references := $(decks:input/%.deck=$(BUILD)/expected/%.lst)
 $(BUILD)/expected/%.lst: input/%.deck $(BUILD)/release/print_expected
 	@mkdir -p $(BUILD)/expected
-	$(BUILD)/release/print_expected $< > $@.new && mv $@.new $@
+	$(call say,EXPECTED,$<)$(BUILD)/release/print_expected $< > $@.new && mv $@.new $@
 
 expected: $(references)
 	cp $(references) expected/
@@ -239,9 +249,10 @@ fuzz-mechanisms: $(BUILD)/release/fuzz_mechanisms
 fuzz-extremes: $(BUILD)/kinmat $(BUILD)/release/fuzz_mechanisms
 	BUILD=$(BUILD) tests/fuzz/fuzz_extremes.sh $(or $(N),200) $(or $(SEED),1)
 
-# Relations between runs of all decks of input/, or of N made by the dice, from seed SEED on.
+# Relations between runs of all decks of input/, or of N made by the dice, from seed SEED on; and of runs and assemblies.
 relations: $(BUILD)/kinmat $(BUILD)/release/fuzz_mechanisms
 	BUILD=$(BUILD) tests/system/relations.sh $(if $(N),--random $(N) $(or $(SEED),1))
+	BUILD=$(BUILD) tests/system/assembly_relations.sh $(if $(N),--random $(N) $(or $(SEED),1))
 
 # Tolerances against N decks with all numbers off by chance.
 tolerances: $(BUILD)/kinmat $(BUILD)/kinmat-quad
@@ -266,16 +277,23 @@ test: $(addprefix $(BUILD)/,kinmat example debug/kinmat $(checkers:%=release/%) 
 
 # The man page: the text of --help in another form.
 $(BUILD)/kinmat.1: $(BUILD)/kinmat docs/man.awk
-	$< --help | awk -v version="$$($< --version | sed 's/,.*//')" -f docs/man.awk > $@.new && mv $@.new $@
+	$(call say,MAN,$(@F))$< --help | awk -v version="$$($< --version | sed 's/,.*//')" -f docs/man.awk > $@.new && mv $@.new $@
 
-# The command with its man page and manual; the modules and their library: gfortran -I PREFIX/include/kinmat ... -lkinmat.
+# The command with its man page; the modules and their library: gfortran -I PREFIX/include/kinmat ... -lkinmat; the
+# documents, in folders of the same names as here, so that their links lead somewhere, with the decks.
+documents := $(DESTDIR)$(PREFIX)/share/doc/kinmat
 install: $(BUILD)/kinmat $(BUILD)/kinmat.1
-	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin include/kinmat lib share/doc/kinmat share/man/man1)
+	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin include/kinmat lib share/man/man1) $(addprefix $(documents)/,docs/pictures input src)
 	install -m 755 $(BUILD)/kinmat $(DESTDIR)$(PREFIX)/bin/kinmat
 	install -m 644 $(modules:%=$(BUILD)/release/%.mod) $(DESTDIR)$(PREFIX)/include/kinmat
 	install -m 644 $(BUILD)/release/libkinmat.a $(DESTDIR)$(PREFIX)/lib
-	install -m 644 README.md docs/manual.md docs/example.f90 $(DESTDIR)$(PREFIX)/share/doc/kinmat
-	install -m 644 $(BUILD)/kinmat.1 $(DESTDIR)$(PREFIX)/share/man/man1
+	install -m 644 README.md CHANGELOG.md LICENSE $(documents)
+	install -m 644 $(wildcard docs/*.md docs/*.svg docs/*.png) docs/slurm.sh docs/example.f90 docs/first.deck $(documents)/docs
+	install -m 644 $(wildcard docs/pictures/*.svg) $(documents)/docs/pictures
+	install -m 644 $(decks) $(documents)/input
+	install -m 644 src/README.md $(documents)/src
+	sed 's|@PREFIX@|$(PREFIX)|' $(BUILD)/kinmat.1 > $(DESTDIR)$(PREFIX)/share/man/man1/kinmat.1
+	chmod 644 $(DESTDIR)$(PREFIX)/share/man/man1/kinmat.1
 
 install-kinds: install kinds
 	install -m 755 $(BUILD)/kinmat-quad $(BUILD)/kinmat-single $(DESTDIR)$(PREFIX)/bin

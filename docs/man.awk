@@ -1,5 +1,6 @@
 # The man page of kinmat, of the text that `kinmat --help` prints. Options stand in columns 3 to 22, what they do from
 # column 24 on; the other lines are commands, before the options, and sentences, behind them. version: for its foot.
+# `make install` puts its PREFIX in the place of @PREFIX@.
 function plain(text) { gsub(/\\/, "\\e", text); gsub(/-/, "\\-", text); return text }
 # bold(words): words in bold, those in capitals, which stand for something else, in italics
 function bold(words,   n, i, word, text) {
@@ -35,6 +36,5 @@ statuses { statuses = statuses " " plain($0); next }
 END {
    print ".SH SEE ALSO"
    print "The manual, with all cards, messages and formats:"
-   print "\\fIPREFIX\\fR/share/doc/kinmat/manual.md, where kinmat is installed below"
-   print "\\fIPREFIX\\fR (/usr/local)."
+   print "\\fI@PREFIX@/share/doc/kinmat/docs/manual.md\\fR."
 }

@@ -90,7 +90,7 @@ module command_line
       '                       (needs kinmat-quad, kinmat-single: make kinds)', &
       '  --time               the time of a step, instead of the listing', &
       '  --quiet              no remarks, no progress on standard error', &
-      '  --ruler [CARD]       an empty card with its columns; how CARD has them', &
+      '  --ruler [CARD]       the columns of all cards, or of CARD alone', &
       '  --help, --version    this text; the version and the kind of reals', &
       'FILE - is standard output, for one output; the listing gives way to it.', &
       'Exit status: 0 every instant solved; 1 deck or command rejected;', &

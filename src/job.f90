@@ -25,7 +25,8 @@ module job
    use answers, only: answers_t
    use assembly_table, only: draw_assemblies
    use variant_rows, only: variant_row_t
-   use set_runs, only: writers_t, run_motion, run_variants, are_together
+   use set_runs, only: writers_t, run_motion, run_variants, are_together, break_off
+   use phrases, only: say_broken_set, say_broken_variant
    use lane_runs, only: width
    use numerals, only: whole
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set
@@ -197,7 +198,14 @@ contains
                o%own_first - before, o%own_last - before, findings(i), o, status)
             before = before + count
          end associate
-         if (is_over(o, i)) exit
+         if (is_over(o, i)) then
+            if (before > o%own_last) then
+               call break_off(o, sets(i), say_broken_variant, o%own_last - before + sets(i)%variants)
+            else if (i < o%last) then
+               call break_off(o, sets(i), say_broken_set, sets(i)%set_number)
+            end if
+            exit
+         end if
          if (o%asked(out_svg)) call draw_set(sets(i), picture_candidates, 1, o%drawings(i), o%progress)
          if (o%asked(out_svg) .and. sets(i)%assemblies) call draw_all_assemblies(sets(i), o%drawings(i))
          if (o%asked(out_svg) .and. any(sets(i)%requests%kind == request_pole)) &
@@ -244,7 +252,7 @@ contains
 
       call make_set_analysis(m, a)
       call advance_set(a, instant(m, 0))
-      call find_all_circuits(a, found)
+      call find_all_circuits(a, found, draws=.true.)
       call add_to_page(page, m, a, found)
    end subroutine draw_circuits
 
@@ -285,7 +293,7 @@ contains
       type(answers_t) :: asked
 
       if (first <= 1) call write_heads(options, m, i, findings, o)
-      if (options%check .or. is_over(o, i)) return
+      if (options%check) return
       if (m%variants == 0) then
          call run_motion(options, m, i, findings, .true., o, counts, asked)
          if (counts%flagged + counts%unproved > 0) status = status_flagged

@@ -4,7 +4,8 @@ module outputs
    use text_output, only: output_t, open_output, check_apart, flush_output, close_output, forget_output, &
       abandon_output, has_failed, has_broken_pipe
    use parts_in_turn, only: parts_in_turn_t, write_in_turn
-   use system_calls, only: make_directory, remove_directory, last_error, reason_of, signal_received
+   use system_calls, only: identity_t, identity_of_path, make_directory, remove_directory, last_error, reason_of, &
+      signal_received
    use numerals, only: whole
    use command_line, only: options_t, file_options, out_last
    implicit none
@@ -19,6 +20,7 @@ module outputs
       type(output_t), allocatable :: files(:, :)
       character(:), allocatable :: made_directory           !< that was not there before
       type(parts_in_turn_t) :: parts                        !< of a job in several processes: see `shares`
+      logical :: ended = .false.                            !< before its time: the listing says so in its last line
    end type outputs_t
 
 contains
@@ -40,13 +42,12 @@ contains
          if (.not. o%asked(k)) cycle
          if (len_trim(file_options(k)%in_directory) > 0 .and. .not. allocated(failure)) &
             call open_directory(options%files(k)%text, o, failure)
+         if (first < last .and. file_options(k)%each_set .and. .not. allocated(failure)) &
+            call check_table_of_one(options%files(k)%text, count, failure)
          do i = merge(first, 0, file_options(k)%each_set), merge(last, 0, file_options(k)%each_set)
             if (allocated(failure)) exit
             call open_output(o%files(k, i), path_of(k, options%files(k)%text, set_suffix(first, last, i)), failure)
          end do
-         if (first < last .and. file_options(k)%each_set .and. len(options%files(k)%text) == 0) &
-            call fail(failure, status_rejected, 'STANDARD OUTPUT TAKES THE TABLE OF ONE SET: CHOOSE THE K-TH OF ' &
-               //whole(count)//' WITH --sets K/'//whole(count))
       end do
       all_files(1:size(o%files)) => o%files
       if (.not. allocated(failure)) call check_apart(all_files, options%deck, failure)
@@ -56,6 +57,36 @@ contains
       end do
       if (allocated(o%made_directory)) call remove_directory(o%made_directory)
    end subroutine open_outputs
+
+   !> Rejects standard output, a pipe, and a device other than /dev/null as `path` for the tables of `count` sets: they
+   !> would be mixed. Under /dev no file is made. Errors: status_rejected.
+   subroutine check_table_of_one(path, count, failure)
+      character(*), intent(in) :: path
+      integer, intent(in) :: count
+      type(failure_t), allocatable, intent(out) :: failure
+      type(identity_t) :: id
+      character(:), allocatable :: name
+
+      name = 'STANDARD OUTPUT'
+      if (len(path) > 0) then
+         if (is_null_device(path)) return
+         id = identity_of_path(path)
+         if (.not. id%device_or_pipe .and. (index(path, '/dev/') /= 1 .or. index(path, '/dev/shm/') == 1)) return
+         name = 'FILE '//path
+      end if
+      call fail(failure, status_rejected, name//' TAKES THE TABLE OF ONE SET: CHOOSE THE K-TH OF '//whole(count) &
+         //' WITH --sets K/'//whole(count))
+   end subroutine check_table_of_one
+
+   !> Whether `path` leads to the device that takes everything and keeps nothing.
+   logical function is_null_device(path)
+      character(*), intent(in) :: path
+      type(identity_t) :: a, b
+
+      a = identity_of_path(path)
+      b = identity_of_path('/dev/null')
+      is_null_device = a%device_or_pipe .and. a%inode == b%inode .and. all(a%device == b%device)
+   end function is_null_device
 
    !> Makes the directory `path` unless it is there; what else is wrong with it shows when its files are opened.
    subroutine open_directory(path, o, failure)
@@ -70,8 +101,9 @@ contains
          //capitals(reason_of(last_error()))//')')
    end subroutine open_directory
 
-   !> The path of output number `k`, for which the command gives `text`; '' is standard output.
-   pure function path_of(k, text, suffix) result(path)
+   !> The path of output number `k`, for which the command gives `text`; '' is standard output. /dev/null takes the
+   !> files of all sets.
+   function path_of(k, text, suffix) result(path)
       integer, intent(in) :: k
       character(*), intent(in) :: text, suffix
       character(:), allocatable :: path
@@ -80,6 +112,7 @@ contains
       path = text
       if (len_trim(file_options(k)%in_directory) > 0) path = text//'/'//trim(file_options(k)%in_directory)
       if (len(path) == 0) return
+      if (is_null_device(path)) return
       dot = index(path, '.', back=.true.)
       ! A name without an extension ends with the suffix.
       if (dot <= index(path, '/', back=.true.) + 1) dot = len(path) + 1

@@ -16,7 +16,7 @@ module set_runs
    use answers, only: answers_t, new_answers, take_instant, put_answers
    use variant_rows, only: summary_t, variant_row_t, new_summary, new_row, fill_row, note_flag
    use variant_tables, only: summary_head, summary_row, put_variant, put_variant_heads, put_note_of_shares, &
-      put_variant_row, put_variants_end, put_broken_off
+      put_variant_row, put_variants_end
    use numerals, only: whole
    use lane_runs, only: lane_run_t, lend_structure, begin_run, run_lanes, width
    use lane_state, only: lanes_t
@@ -25,6 +25,7 @@ module set_runs
    use text_output, only: output_t
    use csv, only: csv_instant
    use table, only: table_t, table_instant
+   use phrases, only: phrase_t, say_broken_off, say_broken_variant
    use drawing, only: drawing_t
    use convergence, only: convergence_t
    use branch_certificate, only: branch_t
@@ -35,7 +36,7 @@ module set_runs
       set_record, set_errors, set_closure_error, set_closing_diagnostics
    implicit none
    private
-   public :: run_variants, are_together, writers_t, run_motion
+   public :: run_variants, are_together, writers_t, run_motion, break_off
 
    !> The job's outputs, and what they keep from instant to instant.
    type, extends(outputs_t) :: writers_t
@@ -81,9 +82,8 @@ contains
       else
          call run_each()
       end if
-      if (.not. o%asked(out_listing)) return
-      if (n <= last) call put_broken_off(o%files(out_listing, 0), m, n - 1)
-      if (n > v%total) call put_variants_end(o%files(out_listing, 0), m)
+      if (n <= last) call break_off(o, m, say_broken_variant, n - 1)
+      if (n > v%total .and. o%asked(out_listing)) call put_variants_end(o%files(out_listing, 0), m)
 
    contains
 
@@ -227,7 +227,7 @@ contains
          if (o%progress%shown .and. m%variants == 0) &
             call show_progress(o%progress, 'SET '//whole(i)//': INSTANT', k, instant_count(m) - 1)
          if (.not. is_over(o, i)) cycle
-         if (lists .and. m%variants == 0) call listing_broken_off(o%files(out_listing, 0), m, k)
+         if (m%variants == 0) call break_off(o, m, say_broken_off, k)
          return
       end do
       if (lists) call put_answers(o%files(out_listing, 0), o%layout, asked, m, a)
@@ -268,4 +268,17 @@ contains
          end if
       end subroutine put_log
    end subroutine run_motion
+
+   !> Ends the run before its time. The last line of the listing of `m` has the `words` and the `number` of the last
+   !> instant, variant or set; nothing follows it.
+   subroutine break_off(o, m, words, number)
+      type(writers_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(phrase_t), intent(in) :: words
+      integer, intent(in) :: number
+
+      if (o%ended) return
+      o%ended = .true.
+      if (o%asked(out_listing)) call listing_broken_off(o%files(out_listing, 0), m, words, number)
+   end subroutine break_off
 end module set_runs

@@ -10,7 +10,7 @@ module shares
    use deck, only: share_end
    use numerals, only: whole
    use processes, only: make_pipe, has_input, fork_process, wait_for_child, interrupt_child, end_process, &
-      killed
+      killed, report_to, end_of_message
    use system_calls, only: read_bytes, write_bytes, close_descriptor, signal_received, note_all_signals, last_error, &
       reason_of
    use text_output, only: has_failed, turn_lost
@@ -27,8 +27,6 @@ module shares
    integer, parameter :: parts_a_process = 1024, parts_together = 32
    !> Milliseconds after which the parent looks whether a signal has come, and how far the job is.
    integer, parameter :: look_time = 200
-   !> Ends the message that a child reports to its parent.
-   character(1), parameter :: end_of_message = achar(2)
 
    !> What this process computes.
    type :: share_of_job_t
@@ -90,6 +88,7 @@ contains
          call note_all_signals
          call close_one(s%report)
          s%report = report
+         call report_to(report)
          ! Those that it computes no part of are left as they are.
          o%files(:, 0)%emptied = .true.
       end subroutine begin_child
@@ -209,13 +208,13 @@ contains
       if (.not. next_part) call write_rest(o%parts, o%files(:, 0))
    end function next_part
 
-   !> No signal has come, and no write has failed.
+   !> The run has not ended before its time, and no write has failed.
    logical function goes_on(o, s)
       class(outputs_t), intent(in) :: o
       type(share_of_job_t), intent(in) :: s
       integer :: i
 
-      goes_on = signal_received() == 0 .and. .not. any(has_failed(o%files(:, 0)))
+      goes_on = .not. (o%ended .or. any(has_failed(o%files(:, 0))))
       do i = s%own_first, min(s%own_last, ubound(o%files, 2))
          if (any(has_failed(o%files(:, i)))) goes_on = .false.
       end do

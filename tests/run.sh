@@ -17,9 +17,9 @@ parts() {
    results of the methods|97|"$MAKE" --no-print-directory bench-short
    cards and options together|1000|tests/system/together.sh
    the command|426|tests/system/command.sh
-   what is installed|11|tests/system/install.sh
+   what is installed|16|tests/system/install.sh
    many sets|7|tests/system/many_sets.sh
-   what is printed arrives|205|tests/system/output.sh
+   what is printed arrives|270|tests/system/output.sh
    unit tests|1150|"$MAKE" --no-print-directory unit
    the stand-in|75|"$MAKE" --no-print-directory unit-stand-in
    the sources|60|tests/system/house.sh
@@ -30,14 +30,16 @@ parts() {
    proofs|162|"$BUILD/release/proof_bounds" input/*.deck
    nothing false is proved|2000|"$BUILD/release/fool_proofs" 2000
    units|786|tests/system/units.sh
-   tolerances|39|tests/system/tolerances.sh
+   tolerances|49|tests/system/tolerances.sh
+   what is as drawn|109|tests/system/as_drawn.sh
    extremes|34|tests/system/answers.sh
    circuits by chance|40|"$BUILD/release/circuits_by_chance" 40
    poles and curves|38|tests/system/centres.sh
-   all assemblies|81|tests/system/assemblies.sh
+   all assemblies|100|tests/system/assemblies.sh
    the digits|1|tests/system/digits.sh
    decks made by chance|700|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 700
    relations between runs|220|tests/system/relations.sh --short
+   assemblies and runs|450|tests/system/assembly_relations.sh
    mechanisms of a known motion|68|tests/fuzz/fuzz_mechanisms.sh 60
    the method of 1987|1000|"$BUILD/release/matrix_1987" short
    what is hard to compute|120|tests/oracle/hard.sh short

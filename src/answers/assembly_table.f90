@@ -18,8 +18,10 @@ module assembly_table
    private
    public :: put_assemblies, draw_assemblies
 
-   !> Characters of a number on a card.
-   integer, parameter :: number_width = 16
+   !> Characters of a number on a card, and on a * card; the first is a blank.
+   integer, parameter :: number_width = 16, star_width = 24
+   !> Digits after the point of a number on a card, with a sign and 0 before it.
+   integer, parameter :: most_decimals = number_width - 4
    !> Digits of an estimate, and of numbers that are dimensions, of the largest number.
    integer, parameter :: estimate_digits = 10, drawing_digits = 13
    !> Angles have as many digits after the point as this one, in rad or degrees.
@@ -47,6 +49,7 @@ contains
                call put_block(o, own, k, a%blocks(k))
             end do
             if (a%are_more) call put(o, ' *** '//phrase(say_more_assemblies, m%polish)//' '//whole(max_assemblies))
+            if (a%is_missed) call put(o, ' *** '//phrase(say_first_missed, m%polish))
             if (size(a%list) == 0) call put(o, '   '//phrase(say_none, m%polish))
             do k = 1, size(a%list)
                call put_assembly(o, own, k, a)
@@ -116,6 +119,7 @@ contains
       if (one%partial > 0) text = text//' + '//whole(one%partial)//' '//phrase(say_partial, m%polish)
       call put_folded(o, indent, text//'   '//phrase(say_real, m%polish)//' '//whole(one%real))
       if (one%is_wide) call put_folded(o, ' *** ', links//': '//phrase(say_wide_block, m%polish))
+      if (one%is_open) call put_folded(o, ' *** ', links//': '//phrase(say_contradiction, m%polish))
       if (one%moves) call put_folded(o, ' *** ', links//': '//phrase(say_curve_of_assemblies, m%polish))
       if (one%failed > 0) call put_folded(o, ' *** ', &
          links//': '//phrase(say_paths_failed, m%polish)//' '//whole(one%failed))
@@ -154,6 +158,7 @@ contains
       type(mechanism_t), intent(in) :: m
       type(assembly_t), intent(in) :: one
       character(label_length) :: names(3)
+      character(star_width) :: numbers(3)
       real(wp) :: position(3, size(m%links)), largest
       logical :: is_joint(size(m%pairs))
       integer :: i, digits
@@ -167,24 +172,53 @@ contains
       call put(o, ruler_card())
       do i = 1, size(m%links)
          if (m%links(i)%ground) cycle
+         names = ''
          names(1) = m%links(i)%name
+         numbers(1) = number_text(position(1, i), largest, digits)
+         numbers(2) = number_text(position(2, i), largest, digits)
          associate (angle => position(3, i)/merge(degree, 1.0_wp, m%degrees))
-            call put(o, 'LINK    '//names(1)//repeat(' ', 16)//number_text(position(1, i), largest, digits) &
-               //number_text(position(2, i), largest, digits) &
-               //number_text(angle, max(largest_angle, abs(angle)), digits_of(digits, abs(angle), largest_angle)))
+            numbers(3) = number_text(angle, max(largest_angle, abs(angle)), &
+               digits_of(digits, abs(angle), largest_angle))
          end associate
+         call put_card(o, 'LINK    ', names, numbers)
       end do
       do i = 1, size(m%pairs)
          if (.not. is_joint(i)) cycle
          associate (p => m%points(m%pairs(i)%point_i), q => m%points(m%pairs(i)%point_j))
             names = [m%pairs(i)%name, m%links(p%link)%name, m%links(q%link)%name]
             associate (place => point_of(position(:, p%link), p%offset))
-               call put(o, 'JOINT   '//names(1)//names(2)//names(3)//number_text(place(1), largest, digits) &
-                  //number_text(place(2), largest, digits))
+               numbers(1) = number_text(place(1), largest, digits)
+               numbers(2) = number_text(place(2), largest, digits)
             end associate
+            call put_card(o, 'JOINT   ', names, numbers(:2))
          end associate
       end do
    end subroutine put_cards
+
+   !> A card with its name, labels and numbers; these stand on a * card where one has no room beside a blank.
+   subroutine put_card(o, name, labels, numbers)
+      type(output_t), intent(inout) :: o
+      character(8), intent(in) :: name
+      character(label_length), intent(in) :: labels(3)
+      character(star_width), intent(in) :: numbers(:)
+      character(:), allocatable :: text, stars
+      integer :: k
+
+      text = name//labels(1)//labels(2)//labels(3)
+      if (all(len_trim(adjustl(numbers)) < number_width)) then
+         do k = 1, size(numbers)
+            text = text//numbers(k)(star_width - number_width + 1:)
+         end do
+         call put(o, text)
+      else
+         stars = '*       '
+         do k = 1, size(numbers)
+            stars = stars//numbers(k)
+         end do
+         call put(o, trim(text))
+         call put(o, stars)
+      end if
+   end subroutine put_card
 
    !> (3, links) Assembly `one` as cards of `m` have it: angles within half a turn of the estimate.
    pure function deck_position(m, one) result(position)
@@ -220,21 +254,28 @@ contains
       text = merge('.', signs(sign_of), block%is_redundant)
    end function sign_text
 
-   !> `x` in the columns of a card: so many `digits` of `largest`, and none of rounding.
+   !> `x` in the columns of a * card, at the right: so many `digits` of `largest`, and none of rounding.
    function number_text(x, largest, digits) result(text)
       real(wp), intent(in) :: x, largest
       integer, intent(in) :: digits
-      character(number_width) :: text
+      character(star_width) :: text
       character(16) :: form
       real(wp) :: unit, rounded
-      integer :: power
+      integer :: power, decimals
 
       power = floor(log10(largest))
-      unit = 10.0_wp**(power - digits + 1)
+      decimals = digits - 1 - power
+      ! One more after the point would touch the number before it.
+      if (decimals == most_decimals + 1) decimals = most_decimals
+      unit = 10.0_wp**(-decimals)
       rounded = anint(x/unit)
       if (abs(rounded) <= 0.0_wp) rounded = 0.0_wp
-      form = '(es16.8)'
-      if (power < digits .and. digits - 1 - power <= 13) write (form, '(a, i0, a)') '(f16.', digits - 1 - power, ')'
+      if (power < digits .and. decimals <= most_decimals) then
+         write (form, '(a, i0, a)') '(f24.', decimals, ')'
+      else
+         ! What has 13 digits has a * card then; an estimate can spare some.
+         write (form, '(a, i0, a)') '(es24.', merge(drawing_digits - 1, 8, digits >= drawing_digits), ')'
+      end if
       write (text, form) rounded*unit
    end function number_text
 end module assembly_table

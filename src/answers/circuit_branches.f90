@@ -10,7 +10,7 @@ module circuit_branches
    implicit none
    private
    public :: circuits_t, branch_t, no_sign, dead_point_t, circuit_assembly_t, meeting_t
-   public :: add_branches, add_assemblies, add_meetings, number_assemblies, turns_of
+   public :: add_branches, add_assemblies, add_meetings, number_assemblies, turns_of, find_level, max_circuits
 
    real(wp), parameter :: turn = 2.0_wp*pi
    !> More than rounding of an angle in turns: ties between whole turns always fall on one side.
@@ -19,6 +19,8 @@ module circuit_branches
    real(wp), parameter :: rounding = 1.0e3_wp*epsilon(1.0_wp)
 
    integer, parameter :: no_sign = 2
+   !> More circuits are not looked for.
+   integer, parameter :: max_circuits = 1000
 
    !> A piece of a circuit between dead points.
    type :: branch_t
@@ -55,6 +57,7 @@ module circuit_branches
       integer :: part = 1                      !< the number of its independent mechanism
       logical :: is_held = .false.             !< its other drives let nothing move
       logical :: is_complete = .true.          !< all assemblies of the first instant were known
+      logical :: are_more = .false.            !< than max_circuits
       type(curve_t) :: curve
       type(circuit_t), allocatable :: list(:)
       type(branch_t), allocatable :: branches(:)

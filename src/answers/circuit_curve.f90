@@ -11,7 +11,7 @@ module circuit_curve
    use linear_solver, only: solve, determinant_sign
    use pose, only: add_to_links
    use closure_equations, only: drive_residual, drive_row, drive_remainder
-   use root_distance, only: kantorovich, distance
+   use root_distance, only: kantorovich, distance, measure_slots
    use curve_equations, only: curve_t, is_redundant, move_to, correct, factor_with, second_derivative, largest_change
    implicit none
    private
@@ -20,7 +20,7 @@ module circuit_curve
 
    !> u of above, less than 1/2: K of slides is taken at the start of a step, and they grow.
    real(wp), parameter :: certified = 0.25_wp
-   !> The longest step, in rad and lengths: a curve of such pieces looks smooth.
+   !> The longest step, in rad and lengths, and in parts of a longer slide: a curve of such pieces looks smooth.
    real(wp), parameter :: max_step = 0.1_wp
    !> Two positions are one up to this difference, in rad and lengths.
    real(wp), parameter :: same = max(1.0e-7_wp, 1.0e2_wp*epsilon(1.0_wp))
@@ -183,6 +183,7 @@ contains
       p%value(0) = drive_residual(c%driven, c%pose, 1, 0.0_wp)
       p%value(1) = dot_product(row(1, :), p%tangent)
       p%value(2) = dot_product(row(1, :), p%bend) + drive_remainder(c%driven, c%pose, along, 1)
+      call measure_slots(c%closure, c%free, c%pose)
       call kantorovich(c%closure, c%free, c%factors, c%pose, k, rows=c%row)
       speed = distance(c%closure, c%free, 0.0_wp*along, along)
       p%reach = max_step

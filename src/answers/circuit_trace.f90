@@ -9,15 +9,14 @@ module circuit_trace
    use pose, only: add_to_links
    implicit none
    private
-   public :: circuit_t, change_point_t, trace, least_step, find_root, of_value, end_closed, end_far, end_lost
+   public :: circuit_t, change_point_t, trace, come_near, size_of, least_step, find_root, of_value, end_closed, &
+      end_far, end_lost
 
    !> A certified step below this means a change point: other positions are so near that rounding tells them apart no
    !> better.
    real(wp), parameter :: least_step = epsilon(1.0_wp)**0.375_wp
    !> Across a change point certified steps are longer or shorter by less than this factor, and the tangent turns less.
    real(wp), parameter :: alike = 3.0_wp, straight = 0.1_wp
-   !> A slide that has gone so many lengths is followed no further.
-   real(wp), parameter :: far = 100.0_wp
    integer, parameter :: max_points = 50000, max_iterations = 100
    !> Rounding makes the tangent uncertain by some roundings over the square of the certified step, and with it the
    !> sense in which the drive moves.
@@ -27,9 +26,10 @@ module circuit_trace
    enum, bind(c)
       enumerator :: end_closed = 1, end_far, end_lost
    end enum
-   !> What a root is looked for of: the drive's derivative, its second one, or its value less a level.
+   !> What a root is looked for of: the drive's derivative, its second one, its value less a level, or the largest
+   !> coordinate less a level.
    enum, bind(c)
-      enumerator :: of_value = 0, of_slope, of_bend
+      enumerator :: of_value = 0, of_slope, of_bend, of_size
    end enum
 
    !> A position at which circuits meet, between two points of one of them.
@@ -122,7 +122,7 @@ contains
       do while (n < max_points)
          leaves = leaves .and. a%reach < 2.0_wp*least_step
          if (a%reach >= least_step .or. leaves) then
-            call certified_step(b)
+            call certified_step(c, a, b, ok)
          else
             call pass_change_point(b)
             leaves = .true.
@@ -131,30 +131,21 @@ contains
          closes = .false.
          if (n > 1) call lies_between(c, a, step_between(c, a, b), start%q, again, closes)
          if (closes) b = again
+         if (size_of(b) > c%far) then
+            circuit%ends(2) = end_far
+            call find_root(c, a, b, of_size, c%far, again, ok)
+            if (ok) b = again
+         end if
          call find_dead_points()
          call append(b)
          if (is_sure(b)) sure = n
          if (closes) circuit%ends(2) = end_closed
-         if (maxval(abs(b%q(:2, :))) > far) circuit%ends(2) = end_far
          if (circuit%ends(2) /= end_lost) exit
          a = b
       end do
       circuit%points = circuit%points(:n)
 
    contains
-
-      !> The longest certified step from `a` that Newton's method takes, to `b`.
-      subroutine certified_step(b)
-         type(curve_point_t), intent(out) :: b
-         real(wp) :: h
-
-         h = a%reach
-         do
-            call step_along(c, a, h, b, ok)
-            if (ok .or. h < 0.1_wp*least_step) return
-            h = 0.5_wp*h
-         end do
-      end subroutine certified_step
 
       !> From the last of the `n` points of `circuit` across the change point ahead to `b`, as far behind it: certified
       !> steps shrink in proportion to the distance from it.
@@ -234,6 +225,55 @@ contains
       end subroutine append
    end subroutine follow
 
+   !> The longest certified step from `a` that Newton's method takes, to `b`.
+   subroutine certified_step(c, a, b, ok)
+      type(curve_t), intent(inout) :: c
+      type(curve_point_t), intent(in) :: a
+      type(curve_point_t), intent(out) :: b
+      logical, intent(out) :: ok
+      real(wp) :: h
+
+      h = a%reach
+      do
+         call step_along(c, a, h, b, ok)
+         if (ok .or. h < 0.1_wp*least_step) return
+         h = 0.5_wp*h
+      end do
+   end subroutine certified_step
+
+   !> Moves `p`, whose slides are too long, along its curve to where they are not. `ok`: it comes there before they grow
+   !> again.
+   subroutine come_near(c, p, ok)
+      type(curve_t), intent(inout) :: c
+      type(curve_point_t), intent(inout) :: p
+      logical, intent(out) :: ok
+      type(curve_point_t) :: a
+      real(wp) :: way(3, size(p%q, 2))
+      integer :: most(2)
+
+      ok = size_of(p) <= c%far
+      if (ok) return
+      way = 0.0_wp
+      call add_to_links(c%closure, p%tangent, way)
+      most = maxloc(abs(p%q(:2, :)))
+      if (way(most(1), most(2))*p%q(most(1), most(2)) > 0.0_wp) p = reversed(p)
+      do while (.not. ok .and. p%reach >= least_step)
+         a = p
+         call certified_step(c, a, p, ok)
+         if (.not. ok) return
+         ok = size_of(p) <= c%far
+         if (size_of(p) >= size_of(a)) exit
+      end do
+      if (p%value(1) < 0.0_wp) p = reversed(p)
+   end subroutine come_near
+
+   !> The largest coordinate of `p`, in lengths.
+   pure real(wp) function size_of(p)
+      type(curve_point_t), intent(in) :: p
+
+      size_of = maxval(abs(p%q(:2, :)))
+   end function size_of
+
    !> Whether the sense in which the drive moves is known at `p`.
    pure elemental logical function is_sure(p)
       type(curve_point_t), intent(in) :: p
@@ -255,8 +295,8 @@ contains
    end function sense
 
    !> The point `p` between the neighbours `a` and `b` at which the drive's derivative number `order` (of_value,
-   !> of_slope, of_bend) is `level`: there they are on both sides of it. The method of false position with halved values
-   !> (Illinois: Dowell and Jarratt, BIT 11, 1971). `ok`: it was found.
+   !> of_slope, of_bend), or the largest coordinate (of_size), is `level`: there they are on both sides of it. The
+   !> method of false position with halved values (Illinois: Dowell and Jarratt, BIT 11, 1971). `ok`: it was found.
    subroutine find_root(c, a, b, order, level, p, ok)
       type(curve_t), intent(inout) :: c
       type(curve_point_t), intent(in) :: a, b
@@ -269,15 +309,15 @@ contains
 
       h1 = 0.0_wp
       h2 = step_between(c, a, b)
-      g1 = a%value(order) - level
-      g2 = b%value(order) - level
+      g1 = quantity(a) - level
+      g2 = quantity(b) - level
       do i = 1, max_iterations
          h = h1
          if (abs(g2 - g1) > 0.0_wp) h = h2 - g2*((h2 - h1)/(g2 - g1))
          if (.not. (h - h1)*(h2 - h) >= 0.0_wp) h = 0.5_wp*(h1 + h2)
          call step_along(c, a, h, p, ok)
          if (.not. ok) return
-         g = p%value(order) - level
+         g = quantity(p) - level
          if (abs(g) <= 0.0_wp .or. abs(h2 - h1) <= 4.0_wp*epsilon(1.0_wp)) return
          if (abs(h - h2) <= epsilon(1.0_wp)) return
          if (g*g2 < 0.0_wp) then
@@ -289,6 +329,19 @@ contains
          h2 = h
          g2 = g
       end do
+
+   contains
+
+      !> That of which the root is looked for, at `r`.
+      pure real(wp) function quantity(r)
+         type(curve_point_t), intent(in) :: r
+
+         if (order == of_size) then
+            quantity = size_of(r)
+         else
+            quantity = r%value(order)
+         end if
+      end function quantity
    end subroutine find_root
 
    !> Lets a closed circuit begin, and end, at its first dead point.

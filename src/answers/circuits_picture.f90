@@ -12,7 +12,7 @@ module circuits_picture
    use circuit_chart, only: chart_t, axis_t, make_charts
    use picture_parts, only: color_of
    use picture_page, only: width, fitted
-   use svg, only: svg_head, put_end, put_group, put_line, put_circle, put_words, put_window
+   use svg, only: attribute, svg_head, put_end, put_group, put_line, put_circle, put_words, put_window
    use text_output, only: output_t
    use phrases
    implicit none
@@ -152,7 +152,7 @@ contains
       corner = [left, top + above]
       extent = [real(width, wp) - left - right, height]
       associate (chart => d%charts(k))
-         call put_group(o, 'class="circuits" data-drive="'//d%drive//'"', trim(d%names(k)))
+         call put_group(o, 'class="circuits" '//attribute('data-drive', d%drive), trim(d%names(k)))
          call put_axis(o, chart%axes(1), 1, corner, extent)
          call put_axis(o, chart%axes(2), 2, corner, extent)
          call put_words(o, corner + [0.0_wp, -8.0_wp], 'start', 'class="time"', trim(d%names(k)))

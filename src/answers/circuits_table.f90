@@ -6,7 +6,7 @@ module circuits_table
    use set_analysis, only: set_analysis_t
    use set_motion, only: in_set
    use circuit_trace, only: circuit_t, end_closed, end_far, end_lost
-   use circuit_branches, only: circuits_t, branch_t, no_sign, turns_of
+   use circuit_branches, only: circuits_t, branch_t, no_sign, max_circuits, turns_of
    use circuits, only: find_circuits, free_drives
    use ranges, only: side_words
    use names, only: drive_name
@@ -29,9 +29,11 @@ module circuits_table
 contains
 
    !> The circuits of each free drive of the set that `s` analyses, in the numbers of the set, from its first instant.
-   subroutine find_all_circuits(s, list)
+   !> `draws`: with points for a picture.
+   subroutine find_all_circuits(s, list, draws)
       type(set_analysis_t), intent(in) :: s
       type(circuits_t), allocatable, intent(out) :: list(:)
+      logical, intent(in), optional :: draws
       integer, allocatable :: drives(:)
       integer :: c, i, k, n
 
@@ -42,9 +44,9 @@ contains
          do i = 1, size(drives)
             n = n + 1
             if (allocated(s%assemblies)) then
-               call find_circuits(s%now%own(c), s%now%motions(c), drives(i), list(n), s%assemblies(c))
+               call find_circuits(s%now%own(c), s%now%motions(c), drives(i), list(n), s%assemblies(c), draws)
             else
-               call find_circuits(s%now%own(c), s%now%motions(c), drives(i), list(n))
+               call find_circuits(s%now%own(c), s%now%motions(c), drives(i), list(n), draws=draws)
             end if
             list(n)%part = c
             list(n)%drive = s%now%parts%list(c)%drives(drives(i))
@@ -69,6 +71,7 @@ contains
          if (i > 1) call put(o, '')
          call put(o, head//', '//phrase(say_drive, m%polish)//' '//trim(drive_name(m, m%drives(list(i)%drive))))
          if (.not. list(i)%is_complete) call put(o, ' *** '//phrase(say_circuits_missing, m%polish))
+         if (list(i)%are_more) call put(o, ' *** '//phrase(say_more_circuits, m%polish)//' '//whole(max_circuits))
          if (list(i)%is_held) then
             call put(o, '   '//phrase(say_held, m%polish))
          else if (size(list(i)%list) == 0) then

@@ -31,6 +31,8 @@ module curve_equations
       logical :: is_held = .false.            !< at some position its pairs and other drives let nothing move
       logical :: is_angle = .true.            !< the free drive is that of an angle
       real(wp) :: first = 0.0_wp              !< its value at the first instant
+      !> A slide is followed so many lengths, and farther only to assemblies of the first instant.
+      real(wp) :: far = 100.0_wp
       type(pose_t) :: pose                    !< of the position found last
       type(factors_t) :: factors
    end type curve_t

@@ -23,10 +23,11 @@ module extreme_search
    real(wp), parameter :: well_known = max(1.0e-7_wp, 1.0e3_wp*epsilon(1.0_wp)), nearer = 0.25_wp, farther = 4.0_wp
    integer, parameter :: max_nearer = 5, max_farther = 8
 
-   !> An end of a piece of a step: whether not all of the motion exists there, and whether it is a change point.
+   !> An end of a piece of a step: whether not all of the motion exists there, and whether it is a change point or the
+   !> pole of a law.
    type :: end_t
       real(wp) :: t = 0.0_wp
-      logical :: is_open = .false., is_change = .false.
+      logical :: is_open = .false., is_change = .false., is_pole = .false.
    end type end_t
 
 contains
@@ -63,11 +64,11 @@ contains
       subroutine search_step()
          real(wp), allocatable :: ends(:)
          real(wp) :: from
-         logical :: is_open, is_change, is_limit, to_open, to_change
+         logical :: is_open, is_change, is_limit, is_pole, to_open, to_change
          integer :: i
 
          associate (track => x%tracks(c), t1 => x%tracks(c)%instant%t)
-            call find_ends(s%now%motions(c), t1, x%way, ends, is_limit)
+            call find_ends(s%now%motions(c), t1, x%way, ends, is_limit, is_pole)
             if (s%now%motions(c)%known >= 0) ends = [ends, now%t]
             if (any(track%instant%known(track%rows) < 0)) ends = [real(wp) ::]
             from = t1
@@ -78,7 +79,7 @@ contains
                to_open = i < size(ends) .or. is_limit .or. .not. is_known(now, track%rows)
                to_change = i < size(ends) .or. (s%now%motions(c)%singularity == singular_change .and. .not. is_limit)
                call search_piece(times_between(track%joints, m, k), end_t(from, is_open, is_change), end_t(ends(i), &
-                  to_open, to_change))
+                  to_open, to_change, is_pole .and. i == size(ends)))
                is_open = .true.
                is_change = .true.
                from = ends(i)
@@ -89,26 +90,29 @@ contains
 
       !> The times after `from` at which the motion `q` says that a change point was passed, or its limit was reached:
       !> that is the last. A change point that is later only by rounding is the same one, or at `from` itself.
-      pure subroutine find_ends(q, from, way, ends, is_limit)
+      pure subroutine find_ends(q, from, way, ends, is_limit, is_pole)
          type(motion_t), intent(in) :: q
          real(wp), intent(in) :: from, way
          real(wp), allocatable, intent(out) :: ends(:)
-         logical, intent(out) :: is_limit
+         logical, intent(out) :: is_limit, is_pole
          real(wp) :: last
          integer :: i
 
          allocate (ends(0))
          is_limit = .false.
+         is_pole = .false.
          if (.not. allocated(q%diagnostics)) return
          last = from
          do i = 1, size(q%diagnostics)
             associate (d => q%diagnostics(i))
                if (d%kind /= diagnostic_limit .and. .not. (d%kind == diagnostic_change .and. .not. d%here)) cycle
                if ((d%t - last)*way <= merge(beside_joint(x%run, last), 0.0_wp, d%kind == diagnostic_change)) cycle
-               if ((q%t - d%t)*way <= 0.0_wp) cycle
-               ends = [ends, d%t]
-               last = d%t
                is_limit = d%kind == diagnostic_limit
+               if ((q%t - d%t)*way <= 0.0_wp .and. .not. is_limit) cycle
+               ! A limit at the instant itself is later only by rounding.
+               last = way*min(way*d%t, way*q%t)
+               ends = [ends, last]
+               is_pole = d%is_pole
             end associate
          end do
       end subroutine find_ends
@@ -159,7 +163,7 @@ contains
          least_error = huge(1.0_wp)
          do try = 0, merge(max_nearer, max_farther, at%is_change)
             times = places_beside(at%t, other, x%step, at%is_change, merge(nearer, farther, at%is_change)**try)
-            call find_limits(times, at%is_change, limits)
+            call find_limits(times, at, limits)
             if (largest_error(limits) < least_error) then
                least_error = largest_error(limits)
                best = limits
@@ -176,11 +180,11 @@ contains
          end do
       end subroutine take_limits
 
-      !> The one-sided `limits` by the motion of mechanism `c` at the `times`; not allocated, if it does not exist at
-      !> some.
-      subroutine find_limits(times, is_change, limits)
+      !> The one-sided `limits` at the end `at` by the motion of mechanism `c` at the `times` beside it; not allocated,
+      !> if that does not exist at some.
+      subroutine find_limits(times, at, limits)
          real(wp), intent(in) :: times(places)
-         logical, intent(in) :: is_change
+         type(end_t), intent(in) :: at
          type(one_sided_t), intent(out) :: limits
          type(node_t) :: near(places)
          integer :: i
@@ -189,7 +193,7 @@ contains
             near(i) = node_at(x%asked, s, c, times(i), .true.)
             if (.not. is_known(near(i), x%tracks(c)%rows)) return
          end do
-         limits = limits_of(near, is_change, x%size_of)
+         limits = limits_of(near, at%is_change, at%is_pole, x%size_of)
       end subroutine find_limits
 
       !> The largest error of those `limits` of the rows of mechanism `c` that have a bound, in characteristic values or

@@ -95,7 +95,7 @@ contains
                   end if
                end do
             end if
-            if (r%change_points > 0) call put(o, '   '//phrase(say_passed, m%polish)//' '//whole(r%change_points))
+            if (r%change_points > 0) call put(o, '   '//phrase(say_on_the_way, m%polish)//' '//whole(r%change_points))
          end associate
       end do
    end subroutine put_ranges

@@ -3,7 +3,7 @@
 module tolerance_shares
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_pole
-   use points, only: is_due, coordinates_of
+   use points, only: is_listed, coordinates_of
    use names, only: subject_name
    use set_motion, only: set_motion_t, spread_t, spread_in_set
    use sensitivities, only: has_tolerances, worst_case, root_of_squares
@@ -58,7 +58,7 @@ contains
       integer :: i, c, d
 
       do i = 1, size(m%requests)
-         if (.not. is_due(m, m%requests(i), k) .or. .not. has_tolerances(m, m%requests(i))) cycle
+         if (.not. is_listed(m, m%requests(i), k) .or. .not. has_tolerances(m, m%requests(i))) cycle
          c = max(1, s%parts%part(i))
          call take_row(a%list(:, :, i), spread_in_set(m, s, i), s%motions(c)%t)
          associate (found => s%sensitivities(c))
@@ -111,7 +111,7 @@ contains
          if (.not. has_tolerances(m, m%requests(i))) cycle
          associate (part => s%parts%part(i))
             do k = 0, 2
-               do c = 1, coordinates_of(m%requests(i)%kind)
+               do c = merge(3, 1, m%requests(i)%angle_alone), coordinates_of(m%requests(i)%kind)
                   if (part == 0) call put_quantity(o, l, m, m, i, c, k, a%list(c, k, i))
                   if (part > 0) call put_quantity(o, l, m, s%own(part), i, c, k, a%list(c, k, i))
                end do

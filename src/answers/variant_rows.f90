@@ -4,7 +4,7 @@ module variant_rows
    use planar, only: in_degrees
    use mechanism, only: mechanism_t, driven_kinds, request_link
    use motion, only: mark_none, diagnostic_t, diagnostic_limit
-   use drives, only: new_law, drive_motion
+   use drives, only: new_law, drive_motion, pole_value
    use names, only: drive_name, subject_name
    use independent, only: parts_t
    use deck_variants, only: variation_t, varied_t, values_of_variant
@@ -12,10 +12,11 @@ module variant_rows
    use set_motion, only: in_set, is_flagged
    use listing_layout, only: layout_t, digits_t, dimension_of, column_text, choose_digits, angle_unit
    use csv, only: marks
-   use table, only: table_t, new_table, dotted
+   use table, only: table_t, new_table, drive_columns, dotted
    use extremes, only: extreme_t, least, greatest, outward, extreme_words, requests_of, column_of
    use ranges, only: range_t, low, high
    use answers, only: answers_t
+   use numerals, only: whole
    use phrases
    implicit none
    private
@@ -75,13 +76,15 @@ contains
       type(layout_t), intent(in) :: l
       type(variation_t), intent(in) :: v
       type(summary_t) :: s
+      character(:), allocatable :: drives(:)
       integer :: i
 
       s%numbers = size(v%numbers)
+      drives = drive_columns(m)
       allocate (s%columns(0))
       call add_headed('variant', phrase(say_variant, m%polish), '')
       do i = 1, size(v%numbers)
-         call add_column(varied_column(v%numbers(i)))
+         call add_column(varied_column(v%numbers(:i)))
       end do
       call add_headed('solved', phrase(say_instants, m%polish), phrase(say_are_solved, m%polish))
       call add_headed('flagged', phrase(say_instants, m%polish), phrase(say_flagged, m%polish))
@@ -122,20 +125,25 @@ contains
          s%columns = [s%columns, c]
       end subroutine add_column
 
-      !> The column of the number `one`.
-      function varied_column(one) result(c)
-         type(varied_t), intent(in) :: one
+      !> The column of the last of the `numbers`. If earlier ones have its name, a number behind the name counts them.
+      function varied_column(numbers) result(c)
+         type(varied_t), intent(in) :: numbers(:)
          type(summary_column_t) :: c
          real(wp) :: largest
+         integer :: alike
 
-         c%printed = .true.
-         c%name = dotted(trim(one%owner)//' '//one%word)
-         c%heads = heads_of(one%owner, one%word)
-         c%unit = one%unit
-         largest = max(abs(one%first), abs(one%last))
-         if (allocated(one%list)) largest = maxval(abs(one%list))
-         call choose_digits(log10(max(largest, tiny(1.0_wp))), c%decimals, c%power)
-         if (.not. largest > 0.0_wp) c%power = 0
+         associate (one => numbers(size(numbers)))
+            c%printed = .true.
+            c%name = dotted(trim(one%owner)//' '//one%word)
+            alike = count(numbers%owner == one%owner .and. numbers%word == one%word)
+            if (alike > 1) c%name = trim(c%name)//'.'//whole(alike)
+            c%heads = heads_of(one%owner, one%word)
+            c%unit = one%unit
+            largest = max(abs(one%first), abs(one%last))
+            if (allocated(one%list)) largest = maxval(abs(one%list))
+            call choose_digits(log10(max(largest, tiny(1.0_wp))), c%decimals, c%power)
+            if (.not. largest > 0.0_wp) c%power = 0
+         end associate
       end function varied_column
 
       !> Adds the column of the values of drive number `d` (0: none, the column is empty), whose name begins with
@@ -147,7 +155,7 @@ contains
 
          c%name = start//'.drive'
          if (d > 0) then
-            c%name = start//'.'//dotted(drive_name(m, m%drives(d)))
+            c%name = start//'.'//drives(d)
             c%angular = driven_kinds(m%drives(d)%kind) == request_link
             c%printed = any(heads /= '')
             c%heads = heads
@@ -224,7 +232,7 @@ contains
          do d = 1, size(m%drives)
             call add_drive(d, 'range.min', heads_of(drive_name(m, m%drives(d)), word//' MIN'))
             call add_drive(d, 'range.max', heads_of(drive_name(m, m%drives(d)), word//' MAX'))
-            call add_headed('range.turns.'//dotted(drive_name(m, m%drives(d))), drive_name(m, m%drives(d)), &
+            call add_headed('range.turns.'//trim(drives(d)), drive_name(m, m%drives(d)), &
                phrase(say_whole_turns, m%polish))
          end do
       end subroutine add_ranges
@@ -297,6 +305,7 @@ contains
          if (r%limit%drive > 0) then
             r%cells(n + 2) = cell_t(cell_word, word=drive_name(m, m%drives(r%limit%drive)))
             r%cells(n + 3) = cell_t(cell_number, r%limit%value)
+            if (r%limit%is_pole) r%cells(n + 3) = cell_t(cell_unbounded, sign(1.0_wp, r%limit%value))
             if (r%limit%is_angle .and. m%degrees) r%cells(n + 3)%value = in_degrees(r%limit%value)
          end if
       end if
@@ -352,6 +361,8 @@ contains
       real(wp) :: f(3)
 
       if (d == 0) return
+      cell = cell_t(cell_unbounded, sign(1.0_wp, pole_value(m%drives(d), m%t0)))
+      if (abs(t) <= 0.0_wp .and. abs(pole_value(m%drives(d), m%t0)) > 0.0_wp) return
       f = drive_motion(new_law(m%drives(d)), t)
       cell = cell_t(cell_number, f(1))
    end function drive_cell

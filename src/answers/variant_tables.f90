@@ -16,7 +16,7 @@ module variant_tables
    implicit none
    private
    public :: summary_head, summary_row, put_variant, put_variant_heads, put_note_of_shares, put_variant_row, &
-      put_variants_end, put_broken_off
+      put_variants_end
 
    !> Characters of the number of a variant, and at least of a column.
    integer, parameter :: number_length = 10, least_width = 12
@@ -175,16 +175,6 @@ contains
       call put(o, '')
       call put(o, ' --- '//phrase(say_shares_elsewhere, m%polish))
    end subroutine put_note_of_shares
-
-   !> The last line, where a run ends before its time, after variant `n`.
-   subroutine put_broken_off(o, m, n)
-      type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: n
-
-      call put(o, '')
-      call put(o, ' *** '//phrase(say_broken_variant, m%polish)//' '//whole(n))
-   end subroutine put_broken_off
 
    !> (lines + 1) The first column of each line, all of which begin with column 1, and one more than the last of all.
    pure function line_starts(s) result(starts)

@@ -4,7 +4,7 @@
 module assemblies
    use kinds, only: wp
    use planar, only: without_turns
-   use mechanism, only: mechanism_t, plane_origin
+   use mechanism, only: mechanism_t, plane_origin, pair_links, drive_links
    use motion, only: motion_t, new_motion
    use convergence, only: convergence_t, is_solved
    use block_engine, only: block_engine_t, make_block_engine, set_drive_values
@@ -48,6 +48,7 @@ module assemblies
       integer :: paths = 0, finite = 0, infinite = 0, failed = 0, partial = 0, real = 0
       logical :: is_wide = .false.              !< too wide: not solved
       logical :: is_redundant = .false.         !< more equations than unknowns: no determinant
+      logical :: is_open = .false.              !< these agree in some position, but not in their rates
       logical :: moves = .false.                !< it can move with its drives held: its positions are not separate
    end type assembly_block_t
 
@@ -56,6 +57,7 @@ module assemblies
       type(assembly_block_t), allocatable :: blocks(:) !< that iterate, in solving order
       logical :: are_more = .false.                    !< than max_assemblies
       integer :: chosen = 0                            !< the number of that in which a run begins; 0: none of them
+      logical :: is_missed = .false.                   !< a run begins at a position that is none of them
       logical :: is_known = .true.                     !< they are all that there are, but for `moves` of blocks
    end type assemblies_t
 
@@ -72,14 +74,15 @@ contains
       call make_block_engine(e, m)
       if (.not. e%blocks%solvable) return
       call set_drive_values(e, t)
-      call name_blocks(e, a)
+      call name_blocks(m, e, a)
       call search(m, e, t, a)
       call sort(a)
       a%is_known = .not. (a%are_more .or. any(a%blocks%is_wide .or. a%blocks%failed > 0))
    end subroutine find_assemblies
 
-   !> The same, and which of them a run begins in: that which the estimate of `m` chooses, unless it chooses none, or
-   !> another one is nearer, and all are known. Then the nearest is the estimate of `m` from now on.
+   !> The same, and which of them a run begins in: that which the estimate of `m` chooses, unless another one is nearer
+   !> and all are known. Then the nearest is the estimate of `m` from now on; also where the estimate chooses a position
+   !> that is not separate. Where it chooses another one that was not found, some may be missing.
    subroutine find_nearest(m, t, a)
       type(mechanism_t), intent(inout) :: m
       real(wp), intent(in) :: t
@@ -88,10 +91,8 @@ contains
       type(convergence_t) :: c
       type(motion_t) :: q
       logical :: unused
-      integer :: i
 
       call find_assemblies(m, t, a)
-      if (size(a%list) == 0) return
       call make_block_engine(e, m)
       call solve_first(e, t, c)
       if (is_solved(c)) then
@@ -99,19 +100,38 @@ contains
          call move_links(e%whole, e%state, e%length, q, unused)
          a%chosen = number_of(q%position, a%list, e%span)
       end if
-      if (.not. (a%is_known .and. a%list(1)%is_proved)) return
-      if (a%chosen > 0) then
-         associate (distance => a%list(a%chosen)%distance)
-            if (distance <= fine .or. a%list(1)%distance >= less*distance) return
-         end associate
-      end if
-      a%chosen = 1
-      do i = 1, size(m%links)
-         if (m%links(i)%ground) cycle
-         associate (estimate => m%links(i)%position, found => a%list(1)%position(:, i))
-            estimate = [found(:2) + plane_origin(m), estimate(3) + without_turns(found(3) - estimate(3))]
-         end associate
-      end do
+      if (is_nearer_one()) call begin_in_nearest()
+      a%is_missed = is_solved(c) .and. a%chosen == 0
+      a%is_known = a%is_known .and. .not. a%is_missed
+
+   contains
+
+      !> All are known, and the first of the list is nearer than where the estimate leads.
+      logical function is_nearer_one() result(is)
+         is = size(a%list) > 0 .and. a%is_known
+         if (is) is = a%list(1)%is_proved
+         if (.not. is) return
+         if (a%chosen == 0) then
+            is = .not. is_solved(c) .or. any(a%blocks%moves)
+         else
+            associate (distance => a%list(a%chosen)%distance)
+               is = distance > fine .and. a%list(1)%distance < less*distance
+            end associate
+         end if
+      end function is_nearer_one
+
+      !> The first of the list is the estimate of `m`.
+      subroutine begin_in_nearest()
+         integer :: i
+
+         a%chosen = 1
+         do i = 1, size(m%links)
+            if (m%links(i)%ground) cycle
+            associate (estimate => m%links(i)%position, found => a%list(1)%position(:, i))
+               estimate = [found(:2) + plane_origin(m), estimate(3) + without_turns(found(3) - estimate(3))]
+            end associate
+         end do
+      end subroutine begin_in_nearest
    end subroutine find_nearest
 
    !> The number in `list` of the `position` (3, links), that of all that it may be which is nearest to it, whole turns
@@ -134,23 +154,50 @@ contains
       end do
    end function number_of
 
-   !> The blocks that iterate, with their links.
-   subroutine name_blocks(e, a)
+   !> The blocks that iterate, with their links: those whose angle it solves for; of a block of slides alone those that
+   !> have their place then and no earlier; of a block without unknowns those of its pairs and drives.
+   subroutine name_blocks(m, e, a)
+      type(mechanism_t), intent(in) :: m
       type(block_engine_t), intent(in) :: e
       type(assemblies_t), intent(inout) :: a
       type(assembly_block_t) :: one
-      integer :: i, k
+      integer :: i, k, block_of(0:e%blocks%unknowns), last(0:size(m%links))
 
+      block_of(0) = 0
+      block_of(1:) = e%blocks%block_of
+      last = 0
+      do k = 1, size(e%whole%links)
+         associate (h => e%whole%links(k))
+            last(h%link) = max(block_of(h%orientation), block_of(h%slide), last(h%parent))
+            if (h%root > 0) last(h%link) = max(last(h%link), block_of(h%root), block_of(h%root + 1))
+         end associate
+      end do
       do i = 1, size(e%blocks%list)
          if (e%blocks%list(i)%direct) cycle
          one%block = i
          one%unknowns = e%blocks%list(i)%shape%n
          one%is_redundant = e%blocks%list(i)%shape%rows > e%blocks%list(i)%shape%n
-         one%links = pack([(k, k=1, size(e%orientation_of))], &
-            [(any(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last) == e%orientation_of(k)), &
-            k=1, size(e%orientation_of))])
+         one%links = pack([(k, k=1, size(m%links))], block_of(e%orientation_of) == i)
+         if (size(one%links) == 0) one%links = pack([(k, k=1, size(m%links))], last(1:) == i)
+         if (size(one%links) == 0) one%links = pack([(k, k=1, size(m%links))], is_joined(i))
          a%blocks = [a%blocks, one]
       end do
+
+   contains
+
+      !> (links) Those that move, and that a pair or drive of block `i` names.
+      function is_joined(i)
+         integer, intent(in) :: i
+         logical :: is_joined(size(m%links))
+         integer :: row
+
+         is_joined = .false.
+         do row = e%blocks%list(i)%first_row, e%blocks%list(i)%last_row
+            if (e%blocks%rows(row)%pair > 0) is_joined(pair_links(m, m%pairs(e%blocks%rows(row)%pair))) = .true.
+            if (e%blocks%rows(row)%drive > 0) is_joined(drive_links(m, m%drives(e%blocks%rows(row)%drive))) = .true.
+         end do
+         is_joined = is_joined .and. .not. m%links%ground
+      end function is_joined
    end subroutine name_blocks
 
    !> Goes through all choices of a position for each block. `changed`: of each unknown the number of the choice that
@@ -178,6 +225,7 @@ contains
             if (size(a%list) == max_assemblies) a%are_more = .true.
             if (a%are_more) return
             call prove_position(p, e, t, [(k, k=1, size(found))], q, is_proved)
+            is_proved = is_proved .and. .not. any([(found(k)%is_open(chosen(k)), k=1, size(found))])
             call note_assembly(e, found, chosen, is_proved, a)
             i = i - 1
             cycle
@@ -217,6 +265,7 @@ contains
             one%partial = one%partial + found%partial
             one%real = one%real + size(found%sign_of)
             one%moves = one%moves .or. found%moves
+            one%is_open = one%is_open .or. any(found%is_open)
             one%is_wide = one%is_wide .or. found%group > max_group
          end associate
       end do

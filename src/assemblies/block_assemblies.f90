@@ -3,7 +3,7 @@
 module block_assemblies
    use kinds, only: wp
    use planar, only: without_turns
-   use convergence, only: convergence_t, is_solved
+   use convergence, only: convergence_t, is_solved, ended_inconsistent
    use blocks, only: blocks_t
    use block_state, only: state_t, set_values, values_of
    use block_solver, only: workspace_t, solve_block
@@ -29,6 +29,7 @@ module block_assemblies
    type :: block_positions_t
       real(wp), allocatable :: x(:, :)          !< (unknowns of the block, positions)
       integer, allocatable :: sign_of(:)        !< (positions) of the determinant; 0: singular
+      logical, allocatable :: is_open(:)        !< (positions) redundant equations agree there, but not their rates
       integer :: group = 0                      !< unknowns of a group: see max_group
       integer :: paths = 0, finite = 0, infinite = 0, failed = 0
       integer :: partial = 0                    !< their ends are no solutions of all equations, which are too many
@@ -51,11 +52,12 @@ contains
       type(ends_t) :: ends
       integer :: k
 
-      allocate (found%x(b%list(i)%shape%n, 0), found%sign_of(0))
+      allocate (found%x(b%list(i)%shape%n, 0), found%sign_of(0), found%is_open(0))
       if (b%list(i)%direct) then
          call solve_block(b, i, tolerance, w, s, c)
          found%x = reshape(values_of(b, i, s), [1, 1])
          found%sign_of = [1]
+         found%is_open = [.false.]
          return
       end if
       call make_form(b, i, s, f)
@@ -67,11 +69,11 @@ contains
       found%infinite = ends%infinite
       found%failed = ends%failed
       do k = 1, size(ends%list)
+         found%finite = found%finite + 1
          if (solves_all(f, ends%list(k))) then
-            found%finite = found%finite + 1
             call take_end(ends%list(k))
          else
-            found%partial = found%partial + 1
+            call leave_out(found%partial)
          end if
       end do
 
@@ -110,9 +112,12 @@ contains
             call gauss_newton_step(b, i, s, residual)
          end do
          call solve_block(b, i, tolerance, w, s, c)
+         if (c%ended == ended_inconsistent) then
+            call leave_out(found%partial)
+            return
+         end if
          if (.not. is_solved(c) .or. apart(values_of(b, i, s), x) > merge(singular_near, near, e%is_singular)) then
-            found%failed = found%failed + 1
-            found%finite = found%finite - 1
+            call leave_out(found%failed)
             return
          end if
          x = values_of(b, i, s)
@@ -121,8 +126,17 @@ contains
          end do
          found%x = reshape([found%x, x], [f%n, size(found%x, 2) + 1])
          found%sign_of = [found%sign_of, merge(0, c%determinant, c%singular)]
+         found%is_open = [found%is_open, c%rates_open]
          if (c%singular) found%moves = found%moves .or. any(moving_unknowns(b, i, s))
       end subroutine take_end
+
+      !> The last of the finite ends belongs to those that `number` counts.
+      subroutine leave_out(number)
+         integer, intent(inout) :: number
+
+         number = number + 1
+         found%finite = found%finite - 1
+      end subroutine leave_out
 
       !> The largest difference of the values `x` and `y` of block `i`, of angles without whole turns.
       pure real(wp) function apart(x, y)

@@ -8,7 +8,7 @@ module block_bilinear
    use complex_lu, only: find_null_space
    use blocks, only: blocks_t, loop_projection, loop_angles
    use block_state, only: state_t, find_known_parts
-   use isotropic, only: group_t, make_group, given, find_direction, linear_form, i_unit
+   use isotropic, only: group_t, make_group, given, find_direction, linear_form, size_of_loop, i_unit
    use bilinear, only: bilinear_t, end_t
    implicit none
    private
@@ -25,12 +25,16 @@ module block_bilinear
 
    !> Coefficients below this part of the largest are rounding.
    real(wp), parameter :: zero_level = 4096.0_wp*epsilon(1.0_wp)
+   !> Of equations that are too many those that differ by less agree: the numbers of the deck have 11 digits, of which
+   !> the elimination may lose two. Newton's method then decides with the exact equations.
+   real(wp), parameter :: surplus_level = max(1.0e-8_wp, sqrt(epsilon(1.0_wp)))
    !> Equations that are too many hold to this part of their terms: lengths have 11 digits, a double root half of all.
    real(wp), parameter :: solved_level = max(1.0e-6_wp, 16.0_wp*sqrt(epsilon(1.0_wp)))
 
    !> Re(l conj(factor w)) = value, w direction number `at` of the group; 0: 1.
    type :: projection_t
       complex(wp), allocatable :: l(:)                !< (q + 1) a linear form, its constant part first
+      real(wp) :: size_of = 0.0_wp                    !< the sum of the sizes of its terms, in the unit of the loop
       complex(wp) :: factor = 1.0_wp
       integer :: at = 0
       real(wp) :: value = 0.0_wp
@@ -41,6 +45,7 @@ module block_bilinear
       integer :: linear = 0, bilinear = 0
       complex(wp), allocatable :: a(:, :)             !< (0:q, linear): sum over k of a_k x_k = 0
       complex(wp), allocatable :: c(:, :, :)          !< (0:q, 0:q, bilinear)
+      real(wp), allocatable :: size_of(:)             !< (bilinear) of the terms of each: see projection_t
       type(projection_t), allocatable :: projections(:)
    end type draft_t
 
@@ -60,12 +65,13 @@ contains
       rows = b%list(i)%shape%rows
       allocate (d%projections(0))
       allocate (d%a(0:f%q, rows), d%c(0:f%q, 0:f%q, rows + f%q), source=(0.0_wp, 0.0_wp))
+      allocate (d%size_of(rows + f%q), source=1.0_wp)
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          if (b%loops(m)%kind /= loop_angles) call add_loop(b, i, m, s, f, d)
       end do
       call add_projections(d)
       call add_pairs(f, d)
-      call reduce(f, d)
+      call reduce(f, d, rows > f%n)
    end subroutine make_form
 
    !> Adds the equations of loop `m` of block `i`: each a projection of the loop.
@@ -79,6 +85,7 @@ contains
 
       allocate (one%l(f%q + 1))
       one%l(:) = linear_form(b, m, s, f%group_t)
+      one%size_of = size_of_loop(b, m, s)
       associate (g => b%loops(m))
          if (g%kind == loop_projection) then
             call find_direction(f%group_t, g%orientation_column, g%orientation, s, one%at, one%factor)
@@ -165,6 +172,7 @@ contains
          c(at, :) = c(at, :) + 0.5_wp*conjg(one%l)*one%factor
          c(1, 1) = c(1, 1) - one%value
       end associate
+      d%size_of(d%bilinear) = one%size_of + abs(one%value)
    end subroutine add_real_part
 
    !> Adds w w' = 1 and z w' = z' w, and puts 1 for w w' in the other equations.
@@ -193,28 +201,35 @@ contains
       end do
    end subroutine add_pairs
 
-   !> Eliminates the linear equations; of more bilinear ones than unknowns, takes combinations.
-   subroutine reduce(f, d)
+   !> Eliminates the linear equations. `is_redundant`: equations are too many; those that follow from others by more
+   !> than `surplus_level` are left out, and of more independent ones than unknowns combinations are taken.
+   subroutine reduce(f, d, is_redundant)
       type(block_form_t), intent(inout) :: f
       type(draft_t), intent(in) :: d
-      complex(wp), allocatable :: basis(:, :), c(:, :, :)
-      real(wp) :: size_of
+      logical, intent(in) :: is_redundant
+      complex(wp), allocatable :: basis(:, :), c(:, :, :), independent(:, :)
+      real(wp) :: level, size_of
       integer :: p, j, k, count_of
 
-      call find_null_space(transpose(d%a(:, :d%linear)), zero_level, basis)
+      level = merge(surplus_level, zero_level, is_redundant)
+      call find_null_space(transpose(d%a(:, :d%linear)), level, basis)
       p = size(basis, 2) - 1
       allocate (f%basis(0:f%q, 0:p))
       f%basis(:, :) = basis
-      allocate (c(0:p, 0:p, d%bilinear))
+      allocate (c(0:p, 0:p, d%bilinear), independent((p + 1)**2, 0))
       count_of = 0
       do j = 1, d%bilinear
-         associate (one => d%c(:, :, j))
-            c(:, :, count_of + 1) = matmul(transpose(basis), matmul(one, conjg(basis)))
-            size_of = maxval(abs(one))*maxval([0.0_wp, abs(basis)])**2
+         associate (one => c(:, :, count_of + 1))
+            one = matmul(transpose(basis), matmul(d%c(:, :, j), conjg(basis)))
+            ! What is left may be rounding alone: it is compared with the terms, and with what they are multiplied by.
+            size_of = max(d%size_of(j), maxval(abs(d%c(:, :, j))))*maxval([0.0_wp, abs(basis)])**2
+            if (maxval([0.0_wp, abs(one)]) <= level*size_of) cycle
+            one = one/maxval(abs(one))
+            if (is_redundant) then
+               if (.not. is_new(reshape(one, [(p + 1)**2]), independent)) cycle
+            end if
          end associate
-         if (maxval([0.0_wp, abs(c(:, :, count_of + 1))]) <= zero_level*size_of) cycle
          count_of = count_of + 1
-         c(:, :, count_of) = c(:, :, count_of)/maxval(abs(c(:, :, count_of)))
       end do
       f%system%p = p
       f%is_impossible = maxval([0.0_wp, abs(basis(1, :))]) <= 0.0_wp
@@ -232,6 +247,22 @@ contains
          f%system%c(:, :, j) = f%system%c(:, :, j)/maxval(abs(f%system%c(:, :, j)))
       end do
    end subroutine reduce
+
+   !> The coefficients `one` are no combination of those before, of which `independent` (size(one), any number) are
+   !> orthogonal combinations of length 1; it becomes one column wider.
+   logical function is_new(one, independent)
+      complex(wp), intent(in) :: one(:)
+      complex(wp), allocatable, intent(inout) :: independent(:, :)
+      complex(wp) :: left(size(one))
+      integer :: k
+
+      left = one
+      do k = 1, size(independent, 2)
+         left = left - dot_product(independent(:, k), left)*independent(:, k)
+      end do
+      is_new = norm2(abs(left)) > surplus_level*norm2(abs(one))
+      if (is_new) independent = reshape([independent, left/norm2(abs(left))], [size(one), size(independent, 2) + 1])
+   end function is_new
 
    !> The solution `e` of the combinations that are solved is one of all equations.
    pure logical function solves_all(f, e)

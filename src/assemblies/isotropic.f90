@@ -6,7 +6,7 @@ module isotropic
    use block_state, only: state_t
    implicit none
    private
-   public :: group_t, make_group, given, find_direction, linear_form, i_unit
+   public :: group_t, make_group, given, find_direction, linear_form, size_of_loop, i_unit
 
    !> Unknown k of the block is unknown base(k) + offset(k); base 0 is none: the unknown is known.
    type :: group_t
@@ -172,4 +172,25 @@ contains
          end associate
       end do
    end function linear_form
+
+   !> The sum of the sizes of the terms of loop `m` that are known or of known length, in its unit: what rounding of the
+   !> loop is measured by.
+   pure real(wp) function size_of_loop(b, m, s) result(size_of)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: m
+      type(state_t), intent(in) :: s
+      integer :: k
+
+      associate (g => b%loops(m))
+         size_of = norm2(g%ground)
+         do k = g%first_vector, g%last_vector
+            size_of = size_of + hypot(b%body_vectors(k)%x, b%body_vectors(k)%y)
+         end do
+         do k = g%first_slide, g%last_slide
+            associate (e => b%slides(k))
+               size_of = size_of + norm2(e%body_vector)*merge(1.0_wp, abs(s%u(e%unknown)%value), e%column > 0)
+            end associate
+         end do
+      end associate
+   end function size_of_loop
 end module isotropic

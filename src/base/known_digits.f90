@@ -3,7 +3,7 @@ module known_digits
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
    use decimal_digits, only: nearest_whole, tens
-   use numerals, only: put_fixed, put_with_point, put_whole, put_exponent, numeral_length
+   use numerals, only: put_fixed, put_with_point, put_minus, put_whole, put_exponent, numeral_length, max_decimals
    implicit none
    private
    public :: put_known, has_known_digit, unknown_digit, nothing_known, errors_a_digit
@@ -76,7 +76,7 @@ contains
       integer :: room, d, unknown, first, i
 
       room = numeral_length - 2 - merge(1, 0, negative)
-      do d = min(decimals, room - 1), max(0, 1 - last), -1
+      do d = min(decimals, max_decimals), max(0, 1 - last), -1
          unknown = last + d
          if (n >= tens(max(0, room - unknown)) .and. n > 0) cycle
          text = ''
@@ -87,7 +87,7 @@ contains
             text(i:i) = unknown_digit
             unknown = unknown - 1
          end do
-         if (negative) text(first - 1:first - 1) = '-'
+         if (negative) call put_minus(d, first, text)
          return
       end do
       text = ''

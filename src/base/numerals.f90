@@ -9,10 +9,12 @@ module numerals
    implicit none
    private
    public :: fixed, put_fixed, whole, full, put_full, numeral_length, full_length, significant
-   public :: put_whole, put_with_point, put_digits, put_leading, put_exponent
+   public :: put_whole, put_with_point, put_minus, put_digits, put_leading, put_exponent, max_decimals
 
    !> Characters of a number in the tables, one blank before it included.
    integer, parameter :: numeral_length = 12
+   !> Decimals of such a number at most: the blank, a digit and the point stand before them.
+   integer, parameter :: max_decimals = numeral_length - 3
    !> Digits of an exponent, and characters of a number in full, with its sign and that of its exponent.
    integer, parameter :: exponent_digits = merge(4, 3, range(1.0_wp) >= 1000)
    integer, parameter :: full_length = significant + 4 + exponent_digits
@@ -32,7 +34,8 @@ module numerals
 contains
 
    !> `x` 10**-power, correctly rounded to at most `decimals` >= 0 decimals, right-adjusted: as many decimals as there
-   !> is room for, and an exponent where even the whole part has no room.
+   !> is room for, and an exponent where even the whole part has no room. A negative number has no zero before the point
+   !> if nine decimals leave no room for the zero: -.012345678.
    pure function fixed(x, decimals, power) result(text)
       real(wp), intent(in) :: x
       integer, intent(in) :: decimals, power
@@ -53,16 +56,28 @@ contains
       negative = sign(1.0_wp, x) < 0.0_wp
       ! Room for digits: without a blank, the point and the sign.
       room = numeral_length - 2 - merge(1, 0, negative)
-      do d = min(decimals, room - 1), 0, -1
+      do d = min(decimals, max_decimals), 0, -1
          n = nearest_whole(abs(x), d - power)
          if (n >= tens(room)) cycle
          text = ''
          call put_with_point(n, d, text, first)
-         if (negative .and. n > 0) text(first - 1:first - 1) = '-'
+         if (negative .and. n > 0) call put_minus(d, first, text)
          return
       end do
       text = with_exponent(x, power)
    end subroutine put_fixed
+
+   !> Writes the sign of the negative number in `text`, which begins at `first` and has `decimals`: in the place of its
+   !> zero where there is no other room.
+   pure subroutine put_minus(decimals, first, text)
+      integer, intent(in) :: decimals, first
+      character(numeral_length), intent(inout) :: text
+      integer :: place
+
+      place = first - 1
+      if (decimals == max_decimals) place = first
+      text(place:place) = '-'
+   end subroutine put_minus
 
    !> `x` 10**-power with an exponent and as many digits as there is room for, right-adjusted.
    pure function with_exponent(x, power) result(text)

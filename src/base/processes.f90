@@ -1,9 +1,12 @@
 !> Child processes, each a copy of this one, and the pipes between them.
 module processes
    use, intrinsic :: iso_c_binding, only: c_int, c_int16_t, c_int64_t, c_long, c_size_t
+   use failures, only: status_system
+   use system_calls, only: write_bytes
    implicit none
    private
    public :: processor_count, make_pipe, has_input, fork_process, wait_for_child, interrupt_child, end_process, killed
+   public :: end_without_memory, report_to, end_of_message
 
    !> What `wait_for_child` adds to the number of the signal that has killed a child.
    integer, parameter :: killed = 1000
@@ -12,6 +15,12 @@ module processes
    integer(c_int), parameter :: signal_terminate = 15, when_parent_ends = 1
    !> Bits of a set of processors, as sched_getaffinity takes it.
    integer, parameter :: processor_words = 16
+   !> Ends the message that a child reports to its parent.
+   character(1), parameter :: end_of_message = achar(2)
+   character(*), parameter :: no_memory = ' *** NOT ENOUGH MEMORY FOR THE DECK'
+   !> Where a process without memory says so: standard error, in a child the pipe to its parent.
+   integer(c_int), parameter :: standard_error = 2
+   integer(c_int) :: report = standard_error
 
    !> What poll is asked about a descriptor: whether there is input.
    type, bind(c) :: poll_t
@@ -134,4 +143,23 @@ contains
 
       call exit_at_once(int(status, c_int))
    end subroutine end_process
+
+   !> From now on this process, a child, reports to its parent through the pipe `descriptor`.
+   subroutine report_to(descriptor)
+      integer(c_int), intent(in) :: descriptor
+
+      report = descriptor
+   end subroutine report_to
+
+   !> Ends this process because memory lacks, and uses none for it. Outputs end with the last block of lines written.
+   subroutine end_without_memory
+      integer(c_size_t) :: written
+
+      if (report == standard_error) then
+         written = write_bytes(report, no_memory//new_line('a'))
+      else
+         written = write_bytes(report, no_memory//end_of_message)
+      end if
+      call end_process(status_system)
+   end subroutine end_without_memory
 end module processes

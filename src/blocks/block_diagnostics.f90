@@ -169,17 +169,22 @@ contains
    end function links_with
 
    !> The limit of the motion that is followed, if it has one before `t`: that of the first block, in solving order,
-   !> that comes to one; blocks that build on it come to it as well.
-   function limit_diagnostic(e, t) result(list)
+   !> that comes to one; blocks that build on it come to it as well. `creeps`: the motion has come so near in so many
+   !> substeps that the infinity of a slide is its limit, before `t` or after.
+   function limit_diagnostic(e, t, creeps) result(list)
       type(block_engine_t), intent(in) :: e
       real(wp), intent(in) :: t
+      logical, intent(in), optional :: creeps
       type(diagnostic_t), allocatable :: list(:)
       type(diagnostic_t) :: r
       real(wp) :: left
       integer :: k
+      logical :: at_any_time
 
       allocate (list(0))
       if (e%history%filled == 0) return
+      at_any_time = .false.
+      if (present(creeps)) at_any_time = creeps
       do k = 1, size(e%moving)
          if (e%blocks%list(e%moving(k))%direct) cycle
          left = time_to_limit(e%moving(k))
@@ -219,22 +224,26 @@ contains
          end associate
       end function time_to_limit
 
-      !> The time from the motion that is followed to the instant t* before `t` at which a slide of block `i` is
-      !> infinite, since its guide comes to be parallel to another; 0 where none is. Close to t* the slide s is c/(t* -
-      !> t) and a constant, so t* - t = 2 s'/s'', and s s''/s'^2 is about 2.
+      !> The time from the motion that is followed to the instant t*, `t` itself or before it, at which a slide of block
+      !> `i` is infinite, since its guide comes to be parallel to another; 0 where none is. Close to t* the slide s is
+      !> c/(t* - t) and a constant, so t* - t = 2 s'/s'', and s s''/s'^2 is about 2. The longest slide tells best.
       pure real(wp) function time_to_infinity(i) result(left)
          integer, intent(in) :: i
-         real(wp) :: to_go
+         real(wp) :: to_go, longest
          integer :: k
 
          left = 0.0_wp
+         longest = far_slide
          do k = e%blocks%list(i)%first, e%blocks%list(i)%last
             associate (x => e%history%past(e%blocks%unknown(k)), step => t - e%history%t(0))
                if (e%blocks%unknown(k) <= e%blocks%orientations .or. .not. abs(x%rate(0)) > 0.0_wp) cycle
-               if (abs(x%value) < far_slide) cycle
+               if (abs(x%value) < longest) cycle
                if (abs(x%value*x%acceleration(0)/x%rate(0)**2 - 2.0_wp) > as_a_pole) cycle
                to_go = 2.0_wp*x%rate(0)/x%acceleration(0)
-               if (to_go*sign(1.0_wp, step) > 0.0_wp .and. abs(to_go) < abs(step)) left = to_go
+               if (to_go*sign(1.0_wp, step) <= 0.0_wp) cycle
+               if (abs(to_go) > (1.0_wp + near_part)*abs(step) .and. .not. at_any_time) cycle
+               left = to_go
+               longest = abs(x%value)
             end associate
          end do
       end function time_to_infinity

@@ -3,8 +3,9 @@ module analysis
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use structure, only: structure_t
+   use drive_excursion, only: has_pole_between, short_of_pole
    use motion, only: motion_t, forget_links, known_of, mark_none, mark_not_converged, mark_singular, mark_overflow, &
-      mark_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_long, &
+      mark_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_limit, diagnostic_long, &
       diagnostic_close, diagnostic_begins
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, branch_none, branch_first, branch_same, &
       branch_crossed
@@ -81,21 +82,31 @@ contains
       type(motion_t), intent(inout) :: found
       type(step_record_t) :: step
       type(diagnostic_t), allocatable :: list(:)
+      real(wp) :: to
+      logical :: is_over_pole
 
       call come_back(a)
       if (allocated(found%diagnostics)) deallocate (found%diagnostics)
       found%t = t
-      if (limit_before(a%limits, t) > 0 .or. is_too_far(a%following_t, t)) then
+      to = t
+      is_over_pole = a%follows .and. has_pole_between(a%drives, a%t, t)
+      if (is_over_pole) to = short_of_pole(a%drives, a%t)
+      if (limit_before(a%limits, t) > 0 .or. is_too_far(a%following_t, to)) then
          call pass_over(a, t, found)
          return
       end if
-      call continue_to(a%following_t, t, step)
-      if (.not. step%arrived) call pass_standstill(a%following_t, t, step, list)
-      if (step%arrived) then
+      call continue_to(a%following_t, to, step)
+      if (.not. step%arrived) call pass_standstill(a%following_t, to, step, list)
+      if (step%arrived .and. is_over_pole) then
+         call go_back(a%following_t, step)
+         call end_at_pole(a)
+         call pass_over(a, t, found)
+         return
+      else if (step%arrived) then
          call arrive(a, step, list, found)
       else
          if (allocated(step%passed)) call add_diagnostics(step%passed, found)
-         call give_up(a, t, step, found)
+         call give_up(a, to, step, found)
       end if
       if (found%known == 2) then
          call go_on_from(a%following_t, t)
@@ -169,6 +180,14 @@ contains
       if (.not. a%has_begun .or. (.not. a%follows .and. found%known == 2)) call diagnose_start(a, found)
    end subroutine arrive
 
+   !> The motion that is followed comes to t = 0, where the law of a drive goes to infinity, without another limit.
+   subroutine end_at_pole(a)
+      type(analysis_t), intent(inout) :: a
+
+      call note_limit(a%limits, a%t, a%t, 0.0_wp, .false., [diagnostic_t(kind=diagnostic_limit, &
+         drive=a%drives%infinite, is_pole=.true., value=a%drives%pole(merge(1, 2, a%t < 0.0_wp)))])
+   end subroutine end_at_pole
+
    !> No motion was found at `t`, at the end of `step`.
    subroutine give_up(a, t, step, found)
       type(analysis_t), intent(inout) :: a
@@ -186,19 +205,20 @@ contains
          a%max_closure_error = max(a%max_closure_error, a%convergence%open%value)
       else
          call cut(found, -1, mark_not_converged)
-         call a%engine%get_driven_links(t, found)
+         if (.not. has_pole_between(a%drives, a%t, found%t)) call a%engine%get_driven_links(t, found)
       end if
       call diagnose_end(a, t, step, found)
    end subroutine give_up
 
-   !> `t` is not reached by continuity, and nothing is solved for. The first of such instants gets the reason.
+   !> `t` is not reached by continuity, and nothing is solved for. The first of such instants gets the reason. Beyond a
+   !> pole of a law no link has a position.
    subroutine pass_over(a, t, found)
       type(analysis_t), intent(inout) :: a
       real(wp), intent(in) :: t
       type(motion_t), intent(inout) :: found
 
       call cut(found, -1, mark_not_converged)
-      call a%engine%get_driven_links(t, found)
+      if (.not. (a%follows .and. has_pole_between(a%drives, a%t, t))) call a%engine%get_driven_links(t, found)
       a%convergence = convergence_t(ended=ended_unsought)
       a%branch = branch_t()
       if (.not. a%is_lost) then
@@ -266,7 +286,7 @@ contains
             ! To where a slide is infinite there are more substeps than are tried.
             if (has_too_many_substeps(step)) &
                ahead = a%t + sign(min(abs(t - a%t), almost_there*abs(a%t - a%place%t)), t - a%t)
-            list = limit_diagnostic(e, ahead)
+            list = limit_diagnostic(e, ahead, has_too_many_substeps(step))
             if (size(list) == 0 .and. a%follows .and. step%blocked) list = [diagnostic_t(kind=diagnostic_close, t=a%t)]
          end select
       end if

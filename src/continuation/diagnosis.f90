@@ -37,6 +37,7 @@ contains
       type(motion_t), intent(inout) :: found
       real(wp), allocatable :: last(:, :)
       type(structure_t) :: structure
+      logical :: is_said
 
       select type (e => a%engine)
       class is (dense_engine_t)
@@ -48,8 +49,11 @@ contains
       class default
          return
       end select
+      ! A pole of a law is told by any method.
+      is_said = a%follows .and. o%is_lost
+      if (allocated(found%diagnostics)) is_said = is_said .or. any(found%diagnostics%is_pole)
       if (found%mark == mark_not_converged) then
-         if (.not. (a%follows .and. o%is_lost)) call say_why(m, a, o%is_lost, structure, found, last)
+         if (.not. is_said) call say_why(m, a, o%is_lost, structure, found, last)
       else if (found%mark == mark_singular) then
          call judge_singularity(m, .not. o%has_begun, found)
       else if (.not. o%has_begun) then

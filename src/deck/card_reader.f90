@@ -3,12 +3,14 @@
 module card_reader
    use kinds, only: wp, label_length
    use mechanism, only: remark_title_long, remark_title_letters, remark_touching
-   use cards, only: card_t, field_t, card_fields, wide_fields, title_field, card_name, label_a, label_c, field_text, &
-      first_column, card_columns, forms, form_name, form_unknown, form_title, reals_of, find_form, nearest_form
+   use cards, only: card_t, field_t, card_fields, wide_fields, title_field, card_name, label_a, label_c, real_1, &
+      field_text, first_column, card_columns, forms, form_name, form_unknown, form_title, reals_of, find_form, &
+      nearest_words, proposal
    use input_errors, only: error_code_t, input_errors_t, add_error, add_field_error, add_remark, error_count, is_full, &
       max_power, card_unknown, card_indented, past_last_column, tab_character, control_character, foreign_character, &
-      border_crossed, field_unused, field_blank, label_blank_inside, label_long, star_no_reals, star_second, &
-      star_twice, star_blank, number_overflow, number_underflow
+      border_crossed, field_unused, field_blank, label_blank_inside, label_long, whole_long, star_no_reals, &
+      star_second, star_twice, star_blank, number_overflow, number_underflow
+   use failures, only: capitals
    use numbers, only: read_real, read_whole
    use numerals, only: whole
    implicit none
@@ -183,7 +185,8 @@ contains
       has_small = has_small .or. .not. clean
       if (clean) then
          if (card%overrun > 0) &
-            call add_error(errors, past_last_column, card, field_t('PAST-80', 81, 81), card%overrun, card%beyond)
+            call add_error(errors, past_last_column, card, field_t('PAST-80', 81, 81), card%overrun, card%beyond, &
+               trim(adjustl(longer_number(card, last_word(card)))))
          return
       end if
       code = control_character
@@ -192,6 +195,16 @@ contains
       field = card_fields(findloc(card_fields%last >= column, .true., dim=1))
       call add_error(errors, code, card, field, column, field_text(card, field))
    end subroutine check_characters
+
+   !> The word that crosses the last column of `card`, as far as it is known; '' if none does.
+   pure function last_word(card) result(word)
+      type(card_t), intent(in) :: card
+      character(:), allocatable :: word
+
+      word = ''
+      if (card%overrun /= card_columns + 1 .or. card%text(card_columns:) == ' ') return
+      word = card%text(index(card%text, ' ', back=.true.) + 1:)//card%beyond(:index(card%beyond//' ', ' ') - 1)
+   end function last_word
 
    !> Adds the error of a card name that does not exist. `form`: the form that was probably meant, or form_unknown.
    subroutine guess_form(card, form, errors)
@@ -210,8 +223,10 @@ contains
       else if (name == '') then
          code = field_blank
       else if (.not. is_full(errors)) then
-         form = nearest_form(name)
-         if (form /= form_unknown) hint = '(IS IT '//trim(form_name(form))//'?)'
+         associate (nearest => nearest_words(capitals(name), forms%layout(:label_length)))
+            if (size(nearest) > 0) form = nearest(1)
+            hint = proposal(forms(nearest)%layout(:label_length))
+         end associate
       end if
       call add_field_error(errors, code, card, card_fields(card_name), hint)
    end subroutine guess_form
@@ -252,10 +267,25 @@ contains
             cycle
          end if
          cut(i:i + 1) = .true.
-         call add_error(errors, border_crossed, card, fields(i), start, card%text(start:finish), &
-                        whole(border)//' AND '//whole(border + 1))
+         call add_error(errors, border_crossed, card, fields(i), start, card%text(start:finish), whole(border) &
+            //' AND '//whole(border + 1)//longer_number(card, card%text(start:finish)))
       end do
    end subroutine find_cuts
+
+   !> ' ' and where a number may stand that is longer than the fields of `card`, if `text` is one; otherwise ''.
+   pure function longer_number(card, text) result(hint)
+      type(card_t), intent(in) :: card
+      character(*), intent(in) :: text
+      character(:), allocatable :: hint
+      type(error_code_t) :: error
+      real(wp) :: value
+      integer :: place
+
+      hint = ''
+      if (len(text) <= card_fields(real_1)%last - card_fields(real_1)%first + 1 .or. card%text(1:1) == '*') return
+      call read_real(text, value, error, place)
+      if (error%number == 0) hint = ' (A * CARD BELOW IT TAKES 24 COLUMNS FOR A NUMBER)'
+   end function longer_number
 
    !> Whether a number with a sign begins with the character number `first` of `text`. Where what is before it is a
    !> number too (`numeric`), it must not be the exponent of that; where it is a label, it must be a number without an
@@ -308,8 +338,8 @@ contains
       end do
    end subroutine read_labels
 
-   !> Adds the error of text in field number `i`, which the card `parsed` does not take: it may belong to a name in the
-   !> field before, which is longer than a label.
+   !> Adds the error of text in field number `i`, which the card `parsed` does not take: it may belong to a name or a
+   !> whole number in the field before, which is longer than a label.
    subroutine refuse_field(parsed, i, errors)
       type(parsed_card_t), intent(inout) :: parsed
       integer, intent(in) :: i
@@ -321,7 +351,10 @@ contains
             parsed%names_certain = .false.
             first = first_column(parsed%card, card_fields(i - 1))
             finish = border + index(text(border:card_fields(i)%last)//' ', ' ') - 2
-            call add_error(errors, label_long, parsed%card, card_fields(i - 1), first, text(first:finish))
+            associate (is_whole => scan(forms(parsed%form)%labels(i - label_a:i - label_a), 'Ww') == 1)
+               call add_error(errors, merge(whole_long, label_long, is_whole), parsed%card, card_fields(i - 1), first, &
+                  text(first:finish))
+            end associate
          else
             call add_field_error(errors, field_unused, parsed%card, card_fields(i))
          end if

@@ -1,23 +1,24 @@
 !> One set of computations while it is read: its cards, the deck's errors, and the mechanism that is built at END: here
 !> its links, points and pairs. A name may be used before the card that defines it, so names are looked up only at END.
 module card_sets
-   use kinds, only: wp
+   use kinds, only: wp, label_length
    use planar, only: direction, rotated
    use mechanism, only: mechanism_t, link_t, point_t, pair_t, pair_prismatic, request_link, request_point, &
       request_pair, remark_small_letters
-   use cards, only: card_t, field_t, card_fields, wide_fields, field_text, first_column, small_field, label_a, &
-      label_b, label_c, real_1, real_2, real_3, form_ground, form_link, form_point, form_revolute, form_prism, &
-      form_joint, form_end
+   use cards, only: card_t, field_t, card_fields, wide_fields, field_text, first_column, small_field, card_name, &
+      label_a, label_b, label_c, real_1, real_2, real_3, form_ground, form_link, form_point, form_revolute, &
+      form_prism, form_cylinder, form_joint, form_end, nearest_words, proposal
    use card_reader, only: parsed_card_t
-   use failures, only: failure_t, fail, capitals, status_system
-   use input_errors, only: error_code_t, input_errors_t, add_field_error, add_remark, link_unknown, &
-      point_unknown, pair_unknown, name_repeated, pair_one_link, pair_grounds
-   use names, only: name_table_t, put_name, find_name, listed
+   use failures, only: capitals
+   use input_errors, only: error_code_t, input_errors_t, add_field_error, add_remark, is_full, link_unknown, &
+      point_unknown, pair_unknown, name_repeated, pair_one_link, pair_grounds, cylinder_drawing, cylinder_points
+   use drawn_values, only: drawn_pair, coincides
+   use names, only: name_table_t, put_name, find_name, subject_name, listed
    use numerals, only: whole
    implicit none
    private
    public :: card_set_t, vary_card_t, begin_set, begin_mechanism, append_card
-   public :: read_small_letters, build_bodies, look_up, match_word
+   public :: read_small_letters, build_bodies, has_drawing, look_up, match_word
    public :: add_card_error, add_parsed_error, add_card_remark, real_text
 
    !> The links, the points or the pairs of a set.
@@ -83,21 +84,15 @@ contains
       set%mechanism = mechanism_t(set_number=number)
    end subroutine begin_mechanism
 
-   !> Appends a card. Errors: status_system, if there is no memory for it.
-   subroutine append_card(set, card, failure)
+   !> Appends a card.
+   subroutine append_card(set, card)
       type(card_set_t), intent(inout) :: set
       type(parsed_card_t), intent(in) :: card
-      type(failure_t), allocatable, intent(out) :: failure
       type(parsed_card_t), allocatable :: larger(:)
-      integer :: status
 
       if (.not. allocated(set%cards)) allocate (set%cards(first_room))
       if (set%count == size(set%cards)) then
-         allocate (larger(2*set%count), stat=status)
-         if (status /= 0) then
-            call fail(failure, status_system, 'NOT ENOUGH MEMORY FOR THE DECK')
-            return
-         end if
+         allocate (larger(2*set%count))
          larger(1:set%count) = set%cards
          call move_alloc(larger, set%cards)
       end if
@@ -112,9 +107,9 @@ contains
    subroutine read_small_letters(set)
       type(card_set_t), intent(inout) :: set
       integer, parameter :: kinds(*) = [request_link, request_link, request_point, request_pair, request_pair, &
-         request_point, request_pair]
-      integer, parameter :: definers(*) = [form_ground, form_link, form_point, form_revolute, form_prism, form_joint, &
-         form_joint]
+         request_pair, request_point, request_pair]
+      integer, parameter :: definers(*) = [form_ground, form_link, form_point, form_revolute, form_prism, &
+         form_cylinder, form_joint, form_joint]
       type(name_table_t) :: typed(request_link:request_pair), upper(request_link:request_pair)
       integer :: k, i, earlier
 
@@ -142,7 +137,7 @@ contains
    pure integer function name_field(form)
       integer, intent(in) :: form
 
-      name_field = merge(label_c, label_a, any(form == [form_revolute, form_prism]))
+      name_field = merge(label_c, label_a, any(form == [form_revolute, form_prism, form_cylinder]))
    end function name_field
 
    !> Builds the links, points and pairs of `set`%mechanism, each kind in the order of its cards. Repeated and unknown
@@ -153,7 +148,7 @@ contains
 
       set%named(request_link)%card = cards_of([form_ground, form_link])
       set%named(request_point)%card = cards_of([form_point, form_joint, form_joint])
-      set%named(request_pair)%card = cards_of([form_revolute, form_prism, form_joint])
+      set%named(request_pair)%card = cards_of([form_revolute, form_prism, form_cylinder, form_joint])
       allocate (set%mechanism%links(size(set%named(request_link)%card)))
       allocate (set%mechanism%points(size(set%named(request_point)%card)))
       allocate (set%mechanism%pairs(size(set%named(request_pair)%card)))
@@ -215,8 +210,8 @@ contains
          if (is_first .neqv. is_ground) call define_name(request_point, label_a)
       end subroutine build_joint_point
 
-      !> Pair number `n`, of a REVOLUTE, PRISM or JOINT card. The points are there. It must join two links, not both of
-      !> them ground.
+      !> Pair number `n`, of a REVOLUTE, PRISM, CYLINDER or JOINT card. The points are there. It must join two links,
+      !> not both of them ground.
       subroutine build_pair()
          integer :: k, i, j
 
@@ -231,8 +226,11 @@ contains
          associate (card => set%cards(k), pair => set%mechanism%pairs(n))
             pair = pair_t(name=card%label(name_field(card%form)), point_i=i, point_j=j)
             if (card%form == form_prism) pair = pair_t(pair_prismatic, pair%name, i, j, card%real(1)*set%angle_unit, &
-               card%real(2), card%real(3)*set%angle_unit)
+               card%real(2), card%real(3)*set%angle_unit, [.false., .not. card%given(2:) .and. has_drawing(set)])
+            if (card%form == form_cylinder) pair = pair_t(pair_prismatic, pair%name, i, j, drawn=.true.)
          end associate
+         if (set%cards(k)%form == form_cylinder .and. .not. has_drawing(set)) &
+            call add_card_error(set, cylinder_drawing, k, card_name)
          call define_name(request_pair, name_field(set%cards(k)%form))
          if (i == 0 .or. j == 0) return
          i = set%mechanism%points(i)%link
@@ -242,8 +240,24 @@ contains
             call add_card_error(set, pair_one_link, k, label_c, trim(set%mechanism%links(i)%name))
          else if (set%mechanism%links(i)%ground .and. set%mechanism%links(j)%ground) then
             call add_card_error(set, pair_grounds, k, label_c)
+         else if (any(set%mechanism%pairs(n)%drawn)) then
+            call take_drawing()
          end if
       end subroutine build_pair
+
+      !> Gives pair number `n` those numbers that it has as drawn. The points of a cylinder must lie apart.
+      subroutine take_drawing()
+         real(wp) :: numbers(3)
+
+         associate (pair => set%mechanism%pairs(n))
+            numbers = drawn_pair(set%mechanism, pair)
+            pair%alpha = numbers(1)
+            pair%offset = numbers(2)
+            pair%beta = numbers(3)
+            if (pair%drawn(1) .and. coincides(set%mechanism, pair)) &
+               call add_card_error(set, cylinder_points, set%named(request_pair)%card(n), label_b)
+         end associate
+      end subroutine take_drawing
 
       !> The numbers of all cards of the forms `forms_asked`, in the order of the deck; twice those of a form that is
       !> there twice.
@@ -261,7 +275,7 @@ contains
       end function cards_of
 
       !> Enters the name in label `i` (label_a to label_c) of the card of link, point or pair (`kind`) number `n`. A
-      !> name that is there already is an error.
+      !> name that is there already is an error. Of two JOINT cards the error of their points stands for both.
       subroutine define_name(kind, i)
          integer, intent(in) :: kind, i
          integer :: k, earlier
@@ -270,9 +284,19 @@ contains
          if (set%cards(k)%label(i) == '') return
          call put_name(set%named(kind)%table, set%cards(k)%label(i), n, earlier)
          if (earlier == 0) return
-         call add_card_error(set, name_repeated, k, i, whole(set%cards(set%named(kind)%card(earlier))%card%number))
+         associate (first => set%cards(set%named(kind)%card(earlier)))
+            if (kind == request_pair .and. set%cards(k)%form == form_joint .and. first%form == form_joint) return
+            call add_card_error(set, name_repeated, k, i, whole(first%card%number))
+         end associate
       end subroutine define_name
    end subroutine build_bodies
+
+   !> Whether `set` has the coordinates of a drawing, in which a blank number is as drawn.
+   pure logical function has_drawing(set)
+      type(card_set_t), intent(in) :: set
+
+      has_drawing = set%number_of(form_joint) > 0
+   end function has_drawing
 
    !> The number `n` of the link, point or pair (`kind`) that label `i` (label_a to label_c) of card `k` names. 0: the
    !> label is blank, which is an error of its own, or unknown, an error unless a card that could define it was not
@@ -285,17 +309,20 @@ contains
       n = 0
       if (set%cards(k)%label(i) == '') return
       n = find_name(set%named(kind)%table, set%cards(k)%label(i))
-      if (n == 0 .and. set%names_certain) call add_card_error(set, unknown(kind), k, i, hint_for(set, k, i))
+      if (n == 0 .and. set%names_certain) call add_card_error(set, unknown(kind), k, i, hint_for(set, kind, k, i))
    end subroutine look_up
 
-   !> What the unknown name in label `i` (label_a to label_c) of card `k` may be; '' for nothing that is known.
-   function hint_for(set, k, i) result(hint)
+   !> What the name in label `i` (label_a to label_c) of card `k` may be, which no link, point or pair (`kind`) has; ''
+   !> if nothing is known, or if the error is only counted.
+   function hint_for(set, kind, k, i) result(hint)
       type(card_set_t), intent(in) :: set
-      integer, intent(in) :: k, i
+      integer, intent(in) :: kind, k, i
       character(:), allocatable :: hint
-      integer :: link, point
+      character(label_length), allocatable :: names(:)
+      integer :: link, point, n
 
       hint = ''
+      if (is_full(set%errors)) return
       associate (card => set%cards(k), text => set%cards(k)%card%text, field => card_fields(i), m => set%mechanism)
          link = find_name(set%named(request_link)%table, card%label(i))
          point = find_name(set%named(request_point)%table, card%label(i))
@@ -311,6 +338,9 @@ contains
             hint = '(IS IT LONGER THAN 8 LETTERS?)'
          else if (index(text(field%first - 1:field%first), ' ') == 0 .and. i > label_a) then
             hint = '(IS THE NAME BEFORE IT LONGER THAN 8 LETTERS?)'
+         else
+            names = [(subject_name(m, kind, n), n=1, size(set%named(kind)%card))]
+            hint = proposal(names(nearest_words(card%label(i), names)))
          end if
       end associate
    end function hint_for
@@ -328,15 +358,16 @@ contains
       if (place == 0 .and. set%cards(k)%valid) call add_card_error(set, code, k, label_a)
    end subroutine match_word
 
-   !> Adds the remark `kind` about `field` (label_a to real_3) of card `k`.
-   subroutine add_card_remark(set, kind, k, field)
+   !> Adds the remark `kind` about `field` (label_a to real_3) of card `k`. `value` ends the sentence.
+   subroutine add_card_remark(set, kind, k, field, value)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: kind, k, field
+      character(*), intent(in), optional :: value
       type(card_t) :: on
       type(field_t) :: at
 
       call find_field(set%cards(k), field, on, at)
-      call add_remark(set%errors, kind, on, first_column(on, at), field_text(on, at))
+      call add_remark(set%errors, kind, on, first_column(on, at), field_text(on, at), value)
    end subroutine add_card_remark
 
    !> Adds the error `code` about `field` (card_name, label_a to real_3) of card `k`. `more` ends the sentence.

@@ -9,9 +9,9 @@ module cards
    public :: card_t, field_t, card_columns, card_fields, wide_fields, title_field
    public :: card_name, label_a, label_b, label_c, real_1, real_2, real_3
    public :: field_text, first_column, small_field, ruler_card, layout_of, is_passed_over
-   public :: forms, form_name, number_word, find_form, nearest_form, reals_of
+   public :: forms, form_name, number_word, find_form, nearest_words, proposal, reals_of
    public :: form_unknown, form_title, form_units, form_lang, form_ground, form_link, form_point, form_revolute
-   public :: form_prism, form_joint, form_drive, form_add, form_rise, form_toler, form_time, form_at
+   public :: form_prism, form_cylinder, form_joint, form_drive, form_add, form_rise, form_toler, form_time, form_at
    public :: form_method, form_print, form_extremes, form_range, form_circuits, form_pole, form_curve, form_branch
    public :: form_vary, form_assembly, form_prove, form_end
 
@@ -62,9 +62,9 @@ module cards
    !> The form of a card is its place in `forms`.
    enum, bind(c)
       enumerator :: form_unknown = 0, form_title, form_units, form_lang, form_ground, form_link, form_point
-      enumerator :: form_revolute, form_prism, form_joint, form_drive, form_add, form_rise, form_toler, form_time
-      enumerator :: form_at, form_method, form_print, form_extremes, form_range, form_circuits, form_pole, form_curve
-      enumerator :: form_branch, form_vary, form_assembly, form_prove, form_end
+      enumerator :: form_revolute, form_prism, form_cylinder, form_joint, form_drive, form_add, form_rise, form_toler
+      enumerator :: form_time, form_at, form_method, form_print, form_extremes, form_range, form_circuits, form_pole
+      enumerator :: form_curve, form_branch, form_vary, form_assembly, form_prove, form_end
    end enum
 
    !> The text of TITLE is not a label.
@@ -77,6 +77,7 @@ module cards
       form_t('LL-', 2, .false., 'POINT   POINT   LINK            XI              ETA'), &
       form_t('LLL', 0, .false., 'REVOLUTEPOINT-I POINT-J PAIR'), &
       form_t('LLL', 3, .false., 'PRISM   POINT-I POINT-J PAIR    ALPHA           H               BETA'), &
+      form_t('LLL', 0, .false., 'CYLINDERPOINT-P POINT-Q PAIR'), &
       form_t('LLL', 2, .false., 'JOINT   PAIR    LINK-I  LINK-J  X               Y'), &
       form_t('LLl', 3, .false., 'DRIVE   KIND    DRIVEN  2ND/RPM VALUE AT 0.0    RATE            ACCELERATION'), &
       form_t('L--', 3, .false., 'ADD     KIND                    R1              R2              R3'), &
@@ -96,6 +97,8 @@ module cards
       form_t('---', 0, .true.,  'ASSEMBLY'), &
       form_t('---', 0, .true.,  'PROVE'), &
       form_t('---', 0, .false., 'END')]
+   !> The layout of the `*` card, by `wide_fields`.
+   character(*), parameter :: star_layout = '*       R1 OF THE CARD ABOVE    R2                      R3'
    !> Their names, each as one number.
    integer(int64), parameter :: keys(form_end) = transfer(forms%layout(:label_length), [0_int64])
    type(exception_t), parameter :: exceptions(*) = &
@@ -163,15 +166,17 @@ contains
       text(1:5) = '$'//card_fields(card_name)%name(1:4)
    end function ruler_card
 
-   !> The ruler and, below it, the layout of the cards of the name `name`; of '', the ruler alone.
+   !> The ruler and, below it, the layout of the cards of the name `name`; of '', those of all cards, the `*` card last.
    pure function layout_of(name) result(text)
       character(*), intent(in) :: name
       character(:), allocatable :: text
       integer :: form
 
       text = ruler_card()
-      form = find_form(name)
-      if (form /= form_unknown) text = text//new_line('a')//trim(forms(form)%layout)
+      do form = 1, size(forms)
+         if (name == '' .or. form == find_form(name)) text = text//new_line('a')//trim(forms(form)%layout)
+      end do
+      if (name == '') text = text//new_line('a')//star_layout
    end function layout_of
 
    !> How many real fields a card of `form` takes whose label A is `word`; form_unknown: none.
@@ -218,21 +223,33 @@ contains
       if (len_trim(name) > label_length) form = form_unknown
    end function find_form
 
-   !> The form whose name differs from `name` by at most two letters and by at most half of its own letters; otherwise
-   !> form_unknown.
-   pure integer function nearest_form(name) result(nearest)
-      character(*), intent(in) :: name
-      integer :: form, distance, least
+   !> The places in `words` of those nearest to `name`, each word once: they differ by at most two letters, and by at
+   !> most half of their own. Of more than three only three.
+   pure function nearest_words(name, words) result(nearest)
+      character(*), intent(in) :: name, words(:)
+      integer, allocatable :: nearest(:)
+      integer :: i, distance, least
 
-      nearest = form_unknown
-      least = 3
-      do form = 1, size(forms)
-         distance = edits(trim(capitals(name)), trim(form_name(form)))
-         if (distance >= least .or. 2*distance > len_trim(form_name(form))) cycle
+      allocate (nearest(0))
+      least = 2
+      do i = 1, size(words)
+         distance = edits(trim(name), trim(words(i)))
+         if (distance > least .or. 2*distance > len_trim(words(i))) cycle
+         if (distance < least) nearest = nearest(:0)
          least = distance
-         nearest = form
+         if (size(nearest) < 3 .and. all(words(nearest) /= words(i))) nearest = [nearest, i]
       end do
-   end function nearest_form
+   end function nearest_words
+
+   !> The question whether one of `words` is meant; '' if there are none, or more than two.
+   pure function proposal(words) result(hint)
+      character(*), intent(in) :: words(:)
+      character(:), allocatable :: hint
+
+      hint = ''
+      if (size(words) == 1) hint = '(IS IT '//trim(words(1))//'?)'
+      if (size(words) == 2) hint = '(IS IT '//trim(words(1))//' OR '//trim(words(2))//'?)'
+   end function proposal
 
    !> The smallest number of insertions, deletions and replacements of letters that make `b` of `a` (Levenshtein
    !> distance).

@@ -13,6 +13,7 @@ module deck
    use deck_options, only: build_options, build_requests, build_branches, build_centres, check_centres
    use deck_tolerances, only: build_tolerances
    use deck_remarks, only: check_unused, check_angles, check_guides, build_echo
+   use drawing_remarks, only: check_drawing
    use deck_source, only: source_t, open_source, next_card, close_source
    use system_calls, only: identity_t, identity_of_path
    use failures, only: failure_t, fail, status_rejected
@@ -192,8 +193,7 @@ contains
          end if
          if (is_passed_over(card)) cycle
          last = card
-         call take_card(card, progress, failure)
-         if (allocated(failure)) return
+         call take_card(card, progress)
       end do
       if (last%number == 0 .and. progress%passed == 0 .and. last_set > 0) then
          call add_deck_error(progress%set%errors, deck_empty)
@@ -205,10 +205,9 @@ contains
    end subroutine read_cards
 
    !> Adds `card` to the open set, or closes the set.
-   subroutine take_card(card, progress, failure)
+   subroutine take_card(card, progress)
       type(card_t), intent(in) :: card
       type(progress_t), intent(inout) :: progress
-      type(failure_t), allocatable, intent(out) :: failure
       type(parsed_card_t) :: parsed
 
       associate (set => progress%set)
@@ -225,7 +224,7 @@ contains
             if (small_field(card) > 0) set%small = card
          end if
          if (parsed%form /= form_end) then
-            call append_card(set, parsed, failure)
+            call append_card(set, parsed)
          else if (set%count == 0) then
             call add_field_error(set%errors, set_empty, card, card_fields(card_name))
          else
@@ -251,6 +250,7 @@ contains
             call check_centres(set)
             call check_angles(set)
             call check_guides(set)
+            if (error_count(set%errors) == progress%errors_before) call check_drawing(set)
             call build_echo(set)
          end if
          call take_remarks(set%errors, set%mechanism%remarks)

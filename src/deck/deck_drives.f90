@@ -9,12 +9,13 @@ module deck_drives
       drive_relangle, drive_slide, drive_words, driven_kinds, term_harmonic, term_power, term_table, term_words, &
       term_cycloid, term_cosine, rise_words, pair_revolute, request_link
    use card_reader, only: parsed_card_t
-   use card_sets, only: card_set_t, look_up, match_word, add_card_error, add_card_remark
+   use drawn_values, only: drawn_drive
+   use card_sets, only: card_set_t, has_drawing, look_up, match_word, add_card_error, add_card_remark
    use cards, only: card_name, label_a, label_b, label_c, real_1, real_2, form_unknown, form_drive, form_add, &
       form_rise, form_toler, form_end
-   use input_errors, only: error_code_t, drive_kind, drive_ground, drive_ground_point, drive_grounds, drive_one_link, &
-      drive_revolute, field_blank, field_unused, add_alone, add_kind, add_blank, table_short, table_order, &
-      table_range, power_negative, power_zero, power_large, rise_law, rise_duration, rpm_unit
+   use input_errors, only: error_code_t, error_count, drive_kind, drive_ground, drive_ground_point, drive_grounds, &
+      drive_one_link, drive_revolute, field_blank, field_unused, add_alone, add_kind, add_blank, table_short, &
+      table_order, table_range, power_negative, power_zero, power_large, rise_law, rise_duration, rpm_unit
    implicit none
    private
    public :: build_drives, check_terms, turns_a_minute, turns_unit
@@ -41,6 +42,7 @@ contains
             n = n + 1
             call build_drive(drive)
             call build_terms(n)
+            if (.not. set%cards(k)%given(1) .and. has_drawing(set)) call take_drawing(drive)
             set%mechanism%drives(n) = drive
          else if (is_term(k)) then
             ! A card with a wrong name may have been a DRIVE card.
@@ -104,6 +106,16 @@ contains
             if (all(set%mechanism%links(links)%ground)) call add_card_error(set, ground_errors(drive%kind), k, label)
          end if
       end subroutine check_subject
+
+      !> Gives `drive`, whose card has no value at t = 0, the value of the drawing; the values of a table are absolute.
+      !> Nothing in a deck with errors: what the drive names may not be there.
+      subroutine take_drawing(drive)
+         type(drive_t), intent(inout) :: drive
+
+         if (any(drive%terms%kind == term_table) .or. error_count(set%errors) > 0) return
+         drive%drawn = .true.
+         drive%polynomial(1) = drawn_drive(set%mechanism, drive)
+      end subroutine take_drawing
 
       !> The unit of the coordinate of `drive`: the deck's unit of angles in radians, or 1 for lengths.
       pure real(wp) function unit_of(drive) result(unit)
@@ -299,8 +311,8 @@ contains
       end associate
    end function is_large
 
-   !> Whether one of the instants of `m` is t = 0. Those of TIME are evenly spaced: only those next to the place where
-   !> their line crosses zero can be.
+   !> Whether one of the instants of `m` is t = 0, but for rounding. Those of TIME are evenly spaced: only those next to
+   !> the place where their line crosses zero can be.
    pure logical function meets_zero(m)
       type(mechanism_t), intent(in) :: m
       integer :: k, near
@@ -310,7 +322,7 @@ contains
       if (min(m%t0, m%t1) > 0.0_wp .or. max(m%t0, m%t1) < 0.0_wp) return
       near = nint(m%steps*(m%t0/(m%t0 - m%t1)))
       do k = max(near - 1, 0), min(near + 1, m%steps)
-         if (.not. abs(instant(m, k)) > 0.0_wp) meets_zero = .true.
+         if (abs(instant(m, k)) <= 4.0_wp*epsilon(1.0_wp)*max(abs(m%t0), abs(m%t1))) meets_zero = .true.
       end do
    end function meets_zero
 end module deck_drives

@@ -8,7 +8,7 @@ module deck_options
    use card_sets, only: card_set_t, look_up, match_word, add_card_error
    use cards, only: title_field, card_name, label_a, label_b, label_c, real_1, real_2, forms, form_unknown, &
       form_title, form_units, form_lang, form_time, form_at, form_method, form_print, form_extremes, form_range, &
-      form_circuits, form_branch, form_vary, form_assembly, form_prove, form_pole, form_curve
+      form_circuits, form_branch, form_vary, form_assembly, form_prove, form_pole, form_curve, form_joint
    use input_errors, only: card_repeated, lang_kind, units_angle, units_place, method_kind, tolerance_range, &
       time_point, number_range, field_blank, print_kind, print_all_name, print_repeated, print_nothing, extremes_time, &
       extremes_ground, branch_ground, newton_needed, branch_repeated, centre_still, centre_apart
@@ -158,7 +158,8 @@ contains
 
    !> Builds `set`%mechanism%requests from the PRINT cards, in their order, and from the EXTREMES cards. For a subject
    !> of several PRINT cards or several EXTREMES cards the first one counts. Without a PRINT card, all links that are
-   !> not ground are printed. Unknown words and names and repeated cards are errors.
+   !> not ground are printed; in the listing of a drawing its points as well, and of links without axes of their own
+   !> the angle alone. Unknown words and names and repeated cards are errors.
    subroutine build_requests(set)
       type(card_set_t), intent(inout) :: set
       type(name_table_t) :: seen(0:3)               ! for each word, the names on earlier cards of the same form
@@ -171,8 +172,7 @@ contains
          allocate (number(maxval(sizes), request_link:request_pair), source=0)
       end associate
       n = 0
-      if (set%number_of(form_print) == 0) &
-         call request_all(request_t(request_link, every=merge(0, 1, set%number_of(form_vary) > 0)))
+      if (set%number_of(form_print) == 0) call request_defaults()
       do k = 1, set%count
          if (set%cards(k)%form /= form_print .or. .not. set%cards(k)%valid) cycle
          every = merge(set%cards(k)%whole, 1, set%cards(k)%whole_given)
@@ -186,6 +186,23 @@ contains
       set%mechanism%requests = requests(:n)
 
    contains
+
+      !> Asks what is printed without a PRINT card. The places of a link whose axes are those of a drawing are those of
+      !> the drawing's origin, carried along: the listing has the points instead.
+      subroutine request_defaults()
+         logical :: varies, drawn
+         integer :: i
+
+         varies = set%number_of(form_vary) > 0
+         drawn = set%number_of(form_joint) > 0 .and. .not. varies
+         call request_all(request_t(request_link, every=merge(0, 1, varies)))
+         if (.not. drawn) return
+         do i = 1, n
+            requests(i)%angle_alone = &
+               .not. any(set%cards(set%named(request_link)%card(requests(i)%subject))%given)
+         end do
+         call request_all(request_t(request_point, every=0, listed=.true.))
+      end subroutine request_defaults
 
       !> The EXTREMES card `k`.
       subroutine read_extremes(k)

@@ -3,7 +3,7 @@
 !> is off by a right angle.
 module deck_remarks
    use kinds, only: wp, label_length
-   use planar, only: pi, direction, quarter_turn, point_of
+   use planar, only: pi, direction, quarter_turn, point_of, in_degrees
    use mechanism, only: remark_link_unused, remark_point_unused, remark_radians, remark_guide, mechanism_t, &
       drive_links, used_points, pair_prismatic, drive_words, driven_kinds, drive_angle, drive_relangle, request_link, &
       request_point, request_pair, request_curve, method_words, method_newton
@@ -11,6 +11,7 @@ module deck_remarks
    use card_sets, only: card_set_t, add_card_error, add_card_remark, real_text
    use cards, only: label_a, label_c, real_1, form_ground, form_link, form_prism, form_drive, form_rise, form_name, &
       reals_of, form_title, form_units, form_at, form_method, form_print, form_pole, form_curve, form_vary
+   use drawing_remarks, only: drawn_text
    use input_errors, only: link_unused
    use card_reader, only: parsed_card_t
    implicit none
@@ -22,6 +23,10 @@ module deck_remarks
    !> Column of the first label, column of the first real, and columns from one label to the next.
    integer, parameter :: label_column = 10, real_column = 37, label_step = 9
    character(*), parameter :: default_mark = '(DEFAULT)'
+   !> What follows a number that is as drawn, in English and in Polish ("according to the drawing").
+   character(*), parameter :: drawn_marks(2) = ['(AS DRAWN)', '(WG RYS.) ']
+   !> What the listing has of links whose axes are those of a drawing.
+   character(*), parameter :: angles = 'PHI, VPHI, APHI', of_some = ' OF THOSE WITHOUT NUMBERS'
 
    !> Parts of the characteristic length: an estimate closes a pair to `closed`; a guide at `open` is not met.
    real(wp), parameter :: closed = 0.05_wp, open = 0.3_wp
@@ -130,21 +135,26 @@ contains
    !> TITLE, and one for each default that no card replaces.
    subroutine build_echo(set)
       type(card_set_t), intent(inout) :: set
-      integer :: k, n, i
+      integer :: k, n, i, line(set%count)
 
+      line = 0
       associate (m => set%mechanism)
-         allocate (m%echo(set%count + set%number_of(form_vary) + 3))
+         allocate (m%echo(set%count + set%number_of(form_vary) + 4))
          n = 0
          do k = 1, set%count
             if (set%cards(k)%form /= form_title) call add_line(set%cards(k))
+            line(k) = n
             if (.not. allocated(set%vary)) cycle
             do i = 1, size(set%vary)
                if (set%vary(i)%below == k) call add_line(set%vary(i)%card)
             end do
          end do
+         call add_drawn()
          call add_default(form_units, [m%length_unit, 'RAD     ', m%time_unit])
          call add_default(form_method, [character(label_length) :: method_words(method_newton), '', ''])
          if (m%variants == 0) call add_default(form_print, [character(label_length) :: 'LINKS', '', '1'])
+         if (any(m%requests%angle_alone)) call note_angles(m%requests%angle_alone .or. m%requests%kind /= request_link)
+         if (any(m%requests%listed)) call add_default(form_print, [character(label_length) :: 'POINTS', '', '1'])
          m%echo = m%echo(1:n)
       end associate
 
@@ -158,6 +168,40 @@ contains
          call write_card(card, set%mechanism%length_unit, set%mechanism%time_unit, set%mechanism%echo(n))
       end subroutine add_line
 
+      !> Puts the numbers that are as drawn into the lines of their cards.
+      subroutine add_drawn()
+         integer :: i, k
+
+         do i = 1, size(set%mechanism%pairs)
+            associate (pair => set%mechanism%pairs(i), k => set%named(request_pair)%card(i))
+               if (set%cards(k)%form /= form_prism) cycle
+               if (pair%drawn(2)) call put_drawn(k, 2, pair%offset, .false.)
+               if (pair%drawn(3)) call put_drawn(k, 3, pair%beta, .true.)
+            end associate
+         end do
+         do k = 1, set%count
+            if (set%cards(k)%form /= form_drive) cycle
+            associate (drive => set%mechanism%drives(set%cards(k)%drive))
+               if (drive%drawn) call put_drawn(k, 1, drive%polynomial(1), driven_kinds(drive%kind) == request_link)
+            end associate
+         end do
+      end subroutine add_drawn
+
+      !> Puts `x` (length or rad) in the place of real number `i` of card `k`.
+      subroutine put_drawn(k, i, x, is_angle)
+         integer, intent(in) :: k, i
+         real(wp), intent(in) :: x
+         logical, intent(in) :: is_angle
+         character(:), allocatable :: text
+         integer :: column
+
+         column = real_column + (i - 1)*real_width
+         associate (m => set%mechanism)
+            text = drawn_text(merge(in_degrees(x), x, is_angle .and. m%degrees))
+            m%echo(line(k))(column:column + real_width - 1) = trim(text)//' '//drawn_marks(merge(2, 1, m%polish))
+         end associate
+      end subroutine put_drawn
+
       !> Adds the line of a form that has no card in the set: its defaults.
       subroutine add_default(form, labels)
          integer, intent(in) :: form
@@ -168,6 +212,16 @@ contains
          call write_head(form, labels, set%mechanism%echo(n))
          set%mechanism%echo(n)(line_length - len(default_mark) + 1:) = default_mark
       end subroutine add_default
+
+      !> Adds to the line of the links printed by default that their angles alone are, of `all` of them or of some.
+      subroutine note_angles(all_of_them)
+         logical, intent(in) :: all_of_them(:)
+
+         associate (line => set%mechanism%echo(n)(real_column:))
+            line(:len(angles)) = angles
+            if (.not. all(all_of_them)) line(len(angles) + 1:len(angles//of_some)) = of_some
+         end associate
+      end subroutine note_angles
    end subroutine build_echo
 
    !> The `line` of one card. A blank real is shown as 0.0, its value; a blank field of AT has none.

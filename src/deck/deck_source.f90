@@ -3,8 +3,9 @@
 !> the end of the file.
 module deck_source
    use, intrinsic :: iso_c_binding, only: c_int
-   use failures, only: failure_t, fail, capitals, status_system
+   use failures, only: failure_t, fail, capitals, status_system, status_rejected
    use cards, only: card_t, card_columns
+   use numerals, only: whole
    use system_calls, only: open_to_read, read_bytes, close_descriptor, last_error, reason_of, &
       no_such_file, is_a_directory
    implicit none
@@ -13,6 +14,8 @@ module deck_source
 
    integer(c_int), parameter :: standard_input = 0
    integer, parameter :: block_length = 65536
+   !> A longer line is no card: what is read without an end, such as /dev/zero, is rejected there.
+   integer, parameter :: max_columns = 10000000
    !> The mark that some editors put at the beginning of a file.
    character(3), parameter :: byte_order_mark = char(239)//char(187)//char(191)
    character(1), parameter :: line_feed = achar(10), carriage_return = achar(13)
@@ -57,7 +60,8 @@ contains
       end if
    end subroutine open_source
 
-   !> Reads the next `card`; `found` is false at the end. A line ends in LF, CR-LF or CR. Errors: status_system.
+   !> Reads the next `card`; `found` is false at the end. A line ends in LF, CR-LF or CR. Errors: status_system;
+   !> status_rejected for a line of more than `max_columns`.
    subroutine next_card(source, card, found, failure)
       type(source_t), intent(inout) :: source
       type(card_t), intent(out) :: card
@@ -80,6 +84,12 @@ contains
          length = line_length(source%buffer(source%at:source%filled))
          call note(card, source%buffer(source%at:source%at + length - 1), columns)
          source%at = source%at + length
+         if (columns > max_columns) then
+            found = .false.
+            call fail(failure, status_rejected, source%name//' IS NOT A DECK: LINE '//whole(source%lines) &
+               //' HAS MORE THAN '//whole(max_columns)//' COLUMNS')
+            return
+         end if
          if (source%at <= source%filled) exit
          call have_more(source, found, failure)
          if (found) cycle
@@ -152,8 +162,7 @@ contains
       length = max(0, min(len(part), card_columns - columns))
       if (length > 0) card%text(columns + 1:columns + length) = part(:length)
       if (length < len(part)) call note_beyond(card, part(length + 1:), columns + length)
-      ! The number stays in its range however long a line is.
-      columns = min(columns + len(part), huge(columns) - block_length)
+      columns = columns + len(part)
    end subroutine note
 
    !> Adds to `card` the beginning of the text beyond its last column. `part` follows column `before`.

@@ -5,15 +5,15 @@ module deck_variants
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp, label_length
    use mechanism, only: mechanism_t, tolerance_t, number_ground, number_point, number_pair, number_drive
-   use card_sets, only: card_set_t, vary_card_t, begin_mechanism, add_parsed_error
+   use card_sets, only: card_set_t, vary_card_t, begin_mechanism, has_drawing, add_parsed_error
    use card_reader, only: parsed_card_t
    use cards, only: card_name, label_a, label_b, label_c, real_1, real_2, real_3, form_unknown, form_ground, &
       form_link, form_point, form_prism, form_joint, form_drive, form_add, form_rise, form_toler, form_time, &
-      form_vary, reals_of
+      form_vary, reals_of, card_fields
    use deck_tolerances, only: number_on_card
    use failures, only: capitals
    use input_errors, only: input_errors_t, error_code_t, error_count, vary_alone, vary_number, vary_count, vary_equal, &
-      vary_one, vary_twice, vary_tie, vary_many, field_blank, field_unused, add_blank
+      vary_one, vary_twice, vary_tie, vary_many, field_blank, field_unused, add_blank, whole_long
    use numbers, only: read_whole
    use numerals, only: whole
    implicit none
@@ -181,7 +181,11 @@ contains
             return
          end if
          call read_whole(trim(card%label(label_b)), count_given, error, place)
-         if (error%number > 0 .or. count_given < 1 .or. count_given > max_variants) then
+         ! The name of a tie does not begin with a digit behind a full count: that count is longer than its field.
+         if (error%number == 0 .and. verify(card%card%text(card_fields(label_b)%last:card_fields(label_c)%first), &
+            '0123456789') == 0) then
+            call add_parsed_error(set%errors, whole_long, card, label_b)
+         else if (error%number > 0 .or. count_given < 1 .or. count_given > max_variants) then
             call add_parsed_error(set%errors, vary_count, card, label_b, whole(max_variants))
          else if (card%given(3)) then
             call add_parsed_error(set%errors, field_unused, card, real_3)
@@ -229,8 +233,9 @@ contains
       end subroutine name_number
    end subroutine take_card
 
-   !> The kind of a number that varies, as above: `number` on card `k` of `set`. Points of JOINT cards depend on the
-   !> places of links as well, and whether a term of a drive is defined on those of TIME.
+   !> The kind of a number that varies, as above: `number` on card `k` of `set`. In a drawing, points of JOINT cards
+   !> depend on the places of links as well, and numbers as drawn on those of points and guides; whether a term of a
+   !> drive is defined depends on those of TIME.
    pure integer function kind_in(set, k, number) result(kind)
       type(card_set_t), intent(in) :: set
       integer, intent(in) :: k
@@ -239,8 +244,10 @@ contains
       kind = 0
       select case (set%cards(k)%form)
       case (form_ground, form_link)
-         if (set%number_of(form_joint) == 0) kind = number_ground
-      case (form_point, form_prism, form_drive)
+         if (.not. has_drawing(set)) kind = number_ground
+      case (form_point, form_prism)
+         if (.not. has_drawing(set)) kind = number%kind
+      case (form_drive)
          kind = number%kind
       case (form_time)
          if (sum(set%number_of([form_add, form_rise])) == 0) kind = number_time
@@ -284,7 +291,10 @@ contains
 
       values = values_of_variant(v, n)
       do i = 1, size(values)
-         v%set%cards(v%numbers(i)%card)%real(v%numbers(i)%place) = values(i)
+         associate (card => v%set%cards(v%numbers(i)%card), place => v%numbers(i)%place)
+            card%real(place) = values(i)
+            card%given(place) = .true.
+         end associate
       end do
       v%set%errors = none
       call begin_mechanism(v%set, v%set%mechanism%set_number)

@@ -23,7 +23,7 @@ module input_errors
    !> A kind of error.
    type :: error_code_t
       integer :: number = 0              !< printed as E and three digits; 0: no error
-      character(72) :: sentence = ''
+      character(84) :: sentence = ''
       integer :: layout = form_unknown   !< the form whose layout is printed below the message, or own_layout
    end type error_code_t
 
@@ -79,6 +79,7 @@ module input_errors
       label_blank_inside = error_code_t(35, 'A LABEL HAS NO BLANKS INSIDE', own_layout), &
       number_range = error_code_t(36, 'IS OUT OF THE RANGE'), &
       label_long = error_code_t(37, 'IS TOO LONG: A NAME HAS AT MOST 8 LETTERS', own_layout), &
+      whole_long = error_code_t(38, 'IS TOO LONG: A WHOLE NUMBER HAS AT MOST 8 DIGITS', own_layout), &
       star_first = error_code_t(40, 'NO CARD OF THE SET IS ABOVE THIS ONE'), &
       star_no_reals = error_code_t(41, 'THE CARD ABOVE TAKES NO REALS'), &
       star_second = error_code_t(42, 'IS A SECOND * CARD FOR THE SAME CARD'), &
@@ -97,7 +98,8 @@ module input_errors
       link_unused = error_code_t(54, 'NO PAIR AND NO DRIVE USES THIS LINK, AND NO OTHER LINK MOVES')
    ! Numbers that vary.
    type(error_code_t), parameter, public :: &
-      vary_alone = error_code_t(55, 'MUST STAND BELOW THE CARD WHOSE NUMBER VARIES, OF A BODY, DRIVE OR TIME'), &
+      vary_alone = &
+         error_code_t(55, 'MUST STAND BELOW A GROUND, LINK, POINT, JOINT, PRISM, DRIVE, ADD, RISE OR TIME CARD'), &
       vary_number = error_code_t(56, 'IS NO NUMBER OF THE CARD ABOVE; WRITE R1, R2 OR R3', own_layout), &
       vary_count = error_code_t(57, 'IS NOT LIST, AND NOT A WHOLE NUMBER OF VALUES FROM 1 UP TO', own_layout), &
       vary_equal = error_code_t(58, 'FROM AND TO ARE EQUAL'), &
@@ -109,6 +111,8 @@ module input_errors
    type(error_code_t), parameter, public :: &
       pair_one_link = error_code_t(60, 'JOINS TWO POINTS OF ONE LINK', own_layout), &
       pair_grounds = error_code_t(61, 'JOINS TWO GROUND LINKS'), &
+      cylinder_drawing = error_code_t(65, 'A CYLINDER NEEDS A DRAWING, THAT IS JOINT CARDS; OTHERWISE USE PRISM'), &
+      cylinder_points = error_code_t(69, 'BOTH POINTS ARE DRAWN AT ONE PLACE: THE CYLINDER HAS NO DIRECTION'), &
       drive_kind = error_code_t(70, 'IS NOT ANGLE, X, Y, RELANGLE OR SLIDE', own_layout), &
       drive_ground = error_code_t(71, 'A GROUND LINK CANNOT BE DRIVEN'), &
       drive_ground_point = error_code_t(72, 'A POINT OF A GROUND LINK CANNOT BE DRIVEN'), &
@@ -202,15 +206,18 @@ contains
       if (errors%count <= max_printed) call add_message(errors, code, ' ', more)
    end subroutine add_deck_error
 
-   !> Adds the remark `kind` about `text` (may be ''), which begins at `column` of `card`.
-   subroutine add_remark(errors, kind, card, column, text)
+   !> Adds the remark `kind` about `text` (may be ''), which begins at `column` of `card`. `value` ends the sentence.
+   subroutine add_remark(errors, kind, card, column, text, value)
       type(input_errors_t), intent(inout) :: errors
       integer, intent(in) :: kind, column
       type(card_t), intent(in) :: card
       character(*), intent(in) :: text
+      character(*), intent(in), optional :: value
 
       errors%remarked = errors%remarked + 1
-      if (errors%remarked <= max_printed) errors%remarks(errors%remarked) = remark_t(kind, card%number, column, text)
+      if (errors%remarked > max_printed) return
+      errors%remarks(errors%remarked) = remark_t(kind, card%number, column, text)
+      if (present(value)) errors%remarks(errors%remarked)%value = value
    end subroutine add_remark
 
    !> Moves the remarks about the open set to `remarks`; not allocated if there are none.

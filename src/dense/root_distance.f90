@@ -11,6 +11,9 @@
 !> each such coordinate g . d is at most |d|^2/2 times the sum over k of |g . J^-1 e_k| L_k; the largest of these sums,
 !> K, leaves no other root within 2/K. Rejected: |J^-1| times the largest L, which is larger by 10 to 1000, since places
 !> and given angles count in it too.
+!>
+!> A coordinate x_i - x_j may be measured in a unit of its own, W: then L = 2 W + |x_i - x_j|, and its sum is divided by
+!> W. With a unit of the order of a long slide, K does not grow as the slide goes to infinity.
 module root_distance
    use kinds, only: wp
    use mechanism, only: pair_revolute, pair_prismatic, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
@@ -19,12 +22,14 @@ module root_distance
    implicit none
    private
    public :: coordinates_t, new_coordinates, jacobian_lipschitz, kantorovich, kantorovich_bound, distance
+   public :: measure_slots
 
    !> What the rows are not linear in.
    type :: coordinates_t
       integer, allocatable :: class(:)           !< (links) links of one class turn by the same angle; 0: a given one
       integer, allocatable :: angles(:)          !< one link of each other class
       integer, allocatable :: slots(:)           !< prismatic pairs whose guide's angle is free
+      real(wp), allocatable :: unit(:)           !< (pairs) W, in the unit of length
    end type coordinates_t
 
 contains
@@ -49,6 +54,7 @@ contains
       c%angles = pack([(i, i=1, size(c%class))], c%class == [(i, i=1, size(c%class))])
       c%slots = pack([(i, i=1, size(s%pairs))], s%pairs%kind == pair_prismatic &
          .and. c%class(s%link_of(s%pairs%point_i)) > 0)
+      allocate (c%unit(size(s%pairs)), source=1.0_wp)
 
    contains
 
@@ -63,7 +69,22 @@ contains
       end subroutine tie
    end function new_coordinates
 
-   !> The largest change (rad, unit of length) of these coordinates between the positions `a` and `b` (3, links).
+   !> Measures x_i - x_j of each prismatic pair in its length at pose `p`, where that is above 1.
+   pure subroutine measure_slots(s, c, p)
+      type(system_t), intent(in) :: s
+      type(coordinates_t), intent(inout) :: c
+      type(pose_t), intent(in) :: p
+      integer :: k
+
+      do k = 1, size(c%slots)
+         associate (pair => s%pairs(c%slots(k)))
+            c%unit(c%slots(k)) = max(1.0_wp, norm2(p%q(:2, s%link_of(pair%point_i)) - p%q(:2, s%link_of(pair%point_j))))
+         end associate
+      end do
+   end subroutine measure_slots
+
+   !> The largest change, in rad and units of the slots, of these coordinates between the positions `a` and `b`
+   !> (3, links).
    pure real(wp) function distance(s, c, a, b)
       type(system_t), intent(in) :: s
       type(coordinates_t), intent(in) :: c
@@ -76,7 +97,7 @@ contains
       end do
       do k = 1, size(c%slots)
          associate (i => s%link_of(s%pairs(c%slots(k))%point_i), j => s%link_of(s%pairs(c%slots(k))%point_j))
-            distance = max(distance, norm2((a(:2, i) - a(:2, j)) - (b(:2, i) - b(:2, j))))
+            distance = max(distance, norm2((a(:2, i) - a(:2, j)) - (b(:2, i) - b(:2, j)))/c%unit(c%slots(k)))
          end associate
       end do
    end function distance
@@ -122,7 +143,7 @@ contains
 
          slot_bound = 0.0_wp
          associate (i => s%link_of(s%pairs(pair)%point_i), j => s%link_of(s%pairs(pair)%point_j))
-            if (c%class(i) > 0) slot_bound = 2.0_wp + norm2(p%q(:2, i) - p%q(:2, j))
+            if (c%class(i) > 0) slot_bound = 2.0_wp*c%unit(pair) + norm2(p%q(:2, i) - p%q(:2, j))
          end associate
       end function slot_bound
    end function jacobian_lipschitz
@@ -171,7 +192,8 @@ contains
       end do
       do slot = 1, size(c%slots)
          m = size(c%angles) + 2*slot
-         largest = max(largest, hypot(row_sum(s, y(:, m - 1), bound), row_sum(s, y(:, m), bound)))
+         largest = max(largest, &
+            hypot(row_sum(s, y(:, m - 1), bound), row_sum(s, y(:, m), bound))/c%unit(c%slots(slot)))
       end do
    end function largest_sum
 

@@ -12,10 +12,12 @@ module mechanism
    public :: request_link, request_point, request_pair, request_pole, request_curve
    public :: number_ground, number_point, number_joint, number_pair, number_drive
    public :: method_newton, method_matrix, method_dense, method_words, own_predictor
-   public :: instant_count, instant, find_instants, pair_links, drive_links, request_links, wanted_links, used_points
+   public :: instant_count, instant, find_instants, pair_links, drive_links, request_links, wanted_links, &
+      is_listed_alone, used_points
    public :: with_all_links, plane_origin, place_links
    public :: remark_t, remark_small_letters, remark_title_long, remark_title_letters, remark_touching, &
-      remark_link_unused, remark_point_unused, remark_radians, remark_guide, remark_jumps, remark_more
+      remark_link_unused, remark_point_unused, remark_radians, remark_guide, remark_jumps, &
+      remark_drawn_value, remark_drawn_offset, remark_open, remark_off_drawing, remark_near_joints, remark_more
 
    integer, parameter :: pair_revolute = 1   !< REVOLUTE: eq. (7), (8)
    integer, parameter :: pair_prismatic = 2  !< PRISM: eq. (9), (10)
@@ -72,14 +74,20 @@ module mechanism
       enumerator :: remark_radians              !< an angle in radians looks like one in degrees
       enumerator :: remark_guide                !< a guide fits its points if it is turned by a right angle
       enumerator :: remark_jumps                !< the acceleration of a rise jumps
+      enumerator :: remark_drawn_value          !< the value of a drive at t = 0 is the one of the drawing
+      enumerator :: remark_drawn_offset         !< the h of a guide is the one of the drawing: P and Q are not along it
+      enumerator :: remark_open                 !< the numbers of a pair contradict the drawing
+      enumerator :: remark_off_drawing          !< at the first instant a drive is off the drawing
+      enumerator :: remark_near_joints          !< two joints of a link are very near one another
       enumerator :: remark_more                 !< there are more remarks, `text` says how many
    end enum
 
-   !> A remark about `text`, which begins at `column` of a card.
+   !> A remark about `text`, which begins at `column` of a card; its sentence ends with `value`.
    type :: remark_t
       integer :: kind = 0                      !< remark_small_letters, ...
       integer :: card = 0, column = 0          !< number of the card in the deck, and column
       character(24) :: text = ''
+      character(40) :: value = ''              !< a number with its unit; '' if the sentence has none
    end type remark_t
 
    !> A rigid link, with axes of its own.
@@ -102,6 +110,7 @@ module mechanism
       real(wp) :: alpha = 0.0_wp             !< prismatic: direction of the guide in link i
       real(wp) :: offset = 0.0_wp            !< prismatic: h of eq. (9)
       real(wp) :: beta = 0.0_wp              !< prismatic: phi_j - phi_i, eq. (10)
+      logical :: drawn(3) = .false.          !< alpha, h, beta: it is the one of the drawing, not of its card
    end type pair_t
 
    !> One term of the law of a drive.
@@ -117,6 +126,7 @@ module mechanism
       integer :: second = 0                  !< drive_relangle: the number of the second link
       real(wp) :: polynomial(3) = 0.0_wp     !< value at t = 0 (length or rad), rate, acceleration
       type(term_t), allocatable :: terms(:)  !< of its ADD and RISE cards; none: not allocated
+      logical :: drawn = .false.             !< its value at t = 0 is the one of the drawing, not of its card
    end type drive_t
 
    !> What is asked about a link, point or pair: a row of the tables, its extremes, or both; or about the motion of a
@@ -129,6 +139,8 @@ module mechanism
       real(wp) :: dwell(2) = 0.0_wp          !< (length, rad) its dwells within this distance; 0: not asked for
       integer :: second = 0                  !< the link from which a motion is seen; of a curve 0: the fixed plane
       real(wp) :: length = 1.0_wp, rate = 1.0_wp   !< of a pole or curve: characteristic ones of its mechanism
+      logical :: listed = .false.            !< a row in the listing at every instant, which no card asks for
+      logical :: angle_alone = .false.       !< of a link: the rows of the listing have its angle alone
    end type request_t
 
    !> At the next change point after `t`, `link` takes the other branch; link 0: any links that pass a change point.
@@ -284,6 +296,13 @@ contains
       end select
       if (request%second > 0) links(3) = request%second
    end function request_links
+
+   !> Whether only the listing has rows of `request`, since no card asks for them: no picture, no path.
+   elemental logical function is_listed_alone(request)
+      type(request_t), intent(in) :: request
+
+      is_listed_alone = request%listed .and. .not. request%extremes
+   end function is_listed_alone
 
    !> Whether each link (links) is needed by a request of `m`; ranges, circuits, proofs, assemblies and tolerances need
    !> all of them.

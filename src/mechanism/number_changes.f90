@@ -3,19 +3,23 @@
 !> number, in closed form.
 module number_changes
    use kinds, only: wp
-   use planar, only: direction, rotated, pi
+   use planar, only: direction, rotated, quarter_turn, pi
    use mechanism, only: mechanism_t, tolerance_t, number_ground, number_point, number_joint, number_pair, drive_t, &
-      term_t, term_harmonic, term_power, term_table, term_cycloid, term_345, term_cosine, term_parabola
+      drive_angle, drive_relangle, drive_x, drive_y, pair_prismatic, pair_links, term_t, term_harmonic, term_power, &
+      term_table, term_cycloid, term_345, term_cosine, term_parabola
+   use drawn_values, only: drawn_way
    use drives, only: monomial, rise_shape, joint_width, joint_distance, new_spline, spline_value
    implicit none
    private
    public :: change_t, new_change, change_of, law_change, smooth_order
 
-   !> In the units of `mechanism_t`; those of the laws of drives, which depend on the time, are apart.
+   !> In the units of `mechanism_t`; changes of the laws of drives by their own numbers, which depend on the time, are
+   !> apart.
    type :: change_t
       real(wp), allocatable :: ground(:, :)   !< (3, links) x, y, phi of ground links
       real(wp), allocatable :: point(:, :)    !< (2, points) xi, eta
       real(wp), allocatable :: pair(:, :)     !< (3, pairs) alpha, h, beta of prismatic pairs
+      real(wp), allocatable :: drive(:)       !< (drives) values as drawn
    end type change_t
 
 contains
@@ -25,7 +29,8 @@ contains
       type(mechanism_t), intent(in) :: m
       type(change_t) :: c
 
-      allocate (c%ground(3, size(m%links)), c%point(2, size(m%points)), c%pair(3, size(m%pairs)), source=0.0_wp)
+      allocate (c%ground(3, size(m%links)), c%point(2, size(m%points)), c%pair(3, size(m%pairs)), &
+         c%drive(size(m%drives)), source=0.0_wp)
    end function new_change
 
    !> The change of `m` when the number of `tolerance` grows by 1.
@@ -53,7 +58,64 @@ contains
             c%pair(place, k) = 1.0_wp
          end select
       end associate
+      if (any(m%drives%drawn) .or. any([(any(m%pairs(i)%drawn), i=1, size(m%pairs))])) call add_drawn(m, c)
    end function change_of
+
+   !> Adds to the change `c` of `m` how the numbers that are as drawn follow it: they depend on the places of points, on
+   !> the angles of ground links, and on alpha. For d = Q - P, e along the guide and n across, the slide is d . e, and h
+   !> is -d . n.
+   pure subroutine add_drawn(m, c)
+      type(mechanism_t), intent(in) :: m
+      type(change_t), intent(inout) :: c
+      real(wp) :: slide(size(m%pairs)), d(2), dd(2), e(2), n(2), turn
+      integer :: links(2), k
+
+      do k = 1, size(m%pairs)
+         associate (pair => m%pairs(k), dp => c%pair(:, k))
+            if (pair%kind /= pair_prismatic) cycle
+            links = pair_links(m, pair)
+            d = drawn_way(m, pair)
+            dd = place_change(pair%point_j) - place_change(pair%point_i)
+            e = direction(m%links(links(1))%position(3) + pair%alpha)
+            n = quarter_turn(e)
+            turn = c%ground(3, links(1)) + dp(1)
+            if (pair%drawn(1)) turn = dot_product(dd, n)/norm2(d)
+            slide(k) = dot_product(dd, e) + turn*dot_product(d, n)
+            if (pair%drawn(1)) dp(1) = turn - c%ground(3, links(1))
+            if (pair%drawn(2) .and. .not. pair%drawn(1)) dp(2) = dp(2) - dot_product(dd, n) + turn*dot_product(d, e)
+            if (pair%drawn(3)) dp(3) = dp(3) + c%ground(3, links(2)) - c%ground(3, links(1))
+         end associate
+      end do
+      do k = 1, size(m%drives)
+         associate (drive => m%drives(k), i => m%drives(k)%subject)
+            if (.not. drive%drawn) cycle
+            select case (drive%kind)
+            case (drive_angle)
+               c%drive(k) = c%ground(3, i)
+            case (drive_relangle)
+               c%drive(k) = c%ground(3, drive%second) - c%ground(3, i)
+            case (drive_x, drive_y)
+               dd = place_change(i)
+               c%drive(k) = merge(dd(1), dd(2), drive%kind == drive_x)
+            case default
+               c%drive(k) = slide(i)
+            end select
+         end associate
+      end do
+
+   contains
+
+      !> The change (2) of the place of point number `i` in the drawing.
+      pure function place_change(i) result(dp)
+         integer, intent(in) :: i
+         real(wp) :: dp(2)
+
+         associate (link => m%points(i)%link, phi => m%links(m%points(i)%link)%position(3))
+            dp = c%ground(:2, link) + rotated(c%point(:, i), direction(phi)) &
+               + c%ground(3, link)*quarter_turn(rotated(m%points(i)%offset, direction(phi)))
+         end associate
+      end function place_change
+   end subroutine add_drawn
 
    !> d/dp of value, rate and acceleration (3) of the law of `drive` at the time `t`, in its unit (length or rad), that
    !> of p and the deck's unit of time. p: number `place` (1 to 3) of the DRIVE card (`term` 0) or of the card of a

@@ -11,7 +11,7 @@ module points
    implicit none
    private
    public :: row_t, row_of, find_row, note_known, set_values, has_number, difference, centre_numbers, &
-      coordinates_of, is_due, strides, any_due, is_fixed
+      coordinates_of, is_due, is_listed, strides, any_due, is_fixed
    public :: point_motion, pair_motion
 
    !> One row of a table, in the deck's units of length and time and in radians.
@@ -46,6 +46,15 @@ contains
       is_due = request%every > 0
       if (is_due) is_due = mod(k, request%every) == 0 .or. k == instant_count(m) - 1
    end function is_due
+
+   !> Whether the listing has a row of `request` at instant number `k`: as it is printed, or without a card for it.
+   pure logical function is_listed(m, request, k)
+      type(mechanism_t), intent(in) :: m
+      type(request_t), intent(in) :: request
+      integer, intent(in) :: k
+
+      is_listed = request%listed .or. is_due(m, request, k)
+   end function is_listed
 
    !> The different values of `every` among the requests of `m`.
    pure function strides(m) result(list)

@@ -3,9 +3,9 @@
 module animation
    use kinds, only: wp
    use planar, only: in_degrees, without_turns
-   use mechanism, only: mechanism_t
+   use mechanism, only: mechanism_t, instant
    use scales, only: is_length
-   use drives, only: law_t, drive_motion, new_law
+   use drives, only: law_t, drive_motion, new_law, pole_value
    use motion, only: mark_none
    use names, only: drive_name
    use numerals, only: full, whole
@@ -36,13 +36,16 @@ module animation
    real(wp), parameter :: bar_ends(2) = [14.0_wp, real(width - 24, wp)], mark_height = 5.0_wp, dot_radius = 4.0_wp
    !> The values of so many drives stand beside the time.
    integer, parameter :: max_drives = 3
+   !> So near to a pole of a law, in parts of a step, no instant is computed between those of the deck.
+   real(wp), parameter :: near_pole = 1.0e-2_wp
    !> What is smaller than this part of the largest value of a drive is 0: six digits are shown.
    real(wp), parameter :: not_shown = 1.0e-9_wp
 
 contains
 
    !> `m` at the instants of its animation: those of TIME and instants between them, or where there is no TIME between
-   !> the first and the last of AT. `every`: each so many of them are of the deck; 0: none but those of AT.
+   !> the first and the last of AT; none at the pole of a law. `every`: each so many of them are of the deck; 0: none
+   !> but those of AT.
    subroutine film_of(m, film, every)
       type(mechanism_t), intent(in) :: m
       type(mechanism_t), intent(out) :: film
@@ -55,11 +58,29 @@ contains
          film%t1 = maxval(m%at)
          film%steps = merge(max_intervals, 0, film%t1 > film%t0)
          every = 0
+         if (meets_pole(film)) film%steps = film%steps - 1
       else if (m%steps > 0) then
          every = max(1, min(max_intervals, max_positions/size(m%links))/m%steps)
          film%steps = every*m%steps
+         do while (every > 1 .and. meets_pole(film))
+            every = every - 1
+            film%steps = every*m%steps
+         end do
       end if
    end subroutine film_of
+
+   !> An instant of TIME of `m` is at the pole of a law, or so near that its value would mean nothing.
+   pure logical function meets_pole(m)
+      type(mechanism_t), intent(in) :: m
+      integer :: i, k
+
+      meets_pole = .false.
+      do i = 1, size(m%drives)
+         if (abs(pole_value(m%drives(i), m%t0)) <= 0.0_wp) cycle
+         meets_pole = any([(abs(instant(m, k))*m%steps <= near_pole*abs(m%t1 - m%t0), k=0, m%steps)])
+         return
+      end do
+   end function meets_pole
 
    !> Writes the animation of the sets that `films` have recorded, one below the other.
    subroutine put_animations(o, films)
@@ -191,6 +212,8 @@ contains
             value(i, k) = f(0)
          end do
          if (d%m%degrees .and. .not. is_length(d%m%drives(i))) value(i, :) = in_degrees(value(i, :))
+         ! Beside a pole of its law a value may be beyond the range of reals.
+         value(i, :) = max(-huge(1.0_wp), min(huge(1.0_wp), value(i, :)))
          where (abs(value(i, :)) < not_shown*maxval(abs(value(i, :)))) value(i, :) = 0.0_wp
       end do
    end function drive_values

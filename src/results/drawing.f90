@@ -4,7 +4,7 @@
 module drawing
    use kinds, only: wp
    use mechanism, only: mechanism_t, request_point, request_pole, pair_prismatic, &
-      instant_count, plane_origin
+      instant_count, plane_origin, is_listed_alone
    use planar, only: direction, quarter_turn, point_of
    use motion, only: known_of, mark_none, singular_unclear
    use points, only: row_t, has_number, point_motion, is_fixed
@@ -119,7 +119,8 @@ contains
       d%stride = 1 + max(0, m%steps)/max_places
       places = place_number(d, m%steps)
       do i = 1, size(m%requests)
-         if (m%requests(i)%kind /= request_point .or. is_fixed(m, m%requests(i))) cycle
+         if (m%requests(i)%kind /= request_point .or. is_listed_alone(m%requests(i)) .or. is_fixed(m, m%requests(i))) &
+            cycle
          if (any(d%curves%point == m%requests(i)%subject) .or. size(d%curves) == max_curves) cycle
          ! A function's result within a constructed array would not be freed by gfortran.
          curve = new_curve(i, m%requests(i)%subject, places)
@@ -235,7 +236,7 @@ contains
             do i = 1, size(links)
                if (d%m%links(links(i))%ground .or. known_of(q, i) < 0) cycle
                now%place(:, links(i)) = q%position(:, i) + [q%origin - d%origin, 0.0_wp]
-               now%known(links(i)) = all(abs(now%place(:2, links(i))) < max_place)
+               now%known(links(i)) = all(abs(now%place(:, links(i))) < max_place)
                if (.not. now%known(links(i))) cycle
                d%now%place(:, links(i)) = now%place(:, links(i))
                d%now%known(links(i)) = .true.

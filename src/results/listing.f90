@@ -6,11 +6,11 @@ module listing
    use motion, only: mark_none, mark_singular, mark_inconsistent, singular_unclear, singular_dead, diagnostic_t
    use structure, only: findings_t, group_t, spare_drives_text
    use branch_certificate, only: certificate_counts_t
-   use points, only: is_due, row_t
+   use points, only: is_listed, row_t
    use sensitivities, only: has_tolerances
    use set_motion, only: set_motion_t, is_flagged, in_set, find_row_in_set, doubt_in_set, spread_in_set
    use listing_layout, only: layout_t, new_layout
-   use listing_tables, only: table_t, put_instant, put_requested, put_spreads
+   use listing_tables, only: table_t, no_table, put_instant, put_requested, put_spreads
    use listing_diagnostics, only: put_diagnostics, put_singular, put_closure_error, remarks_text
    use text_output, only: output_t, put, add
    use numerals, only: whole
@@ -114,14 +114,14 @@ contains
       integer :: i, c, k
 
       do i = 1, size(m%requests)
-         if (.not. is_due(m, m%requests(i), step)) cycle
-         if (table%kind == 0) call put_instant(o, l, s%motions(1)%t, step, table%masked)
+         if (.not. is_listed(m, m%requests(i), step)) cycle
+         if (table%kind == no_table) call put_instant(o, l, s%motions(1)%t, step, table%masked)
          call find_row_in_set(m, s, i, row)
          error = doubt_in_set(row, s, i)
          call put_requested(o, l, m, i, row, error, table)
          if (has_tolerances(m, m%requests(i))) call put_spreads(o, l, m, i, row, spread_in_set(m, s, i), table)
       end do
-      if (table%kind == 0 .and. is_flagged(s)) call put_instant(o, l, s%motions(1)%t, step, table%masked)
+      if (table%kind == no_table .and. is_flagged(s)) call put_instant(o, l, s%motions(1)%t, step, table%masked)
       call put_marks(o, m, s)
       if (table%masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, m%polish))
       do c = 1, size(s%motions)
@@ -191,13 +191,15 @@ contains
       call put(o, '')
    end subroutine listing_end
 
-   !> The line in the place of what follows instant number `step`, where a run ends before its time.
-   subroutine listing_broken_off(o, m, step)
+   !> Puts the last line of a run that ends before its time: `words` name the kind of the last result, an instant, a
+   !> variant or a set, and `number` tells which.
+   subroutine listing_broken_off(o, m, words, number)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: step
+      type(phrase_t), intent(in) :: words
+      integer, intent(in) :: number
 
       call put(o, '')
-      call put(o, ' *** '//phrase(say_broken_off, m%polish)//' '//whole(step))
+      call put(o, ' *** '//phrase(words, m%polish)//' '//whole(number))
    end subroutine listing_broken_off
 end module listing

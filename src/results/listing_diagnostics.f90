@@ -24,7 +24,8 @@ module listing_diagnostics
    !> The words of remarks, by their kind.
    type(phrase_t), parameter :: remark_words(remark_small_letters:remark_more) = &
       [say_small_letters, say_title_long, say_title_letters, say_touching, say_link_unused, say_point_unused, &
-      say_radians, say_guide, say_jumps, say_more]
+      say_radians, say_guide, say_jumps, say_drawn_value, say_drawn_offset, say_open, say_off_drawing, &
+      say_near_joints, say_more]
 
 contains
 
@@ -48,7 +49,7 @@ contains
       logical, intent(in) :: polish
       character(:), allocatable :: text
 
-      text = phrase(remark_words(r%kind), polish)
+      text = trim(phrase(remark_words(r%kind), polish)//' '//r%value)
       if (r%kind == remark_more) then
          text = text//' '//trim(r%text)
          return
@@ -67,7 +68,8 @@ contains
 
       do i = 1, size(list)
          call put_folded(o, merge(' *** ', ' --- ', any(list(i)%kind == of_results)), words_of(m, list(i)))
-         if (list(i)%kind == diagnostic_limit) call put_folded(o, ' *** ', at_limit(m, list(i)))
+         if (list(i)%kind == diagnostic_limit .and. .not. list(i)%is_pole) &
+            call put_folded(o, ' *** ', at_limit(m, list(i)))
       end do
    end subroutine put_diagnostics
 
@@ -118,8 +120,12 @@ contains
       case (diagnostic_inconsistent)
          text = owner(m, r)//' '//phrase(say_closure_error_of, m%polish)//' '//measure(m, r, '(es9.2)')
       case (diagnostic_limit)
-         text = phrase(say_limit, m%polish)//' '//number(r%t, value_form)//', '//owner(m, r)//' = ' &
-            //measure(m, r, value_form)
+         if (r%is_pole) then
+            text = phrase(say_law, m%polish)//' '//owner(m, r)//' '//phrase(say_pole_of_law, m%polish)
+         else
+            text = phrase(say_limit, m%polish)//' '//number(r%t, value_form)//', '//owner(m, r)//' = ' &
+               //measure(m, r, value_form)
+         end if
       case (diagnostic_far_estimate)
          text = links(m, r)//': '//phrase(say_off_by, m%polish)//' '//measure(m, r, '(es9.2)')
       case (diagnostic_second)

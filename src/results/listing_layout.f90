@@ -6,21 +6,21 @@
 module listing_layout
    use kinds, only: wp, label_length
    use planar, only: degree
-   use mechanism, only: mechanism_t, request_pair
+   use mechanism, only: mechanism_t, request_link, request_pair
    use independent, only: parts_t, find_parts
-   use drives, only: law_t, new_law
+   use drives, only: law_t, new_law, pole_value
    use names, only: drive_name, more
    use law_sizes, only: growing_sizes
    use scales, only: characteristic_length, characteristic_rate, relative_tolerance, latest_time, is_length, &
       shortest_step
-   use numerals, only: whole, numeral_length
+   use numerals, only: whole, numeral_length, max_decimals
    use text_output, only: output_t, put
    use phrases
    implicit none
    private
    public :: layout_t, head_drive_t, new_layout, digits_t, digits_for, column_powers, head_lines
-   public :: line_length, name_length, row_length, has_column, dimension_of, angle_unit, unit_of, choose_digits, &
-      column_text, put_folded
+   public :: line_length, name_length, row_length, links_turning, has_column, dimension_of, angle_unit, unit_of, &
+      choose_digits, column_text, put_folded
 
    integer, parameter :: digits_after_first = 6
    !> An order that is a whole number but for rounding counts as one.
@@ -29,10 +29,12 @@ module listing_layout
    integer, parameter :: line_length = 120
    !> Characters before a row's numbers, and of a whole row.
    integer, parameter :: name_length = 9, row_length = name_length + 9*numeral_length
-   !> Which of the columns x, y, phi each kind of rows has, and whether a column is of lengths (1) or angles (2). A pair
-   !> has its slide in the column of x, or its angle in that of phi.
-   logical, parameter :: has_column(3, 3) = reshape([.true., .true., .true., .true., .true., .false., &
-      .true., .false., .true.], [3, 3])
+   !> The kind of tables of links of which only the angle is listed, besides request_link, request_point, request_pair.
+   integer, parameter :: links_turning = 0
+   !> Which of the columns x, y, phi each kind of tables has, and whether a column is of lengths (1) or angles (2). A
+   !> pair has its slide in the column of x, or its angle in that of phi.
+   logical, parameter :: has_column(3, links_turning:request_pair) = reshape([.false., .false., .true., &
+      .true., .true., .true., .true., .true., .false., .true., .false., .true.], [3, 4])
    integer, parameter :: dimension_of(3) = [1, 1, 2]
    !> Of more drives only the first stand at the head of an instant.
    integer, parameter :: max_drives = 6
@@ -47,6 +49,7 @@ module listing_layout
    type :: head_drive_t
       character(:), allocatable :: before, behind
       type(law_t) :: law
+      character(:), allocatable :: infinite   !< the words for its value at the pole of its law, where that has one
       real(wp) :: unit = 1.0_wp            !< length or radians in the unit in which it is printed
       real(wp) :: size_of(0:1) = 0.0_wp    !< of what is added up to its value, (0) + (1) |t|: see `law_sizes`
       integer :: decimals = digits_after_first, power = 0   !< as in `digits_t`
@@ -61,10 +64,12 @@ module listing_layout
       integer :: time_power = 0
       integer :: more_decimals = 0         !< of what tolerances do to a number, beside those of the number
       real(wp) :: angle = 1.0_wp           !< radians in the unit in which angles are printed
-      character(row_length) :: names(3)    !< of the columns, by the kind of a request
-      character(row_length) :: units(2, 3) !< two lines under them; the second is blank unless units are long
-      character(4*(row_length + 1)) :: heads(3)    !< all lines over rows of a kind, where the parts' are the same
-      integer :: head_length(3) = 0
+      integer :: links_table = request_link   !< the kind of the tables of links
+      ! By the kind of a table:
+      character(row_length) :: names(links_turning:request_pair)      !< of the columns
+      character(row_length) :: units(2, links_turning:request_pair)   !< under them; the second line only where long
+      character(4*(row_length + 1)) :: heads(links_turning:request_pair)   !< all lines, where the parts' are the same
+      integer :: head_length(links_turning:request_pair) = 0
       character(numeral_length) :: none    !< in the place of a number that does not exist
       character(:), allocatable :: before_instant, behind_time    !< of the line over the tables: ' INSTANT ', ' S'
       type(head_drive_t), allocatable :: drives(:)                !< that stand in it
@@ -85,7 +90,10 @@ contains
       integer :: k
 
       if (m%degrees) l%angle = degree
-      l%digits_t = digits_for(m, l%angle)
+      ! What a tolerance changes has four digits.
+      if (allocated(m%tolerances)) &
+         l%more_decimals = max(0, 3 - digits_after_first - floor(log10(relative_tolerance(m))))
+      l%digits_t = digits_for(m, l%angle, l%more_decimals)
       allocate (l%own(0:0), l%part(size(m%requests)), l%drive_part(size(m%drives)))
       l%part = 0
       l%drive_part = 0
@@ -97,14 +105,13 @@ contains
       end if
       l%own(0) = l%digits_t
       call choose_time_digits(m, l%time_decimals, l%time_power)
-      ! What a tolerance changes has four digits.
-      if (allocated(m%tolerances)) &
-         l%more_decimals = max(0, 3 - digits_after_first - floor(log10(relative_tolerance(m))))
-      do k = 1, size(l%names)
+      if (any(m%requests%angle_alone) .and. .not. any(m%requests%kind == request_link .and. m%requests%every > 0 &
+         .and. .not. m%requests%angle_alone)) l%links_table = links_turning
+      do k = links_turning, request_pair
          l%names(k) = column_names(k, m%polish)
       end do
       l%units = unit_lines(m)
-      do k = 1, size(l%heads)
+      do k = links_turning, request_pair
          l%heads(k) = head_lines(l, l%digits_t, k)
          l%head_length(k) = len_trim(l%heads(k))
       end do
@@ -152,6 +159,7 @@ contains
       drive%before = '   '//trim(drive_name(m, m%drives(k)))//' = '
       drive%behind = ' '//unit_of(d%power(what, 0), trim(merge(angle_unit(m), m%length_unit, what == 2)))
       drive%law = new_law(m%drives(k))
+      if (abs(pole_value(m%drives(k), m%t0)) > 0.0_wp) drive%infinite = phrase(say_infinite, m%polish)
       sizes = growing_sizes(drive%law, latest_time(m))
       drive%size_of = sizes(1, :)
       if (what == 2) drive%unit = l%angle
@@ -159,19 +167,21 @@ contains
       drive%power = d%power(what, 0)
    end subroutine take_drive
 
-   !> The digits of one mechanism; `angle`: radians in the unit in which angles are printed.
-   pure type(digits_t) function digits_for(m, angle) result(d)
+   !> The digits of one mechanism; `angle`: radians in the unit in which angles are printed; `more`: decimals that some
+   !> rows have in addition.
+   pure type(digits_t) function digits_for(m, angle, more) result(d)
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: angle
+      integer, intent(in), optional :: more
       real(wp) :: length, rate
       integer :: k
 
       length = characteristic_length(m)
       rate = characteristic_rate(m, length)
       do k = 0, 2
-         call choose_digits(log10(length) + k*log10(rate), d%decimals(1, k), d%power(1, k))
+         call choose_digits(log10(length) + k*log10(rate), d%decimals(1, k), d%power(1, k), more)
          call choose_digits(k*log10(rate) + log10(merge(1.0_wp/angle, 1.0_wp, k > 0)), &
-            d%decimals(2, k), d%power(2, k))
+            d%decimals(2, k), d%power(2, k), more)
       end do
    end function digits_for
 
@@ -186,7 +196,7 @@ contains
 
       if (parts%count == 1) return
       do c = 1, size(own)
-         own(c) = digits_for(m(c), l%angle)
+         own(c) = digits_for(m(c), l%angle, l%more_decimals)
       end do
       l%digits_t = own(1)
       largest = own(1)
@@ -216,15 +226,20 @@ contains
       end do
    end function column_powers
 
-   !> Decimals and power of ten for values of order 10**`order`: seven digits, no power as long as they fit.
-   pure subroutine choose_digits(order, decimals, power)
+   !> Decimals and power of ten for values of order 10**`order`: seven digits. No power where all of them, and `more`
+   !> decimals, have room without one: from 0.001 to 9999999.
+   pure subroutine choose_digits(order, decimals, power, more)
       real(wp), intent(in) :: order
       integer, intent(out) :: decimals, power
-      integer :: k
+      integer, intent(in), optional :: more
+      integer :: k, most
 
       k = floor(order + margin)
       power = 0
-      if (k < -2 .or. k > 4) power = 3*floor(real(k, wp)/3.0_wp + margin)
+      most = max_decimals
+      if (present(more)) most = most - more
+      if (digits_after_first - k > most .or. digits_after_first - k < 0) &
+         power = 3*floor(real(k, wp)/3.0_wp + margin)
       decimals = digits_after_first - (k - power)
    end subroutine choose_digits
 
@@ -257,7 +272,8 @@ contains
       character(numeral_length) :: words(9)
       integer :: k
       character(1), parameter :: prefix(0:2) = [' ', 'V', 'A']
-      type(phrase_t), parameter :: kind_words(3) = [say_link, say_point, say_pair], &
+      type(phrase_t), parameter :: kind_words(links_turning:request_pair) = &
+         [say_link, say_link, say_point, say_pair], &
          rate_words(0:2) = [phrase_t(), say_rate, say_acceleration]
 
       do k = 0, 2
@@ -276,7 +292,7 @@ contains
    !> by stands in a second line.
    pure function unit_lines(m) result(lines)
       type(mechanism_t), intent(in) :: m
-      character(row_length) :: lines(2, 3)
+      character(row_length) :: lines(2, links_turning:request_pair)
       character(2*label_length + 4), dimension(9) :: unit, per
       integer :: k
 
@@ -290,7 +306,7 @@ contains
          end do
          per = ''
       end if
-      do k = 1, 3
+      do k = links_turning, request_pair
          lines(1, k) = in_columns(unit, k)
          lines(2, k) = in_columns(per, k)
       end do

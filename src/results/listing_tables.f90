@@ -2,7 +2,7 @@
 module listing_tables
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_pair, request_pole
+   use mechanism, only: mechanism_t, request_link, request_pair, request_pole
    use drives, only: drive_motion
    use points, only: row_t
    use sensitivities, only: worst_case, root_of_squares
@@ -15,15 +15,17 @@ module listing_tables
    use phrases, only: phrase, say_worst
    implicit none
    private
-   public :: table_t, put_instant, put_times, put_requested, put_spreads, put_heads, time_text, drive_text, &
+   public :: table_t, no_table, put_instant, put_times, put_requested, put_spreads, put_heads, time_text, drive_text, &
       known_text
 
    character(4), parameter :: between = ' .. '
 
-   !> The table at hand: the kind of its rows, 0 where there is none yet; the powers of ten of its columns; `masked`: a
-   !> digit of the instant is.
+   !> The kind of a table before its first row.
+   integer, parameter :: no_table = -1
+
+   !> The table at hand: the kind of its rows; the powers of ten of its columns; `masked`: a digit of the instant is.
    type :: table_t
-      integer :: kind = 0                  !< of its rows: request_link, ...; 0: no table yet
+      integer :: kind = no_table           !< of its rows: request_link, ..., or links_turning; or no_table yet
       integer :: power(9) = 0              !< (columns) of ten in its heads
       logical :: masked = .false.          !< some digit is a question mark
    end type table_t
@@ -154,6 +156,10 @@ contains
       character(:), allocatable :: text
       real(wp) :: f(3), unknown
 
+      if (allocated(d%infinite) .and. abs(t) <= 0.0_wp) then
+         text = d%infinite
+         return
+      end if
       f = drive_motion(d%law, t)/d%unit
       unknown = nothing_known
       ! No time is as long as the square root, whose square is in the range of reals.
@@ -186,8 +192,8 @@ contains
 
       associate (d => l%own(l%part(i)))
          if (row%kind < request_pole) then
-            call put_heads(o, l, d, row%kind, table)
-            call put_row(o, l, d, row, error, table%masked)
+            call put_heads(o, l, d, merge(l%links_table, row%kind, row%kind == request_link), table)
+            call put_row(o, l, d, row, m%requests(i)%angle_alone, error, table%masked)
             return
          end if
          if (row%kind /= table%kind .or. (l%mixed .and. table%power(1) /= d%power(1, 0))) &
@@ -217,11 +223,11 @@ contains
       one%known = s%known
       one%name = ' '//phrase(say_worst, m%polish)
       one%value = worst_case(s%tolerances, s%of)
-      call put_row(o, l, d, one, worst_case(s%tolerances, s%error), table%masked)
+      call put_row(o, l, d, one, m%requests(i)%angle_alone, worst_case(s%tolerances, s%error), table%masked)
       one%name = ' RSS'
       one%value = root_of_squares(s%tolerances, s%of)
       ! The difference of two roots is no larger than the root of the differences.
-      call put_row(o, l, d, one, root_of_squares(s%tolerances, s%error), table%masked)
+      call put_row(o, l, d, one, m%requests(i)%angle_alone, root_of_squares(s%tolerances, s%error), table%masked)
    end subroutine put_spreads
 
    !> The heads over rows of this `kind` with the digits `d`, unless they stand there: names, powers of ten where there
@@ -246,13 +252,15 @@ contains
       table%kind = kind
    end subroutine put_heads
 
-   !> One row with the digits `d`: what is not known is a word, what the row does not have is blank. `error` (3, 0:2) is
-   !> unknown of the numbers; `masked`: a digit of some row is masked.
-   subroutine put_row(o, l, d, row, error, masked)
+   !> One row with the digits `d`: what is not known is a word, what the row does not have is blank: of a link whose
+   !> `angle_alone` is listed its place. `error` (3, 0:2) is unknown of the numbers; `masked`: a digit of some row is
+   !> masked.
+   subroutine put_row(o, l, d, row, angle_alone, error, masked)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(digits_t), intent(in) :: d
       type(row_t), intent(in) :: row
+      logical, intent(in) :: angle_alone
       real(wp), intent(in) :: error(3, 0:2)
       logical, intent(inout) :: masked
       character(row_length) :: line
@@ -260,7 +268,7 @@ contains
       integer :: k, c, i, used, last, unit
       logical :: has(3)
 
-      has = has_column(:, row%kind)
+      has = has_column(:, merge(links_turning, row%kind, angle_alone))
       ! A pair has one of its two columns, and its value is the first.
       if (row%kind == request_pair) has = [.not. row%angular, .false., row%angular]
       line(1:1) = ' '

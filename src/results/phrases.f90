@@ -49,6 +49,8 @@ module phrases
       say_not_needed = phrase_t('NOT NEEDED', 'ZBEDNA'), &
       say_closure_error_of = phrase_t('STAYS OPEN BY', 'POZOSTAJE OTWARTA O'), &
       say_limit = phrase_t('LIMIT OF MOTION AT T =', 'KRES RUCHU W CHWILI T ='), &
+      say_law = phrase_t('LAW OF', 'PRAWO RUCHU:'), &
+      say_pole_of_law = phrase_t('GOES TO INFINITY AT T = 0.0', 'DAZY DO NIESKONCZONOSCI W CHWILI T = 0.0'), &
       say_in_line = phrase_t('IN LINE', 'W JEDNEJ LINII'), &
       say_off_by = phrase_t('ESTIMATED ANGLE WAS OFF BY', 'KAT PRZYBLIZONY ODBIEGAL O'), &
       say_begins = phrase_t('THE MOTION BEGINS HERE, AT THE ASSEMBLY NEAREST TO THE ESTIMATE', &
@@ -89,6 +91,7 @@ module phrases
       say_unbounded = phrase_t('UNBOUNDED', 'NIEOGRAN.'), &
       say_range = phrase_t('RANGES OF THE DRIVES, EACH ALONE', 'ZAKRESY NAPEDOW, KAZDY OSOBNO'), &
       say_all = phrase_t('ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS', 'PELNY: BEZ KRESU, RUCH SIE ZAMYKA; OBROTY'), &
+      say_on_the_way = phrase_t('CHANGE POINTS ON THE WAY', 'PUNKTY ZMIANY NA DRODZE'), &
       say_no_limit = phrase_t('NO LIMIT AS FAR AS', 'BEZ KRESU CO NAJMNIEJ DO'), &
       say_assemblies = phrase_t('ASSEMBLIES', 'MONTAZE'), &
       say_assembly = phrase_t('ASSEMBLY', 'MONTAZ'), &
@@ -113,6 +116,8 @@ module phrases
          'ROZWIAZANIA NIE SA OSOBNE, MOGA SIE RUSZAC PRZY STALYCH NAPEDACH'), &
       say_paths_failed = phrase_t('ASSEMBLIES MAY BE MISSING: PATHS NOT FOLLOWED TO THEIR END:', &
          'MOZE BRAKOWAC MONTAZY: SCIEZKI BEZ KONCA:'), &
+      say_first_missed = phrase_t('ASSEMBLIES MAY BE MISSING: THAT IN WHICH THE RUN BEGINS WAS NOT FOUND', &
+         'MOZE BRAKOWAC MONTAZY: NIE ZNALEZIONO TEGO, W KTORYM ZACZYNA SIE RUCH'), &
       say_worst = phrase_t('WORST', 'NAJGOR.'), &
       say_shares = phrase_t('TOLERANCES: SHARES OF THE NUMBERS WHERE THE RSS IS GREATEST', &
          'TOLERANCJE: UDZIALY LICZB PRZY NAJWIEKSZYM RSS'), &
@@ -127,6 +132,8 @@ module phrases
       say_dead_points = phrase_t('DEAD POINTS', 'PUNKTY MARTWE'), &
       say_change_points = phrase_t('CHANGE POINTS', 'PUNKTY ZMIANY'), &
       say_held = phrase_t('THE OTHER DRIVES LET NOTHING MOVE', 'POZOSTALE NAPEDY NICZEMU NIE DAJA RUCHU'), &
+      say_more_circuits = phrase_t('MORE CIRCUITS THAN ARE FOLLOWED: THESE ARE THE FIRST', &
+         'OBWODOW JEST WIECEJ, PODANO PIERWSZE'), &
       say_circuits_missing = phrase_t('CIRCUITS MAY BE MISSING: NOT ALL ASSEMBLIES ARE KNOWN', &
          'MOZE BRAKOWAC OBWODOW: NIE WSZYSTKIE MONTAZE SA ZNANE')
    type(phrase_t), parameter, public :: &
@@ -180,7 +187,8 @@ module phrases
       say_shares_elsewhere = phrase_t('TOLERANCES: SHARES STAND IN THE TABLES OF EACH VARIANT, SEE CARD PRINT', &
          'TOLERANCJE: UDZIALY SA W TABLICACH WARIANTU, PATRZ KARTA PRINT'), &
       say_broken_variant = phrase_t('THE RUN WAS BROKEN OFF AFTER VARIANT', 'OBLICZENIA PRZERWANO PO WARIANCIE'), &
-      say_broken_off = phrase_t('THE RUN WAS BROKEN OFF AFTER INSTANT', 'OBLICZENIA PRZERWANO PO CHWILI')
+      say_broken_off = phrase_t('THE RUN WAS BROKEN OFF AFTER INSTANT', 'OBLICZENIA PRZERWANO PO CHWILI'), &
+      say_broken_set = phrase_t('THE RUN WAS BROKEN OFF AFTER SET', 'OBLICZENIA PRZERWANO PO KOMPLECIE')
    ! Remarks about a deck.
    type(phrase_t), parameter, public :: &
       say_card = phrase_t('CARD', 'KARTA'), &
@@ -198,6 +206,14 @@ module phrases
          'TO KAT W RADIANACH: CZY MIALY BYC STOPNIE (UNITS DEG)?'), &
       say_guide = phrase_t('THE GUIDE LOOKS WRONG BY A RIGHT ANGLE (ALPHA)', &
          'PROWADNICA WYGLADA NA OBROCONA O KAT PROSTY (ALPHA)'), &
+      say_drawn_value = phrase_t('VALUE AT T = 0, AS DRAWN:', 'WARTOSC W T = 0 WEDLUG RYSUNKU:'), &
+      say_drawn_offset = phrase_t('PQ IS NOT DRAWN ALONG ALPHA; FOR A CYLINDER TAKE CARD CYLINDER; H =', &
+         'PQ NIE LEZY WZDLUZ ALPHA; DO SILOWNIKA SLUZY KARTA CYLINDER; H ='), &
+      say_open = phrase_t('ITS NUMBERS CONTRADICT THE DRAWING; CLOSURE ERROR THERE:', &
+         'LICZBY SPRZECZNE Z RYSUNKIEM; BLAD ZAMKNIECIA NA RYSUNKU:'), &
+      say_off_drawing = phrase_t('THE MOTION BEGINS OFF THE DRAWING BY', 'RUCH ZACZYNA SIE POZA RYSUNKIEM O'), &
+      say_near_joints = phrase_t('IS VERY NEAR A JOINT OF THE SAME LINK: ONE POINT? DISTANCE', &
+         'BARDZO BLISKO INNEJ PARY TEGO OGNIWA: JEDEN PUNKT? ODLEGLOSC'), &
       say_jumps = phrase_t('ITS ACCELERATION JUMPS WHERE ITS PIECES MEET: PRINTED FROM THE RIGHT', &
          'PRZYSPIESZENIE MA SKOKI NA STYKACH: DRUKOWANE Z PRAWEJ STRONY'), &
       say_spare_drives = phrase_t('TOO MANY DRIVES BY', 'ZA DUZO NAPEDOW O'), &

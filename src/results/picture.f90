@@ -2,7 +2,7 @@
 !> of the points that PRINT asks for, the centrodes that POLE asks for, flagged positions, names, and a scale.
 module picture
    use kinds, only: wp, label_length
-   use mechanism, only: pair_revolute, request_point
+   use mechanism, only: pair_revolute, request_point, is_listed_alone
    use drawing, only: drawing_t, point_place
    use outline, only: is_same_place
    use picture_frames, only: clearest, faint_frames
@@ -183,7 +183,8 @@ contains
       end do
       open = open .and. c%s%known(c%m%points%link)
       printed = .false.
-      printed(pack(c%m%requests%subject, c%m%requests%kind == request_point)) = .true.
+      printed(pack(c%m%requests%subject, c%m%requests%kind == request_point &
+         .and. .not. is_listed_alone(c%m%requests))) = .true.
       do i = 1, size(c%m%points)
          if (open(i)) p(:, i) = to_pixels(c, point_place(c%m, c%s, i))
       end do

@@ -2,7 +2,7 @@
 module picture_page
    use kinds, only: wp
    use planar, only: point_of
-   use numerals, only: full, whole, fixed
+   use numerals, only: full, whole, fixed, max_decimals
    use drawing, only: drawing_t, snapshot_t, point_place
    use canvas, only: canvas_t
    use picture_parts, only: guide_ends
@@ -248,7 +248,7 @@ contains
       end associate
    end subroutine put_scale
 
-   !> `x` with six digits, without zeros at their end.
+   !> `x` with six digits, without zeros at their end. A negative number keeps the zero before its point.
    pure function fitted(x) result(text)
       real(wp), intent(in) :: x
       character(:), allocatable :: text
@@ -259,7 +259,7 @@ contains
       if (abs(x) > 0.0_wp .and. (e < -4 .or. e > 5)) then
          text = without_zeros(fixed(x, 5, e))//'E'//whole(e)
       else
-         text = without_zeros(fixed(x, 5 - e, 0))
+         text = without_zeros(fixed(x, min(5 - e, max_decimals - merge(1, 0, x < 0.0_wp)), 0))
       end if
    end function fitted
 end module picture_page

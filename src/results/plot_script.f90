@@ -62,6 +62,7 @@ contains
          call put(o, 'here = ARG0')
          call put(o, 'while (here ne "" && here[strlen(here):] ne "/") { here = here[1:strlen(here) - 1] }')
          call put(o, 'table = here."table'//suffix//'.csv"')
+         call put(o, 'set datafile separator ","')
          call put(o, '# The column on the abscissa: its picture and its name.')
          call put(o, &
             'picture(c) = here.(c == 1 ? "time" : c == 2 ? "drive" : sprintf("drive%d", c - 1))."'//suffix//'"')
@@ -110,7 +111,7 @@ contains
    end subroutine put_script
 
    !> The panel of those of the columns `own` that are, or are not, `angular`: derivatives of order `k`. It is left
-   !> empty where the first of them has no values: the table then has none of the others.
+   !> empty where none of them has a value.
    subroutine put_panel(o, m, table, own, k, angular)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
@@ -122,9 +123,14 @@ contains
       first = findloc(own .and. (table%columns%angular .eqv. angular), .true., dim=1)
       call put(o, '   set ylabel '//quoted(phrase(merge(angle_words(k), length_words(k), angular), m%polish) &
          //' ['//unit_of(m, angular, k)//']'))
-      call put(o, '   first_records = 0')
-      call put(o, '   stats table skip 1 using '//whole(number(first))//' name "first" nooutput')
-      call put(o, '   if (first_records == 0) { set multiplot next } else {')
+      call put(o, '   records = 0')
+      call add(o, '   do for [c in "')
+      do i = first, size(own)
+         if (own(i) .and. (table%columns(i)%angular .eqv. angular)) call add(o, ' '//whole(number(i)))
+      end do
+      call put(o, '"] { if (records == 0) { stats table skip 1 using (column(int(c))) name "one" nooutput')
+      call put(o, '      if (exists("one_records")) { records = one_records } } }')
+      call put(o, '   if (records == 0) { set multiplot next } else {')
       call add(o, '      plot')
       do i = first, size(own)
          if (.not. own(i) .or. (table%columns(i)%angular .neqv. angular)) cycle
@@ -174,17 +180,26 @@ contains
       if (k == 2) unit = unit//'/'//trim(m%time_unit)//'**2'
    end function unit_of
 
-   !> `text` as gnuplot takes it, with two of each quotation mark inside.
+   !> `text` as gnuplot takes it, the characters that mean something there by their octal numbers. Reason: in a block a
+   !> string between apostrophes cannot begin with one, and between quotation marks backquotes start a command.
    pure function quoted(text) result(word)
       character(*), intent(in) :: text
       character(:), allocatable :: word
       integer :: i
 
-      word = ''''
+      word = '"'
       do i = 1, len(text)
-         if (text(i:i) == '''') word = word//''''
-         word = word//text(i:i)
+         select case (text(i:i))
+         case ('"')
+            word = word//'\042'
+         case ('\')
+            word = word//'\134'
+         case ('`')
+            word = word//'\140'
+         case default
+            word = word//text(i:i)
+         end select
       end do
-      word = word//''''
+      word = word//'"'
    end function quoted
 end module plot_script

@@ -166,7 +166,7 @@ contains
          call take_position(s)
          call set_drive_values(s%engine, t)
          associate (m => s%response%m)
-            call respond(s%response, s%engine, drive_changes(t, order), q%known < 0)
+            call respond(s%response, s%engine, drive_changes(s%response%changes, t, order), q%known < 0)
             again = new_motion(size(m%links))
             again%t = t
             again%known = 2
@@ -224,9 +224,11 @@ contains
          call make_block_engine(s%engine, s%response%m)
       end subroutine prepare
 
-      !> (0:2, drives, numbers) The changes of the laws of the drives of `m` with its numbers at the time `t`. `order`:
-      !> that of the highest derivatives, 0 to 2, of which this exists for all of them.
-      function drive_changes(t, order) result(changes)
+      !> (0:2, drives, numbers) The changes of the laws of the drives of `m` with its numbers at the time `t`; those of
+      !> values as drawn are in `bodies` (numbers). `order`: that of the highest derivatives, 0 to 2, of which this
+      !> exists for all of them.
+      function drive_changes(bodies, t, order) result(changes)
+         type(change_t), intent(in) :: bodies(:)
          real(wp), intent(in) :: t
          integer, intent(out) :: order
          real(wp) :: changes(0:2, size(m%drives), size(m%tolerances))
@@ -236,6 +238,7 @@ contains
          order = 2
          do d = 1, size(m%tolerances)
             associate (one => m%tolerances(d))
+               changes(0, :, d) = bodies(d)%drive
                if (one%kind /= number_drive) cycle
                changes(:, one%subject, d) = law_change(m%drives(one%subject), one%term, one%place, t)
                order = min(order, smooth_order(m%drives(one%subject), one%term, one%place, t))

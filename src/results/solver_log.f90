@@ -24,7 +24,7 @@ contains
       logical, intent(in) :: errors
 
       call put(o, ' SET '//whole(m%set_number)//'   METHOD '//trim(method_words(m%method)))
-      call put(o, trim('    STEP                        T     ENDED  ITER   RESIDUAL       STEP       RATE' &
+      call put(o, trim('    STEP                        T     ENDED  ITER   RESIDUAL CORRECTION       RATE' &
          //'  RECIPROCAL CONDITION  SIGN OF DET   BRANCH  SUBSTEPS  KANTOROVICH'// &
          merge('  ERROR OF X  ERROR OF V  ERROR OF A', repeat(' ', 36), errors)))
    end subroutine log_head

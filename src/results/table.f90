@@ -2,10 +2,9 @@
 !> quantity; time first, then the drives, then all positions, velocities and accelerations that PRINT asks for, with
 !> all digits; what tolerances do to them; then curves and poles, which have no place where it is at infinity.
 !>
-!> pandas, R and spreadsheets part the cells of a row at commas, gnuplot at blanks: between two cells are both, and no
-!> blanks in the heading, which gnuplot skips. The units are those of the deck. A row ends before the first value that
-!> does not exist or has no known digit: all four take the cells that are not there for missing values. Rejected: empty
-!> cells or NaN, which no mixture of commas and blanks gives to all of them.
+!> Each row has all columns: NaN stands for a value that does not exist or has no known digit. pandas, R and gnuplot
+!> read NaN as a missing value. Commas alone separate the cells, and gnuplot is given its separator. The units are those
+!> of the deck. Rejected: a blank behind each comma, for gnuplot's default: pandas takes a column with ' NaN' for text.
 module table
    use kinds, only: wp, label_length
    use planar, only: in_degrees
@@ -13,16 +12,22 @@ module table
       request_curve, pair_prismatic
    use scales, only: is_length
    use drives, only: law_t, new_law, drive_motion
+   use grouping, only: sorted_t, sorted
    use names, only: name_table_t, put_name, find_name, drive_name
    use points, only: row_t, has_number, centre_numbers, coordinates_of
    use sensitivities, only: has_tolerances, worst_case, root_of_squares
    use set_motion, only: set_motion_t, find_row_in_set, known_numbers, spread_t, spread_in_set
    use csv, only: add_name
    use text_output, only: output_t, put, add
-   use numerals, only: put_full, full_length
+   use numerals, only: put_full, full_length, whole
    implicit none
    private
-   public :: table_t, column_t, new_table, table_head, table_instant, dotted
+   public :: table_t, column_t, new_table, table_head, table_instant, drive_columns, dotted
+
+   !> Characters of the name of a drive's column: RELANGLE.A.B, with a number of up to seven digits.
+   integer, parameter :: drive_length = 3*label_length + 10
+   !> In the place of a value that does not exist or has no known digit.
+   character(*), parameter :: missing = 'NaN'
 
    !> A column after those of time and drives.
    type :: column_t
@@ -39,7 +44,7 @@ module table
    !> The columns of a set.
    type :: table_t
       type(law_t), allocatable :: laws(:)           !< (drives)
-      character(3*label_length + 2), allocatable :: drives(:)   !< (drives) names: ANGLE.CRANK
+      character(drive_length), allocatable :: drives(:)   !< (drives) names: ANGLE.CRANK
       logical, allocatable :: angular(:)            !< (drives) the drive is an angle
       type(column_t), allocatable :: columns(:)     !< the others, by derivative and request
    end type table_t
@@ -65,11 +70,11 @@ contains
       type(name_table_t) :: links
       integer :: i, k, n, spread
 
-      allocate (t%laws(size(m%drives)), t%drives(size(m%drives)))
+      allocate (t%laws(size(m%drives)))
       do i = 1, size(m%drives)
          t%laws(i) = new_law(m%drives(i))
-         t%drives(i) = dotted(drive_name(m, m%drives(i)))
       end do
+      t%drives = drive_columns(m)
       t%angular = .not. is_length(m%drives)
       associate (numbers => 3*coordinates_of(m%requests%kind), rows => m%requests%every > 0)
          n = sum(numbers, mask=rows)
@@ -161,6 +166,28 @@ contains
       end associate
    end function name_of
 
+   !> The names of the columns of all drives of `m`. Of drives with one name, the second has .2 after it, and so on:
+   !> ANGLE.CRANK, ANGLE.CRANK.2.
+   function drive_columns(m) result(columns)
+      type(mechanism_t), intent(in) :: m
+      character(drive_length), allocatable :: columns(:)
+      type(sorted_t) :: by_subject
+      integer :: k, i, number
+
+      allocate (columns(size(m%drives)))
+      by_subject = sorted(m%drives%subject, maxval([0, m%drives%subject]))
+      do k = 1, size(by_subject%first) - 1
+         associate (list => by_subject%member(by_subject%first(k):by_subject%first(k + 1) - 1))
+            do i = 1, size(list)
+               columns(list(i)) = dotted(drive_name(m, m%drives(list(i))))
+               number = count(m%drives(list(:i))%kind == m%drives(list(i))%kind &
+                  .and. m%drives(list(:i))%second == m%drives(list(i))%second)
+               if (number > 1) columns(list(i)) = trim(columns(list(i)))//'.'//whole(number)
+            end do
+         end associate
+      end do
+   end function drive_columns
+
    !> `name` with a dot for each blank inside.
    pure function dotted(name) result(text)
       character(*), intent(in) :: name
@@ -206,7 +233,7 @@ contains
       call add_cell(o, '', s%motions(1)%t, .false.)
       do i = 1, size(t%laws)
          f = drive_motion(t%laws(i), s%motions(1)%t)
-         call add_cell(o, ', ', f(1), m%degrees .and. t%angular(i))
+         call add_cell(o, ',', f(1), m%degrees .and. t%angular(i))
       end do
       allocate (rows(0:2, size(m%requests)))
       do i = 1, size(m%requests)
@@ -221,8 +248,11 @@ contains
       end do
       do i = 1, size(t%columns)
          associate (c => t%columns(i), row => rows(t%columns(i)%spread, t%columns(i)%request))
-            if (.not. (known(c%coordinate, c%order, c%request) .and. has_number(row, c%coordinate, c%order))) exit
-            call add_cell(o, ', ', row%value(c%coordinate, c%order), m%degrees .and. c%angular)
+            if (known(c%coordinate, c%order, c%request) .and. has_number(row, c%coordinate, c%order)) then
+               call add_cell(o, ',', row%value(c%coordinate, c%order), m%degrees .and. c%angular)
+            else
+               call add(o, ','//missing)
+            end if
          end associate
       end do
       call put(o, '')

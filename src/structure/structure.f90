@@ -53,6 +53,9 @@ module structure
    !> So many parts are named; of more, the number is given.
    integer, parameter :: max_parts = 20
 
+   !> So many prismatic pairs at joints are named in a line.
+   integer, parameter :: max_shared = 4
+
    !> The faults of so many sets are reported.
    integer, parameter :: max_sets = 10
 
@@ -282,11 +285,14 @@ contains
          text = text//new_line('a')//' LAYOUT    |'//trim(forms(form_ground)%layout)
       end if
       do i = 1, min(size(f%lacking), max_parts)
-         call add_line('E101  SET '//whole(set)//': '//lack(m, f%lacking(i)))
+         call add_line('E101  SET '//whole(set)//': '//lack(m, f%lacking(i)) &
+            //shared_joints(m, [(i, i=1, size(m%pairs))], f%lacking(i)%links))
       end do
       if (size(f%lacking) > max_parts) call add_line('E101  SET '//whole(set)//': AND ' &
          //whole(size(f%lacking) - max_parts)//' MORE PARTS THAT CAN MOVE')
-      if (f%redundant > 0) call add_line('E102  SET '//whole(set)//': '//surplus(m, f))
+      call add_open_ends()
+      if (f%redundant > 0) call add_line('E102  SET '//whole(set)//': '//surplus(m, f) &
+         //shared_joints(m, once(f%many_pairs)))
       call add_spare_drives('DRIVE THE LINKS OF E101')
       call add_line('E103  SET '//whole(set)//': W = '//whole(f%coordinates)//' COORDINATES LESS R = ' &
          //whole(f%equations)//' EQUATIONS LEAVE S = '//whole(f%degrees_of_freedom) &
@@ -301,6 +307,30 @@ contains
          if (len(text) > 0) text = text//new_line('a')//' *** '
          text = text//line
       end subroutine add_line
+
+      !> Appends the line on links that can move, are not driven and have fewer than two pairs, if a revolute pair more
+      !> would hold no more than what is left to move.
+      subroutine add_open_ends()
+         integer :: pairs(size(m%links)), i
+         logical :: is_open(size(m%links))
+
+         if (sum(f%lacking%degrees_of_freedom) < 2) return
+         pairs = 0
+         do i = 1, size(m%pairs)
+            associate (ends => pair_links(m, m%pairs(i)))
+               pairs(ends) = pairs(ends) + 1
+            end associate
+         end do
+         is_open = .false.
+         do i = 1, size(f%lacking)
+            is_open(f%lacking(i)%links) = pairs(f%lacking(i)%links) < 2
+         end do
+         do i = 1, size(m%drives)
+            is_open(drive_links(m, m%drives(i))) = .false.
+         end do
+         if (any(is_open)) call add_line('E101  SET '//whole(set)//': NO SECOND PAIR HOLDS ' &
+            //links_listed(m, pack([(i, i=1, size(m%links))], is_open))//': IS ONE FORGOTTEN?')
+      end subroutine add_open_ends
 
       !> Appends the line on drives that are too many, and what `to_do`.
       subroutine add_spare_drives(to_do)
@@ -336,21 +366,70 @@ contains
       text = listed(drives, polish)
    end function drives_listed
 
-   !> LINKS A, B: 1 FREEDOM LEFT, ADD A DRIVE
+   !> LINKS A, B: 1 FREEDOM LEFT, ADD A DRIVE OR A PAIR
    function lack(m, part) result(text)
       type(mechanism_t), intent(in) :: m
       type(underdetermined_t), intent(in) :: part
       character(:), allocatable :: text
 
-      text = 'LINKS '
-      if (size(part%links) == 1) text = 'LINK '
-      text = text//listed(m%links(part%links)%name, .false.)//': '
+      text = links_listed(m, part%links)//': '
       if (part%degrees_of_freedom == 1) then
-         text = text//'1 FREEDOM LEFT, ADD A DRIVE'
+         text = text//'1 FREEDOM LEFT, ADD A DRIVE OR A PAIR'
       else
-         text = text//whole(part%degrees_of_freedom)//' DEGREES OF FREEDOM LEFT, ADD DRIVES'
+         text = text//whole(part%degrees_of_freedom)//' DEGREES OF FREEDOM LEFT, ADD DRIVES OR PAIRS'
       end if
    end function lack
+
+   !> LINK A, or LINKS A, B: those with these numbers.
+   function links_listed(m, numbers) result(text)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: numbers(:)
+      character(:), allocatable :: text
+
+      text = trim(merge('LINK ', 'LINKS', size(numbers) == 1))//' '//listed(m%links(numbers)%name, .false.)
+   end function links_listed
+
+   !> A sentence for each of `pairs` that is prismatic and has a point of a JOINT card: which of the two links of the
+   !> joint it holds, and which not; '' if there is none. `links`: one of these two, not both, is among them.
+   function shared_joints(m, pairs, links) result(text)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: pairs(:)
+      integer, intent(in), optional :: links(:)
+      character(:), allocatable :: text
+      logical :: among(size(m%links))
+      integer :: ends(2), i, k, other, told
+
+      text = ''
+      among = .false.
+      if (present(links)) among(links) = .true.
+      told = 0
+      do i = 1, size(pairs)
+         if (m%pairs(pairs(i))%kind /= pair_prismatic) cycle
+         ends = [m%pairs(pairs(i))%point_i, m%pairs(pairs(i))%point_j]
+         do k = 1, size(ends)
+            other = other_point(m, ends(k))
+            if (other == 0 .or. told == max_shared) cycle
+            associate (held => m%points(ends(k))%link, free => m%points(other)%link)
+               if (present(links) .and. (among(held) .eqv. among(free))) cycle
+               told = told + 1
+               text = text//'; PAIR '//trim(m%pairs(pairs(i))%name)//' HOLDS LINK '//trim(m%links(held)%name) &
+                  //' AT JOINT '//trim(m%points(other)%name)//', NOT LINK '//trim(m%links(free)%name) &
+                  //': FOR '//trim(m%links(free)%name)//' NAME A POINT OF ITS OWN'
+            end associate
+         end do
+      end do
+   end function shared_joints
+
+   !> The other point of the JOINT card of point number `i`, which has the same name; 0: it is that of a POINT card.
+   pure integer function other_point(m, i) result(other)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i
+
+      do other = max(1, i - 1), min(i + 1, size(m%points))
+         if (other /= i .and. m%points(other)%name == m%points(i)%name) return
+      end do
+      other = 0
+   end function other_point
 
    !> TOO MANY EQUATIONS BY 1 AMONG PAIRS A, B AND DRIVES ...
    function surplus(m, f) result(text)

@@ -148,7 +148,8 @@ contains
          if (wrong == '' .and. message /= '') wrong = 'WORDS ON STANDARD ERROR: '//message
          do k = 1, size(others)
             if (wrong == '' .and. allocated(options%files(other_outputs(k))%text)) &
-               call check_protocol(options%files(other_outputs(k))%text, wrong)
+               call check_protocol(options%files(other_outputs(k))%text, &
+               any(other_outputs(k) == [out_table, out_plot_table]), wrong)
          end do
          if (wrong == '' .and. status == 0 .and. mod(seed, twice_every) == 0) call run_twice(d, directory, wrong)
       case (1)
@@ -240,7 +241,7 @@ contains
 
       call read_deck(options%deck, read_sets, report, failure)
       call check_listing(options%files(out_listing)%text, size(read_sets), wrong, flagged)
-      if (wrong == '') call check_protocol(options%files(out_log)%text, wrong)
+      if (wrong == '') call check_protocol(options%files(out_log)%text, .false., wrong)
       ! The rows of variants belong to decks with other numbers.
       if (wrong /= '' .or. any(read_sets%variants > 0)) return
       call check_csv(options%files(out_csv)%text, read_sets, v)

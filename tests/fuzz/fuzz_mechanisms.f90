@@ -3,6 +3,7 @@
 !>
 !>    fuzz_mechanisms FIRST LAST DIRECTORY     seeds FIRST to LAST, a line for each that fails, then a line of sums
 !>    fuzz_mechanisms --deck SEED FILE         writes the deck of a seed
+!>    fuzz_mechanisms --surplus SEED FILE MORE a small mechanism of a seed, and to MORE the same with equations too many
 !>
 !> DIRECTORY/seed holds the seed that is being run; DIRECTORY/SEED.deck is kept of each that fails.
 program fuzz_mechanisms
@@ -14,7 +15,7 @@ program fuzz_mechanisms
    use phrases, only: phrase, say_too_long
    use quad_jet, only: qp
    use schemes, only: scheme_t, write_scheme
-   use random_schemes, only: random_scheme, class_of
+   use random_schemes, only: random_scheme, class_of, surplus_scheme
    use scheme_results, only: verdict_t, judge
    implicit none
 
@@ -25,6 +26,9 @@ program fuzz_mechanisms
 
    if (argument(1) == '--deck') then
       call write_deck(schemes_of(number(argument(2))), argument(3))
+   else if (argument(1) == '--surplus') then
+      call write_deck(surplus_of(number(argument(2)), .false.), argument(3))
+      call write_deck(surplus_of(number(argument(2)), .true.), argument(4))
    else
       call run_seeds(number(argument(1)), number(argument(2)), argument(3))
    end if
@@ -39,6 +43,15 @@ contains
       s = [random_scheme(seed, 1)]
       if (modulo(seed, 10) == 7 .or. modulo(seed, 30) == 11 .or. modulo(seed, 60) == 40) s = [s, random_scheme(seed, 2)]
    end function schemes_of
+
+   function surplus_of(seed, has_surplus) result(s)
+      integer, intent(in) :: seed
+      logical, intent(in) :: has_surplus
+      type(scheme_t), allocatable :: s(:)
+
+      allocate (s(1))
+      s(1) = surplus_scheme(seed, has_surplus)
+   end function surplus_of
 
    subroutine write_deck(s, path)
       type(scheme_t), intent(in) :: s(:)

@@ -230,9 +230,10 @@ contains
       last = first + length - 1
    end subroutine next_word
 
-   !> The same of a protocol: no number that is none.
-   subroutine check_protocol(path, wrong)
+   !> The same of a protocol: no number that is none, but for the missing cells of a table (`has_missing`).
+   subroutine check_protocol(path, has_missing, wrong)
       character(*), intent(in) :: path
+      logical, intent(in) :: has_missing
       character(:), allocatable, intent(out) :: wrong
       character(width) :: line
       integer :: unit, status
@@ -242,7 +243,7 @@ contains
       do while (status == 0)
          read (unit, '(a)', iostat=status) line
          if (status /= 0) exit
-         if (index(line, 'NaN') + index(line, 'Infinity') + index(line, '***') > 0 .and. wrong == '') &
+         if (merge(0, index(line, 'NaN'), has_missing) + index(line, 'Infinity') + index(line, '***') > 0 .and. wrong == '') &
             wrong = 'PROTOCOL: '//trim(line)
       end do
       close (unit)

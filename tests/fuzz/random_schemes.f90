@@ -4,13 +4,14 @@ module random_schemes
    use kinds, only: wp
    use quad_jet, only: qp
    use dice, only: dice_t, new_dice, throw, chance, magnitude, disorder
-   use schemes, only: scheme_t, double
-   use scheme_draft, only: draft_t, number, add_link, end_group
+   use schemes, only: scheme_t, pair_t, drive_t, drive_angle, drive_relangle, drive_x, drive_y, angle_unit, link_at, &
+      double
+   use scheme_draft, only: draft_t, number, add_link, add_point, world, end_group
    use draft_groups, only: add_crank, add_slider, add_dyad, add_plates, add_net, add_open_chain, add_floating, &
       add_cylinder, add_table, add_ring, add_parallelogram
    implicit none
    private
-   public :: random_scheme, class_of, class_dyads, class_triads, class_wide
+   public :: random_scheme, class_of, surplus_scheme, class_dyads, class_triads, class_wide
 
    enum, bind(c)
       enumerator :: class_dyads = 1, class_triads, class_wide
@@ -55,6 +56,116 @@ contains
       call end_scheme(d)
       s = d%s
    end function random_scheme
+
+   !> A small scheme of seed number `seed`, by METHOD NEWTON. `has_surplus`: with equations that say again what others
+   !> say, after those of the scheme without them. Some decks with surplus have 12 digits: then equations contradict
+   !> one another by their rounding.
+   function surplus_scheme(seed, has_surplus) result(s)
+      integer, intent(in) :: seed
+      logical, intent(in) :: has_surplus
+      type(scheme_t) :: s
+      type(draft_t), allocatable :: d
+      integer, parameter :: kinds(6) = [3, 3, 3, 5, 6, 13]
+      integer :: k, points, pairs
+
+      allocate (d)
+      d%dice = new_dice(seed + 500000000)
+      call begin_scheme(d, seed)
+      d%scale = magnitude(d%dice, merge(6, 1, chance(d%dice, 0.5_wp)))
+      d%size = d%scale
+      k = add_link(d, .true.)
+      call add_some(d, throw(d%dice, 2), class_dyads)
+      do k = 1, throw(d%dice, 3) - 1
+         call add_some(d, kinds(throw(d%dice, size(kinds))), class_dyads)
+      end do
+      call end_scheme(d)
+      points = size(d%s%points)
+      pairs = size(d%s%pairs)
+      if (has_surplus) then
+         do k = 1, throw(d%dice, 2)
+            call add_surplus(d)
+         end do
+         if (chance(d%dice, 0.25_wp)) d%s%digits = 12
+      end if
+      s = d%s
+      s%method = ''
+      s%point_order = [s%point_order, [(k, k=points + 1, size(s%points))]]
+      s%pair_order = [s%pair_order, [(k, k=pairs + 1, size(s%pairs))]]
+   end function surplus_scheme
+
+   !> Equations more by the dice; of seven kinds six have the motion of those that are there.
+   subroutine add_surplus(d)
+      type(draft_t), intent(inout) :: d
+      integer :: k
+
+      select case (throw(d%dice, 7))
+      case (1, 2, 3)
+         call add_parallel_guide(d)
+      case (4)
+         k = throw(d%dice, size(d%s%pairs))
+         d%s%pairs = [d%s%pairs, d%s%pairs(k)]
+      case (5, 6)
+         call repeat_drive(d)
+      case default
+         call drive_a_point(d)
+      end select
+   end subroutine add_surplus
+
+   !> A prismatic pair once more, between other points of its links.
+   subroutine add_parallel_guide(d)
+      type(draft_t), intent(inout) :: d
+      type(pair_t) :: pair
+      real(qp) :: where(2), e(2), theta
+      integer :: k, links(2)
+
+      if (.not. any(d%s%pairs%prismatic)) return
+      do
+         k = throw(d%dice, size(d%s%pairs))
+         if (d%s%pairs(k)%prismatic) exit
+      end do
+      pair = d%s%pairs(k)
+      links = [link_at(d%s, pair%point_i), link_at(d%s, pair%point_j)]
+      where = world(d, pair%point_i) + d%scale*[number(d, -1.0_qp, 1.0_qp), number(d, -1.0_qp, 1.0_qp)]
+      pair%point_i = add_point(d, links(1), where)
+      where = where + d%scale*[number(d, -1.0_qp, 1.0_qp), number(d, -1.0_qp, 1.0_qp)]
+      pair%point_j = add_point(d, links(2), where)
+      theta = d%b(links(1))%phi%v + pair%alpha*angle_unit(d%s)
+      e = world(d, pair%point_i) - world(d, pair%point_j)
+      pair%h = double(e(2)*cos(theta) - e(1)*sin(theta))
+      d%s%pairs = [d%s%pairs, pair]
+   end subroutine add_parallel_guide
+
+   !> A drive once more, of an angle also by the angle to a ground link.
+   subroutine repeat_drive(d)
+      type(draft_t), intent(inout) :: d
+      type(drive_t) :: drive
+      integer :: k, ground
+
+      k = throw(d%dice, size(d%s%drives))
+      drive = d%s%drives(k)
+      if (drive%kind == drive_angle .and. chance(d%dice, 0.5_wp)) then
+         ground = findloc(d%s%links%ground, .true., dim=1)
+         drive%kind = drive_relangle
+         drive%second = drive%subject
+         drive%subject = ground
+         drive%law%polynomial(1) = double(drive%law%polynomial(1) - d%s%links(ground)%at(3)/angle_unit(d%s))
+      end if
+      d%s%drives = [d%s%drives, drive]
+   end subroutine repeat_drive
+
+   !> A coordinate of a point, held where it is: the drives give its place already, and move it elsewhere.
+   subroutine drive_a_point(d)
+      type(draft_t), intent(inout) :: d
+      type(drive_t) :: drive
+      real(qp) :: place(2)
+
+      drive%kind = merge(drive_x, drive_y, chance(d%dice, 0.5_wp))
+      drive%subject = throw(d%dice, size(d%s%points))
+      if (d%s%links(link_at(d%s, drive%subject))%ground) return
+      place = world(d, drive%subject)
+      drive%law%polynomial(1) = double(place(merge(1, 2, drive%kind == drive_x)))
+      d%s%drives = [d%s%drives, drive]
+   end subroutine drive_a_point
 
    !> Time, units and method.
    subroutine begin_scheme(d, seed)

@@ -72,6 +72,7 @@ module schemes
       character(8) :: print = 'ALL'
       integer, allocatable :: printed(:)       !< links that PRINT cards name; not allocated: all
       integer, allocatable :: link_order(:), point_order(:), pair_order(:)
+      integer :: digits = 17                   !< of the numbers in the deck
    end type scheme_t
 
    !> A link's motion, with cosine and sine of its angle.
@@ -162,57 +163,60 @@ contains
          if (.not. any(s%points%link == i) .and. .not. any(s%drives%kind == drive_relangle .and. &
             (s%drives%second == i .or. s%drives%subject == i))) cycle
          associate (q => s%links(i)%estimate)
-            call card(unit, merge('GROUND  ', 'LINK    ', s%links(i)%ground), [name('L', i)], [q(1), q(2), q(3)/u])
+            call card(s%digits, unit, merge('GROUND  ', 'LINK    ', s%links(i)%ground), [name('L', i)], &
+               [q(1), q(2), q(3)/u])
          end associate
       end do
       do k = 1, size(s%points)
          i = s%point_order(k)
-         call card(unit, 'POINT   ', [name('P', i), name('L', s%points(i)%link)], s%points(i)%offset)
+         call card(s%digits, unit, 'POINT   ', [name('P', i), name('L', s%points(i)%link)], s%points(i)%offset)
       end do
       do k = 1, size(s%pairs)
          i = s%pair_order(k)
          associate (p => s%pairs(i))
             if (p%prismatic) then
-               call card(unit, 'PRISM   ', [name('P', p%point_i), name('P', p%point_j), name('K', i)], &
+               call card(s%digits, unit, 'PRISM   ', [name('P', p%point_i), name('P', p%point_j), name('K', i)], &
                   [p%alpha, p%h, p%beta])
             else
-               call card(unit, 'REVOLUTE', [name('P', p%point_i), name('P', p%point_j), name('K', i)], [real(qp) ::])
+               call card(s%digits, unit, 'REVOLUTE', [name('P', p%point_i), name('P', p%point_j), name('K', i)], &
+                  [real(qp) ::])
             end if
          end associate
       end do
       do k = 1, size(s%drives)
-         call write_drive(s%drives(k), unit)
+         call write_drive(s%drives(k), s%digits, unit)
       end do
       call write_rest(s, unit)
    end subroutine write_scheme
 
-   subroutine write_drive(d, unit)
+   subroutine write_drive(d, digits, unit)
       type(drive_t), intent(in) :: d
-      integer, intent(in) :: unit
+      integer, intent(in) :: digits, unit
       character(8), parameter :: kinds(5) = [character(8) :: 'ANGLE', 'RELANGLE', 'X', 'Y', 'SLIDE']
       integer :: k
 
       select case (d%kind)
       case (drive_angle)
-         call card(unit, 'DRIVE   ', [kinds(d%kind), name('L', d%subject)], d%law%polynomial)
+         call card(digits, unit, 'DRIVE   ', [kinds(d%kind), name('L', d%subject)], d%law%polynomial)
       case (drive_relangle)
-         call card(unit, 'DRIVE   ', [kinds(d%kind), name('L', d%subject), name('L', d%second)], d%law%polynomial)
+         call card(digits, unit, 'DRIVE   ', [kinds(d%kind), name('L', d%subject), name('L', d%second)], &
+            d%law%polynomial)
       case (drive_slide)
-         call card(unit, 'DRIVE   ', [kinds(d%kind), name('K', d%subject)], d%law%polynomial)
+         call card(digits, unit, 'DRIVE   ', [kinds(d%kind), name('K', d%subject)], d%law%polynomial)
       case default
-         call card(unit, 'DRIVE   ', [kinds(d%kind), name('P', d%subject)], d%law%polynomial)
+         call card(digits, unit, 'DRIVE   ', [kinds(d%kind), name('P', d%subject)], d%law%polynomial)
       end select
       select case (d%law%form)
       case (term_harmonic)
-         call card(unit, 'ADD     ', ['HARMONIC'], d%law%r)
+         call card(digits, unit, 'ADD     ', ['HARMONIC'], d%law%r)
       case (term_power)
-         call card(unit, 'ADD     ', ['POWER   '], d%law%r(:2))
+         call card(digits, unit, 'ADD     ', ['POWER   '], d%law%r(:2))
       case (term_table)
          do k = 1, size(d%law%time)
-            call card(unit, 'ADD     ', ['TABLE   '], [d%law%time(k), d%law%value(k)])
+            call card(digits, unit, 'ADD     ', ['TABLE   '], [d%law%time(k), d%law%value(k)])
          end do
       case (term_rise)
-         call card(unit, 'RISE    ', [d%law%word], d%law%r)
+         call card(digits, unit, 'RISE    ', [d%law%word], d%law%r)
       end select
    end subroutine write_drive
 
@@ -225,16 +229,16 @@ contains
 
       do k = 1, size(s%groups)
          if (s%groups(k)%branch_after < huge(1.0_qp)) &
-            call card(unit, 'BRANCH  ', [name('L', s%groups(k)%links(1) + 1)], [s%groups(k)%branch_after])
+            call card(s%digits, unit, 'BRANCH  ', [name('L', s%groups(k)%links(1) + 1)], [s%groups(k)%branch_after])
       end do
       write (text, '(i0)') s%steps
-      if (s%steps > 0) call card(unit, 'TIME    ', [text], [s%t0, s%t1])
+      if (s%steps > 0) call card(s%digits, unit, 'TIME    ', [text], [s%t0, s%t1])
       do k = 1, size(s%at)
-         call card(unit, 'AT      ', [character(8) ::], s%at(k:k))
+         call card(s%digits, unit, 'AT      ', [character(8) ::], s%at(k:k))
       end do
       if (allocated(s%printed)) then
          do k = 1, size(s%printed)
-            call card(unit, 'PRINT   ', ['LINKS   ', name('L', s%printed(k))], [real(qp) ::])
+            call card(s%digits, unit, 'PRINT   ', ['LINKS   ', name('L', s%printed(k))], [real(qp) ::])
          end do
       else
          write (unit, '(2a)') 'PRINT   ', trim(s%print)
@@ -250,12 +254,13 @@ contains
       write (name, '(a,i0)') letter, i
    end function name
 
-   !> One card with its labels, and its numbers with all their digits on a card of their own.
-   subroutine card(unit, what, labels, reals)
-      integer, intent(in) :: unit
+   !> One card with its labels, and its numbers with so many `digits` on a card of their own.
+   subroutine card(digits, unit, what, labels, reals)
+      integer, intent(in) :: digits, unit
       character(8), intent(in) :: what, labels(:)
       real(qp), intent(in) :: reals(:)
       character(104) :: line
+      character(12) :: form
       integer :: k
 
       line = what
@@ -265,8 +270,9 @@ contains
       write (unit, '(a)') trim(line)
       if (size(reals) == 0) return
       line = '*'
+      write (form, '(a,i0,a)') '(es24.', digits - 1, 'e3)'
       do k = 1, size(reals)
-         write (line(24*k - 15:24*k + 8), '(es24.16e3)') real(reals(k), real64)
+         write (line(24*k - 15:24*k + 8), form) real(reals(k), real64)
          line(24*k - 15:24*k + 8) = adjustl(line(24*k - 15:24*k + 8))
       end do
       write (unit, '(a)') trim(line)

@@ -24,6 +24,8 @@ TEST_LIBS    ?= -llapack -lblas
 TEST_DIR     ?= tests/unit
 TESTS        ?= $(sort $(shell find '$(TEST_DIR)' -name 'test_*.pf'))
 
+# What a command says: see the Makefile; alone, nothing but the command.
+say        ?=
 unit_home  := $(patsubst %/,%,$(dir $(lastword $(MAKEFILE_LIST))))
 # Apart, since both bring a module of the name funit.
 unit_build := $(BUILD)/tests$(if $(PFUNIT_DIR),/pfunit)
@@ -76,7 +78,7 @@ unit: $(unit_build)/unit
 	   }' $(unit_build)/unit.log
 
 $(unit_build)/unit: $(unit_build)/unit_driver.o $(unit_objects) $(TEST_HELPERS) $(unit_framework) $(TEST_LIB)
-	$(FC) $(TEST_FLAGS) -o $@ $^ $(unit_link) $(TEST_LIBS)
+	$(call say,LD,$(@F),tests)$(FC) $(TEST_FLAGS) -o $@ $^ $(unit_link) $(TEST_LIBS)
 
 # The list of suites, touched only when it changes: a test file that comes or goes makes the driver anew.
 $(unit_build)/suites: unit-force
@@ -84,12 +86,12 @@ $(unit_build)/suites: unit-force
 	@echo '$(unit_names)' | cmp -s - $@ || echo '$(unit_names)' > $@
 
 $(unit_objects): $(unit_build)/%.o: $(unit_build)/%.F90 $(TEST_HELPERS) $(unit_framework) $(TEST_LIB)
-	$(FC) $(unit_flags) -c -o $@ $<
+	$(call say,FC,$(patsubst $(unit_build)/%,%,$<),tests)$(FC) $(unit_flags) -c -o $@ $<
 
 ifneq ($(PFUNIT_DIR),)
 # pFUnit reads a copy in the build directory: its preprocessor writes beside the file and reads one line for an annotation.
 $(unit_build)/%.pf: %.pf $(unit_home)/pf2f90 | $(unit_build)/suites
-	$(unit_home)/pf2f90 --join $< > $@.new && mv $@.new $@
+	$(quiet)$(unit_home)/pf2f90 --join $< > $@.new && mv $@.new $@
 
 .PRECIOUS: $(unit_build)/%.pf
 $(unit_build)/%.F90: $(unit_build)/%.pf
@@ -103,16 +105,16 @@ $(unit_build)/unit_driver.o: $(PFUNIT_INCLUDE_DIR)/driver.F90 $(unit_build)/suit
 	$(FC) $(filter-out -std=% -W% -pedantic,$(unit_flags)) -I$(unit_build) -D_TEST_SUITES='"suites.inc"' -c -o $@ $<
 else
 $(unit_build)/funit.o: $(unit_home)/funit.f90 | $(unit_build)/suites
-	$(FC) $(unit_flags) -c -o $@ $<
+	$(call say,FC,$(patsubst $(unit_build)/%,%,$<),tests)$(FC) $(unit_flags) -c -o $@ $<
 
 $(unit_build)/%.F90: %.pf $(unit_home)/pf2f90 | $(unit_build)/suites
-	$(unit_home)/pf2f90 $< > $@.new && mv $@.new $@
+	$(quiet)$(unit_home)/pf2f90 $< > $@.new && mv $@.new $@
 
 $(unit_build)/unit_driver.f90: $(unit_build)/suites $(unit_home)/pf2f90
-	$(unit_home)/pf2f90 --driver $(unit_names) > $@.new && mv $@.new $@
+	$(quiet)$(unit_home)/pf2f90 --driver $(unit_names) > $@.new && mv $@.new $@
 
 $(unit_build)/unit_driver.o: $(unit_build)/unit_driver.f90 $(unit_framework)
-	$(FC) $(unit_flags) -c -o $@ $<
+	$(call say,FC,$(patsubst $(unit_build)/%,%,$<),tests)$(FC) $(unit_flags) -c -o $@ $<
 endif
 
 unit-stand-in:

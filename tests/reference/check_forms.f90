@@ -4,7 +4,8 @@
 !> The last line is `N passed, N failed`.
 program check_forms
    use failures, only: failure_t
-   use mechanism, only: mechanism_t, pair_t, instant_count, instant, pair_revolute, drive_angle, drive_x, drive_y, &
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, pair_t, drive_t, instant_count, instant, pair_revolute, drive_angle, drive_x, drive_y, &
       drive_relangle, drive_slide
    use scales, only: characteristic_length, characteristic_rate
    use structure, only: findings_t, count_degrees_of_freedom
@@ -100,6 +101,7 @@ contains
       real(qp), intent(inout) :: worst(0:2)
       type(place_t) :: p, q
       type(jet_t) :: along, across, phi
+      real(qp) :: numbers(3)
       integer :: k
 
       do k = 1, size(m%pairs)
@@ -111,9 +113,10 @@ contains
                call enlarge(worst, p%y - q%y, size_of(m, links, pair%point_i, pair%point_j))
             else
                call in_guide(m, links, pair, along, across)
-               call enlarge(worst, across - length(pair%offset), guide_size(m, links, pair))
+               numbers = numbers_of(m, pair)
+               call enlarge(worst, across - numbers(2), guide_size(m, links, pair))
                phi = links(m%points(pair%point_j)%link)%phi - links(m%points(pair%point_i)%link)%phi
-               call enlarge(worst, whole_turns_off(phi - angle(m, pair%beta)), turn_size(m, phi))
+               call enlarge(worst, whole_turns_off(phi - numbers(3)), turn_size(m, phi))
             end if
          end associate
       end do
@@ -148,7 +151,7 @@ contains
 
       do k = 1, size(m%drives)
          associate (subject => m%drives(k)%subject)
-            f = law(m, m%drives(k), t)
+            f = law_of(m, m%drives(k), t)
             select case (m%drives(k)%kind)
             case (drive_angle, drive_relangle)
                phi = links(subject)%phi
@@ -176,13 +179,75 @@ contains
       type(jet_t), intent(out) :: along, across
       type(place_t) :: p, q
       type(jet_t) :: theta
+      real(qp) :: numbers(3)
 
       p = place_of(m, links, pair%point_i)
       q = place_of(m, links, pair%point_j)
-      theta = links(m%points(pair%point_i)%link)%phi + angle(m, pair%alpha)
+      numbers = numbers_of(m, pair)
+      theta = links(m%points(pair%point_i)%link)%phi + numbers(1)
       along = (q%x - p%x)*cos(theta) + (q%y - p%y)*sin(theta)
       across = (p%y - q%y)*cos(theta) - (p%x - q%x)*sin(theta)
    end subroutine in_guide
+
+   !> Alpha, h and beta of a prismatic pair: those of its card or, where these are blank, of the drawing.
+   function numbers_of(m, pair) result(numbers)
+      type(mechanism_t), intent(in) :: m
+      type(pair_t), intent(in) :: pair
+      real(qp) :: numbers(3), d(2), phi(2)
+
+      numbers = [angle(m, pair%alpha), length(pair%offset), angle(m, pair%beta)]
+      d = drawn_place(m, pair%point_j) - drawn_place(m, pair%point_i)
+      phi(1) = angle(m, m%links(m%points(pair%point_i)%link)%position(3))
+      phi(2) = angle(m, m%links(m%points(pair%point_j)%link)%position(3))
+      if (pair%drawn(1)) numbers(1) = atan2(d(2), d(1)) - phi(1)
+      if (pair%drawn(2)) numbers(2) = d(1)*sin(phi(1) + numbers(1)) - d(2)*cos(phi(1) + numbers(1))
+      if (pair%drawn(3)) numbers(3) = phi(2) - phi(1)
+   end function numbers_of
+
+   !> The law of a drive; its value at t = 0 is that of its card or, where this is blank, of the drawing.
+   type(jet_t) function law_of(m, drive, t) result(f)
+      type(mechanism_t), intent(in) :: m
+      type(drive_t), intent(in) :: drive
+      real(qp), intent(in) :: t
+      type(drive_t) :: relative
+      real(qp) :: d(2), numbers(3)
+
+      f = law(m, drive, t)
+      if (.not. drive%drawn) return
+      relative = drive
+      relative%polynomial(1) = 0.0_wp
+      f = law(m, relative, t)
+      associate (k => drive%subject)
+         select case (drive%kind)
+         case (drive_angle)
+            f = f + angle(m, m%links(k)%position(3))
+         case (drive_relangle)
+            f = f + (angle(m, m%links(drive%second)%position(3)) - angle(m, m%links(k)%position(3)))
+         case (drive_x, drive_y)
+            d = drawn_place(m, k)
+            f = f + merge(d(1), d(2), drive%kind == drive_x)
+         case default
+            d = drawn_place(m, m%pairs(k)%point_j) - drawn_place(m, m%pairs(k)%point_i)
+            numbers = numbers_of(m, m%pairs(k))
+            numbers(1) = numbers(1) + angle(m, m%links(m%points(m%pairs(k)%point_i)%link)%position(3))
+            f = f + (d(1)*cos(numbers(1)) + d(2)*sin(numbers(1)))
+         end select
+      end associate
+   end function law_of
+
+   !> The place of point number `i` where the cards of the links put it.
+   function drawn_place(m, i) result(p)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: i
+      real(qp) :: p(2), u(2), phi
+
+      associate (link => m%links(m%points(i)%link))
+         u = [length(m%points(i)%offset(1)), length(m%points(i)%offset(2))]
+         phi = angle(m, link%position(3))
+         p = [length(link%position(1)), length(link%position(2))] &
+            + [u(1)*cos(phi) - u(2)*sin(phi), u(1)*sin(phi) + u(2)*cos(phi)]
+      end associate
+   end function drawn_place
 
    type(place_t) function place_of(m, links, i) result(p)
       type(mechanism_t), intent(in) :: m

@@ -5,7 +5,7 @@ module closed_forms
    use quad_jet, only: qp
    use closed_forms_dyads, only: body_t
    use closed_forms_linkages, only: four_bar, crank_rockers, drawing, rise_dwell, drag_link, peaucellier, five_bar, pantograph
-   use closed_forms_sliders, only: yoke, crank_slider, scotch_yoke, whitworth, cylinder, trammel
+   use closed_forms_sliders, only: yoke, crank_slider, drawn_slider, drawn_cylinder, scotch_yoke, whitworth, cylinder, trammel
    use closed_forms_legs, only: andrews, jansen
    use closed_forms_sixbars, only: watt, watt_output, stephenson, stephenson_output, klann, grounds
    use closed_forms_robots, only: three_rrr, three_rrr_cranks, excavator, xy_table, scissor
@@ -35,7 +35,7 @@ module closed_forms
       count_t('crank_rockers', 4, 4, 0, 1), &
       count_t('tolerances', 4, 4, 0, 1), count_t('guide_tolerances', 4, 3, 1, 1), &
       count_t('poles', 4, 4, 0, 1), count_t('cardan', 4, 2, 2, 1), count_t('rise_dwell', 4, 4, 0, 1), &
-      count_t('drawing', 4, 4, 0, 1), &
+      count_t('drawing', 4, 4, 0, 1), count_t('drawn_slider', 4, 3, 1, 1), count_t('drawn_cylinder', 4, 3, 1, 1), &
       count_t('crank_slider', 4, 3, 1, 1), count_t('scotch_yoke', 4, 2, 2, 1), count_t('whitworth', 6, 5, 2, 1), &
       count_t('drag_link', 4, 4, 0, 1), count_t('cylinder', 4, 3, 1, 1), count_t('trammel', 4, 2, 2, 1), &
       count_t('peaucellier', 8, 10, 0, 1), count_t('five_bar', 5, 5, 0, 2), count_t('pantograph', 5, 5, 0, 2), &
@@ -95,6 +95,10 @@ contains
          links = drawing(set, t)
       case ('crank_slider')
          links = crank_slider(set, t)
+      case ('drawn_slider')
+         links = drawn_slider(set, t)
+      case ('drawn_cylinder')
+         links = drawn_cylinder(t)
       case ('scotch_yoke')
          links = scotch_yoke(set, t)
       case ('whitworth')

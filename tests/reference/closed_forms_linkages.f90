@@ -8,7 +8,7 @@ module closed_forms_linkages
    use closed_forms_dyads, only: place_t, body_t, fixed_place, body, place_on, polar, direction, third_corner
    implicit none
    private
-   public :: four_bar, crank_rockers, drawing, rise_dwell, drag_link, peaucellier, five_bar, pantograph
+   public :: four_bar, crank_rockers, drawing, drawn_link, rise_dwell, drag_link, peaucellier, five_bar, pantograph
 
    !> Crank, coupler and rocker of the crank-rocker.
    real(qp), parameter :: sizes(3) = [1.0_qp, 3.5_qp, 3.0_qp]

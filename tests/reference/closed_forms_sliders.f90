@@ -3,10 +3,12 @@
 module closed_forms_sliders
    use quad_jet, only: qp, jet_t, pi_q, degree_q, constant_jet, time_jet, &
       operator(+), operator(-), operator(*), operator(/), sqrt, sin, cos, atan2
-   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, polar, direction, third_corner, natural_spline_3
+   use closed_forms_dyads, only: place_t, body_t, fixed_place, body, place_on, polar, direction, third_corner, &
+      natural_spline_3
+   use closed_forms_linkages, only: drawn_link
    implicit none
    private
-   public :: yoke, crank_slider, scotch_yoke, whitworth, cylinder, trammel
+   public :: yoke, crank_slider, drawn_slider, drawn_cylinder, scotch_yoke, whitworth, cylinder, trammel
 
 contains
 
@@ -61,6 +63,50 @@ contains
       links = [body('BASE', o, flat), body('CRANK', o, phi), body('ROD', pin, direction(pin, piston)), &
                body('PISTON', piston, flat)]
    end function crank_slider
+
+   !> Slider-crank drawn with its crank at (0.6, 0.8) from (0, 0) and the slider at (3, 0.5). In set 1 the slider stays on
+   !> y = 0.5, in set 2 it swings by 0.2 along a line that falls by 15 deg, its axes at 30 deg. The axes of crank and rod
+   !> lie in those of the drawing.
+   pure function drawn_slider(set, t) result(links)
+      integer, intent(in) :: set
+      real(qp), intent(in) :: t
+      type(body_t) :: links(4)
+      real(qp), parameter :: a(2) = [0.6_qp, 0.8_qp], b(2) = [3.0_qp, 0.5_qp], origin(2) = 0.0_qp, &
+         fall = -15.0_qp*degree_q
+      type(place_t) :: o, pin, slider
+      type(jet_t) :: way, turned
+
+      o = fixed_place(0.0_qp, 0.0_qp)
+      turned = constant_jet(0.0_qp)
+      if (set == 1) then
+         pin = place_on(body('CRANK', o, 30.0_qp*degree_q*time_jet(t)), a(1), a(2))
+         slider = on_level(pin, sqrt(sum((b - a)**2)), b(2), 1.0_qp)
+      else
+         way = 0.2_qp*sin(30.0_qp*degree_q*time_jet(t))
+         turned = constant_jet(30.0_qp*degree_q)
+         slider = place_t(b(1) + way*cos(fall), b(2) + way*sin(fall))
+         pin = third_corner(o, slider, constant_jet(sum(a**2)), constant_jet(sum((b - a)**2)), 1.0_qp)
+      end if
+      links = [body('BASE', o, constant_jet(0.0_qp)), drawn_link('CRANK', o, pin, origin, a, origin), &
+               drawn_link('ROD', pin, slider, a, b, origin), body('SLIDER', slider, turned)]
+   end function drawn_slider
+
+   !> Boom about (0, 0) with the eye of its cylinder drawn at (1.5, 1); the cylinder stands on (2, -1) and grows by 0.5 in
+   !> a unit of time from the length drawn. All axes lie in those of the drawing.
+   pure function drawn_cylinder(t) result(links)
+      real(qp), intent(in) :: t
+      type(body_t) :: links(4)
+      real(qp), parameter :: b(2) = [1.5_qp, 1.0_qp], b0(2) = [2.0_qp, -1.0_qp], origin(2) = 0.0_qp
+      type(place_t) :: o, foot, eye
+      type(jet_t) :: length
+
+      length = sqrt(sum((b - b0)**2)) + 0.5_qp*time_jet(t)
+      o = fixed_place(0.0_qp, 0.0_qp)
+      foot = fixed_place(b0(1), b0(2))
+      eye = third_corner(o, foot, constant_jet(sum(b**2)), length*length, 1.0_qp)
+      links = [body('BASE', o, constant_jet(0.0_qp)), drawn_link('BOOM', o, eye, origin, b, origin), &
+               drawn_link('BARREL', foot, eye, b0, b, origin), drawn_link('ROD', eye, foot, b, b0, origin)]
+   end function drawn_cylinder
 
    !> Scotch yoke of radius 40: x = 40 cos phi. Set 1 gives phi, set 2 x itself, with the crank above.
    pure function scotch_yoke(set, t) result(links)

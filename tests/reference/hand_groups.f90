@@ -62,6 +62,9 @@ module hand_groups
       statement_t('cardan', 0, '*BAR SHOE-A SHOE-B'), &
       statement_t('rise_dwell', 0, '*CRANK; COUPLER ROCKER'), &
       statement_t('drawing', 0, '*CRANK; COUPLER ROCKER'), &
+      statement_t('drawn_slider', 1, '*CRANK; ROD SLIDER'), &
+      statement_t('drawn_slider', 2, '*SLIDER; CRANK ROD'), &
+      statement_t('drawn_cylinder', 0, '*BOOM BARREL ROD'), &
       statement_t('crank_slider', 0, '*CRANK; ROD PISTON'), &
       statement_t('scotch_yoke', 1, '*CRANK; BLOCK YOKE'), &
       statement_t('scotch_yoke', 2, '*YOKE; CRANK BLOCK'), &

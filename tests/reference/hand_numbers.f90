@@ -8,6 +8,8 @@ module hand_numbers
    public :: number_by_hand, field_length
 
    integer, parameter :: field_length = 12
+   !> Of a number below 1 a field has room for a blank, a zero or a sign, the point, and these.
+   integer, parameter :: most_decimals = 9
    !> A shown digit is worth a hundred errors or more.
    real(qp), parameter :: errors_a_digit = 100.0_qp
 
@@ -46,7 +48,7 @@ contains
       character(60) :: line
       integer :: d
 
-      do d = min(decimals, room(x) - 1), 0, -1
+      do d = min(decimals, most_decimals), 0, -1
          if (anint(abs(x)*10.0_qp**d) >= 10.0_qp**room(x)) cycle
          text = with_point(nint(abs(x)*10.0_qp**d, int64), d, x < 0.0_qp)
          return
@@ -67,7 +69,7 @@ contains
       text = ''
       ! The number in units of its last known digit.
       known = anint(abs(x)/10.0_qp**last)
-      do d = min(decimals, room(x) - 1), max(0, 1 - last), -1
+      do d = min(decimals, most_decimals), max(0, 1 - last), -1
          if (known*10.0_qp**(last + d) >= 10.0_qp**room(x)) cycle
          text = with_point(nint(known*10.0_qp**(last + d), int64), d, x < 0.0_qp)
          call mask_last(text, last + d)
@@ -97,7 +99,8 @@ contains
       text = adjustr(text)
    end function masked_exponent
 
-   !> The digits of `n` with a point before the last `d`; a zero has no sign.
+   !> The digits of `n` with a point before the last `d`; a zero has no sign. The sign takes the place of a zero before the
+   !> point if there is no other.
    function with_point(n, d, negative) result(text)
       integer(int64), intent(in) :: n
       integer, intent(in) :: d
@@ -113,7 +116,8 @@ contains
       digits = digits(2:30 - d)//'.'//digits(31 - d:)
       if (negative .and. n > 0) then
          i = verify(digits, ' ')
-         digits(i - 1:i - 1) = '-'
+         if (d == most_decimals) digits(i:i) = '-'
+         if (d < most_decimals) digits(i - 1:i - 1) = '-'
       end if
       text = digits(len(digits) - field_length + 1:)
    end function with_point

@@ -15,8 +15,9 @@ module hand_scales
       integer :: time_decimals = 0, time_power = 0
    end type hand_scales_t
 
-   !> Numbers up to 99999 and down to 0.01 need no power of ten.
-   integer, parameter :: highest = 4, lowest = -2, digits = 7
+   !> Numbers up to 9999999 and down to 0.001 need no power of ten. (Tolerances with more decimals need one from a larger
+   !> number on; no deck of input/ has such a number.)
+   integer, parameter :: highest = 6, lowest = -3, digits = 7
 
 contains
 

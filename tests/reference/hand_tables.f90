@@ -30,20 +30,24 @@ module hand_tables
    !> Two links with a smaller sine of the angle between them are in line: an instant is a change point but for the
    !> rounding of a double, and angles are off by its root at most.
    real(qp), parameter :: parallel = 1.0e-6_qp
-   !> The heads over links, points and pairs; their words end where the numbers do.
-   character(line_length), parameter :: heads(3, 2) = reshape([character(line_length) :: &
+   !> The heads over links, points, pairs, and links of which only the angle is listed; their words end where the numbers do.
+   character(line_length), parameter :: heads(4, 2) = reshape([character(line_length) :: &
       ' LINK               X           Y         PHI          VX          VY        VPHI' &
       //'          AX          AY        APHI', &
       ' POINT              X           Y                      VX          VY                      AX          AY', &
       ' PAIR           SLIDE                   ANGLE        RATE                    RATE' &
       //'    2ND RATE                2ND RATE', &
+      ' LINK                                     PHI                                VPHI' &
+      //'                                APHI', &
       ' OGNIWO             X           Y          FI          VX          VY         VFI' &
       //'          AX          AY         AFI', &
       ' PUNKT              X           Y                      VX          VY                      AX          AY', &
       ' PARA         PRZESUW                     KAT    PREDKOSC                PREDKOSC' &
-      //'     PRZYSP.                 PRZYSP.'], [3, 2])
+      //'     PRZYSP.                 PRZYSP.', &
+      ' OGNIWO                                    FI                                 VFI' &
+      //'                                 AFI'], [4, 2])
    !> Their columns, three a derivative: of lengths (1) or angles (2), or none.
-   integer, parameter :: columns(3, 3) = reshape([1, 1, 2, 1, 1, 0, 1, 0, 2], [3, 3])
+   integer, parameter :: columns(3, 4) = reshape([1, 1, 2, 1, 1, 0, 1, 0, 2, 0, 0, 2], [3, 4])
    !> Of x, y, phi: a length (1) or an angle (2).
    integer, parameter :: dimension_of(3) = [1, 1, 2]
    !> More drives do not stand over the tables, and no line is longer.
@@ -66,15 +70,17 @@ contains
       type(hand_row_t) :: row
       character(line_length) :: line
       character(120) :: spreads(2)
-      integer :: i, kind, language
+      integer :: i, k, kind, language
       logical :: masked
 
       language = merge(2, 1, m%polish)
       kind = 0
       masked = .false.
       do i = 1, size(m%requests)
-         if (m%requests(i)%every == 0) cycle
-         if (mod(step, m%requests(i)%every) /= 0 .and. step /= instant_count(m) - 1) cycle
+         if (.not. m%requests(i)%listed) then
+            if (m%requests(i)%every == 0) cycle
+            if (mod(step, m%requests(i)%every) /= 0 .and. step /= instant_count(m) - 1) cycle
+         end if
          if (kind == 0) call put_time(o, m, scales, step, language)
          if (m%requests(i)%kind >= request_pole) then
             if (m%requests(i)%kind /= kind) call put_centre_heads_by_hand(o, m, scales, m%requests(i), language)
@@ -83,12 +89,21 @@ contains
             cycle
          end if
          row = row_by_hand(m, b, m%requests(i))
-         if (row%kind /= kind) call put_heads(o, m, scales, row%kind, language)
+         if (row%kind == 1 .and. all(m%requests%angle_alone .or. m%requests%kind /= 1)) then
+            if (kind /= row%kind) call put_heads(o, m, scales, 4, language)
+         else if (row%kind /= kind) then
+            call put_heads(o, m, scales, row%kind, language)
+         end if
          kind = row%kind
          if (size(error) > 0) then
             line = row_line(row, m%degrees, scales, merge(0, 2, any(resting(row%links))), error(:, :, i), language)
          else
             line = row_line(row, m%degrees, scales, merge(0, 2, any(resting(row%links))), 0.0_qp*row%value, language)
+         end if
+         if (m%requests(i)%angle_alone) then
+            do k = 0, 2
+               line(name_length + 3*field_length*k + 1:name_length + field_length*(3*k + 2)) = ''
+            end do
          end if
          masked = masked .or. index(line, '?') > 0
          call put(o, line(:name_length + field_length*(6 + row%column(row%columns))))

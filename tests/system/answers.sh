@@ -23,6 +23,19 @@ for deck in four_bar five_bar crank_slider; do
    same "$deck, METHOD DENSE" "$w/newton" "$w/dense"
 done
 
+# The transmission angle of a drawing whose coupler and rocker have axes along their bars, as in the manual: the law of cosines.
+b=$(awk 'BEGIN { printf "%.15f", sqrt(10.25) }')
+c=$(awk 'BEGIN { printf "%.15f", sqrt(7.25) }')
+awk '/^### The transmission angle/ { on = 1 } on && /^```/ { if (inside) exit; inside = 1; next } inside' docs/manual.md > "$w/deck"
+"$kinmat" "$w/deck" > "$w/listing" 2>&1
+equal 'the transmission angle of a drawing' "MIN $(printf %.6f "$(angle "$b" "$c" 3)") MAX $(printf %.6f "$(angle "$b" "$c" 5)")" \
+   "$(extremes "$w/listing" | awk '/^  (MIN|MAX) / { printf "%s%s %s", mark, $1, $2; mark = " " }')"
+sed '/^LINK/s/^\(.\{32\}\).*/\1/' "$w/deck" > "$w/plain.deck"
+"$kinmat" "$w/plain.deck" > "$w/listing" 2>&1
+equal 'without these axes the angle of the pair begins at 0' "MIN 0.000000 MAX $(awk -v a="$(angle "$b" "$c" 3)" \
+   -v b="$(angle "$b" "$c" 5)" 'BEGIN { printf "%.6f", b - a }')" \
+   "$(extremes "$w/listing" | awk '/^  (MIN|MAX) / { printf "%s%s %s", mark, $1, $2; mark = " " }')"
+
 # DENSE ends at a change point: up to there it gives the table of NEWTON. Redundant equations it refuses.
 for method in NEWTON DENSE; do
    with parallelogram_at "$(card EXTREMES ALL)" "$(card METHOD $method)" | sed "s/^TIME .*/$(card TIME 15 '' '' 0.0 15.0)/" \
@@ -52,11 +65,11 @@ equal 'backwards' "$(awk '/^  (MIN-MAX|MAX-MIN|RATIO) / { print $2 }' "$w/small"
 
 # In other units of length and time the numbers have the same digits.
 awk '/^(LINK|POINT) / { head = sprintf("%-32s", substr($0, 1, 32)); x = substr($0, 33, 16) + 0; y = substr($0, 49, 16) + 0
-      printf "%s%-16.6E%-16.6E%s\n", head, x*1e6, y*1e6, substr($0, 65); next } { print }' input/stroke.deck > "$w/large.deck"
+      printf "%s%-16.6E%-16.6E%s\n", head, x*1e9, y*1e9, substr($0, 65); next } { print }' input/stroke.deck > "$w/large.deck"
 "$kinmat" "$w/large.deck" > "$w/listing" 2>&1
 extremes "$w/listing" | grep -v '10[*][*]' > "$w/large"
 extremes expected/stroke.lst > "$w/small"
-same 'a million times as large' "$w/small" "$w/large"
+same 'a billion times as large' "$w/small" "$w/large"
 
 # Polish: the same table.
 with stroke "$(card LANG PL)" > "$w/stroke.deck"

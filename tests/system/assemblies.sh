@@ -17,11 +17,17 @@ done < tests/validation/assemblies.txt
 
 # pasted DECK K: the deck with the LINK and JOINT cards of its assembly K in place of its own
 pasted() {
-   assemblies "$1" | awk -v k="$2" '/^ (ASSEMBLY|MONTAZ) / { on = $2 == k } on && /^(LINK|JOINT) /' > "$w/cards"
+   assemblies "$1" | awk -v k="$2" '/^ (ASSEMBLY|MONTAZ) / { on = $2 == k } on && /^(LINK|JOINT|\*) /' > "$w/cards"
    awk -v cards="$w/cards" '
-      BEGIN { while ((getline line < cards) > 0) { own[substr(line, 1, 16)] = line } }
-      { key = substr(sprintf("%-16s", $0), 1, 16) }
-      key in own { print own[key]; next } { print }' "$1"
+      BEGIN {
+         while ((getline line < cards) > 0) {
+            if (line ~ /^\*/) { own[key] = own[key] "\n" line; continue }
+            key = substr(line, 1, 16); own[key] = line
+         }
+      }
+      /^\*/ { if (!left_out) print; next }
+      { key = substr(sprintf("%-16s", $0), 1, 16); left_out = key in own }
+      left_out { print own[key]; next } { print }' "$1"
 }
 
 # Each assembly, pasted, is the one that a run takes: the deck of one set (the first of the deck of input/).
@@ -40,12 +46,90 @@ taken four_bar 2
 taken crank_slider 2
 taken inverted_slider 2
 taken drawing 2 2
+taken drawn_slider 2
+taken drawn_slider 2 2
+taken drawn_cylinder 2
 taken far_small 2
 taken stephenson_output 2
 taken three_rrr_cranks 2
 taken three_rrr 8
 taken cognates 2
 taken double_parallelogram 1
+
+# Numbers of cards leave a blank between, whatever their size; what has no room has a * card, and the dimensions stay.
+for scale in 0.1 0.003 3e-6 300.0; do
+   awk -v scale=$scale 'BEGIN { n = 1 } n == 2; /^END/ { n++ }' input/drawing.deck | awk -v scale=$scale '
+      /^(LINK|JOINT|POINT) / && substr($0, 33) != "" {
+         printf "%s\n*       %-24s%.12E\n", substr($0, 1, 32), sprintf("%.12E", substr($0, 33, 16)*scale), substr($0, 49, 16)*scale; next }
+      /^END/ { print "ASSEMBLY" } { print }' > "$w/small.deck"
+   assemblies "$w/small.deck" > "$w/small.lst"
+   equal "numbers that touch, $scale" '2 0' "$(awk '
+      /^ ASSEMBLY / { n++ }
+      /^(LINK|JOINT) / && (substr($0, 33, 1) substr($0, 49, 1) substr($0, 65, 1)) !~ /^ *$/ { touch++ }
+      /^\*/ && (substr($0, 9, 1) substr($0, 33, 1) substr($0, 57, 1)) !~ /^ *$/ { touch++ }
+      END { print n, touch + 0 }' "$w/small.lst")"
+   for k in 1 2; do
+      pasted "$w/small.deck" $k > "$w/pasted.deck"
+      equal "pasted, $scale, assembly $k" "$(sed -n "s/^ ASSEMBLY $k   DISTANCE = [0-9.]*  *//p" "$w/small.lst" | sed 's/   CHOSEN.*//')" \
+         "$(assemblies "$w/pasted.deck" | sed -n 's/^ ASSEMBLY 1   DISTANCE = 0.00[0-9]*  *\(.*\)   CHOSEN BY THE ESTIMATE/\1/p')"
+   done
+done
+
+# A link on two parallel guides that agree to rounding: its assembly is there, and named.
+{
+   card GROUND G; card LINK L
+   card POINT P1 G '' -4.27 -3.07; card POINT P2 L '' 2.64 1.02; card POINT P3 G '' -2.83 -1.07; card POINT P4 L '' 3.48 -3.27
+   card PRISM P1 P2 J1 0.7; card PRISM P3 P4 J2 0.7 4.4243267456768
+   card DRIVE SLIDE J1 '' '' 1.0; card AT '' '' '' 0.0; card ASSEMBLY; card END
+} > "$w/guides.deck"
+"$kinmat" --quiet -o "$w/guides.lst" "$w/guides.deck"
+equal 'two guides' '   BLOCK 1: LINK L, ASSEMBLY 1   DISTANCE = 0.2500   DETERMINANTS .   PROVED   CHOSEN BY THE ESTIMATE,' \
+   "$(grep -E '^   BLOCK|^ ASSEMBLY [0-9]|\*\*\*|NONE' "$w/guides.lst" | tr '\n' ',')"
+# summed DECK CARD VALUES...: the column of --summary of the deck, in which R1 of the card takes these values
+summed() {
+   deck=$1
+   varied=$2
+   shift 2
+   awk -v varied="$varied" -v vary="$(card VARY R1 LIST '' "$@")" '{ print } index($0, varied) == 1 { print vary }' "$deck" > "$w/varied.deck"
+   "$kinmat" --quiet --summary "$w/summary" -o "$w/varied.lst" "$w/varied.deck"
+   awk -F , 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "assemblies") k = i } { print $k ";" }' "$w/summary" | tr -d '\n'
+}
+equal 'two guides: --summary' 'assemblies;1;1;' "$(summed "$w/guides.deck" 'DRIVE ' 1.0 2.0)"
+
+# A block that finds no angle has the names of the links that get their places there.
+{
+   card UNITS M DEG S; card GROUND BASE; card LINK L0; card LINK L4; card LINK L3
+   card JOINT J0 BASE L0 2.0 1.0; card POINT P3 BASE '' 3.0 3.0; card POINT Q3 L3 '' '' 3.0; card PRISM P3 Q3 S3 180.0
+   card JOINT J4 L3 L4 3.0 3.0; card POINT P5 L0 '' 2.0 2.0; card POINT Q5 L4 '' 1.0 3.0; card PRISM P5 Q5 S5 135.0
+   card DRIVE ANGLE L0 '' '' 10.0; card AT '' '' '' 0.0; card ASSEMBLY; card END
+} > "$w/slides.deck"
+equal 'a block of slides' '   BLOCK 1: LINKS L4, L3' "$(assemblies "$w/slides.deck" | grep '^   BLOCK')"
+
+# Three parallel cranks of 8 digits: at 5 deg their equations agree, but not in their rates. The run flags it, nothing is proved.
+{
+   card UNITS M DEG S; card GROUND G; for k in C0 C1 C2 ROD; do card LINK $k; done
+   card JOINT A0 G C0 2.4176509E-01 -1.7762218E-01; card JOINT B0 C0 ROD 5.1676257E-01 -1.2704922E+00
+   card JOINT A1 G C1 -7.9325126E-01 -1.5864036E+00; card JOINT B1 C1 ROD -5.1825379E-01 -2.6792736E+00
+   card JOINT A2 G C2 -1.5471722E+00 -2.6125804E+00; card JOINT B2 C2 ROD -1.2721747E+00 -3.7054505E+00
+   card DRIVE ANGLE C0 '' 5.0 30.0; card AT '' '' '' 0.0; card ASSEMBLY; card END
+} > "$w/open.deck"
+equal 'rates that contradict one another' \
+   ' *** LINKS C0, C1, C2, ROD: TOO MANY EQUATIONS, AND THEY CONTRADICT ONE ANOTHER,   NOT PROVED' \
+   "$(assemblies "$w/open.deck" | sed -n 's/.*\(   [NOT ]*PROVED\).*/\1/p; /\*\*\*/p' | tr '\n' ',' | sed 's/,$//')"
+
+# Coupler and rocker of one length, whose ends meet: they turn freely, and the run begins at one of their positions. It is not
+# listed, so how many assemblies there are is not told.
+{
+   card GROUND BASE; card LINK CRANK; card LINK COUPLER '' '' '' '' 1.0; card LINK ROCKER '' '' 4.0 '' 1.0
+   card POINT A0 BASE; card POINT B0 BASE '' 4.0; card POINT A0-CR CRANK; card POINT A-CR CRANK '' 4.0
+   card POINT A-CO COUPLER; card POINT B-CO COUPLER '' 3.0; card POINT B0-RO ROCKER; card POINT B-RO ROCKER '' 3.0
+   card REVOLUTE A0 A0-CR PA0; card REVOLUTE A-CR A-CO PA; card REVOLUTE B-CO B-RO PB; card REVOLUTE B0 B0-RO PB0
+   card DRIVE ANGLE CRANK; card AT '' '' '' 0.0; card ASSEMBLY; card END
+} > "$w/free.deck"
+"$kinmat" --quiet -o "$w/free.lst" "$w/free.deck"
+equal 'a first position that is missed' 1 "$(grep -c '^ \*\*\* ASSEMBLIES MAY BE MISSING: THAT IN WHICH THE RUN BEGINS WAS NOT FOUND' "$w/free.lst")"
+equal 'a first position that is missed: --summary' 'assemblies;;;' "$(summed "$w/free.deck" 'LINK    CRANK' 0.0 0.1)"
+
 # In other units, and with the cards in another order, the same assemblies.
 rows() { assemblies "$1" | awk '/^ ASSEMBLY/ { sub(/DETERMINANTS [-+.0]*/, "") } /^ ASSEMBLY|UNKNOWNS/'; }
 angles() { assemblies "$1" | awk '/^LINK/ { print substr($0, 9, 8), substr($0, 65) }'; }

@@ -40,14 +40,14 @@ for deck in four_bar five_bar crank_slider parallelogram parallelogram_at; do
    centres "$w/listing" | grep -v '^ BRANCH' > "$w/dense"
    same "$deck, METHOD DENSE" "$w/newton" "$w/dense"
 done
-# A million times as large: the same digits, under powers of ten.
+# A billion times as large: the same digits, under powers of ten.
 for deck in poles cardan; do
    awk '/^(LINK|POINT) / { head = sprintf("%-32s", substr($0, 1, 32)); x = substr($0, 33, 16) + 0; y = substr($0, 49, 16) + 0
-         printf "%s%-16.6E%-16.6E%s\n", head, x*1e6, y*1e6, substr($0, 65); next } { print }' input/$deck.deck > "$w/large.deck"
+         printf "%s%-16.6E%-16.6E%s\n", head, x*1e9, y*1e9, substr($0, 65); next } { print }' input/$deck.deck > "$w/large.deck"
    "$kinmat" "$w/large.deck" > "$w/listing" 2>&1
    centres "$w/listing" | grep -v '10[*][*]' > "$w/large"
    centres "expected/$deck.lst" > "$w/small"
-   same "$deck, a million times as large" "$w/small" "$w/large"
+   same "$deck, a billion times as large" "$w/small" "$w/large"
 done
 # In radians: the same but for the directions.
 awk '/^UNITS/ { $0 = "UNITS   M       RAD     S" } /^LINK/ { $0 = sprintf("%s%.13f", substr($0, 1, 64), substr($0, 65)*atan2(1, 1)/45) }

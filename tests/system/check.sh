@@ -49,6 +49,15 @@ equal "the manual, first deck: t = 0" \
    ' TIP        0.2500000   0.0000000                0.000000    1.570000               -9.859600    0.000000' \
    "$(grep '^ TIP' "$BUILD/first.lst" | head -n 1)"
 equal "the manual, first deck: instants" 11 "$(grep -c '^ TIP' "$BUILD/first.lst")"
+# What `make run` prints: the paper's example at 0 and 1 s, whose rows are rows of the closed form of its whole motion; then where
+# that is, and how to see a picture.
+"${MAKE:-make}" --no-print-directory -n BUILD="$BUILD" run 2> /dev/null | tail -n 2 | sh > "$w/run.txt"
+equal 'make run: exit status' 0 $?
+equal 'make run: rows of the whole motion' '10 of 10' "$(grep -E '^ (CRANK|BLOCK|LEVER|ROD|RAM) ' "$w/run.txt" > "$w/rows"
+   echo "$(awk '/^ INSTANT/ { at = $2 } / END OF SET/ { exit } at == 0 || at == 2' expected/yoke.lst | grep -cxFf "$w/rows")" of "$(wc -l < "$w/rows" | tr -d ' ')")"
+equal 'make run: a screen and a half' yes "$([ "$(wc -l < "$w/run.txt")" -le 66 ] && echo yes)"
+equal 'make run: the last line' \
+   " THE WHOLE MOTION: $BUILD/kinmat input/yoke.deck   ITS PICTURE: $BUILD/kinmat --no-listing --svg yoke.svg input/yoke.deck" "$(tail -n 1 "$w/run.txt")"
 # Other programs' results: every number agrees to its precision, except six in which ADAMS is off by so many half units of
 # its last digit. There the closed forms agree with this program.
 compare() {

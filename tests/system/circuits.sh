@@ -162,6 +162,87 @@ equal 'no unknown' " 1       1        +   1           $turns" "$(circuits | sed 
 { with two_loops "$(card CIRCUITS)"; four_bar 2.0 1.5 3.0 4.0 CRANK 57.0 20.0 105.0 57.0; } > "$w/deck"
 equal 'several sets' '4 2' "$("$kinmat" "$w/deck" | awk '/TURNS 1/ { turn++ } / MIN / { limit++ } END { print turn, limit }')"
 
+# Slides to infinity, where a guide comes to be parallel to another. On a crank at the angle p a block in a slot 0.3 beside the
+# origin, and on the line x = 1: y = (sin p + 0.3)/cos p. One circuit on either side of the poles at -90 and 90, each followed until
+# y is 100 lengths: 100 cos p -+ sin p = +-0.3.
+tangent() {
+   card UNITS M DEG S; card GROUND BASE; card LINK CRANK; card LINK BLOCK '' '' 1.0; card LINK SLIDER '' '' 1.0
+   card POINT O BASE; card POINT G BASE '' 1.0; card POINT O1 CRANK; card POINT P CRANK '' 0.0 "$1"; card POINT Q BLOCK
+   card POINT S SLIDER; card REVOLUTE O O1 PO; card REVOLUTE Q S PIN; card PRISM P Q SLOT; card PRISM G S GUIDE 90.0
+   card DRIVE ANGLE CRANK '' "$2" 10.0; card AT '' '' '' 0.0; card CIRCUITS; card END
+}
+poles=$(awk 'function acos(x) { return atan2(sqrt(1 - x*x), x) }
+   BEGIN { far = sqrt(10001); phi = atan2(1, 100); degree = atan2(1, 1)/45
+      printf "%.9E %.9E %.9E %.9E", (phi - acos(-0.3/far))/degree, (acos(0.3/far) - phi)/degree,
+         (phi + acos(-0.3/far))/degree - 360, -(acos(0.3/far) + phi)/degree }')
+tangent 0.3 0.0 > "$w/deck"
+equal 'a slide to infinity' "1 1 $(echo $poles | cut -d' ' -f1,2) 2 2 $(echo $poles | cut -d' ' -f3,4)" "$(circuits |
+   awk '/ MIN / { printf "%s%s %s ", sep, $1, $2 } / AS FAR AS / { for (i = 1; i < NF; i++) if ($i == "AS" && $(i + 1) ~ /E/) x = $(i + 1); printf "%s", x }
+      / MIN / { printf " "; sep = " " }')"
+# Where the first instant is beyond 100 lengths, its circuit is followed to twice as far.
+tangent 0.0 89.9 > "$w/deck"
+far=$(awk 'BEGIN { d = atan2(1, 1)/45; t = sin(89.9*d)/cos(89.9*d); printf "%.9E", atan2(2*t, 1)/d }')
+equal 'an assembly far away' "1 -$far $far" "$(circuits | awk '$4 == 1 { n = $4; x = $(NF - 1) } n && / MAX / { print n, x, $(NF - 1); exit }')"
+
+# A slotted rocker of a four-bar 1, 3.5, 3, 4 moves a ram on a guide at 110 degrees: its slide is infinite where the rocker is
+# parallel to that, in one of the two assemblies of the four-bar twice a turn. Each assembly is on one circuit.
+{ four_bar 1.0 3.5 3.0 4.0 CRANK 0.0 55.0 110.0 0.0 | grep -v '^\(AT\|CIRCUITS\|END\)'
+  card LINK BLOCK; card LINK RAM; card POINT K ROCKER; card POINT KB BLOCK; card POINT G BASE '' 0.0 5.0; card POINT R1 RAM
+  card REVOLUTE KB R1 PIN; card PRISM K KB SLOT; card PRISM G R1 GUIDE 110.0; card AT '' '' '' 0.0; card CIRCUITS; card END; } > "$w/deck"
+equal 'a ram to infinity' '1 2' "$(circuits | awk '/ (MIN|ALL:) / { for (i = 4; $i ~ /^[0-9]+$/; i++) print $i }' | sort -n | xargs)"
+equal 'a ram to infinity: circuits' '3 0' "$(circuits | awk '/ (MIN|ALL:) / { n++ } /NOT FOLLOWED/ { lost++ } END { print n, lost + 0 }')"
+# Two slides at once, in a drawing of five links: never lost.
+{ card UNITS M DEG S; card GROUND BASE; for i in 0 1 2 3 4; do card LINK L$i; done
+  card JOINT J0 BASE L0 2.0 1.0; card JOINT J1 L0 L1 1.0 0.0; card JOINT J2 BASE L2 0.0 1.0; card POINT P3 L1 '' 3.0 3.0
+  card POINT Q3 L3 '' 0.0 3.0; card PRISM P3 Q3 S3 180.0 0.0 0.0; card JOINT J4 L3 L4 3.0 3.0; card POINT P5 L0 '' 2.0 2.0
+  card POINT Q5 L4 '' 1.0 3.0; card PRISM P5 Q5 S5 135.0 0.0 0.0; card POINT P6 L1 '' 2.0 2.0; card POINT Q6 L2 '' 2.0 3.0
+  card PRISM P6 Q6 S6 90.0 0.0 0.0; card DRIVE ANGLE L0 '' 0.0 10.0; card AT '' '' '' 0.0; card CIRCUITS; card RANGE; card END; } > "$w/deck"
+equal 'two slides to infinity' '0 8' "$(circuits | awk '/NOT FOLLOWED/ { lost++ } { n += gsub(/NO LIMIT AS FAR AS/, "") } END { print lost + 0, n + 0 }')"
+equal 'two slides to infinity: RANGE' 1.050000000E+02 "$("$kinmat" "$w/deck" | awk '/^   MAX/ { print $2 }')"
+
+# Groups that share nothing but the crank. Dyads of 1.5 and 3 whose base of 4 is turned by 0 and by 60 degrees end the motion of a
+# crank of 2 at +-a and 60 +- a by the law of cosines: it goes from 60 - a to a on one circuit, which turns back at four dead
+# points. Dyads of 5 and 4.5 that turn fully double the circuits each.
+# groups N: so many of the latter, and CARD... before END
+groups() {
+   card UNITS M DEG S; card GROUND BASE; card LINK CRANK; card JOINT A BASE CRANK 0.0 0.0
+   awk -v turning="$1" 'function card(a, b, c, d, x, y) { printf "%-8s%-8s%-8s%-8s%-16s%s\n", a, b, c, d, x, y }
+      function acos(x) { return atan2(sqrt(1 - x*x), x) }
+      function dyad(k, coupler, rocker, base, psi,   dx, dy, l, to, turn) {
+         psi = psi*atan2(1, 1)/45; dx = base*cos(psi) - 2; dy = base*sin(psi); l = sqrt(dx*dx + dy*dy)
+         to = atan2(dy, dx) + acos((coupler^2 + l*l - rocker^2)/(2*coupler*l))
+         card("LINK", "C" k); card("LINK", "R" k); card("JOINT", "A" k, "CRANK", "C" k, "2.0", "0.0")
+         card("JOINT", "B" k, "C" k, "R" k, sprintf("%.13f", 2 + coupler*cos(to)), sprintf("%.13f", coupler*sin(to)))
+         card("JOINT", "D" k, "R" k, "BASE", sprintf("%.13f", dx + 2), sprintf("%.13f", dy)) }
+      BEGIN { dyad(1, 1.5, 3, 4, 0); dyad(2, 1.5, 3, 4, 60)
+         for (k = 3; k < 3 + turning; k++) dyad(k, 5, 4.5, 4, 31*k) }'
+   shift
+   card DRIVE ANGLE CRANK '' 0.0 10.0; card AT '' '' '' 0.0; printf '%s\n' "$@"; card END
+}
+a=$(angle 2 4 4.5)
+low=$(limit "$(awk -v a="$a" 'BEGIN { printf "%.12f", 60 - a }')")
+high=$(limit "$a")
+circuits=1
+for n in 0 1 2 3; do
+   groups $n CIRCUITS > "$w/deck"
+   equal "groups, $n more" "$circuits $((4*circuits)) $((4*circuits)) $((4*circuits))" "$(circuits | awk -v low="$low" -v high="$high" '
+      / MIN / { n++; circuit = $1; for (i = 4; $i ~ /^[0-9]+$/; i++) assemblies += !seen[$i]++
+         good += $(i + 1) == low && $(i + 4) == high } END { print circuit, n, good, assemblies }')"
+   equal "groups, $n more: dead points" "$((2*circuits)) $((2*circuits))" "$(circuits | awk -v low="$low" -v high="$high" '
+      / DEG   LINKS C1, R1 AT THE LIMIT, IN LINE/ { one += index($0, high) > 0 } / DEG   LINKS C2, R2 AT THE LIMIT, IN LINE/ { two += index($0, low) > 0 }
+      END { print one + 0, two + 0 }')"
+   circuits=$((2*circuits))
+done
+# Eleven of them have 2**11 circuits; a thousand stand there, with a sentence.
+groups 11 CIRCUITS > "$w/deck"
+equal 'groups, too many circuits' '1000 1' "$(circuits | awk '/ MIN / { circuit = $1 }
+   /^ \*\*\* MORE CIRCUITS THAN ARE FOLLOWED: THESE ARE THE FIRST 1000$/ { n++ } END { print circuit, n + 0 }')"
+# A parallelogram among the groups has its change points.
+{ with parallelogram CIRCUITS | grep -v '^\(CIRCUITS\|END\)'; card LINK C9 '' '' 2.0; card LINK R9 '' '' 0.0 4.0
+  card POINT P9 BASE '' 0.0 4.0; card POINT Q9 CRANK '' 2.0; card POINT S9 C9; card POINT T9 C9 '' 5.0; card POINT U9 R9
+  card POINT V9 R9 '' 4.5; card REVOLUTE Q9 S9 X9; card REVOLUTE T9 V9 Y9; card REVOLUTE P9 U9 Z9; card CIRCUITS; card END; } > "$w/deck"
+equal 'groups, one of them a parallelogram' '4 4' "$(circuits | awk '/MOTION CLOSES/ { n++ } /^   CIRCUIT / { meet++ } END { print n + 0, meet + 0 }')"
+
 # No position.
 four_bar 1.0 1.0 1.0 4.0 CRANK 0.0 0.0 0.0 0.0 > "$w/deck"
 found 'no position anywhere' ' CIRCUITS AND BRANCHES, DRIVE ANGLE CRANK

@@ -48,7 +48,7 @@ one_set() {
 
 # tables LISTING: what stands after the heads of the sets; rows LISTING: the rows of numbers among that
 tables() { awk '/^ (INSTANT|CHWILA) 0 / { on = 1 } /^ (END OF SET|KONIEC KOMPLETU) / { on = 0 } on' "$1"; }
-rows() { tables "$1" | grep -E '^ [A-Z0-9-]+ +-?[0-9]+[.]'; }
+rows() { tables "$1" | grep -E '^ [A-Z0-9-]+ +-?[0-9]*[.]'; }
 
 deck M EN > "$w/m.deck"
 
@@ -291,13 +291,16 @@ for option in -o --no-listing --quiet --csv --log --svg --table --plot --check -
    equal "--help tells of $option" found "$(grep -qe "$option" "$w/out" && echo found)"
 done
 equal '--version' 'KINMAT 1.0, REAL64' "$("$kinmat" --version)"
-equal '--ruler' '$NAME---LABEL-A|LABEL-B|LABEL-C|REAL-1---------|REAL-2---------|REAL-3---------|' "$("$kinmat" --ruler)"
+equal '--ruler' '$NAME---LABEL-A|LABEL-B|LABEL-C|REAL-1---------|REAL-2---------|REAL-3---------|' "$("$kinmat" --ruler | head -n 1)"
+equal '--ruler: all cards, and the * card' "$(for name in $("$kinmat" --ruler NOCARD 2>&1 | sed 's/.*CARDS ARE //'); do
+   "$kinmat" --ruler "$name" | sed -n 2p; done)
+*       R1 OF THE CARD ABOVE    R2                      R3" "$("$kinmat" --ruler | sed 1d)"
 equal '--ruler CARD' '$NAME---LABEL-A|LABEL-B|LABEL-C|REAL-1---------|REAL-2---------|REAL-3---------|
 JOINT   PAIR    LINK-I  LINK-J  X               Y' "$("$kinmat" --ruler JOINT)"
 equal '--ruler CARD, in small letters and before the option' "$("$kinmat" --ruler DRIVE)" "$("$kinmat" drive --ruler)"
 equal '--ruler CARD: every card' '' "$(for name in $("$kinmat" --ruler NOCARD 2>&1 | sed 's/.*CARDS ARE //'); do
    "$kinmat" --ruler "$name" | sed -n 2p | grep -q "^$name" || echo "$name"; done)"
-rejected '--ruler with no card' 1 ' *** OPTION --ruler: NO CARD HAS THE NAME x.deck; CARDS ARE TITLE UNITS LANG GROUND LINK POINT REVOLUTE PRISM JOINT DRIVE ADD RISE TOLER TIME AT METHOD PRINT EXTREMES RANGE CIRCUITS POLE CURVE BRANCH VARY ASSEMBLY PROVE END' --ruler x.deck
+rejected '--ruler with no card' 1 ' *** OPTION --ruler: NO CARD HAS THE NAME x.deck; CARDS ARE TITLE UNITS LANG GROUND LINK POINT REVOLUTE PRISM CYLINDER JOINT DRIVE ADD RISE TOLER TIME AT METHOD PRINT EXTREMES RANGE CIRCUITS POLE CURVE BRANCH VARY ASSEMBLY PROVE END' --ruler x.deck
 
 # Refused commands: status 1 or 3, one sentence, no listing.
 rejected 'unknown option' 1 ' *** OPTION --nope IS UNKNOWN; SEE kinmat --help' --nope "$w/m.deck"
@@ -390,7 +393,7 @@ equal '/dev/null may serve for all' 0 $?
 
 # Drives and freedoms.
 { card TITLE 'NO DRIVE'; four_bar 1.0 3.5 3.0 4.0 0.0 0.9 1.9; card TIME 2 '' '' 0.0 2.0; card END; } > "$w/few.deck"
-rejected 'no drive' 1 ' *** E101  SET 1: LINKS CRANK, COUPLER, ROCKER: 1 FREEDOM LEFT, ADD A DRIVE
+rejected 'no drive' 1 ' *** E101  SET 1: LINKS CRANK, COUPLER, ROCKER: 1 FREEDOM LEFT, ADD A DRIVE OR A PAIR
  *** E103  SET 1: W = 12 COORDINATES LESS R = 11 EQUATIONS LEAVE S = 1 DEGREES OF FREEDOM, DRIVES ARE 0' \
    "$w/few.deck"
 { PHI=0.0 RATE=1.0; one_set 1.0 3.5 3.0 4.0 0.0 0.9 1.9; card DRIVE ANGLE ROCKER '' 0.5 1.0 0.0; card END; } > "$w/many.deck"

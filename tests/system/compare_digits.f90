@@ -173,6 +173,9 @@ contains
          do d = decimals, 0, -1
             if (abs(power) <= 18) line = scaled(x, d, power)
             if (abs(power) > 18) line = multiplied(x, d, power)
+            ! A sign takes the place of the zero before nine decimals; a zero has none.
+            if (d == numeral_length - 3 .and. line(:3) == '-0.') line = merge('-'//line(3:), line(2:), &
+               scan(line, '123456789') > 0)
             if (len_trim(line) < numeral_length) exit
          end do
       end if

@@ -65,6 +65,9 @@ equal 'README.md: rows that no closed form has printed' '' "$(while IFS= read -r
    grep -qxF -- "$row" expected/four_bar.lst expected/jarzmowy.lst || echo "$row"; done < "$w/rows")"
 
 equal 'README.md: 150 lines at most' yes "$([ "$(wc -l < README.md)" -le 150 ] && echo yes)"
+# The manual's contents, its first links, are all its chapters, in their order.
+equal "$manual: its contents" "$(sed -n 's/^## //p' "$manual")" \
+   "$(sed '/^Equation numbers/q' "$manual" | grep -o '\[[^]]*\](#' | sed 's/^.\(.*\).(#$/\1/')"
 equal 'README.md: the first command' 1 "$(grep -cE '^ *(sudo )?apt-get .*make run' README.md)"
 
 # The manual has every card and option, and every sentence that the sources can say.

@@ -21,7 +21,7 @@ equal 'tests that cannot be run' '' "$(find tests/system -name '*.sh' ! -perm -u
 equal 'lines over 120 columns' '' "$(awk 'length > 120 { print FILENAME ":" FNR }' $sources)"
 equal 'stop or print outside main' '' \
    "$(grep -nE '^ *((error +)?stop( |$)|print +[^=]*$|write *[(] *[*])' $sources | grep -v '^src/main.f90')"
-equal 'files over 400 lines' '' "$(for file in $sources; do awk 'END { if (NR > 400) print FILENAME }' "$file"; done)"
+equal 'files over 600 lines' '' "$(for file in $sources; do awk 'END { if (NR > 600) print FILENAME }' "$file"; done)"
 equal 'procedures without a head comment' '' "$(awk -f tests/system/heads.awk $sources)"
 printf '   !> Doc.\n   pure function a(x)\n   end function a\n\n   real(wp) function b(x, &\n      y)\n      integer :: x\n' > "$BUILD/order/heads.f90"
 equal 'a procedure without a head comment is found' "$BUILD/order/heads.f90:5: real(wp) function b(x, &" \
@@ -39,8 +39,16 @@ plain_make() { env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL make --no-print-directory
 blanks="$BUILD/with a blank"
 rm -rf "$blanks"
 mkdir -p "$blanks" && cp -R Makefile src tests input "$blanks/" && chmod -R u+w "$blanks" || exit 3
-(cd "$blanks" && plain_make -s FC="${FC:-gfortran}" BUILD=built built/debug/cards.o) > "$BUILD/blanks.txt" 2>&1
+(cd "$blanks" && plain_make FC="${FC:-gfortran}" BUILD=built built/debug/cards.o) > "$BUILD/blanks.txt" 2>&1
 equal 'make below a directory with blanks: status' 0 $?
+# A short line a file; make -s prints none, make V=1 whole commands.
+equal 'make: a line a file' 'FC deck/cards.f90 (debug)' "$(sort -u "$BUILD/blanks.txt" | grep cards)"
+equal 'make: no other line' '' "$(grep -vE '^FC [a-z]+/[a-z_]+[.][fF]90 [(]debug[)]$' "$BUILD/blanks.txt")"
+touch "$blanks/src/deck/cards.f90"
+equal 'make -s prints nothing' '' "$(cd "$blanks" && plain_make -s FC="${FC:-gfortran}" BUILD=built built/debug/cards.o 2>&1)"
+touch "$blanks/src/deck/cards.f90"
+equal 'make V=1 prints whole commands' 1 \
+   "$(cd "$blanks" && plain_make V=1 FC="${FC:-gfortran}" BUILD=built built/debug/cards.o 2>&1 | grep -c -- ' -o built/debug/cards.o src/deck/cards.f90$')"
 equal 'make below a directory with blanks: its object' yes "$([ -s "$blanks/built/debug/cards.o" ] && echo yes)"
 equal 'a build directory with blanks is refused' 1 "$(plain_make -n BUILD="$PWD/a b" all 2>&1 | grep -c ' holds blanks')"
 rm -rf "$blanks"

@@ -5,16 +5,35 @@
 "${MAKE:-make}" --no-print-directory BUILD="$BUILD" DESTDIR="$w" PREFIX=/usr install > "$w/out" 2>&1
 equal 'make install: status' 0 $?
 equal 'make install: directories' 'bin include lib share ' "$(ls "$w/usr" | tr '\n' ' ')"
-equal 'make install: a module for each source but main' "$(find src -name '*.[fF]90' | sed -e 's/.*\///' -e 's/\..*/.mod/' | grep -v '^main[.]' \
+equal 'make install: a module for each source of the library' "$(find src -name '*.[fF]90' | sed -e 's/.*\///' -e 's/\..*/.mod/' | grep -vE '^(main|allocation)[.]' \
    | LC_ALL=C sort)" "$(ls "$w/usr/include/kinmat" | LC_ALL=C sort)"
 "$w/usr/bin/kinmat" input/yoke.deck > "$w/out" 2> "$w/err"
 same 'the installed command' expected/yoke.lst "$w/out"
 
 # The example of docs/ with what is installed, and nothing else.
-(cd "$w" && "${FC:-gfortran}" -fno-lto -fno-use-linker-plugin -Iusr/include/kinmat -o example usr/share/doc/kinmat/example.f90 -Lusr/lib -lkinmat -lklu -llapack -lblas) \
+(cd "$w" && "${FC:-gfortran}" -fno-lto -fno-use-linker-plugin -Iusr/include/kinmat -o example usr/share/doc/kinmat/docs/example.f90 -Lusr/lib -lkinmat -lklu -llapack -lblas) \
    > "$w/err" 2>&1
 equal 'a program with the installed modules: it is built' '' "$(cat "$w/err")"
 equal 'a program with the installed modules' "$("$BUILD/example")" "$("$w/example")"
+equal 'the library leaves malloc to the program' '' "$(nm -g --defined-only "$w/usr/lib/libkinmat.a" 2> /dev/null | grep -E ' (malloc|calloc|realloc)$')"
+
+# Every link of an installed document leads to an installed file.
+documents=$w/usr/share/doc/kinmat
+(cd "$documents" && find . -name '*.md' | LC_ALL=C sort) > "$w/documents"
+equal 'installed documents' './CHANGELOG.md ./README.md ./docs/evidence.md ./docs/manual.md ./docs/many_sets.md ./docs/method.md ./src/README.md ' \
+   "$(tr '\n' ' ' < "$w/documents")"
+while read -r document; do
+   grep -oE '(\]\([^)]*\)|src="[^"]*")' "$documents/$document" | sed -e 's/^](//' -e 's/)$//' -e 's/^src="//' -e 's/"$//' -e 's/#.*//' | sort -u \
+      | while read -r link; do
+         case $link in http*|'') continue ;; esac
+         echo "$link" >> "$w/links"
+         [ -s "$documents/$(dirname "$document")/$link" ] || echo "$document: $link"
+      done
+done < "$w/documents" > "$w/dead"
+equal 'links of installed documents that lead nowhere' '' "$(cat "$w/dead")"
+equal 'links of installed documents are found' yes "$([ "$(wc -l < "$w/links")" -ge 20 ] && echo yes)"
+equal 'the license is installed' yes "$(cmp -s LICENSE "$documents/LICENSE" && echo yes)"
+equal 'the decks are installed' "$(ls input)" "$(ls "$documents/input")"
 
 # The man page has each option of --help, and no fault that its readers find.
 page=$w/usr/share/man/man1/kinmat.1
@@ -23,6 +42,8 @@ equal 'the man page: options are found' yes "$([ "$(wc -l < "$w/options")" -ge 1
 equal 'the man page: options it lacks' '' "$(while read -r option; do tr -d '\\' < "$page" | grep -qF -- "fB$option" || echo "$option"; done < "$w/options")"
 equal 'the man page: its sections' 'NAME SYNOPSIS DESCRIPTION OPTIONS EXIT STATUS SEE ALSO ' "$(sed -n 's/^[.]SH //p' "$page" | tr '\n' ' ')"
 equal 'the man page: exit statuses' '0 1 2 3 ' "$(sed -n '/^.SH EXIT/,$p' "$page" | grep -E '^[0-9]$' | tr '\n' ' ')"
+manual=$(sed -n 's/.*fI\(.*manual[.]md\).*/\1/p' "$page")
+equal 'the man page: the manual where it is' "/usr/share/doc/kinmat/docs/manual.md there" "$manual $([ -s "$w$manual" ] && echo there)"
 equal 'the man page: lines over 120 columns' '' "$(awk 'length > 120' "$page")"
 read_page() { if command -v "$1" > /dev/null; then equal "the man page: $1" '' "$("$@" "$page" 2>&1 > /dev/null)"; else echo "skipped: the man page in $1 (not installed)"; fi; }
 read_page groff -man -Tascii -ww -z

@@ -194,6 +194,67 @@ for one in 'INT 130 long' 'TERM 143 long' 'TERM 143 polish' 'INT 130 polish debu
    rm -f stop[.-]*
 done
 
+# A signal that comes anywhere, mostly between two sets: the last line says after which, for each number of processes.
+{ card GROUND BASE; card LINK CRANK; card JOINT O BASE CRANK; card DRIVE ANGLE CRANK '' 1.0; card TIME 2 '' '' 0.0 1.0; echo END; } > one.deck
+awk -v count=20000 '{ text = text $0 "\n" } END { for (i = 0; i < count; i++) printf "%s", text }' one.deck > sets
+for pause in 0 0.02 0.05 0.08; do
+   for jobs in 1 2; do
+      rm -f stop.lst
+      env --default-signal=INT,TERM "$kinmat" sets --jobs $jobs -o stop.lst 2> err &
+      pid=$!
+      waited=0
+      until [ -s stop.lst ] || [ $waited -ge 1000 ]; do sleep 0.01; waited=$((waited + 1)); done
+      sleep $pause
+      kill -TERM $pid
+      wait $pid 2> /dev/null
+      told "SIGTERM between sets, $jobs processes, $pause s" 143 $? ''
+      equal "SIGTERM between sets, $jobs processes, $pause s: the last line" yes "$(tail -n 1 stop.lst | awk -v set="$(grep -c '^ END OF SET' stop.lst)" \
+         '/^ [*][*][*] THE RUN WAS BROKEN OFF AFTER SET [0-9]+$/ && $NF == set { print "yes" }
+          /^ [*][*][*] THE RUN WAS BROKEN OFF AFTER INSTANT [0-2]$/ { print "yes" }')"
+   done
+done
+
+# Too little memory: the sentence and status 3, whatever the limit is, from the least one under which the program begins.
+head -n 18000 sets > memory.deck
+# limited LIMIT ARGUMENT...: the command with so many KB of memory; its status
+limited() { (ulimit -v "$1"; shift; exec "$kinmat" "$@" > out 2> err); echo $?; }
+least=4000
+most=4000000
+while [ $((most - least)) -gt 50 ]; do
+   middle=$(((least + most)/2))
+   if [ "$(limited $middle --version)" -eq 0 ]; then most=$middle; else least=$middle; fi
+done
+for arguments in '--check --jobs 1' '--jobs 2'; do
+   for more in 200 1000 3000 6000 9000 12000 15000 300000; do
+      echo "$(limited $((most + more)) memory.deck $arguments) $(cat err)"
+   done > statuses
+   equal "little memory, $arguments: status 0 or the sentence" '' "$(grep -vE '^(0 |3  [*][*][*] NOT ENOUGH MEMORY FOR THE DECK)$' statuses)"
+   equal "little memory, $arguments: with much there is enough" '0 ' "$(tail -n 1 statuses)"
+   equal "little memory, $arguments: some are too little" yes "$([ "$(grep -c '^3 ' statuses)" -ge 3 ] && echo yes)"
+done
+
+# Tables of two sets: /dev/null takes both, another device or a pipe none, and nothing is made.
+head -n 12 sets > two
+mkfifo queue
+"$kinmat" two --table /dev/null > out 2> err
+told 'tables of two sets to /dev/null' 0 $? ''
+for name in queue /dev/stdout /dev/tty; do
+   "$kinmat" two --no-listing --table $name > out 2> err
+   told "tables of two sets to $name" 1 $? " *** FILE $name TAKES THE TABLE OF ONE SET: CHOOSE THE K-TH OF 2 WITH --sets K/2"
+done
+equal 'tables of two sets: no file is made' '' "$(ls queue-* /dev/null-* /dev/stdout-* /dev/tty-* 2> /dev/null)"
+
+# A line without an end.
+long_line=' IS NOT A DECK: LINE 1 HAS MORE THAN 10000000 COLUMNS'
+short 'no end' "$kinmat" < /dev/zero > out
+told 'a line without an end' 1 $? " *** STANDARD INPUT$long_line"
+head -c 10000001 /dev/zero | tr '\0' ' ' > long_line
+"$kinmat" long_line > out 2> err
+told 'a line of too many columns' 1 $? " *** FILE long_line$long_line"
+{ head -c 9999900 /dev/zero | tr '\0' ' '; echo; cat two; } > blank_line
+"$kinmat" blank_line > out 2> err
+told 'a line of many blanks' 0 $? ''
+
 # Decks that cannot be read.
 "$kinmat" /proc/self/mem > out 2> err
 told 'a read error' 3 $? ' *** FILE /proc/self/mem CANNOT BE READ (INPUT/OUTPUT ERROR)'

@@ -122,14 +122,14 @@ for deck in $(grep -L '^VARY' input/*.deck); do
    "$kinmat" "$w/$name.deck" --svg "$w/$name.all.svg" --csv "$w/$name.csv" > "$w/$name.lst" 2> "$w/$name.err"
    for svg in "$w/$name.svg" "$w/$name.all.svg"; do
       equal "$svg: joints, and how many" "$(grep -cE '^(REVOLUTE|JOINT)' "$deck")" "$(joints "$w/$name.deck" "$w/$name.csv" "$svg")"
-      equal "$svg: blocks on guides" "$(grep -c '^PRISM' "$deck")" "$(grep -c 'class="block"' "$svg")"
+      equal "$svg: blocks on guides" "$(grep -cE '^(PRISM|CYLINDER)' "$deck")" "$(grep -c 'class="block"' "$svg")"
    done
    svg=$w/$name.moving.svg
    equal "$svg: well-formed" '' "$(tags "$svg")"
    xml "$svg"
    equal "$svg: neither script nor reference" '' "$(grep -nE '<script|href|url[(]|<image|on[a-z]+=' "$svg")"
    equal "$svg: numbers" '' "$(grep -niE '[" ,;](nan|inf)|[*]{3}' "$svg" | grep -v '<style\|{')"
-   equal "$svg: blocks on guides" "$(grep -c '^PRISM' "$deck")" "$(grep -c 'class="block"' "$svg")"
+   equal "$svg: blocks on guides" "$(grep -cE '^(PRISM|CYLINDER)' "$deck")" "$(grep -c 'class="block"' "$svg")"
    equal "$svg: joints in motion" "$(grep -cE '^(REVOLUTE|JOINT)' "$deck") 1" "$(moving "$w/$name.deck" "$w/$name.csv" "$svg")"
    equal "$svg: at most 2 MB" yes "$([ "$(wc -c < "$svg")" -le 2000000 ] && echo yes)"
 done
@@ -241,11 +241,43 @@ equal 'one instant: no motion' '1 1 0' "$(film "$w/one.svg") $(grep -c '<animate
 equal 'no position: well-formed' '' "$(tags "$w/none.svg")"
 equal 'no position: pale' yes "$(grep -q '<animate attributeName="opacity" calcMode="discrete".*[";]0.2[";]' "$w/none.svg" && echo yes)"
 
+# A law that goes to infinity between two instants: no frame is at its pole, all other outputs are there, and beyond it the
+# link has no position. Where the power is high values beside the pole are beyond the range of reals.
+for steps in 1 5 7; do
+   for power in -1.0 -90.0; do
+      { card GROUND BASE; card LINK CRANK; card JOINT O BASE CRANK; card DRIVE ANGLE CRANK; card ADD POWER '' '' 1.0 $power
+         card POINT P CRANK '' 1.0; card PRINT POINTS P; card TIME $steps '' '' -1.0 1.0; card END; } > "$w/pole.deck"
+      "$kinmat" "$w/pole.deck" --animate "$w/pole.moving.svg" --svg "$w/pole.svg" --csv "$w/pole.csv" --log "$w/pole.log" \
+         > "$w/out" 2> "$w/err"
+      equal "a law over infinity, t**$power, $steps steps: status" 2 $?
+      equal "a law over infinity, t**$power, $steps steps: well-formed" '' \
+         "$(tags "$w/pole.moving.svg"; tags "$w/pole.svg"; grep -hniE '[" ,;=](nan|inf)' "$w/pole.moving.svg" "$w/pole.svg" | grep -v '<style\|{')"
+      xml "$w/pole.moving.svg"
+      equal "a law over infinity, t**$power, $steps steps: the other outputs" "$((steps + 2)) $((steps + 3)) 1" \
+         "$(wc -l < "$w/pole.csv" | tr -d ' ') $(wc -l < "$w/pole.log" | tr -d ' ') $(grep -c '^ END OF SET' "$w/out")"
+      equal "a law over infinity, t**$power, $steps steps: frames on either side" 'odd 1' \
+         "$(film "$w/pole.moving.svg" | awk '{ print ($1 % 2 ? "even" : "odd"), ($1 > 350) }')"
+   done
+done
+
 # A title and names that XML does not take as they are.
 sed -e '/^END/q' -e 's/^TITLE.*/TITLE   A < B \& "C"/' input/four_bar.deck > "$w/title.deck"
 "$kinmat" "$w/title.deck" --svg "$w/title.svg" > "$w/out" 2> "$w/err"
 equal 'a title with characters of XML' '' "$(tags "$w/title.svg")"
 equal 'a title with characters of XML: text' 2 "$(grep -c 'A &lt; B &amp; &quot;C&quot;' "$w/title.svg")"
+{ card TITLE "'<&>" '"'; card UNITS '<&' DEG '"&>'; card GROUND "'BASE"; card LINK '<&'; card LINK 'C"O'; card LINK '>RO&LT;'
+   card JOINT '&A0' "'BASE" '<&' 0.0 0.0; card JOINT '<A' '<&' 'C"O' 0.0 1.0; card JOINT "B'>" 'C"O' '>RO&LT;' 3.0 2.5
+   card JOINT '"B0' '>RO&LT;' "'BASE" 4.0; card POINT '"<C&>"' 'C"O' '' 1.0 2.0; card DRIVE ANGLE '<&' '' '' 30.0
+   card TIME 3 '' '' 0.0 1.0; card PRINT LINKS; card PRINT POINTS; card PRINT PAIRS; card POLE "'BASE" 'C"O'; card CURVE '"<C&>"'
+   card CIRCUITS; card END; } > "$w/names.deck"
+"$kinmat" "$w/names.deck" --svg "$w/names.svg" --animate "$w/names.moving.svg" --circuits "$w/names.circuits.svg" > "$w/out" 2> "$w/err"
+equal 'names with characters of XML: status' 0 $?
+for svg in "$w/names.svg" "$w/names.moving.svg" "$w/names.circuits.svg"; do
+   equal "$svg: names with characters of XML" '' "$(tags "$svg")"
+   xml "$svg"
+done
+equal 'names with characters of XML: text' yes "$(grep -q 'data-drive="ANGLE &lt;&amp;"' "$w/names.circuits.svg" &&
+   grep -q 'data-link="&gt;RO&amp;LT;"' "$w/names.moving.svg" && grep -q '>&quot;&lt;C&amp;&gt;&quot;<' "$w/names.svg" && echo yes)"
 
 cp input/four_bar.deck "$w/own.deck"
 for option in --svg --animate; do

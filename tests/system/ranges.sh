@@ -87,15 +87,40 @@ for method in NEWTON DENSE; do
    with parallelogram_at "$(card RANGE)" "$(card METHOD $method)" > "$w/deck"
    range "a parallelogram, $method" ' ANGLE CRANK
    ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS 1
-   CHANGE POINTS PASSED 2'
+   CHANGE POINTS ON THE WAY 2'
 done
 # So it does from one of them, where its velocities are not unique: the motion on either branch closes after a turn.
 for method in NEWTON DENSE; do
    four_bar 2.0 4.0 2.0 4.0 CRANK 180.0 0.0 180.0 180.0 > "$w/deck"
    range "a parallelogram at its change point, $method" ' ANGLE CRANK
    ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS 1
-   CHANGE POINTS PASSED 2'
+   CHANGE POINTS ON THE WAY 2'
 done
+# The line at the end of a set counts on the steps to instants that were found, RANGE on its way: a landing gear passes a change
+# point before its limit, with no instant between.
+{ card UNITS MM DEG S; card GROUND WING; for link in LEG BRACE1 BRACE2 CYL ROD; do card LINK $link; done
+  card JOINT O WING LEG 0.0 0.0; card JOINT B LEG BRACE1 0.0 -700.0; card JOINT K BRACE1 BRACE2 330.0 -330.0
+  card JOINT C WING BRACE2 700.0 0.0; card JOINT D WING CYL 450.0 60.0; card JOINT E LEG ROD 0.0 -250.0
+  card POINT DC CYL '' 450.0 60.0; card POINT ER ROD '' 0.0 -250.0; card PRISM DC ER PISTON -145.437612 0.0 0.0
+  card DRIVE SLIDE PISTON '' 546.44304369 -50.0; card TIME 8 '' '' 0.0 8.0; card RANGE; card END; } > "$w/deck"
+equal 'a landing gear' '   CHANGE POINTS ON THE WAY 1
+ BRANCH:  INSTANTS FOLLOWED 6, CHANGE POINTS PASSED 0, WITHOUT CERTIFICATE 0' "$("$kinmat" "$w/deck" | grep 'CHANGE POINTS')"
+sed "s/^RANGE/&\n$(card LANG PL)/" "$w/deck" > "$w/polish"
+equal 'a landing gear, in Polish' '   PUNKTY ZMIANY NA DRODZE 1' "$("$kinmat" "$w/polish" | grep 'NA DRODZE')"
+
+# A slide goes to infinity where a slot is parallel to a guide at the angle ALPHA: from ALPHA - 180 to ALPHA exactly, whether an
+# instant of the way along the drive, every 5 degrees, is there, just before or just behind; a run that lands there has its limit.
+for alpha in 90 90.00001 89.99999 90.001 89.999 90.1 87.3; do
+   { card UNITS M DEG S; card GROUND BASE; card LINK CRANK; card LINK BLOCK '' '' 1.0; card LINK SLIDER '' '' 1.0
+     card POINT O BASE; card POINT G BASE '' 1.0; card POINT O1 CRANK; card POINT P CRANK '' 0.0 0.3; card POINT Q BLOCK
+     card POINT S SLIDER; card REVOLUTE O O1 PO; card REVOLUTE Q S PIN; card PRISM P Q SLOT; card PRISM G S GUIDE $alpha.0
+     card DRIVE ANGLE CRANK '' 0.0 10.0; card TIME 12 '' '' 0.0 12.0; card RANGE; card END; } | sed 's/\([.][0-9]*\)[.]0/\1/' > "$w/deck"
+   range "a slide to infinity, $alpha" " ANGLE CRANK
+   MIN  $(limit "$(awk "BEGIN { printf \"%.12f\", $alpha - 180 }")") DEG   LINK SLIDER AT THE LIMIT
+   MAX  $(limit $alpha) DEG   LINK SLIDER AT THE LIMIT"
+   equal "a run to infinity, $alpha" "$(limit "$alpha")" "$("$kinmat" "$w/deck" | sed -n 's/.*LIMIT OF MOTION.* = \(.*\) DEG/\1/p')"
+done
+
 # Each of the two cranks of a five-bar alone.
 for method in NEWTON DENSE; do
    with five_bar "$(card RANGE)" "$(card METHOD $method)" > "$w/deck"

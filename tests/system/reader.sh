@@ -21,9 +21,10 @@ for deck in $(grep -L '^VARY' input/*.deck); do
    read_one "$name" "expected/$name.lst"
 done
 # Powers of ten of each table, in Polish, beyond limits; places of sizes that a plain form has no room for; drives of every
-# kind, more than there is room for, units too long for their columns.
+# kind, more than there is room for, units too long for their columns. A slide and times so large that they have powers.
 for name in two_sizes estimate_of_twenty_links cusp mixed_drives; do
-   "$BUILD/kinmat" --csv "$w/$name.csv" "tests/system/decks/$name.deck" > "$w/$name.lst" 2> "$w/err"
+   sed -e '/^DRIVE   SLIDE   GUIDE-X/s/5.0E5/5.0E8/' -e '/^TIME/s/1.0E6/1.0E7/' "tests/system/decks/$name.deck" > "$w/$name.deck"
+   "$BUILD/kinmat" --csv "$w/$name.csv" "$w/$name.deck" > "$w/$name.lst" 2> "$w/err"
    read_one "$name" "$w/$name.lst"
 done
 
@@ -68,7 +69,7 @@ fault 'a line of units left out' four_bar $e/four_bar.lst '!n && /M\/S\*\*2/ { n
 fault 'the unit of the time' four_bar $e/four_bar.lst '/^ INSTANT 3 / { sub(/ S  /, " H  ") } 1' 'CANNOT BE READ: '
 fault 'the value of a drive' four_bar $e/four_bar.lst '/^ INSTANT 3 / { sub(/0\.0+ DEG/, "1.000000 DEG") } 1' 'CANNOT BE READ: '
 fault 'the unit of a drive' four_bar $e/four_bar.lst '/^ INSTANT 3 / { sub(/DEG/, "RAD") } 1' 'CANNOT BE READ: '
-fault 'the power of ten of a drive' mixed_drives "$w/mixed_drives.lst" '/SLIDE GUIDE-X/ { sub(/10\*\*3 /, "") } 1' 'CANNOT BE READ: '
+fault 'the power of ten of a drive' mixed_drives "$w/mixed_drives.lst" '/SLIDE GUIDE-X/ { sub(/10\*\*6 /, "") } 1' 'CANNOT BE READ: '
 fault 'a drive left out' excavator $e/excavator.lst '/^ INSTANT 3 / { sub(/   SLIDE CYL-3 .*/, "") } 1' 'CANNOT BE READ: '
 fault 'a slide in the column of angles' yoke $e/yoke.lst '
 !n && /^ SLOT/ { sub(/ [0-9.]+                        /, "                        &"); n = 1 }

@@ -1,6 +1,6 @@
 # awk -v change=CHANGE [-v csv=FILE -v lst=FILE] -v map=FILE -f relation_deck.awk DECK: the deck, changed. CHANGE is
-#    whole      all results are asked for, in English, a JOINT card as two POINT cards and a REVOLUTE card: to this deck come the
-#               others
+#    whole      all results are asked for, in English, a JOINT card as two POINT cards and a REVOLUTE card, numbers that are as
+#               drawn typed in, and a CYLINDER card as a PRISM card: to this deck come the others
 #    3, 7       so many times the steps
 #    turned     the cards of each set in the opposite order
 #    moved      by (3, -2)
@@ -183,7 +183,45 @@ function put_joint(  first, second, x1, x2) {
    put_card("REVOLUTE", first, second, a)
 }
 
-function change_card(  n) {
+# The numbers of the PRISM, CYLINDER or DRIVE card number k in hand that are as drawn: only in a set with JOINT cards. The place
+# of each point in the drawing is in `where`, its link in `link_of`.
+function find_places(  k, phi) {
+   joints = 0
+   for (k = 1; k <= n_cards; k++) {
+      take(k)
+      if (name == "JOINT") { joints++; link_of[a] = rests[b] ? c : b; where[a, 1] = x[1]; where[a, 2] = x[2] }
+      if (name != "POINT") continue
+      link_of[a] = b; phi = drawn[b, 3]*unit
+      where[a, 1] = drawn[b, 1] + x[1]*cos(phi) - x[2]*sin(phi); where[a, 2] = drawn[b, 2] + x[1]*sin(phi) + x[2]*cos(phi)
+   }
+   for (k = 1; k <= n_cards; k++) {
+      take(k)
+      if (name == "CYLINDER") {
+         guide_p[c] = a; guide_q[c] = b
+         theta[c] = atan2(where[b, 2] - where[a, 2], where[b, 1] - where[a, 1])
+      }
+      if (name == "PRISM") { guide_p[c] = a; guide_q[c] = b; theta[c] = (drawn[link_of[a], 3] + x[1])*unit }
+   }
+}
+function draw(k,  dx, dy) {
+   if (name == "PRISM" || name == "CYLINDER") {
+      dx = where[b, 1] - where[a, 1]; dy = where[b, 2] - where[a, 2]
+      if (name == "CYLINDER") x[1] = theta[c]/unit - drawn[link_of[a], 3]
+      if (name == "PRISM" && !is_given(2)) x[2] = dx*sin(theta[c]) - dy*cos(theta[c])
+      if (name == "CYLINDER" || !is_given(3)) x[3] = drawn[link_of[b], 3] - drawn[link_of[a], 3]
+      card = sprintf("%-8s%s", "PRISM", substr(card, 9)); name = "PRISM"
+   }
+   if (name != "DRIVE" || is_given(1)) return
+   for (k++; cards[k] ~ /^(ADD|RISE|TOLER)/; k++) if (cards[k] ~ /^ADD     TABLE/) return
+   if (a == "ANGLE") x[1] = drawn[b, 3]
+   if (a == "RELANGLE") x[1] = drawn[c, 3] - drawn[b, 3]
+   if (a == "X" || a == "Y") x[1] = where[b, a == "X" ? 1 : 2]
+   if (a == "SLIDE") x[1] = (where[guide_q[b], 1] - where[guide_p[b], 1])*cos(theta[b]) \
+      + (where[guide_q[b], 2] - where[guide_p[b], 2])*sin(theta[b])
+}
+
+function change_card(k,  n) {
+   if (change == "whole" && joints && name ~ /^(PRISM|CYLINDER|DRIVE)$/) draw(k)
    n = name ~ /^(POINT|TIME)$/ || name == "ADD" && a != "HARMONIC" ? 2 : name == "BRANCH" ? 1 : 3
    if (change == "whole" && name ~ /^(PRINT|LANG|EXTREMES|RANGE|TOLER|POLE|CURVE|PROVE|CIRCUITS)$/) return
    if (change == "whole" && name == "JOINT") { put_joint(); return }
@@ -228,7 +266,8 @@ BEGIN { if (csv != "") read_results() }
       if (name ~ /^(GROUND|LINK)$/) { rests[a] = name == "GROUND"; for (k = 1; k <= 3; k++) drawn[a, k] = x[k] }
    }
    if (change == "axes") choose_axes()
-   for (i = 1; i <= n_cards; i++) { take(i); change_card() }
+   if (change == "whole") find_places()
+   for (i = 1; i <= n_cards; i++) { take(i); change_card(i) }
    if (change == "beside") put_companion()
    if (change ~ /^(middle|back)$/) put_instants()
    if (change == "whole") put("PRINT   ALL")

@@ -2,16 +2,15 @@
 # Tables: of every deck of input/ one a set, whose cells are those of the CSV; what is refused.
 . tests/counting.sh
 
-# cells TABLE CSV SET: what is wrong in the table of a set; then how many cells the CSV has, those
-# counted that a row leaves out since another one before them does not exist
+# cells TABLE CSV SET: what is wrong in the table of a set; then how many cells of the CSV it has. A row has all columns, and
+# NaN where the cell of the CSV is empty.
 cells() { awk -F, -v set="$3" '
    FILENAME == ARGV[1] && FNR == 1 { columns = NF; for (i = 1; i <= NF; i++) head[i] = $i; if (/ /) print "blanks in the heading"
       for (i = 1; i <= NF; i++) if (seen[$i]++) print "twice: " $i; next }
    FILENAME == ARGV[1] {
       rows++
-      if (NF > columns || gsub(/, /, ",") != NF - 1 || / /) print "row " rows
+      if (NF != columns || / /) print "row " rows
       for (i = 1; i <= NF; i++) table[rows, i] = $i
-      length_of[rows] = NF
       at[$1] = rows
       next
    }
@@ -50,9 +49,9 @@ cells() { awk -F, -v set="$3" '
          for (r = 1; r <= rows; r++) {
             if (!((r, kind, name) in has)) continue
             wanted = csv[r, kind, name, word]
-            if (i <= length_of[r]) { found++; if (table[r, i] != wanted) print head[i] " in row " r ": " table[r, i] " is not " wanted }
-            if (i == length_of[r] + 1 && wanted != "") print "row " r " ends before " wanted
-            if (i > length_of[r] && wanted != "") found++
+            if (wanted != "") found++
+            else wanted = "NaN"
+            if (table[r, i] != wanted) print head[i] " in row " r ": " table[r, i] " is not " wanted
          }
       }
       print found + 0
@@ -75,10 +74,39 @@ done
 "$kinmat" input/four_bar.deck --sets 2/2 --table - > "$w/out"
 same 'one set of two, on standard output' "$w/four_bar.table-2.csv" "$w/out"
 
+# A four-bar that cannot go on after instant 2, a wheel that can, and two drives of one name: each row has every column, NaN
+# where a value is missing, and no name stands twice.
+{
+   card UNITS M DEG S; card GROUND BASE
+   for link in CRANK COUPLER ROCKER WHEEL; do card LINK $link; done
+   card JOINT A0 BASE CRANK 0.0 0.0; card JOINT A CRANK COUPLER 2.0 0.0; card JOINT B COUPLER ROCKER 3.0 1.5
+   card JOINT B0 ROCKER BASE 4.0 0.0; card JOINT W0 BASE WHEEL 6.0 0.0
+   for link in CRANK WHEEL WHEEL; do card DRIVE ANGLE $link '' 0.0 30.0; done
+   card POINT RIM WHEEL '' 7.0 0.0; card TIME 4 '' '' 0.0 4.0
+   card PRINT POINTS B; card PRINT POINTS RIM; card END
+} > "$w/missing.deck"
+"$kinmat" --no-listing --table "$w/missing.csv" "$w/missing.deck"
+equal 'what is missing: status' 2 $?
+equal 'what is missing: names of columns' \
+   't,ANGLE.CRANK,ANGLE.WHEEL,ANGLE.WHEEL.2,B.x,B.y,RIM.x,RIM.y,B.vx,B.vy,RIM.vx,RIM.vy,B.ax,B.ay,RIM.ax,RIM.ay' "$(head -n 1 "$w/missing.csv")"
+equal 'what is missing: a row' '3.0000000000000000E+000,9.0000000000000000E+001,9.0000000000000000E+001,9.0000000000000000E+001,NaN,NaN' \
+   "$(sed -n 5p "$w/missing.csv" | cut -d, -f1-6)"
+equal 'what is missing: cells of a row' '16 16 16 16 16 16' "$(awk -F, '{ print NF }' "$w/missing.csv" | xargs)"
+equal 'what is missing: numbers of the last row' 4,6 "$(awk -F, 'NR == 6 { for (i = 1; i <= NF; i++) n[$i == "NaN"]++; print n[0] - 6 "," n[1] }' "$w/missing.csv")"
+sed '/DRIVE   ANGLE   CRANK/s/ 0.0 / 120.0 /' "$w/missing.deck" > "$w/beside.deck"
+"$kinmat" --no-listing --table "$w/beside.csv" --plot "$w/plot_beside" "$w/beside.deck"
+sed -e '/DRIVE   ANGLE   WHEEL/a\
+VARY    R2      LIST            30.0            20.0' -e '/^PRINT/d' "$w/missing.deck" | sed '/^END/i\
+RANGE' > "$w/vary.deck"
+"$kinmat" --no-listing --summary "$w/summary.csv" "$w/vary.deck" 2> "$w/err"
+equal 'a summary: no column has the name of another one' '' "$(head -n 1 "$w/summary.csv" | tr , '\n' | sort | uniq -d)"
+equal 'a summary: the second drive of a name' 'ANGLE.WHEEL.RATE,ANGLE.WHEEL.RATE.2,range.min.ANGLE.WHEEL,range.min.ANGLE.WHEEL.2' \
+   "$(head -n 1 "$w/summary.csv" | tr , '\n' | grep '^[AR].*RATE\|range.min.*WHEEL' | paste -sd,)"
+
 # --plot: the table, and a script that gnuplot runs from any directory. A picture for time and each drive, of five rows of
 # the listing each. Gaps where the motion has no values; where no instant has any, empty panels.
 sed -e '/^END/q' -e 's/^\(POINT   B-RO    ROCKER  \).*/\1        0.1/' input/four_bar.deck > "$w/nowhere.deck"
-sed -e '/^END/q' -e "s/^TITLE.*/TITLE   A'S \"B\" {x}_2/" -e "s/^\(.*\)CRANK  /\1CRANK' /" input/four_bar.deck > "$w/quotes.deck"
+sed -e '/^END/q' -e "s/^TITLE.*/TITLE   'A'S \"B\" {x}_2 \`touch c\` \\\\n'/" -e "s/^\(.*\)CRANK  /\1CRANK' /" input/four_bar.deck > "$w/quotes.deck"
 for run in 'four_bar 2 5 1' 'yoke 2 14 12' 'xy_table 1 12 4' 'scott_russell_at 1 2 2' 'nowhere 1 2 1' 'quotes 1 2 1'; do
    set -- $run
    deck=input/$1.deck
@@ -102,19 +130,82 @@ if command -v gnuplot > /dev/null; then
       done
       equal "gnuplot, $1: pictures" "$2" "$(ls "$w/plot_$1"/*.svg | wc -l | tr -d ' ')"
    done
+   equal 'gnuplot: a title as it stands' "'A'S \"B\" {x}_2 \`touch c\` \\n'" \
+      "$(sed -n 's/.*<text>\(.*touch.*\)<\/text>.*/\1/p' "$w/plot_quotes/time.svg")"
+   equal 'gnuplot: names in a picture' yes "$(grep -q "<text>CRANK'.vphi<" "$w/plot_quotes/time.svg" && echo yes)"
    mv "$w/plot_scott_russell_at/time.svg" "$w/time.svg"
    (cd "$w/plot_scott_russell_at" && gnuplot plot.gp > /dev/null 2>&1)
    same 'gnuplot, started beside the script' "$w/time.svg" "$w/plot_scott_russell_at/time.svg"
    # The table as it is: 39 instants of the four-bar, those with velocities of a mechanism in its change points.
-   points() { gnuplot -e "set table '$w/points'; plot '$1' using $2; unset table" > /dev/null 2>&1; grep -c ' i$' "$w/points"; }
+   points() { gnuplot -e "set datafile separator ','; set table '$w/points'; plot '$1' using $2; unset table" > /dev/null 2>&1
+      grep -c ' i$' "$w/points"; }
    equal 'gnuplot reads a table: all rows' 39 "$(points "$w/four_bar.table-1.csv" 2:5)"
    equal 'gnuplot reads a table: positions' "$(sed 1d "$w/scott_russell_at.table.csv" | wc -l | tr -d ' ')" \
       "$(points "$w/scott_russell_at.table.csv" 1:5)"
    equal 'gnuplot reads a table: velocities' "$(awk -F, '$4 == "POINT" && $15 == ""' "$w/scott_russell_at.csv" | wc -l | tr -d ' ')" \
       "$(points "$w/scott_russell_at.table.csv" 1:23)"
+   # Where the first quantity of a panel has no value at all, the others are drawn; a gap is where a value is missing.
+   equal 'gnuplot draws what is known beside what is not' '1 5' \
+      "$(gnuplot "$w/plot_beside/plot.gp" 2> "$w/err"; grep -c '<text>RIM.y' "$w/plot_beside/time.svg") $(points "$w/beside.csv" 1:8)"
+   equal 'gnuplot: a gap' 3 "$(points "$w/missing.csv" '"t":"B.x"')"
 else
    echo 'skipped: pictures of gnuplot (not installed)'
 fi
+
+# A drawing without a PRINT card: in the listing alone all points and, of links without axes of their own, the angle.
+# drawing CARD...: a four-bar far from the origin, its crank of length 1 at 30 t degrees, with these cards before END
+drawing() { card UNITS M DEG S; card GROUND BASE; card LINK CRANK; card LINK COUPLER; card LINK ROCKER '' '' $rocker
+   card JOINT A0 BASE CRANK 10.0 10.0; card JOINT A CRANK COUPLER 11.0 10.0; card JOINT B COUPLER ROCKER 13.0 12.5
+   card JOINT B0 ROCKER BASE 14.0 10.0; card POINT C COUPLER '' 12.0 12.0; card DRIVE ANGLE CRANK '' '' 30.0
+   card TIME 4 '' '' 0.0 4.0; for more in "$@"; do echo "$more"; done; card END; }
+# listed NAME CARD...: the listing, the CSV, the table and the picture of the drawing
+listed() { name=$1; shift; drawing "$@" > "$w/$name.deck"
+   "$kinmat" "$w/$name.deck" --csv "$w/$name.csv" --table "$w/$name.table" --svg "$w/$name.svg" > "$w/$name.lst" 2> "$w/err"; }
+# rows NAME [HEAD]: the rows of the instants' tables whose head begins with HEAD, or of all
+rows() { awk -v head="$2" '/^ INSTANT/ { on = 0; print "--" } /^ EXTREMES/ { exit } /^ (LINK|POINT|PAIR) / && /X|PHI|SLIDE/ { on = $1; getline; next }
+   on && NF && (head == "" || on == head) && !/^ (BRANCH|END)/' "$w/$1.lst"; }
+rocker=
+listed default
+listed links "$(card PRINT LINKS)"
+listed both "$(card PRINT LINKS)" "$(card PRINT POINTS)"
+listed extremes "$(card EXTREMES LINKS)" "$(card EXTREMES POINTS C)"
+listed extremes_of_links "$(card PRINT LINKS)" "$(card EXTREMES LINKS)" "$(card EXTREMES POINTS C)"
+equal 'a drawing: the columns of links' 'LINK PHI VPHI APHI|DEG DEG/S DEG/S**2' \
+   "$(awk '/^ INSTANT 0/ { on = NR } on && (NR == on + 1 || NR == on + 2) { $1 = $1; printf "%s%s", mark, $0; mark = "|" }' "$w/default.lst")"
+equal 'a drawing: the angles of links' "$(rows links LINK | awk 'NF > 8 { $0 = $1 " " $4 " " $7 " " $10 } 1')" \
+   "$(rows default LINK | awk '{ $1 = $1 } 1')"
+equal 'a drawing: the points are those of PRINT POINTS' "$(rows both POINT)" "$(rows default POINT)"
+equal 'a drawing: the end of the crank' "$(awk 'BEGIN { d = atan2(0, -1)/180
+   for (t = 0; t < 5; t++) printf "%.5f %.5f\n", 10 + cos(30*t*d), 10 + sin(30*t*d) }')" "$(rows default POINT | awk '$1 == "A" { print $2, $3 }')"
+equal 'a drawing: the rows at an instant' 'CRANK COUPLER ROCKER A0 A B B0 C' "$(rows default | awk '/^--/ { n++; next } n == 2 { print $1 }' | tr '\n' ' ' | sed 's/ $//')"
+equal 'a drawing: what is echoed' ' PRINT    LINKS             1        PHI, VPHI, APHI (DEFAULT) PRINT    POINTS            1 (DEFAULT)' \
+   "$(grep '^ PRINT' "$w/default.lst" | sed 's/   *(DEFAULT)/ (DEFAULT)/' | tr -d '\n')"
+for suffix in csv table svg; do
+   same "a drawing: $suffix as with PRINT LINKS" "$w/links.$suffix" "$w/default.$suffix"
+   same "a drawing with EXTREMES: $suffix as with PRINT LINKS" "$w/extremes_of_links.$suffix" "$w/extremes.$suffix"
+done
+equal 'a drawing: EXTREMES LINKS has all columns' "$(awk '/^ EXTREMES   T/ { on = 1 } /^ BRANCH/ { exit } on' "$w/extremes_of_links.lst")" \
+   "$(awk '/^ EXTREMES   T/ { on = 1 } /^ BRANCH/ { exit } on' "$w/extremes.lst")"
+rocker='14.0 10.0 111.0'
+listed own
+listed own_links "$(card PRINT LINKS)"
+equal 'a drawing: a link with axes of its own has all columns' "$(rows own_links LINK | grep -E 'ROCKER|--')" "$(rows own LINK | grep -E 'ROCKER|--')"
+equal 'a drawing: its other links have their angles' "$(rows own_links LINK | awk 'NF > 8 && !/ROCKER/ { print $1, $4, $7, $10 }')" \
+   "$(rows own LINK | awk '!/ROCKER|--/ { $1 = $1; print }')"
+equal 'a drawing with axes of its own: what is echoed' 1 "$(grep -c '^ PRINT    LINKS             1        PHI, VPHI, APHI OF THOSE WITHOUT NUMBERS  *(DEFAULT)$' "$w/own.lst")"
+# Against the closed form of a drawing, without its PRINT card.
+grep -v '^PRINT   ALL' input/drawing.deck > "$w/drawing.deck"
+"$BUILD/release/print_expected" "$w/drawing.deck" > "$w/drawing.expected" 2>&1
+"$kinmat" "$w/drawing.deck" > "$w/drawing.lst" 2>&1
+same 'a drawing: the closed form' "$w/drawing.expected" "$w/drawing.lst"
+equal 'a drawing: the closed form has points that no card asks for' 25 "$(sed '1,/^ END OF SET 1/d' "$w/drawing.expected" | grep -c '^ POINT  *X')"
+rocker=
+# Tolerances, in Polish.
+listed tolerances "$(card LANG PL)" "$(card JOINT D BASE BAR)" "$(card TOLER '' '' '' 0.01)" "$(card LINK BAR)" "$(card DRIVE ANGLE BAR '' '' 1.0)"
+equal 'a drawing with tolerances: rows of its links' "$(printf 'BAR\nNAJGOR.\nRSS')" \
+   "$(awk '/^ CHWILA 0/ { on = 1 } /^ PUNKT/ { exit } on && on++ > 3 { print $1 }' "$w/tolerances.lst" | tail -n 3)"
+equal 'a drawing with tolerances: shares of no column that is not listed' '' "$(grep -E '^ OGNIWO [A-Z]+  [VA]?[XY] ' "$w/tolerances.lst")"
+equal 'a drawing with tolerances: shares of points' yes "$(grep -qE '^ PUNKT D  X ' "$w/tolerances.lst" && echo yes)"
 
 cp input/four_bar.deck "$w/own-1.deck"
 rejected '--table without a file' 1 ' *** OPTION --table NEEDS A FILE NAME' "$w/own-1.deck" --table

@@ -95,6 +95,38 @@ for deck in four_bar five_bar yoke; do
 done
 toleranced 'JOINT POINT DRIVE' < input/drawing.deck > "$w/drawing.deck"
 differences 'a drawing' "$w/drawing.deck" 1e-7 1e-12
+# Numbers that are as drawn follow the drawing: direction, length and value of a driven cylinder; h of a guide at an angle,
+# on a link of the ground that has tolerances, with beta, and a driven slide; the value of a driven place.
+tolerance() { card TOLER '' '' '' "$@"; }
+bar=0.0005
+{
+   card UNITS M DEG S; card GROUND BASE; card LINK ARM '' '' 0.25 0.5 20.0; card LINK BARREL; card LINK ROD '' '' '' '' 35.0
+   card JOINT O BASE ARM 0.125 0.25; tolerance $bar $bar
+   card JOINT B0 BASE BARREL 1.5 -0.75; tolerance $bar $bar
+   card JOINT B ROD ARM 2.25 1.5; tolerance $bar $bar
+   card POINT TIP ARM 3.0 0.5; card CYLINDER B0 B RAM; card DRIVE SLIDE RAM '' '' 0.25; card AT '' '' '' 0.5 1.5
+   card PRINT ALL; card END
+} > "$w/cylinder.deck"
+differences 'a drawn cylinder' "$w/cylinder.deck" 1e-7 1e-12
+drawn_slider() {
+   card UNITS M DEG S; card GROUND BASE; card GROUND RAIL '' '' 0.25 0.5 10.0; tolerance $bar $bar $bar
+   card LINK CRANK; card LINK ROD; card LINK SLIDER '' '' 3.0 0.5 40.0
+   card JOINT A0 BASE CRANK 0.0 0.125; tolerance $bar $bar
+   card JOINT A CRANK ROD 0.25 1.0; tolerance $bar $bar
+   card JOINT B SLIDER ROD 3.0 0.5; tolerance $bar $bar
+   card POINT R RAIL 0.125 0.375; tolerance $bar $bar
+   card POINT S SLIDER 0.25 -0.125; tolerance $bar $bar
+   card PRISM R S GUIDE -15.0; tolerance $bar
+   "$@"; card AT '' '' '' 0.5 1.5; card PRINT ALL; card END
+}
+drawn_slider card DRIVE ANGLE CRANK '' '' 30.0 > "$w/slider.deck"
+differences 'a drawn slider' "$w/slider.deck" 1e-7 1e-12
+drawn_slider card DRIVE SLIDE GUIDE '' '' -0.25 > "$w/slide.deck"
+differences 'a driven slide as drawn' "$w/slide.deck" 1e-7 1e-12
+drawn_slider card DRIVE X A '' '' -0.25 > "$w/place.deck"
+differences 'a driven place as drawn' "$w/place.deck" 1e-7 1e-12
+drawn_slider card DRIVE RELANGLE RAIL ROD '' 5.0 > "$w/relative.deck"
+differences 'a driven relative angle as drawn' "$w/relative.deck" 1e-7 1e-12
 differences 'in millimetres, radians' input/guide_tolerances.deck 1e-7 1e-12
 # Five degrees from a change point, and on it: there is nothing.
 toleranced 'POINT' < input/parallelogram_at.deck | at 10.0 15.5 16.0 > "$w/beside.deck"

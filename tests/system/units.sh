@@ -32,6 +32,18 @@ for deck in $(grep -L '^VARY' input/*.deck); do
    done
 done
 
+# A crank at 150 degrees, of 1E-4 to 1E7: the same digits of x, and a power of ten only where they have no room without one.
+for crank in '1.0E-4 10**-6 -86.6025' '1.0E-3 -.000866025' '1.0E-2 -0.00866025' '1.0E-1 -0.0866025' '1.0 -0.866025' \
+   '1.0E3 -866.025' '1.0E5 -86602.5' '1.0E6 -866025.' '1.0E7 10**6 -8.66025'; do
+   set -- $crank
+   { card UNITS M DEG S; card GROUND BASE; card LINK CRANK '' '' 0.0 0.0 150.0; card POINT O BASE; card POINT P CRANK
+     card POINT TIP CRANK '' "$1"; card REVOLUTE O P PIVOT; card DRIVE ANGLE CRANK '' 150.0; card AT '' '' '' 0.0
+     card PRINT POINTS TIP; card END; } > "$w/deck"
+   "$kinmat" "$w/deck" > "$w/lst"
+   equal "a crank of $1: power and digits" "${crank#* }" \
+      "$(awk '/^ POINT  .* VX / { on = 1; next } !on { next } /10[*][*]/ { printf "%s ", $1 } /^ TIP / { print $2; exit }' "$w/lst")"
+done
+
 # asked METHOD DECK LINK LINK LINK POINT: its first set, all cards in it, poles and curves of these, tolerances of all points
 # and drives; TIME of one variant, so that --summary has extremes and ranges in 17 digits.
 asked() {
@@ -44,7 +56,7 @@ asked() {
 # answers LISTING: the digits of its tables; ranges; shares of tolerances, and sensitivities without powers of ten.
 answers() {
    digits "$1"
-   awk '/^RANGES|^   (MIN|MAX|ALL)|CHANGE POINTS PASSED/ { print } / %  / { sub(/ S = +/, "S "); sub(/E.*/, ""); print }' "$1"
+   awk '/^RANGES|^   (MIN|MAX|ALL)|CHANGE POINTS ON THE WAY/ { print } / %  / { sub(/ S = +/, "S "); sub(/E.*/, ""); print }' "$1"
 }
 # as_degrees UNIT FILE: the numbers of a CSV or summary, those of angles times UNIT, and sensitivities to angles over it.
 as_degrees() {

@@ -151,8 +151,8 @@ told() {
    equal "$1: status" 1 $?
    equal "$1" "$2" "$(sed -n 's/^ \*\*\* \(E[0-9]*\)  CARD [0-9]*  COLUMN [0-9]*  FIELD [A-Z0-9-]*: /\1 /p' "$w/err")"
 }
-told 'no card above' 'E055 "VARY" MUST STAND BELOW THE CARD WHOSE NUMBER VARIES, OF A BODY, DRIVE OR TIME' '' '' "$(vary R1 2 '' 1.0 2.0)"
-told 'a card without numbers' 'E055 "VARY" MUST STAND BELOW THE CARD WHOSE NUMBER VARIES, OF A BODY, DRIVE OR TIME' '' '' \
+told 'no card above' 'E055 "VARY" MUST STAND BELOW A GROUND, LINK, POINT, JOINT, PRISM, DRIVE, ADD, RISE OR TIME CARD' '' '' "$(vary R1 2 '' 1.0 2.0)"
+told 'a card without numbers' 'E055 "VARY" MUST STAND BELOW A GROUND, LINK, POINT, JOINT, PRISM, DRIVE, ADD, RISE OR TIME CARD' '' '' \
    "$(card LANG EN; vary R1 2 '' 1.0 2.0)"
 told 'no such number' 'E056 "R3" IS NO NUMBER OF THE CARD ABOVE; WRITE R1, R2 OR R3' "$(vary R3 2 '' 1.0 2.0)"
 told 'no number' 'E056 "XI" IS NO NUMBER OF THE CARD ABOVE; WRITE R1, R2 OR R3' "$(vary XI 2 '' 1.0 2.0)"

@@ -1,0 +1,133 @@
+!> What a drawing shows: the numbers of pairs and the values of drives where the cards put the links. With JOINT cards a
+!> blank number means "as drawn".
+module drawn_values
+   use kinds, only: wp
+   use planar, only: direction, quarter_turn, point_of, pi
+   use mechanism, only: mechanism_t, pair_t, drive_t, pair_links, drive_angle, drive_x, drive_y, drive_relangle
+   implicit none
+   private
+   public :: drawn_pair, drawn_drive, drawn_way, drawn_opening, coincides
+
+   !> A coordinate passes through about ten operations, each with an error of half a rounding of the places involved;
+   !> coordinates that another program has printed are off by one or two more. A difference below this is zero.
+   real(wp), parameter :: roundings = 32.0_wp*epsilon(1.0_wp)
+
+contains
+
+   !> The numbers alpha, h and beta (length, rad) of the prismatic `pair` of `m`: those that it has, or, where
+   !> `pair`%drawn says so, those of the drawing. Along a guide that is drawn from P to Q the direction is that of PQ,
+   !> in (-pi, pi], less the angle of link i, and h is 0. Differences that rounding alone makes are exactly 0.
+   pure function drawn_pair(m, pair) result(numbers)
+      type(mechanism_t), intent(in) :: m
+      type(pair_t), intent(in) :: pair
+      real(wp) :: numbers(3)
+      type(pair_t) :: along
+      real(wp) :: d(2), theta
+      integer :: links(2)
+
+      links = pair_links(m, pair)
+      numbers = [pair%alpha, pair%offset, pair%beta]
+      associate (phi => m%links(links)%position(3))
+         if (pair%drawn(1)) then
+            d = drawn_way(m, pair)
+            theta = atan2(d(2), d(1))
+            if (theta <= -pi) theta = pi
+            numbers(1) = theta - phi(1)
+         end if
+         if (pair%drawn(2)) then
+            along = pair
+            along%offset = 0.0_wp
+            numbers(2) = merge(0.0_wp, drawn_opening(m, along), pair%drawn(1))
+         end if
+         if (pair%drawn(3)) numbers(3) = without_rounding(phi(2) - phi(1), sum(abs(phi)))
+      end associate
+   end function drawn_pair
+
+   !> By how much h of the prismatic `pair` is greater in the drawing of `m` than on its card: (P - Q) . n - h.
+   pure real(wp) function drawn_opening(m, pair) result(opening)
+      type(mechanism_t), intent(in) :: m
+      type(pair_t), intent(in) :: pair
+      integer :: links(2)
+
+      links = pair_links(m, pair)
+      opening = -dot_product(drawn_way(m, pair), quarter_turn(direction(m%links(links(1))%position(3) + pair%alpha)))
+      opening = without_rounding(opening - pair%offset, size_of_pair(m, pair) + abs(pair%offset))
+   end function drawn_opening
+
+   !> The value (length, rad) of the coordinate of `drive` in the drawing of `m`.
+   pure real(wp) function drawn_drive(m, drive) result(value)
+      type(mechanism_t), intent(in) :: m
+      type(drive_t), intent(in) :: drive
+      real(wp) :: p(2)
+
+      associate (k => drive%subject)
+         select case (drive%kind)
+         case (drive_angle)
+            value = m%links(k)%position(3)
+         case (drive_relangle)
+            value = m%links(drive%second)%position(3) - m%links(k)%position(3)
+            value = without_rounding(value, abs(m%links(drive%second)%position(3)) + abs(m%links(k)%position(3)))
+         case (drive_x, drive_y)
+            p = place(m, k)
+            value = without_rounding(merge(p(1), p(2), drive%kind == drive_x), size_of_point(m, k))
+         case default
+            associate (pair => m%pairs(k), i => m%points(m%pairs(k)%point_i)%link)
+               value = dot_product(drawn_way(m, pair), direction(m%links(i)%position(3) + pair%alpha))
+               value = without_rounding(value, size_of_pair(m, pair))
+            end associate
+         end select
+      end associate
+   end function drawn_drive
+
+   !> The vector (2) from P to Q of `pair` in the drawing of `m`.
+   pure function drawn_way(m, pair) result(d)
+      type(mechanism_t), intent(in) :: m
+      type(pair_t), intent(in) :: pair
+      real(wp) :: d(2)
+
+      d = place(m, pair%point_j) - place(m, pair%point_i)
+   end function drawn_way
+
+   !> Whether P and Q of `pair` are at one place in the drawing of `m`.
+   pure logical function coincides(m, pair)
+      type(mechanism_t), intent(in) :: m
+      type(pair_t), intent(in) :: pair
+
+      coincides = .not. abs(without_rounding(norm2(drawn_way(m, pair)), size_of_pair(m, pair))) > 0.0_wp
+   end function coincides
+
+   !> The place (2) of point number `k` in the drawing of `m`.
+   pure function place(m, k) result(p)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: k
+      real(wp) :: p(2)
+
+      p = point_of(m%links(m%points(k)%link)%position, m%points(k)%offset)
+   end function place
+
+   !> The length by which the roundings of the place of point number `k` go.
+   pure real(wp) function size_of_point(m, k) result(length)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: k
+
+      associate (link => m%links(m%points(k)%link))
+         length = norm2(link%position(:2)) + norm2(m%points(k)%offset)*(1.0_wp + abs(link%position(3)))
+      end associate
+   end function size_of_point
+
+   !> The same for the way from P to Q of `pair`, along and across its guide.
+   pure real(wp) function size_of_pair(m, pair) result(length)
+      type(mechanism_t), intent(in) :: m
+      type(pair_t), intent(in) :: pair
+
+      length = size_of_point(m, pair%point_i) + size_of_point(m, pair%point_j) + norm2(drawn_way(m, pair)) &
+         *(abs(pair%alpha) + abs(m%links(m%points(pair%point_i)%link)%position(3)))
+   end function size_of_pair
+
+   !> `x`; 0 where the roundings of numbers of the size `size_of` are larger.
+   pure real(wp) function without_rounding(x, size_of) result(rest)
+      real(wp), intent(in) :: x, size_of
+
+      rest = merge(0.0_wp, x, abs(x) <= roundings*size_of)
+   end function without_rounding
+end module drawn_values
