@@ -2,9 +2,9 @@
 module assembly_table
    use kinds, only: wp, label_length
    use planar, only: point_of, degree, without_turns
-   use mechanism, only: mechanism_t, instant, plane_origin
+   use mechanism, only: mechanism_t, instant, plane_origin, drive_words, driven_kinds, request_link
    use scales, only: characteristic_length
-   use names, only: listed
+   use names, only: listed, subject_name
    use cards, only: ruler_card
    use assemblies, only: assemblies_t, assembly_t, assembly_block_t, max_assemblies
    use set_analysis, only: set_analysis_t
@@ -152,7 +152,8 @@ contains
    end subroutine put_assembly
 
    !> The LINK cards of assembly `one` of `m`. Where JOINT cards give the dimensions, LINK cards are a part of them:
-   !> both stand there, as of a drawing of this assembly.
+   !> both stand there, as of a drawing of this assembly. A drive whose value at t = 0 was that of the old drawing has a
+   !> card with this value: it is another one in the new drawing.
    subroutine put_cards(o, m, one)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
@@ -160,8 +161,9 @@ contains
       character(label_length) :: names(3)
       character(star_width) :: numbers(3)
       real(wp) :: position(3, size(m%links)), largest
+      real(wp) :: x
       logical :: is_joint(size(m%pairs))
-      integer :: i, digits
+      integer :: i, k, digits
 
       position = deck_position(m, one)
       largest = max(characteristic_length(m), maxval(abs(position(:2, :))))
@@ -191,6 +193,19 @@ contains
                numbers(2) = number_text(place(2), largest, digits)
             end associate
             call put_card(o, 'JOINT   ', names, numbers(:2))
+         end associate
+      end do
+      do i = 1, size(m%drives)
+         associate (drive => m%drives(i))
+            if (.not. drive%drawn) cycle
+            names = [drive_words(drive%kind), subject_name(m, driven_kinds(drive%kind), drive%subject), '        ']
+            if (drive%second > 0) names(3) = m%links(drive%second)%name
+            do k = 1, size(numbers)
+               x = drive%polynomial(k)
+               if (m%degrees .and. driven_kinds(drive%kind) == request_link) x = x/degree
+               numbers(k) = number_text(x, merge(abs(x), 1.0_wp, abs(x) > 0.0_wp), drawing_digits)
+            end do
+            call put_card(o, 'DRIVE   ', names, numbers)
          end associate
       end do
    end subroutine put_cards

@@ -15,25 +15,27 @@ while read -r seed links finite real; do
       sed -n 's/.* PATHS [0-9]* = \([0-9]*\) FINITE + [0-9]* AT INFINITY + \([0-9]*\) FAILED   REAL \([0-9]*\)/\1 FINITE, \2 FAILED, \3 REAL/p')"
 done < tests/validation/assemblies.txt
 
-# pasted DECK K: the deck with the LINK and JOINT cards of its assembly K in place of its own
+# pasted DECK K: the deck with the LINK, JOINT and DRIVE cards of its assembly K in place of its own
 pasted() {
-   assemblies "$1" | awk -v k="$2" '/^ (ASSEMBLY|MONTAZ) / { on = $2 == k } on && /^(LINK|JOINT|\*) /' > "$w/cards"
+   assemblies "$1" | awk -v k="$2" '/^ (ASSEMBLY|MONTAZ) / { on = $2 == k } on && /^(LINK|JOINT|DRIVE|\*) /' > "$w/cards"
    awk -v cards="$w/cards" '
+      # What a card is about: a drive has a kind, too, and a second link.
+      function key_of(text) { return substr(sprintf("%-32s", text), 1, text ~ /^DRIVE/ ? 32 : 16) }
       BEGIN {
          while ((getline line < cards) > 0) {
             if (line ~ /^\*/) { own[key] = own[key] "\n" line; continue }
-            key = substr(line, 1, 16); own[key] = line
+            key = key_of(line); own[key] = line
          }
       }
       /^\*/ { if (!left_out) print; next }
-      { key = substr(sprintf("%-16s", $0), 1, 16); left_out = key in own }
+      { key = key_of($0); left_out = key in own }
       left_out { print own[key]; next } { print }' "$1"
 }
 
 # Each assembly, pasted, is the one that a run takes: the deck of one set (the first of the deck of input/).
-# taken DECK NUMBER [SET]
+# taken DECK NUMBER [SET [SED]]: changed by the sed expression
 taken() {
-   awk -v set="${3:-1}" 'BEGIN { n = 1 } n == set; /^END/ { n++ }' "input/$1.deck" | awk '/^END/ { print "ASSEMBLY" } { print }' > "$w/$1.deck"
+   awk -v set="${3:-1}" 'BEGIN { n = 1 } n == set; /^END/ { n++ }' "input/$1.deck" | sed "${4:-}" | awk '/^END/ { print "ASSEMBLY" } { print }' > "$w/$1.deck"
    equal "$1: assemblies" "$2" "$(assemblies "$w/$1.deck" | grep -c '^ ASSEMBLY ')"
    assemblies "$w/$1.deck" | awk '/^ ASSEMBLY / { sub(/   CHOSEN.*/, ""); sub(/DISTANCE = [0-9.]*/, ""); print $0 }' > "$w/$1.rows"
    for k in $(seq "$2"); do
@@ -49,6 +51,10 @@ taken drawing 2 2
 taken drawn_slider 2
 taken drawn_slider 2 2
 taken drawn_cylinder 2
+# The motion begins off the drawing: the value of the drive at t = 0 is that of the drawing before.
+taken drawn_slider 2 1 's/^TIME.*/AT                              0.5/'
+taken drawn_cylinder 2 1 's/^TIME.*/AT                              0.5/'
+taken drawing 2 1 's/^TIME.*/AT                              2.0/'
 taken far_small 2
 taken stephenson_output 2
 taken three_rrr_cranks 2

@@ -22,13 +22,13 @@ rows() {
    awk -v mode="$mode" -v level="$level" "$@" -f tests/system/assembly_rows.awk "$w/$file.lst" "$w/$file.csv" "$w/$other.lst" "$w/$other.csv"
 }
 
-# cards FILE MECHANISM K: the LINK and JOINT cards of an assembly
+# cards FILE MECHANISM K: the LINK, JOINT and DRIVE cards of an assembly
 cards() {
    awk -v c="$2" -v k="$3" '
       BEGIN { mechanism = 1 }
       /^ INDEPENDENT MECHANISM/ { mechanism = $3; on = 0 }
       /^ (ASSEMBLY|BRANCH:) / { on = /ASSEMBLY/ && mechanism == c && $2 == k }
-      on && /^(LINK|JOINT|\*) /' "$w/$1.lst"
+      on && /^(LINK|JOINT|DRIVE|\*) /' "$w/$1.lst"
 }
 
 # relate NAME DECK SET: the relations of one set

@@ -1,9 +1,11 @@
 # awk -v set=N -v assembly=1 -f first_instant.awk DECK: set number N of a deck at its first instant alone, by METHOD NEWTON, with the
 # card PRINT ALL and, where it is asked for, ASSEMBLY. `cards`: a file with cards that stand in place of its own.
+# What a card is about: a drive has a kind, too, and a second link.
+function key_of(text) { return substr(sprintf("%-32s", text), 1, text ~ /^DRIVE/ ? 32 : 16) }
 function blank(text) { gsub(/ /, "", text); return text == "" }
 function flush_card() {
    if (card == "") return
-   key = substr(sprintf("%-16s", card), 1, 16)
+   key = key_of(card)
    if (key in own) card = own[key]
    else if (star != "") card = card "\n" star
    if (card !~ /^(PRINT|BRANCH|METHOD|TOLER|VARY|EXTREMES|CIRCUITS|RANGE|PROVE|POLE|CURVE|ASSEMBLY|TIME|AT)/) print card
@@ -17,7 +19,7 @@ BEGIN {
    n = 1
    if (cards != "") while ((getline line < cards) > 0) {
       if (line ~ /^\*/) own[key] = own[key] "\n" line
-      else { key = substr(line, 1, 16); own[key] = line }
+      else { key = key_of(line); own[key] = line }
    }
 }
 /^[$#!]/ || /^ *$/ { next }
