@@ -105,7 +105,10 @@ contains
       else if (step%arrived) then
          call arrive(a, step, list, found)
       else
-         if (allocated(step%passed)) call add_diagnostics(step%passed, found)
+         if (allocated(step%passed)) then
+            call add_diagnostics(step%passed, found)
+            a%certificate_counts%passed = a%certificate_counts%passed + size(step%passed)
+         end if
          call give_up(a, to, step, found)
       end if
       if (found%known == 2) then

@@ -104,7 +104,7 @@ done
   card POINT DC CYL '' 450.0 60.0; card POINT ER ROD '' 0.0 -250.0; card PRISM DC ER PISTON -145.437612 0.0 0.0
   card DRIVE SLIDE PISTON '' 546.44304369 -50.0; card TIME 8 '' '' 0.0 8.0; card RANGE; card END; } > "$w/deck"
 equal 'a landing gear' '   CHANGE POINTS ON THE WAY 1
- BRANCH:  INSTANTS FOLLOWED 6, CHANGE POINTS PASSED 0, WITHOUT CERTIFICATE 0' "$("$kinmat" "$w/deck" | grep 'CHANGE POINTS')"
+ BRANCH:  INSTANTS FOLLOWED 6, CHANGE POINTS PASSED 1, WITHOUT CERTIFICATE 0' "$("$kinmat" "$w/deck" | grep 'CHANGE POINTS')"
 sed "s/^RANGE/&\n$(card LANG PL)/" "$w/deck" > "$w/polish"
 equal 'a landing gear, in Polish' '   PUNKTY ZMIANY NA DRODZE 1' "$("$kinmat" "$w/polish" | grep 'NA DRODZE')"
 
