@@ -10,6 +10,7 @@ first() { awk '/^```deck/ { on = 1; next } /^```/ && on { exit } on' "$1"; }
 deck=$(mktemp) || exit 1
 trap 'rm -f "$deck"' EXIT
 first README.md > "$deck"; draw "$deck" --svg four_bar || exit 1
+first docs/tutorial.md > "$deck"; draw "$deck" --svg tutorial || exit 1
 for name in yoke jansen cardan platform; do
    sed '/^END/q' "input/$name.deck" > "$deck"; draw "$deck" --svg "$name" || exit 1
 done
