@@ -101,7 +101,7 @@ equal 'README.md: rows that no closed form has printed' '' "$(while IFS= read -r
 equal 'README.md: the first command' 1 "$(grep -cE '^ *(sudo )?apt-get .*make run' README.md)"
 
 # Every card, option and message that the sources have: has FILE WHAT WORDS.
-cat docs/cards.md docs/outputs.md docs/messages.md docs/limits.md docs/glossary.md > "$w/reference"
+cat docs/cards.md docs/outputs.md docs/messages.md docs/limits.md docs/glossary.md | tr '\n' ' ' | tr -s ' ' > "$w/reference"
 has() { if grep -qF -- "$3" "$1"; then pass; else miss "${1#"$w"/} lacks $2: $3"; fi; }
 sources=$(find src -name '*.[fF]90')
 sed -n "s/^ *form_t('[-LlWw]*', .*'\([A-Z]\{2,8\}\).*/\1/p" $sources | sort -u > "$w/cards"
