@@ -111,6 +111,10 @@ while read -r card; do
    has docs/cards.md 'the section of the card' "## $card"
    awk -v card="$card" '/^## / { on = $2 == card } on' docs/cards.md > "$w/section"
    equal "docs/cards.md, $card: its layout" 1 "$(grep -cxF -- "\`\`\`layout $card" "$w/section")"
+   equal "docs/cards.md, $card: a row for each of its fields" "$("$kinmat" --ruler "$card" | awk -v card="$card" '
+      NR == 2 && card != "TITLE" { split("9 17 25 33 49 65 81", from, " "); split("LABEL-A LABEL-B LABEL-C REAL-1 REAL-2 REAL-3", name, " ")
+         for (i = 1; i <= 6; i++) if (substr($0, from[i], from[i + 1] - from[i]) ~ /[^ ]/) printf "%s ", name[i] }')" \
+      "$(awk '/^[|] Field / { on = 1 } !/^[|]/ { on = 0 } on && /^[|] (LABEL|REAL)-/ { printf "%s ", $2 }' "$w/section")"
    equal "docs/cards.md, $card: an example" yes "$(grep -qE '^Example: |^```deck' "$w/section" && echo yes)"
    equal "docs/cards.md, $card: see also" yes "$(tr '\n' ' ' < "$w/section" | grep -q 'See also' && echo yes)"
    equal "docs/cards.md, $card: six remarks at most" '' "$(grep '^7[.] ' "$w/section")"
@@ -140,6 +144,17 @@ awk '/call fail\(/ { on = 1 } on { n = split($0, part, "\047"); for (i = 2; i <=
    | sed -e 's/^ *//' -e 's/["( ]*$//' | grep -E '^[-A-Za-z]+ .*[A-Z]' | grep -v '^[*]' | sort -u > "$w/sentences"
 equal 'sentences are found' yes "$([ "$(wc -l < "$w/sentences")" -ge 20 ] && echo yes)"
 while IFS= read -r sentence; do has docs/messages.md 'the sentence' "$sentence"; done < "$w/sentences"
+
+# Tables: each row has the cells of its head, and each error has a cause and a cure.
+for document in $documents src/README.md; do
+   equal "$document: rows of tables with other cells than their heads" '' "$(awk '
+      /^[|]/ { line = $0; gsub(/\\[|]/, "", line); gsub(/`[^`]*`/, "x", line); n = gsub(/[|]/, "", line)
+         if (!cells) cells = n
+         if (n != cells) print FNR
+         next }
+      { cells = 0 }' "$document")"
+done
+equal 'docs/messages.md: errors without cause or cure' '' "$(grep -E '^[|] E[0-9]+ ' docs/messages.md | grep -E '[|] *[|]')"
 
 # Links: the file exists and, in a Markdown file, the heading. They are relative, so that they live where they are installed.
 headings() { sed -n 's/^##* //p' "$1" | tr 'A-Z' 'a-z' | sed -e 's/[^a-z0-9 _-]//g' -e 's/ /-/g'; }
