@@ -106,6 +106,7 @@ has() { if grep -qF -- "$3" "$1"; then pass; else miss "${1#"$w"/} lacks $2: $3"
 sources=$(find src -name '*.[fF]90')
 sed -n "s/^ *form_t('[-LlWw]*', .*'\([A-Z]\{2,8\}\).*/\1/p" $sources | sort -u > "$w/cards"
 equal 'cards are found' yes "$([ "$(wc -l < "$w/cards")" -ge 16 ] && echo yes)"
+equal 'docs/cards.md: the ruler' yes "$(grep -qxF -- "$("$kinmat" --ruler)" docs/cards.md && echo yes)"
 # The section of a card: its layout, a deck that has it or a link to one, and what to see also.
 while read -r card; do
    has docs/cards.md 'the section of the card' "## $card"
