@@ -25,7 +25,7 @@ parts() {
    the sources|60|tests/system/house.sh
    the closed forms|830|"$BUILD/release/check_forms" input/*.deck
    the reader of listings|93|tests/system/reader.sh
-   the documents|300|tests/system/documents.sh
+   the documents|1000|tests/system/documents.sh
    estimates of errors|57|"$MAKE" --no-print-directory errors
    proofs|162|"$BUILD/release/proof_bounds" input/*.deck
    nothing false is proved|2000|"$BUILD/release/fool_proofs" 2000
