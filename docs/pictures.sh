@@ -1,15 +1,42 @@
 #!/bin/sh
 # The pictures of the documents that the program draws: pictures.sh KINMAT DIRECTORY, from the directory of README.md.
-# Drawn by hand: link_axes, prism, dyad, dead_change, circuit_branch, rise_laws, listing.
+# Drawn by hand: link_axes, prism, dyad, dead_change, circuit_branch and rise_laws.
 kinmat=$1 to=$2
 mkdir -p "$to" || exit 1
 # draw DECK OPTION FILE: draws it also if an instant is flagged
 draw() { "$kinmat" --no-listing "$2" "$to/$3.svg" < "$1" || [ $? -eq 2 ]; }
 # first FILE: the first deck of a document
 first() { awk '/^```deck/ { on = 1; next } /^```/ && on { exit } on' "$1"; }
-deck=$(mktemp) || exit 1
-trap 'rm -f "$deck"' EXIT
+deck=$(mktemp) notes=$(mktemp) || exit 1
+trap 'rm -f "$deck" "$notes"' EXIT
 first README.md > "$deck"; draw "$deck" --svg four_bar || exit 1
+# The listing of the same deck, with notes.
+while IFS='|' read -r line note; do printf '%s\t%s\n' "$line" "$note"; done > "$notes" << 'END'
+KINEMATICS OF|
+SET OF COMPUTATIONS|set and title
+
+INPUT DATA|the cards with the values in use
+^ GROUND|
+^ LINK|
+...|
+^ STRUCTURE|
+^ LINKS|what the deck has
+^ COORDINATES|count: S must equal DRIVES
+ASSUR GROUPS|
+DRIVEN|links moved by a drive
+COUPLER  ROCKER|links solved together: a dyad
+
+^ RESULTS|
+
+^ INSTANT 0|time, value of the drive
+^ POINT|position, velocity, acceleration
+ M/S|units
+^ C |
+...|
+^ BRANCH|every step is certified
+^ END OF SET|no instant is flagged: exit status 0
+END
+sed '1a TITLE   FOUR-BAR LINKAGE' "$deck" | "$kinmat" | awk -v notes="$notes" -f docs/listing.awk > "$to/listing.svg" || exit 1
 first docs/tutorial.md > "$deck"; draw "$deck" --svg tutorial || exit 1
 for name in yoke jansen cardan platform; do
    sed '/^END/q' "input/$name.deck" > "$deck"; draw "$deck" --svg "$name" || exit 1

@@ -71,13 +71,15 @@ sed 's/8.295521e-01/8.295523e-01/' tests/validation/ten_plates.csv > "$BUILD/ten
 equal 'one wrong digit is seen' 'C10 x at 0: 8.295523e-01 is off by 3.88' \
    "$(awk -f tests/validation/compare.awk "$BUILD/ten_plates.wrong" "$BUILD/ten_plates.csv" | grep '^C10 x')"
 
-# The pictures of the documents are those that the program draws.
-docs/pictures.sh "$kinmat" "$w" > "$w/pictures.txt" 2>&1
+# The pictures of the documents are those that the program draws, or drawn by hand.
+drawn=$w/drawn
+docs/pictures.sh "$kinmat" "$drawn" > "$w/pictures.txt" 2>&1
 equal 'pictures: status' 0 $?
-for picture in "$w"/*.svg; do same "docs/pictures/${picture##*/}" "docs/pictures/${picture##*/}" "$picture"; done
+for picture in "$drawn"/*.svg; do same "docs/pictures/${picture##*/}" "docs/pictures/${picture##*/}" "$picture"; done
 equal 'pictures: those that nobody draws' '' "$(for picture in docs/pictures/*.svg; do
-   [ -e "$w/${picture##*/}" ] || sed -n 's/^# Drawn by hand: //p' docs/pictures.sh | tr -d ',.' | grep -qw "$(basename "$picture" .svg)" \
-      || echo "$picture"; done)"
+   [ -e "$drawn/${picture##*/}" ] || sed -n 's/^# Drawn by hand: //p' docs/pictures.sh | tr -d ',.' | grep -qw "$(basename "$picture" .svg)" \
+      || echo "$picture"
+done)"
 
 # What cards ask for, by closed forms and by the cards' own numbers: each script counts its checks, and they count here.
 for part in $unchanged ranges circuits drives singular variants wide tables independent methods pictures; do
