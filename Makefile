@@ -50,7 +50,8 @@ helpers := $(filter-out %/funit.f90,$(sort $(shell find tests -name '*.f90')))
 suites  := $(sort $(shell find tests -name 'test_*.pf'))
 # Of the command alone: not in the library.
 command := main allocation
-modules := $(filter-out $(command),$(basename $(notdir $(sources))))
+# document_texts is made from the documents.
+modules := $(filter-out $(command),$(basename $(notdir $(sources)))) document_texts
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))
 vpath %.F90 $(sort $(dir $(sources)))
 
@@ -75,6 +76,9 @@ $(BUILD)/$(1)/%.o: %.f90 | $(BUILD)/$(1)
 	$$(call say,FC,$$<,$(1))$$(FC) $$(COMMON) $$($(1)) -J$(BUILD)/$(1) -c -o $$@ $$<
 $(BUILD)/$(1)/%.o: %.F90 | $(BUILD)/$(1)
 	$$(call say,FC,$$<,$(1))$$(FC) $$(COMMON) $$($(1)) $$(KIND_MACROS) -J$(BUILD)/$(1) -c -o $$@ $$<
+$(BUILD)/$(1)/document_texts.o: $(BUILD)/document_texts.f90 | $(BUILD)/$(1)
+	$$(call say,FC,document_texts.f90,$(1))$$(FC) $$(COMMON) $$($(1)) -J$(BUILD)/$(1) -c -o $$@ $$<
+$(BUILD)/$(1)/explanations.o: $(BUILD)/$(1)/document_texts.o
 $(BUILD)/$(1)/libkinmat.a: $(modules:%=$(BUILD)/$(1)/%.o)
 	$$(call say,AR,$$(@F),$(1))rm -f $$@; $$(AR) cr $$@ $$^
 $(BUILD)/$(1)/kinmat: $(command:%=$(BUILD)/$(1)/%.o) $(BUILD)/$(1)/libkinmat.a
@@ -85,6 +89,11 @@ $(programs:%=$(BUILD)/$(1)/%): $(BUILD)/$(1)/%: $(BUILD)/$(1)/%.o $(BUILD)/$(1)/
 $(BUILD)/$(1):
 	$$(quiet)mkdir -p $$@
 endef
+
+# What the documents say of messages and cards, for --explain and --ruler. The file is left alone if nothing has changed in it.
+$(BUILD)/document_texts.f90: docs/texts.awk docs/messages.md docs/cards.md
+	@mkdir -p $(BUILD)
+	@awk -f docs/texts.awk docs/messages.md docs/cards.md > $@.new && if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
 
 # Who uses whom, read off the use statements.
 $(BUILD)/depends.mk: Makefile $(sources) $(helpers) $(suites) tests/depends.awk
@@ -283,12 +292,13 @@ $(BUILD)/kinmat.1: $(BUILD)/kinmat docs/man.awk
 # documents, in folders of the same names as here, so that their links lead somewhere, with the decks.
 documents := $(DESTDIR)$(PREFIX)/share/doc/kinmat
 install: $(BUILD)/kinmat $(BUILD)/kinmat.1
-	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin include/kinmat lib share/man/man1) $(addprefix $(documents)/,docs/pictures input src)
+	install -d $(addprefix $(DESTDIR)$(PREFIX)/,bin include/kinmat lib share/man/man1) $(addprefix $(documents)/,docs/pictures docs/howto input src)
 	install -m 755 $(BUILD)/kinmat $(DESTDIR)$(PREFIX)/bin/kinmat
 	install -m 644 $(modules:%=$(BUILD)/release/%.mod) $(DESTDIR)$(PREFIX)/include/kinmat
 	install -m 644 $(BUILD)/release/libkinmat.a $(DESTDIR)$(PREFIX)/lib
 	install -m 644 README.md CHANGELOG.md LICENSE $(documents)
 	install -m 644 $(wildcard docs/*.md docs/*.svg docs/*.png) docs/slurm.sh docs/example.f90 docs/first.deck $(documents)/docs
+	install -m 644 $(wildcard docs/howto/*.md) $(documents)/docs/howto
 	install -m 644 $(wildcard docs/pictures/*.svg) $(documents)/docs/pictures
 	install -m 644 $(decks) $(documents)/input
 	install -m 644 src/README.md $(documents)/src

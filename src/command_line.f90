@@ -4,6 +4,7 @@ module command_line
    use numerals, only: significant, whole
    use failures, only: failure_t, fail, status_rejected
    use cards, only: forms, form_name, find_form, form_unknown
+   use explanations, only: explained
    implicit none
    private
    public :: options_t, to_standard_output, word_t, read_command, read_words, help_text
@@ -47,7 +48,8 @@ module command_line
    end type word_t
 
    type :: options_t
-      character(:), allocatable :: deck      !< '' is standard input; with --ruler the name of a card, or ''
+      !> '' is standard input; with --ruler the name of a card, or ''; with --explain its words.
+      character(:), allocatable :: deck
       type(word_t) :: files(out_last)        !< '' is standard output; not allocated: this output is not asked for
       logical :: no_listing = .false.        !< no listing, not even on standard output
       logical :: quiet = .false.             !< no remarks on standard error, no progress
@@ -57,7 +59,7 @@ module command_line
       logical :: time = .false.              !< the time of a step, instead of the listing
       integer :: share = 1, shares = 1       !< the share-th of so many shares of the deck's sets
       integer :: jobs = 0                    !< processes side by side; 0: one for each processor
-      !> What is printed instead of computing: 'HELP', 'VERSION', 'RULER' or ''.
+      !> What is printed instead of computing: 'HELP', 'VERSION', 'RULER', 'EXPLAIN' or ''.
       character(:), allocatable :: show
    end type options_t
 
@@ -67,35 +69,46 @@ module command_line
    character(*), parameter :: two_digits = achar(48 + int(0.1*significant))//achar(48 + mod(significant, 10))
    character(*), parameter :: csv_digits = two_digits(merge(2, 1, significant < 10):)
    !> The text of --help. docs/man.awk makes the man page of it: an option in columns 3 to 22, what it does from column
-   !> 24 on.
-   character(*), parameter :: lines(*) = [character(73) :: &
-      'kinmat DECK            reads a card deck, prints the listing', &
-      'kinmat < DECK          the same', &
-      '  -o FILE              the listing to FILE', &
-      '  --no-listing         no listing', &
-      '  --csv FILE           the results with '//csv_digits//' digits, comma-separated', &
-      '  --log FILE           the log of the solver, a line per instant', &
-      '  --summary FILE       a row for each variant of a set with VARY cards', &
-      '  --svg FILE           a picture of the mechanism and paths of points', &
-      '  --animate FILE       the same with the mechanism in motion', &
-      '  --circuits FILE      diagrams of the circuits that CIRCUITS asks for', &
-      '  --table FILE         a row an instant, a column a quantity', &
-      '  --plot DIR           that table and a script in the directory DIR:', &
-      '                       gnuplot DIR/plot.gp draws it', &
-      '  --errors             estimates of all errors, in the CSV and the log', &
-      '  --check              reads the deck and analyses its structure only', &
-      '  --sets K/N           the K-th of N shares of the sets of the deck', &
-      '  --jobs N             sets in N processes; else one for each processor', &
-      '  --study              speed against error, instead of the listing', &
-      '                       (needs kinmat-quad, kinmat-single: make kinds)', &
-      '  --time               the time of a step, instead of the listing', &
-      '  --quiet              no remarks, no progress on standard error', &
-      '  --ruler [CARD]       the columns of all cards, or of CARD alone', &
-      '  --help, --version    this text; the version and the kind of reals', &
+   !> 24 on; a line that ends with a colon heads lines of its own kind.
+   character(*), parameter :: lines(*) = [character(79) :: &
+      'Usage: kinmat [OPTIONS] [DECK]', &
+      'Compute the motion of planar mechanisms from a deck, and print a listing.', &
+      'Without DECK, or with -, the deck is read from standard input.', &
+      'Options:', &
+      '  -o FILE              write the listing to FILE', &
+      '  --no-listing         print no listing', &
+      '  --csv FILE           write the results with '//csv_digits//' digits, a row for each link', &
+      '  --table FILE         write a table, a row for each instant', &
+      '  --plot DIR           write that table and a gnuplot script into DIR', &
+      '  --summary FILE       write a row for each variant of sets with VARY cards', &
+      '  --log FILE           write the log of the solver, a line for each instant', &
+      '  --svg FILE           draw the mechanism and the paths of its points', &
+      '  --animate FILE       draw the mechanism in motion', &
+      '  --circuits FILE      draw the circuits that CIRCUITS cards ask for', &
+      '  --errors             add error estimates to the CSV and the log', &
+      '  --check              check the deck and its structure, compute no motion', &
+      '  --sets K/N           run only part K of N of the job', &
+      '  --jobs N             run N processes (default: one for each processor)', &
+      '  --study              measure speed against error (needs make kinds)', &
+      '  --time               measure the time of a step', &
+      '  --quiet              suppress remarks and progress', &
+      '  --ruler [CARD]       print the layouts of all cards, or the fields of CARD', &
+      '  --explain WORDS      explain the message with this code, or these words', &
+      '  --help               print this text', &
+      '  --version            print the version and the kind of real numbers', &
       'FILE - is standard output, for one output; the listing gives way to it.', &
-      'Exit status: 0 every instant solved; 1 deck or command rejected;', &
-      '2 listing complete, an instant flagged; 3 error of file, memory or disk.', &
-      'Real numbers: '//wp_name//'.']
+      'Real numbers: '//wp_name//'.', &
+      'Exit status:', &
+      '  0                    every instant is solved', &
+      '  1                    the deck or the command is rejected', &
+      '  2                    the listing is complete, an instant is flagged', &
+      '  3                    error of file, memory or disk', &
+      'Examples:', &
+      '  kinmat four_bar.deck -o four_bar.lst', &
+      '  kinmat --no-listing --svg four_bar.svg --table four_bar.csv four_bar.deck', &
+      '  kinmat --explain E101', &
+      'Documents: README.md and docs/, installed in PREFIX/share/doc/kinmat, where', &
+      'PREFIX is /usr/local unless make install was given another.']
 
 contains
 
@@ -197,6 +210,9 @@ contains
             options%show = 'VERSION'
          case ('--ruler')
             options%show = 'RULER'
+         case ('--explain')
+            call take_message(options%deck, failure)
+            options%show = 'EXPLAIN'
          case default
             call take_deck(words(i)%text, options%deck, failure)
          end select
@@ -280,6 +296,26 @@ contains
          end do
          i = i + 1
       end subroutine take_file
+
+      !> All words after option number `i`: the code of a message, or words of it.
+      subroutine take_message(message, failure)
+         character(:), allocatable, intent(out) :: message
+         type(failure_t), allocatable, intent(out) :: failure
+         integer :: k
+
+         message = ''
+         do k = i + 1, size(words)
+            message = trim(message//' '//words(k)%text)
+         end do
+         message = trim(adjustl(message))
+         if (len(message) == 0) then
+            call fail(failure, status_rejected, 'OPTION --explain NEEDS A CODE SUCH AS E101, OR WORDS OF A MESSAGE')
+         else if (len(explained(message)) == 0) then
+            call fail(failure, status_rejected, 'OPTION --explain: NO MESSAGE HAS THIS CODE OR THESE WORDS: '//message &
+               //'; GIVE A CODE SUCH AS E101, OR WORDS OF A MESSAGE')
+         end if
+         i = size(words)
+      end subroutine take_message
 
       !> The K/N after option number `i`.
       subroutine take_share(failure)

@@ -3,10 +3,11 @@ program main
    use, intrinsic :: iso_fortran_env, only: error_unit
    use, intrinsic :: iso_c_binding, only: c_int
    use kinds, only: wp_name
-   use failures, only: failure_t, status_signal
+   use failures, only: failure_t, capitals, status_signal
    use system_calls, only: occupy_standard_descriptors, end_by_signal, is_terminal
    use command_line, only: options_t, out_listing, read_command, help_text
    use cards, only: layout_of
+   use explanations, only: explained, explained_fields
    use job, only: run_job
    use study, only: run_study
    use text_output, only: output_t, open_output, put, close_output
@@ -30,7 +31,11 @@ program main
    case ('VERSION')
       call show(version)
    case ('RULER')
-      call show(layout_of(options%deck))
+      message = layout_of(options%deck)
+      if (len(options%deck) > 0) message = message//new_line('a')//explained_fields(capitals(options%deck))
+      call show(message)
+   case ('EXPLAIN')
+      call show(explained(options%deck))
    case default
       if (options%study .or. options%time) then
          call run_study(options%deck, options%files(out_listing)%text, options%time, options%quiet, status, &

@@ -16,8 +16,8 @@ parts() {
    speed against error|79|"$MAKE" --no-print-directory study-short
    results of the methods|97|"$MAKE" --no-print-directory bench-short
    cards and options together|1000|tests/system/together.sh
-   the command|426|tests/system/command.sh
-   what is installed|16|tests/system/install.sh
+   the command|600|tests/system/command.sh
+   what is installed|19|tests/system/install.sh
    many sets|7|tests/system/many_sets.sh
    what is printed arrives|270|tests/system/output.sh
    unit tests|1150|"$MAKE" --no-print-directory unit
@@ -25,7 +25,7 @@ parts() {
    the sources|60|tests/system/house.sh
    the closed forms|830|"$BUILD/release/check_forms" input/*.deck
    the reader of listings|93|tests/system/reader.sh
-   the documents|300|tests/system/documents.sh
+   the documents|1300|tests/system/documents.sh
    estimates of errors|57|"$MAKE" --no-print-directory errors
    proofs|162|"$BUILD/release/proof_bounds" input/*.deck
    nothing false is proved|2000|"$BUILD/release/fool_proofs" 2000

@@ -23,7 +23,7 @@ module input_errors
    !> A kind of error.
    type :: error_code_t
       integer :: number = 0              !< printed as E and three digits; 0: no error
-      character(84) :: sentence = ''
+      character(160) :: sentence = ''
       integer :: layout = form_unknown   !< the form whose layout is printed below the message, or own_layout
    end type error_code_t
 

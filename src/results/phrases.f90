@@ -6,7 +6,7 @@ module phrases
 
    !> The same words in both languages.
    type :: phrase_t
-      character(72) :: english = '', polish = ''
+      character(160) :: english = '', polish = ''
    end type phrase_t
 
    type(phrase_t), parameter, public :: &

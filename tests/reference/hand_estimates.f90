@@ -1,4 +1,4 @@
-!> Tests. What rounding leaves open of the numbers of a deck next to a dead point, as the manual defines it: by how much
+!> Tests. What rounding leaves open of the numbers of a deck next to a dead point, as docs/method.md defines it: by how much
 !> its closed form in real128 changes, to first order, where all numbers of its cards are off by a rounding, up or down,
 !> in eight ways, by a generator that is written down here again.
 module hand_estimates

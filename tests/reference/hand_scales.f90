@@ -1,5 +1,5 @@
 !> Tests. The decimals and powers of ten of the tables of a deck, computed in real128 from the numbers of its cards by
-!> the rule of the manual: seven digits to the characteristic length and rate. Nothing of the program's layout is used.
+!> the rule of docs/outputs.md: seven digits to the characteristic length and rate. Nothing of the program's layout is used.
 module hand_scales
    use mechanism, only: mechanism_t, drive_t, pair_prismatic, drive_angle, drive_relangle, drive_x, drive_y, &
       term_harmonic, term_power, term_table, rise_words

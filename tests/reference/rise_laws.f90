@@ -11,7 +11,7 @@ module rise_laws
    !> An instant that is before a joint by less than this part of the rise's times is meant to be at it, if it has the
    !> digits of a single.
    real(qp), parameter :: joint_part = 1.0e-6_qp
-   !> The same of instants that have the digits of a double, as the manual says.
+   !> The same of instants that have the digits of a double, as docs/cards.md says.
    real(qp), parameter :: fine_joint_part = 1024.0_qp*epsilon(1.0_real64)
 
 contains

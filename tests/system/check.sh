@@ -41,14 +41,14 @@ case $libraries in
 *) echo 'tables of what was before: not compared, since LAPACK and BLAS are not the reference'; unchanged=;;
 esac
 
-# The manual's first deck: the tip of a crank of length 0.25 at 6.28 rad/s.
-sed -n '/^GROUND  BASE/,/^END/p' docs/manual.md > "$BUILD/first.deck"
+# The first deck of docs/cards.md: the tip of a crank of length 0.25 at 6.28 rad/s.
+awk '/^```deck/ { on = 1; next } /^```/ && on { exit } on' docs/cards.md > "$BUILD/first.deck"
 "$BUILD/kinmat" "$BUILD/first.deck" > "$BUILD/first.lst"
-equal "the manual, first deck: exit status" 0 $?
-equal "the manual, first deck: t = 0" \
+equal "docs/cards.md, first deck: exit status" 0 $?
+equal "docs/cards.md, first deck: t = 0" \
    ' TIP        0.2500000   0.0000000                0.000000    1.570000               -9.859600    0.000000' \
    "$(grep '^ TIP' "$BUILD/first.lst" | head -n 1)"
-equal "the manual, first deck: instants" 11 "$(grep -c '^ TIP' "$BUILD/first.lst")"
+equal "docs/cards.md, first deck: instants" 11 "$(grep -c '^ TIP' "$BUILD/first.lst")"
 # What `make run` prints: the paper's example at 0 and 1 s, whose rows are rows of the closed form of its whole motion; then where
 # that is, and how to see a picture.
 "${MAKE:-make}" --no-print-directory -n BUILD="$BUILD" run 2> /dev/null | tail -n 2 | sh > "$w/run.txt"
@@ -80,10 +80,15 @@ sed 's/8.295521e-01/8.295523e-01/' tests/validation/ten_plates.csv > "$BUILD/ten
 equal 'one wrong digit is seen' 'C10 x at 0: 8.295523e-01 is off by 3.88' \
    "$(awk -f tests/validation/compare.awk "$BUILD/ten_plates.wrong" "$BUILD/ten_plates.csv" | grep '^C10 x')"
 
-# The pictures of the documents are those that the program draws.
-docs/pictures.sh "$kinmat" "$w" > "$w/pictures.txt" 2>&1
+# The pictures of the documents are those that the program draws, or drawn by hand.
+drawn=$w/drawn
+docs/pictures.sh "$kinmat" "$drawn" > "$w/pictures.txt" 2>&1
 equal 'pictures: status' 0 $?
-for picture in docs/pictures/*.svg; do same "$picture" "$picture" "$w/${picture##*/}"; done
+for picture in "$drawn"/*.svg; do same "docs/pictures/${picture##*/}" "docs/pictures/${picture##*/}" "$picture"; done
+equal 'pictures: those that nobody draws' '' "$(for picture in docs/pictures/*.svg; do
+   [ -e "$drawn/${picture##*/}" ] || sed -n 's/^# Drawn by hand: //p' docs/pictures.sh | tr -d ',.' | grep -qw "$(basename "$picture" .svg)" \
+      || echo "$picture"
+done)"
 
 # What cards ask for, by closed forms and by the cards' own numbers: each script counts its checks, and they count here.
 for part in $unchanged ranges circuits drives singular variants wide tables independent methods pictures; do

@@ -286,8 +286,10 @@ equal 'the share of a wrong set' 1 $?
 # --help, --version, --ruler
 "$kinmat" --help > "$w/out" 2> "$w/err"
 equal '--help: status' 0 $?
-equal '--help: first line' 'kinmat DECK            reads a card deck, prints the listing' "$(head -n 1 "$w/out")"
-for option in -o --no-listing --quiet --csv --log --svg --table --plot --check --errors --sets --ruler --help --version; do
+equal '--help: first line' 'Usage: kinmat [OPTIONS] [DECK]' "$(head -n 1 "$w/out")"
+equal '--help: three examples' 3 "$(grep -c '^  kinmat ' "$w/out")"
+equal '--help: a line an option, with a verb first' '' "$(grep -E '^  -' "$w/out" | cut -c 24- | grep -vE '^(add|check|draw|explain|measure|print|run|suppress|write) ')"
+for option in -o --no-listing --quiet --csv --log --svg --table --plot --check --errors --sets --ruler --explain --help --version; do
    equal "--help tells of $option" found "$(grep -qe "$option" "$w/out" && echo found)"
 done
 equal '--version' 'KINMAT 1.0, REAL64' "$("$kinmat" --version)"
@@ -296,7 +298,40 @@ equal '--ruler: all cards, and the * card' "$(for name in $("$kinmat" --ruler NO
    "$kinmat" --ruler "$name" | sed -n 2p; done)
 *       R1 OF THE CARD ABOVE    R2                      R3" "$("$kinmat" --ruler | sed 1d)"
 equal '--ruler CARD' '$NAME---LABEL-A|LABEL-B|LABEL-C|REAL-1---------|REAL-2---------|REAL-3---------|
-JOINT   PAIR    LINK-I  LINK-J  X               Y' "$("$kinmat" --ruler JOINT)"
+JOINT   PAIR    LINK-I  LINK-J  X               Y
+LABEL-A  name of the pair, and of its point: label; required
+LABEL-B  link i: name of a GROUND or LINK card; required
+LABEL-C  link j: name of a GROUND or LINK card; required
+REAL-1   x of the joint in the drawing: real; default: 0.0; unit: length
+REAL-2   y of the joint in the drawing: real; default: 0.0; unit: length' "$("$kinmat" --ruler JOINT)"
+equal '--ruler CARD: a line for each field' '' "$(for name in $("$kinmat" --ruler NOCARD 2>&1 | sed 's/.*CARDS ARE //'); do
+   "$kinmat" --ruler "$name" | awk -v name="$name" 'NR == 2 { split("9 17 25 33 49 65 81", from, " ")
+         split("LABEL-A LABEL-B LABEL-C REAL-1 REAL-2 REAL-3", field, " ")
+         for (i = 1; i <= 6; i++) if (name != "TITLE" && substr($0, from[i], from[i + 1] - from[i]) ~ /[^ ]/) fields = fields field[i] " " }
+      NR > 2 && /^(LABEL|REAL)-/ { found = found $1 " " }
+      length > 80 { print name ": " $0 }
+      END { if (fields != found) print name ": " fields "/ " found }'; done)"
+# --explain: the entry of a code, of words, of a whole message; each code of the documents has one.
+equal '--explain CODE' 'E102   TOO MANY EQUATIONS BY n AMONG PAIRS ... AND DRIVES ...
+       CAUSE  with E101: a drive is in the wrong place
+       CURE   move it to the links of E101' "$("$kinmat" --explain E102 | sed -n '/TOO MANY/,$p')"
+equal '--explain CODE in small letters' "$("$kinmat" --explain E021)" "$("$kinmat" --explain e021)"
+equal '--explain WORDS' '*** NO POSITION FOUND' "$("$kinmat" --explain 'NO POSITION FOUND' | head -n 1)"
+equal '--explain WORDS, in small letters and as several words' "$("$kinmat" --explain 'NO POSITION FOUND')" "$("$kinmat" --explain no position  found)"
+equal '--explain WORDS: all entries' 3 "$("$kinmat" --explain 'whole number' | grep -c '^E03[0-9]\|^OPTION')"
+equal '--explain with a whole message' '*** CHANGE POINT, LINKS ... IN LINE: VELOCITIES NOT UNIQUE' \
+   "$("$kinmat" --explain ' *** CHANGE POINT, LINKS COUPLER, ROCKER IN LINE: VELOCITIES NOT UNIQUE' | head -n 1)"
+equal '--explain with a whole message that has a code' "$("$kinmat" --explain E018)" \
+   "$("$kinmat" --explain ' *** E018  CARD 10  COLUMN 47  FIELD REAL-1: "2.75" CROSSES THE FIELD BORDER BETWEEN COLUMNS 48 AND 49')"
+equal '--explain: every code' '' "$(grep -oE '^[|] E[0-9]+' docs/messages.md | tr -d '| ' | sort -u | while read -r code; do
+   "$kinmat" --explain "$code" | grep -q "^$code" || echo "$code"; done)"
+equal '--explain: entries without a cure, and lines over 80 columns' '' "$("$kinmat" --explain E | awk 'BEGIN { RS = "" }
+   !/\n       CURE   ./
+   { entries++; n = split($0, line, "\n"); for (i = 1; i <= n; i++) if (length(line[i]) > 80) print line[i] }
+   END { if (entries < 150) print entries }')"
+rejected '--explain without words' 1 ' *** OPTION --explain NEEDS A CODE SUCH AS E101, OR WORDS OF A MESSAGE' --explain
+rejected '--explain with blanks' 1 ' *** OPTION --explain NEEDS A CODE SUCH AS E101, OR WORDS OF A MESSAGE' --explain ' '
+rejected '--explain with unknown words' 1 ' *** OPTION --explain: NO MESSAGE HAS THIS CODE OR THESE WORDS: E999; GIVE A CODE SUCH AS E101, OR WORDS OF A MESSAGE' --explain E999
 equal '--ruler CARD, in small letters and before the option' "$("$kinmat" --ruler DRIVE)" "$("$kinmat" drive --ruler)"
 equal '--ruler CARD: every card' '' "$(for name in $("$kinmat" --ruler NOCARD 2>&1 | sed 's/.*CARDS ARE //'); do
    "$kinmat" --ruler "$name" | sed -n 2p | grep -q "^$name" || echo "$name"; done)"
@@ -363,7 +398,7 @@ if [ -w /dev/full ]; then
    equal 'long listing: many blocks' yes "$("$kinmat" "$w/long.deck" | wc -c | awk '{ print ($1 > 1000000) ? "yes" : $1 }')"
    "$kinmat" "$w/long.deck" > /dev/full 2> "$w/err"
    full 'long listing' $?
-   for option in --help --version --ruler; do
+   for option in --help --version --ruler '--explain E101'; do
       "$kinmat" $option > /dev/full 2> "$w/err"
       full "$option" $?
    done

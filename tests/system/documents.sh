@@ -1,15 +1,24 @@
 #!/bin/sh
-# The documents: every deck that README.md and docs/*.md print runs and gives the listing printed beside it; README.md is
-# short; the manual has every card, option and message; every link leads somewhere.
+# The documents, README.md and all of docs/: every deck runs and gives the listing printed beside it, every command and every
+# message is what the program prints; the cards, options and messages of the sources all stand there; every link lives.
 #
 # Blocks in the documents:
-#    ```deck               a deck; it must run with exit status 0
-#    ```listing [DECK]     what the deck above, or the file DECK, prints; a line ... stands for lines left out
-#    ```refusal FILE SED   what the command says of FILE's first deck after it is changed by the sed expression
+#    ```deck [FILE [STATUS]]  a deck; it must run with this exit status, 0 unless given. FILE is its name in the commands below it
+#    ```layout CARD           the fields of a card as --ruler prints them, and a filled card that stands in a deck of the document
+#    ```listing [DECK]        what the deck above, or the file DECK, prints; a line ... stands for lines left out
+#    ```refusal FILE SED      what the command says of FILE's first deck after it is changed by the sed expression
+#    ```sh [STATUS]           commands, run in a directory with the decks of the document; many_sets.sh runs those of many_sets.md
+#    ```python                a program, run in that directory if python3 has pandas
+#    ```output                what the commands or the program above print, as a listing
 . tests/counting.sh
 
-manual=docs/manual.md
-documents='README.md docs/manual.md docs/method.md docs/evidence.md'
+documents=$(find README.md docs -name '*.md' | LC_ALL=C sort)
+names=$(cd "${kinmat%/*}" && pwd)
+PATH=$names:$PATH
+export PATH
+w=$(cd "$w" && pwd)
+has_pandas=
+if python3 -c 'import pandas' 2> /dev/null; then has_pandas=yes; else echo 'skipped: programs in the documents (python3 has no pandas)'; fi
 
 # in_order PRINTED FOUND: the lines of PRINTED stand in FOUND, next to one another but for `...`; tells the first that does not
 in_order() {
@@ -23,94 +32,167 @@ in_order() {
       END { if (!gap && at <= n && text[at] != "") print "(the listing goes on)" }' "$1"
 }
 
-# The blocks of a document, each in a file of its own, and the words behind its three backquotes.
+# The blocks of a document, each in a file of its own in a directory of the document, and the words behind its three backquotes.
 for document in $documents; do
-   name=$(basename "$document" .md)
-   awk -v base="$w/$name" '
+   place=$w/$(echo "${document%.md}" | tr / _)
+   mkdir -p "$place/run"
+   awk -v base="$place/block" '
       /^```/ && inside { inside = 0; close(file); next }
-      /^```/ { inside = 1; file = sprintf("%s.%02d", base, ++n); print substr($0, 4) > (file ".head"); close(file ".head")
+      /^```/ { inside = 1; file = sprintf("%s.%03d", base, ++n); print substr($0, 4) > (file ".head"); close(file ".head")
          printf "" > file; next }
       inside { print > file }
       END { if (inside) print "OPEN" > (base ".open") }' "$document"
-   equal "$document: every block is closed" '' "$(cat "$w/$name.open" 2> /dev/null)"
-done
-for head in "$w"/*.head; do
-   block=${head%.head}
-   read -r kind words < "$head"
-   place=$(basename "$block")
-   case $kind in
-   deck)
-      deck=$block
-      "$kinmat" "$block" > "$w/out" 2> "$w/err"
-      equal "$place, deck: status" 0 $?
-      equal "$place, deck: standard error" '' "$(cat "$w/err")" ;;
-   listing)
-      "$kinmat" "${words:-$deck}" > "$w/out" 2> "$w/err"
-      equal "$place, listing" '' "$(in_order "$block" "$w/out")" ;;
-   refusal)
-      file=${words%% *}
-      awk '/^```deck/ { on = 1; next } /^```/ && on { exit } on' "$file" | sed "${words#* }" > "$w/deck"
-      "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
-      equal "$place, refusal: status" 1 $?
-      same "$place, refusal" "$block" "$w/err" ;;
-   esac
+   equal "$document: every block is closed" '' "$(cat "$place/block.open" 2> /dev/null)"
+   for head in "$place"/*.head; do
+      [ -e "$head" ] || continue
+      block=${head%.head}
+      read -r kind words < "$head"
+      name="$document, block ${block##*.}, $kind"
+      case $kind in
+      deck)
+         deck=$block
+         file=${words%% *} status=${words#* }
+         [ "$status" = "$words" ] && status=0
+         [ -n "$file" ] && cp "$block" "$place/run/$file"
+         "$kinmat" "$block" > "$w/out" 2> "$w/err"
+         equal "$name: status" "$status" $?
+         equal "$name: standard error" '' "$(cat "$w/err")" ;;
+      layout)
+         "$kinmat" --ruler "$words" | head -n 2 > "$w/out"
+         equal "$name: as --ruler prints it" "$(cat "$w/out")" "$(head -n 2 "$block")"
+         equal "$name: the filled card stands in a deck" '' "$(tail -n +3 "$block" | while IFS= read -r line; do
+            grep -qxF -- "$line" $(grep -l '^deck' "$place"/*.head | sed 's/[.]head$//') || echo "$line"; done)" ;;
+      listing)
+         "$kinmat" "${words:-$deck}" > "$w/out" 2> "$w/err"
+         equal "$name" '' "$(in_order "$block" "$w/out")" ;;
+      refusal)
+         awk '/^```deck/ { on = 1; next } /^```/ && on { exit } on' "${words%% *}" | sed "${words#* }" > "$w/deck"
+         "$kinmat" "$w/deck" > "$w/out" 2> "$w/err"
+         equal "$name: status" 1 $?
+         same "$name" "$block" "$w/err" ;;
+      sh)
+         [ "$document" = docs/many_sets.md ] && continue
+         (cd "$place/run" && sh "$block") > "$w/printed" 2> "$w/err"
+         equal "$name: status" "${words:-0}" $?
+         equal "$name: standard error" '' "$(cat "$w/err")" ;;
+      python)
+         if [ -n "$has_pandas" ]; then
+            (cd "$place/run" && python3 "$block") > "$w/printed" 2> "$w/err"
+            equal "$name: status" 0 $?
+            cat "$w/err"
+         fi ;;
+      output)
+         [ "$last" = python ] && [ -z "$has_pandas" ] || equal "$name" '' "$(in_order "$block" "$w/printed")" ;;
+      text | '') ;;
+      *) miss "$name: no such kind of block" ;;
+      esac
+      last=$kind
+   done
 done
 
-# The numbers of the README are those of the closed forms: both of its decks have their listing in expected/.
-for head in "$w"/README.*.head; do
+# The numbers of the README are those of the closed forms: its mechanisms have their listings in expected/.
+for head in "$w"/README/*.head; do
    if grep -q '^listing' "$head"; then grep -hE '^ [A-Z0-9-]+ +-?[0-9]+[.][0-9]' "${head%.head}"; fi
 done > "$w/rows"
-equal 'README.md: rows are found' yes "$([ "$(wc -l < "$w/rows")" -ge 9 ] && echo yes)"
+equal 'README.md: rows are found' yes "$([ "$(wc -l < "$w/rows")" -ge 6 ] && echo yes)"
 equal 'README.md: rows that no closed form has printed' '' "$(while IFS= read -r row; do
-   grep -qxF -- "$row" expected/four_bar.lst expected/jarzmowy.lst || echo "$row"; done < "$w/rows")"
+   grep -qxF -- "$row" expected/drawing.lst expected/jarzmowy.lst || echo "$row"; done < "$w/rows")"
 
-equal 'README.md: 150 lines at most' yes "$([ "$(wc -l < README.md)" -le 150 ] && echo yes)"
-# The manual's contents, its first links, are all its chapters, in their order.
-equal "$manual: its contents" "$(sed -n 's/^## //p' "$manual")" \
-   "$(sed '/^Equation numbers/q' "$manual" | grep -o '\[[^]]*\](#' | sed 's/^.\(.*\).(#$/\1/')"
+# The contents of a document, its links to itself before the first chapter, are all its chapters, in their order.
+for document in docs/outputs.md docs/messages.md docs/evidence.md docs/developing.md; do
+   equal "$document: its contents" "$(sed -n 's/^## //p' "$document")" \
+      "$(sed '/^## /q' "$document" | tr '\n' ' ' | grep -o '\[[^]]*\](#' | sed 's/^.\(.*\).(#$/\1/')"
+done
 equal 'README.md: the first command' 1 "$(grep -cE '^ *(sudo )?apt-get .*make run' README.md)"
 
-# The manual has every card and option, and every sentence that the sources can say.
-has() { if grep -qF -- "$2" "$manual"; then pass; else miss "$manual lacks $1: $2"; fi; }
+# Every card, option and message that the sources have: has FILE WHAT WORDS.
+cat docs/cards.md docs/outputs.md docs/messages.md docs/limits.md docs/glossary.md | tr '\n' ' ' | tr -s ' ' > "$w/reference"
+has() { if grep -qF -- "$3" "$1"; then pass; else miss "${1#"$w"/} lacks $2: $3"; fi; }
 sources=$(find src -name '*.[fF]90')
 sed -n "s/^ *form_t('[-LlWw]*', .*'\([A-Z]\{2,8\}\).*/\1/p" $sources | sort -u > "$w/cards"
 equal 'cards are found' yes "$([ "$(wc -l < "$w/cards")" -ge 16 ] && echo yes)"
-while read -r card; do has 'the card' "| $card |"; done < "$w/cards"
+equal 'docs/cards.md: the ruler' yes "$(grep -qxF -- "$("$kinmat" --ruler | head -n 1)" docs/cards.md && echo yes)"
+# The section of a card: its layout, a deck that has it or a link to one, and what to see also.
+while read -r card; do
+   has docs/cards.md 'the section of the card' "## $card"
+   awk -v card="$card" '/^## / { on = $2 == card } on' docs/cards.md > "$w/section"
+   equal "docs/cards.md, $card: its layout" 1 "$(grep -cxF -- "\`\`\`layout $card" "$w/section")"
+   equal "docs/cards.md, $card: a row for each of its fields" "$("$kinmat" --ruler "$card" | awk -v card="$card" '
+      NR == 2 && card != "TITLE" { split("9 17 25 33 49 65 81", from, " "); split("LABEL-A LABEL-B LABEL-C REAL-1 REAL-2 REAL-3", name, " ")
+         for (i = 1; i <= 6; i++) if (substr($0, from[i], from[i + 1] - from[i]) ~ /[^ ]/) printf "%s ", name[i] }')" \
+      "$(awk '/^[|] Field / { on = 1 } !/^[|]/ { on = 0 } on && /^[|] (LABEL|REAL)-/ { printf "%s ", $2 }' "$w/section")"
+   equal "docs/cards.md, $card: an example" yes "$(grep -qE '^Example: |^```deck' "$w/section" && echo yes)"
+   equal "docs/cards.md, $card: see also" yes "$(tr '\n' ' ' < "$w/section" | grep -q 'See also' && echo yes)"
+   equal "docs/cards.md, $card: six remarks at most" '' "$(grep '^7[.] ' "$w/section")"
+   equal "docs/cards.md, $card: a deck that the tests run" yes "$(awk '/^```deck/ { on = 1; next } /^```/ { on = 0 } on' docs/cards.md \
+      | cut -c 1-8 | sed 's/ *$//' | grep -qxF -- "$card" && echo yes)"
+done < "$w/cards"
+for kind in ANGLE X Y RELANGLE SLIDE; do
+   equal "docs/cards.md, DRIVE $kind: a deck" yes "$(awk '/^```deck/ { on = 1; next } /^```/ { on = 0 } on' docs/cards.md \
+      | cut -c 1-16 | sed 's/ *$//' | grep -qxF "DRIVE   $kind" && echo yes)"
+done
 "$kinmat" --help | grep -oE '^ *-(-[a-z]+|o)' | tr -d ' ' > "$w/options"
-while read -r option; do has 'the option' "\`$option"; done < "$w/options"
+while read -r option; do has docs/command.md 'the option' "| \`$option"; done < "$w/options"
 sed -n "s/.*code_t(\([0-9]*\), '\([^']*\)'.*/\1 \2/p" $sources > "$w/codes"
 equal 'codes are found' yes "$([ "$(wc -l < "$w/codes")" -ge 70 ] && echo yes)"
-while read -r number sentence; do has 'the code' "| E$(printf '%03d' "$number") | $sentence"; done < "$w/codes"
-equal 'codes of the manual that no source has' '' "$(grep -oE '^[|] E0[0-9]+' "$manual" | tr -d '| E' | sed 's/^0*//' \
+while read -r number sentence; do has docs/messages.md 'the code' "| E$(printf '%03d' "$number") | $sentence"; done < "$w/codes"
+equal 'codes of docs/messages.md that no source has' '' "$(grep -oE '^[|] E0[0-9]+' docs/messages.md | tr -d '| E' | sed 's/^0*//' \
    | while read -r number; do grep -q "^$number " "$w/codes" || echo "$number"; done)"
 grep -ohE "'E1[0-9][0-9]  " $sources | tr -d "' " | sort -u > "$w/faults"
 equal 'faults are found' yes "$([ "$(wc -l < "$w/faults")" -ge 4 ] && echo yes)"
-while read -r fault; do has 'the code' "| $fault |"; done < "$w/faults"
+while read -r fault; do has docs/messages.md 'the code' "| $fault |"; done < "$w/faults"
 # The English of each phrase of the listing stands before its Polish.
 sed -n "s/.*= phrase_t('\([^']*\)'.*/\1/p" $sources > "$w/phrases"
 equal 'phrases are found' yes "$([ "$(wc -l < "$w/phrases")" -ge 60 ] && echo yes)"
-while IFS= read -r phrase; do has 'the phrase' "$phrase"; done < "$w/phrases"
+while IFS= read -r phrase; do has "$w/reference" 'the phrase' "$phrase"; done < "$w/phrases"
 # Sentences of failures: the words in quotation marks behind `call fail`, those of two words and more.
 awk '/call fail\(/ { on = 1 } on { n = split($0, part, "\047"); for (i = 2; i <= n; i += 2) print part[i] } !/&$/ { on = 0 }' $sources \
    | sed -e 's/^ *//' -e 's/["( ]*$//' | grep -E '^[-A-Za-z]+ .*[A-Z]' | grep -v '^[*]' | sort -u > "$w/sentences"
 equal 'sentences are found' yes "$([ "$(wc -l < "$w/sentences")" -ge 20 ] && echo yes)"
-while IFS= read -r sentence; do has 'the sentence' "$sentence"; done < "$w/sentences"
+while IFS= read -r sentence; do has docs/messages.md 'the sentence' "$sentence"; done < "$w/sentences"
 
-# Links: the file exists and, in a Markdown file, the heading.
-for document in $documents; do
-   grep -oE '(\]\([^)]*\)|src="[^"]*")' "$document" | sed -e 's/^](//' -e 's/)$//' -e 's/^src="//' -e 's/"$//' | sort -u \
-      | while read -r link; do
-         case $link in http*) continue ;; esac
-         file=${link%%#*}
-         target=$document
-         [ -n "$file" ] && target=$(dirname "$document")/$file
-         equal "$document: link $link" yes "$([ -s "$target" ] && echo yes)"
-         case $link in *'#'*)
-            equal "$document: heading of $link" yes "$(sed -n 's/^##* //p' "$target" | tr 'A-Z' 'a-z' | sed -e 's/[^a-z0-9 _-]//g' -e 's/ /-/g' \
-               | grep -qxF -- "${link#*#}" && echo yes)" ;;
-         esac
-      done
+# Each how-to has a deck, a command that runs, and a picture.
+for document in docs/howto/*.md; do
+   for block in '```deck' '```sh' '!['; do equal "$document: $block" yes "$(grep -qF "$block" "$document" && echo yes)"; done
 done
+
+# Tables: each row has the cells of its head, and each error has a cause and a cure.
+for document in $documents src/README.md; do
+   equal "$document: rows of tables with other cells than their heads" '' "$(awk '
+      /^[|]/ { line = $0; gsub(/\\[|]/, "", line); gsub(/`[^`]*`/, "x", line); n = gsub(/[|]/, "", line)
+         if (!cells) cells = n
+         if (n != cells) print FNR
+         next }
+      { cells = 0 }' "$document")"
+done
+equal 'docs/messages.md: errors without cause or cure' '' "$(grep -E '^[|] E[0-9]+ ' docs/messages.md | grep -E '[|] *[|]')"
+
+# Links: the file exists and, in a Markdown file, the heading. They are relative, so that they live where they are installed.
+headings() { sed -n 's/^##* //p' "$1" | tr 'A-Z' 'a-z' | sed -e 's/[^a-z0-9 _-]//g' -e 's/ /-/g'; }
+links() { grep -oE '(\]\([^)]*\)|src="[^"]*")' "$1" | sed -e 's/^](//' -e 's/)$//' -e 's/^src="//' -e 's/"$//' | sort -u; }
+for document in $documents src/README.md; do
+   links "$document" | while read -r link; do
+      case $link in http*) continue ;; esac
+      file=${link%%#*}
+      target=$document
+      [ -n "$file" ] && target=$(dirname "$document")/$file
+      equal "$document: link $link" yes "$([ -s "$target" ] && echo yes)"
+      case $link in *'#'*) equal "$document: heading of $link" yes "$(headings "$target" | grep -qxF -- "${link#*#}" && echo yes)" ;; esac
+   done
+done
+
+# Every document is reached from the README by links alone.
+echo README.md > "$w/reached"
+while :; do
+   before=$(wc -l < "$w/reached")
+   while read -r document; do
+      links "$document" | sed -n 's/#.*//; /[.]md$/p' | while read -r file; do realpath --relative-to=. "$(dirname "$document")/$file"; done
+   done < "$w/reached" > "$w/further"
+   sort -u "$w/reached" "$w/further" > "$w/both" && mv "$w/both" "$w/reached"
+   [ "$(wc -l < "$w/reached")" -eq "$before" ] && break
+done
+for document in $documents; do equal "$document: reached from README.md" yes "$(grep -qxF -- "$document" "$w/reached" && echo yes)"; done
+
 # The example of the modules, against the angles of the rocker in the listing that closed forms have printed.
 equal 'make example' "$(awk '/END OF SET/ { exit } /^ ROCKER / && $2 != "" && NF > 8 { x = $4*atan2(0, -1)/180
       if (!n++ || x < low) low = x

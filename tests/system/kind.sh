@@ -9,7 +9,7 @@ double) real=REAL64; digits=17 ;;
 quad) real=REAL128; digits=36 ;;
 esac
 equal '--version' "KINMAT 1.0, $real" "$("$BUILD/kinmat" --version)"
-equal '--help' "Real numbers: $real." "$("$BUILD/kinmat" --help | tail -n 1)"
+equal '--help' "Real numbers: $real." "$("$BUILD/kinmat" --help | grep "^Real numbers")"
 equal '--help: digits' "the results with $digits digits" "$("$BUILD/kinmat" --help | grep -o 'the results with [0-9]* digits')"
 
 for deck in $(grep -L '^VARY' input/*.deck); do
