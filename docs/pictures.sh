@@ -21,7 +21,7 @@ INPUT DATA|the cards with the values in use
 ...|
 ^ STRUCTURE|
 ^ LINKS|what the deck has
-^ COORDINATES|count: S must equal DRIVES
+^ COORDINATES|count: S equals DRIVES
 ASSUR GROUPS|
 DRIVEN|links moved by a drive
 COUPLER  ROCKER|links solved together: a dyad
@@ -33,7 +33,7 @@ COUPLER  ROCKER|links solved together: a dyad
  M/S|units
 ^ C |
 ...|
-^ BRANCH|every step is certified
+^ CONTINUATION|every step is certified
 ^ END OF SET|no instant is flagged: exit status 0
 END
 sed '1a TITLE   FOUR-BAR LINKAGE' "$deck" | "$kinmat" | awk -v notes="$notes" -f docs/listing.awk > "$to/listing.svg" || exit 1

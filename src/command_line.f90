@@ -224,11 +224,11 @@ contains
          integer :: k, first
 
          if (options%no_listing .and. allocated(options%files(out_listing)%text)) &
-            call fail(failure, status_rejected, 'OPTION --no-listing LEAVES OUT THE LISTING, WHICH -o ASKS FOR')
+            call fail(failure, status_rejected, 'OPTIONS --no-listing AND -o EXCLUDE EACH OTHER')
          first = findloc(to_standard_output(options%files), .true., dim=1)
          do k = 1, out_last
             if (to_standard_output(options%files(k)) .and. k > first) &
-               call fail(failure, status_rejected, 'STANDARD OUTPUT TAKES ONE OUTPUT: ' &
+               call fail(failure, status_rejected, 'ONLY ONE OUTPUT CAN GO TO STANDARD OUTPUT: ' &
                   //trim(file_options(first)%word)//' OR '//trim(file_options(k)%word))
             if (options%check .and. file_options(k)%needs_motion .and. allocated(options%files(k)%text)) &
                call fail(failure, status_rejected, 'OPTION --check COMPUTES NO MOTION, WHICH ' &
@@ -247,7 +247,7 @@ contains
             .or. options%check .or. options%no_listing .or. options%shares > 1 .or. options%jobs > 0 &
             .or. (options%study .and. options%time)) then
             call fail(failure, status_rejected, 'OPTION '//trim(merge('--study', '--time ', options%study)) &
-               //' GOES WITH NO OTHER OPTION BUT -o AND --quiet')
+               //' CAN ONLY BE COMBINED WITH -o AND --quiet')
          else if (options%study .and. (len(options%deck) == 0 .or. options%deck == '/dev/stdin')) then
             call fail(failure, status_rejected, 'OPTION --study NEEDS THE DECK AS A FILE')
          end if
@@ -260,7 +260,7 @@ contains
          type(failure_t), allocatable, intent(out) :: failure
 
          if (len(word) == 0) then
-            call fail(failure, status_rejected, 'AN EMPTY WORD IS NO DECK')
+            call fail(failure, status_rejected, 'THE NAME OF THE DECK IS EMPTY')
          else if (word(1:1) == '-' .and. word /= '-') then
             call fail(failure, status_rejected, 'OPTION '//word//' IS UNKNOWN; SEE kinmat --help')
          else if (has_deck) then

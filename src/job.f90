@@ -117,7 +117,7 @@ contains
          'TOO MANY VARIANTS IN ALL SETS: DIVIDE THE DECK')
       if (options%shares > 1 .and. (allocated(options%files(out_svg)%text) .or. &
          allocated(options%files(out_animation)%text))) call fail(failure, status_rejected, &
-         'OPTION --sets DIVIDES THE VARIANTS OF A DECK WITH VARY CARDS: DRAW IT WITHOUT')
+         'PICTURES OF A DECK WITH VARY CARDS CANNOT BE DIVIDED: OMIT --sets')
       do k = 1, out_last
          if (file_options(k)%each_set .and. allocated(options%files(k)%text)) call fail(failure, status_rejected, &
             'OPTION '//trim(file_options(k)%word)//' TAKES NO DECK WITH VARY CARDS: USE --summary OR --csv')

@@ -13,7 +13,7 @@ program main
    use text_output, only: output_t, open_output, put, close_output
    implicit none
 
-   character(*), parameter :: version = 'KINMAT 1.0, '//wp_name
+   character(*), parameter :: version = 'KINMAT 2.0, '//wp_name
    type(options_t) :: options
    type(failure_t), allocatable :: failure
    character(:), allocatable :: message

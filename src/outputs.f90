@@ -74,7 +74,7 @@ contains
          if (.not. id%device_or_pipe .and. (index(path, '/dev/') /= 1 .or. index(path, '/dev/shm/') == 1)) return
          name = 'FILE '//path
       end if
-      call fail(failure, status_rejected, name//' TAKES THE TABLE OF ONE SET: CHOOSE THE K-TH OF '//whole(count) &
+      call fail(failure, status_rejected, name//' TAKES ONE TABLE ONLY: CHOOSE A SET OF '//whole(count) &
          //' WITH --sets K/'//whole(count))
    end subroutine check_table_of_one
 

@@ -11,7 +11,7 @@ module set_runs
    use deck, only: build_variant
    use deck_variants, only: variation_t
    use progress, only: show_progress, progress_t
-   use listing, only: layout_t, new_layout, listing_instant, listing_end, listing_broken_off
+   use listing, only: layout_t, new_layout, listing_state_t, listing_instant, listing_end, listing_broken_off
    use solver_log, only: log_head, log_instant
    use answers, only: answers_t, new_answers, take_instant, put_answers
    use variant_rows, only: summary_t, variant_row_t, new_summary, new_row, fill_row, note_flag
@@ -206,6 +206,7 @@ contains
       type(variant_row_t), intent(inout) :: row
       type(answers_t), intent(out) :: asked
       type(set_analysis_t) :: a
+      type(listing_state_t) :: state
       integer, allocatable :: every(:)
       logical :: lists, due
       integer :: k
@@ -246,7 +247,7 @@ contains
             if (shown) call sense_set(a)
          end associate
          if (lists .and. (due .or. has_words(a%now))) &
-            call listing_instant(o%files(out_listing, 0), o%layout, m, a%now, k)
+            call listing_instant(o%files(out_listing, 0), o%layout, m, a%now, k, state)
          if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv, 0), m, a%now, k, o%varies, a%assemblies)
          if (o%asked(out_table) .and. due) call table_instant(o%files(out_table, i), o%table, m, a%now)
          if (o%asked(out_plot_table) .and. due) call table_instant(o%files(out_plot_table, i), o%table, m, a%now)

@@ -71,7 +71,7 @@ contains
       end do
       if (k <= processes) then
          status = status_system
-         message = ' *** NO PROCESS FOR'//text_of(k)//' ('//capitals(reason_of(last_error()))//')'
+         message = ' *** CANNOT START A PROCESS FOR'//text_of(k)//' ('//capitals(reason_of(last_error()))//')'
          call interrupt_all(list(:k - 1))
       end if
       call close_one(report)

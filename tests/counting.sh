@@ -97,4 +97,4 @@ moving_four_bar() {
 angle() { awk -v a="$1" -v b="$2" -v c="$3" 'BEGIN { x = (a*a + b*b - c*c)/(2*a*b)
    printf "%.12f", atan2(sqrt(1 - x*x), x)*45/atan2(1, 1) }'; }
 # limit VALUE: ten digits
-limit() { awk -v x="$1" 'BEGIN { printf "%.9E", x }'; }
+limit() { awk -v x="$1" 'BEGIN { printf "%#.10g", x }'; }

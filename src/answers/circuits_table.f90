@@ -12,17 +12,19 @@ module circuits_table
    use names, only: drive_name
    use text_output, only: output_t, put
    use numerals, only: whole
-   use listing_diagnostics, only: limit_words, measure, value_form
-   use listing_layout, only: put_folded
+   use listing_diagnostics, only: at_limit, full_turn_words, measure, value_digits
+   use listing_layout, only: put_folded, angle_unit
    use phrases
    implicit none
    private
    public :: find_all_circuits, put_circuits
 
    !> The ends of the columns of circuit, branch, sign and assemblies; the range of the drive follows.
-   integer, parameter :: column_ends(4) = [9, 17, 22, 34]
+   integer, parameter :: column_ends(4) = [9, 17, 22, 36]
    !> Where a branch has no dead point: a slide goes to infinity, or the circuit could not be followed.
-   type(phrase_t), parameter :: end_words(end_far:end_lost) = [say_no_limit, say_lost]
+   type(phrase_t), parameter :: end_words(end_far:end_lost) = [say_not_limited, say_lost]
+   !> Digits of the drive's value where circuits meet: it is known to the root of a rounding.
+   integer, parameter :: meeting_digits = 6
    !> A value below this is rounding of 0, in rad and in lengths of the order of 1.
    real(wp), parameter :: rounding = 1.0e3_wp*epsilon(1.0_wp)
 
@@ -96,8 +98,9 @@ contains
          row = ' '//phrase(say_circuit, m%polish)
          row(column_ends(1) + 1:) = phrase(say_branch, m%polish)
          row(column_ends(2) + 1:) = 'DET'
-         row(column_ends(3) + 1:) = phrase(say_assemblies, m%polish)
-         call put(o, row//phrase(say_one_range, m%polish))
+         row(column_ends(3) + 1:) = phrase(say_assembly_number, m%polish)
+         call put(o, row//phrase(say_range_of, m%polish)//' '//trim(drive_name(m, m%drives(found%drive)))//', ' &
+            //trim(merge(angle_unit(m), m%length_unit, found%curve%is_angle)))
          do k = 1, size(found%branches)
             associate (b => found%branches(k))
                numbers = words_of(pack(found%assemblies%number, found%assemblies%branch == k))
@@ -117,15 +120,18 @@ contains
       subroutine put_dead_points(found)
          type(circuits_t), intent(in) :: found
          type(diagnostic_t) :: limit
+         character(:), allocatable :: line
          integer :: d, k
 
          if (size(found%dead) > 0) call put(o, ' '//phrase(say_dead_points, m%polish))
          do d = 1, size(found%dead)
             limit = found%dead(d)%limit
             limit%value = known(limit%value, rounding)
-            call put_folded(o, '   ', phrase(say_branch, m%polish)//words_of(pack([(k, k=1, size(found%branches))], &
-               [(any(found%branches(k)%dead == d), k=1, size(found%branches))]))//'   '//limit_words(m, limit), &
-               repeat(' ', 6))
+            line = meeting_words(say_branch, say_branches, pack([(k, k=1, size(found%branches))], &
+               [(any(found%branches(k)%dead == d), k=1, size(found%branches))]), m%polish)//' ' &
+               //measure(m, limit, value_digits)
+            if (limit%links(1) > 0) line = line//', '//at_limit(m, limit)
+            call put_folded(o, '   ', line, repeat(' ', 6))
          end do
       end subroutine put_dead_points
 
@@ -136,9 +142,9 @@ contains
 
          if (size(found%meetings) > 0) call put(o, ' '//phrase(say_change_points, m%polish))
          do i = 1, size(found%meetings)
-            call put(o, '   '//phrase(say_circuit, m%polish) &
-               //words_of(pack([(k, k=1, size(found%list))], found%meetings(i)%circuits))//'   ' &
-               //value_words(m, found, known(found%meetings(i)%value, sqrt(epsilon(1.0_wp))), '(es13.5)'))
+            call put(o, '   '//meeting_words(say_circuit, say_circuit_numbers, &
+               pack([(k, k=1, size(found%list))], found%meetings(i)%circuits), m%polish)//' ' &
+               //value_words(m, found, known(found%meetings(i)%value, sqrt(epsilon(1.0_wp))), meeting_digits))
          end do
       end subroutine put_change_points
    end subroutine put_circuits
@@ -153,21 +159,28 @@ contains
 
       associate (circuit => found%list(b%circuit))
          if (circuit%rests) then
-            text = phrase(say_at_rest, m%polish)//' '//value_words(m, found, known(b%range(1), rounding), value_form)
+            text = phrase(say_at_rest, m%polish)//' '//value_words(m, found, known(b%range(1), rounding), value_digits)
          else if (all(circuit%ends == end_closed) .and. all(b%dead == 0)) then
-            text = phrase(say_all, m%polish)//' '//whole(turns_of(circuit))
+            text = full_turn_words(turns_of(circuit), m%polish)
          else
-            text = ''
+            text = without_unit(b%range(1))//' .. '//without_unit(b%range(2))
             do side = 1, 2
-               text = text//side_words(side)//'  '
-               if (b%dead(side) == 0) text = text//phrase(end_words(end_of(b, circuit, side)), m%polish)//' '
-               text = text//value_words(m, found, known(b%range(side), rounding), value_form)
-               if (side == 1) text = text//'   '
+               if (b%dead(side) == 0) text = text//'   '//side_words(side)//': ' &
+                  //phrase(end_words(end_of(b, circuit, side)), m%polish)
             end do
          end if
       end associate
 
    contains
+
+      !> The value `x` of the drive in the unit of the table.
+      function without_unit(x) result(words)
+         real(wp), intent(in) :: x
+         character(:), allocatable :: words
+
+         words = value_words(m, found, known(x, rounding), value_digits)
+         words = words(:index(words, ' ') - 1)
+      end function without_unit
 
       !> How `circuit` ends where its branch `b` has no dead point on a `side`.
       pure integer function end_of(b, circuit, side)
@@ -182,14 +195,14 @@ contains
    end function range_words
 
    !> The value `x` (rad or length) of the free drive of `found`, with its unit.
-   function value_words(m, found, x, form) result(words)
+   function value_words(m, found, x, digits) result(words)
       type(mechanism_t), intent(in) :: m
       type(circuits_t), intent(in) :: found
       real(wp), intent(in) :: x
-      character(*), intent(in) :: form
+      integer, intent(in) :: digits
       character(:), allocatable :: words
 
-      words = measure(m, diagnostic_t(kind=diagnostic_limit, is_angle=found%curve%is_angle, value=x), form)
+      words = measure(m, diagnostic_t(kind=diagnostic_limit, is_angle=found%curve%is_angle, value=x), digits)
    end function value_words
 
    !> `x` (rad or length), 0 where it is no larger than `error`.
@@ -198,6 +211,24 @@ contains
 
       known = merge(0.0_wp, x, abs(x) <= error)
    end function known
+
+   !> BRANCHES 1 AND 2 MEET AT, or BRANCH 1 AT
+   function meeting_words(one, many, numbers, polish) result(text)
+      type(phrase_t), intent(in) :: one, many
+      integer, intent(in) :: numbers(:)
+      logical, intent(in) :: polish
+      character(:), allocatable :: text
+      integer :: n
+
+      n = size(numbers)
+      if (n == 1) then
+         text = phrase(one, polish)//words_of(numbers)
+      else
+         text = phrase(many, polish)//words_of(numbers(:n - 1))//' '//phrase(say_and, polish)//words_of(numbers(n:)) &
+            //' '//phrase(say_meet, polish)
+      end if
+      text = text//' '//phrase(say_at, polish)
+   end function meeting_words
 
    !> The `numbers`, a blank before each.
    pure function words_of(numbers) result(text)

@@ -1,13 +1,14 @@
 !> The table of extremes at the end of a set, with the columns of the other tables: below the name of a link, point or
-!> pair its least and greatest values, each with its time and the value of the first drive of its mechanism, the
-!> stroke, and in a cyclic motion the times of the forward and the return stroke with their ratio; then the dwells.
+!> pair its least and greatest values, each with its time and the value of the first drive of its mechanism, and the
+!> stroke; in a cyclic motion the times of the forward and the return stroke with their ratio; then the dwells. What
+!> does not vary is blank, and what has nothing that varies is left out.
 module extremes_table
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_t, request_pair, driven_kinds
-   use names, only: subject_name, more
+   use mechanism, only: mechanism_t, request_t, request_pair
+   use names, only: drive_name, subject_name, more
    use set_analysis, only: set_analysis_t
    use listing_layout, only: layout_t, digits_t, line_length, name_length, row_length
-   use listing_tables, only: table_t, put_times, put_heads, time_text, drive_text, known_text
+   use listing_tables, only: listing_state_t, put_times, put_heads, time_text, drive_text, known_text
    use text_output, only: output_t, put
    use numerals, only: numeral_length
    use known_digits, only: unknown_digit
@@ -33,55 +34,81 @@ contains
       type(set_analysis_t), intent(in) :: s
       type(extremes_t), intent(in) :: x
       type(dwell_t), intent(in) :: dwells(:)
-      type(table_t) :: table
+      type(listing_state_t) :: table
       type(digits_t) :: d
       integer :: q, k, drive
-      character(:), allocatable :: driven_name
+      logical :: moves
+      character(:), allocatable :: driven
 
-      call put_times(o, l, ' '//phrase(say_extremes, m%polish), [m%t0, m%t1], table%masked)
+      call put_times(o, l, ' '//phrase(say_extremes, m%polish), [m%t0, m%t1], table)
+      moves = .false.
       do q = 1, size(x%asked)
+         if (.not. any_varies()) cycle
+         moves = .true.
          associate (i => x%asked(q))
             d = l%own(l%part(i))
             call put_heads(o, l, d, m%requests(i)%kind, table)
             drive = first_drive(i)
-            if (drive > 0) driven_name = trim(subject_name(m, driven_kinds(m%drives(drive)%kind), &
-               m%drives(drive)%subject))
+            if (drive > 0) driven = trim(drive_name(m, m%drives(drive)))
             call put_subject()
             do k = 1, size(dwells)
                if (dwells(k)%asked == q) call put_dwell(i, dwells(k))
             end do
          end associate
       end do
+      if (.not. moves) call put(o, ' '//phrase(say_at_rest, m%polish))
       if (table%masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, m%polish))
       call put_gaps(x%open, say_may_be_missed)
       call put_gaps(x%gaps, say_not_covered)
 
    contains
 
+      !> Whether column `c`, derivative `k`, of asked row `q` has two values, or one that is not known.
+      pure logical function varies(c, k)
+         integer, intent(in) :: c, k
+
+         associate (e => x%found(:, c, k, q))
+            varies = abs(e(greatest)%t - e(least)%t) > 0.0_wp .or. .not. all(e%exists .and. e%has_bound)
+         end associate
+      end function varies
+
+      !> The same of any of its numbers.
+      pure logical function any_varies()
+         integer :: c, k
+
+         any_varies = any([((varies(c, k), c=1, x%columns(q)), k=0, 2)])
+      end function any_varies
+
       !> The rows of asked row `q`.
       subroutine put_subject()
-         character(numeral_length), dimension(3, 0:2) :: value, time, driven
+         character(numeral_length), dimension(3, 0:2) :: value, time, place
          integer :: which, c, k
 
          associate (request => m%requests(x%asked(q)))
-            call put(o, ' '//trim(subject_name(m, request%kind, request%subject)))
+            if (drive > 0) then
+               call put(o, ' '//subject_name(m, request%kind, request%subject)//'   ' &
+                  //phrase(say_drive, m%polish)//' '//driven//','//l%drives(drive)%behind)
+            else
+               call put(o, ' '//trim(subject_name(m, request%kind, request%subject)))
+            end if
             do which = least, greatest
                value = ''
                time = ''
-               driven = ''
+               place = ''
                do k = 0, 2
                   do c = 1, x%columns(q)
+                     if (.not. varies(c, k)) cycle
                      associate (e => x%found(which, c, k, q))
                         value(c, k) = value_text(e, x%is_angle(c, q), k)
                         if (.not. e%exists) cycle
                         time(c, k) = time_text(l, e%t, e%t_error)
-                        if (drive > 0) driven(c, k) = drive_text(l%drives(drive), e%t, e%t_error)
+                        if (drive > 0) place(c, k) = drive_text(l%drives(drive), e%t, e%t_error)
                      end associate
                   end do
                end do
                call put_fields(request, extreme_words(which), value)
-               call put_fields(request, 'T', time)
-               if (drive > 0) call put_fields(request, driven_name, driven)
+               call put_fields(request, phrase(say_at_time, m%polish), time)
+               if (drive > 0) call put_fields(request, phrase(say_at_drive, m%polish), place)
             end do
          end associate
          call put_strokes()
@@ -104,39 +131,41 @@ contains
          end if
       end function value_text
 
-      !> The stroke of each coordinate, and where the motion is cyclic the times of both strokes and their ratio, the
-      !> longer over the shorter.
+      !> The stroke of each coordinate that varies; then, where the motion is cyclic, a line for each with the times of
+      !> both strokes and their ratio, the longer over the shorter.
       subroutine put_strokes()
-         character(numeral_length), dimension(3, 0:2) :: stroke, forward, return, ratio
-         real(wp) :: times(2), error
+         character(numeral_length) :: stroke(3, 0:2)
          integer :: c
 
          stroke = ''
-         forward = ''
-         return = ''
-         ratio = ''
-         associate (request => m%requests(x%asked(q)))
-            do c = 1, x%columns(q)
-               associate (e => x%found(:, c, 0, q))
-                  if (.not. all(e%exists .and. e%has_bound)) cycle
-                  stroke(c, 0) = number_text(e(greatest)%value - e(least)%value, sum(e%error), &
-                     x%is_angle(c, q), 0)
-                  times = stroke_times(x, q, c)
-                  if (any(times <= 0.0_wp)) cycle
-                  error = sum(e%t_error)
-               end associate
-               forward(c, 0) = time_text(l, times(1), error)
-               return(c, 0) = time_text(l, times(2), error)
-               error = error*sum(times)/minval(times)**2
-               ratio(c, 0) = known_text(maxval(times)/minval(times), ratio_decimals, 0, error)
-            end do
-            call put_fields(request, phrase(say_stroke, m%polish), stroke)
-            if (all(forward == '')) return
-            call put_fields(request, 'MIN-MAX', forward)
-            call put_fields(request, 'MAX-MIN', return)
-            call put_fields(request, phrase(say_ratio, m%polish), ratio)
-         end associate
+         do c = 1, x%columns(q)
+            associate (e => x%found(:, c, 0, q))
+               if (varies(c, 0) .and. all(e%exists .and. e%has_bound)) stroke(c, 0) = &
+                  number_text(e(greatest)%value - e(least)%value, sum(e%error), x%is_angle(c, q), 0)
+            end associate
+         end do
+         if (any(stroke /= '')) call put_fields(m%requests(x%asked(q)), phrase(say_stroke, m%polish), stroke)
+         do c = 1, x%columns(q)
+            if (stroke(c, 0) /= '') call put_stroke_times(c)
+         end do
       end subroutine put_strokes
+
+      !> PHI   TIME MIN TO MAX 6.25682 S   TIME MAX TO MIN 5.74318 S   TIME RATIO 1.089437
+      subroutine put_stroke_times(c)
+         integer, intent(in) :: c
+         real(wp) :: times(2), error
+         character(:), allocatable :: line
+
+         times = stroke_times(x, q, c)
+         if (any(times <= 0.0_wp)) return
+         error = sum(x%found(:, c, 0, q)%t_error)
+         line = '  '//column_name(x%asked(q), c)//'   '//phrase(say_forward, m%polish)//' ' &
+            //time_text(l, times(1), error)//l%behind_time//'   '//phrase(say_return, m%polish)//' ' &
+            //time_text(l, times(2), error)//l%behind_time//'   '//phrase(say_ratio, m%polish)//' ' &
+            //known_text(maxval(times)/minval(times), ratio_decimals, 0, error*sum(times)/minval(times)**2)
+         table%masked = table%masked .or. index(line, unknown_digit) > 0
+         call put(o, line)
+      end subroutine put_stroke_times
 
       !> A line for a dwell: of which coordinate, within what distance of what, from when to when.
       subroutine put_dwell(i, dwell)
@@ -148,7 +177,7 @@ contains
             //extreme_words(dwell%which)//' +- ' &
             //number_text(dwell%distance, 0.0_wp, x%is_angle(dwell%column, q), 0) &
             //'   T = '//time_text(l, dwell%from, dwell%error(1))//' .. '//time_text(l, dwell%to, dwell%error(2))
-         if (drive > 0) line = line//'   '//driven_name//' = ' &
+         if (drive > 0) line = line//'   '//driven//' = ' &
             //drive_text(l%drives(drive), dwell%from, dwell%error(1))//' .. ' &
             //drive_text(l%drives(drive), dwell%to, dwell%error(2))
          table%masked = table%masked .or. index(line, unknown_digit) > 0
@@ -202,8 +231,8 @@ contains
          if (len(label) > 7) line = ' '//label
          do k = 0, 2
             do c = 1, x%columns(q)
-               associate (first => name_length + numeral_length*(3*k + column_of(m, request, c) - 1))
-                  line(first + 1:first + numeral_length) = adjustr(fields(c, k))
+               associate (last => name_length + numeral_length*l%column(column_of(m, request, c), k, request%kind))
+                  line(last - numeral_length + 1:last) = adjustr(fields(c, k))
                end associate
             end do
          end do

@@ -15,7 +15,7 @@ module ranges
    use names, only: drive_name
    use text_output, only: output_t, put
    use numerals, only: whole
-   use listing_diagnostics, only: limit_words
+   use listing_diagnostics, only: limit_words, full_turn_words
    use listing_layout, only: put_folded
    use phrases
    implicit none
@@ -83,7 +83,7 @@ contains
          associate (r => list(i))
             call put(o, ' '//trim(drive_name(m, m%drives(r%drive))))
             if (r%is_all) then
-               call put(o, '   '//phrase(say_all, m%polish)//' '//whole(r%turns))
+               call put(o, '   '//full_turn_words(r%turns, m%polish))
             else
                do side = low, high
                   words = limit_words(m, r%limit(side))

@@ -130,22 +130,23 @@ contains
       type(share_t), intent(in) :: share
       type(digits_t) :: d
       character(:), allocatable :: unit
-      integer :: column, what, decimals
+      integer :: column, coordinate, what, decimals
       real(wp) :: size_of
 
       if (.not. allocated(share%s)) return
       associate (request => m%requests(i))
-         column = column_of(m, request, c)
-         what = dimension_of(column)
+         coordinate = column_of(m, request, c)
+         column = l%column(coordinate, k, request%kind)
+         what = dimension_of(coordinate)
          size_of = merge(l%angle, 1.0_wp, what == 2)
          d = l%own(l%part(i))
          decimals = d%decimals(what, k) + l%more_decimals
          if (share%root/size_of < 0.5_wp*10.0_wp**(d%power(what, k) - decimals)) return
-         unit = unit_of(d%power(what, k), column_text(l%units(1, request%kind), column, k) &
-            //column_text(l%units(2, request%kind), column, k))
+         unit = unit_of(d%power(what, k), column_text(l%units(1, request%kind), column) &
+            //column_text(l%units(2, request%kind), column))
          call put(o, ' '//trim(l%names(request%kind)(2:name_length))//' ' &
             //trim(subject_name(m, request%kind, request%subject))//'  ' &
-            //column_text(l%names(request%kind), column, k)//'   T = '//time_text(l, share%t)//l%behind_time &
+            //column_text(l%names(request%kind), column)//'   T = '//time_text(l, share%t)//l%behind_time &
             //'   RSS = '//value_text(share%root)//'   '//phrase(say_worst, m%polish)//' = ' &
             //value_text(share%worst)//' '//unit)
       end associate

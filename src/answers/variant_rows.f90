@@ -212,10 +212,10 @@ contains
          integer :: place
 
          place = column_of(m, m%requests(i), coordinate)
-         associate (kind => m%requests(i)%kind)
+         associate (kind => m%requests(i)%kind, column => l%column(place, k, m%requests(i)%kind))
             c%printed = .true.
-            c%heads = heads_of(subject_name(m, kind, m%requests(i)%subject), column_text(l%names(kind), place, k))
-            c%unit = column_text(l%units(1, kind), place, k)//column_text(l%units(2, kind), place, k)
+            c%heads = heads_of(subject_name(m, kind, m%requests(i)%subject), column_text(l%names(kind), column))
+            c%unit = column_text(l%units(1, kind), column)//column_text(l%units(2, kind), column)
          end associate
          c%angular = angular
          d = l%own(l%part(i))

@@ -5,7 +5,7 @@ module variant_tables
    use mechanism, only: mechanism_t
    use motion, only: mark_none
    use listing, only: words_of_mark
-   use listing_layout, only: layout_t, line_length, put_folded, unit_of
+   use listing_layout, only: layout_t, line_length, put_folded, power_text, unit_of
    use listing_tables, only: known_text
    use listing_diagnostics, only: put_diagnostics
    use csv, only: add_name
@@ -125,7 +125,7 @@ contains
       text = trim(c%unit)
       if (k < 3) text = trim(c%heads(min(k, 2)))
       if (k == 3) text = ''
-      if (k == 3 .and. c%power /= 0) text = '10**'//whole(c%power)
+      if (k == 3 .and. c%power /= 0) text = power_text(c%power)
    end function head_text
 
    !> The lines of the row `r`, and below them why there is not all of it.

@@ -5,8 +5,8 @@ module analysis
    use structure, only: structure_t
    use drive_excursion, only: has_pole_between, short_of_pole
    use motion, only: motion_t, forget_links, known_of, mark_none, mark_not_converged, mark_singular, mark_overflow, &
-      mark_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_limit, diagnostic_long, &
-      diagnostic_close, diagnostic_begins
+      mark_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_limit, &
+      diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, branch_none, branch_first, branch_same, &
       branch_crossed
    use convergence, only: convergence_t, closure_error_t, ended_inconsistent, ended_unsought
@@ -224,12 +224,17 @@ contains
       if (.not. (a%follows .and. has_pole_between(a%drives, a%t, t))) call a%engine%get_driven_links(t, found)
       a%convergence = convergence_t(ended=ended_unsought)
       a%branch = branch_t()
-      if (.not. a%is_lost) then
-         if (limit_before(a%limits, t) > 0) then
-            call add_diagnostics(a%limits%side(limit_before(a%limits, t))%diagnostics, found)
-         else
-            call add_diagnostics([diagnostic_t(kind=diagnostic_long, t=a%t)], found)
-         end if
+      if (limit_before(a%limits, t) > 0) then
+         associate (told => a%limits%side(limit_before(a%limits, t))%diagnostics)
+            if (.not. a%is_lost) then
+               call add_diagnostics(told, found)
+            else if (any(told%kind == diagnostic_limit)) then
+               call add_diagnostics([diagnostic_t(kind=diagnostic_beyond, &
+                  t=told(findloc(told%kind, diagnostic_limit, dim=1))%t)], found)
+            end if
+         end associate
+      else if (.not. a%is_lost) then
+         call add_diagnostics([diagnostic_t(kind=diagnostic_long, t=a%t)], found)
       end if
       a%is_lost = .true.
    end subroutine pass_over

@@ -22,7 +22,7 @@ module branch_certificate
       real(wp) :: kantorovich_ratio = 0.0_wp     !< their largest correction over the distance of the next root
    end type branch_t
 
-   !> Sums over the instants of a set, for the listing's line BRANCH.
+   !> Sums over the instants of a set, for the listing's line CONTINUATION.
    type :: certificate_counts_t
       integer :: followed = 0    !< instants with a certificate
       integer :: passed = 0      !< change points

@@ -5,8 +5,8 @@ module diagnosis
    use kinds, only: wp
    use mechanism, only: mechanism_t, place_links, wanted_links
    use motion, only: motion_t, new_motion, mark_not_converged, mark_singular, diagnostic_t, diagnostic_inconsistent, &
-      diagnostic_limit, diagnostic_close, diagnostic_far_estimate, diagnostic_second, diagnostic_mobile, &
-      diagnostic_idle, diagnostic_repeated, diagnostic_method
+      diagnostic_limit, diagnostic_beyond, diagnostic_close, diagnostic_far_estimate, diagnostic_second, &
+      diagnostic_mobile, diagnostic_idle, diagnostic_repeated, diagnostic_method
    use convergence, only: ended_elsewhere
    use structure, only: structure_t
    use dense_start, only: by_blocks
@@ -23,6 +23,7 @@ module diagnosis
    type :: opinion_t
       logical :: is_lost = .false.      !< no position was found
       logical :: has_begun = .false.    !< a position was found before
+      real(wp), allocatable :: limit    !< of the motion, which was told of an instant before; from there on it is lost
    end type opinion_t
 
 contains
@@ -53,15 +54,33 @@ contains
       is_said = a%follows .and. o%is_lost
       if (allocated(found%diagnostics)) is_said = is_said .or. any(found%diagnostics%is_pole)
       if (found%mark == mark_not_converged) then
-         if (.not. is_said) call say_why(m, a, o%is_lost, structure, found, last)
+         if (.not. is_said) then
+            call say_why(m, a, o%is_lost, structure, found, last)
+            call note_limit(o, found)
+         else if (allocated(o%limit)) then
+            found%diagnostics = [diagnostic_t(kind=diagnostic_beyond, t=o%limit)]
+         end if
       else if (found%mark == mark_singular) then
          call judge_singularity(m, .not. o%has_begun, found)
       else if (.not. o%has_begun) then
          call say_how_far(m, found)
       end if
+      if (.not. a%is_lost .and. allocated(o%limit)) deallocate (o%limit)
       o%is_lost = a%is_lost
       o%has_begun = a%has_begun
    end subroutine ask_blocks
+
+   !> Keeps the limit of the motion that `found` tells, if it tells one.
+   pure subroutine note_limit(o, found)
+      type(opinion_t), intent(inout) :: o
+      type(motion_t), intent(in) :: found
+      integer :: i
+
+      if (.not. allocated(found%diagnostics)) return
+      do i = 1, size(found%diagnostics)
+         if (found%diagnostics(i)%kind == diagnostic_limit) o%limit = found%diagnostics(i)%t
+      end do
+   end subroutine note_limit
 
    !> Why there is no position, from the position `last` (3, links) that is followed or, without one, from the estimate,
    !> by blocks of the `structure`; `is_known`: the instant before had none either.

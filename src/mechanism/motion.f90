@@ -10,7 +10,7 @@ module motion
    public :: diagnostic_inconsistent, diagnostic_limit, diagnostic_far_estimate, diagnostic_second, &
       diagnostic_redundant, diagnostic_mobile, diagnostic_change, diagnostic_long, diagnostic_close, &
       diagnostic_unused, diagnostic_dead_end, diagnostic_idle, diagnostic_repeated, diagnostic_method, &
-      diagnostic_singular, diagnostic_begins
+      diagnostic_singular, diagnostic_beyond, diagnostic_begins
 
    !> The kinds of diagnostics, and the components that each uses.
    enum, bind(c)
@@ -28,6 +28,7 @@ module motion
       enumerator :: diagnostic_repeated         !< other drives already give what `drive` drives
       enumerator :: diagnostic_method           !< another method finds a position
       enumerator :: diagnostic_close            !< at `t` the motion is blocked, and no limit is told
+      enumerator :: diagnostic_beyond           !< the instant lies beyond the limit of motion at `t`, told before
       enumerator :: diagnostic_begins           !< a motion begins, and positions before do not say in which assembly
       enumerator :: diagnostic_singular         !< the position of `links` is singular: a part of its mark's sentence
    end enum

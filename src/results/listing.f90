@@ -3,22 +3,24 @@
 module listing
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use motion, only: mark_none, mark_singular, mark_inconsistent, singular_unclear, singular_dead, diagnostic_t
+   use motion, only: mark_none, mark_not_converged, mark_singular, mark_inconsistent, singular_unclear, &
+      singular_dead, diagnostic_t
    use structure, only: findings_t, group_t, spare_drives_text
    use branch_certificate, only: certificate_counts_t
    use points, only: is_listed, row_t
    use sensitivities, only: has_tolerances
-   use set_motion, only: set_motion_t, is_flagged, in_set, find_row_in_set, doubt_in_set, spread_in_set
+   use set_motion, only: set_motion_t, is_flagged, has_words, in_set, find_row_in_set, doubt_in_set, spread_in_set
    use listing_layout, only: layout_t, new_layout
-   use listing_tables, only: table_t, no_table, put_instant, put_requested, put_spreads
-   use listing_diagnostics, only: put_diagnostics, put_singular, put_closure_error, remarks_text
+   use listing_tables, only: listing_state_t, no_table, put_instant, put_requested, put_spreads
+   use listing_diagnostics, only: put_diagnostics, no_position_words, put_singular, put_closure_error, remarks_text
    use text_output, only: output_t, put, add
    use numerals, only: whole
    use known_digits, only: unknown_digit
    use phrases
    implicit none
    private
-   public :: layout_t, new_layout, listing_head, listing_instant, listing_end, listing_broken_off, words_of_mark
+   public :: layout_t, new_layout, listing_state_t, listing_head, listing_instant, listing_end, listing_broken_off, &
+      words_of_mark
 
    !> Why there is not all of a motion, by its mark.
    type(phrase_t), parameter :: mark_words(mark_none:mark_inconsistent) = &
@@ -69,6 +71,8 @@ contains
          call put(o, ' '//phrase(say_coordinates, pl)//' W = '//whole(f%coordinates)//';  '//phrase(say_equations, pl) &
             //' R = '//whole(f%equations)//';  '//phrase(say_degrees_of_freedom, pl)//' S = ' &
             //whole(f%degrees_of_freedom)//';  '//phrase(say_drives, pl)//' '//whole(f%drives))
+         if (f%degrees_of_freedom < f%drives .and. f%spare_drives == 0) call put(o, ' --- '//phrase(say_repeating, pl) &
+            //' '//whole(f%drives - f%degrees_of_freedom))
          if (f%spare_drives > 0) call put(o, ' --- '//phrase(say_spare_drives, pl)//' '//spare_drives_text(m, f, pl))
       end associate
       if (allocated(f%groups)) call put_groups(o, m, f%groups)
@@ -101,27 +105,33 @@ contains
    end subroutine put_groups
 
    !> The tables of instant number `step` (0, 1, ...) of the motions `s` of `m`, as far as the deck asks for them there;
-   !> digits that rounding leaves open are masked. Then what there is to say of the instant.
-   subroutine listing_instant(o, l, m, s, step)
+   !> digits that rounding leaves open are masked. Then what there is to say of the instant. `table`: as the instant
+   !> before has left it; after remarks the next instant has its heads again.
+   subroutine listing_instant(o, l, m, s, step, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(in) :: s
       integer, intent(in) :: step
-      type(table_t) :: table
+      type(listing_state_t), intent(inout) :: table
       type(row_t) :: row
       real(wp) :: error(3, 0:2)
       integer :: i, c, k
+      logical :: begun
 
+      begun = .false.
+      table%masked = .false.
       do i = 1, size(m%requests)
          if (.not. is_listed(m, m%requests(i), step)) cycle
-         if (table%kind == no_table) call put_instant(o, l, s%motions(1)%t, step, table%masked)
+         if (.not. begun) call put_instant(o, l, s%motions(1)%t, step, table)
+         begun = .true.
          call find_row_in_set(m, s, i, row)
          error = doubt_in_set(row, s, i)
          call put_requested(o, l, m, i, row, error, table)
          if (has_tolerances(m, m%requests(i))) call put_spreads(o, l, m, i, row, spread_in_set(m, s, i), table)
       end do
-      if (table%kind == no_table .and. is_flagged(s)) call put_instant(o, l, s%motions(1)%t, step, table%masked)
+      if (.not. begun .and. is_flagged(s)) call put_instant(o, l, s%motions(1)%t, step, table)
+      if (table%masked .or. has_words(s)) table%kind = no_table
       call put_marks(o, m, s)
       if (table%masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, m%polish))
       do c = 1, size(s%motions)
@@ -136,9 +146,17 @@ contains
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(in) :: s
+      character(:), allocatable :: line, lines
       integer :: k, i, c
 
-      do k = mark_none + 1, mark_inconsistent
+      lines = ''
+      do c = 1, size(s%motions)
+         if (s%motions(c)%mark /= mark_not_converged) cycle
+         line = ' *** '//no_position_words(m, s%motions(c)%diagnostics)//new_line('a')
+         if (index(lines, line) == 0) lines = lines//line
+      end do
+      if (len(lines) > 0) call put(o, lines(:len(lines) - 1))
+      do k = mark_singular, mark_inconsistent
          if (k /= mark_singular) then
             if (any(s%motions%mark == k)) call put(o, ' *** '//words_of_mark(k, singular_unclear, m%polish))
             cycle
@@ -180,9 +198,9 @@ contains
       end if
       if (present(diagnostics)) call put_diagnostics(o, m, diagnostics)
       associate (c => certificate_counts)
-         call put(o, ' '//phrase(say_branch, m%polish)//':  '//phrase(say_followed, m%polish)//' '//whole(c%followed) &
-            //', '//phrase(say_passed, m%polish)//' '//whole(c%passed) &
-            //', '//phrase(say_uncertain, m%polish)//' '//whole(c%uncertain))
+         call put(o, ' '//phrase(say_continuation, m%polish)//':  '//phrase(say_certified, m%polish)//' ' &
+            //whole(c%followed)//' '//phrase(say_out_of, m%polish)//' '//whole(c%followed + c%uncertain) &
+            //', '//phrase(say_passed, m%polish)//' '//whole(c%passed))
       end associate
       end_of = ' '//phrase(say_end, m%polish)//' '//whole(m%set_number)
       if (m%variant > 0) end_of = ' '//phrase(say_end_variant, m%polish)//' '//whole(m%variant)

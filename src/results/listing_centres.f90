@@ -5,9 +5,9 @@ module listing_centres
    use mechanism, only: mechanism_t, request_pole, request_curve
    use points, only: row_t, has_number, centre_numbers
    use instant_centres, only: centre_finite, centre_infinite
-   use listing_layout, only: layout_t, digits_t, dimension_of, angle_unit
+   use listing_layout, only: layout_t, digits_t, dimension_of, angle_unit, power_text
    use text_output, only: output_t, put
-   use numerals, only: whole, numeral_length
+   use numerals, only: numeral_length
    use known_digits, only: put_known, unknown_digit, nothing_known
    use phrases
    implicit none
@@ -42,7 +42,7 @@ contains
             call put_end(angle_unit(m), i, units)
          else
             call put_end(m%length_unit, i, units)
-            if (d%power(1, 0) /= 0) call put_end('10**'//whole(d%power(1, 0)), i, powers)
+            if (d%power(1, 0) /= 0) call put_end(power_text(d%power(1, 0)), i, powers)
          end if
       end do
       call put(o, trim(names))

@@ -5,16 +5,18 @@ module listing_diagnostics
    use mechanism, only: mechanism_t, remark_t, remark_small_letters, remark_more
    use motion
    use names, only: drive_name, listed, more
-   use numerals, only: whole
+   use numerals, only: whole, put_fixed, numeral_length
    use text_output, only: output_t, put
    use phrases
-   use listing_layout, only: put_folded, angle_unit
+   use listing_layout, only: put_folded, angle_unit, choose_time_digits, unit_of
    implicit none
    private
-   public :: limit_words, measure, value_form, put_diagnostics, put_singular, put_closure_error, remarks_text
+   public :: limit_words, at_limit, full_turn_words, measure, value_digits, put_diagnostics, no_position_words, &
+      put_singular, put_closure_error, remarks_text
 
-   !> Where a drive or the time is told closely: ten digits, or as many as a coarser real has.
-   character(*), parameter :: value_form = merge('(es17.9)', '(es17.5)', precision(1.0_wp) >= 10)
+   !> Digits of the value of a drive at a limit, or as many as a coarser real has; of a closure error or an angle that
+   !> is off.
+   integer, parameter :: value_digits = merge(10, 6, precision(1.0_wp) >= 10), error_digits = 3
    !> What concerns the results.
    integer, parameter :: of_results(*) = [diagnostic_inconsistent, diagnostic_limit, diagnostic_mobile, &
       diagnostic_long, diagnostic_close, diagnostic_unused, diagnostic_dead_end, diagnostic_idle, diagnostic_repeated]
@@ -59,7 +61,7 @@ contains
          //': '//text
    end function words_of_remark
 
-   !> A line or two for each diagnostic of `list`.
+   !> A line for each diagnostic of `list` that no mark has told.
    subroutine put_diagnostics(o, m, list)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
@@ -67,11 +69,25 @@ contains
       integer :: i
 
       do i = 1, size(list)
-         call put_folded(o, merge(' *** ', ' --- ', any(list(i)%kind == of_results)), words_of(m, list(i)))
-         if (list(i)%kind == diagnostic_limit .and. .not. list(i)%is_pole) &
-            call put_folded(o, ' *** ', at_limit(m, list(i)))
+         if (list(i)%kind /= diagnostic_beyond) &
+            call put_folded(o, merge(' *** ', ' --- ', any(list(i)%kind == of_results)), words_of(m, list(i)))
       end do
    end subroutine put_diagnostics
+
+   !> Why there is no position where `list` has the diagnostics: the limit of motion before it, or none that is known.
+   function no_position_words(m, list) result(text)
+      type(mechanism_t), intent(in) :: m
+      type(diagnostic_t), intent(in), optional :: list(:)
+      character(:), allocatable :: text
+      integer :: i
+
+      text = phrase(say_no_position, m%polish)
+      if (.not. present(list)) return
+      do i = 1, size(list)
+         if (any(list(i)%kind == [diagnostic_limit, diagnostic_beyond])) &
+            text = phrase(say_beyond, m%polish)//' '//time(m, list(i)%t)
+      end do
+   end function no_position_words
 
    !> The sentence `words` of a singular position, with the links of `r` before its colon.
    subroutine put_singular(o, m, words, r)
@@ -89,7 +105,7 @@ contains
       end if
    end subroutine put_singular
 
-   !> LINKS A, B AT THE LIMIT, IN LINE
+   !> LINKS A, B AT THE LIMIT, COLLINEAR
    function at_limit(m, r) result(text)
       type(mechanism_t), intent(in) :: m
       type(diagnostic_t), intent(in) :: r
@@ -118,16 +134,16 @@ contains
       text = ''
       select case (r%kind)
       case (diagnostic_inconsistent)
-         text = owner(m, r)//' '//phrase(say_closure_error_of, m%polish)//' '//measure(m, r, '(es9.2)')
+         text = owner(m, r)//': '//phrase(say_closure_error_of, m%polish)//' '//measure(m, r, error_digits)
       case (diagnostic_limit)
          if (r%is_pole) then
             text = phrase(say_law, m%polish)//' '//owner(m, r)//' '//phrase(say_pole_of_law, m%polish)
          else
-            text = phrase(say_limit, m%polish)//' '//number(r%t, value_form)//', '//owner(m, r)//' = ' &
-               //measure(m, r, value_form)
+            text = owner(m, r)//' = '//measure(m, r, value_digits)
+            if (r%links(1) > 0) text = text//', '//at_limit(m, r)
          end if
       case (diagnostic_far_estimate)
-         text = links(m, r)//': '//phrase(say_off_by, m%polish)//' '//measure(m, r, '(es9.2)')
+         text = links(m, r)//': '//phrase(say_off_by, m%polish)//' '//measure(m, r, error_digits)
       case (diagnostic_second)
          text = links(m, r)//': '//phrase(say_second, m%polish)
       case (diagnostic_begins)
@@ -137,20 +153,20 @@ contains
          if (r%equations > 1) text = phrase(say_redundant_many, m%polish)//': '//whole(r%equations)//' ' &
             //phrase(say_of_pair, m%polish)//' '//trim(m%pairs(r%pair)%name)
       case (diagnostic_change)
-         text = phrase(say_change, m%polish)//' '//number(r%t, '(es13.5)')//', '//links(m, r)//': ' &
+         text = phrase(say_change, m%polish)//' '//time(m, r%t)//', '//links(m, r)//': ' &
             //phrase(merge(say_here, merge(say_other, say_smoothly, r%other), r%here), m%polish)
       case (diagnostic_dead_end)
-         text = phrase(say_change, m%polish)//' '//number(r%t, '(es13.5)')//', '//links(m, r)//': ' &
+         text = phrase(say_change, m%polish)//' '//time(m, r%t)//', '//links(m, r)//': ' &
             //phrase(say_not_found, m%polish)
       case (diagnostic_unused)
          text = 'BRANCH '
          if (r%links(1) > 0) text = text//trim(m%links(r%links(1))%name)//' '
-         text = text//phrase(say_branch_from, m%polish)//' '//number(r%t, '(es13.5)')//': ' &
+         text = text//phrase(say_branch_from, m%polish)//' '//time(m, r%t)//': ' &
             //phrase(say_no_change, m%polish)
       case (diagnostic_long)
-         text = phrase(say_way, m%polish)//' '//number(r%t, '(es13.5)')//' '//phrase(say_too_long, m%polish)
+         text = phrase(say_way, m%polish)//' '//time(m, r%t)//' '//phrase(say_too_long, m%polish)
       case (diagnostic_close)
-         text = phrase(say_blocked, m%polish)//' '//number(r%t, value_form)//': '//phrase(say_close, m%polish)
+         text = phrase(say_blocked, m%polish)//' '//time(m, r%t)//': '//phrase(say_close, m%polish)
       case (diagnostic_idle)
          text = owner(m, r)//' '//phrase(say_idle, m%polish)
       case (diagnostic_repeated)
@@ -169,10 +185,19 @@ contains
       type(diagnostic_t), intent(in) :: r
       character(:), allocatable :: text
 
-      text = measure(m, r, value_form)
+      text = measure(m, r, value_digits)
       if (r%links(1) == 0) return
       text = text//'   '//at_limit(m, r)
    end function limit_words
+
+   !> TURNS FULLY, CLOSES AFTER 1 TURN
+   function full_turn_words(turns, polish) result(text)
+      integer, intent(in) :: turns
+      logical, intent(in) :: polish
+      character(:), allocatable :: text
+
+      text = phrase(say_all, polish)//' '//whole(turns)//' '//phrase(merge(say_turn, say_turns, turns == 1), polish)
+   end function full_turn_words
 
    !> PAIR A, or DRIVE ANGLE B
    function owner(m, r) result(text)
@@ -201,30 +226,56 @@ contains
       text = text//more(r%more, m%polish)
    end function links
 
-   !> The diagnostic's value and its unit.
-   function measure(m, r, form) result(text)
+   !> The diagnostic's value with so many `digits`, and its unit.
+   function measure(m, r, digits) result(text)
       type(mechanism_t), intent(in) :: m
       type(diagnostic_t), intent(in) :: r
-      character(*), intent(in) :: form
+      integer, intent(in) :: digits
       character(:), allocatable :: text
 
       if (r%is_angle) then
-         text = number(r%value/merge(degree, 1.0_wp, m%degrees), form)//' '//trim(angle_unit(m))
+         text = number(r%value/merge(degree, 1.0_wp, m%degrees), digits)//' '//trim(angle_unit(m))
       else
-         text = number(r%value, form)//' '//trim(m%length_unit)
+         text = number(r%value, digits)//' '//trim(m%length_unit)
       end if
    end function measure
 
-   !> `x` by the format `form`, without blanks.
-   function number(x, form) result(text)
-      real(wp), intent(in) :: x
-      character(*), intent(in) :: form
+   !> A time as the tables of `m` have it, with its unit.
+   function time(m, t) result(text)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: t
       character(:), allocatable :: text
-      character(24) :: field
+      character(numeral_length) :: field
+      integer :: decimals, power
 
+      call choose_time_digits(m, decimals, power)
+      call put_fixed(t, decimals, power, field)
+      text = trim(adjustl(field))//' '//unit_of(power, trim(m%time_unit))
+   end function time
+
+   !> `x` with so many `digits`, without blanks: in fixed point, unless it is very large or small.
+   function number(x, digits) result(text)
+      real(wp), intent(in) :: x
+      integer, intent(in) :: digits
+      character(:), allocatable :: text
+      real(wp), parameter :: smallest = 1.0e-4_wp, largest = 1.0e9_wp
+      character(40) :: field
+      character(12) :: form
+      integer :: order
+
+      order = 0
+      if (abs(x) > 0.0_wp) then
+         ! Rounding may make it the next power of ten.
+         write (form, '("(es30.", i0, "e4)")') digits - 1
+         write (field, form) x
+         read (field(index(field, 'E') + 1:), *) order
+      end if
+      if (abs(x) > 0.0_wp .and. (abs(x) < smallest .or. abs(x) >= largest)) then
+         write (form, '("(es30.", i0, a, ")")') digits - 1, trim(merge('e3', '  ', abs(order) > 99))
+      else
+         write (form, '("(f30.", i0, ")")') max(0, digits - 1 - order)
+      end if
       write (field, form) x
-      ! An exponent of three digits would lose its E.
-      if (scan(field, 'E') == 0) write (field, '(es17.8e3)') x
       text = trim(adjustl(field))
    end function number
 
@@ -233,13 +284,11 @@ contains
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: closure_error
-      character(:), allocatable :: text
+      character(20) :: text
 
-      if (closure_error < min_closure_error) then
-         text = phrase(say_below, m%polish)//' '//number(min_closure_error, '(es7.0)')
-      else
-         text = number(closure_error, '(es7.0)')
-      end if
-      call put(o, ' '//phrase(say_closure_error, m%polish)//' '//text)
+      write (text, '(es8.0e2)') max(closure_error, min_closure_error)
+      text = adjustl(text)
+      if (closure_error < min_closure_error) text = phrase(say_below, m%polish)//' '//text
+      call put(o, ' '//phrase(say_closure_error, m%polish)//' '//trim(text))
    end subroutine put_closure_error
 end module listing_diagnostics

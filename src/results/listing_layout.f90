@@ -6,7 +6,7 @@
 module listing_layout
    use kinds, only: wp, label_length
    use planar, only: degree
-   use mechanism, only: mechanism_t, request_link, request_pair
+   use mechanism, only: mechanism_t, request_link, request_point, request_pair, pair_prismatic
    use independent, only: parts_t, find_parts
    use drives, only: law_t, new_law, pole_value
    use names, only: drive_name, more
@@ -19,8 +19,8 @@ module listing_layout
    implicit none
    private
    public :: layout_t, head_drive_t, new_layout, digits_t, digits_for, column_powers, head_lines
-   public :: line_length, name_length, row_length, links_turning, has_column, dimension_of, angle_unit, unit_of, &
-      choose_digits, column_text, put_folded
+   public :: line_length, name_length, row_length, links_turning, dimension_of, angle_unit, power_text, &
+      unit_of, choose_digits, choose_time_digits, column_text, put_folded
 
    integer, parameter :: digits_after_first = 6
    !> An order that is a whole number but for rounding counts as one.
@@ -31,11 +31,16 @@ module listing_layout
    integer, parameter :: name_length = 9, row_length = name_length + 9*numeral_length
    !> The kind of tables of links of which only the angle is listed, besides request_link, request_point, request_pair.
    integer, parameter :: links_turning = 0
-   !> Which of the columns x, y, phi each kind of tables has, and whether a column is of lengths (1) or angles (2). A
-   !> pair has its slide in the column of x, or its angle in that of phi.
-   logical, parameter :: has_column(3, links_turning:request_pair) = reshape([.false., .false., .true., &
-      .true., .true., .true., .true., .true., .false., .true., .false., .true.], [3, 4])
+   !> Whether x, y, phi are lengths (1) or angles (2). The slide of a pair counts as x, its angle as phi.
    integer, parameter :: dimension_of(3) = [1, 1, 2]
+   !> In which of nine columns a table has x, y, phi and their derivatives (3, 0:2); 0: not at all.
+   integer, parameter :: link_columns(3, 0:2) = reshape([1, 2, 3, 4, 5, 6, 7, 8, 9], [3, 3]), &
+      point_columns(3, 0:2) = reshape([1, 2, 0, 4, 5, 0, 7, 8, 0], [3, 3]), &
+      angle_columns(3, 0:2) = reshape([0, 0, 3, 0, 0, 6, 0, 0, 9], [3, 3])
+   !> The columns of the value, velocity and acceleration of the first kind of pairs in a table, and of the second.
+   integer, parameter :: pair_columns(0:2, 2) = reshape([1, 2, 4, 5, 6, 8], [3, 2])
+   !> Characters of the name of a column at most: those of PRZYSPIESZENIE, which begins over the column before.
+   integer, parameter :: name_room = 14
    !> Of more drives only the first stand at the head of an instant.
    integer, parameter :: max_drives = 6
 
@@ -65,6 +70,8 @@ module listing_layout
       integer :: more_decimals = 0         !< of what tolerances do to a number, beside those of the number
       real(wp) :: angle = 1.0_wp           !< radians in the unit in which angles are printed
       integer :: links_table = request_link   !< the kind of the tables of links
+      !> Of x, y, phi and their derivatives, by the kind of a table.
+      integer :: column(3, 0:2, links_turning:request_pair) = 0
       ! By the kind of a table:
       character(row_length) :: names(links_turning:request_pair)      !< of the columns
       character(row_length) :: units(2, links_turning:request_pair)   !< under them; the second line only where long
@@ -107,10 +114,11 @@ contains
       call choose_time_digits(m, l%time_decimals, l%time_power)
       if (any(m%requests%angle_alone) .and. .not. any(m%requests%kind == request_link .and. m%requests%every > 0 &
          .and. .not. m%requests%angle_alone)) l%links_table = links_turning
+      call choose_columns(m, l%column)
       do k = links_turning, request_pair
-         l%names(k) = column_names(k, m%polish)
+         l%names(k) = column_names(l, k, m%polish)
+         l%units(:, k) = unit_lines(l, m, k)
       end do
-      l%units = unit_lines(m)
       do k = links_turning, request_pair
          l%heads(k) = head_lines(l, l%digits_t, k)
          l%head_length(k) = len_trim(l%heads(k))
@@ -126,12 +134,40 @@ contains
       l%more_drives = more(size(m%drives) - size(l%drives), m%polish)
    end function new_layout
 
+   !> The columns of each kind of table of `m`. Slides and angles of pairs have columns only if such pairs are asked
+   !> for.
+   pure subroutine choose_columns(m, column)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(out) :: column(3, 0:2, links_turning:request_pair)
+      logical :: slides
+      integer :: i
+
+      column(:, :, links_turning) = angle_columns
+      column(:, :, request_link) = link_columns
+      column(:, :, request_point) = point_columns
+      column(:, :, request_pair) = 0
+      slides = .false.
+      do i = 1, size(m%requests)
+         if (m%requests(i)%kind /= request_pair) cycle
+         if (m%pairs(m%requests(i)%subject)%kind == pair_prismatic) slides = .true.
+      end do
+      if (slides) column(1, :, request_pair) = pair_columns(:, 1)
+      do i = 1, size(m%requests)
+         if (m%requests(i)%kind /= request_pair) cycle
+         if (m%pairs(m%requests(i)%subject)%kind /= pair_prismatic) &
+            column(3, :, request_pair) = pair_columns(:, merge(2, 1, slides))
+      end do
+   end subroutine choose_columns
+
    !> The digits of the times of `m`: as many as other numbers have, and as many as show two digits of its shortest
    !> step, or one, if there is room for them. So instants that are not the same have other times.
    pure subroutine choose_time_digits(m, decimals, power)
       type(mechanism_t), intent(in) :: m
-      integer, intent(inout) :: decimals, power
+      integer, intent(out) :: decimals, power
       integer :: before, room, needed
+
+      decimals = digits_after_first
+      power = 0
 
       associate (time => latest_time(m))
          if (.not. time > 0.0_wp) return
@@ -216,13 +252,17 @@ contains
    end subroutine take_parts
 
    !> The powers of ten of the columns of rows of the given `kind` (9): what they do not have is 0.
-   pure function column_powers(d, kind) result(power)
+   pure function column_powers(l, d, kind) result(power)
+      type(layout_t), intent(in) :: l
       type(digits_t), intent(in) :: d
       integer, intent(in) :: kind
-      integer :: power(9), k
+      integer :: power(9), c, k
 
+      power = 0
       do k = 0, 2
-         power(3*k + 1:3*k + 3) = merge(d%power(dimension_of, k), 0, has_column(:, kind))
+         do c = 1, 3
+            if (l%column(c, k, kind) > 0) power(l%column(c, k, kind)) = d%power(dimension_of(c), k)
+         end do
       end do
    end function column_powers
 
@@ -254,88 +294,101 @@ contains
       integer :: power(9), k
 
       text = trim(l%names(kind))
-      power = column_powers(d, kind)
+      power = column_powers(l, d, kind)
       words = ''
       do k = 1, size(power)
-         if (power(k) /= 0) words(k) = '10**'//whole(power(k))
+         if (power(k) /= 0) words(k) = power_text(power(k))
       end do
-      if (any(power /= 0)) text = text//new_line('a')//trim(in_columns(words, kind))
+      if (any(power /= 0)) text = text//new_line('a')//trim(in_columns(words))
       text = text//new_line('a')//trim(l%units(1, kind))
       if (l%units(2, kind) /= '') text = text//new_line('a')//trim(l%units(2, kind))
    end function head_lines
 
    !> The names of the columns over rows of one kind.
-   pure function column_names(kind, polish) result(line)
+   pure function column_names(l, kind, polish) result(line)
+      type(layout_t), intent(in) :: l
       integer, intent(in) :: kind
       logical, intent(in) :: polish
       character(row_length) :: line
-      character(numeral_length) :: words(9)
-      integer :: k
-      character(1), parameter :: prefix(0:2) = [' ', 'V', 'A']
+      character(name_room) :: words(9), word
+      integer :: c, k
+      character(1), parameter :: prefix(0:2) = [' ', 'V', 'A'], place(2) = ['X', 'Y']
       type(phrase_t), parameter :: kind_words(links_turning:request_pair) = &
          [say_link, say_link, say_point, say_pair], &
-         rate_words(0:2) = [phrase_t(), say_rate, say_acceleration]
+         pair_words(0:2) = [phrase_t(), say_velocity, say_acceleration]
 
+      words = ''
       do k = 0, 2
-         words(3*k + 1) = trim(prefix(k))//'X'
-         words(3*k + 2) = trim(prefix(k))//'Y'
-         words(3*k + 3) = trim(prefix(k))//phrase(say_phi, polish)
-         if (kind == request_pair) words(3*k + 1:3*k + 3) = phrase(rate_words(k), polish)
+         do c = 1, 3
+            if (l%column(c, k, kind) == 0) cycle
+            if (kind == request_pair) then
+               word = phrase(pair_words(k), polish)
+               if (k == 0) word = phrase(merge(say_slide, say_angle, c == 1), polish)
+            else if (c == 3) then
+               word = trim(prefix(k))//phrase(say_phi, polish)
+            else
+               word = trim(prefix(k))//place(c)
+            end if
+            words(l%column(c, k, kind)) = word
+         end do
       end do
-      if (kind == request_pair) words(:3) = [character(numeral_length) :: phrase(say_slide, polish), '', &
-         phrase(say_angle, polish)]
-      line = in_columns(words, kind)
+      line = in_columns(words)
       line(:name_length) = ' '//phrase(kind_words(kind), polish)
    end function column_names
 
-   !> The units of the columns, for each kind of rows; where one is too long for its column, all that they are divided
-   !> by stands in a second line.
-   pure function unit_lines(m) result(lines)
+   !> The units of the columns over rows of the given `kind`; where one is too long for its column, all that they are
+   !> divided by stands in a second line.
+   pure function unit_lines(l, m, kind) result(lines)
+      type(layout_t), intent(in) :: l
       type(mechanism_t), intent(in) :: m
-      character(row_length) :: lines(2, links_turning:request_pair)
-      character(2*label_length + 4), dimension(9) :: unit, per
-      integer :: k
+      integer, intent(in) :: kind
+      character(row_length) :: lines(2)
+      character(label_length) :: unit(3)
+      character(label_length + 4) :: per(0:2)
+      character(2*label_length + 4), dimension(9) :: first, second
+      integer :: c, k
 
-      per = ''
-      per(4:6) = '/'//m%time_unit
-      per(7:9) = '/'//trim(m%time_unit)//'**2'
-      unit = [([m%length_unit, m%length_unit, angle_unit(m)], k=0, 2)]
-      if (max(len_trim(unit(1)), len_trim(unit(3))) + len_trim(per(9)) < numeral_length) then
-         do k = 1, 9
-            unit(k) = trim(unit(k))//per(k)
+      unit = [character(label_length) :: m%length_unit, m%length_unit, angle_unit(m)]
+      per = [character(label_length + 4) :: '', '/'//m%time_unit, '/'//trim(m%time_unit)//'**2']
+      first = ''
+      second = ''
+      do k = 0, 2
+         do c = 1, 3
+            if (l%column(c, k, kind) == 0) cycle
+            first(l%column(c, k, kind)) = unit(c)
+            if (maxval(len_trim(unit)) + len_trim(per(2)) < numeral_length) then
+               first(l%column(c, k, kind)) = trim(unit(c))//per(k)
+            else
+               second(l%column(c, k, kind)) = per(k)
+            end if
          end do
-         per = ''
-      end if
-      do k = links_turning, request_pair
-         lines(1, k) = in_columns(unit, k)
-         lines(2, k) = in_columns(per, k)
       end do
+      lines(1) = in_columns(first)
+      lines(2) = in_columns(second)
    end function unit_lines
 
-   !> `words` (9), right-adjusted over the numbers of the columns that rows of the given `kind` have.
-   pure function in_columns(words, kind) result(line)
+   !> `words` (9), each ending where the numbers of its column end.
+   pure function in_columns(words) result(line)
       character(*), intent(in) :: words(9)
-      integer, intent(in) :: kind
       character(row_length) :: line
-      character(numeral_length) :: word
       integer :: k
 
       line = ''
       do k = 1, 9
-         word = words(k)
-         if (has_column(modulo(k - 1, 3) + 1, kind)) &
-            line(name_length + 1 + numeral_length*(k - 1):name_length + numeral_length*k) = adjustr(word)
+         associate (last => name_length + numeral_length*k, word => words(k)(:len_trim(words(k))))
+            line(last - len(word) + 1:last) = word
+         end associate
       end do
    end function in_columns
 
-   !> What `line`, of the head of a table, has over column `c` of derivative `k`, without blanks around it.
-   pure function column_text(line, c, k) result(text)
+   !> The word that ends over `column` of the head `line` of a table.
+   pure function column_text(line, column) result(text)
       character(*), intent(in) :: line
-      integer, intent(in) :: c, k
+      integer, intent(in) :: column
       character(:), allocatable :: text
 
-      associate (before => name_length + numeral_length*(3*k + c - 1))
-         text = trim(adjustl(line(before + 1:before + numeral_length)))
+      associate (before => line(:name_length + numeral_length*column))
+         text = before(index(before, ' ', back=.true.) + 1:)
       end associate
    end function column_text
 
@@ -346,6 +399,15 @@ contains
       angle_unit = merge('DEG', 'RAD', m%degrees)
    end function angle_unit
 
+   !> A power of ten as numbers have it: 1.E-12.
+   pure function power_text(power) result(text)
+      integer, intent(in) :: power
+      character(:), allocatable :: text
+
+      text = whole(abs(power))
+      text = '1.E'//merge('-', '+', power < 0)//repeat('0', max(0, 2 - len(text)))//text
+   end function power_text
+
    !> A unit with its power of ten, if there is one.
    pure function unit_of(power, unit) result(text)
       integer, intent(in) :: power
@@ -353,7 +415,7 @@ contains
       character(:), allocatable :: text
 
       text = unit
-      if (power /= 0) text = '10**'//whole(power)//' '//unit
+      if (power /= 0) text = power_text(power)//' '//unit
    end function unit_of
 
    !> The words `text` behind `mark` in one line or, where names are many and long, in several. Lines after the first

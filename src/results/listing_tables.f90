@@ -15,47 +15,52 @@ module listing_tables
    use phrases, only: phrase, say_worst
    implicit none
    private
-   public :: table_t, no_table, put_instant, put_times, put_requested, put_spreads, put_heads, time_text, drive_text, &
-      known_text
+   public :: listing_state_t, no_table, put_instant, put_times, put_requested, put_spreads, put_heads, time_text, &
+      drive_text, known_text
 
    character(4), parameter :: between = ' .. '
+   !> Heads stand again after so many lines.
+   integer, parameter :: lines_a_head = 60
 
-   !> The kind of a table before its first row.
+   !> No heads hold for the next row.
    integer, parameter :: no_table = -1
 
-   !> The table at hand: the kind of its rows; the powers of ten of its columns; `masked`: a digit of the instant is.
-   type :: table_t
-      integer :: kind = no_table           !< of its rows: request_link, ..., or links_turning; or no_table yet
-      integer :: power(9) = 0              !< (columns) of ten in its heads
-      logical :: masked = .false.          !< some digit is a question mark
-   end type table_t
+   !> What a reader of the listing sees above the next row: the heads that hold for it, and how far above they are.
+   type :: listing_state_t
+      integer :: kind = no_table           !< of the rows below the heads: request_link, ..., or links_turning
+      integer :: power(9) = 0              !< (columns) of ten in the heads
+      integer :: lines = 0                 !< since the heads
+      logical :: masked = .false.          !< some digit of the instant is a question mark
+   end type listing_state_t
 
 contains
 
    !> The line over the tables of instant number `step`, at `t` in the deck's unit: the time and the values of the
-   !> drives.
-   subroutine put_instant(o, l, t, step, masked)
+   !> drives. Heads that are far above do not hold any more.
+   subroutine put_instant(o, l, t, step, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       real(wp), intent(in) :: t
       integer, intent(in) :: step
-      logical, intent(inout) :: masked
+      type(listing_state_t), intent(inout) :: table
       character(numeral_length) :: number
       integer :: first
 
+      if (table%lines >= lines_a_head) table%kind = no_table
+
       call put_whole(int(step, int64), number, first)
-      call put_times(o, l, l%before_instant//number(first:), [t], masked)
+      call put_times(o, l, l%before_instant//number(first:), [t], table)
    end subroutine put_instant
 
    !> A blank line, and one with `start`, the `times` (1 or 2, in the deck's unit) and the values of the drives then,
    !> which go on in the next line where they are many. Written into lines of their own, since text that grows would
-   !> cost as much as a table. `masked`: a digit is.
-   subroutine put_times(o, l, start, times, masked)
+   !> cost as much as a table.
+   subroutine put_times(o, l, start, times, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       character(*), intent(in) :: start
       real(wp), intent(in) :: times(:)
-      logical, intent(inout) :: masked
+      type(listing_state_t), intent(inout) :: table
       character(line_length) :: line, part
       integer :: i, k, used, length
 
@@ -65,7 +70,7 @@ contains
       call append('   T = ', line, used)
       do k = 1, size(times)
          if (k > 1) call append(between, line, used)
-         call append_number(times(k), 0.0_wp, l%time_decimals, l%time_power, line, used, masked)
+         call append_number(times(k), 0.0_wp, l%time_decimals, l%time_power, line, used, table%masked)
       end do
       call append(l%behind_time, line, used)
       do i = 1, size(l%drives)
@@ -73,18 +78,20 @@ contains
          call append(l%drives(i)%before, part, length)
          do k = 1, size(times)
             if (k > 1) call append(between, part, length)
-            call append_drive(l%drives(i), times(k), part, length, masked)
+            call append_drive(l%drives(i), times(k), part, length, table%masked)
          end do
          call append(l%drives(i)%behind, part, length)
          if (i == size(l%drives)) call append(l%more_drives, part, length)
          if (used + length > line_length) then
             call put(o, line(:used))
+            table%lines = table%lines + 1
             used = len(start)
             line(:used) = ''
          end if
          call append(part(:length), line, used)
       end do
       call put(o, line(:used))
+      table%lines = table%lines + 2
    end subroutine put_times
 
    !> Writes `text` behind the first `used` characters of `line`, and counts it among them.
@@ -188,19 +195,22 @@ contains
       integer, intent(in) :: i
       type(row_t), intent(in) :: row
       real(wp), intent(in) :: error(3, 0:2)
-      type(table_t), intent(inout) :: table
+      type(listing_state_t), intent(inout) :: table
 
       associate (d => l%own(l%part(i)))
          if (row%kind < request_pole) then
             call put_heads(o, l, d, merge(l%links_table, row%kind, row%kind == request_link), table)
-            call put_row(o, l, d, row, m%requests(i)%angle_alone, error, table%masked)
+            call put_row(o, l, d, row, m%requests(i)%angle_alone, error, table)
             return
          end if
-         if (row%kind /= table%kind .or. (l%mixed .and. table%power(1) /= d%power(1, 0))) &
+         if (row%kind /= table%kind .or. table%power(1) /= d%power(1, 0)) then
             call put_centre_heads(o, d, m, row%kind)
-         table%kind = row%kind
-         table%power(1) = d%power(1, 0)
+            table%kind = row%kind
+            table%power(1) = d%power(1, 0)
+            table%lines = 0
+         end if
          call put_centre(o, l, d, m, row, error, table%masked)
+         table%lines = table%lines + 1
       end associate
    end subroutine put_requested
 
@@ -213,7 +223,7 @@ contains
       integer, intent(in) :: i
       type(row_t), intent(in) :: row
       type(spread_t), intent(in) :: s
-      type(table_t), intent(inout) :: table
+      type(listing_state_t), intent(inout) :: table
       type(digits_t) :: d
       type(row_t) :: one
 
@@ -223,11 +233,11 @@ contains
       one%known = s%known
       one%name = ' '//phrase(say_worst, m%polish)
       one%value = worst_case(s%tolerances, s%of)
-      call put_row(o, l, d, one, m%requests(i)%angle_alone, worst_case(s%tolerances, s%error), table%masked)
+      call put_row(o, l, d, one, m%requests(i)%angle_alone, worst_case(s%tolerances, s%error), table)
       one%name = ' RSS'
       one%value = root_of_squares(s%tolerances, s%of)
       ! The difference of two roots is no larger than the root of the differences.
-      call put_row(o, l, d, one, m%requests(i)%angle_alone, root_of_squares(s%tolerances, s%error), table%masked)
+      call put_row(o, l, d, one, m%requests(i)%angle_alone, root_of_squares(s%tolerances, s%error), table)
    end subroutine put_spreads
 
    !> The heads over rows of this `kind` with the digits `d`, unless they stand there: names, powers of ten where there
@@ -237,52 +247,46 @@ contains
       type(layout_t), intent(in) :: l
       type(digits_t), intent(in) :: d
       integer, intent(in) :: kind
-      type(table_t), intent(inout) :: table
+      type(listing_state_t), intent(inout) :: table
       integer :: power(9)
 
       if (kind == table%kind .and. .not. l%mixed) return
       if (.not. l%mixed) then
          call put(o, l%heads(kind)(:l%head_length(kind)))
       else
-         power = column_powers(d, kind)
+         power = column_powers(l, d, kind)
          if (kind == table%kind .and. all(power == table%power)) return
          table%power = power
          call put(o, head_lines(l, d, kind))
       end if
       table%kind = kind
+      table%lines = 0
    end subroutine put_heads
 
    !> One row with the digits `d`: what is not known is a word, what the row does not have is blank: of a link whose
-   !> `angle_alone` is listed its place. `error` (3, 0:2) is unknown of the numbers; `masked`: a digit of some row is
-   !> masked.
-   subroutine put_row(o, l, d, row, angle_alone, error, masked)
+   !> `angle_alone` is listed its place. `error` (3, 0:2) is unknown of the numbers.
+   subroutine put_row(o, l, d, row, angle_alone, error, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(digits_t), intent(in) :: d
       type(row_t), intent(in) :: row
       logical, intent(in) :: angle_alone
       real(wp), intent(in) :: error(3, 0:2)
-      logical, intent(inout) :: masked
+      type(listing_state_t), intent(inout) :: table
       character(row_length) :: line
       real(wp) :: x, off
-      integer :: k, c, i, used, last, unit
-      logical :: has(3)
+      integer :: k, c, i, last, unit, column(3, 0:2)
 
-      has = has_column(:, merge(links_turning, row%kind, angle_alone))
-      ! A pair has one of its two columns, and its value is the first.
-      if (row%kind == request_pair) has = [.not. row%angular, .false., row%angular]
-      line(1:1) = ' '
-      line(2:name_length) = row%name
-      used = name_length
+      column = l%column(:, :, merge(links_turning, row%kind, angle_alone))
+      ! A pair has a slide or an angle, and its value is the first.
+      if (row%kind == request_pair) column(merge(1, 3, row%angular), :) = 0
+      line = ' '//row%name
+      last = name_length + numeral_length*maxval(column)
       do k = 0, 2
          do c = 1, 3
-            associate (field => line(used + 1:used + numeral_length))
-               used = used + numeral_length
-               if (.not. has(c)) then
-                  field = ''
-                  cycle
-               end if
-               last = used
+            if (column(c, k) == 0) cycle
+            associate (field => line(name_length + numeral_length*(column(c, k) - 1) + 1:name_length &
+               + numeral_length*column(c, k)))
                unit = dimension_of(c)
                i = merge(1, c, row%kind == request_pair)
                if (k > row%known) then
@@ -297,7 +301,7 @@ contains
                   off = off/l%angle
                end if
                if (off > 0.0_wp) then
-                  call put_known(x, off, d%decimals(unit, k), d%power(unit, k), field, masked)
+                  call put_known(x, off, d%decimals(unit, k), d%power(unit, k), field, table%masked)
                else
                   call put_fixed(x, d%decimals(unit, k), d%power(unit, k), field)
                end if
@@ -305,5 +309,6 @@ contains
          end do
       end do
       call put(o, line(:last))
+      table%lines = table%lines + 1
    end subroutine put_row
 end module listing_tables

@@ -17,12 +17,14 @@ module phrases
       say_data = phrase_t('INPUT DATA', 'DANE'), &
       say_structure = phrase_t('STRUCTURE', 'STRUKTURA'), &
       say_links = phrase_t('LINKS', 'OGNIWA'), &
-      say_ground = phrase_t('OF THEM GROUND', 'W TYM OSTOJA'), &
+      say_ground = phrase_t('GROUND', 'OSTOJA'), &
       say_revolute = phrase_t('REVOLUTE PAIRS', 'PARY OBROTOWE'), &
       say_prismatic = phrase_t('PRISMATIC PAIRS', 'PARY POSTEPOWE'), &
       say_coordinates = phrase_t('COORDINATES', 'WSPOLRZEDNE'), &
       say_equations = phrase_t('EQUATIONS', 'ROWNANIA'), &
-      say_degrees_of_freedom = phrase_t('DEGREES OF FREEDOM', 'STOPNIE SWOBODY'), &
+      say_degrees_of_freedom = phrase_t('DEGREES OF FREEDOM BY COUNT (13):', 'STOPNIE SWOBODY WEDLUG (13):'), &
+      say_repeating = phrase_t('S IS LESS THAN THE DRIVES: IF THE MECHANISM MOVES, SO MANY EQUATIONS REPEAT OTHERS:', &
+         'S JEST MNIEJSZE NIZ LICZBA NAPEDOW: PRZY RUCHU TYLE ROWNAN POWTARZA INNE:'), &
       say_drives = phrase_t('DRIVES', 'NAPEDY'), &
       say_results = phrase_t('RESULTS', 'WYNIKI'), &
       say_instant = phrase_t('INSTANT', 'CHWILA'), &
@@ -32,8 +34,6 @@ module phrases
       say_phi = phrase_t('PHI', 'FI'), &
       say_slide = phrase_t('SLIDE', 'PRZESUW'), &
       say_angle = phrase_t('ANGLE', 'KAT'), &
-      say_rate = phrase_t('RATE', 'PREDKOSC'), &
-      say_acceleration = phrase_t('2ND RATE', 'PRZYSP.'), &
       say_none = phrase_t('NONE', 'BRAK'), &
       say_end = phrase_t('END OF SET', 'KONIEC KOMPLETU'), &
       say_solved = phrase_t('INSTANTS SOLVED', 'CHWILE ROZWIAZANE'), &
@@ -44,55 +44,65 @@ module phrases
       say_change_point = phrase_t('CHANGE POINT: VELOCITIES NOT UNIQUE', 'PUNKT ZMIANY: PREDKOSCI NIEJEDNOZNACZNE'), &
       say_dead_point = phrase_t('DEAD POINT: NO FINITE VELOCITIES', 'PUNKT MARTWY: BRAK SKONCZONYCH PREDKOSCI'), &
       say_overflow = phrase_t('THE RESULT IS TOO LARGE A NUMBER', 'WYNIK JEST ZBYT DUZA LICZBA'), &
-      say_groups = phrase_t('ASSUR GROUPS IN SOLVING ORDER', 'GRUPY ASSURA W KOLEJNOSCI ROZWIAZYWANIA'), &
+      say_groups = phrase_t('DRIVING LINKS AND ASSUR GROUPS, IN ORDER OF SOLUTION', &
+         'OGNIWA NAPEDZANE I GRUPY ASSURA W KOLEJNOSCI ROZWIAZYWANIA'), &
       say_driven = phrase_t('DRIVEN', 'NAPEDZANA'), &
       say_not_needed = phrase_t('NOT NEEDED', 'ZBEDNA'), &
-      say_closure_error_of = phrase_t('STAYS OPEN BY', 'POZOSTAJE OTWARTA O'), &
-      say_limit = phrase_t('LIMIT OF MOTION AT T =', 'KRES RUCHU W CHWILI T ='), &
+      say_closure_error_of = phrase_t('CLOSURE ERROR', 'BLAD ZAMKNIECIA'), &
+      say_beyond = phrase_t('NO POSITION: BEYOND THE LIMIT OF MOTION AT T =', &
+         'BRAK POLOZENIA: POZA KRESEM RUCHU W CHWILI T ='), &
+      say_in_line = phrase_t('COLLINEAR', 'WSPOLLINIOWE'), &
       say_law = phrase_t('LAW OF', 'PRAWO RUCHU:'), &
       say_pole_of_law = phrase_t('GOES TO INFINITY AT T = 0.0', 'DAZY DO NIESKONCZONOSCI W CHWILI T = 0.0'), &
-      say_in_line = phrase_t('IN LINE', 'W JEDNEJ LINII'), &
-      say_off_by = phrase_t('ESTIMATED ANGLE WAS OFF BY', 'KAT PRZYBLIZONY ODBIEGAL O'), &
-      say_begins = phrase_t('THE MOTION BEGINS HERE, AT THE ASSEMBLY NEAREST TO THE ESTIMATE', &
+      say_off_by = phrase_t('THE ASSEMBLY FOUND DIFFERS FROM THE INITIAL ANGLE BY', 'KAT PRZYBLIZONY ODBIEGAL O'), &
+      say_begins = phrase_t('THE MOTION BEGINS HERE, IN THE ASSEMBLY NEAREST TO THE INITIAL GUESS', &
          'RUCH ZACZYNA SIE TUTAJ, W MONTAZU NAJBLIZSZYM PRZYBLIZENIU'), &
-      say_second = phrase_t('ANOTHER ASSEMBLY IS ABOUT AS NEAR', 'INNY MONTAZ JEST PODOBNIE BLISKI'), &
+      say_second = phrase_t('AMBIGUOUS INITIAL GUESS, ANOTHER ASSEMBLY IS ABOUT AS NEAR', &
+         'INNY MONTAZ JEST PODOBNIE BLISKI'), &
       say_redundant = phrase_t('REDUNDANT EQUATION', 'ROWNANIE NADLICZBOWE'), &
-      say_closure_error = phrase_t('LARGEST GAP OF REDUNDANT EQUATIONS, OF THE SIZE:', &
-         'NAJWIEKSZA NIEZGODNOSC ROWNAN NADLICZBOWYCH WZGLEDEM WYMIARU:'), &
-      say_mobile = phrase_t('CAN STILL MOVE, ADD A DRIVE', 'RUCH NIEOKRESLONY, DODAJ NAPED'), &
-      say_contradiction = phrase_t('TOO MANY EQUATIONS, AND THEY CONTRADICT ONE ANOTHER', &
-         'ZA DUZO ROWNAN I PRZECZA SOBIE NAWZAJEM'), &
+      say_closure_error = phrase_t('LARGEST CLOSURE ERROR OF REDUNDANT EQUATIONS, IN CHARACTERISTIC LENGTHS:', &
+         'NAJWIEKSZY BLAD ZAMKNIECIA ROWNAN NADLICZBOWYCH, W DLUGOSCIACH CHARAKT.:'), &
+      say_mobile = phrase_t('NOT FULLY CONSTRAINED BY THE DRIVES: ADD A DRIVE', 'RUCH NIEOKRESLONY, DODAJ NAPED'), &
+      say_contradiction = phrase_t('REDUNDANT EQUATIONS ARE INCONSISTENT', &
+         'ROWNANIA NADLICZBOWE SA SPRZECZNE'), &
       say_drive = phrase_t('DRIVE', 'NAPED'), &
       say_below = phrase_t('BELOW', 'PONIZEJ'), &
       say_at_limit = phrase_t('AT THE LIMIT', 'NA KRESIE RUCHU'), &
       say_change = phrase_t('CHANGE POINT AT T =', 'PUNKT ZMIANY W CHWILI T ='), &
-      say_smoothly = phrase_t('GO ON SMOOTHLY', 'RUCH PRZECHODZI GLADKO'), &
-      say_unknown = phrase_t('DIGITS THAT ROUNDING LEAVES OPEN', 'CYFRY NIEPEWNE Z POWODU ZAOKRAGLEN'), &
+      say_smoothly = phrase_t('PASSED ON THE SMOOTH BRANCH', 'RUCH PRZECHODZI GLADKO'), &
+      say_unknown = phrase_t('DIGITS LOST TO ROUNDING', 'CYFRY UTRACONE PRZEZ ZAOKRAGLENIE'), &
       say_way = phrase_t('THE MOTION FROM T =', 'DROGA OD CHWILI T ='), &
-      say_too_long = phrase_t('IS TOO LONG TO FOLLOW: ASK FOR INSTANTS CLOSER TOGETHER', &
-         'JEST ZA DLUGA, PODAJ CHWILE BLIZSZE SIEBIE'), &
+      say_too_long = phrase_t('REACHES THE LIMIT OF SUBSTEPS: USE SMALLER TIME STEPS', &
+         'WYMAGA ZA WIELU PODKROKOW: PODAJ CHWILE BLIZSZE SIEBIE'), &
       say_blocked = phrase_t('THE MOTION IS FOLLOWED TO T =', 'RUCH SLEDZONO DO CHWILI T ='), &
-      say_close = phrase_t('LIMIT OR CHANGE POINT, TOO CLOSE TO TELL', 'KRES LUB PUNKT ZMIANY, ZBYT BLISKO'), &
+      say_close = phrase_t('LIMIT OR CHANGE POINT, NOT DISTINGUISHABLE (ROUNDING ERROR)', &
+         'KRES LUB PUNKT ZMIANY, NIE DO ODROZNIENIA (ZAOKRAGLENIA)'), &
       say_branch = phrase_t('BRANCH', 'GALAZ'), &
-      say_followed = phrase_t('INSTANTS FOLLOWED', 'CHWILE SLEDZONE'), &
+      say_continuation = phrase_t('CONTINUATION', 'KONTYNUACJA'), &
+      say_certified = phrase_t('STEPS CERTIFIED', 'KROKI POTWIERDZONE'), &
+      say_out_of = phrase_t('OF', 'Z'), &
       say_passed = phrase_t('CHANGE POINTS PASSED', 'PUNKTY ZMIANY'), &
-      say_uncertain = phrase_t('WITHOUT CERTIFICATE', 'BEZ SWIADECTWA'), &
-      say_other = phrase_t('TAKE THE OTHER BRANCH', 'RUCH PRZECHODZI NA DRUGA GALAZ'), &
+      say_other = phrase_t('PASSED TO THE OTHER BRANCH (CARD BRANCH)', 'RUCH PRZECHODZI NA DRUGA GALAZ'), &
       say_not_found = phrase_t('OTHER BRANCH NOT FOUND', 'DRUGIEJ GALEZI NIE ZNALEZIONO'), &
       say_branch_from = phrase_t('FROM T =', 'OD CHWILI T =')
    type(phrase_t), parameter, public :: &
       say_extremes = phrase_t('EXTREMES', 'EKSTREMA'), &
       say_stroke = phrase_t('STROKE', 'SKOK'), &
-      say_ratio = phrase_t('RATIO', 'STOSUN.'), &
+      say_at_drive = phrase_t('AT DRIVE', 'NAPED'), &
+      say_forward = phrase_t('TIME MIN TO MAX', 'CZAS MIN DO MAX'), &
+      say_return = phrase_t('TIME MAX TO MIN', 'CZAS MAX DO MIN'), &
+      say_ratio = phrase_t('TIME RATIO', 'STOSUNEK CZASOW'), &
       say_dwell = phrase_t('DWELL', 'POSTOJ'), &
-      say_not_covered = phrase_t('NOT COVERED, SINCE NOT ALL OF THE MOTION IS KNOWN: T =', &
-         'NIE OBJETO, BO NIE CALY RUCH JEST ZNANY: T ='), &
+      say_not_covered = phrase_t('NOT SEARCHED (MOTION NOT AVAILABLE): T =', &
+         'NIE PRZESZUKANO (BRAK RUCHU): T ='), &
       say_may_be_missed = phrase_t('EXTREMES MAY BE MISSED WITHIN T =', 'EKSTREMA MOGA BYC POMINIETE W T ='), &
       say_unbounded = phrase_t('UNBOUNDED', 'NIEOGRAN.'), &
-      say_range = phrase_t('RANGES OF THE DRIVES, EACH ALONE', 'ZAKRESY NAPEDOW, KAZDY OSOBNO'), &
-      say_all = phrase_t('ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS', 'PELNY: BEZ KRESU, RUCH SIE ZAMYKA; OBROTY'), &
+      say_range = phrase_t('RANGES OF THE DRIVES (OTHER DRIVES HELD)', 'ZAKRESY NAPEDOW (INNE NAPEDY STALE)'), &
+      say_all = phrase_t('TURNS FULLY, CLOSES AFTER', 'PELNY OBROT, ZAMYKA SIE PO'), &
+      say_turn = phrase_t('TURN', 'OBROCIE'), &
+      say_turns = phrase_t('TURNS', 'OBROTACH'), &
       say_on_the_way = phrase_t('CHANGE POINTS ON THE WAY', 'PUNKTY ZMIANY NA DRODZE'), &
-      say_no_limit = phrase_t('NO LIMIT AS FAR AS', 'BEZ KRESU CO NAJMNIEJ DO'), &
+      say_no_limit = phrase_t('NO LIMIT FOUND UP TO', 'KRESU NIE ZNALEZIONO DO'), &
       say_assemblies = phrase_t('ASSEMBLIES', 'MONTAZE'), &
       say_assembly = phrase_t('ASSEMBLY', 'MONTAZ'), &
       say_mechanism = phrase_t('INDEPENDENT MECHANISM', 'NIEZALEZNY MECHANIZM'), &
@@ -112,41 +122,49 @@ module phrases
       say_more_assemblies = phrase_t('THERE ARE MORE ASSEMBLIES THAN', 'MONTAZY JEST WIECEJ NIZ'), &
       say_wide_block = phrase_t('TOO MANY UNKNOWNS IN ONE BLOCK TO FIND ALL ASSEMBLIES', &
          'ZA DUZO NIEWIADOMYCH W BLOKU, BY ZNALEZC WSZYSTKIE MONTAZE'), &
-      say_curve_of_assemblies = phrase_t('NOT ALL SOLUTIONS ARE SEPARATE, THEY MAY MOVE WITH THE DRIVES HELD', &
+      say_curve_of_assemblies = phrase_t('NON-ISOLATED SOLUTIONS, LINKS MAY MOVE WITH ALL DRIVES HELD', &
          'ROZWIAZANIA NIE SA OSOBNE, MOGA SIE RUSZAC PRZY STALYCH NAPEDACH'), &
-      say_paths_failed = phrase_t('ASSEMBLIES MAY BE MISSING: PATHS NOT FOLLOWED TO THEIR END:', &
+      say_paths_failed = phrase_t('ASSEMBLIES MAY BE MISSING, HOMOTOPY PATHS FAILED:', &
          'MOZE BRAKOWAC MONTAZY: SCIEZKI BEZ KONCA:'), &
       say_first_missed = phrase_t('ASSEMBLIES MAY BE MISSING: THAT IN WHICH THE RUN BEGINS WAS NOT FOUND', &
          'MOZE BRAKOWAC MONTAZY: NIE ZNALEZIONO TEGO, W KTORYM ZACZYNA SIE RUCH'), &
       say_worst = phrase_t('WORST', 'NAJGOR.'), &
-      say_shares = phrase_t('TOLERANCES: SHARES OF THE NUMBERS WHERE THE RSS IS GREATEST', &
+      say_shares = phrase_t('TOLERANCES: CONTRIBUTIONS AT THE INSTANT OF LARGEST RSS', &
          'TOLERANCJE: UDZIALY LICZB PRZY NAJWIEKSZYM RSS'), &
       say_no_shares = phrase_t('POLES AND CURVES HAVE NO TOLERANCES', 'BIEGUNY I TORY NIE MAJA TOLERANCJI'), &
-      say_small_shares = phrase_t('SMALLER SHARES:', 'MNIEJSZE UDZIALY:'), &
-      say_jams = phrase_t('REDUNDANT EQUATIONS LEAVE NO ROOM FOR ITS TOLERANCE', &
+      say_small_shares = phrase_t('CONTRIBUTIONS BELOW 0.01 %:', 'UDZIALY PONIZEJ 0.01 %:'), &
+      say_jams = phrase_t('ITS TOLERANCE BREAKS A REDUNDANT EQUATION (THE MECHANISM JAMS)', &
          'ROWNANIA NADLICZBOWE NIE DOPUSZCZAJA TOLERANCJI')
    type(phrase_t), parameter, public :: &
       say_circuits = phrase_t('CIRCUITS AND BRANCHES', 'OBWODY I GALEZIE'), &
       say_circuit = phrase_t('CIRCUIT', 'OBWOD'), &
-      say_lost = phrase_t('NOT FOLLOWED BEYOND', 'NIE SLEDZONO POZA'), &
+      say_assembly_number = phrase_t('ASSEMBLY NO.', 'MONTAZ NR'), &
+      say_range_of = phrase_t('RANGE OF', 'ZAKRES'), &
+      say_not_limited = phrase_t('NO LIMIT FOUND', 'KRESU NIE ZNALEZIONO'), &
+      say_lost = phrase_t('NOT FOLLOWED FURTHER', 'DALEJ NIE SLEDZONO'), &
+      say_branches = phrase_t('BRANCHES', 'GALEZIE'), &
+      say_circuit_numbers = phrase_t('CIRCUITS', 'OBWODY'), &
+      say_meet = phrase_t('MEET', 'SPOTYKAJA SIE'), &
+      say_at = phrase_t('AT', 'PRZY'), &
+      say_and = phrase_t('AND', 'I'), &
       say_dead_points = phrase_t('DEAD POINTS', 'PUNKTY MARTWE'), &
       say_change_points = phrase_t('CHANGE POINTS', 'PUNKTY ZMIANY'), &
-      say_held = phrase_t('THE OTHER DRIVES LET NOTHING MOVE', 'POZOSTALE NAPEDY NICZEMU NIE DAJA RUCHU'), &
+      say_held = phrase_t('THE DRIVES THAT ARE HELD DETERMINE THIS DRIVE', 'POZOSTALE NAPEDY NICZEMU NIE DAJA RUCHU'), &
       say_more_circuits = phrase_t('MORE CIRCUITS THAN ARE FOLLOWED: THESE ARE THE FIRST', &
          'OBWODOW JEST WIECEJ, PODANO PIERWSZE'), &
       say_circuits_missing = phrase_t('CIRCUITS MAY BE MISSING: NOT ALL ASSEMBLIES ARE KNOWN', &
          'MOZE BRAKOWAC OBWODOW: NIE WSZYSTKIE MONTAZE SA ZNANE')
    type(phrase_t), parameter, public :: &
-      say_proof = phrase_t('PROOF: ONE MOTION ALONE IN A TUBE ALONG EACH STEP; BOUNDS OF ERRORS', &
-         'DOWOD: JEDYNY RUCH W RURZE WZDLUZ KAZDEGO KROKU; GRANICE BLEDOW'), &
+      say_proof = phrase_t('PROOF: EXISTENCE AND UNIQUENESS IN EACH STEP, AND ERROR BOUNDS', &
+         'DOWOD: ISTNIENIE I JEDNOZNACZNOSC W KAZDYM KROKU, GRANICE BLEDOW'), &
       say_parts = phrase_t('PARTS', 'CZESCI'), &
       say_tube = phrase_t('TUBE', 'RURA'), &
       say_proved = phrase_t('INSTANTS PROVED', 'CHWILE DOWIEDZIONE'), &
       say_not_proved = phrase_t('NOT PROVED', 'BEZ DOWODU'), &
-      say_gap = phrase_t('GAP', 'NIEZGODNOSC'), &
+      say_gap = phrase_t('CLOSURE ERROR', 'BLAD ZAMKNIECIA'), &
       say_change_inside = phrase_t('THE STEP PASSES A CHANGE POINT', 'KROK PRZECHODZI PRZEZ PUNKT ZMIANY'), &
       say_near_singular = phrase_t('JACOBIAN TOO NEAR TO SINGULAR', 'JAKOBIAN ZBYT BLISKI OSOBLIWEMU'), &
-      say_too_wide = phrase_t('BLOCK TOO WIDE, UNKNOWNS', 'BLOK ZBYT SZEROKI, NIEWIADOMYCH')
+      say_too_wide = phrase_t('BLOCK TOO LARGE, UNKNOWNS', 'BLOK ZBYT SZEROKI, NIEWIADOMYCH')
    type(phrase_t), parameter, public :: &
       say_pole = phrase_t('POLE', 'BIEGUN'), &
       say_curve = phrase_t('CURVE', 'TOR'), &
@@ -159,9 +177,9 @@ module phrases
       say_at_rest = phrase_t('AT REST', 'W SPOCZYNKU')
    type(phrase_t), parameter, public :: &
       say_no_change = phrase_t('NO CHANGE POINT WAS PASSED', 'NIE BYLO PUNKTU ZMIANY'), &
-      say_here = phrase_t('THE INSTANT LIES ON IT', 'CHWILA LEZY W NIM'), &
-      say_idle = phrase_t('MOVES NOTHING', 'NICZEGO NIE PORUSZA'), &
-      say_repeated = phrase_t('ADDS NOTHING TO THE OTHER DRIVES', 'NIE WNOSI NIC PONAD INNE NAPEDY'), &
+      say_here = phrase_t('THIS INSTANT IS AT THE CHANGE POINT', 'CHWILA LEZY W NIM'), &
+      say_idle = phrase_t('HAS NO EFFECT', 'NICZEGO NIE PORUSZA'), &
+      say_repeated = phrase_t('DEPENDS ON THE OTHER DRIVES', 'NIE WNOSI NIC PONAD INNE NAPEDY'), &
       say_redundant_many = phrase_t('REDUNDANT EQUATIONS', 'ROWNANIA NADLICZBOWE'), &
       say_of_pair = phrase_t('OF PAIR', 'PARY'), &
       say_method = phrase_t('METHOD NEWTON FINDS A POSITION', 'METODA NEWTON ZNAJDUJE POLOZENIE'), &
@@ -172,7 +190,7 @@ module phrases
       say_flagged_in_all = phrase_t('FLAGGED INSTANTS IN ALL:', 'CHWILE ZAZNACZONE RAZEM:'), &
       say_position = phrase_t('POSITION', 'POLOZENIE'), &
       say_velocity = phrase_t('VELOCITY', 'PREDKOSC'), &
-      say_linear_acceleration = phrase_t('ACCELERATION', 'PRZYSPIESZENIE'), &
+      say_acceleration = phrase_t('ACCELERATION', 'PRZYSPIESZENIE'), &
       say_angular_velocity = phrase_t('ANGULAR VELOCITY', 'PREDKOSC KATOWA'), &
       say_angular_acceleration = phrase_t('ANGULAR ACCELERATION', 'PRZYSPIESZENIE KATOWE'), &
       say_variant = phrase_t('VARIANT', 'WARIANT'), &
@@ -183,8 +201,8 @@ module phrases
       say_first_flag = phrase_t('FIRST FLAG', 'ZAZN. PIERWSZA'), &
       say_at_time = phrase_t('AT T', 'W T'), &
       say_one_range = phrase_t('RANGE', 'ZAKRES'), &
-      say_whole_turns = phrase_t('CLOSES IN TURNS', 'OBROTY DO ZAMKNIECIA'), &
-      say_shares_elsewhere = phrase_t('TOLERANCES: SHARES STAND IN THE TABLES OF EACH VARIANT, SEE CARD PRINT', &
+      say_whole_turns = phrase_t('REPEATS AFTER TURNS', 'OBROTY DO ZAMKNIECIA'), &
+      say_shares_elsewhere = phrase_t('TOLERANCES: CONTRIBUTIONS ARE IN THE TABLES OF EACH VARIANT (CARD PRINT)', &
          'TOLERANCJE: UDZIALY SA W TABLICACH WARIANTU, PATRZ KARTA PRINT'), &
       say_broken_variant = phrase_t('THE RUN WAS BROKEN OFF AFTER VARIANT', 'OBLICZENIA PRZERWANO PO WARIANCIE'), &
       say_broken_off = phrase_t('THE RUN WAS BROKEN OFF AFTER INSTANT', 'OBLICZENIA PRZERWANO PO CHWILI'), &
@@ -198,13 +216,13 @@ module phrases
       say_title_letters = phrase_t('THE TITLE IS PRINTED WITHOUT ACCENTS', 'TYTUL JEST BEZ ZNAKOW DIAKRYTYCZNYCH'), &
       say_touching = phrase_t('TOUCHES THE NUMBER BEFORE IT: TWO NUMBERS ARE READ', &
          'STYKA SIE Z LICZBA PRZED NIA: CZYTANE SA DWIE'), &
-      say_link_unused = phrase_t('NO PAIR AND NO DRIVE USES THIS LINK: IT RESTS', &
+      say_link_unused = phrase_t('IS A LINK WITHOUT PAIR OR DRIVE: IT COUNTS AS GROUND', &
          'OGNIWA NIE UZYWA ZADNA PARA ANI NAPED: SPOCZYWA'), &
-      say_point_unused = phrase_t('NO PAIR, DRIVE OR PRINT CARD USES THIS POINT', &
+      say_point_unused = phrase_t('IS A POINT THAT NO PAIR, DRIVE OR PRINT CARD USES', &
          'PUNKTU NIE UZYWA ZADNA PARA, NAPED ANI KARTA PRINT'), &
-      say_radians = phrase_t('IS AN ANGLE IN RADIANS: ARE DEGREES MEANT (UNITS DEG)?', &
+      say_radians = phrase_t('IS READ IN RADIANS: DID YOU MEAN DEGREES (UNITS DEG)?', &
          'TO KAT W RADIANACH: CZY MIALY BYC STOPNIE (UNITS DEG)?'), &
-      say_guide = phrase_t('THE GUIDE LOOKS WRONG BY A RIGHT ANGLE (ALPHA)', &
+      say_guide = phrase_t('IS A GUIDE THAT MAY BE OFF BY 90 DEG: CHECK ALPHA', &
          'PROWADNICA WYGLADA NA OBROCONA O KAT PROSTY (ALPHA)'), &
       say_drawn_value = phrase_t('VALUE AT T = 0, AS DRAWN:', 'WARTOSC W T = 0 WEDLUG RYSUNKU:'), &
       say_drawn_offset = phrase_t('PQ IS NOT DRAWN ALONG ALPHA; FOR A CYLINDER TAKE CARD CYLINDER; H =', &
@@ -214,7 +232,7 @@ module phrases
       say_off_drawing = phrase_t('THE MOTION BEGINS OFF THE DRAWING BY', 'RUCH ZACZYNA SIE POZA RYSUNKIEM O'), &
       say_near_joints = phrase_t('IS VERY NEAR A JOINT OF THE SAME LINK: ONE POINT? DISTANCE', &
          'BARDZO BLISKO INNEJ PARY TEGO OGNIWA: JEDEN PUNKT? ODLEGLOSC'), &
-      say_jumps = phrase_t('ITS ACCELERATION JUMPS WHERE ITS PIECES MEET: PRINTED FROM THE RIGHT', &
+      say_jumps = phrase_t('HAS JUMPS OF ACCELERATION: VALUES AFTER THE JUMP ARE PRINTED', &
          'PRZYSPIESZENIE MA SKOKI NA STYKACH: DRUKOWANE Z PRAWEJ STRONY'), &
       say_spare_drives = phrase_t('TOO MANY DRIVES BY', 'ZA DUZO NAPEDOW O'), &
       say_more = phrase_t('FURTHER REMARKS:', 'DALSZYCH UWAG:')

@@ -26,7 +26,7 @@ module plot_script
    integer, parameter :: max_marked = 60
 
    !> What the panels show, by derivative.
-   type(phrase_t), parameter :: length_words(0:2) = [say_position, say_velocity, say_linear_acceleration], &
+   type(phrase_t), parameter :: length_words(0:2) = [say_position, say_velocity, say_acceleration], &
       angle_words(0:2) = [say_angle, say_angular_velocity, say_angular_acceleration]
 
 contains

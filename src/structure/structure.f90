@@ -366,7 +366,7 @@ contains
       text = listed(drives, polish)
    end function drives_listed
 
-   !> LINKS A, B: 1 FREEDOM LEFT, ADD A DRIVE OR A PAIR
+   !> LINKS A, B: 1 DEGREE OF FREEDOM NOT DRIVEN: ADD A DRIVE OR A PAIR
    function lack(m, part) result(text)
       type(mechanism_t), intent(in) :: m
       type(underdetermined_t), intent(in) :: part
@@ -374,9 +374,9 @@ contains
 
       text = links_listed(m, part%links)//': '
       if (part%degrees_of_freedom == 1) then
-         text = text//'1 FREEDOM LEFT, ADD A DRIVE OR A PAIR'
+         text = text//'1 DEGREE OF FREEDOM NOT DRIVEN: ADD A DRIVE OR A PAIR'
       else
-         text = text//whole(part%degrees_of_freedom)//' DEGREES OF FREEDOM LEFT, ADD DRIVES OR PAIRS'
+         text = text//whole(part%degrees_of_freedom)//' DEGREES OF FREEDOM NOT DRIVEN: ADD DRIVES OR PAIRS'
       end if
    end function lack
 

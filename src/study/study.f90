@@ -48,7 +48,7 @@ contains
       ! The table of a set comes at once, when all of it is measured: until then a terminal shows the progress.
       call start_progress(progress, .not. quiet, .false.)
       if (digits(1.0_wp) /= digits_double .and. .not. only_times) then
-         call fail(failure, status_rejected, '--study IS FOR kinmat IN REAL64, WHICH ASKS THIS PROGRAM FOR ITS PART')
+         call fail(failure, status_rejected, '--study IS AVAILABLE ONLY IN kinmat (REAL64), NOT IN THIS BUILD')
       else
          call read_deck(path, sets, message, failure)
       end if

@@ -18,12 +18,18 @@ function unit_of(text,  mantissa, at, power, dot, last) {
    return (last < dot ? 10^(dot - 1 - last) : 10^(dot - last))*10^power
 }
 function value_of(text) { gsub(/[?]/, "0", text); return text + 0 }
-function field(i,  f) { f = substr($0, 10 + 12*(i - 1), 12); gsub(/ /, "", f); return f }
+# Column I of x, y, phi and their derivatives. In a table of pairs slides come first, angles behind them, in the places below;
+# a slide counts as x, an angle as phi.
+function field(i,  f, at) {
+   at = kind == "PAIR" ? substr(has_slides ? "105260408" : "001002004", i, 1) + 0 : i
+   if (at == 0) return ""
+   f = substr($0, 10 + 12*(at - 1), 12); gsub(/ /, "", f); return f
+}
 # A power of ten behind the times holds for all of them.
 function note_gaps(text,  list, n, i, ends, scale) {
    sub(/.*T = /, "", text)
    scale = 1
-   if (match(text, / 10[*][*]-?[0-9]+/)) scale = 10^substr(text, RSTART + 5, RLENGTH - 5)
+   if (match(text, / 1[.]E[-+][0-9]+/)) scale = 10^substr(text, RSTART + 4, RLENGTH - 4)
    n = split(text, list, ", ")
    for (i = 1; i <= n; i++) {
       split(list[i], ends, " ")
@@ -46,12 +52,12 @@ function is_covered(set, t,  i, low, high, open) {
 FNR == 1 { file++ }
 file == 1 && / SET OF COMPUTATIONS NO[.]/ { line = $0; sub(/.*NO[.] */, "", line); set = line + 0 }
 file == 1 && /^ EXTREMES  / { on = 1; next }
-file == 1 && /^ (BRANCH:|RANGES)/ { on = 0 }
+file == 1 && /^ (CONTINUATION:|RANGES)/ { on = 0 }
 file == 1 && !on { next }
-file == 1 && /NOT COVERED|MAY BE MISSED/ { note_gaps($0); next }
-file == 1 && /^ (LINK|POINT|PAIR)  / { kind = $1; for (i = 1; i <= 9; i++) power[i] = 0; next }
-file == 1 && /10[*][*]/ { for (i = 1; i <= 9; i++) { f = field(i); sub(/10[*][*]/, "", f); power[i] = f + 0 } next }
-file == 1 && /^ [^ -]/ && !/^ DWELL/ { if (substr($0, 10) !~ /[^ ]/) name = $1; next }
+file == 1 && /NOT SEARCHED|MAY BE MISSED/ { note_gaps($0); next }
+file == 1 && /^ (LINK|POINT|PAIR)  / { kind = $1; has_slides = /SLIDE/; for (i = 1; i <= 9; i++) power[i] = 0; next }
+file == 1 && /^ *1[.]E[-+]/ { for (i = 1; i <= 9; i++) { f = field(i); sub(/1[.]E/, "", f); power[i] = f + 0 } next }
+file == 1 && /^ [^ -]/ && !/^ (DWELL|AT DRIVE)/ { if (substr($0, 10) ~ /^ *(DRIVE .*)?$/) name = $1; next }
 file == 1 && /^  (MIN|MAX)  / {
    for (i = 1; i <= 9; i++) {
       f = field(i)

@@ -8,15 +8,17 @@ module listing_check
    integer, parameter :: width = 400, longest = 120
    !> A line of a sentence that goes on in the next one is shorter by less.
    integer, parameter :: longest_word = 20
-   character(9), parameter :: heads(*) = [character(9) :: 'X', 'Y', 'PHI', 'FI', 'VX', 'VY', 'VPHI', 'VFI', 'AX', &
-      'AY', 'APHI', 'AFI', 'SLIDE', 'ANGLE', 'PRZESUW', 'KAT', 'RATE', '2ND', 'PREDKOSC', 'PRZYSP.', 'XI-I', 'KSI-I', &
+   character(14), parameter :: heads(*) = [character(14) :: 'X', 'Y', 'PHI', 'FI', 'VX', 'VY', 'VPHI', 'VFI', 'AX', &
+      'AY', 'APHI', 'AFI', 'SLIDE', 'ANGLE', 'PRZESUW', 'KAT', 'VELOCITY', 'ACCELERATION', 'PREDKOSC', 'PRZYSPIESZENIE', &
+      'XI-I', 'KSI-I', &
       'ETA-I', 'XI-J', 'KSI-J', 'ETA-J', 'DIRECTION', 'KIERUNEK', 'TANGENT', 'STYCZNA', 'RADIUS', 'PROMIEN', &
       'X-CENTRE', 'X-SRODKA', 'Y-CENTRE', 'Y-SRODKA']
    !> Words in the place of a number.
    character(10), parameter :: words_for_none(*) = [character(10) :: 'NONE', 'BRAK', 'INFINITE', 'NIESKONCZ.', 'AT', &
       'REST', 'W', 'SPOCZYNKU', 'UNBOUNDED', 'NIEOGRAN.']
    !> What begins tables of other forms, behind those of the motion.
-   character(14), parameter :: other_heads(*) = [character(14) :: 'BRANCH:', 'GALAZ:', 'TOLERANCES:', 'TOLERANCJE:', &
+   character(14), parameter :: other_heads(*) = [character(14) :: 'CONTINUATION:', 'KONTYNUACJA:', 'TOLERANCES:', &
+      'TOLERANCJE:', &
       'ASSEMBLIES', 'MONTAZE', 'RANGES OF', 'ZAKRESY', 'CIRCUITS AND', 'OBWODY I', 'PROOF:', 'DOWOD:']
    !> Columns of the names of a row; of one with two names.
    integer, parameter :: one_name = 9, two_names = 18
@@ -25,25 +27,31 @@ module listing_check
       'CHANGE POINT: VELOCITIES NOT UNIQUE', 'PUNKT ZMIANY: PREDKOSCI NIEJEDNOZNACZNE', &
       'DEAD POINT: NO FINITE VELOCITIES', 'PUNKT MARTWY: BRAK SKONCZONYCH PREDKOSCI', &
       'THE RESULT IS TOO LARGE A NUMBER', 'WYNIK JEST ZBYT DUZA LICZBA', &
-      'TOO MANY EQUATIONS, AND THEY CONTRADICT ONE ANOTHER', 'ZA DUZO ROWNAN I PRZECZA SOBIE NAWZAJEM']
+      'REDUNDANT EQUATIONS ARE INCONSISTENT', 'ROWNANIA NADLICZBOWE SA SPRZECZNE']
    !> What a remark holds, after three stars or three dashes.
-   character(60), parameter :: diagnostics(*) = [character(60) :: 'STAYS OPEN BY', 'POZOSTAJE OTWARTA O', &
-      'LIMIT OF MOTION AT T =', 'KRES RUCHU W CHWILI T =', 'AT THE LIMIT', 'NA KRESIE RUCHU', &
-      'THE INSTANT LIES ON IT', 'CHWILA LEZY W NIM', 'GO ON SMOOTHLY', 'RUCH PRZECHODZI GLADKO', &
-      'CHANGE POINT AT T =', 'PUNKT ZMIANY W CHWILI T =', 'CAN STILL MOVE, ADD A DRIVE', &
+   character(60), parameter :: diagnostics(*) = [character(60) :: 'CLOSURE ERROR', 'BLAD ZAMKNIECIA', &
+      'AT THE LIMIT', 'NA KRESIE RUCHU', &
+      'THIS INSTANT IS AT THE CHANGE POINT', 'CHWILA LEZY W NIM', 'PASSED ON THE SMOOTH BRANCH', 'RUCH PRZECHODZI GLADKO', &
+      'CHANGE POINT AT T =', 'PUNKT ZMIANY W CHWILI T =', 'NOT FULLY CONSTRAINED BY THE DRIVES: ADD A DRIVE', &
       'RUCH NIEOKRESLONY, DODAJ NAPED', &
-      'ESTIMATED ANGLE WAS OFF BY', 'KAT PRZYBLIZONY ODBIEGAL O', 'ANOTHER ASSEMBLY IS ABOUT AS NEAR', &
+      'THE ASSEMBLY FOUND DIFFERS FROM THE INITIAL ANGLE BY', 'KAT PRZYBLIZONY ODBIEGAL O', &
+      'AMBIGUOUS INITIAL GUESS, ANOTHER ASSEMBLY IS ABOUT AS NEAR', &
       'INNY MONTAZ JEST PODOBNIE BLISKI', 'THE MOTION BEGINS HERE', 'RUCH ZACZYNA SIE TUTAJ', &
       'REDUNDANT EQUATION', 'ROWNANIE NADLICZBOWE', 'ROWNANIA NADLICZBOWE', &
-      'MOVES NOTHING', 'NICZEGO NIE PORUSZA', 'ADDS NOTHING TO THE OTHER DRIVES', 'NIE WNOSI NIC PONAD INNE NAPEDY', &
+      'HAS NO EFFECT', 'NICZEGO NIE PORUSZA', 'DEPENDS ON THE OTHER DRIVES', 'NIE WNOSI NIC PONAD INNE NAPEDY', &
       'METHOD NEWTON FINDS A POSITION', 'METODA NEWTON ZNAJDUJE POLOZENIE', &
-      '?: DIGITS THAT ROUNDING LEAVES OPEN', '?: CYFRY NIEPEWNE Z POWODU ZAOKRAGLEN', &
-      'LARGEST GAP OF REDUNDANT EQUATIONS', 'NAJWIEKSZA NIEZGODNOSC ROWNAN NADLICZBOWYCH', &
-      'IS TOO LONG TO FOLLOW: ASK FOR INSTANTS CLOSER TOGETHER', 'JEST ZA DLUGA, PODAJ CHWILE BLIZSZE SIEBIE', &
+      '?: DIGITS LOST TO ROUNDING', '?: CYFRY UTRACONE PRZEZ ZAOKRAGLENIE', &
+      'LARGEST CLOSURE ERROR OF REDUNDANT EQUATIONS', 'NAJWIEKSZY BLAD ZAMKNIECIA ROWNAN NADLICZBOWYCH', &
+      'REACHES THE LIMIT OF SUBSTEPS: USE SMALLER TIME STEPS', 'WYMAGA ZA WIELU PODKROKOW: PODAJ CHWILE BLIZSZE SIEBIE', &
       'NO CHANGE POINT WAS PASSED', 'NIE BYLO PUNKTU ZMIANY', &
-      'LIMIT OR CHANGE POINT, TOO CLOSE TO TELL', 'KRES LUB PUNKT ZMIANY, ZBYT BLISKO', &
+      'LIMIT OR CHANGE POINT, NOT DISTINGUISHABLE (ROUNDING ERROR)', &
+      'KRES LUB PUNKT ZMIANY, NIE DO ODROZNIENIA (ZAOKRAGLENIA)', &
       'EXTREMES MAY BE MISSED WITHIN T =', 'EKSTREMA MOGA BYC POMINIETE W T =', &
-      'NOT COVERED, SINCE NOT ALL OF THE MOTION IS KNOWN: T =', 'NIE OBJETO, BO NIE CALY RUCH JEST ZNANY: T =']
+      'NOT SEARCHED (MOTION NOT AVAILABLE): T =', 'NIE PRZESZUKANO (BRAK RUCHU): T =']
+
+   !> An instant is flagged with it, and its time follows.
+   character(50), parameter :: beyond(2) = [character(50) :: 'NO POSITION: BEYOND THE LIMIT OF MOTION AT T =', &
+      'BRAK POLOZENIA: POZA KRESEM RUCHU W CHWILI T =']
 
 contains
 
@@ -86,7 +94,8 @@ contains
             names = one_name
          end if
          is_wrong = line_is_wrong(line, tables, names)
-         if (is_wrong .and. is_sentence(line) .and. len_trim(line) > longest - longest_word .and. .not. goes_on) then
+         if (is_wrong .and. is_sentence(line) .and. .not. goes_on .and. (len_trim(line) > longest - longest_word &
+            .or. index(trim(line), ':', back=.true.) == len_trim(line))) then
             ! It may be a part of a long sentence, which goes on in the next line.
             before = line
             goes_on = .true.
@@ -106,6 +115,7 @@ contains
       character(*), intent(in) :: line
       logical, intent(in) :: tables
       integer, intent(in) :: names
+      integer :: i
 
       wrong = index(line, 'NaN') > 0 .or. index(line, 'Infinity') > 0
       if (wrong .or. line == '') return
@@ -113,8 +123,14 @@ contains
          wrong = index(line, '****') > 0
       else if (starts(line, ' *** ')) then
          wrong = all(marks /= without_links(line(6:))) .and. .not. is_remark(line)
+         if (any([(starts(line(6:), trim(beyond(i))), i=1, size(beyond))])) wrong = .not. are_values(line)
       else if (is_remark(line)) then
          wrong = .false.
+      else if (index(line, '   DRIVE ') + index(line, '   NAPED ') == 10) then
+         ! The name of what has extremes, and the drive whose values stand below.
+         wrong = index(line, ', ') == 0
+      else if (index(line, 'TIME MIN TO MAX ') + index(line, 'CZAS MIN DO MAX ') > 0) then
+         wrong = index(line, 'TIME RATIO') + index(line, 'STOSUNEK CZASOW') == 0
       else if (starts(line, ' INSTANT ') .or. starts(line, ' CHWILA ') .or. index(line, ' = ') > 0) then
          wrong = .not. are_values(line)
       else if (line(:10) == '') then
@@ -128,11 +144,12 @@ contains
    pure function without_links(text) result(rest)
       character(*), intent(in) :: text
       character(len(text)) :: rest
-      integer :: comma
+      integer :: comma, colon
 
       rest = text
       comma = max(index(text, ', LINK'), index(text, ', OGNIW'))
-      if (comma > 0) rest = text(:comma - 1)//text(index(text, ': ', back=.true.):)
+      colon = index(text, ': ', back=.true.)
+      if (comma > 0 .and. colon > 0) rest = text(:comma - 1)//text(colon:)
    end function without_links
 
    !> The line is a sentence behind three stars or dashes, or a part of one.
@@ -152,6 +169,9 @@ contains
       if (.not. (starts(line, ' *** ') .or. starts(line, ' --- ') .or. starts(line, ' LARGEST ') .or. starts(line, &
          ' NAJ'))) &
          return
+      if (any(marks == without_links(line(6:)))) return
+      ! Where a limit is.
+      is_remark = (starts(line, ' *** DRIVE ') .or. starts(line, ' *** NAPED ')) .and. index(line, ' = ') > 0
       do i = 1, size(diagnostics)
          is_remark = is_remark .or. index(line, trim(diagnostics(i))) > 0
       end do

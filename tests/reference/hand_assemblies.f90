@@ -150,26 +150,27 @@ contains
       call find_all(name, m, list)
       call put(o, '')
       call put(o, ' CIRCUITS AND BRANCHES, DRIVE ANGLE CRANK')
-      call put(o, ' CIRCUIT BRANCH  DET  ASSEMBLIES  RANGE')
+      call put(o, ' CIRCUIT BRANCH  DET  ASSEMBLY NO.  RANGE OF ANGLE CRANK, DEG')
       do k = 1, 2
-         write (line, '(a, i0, 3a, i0, 11x, 5a)') ' 1       ', k, '        ', &
-            merge('+', '-', list(3 - k)%determinant > 0.0_qp), '   ', 3 - k, 'MIN  ', in_degrees(-crank_limit()), &
-            '   MAX  ', in_degrees(crank_limit())
+         write (line, '(a, i0, 3a, i0, 13x, 3a)') ' 1       ', k, '        ', &
+            merge('+', '-', list(3 - k)%determinant > 0.0_qp), '   ', 3 - k, in_degrees(-crank_limit()), ' .. ', &
+            in_degrees(crank_limit())
          call put(o, trim(line))
       end do
       call put(o, ' DEAD POINTS')
       do k = 1, -1, -2
-         call put(o, '   BRANCH 1 2   '//in_degrees(k*crank_limit())//'   LINKS COUPLER, ROCKER AT THE LIMIT, IN LINE')
+         call put(o, '   BRANCHES 1 AND 2 MEET AT '//in_degrees(k*crank_limit()) &
+            //' DEG, LINKS COUPLER, ROCKER AT THE LIMIT, COLLINEAR')
       end do
    end subroutine put_circuits_by_hand
 
-   !> Ten digits of an angle.
+   !> Ten digits of an angle of two before the point.
    function in_degrees(x) result(text)
       real(qp), intent(in) :: x
       character(:), allocatable :: text
       character(20) :: number
 
-      write (number, '(es20.9)') x/degree_q
-      text = trim(adjustl(number))//' DEG'
+      write (number, '(f20.8)') x/degree_q
+      text = trim(adjustl(number))
    end function in_degrees
 end module hand_assemblies

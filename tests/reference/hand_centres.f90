@@ -46,7 +46,7 @@ contains
       unit = m%length_unit
       where (is_angle(:, kind)) unit = merge('DEG', 'RAD', m%degrees)
       power = ''
-      if (scales%power(1, 0) /= 0) write (power, '("10**", i0)') spread(scales%power(1, 0), 1, 7)
+      if (scales%power(1, 0) /= 0) write (power, '("1.E", sp, i0.2)') spread(scales%power(1, 0), 1, 7)
       where (is_angle(:, kind)) power = ''
       call put(o, trim(heads(kind, language)))
       if (any(power /= '')) call put(o, trim(line_of('', '', power(:columns))))

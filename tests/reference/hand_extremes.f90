@@ -17,7 +17,7 @@ module hand_extremes
 
    !> Cells of the grid in a step of TIME. Values that differ by the second, relatively, are one: the earlier counts.
    integer, parameter :: refined = 8
-   real(qp), parameter :: alike = 1.0e-12_qp, closes_to = 1.0e-9_qp
+   real(qp), parameter :: alike = 1.0e-12_qp, closes_to = 1.0e-9_qp, constant = 1.0e-15_qp
    real(qp), parameter :: golden = 0.61803398874989484820458683436563811772_qp
 
    !> How close to a change point the program's search comes, in steps of TIME.
@@ -54,6 +54,7 @@ contains
       call put_times(o, m, scales, g)
       kind = 0
       do q = 1, size(g%asked)
+         if (.not. any_varies(g, q)) cycle
          associate (request => m%requests(g%asked(q)))
             if (request%kind /= kind) call put_heads(o, m, scales, request%kind, merge(2, 1, m%polish))
             kind = request%kind
@@ -63,8 +64,8 @@ contains
       if (.not. any(flagged)) return
       call put_gaps(o, m, scales, g, flagged, beside_change, merge(' --- EKSTREMA MOGA BYC POMINIETE W T =', &
                                                                    ' --- EXTREMES MAY BE MISSED WITHIN T =', m%polish))
-      call put_gaps(o, m, scales, g, flagged, 0.0_qp, merge(' --- NIE OBJETO, BO NIE CALY RUCH JEST ZNANY: T =          ', &
-                                                       ' --- NOT COVERED, SINCE NOT ALL OF THE MOTION IS KNOWN: T =', m%polish))
+      call put_gaps(o, m, scales, g, flagged, 0.0_qp, merge(' --- NIE PRZESZUKANO (BRAK RUCHU): T =       ', &
+                                                       ' --- NOT SEARCHED (MOTION NOT AVAILABLE): T =', m%polish))
    end subroutine put_extremes_by_hand
 
    !> A line with the times of the `flagged` instants behind its `head`, or with the interval of twice the `part` of a step
@@ -140,6 +141,25 @@ contains
       end do
    end function grid_of
 
+   !> Number (c, k) of row `q` is not the same at all times, but for the rounding of real128.
+   logical function varies(g, q, c, k)
+      type(grid_t), intent(in) :: g
+      integer, intent(in) :: q, c, k
+
+      associate (f => g%row(q, :)%value(c, k))
+         varies = maxval(f) - minval(f) > constant*(1.0_qp + maxval(abs(f)))
+      end associate
+   end function varies
+
+   !> Some number of row `q` varies.
+   logical function any_varies(g, q)
+      type(grid_t), intent(in) :: g
+      integer, intent(in) :: q
+      integer :: c, k
+
+      any_varies = any([((varies(g, q, c, k), c=1, g%row(q, 0)%columns), k=0, 2)])
+   end function any_varies
+
    !> The subject of request `i` does not belong to the ground.
    logical function moves(m, i)
       type(mechanism_t), intent(in) :: m
@@ -179,8 +199,7 @@ contains
       f = way*g%row(q, :)%value(c, k)
       range = maxval(f) - minval(f)
       first = .true.
-      ! A constant, but for the rounding of real128.
-      if (range <= 1.0e-15_qp*(1.0_qp + maxval(abs(f)))) f = 0.0_qp
+      if (.not. varies(g, q, c, k)) f = 0.0_qp
       do i = 0, ubound(f, 1)
          ! A grid point so far below the largest has none beside it: an extreme is flat.
          if (f(i) < maxval(f) - 0.1_qp*range .and. .not. first) cycle
@@ -237,21 +256,20 @@ contains
       type(grid_t), intent(in) :: g
       integer, intent(in) :: q
       type(extreme_t) :: e(-1:1, 3, 0:2)
-      character(field_length) :: fields(3, 0:2, 3), strokes(3, 0:2, 4)
+      character(field_length) :: fields(3, 0:2, 3), strokes(3, 0:2)
       character(3), parameter :: words(-1:1) = ['MIN', '   ', 'MAX']
-      real(qp) :: forward, period
       integer :: way, c, k, what
-      character(:), allocatable :: drive
+      character(:), allocatable :: drive, unit
 
       associate (row => g%row(q, 0), drive_of => m%drives(1))
-         call put(o, ' '//trim(row%name))
          drive = drive_word(m, drive_of)
-         drive = drive(index(drive, ' ') + 1:)
-         if (index(drive, ' ') > 0) drive = drive(:index(drive, ' ') - 1)
+         unit = drive_value(m, drive_of, scales, g%t(0))
+         call put(o, ' '//row%name(:8)//merge('   NAPED ', '   DRIVE ', m%polish)//drive//','//unit(index(unit, ' '):))
          do way = -1, 1, 2
             fields = ''
             do k = 0, 2
                do c = 1, row%columns
+                  if (.not. varies(g, q, c, k)) cycle
                   e(way, c, k) = extreme(m, g, q, c, k, way)
                   fields(c, k, 1) = number_of(m, scales, row, c, k, e(way, c, k)%value)
                   fields(c, k, 2) = number_by_hand(e(way, c, k)%t, 0.0_qp, scales%time_decimals, scales%time_power)
@@ -259,28 +277,21 @@ contains
                end do
             end do
             call put_line(o, row, words(way), fields(:, :, 1))
-            call put_line(o, row, 'T', fields(:, :, 2))
-            call put_line(o, row, drive, fields(:, :, 3))
+            call put_line(o, row, trim(merge('W T ', 'AT T', m%polish)), fields(:, :, 2))
+            call put_line(o, row, trim(merge('NAPED   ', 'AT DRIVE', m%polish)), fields(:, :, 3))
          end do
          strokes = ''
-         period = abs(g%t(ubound(g%t, 1)) - g%t(0))
          do c = 1, row%columns
-            strokes(c, 0, 1) = number_of(m, scales, row, c, 0, e(1, c, 0)%value - e(-1, c, 0)%value)
-            if (.not. is_cycle(m, g, q, c)) cycle
-            forward = period*modulo((e(1, c, 0)%t - e(-1, c, 0)%t)/(g%t(ubound(g%t, 1)) - g%t(0)), 1.0_qp)
-            strokes(c, 0, 2) = number_by_hand(forward, 0.0_qp, scales%time_decimals, scales%time_power)
-            strokes(c, 0, 3) = number_by_hand(period - forward, 0.0_qp, scales%time_decimals, scales%time_power)
-            strokes(c, 0, 4) = number_by_hand(max(forward, period - forward)/min(forward, period - forward), 0.0_qp, 6, 0)
+            if (varies(g, q, c, 0)) strokes(c, 0) = number_of(m, scales, row, c, 0, e(1, c, 0)%value - e(-1, c, 0)%value)
          end do
-         call put_line(o, row, trim(merge('SKOK  ', 'STROKE', m%polish)), strokes(:, :, 1))
-         if (any(strokes(:, :, 2) /= '')) then
-            call put_line(o, row, 'MIN-MAX', strokes(:, :, 2))
-            call put_line(o, row, 'MAX-MIN', strokes(:, :, 3))
-            call put_line(o, row, trim(merge('STOSUN.', 'RATIO  ', m%polish)), strokes(:, :, 4))
-         end if
+         call put_line(o, row, trim(merge('SKOK  ', 'STROKE', m%polish)), strokes)
+         do c = 1, row%columns
+            if (.not. varies(g, q, c, 0)) cycle
+            if (is_cycle(m, g, q, c)) call put_stroke_times(o, m, scales, g, q, c, e(1, c, 0)%t - e(-1, c, 0)%t)
+         end do
          do c = 1, row%columns
             what = dimension_of(row%column(c))
-            if (m%requests(g%asked(q))%dwell(what) <= 0.0) cycle
+            if (m%requests(g%asked(q))%dwell(what) <= 0.0 .or. .not. varies(g, q, c, 0)) cycle
             if (e(1, c, 0)%value - e(-1, c, 0)%value <= m%requests(g%asked(q))%dwell(what)) cycle
             do way = -1, 1, 2
                call put_dwell(o, m, scales, g, q, c, way, e(way, c, 0), drive)
@@ -288,6 +299,48 @@ contains
          end do
       end associate
    end subroutine put_subject
+
+   !> The line of the times of both strokes of column `c` of row `q`, from the time of its least value to `later` after it.
+   subroutine put_stroke_times(o, m, scales, g, q, c, later)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(hand_scales_t), intent(in) :: scales
+      type(grid_t), intent(in) :: g
+      integer, intent(in) :: q, c
+      real(qp), intent(in) :: later
+      real(qp) :: run, times(2)
+      character(15), parameter :: words(3, 2) = reshape([character(15) :: 'TIME MIN TO MAX', 'TIME MAX TO MIN', &
+         'TIME RATIO', 'CZAS MIN DO MAX', 'CZAS MAX DO MIN', 'STOSUNEK CZASOW'], [3, 2])
+      integer :: k, language
+      character(:), allocatable :: line
+
+      language = merge(2, 1, m%polish)
+      run = g%t(ubound(g%t, 1)) - g%t(0)
+      times(1) = abs(run)*modulo(later/run, 1.0_qp)
+      times(2) = abs(run) - times(1)
+      line = '  '//column_word(m, g, q, c)
+      do k = 1, 2
+         line = line//'   '//trim(words(k, language))//' ' &
+            //with_unit(times(k), scales%time_decimals, scales%time_power, m%time_unit)
+      end do
+      call put(o, line//'   '//trim(words(3, language))//' ' &
+         //trim(adjustl(number_by_hand(maxval(times)/minval(times), 0.0_qp, 6, 0))))
+   end subroutine put_stroke_times
+
+   !> The name of column `c` of row `q`.
+   function column_word(m, g, q, c) result(word)
+      type(mechanism_t), intent(in) :: m
+      type(grid_t), intent(in) :: g
+      integer, intent(in) :: q, c
+      character(:), allocatable :: word
+      character(7), parameter :: names(3, 4) = reshape([character(7) :: 'X', 'Y', 'PHI', 'X', 'Y', 'FI', &
+         'SLIDE', '', 'ANGLE', 'PRZESUW', '', 'KAT'], [3, 4])
+      integer :: language
+
+      language = merge(2, 1, m%polish)
+      if (g%row(q, 0)%kind == request_pair) language = language + 2
+      word = trim(names(g%row(q, 0)%column(c), language))
+   end function column_word
 
    !> Number (c, k) of `row`, in the unit of its column.
    function number_of(m, scales, row, c, k, value) result(text)
@@ -326,7 +379,7 @@ contains
       if (len(label) > 7) line = ' '//label
       do k = 0, 2
          do c = 1, row%columns
-            first = 9 + field_length*(3*k + row%column(c) - 1)
+            first = 9 + field_length*(row%slot(c, k) - 1)
             line(first + 1:first + field_length) = fields(c, k)
          end do
       end do
@@ -394,20 +447,15 @@ contains
       character(*), intent(in) :: drive
       real(qp) :: distance, from, to
       character(:), allocatable :: first
-      character(7), parameter :: names(3, 4) = reshape([character(7) :: 'X', 'Y', 'PHI', 'X', 'Y', 'FI', &
-         'SLIDE', '', 'ANGLE', 'PRZESUW', '', 'KAT'], [3, 4])
-      integer :: language
       character(field_length) :: text
 
       associate (row => g%row(q, 0))
-         language = merge(2, 1, m%polish)
-         if (row%kind == request_pair) language = language + 2
          distance = real(m%requests(g%asked(q))%dwell(dimension_of(row%column(c))), qp)
          from = leaves(m, g, q, c, way, e, distance, -1)
          to = leaves(m, g, q, c, way, e, distance, 1)
          text = number_of(m, scales, row, c, 0, distance)
          first = drive_value(m, m%drives(1), scales, from)
-         call put(o, ' '//trim(merge('POSTOJ', 'DWELL ', m%polish))//'  '//trim(names(row%column(c), language)) &
+         call put(o, ' '//trim(merge('POSTOJ', 'DWELL ', m%polish))//'  '//column_word(m, g, q, c) &
             //'  '//merge('MAX', 'MIN', way > 0)//' +- '//trim(adjustl(text))//'   T = '//instant_text(scales, from)//' .. ' &
             //instant_text(scales, to)//'   '//drive//' = '//first(:index(first, ' ') - 1)//' .. ' &
             //trim(adjustl(in_field(drive_value(m, m%drives(1), scales, to)))))

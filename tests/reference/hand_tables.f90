@@ -9,24 +9,24 @@ module hand_tables
    use closed_forms_dyads, only: body_t
    use hand_scales, only: hand_scales_t
    use hand_numbers, only: number_by_hand, field_length
-   use hand_rows, only: hand_row_t, row_by_hand
+   use hand_rows, only: hand_row_t, row_by_hand, has_pairs, pair_slots
    use hand_tolerances, only: spread_lines
    use hand_centres, only: put_centre_heads_by_hand, put_centre_by_hand
    use text_output, only: output_t, put
    implicit none
    private
-   public :: put_tables, put_heads, dimension_of, with_unit, drive_word, drive_value, instant_text
+   public :: above_t, put_tables, put_heads, dimension_of, with_unit, drive_word, drive_value, instant_text
 
    integer, parameter :: name_length = 9, line_length = name_length + 9*field_length
    !> In English and in Polish.
    character(10), parameter :: instant_words(2) = [character(10) :: ' INSTANT ', ' CHWILA ']
    character(4), parameter :: none_words(2) = [character(4) :: 'NONE', 'BRAK']
-   character(40), parameter :: unknown_words(2) = [character(40) :: 'DIGITS THAT ROUNDING LEAVES OPEN', &
-      'CYFRY NIEPEWNE Z POWODU ZAOKRAGLEN']
+   character(40), parameter :: unknown_words(2) = [character(40) :: 'DIGITS LOST TO ROUNDING', &
+      'CYFRY UTRACONE PRZEZ ZAOKRAGLENIE']
    character(40), parameter :: singular_words(2, 2) = reshape([character(40) :: 'CHANGE POINT', &
       'VELOCITIES NOT UNIQUE', 'PUNKT ZMIANY', 'PREDKOSCI NIEJEDNOZNACZNE'], [2, 2])
    character(6), parameter :: link_words(2, 2) = reshape([character(6) :: 'LINK', 'LINKS', 'OGNIWO', 'OGNIWA'], [2, 2])
-   character(14), parameter :: line_words(2) = [character(14) :: 'IN LINE', 'W JEDNEJ LINII']
+   character(14), parameter :: line_words(2) = [character(14) :: 'COLLINEAR', 'WSPOLLINIOWE']
    !> Two links with a smaller sine of the angle between them are in line: an instant is a change point but for the
    !> rounding of a double, and angles are off by its root at most.
    real(qp), parameter :: parallel = 1.0e-6_qp
@@ -35,30 +35,37 @@ module hand_tables
       ' LINK               X           Y         PHI          VX          VY        VPHI' &
       //'          AX          AY        APHI', &
       ' POINT              X           Y                      VX          VY                      AX          AY', &
-      ' PAIR           SLIDE                   ANGLE        RATE                    RATE' &
-      //'    2ND RATE                2ND RATE', &
+      ' PAIR           SLIDE    VELOCITY            ACCELERATION       ANGLE    VELOCITY            ACCELERATION', &
       ' LINK                                     PHI                                VPHI' &
       //'                                APHI', &
       ' OGNIWO             X           Y          FI          VX          VY         VFI' &
       //'          AX          AY         AFI', &
       ' PUNKT              X           Y                      VX          VY                      AX          AY', &
-      ' PARA         PRZESUW                     KAT    PREDKOSC                PREDKOSC' &
-      //'     PRZYSP.                 PRZYSP.', &
+      ' PARA         PRZESUW    PREDKOSC          PRZYSPIESZENIE         KAT    PREDKOSC          PRZYSPIESZENIE', &
       ' OGNIWO                                    FI                                 VFI' &
       //'                                 AFI'], [4, 2])
    !> Their columns, three a derivative: of lengths (1) or angles (2), or none.
    integer, parameter :: columns(3, 4) = reshape([1, 1, 2, 1, 1, 0, 1, 0, 2, 0, 0, 2], [3, 4])
+   !> The heads over pairs are those of slides, then those of angles; these begin here.
+   integer, parameter :: before_angles = name_length + 4*field_length
    !> Of x, y, phi: a length (1) or an angle (2).
    integer, parameter :: dimension_of(3) = [1, 1, 2]
    !> More drives do not stand over the tables, and no line is longer.
    integer, parameter :: most_drives = 6, widest = 120
+   !> Heads stand once for all rows of a kind below them, but again after remarks and after so many lines.
+   integer, parameter :: heads_every = 60
+
+   !> The kind of rows to which the last heads belong, 0 where there are none, and the lines since.
+   type :: above_t
+      integer :: kind = 0, lines = 0
+   end type above_t
 
 contains
 
    !> Instant number `step` of `m`, whose links are at `b`, in the order of the deck; `resting` (links): they have no
    !> velocity of their own, for at a change point those numbered `crossing` have two; `error` (3, 0:2, requests), of size
-   !> 0 where all digits are known.
-   subroutine put_tables(o, m, scales, step, b, resting, crossing, error)
+   !> 0 where all digits are known. `remarks`: some follow. `above`: what the instant before has left.
+   subroutine put_tables(o, m, scales, step, b, resting, crossing, error, remarks, above)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(hand_scales_t), intent(in) :: scales
@@ -67,34 +74,41 @@ contains
       logical, intent(in) :: resting(:)
       integer, intent(in) :: crossing(:)
       real(qp), intent(in) :: error(:, 0:, :)
+      logical, intent(in) :: remarks
+      type(above_t), intent(inout) :: above
       type(hand_row_t) :: row
       character(line_length) :: line
       character(120) :: spreads(2)
       integer :: i, k, kind, language
-      logical :: masked
+      logical :: masked, begun
 
       language = merge(2, 1, m%polish)
-      kind = 0
+      begun = .false.
       masked = .false.
       do i = 1, size(m%requests)
          if (.not. m%requests(i)%listed) then
             if (m%requests(i)%every == 0) cycle
             if (mod(step, m%requests(i)%every) /= 0 .and. step /= instant_count(m) - 1) cycle
          end if
-         if (kind == 0) call put_time(o, m, scales, step, language)
+         if (.not. begun) call put_time(o, m, scales, step, language, above)
+         begun = .true.
+         kind = m%requests(i)%kind
+         if (kind /= above%kind) then
+            above = above_t(kind)
+            if (kind >= request_pole) then
+               call put_centre_heads_by_hand(o, m, scales, m%requests(i), language)
+            else if (kind == 1 .and. all(m%requests%angle_alone .or. m%requests%kind /= 1)) then
+               call put_heads(o, m, scales, 4, language)
+            else
+               call put_heads(o, m, scales, kind, language)
+            end if
+         end if
+         above%lines = above%lines + 1
          if (m%requests(i)%kind >= request_pole) then
-            if (m%requests(i)%kind /= kind) call put_centre_heads_by_hand(o, m, scales, m%requests(i), language)
-            kind = m%requests(i)%kind
             call put_centre_by_hand(o, m, scales, b, m%requests(i), resting, language)
             cycle
          end if
          row = row_by_hand(m, b, m%requests(i))
-         if (row%kind == 1 .and. all(m%requests%angle_alone .or. m%requests%kind /= 1)) then
-            if (kind /= row%kind) call put_heads(o, m, scales, 4, language)
-         else if (row%kind /= kind) then
-            call put_heads(o, m, scales, row%kind, language)
-         end if
-         kind = row%kind
          if (size(error) > 0) then
             line = row_line(row, m%degrees, scales, merge(0, 2, any(resting(row%links))), error(:, :, i), language)
          else
@@ -106,14 +120,16 @@ contains
             end do
          end if
          masked = masked .or. index(line, '?') > 0
-         call put(o, line(:name_length + field_length*(6 + row%column(row%columns))))
+         call put(o, line(:name_length + field_length*row%slot(row%columns, 2)))
          if (allocated(m%tolerances)) then
             spreads = spread_lines(m, scales, i, real(instant(m, step), qp))
             call put(o, trim(spreads(1)))
             call put(o, trim(spreads(2)))
+            above%lines = above%lines + 2
          end if
       end do
-      if (kind == 0 .and. any(resting)) call put_time(o, m, scales, step, language)
+      if (.not. begun .and. any(resting)) call put_time(o, m, scales, step, language, above)
+      if (masked .or. remarks .or. any(resting)) above%kind = 0
       if (any(resting)) call put(o, ' *** '//crossing_words(m, b, crossing, language))
       if (masked) call put(o, ' --- ?: '//trim(unknown_words(language)))
    end subroutine put_tables
@@ -144,12 +160,15 @@ contains
       type(mechanism_t), intent(in) :: m
       type(hand_scales_t), intent(in) :: scales
       integer, intent(in) :: kind, language
-      character(line_length) :: line(3)
+      character(line_length) :: line(3), names
       character(30) :: power, unit, per
-      integer :: c, k
+      integer :: c, k, at
       logical :: has_room
 
       has_room = max(3, len_trim(m%length_unit)) + len('/'//trim(m%time_unit)//'**2') <= field_length - 1
+      names = heads(kind, language)
+      if (kind == 3 .and. .not. has_pairs(m, .true.)) names = names(:name_length)//names(before_angles + 1:)
+      if (kind == 3 .and. .not. has_pairs(m, .false.)) names(before_angles + 1:) = ''
       line = ''
       do k = 0, 2
          per = ''
@@ -157,19 +176,24 @@ contains
          if (k == 2) per = trim(per)//'**2'
          do c = 1, 3
             if (columns(c, kind) == 0) cycle
+            at = 3*k + c
+            if (kind == 3) then
+               if (.not. has_pairs(m, c == 1)) cycle
+               at = pair_slots(k, merge(2, 1, c == 3 .and. has_pairs(m, .true.)))
+            end if
             unit = m%length_unit
             if (columns(c, kind) == 2) unit = merge('DEG', 'RAD', m%degrees)
-            write (power, '("10**", i0)') scales%power(columns(c, kind), k)
-            if (scales%power(columns(c, kind), k) /= 0) call put_end(power, 3*k + c, line(1))
+            write (power, '("1.E", sp, i0.2)') scales%power(columns(c, kind), k)
+            if (scales%power(columns(c, kind), k) /= 0) call put_end(power, at, line(1))
             if (has_room) then
-               call put_end(trim(unit)//per, 3*k + c, line(2))
+               call put_end(trim(unit)//per, at, line(2))
             else
-               call put_end(unit, 3*k + c, line(2))
-               call put_end(per, 3*k + c, line(3))
+               call put_end(unit, at, line(2))
+               call put_end(per, at, line(3))
             end if
          end do
       end do
-      call put(o, trim(heads(kind, language)))
+      call put(o, trim(names))
       do k = 1, 3
          if (line(k) /= '') call put(o, trim(line(k)))
       end do
@@ -187,15 +211,17 @@ contains
    end subroutine put_end
 
    !> The lines over the tables: the instant, and where its drives are.
-   subroutine put_time(o, m, scales, step, language)
+   subroutine put_time(o, m, scales, step, language, above)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(hand_scales_t), intent(in) :: scales
       integer, intent(in) :: step, language
+      type(above_t), intent(inout) :: above
       character(:), allocatable :: line, word
       character(12) :: number, left_out
       integer :: i, first
 
+      if (above%lines >= heads_every) above%kind = 0
       write (number, '(i0)') step
       call put(o, '')
       line = trim(instant_words(language))//' '//trim(number)
@@ -209,10 +235,12 @@ contains
          if (len(line//word) > widest) then
             call put(o, line)
             line = repeat(' ', first)
+            above%lines = above%lines + 1
          end if
          line = line//word
       end do
       call put(o, line)
+      above%lines = above%lines + 2
    end subroutine put_time
 
    !> A time without its unit.
@@ -233,7 +261,7 @@ contains
       character(12) :: factor
 
       text = trim(adjustl(number_by_hand(x, 0.0_qp, decimals, power)))
-      write (factor, '("10**", i0)') power
+      write (factor, '("1.E", sp, i0.2)') power
       if (power /= 0) text = text//' '//trim(factor)
       text = text//' '//trim(unit)
    end function with_unit
@@ -291,7 +319,7 @@ contains
       line = ' '//row%name
       do k = 0, 2
          do c = 1, row%columns
-            first = name_length + field_length*(3*k + row%column(c) - 1) + 1
+            first = name_length + field_length*(row%slot(c, k) - 1) + 1
             what = columns(row%column(c), row%kind)
             unit = 1.0_qp
             if (degrees .and. what == 2) unit = degree_q

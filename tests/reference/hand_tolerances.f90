@@ -7,6 +7,7 @@ module hand_tolerances
    use closed_forms_dyads, only: place_t, body_t, fixed_place, body, place_on, polar, direction, third_corner
    use hand_scales, only: hand_scales_t
    use hand_numbers, only: number_by_hand, field_length
+   use hand_rows, only: pair_slots
    use text_output, only: output_t, put
    implicit none
    private
@@ -42,15 +43,15 @@ module hand_tolerances
    real(qp), parameter :: alike = 1.0e-9_qp, least_share = 1.0e-4_qp
    character(8), parameter :: worst_words(2) = ['WORST   ', 'NAJGOR. ']
    character(60), parameter :: share_words(2) = [character(60) :: &
-      'TOLERANCES: SHARES OF THE NUMBERS WHERE THE RSS IS GREATEST', 'TOLERANCJE: UDZIALY LICZB PRZY NAJWIEKSZYM RSS']
-   character(20), parameter :: small_words(2) = [character(20) :: 'SMALLER SHARES:', 'MNIEJSZE UDZIALY:']
+      'TOLERANCES: CONTRIBUTIONS AT THE INSTANT OF LARGEST RSS', 'TOLERANCJE: UDZIALY LICZB PRZY NAJWIEKSZYM RSS']
+   character(28), parameter :: small_words(2) = [character(28) :: 'CONTRIBUTIONS BELOW 0.01 %:', 'UDZIALY PONIZEJ 0.01 %:']
    character(6), parameter :: kind_words(3, 2) = reshape([character(6) :: 'LINK', 'POINT', 'PAIR', &
       'OGNIWO', 'PUNKT', 'PARA'], [3, 2])
    character(8), parameter :: column_words(3, 0:2, 2) = reshape([character(8) :: 'X', 'Y', 'PHI', 'VX', 'VY', 'VPHI', &
       'AX', 'AY', 'APHI', 'X', 'Y', 'FI', 'VX', 'VY', 'VFI', 'AX', 'AY', 'AFI'], [3, 3, 2])
    !> Of deck 1 pairs have angles, of deck 2 a slide.
-   character(8), parameter :: pair_words(0:2, 2) = reshape([character(8) :: 'ANGLE', 'RATE', '2ND RATE', 'PRZESUW', &
-      'PREDKOSC', 'PRZYSP.'], [3, 2])
+   character(14), parameter :: pair_words(0:2, 2) = reshape([character(14) :: 'ANGLE', 'VELOCITY', 'ACCELERATION', &
+      'PRZESUW', 'PREDKOSC', 'PRZYSPIESZENIE'], [3, 2])
 
 contains
 
@@ -170,7 +171,7 @@ contains
       real(qp), intent(in) :: t
       character(120) :: lines(2)
       real(qp) :: value(3, 0:2, 2)
-      integer :: c, k, what, n, column
+      integer :: c, k, what, n, slot
 
       call find_spreads(m, sensitivities_by_hand(m, i, t), value)
       lines(1) = '  '//worst_words(merge(2, 1, m%polish))
@@ -178,9 +179,11 @@ contains
       do n = 1, 2
          do k = 0, 2
             do c = 1, columns_of(m, i)
-               column = column_of(m, i, c)
-               what = merge(2, 1, column == 3)
-               lines(n)(10 + field_length*(3*k + column - 1):9 + field_length*(3*k + column)) = &
+               what = merge(2, 1, column_of(m, i, c) == 3)
+               slot = 3*k + c
+               ! Each deck asks for pairs of one kind.
+               if (columns_of(m, i) == 1) slot = pair_slots(k, 1)
+               lines(n)(10 + field_length*(slot - 1):9 + field_length*slot) = &
                   number_by_hand(value(c, k, n)/unit_of(m, what), 0.0_qp, scales%decimals(what, k) &
                   + more_decimals(case_of(m)), scales%power(what, k))
             end do

@@ -23,7 +23,7 @@ program print_expected
    use quad_jet, only: qp
    use hand_scales, only: hand_scales_t, scales_by_hand
    use hand_estimates, only: estimates_by_hand
-   use hand_tables, only: put_tables
+   use hand_tables, only: above_t, put_tables
    use closed_forms_dyads, only: body_t
    use deck_tally, only: deck_name
    use closed_forms, only: closed_form, hand_count
@@ -111,6 +111,7 @@ contains
       character(*), intent(in) :: name
       type(mechanism_t), intent(in) :: m
       type(hand_scales_t) :: scales
+      type(above_t) :: above
       type(certificate_counts_t) :: tally
       type(diagnostic_t), allocatable :: diagnostics(:)
       type(body_t) :: links(size(m%links))
@@ -141,7 +142,7 @@ contains
          ! Next to dead points only are digits in doubt.
          error = reshape([real(qp) ::], [3, 3, 0])
          if (index(name, 'dead_point') == 1) error = estimates_by_hand(m, real(instant(m, k), qp))
-         call put_tables(o, m, scales, k, links, resting, crossing, error)
+         call put_tables(o, m, scales, k, links, resting, crossing, error, size(diagnostics) > 0, above)
          call put_diagnostics(o, m, diagnostics)
       end do
       ! All of these motions are followed from their first instant on; METHOD DENSE and MATRIX cannot tell.

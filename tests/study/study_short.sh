@@ -93,7 +93,7 @@ equal 'Andrews: status' 0 $?
 equal 'Andrews: the matrices at small tolerances' 1 "$(grep -A1 '^ MATRIX  .* ROUNDING' "$w/andrews.txt" | grep -c 'DID NOT CONVERGE' | awk '{ print ($1 > 4) }')"
 
 # What is refused.
-only=' *** OPTION --study GOES WITH NO OTHER OPTION BUT -o AND --quiet'
+only=' *** OPTION --study CAN ONLY BE COMBINED WITH -o AND --quiet'
 deck=$w/four_bar.deck
 refused '--csv' 1 "$only" --study --csv "$w/x.csv" "$deck"
 refused '--log' 1 "$only" --study --log "$w/x.log" "$deck"
@@ -101,14 +101,14 @@ refused '--errors' 1 "$only" --study --errors "$deck"
 refused '--check' 1 "$only" --check --study "$deck"
 refused '--sets' 1 "$only" --study --sets 1/2 "$deck"
 refused '--time' 1 "$only" --study --time "$deck"
-refused '--time and --csv' 1 ' *** OPTION --time GOES WITH NO OTHER OPTION BUT -o AND --quiet' --time --csv "$w/x.csv" "$deck"
+refused '--time and --csv' 1 ' *** OPTION --time CAN ONLY BE COMBINED WITH -o AND --quiet' --time --csv "$w/x.csv" "$deck"
 refused 'no deck' 1 ' *** OPTION --study NEEDS THE DECK AS A FILE' --study
 refused 'its own deck' 1 " *** THE DECK $deck WOULD BE OVERWRITTEN" --study -o "$deck" "$deck"
 sed 's/^END/EMD/' "$deck" > "$w/bad.deck"
 refused 'a bad deck' 1 "$("$kinmat" "$w/bad.deck" 2>&1 > "$w/out" | tail -n 1)" --study "$w/bad.deck"
 sed '/^DRIVE/d' "$deck" > "$w/loose.deck"
 refused 'a loose deck' 1 "$("$kinmat" "$w/loose.deck" 2>&1 > "$w/out" | tail -n 1)" --study "$w/loose.deck"
-kinmat=$BUILD/kinmat-quad refused 'kinmat-quad' 1 ' *** --study IS FOR kinmat IN REAL64, WHICH ASKS THIS PROGRAM FOR ITS PART' --study "$deck"
+kinmat=$BUILD/kinmat-quad refused 'kinmat-quad' 1 ' *** --study IS AVAILABLE ONLY IN kinmat (REAL64), NOT IN THIS BUILD' --study "$deck"
 # A decimal with the exponent D is the double in every kind, and no other number; a table that ends at that decimal reaches it.
 awk -v t='0.1D0' '/^TIME/ { next } /^AT/ { $0 = sprintf("AT%30s%s", "", t) } { print }' "$deck" > "$w/at_double.deck"
 sed 's/0[.]1D0/0.1/' "$w/at_double.deck" > "$w/at_decimal.deck"

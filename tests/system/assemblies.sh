@@ -3,7 +3,7 @@
 . tests/counting.sh
 
 # assemblies DECK: what the listing says of them
-assemblies() { "$kinmat" --quiet "$1" 2>&1 | awk '/^ (ASSEMBLIES|MONTAZE) / { on = 1 } /^ (BRANCH|GALAZ|RANGES|LARGEST)/ { on = 0 } on'; }
+assemblies() { "$kinmat" --quiet "$1" 2>&1 | awk '/^ (ASSEMBLIES|MONTAZE) / { on = 1 } /^ (CONTINUATION|KONTYNUACJA|RANGES|LARGEST)/ { on = 0 } on'; }
 
 # Blocks made by chance: as many solutions, and as many of them real, as PHCpack finds. The table has 100 of them.
 last=${1:-30}
@@ -120,7 +120,7 @@ equal 'a block of slides' '   BLOCK 1: LINKS L4, L3' "$(assemblies "$w/slides.de
    card DRIVE ANGLE C0 '' 5.0 30.0; card AT '' '' '' 0.0; card ASSEMBLY; card END
 } > "$w/open.deck"
 equal 'rates that contradict one another' \
-   ' *** LINKS C0, C1, C2, ROD: TOO MANY EQUATIONS, AND THEY CONTRADICT ONE ANOTHER,   NOT PROVED' \
+   ' *** LINKS C0, C1, C2, ROD: REDUNDANT EQUATIONS ARE INCONSISTENT,   NOT PROVED' \
    "$(assemblies "$w/open.deck" | sed -n 's/.*\(   [NOT ]*PROVED\).*/\1/p; /\*\*\*/p' | tr '\n' ',' | sed 's/,$//')"
 
 # Coupler and rocker of one length, whose ends meet: they turn freely, and the run begins at one of their positions. It is not
@@ -169,12 +169,12 @@ same 'another order: angles' "$w/sorted.angles" "$w/order.angles"
 equal 'a wide block' ' *** LINKS R1, L1, R2, L2, R3, L3, R4, L4 AND 6 MORE: TOO MANY UNKNOWNS IN ONE BLOCK TO FIND ALL ASSEMBLIES,   NONE' \
    "$(assemblies "$w/wide.deck" | grep -E '\*\*\*|NONE' | tr '\n' ',' | sed 's/,$//')"
 with peaucellier "$(card ASSEMBLY)" > "$w/peaucellier.deck"
-equal 'bars that turn freely' ' *** LINKS BAR-AP, BAR-BP: NOT ALL SOLUTIONS ARE SEPARATE, THEY MAY MOVE WITH THE DRIVES HELD' \
+equal 'bars that turn freely' ' *** LINKS BAR-AP, BAR-BP: NON-ISOLATED SOLUTIONS, LINKS MAY MOVE WITH ALL DRIVES HELD' \
    "$(assemblies "$w/peaucellier.deck" | grep -F '***')"
 
 # Poor estimates, all angles 0: with the card the run begins in the nearest assembly, whose LINK cards give the same motion, and
 # without it in another; the other methods, and the deck of bars that would turn freely, likewise.
-motion() { "$kinmat" --quiet "$1" | awk '/^ INSTANT/ { on = 1 } /^ (ASSEMBLIES|BRANCH)/ { on = 0 } on && !/ ---/'; }
+motion() { "$kinmat" --quiet "$1" | awk '/^ INSTANT/ { on = 1 } /^ (ASSEMBLIES|CONTINUATION)/ { on = 0 } on && !/ ---/'; }
 for deck in inverted_slider stephenson_output peaucellier; do
    awk '/^LINK / { $0 = sprintf("%-64s0.0", substr($0, 1, 64)) } { print }' "input/$deck.deck" > "$w/poor.deck"
    motion "$w/poor.deck" > "$w/without"
@@ -205,7 +205,7 @@ for deck in input/*.deck; do
       $2 == 0 { split(near[$1, $2, $5], x, " "); far = far || ($6 - x[1])^2 + ($7 - x[2])^2 + ($8 - x[3])^2 > 1e-8 }
       END { exit !far }' "$w/near.csv" "$w/poor.csv" || continue
    others="$others $name"
-   grep -qE 'ESTIMATED ANGLE WAS OFF BY|KAT PRZYBLIZONY ODBIEGAL O' "$w/poor" || silent="$silent $name"
+   grep -qE 'THE ASSEMBLY FOUND DIFFERS FROM THE INITIAL ANGLE BY|KAT PRZYBLIZONY ODBIEGAL O' "$w/poor" || silent="$silent $name"
 done
 equal 'poor estimates: another assembly than the nearest' ' cognates grounds inverted_slider jansen peaucellier stephenson stephenson_output three_rrr watt_output yoke_mirrored' "$others"
 equal 'poor estimates: none of them in silence' '' "$silent"

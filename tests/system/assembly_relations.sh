@@ -27,7 +27,7 @@ cards() {
    awk -v c="$2" -v k="$3" '
       BEGIN { mechanism = 1 }
       /^ INDEPENDENT MECHANISM/ { mechanism = $3; on = 0 }
-      /^ (ASSEMBLY|BRANCH:) / { on = /ASSEMBLY/ && mechanism == c && $2 == k }
+      /^ (ASSEMBLY|CONTINUATION:) / { on = /ASSEMBLY/ && mechanism == c && $2 == k }
       on && /^(LINK|JOINT|DRIVE|\*) /' "$w/$1.lst"
 }
 
@@ -40,9 +40,9 @@ relate() {
    equal "$1 is read" '' "$(cat "$w/all.err" "$w/run.err")"
    equal "$1: the first position is listed" '' "$(rows first all run)"
    # Where redundant equations contradict one another nothing is proved.
-   if grep -q 'TOO MANY EQUATIONS, AND THEY CONTRADICT' "$w/run.lst"; then
+   if grep -q 'REDUNDANT EQUATIONS ARE INCONSISTENT' "$w/run.lst"; then
       equal "$1: nothing is proved where equations contradict one another" 0 \
-         "$(awk '/^ INDEPENDENT MECHANISM/ { on = 0 } /CONTRADICT/ && /LINK/ { on = 1 } on && /   PROVED/' "$w/all.lst" | grep -c .)"
+         "$(awk '/^ INDEPENDENT MECHANISM/ { on = 0 } /INCONSISTENT/ && /LINK/ { on = 1 } on && /   PROVED/' "$w/all.lst" | grep -c .)"
    fi
    for pair in $(awk -v most=$most 'BEGIN { c = 1 } /^ INDEPENDENT MECHANISM/ { c = $3 }
       /^ ASSEMBLY / && $2 <= most { print c ":" $2 }' "$w/all.lst"); do

@@ -30,7 +30,7 @@ file % 2 == 1 {
    if (/MAY BE MISSING|TOO MANY UNKNOWNS|THERE ARE MORE|NOT ALL SOLUTIONS ARE SEPARATE/) missing[set] = 1
    if (/^ INDEPENDENT MECHANISM/) mechanism = $3
    if (/^ ASSEMBLIES/) { on = 1; if (set == 1) mechanisms = 1 }
-   if (/^ BRANCH:/) on = 0
+   if (/^ CONTINUATION:/) on = 0
    if (set == 1 && on && mechanism > mechanisms) mechanisms = mechanism
    if (on && /^ ASSEMBLY /) { number = $2; count[set, mechanism] = number }
    if (set == 1 && on && /^LINK/ && number == 1) links[mechanism] = links[mechanism] " " $2

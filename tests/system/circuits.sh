@@ -4,63 +4,66 @@
 . tests/counting.sh
 
 # circuits: the lines of the answer for $w/deck
-circuits() { "$kinmat" "$w/deck" 2>&1 | awk '/^ (CIRCUITS AND|OBWODY I) / { on = 1 } /^ (BRANCH|GALAZ|LARGEST GAP)/ && on { exit } on && NF > 0'; }
+circuits() { "$kinmat" "$w/deck" 2>&1 | awk '/^ (CIRCUITS AND|OBWODY I) / { on = 1 } /^ (CONTINUATION|KONTYNUACJA|LARGEST )/ && on { exit } on && NF > 0'; }
+# limits: the same, its ranges as MIN, number, unit, MAX, number, unit
+limits() { circuits | awk '/ RANGE OF / { unit = $NF } { sub(/ [-0-9.]+ [.][.] [-0-9.]+/, " MIN& " unit); sub(/ [.][.] /, " " unit " MAX "); sub(/   M(IN|AX): .*/, "") } 1'; }
 # found NAME EXPECTED: these lines
 found() { equal "$1" "$2" "$(circuits)"; }
 
 # four_bar, as still_four_bar: with CIRCUITS
 four_bar() { still_four_bar "$@" CIRCUITS; }
-head=' CIRCUIT BRANCH  DET  ASSEMBLIES  RANGE'
-all='ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS'
+# head SUBJECT UNIT
+head() { echo " CIRCUIT BRANCH  DET  ASSEMBLY NO.  RANGE OF ANGLE $1, ${2:-DEG}"; }
+turns='TURNS FULLY, CLOSES AFTER 1 TURN'
 
 # Grashof: 1 + 4 < 3.5 + 3, the shortest link turns fully, in either of two circuits.
 four_bar 1.0 3.5 3.0 4.0 CRANK 0.0 55.0 110.0 0.0 > "$w/deck"
 found 'a crank' " CIRCUITS AND BRANCHES, DRIVE ANGLE CRANK
-$head
- 1       1        -   1           $all 1
- 2       2        +   2           $all 1"
+$(head CRANK)
+ 1       1        -   1             $turns
+ 2       2        +   2             $turns"
 
 # Its rocker: between the two positions with crank and coupler in line, and their mirror images.
 four_bar 1.0 3.5 3.0 4.0 ROCKER 85.0 35.0 120.0 120.0 > "$w/deck"
 least=$(awk -v a="$(angle 3 4 4.5)" 'BEGIN { printf "%.12f", 180 - a }')
 greatest=$(awk -v a="$(angle 3 4 2.5)" 'BEGIN { printf "%.12f", 180 - a }')
-one="MIN  $(limit "$least") DEG   MAX  $(limit "$greatest") DEG"
-other="MIN  $(limit "$(awk -v x="$greatest" 'BEGIN { printf "%.12f", 360 - x }')") DEG   MAX  $(
-   limit "$(awk -v x="$least" 'BEGIN { printf "%.12f", 360 - x }')") DEG"
-lined='LINKS CRANK, COUPLER AT THE LIMIT, IN LINE'
+one="$(limit "$least") .. $(limit "$greatest")"
+other="$(limit "$(awk -v x="$greatest" 'BEGIN { printf "%.12f", 360 - x }')") .. $(
+   limit "$(awk -v x="$least" 'BEGIN { printf "%.12f", 360 - x }')")"
+lined='LINKS CRANK, COUPLER AT THE LIMIT, COLLINEAR'
 found 'a rocker' " CIRCUITS AND BRANCHES, DRIVE ANGLE ROCKER
-$head
- 1       1        +   1           $one
- 1       2        -   2           $one
- 2       3        -               $other
- 2       4        +               $other
+$(head ROCKER)
+ 1       1        +   1             $one
+ 1       2        -   2             $one
+ 2       3        -                 $other
+ 2       4        +                 $other
  DEAD POINTS
-   BRANCH 1 2   $(limit "$greatest") DEG   $lined
-   BRANCH 1 2   $(limit "$least") DEG   $lined
-   BRANCH 3 4   ${other##*MAX  }   $lined
-   BRANCH 3 4   $(echo "$other" | awk '{ print $2 }') DEG   $lined"
+   BRANCHES 1 AND 2 MEET AT $(limit "$greatest") DEG, $lined
+   BRANCHES 1 AND 2 MEET AT $(limit "$least") DEG, $lined
+   BRANCHES 3 AND 4 MEET AT ${other##* } DEG, $lined
+   BRANCHES 3 AND 4 MEET AT ${other%% *} DEG, $lined"
 
 # 1.5 + 4 > 2 + 3: no link turns fully, and there is one circuit; in Polish.
 four_bar 2.0 1.5 3.0 4.0 CRANK 57.0 20.0 105.0 57.0 | sed "s/^CIRCUITS/&\n$(card LANG PL)/" > "$w/deck"
 found 'a triple rocker, in Polish' " OBWODY I GALEZIE, NAPED ANGLE CRANK
- OBWOD   GALAZ   DET  MONTAZE     ZAKRES
- 1       1        +   2           MIN  -$(limit "$(angle 2 4 4.5)") DEG   MAX  $(limit "$(angle 2 4 4.5)") DEG
- 1       2        -   1           MIN  -$(limit "$(angle 2 4 4.5)") DEG   MAX  $(limit "$(angle 2 4 4.5)") DEG
+ OBWOD   GALAZ   DET  MONTAZ NR     ZAKRES ANGLE CRANK, DEG
+ 1       1        +   2             -$(limit "$(angle 2 4 4.5)") .. $(limit "$(angle 2 4 4.5)")
+ 1       2        -   1             -$(limit "$(angle 2 4 4.5)") .. $(limit "$(angle 2 4 4.5)")
  PUNKTY MARTWE
-   GALAZ 1 2   $(limit "$(angle 2 4 4.5)") DEG   OGNIWA COUPLER, ROCKER NA KRESIE RUCHU, W JEDNEJ LINII
-   GALAZ 1 2   -$(limit "$(angle 2 4 4.5)") DEG   OGNIWA COUPLER, ROCKER NA KRESIE RUCHU, W JEDNEJ LINII"
+   GALEZIE 1 I 2 SPOTYKAJA SIE PRZY $(limit "$(angle 2 4 4.5)") DEG, OGNIWA COUPLER, ROCKER NA KRESIE RUCHU, WSPOLLINIOWE
+   GALEZIE 1 I 2 SPOTYKAJA SIE PRZY -$(limit "$(angle 2 4 4.5)") DEG, OGNIWA COUPLER, ROCKER NA KRESIE RUCHU, WSPOLLINIOWE"
 
 # A parallelogram and its antiparallelogram meet, also where the first instant is the change point.
 for deck in parallelogram parallelogram_at; do
    with $deck "$(card CIRCUITS)" > "$w/deck"
-   equal "$deck" "$(printf '1 1\n2 2')" "$(circuits | awk '/MOTION CLOSES; TURNS 1$/ { print $1, $2 }')"
-   equal "$deck: change points" '   CIRCUIT 1 2   0.00000E+00 DEG
-   CIRCUIT 1 2   1.80000E+02 DEG' "$(circuits | awk '/^   CIRCUIT/' | sort)"
+   equal "$deck" "$(printf '1 1\n2 2')" "$(circuits | awk '/CLOSES AFTER 1 TURN$/ { print $1, $2 }')"
+   equal "$deck: change points" '   CIRCUITS 1 AND 2 MEET AT 0.00000 DEG
+   CIRCUITS 1 AND 2 MEET AT 180.000 DEG' "$(circuits | awk '/^   CIRCUIT/' | sort)"
 done
 
 # A kite whose crank is as long as the base: a circuit on which it rests.
 four_bar 4.0 2.0 2.0 4.0 CRANK 30.0 -20.0 -110.0 30.0 > "$w/deck"
-equal 'a drive at rest' ' 2       3        *               AT REST 0.000000000E+00 DEG' "$(circuits | grep 'AT REST')"
+equal 'a drive at rest' ' 2       3        *                 AT REST 0.000000000 DEG' "$(circuits | grep 'AT REST')"
 
 # The five-bar has a table for each drive that moves.
 with five_bar "$(card CIRCUITS)" > "$w/deck"
@@ -69,8 +72,8 @@ equal 'two drives' ' CIRCUITS AND BRANCHES, DRIVE ANGLE LEFT
 
 # A slide as the drive; both senses of the cylinder close, as assemblies do.
 with cylinder "$(card CIRCUITS)" > "$w/deck"
-equal 'a cylinder' 'MIN 5.882158401E-01 M MAX 3.427499398E+00 M
-MIN -3.427499398E+00 M MAX -5.882158401E-01 M' "$(circuits | awk '/MIN/ { sub(/.*MIN/, "MIN"); $1 = $1; print }' | uniq)"
+equal 'a cylinder' 'MIN 0.5882158401 M MAX 3.427499398 M
+MIN -3.427499398 M MAX -0.5882158401 M' "$(limits | awk '/MIN/ { sub(/.*MIN/, "MIN"); $1 = $1; print }' | uniq)"
 
 # Redundant pairs. A third crank takes a parallelogram its change points, and with them the antiparallelogram; a carriage in
 # two guides goes through as in one; drives that are held and agree hold the mechanism. Of Dixon's bars x, y on their axes, with
@@ -78,23 +81,23 @@ MIN -3.427499398E+00 M MAX -5.882158401E-01 M' "$(circuits | awk '/MIN/ { sub(/.
 # change, and half of the others are the same turned by 180 deg: 8 circuits.
 with parallel_cranks "$(card CIRCUITS)" > "$w/deck"
 found 'three cranks' " CIRCUITS AND BRANCHES, DRIVE ANGLE CRANK-1
-$head
- 1       1        .   1           $all 1"
+$(head CRANK-1)
+ 1       1        .   1             $turns"
 with two_guides "$(card CIRCUITS)" > "$w/deck"
 found 'two guides' " CIRCUITS AND BRANCHES, DRIVE ANGLE CRANK
-$head
- 1       1        .   1           $all 1
- 2       2        .   2           $all 1"
+$(head CRANK RAD)
+ 1       1        .   1             $turns
+ 2       2        .   2             $turns"
 with parallel_cranks "$(card CIRCUITS)" | awk '/^DRIVE/ { print; sub(/CRANK-1/, "CRANK-2") } { print }' > "$w/deck"
 found 'two drives that agree' ' CIRCUITS AND BRANCHES, DRIVE ANGLE CRANK-1
-   THE OTHER DRIVES LET NOTHING MOVE
+   THE DRIVES THAT ARE HELD DETERMINE THIS DRIVE
  CIRCUITS AND BRANCHES, DRIVE ANGLE CRANK-2
-   THE OTHER DRIVES LET NOTHING MOVE'
+   THE DRIVES THAT ARE HELD DETERMINE THIS DRIVE'
 with dixon "$(card CIRCUITS)" > "$w/deck"
 ends=$(awk 'BEGIN { b = atan2(sqrt(64^2 - 29^2), 29); c = atan2(sqrt(41^2 - 29^2), 29); degree = atan2(1, 1)/45
-   printf "8 MIN -%.9E DEG MAX -%.9E DEG,8 MIN -%.9E DEG MAX %.9E DEG", 360 - (b + c)/degree, (b + c)/degree, (b - c)/degree,
+   printf "8 MIN -%#.10g DEG MAX -%#.10g DEG,8 MIN -%#.10g DEG MAX %#.10g DEG", 360 - (b + c)/degree, (b + c)/degree, (b - c)/degree,
       (b - c)/degree }')
-equal "Dixon's bars" "$ends" "$(circuits | awk '/MIN/ { sub(/.*MIN/, "MIN"); $1 = $1; print }' | uniq -c | awk '{ $1 = $1; print }' |
+equal "Dixon's bars" "$ends" "$(limits | awk '/MIN/ { sub(/.*MIN/, "MIN"); $1 = $1; print }' | uniq -c | awk '{ $1 = $1; print }' |
    tr '\n' ',' | sed 's/,$//')"
 
 # Published limits of linkages whose driven link rocks, in degrees from the place drawn (PMKS-Web): Stephenson III goes from -58
@@ -109,7 +112,7 @@ linkage() {
 }
 # swing FORMAT LESS: the limits of the branch with assembly 1, that which is drawn, less so many degrees
 swing() {
-   circuits | awk -v format="$1 $1" -v less="$2" '/ MIN / { has = 0; for (i = 4; $i != "MIN"; i++) has = has || $i == 1
+   limits | awk -v format="$1 $1" -v less="$2" '/ MIN / { has = 0; for (i = 4; $i != "MIN"; i++) has = has || $i == 1
       if (has) printf format, $(i + 1) - less, $(i + 4) - less }'
 }
 linkage 'A BASE AB 7.0 4.0;B AB BCE 5.0 16.0;C BCE CD 25.0 25.0;D CD BASE 23.0 10.0;E BCE EF 18.0 35.0;F EF FG 43.0 32.0;G FG BASE 45.0 17.0' > "$w/deck"
@@ -128,7 +131,7 @@ crank='A BASE AB 0.0 0.0'
 last='F BASE FG 140.953893118 -51.303021499'
 others='B AB BC 70.0 0.0;C BC CDE 113.75 89.921841062;D CDE BASE 110.0 0.0;E CDE EG 190.347526325 126.665997858;G EG FG 272.743118176 39.425144793'
 linkage "$crank;$others;$last" > "$w/deck"
-equal 'Watt II, a crank' 4 "$(circuits | grep -c 'NO LIMIT, AND THE MOTION CLOSES; TURNS 1$')"
+equal 'Watt II, a crank' 4 "$(circuits | grep -c 'CLOSES AFTER 1 TURN$')"
 linkage "$last;$others;$crank" > "$w/deck"
 limits=$(awk 'function root(x) { return sqrt(x) } function acos(x) { return atan2(root(1 - x*x), x) }
    # The angle of the last link where crank and coupler together reach so far; which side of its four-bar each dyad is on.
@@ -141,26 +144,25 @@ limits=$(awk 'function root(x) { return sqrt(x) } function acos(x) { return atan
       drawn = atan2(39.425144793 - fy, 272.743118176 - fx)*180/pi
       for (rocker = -1; rocker < 2; rocker += 2) for (dyad = -1; dyad < 2; dyad += 2) for (reach = 30; reach < 200; reach += 140)
          printf "%.5f\n", (angle_at(reach, rocker, dyad) + 720) % 360 }' | sort -n | xargs)
-equal 'Watt II, the last link' "$limits" "$(circuits | awk '/ MIN / { for (i = 1; i <= NF; i++) if ($i == "MIN" || $i == "MAX")
+equal 'Watt II, the last link' "$limits" "$(limits | awk '/ MIN / { for (i = 1; i <= NF; i++) if ($i == "MIN" || $i == "MAX")
    printf "%.5f\n", ($(i + 1) + 720) % 360 }' | sort -n | uniq | xargs)"
-equal 'Watt II, its branches' '1 1 2 2 3 3 4 4' "$(circuits | awk '/ MIN / { print $1 }' | xargs)"
+equal 'Watt II, its branches' '1 1 2 2 3 3 4 4' "$(limits | awk '/ MIN / { print $1 }' | xargs)"
 
 # Two mechanisms, each with a crank that turns: the crank-rocker 1, 3.5, 3, 4 is one of Grashof's, and the crank 1.5 is
 # shorter than its rod 4. Their assemblies are counted each by themselves.
-turns='ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS 1'
 both() {
-   printf ' CIRCUITS AND BRANCHES, DRIVE ANGLE %s\n CIRCUIT BRANCH  DET  ASSEMBLIES  RANGE\n' "$1"
-   printf ' 1       1        -   1           %s\n 2       2        +   2           %s\n' "$turns" "$turns"
+   printf ' CIRCUITS AND BRANCHES, DRIVE ANGLE %s\n%s\n' "$1" "$(head "$1" RAD)"
+   printf ' 1       1        -   1             %s\n 2       2        +   2             %s\n' "$turns" "$turns"
 }
 with two_loops "$(card CIRCUITS)" > "$w/deck"
 found 'independent mechanisms' "$(both CRANK-1; both CRANK-2)"
 # A crank alone has nothing to be assembled.
 { card GROUND BASE; card LINK CRANK '' '' 0.0 0.0 10.0; card POINT A0 BASE; card POINT A0C CRANK; card REVOLUTE A0 A0C P
   card DRIVE ANGLE CRANK '' 10.0 36.0; card TIME 2 '' '' 0.0 2.0; card CIRCUITS; card END; } > "$w/deck"
-equal 'no unknown' " 1       1        +   1           $turns" "$(circuits | sed '1,2d')"
+equal 'no unknown' " 1       1        +   1             $turns" "$(circuits | sed '1,2d')"
 # Sets of one deck: a triple rocker after them.
 { with two_loops "$(card CIRCUITS)"; four_bar 2.0 1.5 3.0 4.0 CRANK 57.0 20.0 105.0 57.0; } > "$w/deck"
-equal 'several sets' '4 2' "$("$kinmat" "$w/deck" | awk '/TURNS 1/ { turn++ } / MIN / { limit++ } END { print turn, limit }')"
+equal 'several sets' '4 2' "$("$kinmat" "$w/deck" | awk '/ AFTER 1 TURN$/ { turn++ } / [0-9]+ +[-+] .* [.][.] / { limit++ } END { print turn, limit }')"
 
 # Slides to infinity, where a guide comes to be parallel to another. On a crank at the angle p a block in a slot 0.3 beside the
 # origin, and on the line x = 1: y = (sin p + 0.3)/cos p. One circuit on either side of the poles at -90 and 90, each followed until
@@ -173,32 +175,31 @@ tangent() {
 }
 poles=$(awk 'function acos(x) { return atan2(sqrt(1 - x*x), x) }
    BEGIN { far = sqrt(10001); phi = atan2(1, 100); degree = atan2(1, 1)/45
-      printf "%.9E %.9E %.9E %.9E", (phi - acos(-0.3/far))/degree, (acos(0.3/far) - phi)/degree,
+      printf "%#.10g %#.10g %#.10g %#.10g", (phi - acos(-0.3/far))/degree, (acos(0.3/far) - phi)/degree,
          (phi + acos(-0.3/far))/degree - 360, -(acos(0.3/far) + phi)/degree }')
 tangent 0.3 0.0 > "$w/deck"
-equal 'a slide to infinity' "1 1 $(echo $poles | cut -d' ' -f1,2) 2 2 $(echo $poles | cut -d' ' -f3,4)" "$(circuits |
-   awk '/ MIN / { printf "%s%s %s ", sep, $1, $2 } / AS FAR AS / { for (i = 1; i < NF; i++) if ($i == "AS" && $(i + 1) ~ /E/) x = $(i + 1); printf "%s", x }
-      / MIN / { printf " "; sep = " " }')"
+equal 'a slide to infinity' "1 1 $(echo $poles | cut -d' ' -f1,2) 2 2 $(echo $poles | cut -d' ' -f3,4)" "$(limits |
+   awk '/ MIN / { printf "%s%s %s ", sep, $1, $2 } / MIN / { for (i = 4; $i != "MIN"; i++); printf "%s %s", $(i + 1), $(i + 4); sep = " " }')"
 # Where the first instant is beyond 100 lengths, its circuit is followed to twice as far.
 tangent 0.0 89.9 > "$w/deck"
-far=$(awk 'BEGIN { d = atan2(1, 1)/45; t = sin(89.9*d)/cos(89.9*d); printf "%.9E", atan2(2*t, 1)/d }')
-equal 'an assembly far away' "1 -$far $far" "$(circuits | awk '$4 == 1 { n = $4; x = $(NF - 1) } n && / MAX / { print n, x, $(NF - 1); exit }')"
+far=$(awk 'BEGIN { d = atan2(1, 1)/45; t = sin(89.9*d)/cos(89.9*d); printf "%#.10g", atan2(2*t, 1)/d }')
+equal 'an assembly far away' "1 -$far $far" "$(limits | awk '$4 == 1 { n = $4; x = $(NF - 1) } n && / MAX / { print n, $5 == "MIN" ? $6 : "", $(NF - 1); exit }')"
 
 # A slotted rocker of a four-bar 1, 3.5, 3, 4 moves a ram on a guide at 110 degrees: its slide is infinite where the rocker is
 # parallel to that, in one of the two assemblies of the four-bar twice a turn. Each assembly is on one circuit.
 { four_bar 1.0 3.5 3.0 4.0 CRANK 0.0 55.0 110.0 0.0 | grep -v '^\(AT\|CIRCUITS\|END\)'
   card LINK BLOCK; card LINK RAM; card POINT K ROCKER; card POINT KB BLOCK; card POINT G BASE '' 0.0 5.0; card POINT R1 RAM
   card REVOLUTE KB R1 PIN; card PRISM K KB SLOT; card PRISM G R1 GUIDE 110.0; card AT '' '' '' 0.0; card CIRCUITS; card END; } > "$w/deck"
-equal 'a ram to infinity' '1 2' "$(circuits | awk '/ (MIN|ALL:) / { for (i = 4; $i ~ /^[0-9]+$/; i++) print $i }' | sort -n | xargs)"
-equal 'a ram to infinity: circuits' '3 0' "$(circuits | awk '/ (MIN|ALL:) / { n++ } /NOT FOLLOWED/ { lost++ } END { print n, lost + 0 }')"
+equal 'a ram to infinity' '1 2' "$(limits | awk '/ (MIN|TURNS) / { for (i = 4; $i ~ /^[0-9]+$/; i++) print $i }' | sort -n | xargs)"
+equal 'a ram to infinity: circuits' '3 0' "$(limits | awk '/ (MIN|TURNS) / { n++ } /NOT FOLLOWED/ { lost++ } END { print n, lost + 0 }')"
 # Two slides at once, in a drawing of five links: never lost.
 { card UNITS M DEG S; card GROUND BASE; for i in 0 1 2 3 4; do card LINK L$i; done
   card JOINT J0 BASE L0 2.0 1.0; card JOINT J1 L0 L1 1.0 0.0; card JOINT J2 BASE L2 0.0 1.0; card POINT P3 L1 '' 3.0 3.0
   card POINT Q3 L3 '' 0.0 3.0; card PRISM P3 Q3 S3 180.0 0.0 0.0; card JOINT J4 L3 L4 3.0 3.0; card POINT P5 L0 '' 2.0 2.0
   card POINT Q5 L4 '' 1.0 3.0; card PRISM P5 Q5 S5 135.0 0.0 0.0; card POINT P6 L1 '' 2.0 2.0; card POINT Q6 L2 '' 2.0 3.0
   card PRISM P6 Q6 S6 90.0 0.0 0.0; card DRIVE ANGLE L0 '' 0.0 10.0; card AT '' '' '' 0.0; card CIRCUITS; card RANGE; card END; } > "$w/deck"
-equal 'two slides to infinity' '0 8' "$(circuits | awk '/NOT FOLLOWED/ { lost++ } { n += gsub(/NO LIMIT AS FAR AS/, "") } END { print lost + 0, n + 0 }')"
-equal 'two slides to infinity: RANGE' 1.050000000E+02 "$("$kinmat" "$w/deck" | awk '/^   MAX/ { print $2 }')"
+equal 'two slides to infinity' '0 8' "$(circuits | awk '/NOT FOLLOWED/ { lost++ } { n += gsub(/NO LIMIT FOUND/, "") } END { print lost + 0, n + 0 }')"
+equal 'two slides to infinity: RANGE' 105.0000000 "$("$kinmat" "$w/deck" | awk '/^   MAX/ { print $2 }')"
 
 # Groups that share nothing but the crank. Dyads of 1.5 and 3 whose base of 4 is turned by 0 and by 60 degrees end the motion of a
 # crank of 2 at +-a and 60 +- a by the law of cosines: it goes from 60 - a to a on one circuit, which turns back at four dead
@@ -225,23 +226,23 @@ high=$(limit "$a")
 circuits=1
 for n in 0 1 2 3; do
    groups $n CIRCUITS > "$w/deck"
-   equal "groups, $n more" "$circuits $((4*circuits)) $((4*circuits)) $((4*circuits))" "$(circuits | awk -v low="$low" -v high="$high" '
+   equal "groups, $n more" "$circuits $((4*circuits)) $((4*circuits)) $((4*circuits))" "$(limits | awk -v low="$low" -v high="$high" '
       / MIN / { n++; circuit = $1; for (i = 4; $i ~ /^[0-9]+$/; i++) assemblies += !seen[$i]++
          good += $(i + 1) == low && $(i + 4) == high } END { print circuit, n, good, assemblies }')"
    equal "groups, $n more: dead points" "$((2*circuits)) $((2*circuits))" "$(circuits | awk -v low="$low" -v high="$high" '
-      / DEG   LINKS C1, R1 AT THE LIMIT, IN LINE/ { one += index($0, high) > 0 } / DEG   LINKS C2, R2 AT THE LIMIT, IN LINE/ { two += index($0, low) > 0 }
+      / DEG, LINKS C1, R1 AT THE LIMIT, COLLINEAR/ { one += index($0, high) > 0 } / DEG, LINKS C2, R2 AT THE LIMIT, COLLINEAR/ { two += index($0, low) > 0 }
       END { print one + 0, two + 0 }')"
    circuits=$((2*circuits))
 done
 # Eleven of them have 2**11 circuits; a thousand stand there, with a sentence.
 groups 11 CIRCUITS > "$w/deck"
-equal 'groups, too many circuits' '1000 1' "$(circuits | awk '/ MIN / { circuit = $1 }
+equal 'groups, too many circuits' '1000 1' "$(limits | awk '/ MIN / { circuit = $1 }
    /^ \*\*\* MORE CIRCUITS THAN ARE FOLLOWED: THESE ARE THE FIRST 1000$/ { n++ } END { print circuit, n + 0 }')"
 # A parallelogram among the groups has its change points.
 { with parallelogram CIRCUITS | grep -v '^\(CIRCUITS\|END\)'; card LINK C9 '' '' 2.0; card LINK R9 '' '' 0.0 4.0
   card POINT P9 BASE '' 0.0 4.0; card POINT Q9 CRANK '' 2.0; card POINT S9 C9; card POINT T9 C9 '' 5.0; card POINT U9 R9
   card POINT V9 R9 '' 4.5; card REVOLUTE Q9 S9 X9; card REVOLUTE T9 V9 Y9; card REVOLUTE P9 U9 Z9; card CIRCUITS; card END; } > "$w/deck"
-equal 'groups, one of them a parallelogram' '4 4' "$(circuits | awk '/MOTION CLOSES/ { n++ } /^   CIRCUIT / { meet++ } END { print n + 0, meet + 0 }')"
+equal 'groups, one of them a parallelogram' '4 4' "$(circuits | awk '/ CLOSES AFTER / { n++ } /^   CIRCUITS / { meet++ } END { print n + 0, meet + 0 }')"
 
 # No position.
 four_bar 1.0 1.0 1.0 4.0 CRANK 0.0 0.0 0.0 0.0 > "$w/deck"
@@ -249,8 +250,8 @@ found 'no position anywhere' ' CIRCUITS AND BRANCHES, DRIVE ANGLE CRANK
    NONE'
 # No position at the first instant, and a circuit elsewhere: the triple rocker beyond its limit.
 four_bar 2.0 1.5 3.0 4.0 CRANK 120.0 20.0 105.0 120.0 > "$w/deck"
-equal 'no position at the first instant' ' 1       1        +               MIN  -9.089528299E+01 DEG   MAX  9.089528299E+01 DEG
- 1       2        -               MIN  -9.089528299E+01 DEG   MAX  9.089528299E+01 DEG' "$(circuits | grep MIN)"
+equal 'no position at the first instant' ' 1       1        +                 -90.89528299 .. 90.89528299
+ 1       2        -                 -90.89528299 .. 90.89528299' "$(circuits | grep ' [.][.] ')"
 # Diagrams: of the coupler and the rocker of a parallelogram, each with two circuits that meet twice; of the crank itself none.
 with parallelogram "$(card CIRCUITS)" > "$w/deck"
 "$kinmat" --no-listing --circuits "$w/svg" "$w/deck"

@@ -8,7 +8,7 @@ single) real=REAL32; digits=9 ;;
 double) real=REAL64; digits=17 ;;
 quad) real=REAL128; digits=36 ;;
 esac
-equal '--version' "KINMAT 1.0, $real" "$("$BUILD/kinmat" --version)"
+equal '--version' "KINMAT 2.0, $real" "$("$BUILD/kinmat" --version)"
 equal '--help' "Real numbers: $real." "$("$BUILD/kinmat" --help | grep "^Real numbers")"
 equal '--help: digits' "the results with $digits digits" "$("$BUILD/kinmat" --help | grep -o 'the results with [0-9]* digits')"
 

@@ -12,11 +12,12 @@ module listing_reader
    integer, parameter :: first_number = 10
    character(8), parameter :: kind_words(3, 2) = reshape([character(8) :: &
       'LINK', 'POINT', 'PAIR', 'OGNIWO', 'PUNKT', 'PARA'], [3, 2])
-   !> The heads of the nine columns, in two languages. A pair has a slide in the first of three and an angle in the third;
-   !> their derivatives have the same heads. The second word of 2ND RATE stands over its numbers' end.
-   character(8), parameter :: head_words(*) = [character(8) :: 'X', 'Y', 'PHI', 'VX', 'VY', 'VPHI', 'AX', 'AY', &
-      'APHI', 'FI', 'VFI', 'AFI', 'SLIDE', 'ANGLE', 'RATE', '2ND', 'PRZESUW', 'KAT', 'PREDKOSC', 'PRZYSP.']
-   integer, parameter :: head_columns(*) = [1, 2, 3, 4, 5, 6, 7, 8, 9, 3, 6, 9, 1, 3, 4, 0, 1, 3, 4, 7]
+   !> The heads of x, y, phi and their derivatives, in two languages. The slide of a pair counts as x, its angle as phi; the
+   !> heads of their derivatives are the same, and follow them.
+   character(14), parameter :: head_words(*) = [character(14) :: 'X', 'Y', 'PHI', 'VX', 'VY', 'VPHI', 'AX', 'AY', &
+      'APHI', 'FI', 'VFI', 'AFI', 'SLIDE', 'ANGLE', 'VELOCITY', 'ACCELERATION', 'PRZESUW', 'KAT', 'PREDKOSC', &
+      'PRZYSPIESZENIE']
+   integer, parameter :: head_columns(*) = [1, 2, 3, 4, 5, 6, 7, 8, 9, 3, 6, 9, 1, 3, 4, 7, 1, 3, 4, 7]
    !> Which columns rows of each kind have.
    logical, parameter :: has_column(3, 3) = reshape([.true., .true., .true., .true., .true., .false., &
       .true., .false., .true.], [3, 3])
@@ -110,29 +111,36 @@ contains
          call read_wholes(line(:index(line, 'T =')), counts, used)
          if (used /= 1) call blame(set, line)
          table%step = counts(1)
-         table%kind = 0
-         table%centres = .false.
          table%drives = 0
          used = index(line, 'T =') + 2
          call read_value(line, set%deck%units(3), used, table%time, table%time_power, set)
          call read_drives(line, used, set, table)
       else if (.not. table%results) then
          call read_card(set%deck, line)
-      else if (table%centres .or. starts(line, ' POLE   ', ' BIEGUN ') .or. starts(line, ' CURVE  ', ' TOR    ')) then
+      else if (starts(line, ' POLE   ', ' BIEGUN ') .or. starts(line, ' CURVE  ', ' TOR    ')) then
          table%centres = .true.
-      else if (is_row(line) .and. table%kind == 0 .and. line(2:first_number - 1) == '') then
+      else if (is_row(line) .and. index(line, ' = ') > 0 .and. line(2:first_number - 1) == '') then
          call read_drives(line, 0, set, table)
+      else if (table%centres .and. .not. is_head(line)) then
+         return
       else if (is_row(line)) then
          call read_table_line(line, set, table)
       end if
    end subroutine read_line
 
+   !> The line has the heads of links, points or pairs.
+   pure logical function is_head(line)
+      character(*), intent(in) :: line
+
+      is_head = index(line, '.') == 0 .and. any(kind_words == line(2:first_number - 1))
+   end function is_head
+
    !> The line is of a table: no remark, not what is said of branches.
    pure logical function is_row(line)
       character(*), intent(in) :: line
 
-      is_row = line /= '' .and. .not. (starts(line, ' *** ', ' --- ') .or. starts(line, ' BRANCH: ', ' GALAZ: ') &
-         .or. starts(line, ' LARGEST GAP OF ', ' NAJWIEKSZA NIEZGODNOSC '))
+      is_row = line /= '' .and. .not. (starts(line, ' *** ', ' --- ') .or. starts(line, ' CONTINUATION: ', ' KONTYNUACJA: ') &
+         .or. starts(line, ' LARGEST CLOSURE ERROR ', ' NAJWIEKSZY BLAD '))
    end function is_row
 
    !> The drives of an instant behind column `last` of `line`, in the order of their cards.
@@ -172,8 +180,8 @@ contains
       call next_word(line, first, last)
       word = line(first:last)
       call next_word(line, first, last)
-      if (line(first:min(first + 3, last)) == '10**') then
-         read (line(first + 4:last), *, iostat=status) power
+      if (line(first:min(first + 2, last)) == '1.E') then
+         read (line(first + 3:last), *, iostat=status) power
          call next_word(line, first, last)
       end if
       if (status /= 0 .or. line(first:last) /= unit) call blame(set, line)
@@ -188,14 +196,11 @@ contains
       integer :: first, last, column
       logical :: has(9)
 
-      if (index(line, '.') == 0 .or. index(line, 'PRZYSP.') > 0) then
-         if (any(kind_words == line(2:first_number - 1))) then
-            if (table%drives /= min(size(set%deck%drives), most_drives)) call blame(set, line)
-            call read_heads(line, set, table)
-            return
-         end if
+      if (is_head(line)) then
+         call read_heads(line, set, table)
+         return
       end if
-      if (table%kind == 0) call blame(set, line)
+      if (table%kind == 0 .or. table%drives /= min(size(set%deck%drives), most_drives)) call blame(set, line)
       if (allocated(set%wrong)) return
       if (line(2:first_number - 1) == '') then
          call read_units(line, set, table)
@@ -273,14 +278,15 @@ contains
       type(set_text_t), intent(inout) :: set
       type(table_t), intent(inout) :: table
       integer :: first, last, head, column, place(2)
-      logical :: second
+      logical :: angular
 
+      table%centres = .false.
       table%last = 0
       table%power = 0
       table%unit = ''
       place = findloc(kind_words, line(2:first_number - 1))
       table%kind = place(1)
-      second = .false.
+      angular = .false.
       last = first_number - 1
       do
          call next_word(line, first, last)
@@ -288,15 +294,16 @@ contains
          head = findloc(head_words == line(first:last), .true., dim=1)
          if (head == 0) call blame(set, line)
          if (head == 0) return
-         column = head_columns(head) + merge(3, 0, second)
-         if (column > 3 .and. table%kind == 3) then
-            if (table%last(column) > 0) column = column + 2
-         end if
-         if (head_columns(head) > 0) table%last(column) = last
-         second = line(first:last) == '2ND'
+         column = head_columns(head)
+         if (column == 3) angular = .true.
+         if (table%kind == 3 .and. column > 3 .and. angular) column = column + 2
+         if (table%last(column) > 0) call blame(set, line)
+         table%last(column) = last
       end do
-      if (any((table%last > 0) .neqv. [has_column(:, table%kind), has_column(:, table%kind), has_column(:, table%kind)])) &
-         call blame(set, line)
+      ! Derivatives are those of the coordinates; of links the angle may stand alone, of pairs one kind.
+      if (any((table%last(:3) > 0) .neqv. (table%last(4:6) > 0)) .or. any((table%last(:3) > 0) .neqv. (table%last(7:) > 0)) &
+         .or. any(table%last(:3) > 0 .and. .not. has_column(:, table%kind)) .or. all(table%last == 0)) call blame(set, line)
+      if (table%kind == 2 .and. any(table%last(:2) == 0)) call blame(set, line)
    end subroutine read_heads
 
    !> A line under the heads: powers of ten, or units.
@@ -312,10 +319,10 @@ contains
          if (table%last(c) == 0) cycle
          word = adjustl(line(table%last(c) - column_length + 1:table%last(c)))
          read_so_far = read_so_far + len_trim(word)
-         if (word(:4) /= '10**') then
+         if (word(:3) /= '1.E') then
             table%unit(c) = trim(table%unit(c))//word
          else
-            read (word(5:), *, iostat=status) table%power(c)
+            read (word(4:), *, iostat=status) table%power(c)
             if (status /= 0 .or. table%unit(c) /= '') call blame(set, line)
          end if
       end do

@@ -240,7 +240,7 @@ mkfifo queue
 told 'tables of two sets to /dev/null' 0 $? ''
 for name in queue /dev/stdout /dev/tty; do
    "$kinmat" two --no-listing --table $name > out 2> err
-   told "tables of two sets to $name" 1 $? " *** FILE $name TAKES THE TABLE OF ONE SET: CHOOSE THE K-TH OF 2 WITH --sets K/2"
+   told "tables of two sets to $name" 1 $? " *** FILE $name TAKES ONE TABLE ONLY: CHOOSE A SET OF 2 WITH --sets K/2"
 done
 equal 'tables of two sets: no file is made' '' "$(ls queue-* /dev/null-* /dev/stdout-* /dev/tty-* 2> /dev/null)"
 

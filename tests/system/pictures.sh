@@ -284,7 +284,7 @@ for option in --svg --animate; do
    rejected "$option without a file" 1 " *** OPTION $option NEEDS A FILE NAME" "$w/own.deck" $option
    rejected "$option twice" 1 " *** OPTION $option IS GIVEN TWICE" "$w/own.deck" $option "$w/a" $option "$w/b"
    rejected "$option and --check" 1 " *** OPTION --check COMPUTES NO MOTION, WHICH $option NEEDS" "$w/own.deck" $option "$w/a" --check
-   rejected "$option and --study" 1 ' *** OPTION --study GOES WITH NO OTHER OPTION BUT -o AND --quiet' "$w/own.deck" $option "$w/a" --study
+   rejected "$option and --study" 1 ' *** OPTION --study CAN ONLY BE COMBINED WITH -o AND --quiet' "$w/own.deck" $option "$w/a" --study
    rejected "$option to the file of the CSV" 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own.deck" --csv "$w/a" $option "$w/./a"
    rejected "$option to the file of the listing" 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own.deck" -o "$w/a" $option "$w/a"
    rejected "$option to the deck" 1 " *** THE DECK $w/own.deck WOULD BE OVERWRITTEN" "$w/own.deck" $option "$w/own.deck"

@@ -11,17 +11,17 @@ for method in NEWTON DENSE; do
    # Grashof: 1 + 4 < 3.5 + 3, the shortest link turns fully.
    four_bar 1.0 3.5 3.0 4.0 CRANK 0.0 55.0 110.0 0.0 > "$w/deck"
    range "a crank, $method" " ANGLE CRANK
-   ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS 1"
+   TURNS FULLY, CLOSES AFTER 1 TURN"
    # Its rocker: between the two positions with crank and coupler in line.
    four_bar 1.0 3.5 3.0 4.0 ROCKER 85.0 35.0 120.0 120.0 > "$w/deck"
    range "a rocker, $method" " ANGLE ROCKER
-   MIN  $(limit "$(awk -v a="$(angle 3 4 4.5)" 'BEGIN { printf "%.12f", 180 - a }')") DEG   LINKS CRANK, COUPLER AT THE LIMIT, IN LINE
-   MAX  $(limit "$(awk -v a="$(angle 3 4 2.5)" 'BEGIN { printf "%.12f", 180 - a }')") DEG   LINKS CRANK, COUPLER AT THE LIMIT, IN LINE"
+   MIN  $(limit "$(awk -v a="$(angle 3 4 4.5)" 'BEGIN { printf "%.12f", 180 - a }')") DEG   LINKS CRANK, COUPLER AT THE LIMIT, COLLINEAR
+   MAX  $(limit "$(awk -v a="$(angle 3 4 2.5)" 'BEGIN { printf "%.12f", 180 - a }')") DEG   LINKS CRANK, COUPLER AT THE LIMIT, COLLINEAR"
    # 1.5 + 4 > 2 + 3: no link turns fully; coupler and rocker in line, on either side of the base.
    four_bar 2.0 1.5 3.0 4.0 CRANK 57.0 20.0 105.0 57.0 > "$w/deck"
    range "a triple rocker, $method" " ANGLE CRANK
-   MIN  $(limit "-$(angle 2 4 4.5)") DEG   LINKS COUPLER, ROCKER AT THE LIMIT, IN LINE
-   MAX  $(limit "$(angle 2 4 4.5)") DEG   LINKS COUPLER, ROCKER AT THE LIMIT, IN LINE"
+   MIN  $(limit "-$(angle 2 4 4.5)") DEG   LINKS COUPLER, ROCKER AT THE LIMIT, COLLINEAR
+   MAX  $(limit "$(angle 2 4 4.5)") DEG   LINKS COUPLER, ROCKER AT THE LIMIT, COLLINEAR"
 done
 
 # Near Grashof's limit, 3 + 0.75 longer than 1.1 + 2.649997 by 3E-6: crank, coupler and rocker are almost in line at the ends.
@@ -44,10 +44,10 @@ equal 'near the limit of Grashof' "-$(limit "$(angle 3 0.75 3.749997)") $(limit 
 ends=$(awk 'function arccos(x) { return atan2(sqrt(1 - x*x), x) }
    BEGIN { cosine = -(4.2^2 - 3^2 - 2^2)/(2*3*2); x = 4 + 3*cosine; y = 3*sqrt(1 - cosine^2); d = sqrt(x*x + y*y)
       middle = atan2(y, x); half = arccos((1 + d*d - 3.5^2)/(2*d)); degree = atan2(1, 1)/45
-      printf "%.9E %.9E", (middle - half)/degree, (middle + half)/degree }')
+      printf "%#.10g %#.10g", (middle - half)/degree, (middle + half)/degree }')
 range 'Watt II' " ANGLE CRANK
-   MIN  ${ends% *} DEG   LINKS COUPLER2, ROCKER2 AT THE LIMIT, IN LINE
-   MAX  ${ends#* } DEG   LINKS COUPLER2, ROCKER2 AT THE LIMIT, IN LINE"
+   MIN  ${ends% *} DEG   LINKS COUPLER2, ROCKER2 AT THE LIMIT, COLLINEAR
+   MAX  ${ends#* } DEG   LINKS COUPLER2, ROCKER2 AT THE LIMIT, COLLINEAR"
 
 # Stephenson III: a dyad 2.6, 1.9 from the point (1.75, 1.25) of that coupler to (5, 1): it is in line where that point's path is
 # 4.5 from there, found by bisection on the path in closed form.
@@ -71,29 +71,29 @@ ends=$(awk 'function arccos(x) { return atan2(sqrt(1 - x*x), x) }
       while ((c = (a + b)/2) != a && c != b) if (apart(c) < 0) a = c; else b = c
       return a/degree
    }
-   BEGIN { printf "%.9E %.9E", limit(-1), limit(1) }')
+   BEGIN { printf "%#.10g %#.10g", limit(-1), limit(1) }')
 range 'Stephenson III' " ANGLE CRANK
-   MIN  ${ends% *} DEG   LINKS COUPLER2, ROCKER2 AT THE LIMIT, IN LINE
-   MAX  ${ends#* } DEG   LINKS COUPLER2, ROCKER2 AT THE LIMIT, IN LINE"
+   MIN  ${ends% *} DEG   LINKS COUPLER2, ROCKER2 AT THE LIMIT, COLLINEAR
+   MAX  ${ends#* } DEG   LINKS COUPLER2, ROCKER2 AT THE LIMIT, COLLINEAR"
 
 # Dixon's nine bars: x(i)**2 of the points A and y(j)**2 of the points B, on two lines at right angles, grow by what the others
 # lose. The angle at A1 of B1 and B2 is least where B3 is on the line of the A, and the three bars to it in line.
 with dixon "$(card RANGE)" > "$w/deck"
 equal 'Dixon' "$(awk 'BEGIN { a = (atan2(sqrt(64^2 - 29^2), 29) + atan2(sqrt(41^2 - 29^2), 29))*45/atan2(1, 1)
-   printf "%.9E %.9E", a - 360, -a }')" "$("$kinmat" "$w/deck" | awk '/^   (MIN|MAX) / { printf "%s%s", sep, $2; sep = " " }')"
+   printf "%#.10g %#.10g", a - 360, -a }')" "$("$kinmat" "$w/deck" | awk '/^   (MIN|MAX) / { printf "%s%s", sep, $2; sep = " " }')"
 
 # A parallelogram passes its two change points a turn on the smooth branch.
 for method in NEWTON DENSE; do
    with parallelogram_at "$(card RANGE)" "$(card METHOD $method)" > "$w/deck"
    range "a parallelogram, $method" ' ANGLE CRANK
-   ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS 1
+   TURNS FULLY, CLOSES AFTER 1 TURN
    CHANGE POINTS ON THE WAY 2'
 done
 # So it does from one of them, where its velocities are not unique: the motion on either branch closes after a turn.
 for method in NEWTON DENSE; do
    four_bar 2.0 4.0 2.0 4.0 CRANK 180.0 0.0 180.0 180.0 > "$w/deck"
    range "a parallelogram at its change point, $method" ' ANGLE CRANK
-   ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS 1
+   TURNS FULLY, CLOSES AFTER 1 TURN
    CHANGE POINTS ON THE WAY 2'
 done
 # The line at the end of a set counts on the steps to instants that were found, RANGE on its way: a landing gear passes a change
@@ -104,7 +104,7 @@ done
   card POINT DC CYL '' 450.0 60.0; card POINT ER ROD '' 0.0 -250.0; card PRISM DC ER PISTON -145.437612 0.0 0.0
   card DRIVE SLIDE PISTON '' 546.44304369 -50.0; card TIME 8 '' '' 0.0 8.0; card RANGE; card END; } > "$w/deck"
 equal 'a landing gear' '   CHANGE POINTS ON THE WAY 1
- BRANCH:  INSTANTS FOLLOWED 6, CHANGE POINTS PASSED 1, WITHOUT CERTIFICATE 0' "$("$kinmat" "$w/deck" | grep 'CHANGE POINTS')"
+ CONTINUATION:  STEPS CERTIFIED 6 OF 6, CHANGE POINTS PASSED 1' "$("$kinmat" "$w/deck" | grep 'CHANGE POINTS')"
 sed "s/^RANGE/&\n$(card LANG PL)/" "$w/deck" > "$w/polish"
 equal 'a landing gear, in Polish' '   PUNKTY ZMIANY NA DRODZE 1' "$("$kinmat" "$w/polish" | grep 'NA DRODZE')"
 
@@ -118,15 +118,15 @@ for alpha in 90 90.00001 89.99999 90.001 89.999 90.1 87.3; do
    range "a slide to infinity, $alpha" " ANGLE CRANK
    MIN  $(limit "$(awk "BEGIN { printf \"%.12f\", $alpha - 180 }")") DEG   LINK SLIDER AT THE LIMIT
    MAX  $(limit $alpha) DEG   LINK SLIDER AT THE LIMIT"
-   equal "a run to infinity, $alpha" "$(limit "$alpha")" "$("$kinmat" "$w/deck" | sed -n 's/.*LIMIT OF MOTION.* = \(.*\) DEG/\1/p')"
+   equal "a run to infinity, $alpha" "$(limit "$alpha")" "$("$kinmat" "$w/deck" | sed -n 's/^ [*]* DRIVE ANGLE CRANK = \(.*\) DEG, .*AT THE LIMIT.*/\1/p')"
 done
 
 # Each of the two cranks of a five-bar alone.
 for method in NEWTON DENSE; do
    with five_bar "$(card RANGE)" "$(card METHOD $method)" > "$w/deck"
    range "a five-bar, $method" ' ANGLE LEFT
-   ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS 1
+   TURNS FULLY, CLOSES AFTER 1 TURN
  RELANGLE LEFT RIGHT
-   ALL: NO LIMIT, AND THE MOTION CLOSES; TURNS 1'
+   TURNS FULLY, CLOSES AFTER 1 TURN'
 done
 conclude

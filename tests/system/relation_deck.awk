@@ -125,7 +125,7 @@ function read_results(  line, f, k) {
    # Where a BRANCH card has taken the other branch, and its link.
    while ((getline line < lst) > 0) {
       if (line ~ /^ SET OF COMPUTATIONS/) n_set++
-      if (line !~ /CHANGE POINT AT T = .*TAKE THE OTHER BRANCH/) continue
+      if (line !~ /CHANGE POINT AT T = .*PASSED TO THE OTHER BRANCH [(]CARD BRANCH[)]/) continue
       n_switch++; switch_set[n_switch] = n_set
       sub(/.* T = /, "", line); switch_time[n_switch] = line + 0
       sub(/.*LINKS? /, "", line); sub(/[ :,].*/, "", line); switch_link[n_switch] = line

@@ -29,7 +29,7 @@ run() { "$kinmat" "$w/$1.deck" --errors --csv "$w/$1.csv" -o "$w/$1.lst" 2> "$w/
 # differing CHANGE MAP: what the run says, or what is different in its results
 differing() {
    if [ -s "$w/$1.err" ]; then cat "$w/$1.err"; return; fi
-   awk -v change="$1" -v is_close="$(grep -c 'TOO CLOSE TO TELL' "$w/$1.lst")" -f tests/system/relation_rows.awk "$2" \
+   awk -v change="$1" -v is_close="$(grep -c 'NOT DISTINGUISHABLE' "$w/$1.lst")" -f tests/system/relation_rows.awk "$2" \
       "$w/whole.csv" "$w/$1.csv" | head -n 3
 }
 

@@ -162,8 +162,10 @@ drawing() { card UNITS M DEG S; card GROUND BASE; card LINK CRANK; card LINK COU
 listed() { name=$1; shift; drawing "$@" > "$w/$name.deck"
    "$kinmat" "$w/$name.deck" --csv "$w/$name.csv" --table "$w/$name.table" --svg "$w/$name.svg" > "$w/$name.lst" 2> "$w/err"; }
 # rows NAME [HEAD]: the rows of the instants' tables whose head begins with HEAD, or of all
-rows() { awk -v head="$2" '/^ INSTANT/ { on = 0; print "--" } /^ EXTREMES/ { exit } /^ (LINK|POINT|PAIR) / && /X|PHI|SLIDE/ { on = $1; getline; next }
-   on && NF && (head == "" || on == head) && !/^ (BRANCH|END)/' "$w/$1.lst"; }
+rows() { awk -v head="$2" '/^ INSTANT/ { on = 0; print "--" } /^ EXTREMES/ { exit } /^ (LINK|POINT|PAIR) / && /X|PHI|SLIDE/ { on = kind = $1; getline; next }
+   # Heads stand again only where they change: the first row of the next instant is of the kind before it.
+   !on && kind && NF && !/^ INSTANT/ { on = kind }
+   on && NF && (head == "" || on == head) && !/^ (CONTINUATION|END|INSTANT)/' "$w/$1.lst"; }
 rocker=
 listed default
 listed links "$(card PRINT LINKS)"
@@ -184,8 +186,8 @@ for suffix in csv table svg; do
    same "a drawing: $suffix as with PRINT LINKS" "$w/links.$suffix" "$w/default.$suffix"
    same "a drawing with EXTREMES: $suffix as with PRINT LINKS" "$w/extremes_of_links.$suffix" "$w/extremes.$suffix"
 done
-equal 'a drawing: EXTREMES LINKS has all columns' "$(awk '/^ EXTREMES   T/ { on = 1 } /^ BRANCH/ { exit } on' "$w/extremes_of_links.lst")" \
-   "$(awk '/^ EXTREMES   T/ { on = 1 } /^ BRANCH/ { exit } on' "$w/extremes.lst")"
+equal 'a drawing: EXTREMES LINKS has all columns' "$(awk '/^ EXTREMES   T/ { on = 1 } /^ CONTINUATION/ { exit } on' "$w/extremes_of_links.lst")" \
+   "$(awk '/^ EXTREMES   T/ { on = 1 } /^ CONTINUATION/ { exit } on' "$w/extremes.lst")"
 rocker='14.0 10.0 111.0'
 listed own
 listed own_links "$(card PRINT LINKS)"
@@ -211,8 +213,8 @@ cp input/four_bar.deck "$w/own-1.deck"
 rejected '--table without a file' 1 ' *** OPTION --table NEEDS A FILE NAME' "$w/own-1.deck" --table
 rejected '--table twice' 1 ' *** OPTION --table IS GIVEN TWICE' "$w/own-1.deck" --table "$w/a" --table "$w/b"
 rejected '--table and --check' 1 ' *** OPTION --check COMPUTES NO MOTION, WHICH --table NEEDS' "$w/own-1.deck" --table "$w/a" --check
-rejected '--table and --time' 1 ' *** OPTION --time GOES WITH NO OTHER OPTION BUT -o AND --quiet' "$w/own-1.deck" --table "$w/a" --time
-rejected 'two tables on standard output' 1 ' *** STANDARD OUTPUT TAKES THE TABLE OF ONE SET: CHOOSE THE K-TH OF 2 WITH --sets K/2' \
+rejected '--table and --time' 1 ' *** OPTION --time CAN ONLY BE COMBINED WITH -o AND --quiet' "$w/own-1.deck" --table "$w/a" --time
+rejected 'two tables on standard output' 1 ' *** STANDARD OUTPUT TAKES ONE TABLE ONLY: CHOOSE A SET OF 2 WITH --sets K/2' \
    "$w/own-1.deck" --table -
 rejected 'the table of a set is another output' 1 ' *** ONE FILE IS NAMED FOR TWO OUTPUTS' "$w/own-1.deck" --table "$w/a.x" --csv "$w/a-2.x"
 rejected 'the table of a set is the deck' 1 " *** THE DECK $w/own-1.deck WOULD BE OVERWRITTEN" "$w/own-1.deck" --table "$w/own.deck"
@@ -223,7 +225,7 @@ rejected '--plot without a directory' 1 ' *** OPTION --plot NEEDS A DIRECTORY' "
 rejected '--plot -' 1 ' *** OPTION --plot NEEDS A DIRECTORY' "$w/own-1.deck" --plot -
 rejected '--plot twice' 1 ' *** OPTION --plot IS GIVEN TWICE' "$w/own-1.deck" --plot "$w/a" --plot "$w/b"
 rejected '--plot and --check' 1 ' *** OPTION --check COMPUTES NO MOTION, WHICH --plot NEEDS' --check "$w/own-1.deck" --plot "$w/a"
-rejected '--plot and --study' 1 ' *** OPTION --study GOES WITH NO OTHER OPTION BUT -o AND --quiet' --study "$w/own-1.deck" --plot "$w/a"
+rejected '--plot and --study' 1 ' *** OPTION --study CAN ONLY BE COMBINED WITH -o AND --quiet' --study "$w/own-1.deck" --plot "$w/a"
 rejected '--plot where no directory can be made' 3 ' *** DIRECTORY /nonexistent/x CANNOT BE MADE (NO SUCH FILE OR DIRECTORY)' \
    "$w/own-1.deck" --plot /nonexistent/x
 rejected '--plot in the place of a file' 3 " *** FILE $w/own-1.deck/table-1.csv CANNOT BE OPENED FOR WRITING (NOT A DIRECTORY)" \

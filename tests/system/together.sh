@@ -38,7 +38,7 @@ run() {
    name=$1
    shift
    "$debug" "$w/deck" --jobs 1 "$@" > "$w/$name.out" 2> "$w/$name.err"
-   echo "$? $(grep -E '^( [*]{3}|At line|Fortran|Program)' "$w/$name.err" | sed 's/.*THIS CARD NEEDS METHOD NEWTON$/needs NEWTON/')"
+   echo "$? $(grep -E '^( [*]{3}|At line|Fortran|Program)' "$w/$name.err" | sed 's/.*REQUIRES METHOD NEWTON$/needs NEWTON/')"
 }
 
 rest=$features

@@ -7,7 +7,7 @@
 # digits LISTING: its rows of numbers, LINK cards left out, without points, leading zeros and powers of ten.
 digits() {
    awk '/^ RESULTS|^ WYNIKI/ { told = 1 } /^ SET OF |^ KOMPLET / { told = 0 }
-        told && !/^LINK/ && NF > 1 && $NF ~ /^(-?[0-9.?]+(E[-+][0-9]+)?|NONE|INFINITE|UNBOUNDED|REST)$/ && $1 !~ /^(INSTANT|CHWILA|END|KONIEC)/ {
+        told && !/^LINK/ && !/^ *1[.]E[-+]/ && NF > 1 && $NF ~ /^(-?[0-9.?]+(E[-+][0-9]+)?|NONE|INFINITE|UNBOUNDED|REST)$/ && $1 !~ /^(INSTANT|CHWILA|END|KONIEC)/ {
       line = $1
       for (i = 2; i <= NF; i++) {
          minus = $i ~ /^-/ ? "-" : ""; gsub(/[-.]/, "", $i); sub(/^0+/, "", $i); line = line " " minus $i
@@ -33,15 +33,15 @@ for deck in $(grep -L '^VARY' input/*.deck); do
 done
 
 # A crank at 150 degrees, of 1E-4 to 1E7: the same digits of x, and a power of ten only where they have no room without one.
-for crank in '1.0E-4 10**-6 -86.6025' '1.0E-3 -.000866025' '1.0E-2 -0.00866025' '1.0E-1 -0.0866025' '1.0 -0.866025' \
-   '1.0E3 -866.025' '1.0E5 -86602.5' '1.0E6 -866025.' '1.0E7 10**6 -8.66025'; do
+for crank in '1.0E-4 1.E-06 -86.6025' '1.0E-3 -.000866025' '1.0E-2 -0.00866025' '1.0E-1 -0.0866025' '1.0 -0.866025' \
+   '1.0E3 -866.025' '1.0E5 -86602.5' '1.0E6 -866025.' '1.0E7 1.E+06 -8.66025'; do
    set -- $crank
    { card UNITS M DEG S; card GROUND BASE; card LINK CRANK '' '' 0.0 0.0 150.0; card POINT O BASE; card POINT P CRANK
      card POINT TIP CRANK '' "$1"; card REVOLUTE O P PIVOT; card DRIVE ANGLE CRANK '' 150.0; card AT '' '' '' 0.0
      card PRINT POINTS TIP; card END; } > "$w/deck"
    "$kinmat" "$w/deck" > "$w/lst"
    equal "a crank of $1: power and digits" "${crank#* }" \
-      "$(awk '/^ POINT  .* VX / { on = 1; next } !on { next } /10[*][*]/ { printf "%s ", $1 } /^ TIP / { print $2; exit }' "$w/lst")"
+      "$(awk '/^ POINT  .* VX / { on = 1; next } !on { next } /^ *1[.]E/ { printf "%s ", $1 } /^ TIP / { print $2; exit }' "$w/lst")"
 done
 
 # asked METHOD DECK LINK LINK LINK POINT: its first set, all cards in it, poles and curves of these, tolerances of all points
@@ -56,7 +56,7 @@ asked() {
 # answers LISTING: the digits of its tables; ranges; shares of tolerances, and sensitivities without powers of ten.
 answers() {
    digits "$1"
-   awk '/^RANGES|^   (MIN|MAX|ALL)|CHANGE POINTS ON THE WAY/ { print } / %  / { sub(/ S = +/, "S "); sub(/E.*/, ""); print }' "$1"
+   awk '/^RANGES|^   (MIN|MAX|TURNS)|CHANGE POINTS ON THE WAY/ { print } / %  / { sub(/ S = +/, "S "); sub(/E.*/, ""); print }' "$1"
 }
 # as_degrees UNIT FILE: the numbers of a CSV or summary, those of angles times UNIT, and sensitivities to angles over it.
 as_degrees() {
