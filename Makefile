@@ -268,7 +268,7 @@ tolerances: $(BUILD)/kinmat $(BUILD)/kinmat-quad
 	BUILD=$(BUILD) tests/system/tolerances.sh $(or $(N),10000)
 
 # Faults made by chance in the sources, N=200 of them, one at a time: which do the unit tests and `make check` not see?
-mutants:
+mutants: $(BUILD)/release/print_expected
 	BUILD=$(BUILD) FC='$(FC)' N='$(N)' SEED='$(SEED)' tests/mutants/mutants.sh
 
 TEST_LIB     := $(BUILD)/debug/libkinmat.a

@@ -84,7 +84,8 @@ prepare() {
    done
    mkdir -p "$base/plain/expected"
    # expected/ is what closed forms print; that they still do is for `make check` itself.
-   cp expected/*.lst "$base/plain/expected/" || return 3
+   mkdir -p "$base/plain/release"
+   cp expected/*.lst "$base/plain/expected/" && cp -p "$BUILD/release/print_expected" "$base/plain/release/" || return 3
    for kind in plain traps; do
       build "$base" $kind $kind/tests/unit || { tail -n 20 "$base/make.log"; return 3; }
       (cd "$base/$kind/tests" && ./unit > unit.log 2>&1) || { echo "the unit tests fail without a mutant ($kind)"; return 3; }
