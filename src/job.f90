@@ -87,7 +87,7 @@ contains
             if (processes > 1) call run_shares(o, own, processes, o%progress, status, message)
          end associate
          if (own%is_child) o%progress%shown = .false.
-         do while (next_part(o, own, o%own_first, o%own_last))
+         do while (next_part(o, own))
             call run_sets(options, sets, findings, o, status)
          end do
          call end_progress(o%progress)
@@ -102,7 +102,7 @@ contains
          message = message(:max(0, len(message) - 1))
       end if
       call look_at_signals(o, status, message)
-      if (own%is_child) call end_share(o, own, status, message)
+      if (own%is_child) call end_share(o, status, message)
    end subroutine run_job
 
    !> Of a deck with VARY cards there is no table, which has columns for one motion, and no picture of a part.

@@ -3,7 +3,7 @@ module outputs
    use failures, only: failure_t, fail, capitals, status_system, status_rejected
    use text_output, only: output_t, open_output, check_apart, flush_output, close_output, forget_output, &
       abandon_output, has_failed, has_broken_pipe
-   use parts_in_turn, only: parts_in_turn_t, write_in_turn
+   use turns, only: turns_t, write_in_turn
    use system_calls, only: identity_t, identity_of_path, make_directory, remove_directory, last_error, reason_of, &
       signal_received
    use numerals, only: whole
@@ -19,7 +19,10 @@ module outputs
       !> (out_last, 0:sets or 0) In column 0 those that all sets share; in column i those of set number i.
       type(output_t), allocatable :: files(:, :)
       character(:), allocatable :: made_directory           !< that was not there before
-      type(parts_in_turn_t) :: parts                        !< of a job in several processes: see `shares`
+      type(turns_t) :: turns                                !< of a job in several processes: see `shares`
+      !> The sets that this process computes now; where the deck has VARY cards, numbers of variants, counted through
+      !> all sets.
+      integer :: own_first = 1, own_last = 0
       logical :: ended = .false.                            !< before its time: the listing says so in its last line
    end type outputs_t
 
@@ -158,7 +161,7 @@ contains
    subroutine write_parts(o)
       class(outputs_t), intent(inout) :: o
 
-      if (o%parts%held) call write_in_turn(o%parts, o%files(:, 0))
+      if (o%turns%held) call write_in_turn(o%turns, o%files(:, 0))
    end subroutine write_parts
 
    !> Leaves the files of the sets from `first` to `last` to other processes.

@@ -42,8 +42,6 @@ module set_runs
    type, extends(outputs_t) :: writers_t
       type(progress_t) :: progress
       integer :: first = 1, last = 0                !< the sets that were read
-      !> Those that this process computes; where the deck has VARY cards, numbers of variants, counted through all sets.
-      integer :: own_first = 1, own_last = 0
       type(layout_t) :: layout                      !< of the listing of the set at hand
       type(table_t) :: table                        !< of the set at hand
       logical :: varies = .false.                   !< the deck has VARY cards

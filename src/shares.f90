@@ -1,21 +1,18 @@
 !> A job's sets, or their variants, in several processes. They are divided into parts that follow one another; whoever
-!> is free takes the next one, and its text stays in memory until the parts before it are written (`parts_in_turn`). One
-!> that dies or is broken off leaves its part undone, and nothing after that is written.
+!> is free takes the next one, and parts are written in their order (`turns`). One that dies or is broken off leaves its
+!> part undone, and nothing after that is written.
 !>
 !> Rejected: threads. gfortran 12 keeps the lengths of character results in static memory, where threads write over each
 !> other's: of 2000 sets in two threads, two listings had words cut short.
 module shares
-   use, intrinsic :: iso_c_binding, only: c_int, c_size_t
+   use, intrinsic :: iso_c_binding, only: c_int
    use failures, only: capitals, status_solved, status_system
-   use deck, only: share_end
    use numerals, only: whole
-   use processes, only: make_pipe, has_input, fork_process, wait_for_child, interrupt_child, end_process, &
-      killed, report_to, end_of_message
-   use system_calls, only: read_bytes, write_bytes, close_descriptor, signal_received, note_all_signals, last_error, &
-      reason_of
+   use processes, only: make_pipe, has_input, fork_process, wait_for_child, interrupt_child, end_process, killed, &
+      report, end_of_message
+   use system_calls, only: read_bytes, close_descriptor, signal_received, last_error, reason_of
    use text_output, only: has_failed, turn_lost
-   use turns, only: make_turns, close_turns, parts_taken, parts_done
-   use parts_in_turn, only: begin_part, end_part, write_rest
+   use turns, only: make_turns, close_turns, begin_part, end_part, write_rest, parts_taken, parts_done
    use progress, only: progress_t, show_progress
    use outputs, only: outputs_t, flush_sets, forget_files
    implicit none
@@ -32,12 +29,9 @@ module shares
    type :: share_of_job_t
       character(:), allocatable :: kind             !< SETS or VARIANTS
       integer :: first = 1, last = 0                !< all of them
-      integer :: parts = 1                          !< so many parts there are; in the parent of other processes none
-      integer :: part = 0                           !< the one at hand
+      integer :: length = huge(1)                   !< so many of them are a part
       integer :: unit = 1                           !< so many variants are solved together
-      integer :: own_first = 1, own_last = 0        !< the sets or variants of the part at hand
-      logical :: is_child = .false.
-      integer(c_int) :: report = -1                 !< a pipe to or from the parent
+      logical :: is_child = .false., is_parent = .false.
    end type share_of_job_t
 
 contains
@@ -52,81 +46,75 @@ contains
       type(progress_t), intent(inout) :: progress
       integer, intent(inout) :: status
       character(:), allocatable, intent(inout) :: message
-      integer :: list(processes), k
-      integer(c_int) :: report
+      integer :: list(processes), started, taken, k
+      integer(c_int) :: reads, writes
+      logical :: closed
 
-      call divide(s, processes)
-      call make_pipe(s%report, report)
-      do k = 1, processes
-         list(k) = -1
-         if (s%report < 0) exit
-         if (k == 1) then
-            if (.not. make_turns(o%parts%turns)) exit
-         end if
-         list(k) = fork_process()
+      associate (count => s%last - s%first + 1)
+         s%length = s%unit*max(1, count/(s%unit*processes*merge(parts_together, parts_a_process, s%unit > 1)))
+         if (count < processes*s%length) s%length = (count - 1)/processes + 1
+      end associate
+      s%is_parent = .true.
+
+      started = 0
+      call make_pipe(reads, writes)
+      if (reads >= 0) then
+         if (make_turns(o%turns)) started = processes
+      end if
+      do k = 1, started
+         list(k) = fork_process(writes)
          s%is_child = list(k) == 0
-         if (s%is_child) call begin_child()
-         if (s%is_child) return
+         if (s%is_child) then
+            s%is_parent = .false.
+            ! Files that it computes no part of are left as they are.
+            o%files(:, 0)%emptied = .true.
+            return
+         end if
+         if (list(k) < 0) started = k - 1
          if (list(k) < 0) exit
       end do
-      if (k <= processes) then
+      if (started < processes) then
          status = status_system
-         message = ' *** CANNOT START A PROCESS FOR'//text_of(k)//' ('//capitals(reason_of(last_error()))//')'
-         call interrupt_all(list(:k - 1))
+         message = ' *** CANNOT START A PROCESS FOR'//text_of(started + 1)//' ('//capitals(reason_of(last_error()))//')'
+         call interrupt_all()
       end if
-      call close_one(report)
-      call follow(list(:min(k, processes)), message)
-      call close_one(s%report)
-      call leave_files()
-      call close_turns(o%parts%turns)
-      s%parts = 0
+      if (reads >= 0) then
+         closed = close_descriptor(writes)
+         call follow()
+         closed = close_descriptor(reads)
+      end if
+
+      ! The children have written these files.
+      taken = min(parts_taken(o%turns), part_count(s))
+      if (taken > 0) o%files(:, 0)%emptied = .true.
+      call forget_files(o, s%first, first_of(s, taken + 1) - 1)
+      call close_turns(o%turns)
 
    contains
 
-      !> What a child does first.
-      subroutine begin_child()
-         call note_all_signals
-         call close_one(s%report)
-         s%report = report
-         call report_to(report)
-         ! Those that it computes no part of are left as they are.
-         o%files(:, 0)%emptied = .true.
-      end subroutine begin_child
-
-      !> Leaves to the children the files that they have written.
-      subroutine leave_files()
-         integer :: taken
-
-         taken = min(parts_taken(o%parts%turns), s%parts)
-         if (taken > 0) o%files(:, 0)%emptied = .true.
-         call forget_files(o, s%first, first_of(s, taken + 1) - 1)
-      end subroutine leave_files
-
-      !> Waits for the children of `list`, takes over the first `message`, and finds the `status` of the whole.
-      subroutine follow(list, message)
-         integer, intent(in) :: list(:)
-         character(:), allocatable, intent(inout) :: message
+      !> Waits for the children, takes over the first message, and finds the status of the whole.
+      subroutine follow()
          character(4096) :: block
          character(:), allocatable :: said
          integer :: ended, k, n
 
          said = ''
-         do while (s%report >= 0)
-            if (signal_received() > 0) call interrupt_all(list)
-            if (has_input(s%report, look_time)) then
-               n = read_bytes(s%report, block)
+         do
+            if (signal_received() > 0) call interrupt_all()
+            if (has_input(reads, look_time)) then
+               n = read_bytes(reads, block)
                if (n <= 0) exit
                said = said//block(:n)
             end if
-            call show_progress(progress, s%kind//': NUMBER', first_of(s, parts_done(o%parts%turns) + 1) - 1, s%last)
+            call show_progress(progress, s%kind//': NUMBER', first_of(s, parts_done(o%turns) + 1) - 1, s%last)
          end do
          if (len(message) == 0 .and. len(said) > 0) message = said(:index(said, end_of_message) - 1)
-         do k = 1, size(list)
-            if (list(k) <= 0) cycle
+
+         do k = 1, started
             call wait_for_child(list(k), ended)
             if (ended >= killed .and. status < status_system) then
                ! All parts before its own are done.
-               message = ' *** THE PROCESS FOR'//text_of(min(parts_done(o%parts%turns) + 1, s%parts)) &
+               message = ' *** THE PROCESS FOR'//text_of(min(parts_done(o%turns) + 1, part_count(s))) &
                   //' WAS ENDED BY SIGNAL '//whole(ended - killed)
                status = status_system
             else if (ended < killed) then
@@ -135,23 +123,14 @@ contains
          end do
       end subroutine follow
 
-      !> Asks all processes of `list` to end.
-      subroutine interrupt_all(list)
-         integer, intent(in) :: list(:)
+      !> Asks all children to end.
+      subroutine interrupt_all()
          integer :: k
 
-         do k = 1, size(list)
-            if (list(k) > 0) call interrupt_child(list(k))
+         do k = 1, started
+            call interrupt_child(list(k))
          end do
       end subroutine interrupt_all
-
-      !> Closes one end of a pipe, unless it has none.
-      subroutine close_one(descriptor)
-         integer(c_int), intent(in) :: descriptor
-         logical :: closed
-
-         if (descriptor >= 0) closed = close_descriptor(descriptor)
-      end subroutine close_one
 
       !> SETS 5 TO 8, or VARIANTS 5 TO 8: part `p`.
       pure function text_of(p) result(text)
@@ -162,83 +141,69 @@ contains
       end function text_of
    end subroutine run_shares
 
-   !> Divides the sets or variants of `s` for `processes` processes.
-   pure subroutine divide(s, processes)
-      type(share_of_job_t), intent(inout) :: s
-      integer, intent(in) :: processes
-
-      associate (count => s%last - s%first + 1)
-         ! A part of one variant more than are solved together takes as long as one of twice as many.
-         s%parts = min((count - 1)/s%unit + 1, merge(parts_together, parts_a_process, s%unit > 1)*processes)
-         if (s%parts < processes) then
-            s%unit = 1
-            s%parts = min(count, processes)
-         end if
-      end associate
-      s%own_last = s%first - 1
-   end subroutine divide
-
-   !> Ends the part at hand, if there is one, and begins the next: `first` to `last`. False where there is none, or the
-   !> job is over; then all is written.
-   logical function next_part(o, s, first, last)
+   !> Ends the part at hand, if there is one, and begins the next, of which o%own_first to o%own_last are the sets or
+   !> variants. False where there is none, or the job is over; then all is written.
+   logical function next_part(o, s)
       class(outputs_t), intent(inout) :: o
-      type(share_of_job_t), intent(inout) :: s
-      integer, intent(out) :: first, last
+      type(share_of_job_t), intent(in) :: s
       integer :: before
 
-      before = s%own_last
-      if (s%is_child .and. s%part > 0) then
-         call flush_sets(o, s%own_first, s%own_last)
-         call end_part(o%parts, o%files(:, 0), goes_on(o, s))
+      next_part = .not. s%is_parent
+      if (s%is_parent) return
+      before = merge(o%own_last, s%first - 1, o%turns%part > 0)
+      if (s%is_child .and. o%turns%part > 0) then
+         call flush_sets(o, o%own_first, o%own_last)
+         call end_part(o%turns, o%files(:, 0), goes_on(o))
       end if
-      next_part = goes_on(o, s)
-      s%part = s%part + 1
-      if (next_part .and. s%is_child) then
-         call begin_part(o%parts, s%parts, o%files(:, 0))
-         s%part = o%parts%part
-      end if
-      next_part = next_part .and. s%part <= s%parts
-      first = first_of(s, s%part)
-      last = first_of(s, s%part + 1) - 1
-      s%own_first = first
-      s%own_last = last
+
+      next_part = goes_on(o)
+      if (.not. s%is_child) o%turns%part = o%turns%part + 1
+      if (s%is_child .and. next_part) call begin_part(o%turns, part_count(s), o%files(:, 0))
+      next_part = next_part .and. o%turns%part <= part_count(s)
+      o%own_first = first_of(s, o%turns%part)
+      o%own_last = first_of(s, o%turns%part + 1) - 1
+
       if (.not. s%is_child) return
       ! The sets between are those of other processes.
-      call forget_files(o, before + 1, merge(first - 1, s%last, next_part))
-      if (.not. next_part) call write_rest(o%parts, o%files(:, 0))
+      call forget_files(o, before + 1, merge(o%own_first - 1, s%last, next_part))
+      if (.not. next_part) call write_rest(o%turns, o%files(:, 0))
    end function next_part
 
    !> The run has not ended before its time, and no write has failed.
-   logical function goes_on(o, s)
+   logical function goes_on(o)
       class(outputs_t), intent(in) :: o
-      type(share_of_job_t), intent(in) :: s
       integer :: i
 
       goes_on = .not. (o%ended .or. any(has_failed(o%files(:, 0))))
-      do i = s%own_first, min(s%own_last, ubound(o%files, 2))
+      do i = o%own_first, min(o%own_last, ubound(o%files, 2))
          if (any(has_failed(o%files(:, i)))) goes_on = .false.
       end do
    end function goes_on
 
    !> Ends the child: its parent takes over the exit `status` and the `message`, unless its turn has never come.
-   subroutine end_share(o, s, status, message)
+   subroutine end_share(o, status, message)
       class(outputs_t), intent(in) :: o
-      type(share_of_job_t), intent(in) :: s
       integer, intent(in) :: status
       character(*), intent(in) :: message
-      integer(c_size_t) :: written
 
       if (any(o%files%error == turn_lost)) call end_process(status_solved)
-      if (len(message) > 0) written = write_bytes(s%report, message//end_of_message)
+      if (len(message) > 0) call report(message)
       call end_process(status)
    end subroutine end_share
+
+   !> How many parts there are; one where there is nothing to compute.
+   pure integer function part_count(s)
+      type(share_of_job_t), intent(in) :: s
+
+      part_count = max(1, (s%last - s%first)/s%length + 1)
+   end function part_count
 
    !> The first set or variant of part `p`, of those beyond the last one the number after the last.
    pure integer function first_of(s, p)
       type(share_of_job_t), intent(in) :: s
       integer, intent(in) :: p
 
-      first_of = s%first + s%unit*share_end((s%last - s%first)/s%unit + 1, min(p, s%parts + 1) - 1, max(1, s%parts))
-      first_of = min(first_of, s%last + 1)
+      first_of = s%last + 1
+      if (p <= part_count(s)) first_of = s%first + (p - 1)*s%length
    end function first_of
 end module shares

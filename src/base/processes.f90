@@ -2,11 +2,11 @@
 module processes
    use, intrinsic :: iso_c_binding, only: c_int, c_int16_t, c_int64_t, c_long, c_size_t
    use failures, only: status_system
-   use system_calls, only: write_bytes
+   use system_calls, only: write_bytes, note_all_signals
    implicit none
    private
    public :: processor_count, make_pipe, has_input, fork_process, wait_for_child, interrupt_child, end_process, killed
-   public :: end_without_memory, report_to, end_of_message
+   public :: end_without_memory, report, end_of_message
 
    !> What `wait_for_child` adds to the number of the signal that has killed a child.
    integer, parameter :: killed = 1000
@@ -18,9 +18,9 @@ module processes
    !> Ends the message that a child reports to its parent.
    character(1), parameter :: end_of_message = achar(2)
    character(*), parameter :: no_memory = ' *** NOT ENOUGH MEMORY FOR THE DECK'
-   !> Where a process without memory says so: standard error, in a child the pipe to its parent.
+   !> Where this process reports an error: standard error, in a child the pipe to its parent.
    integer(c_int), parameter :: standard_error = 2
-   integer(c_int) :: report = standard_error
+   integer(c_int) :: report_to = standard_error
 
    !> What poll is asked about a descriptor: whether there is input.
    type, bind(c) :: poll_t
@@ -107,13 +107,17 @@ contains
       has_input = poll(list, 1_c_long, int(milliseconds, c_int)) > 0
    end function has_input
 
-   !> Makes a child, a copy of this process, which ends when this one does. The result is 0 in the child, its number in
-   !> the parent, negative for an error.
-   integer function fork_process()
+   !> Makes a child, a copy of this process, which ends when this one does, and after the first signal by itself. It
+   !> reports to the pipe `writes`. The result is 0 in the child, its number in the parent, negative for an error.
+   integer function fork_process(writes)
+      integer(c_int), intent(in) :: writes
       integer(c_int) :: ignored
 
       fork_process = fork()
-      if (fork_process == 0) ignored = prctl(when_parent_ends, signal_terminate)
+      if (fork_process /= 0) return
+      ignored = prctl(when_parent_ends, signal_terminate)
+      call note_all_signals
+      report_to = writes
    end function fork_process
 
    !> Waits until the process `child` has ended. `status`: its exit status, or `killed` + the number of the signal that
@@ -144,21 +148,22 @@ contains
       call exit_at_once(int(status, c_int))
    end subroutine end_process
 
-   !> From now on this process, a child, reports to its parent through the pipe `descriptor`.
-   subroutine report_to(descriptor)
-      integer(c_int), intent(in) :: descriptor
+   !> Reports the `message` of this process, a child, to its parent, in one piece.
+   subroutine report(message)
+      character(*), intent(in) :: message
+      integer(c_size_t) :: written
 
-      report = descriptor
-   end subroutine report_to
+      written = write_bytes(report_to, message//end_of_message)
+   end subroutine report
 
    !> Ends this process because memory lacks, and uses none for it. Outputs end with the last block of lines written.
    subroutine end_without_memory
       integer(c_size_t) :: written
 
-      if (report == standard_error) then
-         written = write_bytes(report, no_memory//new_line('a'))
+      if (report_to == standard_error) then
+         written = write_bytes(report_to, no_memory//new_line('a'))
       else
-         written = write_bytes(report, no_memory//end_of_message)
+         written = write_bytes(report_to, no_memory//end_of_message)
       end if
       call end_process(status_system)
    end subroutine end_without_memory

@@ -1,6 +1,6 @@
 !> Lines to a file or to standard output, in large blocks of whole lines. A failed write is an error, never a crash. A
 !> file keeps its old contents until the first block is written. Where processes write to one file in turn, text is held
-!> in memory until the turn has come (`parts_in_turn`).
+!> in memory until the turn has come (`turns`).
 module text_output
    use, intrinsic :: iso_c_binding, only: c_int, c_size_t
    use failures, only: failure_t, fail, capitals, status_system, status_rejected
@@ -9,7 +9,7 @@ module text_output
    implicit none
    private
    public :: output_t, open_output, check_apart, put, add, flush_output, close_output, forget_output, abandon_output
-   public :: hold_output, held_length, write_held, release_output, drop_held, has_failed, has_broken_pipe, turn_lost
+   public :: held_length, write_held, release_output, drop_held, has_failed, has_broken_pipe, turn_lost
 
    integer, parameter :: block_length = 65536
    !> The error of an output whose turn will never come: the process before it has ended.
@@ -22,7 +22,6 @@ module text_output
       character(:), allocatable :: path      !< '' for standard output
       character(:), allocatable :: buffer    !< (block_length or more); not allocated: not open
       integer :: written = 0, used = 0       !< what is not written yet stands in the buffer between these places
-      integer :: room = block_length         !< so many characters of the buffer are in use
       logical :: held = .false.              !< its turn to be written has not come: all text stays in the buffer
       logical :: made = .false.              !< the file did not exist before
       logical :: emptied = .false.           !< the old contents of the file are gone
@@ -90,7 +89,7 @@ contains
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: line
 
-      if (len(line) >= o%room - o%used) then
+      if (len(line) >= len(o%buffer) - o%used) then
          call add(o, line)
          call add(o, new_line('a'))
          return
@@ -105,10 +104,10 @@ contains
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: text
 
-      if (len(text) > o%room - o%used .and. o%held) call make_room(o, len(text))
-      if (len(text) > o%room - o%used) call write_lines(o)
-      if (len(text) > o%room - o%used) call write_block(o)
-      if (len(text) > o%room) then
+      if (len(text) > len(o%buffer) - o%used .and. o%held) call make_room(o, len(text))
+      if (len(text) > len(o%buffer) - o%used) call write_lines(o)
+      if (len(text) > len(o%buffer) - o%used) call write_block(o)
+      if (len(text) > len(o%buffer)) then
          call write_text(o, text)
          return
       end if
@@ -116,38 +115,20 @@ contains
       o%used = o%used + len(text)
    end subroutine add
 
-   !> Makes room for `length` more characters of text that is held: in the place of what is written, if that is a
-   !> quarter of the buffer, otherwise in a larger one.
+   !> Makes room for `length` more characters of text that is held, as much again, and for none that is written.
    subroutine make_room(o, length)
       type(output_t), intent(inout) :: o
       integer, intent(in) :: length
-      character(:), allocatable :: larger
-      integer :: room
+      character(:), allocatable :: other
+      integer :: held
 
-      room = len(o%buffer)
-      if (4*o%written < room) room = 2*room
-      o%used = held_length(o)
-      do while (room - o%used < length)
-         room = 2*room
-      end do
-      o%room = room
-      if (room == len(o%buffer)) then
-         o%buffer(:o%used) = o%buffer(o%written + 1:o%written + o%used)
-      else
-         allocate (character(room) :: larger)
-         larger(:o%used) = o%buffer(o%written + 1:o%written + o%used)
-         call move_alloc(larger, o%buffer)
-      end if
+      held = held_length(o)
+      allocate (character(max(len(o%buffer), 2*(held + length))) :: other)
+      other(:held) = o%buffer(o%written + 1:o%used)
+      call move_alloc(other, o%buffer)
+      o%used = held
       o%written = 0
    end subroutine make_room
-
-   !> From now on text is held.
-   elemental subroutine hold_output(o)
-      type(output_t), intent(inout) :: o
-
-      o%held = .true.
-      o%room = len(o%buffer)
-   end subroutine hold_output
 
    !> How many characters are held, or wait for a block to be full.
    elemental integer function held_length(o)
@@ -168,14 +149,15 @@ contains
       o%used = 0
    end subroutine write_held
 
-   !> Writes all that is held, and text is held no longer. It then takes the beginning of the buffer alone, which stays
-   !> in the processor's cache.
+   !> Writes all that is held, and text is held no longer. Its buffer is then short, and stays in the processor's cache.
    subroutine release_output(o)
       type(output_t), intent(inout) :: o
 
       call write_block(o)
       o%held = .false.
-      o%room = block_length
+      if (len(o%buffer) == block_length) return
+      deallocate (o%buffer)
+      allocate (character(block_length) :: o%buffer)
    end subroutine release_output
 
    !> Drops all that is held.

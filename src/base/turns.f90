@@ -1,20 +1,37 @@
-!> The numbers of a job's parts, which processes take from one another and end one after another. The system keeps how
-!> many are taken and how many are done, in files without a name, and a lock for each part that is taken: who waits for
-!> a part waits for its lock, which the system opens as well if the process that holds it dies.
+!> Parts of a job that processes take from one another and write in order. Who is free takes the next part; its text
+!> stays in memory until all parts before are written. Meanwhile the process goes on with further parts, as long as no
+!> output holds too much.
+!>
+!> The system counts the parts that are taken and those that are done, in two files without a name, and keeps a lock for
+!> each part at hand: who waits for a part waits for its lock, which the system opens as well if its process dies.
 !>
 !> Rejected: a pipe from process to process. A part then belongs to a process before it begins, so that unequal parts
 !> leave one idle.
 module turns
    use, intrinsic :: iso_c_binding, only: c_char, c_int, c_int16_t, c_long, c_null_char
    use system_calls, only: close_descriptor, last_error
+   use text_output, only: output_t, held_length, write_held, release_output, drop_held, has_failed, turn_lost
    implicit none
    private
-   public :: turns_t, make_turns, close_turns, take_part, has_turn, wait_for_turn, pass_turn, parts_taken, parts_done
+   public :: turns_t, make_turns, close_turns, begin_part, end_part, write_in_turn, write_rest, parts_taken, parts_done
 
-   !> Descriptors of two files. Their positions, which processes share, are the numbers of parts that are taken and that
-   !> are done; the locks are those of the bytes of the first.
+   !> An output that holds more characters than these waits for its turn after the instant. Its buffer, twice as large
+   !> at most, is 128 MB unless the text of an instant is longer.
+   integer, parameter :: max_held = 2**26
+   !> An output that holds more than these begins no further part.
+   integer, parameter :: max_ahead = 2**24
+   !> After so many characters it is looked whether the turn has come: in a block's time it may.
+   integer, parameter :: look_length = 65536
+
    type :: turns_t
+      !> Descriptors of two files, whose positions all processes share: how many parts are taken, how many are done. The
+      !> lock of a part is that of a byte of the first.
       integer(c_int) :: taken = -1, done = -1
+      integer :: part = 0                       !< the one at hand
+      logical :: held = .false.                 !< its text is held
+      integer :: look = 0                       !< it is looked for the turn where an output holds so much
+      integer, allocatable :: waiting(:)        !< complete parts before it, whose turn has not come
+      integer, allocatable :: lengths(:, :)     !< the characters that each output holds of them
    end type turns_t
 
    !> Bytes that are locked, as fcntl takes them.
@@ -74,46 +91,6 @@ contains
       t = turns_t()
    end subroutine close_turns
 
-   !> Takes the next part. Nobody takes the one after it before it is locked.
-   integer function take_part(t)
-      type(turns_t), intent(in) :: t
-
-      call change_lock(t, taking, locked)
-      take_part = int(lseek(t%taken, 1_c_long, from_here))
-      call change_lock(t, take_part, locked)
-      call change_lock(t, taking, unlocked)
-   end function take_part
-
-   !> Whether all parts before `part` are done.
-   logical function has_turn(t, part)
-      type(turns_t), intent(in) :: t
-      integer, intent(in) :: part
-
-      has_turn = parts_done(t) == part - 1
-   end function has_turn
-
-   !> Waits until the part before `part` is done or will never be; true: all parts before it are done.
-   logical function wait_for_turn(t, part)
-      type(turns_t), intent(in) :: t
-      integer, intent(in) :: part
-
-      if (.not. has_turn(t, part)) then
-         call change_lock(t, part - 1, locked)
-         call change_lock(t, part - 1, unlocked)
-      end if
-      wait_for_turn = has_turn(t, part)
-   end function wait_for_turn
-
-   !> Part `part` of this process is done.
-   subroutine pass_turn(t, part)
-      type(turns_t), intent(in) :: t
-      integer, intent(in) :: part
-      integer(c_long) :: done
-
-      done = lseek(t%done, 1_c_long, from_here)
-      call change_lock(t, part, unlocked)
-   end subroutine pass_turn
-
    !> How often a part was taken, by all processes; 0 where none are counted.
    integer function parts_taken(t)
       type(turns_t), intent(in) :: t
@@ -127,6 +104,105 @@ contains
 
       parts_done = max(0, int(lseek(t%done, 0_c_long, from_here)))
    end function parts_done
+
+   !> Takes the next part; t%part is greater than `parts` if there is none. `files`: the outputs that all parts share.
+   subroutine begin_part(t, parts, files)
+      type(turns_t), intent(inout) :: t
+      integer, intent(in) :: parts
+      type(output_t), intent(inout) :: files(:)
+      integer :: k
+
+      if (.not. allocated(t%waiting)) allocate (t%waiting(0), t%lengths(size(files), 0))
+      ! Nobody takes the one after it before it is locked.
+      call change_lock(t, taking, locked)
+      t%part = int(lseek(t%taken, 1_c_long, from_here))
+      call change_lock(t, t%part, locked)
+      call change_lock(t, taking, unlocked)
+
+      t%held = t%part <= parts
+      if (.not. t%held) return
+      files%held = .true.
+      do k = 1, size(files)
+         ! What the first part has emptied is not emptied again.
+         if (allocated(files(k)%buffer)) files(k)%emptied = t%part > 1 .or. len(files(k)%path) == 0
+      end do
+      call write_what_may_be(t, files, max_held)
+   end subroutine begin_part
+
+   !> Ends the part at hand. One that is not `complete` is written in its turn, and no part after it.
+   subroutine end_part(t, files, complete)
+      type(turns_t), intent(inout) :: t
+      type(output_t), intent(inout) :: files(:)
+      logical, intent(in) :: complete
+      integer :: lengths(size(files))
+
+      if (.not. complete) then
+         call write_rest(t, files)
+         return
+      end if
+      lengths = held_length(files) - sum(t%lengths, 2)
+      t%lengths = reshape([t%lengths, lengths], [size(files), size(t%waiting) + 1])
+      t%waiting = [t%waiting, t%part]
+      t%held = .false.
+      call write_what_may_be(t, files, max_ahead)
+   end subroutine end_part
+
+   !> Writes what may be written, if there is much; waits where an output holds too much.
+   subroutine write_in_turn(t, files)
+      type(turns_t), intent(inout) :: t
+      type(output_t), intent(inout) :: files(:)
+
+      if (.not. t%held) return
+      if (maxval(held_length(files)) >= t%look) call write_what_may_be(t, files, max_held)
+   end subroutine write_in_turn
+
+   !> Writes all, when its turn has come.
+   subroutine write_rest(t, files)
+      type(turns_t), intent(inout) :: t
+      type(output_t), intent(inout) :: files(:)
+
+      call write_what_may_be(t, files, -1)
+   end subroutine write_rest
+
+   !> Writes the parts whose turn has come; waits for it as long as an output holds more than `most` characters. An
+   !> error, or a turn that never comes, is that of `files`, and what is held is dropped.
+   subroutine write_what_may_be(t, files, most)
+      type(turns_t), intent(inout) :: t
+      type(output_t), intent(inout) :: files(:)
+      integer, intent(in) :: most
+      integer(c_long) :: done
+      integer :: part, k
+
+      do while (size(t%waiting) > 0 .or. t%held)
+         if (any(has_failed(files))) exit
+         part = t%part
+         if (size(t%waiting) > 0) part = t%waiting(1)
+
+         if (parts_done(t) < part - 1) then
+            t%look = maxval(held_length(files)) + look_length
+            if (t%look - look_length <= most) return
+            ! The part before is done, or will never be, when its lock is open.
+            call change_lock(t, part - 1, locked)
+            call change_lock(t, part - 1, unlocked)
+            if (parts_done(t) < part - 1) files%error = turn_lost
+            cycle
+         end if
+
+         do k = 1, size(files)
+            if (.not. allocated(files(k)%buffer)) cycle
+            if (size(t%waiting) > 0) call write_held(files(k), t%lengths(k, 1))
+            ! Further text of the part at hand is not held.
+            if (size(t%waiting) == 0) call release_output(files(k))
+         end do
+         if (size(t%waiting) == 0) t%held = .false.
+         if (size(t%waiting) == 0 .or. any(has_failed(files))) cycle
+         done = lseek(t%done, 1_c_long, from_here)
+         call change_lock(t, part, unlocked)
+         t%waiting = t%waiting(2:)
+         t%lengths = t%lengths(:, 2:)
+      end do
+      if (size(t%waiting) > 0 .or. t%held) call drop_held(files)
+   end subroutine write_what_may_be
 
    !> Sets or opens the lock of part `part` when it can be had, whatever signals come meanwhile.
    subroutine change_lock(t, part, kind)

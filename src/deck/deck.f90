@@ -22,7 +22,7 @@ module deck
    use numerals, only: whole
    implicit none
    private
-   public :: read_deck, share_t, share_end, variants_before, build_variant
+   public :: read_deck, share_t, variants_before, build_variant
 
    !> The largest number of cards, with comments and blank cards.
    integer, parameter :: max_cards = 2000000
