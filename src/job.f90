@@ -3,7 +3,7 @@
 module job
    use, intrinsic :: iso_fortran_env, only: int64
    use failures, only: failure_t, fail, status_rejected, status_solved, status_flagged, status_signal
-   use mechanism, only: mechanism_t, request_pole, instant_count, instant, with_all_links
+   use mechanism, only: mechanism_t, instant_count, instant, with_all_links
    use structure, only: findings_t, check_structure, find_groups
    use deck, only: read_deck, share_t, variants_before
    use progress, only: progress_t, start_progress, show_progress, end_progress
@@ -13,14 +13,13 @@ module job
    use csv, only: csv_head
    use table, only: new_table, table_head
    use plot_script, only: put_script
-   use drawing, only: drawing_t, new_drawing, record_instant
-   use picture_frames, only: picture_candidates
+   use drawing, only: drawing_t, film_of, new_drawing, record_instant
    use picture_page, only: picture_head
    use picture, only: put_pictures
    use circuit_branches, only: circuits_t
    use circuits_table, only: find_all_circuits
    use circuits_picture, only: circuit_page_t, add_to_page, put_circuit_page
-   use animation, only: film_of, put_animations, max_intervals
+   use animation, only: put_animations
    use solver_log, only: log_head
    use answers, only: answers_t
    use assembly_table, only: draw_assemblies
@@ -175,17 +174,15 @@ contains
       type(mechanism_t), intent(in) :: sets(o%first:)
       type(findings_t), intent(inout) :: findings(o%first:)
       integer, intent(inout) :: status
-      type(mechanism_t) :: film
       type(circuit_page_t) :: page
-      integer :: i, every, before, varied
+      integer :: i, before, varied
 
       if (o%asked(out_csv) .and. options%share == 1 .and. o%own_first == 1) &
          call csv_head(o%files(out_csv, 0), options%errors, o%varies)
       if (o%asked(out_svg)) call picture_head(o%files(out_svg, 0))
-      if (o%asked(out_svg)) allocate (o%drawings(o%first:o%last))
+      if (o%asked(out_svg) .or. o%asked(out_animation)) allocate (o%drawings(o%first:o%last))
       if (o%asked(out_animation)) call picture_head(o%files(out_animation, 0))
       if (o%asked(out_circuits)) call picture_head(o%files(out_circuits, 0))
-      if (o%asked(out_animation)) allocate (o%films(o%first:o%last))
       before = o%first - 1
       varied = 0
       ! Where no set has variants, those before the part at hand need not be passed over.
@@ -206,41 +203,40 @@ contains
             end if
             exit
          end if
-         if (o%asked(out_svg)) call draw_set(sets(i), picture_candidates, 1, o%drawings(i), o%progress)
-         if (o%asked(out_svg) .and. sets(i)%assemblies) call draw_all_assemblies(sets(i), o%drawings(i))
-         if (o%asked(out_svg) .and. any(sets(i)%requests%kind == request_pole)) &
-            call draw_centrodes(sets(i), o%drawings(i), o%progress)
-         if (o%asked(out_animation)) then
-            call film_of(sets(i), film, every)
-            call draw_set(film, max_intervals + 1, every, o%films(i), o%progress)
-         end if
+         if (o%asked(out_svg) .or. o%asked(out_animation)) call draw_set(sets(i), o%drawings(i), o%progress)
          if (o%asked(out_circuits) .and. sets(i)%circuits) call draw_circuits(sets(i), page)
       end do
       ! Sets that were broken off are not drawn.
       if (o%asked(out_svg)) call put_pictures(o%files(out_svg, 0), o%drawings(o%first:i - 1))
-      if (o%asked(out_animation)) call put_animations(o%files(out_animation, 0), o%films(o%first:i - 1))
+      if (o%asked(out_animation)) &
+         call put_animations(o%files(out_animation, 0), o%drawings(o%first:i - 1))
       if (o%asked(out_circuits)) call put_circuit_page(o%files(out_circuits, 0), page)
    end subroutine run_sets
 
-   !> Records the drawing `d` of `m`, of at most `frames` frames; `every` as in `new_drawing`. It has an analysis of its
-   !> own: a picture shows links that no table asks for, and what is printed must not depend on it.
-   subroutine draw_set(m, frames, every, d, progress)
+   !> Records the drawing `d` of the film of `m`. It has an analysis of its own: a picture shows links that no table
+   !> asks for, and what is printed must not depend on it.
+   subroutine draw_set(m, d, progress)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: frames, every
       type(drawing_t), intent(out) :: d
       type(progress_t), intent(inout) :: progress
+      type(mechanism_t) :: film
       type(set_analysis_t) :: a
-      integer :: k
+      integer :: every, k
 
-      d = new_drawing(m, frames, every)
-      call make_set_analysis(with_all_links(m), a)
-      do k = 0, instant_count(m) - 1
-         call advance_set(a, instant(m, k))
+      call film_of(m, film, every)
+      d = new_drawing(film, every)
+      call make_set_analysis(with_all_links(film), a)
+      do k = 0, instant_count(film) - 1
+         ! The first of the instants of AT, from which the deck's own motion goes on.
+         if (every == 0 .and. k == film%steps + 1) call make_set_analysis(with_all_links(m), a)
+         call advance_set(a, instant(film, k))
          call record_instant(d, a%now, k)
-         if (progress%shown) &
-            call show_progress(progress, 'PICTURE OF SET '//whole(m%set_number)//': INSTANT', k, instant_count(m) - 1)
+         if (progress%shown) call show_progress(progress, 'PICTURE OF SET '//whole(m%set_number)//': INSTANT', k, &
+            instant_count(film) - 1)
          if (signal_received() > 0) return
       end do
+      if (m%assemblies) call make_set_analysis(m, a)
+      if (m%assemblies) call draw_assemblies(a, d)
    end subroutine draw_set
 
    !> Adds the circuits of `m` to `page`. As a picture it has an analysis of its own.
@@ -255,30 +251,6 @@ contains
       call find_all_circuits(a, found, draws=.true.)
       call add_to_page(page, m, a, found)
    end subroutine draw_circuits
-
-   !> Puts all assemblies of `m` at its first instant in the place of the frames of its drawing `d`.
-   subroutine draw_all_assemblies(m, d)
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(inout) :: d
-      type(set_analysis_t) :: a
-
-      call make_set_analysis(m, a)
-      call draw_assemblies(a, d)
-   end subroutine draw_all_assemblies
-
-   !> Replaces the centrodes of the drawing `d` of `m` by finer ones: the deck's instants may be far apart.
-   subroutine draw_centrodes(m, d, progress)
-      type(mechanism_t), intent(in) :: m
-      type(drawing_t), intent(inout) :: d
-      type(progress_t), intent(inout) :: progress
-      type(mechanism_t) :: film
-      type(drawing_t) :: fine
-      integer :: every
-
-      call film_of(m, film, every)
-      call draw_set(film, 2, every, fine, progress)
-      call move_alloc(fine%centrodes, d%centrodes)
-   end subroutine draw_centrodes
 
    !> Solves and writes set number `i`, `m`: of its variants those from `first` to `last`, as far as it has them.
    !> `varied`: how many sets have VARY cards up to this one.

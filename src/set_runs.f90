@@ -46,7 +46,7 @@ module set_runs
       type(table_t) :: table                        !< of the set at hand
       logical :: varies = .false.                   !< the deck has VARY cards
       type(variation_t), allocatable :: variations(:)   !< of the sets that have them
-      type(drawing_t), allocatable :: drawings(:), films(:)   !< (first:last)
+      type(drawing_t), allocatable :: drawings(:)   !< (first:last)
    end type writers_t
 
 contains

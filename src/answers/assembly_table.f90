@@ -58,8 +58,8 @@ contains
       end do
    end subroutine put_assemblies
 
-   !> Puts the assemblies of the set that `s` analyses, at its first instant, in the place of the frames of its drawing
-   !> `d`: the one chosen first, then the others of one mechanism after another.
+   !> Puts the assemblies of the set that `s` analyses, at its first instant, in the place of the deck's own frames in
+   !> its drawing `d`: the one chosen first, then the others of one mechanism after another.
    subroutine draw_assemblies(s, d)
       type(set_analysis_t), intent(in) :: s
       type(drawing_t), intent(inout) :: d
@@ -67,7 +67,7 @@ contains
       type(snapshot_t) :: one
       integer :: c, k
 
-      one = d%frame(1)
+      one = d%frame(d%own(1))
       do c = 1, size(s%assemblies)
          if (size(s%assemblies(c)%list) > 0) call place(max(1, s%assemblies(c)%chosen))
       end do
@@ -80,6 +80,8 @@ contains
             frames = [frames, one]
          end do
       end do
+      d%own = [(d%frames + k, k=1, size(frames))]
+      frames = [d%frame(:d%frames), frames]
       call move_alloc(frames, d%frame)
       d%frames = size(d%frame)
       d%assemblies = .true.

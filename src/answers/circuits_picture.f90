@@ -10,7 +10,7 @@ module circuits_picture
    use listing_layout, only: angle_unit
    use circuit_branches, only: circuits_t
    use circuit_chart, only: chart_t, axis_t, make_charts
-   use picture_parts, only: color_of
+   use shapes, only: color_of
    use picture_page, only: width, fitted
    use svg, only: attribute, svg_head, put_end, put_group, put_line, put_circle, put_words, put_window
    use text_output, only: output_t

@@ -1,31 +1,30 @@
-!> The animation of a run as SVG, without scripts: the links move through the frames of a drawing over the paths of
-!> points, with the time below, and a bar on which it passes.
+!> The animation of a run as SVG, without scripts: each link is a group that is moved and turned through the frames of a
+!> drawing (SMIL), over the paths of points, with the time below, and a bar on which it passes. The browser interpolates
+!> between two frames, place and angle evenly.
 module animation
    use kinds, only: wp
-   use planar, only: in_degrees, without_turns
-   use mechanism, only: mechanism_t, instant
+   use grouping, only: sorted_t, sorted
+   use planar, only: in_degrees, without_turns, point_of
+   use mechanism, only: mechanism_t
    use scales, only: is_length
-   use drives, only: law_t, drive_motion, new_law, pole_value
+   use drives, only: law_t, drive_motion, new_law
    use motion, only: mark_none
    use names, only: drive_name
    use numerals, only: full, whole
-   use drawing, only: drawing_t, max_positions
-   use canvas, only: canvas_t, make_canvas
+   use drawing, only: drawing_t, max_intervals, max_positions
+   use shapes, only: shapes_t, shapes_of, pole_name
+   use canvas, only: canvas_t, make_canvas, to_pixels, put_shape, put_path
    use picture_frames, only: closes
-   use picture_parts, only: put_flagged, put_guide, put_ground, put_block
-   use picture, only: put_curves
-   use picture_page, only: place_canvas, put_set_head, put_flags, put_scale, flag_lines, fitted, width, line_height
-   use picture_centrodes, only: put_centrodes
-   use moving_links, only: course_t, put_moving, shift, put_moving_links, put_moving_centres
-   use svg, only: svg_head, put_end, put_group, put_window, put_circle, put_line, put_words, translation
+   use picture_page, only: place_canvas, paths_of, put_flagged, put_ring, put_set_head, put_flags, put_scale, &
+      flag_lines, fitted, width, line_height
+   use svg, only: svg_head, put_end, put_group, put_window, put_circle, put_line, put_words, put_values, pixels, &
+      attribute, translation
    use text_output, only: output_t
    use listing, only: words_of_mark
    implicit none
    private
-   public :: film_of, put_animations
+   public :: put_animations
 
-   !> An animation has at most this many intervals between its frames.
-   integer, parameter, public :: max_intervals = 360
    !> The time from its first to its last frame, and of the rest at its end where the motion does not come back (s).
    real(wp), parameter :: motion_seconds = 10.0_wp, pause_seconds = 1.0_wp
    !> A link that turns by more than this (rad) from one frame to the next is not turned in between: the links would
@@ -36,51 +35,23 @@ module animation
    real(wp), parameter :: bar_ends(2) = [14.0_wp, real(width - 24, wp)], mark_height = 5.0_wp, dot_radius = 4.0_wp
    !> The values of so many drives stand beside the time.
    integer, parameter :: max_drives = 3
-   !> So near to a pole of a law, in parts of a step, no instant is computed between those of the deck.
-   real(wp), parameter :: near_pole = 1.0e-2_wp
    !> What is smaller than this part of the largest value of a drive is 0: six digits are shown.
    real(wp), parameter :: not_shown = 1.0e-9_wp
+   !> What is seen of a link where it has no position; it stays where it was.
+   real(wp), parameter :: pale = 0.2_wp
+   !> What of a group is animated.
+   character(*), parameter :: turn = 'animateTransform attributeName="transform" type="rotate"', &
+      shift = 'animateTransform attributeName="transform" type="translate"', opacity = 'animate attributeName="opacity"'
+
+   !> How the frames follow one another.
+   type :: course_t
+      integer, allocatable :: frame(:)       !< (keys) at equal steps of time
+      integer :: frames = 0                  !< without the pause at the end
+      real(wp) :: seconds = 0.0_wp           !< from the first to the last
+      logical :: smooth = .true.             !< there are positions between them
+   end type course_t
 
 contains
-
-   !> `m` at the instants of its animation: those of TIME and instants between them, or where there is no TIME between
-   !> the first and the last of AT; none at the pole of a law. `every`: each so many of them are of the deck; 0: none
-   !> but those of AT.
-   subroutine film_of(m, film, every)
-      type(mechanism_t), intent(in) :: m
-      type(mechanism_t), intent(out) :: film
-      integer, intent(out) :: every
-
-      film = m
-      every = 1
-      if (m%steps < 0) then
-         film%t0 = minval(m%at)
-         film%t1 = maxval(m%at)
-         film%steps = merge(max_intervals, 0, film%t1 > film%t0)
-         every = 0
-         if (meets_pole(film)) film%steps = film%steps - 1
-      else if (m%steps > 0) then
-         every = max(1, min(max_intervals, max_positions/size(m%links))/m%steps)
-         film%steps = every*m%steps
-         do while (every > 1 .and. meets_pole(film))
-            every = every - 1
-            film%steps = every*m%steps
-         end do
-      end if
-   end subroutine film_of
-
-   !> An instant of TIME of `m` is at the pole of a law, or so near that its value would mean nothing.
-   pure logical function meets_pole(m)
-      type(mechanism_t), intent(in) :: m
-      integer :: i, k
-
-      meets_pole = .false.
-      do i = 1, size(m%drives)
-         if (abs(pole_value(m%drives(i), m%t0)) <= 0.0_wp) cycle
-         meets_pole = any([(abs(instant(m, k))*m%steps <= near_pole*abs(m%t1 - m%t0), k=0, m%steps)])
-         return
-      end do
-   end function meets_pole
 
    !> Writes the animation of the sets that `films` have recorded, one below the other.
    subroutine put_animations(o, films)
@@ -92,54 +63,63 @@ contains
       top = 0
       do i = 1, size(films)
          call make_canvas(o, films(i), page(i))
-         page(i)%best = min(1, films(i)%frames)
-         page(i)%faint = [(k, k=1, films(i)%frames)]
+         if (films(i)%films > 0) page(i)%s = films(i)%frame(1)
+         page(i)%faint = [(k, k=1, films(i)%films)]
+         page(i)%paths = paths_of(films(i))
          call place_canvas(page(i), top)
          top = page(i)%bottom + bar_room
       end do
       call svg_head(o, width, max(1, top))
       do i = 1, size(films)
-         if (films(i)%frames > 0) call put_film(page(i))
+         if (films(i)%films > 0) call put_film(page(i))
       end do
       call put_end(o, 'svg')
    end subroutine put_animations
 
-   !> One set, with the bar of the time below.
+   !> Draws one set, with the bar of the time below.
    subroutine put_film(c)
       type(canvas_t), intent(inout) :: c
       type(course_t) :: course
+      type(shapes_t) :: list
+      logical, allocatable :: is_fixed(:)
       integer :: i
 
       course = course_of(c%d)
+      c%s = c%d%now
       call put_set_head(c, c%d%frame(1)%t)
-      call put_curves(c)
+      do i = 1, size(c%paths)
+         call put_path(c, c%paths(i))
+      end do
       do i = 1, size(c%d%flags)
          call put_flagged(c, c%d%flags(i)%last)
       end do
-      call put_ground(c)
-      do i = 1, size(c%d%guides)
-         if (c%m%links(c%d%guides(i)%carrier)%ground) call put_guide(c, c%d%guides(i))
-      end do
-      do i = 1, size(c%m%links)
-         if (c%m%links(i)%ground) call put_centrodes(c, i)
+
+      list = shapes_of(c%d, spread(.true., 1, size(c%m%links)), c%scale)
+      is_fixed = [(list%list(i)%link == 0, i=1, list%count)]
+      where (.not. is_fixed) is_fixed = c%m%links(max(1, list%list(:list%count)%link))%ground
+      do i = 1, list%count
+         if (is_fixed(i) .and. list%list(i)%is_below) call put_shape(c, list%list(i))
       end do
       ! A centrode in a link that moves may run through the pictures of other sets.
-      if (size(c%d%centrodes) > 0) then
+      if (size(c%d%poles) > 0) then
          call put_window(c%o, c%low, c%high - c%low)
          call put_group(c%o, translation(-c%low), '')
       end if
-      call put_group(c%o, 'class="film" data-frames="'//whole(c%d%frames)//'" data-keys="'//whole(size(course%frame)) &
-         //'" data-end="'//full(c%d%frame(c%d%frames)%t)//'"', '')
-      call put_moving_links(c, course)
-      call put_moving_centres(c, course)
+      call put_group(c%o, 'class="film" data-frames="'//whole(course%frames)//'" data-keys="' &
+         //whole(size(course%frame))//'" data-end="'//full(c%d%frame(c%d%films)%t)//'"', '')
+      call put_moving_links(c, course, list)
+      do i = 1, size(c%d%poles)
+         call put_moving_centre(c, course, i)
+      end do
       call put_end(c%o, 'g')
-      if (size(c%d%centrodes) > 0) then
+      if (size(c%d%poles) > 0) then
          call put_end(c%o, 'g')
          call put_end(c%o, 'svg')
       end if
-      do i = 1, size(c%d%guides)
-         if (c%m%links(c%d%guides(i)%block)%ground) call put_block(c, c%d%guides(i))
+      do i = 1, list%count
+         if (is_fixed(i) .and. .not. list%list(i)%is_below) call put_shape(c, list%list(i))
       end do
+
       call put_clock(c, course)
       call put_flags(c)
       call put_bar(c, course)
@@ -147,44 +127,136 @@ contains
       call put_end(c%o, 'g')
    end subroutine put_film
 
-   !> The motion begins anew after its end: at once where it has come back, otherwise after a pause. It is not shown
+   !> The motion begins again after its end: at once where it has come back, otherwise after a pause. It is not shown
    !> backwards: drives do not run so.
    function course_of(d) result(course)
       type(drawing_t), intent(in) :: d
       type(course_t) :: course
-      integer :: k, pause
+      integer, allocatable :: list(:)
+      integer :: k, stride, pause
 
+      stride = max(1, 1 + (d%films - 2)/max(1, min(max_intervals, max_positions/size(d%m%links) - 1)))
+      list = [(min(k, d%films), k=1, d%films + stride - 1, stride)]
+      course%frames = size(list)
       pause = 0
-      if (.not. closes(d)) pause = nint(real(d%frames - 1, wp)*pause_seconds/motion_seconds)
-      course%frame = [(min(k, d%frames), k=1, d%frames + pause)]
-      course%seconds = motion_seconds*real(max(1, d%frames + pause - 1), wp)/real(max(1, d%frames - 1), wp)
-      do k = 2, d%frames
-         associate (now => d%frame(k), before => d%frame(k - 1))
+      if (.not. closes(d, list)) pause = nint(real(course%frames - 1, wp)*pause_seconds/motion_seconds)
+      course%frame = [list, spread(d%films, 1, pause)]
+      course%seconds = motion_seconds*real(max(1, size(course%frame) - 1), wp)/real(max(1, course%frames - 1), wp)
+      do k = 2, course%frames
+         associate (now => d%frame(list(k)), before => d%frame(list(k - 1)))
             if (any(now%known .and. before%known .and. &
                abs(without_turns(now%place(3, :) - before%place(3, :))) > max_turn)) course%smooth = .false.
          end associate
       end do
    end function course_of
 
+   !> Draws the moving links, each with its shapes in its own axes, later ones over earlier ones.
+   subroutine put_moving_links(c, course, list)
+      type(canvas_t), intent(in) :: c
+      type(course_t), intent(in) :: course
+      type(shapes_t), intent(in) :: list
+      type(sorted_t) :: own
+      type(canvas_t) :: axes
+      integer :: order(size(c%m%links)), i, k
+
+      own = sorted(list%list(:list%count)%link, size(c%m%links))
+      order(c%d%rank) = [(i, i=1, size(order))]
+      call make_canvas(c%o, c%d, axes)
+      axes%scale = c%scale
+      axes%s%place = 0.0_wp
+      axes%s%known = .true.
+      axes%low = -real(width, wp)
+      axes%high = real(width, wp)
+      do i = 1, size(order)
+         associate (link => order(i))
+            if (c%m%links(link)%ground .or. size(c%d%outlines(link)%corner, 2) == 0) cycle
+            if (.not. any([(c%d%frame(course%frame(k))%known(link), k=1, course%frames)])) cycle
+            ! It turns about a corner of its own: its origin may be far away.
+            axes%shift = -c%scale*c%d%outlines(link)%corner(:, 1)*[1.0_wp, -1.0_wp]
+            call begin_link(c, course, link)
+            do k = own%first(link), own%first(link + 1) - 1
+               call put_shape(axes, list%list(own%member(k)))
+            end do
+            call put_end(c%o, 'g')
+            call put_end(c%o, 'g')
+         end associate
+      end do
+   end subroutine put_moving_links
+
+   !> Begins the two groups that move and turn with `link`, about its first corner.
+   subroutine begin_link(c, course, link)
+      type(canvas_t), intent(in) :: c
+      type(course_t), intent(in) :: course
+      integer, intent(in) :: link
+      real(wp) :: place(2, size(course%frame)), angle(1, size(course%frame)), position(3), turned
+      logical :: known(size(course%frame))
+      integer :: k, last
+
+      known = [(c%d%frame(course%frame(k))%known(link), k=1, size(known))]
+      last = course%frame(findloc(known, .true., dim=1))
+      turned = 0.0_wp
+      do k = 1, size(known)
+         if (known(k)) last = course%frame(k)
+         position = c%d%frame(last)%place(:, link)
+         place(:, k) = to_pixels(c, point_of(position, c%d%outlines(link)%corner(:, 1)))
+         turned = turned + without_turns(position(3) - turned)
+         angle(1, k) = turned
+      end do
+      angle = -in_degrees(angle)
+      call put_group(c%o, 'class="link" '//attribute('data-link', trim(c%m%links(link)%name))//' ' &
+         //translation(place(:, 1)), trim(c%m%links(link)%name))
+      call put_moving(c%o, course, shift, place, course%smooth)
+      call put_opacity(c%o, course, known, pale)
+      call put_group(c%o, 'transform="rotate('//pixels(angle(1, 1))//')"', '')
+      call put_moving(c%o, course, turn, angle, course%smooth)
+   end subroutine begin_link
+
+   !> Draws a ring that moves with the instant centre of pole number `i`, none where this is at infinity or leaves the
+   !> picture.
+   subroutine put_moving_centre(c, course, i)
+      type(canvas_t), intent(in) :: c
+      type(course_t), intent(in) :: course
+      integer, intent(in) :: i
+      real(wp) :: place(2, 0:size(course%frame))
+      logical :: is_there(size(course%frame))
+      character(:), allocatable :: name
+      integer :: k
+
+      place(:, 0) = c%low
+      do k = 1, size(course%frame)
+         associate (s => c%d%frame(course%frame(k)))
+            place(:, k) = to_pixels(c, s%centre(:, i))
+            is_there(k) = s%has_centre(i) .and. all(place(:, k) >= c%low .and. place(:, k) <= c%high)
+         end associate
+         if (.not. is_there(k)) place(:, k) = place(:, k - 1)
+      end do
+      if (.not. any(is_there)) return
+      name = pole_name(c%m, c%d%poles(i))
+      call put_group(c%o, attribute('data-pole', name)//' '//translation(place(:, 1)), name)
+      call put_moving(c%o, course, shift, place(:, 1:), course%smooth)
+      call put_opacity(c%o, course, is_there, 0.0_wp)
+      call put_ring(c, i, [0.0_wp, 0.0_wp])
+      call put_end(c%o, 'g')
+   end subroutine put_moving_centre
+
    !> The time and the values of drives, in red with its words where the instant is flagged: a column of lines behind a
    !> window of one line.
    subroutine put_clock(c, course)
       type(canvas_t), intent(in) :: c
       type(course_t), intent(in) :: course
-      real(wp) :: up(2, size(course%frame))
-      real(wp) :: value(min(max_drives, size(c%m%drives)), c%d%frames)
+      real(wp) :: up(2, size(course%frame)), value(min(max_drives, size(c%m%drives)), course%frames)
       character(:), allocatable :: words
       integer :: k, i, y
 
       y = c%bottom - 16 - line_height*flag_lines(c%d)
-      value = drive_values(c%d)
+      value = drive_values(c%m, c%d%frame(course%frame(:course%frames))%t)
       call put_window(c%o, real([14, y - line_height + 5], wp), real([width - 28, line_height], wp))
       call put_group(c%o, 'class="clock"', '')
       up(1, :) = 0.0_wp
-      up(2, :) = -real(line_height*(course%frame - 1), wp)
+      up(2, :) = [(-real(line_height*(min(k, course%frames) - 1), wp), k=1, size(course%frame))]
       call put_moving(c%o, course, shift, up, .false.)
-      do k = 1, c%d%frames
-         associate (s => c%d%frame(k))
+      do k = 1, course%frames
+         associate (s => c%d%frame(course%frame(k)))
             words = 'T = '//fitted(s%t)//' '//trim(c%m%time_unit)
             do i = 1, size(value, 1)
                words = words//', '//trim(drive_name(c%m, c%m%drives(i)))//' = '//fitted(value(i, k))
@@ -198,20 +270,22 @@ contains
       call put_end(c%o, 'svg')
    end subroutine put_clock
 
-   !> The values of the first drives at the frames, angles in the deck's unit. Rounding errors of a 0 are not shown.
-   function drive_values(d) result(value)
-      type(drawing_t), intent(in) :: d
-      real(wp) :: value(min(max_drives, size(d%m%drives)), d%frames), f(0:2)
+   !> The values of the first drives of `m` at the instants `t`, angles in the deck's unit. Rounding errors of a 0 are
+   !> not shown.
+   function drive_values(m, t) result(value)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: t(:)
+      real(wp) :: value(min(max_drives, size(m%drives)), size(t)), f(0:2)
       type(law_t) :: law
       integer :: i, k
 
       do i = 1, size(value, 1)
-         law = new_law(d%m%drives(i))
-         do k = 1, d%frames
-            f = drive_motion(law, d%frame(k)%t)
+         law = new_law(m%drives(i))
+         do k = 1, size(t)
+            f = drive_motion(law, t(k))
             value(i, k) = f(0)
          end do
-         if (d%m%degrees .and. .not. is_length(d%m%drives(i))) value(i, :) = in_degrees(value(i, :))
+         if (m%degrees .and. .not. is_length(m%drives(i))) value(i, :) = in_degrees(value(i, :))
          ! Beside a pole of its law a value may be beyond the range of reals.
          value(i, :) = max(-huge(1.0_wp), min(huge(1.0_wp), value(i, :)))
          where (abs(value(i, :)) < not_shown*maxval(abs(value(i, :)))) value(i, :) = 0.0_wp
@@ -254,4 +328,31 @@ contains
       end associate
       x = bar_ends(1) + part*(bar_ends(2) - bar_ends(1))
    end function along_bar
+
+   !> An animated attribute: `values` (:, keys) in turn, with what is between them if `smooth`.
+   subroutine put_moving(o, course, element, values, smooth)
+      type(output_t), intent(inout) :: o
+      type(course_t), intent(in) :: course
+      character(*), intent(in) :: element
+      real(wp), intent(in) :: values(:, :)
+      logical, intent(in) :: smooth
+      character(:), allocatable :: mode
+
+      if (size(values, 2) < 2) return
+      mode = 'linear'
+      if (.not. smooth) mode = 'discrete'
+      call put_values(o, element//' calcMode="'//mode//'" dur="'//fitted(course%seconds) &
+         //'s" repeatCount="indefinite"', values)
+   end subroutine put_moving
+
+   !> Shows a group by this opacity `elsewhere` than at the keys where it `is_there` (keys).
+   subroutine put_opacity(o, course, is_there, elsewhere)
+      type(output_t), intent(inout) :: o
+      type(course_t), intent(in) :: course
+      logical, intent(in) :: is_there(:)
+      real(wp), intent(in) :: elsewhere
+
+      if (.not. all(is_there)) call put_moving(o, course, opacity, &
+         reshape(merge(1.0_wp, elsewhere, is_there), [1, size(is_there)]), .false.)
+   end subroutine put_opacity
 end module animation

@@ -3,15 +3,14 @@
 module canvas
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use drawing, only: drawing_t, snapshot_t
-   use svg, only: put_words
+   use planar, only: direction, quarter_turn, rotated
+   use drawing, only: drawing_t, snapshot_t, point_place, point_velocity
+   use shapes, only: shape_t, color_of
+   use svg, only: put_words, put_circle, put_line, put_strokes, put_curve, put_group, put_end, attribute
    use text_output, only: output_t
    implicit none
    private
-   public :: canvas_t, make_canvas, to_pixels, add_line, add_box, put_name, cover_of, find_inside
-
-   !> Size of the letters of a name: mean width and height of capitals, in pixels.
-   real(wp), parameter, public :: letter_width = 8.7_wp, letter_height = 9.0_wp
+   public :: canvas_t, make_canvas, to_pixels, put_shape, put_path, add_line, add_box, put_name, cover_of
 
    !> What a set is drawn on. A place p of the drawing is at shift + scale (x, -y) in pixels.
    type :: canvas_t
@@ -19,8 +18,8 @@ module canvas
       type(drawing_t), pointer :: d => null()     !< what is recorded of the set
       type(mechanism_t), pointer :: m => null()   !< the set
       type(snapshot_t) :: s                  !< the position that is drawn in full
-      integer :: best = 0                    !< the frame that is drawn in full; 0 for none
-      integer, allocatable :: faint(:)       !< frames that are faint
+      integer, allocatable :: faint(:)       !< the numbers of frames that are faint
+      integer, allocatable :: paths(:)       !< the numbers of points whose paths are drawn
       integer :: top = 0, bottom = 0         !< pixels where it begins, and above which it ends
       real(wp) :: scale = 1.0_wp             !< pixels in a unit of length
       real(wp) :: shift(2) = 0.0_wp
@@ -30,21 +29,31 @@ module canvas
       real(wp), allocatable :: box(:, :)     !< (4, boxes or more) x, y of the upper left and the lower right corner
    end type canvas_t
 
+   !> Size of the letters of a name: mean width and height of capitals, in pixels.
+   real(wp), parameter :: letter_width = 8.7_wp, letter_height = 9.0_wp
    !> The distances of a name from its place, in pixels, and what a pixel of distance counts against a pixel of overlap.
    real(wp), parameter :: distances(*) = [9.0_wp, 14.0_wp, 21.0_wp, 30.0_wp, 42.0_wp]
    real(wp), parameter :: distance_weight = 0.25_wp
    !> What a name over a name counts, and one that leaves the picture, in pixels of overlap with a line.
    real(wp), parameter :: over_name = 60.0_wp, outside = 500.0_wp
-
    !> Two places whose covers differ by no more, in pixels, cover the same: rounding errors do not choose, the first is
    !> taken.
    real(wp), parameter, public :: tie = 1.0e-6_wp
    !> Lines that are closer than this, in pixels, are hard to tell apart.
    real(wp), parameter :: near = 4.0_wp
+   !> Distance and length of the strokes of a hatch, in pixels.
+   real(wp), parameter :: hatch_step = 7.0_wp, hatch_length = 6.0_wp
+   !> The control points of a cubic of a path are no farther from its ends than this part of the distance of its ends,
+   !> as in half a turn of a circle. Farther ones would draw loops that are not there.
+   real(wp), parameter :: max_control = 0.6_wp
+   !> A cubic may be so far from a place of its path, in pixels.
+   real(wp), parameter :: off_path = 0.05_wp
+   !> The weight of a path against that of a bar, for names.
+   real(wp), parameter :: path_weight = 0.4_wp
 
 contains
 
-   !> The canvas `c` for the drawing `d`, which has its last known position, to be written to `o`.
+   !> Makes the canvas `c` for the drawing `d`, at its last known position, to be written to `o`.
    subroutine make_canvas(o, d, c)
       type(output_t), intent(inout), target :: o
       type(drawing_t), intent(in), target :: d
@@ -54,6 +63,7 @@ contains
       c%d => d
       c%m => d%m
       c%s = d%now
+      allocate (c%faint(0), c%paths(0))
    end subroutine make_canvas
 
    !> The pixel (2) of the place `p` (2), which is counted from the drawing's origin.
@@ -64,6 +74,165 @@ contains
 
       q = c%shift + c%scale*[p(1), -p(2)]
    end function to_pixels
+
+   !> Draws `shape` at the position that the canvas shows, unless its link is not known there, and notes what names
+   !> should keep clear of.
+   subroutine put_shape(c, shape)
+      type(canvas_t), intent(inout) :: c
+      type(shape_t), intent(in) :: shape
+      real(wp) :: q(2, size(shape%p, 2)), position(3), e(2)
+      integer :: k, n
+
+      position = 0.0_wp
+      if (shape%link > 0) then
+         if (.not. c%s%known(shape%link)) return
+         position = c%s%place(:, shape%link)
+      end if
+      n = size(q, 2)
+      e = direction(position(3))
+      do k = 1, n
+         q(:, k) = to_pixels(c, position(:2) + rotated(shape%p(:, k), e)) &
+            + rotated(shape%add(:, k), e)*[1.0_wp, -1.0_wp]
+      end do
+
+      select case (shape%element)
+      case ('circle')
+         call put_circle(c%o, q(:, 1), shape%radius, shape%attributes)
+      case ('hatch')
+         call put_hatch(c%o, q(:, 1), q(:, 2), shape%attributes)
+         q(2, 2) = q(2, 2) + hatch_length
+      case ('cut')
+         call put_cut_line(c, q, shape)
+         return
+      case default
+         call put_line(c%o, shape%element, q, shape%attributes, shape%title)
+      end select
+      if (shape%weight < 0.0_wp) then
+         call add_box(c, minval(q, dim=2) - shape%radius, maxval(q, dim=2) + shape%radius)
+      else if (shape%weight > 0.0_wp) then
+         do k = 1, merge(n, n - 1, shape%element == 'polygon')
+            call add_line(c, q(:, k), q(:, 1 + modulo(k, n)), shape%weight)
+         end do
+      end if
+   end subroutine put_shape
+
+   !> Draws the hatch of the ground on the lower side of the line from `p` to `q` (2), in pixels.
+   subroutine put_hatch(o, p, q, attributes)
+      type(output_t), intent(inout) :: o
+      real(wp), intent(in) :: p(2), q(2)
+      character(*), intent(in) :: attributes
+      real(wp) :: e(2), length
+      integer :: k, n
+
+      length = norm2(q - p)
+      ! What is far out of the picture may have no length left.
+      if (length <= 0.0_wp) return
+      n = max(1, int(min(200.0_wp, length/hatch_step)))
+      e = (q - p)/length
+      call put_strokes(o, reshape([(p + real(k, wp)*(q - p)/real(n, wp), k=1, n)], [2, n]), &
+         hatch_length*(sign(1.0_wp, e(1))*quarter_turn(e) - e), attributes)
+   end subroutine put_hatch
+
+   !> Draws `shape`, the line through the pixels `p` (2, :), as far as it is in the picture.
+   subroutine put_cut_line(c, p, shape)
+      type(canvas_t), intent(inout) :: c
+      real(wp), intent(in) :: p(:, :)
+      type(shape_t), intent(in) :: shape
+      real(wp) :: line(2, size(p, 2) + 1), from, to
+      integer :: k, n
+
+      n = 0
+      do k = 1, size(p, 2) - 1
+         call find_inside(p(:, k), p(:, k + 1), c%low, c%high, from, to)
+         if (to > from) then
+            if (n == 0) line(:, 1) = p(:, k) + from*(p(:, k + 1) - p(:, k))
+            n = max(n, 1) + 1
+            line(:, n) = p(:, k) + to*(p(:, k + 1) - p(:, k))
+            call add_line(c, line(:, n - 1), line(:, n), shape%weight)
+         end if
+         if (n > 0 .and. (to < 1.0_wp .or. k == size(p, 2) - 1)) then
+            call put_line(c%o, 'polyline', line(:, :n), shape%attributes, shape%title)
+            n = 0
+         end if
+      end do
+   end subroutine put_cut_line
+
+   !> Draws the path of point number `i` through the frames, in pieces where its place is not known. Each piece is made
+   !> of cubics with the velocities at their ends, over as many frames as come near enough.
+   subroutine put_path(c, i)
+      type(canvas_t), intent(inout) :: c
+      integer, intent(in) :: i
+      character(:), allocatable :: name
+      real(wp) :: p(2, c%d%films), v(2, c%d%films), t(c%d%films)   ! pixels, and pixels in a unit of time
+      real(wp) :: q(2, 3*c%d%films)                                ! ends and control points of cubics
+      logical :: known(c%d%films + 1)
+      integer :: from, to, k, n
+
+      name = trim(c%m%points(i)%name)
+      known = [(c%d%frame(k)%known(c%m%points(i)%link), k=1, c%d%films), .false.]
+      do k = 1, c%d%films
+         t(k) = c%d%frame(k)%t
+         p(:, k) = to_pixels(c, point_place(c%m, c%d%frame(k), i))
+         v(:, k) = c%scale*point_velocity(c%m, c%d%frame(k), i)*[1.0_wp, -1.0_wp]
+      end do
+
+      call put_group(c%o, attribute('data-path', name), name)
+      n = 0
+      from = 1
+      do while (from <= c%d%films)
+         if (n == 0) q(:, 1) = p(:, from)
+         if (known(from) .and. known(from + 1)) then
+            to = from + 1
+            do while (known(to + 1))
+               if (.not. comes_near(from, to + 1)) exit
+               to = to + 1
+            end do
+            q(:, n + 1:n + 4) = cubic(from, to)
+            n = n + 3
+            do k = from + 1, to
+               call add_line(c, p(:, k - 1), p(:, k), path_weight)
+            end do
+            from = to
+         else
+            if (n > 0) call put_curve(c%o, q(:, :n + 1), &
+               'class="curve" style="stroke:'//color_of(c%m%points(i)%link)//'"')
+            n = 0
+            from = from + 1
+         end if
+      end do
+      call put_end(c%o, 'g')
+
+   contains
+
+      !> The ends and control points (2, 4) of the cubic from frame `k` to frame `l`.
+      pure function cubic(k, l) result(b)
+         integer, intent(in) :: k, l
+         real(wp) :: b(2, 4), arms(2, 2), chord
+         integer :: j
+
+         arms = (t(l) - t(k))/3.0_wp*v(:, [k, l])
+         chord = norm2(p(:, l) - p(:, k))
+         do j = 1, 2
+            arms(:, j) = min(1.0_wp, max_control*chord/max(tiny(1.0_wp), norm2(arms(:, j))))*arms(:, j)
+         end do
+         b = reshape([p(:, k), p(:, k) + arms(:, 1), p(:, l) - arms(:, 2), p(:, l)], [2, 4])
+      end function cubic
+
+      !> Whether the cubic from frame `k` to frame `l` is near the places between them, at their times.
+      pure logical function comes_near(k, l)
+         integer, intent(in) :: k, l
+         real(wp) :: b(2, 4), u
+         integer :: j
+
+         b = cubic(k, l)
+         comes_near = .true.
+         do j = k + 1, l - 1
+            u = (t(j) - t(k))/(t(l) - t(k))
+            comes_near = comes_near .and. norm2((1.0_wp - u)**3*b(:, 1) + 3.0_wp*u*(1.0_wp - u)**2*b(:, 2) &
+               + 3.0_wp*u**2*(1.0_wp - u)*b(:, 3) + u**3*b(:, 4) - p(:, j)) <= off_path
+         end do
+      end function comes_near
+   end subroutine put_path
 
    !> Notes a line from `p` to `q` (2), in pixels, that names should not cross; a lighter one has less `weight`.
    pure subroutine add_line(c, p, q, weight)

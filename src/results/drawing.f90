@@ -1,55 +1,49 @@
-!> What a picture of a set shows, taken from its motion instant by instant: positions of all links, the curves of the
-!> points that PRINT asks for, the centrodes that POLE asks for, how far each slide goes, and the flagged instants.
-!> Places are counted from the set's first ground link, in the deck's unit of length.
+!> What is drawn of a set, taken from its motion instant by instant: frames, from which picture and animation take
+!> positions, paths of points and centrodes; how far each slide goes; and the flagged instants. Places are counted from
+!> the set's first ground link, in the deck's unit of length.
 module drawing
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_point, request_pole, pair_prismatic, &
-      instant_count, plane_origin, is_listed_alone
-   use planar, only: direction, quarter_turn, point_of
+   use grouping, only: sorted_t, sorted
+   use mechanism, only: mechanism_t, request_point, request_pole, pair_prismatic, instant_count, instant, &
+      plane_origin, is_listed_alone
+   use planar, only: direction, quarter_turn, rotated, point_of
+   use drives, only: pole_value
    use motion, only: known_of, mark_none, singular_unclear
-   use points, only: row_t, has_number, point_motion, is_fixed
+   use points, only: row_t, has_number, is_fixed
    use set_motion, only: set_motion_t, is_flagged, find_row_in_set
    use outline, only: outline_t, outlines_of
    implicit none
    private
-   public :: drawing_t, snapshot_t, curve_t, centrode_t, guide_t, flag_t, new_drawing, record_instant, point_place
+   public :: drawing_t, snapshot_t, guide_t, film_of, new_drawing, record_instant
+   public :: point_place, point_velocity, joint_point
 
-   !> A curve has at most this many places, a picture at most this many curves and flagged positions. Reason: a picture
-   !> of 800 pixels shows no more, and memory does not grow with the run.
-   integer, parameter :: max_places = 1000, max_curves = 60, max_flags = 3
-   !> The frames of a drawing hold at most this many positions of links, but there are two frames at least. Reason: an
-   !> animation takes about 25 bytes for each.
+   !> Between the instants of a deck others are computed, so that the whole has at most this many intervals. Reason: at
+   !> ten degrees a step a path would have corners, and an animation leaps.
+   integer, parameter, public :: max_intervals = 360
+   !> There are at most this many frames, which hold at most this many positions of links, but two at least. Reason: a
+   !> picture of 800 pixels shows no more, and memory does not grow with the run.
+   integer, parameter :: max_frames = 1001, max_held = 200000
+   !> An animation shows at most this many positions of links. Reason: it takes about 25 bytes for each.
    integer, parameter, public :: max_positions = 45000
+   !> Frames from which a picture chooses, paths and flagged positions that it shows, and instants of flags, at most.
+   integer, parameter, public :: picture_candidates = 25
+   integer, parameter :: max_curves = 60, max_flags = 3, max_flagged = 1000
    !> Places from here on are not drawn: differences of two must not overflow.
    real(wp), parameter :: max_place = 1.0e-3_wp*huge(1.0_wp)
+   !> So near to a pole of a law, in parts of a step, no instant is computed between those of the deck.
+   real(wp), parameter :: near_pole = 1.0e-2_wp
 
    !> The position of all links at one instant, and why it is flagged.
    type :: snapshot_t
       real(wp) :: t = 0.0_wp
       real(wp), allocatable :: place(:, :)   !< (3, links) x, y, phi
+      real(wp), allocatable :: velocity(:, :)   !< (3, links) their derivatives; 0 where they are not known
       logical, allocatable :: known(:)       !< (links)
-      real(wp), allocatable :: centre(:, :)  !< (2, centrodes) the instant centres
-      logical, allocatable :: has_centre(:)  !< (centrodes) they are not at infinity
+      real(wp), allocatable :: centre(:, :)  !< (2, poles) the instant centres
+      logical, allocatable :: has_centre(:)  !< (poles) they are not at infinity
       integer :: mark = mark_none            !< of the first part that is flagged
       integer :: singularity = singular_unclear   !< what the position is, of mark_singular
    end type snapshot_t
-
-   !> The path of a point.
-   type :: curve_t
-      integer :: request = 0                 !< its number in the set
-      integer :: point = 0
-      real(wp), allocatable :: t(:)          !< (places) the instants of TIME, or some of them
-      real(wp), allocatable :: place(:, :), velocity(:, :)   !< (2, places)
-      integer, allocatable :: known(:)       !< (places) as in `motion_t`
-   end type curve_t
-
-   !> The centrodes of two links: where their instant centre is in the axes of either.
-   type :: centrode_t
-      integer :: request = 0                 !< its number in the set
-      integer :: link(2) = 0                 !< link I and link J
-      real(wp), allocatable :: place(:, :, :)   !< (2, places, 2) in the axes of link I, of link J
-      integer, allocatable :: side(:)        !< (places) the sense of the relative turn, 1 or -1; 0: no centre
-   end type centrode_t
 
    !> The guide of a prismatic pair: a line of one link, along which a point of the other, its block, slides.
    type :: guide_t
@@ -73,115 +67,140 @@ module drawing
       type(snapshot_t) :: last               !< `known`: of the links concerned
    end type flag_t
 
-   !> What is recorded of the set `m`.
+   !> What is recorded of the film `m` of a set.
    type :: drawing_t
       type(mechanism_t) :: m
       real(wp) :: origin(2) = 0.0_wp         !< of the places, in the deck's coordinates
-      integer :: stride = 1                  !< every so many instants of TIME are in a curve
+      type(outline_t), allocatable :: outlines(:)   !< (links)
+      integer, allocatable :: rank(:)        !< (links) when each of them is drawn, 1 first
+      integer, allocatable :: curves(:)      !< the points whose paths PRINT asks for
+      integer, allocatable :: poles(:)       !< the requests of poles
+      type(guide_t), allocatable :: guides(:)
       integer :: every = 1                   !< each so many instants of TIME are the deck's; 0: none
+      integer :: stride = 1, stride_at = 1   !< every so many instants of TIME, or of AT, and the last are frames
+      type(snapshot_t), allocatable :: frame(:)
+      integer :: frames = 0, films = 0       !< recorded so far; those of TIME, which come first
+      integer, allocatable :: own(:)         !< the numbers of frames that the picture may show in full
+      logical :: assemblies = .false.        !< these are assemblies at one instant, the one chosen first
+      type(snapshot_t) :: now                !< the last known position of each link
       integer :: flagged = 0                 !< instants
       real(wp), allocatable :: flagged_at(:) !< the first of them
-      type(snapshot_t) :: now                !< the last known position of each link
-      type(outline_t), allocatable :: outlines(:)   !< (links)
-      integer :: frames = 0                  !< recorded so far
-      integer :: frame_stride = 1            !< every so many instants, and the last one, are frames
-      type(snapshot_t), allocatable :: frame(:)
-      logical :: assemblies = .false.        !< the frames are assemblies at one instant, the one chosen first
-      type(curve_t), allocatable :: curves(:)
-      type(centrode_t), allocatable :: centrodes(:)
-      type(guide_t), allocatable :: guides(:)
       type(flag_t), allocatable :: flags(:)
       integer, allocatable :: mark(:)        !< (parts) of the instant before
    end type drawing_t
 
 contains
 
-   !> Nothing recorded yet of the set `m`; at most `max_frames` frames will be. `every`: each so many instants of TIME
-   !> are the deck's, 0: none; where others are flagged that is not noted.
-   function new_drawing(m, max_frames, every) result(d)
+   !> Makes the `film` of `m`: `m` at instants that are dense enough to be drawn, those of TIME and others between them,
+   !> or without TIME others between the first and the last of AT; none at the pole of a law. `every`: each so many
+   !> instants of the film's TIME are the deck's; 0: none.
+   subroutine film_of(m, film, every)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: max_frames, every
+      type(mechanism_t), intent(out) :: film
+      integer, intent(out) :: every
+
+      film = m
+      every = 1
+      if (m%steps < 0) then
+         film%t0 = minval(m%at)
+         film%t1 = maxval(m%at)
+         film%steps = merge(max_intervals, 0, film%t1 > film%t0)
+         every = 0
+         if (meets_pole(film)) film%steps = film%steps - 1
+      else if (m%steps > 0) then
+         every = max(1, min(max_intervals, max_positions/size(m%links))/m%steps)
+         film%steps = every*m%steps
+         do while (every > 1 .and. meets_pole(film))
+            every = every - 1
+            film%steps = every*m%steps
+         end do
+      end if
+   end subroutine film_of
+
+   !> Whether an instant of TIME of `m` is at the pole of a law, or so near that its value would mean nothing.
+   pure logical function meets_pole(m)
+      type(mechanism_t), intent(in) :: m
+      integer :: i, k
+
+      meets_pole = .false.
+      do i = 1, size(m%drives)
+         if (abs(pole_value(m%drives(i), m%t0)) <= 0.0_wp) cycle
+         meets_pole = any([(abs(instant(m, k))*m%steps <= near_pole*abs(m%t1 - m%t0), k=0, m%steps)])
+         return
+      end do
+   end function meets_pole
+
+   !> Returns a drawing of the film `m` without a frame. `every`: as in `film_of`.
+   function new_drawing(m, every) result(d)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: every
       type(drawing_t) :: d
-      type(curve_t) :: curve
-      type(centrode_t) :: centrode
-      integer, allocatable :: slides(:)
-      integer :: i, n, places
+      integer :: i, most
 
       d%m = m
       d%every = every
       d%origin = plane_origin(m)
-      d%now = snapshot_of_ground(m, d%origin)
       d%outlines = outlines_of(m)
-      allocate (d%flagged_at(0), d%flags(0), d%mark(0), d%curves(0), d%centrodes(0))
-      n = max(2, min(max_frames, max_positions/size(m%links)))
-      d%frame_stride = max(1, 1 + (frame_instants(m) - 2)/(n - 1))
-      allocate (d%frame(1 + max(0, frame_instants(m) + d%frame_stride - 2)/d%frame_stride))
-      d%stride = 1 + max(0, m%steps)/max_places
-      places = place_number(d, m%steps)
+      allocate (d%own(0), d%flagged_at(0), d%flags(0), d%mark(0), d%curves(0))
       do i = 1, size(m%requests)
          if (m%requests(i)%kind /= request_point .or. is_listed_alone(m%requests(i)) .or. is_fixed(m, m%requests(i))) &
             cycle
-         if (any(d%curves%point == m%requests(i)%subject) .or. size(d%curves) == max_curves) cycle
-         ! A function's result within a constructed array would not be freed by gfortran.
-         curve = new_curve(i, m%requests(i)%subject, places)
-         d%curves = [d%curves, curve]
+         if (all(d%curves /= m%requests(i)%subject) .and. size(d%curves) < max_curves) &
+            d%curves = [d%curves, m%requests(i)%subject]
       end do
-      do i = 1, size(m%requests)
-         if (m%requests(i)%kind /= request_pole) cycle
-         centrode = new_centrode(m, i, places)
-         d%centrodes = [d%centrodes, centrode]
+      d%poles = pack([(i, i=1, size(m%requests))], m%requests%kind == request_pole)
+      allocate (d%guides(count(m%pairs%kind == pair_prismatic)))
+      d%guides%pair = pack([(i, i=1, size(m%pairs))], m%pairs%kind == pair_prismatic)
+      do i = 1, size(d%guides)
+         d%guides(i) = guide_of(m, d%outlines, d%guides(i)%pair)
       end do
-      slides = pack([(i, i=1, size(m%pairs))], m%pairs%kind == pair_prismatic)
-      d%guides = [(guide_of(m, d%outlines, slides(i)), i=1, size(slides))]
+      d%rank = ranks_of(d%outlines, d%guides)
+      d%now = snapshot_of_ground(d)
+
+      most = max(2, min(max_frames, max_held/size(m%links)))
+      d%stride = max(1, 1 + (m%steps - 1)/(most - 1))
+      d%stride_at = max(1, 1 + (instant_count(m) - m%steps - 3)/(picture_candidates - 1))
+      allocate (d%frame(count([(is_frame(d, i), i=0, instant_count(m) - 1)])))
    end function new_drawing
 
-   !> The number in a curve of the place at instant `k` (0, 1, ...); 0 for none: every so many of TIME and its last one
-   !> have places.
-   pure integer function place_number(d, k)
+   !> Whether instant number `k` (0, 1, ...) is a frame: of TIME, or of AT if the deck has no TIME.
+   pure logical function is_frame(d, k)
       type(drawing_t), intent(in) :: d
       integer, intent(in) :: k
 
-      place_number = 0
-      if (k == d%m%steps .or. (k < d%m%steps .and. mod(k, d%stride) == 0)) &
-         place_number = 1 + (k + d%stride - 1)/d%stride
-   end function place_number
+      is_frame = mod(k, d%stride) == 0 .or. k == d%m%steps
+      if (k > d%m%steps) is_frame = d%every == 0 .and. (mod(k - d%m%steps - 1, d%stride_at) == 0 &
+         .or. k == instant_count(d%m) - 1)
+   end function is_frame
 
-   !> A curve with room for `places`, none known.
-   pure function new_curve(request, point, places) result(c)
-      integer, intent(in) :: request, point, places
-      type(curve_t) :: c
+   !> When each link is drawn (links): first polygons, then bars and rods, then a single point, such as a block.
+   pure function ranks_of(outlines, guides) result(rank)
+      type(outline_t), intent(in) :: outlines(:)
+      type(guide_t), intent(in) :: guides(:)
+      integer :: rank(size(outlines))
+      type(sorted_t) :: by_corners
+      integer :: corners(size(outlines)), i
 
-      c%request = request
-      c%point = point
-      allocate (c%t(places), c%place(2, places), c%velocity(2, places), source=0.0_wp)
-      allocate (c%known(places), source=-1)
-   end function new_curve
-
-   !> The centrodes that request number `i` of `m` asks for, with room for `places`, none known.
-   pure function new_centrode(m, i, places) result(c)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i, places
-      type(centrode_t) :: c
-
-      c%request = i
-      c%link = [m%requests(i)%second, m%requests(i)%subject]
-      allocate (c%place(2, places, 2), source=0.0_wp)
-      allocate (c%side(places), source=0)
-   end function new_centrode
+      corners = [(min(3, size(outlines(i)%corner, 2)), i=1, size(corners))]
+      do i = 1, size(guides)
+         corners(guides(i)%carrier) = max(2, corners(guides(i)%carrier))
+      end do
+      by_corners = sorted(4 - corners, 4)
+      rank(by_corners%member) = [(i, i=1, size(rank))]
+   end function ranks_of
 
    !> The ground links where the deck has them; the others are not known.
-   pure function snapshot_of_ground(m, origin) result(s)
-      type(mechanism_t), intent(in) :: m
-      real(wp), intent(in) :: origin(2)
+   pure function snapshot_of_ground(d) result(s)
+      type(drawing_t), intent(in) :: d
       type(snapshot_t) :: s
       integer :: i
 
-      allocate (s%place(3, size(m%links)), source=0.0_wp)
-      s%known = m%links%ground
-      allocate (s%centre(2, count(m%requests%kind == request_pole)), source=0.0_wp)
-      allocate (s%has_centre(size(s%centre, 2)), source=.false.)
-      do i = 1, size(m%links)
-         if (s%known(i)) s%place(:, i) = m%links(i)%position - [origin, 0.0_wp]
+      allocate (s%place(3, size(d%m%links)), s%velocity(3, size(d%m%links)), source=0.0_wp)
+      allocate (s%centre(2, size(d%poles)), source=0.0_wp)
+      allocate (s%has_centre(size(d%poles)), source=.false.)
+      s%known = d%m%links%ground
+      do i = 1, size(d%m%links)
+         if (s%known(i)) s%place(:, i) = d%m%links(i)%position - [d%origin, 0.0_wp]
       end do
    end function snapshot_of_ground
 
@@ -216,144 +235,109 @@ contains
       end associate
    end function guide_of
 
-   !> Takes what the picture needs of instant number `k` (0, 1, ...) of the motion `s`.
+   !> Takes what is drawn of instant number `k` (0, 1, ...) of the motion `s`.
    subroutine record_instant(d, s, k)
       type(drawing_t), intent(inout) :: d
       type(set_motion_t), intent(in) :: s
       integer, intent(in) :: k
       type(snapshot_t) :: before, now
-      integer :: c, i, n
+      logical :: is_own
+      real(wp) :: along
+      integer :: i
 
+      is_own = k > d%m%steps
+      if (.not. is_own .and. d%every > 0) is_own = mod(k, d%every) == 0
+      ! The instants of a deck without TIME are a motion of their own.
+      if (d%every == 0 .and. k == d%m%steps + 1) d%now = snapshot_of_ground(d)
       before = d%now
-      now = snapshot_of_ground(d%m, d%origin)
+      now = snapshot_of(d, s, is_own)
+      d%now%t = now%t
+      d%now%centre = now%centre
+      d%now%has_centre = now%has_centre
+      do i = 1, size(now%known)
+         if (now%known(i)) d%now%place(:, i) = now%place(:, i)
+      end do
+      d%now%known = d%now%known .or. now%known
+
+      do i = 1, size(d%guides)
+         associate (g => d%guides(i))
+            if (.not. (now%known(g%carrier) .and. now%known(g%block))) cycle
+            along = dot_product(point_place(d%m, now, g%point) - point_place(d%m, now, g%pivot), &
+               direction(now%place(3, g%carrier) + g%angle))
+            g%low = min(g%low, along)
+            g%high = max(g%high, along)
+         end associate
+      end do
+
+      if (is_own) call record_flags(d, s, before, now)
+      if (.not. is_frame(d, k)) return
+      d%frames = d%frames + 1
+      d%frame(d%frames) = now
+      if (k <= d%m%steps) d%films = d%frames
+      if (is_own) d%own = [d%own, d%frames]
+   end subroutine record_instant
+
+   !> The position of all links in the motion `s`, with the marks of an instant that `is_own` of the deck.
+   function snapshot_of(d, s, is_own) result(now)
+      type(drawing_t), intent(in) :: d
+      type(set_motion_t), intent(in) :: s
+      logical, intent(in) :: is_own
+      type(snapshot_t) :: now
+      type(row_t) :: row
+      integer :: c, i
+
+      now = snapshot_of_ground(d)
       now%t = s%motions(1)%t
       do c = size(s%own), 1, -1
-         if (s%motions(c)%mark /= mark_none .and. is_own()) then
-            now%mark = s%motions(c)%mark
-            now%singularity = s%motions(c)%singularity
-         end if
          associate (links => s%parts%list(c)%links, q => s%motions(c))
+            if (q%mark /= mark_none .and. is_own) then
+               now%mark = q%mark
+               now%singularity = q%singularity
+            end if
             do i = 1, size(links)
                if (d%m%links(links(i))%ground .or. known_of(q, i) < 0) cycle
                now%place(:, links(i)) = q%position(:, i) + [q%origin - d%origin, 0.0_wp]
                now%known(links(i)) = all(abs(now%place(:, links(i))) < max_place)
-               if (.not. now%known(links(i))) cycle
-               d%now%place(:, links(i)) = now%place(:, links(i))
-               d%now%known(links(i)) = .true.
+               if (known_of(q, i) > 0) now%velocity(:, links(i)) = q%velocity(:, i)
             end do
          end associate
       end do
-      d%now%t = now%t
-      n = place_number(d, k)
-      call record_centres()
-      call record_slides(d%guides, d%m)
-      call record_curves()
-      if (is_own()) call record_flags()
-      if (k >= frame_instants(d%m) .or. (mod(k, d%frame_stride) /= 0 .and. k < frame_instants(d%m) - 1)) return
-      d%frames = d%frames + 1
-      d%frame(d%frames) = now
+      do i = 1, size(d%poles)
+         call find_row_in_set(d%m, s, d%poles(i), row)
+         now%has_centre(i) = has_number(row, 1, 0) .and. all(abs(row%value(:2, :)) < max_place)
+         if (now%has_centre(i)) now%centre(:, i) = row%value(:2, 0) - d%origin
+      end do
+   end function snapshot_of
 
-   contains
+   !> Notes the first of the instants at which a part of the motion `s` is flagged for one reason. `before`, `now`: the
+   !> last known positions before that instant, and the position there.
+   subroutine record_flags(d, s, before, now)
+      type(drawing_t), intent(inout) :: d
+      type(set_motion_t), intent(in) :: s
+      type(snapshot_t), intent(in) :: before, now
+      type(flag_t) :: flag
+      integer :: c
 
-      !> Whether instant number `k` (0, 1, ...) is one of the deck's.
-      pure logical function is_own()
-
-         is_own = k > d%m%steps
-         if (.not. is_own .and. d%every > 0) is_own = mod(k, d%every) == 0
-      end function is_own
-
-      !> Widens the ranges of the slides.
-      pure subroutine record_slides(guides, m)
-         type(guide_t), intent(inout) :: guides(:)
-         type(mechanism_t), intent(in) :: m
-         real(wp) :: along
-         integer :: i
-
-         do i = 1, size(guides)
-            associate (g => guides(i))
-               if (.not. (now%known(g%carrier) .and. now%known(g%block))) cycle
-               along = dot_product(point_place(m, now, g%point) - point_place(m, now, g%pivot), &
-                  direction(now%place(3, g%carrier) + g%angle))
-               g%low = min(g%low, along)
-               g%high = max(g%high, along)
-            end associate
-         end do
-      end subroutine record_slides
-
-      !> The places of the curves, if this instant is one of theirs.
-      subroutine record_curves()
-         real(wp) :: p(2, 0:2)
-         integer :: i, c, local
-
-         if (n == 0) return
-         do i = 1, size(d%curves)
-            associate (curve => d%curves(i))
-               c = s%parts%part(curve%request)
-               if (c == 0) cycle
-               local = s%own(c)%requests(s%parts%number(curve%request))%subject
-               curve%t(n) = s%motions(c)%t
-               curve%known(n) = known_of(s%motions(c), s%own(c)%points(local)%link)
-               if (curve%known(n) < 0) cycle
-               p = point_motion(s%own(c), s%motions(c), local)
-               curve%place(:, n) = p(:, 0) + (s%motions(c)%origin - d%origin)
-               curve%velocity(:, n) = p(:, 1)
-               if (any(abs(curve%place(:, n)) > max_place)) curve%known(n) = -1
-            end associate
-         end do
-      end subroutine record_curves
-
-      !> Puts the instant centres into `now`, and into their centrodes if this instant is one of theirs.
-      subroutine record_centres()
-         type(row_t) :: row
-         integer :: i
-
-         do i = 1, size(d%centrodes)
-            call find_row_in_set(d%m, s, d%centrodes(i)%request, row)
-            now%has_centre(i) = has_number(row, 1, 0) .and. all(abs(row%value(:2, :)) < max_place)
-            if (.not. now%has_centre(i)) cycle
-            now%centre(:, i) = row%value(:2, 0) - d%origin
-            if (n == 0) cycle
-            d%centrodes(i)%place(:, n, :) = row%value(:2, 1:2)
-            d%centrodes(i)%side(n) = merge(1, -1, row%weight > 0.0_wp)
-         end do
-         d%now%centre = now%centre
-         d%now%has_centre = now%has_centre
-      end subroutine record_centres
-
-      !> Notes the first of the instants that a part is flagged for one reason. `before`: the last known positions.
-      subroutine record_flags()
-         type(flag_t) :: flag
-         integer :: c
-
-         if (size(d%mark) == 0) d%mark = spread(mark_none, 1, size(s%motions))
-         if (is_flagged(s)) d%flagged = d%flagged + 1
-         if (is_flagged(s) .and. size(d%flagged_at) < max_places) d%flagged_at = [d%flagged_at, now%t]
-         do c = 1, size(s%motions)
-            if (s%motions(c)%mark /= d%mark(c) .and. s%motions(c)%mark /= mark_none &
-               .and. size(d%flags) < max_flags) then
-               associate (links => s%parts%list(c)%links)
-                  flag%t = now%t
-                  flag%mark = s%motions(c)%mark
-                  flag%singularity = s%motions(c)%singularity
-                  flag%earlier = .not. all(now%known(links))
-                  flag%last = now
-                  if (flag%earlier) flag%last = before
-                  flag%last%known = .false.
-                  flag%last%known(links) = merge(before%known(links), now%known(links), flag%earlier)
-                  d%flags = [d%flags, flag]
-               end associate
+      if (size(d%mark) == 0) d%mark = spread(mark_none, 1, size(s%motions))
+      if (is_flagged(s)) d%flagged = d%flagged + 1
+      if (is_flagged(s) .and. size(d%flagged_at) < max_flagged) d%flagged_at = [d%flagged_at, now%t]
+      do c = 1, size(s%motions)
+         associate (links => s%parts%list(c)%links, mark => s%motions(c)%mark)
+            if (mark /= d%mark(c) .and. mark /= mark_none .and. size(d%flags) < max_flags) then
+               flag%t = now%t
+               flag%mark = mark
+               flag%singularity = s%motions(c)%singularity
+               flag%earlier = .not. all(now%known(links))
+               flag%last = now
+               if (flag%earlier) flag%last = before
+               flag%last%known = .false.
+               flag%last%known(links) = merge(before%known(links), now%known(links), flag%earlier)
+               d%flags = [d%flags, flag]
             end if
-            d%mark(c) = s%motions(c)%mark
-         end do
-      end subroutine record_flags
-   end subroutine record_instant
-
-   !> The number of instants from which frames are taken: those of TIME, or where there is none those of AT.
-   pure integer function frame_instants(m)
-      type(mechanism_t), intent(in) :: m
-
-      frame_instants = merge(m%steps + 1, instant_count(m), m%steps >= 0)
-   end function frame_instants
+            d%mark(c) = mark
+         end associate
+      end do
+   end subroutine record_flags
 
    !> Place (2) of point number `i` at the position `s`.
    pure function point_place(m, s, i) result(p)
@@ -364,4 +348,32 @@ contains
 
       p = point_of(s%place(:, m%points(i)%link), m%points(i)%offset)
    end function point_place
+
+   !> Velocity (2) of point number `i` at the position `s`; 0 where it is not known.
+   pure function point_velocity(m, s, i) result(v)
+      type(mechanism_t), intent(in) :: m
+      type(snapshot_t), intent(in) :: s
+      integer, intent(in) :: i
+      real(wp) :: v(2)
+
+      associate (link => m%points(i)%link)
+         v = s%velocity(:2, link) &
+            + s%velocity(3, link)*quarter_turn(rotated(m%points(i)%offset, direction(s%place(3, link))))
+      end associate
+   end function point_velocity
+
+   !> The point at which pair number `i` is drawn: that of the link that is drawn later, of those `known` (links); of
+   !> the ground only where no other is known; 0 for none.
+   pure integer function joint_point(d, known, i) result(point)
+      type(drawing_t), intent(in) :: d
+      logical, intent(in) :: known(:)
+      integer, intent(in) :: i
+      integer :: ends(2), links(2), rank(2)
+
+      ends = [d%m%pairs(i)%point_i, d%m%pairs(i)%point_j]
+      links = d%m%points(ends)%link
+      rank = merge(merge(0, d%rank(links), d%m%links(links)%ground), -1, known(links))
+      point = 0
+      if (any(rank >= 0)) point = ends(maxloc(rank, dim=1))
+   end function joint_point
 end module drawing

@@ -6,7 +6,7 @@ module outline
    use planar, only: cross, point_of
    implicit none
    private
-   public :: outline_t, outlines_of, hull, is_same_place, corners_at, distance_to
+   public :: outline_t, outlines_of, hull, corners_at, distance_to
 
    !> Points of a link closer than this part of the link's extent are one.
    real(wp), parameter :: same_place = 1.0e-6_wp

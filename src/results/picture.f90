@@ -4,20 +4,19 @@ module picture
    use kinds, only: wp, label_length
    use mechanism, only: pair_revolute, request_point, is_listed_alone
    use drawing, only: drawing_t, point_place
-   use outline, only: is_same_place
-   use picture_frames, only: clearest, faint_frames
-   use canvas, only: canvas_t, make_canvas, to_pixels, put_name
-   use picture_parts, only: put_body, put_outlines, put_flagged, put_guide, put_ground, put_block, put_joint, put_dot, &
-      put_path, dots_of, color_of, corner_pixels, joint_point
+   use outline, only: corners_at
+   use picture_frames, only: candidates, clearest, faint_frames
+   use shapes, only: shapes_t, shapes_of, color_of, link_color, pole_name
+   use canvas, only: canvas_t, make_canvas, to_pixels, put_shape, put_path, add_box, put_name
    use picture_drives, only: put_drives
-   use picture_centrodes, only: put_centrodes, put_centres
-   use picture_page, only: place_canvas, put_set_head, put_flags, put_scale, flag_lines, fitted, width, line_height
+   use picture_page, only: place_canvas, paths_of, put_outlines, put_flagged, put_ring, put_set_head, put_flags, &
+      put_scale, flag_lines, fitted, width, line_height, centre_radius
    use svg, only: svg_head, put_end, put_group, put_words
    use text_output, only: output_t
    use phrases
    implicit none
    private
-   public :: put_pictures, put_curves
+   public :: put_pictures, put_centre
 
    !> A picture of more links or points than this has no names: they would cover it.
    integer, parameter :: max_names = 120
@@ -35,19 +34,22 @@ contains
       type(output_t), intent(inout), target :: o
       type(drawing_t), intent(in), target :: drawings(:)
       type(canvas_t) :: page(size(drawings))
-      integer :: top, i, k
+      integer, allocatable :: list(:)
+      integer :: top, best, i
 
       top = 0
       do i = 1, size(drawings)
          associate (c => page(i), d => drawings(i))
             call make_canvas(o, drawings(i), c)
-            c%best = 1
-            c%faint = [(k, k=2, d%frames)]
-            if (.not. d%assemblies) then
-               c%best = clearest(d)
-               c%faint = faint_frames(d, c%best)
+            if (size(d%own) > 0) then
+               list = candidates(d)
+               best = clearest(d, list)
+               c%faint = faint_frames(d, list, best)
+               if (d%assemblies) best = d%own(1)
+               if (d%assemblies) c%faint = d%own(2:)
+               c%s = d%frame(best)
             end if
-            if (c%best > 0) c%s = d%frame(c%best)
+            if (d%every > 0) c%paths = paths_of(d)
             call place_canvas(c, top)
             top = c%bottom
          end associate
@@ -59,91 +61,56 @@ contains
       call put_end(o, 'svg')
    end subroutine put_pictures
 
-   !> One set.
+   !> Draws one set.
    subroutine put_set(c)
       type(canvas_t), intent(inout) :: c
+      type(shapes_t) :: list
       integer :: i
 
       call put_set_head(c, c%s%t)
       call put_group(c%o, 'class="faint"', '')
       do i = 1, size(c%faint)
-         call put_outlines(c, c%d%frame(c%faint(i)))
+         call put_outlines(c, c%d%frame(c%faint(i)), .false.)
       end do
       call put_end(c%o, 'g')
-      call put_curves(c)
-      call put_centrodes(c)
+      do i = 1, size(c%paths)
+         call put_path(c, c%paths(i))
+      end do
       do i = 1, size(c%d%flags)
          call put_flagged(c, c%d%flags(i)%last)
       end do
-      call put_mechanism(c)
+      list = shapes_of(c%d, c%s%known, c%scale)
+      do i = 1, list%count
+         call put_shape(c, list%list(i))
+      end do
       call put_drives(c)
-      call put_centres(c)
+      do i = 1, size(c%d%poles)
+         call put_centre(c, i)
+      end do
       if (max(size(c%m%links), size(c%m%points)) <= max_names) then
          call put_points(c)
          call put_links(c)
       end if
-      call put_times(c)
+      if (size(c%d%own) > 0) call put_times(c)
       call put_flags(c)
       call put_scale(c)
       call put_end(c%o, 'g')
    end subroutine put_set
 
-   !> The paths of the points.
-   subroutine put_curves(c)
+   !> Draws the ring of the instant centre of pole number `i`, with its name, if it is in the picture.
+   subroutine put_centre(c, i)
       type(canvas_t), intent(inout) :: c
-      integer :: i
-
-      do i = 1, size(c%d%curves)
-         if (moves(c%d, i)) call put_path(c, c%d%curves(i))
-      end do
-   end subroutine put_curves
-
-   !> Ground, links and pairs in full.
-   subroutine put_mechanism(c)
-      type(canvas_t), intent(inout) :: c
-      integer, allocatable :: dots(:)
-      integer :: i
-
-      dots = dots_of(c%m)
-      call put_ground(c)
-      do i = 1, size(c%d%guides)
-         call put_guide(c, c%d%guides(i))
-      end do
-      do i = 1, size(c%m%links)
-         call put_body(c, i)
-      end do
-      do i = 1, size(c%d%guides)
-         call put_block(c, c%d%guides(i))
-      end do
-      do i = 1, size(c%m%pairs)
-         call put_joint(c, i, joint_point(c%m, c%s%known, i))
-      end do
-      do i = 1, size(dots)
-         call put_dot(c, dots(i))
-      end do
-   end subroutine put_mechanism
-
-   !> Whether curve number `i` is more than one place, and no curve before has the same places.
-   pure logical function moves(d, i)
-      type(drawing_t), intent(in) :: d
       integer, intent(in) :: i
-      real(wp) :: extent
-      integer :: k, j
+      real(wp) :: p(2)
 
-      moves = .false.
-      associate (curve => d%curves(i))
-         if (size(curve%known) == 0) return
-         extent = maxval(abs(curve%place))
-         do k = 2, size(curve%known)
-            moves = moves .or. (all(curve%known(k - 1:k) >= 0) .and. &
-               .not. is_same_place(curve%place(:, k), curve%place(:, k - 1), extent))
-         end do
-         do j = 1, i - 1
-            if (all(abs(d%curves(j)%place - curve%place) <= 1.0e-6_wp*extent) &
-               .and. all(d%curves(j)%known == curve%known)) moves = .false.
-         end do
-      end associate
-   end function moves
+      if (.not. c%s%has_centre(i)) return
+      p = to_pixels(c, c%s%centre(:, i))
+      if (any(p < c%low) .or. any(p > c%high)) return
+      call put_ring(c, i, p)
+      call add_box(c, p - centre_radius, p + centre_radius)
+      call put_name(c, reshape(p, [2, 1]), clear_of_point, 'class="link" style="fill:' &
+         //link_color(c%m, c%m%requests(c%d%poles(i))%subject)//'"', pole_name(c%m, c%d%poles(i)))
+   end subroutine put_centre
 
    !> At the foot: the instant that is drawn, and those, or the assemblies, that are faint.
    subroutine put_times(c)
@@ -152,9 +119,8 @@ contains
       real(wp) :: y
       integer :: i
 
-      if (c%best == 0) return
       y = real(c%bottom - 16 - line_height*flag_lines(c%d), wp)
-      now = 'T = '//fitted(c%d%frame(c%best)%t)//' '//trim(c%m%time_unit)
+      now = 'T = '//fitted(c%s%t)//' '//trim(c%m%time_unit)
       call put_words(c%o, [14.0_wp, y], 'start', 'class="time"', now)
       others = ''
       do i = 1, size(c%faint)
@@ -202,11 +168,14 @@ contains
    subroutine put_links(c)
       type(canvas_t), intent(inout) :: c
       real(wp), allocatable :: p(:, :)
-      integer :: i
+      integer :: i, k
 
       do i = 1, size(c%m%links)
          if (c%m%links(i)%ground .or. .not. c%s%known(i)) cycle
-         p = name_places(corner_pixels(c, c%d%outlines(i), c%s%place(:, i)))
+         p = name_places(corners_at(c%d%outlines(i), c%s%place(:, i)))
+         do k = 1, size(p, 2)
+            p(:, k) = to_pixels(c, p(:, k))
+         end do
          if (size(p) > 0) call put_name(c, p, clear_of_link, 'class="link" style="fill:'//color_of(i)//'"', &
             trim(c%m%links(i)%name))
       end do

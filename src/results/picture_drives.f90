@@ -1,14 +1,14 @@
 !> The drives of a picture: an arrow for each, in the sense of its motion, an arc for an angle. Sizes are in pixels.
 module picture_drives
    use kinds, only: wp
-   use mechanism, only: mechanism_t, drive_t, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, &
-      drive_slide
-   use planar, only: degree, quarter_turn
+   use mechanism, only: mechanism_t, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, drive_slide
+   use planar, only: degree, direction, quarter_turn
    use drives, only: drive_motion, new_law
    use names, only: drive_name
    use drawing, only: point_place
    use canvas, only: canvas_t, to_pixels, add_line, cover_of, tie
-   use picture_parts, only: corner_pixels, direction_in_picture, half_block
+   use outline, only: corners_at
+   use shapes, only: half_block
    use svg, only: put_group, put_end, put_line
    use text_output, only: output_t
    implicit none
@@ -28,15 +28,18 @@ module picture_drives
 
 contains
 
-   !> An arrow for each drive, in the sense in which it moves at the position that is drawn.
+   !> Draws an arrow for each drive, in the sense in which it moves at the position that the canvas shows; at rest, in
+   !> that of its acceleration.
    subroutine put_drives(c)
       type(canvas_t), intent(inout) :: c
-      real(wp) :: sense
-      integer :: i
+      real(wp) :: f(0:2), sense
+      integer :: i, k
 
       do i = 1, size(c%m%drives)
          associate (drive => c%m%drives(i), known => c%s%known)
-            sense = sense_of(drive, c%s%t)
+            f = drive_motion(new_law(drive), c%s%t)
+            sense = sign(1.0_wp, f(2))
+            if (abs(f(1)) > 0.0_wp) sense = sign(1.0_wp, f(1))
             call put_group(c%o, 'class="drives"', trim(drive_name(c%m, drive)))
             select case (drive%kind)
             case (drive_angle)
@@ -44,47 +47,22 @@ contains
             case (drive_relangle)
                if (known(drive%subject) .and. known(drive%second)) call put_arc(c, drive%subject, drive%second, sense)
             case (drive_x, drive_y)
-               if (known(c%m%points(drive%subject)%link)) &
-                  call put_arrow(c, to_pixels(c, point_place(c%m, c%s, drive%subject)), &
-                  sense*merge([1.0_wp, 0.0_wp], [0.0_wp, -1.0_wp], drive%kind == drive_x), .true.)
+               if (known(c%m%points(drive%subject)%link)) call put_arrow(c, drive%subject, &
+                  sense*merge([1.0_wp, 0.0_wp], [0.0_wp, 1.0_wp], drive%kind == drive_x), .true.)
             case (drive_slide)
-               call put_slide(c, drive%subject, sense)
+               k = findloc(c%d%guides%pair, drive%subject, dim=1)
+               associate (g => c%d%guides(k))
+                  if (known(g%carrier) .and. known(g%block)) call put_arrow(c, g%point, &
+                     sense*real(g%sense, wp)*direction(c%s%place(3, g%carrier) + g%angle), .false.)
+               end associate
             end select
             call put_end(c%o, 'g')
          end associate
       end do
    end subroutine put_drives
 
-   !> The arrow of a SLIDE drive of pair number `pair`, beside its block.
-   subroutine put_slide(c, pair, sense)
-      type(canvas_t), intent(inout) :: c
-      integer, intent(in) :: pair
-      real(wp), intent(in) :: sense
-      real(wp) :: e(2)
-      integer :: k
-
-      do k = 1, size(c%d%guides)
-         associate (g => c%d%guides(k))
-            if (g%pair /= pair .or. .not. (c%s%known(g%carrier) .and. c%s%known(g%block))) cycle
-            e = sense*real(g%sense, wp)*direction_in_picture(c%s%place(3, g%carrier) + g%angle)
-            call put_arrow(c, to_pixels(c, point_place(c%m, c%s, g%point)), e, .false.)
-         end associate
-      end do
-   end subroutine put_slide
-
-   !> 1 or -1: the sense of the rate of `drive` at `t`, at rest that of its acceleration.
-   real(wp) function sense_of(drive, t)
-      type(drive_t), intent(in) :: drive
-      real(wp), intent(in) :: t
-      real(wp) :: f(0:2)
-
-      f = drive_motion(new_law(drive), t)
-      sense_of = sign(1.0_wp, f(2))
-      if (abs(f(1)) > 0.0_wp) sense_of = sign(1.0_wp, f(1))
-   end function sense_of
-
-   !> An arc about a joint of `link` with an arrow: about its joint with `base`, 0 for the ground, otherwise about its
-   !> first joint.
+   !> Draws an arc about a joint of `link` with an arrow: about its joint with `base`, 0 for the ground, otherwise about
+   !> its first joint. Of places where it may begin, that is taken where it covers least.
    subroutine put_arc(c, base, link, sense)
       type(canvas_t), intent(inout) :: c
       integer, intent(in) :: base, link
@@ -93,15 +71,16 @@ contains
       integer :: k, point
 
       point = joint_with(c%m, base, link)
-      center = to_pixels(c, c%s%place(:2, link))
-      if (point > 0) center = to_pixels(c, point_place(c%m, c%s, point))
+      center = c%s%place(:2, link)
+      if (point > 0) center = point_place(c%m, c%s, point)
       start = c%s%place(3, link)
-      associate (corners => corner_pixels(c, c%d%outlines(link), c%s%place(:, link)))
+      associate (corners => corners_at(c%d%outlines(link), c%s%place(:, link)))
          if (size(corners, 2) > 1) then
             e = sum(corners, dim=2)/real(size(corners, 2), wp) - center
-            if (norm2(e) > 1.0_wp) start = atan2(-e(2), e(1))
+            if (c%scale*norm2(e) > 1.0_wp) start = atan2(e(2), e(1))
          end if
       end associate
+      center = to_pixels(c, center)
       least = huge(least)
       do k = 1, size(arc_starts)
          cover = cover_of(c, arc(center, start + sense*degree*arc_starts(k), sense*degree*(arc_angle + tip_angle)))
@@ -112,19 +91,18 @@ contains
       do k = 1, arc_pieces
          call add_line(c, best(:, k - 1), best(:, k), arrow_weight)
       end do
-      call put_line(c%o, 'polyline', best, 'class="drive"')
-      e = best(:, arc_pieces) - center
-      call put_tip(c%o, best(:, arc_pieces), -sense*quarter_turn(e)/norm2(e))
+      e = (best(:, arc_pieces) - center)/arc_radius
+      call put_line_with_tip(c%o, best, -sense*quarter_turn(e))
    end subroutine put_arc
 
-   !> The places (2, 0:arc_pieces) of an arc about the pixel `center` (2), from `start` over `angle` (rad).
+   !> The pixels (2, 0:arc_pieces) of an arc about the pixel `center` (2), from `start` over `angle` (rad).
    pure function arc(center, start, angle) result(p)
       real(wp), intent(in) :: center(2), start, angle
       real(wp) :: p(2, 0:arc_pieces)
       integer :: k
 
       do k = 0, arc_pieces
-         p(:, k) = center + arc_radius*direction_in_picture(start + angle*real(k, wp)/real(arc_pieces, wp))
+         p(:, k) = center + arc_radius*direction(start + angle*real(k, wp)/real(arc_pieces, wp))*[1.0_wp, -1.0_wp]
       end do
    end function arc
 
@@ -150,15 +128,18 @@ contains
       end do
    end function joint_with
 
-   !> A straight arrow in the direction `e` (2) beside the pixel `p` (2) or, if it may be `ahead` of it, there: where it
-   !> covers least.
-   subroutine put_arrow(c, p, e, ahead)
+   !> Draws a straight arrow in the `sense` (2), a unit vector of the plane, beside `point` or, if it may be `ahead` of
+   !> it, there: where it covers least.
+   subroutine put_arrow(c, point, sense, ahead)
       type(canvas_t), intent(inout) :: c
-      real(wp), intent(in) :: p(2), e(2)
+      integer, intent(in) :: point
+      real(wp), intent(in) :: sense(2)
       logical, intent(in) :: ahead
-      real(wp) :: ends(2, 2), best(2, 2), cover, least
+      real(wp) :: p(2), e(2), ends(2, 2), best(2, 2), cover, least
       integer :: side, k
 
+      p = to_pixels(c, point_place(c%m, c%s, point))
+      e = sense*[1.0_wp, -1.0_wp]
       least = huge(least)
       do side = merge(0, 1, ahead), 4
          ends(:, 1) = p + arrow_start*e
@@ -171,17 +152,18 @@ contains
          least = cover
          best = ends
       end do
-      call put_line(c%o, 'polyline', best, 'class="drive"')
-      call put_tip(c%o, best(:, 2), e)
+      call put_line_with_tip(c%o, best, e)
       call add_line(c, best(:, 1), best(:, 2) + tip_length*e, arrow_weight)
    end subroutine put_arrow
 
-   !> The tip of an arrow that ends at the pixel `p` (2) in the direction `e` (2).
-   subroutine put_tip(o, p, e)
+   !> Draws a line through the pixels `p` (2, :) with the tip of an arrow in the direction `e` (2) at its end.
+   subroutine put_line_with_tip(o, p, e)
       type(output_t), intent(inout) :: o
-      real(wp), intent(in) :: p(2), e(2)
+      real(wp), intent(in) :: p(:, :), e(2)
 
-      call put_line(o, 'polygon', reshape([p + tip_length*e, p + tip_half*quarter_turn(e), &
-         p - tip_half*quarter_turn(e)], [2, 3]), 'class="tip"')
-   end subroutine put_tip
+      call put_line(o, 'polyline', p, 'class="drive"')
+      associate (last => p(:, size(p, 2)), aside => tip_half*quarter_turn(e))
+         call put_line(o, 'polygon', reshape([last + tip_length*e, last + aside, last - aside], [2, 3]), 'class="tip"')
+      end associate
+   end subroutine put_line_with_tip
 end module picture_drives

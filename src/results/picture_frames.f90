@@ -3,15 +3,12 @@ module picture_frames
    use kinds, only: wp
    use mechanism, only: pair_revolute
    use planar, only: cross, direction, point_of
-   use drawing, only: drawing_t, snapshot_t, point_place
+   use drawing, only: drawing_t, snapshot_t, point_place, joint_point, picture_candidates
    use outline, only: corners_at, distance_to
-   use picture_parts, only: joint_point
    implicit none
    private
-   public :: clearest, faint_frames, closes
+   public :: candidates, clearest, faint_frames, closes
 
-   !> Frames from which a picture chooses.
-   integer, parameter, public :: picture_candidates = 25
    !> A joint is crowded if it is nearer to a bar or guide that is not its own than this part of the mechanism.
    real(wp), parameter :: clear_distance = 0.1_wp
    !> A joint in line with a bar counts as crowded by this part.
@@ -29,23 +26,37 @@ module picture_frames
 
 contains
 
-   !> The number of the frame that is drawn in full: of those of which most links are known the clearest; 0 for none.
-   integer function clearest(d) result(best)
+   !> The numbers of the frames from which a picture chooses: some of those at the deck's own instants, with the last.
+   pure function candidates(d) result(list)
       type(drawing_t), intent(in) :: d
+      integer, allocatable :: list(:)
+      integer :: n, stride
+
+      n = size(d%own)
+      stride = max(1, 1 + (n - 2)/(picture_candidates - 1))
+      list = d%own(1:n:stride)
+      if (mod(n - 1, stride) /= 0) list = [list, d%own(n)]
+   end function candidates
+
+   !> The one of the frames `list` that is drawn in full: of those of which most links are known the clearest; 0 for
+   !> none.
+   integer function clearest(d, list) result(best)
+      type(drawing_t), intent(in) :: d
+      integer, intent(in) :: list(:)
       real(wp) :: crowded, least
       integer :: i, known
 
       best = 0
       known = -1
       least = huge(least)
-      do i = 1, d%frames
-         associate (s => d%frame(i))
+      do i = 1, size(list)
+         associate (s => d%frame(list(i)))
             if (count(s%known) < known) cycle
             crowded = crowded_joints(d, s)
             if (count(s%known) == known .and. crowded > least - much_clearer) cycle
             known = count(s%known)
             least = crowded
-            best = i
+            best = list(i)
          end associate
       end do
    end function clearest
@@ -61,7 +72,7 @@ contains
       extent = extent_of(d, s)
       if (size(d%m%links) > max_links .or. .not. extent > 0.0_wp) return
       do i = 1, size(d%m%pairs)
-         point = joint_point(d%m, s%known, i)
+         point = joint_point(d, s%known, i)
          if (point == 0) cycle
          own = d%m%points([d%m%pairs(i)%point_i, d%m%pairs(i)%point_j])%link
          p = point_place(d%m, s, point)/extent
@@ -111,11 +122,11 @@ contains
       if (all(high >= low)) extent = maxval(high - low)
    end function extent_of
 
-   !> The numbers of the frames that are faint beside frame `best`: evenly spaced, without those that are like it or
+   !> Those of the frames `own` that are faint beside frame `best`: evenly spaced, without those that are like it or
    !> like one another.
-   function faint_frames(d, best) result(list)
+   function faint_frames(d, own, best) result(list)
       type(drawing_t), intent(in) :: d
-      integer, intent(in) :: best
+      integer, intent(in) :: own(:), best
       integer, allocatable :: list(:)
       integer :: i, j, k, n
 
@@ -123,19 +134,20 @@ contains
       n = max(min_faint, min(max_faint, faint_links/max(1, count(.not. d%m%links%ground))))
       do i = 0, n
          ! Where the motion comes back, the last frame is the first one again.
-         k = 1 + i*(d%frames - 1)/merge(n + 1, n, closes(d))
+         k = own(1 + i*(size(own) - 1)/merge(n + 1, n, closes(d, own)))
          if (distance(d, k, best) < alike) cycle
          if (any([(distance(d, k, list(j)) < alike, j=1, size(list))])) cycle
          list = [list, k]
       end do
    end function faint_frames
 
-   !> Whether the motion of the moving links ends where it has begun.
-   logical function closes(d)
+   !> Whether the motion of the moving links through the frames `list` ends where it has begun.
+   logical function closes(d, list)
       type(drawing_t), intent(in) :: d
+      integer, intent(in) :: list(:)
 
       closes = .false.
-      if (d%frames > 2) closes = distance(d, 1, d%frames) < come_back
+      if (size(list) > 2) closes = distance(d, list(1), list(size(list))) < come_back
    end function closes
 
    !> The largest distance of a corner between frames `i` and `j`, in parts of the mechanism; 1 if one of them lacks a

@@ -3,16 +3,18 @@ module picture_page
    use kinds, only: wp
    use planar, only: point_of
    use numerals, only: full, whole, fixed, max_decimals
-   use drawing, only: drawing_t, snapshot_t, point_place
-   use canvas, only: canvas_t
-   use picture_parts, only: guide_ends
-   use svg, only: put_group, put_line, put_words, without_zeros
+   use drawing, only: drawing_t, snapshot_t, point_place, joint_point
+   use outline, only: corners_at
+   use shapes, only: shape_t, shapes_t, shapes_of, link_color
+   use canvas, only: canvas_t, to_pixels, add_line
+   use svg, only: put_group, put_end, put_line, put_circle, put_words, without_zeros
    use text_output, only: output_t, put
    use listing, only: words_of_mark
    use phrases
    implicit none
    private
-   public :: picture_head, place_canvas, put_set_head, put_flags, put_scale, flag_lines, fitted
+   public :: picture_head, place_canvas, paths_of, put_outlines, put_flagged, put_ring, put_set_head, put_flags, &
+      put_scale, flag_lines, fitted
 
    integer, parameter, public :: width = 800
    !> Room around what is drawn, for names and supports; largest and least height of what is drawn.
@@ -24,6 +26,11 @@ module picture_page
    real(wp), parameter :: tie = 1.0e-6_wp
    !> By this part of its larger side a mechanism's picture is wider on each side, at most, for centrodes.
    real(wp), parameter :: centrode_room = 0.4_wp
+   !> Places of a path that differ by no more than this part of its extent are one.
+   real(wp), parameter :: same_place = 1.0e-6_wp
+   !> The rings of an instant centre and of a joint at a flagged position.
+   real(wp), parameter, public :: centre_radius = 4.0_wp
+   real(wp), parameter :: ring_radius = 8.0_wp
    !> The length of the scale bar, at most.
    real(wp), parameter :: max_bar = 150.0_wp
 
@@ -59,119 +66,81 @@ contains
       c%high = [real(width - 4, wp), real(top + above + height, wp)]
    end subroutine place_canvas
 
-   !> The corners `low` and `high` (2) of what the picture shows.
+   !> The corners `low` and `high` (2) of what is drawn: all shapes at the position in full, links at the others, paths,
+   !> and centrodes, which may run to infinity, as far as the picture is wider by `centrode_room` on all sides at most.
    subroutine find_extent(c, low, high)
       type(canvas_t), intent(in) :: c
       real(wp), intent(out) :: low(2), high(2)
-      logical, dimension(size(c%m%points)) :: moves, is_joined
+      real(wp) :: from(2), to(2)               ! nothing is drawn beyond these
+      type(shapes_t) :: all_shapes
       integer :: i, k
 
-      moves = .not. c%m%links(c%m%points%link)%ground
-      ! Of the ground what pairs use, but not what guides are counted from: it need not lie on them.
-      is_joined = .false.
-      is_joined([c%m%pairs%point_i, c%m%pairs%point_j]) = .true.
-      is_joined(c%d%guides%pivot) = .false.
       low = huge(1.0_wp)
       high = -huge(1.0_wp)
-      associate (d => c%d)
-         call widen_by_points(d, d%now, is_joined .and. .not. moves, low, high)
-         if (c%best > 0) then
-            call widen_by_points(d, d%frame(c%best), moves, low, high)
-            call widen_by_guides(d, d%frame(c%best), low, high)
-         end if
-         do i = 1, size(c%faint)
-            call widen_by_points(d, d%frame(c%faint(i)), moves, low, high)
-         end do
-         do i = 1, size(d%flags)
-            call widen_by_points(d, d%flags(i)%last, moves, low, high)
-         end do
-         do i = 1, size(d%curves)
-            do k = 1, size(d%curves(i)%known)
-               if (d%curves(i)%known(k) >= 0) call widen(d%curves(i)%place(:, k), low, high)
+      from = -huge(1.0_wp)
+      to = huge(1.0_wp)
+      all_shapes = shapes_of(c%d, spread(.true., 1, size(c%m%links)), 1.0_wp)
+      do i = 1, all_shapes%count
+         associate (shape => all_shapes%list(i))
+            if (shape%element == 'cut') cycle
+            call widen_by_shape(shape, c%s)
+            if (shape%is_below) cycle
+            do k = 1, size(c%faint)
+               call widen_by_shape(shape, c%d%frame(c%faint(k)))
             end do
-         end do
-         if (.not. all(low <= high)) then
-            low = 0.0_wp
-            high = 0.0_wp
-         end if
-         if (c%best > 0) call widen_by_centrodes(d, d%frame(c%best), low, high)
-      end associate
-   end subroutine find_extent
-
-   !> Widens the box from `low` to `high` (2) by the points that are `wanted` and known at `s`.
-   subroutine widen_by_points(d, s, wanted, low, high)
-      type(drawing_t), intent(in) :: d
-      type(snapshot_t), intent(in) :: s
-      logical, intent(in) :: wanted(:)
-      real(wp), intent(inout) :: low(2), high(2)
-      integer :: i
-
-      do i = 1, size(wanted)
-         if (wanted(i) .and. s%known(d%m%points(i)%link)) call widen(point_place(d%m, s, i), low, high)
-      end do
-   end subroutine widen_by_points
-
-   !> The same by the guides as they are drawn at `s`.
-   subroutine widen_by_guides(d, s, low, high)
-      type(drawing_t), intent(in) :: d
-      type(snapshot_t), intent(in) :: s
-      real(wp), intent(inout) :: low(2), high(2)
-      real(wp) :: ends(2, 2)
-      integer :: i
-
-      do i = 1, size(d%guides)
-         associate (g => d%guides(i))
-            if (.not. s%known(g%carrier) .or. g%high < g%low) cycle
-            ends = guide_ends(g, s)
-            call widen(ends(:, 1), low, high)
-            call widen(ends(:, 2), low, high)
-            if (.not. d%m%links(g%carrier)%ground) call widen(point_of(s%place(:, g%carrier), g%foot), low, high)
-         end associate
-      end do
-   end subroutine widen_by_guides
-
-   !> Widens the box from `low` to `high` (2) by the instant centres at `s` and by what there is of their centrodes in
-   !> the box that is wider by `centrode_room` on all sides: they may run to infinity.
-   subroutine widen_by_centrodes(d, s, low, high)
-      type(drawing_t), intent(in) :: d
-      type(snapshot_t), intent(in) :: s
-      real(wp), intent(inout) :: low(2), high(2)
-      real(wp) :: wide_low(2), wide_high(2), room
-      integer :: i, k, side
-
-      room = centrode_room*maxval(high - low)
-      wide_low = low - room
-      wide_high = high + room
-      do i = 1, size(d%centrodes)
-         associate (c => d%centrodes(i))
-            if (s%has_centre(i)) call widen_inside(s%centre(:, i))
-            do side = 1, 2
-               do k = 1, size(c%side)
-                  if (c%side(k) /= 0 .and. s%known(c%link(side))) &
-                     call widen_inside(point_of(s%place(:, c%link(side)), c%place(:, k, side)))
-               end do
+            do k = 1, size(c%d%flags)
+               call widen_by_shape(shape, c%d%flags(k)%last)
             end do
          end associate
+      end do
+      do i = 1, size(c%paths)
+         do k = 1, c%d%films
+            if (c%d%frame(k)%known(c%m%points(c%paths(i))%link)) &
+               call widen(point_place(c%m, c%d%frame(k), c%paths(i)))
+         end do
+      end do
+      if (.not. all(low <= high)) then
+         low = 0.0_wp
+         high = 0.0_wp
+      end if
+
+      from = low - centrode_room*maxval(high - low)
+      to = high + centrode_room*maxval(high - low)
+      do i = 1, size(c%d%poles)
+         if (c%s%has_centre(i)) call widen(c%s%centre(:, i))
+      end do
+      do i = 1, all_shapes%count
+         if (all_shapes%list(i)%element == 'cut') call widen_by_shape(all_shapes%list(i), c%s)
       end do
 
    contains
 
-      !> Widens the box by the place `p`, if that is in the wider one.
-      subroutine widen_inside(p)
+      !> Widens the box by the places of `shape` at the position `s`, if they are known there.
+      subroutine widen_by_shape(shape, s)
+         type(shape_t), intent(in) :: shape
+         type(snapshot_t), intent(in) :: s
+         real(wp) :: position(3)
+         integer :: k
+
+         position = 0.0_wp
+         if (shape%link > 0) then
+            if (.not. s%known(shape%link)) return
+            position = s%place(:, shape%link)
+         end if
+         do k = 1, size(shape%p, 2)
+            call widen(point_of(position, shape%p(:, k)))
+         end do
+      end subroutine widen_by_shape
+
+      !> Widens the box by the place `p` (2).
+      subroutine widen(p)
          real(wp), intent(in) :: p(2)
 
-         if (all(p >= wide_low) .and. all(p <= wide_high)) call widen(p, low, high)
-      end subroutine widen_inside
-   end subroutine widen_by_centrodes
-
-   !> Widens the box from `low` to `high` (2) by the place `p` (2).
-   pure subroutine widen(p, low, high)
-      real(wp), intent(in) :: p(2)
-      real(wp), intent(inout) :: low(2), high(2)
-
-      low = min(low, p)
-      high = max(high, p)
-   end subroutine widen
+         if (any(p < from) .or. any(p > to)) return
+         low = min(low, p)
+         high = max(high, p)
+      end subroutine widen
+   end subroutine find_extent
 
    !> `x` > 0 with three digits, not larger than it was but for `tie`.
    pure real(wp) function rounded_down(x)
@@ -182,6 +151,81 @@ contains
       if (e >= 0) rounded_down = aint(x*(1.0_wp + tie)*10.0_wp**e)/10.0_wp**e
       if (e < 0) rounded_down = aint(x*(1.0_wp + tie)/10.0_wp**(-e))*10.0_wp**(-e)
    end function rounded_down
+
+   !> The points whose paths are drawn: those that move; of several with the same path the first.
+   pure function paths_of(d) result(list)
+      type(drawing_t), intent(in) :: d
+      integer, allocatable :: list(:)
+      real(wp) :: p(2, d%films, size(d%curves)), extent
+      integer :: i, j, k, first
+
+      allocate (list(0))
+      p = 0.0_wp
+      do i = 1, size(d%curves)
+         associate (known => [(d%frame(k)%known(d%m%points(d%curves(i))%link), k=1, d%films)])
+            first = findloc(known, .true., dim=1)
+            if (first == 0) cycle
+            do k = 1, d%films
+               p(:, k, i) = point_place(d%m, d%frame(merge(k, first, known(k))), d%curves(i))
+            end do
+         end associate
+         extent = maxval(abs(p(:, :, i)))
+         if (all(abs(p(:, :, i) - spread(p(:, first, i), 2, d%films)) <= same_place*extent)) cycle
+         if (any([(all(abs(p(:, :, j) - p(:, :, i)) <= same_place*extent), j=1, i - 1)])) cycle
+         list = [list, d%curves(i)]
+      end do
+   end function paths_of
+
+   !> Draws the moving links as thin lines at the position `s`; names keep clear of them if `counts`.
+   subroutine put_outlines(c, s, counts)
+      type(canvas_t), intent(inout) :: c
+      type(snapshot_t), intent(in) :: s
+      logical, intent(in) :: counts
+      real(wp), allocatable :: p(:, :)
+      integer :: i, k, n
+
+      do i = 1, size(c%m%links)
+         if (c%m%links(i)%ground .or. .not. s%known(i)) cycle
+         p = corners_at(c%d%outlines(i), s%place(:, i))
+         n = size(p, 2)
+         if (n < 2) cycle
+         do k = 1, n
+            p(:, k) = to_pixels(c, p(:, k))
+         end do
+         call put_line(c%o, trim(merge('polygon ', 'polyline', n > 2)), p, 'class="thin"')
+         if (.not. counts) cycle
+         do k = 1, n
+            call add_line(c, p(:, k), p(:, 1 + modulo(k, n)), 1.0_wp)
+         end do
+      end do
+   end subroutine put_outlines
+
+   !> Draws the flagged position `s`: thin lines, and rings about the joints, which show where the lines are covered.
+   subroutine put_flagged(c, s)
+      type(canvas_t), intent(inout) :: c
+      type(snapshot_t), intent(in) :: s
+      integer :: i
+
+      call put_group(c%o, 'class="flagged"', '')
+      call put_outlines(c, s, .true.)
+      do i = 1, size(c%m%pairs)
+         associate (point => joint_point(c%d, s%known, i))
+            if (point > 0) call put_circle(c%o, to_pixels(c, point_place(c%m, s, point)), ring_radius, 'class="ring"')
+         end associate
+      end do
+      call put_end(c%o, 'g')
+   end subroutine put_flagged
+
+   !> Draws the ring of the instant centre of pole number `i` at the pixel `p` (2).
+   subroutine put_ring(c, i, p)
+      type(canvas_t), intent(in) :: c
+      integer, intent(in) :: i
+      real(wp), intent(in) :: p(2)
+
+      call put_circle(c%o, p, centre_radius, 'class="centre" style="stroke:' &
+         //link_color(c%m, c%m%requests(c%d%poles(i))%subject)//'"')
+      call put_circle(c%o, p, 1.0_wp, 'class="point"')
+   end subroutine put_ring
 
    !> Begins the group of a set, with its title. `t`: the instant that is drawn.
    subroutine put_set_head(c, t)

@@ -6,8 +6,8 @@ module svg
    use numerals, only: fixed, whole
    implicit none
    private
-   public :: svg_head, put_group, put_window, put_end, put_circle, put_line, put_curve, put_words, put_values, pixels, &
-      without_zeros, escaped, attribute, translation
+   public :: svg_head, put_group, put_window, put_end, put_circle, put_line, put_strokes, put_curve, put_words, &
+      put_values, pixels, without_zeros, escaped, attribute, translation
 
    !> The classes of the elements. Widths and sizes are in pixels.
    character(*), parameter :: style(*) = [character(118) :: &
@@ -88,31 +88,46 @@ contains
       call put(o, '<circle cx="'//pixels(p(1))//'" cy="'//pixels(p(2))//'" r="'//pixels(radius)//'" '//attributes//'/>')
    end subroutine put_circle
 
-   !> A line through the places `p` (2, :): the `element` 'polyline', or 'polygon', which closes it.
-   subroutine put_line(o, element, p, attributes)
+   !> Writes a line through the places `p` (2, :): the `element` 'polyline', or 'polygon', which closes it. `title`, if
+   !> not '', is what a viewer says of it.
+   subroutine put_line(o, element, p, attributes, title)
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: element, attributes
       real(wp), intent(in) :: p(:, :)
+      character(*), intent(in), optional :: title
+      character(:), allocatable :: ending
 
-      call put_columns(o, element//' '//attributes//' points="', p, ',', ' ')
+      ending = '/>'
+      if (present(title)) then
+         if (title /= '') ending = '><title>'//escaped(title)//'</title></'//element//'>'
+      end if
+      call put_columns(o, element//' '//attributes//' points="', p, ',', ' ', ending)
    end subroutine put_line
 
-   !> A curve through the places `p` (2, :). From each to the next leads a cubic with the control points `from` and `to`
-   !> (2, size - 1), or a straight line where `straight` (size - 1).
-   subroutine put_curve(o, p, from, to, straight, attributes)
+   !> Writes strokes that go from `p` (2, strokes) by `stroke` (2).
+   subroutine put_strokes(o, p, stroke, attributes)
       type(output_t), intent(inout) :: o
-      real(wp), intent(in) :: p(:, :), from(:, :), to(:, :)
-      logical, intent(in) :: straight(:)
+      real(wp), intent(in) :: p(:, :), stroke(2)
+      character(*), intent(in) :: attributes
+      integer :: i
+
+      call add(o, '<path '//attributes//' d="')
+      do i = 1, size(p, 2)
+         call add(o, 'M'//place(p(:, i))//'l'//place(stroke))
+      end do
+      call put(o, '"/>')
+   end subroutine put_strokes
+
+   !> Writes a curve of cubics from the place p(:, 1) (2, 3 n + 1) to every third one, with control points between them.
+   subroutine put_curve(o, p, attributes)
+      type(output_t), intent(inout) :: o
+      real(wp), intent(in) :: p(:, :)
       character(*), intent(in) :: attributes
       integer :: i
 
       call add(o, '<path '//attributes//' d="M'//place(p(:, 1)))
-      do i = 1, size(straight)
-         if (straight(i)) then
-            call add(o, ' L'//place(p(:, i + 1)))
-         else
-            call add(o, ' C'//place(from(:, i))//' '//place(to(:, i))//' '//place(p(:, i + 1)))
-         end if
+      do i = 2, size(p, 2)
+         call add(o, trim(merge(' C', '  ', mod(i, 3) == 2))//' '//place(p(:, i)))
       end do
       call put(o, '"/>')
    end subroutine put_curve
@@ -134,14 +149,14 @@ contains
       character(*), intent(in) :: element
       real(wp), intent(in) :: values(:, :)
 
-      call put_columns(o, element//' values="', values, ' ', ';')
+      call put_columns(o, element//' values="', values, ' ', ';', '/>')
    end subroutine put_values
 
-   !> An element that `begins` so and has the columns of `values` (:, :) in an attribute: `inside` stands between the
-   !> numbers of a column, `between` between columns.
-   subroutine put_columns(o, begins, values, inside, between)
+   !> Writes an element that begins with `begins` and has the columns of `values` (:, :) in an attribute: `inside`
+   !> stands between the numbers of a column, `between` between columns, `ending` after them.
+   subroutine put_columns(o, begins, values, inside, between, ending)
       type(output_t), intent(inout) :: o
-      character(*), intent(in) :: begins, inside, between
+      character(*), intent(in) :: begins, inside, between, ending
       real(wp), intent(in) :: values(:, :)
       integer :: i, k
 
@@ -153,7 +168,7 @@ contains
             call add(o, pixels(values(i, k)))
          end do
       end do
-      call put(o, '"/>')
+      call put(o, '"'//ending)
    end subroutine put_columns
 
    !> Begins a picture in the picture: what follows is seen from the place `p` (2) on, over `extent` (2), and has its

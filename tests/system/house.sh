@@ -63,8 +63,8 @@ equal 'types that hold factors of KLU' \
    'analysis_t block_engine_t block_method_t dense_engine_t engine_t estimator_t following_t klu_t lane_run_t motion_prover_t perturbed_t room_t rounding_response_t sensor_t set_analysis_t step_prover_t tested_step_t workspace_t' \
    "$(sed -n 's/^holds: //p' "$BUILD/copies.txt" | tr '\n' ' ' | sed 's/ $//')"
 lost="$BUILD/order/lost.f90"
-printf '   function new_drawing(m) result(d)\n      d%%curves = [d%%curves, new_curve(1, 2, 3)]\n   end function new_drawing\n' > "$lost"
-equal 'what a constructed array would not free is found' "$lost:2: new_curve" \
+printf '   function new_drawing(m) result(d)\n      d%%curves = [d%%curves, snapshot_of_ground(d)]\n   end function new_drawing\n' > "$lost"
+equal 'what a constructed array would not free is found' "$lost:2: snapshot_of_ground" \
    "$(awk -f tests/system/fortran.awk -f tests/system/constructors.awk pass=1 $sources "$lost" pass=2 $sources "$lost" | grep -v '^functions: ')"
 awk -f tests/system/fortran.awk -f tests/system/constructors.awk pass=1 $sources pass=2 $sources > "$BUILD/constructors.txt"
 equal 'what constructed arrays would not free' '' "$(grep -v '^functions: ' "$BUILD/constructors.txt")"

@@ -161,8 +161,10 @@ centrodes() { awk '
    }
    /class="set"/ && sets++ { exit }
    /class="set"/ { scale = value($0, "data-scale") }
-   /data-centrode/ { name[++g] = value($0, "data-centrode"); low[g] = 1e9; high[g] = -1e9; lines[g] = 0; points[g] = 0 }
    /class="centrode"/ {
+      own = value($0, "data-centrode") " " value($0, "data-link")
+      if (own != before) { name[++g] = value($0, "data-centrode"); low[g] = 1e9; high[g] = -1e9; lines[g] = 0; points[g] = 0 }
+      before = own
       lines[g]++
       n = split(value($0, "points"), place, " ")
       for (k = 1; k <= n; k++) {
