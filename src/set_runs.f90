@@ -6,7 +6,7 @@
 module set_runs
    use mechanism, only: mechanism_t, instant_count, instant
    use independent, only: parts_t
-   use structure, only: findings_t, find_structure_again, faults_text
+   use structure, only: findings_t, find_structure, faults_text
    use failures, only: status_flagged
    use deck, only: build_variant
    use deck_variants, only: variation_t
@@ -18,7 +18,7 @@ module set_runs
    use variant_tables, only: summary_head, summary_row, put_variant, put_variant_heads, put_note_of_shares, &
       put_variant_row, put_variants_end
    use numerals, only: whole
-   use lane_runs, only: lane_run_t, lend_structure, begin_run, run_lanes, width
+   use lane_runs, only: lane_run_t, renew_run, begin_run, run_lanes, width
    use lane_state, only: lanes_t
    use command_line, only: options_t, out_listing, out_csv, out_log, out_summary, out_table, out_plot_table
    use outputs, only: is_over, write_parts, outputs_t
@@ -89,13 +89,12 @@ contains
       subroutine run_each()
          type(variant_row_t) :: row
          type(mechanism_t) :: variant
-         type(findings_t) :: findings
 
          do while (n <= last)
             row = new_row(summary, v, n)
             if (o%asked(out_listing) .and. full) &
                call put_variant(o%files(out_listing, 0), layout, summary, m, row)
-            call run_variant(variant, findings, row)
+            call run_variant(variant, row)
             if (is_over(o, i)) return
             if (o%asked(out_listing) .and. full) call put_variant_heads(o%files(out_listing, 0), summary)
             call write_row(row)
@@ -108,7 +107,6 @@ contains
          ! Of a class, so that the compiler calls what makes and frees one, and does not write it out for each use.
          class(lane_run_t), allocatable :: runs(:)
          type(lanes_t) :: lanes
-         type(findings_t) :: findings
          integer :: k, count
 
          allocate (lane_run_t :: runs(width))
@@ -116,7 +114,7 @@ contains
             count = min(width, last - n + 1)
             do k = 1, count
                runs(k)%row = new_row(summary, v, n + k - 1)
-               call start(findings, runs(k))
+               call start(runs(k))
             end do
             call run_lanes(runs(:count), lanes)
             do k = 1, count
@@ -128,41 +126,44 @@ contains
          end do
       end subroutine run_together
 
-      !> Makes the variant of `v` whose row `r` has, unless it is refused; `findings`: as below.
-      subroutine start(findings, r)
-         type(findings_t), intent(inout) :: findings
+      !> Makes the variant of `v` whose row `r` has, unless it is refused.
+      subroutine start(r)
          type(lane_run_t), intent(inout) :: r
+         type(findings_t) :: findings
+         logical :: is_done
 
-         call lend_structure(r, findings)
-         call make_variant(r%row, r%m, findings)
+         call build_variant(v, r%row%number, r%m, r%row%rejected)
+         r%is_over = r%row%rejected /= ''
+         if (r%is_over) return
+         call renew_run(r, is_done)
+         if (is_done) return
+         call check_variant(r%m, findings, r%row)
          r%is_over = r%row%rejected /= ''
          if (.not. r%is_over) call begin_run(r, findings)
       end subroutine start
 
-      !> Makes the variant of `v` whose `row` this is, from the one that `variant` was, and finds its structure,
-      !> starting from the `findings` of the one before; what the checks say stands in the row.
-      subroutine make_variant(row, variant, findings)
+      !> Finds the structure of the `variant` whose `row` this is; what the checks say stands in the row.
+      subroutine check_variant(variant, findings, row)
+         type(mechanism_t), intent(in) :: variant
+         type(findings_t), intent(out) :: findings
          type(variant_row_t), intent(inout) :: row
-         type(mechanism_t), intent(inout) :: variant
-         type(findings_t), intent(inout) :: findings
          character(:), allocatable :: faults
 
-         call build_variant(v, row%number, variant, row%rejected)
-         if (row%rejected /= '') return
-         call find_structure_again(variant, findings)
+         findings = find_structure(variant)
          faults = faults_text(variant, findings, variant%set_number)
          row%rejected = faults(:index(faults//new_line('a'), new_line('a')) - 1)
-      end subroutine make_variant
+      end subroutine check_variant
 
       !> Solves and writes the variant of `v` whose `row` this is, of set number `i`: it is `variant` now. `full`: its
-      !> tables are asked for. `findings`: as above.
-      subroutine run_variant(variant, findings, row)
+      !> tables are asked for.
+      subroutine run_variant(variant, row)
          type(mechanism_t), intent(inout) :: variant
-         type(findings_t), intent(inout) :: findings
          type(variant_row_t), intent(inout) :: row
+         type(findings_t) :: findings
          type(answers_t) :: asked
 
-         call make_variant(row, variant, findings)
+         call build_variant(v, row%number, variant, row%rejected)
+         if (row%rejected == '') call check_variant(variant, findings, row)
          if (row%rejected == '') then
             if (full .and. o%asked(out_listing)) o%layout = new_layout(variant)
             if (o%asked(out_log)) call log_head(o%files(out_log, 0), variant, options%errors)

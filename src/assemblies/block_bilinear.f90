@@ -89,7 +89,7 @@ contains
       associate (g => b%loops(m))
          if (g%kind == loop_projection) then
             call find_direction(f%group_t, g%orientation_column, g%orientation, s, one%at, one%factor)
-            one%factor = one%factor*cmplx(g%direction(1), g%direction(2), wp)
+            one%factor = one%factor*cmplx(b%numbers%loops(m)%direction%x, b%numbers%loops(m)%direction%y, wp)
          end if
          if (g%row_x > 0) call add(g%row_x)
          one%factor = i_unit

@@ -2,6 +2,7 @@
 !> of each slide; the other group has their conjugates. Vector loops are linear forms of a group.
 module isotropic
    use kinds, only: wp
+   use planar, only: length_of
    use blocks, only: blocks_t, loop_angles
    use block_state, only: state_t
    implicit none
@@ -90,8 +91,8 @@ contains
       integer, intent(in) :: i, row
       type(state_t), intent(in) :: s
 
-      associate (r => b%rows(b%list(i)%first_row + row - 1))
-         given = r%constant + s%drive_value(0, r%drive)
+      associate (k => b%list(i)%first_row + row - 1)
+         given = b%numbers%rows(k)%constant + s%drive_value(0, b%rows(k)%drive)
       end associate
    end function given
 
@@ -153,13 +154,13 @@ contains
       do k = b%loops(m)%first_own, b%loops(m)%last_vector
          associate (d => b%body_vectors(k))
             call find_direction(f, d%column, d%orientation, s, at, factor)
-            l(at) = l(at) + factor*cmplx(d%x, d%y, wp)
+            l(at) = l(at) + factor*cmplx(b%numbers%d(k)%x, b%numbers%d(k)%y, wp)
          end associate
       end do
       do k = b%loops(m)%first_slide, b%loops(m)%last_slide
          associate (e => b%slides(k))
             call find_direction(f, e%orientation_column, e%orientation, s, at, factor)
-            factor = factor*cmplx(e%body_vector(1), e%body_vector(2), wp)
+            factor = factor*cmplx(b%numbers%e(k)%x, b%numbers%e(k)%y, wp)
             value = s%u(e%unknown)%value
             if (e%column > 0) then
                value = f%offset(e%column)
@@ -182,13 +183,13 @@ contains
       integer :: k
 
       associate (g => b%loops(m))
-         size_of = norm2(g%ground)
+         size_of = length_of(b%numbers%loops(m)%ground)
          do k = g%first_vector, g%last_vector
-            size_of = size_of + hypot(b%body_vectors(k)%x, b%body_vectors(k)%y)
+            size_of = size_of + hypot(b%numbers%d(k)%x, b%numbers%d(k)%y)
          end do
          do k = g%first_slide, g%last_slide
             associate (e => b%slides(k))
-               size_of = size_of + norm2(e%body_vector)*merge(1.0_wp, abs(s%u(e%unknown)%value), e%column > 0)
+               size_of = size_of + length_of(b%numbers%e(k))*merge(1.0_wp, abs(s%u(e%unknown)%value), e%column > 0)
             end associate
          end do
       end associate

@@ -6,7 +6,7 @@ module planar
    implicit none
    private
    public :: pi, degree, in_degrees, without_turns
-   public :: direction, rotated, quarter_turn, cross, point_of, add_rotating
+   public :: vector_t, xy, length_of, direction, rotated, quarter_turn, cross, point_of, add_rotating
    public :: turning, turning_change, scaled, dotted, turned
 
    real(wp), parameter :: pi = 3.14159265358979323846264338327950288419716939937510_wp
@@ -15,7 +15,26 @@ module planar
    !> The largest power of 10 without a rounding error: its power of 5 fits in the digits of `wp`.
    integer, parameter :: exact_power = int(digits(1.0_wp)*(log10(2.0)/log10(5.0)))
 
+   type :: vector_t
+      real(wp) :: x = 0.0_wp, y = 0.0_wp
+   end type vector_t
+
 contains
+
+   !> (2) `v` as an array.
+   pure function xy(v)
+      type(vector_t), intent(in) :: v
+      real(wp) :: xy(2)
+
+      xy = [v%x, v%y]
+   end function xy
+
+   !> The length of `v`.
+   elemental real(wp) function length_of(v) result(length)
+      type(vector_t), intent(in) :: v
+
+      length = norm2([v%x, v%y])
+   end function length_of
 
    !> `angle` (rad, or rad per unit of time to any power) in degrees. Degrees of a deck with at most precision(1.0_wp)
    !> digits come back as they were: several numbers of degrees have the same nearest radians, and the one with the

@@ -97,7 +97,7 @@ contains
       do k = 1, size(e%moving)
          associate (i => e%moving(k))
             is_short = e%change <= short_step .or. e%followed(i)%pivot + e%found(i)%pivot &
-               <= short_pivots*e%blocks%list(i)%lipschitz
+               <= short_pivots*e%blocks%numbers%blocks(i)%lipschitz
             if (e%crossed(i)) is = is .and. is_short
             if (.not. crosses) is = is .or. is_short
          end associate
@@ -105,7 +105,7 @@ contains
       if (.not. is) return
       right = right_part*(short_step/max(short_step, e%change))**2
       driven = abs(e%t - e%history%t(0))*largest_drive_rate(e%state)
-      rounded = rounding*e%blocks%list(e%moving)%lipschitz/e%followed(e%moving)%pivot**2*max(e%change, driven)
+      rounded = rounding*e%blocks%numbers%blocks(e%moving)%lipschitz/e%followed(e%moving)%pivot**2*max(e%change, driven)
       if (crosses) then
          right = right*e%change + minval(rounded, mask=e%crossed(e%moving))
       else

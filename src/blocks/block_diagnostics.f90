@@ -211,7 +211,7 @@ contains
          integer :: fastest
 
          left = 0.0_wp
-         if (e%followed(i)%pivot > near_pivot*e%blocks%list(i)%lipschitz) return
+         if (e%followed(i)%pivot > near_pivot*e%blocks%numbers%blocks(i)%lipschitz) return
          associate (past => e%history%past, step => t - e%history%t(0), &
                     u => e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last))
             if (size(u) == 0) return
@@ -312,8 +312,8 @@ contains
       has_first = .false.
       do m = e%blocks%list(i)%first_loop, e%blocks%list(i)%last_loop
          do k = e%blocks%loops(m)%first_own, e%blocks%loops(m)%last_vector
-            associate (body_vector => e%blocks%body_vectors(k))
-               angle_offset = value(body_vector%orientation) + atan2(body_vector%y, body_vector%x)
+            associate (body_vector => e%blocks%numbers%d(k))
+               angle_offset = value(e%blocks%body_vectors(k)%orientation) + atan2(body_vector%y, body_vector%x)
             end associate
             if (.not. has_first) first = angle_offset
             has_first = .true.

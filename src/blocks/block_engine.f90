@@ -10,20 +10,21 @@ module block_engine
    use drives, only: new_law, find_drive_motion
    use convergence, only: convergence_t, is_solved, gather, ended_converged, ended_singular
    use engine, only: engine_t, engine_checkpoint_t
-   use predictor, only: history_t, new_history, remember, predict, largest_change, uncertain_part
-   use blocks, only: blocks_t, moving_blocks, needed_blocks, iterated_unknowns, largest_known
-   use block_state, only: state_t, new_state
+   use predictor, only: history_t, new_history, forget, remember, predict, largest_change, uncertain_part
+   use blocks, only: blocks_t, numbers_t, moving_blocks, needed_blocks, iterated_unknowns, largest_known
+   use block_numbers, only: put_numbers
+   use block_state, only: unknown_t, loop_state_t, state_t, new_state
    use block_solver, only: workspace_t, make_workspace, solve_direct, solve_equations
    use first_position, only: solve_first_block, remove_turns
    use singular_place, only: settle
    use block_rank, only: jacobian_of, relative_sign
-   use link_motion, only: chain_t, new_chain, put_numbers, move_links, move_found_links, mark_links, missing_nothing, &
+   use link_motion, only: chain_t, new_chain, put_chain, move_links, move_found_links, mark_links, missing_nothing, &
       missing_rates, missing_all
    implicit none
    private
    public :: block_engine_t, block_checkpoint_t, positions_t
-   public :: make_block_engine, put_mechanism, solve_blocks, solve_again, solve_each, begin_record, set_drive_values, &
-      slide_units
+   public :: make_block_engine, renew_block_engine, put_mechanism, solve_blocks, solve_again, solve_each, &
+      begin_record, set_drive_values, slide_units
 
    !> Positions of one block (unknowns, any number).
    type :: positions_t
@@ -99,12 +100,12 @@ contains
          call make_block_engine(e, m, own)
          return
       end if
-      e%span = structure%span
-      e%length = structure%length
-      e%tolerance = m%tolerance
       call move_alloc(structure%blocks, e%blocks)
+      e%span = e%blocks%numbers%span
+      e%length = e%blocks%numbers%equations%length
+      e%tolerance = m%tolerance
       e%redundant = e%blocks%redundant
-      if (e%blocks%solvable) call prepare(e, m, structure%tree)
+      if (e%blocks%solvable) call prepare(e, m, e%blocks%tree)
    end subroutine make_block_engine
 
    !> Everything of the engine `e` of `m` that comes from its blocks and its tree `t`.
@@ -121,8 +122,10 @@ contains
       e%history%order = m%predictor
       e%depends_on_history = size(e%history%predicted) > 0
       call make_workspace(e%work, e%blocks)
-      e%chain = new_chain(m, t, wanted_links(m), e%blocks%orientations, e%blocks%unit)
-      e%whole = new_chain(m, t, spread(.true., 1, size(m%links)), e%blocks%orientations, e%blocks%unit)
+      associate (axes => e%blocks%numbers%equations%axes, unit => e%blocks%numbers%unit)
+         e%chain = new_chain(m, t, axes, wanted_links(m), e%blocks%orientations, unit)
+         e%whole = new_chain(m, t, axes, spread(.true., 1, size(m%links)), e%blocks%orientations, unit)
+      end associate
       e%orientation_of = t%orientation
       e%is_found = wanted_links(m) .and. t%orientation > 0
       do i = 1, size(m%links)
@@ -137,40 +140,92 @@ contains
       end associate
       allocate (e%laws(size(m%drives)), e%is_angle(size(m%drives)), e%unit_of(size(m%drives)))
       allocate (e%estimate(3, size(m%links)), e%estimated(0:e%blocks%unknowns))
-      call put_estimate(e, m, t)
+      call put_estimate(e, m)
    end subroutine prepare
 
-   !> Gives the engine `e`, whose blocks have the numbers of `m` and its tree `t`, all other numbers of these.
-   subroutine put_mechanism(e, m, t)
+   !> Gives the engine `e` the numbers of `m`, a mechanism with the links, points, pairs and drives of that for which it
+   !> was made; its state stays. `fits`: see `put_numbers`; otherwise `e` is of no use.
+   subroutine put_mechanism(e, m, fits)
       type(block_engine_t), intent(inout) :: e
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
+      logical, intent(out) :: fits
+      type(numbers_t), allocatable :: x
 
-      call put_numbers(m, t, e%blocks%orientations, e%chain, e%blocks%unit)
-      call put_numbers(m, t, e%blocks%orientations, e%whole, e%blocks%unit)
-      call put_estimate(e, m, t)
+      call move_alloc(e%blocks%numbers, x)
+      call put_numbers(m, e%blocks, x, fits)
+      call move_alloc(x, e%blocks%numbers)
+      if (.not. fits) return
+      e%span = e%blocks%numbers%span
+      e%length = e%blocks%numbers%equations%length
+      associate (b => e%blocks, axes => e%blocks%numbers%equations%axes)
+         call put_chain(m, b%tree, axes, b%orientations, e%chain, b%numbers%unit)
+         call put_chain(m, b%tree, axes, b%orientations, e%whole, b%numbers%unit)
+      end associate
+      call put_estimate(e, m)
    end subroutine put_mechanism
 
-   !> The estimate that `m` gives, the laws of its drives and the units of their values.
-   subroutine put_estimate(e, m, t)
+   !> Makes `e`, the engine of a variant of `m`, ready for the first instant of `m`, as `make_block_engine` makes it,
+   !> with the blocks and the memory that it has. `is_done`: they fit; otherwise `e` is of no use. Not where a block has
+   !> factors of KLU: the pivots of one variant would be those of the next.
+   subroutine renew_block_engine(e, m, is_done)
       type(block_engine_t), intent(inout) :: e
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
+      logical, intent(out) :: is_done
+
+      is_done = e%blocks%solvable
+      if (is_done) is_done = all(e%blocks%list%shape%pattern == 0)
+      if (is_done) call put_mechanism(e, m, is_done)
+      if (is_done) call forget_motions(e)
+   end subroutine renew_block_engine
+
+   !> As if `e` had solved nothing yet; its workspace is scratch.
+   subroutine forget_motions(e)
+      type(block_engine_t), intent(inout) :: e
+      integer :: i
+
+      e%excursion = 0.0_wp
+      call forget(e%history)
+      e%state%u = unknown_t()
+      e%state%loop = loop_state_t()
+      e%state%own = 0.0_wp
+      e%state%guide = 0.0_wp
+      e%state%drive_value = 0.0_wp
+      e%state%excursion = 0.0_wp
+      e%t = 0.0_wp
+      e%change = 0.0_wp
+      e%one = convergence_t()
+      do i = 1, size(e%others)
+         if (allocated(e%others(i)%x)) deallocate (e%others(i)%x)
+      end do
+      if (allocated(e%jacobian)) deallocate (e%jacobian)
+      e%found%sign_of = 1
+      e%found%pivot = 1.0_wp
+      e%found%inverse = 0.0_wp
+      e%followed(:) = e%found
+      e%crossed = .false.
+      e%is_close = .false.
+      e%is_singular = .false.
+   end subroutine forget_motions
+   !> The estimate that `m` gives, the laws of its drives and the units of their values.
+   subroutine put_estimate(e, m)
+      type(block_engine_t), intent(inout) :: e
+      type(mechanism_t), intent(in) :: m
       integer :: i
 
       do i = 1, size(m%links)
          e%estimate(:, i) = m%links(i)%position - [e%chain%origin, 0.0_wp]
       end do
       ! As a section: a function's result would bring its own lower bound.
-      e%estimated(:) = estimated_values(m, t, e%length, e%blocks%unknowns, e%span)/e%blocks%unit
+      e%estimated(:) = estimated_values(m, e%blocks%tree, e%blocks%numbers%equations%axes, e%length, &
+         e%blocks%unknowns, e%span)/e%blocks%numbers%unit
       do i = 1, size(m%drives)
          e%laws(i) = new_law(m%drives(i))
          e%is_angle(i) = all(m%drives(i)%kind /= [drive_x, drive_y, drive_slide])
          e%unit_of(i) = merge(1.0_wp, 1.0_wp/e%length, e%is_angle(i))
       end do
       do i = 1, size(e%blocks%rows)
-         associate (row => e%blocks%rows(i))
-            if (row%drive > 0) e%unit_of(row%drive) = e%unit_of(row%drive)/row%unit
+         associate (drive => e%blocks%rows(i)%drive)
+            if (drive > 0) e%unit_of(drive) = e%unit_of(drive)/e%blocks%numbers%rows(i)%unit
          end associate
       end do
    end subroutine put_estimate
@@ -255,7 +310,7 @@ contains
                call solve_direct(e%blocks, i, e%state)
                cycle
             else if (follows) then
-               call solve_equations(e%blocks, i, block, e%tolerance, e%work, e%state, one)
+               call solve_equations(e%blocks, i, block, e%blocks%numbers%blocks(i), e%tolerance, e%work, e%state, one)
                c%change = max(c%change, one%change)
                if (block%shape%rows > block%shape%n .and. is_solved(one)) &
                   one%determinant = e%followed(i)%sign_of*relative_sign(e%blocks, i, e%jacobian, e%state)
@@ -272,8 +327,8 @@ contains
             if (one%singular) cycle
             if (e%crossed(i)) c%keeps_signs = .false.
             c%kantorovich_ratio = max(c%kantorovich_ratio, one%kantorovich_ratio)
-            if (e%state%excursion > 0.0_wp) &
-               c%growth = max(c%growth, block%lipschitz*max(one%inverse, e%followed(i)%inverse)**2)
+            if (e%state%excursion > 0.0_wp) c%growth = max(c%growth, &
+               e%blocks%numbers%blocks(i)%lipschitz*max(one%inverse, e%followed(i)%inverse)**2)
             e%found(i) = jacobian_t(one%determinant, one%min_pivot, one%inverse)
          end associate
       end do
@@ -393,7 +448,7 @@ contains
       type(block_engine_t), intent(in) :: e
       real(wp) :: unit(0:e%blocks%unknowns)
 
-      unit = e%blocks%unit
+      unit = e%blocks%numbers%unit
       unit(e%blocks%orientations + 1:) = unit(e%blocks%orientations + 1:)*e%length
    end function slide_units
 end module block_engine

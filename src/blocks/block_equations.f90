@@ -3,9 +3,10 @@
 !> of that order.
 module block_equations
    use kinds, only: wp
-   use planar, only: rotated, quarter_turn, cross
+   use planar, only: vector_t, rotated, quarter_turn, cross
    use block_matrix, only: entries_of
-   use blocks, only: blocks_t, row_t, block_loop_t, body_vector_t, slide_t, loop_projection, loop_angles
+   use blocks, only: blocks_t, row_t, block_loop_t, body_vector_t, slide_t, row_numbers_t, loop_projection, &
+      loop_angles
    use block_state, only: state_t, unknown_t, loop_state_t, slide_velocity, slide_acceleration
    implicit none
    private
@@ -44,15 +45,16 @@ contains
                   if (g%orientation_at > 0) a(g%orientation_at) = a(g%orientation_at) + 1.0_wp
                   if (g%less_at > 0) a(g%less_at) = a(g%less_at) - 1.0_wp
                else
-                  call find_closure_error(g, b%body_vectors, b%slides, s%u, s%own, s%guide, s%loop(m)%known, &
-                     s%loop(m)%closure_error)
-                  call position_rows(g, b%body_vectors, b%slides, s%u, s%own, s%guide, s%loop(m), a, r)
+                  call find_closure_error(g, b%body_vectors, b%numbers%d, b%slides, b%numbers%e, s%u, s%own, s%guide, &
+                     s%loop(m)%known, s%loop(m)%closure_error)
+                  call position_rows(g, b%numbers%loops(m)%direction, b%body_vectors, b%slides, s%u, s%own, s%guide, &
+                     s%loop(m), a, r)
                end if
                call velocity_rows(g, b%slides, s%u, s%guide, s%loop(m), v)
             end associate
          end do
-         if (block%has_right_sides) &
-            call take_right_sides(block%first_row, block%last_row, b%rows, s%drive_value, r, v)
+         if (b%numbers%blocks(i)%has_right_sides) &
+            call take_right_sides(block%first_row, block%last_row, b%rows, b%numbers%rows, s%drive_value, r, v)
       end associate
    end subroutine assemble_with_velocities
 
@@ -73,15 +75,16 @@ contains
 
    !> Subtracts from `r` what the equations number `first` to `last` are equal to, their constants and the `values` of
    !> drives, and adds the rates of these to `v`.
-   pure subroutine take_right_sides(first, last, rows, values, r, v)
+   pure subroutine take_right_sides(first, last, rows, numbers, values, r, v)
       integer, intent(in) :: first, last
       type(row_t), intent(in) :: rows(*)
+      type(row_numbers_t), intent(in) :: numbers(*)
       real(wp), intent(in) :: values(0:2, 0:*)
       real(wp), intent(inout) :: r(*), v(*)
       integer :: k
 
       do k = first, last
-         r(k - first + 1) = r(k - first + 1) - rows(k)%constant - values(0, rows(k)%drive)
+         r(k - first + 1) = r(k - first + 1) - numbers(k)%constant - values(0, rows(k)%drive)
          v(k - first + 1) = v(k - first + 1) + values(1, rows(k)%drive)
       end do
    end subroutine take_right_sides
@@ -114,11 +117,13 @@ contains
    end subroutine assemble_dense
 
    !> The `closure_error` of loop `g`, of which `known` is known, and the vectors that the block's own angles among `u`
-   !> rotate: `own` and, of slides, `guide`. On plain arrays, which cost no descriptors, as all that a step does often.
-   pure subroutine find_closure_error(g, vectors, slides, u, own, guide, known, closure_error)
+   !> rotate: `own` and, of slides, `guide`; in their axes they are `d` and `e`. On plain arrays, which cost no
+   !> descriptors, as all that a step does often.
+   pure subroutine find_closure_error(g, vectors, d, slides, e, u, own, guide, known, closure_error)
       type(block_loop_t), intent(in) :: g
       type(body_vector_t), intent(in) :: vectors(*)
       type(slide_t), intent(in) :: slides(*)
+      type(vector_t), intent(in) :: d(*), e(*)
       type(unknown_t), intent(in) :: u(0:*)
       real(wp), intent(inout) :: own(2, *), guide(2, *)
       real(wp), intent(in) :: known(2, 0:2)
@@ -128,10 +133,11 @@ contains
 
       x = known(1, 0)
       y = known(2, 0)
-      call turn_vectors(g%first_own, g%last_vector, vectors, u, own, x, y)
+      call turn_vectors(g%first_own, g%last_vector, vectors, d, u, own, x, y)
       do k = g%first_slide, g%last_slide
          associate (f => u(slides(k)%orientation), s => u(slides(k)%unknown)%value)
-            guide(:, k) = rotated(slides(k)%body_vector, [f%c, f%s])
+            guide(1, k) = e(k)%x*f%c - e(k)%y*f%s
+            guide(2, k) = e(k)%x*f%s + e(k)%y*f%c
             x = x + s*guide(1, k)
             y = y + s*guide(2, k)
          end associate
@@ -141,15 +147,16 @@ contains
    end subroutine find_closure_error
 
    !> Body vectors number `first` to `last`, rotated by their angles among `u`, go to `own`; x and y grow by their sum.
-   pure subroutine turn_vectors(first, last, vectors, u, own, x, y)
+   pure subroutine turn_vectors(first, last, vectors, d_of, u, own, x, y)
       integer, intent(in) :: first, last
       type(body_vector_t), intent(in) :: vectors(*)
+      type(vector_t), intent(in) :: d_of(*)
       type(unknown_t), intent(in) :: u(0:*)
       real(wp), intent(inout) :: own(2, *), x, y
       integer :: k
 
       do k = first, last
-         associate (f => u(vectors(k)%orientation), d => vectors(k))
+         associate (f => u(vectors(k)%orientation), d => d_of(k))
             own(1, k) = f%c*d%x - f%s*d%y
             own(2, k) = f%s*d%x + f%c*d%y
             x = x + own(1, k)
@@ -158,9 +165,10 @@ contains
       end do
    end subroutine turn_vectors
 
-   !> Jacobian and residual in the rows of loop `g`, whose state is `now`.
-   pure subroutine position_rows(g, vectors, slides, u, own, guide, now, a, r)
+   !> Jacobian and residual in the rows of loop `g`, whose state is `now`; a projection is on `direction`.
+   pure subroutine position_rows(g, direction, vectors, slides, u, own, guide, now, a, r)
       type(block_loop_t), intent(in) :: g
+      type(vector_t), intent(in) :: direction
       type(body_vector_t), intent(in) :: vectors(*)
       type(slide_t), intent(in) :: slides(*)
       type(unknown_t), intent(in) :: u(0:*)
@@ -169,7 +177,7 @@ contains
       real(wp), intent(inout) :: a(*), r(*)
 
       if (g%kind == loop_projection) then
-         now%f = rotated(g%direction, [u(g%orientation)%c, u(g%orientation)%s])
+         now%f = rotated([direction%x, direction%y], [u(g%orientation)%c, u(g%orientation)%s])
          call projection_row(g, vectors, own, now%closure_error, now%f, a, r)
          if (g%last_slide >= g%first_slide) call slide_entries(g, 1, now%f, slides, u, guide, a)
          if (g%orientation_at > 0) a(g%orientation_at) = a(g%orientation_at) + cross(now%f, now%closure_error)
@@ -250,7 +258,7 @@ contains
             call acceleration_rows(block%first_loop, block%last_loop, b%loops, b%body_vectors, b%slides, s%u, s%own, &
                s%guide, s%loop, v)
          end if
-         if (block%has_right_sides) &
+         if (b%numbers%blocks(i)%has_right_sides) &
             call add_drives(block%first_row, block%last_row, b%rows, order, s%drive_value, v)
       end associate
    end subroutine right_hand_side

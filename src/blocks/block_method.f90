@@ -95,8 +95,8 @@ contains
 
       growth = 0.0_wp
       do k = 1, size(e%needed)
-         associate (block => e%blocks%list(e%needed(k)))
-            if (block%direct) cycle
+         associate (block => e%blocks%numbers%blocks(e%needed(k)))
+            if (e%blocks%list(e%needed(k))%direct) cycle
             inverse = 1.0_wp/pivot_of(e, e%needed(k))
             growth = max(growth, block%lipschitz*inverse**2)
             if (block%coarse > usual_coarse) &
@@ -114,8 +114,8 @@ contains
 
       growth = 1.0_wp
       do k = 1, size(e%needed)
-         associate (block => e%blocks%list(e%needed(k)))
-            if (block%direct) cycle
+         associate (block => e%blocks%numbers%blocks(e%needed(k)))
+            if (e%blocks%list(e%needed(k))%direct) cycle
             inverse = 1.0_wp/pivot_of(e, e%needed(k))
             growth = max(growth, block%coarse*inverse*max(1.0_wp, (block%lipschitz*inverse)**2/rate_digits))
          end associate

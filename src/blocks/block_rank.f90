@@ -265,7 +265,7 @@ contains
       end if
       call assemble_dense(b, i, s, a, v%r)
       ! A block of one unknown has nothing but its own body vectors to be compared with.
-      call decompose(a, b%list(i)%lipschitz, v)
+      call decompose(a, b%numbers%blocks(i)%lipschitz, v)
    end function decomposed
 
    !> Singular values and vectors of `a` (v%rows*v%n), of which those count as zero that are small beside the largest

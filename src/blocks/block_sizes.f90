@@ -1,6 +1,7 @@
 !> How large the numbers are that go into the equations of a block, and what these hold beyond their linear part.
 module block_sizes
    use kinds, only: wp
+   use planar, only: length_of
    use blocks, only: blocks_t, block_loop_t, loop_projection, loop_angles
    use block_state, only: state_t, unknown_t
    implicit none
@@ -57,13 +58,13 @@ contains
 
       do m = b%list(i)%first_loop, b%list(i)%last_loop
          associate (g => b%loops(m))
-            size_of = max(g%coarse, abs(s%u(g%orientation)%value), abs(s%u(g%less)%value))
+            size_of = max(b%numbers%loops(m)%coarse, abs(s%u(g%orientation)%value), abs(s%u(g%less)%value))
             do k = g%first_own, g%last_vector
                size_of = max(size_of, abs(s%u(b%body_vectors(k)%orientation)%value))
             end do
             do k = g%first_slide, g%last_slide
                associate (slide => b%slides(k))
-                  size_of = max(size_of, abs(s%u(slide%unknown)%value)*norm2(slide%body_vector), &
+                  size_of = max(size_of, abs(s%u(slide%unknown)%value)*length_of(b%numbers%e(k)), &
                      abs(s%u(slide%orientation)%value))
                end associate
             end do
@@ -89,7 +90,7 @@ contains
             first = 0.0_wp
             second = 0.0_wp
             do k = g%first_own, g%last_vector
-               associate (length => hypot(b%body_vectors(k)%x, b%body_vectors(k)%y), &
+               associate (length => hypot(b%numbers%d(k)%x, b%numbers%d(k)%y), &
                   turn => change(b%body_vectors(k)%column))
                   first = first + length*turn
                   second = second + length*turn**2
@@ -98,8 +99,8 @@ contains
             do k = g%first_slide, g%last_slide
                associate (slide => b%slides(k), turn => change(b%slides(k)%orientation_column), &
                   length => abs(s%u(b%slides(k)%unknown)%value))
-                  first = first + norm2(slide%body_vector)*(change(slide%column) + length*turn)
-                  second = second + norm2(slide%body_vector)*turn*(2.0_wp*change(slide%column) + length*turn)
+                  first = first + length_of(b%numbers%e(k))*(change(slide%column) + length*turn)
+                  second = second + length_of(b%numbers%e(k))*turn*(2.0_wp*change(slide%column) + length*turn)
                end associate
             end do
             if (g%kind == loop_projection) then
@@ -140,8 +141,8 @@ contains
 
       speed = 0.0_wp
       do k = g%first_vector, g%first_own - 1
-         associate (d => b%body_vectors(k))
-            speed = max(speed, hypot(d%x, d%y)*rate_of(s%u(d%orientation)))
+         associate (d => b%numbers%d(k))
+            speed = max(speed, hypot(d%x, d%y)*rate_of(s%u(b%body_vectors(k)%orientation)))
          end associate
       end do
       do k = g%first_slide, g%last_slide

@@ -18,7 +18,7 @@ module block_solver
    use nearby_matrix, only: nearby_t, solve_nearby, stay_near, set_aside
    use convergence, only: convergence_t, ended_converged, ended_stalled, ended_singular, ended_limit, ended_diverged, &
       ended_inconsistent, is_solved, note_closure_error, is_inconsistent, contradict
-   use blocks, only: blocks_t, block_t
+   use blocks, only: blocks_t, block_t, block_numbers_t
    use block_state, only: unknown_t, state_t, set_direction, find_direction, rotate_direction, set_rates, &
       set_accelerations, find_known_parts
    use block_equations, only: assemble_with_velocities, right_hand_side
@@ -91,7 +91,7 @@ contains
          call solve_direct(b, i, s)
          c%ended = ended_converged
       else
-         call solve_equations(b, i, b%list(i), tolerance, w, s, c)
+         call solve_equations(b, i, b%list(i), b%numbers%blocks(i), tolerance, w, s, c)
       end if
    end subroutine solve_block
 
@@ -102,10 +102,11 @@ contains
       type(state_t), intent(inout) :: s
       integer :: d
 
-      associate (u => s%u(b%unknown(b%list(i)%first)), row => b%rows(b%list(i)%first_row))
+      associate (u => s%u(b%unknown(b%list(i)%first)), row => b%rows(b%list(i)%first_row), &
+                 numbers => b%numbers%rows(b%list(i)%first_row))
          associate (other => s%u(row%other))
             d = row%drive
-            u%value = other%value + row%sign_of*(row%constant + s%drive_value(0, d))
+            u%value = other%value + row%sign_of*(numbers%constant + s%drive_value(0, d))
             u%rate = other%rate + row%sign_of*s%drive_value(1, d)
             u%acceleration = other%acceleration + row%sign_of*s%drive_value(2, d)
          end associate
@@ -113,13 +114,14 @@ contains
       call set_direction(b, b%unknown(b%list(i)%first), s)
    end subroutine solve_direct
 
-   !> The same of `block`, number `i`, which is not direct: Newton's method. Where it ends with a position, `w` holds
-   !> the velocities, in the second half of `r`, and the factors of the Jacobian there or of one beside it. Where that
-   !> Jacobian has no inverse, c%singular says so.
-   subroutine solve_equations(b, i, block, tolerance, w, s, c)
+   !> The same of `block`, number `i`, with its `numbers`, which is not direct: Newton's method. Where it ends with a
+   !> position, `w` holds the velocities, in the second half of `r`, and the factors of the Jacobian there or of one
+   !> beside it. Where that Jacobian has no inverse, c%singular says so.
+   subroutine solve_equations(b, i, block, numbers, tolerance, w, s, c)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(block_t), intent(in) :: block
+      type(block_numbers_t), intent(in) :: numbers
       real(wp), intent(in) :: tolerance
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
@@ -144,7 +146,7 @@ contains
          if (w%near%distance > 0.0_wp) call set_aside(w%a, w%near)
          c%residual = largest_size(block%shape%rows, w%r)
          if (block%shape%rows > block%shape%n) call note_closure_error(b, i, w%r, c)
-         is_closed = c%residual <= closed_level*max(size_of, block%coarse)
+         is_closed = c%residual <= closed_level*max(size_of, numbers%coarse)
          call solve_first_side(block%shape, w, w%r(merge(second, 1, is_closed)), info)
          if (is_closed) then
             c%step = 0.0_wp
@@ -153,20 +155,20 @@ contains
             exit
          end if
          if (info > 0) then
-            c%singular = c%residual <= max(rounding_level*max(size_of, block%coarse), tolerance)
+            c%singular = c%residual <= max(rounding_level*max(size_of, numbers%coarse), tolerance)
             c%ended = merge(ended_stalled, ended_singular, c%singular)
             exit
          end if
          c%step = largest_size(block%shape%n, w%r)
-         if (is_stalled(block%shape, c, before, max(size_of, block%coarse))) then
+         if (is_stalled(block%shape, c, before, max(size_of, numbers%coarse))) then
             c%ended = ended_stalled
          else
-            call move(b, block, w%r, s, c%step, tolerance, size_of, is_right)
+            call move(b, block, numbers, w%r, s, c%step, tolerance, size_of, is_right)
             if (is_right) c%ended = ended_converged
          end if
          before = c%step
          if (c%ended == ended_limit) then
-            call stay_near(block%shape, w%a, w%pivots, block%lipschitz*c%step, w%near)
+            call stay_near(block%shape, w%a, w%pivots, numbers%lipschitz*c%step, w%near)
             cycle
          end if
          call right_hand_side(b, i, 1, s, w%r(second))
@@ -174,7 +176,7 @@ contains
          exit
       end do
       if (c%iterations > 1 .or. c%step > 0.0_wp) c%change = largest_change(b, block, s, w%start)
-      call finish(b, i, block, w, s, c)
+      call finish(b, i, block, numbers, w, s, c)
    end subroutine solve_equations
 
    !> Solves for `v` (rows) with the Jacobian just assembled, which is factored unless factors of one beside it serve;
@@ -244,9 +246,10 @@ contains
 
    !> Applies the correction `d`, whose largest is `step`; `size_of`: the largest value, 1 at least. `is_right`: each
    !> was at the rounding level of its own value, or within the `tolerance`: beside a long slide an angle is not.
-   subroutine move(b, block, d, s, step, tolerance, size_of, is_right)
+   subroutine move(b, block, numbers, d, s, step, tolerance, size_of, is_right)
       type(blocks_t), intent(in) :: b
       type(block_t), intent(in) :: block
+      type(block_numbers_t), intent(in) :: numbers
       real(wp), intent(in) :: d(*)
       type(state_t), intent(inout) :: s
       real(wp), intent(in) :: step, tolerance
@@ -262,7 +265,7 @@ contains
             s%u(u)%value = s%u(u)%value - d(k)
             own = max(1.0_wp, abs(s%u(u)%value))
             size_of = max(size_of, own)
-            is_right = is_right .and. abs(d(k)) <= max(step_tolerance*max(own, block%coarse), tolerance)
+            is_right = is_right .and. abs(d(k)) <= max(step_tolerance*max(own, numbers%coarse), tolerance)
             if (step <= small_turn) then
                call rotate_direction(b, u, -d(k), s)
             else
@@ -300,10 +303,11 @@ contains
 
    !> Velocities and accelerations of a position, unless equations contradict one another or the Jacobian is near to
    !> having no inverse.
-   subroutine finish(b, i, block, w, s, c)
+   subroutine finish(b, i, block, numbers, w, s, c)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(block_t), intent(in) :: block
+      type(block_numbers_t), intent(in) :: numbers
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
@@ -312,7 +316,7 @@ contains
       if (.not. is_solved(c)) return
       if (block%shape%rows > block%shape%n .and. is_inconsistent(c)) c%ended = ended_inconsistent
       if (c%ended == ended_inconsistent) return
-      if (.not. c%singular) call judge(b, i, block, w, s, c)
+      if (.not. c%singular) call judge(b, i, block, numbers, w, s, c)
       if (c%singular) return
       associate (rows => block%shape%rows, n => block%shape%n)
          call set_rates(block%first, block%last, b%unknown, w%r(rows + 1), s%u)
@@ -321,8 +325,8 @@ contains
          call set_accelerations(block%first, block%last, b%unknown, w%r, s%u)
          if (rows == n) return
          rates = largest_rates(b, i, s)
-         c%rates_open = contradict(w%r(rows + n + 1:2*rows), rates(1), block%coarse) &
-            .or. contradict(w%r(n + 1:rows), max(rates(2), rates(1)**2), block%coarse)
+         c%rates_open = contradict(w%r(rows + n + 1:2*rows), rates(1), numbers%coarse) &
+            .or. contradict(w%r(n + 1:rows), max(rates(2), rates(1)**2), numbers%coarse)
       end associate
    end subroutine finish
 
@@ -330,10 +334,11 @@ contains
    !> leaves the velocities open: with B = |J^-1| and the residual known to h, the position is known to B h, the
    !> Jacobian to B h times its Lipschitz constant L, the velocities to B times that. Newton and Kantorovich: one root
    !> only where B L change is below 1/2.
-   subroutine judge(b, i, block, w, s, c)
+   subroutine judge(b, i, block, numbers, w, s, c)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(block_t), intent(in) :: block
+      type(block_numbers_t), intent(in) :: numbers
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(in) :: s
       type(convergence_t), intent(inout) :: c
@@ -355,14 +360,14 @@ contains
       if (n == 0) return
       c%min_pivot = least
       if (n > 1) c%reciprocal_condition = least/largest
-      if (n == 1) largest = block%lipschitz
+      if (n == 1) largest = numbers%lipschitz
       ! All pivots may be small, where links are much shorter than the mechanism.
       suspicious = least < suspicious_pivot*max(largest, 1.0_wp)
       if (n > 2) then
          c%inverse = 1.0_wp/max(least, min_inverse)
-         c%kantorovich_ratio = c%change*block%lipschitz*c%inverse
+         c%kantorovich_ratio = c%change*numbers%lipschitz*c%inverse
          if (.not. suspicious .and. c%kantorovich_ratio <= small_kantorovich_ratio .and. &
-            s%excursion*block%lipschitz*c%inverse**2*real(n, wp)**4 <= small_growth) return
+            s%excursion*numbers%lipschitz*c%inverse**2*real(n, wp)**4 <= small_growth) return
       end if
       if (is_single) then
          inverse = 1.0_wp/least
@@ -370,14 +375,14 @@ contains
          inverse = inverse_norm(block%shape, w%a, w%sparse(k), w%work, w%iwork)
       end if
       c%inverse = min(inverse, 1.0_wp/min_inverse)
-      c%kantorovich_ratio = c%change*block%lipschitz*inverse
+      c%kantorovich_ratio = c%change*numbers%lipschitz*inverse
       if (.not. suspicious) return
       c%reciprocal_condition = min(1.0_wp, 1.0_wp/(inverse*largest))
-      size_of = block%coarse
+      size_of = numbers%coarse
       do k = block%first, block%last
          size_of = max(size_of, abs(s%u(b%unknown(k))%value))
       end do
-      c%singular = inverse*inverse*block%lipschitz*rounding_level*size_of >= largest_error
+      c%singular = inverse*inverse*numbers%lipschitz*rounding_level*size_of >= largest_error
       if (c%singular) c%singular = is_beyond_linear(b, i, n, w, s)
    end subroutine judge
 

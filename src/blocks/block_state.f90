@@ -7,8 +7,8 @@
 !> and a projection on f = R(phi_c) f_0 adds phi_c' g . f' and its derivative, as in `prismatic_pair`.
 module block_state
    use kinds, only: wp
-   use planar, only: add_rotating, quarter_turn
-   use blocks, only: blocks_t, block_loop_t, body_vector_t, slide_t
+   use planar, only: vector_t, add_rotating, quarter_turn
+   use blocks, only: blocks_t, block_loop_t, body_vector_t, slide_t, loop_numbers_t
    implicit none
    private
    public :: unknown_t, loop_state_t, state_t, new_state, set_direction, find_direction, rotate_direction, set_values, &
@@ -143,26 +143,31 @@ contains
       type(state_t), intent(inout) :: s
 
       associate (block => b%list(i))
-         call find_known(block%first_loop, block%last_loop, b%loops, b%body_vectors, s%u, s%loop)
+         call find_known(block%first_loop, block%last_loop, b%loops, b%numbers%loops, b%body_vectors, b%numbers%d, &
+            s%u, s%loop)
       end associate
    end subroutine find_known_parts
 
-   !> The same of the loops number `first` to `last`; on plain arrays, which cost no descriptors.
-   pure subroutine find_known(first, last, loops, vectors, u, now)
+   !> The same of the loops number `first` to `last` with the `numbers` and the body vectors `d_of`; on plain arrays,
+   !> which cost no descriptors.
+   pure subroutine find_known(first, last, loops, numbers, vectors, d_of, u, now)
       integer, intent(in) :: first, last
       type(block_loop_t), intent(in) :: loops(*)
+      type(loop_numbers_t), intent(in) :: numbers(*)
       type(body_vector_t), intent(in) :: vectors(*)
+      type(vector_t), intent(in) :: d_of(*)
       type(unknown_t), intent(in) :: u(0:*)
       type(loop_state_t), intent(inout) :: now(*)
       real(wp) :: x(2), x_t(2), x_tt(2)
       integer :: m, k
 
       do m = first, last
-         x = loops(m)%ground
+         x(1) = numbers(m)%ground%x
+         x(2) = numbers(m)%ground%y
          x_t = 0.0_wp
          x_tt = 0.0_wp
          do k = loops(m)%first_vector, loops(m)%first_own - 1
-            associate (f => u(vectors(k)%orientation), d => vectors(k))
+            associate (f => u(vectors(k)%orientation), d => d_of(k))
                call add_rotating(f%c*d%x - f%s*d%y, f%s*d%x + f%c*d%y, f%rate, f%acceleration, x, x_t, x_tt)
             end associate
          end do

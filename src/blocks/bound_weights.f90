@@ -1,6 +1,7 @@
 !> By how much at most the unknowns of a block change with its equations, for `rounding_bounds`.
 module bound_weights
    use kinds, only: wp
+   use planar, only: vector_t
    use blocks, only: body_vector_t
    use block_matrix, only: solve_first, solve_many
    use block_state, only: unknown_t, find_known_parts
@@ -29,6 +30,7 @@ contains
          if (is_plain_dyad(r%parts, e%blocks, e%blocks%list(i))) then
             associate (loop => e%blocks%loops(first))
                call weigh_dyad(e%blocks%body_vectors(loop%first_own:loop%last_vector), &
+                  e%blocks%numbers%d(loop%first_own:loop%last_vector), &
                   r%parts%parts(own:own + 1)%length, r%state%u, weights, are_found)
             end associate
             return
@@ -49,15 +51,16 @@ contains
    end subroutine find_weights
 
    !> The same of a dyad whose own body vectors are `vectors`, of the lengths `length` (2).
-   pure subroutine weigh_dyad(vectors, length, s, weights, are_found)
+   pure subroutine weigh_dyad(vectors, d, length, s, weights, are_found)
       type(body_vector_t), intent(in) :: vectors(2)
+      type(vector_t), intent(in) :: d(2)
       real(wp), intent(in) :: length(2)
       type(unknown_t), intent(in) :: s(0:)
       real(wp), intent(inout) :: weights(2)
       logical, intent(out) :: are_found
       real(wp) :: a(4), area
 
-      call dyad_jacobian(vectors, s, a)
+      call dyad_jacobian(vectors, d, s, a)
       area = abs(a(1)*a(4) - a(2)*a(3))
       are_found = area > 0.0_wp
       if (.not. are_found) return

@@ -118,7 +118,7 @@ contains
          associate (row => b%rows(b%list(i)%first_row + max(b%loops(m)%row_x, b%loops(m)%row_y) - 1))
             if (opening(b, m, r)/level_of(b, m) < (1.0_wp - alike)*largest) cycle
             if (row%pair < c%open%pair .or. (row%pair == 0 .and. row%drive < c%open%drive)) cycle
-            c%open = closure_error_t(opening(b, m, r), row%angular, b%loops(m)%unit, level_of(b, m), row%pair, &
+            c%open = closure_error_t(opening(b, m, r), row%angular, b%numbers%loops(m)%unit, level_of(b, m), row%pair, &
                row%drive)
          end associate
       end do
@@ -136,7 +136,7 @@ contains
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: m
 
-      level_of = max(1.0_wp, b%loops(m)%coarse*(roundings*epsilon(1.0_wp)/inconsistent_level))
+      level_of = max(1.0_wp, b%numbers%loops(m)%coarse*(roundings*epsilon(1.0_wp)/inconsistent_level))
    end function level_of
 
    !> By how much loop `m` is open.

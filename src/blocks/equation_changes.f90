@@ -8,7 +8,7 @@ module equation_changes
    use planar, only: direction, rotated, turning, turning_change, scaled, dotted, turned
    use mechanism, only: mechanism_t, pair_revolute, drive_angle, drive_relangle, drive_x, drive_y
    use number_changes, only: change_t
-   use links_tree, only: tree_t
+   use links_tree, only: tree_t, axes_t
    use loop_equations, only: equations_t
    use blocks, only: row_t
    implicit none
@@ -24,6 +24,7 @@ module equation_changes
    type :: response_t
       type(mechanism_t) :: m
       type(tree_t) :: tree
+      type(axes_t) :: axes
       type(equations_t) :: equations             !< with the terms of their loops
       integer, allocatable :: loop_of_pair(:), loop_of_drive(:)   !< 0: it closes none
       type(change_t), allocatable :: changes(:)  !< (directions)
@@ -187,7 +188,7 @@ contains
       real(wp) :: f(0:2)
 
       f = r%now(:, r%tree%orientation(link))
-      f(0) = f(0) + r%tree%angle_offset(link)
+      f(0) = f(0) + r%axes%angle_offset(link)
    end function angle_of
 
    !> Its change (0:2).

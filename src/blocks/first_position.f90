@@ -171,8 +171,9 @@ contains
             do m = block%first_loop, block%last_loop
                associate (g => b%loops(m))
                   if (g%kind /= loop_angles .or. g%orientation > b%orientations .or. g%orientation_column == 0) cycle
-                  associate (row => b%rows(block%first_row + g%row_x - 1))
-                     off = estimated(g%orientation) - estimated(g%less) - row%constant - drive_value(row%drive)
+                  associate (row => block%first_row + g%row_x - 1)
+                     off = estimated(g%orientation) - estimated(g%less) - b%numbers%rows(row)%constant &
+                        - drive_value(b%rows(row)%drive)
                   end associate
                   estimated(g%orientation) = estimated(g%orientation) - (off - without_turns(off))
                end associate

@@ -13,7 +13,7 @@ module initial_estimate
    use planar, only: direction, rotated, quarter_turn, cross, point_of, pi, without_turns
    use mechanism, only: mechanism_t, pair_revolute
    use scales, only: solver_length
-   use links_tree, only: tree_t
+   use links_tree, only: tree_t, axes_t
    implicit none
    private
    public :: estimated_values, estimated_directions
@@ -36,9 +36,10 @@ contains
 
    !> Values (0:unknowns) of angles and slides, lengths in units of `length`. `span`: the characteristic length of `m`
    !> for its equations, if it is known.
-   function estimated_values(m, t, length, unknowns, span) result(value)
+   function estimated_values(m, t, a, length, unknowns, span) result(value)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
+      type(axes_t), intent(in) :: a
       real(wp), intent(in) :: length
       integer, intent(in) :: unknowns
       real(wp), intent(in), optional :: span
@@ -47,12 +48,12 @@ contains
       integer :: i, u
 
       value = 0.0_wp
-      phi = estimated_directions(m, t, span)
+      phi = estimated_directions(m, t, a, span)
       do i = size(m%links), 1, -1
-         if (t%orientation(i) > 0) value(t%orientation(i)) = phi(i) - t%angle_offset(i)
+         if (t%orientation(i) > 0) value(t%orientation(i)) = phi(i) - a%angle_offset(i)
          if (t%root(i) == 0 .or. t%parent(i) > 0) cycle
          u = t%orientations + t%slides + 2*t%root(i) - 1
-         value(u:u + 1) = (m%links(i)%position(:2) - t%origin)/length
+         value(u:u + 1) = (m%links(i)%position(:2) - a%origin)/length
       end do
       do i = 1, size(m%pairs)
          if (t%slide(i) > 0) value(t%orientations + t%slide(i)) = estimated_slide(m, i, phi)/length
@@ -84,9 +85,10 @@ contains
    end function estimated_place
 
    !> (links) The estimated angles: those of the deck, or better ones that follow from the places. `span`: as above.
-   function estimated_directions(m, t, span) result(phi)
+   function estimated_directions(m, t, a, span) result(phi)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
+      type(axes_t), intent(in) :: a
       real(wp), intent(in), optional :: span
       real(wp) :: phi(size(m%links))
       real(wp), dimension(0:t%orientations) :: u, v, w
@@ -98,7 +100,7 @@ contains
       phi = m%links%position(3)
       u = 0.0_wp
       do i = size(m%links), 1, -1
-         if (t%orientation(i) > 0) u(t%orientation(i)) = phi(i) - t%angle_offset(i)
+         if (t%orientation(i) > 0) u(t%orientation(i)) = phi(i) - a%angle_offset(i)
       end do
       if (present(span)) length = span
       if (.not. present(span)) length = solver_length(m)
@@ -193,10 +195,10 @@ contains
          link = m%points(point)%link
          fixed = fixed + sign_of*m%links(link)%position(:2)
          if (t%orientation(link) == orientation) then
-            body_vector = body_vector + sign_of*rotated(m%points(point)%offset, direction(t%angle_offset(link)))
+            body_vector = body_vector + sign_of*rotated(m%points(point)%offset, direction(a%angle_offset(link)))
          else
             fixed = fixed + sign_of*rotated(m%points(point)%offset, &
-               direction(t%angle_offset(link) + u(t%orientation(link))))
+               direction(a%angle_offset(link) + u(t%orientation(link))))
          end if
       end subroutine split
 
@@ -205,7 +207,7 @@ contains
          integer, intent(in) :: k
          real(wp) :: n(2)
 
-         n = quarter_turn(direction(t%angle_offset(m%points(m%pairs(k)%point_i)%link) + m%pairs(k)%alpha))
+         n = quarter_turn(direction(a%angle_offset(m%points(m%pairs(k)%point_i)%link) + m%pairs(k)%alpha))
       end function normal
 
       !> A link of the classes `changed` (0:classes) has a pair, both sides of which have their places, that is open by

@@ -10,7 +10,7 @@ module linear_response
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_prismatic
    use number_changes, only: change_t
-   use links_tree, only: tree_t, new_tree
+   use links_tree, only: new_tree, axes_t, axes_of
    use loop_equations, only: new_equations
    use blocks, only: row_t, largest_known
    use block_matrix, only: solve_again
@@ -41,7 +41,8 @@ contains
 
       r%m = m
       r%tree = new_tree(m)
-      r%equations = new_equations(m, r%tree, 1.0_wp)
+      r%axes = axes_of(m, r%tree)
+      r%equations = new_equations(m, r%tree)
       allocate (r%loop_of_pair(0:size(m%pairs)), r%loop_of_drive(0:size(m%drives)), source=0)
       do i = 1, r%equations%count
          associate (q => r%equations%list(i))
@@ -70,15 +71,15 @@ contains
       type(change_t), intent(in) :: change
       real(wp) :: angle(size(m%links))
       type(mechanism_t) :: only_changes
-      type(tree_t) :: t
+      type(axes_t) :: axes
 
       angle = 0.0_wp
       if (all(abs(change%ground(3, :)) <= 0.0_wp) .and. all(abs(change%pair(3, :)) <= 0.0_wp)) return
       only_changes = m
       only_changes%links%position(3) = change%ground(3, :)
       only_changes%pairs%beta = change%pair(3, :)
-      t = new_tree(only_changes)
-      angle = t%angle_offset
+      axes = axes_of(only_changes, new_tree(only_changes))
+      angle = axes%angle_offset
    end function angle_changes
 
    !> Finds the responses at the position and the time of the engine `e`, which it solves for once more.
@@ -238,21 +239,22 @@ contains
          end if
          do k = block%first_loop, block%last_loop
             associate (g => e%blocks%loops(k))
-               if (g%row_x > 0) v(g%row_x) = scaled_residual(e%blocks%rows(block%first_row + g%row_x - 1), 1)
-               if (g%row_y > 0) v(g%row_y) = scaled_residual(e%blocks%rows(block%first_row + g%row_y - 1), 2)
+               if (g%row_x > 0) v(g%row_x) = scaled_residual(block%first_row + g%row_x - 1, 1)
+               if (g%row_y > 0) v(g%row_y) = scaled_residual(block%first_row + g%row_y - 1, 2)
             end associate
          end do
       end associate
 
    contains
 
-      !> The residual of `row` in its unit.
-      real(wp) function scaled_residual(row, axis) result(x)
-         type(row_t), intent(in) :: row
-         integer, intent(in) :: axis
+      !> The residual of row number `k` in its unit.
+      real(wp) function scaled_residual(k, axis) result(x)
+         integer, intent(in) :: k, axis
 
-         x = residual(row, axis)
-         if (.not. row%angular) x = x/(e%length*row%unit)
+         associate (row => e%blocks%rows(k), unit => e%blocks%numbers%rows(k)%unit)
+            x = residual(row, axis)
+            if (.not. row%angular) x = x/(e%length*unit)
+         end associate
       end function scaled_residual
 
       !> That of `row`, component `axis` of its loop where it is one, in the deck's unit.

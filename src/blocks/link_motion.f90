@@ -8,11 +8,11 @@ module link_motion
    use planar, only: rotated, quarter_turn, add_rotating
    use mechanism, only: mechanism_t
    use motion, only: motion_t, mark_none, mark_not_converged, mark_singular
-   use links_tree, only: tree_t, place_t, place_on_tree
+   use links_tree, only: tree_t, axes_t, place_t, place_on_tree
    use block_state, only: unknown_t, state_t
    implicit none
    private
-   public :: chain_t, chain_link_t, new_chain, put_numbers, move_links, move_found_links, mark_links, missing_nothing, &
+   public :: chain_t, chain_link_t, new_chain, put_chain, move_links, move_found_links, mark_links, missing_nothing, &
       missing_rates, missing_all
 
    !> A moving link. Numbers are 0 for the ground, for no pair, no slide and no root.
@@ -45,9 +45,10 @@ contains
    !> The chain of those links of `m` that are `wanted` (links) and of all their parents, in the deck's unit of length.
    !> `first_slide`: unknowns before the first slide; `unit` (0:unknowns): of each unknown in the unit of the slides, 1
    !> where it is not given.
-   function new_chain(m, t, wanted, first_slide, unit) result(c)
+   function new_chain(m, t, a, wanted, first_slide, unit) result(c)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
+      type(axes_t), intent(in) :: a
       logical, intent(in) :: wanted(:)
       integer, intent(in) :: first_slide
       real(wp), intent(in), optional :: unit(0:)
@@ -65,20 +66,21 @@ contains
       c%links%link = links
       c%ground = pack([(i, i=1, size(wanted))], m%links%ground .and. wanted)
       allocate (c%ground_position(3, size(c%ground)))
-      call put_numbers(m, t, first_slide, c, unit)
+      call put_chain(m, t, a, first_slide, c, unit)
    end function new_chain
 
-   !> Gives the chain `c` the numbers of `m` and its tree `t`; the other arguments as above.
-   subroutine put_numbers(m, t, first_slide, c, unit)
+   !> Gives the chain `c` the numbers of `m`, whose tree is `t` with the axes `a`; the other arguments as above.
+   subroutine put_chain(m, t, a, first_slide, c, unit)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
+      type(axes_t), intent(in) :: a
       integer, intent(in) :: first_slide
       type(chain_t), intent(inout) :: c
       real(wp), intent(in), optional :: unit(0:)
       integer :: i
 
       do i = 1, size(c%links)
-         c%links(i) = new_chain_link(m, t, c%links(i)%link, first_slide)
+         c%links(i) = new_chain_link(m, t, a, c%links(i)%link, first_slide)
          if (.not. present(unit)) cycle
          associate (h => c%links(i))
             if (h%slide > 0) h%place%slide_body_vector = unit(h%slide)*h%place%slide_body_vector
@@ -86,27 +88,28 @@ contains
          end associate
       end do
       do i = 1, size(c%ground)
-         c%ground_position(:, i) = m%links(c%ground(i))%position - [t%origin, 0.0_wp]
+         c%ground_position(:, i) = m%links(c%ground(i))%position - [a%origin, 0.0_wp]
       end do
-      c%origin = t%origin
-   end subroutine put_numbers
+      c%origin = a%origin
+   end subroutine put_chain
 
    !> How `link` follows its parent.
-   function new_chain_link(m, t, link, first_slide) result(h)
+   function new_chain_link(m, t, a, link, first_slide) result(h)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
+      type(axes_t), intent(in) :: a
       integer, intent(in) :: link, first_slide
       type(chain_link_t) :: h
 
       h%link = link
       h%orientation = t%orientation(link)
-      h%angle_offset = t%angle_offset(link)
+      h%angle_offset = a%angle_offset(link)
       if (t%parent(link) == 0) then
          h%root = first_slide + t%slides + 2*t%root(link) - 1
          return
       end if
       h%pair = t%parent_joint(link)
-      h%place = place_on_tree(m, t, 1.0_wp, link)
+      h%place = place_on_tree(m, t, a, 1.0_wp, link)
       h%has_body_vector = any(abs(h%place%body_vector) > 0.0_wp)
       h%parent_orientation = t%orientation(t%parent(link))
       if (h%place%slide > 0) h%slide = first_slide + h%place%slide

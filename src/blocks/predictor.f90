@@ -172,7 +172,7 @@ contains
          fastest = max(v, largest_drive_rate(s))
          v = max(v, epsilon(1.0_wp)*fastest)
          if (.not. v > 0.0_wp) return
-         part = epsilon(1.0_wp)*b%list(i)%lipschitz**2*fastest*(fastest/v)/max(pivot, epsilon(1.0_wp))**3
+         part = epsilon(1.0_wp)*b%numbers%blocks(i)%lipschitz**2*fastest*(fastest/v)/max(pivot, epsilon(1.0_wp))**3
          if (.not. part*v > known_part*maxval(abs(s%u(u)%acceleration))) part = 0.0_wp
       end associate
    end function uncertain_part

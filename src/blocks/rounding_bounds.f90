@@ -9,6 +9,7 @@
 !> digits are safe, not how many are lost.
 module rounding_bounds
    use kinds, only: wp
+   use planar, only: length_of
    use motion, only: motion_t
    use blocks, only: blocks_t, block_t, row_t, loop_projection, loop_angles
    use block_state, only: state_t, unknown_t
@@ -83,8 +84,9 @@ contains
             else if (block%shape%n > 0) then
                call find_weights(r, e, i, block%shape%n, r%parts%first_own(block%first_loop), b%inverse, b%weights, &
                   is_bound)
-               if (is_bound) call bound_block(b, r%parts, r%state, e%blocks, block, block%shape%n, e%found(i)%inverse, &
-                  b%weights, b%change, b%known, is_bound)
+               if (is_bound) call bound_block(b, r%parts, r%state, e%blocks, block, &
+                  e%blocks%numbers%blocks(i)%lipschitz, block%shape%n, e%found(i)%inverse, b%weights, b%change, &
+                  b%known, is_bound)
                if (.not. is_bound) return
             end if
          end associate
@@ -103,8 +105,9 @@ contains
       integer :: k
 
       k = blocks%unknown(blocks%list(i)%first)
-      associate (row => blocks%rows(blocks%list(i)%first_row))
-         b%u(0, k) = b%u(0, row%other) + b%drive(0, row%drive) + own_part*abs(u(k)%value) + angle_part*abs(row%constant)
+      associate (row => blocks%rows(blocks%list(i)%first_row), &
+                 constant => blocks%numbers%rows(blocks%list(i)%first_row)%constant)
+         b%u(0, k) = b%u(0, row%other) + b%drive(0, row%drive) + own_part*abs(u(k)%value) + angle_part*abs(constant)
          b%u(1, k) = b%u(1, row%other) + b%drive(1, row%drive) + own_part*abs(u(k)%rate)
          b%u(2, k) = b%u(2, row%other) + b%drive(2, row%drive) + own_part*abs(u(k)%acceleration)
       end associate
@@ -112,14 +115,14 @@ contains
 
    !> Of the `n` unknowns of `block`: see `respond_block`. By the `weights` (n, loops) of its loops; `known` (0:2,
    !> loops) is room. `is_bound`: changes are small enough, by the `inverse` of the Jacobian (maximum norm).
-   pure subroutine bound_block(b, p, s, blocks, block, n, inverse, weights, change, known, is_bound)
+   pure subroutine bound_block(b, p, s, blocks, block, lipschitz, n, inverse, weights, change, known, is_bound)
       type(rounding_bounds_t), intent(inout) :: b
       type(rounding_parts_t), intent(in) :: p
       type(state_t), intent(in) :: s
       type(blocks_t), intent(in) :: blocks
       type(block_t), intent(in) :: block
       integer, intent(in) :: n
-      real(wp), intent(in) :: inverse, weights(n, *)
+      real(wp), intent(in) :: lipschitz, inverse, weights(n, *)
       real(wp), intent(inout) :: change(n), known(0:2, *)
       logical, intent(out) :: is_bound
       real(wp) :: vector(0:2)
@@ -144,7 +147,7 @@ contains
          end do
          do k = 1, n
             b%u(order, blocks%unknown(block%first + k - 1)) = change(k)
-            if (order == 0) is_bound = is_bound .and. change(k)*(block%lipschitz*inverse) <= max_part
+            if (order == 0) is_bound = is_bound .and. change(k)*(lipschitz*inverse) <= max_part
          end do
       end do
    end subroutine bound_block
@@ -168,25 +171,26 @@ contains
             call add_parts(p%first(k), p%first(k + 1) - 1, p%parts, s%u, b%u, bound)
             do i = loop%first_slide, loop%last_slide
                associate (d => blocks%slides(i))
-                  bound = bound + norm2(d%body_vector)*bound_of_slide(s%u(d%orientation), s%u(d%unknown), &
+                  bound = bound + length_of(blocks%numbers%e(i))*bound_of_slide(s%u(d%orientation), s%u(d%unknown), &
                      b%u(:, d%orientation), b%u(:, d%unknown))
                end associate
             end do
             if (loop%kind == loop_projection) call project(b, s, blocks, k, bound)
          end if
-         if (loop%row_x > 0) call add_row(blocks%rows(first_row + loop%row_x - 1), b%drive, bound)
-         if (loop%row_y > 0) call add_row(blocks%rows(first_row + loop%row_y - 1), b%drive, bound)
+         if (loop%row_x > 0) call add_row(blocks, first_row + loop%row_x - 1, b%drive, bound)
+         if (loop%row_y > 0) call add_row(blocks, first_row + loop%row_y - 1, b%drive, bound)
       end associate
    end subroutine bound_loop
 
-   !> Adds to `bound` (0:2) that of the constant of `row` and of its drive.
-   pure subroutine add_row(row, drive, bound)
-      type(row_t), intent(in) :: row
+   !> Adds to `bound` (0:2) that of the constant of row number `row` and of its drive.
+   pure subroutine add_row(b, row, drive, bound)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: row
       real(wp), intent(in) :: drive(0:2, 0:*)
       real(wp), intent(inout) :: bound(0:2)
 
-      bound(0) = bound(0) + angle_part*abs(row%constant)
-      if (row%drive > 0) bound = bound + drive(:, row%drive)
+      bound(0) = bound(0) + angle_part*abs(b%numbers%rows(row)%constant)
+      if (b%rows(row)%drive > 0) bound = bound + drive(:, b%rows(row)%drive)
    end subroutine add_row
 
    !> From the `bound` of the change of loop number `k` that of its projection, the product of the closure error and a
@@ -202,7 +206,8 @@ contains
       associate (loop => blocks%loops(k), f => s%u(blocks%loops(k)%orientation))
          g = closure_motion(blocks, k, s)
          turn = b%u(:, loop%orientation) + [angle_part, 0.0_wp, 0.0_wp]
-         bound = norm2(loop%direction)*bound_of_product([norm2(g(:, 0)), norm2(g(:, 1)), norm2(g(:, 2))], bound, &
+         bound = length_of(blocks%numbers%loops(k)%direction)*bound_of_product( &
+            [norm2(g(:, 0)), norm2(g(:, 1)), norm2(g(:, 2))], bound, &
             [1.0_wp, abs(f%rate), abs(f%acceleration) + f%rate**2], bound_of_turning(f%rate, f%acceleration, turn))
       end associate
    end subroutine project

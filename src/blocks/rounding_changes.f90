@@ -7,7 +7,7 @@
 !>    h,   h' + w J h,   h'' + 2 w J h' + w' J h - w^2 h,      J the quarter turn.
 module rounding_changes
    use kinds, only: wp
-   use planar, only: rotated, quarter_turn, add_rotating, turning, scaled
+   use planar, only: xy, rotated, quarter_turn, add_rotating, turning, scaled
    use blocks, only: blocks_t, loop_projection, loop_angles
    use block_state, only: state_t, unknown_t
    use block_solver, only: workspace_t
@@ -63,7 +63,8 @@ contains
          call change_parts(r%parts%first(k), r%parts%first(k + 1) - 1, r%parts%parts, r%state%u, r%u, g, size_of)
          do i = loop%first_slide, loop%last_slide
             associate (d => blocks%slides(i))
-               call change_slide(d%body_vector, r%pair_of(d%unknown), r%state%u(d%orientation), r%state%u(d%unknown), &
+               call change_slide(xy(blocks%numbers%e(i)), r%pair_of(d%unknown), r%state%u(d%orientation), &
+                  r%state%u(d%unknown), &
                   r%u(:, :, d%orientation), r%u(:, :, d%unknown), g, size_of)
             end associate
          end do
@@ -195,11 +196,12 @@ contains
 
       associate (loop => blocks%loops(k), c => r%state%u(blocks%loops(k)%orientation))
          closure = closure_motion(blocks, k, r%state)
-         f = turning(rotated(loop%direction, [c%c, c%s]), [c%value, c%rate, c%acceleration])
+         f = turning(rotated(xy(blocks%numbers%loops(k)%direction), [c%c, c%s]), [c%value, c%rate, c%acceleration])
          angle = r%u(:, :, loop%orientation)
          angle(:, 0) = angle(:, 0) + rounding*parts_of_number(number_pair, guide, 2)
          df = 0.0_wp
-         call change_vector(loop%direction, no_change, [c%c, c%s], c%rate, c%acceleration, angle, df)
+         call change_vector(xy(blocks%numbers%loops(k)%direction), no_change, [c%c, c%s], c%rate, c%acceleration, &
+            angle, df)
       end associate
       lengths = [norm2(f(:, 0)), norm2(f(:, 1)), norm2(f(:, 2))]
       do order = 2, 0, -1

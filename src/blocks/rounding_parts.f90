@@ -2,6 +2,7 @@
 !> for each orientation that turns some, and what the roundings of the cards change of it.
 module rounding_parts
    use kinds, only: wp
+   use planar, only: vector_t, xy
    use mechanism, only: mechanism_t
    use blocks, only: blocks_t, block_t, body_vector_t, loop_components
    use block_state, only: unknown_t
@@ -53,16 +54,17 @@ contains
 
    !> The Jacobian `a` (4, by columns) of a dyad whose own body vectors are `vectors`, at the unknowns `s`: their
    !> quarter turns.
-   pure subroutine dyad_jacobian(vectors, s, a)
+   pure subroutine dyad_jacobian(vectors, d_of, s, a)
       type(body_vector_t), intent(in) :: vectors(2)
+      type(vector_t), intent(in) :: d_of(2)
       type(unknown_t), intent(in) :: s(0:*)
       real(wp), intent(inout) :: a(4)
       integer :: k
 
       do k = 1, 2
-         associate (d => vectors(k), f => s(vectors(k)%orientation))
-            a(d%at(1)) = -(f%s*d%x + f%c*d%y)
-            a(d%at(2)) = f%c*d%x - f%s*d%y
+         associate (at => vectors(k)%at, d => d_of(k), f => s(vectors(k)%orientation))
+            a(at(1)) = -(f%s*d%x + f%c*d%y)
+            a(at(2)) = f%c*d%x - f%s*d%y
          end associate
       end do
    end subroutine dyad_jacobian
@@ -80,7 +82,9 @@ contains
       last = size(e%blocks%body_vectors)
       do i = 1, size(e%blocks%loops)
          associate (k => e%blocks%loops(i)%vector_loop)
-            if (k > 0) last = last + e%blocks%first_term(k + 1) - e%blocks%first_term(k)
+            associate (first_term => e%blocks%equations%vector_loops%first_term)
+               if (k > 0) last = last + first_term(k + 1) - first_term(k)
+            end associate
          end associate
       end do
       associate (loops => size(e%blocks%loops))
@@ -112,17 +116,19 @@ contains
       associate (loop => e%blocks%loops(i), vectors => e%blocks%body_vectors)
          first = last + 1
          if (loop%vector_loop > 0) then
-            do k = e%blocks%first_term(loop%vector_loop), e%blocks%first_term(loop%vector_loop + 1) - 1
-               call add_term(e%blocks%terms(:, k))
-            end do
+            associate (p => e%blocks%equations%vector_loops)
+               do k = p%first_term(loop%vector_loop), p%first_term(loop%vector_loop + 1) - 1
+                  call add_term(p%terms(:, k))
+               end do
+            end associate
          end if
          do k = loop%first_vector, loop%last_vector
             call move_to_end(part_of(vectors(k)%orientation))
-            p%parts(last)%vector = [vectors(k)%x, vectors(k)%y]
+            p%parts(last)%vector = xy(e%blocks%numbers%d(k))
          end do
          p%first_own(i) = last - (loop%last_vector - loop%first_own)
          do k = first, last
-            call measure(p%parts(k), 1.0_wp/(e%length*loop%unit))
+            call measure(p%parts(k), 1.0_wp/(e%length*e%blocks%numbers%loops(i)%unit))
          end do
          p%is_plain(i) = loop%kind == loop_components .and. loop%last_slide < loop%first_slide
       end associate

@@ -62,7 +62,10 @@ contains
 
          associate (own => b%rows(block%first_row + row - 1))
             call subtract(x, r%drive(:, order, own%drive), r%v(:, row))
-            if (order == 0 .and. abs(own%constant) > 0.0_wp) r%v(:, row) = r%v(:, row) + change_of_constant(own)
+            associate (constant => b%numbers%rows(block%first_row + row - 1)%constant)
+               if (order == 0 .and. abs(constant) > 0.0_wp) &
+                  r%v(:, row) = r%v(:, row) + change_of_constant(own, constant)
+            end associate
          end associate
          r%row_size(row) = size_of
       end subroutine set_row
@@ -76,12 +79,13 @@ contains
       z = y - x
    end subroutine subtract
 
-   !> By how much the constant of `row` is off (directions): a sum of angles of the deck, or the offset of a guide.
-   pure function change_of_constant(row) result(change)
+   !> By how much the `constant` of `row` is off (directions): a sum of angles of the deck, or the offset of a guide.
+   pure function change_of_constant(row, constant) result(change)
       type(row_t), intent(in) :: row
+      real(wp), intent(in) :: constant
       real(wp) :: change(directions)
 
-      change = rounding*abs(row%constant)*parts_of_number(merge(number_drive, number_pair, row%drive > 0), &
+      change = rounding*abs(constant)*parts_of_number(merge(number_drive, number_pair, row%drive > 0), &
          max(row%drive, row%pair), 0)
    end function change_of_constant
 end module rounding_residuals

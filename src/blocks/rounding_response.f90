@@ -100,7 +100,8 @@ contains
                = r%state%u(e%blocks%unknown(block%first:block%last))%value + nudge
             if (is_found .and. again) call solve_block_again(i)
             if (is_found .and. block%direct) then
-               call respond_direct(r, e%blocks%rows(block%first_row), e%blocks%unknown(block%first))
+               call respond_direct(r, e%blocks%rows(block%first_row), &
+                  e%blocks%numbers%rows(block%first_row)%constant, e%blocks%unknown(block%first))
             else if (is_found .and. block%shape%n > 0) then
                call respond_block(r, m, e, i, again, is_singular, inverse, is_found)
             end if
@@ -139,16 +140,18 @@ contains
       end subroutine solve_block_again
    end subroutine respond_to_roundings
 
-   !> The response of unknown number `u` of a direct block with this `row`: u = other + sign_of (constant + value).
-   pure subroutine respond_direct(r, row, u)
+   !> The response of unknown number `u` of a direct block with this `row` and `constant`:
+   !> u = other + sign_of (constant + value).
+   pure subroutine respond_direct(r, row, constant, u)
       type(rounding_response_t), intent(inout) :: r
       type(row_t), intent(in) :: row
+      real(wp), intent(in) :: constant
       integer, intent(in) :: u
       real(wp) :: change(directions)
 
-      call set_sum(r%u(:, :, row%other), row%sign_of, r%drive(:, :, row%drive), r%u(:, :, u))
-      if (abs(row%constant) > 0.0_wp) then
-         change = change_of_constant(row)
+      call set_sum(r%u(:, :, row%other), real(row%sign_of, wp), r%drive(:, :, row%drive), r%u(:, :, u))
+      if (abs(constant) > 0.0_wp) then
+         change = change_of_constant(row, constant)
          r%u(:, 0, u) = r%u(:, 0, u) + row%sign_of*change
       end if
       call add_own(r%own*r%state%u(u)%value, u, r%u(:, 0, u))
@@ -187,7 +190,9 @@ contains
          end do
          is_dyad = shape%n == 2 .and. shape%rows == 2 .and. .not. (again .or. is_singular)
          if (is_dyad .and. is_plain_dyad(r%parts, e%blocks, block)) then
-            call dyad_jacobian(e%blocks%body_vectors(e%blocks%loops(block%first_loop)%first_own), r%state%u, w%a)
+            associate (own => e%blocks%loops(block%first_loop)%first_own)
+               call dyad_jacobian(e%blocks%body_vectors(own), e%blocks%numbers%d(own), r%state%u, w%a)
+            end associate
          else
             call find_known_parts(e%blocks, i, r%state)
             call assemble_block(e%blocks, i, r%state, w%a, w%r)
@@ -210,7 +215,8 @@ contains
                call solve_many(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, directions, r%v)
             end if
             if (order == 0 .and. .not. (is_singular .or. info > 0)) &
-               is_found = largest_of(directions*shape%n, r%v)*block%lipschitz*inverse <= max_part*roundings
+               is_found = largest_of(directions*shape%n, r%v)*e%blocks%numbers%blocks(i)%lipschitz*inverse &
+                  <= max_part*roundings
             do k = 1, shape%n
                call copy(r%v(:, k), r%u(:, order, e%blocks%unknown(block%first + k - 1)))
             end do

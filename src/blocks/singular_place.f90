@@ -43,10 +43,10 @@ contains
       if (b%list(i)%shape%rows > max_rows .or. size(x) == 0) return
       x = values_of(b, i, s)
       v = decomposed(b, i, s)
-      level = max(sum_size, maxval(abs(x)), b%list(i)%coarse, size_of_driven())
+      level = max(sum_size, maxval(abs(x)), b%numbers%blocks(i)%coarse, size_of_driven())
       q = curvature()
       call set_values(b, i, x, s)
-      if (v%rank < v%n - 1 .or. abs(q) <= least_curvature*b%list(i)%lipschitz) return
+      if (v%rank < v%n - 1 .or. abs(q) <= least_curvature*b%numbers%blocks(i)%lipschitz) return
       associate (left => v%left(:, v%n), k => v%right(v%n, :))
          call go_to(x - (v%s(v%n)/q)*k)
          left_open = dot_product(left, residual_of(b, i, y, s))

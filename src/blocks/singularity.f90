@@ -91,7 +91,7 @@ contains
       agrees = norm2(matmul(r, v%left(:, min(v%rank, v%n - 1) + 1:))) <= agreement*speed
       crosses = agrees
       if (agrees .and. v%rows == v%n .and. v%rank >= v%n - 1) &
-         crosses = has_two_roots(second_order(b, i, speed, v, r, s), b%list(i)%lipschitz)
+         crosses = has_two_roots(second_order(b, i, speed, v, r, s), b%numbers%blocks(i)%lipschitz)
    end subroutine judge
 
    !> (0:2) The coefficients of w . b2(p + l k) in the module's head, l in units of the velocities p or of `speed`;

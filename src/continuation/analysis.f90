@@ -14,8 +14,8 @@ module analysis
    use block_engine, only: block_engine_t
    use block_diagnostics, only: start_diagnostics, limit_diagnostic
    use at_bifurcation, only: stand_on, pass_standstill
-   use following, only: following_t, step_record_t, make_following, continue_to, is_too_far, has_too_many_substeps, &
-      go_on_from, go_back, place_t, note_place, return_to, limits_t, note_limit, limit_before
+   use following, only: following_t, step_record_t, make_following, renew_following, continue_to, is_too_far, &
+      has_too_many_substeps, go_on_from, go_back, place_t, note_place, return_to, limits_t, note_limit, limit_before
    implicit none
    private
    public :: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back, redundancy_error
@@ -54,11 +54,12 @@ contains
       call make_following(a%following_t, m, structure)
    end subroutine make_analysis
 
-   !> The same with the engine of `a`, which has given its blocks to `structure`: see `engine_renewal`.
-   subroutine renew_analysis(a, m, structure)
+   !> Makes `a`, the analysis of a variant of `m`, ready for the first instant of `m` with the engine that it has.
+   !> `is_done`: that fits; otherwise `a` is of no use.
+   subroutine renew_analysis(a, m, is_done)
       type(analysis_t), intent(inout) :: a
       type(mechanism_t), intent(in) :: m
-      type(structure_t), intent(inout) :: structure
+      logical, intent(out) :: is_done
       class(engine_t), allocatable :: engine
 
       call move_alloc(a%engine, engine)
@@ -70,7 +71,7 @@ contains
       subroutine begin_again(a)
          type(analysis_t), intent(out) :: a
 
-         call make_following(a%following_t, m, structure, engine)
+         call renew_following(a%following_t, m, engine, is_done)
       end subroutine begin_again
    end subroutine renew_analysis
 

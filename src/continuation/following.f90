@@ -12,15 +12,14 @@ module following
    use convergence, only: convergence_t, is_solved, max_kantorovich_ratio
    use branch_requests, only: branch_requests_t, new_branch_requests
    use engine, only: engine_t, engine_checkpoint_t
-   use block_engine, only: block_engine_t, make_block_engine
+   use block_engine, only: block_engine_t, make_block_engine, renew_block_engine
    use block_method, only: block_method_t
-   use engine_renewal, only: renew_block_engine
    use block_branches, only: pass
    use dense_engine, only: dense_engine_t, make_dense_engine
    implicit none
    private
-   public :: following_t, step_record_t, make_following, continue_to, is_too_far, has_too_many_substeps, go_on_from, &
-      go_back, place_t, note_place, return_to
+   public :: following_t, step_record_t, make_following, renew_following, continue_to, is_too_far, &
+      has_too_many_substeps, go_on_from, go_back, place_t, note_place, return_to
    public :: limits_t, note_limit, limit_before, largest_correction
 
    !> The largest correction, in the characteristic length and in radians, of a predicted position that still counts as
@@ -84,33 +83,45 @@ module following
 contains
 
    !> Ready for the first instant of `m`, whose equations are as many as its unknowns, with the engine of its method.
-   !> `structure`: see `make_block_engine`. `engine`: of METHOD NEWTON, one that is to be renewed; it is taken over.
-   subroutine make_following(f, m, structure, engine)
+   !> `structure`: see `make_block_engine`.
+   subroutine make_following(f, m, structure)
       type(following_t), intent(out) :: f
       type(mechanism_t), intent(in) :: m
       type(structure_t), intent(inout), optional :: structure
-      class(engine_t), allocatable, intent(inout), optional :: engine
 
-      if (present(engine)) then
-         call move_alloc(engine, f%engine)
-      else if (m%method == method_newton) then
+      if (m%method == method_newton) then
          allocate (block_method_t :: f%engine)
       else
          allocate (dense_engine_t :: f%engine)
       end if
       select type (e => f%engine)
       type is (block_method_t)
-         if (present(engine)) then
-            call renew_block_engine(e%block_engine_t, m, structure)
-         else
-            call make_block_engine(e%block_engine_t, m, structure)
-         end if
+         call make_block_engine(e%block_engine_t, m, structure)
       type is (dense_engine_t)
          call make_dense_engine(e, m)
       end select
       f%branch_requests = new_branch_requests(m)
       f%drives = new_drive_excursion(m, f%engine%depends_on_history)
    end subroutine make_following
+
+   !> Ready for the first instant of `m` with the `engine` of a variant of `m`, which is taken over. `is_done`: that
+   !> fits; otherwise `f` is of no use.
+   subroutine renew_following(f, m, engine, is_done)
+      type(following_t), intent(out) :: f
+      type(mechanism_t), intent(in) :: m
+      class(engine_t), allocatable, intent(inout) :: engine
+      logical, intent(out) :: is_done
+
+      call move_alloc(engine, f%engine)
+      is_done = .false.
+      select type (e => f%engine)
+      type is (block_method_t)
+         call renew_block_engine(e%block_engine_t, m, is_done)
+      end select
+      if (.not. is_done) return
+      f%branch_requests = new_branch_requests(m)
+      f%drives = new_drive_excursion(m, f%engine%depends_on_history)
+   end subroutine renew_following
 
    !> Follows the motion to `t`, or finds the first; `step`: how that went.
    subroutine continue_to(f, t, step)

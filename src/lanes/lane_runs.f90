@@ -14,7 +14,7 @@ module lane_runs
    use block_engine, only: block_engine_t
    use block_method, only: block_method_t
    use digits_in_doubt, only: is_in_doubt
-   use set_analysis, only: set_analysis_t, make_set_analysis, give_structure, renew_set_analysis, advance_set
+   use set_analysis, only: set_analysis_t, make_set_analysis, renew_set_analysis, advance_set
    use extreme_search, only: note_start
    use answers, only: answers_t, new_answers, take_instant
    use variant_rows, only: variant_row_t, note_flag
@@ -25,7 +25,7 @@ module lane_runs
    use lane_watch, only: watch_t, new_watch, look_on, fine_prediction
    implicit none
    private
-   public :: lane_run_t, lend_structure, begin_run, run_lanes, width
+   public :: lane_run_t, renew_run, begin_run, run_lanes, width
 
    !> Instants that the ordinary engine solves from where a lane is refused, at first: three, which a prediction takes;
    !> twice as many each time.
@@ -50,7 +50,6 @@ module lane_runs
       integer :: patience = first_patience
       logical :: is_laned = .false.         !< a lane has it
       logical :: is_over = .true.           !< nothing is left to do
-      logical :: has_lent = .false.         !< the structure of `s`, to the findings of the next variant
    end type lane_run_t
 
    !> When the next steps of all lanes end: step k at t0 + span (at + k)/all_steps, as `instant` has it.
@@ -62,26 +61,29 @@ module lane_runs
 
 contains
 
-   !> Lends the structure of the variant that `r` has solved to `findings`, those of the variants: that of the next one,
-   !> which is found from here on and begins with `begin_run`, may need no more than other numbers.
-   subroutine lend_structure(r, findings)
+   !> Makes `r`, which has solved a variant before, ready for the first instant of the variant r%m if that has the same
+   !> structure: `is_done`.
+   subroutine renew_run(r, is_done)
       type(lane_run_t), intent(inout) :: r
-      type(findings_t), intent(inout) :: findings
+      logical, intent(out) :: is_done
 
-      call give_structure(r%s, findings, r%has_lent)
-   end subroutine lend_structure
+      call renew_set_analysis(r%m, r%s, is_done)
+      if (is_done) call begin_answers(r)
+   end subroutine renew_run
 
    !> Makes `r` ready for the first instant of the variant r%m, whose structure is `findings`.
    subroutine begin_run(r, findings)
       type(lane_run_t), intent(inout) :: r
       type(findings_t), intent(inout) :: findings
 
-      if (r%has_lent .and. findings%structures(1)%is_renewed) then
-         call renew_set_analysis(r%m, r%s, findings)
-      else
-         call make_set_analysis(r%m, r%s, findings)
-      end if
-      r%has_lent = .false.
+      call make_set_analysis(r%m, r%s, findings)
+      call begin_answers(r)
+   end subroutine begin_run
+
+   !> Nothing is known of any instant of `r` yet.
+   subroutine begin_answers(r)
+      type(lane_run_t), intent(inout) :: r
+
       call new_answers(r%m, r%s, .false., r%asked)
       if (r%asked%extremes_asked) r%watch = new_watch(r%asked%extremes)
       r%at = -1
@@ -91,7 +93,7 @@ contains
       r%patience = first_patience
       r%is_over = .false.
       r%is_laned = .false.
-   end subroutine begin_run
+   end subroutine begin_answers
 
    !> Solves all `runs` that are not over, at most as many as there are lanes, to their ends, or to a signal.
    subroutine run_lanes(runs, l)

@@ -3,6 +3,7 @@
 !> back to it the motion of one of its last instants.
 module lane_state
    use kinds, only: wp
+   use planar, only: xy
    use mechanism, only: own_predictor
    use blocks, only: blocks_t, block_loop_t
    use drives, only: law_t
@@ -145,25 +146,25 @@ contains
       integer :: i, m
 
       do i = 1, size(b%list)
-         l%block(i)%lipschitz(lane) = b%list(i)%lipschitz
-         l%block(i)%coarse(lane) = max(1.0_wp, b%list(i)%coarse)
-         associate (rows => b%rows(b%list(i)%first_row:b%list(i)%last_row))
-            if (b%list(i)%direct) l%block(i)%constant(lane) = rows(1)%constant
+         l%block(i)%lipschitz(lane) = b%numbers%blocks(i)%lipschitz
+         l%block(i)%coarse(lane) = max(1.0_wp, b%numbers%blocks(i)%coarse)
+         associate (numbers => b%numbers%rows(b%list(i)%first_row:b%list(i)%last_row))
+            if (b%list(i)%direct) l%block(i)%constant(lane) = numbers(1)%constant
             do m = b%list(i)%first_loop, b%list(i)%last_loop
-               if (b%loops(m)%row_x > 0) l%loop(m)%constant(lane, 1) = rows(b%loops(m)%row_x)%constant
-               if (b%loops(m)%row_y > 0) l%loop(m)%constant(lane, 2) = rows(b%loops(m)%row_y)%constant
+               if (b%loops(m)%row_x > 0) l%loop(m)%constant(lane, 1) = numbers(b%loops(m)%row_x)%constant
+               if (b%loops(m)%row_y > 0) l%loop(m)%constant(lane, 2) = numbers(b%loops(m)%row_y)%constant
             end do
          end associate
       end do
       do i = 1, size(b%body_vectors)
-         l%vector(i)%d(lane, :) = [b%body_vectors(i)%x, b%body_vectors(i)%y]
+         l%vector(i)%d(lane, :) = [b%numbers%d(i)%x, b%numbers%d(i)%y]
       end do
       do i = 1, size(b%loops)
-         l%loop(i)%ground(lane, :) = b%loops(i)%ground
-         l%loop(i)%direction(lane, :) = b%loops(i)%direction
+         l%loop(i)%ground(lane, :) = xy(b%numbers%loops(i)%ground)
+         l%loop(i)%direction(lane, :) = xy(b%numbers%loops(i)%direction)
       end do
       do i = 1, size(b%slides)
-         l%slide(i)%d(lane, :) = b%slides(i)%body_vector
+         l%slide(i)%d(lane, :) = xy(b%numbers%e(i))
       end do
    end subroutine load_numbers
 
@@ -228,7 +229,7 @@ contains
          size(b%body_vectors), size(b%slides)])
       if (.not. same) return
       same = all(a%unknown == b%unknown) .and. all(a%rows%drive == b%rows%drive) &
-         .and. all(a%rows%other == b%rows%other) .and. all(abs(a%rows%sign_of - b%rows%sign_of) < 1.0_wp)
+         .and. all(a%rows%other == b%rows%other) .and. all(a%rows%sign_of == b%rows%sign_of)
       do i = 1, size(a%list)
          associate (p => a%list(i), q => b%list(i))
             same = same .and. (p%direct .eqv. q%direct) .and. all([p%first, p%last, p%first_row, p%last_row, &

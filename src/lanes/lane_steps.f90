@@ -127,7 +127,7 @@ contains
 
       u = l%blocks%unknown(l%blocks%list(i)%first)
       associate (row => l%blocks%rows(l%blocks%list(i)%first_row))
-         call take_drive(row%sign_of, l%block(i)%constant, l%drive(1, 0, row%drive), &
+         call take_drive(real(row%sign_of, wp), l%block(i)%constant, l%drive(1, 0, row%drive), &
             l%u(row%other)%now, l%u(u)%now)
       end associate
       call set_lane_direction(l, u)

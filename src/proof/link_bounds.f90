@@ -72,7 +72,7 @@ contains
          end associate
          if (pair%kind == pair_prismatic) terms(1) = terms(1) + abs(pair%offset)
       end associate
-      if (m%links(parent)%ground) terms(1) = terms(1) + norm2(m%links(parent)%position(:2)) + norm2(t%origin)
+      if (m%links(parent)%ground) terms(1) = terms(1) + norm2(m%links(parent)%position(:2)) + norm2(plane_origin(m))
    end function term_lengths
 
    !> `error` (3, 0:2, links): the exact place and angle of each link and their derivatives differ by no more from those

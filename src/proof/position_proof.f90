@@ -224,12 +224,13 @@ contains
          real(wp) :: x(0:2), given(0:2), known(0:2), size_of(0:2), r(0:2)
          integer :: k
 
-         associate (row => b%rows(b%list(i)%first_row), u => b%unknown(b%list(i)%first))
+         associate (row => b%rows(b%list(i)%first_row), constant => b%numbers%rows(b%list(i)%first_row)%constant, &
+                    u => b%unknown(b%list(i)%first))
             x = [p%state%u(u)%value, p%state%u(u)%rate, p%state%u(u)%acceleration]
             known = [p%state%u(row%other)%value, p%state%u(row%other)%rate, p%state%u(row%other)%acceleration]
             given = p%state%drive_value(:, row%drive)
-            given(0) = given(0) + row%constant
-            size_of = abs(x) + abs(known) + p%jets%drive(:, row%drive) + abs(row%constant)*[1.0_wp, 0.0_wp, 0.0_wp]
+            given(0) = given(0) + constant
+            size_of = abs(x) + abs(known) + p%jets%drive(:, row%drive) + abs(constant)*[1.0_wp, 0.0_wp, 0.0_wp]
             r = abs(x - known - row%sign_of*given) + 4.0_wp*rounding*size_of
             r(0) = r(0) + p%data%constant_weight(b%list(i)%first_row)
             q%open(:, b%list(i)%first_row) = r(:1)*room

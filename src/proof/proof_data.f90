@@ -7,7 +7,8 @@
 !> nearest.
 module proof_data
    use kinds, only: wp
-   use mechanism, only: mechanism_t, pair_prismatic
+   use planar, only: length_of
+   use mechanism, only: mechanism_t, pair_prismatic, plane_origin
    use drives, only: law_t
    use links_tree, only: tree_t, new_tree
    use loop_equations, only: equations_t, new_equations
@@ -48,7 +49,7 @@ contains
       integer :: i, m1, k, loop
 
       t = new_tree(m)
-      q = new_equations(m, t, length)
+      q = new_equations(m, t)
       ! A function's result would bring its own lower bound.
       allocate (angle(0:t%orientations))
       angle(:) = angle_errors(m, t)
@@ -59,27 +60,27 @@ contains
       allocate (sums(0:t%orientations), source=0.0_wp)
       do i = 1, size(b%list)
          do m1 = b%list(i)%first_loop, b%list(i)%last_loop
-            associate (g => b%loops(m1))
+            associate (g => b%loops(m1), own => b%numbers%loops(m1))
                if (g%kind == loop_angles) cycle
                loop = loop_of(q, b%rows(b%list(i)%first_row + max(g%row_x, g%row_y) - 1))
                call add_terms(m, t, q, loop, angle, sums)
                do k = g%first_vector, g%last_vector
-                  d%length(k) = up(hypot(b%body_vectors(k)%x, b%body_vectors(k)%y))
-                  d%weight(k) = up(terms_of(m1)*d%length(k) + sums(b%body_vectors(k)%orientation)/(length*g%unit))
+                  d%length(k) = up(hypot(b%numbers%d(k)%x, b%numbers%d(k)%y))
+                  d%weight(k) = up(terms_of(m1)*d%length(k) + sums(b%body_vectors(k)%orientation)/(length*own%unit))
                end do
                do k = g%first_slide, g%last_slide
-                  d%slide_length(k) = up(norm2(b%slides(k)%body_vector))
+                  d%slide_length(k) = up(length_of(b%numbers%e(k)))
                   d%slide_weight(k) = up((terms_of(m1) + of_vector + maxval(angle))*d%slide_length(k))
                end do
-               d%ground_length(m1) = up(norm2(g%ground))
-               d%ground_weight(m1) = up(terms_of(m1)*d%ground_length(m1) + sums(0)/(length*g%unit))
-               d%direction_length(m1) = up(norm2(g%direction))
+               d%ground_length(m1) = up(length_of(own%ground))
+               d%ground_weight(m1) = up(terms_of(m1)*d%ground_length(m1) + sums(0)/(length*own%unit))
+               d%direction_length(m1) = up(length_of(own%direction))
                d%direction_weight(m1) = up((2.0_wp*of_vector + maxval(angle))*d%direction_length(m1))
                sums = 0.0_wp
             end associate
          end do
          do k = b%list(i)%first_row, b%list(i)%last_row
-            d%constant_weight(k) = up(2.0_wp*of_number*abs(b%rows(k)%constant))
+            d%constant_weight(k) = up(2.0_wp*of_number*abs(b%numbers%rows(k)%constant))
             if (b%rows(k)%angular) d%constant_weight(k) = d%constant_weight(k) + 2.0_wp*maxval(angle)
          end do
       end do
@@ -161,7 +162,7 @@ contains
                   o = t%orientation(m%points(point)%link)
                   sums(o) = sums(o) + norm2(m%points(point)%offset)*(of_number + of_vector + count*rounding + angle(o))
                   if (m%links(m%points(point)%link)%ground) sums(o) = sums(o) + (of_number + count*rounding) &
-                     *(norm2(m%links(m%points(point)%link)%position(:2)) + norm2(t%origin))
+                     *(norm2(m%links(m%points(point)%link)%position(:2)) + norm2(plane_origin(m)))
                else
                   o = t%orientation(m%points(m%pairs(pair)%point_i)%link)
                   sums(o) = sums(o) + abs(m%pairs(pair)%offset)*(of_number + of_vector + count*rounding + angle(o))

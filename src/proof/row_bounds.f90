@@ -94,7 +94,7 @@ contains
       call bound_loops(of_rounding, d, b, i, j, order, open)
       do k = b%list(i)%first_row, b%list(i)%last_row
          row = k - b%list(i)%first_row + 1
-         if (order == 0) open(row) = open(row) + d%constant_weight(k) + 4.0_wp*rounding*abs(b%rows(k)%constant)
+         if (order == 0) open(row) = open(row) + d%constant_weight(k) + 4.0_wp*rounding*abs(b%numbers%rows(k)%constant)
          if (b%rows(k)%drive > 0) open(row) = open(row) + 8.0_wp*rounding*j%drive(order, b%rows(k)%drive)
       end do
    end subroutine bound_rows

@@ -17,13 +17,11 @@ module set_analysis
    use motion, only: diagnostic_t, motion_t, new_motion
    use points, only: row_t, find_row
    use assemblies, only: assemblies_t, find_nearest
-   use block_engine, only: block_engine_t
-   use engine_renewal, only: give_blocks, can_be_renewed
    use analysis, only: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back, redundancy_error
    use diagnosis, only: opinion_t, ask_blocks
    implicit none
    private
-   public :: set_analysis_t, make_set_analysis, give_structure, renew_set_analysis, advance_set, rows_at, sample_set, &
+   public :: set_analysis_t, make_set_analysis, renew_set_analysis, advance_set, rows_at, sample_set, &
       sense_set, prove_set, set_record, set_errors, set_bounds, set_closure_error, set_closing_diagnostics, &
       iterations_of
 
@@ -70,42 +68,29 @@ contains
       end do
    end subroutine make_set_analysis
 
-   !> Gives what the engine of `s`, the analysis of a variant, knows of its structure back to `findings`, those of
-   !> another variant of its set, if it can serve that one too: then `is_given`, and `s` can only be renewed.
-   subroutine give_structure(s, findings, is_given)
-      type(set_analysis_t), intent(inout) :: s
-      type(findings_t), intent(inout) :: findings
-      logical, intent(out) :: is_given
-
-      is_given = .false.
-      if (.not. (allocated(s%list) .and. allocated(findings%structures))) return
-      if (size(s%list) /= 1 .or. size(findings%structures) /= 1) return
-      associate (own => s%now%own(1))
-         ! These keep numbers of the mechanism.
-         if (any(own%requests%kind >= request_pole) .or. allocated(own%tolerances) .or. own%assemblies) return
-      end associate
-      select type (e => s%list(1)%engine)
-      class is (block_engine_t)
-         is_given = can_be_renewed(e)
-         if (is_given) call give_blocks(e, findings%structures(1))
-      end select
-   end subroutine give_structure
-
-   !> Ready for the first instant of `m`, as `make_set_analysis` makes it: `s` has given its structure to `findings`,
-   !> where its blocks were renewed for `m`.
-   subroutine renew_set_analysis(m, s, findings)
+   !> Makes `s`, the analysis of a variant of `m` if there is one, ready for the first instant of `m`, as
+   !> `make_set_analysis` makes it, with the structure and the memory that it has. `is_done`: these fit, and all of
+   !> `findings` is the same; otherwise `s` is of no use.
+   subroutine renew_set_analysis(m, s, is_done)
       type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(inout) :: s
-      type(findings_t), intent(inout) :: findings
+      logical, intent(out) :: is_done
 
+      is_done = allocated(s%list) .and. m%method == method_newton
+      if (is_done) is_done = size(s%list) == 1
+      if (.not. is_done) return
       associate (own => s%now%own(1))
+         ! These keep numbers of the mechanism.
+         is_done = .not. (any(own%requests%kind >= request_pole) .or. allocated(own%tolerances) .or. own%assemblies)
+         if (.not. is_done) return
          own%settings_t = m%settings_t
          own%links(:) = m%links
          own%points(:) = m%points
          own%pairs(:) = m%pairs
          own%drives(:) = m%drives
+         call renew_analysis(s%list(1), own, is_done)
+         if (.not. is_done) return
          s%now%motions(1) = new_motion(size(own%links))
-         call renew_analysis(s%list(1), own, findings%structures(1))
          call make_estimator(s%estimators(1), own)
       end associate
       s%certificate_counts = certificate_counts_t()

@@ -1,17 +1,15 @@
 !> The vector loops of each block, split into what it knows and what it solves for, and where each entry of the block's
 !> Jacobian stands: in a dense matrix by columns, or in the order of a sparse one's pattern, which is made here.
 module block_loops
-   use kinds, only: wp
    use klu, only: pattern_t
    use block_matrix, only: shape_t, is_sparse_better
    use vector_loops, only: vector_loops_t
-   use loop_equations, only: equations_t, equation_t, equation_x, equation_y, equation_projection, &
-      equation_slide
+   use loop_equations, only: equations_t, equation_t, equation_x, equation_y, equation_projection, equation_slide
    use blocks, only: blocks_t, block_t, block_loop_t, body_vector_t, slide_t, loop_components, loop_projection, &
-      loop_angles, have_right_sides
+      loop_angles
    implicit none
    private
-   public :: fill_block_loops, put_numbers, lipschitz_of, find_places
+   public :: fill_block_loops, find_places
 
    !> What has been filled, and the columns of the block being filled; 0: not its own.
    type :: filling_t
@@ -29,7 +27,7 @@ module block_loops
 
 contains
 
-   !> The loops of all blocks that iterate, without their numbers: see `put_numbers`. `member`: the equations of `e` by
+   !> The loops of all blocks that iterate. `member`: the equations of `e` by
    !> block.
    subroutine fill_block_loops(e, member, b)
       type(equations_t), intent(in) :: e
@@ -54,6 +52,9 @@ contains
             block%last_loop = f%loops
          end associate
       end do
+      b%loops = b%loops(:f%loops)
+      b%body_vectors = b%body_vectors(:f%body_vectors)
+      b%slides = b%slides(:f%slides)
 
    contains
 
@@ -105,7 +106,8 @@ contains
                f%slides = f%slides + 1
                b%slides(f%slides) = slide_t(orientation=p%slide_orientation(k), &
                   orientation_column=f%column(p%slide_orientation(k)), &
-                  unknown=b%orientations + p%slide_number(k), column=f%column(b%orientations + p%slide_number(k)))
+                  unknown=b%orientations + p%slide_number(k), column=f%column(b%orientations + p%slide_number(k)), &
+                  source=k)
             end do
             block_loop%last_slide = f%slides
          end associate
@@ -119,10 +121,11 @@ contains
          integer :: k
 
          do k = p%first_vector(i), p%first_vector(i + 1) - 1
-            if (p%vector_orientation(k) == 0 .or. (f%column(p%vector_orientation(k)) > 0 .neqv. own)) cycle
+            if (.not. e%has_vector(k) .or. p%vector_orientation(k) == 0) cycle
+            if (f%column(p%vector_orientation(k)) > 0 .neqv. own) cycle
             f%body_vectors = f%body_vectors + 1
             b%body_vectors(f%body_vectors) = body_vector_t(orientation=p%vector_orientation(k), &
-               column=f%column(p%vector_orientation(k)))
+               column=f%column(p%vector_orientation(k)), source=k)
          end do
       end subroutine add_body_vectors
 
@@ -142,103 +145,6 @@ contains
          allocate (f%column(0:b%unknowns), f%latest(0:e%vector_loops%count), source=0)
       end subroutine reserve
    end subroutine fill_block_loops
-
-   !> Gives the rows and loops of `b` the numbers of the equations `e`, in one unit of length. `is_same`: the loops of
-   !> `e` have the body vectors and slides of those of which `b` was made; where they have not, nothing else counts.
-   pure subroutine put_numbers(e, b, is_same)
-      type(equations_t), intent(in) :: e
-      type(blocks_t), intent(inout) :: b
-      logical, intent(out) :: is_same
-      integer :: i, m
-
-      is_same = .true.
-      b%unit = 1.0_wp
-      b%rows%unit = 1.0_wp
-      b%rows%constant = e%list(b%equation)%constant
-      do i = 1, size(b%list)
-         b%list(i)%has_right_sides = have_right_sides(b%rows(b%list(i)%first_row:b%list(i)%last_row))
-         do m = b%list(i)%first_loop, b%list(i)%last_loop
-            associate (g => b%loops(m))
-               g%unit = 1.0_wp
-               g%coarse = 1.0_wp
-               if (g%kind /= loop_components) &
-                  g%direction = e%list(b%equation(b%list(i)%first_row + g%row_x - 1))%direction
-               call put_loop(e%vector_loops, g, b%body_vectors, b%slides, is_same)
-            end associate
-            if (.not. is_same) return
-         end do
-      end do
-   end subroutine put_numbers
-
-   !> The same of loop `g`, with its `vectors` and `slides` among those of all loops. An orientation stands in it once,
-   !> and in the order of its vector loop.
-   pure subroutine put_loop(p, g, vectors, slides, is_same)
-      type(vector_loops_t), intent(in) :: p
-      type(block_loop_t), intent(inout) :: g
-      type(body_vector_t), intent(inout) :: vectors(:)
-      type(slide_t), intent(inout) :: slides(:)
-      logical, intent(out) :: is_same
-      integer :: known, own, at, k
-
-      known = g%first_vector
-      own = g%first_own
-      g%ground = 0.0_wp
-      is_same = g%last_slide - g%first_slide + 1 == p%first_slide(g%vector_loop + 1) - p%first_slide(g%vector_loop)
-      if (.not. is_same) return
-      do k = p%first_vector(g%vector_loop), p%first_vector(g%vector_loop + 1) - 1
-         if (p%vector_orientation(k) == 0) then
-            g%ground = g%ground + p%body_vector(:, k)
-            cycle
-         end if
-         if (is_next(known, g%first_own - 1)) then
-            at = known
-            known = known + 1
-         else
-            is_same = is_next(own, g%last_vector)
-            if (.not. is_same) return
-            at = own
-            own = own + 1
-         end if
-         vectors(at)%x = p%body_vector(1, k)
-         vectors(at)%y = p%body_vector(2, k)
-      end do
-      is_same = known == g%first_own .and. own == g%last_vector + 1
-      do k = g%first_slide, g%last_slide
-         slides(k)%body_vector = p%slide_body_vector(:, p%first_slide(g%vector_loop) + k - g%first_slide)
-      end do
-
-   contains
-
-      !> Vector `k` of the vector loop is number `n`, of those up to `last`.
-      pure logical function is_next(n, last)
-         integer, intent(in) :: n, last
-
-         is_next = n <= last
-         if (is_next) is_next = vectors(n)%orientation == p%vector_orientation(k)
-      end function is_next
-   end subroutine put_loop
-
-   !> A bound of |J(x) - J(z)|/|x - z| in the maximum norm: for a row, the sum of its second derivatives. Slides count
-   !> with the length of their unit; a projection turns once more with its own orientation.
-   pure real(wp) function lipschitz_of(b, block) result(lipschitz)
-      type(blocks_t), intent(in) :: b
-      type(block_t), intent(in) :: block
-      real(wp) :: row
-      integer :: m
-
-      lipschitz = 0.0_wp
-      do m = block%first_loop, block%last_loop
-         associate (g => b%loops(m))
-            row = sum(hypot(b%body_vectors(g%first_own:g%last_vector)%x, b%body_vectors(g%first_own:g%last_vector)%y)) &
-               + 2.0_wp*sum(hypot(b%slides(g%first_slide:g%last_slide)%body_vector(1), &
-               b%slides(g%first_slide:g%last_slide)%body_vector(2)))
-            if (g%orientation_column > 0 .and. g%kind == loop_projection) row = 3.0_wp*row + norm2(g%ground) &
-               + sum(hypot(b%body_vectors(g%first_vector:g%first_own - 1)%x, b%body_vectors(g%first_vector:g%first_own &
-               - 1)%y))
-            lipschitz = max(lipschitz, row)
-         end associate
-      end do
-   end function lipschitz_of
 
    !> The places of all entries of `b`, and the patterns of the blocks whose Jacobian is best sparse.
    pure subroutine find_places(b)

@@ -1,5 +1,6 @@
 !> The blocks of a mechanism in solving order, as data made for fast evaluation: for each block the vector loops it
-!> closes, split into what earlier blocks have found and what it solves for.
+!> closes, split into what earlier blocks have found and what it solves for. What the numbers of the cards make of them
+!> are `numbers_t`: a variant has the same blocks with other numbers, see `block_numbers`.
 !>
 !> Unknowns: 1 to `orientations` the angles of the orientations, then the slides. A block is one drive alone, or what
 !> the tree leaves of one or more Assur groups with their drives. Contract: a block needs unknowns of earlier blocks
@@ -9,14 +10,16 @@
 !> on, and no other; and of these again and again only what a drive moves.
 module blocks
    use kinds, only: wp
+   use planar, only: vector_t
    use klu, only: pattern_t
    use block_matrix, only: shape_t
    use links_tree, only: tree_t
-   use matching, only: incidence_t
+   use loop_equations, only: equations_t, equation_numbers_t
    implicit none
    private
    public :: blocks_t, block_t, row_t, block_loop_t, body_vector_t, slide_t, loop_components, loop_projection, &
-      loop_angles, have_right_sides, needed_blocks, moving_blocks, iterated_unknowns, blocks_below, largest_known
+      loop_angles, numbers_t, block_numbers_t, row_numbers_t, loop_numbers_t
+   public :: needed_blocks, moving_blocks, iterated_unknowns, blocks_below, largest_known
 
    integer, parameter :: loop_components = 1  !< x and y of a vector loop, or one of them
    integer, parameter :: loop_projection = 2  !< the projection of a vector loop
@@ -30,20 +33,15 @@ module blocks
       integer :: first_loop = 1, last_loop = 0    !< its vector loops
       type(shape_t) :: shape                      !< of its Jacobian
       logical :: direct = .false.                 !< one equation that is linear with coefficient 1
-      logical :: has_right_sides = .true.         !< not all its equations are = 0
-      real(wp) :: coarse = 1.0_wp                 !< the largest of its loops'
-      real(wp) :: lipschitz = 0.0_wp              !< bounds the change of its Jacobian over that of its unknowns
    end type block_t
 
-   !> Row of an equation: = constant + value of the drive; direct: unknown = other + sign_of (constant + value).
+   !> Row of an equation: = a constant + value of the drive; direct: unknown = other + sign_of (constant + value).
    type :: row_t
       integer :: drive = 0                        !< whose value is added; 0: none
       integer :: other = 0                        !< direct: the unknown that is added; 0: the ground's angle
       integer :: pair = 0                         !< 0: a drive's equation
       logical :: angular = .false.                !< in radians, not lengths
-      real(wp) :: constant = 0.0_wp               !< in radians or the unit below
-      real(wp) :: sign_of = 1.0_wp                !< 1 or -1
-      real(wp) :: unit = 1.0_wp                   !< of its lengths, in that of the mechanism
+      integer :: sign_of = 1                      !< 1 or -1
    end type row_t
 
    !> A vector loop as one block has it: rows (0: none), the known body vectors, then those of the block's own angles.
@@ -57,23 +55,50 @@ module blocks
       integer :: less = 0, less_column = 0        !< angles: the one subtracted
       integer :: vector_loop = 0                  !< its number before the blocks were made; 0: none
       integer :: orientation_at = 0, less_at = 0        !< where their entries stand in the Jacobian
-      real(wp) :: direction(2) = 0.0_wp           !< projection: in the axes of its orientation
-      real(wp) :: ground(2) = 0.0_wp              !< the loop's fixed part
-      real(wp) :: unit = 1.0_wp                   !< of its lengths: see block_partition
-      real(wp) :: coarse = 1.0_wp                 !< what is known over the unit, 1 at least
    end type block_loop_t
 
-   !> `at`: where its entries stand in the Jacobian of its block, for the rows row_x and row_y.
+   !> `at`: where its entries stand in the Jacobian of its block, for the rows row_x and row_y. `source`: its number in
+   !> the vector loops.
    type :: body_vector_t
       integer :: orientation = 0, column = 0, at(2) = 0   !< the angle that rotates it, and the column of that
-      real(wp) :: x = 0.0_wp, y = 0.0_wp                  !< in the axes of the orientation, unit of the loop
+      integer :: source = 0
    end type body_vector_t
 
    !> Columns are 0 for what is known; `at` as above, `orientation_at` those of the orientation's column.
    type :: slide_t
       integer :: orientation = 0, orientation_column = 0, unknown = 0, column = 0, at(2) = 0, orientation_at(2) = 0
-      real(wp) :: body_vector(2) = 0.0_wp         !< unit vector along the guide, with its sign in the loop
+      integer :: source = 0
    end type slide_t
+
+   type :: block_numbers_t
+      logical :: has_right_sides = .true.         !< not all its equations are = 0
+      real(wp) :: coarse = 1.0_wp                 !< the largest of its loops'
+      real(wp) :: lipschitz = 0.0_wp              !< bounds the change of its Jacobian over that of its unknowns
+   end type block_numbers_t
+
+   type :: row_numbers_t
+      real(wp) :: constant = 0.0_wp               !< in radians or the unit below
+      real(wp) :: unit = 1.0_wp                   !< of its lengths, in that of the mechanism
+   end type row_numbers_t
+
+   type :: loop_numbers_t
+      type(vector_t) :: direction                 !< projection: in the axes of its orientation
+      type(vector_t) :: ground                    !< the loop's fixed part
+      real(wp) :: unit = 1.0_wp                   !< of its lengths: see block_numbers
+      real(wp) :: coarse = 1.0_wp                 !< what is known over the unit, 1 at least
+   end type loop_numbers_t
+
+   !> What the numbers of the cards make of the blocks.
+   type :: numbers_t
+      real(wp) :: span = 1.0_wp                   !< the characteristic length, in the deck's unit
+      type(equation_numbers_t) :: equations       !< their unit of length: the power of two next to `span`
+      type(block_numbers_t), allocatable :: blocks(:)
+      type(row_numbers_t), allocatable :: rows(:)
+      type(loop_numbers_t), allocatable :: loops(:)
+      type(vector_t), allocatable :: d(:)         !< (body vectors) in the axes of the orientation, unit of the loop
+      type(vector_t), allocatable :: e(:)         !< (slides) along the guide, with its sign in the loop
+      real(wp), allocatable :: unit(:)            !< (0:unknowns) of a slide; 1 of an angle
+   end type numbers_t
 
    type :: blocks_t
       integer :: orientations = 0, unknowns = 0   !< angles; angles, slides and places of roots together
@@ -83,25 +108,18 @@ module blocks
       type(block_t), allocatable :: list(:)
       integer, allocatable :: unknown(:)          !< by block
       integer, allocatable :: block_of(:)         !< (unknowns)
-      real(wp), allocatable :: unit(:)            !< (0:unknowns) of a slide; 1 of an angle
       type(row_t), allocatable :: rows(:)
-      integer, allocatable :: equation(:)         !< (rows) its number before the blocks were made
+      integer, allocatable :: equation(:)         !< (rows) its number among the equations
       type(block_loop_t), allocatable :: loops(:)
       type(body_vector_t), allocatable :: body_vectors(:)
       type(slide_t), allocatable :: slides(:)
       type(pattern_t), allocatable :: patterns(:) !< of the blocks with a sparse Jacobian
-      integer, allocatable :: first_term(:), terms(:, :)   !< of the vector loops: see `vector_loops_t`
-      type(incidence_t) :: incidence              !< by which they were made, kept where there are variants
+      type(tree_t) :: tree
+      type(equations_t) :: equations              !< of which they were made
+      type(numbers_t), allocatable :: numbers     !< those that they have now
    end type blocks_t
 
 contains
-
-   !> One of the equations in `rows` is equal to a constant or a drive's value that is not 0 for certain.
-   pure logical function have_right_sides(rows)
-      type(row_t), intent(in) :: rows(:)
-
-      have_right_sides = any(rows%drive > 0 .or. abs(rows%constant) > 0.0_wp)
-   end function have_right_sides
 
    !> The blocks, in solving order, that the links `wanted` (links) need; equations that are too many are always
    !> looked at.

@@ -3,7 +3,7 @@
 !> parent needs no x and y of its own. The pairs left over close the loops.
 !>
 !> The tree grows from the ground, revolute pairs first: a prismatic pair that closes a loop costs one equation and
-!> no unknown, one in the tree a slide. Of the numbers of the deck only constant angles are used to build it.
+!> no unknown, one in the tree a slide. The tree is integers alone; the axes in which its links stand are `axes_t`.
 module links_tree
    use kinds, only: wp
    use planar, only: direction, rotated, quarter_turn
@@ -11,16 +11,16 @@ module links_tree
    use mechanism, only: mechanism_t, pair_prismatic, pair_revolute, pair_links, plane_origin
    implicit none
    private
-   public :: tree_t, new_tree, renew_tree, other_link, place_t, place_on_tree, point_in_drawing, offset_in_drawing, &
-      ground_place, guide
+   public :: tree_t, new_tree, axes_t, axes_of, put_axes, other_link, place_t, place_on_tree, point_in_drawing, &
+      offset_in_drawing, ground_place, guide
 
    type :: tree_t
       integer :: orientations = 0           !< angles that are unknown; orientation 0 is the ground's
       integer :: slides = 0                 !< slides of prismatic pairs in the tree
       integer :: roots = 0                  !< parts that no pair joins to the ground
-      real(wp) :: origin(2) = 0.0_wp        !< what places are counted from
       integer, allocatable :: orientation(:)     !< (links)
-      real(wp), allocatable :: angle_offset(:)   !< (links) phi of the link less the angle of its orientation, rad
+      integer, allocatable :: by_angle(:)        !< (links) so that links whose angle prismatic pairs give come later
+      integer, allocatable :: angle_pair(:)      !< (links) the prismatic pair that gives its angle; 0: none
       integer, allocatable :: parent_joint(:)    !< (links) the pair to the parent; 0: ground or root
       integer, allocatable :: parent(:)      !< (links) the next link towards the ground; 0: ground or root
       integer, allocatable :: depth(:)      !< (links)
@@ -30,6 +30,13 @@ module links_tree
       type(sorted_t) :: near               !< the pairs of each link
       integer, allocatable :: surplus(:)    !< prismatic pairs whose angle other prismatic pairs already fix
    end type tree_t
+
+   !> The axes of a mechanism's links: what the numbers of its cards make of the tree.
+   type :: axes_t
+      real(wp) :: origin(2) = 0.0_wp             !< from which places are counted
+      real(wp), allocatable :: angle_offset(:)   !< (links) phi of the link less the angle of its orientation, rad
+      real(wp), allocatable :: turn(:, :)        !< (2, links) the unit vector at this angle
+   end type axes_t
 
    !> Where a link is, seen from its parent: its origin is that of the parent + R(parent) (reach + s slide_body_vector)
    !> - R(own) body_vector, R of the orientations.
@@ -46,7 +53,6 @@ contains
       type(tree_t) :: t
       integer :: k
 
-      t%origin = plane_origin(m)
       t%near = sorted([(pair_links(m, m%pairs(k)), k=1, size(m%pairs))], size(m%links))
       t%near%member = (t%near%member + 1)/2
       call find_orientations()
@@ -54,45 +60,45 @@ contains
 
    contains
 
-      !> Orientations and angle offsets: a walk over prismatic pairs alone, first from the ground links, then from
+      !> Orientations: a walk over prismatic pairs alone, first from the ground links, then from
       !> every link not yet seen.
       subroutine find_orientations()
-         integer :: queue(size(m%links)), last, link
+         integer :: last, link
          logical :: used(size(m%pairs))
 
          allocate (t%orientation(size(m%links)), source=-1)
-         allocate (t%angle_offset(size(m%links)), source=0.0_wp)
+         allocate (t%by_angle(size(m%links)), t%angle_pair(size(m%links)), source=0)
          allocate (t%surplus(0))
          used = .false.
          last = 0
          do link = 1, size(m%links)
             if (.not. m%links(link)%ground) cycle
             last = last + 1
-            queue(last) = link
+            t%by_angle(last) = link
             t%orientation(link) = 0
-            t%angle_offset(link) = m%links(link)%position(3)
          end do
-         call spread_orientation(m, queue, last, used)
+         call spread_orientation(1, last, used)
          do link = 1, size(m%links)
             if (t%orientation(link) >= 0) cycle
             t%orientations = t%orientations + 1
             t%orientation(link) = t%orientations
-            last = 1
-            queue(1) = link
-            call spread_orientation(m, queue, last, used)
+            last = last + 1
+            t%by_angle(last) = link
+            call spread_orientation(last, last, used)
          end do
       end subroutine find_orientations
 
-      !> Gives the orientation of the `last` links in the queue to all links that prismatic pairs join to them.
-      subroutine spread_orientation(m, queue, last, used)
-         type(mechanism_t), intent(in) :: m
-         integer, intent(inout) :: queue(:), last
+      !> Gives the orientation of links number `first` to `last` of the walk to all links that prismatic pairs join to
+      !> them.
+      subroutine spread_orientation(first, last, used)
+         integer, intent(in) :: first
+         integer, intent(inout) :: last
          logical, intent(inout) :: used(:)
          integer :: next, link, far, i, k
 
-         next = 1
+         next = first
          do while (next <= last)
-            link = queue(next)
+            link = t%by_angle(next)
             next = next + 1
             do i = t%near%first(link), t%near%first(link + 1) - 1
                k = t%near%member(i)
@@ -104,10 +110,9 @@ contains
                   cycle
                end if
                t%orientation(far) = t%orientation(link)
-               t%angle_offset(far) = t%angle_offset(link) &
-                  + merge(m%pairs(k)%beta, -m%pairs(k)%beta, m%points(m%pairs(k)%point_i)%link == link)
+               t%angle_pair(far) = k
                last = last + 1
-               queue(last) = far
+               t%by_angle(last) = far
             end do
          end do
       end subroutine spread_orientation
@@ -184,19 +189,34 @@ contains
       end subroutine attach
    end function new_tree
 
-   !> Gives `t`, the tree of a mechanism that differs from `m` in numbers alone, those of `m`.
-   subroutine renew_tree(m, t)
+   !> The axes of the links of `m` on its tree `t`.
+   function axes_of(m, t) result(a)
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(inout) :: t
+      type(tree_t), intent(in) :: t
+      type(axes_t) :: a
 
-      if (any(m%pairs%kind == pair_prismatic)) then
-         t = new_tree(m)
-      else
-         ! Each link that moves has an orientation of its own.
-         t%origin = plane_origin(m)
-         t%angle_offset(:) = merge(m%links%position(3), 0.0_wp, m%links%ground)
-      end if
-   end subroutine renew_tree
+      allocate (a%angle_offset(size(m%links)), a%turn(2, size(m%links)))
+      call put_axes(m, t, a)
+   end function axes_of
+
+   !> Gives the axes `a` the numbers of `m`, whose tree is `t`.
+   pure subroutine put_axes(m, t, a)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      type(axes_t), intent(inout) :: a
+      integer :: i, k, link
+
+      a%origin = plane_origin(m)
+      do i = 1, size(t%by_angle)
+         link = t%by_angle(i)
+         k = t%angle_pair(link)
+         a%angle_offset(link) = 0.0_wp
+         if (m%links(link)%ground) a%angle_offset(link) = m%links(link)%position(3)
+         if (k > 0) a%angle_offset(link) = a%angle_offset(other_link(m, k, link)) &
+            + merge(-m%pairs(k)%beta, m%pairs(k)%beta, m%points(m%pairs(k)%point_i)%link == link)
+         a%turn(:, link) = direction(a%angle_offset(link))
+      end do
+   end subroutine put_axes
 
    !> The link at the other end of pair `k` of `link`.
    pure integer function other_link(m, k, link) result(other)
@@ -207,9 +227,10 @@ contains
    end function other_link
 
    !> Where `link` is, seen from its parent; lengths in units of `length`.
-   pure function place_on_tree(m, t, length, link) result(p)
+   pure function place_on_tree(m, t, a, length, link) result(p)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
+      type(axes_t), intent(in) :: a
       real(wp), intent(in) :: length
       integer, intent(in) :: link
       type(place_t) :: p
@@ -217,60 +238,60 @@ contains
 
       associate (pair => m%pairs(t%parent_joint(link)))
          sign_of = merge(1.0_wp, -1.0_wp, m%points(pair%point_j)%link == link)
-         p%reach = point_in_drawing(m, t, length, merge(pair%point_i, pair%point_j, sign_of > 0.0_wp))
-         p%body_vector = point_in_drawing(m, t, length, merge(pair%point_j, pair%point_i, sign_of > 0.0_wp))
+         p%reach = point_in_drawing(m, a, length, merge(pair%point_i, pair%point_j, sign_of > 0.0_wp))
+         p%body_vector = point_in_drawing(m, a, length, merge(pair%point_j, pair%point_i, sign_of > 0.0_wp))
          if (pair%kind /= pair_prismatic) return
          p%slide = t%slide(t%parent_joint(link))
-         p%slide_body_vector = sign_of*guide(m, t, t%parent_joint(link), across=.false.)
-         p%reach = p%reach - sign_of*guide(m, t, t%parent_joint(link), across=.true.)*pair%offset/length
+         p%slide_body_vector = sign_of*guide(m, a, t%parent_joint(link), across=.false.)
+         p%reach = p%reach - sign_of*guide(m, a, t%parent_joint(link), across=.true.)*pair%offset/length
       end associate
    end function place_on_tree
 
    !> Direction (2) of the guide of pair `k`, or of its normal, in the axes of its orientation.
-   pure function guide(m, t, k, across) result(e)
+   pure function guide(m, a, k, across) result(e)
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
+      type(axes_t), intent(in) :: a
       integer, intent(in) :: k
       logical, intent(in) :: across
       real(wp) :: e(2), angle
 
-      angle = t%angle_offset(m%points(m%pairs(k)%point_i)%link) + m%pairs(k)%alpha
+      angle = a%angle_offset(m%points(m%pairs(k)%point_i)%link) + m%pairs(k)%alpha
       e = direction(angle)
       if (across) e = quarter_turn(e)
    end function guide
 
    !> Point number `i` in the axes of its link's orientation, from the link's origin; of a ground link, its place
    !> from the origin of all places.
-   pure function point_in_drawing(m, t, length, i) result(v)
+   pure function point_in_drawing(m, a, length, i) result(v)
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
+      type(axes_t), intent(in) :: a
       real(wp), intent(in) :: length
       integer, intent(in) :: i
       real(wp) :: v(2)
 
-      v = offset_in_drawing(m, t, length, i)
-      if (m%links(m%points(i)%link)%ground) v = v + ground_place(m, t, length, m%points(i)%link)
+      v = offset_in_drawing(m, a, length, i)
+      if (m%links(m%points(i)%link)%ground) v = v + ground_place(m, a, length, m%points(i)%link)
    end function point_in_drawing
 
    !> Point number `i` from the origin of its link, in the axes of the link's orientation.
-   pure function offset_in_drawing(m, t, length, i) result(v)
+   pure function offset_in_drawing(m, a, length, i) result(v)
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
+      type(axes_t), intent(in) :: a
       real(wp), intent(in) :: length
       integer, intent(in) :: i
       real(wp) :: v(2)
 
-      v = rotated(m%points(i)%offset, direction(t%angle_offset(m%points(i)%link)))/length
+      v = rotated(m%points(i)%offset, a%turn(:, m%points(i)%link))/length
    end function offset_in_drawing
 
    !> The place of ground `link` from the origin of all places.
-   pure function ground_place(m, t, length, link) result(v)
+   pure function ground_place(m, a, length, link) result(v)
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
+      type(axes_t), intent(in) :: a
       real(wp), intent(in) :: length
       integer, intent(in) :: link
       real(wp) :: v(2)
 
-      v = (m%links(link)%position(:2) - t%origin)/length
+      v = (m%links(link)%position(:2) - a%origin)/length
    end function ground_place
 end module links_tree

@@ -12,7 +12,7 @@ module matching
    use grouping, only: sorted_t, sorted
    implicit none
    private
-   public :: incidence_t, is_same_incidence, owners, match, find_blocks, overdetermined, underdetermined
+   public :: incidence_t, owners, match, find_blocks, overdetermined, underdetermined
 
    !> Unknowns of equation e: unknown(first(e)), ..., unknown(first(e + 1) - 1), each once.
    type :: incidence_t
@@ -21,15 +21,6 @@ module matching
    end type incidence_t
 
 contains
-
-   !> The same unknowns are in each equation of `g` and `h`, in the same order.
-   pure logical function is_same_incidence(g, h) result(same)
-      type(incidence_t), intent(in) :: g, h
-
-      same = g%equations == h%equations .and. g%unknowns == h%unknowns
-      if (same) same = all(g%first == h%first)
-      if (same) same = all(g%unknown(:g%first(g%equations + 1) - 1) == h%unknown(:g%first(g%equations + 1) - 1))
-   end function is_same_incidence
 
    !> The equation of each entry of g%unknown.
    pure function owners(g) result(equation)

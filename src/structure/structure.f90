@@ -11,15 +11,15 @@ module structure
    use names, only: drive_name, listed
    use grouping, only: sorted_t, sorted, members, once, joined
    use mechanism, only: mechanism_t, pair_links, drive_links, pair_revolute, pair_prismatic, method_newton
-   use matching, only: match, is_same_incidence, owners, overdetermined, underdetermined
+   use matching, only: match, owners, overdetermined, underdetermined
    use assur_groups, only: closure_t, new_closure, group_t, groups_of
    use independent, only: parts_t, find_parts, part_of_links
    use links_tree, only: tree_t
-   use block_structure, only: structure_t, new_structure, renew_structure
+   use block_structure, only: structure_t, new_structure, make_structure
    implicit none
    private
    public :: structure_t, findings_t, group_t, underdetermined_t, new_structure, count_degrees_of_freedom, &
-      find_structure, find_structure_again, find_groups, check_structure, faults_text, spare_drives_text
+      find_structure, find_groups, check_structure, faults_text, spare_drives_text
 
    !> Links that still can move, and the drives that they lack.
    type :: underdetermined_t
@@ -80,52 +80,39 @@ contains
    function find_structure(m) result(f)
       type(mechanism_t), intent(in) :: m
       type(findings_t) :: f
-
-      call find_structure_again(m, f)
-   end function find_structure
-
-   !> The same of a mechanism that differs in numbers alone from the one with the findings `f`, if there are such: where
-   !> each closure equation has the coordinates that it had, all findings stand but the numbers of the structures.
-   subroutine find_structure_again(m, f)
-      type(mechanism_t), intent(in) :: m
-      type(findings_t), intent(inout) :: f
       type(closure_t) :: c
       type(structure_t) :: whole
       integer, allocatable :: unknown_of(:), equation_of(:)
       logical, allocatable :: over(:)
-      logical :: stands
       integer :: k
 
+      f = count_degrees_of_freedom(m)
       c = new_closure(m)
-      stands = allocated(f%closure)
-      if (stands) stands = is_same_incidence(c%incidence, f%closure%incidence)
-      if (.not. stands) then
-         f = count_degrees_of_freedom(m)
-         call match(c%incidence, unknown_of, equation_of)
-         over = overdetermined(c%incidence, unknown_of, equation_of)
-         f%redundant = count(unknown_of == 0)
-         f%many_pairs = pack(c%pair, over .and. c%pair > 0)
-         f%many_drives = pack(c%drive, over .and. c%drive > 0)
-         if (size(f%many_drives) > 1) call find_spare_drives()
-         if (any(equation_of == 0)) then
-            f%lacking = parts_that_lack(underdetermined(c%incidence, unknown_of, equation_of))
-            return
-         end if
-         allocate (f%lacking(0))
-         f%closure = c
+      call match(c%incidence, unknown_of, equation_of)
+      over = overdetermined(c%incidence, unknown_of, equation_of)
+      f%redundant = count(unknown_of == 0)
+      f%many_pairs = pack(c%pair, over .and. c%pair > 0)
+      f%many_drives = pack(c%drive, over .and. c%drive > 0)
+      if (size(f%many_drives) > 1) call find_spare_drives()
+      if (any(equation_of == 0)) then
+         f%lacking = parts_that_lack(underdetermined(c%incidence, unknown_of, equation_of))
+         return
       end if
-      if (.not. stands .or. f%parts%count > 1) call find_parts(m, f%parts, f%own)
+      allocate (f%lacking(0))
+      call find_parts(m, f%parts, f%own)
       if (.not. allocated(f%own)) allocate (f%own(0))
-      if (.not. allocated(f%structures)) allocate (f%structures(f%parts%count))
-      if (f%parts%count == 1) call renew_structure(m, f%structures(1))
+      allocate (f%structures(f%parts%count))
+      if (f%parts%count == 1) call make_structure(m, f%structures(1))
       do k = 1, size(f%own)
-         call renew_structure(f%own(k), f%structures(k))
+         call make_structure(f%own(k), f%structures(k))
       end do
       f%solvable = all([(f%structures(k)%blocks%solvable, k=1, size(f%structures))])
-      if (f%solvable) return
-      whole = new_structure(m)
-      f%lacking = parts_on_tree(whole%tree, whole%blocks%free)
-      deallocate (f%closure)
+      if (f%solvable) then
+         f%closure = c
+      else
+         whole = new_structure(m)
+         f%lacking = parts_on_tree(whole%blocks%tree, whole%blocks%free)
+      end if
 
    contains
 
@@ -229,7 +216,7 @@ contains
             parts = [parts, one]
          end do
       end function parts_on_tree
-   end subroutine find_structure_again
+   end function find_structure
 
    !> Finds the groups of `m`, whose findings `f` are; none where it is not solvable. Only the listing has them, and the
    !> sets of a long job are checked one after another, but listed by several processes.

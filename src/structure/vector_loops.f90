@@ -3,8 +3,10 @@
 !>
 !>    P - Q = d_0 + sum_k R(phi_k) d_k + sum_m s_m R(phi_k(m)) e_m.
 !>
-!> Body vectors of one orientation in one loop are added up, so each orientation stands in it once. Lengths are
-!> in units of `length`.
+!> Body vectors of one orientation in one loop are added up, so each orientation stands in it once.
+!>
+!> A loop is integers: which points and prismatic pairs it is the sum of. What the numbers of the cards make of its body
+!> vectors are `loop_sums_t`.
 !>
 !> The paths lead over the pairs taken so far: those of the tree, and each revolute pair once it has closed its loop. A
 !> loop that takes the shortest such path holds its own pair and earlier ones only, so all loops are independent; and it
@@ -12,11 +14,11 @@
 module vector_loops
    use kinds, only: wp
    use mechanism, only: mechanism_t, pair_prismatic, pair_revolute
-   use links_tree, only: tree_t, offset_in_drawing, ground_place, guide, other_link
+   use links_tree, only: tree_t, axes_t, offset_in_drawing, ground_place, guide, other_link
    implicit none
    private
-   public :: vector_loops_t, new_vector_loops, add_vector_loop, search_t, new_search, find_path, find_path_down, &
-      close_pair
+   public :: vector_loops_t, new_vector_loops, add_vector_loop, loop_sums_t, put_sums, vanishes
+   public :: search_t, new_search, find_path, find_path_down, close_pair
 
    !> What a search needs; links are nodes, all ground links one, node 0.
    type :: search_t
@@ -30,26 +32,27 @@ module vector_loops
    end type search_t
 
    !> Body vectors of loop p are first_vector(p), ..., first_vector(p + 1) - 1; slides and terms likewise. Loop 0 has
-   !> none. Orientation 0 is the ground's. Directions are in the axes of the orientation. All lists have room behind.
+   !> none. Orientation 0 is the ground's. All lists have room behind.
    type :: vector_loops_t
       integer :: count = 0
       integer :: vectors = 0, slides = 0, term_count = 0 !< so far, with those of the loop in the making
       integer, allocatable :: first_vector(:), first_slide(:), first_term(:)   !< (0:loops + 1)
-      integer, allocatable :: vector_orientation(:)
-      real(wp), allocatable :: body_vector(:, :)         !< (2, body vectors) d
-      integer, allocatable :: slide_orientation(:), slide_number(:)
-      real(wp), allocatable :: slide_body_vector(:, :)   !< (2, slides) e with its sign
+      integer, allocatable :: vector_orientation(:)      !< (body vectors)
+      integer, allocatable :: slide_orientation(:), slide_number(:)   !< (slides)
+      integer, allocatable :: slide_pair(:)              !< (slides) with its sign in the loop; 0: x or y of a root
       !> (2, terms) What the loop is the sum of: each a point (its number, 0), from its link's origin, or a prismatic
       !> pair's P - Q (0, its number), with their signs.
       integer, allocatable :: terms(:, :)
-      !> (0:orientations) Of the loop in the making: the body vector of each orientation, 0 for none, and the largest
-      !> component that was added to it.
-      integer, allocatable :: vector_of(:)
-      real(wp), allocatable :: largest(:)
-      !> Of the loop in the making: the places of ground links, which are summed apart from their points. Between points
-      !> of one link they cancel, wherever that stands, and leave no rounding of their size.
-      real(wp) :: places(2) = 0.0_wp
+      integer, allocatable :: term_vector(:)             !< (terms) the body vector to which each is added
+      integer, allocatable :: vector_of(:)               !< (0:orientations) of the loop in the making; 0: none
    end type vector_loops_t
+
+   !> Body vectors and slides of all loops, in the axes of their orientations, lengths in one unit.
+   type :: loop_sums_t
+      real(wp), allocatable :: body_vector(:, :)         !< (2, body vectors) d
+      real(wp), allocatable :: largest(:)                !< (body vectors) the largest component that was added to it
+      real(wp), allocatable :: slide_body_vector(:, :)   !< (2, slides) e with its sign
+   end type loop_sums_t
 
 contains
 
@@ -62,64 +65,59 @@ contains
 
       most = size(m%pairs) + size(m%drives) + 1
       allocate (p%first_vector(0:most), p%first_slide(0:most), p%first_term(0:most), source=1)
-      allocate (p%vector_orientation(most), p%body_vector(2, most), p%slide_orientation(most), p%slide_number(most), &
-         p%slide_body_vector(2, most), p%terms(2, 4*most))
+      allocate (p%vector_orientation(most), p%slide_orientation(most), p%slide_number(most), p%slide_pair(most), &
+         p%terms(2, 4*most), p%term_vector(4*most))
       allocate (p%vector_of(0:t%orientations), source=0)
-      allocate (p%largest(0:t%orientations))
    end function new_vector_loops
 
    !> Adds to `loops` the one from point `q` to point `p` by the path that `s` found last from p's link to q's; `q` = 0
    !> is the origin of all places, and the path then leads to the ground or to a root.
-   subroutine add_vector_loop(m, t, length, p, q, s, loops)
+   subroutine add_vector_loop(m, t, p, q, s, loops)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
-      real(wp), intent(in) :: length
       integer, intent(in) :: p, q
       type(search_t), intent(in) :: s
       type(vector_loops_t), intent(inout) :: loops
       integer :: link, i
 
       link = m%points(p)%link
-      call add_point(m, t, length, p, 1.0_wp, loops)
+      call add_point(m, t, p, 1, loops)
       do i = 1, s%length
-         call cross(m, t, length, s%pairs(i), link, loops)
+         call cross(m, t, s%pairs(i), link, loops)
       end do
       if (q > 0) then
-         call add_point(m, t, length, q, -1.0_wp, loops)
+         call add_point(m, t, q, -1, loops)
       else if (t%root(link) > 0) then
-         call add_slide(loops, 0, t%slides + 2*t%root(link) - 1, [1.0_wp, 0.0_wp])
-         call add_slide(loops, 0, t%slides + 2*t%root(link), [0.0_wp, 1.0_wp])
+         call add_slide(loops, 0, t%slides + 2*t%root(link) - 1, 0)
+         call add_slide(loops, 0, t%slides + 2*t%root(link), 0)
       end if
       call close_loop(loops)
    end subroutine add_vector_loop
 
    !> Goes from a place of `link` through `pair` to the link at its other end, which becomes `link`. Ground
    !> links are one: the pair may be another one's than that of the ground link reached.
-   subroutine cross(m, t, length, pair, link, loops)
+   subroutine cross(m, t, pair, link, loops)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
-      real(wp), intent(in) :: length
       integer, intent(in) :: pair
       integer, intent(inout) :: link
       type(vector_loops_t), intent(inout) :: loops
-      integer :: exit_point, entry_point
-      real(wp) :: sign_of
+      integer :: exit_point, entry_point, sign_of
       logical :: forward
 
       associate (k => m%pairs(pair))
          forward = is_on(m, k%point_i, link)
          exit_point = merge(k%point_i, k%point_j, forward)
          entry_point = merge(k%point_j, k%point_i, forward)
-         call add_point(m, t, length, exit_point, -1.0_wp, loops)
+         call add_point(m, t, exit_point, -1, loops)
          if (k%kind == pair_prismatic) then
             ! P - Q = h n - s e, all in the orientation that the two links share.
-            sign_of = merge(1.0_wp, -1.0_wp, forward)
-            call add_term(loops, [0, merge(pair, -pair, forward)])
-            call add_slide(loops, t%orientation(link), t%slide(pair), -sign_of*guide(m, t, pair, across=.false.))
-            call add_body_vector(loops, t%orientation(link), sign_of*k%offset/length*guide(m, t, pair, across=.true.))
+            sign_of = merge(1, -1, forward)
+            call add_slide(loops, t%orientation(link), t%slide(pair), -sign_of*pair)
+            call add_term(loops, [0, sign_of*pair], t%orientation(link))
          end if
          link = m%points(entry_point)%link
-         call add_point(m, t, length, entry_point, 1.0_wp, loops)
+         call add_point(m, t, entry_point, 1, loops)
       end associate
    end subroutine cross
 
@@ -133,98 +131,131 @@ contains
 
    !> Adds point number `i`, from its link's origin, with a sign to the loop in the making. Never the difference of two
    !> points: the largest that was added tells which sums are rounding alone.
-   subroutine add_point(m, t, length, i, sign_of, p)
+   subroutine add_point(m, t, i, sign_of, p)
       type(mechanism_t), intent(in) :: m
       type(tree_t), intent(in) :: t
-      real(wp), intent(in) :: length, sign_of
-      integer, intent(in) :: i
+      integer, intent(in) :: i, sign_of
       type(vector_loops_t), intent(inout) :: p
-      real(wp) :: place(2)
 
-      call add_term(p, [merge(i, -i, sign_of > 0.0_wp), 0])
-      associate (link => m%points(i)%link)
-         call add_body_vector(p, t%orientation(link), sign_of*offset_in_drawing(m, t, length, i))
-         if (.not. m%links(link)%ground) return
-         place = ground_place(m, t, length, link)
-      end associate
-      p%places = p%places + sign_of*place
-      p%largest(0) = max(p%largest(0), maxval(abs(place)))
+      call add_term(p, [sign_of*i, 0], t%orientation(m%points(i)%link))
    end subroutine add_point
 
-   !> Adds a term to the loop in the making.
-   subroutine add_term(p, term)
+   !> Adds a term, which turns with an orientation, to the loop in the making.
+   subroutine add_term(p, term, orientation)
       type(vector_loops_t), intent(inout) :: p
-      integer, intent(in) :: term(2)
-
-      p%term_count = p%term_count + 1
-      if (p%term_count > size(p%terms, 2)) p%terms = reshape([p%terms, p%terms], [2, 2*size(p%terms, 2)])
-      p%terms(:, p%term_count) = term
-   end subroutine add_term
-
-   !> Adds the body vector `d` of an orientation to the loop in the making.
-   subroutine add_body_vector(p, orientation, d)
-      type(vector_loops_t), intent(inout) :: p
-      integer, intent(in) :: orientation
-      real(wp), intent(in) :: d(2)
+      integer, intent(in) :: term(2), orientation
 
       if (p%vector_of(orientation) == 0) then
          p%vectors = p%vectors + 1
-         if (p%vectors > size(p%vector_orientation)) then
-            p%vector_orientation = [p%vector_orientation, p%vector_orientation]
-            p%body_vector = reshape([p%body_vector, p%body_vector], [2, size(p%vector_orientation)])
-         end if
+         if (p%vectors > size(p%vector_orientation)) p%vector_orientation = [p%vector_orientation, p%vector_orientation]
          p%vector_of(orientation) = p%vectors
          p%vector_orientation(p%vectors) = orientation
-         p%body_vector(:, p%vectors) = 0.0_wp
-         p%largest(orientation) = 0.0_wp
       end if
-      associate (sum_of => p%body_vector(:, p%vector_of(orientation)))
-         sum_of = sum_of + d
-      end associate
-      p%largest(orientation) = max(p%largest(orientation), maxval(abs(d)))
-   end subroutine add_body_vector
+      p%term_count = p%term_count + 1
+      if (p%term_count > size(p%term_vector)) then
+         p%term_vector = [p%term_vector, p%term_vector]
+         p%terms = reshape([p%terms, p%terms], [2, size(p%term_vector)])
+      end if
+      p%terms(:, p%term_count) = term
+      p%term_vector(p%term_count) = p%vector_of(orientation)
+   end subroutine add_term
 
-   !> Adds slide number `slide` in the direction `e` to the loop in the making.
-   subroutine add_slide(p, orientation, slide, e)
+   !> Adds slide number `slide` along the guide of `pair`, with its sign, to the loop in the making.
+   subroutine add_slide(p, orientation, slide, pair)
       type(vector_loops_t), intent(inout) :: p
-      integer, intent(in) :: orientation, slide
-      real(wp), intent(in) :: e(2)
+      integer, intent(in) :: orientation, slide, pair
 
       p%slides = p%slides + 1
       if (p%slides > size(p%slide_number)) then
          p%slide_orientation = [p%slide_orientation, p%slide_orientation]
          p%slide_number = [p%slide_number, p%slide_number]
-         p%slide_body_vector = reshape([p%slide_body_vector, p%slide_body_vector], [2, size(p%slide_number)])
+         p%slide_pair = [p%slide_pair, p%slide_pair]
       end if
       p%slide_orientation(p%slides) = orientation
       p%slide_number(p%slides) = slide
-      p%slide_body_vector(:, p%slides) = e
+      p%slide_pair(p%slides) = pair
    end subroutine add_slide
 
-   !> Ends the loop in the making. What is left of body vectors that cancel is rounding: it would put an angle into
-   !> equations that do not hold it, and is dropped.
+   !> Ends the loop in the making.
    subroutine close_loop(p)
       type(vector_loops_t), intent(inout) :: p
-      integer :: kept, k
 
-      kept = p%first_vector(p%count + 1) - 1
-      if (p%vector_of(0) > 0) p%body_vector(:, p%vector_of(0)) = p%body_vector(:, p%vector_of(0)) + p%places
-      p%places = 0.0_wp
-      do k = kept + 1, p%vectors
-         associate (orientation => p%vector_orientation(k))
-            p%vector_of(orientation) = 0
-            if (all(abs(p%body_vector(:, k)) <= 8.0_wp*epsilon(1.0_wp)*p%largest(orientation))) cycle
-         end associate
-         kept = kept + 1
-         p%vector_orientation(kept) = p%vector_orientation(k)
-         p%body_vector(:, kept) = p%body_vector(:, k)
-      end do
-      p%vectors = kept
+      p%vector_of(p%vector_orientation(p%first_vector(p%count + 1):p%vectors)) = 0
       p%count = p%count + 1
       p%first_vector(p%count + 1) = p%vectors + 1
       p%first_slide(p%count + 1) = p%slides + 1
       p%first_term(p%count + 1) = p%term_count + 1
    end subroutine close_loop
+
+   !> Gives `x`, the sums of the loops `p`, the numbers of `m`, whose links stand in the axes `a` on the tree `t`;
+   !> lengths in units of `length`.
+   pure subroutine put_sums(m, t, a, length, p, x)
+      type(mechanism_t), intent(in) :: m
+      type(tree_t), intent(in) :: t
+      type(axes_t), intent(in) :: a
+      real(wp), intent(in) :: length
+      type(vector_loops_t), intent(in) :: p
+      type(loop_sums_t), intent(inout) :: x
+      real(wp) :: places(2)
+      integer :: i, k
+
+      x%body_vector = 0.0_wp
+      x%largest = 0.0_wp
+      do i = 1, p%count
+         ! The places of ground links are summed apart from their points. Between points of one link they cancel,
+         ! wherever that stands, and leave no rounding of their size.
+         places = 0.0_wp
+         do k = p%first_term(i), p%first_term(i + 1) - 1
+            associate (v => p%term_vector(k))
+               call add_term_to(x%body_vector(:, v), x%largest(v), places, p%terms(:, k))
+            end associate
+         end do
+         do k = p%first_vector(i), p%first_vector(i + 1) - 1
+            if (p%vector_orientation(k) == 0) x%body_vector(:, k) = x%body_vector(:, k) + places
+         end do
+      end do
+      do k = 1, p%slides
+         if (p%slide_pair(k) == 0) then
+            x%slide_body_vector(:, k) = merge([1.0_wp, 0.0_wp], [0.0_wp, 1.0_wp], &
+               mod(p%slide_number(k) - t%slides, 2) == 1)
+         else
+            x%slide_body_vector(:, k) = sign(1, p%slide_pair(k))*guide(m, a, abs(p%slide_pair(k)), across=.false.)
+         end if
+      end do
+
+   contains
+
+      !> Adds the `term` to the sum `d`, of a ground link its place to `places`; `largest`: the largest component added.
+      pure subroutine add_term_to(d, largest, places, term)
+         real(wp), intent(inout) :: d(2), largest, places(2)
+         integer, intent(in) :: term(2)
+         real(wp) :: more(2), place(2), sign_of
+
+         sign_of = real(sign(1, sum(term)), wp)
+         if (term(1) == 0) then
+            more = sign_of*m%pairs(abs(term(2)))%offset/length*guide(m, a, abs(term(2)), across=.true.)
+         else
+            more = sign_of*offset_in_drawing(m, a, length, abs(term(1)))
+            associate (link => m%points(abs(term(1)))%link)
+               if (m%links(link)%ground) then
+                  place = ground_place(m, a, length, link)
+                  places = places + sign_of*place
+                  largest = max(largest, maxval(abs(place)))
+               end if
+            end associate
+         end if
+         d = d + more
+         largest = max(largest, maxval(abs(more)))
+      end subroutine add_term_to
+   end subroutine put_sums
+
+   !> What is left of body vectors that cancel is rounding: it would put an angle into equations that do not hold it.
+   pure logical function vanishes(x, k)
+      type(loop_sums_t), intent(in) :: x
+      integer, intent(in) :: k
+
+      vanishes = all(abs(x%body_vector(:, k)) <= 8.0_wp*epsilon(1.0_wp)*x%largest(k))
+   end function vanishes
 
    !> Before any loop is closed.
    function new_search(m, t) result(s)

@@ -1,0 +1,257 @@
+!> What the numbers of a mechanism's cards make of its blocks. A variant, or a mechanism with one number off, has the
+!> same blocks with other numbers: `put_numbers` fills these straight from it.
+!>
+!> Each vector loop is in its own lengths: its rows, and the slides that its block solves for, in units of its largest
+!> body vector. A residual, closure error or correction is then small or large for that loop and not for the largest
+!> link of the mechanism. Units are powers of two: no digit changes.
+!>
+!> What a block knows may be much larger than its own body vectors. Its rounding cannot be corrected: `coarse` says how
+!> much larger it is, and levels of rounding are that much higher.
+module block_numbers
+   use kinds, only: wp
+   use planar, only: vector_t, length_of
+   use mechanism, only: mechanism_t
+   use scales, only: solver_length, power_of_two
+   use vector_loops, only: vanishes
+   use loop_equations, only: equation_numbers_t, put_equation_numbers, fit_equations
+   use blocks, only: blocks_t, block_t, numbers_t, loop_numbers_t, loop_angles, &
+      loop_components, loop_projection
+   implicit none
+   private
+   public :: add_numbers, put_numbers, fill_numbers, find_units, lipschitz_of
+
+   real(wp), parameter :: much_smaller = 0.0625_wp
+
+contains
+
+   !> Gives the blocks `b`, made of equations with the numbers `equations` of a mechanism of this `span`, its numbers.
+   subroutine add_numbers(span, equations, b)
+      real(wp), intent(in) :: span
+      type(equation_numbers_t), intent(in) :: equations
+      type(blocks_t), intent(inout) :: b
+
+      allocate (b%numbers)
+      b%numbers%span = span
+      b%numbers%equations = equations
+      if (.not. b%solvable) return
+      associate (x => b%numbers)
+         allocate (x%blocks(size(b%list)), x%rows(size(b%rows)), x%loops(size(b%loops)), x%d(size(b%body_vectors)), &
+            x%e(size(b%slides)), x%unit(0:b%unknowns))
+         call fill_numbers(b, x)
+         call find_units(b, x)
+      end associate
+   end subroutine add_numbers
+
+   !> Gives `x` the numbers of `m`, a mechanism with the links, points, pairs and drives of that of which the blocks `b`
+   !> were made; `x`: a copy of those of `b`, which stay as they are. `fits`: each equation has the unknowns, and each
+   !> loop the body vectors, that they have in `b`; otherwise `x` is of no use.
+   subroutine put_numbers(m, b, x, fits)
+      type(mechanism_t), intent(in) :: m
+      type(blocks_t), intent(in) :: b
+      type(numbers_t), intent(inout) :: x
+      logical, intent(out) :: fits
+
+      x%span = solver_length(m)
+      call put_equation_numbers(m, b%tree, power_of_two(x%span), b%equations, x%equations)
+      fits = b%solvable
+      if (fits) fits = fit_equations(b%equations, x%equations)
+      if (.not. fits) return
+      call fill_numbers(b, x)
+      call find_units(b, x)
+   end subroutine put_numbers
+
+   !> Fills `x` from the numbers of the equations, in their unit of length.
+   pure subroutine fill_numbers(b, x)
+      type(blocks_t), intent(in) :: b
+      type(numbers_t), intent(inout) :: x
+      integer :: i, m, k
+
+      x%unit = 1.0_wp
+      x%rows%unit = 1.0_wp
+      x%rows%constant = x%equations%constant(b%equation)
+      associate (sums => x%equations%sums, p => b%equations%vector_loops)
+         do k = 1, size(x%d)
+            associate (d => sums%body_vector(:, b%body_vectors(k)%source))
+               x%d(k) = vector_t(d(1), d(2))
+            end associate
+         end do
+         do k = 1, size(x%e)
+            associate (e => sums%slide_body_vector(:, b%slides(k)%source))
+               x%e(k) = vector_t(e(1), e(2))
+            end associate
+         end do
+         do i = 1, size(b%list)
+            associate (first => b%list(i)%first_row, last => b%list(i)%last_row)
+               x%blocks(i)%has_right_sides = any(b%rows(first:last)%drive > 0 &
+                  .or. abs(x%rows(first:last)%constant) > 0.0_wp)
+            end associate
+            do m = b%list(i)%first_loop, b%list(i)%last_loop
+               associate (g => b%loops(m), equation => b%equation(b%list(i)%first_row + max(1, b%loops(m)%row_x) - 1))
+                  x%loops(m) = loop_numbers_t()
+                  if (g%kind /= loop_components) x%loops(m)%direction = vector_t(x%equations%direction(1, equation), &
+                     x%equations%direction(2, equation))
+                  do k = p%first_vector(g%vector_loop), p%first_vector(g%vector_loop + 1) - 1
+                     if (p%vector_orientation(k) /= 0) cycle
+                     if (vanishes(sums, k)) cycle
+                     x%loops(m)%ground = vector_t(0.0_wp + sums%body_vector(1, k), 0.0_wp + sums%body_vector(2, k))
+                  end do
+               end associate
+            end do
+         end do
+      end associate
+   end subroutine fill_numbers
+
+   !> Divides the numbers `x` of the rows of all blocks of `b`, filled in one unit of length, by units of their own, and
+   !> those of its slides.
+   pure subroutine find_units(b, x)
+      type(blocks_t), intent(in) :: b
+      type(numbers_t), intent(inout) :: x
+      integer :: i, m
+
+      do i = 1, size(b%list)
+         associate (first => b%list(i)%first_loop, last => b%list(i)%last_loop)
+            do m = first, last
+               call measure(b, m, x)
+            end do
+            call make_alike(b%loops(first:last)%kind, x%loops(first:last))
+            call measure_slides(b, i, x)
+            do m = first, last
+               call divide(b, b%list(i)%first_row, m, x)
+            end do
+            x%blocks(i)%lipschitz = lipschitz_of(b, x, b%list(i))
+            x%blocks(i)%coarse = max(1.0_wp, maxval(x%loops(first:last)%coarse))
+         end associate
+      end do
+   end subroutine find_units
+
+   !> Unit of loop `m`: its largest own body vector. A slide is as long as what is known lets it be, and a projection
+   !> that turns with an orientation of the block turns the whole loop.
+   pure subroutine measure(b, m, x)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: m
+      type(numbers_t), intent(inout) :: x
+      real(wp) :: own, known
+      integer :: k
+
+      associate (g => b%loops(m))
+         if (g%kind == loop_angles) return
+         known = max(largest([x%loops(m)%ground]), largest(x%d(g%first_vector:g%first_own - 1)))
+         own = largest(x%d(g%first_own:g%last_vector))
+         do k = g%first_slide, g%last_slide
+            if (b%slides(k)%column == 0) known = max(known, x%unit(b%slides(k)%unknown))
+         end do
+         if (own <= 0.0_wp .or. any(b%slides(g%first_slide:g%last_slide)%column > 0) .or. &
+            (g%kind == loop_projection .and. g%orientation_column > 0)) own = max(own, known)
+         if (own > 0.0_wp) x%loops(m)%unit = power_of_two(own)
+         x%loops(m)%coarse = known
+      end associate
+   end subroutine measure
+
+   !> The largest component of `vectors`; 0 of none.
+   pure real(wp) function largest(vectors)
+      type(vector_t), intent(in) :: vectors(:)
+
+      largest = max(0.0_wp, maxval(abs(vectors%x)), maxval(abs(vectors%y)))
+   end function largest
+
+   !> Loops `g` of one block, of these kinds, that are not much smaller than the largest get its unit: the weights of
+   !> their rows are then the same where equations are too many. What is known is from now on in the loop's unit.
+   pure subroutine make_alike(kind, g)
+      integer, intent(in) :: kind(:)
+      type(loop_numbers_t), intent(inout) :: g(:)
+      real(wp) :: largest
+      integer :: m
+
+      largest = maxval(g%unit, mask=kind /= loop_angles)
+      do m = 1, size(g)
+         if (kind(m) == loop_angles) cycle
+         if (g(m)%unit >= much_smaller*largest) g(m)%unit = largest
+         g(m)%coarse = max(1.0_wp, g(m)%coarse/g(m)%unit)
+      end do
+   end subroutine make_alike
+
+   !> Units of the slides that block `i` solves for: that of the largest loop in which each stands.
+   pure subroutine measure_slides(b, i, x)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(numbers_t), intent(inout) :: x
+      integer :: m, k
+      logical :: met(0:merge(b%unknowns, 0, size(b%slides) > 0))
+
+      met = .false.
+      do m = b%list(i)%first_loop, b%list(i)%last_loop
+         associate (g => b%loops(m))
+            do k = g%first_slide, g%last_slide
+               if (b%slides(k)%column == 0) cycle
+               associate (u => b%slides(k)%unknown)
+                  if (met(u)) then
+                     x%unit(u) = max(x%unit(u), x%loops(m)%unit)
+                  else
+                     x%unit(u) = x%loops(m)%unit
+                  end if
+                  met(u) = .true.
+               end associate
+            end do
+         end associate
+      end do
+   end subroutine measure_slides
+
+   !> Divides the rows of loop `m`, of the block whose rows begin at `first_row`, by its unit.
+   pure subroutine divide(b, first_row, m, x)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: first_row, m
+      type(numbers_t), intent(inout) :: x
+      integer :: k, side
+
+      associate (g => b%loops(m), own => x%loops(m))
+         ! A slide by itself.
+         if (g%kind == loop_angles) own%unit = x%unit(g%orientation)
+         do side = 1, 2
+            k = merge(g%row_x, g%row_y, side == 1)
+            if (k == 0) cycle
+            associate (row => x%rows(first_row + k - 1))
+               row%unit = own%unit
+               row%constant = row%constant/own%unit
+            end associate
+         end do
+         if (g%kind == loop_angles) return
+         own%ground = vector_t(own%ground%x/own%unit, own%ground%y/own%unit)
+         do k = g%first_vector, g%last_vector
+            x%d(k) = vector_t(x%d(k)%x/own%unit, x%d(k)%y/own%unit)
+         end do
+         do k = g%first_slide, g%last_slide
+            associate (ratio => x%unit(b%slides(k)%unknown)/own%unit)
+               x%e(k) = vector_t(x%e(k)%x*ratio, x%e(k)%y*ratio)
+            end associate
+         end do
+      end associate
+   end subroutine divide
+
+   !> A bound of |J(x) - J(z)|/|x - z| in the maximum norm: for a row, the sum of its second derivatives. Slides count
+   !> with the length of their unit; a projection turns once more with its own orientation.
+   pure real(wp) function lipschitz_of(b, x, block) result(lipschitz)
+      type(blocks_t), intent(in) :: b
+      type(numbers_t), intent(in) :: x
+      type(block_t), intent(in) :: block
+      real(wp) :: row
+      integer :: m
+
+      lipschitz = 0.0_wp
+      do m = block%first_loop, block%last_loop
+         associate (g => b%loops(m))
+            row = sum_of_lengths(x%d(g%first_own:g%last_vector)) &
+               + 2.0_wp*sum_of_lengths(x%e(g%first_slide:g%last_slide))
+            if (g%orientation_column > 0 .and. g%kind == loop_projection) row = 3.0_wp*row &
+               + length_of(x%loops(m)%ground) + sum_of_lengths(x%d(g%first_vector:g%first_own - 1))
+            lipschitz = max(lipschitz, row)
+         end associate
+      end do
+   end function lipschitz_of
+
+   !> The sum of the lengths of `vectors`.
+   pure real(wp) function sum_of_lengths(vectors)
+      type(vector_t), intent(in) :: vectors(:)
+
+      sum_of_lengths = sum(hypot(vectors%x, vectors%y))
+   end function sum_of_lengths
+end module block_numbers

@@ -1,0 +1,51 @@
+!> Tests. Equations and blocks with all lengths in one unit that is given.
+module sample_blocks
+   use kinds, only: wp
+   use mechanism, only: mechanism_t
+   use links_tree, only: tree_t, new_tree
+   use loop_equations, only: equations_t, new_equations, equation_numbers_t, new_equation_numbers
+   use blocks, only: blocks_t, numbers_t
+   use block_partition, only: new_blocks
+   use block_numbers, only: add_numbers, fill_numbers, lipschitz_of
+   implicit none
+   private
+   public :: plain_blocks, make_equations
+
+contains
+
+   !> The equations `e` of `m` with their numbers `x`, lengths in units of `length`.
+   subroutine make_equations(m, length, e, x)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: length
+      type(equations_t), intent(out) :: e
+      type(equation_numbers_t), intent(out) :: x
+      type(tree_t) :: t
+
+      t = new_tree(m)
+      e = new_equations(m, t)
+      x = new_equation_numbers(m, t, length, e)
+   end subroutine make_equations
+
+   !> The blocks of `m`, lengths in units of `length`.
+   function plain_blocks(m, length) result(b)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: length
+      type(blocks_t) :: b
+      type(equations_t) :: e
+      type(equation_numbers_t) :: x
+      type(numbers_t), allocatable :: numbers
+      integer :: i
+
+      call make_equations(m, length, e, x)
+      b = new_blocks(new_tree(m), e)
+      call add_numbers(length, x, b)
+      if (.not. b%solvable) return
+      call move_alloc(b%numbers, numbers)
+      call fill_numbers(b, numbers)
+      do i = 1, size(b%list)
+         numbers%blocks(i)%coarse = 1.0_wp
+         numbers%blocks(i)%lipschitz = lipschitz_of(b, numbers, b%list(i))
+      end do
+      call move_alloc(numbers, b%numbers)
+   end function plain_blocks
+end module sample_blocks
