@@ -55,7 +55,7 @@ modules := $(filter-out $(command),$(basename $(notdir $(sources)))) document_te
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))
 vpath %.F90 $(sort $(dir $(sources)))
 
-.PHONY: all assembly-peers example pictures kinds run test check forms errors proofs fool-proofs kind-check quad-check single-check bench bench-short bench-against compare-against bench-peers hard hard-short circuits study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants expected install install-kinds clean
+.PHONY: all assembly-peers example pictures kinds run test check forms errors proofs fool-proofs kind-check quad-check single-check bench bench-short bench-against compare-against bench-peers hard hard-short circuits study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants sizes expected install install-kinds clean
 all: $(BUILD)/kinmat
 
 # The paper's example at two instants.
@@ -270,6 +270,10 @@ tolerances: $(BUILD)/kinmat $(BUILD)/kinmat-quad
 # Faults made by chance in the sources, N=200 of them, one at a time: which do the unit tests and `make check` not see?
 mutants: $(BUILD)/release/print_expected
 	BUILD=$(BUILD) FC='$(FC)' N='$(N)' SEED='$(SEED)' tests/mutants/mutants.sh
+
+# Lines of code, types, thresholds and names of src/, with their limits.
+sizes:
+	@awk -v limits=tests/system/sizes.txt -f tests/system/sizes.awk $$(find src -name '*.[fF]90')
 
 TEST_LIB     := $(BUILD)/debug/libkinmat.a
 TEST_MODULES := $(BUILD)/debug

@@ -22,6 +22,35 @@ equal 'lines over 120 columns' '' "$(awk 'length > 120 { print FILENAME ":" FNR 
 equal 'stop or print outside main' '' \
    "$(grep -nE '^ *((error +)?stop( |$)|print +[^=]*$|write *[(] *[*])' $sources | grep -v '^src/main.f90')"
 equal 'files over 600 lines' '' "$(for file in $sources; do awk 'END { if (NR > 600) print FILENAME }' "$file"; done)"
+# Sizes, and the limits that they keep: tests/system/sizes.txt.
+equal 'sizes above their limits' '' "$(awk -v over=1 -v limits=tests/system/sizes.txt -f tests/system/sizes.awk $sources)"
+mkdir -p "$BUILD/order/sizes"
+cat > "$BUILD/order/sizes/a.f90" <<'CODE'
+module a
+   implicit none
+   private
+   public :: one_t, start, &
+      go
+   ! A comment, and four constants, of which one is no threshold.
+   real(wp), parameter :: small = 1.0e-9_wp, list(2) = [1.0_wp, 2.0_wp], other = small
+   real(wp), parameter :: rounding = 8*epsilon(1.0_wp)
+   type :: one_t
+      integer :: n = 0
+   end type one_t
+contains
+   subroutine start()
+      call go()
+      call go()
+   end subroutine start
+   subroutine go()
+   end subroutine go
+end module a
+CODE
+sed -e 's/module a/module b/' -e 's/call go/call stop_here/' "$BUILD/order/sizes/a.f90" > "$BUILD/order/sizes/b.f90"
+printf 'all 36\nsizes 35\ntypes 2\nthresholds 6\npublic 6\ntwice 1\nsmall 0\n' > "$BUILD/order/sizes.txt"
+equal 'sizes above their limits are found' "lines of code in src/sizes/: 36, at most 35 ($BUILD/order/sizes.txt)
+procedures of at most 20 lines with one caller in src/: 1, at most 0 ($BUILD/order/sizes.txt)" \
+   "$(awk -v over=1 -v limits="$BUILD/order/sizes.txt" -f tests/system/sizes.awk "$BUILD"/order/sizes/[ab].f90)"
 equal 'procedures without a head comment' '' "$(awk -f tests/system/heads.awk $sources)"
 printf '   !> Doc.\n   pure function a(x)\n   end function a\n\n   real(wp) function b(x, &\n      y)\n      integer :: x\n' > "$BUILD/order/heads.f90"
 equal 'a procedure without a head comment is found' "$BUILD/order/heads.f90:5: real(wp) function b(x, &" \
