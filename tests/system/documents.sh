@@ -198,4 +198,11 @@ equal 'make example' "$(awk '/END OF SET/ { exit } /^ ROCKER / && $2 != "" && NF
       if (!n++ || x < low) low = x
       if (n == 1 || x > high) high = x }
    END { printf "The rocker swings from %9.6f to %9.6f rad.", low, high }' expected/four_bar.lst)" "$("$BUILD/example")"
+# The program of src/README.md, against the rocker's row of the first instant there.
+awk '/^```fortran/ { on = 1; next } /^```/ { on = 0 } on' src/README.md > "$w/ten_lines.f90"
+"${FC:-gfortran}" -fno-lto -fno-use-linker-plugin -I"$BUILD/release" -J"$w" -o "$w/ten_lines" "$w/ten_lines.f90" "$BUILD/release/libkinmat.a" \
+   -lklu -llapack -lblas > "$w/out" 2>&1
+equal 'the program of src/README.md: compiled' 0 $?
+equal 'the program of src/README.md' "$(awk '/^ ROCKER / && $4 != "" && NF > 8 { printf "%10.6f%10.6f%10.6f", $2, $3, $4*atan2(0, -1)/180; exit }' \
+   expected/four_bar.lst)" "$("$w/ten_lines")"
 conclude
