@@ -22,6 +22,12 @@ equal 'lines over 120 columns' '' "$(awk 'length > 120 { print FILENAME ":" FNR 
 equal 'stop or print outside main' '' \
    "$(grep -nE '^ *((error +)?stop( |$)|print +[^=]*$|write *[(] *[*])' $sources | grep -v '^src/main.f90')"
 equal 'files over 600 lines' '' "$(for file in $sources; do awk 'END { if (NR > 600) print FILENAME }' "$file"; done)"
+equal 'src/README.md, where to add' '' "$(awk -f tests/system/where_to_add.awk src/README.md $sources)"
+sed -e '/^| a remark about a deck/s/`[a-z]*\/mechanism`/`job`, `base\/none`/' src/README.md > "$BUILD/order/README.md"
+equal 'src/README.md, where to add: what is not true is found' 'a remark about a deck: `base/none` is no file and no name of the sources
+a remark about a deck: `job` does not name remark_jumps
+a remark about a deck: `mechanism/mechanism` names remark_jumps' \
+   "$(awk -f tests/system/where_to_add.awk "$BUILD/order/README.md" $sources | LC_ALL=C sort)"
 # Sizes, and the limits that they keep: tests/system/sizes.txt.
 equal 'sizes above their limits' '' "$(awk -v over=1 -v limits=tests/system/sizes.txt -f tests/system/sizes.awk $sources)"
 mkdir -p "$BUILD/order/sizes"
