@@ -1,28 +1,33 @@
-!> The picture of circuits as SVG: for each set and drive a diagram of each number over the drive, each circuit in its
-!> own colour; dots are dead points, rings change points, numbers assemblies of the first instant.
+!> The picture of circuits as SVG: for each set and drive a diagram of each number that PRINT asks for and that varies,
+!> over the drive, each circuit in its own colour; dots are dead points, rings change points, numbers assemblies of the
+!> first instant.
 module circuits_picture
-   use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_pair
+   use planar, only: pi, degree, without_turns
+   use mechanism, only: mechanism_t, request_t, request_link, request_point, request_pair, drive_angle
+   use motion, only: motion_t, new_motion
    use names, only: drive_name, subject_name
    use numerals, only: whole
+   use points, only: row_t, row_of, coordinates_of
    use set_analysis, only: set_analysis_t
    use listing_layout, only: angle_unit
+   use extremes, only: is_angle
+   use curve_equations, only: deck_position, drive_value
+   use circuit_trace, only: end_closed
    use circuit_branches, only: circuits_t
-   use circuit_chart, only: chart_t, axis_t, make_charts
+   use chart, only: chart_t, curve_t, new_axis, put_chart, chart_height, mark_dot, mark_ring
    use shapes, only: color_of
-   use picture_page, only: width, fitted
-   use svg, only: attribute, svg_head, put_end, put_group, put_line, put_circle, put_words, put_window
+   use picture_page, only: width
+   use svg, only: attribute, svg_head, put_end, put_words
    use text_output, only: output_t
    use phrases
    implicit none
    private
-   public :: circuit_page_t, add_to_page, put_circuit_page
+   public :: circuit_page_t, diagrams_t, add_to_page, put_circuit_page
 
-   !> The diagrams of one drive.
+   !> The diagrams of one drive, and their words.
    type :: diagrams_t
-      character(:), allocatable :: title, drive, drive_unit, circuit   !< words
-      character(40), allocatable :: names(:)       !< (charts) of the numbers
+      character(:), allocatable :: title, drive, circuit
       type(chart_t), allocatable :: charts(:)
    end type diagrams_t
 
@@ -31,16 +36,10 @@ module circuits_picture
       type(diagrams_t), allocatable :: list(:)
    end type circuit_page_t
 
-   !> The diagram: room on its left, right, above and below it, and its height, in pixels.
-   real(wp), parameter :: left = 84.0_wp, right = 24.0_wp, above = 26.0_wp, below = 42.0_wp, height = 300.0_wp
-   !> Height of the title of a drive with its legend.
-   real(wp), parameter :: head = 56.0_wp
-   real(wp), parameter :: dot = 3.5_wp, ring = 6.0_wp, tick = 5.0_wp
-   !> Steps between ticks, in any power of ten or in degrees; at most so many.
-   real(wp), parameter :: steps(*) = [1.0_wp, 2.0_wp, 5.0_wp, 10.0_wp]
-   real(wp), parameter :: degree_steps(*) = [1.0_wp, 2.0_wp, 5.0_wp, 10.0_wp, 15.0_wp, 30.0_wp, 45.0_wp, 60.0_wp, &
-      90.0_wp]
-   integer, parameter :: most_ticks = 9
+   !> A number varies if it does so by more than this, in rad or in lengths of the curve.
+   real(wp), parameter :: varies = 1.0e-6_wp
+   !> Height of the title of a drive with its legend, and width of a name in the legend, in pixels.
+   real(wp), parameter :: head = 56.0_wp, room = 70.0_wp
 
 contains
 
@@ -51,53 +50,154 @@ contains
       type(set_analysis_t), intent(in) :: s
       type(circuits_t), intent(in) :: found(:)
       type(diagrams_t), allocatable :: more(:)
-      integer :: i, k, n
+      integer :: i, n
 
-      if (.not. allocated(page%list)) allocate (page%list(0))
+      n = 0
+      if (allocated(page%list)) n = size(page%list)
+      allocate (more(n + size(found)))
+      if (n > 0) more(:n) = page%list
       do i = 1, size(found)
-         n = size(page%list) + 1
-         allocate (more(n))
-         more(:n - 1) = page%list
-         associate (d => more(n))
+         associate (d => more(n + i))
             d%title = trim(whole(m%set_number)//'.  '//m%title)
             d%circuit = phrase(say_circuit, m%polish)
             d%drive = trim(drive_name(m, m%drives(found(i)%drive)))
             allocate (d%charts(0))
-            if (size(found(i)%list) > 0) call make_charts(s, found(i)%part, found(i), d%charts)
-            d%drive_unit = unit_of(m, found(i)%curve%is_angle)
-            allocate (d%names(size(d%charts)))
-            do k = 1, size(d%charts)
-               d%names(k) = name_of(s%now%own(found(i)%part), d%charts(k))
-            end do
+            if (size(found(i)%list) > 0) call add_charts(s, found(i), d)
          end associate
-         call move_alloc(more, page%list)
       end do
+      call move_alloc(more, page%list)
    end subroutine add_to_page
 
-   !> The unit of an angle or a length.
-   pure function unit_of(m, is_angle) result(text)
-      type(mechanism_t), intent(in) :: m
-      logical, intent(in) :: is_angle
-      character(:), allocatable :: text
+   !> Adds a chart to `d` for each number of the circuits `found` that PRINT asks for and that varies, not driven.
+   subroutine add_charts(s, found, d)
+      type(set_analysis_t), intent(in) :: s
+      type(circuits_t), intent(in) :: found
+      type(diagrams_t), intent(inout) :: d
+      type(chart_t) :: one
+      integer :: i, column, drive
+      logical :: does_vary
 
-      text = trim(merge(angle_unit(m), m%length_unit, is_angle))
-   end function unit_of
+      drive = findloc(s%now%parts%list(found%part)%drives, found%drive, dim=1)
+      associate (m => s%now%own(found%part))
+         do i = 1, size(m%requests)
+            associate (r => m%requests(i))
+               if (r%every == 0 .or. all(r%kind /= [request_link, request_point, request_pair])) cycle
+               does_vary = .false.
+               do column = coordinates_of(r%kind), 1, -1
+                  ! Of a link that turns its angle alone.
+                  if (does_vary .and. r%kind == request_link) exit
+                  call make_chart(s, m, found, r, column, d%drive, one, does_vary)
+                  if (column == 3 .and. r%kind == request_link .and. m%drives(drive)%kind == drive_angle &
+                     .and. m%drives(drive)%subject == r%subject) cycle
+                  if (does_vary) d%charts = [d%charts, one]
+               end do
+            end associate
+         end do
+      end associate
+   end subroutine add_charts
 
-   !> The name of the number of `chart`, with its unit: PHI ROCKER, DEG
-   pure function name_of(m, chart) result(text)
+   !> Makes the chart `c` of `column` of the row of `request` along the circuits `found` of `m`, over the drive with the
+   !> name `drive`; `does_vary`: it is not constant.
+   subroutine make_chart(s, m, found, request, column, drive, c, does_vary)
+      type(set_analysis_t), intent(in) :: s
       type(mechanism_t), intent(in) :: m
-      type(chart_t), intent(in) :: chart
-      character(:), allocatable :: text
+      type(circuits_t), intent(in) :: found
+      type(request_t), intent(in) :: request
+      integer, intent(in) :: column
+      character(*), intent(in) :: drive
+      type(chart_t), intent(out) :: c
+      logical, intent(out) :: does_vary
       character(3), parameter :: columns(3) = ['X  ', 'Y  ', 'PHI']
+      character(:), allocatable :: name
+      logical :: angular(2)
+      real(wp) :: low(2), high(2), unit(2), turn(2)
+      type(motion_t) :: q
+      integer :: i
 
-      text = ''
-      if (chart%request%kind /= request_pair) text = trim(columns(chart%column))//' '
-      if (chart%column == 3 .and. m%polish) text = 'FI '
-      text = text//trim(subject_name(m, chart%request%kind, chart%request%subject))//', ' &
-         //unit_of(m, chart%axes(2)%is_angle)
-   end function name_of
+      q = new_motion(size(m%links))
+      q%known = 0
+      q%origin = s%now%motions(found%part)%origin
+      angular = [found%curve%is_angle, is_angle(m, request, column)]
+      unit = merge(degree, 1.0_wp, angular .and. m%degrees)
+      turn = merge(2.0_wp*pi/unit, 0.0_wp, angular)
+      allocate (c%curves(size(found%list)))
+      low = huge(low)
+      high = -huge(high)
+      do i = 1, size(found%list)
+         call take_circuit(c%curves(i))
+         low = min(low, minval(c%curves(i)%p, dim=2))
+         high = max(high, maxval(c%curves(i)%p, dim=2))
+      end do
+      does_vary = unit(2)*(high(2) - low(2)) > varies*merge(1.0_wp, found%curve%closure%length, angular(2))
+      name = trim(subject_name(m, request%kind, request%subject))//', '//unit_of(angular(2))
+      if (request%kind /= request_pair) &
+         name = trim(merge('FI ', columns(column), column == 3 .and. m%polish))//' '//name
+      c%axes(1) = new_axis(drive//', '//unit_of(angular(1)), low(1), high(1), &
+         drive_value(found%curve, found%curve%first)/unit(1) - 0.5_wp*turn(1), turn(1))
+      c%axes(2) = new_axis(name, low(2), high(2), -0.5_wp*turn(2), turn(2))
 
-   !> Writes the page.
+   contains
+
+      !> The unit of an angle or a length.
+      pure function unit_of(is_angle) result(text)
+         logical, intent(in) :: is_angle
+         character(:), allocatable :: text
+
+         text = trim(merge(angle_unit(m), m%length_unit, is_angle))
+      end function unit_of
+
+      !> Takes the circuit at hand, number `i`: its points, dead points, change points and assemblies. An angle begins
+      !> within half a turn of 0.
+      subroutine take_circuit(curve)
+         type(curve_t), intent(inout) :: curve
+         real(wp) :: first(2)
+         integer, allocatable :: dead(:), own(:)
+         integer :: k, n
+
+         associate (circuit => found%list(i), assemblies => found%assemblies)
+            n = size(circuit%points)
+            allocate (curve%p(2, n))
+            do k = 1, n
+               curve%p(:, k) = place(circuit%points(k)%value(0), circuit%points(k)%q)
+            end do
+            first = 0.0_wp
+            if (angular(2)) first(2) = curve%p(2, 1) - without_turns(curve%p(2, 1)*unit(2))/unit(2)
+            curve%p = curve%p - spread(first, 2, n)
+
+            ! The last point of a closed circuit is the first.
+            if (circuit%ends(1) == end_closed) n = n - 1
+            dead = pack([(k, k=1, n)], circuit%points(:n)%is_dead)
+            own = pack([(k, k=1, size(assemblies))], found%branches(assemblies%branch)%circuit == i)
+            curve%kind = [spread(mark_dot, 1, size(dead)), spread(mark_ring, 1, size(circuit%changes)), &
+               assemblies(own)%number]
+            allocate (curve%mark(2, size(curve%kind)))
+            n = size(dead)
+            curve%mark(:, :n) = curve%p(:, dead)
+            do k = 1, size(circuit%changes)
+               curve%mark(:, n + k) = place(circuit%changes(k)%value, circuit%changes(k)%q) - first
+            end do
+            n = n + size(circuit%changes)
+            do k = 1, size(own)
+               curve%mark(:, n + k) = place(0.0_wp, assemblies(own(k))%q) - first
+               curve%mark(1, n + k) = assemblies(own(k))%value/unit(1)
+            end do
+         end associate
+      end subroutine take_circuit
+
+      !> The drive's value and the number at `value` and `position` on the circuit at hand, in their units.
+      function place(value, position) result(p)
+         real(wp), intent(in) :: value, position(:, :)
+         real(wp) :: p(2)
+         type(row_t) :: row
+
+         q%position = deck_position(found%curve, position)
+         row = row_of(m, q, request)
+         p = [drive_value(found%curve, value + found%list(i)%shift), row%value(column, 0)]/unit
+      end function place
+   end subroutine make_chart
+
+   !> Writes the page: of each drive its title, the names of the circuits in their colours as far as there is room, and
+   !> the diagrams.
    subroutine put_circuit_page(o, page)
       type(output_t), intent(inout) :: o
       type(circuit_page_t), intent(inout) :: page
@@ -107,179 +207,26 @@ contains
       if (.not. allocated(page%list)) allocate (page%list(0))
       top = 0.0_wp
       do i = 1, size(page%list)
-         top = top + head + size(page%list(i)%charts)*(above + height + below)
+         top = top + head + size(page%list(i)%charts)*chart_height
       end do
       call svg_head(o, width, max(1, nint(top)))
       top = 0.0_wp
       do i = 1, size(page%list)
          associate (d => page%list(i))
             call put_words(o, [14.0_wp, top + 24.0_wp], 'start', 'class="title"', d%title)
-            call put_legend(o, d, top + 44.0_wp)
+            if (size(d%charts) > 0) then
+               do k = 1, min(size(d%charts(1)%curves), int((real(width, wp) - 20.0_wp)/room))
+                  call put_words(o, [14.0_wp + room*real(k - 1, wp), top + 44.0_wp], 'start', &
+                     'style="fill:'//color_of(k)//'"', d%circuit//' '//whole(k))
+               end do
+            end if
             top = top + head
             do k = 1, size(d%charts)
-               call put_chart(o, d, k, top)
-               top = top + above + height + below
+               call put_chart(o, d%charts(k), top, 'class="circuits" '//attribute('data-drive', d%drive), d%circuit)
+               top = top + chart_height
             end do
          end associate
       end do
       call put_end(o, 'svg')
    end subroutine put_circuit_page
-
-   !> Names of the circuits in their colours, in a line at the pixel `y`, as far as there is room.
-   subroutine put_legend(o, d, y)
-      type(output_t), intent(inout) :: o
-      type(diagrams_t), intent(in) :: d
-      real(wp), intent(in) :: y
-      real(wp), parameter :: room = 70.0_wp
-      integer :: i
-
-      if (size(d%charts) == 0) return
-      do i = 1, min(size(d%charts(1)%traces), int((real(width, wp) - 20.0_wp)/room))
-         call put_words(o, [14.0_wp + room*real(i - 1, wp), y], 'start', 'style="fill:'//color_of(i)//'"', &
-            d%circuit//' '//whole(i))
-      end do
-   end subroutine put_legend
-
-   !> Diagram number `k` of `d`, from the pixel `top` on.
-   subroutine put_chart(o, d, k, top)
-      type(output_t), intent(inout) :: o
-      type(diagrams_t), intent(in) :: d
-      integer, intent(in) :: k
-      real(wp), intent(in) :: top
-      real(wp) :: corner(2), extent(2)
-      integer :: i
-
-      corner = [left, top + above]
-      extent = [real(width, wp) - left - right, height]
-      associate (chart => d%charts(k))
-         call put_group(o, 'class="circuits" '//attribute('data-drive', d%drive), trim(d%names(k)))
-         call put_axis(o, chart%axes(1), 1, corner, extent)
-         call put_axis(o, chart%axes(2), 2, corner, extent)
-         call put_words(o, corner + [0.0_wp, -8.0_wp], 'start', 'class="time"', trim(d%names(k)))
-         call put_words(o, corner + extent + [0.0_wp, 34.0_wp], 'end', 'class="time"', d%drive//', '//d%drive_unit)
-         call put_window(o, corner, extent)
-         do i = 1, size(chart%traces)
-            call put_group(o, 'class="circuit" data-circuit="'//whole(i)//'" style="stroke:'//color_of(i)//'"', &
-               d%circuit//' '//whole(i))
-            call put_trace(o, chart, i, extent)
-            call put_end(o, 'g')
-         end do
-         call put_end(o, 'svg')
-         call put_line(o, 'polygon', reshape([corner, corner(1) + extent(1), corner(2), corner + extent, corner(1), &
-            corner(2) + extent(2)], [2, 4]), 'style="stroke:#222;stroke-width:1"')
-         call put_end(o, 'g')
-      end associate
-   end subroutine put_chart
-
-   !> Circuit number `i` of `chart` in a window of `extent` (2) pixels: as many times, whole turns apart, as it enters
-   !> it.
-   subroutine put_trace(o, chart, i, extent)
-      type(output_t), intent(inout) :: o
-      type(chart_t), intent(in) :: chart
-      integer, intent(in) :: i
-      real(wp), intent(in) :: extent(2)
-      integer :: low(2), high(2), x, y, k
-
-      associate (t => chart%traces(i))
-         low = 0
-         high = 0
-         do k = 1, 2
-            if (chart%axes(k)%turn <= 0.0_wp) cycle
-            low(k) = floor((minval(t%p(k, :)) - chart%axes(k)%low)/chart%axes(k)%turn)
-            high(k) = floor((maxval(t%p(k, :)) - chart%axes(k)%low)/chart%axes(k)%turn)
-         end do
-         do x = low(1), high(1)
-            do y = low(2), high(2)
-               call put_line(o, 'polyline', pixels_of(t%p, [x, y]), 'class="curve" style="stroke:'//color_of(i)//'"')
-            end do
-         end do
-         do k = 1, size(t%dead, 2)
-            call put_circle(o, inside(t%dead(:, k)), dot, 'class="dead" style="stroke:none;fill:'//color_of(i)//'"')
-         end do
-         do k = 1, size(t%changes, 2)
-            call put_circle(o, inside(t%changes(:, k)), ring, 'class="change" style="fill:none;stroke:' &
-               //color_of(i)//'"')
-         end do
-         do k = 1, size(t%numbers)
-            call put_words(o, inside(t%assemblies(:, k)) + [0.0_wp, 4.0_wp], 'middle', 'class="assembly" style="fill:' &
-               //color_of(i)//'"', whole(t%numbers(k)))
-         end do
-      end associate
-
-   contains
-
-      !> The pixels of the places `p` (2, :), less so many `turns`.
-      pure function pixels_of(p, turns) result(q)
-         real(wp), intent(in) :: p(:, :)
-         integer, intent(in) :: turns(2)
-         real(wp) :: q(2, size(p, 2))
-         integer :: k
-
-         do k = 1, 2
-            associate (axis => chart%axes(k))
-               q(k, :) = (p(k, :) - turns(k)*axis%turn - axis%low)/(axis%high - axis%low)
-            end associate
-         end do
-         q(1, :) = q(1, :)*extent(1)
-         q(2, :) = (1.0_wp - q(2, :))*extent(2)
-      end function pixels_of
-
-      !> The pixel of the place `p` without whole turns.
-      pure function inside(p) result(q)
-         real(wp), intent(in) :: p(2)
-         real(wp) :: q(2), one(2, 1)
-         integer :: turns(2), k
-
-         turns = 0
-         do k = 1, 2
-            associate (axis => chart%axes(k))
-               if (axis%turn > 0.0_wp) turns(k) = floor((p(k) - axis%low)/axis%turn)
-            end associate
-         end do
-         one = pixels_of(reshape(p, [2, 1]), turns)
-         q = one(:, 1)
-      end function inside
-   end subroutine put_trace
-
-   !> Ticks and numbers of `axis` on side `k`, 1 below, 2 on the left, of the diagram at `corner` of `extent`.
-   subroutine put_axis(o, axis, k, corner, extent)
-      type(output_t), intent(inout) :: o
-      type(axis_t), intent(in) :: axis
-      integer, intent(in) :: k
-      real(wp), intent(in) :: corner(2), extent(2)
-      ! From the side to the end of a tick, and to its number.
-      real(wp), parameter :: to_end(2, 2) = reshape([0.0_wp, tick, -tick, 0.0_wp], [2, 2])
-      real(wp), parameter :: to_number(2, 2) = reshape([0.0_wp, tick + 13.0_wp, -tick - 4.0_wp, 4.0_wp], [2, 2])
-      character(6), parameter :: anchors(2) = ['middle', 'end   ']
-      real(wp) :: step, x, p(2)
-      integer(int64) :: i
-
-      step = step_of(axis)
-      do i = ceiling(axis%low/step - 1.0e-6_wp, int64), floor(axis%high/step + 1.0e-6_wp, int64)
-         x = (real(i, wp)*step - axis%low)/(axis%high - axis%low)
-         p = corner + extent*merge([x, 1.0_wp], [0.0_wp, 1.0_wp - x], k == 1)
-         call put_line(o, 'polyline', reshape([p, p + to_end(:, k)], [2, 2]), 'style="stroke:#222;stroke-width:1"')
-         call put_words(o, p + to_number(:, k), trim(anchors(k)), 'class="between"', fitted(real(i, wp)*step))
-      end do
-   end subroutine put_axis
-
-   !> The step between ticks of `axis`.
-   pure real(wp) function step_of(axis) result(step)
-      type(axis_t), intent(in) :: axis
-      real(wp) :: range, power
-      integer :: k
-
-      range = axis%high - axis%low
-      if (axis%is_angle .and. range > 8.0_wp) then
-         do k = 1, size(degree_steps)
-            step = degree_steps(k)
-            if (range <= step*most_ticks) return
-         end do
-      end if
-      power = 10.0_wp**floor(log10(max(range, sqrt(tiny(range)))/most_ticks))
-      do k = 1, size(steps)
-         step = steps(k)*power
-         if (range <= step*most_ticks) return
-      end do
-   end function step_of
 end module circuits_picture
