@@ -15,7 +15,7 @@ module circuits_picture
    use curve_equations, only: deck_position, drive_value
    use circuit_trace, only: end_closed
    use circuit_branches, only: circuits_t
-   use chart, only: chart_t, curve_t, new_axis, put_chart, chart_height, mark_dot, mark_ring
+   use chart, only: chart_t, graph_t, new_axis, put_chart, chart_height, mark_dot, mark_ring
    use shapes, only: color_of
    use picture_page, only: width
    use svg, only: attribute, svg_head, put_end, put_words
@@ -149,7 +149,7 @@ contains
       !> Takes the circuit at hand, number `i`: its points, dead points, change points and assemblies. An angle begins
       !> within half a turn of 0.
       subroutine take_circuit(curve)
-         type(curve_t), intent(inout) :: curve
+         type(graph_t), intent(inout) :: curve
          real(wp) :: first(2)
          integer, allocatable :: dead(:), own(:)
          integer :: k, n

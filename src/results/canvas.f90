@@ -5,7 +5,7 @@ module canvas
    use mechanism, only: mechanism_t
    use planar, only: direction, quarter_turn, rotated
    use drawing, only: drawing_t, snapshot_t, point_place, point_velocity
-   use shapes, only: shape_t, color_of
+   use shapes, only: element_t, color_of
    use svg, only: put_words, put_circle, put_line, put_strokes, put_curve, put_group, put_end, attribute
    use text_output, only: output_t
    implicit none
@@ -79,7 +79,7 @@ contains
    !> should keep clear of.
    subroutine put_shape(c, shape)
       type(canvas_t), intent(inout) :: c
-      type(shape_t), intent(in) :: shape
+      type(element_t), intent(in) :: shape
       real(wp) :: q(2, size(shape%p, 2)), position(3), e(2)
       integer :: k, n
 
@@ -137,7 +137,7 @@ contains
    subroutine put_cut_line(c, p, shape)
       type(canvas_t), intent(inout) :: c
       real(wp), intent(in) :: p(:, :)
-      type(shape_t), intent(in) :: shape
+      type(element_t), intent(in) :: shape
       real(wp) :: line(2, size(p, 2) + 1), from, to
       integer :: k, n
 

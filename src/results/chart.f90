@@ -10,7 +10,7 @@ module chart
    use text_output, only: output_t
    implicit none
    private
-   public :: chart_t, curve_t, axis_t, new_axis, put_chart, chart_height
+   public :: chart_t, graph_t, axis_t, new_axis, put_chart, chart_height
 
    !> An axis, in the unit in which its numbers are printed.
    type :: axis_t
@@ -21,16 +21,16 @@ module chart
    end type axis_t
 
    !> A curve and marks on it, the numbers of both axes.
-   type :: curve_t
+   type :: graph_t
       real(wp), allocatable :: p(:, :)          !< (2, points)
       real(wp), allocatable :: mark(:, :)       !< (2, marks)
       integer, allocatable :: kind(:)           !< (marks) a number above 0; mark_dot or mark_ring
-   end type curve_t
+   end type graph_t
    integer, parameter, public :: mark_dot = 0, mark_ring = -1
 
    type :: chart_t
       type(axis_t) :: axes(2)
-      type(curve_t), allocatable :: curves(:)
+      type(graph_t), allocatable :: curves(:)
    end type chart_t
 
    !> Room on the left of the diagram, on its right, above and below it, and its height, in pixels.
@@ -100,7 +100,7 @@ contains
    subroutine put_curve(o, axes, curve, color, extent)
       type(output_t), intent(inout) :: o
       type(axis_t), intent(in) :: axes(2)
-      type(curve_t), intent(in) :: curve
+      type(graph_t), intent(in) :: curve
       character(*), intent(in) :: color
       real(wp), intent(in) :: extent(2)
       real(wp) :: q(2)

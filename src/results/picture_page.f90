@@ -5,7 +5,7 @@ module picture_page
    use numerals, only: full, whole, fixed, max_decimals
    use drawing, only: drawing_t, snapshot_t, point_place, joint_point
    use outline, only: corners_at
-   use shapes, only: shape_t, shapes_t, shapes_of, link_color
+   use shapes, only: element_t, shapes_t, shapes_of, link_color
    use canvas, only: canvas_t, to_pixels, add_line
    use svg, only: put_group, put_end, put_line, put_circle, put_words, without_zeros
    use text_output, only: output_t, put
@@ -117,7 +117,7 @@ contains
 
       !> Widens the box by the places of `shape` at the position `s`, if they are known there.
       subroutine widen_by_shape(shape, s)
-         type(shape_t), intent(in) :: shape
+         type(element_t), intent(in) :: shape
          type(snapshot_t), intent(in) :: s
          real(wp) :: position(3)
          integer :: k

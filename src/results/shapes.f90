@@ -8,10 +8,10 @@ module shapes
    use svg, only: attribute
    implicit none
    private
-   public :: shape_t, shapes_t, shapes_of, color_of, link_color, pole_name, half_block
+   public :: element_t, shapes_t, shapes_of, color_of, link_color, pole_name, half_block
 
    !> One shape. Its places are `p` in the unit of length and further `add` in pixels, both in the axes of `link`.
-   type :: shape_t
+   type :: element_t
       character(:), allocatable :: element      !< of SVG; 'hatch' the strokes below a line, 'cut' a line in the picture
       character(:), allocatable :: attributes, title
       integer :: link = 0                       !< 0: the fixed plane
@@ -20,11 +20,11 @@ module shapes
       real(wp) :: radius = 0.0_wp               !< of a circle
       !> Names should not cross its lines, the less the more they weigh; below 0: not cover its box.
       real(wp) :: weight = 0.0_wp
-   end type shape_t
+   end type element_t
 
    type :: shapes_t
       integer :: count = 0
-      type(shape_t), allocatable :: list(:)     !< (count or more) in the order in which they are drawn
+      type(element_t), allocatable :: list(:)     !< (count or more) in the order in which they are drawn
    end type shapes_t
 
    !> Links take these in turn; what belongs to the ground has its own.
