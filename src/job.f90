@@ -28,6 +28,8 @@ module job
    use phrases, only: say_broken_set, say_broken_variant
    use lane_runs, only: width
    use numerals, only: whole
+   use independent, only: set_t
+   use set_motion, only: new_set_motion
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set
    use command_line, only: options_t, file_options, to_standard_output, out_listing, out_csv, out_log, out_svg, &
       out_animation, out_circuits, out_table, out_plot_table, out_plot_script, out_last
@@ -81,7 +83,7 @@ contains
          own%kind = trim(merge('VARIANTS', 'SETS    ', o%varies))
          own%first = share%first
          own%last = share%last
-         if (any([(are_together(sets(i), o), i=1, size(sets))])) own%unit = width
+         if (any([(are_together(sets(i), any(sets(i)%requests%every > 0), o), i=1, size(sets))])) own%unit = width
          associate (processes => process_count(options, sets))
             if (processes > 1) call run_shares(o, own, processes, o%progress, status, message)
          end associate
@@ -262,35 +264,37 @@ contains
       type(writers_t), intent(inout) :: o
       integer, intent(inout) :: status
       type(variant_row_t) :: counts
+      type(set_analysis_t) :: a
       type(answers_t) :: asked
 
-      if (first <= 1) call write_heads(options, m, i, findings, o)
+      call new_set_motion(m, a%now, findings)
+      if (first <= 1) call write_heads(options, m, a%now, i, findings, o)
       if (options%check) return
       if (m%variants == 0) then
-         call run_motion(options, m, i, findings, .true., o, counts, asked)
+         call run_motion(options, a, i, findings, .true., o, counts, asked)
          if (counts%flagged + counts%unproved > 0) status = status_flagged
       else
-         call run_variants(options, m, i, max(1, first), min(m%variants, last), findings%parts, o%variations(varied), &
-            o, status)
+         call run_variants(options, a%now, i, max(1, first), min(m%variants, last), o%variations(varied), o, status)
       end if
    end subroutine run_set
 
-   !> Writes what stands before the first instant of set number `i`, `m`.
-   subroutine write_heads(options, m, i, findings, o)
+   !> Writes what stands before the first instant of set number `i`, `m`, divided `s`.
+   subroutine write_heads(options, m, s, i, findings, o)
       type(options_t), intent(in) :: options
       type(mechanism_t), intent(in) :: m
+      class(set_t), intent(in) :: s
       integer, intent(in) :: i
       type(findings_t), intent(inout) :: findings
       type(writers_t), intent(inout) :: o
 
       if (o%asked(out_listing)) then
-         o%layout = new_layout(m, findings%parts, findings%own)
+         o%layout = new_layout(s)
          call find_groups(m, findings)
          call listing_head(o%files(out_listing, 0), m, findings)
       end if
       if (options%check) return
       if (o%asked(out_log) .and. m%variants == 0) call log_head(o%files(out_log, 0), m, options%errors)
-      if (o%asked(out_table) .or. o%asked(out_plot_table)) o%table = new_table(m)
+      if (o%asked(out_table) .or. o%asked(out_plot_table)) o%table = new_table(s)
       if (o%asked(out_table)) call table_head(o%files(out_table, i), o%table)
       if (o%asked(out_plot_table)) call table_head(o%files(out_plot_table, i), o%table)
       if (o%asked(out_plot_script)) &

@@ -4,8 +4,8 @@
 !> leaves a row. So the row is the same whatever the others are, and memory does not grow with them. Where rows alone
 !> are asked for, some are solved together. A variant that cannot be computed is a row that says so.
 module set_runs
-   use mechanism, only: mechanism_t, instant_count, instant
-   use independent, only: parts_t
+   use mechanism, only: settings_t, mechanism_t, instant_count, instant
+   use independent, only: set_t, request_of, is_printed
    use structure, only: findings_t, find_structure, faults_text
    use failures, only: status_flagged
    use deck, only: build_variant
@@ -31,8 +31,8 @@ module set_runs
    use branch_certificate, only: branch_t
    use points, only: strides, any_due
    use motion_proof, only: holds
-   use set_motion, only: has_words
-   use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set, sense_set, prove_set, &
+   use set_motion, only: new_set_motion, has_words
+   use set_analysis, only: set_analysis_t, begin_analysis, advance_set, sample_set, sense_set, prove_set, &
       set_record, set_errors, set_closure_error, set_closing_diagnostics
    implicit none
    private
@@ -51,13 +51,11 @@ module set_runs
 
 contains
 
-   !> Solves and writes the variants `first` to `last` of `v`, those of set number `i`, `m`, whose independent
-   !> mechanisms are `parts`.
-   subroutine run_variants(options, m, i, first, last, parts, v, o, status)
+   !> Solves and writes the variants `first` to `last` of `v`, those of set number `i`, `m`.
+   subroutine run_variants(options, m, i, first, last, v, o, status)
       type(options_t), intent(in) :: options
-      type(mechanism_t), intent(in) :: m
+      class(set_t), intent(in) :: m
       integer, intent(in) :: i, first, last
-      type(parts_t), intent(in) :: parts
       type(variation_t), intent(inout) :: v
       type(writers_t), intent(inout) :: o
       integer, intent(inout) :: status
@@ -67,15 +65,15 @@ contains
       integer :: n
 
       n = first
-      full = any(m%requests%every > 0)
+      full = is_printed(m)
       layout = new_layout(m)
-      summary = new_summary(m, parts, layout, v)
+      summary = new_summary(m, layout, v)
       if (o%asked(out_summary) .and. first == 1) call summary_head(o%files(out_summary, 0), summary)
       if (o%asked(out_listing) .and. first == 1 .and. .not. full) then
          call put_note_of_shares(o%files(out_listing, 0), m)
          call put_variant_heads(o%files(out_listing, 0), summary)
       end if
-      if (are_together(m, o)) then
+      if (are_together(m, full, o)) then
          call run_together()
       else
          call run_each()
@@ -119,7 +117,8 @@ contains
             call run_lanes(runs(:count), lanes)
             do k = 1, count
                if (is_over(o, i)) return
-               call fill_row(summary, runs(k)%m, runs(k)%asked, runs(k)%row)
+               if (runs(k)%row%rejected == '') call fill_row(summary, runs(k)%s%now, runs(k)%asked, runs(k)%row)
+               if (runs(k)%row%rejected /= '') call fill_row(summary, m, runs(k)%asked, runs(k)%row)
                call write_row(runs(k)%row)
                n = n + 1
             end do
@@ -160,16 +159,20 @@ contains
          type(mechanism_t), intent(inout) :: variant
          type(variant_row_t), intent(inout) :: row
          type(findings_t) :: findings
+         type(set_analysis_t) :: a
          type(answers_t) :: asked
 
          call build_variant(v, row%number, variant, row%rejected)
          if (row%rejected == '') call check_variant(variant, findings, row)
          if (row%rejected == '') then
-            if (full .and. o%asked(out_listing)) o%layout = new_layout(variant)
+            call new_set_motion(variant, a%now, findings)
+            if (full .and. o%asked(out_listing)) o%layout = new_layout(a%now)
             if (o%asked(out_log)) call log_head(o%files(out_log, 0), variant, options%errors)
-            call run_motion(options, variant, i, findings, full, o, row, asked)
+            call run_motion(options, a, i, findings, full, o, row, asked)
+            call fill_row(summary, a%now, asked, row)
+         else
+            call fill_row(summary, m, asked, row)
          end if
-         call fill_row(summary, variant, asked, row)
       end subroutine run_variant
 
       !> Writes the `row` of a variant.
@@ -184,59 +187,59 @@ contains
       end subroutine write_row
    end subroutine run_variants
 
-   !> Whether rows alone are asked of the variants of `m`: then as many are solved together as there are lanes.
-   pure logical function are_together(m, o)
-      type(mechanism_t), intent(in) :: m
+   !> Whether rows alone are asked of the variants of the set `m`, which `prints` tables or not: then as many are solved
+   !> together as there are lanes.
+   pure logical function are_together(m, prints, o)
+      class(settings_t), intent(in) :: m
+      logical, intent(in) :: prints
       class(outputs_t), intent(in) :: o
 
-      are_together = m%variants > 0 .and. .not. (any(m%requests%every > 0) .or. m%proves .or. o%asked(out_csv) &
-         .or. o%asked(out_log))
+      are_together = m%variants > 0 .and. .not. (prints .or. m%proves .or. o%asked(out_csv) .or. o%asked(out_log))
    end function are_together
 
-   !> Solves and writes set number `i`, `m`, instant by instant; `full`: its tables too. `row`: how many instants are
+   !> Solves and writes set number `i`, a%now, instant by instant; `full`: its tables too. `row`: how many instants are
    !> solved and flagged, and the first of those; `asked`: the answers to its cards.
-   subroutine run_motion(options, m, i, findings, full, o, row, asked)
+   subroutine run_motion(options, a, i, findings, full, o, row, asked)
       type(options_t), intent(in) :: options
-      type(mechanism_t), intent(in) :: m
+      type(set_analysis_t), intent(inout) :: a
       integer, intent(in) :: i
       type(findings_t), intent(inout) :: findings
       logical, intent(in) :: full
       type(writers_t), intent(inout) :: o
       type(variant_row_t), intent(inout) :: row
       type(answers_t), intent(out) :: asked
-      type(set_analysis_t) :: a
       type(listing_state_t) :: state
       integer, allocatable :: every(:)
       logical :: lists, due
-      integer :: k
+      integer :: k, n
 
-      call make_set_analysis(m, a, findings)
+      call begin_analysis(a, findings)
       lists = full .and. o%asked(out_listing)
-      if (o%asked(out_listing) .or. m%variants > 0) call new_answers(m, a, lists, asked)
-      every = strides(m)
-      do k = 0, instant_count(m) - 1
-         call advance_set(a, instant(m, k))
-         due = any_due(m, every, k)
-         if (m%proves) then
+      if (o%asked(out_listing) .or. a%now%variants > 0) call new_answers(a, lists, asked)
+      every = strides([(request_of(a%now, n), n=1, size(a%now%rows))])
+      do k = 0, instant_count(a%now) - 1
+         call advance_set(a, instant(a%now, k))
+         due = any_due(a%now, every, k)
+         if (a%now%proves) then
             call prove_set(a, due)
-            if (.not. all(holds(a%now%proofs))) row%unproved = row%unproved + 1
+            if (.not. all(holds(a%now%proofs(1:)))) row%unproved = row%unproved + 1
          end if
          call note_flag(row, a)
          call write_instant(due)
-         call take_instant(asked, m, a, k, due)
-         if (o%progress%shown .and. m%variants == 0) &
-            call show_progress(o%progress, 'SET '//whole(i)//': INSTANT', k, instant_count(m) - 1)
+         call take_instant(asked, a, k, due)
+         if (o%progress%shown .and. a%now%variants == 0) &
+            call show_progress(o%progress, 'SET '//whole(i)//': INSTANT', k, instant_count(a%now) - 1)
          if (.not. is_over(o, i)) cycle
-         if (m%variants == 0) call break_off(o, m, say_broken_off, k)
+         if (a%now%variants == 0) call break_off(o, a%now, say_broken_off, k)
          return
       end do
-      if (lists) call put_answers(o%files(out_listing, 0), o%layout, asked, m, a)
-      if (lists) call listing_end(o%files(out_listing, 0), m, row%solved, row%flagged, &
-         a%certificate_counts, set_closure_error(a), set_closing_diagnostics(a, m))
+      if (lists) call put_answers(o%files(out_listing, 0), o%layout, asked, a)
+      if (lists) call listing_end(o%files(out_listing, 0), a%now, row%solved, row%flagged, &
+         a%certificate_counts, set_closure_error(a), set_closing_diagnostics(a))
 
    contains
 
-      !> Writes instant number `k` of set number `i`, `m`, to which `a` has advanced; `due`: PRINT asks for it; `lists`:
+      !> Writes instant number `k` of set number `i`, to which `a` has advanced; `due`: PRINT asks for it; `lists`:
       !> what there is of it stands in the listing. Only that, and estimates that are asked for, need samples.
       subroutine write_instant(due)
          logical, intent(in) :: due
@@ -246,10 +249,10 @@ contains
             if (shown) call sense_set(a)
          end associate
          if (lists .and. (due .or. has_words(a%now))) &
-            call listing_instant(o%files(out_listing, 0), o%layout, m, a%now, k, state)
-         if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv, 0), m, a%now, k, o%varies, a%assemblies)
-         if (o%asked(out_table) .and. due) call table_instant(o%files(out_table, i), o%table, m, a%now)
-         if (o%asked(out_plot_table) .and. due) call table_instant(o%files(out_plot_table, i), o%table, m, a%now)
+            call listing_instant(o%files(out_listing, 0), o%layout, a%now, k, state)
+         if (o%asked(out_csv) .and. due) call csv_instant(o%files(out_csv, 0), a%now, k, o%varies, a%assemblies)
+         if (o%asked(out_table) .and. due) call table_instant(o%files(out_table, i), o%table, a%now)
+         if (o%asked(out_plot_table) .and. due) call table_instant(o%files(out_plot_table, i), o%table, a%now)
          if (o%asked(out_log)) call put_log(o%files(out_log, 0))
          call write_parts(o)
       end subroutine write_instant
@@ -262,9 +265,9 @@ contains
 
          call set_record(a, record, branch)
          if (options%errors) then
-            call log_instant(log, k, instant(m, k), record, branch, set_errors(a))
+            call log_instant(log, k, instant(a%now, k), record, branch, set_errors(a))
          else
-            call log_instant(log, k, instant(m, k), record, branch)
+            call log_instant(log, k, instant(a%now, k), record, branch)
          end if
       end subroutine put_log
    end subroutine run_motion
@@ -273,7 +276,7 @@ contains
    !> instant, variant or set; nothing follows it.
    subroutine break_off(o, m, words, number)
       type(writers_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
       type(phrase_t), intent(in) :: words
       integer, intent(in) :: number
 

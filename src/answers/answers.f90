@@ -1,7 +1,7 @@
 !> What a set asks of its motion beyond tables at instants: the cards EXTREMES, RANGE, ASSEMBLY, CIRCUITS, TOLER
 !> and PROVE. A set that asks for nothing costs nothing.
 module answers
-   use mechanism, only: mechanism_t
+   use kinds, only: wp
    use set_analysis, only: set_analysis_t
    use listing_layout, only: layout_t
    use text_output, only: output_t
@@ -27,68 +27,65 @@ module answers
       type(extremes_t) :: extremes
       type(shares_t) :: shares
       type(proof_table_t) :: proofs
-      type(range_t), allocatable :: ranges(:)       !< (drives that have one), in the numbers of the set
+      type(range_t), allocatable :: ranges(:)       !< (drives that have one)
       integer :: assemblies = -1                    !< of all parts, where they are asked for and all are known
       type(circuits_t), allocatable :: circuits(:)  !< (drives that are set free) likewise; not allocated: not asked
    end type answers_t
 
 contains
 
-   !> Ready for the first instant of `m`; `s`: its analysis. `lists`: its tables are written, which alone have the
+   !> Ready for the first instant of the set that `s` analyses. `lists`: its tables are written, which alone have the
    !> shares of tolerances.
-   subroutine new_answers(m, s, lists, a)
-      type(mechanism_t), intent(in) :: m
+   subroutine new_answers(s, lists, a)
       type(set_analysis_t), intent(in) :: s
       logical, intent(in) :: lists
       type(answers_t), intent(out) :: a
       integer :: c
 
-      a%extremes_asked = any(m%requests%extremes)
-      a%ranges_asked = m%ranges
-      a%shares_asked = lists .and. allocated(m%tolerances)
-      if (a%shares_asked) call new_shares(m, a%shares)
-      if (m%assemblies) then
+      a%extremes_asked = any([(any(s%now%parts(c)%requests%extremes), c=lbound(s%now%parts, 1), s%now%count)])
+      a%ranges_asked = s%now%ranges
+      a%shares_asked = lists .and. s%now%largest_tolerance > 0.0_wp
+      if (a%shares_asked) call new_shares(s%now, a%shares)
+      if (s%now%assemblies) then
          if (all(s%assemblies%is_known)) a%assemblies = sum([(size(s%assemblies(c)%list), c=1, size(s%assemblies))])
       end if
-      a%proofs_asked = m%proves
-      if (a%proofs_asked) call new_proof_table(m, a%proofs)
+      a%proofs_asked = s%now%proves
+      if (a%proofs_asked) call new_proof_table(s%now, a%proofs)
       allocate (a%ranges(0))
-      if (a%extremes_asked) call new_extremes(m, s, a%extremes)
+      if (a%extremes_asked) call new_extremes(s%now, a%extremes)
    end subroutine new_answers
 
-   !> Takes instant number `k` of `m`, to which `s` has advanced, and what is asked for between it and those before.
-   !> `due`: it is printed.
-   subroutine take_instant(a, m, s, k, due)
+   !> Takes instant number `k`, to which `s` has advanced, and what is asked for between it and those before. `due`: it
+   !> is printed.
+   subroutine take_instant(a, s, k, due)
       type(answers_t), intent(inout) :: a
-      type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: k
       logical, intent(in) :: due
 
-      if (a%proofs_asked) call note_proof(a%proofs, m, s, k, due)
+      if (a%proofs_asked) call note_proof(a%proofs, s, k, due)
       if (a%ranges_asked .and. k == 0) call find_ranges(s, a%ranges)
-      if (m%circuits .and. m%variants == 0 .and. k == 0) call find_all_circuits(s, a%circuits)
-      if (a%shares_asked) call note_tolerances(a%shares, m, s%now, k)
-      if (a%extremes_asked) call note_instant(a%extremes, m, s, k)
+      if (s%now%circuits .and. s%now%variants == 0 .and. k == 0) call find_all_circuits(s, a%circuits)
+      if (a%shares_asked) call note_tolerances(a%shares, s%now, k)
+      if (a%extremes_asked) call note_instant(a%extremes, s, k)
    end subroutine take_instant
 
    !> Writes the answers after the last instant.
-   subroutine put_answers(o, l, a, m, s)
+   subroutine put_answers(o, l, a, s)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(answers_t), intent(in) :: a
-      type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(inout) :: s
       type(dwell_t), allocatable :: dwells(:)
 
       if (a%extremes_asked) then
          call find_dwells(a%extremes, s, dwells)
-         call put_extremes(o, l, m, s, a%extremes, dwells)
+         call put_extremes(o, l, s%now, a%extremes, dwells)
       end if
-      if (a%ranges_asked) call put_ranges(o, m, a%ranges)
-      if (m%assemblies) call put_assemblies(o, l, m, s)
-      if (allocated(a%circuits)) call put_circuits(o, m, a%circuits)
-      if (a%shares_asked) call put_shares(o, l, a%shares, m, s%now)
-      if (a%proofs_asked) call put_proofs(o, l, a%proofs, m)
+      if (a%ranges_asked) call put_ranges(o, s%now, a%ranges)
+      if (s%now%assemblies) call put_assemblies(o, l, s)
+      if (allocated(a%circuits)) call put_circuits(o, s%now, a%circuits)
+      if (a%shares_asked) call put_shares(o, l, a%shares, s%now)
+      if (a%proofs_asked) call put_proofs(o, l, a%proofs, s%now)
    end subroutine put_answers
 end module answers

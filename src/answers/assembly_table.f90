@@ -32,27 +32,26 @@ module assembly_table
 
 contains
 
-   !> The lines of the assemblies of the set `m` that `s` analyses.
-   subroutine put_assemblies(o, l, m, s)
+   !> The lines of the assemblies of the set that `s` analyses.
+   subroutine put_assemblies(o, l, s)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(in) :: s
       integer :: c, k
 
       call put(o, '')
-      call put(o, ' '//phrase(say_assemblies, m%polish)//'   T = '//time_text(l, instant(m, 0))//l%behind_time)
+      call put(o, ' '//phrase(say_assemblies, s%now%polish)//'   T = '//time_text(l, instant(s%now, 0))//l%behind_time)
       do c = 1, size(s%assemblies)
-         associate (own => s%now%own(c), a => s%assemblies(c))
+         associate (m => s%now%parts(c), a => s%assemblies(c))
             if (size(s%assemblies) > 1) call put(o, ' '//phrase(say_mechanism, m%polish)//' '//whole(c))
             do k = 1, size(a%blocks)
-               call put_block(o, own, k, a%blocks(k))
+               call put_block(o, m, k, a%blocks(k))
             end do
             if (a%are_more) call put(o, ' *** '//phrase(say_more_assemblies, m%polish)//' '//whole(max_assemblies))
             if (a%is_missed) call put(o, ' *** '//phrase(say_first_missed, m%polish))
             if (size(a%list) == 0) call put(o, '   '//phrase(say_none, m%polish))
             do k = 1, size(a%list)
-               call put_assembly(o, own, k, a)
+               call put_assembly(o, m, k, a)
             end do
          end associate
       end do
@@ -93,7 +92,7 @@ contains
          integer, intent(in) :: number
          integer :: i
 
-         associate (links => s%now%parts%list(c)%links, own => s%now%own(c))
+         associate (links => s%now%cards(c)%links, own => s%now%parts(c))
             do i = 1, size(links)
                one%place(:, links(i)) = s%assemblies(c)%list(number)%position(:, i) &
                   + [plane_origin(own) - d%origin, 0.0_wp]

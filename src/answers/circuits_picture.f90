@@ -57,10 +57,10 @@ contains
       allocate (more(n + size(found)))
       if (n > 0) more(:n) = page%list
       do i = 1, size(found)
-         associate (d => more(n + i))
+         associate (d => more(n + i), own => s%now%parts(found(i)%part))
             d%title = trim(whole(m%set_number)//'.  '//m%title)
             d%circuit = phrase(say_circuit, m%polish)
-            d%drive = trim(drive_name(m, m%drives(found(i)%drive)))
+            d%drive = trim(drive_name(own, own%drives(found(i)%drive)))
             allocate (d%charts(0))
             if (size(found(i)%list) > 0) call add_charts(s, found(i), d)
          end associate
@@ -74,11 +74,10 @@ contains
       type(circuits_t), intent(in) :: found
       type(diagrams_t), intent(inout) :: d
       type(chart_t) :: one
-      integer :: i, column, drive
+      integer :: i, column
       logical :: does_vary
 
-      drive = findloc(s%now%parts%list(found%part)%drives, found%drive, dim=1)
-      associate (m => s%now%own(found%part))
+      associate (m => s%now%parts(found%part))
          do i = 1, size(m%requests)
             associate (r => m%requests(i))
                if (r%every == 0 .or. all(r%kind /= [request_link, request_point, request_pair])) cycle
@@ -87,8 +86,8 @@ contains
                   ! Of a link that turns its angle alone.
                   if (does_vary .and. r%kind == request_link) exit
                   call make_chart(s, m, found, r, column, d%drive, one, does_vary)
-                  if (column == 3 .and. r%kind == request_link .and. m%drives(drive)%kind == drive_angle &
-                     .and. m%drives(drive)%subject == r%subject) cycle
+                  if (column == 3 .and. r%kind == request_link .and. m%drives(found%drive)%kind == drive_angle &
+                     .and. m%drives(found%drive)%subject == r%subject) cycle
                   if (does_vary) d%charts = [d%charts, one]
                end do
             end associate

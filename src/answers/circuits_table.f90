@@ -4,7 +4,7 @@ module circuits_table
    use mechanism, only: mechanism_t
    use motion, only: diagnostic_t, diagnostic_limit
    use set_analysis, only: set_analysis_t
-   use set_motion, only: in_set
+   use independent, only: set_t
    use circuit_trace, only: circuit_t, end_closed, end_far, end_lost
    use circuit_branches, only: circuits_t, branch_t, no_sign, max_circuits, turns_of
    use circuits, only: find_circuits, free_drives
@@ -30,66 +30,69 @@ module circuits_table
 
 contains
 
-   !> The circuits of each free drive of the set that `s` analyses, in the numbers of the set, from its first instant.
-   !> `draws`: with points for a picture.
+   !> The circuits of each free drive of the set that `s` analyses, from its first instant. `draws`: with points for a
+   !> picture.
    subroutine find_all_circuits(s, list, draws)
       type(set_analysis_t), intent(in) :: s
       type(circuits_t), allocatable, intent(out) :: list(:)
       logical, intent(in), optional :: draws
       integer, allocatable :: drives(:)
-      integer :: c, i, k, n
+      integer :: c, i, n
 
-      allocate (list(sum([(size(free_drives(s%now%own(c))), c=1, size(s%now%own))])))
+      allocate (list(sum([(size(free_drives(s%now%parts(c))), c=1, s%now%count)])))
       n = 0
-      do c = 1, size(s%now%own)
-         drives = free_drives(s%now%own(c))
+      do c = 1, s%now%count
+         drives = free_drives(s%now%parts(c))
          do i = 1, size(drives)
             n = n + 1
             if (allocated(s%assemblies)) then
-               call find_circuits(s%now%own(c), s%now%motions(c), drives(i), list(n), s%assemblies(c), draws)
+               call find_circuits(s%now%parts(c), s%now%motions(c), drives(i), list(n), s%assemblies(c), draws)
             else
-               call find_circuits(s%now%own(c), s%now%motions(c), drives(i), list(n), draws=draws)
+               call find_circuits(s%now%parts(c), s%now%motions(c), drives(i), list(n), draws=draws)
             end if
             list(n)%part = c
-            list(n)%drive = s%now%parts%list(c)%drives(drives(i))
-            do k = 1, size(list(n)%dead)
-               list(n)%dead(k)%limit = in_set(list(n)%dead(k)%limit, s%now%parts%list(c))
-            end do
          end do
       end do
    end subroutine find_all_circuits
 
-   !> Writes the circuits `list` of `m` at the end of a set.
-   subroutine put_circuits(o, m, list)
+   !> Writes the circuits `list` of the set `s` at its end.
+   subroutine put_circuits(o, s, list)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
+      class(set_t), intent(in) :: s
       type(circuits_t), intent(in) :: list(:)
-      character(:), allocatable :: head
       integer :: i
 
-      head = ' '//phrase(say_circuits, m%polish)
       call put(o, '')
       do i = 1, size(list)
          if (i > 1) call put(o, '')
-         call put(o, head//', '//phrase(say_drive, m%polish)//' '//trim(drive_name(m, m%drives(list(i)%drive))))
-         if (.not. list(i)%is_complete) call put(o, ' *** '//phrase(say_circuits_missing, m%polish))
-         if (list(i)%are_more) call put(o, ' *** '//phrase(say_more_circuits, m%polish)//' '//whole(max_circuits))
-         if (list(i)%is_held) then
-            call put(o, '   '//phrase(say_held, m%polish))
-         else if (size(list(i)%list) == 0) then
-            call put(o, '   '//phrase(say_none, m%polish))
-         else
-            call put_branches(list(i))
-            call put_dead_points(list(i))
-            call put_change_points(list(i))
-         end if
+         call put_circuits_of_drive(o, s%parts(list(i)%part), list(i))
       end do
+   end subroutine put_circuits
+
+   !> The circuits `found` of one drive of the mechanism `m`.
+   subroutine put_circuits_of_drive(o, m, found)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(circuits_t), intent(in) :: found
+
+      call put(o, ' '//phrase(say_circuits, m%polish)//', '//phrase(say_drive, m%polish)//' ' &
+         //trim(drive_name(m, m%drives(found%drive))))
+      if (.not. found%is_complete) call put(o, ' *** '//phrase(say_circuits_missing, m%polish))
+      if (found%are_more) call put(o, ' *** '//phrase(say_more_circuits, m%polish)//' '//whole(max_circuits))
+      if (found%is_held) then
+         call put(o, '   '//phrase(say_held, m%polish))
+      else if (size(found%list) == 0) then
+         call put(o, '   '//phrase(say_none, m%polish))
+      else
+         call put_branches()
+         call put_dead_points()
+         call put_change_points()
+      end if
 
    contains
 
-      !> A row for each branch of `found`.
-      subroutine put_branches(found)
-         type(circuits_t), intent(in) :: found
+      !> A row for each branch.
+      subroutine put_branches()
          character(1), parameter :: signs(-1:no_sign) = ['-', '*', '+', '.']
          character(column_ends(4)) :: row
          character(:), allocatable :: numbers
@@ -117,8 +120,7 @@ contains
       end subroutine put_branches
 
       !> A line for each dead point: the drive's value, links, and the branches that end there.
-      subroutine put_dead_points(found)
-         type(circuits_t), intent(in) :: found
+      subroutine put_dead_points()
          type(diagnostic_t) :: limit
          character(:), allocatable :: line
          integer :: d, k
@@ -136,8 +138,7 @@ contains
       end subroutine put_dead_points
 
       !> A line for each change point: the circuits that meet there, and the drive's value.
-      subroutine put_change_points(found)
-         type(circuits_t), intent(in) :: found
+      subroutine put_change_points()
          integer :: i, k
 
          if (size(found%meetings) > 0) call put(o, ' '//phrase(say_change_points, m%polish))
@@ -147,7 +148,7 @@ contains
                //value_words(m, found, known(found%meetings(i)%value, sqrt(epsilon(1.0_wp))), meeting_digits))
          end do
       end subroutine put_change_points
-   end subroutine put_circuits
+   end subroutine put_circuits_of_drive
 
    !> The range of the drive on branch `b`.
    function range_words(m, found, b) result(text)

@@ -32,16 +32,15 @@ module extreme_search
 
 contains
 
-   !> Takes instant number `k` of `m`, to which `s` has advanced. Only the instants of TIME count.
-   subroutine note_instant(x, m, s, k)
+   !> Takes instant number `k`, to which `s` has advanced. Only the instants of TIME count.
+   subroutine note_instant(x, s, k)
       type(extremes_t), intent(inout) :: x
-      type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: k
       type(node_t) :: now
       integer :: c
 
-      if (k > m%steps) return
+      if (k > s%now%steps) return
       do c = 1, size(x%tracks)
          associate (track => x%tracks(c))
             if (size(track%rows) == 0) cycle
@@ -78,8 +77,8 @@ contains
             do i = 1, size(ends)
                to_open = i < size(ends) .or. is_limit .or. .not. is_known(now, track%rows)
                to_change = i < size(ends) .or. (s%now%motions(c)%singularity == singular_change .and. .not. is_limit)
-               call search_piece(times_between(track%joints, m, k), end_t(from, is_open, is_change), end_t(ends(i), &
-                  to_open, to_change, is_pole .and. i == size(ends)))
+               call search_piece(times_between(track%joints, s%now, k), end_t(from, is_open, is_change), &
+                  end_t(ends(i), to_open, to_change, is_pole .and. i == size(ends)))
                is_open = .true.
                is_change = .true.
                from = ends(i)

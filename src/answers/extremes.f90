@@ -8,12 +8,12 @@ module extremes
    use drives, only: new_law, drive_motion, joints_of
    use points, only: is_fixed, coordinates_of
    use digits_in_doubt, only: safe_growth
-   use set_analysis, only: set_analysis_t
+   use independent, only: set_t, request_of
    use nodes, only: node_t, one_sided_t
    use zero_search, only: sample_t, noise_part
    implicit none
    private
-   public :: extremes_t, extreme_t, track_t, gap_t, place_t, least, greatest, outward, extreme_words, requests_of, &
+   public :: extremes_t, extreme_t, track_t, gap_t, place_t, least, greatest, outward, extreme_words, rows_asked, &
       new_extremes, offer, offer_limits, count_turn, note_interval, stroke_times, is_cyclic, is_covered, is_angle, &
       column_of, alike
 
@@ -83,42 +83,46 @@ module extremes
 
 contains
 
-   !> The requests of `m` for extremes, but those of the ground, which does not move.
-   pure function requests_of(m) result(asked)
-      type(mechanism_t), intent(in) :: m
+   !> The rows of `s` whose extremes are asked for, but those of the ground, which does not move.
+   pure function rows_asked(s) result(asked)
+      class(set_t), intent(in) :: s
       integer, allocatable :: asked(:)
+      logical :: is_asked(size(s%rows))
       integer :: i
 
-      asked = pack([(i, i=1, size(m%requests))], &
-         m%requests%extremes .and. .not. [(is_fixed(m, m%requests(i)), i=1, size(m%requests))])
-   end function requests_of
+      do i = 1, size(s%rows)
+         associate (own => s%parts(s%rows(i)%part), k => s%rows(i)%number)
+            is_asked(i) = own%requests(k)%extremes .and. .not. is_fixed(own, own%requests(k))
+         end associate
+      end do
+      asked = pack([(i, i=1, size(is_asked))], is_asked)
+   end function rows_asked
 
-   !> Ready for the first instant of `m`; `s`: its analysis, for the independent mechanisms of `m`.
-   subroutine new_extremes(m, s, x)
-      type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(in) :: s
+   !> Ready for the first instant of the set `s`.
+   subroutine new_extremes(s, x)
+      class(set_t), intent(in) :: s
       type(extremes_t), intent(out) :: x
+      type(request_t) :: request
       real(wp) :: length, rate
       integer :: i, c, k, q, n
 
-      x%asked = requests_of(m)
+      x%asked = rows_asked(s)
       n = size(x%asked)
-      x%part = s%now%parts%part(x%asked)
-      x%columns = coordinates_of(m%requests(x%asked)%kind)
-      x%run = m%t1 - m%t0
+      x%part = s%rows(x%asked)%part
+      x%run = s%t1 - s%t0
       x%way = sign(1.0_wp, x%run)
-      x%step = abs(x%run)/real(m%steps, wp)
+      x%step = abs(x%run)/real(s%steps, wp)
       allocate (x%is_angle(3, n), x%dwell(3, n), x%size_of(3, 0:2, n), x%found(least:greatest, 3, 0:2, n))
-      allocate (x%gaps(0), x%open(0), x%places(8), x%tracks(size(s%now%own)))
+      allocate (x%gaps(0), x%open(0), x%places(8), x%tracks(s%count), x%columns(n))
       allocate (x%turns(3, n), x%first_sign(3, n), x%last_sign(3, n), source=0)
       do q = 1, n
-         associate (request => m%requests(x%asked(q)))
-            x%is_angle(:, q) = [(is_angle(m, request, c), c=1, 3)]
-            x%dwell(:, q) = merge(request%dwell(2), request%dwell(1), x%is_angle(:, q))
-         end associate
+         request = request_of(s, x%asked(q))
+         x%columns(q) = coordinates_of(request%kind)
+         x%is_angle(:, q) = [(is_angle(s%parts(x%part(q)), request, c), c=1, 3)]
+         x%dwell(:, q) = merge(request%dwell(2), request%dwell(1), x%is_angle(:, q))
       end do
       do c = 1, size(x%tracks)
-         associate (track => x%tracks(c), own => s%now%own(c))
+         associate (track => x%tracks(c), own => s%parts(c))
             track%rows = pack([(q, q=1, n)], x%part == c)
             allocate (track%joints(0))
             if (size(track%rows) == 0) cycle
@@ -145,14 +149,15 @@ contains
       if (request%kind == request_pair) is_angle = m%pairs(request%subject)%kind /= pair_prismatic
    end function is_angle
 
-   !> The column of the tables that has coordinate `c` of the row of `request`: of a pair one of two.
-   pure integer function column_of(m, request, c) result(column)
-      type(mechanism_t), intent(in) :: m
+   !> The column of the tables that has coordinate `c` of the row of `request`: of a pair one of two, by whether it
+   !> `is_angle`.
+   pure integer function column_of(request, is_angle, c) result(column)
       type(request_t), intent(in) :: request
+      logical, intent(in) :: is_angle
       integer, intent(in) :: c
 
       column = c
-      if (request%kind == request_pair) column = merge(3, 1, is_angle(m, request, c))
+      if (request%kind == request_pair) column = merge(3, 1, is_angle)
    end function column_of
 
    !> Number `k` of `sample`, column `c` of row `q`, may be the least or the greatest; a place is kept, if its dwells

@@ -4,9 +4,9 @@
 !> does not vary is blank, and what has nothing that varies is left out.
 module extremes_table
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_t, request_pair
+   use mechanism, only: request_t, request_pair
+   use independent, only: set_t, request_of, first_drive
    use names, only: drive_name, subject_name, more
-   use set_analysis, only: set_analysis_t
    use listing_layout, only: layout_t, digits_t, line_length, name_length, row_length
    use listing_tables, only: listing_state_t, put_times, put_heads, time_text, drive_text, known_text
    use text_output, only: output_t, put
@@ -26,38 +26,41 @@ module extremes_table
 
 contains
 
-   !> The extremes `x` and `dwells` of the set `m`, which `s` has analysed.
-   subroutine put_extremes(o, l, m, s, x, dwells)
+   !> The extremes `x` and `dwells` of the set `s`.
+   subroutine put_extremes(o, l, s, x, dwells)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      type(mechanism_t), intent(in) :: m
-      type(set_analysis_t), intent(in) :: s
+      class(set_t), intent(in) :: s
       type(extremes_t), intent(in) :: x
       type(dwell_t), intent(in) :: dwells(:)
       type(listing_state_t) :: table
       type(digits_t) :: d
+      type(request_t) :: request
       integer :: q, k, drive
       logical :: moves
       character(:), allocatable :: driven
 
-      call put_times(o, l, ' '//phrase(say_extremes, m%polish), [m%t0, m%t1], table)
+      call put_times(o, l, ' '//phrase(say_extremes, s%polish), [s%t0, s%t1], table)
       moves = .false.
       do q = 1, size(x%asked)
          if (.not. any_varies()) cycle
          moves = .true.
-         associate (i => x%asked(q))
-            d = l%own(l%part(i))
-            call put_heads(o, l, d, m%requests(i)%kind, table)
-            drive = first_drive(i)
-            if (drive > 0) driven = trim(drive_name(m, m%drives(drive)))
-            call put_subject()
-            do k = 1, size(dwells)
-               if (dwells(k)%asked == q) call put_dwell(i, dwells(k))
-            end do
+         request = request_of(s, x%asked(q))
+         d = l%own(x%part(q))
+         call put_heads(o, l, d, request%kind, table)
+         ! A drive that does not stand over the table has no name in it.
+         drive = first_drive(s, x%asked(q))
+         if (drive > size(l%drives)) drive = 0
+         associate (own => s%parts(x%part(q)))
+            if (drive > 0) driven = trim(drive_name(own, own%drives(1)))
+            call put_subject(subject_name(own, request%kind, request%subject))
          end associate
+         do k = 1, size(dwells)
+            if (dwells(k)%asked == q) call put_dwell(dwells(k))
+         end do
       end do
-      if (.not. moves) call put(o, ' '//phrase(say_at_rest, m%polish))
-      if (table%masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, m%polish))
+      if (.not. moves) call put(o, ' '//phrase(say_at_rest, s%polish))
+      if (table%masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, s%polish))
       call put_gaps(x%open, say_may_be_missed)
       call put_gaps(x%gaps, say_not_covered)
 
@@ -79,38 +82,36 @@ contains
          any_varies = any([((varies(c, k), c=1, x%columns(q)), k=0, 2)])
       end function any_varies
 
-      !> The rows of asked row `q`.
-      subroutine put_subject()
+      !> The rows of asked row `q`, that of a link, point or pair of this `name`.
+      subroutine put_subject(name)
+         character(*), intent(in) :: name
          character(numeral_length), dimension(3, 0:2) :: value, time, place
          integer :: which, c, k
 
-         associate (request => m%requests(x%asked(q)))
-            if (drive > 0) then
-               call put(o, ' '//subject_name(m, request%kind, request%subject)//'   ' &
-                  //phrase(say_drive, m%polish)//' '//driven//','//l%drives(drive)%behind)
-            else
-               call put(o, ' '//trim(subject_name(m, request%kind, request%subject)))
-            end if
-            do which = least, greatest
-               value = ''
-               time = ''
-               place = ''
-               do k = 0, 2
-                  do c = 1, x%columns(q)
-                     if (.not. varies(c, k)) cycle
-                     associate (e => x%found(which, c, k, q))
-                        value(c, k) = value_text(e, x%is_angle(c, q), k)
-                        if (.not. e%exists) cycle
-                        time(c, k) = time_text(l, e%t, e%t_error)
-                        if (drive > 0) place(c, k) = drive_text(l%drives(drive), e%t, e%t_error)
-                     end associate
-                  end do
+         if (drive > 0) then
+            call put(o, ' '//name//'   '//phrase(say_drive, s%polish)//' '//driven//','//l%drives(drive)%behind)
+         else
+            call put(o, ' '//trim(name))
+         end if
+         do which = least, greatest
+            value = ''
+            time = ''
+            place = ''
+            do k = 0, 2
+               do c = 1, x%columns(q)
+                  if (.not. varies(c, k)) cycle
+                  associate (e => x%found(which, c, k, q))
+                     value(c, k) = value_text(e, x%is_angle(c, q), k)
+                     if (.not. e%exists) cycle
+                     time(c, k) = time_text(l, e%t, e%t_error)
+                     if (drive > 0) place(c, k) = drive_text(l%drives(drive), e%t, e%t_error)
+                  end associate
                end do
-               call put_fields(request, extreme_words(which), value)
-               call put_fields(request, phrase(say_at_time, m%polish), time)
-               if (drive > 0) call put_fields(request, phrase(say_at_drive, m%polish), place)
             end do
-         end associate
+            call put_fields(extreme_words(which), value)
+            call put_fields(phrase(say_at_time, s%polish), time)
+            if (drive > 0) call put_fields(phrase(say_at_drive, s%polish), place)
+         end do
          call put_strokes()
       end subroutine put_subject
 
@@ -125,7 +126,7 @@ contains
          if (.not. e%exists) then
             text = trim(adjustl(l%none))
          else if (.not. e%has_bound) then
-            text = phrase(say_unbounded, m%polish)
+            text = phrase(say_unbounded, s%polish)
          else
             text = number_text(e%value, e%error, angular, k)
          end if
@@ -144,7 +145,7 @@ contains
                   number_text(e(greatest)%value - e(least)%value, sum(e%error), x%is_angle(c, q), 0)
             end associate
          end do
-         if (any(stroke /= '')) call put_fields(m%requests(x%asked(q)), phrase(say_stroke, m%polish), stroke)
+         if (any(stroke /= '')) call put_fields(phrase(say_stroke, s%polish), stroke)
          do c = 1, x%columns(q)
             if (stroke(c, 0) /= '') call put_stroke_times(c)
          end do
@@ -159,21 +160,20 @@ contains
          times = stroke_times(x, q, c)
          if (any(times <= 0.0_wp)) return
          error = sum(x%found(:, c, 0, q)%t_error)
-         line = '  '//column_name(x%asked(q), c)//'   '//phrase(say_forward, m%polish)//' ' &
-            //time_text(l, times(1), error)//l%behind_time//'   '//phrase(say_return, m%polish)//' ' &
-            //time_text(l, times(2), error)//l%behind_time//'   '//phrase(say_ratio, m%polish)//' ' &
+         line = '  '//column_name(c)//'   '//phrase(say_forward, s%polish)//' ' &
+            //time_text(l, times(1), error)//l%behind_time//'   '//phrase(say_return, s%polish)//' ' &
+            //time_text(l, times(2), error)//l%behind_time//'   '//phrase(say_ratio, s%polish)//' ' &
             //known_text(maxval(times)/minval(times), ratio_decimals, 0, error*sum(times)/minval(times)**2)
          table%masked = table%masked .or. index(line, unknown_digit) > 0
          call put(o, line)
       end subroutine put_stroke_times
 
       !> A line for a dwell: of which coordinate, within what distance of what, from when to when.
-      subroutine put_dwell(i, dwell)
-         integer, intent(in) :: i
+      subroutine put_dwell(dwell)
          type(dwell_t), intent(in) :: dwell
          character(:), allocatable :: line
 
-         line = ' '//phrase(say_dwell, m%polish)//'  '//column_name(i, dwell%column)//'  ' &
+         line = ' '//phrase(say_dwell, s%polish)//'  '//column_name(dwell%column)//'  ' &
             //extreme_words(dwell%which)//' +- ' &
             //number_text(dwell%distance, 0.0_wp, x%is_angle(dwell%column, q), 0) &
             //'   T = '//time_text(l, dwell%from, dwell%error(1))//' .. '//time_text(l, dwell%to, dwell%error(2))
@@ -192,46 +192,46 @@ contains
          integer :: i
 
          line = ''
-         text = ' --- '//phrase(say, m%polish)
+         text = ' --- '//phrase(say, s%polish)
          do i = 1, min(size(list), max_gaps)
             if (i > 1) text = text//','
             text = text//' '//time_text(l, list(i)%from)
             if (abs(list(i)%to - list(i)%from) > 0.0_wp) text = text//' .. '//time_text(l, list(i)%to)
-            next = text//l%behind_time//more(size(list) - i, m%polish)
+            next = text//l%behind_time//more(size(list) - i, s%polish)
             if (i > 1 .and. len(next) > line_length) exit
             line = next
          end do
          if (len(line) > 0) call put(o, line)
       end subroutine put_gaps
 
-      !> The name of column `c` of request `i`.
-      pure function column_name(i, c) result(name)
-         integer, intent(in) :: i, c
+      !> The name of column `c`.
+      pure function column_name(c) result(name)
+         integer, intent(in) :: c
          character(:), allocatable :: name
 
-         if (m%requests(i)%kind == request_pair) then
-            name = phrase(say_slide, m%polish)
-            if (x%is_angle(c, q)) name = phrase(say_angle, m%polish)
+         if (request%kind == request_pair) then
+            name = phrase(say_slide, s%polish)
+            if (x%is_angle(c, q)) name = phrase(say_angle, s%polish)
          else
             name = 'X'
             if (c == 2) name = 'Y'
-            if (c == 3) name = phrase(say_phi, m%polish)
+            if (c == 3) name = phrase(say_phi, s%polish)
          end if
       end function column_name
 
-      !> A row of `fields` (3, 0:2), those of `request`, with a label before it.
-      subroutine put_fields(request, label, fields)
-         type(request_t), intent(in) :: request
+      !> A row of `fields` (3, 0:2), with a label before it.
+      subroutine put_fields(label, fields)
          character(*), intent(in) :: label
          character(numeral_length), intent(in) :: fields(3, 0:2)
          character(row_length) :: line
-         integer :: c, k
+         integer :: column, c, k
 
          line = '  '//label
          if (len(label) > 7) line = ' '//label
          do k = 0, 2
             do c = 1, x%columns(q)
-               associate (last => name_length + numeral_length*l%column(column_of(m, request, c), k, request%kind))
+               column = column_of(request, x%is_angle(c, q), c)
+               associate (last => name_length + numeral_length*l%column(column, k, request%kind))
                   line(last - numeral_length + 1:last) = adjustr(fields(c, k))
                end associate
             end do
@@ -252,16 +252,5 @@ contains
             text = known_text(value/unit, d%decimals(what, k), d%power(what, k), error/unit)
          end associate
       end function number_text
-
-      !> The first drive of the mechanism that request `i` asks about; 0: none, or it does not stand over the table.
-      pure integer function first_drive(i)
-         integer, intent(in) :: i
-
-         first_drive = 0
-         associate (part => s%now%parts%list(s%now%parts%part(i)))
-            if (size(part%drives) > 0) first_drive = part%drives(1)
-            if (first_drive > size(l%drives)) first_drive = 0
-         end associate
-      end function first_drive
    end subroutine put_extremes
 end module extremes_table

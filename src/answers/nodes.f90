@@ -8,7 +8,7 @@
 module nodes
    use kinds, only: wp
    use known_digits, only: nothing_known
-   use mechanism, only: mechanism_t, instant
+   use mechanism, only: settings_t, instant
    use points, only: row_t
    use set_analysis, only: set_analysis_t, rows_at
    implicit none
@@ -74,7 +74,7 @@ contains
          allocate (node%known(n), source=-1)
          allocate (node%value(3, 0:2, n), node%error(3, 0:2, n), source=0.0_wp)
       end associate
-      these = pack([(i, i=1, size(asked))], s%now%parts%part(asked) == c)
+      these = pack([(i, i=1, size(asked))], s%now%rows(asked)%part == c)
       allocate (rows(size(these)), error(3, 0:2, size(these)))
       call rows_at(s, c, asked(these), t, rows, is_found, always, error, node%growth)
       do i = 1, size(these)
@@ -97,7 +97,7 @@ contains
    !> drives' laws and on either side of it.
    pure function times_between(joints, m, k) result(times)
       real(wp), intent(in) :: joints(:)
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
       integer, intent(in) :: k
       real(wp), allocatable :: times(:)
       real(wp) :: t1, h, beside

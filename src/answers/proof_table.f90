@@ -3,7 +3,7 @@
 module proof_table
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
-   use mechanism, only: mechanism_t, instant
+   use mechanism, only: settings_t, instant
    use motion, only: mark_none
    use branch_certificate, only: branch_crossed
    use motion_proof, only: holds
@@ -52,16 +52,15 @@ contains
 
    !> Before the first instant of `m`.
    subroutine new_proof_table(m, p)
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
       type(proof_table_t), intent(out) :: p
 
       allocate (p%lines(max(2, m%steps + size(m%at) + 2)), p%reasons(0))
    end subroutine new_proof_table
 
-   !> Takes what is proved of instant number `k` of `m`, to which `s` has advanced; `due`: it is printed.
-   subroutine note_proof(p, m, s, k, due)
+   !> Takes what is proved of instant number `k`, to which `s` has advanced; `due`: it is printed.
+   subroutine note_proof(p, s, k, due)
       type(proof_table_t), intent(inout) :: p
-      type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(in) :: s
       integer, intent(in) :: k
       logical, intent(in) :: due
@@ -70,7 +69,7 @@ contains
 
       p%instants = p%instants + 1
       associate (line => p%lines(p%count + 1))
-         do c = 1, size(s%now%proofs)
+         do c = 1, s%now%count
             associate (proof => s%now%proofs(c))
                line%parts = line%parts + proof%step%parts
                line%tube = max(line%tube, proof%step%radius)
@@ -78,11 +77,11 @@ contains
                if (holds(proof)) cycle
                line%is_proved = .false.
                if (size(p%reasons) == max_reasons) cycle
-               reason = reason_of(m, s, c, k)
+               reason = reason_of(s, c, k)
                p%reasons = [p%reasons, reason]
             end associate
          end do
-         if (all(holds(s%now%proofs))) p%proved = p%proved + 1
+         if (all(holds(s%now%proofs(1:)))) p%proved = p%proved + 1
          if (.not. due) return
          line%step = k
          line%bounds = set_bounds(s)
@@ -90,15 +89,14 @@ contains
       end associate
    end subroutine note_proof
 
-   !> Why instant number `k` of `m` is not proved of independent mechanism number `c`.
-   function reason_of(m, s, c, k) result(r)
-      type(mechanism_t), intent(in) :: m
+   !> Why instant number `k` is not proved of independent mechanism number `c`.
+   function reason_of(s, c, k) result(r)
       type(set_analysis_t), intent(in) :: s
       integer, intent(in) :: c, k
       type(reason_t) :: r
 
       r%step = k
-      associate (proof => s%now%proofs(c), q => s%now%motions(c), own => s%now%own(c))
+      associate (proof => s%now%proofs(c), q => s%now%motions(c), m => s%now%parts(c))
          if (q%mark /= mark_none) then
             r%words = words_of_mark(q%mark, q%singularity, m%polish)
          else if (s%list(c)%branch%kind == branch_crossed) then
@@ -113,7 +111,7 @@ contains
             end if
             if (allocated(proof%failed)) then
                if (size(proof%failed) > 0) r%words = phrase(say_links, m%polish)//' ' &
-                  //listed(own%links(proof%failed)%name, m%polish)//': '//r%words
+                  //listed(m%links(proof%failed)%name, m%polish)//': '//r%words
             end if
          end if
       end associate
@@ -124,7 +122,7 @@ contains
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(proof_table_t), intent(in) :: p
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
       character(:), allocatable :: gap
       integer :: i
 
@@ -153,7 +151,7 @@ contains
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(line_t), intent(in) :: line
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
       character(7*number_width + 2) :: text
       character(numeral_length) :: time
       integer :: k, first
@@ -181,7 +179,7 @@ contains
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(reason_t), intent(in) :: r
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
       character(:), allocatable :: text
 
       text = phrase(say_instant, m%polish)//' '//whole(r%step)//', T = '//time_text(l, instant(m, r%step)) &

@@ -11,7 +11,7 @@ module ranges
    use scales, only: is_length, characteristic_length
    use analysis, only: analysis_t, make_analysis, advance
    use set_analysis, only: set_analysis_t
-   use set_motion, only: in_set
+   use independent, only: set_t
    use names, only: drive_name
    use text_output, only: output_t, put
    use numerals, only: whole
@@ -37,7 +37,7 @@ module ranges
 
    !> The range of a drive. An end without a limit is the last value to which the drive was followed.
    type :: range_t
-      integer :: drive = 0                  !< its number in the mechanism
+      integer :: part = 1, drive = 0        !< the number of its independent mechanism, and its own there
       logical :: is_all = .false.           !< it turns fully, and the motion closes
       integer :: turns = 0                  !< after so many turns
       integer :: change_points = 0          !< passed on the smooth branch, both ways
@@ -47,8 +47,8 @@ module ranges
 
 contains
 
-   !> The ranges of all drives of the set that `s` analyses, in the numbers of the set, at its first instant; none of a
-   !> mechanism that has no position there.
+   !> The ranges of all drives of the set that `s` analyses, at its first instant; none of a mechanism that has no
+   !> position there.
    subroutine find_ranges(s, list)
       type(set_analysis_t), intent(in) :: s
       type(range_t), allocatable, intent(out) :: list(:)
@@ -56,31 +56,29 @@ contains
       integer :: c, i
 
       allocate (list(0))
-      do c = 1, size(s%now%own)
+      do c = 1, s%now%count
          if (s%now%motions(c)%known < 0) cycle
-         do i = 1, size(s%now%own(c)%drives)
-            call find_range(s%now%own(c), s%now%motions(c), i, r)
-            r%drive = s%now%parts%list(c)%drives(i)
-            r%limit(low) = in_set(r%limit(low), s%now%parts%list(c))
-            r%limit(high) = in_set(r%limit(high), s%now%parts%list(c))
+         do i = 1, size(s%now%parts(c)%drives)
+            call find_range(s%now%parts(c), s%now%motions(c), i, r)
+            r%part = c
             list = [list, r]
          end do
       end do
    end subroutine find_ranges
 
-   !> The lines of `list` at the end of a set.
-   subroutine put_ranges(o, m, list)
+   !> The lines of `list` at the end of the set `s`.
+   subroutine put_ranges(o, s, list)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
+      class(set_t), intent(in) :: s
       type(range_t), intent(in) :: list(:)
       character(:), allocatable :: words
       integer :: i, side
 
       call put(o, '')
-      call put(o, ' '//phrase(say_range, m%polish))
-      if (size(list) == 0) call put(o, '   '//phrase(say_none, m%polish))
+      call put(o, ' '//phrase(say_range, s%polish))
+      if (size(list) == 0) call put(o, '   '//phrase(say_none, s%polish))
       do i = 1, size(list)
-         associate (r => list(i))
+         associate (r => list(i), m => s%parts(list(i)%part))
             call put(o, ' '//trim(drive_name(m, m%drives(r%drive))))
             if (r%is_all) then
                call put(o, '   '//full_turn_words(r%turns, m%polish))

@@ -2,7 +2,8 @@
 !> squares is greatest, the share of each number in the sum of squares, the largest first.
 module tolerance_shares
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_pole
+   use mechanism, only: mechanism_t, request_t, request_pole
+   use independent, only: set_t, request_of
    use points, only: is_listed, coordinates_of
    use names, only: subject_name
    use set_motion, only: set_motion_t, spread_t, spread_in_set
@@ -11,7 +12,7 @@ module tolerance_shares
    use listing_tables, only: time_text
    use text_output, only: output_t, put
    use numerals, only: fixed, whole
-   use extremes, only: column_of
+   use extremes, only: column_of, is_angle
    use phrases
    implicit none
    private
@@ -25,7 +26,7 @@ module tolerance_shares
 
    type :: shares_t
       type(share_t), allocatable :: list(:, :, :)   !< (3, 0:2, requests)
-      logical, allocatable :: jams(:)               !< (numbers of the set) redundant equations leave no room for it
+      logical, allocatable :: jams(:, :)            !< (numbers, parts) redundant equations leave no room for it
    end type shares_t
 
    !> Smaller shares are only counted.
@@ -40,31 +41,32 @@ module tolerance_shares
 
 contains
 
-   !> Before the first instant of `m`.
-   subroutine new_shares(m, a)
-      type(mechanism_t), intent(in) :: m
+   !> Before the first instant of the set `s`.
+   subroutine new_shares(s, a)
+      class(set_t), intent(in) :: s
       type(shares_t), intent(out) :: a
+      integer :: c
 
-      allocate (a%list(3, 0:2, size(m%requests)))
-      allocate (a%jams(size(m%tolerances)), source=.false.)
+      allocate (a%list(3, 0:2, size(s%rows)))
+      allocate (a%jams(maxval([(size(s%parts(c)%tolerances), c=1, s%count)]), s%count), source=.false.)
    end subroutine new_shares
 
-   !> Takes the sensitivities of instant number `k`, that of the motions `s` of `m`.
-   subroutine note_tolerances(a, m, s, k)
+   !> Takes the sensitivities of instant number `k`, that of the motions `s`.
+   subroutine note_tolerances(a, s, k)
       type(shares_t), intent(inout) :: a
-      type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(in) :: s
       integer, intent(in) :: k
-      integer :: i, c, d
+      type(request_t) :: request
+      integer :: i, n
 
-      do i = 1, size(m%requests)
-         if (.not. is_listed(m, m%requests(i), k) .or. .not. has_tolerances(m, m%requests(i))) cycle
-         c = max(1, s%parts%part(i))
-         call take_row(a%list(:, :, i), spread_in_set(m, s, i), s%motions(c)%t)
-         associate (found => s%sensitivities(c))
-            do d = 1, size(found%jams)
-               if (found%jams(d)) a%jams = a%jams .or. m%tolerances%name == s%own(c)%tolerances(d)%name
-            end do
+      do i = 1, size(s%rows)
+         request = request_of(s, i)
+         associate (c => s%rows(i)%part)
+            if (.not. is_listed(s, request, k) .or. .not. has_tolerances(s%parts(c), request)) cycle
+            call take_row(a%list(:, :, i), spread_in_set(s, i), s%motions(1)%t)
+            if (c == 0) cycle
+            n = size(s%sensitivities(c)%jams)
+            a%jams(:n, c) = a%jams(:n, c) .or. s%sensitivities(c)%jams
          end associate
       end do
    end subroutine note_tolerances
@@ -92,65 +94,67 @@ contains
       end do
    end subroutine take_row
 
-   !> Writes the shares after the last instant of `m`.
-   subroutine put_shares(o, l, a, m, s)
+   !> Writes the shares after the last instant of the set `s`.
+   subroutine put_shares(o, l, a, s)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(shares_t), intent(in) :: a
-      type(mechanism_t), intent(in) :: m
-      type(set_motion_t), intent(in) :: s
+      class(set_t), intent(in) :: s
+      type(request_t) :: request
       integer :: i, c, k, d
 
       call put(o, '')
-      call put(o, ' '//phrase(say_shares, m%polish))
-      if (any(m%requests%kind >= request_pole)) call put(o, ' --- '//phrase(say_no_shares, m%polish))
-      do d = 1, size(a%jams)
-         if (a%jams(d)) call put(o, ' *** '//trim(m%tolerances(d)%name)//': '//phrase(say_jams, m%polish))
+      call put(o, ' '//phrase(say_shares, s%polish))
+      if (any([(any(s%parts(c)%requests%kind >= request_pole), c=lbound(s%parts, 1), s%count)])) &
+         call put(o, ' --- '//phrase(say_no_shares, s%polish))
+      do c = 1, s%count
+         do d = 1, size(s%parts(c)%tolerances)
+            if (a%jams(d, c)) &
+               call put(o, ' *** '//trim(s%parts(c)%tolerances(d)%name)//': '//phrase(say_jams, s%polish))
+         end do
       end do
-      do i = 1, size(m%requests)
-         if (.not. has_tolerances(m, m%requests(i))) cycle
-         associate (part => s%parts%part(i))
+      do i = 1, size(s%rows)
+         request = request_of(s, i)
+         associate (part => s%rows(i)%part)
+            if (.not. has_tolerances(s%parts(part), request)) cycle
             do k = 0, 2
-               do c = merge(3, 1, m%requests(i)%angle_alone), coordinates_of(m%requests(i)%kind)
-                  if (part == 0) call put_quantity(o, l, m, m, i, c, k, a%list(c, k, i))
-                  if (part > 0) call put_quantity(o, l, m, s%own(part), i, c, k, a%list(c, k, i))
+               do c = merge(3, 1, request%angle_alone), coordinates_of(request%kind)
+                  call put_quantity(o, l, l%own(part), s%parts(part), request, c, k, a%list(c, k, i))
                end do
             end do
          end associate
       end do
    end subroutine put_shares
 
-   !> The lines of coordinate `c`, derivative `k`, of request number `i` of the set `m`, which is one about its part
-   !> `own`; none where the tables have zero.
-   subroutine put_quantity(o, l, m, own, i, c, k, share)
+   !> The lines of coordinate `c`, derivative `k`, of the row of `request` of `m`, an independent mechanism, with the
+   !> digits `d`; none where the tables have zero.
+   subroutine put_quantity(o, l, d, m, request, c, k, share)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      type(mechanism_t), intent(in) :: m, own
-      integer, intent(in) :: i, c, k
+      type(digits_t), intent(in) :: d
+      type(mechanism_t), intent(in) :: m
+      type(request_t), intent(in) :: request
+      integer, intent(in) :: c, k
       type(share_t), intent(in) :: share
-      type(digits_t) :: d
       character(:), allocatable :: unit
       integer :: column, coordinate, what, decimals
       real(wp) :: size_of
 
       if (.not. allocated(share%s)) return
-      associate (request => m%requests(i))
-         coordinate = column_of(m, request, c)
-         column = l%column(coordinate, k, request%kind)
-         what = dimension_of(coordinate)
-         size_of = merge(l%angle, 1.0_wp, what == 2)
-         d = l%own(l%part(i))
-         decimals = d%decimals(what, k) + l%more_decimals
-         if (share%root/size_of < 0.5_wp*10.0_wp**(d%power(what, k) - decimals)) return
-         unit = unit_of(d%power(what, k), column_text(l%units(1, request%kind), column) &
-            //column_text(l%units(2, request%kind), column))
-         call put(o, ' '//trim(l%names(request%kind)(2:name_length))//' ' &
-            //trim(subject_name(m, request%kind, request%subject))//'  ' &
-            //column_text(l%names(request%kind), column)//'   T = '//time_text(l, share%t)//l%behind_time &
-            //'   RSS = '//value_text(share%root)//'   '//phrase(say_worst, m%polish)//' = ' &
-            //value_text(share%worst)//' '//unit)
-      end associate
-      call put_numbers(o, own, share, size_of, m%polish)
+      coordinate = column_of(request, is_angle(m, request, c), c)
+      column = l%column(coordinate, k, request%kind)
+      what = dimension_of(coordinate)
+      size_of = merge(l%angle, 1.0_wp, what == 2)
+      decimals = d%decimals(what, k) + l%more_decimals
+      if (share%root/size_of < 0.5_wp*10.0_wp**(d%power(what, k) - decimals)) return
+      unit = unit_of(d%power(what, k), column_text(l%units(1, request%kind), column) &
+         //column_text(l%units(2, request%kind), column))
+      call put(o, ' '//trim(l%names(request%kind)(2:name_length))//' ' &
+         //trim(subject_name(m, request%kind, request%subject))//'  ' &
+         //column_text(l%names(request%kind), column)//'   T = '//time_text(l, share%t)//l%behind_time &
+         //'   RSS = '//value_text(share%root)//'   '//phrase(say_worst, m%polish)//' = ' &
+         //value_text(share%worst)//' '//unit)
+      call put_numbers(o, m, share, size_of)
 
    contains
 
@@ -165,12 +169,11 @@ contains
 
    !> A line for each number of `m` with a share of note, the largest first: share, name, sensitivity (the quantity is
    !> divided by `size_of`), tolerance.
-   subroutine put_numbers(o, m, share, size_of, polish)
+   subroutine put_numbers(o, m, share, size_of)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(share_t), intent(in) :: share
       real(wp), intent(in) :: size_of
-      logical, intent(in) :: polish
       real(wp) :: part(size(share%s))
       integer :: order(size(share%s)), j
       character(12) :: sensitivity
@@ -189,7 +192,7 @@ contains
                //trim(one%unit_name))
          end associate
       end do
-      if (j <= size(order)) call put(o, '   '//phrase(say_small_shares, polish)//' '//whole(size(order) - j + 1))
+      if (j <= size(order)) call put(o, '   '//phrase(say_small_shares, m%polish)//' '//whole(size(order) - j + 1))
    end subroutine put_numbers
 
    !> The numbers of the elements of `x`, the largest first; of those that are alike the first one.

@@ -2,18 +2,18 @@
 module variant_rows
    use kinds, only: wp, label_length
    use planar, only: in_degrees
-   use mechanism, only: mechanism_t, driven_kinds, request_link
+   use mechanism, only: request_t, driven_kinds, request_link
    use motion, only: mark_none, diagnostic_t, diagnostic_limit
    use drives, only: new_law, drive_motion, pole_value
    use names, only: drive_name, subject_name
-   use independent, only: parts_t
+   use independent, only: set_t, request_of, first_drive
    use deck_variants, only: variation_t, varied_t, values_of_variant
    use set_analysis, only: set_analysis_t
-   use set_motion, only: in_set, is_flagged
+   use set_motion, only: is_flagged
    use listing_layout, only: layout_t, digits_t, dimension_of, column_text, choose_digits, angle_unit
    use csv, only: marks
    use table, only: table_t, new_table, drive_columns, dotted
-   use extremes, only: extreme_t, least, greatest, outward, extreme_words, requests_of, column_of
+   use extremes, only: extreme_t, least, greatest, outward, extreme_words, rows_asked, column_of
    use ranges, only: range_t, low, high
    use answers, only: answers_t
    use numerals, only: whole
@@ -53,7 +53,6 @@ module variant_rows
       type(summary_column_t), allocatable :: columns(:)
       integer :: numbers = 0                        !< that vary: columns 2 to numbers + 1
       type(table_t) :: extremes                     !< the columns of what EXTREMES asks for
-      integer, allocatable :: drives(:)             !< (requests for extremes) the first drive of its mechanism; 0: none
    end type summary_t
 
    type :: variant_row_t
@@ -69,10 +68,9 @@ module variant_rows
 
 contains
 
-   !> The columns of the summary of `m`, whose independent mechanisms are `parts`; `l`: its layout; `v`: its variants.
-   function new_summary(m, parts, l, v) result(s)
-      type(mechanism_t), intent(in) :: m
-      type(parts_t), intent(in) :: parts
+   !> The columns of the summary of the set `set`; `l`: its layout; `v`: its variants.
+   function new_summary(set, l, v) result(s)
+      class(set_t), intent(in) :: set
       type(layout_t), intent(in) :: l
       type(variation_t), intent(in) :: v
       type(summary_t) :: s
@@ -80,24 +78,24 @@ contains
       integer :: i
 
       s%numbers = size(v%numbers)
-      drives = drive_columns(m)
+      drives = drive_columns(set)
       allocate (s%columns(0))
-      call add_headed('variant', phrase(say_variant, m%polish), '')
+      call add_headed('variant', phrase(say_variant, set%polish), '')
       do i = 1, size(v%numbers)
          call add_column(varied_column(v%numbers(:i)))
       end do
-      call add_headed('solved', phrase(say_instants, m%polish), phrase(say_are_solved, m%polish))
-      call add_headed('flagged', phrase(say_instants, m%polish), phrase(say_flagged, m%polish))
-      call add_column(summary_column_t('flag.t', .true., heads_of(phrase(say_first_flag, m%polish), &
-         phrase(say_at_time, m%polish)), m%time_unit, decimals=l%time_decimals, power=l%time_power))
-      call add_drive(min(1, size(m%drives)), 'flag', heads_of('', ''))
+      call add_headed('solved', phrase(say_instants, set%polish), phrase(say_are_solved, set%polish))
+      call add_headed('flagged', phrase(say_instants, set%polish), phrase(say_flagged, set%polish))
+      call add_column(summary_column_t('flag.t', .true., heads_of(phrase(say_first_flag, set%polish), &
+         phrase(say_at_time, set%polish)), set%time_unit, decimals=l%time_decimals, power=l%time_power))
+      call add_drive(min(1, size(set%drives)), 'flag', heads_of('', ''))
       call add_column(summary_column_t('flag.mark'))
       call add_column(summary_column_t('limit.t'))
       call add_column(summary_column_t('limit.drive'))
       call add_column(summary_column_t('limit.value'))
-      if (m%ranges) call add_ranges()
-      if (m%assemblies) call add_headed('assemblies', phrase(say_assemblies, m%polish), '')
-      if (m%proves) call add_headed('unproved', phrase(say_instants, m%polish), phrase(say_not_proved, m%polish))
+      if (set%ranges) call add_ranges()
+      if (set%assemblies) call add_headed('assemblies', phrase(say_assemblies, set%polish), '')
+      if (set%proves) call add_headed('unproved', phrase(say_instants, set%polish), phrase(say_not_proved, set%polish))
       call add_extremes()
 
    contains
@@ -156,10 +154,12 @@ contains
          c%name = start//'.drive'
          if (d > 0) then
             c%name = start//'.'//drives(d)
-            c%angular = driven_kinds(m%drives(d)%kind) == request_link
+            associate (place => set%drives(d))
+               c%angular = driven_kinds(set%parts(place%part)%drives(place%number)%kind) == request_link
+            end associate
             c%printed = any(heads /= '')
             c%heads = heads
-            c%unit = merge(angle_unit(m), m%length_unit, c%angular)
+            c%unit = merge(angle_unit(set), set%length_unit, c%angular)
             if (d <= size(l%drives)) then
                c%decimals = l%drives(d)%decimals
                c%power = l%drives(d)%power
@@ -170,70 +170,61 @@ contains
 
       !> Adds the columns of what EXTREMES asks for.
       subroutine add_extremes()
-         type(mechanism_t) :: asked
          type(summary_column_t) :: c
-         integer, allocatable :: requests(:)
          integer :: i, which
          character(3), parameter :: endings(least:greatest) = ['min', 'max']
 
-         requests = requests_of(m)
-         asked = m
-         asked%requests = m%requests(requests)
-         asked%requests%every = 1
-         if (allocated(asked%tolerances)) deallocate (asked%tolerances)
-         s%extremes = new_table(asked)
-         allocate (s%drives(size(requests)), source=min(1, size(m%drives)))
-         do i = 1, merge(0, size(requests), parts%count == 1)
-            associate (own => parts%list(parts%part(requests(i)))%drives)
-               s%drives(i) = 0
-               if (size(own) > 0) s%drives(i) = own(1)
-            end associate
-         end do
+         s%extremes = new_table(set, rows_asked(set))
          do i = 1, size(s%extremes%columns)
             associate (column => s%extremes%columns(i))
                do which = least, greatest
-                  c = extreme_column(requests(column%request), column%coordinate, column%order, column%angular)
+                  c = extreme_column(column%request, column%coordinate, column%order, column%angular)
                   c%name = trim(column%name)//'.'//endings(which)
                   c%heads(2) = trim(c%heads(2))//' '//extreme_words(which)
                   call add_column(c)
                   call add_column(summary_column_t(trim(c%name)//'.t'))
-                  call add_drive(s%drives(column%request), trim(c%name), heads_of('', ''))
+                  call add_drive(first_drive(set, column%request), trim(c%name), heads_of('', ''))
                end do
             end associate
          end do
       end subroutine add_extremes
 
-      !> The column of coordinate `coordinate`, derivative `k`, of request number `i` of `m`.
+      !> The column of coordinate `coordinate`, derivative `k`, of row number `i` of the set.
       function extreme_column(i, coordinate, k, angular) result(c)
          integer, intent(in) :: i, coordinate, k
          logical, intent(in) :: angular
          type(summary_column_t) :: c
-         type(digits_t) :: d
+         type(request_t) :: request
          integer :: place
 
-         place = column_of(m, m%requests(i), coordinate)
-         associate (kind => m%requests(i)%kind, column => l%column(place, k, m%requests(i)%kind))
+         request = request_of(set, i)
+         place = column_of(request, angular, coordinate)
+         associate (kind => request%kind, column => l%column(place, k, request%kind))
             c%printed = .true.
-            c%heads = heads_of(subject_name(m, kind, m%requests(i)%subject), column_text(l%names(kind), column))
+            c%heads = heads_of(subject_name(set%parts(set%rows(i)%part), kind, request%subject), &
+               column_text(l%names(kind), column))
             c%unit = column_text(l%units(1, kind), column)//column_text(l%units(2, kind), column)
          end associate
          c%angular = angular
-         d = l%own(l%part(i))
-         c%decimals = d%decimals(dimension_of(place), k)
-         c%power = d%power(dimension_of(place), k)
+         associate (d => l%own(set%rows(i)%part))
+            c%decimals = d%decimals(dimension_of(place), k)
+            c%power = d%power(dimension_of(place), k)
+         end associate
       end function extreme_column
 
       !> Adds the columns of the ranges of all drives.
       subroutine add_ranges()
-         character(:), allocatable :: word
+         character(:), allocatable :: word, name
          integer :: d
 
-         word = phrase(say_one_range, m%polish)
-         do d = 1, size(m%drives)
-            call add_drive(d, 'range.min', heads_of(drive_name(m, m%drives(d)), word//' MIN'))
-            call add_drive(d, 'range.max', heads_of(drive_name(m, m%drives(d)), word//' MAX'))
-            call add_headed('range.turns.'//trim(drives(d)), drive_name(m, m%drives(d)), &
-               phrase(say_whole_turns, m%polish))
+         word = phrase(say_one_range, set%polish)
+         do d = 1, size(set%drives)
+            associate (own => set%parts(set%drives(d)%part))
+               name = drive_name(own, own%drives(set%drives(d)%number))
+            end associate
+            call add_drive(d, 'range.min', heads_of(name, word//' MIN'))
+            call add_drive(d, 'range.max', heads_of(name, word//' MAX'))
+            call add_headed('range.turns.'//trim(drives(d)), name, phrase(say_whole_turns, set%polish))
          end do
       end subroutine add_ranges
    end function new_summary
@@ -267,7 +258,7 @@ contains
          return
       end if
       r%flagged = r%flagged + 1
-      do c = 1, size(a%now%motions)
+      do c = 1, a%now%count
          associate (q => a%now%motions(c))
             if (r%mark == mark_none .and. q%mark /= mark_none) then
                r%mark = q%mark
@@ -276,25 +267,27 @@ contains
             end if
             if (r%limit%kind /= 0 .or. .not. allocated(q%diagnostics)) cycle
             i = findloc(q%diagnostics%kind, diagnostic_limit, dim=1)
-            if (i > 0) r%limit = in_set(q%diagnostics(i), a%now%parts%list(c))
+            if (i == 0) cycle
+            r%limit = q%diagnostics(i)
+            r%limit%part = c
          end associate
       end do
    end subroutine note_flag
 
-   !> Fills the cells of `r`, that of the variant `m`, after its last instant; `asked`: the answers to its cards.
-   subroutine fill_row(s, m, asked, r)
+   !> Fills the cells of `r`, that of the variant `set`, after its last instant; `asked`: the answers to its cards.
+   subroutine fill_row(s, set, asked, r)
       type(summary_t), intent(in) :: s
-      type(mechanism_t), intent(in) :: m
+      class(set_t), intent(in) :: set
       type(answers_t), intent(in) :: asked
       type(variant_row_t), intent(inout) :: r
-      integer :: n, i, which
+      integer :: n, i, q, which
 
       n = s%numbers + 1
       call next(cell_t(cell_count, real(r%solved, wp)))
       call next(cell_t(cell_count, real(r%flagged, wp)))
       if (r%mark /= mark_none) then
          call next(cell_t(cell_number, r%t))
-         call next(drive_cell(m, min(1, size(m%drives)), r%t))
+         call next(drive_cell(set, min(1, size(set%drives)), r%t))
          call next(cell_t(cell_word, word=marks(r%mark)))
       else
          n = n + 3
@@ -303,26 +296,29 @@ contains
       if (r%limit%kind /= 0) then
          r%cells(n + 1) = cell_t(cell_number, r%limit%t)
          if (r%limit%drive > 0) then
-            r%cells(n + 2) = cell_t(cell_word, word=drive_name(m, m%drives(r%limit%drive)))
+            associate (own => set%parts(r%limit%part))
+               r%cells(n + 2) = cell_t(cell_word, word=drive_name(own, own%drives(r%limit%drive)))
+            end associate
             r%cells(n + 3) = cell_t(cell_number, r%limit%value)
             if (r%limit%is_pole) r%cells(n + 3) = cell_t(cell_unbounded, sign(1.0_wp, r%limit%value))
-            if (r%limit%is_angle .and. m%degrees) r%cells(n + 3)%value = in_degrees(r%limit%value)
+            if (r%limit%is_angle .and. set%degrees) r%cells(n + 3)%value = in_degrees(r%limit%value)
          end if
       end if
       n = n + 3
       if (r%rejected /= '') return
-      if (m%ranges) then
-         call take_ranges(asked%ranges, r%cells(n + 1:n + 3*size(m%drives)))
-         n = n + 3*size(m%drives)
+      if (set%ranges) then
+         call take_ranges(set, asked%ranges, r%cells(n + 1:n + 3*size(set%drives)))
+         n = n + 3*size(set%drives)
       end if
-      if (m%assemblies) call next(cell_t(merge(cell_none, cell_count, asked%assemblies < 0), &
+      if (set%assemblies) call next(cell_t(merge(cell_none, cell_count, asked%assemblies < 0), &
          real(asked%assemblies, wp)))
-      if (m%proves) call next(cell_t(cell_count, real(r%unproved, wp)))
+      if (set%proves) call next(cell_t(cell_count, real(r%unproved, wp)))
       do i = 1, size(s%extremes%columns)
          associate (c => s%extremes%columns(i))
+            q = findloc(asked%extremes%asked, c%request, dim=1)
             do which = least, greatest
-               call take_extreme(m, asked%extremes%found(which, c%coordinate, c%order, c%request), which, &
-                  s%drives(c%request), r%cells(n + 1:n + 3))
+               call take_extreme(set, asked%extremes%found(which, c%coordinate, c%order, q), which, &
+                  first_drive(set, c%request), r%cells(n + 1:n + 3))
                n = n + 3
             end do
          end associate
@@ -340,8 +336,8 @@ contains
    end subroutine fill_row
 
    !> The cells of the extreme `e`: value, time, and the value of drive number `d` there.
-   subroutine take_extreme(m, e, which, d, cells)
-      type(mechanism_t), intent(in) :: m
+   subroutine take_extreme(set, e, which, d, cells)
+      class(set_t), intent(in) :: set
       type(extreme_t), intent(in) :: e
       integer, intent(in) :: which, d
       type(cell_t), intent(inout) :: cells(3)
@@ -350,31 +346,35 @@ contains
       cells(1) = cell_t(cell_number, e%value, e%error)
       if (.not. e%has_bound) cells(1) = cell_t(cell_unbounded, outward(which))
       cells(2) = cell_t(cell_number, e%t)
-      cells(3) = drive_cell(m, d, e%t)
+      cells(3) = drive_cell(set, d, e%t)
    end subroutine take_extreme
 
    !> The value of drive number `d` (0: none) at the time `t`.
-   type(cell_t) function drive_cell(m, d, t) result(cell)
-      type(mechanism_t), intent(in) :: m
+   type(cell_t) function drive_cell(set, d, t) result(cell)
+      class(set_t), intent(in) :: set
       integer, intent(in) :: d
       real(wp), intent(in) :: t
       real(wp) :: f(3)
 
       if (d == 0) return
-      cell = cell_t(cell_unbounded, sign(1.0_wp, pole_value(m%drives(d), m%t0)))
-      if (abs(t) <= 0.0_wp .and. abs(pole_value(m%drives(d), m%t0)) > 0.0_wp) return
-      f = drive_motion(new_law(m%drives(d)), t)
-      cell = cell_t(cell_number, f(1))
+      associate (drive => set%parts(set%drives(d)%part)%drives(set%drives(d)%number))
+         cell = cell_t(cell_unbounded, sign(1.0_wp, pole_value(drive, set%t0)))
+         if (abs(t) <= 0.0_wp .and. abs(pole_value(drive, set%t0)) > 0.0_wp) return
+         f = drive_motion(new_law(drive), t)
+         cell = cell_t(cell_number, f(1))
+      end associate
    end function drive_cell
 
-   !> The cells of all ranges: limits, and the turns after which the motion closes.
-   subroutine take_ranges(list, cells)
+   !> The cells of all ranges, three for each drive of `set`: limits, and the turns after which the motion closes.
+   subroutine take_ranges(set, list, cells)
+      class(set_t), intent(in) :: set
       type(range_t), intent(in) :: list(:)
       type(cell_t), intent(inout) :: cells(:)
       integer :: i, side
 
       do i = 1, size(list)
-         associate (n => 3*(list(i)%drive - 1))
+         associate (n => 3*(findloc(set%drives%part == list(i)%part .and. set%drives%number == list(i)%drive, .true., &
+                                    dim=1) - 1))
             do side = low, high
                if (list(i)%has_limit(side)) cells(n + side) = cell_t(cell_number, list(i)%limit(side)%value)
             end do

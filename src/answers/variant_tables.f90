@@ -2,7 +2,8 @@
 module variant_tables
    use kinds, only: wp
    use planar, only: in_degrees
-   use mechanism, only: mechanism_t
+   use mechanism, only: settings_t
+   use independent, only: set_t
    use motion, only: mark_none
    use listing, only: words_of_mark
    use listing_layout, only: layout_t, line_length, put_folded, power_text, unit_of
@@ -42,7 +43,7 @@ contains
    subroutine summary_row(o, s, m, r)
       type(output_t), intent(inout) :: o
       type(summary_t), intent(in) :: s
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
       type(variant_row_t), intent(in) :: r
       integer :: i
 
@@ -74,7 +75,7 @@ contains
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(summary_t), intent(in) :: s
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
       type(variant_row_t), intent(in) :: r
       character(:), allocatable :: line, item
       integer :: i
@@ -129,11 +130,11 @@ contains
    end function head_text
 
    !> The lines of the row `r`, and below them why there is not all of it.
-   subroutine put_variant_row(o, l, s, m, r)
+   subroutine put_variant_row(o, l, s, set, r)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(summary_t), intent(in) :: s
-      type(mechanism_t), intent(in) :: m
+      class(set_t), intent(in) :: set
       type(variant_row_t), intent(in) :: r
       integer, allocatable :: starts(:)
       integer :: n, i
@@ -143,22 +144,23 @@ contains
       do n = 1, size(starts) - 1
          line = right(whole(r%number), number_length)
          do i = starts(n), starts(n + 1) - 1
-            if (s%columns(i)%printed) line = line//right(cell_text(l, m, s%columns(i), r%cells(i)), width(s%columns(i)))
+            if (s%columns(i)%printed) &
+               line = line//right(cell_text(l, set, s%columns(i), r%cells(i)), width(s%columns(i)))
          end do
          call put(o, line)
       end do
       if (r%rejected /= '') call put_folded(o, ' *** ', r%rejected)
       if (r%limit%kind /= 0) then
-         call put_diagnostics(o, m, [r%limit])
+         call put_diagnostics(o, set%parts(r%limit%part), [r%limit])
       else if (r%mark /= mark_none) then
-         call put(o, ' *** '//words_of_mark(r%mark, r%singularity, m%polish))
+         call put(o, ' *** '//words_of_mark(r%mark, r%singularity, set%polish))
       end if
    end subroutine put_variant_row
 
    !> The last line of a set of variants.
    subroutine put_variants_end(o, m)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
 
       call put(o, '')
       call put(o, ' '//phrase(say_end, m%polish)//' '//whole(m%set_number)//':  '//phrase(say_variants, m%polish)//' ' &
@@ -167,13 +169,13 @@ contains
    end subroutine put_variants_end
 
    !> Of a set with tolerances but no tables of its variants: where their shares are to be had.
-   subroutine put_note_of_shares(o, m)
+   subroutine put_note_of_shares(o, s)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
+      class(set_t), intent(in) :: s
 
-      if (.not. allocated(m%tolerances)) return
+      if (.not. s%largest_tolerance > 0.0_wp) return
       call put(o, '')
-      call put(o, ' --- '//phrase(say_shares_elsewhere, m%polish))
+      call put(o, ' --- '//phrase(say_shares_elsewhere, s%polish))
    end subroutine put_note_of_shares
 
    !> (lines + 1) The first column of each line, all of which begin with column 1, and one more than the last of all.
@@ -204,7 +206,7 @@ contains
    !> A cell in the listing, without blanks.
    function cell_text(l, m, c, cell) result(text)
       type(layout_t), intent(in) :: l
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
       type(summary_column_t), intent(in) :: c
       type(cell_t), intent(in) :: cell
       character(:), allocatable :: text

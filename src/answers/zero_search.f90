@@ -53,7 +53,7 @@ contains
       real(wp) :: error(3, 0:2, 1)
 
       sample%t = t
-      associate (part => s%now%parts%part(c%request))
+      associate (part => s%now%rows(c%request)%part)
          if (present(with_errors)) then
             call rows_at(s, part, [c%request], t, row, sample%exists, with_errors, error)
             sample%error = error(c%column, :, 1)

@@ -3,10 +3,9 @@
 module branch_requests
    use kinds, only: wp
    use mechanism, only: mechanism_t, branch_request_t
-   use motion, only: diagnostic_t, diagnostic_unused
    implicit none
    private
-   public :: branch_requests_t, new_branch_requests, decide, unused
+   public :: branch_requests_t, new_branch_requests, decide
 
    !> The listing gives the time of a change point to six digits; so may a card.
    real(wp), parameter :: digits_of_time = 1.0e-5_wp
@@ -86,20 +85,4 @@ contains
          end associate
       end do
    end function card_for
-
-   !> What is to be said of the cards for which there was no change point.
-   pure function unused(c) result(list)
-      type(branch_requests_t), intent(in) :: c
-      type(diagnostic_t), allocatable :: list(:)
-      type(diagnostic_t) :: r
-      integer :: i
-
-      allocate (list(0))
-      do i = 1, size(c%cards)
-         if (c%used(i)) cycle
-         r = diagnostic_t(kind=diagnostic_unused, t=c%cards(i)%t)
-         r%links(1) = c%cards(i)%link
-         list = [list, r]
-      end do
-   end function unused
 end module branch_requests

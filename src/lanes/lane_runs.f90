@@ -84,7 +84,7 @@ contains
    subroutine begin_answers(r)
       type(lane_run_t), intent(inout) :: r
 
-      call new_answers(r%m, r%s, .false., r%asked)
+      call new_answers(r%s, .false., r%asked)
       if (r%asked%extremes_asked) r%watch = new_watch(r%asked%extremes)
       r%at = -1
       r%counted = -1
@@ -280,7 +280,7 @@ contains
          if (starts .and. k == first) then
             call note_start(r%asked%extremes, r%s)
          else
-            call take_instant(r%asked, r%m, r%s, k, .true.)
+            call take_instant(r%asked, r%s, k, .true.)
          end if
          r%noted = k
          r%at = k
@@ -300,7 +300,7 @@ contains
       associate (asked => r%asked%extremes%asked, now => r%s%now)
          if (.not. allocated(r%rows)) allocate (r%rows(size(asked)))
          do i = 1, size(asked)
-            call find_row(now%own(1), now%motions(1), now%own(1)%requests(now%parts%number(asked(i))), r%rows(i))
+            call find_row(now%parts(1), now%motions(1), now%parts(1)%requests(asked(i)), r%rows(i))
          end do
       end associate
       call look_on(r%watch, r%asked%extremes, r%rows, steps)
@@ -369,7 +369,7 @@ contains
          end do
          call e%get_motion(r%s%now%motions(1), finite)
          turned = .not. finite &
-            .or. is_in_doubt(r%s%estimators(1)%sizes, r%s%now%own(1), r%s%now%motions(1), e)
+            .or. is_in_doubt(r%s%estimators(1)%sizes, r%s%now%parts(1), r%s%now%motions(1), e)
       end select
       if (turned) return
       call show_rows(r, steps)

@@ -1,79 +1,145 @@
 !> The independent mechanisms of a set: links that pairs or drives join, but not through the ground. None of them acts
-!> on another: each is solved as a set of its own, in its own numbers and its own lengths.
+!> on another: each is solved as a mechanism of its own, in its own numbers and its own lengths. What the set keeps are
+!> its settings, and where its rows and drives are, in the order of the cards.
 module independent
-   use grouping, only: sorted_t, sorted, sorted_numbers, members, once, joined
-   use mechanism, only: mechanism_t, tolerance_t, pair_links, drive_links, request_links, drive_relangle, &
-      driven_kinds, request_link, request_point, request_pair, request_pole, request_curve, number_ground, number_pair
-   use scales, only: characteristic_length, characteristic_rate
+   use grouping, only: sorted, sorted_numbers, sorted_t, members, once, joined
+   use kinds, only: wp
+   use mechanism, only: settings_t, mechanism_t, request_t, tolerance_t, pair_links, drive_links, request_links, &
+      drive_relangle, driven_kinds, request_link, request_point, request_pair, request_pole, request_curve, &
+      number_ground, number_pair
+   use scales, only: characteristic_length, characteristic_rate, relative_tolerance
    implicit none
    private
-   public :: part_t, parts_t, find_parts, part_of_links, mechanism_of
+   public :: set_t, member_t, part_t, divide, take_as_one, mechanism_of, part_of_links, &
+      request_of, is_printed, first_drive
 
-   !> The members of a part by their numbers in the whole set, increasing; the place in the list is the number within
-   !> the part. A BRANCH card without a link is for every part.
+   !> A row or drive of a set: the number of its part, and its number there.
+   type :: member_t
+      integer :: part = 1, number = 0
+   end type member_t
+
+   !> The numbers in the deck of what a part has, increasing; the place in the list is the number in the part.
    type :: part_t
-      !> Their numbers in the set.
       integer, allocatable :: links(:), points(:), pairs(:), drives(:), requests(:), branch_requests(:)
    end type part_t
 
-   !> The parts of a set. A set that is one mechanism has `count` 1, and nothing else is allocated.
-   type :: parts_t
-      integer :: count = 1                        !< of independent mechanisms, the ground apart
-      type(part_t), allocatable :: list(:)        !< (count)
-      integer, allocatable :: part(:), number(:)  !< (requests) the part, 0: the ground's; the number within the part
-   end type parts_t
+   !> A set, divided. Of several mechanisms the ground is a part too, number 0, with the rows that are about it alone.
+   type, extends(settings_t) :: set_t
+      integer :: count = 1                          !< of independent mechanisms
+      type(mechanism_t), allocatable :: parts(:)    !< (1), or (0:count)
+      type(member_t), allocatable :: rows(:), drives(:)   !< in the order of the cards
+      type(part_t), allocatable :: cards(:)         !< (parts) their links alone, for pictures
+      real(wp) :: largest_tolerance = 0.0_wp        !< as a part of the whole's sizes; 0: no number has a tolerance
+   end type set_t
 
 contains
 
-   !> Finds the parts `p` of the set `m`, and makes each a set of its own: `own` (parts), of size 0 where there is one
-   !> part. A part has the ground links, and their points, that its pairs, drives and requests use. Time and memory grow
-   !> in proportion to the deck.
-   subroutine find_parts(m, p, own)
+   !> Divides the set `m` into its parts: `s`. A part has the ground links, and their points, that its pairs, drives and
+   !> rows use. A BRANCH card without a link is for every part. Time and memory grow in proportion to the deck.
+   subroutine divide(m, s)
       type(mechanism_t), intent(in) :: m
-      type(parts_t), intent(out) :: p
-      type(mechanism_t), allocatable, intent(out) :: own(:)
-      integer :: link_part(size(m%links)), i, c
-      integer, allocatable :: pair_part(:), drive_part(:), user(:), used(:)
-      type(sorted_t) :: links, points, pairs, drives, requests
+      type(set_t), intent(out) :: s
+      type(sorted_t) :: links, points, pairs, drives, rows
+      type(part_t) :: place
+      integer, allocatable :: pair_part(:), drive_part(:), row_part(:), user(:), used(:)
+      integer :: link_part(size(m%links)), ground, i, c
 
       link_part = part_of_links(m)
-      p%count = max(1, maxval([0, link_part]))
-      if (p%count == 1) then
-         allocate (own(0))
+      s%count = max(1, maxval([0, link_part]))
+      if (s%count == 1) then
+         call take_as_one(m, s)
          return
       end if
-      allocate (own(p%count), p%list(p%count))
-      pair_part = [(maxval(link_part(pair_links(m, m%pairs(i)))), i=1, size(m%pairs))]
-      drive_part = [(maxval(link_part(drive_links(m, m%drives(i)))), i=1, size(m%drives))]
-      p%part = [(maxval(link_part(request_links(m, m%requests(i)))), i=1, size(m%requests))]
-      pairs = sorted(pair_part, p%count)
-      drives = sorted(drive_part, p%count)
-      requests = sorted(p%part, p%count)
+      call take_settings(m, s)
+      ground = s%count + 1
+      pair_part = [(part_of(pair_links(m, m%pairs(i))), i=1, size(m%pairs))]
+      drive_part = [(part_of(drive_links(m, m%drives(i))), i=1, size(m%drives))]
+      row_part = [(part_of(request_links(m, m%requests(i))), i=1, size(m%requests))]
+      pairs = sorted(pair_part, ground)
+      drives = sorted(drive_part, ground)
+      rows = sorted(row_part, ground)
       ! Each point, and each link, with the part that it belongs to or that uses it.
-      associate (curves => pack([(i, i=1, size(m%requests))], m%requests%kind == request_curve))
-         used = [(i, i=1, size(m%points)), m%pairs%point_i, m%pairs%point_j, m%requests(curves)%subject]
-         user = [link_part(m%points%link), pair_part, pair_part, p%part(curves)]
+      associate (of_points => pack([(i, i=1, size(m%requests))], &
+                                   m%requests%kind == request_point .or. m%requests%kind == request_curve))
+         used = [(i, i=1, size(m%points)), m%pairs%point_i, m%pairs%point_j, m%requests(of_points)%subject]
+         user = [link_part(m%points%link), pair_part, pair_part, row_part(of_points)]
       end associate
-      points = sorted_numbers(used, user, p%count)
+      points = sorted_numbers(used, user, ground)
       used = [(i, i=1, size(m%links)), m%points(used)%link, (drive_links(m, m%drives(i)), i=1, size(m%drives)), &
          (request_links(m, m%requests(i)), i=1, size(m%requests))]
       user = [link_part, user, (spread(drive_part(i), 1, 3), i=1, size(m%drives)), &
-         (spread(p%part(i), 1, 3), i=1, size(m%requests))]
-      links = sorted_numbers(used, user, p%count)
-      allocate (p%number(size(m%requests)), source=0)
-      do c = 1, p%count
-         associate (part => p%list(c))
-            part%links = once(members(links, c))
-            part%points = once(members(points, c))
-            part%pairs = members(pairs, c)
-            part%drives = members(drives, c)
-            part%requests = members(requests, c)
-            p%number(part%requests) = [(i, i=1, size(part%requests))]
-            part%branch_requests = branch_requests_of(m, link_part, c)
-         end associate
-         own(c) = mechanism_of(m, p%list(c))
+         (spread(row_part(i), 1, 3), i=1, size(m%requests))]
+      links = sorted_numbers(used, user, ground)
+
+      allocate (s%parts(0:s%count), s%cards(0:s%count), s%rows(size(m%requests)), s%drives(size(m%drives)))
+      place = no_places(m)
+      do c = 1, ground
+         call take_part(modulo(c, ground))
       end do
-   end subroutine find_parts
+
+   contains
+
+      !> The part of what has these `links`.
+      pure integer function part_of(links)
+         integer, intent(in) :: links(:)
+
+         part_of = maxval(link_part(links))
+         if (part_of == 0) part_of = ground
+      end function part_of
+
+      !> Makes part number `k`, group `c`.
+      subroutine take_part(k)
+         integer, intent(in) :: k
+         type(part_t) :: part
+         integer :: i
+
+         part%links = once(members(links, c))
+         part%points = once(members(points, c))
+         part%pairs = members(pairs, c)
+         part%drives = members(drives, c)
+         part%requests = members(rows, c)
+         part%branch_requests = branch_requests_of(m, link_part, c)
+         s%rows(part%requests) = [(member_t(k, i), i=1, size(part%requests))]
+         s%drives(part%drives) = [(member_t(k, i), i=1, size(part%drives))]
+         call take_mechanism(m, part, place, s%parts(k))
+         call move_alloc(part%links, s%cards(k)%links)
+      end subroutine take_part
+   end subroutine divide
+
+   !> Takes all of `m` as the one part of `s`.
+   subroutine take_as_one(m, s)
+      type(mechanism_t), intent(in) :: m
+      type(set_t), intent(out) :: s
+      integer :: i
+
+      call take_settings(m, s)
+      allocate (s%parts(1), s%cards(1))
+      s%cards(1)%links = [(i, i=1, size(m%links))]
+      s%rows = [(member_t(1, i), i=1, size(m%requests))]
+      s%drives = [(member_t(1, i), i=1, size(m%drives))]
+      associate (own => s%parts(1))
+         own%settings_t = m%settings_t
+         own%links = m%links
+         own%points = m%points
+         own%pairs = m%pairs
+         own%drives = m%drives
+         own%requests = m%requests
+         allocate (own%branch_requests(0))
+         if (allocated(m%branch_requests)) own%branch_requests = m%branch_requests
+         own%branch_requests%card = [(i, i=1, size(own%branch_requests))]
+         if (allocated(m%tolerances)) own%tolerances = m%tolerances
+         call scale_centres(own)
+      end associate
+   end subroutine take_as_one
+
+   !> The settings of `m`.
+   subroutine take_settings(m, s)
+      type(mechanism_t), intent(in) :: m
+      type(set_t), intent(inout) :: s
+
+      s%settings_t = m%settings_t
+      if (allocated(m%tolerances)) s%largest_tolerance = relative_tolerance(m)
+   end subroutine take_settings
 
    !> (links) The number of the part of each link, in the order of the deck; 0 of a ground link.
    pure function part_of_links(m) result(part)
@@ -87,7 +153,7 @@ contains
       end associate
    end function part_of_links
 
-   !> The BRANCH cards of part `c`.
+   !> The BRANCH cards of part `c`; none of the ground.
    pure function branch_requests_of(m, link_part, c) result(list)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: link_part(:), c
@@ -104,94 +170,142 @@ contains
       end do
    end function branch_requests_of
 
-   !> The `part` of `m` as a set of its own, without its cards.
+   !> The `part` of `m` as a mechanism of its own, without its cards.
    function mechanism_of(m, part) result(own)
       type(mechanism_t), intent(in) :: m
       type(part_t), intent(in) :: part
       type(mechanism_t) :: own
+      type(part_t) :: place
+
+      place = no_places(m)
+      call take_mechanism(m, part, place, own)
+   end function mechanism_of
+
+   !> Zeros, one for each link, point, pair and drive of `m`.
+   pure function no_places(m) result(place)
+      type(mechanism_t), intent(in) :: m
+      type(part_t) :: place
+
+      allocate (place%links(size(m%links)), place%points(size(m%points)), place%pairs(size(m%pairs)), &
+         place%drives(size(m%drives)), source=0)
+   end function no_places
+
+   !> As `mechanism_of`; `place` is what `no_places` has made, before and after. Reason: of many parts each takes the
+   !> time of its own size alone.
+   subroutine take_mechanism(m, part, place, own)
+      type(mechanism_t), intent(in) :: m
+      type(part_t), intent(in) :: part
+      type(part_t), intent(inout) :: place
+      type(mechanism_t), intent(out) :: own
       integer :: i
 
+      place%links(part%links) = [(i, i=1, size(part%links))]
+      place%points(part%points) = [(i, i=1, size(part%points))]
+      place%pairs(part%pairs) = [(i, i=1, size(part%pairs))]
+      place%drives(part%drives) = [(i, i=1, size(part%drives))]
       own%settings_t = m%settings_t
       own%links = m%links(part%links)
       own%points = m%points(part%points)
+      own%points%link = place%links(own%points%link)
       own%pairs = m%pairs(part%pairs)
+      own%pairs%point_i = place%points(own%pairs%point_i)
+      own%pairs%point_j = place%points(own%pairs%point_j)
+
       own%drives = m%drives(part%drives)
+      do i = 1, size(own%drives)
+         associate (d => own%drives(i))
+            d%subject = place_of(driven_kinds(d%kind), d%subject)
+            if (d%kind == drive_relangle) d%second = place%links(d%second)
+         end associate
+      end do
       own%requests = m%requests(part%requests)
+      do i = 1, size(own%requests)
+         associate (request => own%requests(i))
+            request%subject = place_of(request%kind, request%subject)
+            if (request%second > 0) request%second = place%links(request%second)
+         end associate
+      end do
       allocate (own%branch_requests(size(part%branch_requests)))
       do i = 1, size(part%branch_requests)
          associate (request => own%branch_requests(i))
             request = m%branch_requests(part%branch_requests(i))
-            if (request%link > 0) request%link = place_in(part%links, request%link)
+            request%card = part%branch_requests(i)
+            if (request%link > 0) request%link = place%links(request%link)
          end associate
       end do
-      own%points%link = [(place_in(part%links, own%points(i)%link), i=1, size(own%points))]
-      own%pairs%point_i = [(place_in(part%points, own%pairs(i)%point_i), i=1, size(own%pairs))]
-      own%pairs%point_j = [(place_in(part%points, own%pairs(i)%point_j), i=1, size(own%pairs))]
-      do i = 1, size(own%drives)
-         associate (d => own%drives(i))
-            d%subject = number_in(part, driven_kinds(d%kind), d%subject)
-            if (d%kind == drive_relangle) d%second = place_in(part%links, d%second)
-         end associate
-      end do
-      do i = 1, size(own%requests)
-         own%requests(i)%subject = number_in(part, own%requests(i)%kind, own%requests(i)%subject)
-         if (own%requests(i)%second > 0) own%requests(i)%second = place_in(part%links, own%requests(i)%second)
-      end do
-      if (allocated(m%tolerances)) own%tolerances = tolerances_of(m%tolerances, part)
+
+      if (allocated(m%tolerances)) call take_tolerances()
+      call scale_centres(own)
+      place%links(part%links) = 0
+      place%points(part%points) = 0
+      place%pairs(part%pairs) = 0
+      place%drives(part%drives) = 0
+
+   contains
+
+      !> The number in the part of the link, point or pair (`kind`: request_link, ...) number `i` of the deck.
+      pure integer function place_of(kind, i)
+         integer, intent(in) :: kind, i
+
+         select case (kind)
+         case (request_link, request_pole)
+            place_of = place%links(i)
+         case (request_point, request_curve)
+            place_of = place%points(i)
+         case default
+            place_of = place%pairs(i)
+         end select
+      end function place_of
+
+      !> The tolerances of numbers that are in the part.
+      subroutine take_tolerances()
+         integer, parameter :: kinds(number_ground:number_pair) = [request_link, request_point, request_point, &
+            request_pair]
+
+         own%tolerances = m%tolerances
+         do i = 1, size(own%tolerances)
+            associate (one => own%tolerances(i))
+               if (one%kind > number_pair) then
+                  one%subject = place%drives(one%subject)
+               else
+                  one%subject = place_of(kinds(one%kind), one%subject)
+               end if
+            end associate
+         end do
+         own%tolerances = pack(own%tolerances, own%tolerances%subject > 0)
+      end subroutine take_tolerances
+   end subroutine take_mechanism
+
+   !> Gives the instant centres and centres of curvature that are asked of `own` its characteristic length and rate.
+   pure subroutine scale_centres(own)
+      type(mechanism_t), intent(inout) :: own
+
       if (.not. any(own%requests%kind >= request_pole)) return
       own%requests%length = characteristic_length(own)
       own%requests%rate = characteristic_rate(own, own%requests(1)%length)
-   end function mechanism_of
+   end subroutine scale_centres
 
-   !> Those of `list` whose numbers are in `part`, in the numbers of the part.
-   pure function tolerances_of(list, part) result(own)
-      type(tolerance_t), intent(in) :: list(:)
-      type(part_t), intent(in) :: part
-      type(tolerance_t), allocatable :: own(:)
-      integer, parameter :: kinds(number_ground:number_pair) = [request_link, request_point, request_point, &
-         request_pair]
-      integer :: i
+   !> What row number `i` of `s` is asked for.
+   pure type(request_t) function request_of(s, i)
+      class(set_t), intent(in) :: s
+      integer, intent(in) :: i
 
-      own = list
-      do i = 1, size(own)
-         associate (k => list(i)%kind, n => list(i)%subject)
-            if (k > number_pair) own(i)%subject = place_in(part%drives, n)
-            if (k <= number_pair) own(i)%subject = number_in(part, kinds(k), n)
-         end associate
-      end do
-      own = pack(own, own%subject > 0)
-   end function tolerances_of
+      request_of = s%parts(s%rows(i)%part)%requests(s%rows(i)%number)
+   end function request_of
 
-   !> The number within `part` of the link, point or pair (`kind`: request_link, ...) number `i` of the whole set.
-   pure integer function number_in(part, kind, i)
-      type(part_t), intent(in) :: part
-      integer, intent(in) :: kind, i
+   !> Whether any row of `s` is printed at instants.
+   pure logical function is_printed(s)
+      class(set_t), intent(in) :: s
+      integer :: c
 
-      select case (kind)
-      case (request_link, request_pole)
-         number_in = place_in(part%links, i)
-      case (request_point, request_curve)
-         number_in = place_in(part%points, i)
-      case default
-         number_in = place_in(part%pairs, i)
-      end select
-   end function number_in
+      is_printed = any([(any(s%parts(c)%requests%every > 0), c=lbound(s%parts, 1), s%count)])
+   end function is_printed
 
-   !> The place of `x` in the increasing `list`, by bisection; 0: it is not there.
-   pure integer function place_in(list, x) result(low)
-      integer, intent(in) :: list(:), x
-      integer :: high, middle
+   !> The number among all drives of `s` of the first one of the mechanism that row number `i` is about; 0: it has none.
+   pure integer function first_drive(s, i)
+      class(set_t), intent(in) :: s
+      integer, intent(in) :: i
 
-      low = 1
-      high = size(list)
-      do while (low < high)
-         middle = (low + high)/2
-         if (list(middle) < x) then
-            low = middle + 1
-         else
-            high = middle
-         end if
-      end do
-      if (all(list(low:high) /= x)) low = 0
-   end function place_in
+      first_drive = findloc(s%drives%part, s%rows(i)%part, dim=1)
+   end function first_drive
 end module independent

@@ -147,6 +147,7 @@ module mechanism
    type :: branch_request_t
       integer :: link = 0                    !< its number; 0: any
       real(wp) :: t = 0.0_wp                 !< time
+      integer :: card = 0                    !< of a part: its number among the BRANCH cards of the set
    end type branch_request_t
 
    !> The tolerance of a number on a card.
@@ -184,7 +185,7 @@ module mechanism
       real(wp), allocatable :: at(:)         !< the instants of the AT cards, which come after those of TIME
    end type settings_t
 
-   !> A set of computations.
+   !> A set of computations, or one of its independent mechanisms: that has the settings of its set, and no title.
    type, extends(settings_t) :: mechanism_t
       character(title_length) :: title = ''  !< of the card TITLE
       type(link_t), allocatable :: links(:)
@@ -202,14 +203,14 @@ contains
 
    !> The number of instants of `m`.
    pure integer function instant_count(m)
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
 
       instant_count = m%steps + 1 + size(m%at)
    end function instant_count
 
    !> Instant number `k` = 0, 1, ..., instant_count - 1. The last one of TIME is exactly t1.
    pure real(wp) function instant(m, k) result(t)
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
       integer, intent(in) :: k
 
       if (k > m%steps) then
@@ -223,7 +224,7 @@ contains
 
    !> The `first` and the `last` of all instants of `m` in time; the other way round where there are none.
    pure subroutine find_instants(m, first, last)
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
       real(wp), intent(out) :: first, last
 
       first = minval(m%at)

@@ -39,7 +39,8 @@ module motion
    !> One diagnostic. Lengths are in the deck's unit, angles in radians; 0 stands for no pair, drive or link.
    type :: diagnostic_t
       integer :: kind = 0                      !< diagnostic_inconsistent, ...
-      integer :: pair = 0, drive = 0           !< their numbers in the set
+      integer :: part = 1                      !< the independent mechanism, in whose numbers it is
+      integer :: pair = 0, drive = 0           !< numbers of a pair and a drive
       integer :: links(max_links) = 0          !< the numbers of links
       integer :: more = 0                      !< links for which there is no room
       integer :: equations = 1                 !< diagnostic_redundant: number of equations

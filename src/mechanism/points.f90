@@ -2,8 +2,8 @@
 !> curvature.
 module points
    use kinds, only: wp, label_length
-   use mechanism, only: mechanism_t, request_t, pair_t, pair_prismatic, request_link, request_point, request_pair, &
-      request_pole, request_curve, instant_count, request_links
+   use mechanism, only: settings_t, mechanism_t, request_t, pair_t, pair_prismatic, request_link, request_point, &
+      request_pair, request_pole, request_curve, instant_count, request_links
    use names, only: subject_name
    use instant_centres, only: centre_t, pole_of, curve_of, seen_from, centre_finite, centre_infinite, centre_resting
    use planar, only: pi, direction, rotated, quarter_turn, point_of
@@ -39,7 +39,7 @@ contains
 
    !> Whether `request` is printed at instant number `k` (0, 1, ...): every `every`-th, the first and the last, if any.
    pure logical function is_due(m, request, k)
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
       type(request_t), intent(in) :: request
       integer, intent(in) :: k
 
@@ -49,28 +49,28 @@ contains
 
    !> Whether the listing has a row of `request` at instant number `k`: as it is printed, or without a card for it.
    pure logical function is_listed(m, request, k)
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
       type(request_t), intent(in) :: request
       integer, intent(in) :: k
 
       is_listed = request%listed .or. is_due(m, request, k)
    end function is_listed
 
-   !> The different values of `every` among the requests of `m`.
-   pure function strides(m) result(list)
-      type(mechanism_t), intent(in) :: m
+   !> The different values of `every` among the `requests`.
+   pure function strides(requests) result(list)
+      type(request_t), intent(in) :: requests(:)
       integer, allocatable :: list(:)
       integer :: i
 
       allocate (list(0))
-      do i = 1, size(m%requests)
-         if (all([list, 0] /= m%requests(i)%every)) list = [list, m%requests(i)%every]
+      do i = 1, size(requests)
+         if (all([list, 0] /= requests(i)%every)) list = [list, requests(i)%every]
       end do
    end function strides
 
    !> Whether any request is printed at instant number `k` (0, 1, ...). `list`: the `strides` of the requests.
    pure logical function any_due(m, list, k)
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
       integer, intent(in) :: list(:), k
 
       any_due = any(mod(k, list) == 0) .or. (k == instant_count(m) - 1 .and. size(list) > 0)

@@ -4,7 +4,7 @@ module scales
    use kinds, only: wp
    use planar, only: point_of
    use drives, only: drive_rate
-   use mechanism, only: mechanism_t, drive_t, pair_prismatic, drive_x, drive_y, drive_slide, plane_origin, &
+   use mechanism, only: settings_t, mechanism_t, drive_t, pair_prismatic, drive_x, drive_y, drive_slide, plane_origin, &
       used_points
    implicit none
    private
@@ -94,7 +94,7 @@ contains
 
    !> The largest |t| of an instant.
    pure real(wp) function latest_time(m) result(t)
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
 
       t = max(abs(m%t0), abs(m%t1), maxval([0.0_wp, abs(m%at)]))
    end function latest_time
@@ -102,7 +102,7 @@ contains
    !> The shortest step from an instant of `m` to the next in the deck's order at another time; the largest number where
    !> there is none.
    pure real(wp) function shortest_step(m) result(step)
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
       real(wp) :: before
       integer :: i
 

@@ -4,10 +4,12 @@
 module csv
    use kinds, only: wp
    use planar, only: in_degrees
-   use mechanism, only: mechanism_t, request_pole, request_curve
+   use mechanism, only: mechanism_t, request_t, request_pole, request_curve
    use motion, only: motion_t, new_motion
    use points, only: row_t, row_of, has_number, is_due
-   use assemblies, only: assemblies_t
+   use assemblies, only: assemblies_t, assembly_t
+   use independent, only: request_of
+   use motion_proof, only: motion_proof_t
    use instant_centres, only: centre_finite, centre_resting
    use known_digits, only: nothing_known
    use sensitivities, only: has_tolerances, worst_case, root_of_squares
@@ -49,12 +51,11 @@ contains
       call put(o, '')
    end subroutine csv_head
 
-   !> The rows of instant number `step` (0, 1, ...) of the motions `s` of `m` that the deck asks for there, with their
+   !> The rows of instant number `step` (0, 1, ...) of the motions `s` that the deck asks for there, with their
    !> errors where these are asked for. `varies`: as in the head. `assemblies` (parts), where they are asked for: those
    !> of the first instant.
-   subroutine csv_instant(o, m, s, step, varies, assemblies)
+   subroutine csv_instant(o, s, step, varies, assemblies)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(in) :: s
       integer, intent(in) :: step
       logical, intent(in), optional :: varies
@@ -63,29 +64,33 @@ contains
       type(row_t) :: row
       real(wp) :: error(3, 0:2)
       logical :: known(3, 0:2), asked
+      type(request_t) :: request
       integer :: i
 
-      start = whole(m%set_number)//','
+      start = whole(s%set_number)//','
       if (present(varies)) then
-         if (varies) start = start//whole(m%variant)//','
+         if (varies) start = start//whole(s%variant)//','
       end if
       start = start//whole(step)//','//full(s%motions(1)%t)//','
       asked = s%errors(1)%asked
       error = 0.0_wp
-      do i = 1, size(m%requests)
-         if (.not. is_due(m, m%requests(i), step)) cycle
-         call find_row_in_set(m, s, i, row)
+      do i = 1, size(s%rows)
+         request = request_of(s, i)
+         if (.not. is_due(s, request, step)) cycle
+         call find_row_in_set(s, i, row)
          known = known_numbers(row, s, i)
-         if (asked) error = error_in_set(m, s, i)
+         if (asked) error = error_in_set(s, i)
          if (row%kind >= request_pole) then
             call add_centre()
             cycle
          end if
          call add_row(kinds_of_row(row%kind), row, numbers_of(row), known, error, marks(row%mark))
-         if (has_tolerances(m, m%requests(i))) call add_spreads(spread_in_set(m, s, i))
-         if (s%parts%part(i) == 0) cycle
-         call add_bound(s%parts%part(i), s%parts%number(i))
-         if (present(assemblies) .and. step == 0) call add_assemblies(s%parts%part(i), s%parts%number(i))
+         associate (c => s%rows(i)%part)
+            if (has_tolerances(s%parts(c), request)) call add_spreads(spread_in_set(s, i))
+            call add_bound(s%parts(c), s%motions(c), s%proofs(c))
+            if (present(assemblies) .and. step == 0 .and. c > 0) &
+               call add_assemblies(s%parts(c), s%motions(c)%origin, assemblies(c)%list)
+         end associate
       end do
 
    contains
@@ -102,14 +107,14 @@ contains
          call add_name(o, kind(:len_trim(kind)))
          call add(o, ',')
          call add_name(o, row%name(:len_trim(row%name)))
-         call add_values(o, row, there .and. known, m%degrees)
+         call add_values(o, row, there .and. known, s%degrees)
          call add(o, ',')
          if (mark == '' .and. any(there .and. .not. known)) then
             call add(o, mark_unknown)
          else
             call add(o, mark(:len_trim(mark)))
          end if
-         if (asked) call add_errors(o, row, there, error, m%degrees)
+         if (asked) call add_errors(o, row, there, error, s%degrees)
          call put(o, '')
       end subroutine add_row
 
@@ -144,33 +149,35 @@ contains
          end do
       end subroutine add_spreads
 
-      !> The bounds of the errors of the row, request number `k` of part `c`, that are proved, if proofs are asked for.
-      subroutine add_bound(c, k)
-         integer, intent(in) :: c, k
+      !> The bounds of the errors of the row of the mechanism `own` that are proved, if proofs are asked for.
+      subroutine add_bound(own, q, proof)
+         type(mechanism_t), intent(in) :: own
+         type(motion_t), intent(in) :: q
+         type(motion_proof_t), intent(in) :: proof
 
-         associate (proof => s%proofs(c))
-            if (.not. proof%taken) return
-            if (proof%is_proved) then
-               call add_other('BOUND', row%known, row_bound(s%own(c), s%motions(c), proof%links, s%own(c)%requests(k)))
-            else
-               call add_other('BOUND', -1, row%value)
-            end if
-         end associate
+         if (.not. proof%taken) return
+         if (proof%is_proved) then
+            call add_other('BOUND', row%known, row_bound(own, q, proof%links, request))
+         else
+            call add_other('BOUND', -1, row%value)
+         end if
       end subroutine add_bound
 
-      !> The row, request number `k` of part `c`, in each assembly at the first instant; none has errors.
-      subroutine add_assemblies(c, k)
-         integer, intent(in) :: c, k
+      !> The row of the mechanism `own` in each assembly at the first instant, of which the `list` is; none has errors.
+      subroutine add_assemblies(own, origin, list)
+         type(mechanism_t), intent(in) :: own
+         real(wp), intent(in) :: origin(2)
+         type(assembly_t), intent(in) :: list(:)
          type(motion_t) :: q
          type(row_t) :: other
          integer :: number
 
-         q = new_motion(size(s%own(c)%links))
+         q = new_motion(size(own%links))
          q%known = 0
-         q%origin = s%motions(c)%origin
-         do number = 1, size(assemblies(c)%list)
-            q%position = assemblies(c)%list(number)%position
-            other = row_of(s%own(c), q, s%own(c)%requests(k))
+         q%origin = origin
+         do number = 1, size(list)
+            q%position = list(number)%position
+            other = row_of(own, q, request)
             call add_row(trim(kinds_of_row(row%kind))//' ASSEMBLY '//whole(number), other, numbers_of(other), &
                all_known, no_errors, '')
          end do

@@ -288,8 +288,8 @@ contains
 
       now = snapshot_of_ground(d)
       now%t = s%motions(1)%t
-      do c = size(s%own), 1, -1
-         associate (links => s%parts%list(c)%links, q => s%motions(c))
+      do c = s%count, 1, -1
+         associate (links => s%cards(c)%links, q => s%motions(c))
             if (q%mark /= mark_none .and. is_own) then
                now%mark = q%mark
                now%singularity = q%singularity
@@ -303,7 +303,7 @@ contains
          end associate
       end do
       do i = 1, size(d%poles)
-         call find_row_in_set(d%m, s, d%poles(i), row)
+         call find_row_in_set(s, d%poles(i), row)
          now%has_centre(i) = has_number(row, 1, 0) .and. all(abs(row%value(:2, :)) < max_place)
          if (now%has_centre(i)) now%centre(:, i) = row%value(:2, 0) - d%origin
       end do
@@ -318,11 +318,11 @@ contains
       type(flag_t) :: flag
       integer :: c
 
-      if (size(d%mark) == 0) d%mark = spread(mark_none, 1, size(s%motions))
+      if (size(d%mark) == 0) d%mark = spread(mark_none, 1, s%count)
       if (is_flagged(s)) d%flagged = d%flagged + 1
       if (is_flagged(s) .and. size(d%flagged_at) < max_flagged) d%flagged_at = [d%flagged_at, now%t]
-      do c = 1, size(s%motions)
-         associate (links => s%parts%list(c)%links, mark => s%motions(c)%mark)
+      do c = 1, s%count
+         associate (links => s%cards(c)%links, mark => s%motions(c)%mark)
             if (mark /= d%mark(c) .and. mark /= mark_none .and. size(d%flags) < max_flags) then
                flag%t = now%t
                flag%mark = mark

@@ -2,14 +2,15 @@
 !> It takes finished data and depends on nothing else: two correct programs print the same bytes.
 module listing
    use kinds, only: wp
-   use mechanism, only: mechanism_t
+   use mechanism, only: settings_t, mechanism_t, request_t
    use motion, only: mark_none, mark_not_converged, mark_singular, mark_inconsistent, singular_unclear, &
       singular_dead, diagnostic_t
    use structure, only: findings_t, group_t, spare_drives_text
    use branch_certificate, only: certificate_counts_t
    use points, only: is_listed, row_t
    use sensitivities, only: has_tolerances
-   use set_motion, only: set_motion_t, is_flagged, has_words, in_set, find_row_in_set, doubt_in_set, spread_in_set
+   use independent, only: set_t, request_of
+   use set_motion, only: set_motion_t, is_flagged, has_words, find_row_in_set, doubt_in_set, spread_in_set
    use listing_layout, only: layout_t, new_layout
    use listing_tables, only: listing_state_t, no_table, put_instant, put_requested, put_spreads
    use listing_diagnostics, only: put_diagnostics, no_position_words, put_singular, put_closure_error, remarks_text
@@ -104,67 +105,66 @@ contains
       end do
    end subroutine put_groups
 
-   !> The tables of instant number `step` (0, 1, ...) of the motions `s` of `m`, as far as the deck asks for them there;
+   !> The tables of instant number `step` (0, 1, ...) of the motions `s`, as far as the deck asks for them there;
    !> digits that rounding leaves open are masked. Then what there is to say of the instant. `table`: as the instant
    !> before has left it; after remarks the next instant has its heads again.
-   subroutine listing_instant(o, l, m, s, step, table)
+   subroutine listing_instant(o, l, s, step, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(in) :: s
       integer, intent(in) :: step
       type(listing_state_t), intent(inout) :: table
       type(row_t) :: row
-      real(wp) :: error(3, 0:2)
-      integer :: i, c, k
+      type(request_t) :: request
+      integer :: i, c
       logical :: begun
 
       begun = .false.
       table%masked = .false.
-      do i = 1, size(m%requests)
-         if (.not. is_listed(m, m%requests(i), step)) cycle
+      do i = 1, size(s%rows)
+         request = request_of(s, i)
+         if (.not. is_listed(s, request, step)) cycle
          if (.not. begun) call put_instant(o, l, s%motions(1)%t, step, table)
          begun = .true.
-         call find_row_in_set(m, s, i, row)
-         error = doubt_in_set(row, s, i)
-         call put_requested(o, l, m, i, row, error, table)
-         if (has_tolerances(m, m%requests(i))) call put_spreads(o, l, m, i, row, spread_in_set(m, s, i), table)
+         call find_row_in_set(s, i, row)
+         associate (d => l%own(s%rows(i)%part))
+            call put_requested(o, l, d, s, request, row, doubt_in_set(row, s, i), table)
+            if (has_tolerances(s%parts(s%rows(i)%part), request)) &
+               call put_spreads(o, l, d, s%polish, request, row, spread_in_set(s, i), table)
+         end associate
       end do
       if (.not. begun .and. is_flagged(s)) call put_instant(o, l, s%motions(1)%t, step, table)
       if (table%masked .or. has_words(s)) table%kind = no_table
-      call put_marks(o, m, s)
-      if (table%masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, m%polish))
-      do c = 1, size(s%motions)
-         if (.not. allocated(s%motions(c)%diagnostics)) cycle
-         call put_diagnostics(o, m, [(in_set(s%motions(c)%diagnostics(k), s%parts%list(c)), k=1, &
-            size(s%motions(c)%diagnostics))])
+      call put_marks(o, s)
+      if (table%masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, s%polish))
+      do c = 1, s%count
+         if (allocated(s%motions(c)%diagnostics)) call put_diagnostics(o, s%parts(c), s%motions(c)%diagnostics)
       end do
    end subroutine listing_instant
 
    !> Why some part of `s` has not all of its motion, each reason once, and of singular positions each with its links.
-   subroutine put_marks(o, m, s)
+   subroutine put_marks(o, s)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(in) :: s
       character(:), allocatable :: line, lines
       integer :: k, i, c
 
       lines = ''
-      do c = 1, size(s%motions)
+      do c = 1, s%count
          if (s%motions(c)%mark /= mark_not_converged) cycle
-         line = ' *** '//no_position_words(m, s%motions(c)%diagnostics)//new_line('a')
+         line = ' *** '//no_position_words(s%parts(c), s%motions(c)%diagnostics)//new_line('a')
          if (index(lines, line) == 0) lines = lines//line
       end do
       if (len(lines) > 0) call put(o, lines(:len(lines) - 1))
       do k = mark_singular, mark_inconsistent
          if (k /= mark_singular) then
-            if (any(s%motions%mark == k)) call put(o, ' *** '//words_of_mark(k, singular_unclear, m%polish))
+            if (any(s%motions%mark == k)) call put(o, ' *** '//words_of_mark(k, singular_unclear, s%polish))
             cycle
          end if
          do i = singular_unclear, singular_dead
-            do c = 1, size(s%motions)
-               if (s%motions(c)%mark == k .and. s%motions(c)%singularity == i) call put_singular(o, m, &
-                  words_of_mark(k, i, m%polish), in_set(s%motions(c)%singular_links, s%parts%list(c)))
+            do c = 1, s%count
+               if (s%motions(c)%mark == k .and. s%motions(c)%singularity == i) call put_singular(o, s%parts(c), &
+                  words_of_mark(k, i, s%polish), s%motions(c)%singular_links)
             end do
          end do
       end do
@@ -183,29 +183,34 @@ contains
    !> The last lines of a set: where equations are redundant, by how much they differ (`closure_error`, in parts of the
    !> characteristic length; negative where none are); `diagnostics`; what is certified of the branches on which the
    !> instants were found; how many instants were `solved` and how many are `flagged`.
-   subroutine listing_end(o, m, solved, flagged, certificate_counts, closure_error, diagnostics)
+   subroutine listing_end(o, s, solved, flagged, certificate_counts, closure_error, diagnostics)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
+      class(set_t), intent(in) :: s
       integer, intent(in) :: solved, flagged
       type(certificate_counts_t), intent(in) :: certificate_counts
       real(wp), intent(in), optional :: closure_error
       type(diagnostic_t), intent(in), optional :: diagnostics(:)
       character(:), allocatable :: end_of
+      integer :: i
 
       call put(o, '')
       if (present(closure_error)) then
-         if (closure_error >= 0.0_wp) call put_closure_error(o, m, closure_error)
+         if (closure_error >= 0.0_wp) call put_closure_error(o, s%polish, closure_error)
       end if
-      if (present(diagnostics)) call put_diagnostics(o, m, diagnostics)
+      if (present(diagnostics)) then
+         do i = 1, size(diagnostics)
+            call put_diagnostics(o, s%parts(diagnostics(i)%part), diagnostics(i:i))
+         end do
+      end if
       associate (c => certificate_counts)
-         call put(o, ' '//phrase(say_continuation, m%polish)//':  '//phrase(say_certified, m%polish)//' ' &
-            //whole(c%followed)//' '//phrase(say_out_of, m%polish)//' '//whole(c%followed + c%uncertain) &
-            //', '//phrase(say_passed, m%polish)//' '//whole(c%passed))
+         call put(o, ' '//phrase(say_continuation, s%polish)//':  '//phrase(say_certified, s%polish)//' ' &
+            //whole(c%followed)//' '//phrase(say_out_of, s%polish)//' '//whole(c%followed + c%uncertain) &
+            //', '//phrase(say_passed, s%polish)//' '//whole(c%passed))
       end associate
-      end_of = ' '//phrase(say_end, m%polish)//' '//whole(m%set_number)
-      if (m%variant > 0) end_of = ' '//phrase(say_end_variant, m%polish)//' '//whole(m%variant)
-      call put(o, end_of//':  '//phrase(say_solved, m%polish)//' '//whole(solved) &
-         //', '//phrase(say_flagged, m%polish)//' '//whole(flagged))
+      end_of = ' '//phrase(say_end, s%polish)//' '//whole(s%set_number)
+      if (s%variant > 0) end_of = ' '//phrase(say_end_variant, s%polish)//' '//whole(s%variant)
+      call put(o, end_of//':  '//phrase(say_solved, s%polish)//' '//whole(solved) &
+         //', '//phrase(say_flagged, s%polish)//' '//whole(flagged))
       call put(o, '')
    end subroutine listing_end
 
@@ -213,7 +218,7 @@ contains
    !> variant or a set, and `number` tells which.
    subroutine listing_broken_off(o, m, words, number)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
       type(phrase_t), intent(in) :: words
       integer, intent(in) :: number
 

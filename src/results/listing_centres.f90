@@ -2,7 +2,7 @@
 !> links, and tangent, radius and centre of curvature of the path of a point.
 module listing_centres
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_pole, request_curve
+   use mechanism, only: settings_t, request_pole, request_curve
    use points, only: row_t, has_number, centre_numbers
    use instant_centres, only: centre_finite, centre_infinite
    use listing_layout, only: layout_t, digits_t, dimension_of, angle_unit, power_text
@@ -24,7 +24,7 @@ contains
    subroutine put_centre_heads(o, d, m, kind)
       type(output_t), intent(inout) :: o
       type(digits_t), intent(in) :: d
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
       integer, intent(in) :: kind
       character(line_length) :: names, powers, units
       character(numeral_length) :: words(max_numbers)
@@ -86,13 +86,13 @@ contains
       line(last - len_trim(word) + 1:last) = word
    end subroutine put_end
 
-   !> The `row` of a pole or curve of the set `m`, of which `error` (3, 0:2) is unknown, with the digits `d`. `masked`
-   !> becomes true where a digit is not known.
-   subroutine put_centre(o, l, d, m, row, error, masked)
+   !> The `row` of a pole or curve, of which `error` (3, 0:2) is unknown, with the digits `d`. `masked` becomes true
+   !> where a digit is not known.
+   subroutine put_centre(o, l, d, polish, row, error, masked)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(digits_t), intent(in) :: d
-      type(mechanism_t), intent(in) :: m
+      logical, intent(in) :: polish
       type(row_t), intent(in) :: row
       real(wp), intent(in) :: error(3, 0:2)
       logical, intent(inout) :: masked
@@ -107,7 +107,7 @@ contains
       end associate
       do i = 1, size(numbers, 2)
          line(names_length + (i - 1)*numeral_length + 1:names_length + i*numeral_length) = &
-            cell_of(l, d, row, error, numbers(1, i), numbers(2, i), m%polish)
+            cell_of(l, d, row, error, numbers(1, i), numbers(2, i), polish)
       end do
       masked = masked .or. index(line(names_length + 1:), unknown_digit) > 0
       call put(o, trim(line))

@@ -2,7 +2,7 @@
 module listing_diagnostics
    use kinds, only: wp
    use planar, only: degree
-   use mechanism, only: mechanism_t, remark_t, remark_small_letters, remark_more
+   use mechanism, only: settings_t, mechanism_t, remark_t, remark_small_letters, remark_more
    use motion
    use names, only: drive_name, listed, more
    use numerals, only: whole, put_fixed, numeral_length
@@ -228,7 +228,7 @@ contains
 
    !> The diagnostic's value with so many `digits`, and its unit.
    function measure(m, r, digits) result(text)
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
       type(diagnostic_t), intent(in) :: r
       integer, intent(in) :: digits
       character(:), allocatable :: text
@@ -242,7 +242,7 @@ contains
 
    !> A time as the tables of `m` have it, with its unit.
    function time(m, t) result(text)
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
       real(wp), intent(in) :: t
       character(:), allocatable :: text
       character(numeral_length) :: field
@@ -280,15 +280,15 @@ contains
    end function number
 
    !> By how much redundant equations differ, `closure_error` in parts of the characteristic length.
-   subroutine put_closure_error(o, m, closure_error)
+   subroutine put_closure_error(o, polish, closure_error)
       type(output_t), intent(inout) :: o
-      type(mechanism_t), intent(in) :: m
+      logical, intent(in) :: polish
       real(wp), intent(in) :: closure_error
       character(20) :: text
 
       write (text, '(es8.0e2)') max(closure_error, min_closure_error)
       text = adjustl(text)
-      if (closure_error < min_closure_error) text = phrase(say_below, m%polish)//' '//text
-      call put(o, ' '//phrase(say_closure_error, m%polish)//' '//trim(text))
+      if (closure_error < min_closure_error) text = phrase(say_below, polish)//' '//text
+      call put(o, ' '//phrase(say_closure_error, polish)//' '//trim(text))
    end subroutine put_closure_error
 end module listing_diagnostics

@@ -6,8 +6,8 @@
 module listing_layout
    use kinds, only: wp, label_length
    use planar, only: degree
-   use mechanism, only: mechanism_t, request_link, request_point, request_pair, pair_prismatic
-   use independent, only: parts_t, find_parts
+   use mechanism, only: settings_t, mechanism_t, request_t, request_link, request_point, request_pair, pair_prismatic
+   use independent, only: set_t, request_of
    use drives, only: law_t, new_law, pole_value
    use names, only: drive_name, more
    use law_sizes, only: growing_sizes
@@ -60,10 +60,9 @@ module listing_layout
       integer :: decimals = digits_after_first, power = 0   !< as in `digits_t`
    end type head_drive_t
 
-   !> The digits of the set, and of each of its independent mechanisms where they are not all the same.
+   !> The digits of the set, and of each of its independent mechanisms.
    type, extends(digits_t) :: layout_t
-      type(digits_t), allocatable :: own(:)   !< (0:parts) 0: of the set
-      integer, allocatable :: part(:), drive_part(:)   !< (requests), (drives) whose digits they have
+      type(digits_t), allocatable :: own(:)   !< (0:parts) 0: of the ground
       logical :: mixed = .false.              !< their powers of ten differ
       integer :: time_decimals = digits_after_first   !< of the instants, as above
       integer :: time_power = 0
@@ -85,84 +84,67 @@ module listing_layout
 
 contains
 
-   !> The layout of the tables of `m`, from its deck alone. `parts`, `own`: as from `find_parts`, which finds them where
-   !> they are not given.
-   function new_layout(m, parts, own) result(l)
-      type(mechanism_t), intent(in) :: m
-      type(parts_t), intent(in), optional :: parts
-      type(mechanism_t), intent(in), optional :: own(:)
+   !> The layout of the tables of the set `s`, from its deck alone.
+   function new_layout(s) result(l)
+      class(set_t), intent(in) :: s
       type(layout_t) :: l
-      type(parts_t) :: new_parts
-      type(mechanism_t), allocatable :: new_own(:)
-      integer :: k
+      type(request_t) :: request
+      logical :: slides, turns, whole_links, angles
+      integer :: i, k
 
-      if (m%degrees) l%angle = degree
+      if (s%degrees) l%angle = degree
       ! What a tolerance changes has four digits.
-      if (allocated(m%tolerances)) &
-         l%more_decimals = max(0, 3 - digits_after_first - floor(log10(relative_tolerance(m))))
-      l%digits_t = digits_for(m, l%angle, l%more_decimals)
-      allocate (l%own(0:0), l%part(size(m%requests)), l%drive_part(size(m%drives)))
-      l%part = 0
-      l%drive_part = 0
-      if (present(parts)) then
-         call take_parts(l, parts, own)
-      else
-         call find_parts(m, new_parts, new_own)
-         call take_parts(l, new_parts, new_own)
-      end if
-      l%own(0) = l%digits_t
-      call choose_time_digits(m, l%time_decimals, l%time_power)
-      if (any(m%requests%angle_alone) .and. .not. any(m%requests%kind == request_link .and. m%requests%every > 0 &
-         .and. .not. m%requests%angle_alone)) l%links_table = links_turning
-      call choose_columns(m, l%column)
-      do k = links_turning, request_pair
-         l%names(k) = column_names(l, k, m%polish)
-         l%units(:, k) = unit_lines(l, m, k)
+      if (s%largest_tolerance > 0.0_wp) &
+         l%more_decimals = max(0, 3 - digits_after_first - floor(log10(s%largest_tolerance)))
+      call choose_own_digits(l, s)
+      call choose_time_digits(s, l%time_decimals, l%time_power)
+      slides = .false.
+      turns = .false.
+      whole_links = .false.
+      angles = .false.
+      do i = 1, size(s%rows)
+         request = request_of(s, i)
+         angles = angles .or. request%angle_alone
+         select case (request%kind)
+         case (request_link)
+            whole_links = whole_links .or. (request%every > 0 .and. .not. request%angle_alone)
+         case (request_pair)
+            associate (is_slide => s%parts(s%rows(i)%part)%pairs(request%subject)%kind == pair_prismatic)
+               slides = slides .or. is_slide
+               turns = turns .or. .not. is_slide
+            end associate
+         end select
       end do
+      if (angles .and. .not. whole_links) l%links_table = links_turning
+      l%column(:, :, links_turning) = angle_columns
+      l%column(:, :, request_link) = link_columns
+      l%column(:, :, request_point) = point_columns
+      ! Slides and angles of pairs have columns only if such pairs are asked for.
+      if (slides) l%column(1, :, request_pair) = pair_columns(:, 1)
+      if (turns) l%column(3, :, request_pair) = pair_columns(:, merge(2, 1, slides))
       do k = links_turning, request_pair
+         l%names(k) = column_names(l, k, s%polish)
+         l%units(:, k) = unit_lines(l, s, k)
          l%heads(k) = head_lines(l, l%digits_t, k)
          l%head_length(k) = len_trim(l%heads(k))
       end do
-      l%none = phrase(say_none, m%polish)
+      l%none = phrase(say_none, s%polish)
       l%none = adjustr(l%none)
-      l%before_instant = ' '//phrase(say_instant, m%polish)//' '
-      l%behind_time = ' '//unit_of(l%time_power, trim(m%time_unit))
-      allocate (l%drives(min(size(m%drives), max_drives)))
+      l%before_instant = ' '//phrase(say_instant, s%polish)//' '
+      l%behind_time = ' '//unit_of(l%time_power, trim(s%time_unit))
+      allocate (l%drives(min(size(s%drives), max_drives)))
       do k = 1, size(l%drives)
-         call take_drive(l, m, k, l%drives(k))
+         associate (part => s%drives(k)%part)
+            call take_drive(l, l%own(part), s%parts(part), s%drives(k)%number, l%drives(k))
+         end associate
       end do
-      l%more_drives = more(size(m%drives) - size(l%drives), m%polish)
+      l%more_drives = more(size(s%drives) - size(l%drives), s%polish)
    end function new_layout
-
-   !> The columns of each kind of table of `m`. Slides and angles of pairs have columns only if such pairs are asked
-   !> for.
-   pure subroutine choose_columns(m, column)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(out) :: column(3, 0:2, links_turning:request_pair)
-      logical :: slides
-      integer :: i
-
-      column(:, :, links_turning) = angle_columns
-      column(:, :, request_link) = link_columns
-      column(:, :, request_point) = point_columns
-      column(:, :, request_pair) = 0
-      slides = .false.
-      do i = 1, size(m%requests)
-         if (m%requests(i)%kind /= request_pair) cycle
-         if (m%pairs(m%requests(i)%subject)%kind == pair_prismatic) slides = .true.
-      end do
-      if (slides) column(1, :, request_pair) = pair_columns(:, 1)
-      do i = 1, size(m%requests)
-         if (m%requests(i)%kind /= request_pair) cycle
-         if (m%pairs(m%requests(i)%subject)%kind /= pair_prismatic) &
-            column(3, :, request_pair) = pair_columns(:, merge(2, 1, slides))
-      end do
-   end subroutine choose_columns
 
    !> The digits of the times of `m`: as many as other numbers have, and as many as show two digits of its shortest
    !> step, or one, if there is room for them. So instants that are not the same have other times.
    pure subroutine choose_time_digits(m, decimals, power)
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
       integer, intent(out) :: decimals, power
       integer :: before, room, needed
 
@@ -180,17 +162,16 @@ contains
       end associate
    end subroutine choose_time_digits
 
-   !> Drive number `k` of `m`, ready for the head of an instant.
-   subroutine take_drive(l, m, k, drive)
+   !> Drive number `k` of `m`, with the digits `d`, ready for the head of an instant.
+   subroutine take_drive(l, d, m, k, drive)
       type(layout_t), intent(in) :: l
+      type(digits_t), intent(in) :: d
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k
       type(head_drive_t), intent(out) :: drive
-      type(digits_t) :: d
       real(wp) :: sizes(3, 0:1)
       integer :: what
 
-      d = l%own(l%drive_part(k))
       what = merge(1, 2, is_length(m%drives(k)))
       drive%before = '   '//trim(drive_name(m, m%drives(k)))//' = '
       drive%behind = ' '//unit_of(d%power(what, 0), trim(merge(angle_unit(m), m%length_unit, what == 2)))
@@ -221,35 +202,28 @@ contains
       end do
    end function digits_for
 
-   !> Each of several mechanisms `m` (parts) has its own digits. Where none has more than one decimal more than another,
-   !> all have those of the largest.
-   pure subroutine take_parts(l, parts, m)
+   !> Each part of `s` has its own digits. Where none has more than one decimal more than another, all have those of the
+   !> largest.
+   pure subroutine choose_own_digits(l, s)
       type(layout_t), intent(inout) :: l
-      type(parts_t), intent(in) :: parts
-      type(mechanism_t), intent(in) :: m(:)
-      type(digits_t) :: own(parts%count), largest
+      class(set_t), intent(in) :: s
+      type(digits_t) :: largest
       integer :: c
 
-      if (parts%count == 1) return
-      do c = 1, size(own)
-         own(c) = digits_for(m(c), l%angle, l%more_decimals)
+      allocate (l%own(0:s%count))
+      do c = 1, s%count
+         l%own(c) = digits_for(s%parts(c), l%angle, l%more_decimals)
       end do
-      l%digits_t = own(1)
-      largest = own(1)
-      do c = 2, size(own)
-         l%mixed = l%mixed .or. any(own(c)%power /= own(1)%power)
-         l%decimals = min(l%decimals, own(c)%decimals)
-         largest%decimals = max(largest%decimals, own(c)%decimals)
+      l%digits_t = l%own(1)
+      largest = l%own(1)
+      do c = 2, s%count
+         l%mixed = l%mixed .or. any(l%own(c)%power /= l%own(1)%power)
+         l%decimals = min(l%decimals, l%own(c)%decimals)
+         largest%decimals = max(largest%decimals, l%own(c)%decimals)
       end do
-      if (.not. l%mixed .and. all(largest%decimals - l%decimals <= 1)) return
-      deallocate (l%own)
-      allocate (l%own(0:parts%count))
-      l%own(1:) = own
-      l%part = parts%part
-      do c = 1, parts%count
-         l%drive_part(parts%list(c)%drives) = c
-      end do
-   end subroutine take_parts
+      l%own(0) = l%digits_t
+      if (.not. l%mixed .and. all(largest%decimals - l%decimals <= 1)) l%own = l%own(0)
+   end subroutine choose_own_digits
 
    !> The powers of ten of the columns of rows of the given `kind` (9): what they do not have is 0.
    pure function column_powers(l, d, kind) result(power)
@@ -340,7 +314,7 @@ contains
    !> divided by stands in a second line.
    pure function unit_lines(l, m, kind) result(lines)
       type(layout_t), intent(in) :: l
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
       integer, intent(in) :: kind
       character(row_length) :: lines(2)
       character(label_length) :: unit(3)
@@ -394,7 +368,7 @@ contains
 
    !> The deck's unit of angles.
    pure character(label_length) function angle_unit(m)
-      type(mechanism_t), intent(in) :: m
+      class(settings_t), intent(in) :: m
 
       angle_unit = merge('DEG', 'RAD', m%degrees)
    end function angle_unit

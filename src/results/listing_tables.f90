@@ -2,7 +2,7 @@
 module listing_tables
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_link, request_pair, request_pole
+   use mechanism, only: settings_t, request_t, request_link, request_pair, request_pole
    use drives, only: drive_motion
    use points, only: row_t
    use sensitivities, only: worst_case, root_of_squares
@@ -186,58 +186,58 @@ contains
       text = trim(adjustl(field))
    end function known_text
 
-   !> The `row` of request number `i` of the set `m`, of which `error` (3, 0:2) is unknown, under heads of its own where
-   !> it is another table's.
-   subroutine put_requested(o, l, m, i, row, error, table)
+   !> The `row` of `request`, of which `error` (3, 0:2) is unknown, with the digits `d`, under heads of its own where it
+   !> is another table's. `settings`: those of the set.
+   subroutine put_requested(o, l, d, settings, request, row, error, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i
+      type(digits_t), intent(in) :: d
+      class(settings_t), intent(in) :: settings
+      type(request_t), intent(in) :: request
       type(row_t), intent(in) :: row
       real(wp), intent(in) :: error(3, 0:2)
       type(listing_state_t), intent(inout) :: table
 
-      associate (d => l%own(l%part(i)))
-         if (row%kind < request_pole) then
-            call put_heads(o, l, d, merge(l%links_table, row%kind, row%kind == request_link), table)
-            call put_row(o, l, d, row, m%requests(i)%angle_alone, error, table)
-            return
-         end if
-         if (row%kind /= table%kind .or. table%power(1) /= d%power(1, 0)) then
-            call put_centre_heads(o, d, m, row%kind)
-            table%kind = row%kind
-            table%power(1) = d%power(1, 0)
-            table%lines = 0
-         end if
-         call put_centre(o, l, d, m, row, error, table%masked)
-         table%lines = table%lines + 1
-      end associate
+      if (row%kind < request_pole) then
+         call put_heads(o, l, d, merge(l%links_table, row%kind, row%kind == request_link), table)
+         call put_row(o, l, d, row, request%angle_alone, error, table)
+         return
+      end if
+      if (row%kind /= table%kind .or. table%power(1) /= d%power(1, 0)) then
+         call put_centre_heads(o, d, settings, row%kind)
+         table%kind = row%kind
+         table%power(1) = d%power(1, 0)
+         table%lines = 0
+      end if
+      call put_centre(o, l, d, settings%polish, row, error, table%masked)
+      table%lines = table%lines + 1
    end subroutine put_requested
 
-   !> What the tolerances do to the `row` of request number `i` of the set `m`, with its sensitivities `s`: the worst
-   !> case, and the root of the sum of squares.
-   subroutine put_spreads(o, l, m, i, row, s, table)
+   !> What the tolerances do to the `row` of `request`, with its sensitivities `s`: the worst case, and the root of the
+   !> sum of squares; with some more decimals than the digits `of_row`.
+   subroutine put_spreads(o, l, of_row, polish, request, row, s, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i
+      type(digits_t), intent(in) :: of_row
+      logical, intent(in) :: polish
+      type(request_t), intent(in) :: request
       type(row_t), intent(in) :: row
       type(spread_t), intent(in) :: s
       type(listing_state_t), intent(inout) :: table
       type(digits_t) :: d
       type(row_t) :: one
 
-      d = l%own(l%part(i))
+      d = of_row
       d%decimals = d%decimals + l%more_decimals
       one = row
       one%known = s%known
-      one%name = ' '//phrase(say_worst, m%polish)
+      one%name = ' '//phrase(say_worst, polish)
       one%value = worst_case(s%tolerances, s%of)
-      call put_row(o, l, d, one, m%requests(i)%angle_alone, worst_case(s%tolerances, s%error), table)
+      call put_row(o, l, d, one, request%angle_alone, worst_case(s%tolerances, s%error), table)
       one%name = ' RSS'
       one%value = root_of_squares(s%tolerances, s%of)
       ! The difference of two roots is no larger than the root of the differences.
-      call put_row(o, l, d, one, m%requests(i)%angle_alone, root_of_squares(s%tolerances, s%error), table)
+      call put_row(o, l, d, one, request%angle_alone, root_of_squares(s%tolerances, s%error), table)
    end subroutine put_spreads
 
    !> The heads over rows of this `kind` with the digits `d`, unless they stand there: names, powers of ten where there

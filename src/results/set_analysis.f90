@@ -6,22 +6,22 @@ module set_analysis
    use structure, only: findings_t
    use convergence, only: convergence_t, is_solved, gather
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, worst_branch
-   use branch_requests, only: branch_requests_t, new_branch_requests, unused
-   use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of, &
+      use error_estimate, only: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of, &
       largest_errors
    use digits_in_doubt, only: safe_growth
    use motion_proof, only: motion_prover_t, prove_motion
    use link_bounds, only: largest_bounds
    use sensitivities, only: sensor_t, make_sensor, find_sensitivities
    use set_motion, only: set_motion_t, new_set_motion
-   use motion, only: diagnostic_t, motion_t, new_motion
+   use motion, only: diagnostic_t, diagnostic_unused, motion_t, new_motion
+   use independent, only: request_of
    use points, only: row_t, find_row
    use assemblies, only: assemblies_t, find_nearest
    use analysis, only: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back, redundancy_error
    use diagnosis, only: opinion_t, ask_blocks
    implicit none
    private
-   public :: set_analysis_t, make_set_analysis, renew_set_analysis, advance_set, rows_at, sample_set, &
+   public :: set_analysis_t, make_set_analysis, begin_analysis, renew_set_analysis, advance_set, rows_at, sample_set, &
       sense_set, prove_set, set_record, set_errors, set_bounds, set_closure_error, set_closing_diagnostics, &
       iterations_of
 
@@ -46,27 +46,35 @@ contains
       type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(out) :: s
       type(findings_t), intent(inout), optional :: findings
-      integer :: c
 
       call new_set_motion(m, s%now, findings)
-      associate (n => s%now%parts%count)
+      call begin_analysis(s, findings)
+   end subroutine make_set_analysis
+
+   !> The same of the set s%now, which is divided.
+   subroutine begin_analysis(s, findings)
+      type(set_analysis_t), intent(inout) :: s
+      type(findings_t), intent(inout), optional :: findings
+      integer :: c
+
+      associate (n => s%now%count)
          allocate (s%list(n), s%opinions(n))
          allocate (estimator_t :: s%estimators(n))
          allocate (sensor_t :: s%sensors(n))
          allocate (motion_prover_t :: s%provers(n))
       end associate
-      if (m%assemblies) allocate (s%assemblies(size(s%list)))
-      do c = 1, size(s%list)
-         if (m%assemblies) call find_nearest(s%now%own(c), instant(m, 0), s%assemblies(c))
+      if (s%now%assemblies) allocate (s%assemblies(s%now%count))
+      do c = 1, s%now%count
+         if (s%now%assemblies) call find_nearest(s%now%parts(c), instant(s%now, 0), s%assemblies(c))
          if (present(findings)) then
-            call make_analysis(s%list(c), s%now%own(c), findings%structures(c))
+            call make_analysis(s%list(c), s%now%parts(c), findings%structures(c))
          else
-            call make_analysis(s%list(c), s%now%own(c))
+            call make_analysis(s%list(c), s%now%parts(c))
          end if
-         call make_estimator(s%estimators(c), s%now%own(c))
-         call make_sensor(s%sensors(c), s%now%own(c))
+         call make_estimator(s%estimators(c), s%now%parts(c))
+         call make_sensor(s%sensors(c), s%now%parts(c))
       end do
-   end subroutine make_set_analysis
+   end subroutine begin_analysis
 
    !> Makes `s`, the analysis of a variant of `m` if there is one, ready for the first instant of `m`, as
    !> `make_set_analysis` makes it, with the structure and the memory that it has. `is_done`: these fit, and all of
@@ -79,11 +87,12 @@ contains
       is_done = allocated(s%list) .and. m%method == method_newton
       if (is_done) is_done = size(s%list) == 1
       if (.not. is_done) return
-      associate (own => s%now%own(1))
+      associate (own => s%now%parts(1))
          ! These keep numbers of the mechanism.
          is_done = .not. (any(own%requests%kind >= request_pole) .or. allocated(own%tolerances) .or. own%assemblies)
          if (.not. is_done) return
          own%settings_t = m%settings_t
+         s%now%settings_t = m%settings_t
          own%links(:) = m%links
          own%points(:) = m%points
          own%pairs(:) = m%pairs
@@ -104,15 +113,15 @@ contains
 
       do c = 1, size(s%list)
          call advance(s%list(c), t, s%now%motions(c))
-         if (s%now%own(c)%method /= method_newton) &
-            call ask_blocks(s%now%own(c), s%list(c), s%opinions(c), s%now%motions(c))
+         if (s%now%parts(c)%method /= method_newton) &
+            call ask_blocks(s%now%parts(c), s%list(c), s%opinions(c), s%now%motions(c))
       end do
       if (size(s%list) == 1) then
          s%certificate_counts = s%list(1)%certificate_counts
          return
       end if
       passed = sum(s%list%certificate_counts%passed) - s%certificate_counts%passed
-      if (all(s%now%motions%known >= 0)) then
+      if (all(s%now%motions(1:)%known >= 0)) then
          call count_in(s%certificate_counts, worst_branch(s%list%branch), passed)
       else
          s%certificate_counts%passed = s%certificate_counts%passed + passed
@@ -134,7 +143,7 @@ contains
       type(error_estimate_t) :: estimate
       integer :: i
 
-      associate (own => s%now%own(c), a => s%list(c))
+      associate (own => s%now%parts(c), a => s%list(c))
          if (present(error)) error = 0.0_wp
          if (present(growth)) growth = 0.0_wp
          if (abs(t - s%now%motions(c)%t) > 0.0_wp) then
@@ -148,14 +157,14 @@ contains
             is_found = q%known == 2
          end if
          do i = 1, size(list)
-            call find_row(own, q, own%requests(s%now%parts%number(list(i))), rows(i))
+            call find_row(own, q, request_of(s%now, list(i)), rows(i))
          end do
          if (.not. present(error)) return
          call estimate_errors(s%estimators(c), own, a%engine, a%convergence%reciprocal_condition, q, always, estimate)
          if (present(growth)) growth = merge(safe_growth, estimate%growth, estimate%in_doubt)
          if (.not. estimate%taken) return
          do i = 1, size(list)
-            error(:, :, i) = estimate_of(rows(i), own, estimate, q, own%requests(s%now%parts%number(list(i))))
+            error(:, :, i) = estimate_of(rows(i), own, estimate, q, request_of(s%now, list(i)))
          end do
       end associate
    end subroutine rows_at
@@ -168,7 +177,7 @@ contains
 
       do c = 1, size(s%list)
          associate (a => s%list(c))
-            call estimate_errors(s%estimators(c), s%now%own(c), a%engine, a%convergence%reciprocal_condition, &
+            call estimate_errors(s%estimators(c), s%now%parts(c), a%engine, a%convergence%reciprocal_condition, &
                s%now%motions(c), always, s%now%errors(c), for_tables=.true.)
          end associate
       end do
@@ -180,7 +189,7 @@ contains
       integer :: c
 
       do c = 1, size(s%list)
-         call find_sensitivities(s%sensors(c), s%now%own(c), s%list(c)%engine, s%now%motions(c), &
+         call find_sensitivities(s%sensors(c), s%now%parts(c), s%list(c)%engine, s%now%motions(c), &
             s%now%errors(c)%taken .and. s%now%errors(c)%in_doubt, s%now%sensitivities(c))
       end do
    end subroutine sense_set
@@ -192,7 +201,7 @@ contains
       integer :: c
 
       do c = 1, size(s%list)
-         call prove_motion(s%provers(c), s%now%own(c), s%list(c)%engine, s%now%motions(c), bounded, &
+         call prove_motion(s%provers(c), s%now%parts(c), s%list(c)%engine, s%now%motions(c), bounded, &
             s%now%proofs(c))
       end do
    end subroutine prove_set
@@ -242,7 +251,7 @@ contains
 
       largest = 0.0_wp
       do c = 1, size(s%list)
-         largest = max(largest, largest_errors(s%now%own(c), s%now%errors(c), s%now%motions(c), &
+         largest = max(largest, largest_errors(s%now%parts(c), s%now%errors(c), s%now%motions(c), &
             s%estimators(c)%sizes%length, s%estimators(c)%sizes%rate))
       end do
    end function set_errors
@@ -258,21 +267,30 @@ contains
       end do
    end function set_closure_error
 
-   !> What there is to say after the last instant: of BRANCH cards after whose instants no change point was passed.
-   pure function set_closing_diagnostics(s, m) result(list)
+   !> What there is to say after the last instant: of BRANCH cards after whose instants no change point was passed, in
+   !> their order.
+   pure function set_closing_diagnostics(s) result(list)
       type(set_analysis_t), intent(in) :: s
-      type(mechanism_t), intent(in) :: m
       type(diagnostic_t), allocatable :: list(:)
-      type(branch_requests_t) :: all_of_them
-      integer :: c
+      logical, allocatable :: used(:)
+      integer :: c, k, n
 
-      all_of_them = new_branch_requests(m)
-      do c = 1, size(s%list)
-         associate (cards => s%now%parts%list(c)%branch_requests)
-            all_of_them%used(cards) = all_of_them%used(cards) .or. s%list(c)%branch_requests%used
+      n = 0
+      do c = 1, s%now%count
+         n = max(n, maxval([0, s%list(c)%branch_requests%cards%card]))
+      end do
+      allocate (list(n), used(n))
+      used = .false.
+      do c = 1, s%now%count
+         associate (cards => s%list(c)%branch_requests%cards)
+            used(cards%card) = used(cards%card) .or. s%list(c)%branch_requests%used
+            do k = 1, size(cards)
+               list(cards(k)%card) = diagnostic_t(kind=diagnostic_unused, part=c, t=cards(k)%t)
+               list(cards(k)%card)%links(1) = cards(k)%link
+            end do
          end associate
       end do
-      list = unused(all_of_them)
+      list = pack(list, .not. used)
    end function set_closing_diagnostics
 
    !> Iterations of all positions solved so far; of several mechanisms the largest number.

@@ -12,7 +12,7 @@ module table
       request_curve, pair_prismatic
    use scales, only: is_length
    use drives, only: law_t, new_law, drive_motion
-   use grouping, only: sorted_t, sorted
+   use independent, only: set_t, request_of
    use names, only: name_table_t, put_name, find_name, drive_name
    use points, only: row_t, has_number, centre_numbers, coordinates_of
    use sensitivities, only: has_tolerances, worst_case, root_of_squares
@@ -31,7 +31,7 @@ module table
 
    !> A column after those of time and drives.
    type :: column_t
-      integer :: request = 0                        !< its number in the set
+      integer :: request = 0                        !< its number among those of the set
       !> The number of the request among those of which links, points and pairs are printed; 0: a pole or curve.
       integer :: row = 0
       integer :: order = 0                          !< of the derivative: 0, 1 or 2; of a pole or curve as in `centre_t`
@@ -63,30 +63,45 @@ module table
 
 contains
 
-   !> The table of the set `m`.
-   function new_table(m) result(t)
-      type(mechanism_t), intent(in) :: m
+   !> The table of the set `s`; `chosen`: of these rows alone, whether they are printed or not, without tolerances.
+   function new_table(s, chosen) result(t)
+      class(set_t), intent(in) :: s
+      integer, intent(in), optional :: chosen(:)
       type(table_t) :: t
       type(name_table_t) :: links
-      integer :: i, k, n, spread
+      type(request_t), allocatable :: requests(:)
+      integer, allocatable :: rows(:)
+      integer :: i, k, n, spread, last
 
-      allocate (t%laws(size(m%drives)))
-      do i = 1, size(m%drives)
-         t%laws(i) = new_law(m%drives(i))
+      allocate (t%laws(size(s%drives)), t%angular(size(s%drives)))
+      do i = 1, size(s%drives)
+         associate (drive => s%parts(s%drives(i)%part)%drives(s%drives(i)%number))
+            t%laws(i) = new_law(drive)
+            t%angular(i) = .not. is_length(drive)
+         end associate
       end do
-      t%drives = drive_columns(m)
-      t%angular = .not. is_length(m%drives)
-      associate (numbers => 3*coordinates_of(m%requests%kind), rows => m%requests%every > 0)
-         n = sum(numbers, mask=rows)
-         if (allocated(m%tolerances)) n = n + 2*sum(numbers, mask=rows .and. m%requests%kind < request_pole)
-         allocate (t%columns(n))
+      t%drives = drive_columns(s)
+
+      last = merge(2, 0, s%largest_tolerance > 0.0_wp)
+      requests = [(request_of(s, i), i=1, size(s%rows))]
+      if (present(chosen)) then
+         last = 0
+         rows = chosen
+      else
+         rows = pack([(i, i=1, size(s%rows))], requests%every > 0)
+      end if
+      associate (kinds => requests(rows)%kind)
+         n = sum(coordinates_of(kinds)) + last*sum(coordinates_of(kinds), mask=kinds < request_pole)
+         allocate (t%columns(3*n))
       end associate
-      do i = 1, size(m%requests)
-         if (m%requests(i)%kind == request_link .and. m%requests(i)%every > 0) &
-            call put_name(links, m%links(m%requests(i)%subject)%name, i, k)
+      do i = 1, size(rows)
+         if (requests(rows(i))%kind /= request_link) cycle
+         associate (own => s%parts(s%rows(rows(i))%part))
+            call put_name(links, own%links(requests(rows(i))%subject)%name, i, k)
+         end associate
       end do
       n = 0
-      do spread = 0, merge(2, 0, allocated(m%tolerances))
+      do spread = 0, last
          do k = 0, 2
             call add_rows(k, spread)
          end do
@@ -104,18 +119,18 @@ contains
          integer :: i, c, row
 
          row = 0
-         do i = 1, size(m%requests)
-            associate (request => m%requests(i))
-               if (request%every == 0 .or. request%kind >= request_pole) cycle
+         do i = 1, size(rows)
+            associate (request => requests(rows(i)), own => s%parts(s%rows(rows(i))%part))
+               if (request%kind >= request_pole) cycle
                row = row + 1
                turns = .false.
-               if (request%kind == request_pair) turns = m%pairs(request%subject)%kind /= pair_prismatic
+               if (request%kind == request_pair) turns = own%pairs(request%subject)%kind /= pair_prismatic
                do c = 1, coordinates_of(request%kind)
                   word = link_words(c, k)
                   if (request%kind == request_pair) word = merge(turn_words(k), slide_words(k), turns)
                   n = n + 1
-                  t%columns(n) = column_t(i, merge(row, 0, spread == 0), k, c, c == 3 .or. turns, spread)
-                  t%columns(n)%name = name_of(m, request, links)//'.'//trim(word)//spread_words(spread)
+                  t%columns(n) = column_t(rows(i), merge(row, 0, spread == 0), k, c, c == 3 .or. turns, spread)
+                  t%columns(n)%name = name_of(own, request, links)//'.'//trim(word)//spread_words(spread)
                end do
             end associate
          end do
@@ -126,14 +141,15 @@ contains
          integer, intent(in) :: kind
          integer :: i, c
 
-         do i = 1, size(m%requests)
-            if (m%requests(i)%kind /= kind) cycle
+         do i = 1, size(rows)
+            if (requests(rows(i))%kind /= kind) cycle
             do c = 1, size(centre_numbers, 2)
                n = n + 1
                associate (number => centre_numbers(:, c, kind))
-                  t%columns(n) = column_t(i, 0, number(2), number(1), number(1) == 3)
+                  t%columns(n) = column_t(rows(i), 0, number(2), number(1), number(1) == 3)
                end associate
-               t%columns(n)%name = name_of(m, m%requests(i), links)//'.'//centre_words(c, kind)
+               t%columns(n)%name = name_of(s%parts(s%rows(rows(i))%part), requests(rows(i)), links)//'.' &
+                  //centre_words(c, kind)
             end do
          end do
       end subroutine add_centres
@@ -166,24 +182,22 @@ contains
       end associate
    end function name_of
 
-   !> The names of the columns of all drives of `m`. Of drives with one name, the second has .2 after it, and so on:
+   !> The names of the columns of all drives of `s`. Of drives of one thing, the second has .2 after it, and so on:
    !> ANGLE.CRANK, ANGLE.CRANK.2.
-   function drive_columns(m) result(columns)
-      type(mechanism_t), intent(in) :: m
+   function drive_columns(s) result(columns)
+      class(set_t), intent(in) :: s
       character(drive_length), allocatable :: columns(:)
-      type(sorted_t) :: by_subject
-      integer :: k, i, number
+      integer :: i, number
 
-      allocate (columns(size(m%drives)))
-      by_subject = sorted(m%drives%subject, maxval([0, m%drives%subject]))
-      do k = 1, size(by_subject%first) - 1
-         associate (list => by_subject%member(by_subject%first(k):by_subject%first(k + 1) - 1))
-            do i = 1, size(list)
-               columns(list(i)) = dotted(drive_name(m, m%drives(list(i))))
-               number = count(m%drives(list(:i))%kind == m%drives(list(i))%kind &
-                  .and. m%drives(list(:i))%second == m%drives(list(i))%second)
-               if (number > 1) columns(list(i)) = trim(columns(list(i)))//'.'//whole(number)
-            end do
+      allocate (columns(size(s%drives)))
+      do i = 1, size(columns)
+         associate (own => s%parts(s%drives(i)%part), n => s%drives(i)%number)
+            columns(i) = dotted(drive_name(own, own%drives(n)))
+            associate (these => own%drives(:n))
+               number = count(these%kind == these(n)%kind .and. these%subject == these(n)%subject &
+                  .and. these%second == these(n)%second)
+            end associate
+            if (number > 1) columns(i) = trim(columns(i))//'.'//whole(number)
          end associate
       end do
    end function drive_columns
@@ -218,14 +232,14 @@ contains
       call put(o, '')
    end subroutine table_head
 
-   !> The row of the motions `s` of `m`.
-   subroutine table_instant(o, t, m, s)
+   !> The row of the motions `s`.
+   subroutine table_instant(o, t, s)
       type(output_t), intent(inout) :: o
       type(table_t), intent(in) :: t
-      type(mechanism_t), intent(in) :: m
       type(set_motion_t), intent(in) :: s
       type(row_t), allocatable :: rows(:, :)
-      logical :: known(3, 0:2, size(m%requests))
+      logical :: known(3, 0:2, size(s%rows))
+      type(request_t) :: request
       type(spread_t) :: x
       real(wp) :: f(3)
       integer :: i
@@ -233,15 +247,16 @@ contains
       call add_cell(o, '', s%motions(1)%t, .false.)
       do i = 1, size(t%laws)
          f = drive_motion(t%laws(i), s%motions(1)%t)
-         call add_cell(o, ',', f(1), m%degrees .and. t%angular(i))
+         call add_cell(o, ',', f(1), s%degrees .and. t%angular(i))
       end do
-      allocate (rows(0:2, size(m%requests)))
-      do i = 1, size(m%requests)
-         call find_row_in_set(m, s, i, rows(0, i))
+      allocate (rows(0:2, size(s%rows)))
+      do i = 1, size(s%rows)
+         request = request_of(s, i)
+         call find_row_in_set(s, i, rows(0, i))
          known(:, :, i) = known_numbers(rows(0, i), s, i)
          rows(1:, i) = rows(0, i)
-         if (m%requests(i)%every == 0 .or. .not. has_tolerances(m, m%requests(i))) cycle
-         x = spread_in_set(m, s, i)
+         if (request%every == 0 .or. .not. has_tolerances(s%parts(s%rows(i)%part), request)) cycle
+         x = spread_in_set(s, i)
          rows(1:, i)%known = x%known
          rows(1, i)%value = worst_case(x%tolerances, x%of)
          rows(2, i)%value = root_of_squares(x%tolerances, x%of)
@@ -249,7 +264,7 @@ contains
       do i = 1, size(t%columns)
          associate (c => t%columns(i), row => rows(t%columns(i)%spread, t%columns(i)%request))
             if (known(c%coordinate, c%order, c%request) .and. has_number(row, c%coordinate, c%order)) then
-               call add_cell(o, ',', row%value(c%coordinate, c%order), m%degrees .and. c%angular)
+               call add_cell(o, ',', row%value(c%coordinate, c%order), s%degrees .and. c%angular)
             else
                call add(o, ','//missing)
             end if

@@ -13,7 +13,7 @@ module structure
    use mechanism, only: mechanism_t, pair_links, drive_links, pair_revolute, pair_prismatic, method_newton
    use matching, only: match, owners, overdetermined, underdetermined
    use assur_groups, only: closure_t, new_closure, group_t, groups_of
-   use independent, only: parts_t, find_parts, part_of_links
+   use independent, only: set_t, divide, part_of_links
    use links_tree, only: tree_t
    use block_structure, only: structure_t, new_structure, make_structure
    implicit none
@@ -44,8 +44,7 @@ module structure
       integer, allocatable :: many_pairs(:), many_drives(:)
       type(group_t), allocatable :: groups(:)   !< in solving order, once `find_groups` has been asked for them
       ! Of the independent mechanisms, where nothing is lacking:
-      type(parts_t) :: parts                            !< which link, point, pair and drive is in which
-      type(mechanism_t), allocatable :: own(:)          !< (parts) each as a set of its own; none where there is one
+      type(set_t), allocatable :: set                   !< divided, where it is several
       type(structure_t), allocatable :: structures(:)   !< (parts)
       type(closure_t), allocatable :: closure           !< where it is solvable: which coordinate is in which equation
    end type findings_t
@@ -84,7 +83,7 @@ contains
       type(structure_t) :: whole
       integer, allocatable :: unknown_of(:), equation_of(:)
       logical, allocatable :: over(:)
-      integer :: k
+      integer :: k, parts
 
       f = count_degrees_of_freedom(m)
       c = new_closure(m)
@@ -99,13 +98,17 @@ contains
          return
       end if
       allocate (f%lacking(0))
-      call find_parts(m, f%parts, f%own)
-      if (.not. allocated(f%own)) allocate (f%own(0))
-      allocate (f%structures(f%parts%count))
-      if (f%parts%count == 1) call make_structure(m, f%structures(1))
-      do k = 1, size(f%own)
-         call make_structure(f%own(k), f%structures(k))
-      end do
+      parts = max(1, maxval([0, part_of_links(m)]))
+      allocate (f%structures(parts))
+      if (parts == 1) then
+         call make_structure(m, f%structures(1))
+      else
+         allocate (f%set)
+         call divide(m, f%set)
+         do k = 1, parts
+            call make_structure(f%set%parts(k), f%structures(k))
+         end do
+      end if
       f%solvable = all([(f%structures(k)%blocks%solvable, k=1, size(f%structures))])
       if (f%solvable) then
          f%closure = c

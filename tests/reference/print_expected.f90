@@ -12,7 +12,7 @@ program print_expected
    use hand_groups, only: groups_by_hand, redundant_by_hand, passages_by_hand
    use deck, only: read_deck, build_variant
    use deck_variants, only: variation_t
-   use independent, only: parts_t, find_parts
+   use independent, only: set_t, divide
    use listing_layout, only: layout_t
    use answers, only: answers_t
    use variant_rows, only: summary_t, variant_row_t, new_summary, new_row, fill_row
@@ -83,14 +83,13 @@ contains
       type(summary_t) :: summary
       type(variant_row_t) :: row
       type(mechanism_t) :: variant
-      type(parts_t) :: parts
-      type(mechanism_t), allocatable :: own(:)
+      type(set_t) :: set
       type(answers_t) :: nothing
       integer :: n
 
-      layout = new_layout(m)
-      call find_parts(m, parts, own)
-      summary = new_summary(m, parts, layout, v)
+      call divide(m, set)
+      layout = new_layout(set)
+      summary = new_summary(set, layout, v)
       do n = 1, m%variants
          call build_variant(v, n, variant, report)
          if (report /= '') call give_up(report)
@@ -98,9 +97,10 @@ contains
          call put_variant(o, layout, summary, m, row)
          call print_motion(o, name, variant)
          row%solved = instant_count(variant)
-         call fill_row(summary, variant, nothing, row)
+         call divide(variant, set)
+         call fill_row(summary, set, nothing, row)
          call put_variant_heads(o, summary)
-         call put_variant_row(o, layout, summary, m, row)
+         call put_variant_row(o, layout, summary, set, row)
       end do
       call put_variants_end(o, m)
    end subroutine print_variants
@@ -110,6 +110,7 @@ contains
       type(output_t), intent(inout) :: o
       character(*), intent(in) :: name
       type(mechanism_t), intent(in) :: m
+      type(set_t) :: set
       type(hand_scales_t) :: scales
       type(above_t) :: above
       type(certificate_counts_t) :: tally
@@ -155,7 +156,8 @@ contains
       if (m%assemblies) call put_assemblies_by_hand(o, name, m, scales)
       if (m%circuits) call put_circuits_by_hand(o, name, m)
       if (allocated(m%tolerances)) call put_shares_by_hand(o, m, scales)
-      call listing_end(o, m, count(.not. was_flagged), count(was_flagged), tally, &
+      call divide(m, set)
+      call listing_end(o, set, count(.not. was_flagged), count(was_flagged), tally, &
          closure_error=merge(0.0_wp, -1.0_wp, size(redundant_by_hand(name, m)) > 0))
    end subroutine print_motion
 

@@ -89,10 +89,10 @@ contains
       do k = 0, instant_count(m) - 1
          call advance_set(a, instant(m, k))
          call prove_set(a, .true.)
-         if (.not. all(holds(a%now%proofs))) open = open + 1
+         if (.not. all(holds(a%now%proofs(1:)))) open = open + 1
          if (reason_found(a) /= reason_listed(m, name, k)) wrong = wrong + 1
-         do c = 1, size(a%now%own)
-            if (a%now%proofs(c)%is_proved) call weigh(a%now%own(c), a%now%motions(c), a%now%proofs(c)%links, &
+         do c = 1, a%now%count
+            if (a%now%proofs(c)%is_proved) call weigh(a%now%parts(c), a%now%motions(c), a%now%proofs(c)%links, &
                closed_form(name, m%set_number, real(instant(m, k), qp)), below)
          end do
       end do
@@ -128,7 +128,7 @@ contains
       type(set_analysis_t), intent(in) :: a
 
       reason = is_proved
-      if (all(holds(a%now%proofs))) return
+      if (all(holds(a%now%proofs(1:)))) return
       reason = other_reason
       associate (q => a%now%motions(1), proof => a%now%proofs(1))
          if (q%mark == mark_singular .and. q%singularity == singular_change .and. .not. proof%is_proved) reason = at_change

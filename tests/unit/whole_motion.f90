@@ -1,12 +1,13 @@
-!> A motion as writers take it, of a mechanism that is not divided.
+!> A set as writers take it, and a motion of one mechanism.
 module whole_motion
    use mechanism, only: mechanism_t
    use motion, only: motion_t
    use error_estimate, only: error_estimate_t
-   use set_motion, only: set_motion_t, take_whole
+   use independent, only: set_t, divide, take_as_one
+   use set_motion, only: set_motion_t
    implicit none
    private
-   public :: one_motion
+   public :: one_motion, divided
 
 contains
 
@@ -17,10 +18,17 @@ contains
       type(error_estimate_t), intent(in) :: errors
       type(set_motion_t) :: s
 
-      call take_whole(m, s%parts)
-      allocate (s%own(1), s%motions(1), s%errors(1), s%sensitivities(1), s%proofs(1))
-      s%own(1) = m
+      call take_as_one(m, s%set_t)
+      allocate (s%motions(1), s%errors(1), s%sensitivities(1), s%proofs(1))
       s%motions(1) = q
       s%errors(1) = errors
    end function one_motion
+
+   !> The set `m`, divided.
+   function divided(m) result(s)
+      type(mechanism_t), intent(in) :: m
+      type(set_t) :: s
+
+      call divide(m, s)
+   end function divided
 end module whole_motion
