@@ -10,7 +10,7 @@ module independent
    use scales, only: characteristic_length, characteristic_rate, relative_tolerance
    implicit none
    private
-   public :: set_t, member_t, part_t, divide, take_as_one, mechanism_of, part_of_links, &
+   public :: set_t, member_t, part_t, divide, mechanism_of, part_of_links, &
       request_of, is_printed, first_drive
 
    !> A row or drive of a set: the number of its part, and its number there.
@@ -35,22 +35,23 @@ module independent
 contains
 
    !> Divides the set `m` into its parts: `s`. A part has the ground links, and their points, that its pairs, drives and
-   !> rows use. A BRANCH card without a link is for every part. Time and memory grow in proportion to the deck.
-   subroutine divide(m, s)
+   !> rows use. A BRANCH card without a link is for every part. Time and memory grow in proportion to the deck. `whole`:
+   !> all links are taken for one mechanism.
+   subroutine divide(m, s, whole)
       type(mechanism_t), intent(in) :: m
       type(set_t), intent(out) :: s
+      logical, intent(in), optional :: whole
       type(sorted_t) :: links, points, pairs, drives, rows
       type(part_t) :: place
       integer, allocatable :: pair_part(:), drive_part(:), row_part(:), user(:), used(:)
       integer :: link_part(size(m%links)), ground, i, c
 
+      s%settings_t = m%settings_t
+      if (allocated(m%tolerances)) s%largest_tolerance = relative_tolerance(m)
       link_part = part_of_links(m)
       s%count = max(1, maxval([0, link_part]))
-      if (s%count == 1) then
-         call take_as_one(m, s)
-         return
-      end if
-      call take_settings(m, s)
+      if (present(whole)) s%count = 1
+      if (s%count == 1) link_part = 1
       ground = s%count + 1
       pair_part = [(part_of(pair_links(m, m%pairs(i))), i=1, size(m%pairs))]
       drive_part = [(part_of(drive_links(m, m%drives(i))), i=1, size(m%drives))]
@@ -71,9 +72,12 @@ contains
          (spread(row_part(i), 1, 3), i=1, size(m%requests))]
       links = sorted_numbers(used, user, ground)
 
-      allocate (s%parts(0:s%count), s%cards(0:s%count), s%rows(size(m%requests)), s%drives(size(m%drives)))
+      associate (first => merge(1, 0, s%count == 1))
+         allocate (s%parts(first:s%count), s%cards(first:s%count))
+      end associate
+      allocate (s%rows(size(m%requests)), s%drives(size(m%drives)))
       place = no_places(m)
-      do c = 1, ground
+      do c = 1, size(s%parts)
          call take_part(modulo(c, ground))
       end do
 
@@ -98,48 +102,16 @@ contains
          part%pairs = members(pairs, c)
          part%drives = members(drives, c)
          part%requests = members(rows, c)
-         part%branch_requests = branch_requests_of(m, link_part, c)
+         allocate (part%branch_requests(0))
+         if (allocated(m%branch_requests)) part%branch_requests = pack([(i, i=1, size(m%branch_requests))], &
+            [(m%branch_requests(i)%link == 0 .or. link_part(max(1, m%branch_requests(i)%link)) == c, &
+            i=1, size(m%branch_requests))])
          s%rows(part%requests) = [(member_t(k, i), i=1, size(part%requests))]
          s%drives(part%drives) = [(member_t(k, i), i=1, size(part%drives))]
          call take_mechanism(m, part, place, s%parts(k))
          call move_alloc(part%links, s%cards(k)%links)
       end subroutine take_part
    end subroutine divide
-
-   !> Takes all of `m` as the one part of `s`.
-   subroutine take_as_one(m, s)
-      type(mechanism_t), intent(in) :: m
-      type(set_t), intent(out) :: s
-      integer :: i
-
-      call take_settings(m, s)
-      allocate (s%parts(1), s%cards(1))
-      s%cards(1)%links = [(i, i=1, size(m%links))]
-      s%rows = [(member_t(1, i), i=1, size(m%requests))]
-      s%drives = [(member_t(1, i), i=1, size(m%drives))]
-      associate (own => s%parts(1))
-         own%settings_t = m%settings_t
-         own%links = m%links
-         own%points = m%points
-         own%pairs = m%pairs
-         own%drives = m%drives
-         own%requests = m%requests
-         allocate (own%branch_requests(0))
-         if (allocated(m%branch_requests)) own%branch_requests = m%branch_requests
-         own%branch_requests%card = [(i, i=1, size(own%branch_requests))]
-         if (allocated(m%tolerances)) own%tolerances = m%tolerances
-         call scale_centres(own)
-      end associate
-   end subroutine take_as_one
-
-   !> The settings of `m`.
-   subroutine take_settings(m, s)
-      type(mechanism_t), intent(in) :: m
-      type(set_t), intent(inout) :: s
-
-      s%settings_t = m%settings_t
-      if (allocated(m%tolerances)) s%largest_tolerance = relative_tolerance(m)
-   end subroutine take_settings
 
    !> (links) The number of the part of each link, in the order of the deck; 0 of a ground link.
    pure function part_of_links(m) result(part)
@@ -152,23 +124,6 @@ contains
             [m%points(m%pairs%point_j)%link, pack(m%drives%second, relative)])
       end associate
    end function part_of_links
-
-   !> The BRANCH cards of part `c`; none of the ground.
-   pure function branch_requests_of(m, link_part, c) result(list)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: link_part(:), c
-      integer, allocatable :: list(:)
-      integer :: i
-
-      allocate (list(0))
-      if (.not. allocated(m%branch_requests)) return
-      do i = 1, size(m%branch_requests)
-         if (m%branch_requests(i)%link > 0) then
-            if (link_part(m%branch_requests(i)%link) /= c) cycle
-         end if
-         list = [list, i]
-      end do
-   end function branch_requests_of
 
    !> The `part` of `m` as a mechanism of its own, without its cards.
    function mechanism_of(m, part) result(own)
@@ -235,7 +190,10 @@ contains
       end do
 
       if (allocated(m%tolerances)) call take_tolerances()
-      call scale_centres(own)
+      if (any(own%requests%kind >= request_pole)) then
+         own%requests%length = characteristic_length(own)
+         own%requests%rate = characteristic_rate(own, own%requests(1)%length)
+      end if
       place%links(part%links) = 0
       place%points(part%points) = 0
       place%pairs(part%pairs) = 0
@@ -275,15 +233,6 @@ contains
          own%tolerances = pack(own%tolerances, own%tolerances%subject > 0)
       end subroutine take_tolerances
    end subroutine take_mechanism
-
-   !> Gives the instant centres and centres of curvature that are asked of `own` its characteristic length and rate.
-   pure subroutine scale_centres(own)
-      type(mechanism_t), intent(inout) :: own
-
-      if (.not. any(own%requests%kind >= request_pole)) return
-      own%requests%length = characteristic_length(own)
-      own%requests%rate = characteristic_rate(own, own%requests(1)%length)
-   end subroutine scale_centres
 
    !> What row number `i` of `s` is asked for.
    pure type(request_t) function request_of(s, i)

@@ -3,7 +3,7 @@ module whole_motion
    use mechanism, only: mechanism_t
    use motion, only: motion_t
    use error_estimate, only: error_estimate_t
-   use independent, only: set_t, divide, take_as_one
+   use independent, only: set_t, divide
    use set_motion, only: set_motion_t
    implicit none
    private
@@ -18,7 +18,7 @@ contains
       type(error_estimate_t), intent(in) :: errors
       type(set_motion_t) :: s
 
-      call take_as_one(m, s%set_t)
+      call divide(m, s%set_t, whole=.true.)
       allocate (s%motions(1), s%errors(1), s%sensitivities(1), s%proofs(1))
       s%motions(1) = q
       s%errors(1) = errors
