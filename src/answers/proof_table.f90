@@ -1,7 +1,6 @@
 !> What card PROVE has proved: a line for each printed instant, with what led to it since the one before; why instants
 !> are not proved; and the counts.
 module proof_table
-   use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
    use mechanism, only: settings_t, instant
    use motion, only: mark_none
@@ -10,10 +9,10 @@ module proof_table
    use names, only: listed
    use set_analysis, only: set_analysis_t, set_bounds
    use listing, only: words_of_mark
-   use listing_layout, only: layout_t, put_folded
+   use listing_layout, only: layout_t, put_folded, right
    use listing_tables, only: time_text
    use text_output, only: output_t, put
-   use numerals, only: whole, put_whole, put_fixed, put_digits, numeral_length
+   use numerals, only: whole
    use phrases
    implicit none
    private
@@ -128,9 +127,9 @@ contains
 
       call put(o, '')
       call put(o, ' '//phrase(say_proof, m%polish))
-      call put(o, right(phrase(say_instant, m%polish))//right('T')//right(phrase(say_parts, m%polish)) &
-         //right(phrase(say_tube, m%polish))//right(phrase(say_position, m%polish)) &
-         //right(phrase(say_velocity, m%polish))//'  '//right(phrase(say_acceleration, m%polish)))
+      call put(o, column(phrase(say_instant, m%polish))//column('T')//column(phrase(say_parts, m%polish)) &
+         //column(phrase(say_tube, m%polish))//column(phrase(say_position, m%polish)) &
+         //column(phrase(say_velocity, m%polish))//'  '//column(phrase(say_acceleration, m%polish)))
       do i = 1, p%count
          call put_line(o, l, p%lines(i), m)
       end do
@@ -140,38 +139,28 @@ contains
       if (p%instants - p%proved > size(p%reasons)) call put(o, ' *** '//phrase(say_not_proved, m%polish) &
          //': '//whole(p%instants - p%proved))
       gap = ''
-      if (p%gap > 0.0_wp) gap = ',  '//phrase(say_gap, m%polish)//' '//trim(rounded_up(p%gap))
+      if (p%gap > 0.0_wp) gap = ',  '//phrase(say_gap, m%polish)//' '//rounded_up(p%gap)
       call put(o, ' '//phrase(say_proved, m%polish)//' '//whole(p%proved)//' / '//whole(p%instants) &
          //',  '//phrase(say_parts, m%polish)//' '//whole(sum(p%lines(:p%count)%parts)) &
-         //',  '//phrase(say_tube, m%polish)//' '//trim(rounded_up(maxval([0.0_wp, p%lines(:p%count)%tube])))//gap)
+         //',  '//phrase(say_tube, m%polish)//' '//rounded_up(maxval([0.0_wp, p%lines(:p%count)%tube]))//gap)
    end subroutine put_proofs
 
-   !> A line of the table: there are as many as instants, so it is put together in place.
+   !> A line of the table.
    subroutine put_line(o, l, line, m)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(line_t), intent(in) :: line
       class(settings_t), intent(in) :: m
-      character(7*number_width + 2) :: text
-      character(numeral_length) :: time
-      integer :: k, first
+      character(:), allocatable :: start
 
-      text = ''
-      call put_whole(int(line%step, int64), text(:number_width), first)
-      call put_fixed(instant(m, line%step), l%time_decimals, l%time_power, time)
-      text(2*number_width + 1 - numeral_length:2*number_width) = adjustr(time)
-      if (.not. line%is_proved) then
-         text(2*number_width + 4:) = phrase(say_not_proved, m%polish)
-         call put(o, text(:len_trim(text)))
-         return
+      start = column(whole(line%step))//column(time_text(l, instant(m, line%step)))
+      if (line%is_proved) then
+         call put(o, start//column(whole(line%parts))//column(rounded_up(line%tube)) &
+            //column(rounded_up(line%bounds(0)))//column(rounded_up(line%bounds(1))) &
+            //'  '//column(rounded_up(line%bounds(2))))
+      else
+         call put(o, start//'   '//phrase(say_not_proved, m%polish))
       end if
-      call put_whole(int(line%parts, int64), text(2*number_width + 1:3*number_width), first)
-      call put_rounded_up(line%tube, text(3*number_width + 1:4*number_width))
-      do k = 0, 1
-         call put_rounded_up(line%bounds(k), text((4 + k)*number_width + 1:(5 + k)*number_width))
-      end do
-      call put_rounded_up(line%bounds(2), text(6*number_width + 3:))
-      call put(o, text)
    end subroutine put_line
 
    !> Why an instant is not proved.
@@ -189,32 +178,22 @@ contains
    end subroutine put_reason
 
    !> `text` at the right of a column.
-   pure function right(text) result(column)
+   pure function column(text)
       character(*), intent(in) :: text
       character(number_width) :: column
 
-      column = ''
-      column(max(1, number_width + 1 - len_trim(text)):) = text
-   end function right
+      column = right(text, number_width)
+   end function column
 
    !> `x` with one digit, rounded up; 0 is exact.
    pure function rounded_up(x) result(text)
       real(wp), intent(in) :: x
-      character(8) :: text
-
-      text = ''
-      call put_rounded_up(x, text)
-      text = adjustl(text)
-   end function rounded_up
-
-   !> The same at the end of `text`, which is blank: there are as many as instants.
-   pure subroutine put_rounded_up(x, text)
-      real(wp), intent(in) :: x
-      character(*), intent(inout) :: text
+      character(:), allocatable :: text
+      character(8) :: field
       real(wp) :: large
-      integer :: first, power, digit, last, point
+      integer :: first, power, digit
 
-      text(len(text):) = '0'
+      text = '0'
       if (.not. x > 0.0_wp) return
       ! Numbers next to the end of the range are none.
       large = min(max(x, tiny(x)/epsilon(x)**2), huge(x)*epsilon(x)**2)
@@ -224,11 +203,7 @@ contains
          digit = max(1, ceiling(large/10.0_wp**power))
          if (digit <= 9) exit
       end do
-      last = min(abs(power), 999)
-      point = len(text) - merge(5, 4, last > 99)
-      text(point - 1:point - 1) = achar(iachar('0') + digit)
-      text(point:point + 1) = '.E'
-      text(point + 2:point + 2) = merge('-', '+', power < 0)
-      call put_digits(int(last, int64), text(point + 3:))
-   end subroutine put_rounded_up
+      write (field, '(i0, a, sp, i0.2)') digit, '.E', max(-999, min(power, 999))
+      text = trim(field)
+   end function rounded_up
 end module proof_table

@@ -6,7 +6,7 @@ module variant_tables
    use independent, only: set_t
    use motion, only: mark_none
    use listing, only: words_of_mark
-   use listing_layout, only: layout_t, line_length, put_folded, power_text, unit_of
+   use listing_layout, only: layout_t, line_length, put_folded, power_text, unit_of, right
    use listing_tables, only: known_text
    use listing_diagnostics, only: put_diagnostics
    use csv, only: add_name
@@ -226,13 +226,4 @@ contains
          text = trim(cell%word)
       end select
    end function cell_text
-
-   !> `text` at the end of `n` characters, or of more if it is longer.
-   pure function right(text, n) result(field)
-      character(*), intent(in) :: text
-      integer, intent(in) :: n
-      character(max(n, len(text))) :: field
-
-      field = repeat(' ', len(field) - len(text))//text
-   end function right
 end module variant_tables

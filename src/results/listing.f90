@@ -128,7 +128,7 @@ contains
          begun = .true.
          call find_row_in_set(s, i, row)
          associate (d => l%own(s%rows(i)%part))
-            call put_requested(o, l, d, s, request, row, doubt_in_set(row, s, i), table)
+            call put_requested(o, l, d, s%polish, request, row, doubt_in_set(row, s, i), table)
             if (has_tolerances(s%parts(s%rows(i)%part), request)) &
                call put_spreads(o, l, d, s%polish, request, row, spread_in_set(s, i), table)
          end associate

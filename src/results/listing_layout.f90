@@ -6,7 +6,9 @@
 module listing_layout
    use kinds, only: wp, label_length
    use planar, only: degree
-   use mechanism, only: settings_t, mechanism_t, request_t, request_link, request_point, request_pair, pair_prismatic
+   use mechanism, only: settings_t, mechanism_t, request_t, request_link, request_point, request_pair, request_pole, &
+      request_curve, pair_prismatic
+   use points, only: centre_numbers
    use independent, only: set_t, request_of
    use drives, only: law_t, new_law, pole_value
    use names, only: drive_name, more
@@ -19,8 +21,8 @@ module listing_layout
    implicit none
    private
    public :: layout_t, head_drive_t, new_layout, digits_t, digits_for, column_powers, head_lines
-   public :: line_length, name_length, row_length, links_turning, dimension_of, angle_unit, power_text, &
-      unit_of, choose_digits, choose_time_digits, column_text, put_folded
+   public :: line_length, name_length, names_length, row_length, links_turning, dimension_of, angle_unit, power_text, &
+      unit_of, choose_digits, choose_time_digits, column_text, put_folded, right
 
    integer, parameter :: digits_after_first = 6
    !> An order that is a whole number but for rounding counts as one.
@@ -69,13 +71,13 @@ module listing_layout
       integer :: more_decimals = 0         !< of what tolerances do to a number, beside those of the number
       real(wp) :: angle = 1.0_wp           !< radians in the unit in which angles are printed
       integer :: links_table = request_link   !< the kind of the tables of links
-      !> Of x, y, phi and their derivatives, by the kind of a table.
-      integer :: column(3, 0:2, links_turning:request_pair) = 0
+      !> Of x, y, phi and their derivatives, or of the numbers of a pole or curve, by the kind of a table.
+      integer :: column(3, 0:2, links_turning:request_curve) = 0
       ! By the kind of a table:
-      character(row_length) :: names(links_turning:request_pair)      !< of the columns
-      character(row_length) :: units(2, links_turning:request_pair)   !< under them; the second line only where long
-      character(4*(row_length + 1)) :: heads(links_turning:request_pair)   !< all lines, where the parts' are the same
-      integer :: head_length(links_turning:request_pair) = 0
+      character(row_length) :: names(links_turning:request_curve)      !< of the columns
+      character(row_length) :: units(2, links_turning:request_curve)   !< under them; the second line only where long
+      character(4*(row_length + 1)) :: heads(links_turning:request_curve)   !< all lines, where the parts' are the same
+      integer :: head_length(links_turning:request_curve) = 0
       character(numeral_length) :: none    !< in the place of a number that does not exist
       character(:), allocatable :: before_instant, behind_time    !< of the line over the tables: ' INSTANT ', ' S'
       type(head_drive_t), allocatable :: drives(:)                !< that stand in it
@@ -122,7 +124,14 @@ contains
       ! Slides and angles of pairs have columns only if such pairs are asked for.
       if (slides) l%column(1, :, request_pair) = pair_columns(:, 1)
       if (turns) l%column(3, :, request_pair) = pair_columns(:, merge(2, 1, slides))
-      do k = links_turning, request_pair
+      do k = request_pole, request_curve
+         do i = 1, size(centre_numbers, 2)
+            l%column(centre_numbers(1, i, k), centre_numbers(2, i, k), k) = i
+         end do
+      end do
+      ! A pole has its direction behind its numbers.
+      l%column(3, 0, request_pole) = size(centre_numbers, 2) + 1
+      do k = links_turning, request_curve
          l%names(k) = column_names(l, k, s%polish)
          l%units(:, k) = unit_lines(l, s, k)
          l%heads(k) = head_lines(l, l%digits_t, k)
@@ -235,7 +244,7 @@ contains
       power = 0
       do k = 0, 2
          do c = 1, 3
-            if (l%column(c, k, kind) > 0) power(l%column(c, k, kind)) = d%power(dimension_of(c), k)
+            if (l%column(c, k, kind) > 0) power(l%column(c, k, kind)) = d%power(dimension_of(c), order_of(kind, k))
          end do
       end do
    end function column_powers
@@ -273,7 +282,7 @@ contains
       do k = 1, size(power)
          if (power(k) /= 0) words(k) = power_text(power(k))
       end do
-      if (any(power /= 0)) text = text//new_line('a')//trim(in_columns(words))
+      if (any(power /= 0)) text = text//new_line('a')//trim(in_columns(words, kind))
       text = text//new_line('a')//trim(l%units(1, kind))
       if (l%units(2, kind) /= '') text = text//new_line('a')//trim(l%units(2, kind))
    end function head_lines
@@ -286,15 +295,23 @@ contains
       character(row_length) :: line
       character(name_room) :: words(9), word
       integer :: c, k
-      character(1), parameter :: prefix(0:2) = [' ', 'V', 'A'], place(2) = ['X', 'Y']
-      type(phrase_t), parameter :: kind_words(links_turning:request_pair) = &
-         [say_link, say_link, say_point, say_pair], &
+      character(1), parameter :: prefix(0:2) = [' ', 'V', 'A'], place(3) = ['X', 'Y', ' ']
+      type(phrase_t), parameter :: kind_words(links_turning:request_curve) = &
+         [say_link, say_link, say_point, say_pair, say_pole, say_curve], &
          pair_words(0:2) = [phrase_t(), say_velocity, say_acceleration]
 
       words = ''
+      if (kind == request_pole) then
+         word = phrase(say_xi, polish)
+         words(:7) = [character(name_room) :: 'X', 'Y', trim(word)//'-I', 'ETA-I', trim(word)//'-J', 'ETA-J', &
+            phrase(say_direction, polish)]
+      else if (kind == request_curve) then
+         words(:6) = [character(name_room) :: 'X', 'Y', phrase(say_tangent, polish), phrase(say_radius, polish), &
+            'X-'//phrase(say_centre, polish), 'Y-'//phrase(say_centre, polish)]
+      end if
       do k = 0, 2
          do c = 1, 3
-            if (l%column(c, k, kind) == 0) cycle
+            if (l%column(c, k, kind) == 0 .or. kind > request_pair) cycle
             if (kind == request_pair) then
                word = phrase(pair_words(k), polish)
                if (k == 0) word = phrase(merge(say_slide, say_angle, c == 1), polish)
@@ -306,8 +323,8 @@ contains
             words(l%column(c, k, kind)) = word
          end do
       end do
-      line = in_columns(words)
-      line(:name_length) = ' '//phrase(kind_words(kind), polish)
+      line = in_columns(words, kind)
+      line(:names_length(kind)) = ' '//phrase(kind_words(kind), polish)
    end function column_names
 
    !> The units of the columns over rows of the given `kind`; where one is too long for its column, all that they are
@@ -330,26 +347,44 @@ contains
          do c = 1, 3
             if (l%column(c, k, kind) == 0) cycle
             first(l%column(c, k, kind)) = unit(c)
-            if (maxval(len_trim(unit)) + len_trim(per(2)) < numeral_length) then
-               first(l%column(c, k, kind)) = trim(unit(c))//per(k)
-            else
-               second(l%column(c, k, kind)) = per(k)
-            end if
+            associate (of_rate => per(order_of(kind, k)))
+               if (maxval(len_trim(unit)) + len_trim(per(2)) < numeral_length) then
+                  first(l%column(c, k, kind)) = trim(unit(c))//of_rate
+               else
+                  second(l%column(c, k, kind)) = of_rate
+               end if
+            end associate
          end do
       end do
-      lines(1) = in_columns(first)
-      lines(2) = in_columns(second)
+      lines(1) = in_columns(first, kind)
+      lines(2) = in_columns(second, kind)
    end function unit_lines
 
-   !> `words` (9), each ending where the numbers of its column end.
-   pure function in_columns(words) result(line)
+   !> The order of the derivative in whose unit number (c, `k`) of a row of the given `kind` is: numbers of poles and
+   !> curves are places.
+   pure integer function order_of(kind, k)
+      integer, intent(in) :: kind, k
+
+      order_of = merge(0, k, kind >= request_pole)
+   end function order_of
+
+   !> Characters before the numbers of a row of the given `kind`; two names before those of a pole or curve.
+   pure integer function names_length(kind)
+      integer, intent(in) :: kind
+
+      names_length = merge(2, 1, kind >= request_pole)*name_length
+   end function names_length
+
+   !> `words` (9), each ending where the numbers of its column end in rows of the given `kind`.
+   pure function in_columns(words, kind) result(line)
       character(*), intent(in) :: words(9)
+      integer, intent(in) :: kind
       character(row_length) :: line
       integer :: k
 
       line = ''
-      do k = 1, 9
-         associate (last => name_length + numeral_length*k, word => words(k)(:len_trim(words(k))))
+      do k = 1, merge(7, 9, kind >= request_pole)
+         associate (last => names_length(kind) + numeral_length*k, word => words(k)(:len_trim(words(k))))
             line(last - len(word) + 1:last) = word
          end associate
       end do
@@ -420,4 +455,13 @@ contains
       length = index(text(:room + 1), ': ', back=.true.)
       if (length < room/2) length = index(text(:room + 1), ' ', back=.true.) - 1
    end function length_of_part
+
+   !> `text` at the end of `n` characters, or of more if it is longer.
+   pure function right(text, n) result(field)
+      character(*), intent(in) :: text
+      integer, intent(in) :: n
+      character(max(n, len(text))) :: field
+
+      field = repeat(' ', len(field) - len(text))//text
+   end function right
 end module listing_layout

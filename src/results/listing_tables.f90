@@ -2,17 +2,17 @@
 module listing_tables
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
-   use mechanism, only: settings_t, request_t, request_link, request_pair, request_pole
+   use mechanism, only: request_t, request_link, request_pair, request_pole, request_curve
    use drives, only: drive_motion
-   use points, only: row_t
+   use points, only: row_t, has_number
+   use instant_centres, only: centre_finite, centre_infinite
    use sensitivities, only: worst_case, root_of_squares
    use set_motion, only: spread_t
    use text_output, only: output_t, put
    use numerals, only: put_fixed, put_whole, numeral_length
-   use known_digits, only: put_known, nothing_known
+   use known_digits, only: put_known, unknown_digit, nothing_known
    use listing_layout
-   use listing_centres, only: put_centre, put_centre_heads
-   use phrases, only: phrase, say_worst
+   use phrases, only: phrase, say_worst, say_at_rest, say_infinite
    implicit none
    private
    public :: listing_state_t, no_table, put_instant, put_times, put_requested, put_spreads, put_heads, time_text, &
@@ -187,30 +187,20 @@ contains
    end function known_text
 
    !> The `row` of `request`, of which `error` (3, 0:2) is unknown, with the digits `d`, under heads of its own where it
-   !> is another table's. `settings`: those of the set.
-   subroutine put_requested(o, l, d, settings, request, row, error, table)
+   !> is another table's.
+   subroutine put_requested(o, l, d, polish, request, row, error, table)
       type(output_t), intent(inout) :: o
       type(layout_t), intent(in) :: l
       type(digits_t), intent(in) :: d
-      class(settings_t), intent(in) :: settings
+      logical, intent(in) :: polish
       type(request_t), intent(in) :: request
       type(row_t), intent(in) :: row
       real(wp), intent(in) :: error(3, 0:2)
       type(listing_state_t), intent(inout) :: table
 
-      if (row%kind < request_pole) then
-         call put_heads(o, l, d, merge(l%links_table, row%kind, row%kind == request_link), table)
-         call put_row(o, l, d, row, request%angle_alone, error, table)
-         return
-      end if
-      if (row%kind /= table%kind .or. table%power(1) /= d%power(1, 0)) then
-         call put_centre_heads(o, d, settings, row%kind)
-         table%kind = row%kind
-         table%power(1) = d%power(1, 0)
-         table%lines = 0
-      end if
-      call put_centre(o, l, d, settings%polish, row, error, table%masked)
-      table%lines = table%lines + 1
+      call put_heads(o, l, d, merge(l%links_table, row%kind, row%kind == request_link), table)
+      if (row%kind < request_pole) call put_row(o, l, d, row, request%angle_alone, error, table)
+      if (row%kind >= request_pole) call put_centre(o, l, d, polish, row, error, table)
    end subroutine put_requested
 
    !> What the tolerances do to the `row` of `request`, with its sensitivities `s`: the worst case, and the root of the
@@ -311,4 +301,68 @@ contains
       call put(o, line(:last))
       table%lines = table%lines + 1
    end subroutine put_row
+
+   !> The `row` of a pole or curve, with the digits `d`; `error` (3, 0:2) is unknown of its numbers.
+   subroutine put_centre(o, l, d, polish, row, error, table)
+      type(output_t), intent(inout) :: o
+      type(layout_t), intent(in) :: l
+      type(digits_t), intent(in) :: d
+      logical, intent(in) :: polish
+      type(row_t), intent(in) :: row
+      real(wp), intent(in) :: error(3, 0:2)
+      type(listing_state_t), intent(inout) :: table
+      character(row_length) :: line
+      integer :: c, k, last
+
+      associate (first => index(row%name, ' '))
+         line = ' '//row%name(:first)
+         line(name_length + 1:) = ' '//row%name(first + 1:)
+      end associate
+      do k = 0, 2
+         do c = 1, 3
+            if (l%column(c, k, row%kind) == 0) cycle
+            last = names_length(row%kind) + numeral_length*l%column(c, k, row%kind)
+            line(last - numeral_length + 1:last) = cell_of_centre(l, d, row, error, c, k, polish)
+         end do
+      end do
+      table%masked = table%masked .or. index(line(names_length(row%kind) + 1:), unknown_digit) > 0
+      call put(o, trim(line))
+      table%lines = table%lines + 1
+   end subroutine put_centre
+
+   !> Number (c, k) of the pole or curve `row`, of which `error` (3, 0:2) is unknown, or the word in its place. A pole
+   !> has a direction where it is at infinity, and where it may be there: then nothing is known of its place.
+   pure function cell_of_centre(l, d, row, error, c, k, polish) result(cell)
+      type(layout_t), intent(in) :: l
+      type(digits_t), intent(in) :: d
+      type(row_t), intent(in) :: row
+      real(wp), intent(in) :: error(3, 0:2)
+      integer, intent(in) :: c, k
+      logical, intent(in) :: polish
+      character(numeral_length) :: cell
+      real(wp) :: unit
+      logical :: is_direction
+      integer :: needed
+
+      unit = merge(l%angle, 1.0_wp, c == 3)
+      is_direction = row%kind == request_pole .and. c == 3
+      ! How much of a motion the number needs, in the values of `known`.
+      needed = 1
+      if (row%kind == request_curve) needed = merge(merge(1, 0, c == 3), 2, k == 0)
+      if (row%known < needed) then
+         cell = l%none
+      else if (is_direction .and. row%state == centre_finite .and. error(1, 0) < nothing_known) then
+         cell = ''
+      else if (error(c, k) >= nothing_known) then
+         cell = repeat(' ', numeral_length - 1)//unknown_digit
+      else if (has_number(row, c, k) .or. (is_direction .and. row%state == centre_finite)) then
+         associate (what => dimension_of(c))
+            call put_known(row%value(c, k)/unit, error(c, k)/unit, d%decimals(what, 0), d%power(what, 0), cell)
+         end associate
+      else
+         cell = phrase(say_at_rest, polish)
+         if (row%state == centre_infinite) cell = phrase(say_infinite, polish)
+         cell = adjustr(cell)
+      end if
+   end function cell_of_centre
 end module listing_tables
