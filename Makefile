@@ -46,6 +46,8 @@ KIND_MACROS := $(if $(filter single,$(KIND)),-DREAL_KIND=real32 -DLETTER=s,$(if 
 
 # Sources are found in the folders of src/ and tests/; the name of a file is that of its module or program.
 sources := $(sort $(shell find src -name '*.f90' -o -name '*.F90'))
+# Text that several modules include, each for its own kind of numbers.
+included := $(sort $(shell find src -name '*.inc'))
 helpers := $(filter-out %/funit.f90,$(sort $(shell find tests -name '*.f90')))
 suites  := $(sort $(shell find tests -name 'test_*.pf'))
 # Of the command alone: not in the library.
@@ -75,7 +77,7 @@ define build_in
 $(BUILD)/$(1)/%.o: %.f90 | $(BUILD)/$(1)
 	$$(call say,FC,$$<,$(1))$$(FC) $$(COMMON) $$($(1)) -J$(BUILD)/$(1) -c -o $$@ $$<
 $(BUILD)/$(1)/%.o: %.F90 | $(BUILD)/$(1)
-	$$(call say,FC,$$<,$(1))$$(FC) $$(COMMON) $$($(1)) $$(KIND_MACROS) -J$(BUILD)/$(1) -c -o $$@ $$<
+	$$(call say,FC,$$<,$(1))$$(FC) $$(COMMON) $$($(1)) $$(KIND_MACROS) $$(addprefix -I,$$(sort $$(dir $$(included)))) -J$(BUILD)/$(1) -c -o $$@ $$<
 $(BUILD)/$(1)/document_texts.o: $(BUILD)/document_texts.f90 | $(BUILD)/$(1)
 	$$(call say,FC,document_texts.f90,$(1))$$(FC) $$(COMMON) $$($(1)) -J$(BUILD)/$(1) -c -o $$@ $$<
 $(BUILD)/$(1)/explanations.o: $(BUILD)/$(1)/document_texts.o
@@ -98,7 +100,7 @@ $(BUILD)/document_texts.f90: docs/texts.awk docs/messages.md docs/cards.md
 # Who uses whom, read off the use statements.
 $(BUILD)/depends.mk: Makefile $(sources) $(helpers) $(suites) tests/depends.awk
 	@mkdir -p $(BUILD)
-	@awk -v build='$(BUILD)' -v builds='$(builds)' -f tests/depends.awk $(sources) $(helpers) $(suites) > $@.new && mv $@.new $@
+	@awk -v build='$(BUILD)' -v builds='$(builds)' -v included='$(included)' -f tests/depends.awk $(sources) $(helpers) $(suites) > $@.new && mv $@.new $@
 ifneq ($(MAKECMDGOALS),clean)
 include $(BUILD)/depends.mk
 endif
@@ -273,7 +275,7 @@ mutants: $(BUILD)/release/print_expected
 
 # Lines of code, types, thresholds and names of src/, with their limits.
 sizes:
-	@awk -v limits=tests/system/sizes.txt -f tests/system/sizes.awk $$(find src -name '*.[fF]90')
+	@awk -v limits=tests/system/sizes.txt -f tests/system/sizes.awk $(sources) $(included)
 
 TEST_LIB     := $(BUILD)/debug/libkinmat.a
 TEST_MODULES := $(BUILD)/debug

@@ -1,4 +1,4 @@
-# Which object needs which, from the use statements of sources and tests, as rules of make for the directories `builds` under
+# Which object needs which, from the use and include statements of sources and tests, as rules of make for the directories `builds` under
 # `build`; the names of the programs of tests/ with the modules of tests/ that each needs; and those that the unit tests
 # (*.pf) need, as `unit_helpers`.
 function reach(name,  list, n, i) {
@@ -14,13 +14,19 @@ FNR == 1 {
    else if (FILENAME ~ /^tests\//) helper[name] = 1
    else ours[name] = 1
 }
+$1 == "#include" { file = $2; gsub(/"/, "", file); includes[name] = includes[name] " " file }
 tolower($1) == "use" { used = $2; sub(/,.*/, "", used); uses[name] = uses[name] " " used }
 tolower($1) == "program" && name in helper { program[name] = 1 }
 END {
    directories = split(builds, directory, " ")
+   m = split(included, list, " ")
+   for (j = 1; j <= m; j++) { file = list[j]; sub(/^.*\//, "", file); path[file] = list[j] }
    for (i = 1; i <= count; i++) {
       name = names[i]
       if (name in suite) { reach(name); continue }
+      m = split(includes[name], list, " ")
+      for (j = 1; j <= m; j++) if (list[j] in path)
+         for (d = 1; d <= directories; d++) print build "/" directory[d] "/" name ".o: " path[list[j]]
       m = split(uses[name], list, " ")
       for (j = 1; j <= m; j++) if (list[j] in ours || list[j] in helper)
          for (d = 1; d <= directories; d++)

@@ -7,7 +7,8 @@ module block_bilinear
    use kinds, only: wp
    use complex_lu, only: find_null_space
    use blocks, only: blocks_t, loop_projection, loop_angles
-   use block_state, only: state_t, find_known_parts
+   use block_state, only: state_t
+   use block_equations, only: find_known_parts
    use isotropic, only: group_t, make_group, given, find_direction, linear_form, size_of_loop, i_unit
    use bilinear, only: bilinear_t, end_t
    implicit none

@@ -150,7 +150,7 @@ contains
       real(wp) :: value
 
       l = 0.0_wp
-      l(0) = cmplx(s%loop(m)%known(1, 0), s%loop(m)%known(2, 0), wp)
+      l(0) = cmplx(s%loop(m)%known(0)%x, s%loop(m)%known(0)%y, wp)
       do k = b%loops(m)%first_own, b%loops(m)%last_vector
          associate (d => b%body_vectors(k))
             call find_direction(f, d%column, d%orientation, s, at, factor)

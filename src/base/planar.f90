@@ -3,6 +3,7 @@
 !> respect to time, and how these change, to first order, with what they depend on.
 module planar
    use kinds, only: wp
+   use number_types, only: vector_t
    implicit none
    private
    public :: pi, degree, in_degrees, without_turns
@@ -14,10 +15,6 @@ module planar
    real(wp), parameter :: degree = pi/180.0_wp
    !> The largest power of 10 without a rounding error: its power of 5 fits in the digits of `wp`.
    integer, parameter :: exact_power = int(digits(1.0_wp)*(log10(2.0)/log10(5.0)))
-
-   type :: vector_t
-      real(wp) :: x = 0.0_wp, y = 0.0_wp
-   end type vector_t
 
 contains
 

@@ -13,7 +13,8 @@ module block_engine
    use predictor, only: history_t, new_history, forget, remember, predict, largest_change, uncertain_part
    use blocks, only: blocks_t, numbers_t, moving_blocks, needed_blocks, iterated_unknowns, largest_known
    use block_numbers, only: put_numbers
-   use block_state, only: unknown_t, loop_state_t, state_t, new_state
+   use number_types, only: vector_t, unknown_t, loop_state_t
+   use block_state, only: state_t, new_state
    use block_solver, only: workspace_t, make_workspace, solve_direct, solve_equations
    use first_position, only: solve_first_block, remove_turns
    use singular_place, only: settle
@@ -187,8 +188,8 @@ contains
       call forget(e%history)
       e%state%u = unknown_t()
       e%state%loop = loop_state_t()
-      e%state%own = 0.0_wp
-      e%state%guide = 0.0_wp
+      e%state%own = vector_t()
+      e%state%guide = vector_t()
       e%state%drive_value = 0.0_wp
       e%state%excursion = 0.0_wp
       e%t = 0.0_wp

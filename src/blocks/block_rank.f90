@@ -7,8 +7,8 @@ module block_rank
    use kinds, only: wp
    use lapack, only: gesvd, getrf
    use blocks, only: blocks_t
-   use block_state, only: state_t, set_values, values_of, find_known_parts
-   use block_equations, only: assemble_dense, right_hand_side
+   use block_state, only: state_t, set_values, values_of
+   use block_equations, only: find_known_parts, assemble_dense, right_hand_side
    implicit none
    private
    public :: values_t, decomposed, redundant_rows, moving_unknowns, jacobian_of, relative_sign, min_direction, &

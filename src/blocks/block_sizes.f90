@@ -105,7 +105,7 @@ contains
             end do
             if (g%kind == loop_projection) then
                associate (turn => change(g%orientation_column))
-                  second = second + turn*(2.0_wp*first + norm2(s%loop(m)%closure_error)*turn)
+                  second = second + turn*(2.0_wp*first + length_of(s%loop(m)%closure_error)*turn)
                end associate
             end if
             if (g%row_x > 0) bounds(g%row_x) = second

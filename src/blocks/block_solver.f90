@@ -20,8 +20,8 @@ module block_solver
       ended_inconsistent, is_solved, note_closure_error, is_inconsistent, contradict
    use blocks, only: blocks_t, block_t, block_numbers_t
    use block_state, only: unknown_t, state_t, set_direction, find_direction, rotate_direction, set_rates, &
-      set_accelerations, find_known_parts
-   use block_equations, only: assemble_with_velocities, right_hand_side
+      set_accelerations
+   use block_equations, only: find_known_parts, assemble_with_velocities, right_hand_side
    use block_sizes, only: largest_rates, rounded_sizes, second_order_bounds
    implicit none
    private

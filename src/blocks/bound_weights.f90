@@ -4,8 +4,8 @@ module bound_weights
    use planar, only: vector_t
    use blocks, only: body_vector_t
    use block_matrix, only: solve_first, solve_many
-   use block_state, only: unknown_t, find_known_parts
-   use block_equations, only: assemble_block
+   use block_state, only: unknown_t
+   use block_equations, only: find_known_parts, assemble_block
    use block_engine, only: block_engine_t
    use rounding_parts, only: is_plain_dyad, dyad_jacobian
    use rounding_changes, only: rounding_response_t

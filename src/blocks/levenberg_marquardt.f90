@@ -7,8 +7,8 @@ module levenberg_marquardt
    use klu, only: klu_t
    use convergence, only: convergence_t, note_closure_error
    use blocks, only: blocks_t
-   use block_state, only: state_t, set_values, values_of, find_known_parts
-   use block_equations, only: assemble_dense
+   use block_state, only: state_t, set_values, values_of
+   use block_equations, only: find_known_parts, assemble_dense
    implicit none
    private
    public :: levenberg_marquardt_solve, levenberg_marquardt_held, golden_numbers

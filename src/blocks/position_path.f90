@@ -8,8 +8,8 @@ module position_path
    use kinds, only: wp
    use blocks, only: blocks_t
    use block_matrix, only: solve_first, solve_again
-   use block_state, only: state_t, set_values, values_of, find_known_parts
-   use block_equations, only: assemble_block
+   use block_state, only: state_t, set_values, values_of
+   use block_equations, only: find_known_parts, assemble_block
    use block_solver, only: workspace_t
    use levenberg_marquardt, only: golden_numbers
    implicit none

@@ -233,15 +233,17 @@ contains
       real(wp) :: g(2, 0:2), e(2)
       integer :: k
 
-      g = s%loop(m)%known
+      do k = 0, 2
+         g(:, k) = xy(s%loop(m)%known(k))
+      end do
       do k = b%loops(m)%first_own, b%loops(m)%last_vector
          associate (f => s%u(b%body_vectors(k)%orientation))
-            call add_rotating(s%own(1, k), s%own(2, k), f%rate, f%acceleration, g(:, 0), g(:, 1), g(:, 2))
+            call add_rotating(s%own(k)%x, s%own(k)%y, f%rate, f%acceleration, g(:, 0), g(:, 1), g(:, 2))
          end associate
       end do
       do k = b%loops(m)%first_slide, b%loops(m)%last_slide
          associate (f => s%u(b%slides(k)%orientation), u => s%u(b%slides(k)%unknown))
-            e = s%guide(:, k)
+            e = xy(s%guide(k))
             g = g + scaled([u%value, u%rate, u%acceleration], turning(e, [f%value, f%rate, f%acceleration]))
          end associate
       end do

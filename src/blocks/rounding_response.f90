@@ -17,10 +17,10 @@ module rounding_response
    use motion, only: motion_t, new_motion
    use blocks, only: row_t, largest_known
    use block_matrix, only: solve_first, solve_again, solve_many
-   use block_state, only: new_state, find_known_parts
+   use block_state, only: new_state
    use block_solver, only: make_workspace, solve_block
    use convergence, only: convergence_t, is_solved
-   use block_equations, only: assemble_block, right_hand_side
+   use block_equations, only: find_known_parts, assemble_block, right_hand_side
    use block_engine, only: block_engine_t
    use link_motion, only: chain_link_t, mark_links, missing_nothing, missing_all
    use drives, only: drive_motion

@@ -7,8 +7,8 @@ module singularity
    use kinds, only: wp
    use motion, only: singular_unclear, singular_change, singular_dead
    use blocks, only: blocks_t, largest_known
-   use block_state, only: state_t, find_known_parts
-   use block_equations, only: right_hand_side
+   use block_state, only: state_t
+   use block_equations, only: find_known_parts, right_hand_side
    use block_sizes, only: drive_speed
    use block_rank, only: values_t, decomposed, moving_unknowns
    use singular_place, only: max_rows

@@ -357,11 +357,11 @@ contains
       class is (block_method_t)
          do u = 1, e%blocks%unknowns
             associate (x => e%state%u(u))
-               x%value = l%u(u)%now(i, 1)
-               x%rate = l%u(u)%now(i, 2)
-               x%acceleration = l%u(u)%now(i, 3)
-               x%c = l%u(u)%now(i, 4)
-               x%s = l%u(u)%now(i, 5)
+               x%value = l%u(u)%value(i)
+               x%rate = l%u(u)%rate(i)
+               x%acceleration = l%u(u)%acceleration(i)
+               x%c = l%u(u)%c(i)
+               x%s = l%u(u)%s(i)
             end associate
          end do
          do k = 1, size(l%moving)

@@ -3,12 +3,12 @@
 !> back to it the motion of one of its last instants.
 module lane_state
    use kinds, only: wp
-   use planar, only: xy
    use mechanism, only: own_predictor
    use blocks, only: blocks_t, block_loop_t
    use drives, only: law_t
    use block_engine, only: block_engine_t
    use lane_sines, only: width
+   use lane_types, only: vector_t, unknown_t, row_numbers_t, loop_numbers_t, loop_state_t
    use lane_elimination, only: max_order
    implicit none
    private
@@ -17,34 +17,17 @@ module lane_state
    !> Motions that a lane remembers: the last three are needed to predict, and two before to go back to.
    integer, parameter :: depth = 5
 
-   !> An unknown. What is used together stands together: to find it takes less than in arrays of their own.
-   type :: lane_unknown_t
-      real(wp) :: now(width, 5) = 0.0_wp                !< found last, as `unknown_t`: value, rate, acceleration, c, s
-      real(wp) :: past(width, 3, 0:depth - 1) = 0.0_wp  !< those remembered, by slots
-   end type lane_unknown_t
+   !> The motions of an unknown that are remembered, by slots.
+   type :: lane_past_t
+      real(wp) :: motion(width, 3, 0:depth - 1) = 0.0_wp   !< value, rate, acceleration
+   end type lane_past_t
 
    !> A block.
    type :: lane_block_t
       real(wp), dimension(width) :: lipschitz = 0.0_wp, coarse = 1.0_wp, sign_of = 1.0_wp
-      real(wp) :: constant(width) = 0.0_wp              !< of the equation of a direct one
+      logical :: has_right_sides = .false.              !< in any lane not all its equations are = 0
       real(wp), dimension(width, 0:depth - 1) :: pivot = 1.0_wp, inverse = 1.0_wp   !< as in `block_engine`, by slots
    end type lane_block_t
-
-   !> A body vector, or the direction of a slide.
-   type :: lane_vector_t
-      real(wp) :: d(width, 2) = 0.0_wp                  !< in its axes
-      real(wp) :: turned(width, 2) = 0.0_wp             !< rotated by its unknown, if that is one of the block
-   end type lane_vector_t
-
-   !> A loop.
-   type :: lane_loop_t
-      real(wp) :: ground(width, 2) = 0.0_wp, direction(width, 2) = 0.0_wp
-      real(wp) :: constant(width, 2) = 0.0_wp           !< of its equations
-      integer :: drive(2) = 0                           !< of these; 0: none
-      !> What earlier blocks give, and its derivatives: the second with all that holds no unknown second derivative.
-      real(wp) :: known(width, 2, 0:2) = 0.0_wp
-      real(wp) :: open(width, 2) = 0.0_wp, f(width, 2) = 0.0_wp   !< closure error, direction of the projection
-   end type lane_loop_t
 
    !> Lengths of each lane in the unit of its own engine. Of `blocks` all that is no number of kind `wp` counts.
    type :: lanes_t
@@ -58,10 +41,15 @@ module lane_state
       real(wp) :: t(width, 0:depth - 1) = 0.0_wp        !< times, by slots
       real(wp) :: excursion(width) = 0.0_wp             !< of the drives in a step
       integer :: slot(0:depth - 1) = [0, 1, 2, 3, 4]    !< of the motions remembered, the latest first
-      type(lane_unknown_t), allocatable :: u(:)         !< (0:unknowns)
+      type(unknown_t), allocatable :: u(:)              !< (0:unknowns) found last
+      type(lane_past_t), allocatable :: past(:)         !< (0:unknowns)
       type(lane_block_t), allocatable :: block(:)
-      type(lane_vector_t), allocatable :: vector(:), slide(:)
-      type(lane_loop_t), allocatable :: loop(:)
+      ! Numbers and state, as in `numbers_t` and `state_t`.
+      type(row_numbers_t), allocatable :: rows(:)
+      type(loop_numbers_t), allocatable :: numbers(:)   !< (loops)
+      type(vector_t), allocatable :: d(:), e(:)         !< (body vectors), (slides) in their axes
+      type(vector_t), allocatable :: own(:), guide(:)   !< these, rotated by angles of the block
+      type(loop_state_t), allocatable :: loop(:)
    end type lanes_t
 
 contains
@@ -86,7 +74,6 @@ contains
    subroutine make_lanes(l, e)
       type(lanes_t), intent(out) :: l
       type(block_engine_t), intent(in) :: e
-      integer :: i, m
 
       l%blocks = e%blocks
       l%moving = e%moving
@@ -94,14 +81,15 @@ contains
       associate (b => l%blocks, drives => size(e%laws))
          allocate (l%laws(drives, width), l%polynomial(width, 3, drives), l%unit_of(width, drives))
          allocate (l%drive(width, 0:2, 0:drives), source=0.0_wp)
-         allocate (l%u(0:b%unknowns), l%block(size(b%list)), l%loop(size(b%loops)))
-         allocate (l%vector(size(b%body_vectors)), l%slide(size(b%slides)))
-         do i = 1, size(b%list)
-            do m = b%list(i)%first_loop, b%list(i)%last_loop
-               if (b%loops(m)%row_x > 0) l%loop(m)%drive(1) = b%rows(b%list(i)%first_row + b%loops(m)%row_x - 1)%drive
-               if (b%loops(m)%row_y > 0) l%loop(m)%drive(2) = b%rows(b%list(i)%first_row + b%loops(m)%row_y - 1)%drive
-            end do
-         end do
+         allocate (l%past(0:b%unknowns), l%block(size(b%list)))
+         allocate (l%u(0:b%unknowns), source=unknown_t(0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp))
+         associate (none => vector_t(0.0_wp, 0.0_wp))
+            allocate (l%rows(size(b%rows)), source=row_numbers_t(0.0_wp, 1.0_wp))
+            allocate (l%numbers(size(b%loops)), source=loop_numbers_t(none, none, 1.0_wp, 1.0_wp))
+            allocate (l%d(size(b%body_vectors)), l%own(size(b%body_vectors)), l%e(size(b%slides)), &
+               l%guide(size(b%slides)), source=none)
+            allocate (l%loop(size(b%loops)), source=loop_state_t(none, none, none))
+         end associate
       end associate
    end subroutine make_lanes
 
@@ -132,7 +120,11 @@ contains
       call load_numbers(l, lane, e%blocks)
       do i = 0, e%blocks%unknowns
          associate (u => e%state%u(i))
-            l%u(i)%now(lane, :) = [u%value, u%rate, u%acceleration, u%c, u%s]
+            l%u(i)%value(lane) = u%value
+            l%u(i)%rate(lane) = u%rate
+            l%u(i)%acceleration(lane) = u%acceleration
+            l%u(i)%c(lane) = u%c
+            l%u(i)%s(lane) = u%s
          end associate
       end do
       call load_history(l, lane, e)
@@ -143,28 +135,31 @@ contains
       type(lanes_t), intent(inout) :: l
       integer, intent(in) :: lane
       type(blocks_t), intent(in) :: b
-      integer :: i, m
+      integer :: i
 
       do i = 1, size(b%list)
-         l%block(i)%lipschitz(lane) = b%numbers%blocks(i)%lipschitz
-         l%block(i)%coarse(lane) = max(1.0_wp, b%numbers%blocks(i)%coarse)
-         associate (numbers => b%numbers%rows(b%list(i)%first_row:b%list(i)%last_row))
-            if (b%list(i)%direct) l%block(i)%constant(lane) = numbers(1)%constant
-            do m = b%list(i)%first_loop, b%list(i)%last_loop
-               if (b%loops(m)%row_x > 0) l%loop(m)%constant(lane, 1) = numbers(b%loops(m)%row_x)%constant
-               if (b%loops(m)%row_y > 0) l%loop(m)%constant(lane, 2) = numbers(b%loops(m)%row_y)%constant
-            end do
+         associate (numbers => b%numbers%blocks(i))
+            l%block(i)%lipschitz(lane) = numbers%lipschitz
+            l%block(i)%coarse(lane) = max(1.0_wp, numbers%coarse)
+            l%block(i)%has_right_sides = l%block(i)%has_right_sides .or. numbers%has_right_sides
          end associate
       end do
+      do i = 1, size(b%rows)
+         l%rows(i)%constant(lane) = b%numbers%rows(i)%constant
+      end do
       do i = 1, size(b%body_vectors)
-         l%vector(i)%d(lane, :) = [b%numbers%d(i)%x, b%numbers%d(i)%y]
+         l%d(i)%x(lane) = b%numbers%d(i)%x
+         l%d(i)%y(lane) = b%numbers%d(i)%y
       end do
       do i = 1, size(b%loops)
-         l%loop(i)%ground(lane, :) = xy(b%numbers%loops(i)%ground)
-         l%loop(i)%direction(lane, :) = xy(b%numbers%loops(i)%direction)
+         l%numbers(i)%ground%x(lane) = b%numbers%loops(i)%ground%x
+         l%numbers(i)%ground%y(lane) = b%numbers%loops(i)%ground%y
+         l%numbers(i)%direction%x(lane) = b%numbers%loops(i)%direction%x
+         l%numbers(i)%direction%y(lane) = b%numbers%loops(i)%direction%y
       end do
       do i = 1, size(b%slides)
-         l%slide(i)%d(lane, :) = xy(b%numbers%e(i))
+         l%e(i)%x(lane) = b%numbers%e(i)%x
+         l%e(i)%y(lane) = b%numbers%e(i)%y
       end do
    end subroutine load_numbers
 
@@ -180,7 +175,7 @@ contains
          l%t(lane, slot) = e%history%t(k)
          do i = 1, size(l%predicted)
             associate (past => e%history%past(l%predicted(i)))
-               l%u(l%predicted(i))%past(lane, :, slot) = [past%value, past%rate(k), past%acceleration(k)]
+               l%past(l%predicted(i))%motion(lane, :, slot) = [past%value, past%rate(k), past%acceleration(k)]
             end associate
          end do
       end do
@@ -203,9 +198,9 @@ contains
             e%history%t(k) = l%t(lane, slot)
             do i = 1, size(l%predicted)
                u = l%predicted(i)
-               if (k == 0) e%history%past(u)%value = l%u(u)%past(lane, 1, slot)
-               e%history%past(u)%rate(k) = l%u(u)%past(lane, 2, slot)
-               e%history%past(u)%acceleration(k) = l%u(u)%past(lane, 3, slot)
+               if (k == 0) e%history%past(u)%value = l%past(u)%motion(lane, 1, slot)
+               e%history%past(u)%rate(k) = l%past(u)%motion(lane, 2, slot)
+               e%history%past(u)%acceleration(k) = l%past(u)%motion(lane, 3, slot)
             end do
          end associate
       end do

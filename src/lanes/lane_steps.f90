@@ -12,8 +12,8 @@ module lane_steps
    use lane_sines, only: width, max_angle
    use lane_elimination, only: max_order, correct, substitute, judge_factors
    use lane_state, only: lanes_t, lane_block_t, depth
-   use lane_equations, only: set_lane_direction, find_lane_known, assemble_lanes
-   use lane_rates, only: lane_accelerations
+   use lane_types, only: unknown_t
+   use lane_equations, only: set_lane_direction, find_lane_known, assemble_lanes, lane_accelerations
    implicit none
    private
    public :: judgement_t, solve_lanes, accept_lanes, keep_lane
@@ -96,9 +96,9 @@ contains
 
       step = t - l%t(:, l%slot(0))
       do k = 1, size(l%predicted)
-         associate (u => l%u(l%predicted(k)))
-            call predict_one(step, u%past(1, 1, l%slot(0)), u%past(1, 1, l%slot(1)), u%past(1, 1, l%slot(2)), u%now, &
-               j%refused)
+         associate (past => l%past(l%predicted(k))%motion)
+            call predict_one(step, past(1, 1, l%slot(0)), past(1, 1, l%slot(1)), past(1, 1, l%slot(2)), &
+               l%u(l%predicted(k))%value, j%refused)
          end associate
          call set_lane_direction(l, l%predicted(k))
       end do
@@ -127,23 +127,21 @@ contains
 
       u = l%blocks%unknown(l%blocks%list(i)%first)
       associate (row => l%blocks%rows(l%blocks%list(i)%first_row))
-         call take_drive(real(row%sign_of, wp), l%block(i)%constant, l%drive(1, 0, row%drive), &
-            l%u(row%other)%now, l%u(u)%now)
+         call take_drive(real(row%sign_of, wp), l%rows(l%blocks%list(i)%first_row)%constant, l%drive(1, 0, row%drive), &
+            l%u(row%other), l%u(u))
       end associate
       call set_lane_direction(l, u)
    end subroutine solve_direct
 
    !> u = other + sign_of (constant + drive), and its derivatives.
    pure subroutine take_drive(sign_of, constant, drive, other, u)
-      real(wp), intent(in) :: sign_of, constant(width), drive(width, 0:2), other(width, 3)
-      real(wp), intent(inout) :: u(width, 3)
-      integer :: l
+      real(wp), intent(in) :: sign_of, constant(width), drive(width, 0:2)
+      type(unknown_t), intent(in) :: other
+      type(unknown_t), intent(inout) :: u
 
-      do l = 1, width
-         u(l, 1) = other(l, 1) + sign_of*(constant(l) + drive(l, 0))
-         u(l, 2) = other(l, 2) + sign_of*drive(l, 1)
-         u(l, 3) = other(l, 3) + sign_of*drive(l, 2)
-      end do
+      u%value = other%value + sign_of*(constant + drive(:, 0))
+      u%rate = other%rate + sign_of*drive(:, 1)
+      u%acceleration = other%acceleration + sign_of*drive(:, 2)
    end subroutine take_drive
 
    !> Solves block `i`, of `n` unknowns: position, velocities, accelerations.
@@ -152,26 +150,26 @@ contains
       integer, intent(in) :: i, n
       type(judgement_t), intent(inout) :: j
       ! Of fixed size: what has to be made for each block takes longer than its elimination.
-      real(wp) :: a(width, 0:max_order**2), d(width, 0:max_order), v(width, 0:max_order), exchanged(width, 3), &
+      real(wp) :: a(width, max_order**2), d(width, max_order), v(width, max_order), exchanged(width, 3), &
          start(width, max_order), change(width)
       integer :: k
 
       do k = 1, n
-         start(:, k) = l%u(l%blocks%unknown(l%blocks%list(i)%first + k - 1))%now(:, 1)
+         start(:, k) = l%u(l%blocks%unknown(l%blocks%list(i)%first + k - 1))%value
       end do
       call find_lane_known(l, i)
       call iterate(l, i, n, start, a, d, v, exchanged, j)
       change = 0.0_wp
       do k = 1, n
          associate (u => l%blocks%unknown(l%blocks%list(i)%first + k - 1))
-            call turn(u <= l%blocks%orientations, d(1, k), v(1, k), start(1, k), l%u(u)%now, change)
+            call turn(u <= l%blocks%orientations, d(1, k), v(1, k), start(1, k), l%u(u), change)
          end associate
       end do
-      call judge(n, a(1, 1), exchanged, change, l%slot(0), l%slot(depth - 1), l%block(i), j)
+      call judge(n, a, exchanged, change, l%slot(0), l%slot(depth - 1), l%block(i), j)
       call lane_accelerations(l, i, n, v)
-      call substitute(n, a(1, 1), exchanged, v(1, 1))
+      call substitute(n, a, exchanged, v)
       do k = 1, n
-         l%u(l%blocks%unknown(l%blocks%list(i)%first + k - 1))%now(:, 3) = v(:, k)
+         l%u(l%blocks%unknown(l%blocks%list(i)%first + k - 1))%acceleration = v(:, k)
       end do
    end subroutine solve_block
 
@@ -182,7 +180,7 @@ contains
       type(lanes_t), intent(inout) :: l
       integer, intent(in) :: i, n
       real(wp), intent(in) :: start(width, n)
-      real(wp), intent(out) :: a(width, 0:n*n), d(width, 0:n), v(width, 0:n)
+      real(wp), intent(inout) :: a(width, n*n), d(width, n), v(width, n)
       real(wp), intent(inout) :: exchanged(width, 3)
       type(judgement_t), intent(inout) :: j
       real(wp) :: u(width, max_order), going(width)
@@ -193,12 +191,12 @@ contains
          do k = 1, merge(0, n, iteration == 1)
             associate (unknown => l%blocks%unknown(l%blocks%list(i)%first + k - 1))
                u(:, k) = u(:, k) - merge(d(:, k), 0.0_wp, going > 0.5_wp)
-               l%u(unknown)%now(:, 1) = u(:, k)
+               l%u(unknown)%value = u(:, k)
                call set_lane_direction(l, unknown)
             end associate
          end do
          call assemble_lanes(l, i, n, a, d, v)
-         call correct(n, l%block(i)%coarse, u, a(1, 1), exchanged, d(1, 1), v(1, 1), going)
+         call correct(n, l%block(i)%coarse, u, a, exchanged, d, v, going)
          if (sum(going) < 0.5_wp) return
          going = merge(going, 0.0_wp, j%refused < 0.5_wp)
          if (sum(going) < 0.5_wp) return
@@ -211,21 +209,22 @@ contains
    pure subroutine turn(is_angle, d, v, start, u, change)
       logical, intent(in) :: is_angle
       real(wp), intent(in) :: d(width), v(width), start(width)
-      real(wp), intent(inout) :: u(width, 5), change(width)
+      type(unknown_t), intent(inout) :: u
+      real(wp), intent(inout) :: change(width)
       real(wp) :: x
       integer :: l
 
       do l = 1, width
-         x = u(l, 1) - d(l)
-         u(l, 1) = x
-         u(l, 2) = v(l)
+         x = u%value(l) - d(l)
+         u%value(l) = x
+         u%rate(l) = v(l)
          change(l) = max(change(l), abs(x - start(l)))
       end do
       if (.not. is_angle) return
       do l = 1, width
-         x = u(l, 4)
-         u(l, 4) = x + d(l)*u(l, 5)
-         u(l, 5) = u(l, 5) - d(l)*x
+         x = u%c(l)
+         u%c(l) = x + d(l)*u%s(l)
+         u%s(l) = u%s(l) - d(l)*x
       end do
    end subroutine turn
 
@@ -273,23 +272,18 @@ contains
       l%slot = [l%slot(depth - 1), l%slot(:depth - 2)]
       l%t(:, l%slot(0)) = t
       do k = 1, size(l%predicted)
-         associate (u => l%u(l%predicted(k)))
-            call remember(u%now, u%past(1, 1, l%slot(0)))
-         end associate
+         call remember(l%u(l%predicted(k)), l%past(l%predicted(k))%motion(1, 1, l%slot(0)))
       end do
    end subroutine accept_lanes
 
    !> Copies value, rate and acceleration.
    pure subroutine remember(u, past)
-      real(wp), intent(in) :: u(width, 3)
+      type(unknown_t), intent(in) :: u
       real(wp), intent(inout) :: past(width, 3)
-      integer :: l
 
-      do l = 1, width
-         past(l, 1) = u(l, 1)
-         past(l, 2) = u(l, 2)
-         past(l, 3) = u(l, 3)
-      end do
+      past(:, 1) = u%value
+      past(:, 2) = u%rate
+      past(:, 3) = u%acceleration
    end subroutine remember
 
    !> Puts `lane` back to its latest motion, as if that had been found last.
@@ -299,8 +293,10 @@ contains
       integer :: k
 
       do k = 1, size(l%predicted)
-         associate (u => l%u(l%predicted(k)))
-            u%now(lane, :3) = u%past(lane, :, l%slot(0))
+         associate (u => l%u(l%predicted(k)), past => l%past(l%predicted(k))%motion(lane, :, l%slot(0)))
+            u%value(lane) = past(1)
+            u%rate(lane) = past(2)
+            u%acceleration(lane) = past(3)
          end associate
       end do
       associate (next => l%slot(depth - 1))

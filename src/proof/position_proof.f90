@@ -13,8 +13,8 @@ module position_proof
    use mechanism, only: mechanism_t
    use law_bounds, only: bounds_t, bounds_of
    use blocks, only: blocks_t
-   use block_state, only: state_t, new_state, set_direction, find_known_parts
-   use block_equations, only: assemble_dense, right_hand_side
+   use block_state, only: state_t, new_state, set_direction
+   use block_equations, only: find_known_parts, assemble_dense, right_hand_side
    use block_engine, only: block_engine_t
    use proof_data, only: proof_data_t, new_proof_data, table_errors, rounding
    use row_bounds, only: jets_t, new_jets, note_turn_error, bound_rows, bound_changes, bound_jacobian

@@ -17,8 +17,8 @@ module tube_proof
    use kinds, only: wp
    use law_bounds, only: bounds_t, bounds_of
    use blocks, only: blocks_t, block_t
-   use block_state, only: set_direction, find_known_parts
-   use block_equations, only: assemble_dense
+   use block_state, only: set_direction
+   use block_equations, only: find_known_parts, assemble_dense
    use block_engine, only: block_engine_t
    use proof_data, only: rounding
    use row_bounds, only: turn, bound_loops, bound_changes, bound_jacobian, of_all, highest

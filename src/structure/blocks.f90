@@ -10,7 +10,7 @@
 !> on, and no other; and of these again and again only what a drive moves.
 module blocks
    use kinds, only: wp
-   use planar, only: vector_t
+   use number_types, only: vector_t, row_numbers_t, loop_numbers_t
    use klu, only: pattern_t
    use block_matrix, only: shape_t
    use links_tree, only: tree_t
@@ -75,18 +75,6 @@ module blocks
       real(wp) :: coarse = 1.0_wp                 !< the largest of its loops'
       real(wp) :: lipschitz = 0.0_wp              !< bounds the change of its Jacobian over that of its unknowns
    end type block_numbers_t
-
-   type :: row_numbers_t
-      real(wp) :: constant = 0.0_wp               !< in radians or the unit below
-      real(wp) :: unit = 1.0_wp                   !< of its lengths, in that of the mechanism
-   end type row_numbers_t
-
-   type :: loop_numbers_t
-      type(vector_t) :: direction                 !< projection: in the axes of its orientation
-      type(vector_t) :: ground                    !< the loop's fixed part
-      real(wp) :: unit = 1.0_wp                   !< of its lengths: see block_numbers
-      real(wp) :: coarse = 1.0_wp                 !< what is known over the unit, 1 at least
-   end type loop_numbers_t
 
    !> What the numbers of the cards make of the blocks.
    type :: numbers_t

@@ -209,7 +209,7 @@ rm -f "$place/result" "$place/uncompiled"
 : > "$place/result"
 prepare || exit 3
 (cd "$place/base" &&
-   $awk -v seed="$SEED" -v wanted="$N" -v all="$ONLY" -f tests/mutants/mutate.awk ${FILES:-$(find src -name '*.f90' -o -name '*.F90' | sort)}) |
+   $awk -v seed="$SEED" -v wanted="$N" -v all="$ONLY" -f tests/mutants/mutate.awk ${FILES:-$(find src -name '*.f90' -o -name '*.F90' -o -name '*.inc' | sort)}) |
    $awk -F "$tab" -v only="$ONLY" '
       BEGIN { if (only != "") while ((getline s < only) > 0) { split(s, f, "|"); asked[f[1] "|" f[2] "|" f[3]] = 1 } }
       only == "" || ($2 "|" $5 "|" $6) in asked' |

@@ -18,7 +18,7 @@ equal 'an arrow the wrong way and a circle are found' 'base/a: USES deck/b,b: IN
    "$(cd "$BUILD/order" && awk -v order='base deck' -f "$OLDPWD/tests/system/folders.awk" src/base/a.f90 src/deck/b.f90 src/deck/c.f90 |
    tr '\n' ',' | sed 's/,$//')"
 equal 'tests that cannot be run' '' "$(find tests/system -name '*.sh' ! -perm -u=x)"
-equal 'lines over 120 columns' '' "$(awk 'length > 120 { print FILENAME ":" FNR }' $sources)"
+equal 'lines over 120 columns' '' "$(awk 'length > 120 { print FILENAME ":" FNR }' $sources $(find src -name '*.inc'))"
 equal 'stop or print outside main' '' \
    "$(grep -nE '^ *((error +)?stop( |$)|print +[^=]*$|write *[(] *[*])' $sources | grep -v '^src/main.f90')"
 equal 'files over 600 lines' '' "$(for file in $sources; do awk 'END { if (NR > 600) print FILENAME }' "$file"; done)"
@@ -29,7 +29,7 @@ a remark about a deck: `job` does not name remark_jumps
 a remark about a deck: `mechanism/mechanism` names remark_jumps' \
    "$(awk -f tests/system/where_to_add.awk "$BUILD/order/README.md" $sources | LC_ALL=C sort)"
 # Sizes, and the limits that they keep: tests/system/sizes.txt.
-equal 'sizes above their limits' '' "$(awk -v over=1 -v limits=tests/system/sizes.txt -f tests/system/sizes.awk $sources)"
+equal 'sizes above their limits' '' "$(awk -v over=1 -v limits=tests/system/sizes.txt -f tests/system/sizes.awk $sources $(find src -name '*.inc'))"
 mkdir -p "$BUILD/order/sizes"
 cat > "$BUILD/order/sizes/a.f90" <<'CODE'
 module a
@@ -57,7 +57,7 @@ printf 'all 36\nsizes 35\ntypes 2\nthresholds 6\npublic 6\ntwice 1\nsmall 0\n' >
 equal 'sizes above their limits are found' "lines of code in src/sizes/: 36, at most 35 ($BUILD/order/sizes.txt)
 procedures of at most 20 lines with one caller in src/: 1, at most 0 ($BUILD/order/sizes.txt)" \
    "$(awk -v over=1 -v limits="$BUILD/order/sizes.txt" -f tests/system/sizes.awk "$BUILD"/order/sizes/[ab].f90)"
-equal 'procedures without a head comment' '' "$(awk -f tests/system/heads.awk $sources)"
+equal 'procedures without a head comment' '' "$(awk -f tests/system/heads.awk $sources $(find src -name '*.inc'))"
 printf '   !> Doc.\n   pure function a(x)\n   end function a\n\n   real(wp) function b(x, &\n      y)\n      integer :: x\n' > "$BUILD/order/heads.f90"
 equal 'a procedure without a head comment is found' "$BUILD/order/heads.f90:5: real(wp) function b(x, &" \
    "$(awk -f tests/system/heads.awk "$BUILD/order/heads.f90")"
@@ -87,7 +87,7 @@ equal 'make V=1 prints whole commands' 1 \
 equal 'make below a directory with blanks: its object' yes "$([ -s "$blanks/built/debug/cards.o" ] && echo yes)"
 equal 'a build directory with blanks is refused' 1 "$(plain_make -n BUILD="$PWD/a b" all 2>&1 | grep -c ' holds blanks')"
 rm -rf "$blanks"
-all="$sources $(find tests -name '*.f90' -o -name '*.pf')"
+all="$sources $(find src -name '*.inc') $(find tests -name '*.f90' -o -name '*.pf')"
 copy="$BUILD/order/copy.f90"
 printf '   subroutine copy(f, g)\n      type(following_t), intent(inout) :: f, g\n      f%%engine = g%%engine\n' > "$copy"
 equal 'copies of a class are found' "$copy:3: f%engine = g%engine" \

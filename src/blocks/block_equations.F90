@@ -1,0 +1,124 @@
+!> The equations of one block at a state: residual and Jacobian; and the right-hand sides for velocities and
+!> accelerations, that part of the first and second derivatives of the equations with respect to time that is known.
+!> Their text is equations.inc, here compiled for reals.
+!>
+!> With u_k = R(phi_k) d_k and u_k' its quarter turn, a loop has the closure error
+!>    g = g_0 + sum_k u_k + sum_m s_m R e_m,      dg/dphi_k = u_k',  dg/ds_m = R e_m
+!>    g'  = sum phi_k' u_k' + ...
+!>    g'' = sum phi_k'' u_k' - phi_k'^2 u_k + ...
+!> and a projection on f = R(phi_c) f_0 adds phi_c' g . f' and its derivative, as in `prismatic_pair`.
+#define NUMBER real(wp)
+#define LIST(list) list(*)
+#define AT(list,k) list(k)
+#define DRIVES(values) values(0:2, 0:*)
+#define DRIVE_AT(values,order,k) values(order, k)
+#define ZERO 0.0_wp
+#define ONE 1.0_wp
+#define TWO 2.0_wp
+module block_equations
+   use kinds, only: wp
+   use number_types, only: vector_t, unknown_t, row_numbers_t, loop_numbers_t, loop_state_t
+   use block_matrix, only: entries_of
+   use blocks, only: blocks_t, row_t, block_loop_t, body_vector_t, slide_t, loop_projection, loop_angles
+   use block_state, only: state_t
+   implicit none
+   private
+   public :: find_known_parts, assemble_block, assemble_with_velocities, assemble_dense, right_hand_side
+
+contains
+
+   !> What earlier blocks give to the loops of block `i`: place, velocity, acceleration.
+   pure subroutine find_known_parts(b, i, s)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(state_t), intent(inout) :: s
+
+      call find_known(b%list(i)%first_loop, b%list(i)%last_loop, b%loops, b%numbers%loops, b%body_vectors, &
+         b%numbers%d, s%u, s%loop)
+   end subroutine find_known_parts
+
+   !> Jacobian `a`, stored as the shape of the block says, and residual `r` (rows) of block `i` at the state.
+   pure subroutine assemble_block(b, i, s, a, r)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(state_t), intent(inout) :: s
+      real(wp), intent(inout) :: a(*), r(*)
+      real(wp) :: v(b%list(i)%shape%rows)
+
+      ! The row of the own unknown of a drive is in no loop.
+      v = 0.0_wp
+      call assemble_with_velocities(b, i, s, a, r, v)
+   end subroutine assemble_block
+
+   !> The same with the right-hand side `v` (rows) for the velocities there.
+   pure subroutine assemble_with_velocities(b, i, s, a, r, v)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(state_t), intent(inout) :: s
+      real(wp), intent(inout) :: a(*), r(*), v(*)
+      integer :: m
+
+      associate (block => b%list(i))
+         call set_to_zero(entries_of(block%shape), a)
+         do m = block%first_loop, block%last_loop
+            call add_loop(b%loops(m), b%numbers%loops(m)%direction, b%body_vectors, b%numbers%d, b%slides, &
+               b%numbers%e, s%u, s%own, s%guide, s%loop(m), a, r, v)
+         end do
+         if (b%numbers%blocks(i)%has_right_sides) &
+            call take_right_sides(block%first_row, block%last_row, b%rows, b%numbers%rows, s%drive_value, r, v)
+      end associate
+   end subroutine assemble_with_velocities
+
+   !> The same with all of the Jacobian, zeros as well: `a` (rows, n).
+   pure subroutine assemble_dense(b, i, s, a, r)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(state_t), intent(inout) :: s
+      real(wp), intent(inout) :: a(b%list(i)%shape%rows, *), r(*)
+      real(wp), allocatable :: entries(:)
+      integer :: c, k
+
+      associate (shape => b%list(i)%shape)
+         if (shape%pattern == 0) then
+            call assemble_block(b, i, s, a, r)
+            return
+         end if
+         allocate (entries(shape%entries))
+         call assemble_block(b, i, s, entries, r)
+         a(:, :shape%n) = 0.0_wp
+         associate (p => b%patterns(shape%pattern))
+            do c = 1, shape%n
+               do k = p%first(c) + 1, p%first(c + 1)
+                  a(p%row(k) + 1, c) = entries(k)
+               end do
+            end do
+         end associate
+      end associate
+   end subroutine assemble_dense
+
+   !> Right-hand side `v` (rows) for the velocities (`order` 1) or, once these are known, the accelerations (2) of
+   !> block `i`: the derivatives of the drives less what is given. Closure errors, directions and rotated body vectors
+   !> are those of the last assembly.
+   pure subroutine right_hand_side(b, i, order, s, v)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i, order
+      type(state_t), intent(in) :: s
+      real(wp), intent(inout) :: v(*)
+      integer :: m
+
+      associate (block => b%list(i))
+         if (order == 1) then
+            do m = block%first_loop, block%last_loop
+               call velocity_rows(b%loops(m), b%slides, s%u, s%guide, s%loop(m), v)
+            end do
+         else
+            call acceleration_rows(block%first_loop, block%last_loop, b%loops, b%body_vectors, b%slides, s%u, s%own, &
+               s%guide, s%loop, v)
+         end if
+         if (b%numbers%blocks(i)%has_right_sides) &
+            call add_drives(block%first_row, block%last_row, b%rows, order, s%drive_value, v)
+      end associate
+   end subroutine right_hand_side
+
+#include "equations.inc"
+end module block_equations

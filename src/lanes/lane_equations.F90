@@ -1,0 +1,74 @@
+!> The equations of one block in all lanes: the text of equations.inc, compiled for one number a lane.
+#define NUMBER real(wp), dimension(width)
+#define LIST(list) list(width, *)
+#define AT(list,k) list(:, k)
+#define DRIVES(values) values(width, 0:2, 0:*)
+#define DRIVE_AT(values,order,k) values(:, order, k)
+#define ZERO 0.0_wp
+#define ONE 1.0_wp
+#define TWO 2.0_wp
+module lane_equations
+   use kinds, only: wp
+   use blocks, only: row_t, block_loop_t, body_vector_t, slide_t, loop_projection, loop_angles
+   use lane_sines, only: width, sines
+   use lane_types, only: vector_t, unknown_t, row_numbers_t, loop_numbers_t, loop_state_t
+   use lane_state, only: lanes_t
+   implicit none
+   private
+   public :: set_lane_direction, find_lane_known, assemble_lanes, lane_accelerations
+
+contains
+
+   !> Cosine and sine of unknown `i`, if it is an angle.
+   pure subroutine set_lane_direction(l, i)
+      type(lanes_t), intent(inout) :: l
+      integer, intent(in) :: i
+
+      if (i <= l%blocks%orientations) call sines(l%u(i)%value, l%u(i)%c, l%u(i)%s)
+   end subroutine set_lane_direction
+
+   !> What earlier blocks give to the loops of block `i`: place, velocity, acceleration.
+   pure subroutine find_lane_known(l, i)
+      type(lanes_t), intent(inout) :: l
+      integer, intent(in) :: i
+
+      associate (b => l%blocks, block => l%blocks%list(i))
+         call find_known(block%first_loop, block%last_loop, b%loops, l%numbers, b%body_vectors, l%d, l%u, l%loop)
+      end associate
+   end subroutine find_lane_known
+
+   !> Jacobian `a` (lanes, n*n by columns) and residual `r` (lanes, n) of block `i`, and the right-hand side `v`
+   !> (lanes, n) for the velocities.
+   pure subroutine assemble_lanes(l, i, n, a, r, v)
+      type(lanes_t), intent(inout) :: l
+      integer, intent(in) :: i, n
+      real(wp), intent(inout) :: a(width, n*n), r(width, n), v(width, n)
+      integer :: m
+
+      associate (b => l%blocks, block => l%blocks%list(i))
+         call set_to_zero(n*n, a)
+         do m = block%first_loop, block%last_loop
+            call add_loop(b%loops(m), l%numbers(m)%direction, b%body_vectors, l%d, b%slides, l%e, l%u, l%own, l%guide, &
+               l%loop(m), a, r, v)
+         end do
+         if (l%block(i)%has_right_sides) &
+            call take_right_sides(block%first_row, block%last_row, b%rows, l%rows, l%drive, r, v)
+      end associate
+   end subroutine assemble_lanes
+
+   !> Right-hand side `v` (lanes, n) for the accelerations of block `i`, once the velocities are known, with the vectors
+   !> of the last `assemble_lanes`.
+   pure subroutine lane_accelerations(l, i, n, v)
+      type(lanes_t), intent(in) :: l
+      integer, intent(in) :: i, n
+      real(wp), intent(inout) :: v(width, n)
+
+      associate (b => l%blocks, block => l%blocks%list(i))
+         call acceleration_rows(block%first_loop, block%last_loop, b%loops, b%body_vectors, b%slides, l%u, l%own, &
+            l%guide, l%loop, v)
+         if (l%block(i)%has_right_sides) call add_drives(block%first_row, block%last_row, b%rows, 2, l%drive, v)
+      end associate
+   end subroutine lane_accelerations
+
+#include "equations.inc"
+end module lane_equations
