@@ -4,7 +4,8 @@
 module lane_state
    use kinds, only: wp
    use mechanism, only: own_predictor
-   use blocks, only: blocks_t, block_loop_t
+   use loop_equations, only: are_alike
+   use blocks, only: blocks_t
    use drives, only: law_t
    use block_engine, only: block_engine_t
    use lane_sines, only: width
@@ -102,7 +103,7 @@ contains
       logical, intent(out) :: is_alike
       integer :: i, k
 
-      is_alike = is_same_structure(l%blocks, e%blocks)
+      is_alike = are_alike(l%blocks%equations, e%blocks%equations)
       if (is_alike) is_alike = size(l%moving) == size(e%moving) .and. size(l%laws, 1) == size(e%laws)
       if (is_alike) is_alike = all(l%moving == e%moving)
       if (.not. is_alike) return
@@ -213,47 +214,4 @@ contains
          end do
       end associate
    end subroutine unload_lane
-
-   !> The blocks `a` and `b` differ in their numbers alone.
-   pure logical function is_same_structure(a, b) result(same)
-      type(blocks_t), intent(in) :: a, b
-      integer :: i
-
-      same = all([a%orientations, a%unknowns, size(a%list), size(a%rows), size(a%loops), size(a%body_vectors), &
-         size(a%slides)] == [b%orientations, b%unknowns, size(b%list), size(b%rows), size(b%loops), &
-         size(b%body_vectors), size(b%slides)])
-      if (.not. same) return
-      same = all(a%unknown == b%unknown) .and. all(a%rows%drive == b%rows%drive) &
-         .and. all(a%rows%other == b%rows%other) .and. all(a%rows%sign_of == b%rows%sign_of)
-      do i = 1, size(a%list)
-         associate (p => a%list(i), q => b%list(i))
-            same = same .and. (p%direct .eqv. q%direct) .and. all([p%first, p%last, p%first_row, p%last_row, &
-               p%first_loop, p%last_loop, p%shape%rows, p%shape%n, p%shape%pattern] == [q%first, q%last, q%first_row, &
-               q%last_row, q%first_loop, q%last_loop, q%shape%rows, q%shape%n, q%shape%pattern])
-         end associate
-      end do
-      do i = 1, size(a%loops)
-         same = same .and. all(whole_numbers(a%loops(i)) == whole_numbers(b%loops(i)))
-      end do
-      do i = 1, size(a%body_vectors)
-         associate (p => a%body_vectors(i), q => b%body_vectors(i))
-            same = same .and. all([p%orientation, p%column, p%at] == [q%orientation, q%column, q%at])
-         end associate
-      end do
-      do i = 1, size(a%slides)
-         associate (p => a%slides(i), q => b%slides(i))
-            same = same .and. all([p%orientation, p%orientation_column, p%unknown, p%column, p%at, p%orientation_at] &
-               == [q%orientation, q%orientation_column, q%unknown, q%column, q%at, q%orientation_at])
-         end associate
-      end do
-   end function is_same_structure
-
-   !> What a loop has that are no reals.
-   pure function whole_numbers(g) result(list)
-      type(block_loop_t), intent(in) :: g
-      integer :: list(14)
-
-      list = [g%kind, g%row_x, g%row_y, g%first_vector, g%first_own, g%last_vector, g%first_slide, g%last_slide, &
-         g%orientation, g%orientation_column, g%less, g%less_column, g%orientation_at, g%less_at]
-   end function whole_numbers
 end module lane_state
