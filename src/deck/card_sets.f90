@@ -12,6 +12,7 @@ module card_sets
    use failures, only: capitals
    use input_errors, only: error_code_t, input_errors_t, add_field_error, add_remark, is_full, link_unknown, &
       point_unknown, pair_unknown, name_repeated, pair_one_link, pair_grounds, cylinder_drawing, cylinder_points
+   use card_numbers, only: angle_in_radians
    use drawn_values, only: drawn_pair, coincides
    use names, only: name_table_t, put_name, find_name, subject_name, listed
    use numerals, only: whole
@@ -40,7 +41,6 @@ module card_sets
       logical :: names_certain = .true.             !< of every card: no unknown name can be one that was misread
       type(vary_card_t), allocatable :: vary(:)     !< the VARY cards, once they are apart from the others
       type(card_t) :: small                         !< the first card with small letters; its number is 0: none
-      real(wp) :: angle_unit = 1.0_wp               !< the deck's unit of angles in radians
       type(named_t) :: named(request_link:request_pair)
       type(mechanism_t) :: mechanism
       type(input_errors_t) :: errors                !< all errors of the deck so far
@@ -77,7 +77,6 @@ contains
          set%cards(k)%drive = 0
          set%cards(k)%point = 0
       end do
-      set%angle_unit = 1.0_wp
       do kind = request_link, request_pair
          set%named(kind) = named_t()
       end do
@@ -144,8 +143,10 @@ contains
    !> names are errors, and so are pairs that do not join two links.
    subroutine build_bodies(set)
       type(card_set_t), intent(inout) :: set
+      real(wp) :: unit
       integer :: n
 
+      unit = angle_in_radians(set%mechanism)
       set%named(request_link)%card = cards_of([form_ground, form_link])
       set%named(request_point)%card = cards_of([form_point, form_joint, form_joint])
       set%named(request_pair)%card = cards_of([form_revolute, form_prism, form_cylinder, form_joint])
@@ -169,7 +170,7 @@ contains
 
          associate (card => set%cards(set%named(request_link)%card(n)))
             set%mechanism%links(n) = link_t(name=card%label(label_a), ground=card%form == form_ground, &
-               position=card%real*[1.0_wp, 1.0_wp, set%angle_unit])
+               position=card%real*[1.0_wp, 1.0_wp, unit])
          end associate
          call define_name(request_link, label_a)
       end subroutine build_link
@@ -200,7 +201,7 @@ contains
          if (is_first) set%cards(k)%point = n
          call look_up(set, request_link, k, merge(label_b, label_c, is_first), link)
          associate (m => set%mechanism, place => set%cards(k)%real(1:2))
-            m%points(n) = point_t(name=set%cards(k)%label(label_a), link=link, offset=place)
+            m%points(n) = point_t(name=set%cards(k)%label(label_a), link=link, offset=place, drawn=.true.)
             if (link > 0) m%points(n)%offset = &
                rotated(place - m%links(link)%position(:2), direction(-m%links(link)%position(3)))
             link = m%points(set%cards(k)%point)%link
@@ -213,6 +214,7 @@ contains
       !> Pair number `n`, of a REVOLUTE, PRISM, CYLINDER or JOINT card. The points are there. It must join two links,
       !> not both of them ground.
       subroutine build_pair()
+         real(wp) :: numbers(3)
          integer :: k, i, j
 
          k = set%named(request_pair)%card(n)
@@ -225,8 +227,11 @@ contains
          end if
          associate (card => set%cards(k), pair => set%mechanism%pairs(n))
             pair = pair_t(name=card%label(name_field(card%form)), point_i=i, point_j=j)
-            if (card%form == form_prism) pair = pair_t(pair_prismatic, pair%name, i, j, card%real(1)*set%angle_unit, &
-               card%real(2), card%real(3)*set%angle_unit, [.false., .not. card%given(2:) .and. has_drawing(set)])
+            if (card%form == form_prism) then
+               numbers = card%real*[unit, 1.0_wp, unit]
+               pair = pair_t(pair_prismatic, pair%name, i, j, numbers(1), numbers(2), numbers(3), &
+                  [.false., .not. card%given(2:) .and. has_drawing(set)])
+            end if
             if (card%form == form_cylinder) pair = pair_t(pair_prismatic, pair%name, i, j, drawn=.true.)
          end associate
          if (set%cards(k)%form == form_cylinder .and. .not. has_drawing(set)) &

@@ -9,7 +9,7 @@ module cards
    public :: card_t, field_t, card_columns, card_fields, wide_fields, title_field
    public :: card_name, label_a, label_b, label_c, real_1, real_2, real_3
    public :: field_text, first_column, small_field, ruler_card, layout_of, is_passed_over
-   public :: forms, form_name, number_word, find_form, nearest_words, proposal, reals_of
+   public :: forms, form_name, find_form, nearest_words, proposal, reals_of
    public :: form_unknown, form_title, form_units, form_lang, form_ground, form_link, form_point, form_revolute
    public :: form_prism, form_cylinder, form_joint, form_drive, form_add, form_rise, form_toler, form_time, form_at
    public :: form_method, form_print, form_extremes, form_range, form_circuits, form_pole, form_curve, form_branch
@@ -200,17 +200,6 @@ contains
 
       form_name = forms(form)%layout(:label_length)
    end function form_name
-
-   !> What a card of `form` calls its real number `i`: the first word that its layout has there.
-   pure function number_word(form, i) result(word)
-      integer, intent(in) :: form, i
-      character(:), allocatable :: word
-      character(card_columns) :: layout
-
-      layout = forms(form)%layout
-      word = layout(card_fields(label_c + i)%first:card_fields(label_c + i)%last)
-      word = word(:index(word, ' ') - 1)
-   end function number_word
 
    !> The form of the cards of the name `name`, in capitals or small letters; or form_unknown.
    pure integer function find_form(name) result(form)

@@ -2,13 +2,14 @@
 !> all instants, one of `check_term`.
 module deck_drives
    use, intrinsic :: iso_fortran_env, only: dp => real64
-   use kinds, only: wp, label_length
+   use kinds, only: wp
    use planar, only: pi
    use mechanism, only: remark_jumps
    use mechanism, only: mechanism_t, drive_t, term_t, drive_links, instant, find_instants, drive_angle, &
       drive_relangle, drive_slide, drive_words, driven_kinds, term_harmonic, term_power, term_table, term_words, &
       term_cycloid, term_cosine, rise_words, pair_revolute, request_link
    use card_reader, only: parsed_card_t
+   use card_numbers, only: angle_in_radians, minute_in, turns_a_minute
    use drawn_values, only: drawn_drive
    use card_sets, only: card_set_t, has_drawing, look_up, match_word, add_card_error, add_card_remark
    use cards, only: card_name, label_a, label_b, label_c, real_1, real_2, form_unknown, form_drive, form_add, &
@@ -18,12 +19,7 @@ module deck_drives
       table_order, table_range, power_negative, power_zero, power_large, rise_law, rise_duration, rpm_unit
    implicit none
    private
-   public :: build_drives, check_terms, turns_a_minute, turns_unit
-
-   !> Turns a minute: the word on a DRIVE card, and a minute in the units of time that are known.
-   character(label_length), parameter :: turns_a_minute = 'RPM'
-   character(3), parameter :: time_words(4) = ['S  ', 'MS ', 'MIN', 'H  ']
-   real(wp), parameter :: minutes(4) = [60.0_wp, 60.0e3_wp, 1.0_wp, 1.0_wp/60.0_wp]
+   public :: build_drives, check_terms
 
 contains
 
@@ -65,7 +61,7 @@ contains
             drive%kind = kind
             drive%polynomial = card%real*unit_of(drive)
             if (kind == drive_angle .and. card%label(label_c) == turns_a_minute) then
-               call take_turns(drive%polynomial(2))
+               call take_turns(drive)
             else if (kind /= drive_relangle .and. card%label(label_c) /= '' .and. card%valid) then
                call add_card_error(set, field_unused, k, label_c)
             end if
@@ -78,12 +74,15 @@ contains
          call check_subject(drive)
       end subroutine build_drive
 
-      !> The rate of the DRIVE card `k`, in turns a minute, as `rate` in radians a unit of time.
-      subroutine take_turns(rate)
-         real(wp), intent(out) :: rate
+      !> Gives `drive` the rate of the DRIVE card `k`, which is in turns a minute.
+      subroutine take_turns(drive)
+         type(drive_t), intent(inout) :: drive
+         real(wp) :: minute
 
-         if (all(time_words /= set%mechanism%time_unit)) call add_card_error(set, rpm_unit, k, label_c)
-         rate = set%cards(k)%real(2)*turns_unit(set)
+         minute = minute_in(set%mechanism%time_unit)
+         drive%turns = minute > 0.0_wp
+         if (drive%turns) drive%polynomial(2) = set%cards(k)%real(2)*(2.0_wp*pi/minute)
+         if (.not. drive%turns) call add_card_error(set, rpm_unit, k, label_c)
       end subroutine take_turns
 
       !> Adds an error if what the DRIVE card `k` drives cannot be driven, as far as it is known.
@@ -121,7 +120,7 @@ contains
       pure real(wp) function unit_of(drive) result(unit)
          type(drive_t), intent(in) :: drive
 
-         unit = merge(set%angle_unit, 1.0_wp, driven_kinds(drive%kind) == request_link)
+         unit = merge(angle_in_radians(set%mechanism), 1.0_wp, driven_kinds(drive%kind) == request_link)
       end function unit_of
 
       !> Whether card `k` gives a term of the drive above it.
@@ -189,7 +188,7 @@ contains
          associate (card => set%cards(k))
             select case (kind)
             case (term_harmonic)
-               term%r = card%real*[unit, set%angle_unit, set%angle_unit]
+               term%r = card%real*[unit, spread(angle_in_radians(set%mechanism), 1, 2)]
             case (term_power)
                term%kind = term_power
                term%r = card%real*[unit, 1.0_wp, 1.0_wp]
@@ -238,13 +237,6 @@ contains
          if (size(rows) == 1) call add_card_error(set, table_short, rows(1), label_a)
       end subroutine build_table
    end subroutine build_drives
-
-   !> A turn a minute in radians a unit of time.
-   pure real(wp) function turns_unit(set)
-      type(card_set_t), intent(in) :: set
-
-      turns_unit = 2.0_wp*pi/minutes(max(1, findloc(time_words, set%mechanism%time_unit, dim=1)))
-   end function turns_unit
 
    !> Adds an error for each term that, with its first two derivatives, does not exist at all instants. The set has no
    !> other error.

@@ -2,7 +2,7 @@
 !> and AT, and the requests PRINT, EXTREMES, RANGE, CIRCUITS, ASSEMBLY, BRANCH, POLE and CURVE.
 module deck_options
    use kinds, only: wp
-   use planar, only: degree
+   use card_numbers, only: angle_in_radians
    use mechanism, only: request_t, branch_request_t, request_link, request_point, request_pair, method_newton, &
       method_words, request_pole, request_curve
    use card_sets, only: card_set_t, look_up, match_word, add_card_error
@@ -32,8 +32,8 @@ module deck_options
 
 contains
 
-   !> Sets the options and instants of `set`%mechanism, and `set`%angle_unit, from the cards. Repeated cards, unknown
-   !> words and values out of range are errors.
+   !> Sets the options and instants of `set`%mechanism from the cards. Repeated cards, unknown words and values out of
+   !> range are errors.
    subroutine build_options(set)
       type(card_set_t), intent(inout) :: set
       integer :: k, place
@@ -69,7 +69,6 @@ contains
          if (set%cards(k)%form == form_prove .and. set%mechanism%method /= method_newton) &
             call add_card_error(set, newton_needed, k, card_name)
       end do
-      if (set%mechanism%degrees) set%angle_unit = degree
 
    contains
 
@@ -215,7 +214,8 @@ contains
             do i = 1, 2
                if (dwell(i) < 0.0_wp) call add_card_error(set, number_range, k, real_1 + i - 1, '0.0 AND UP')
             end do
-            call read_subjects(k, request_t(every=0, extremes=.true., dwell=dwell*[1.0_wp, set%angle_unit]))
+            call read_subjects(k, request_t(every=0, extremes=.true., &
+               dwell=dwell*[1.0_wp, angle_in_radians(set%mechanism)]))
          end associate
       end subroutine read_extremes
 

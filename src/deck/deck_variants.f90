@@ -4,7 +4,8 @@
 module deck_variants
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp, label_length
-   use mechanism, only: mechanism_t, tolerance_t, number_ground, number_point, number_pair, number_drive
+   use mechanism, only: mechanism_t, card_number_t
+   use card_numbers, only: unit_t, number_name, number_unit, put_number
    use card_sets, only: card_set_t, vary_card_t, begin_mechanism, has_drawing, add_parsed_error
    use card_reader, only: parsed_card_t
    use cards, only: card_name, label_a, label_b, label_c, real_1, real_2, real_3, form_unknown, form_ground, &
@@ -28,9 +29,6 @@ module deck_variants
    integer, parameter :: varied_forms(*) = [form_ground, form_link, form_point, form_prism, form_joint, form_drive, &
       form_add, form_rise, form_time]
 
-   !> A time of the TIME card, beside the kinds of numbers that can have a tolerance.
-   integer, parameter :: number_time = number_drive + 1
-
    !> A number that varies.
    type :: varied_t
       integer :: card = 0, place = 0                !< its card in the set, and which of its three reals it is
@@ -42,11 +40,10 @@ module deck_variants
       character(4*label_length) :: owner = ''       !< the card and what it defines: POINT A, ANGLE CRANK HARMONIC 1
       character(2*label_length) :: word = ''        !< what the card calls the number: XI, AMPLITUDE
       character(2*label_length + 5) :: unit = ''        !< of the deck; blank where it is not known
-      !> What it is in a mechanism, where it is there once, nothing else of it depends on this number, and no value of
-      !> it is an error: number_ground (x, y or phi of any link), ..., number_time; otherwise 0.
-      integer :: kind = 0
-      integer :: subject = 0                        !< the number of its link, point, pair or drive
+      type(card_number_t) :: number                 !< its address in the mechanism
       real(wp) :: factor = 1.0_wp                   !< its unit in those of `mechanism_t`
+      !> Nothing else in the mechanism depends on it, and no value of it is an error: a variant needs no new building.
+      logical :: stands_alone = .false.
    end type varied_t
 
    !> The variants of a set.
@@ -219,40 +216,39 @@ contains
 
       !> The name and the unit of `one`.
       subroutine name_number()
-         type(tolerance_t) :: number
+         type(unit_t) :: unit
+         character(:), allocatable :: name
          integer :: border
 
-         number = number_on_card(set, one%card, one%place)
-         border = index(trim(number%name), ' ', back=.true.)
-         one%owner = number%name(:border - 1)
-         one%word = number%name(border + 1:)
-         one%unit = number%unit_name
-         one%kind = kind_in(set, one%card, number)
-         one%subject = number%subject
-         one%factor = number%unit
+         if (error_count(set%errors) > 0) return
+         one%number = number_on_card(set, one%card, one%place)
+         name = number_name(set%mechanism, one%number)
+         border = index(name, ' ', back=.true.)
+         one%owner = name(:border - 1)
+         one%word = name(border + 1:)
+         unit = number_unit(set%mechanism, one%number)
+         one%unit = unit%name
+         one%factor = unit%factor
+         one%stands_alone = stands_alone(set, set%cards(one%card)%form)
       end subroutine name_number
    end subroutine take_card
 
-   !> The kind of a number that varies, as above: `number` on card `k` of `set`. In a drawing, points of JOINT cards
+   !> Whether nothing but the number itself depends on a number of a card of `form`. In a drawing, points of JOINT cards
    !> depend on the places of links as well, and numbers as drawn on those of points and guides; whether a term of a
    !> drive is defined depends on those of TIME.
-   pure integer function kind_in(set, k, number) result(kind)
+   pure logical function stands_alone(set, form)
       type(card_set_t), intent(in) :: set
-      integer, intent(in) :: k
-      type(tolerance_t), intent(in) :: number
+      integer, intent(in) :: form
 
-      kind = 0
-      select case (set%cards(k)%form)
-      case (form_ground, form_link)
-         if (.not. has_drawing(set)) kind = number_ground
-      case (form_point, form_prism)
-         if (.not. has_drawing(set)) kind = number%kind
-      case (form_drive)
-         kind = number%kind
+      select case (form)
+      case (form_ground, form_link, form_point, form_prism)
+         stands_alone = .not. has_drawing(set)
       case (form_time)
-         if (sum(set%number_of([form_add, form_rise])) == 0) kind = number_time
+         stands_alone = sum(set%number_of([form_add, form_rise])) == 0
+      case default
+         stands_alone = form == form_drive
       end select
-   end function kind_in
+   end function stands_alone
 
    !> Sets v%counts and v%total. Numbers that are tied must have equal counts; the grid must not be too large.
    subroutine count_variants(set, v)
@@ -310,27 +306,11 @@ contains
       real(wp) :: values(size(v%numbers))
       integer :: i
 
-      is_done = all(v%numbers%kind > 0)
+      is_done = all(v%numbers%stands_alone)
       if (.not. is_done) return
       values = values_of_variant(v, n)*v%numbers%factor
       do i = 1, size(values)
-         associate (k => v%numbers(i)%subject, place => v%numbers(i)%place)
-            select case (v%numbers(i)%kind)
-            case (number_ground)
-               m%links(k)%position(place) = values(i)
-            case (number_point)
-               m%points(k)%offset(place) = values(i)
-            case (number_pair)
-               if (place == 1) m%pairs(k)%alpha = values(i)
-               if (place == 2) m%pairs(k)%offset = values(i)
-               if (place == 3) m%pairs(k)%beta = values(i)
-            case (number_drive)
-               m%drives(k)%polynomial(place) = values(i)
-            case (number_time)
-               if (place == 1) m%t0 = values(i)
-               if (place == 2) m%t1 = values(i)
-            end select
-         end associate
+         call put_number(m, v%numbers(i)%number, values(i))
       end do
       m%variant = n
       ! A TIME card of one time is an error.

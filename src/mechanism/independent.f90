@@ -6,7 +6,7 @@ module independent
    use kinds, only: wp
    use mechanism, only: settings_t, mechanism_t, request_t, tolerance_t, pair_links, drive_links, request_links, &
       drive_relangle, driven_kinds, request_link, request_point, request_pair, request_pole, request_curve, &
-      number_ground, number_pair
+      number_link, number_pair
    use scales, only: characteristic_length, characteristic_rate, relative_tolerance
    implicit none
    private
@@ -217,7 +217,7 @@ contains
 
       !> The tolerances of numbers that are in the part.
       subroutine take_tolerances()
-         integer, parameter :: kinds(number_ground:number_pair) = [request_link, request_point, request_point, &
+         integer, parameter :: kinds(number_link:number_pair) = [request_link, request_point, request_point, &
             request_pair]
 
          own%tolerances = m%tolerances

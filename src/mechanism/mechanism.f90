@@ -4,13 +4,14 @@ module mechanism
    use kinds, only: wp, label_length, title_length
    implicit none
    private
-   public :: link_t, point_t, pair_t, term_t, drive_t, request_t, branch_request_t, tolerance_t, settings_t, mechanism_t
+   public :: link_t, point_t, pair_t, term_t, drive_t, request_t, branch_request_t, card_number_t, tolerance_t, &
+      settings_t, mechanism_t
    public :: pair_revolute, pair_prismatic
    public :: drive_angle, drive_x, drive_y, drive_relangle, drive_slide, drive_words, driven_kinds
    public :: term_harmonic, term_power, term_table, term_words
    public :: term_cycloid, term_345, term_cosine, term_parabola, rise_words
    public :: request_link, request_point, request_pair, request_pole, request_curve
-   public :: number_ground, number_point, number_joint, number_pair, number_drive
+   public :: number_link, number_point, number_joint, number_pair, number_drive, number_knot, number_time
    public :: method_newton, method_matrix, method_dense, method_words, own_predictor
    public :: instant_count, instant, find_instants, pair_links, drive_links, request_links, wanted_links, &
       is_listed_alone, used_points
@@ -50,11 +51,14 @@ module mechanism
    character(label_length), parameter :: rise_words(term_cycloid:term_parabola) = &
       [character(label_length) :: 'CYCLOID', '3-4-5', 'HARMONIC', 'PARABOLA']
 
-   integer, parameter :: number_ground = 1   !< x, y or phi of ground link `subject`
+   !> The kinds of numbers on cards.
+   integer, parameter :: number_link = 1     !< x, y or phi of link `subject`
    integer, parameter :: number_point = 2    !< xi or eta of point `subject`
    integer, parameter :: number_joint = 3    !< x or y, in the drawing, of points `subject` and `subject` + 1
    integer, parameter :: number_pair = 4     !< alpha, h or beta of prismatic pair `subject`
    integer, parameter :: number_drive = 5    !< of drive `subject`, or of its term `term`
+   integer, parameter :: number_knot = 6     !< the time of a row of term `term` of drive `subject`, a table
+   integer, parameter :: number_time = 7     !< T0 or T1 of TIME
 
    integer, parameter :: method_newton = 1   !< Newton's method, block by block
    integer, parameter :: method_matrix = 2   !< the iteration of 1987 with frozen c(phi), s(phi)
@@ -101,6 +105,7 @@ module mechanism
       character(label_length) :: name = ''
       integer :: link = 0                    !< the number of its link
       real(wp) :: offset(2) = 0.0_wp         !< its place xi, eta in the axes of the link
+      logical :: drawn = .false.             !< one of the two of a JOINT card, which gives their place in the drawing
    end type point_t
 
    type :: pair_t
@@ -127,6 +132,7 @@ module mechanism
       real(wp) :: polynomial(3) = 0.0_wp     !< value at t = 0 (length or rad), rate, acceleration
       type(term_t), allocatable :: terms(:)  !< of its ADD and RISE cards; none: not allocated
       logical :: drawn = .false.             !< its value at t = 0 is the one of the drawing, not of its card
+      logical :: turns = .false.             !< its card gives the rate in turns a minute
    end type drive_t
 
    !> What is asked about a link, point or pair: a row of the tables, its extremes, or both; or about the motion of a
@@ -150,12 +156,16 @@ module mechanism
       integer :: card = 0                    !< of a part: its number among the BRANCH cards of the set
    end type branch_request_t
 
-   !> The tolerance of a number on a card.
-   type :: tolerance_t
-      integer :: kind = number_point         !< of the number: number_ground, ..., number_drive
+   !> A number on a card: its address, see `card_numbers`.
+   type :: card_number_t
+      integer :: kind = number_point         !< number_link, ..., number_time; 0: no number that is known
       integer :: subject = 0                 !< the number of its link, point, pair or drive
       integer :: term = 0                    !< of a drive: the number of the term; 0: its polynomial
       integer :: place = 1                   !< R1, R2 or R3 of the card; of a table the row
+   end type card_number_t
+
+   !> The tolerance of a number on a card.
+   type, extends(card_number_t) :: tolerance_t
       real(wp) :: size_of = 0.0_wp           !< the tolerance, above 0, in the unit of the number on its card
       real(wp) :: unit = 1.0_wp              !< that unit in those of `mechanism_t`
       real(wp) :: powers(2) = [1.0_wp, 0.0_wp]   !< of length and of time in that unit

@@ -4,7 +4,7 @@
 module number_changes
    use kinds, only: wp
    use planar, only: direction, rotated, quarter_turn, pi
-   use mechanism, only: mechanism_t, tolerance_t, number_ground, number_point, number_joint, number_pair, drive_t, &
+   use mechanism, only: mechanism_t, tolerance_t, number_link, number_point, number_joint, number_pair, drive_t, &
       drive_angle, drive_relangle, drive_x, drive_y, pair_prismatic, pair_links, term_t, term_harmonic, term_power, &
       term_table, term_cycloid, term_345, term_cosine, term_parabola
    use drawn_values, only: drawn_way
@@ -44,7 +44,7 @@ contains
       c = new_change(m)
       associate (k => tolerance%subject, place => tolerance%place)
          select case (tolerance%kind)
-         case (number_ground)
+         case (number_link)
             c%ground(place, k) = 1.0_wp
          case (number_point)
             c%point(place, k) = 1.0_wp

@@ -1,0 +1,379 @@
+!> The numbers on the cards of a mechanism: where each is in `mechanism_t`, its name, its unit, and its value. TOLER and
+!> VARY cards give other values to these numbers, and so do estimates of errors.
+!>
+!> An address (`card_number_t`) is four integers: it stays as it is if the number or the deck's units change.
+module card_numbers
+   use kinds, only: wp, label_length
+   use planar, only: pi, degree, direction, rotated, point_of
+   use mechanism, only: mechanism_t, card_number_t, number_link, number_point, number_joint, number_pair, &
+      number_drive, number_knot, number_time, pair_prismatic, term_harmonic, term_power, term_table, term_words, &
+      rise_words, term_cycloid, driven_kinds, request_link
+   use drawn_values, only: drawn_pair, drawn_drive
+   use names, only: drive_name
+   use numerals, only: whole
+   implicit none
+   private
+   public :: unit_t, numbers_of, takes_tolerance, number_name, number_unit, number_value, set_number, put_number, &
+      follow_drawing, angle_in_radians, minute_in, turns_a_minute
+
+   !> The unit of a number on a card.
+   type :: unit_t
+      real(wp) :: factor = 1.0_wp                !< it in the units of `mechanism_t`
+      real(wp) :: powers(2) = [1.0_wp, 0.0_wp]   !< of length and of time in it
+      character(2*label_length + 5) :: name = '' !< '' of a number without a unit
+   end type unit_t
+
+   !> Turns a minute: the word on a DRIVE card, and a minute in the units of time that are known.
+   character(label_length), parameter :: turns_a_minute = 'RPM'
+   character(3), parameter :: time_words(4) = ['S  ', 'MS ', 'MIN', 'H  ']
+   real(wp), parameter :: minutes(4) = [60.0_wp, 60.0e3_wp, 1.0_wp, 1.0_wp/60.0_wp]
+
+   !> What the cards call their numbers R1 to R3, by the kind of the number.
+   character(12), parameter :: number_words(3, number_link:number_drive) = reshape([character(12) :: &
+      'X', 'Y', 'PHI', 'XI', 'ETA', '', 'X', 'Y', '', 'ALPHA', 'H', 'BETA', 'VALUE', 'RATE', 'ACCELERATION'], [3, 5])
+   !> The same of the terms of a drive.
+   character(9), parameter :: harmonic_words(3) = ['AMPLITUDE', 'FREQUENCY', 'PHASE    ']
+   character(8), parameter :: power_words(2) = ['FACTOR  ', 'EXPONENT']
+   character(8), parameter :: rise_numbers(3) = ['START   ', 'DURATION', 'LIFT    ']
+
+contains
+
+   !> The numbers on the cards of `m` that can have a tolerance: by links, points, pairs and drives, each kind in the
+   !> order of its cards.
+   function numbers_of(m) result(list)
+      type(mechanism_t), intent(in) :: m
+      type(card_number_t), allocatable :: list(:)
+      integer, parameter :: first_room = 64
+      integer :: i, j, n
+
+      allocate (list(first_room))
+      n = 0
+      do i = 1, size(m%links)
+         call add(number_link, i, 0, 3)
+      end do
+      do i = 1, size(m%points)
+         if (.not. m%points(i)%drawn) call add(number_point, i, 0, 2)
+         if (is_joint(i)) call add(number_joint, i, 0, 2)
+      end do
+      do i = 1, size(m%pairs)
+         if (m%pairs(i)%kind == pair_prismatic) call add(number_pair, i, 0, 3)
+      end do
+      do i = 1, size(m%drives)
+         call add(number_drive, i, 0, 3)
+         if (.not. allocated(m%drives(i)%terms)) cycle
+         do j = 1, size(m%drives(i)%terms)
+            if (m%drives(i)%terms(j)%kind == term_table) then
+               call add(number_drive, i, j, size(m%drives(i)%terms(j)%values))
+            else
+               call add(number_drive, i, j, 3)
+            end if
+         end do
+      end do
+      list = list(:n)
+
+   contains
+
+      !> Adds the first `places` numbers of a card.
+      subroutine add(kind, subject, term, places)
+         integer, intent(in) :: kind, subject, term, places
+         type(card_number_t) :: one
+         integer :: place
+
+         do place = 1, places
+            one = card_number_t(kind, subject, term, place)
+            if (.not. takes_tolerance(m, one) .or. is_drawn(one)) cycle
+            if (n == size(list)) list = [list, list]
+            n = n + 1
+            list(n) = one
+         end do
+      end subroutine add
+
+      !> Whether point number `i` is the first of the two of a JOINT card.
+      pure logical function is_joint(i)
+         integer, intent(in) :: i
+
+         is_joint = .false.
+         if (m%points(i)%drawn .and. i < size(m%points)) is_joint = m%points(i + 1)%drawn &
+            .and. m%points(i)%name == m%points(i + 1)%name
+      end function is_joint
+
+      !> Whether number `n` is blank on its card: it is as drawn.
+      pure logical function is_drawn(n)
+         type(card_number_t), intent(in) :: n
+
+         is_drawn = .false.
+         if (n%kind == number_pair) is_drawn = m%pairs(n%subject)%drawn(n%place)
+         if (n%kind == number_drive .and. n%term == 0 .and. n%place == 1) is_drawn = m%drives(n%subject)%drawn
+      end function is_drawn
+   end function numbers_of
+
+   !> Whether number `n` of `m` can have a tolerance. These have none: the estimates of moving links; the axes of a
+   !> ground link on which JOINT cards place points; the times of TIME and of a table; the exponent of a power.
+   pure logical function takes_tolerance(m, n)
+      type(mechanism_t), intent(in) :: m
+      type(card_number_t), intent(in) :: n
+
+      takes_tolerance = .false.
+      select case (n%kind)
+      case (number_link)
+         if (m%links(n%subject)%ground) takes_tolerance = .not. any(m%points%link == n%subject .and. m%points%drawn)
+      case (number_point:number_pair)
+         takes_tolerance = .true.
+      case (number_drive)
+         takes_tolerance = .true.
+         if (n%term > 0) takes_tolerance = m%drives(n%subject)%terms(n%term)%kind /= term_power .or. n%place == 1
+      end select
+   end function takes_tolerance
+
+   !> The name of number `n` of `m` in tables and messages: its card, what that defines, and what the card calls it.
+   pure function number_name(m, n) result(name)
+      type(mechanism_t), intent(in) :: m
+      type(card_number_t), intent(in) :: n
+      character(:), allocatable :: name
+
+      associate (k => n%subject)
+         select case (n%kind)
+         case (number_link)
+            name = trim(merge('GROUND', 'LINK  ', m%links(k)%ground))//' '//trim(m%links(k)%name)
+         case (number_point)
+            name = 'POINT '//trim(m%points(k)%name)
+         case (number_joint)
+            name = 'JOINT '//trim(m%points(k)%name)
+         case (number_pair)
+            name = 'PRISM '//trim(m%pairs(k)%name)
+         case (number_time)
+            name = 'TIME T'//whole(n%place - 1)
+            return
+         case default
+            name = trim(drive_name(m, m%drives(k)))
+         end select
+         if (n%term > 0) then
+            name = name//' '//term_name()
+         else
+            name = name//' '//trim(number_words(n%place, n%kind))
+         end if
+      end associate
+
+   contains
+
+      !> The word and the number of the term, and what its card calls the number.
+      pure function term_name() result(text)
+         character(:), allocatable :: text
+
+         associate (kind => m%drives(n%subject)%terms(n%term)%kind)
+            select case (kind)
+            case (term_table)
+               text = trim(merge('TIME', 'ROW ', n%kind == number_knot))//' '//whole(n%place)
+            case (term_harmonic)
+               text = trim(harmonic_words(n%place))
+            case (term_power)
+               text = trim(power_words(n%place))
+            case default
+               text = trim(rise_numbers(n%place))
+            end select
+            text = whole(n%term)//' '//text
+            if (kind < term_cycloid) text = trim(term_words(kind))//' '//text
+            if (kind >= term_cycloid) text = trim(rise_words(kind))//' '//text
+         end associate
+      end function term_name
+   end function number_name
+
+   !> The unit of number `n` of `m`.
+   function number_unit(m, n) result(unit)
+      type(mechanism_t), intent(in) :: m
+      type(card_number_t), intent(in) :: n
+      type(unit_t) :: unit
+
+      select case (n%kind)
+      case (number_link)
+         unit = unit_of(n%place == 3)
+      case (number_point, number_joint)
+         unit = unit_of(.false.)
+      case (number_pair)
+         unit = unit_of(n%place /= 2)
+      case (number_drive)
+         call take_law(m%drives(n%subject)%kind)
+      case default
+         unit = unit_t(powers=[0.0_wp, 1.0_wp], name=m%time_unit)
+      end select
+
+   contains
+
+      !> The unit of angles, or of lengths.
+      pure type(unit_t) function unit_of(is_angle) result(one)
+         logical, intent(in) :: is_angle
+
+         one = unit_t(name=m%length_unit)
+         if (is_angle) one = unit_t(angle_in_radians(m), [0.0_wp, 0.0_wp], merge('DEG', 'RAD', m%degrees))
+      end function unit_of
+
+      !> `n` is of the law of a drive of the kind `kind`.
+      subroutine take_law(kind)
+         integer, intent(in) :: kind
+         logical :: turns
+
+         unit = unit_of(driven_kinds(kind) == request_link)
+         if (n%term > 0) then
+            call take_term()
+         else if (n%place > 1) then
+            call divide(real(n%place - 1, wp), merge('**2', '   ', n%place == 3))
+            turns = n%place == 2 .and. m%drives(n%subject)%turns
+            if (turns) unit = unit_t(2.0_wp*pi/minute_in(m%time_unit), unit%powers, turns_a_minute)
+         end if
+      end subroutine take_law
+
+      !> `n` is of a term.
+      subroutine take_term()
+
+         associate (term => m%drives(n%subject)%terms(n%term))
+            select case (term%kind)
+            case (term_harmonic)
+               if (n%place > 1) unit = unit_of(.true.)
+               if (n%place == 2) call divide(1.0_wp, '')
+            case (term_power)
+               if (n%place == 1) call divide(term%r(2), '**R2')
+               if (n%place == 2) unit = unit_t(powers=[0.0_wp, 0.0_wp])
+            case (term_table)
+               ! A row has the unit of the drive.
+            case default
+               if (n%place < 3) unit = unit_t(powers=[0.0_wp, 1.0_wp], name=m%time_unit)
+            end select
+         end associate
+      end subroutine take_term
+
+      !> Divides `unit` by the power `p` of the unit of time; `end_of_name`: the exponent, as text.
+      subroutine divide(p, end_of_name)
+         real(wp), intent(in) :: p
+         character(*), intent(in) :: end_of_name
+
+         unit%powers(2) = -p
+         unit%name = trim(unit%name)//'/'//trim(m%time_unit)//end_of_name
+      end subroutine divide
+   end function number_unit
+
+   !> The value of number `n` of `m`, in the units of `mechanism_t`. A JOINT card's is a place in the drawing.
+   pure real(wp) function number_value(m, n) result(value)
+      type(mechanism_t), intent(in) :: m
+      type(card_number_t), intent(in) :: n
+      real(wp) :: place(2)
+
+      associate (k => n%subject, i => n%place)
+         select case (n%kind)
+         case (number_link)
+            value = m%links(k)%position(i)
+         case (number_point)
+            value = m%points(k)%offset(i)
+         case (number_joint)
+            place = point_of(m%links(m%points(k)%link)%position, m%points(k)%offset)
+            value = place(i)
+         case (number_pair)
+            value = merge(m%pairs(k)%alpha, merge(m%pairs(k)%offset, m%pairs(k)%beta, i == 2), i == 1)
+         case (number_knot)
+            value = m%drives(k)%terms(n%term)%knots(i)
+         case (number_time)
+            value = merge(m%t0, m%t1, i == 1)
+         case default
+            if (n%term == 0) then
+               value = m%drives(k)%polynomial(i)
+            else if (m%drives(k)%terms(n%term)%kind == term_table) then
+               value = m%drives(k)%terms(n%term)%values(i)
+            else
+               value = m%drives(k)%terms(n%term)%r(i)
+            end if
+         end select
+      end associate
+   end function number_value
+
+   !> Gives number `n` of `m` the `value`, in the units of `mechanism_t`. All other numbers that are as drawn follow, if
+   !> the links of `m` are where the cards put them.
+   pure subroutine set_number(m, n, value)
+      type(mechanism_t), intent(inout) :: m
+      type(card_number_t), intent(in) :: n
+      real(wp), intent(in) :: value
+
+      call put_number(m, n, value)
+      if (n%kind > number_pair) return
+      call follow_drawing(m)
+      ! It may have been as drawn itself.
+      if (n%kind == number_pair) call put_number(m, n, value)
+   end subroutine set_number
+
+   !> Gives number `n` of `m` the `value`, and leaves all others as they are. A place of a JOINT card moves both of its
+   !> points. Nothing is allocated.
+   pure subroutine put_number(m, n, value)
+      type(mechanism_t), intent(inout) :: m
+      type(card_number_t), intent(in) :: n
+      real(wp), intent(in) :: value
+      real(wp) :: way(2)
+      integer :: j
+
+      associate (k => n%subject, i => n%place)
+         select case (n%kind)
+         case (number_link)
+            m%links(k)%position(i) = value
+         case (number_point)
+            m%points(k)%offset(i) = value
+         case (number_joint)
+            way = 0.0_wp
+            way(i) = value - number_value(m, n)
+            do j = k, k + 1
+               m%points(j)%offset = m%points(j)%offset &
+                  + rotated(way, direction(-m%links(m%points(j)%link)%position(3)))
+            end do
+         case (number_pair)
+            if (i == 1) m%pairs(k)%alpha = value
+            if (i == 2) m%pairs(k)%offset = value
+            if (i == 3) m%pairs(k)%beta = value
+         case (number_knot)
+            m%drives(k)%terms(n%term)%knots(i) = value
+         case (number_time)
+            if (i == 1) m%t0 = value
+            if (i == 2) m%t1 = value
+         case default
+            if (n%term == 0) then
+               m%drives(k)%polynomial(i) = value
+            else if (m%drives(k)%terms(n%term)%kind == term_table) then
+               m%drives(k)%terms(n%term)%values(i) = value
+            else
+               m%drives(k)%terms(n%term)%r(i) = value
+            end if
+         end select
+      end associate
+   end subroutine put_number
+
+   !> Gives the pairs and drives of `m` that are as drawn the numbers of its drawing: its links are where the cards put
+   !> them.
+   pure subroutine follow_drawing(m)
+      type(mechanism_t), intent(inout) :: m
+      real(wp) :: numbers(3)
+      integer :: i
+
+      do i = 1, size(m%pairs)
+         if (.not. any(m%pairs(i)%drawn)) cycle
+         numbers = drawn_pair(m, m%pairs(i))
+         m%pairs(i)%alpha = numbers(1)
+         m%pairs(i)%offset = numbers(2)
+         m%pairs(i)%beta = numbers(3)
+      end do
+      do i = 1, size(m%drives)
+         if (m%drives(i)%drawn) m%drives(i)%polynomial(1) = drawn_drive(m, m%drives(i))
+      end do
+   end subroutine follow_drawing
+
+   !> The unit of angles of `m`'s cards in radians.
+   pure real(wp) function angle_in_radians(m)
+      type(mechanism_t), intent(in) :: m
+
+      angle_in_radians = merge(degree, 1.0_wp, m%degrees)
+   end function angle_in_radians
+
+   !> A minute in the unit of time `time_unit`; 0: that is not known.
+   pure real(wp) function minute_in(time_unit)
+      character(label_length), intent(in) :: time_unit
+      integer :: i
+
+      i = findloc(time_words, time_unit, dim=1)
+      minute_in = 0.0_wp
+      if (i > 0) minute_in = minutes(i)
+   end function minute_in
+end module card_numbers
