@@ -3,8 +3,7 @@
 module at_bifurcation
    use kinds, only: wp
    use drive_excursion, only: drive_excursion_t, largest_derivative
-   use drives, only: law_t, new_law, drive_motion
-   use law_bounds, only: bounds_t, bounds_of
+   use drives, only: law_t, new_law, drive_motion, bounds_t, bounds_of
    use mechanism, only: drive_t
    use motion, only: diagnostic_t
    use branch_requests, only: branch_requests_t

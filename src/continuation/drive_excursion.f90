@@ -11,8 +11,7 @@ module drive_excursion
    use scales, only: solver_length, is_length
    use predictor, only: largest_change
    use planar, only: pi
-   use drives, only: law_t, new_law, drive_motion, pole_value
-   use law_bounds, only: bounds_t, bounds_of
+   use drives, only: law_t, new_law, drive_motion, pole_value, bounds_t, bounds_of
    implicit none
    private
    public :: drive_excursion_t, new_drive_excursion, substep_allowed, likely_excursion, excursion, steps_at_least, &

@@ -2,40 +2,45 @@
 !>
 !>    f(t) = value + rate t + acceleration t**2/2 + the sum of its terms
 !>
-!> A table is the natural C2 cubic spline through its rows. With h_i = x_(i+1) - x_i, d_i = (y_(i+1) - y_i)/h_i and M_i
-!> the second derivative at knot i (M = 0 at both ends):
-!>    h_(i-1) M_(i-1) + 2 (h_(i-1) + h_i) M_i + h_i M_(i+1) = 6 (d_i - d_(i-1))
-!> (de Boor, A Practical Guide to Splines, ch. IV). Two rows give the straight line.
+!> A table is the natural cubic spline through its rows. The laws of rises are those of cams (Norton, Cam Design and
+!> Manufacturing Handbook, ch. 2 and 3). Where their acceleration jumps it is that from the right.
 !>
-!> The laws of rises are those of cams (Norton, Cam Design and Manufacturing Handbook, ch. 2 and 3). Where their
-!> acceleration jumps it is that from the right.
+!> `bounds_of` encloses value, rate and acceleration over an interval of time. The bounds are true: they are widened
+!> by the rounding errors of their own evaluation. For one polynomial, harmonic, power, table or rise they are its
+!> extremes; for a sum they are the sums of these bounds, which may lie outside its extremes.
+!>
+!> All that is known of a kind of term stands together, kind by kind, below the laws.
 module drives
    use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
    use planar, only: pi
-   use linear_solver, only: solve_tridiagonal
+   use splines, only: spline_t, new_spline, spline_value, piece_at, piece_value
    use mechanism, only: drive_t, term_t, term_harmonic, term_power, term_table, term_cycloid, term_345, term_cosine, &
       term_parabola
    implicit none
    private
-   public :: law_t, new_law, drive_motion, drive_rate, joints_of, monomial, rise_shape, joint_width, joint_distance
-   public :: find_drive_motion, pole_value, spline_t, new_spline, spline_value, piece_at, piece_value
-
-   !> A natural cubic spline, in the units of the drive and of time.
-   type :: spline_t
-      real(wp), allocatable :: x(:), y(:), m(:)   !< (knots) times, increasing; values; second derivatives
-   end type spline_t
+   public :: law_t, new_law, drive_motion, find_drive_motion, bounds_t, bounds_of, drive_rate, joints_of, pole_value
+   public :: monomial, rise_shape, joint_width, joint_distance
 
    !> A drive made ready for evaluation.
    type :: law_t
       type(drive_t) :: drive
-      type(spline_t), allocatable :: splines(:)   !< (terms) the splines of those that are tables
+      type(spline_t), allocatable :: splines(:)   !< (terms) the splines of those that are tables, times and values
    end type law_t
+
+   !> An interval for each derivative of a law.
+   type :: bounds_t
+      !> Of the derivatives 0 to 2, in the drive's unit (length or rad) and the deck's unit of time. -huge, huge: no
+      !> bound; huge, -huge: no value.
+      real(wp) :: low(0:2) = huge(1.0_wp), high(0:2) = -huge(1.0_wp)
+   end type bounds_t
 
    !> An instant that is before a joint by less than this part of the rise's times is meant to be at it: decimals,
    !> quotients of TIME, and error estimates put it up to twice 256 roundings aside. Instants of
    !> doubles are as far off in real128.
    real(wp), parameter :: joint_part = 1024.0_wp*max(epsilon(1.0_wp), real(epsilon(1.0_dp), wp))
+   !> Rounding error of a value relative to the sum of the absolute values of its terms: some ten operations.
+   real(wp), parameter :: margin = 16.0_wp*epsilon(1.0_wp)
 
 contains
 
@@ -90,6 +95,156 @@ contains
       end do
    end subroutine find_drive_motion
 
+   !> The bounds of `law` between the times `t1` and `t2`, in either order. A table continues beyond its ends with its
+   !> last pieces; a power that is not defined somewhere in the interval has no bounds. `one_instant`: the interval is
+   !> one instant and its roundings, at which accelerations that jump are those of `drive_motion`.
+   pure function bounds_of(law, t1, t2, one_instant) result(b)
+      type(law_t), intent(in) :: law
+      real(wp), intent(in) :: t1, t2
+      logical, intent(in), optional :: one_instant
+      type(bounds_t) :: b, of_term
+      real(wp) :: from, to
+      integer :: i
+
+      from = min(t1, t2)
+      to = max(t1, t2)
+      b = polynomial_bounds(law%drive%polynomial, from, to)
+      do i = 1, size(law%splines)
+         associate (term => law%drive%terms(i))
+            select case (term%kind)
+            case (term_harmonic)
+               of_term = harmonic_bounds(term%r, from, to)
+            case (term_power)
+               of_term = power_bounds(term%r, from, to)
+            case (term_table)
+               of_term = table_bounds(law%splines(i), from, to)
+            case default
+               of_term = rise_bounds(term, from, to, one_instant)
+            end select
+         end associate
+         b%low = plus(b%low, of_term%low)
+         b%high = -plus(-b%high, -of_term%high)
+      end do
+   end function bounds_of
+
+   !> Widens the bounds `b` by a value and its derivatives `f` (0:2), whose terms have absolute values with the sums
+   !> `magnitudes` (0:2).
+   pure subroutine widen(b, f, magnitudes)
+      type(bounds_t), intent(inout) :: b
+      real(wp), intent(in) :: f(0:2), magnitudes(0:2)
+
+      b%low = min(b%low, below(f, margin*magnitudes))
+      b%high = max(b%high, -below(-f, margin*magnitudes))
+   end subroutine widen
+
+   !> x - d, but not below -huge.
+   elemental real(wp) function below(x, d)
+      real(wp), intent(in) :: x, d
+
+      below = -huge(1.0_wp)
+      if (x > d - huge(1.0_wp)) below = x - d
+   end function below
+
+   !> The sum of two lower bounds, but not below -huge.
+   elemental real(wp) function plus(x, y)
+      real(wp), intent(in) :: x, y
+
+      plus = -huge(1.0_wp)
+      if (min(x, y) > -huge(1.0_wp)) plus = x + y
+   end function plus
+
+   !> An estimate of the largest |rate| of `drive` for |time| <= `t`, in the drive's unit (length or rad) and the deck's
+   !> unit of time; `bounds_of` has true bounds.
+   pure real(wp) function drive_rate(drive, t) result(rate)
+      type(drive_t), intent(in) :: drive
+      real(wp), intent(in) :: t
+      real(wp) :: s(3)
+      integer :: i
+
+      rate = abs(drive%polynomial(2)) + abs(drive%polynomial(3))*t
+      if (.not. allocated(drive%terms)) return
+      do i = 1, size(drive%terms)
+         associate (term => drive%terms(i), r => drive%terms(i)%r)
+            select case (term%kind)
+            case (term_harmonic)
+               rate = rate + abs(r(1)*r(2))
+            case (term_power)
+               if (t > 0.0_wp) rate = rate + abs(r(1)*r(2))*t**(r(2) - 1.0_wp)
+            case (term_table)
+               associate (x => term%knots, y => term%values, n => size(term%knots))
+                  rate = rate + maxval(abs((y(2:) - y(:n - 1))/(x(2:) - x(:n - 1))))
+               end associate
+            case default
+               s = rise_shape(term%kind, 0.5_wp, 0.5_wp)
+               rate = rate + abs(r(3)*s(2))/r(2)
+            end select
+         end associate
+      end do
+   end function drive_rate
+
+   !> Where the law of `drive` goes as the time comes to 0 from the side of `t`: -huge or huge, to infinity, as a
+   !> negative power does; 0: the law is finite there. No law has a pole at another time.
+   pure real(wp) function pole_value(drive, t) result(value)
+      type(drive_t), intent(in) :: drive
+      real(wp), intent(in) :: t
+      real(wp) :: least
+      integer :: i
+
+      value = 0.0_wp
+      least = 0.0_wp
+      if (.not. allocated(drive%terms)) return
+      do i = 1, size(drive%terms)
+         associate (term => drive%terms(i))
+            if (term%kind /= term_power .or. term%r(2) >= least .or. abs(term%r(1)) <= 0.0_wp) cycle
+            least = term%r(2)
+            value = sign(huge(1.0_wp), monomial(term%r(1), term%r(2), sign(1.0_wp, t)))
+         end associate
+      end do
+   end function pole_value
+
+   !> The times at which some derivative of the law of `drive` jumps: the knots of its tables, the joints of its rises.
+   pure function joints_of(drive) result(times)
+      type(drive_t), intent(in) :: drive
+      real(wp), allocatable :: times(:)
+      integer :: i
+
+      allocate (times(0))
+      if (.not. allocated(drive%terms)) return
+      do i = 1, size(drive%terms)
+         associate (r => drive%terms(i)%r)
+            select case (drive%terms(i)%kind)
+            case (term_table)
+               times = [times, drive%terms(i)%knots]
+            case (term_cycloid:term_parabola)
+               times = [times, r(1), r(1) + r(2)]
+               if (drive%terms(i)%kind == term_parabola) times = [times, r(1) + 0.5_wp*r(2)]
+            end select
+         end associate
+      end do
+   end function joints_of
+
+   !> The bounds of c1 + c2 t + c3 t^2/2: from its values at both ends, and where its rate is zero.
+   pure function polynomial_bounds(c, from, to) result(b)
+      real(wp), intent(in) :: c(3), from, to
+      type(bounds_t) :: b
+      real(wp) :: t
+
+      call widen_by_polynomial(b, c, from)
+      call widen_by_polynomial(b, c, to)
+      if (abs(c(3)) <= 0.0_wp) return
+      t = -c(2)/c(3)
+      if (t > from .and. t < to) call widen_by_polynomial(b, c, t)
+   end function polynomial_bounds
+
+   !> Widens `b` by the polynomial `c` at the time `t`.
+   pure subroutine widen_by_polynomial(b, c, t)
+      type(bounds_t), intent(inout) :: b
+      real(wp), intent(in) :: c(3), t
+
+      call widen(b, [c(1) + t*(c(2) + t*c(3)/2.0_wp), c(2) + t*c(3), c(3)], &
+         [abs(c(1)) + abs(t)*(abs(c(2)) + abs(t*c(3))), abs(c(2)) + abs(t*c(3)), 0.0_wp])
+   end subroutine widen_by_polynomial
+
    !> r1 sin(r2 t + r3) and its derivatives.
    pure function harmonic(r, t) result(f)
       real(wp), intent(in) :: r(3), t
@@ -98,6 +253,35 @@ contains
       argument = r(2)*t + r(3)
       f = r(1)*[sin(argument), r(2)*cos(argument), -r(2)**2*sin(argument)]
    end function harmonic
+
+   !> The bounds of r1 sin(r2 t + r3): each derivative is again a sine, with its phase advanced by a quarter turn. The
+   !> extremes of each are at its ends and at whole numbers of quarter turns, of which four follow one another.
+   pure function harmonic_bounds(r, from, to) result(b)
+      real(wp), intent(in) :: r(3), from, to
+      type(bounds_t) :: b
+      real(wp), parameter :: quarter = 0.5_wp*pi, quarters(0:2) = quarter*[0.0_wp, 1.0_wp, 2.0_wp], &
+         sines(0:5) = [0.0_wp, 1.0_wp, 0.0_wp, -1.0_wp, 0.0_wp, 1.0_wp]
+      real(wp) :: amplitudes(0:2), u1, u2, magnitude, first, last
+      integer :: i, k
+
+      u1 = min(r(2)*from, r(2)*to) + r(3)
+      u2 = max(r(2)*from, r(2)*to) + r(3)
+      magnitude = max(1.0_wp, abs(r(2)*from), abs(r(2)*to)) + abs(r(3))
+      amplitudes = r(1)*[1.0_wp, r(2), r(2)**2]
+      call widen(b, amplitudes*sin(u1 + quarters), abs(amplitudes)*magnitude)
+      call widen(b, amplitudes*sin(u2 + quarters), abs(amplitudes)*magnitude)
+      first = (u1 - margin*magnitude)/quarter
+      first = first + modulo(-first, 1.0_wp)
+      last = (u2 + margin*magnitude)/quarter
+      do i = 0, 3
+         if (first + i > last) exit
+         k = modulo(int(modulo(first, 4.0_wp)) + i, 4)
+         call widen(b, amplitudes*sines(k:k + 2), abs(amplitudes)*magnitude)
+      end do
+      ! Rounding does not exceed the amplitude.
+      b%low = max(b%low, -(1.0_wp + margin)*abs(amplitudes))
+      b%high = min(b%high, (1.0_wp + margin)*abs(amplitudes))
+   end function harmonic_bounds
 
    !> r1 t**r2 and its derivatives; the deck reader has rejected powers that do not exist.
    pure function power(r, t) result(f)
@@ -122,6 +306,111 @@ contains
          monomial = c*t**p
       end if
    end function monomial
+
+   !> The bounds of r1 t^r2. On either side of t = 0 each derivative is monotonic.
+   pure function power_bounds(r, from, to) result(b)
+      real(wp), intent(in) :: r(3), from, to
+      type(bounds_t) :: b
+
+      call widen_by_power(b, r, from)
+      call widen_by_power(b, r, to)
+      if (from < 0.0_wp .and. to > 0.0_wp) call widen_by_power(b, r, 0.0_wp)
+   end function power_bounds
+
+   !> Widens `b` by r1 t^r2 at the time `t`.
+   pure subroutine widen_by_power(b, r, t)
+      type(bounds_t), intent(inout) :: b
+      real(wp), intent(in) :: r(3), t
+      real(wp) :: low(0:2), high(0:2), c
+      integer :: k
+
+      c = r(1)
+      low = -huge(1.0_wp)
+      high = huge(1.0_wp)
+      do k = 0, 2
+         if (is_finite(c, r(2) - k, t)) then
+            low(k) = monomial(c, r(2) - k, t)
+            high(k) = low(k)
+         end if
+         c = c*(r(2) - k)
+      end do
+      call widen(b, low, abs(low))
+      call widen(b, high, abs(high))
+   end subroutine widen_by_power
+
+   !> Whether c t^p is defined and within the range of reals.
+   pure logical function is_finite(c, p, t)
+      real(wp), intent(in) :: c, p, t
+
+      is_finite = .true.
+      if (abs(c) <= 0.0_wp) return
+      if (abs(t) <= 0.0_wp) then
+         is_finite = p >= 0.0_wp
+      else if (t < 0.0_wp .and. abs(p - anint(p)) > 0.0_wp) then
+         is_finite = .false.
+      else
+         is_finite = p*log(abs(t)) + max(0.0_wp, log(abs(c))) < log(huge(1.0_wp)) - 1.0_wp
+      end if
+   end function is_finite
+
+   !> The bounds of the spline `s`: those of its pieces in the interval, each a cubic.
+   pure function table_bounds(s, from, to) result(b)
+      type(spline_t), intent(in) :: s
+      real(wp), intent(in) :: from, to
+      type(bounds_t) :: b
+      integer :: i, first, last
+
+      first = piece_at(s, from)
+      last = piece_at(s, to)
+      do i = first, last
+         call widen_by_piece(b, s, i, merge(from, s%x(i), i == first), merge(to, s%x(i + 1), i == last))
+      end do
+   end function table_bounds
+
+   !> Widens `b` by piece `i` from `t1` to `t2`: by its values at both ends and where its second or first derivative is
+   !> zero.
+   pure subroutine widen_by_piece(b, s, i, t1, t2)
+      type(bounds_t), intent(inout) :: b
+      type(spline_t), intent(in) :: s
+      integer, intent(in) :: i
+      real(wp), intent(in) :: t1, t2
+      real(wp) :: f(3), u(3), reach, slope, q, root
+      integer :: k
+
+      ! f' = f'(x_i) + m_i u + slope u^2/2, u from the knot.
+      f = piece_value(s, i, s%x(i))
+      slope = (s%m(i + 1) - s%m(i))/(s%x(i + 1) - s%x(i))
+      reach = max(abs(t1 - s%x(i)), abs(t2 - s%x(i)))
+      u = 0.0_wp
+      if (abs(s%m(i)) < abs(slope)*reach) u(1) = -s%m(i)/slope
+      root = s%m(i)**2 - 2.0_wp*slope*f(2)
+      if (root >= 0.0_wp) then
+         q = -(s%m(i) + sign(sqrt(root), s%m(i)))
+         if (abs(q) < abs(slope)*reach) u(2) = q/slope
+         if (2.0_wp*abs(f(2)) < abs(q)*reach) u(3) = 2.0_wp*f(2)/q
+      end if
+      call widen_by_piece_at(b, s, i, t1)
+      call widen_by_piece_at(b, s, i, t2)
+      do k = 1, 3
+         if (s%x(i) + u(k) > t1 .and. s%x(i) + u(k) < t2) call widen_by_piece_at(b, s, i, s%x(i) + u(k))
+      end do
+   end subroutine widen_by_piece
+
+   !> Widens `b` by piece `i` at the time `t`.
+   pure subroutine widen_by_piece_at(b, s, i, t)
+      type(bounds_t), intent(inout) :: b
+      type(spline_t), intent(in) :: s
+      integer, intent(in) :: i
+      real(wp), intent(in) :: t
+      real(wp) :: f(3), h, magnitude, curve, away
+
+      f = piece_value(s, i, t)
+      h = s%x(i + 1) - s%x(i)
+      away = max(1.0_wp, abs(t - s%x(i))/h, abs(t - s%x(i + 1))/h)
+      magnitude = abs(s%y(i)) + abs(s%y(i + 1))
+      curve = abs(s%m(i)) + abs(s%m(i + 1))
+      call widen(b, f, [(magnitude + curve*h**2)*away**3, (magnitude/h + curve*h)*away**2, curve*away])
+   end subroutine widen_by_piece_at
 
    !> A rise and its derivatives.
    pure function rise(term, t) result(f)
@@ -173,153 +462,45 @@ contains
       if (at < 0.0_wp .or. at >= 1.0_wp) s(3) = 0.0_wp
    end function rise_shape
 
-   !> An estimate of the largest |rate| of `drive` for |time| <= `t`, in the drive's unit (length or rad) and the deck's
-   !> unit of time; `law_bounds` has true bounds.
-   pure real(wp) function drive_rate(drive, t) result(rate)
-      type(drive_t), intent(in) :: drive
-      real(wp), intent(in) :: t
-      integer :: i
-
-      rate = abs(drive%polynomial(2)) + abs(drive%polynomial(3))*t
-      if (.not. allocated(drive%terms)) return
-      do i = 1, size(drive%terms)
-         rate = rate + term_rate(drive%terms(i), t)
-      end do
-   end function drive_rate
-
-   !> The same of one term.
-   pure real(wp) function term_rate(term, t) result(rate)
+   !> The bounds of the rise `term`: its values at both ends and at the places in between where any law has an extreme
+   !> of a derivative. At a joint an acceleration may have two values, but not at `one_instant`.
+   pure function rise_bounds(term, from, to, one_instant) result(b)
       type(term_t), intent(in) :: term
-      real(wp), intent(in) :: t
-      real(wp) :: s(3)
-
-      rate = 0.0_wp
-      select case (term%kind)
-      case (term_harmonic)
-         rate = abs(term%r(1)*term%r(2))
-      case (term_power)
-         if (t > 0.0_wp) rate = abs(term%r(1)*term%r(2))*t**(term%r(2) - 1.0_wp)
-      case (term_table)
-         associate (x => term%knots, y => term%values, n => size(term%knots))
-            rate = maxval(abs((y(2:) - y(:n - 1))/(x(2:) - x(:n - 1))))
-         end associate
-      case (term_cycloid:term_parabola)
-         s = rise_shape(term%kind, 0.5_wp, 0.5_wp)
-         rate = abs(term%r(3)*s(2))/term%r(2)
-      end select
-   end function term_rate
-
-   !> Where the law of `drive` goes as the time comes to 0 from the side of `t`: -huge or huge, to infinity, as a
-   !> negative power does; 0: the law is finite there. No law has a pole at another time.
-   pure real(wp) function pole_value(drive, t) result(value)
-      type(drive_t), intent(in) :: drive
-      real(wp), intent(in) :: t
-      real(wp) :: least
+      real(wp), intent(in) :: from, to
+      logical, intent(in), optional :: one_instant
+      type(bounds_t) :: b
+      !> Of the acceleration of the 3-4-5 polynomial, (3 -+ sqrt(3))/6; of the others, and their joints.
+      real(wp), parameter :: aside = sqrt(3.0_wp)/6.0_wp
+      real(wp), parameter :: places(7) = [0.0_wp, 0.5_wp - aside, 0.25_wp, 0.5_wp, 0.75_wp, 0.5_wp + aside, 1.0_wp]
+      real(wp) :: u1, u2, width
       integer :: i
 
-      value = 0.0_wp
-      least = 0.0_wp
-      if (.not. allocated(drive%terms)) return
-      do i = 1, size(drive%terms)
-         associate (term => drive%terms(i))
-            if (term%kind /= term_power .or. term%r(2) >= least .or. abs(term%r(1)) <= 0.0_wp) cycle
-            least = term%r(2)
-            value = sign(huge(1.0_wp), monomial(term%r(1), term%r(2), sign(1.0_wp, t)))
-         end associate
+      width = joint_width(term)
+      u1 = (from - term%r(1))/term%r(2)
+      u2 = (to - term%r(1))/term%r(2)
+      call widen_by_rise(b, term, u1, u1 + width)
+      call widen_by_rise(b, term, u2, u2 + width)
+      if (present(one_instant)) return
+      do i = 1, size(places)
+         if (places(i) < u1 - width .or. places(i) > u2 + width) cycle
+         call widen_by_rise(b, term, places(i), places(i) - 0.1_wp)
+         call widen_by_rise(b, term, places(i), places(i) + 0.1_wp)
       end do
-   end function pole_value
+   end function rise_bounds
 
-   !> The times at which some derivative of the law of `drive` jumps: the knots of its tables, the joints of its rises.
-   pure function joints_of(drive) result(times)
-      type(drive_t), intent(in) :: drive
-      real(wp), allocatable :: times(:)
-      integer :: i
+   !> Widens `b` by the rise `term` at the part `u` of its duration, with the acceleration of the piece in which `at`
+   !> lies. Where a law is steepest, a rounding of u changes its second derivative by 60 roundings; in a dwell zeros are
+   !> exact.
+   pure subroutine widen_by_rise(b, term, u, at)
+      type(bounds_t), intent(inout) :: b
+      type(term_t), intent(in) :: term
+      real(wp), intent(in) :: u, at
+      real(wp) :: s(0:2), factors(0:2), magnitudes(0:2)
 
-      allocate (times(0))
-      if (.not. allocated(drive%terms)) return
-      do i = 1, size(drive%terms)
-         associate (r => drive%terms(i)%r)
-            select case (drive%terms(i)%kind)
-            case (term_table)
-               times = [times, drive%terms(i)%knots]
-            case (term_cycloid:term_parabola)
-               times = [times, r(1), r(1) + r(2)]
-               if (drive%terms(i)%kind == term_parabola) times = [times, r(1) + 0.5_wp*r(2)]
-            end select
-         end associate
-      end do
-   end function joints_of
-
-   !> The spline through the knots `x` (strictly increasing, at least two) and the values `y`.
-   function new_spline(x, y) result(s)
-      real(wp), intent(in) :: x(:), y(:)
-      type(spline_t) :: s
-      real(wp) :: h(size(x) - 1), slope(size(x) - 1), diagonal(size(x) - 2), off(size(x) - 2)
-      integer :: n, info
-
-      n = size(x)
-      h = x(2:) - x(:n - 1)
-      slope = (y(2:) - y(:n - 1))/h
-      s%x = x
-      s%y = y
-      allocate (s%m(n), source=0.0_wp)
-      if (n < 3) return
-      diagonal = 2.0_wp*(h(:n - 2) + h(2:))
-      off(:n - 3) = h(2:n - 2)
-      s%m(2:n - 1) = 6.0_wp*(slope(2:) - slope(:n - 2))
-      call solve_tridiagonal(diagonal, off, s%m(2:n - 1), info)
-   end function new_spline
-
-   !> Value, first and second derivative (3) of `s` at the time `t`.
-   pure function spline_value(s, t) result(f)
-      type(spline_t), intent(in) :: s
-      real(wp), intent(in) :: t
-      real(wp) :: f(3)
-
-      f = piece_value(s, piece_at(s, t), t)
-   end function spline_value
-
-   !> The same of the cubic between the knots `i` and `i` + 1, which may be continued beyond them.
-   pure function piece_value(s, i, t) result(f)
-      type(spline_t), intent(in) :: s
-      integer, intent(in) :: i
-      real(wp), intent(in) :: t
-      real(wp) :: f(3)
-      real(wp) :: h, u, w, slope, bend
-
-      h = s%x(i + 1) - s%x(i)
-      u = t - s%x(i)
-      w = s%x(i + 1) - t
-      slope = (s%y(i + 1) - s%y(i))/h
-      bend = (s%m(i + 1) - s%m(i))/h
-      ! From the nearer knot: at that the value is that of the table, and beside it, in a piece that is much longer than
-      ! its neighbour, no cubes of the long way cancel.
-      if (u < w) then
-         slope = slope - h*(2.0_wp*s%m(i) + s%m(i + 1))/6.0_wp
-         f = [s%y(i) + u*(slope + u*(s%m(i)/2.0_wp + u*bend/6.0_wp)), slope + u*(s%m(i) + u*bend/2.0_wp), &
-            s%m(i) + u*bend]
-      else
-         slope = slope + h*(s%m(i) + 2.0_wp*s%m(i + 1))/6.0_wp
-         f = [s%y(i + 1) - w*(slope - w*(s%m(i + 1)/2.0_wp - w*bend/6.0_wp)), slope - w*(s%m(i + 1) - w*bend/2.0_wp), &
-            s%m(i + 1) - w*bend]
-      end if
-   end function piece_value
-
-   !> The i with x(i) <= t <= x(i + 1), by bisection; the first or the last where `t` lies beyond the table.
-   pure integer function piece_at(s, t) result(low)
-      type(spline_t), intent(in) :: s
-      real(wp), intent(in) :: t
-      integer :: high, middle
-
-      low = 1
-      high = size(s%x)
-      do while (high - low > 1)
-         middle = (low + high)/2
-         if (s%x(middle) <= t) then
-            low = middle
-         else
-            high = middle
-         end if
-      end do
-   end function piece_at
+      s = rise_shape(term%kind, u, at)
+      factors = term%r(3)/[1.0_wp, term%r(2), term%r(2)**2]
+      magnitudes = abs(factors)*[1.0_wp, 8.0_wp, 64.0_wp]
+      if (u < -margin .or. u > 1.0_wp + margin) magnitudes = merge(0.0_wp, magnitudes, abs(s) <= 0.0_wp)
+      call widen(b, factors*s, magnitudes)
+   end subroutine widen_by_rise
 end module drives

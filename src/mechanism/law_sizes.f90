@@ -3,7 +3,8 @@
 module law_sizes
    use kinds, only: wp
    use mechanism, only: term_harmonic, term_power, term_table
-   use drives, only: law_t, spline_t, monomial
+   use drives, only: law_t, monomial
+   use splines, only: spline_t
    implicit none
    private
    public :: growing_sizes

@@ -8,7 +8,8 @@ module number_changes
       drive_angle, drive_relangle, drive_x, drive_y, pair_prismatic, pair_links, term_t, term_harmonic, term_power, &
       term_table, term_cycloid, term_345, term_cosine, term_parabola
    use drawn_values, only: drawn_way
-   use drives, only: monomial, rise_shape, joint_width, joint_distance, new_spline, spline_value
+   use drives, only: monomial, rise_shape, joint_width, joint_distance
+   use splines, only: new_spline, spline_value
    implicit none
    private
    public :: change_t, new_change, change_of, law_change, smooth_order

@@ -11,7 +11,7 @@
 module position_proof
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use law_bounds, only: bounds_t, bounds_of
+   use drives, only: bounds_t, bounds_of
    use blocks, only: blocks_t
    use block_state, only: state_t, new_state, set_direction
    use block_equations, only: find_known_parts, assemble_dense, right_hand_side

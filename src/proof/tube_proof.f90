@@ -15,7 +15,7 @@
 !> middle.
 module tube_proof
    use kinds, only: wp
-   use law_bounds, only: bounds_t, bounds_of
+   use drives, only: bounds_t, bounds_of
    use blocks, only: blocks_t, block_t
    use block_state, only: set_direction
    use block_equations, only: find_known_parts, assemble_dense

@@ -1,0 +1,91 @@
+!> Natural cubic splines, twice continuously differentiable. With h_i = x_(i+1) - x_i, d_i = (y_(i+1) - y_i)/h_i and M_i
+!> the second derivative at knot i (M = 0 at both ends):
+!>    h_(i-1) M_(i-1) + 2 (h_(i-1) + h_i) M_i + h_i M_(i+1) = 6 (d_i - d_(i-1))
+!> (de Boor, A Practical Guide to Splines, ch. IV). Two knots give the straight line.
+module splines
+   use kinds, only: wp
+   use linear_solver, only: solve_tridiagonal
+   implicit none
+   private
+   public :: spline_t, new_spline, spline_value, piece_at, piece_value
+
+   !> A natural cubic spline.
+   type :: spline_t
+      real(wp), allocatable :: x(:), y(:), m(:)   !< (knots) abscissae, increasing; values; second derivatives
+   end type spline_t
+
+contains
+
+   !> The spline through the knots `x` (strictly increasing, at least two) and the values `y`.
+   function new_spline(x, y) result(s)
+      real(wp), intent(in) :: x(:), y(:)
+      type(spline_t) :: s
+      real(wp) :: h(size(x) - 1), slope(size(x) - 1), diagonal(size(x) - 2), off(size(x) - 2)
+      integer :: n, info
+
+      n = size(x)
+      h = x(2:) - x(:n - 1)
+      slope = (y(2:) - y(:n - 1))/h
+      s%x = x
+      s%y = y
+      allocate (s%m(n), source=0.0_wp)
+      if (n < 3) return
+      diagonal = 2.0_wp*(h(:n - 2) + h(2:))
+      off(:n - 3) = h(2:n - 2)
+      s%m(2:n - 1) = 6.0_wp*(slope(2:) - slope(:n - 2))
+      call solve_tridiagonal(diagonal, off, s%m(2:n - 1), info)
+   end function new_spline
+
+   !> Value, first and second derivative (3) of `s` at the time `t`.
+   pure function spline_value(s, t) result(f)
+      type(spline_t), intent(in) :: s
+      real(wp), intent(in) :: t
+      real(wp) :: f(3)
+
+      f = piece_value(s, piece_at(s, t), t)
+   end function spline_value
+
+   !> The same of the cubic between the knots `i` and `i` + 1, which may be continued beyond them.
+   pure function piece_value(s, i, t) result(f)
+      type(spline_t), intent(in) :: s
+      integer, intent(in) :: i
+      real(wp), intent(in) :: t
+      real(wp) :: f(3)
+      real(wp) :: h, u, w, slope, bend
+
+      h = s%x(i + 1) - s%x(i)
+      u = t - s%x(i)
+      w = s%x(i + 1) - t
+      slope = (s%y(i + 1) - s%y(i))/h
+      bend = (s%m(i + 1) - s%m(i))/h
+      ! From the nearer knot: at that the value is that of the table, and beside it, in a piece that is much longer than
+      ! its neighbour, no cubes of the long way cancel.
+      if (u < w) then
+         slope = slope - h*(2.0_wp*s%m(i) + s%m(i + 1))/6.0_wp
+         f = [s%y(i) + u*(slope + u*(s%m(i)/2.0_wp + u*bend/6.0_wp)), slope + u*(s%m(i) + u*bend/2.0_wp), &
+            s%m(i) + u*bend]
+      else
+         slope = slope + h*(s%m(i) + 2.0_wp*s%m(i + 1))/6.0_wp
+         f = [s%y(i + 1) - w*(slope - w*(s%m(i + 1)/2.0_wp - w*bend/6.0_wp)), slope - w*(s%m(i + 1) - w*bend/2.0_wp), &
+            s%m(i + 1) - w*bend]
+      end if
+   end function piece_value
+
+   !> The i with x(i) <= t <= x(i + 1), by bisection; the first or the last where `t` lies beyond the table.
+   pure integer function piece_at(s, t) result(low)
+      type(spline_t), intent(in) :: s
+      real(wp), intent(in) :: t
+      integer :: high, middle
+
+      low = 1
+      high = size(s%x)
+      do while (high - low > 1)
+         middle = (low + high)/2
+         if (s%x(middle) <= t) then
+            low = middle
+         else
+            high = middle
+         end if
+      end do
+   end function piece_at
+end module splines
