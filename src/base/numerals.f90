@@ -8,7 +8,7 @@ module numerals
    use decimal_digits, only: significant, tens, nearest_whole, leading_digits, first_digits
    implicit none
    private
-   public :: fixed, put_fixed, whole, full, put_full, numeral_length, full_length, significant
+   public :: fixed, put_fixed, whole, rounded, full, put_full, numeral_length, full_length, significant
    public :: put_whole, put_with_point, put_minus, put_digits, put_leading, put_exponent, max_decimals
 
    !> Characters of a number in the tables, one blank before it included.
@@ -113,6 +113,32 @@ contains
       text = merge('-', '+', e < 0)
       call put_digits(int(abs(e), int64), text(2:merge(4, exponent_length, abs(e) < 1000)))
    end subroutine put_exponent
+
+   !> `x` rounded to so many `digits`, without blanks: in fixed point if |x| is 0, or not below `from` and below `to`;
+   !> otherwise with an exponent.
+   pure function rounded(x, digits, from, to) result(text)
+      real(wp), intent(in) :: x, from, to
+      integer, intent(in) :: digits
+      character(:), allocatable :: text
+      character(40) :: field
+      character(12) :: form
+      integer :: order
+
+      order = 0
+      if (abs(x) > 0.0_wp) then
+         ! Rounding may make it the next power of ten.
+         write (form, '("(es30.", i0, "e4)")') digits - 1
+         write (field, form) x
+         read (field(index(field, 'E') + 1:), *) order
+      end if
+      if (abs(x) > 0.0_wp .and. (abs(x) < from .or. abs(x) >= to)) then
+         write (form, '("(es30.", i0, a, ")")') digits - 1, trim(merge('e3', '  ', abs(order) > 99))
+      else
+         write (form, '("(f30.", i0, ")")') max(0, digits - 1 - order)
+      end if
+      write (field, form) x
+      text = trim(adjustl(field))
+   end function rounded
 
    !> A whole number without blanks.
    pure function whole(i) result(text)

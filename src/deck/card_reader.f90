@@ -31,9 +31,10 @@ module card_reader
       real(wp) :: real(3) = 0.0_wp              !< in the deck's units; 0 where the field is blank
       logical :: given(3) = .false.             !< which of them are not blank
       logical :: on_star(3) = .false.           !< which of them are on the `*` card
-      !> Of a card of a drive's law the numbers of drive, term and row of its table; of the DRIVE card term and row 0.
-      integer :: drive = 0, term = 0, row = 0
-      integer :: point = 0                      !< of a JOINT card: the number of its first point
+      !> The number of the link, point (of JOINT the first), pair or drive that it defines; 0: none is built.
+      integer :: subject = 0
+      !> Of a card of a drive's law the numbers of term and row of its table; of the DRIVE card 0.
+      integer :: term = 0, row = 0
    end type parsed_card_t
 
    !> Bounds of lengths, angles and times. Numbers beyond them have no use, and their squares would leave the range of

@@ -14,7 +14,8 @@ module card_sets
       point_unknown, pair_unknown, name_repeated, pair_one_link, pair_grounds, cylinder_drawing, cylinder_points
    use card_numbers, only: angle_in_radians
    use drawn_values, only: drawn_pair, coincides
-   use names, only: name_table_t, put_name, find_name, subject_name, listed
+   use name_table, only: name_table_t, put_name, find_name
+   use names, only: subject_name, listed
    use numerals, only: whole
    implicit none
    private
@@ -74,8 +75,7 @@ contains
       integer :: k, kind
 
       do k = 1, set%count
-         set%cards(k)%drive = 0
-         set%cards(k)%point = 0
+         set%cards(k)%subject = 0
       end do
       do kind = request_link, request_pair
          set%named(kind) = named_t()
@@ -197,14 +197,14 @@ contains
          logical :: is_first, is_ground
 
          k = set%named(request_point)%card(n)
-         is_first = set%cards(k)%point == 0
-         if (is_first) set%cards(k)%point = n
+         is_first = set%cards(k)%subject == 0
+         if (is_first) set%cards(k)%subject = n
          call look_up(set, request_link, k, merge(label_b, label_c, is_first), link)
          associate (m => set%mechanism, place => set%cards(k)%real(1:2))
             m%points(n) = point_t(name=set%cards(k)%label(label_a), link=link, offset=place, drawn=.true.)
             if (link > 0) m%points(n)%offset = &
                rotated(place - m%links(link)%position(:2), direction(-m%links(link)%position(3)))
-            link = m%points(set%cards(k)%point)%link
+            link = m%points(set%cards(k)%subject)%link
             is_ground = .false.
             if (link > 0) is_ground = m%links(link)%ground
          end associate
@@ -219,7 +219,7 @@ contains
 
          k = set%named(request_pair)%card(n)
          if (set%cards(k)%form == form_joint) then
-            i = set%cards(k)%point
+            i = set%cards(k)%subject
             j = i + 1
          else
             call look_up(set, request_point, k, label_a, i)
@@ -286,6 +286,7 @@ contains
          integer :: k, earlier
 
          k = set%named(kind)%card(n)
+         if (set%cards(k)%form /= form_joint) set%cards(k)%subject = n
          if (set%cards(k)%label(i) == '') return
          call put_name(set%named(kind)%table, set%cards(k)%label(i), n, earlier)
          if (earlier == 0) return

@@ -135,7 +135,7 @@ contains
          integer, intent(in) :: d
          integer :: i, above, n, row, last
 
-         set%cards(k)%drive = d
+         set%cards(k)%subject = d
          n = 0
          row = 0
          above = k
@@ -148,7 +148,7 @@ contains
                row = 1
                n = n + 1
             end if
-            set%cards(i)%drive = d
+            set%cards(i)%subject = d
             set%cards(i)%term = n
             set%cards(i)%row = row
             above = i
@@ -247,7 +247,7 @@ contains
 
       call find_instants(set%mechanism, first, last)
       do k = 1, set%count
-         if (set%cards(k)%drive > 0 .and. set%cards(k)%row == 1) call check_term(set, k, first, last)
+         if (set%cards(k)%row == 1) call check_term(set, k, first, last)
       end do
    end subroutine check_terms
 
@@ -258,7 +258,7 @@ contains
       integer, intent(in) :: k
       real(wp), intent(in) :: first, last
 
-      associate (term => set%mechanism%drives(set%cards(k)%drive)%terms(set%cards(k)%term))
+      associate (term => set%mechanism%drives(set%cards(k)%subject)%terms(set%cards(k)%term))
          select case (term%kind)
          case (term_table)
             ! As doubles: in real128 a double may lie outside by its rounding.

@@ -12,7 +12,7 @@ module deck_options
    use input_errors, only: card_repeated, lang_kind, units_angle, units_place, method_kind, tolerance_range, &
       time_point, number_range, field_blank, print_kind, print_all_name, print_repeated, print_nothing, extremes_time, &
       extremes_ground, branch_ground, newton_needed, branch_repeated, centre_still, centre_apart
-   use names, only: name_table_t, put_name, find_name
+   use name_table, only: name_table_t, put_name, find_name
    use numerals, only: whole
    use independent, only: part_of_links
    implicit none

@@ -3,11 +3,14 @@
 !> is off by a right angle.
 module deck_remarks
    use kinds, only: wp, label_length
-   use planar, only: pi, direction, quarter_turn, point_of, in_degrees
+   use planar, only: pi, in_degrees
    use mechanism, only: remark_link_unused, remark_point_unused, remark_radians, remark_guide, mechanism_t, &
-      drive_links, used_points, pair_prismatic, drive_words, driven_kinds, drive_angle, drive_relangle, request_link, &
-      request_point, request_pair, request_curve, method_words, method_newton
+      pair_t, card_number_t, drive_links, used_points, pair_prismatic, drive_words, driven_kinds, drive_angle, &
+      drive_relangle, request_link, request_point, request_pair, request_curve, method_words, method_newton
+   use card_numbers, only: unit_t, number_unit, number_value, is_as_drawn
+   use drawn_values, only: drawn_way, drawn_opening
    use scales, only: solver_length
+   use deck_tolerances, only: number_on_card
    use card_sets, only: card_set_t, add_card_error, add_card_remark, real_text
    use cards, only: label_a, label_c, real_1, form_ground, form_link, form_prism, form_drive, form_rise, form_name, &
       reals_of, form_title, form_units, form_at, form_method, form_print, form_pole, form_curve, form_vary
@@ -81,7 +84,7 @@ contains
             case (form_drive)
                is_angle = [any(card%label(label_a) == drive_words([drive_angle, drive_relangle])), .false., .false.]
             case (form_rise)
-               is_angle = [.false., .false., driven_kinds(set%mechanism%drives(card%drive)%kind) == request_link]
+               is_angle = [.false., .false., driven_kinds(set%mechanism%drives(card%subject)%kind) == request_link]
             case default
                cycle
             end select
@@ -101,34 +104,30 @@ contains
       real(wp) :: length
       integer :: i
 
+      if (set%number_of(form_prism) == 0) return
       associate (m => set%mechanism)
-         if (set%number_of(form_prism) == 0) return
          length = solver_length(m)
-         if (any([(m%pairs(i)%kind /= pair_prismatic .and. opening(m, i, 0.0_wp) > closed*length, &
+         if (any([(m%pairs(i)%kind /= pair_prismatic .and. norm2(drawn_way(m, m%pairs(i))) > closed*length, &
                    i=1, size(m%pairs))])) return
          do i = 1, size(m%pairs)
             if (m%pairs(i)%kind /= pair_prismatic) cycle
-            if (opening(m, i, 0.0_wp) < open*length) cycle
-            if (min(opening(m, i, 0.5_wp*pi), opening(m, i, -0.5_wp*pi)) > closed*length) cycle
+            if (opening(m, m%pairs(i), 0.0_wp) < open*length) cycle
+            if (min(opening(m, m%pairs(i), 0.5_wp*pi), opening(m, m%pairs(i), -0.5_wp*pi)) > closed*length) cycle
             call add_card_remark(set, remark_guide, set%named(request_pair)%card(i), real_1)
          end do
       end associate
    end subroutine check_guides
 
-   !> By how much pair `i` is open where the deck has its links; of a prismatic pair eq. (9), its guide turned by `turn`
-   !> (rad).
-   pure real(wp) function opening(m, i, turn)
+   !> By how much the prismatic `pair` is open where the deck has its links, eq. (9), its guide turned by `turn` (rad).
+   pure real(wp) function opening(m, pair, turn)
       type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i
+      type(pair_t), intent(in) :: pair
       real(wp), intent(in) :: turn
-      real(wp) :: gap(2)
+      type(pair_t) :: turned
 
-      associate (pair => m%pairs(i), p => m%points(m%pairs(i)%point_i), q => m%points(m%pairs(i)%point_j))
-         gap = point_of(m%links(p%link)%position, p%offset) - point_of(m%links(q%link)%position, q%offset)
-         opening = norm2(gap)
-         if (pair%kind == pair_prismatic) opening = abs(pair%offset - dot_product(gap, &
-            quarter_turn(direction(m%links(p%link)%position(3) + pair%alpha + turn))))
-      end associate
+      turned = pair
+      turned%alpha = pair%alpha + turn
+      opening = abs(drawn_opening(m, turned))
    end function opening
 
    !> Builds `set`%mechanism%echo, the cards as they were understood with the values in use: a line for each card but
@@ -170,37 +169,32 @@ contains
 
       !> Puts the numbers that are as drawn into the lines of their cards.
       subroutine add_drawn()
-         integer :: i, k
+         type(card_number_t) :: number
+         integer :: k, i, column
 
-         do i = 1, size(set%mechanism%pairs)
-            associate (pair => set%mechanism%pairs(i), k => set%named(request_pair)%card(i))
-               if (set%cards(k)%form /= form_prism) cycle
-               if (pair%drawn(2)) call put_drawn(k, 2, pair%offset, .false.)
-               if (pair%drawn(3)) call put_drawn(k, 3, pair%beta, .true.)
-            end associate
-         end do
          do k = 1, set%count
-            if (set%cards(k)%form /= form_drive) cycle
-            associate (drive => set%mechanism%drives(set%cards(k)%drive))
-               if (drive%drawn) call put_drawn(k, 1, drive%polynomial(1), driven_kinds(drive%kind) == request_link)
-            end associate
+            if (all(set%cards(k)%form /= [form_prism, form_drive])) cycle
+            do i = 1, 3
+               number = number_on_card(set, k, i)
+               if (.not. is_as_drawn(set%mechanism, number)) cycle
+               column = real_column + (i - 1)*real_width
+               set%mechanism%echo(line(k))(column:column + real_width - 1) = value_of(number)//' ' &
+                  //drawn_marks(merge(2, 1, set%mechanism%polish))
+            end do
          end do
       end subroutine add_drawn
 
-      !> Puts `x` (length or rad) in the place of real number `i` of card `k`.
-      subroutine put_drawn(k, i, x, is_angle)
-         integer, intent(in) :: k, i
-         real(wp), intent(in) :: x
-         logical, intent(in) :: is_angle
+      !> The value of `number`, as a drive or a pair has it, in the deck's units.
+      function value_of(number) result(text)
+         type(card_number_t), intent(in) :: number
          character(:), allocatable :: text
-         integer :: column
+         type(unit_t) :: unit
+         real(wp) :: x
 
-         column = real_column + (i - 1)*real_width
-         associate (m => set%mechanism)
-            text = drawn_text(merge(in_degrees(x), x, is_angle .and. m%degrees))
-            m%echo(line(k))(column:column + real_width - 1) = trim(text)//' '//drawn_marks(merge(2, 1, m%polish))
-         end associate
-      end subroutine put_drawn
+         x = number_value(set%mechanism, number)
+         unit = number_unit(set%mechanism, number)
+         text = drawn_text(merge(in_degrees(x), x, unit%name == 'DEG'))
+      end function value_of
 
       !> Adds the line of a form that has no card in the set: its defaults.
       subroutine add_default(form, labels)

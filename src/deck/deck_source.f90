@@ -25,7 +25,7 @@ module deck_source
       character(:), allocatable :: name      !< for messages
       integer(c_int) :: descriptor = standard_input
       integer :: lines = 0                   !< lines read so far
-      character(:), allocatable :: buffer    !< (block_length) bytes of the deck
+      character(:), allocatable :: buffer    !< bytes of the deck
       integer :: at = 1, filled = 0          !< the next byte of the buffer and the last one
       logical :: ended = .false.             !< there is no more to read
       logical :: after_return = .false.      !< the last line ended with a carriage return
@@ -67,38 +67,52 @@ contains
       type(card_t), intent(out) :: card
       logical, intent(out) :: found
       type(failure_t), allocatable, intent(out) :: failure
-      integer :: columns, length
+      integer :: length
 
-      call have_more(source, found, failure)
-      if (source%after_return .and. found) then
+      found = .false.
+      if (source%after_return) then
          ! A line feed after a carriage return belongs to the line before.
-         if (source%buffer(source%at:source%at) == line_feed) source%at = source%at + 1
+         if (source%at > source%filled .and. .not. source%ended) call read_on(source, failure)
+         if (allocated(failure)) return
+         if (source%at <= source%filled) then
+            if (source%buffer(source%at:source%at) == line_feed) source%at = source%at + 1
+         end if
          source%after_return = .false.
-         call have_more(source, found, failure)
       end if
-      if (.not. found) return
-      source%lines = source%lines + 1
-      card%number = source%lines
-      columns = 0
       do
          length = line_length(source%buffer(source%at:source%filled))
-         call note(card, source%buffer(source%at:source%at + length - 1), columns)
-         source%at = source%at + length
-         if (columns > max_columns) then
-            found = .false.
-            call fail(failure, status_rejected, source%name//' IS NOT A DECK: LINE '//whole(source%lines) &
+         if (length > max_columns) then
+            call fail(failure, status_rejected, source%name//' IS NOT A DECK: LINE '//whole(source%lines + 1) &
                //' HAS MORE THAN '//whole(max_columns)//' COLUMNS')
             return
          end if
-         if (source%at <= source%filled) exit
-         call have_more(source, found, failure)
-         if (found) cycle
-         found = .not. allocated(failure)
-         return
+         if (source%at + length <= source%filled .or. source%ended) exit
+         call read_on(source, failure)
+         if (allocated(failure)) return
       end do
-      source%after_return = source%buffer(source%at:source%at) == carriage_return
-      source%at = source%at + 1
+      found = source%at <= source%filled
+      if (.not. found) return
+      source%lines = source%lines + 1
+      card%number = source%lines
+      call take_line(card, source%buffer(source%at:source%at + length - 1))
+      source%at = source%at + length + 1
+      if (source%at - 1 <= source%filled) &
+         source%after_return = source%buffer(source%at - 1:source%at - 1) == carriage_return
    end subroutine next_card
+
+   !> Gives `card` the columns of `line` and, of what is beyond them, the beginning.
+   pure subroutine take_line(card, line)
+      type(card_t), intent(inout) :: card
+      character(*), intent(in) :: line
+      integer :: i
+
+      card%text = line(:min(len(line), card_columns))
+      if (len(line) <= card_columns) return
+      i = verify(line(card_columns + 1:), ' ')
+      if (i == 0) return
+      card%overrun = card_columns + i
+      card%beyond = line(card%overrun:)
+   end subroutine take_line
 
    !> The number of characters of `text` before the end of a line; all of them, if it has none.
    pure integer function line_length(text) result(length)
@@ -119,31 +133,25 @@ contains
       if (source%descriptor /= standard_input) closed = close_descriptor(source%descriptor)
    end subroutine close_source
 
-   !> Reads on if the buffer is used up. `more`: there is a next byte. Otherwise the deck ends, or `failure` says why it
-   !> cannot be read.
-   subroutine have_more(source, more, failure)
-      type(source_t), intent(inout) :: source
-      logical, intent(out) :: more
-      type(failure_t), allocatable, intent(out) :: failure
-
-      if (source%at > source%filled .and. .not. source%ended) then
-         source%at = 1
-         source%filled = 0
-         call read_on(source, failure)
-      end if
-      more = source%at <= source%filled
-   end subroutine have_more
-
-   !> Reads to the free end of the buffer. Errors: status_system.
+   !> Reads to the free end of the buffer. What is not used yet moves to its beginning; the buffer grows if a line needs
+   !> all of it. Errors: status_system.
    subroutine read_on(source, failure)
       type(source_t), intent(inout) :: source
       type(failure_t), allocatable, intent(out) :: failure
+      character(:), allocatable :: rest
       integer :: length, error
 
-      length = read_bytes(source%descriptor, source%buffer(source%filled + 1:))
+      rest = source%buffer(source%at:source%filled)
+      if (2*len(rest) > len(source%buffer)) then
+         deallocate (source%buffer)
+         allocate (character(4*len(rest)) :: source%buffer)
+      end if
+      source%buffer(:len(rest)) = rest
+      source%at = 1
+      length = read_bytes(source%descriptor, source%buffer(len(rest) + 1:))
       error = last_error()
       source%ended = length <= 0
-      source%filled = source%filled + max(0, length)
+      source%filled = len(rest) + max(0, length)
       if (length >= 0) return
       if (error == is_a_directory) then
          call fail(failure, status_system, source%name//' IS A DIRECTORY')
@@ -151,36 +159,4 @@ contains
          call fail(failure, status_system, source%name//' CANNOT BE READ ('//capitals(reason_of(error))//')')
       end if
    end subroutine read_on
-
-   !> Adds `part` of a line to `card` after the column `columns`, which becomes its last column.
-   subroutine note(card, part, columns)
-      type(card_t), intent(inout) :: card
-      character(*), intent(in) :: part
-      integer, intent(inout) :: columns
-      integer :: length
-
-      length = max(0, min(len(part), card_columns - columns))
-      if (length > 0) card%text(columns + 1:columns + length) = part(:length)
-      if (length < len(part)) call note_beyond(card, part(length + 1:), columns + length)
-      columns = columns + len(part)
-   end subroutine note
-
-   !> Adds to `card` the beginning of the text beyond its last column. `part` follows column `before`.
-   subroutine note_beyond(card, part, before)
-      type(card_t), intent(inout) :: card
-      character(*), intent(in) :: part
-      integer, intent(in) :: before
-      integer :: i, known
-
-      if (card%overrun == 0) then
-         i = verify(part, ' ')
-         if (i == 0) return
-         card%overrun = before + i
-         card%beyond = part(i:)
-      else
-         ! What is known ends at column `before`.
-         known = before - card%overrun + 1
-         if (known < len(card%beyond)) card%beyond(known + 1:) = part
-      end if
-   end subroutine note_beyond
 end module deck_source

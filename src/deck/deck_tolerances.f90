@@ -1,8 +1,8 @@
 !> The TOLER cards of a set: each gives tolerances to the numbers of the card above it.
 module deck_tolerances
    use kinds, only: wp
-   use mechanism, only: tolerance_t, card_number_t, term_table, request_link, request_point, request_pair, &
-      number_link, number_point, number_joint, number_pair, number_drive, number_knot, number_time
+   use mechanism, only: tolerance_t, card_number_t, term_table, number_link, number_point, number_joint, &
+      number_pair, number_drive, number_knot, number_time
    use card_numbers, only: unit_t, takes_tolerance, number_name, number_unit
    use card_sets, only: card_set_t, real_text, add_card_error
    use cards, only: card_name, label_a, real_1, forms, form_unknown, form_ground, form_link, form_point, form_prism, &
@@ -96,29 +96,25 @@ contains
       integer, intent(in) :: k, i
       type(card_number_t) :: number
 
-      number = card_number_t(kind=0, place=i)
       associate (card => set%cards(k))
+         number = card_number_t(0, card%subject, card%term, i)
          if (i > reals_of(card%form, card%label(label_a))) return
          select case (card%form)
          case (form_ground, form_link)
             number%kind = number_link
-            number%subject = findloc(set%named(request_link)%card, k, dim=1)
          case (form_point)
             number%kind = number_point
-            number%subject = findloc(set%named(request_point)%card, k, dim=1)
          case (form_joint)
             number%kind = number_joint
-            number%subject = card%point
          case (form_prism)
             number%kind = number_pair
-            number%subject = findloc(set%named(request_pair)%card, k, dim=1)
          case (form_time)
             number%kind = number_time
          case (form_drive, form_add, form_rise)
-            if (card%drive == 0) return
-            number = card_number_t(number_drive, card%drive, card%term, i)
+            if (card%subject == 0) return
+            number%kind = number_drive
             if (card%term == 0) return
-            if (set%mechanism%drives(card%drive)%terms(card%term)%kind /= term_table) return
+            if (set%mechanism%drives(card%subject)%terms(card%term)%kind /= term_table) return
             number%place = card%row
             if (i == 1) number%kind = number_knot
          end select

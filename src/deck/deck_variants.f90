@@ -298,7 +298,7 @@ contains
 
    !> Gives `m`, a variant of `v` without errors, the numbers of variant `n`. `is_done`: it is that variant now; where
    !> more than these numbers may depend on the cards it is not, and must be built.
-   pure subroutine change_numbers(v, n, m, is_done)
+   subroutine change_numbers(v, n, m, is_done)
       type(variation_t), intent(in) :: v
       integer, intent(in) :: n
       type(mechanism_t), intent(inout) :: m

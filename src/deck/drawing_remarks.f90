@@ -9,14 +9,15 @@ module drawing_remarks
    use drawn_values, only: drawn_drive, drawn_opening, drawn_way
    use scales, only: solver_length
    use grouping, only: sorted_t, sorted, members
+   use numerals, only: rounded
    use cards, only: label_a, label_b, label_c, form_joint, form_drive
    use card_sets, only: card_set_t, has_drawing, add_card_remark
    implicit none
    private
    public :: check_drawing, drawn_text
 
-   !> Digits of a number as drawn, as far as its kind has them; two fewer with an exponent; and its characters.
-   integer, parameter :: drawn_text_digits = min(9, precision(1.0_wp)), drawn_text_length = 13
+   !> Digits of a number as drawn, as far as its kind has them.
+   integer, parameter :: drawn_text_digits = min(9, precision(1.0_wp))
 
    !> Coordinates measured in a drawing have some four digits: a closure error below this, in rad or in parts of the
    !> characteristic length, contradicts nothing.
@@ -66,10 +67,10 @@ contains
                end associate
             end if
             if (pair%drawn(2) .and. abs(pair%offset) > drawn_digits*length) &
-               call remark_on_pair(remark_drawn_offset, length_text(m, pair%offset))
+               call remark_on_pair(remark_drawn_offset, with_unit(m, pair%offset, .false.))
          end if
-         if (abs(x) > drawn_digits*length) call remark_on_pair(remark_open, length_text(m, x))
-         if (abs(turn) > drawn_digits) call remark_on_pair(remark_open, angle_text(m, turn))
+         if (abs(x) > drawn_digits*length) call remark_on_pair(remark_open, with_unit(m, x, .false.))
+         if (abs(turn) > drawn_digits) call remark_on_pair(remark_open, with_unit(m, turn, .true.))
       end associate
 
    contains
@@ -92,22 +93,17 @@ contains
       integer, intent(in) :: k
       real(wp), intent(in) :: length
       real(wp) :: f(3), off
-      character(:), allocatable :: value
+      logical :: is_angle
 
-      associate (m => set%mechanism, drive => set%mechanism%drives(set%cards(k)%drive))
-         if (drive%drawn .and. abs(drive%polynomial(1)) > 0.0_wp) then
-            value = length_text(m, drive%polynomial(1))
-            if (driven_kinds(drive%kind) == request_link) value = angle_text(m, drive%polynomial(1))
-            call add_card_remark(set, remark_drawn_value, k, label_b, value)
-         end if
+      associate (m => set%mechanism, drive => set%mechanism%drives(set%cards(k)%subject))
+         is_angle = driven_kinds(drive%kind) == request_link
+         if (drive%drawn .and. abs(drive%polynomial(1)) > 0.0_wp) &
+            call add_card_remark(set, remark_drawn_value, k, label_b, with_unit(m, drive%polynomial(1), is_angle))
          f = drive_motion(new_law(drive), instant(m, 0))
          off = f(1) - drawn_drive(m, drive)
-         if (driven_kinds(drive%kind) == request_link) then
-            off = without_turns(off)
-            if (abs(off) > drawn_digits) call add_card_remark(set, remark_off_drawing, k, label_b, angle_text(m, off))
-         else if (abs(off) > drawn_digits*length) then
-            call add_card_remark(set, remark_off_drawing, k, label_b, length_text(m, off))
-         end if
+         if (is_angle) off = without_turns(off)
+         if (abs(off) > drawn_digits*merge(1.0_wp, length, is_angle)) &
+            call add_card_remark(set, remark_off_drawing, k, label_b, with_unit(m, off, is_angle))
       end associate
    end subroutine check_drive
 
@@ -131,7 +127,7 @@ contains
       found = 0
       limit = near*extent(place)
       associate (m => set%mechanism)
-         joints_of = sorted([m%points(set%cards(cards)%point)%link, m%points(set%cards(cards)%point + 1)%link], &
+         joints_of = sorted([m%points(set%cards(cards)%subject)%link, m%points(set%cards(cards)%subject + 1)%link], &
             size(m%links))
       end associate
       do link = 1, size(set%mechanism%links)
@@ -144,7 +140,8 @@ contains
                if (is_remarked(k)) exit
                is_remarked(k) = .true.
                found = found + 1
-               call add_card_remark(set, remark_near_joints, cards(k), label_a, length_text(set%mechanism, distance) &
+               call add_card_remark(set, remark_near_joints, cards(k), label_a, &
+                  with_unit(set%mechanism, distance, .false.) &
                   //' ('//trim(set%cards(cards(min(list(i), list(j))))%label(label_a))//')')
                exit
             end do
@@ -168,47 +165,36 @@ contains
       end do
    end function extent
 
-   !> The length `x` with its unit.
-   function length_text(m, x) result(text)
+   !> The length or angle `x` (rad) of `m`, with its unit.
+   pure function with_unit(m, x, is_angle) result(text)
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: x
+      logical, intent(in) :: is_angle
       character(:), allocatable :: text
 
-      text = trim(drawn_text(x))//' '//trim(m%length_unit)
-   end function length_text
-
-   !> The angle `x` (rad) with the deck's unit.
-   function angle_text(m, x) result(text)
-      type(mechanism_t), intent(in) :: m
-      real(wp), intent(in) :: x
-      character(:), allocatable :: text
-
-      text = trim(drawn_text(x))//' RAD'
-      if (m%degrees) text = trim(drawn_text(in_degrees(x)))//' DEG'
-   end function angle_text
+      if (.not. is_angle) then
+         text = drawn_text(x)//' '//trim(m%length_unit)
+      else if (m%degrees) then
+         text = drawn_text(in_degrees(x))//' DEG'
+      else
+         text = drawn_text(x)//' RAD'
+      end if
+   end function with_unit
 
    !> `x` with its digits, zeros at the end left out but for one behind the point; a very small or large one with an
-   !> exponent.
+   !> exponent, and two digits fewer.
    pure function drawn_text(x) result(text)
       real(wp), intent(in) :: x
-      character(drawn_text_length) :: text
-      character(16) :: form
-      integer :: last
+      character(:), allocatable :: text
+      real(wp), parameter :: small = 1.0e-3_wp, smallest = 1.0e-2_wp, largest = 1.0e8_wp
 
-      text = '0.0'
-      if (.not. abs(x) > 0.0_wp) return
-      if (abs(x) < 1.0e-3_wp .or. abs(x) >= 1.0e8_wp) then
-         write (form, '(a, i0, a)') '(es13.', drawn_text_digits - 3, ')'
-         write (text, form) x
-         if (scan(text, 'E') == 0) write (text, '(es13.5e3)') x
-         text = adjustl(text)
-         return
+      if (abs(x) > 0.0_wp .and. (abs(x) < small .or. abs(x) >= largest)) then
+         text = rounded(x, drawn_text_digits - 2, small, largest)
+      else
+         ! At most ten decimals.
+         text = rounded(x, drawn_text_digits - merge(1, 0, abs(x) < smallest), small, largest)
+         text = text(:verify(text, '0', back=.true.))
+         if (text(len(text):) == '.') text = text//'0'
       end if
-      write (form, '(a, i0, a)') '(f13.', min(10, max(1, drawn_text_digits - 1 - floor(log10(abs(x))))), ')'
-      write (text, form) x
-      text = adjustl(text)
-      last = verify(trim(text), '0', back=.true.)
-      if (text(last:last) == '.') last = last + 1
-      text(last + 1:) = ''
    end function drawn_text
 end module drawing_remarks

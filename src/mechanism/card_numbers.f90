@@ -13,8 +13,8 @@ module card_numbers
    use numerals, only: whole
    implicit none
    private
-   public :: unit_t, numbers_of, takes_tolerance, number_name, number_unit, number_value, set_number, put_number, &
-      follow_drawing, angle_in_radians, minute_in, turns_a_minute
+   public :: unit_t, numbers_of, takes_tolerance, is_as_drawn, number_name, number_unit, number_value, set_number, &
+      put_number, follow_drawing, angle_in_radians, minute_in, turns_a_minute
 
    !> The unit of a number on a card.
    type :: unit_t
@@ -81,7 +81,7 @@ contains
 
          do place = 1, places
             one = card_number_t(kind, subject, term, place)
-            if (.not. takes_tolerance(m, one) .or. is_drawn(one)) cycle
+            if (.not. takes_tolerance(m, one) .or. is_as_drawn(m, one)) cycle
             if (n == size(list)) list = [list, list]
             n = n + 1
             list(n) = one
@@ -96,16 +96,17 @@ contains
          if (m%points(i)%drawn .and. i < size(m%points)) is_joint = m%points(i + 1)%drawn &
             .and. m%points(i)%name == m%points(i + 1)%name
       end function is_joint
-
-      !> Whether number `n` is blank on its card: it is as drawn.
-      pure logical function is_drawn(n)
-         type(card_number_t), intent(in) :: n
-
-         is_drawn = .false.
-         if (n%kind == number_pair) is_drawn = m%pairs(n%subject)%drawn(n%place)
-         if (n%kind == number_drive .and. n%term == 0 .and. n%place == 1) is_drawn = m%drives(n%subject)%drawn
-      end function is_drawn
    end function numbers_of
+
+   !> Whether number `n` of `m` is blank on its card: it is the one of the drawing.
+   pure logical function is_as_drawn(m, n)
+      type(mechanism_t), intent(in) :: m
+      type(card_number_t), intent(in) :: n
+
+      is_as_drawn = .false.
+      if (n%kind == number_pair) is_as_drawn = m%pairs(n%subject)%drawn(n%place)
+      if (n%kind == number_drive .and. n%term == 0 .and. n%place == 1) is_as_drawn = m%drives(n%subject)%drawn
+   end function is_as_drawn
 
    !> Whether number `n` of `m` can have a tolerance. These have none: the estimates of moving links; the axes of a
    !> ground link on which JOINT cards place points; the times of TIME and of a table; the exponent of a power.
@@ -252,41 +253,55 @@ contains
    end function number_unit
 
    !> The value of number `n` of `m`, in the units of `mechanism_t`. A JOINT card's is a place in the drawing.
-   pure real(wp) function number_value(m, n) result(value)
-      type(mechanism_t), intent(in) :: m
+   real(wp) function number_value(m, n) result(value)
+      type(mechanism_t), intent(in), target :: m
       type(card_number_t), intent(in) :: n
+      real(wp), pointer :: x
       real(wp) :: place(2)
+
+      x => number_in(m, n)
+      value = x
+      if (n%kind /= number_joint) return
+      place = point_of(m%links(m%points(n%subject)%link)%position, m%points(n%subject)%offset)
+      value = place(n%place)
+   end function number_value
+
+   !> Where number `n` is in `m`; of a JOINT card the offset of its first point.
+   function number_in(m, n) result(x)
+      type(mechanism_t), intent(in), target :: m
+      type(card_number_t), intent(in) :: n
+      real(wp), pointer :: x
 
       associate (k => n%subject, i => n%place)
          select case (n%kind)
          case (number_link)
-            value = m%links(k)%position(i)
-         case (number_point)
-            value = m%points(k)%offset(i)
-         case (number_joint)
-            place = point_of(m%links(m%points(k)%link)%position, m%points(k)%offset)
-            value = place(i)
+            x => m%links(k)%position(i)
+         case (number_point, number_joint)
+            x => m%points(k)%offset(i)
          case (number_pair)
-            value = merge(m%pairs(k)%alpha, merge(m%pairs(k)%offset, m%pairs(k)%beta, i == 2), i == 1)
+            x => m%pairs(k)%alpha
+            if (i == 2) x => m%pairs(k)%offset
+            if (i == 3) x => m%pairs(k)%beta
          case (number_knot)
-            value = m%drives(k)%terms(n%term)%knots(i)
+            x => m%drives(k)%terms(n%term)%knots(i)
          case (number_time)
-            value = merge(m%t0, m%t1, i == 1)
+            x => m%t0
+            if (i == 2) x => m%t1
          case default
             if (n%term == 0) then
-               value = m%drives(k)%polynomial(i)
+               x => m%drives(k)%polynomial(i)
             else if (m%drives(k)%terms(n%term)%kind == term_table) then
-               value = m%drives(k)%terms(n%term)%values(i)
+               x => m%drives(k)%terms(n%term)%values(i)
             else
-               value = m%drives(k)%terms(n%term)%r(i)
+               x => m%drives(k)%terms(n%term)%r(i)
             end if
          end select
       end associate
-   end function number_value
+   end function number_in
 
    !> Gives number `n` of `m` the `value`, in the units of `mechanism_t`. All other numbers that are as drawn follow, if
    !> the links of `m` are where the cards put them.
-   pure subroutine set_number(m, n, value)
+   subroutine set_number(m, n, value)
       type(mechanism_t), intent(inout) :: m
       type(card_number_t), intent(in) :: n
       real(wp), intent(in) :: value
@@ -300,45 +315,24 @@ contains
 
    !> Gives number `n` of `m` the `value`, and leaves all others as they are. A place of a JOINT card moves both of its
    !> points. Nothing is allocated.
-   pure subroutine put_number(m, n, value)
-      type(mechanism_t), intent(inout) :: m
+   subroutine put_number(m, n, value)
+      type(mechanism_t), intent(inout), target :: m
       type(card_number_t), intent(in) :: n
       real(wp), intent(in) :: value
+      real(wp), pointer :: x
       real(wp) :: way(2)
-      integer :: j
+      integer :: i
 
-      associate (k => n%subject, i => n%place)
-         select case (n%kind)
-         case (number_link)
-            m%links(k)%position(i) = value
-         case (number_point)
-            m%points(k)%offset(i) = value
-         case (number_joint)
-            way = 0.0_wp
-            way(i) = value - number_value(m, n)
-            do j = k, k + 1
-               m%points(j)%offset = m%points(j)%offset &
-                  + rotated(way, direction(-m%links(m%points(j)%link)%position(3)))
-            end do
-         case (number_pair)
-            if (i == 1) m%pairs(k)%alpha = value
-            if (i == 2) m%pairs(k)%offset = value
-            if (i == 3) m%pairs(k)%beta = value
-         case (number_knot)
-            m%drives(k)%terms(n%term)%knots(i) = value
-         case (number_time)
-            if (i == 1) m%t0 = value
-            if (i == 2) m%t1 = value
-         case default
-            if (n%term == 0) then
-               m%drives(k)%polynomial(i) = value
-            else if (m%drives(k)%terms(n%term)%kind == term_table) then
-               m%drives(k)%terms(n%term)%values(i) = value
-            else
-               m%drives(k)%terms(n%term)%r(i) = value
-            end if
-         end select
-      end associate
+      if (n%kind /= number_joint) then
+         x => number_in(m, n)
+         x = value
+         return
+      end if
+      way = 0.0_wp
+      way(n%place) = value - number_value(m, n)
+      do i = n%subject, n%subject + 1
+         m%points(i)%offset = m%points(i)%offset + rotated(way, direction(-m%links(m%points(i)%link)%position(3)))
+      end do
    end subroutine put_number
 
    !> Gives the pairs and drives of `m` that are as drawn the numbers of its drawing: its links are where the cards put

@@ -1,59 +1,16 @@
-!> Names: a hash table from names to numbers (open addressing), and names in messages.
+!> Names of links, points, pairs and drives in messages, and lists of names.
 module names
-   use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: label_length
    use mechanism, only: mechanism_t, drive_t, drive_words, driven_kinds, drive_relangle, request_link, request_point
    use numerals, only: whole
    implicit none
    private
-   public :: name_table_t, put_name, find_name, drive_name, subject_name, listed, more
-
-   !> Slots of an empty table. At most every second slot is filled.
-   integer, parameter :: first_size = 64
-
-   !> A place of the table.
-   type :: slot_t
-      character(label_length) :: name = ''
-      integer :: number = 0                !< 0: the slot is free
-   end type slot_t
-
-   type :: name_table_t
-      private
-      integer :: filled = 0                !< slots that are not free
-      type(slot_t), allocatable :: slots(:)
-   end type name_table_t
+   public :: drive_name, subject_name, listed, more
 
    !> The largest number of names in a list, and of its characters; the rest is only counted. Drives have long names.
    integer, parameter :: max_names = 8, max_listed = 84
 
 contains
-
-   !> Enters `name` with `number` > 0. If the table has it already, nothing changes and `earlier` is its number;
-   !> otherwise `earlier` is 0.
-   subroutine put_name(table, name, number, earlier)
-      type(name_table_t), intent(inout) :: table
-      character(*), intent(in) :: name
-      integer, intent(in) :: number
-      integer, intent(out) :: earlier
-      integer :: slot
-
-      if (.not. allocated(table%slots)) allocate (table%slots(first_size))
-      slot = slot_of(table%slots, name)
-      earlier = table%slots(slot)%number
-      if (earlier /= 0) return
-      table%slots(slot) = slot_t(name, number)
-      table%filled = table%filled + 1
-      if (2*table%filled > size(table%slots)) call double_slots(table%slots)
-   end subroutine put_name
-
-   !> The number of `name`, or 0 if the table does not have it.
-   pure integer function find_name(table, name) result(number)
-      type(name_table_t), intent(in) :: table
-      character(*), intent(in) :: name
-
-      number = 0
-      if (allocated(table%slots)) number = table%slots(slot_of(table%slots, name))%number
-   end function find_name
 
    !> The kind of drive `d` of the mechanism `m` and what it drives, as on its card.
    pure function drive_name(m, d) result(name)
@@ -109,43 +66,4 @@ contains
       if (polish) text = ' I '//whole(n)//' INNE'
    end function more
 
-   !> The slot of `name`, or the free slot where it belongs. There is always a free slot.
-   pure integer function slot_of(slots, name) result(k)
-      type(slot_t), intent(in) :: slots(:)
-      character(*), intent(in) :: name
-      character(label_length) :: key
-
-      key = name
-      k = 1 + int(modulo(hash(key), int(size(slots), int64)))
-      do while (slots(k)%number /= 0)
-         if (slots(k)%name == key) exit
-         k = 1 + modulo(k, size(slots))
-      end do
-   end function slot_of
-
-   !> A number below 2**31 - 1 that depends on every character; sums stay below 2**58.
-   pure integer(int64) function hash(key)
-      character(label_length), intent(in) :: key
-      integer(int64), parameter :: prime = 2147483647_int64, factor = 131_int64
-      integer :: i
-
-      hash = 0_int64
-      do i = 1, label_length
-         hash = hash*factor + iachar(key(i:i))
-      end do
-      hash = modulo(hash, prime)
-   end function hash
-
-   !> Doubles the number of slots; the names stay.
-   subroutine double_slots(slots)
-      type(slot_t), allocatable, intent(inout) :: slots(:)
-      type(slot_t), allocatable :: old(:)
-      integer :: i
-
-      call move_alloc(slots, old)
-      allocate (slots(2*size(old)))
-      do i = 1, size(old)
-         if (old(i)%number /= 0) slots(slot_of(slots, old(i)%name)) = old(i)
-      end do
-   end subroutine double_slots
 end module names

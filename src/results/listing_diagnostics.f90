@@ -5,7 +5,7 @@ module listing_diagnostics
    use mechanism, only: settings_t, mechanism_t, remark_t, remark_small_letters, remark_more
    use motion
    use names, only: drive_name, listed, more
-   use numerals, only: whole, put_fixed, numeral_length
+   use numerals, only: whole, rounded, put_fixed, numeral_length
    use text_output, only: output_t, put
    use phrases
    use listing_layout, only: put_folded, angle_unit, choose_time_digits, unit_of
@@ -232,11 +232,13 @@ contains
       type(diagnostic_t), intent(in) :: r
       integer, intent(in) :: digits
       character(:), allocatable :: text
+      !> Numbers between these have no exponent.
+      real(wp), parameter :: smallest = 1.0e-4_wp, largest = 1.0e9_wp
 
       if (r%is_angle) then
-         text = number(r%value/merge(degree, 1.0_wp, m%degrees), digits)//' '//trim(angle_unit(m))
+         text = rounded(r%value/merge(degree, 1.0_wp, m%degrees), digits, smallest, largest)//' '//trim(angle_unit(m))
       else
-         text = number(r%value, digits)//' '//trim(m%length_unit)
+         text = rounded(r%value, digits, smallest, largest)//' '//trim(m%length_unit)
       end if
    end function measure
 
@@ -252,32 +254,6 @@ contains
       call put_fixed(t, decimals, power, field)
       text = trim(adjustl(field))//' '//unit_of(power, trim(m%time_unit))
    end function time
-
-   !> `x` with so many `digits`, without blanks: in fixed point, unless it is very large or small.
-   function number(x, digits) result(text)
-      real(wp), intent(in) :: x
-      integer, intent(in) :: digits
-      character(:), allocatable :: text
-      real(wp), parameter :: smallest = 1.0e-4_wp, largest = 1.0e9_wp
-      character(40) :: field
-      character(12) :: form
-      integer :: order
-
-      order = 0
-      if (abs(x) > 0.0_wp) then
-         ! Rounding may make it the next power of ten.
-         write (form, '("(es30.", i0, "e4)")') digits - 1
-         write (field, form) x
-         read (field(index(field, 'E') + 1:), *) order
-      end if
-      if (abs(x) > 0.0_wp .and. (abs(x) < smallest .or. abs(x) >= largest)) then
-         write (form, '("(es30.", i0, a, ")")') digits - 1, trim(merge('e3', '  ', abs(order) > 99))
-      else
-         write (form, '("(f30.", i0, ")")') max(0, digits - 1 - order)
-      end if
-      write (field, form) x
-      text = trim(adjustl(field))
-   end function number
 
    !> By how much redundant equations differ, `closure_error` in parts of the characteristic length.
    subroutine put_closure_error(o, polish, closure_error)

@@ -13,7 +13,8 @@ module table
    use scales, only: is_length
    use drives, only: law_t, new_law, drive_motion
    use independent, only: set_t, request_of
-   use names, only: name_table_t, put_name, find_name, drive_name
+   use name_table, only: name_table_t, put_name, find_name
+   use names, only: drive_name
    use points, only: row_t, has_number, centre_numbers, coordinates_of
    use sensitivities, only: has_tolerances, worst_case, root_of_squares
    use set_motion, only: set_motion_t, find_row_in_set, known_numbers, spread_t, spread_in_set
