@@ -7,7 +7,7 @@ module card_sets
       request_pair, remark_small_letters
    use cards, only: card_t, field_t, card_fields, wide_fields, field_text, first_column, small_field, card_name, &
       label_a, label_b, label_c, real_1, real_2, real_3, form_ground, form_link, form_point, form_revolute, &
-      form_prism, form_cylinder, form_joint, form_end, nearest_words, proposal
+      form_prism, form_cylinder, form_joint, form_toler, form_vary, form_end, nearest_words, proposal
    use card_reader, only: parsed_card_t
    use failures, only: capitals
    use input_errors, only: error_code_t, input_errors_t, add_field_error, add_remark, is_full, link_unknown, &
@@ -19,9 +19,9 @@ module card_sets
    use numerals, only: whole
    implicit none
    private
-   public :: card_set_t, vary_card_t, begin_set, begin_mechanism, append_card
+   public :: card_set_t, begin_set, begin_mechanism, append_card, set_apart
    public :: read_small_letters, build_bodies, has_drawing, look_up, match_word
-   public :: add_card_error, add_parsed_error, add_card_remark, real_text
+   public :: add_card_error, add_apart_error, add_card_remark, real_text
 
    !> The links, the points or the pairs of a set.
    type :: named_t
@@ -29,18 +29,18 @@ module card_sets
       type(name_table_t) :: table                   !< from their names to their places in `card`
    end type named_t
 
-   !> A VARY card, and the number of the card whose numbers vary.
-   type :: vary_card_t
+   !> A TOLER or VARY card, and the number of the card to whose numbers it belongs.
+   type :: apart_card_t
       type(parsed_card_t) :: card
       integer :: below = 0                          !< 0: no card is above it
-   end type vary_card_t
+   end type apart_card_t
 
    type :: card_set_t
       integer :: count = 0                          !< cards so far
       type(parsed_card_t), allocatable :: cards(:)  !< (count) and room for more
       integer :: number_of(0:form_end) = 0          !< cards of each form
       logical :: names_certain = .true.             !< of every card: no unknown name can be one that was misread
-      type(vary_card_t), allocatable :: vary(:)     !< the VARY cards, once they are apart from the others
+      type(apart_card_t), allocatable :: apart(:)   !< the TOLER and VARY cards, once they are apart from the others
       type(card_t) :: small                         !< the first card with small letters; its number is 0: none
       type(named_t) :: named(request_link:request_pair)
       type(mechanism_t) :: mechanism
@@ -61,7 +61,7 @@ contains
       integer, intent(in) :: number
 
       set%count = 0
-      if (allocated(set%vary)) deallocate (set%vary)
+      if (allocated(set%apart)) deallocate (set%apart)
       set%number_of = 0
       set%names_certain = .true.
       set%small = card_t()
@@ -100,6 +100,26 @@ contains
       set%number_of(card%form) = set%number_of(card%form) + 1
       set%names_certain = set%names_certain .and. card%names_certain
    end subroutine append_card
+
+   !> Takes the TOLER and VARY cards of `set` out of its cards, so that these are what they would be without them.
+   subroutine set_apart(set)
+      type(card_set_t), intent(inout) :: set
+      integer :: k, n, kept
+
+      allocate (set%apart(sum(set%number_of([form_toler, form_vary]))))
+      n = 0
+      kept = 0
+      do k = 1, set%count
+         if (any(set%cards(k)%form == [form_toler, form_vary])) then
+            n = n + 1
+            set%apart(n) = apart_card_t(set%cards(k), kept)
+         else
+            kept = kept + 1
+            if (kept < k) set%cards(kept) = set%cards(k)
+         end if
+      end do
+      set%count = kept
+   end subroutine set_apart
 
    !> Reads the labels of the cards of `set` as capitals, a remark about the first of them: unless two names of a kind
    !> differ by small letters alone; then all labels stay as they are typed.
@@ -386,7 +406,17 @@ contains
       call add_parsed_error(set%errors, code, set%cards(k), field, more)
    end subroutine add_card_error
 
-   !> The same for `card`, to `errors`.
+   !> Adds the error `code` about `field` of the TOLER or VARY card set%apart(`i`). `more` ends the sentence.
+   subroutine add_apart_error(set, code, i, field, more)
+      type(card_set_t), intent(inout) :: set
+      type(error_code_t), intent(in) :: code
+      integer, intent(in) :: i, field
+      character(*), intent(in), optional :: more
+
+      call add_parsed_error(set%errors, code, set%apart(i)%card, field, more)
+   end subroutine add_apart_error
+
+   !> Adds the error `code` about `field` of `card` to `errors`.
    subroutine add_parsed_error(errors, code, card, field, more)
       type(input_errors_t), intent(inout) :: errors
       type(error_code_t), intent(in) :: code

@@ -5,8 +5,8 @@ module deck
    use kinds, only: label_length
    use mechanism, only: mechanism_t
    use card_reader, only: parsed_card_t, read_card, read_star
-   use card_sets, only: card_set_t, begin_set, append_card, read_small_letters, build_bodies
-   use deck_variants, only: variation_t, set_apart, build_variation, take_values, change_numbers
+   use card_sets, only: card_set_t, begin_set, append_card, set_apart, read_small_letters, build_bodies
+   use deck_variants, only: variation_t, build_variation, take_values, change_numbers
    use cards, only: card_t, card_fields, card_name, small_field, is_passed_over, find_form, form_link, form_time, &
       form_at, form_vary, form_end
    use deck_drives, only: build_drives, check_terms
@@ -243,7 +243,7 @@ contains
          call read_small_letters(set)
          call set_apart(set)
          call build_mechanism(set)
-         if (allocated(set%vary)) call append_variation(progress)
+         if (set%number_of(form_vary) > 0) call append_variation(progress)
          if (error_count(set%errors) == progress%errors_before) then
             call check_terms(set)
             call check_unused(set)

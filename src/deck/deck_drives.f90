@@ -13,7 +13,7 @@ module deck_drives
    use drawn_values, only: drawn_drive
    use card_sets, only: card_set_t, has_drawing, look_up, match_word, add_card_error, add_card_remark
    use cards, only: card_name, label_a, label_b, label_c, real_1, real_2, form_unknown, form_drive, form_add, &
-      form_rise, form_toler, form_end
+      form_rise, form_end
    use input_errors, only: error_code_t, error_count, drive_kind, drive_ground, drive_ground_point, drive_grounds, &
       drive_one_link, drive_revolute, field_blank, field_unused, add_alone, add_kind, add_blank, table_short, &
       table_order, table_range, power_negative, power_zero, power_large, rise_law, rise_duration, rpm_unit
@@ -45,7 +45,7 @@ contains
             if (all(above /= [form_drive, form_add, form_rise, form_unknown])) &
                call add_card_error(set, add_alone, k, card_name)
          end if
-         if (set%cards(k)%form /= form_toler) above = set%cards(k)%form
+         above = set%cards(k)%form
       end do
 
    contains
@@ -133,36 +133,31 @@ contains
       !> The terms of drive number `d`, from the ADD and RISE cards that follow its card `k`.
       subroutine build_terms(d)
          integer, intent(in) :: d
-         integer :: i, above, n, row, last
+         integer :: i, n, row, last
 
          set%cards(k)%subject = d
          n = 0
-         row = 0
-         above = k
-         last = k
-         do i = k + 1, set%count
-            if (set%cards(i)%form == form_toler) cycle
+         do last = k, set%count - 1
+            i = last + 1
             if (.not. is_term(i)) exit
-            row = row + 1
-            if (.not. (is_row(set%cards(i)) .and. is_row(set%cards(above)))) then
-               row = 1
+            set%cards(i)%row = 1
+            if (is_row(set%cards(i)) .and. is_row(set%cards(last))) then
+               set%cards(i)%row = set%cards(last)%row + 1
+            else
                n = n + 1
             end if
             set%cards(i)%subject = d
             set%cards(i)%term = n
-            set%cards(i)%row = row
-            above = i
-            last = i
          end do
          allocate (drive%terms(n))
          do i = k + 1, last
-            if (set%cards(i)%form == form_toler .or. set%cards(i)%row > 1) cycle
+            if (set%cards(i)%row > 1) cycle
             associate (term => drive%terms(set%cards(i)%term))
                if (set%cards(i)%form == form_rise) then
                   call build_rise(i, unit_of(drive), term)
                else if (is_row(set%cards(i))) then
-                  call build_table(pack([(row, row=i, last)], set%cards(i:last)%form == form_add &
-                     .and. set%cards(i:last)%term == set%cards(i)%term), unit_of(drive), term)
+                  call build_table(pack([(row, row=i, last)], set%cards(i:last)%term == set%cards(i)%term), &
+                     unit_of(drive), term)
                else
                   call build_term(i, unit_of(drive), term)
                end if

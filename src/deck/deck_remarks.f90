@@ -138,14 +138,15 @@ contains
 
       line = 0
       associate (m => set%mechanism)
-         allocate (m%echo(set%count + set%number_of(form_vary) + 4))
+         allocate (m%echo(set%count + size(set%apart) + 4))
          n = 0
+         i = 1
          do k = 1, set%count
             if (set%cards(k)%form /= form_title) call add_line(set%cards(k))
             line(k) = n
-            if (.not. allocated(set%vary)) cycle
-            do i = 1, size(set%vary)
-               if (set%vary(i)%below == k) call add_line(set%vary(i)%card)
+            do i = i, size(set%apart)
+               if (set%apart(i)%below > k) exit
+               call add_line(set%apart(i)%card)
             end do
          end do
          call add_drawn()

@@ -4,7 +4,7 @@ module deck_tolerances
    use mechanism, only: tolerance_t, card_number_t, term_table, number_link, number_point, number_joint, &
       number_pair, number_drive, number_knot, number_time
    use card_numbers, only: unit_t, takes_tolerance, number_name, number_unit
-   use card_sets, only: card_set_t, real_text, add_card_error
+   use card_sets, only: card_set_t, real_text, add_apart_error
    use cards, only: card_name, label_a, real_1, forms, form_unknown, form_ground, form_link, form_point, form_prism, &
       form_joint, form_drive, form_add, form_rise, form_toler, form_time, reals_of
    use input_errors, only: error_count, toler_alone, toler_none, toler_second, toler_blank, number_range
@@ -19,60 +19,56 @@ contains
    subroutine build_tolerances(set)
       type(card_set_t), intent(inout) :: set
       type(tolerance_t) :: list(3*set%number_of(form_toler))
-      integer :: k, n, above
+      integer :: i, n
 
-      if (set%number_of(form_toler) == 0) return
       n = 0
-      above = 0
-      do k = 1, set%count
-         if (set%cards(k)%form == form_toler) then
-            call read_tolerances(set, k, above, list, n)
-         else
-            above = k
-         end if
+      do i = 1, size(set%apart)
+         if (set%apart(i)%card%form == form_toler .and. set%apart(i)%card%valid) call read_tolerances(set, i, list, n)
       end do
       if (n > 0) set%mechanism%tolerances = list(:n)
    end subroutine build_tolerances
 
-   !> Appends the tolerances of the TOLER card `k`, which belong to card `above`, to the `n` in `list`.
-   subroutine read_tolerances(set, k, above, list, n)
+   !> Appends the tolerances of the TOLER card set%apart(`k`) to the `n` in `list`.
+   subroutine read_tolerances(set, k, list, n)
       type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: k, above
+      integer, intent(in) :: k
       type(tolerance_t), intent(inout) :: list(:)
       integer, intent(inout) :: n
       type(card_number_t) :: number
-      integer :: i
+      integer :: above, taken, i
 
-      if (.not. set%cards(k)%valid) return
-      if (above == 0) then
-         call add_card_error(set, toler_alone, k, card_name)
-         return
+      above = set%apart(k)%below
+      taken = 0
+      if (above > 0) then
+         if (set%cards(above)%form == form_unknown) return
+         taken = forms(set%cards(above)%form)%reals
       end if
-      if (set%cards(above)%form == form_unknown) return
-      if (forms(set%cards(above)%form)%reals == 0) then
-         call add_card_error(set, toler_alone, k, card_name)
-      else if (above < k - 1) then
-         call add_card_error(set, toler_second, k, card_name)
-      else if (.not. any(set%cards(k)%given)) then
-         call add_card_error(set, toler_blank, k, card_name)
-      else
-         do i = 1, 3
-            if (.not. set%cards(k)%given(i)) cycle
-            number = number_on_card(set, above, i)
-            if (.not. takes_tolerance(set%mechanism, number)) then
-               call add_card_error(set, toler_none, k, real_1 + i - 1)
-            else if (set%cards(k)%real(i) < 0.0_wp) then
-               call add_card_error(set, number_range, k, real_1 + i - 1, '0.0 AND UP')
-            else if (set%cards(k)%real(i) > 0.0_wp .and. error_count(set%errors) == 0) then
-               n = n + 1
-               list(n) = tolerance_of(number, i)
-            end if
-         end do
-      end if
+      associate (card => set%apart(k)%card, before => set%apart(:k - 1))
+         if (taken == 0) then
+            call add_apart_error(set, toler_alone, k, card_name)
+         else if (any(before%below == above .and. before%card%form == form_toler)) then
+            call add_apart_error(set, toler_second, k, card_name)
+         else if (.not. any(card%given)) then
+            call add_apart_error(set, toler_blank, k, card_name)
+         else
+            do i = 1, 3
+               if (.not. card%given(i)) cycle
+               number = number_on_card(set, above, i)
+               if (.not. takes_tolerance(set%mechanism, number)) then
+                  call add_apart_error(set, toler_none, k, real_1 + i - 1)
+               else if (card%real(i) < 0.0_wp) then
+                  call add_apart_error(set, number_range, k, real_1 + i - 1, '0.0 AND UP')
+               else if (card%real(i) > 0.0_wp .and. error_count(set%errors) == 0) then
+                  n = n + 1
+                  list(n) = tolerance_of(number, i)
+               end if
+            end do
+         end if
+      end associate
 
    contains
 
-      !> The tolerance of `number` by real number `i` of card `k`.
+      !> The tolerance of `number` by real number `i` of the card.
       function tolerance_of(number, i) result(one)
          type(card_number_t), intent(in) :: number
          integer, intent(in) :: i
@@ -81,8 +77,8 @@ contains
 
          unit = number_unit(set%mechanism, number)
          one%card_number_t = number
-         one%size_of = set%cards(k)%real(i)
-         one%text = real_text(set%cards(k), i)
+         one%size_of = set%apart(k)%card%real(i)
+         one%text = real_text(set%apart(k)%card, i)
          one%name = number_name(set%mechanism, number)
          one%unit = unit%factor
          one%powers = unit%powers

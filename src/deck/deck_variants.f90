@@ -6,10 +6,10 @@ module deck_variants
    use kinds, only: wp, label_length
    use mechanism, only: mechanism_t, card_number_t
    use card_numbers, only: unit_t, number_name, number_unit, put_number
-   use card_sets, only: card_set_t, vary_card_t, begin_mechanism, has_drawing, add_parsed_error
+   use card_sets, only: card_set_t, begin_mechanism, has_drawing, add_apart_error
    use card_reader, only: parsed_card_t
    use cards, only: card_name, label_a, label_b, label_c, real_1, real_2, real_3, form_unknown, form_ground, &
-      form_link, form_point, form_prism, form_joint, form_drive, form_add, form_rise, form_toler, form_time, &
+      form_link, form_point, form_prism, form_joint, form_drive, form_add, form_rise, form_time, &
       form_vary, reals_of, card_fields
    use deck_tolerances, only: number_on_card
    use failures, only: capitals
@@ -19,7 +19,7 @@ module deck_variants
    use numerals, only: whole
    implicit none
    private
-   public :: variation_t, varied_t, set_apart, build_variation, take_values, change_numbers, values_of_variant
+   public :: variation_t, varied_t, build_variation, take_values, change_numbers, values_of_variant
 
    !> The largest number of variants of a set.
    integer, parameter :: max_variants = 10000000
@@ -32,7 +32,7 @@ module deck_variants
    !> A number that varies.
    type :: varied_t
       integer :: card = 0, place = 0                !< its card in the set, and which of its three reals it is
-      integer :: vary = 0                           !< its first VARY card
+      integer :: vary = 0                           !< its first VARY card, in set%apart
       integer :: axis = 0                           !< the axis of the grid along which it runs
       integer :: count = 0                          !< number of its values
       real(wp) :: first = 0.0_wp, last = 0.0_wp     !< of a range, in the deck's units
@@ -56,27 +56,6 @@ module deck_variants
 
 contains
 
-   !> Takes the VARY cards of `set` out of its cards, so that these are what they would be without them.
-   subroutine set_apart(set)
-      type(card_set_t), intent(inout) :: set
-      integer :: k, n, kept
-
-      if (set%number_of(form_vary) == 0) return
-      allocate (set%vary(set%number_of(form_vary)))
-      n = 0
-      kept = 0
-      do k = 1, set%count
-         if (set%cards(k)%form == form_vary) then
-            n = n + 1
-            set%vary(n) = vary_card_t(set%cards(k), kept)
-         else
-            kept = kept + 1
-            if (kept < k) set%cards(kept) = set%cards(k)
-         end if
-      end do
-      set%count = kept
-   end subroutine set_apart
-
    !> Builds `v` from the VARY cards of `set`, whose mechanism is there, and sets set%mechanism%variants; nothing
    !> without such cards. Errors: those of the cards. Where the set has an error, `v` is of no use.
    subroutine build_variation(set, v)
@@ -84,10 +63,10 @@ contains
       type(variation_t), intent(out) :: v
       integer :: i
 
-      if (.not. allocated(set%vary)) return
+      if (set%number_of(form_vary) == 0) return
       allocate (v%numbers(0), v%counts(0))
-      do i = 1, size(set%vary)
-         if (set%vary(i)%card%valid) call take_card(set, i, v)
+      do i = 1, size(set%apart)
+         if (set%apart(i)%card%form == form_vary .and. set%apart(i)%card%valid) call take_card(set, i, v)
       end do
       call count_variants(set, v)
       set%mechanism%variants = max(1, v%total)
@@ -95,7 +74,7 @@ contains
       v%set = set
    end subroutine build_variation
 
-   !> Takes VARY card number `i`: a number that varies, or more values of the list above it.
+   !> Takes the VARY card set%apart(`i`): a number that varies, or more values of the list above it.
    subroutine take_card(set, i, v)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: i
@@ -103,21 +82,21 @@ contains
       type(varied_t) :: one
       integer :: n
 
-      associate (card => set%vary(i)%card, above => one%card)
-         one%card = card_above(set%vary(i)%below)
+      associate (card => set%apart(i)%card, above => one%card)
+         one%card = set%apart(i)%below
          one%vary = i
          one%place = findloc(number_words, capitals(card%label(label_a)(:3)), dim=1)
          if (above == 0) then
-            call complain(vary_alone, card_name)
+            call add_apart_error(set, vary_alone, i, card_name)
             return
          end if
          if (set%cards(above)%form == form_unknown) return
          if (all(set%cards(above)%form /= varied_forms)) then
-            call complain(vary_alone, card_name)
+            call add_apart_error(set, vary_alone, i, card_name)
             return
          end if
          if (one%place == 0 .or. one%place > reals_of(set%cards(above)%form, set%cards(above)%label(label_a))) then
-            call complain(vary_number, label_a)
+            call add_apart_error(set, vary_number, i, label_a)
             return
          end if
          call read_values(card)
@@ -131,36 +110,18 @@ contains
             v%numbers(n)%list = [v%numbers(n)%list, one%list]
             v%numbers(n)%count = size(v%numbers(n)%list)
          else
-            call complain(vary_twice, label_a, whole(set%vary(v%numbers(n)%vary)%card%card%number))
+            call add_apart_error(set, vary_twice, i, label_a, whole(set%apart(v%numbers(n)%vary)%card%card%number))
          end if
       end associate
 
    contains
 
-      !> Adds the error `code` about `field`.
-      subroutine complain(code, field, more)
-         type(error_code_t), intent(in) :: code
-         integer, intent(in) :: field
-         character(*), intent(in), optional :: more
-
-         call add_parsed_error(set%errors, code, set%vary(i)%card, field, more)
-      end subroutine complain
-
-      !> Card `k`, or the one above it whose tolerances it gives; 0: none.
-      pure integer function card_above(k) result(above)
-         integer, intent(in) :: k
-
-         do above = k, 1, -1
-            if (set%cards(above)%form /= form_toler) return
-         end do
-      end function card_above
-
-      !> VARY card number `i` gives more values of the list on the one above it.
+      !> The VARY card gives more values of the list on the one above it.
       pure logical function continues()
 
          continues = .false.
          if (i == 1) return
-         associate (now => set%vary(i), before => set%vary(i - 1))
+         associate (now => set%apart(i), before => set%apart(i - 1))
             continues = now%below == before%below .and. all(capitals(now%card%label) == capitals(before%card%label))
          end associate
       end function continues
@@ -174,24 +135,24 @@ contains
          if (capitals(card%label(label_b)) == list_word) then
             one%list = pack(card%real, card%given)
             one%count = size(one%list)
-            if (one%count == 0) call add_parsed_error(set%errors, add_blank, card, card_name)
+            if (one%count == 0) call add_apart_error(set, add_blank, i, card_name)
             return
          end if
          call read_whole(trim(card%label(label_b)), count_given, error, place)
          ! The name of a tie does not begin with a digit behind a full count: that count is longer than its field.
          if (error%number == 0 .and. verify(card%card%text(card_fields(label_b)%last:card_fields(label_c)%first), &
             '0123456789') == 0) then
-            call add_parsed_error(set%errors, whole_long, card, label_b)
+            call add_apart_error(set, whole_long, i, label_b)
          else if (error%number > 0 .or. count_given < 1 .or. count_given > max_variants) then
-            call add_parsed_error(set%errors, vary_count, card, label_b, whole(max_variants))
+            call add_apart_error(set, vary_count, i, label_b, whole(max_variants))
          else if (card%given(3)) then
-            call add_parsed_error(set%errors, field_unused, card, real_3)
+            call add_apart_error(set, field_unused, i, real_3)
          else if (.not. any(card%given(1:2))) then
-            call add_parsed_error(set%errors, field_blank, card, real_1)
+            call add_apart_error(set, field_blank, i, real_1)
          else if (count_given == 1 .and. card%given(2)) then
-            call add_parsed_error(set%errors, vary_one, card, real_2)
+            call add_apart_error(set, vary_one, i, real_2)
          else if (count_given > 1 .and. .not. abs(card%real(2) - card%real(1)) > 0.0_wp) then
-            call add_parsed_error(set%errors, vary_equal, card, real_2)
+            call add_apart_error(set, vary_equal, i, real_2)
          else
             one%count = count_given
             one%first = card%real(1)
@@ -203,9 +164,9 @@ contains
       subroutine find_axis()
          integer :: i
 
-         associate (tie => set%vary(one%vary)%card%label(label_c))
+         associate (tie => set%apart(one%vary)%card%label(label_c))
             do i = 1, size(v%numbers)
-               if (tie /= '' .and. capitals(set%vary(v%numbers(i)%vary)%card%label(label_c)) == capitals(tie)) &
+               if (tie /= '' .and. capitals(set%apart(v%numbers(i)%vary)%card%label(label_c)) == capitals(tie)) &
                   one%axis = v%numbers(i)%axis
             end do
          end associate
@@ -259,17 +220,17 @@ contains
 
       total = 1
       do i = 1, size(v%numbers)
-         associate (one => v%numbers(i), card => set%vary(v%numbers(i)%vary)%card)
+         associate (one => v%numbers(i))
             first = findloc(v%numbers%axis, one%axis, dim=1)
             if (first < i) then
-               if (one%count /= v%numbers(first)%count) call add_parsed_error(set%errors, vary_tie, card, label_c, &
-                  whole(set%vary(v%numbers(first)%vary)%card%card%number))
+               if (one%count /= v%numbers(first)%count) call add_apart_error(set, vary_tie, one%vary, label_c, &
+                  whole(set%apart(v%numbers(first)%vary)%card%card%number))
                cycle
             end if
             v%counts(one%axis) = one%count
             total = total*one%count
             if (total > max_variants) then
-               call add_parsed_error(set%errors, vary_many, card, label_b, whole(max_variants))
+               call add_apart_error(set, vary_many, one%vary, label_b, whole(max_variants))
                return
             end if
          end associate
