@@ -14,7 +14,7 @@ module card_numbers
    implicit none
    private
    public :: unit_t, numbers_of, takes_tolerance, is_as_drawn, number_name, number_unit, number_value, set_number, &
-      put_number, follow_drawing, angle_in_radians, minute_in, turns_a_minute
+      put_number, angle_in_radians, minute_in, turns_a_minute
 
    !> The unit of a number on a card.
    type :: unit_t
