@@ -44,11 +44,12 @@ in_build  = $(if $(strip $(1)),($(strip $(1))))
 # What kinds.F90 and lapack.F90 are told of the kind.
 KIND_MACROS := $(if $(filter single,$(KIND)),-DREAL_KIND=real32 -DLETTER=s,$(if $(filter quad,$(KIND)),-DREAL_KIND=real128,-DREAL_KIND=real64 -DLETTER=d))
 
-# Sources are found in the folders of src/ and tests/; the name of a file is that of its module or program.
-sources := $(sort $(shell find src -name '*.f90' -o -name '*.F90'))
+# Sources are found in the folders of src/ and tests/; the name of a file is that of its module or program. The routines that
+# LAPACK lacks for real128 are in tests/: kinmat-quad is a reference, and the only build that uses them.
+sources := $(sort $(shell find src -name '*.f90' -o -name '*.F90') $(if $(filter quad,$(KIND)),tests/quad/quad_lapack.f90))
 # Text that several modules include, each for its own kind of numbers.
 included := $(sort $(shell find src -name '*.inc'))
-helpers := $(filter-out %/funit.f90,$(sort $(shell find tests -name '*.f90')))
+helpers := $(filter-out %/funit.f90 $(sources),$(sort $(shell find tests -name '*.f90')))
 suites  := $(sort $(shell find tests -name 'test_*.pf'))
 # Of the command alone: not in the library.
 command := main allocation
