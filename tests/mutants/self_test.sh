@@ -109,6 +109,8 @@ $(BUILD)/debug/kinmat: src/main.f90 $(BUILD)/debug/libkinmat.a
 MAKE
 : > "$tiny/README.md"
 : > "$tiny/expected/none.lst"
+# What `make mutants` builds before: the closed forms' printer.
+mkdir -p "$tiny/build/release" && : > "$tiny/build/release/print_expected"
 chmod +x "$tiny/tests/system/check.sh"
 cp tests/mutants/* "$tiny/tests/mutants/"
 (cd "$tiny" && BUILD=build N=5 SEED=1 UNIT_TIME=1 FC="${FC:-gfortran}" FILES=src/base/tiny.f90 tests/mutants/mutants.sh) > "$tiny/said.txt" 2>&1
