@@ -14,7 +14,7 @@ module assembly_choice
    use blocks, only: largest_known
    use first_position, only: solve_first_block, farthest
    use link_motion, only: move_links
-   use block_engine, only: block_engine_t, positions_t, solve_each, begin_record
+   use block_engine, only: block_engine_t, positions_t, solve_blocks, solve_each, begin_record
    implicit none
    private
    public :: solve_first
@@ -40,13 +40,13 @@ module assembly_choice
 
 contains
 
-   !> Solves for the first motion at `t`, as `solve` of `block_engine` does without one that is followed.
+   !> Solves for the first motion at `t`, as `solve_blocks` does without one that is followed.
    subroutine solve_first(e, t, c)
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       type(convergence_t), intent(out) :: c
 
-      call e%solve(t, .false., c)
+      call solve_blocks(e, t, .false., c)
       if (.not. e%blocks%solvable) return
       if (.not. any(has_others(e%others(e%needed)))) return
       call choose(e)

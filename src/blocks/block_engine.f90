@@ -7,14 +7,13 @@ module block_engine
    use links_tree, only: tree_t
    use structure, only: structure_t, new_structure
    use initial_estimate, only: estimated_values
-   use drives, only: new_law, find_drive_motion
+   use drives, only: law_t, new_law, find_drive_motion
    use convergence, only: convergence_t, is_solved, gather, ended_converged, ended_singular
-   use engine, only: engine_t, engine_checkpoint_t
    use predictor, only: history_t, new_history, forget, remember, predict, largest_change, uncertain_part
    use blocks, only: blocks_t, numbers_t, moving_blocks, needed_blocks, iterated_unknowns, largest_known
    use block_numbers, only: put_numbers
    use number_types, only: vector_t, unknown_t, loop_state_t
-   use block_state, only: state_t, new_state
+   use block_state, only: state_t, new_state, set_direction, set_values
    use block_solver, only: workspace_t, make_workspace, solve_direct, solve_equations
    use first_position, only: solve_first_block, remove_turns
    use singular_place, only: settle
@@ -23,9 +22,10 @@ module block_engine
       missing_rates, missing_all
    implicit none
    private
-   public :: block_engine_t, block_checkpoint_t, positions_t
+   public :: block_engine_t, engine_state_t, followed_t, positions_t
    public :: make_block_engine, renew_block_engine, put_mechanism, solve_blocks, solve_again, solve_each, &
-      begin_record, set_drive_values, slide_units
+      begin_record, set_drive_values, accept, get_motion, mark_singular_links, get_driven_links, followed_state, &
+      follows_values, slide_units
 
    !> Positions of one block (unknowns, any number).
    type :: positions_t
@@ -39,15 +39,32 @@ module block_engine
       real(wp) :: inverse = 0.0_wp                      !< |J^-1|
    end type jacobian_t
 
-   !> Lengths in units of `length`. What the structure and the deck give does not change; `workspace` is scratch; the
-   !> checkpoint has all else that depends on earlier instants.
-   type, extends(engine_t) :: block_engine_t
+   !> What is followed: the last motions accepted, and what the Jacobians of the latest say.
+   type :: followed_t
+      type(history_t) :: history                        !< of the motion that is followed
+      type(jacobian_t), allocatable :: followed(:)      !< (blocks) there
+      real(wp), allocatable :: jacobian(:)              !< there, of the block with too many rows: (rows*n)
+   end type followed_t
+
+   !> All that depends on earlier instants: what is followed, and the motion found last. A checkpoint is an assignment:
+   !> of this type, or of `followed_t` where the motion found last is to stay.
+   type, extends(followed_t) :: engine_state_t
+      real(wp) :: t = 0.0_wp, change = 0.0_wp           !< of the motion found last; of a predicted value, at most
+      type(state_t) :: state                            !< its values
+      type(jacobian_t), allocatable :: found(:)         !< (blocks)
+      logical, allocatable :: is_singular(:), crossed(:) !< (blocks) without velocities; with a new sign of determinant
+   end type engine_state_t
+
+   !> Lengths in units of `length`. What the structure and the deck give does not change; `work` is scratch.
+   type, extends(engine_state_t) :: block_engine_t
+      real(wp) :: length = 1.0_wp                       !< the unit of its lengths, a power of two in the deck's unit
       real(wp) :: tolerance = 0.0_wp                    !< relative, of corrections; 0: the limit of rounding
       real(wp) :: span = 1.0_wp                         !< the characteristic length, in the deck's unit
       type(blocks_t), allocatable :: blocks
       integer, allocatable :: needed(:), moving(:)      !< blocks that are solved at first, and at every step
       type(chain_t) :: chain                            !< of the links that are asked for
       type(chain_t) :: whole                            !< of all links
+      type(law_t), allocatable :: laws(:)               !< (drives)
       real(wp), allocatable :: unit_of(:)               !< (drives) of the value, in the deck's unit of length, or 1
       logical, allocatable :: is_angle(:)               !< (drives)
       integer, allocatable :: orientation_of(:)         !< (links)
@@ -58,33 +75,8 @@ module block_engine
       type(positions_t), allocatable :: others(:)       !< (blocks) what else was found at first
       logical, allocatable :: is_close(:)               !< (blocks) another assembly is about as near to the estimate
       type(workspace_t) :: work
-      type(history_t) :: history                        !< of the motion that is followed
-      type(jacobian_t), allocatable :: followed(:)      !< (blocks) there
-      real(wp), allocatable :: jacobian(:)              !< there, of the block with too many rows: (rows*n)
-      real(wp) :: t = 0.0_wp, change = 0.0_wp           !< of the motion found last; of a predicted value, at most
-      type(state_t) :: state                            !< its values
       type(convergence_t) :: one                        !< how the block solved last ended
-      type(jacobian_t), allocatable :: found(:)         !< (blocks)
-      logical, allocatable :: is_singular(:), crossed(:) !< (blocks) without velocities; with a new sign of determinant
-   contains
-      procedure :: solve
-      procedure :: accept
-      procedure :: get_motion
-      procedure :: get_link_flags
-      procedure :: get_driven_links
-      procedure :: checkpoint
-      procedure :: restore
    end type block_engine_t
-
-   !> All that depends on earlier instants: the motion that is followed, and the one found last.
-   type, extends(engine_checkpoint_t) :: block_checkpoint_t
-      type(history_t) :: history
-      type(jacobian_t), allocatable :: followed(:), found(:)
-      real(wp), allocatable :: jacobian(:)
-      type(state_t) :: state
-      logical, allocatable :: crossed(:)
-      real(wp) :: t = 0.0_wp, change = 0.0_wp
-   end type block_checkpoint_t
 
 contains
 
@@ -105,7 +97,6 @@ contains
       e%span = e%blocks%numbers%span
       e%length = e%blocks%numbers%equations%length
       e%tolerance = m%tolerance
-      e%redundant = e%blocks%redundant
       if (e%blocks%solvable) call prepare(e, m, e%blocks%tree)
    end subroutine make_block_engine
 
@@ -121,7 +112,6 @@ contains
       e%state = new_state(e%blocks, size(m%drives))
       e%history = new_history(e%blocks%unknowns, iterated_unknowns(e%blocks, e%moving))
       e%history%order = m%predictor
-      e%depends_on_history = size(e%history%predicted) > 0
       call make_workspace(e%work, e%blocks)
       associate (axes => e%blocks%numbers%equations%axes, unit => e%blocks%numbers%unit)
          e%chain = new_chain(m, t, axes, wanted_links(m), e%blocks%orientations, unit)
@@ -184,7 +174,6 @@ contains
       type(block_engine_t), intent(inout) :: e
       integer :: i
 
-      e%excursion = 0.0_wp
       call forget(e%history)
       e%state%u = unknown_t()
       e%state%loop = loop_state_t()
@@ -231,22 +220,13 @@ contains
       end do
    end subroutine put_estimate
 
-   !> See `engine`.
-   subroutine solve(e, t, follows, c)
-      class(block_engine_t), intent(inout) :: e
-      real(wp), intent(in) :: t
-      logical, intent(in) :: follows
-      type(convergence_t), intent(out) :: c
-
-      call solve_blocks(e, t, follows, c)
-   end subroutine solve
-
-   !> The same, in a record `c` that is new, of the worst block; at first each is the nearest to its estimate.
+   !> Solves for the motion at `t`, from the one accepted last (`follows`) or, each block nearest to it, from the deck's
+   !> estimate. `c`: how that ended in the worst block, with the largest change of a predicted value.
    subroutine solve_blocks(e, t, follows, c)
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       logical, intent(in) :: follows
-      type(convergence_t), intent(inout) :: c
+      type(convergence_t), intent(out) :: c
 
       c%ended = ended_singular
       if (.not. e%blocks%solvable) return
@@ -269,14 +249,23 @@ contains
    pure subroutine set_drive_values(e, t)
       type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
+
+      call find_drive_values(e, t, e%state)
+   end subroutine set_drive_values
+
+   !> Puts value, rate and acceleration of the drives at `t` into `s`.
+   pure subroutine find_drive_values(e, t, s)
+      type(block_engine_t), intent(in) :: e
+      real(wp), intent(in) :: t
+      type(state_t), intent(inout) :: s
       real(wp) :: f(3)
       integer :: i
 
       do i = 1, size(e%laws)
          call find_drive_motion(e%laws(i), t, f)
-         e%state%drive_value(0:2, i) = f*e%unit_of(i)
+         s%drive_value(0:2, i) = f*e%unit_of(i)
       end do
-   end subroutine set_drive_values
+   end subroutine find_drive_values
 
    !> Solves the moving blocks once more, from where they are now.
    subroutine solve_again(e, c)
@@ -335,9 +324,9 @@ contains
       end do
    end subroutine solve_each
 
-   !> See `engine`.
+   !> The motion found last becomes the one that is followed.
    subroutine accept(e)
-      class(block_engine_t), intent(inout) :: e
+      type(block_engine_t), intent(inout) :: e
       real(wp) :: uncertain
       integer :: k
 
@@ -351,70 +340,38 @@ contains
       if (e%blocks%redundant > 0) e%jacobian = jacobian_of(e%blocks, 1, e%state)
    end subroutine accept
 
-   !> See `engine`: the motion of the links that are asked for.
+   !> The motion found last of the links that are asked for, in the deck's units; `finite`: all of it is known to be in
+   !> range.
    subroutine get_motion(e, found, finite)
-      class(block_engine_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       type(motion_t), intent(inout) :: found
       logical, intent(out) :: finite
 
       call move_links(e%chain, e%state, e%length, found, finite)
    end subroutine get_motion
 
-   !> See `engine`.
-   subroutine checkpoint(e, c)
-      class(block_engine_t), intent(in) :: e
-      class(engine_checkpoint_t), allocatable, intent(inout) :: c
-
-      if (.not. allocated(c)) allocate (block_checkpoint_t :: c)
-      select type (c)
-      type is (block_checkpoint_t)
-         c%history = e%history
-         c%followed = e%followed
-         if (allocated(e%jacobian)) c%jacobian = e%jacobian
-         c%t = e%t
-         c%change = e%change
-         c%state = e%state
-         c%found = e%found
-         c%crossed = e%crossed
-      end select
-   end subroutine checkpoint
-
-   !> See `engine`.
-   subroutine restore(e, c, keeps_found)
-      class(block_engine_t), intent(inout) :: e
-      class(engine_checkpoint_t), intent(in) :: c
-      logical, intent(in) :: keeps_found
-
-      select type (c)
-      type is (block_checkpoint_t)
-         e%history = c%history
-         e%followed = c%followed
-         if (allocated(c%jacobian)) e%jacobian = c%jacobian
-         if (keeps_found) return
-         e%t = c%t
-         e%change = c%change
-         e%state = c%state
-         e%found = c%found
-         e%crossed = c%crossed
-      end select
-   end subroutine restore
-
-   !> See `engine`.
-   subroutine get_link_flags(e, found)
-      class(block_engine_t), intent(inout) :: e
+   !> Tells which links have velocities in the motion `found` last, where not all have. `all_at_once`: with one Jacobian
+   !> for all equations, which has no inverse; then those alone that drives move.
+   subroutine mark_singular_links(e, found, all_at_once)
+      type(block_engine_t), intent(in) :: e
       type(motion_t), intent(inout) :: found
+      logical, intent(in) :: all_at_once
       integer :: missing(0:e%blocks%unknowns), k
 
       missing = missing_nothing
       do k = 1, size(e%needed)
-         call note_block(e, e%needed(k), merge(missing_rates, missing_nothing, e%is_singular(e%needed(k))), missing)
+         associate (i => e%needed(k))
+            call note_block(e, i, merge(missing_rates, missing_nothing, e%is_singular(i) .or. (all_at_once .and. &
+               .not. e%blocks%list(i)%direct)), missing)
+         end associate
       end do
       call mark_links(e%chain, missing, found)
-   end subroutine get_link_flags
+   end subroutine mark_singular_links
 
-   !> See `engine`; `found` has its mark already.
+   !> Finds what is certain at `t`, where there is no position: the motion of the links that drives alone move. `found`
+   !> has its mark already.
    subroutine get_driven_links(e, t, found)
-      class(block_engine_t), intent(inout) :: e
+      type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       type(motion_t), intent(inout) :: found
       integer :: missing(0:e%blocks%unknowns), k, i
@@ -433,6 +390,44 @@ contains
       call mark_links(e%chain, missing, found)
       call move_found_links(e%chain, found%link_known < 2, e%state, e%length, found, finite)
    end subroutine get_driven_links
+
+   !> Finds the state `s` of the motion that is followed; at the first instant that of the deck's estimate, but for what
+   !> drives alone give.
+   subroutine followed_state(e, s)
+      type(block_engine_t), intent(in) :: e
+      type(state_t), intent(out) :: s
+      integer :: k, i
+
+      s = e%state
+      if (e%history%filled > 0) then
+         call find_drive_values(e, e%history%t(0), s)
+         do k = 1, size(e%history%predicted)
+            i = e%history%predicted(k)
+            associate (past => e%history%past(i))
+               s%u(i)%value = past%value
+               s%u(i)%rate = past%rate(0)
+               s%u(i)%acceleration = past%acceleration(0)
+            end associate
+            call set_direction(e%blocks, i, s)
+         end do
+      end if
+      do k = 1, size(e%needed)
+         i = e%needed(k)
+         if (e%blocks%list(i)%direct) then
+            call solve_direct(e%blocks, i, s)
+         else if (e%history%filled == 0) then
+            call set_values(e%blocks, i, e%estimated(e%blocks%unknown(e%blocks%list(i)%first:e%blocks%list(i)%last)), s)
+         end if
+      end do
+   end subroutine followed_state
+
+   !> Some unknown is searched for from its value before.
+   pure logical function follows_values(e)
+      type(block_engine_t), intent(in) :: e
+
+      follows_values = .true.
+      if (allocated(e%history%predicted)) follows_values = size(e%history%predicted) > 0
+   end function follows_values
 
    !> What is missing of the unknowns of block `i`: what its `own` equations leave out, or what it builds on lacks.
    subroutine note_block(e, i, own, missing)

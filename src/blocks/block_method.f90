@@ -1,17 +1,16 @@
-!> METHOD NEWTON: the block engine with a choice of the first assembly, and what the continuation and the error estimate
-!> ask of it alone.
+!> The block engine with a choice of the first assembly, and what the continuation and the error estimate ask of it.
 module block_method
    use kinds, only: wp
    use motion, only: motion_t
    use convergence, only: convergence_t, is_solved, ended_inconsistent
-   use block_engine, only: block_engine_t, solve_blocks, slide_units
+   use block_engine, only: block_engine_t, solve_blocks, mark_singular_links
    use assembly_choice, only: solve_first
    use block_branches, only: is_short_and_right
    use singularity, only: judge_position
    use block_diagnostics, only: singular_links
    implicit none
    private
-   public :: block_method_t
+   public :: solve_instant, get_link_flags, measure_closure_error, max_rate, growth_of_roundings, growth_of_angles
 
    !> With smaller pivots everything is in doubt.
    real(wp), parameter :: smallest_pivot = epsilon(1.0_wp)**2
@@ -20,58 +19,49 @@ module block_method
    !> What a block knows may be so many times as large as its own vectors before its roundings count for more.
    real(wp), parameter :: usual_coarse = 16.0_wp
 
-   type, extends(block_engine_t) :: block_method_t
-   contains
-      procedure :: solve
-      procedure :: get_link_flags
-      procedure :: measure_closure_error
-      procedure :: max_rate
-      procedure :: growth_of_roundings
-      procedure :: growth_of_angles
-      procedure :: copy_values
-   end type block_method_t
-
 contains
 
-   !> See `engine`.
-   subroutine solve(e, t, follows, c)
-      class(block_method_t), intent(inout) :: e
+   !> Solves for the motion at `t`, from the one accepted last (`follows`) or from the deck's estimate. `c`: how it
+   !> ended, with the largest change (rad, `length`) of a predicted value.
+   subroutine solve_instant(e, t, follows, c)
+      type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       logical, intent(in) :: follows
       type(convergence_t), intent(out) :: c
 
-      e%state%excursion = e%excursion
       if (follows) then
-         call solve_blocks(e%block_engine_t, t, follows, c)
-         if (e%excursion > 0.0_wp .and. is_solved(c)) c%is_certain = is_short_and_right(e%block_engine_t, c%change)
+         call solve_blocks(e, t, follows, c)
+         if (e%state%excursion > 0.0_wp .and. is_solved(c)) c%is_certain = is_short_and_right(e, c%change)
       else
-         call solve_first(e%block_engine_t, t, c)
+         call solve_first(e, t, c)
       end if
-   end subroutine solve
+   end subroutine solve_instant
 
-   !> See `engine`.
-   subroutine get_link_flags(e, found)
-      class(block_method_t), intent(inout) :: e
+   !> Tells which links have velocities in the motion `found` last, where not all have, and what the singular position
+   !> is. `all_at_once`: all equations are solved at once, and have one Jacobian.
+   subroutine get_link_flags(e, found, all_at_once)
+      type(block_engine_t), intent(in) :: e
       type(motion_t), intent(inout) :: found
+      logical, intent(in) :: all_at_once
       integer :: i
 
-      call e%block_engine_t%get_link_flags(found)
-      call judge_position(e%block_engine_t, found%singularity, i)
-      if (i > 0) found%singular_links = singular_links(e%block_engine_t, i)
+      call mark_singular_links(e, found, all_at_once)
+      call judge_position(e, found%singularity, i)
+      if (i > 0) found%singular_links = singular_links(e, i)
    end subroutine get_link_flags
 
    !> The closure error at `t` itself, from the motion that is followed or, where that is too far, from the deck's
    !> estimate; where neither search ends there, `c` stays but for its closure error, which is 0.
    subroutine measure_closure_error(e, t, c)
-      class(block_method_t), intent(inout) :: e
+      type(block_engine_t), intent(inout) :: e
       real(wp), intent(in) :: t
       type(convergence_t), intent(inout) :: c
       type(convergence_t) :: before
 
       before = c
-      call e%block_engine_t%solve(t, .true., c)
+      call solve_blocks(e, t, .true., c)
       if (c%ended == ended_inconsistent) return
-      call e%block_engine_t%solve(t, .false., c)
+      call solve_blocks(e, t, .false., c)
       if (c%ended == ended_inconsistent) return
       c = before
       c%open%value = 0.0_wp
@@ -79,7 +69,7 @@ contains
 
    !> The largest rate of an unknown of the motion that is followed.
    pure real(wp) function max_rate(e)
-      class(block_method_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
 
       associate (h => e%history)
          max_rate = max(0.0_wp, maxval(abs(h%past(h%predicted)%rate(0))))
@@ -89,7 +79,7 @@ contains
    !> By how much a rounding grows at most in a block, whose numbers are the characteristic ones. Where a block knows
    !> much larger vectors than its own, their roundings count.
    pure real(wp) function growth_of_roundings(e) result(growth)
-      class(block_method_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       real(wp) :: inverse
       integer :: k
 
@@ -108,7 +98,7 @@ contains
    !> The same of an angle's rounding, in positions or, over `rate_digits`, in accelerations: with 1/p for the inverse
    !> of the Jacobian and L for its Lipschitz constant 1/p, L/p^2 and L^2/p^3.
    pure real(wp) function growth_of_angles(e) result(growth)
-      class(block_method_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       real(wp) :: inverse
       integer :: k
 
@@ -124,17 +114,9 @@ contains
 
    !> The least pivot of block `i`, 1 at most; roundings do not grow by less.
    pure real(wp) function pivot_of(e, i) result(pivot)
-      class(block_method_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       integer, intent(in) :: i
 
       pivot = max(min(1.0_wp, e%found(i)%pivot), smallest_pivot)
    end function pivot_of
-
-   !> The values found last become those of `other`, whose unit of lengths may be another power of two.
-   pure subroutine copy_values(e, other)
-      class(block_method_t), intent(in) :: e
-      type(block_engine_t), intent(inout) :: other
-
-      other%state%u%value = e%state%u%value*(slide_units(e%block_engine_t)/slide_units(other))
-   end subroutine copy_values
 end module block_method

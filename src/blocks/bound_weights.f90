@@ -20,7 +20,7 @@ contains
    !> J^-1, `inverse` (n, n). `own`: the first own part of the first loop. `are_found`: the Jacobian has an inverse.
    subroutine find_weights(r, e, i, n, own, inverse, weights, are_found)
       type(rounding_response_t), intent(inout) :: r
-      class(block_engine_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       integer, intent(in) :: i, n, own
       real(wp), intent(inout) :: inverse(n, n), weights(n, *)
       logical, intent(out) :: are_found
@@ -72,7 +72,7 @@ contains
    !> one.
    subroutine find_inverse(r, e, i, n, inverse, is_found)
       type(rounding_response_t), intent(inout) :: r
-      class(block_engine_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       integer, intent(in) :: i, n
       real(wp), intent(inout) :: inverse(n, n)
       logical, intent(out) :: is_found

@@ -5,15 +5,15 @@
 !> r and e in the parent's axes of orientation, d in the link's own; velocity and acceleration follow.
 module link_motion
    use kinds, only: wp
-   use planar, only: rotated, quarter_turn, add_rotating
+   use planar, only: rotated, quarter_turn, add_rotating, direction
    use mechanism, only: mechanism_t
    use motion, only: motion_t, mark_none, mark_not_converged, mark_singular
    use links_tree, only: tree_t, axes_t, place_t, place_on_tree
    use block_state, only: unknown_t, state_t
    implicit none
    private
-   public :: chain_t, chain_link_t, new_chain, put_chain, move_links, move_found_links, mark_links, missing_nothing, &
-      missing_rates, missing_all
+   public :: chain_t, chain_link_t, new_chain, put_chain, move_links, move_found_links, find_values, mark_links, &
+      missing_nothing, missing_rates, missing_all
 
    !> A moving link. Numbers are 0 for the ground, for no pair, no slide and no root.
    type :: chain_link_t
@@ -204,6 +204,30 @@ contains
       end do
       finite = abs(check) <= huge(check)
    end subroutine move_chain
+
+   !> Finds the `value` (0:unknowns) of the unknowns by which the chain's links move, where these have the position `p`
+   !> (3, links) in the deck's unit; `length`: the unit of the slides in it. Other unknowns are 0.
+   pure subroutine find_values(c, p, length, value)
+      type(chain_t), intent(in) :: c
+      real(wp), intent(in) :: p(:, :), length
+      real(wp), intent(out) :: value(0:)
+      real(wp) :: x(2), e(2)
+      integer :: i
+
+      value = 0.0_wp
+      do i = 1, size(c%links)
+         associate (h => c%links(i))
+            if (h%orientation > 0) value(h%orientation) = p(3, h%link) - h%angle_offset
+            if (h%root > 0) value(h%root:h%root + 1) = p(:2, h%link)/(length*h%root_unit)
+            if (h%slide == 0) cycle
+            e = length*rotated(h%place%slide_body_vector, direction(value(h%parent_orientation)))
+            x = p(:2, h%link) + rotated(h%place%body_vector, direction(value(h%orientation))) &
+               - rotated(h%place%reach, direction(value(h%parent_orientation)))
+            if (h%parent > 0) x = x - p(:2, h%parent)
+            value(h%slide) = dot_product(x, e)/dot_product(e, e)
+         end associate
+      end do
+   end subroutine find_values
 
    !> From the parent's origin the vector `d` in its axes, which unknown number `orientation`, `f`, rotates.
    pure subroutine follow_parent(d, orientation, f, p, v, a)

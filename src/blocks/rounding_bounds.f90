@@ -42,7 +42,7 @@ contains
    subroutine make_rounding_bounds(b, links, e)
       type(rounding_bounds_t), intent(out) :: b
       integer, intent(in) :: links
-      class(block_engine_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       integer :: i, n
 
       n = 1
@@ -65,7 +65,7 @@ contains
    subroutine bound_roundings(b, r, e, q, is_bound)
       type(rounding_bounds_t), intent(inout) :: b
       type(rounding_response_t), intent(inout) :: r
-      class(block_engine_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       type(motion_t), intent(in) :: q
       logical, intent(out) :: is_bound
       integer :: k

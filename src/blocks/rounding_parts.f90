@@ -73,7 +73,7 @@ contains
    subroutine gather_rounding_parts(p, m, e, angle)
       type(rounding_parts_t), intent(out) :: p
       type(mechanism_t), intent(in) :: m
-      class(block_engine_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       real(wp), intent(in) :: angle(:)
       real(wp), allocatable :: sizes(:)
       integer :: i, last
@@ -107,7 +107,7 @@ contains
    subroutine gather_loop(p, m, e, sizes, i, last)
       type(rounding_parts_t), intent(inout) :: p
       type(mechanism_t), intent(in) :: m
-      class(block_engine_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       real(wp), intent(in) :: sizes(:)
       integer, intent(in) :: i
       integer, intent(inout) :: last
@@ -181,7 +181,7 @@ contains
    subroutine gather_arm(arm, m, e, sizes, i)
       type(arm_t), intent(inout) :: arm
       type(mechanism_t), intent(in) :: m
-      class(block_engine_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       real(wp), intent(in) :: sizes(:)
       integer, intent(in) :: i
       type(part_t) :: parts(2)

@@ -42,7 +42,7 @@ contains
    subroutine make_rounding_response(r, m, e)
       type(rounding_response_t), intent(out) :: r
       type(mechanism_t), intent(in) :: m
-      class(block_engine_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       real(wp) :: angle(size(m%links))
       integer :: i, rows, loops
 
@@ -72,7 +72,7 @@ contains
    subroutine respond_to_roundings(r, m, e, q, only_driven, again, links, lost)
       type(rounding_response_t), intent(inout) :: r
       type(mechanism_t), intent(in) :: m
-      class(block_engine_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       type(motion_t), intent(in) :: q
       logical, intent(in) :: only_driven, again
       real(wp), contiguous, intent(inout) :: links(:, :, 0:, :)
@@ -174,7 +174,7 @@ contains
    subroutine respond_block(r, m, e, i, again, is_singular, inverse, is_found)
       type(rounding_response_t), intent(inout) :: r
       type(mechanism_t), intent(in) :: m
-      class(block_engine_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       integer, intent(in) :: i
       logical, intent(in) :: again, is_singular
       real(wp), intent(in) :: inverse
@@ -263,7 +263,7 @@ contains
    !> Numerical Algorithms, 2002, ch. 20).
    subroutine refine_rates(r, e, i, jacobian)
       type(rounding_response_t), intent(inout) :: r
-      class(block_engine_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       integer, intent(in) :: i
       real(wp), intent(in) :: jacobian(:, :)
       integer :: order, k

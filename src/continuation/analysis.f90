@@ -1,17 +1,21 @@
 !> The analysis of one mechanism, instant by instant: what is found, what is not, and what there is to say of it.
+!>
+!> The motion is followed by blocks, whatever the method: they give the limits, the certificate and the remarks. METHOD
+!> DENSE and METHOD MATRIX solve for the motion at each instant where the blocks have found one.
 module analysis
    use kinds, only: wp
-   use mechanism, only: mechanism_t
+   use mechanism, only: mechanism_t, method_newton
    use structure, only: structure_t
    use drive_excursion, only: has_pole_between, short_of_pole
    use motion, only: motion_t, forget_links, known_of, mark_none, mark_not_converged, mark_singular, mark_overflow, &
       mark_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_limit, &
-      diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins
+      diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins, diagnostic_method
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, branch_none, branch_first, branch_same, &
       branch_crossed
-   use convergence, only: convergence_t, closure_error_t, ended_inconsistent, ended_unsought
-   use engine, only: engine_t
-   use block_engine, only: block_engine_t
+   use convergence, only: convergence_t, closure_error_t, is_solved, ended_inconsistent, ended_unsought, ended_elsewhere
+   use block_engine, only: block_engine_t, get_blocks_motion => get_motion, get_driven_links
+   use block_method, only: measure_closure_error, get_link_flags
+   use dense_method, only: dense_t, make_dense, with_all_links, solve_all_links
    use block_diagnostics, only: start_diagnostics, limit_diagnostic
    use at_bifurcation, only: stand_on, pass_standstill
    use following, only: following_t, step_record_t, make_following, renew_following, continue_to, is_too_far, &
@@ -38,6 +42,8 @@ module analysis
       type(limits_t) :: limits                             !< of the motion that is followed
       logical :: has_begun = .false.                       !< a position was found
       logical :: is_lost = .false.                         !< at the last instant none was
+      type(dense_t), allocatable :: dense                  !< METHOD DENSE and MATRIX: what solves for the motion
+      logical :: has_missed = .false.                      !< at the last instant it did not find the blocks' position
       real(wp) :: max_closure_error = 0.0_wp               !< of redundant equations, in characteristic lengths or rad
       type(left_t) :: left                                 !< see `look_at`
    end type analysis_t
@@ -51,16 +57,22 @@ contains
       type(mechanism_t), intent(in) :: m
       type(structure_t), intent(inout), optional :: structure
 
-      call make_following(a%following_t, m, structure)
+      if (m%method == method_newton) then
+         call make_following(a%following_t, m, structure)
+      else
+         call make_following(a%following_t, with_all_links(m), structure)
+         allocate (a%dense)
+         call make_dense(a%dense, m)
+      end if
    end subroutine make_analysis
 
-   !> Makes `a`, the analysis of a variant of `m`, ready for the first instant of `m` with the engine that it has.
+   !> Makes `a`, the analysis of a variant of `m` by METHOD NEWTON, ready for the first instant of `m` with the engine that it has.
    !> `is_done`: that fits; otherwise `a` is of no use.
    subroutine renew_analysis(a, m, is_done)
       type(analysis_t), intent(inout) :: a
       type(mechanism_t), intent(in) :: m
       logical, intent(out) :: is_done
-      class(engine_t), allocatable :: engine
+      type(block_engine_t), allocatable :: engine
 
       call move_alloc(a%engine, engine)
       call begin_again(a)
@@ -84,9 +96,11 @@ contains
       type(step_record_t) :: step
       type(diagnostic_t), allocatable :: list(:)
       real(wp) :: to
-      logical :: is_over_pole
+      integer :: iterations
+      logical :: is_over_pole, goes_on
 
       call come_back(a)
+      iterations = a%iterations
       if (allocated(found%diagnostics)) deallocate (found%diagnostics)
       found%t = t
       to = t
@@ -112,7 +126,13 @@ contains
          end if
          call give_up(a, to, step, found)
       end if
-      if (found%known == 2) then
+      goes_on = found%known == 2
+      if (allocated(a%dense)) then
+         if (step%arrived) goes_on = .not. any(a%engine%is_singular(a%engine%needed))
+         a%iterations = iterations
+         if (step%arrived) a%iterations = iterations + a%convergence%iterations
+      end if
+      if (goes_on) then
          call go_on_from(a%following_t, t)
       else if (.not. step%stands) then
          call go_back(a%following_t, step)
@@ -142,10 +162,10 @@ contains
       call continue_to(a%following_t, t, step)
       if (step%arrived .and. .not. (a%convergence%singular .or. a%convergence%rates_open)) then
          found%t = t
-         call a%engine%get_motion(found, finite)
+         call take_motion(a, found, finite)
          call cut(found, 2, mark_none)
          if (.not. finite) call look_for_overflow(found)
-         is_found = found%known == 2
+         is_found = found%known == 2 .and. is_solved(a%convergence) .and. .not. a%convergence%singular
       end if
       if (.not. is_found) then
          call go_back(a%following_t, step)
@@ -171,18 +191,39 @@ contains
       type(step_record_t), intent(inout) :: step
       type(diagnostic_t), allocatable, intent(inout) :: list(:)
       type(motion_t), intent(inout) :: found
+      logical :: had_missed
 
-      call get_motion(a, found)
+      had_missed = a%has_missed
       if (a%convergence%singular .and. .not. step%stands) then
          call stand_on(a%following_t, found%t, step, list, step%stands)
          if (.not. step%stands) call pass_standstill(a%following_t, found%t, step, list)
-         if (step%stands .or. .not. a%convergence%singular) call get_motion(a, found)
       end if
+      call get_motion(a, found)
       if (allocated(step%passed)) call add_diagnostics(step%passed, found)
       if (allocated(list)) call add_diagnostics(list, found)
+      if (a%has_missed) then
+         call miss(a, step, had_missed, found)
+         return
+      end if
       call judge_branch(a, step)
       if (.not. a%has_begun .or. (.not. a%follows .and. found%known == 2)) call diagnose_start(a, found)
    end subroutine arrive
+
+   !> Tells that the blocks have found a position at the end of `step` and the method has not; once of instants in a row
+   !> (`is_known`).
+   subroutine miss(a, step, is_known, found)
+      type(analysis_t), intent(inout) :: a
+      type(step_record_t), intent(in) :: step
+      logical, intent(in) :: is_known
+      type(motion_t), intent(inout) :: found
+
+      call cut(found, -1, mark_not_converged)
+      call get_driven_links(a%engine, found%t, found)
+      a%branch = branch_t()
+      if (allocated(step%passed)) a%certificate_counts%passed = a%certificate_counts%passed + size(step%passed)
+      if (.not. is_known) call add_diagnostics([diagnostic_t(kind=diagnostic_method, &
+         other=a%convergence%ended == ended_elsewhere)], found)
+   end subroutine miss
 
    !> The motion that is followed comes to t = 0, where the law of a drive goes to infinity, without another limit.
    subroutine end_at_pole(a)
@@ -202,14 +243,14 @@ contains
       a%branch = branch_t()
       ! Not where the last substep has ended, but at the instant itself.
       if (step%tries > 1 .and. a%convergence%ended == ended_inconsistent) &
-         call a%engine%measure_closure_error(t, a%convergence)
+         call measure_closure_error(a%engine, t, a%convergence)
       if (a%convergence%ended == ended_inconsistent) then
          ! Of equations that contradict one another a drive is one: not even the links that it moves have a position.
          call cut(found, -1, mark_inconsistent)
          a%max_closure_error = max(a%max_closure_error, a%convergence%open%value)
       else
          call cut(found, -1, mark_not_converged)
-         if (.not. has_pole_between(a%drives, a%t, found%t)) call a%engine%get_driven_links(t, found)
+         if (.not. has_pole_between(a%drives, a%t, found%t)) call get_driven_links(a%engine, t, found)
       end if
       call diagnose_end(a, t, step, found)
    end subroutine give_up
@@ -222,7 +263,7 @@ contains
       type(motion_t), intent(inout) :: found
 
       call cut(found, -1, mark_not_converged)
-      if (.not. (a%follows .and. has_pole_between(a%drives, a%t, t))) call a%engine%get_driven_links(t, found)
+      if (.not. (a%follows .and. has_pole_between(a%drives, a%t, t))) call get_driven_links(a%engine, t, found)
       a%convergence = convergence_t(ended=ended_unsought)
       a%branch = branch_t()
       if (limit_before(a%limits, t) > 0) then
@@ -251,7 +292,7 @@ contains
       a%branch = step%branch
       if (.not. a%follows) then
          a%branch%kind = branch_first
-      else if ((a%convergence%singular .and. .not. step%stands) .or. .not. a%engine%is_certified) then
+      else if (a%convergence%singular .and. .not. step%stands) then
          a%branch%kind = branch_none
       else
          a%branch%kind = merge(branch_crossed, branch_same, passed > 0)
@@ -267,11 +308,8 @@ contains
 
       if (a%has_begun) call add_diagnostics([diagnostic_t(kind=diagnostic_begins)], found)
       a%has_begun = .true.
-      select type (e => a%engine)
-      class is (block_engine_t)
-         list = start_diagnostics(e, found, a%convergence%singular)
-         call add_diagnostics(list, found)
-      end select
+      list = start_diagnostics(a%engine, found, a%convergence%singular)
+      call add_diagnostics(list, found)
    end subroutine diagnose_start
 
    !> Why there is no motion at `t`: the equation that is not satisfied, or where `step` has ended; that is said once.
@@ -289,15 +327,12 @@ contains
       if (a%convergence%open%value > 0.0_wp .and. (inconsistent .or. .not. a%follows)) then
          call add_diagnostics([inconsistency(a%convergence%open, a%engine%length)], found)
       else
-         select type (e => a%engine)
-         class is (block_engine_t)
-            ahead = t
-            ! To where a slide is infinite there are more substeps than are tried.
-            if (has_too_many_substeps(step)) &
-               ahead = a%t + sign(min(abs(t - a%t), almost_there*abs(a%t - a%place%t)), t - a%t)
-            list = limit_diagnostic(e, ahead, has_too_many_substeps(step))
-            if (size(list) == 0 .and. a%follows .and. step%blocked) list = [diagnostic_t(kind=diagnostic_close, t=a%t)]
-         end select
+         ahead = t
+         ! To where a slide is infinite there are more substeps than are tried.
+         if (has_too_many_substeps(step)) &
+            ahead = a%t + sign(min(abs(t - a%t), almost_there*abs(a%t - a%place%t)), t - a%t)
+         list = limit_diagnostic(a%engine, ahead, has_too_many_substeps(step))
+         if (size(list) == 0 .and. a%follows .and. step%blocked) list = [diagnostic_t(kind=diagnostic_close, t=a%t)]
       end if
       if (has_too_many_substeps(step)) then
          if (size(list) == 0) list = [diagnostic_t(kind=diagnostic_long, t=a%place%t)]
@@ -334,15 +369,30 @@ contains
       type(motion_t), intent(inout) :: found
       logical :: finite
 
-      call a%engine%get_motion(found, finite)
+      call take_motion(a, found, finite)
       a%max_closure_error = max(a%max_closure_error, a%convergence%open%value)
       call cut(found, 2, mark_none)
       if (a%convergence%singular) call cut(found, 0, mark_singular)
       if (a%convergence%rates_open) call cut(found, 0, mark_inconsistent)
       ! Where rates contradict one another no link has any.
-      if (found%mark == mark_singular) call a%engine%get_link_flags(found)
+      if (found%mark == mark_singular) call get_link_flags(a%engine, found, allocated(a%dense))
       if (.not. finite) call look_for_overflow(found)
    end subroutine get_motion
+
+   !> The motion at found%t, where the blocks have found one, by the method; `finite`: no number is out of range.
+   subroutine take_motion(a, found, finite)
+      type(analysis_t), intent(inout) :: a
+      type(motion_t), intent(inout) :: found
+      logical, intent(out) :: finite
+
+      if (allocated(a%dense)) then
+         call solve_all_links(a%dense, a%engine, found, a%convergence)
+         a%has_missed = .not. is_solved(a%convergence)
+         finite = .false.
+      else
+         call get_blocks_motion(a%engine, found, finite)
+      end if
+   end subroutine take_motion
 
    !> What is out of the range of the real kind is not known.
    pure subroutine look_for_overflow(found)
@@ -393,6 +443,6 @@ contains
       type(analysis_t), intent(in) :: a
 
       redundancy_error = -1.0_wp
-      if (a%engine%redundant > 0) redundancy_error = a%max_closure_error
+      if (a%engine%blocks%redundant > 0) redundancy_error = a%max_closure_error
    end function redundancy_error
 end module analysis

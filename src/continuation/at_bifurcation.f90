@@ -8,8 +8,7 @@ module at_bifurcation
    use motion, only: diagnostic_t
    use branch_requests, only: branch_requests_t
    use convergence, only: convergence_t, is_solved
-   use engine, only: engine_t
-   use block_method, only: block_method_t
+   use block_method, only: solve_instant, max_rate
    use block_branches, only: extrapolate
    use following, only: following_t, step_record_t, place_t, continue_to, go_on_from, go_back, note_place, return_to
    implicit none
@@ -41,16 +40,13 @@ contains
 
       allocate (list(0))
       stands = .false.
-      if (.not. f%follows .or. max_rate(f%engine) < 0.0_wp) return
+      if (.not. f%follows) return
       call go_back(f, step)
       call note_place(f, before)
       branch_requests = f%branch_requests
       found = f%convergence
       call come_near(f, t, stands)
-      select type (e => f%engine)
-      class is (block_method_t)
-         if (stands) call extrapolate(e%block_engine_t, t, list)
-      end select
+      if (stands) call extrapolate(f%engine, t, list)
       stands = size(list) > 0
       f%convergence = found
       if (stands) return
@@ -80,17 +76,6 @@ contains
       end do
    end subroutine come_near
 
-   !> The largest rate of an unknown of the motion that `e` follows; -1.0 of an engine that knows no change points.
-   pure real(wp) function max_rate(e)
-      class(engine_t), intent(in) :: e
-
-      max_rate = -1.0_wp
-      select type (e)
-      class is (block_method_t)
-         max_rate = e%max_rate()
-      end select
-   end function max_rate
-
    !> The `step` of the continuation to `t` has failed, or has ended at a position without velocities, since the one
    !> drive that moves stops or turns about there: followed by time, the motion comes ever closer to a change point and
    !> never across. So it is followed by the drive's value instead, at the values of equal steps of time: the position
@@ -111,7 +96,7 @@ contains
       logical :: passed, stands
 
       allocate (list(0))
-      if (.not. f%follows .or. max_rate(f%engine) < 0.0_wp) return
+      if (.not. f%follows) return
       near = merge(t, f%t, step%arrived)
       laws = f%engine%laws
       drive = stopping_drive(laws, f%drives%first, f%drives%last, merge(f%place%t, f%t, step%tries > 1), near, t)
@@ -132,11 +117,11 @@ contains
       if (passed .and. .not. stands) return
       f%t = merge(before%t, reached%t, passed)
       if (passed) then
-         call f%engine%restore(before%engine, keeps_found=.true.)
+         f%engine%followed_t = before%engine%followed_t
          return
       end if
       ! As the step has ended: that tells where the limit is, and which.
-      call f%engine%restore(reached%engine, keeps_found=.false.)
+      f%engine%engine_state_t = reached%engine
       f%place = before
       deallocate (list)
       allocate (list(0))
@@ -273,13 +258,10 @@ contains
       real(wp), intent(in) :: t
       logical, intent(out) :: passed
 
-      select type (e => f%engine)
-      class is (block_method_t)
-         e%history%t(0) = t
-         e%history%filled = 1
-      end select
+      f%engine%history%t(0) = t
+      f%engine%history%filled = 1
       f%t = t
-      call f%engine%solve(t, .true., f%convergence)
+      call solve_instant(f%engine, t, .true., f%convergence)
       passed = f%convergence%keeps_signs .and. is_solved(f%convergence) .and. .not. f%convergence%singular
       if (passed) call go_on_from(f, t)
    end subroutine take_up

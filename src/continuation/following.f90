@@ -4,18 +4,17 @@
 module following
    use kinds, only: wp
    use structure, only: structure_t
-   use mechanism, only: mechanism_t, method_newton
+   use mechanism, only: mechanism_t
    use motion, only: diagnostic_t, diagnostic_dead_end
    use branch_certificate, only: branch_t
    use drive_excursion, only: drive_excursion_t, new_drive_excursion, substep_allowed, likely_excursion, excursion, &
       steps_at_least
    use convergence, only: convergence_t, is_solved, max_kantorovich_ratio
    use branch_requests, only: branch_requests_t, new_branch_requests
-   use engine, only: engine_t, engine_checkpoint_t
-   use block_engine, only: block_engine_t, make_block_engine, renew_block_engine
-   use block_method, only: block_method_t
+   use block_engine, only: block_engine_t, engine_state_t, make_block_engine, renew_block_engine, accept, &
+      follows_values
+   use block_method, only: solve_instant
    use block_branches, only: pass
-   use dense_engine, only: dense_engine_t, make_dense_engine
    implicit none
    private
    public :: following_t, step_record_t, make_following, renew_following, continue_to, is_too_far, &
@@ -43,12 +42,12 @@ module following
    !> A place of the motion that is followed: all that its continuation depends on.
    type :: place_t
       real(wp) :: t = 0.0_wp                     !< time
-      class(engine_checkpoint_t), allocatable :: engine   !< the engine's part
+      type(engine_state_t) :: engine             !< the engine's part
    end type place_t
 
    !> The engine, and how far it has come.
    type :: following_t
-      class(engine_t), allocatable :: engine     !< solves single instants
+      type(block_engine_t), allocatable :: engine !< solves single instants
       type(branch_requests_t) :: branch_requests !< BRANCH cards, and change points passed
       type(convergence_t) :: convergence         !< of the position solved for last
       integer :: iterations = 0                  !< of all positions so far
@@ -82,26 +81,17 @@ module following
 
 contains
 
-   !> Ready for the first instant of `m`, whose equations are as many as its unknowns, with the engine of its method.
-   !> `structure`: see `make_block_engine`.
+   !> Ready for the first instant of `m`, whose equations are as many as its unknowns. `structure`: see
+   !> `make_block_engine`.
    subroutine make_following(f, m, structure)
       type(following_t), intent(out) :: f
       type(mechanism_t), intent(in) :: m
       type(structure_t), intent(inout), optional :: structure
 
-      if (m%method == method_newton) then
-         allocate (block_method_t :: f%engine)
-      else
-         allocate (dense_engine_t :: f%engine)
-      end if
-      select type (e => f%engine)
-      type is (block_method_t)
-         call make_block_engine(e%block_engine_t, m, structure)
-      type is (dense_engine_t)
-         call make_dense_engine(e, m)
-      end select
+      allocate (f%engine)
+      call make_block_engine(f%engine, m, structure)
       f%branch_requests = new_branch_requests(m)
-      f%drives = new_drive_excursion(m, f%engine%depends_on_history)
+      f%drives = new_drive_excursion(m, follows_values(f%engine))
    end subroutine make_following
 
    !> Ready for the first instant of `m` with the `engine` of a variant of `m`, which is taken over. `is_done`: that
@@ -109,18 +99,14 @@ contains
    subroutine renew_following(f, m, engine, is_done)
       type(following_t), intent(out) :: f
       type(mechanism_t), intent(in) :: m
-      class(engine_t), allocatable, intent(inout) :: engine
+      type(block_engine_t), allocatable, intent(inout) :: engine
       logical, intent(out) :: is_done
 
       call move_alloc(engine, f%engine)
-      is_done = .false.
-      select type (e => f%engine)
-      type is (block_method_t)
-         call renew_block_engine(e%block_engine_t, m, is_done)
-      end select
+      call renew_block_engine(f%engine, m, is_done)
       if (.not. is_done) return
       f%branch_requests = new_branch_requests(m)
-      f%drives = new_drive_excursion(m, f%engine%depends_on_history)
+      f%drives = new_drive_excursion(m, follows_values(f%engine))
    end subroutine renew_following
 
    !> Follows the motion to `t`, or finds the first; `step`: how that went.
@@ -171,15 +157,16 @@ contains
       type(step_record_t), intent(inout) :: step
       logical, intent(out) :: accepted
 
-      if (f%follows) f%engine%excursion = likely_excursion(f%drives, f%t, t)
-      call f%engine%solve(t, f%follows, f%convergence)
+      if (f%follows) f%engine%state%excursion = likely_excursion(f%drives, f%t, t)
+      call solve_instant(f%engine, t, f%follows, f%convergence)
       f%iterations = f%iterations + f%convergence%iterations
       accepted = is_solved(f%convergence)
       if (.not. f%follows) return
       accepted = accepted .and. f%convergence%change <= largest_correction
       ! Beside a change point the inverse grows as substeps shrink, and what drives add by leaving their chords never
       ! becomes small: no substep would come across.
-      if (accepted .and. f%engine%excursion > 0.0_wp .and. .not. f%convergence%is_certain) call add_excursion(f, t)
+      if (accepted .and. f%engine%state%excursion > 0.0_wp .and. .not. f%convergence%is_certain) &
+         call add_excursion(f, t)
       accepted = accepted .and. f%convergence%kantorovich_ratio <= max_kantorovich_ratio
       if (accepted .and. .not. (f%convergence%keeps_signs .or. f%convergence%singular)) &
          call pass_change_points(f, t, step)
@@ -197,7 +184,7 @@ contains
       real(wp) :: ratio
 
       associate (c => f%convergence)
-         ratio = c%kantorovich_ratio + c%growth*f%engine%excursion
+         ratio = c%kantorovich_ratio + c%growth*f%engine%state%excursion
          if (ratio > max_kantorovich_ratio) ratio = c%kantorovich_ratio + c%growth*excursion(f%drives, f%t, t)
          c%kantorovich_ratio = ratio
       end associate
@@ -210,18 +197,15 @@ contains
       type(step_record_t), intent(inout) :: step
       type(diagnostic_t), allocatable :: list(:)
 
-      select type (e => f%engine)
-      class is (block_engine_t)
-         call pass(e, t, f%branch_requests, f%convergence, list)
-         if (f%convergence%keeps_signs .and. f%convergence%kantorovich_ratio > max_kantorovich_ratio) then
-            f%convergence%keeps_signs = .false.
-         else if (f%convergence%keeps_signs) then
-            if (.not. allocated(step%passed)) allocate (step%passed(0))
-            step%passed = [step%passed, list]
-         else if (size(list) > 0) then
-            step%dead_end = pack(list, list%kind == diagnostic_dead_end)
-         end if
-      end select
+      call pass(f%engine, t, f%branch_requests, f%convergence, list)
+      if (f%convergence%keeps_signs .and. f%convergence%kantorovich_ratio > max_kantorovich_ratio) then
+         f%convergence%keeps_signs = .false.
+      else if (f%convergence%keeps_signs) then
+         if (.not. allocated(step%passed)) allocate (step%passed(0))
+         step%passed = [step%passed, list]
+      else if (size(list) > 0) then
+         step%dead_end = pack(list, list%kind == diagnostic_dead_end)
+      end if
    end subroutine pass_change_points
 
    !> The step to `t` would need more substeps than are tried.
@@ -245,7 +229,7 @@ contains
       type(following_t), intent(inout) :: f
       real(wp), intent(in) :: t
 
-      call f%engine%accept()
+      call accept(f%engine)
       f%t = t
       f%follows = .true.
    end subroutine go_on_from
@@ -259,7 +243,7 @@ contains
 
       if (step%tries < 2) return
       f%t = f%place%t
-      call f%engine%restore(f%place%engine, keeps_found=.true.)
+      f%engine%followed_t = f%place%engine%followed_t
    end subroutine go_back
 
    !> Notes in `p` where the motion is followed.
@@ -268,7 +252,7 @@ contains
       type(place_t), intent(inout) :: p
 
       p%t = f%t
-      call f%engine%checkpoint(p%engine)
+      p%engine = f%engine%engine_state_t
    end subroutine note_place
 
    !> Follows the motion again from the place `p`, to which a later step can go back.
@@ -277,7 +261,7 @@ contains
       type(place_t), intent(in) :: p
 
       f%t = p%t
-      call f%engine%restore(p%engine, keeps_found=.false.)
+      f%engine%engine_state_t = p%engine
       call note_place(f, f%place)
    end subroutine return_to
 

@@ -11,8 +11,7 @@ module lane_runs
    use predictor, only: is_even
    use drive_excursion, only: judge_step
    use analysis, only: come_back
-   use block_engine, only: block_engine_t
-   use block_method, only: block_method_t
+   use block_engine, only: get_motion
    use digits_in_doubt, only: is_in_doubt
    use set_analysis, only: set_analysis_t, make_set_analysis, renew_set_analysis, advance_set
    use extreme_search, only: note_start
@@ -227,14 +226,13 @@ contains
          call judge_step(a%drives, (1.0_wp + slack)*step, away, is_done)
          if (.not. is_done) return
          is_done = .false.
-         select type (e => a%engine)
-         class is (block_engine_t)
+         associate (e => a%engine)
             if (.not. is_covered(e)) return
             if (.not. is_even(e%history, step)) return
             if (.not. allocated(l%moving)) call make_lanes(l, e)
             call load_lane(l, i, e, is_done)
             l%excursion(i) = away
-         end select
+         end associate
       end associate
    end subroutine load_run
 
@@ -326,11 +324,10 @@ contains
       if (is_refused) last = r%at + r%patience
       associate (a => r%s%list(1))
          call come_back(a)
-         select type (e => a%engine)
-         class is (block_engine_t)
+         associate (e => a%engine)
             call unload_lane(l, i, r%at + 1 - first, e)
             a%t = e%history%t(0)
-         end select
+         end associate
       end associate
       r%is_laned = .false.
       call by_engine(r, first, last, starts)
@@ -353,8 +350,7 @@ contains
             any((joints - t1)*(instant(r%m, r%at + 1) - joints) >= 0.0_wp)
       end associate
       if (turned) return
-      select type (e => r%s%list(1)%engine)
-      class is (block_method_t)
+      associate (e => r%s%list(1)%engine)
          do u = 1, e%blocks%unknowns
             associate (x => e%state%u(u))
                x%value = l%u(u)%value(i)
@@ -367,10 +363,10 @@ contains
          do k = 1, size(l%moving)
             e%found(l%moving(k))%pivot = l%block(l%moving(k))%pivot(i, l%slot(depth - 1))
          end do
-         call e%get_motion(r%s%now%motions(1), finite)
+         call get_motion(e, r%s%now%motions(1), finite)
          turned = .not. finite &
             .or. is_in_doubt(r%s%estimators(1)%sizes, r%s%now%parts(1), r%s%now%motions(1), e)
-      end select
+      end associate
       if (turned) return
       call show_rows(r, steps)
       r%seen = r%at + 1

@@ -7,8 +7,6 @@ module motion_proof
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use motion, only: motion_t
-   use engine, only: engine_t
-   use block_method, only: block_method_t
    use position_proof, only: prover_t, placed_t, make_prover, new_placed, prove_position, max_unknowns, take_state, &
       prove_block
    use link_bounds, only: link_bounds_t, new_link_bounds, bound_links
@@ -76,7 +74,7 @@ contains
    subroutine prove_motion(p, m, e, q, bounded, found)
       type(motion_prover_t), intent(inout) :: p
       type(mechanism_t), intent(in) :: m
-      class(engine_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       type(motion_t), intent(in) :: q
       logical, intent(in) :: bounded
       type(motion_proof_t), intent(inout) :: found
@@ -86,40 +84,37 @@ contains
       found%is_proved = .false.
       found%has_step = .false.
       found%step = step_proof_t()
-      select type (e)
-      class is (block_method_t)
-         if (.not. p%is_ready) then
-            call make_prover(p%prover, m, e%block_engine_t)
-            call make_step_prover(p%step_prover, e%block_engine_t)
-            p%links = new_link_bounds(m, e%block_engine_t)
-            p%at(1) = new_placed(e%blocks, size(m%drives))
-            p%at(2) = p%at(1)
-            p%is_ready = .true.
-            allocate (found%links(3, 0:2, size(m%links)))
-         end if
-         if (allocated(found%failed)) deallocate (found%failed)
-         if (q%known < 2) return
-         call prove_position(p%prover, e%block_engine_t, q%t, e%needed, p%at(p%now), found%is_proved, &
-            merge(2, 0, bounded))
-         if (found%is_proved) then
-            if (bounded) call bound_links(p%links, e%block_engine_t, p%prover%jets, found%links)
-            found%gap = maxval(p%at(p%now)%gap(e%needed))
-            found%has_step = p%has_begun
-            if (found%has_step) &
-               call prove_step(p%prover, p%step_prover, e%block_engine_t, e%needed, p%at(3 - p%now), p%at(p%now), &
-               found%step)
-            p%now = 3 - p%now
-            p%has_begun = .true.
-            if (.not. found%has_step .or. found%step%is_proved) return
-            k = found%step%block
-         else
-            k = e%needed(findloc(p%at(p%now)%is_proved(e%needed), .false., dim=1))
-         end if
-         if (k == 0) return
-         found%failed = links_of_block(e, k)
-         if (e%blocks%list(k)%shape%n > max_unknowns .or. found%step%is_broken_off) &
-            found%too_many = e%blocks%list(k)%shape%n
-      end select
+      if (.not. p%is_ready) then
+         call make_prover(p%prover, m, e)
+         call make_step_prover(p%step_prover, e)
+         p%links = new_link_bounds(m, e)
+         p%at(1) = new_placed(e%blocks, size(m%drives))
+         p%at(2) = p%at(1)
+         p%is_ready = .true.
+         allocate (found%links(3, 0:2, size(m%links)))
+      end if
+      if (allocated(found%failed)) deallocate (found%failed)
+      if (q%known < 2) return
+      call prove_position(p%prover, e, q%t, e%needed, p%at(p%now), found%is_proved, &
+         merge(2, 0, bounded))
+      if (found%is_proved) then
+         if (bounded) call bound_links(p%links, e, p%prover%jets, found%links)
+         found%gap = maxval(p%at(p%now)%gap(e%needed))
+         found%has_step = p%has_begun
+         if (found%has_step) &
+            call prove_step(p%prover, p%step_prover, e, e%needed, p%at(3 - p%now), p%at(p%now), &
+            found%step)
+         p%now = 3 - p%now
+         p%has_begun = .true.
+         if (.not. found%has_step .or. found%step%is_proved) return
+         k = found%step%block
+      else
+         k = e%needed(findloc(p%at(p%now)%is_proved(e%needed), .false., dim=1))
+      end if
+      if (k == 0) return
+      found%failed = links_of_block(e, k)
+      if (e%blocks%list(k)%shape%n > max_unknowns .or. found%step%is_broken_off) &
+         found%too_many = e%blocks%list(k)%shape%n
    end subroutine prove_motion
 
    !> All is proved that is asked for.
@@ -131,7 +126,7 @@ contains
 
    !> The links whose angles block `k` gives.
    pure function links_of_block(e, k) result(links)
-      class(block_method_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       integer, intent(in) :: k
       integer, allocatable :: links(:)
       logical :: of_block(size(e%orientation_of))

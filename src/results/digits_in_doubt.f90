@@ -9,7 +9,8 @@ module digits_in_doubt
    use law_sizes, only: growing_sizes
    use scales, only: characteristic_length, characteristic_rate, is_length, latest_time
    use sum_errors, only: growth_in_centres
-   use block_method, only: block_method_t
+   use block_engine, only: block_engine_t
+   use block_method, only: growth_of_roundings, growth_of_angles
    implicit none
    private
    public :: sizes_t, sizes_of, find_growth, is_in_doubt, safe_growth
@@ -67,7 +68,7 @@ contains
       type(sizes_t), intent(in) :: s
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: q
-      class(block_method_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       real(wp) :: growth
 
       call find_growth(s, m, 1.0_wp, q, growth, is_in_doubt, e)
@@ -84,7 +85,7 @@ contains
       type(motion_t), intent(in) :: q
       real(wp), intent(out) :: growth
       logical, intent(out) :: in_doubt
-      class(block_method_t), intent(in), optional :: e
+      type(block_engine_t), intent(in), optional :: e
       real(wp), intent(out), optional :: numbers(2, 0:2)
       real(wp) :: law, angle, size_of, usual, x(2, 0:2)
 
@@ -106,10 +107,10 @@ contains
       if (size_of > safe_size) return
       if (present(e)) then
          usual = max(size_of, min(angle, usual_angle))
-         growth = usual*e%growth_of_roundings()
+         growth = usual*growth_of_roundings(e)
          in_doubt = max(usual, growth) > safe_growth
          if (.not. angle > usual_angle) return
-         in_doubt = in_doubt .or. angle*size_of*e%growth_of_angles() > safe_angle
+         in_doubt = in_doubt .or. angle*size_of*growth_of_angles(e) > safe_angle
          growth = growth*max(1.0_wp, angle/usual)
       else
          growth = safe_growth*(safe_condition/max(rcond, epsilon(rcond)))

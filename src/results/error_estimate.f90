@@ -3,16 +3,14 @@
 !> are asked for.
 module error_estimate
    use kinds, only: wp
-   use mechanism, only: mechanism_t, request_t, request_link, request_pair, request_pole, request_links, place_links
+   use mechanism, only: mechanism_t, method_newton, request_t, request_link, request_pair, request_pole, request_links
    use motion, only: motion_t, new_motion
    use points, only: row_t, row_of, set_values, difference, is_fixed
    use sum_errors, only: errors_of_sums, error_of_sums, fixed_error, lost_numbers
    use known_digits, only: nothing_known
    use digits_in_doubt, only: sizes_t, sizes_of, find_growth
    use safe_digits, only: safe_digits_t, make_safe_digits, are_digits_safe
-   use engine, only: engine_t
-   use block_method, only: block_method_t
-   use block_engine, only: block_engine_t, make_block_engine
+   use block_engine, only: block_engine_t
    use link_motion, only: move_found_links
    use card_roundings, only: directions, roundings, caution, own_in_tables
    use row_changes, only: change_row
@@ -69,39 +67,35 @@ contains
    subroutine estimate_errors(s, m, engine, rcond, q, always, found, for_tables)
       type(estimator_t), intent(inout) :: s
       type(mechanism_t), intent(in) :: m
-      class(engine_t), intent(in) :: engine
+      type(block_engine_t), intent(in) :: engine
       real(wp), intent(in) :: rcond
       type(motion_t), intent(in) :: q
       logical, intent(in) :: always
       type(error_estimate_t), intent(inout) :: found
       logical, intent(in), optional :: for_tables
       real(wp) :: numbers(2, 0:2)
+      logical :: by_blocks
 
       found%taken = .false.
       found%asked = always
-      select type (engine)
-      class is (block_method_t)
+      by_blocks = m%method == method_newton
+      if (by_blocks) then
          call find_growth(s%sizes, m, rcond, q, found%growth, found%in_doubt, engine, numbers)
-      class default
+      else
          call find_growth(s%sizes, m, rcond, q, found%growth, found%in_doubt)
-      end select
+      end if
       if (.not. (always .or. found%in_doubt)) return
       if (q%known < 0 .and. .not. allocated(q%link_known)) return
-      select type (engine)
-      class is (block_method_t)
-         if (.not. s%is_ready) then
-            call make_rounding_response(s%response, m, engine)
-            call make_safe_digits(s%safe, m, engine)
-         end if
-         s%is_ready = .true.
-         s%response%state%u(:) = engine%state%u
-         if (present(for_tables) .and. .not. always) then
-            if (are_tables_safe(s, m, engine, q, numbers)) return
-         end if
-         call take_changes(s%response, m, engine, q, s%sizes, always, found)
-      class default
-         call estimate_from_blocks(s, m, q, found)
-      end select
+      if (.not. s%is_ready) then
+         call make_rounding_response(s%response, m, engine)
+         if (by_blocks) call make_safe_digits(s%safe, m, engine)
+      end if
+      s%is_ready = .true.
+      s%response%state%u(:) = engine%state%u
+      if (present(for_tables) .and. by_blocks .and. .not. always) then
+         if (are_tables_safe(s, m, engine, q, numbers)) return
+      end if
+      call take_changes(s%response, m, engine, q, s%sizes, always .or. .not. by_blocks, found)
    end subroutine estimate_errors
 
    !> `are_digits_safe`; where they have not been, the next instants are not asked for: the answer is seldom another,
@@ -109,7 +103,7 @@ contains
    logical function are_tables_safe(s, m, e, q, numbers) result(safe)
       type(estimator_t), intent(inout) :: s
       type(mechanism_t), intent(in) :: m
-      class(block_method_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       type(motion_t), intent(in) :: q
       real(wp), intent(in) :: numbers(2, 0:2)
 
@@ -121,35 +115,12 @@ contains
       s%pause = s%next_pause
    end function are_tables_safe
 
-   !> The same where no blocks have found the motion: at its position they are made anew.
-   subroutine estimate_from_blocks(s, m, q, found)
-      type(estimator_t), intent(inout) :: s
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      type(error_estimate_t), intent(inout) :: found
-      type(mechanism_t) :: placed
-      type(block_engine_t) :: blocks
-      integer :: pass
-
-      placed = m
-      call place_links(placed, q%position)
-      call make_block_engine(blocks, placed)
-      if (.not. blocks%blocks%solvable) return
-      call make_rounding_response(s%response, m, blocks)
-      s%response%state%u%value = blocks%estimated
-      ! An arm that is zero but for its rounding turns with a link that comes later in the solving order: all rates are
-      ! found first.
-      do pass = 1, 2
-         call take_changes(s%response, m, blocks, q, s%sizes, .true., found)
-      end do
-   end subroutine estimate_from_blocks
-
    !> The changes at the motion `q` of `m`, with the blocks of `e` and its characteristic `sizes`. `again`: the blocks
    !> are solved once more, to the limit of rounding.
    subroutine take_changes(r, m, e, q, sizes, again, found)
       type(rounding_response_t), intent(inout) :: r
       type(mechanism_t), intent(in) :: m
-      class(block_engine_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       type(motion_t), intent(in) :: q
       type(sizes_t), intent(in) :: sizes
       logical, intent(in) :: again

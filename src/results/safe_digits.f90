@@ -44,7 +44,7 @@ contains
    subroutine make_safe_digits(s, m, e)
       type(safe_digits_t), intent(out) :: s
       type(mechanism_t), intent(in) :: m
-      class(block_engine_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       type(digits_t) :: d
       integer :: k, i
 
@@ -132,7 +132,7 @@ contains
       type(safe_digits_t), intent(inout) :: s
       type(rounding_response_t), intent(inout) :: r
       type(mechanism_t), intent(in) :: m
-      class(block_engine_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       type(motion_t), intent(in) :: q
       real(wp), intent(in) :: numbers(2, 0:2)
       real(wp) :: left(3, 0:2)
@@ -197,7 +197,7 @@ contains
    pure function bound_of_slide(b, m, e, q, i) result(bound)
       type(rounding_bounds_t), intent(in) :: b
       type(mechanism_t), intent(in) :: m
-      class(block_engine_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       type(motion_t), intent(in) :: q
       integer, intent(in) :: i
       real(wp) :: bound(0:2), p(2, 0:2), dp(0:2), dx(0:2)

@@ -6,16 +6,14 @@ module sensitivities
    use kinds, only: wp
    use planar, only: direction, turning, turning_change, dotted
    use mechanism, only: mechanism_t, tolerance_t, request_t, request_link, request_point, request_pair, &
-      number_drive, pair_prismatic, place_links
+      number_drive, pair_prismatic
    use number_changes, only: change_t, change_of, law_change, smooth_order
    use card_roundings, only: parts_of_number, number_point, number_pair, number_link, number_of_drive => number_drive, &
       rounding, roundings
    use known_digits, only: nothing_known
    use motion, only: motion_t, new_motion
    use points, only: row_t, row_of, point_motion
-   use engine, only: engine_t
-   use block_method, only: block_method_t
-   use block_engine, only: block_engine_t, make_block_engine, set_drive_values
+   use block_engine, only: block_engine_t, make_block_engine, set_drive_values, get_motion
    use link_motion, only: mark_links
    use equation_changes, only: response_t, arm_change
    use linear_response, only: make_response, respond
@@ -40,7 +38,7 @@ module sensitivities
    !> The response of a mechanism, its numbers as they are or off by roundings.
    type :: perturbed_t
       type(response_t) :: response
-      class(block_engine_t), allocatable :: engine
+      type(block_engine_t), allocatable :: engine
    end type perturbed_t
 
    !> What an independent mechanism needs for them.
@@ -129,7 +127,7 @@ contains
    subroutine find_sensitivities(s, m, e, q, in_doubt, found)
       type(sensor_t), intent(inout) :: s
       type(mechanism_t), intent(in) :: m
-      class(engine_t), intent(in) :: e
+      type(block_engine_t), intent(in) :: e
       type(motion_t), intent(in) :: q
       logical, intent(in) :: in_doubt
       type(sensitivities_t), intent(inout) :: found
@@ -170,7 +168,7 @@ contains
             again = new_motion(size(m%links))
             again%t = t
             again%known = 2
-            call s%engine%get_motion(again, finite)
+            call get_motion(s%engine, again, finite)
             call mark_links(s%engine%chain, s%response%missing, again)
             if (.not. allocated(found%of)) then
                allocate (found%of(3, 0:2, size(m%tolerances), size(m%requests)), found%known(size(m%requests)))
@@ -201,26 +199,19 @@ contains
          exists = min(row%known, second%known) == 2
       end function exists
 
-      !> Puts the engine of `s` at the position of `q`.
+      !> Puts the engine of `s` at the position of `e`.
       subroutine take_position(s)
          type(perturbed_t), intent(inout) :: s
 
-         select type (e)
-         class is (block_method_t)
-            if (.not. allocated(s%engine)) call prepare(s)
-            s%engine%state%u = e%state%u
-         class default
-            call place_links(s%response%m, q%position)
-            call prepare(s)
-            s%engine%state%u%value = s%engine%estimated
-         end select
+         if (.not. allocated(s%engine)) call prepare(s)
+         s%engine%state%u = e%state%u
       end subroutine take_position
 
       !> Makes the engine of `s` for its mechanism.
       subroutine prepare(s)
          type(perturbed_t), intent(inout) :: s
 
-         if (.not. allocated(s%engine)) allocate (block_engine_t :: s%engine)
+         allocate (s%engine)
          call make_block_engine(s%engine, s%response%m)
       end subroutine prepare
 

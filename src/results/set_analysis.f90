@@ -18,7 +18,6 @@ module set_analysis
    use points, only: row_t, find_row
    use assemblies, only: assemblies_t, find_nearest
    use analysis, only: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back, redundancy_error
-   use diagnosis, only: opinion_t, ask_blocks
    implicit none
    private
    public :: set_analysis_t, make_set_analysis, begin_analysis, renew_set_analysis, advance_set, rows_at, sample_set, &
@@ -28,7 +27,6 @@ module set_analysis
    type :: set_analysis_t
       type(set_motion_t) :: now                             !< the motion found last, and how far it is known
       type(analysis_t), allocatable :: list(:)              !< (parts)
-      type(opinion_t), allocatable :: opinions(:)           !< (parts)
       ! Of classes, so that the compiler calls what frees one, and does not write it out wherever a set is freed.
       class(estimator_t), allocatable :: estimators(:)      !< (parts)
       class(sensor_t), allocatable :: sensors(:)            !< (parts)
@@ -58,7 +56,7 @@ contains
       integer :: c
 
       associate (n => s%now%count)
-         allocate (s%list(n), s%opinions(n))
+         allocate (s%list(n))
          allocate (estimator_t :: s%estimators(n))
          allocate (sensor_t :: s%sensors(n))
          allocate (motion_prover_t :: s%provers(n))
@@ -113,8 +111,6 @@ contains
 
       do c = 1, size(s%list)
          call advance(s%list(c), t, s%now%motions(c))
-         if (s%now%parts(c)%method /= method_newton) &
-            call ask_blocks(s%now%parts(c), s%list(c), s%opinions(c), s%now%motions(c))
       end do
       if (size(s%list) == 1) then
          s%certificate_counts = s%list(1)%certificate_counts

@@ -5,7 +5,7 @@ program print_expected
    use, intrinsic :: iso_fortran_env, only: error_unit
    use kinds, only: wp
    use failures, only: failure_t
-   use mechanism, only: mechanism_t, instant_count, instant, method_newton, drive_angle
+   use mechanism, only: mechanism_t, instant_count, instant, drive_angle
    use motion, only: diagnostic_t
    use structure, only: findings_t
    use branch_certificate, only: certificate_counts_t
@@ -146,12 +146,8 @@ contains
          call put_tables(o, m, scales, k, links, resting, crossing, error, size(diagnostics) > 0, above)
          call put_diagnostics(o, m, diagnostics)
       end do
-      ! All of these motions are followed from their first instant on; METHOD DENSE and MATRIX cannot tell.
-      if (m%method == method_newton) then
-         tally%followed = instant_count(m) - 1
-      else
-         tally%uncertain = instant_count(m) - 1
-      end if
+      ! All of these motions are followed from their first instant on.
+      tally%followed = instant_count(m) - 1
       if (any(m%requests%extremes)) call put_extremes_by_hand(o, name, m, scales, was_flagged)
       if (m%assemblies) call put_assemblies_by_hand(o, name, m, scales)
       if (m%circuits) call put_circuits_by_hand(o, name, m)

@@ -1,6 +1,6 @@
 # No object that holds factors of KLU is copied by assignment, or is a function's result: both would share handles.
 # Two passes over the same Fortran files (awk -f fortran.awk -f copies.awk pass=1 FILES pass=2 FILES): the types and their
-# components, of a type or a class, for a class of which one extension holds factors may hold them too;
+# components;
 # then assignments to whole variables or components of a type that holds a klu_t, directly or in a component, and
 # functions with such results, one a line; at the end the types, "holds: TYPE".
 
@@ -32,10 +32,7 @@ pass == 2 && !ready {
    do {
       grown = 0
       for (one in holds) {
-         if (one in held) {
-            if ((one in parent) && !(parent[one] in held)) { held[parent[one]] = 1; grown = 1 }
-            continue
-         }
+         if (one in held) continue
          count = split(holds[one], list, " ")
          for (i = 1; i <= count; i++) if (list[i] in held) { held[one] = 1; grown = 1 }
       }

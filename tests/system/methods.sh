@@ -105,4 +105,26 @@ for deck in drag_link whitworth four_bar; do
       END { print off + 0, (count > 500 ? "many" : "few") }')"
 done
 
+# The paper: each iteration factors and solves the system of all links, the four moving ones of a four-bar with 9 equations, and so
+# do the velocities and the accelerations, from the factors of the Jacobian. METHOD MATRIX factors the Jacobian besides.
+# METHOD NEWTON solves no such system.
+solves=$w/count_solves.so
+"${FC:-gfortran}" -shared -fPIC -J"$w" -o "$solves" tests/system/count_solves.f90 || exit 3
+for method in NEWTON DENSE MATRIX; do
+   deck_by $method input/drag_link.deck
+   [ $method = MATRIX ] && deck_by MATRIX input/four_bar.deck
+   rm -f "$w/solved"
+   touch "$w/solved"
+   LD_PRELOAD=$solves SOLVES=$w/solved "$kinmat" "$w/$method.deck" --no-listing --log "$w/log"
+   set -- $(awk '$1 ~ /^[0-9]+$/ { instants++; iterations += $4 } END { print instants, iterations }' "$w/log")
+   case $method in
+   NEWTON) expected='0 0' ;;
+   DENSE) expected="$2 $(($2 + 2*$1))" ;;
+   MATRIX) expected="$(($1 + $2)) $(($2 + 2*$1))" ;;
+   esac
+   equal "METHOD $method: systems of 9 equations factored and solved" "$expected" \
+      "$(awk '$2 == 9 { n[$1]++ } END { print n["DGETRF"] + 0, n["DGETRS"] + 0 }' "$w/solved")"
+   equal "METHOD $method: none is larger" 0 "$(awk '$2 > 9' "$w/solved" | grep -c .)"
+done
+
 conclude

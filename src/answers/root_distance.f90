@@ -1,5 +1,5 @@
-!> How far the next root of the closure equations is from a position found: what the Kantorovich ratio of METHOD DENSE
-!> and METHOD MATRIX needs, as the blocks have theirs.
+!> How far the next root of the closure equations is from a position found: what the steps along a curve of assemblies
+!> rely on (card CIRCUITS).
 !>
 !> Newton and Kantorovich, row by row. Two positions z and z + d with the same values of the drives have J d = -R, with
 !> J the Jacobian at z and R_k the part of row k beyond its linear one, at most L_k |d|^2/2. Rows of angles alone are
@@ -21,7 +21,7 @@ module root_distance
    use pose, only: system_t, pose_t
    implicit none
    private
-   public :: coordinates_t, new_coordinates, jacobian_lipschitz, kantorovich, kantorovich_bound, distance
+   public :: coordinates_t, new_coordinates, jacobian_lipschitz, kantorovich, distance
    public :: measure_slots
 
    !> What the rows are not linear in.
@@ -148,22 +148,20 @@ contains
       end function slot_bound
    end function jacobian_lipschitz
 
-   !> K at pose `p`, from the factors `f` of the Jacobian there: no other root is within 2/K, by `distance`. `gain`:
-   !> residuals of 1 change a coordinate by so much at most. `rows`: those of the system that the first rows of the
-   !> matrix are, the others are linear; by default they are the same.
-   subroutine kantorovich(s, c, f, p, k, gain, rows)
+   !> K at pose `p`, from the factors `f` of the Jacobian there: no other root is within 2/K, by `distance`.
+   !> `rows`: those of the system that the first rows of the matrix are, the others are linear; by default they are the
+   !> same.
+   subroutine kantorovich(s, c, f, p, k, rows)
       type(system_t), intent(in) :: s
       type(coordinates_t), intent(in) :: c
       type(factors_t), intent(in) :: f
       type(pose_t), intent(in) :: p
       real(wp), intent(out) :: k
-      real(wp), intent(out), optional :: gain
       integer, intent(in), optional :: rows(:)
       real(wp) :: g(s%n, size(c%angles) + 2*size(c%slots)), bound(max(s%n, 2*size(s%pairs) + size(s%laws))), &
          y(size(bound), size(g, 2))
 
       k = 0.0_wp
-      if (present(gain)) gain = 0.0_wp
       if (size(g) == 0) return
       call set_coordinates(s, c, g)
       call solve_transposed(f, g)
@@ -175,7 +173,6 @@ contains
       else
          k = largest_sum(s, c, g, bound)
       end if
-      if (present(gain)) gain = largest_sum(s, c, g, spread(1.0_wp, 1, s%n))
    end subroutine kantorovich
 
    !> The largest over the coordinates of the sum over the rows of |y_k| L_k: `y` (n, angles + 2 slots) is J^-T g, the
@@ -196,19 +193,6 @@ contains
             hypot(row_sum(s, y(:, m - 1), bound), row_sum(s, y(:, m), bound))/c%unit(c%slots(slot)))
       end do
    end function largest_sum
-
-   !> More than K times `change`, from the condition alone: no row sum of the inverse is more than n times its largest
-   !> column sum, of which DGECON gives a third or more, and a slot has two rows. `condition`: the reciprocal condition
-   !> times the Jacobian's norm.
-   pure real(wp) function kantorovich_bound(s, c, p, change, condition) result(ratio)
-      type(system_t), intent(in) :: s
-      type(coordinates_t), intent(in) :: c
-      type(pose_t), intent(in) :: p
-      real(wp), intent(in) :: change, condition
-
-      ratio = 0.0_wp
-      if (change > 0.0_wp) ratio = 6.0_wp*change*real(s%n, wp)*maxval(jacobian_lipschitz(s, c, p))/condition
-   end function kantorovich_bound
 
    !> The coordinates as columns `g` (n, angles + 2 slots): each is g . x.
    pure subroutine set_coordinates(s, c, g)

@@ -1,0 +1,219 @@
+!> METHOD DENSE and METHOD MATRIX: one instant by all closure equations at once, x, y, phi of every link its unknowns:
+!> the form of the paper, by Newton's method or by the iteration of 1987. Positions, velocities and accelerations are
+!> solutions of the full systems (16), (21) and (22). The blocks tell where the iteration begins, and if the position
+!> where it ends is theirs; no number of theirs is in its rows.
+!>
+!> An iteration that fails, or ends elsewhere, begins again eight times nearer: so much nearer is the prediction of half
+!> a step. Where the Jacobian has no inverse, links that drives alone move have the rates of these.
+module dense_method
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, request_t, request_link, method_newton, method_matrix, own_predictor
+   use motion, only: motion_t, new_motion
+   use linear_solver, only: factors_t, new_factors, reciprocal_condition, determinant_sign, solve_factored => solve
+   use convergence, only: convergence_t, is_solved, ended_elsewhere
+   use predictor, only: largest_change, order_weights
+   use block_state, only: state_t
+   use block_engine, only: block_engine_t, get_motion, followed_state
+   use link_motion, only: move_links, find_values
+   use pose, only: system_t, pose_t, new_system, new_pose, add_to_links
+   use closure_equations, only: find_drive_values, remainder
+   use position_iteration, only: solve_newton, solve_matrix
+   implicit none
+   private
+   public :: dense_t, make_dense, with_all_links, solve_all_links, solve_velocity, solve_acceleration
+
+   !> A change over the distance of the next root: below it the root is the only one as near, and near enough.
+   real(wp), parameter :: certain = 0.5_wp
+   !> Where the Jacobian has no inverse a position is known to the root of eps; a root this near is that position.
+   real(wp), parameter :: same_place = min(1.0e4_wp*sqrt(epsilon(1.0_wp)), 1.0e-2_wp)
+   !> An iteration that goes further than this, in rad, wanders, and where it ends is up to rounding.
+   real(wp), parameter :: reach = largest_change
+   !> Starts that are tried, each so many times nearer than the one before.
+   integer, parameter :: max_starts = 4
+   real(wp), parameter :: nearer = 8.0_wp
+   !> The predictor of the paper: the state before, with its velocities and accelerations.
+   integer, parameter :: order_of_paper = 2
+
+   !> Lengths in the system's unit.
+   type :: dense_t
+      type(system_t) :: system
+      integer :: method = 0                       !< method_dense or method_matrix
+      integer :: order = order_of_paper           !< of the predictor, 0 to 2
+      real(wp) :: tolerance = 0.0_wp              !< relative; 0: the limit of rounding
+      real(wp), allocatable :: drive_values(:, :) !< (3, drives) value, rate, acceleration
+      type(pose_t) :: pose                        !< the position that is searched for
+      type(factors_t) :: factors
+   end type dense_t
+
+contains
+
+   !> Ready for the instants of `m`, whose equations are as many as its unknowns.
+   subroutine make_dense(d, m)
+      type(dense_t), intent(out) :: d
+      type(mechanism_t), intent(in) :: m
+
+      d%system = new_system(m)
+      d%method = m%method
+      if (m%predictor /= own_predictor) d%order = min(m%predictor, order_of_paper)
+      d%tolerance = m%tolerance
+      d%pose = new_pose(d%system, m)
+      d%factors = new_factors(d%system%n)
+      allocate (d%drive_values(3, size(m%drives)))
+   end subroutine make_dense
+
+   !> `m` for the blocks beside it: all its links, to the limit of rounding.
+   pure function with_all_links(m) result(all_links)
+      type(mechanism_t), intent(in) :: m
+      type(mechanism_t) :: all_links
+      integer :: i
+
+      all_links = m
+      all_links%method = method_newton
+      all_links%tolerance = 0.0_wp
+      all_links%requests = [(request_t(request_link, i, 1), i=1, size(m%links))]
+   end function with_all_links
+
+   !> Solves for the motion `found` of all links at found%t, in the deck's units, where the blocks of `e` have found
+   !> one. `c`: how the last try ended, or the first if none found the position of the blocks; iterations are those of
+   !> all tries. c%singular: the position has no velocities but of links that drives alone move.
+   subroutine solve_all_links(d, e, found, c)
+      type(dense_t), intent(inout) :: d
+      type(block_engine_t), intent(in) :: e
+      type(motion_t), intent(inout) :: found
+      type(convergence_t), intent(out) :: c
+      type(convergence_t) :: first
+      real(wp), dimension(3, size(found%position, 2)) :: there, start
+      logical :: finite
+      integer :: k, iterations
+
+      iterations = 0
+      call find_drive_values(d%system, found%t, d%drive_values)
+      call get_motion(e, found, finite)
+      there = found%position
+      there(:2, :) = there(:2, :)/d%system%length
+      start = predicted(d, e, found%t)
+      do k = 1, max_starts
+         d%pose%q = start
+         call search(d, c)
+         iterations = iterations + c%iterations
+         if (is_solved(c)) then
+            if (.not. is_found_by_blocks(d, e)) c%ended = ended_elsewhere
+         end if
+         if (is_solved(c)) exit
+         if (k == 1) first = c
+         start = there + (start - there)/nearer
+      end do
+      if (.not. is_solved(c)) c = first
+      c%iterations = iterations
+      if (.not. is_solved(c)) return
+
+      c%singular = c%singular .or. any(e%is_singular(e%needed))
+      found%position = d%pose%q
+      if (.not. c%singular) then
+         call solve_velocity(d%system, d%factors, d%drive_values(2, :), found%velocity)
+         call solve_acceleration(d%system, d%factors, d%pose, d%drive_values(3, :), found%velocity, found%acceleration)
+         found%velocity(:2, :) = d%system%length*found%velocity(:2, :)
+         found%acceleration(:2, :) = d%system%length*found%acceleration(:2, :)
+      end if
+      found%position(:2, :) = d%system%length*found%position(:2, :)
+   end subroutine solve_all_links
+
+   !> Where the iteration begins at `t` (3, links): the position that `e` follows, corrected through its velocities and
+   !> accelerations; at first the deck's estimate.
+   function predicted(d, e, t) result(q)
+      type(dense_t), intent(in) :: d
+      type(block_engine_t), intent(in) :: e
+      real(wp), intent(in) :: t
+      real(wp) :: q(3, size(d%pose%q, 2)), w(3)
+      logical :: is_finite
+      type(motion_t) :: before
+      type(state_t) :: s
+
+      call followed_state(e, s)
+      before = new_motion(size(q, 2))
+      call move_links(e%whole, s, e%length, before, is_finite)
+      w = 0.0_wp
+      if (e%history%filled > 0) w = order_weights(d%order, t - e%history%t(0), 0.0_wp)
+      q = before%position + w(1)*before%velocity + w(2)*before%acceleration
+      q(:2, :) = q(:2, :)/d%system%length
+   end function predicted
+
+   !> The position by the method's iteration from that of `d`; the factors of the Jacobian there, its condition and the
+   !> sign of its determinant.
+   subroutine search(d, c)
+      type(dense_t), intent(inout) :: d
+      type(convergence_t), intent(out) :: c
+
+      if (d%method == method_matrix) then
+         call solve_matrix(d%system, d%drive_values(1, :), d%tolerance, d%pose, d%factors, c, reach)
+      else
+         call solve_newton(d%system, d%drive_values(1, :), d%tolerance, d%pose, d%factors, c, reach)
+      end if
+      if (.not. is_solved(c) .or. c%singular) return
+      call reciprocal_condition(d%factors, c%reciprocal_condition)
+      c%determinant = determinant_sign(d%factors)
+   end subroutine search
+
+   !> The position of `d` is the one that the blocks of `e` have found: no other is as near to that (Newton and
+   !> Kantorovich).
+   logical function is_found_by_blocks(d, e) result(is)
+      type(dense_t), intent(in) :: d
+      type(block_engine_t), intent(in) :: e
+      real(wp) :: q(3, size(d%pose%q, 2)), value(0:e%blocks%unknowns), off
+      integer :: k
+
+      q = d%pose%q
+      q(:2, :) = d%system%length*q(:2, :)
+      call find_values(e%whole, q, e%length, value)
+      is = .true.
+      do k = 1, size(e%needed)
+         associate (i => e%needed(k), block => e%blocks%list(e%needed(k)))
+            if (block%direct .or. block%shape%n == 0) cycle
+            associate (unknowns => e%blocks%unknown(block%first:block%last))
+               off = maxval(abs(value(unknowns) - e%state%u(unknowns)%value))
+            end associate
+            if (e%is_singular(i)) then
+               is = is .and. off <= same_place
+            else
+               is = is .and. off*e%blocks%numbers%blocks(i)%lipschitz*e%found(i)%inverse <= certain
+            end if
+         end associate
+      end do
+   end function is_found_by_blocks
+
+   !> Velocities `v` (3, links) from the drives' rates `rate` (drives), by the factors `f` of the Jacobian:
+   !> J v = f' (21), with the dependence of A' on the unknown velocities moved to the left; f' is zero in pairs' rows.
+   subroutine solve_velocity(s, f, rate, v)
+      type(system_t), intent(in) :: s
+      type(factors_t), intent(in) :: f
+      real(wp), intent(in) :: rate(:)
+      real(wp), intent(out) :: v(:, :)
+      real(wp) :: b(s%n)
+
+      b = 0.0_wp
+      b(s%n - size(rate) + 1:) = rate
+      call solve_factored(f, b)
+      v = 0.0_wp
+      call add_to_links(s, b, v)
+   end subroutine solve_velocity
+
+   !> Accelerations `a` (3, links) from those of the drives, `acceleration` (drives), and the velocities `v` (3, links):
+   !> J a = f'' - gamma(q, v) (22), gamma the acceleration remainder.
+   subroutine solve_acceleration(s, f, p, acceleration, v, a)
+      type(system_t), intent(in) :: s
+      type(factors_t), intent(in) :: f
+      type(pose_t), intent(in) :: p
+      real(wp), intent(in) :: acceleration(:), v(:, :)
+      real(wp), intent(out) :: a(:, :)
+      real(wp) :: b(s%n)
+
+      call remainder(s, p, v, b)
+      b = -b
+      associate (last => b(s%n - size(acceleration) + 1:))
+         last = last + acceleration
+      end associate
+      call solve_factored(f, b)
+      a = 0.0_wp
+      call add_to_links(s, b, a)
+   end subroutine solve_acceleration
+end module dense_method
