@@ -66,8 +66,8 @@ contains
       end if
    end subroutine make_analysis
 
-   !> Makes `a`, the analysis of a variant of `m` by METHOD NEWTON, ready for the first instant of `m` with the engine that it has.
-   !> `is_done`: that fits; otherwise `a` is of no use.
+   !> Makes `a`, the analysis of a variant of `m` by METHOD NEWTON, ready for the first instant of `m` with the engine
+   !> that it has. `is_done`: that fits; otherwise `a` is of no use.
    subroutine renew_analysis(a, m, is_done)
       type(analysis_t), intent(inout) :: a
       type(mechanism_t), intent(in) :: m
