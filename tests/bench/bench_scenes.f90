@@ -43,7 +43,7 @@ module bench_scenes
       real(wp) :: condition = 1.0_wp               !< of all closure equations, the worst on the way
       integer :: instants = 0                      !< compared
       integer :: flagged = 0                        !< not compared: without a result
-      logical :: has_change_point = .false.        !< at which the dense method ends, and rates are what rounding leaves
+      logical :: has_change_point = .false.        !< on the way; instants at it are not compared
    end type gap_t
 
 contains
@@ -181,6 +181,7 @@ contains
          g%condition = max(g%condition, 1.0_wp/dense%convergence%reciprocal_condition)
          call widen(s, one, two, .false., g)
       end do
+      g%has_change_point = g%has_change_point .or. dense%certificate_counts%passed > 0
    end function gap_of
 
    !> Instant number `k`.
