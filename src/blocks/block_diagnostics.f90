@@ -174,17 +174,14 @@ contains
    function limit_diagnostic(e, t, creeps) result(list)
       type(block_engine_t), intent(in) :: e
       real(wp), intent(in) :: t
-      logical, intent(in), optional :: creeps
+      logical, intent(in) :: creeps
       type(diagnostic_t), allocatable :: list(:)
       type(diagnostic_t) :: r
       real(wp) :: left
       integer :: k
-      logical :: at_any_time
 
       allocate (list(0))
       if (e%history%filled == 0) return
-      at_any_time = .false.
-      if (present(creeps)) at_any_time = creeps
       do k = 1, size(e%moving)
          if (e%blocks%list(e%moving(k))%direct) cycle
          left = time_to_limit(e%moving(k))
@@ -241,7 +238,7 @@ contains
                if (abs(x%value*x%acceleration(0)/x%rate(0)**2 - 2.0_wp) > as_a_pole) cycle
                to_go = 2.0_wp*x%rate(0)/x%acceleration(0)
                if (to_go*sign(1.0_wp, step) <= 0.0_wp) cycle
-               if (abs(to_go) > (1.0_wp + near_part)*abs(step) .and. .not. at_any_time) cycle
+               if (abs(to_go) > (1.0_wp + near_part)*abs(step) .and. .not. creeps) cycle
                left = to_go
                longest = abs(x%value)
             end associate

@@ -15,7 +15,7 @@ module analysis
    use convergence, only: convergence_t, closure_error_t, is_solved, ended_inconsistent, ended_unsought, ended_elsewhere
    use block_engine, only: block_engine_t, get_blocks_motion => get_motion, get_driven_links
    use block_method, only: measure_closure_error, get_link_flags
-   use dense_method, only: dense_t, make_dense, with_all_links, solve_all_links
+   use dense_method, only: dense_t, make_dense, for_blocks, solve_all_links
    use block_diagnostics, only: start_diagnostics, limit_diagnostic
    use at_bifurcation, only: stand_on, pass_standstill
    use following, only: following_t, step_record_t, make_following, renew_following, continue_to, is_too_far, &
@@ -60,7 +60,7 @@ contains
       if (m%method == method_newton) then
          call make_following(a%following_t, m, structure)
       else
-         call make_following(a%following_t, with_all_links(m), structure)
+         call make_following(a%following_t, for_blocks(m), structure)
          allocate (a%dense)
          call make_dense(a%dense, m)
       end if
@@ -261,13 +261,15 @@ contains
       type(analysis_t), intent(inout) :: a
       real(wp), intent(in) :: t
       type(motion_t), intent(inout) :: found
+      integer :: side
 
       call cut(found, -1, mark_not_converged)
       if (.not. (a%follows .and. has_pole_between(a%drives, a%t, t))) call get_driven_links(a%engine, t, found)
       a%convergence = convergence_t(ended=ended_unsought)
       a%branch = branch_t()
-      if (limit_before(a%limits, t) > 0) then
-         associate (told => a%limits%side(limit_before(a%limits, t))%diagnostics)
+      side = limit_before(a%limits, t)
+      if (side > 0) then
+         associate (told => a%limits%side(side)%diagnostics)
             if (.not. a%is_lost) then
                call add_diagnostics(told, found)
             else if (any(told%kind == diagnostic_limit)) then

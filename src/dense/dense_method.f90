@@ -20,7 +20,7 @@ module dense_method
    use position_iteration, only: solve_newton, solve_matrix
    implicit none
    private
-   public :: dense_t, make_dense, with_all_links, solve_all_links, solve_velocity, solve_acceleration
+   public :: dense_t, make_dense, for_blocks, solve_all_links, solve_velocity, solve_acceleration
 
    !> A change over the distance of the next root: below it the root is the only one as near, and near enough.
    real(wp), parameter :: certain = 0.5_wp
@@ -61,17 +61,18 @@ contains
       allocate (d%drive_values(3, size(m%drives)))
    end subroutine make_dense
 
-   !> `m` for the blocks beside it: all its links, to the limit of rounding.
-   pure function with_all_links(m) result(all_links)
+   !> Makes of `m` what the blocks solve beside it: all its links and no other row, to the limit of
+   !> rounding.
+   pure function for_blocks(m) result(own)
       type(mechanism_t), intent(in) :: m
-      type(mechanism_t) :: all_links
+      type(mechanism_t) :: own
       integer :: i
 
-      all_links = m
-      all_links%method = method_newton
-      all_links%tolerance = 0.0_wp
-      all_links%requests = [(request_t(request_link, i, 1), i=1, size(m%links))]
-   end function with_all_links
+      own = m
+      own%method = method_newton
+      own%tolerance = 0.0_wp
+      own%requests = [(request_t(request_link, i, 1), i=1, size(m%links))]
+   end function for_blocks
 
    !> Solves for the motion `found` of all links at found%t, in the deck's units, where the blocks of `e` have found
    !> one. `c`: how the last try ended, or the first if none found the position of the blocks; iterations are those of

@@ -10,8 +10,7 @@ module proof_data
    use planar, only: length_of
    use mechanism, only: mechanism_t, pair_prismatic, plane_origin
    use drives, only: law_t
-   use links_tree, only: tree_t, new_tree
-   use loop_equations, only: equations_t, new_equations
+   use links_tree, only: tree_t
    use blocks, only: blocks_t, loop_angles
    implicit none
    private
@@ -43,27 +42,22 @@ contains
       type(blocks_t), intent(in) :: b
       real(wp), intent(in) :: length
       type(proof_data_t) :: d
-      type(tree_t) :: t
-      type(equations_t) :: q
       real(wp), allocatable :: angle(:), sums(:)
-      integer :: i, m1, k, loop
+      integer :: i, m1, k
 
-      t = new_tree(m)
-      q = new_equations(m, t)
       ! A function's result would bring its own lower bound.
-      allocate (angle(0:t%orientations))
-      angle(:) = angle_errors(m, t)
+      allocate (angle(0:b%tree%orientations))
+      angle(:) = angle_errors(m, b%tree)
       allocate (d%length(size(b%body_vectors)), d%weight(size(b%body_vectors)), d%slide_length(size(b%slides)), &
          d%slide_weight(size(b%slides)), d%ground_length(size(b%loops)), d%ground_weight(size(b%loops)), &
          d%direction_length(size(b%loops)), d%direction_weight(size(b%loops)), d%constant_weight(size(b%rows)), &
          source=0.0_wp)
-      allocate (sums(0:t%orientations), source=0.0_wp)
+      allocate (sums(0:b%tree%orientations), source=0.0_wp)
       do i = 1, size(b%list)
          do m1 = b%list(i)%first_loop, b%list(i)%last_loop
             associate (g => b%loops(m1), own => b%numbers%loops(m1))
                if (g%kind == loop_angles) cycle
-               loop = loop_of(q, b%rows(b%list(i)%first_row + max(g%row_x, g%row_y) - 1))
-               call add_terms(m, t, q, loop, angle, sums)
+               call add_terms(m, b, g%vector_loop, angle, sums)
                do k = g%first_vector, g%last_vector
                   d%length(k) = up(hypot(b%numbers%d(k)%x, b%numbers%d(k)%y))
                   d%weight(k) = up(terms_of(m1)*d%length(k) + sums(b%body_vectors(k)%orientation)/(length*own%unit))
@@ -104,22 +98,6 @@ contains
       up = x*(1.0_wp + 16.0_wp*rounding)
    end function up
 
-   !> The vector loop of the equation that `row` belongs to.
-   pure integer function loop_of(q, row) result(loop)
-      use blocks, only: row_t
-      type(equations_t), intent(in) :: q
-      type(row_t), intent(in) :: row
-      integer :: i
-
-      loop = 0
-      do i = 1, q%count
-         if (q%list(i)%vector_loop == 0 .or. q%list(i)%pair /= row%pair) cycle
-         if (row%pair == 0 .and. q%list(i)%drive /= row%drive) cycle
-         loop = q%list(i)%vector_loop
-         return
-      end do
-   end function loop_of
-
    !> (0:orientations) Bounds of the errors of the angles of links against their orientations, sums of the deck's; and
    !> of the directions of guides.
    function angle_errors(m, t) result(angle)
@@ -145,16 +123,15 @@ contains
 
    !> Adds to `sums` (0:orientations) what is open of the terms of vector loop `loop`, in the deck's unit of length.
    !> `angle`: see `angle_errors`.
-   subroutine add_terms(m, t, q, loop, angle, sums)
+   subroutine add_terms(m, b, loop, angle, sums)
       type(mechanism_t), intent(in) :: m
-      type(tree_t), intent(in) :: t
-      type(equations_t), intent(in) :: q
+      type(blocks_t), intent(in) :: b
       integer, intent(in) :: loop
       real(wp), intent(in) :: angle(0:)
       real(wp), intent(inout) :: sums(0:)
       integer :: i, o, count
 
-      associate (p => q%vector_loops)
+      associate (p => b%equations%vector_loops, t => b%tree)
          count = p%first_term(loop + 1) - p%first_term(loop)
          do i = p%first_term(loop), p%first_term(loop + 1) - 1
             associate (point => abs(p%terms(1, i)), pair => abs(p%terms(2, i)))
