@@ -41,6 +41,8 @@ module shapes
    real(wp), parameter :: box = -1.0_wp, bar_weight = 1.5_wp, line_weight = 1.0_wp, centrode_weight = 0.4_wp
    !> A centrode that comes so near to its first place, in parts of its first step, has come back.
    real(wp), parameter :: come_back = 0.5_wp
+   !> A centrode of fewer pixels is one place for the eye.
+   real(wp), parameter :: one_place = 0.01_wp
 
 contains
 
@@ -64,7 +66,7 @@ contains
       end do
       do i = 1, size(d%poles)
          do k = 1, 2
-            call add_centrode(s, d, i, k)
+            call add_centrode(s, d, i, k, scale)
          end do
       end do
       s%list(:s%count)%is_below = .true.
@@ -186,13 +188,14 @@ contains
    !> Adds the centrode of pole number `i` in its link number `side`, 1 or 2, as it lies in that link: the two touch at
    !> the instant centre. It may run to infinity, and the picture cuts it. Where the sense of the relative turn changes,
    !> the centre has passed through infinity.
-   subroutine add_centrode(s, d, i, side)
+   subroutine add_centrode(s, d, i, side, scale)
       type(shapes_t), intent(inout) :: s
       type(drawing_t), intent(in) :: d
       integer, intent(in) :: i, side
+      real(wp), intent(in) :: scale
       character(:), allocatable :: attributes
       real(wp) :: p(2, d%films), u(2), v(2)
-      logical :: goes_on(d%films)               ! the next place is on the same piece
+      logical :: goes_on(d%films), on_piece(d%films)   ! the next place is on the same piece; on one with another place
       integer :: links(2), k, first, last
 
       associate (pole => d%m%requests(d%poles(i)))
@@ -208,6 +211,10 @@ contains
                (turn(now) > 0.0_wp .eqv. turn(d%frame(k + 1)) > 0.0_wp)
          end associate
       end do
+      if (.not. any(goes_on)) return
+      ! The pole of two links that a joint holds together stays in both: rounding errors would decide all below.
+      on_piece = goes_on .or. eoshift(goes_on, -1)
+      if (all(scale*(maxval(p, 2, spread(on_piece, 1, 2)) - minval(p, 2, spread(on_piece, 1, 2))) < one_place)) return
       ! It ends where it comes back to its first place and goes on as it began: drawn twice, dashes would fill the gaps.
       do last = 3, d%films - 1
          if (.not. (goes_on(1) .and. goes_on(last))) cycle
