@@ -12,7 +12,7 @@ module column_search
    use set_analysis, only: set_analysis_t
    use nodes, only: node_t, node_at, is_known, beside_joint
    use zero_search, only: sample_t, column_t, find_zero, look, differ_in_sign, noise_part
-   use extremes, only: extremes_t, offer, count_turn, note_interval, alike
+   use extremes, only: extremes_t, offer, note_velocity, note_interval, alike
    implicit none
    private
    public :: add_node, jerk_at_first, misses_by, overlooked
@@ -54,11 +54,20 @@ contains
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
       type(node_t), intent(in) :: node
+      integer :: i, j
 
       if (allocated(x%tracks(c)%last) .and. is_known(node, x%tracks(c)%rows)) &
          call search_part(x, s, c, x%tracks(c)%last, node)
       call take_node(x, c, node)
       if (is_known(node, x%tracks(c)%rows)) x%tracks(c)%last = node
+      do i = 1, size(x%tracks(c)%rows)
+         associate (q => x%tracks(c)%rows(i))
+            if (node%known(q) < 2) cycle
+            do j = 1, x%columns(q)
+               call note_velocity(x, q, j, sample_of(node, q, j))
+            end do
+         end associate
+      end do
    end subroutine add_node
 
    !> The values of `node` of mechanism `c` may be extremes.
@@ -76,7 +85,6 @@ contains
                do k = 0, node%known(q)
                   call offer(x, q, j, k, sample, .false.)
                end do
-               if (node%known(q) == 2) call count_turn(x, q, j, node%value(j, 1, q))
             end do
          end associate
       end do
@@ -132,6 +140,7 @@ contains
       type(node_t), intent(in) :: nodes(:)
       real(wp), intent(in) :: jerk(:, :, :)
       type(sample_t) :: points(size(nodes))
+      type(sample_t), allocatable :: path(:)
       type(found_t), allocatable :: found(:)
       type(column_t) :: column
       integer :: i, j, k
@@ -145,9 +154,12 @@ contains
                   column%noise(k) = max(noise_part*x%size_of(j, k, q), maxval(points%error(k)))
                end do
                column%flat = 2.0_wp*max(alike*x%size_of(j, 2, q), column%noise(2))
-               call search_column(s, column, points, jerk(j, q, :), found)
+               call search_column(s, column, points, jerk(j, q, :), path, found)
                do k = 1, size(found)
                   call offer(x, q, j, found(k)%order, found(k)%at, .true.)
+               end do
+               do k = 1, size(path)
+                  call note_velocity(x, q, j, path(k))
                end do
             end do
          end associate
@@ -164,14 +176,14 @@ contains
 
    !> What is `found` of column `c` between the first and the last of three `points`: an extreme of the acceleration,
    !> if its derivatives `jerk` at both ends have different signs; of the velocity, one on either side of that at most;
-   !> of the coordinate, one on either side of each of these.
-   subroutine search_column(s, c, points, jerk, found)
+   !> of the coordinate, one on either side of each of these. `path`: all points that are known then.
+   subroutine search_column(s, c, points, jerk, path, found)
       type(set_analysis_t), intent(inout) :: s
       type(column_t), intent(in) :: c
       type(sample_t), intent(in) :: points(3)
       real(wp), intent(in) :: jerk(2)
+      type(sample_t), allocatable, intent(out) :: path(:)
       type(found_t), allocatable, intent(out) :: found(:)
-      type(sample_t), allocatable :: path(:)
       type(sample_t) :: turn
       real(wp) :: length, open
       integer :: order, i, n

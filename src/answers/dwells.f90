@@ -1,4 +1,5 @@
-!> The dwells of card EXTREMES: how long a coordinate stays within a distance of its least or greatest value.
+!> The dwells of card EXTREMES: how long a coordinate stays within a distance of its least or greatest value, each
+!> time.
 module dwells
    use kinds, only: wp
    use set_analysis, only: set_analysis_t
@@ -45,8 +46,9 @@ contains
       type(dwell_t), allocatable, intent(inout) :: list(:)
       type(dwell_t) :: one
       type(place_t), allocatable :: path(:)
-      integer :: which
-      real(wp) :: stroke
+      logical, allocatable :: inside(:), before(:)
+      integer :: which, k
+      real(wp) :: stroke, level
       logical :: is_cycle, found(2)
 
       one = wanted
@@ -57,9 +59,17 @@ contains
       is_cycle = abs(path(size(path))%value - path(1)%value) < 0.5_wp*stroke .and. is_cyclic(x, one%asked)
       do which = least, greatest
          one%which = which
-         call find_end(one, path, x, s, -1, is_cycle, one%from, one%error(1), found(1))
-         call find_end(one, path, x, s, 1, is_cycle, one%to, one%error(2), found(2))
-         if (all(found)) list = [list, one]
+         level = x%found(which, one%column, 0, one%asked)%value - outward(which)*one%distance
+         inside = (path%value - level)*outward(which) >= 0.0_wp
+         ! Each begins at a place inside after one outside; in a cycle the last place is before the first.
+         before = cshift(inside, -1)
+         before(1) = is_cycle .and. before(1)
+         do k = 1, size(path)
+            if (.not. inside(k) .or. before(k)) cycle
+            call find_end(one, path, level, k, x, s, -1, is_cycle, one%from, one%error(1), found(1))
+            call find_end(one, path, level, k, x, s, 1, is_cycle, one%to, one%error(2), found(2))
+            if (all(found)) list = [list, one]
+         end do
       end do
    end subroutine find_two
 
@@ -69,33 +79,34 @@ contains
       type(extremes_t), intent(in) :: x
       type(place_t), allocatable :: path(:)
 
-      path = pack(x%places(:x%place), x%places(:x%place)%asked == w%asked .and. x%places(:x%place)%column == w%column)
+      associate (list => x%places%list(:x%places%n))
+         path = pack(list, list%asked == w%asked .and. list%column == w%column)
+      end associate
       ! They are in order but for extremes beside the middle of a part.
       path = path(order_along(path%t, x%way))
    end function path_of
 
-   !> The time `t` at which the coordinate `w`, followed on its `path` from its extreme along the run (`way` 1) or
-   !> against it (-1), leaves its distance, and its `error`; the end of the run where it does not, unless the motion is
-   !> a cycle and goes on.
-   subroutine find_end(w, path, x, s, way, is_cycle, t, error, found)
+   !> The time `t` at which the coordinate `w`, followed on its `path` from place number `start` along the run (`way` 1)
+   !> or against it (-1), passes the `level`, and its `error`; the end of the run where it does not, unless the motion
+   !> is a cycle and goes on.
+   subroutine find_end(w, path, level, start, x, s, way, is_cycle, t, error, found)
       type(dwell_t), intent(in) :: w
       type(place_t), intent(in) :: path(:)
+      real(wp), intent(in) :: level
+      integer, intent(in) :: start, way
       type(extremes_t), intent(in) :: x
       type(set_analysis_t), intent(inout) :: s
-      integer, intent(in) :: way
       logical, intent(in) :: is_cycle
       real(wp), intent(out) :: t, error
       logical, intent(out) :: found
       type(sample_t) :: inside, outside, zero
-      real(wp) :: level
       integer :: k, passed
 
       found = .true.
       error = 0.0_wp
       associate (e => x%found(w%which, w%column, 0, w%asked), n => size(path))
-         level = e%value - outward(w%which)*w%distance
-         inside = position_at(e%t, e%value)
-         k = merge(count((path%t - e%t)*x%way <= 0.0_wp) + 1, count((path%t - e%t)*x%way < 0.0_wp), way > 0)
+         inside = position_at(path(start)%t, path(start)%value)
+         k = start + way
          do passed = 1, n
             t = inside%t
             if (k < 1 .or. k > n) then

@@ -11,7 +11,7 @@ module extreme_search
    use set_analysis, only: set_analysis_t
    use nodes, only: node_t, one_sided_t, node_at, is_known, times_between, beside_joint, limits_of, places, &
       places_beside
-   use extremes, only: extremes_t, offer_limits, note_interval
+   use extremes, only: extremes_t, offer_limits, note_end, note_interval
    use column_search, only: add_node
    implicit none
    private
@@ -46,11 +46,12 @@ contains
             if (size(track%rows) == 0) cycle
             now = node_at(x%asked, s, c, s%now%motions(c)%t, .false.)
             if (k == 0) then
-               track%first = now
+               track%start = s%now%motions(c)
             else
                call search_step()
             end if
             call add_node(x, s, c, now)
+            if (k == s%now%steps) call note_end(x, s%now%parts(c), c, s%now%motions(c))
             track%instant = now
             track%at_change = s%now%motions(c)%singularity == singular_change
             if (.not. is_known(now, track%rows)) call note_interval(x%gaps, x%way, now%t, now%t, 0.0_wp)

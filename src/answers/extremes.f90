@@ -4,8 +4,9 @@ module extremes
    use kinds, only: wp
    use planar, only: without_turns
    use mechanism, only: mechanism_t, request_t, request_link, request_pair, pair_prismatic
-   use scales, only: characteristic_length, characteristic_rate, is_length
-   use drives, only: new_law, drive_motion, joints_of
+   use motion, only: motion_t
+   use scales, only: characteristic_length, characteristic_rate
+   use drives, only: joints_of
    use points, only: is_fixed, coordinates_of
    use digits_in_doubt, only: safe_growth
    use independent, only: set_t, request_of
@@ -14,16 +15,19 @@ module extremes
    implicit none
    private
    public :: extremes_t, extreme_t, track_t, gap_t, place_t, least, greatest, outward, extreme_words, rows_asked, &
-      new_extremes, offer, offer_limits, count_turn, note_interval, stroke_times, is_cyclic, is_covered, is_angle, &
-      column_of, alike
+      new_extremes, offer, offer_limits, note_velocity, note_end, note_interval, is_cyclic, is_covered, is_angle, &
+      column_of, strokes_t, strokes_of, stroke_of, ratio_decimals, closes_to, alike
 
    !> Values that differ by less, in characteristic lengths or rad and rates, are alike, since errors
    !> that no table shows may be as large: the earlier one counts.
    real(wp), parameter :: alike = 10.0_wp*safe_growth*epsilon(1.0_wp)
    !> A value with a larger error has no digits in a table.
    real(wp), parameter :: badly_known = 1.0e-3_wp
-   !> A motion is cyclic if its end differs from its beginning by less, in the same units.
-   real(wp), parameter :: closes_to = max(1.0e-9_wp, 1000.0_wp*epsilon(1.0_wp))
+   !> A motion is cyclic if its end differs from its beginning by less, in the same units: a turn of 6.2831853 rad is
+   !> one. Times of reversals repeat within this part of the run.
+   real(wp), parameter :: closes_to = max(1.0e-6_wp, 1000.0_wp*epsilon(1.0_wp))
+   !> Digits after the point of a ratio of times.
+   integer, parameter :: ratio_decimals = 6
    !> The first index of the extremes.
    integer, parameter :: least = 1, greatest = 2
    character(3), parameter :: extreme_words(least:greatest) = ['MIN', 'MAX']
@@ -43,9 +47,11 @@ module extremes
    type :: track_t
       integer, allocatable :: rows(:)                  !< those asked for
       real(wp), allocatable :: joints(:)               !< times at which a law is not smooth
-      logical :: drives_close = .false.                !< its drives are at the end of the run as at its beginning
+      type(motion_t), allocatable :: start              !< the motion at the first instant
+      !> How far links end from where they began: lengths, angles, velocities, in characteristic ones.
+      real(wp) :: closure(3) = huge(1.0_wp)
       logical :: at_change = .false.                   !< the last instant is at a change point
-      type(node_t) :: first, instant                   !< nodes of the first instant and of the last one
+      type(node_t) :: instant                          !< the node of the last instant
       type(node_t), allocatable :: last                !< the last node with all of the motion, of this piece
       integer :: halvings = 0                          !< of parts of this step
    end type track_t
@@ -61,6 +67,29 @@ module extremes
       real(wp) :: t = 0.0_wp, value = 0.0_wp
    end type place_t
 
+   !> Places (1:n and room).
+   type :: place_list_t
+      type(place_t), allocatable :: list(:)
+      integer :: n = 0
+   end type place_list_t
+
+   !> How a coordinate has moved: the first sign of its velocity and the latest, 0 for none; where it was `slowest`
+   !> since that, at this `speed`, and where it was before the first.
+   type :: progress_t
+      integer :: first_sign = 0, last_sign = 0
+      type(place_t) :: start, slowest
+      real(wp) :: speed = huge(1.0_wp)
+   end type progress_t
+
+   !> The strokes of a coordinate: it reverses at the places of one period; two of them are the ends of both strokes,
+   !> which take the `times` from the least value to the greatest and back. None: the motion is not cyclic.
+   type :: strokes_t
+      integer :: in_run = 0                            !< reversals in the whole run
+      type(place_t), allocatable :: reversals(:)
+      real(wp) :: times(2) = 0.0_wp
+      real(wp) :: ratio = 0.0_wp, error = 0.0_wp       !< the longer time over the shorter, and what is unknown of it
+   end type strokes_t
+
    type :: extremes_t
       integer, allocatable :: asked(:)                 !< the requests of the set for extremes, but those of the ground
       integer, allocatable :: part(:)                  !< (asked) their independent mechanisms
@@ -69,13 +98,12 @@ module extremes
       real(wp), allocatable :: dwell(:, :)             !< (3, asked) its dwells within this distance; 0: not asked for
       real(wp), allocatable :: size_of(:, :, :)        !< (3, 0:2, asked) characteristic value of each number
       type(extreme_t), allocatable :: found(:, :, :, :) !< (least:greatest, 3, 0:2, asked)
-      integer, allocatable :: turns(:, :)              !< (3, asked) changes of sign of the velocity
-      integer, allocatable :: first_sign(:, :), last_sign(:, :) !< (3, asked) of the velocity: the first, the latest
+      type(progress_t), allocatable :: course(:, :)      !< (3, asked)
+      type(place_list_t) :: reversals                      !< of all coordinates
       type(track_t), allocatable :: tracks(:)          !< (independent mechanisms)
       type(gap_t), allocatable :: gaps(:)              !< (any number) in which not all is known, in the run's order
       type(gap_t), allocatable :: open(:)              !< (any number) in which extremes may be missed
-      type(place_t), allocatable :: places(:)          !< (1:place and room) nodes and extremes of what may dwell
-      integer :: place = 0
+      type(place_list_t) :: places                         !< nodes and extremes of what may dwell
       real(wp) :: run = 0.0_wp                         !< the time of the run, below 0 backwards
       real(wp) :: way = 1.0_wp                         !< its sign
       real(wp) :: step = 0.0_wp                        !< a step of the TIME card
@@ -113,8 +141,8 @@ contains
       x%way = sign(1.0_wp, x%run)
       x%step = abs(x%run)/real(s%steps, wp)
       allocate (x%is_angle(3, n), x%dwell(3, n), x%size_of(3, 0:2, n), x%found(least:greatest, 3, 0:2, n))
-      allocate (x%gaps(0), x%open(0), x%places(8), x%tracks(s%count), x%columns(n))
-      allocate (x%turns(3, n), x%first_sign(3, n), x%last_sign(3, n), source=0)
+      allocate (x%gaps(0), x%open(0), x%tracks(s%count), x%columns(n), x%course(3, n))
+      allocate (x%places%list(8), x%reversals%list(8))
       do q = 1, n
          request = request_of(s, x%asked(q))
          x%columns(q) = coordinates_of(request%kind)
@@ -129,7 +157,6 @@ contains
             do i = 1, size(own%drives)
                track%joints = [track%joints, joints_of(own%drives(i))]
             end do
-            track%drives_close = drives_close(own)
             length = characteristic_length(own)
             rate = characteristic_rate(own, length)
             do k = 0, 2
@@ -188,20 +215,18 @@ contains
                value=sample%f(k), t_error=sample%t_error, error=sample%error(k))
          end associate
       end do
-      if (k == 0) call keep_place(x, q, c, sample)
+      if (k == 0 .and. x%dwell(c, q) > 0.0_wp) call add_place(x%places, place_t(q, c, sample%t, sample%f(0)))
    end subroutine offer
 
-   !> Keeps column `c` of row `q` in `sample`, if its dwells are asked for.
-   pure subroutine keep_place(x, q, c, sample)
-      type(extremes_t), intent(inout) :: x
-      integer, intent(in) :: q, c
-      type(sample_t), intent(in) :: sample
+   !> Adds `place` to `p`.
+   pure subroutine add_place(p, place)
+      type(place_list_t), intent(inout) :: p
+      type(place_t), intent(in) :: place
 
-      if (x%dwell(c, q) <= 0.0_wp) return
-      if (x%place == size(x%places)) x%places = [x%places, x%places]
-      x%place = x%place + 1
-      x%places(x%place) = place_t(q, c, sample%t, sample%f(0))
-   end subroutine keep_place
+      if (p%n == size(p%list)) p%list = [p%list, p%list]
+      p%n = p%n + 1
+      p%list(p%n) = place
+   end subroutine add_place
 
    !> So may the one-sided `limits` of the numbers of `row` at the time `t`, unless they are badly known.
    pure subroutine offer_limits(x, row, t, limits)
@@ -235,19 +260,56 @@ contains
       end do
    end subroutine offer_limits
 
-   !> Counts a change of sign of the velocity `v` of column `c` of row `q`.
-   pure subroutine count_turn(x, q, c, v)
+   !> Takes the velocity of column `c` of row `q` in the next `sample` along the run: where its sign has changed the
+   !> coordinate has reversed, at its slowest place between.
+   pure subroutine note_velocity(x, q, c, sample)
       type(extremes_t), intent(inout) :: x
       integer, intent(in) :: q, c
-      real(wp), intent(in) :: v
+      type(sample_t), intent(in) :: sample
+      real(wp) :: speed
       integer :: this
 
-      if (abs(v) <= noise_part*x%size_of(c, 1, q)) return
-      this = merge(1, -1, v > 0.0_wp)
-      if (x%first_sign(c, q) == 0) x%first_sign(c, q) = this
-      if (x%last_sign(c, q) == -this) x%turns(c, q) = x%turns(c, q) + 1
-      x%last_sign(c, q) = this
-   end subroutine count_turn
+      speed = abs(sample%f(1))
+      if (speed <= noise_part*x%size_of(c, 1, q)) speed = 0.0_wp
+      associate (course => x%course(c, q), place => place_t(q, c, sample%t, sample%f(0)))
+         if (speed < course%speed) then
+            course%slowest = place
+            course%speed = speed
+         end if
+         if (speed <= 0.0_wp) return
+         this = merge(1, -1, sample%f(1) > 0.0_wp)
+         if (course%first_sign == 0) then
+            course%first_sign = this
+            course%start = course%slowest
+         end if
+         if (course%last_sign == -this) call add_place(x%reversals, course%slowest)
+         course%last_sign = this
+         course%slowest = place
+         course%speed = speed
+      end associate
+   end subroutine note_velocity
+
+   !> Takes the motion `last` of mechanism `c`, `m`, at the end of the run.
+   subroutine note_end(x, m, c, last)
+      type(extremes_t), intent(inout) :: x
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: c
+      type(motion_t), intent(in) :: last
+      real(wp) :: d(3, size(m%links)), length
+
+      length = characteristic_length(m)
+      associate (track => x%tracks(c))
+         if (min(track%start%known, last%known) < 0) return
+         d = last%position - track%start%position
+         d(3, :) = without_turns(d(3, :))
+         track%closure = [maxval(abs(d(:2, :)))/length, maxval(abs(d(3, :))), 0.0_wp]
+         ! At a change point velocities are not unique.
+         if (min(track%start%known, last%known) < 1) return
+         d = last%velocity - track%start%velocity
+         d(:2, :) = d(:2, :)/length
+         track%closure(3) = maxval(abs(d))/characteristic_rate(m, length)
+      end associate
+   end subroutine note_end
 
    !> Adds to the `list` the interval of time `from` .. `to`, in a run of the direction `way`; intervals that are not
    !> more than `apart_by` apart are one.
@@ -278,60 +340,64 @@ contains
       is_covered = .not. any(abs(x%gaps%to - x%gaps%from) > 0.0_wp)
    end function is_covered
 
-   !> Times from the least to the greatest value of column `c` of row `q` and back, positive, after the last instant:
-   !> of a cyclic motion that turns twice, whose run is one period. Otherwise 0.
-   pure function stroke_times(x, q, c) result(times)
-      type(extremes_t), intent(in) :: x
-      integer, intent(in) :: q, c
-      real(wp) :: times(2), phase
-
-      times = 0.0_wp
-      if (x%turns(c, q) + merge(1, 0, x%first_sign(c, q) /= x%last_sign(c, q)) /= 2) return
-      if (.not. is_cyclic(x, q)) return
-      phase = modulo((x%found(greatest, c, 0, q)%t - x%found(least, c, 0, q)%t)/x%run, 1.0_wp)
-      times = abs(x%run)*[phase, 1.0_wp - phase]
-   end function stroke_times
-
-   !> After the last instant: the drives of the mechanism of row `q`, and the row's positions and velocities, are as at
-   !> the first, but for whole turns.
+   !> After the last instant: all links of the mechanism of row `q` are where they were at the first, but for whole
+   !> turns, and as fast.
    pure logical function is_cyclic(x, q)
       type(extremes_t), intent(in) :: x
       integer, intent(in) :: q
-      real(wp) :: d(0:1)
-      integer :: known, c
 
-      is_cyclic = is_covered(x) .and. x%tracks(x%part(q))%drives_close
-      if (.not. is_cyclic) return
-      associate (first => x%tracks(x%part(q))%first, last => x%tracks(x%part(q))%instant)
-         known = min(first%known(q), last%known(q))
-         is_cyclic = known >= 0
-         do c = 1, x%columns(q)
-            d = last%value(c, :1, q) - first%value(c, :1, q)
-            if (x%is_angle(c, q)) d(0) = without_turns(d(0))
-            ! At a change point velocities are not unique.
-            if (known < 1) d(1) = 0.0_wp
-            is_cyclic = is_cyclic .and. all(abs(d) <= closes_to*x%size_of(c, :1, q))
-         end do
-      end associate
+      is_cyclic = is_covered(x) .and. all(x%tracks(x%part(q))%closure <= closes_to)
    end function is_cyclic
 
-   !> The drives of `m` are at the end of the run as at its beginning, with their accelerations, but for whole turns.
-   logical function drives_close(m)
-      type(mechanism_t), intent(in) :: m
-      real(wp) :: d(3), length, rate
-      integer :: i
+   !> The strokes of column `c` of row `q` after the last instant, in the shortest part of a cyclic run after which its
+   !> reversals repeat.
+   pure type(strokes_t) function strokes_of(x, q, c) result(strokes)
+      type(extremes_t), intent(in) :: x
+      integer, intent(in) :: q, c
+      type(place_t), allocatable :: all_of(:)
+      real(wp), allocatable :: change(:)
+      real(wp) :: period, phase
+      integer :: n, in_period
 
-      length = characteristic_length(m)
-      rate = characteristic_rate(m, length)
-      drives_close = .true.
-      do i = 1, size(m%drives)
-         d = drive_motion(new_law(m%drives(i)), m%t1) - drive_motion(new_law(m%drives(i)), m%t0)
-         if (is_length(m%drives(i))) then
-            d = d/length
-         else
-            d(1) = without_turns(d(1))
-         end if
-         drives_close = drives_close .and. all(abs(d) <= closes_to*[1.0_wp, rate, rate**2])
+      associate (list => x%reversals%list(:x%reversals%n))
+         all_of = pack(list, list%asked == q .and. list%column == c)
+      end associate
+      associate (course => x%course(c, q))
+         if (course%first_sign /= course%last_sign) all_of = [course%start, all_of]
+      end associate
+      n = size(all_of)
+      strokes%in_run = n
+      strokes%reversals = all_of(:0)
+      if (n == 0 .or. .not. is_cyclic(x, q)) return
+      do in_period = 2, n, 2
+         if (mod(n, in_period) /= 0) cycle
+         period = x%run*in_period/n
+         change = all_of(in_period + 1:)%value - all_of(:n - in_period)%value
+         if (x%is_angle(c, q)) change = without_turns(change)
+         if (all(abs(change) <= closes_to*x%size_of(c, 0, q)) .and. all(abs(all_of(in_period + 1:)%t &
+            - all_of(:n - in_period)%t - period) <= closes_to*abs(x%run))) exit
       end do
-   end function drives_close
+      if (in_period > n) return
+      strokes%reversals = all_of(:in_period)
+      if (in_period > 2) return
+      associate (e => x%found(:, c, 0, q))
+         phase = modulo((e(greatest)%t - e(least)%t)/period, 1.0_wp)
+         strokes%times = abs(period)*[phase, 1.0_wp - phase]
+         if (minval(strokes%times) <= 0.0_wp) return
+         strokes%ratio = maxval(strokes%times)/minval(strokes%times)
+         strokes%error = sum(e%t_error)*abs(period)/minval(strokes%times)**2
+      end associate
+   end function strokes_of
+
+   !> The difference of the greatest and the least value of column `c` of row `q`, if both exist and differ.
+   pure type(extreme_t) function stroke_of(x, q, c) result(stroke)
+      type(extremes_t), intent(in) :: x
+      integer, intent(in) :: q, c
+
+      associate (e => x%found(:, c, 0, q))
+         stroke%exists = all(e%exists .and. e%has_bound) .and. abs(e(greatest)%t - e(least)%t) > 0.0_wp
+         stroke%value = e(greatest)%value - e(least)%value
+         stroke%error = sum(e%error)
+      end associate
+   end function stroke_of
 end module extremes

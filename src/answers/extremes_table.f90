@@ -1,26 +1,27 @@
 !> The table of extremes at the end of a set, with the columns of the other tables: below the name of a link, point or
 !> pair its least and greatest values, each with its time and the value of the first drive of its mechanism, and the
-!> stroke; in a cyclic motion the times of the forward and the return stroke with their ratio; then the dwells. What
-!> does not vary is blank, and what has nothing that varies is left out.
+!> stroke; in a cyclic motion the times of the forward and the return stroke with their ratio, or all dead centres; then
+!> the dwells. What does not vary is blank, and what has nothing that varies is left out.
 module extremes_table
    use kinds, only: wp
    use mechanism, only: request_t, request_pair
    use independent, only: set_t, request_of, first_drive
    use names, only: drive_name, subject_name, more
-   use listing_layout, only: layout_t, digits_t, line_length, name_length, row_length
+   use listing_layout, only: layout_t, digits_t, line_length, name_length, row_length, angle_unit
    use listing_tables, only: listing_state_t, put_times, put_heads, time_text, drive_text, known_text
    use text_output, only: output_t, put
-   use numerals, only: numeral_length
+   use numerals, only: numeral_length, rounded
    use known_digits, only: unknown_digit
-   use extremes, only: extremes_t, extreme_t, gap_t, least, greatest, extreme_words, stroke_times, column_of
+   use extremes, only: extremes_t, extreme_t, gap_t, strokes_t, least, greatest, extreme_words, strokes_of, &
+      stroke_of, is_cyclic, is_covered, ratio_decimals, closes_to, column_of
    use dwells, only: dwell_t
    use phrases
    implicit none
    private
    public :: put_extremes
 
-   !> Digits after the point of a ratio of times.
-   integer, parameter :: ratio_decimals = 6
+   !> Digits of a closure.
+   integer, parameter :: closure_digits = 3
    !> Of more gaps only the first are told.
    integer, parameter :: max_gaps = 4
 
@@ -37,11 +38,12 @@ contains
       type(digits_t) :: d
       type(request_t) :: request
       integer :: q, k, drive
-      logical :: moves
+      logical :: moves, goes_on(size(x%tracks))
       character(:), allocatable :: driven
 
       call put_times(o, l, ' '//phrase(say_extremes, s%polish), [s%t0, s%t1], table)
       moves = .false.
+      goes_on = .false.
       do q = 1, size(x%asked)
          if (.not. any_varies()) cycle
          moves = .true.
@@ -63,6 +65,9 @@ contains
       if (table%masked) call put(o, ' --- '//unknown_digit//': '//phrase(say_unknown, s%polish))
       call put_gaps(x%open, say_may_be_missed)
       call put_gaps(x%gaps, say_not_covered)
+      do k = 1, size(x%tracks)
+         if (goes_on(k)) call put_closure(x%tracks(k)%closure)
+      end do
 
    contains
 
@@ -133,37 +138,45 @@ contains
       end function value_text
 
       !> The stroke of each coordinate that varies; then, where the motion is cyclic, a line for each with the times of
-      !> both strokes and their ratio, the longer over the shorter.
+      !> both strokes and their ratio, or a line for each dead centre if there are more than two.
       subroutine put_strokes()
-         character(numeral_length) :: stroke(3, 0:2)
-         integer :: c
+         character(numeral_length) :: text(3, 0:2)
+         type(extreme_t) :: stroke
+         type(strokes_t) :: strokes
+         integer :: c, i
 
-         stroke = ''
+         text = ''
          do c = 1, x%columns(q)
-            associate (e => x%found(:, c, 0, q))
-               if (varies(c, 0) .and. all(e%exists .and. e%has_bound)) stroke(c, 0) = &
-                  number_text(e(greatest)%value - e(least)%value, sum(e%error), x%is_angle(c, q), 0)
-            end associate
+            stroke = stroke_of(x, q, c)
+            if (stroke%exists) text(c, 0) = number_text(stroke%value, stroke%error, x%is_angle(c, q), 0)
          end do
-         if (any(stroke /= '')) call put_fields(phrase(say_stroke, s%polish), stroke)
+         if (any(text /= '')) call put_fields(phrase(say_stroke, s%polish), text)
          do c = 1, x%columns(q)
-            if (stroke(c, 0) /= '') call put_stroke_times(c)
+            if (text(c, 0) == '') cycle
+            strokes = strokes_of(x, q, c)
+            if (strokes%ratio > 0.0_wp) call put_stroke_times(c, strokes)
+            if (strokes%in_run >= 2 .and. is_covered(x) .and. .not. is_cyclic(x, q)) goes_on(x%part(q)) = .true.
+            if (size(strokes%reversals) <= 2) cycle
+            do i = 1, size(strokes%reversals)
+               call put_at(phrase(say_dead_centre, s%polish)//'  '//column_name(c)//'  ' &
+                  //number_text(strokes%reversals(i)%value, 0.0_wp, x%is_angle(c, q), 0), [strokes%reversals(i)%t], &
+                  [0.0_wp])
+            end do
          end do
       end subroutine put_strokes
 
       !> PHI   TIME MIN TO MAX 6.25682 S   TIME MAX TO MIN 5.74318 S   TIME RATIO 1.089437
-      subroutine put_stroke_times(c)
+      subroutine put_stroke_times(c, strokes)
          integer, intent(in) :: c
-         real(wp) :: times(2), error
+         type(strokes_t), intent(in) :: strokes
+         real(wp) :: error
          character(:), allocatable :: line
 
-         times = stroke_times(x, q, c)
-         if (any(times <= 0.0_wp)) return
          error = sum(x%found(:, c, 0, q)%t_error)
          line = '  '//column_name(c)//'   '//phrase(say_forward, s%polish)//' ' &
-            //time_text(l, times(1), error)//l%behind_time//'   '//phrase(say_return, s%polish)//' ' &
-            //time_text(l, times(2), error)//l%behind_time//'   '//phrase(say_ratio, s%polish)//' ' &
-            //known_text(maxval(times)/minval(times), ratio_decimals, 0, error*sum(times)/minval(times)**2)
+            //time_text(l, strokes%times(1), error)//l%behind_time//'   '//phrase(say_return, s%polish)//' ' &
+            //time_text(l, strokes%times(2), error)//l%behind_time//'   '//phrase(say_ratio, s%polish)//' ' &
+            //known_text(strokes%ratio, ratio_decimals, 0, strokes%error)
          table%masked = table%masked .or. index(line, unknown_digit) > 0
          call put(o, line)
       end subroutine put_stroke_times
@@ -171,18 +184,34 @@ contains
       !> A line for a dwell: of which coordinate, within what distance of what, from when to when.
       subroutine put_dwell(dwell)
          type(dwell_t), intent(in) :: dwell
-         character(:), allocatable :: line
 
-         line = ' '//phrase(say_dwell, s%polish)//'  '//column_name(dwell%column)//'  ' &
+         call put_at(phrase(say_dwell, s%polish)//'  '//column_name(dwell%column)//'  ' &
             //extreme_words(dwell%which)//' +- ' &
-            //number_text(dwell%distance, 0.0_wp, x%is_angle(dwell%column, q), 0) &
-            //'   T = '//time_text(l, dwell%from, dwell%error(1))//' .. '//time_text(l, dwell%to, dwell%error(2))
-         if (drive > 0) line = line//'   '//driven//' = ' &
-            //drive_text(l%drives(drive), dwell%from, dwell%error(1))//' .. ' &
-            //drive_text(l%drives(drive), dwell%to, dwell%error(2))
+            //number_text(dwell%distance, 0.0_wp, x%is_angle(dwell%column, q), 0), [dwell%from, dwell%to], dwell%error)
+      end subroutine put_dwell
+
+      !> A line that begins with `head`: at the times `t`, one or two, of which `error` is unknown, and at these values
+      !> of the drive.
+      subroutine put_at(head, t, error)
+         character(*), intent(in) :: head
+         real(wp), intent(in) :: t(:), error(:)
+         character(:), allocatable :: line, at_drive
+         integer :: i
+
+         line = ' '//head//'   T = '
+         at_drive = ''
+         if (drive > 0) at_drive = '   '//driven//' = '
+         do i = 1, size(t)
+            if (i > 1) line = line//' .. '
+            line = line//time_text(l, t(i), error(i))
+            if (drive == 0) cycle
+            if (i > 1) at_drive = at_drive//' .. '
+            at_drive = at_drive//drive_text(l%drives(drive), t(i), error(i))
+         end do
+         line = line//at_drive
          table%masked = table%masked .or. index(line, unknown_digit) > 0
          call put(o, line)
-      end subroutine put_dwell
+      end subroutine put_at
 
       !> The line `say` about the intervals of the `list`, if there are any: as many of them as it has room for.
       subroutine put_gaps(list, say)
@@ -203,6 +232,23 @@ contains
          end do
          if (len(line) > 0) call put(o, line)
       end subroutine put_gaps
+
+      !> Why there are no time ratios: a `closure` that is not 0, as in `track_t`.
+      subroutine put_closure(closure)
+         real(wp), intent(in) :: closure(3)
+         character(:), allocatable :: line
+
+         if (any(closure >= huge(1.0_wp))) return
+         line = ' --- '//phrase(say_no_period, s%polish)
+         if (all(closure(:2) <= closes_to)) then
+            line = line//' '//phrase(say_in_velocity, s%polish)
+         else
+            line = line//' '//rounded(closure(1), closure_digits, 1.0e-3_wp, 1.0e3_wp)//' ' &
+               //phrase(say_lengths_apart, s%polish)//', ' &
+               //rounded(closure(2)/l%angle, closure_digits, 1.0e-3_wp, 1.0e3_wp)//' '//trim(angle_unit(s))
+         end if
+         call put(o, line)
+      end subroutine put_closure
 
       !> The name of column `c`.
       pure function column_name(c) result(name)

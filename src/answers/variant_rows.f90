@@ -13,7 +13,8 @@ module variant_rows
    use listing_layout, only: layout_t, digits_t, dimension_of, column_text, choose_digits, angle_unit
    use csv, only: marks
    use table, only: table_t, new_table, drive_columns, dotted
-   use extremes, only: extreme_t, least, greatest, outward, extreme_words, rows_asked, column_of
+   use extremes, only: extremes_t, extreme_t, strokes_t, least, greatest, outward, extreme_words, rows_asked, &
+      column_of, strokes_of, stroke_of, ratio_decimals
    use ranges, only: range_t, low, high
    use answers, only: answers_t
    use numerals, only: whole
@@ -22,6 +23,9 @@ module variant_rows
    private
    public :: summary_t, summary_column_t, cell_t, variant_row_t, new_summary, new_row, note_flag, fill_row
    public :: cell_count, cell_number, cell_word, cell_unbounded, cell_none
+
+   !> Roundings of a coordinate and of the difference of two.
+   real(wp), parameter :: rounding = 4.0_wp*epsilon(1.0_wp)
 
    !> What a cell holds.
    enum, bind(c)
@@ -47,6 +51,7 @@ module variant_rows
       character(3*label_length) :: unit = ''
       logical :: angular = .false.                  !< `value` is in rad
       integer :: decimals = 0, power = 0            !< as in `digits_t`
+      logical :: by_size = .false.                  !< instead, each value has the digits for its own size
    end type summary_column_t
 
    type :: summary_t
@@ -173,18 +178,28 @@ contains
          type(summary_column_t) :: c
          integer :: i, which
          character(3), parameter :: endings(least:greatest) = ['min', 'max']
+         character(:), allocatable :: word
 
          s%extremes = new_table(set, rows_asked(set))
          do i = 1, size(s%extremes%columns)
             associate (column => s%extremes%columns(i))
                do which = least, greatest
                   c = extreme_column(column%request, column%coordinate, column%order, column%angular)
+                  word = trim(c%heads(2))
                   c%name = trim(column%name)//'.'//endings(which)
-                  c%heads(2) = trim(c%heads(2))//' '//extreme_words(which)
+                  c%heads(2) = word//' '//extreme_words(which)
                   call add_column(c)
                   call add_column(summary_column_t(trim(c%name)//'.t'))
                   call add_drive(first_drive(set, column%request), trim(c%name), heads_of('', ''))
                end do
+               if (column%order > 0) cycle
+               c%name = trim(column%name)//'.stroke'
+               c%heads(2) = word//' '//phrase(say_stroke, set%polish)
+               c%by_size = .true.
+               c%power = 0
+               call add_column(c)
+               call add_column(summary_column_t(trim(column%name)//'.ratio', .true., heads_of(c%heads(1), &
+                  word//' '//phrase(say_ratio, set%polish)), decimals=ratio_decimals))
             end associate
          end do
       end subroutine add_extremes
@@ -321,6 +336,9 @@ contains
                   first_drive(set, c%request), r%cells(n + 1:n + 3))
                n = n + 3
             end do
+            if (c%order > 0) cycle
+            call take_strokes(asked%extremes, q, c%coordinate, r%cells(n + 1:n + 2))
+            n = n + 2
          end associate
       end do
 
@@ -348,6 +366,22 @@ contains
       cells(2) = cell_t(cell_number, e%t)
       cells(3) = drive_cell(set, d, e%t)
    end subroutine take_extreme
+
+   !> The stroke of coordinate `c` of row `q`, and the ratio of the times of its strokes.
+   subroutine take_strokes(x, q, c, cells)
+      type(extremes_t), intent(in) :: x
+      integer, intent(in) :: q, c
+      type(cell_t), intent(inout) :: cells(2)
+      type(extreme_t) :: stroke
+      type(strokes_t) :: strokes
+
+      stroke = stroke_of(x, q, c)
+      ! It may be small: then the rounding of the difference counts.
+      if (stroke%exists) cells(1) = cell_t(cell_number, stroke%value, &
+         stroke%error + rounding*maxval(abs(x%found(:, c, 0, q)%value)))
+      strokes = strokes_of(x, q, c)
+      if (strokes%ratio > 0.0_wp) cells(2) = cell_t(cell_number, strokes%ratio, strokes%error)
+   end subroutine take_strokes
 
    !> The value of drive number `d` (0: none) at the time `t`.
    type(cell_t) function drive_cell(set, d, t) result(cell)

@@ -6,7 +6,7 @@ module variant_tables
    use independent, only: set_t
    use motion, only: mark_none
    use listing, only: words_of_mark
-   use listing_layout, only: layout_t, line_length, put_folded, power_text, unit_of, right
+   use listing_layout, only: layout_t, line_length, put_folded, power_text, unit_of, right, choose_digits
    use listing_tables, only: known_text
    use listing_diagnostics, only: put_diagnostics
    use csv, only: add_name
@@ -21,6 +21,8 @@ module variant_tables
 
    !> Characters of the number of a variant, and at least of a column.
    integer, parameter :: number_length = 10, least_width = 12
+   !> Characters of an exponent.
+   integer, parameter :: exponent_length = 4
    character(1), parameter :: no_cell = '-'
 
 contains
@@ -201,6 +203,7 @@ contains
       type(summary_column_t), intent(in) :: c
 
       width = max(least_width, maxval(len_trim(c%heads)) + 2, len_trim(c%unit) + 2)
+      if (c%by_size) width = max(width, least_width + exponent_length)
    end function width
 
    !> A cell in the listing, without blanks.
@@ -211,6 +214,8 @@ contains
       type(cell_t), intent(in) :: cell
       character(:), allocatable :: text
       real(wp) :: unit
+      integer :: decimals, power
+      character(:), allocatable :: exponent
 
       unit = merge(l%angle, 1.0_wp, c%angular)
       select case (cell%kind)
@@ -219,7 +224,14 @@ contains
       case (cell_count)
          text = whole(nint(cell%value))
       case (cell_number)
-         text = known_text(cell%value/unit, c%decimals, c%power, cell%error/unit)
+         decimals = c%decimals
+         power = c%power
+         if (c%by_size) call choose_digits(log10(max(abs(cell%value)/unit, tiny(1.0_wp))), decimals, power)
+         text = known_text(cell%value/unit, decimals, power, cell%error/unit)
+         if (c%by_size .and. power /= 0) then
+            exponent = power_text(power)
+            text = text//exponent(3:)
+         end if
       case (cell_unbounded)
          text = phrase(say_unbounded, m%polish)
       case (cell_word)

@@ -92,6 +92,11 @@ module phrases
       say_forward = phrase_t('TIME MIN TO MAX', 'CZAS MIN DO MAX'), &
       say_return = phrase_t('TIME MAX TO MIN', 'CZAS MAX DO MIN'), &
       say_ratio = phrase_t('TIME RATIO', 'STOSUNEK CZASOW'), &
+      say_no_period = phrase_t('NO TIME RATIO, THE RUN IS NOT A PERIOD: ITS ENDS DIFFER BY', &
+         'BRAK STOSUNKU CZASOW, RUCH NIE JEST OKRESEM: JEGO KONCE ROZNIA SIE O'), &
+      say_lengths_apart = phrase_t('CHARACTERISTIC LENGTHS', 'DLUGOSCI CHARAKT.'), &
+      say_in_velocity = phrase_t('THEIR VELOCITIES', 'PREDKOSCI'), &
+      say_dead_centre = phrase_t('DEAD CENTRE', 'PUNKT ZWROTNY'), &
       say_dwell = phrase_t('DWELL', 'POSTOJ'), &
       say_not_covered = phrase_t('NOT SEARCHED (MOTION NOT AVAILABLE): T =', &
          'NIE PRZESZUKANO (BRAK RUCHU): T ='), &

@@ -1,11 +1,11 @@
 !> Tests. The table of extremes as the listing must print it, from closed forms in real128: each number on a fine grid
-!> of times, then by golden section around the grid's largest and least values. No derivative is used.
+!> of times, then by golden section around the grid's largest and least values. Only dead centres use a derivative, the
+!> velocity.
 module hand_extremes
    use mechanism, only: mechanism_t, request_link, request_point, request_pair
    use quad_jet, only: qp, pi_q, jet_t, degree_q
-   use jet_drives, only: drive_jet
    use closed_forms_dyads, only: body_t
-   use hand_scales, only: hand_scales_t
+   use hand_scales, only: hand_scales_t, length_by_hand, rate_by_hand
    use hand_numbers, only: number_by_hand, field_length
    use hand_rows, only: hand_row_t, row_by_hand
    use hand_links, only: move_links_to
@@ -17,7 +17,7 @@ module hand_extremes
 
    !> Cells of the grid in a step of TIME. Values that differ by the second, relatively, are one: the earlier counts.
    integer, parameter :: refined = 8
-   real(qp), parameter :: alike = 1.0e-12_qp, closes_to = 1.0e-9_qp, constant = 1.0e-15_qp
+   real(qp), parameter :: alike = 1.0e-12_qp, closes_to = 1.0e-6_qp, constant = 1.0e-15_qp
    real(qp), parameter :: golden = 0.61803398874989484820458683436563811772_qp
 
    !> How close to a change point the program's search comes, in steps of TIME.
@@ -29,6 +29,9 @@ module hand_extremes
       integer, allocatable :: asked(:)                 !< requests
       real(qp), allocatable :: t(:)                    !< (0:cells)
       real(qp), allocatable :: phi(:, :)               !< (links, 0:cells) angles
+      !> How far all links end from where they began: lengths, angles, velocities, in characteristic ones.
+      real(qp) :: closure(3) = 0.0_qp
+      logical :: reverses = .false.                    !< some column does, twice or more
       type(hand_row_t), allocatable :: row(:, :)       !< (asked, 0:cells)
    end type grid_t
 
@@ -61,12 +64,50 @@ contains
             call put_subject(o, m, scales, g, q)
          end associate
       end do
+      if (g%reverses .and. .not. any(flagged) .and. any(g%closure > closes_to)) call put_closure(o, m, g)
       if (.not. any(flagged)) return
       call put_gaps(o, m, scales, g, flagged, beside_change, merge(' --- EKSTREMA MOGA BYC POMINIETE W T =', &
                                                                    ' --- EXTREMES MAY BE MISSED WITHIN T =', m%polish))
       call put_gaps(o, m, scales, g, flagged, 0.0_qp, merge(' --- NIE PRZESZUKANO (BRAK RUCHU): T =       ', &
                                                        ' --- NOT SEARCHED (MOTION NOT AVAILABLE): T =', m%polish))
    end subroutine put_extremes_by_hand
+
+   !> Why there are no time ratios.
+   subroutine put_closure(o, m, g)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      type(grid_t), intent(in) :: g
+      character(120) :: line
+      character(70) :: head
+      character(22) :: lengths
+
+      head = merge('BRAK STOSUNKU CZASOW, RUCH NIE JEST OKRESEM: JEGO KONCE ROZNIA SIE O', &
+         'NO TIME RATIO, THE RUN IS NOT A PERIOD: ITS ENDS DIFFER BY          ', m%polish)
+      lengths = merge('DLUGOSCI CHARAKT.     ', 'CHARACTERISTIC LENGTHS', m%polish)
+      if (all(g%closure(:2) <= closes_to)) then
+         line = trim(merge('PREDKOSCI       ', 'THEIR VELOCITIES', m%polish))
+      else
+         line = three_digits(g%closure(1))//' '//trim(lengths)//', '//three_digits(g%closure(2) &
+            /merge(degree_q, 1.0_qp, m%degrees))//' '//merge('DEG', 'RAD', m%degrees)
+      end if
+      call put(o, ' --- '//trim(head)//' '//trim(line))
+   end subroutine put_closure
+
+   !> `x` with three digits, in fixed point from 0.001 to 1000.
+   function three_digits(x) result(text)
+      real(qp), intent(in) :: x
+      character(:), allocatable :: text
+      character(20) :: field, form
+      integer :: order
+
+      write (field, '(es20.2)') x
+      read (field(index(field, 'E') + 1:), *) order
+      if (order >= -3 .and. order < 3) then
+         write (form, '(a, i0, a)') '(f20.', 2 - order, ')'
+         write (field, form) x
+      end if
+      text = trim(adjustl(field))
+   end function three_digits
 
    !> A line with the times of the `flagged` instants behind its `head`, or with the interval of twice the `part` of a step
    !> about each, inside the run.
@@ -122,8 +163,9 @@ contains
       character(*), intent(in) :: name
       type(mechanism_t), intent(in) :: m
       type(grid_t) :: g
-      type(body_t) :: links(size(m%links))
+      type(body_t) :: links(size(m%links)), first(size(m%links))
       character(:), allocatable :: fault
+      real(qp) :: length
       integer :: i, k, q, n
 
       n = refined*m%steps
@@ -138,7 +180,13 @@ contains
          do q = 1, size(g%asked)
             g%row(q, k) = row_by_hand(m, links, m%requests(g%asked(q)))
          end do
+         if (k == 0) first = links
       end do
+      length = length_by_hand(m)
+      g%closure(1) = max(maxval(abs(links%x%v - first%x%v)), maxval(abs(links%y%v - first%y%v)))/length
+      g%closure(2) = maxval(abs(without_turns(links%phi%v - first%phi%v)))
+      g%closure(3) = max(maxval(abs(links%x%d - first%x%d))/length, maxval(abs(links%y%d - first%y%d))/length, &
+         maxval(abs(links%phi%d - first%phi%d)))/rate_by_hand(m, length)
    end function grid_of
 
    !> Number (c, k) of row `q` is not the same at all times, but for the rounding of real128.
@@ -253,12 +301,14 @@ contains
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(hand_scales_t), intent(in) :: scales
-      type(grid_t), intent(in) :: g
+      type(grid_t), intent(inout) :: g
       integer, intent(in) :: q
       type(extreme_t) :: e(-1:1, 3, 0:2)
+      type(extreme_t), allocatable :: dead(:)
       character(field_length) :: fields(3, 0:2, 3), strokes(3, 0:2)
       character(3), parameter :: words(-1:1) = ['MIN', '   ', 'MAX']
-      integer :: way, c, k, what
+      real(qp) :: period
+      integer :: way, c, k, what, i
       character(:), allocatable :: drive, unit
 
       associate (row => g%row(q, 0), drive_of => m%drives(1))
@@ -287,37 +337,47 @@ contains
          call put_line(o, row, trim(merge('SKOK  ', 'STROKE', m%polish)), strokes)
          do c = 1, row%columns
             if (.not. varies(g, q, c, 0)) cycle
-            if (is_cycle(m, g, q, c)) call put_stroke_times(o, m, scales, g, q, c, e(1, c, 0)%t - e(-1, c, 0)%t)
+            call find_dead_centres(m, g, q, c, dead, period)
+            g%reverses = g%reverses .or. size(dead) >= 2
+            if (any(g%closure > closes_to)) cycle
+            if (size(dead) == 2) call put_stroke_times(o, m, scales, g, q, c, e(1, c, 0)%t - e(-1, c, 0)%t, period)
+            if (size(dead) <= 2) cycle
+            do i = 1, size(dead)
+               unit = drive_value(m, drive_of, scales, dead(i)%t)
+               call put(o, ' '//trim(merge('PUNKT ZWROTNY', 'DEAD CENTRE  ', m%polish))//'  '//column_word(m, g, q, c)//'  ' &
+                  //trim(adjustl(number_of(m, scales, row, c, 0, dead(i)%value)))//'   T = ' &
+                  //instant_text(scales, dead(i)%t)//'   '//drive//' = '//unit(:index(unit, ' ') - 1))
+            end do
          end do
          do c = 1, row%columns
             what = dimension_of(row%column(c))
             if (m%requests(g%asked(q))%dwell(what) <= 0.0 .or. .not. varies(g, q, c, 0)) cycle
             if (e(1, c, 0)%value - e(-1, c, 0)%value <= m%requests(g%asked(q))%dwell(what)) cycle
             do way = -1, 1, 2
-               call put_dwell(o, m, scales, g, q, c, way, e(way, c, 0), drive)
+               call put_dwells(o, m, scales, g, q, c, way, e(way, c, 0), drive)
             end do
          end do
       end associate
    end subroutine put_subject
 
-   !> The line of the times of both strokes of column `c` of row `q`, from the time of its least value to `later` after it.
-   subroutine put_stroke_times(o, m, scales, g, q, c, later)
+   !> The line of the times of both strokes of column `c` of row `q`, from the time of its least value to `later` after it, in
+   !> a `period`.
+   subroutine put_stroke_times(o, m, scales, g, q, c, later, period)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(hand_scales_t), intent(in) :: scales
       type(grid_t), intent(in) :: g
       integer, intent(in) :: q, c
-      real(qp), intent(in) :: later
-      real(qp) :: run, times(2)
+      real(qp), intent(in) :: later, period
+      real(qp) :: times(2)
       character(15), parameter :: words(3, 2) = reshape([character(15) :: 'TIME MIN TO MAX', 'TIME MAX TO MIN', &
          'TIME RATIO', 'CZAS MIN DO MAX', 'CZAS MAX DO MIN', 'STOSUNEK CZASOW'], [3, 2])
       integer :: k, language
       character(:), allocatable :: line
 
       language = merge(2, 1, m%polish)
-      run = g%t(ubound(g%t, 1)) - g%t(0)
-      times(1) = abs(run)*modulo(later/run, 1.0_qp)
-      times(2) = abs(run) - times(1)
+      times(1) = abs(period)*modulo(later/period, 1.0_qp)
+      times(2) = abs(period) - times(1)
       line = '  '//column_word(m, g, q, c)
       do k = 1, 2
          line = line//'   '//trim(words(k, language))//' ' &
@@ -386,58 +446,77 @@ contains
       call put(o, trim(line))
    end subroutine put_line
 
-   !> Row `q` closes, and column `c` turns twice.
-   logical function is_cycle(m, g, q, c)
+   !> The `dead` centres of column `c` of row `q`, where its velocity changes its sign, by bisection: those of the shortest
+   !> part of the run, the `period`, after which all of them repeat.
+   subroutine find_dead_centres(m, g, q, c, dead, period)
       type(mechanism_t), intent(in) :: m
       type(grid_t), intent(in) :: g
       integer, intent(in) :: q, c
-      real(qp) :: v(0:ubound(g%t, 1))
-      integer :: i, n, before, turns
+      type(extreme_t), allocatable, intent(out) :: dead(:)
+      real(qp), intent(out) :: period
+      real(qp) :: v(0:ubound(g%t, 1)), change
+      integer :: i, n, last, first, few
+      logical :: repeats
 
       n = ubound(g%t, 1)
       v = g%row(q, :)%value(c, 1)
-      turns = 0
-      before = 0
-      do i = 0, 2*n
-         if (abs(v(mod(i, n))) <= 1.0e-20_qp*maxval(abs(v))) cycle
-         if (i >= n .and. before*sign(1.0_qp, v(mod(i, n))) < 0) turns = turns + 1
-         before = nint(sign(1.0_qp, v(mod(i, n))))
+      where (abs(v) <= 1.0e-20_qp*maxval(abs(v))) v = 0.0_qp
+      allocate (dead(0))
+      first = findloc(abs(v) > 0.0_qp, .true., dim=1) - 1
+      last = first
+      do i = first + 1, n
+         if (.not. abs(v(i)) > 0.0_qp) cycle
+         if (v(i)*v(last) < 0.0_qp) dead = [dead, dead_centre(last, i)]
+         last = i
       end do
-      is_cycle = turns == 2 .and. closes(m, g, q)
-   end function is_cycle
+      if (v(first)*v(last) < 0.0_qp) dead = [extreme_t(g%t(0), g%row(q, 0)%value(c, 0)), dead]
+      do few = 2, size(dead), 2
+         period = (g%t(n) - g%t(0))*few/size(dead)
+         repeats = mod(size(dead), few) == 0
+         do i = few + 1, size(dead)
+            change = dead(i)%value - dead(i - few)%value
+            if (dimension_of(g%row(q, 0)%column(c)) == 2) change = without_turns(change)
+            repeats = repeats .and. abs(change) < closes_to .and. abs(dead(i)%t - dead(i - few)%t - period) &
+               < closes_to*abs(g%t(n) - g%t(0))
+         end do
+         if (.not. repeats) cycle
+         dead = dead(:few)
+         return
+      end do
 
-   !> Row `q` is at the end where it was at the beginning, as fast, with its drives, but for whole turns.
-   logical function closes(m, g, q)
-      type(mechanism_t), intent(in) :: m
-      type(grid_t), intent(in) :: g
-      integer, intent(in) :: q
-      type(jet_t) :: first, last
-      real(qp) :: d(3, 0:1)
-      integer :: i, n
+   contains
 
-      n = ubound(g%t, 1)
-      d = g%row(q, n)%value(:, :1) - g%row(q, 0)%value(:, :1)
-      do i = 1, g%row(q, 0)%columns
-         if (dimension_of(g%row(q, 0)%column(i)) == 2) d(i, 0) = without_turns(d(i, 0))
-      end do
-      closes = all(abs(d) < closes_to)
-      do i = 1, size(m%drives)
-         first = drive_jet(m%drives(i), g%t(0))
-         last = drive_jet(m%drives(i), g%t(n))
-         closes = closes .and. max(abs(without_turns(last%v - first%v)), abs(last%d - first%d), &
-            abs(last%dd - first%dd)) < closes_to
-      end do
-   end function closes
+      !> That between grid points `low` and `high`; where the column rests between them, the first of these.
+      type(extreme_t) function dead_centre(low, high) result(e)
+         integer, intent(in) :: low, high
+         real(qp) :: a, b
+         integer :: step
+
+         e = extreme_t(g%t(low + 1), g%row(q, low + 1)%value(c, 0))
+         if (high > low + 1) return
+         a = g%t(low)
+         b = g%t(high)
+         do step = 1, 100
+            e%t = 0.5_qp*(a + b)
+            if (value_at(m, g, q, c, 1, e%t, low)*v(low) > 0.0_qp) then
+               a = e%t
+            else
+               b = e%t
+            end if
+         end do
+         e%value = value_at(m, g, q, c, 0, e%t, low)
+      end function dead_centre
+   end subroutine find_dead_centres
 
    !> An angle less whole turns.
-   pure real(qp) function without_turns(phi)
+   elemental real(qp) function without_turns(phi)
       real(qp), intent(in) :: phi
 
       without_turns = phi - 2.0_qp*pi_q*anint(phi/(2.0_qp*pi_q))
    end function without_turns
 
-   !> The line of a dwell beside the extreme `e`.
-   subroutine put_dwell(o, m, scales, g, q, c, way, e, drive)
+   !> The lines of the dwells within a distance of the extreme `e`: each time that the column comes inside.
+   subroutine put_dwells(o, m, scales, g, q, c, way, e, drive)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(hand_scales_t), intent(in) :: scales
@@ -445,42 +524,76 @@ contains
       integer, intent(in) :: q, c, way
       type(extreme_t), intent(in) :: e
       character(*), intent(in) :: drive
-      real(qp) :: distance, from, to
-      character(:), allocatable :: first
-      character(field_length) :: text
+      type(extreme_t), allocatable :: dead(:), path(:), ordered(:)
+      logical, allocatable :: inside(:)
+      real(qp) :: distance, level, period
+      integer :: i, n
 
-      associate (row => g%row(q, 0))
-         distance = real(m%requests(g%asked(q))%dwell(dimension_of(row%column(c))), qp)
-         from = leaves(m, g, q, c, way, e, distance, -1)
-         to = leaves(m, g, q, c, way, e, distance, 1)
-         text = number_of(m, scales, row, c, 0, distance)
+      n = ubound(g%t, 1)
+      distance = real(m%requests(g%asked(q))%dwell(dimension_of(g%row(q, 0)%column(c))), qp)
+      level = e%value - way*distance
+      call find_dead_centres(m, g, q, c, dead, period)
+      path = [(extreme_t(g%t(i), g%row(q, i)%value(c, 0)), i=0, n), dead, e]
+      ordered = path(:0)
+      do while (size(path) > 0)
+         i = minloc((path%t - g%t(0))*sign(1.0_qp, g%t(n) - g%t(0)), dim=1)
+         ordered = [ordered, path(i)]
+         path = [path(:i - 1), path(i + 1:)]
+      end do
+      inside = way*(ordered%value - level) >= 0.0_qp
+      do i = 1, size(ordered)
+         if (.not. inside(i)) cycle
+         if (i > 1) then
+            if (inside(i - 1)) cycle
+         else if (inside(size(ordered)) .and. goes_round(g, q, c)) then
+            cycle
+         end if
+         call put_dwell(leaves(m, g, q, c, way, ordered(i)%t, level, -1), leaves(m, g, q, c, way, ordered(i)%t, level, 1))
+      end do
+
+   contains
+
+      !> The line of the dwell between two times.
+      subroutine put_dwell(from, to)
+         real(qp), intent(in) :: from, to
+         character(:), allocatable :: first
+         character(field_length) :: text
+
+         text = number_of(m, scales, g%row(q, 0), c, 0, distance)
          first = drive_value(m, m%drives(1), scales, from)
          call put(o, ' '//trim(merge('POSTOJ', 'DWELL ', m%polish))//'  '//column_word(m, g, q, c) &
             //'  '//merge('MAX', 'MIN', way > 0)//' +- '//trim(adjustl(text))//'   T = '//instant_text(scales, from)//' .. ' &
             //instant_text(scales, to)//'   '//drive//' = '//first(:index(first, ' ') - 1)//' .. ' &
             //trim(adjustl(in_field(drive_value(m, m%drives(1), scales, to)))))
-      end associate
-   end subroutine put_dwell
+      end subroutine put_dwell
+   end subroutine put_dwells
 
-   !> When column `c` of row `q` leaves the `distance` of its extreme `e`, along the run (`side` 1) or against it: by
+   !> After the last instant column `c` of row `q` goes on as from the first.
+   logical function goes_round(g, q, c)
+      type(grid_t), intent(in) :: g
+      integer, intent(in) :: q, c
+
+      goes_round = all(g%closure <= closes_to) &
+         .and. abs(g%row(q, ubound(g%t, 1))%value(c, 0) - g%row(q, 0)%value(c, 0)) <= closes_to
+   end function goes_round
+
+   !> When column `c` of row `q` passes the `level`, from the time `start` along the run (`side` 1) or against it: by
    !> bisection. In a cycle the run has no end.
-   real(qp) function leaves(m, g, q, c, way, e, distance, side) result(t)
+   real(qp) function leaves(m, g, q, c, way, start, level, side) result(t)
       type(mechanism_t), intent(in) :: m
       type(grid_t), intent(in) :: g
       integer, intent(in) :: q, c, way, side
-      type(extreme_t), intent(in) :: e
-      real(qp), intent(in) :: distance
-      real(qp) :: inside, outside, level
+      real(qp), intent(in) :: start, level
+      real(qp) :: inside, outside
       integer :: i, n
 
       n = ubound(g%t, 1)
-      level = e%value - way*distance
-      i = merge(count((g%t - e%t)*(g%t(n) - g%t(0)) <= 0.0_qp), count((g%t - e%t)*(g%t(n) - g%t(0)) < 0.0_qp) - 1, side > 0)
-      inside = e%t
+      i = merge(count((g%t - start)*(g%t(n) - g%t(0)) <= 0.0_qp), count((g%t - start)*(g%t(n) - g%t(0)) < 0.0_qp) - 1, side > 0)
+      inside = start
       do
          if (i < 0 .or. i > n) then
             t = inside
-            if (.not. closes(m, g, q) .or. abs(g%row(q, n)%value(c, 0) - g%row(q, 0)%value(c, 0)) > closes_to) return
+            if (.not. goes_round(g, q, c)) return
             i = merge(0, n, side > 0)
          end if
          outside = g%t(i)

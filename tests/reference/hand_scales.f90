@@ -7,7 +7,7 @@ module hand_scales
    use quad_jet, only: qp, degree_q
    implicit none
    private
-   public :: hand_scales_t, scales_by_hand, length_by_hand
+   public :: hand_scales_t, scales_by_hand, length_by_hand, rate_by_hand
 
    !> (length or angle, derivative), and those of the time.
    type :: hand_scales_t

@@ -46,6 +46,14 @@ for side in max:- min:+; do
    equal "swing, ${side%:*}" '60 agree' "$(worst "$w/swing" "$swing; pi = atan2(0, -1)
       form = 180/pi*(pi - acos((c*c + g*g - (b ${side#*:} a)^2)/(2*c*g)))")"
 done
+rows "$w/swing.csv" ROCKER.phi.stroke POINT.A-CR.XI POINT.B-CO.XI POINT.B-RO.XI > "$w/swing"
+equal 'swing, stroke' '60 agree' "$(worst "$w/swing" "$swing; pi = atan2(0, -1)
+   form = 180/pi*(acos((c*c + g*g - (b + a)^2)/(2*c*g)) - acos((c*c + g*g - (b - a)^2)/(2*c*g)))")"
+# The crank turns steadily from one of these positions to the other: by its angles with the ground there.
+rows "$w/swing.csv" ROCKER.phi.ratio POINT.A-CR.XI POINT.B-CO.XI POINT.B-RO.XI > "$w/swing"
+equal 'swing, ratio of times' '60 agree' "$(worst "$w/swing" "$swing; pi = atan2(0, -1)
+   turn = pi + acos((g*g + (b - a)^2 - c*c)/(2*g*(b - a))) - acos((g*g + (b + a)^2 - c*c)/(2*g*(b + a)))
+   form = turn/(2*pi - turn); if (form < 1) form = 1/form")"
 # The transmission angle is least or greatest where the crank lies along the ground: between b and c against g -+ a. The angle
 # of the pair is that from the coupler to the rocker, which are drawn from their common point B in opposite senses.
 for side in min:- max:+; do
@@ -53,6 +61,16 @@ for side in min:- max:+; do
    equal "transmission angle, ${side%:*}" '60 agree' "$(worst "$w/swing" "$swing
       form = 180/atan2(0, -1)*acos((b*b + c*c - (g ${side#*:} a)^2)/(2*b*c))")"
 done
+
+# A small stroke has digits of its own: y of the end of a crank of 2E-4, whose pivot is at 7, moves by twice as much.
+{
+   card GROUND BASE; card LINK CRANK; card POINT O BASE '' 0.0 7.0; card POINT O1 CRANK
+   card POINT A CRANK '' 2.0E-4; vary R1 2 '' 1.0E-4 2.0E-4; card REVOLUTE O O1 PIVOT
+   card DRIVE ANGLE CRANK '' 0.3 1.0; card TIME 12 '' '' 0.0 6.2831853; card EXTREMES POINTS A; card END
+} > "$w/small.deck"
+run small
+equal 'a small stroke' '200.0000E-06 1.000000 400.0000E-06 1.000000' "$(awk '/Y STROKE/ { on = 1; at = index($0, "Y STROKE") }
+   on && /^ +[12] 69/ { split(substr($0, at - 8), f, " "); printf "%s%s %s", mark, f[1], f[2]; mark = " " }' "$w/small.lst")"
 
 # Grashof: a crank a turns fully if, and only if, a + g < b + c and |a - g| > |b - c|; otherwise its limits are where coupler
 # and rocker are in line. None of these lengths is at the border.
