@@ -89,7 +89,7 @@ module command_line
       '  --check              check the deck and its structure, compute no motion', &
       '  --sets K/N           run only part K of N of the job', &
       '  --jobs N             run N processes (default: one for each processor)', &
-      '  --study              measure speed against error (needs make kinds)', &
+      '  --study              measure speed against error', &
       '  --time               measure the time of a step', &
       '  --quiet              suppress remarks and progress', &
       '  --ruler [CARD]       print the layouts of all cards, or the fields of CARD', &

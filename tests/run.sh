@@ -13,7 +13,7 @@ parts() {
    make check|2620|tests/system/check.sh
    real128|124|"$MAKE" --no-print-directory quad-check
    single precision|130|"$MAKE" --no-print-directory single-check
-   speed against error|79|"$MAKE" --no-print-directory study-short
+   speed against error|70|"$MAKE" --no-print-directory study-short
    results of the methods|97|"$MAKE" --no-print-directory bench-short
    cards and options together|1000|tests/system/together.sh
    the command|600|tests/system/command.sh

@@ -39,8 +39,6 @@ module pose
       real(wp), allocatable :: body_vector(:, :)  !< (2, points) from the link's origin to the point
       real(wp), allocatable :: slope(:, :)        !< (2, points) derivative of that by phi, or its frozen form
       logical :: frozen = .false.                 !< slopes and gradients are those of the frozen form
-      logical :: keeps = .false.                  !< references, once chosen, are never chosen again
-      logical :: has_chosen = .false.             !< references were chosen
       real(wp), allocatable :: zeros(:, :)        !< (2, points) reference angles of the body vectors' rows
       real(wp), allocatable :: guide_zeros(:, :)  !< (2, pairs) of the slot rows
       real(wp), allocatable :: slide_zeros(:, :)  !< (2, drives) of the SLIDE rows
@@ -90,7 +88,6 @@ contains
       do i = 1, size(m%links)
          p%q(:, i) = [(m%links(i)%position(:2) - s%origin)/s%length, m%links(i)%position(3)]
       end do
-      p%keeps = m%keeps_references
       call set_pose(s, p)
    end function new_pose
 
@@ -112,27 +109,23 @@ contains
       end do
    end subroutine set_pose
 
-   !> Puts `p` into the frozen form of (16). Its angles are counted from the zeros nearest to their present values or,
-   !> if it keeps its references, to those at the first call.
+   !> Puts `p` into the frozen form of (16). Its angles are counted from the zeros nearest to their present values.
    pure subroutine choose_references(s, p)
       type(system_t), intent(in) :: s
       type(pose_t), intent(inout) :: p
       integer :: i
 
       p%frozen = .true.
-      if (.not. (p%keeps .and. p%has_chosen)) then
-         do i = 1, size(s%link_of)
-            p%zeros(:, i) = nearest_zeros(body_vector_angle(s, p, i))
-         end do
-         do i = 1, size(s%pairs)
-            p%guide_zeros(:, i) = nearest_zeros(normal_angle(s, p, i))
-         end do
-         do i = 1, size(s%laws)
-            if (s%laws(i)%drive%kind == drive_slide) &
-               p%slide_zeros(:, i) = nearest_zeros(normal_angle(s, p, s%laws(i)%drive%subject) + pi/2.0_wp)
-         end do
-      end if
-      p%has_chosen = .true.
+      do i = 1, size(s%link_of)
+         p%zeros(:, i) = nearest_zeros(body_vector_angle(s, p, i))
+      end do
+      do i = 1, size(s%pairs)
+         p%guide_zeros(:, i) = nearest_zeros(normal_angle(s, p, i))
+      end do
+      do i = 1, size(s%laws)
+         if (s%laws(i)%drive%kind == drive_slide) &
+            p%slide_zeros(:, i) = nearest_zeros(normal_angle(s, p, s%laws(i)%drive%subject) + pi/2.0_wp)
+      end do
       call set_pose(s, p)
    end subroutine choose_references
 

@@ -187,7 +187,6 @@ module mechanism
       logical :: assemblies = .false.        !< all assemblies at the first instant are asked for
       logical :: circuits = .false.          !< the circuits of the mechanism are asked for
       integer :: predictor = own_predictor   !< order of the predictor of a step, 0 to 3; no card sets it
-      logical :: keeps_references = .false.  !< method_matrix: keeps those of the first instant; no card sets it
       integer :: variants = 0                !< of its VARY cards; 0: it has none
       integer :: variant = 0                 !< the number of this one; 0: the numbers are those of the deck
       integer :: steps = -1                  !< of the TIME card: steps + 1 instants from t0 to t1; -1: no TIME card

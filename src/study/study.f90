@@ -1,36 +1,66 @@
-!> Speed against error (--study): every way of solving a deck is timed and compared with the truth, the
-!> motion by the same program in real128. The time alone (--time), in any kind.
+!> Speed against error (--study): methods, tolerances and predictors tried on a deck, each with the time of a step and
+!> the error of the printed rows. The time alone (--time).
 module study
-   use, intrinsic :: iso_fortran_env, only: dp => real64
-   use kinds, only: wp
-   use failures, only: failure_t, fail, status_solved, status_rejected, status_flagged
-   use mechanism, only: mechanism_t, instant_count, instant
+   use, intrinsic :: iso_fortran_env, only: dp => real64, qp => real128, int64
+   use kinds, only: wp, wp_name
+   use failures, only: failure_t, status_solved, status_flagged
+   use mechanism, only: mechanism_t, request_t, request_pair, method_newton, method_dense, method_matrix, &
+      method_words, own_predictor, instant_count, instant
+   use independent, only: request_of
    use structure, only: findings_t, check_structure
    use deck, only: read_deck
+   use points, only: row_t, has_number, is_due
+   use known_digits, only: nothing_known
+   use set_motion, only: is_flagged, find_row_in_set, error_in_set
+   use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set, iterations_of
    use text_output, only: output_t, open_output, check_apart, put, flush_output, close_output, abandon_output, &
       has_failed
    use numerals, only: whole
    use progress, only: progress_t, start_progress, show_progress, end_progress
-   use trials, only: median, outcome_t, kind_single, kind_double, kind_quad, repeats, trial_mechanism, trial_instants, &
-      march, can_be_timed, step_time
-   use companion, only: ask_companion
-   use true_errors, only: truth_t, new_truth, errors_of, put_estimates
-   use study_plan, only: plan_t, new_plan, plan_trials, truth_trial
-   use study_table, only: row_t, new_rows, put_head, put_refusal, put_rows
+   use reference_rows, only: reference_t, open_reference, read_reference, close_reference, no_number
    implicit none
    private
    public :: run_study
 
-   integer, parameter :: digits_double = 53
+   !> Measurements of a time, and the number of the one in the middle.
+   integer, parameter :: middle = 5, repeats = 2*middle - 1
+   !> One way to solve a set, and what came of it.
+   type :: trial_t
+      integer :: method = method_newton
+      real(dp) :: tolerance = 0.0_dp             !< 0: the limit of rounding
+      integer :: predictor = own_predictor       !< its order, or the method's own
+      integer :: missed = 0                      !< instants without a whole motion
+      real(dp) :: iterations = 0.0_dp            !< a step, those of substeps included
+      real(dp) :: seconds = 0.0_dp               !< of the whole motion
+      real(dp) :: time(repeats) = 0.0_dp         !< of a step without the first instant, microseconds
+      real(dp) :: error(0:2) = 0.0_dp            !< of positions, velocities, accelerations, in parts of the largest
+   end type trial_t
+
+   !> What the rows of a set are compared with.
+   type :: truth_t
+      logical :: is_reference = .false.          !< kinmat-quad's rows; otherwise the estimates of errors
+      integer :: compared = 0                    !< instants
+      real(qp), allocatable :: value(:, :, :)    !< (3, 0:2, rows of all instants)
+   end type truth_t
+
+   !> One measurement takes at least so many seconds: many ticks of the clock; and at most, as far as few steps let it.
+   real(dp), parameter :: min_seconds = 0.0005_dp, max_seconds = 0.01_dp
+   integer, parameter :: min_steps = 4
+   !> A trial ends early if it misses instants and has taken so many seconds.
+   real(dp), parameter :: long = 2.0_dp
+   !> A study solves this number of links at instants in each trial, and compares this number of rows.
+   integer, parameter :: max_solved = 1000000, max_rows = 100000
+   !> Methods that solve all equations at once are tried up to this number of equations.
+   integer, parameter :: max_equations = 130
+   real(dp), parameter :: tolerances(*) = [1.0e-2_dp, 1.0e-4_dp, 1.0e-6_dp, 1.0e-8_dp, 1.0e-10_dp, 1.0e-12_dp, 0.0_dp]
    real(dp), parameter :: micro = 1.0e6_dp
-   !> Of a study: the reference, the trials in real128, those in real32, those in real64.
-   integer, parameter :: parts = 4
+   real(qp), parameter :: radian = 57.29577951308232087679815481410517033_qp
 
 contains
 
-   !> The study of the deck in the file `path`, to `output`, '' for standard output; with `only_times` the time of a
-   !> step of each set, of the deck '' on standard input too. `quiet`: without progress on a terminal. `message`: lines
-   !> for standard error, '' for none.
+   !> Prints the study of the deck in the file `path` to `output`, '' for standard output; with `only_times` the time of
+   !> a step of each set. Then the deck may be '', standard input. `quiet`: without progress on a terminal. `message`:
+   !> lines for standard error, '' for none.
    subroutine run_study(path, output, only_times, quiet, status, message)
       character(*), intent(in) :: path, output
       logical, intent(in) :: only_times, quiet
@@ -41,17 +71,13 @@ contains
       type(failure_t), allocatable :: failure
       type(output_t) :: o
       type(progress_t) :: progress
+      type(reference_t) :: reference
       integer :: i
 
       status = status_solved
       message = ''
-      ! The table of a set comes at once, when all of it is measured: until then a terminal shows the progress.
       call start_progress(progress, .not. quiet, .false.)
-      if (digits(1.0_wp) /= digits_double .and. .not. only_times) then
-         call fail(failure, status_rejected, '--study IS AVAILABLE ONLY IN kinmat (REAL64), NOT IN THIS BUILD')
-      else
-         call read_deck(path, sets, message, failure)
-      end if
+      call read_deck(path, sets, message, failure)
       if (.not. allocated(failure)) call check_structure(sets, findings, failure)
       if (.not. allocated(failure)) call open_output(o, output, failure)
       if (.not. allocated(failure)) call check_apart([o], path, failure)
@@ -59,144 +85,329 @@ contains
          call abandon_output(o)
       else
          if (only_times) call put(o, '  SET     STEPS ITERATIONS   MEDIAN US/STEP            MIN            MAX')
+         if (.not. only_times) call open_reference(path, reference)
          do i = 1, size(sets)
             if (only_times) then
                call put_times(o, sets(i), progress, status)
             else
-               call study_set(o, path, sets(i), findings(i)%redundant > 0, progress, failure)
+               call study_set(o, sets(i), findings(i)%redundant > 0, reference, progress)
             end if
             call end_progress(progress)
-            if (allocated(failure)) exit
             call flush_output(o)
             if (has_failed(o)) exit
          end do
-         if (.not. allocated(failure)) call close_output(o, failure)
+         call close_reference(reference)
+         call close_output(o, failure)
       end if
       if (.not. allocated(failure)) return
       status = failure%status
       if (len(message) == 0) message = ' *** '//failure%text
    end subroutine run_study
 
-   !> Iterations and time of a step of `m`, as the deck asks for it. `status`: status_marked where a position is not
-   !> found.
+   !> Prints iterations and time of a step of `m`, as the deck asks for it. `status`: status_flagged if a position is
+   !> not found.
    subroutine put_times(o, m, progress, status)
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(progress_t), intent(inout) :: progress
       integer, intent(inout) :: status
-      real(wp) :: instants(0:instant_count(m) - 1)
-      type(outcome_t) :: one
-      real(dp) :: seconds, time(repeats)
+      type(trial_t) :: t
+      type(truth_t) :: nothing
       character(80) :: line
       integer :: k, last
 
-      last = ubound(instants, 1)
-      instants = [(instant(m, k), k=0, last)]
-      call march(m, instants, last + 1, one, seconds)
-      write (line, '(i5, i10, f11.2)') m%set_number, last, one%iterations
-      if (can_be_timed(one, last)) then
-         do k = 1, repeats
-            call show_progress(progress, 'MEASUREMENT', k, repeats)
-            time(k) = step_time(m, instants, seconds)*micro
-         end do
-         write (line(27:), '(3f15.4)') median(time), minval(time), maxval(time)
-      else if (.not. one%found) then
+      last = instant_count(m) - 1
+      call solve(m, last, t, nothing)
+      write (line, '(i5, i10, f11.2)') m%set_number, last, t%iterations
+      if (t%missed > 0) then
          line(27:) = '   NOT TIMED: A POSITION IS NOT FOUND'
          status = status_flagged
-      else
+      else if (last == 0) then
          line(27:) = '   NOT TIMED: ONE INSTANT'
+      else
+         do k = 1, repeats
+            call show_progress(progress, 'MEASUREMENT', k, repeats)
+            t%time(k) = step_time(m, last, t%seconds)
+         end do
+         write (line(27:), '(3f15.4)') median(t%time), minval(t%time), maxval(t%time)
       end if
       call put(o, trim(line))
    end subroutine put_times
 
-   !> The study of `m`, a set of the deck in the file `path`; `redundant`: it has equations too many.
-   subroutine study_set(o, path, m, redundant, progress, failure)
+   !> Prints the study of `m`. `redundant`: it has too many equations. `reference`: rows of the deck in real128.
+   subroutine study_set(o, m, redundant, reference, progress)
       type(output_t), intent(inout) :: o
-      character(*), intent(in) :: path
       type(mechanism_t), intent(in) :: m
       logical, intent(in) :: redundant
+      type(reference_t), intent(in) :: reference
       type(progress_t), intent(inout) :: progress
-      type(failure_t), allocatable, intent(out) :: failure
-      type(plan_t) :: p
-      type(row_t), allocatable :: rows(:)
+      type(trial_t), allocatable :: trials(:)
       type(truth_t) :: truth
-      type(outcome_t), allocatable :: outcomes(:)
+      integer :: i, k, last, standard
 
-      p = new_plan(m, redundant)
       if (m%set_number > 1) call put(o, '')
       call put(o, ' SPEED AGAINST ERROR   SET '//whole(m%set_number)//'   '//trim(m%title))
-      if (.not. p%possible .or. p%last == 0) then
-         call put_refusal(o, p)
+      last = min(instant_count(m) - 1, max(8, max_solved/size(m%links)))
+      if (last == 0) then
+         call put(o, ' NOT STUDIED: ONE INSTANT')
          return
       end if
-      rows = new_rows(plan_trials(p))
-      call ask_companion('kinmat-quad', 'REAL128', path, m, [truth_trial(p)], .false., outcomes, failure)
-      if (allocated(failure)) return
-      truth = new_truth(m, truth_trial(p), outcomes(1))
-      call put_head(o, m, p, truth)
-      if (.not. any(truth%motion%known == 2)) return
-      call show_progress(progress, 'PART', 2, parts)
-      call ask('kinmat-quad', 'REAL128', kind_quad)
-      call show_progress(progress, 'PART', 3, parts)
-      if (.not. allocated(failure)) call ask('kinmat-single', 'REAL32', kind_single)
-      if (allocated(failure)) return
-      call solve_rows()
-      call put_rows(o, p, rows)
-      call put_estimates(o, m, p, truth)
+      trials = all_trials(.not. redundant .and. 3*count(.not. m%links%ground) <= max_equations)
+      call read_truth(m, last, reference, truth)
+      do i = 1, size(trials)
+         call show_progress(progress, 'TRIAL', i, size(trials))
+         call solve(trial_mechanism(m, trials(i)), last, trials(i), truth)
+      end do
+      ! All trials take turns, so that what else the machine does meets all of them.
+      do k = 1, repeats
+         call show_progress(progress, 'MEASUREMENT', k, repeats)
+         do i = 1, size(trials)
+            if (trials(i)%missed == 0) &
+               trials(i)%time(k) = step_time(trial_mechanism(m, trials(i)), last, trials(i)%seconds)
+         end do
+      end do
+
+      call put_head(o, m, last, redundant, truth)
+      standard = findloc(trials%tolerance, 0.0_dp, dim=1)
+      do i = 1, size(trials)
+         call put_trial(o, trials(i), median(trials(standard)%time))
+      end do
+   end subroutine study_set
+
+   !> Returns the trials of a study: each method with each tolerance, if `all_at_once` also those that solve all
+   !> equations at once; then the predictors of METHOD NEWTON. The first one without a tolerance is the default.
+   function all_trials(all_at_once) result(trials)
+      logical, intent(in) :: all_at_once
+      type(trial_t), allocatable :: trials(:)
+      integer, parameter :: methods(*) = [method_newton, method_dense, method_matrix]
+      integer :: i, k
+
+      trials = [((trial_t(method=methods(i), tolerance=tolerances(k)), k=1, size(tolerances)), &
+         i=1, merge(size(methods), 1, all_at_once)), (trial_t(predictor=k), k=0, 3)]
+   end function all_trials
+
+   !> Returns the mechanism `m` as trial `t` solves it, with no question of the deck but its rows.
+   function trial_mechanism(m, t) result(one)
+      type(mechanism_t), intent(in) :: m
+      type(trial_t), intent(in) :: t
+      type(mechanism_t) :: one
+
+      one = m
+      one%method = t%method
+      one%tolerance = real(t%tolerance, wp)
+      one%predictor = t%predictor
+      one%assemblies = .false.
+   end function trial_mechanism
+
+   !> Solves `m` at instants 0 to `last`. Fills missed instants, iterations, seconds and errors of `t`; errors only if
+   !> something is compared with the `truth`.
+   subroutine solve(m, last, t, truth)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: last
+      type(trial_t), intent(inout) :: t
+      type(truth_t), intent(in) :: truth
+      type(set_analysis_t) :: a
+      real(dp) :: begun, largest(2, 0:2), difference(2, 0:2)
+      integer :: k, at_first, row
+
+      largest = 0.0_dp
+      difference = 0.0_dp
+      row = 0
+      t%seconds = 0.0_dp
+      call make_set_analysis(m, a)
+      do k = 0, last
+         begun = seconds_now()
+         call advance_set(a, instant(m, k))
+         t%seconds = t%seconds + (seconds_now() - begun)
+         if (k == 0) at_first = iterations_of(a)
+         if (is_flagged(a%now)) t%missed = t%missed + 1
+         if (k < truth%compared) call compare()
+         if (t%missed > 0 .and. t%seconds > long) exit
+      end do
+      t%iterations = real(iterations_of(a) - at_first, dp)/max(1, min(k, last))
+      do k = 0, 2
+         where (largest(:, k) > 0.0_dp) difference(:, k) = difference(:, k)/largest(:, k)
+         t%error(k) = maxval(difference(:, k))
+      end do
 
    contains
 
-      !> The rows of one kind, by its program. For kinmat-single a deck of which it cannot read the numbers is none.
-      subroutine ask(program, kind_name, kind)
-         character(*), intent(in) :: program, kind_name
-         integer, intent(in) :: kind
-         integer, allocatable :: chosen(:)
-         integer :: i
+      !> Notes the largest values of the rows of this instant and their largest differences from the truth: of lengths
+      !> and of angles.
+      subroutine compare()
+         type(row_t) :: r
+         real(wp) :: estimate(3, 0:2)
+         real(qp) :: value
+         integer :: i, c, d, kind
 
-         chosen = pack([(i, i=1, size(rows))], rows%trial%kind == kind)
-         call ask_companion(program, kind_name, path, m, rows(chosen)%trial, .true., outcomes, failure)
-         if (allocated(failure)) then
-            if (kind == kind_single .and. failure%status == status_rejected) deallocate (failure)
-            return
-         end if
-         do i = 1, size(chosen)
-            call take_outcome(outcomes(i), rows(chosen(i)))
-         end do
-      end subroutine ask
-
-      !> Fills `row` from the outcome of its trial: errors against the truth, iterations, times.
-      subroutine take_outcome(one, row)
-         type(outcome_t), intent(in) :: one
-         type(row_t), intent(inout) :: row
-
-         row%errors = errors_of(truth, m, row%trial, one)
-         row%iterations = one%iterations
-         if (allocated(one%time)) row%time = one%time
-      end subroutine take_outcome
-
-      !> The rows in double precision. What is measured is measured in turn, repeat by repeat.
-      subroutine solve_rows()
-         type(outcome_t) :: one
-         real(dp) :: seconds(size(rows))
-         integer :: i, k
-
-         do i = 1, size(rows)
-            associate (t => rows(i)%trial)
-               if (t%kind /= kind_double) cycle
-               call march(trial_mechanism(m, t), real(trial_instants(m, t), wp), t%stride, one, seconds(i))
-               call take_outcome(one, rows(i))
-               rows(i)%time = spread(0.0_dp, 1, merge(repeats, 0, can_be_timed(one, t%last)))
-            end associate
-         end do
-         do k = 1, repeats
-            call show_progress(progress, 'MEASUREMENT', k, repeats)
-            do i = 1, size(rows)
-               associate (t => rows(i)%trial)
-                  if (t%kind == kind_double .and. k <= size(rows(i)%time)) rows(i)%time(k) = &
-                     step_time(trial_mechanism(m, t), real(trial_instants(m, t), wp), seconds(i))
-               end associate
+         if (.not. truth%is_reference) call sample_set(a, .true.)
+         do i = 1, size(a%now%rows)
+            if (.not. is_compared(a, i, k)) cycle
+            row = row + 1
+            call find_row_in_set(a%now, i, r)
+            if (.not. truth%is_reference) estimate = error_in_set(a%now, i)
+            do d = 0, 2
+               do c = 1, 3
+                  if (.not. has_number(r, c, d)) cycle
+                  kind = merge(2, 1, c == 3 .or. r%angular)
+                  value = real(r%value(c, d), qp)
+                  if (.not. truth%is_reference) then
+                     difference(kind, d) = max(difference(kind, d), real(estimate(c, d), dp))
+                  else if (truth%value(c, d, row) < no_number) then
+                     if (m%degrees .and. kind == 2) value = value*radian
+                     difference(kind, d) = max(difference(kind, d), real(abs(value - truth%value(c, d, row)), dp))
+                  else
+                     cycle
+                  end if
+                  largest(kind, d) = max(largest(kind, d), real(abs(value), dp))
+               end do
             end do
          end do
-      end subroutine solve_rows
-   end subroutine study_set
+      end subroutine compare
+   end subroutine solve
+
+   !> Whether row number `i` of the set in `a` is compared at instant number `k`: links, points and pairs are.
+   logical function is_compared(a, i, k)
+      type(set_analysis_t), intent(in) :: a
+      integer, intent(in) :: i, k
+      type(request_t) :: request
+
+      request = request_of(a%now, i)
+      is_compared = request%kind <= request_pair .and. is_due(a%now, request, k)
+   end function is_compared
+
+   !> Reads what the rows of `m` at instants 0 to `last` are compared with: the rows of the `reference` as far as they
+   !> go. Without a reference, or if it has no row of this set, the program's own estimates of errors stand for them.
+   subroutine read_truth(m, last, reference, truth)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: last
+      type(reference_t), intent(in) :: reference
+      type(truth_t), intent(out) :: truth
+      type(set_analysis_t) :: a
+      type(row_t) :: r
+      integer :: i, k, count
+
+      call make_set_analysis(m, a)
+      allocate (truth%value(3, 0:2, max_rows))
+      count = 0
+      do k = 0, merge(last, -1, reference%is_there)
+         if (count + size(a%now%rows) > max_rows) exit
+         do i = 1, size(a%now%rows)
+            if (.not. is_compared(a, i, k)) cycle
+            count = count + 1
+            call find_row_in_set(a%now, i, r)
+            call read_reference(reference, m%set_number, k, r%name, truth%value(:, :, count))
+            if (truth%value(1, 0, count) < no_number) truth%compared = k + 1
+         end do
+         ! The reference ends here, if it misses two instants.
+         if (k > truth%compared) exit
+      end do
+      truth%is_reference = truth%compared > 0
+      if (.not. truth%is_reference) truth%compared = min(last + 1, max(1, max_rows/max(1, size(a%now%rows))))
+   end subroutine read_truth
+
+   !> Prints the head of the study of `m` over `last` steps.
+   subroutine put_head(o, m, last, redundant, truth)
+      type(output_t), intent(inout) :: o
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: last
+      logical, intent(in) :: redundant
+      type(truth_t), intent(in) :: truth
+
+      call put(o, ' '//whole(last)//' OF '//whole(instant_count(m) - 1)//' STEPS, '//whole(size(m%links))//' LINKS, ' &
+         //wp_name)
+      if (truth%is_reference) then
+         call put(o, ' ERRORS: AGAINST kinmat-quad (REAL128), AT '//whole(truth%compared)//' OF '//whole(last + 1) &
+            //' INSTANTS')
+      else
+         call put(o, ' ERRORS: THE ESTIMATES OF --errors, AT '//whole(truth%compared)//' OF '//whole(last + 1) &
+            //' INSTANTS; kinmat-quad HAS NO ROWS OF THIS SET (make kinds)')
+      end if
+      if (redundant) then
+         call put(o, ' METHODS DENSE AND MATRIX ARE NOT TRIED: EQUATIONS ARE REDUNDANT')
+      else if (3*count(.not. m%links%ground) > max_equations) then
+         call put(o, ' METHODS DENSE AND MATRIX ARE NOT TRIED: '//whole(3*count(.not. m%links%ground))//' EQUATIONS')
+      end if
+      call put(o, '')
+      call put(o, repeat(' ', 31)//'TIME OF A STEP, MICROSECONDS'//repeat(' ', 19)//'LARGEST ERROR / LARGEST VALUE')
+      call put(o, ' METHOD  PREDICTOR  TOLERANCE    MEDIAN       MIN       MAX   RATIO   ITER   POSITION   VELOCITY' &
+         //'   ACCELER.')
+   end subroutine put_head
+
+   !> Prints the row of trial `t`. `unit`: microseconds of the default.
+   subroutine put_trial(o, t, unit)
+      type(output_t), intent(inout) :: o
+      type(trial_t), intent(in) :: t
+      real(dp), intent(in) :: unit
+      character(120) :: line
+      integer :: d
+
+      line = ' '//method_words(t%method)
+      line(10:) = 'OWN'
+      if (t%predictor /= own_predictor) line(10:) = 'ORDER '//whole(t%predictor)
+      line(21:) = 'ROUNDING'
+      if (t%tolerance > 0.0_dp) write (line(21:29), '(es9.1)') t%tolerance
+      if (t%missed > 0) then
+         line(32:) = 'NOT SOLVED AT '//whole(t%missed)//' INSTANTS OR MORE'
+      else
+         write (line(30:), '(3f10.3, f8.2, f7.2)') median(t%time), minval(t%time), maxval(t%time), &
+            median(t%time)/unit, t%iterations
+      end if
+      do d = 0, 2
+         if (t%missed > 0) cycle
+         if (t%error(d) < 1.0e-3_dp*nothing_known) then
+            write (line(75 + 11*d:), '(es11.1)') t%error(d)
+         else
+            line(75 + 11*d:) = '    UNKNOWN'
+         end if
+      end do
+      call put(o, trim(line))
+   end subroutine put_trial
+
+   !> Returns microseconds of a step of `m`, position, velocity and acceleration at instants 1 to `last`, without the
+   !> first instant. `whole_time`: seconds that all steps take, about.
+   real(dp) function step_time(m, last, whole_time) result(time)
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: last
+      real(dp), intent(in) :: whole_time
+      type(set_analysis_t) :: a
+      real(dp) :: begun
+      real(wp) :: instants(0:last)
+      integer :: i, k, passes, steps
+
+      instants = [(instant(m, k), k=0, last)]
+      steps = last
+      if (whole_time > max_seconds) steps = min(last, max(min_steps, int(last*max_seconds/whole_time)))
+      passes = max(1, min(1000, ceiling(min_seconds/max(whole_time, 1.0e-6_dp))))
+      time = 0.0_dp
+      do i = 1, passes
+         call make_set_analysis(m, a)
+         call advance_set(a, instants(0))
+         begun = seconds_now()
+         do k = 1, steps
+            call advance_set(a, instants(k))
+         end do
+         time = time + (seconds_now() - begun)
+      end do
+      time = micro*time/(real(passes, dp)*steps)
+   end function step_time
+
+   !> Returns the clock (s), from some instant.
+   real(dp) function seconds_now()
+      integer(int64) :: ticks, per_second
+
+      call system_clock(ticks, per_second)
+      seconds_now = real(ticks, dp)/real(per_second, dp)
+   end function seconds_now
+
+   !> Returns the median of the times `x`.
+   pure real(dp) function median(x)
+      real(dp), intent(in) :: x(repeats)
+      integer :: i
+
+      do i = 1, repeats
+         median = x(i)
+         if (count(x < median) < middle .and. count(x <= median) >= middle) return
+      end do
+   end function median
 end module study

@@ -1,5 +1,5 @@
 # The picture of `make study`: gnuplot -e "form='png'; numbers='FILE'; scenes='FILE'; picture='FILE'" study.gp
-# Time of a step against its error, seven blocks of numbers a scene. Nothing in it depends on the day or the machine's name.
+# Time of a step against its error, six blocks of numbers a scene. Nothing in it depends on the day or the machine's name.
 if (form eq 'svg') { set terminal svg size 1080,720 noenhanced font 'sans,11' background '#ffffff'
 } else { set terminal pngcairo size 1080,720 noenhanced font 'sans,11' background '#ffffff' }
 set output picture
@@ -34,8 +34,7 @@ set key off
 set label 11 'blocks (the default)' at screen 0.03, 0.05 tc rgb blue
 set label 12 'blocks, 16 times as many steps' at screen 0.20, 0.05 tc rgb '#6fa3dc'
 set label 13 'all equations at once' at screen 0.46, 0.05 tc rgb green
-set label 14 'matrices of 1987, references of each step' at screen 0.66, 0.05 tc rgb red
-set label 15 'references of the first step' at screen 0.66, 0.018 tc rgb '#e08a30'
+set label 14 'matrices of 1987' at screen 0.66, 0.05 tc rgb red
 set label 16 'blocks in REAL32' at screen 0.03, 0.018 tc rgb grey
 set label 17 'blocks in REAL128, to 1e-30' at screen 0.20, 0.018 tc rgb violet
 set label 18 'circle: default tolerance' at screen 0.46, 0.018
@@ -44,16 +43,15 @@ n = form eq 'svg' ? 2 : 0
 clip(x) = x < 2e-17 ? 2e-17 : x
 
 do for [i = 1:6] {
-   k = 7*(i - 1)
+   k = 6*(i - 1)
    set title titles[i] offset 0, -0.5
    set ylabel (closed[i] > 0 ? 'time of the closed form = 1' : 'time of the default = 1')
    set yrange [(closed[i] > 0 ? 1 : 0.3):(closed[i] > 0 ? 2000 : 600)]
-   plot numbers index k + 5 using (clip($1)):2 with linespoints pn n lw 1 lc rgb violet pt 7 ps 0.5, \
-      '' index k + 4 using (clip($1)):2 with linespoints pn n lw 1 lc rgb grey pt 7 ps 0.5, \
+   plot numbers index k + 4 using (clip($1)):2 with linespoints pn n lw 1 lc rgb violet pt 7 ps 0.5, \
+      '' index k + 3 using (clip($1)):2 with linespoints pn n lw 1 lc rgb grey pt 7 ps 0.5, \
       '' index k + 2 using (clip($1)):2 with linespoints pn n lw 3 lc rgb red pt 7 ps 0.5, \
-      '' index k + 3 using (clip($1)):2 with linespoints pn n lw 1 lc rgb '#e08a30' pt 7 ps 0.4, \
       '' index k + 1 using (clip($1)):2 with linespoints pn n lw 2 lc rgb green pt 7 ps 0.5, \
-      '' index k + 6 using (clip($1)):2 with linespoints pn n lw 1 lc rgb '#6fa3dc' pt 7 ps 0.5, \
+      '' index k + 5 using (clip($1)):2 with linespoints pn n lw 1 lc rgb '#6fa3dc' pt 7 ps 0.5, \
       '' index k using (clip($1)):2 with linespoints pn n lw 2 lc rgb blue pt 7 ps 0.5, \
       '' index k using (clip($1)):($3 > 0 ? $2 : NaN) with points pt 6 ps 2 lw 2 lc rgb 'black'
    do for [l = 11:18] { unset label l }

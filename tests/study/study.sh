@@ -1,31 +1,30 @@
 #!/bin/sh
-# make study: kinmat --study for six scenes, its tables on standard output and in $BUILD/study/, each with the time of the
-# default method beside the closed form where there is one; then the pictures. Error and time of every trial:
-# $BUILD/study/speed.txt, a scene a block of blocks, read by tests/study/study.gp.
+# make study: --study of the three kinds of reals for six scenes, and with 16 times the steps. Its tables go to standard output
+# and to $BUILD/study/, with the time of the default method in times of the closed form where there is one; then the pictures.
+# Error and time of every trial: $BUILD/study/speed.txt, a scene a block of blocks, read by tests/study/study.gp.
 BUILD=${BUILD:-build}
 out=$BUILD/study
 mkdir -p "$out" docs || exit 3
 OPENBLAS_NUM_THREADS=${OPENBLAS_NUM_THREADS:-1}
 export OPENBLAS_NUM_THREADS
 
-# series WAY LAST FILE FACTOR: error and time of the rows of section 1 or 4 of that way, of LAST steps; of times the least,
-# over the least of the default: what else the machine does makes it longer, never shorter
+# least FILE: the least time of a step by the default method. Whatever else the machine does makes a time longer.
+least() { awk '/^ NEWTON  OWN .* ROUNDING / { print substr($0, 40, 10) + 0; exit }' "$1"; }
+# series METHOD FILE UNIT: error and time of the trials of that method, in steps of so many microseconds, and whether it is the
+# default tolerance
 series() {
-   awk -v way="$1" -v last="$2" -v factor="$4" -v unit="$(awk '/^ 4  /  { on = 1 } on && /^ BLOCKS  .* ROUND/ { print substr($0, 44, 8); exit }' "$3")" '
-      /^ [1-4]  [A-Z]/ { section = $1 }
-      /^ CHEAPEST/ { exit }
-      section != 1 && section != 4 { next }
-      /^ (BLOCKS|DENSE|MATRIX)/ {
-         name = substr($0, 2, 12); sub(/ *$/, "", name)
-         if (name != way || substr($0, 30, 6) + 0 != last || (section == 4 && way !~ /P$/)) next
-         ratio = substr($0, 44, 8)/unit
+   [ -e "$2" ] && awk -v method="$1" -v unit="$3" '
+      $1 == method && $2 == "OWN" && !/NOT SOLVED/ {
          e = 0
-         for (k = 73; k <= 105; k += 16) { x = substr($0, k, 8); gsub(/[ <]/, "", x); if (x + 0 > e) e = x + 0 }
-         if (ratio > 0 && e > 0) print e, ratio*factor, (substr($0, 20, 10) ~ /ROUNDING/)
-      }' "$3"
+         for (k = 75; k <= 97; k += 11) { x = substr($0, k, 11) + 0; if (x > e) e = x }
+         if (e == 0) e = 1e-30
+         print e, substr($0, 40, 10)/unit, ($3 == "ROUNDING")
+      }' "$2"
    # Empty blocks would not be counted: a point outside of the picture.
    printf '\n1e9 1e9 0\n\n\n'
 }
+# study PROGRAM DECK FILE: its tables, which are printed too
+study() { rm -f "$3"; "$BUILD/$1" --study -o "$3" "$2" && cat "$3" && echo; }
 
 tests/make_deck windows 1000 > "$out/windows_1000.deck" || exit 3
 : > "$out/speed.txt"
@@ -41,8 +40,16 @@ for name in yoke four_bar andrews jansen dead_point_6 windows_1000; do
       deck=$out/$name.deck
       ratio=$("$BUILD/timed/study_ratio" $name) || exit 3
    fi
-   "$BUILD/kinmat" --study -o "$out/$name.txt" "$deck" || exit 3
-   cat "$out/$name.txt"
+   study kinmat "$deck" "$out/$name.txt" || exit 3
+   study kinmat-single "$deck" "$out/$name.single.txt"
+   study kinmat-quad "$deck" "$out/$name.quad.txt"
+   steps=$(awk '/^TIME/ { print $2; exit }' "$deck")
+   # 16 times the steps, if they are not too many for a study.
+   rm -f "$out/$name.finer.txt"
+   if [ "$steps" -lt 1000 ]; then
+      awk -v steps="$((16*steps))" '/^TIME/ { $0 = sprintf("%-8s%-16s", "TIME", steps) substr($0, 25) } { print }' "$deck" > "$out/finer.deck"
+      study kinmat "$out/finer.deck" "$out/$name.finer.txt"
+   fi
    if [ "$ratio" = 0 ]; then
       echo ' There is no closed form of this scene that is written for speed.'
       factor=1
@@ -51,15 +58,11 @@ for name in yoke four_bar andrews jansen dead_point_6 windows_1000; do
       factor=$ratio
    fi
    echo
-   steps=$(awk '/STEPS, .* LINKS/ { print $1; exit }' "$out/$name.txt")
-   finest=$(awk '/^ 1  TOL/ { on = 1 } /^ 2  / { exit } on && /^ BLOCKS/ { if (substr($0, 30, 6) + 0 > n) n = substr($0, 30, 6) + 0 }
-      END { print n }' "$out/$name.txt")
-   echo "$name $steps $finest $ratio" >> "$out/scenes.txt"
-   for way in 'BLOCKS' 'DENSE' 'MATRIX' 'MATRIX FIXED' 'BLOCKS SP' 'BLOCKS QP'; do
-      series "$way" "$steps" "$out/$name.txt" "$factor" >> "$out/speed.txt"
+   echo "$name $steps 0 $ratio" >> "$out/scenes.txt"
+   unit=$(least "$out/$name.txt" | awk -v factor="$factor" '{ print $1/factor }')
+   for way in 'NEWTON .txt' 'DENSE .txt' 'MATRIX .txt' 'NEWTON .single.txt' 'NEWTON .quad.txt' 'NEWTON .finer.txt'; do
+      series "${way% *}" "$out/$name${way#* }" "$unit" >> "$out/speed.txt"
    done
-   [ "$finest" = "$steps" ] && finest=-1
-   series BLOCKS "$finest" "$out/$name.txt" "$factor" >> "$out/speed.txt"
 done
 draw() {
    gnuplot -e "form='$1'; numbers='$out/speed.txt'; scenes='$out/scenes.txt'; picture='$2'" tests/study/study.gp || exit 3
