@@ -6,7 +6,7 @@
 !> limits there may be extremes. What is closer is not searched, and the table says so.
 module extreme_search
    use kinds, only: wp
-   use mechanism, only: mechanism_t, instant
+   use mechanism, only: mechanism_t
    use motion, only: motion_t, singular_change, diagnostic_change, diagnostic_limit
    use set_analysis, only: set_analysis_t
    use nodes, only: node_t, one_sided_t, node_at, is_known, times_between, beside_joint, limits_of, places, &
@@ -62,7 +62,7 @@ contains
 
       !> Searches between the last instant of mechanism `c` and instant number `k`, `now`.
       subroutine search_step()
-         real(wp), allocatable :: ends(:)
+         real(wp), allocatable :: ends(:), times(:)
          real(wp) :: from
          logical :: is_open, is_change, is_limit, is_pole, to_open, to_change
          integer :: i
@@ -71,6 +71,7 @@ contains
             call find_ends(s%now%motions(c), t1, x%way, ends, is_limit, is_pole)
             if (s%now%motions(c)%known >= 0) ends = [ends, now%t]
             if (any(track%instant%known(track%rows) < 0)) ends = [real(wp) ::]
+            times = times_between(track%joints, track%longest, x%run, t1, now%t)
             from = t1
             track%halvings = 0
             is_open = .not. is_known(track%instant, track%rows)
@@ -78,8 +79,8 @@ contains
             do i = 1, size(ends)
                to_open = i < size(ends) .or. is_limit .or. .not. is_known(now, track%rows)
                to_change = i < size(ends) .or. (s%now%motions(c)%singularity == singular_change .and. .not. is_limit)
-               call search_piece(times_between(track%joints, s%now, k), end_t(from, is_open, is_change), &
-                  end_t(ends(i), to_open, to_change, is_pole .and. i == size(ends)))
+               call search_piece(times, end_t(from, is_open, is_change), end_t(ends(i), to_open, to_change, &
+                  is_pole .and. i == size(ends)))
                is_open = .true.
                is_change = .true.
                from = ends(i)

@@ -2,15 +2,15 @@
 !> `extreme_search` has come; the times of the forward and the return stroke of a cyclic motion.
 module extremes
    use kinds, only: wp
-   use planar, only: without_turns
+   use planar, only: pi, without_turns
    use mechanism, only: mechanism_t, request_t, request_link, request_pair, pair_prismatic
    use motion, only: motion_t
    use scales, only: characteristic_length, characteristic_rate
-   use drives, only: joints_of
+   use drives, only: joints_of, shortest_period
    use points, only: is_fixed, coordinates_of
    use digits_in_doubt, only: safe_growth
    use independent, only: set_t, request_of
-   use nodes, only: node_t, one_sided_t
+   use nodes, only: node_t, one_sided_t, order_along
    use zero_search, only: sample_t, noise_part
    implicit none
    private
@@ -26,6 +26,8 @@ module extremes
    !> A motion is cyclic if its end differs from its beginning by less, in the same units: a turn of 6.2831853 rad is
    !> one. Times of reversals repeat within this part of the run.
    real(wp), parameter :: closes_to = max(1.0e-6_wp, 1000.0_wp*epsilon(1.0_wp))
+   !> So many parts at least has a turn of a drive, and a period of a harmonic law.
+   integer, parameter :: parts_of_turn = 12
    !> Digits after the point of a ratio of times.
    integer, parameter :: ratio_decimals = 6
    !> The first index of the extremes.
@@ -46,7 +48,8 @@ module extremes
    !> The way that the rows of one independent mechanism have come.
    type :: track_t
       integer, allocatable :: rows(:)                  !< those asked for
-      real(wp), allocatable :: joints(:)               !< times at which a law is not smooth
+      real(wp), allocatable :: joints(:)               !< times at which a law is not smooth, in the run's order
+      real(wp) :: longest = huge(1.0_wp)               !< part of a step that is searched as a whole
       type(motion_t), allocatable :: start              !< the motion at the first instant
       !> How far links end from where they began: lengths, angles, velocities, in characteristic ones.
       real(wp) :: closure(3) = huge(1.0_wp)
@@ -156,9 +159,12 @@ contains
             if (size(track%rows) == 0) cycle
             do i = 1, size(own%drives)
                track%joints = [track%joints, joints_of(own%drives(i))]
+               track%longest = min(track%longest, shortest_period(own%drives(i))/parts_of_turn)
             end do
+            track%joints = track%joints(order_along(track%joints, x%way))
             length = characteristic_length(own)
             rate = characteristic_rate(own, length)
+            track%longest = min(track%longest, 2.0_wp*pi/(parts_of_turn*rate))
             do k = 0, 2
                x%size_of(:, k, track%rows) = merge(1.0_wp, length, x%is_angle(:, track%rows))*rate**k
             end do

@@ -8,7 +8,6 @@
 module nodes
    use kinds, only: wp
    use known_digits, only: nothing_known
-   use mechanism, only: settings_t, instant
    use points, only: row_t
    use set_analysis, only: set_analysis_t, rows_at
    implicit none
@@ -18,6 +17,8 @@ module nodes
 
    !> Just beside a joint, in parts of the time or of the run: `drives` takes what is nearer as the joint itself.
    real(wp), parameter :: joint_part = 65536.0_wp*epsilon(1.0_wp)
+   !> The parts between two joints at least, and at most.
+   integer, parameter :: parts_of_gap = 8, max_parts = 120
    !> The places beside a time, and how far the nearest is from it, in steps of TIME. At a change point rounding errors
    !> of accelerations are divided by the square of that distance, and the polynomial leaves its fifth power; at a limit
    !> of the motion it leaves the power 5/2.
@@ -93,27 +94,35 @@ contains
       is_known = all(node%known(rows) == 2) .and. all(node%error(:, :, rows) < nothing_known)
    end function is_known
 
-   !> The times of the nodes between instants number `k` - 1 and `k`, in their order: at each of the `joints` of the
-   !> drives' laws and on either side of it.
-   pure function times_between(joints, m, k) result(times)
-      real(wp), intent(in) :: joints(:)
-      class(settings_t), intent(in) :: m
-      integer, intent(in) :: k
+   !> The times of the nodes between `t1` and `t2`, instants of a run of the time `run`, in their order: at each of the
+   !> `joints` of the drives' laws, which are in this order too, and on either side of it; and between them, so that no
+   !> part is longer than `longest` or an eighth of the time from joint to joint.
+   pure function times_between(joints, longest, run, t1, t2) result(times)
+      real(wp), intent(in) :: joints(:), longest, run, t1, t2
       real(wp), allocatable :: times(:)
-      real(wp) :: t1, h, beside
-      integer :: i
+      real(wp) :: way, from, to, part
+      integer :: i, k, low, high, parts
 
-      t1 = instant(m, k - 1)
-      h = instant(m, k) - t1
+      way = sign(1.0_wp, t2 - t1)
+      low = count((joints - t1)*way <= 0.0_wp)
+      high = count((joints - t2)*way < 0.0_wp)
       allocate (times(0))
-      do i = 1, size(joints)
-         associate (t => joints(i))
-            beside = sign(beside_joint(m%t1 - m%t0, t), h)
-            times = [times, t - beside, t, t + beside]
-         end associate
+      from = t1
+      do i = low, high
+         to = t2
+         part = longest
+         if (i < size(joints)) then
+            if (i < high) to = joints(i + 1)
+            if (i > 0) part = min(part, abs(joints(i + 1) - joints(i))/parts_of_gap)
+            times = [times, joints(i + 1) + way*beside_joint(run, joints(i + 1))*[(k, k=-1, 1)]]
+         end if
+         if (i > 0) times = [times, joints(i) + way*beside_joint(run, joints(i))]
+         parts = ceiling(min(real(max_parts, wp), abs(to - from)/part*(1.0_wp - joint_part)))
+         times = [times, (from + (to - from)*k/parts, k=1, parts - 1)]
+         from = to
       end do
-      times = pack(times, (times - t1)/h > 0.0_wp .and. (times - t1)/h < 1.0_wp)
-      times = times(order_along(times, h))
+      times = pack(times, (times - t1)*way > 0.0_wp .and. (t2 - times)*way > 0.0_wp)
+      times = times(order_along(times, way))
    end function times_between
 
    !> How far from a joint at the time `t` are the nodes just beside it, in a run of the time `run`.

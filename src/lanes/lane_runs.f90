@@ -15,6 +15,7 @@ module lane_runs
    use digits_in_doubt, only: is_in_doubt
    use set_analysis, only: set_analysis_t, make_set_analysis, renew_set_analysis, advance_set
    use extreme_search, only: note_start
+   use nodes, only: times_between
    use answers, only: answers_t, new_answers, take_instant
    use variant_rows, only: variant_row_t, note_flag
    use system_calls, only: signal_received
@@ -345,9 +346,11 @@ contains
 
       steps = max_searched
       turned = correction > fine_prediction
-      associate (joints => r%asked%extremes%tracks(1)%joints, t1 => l%t(i, l%slot(0)))
-         if (size(joints) > 0) turned = turned .or. &
-            any((joints - t1)*(instant(r%m, r%at + 1) - joints) >= 0.0_wp)
+      ! A step with joints, or that the engine divides, it searches.
+      associate (track => r%asked%extremes%tracks(1), t1 => l%t(i, l%slot(0)), t2 => instant(r%m, r%at + 1))
+         turned = turned .or. abs(t2 - t1) > track%longest
+         if (size(track%joints) > 0) turned = turned .or. any((track%joints - t1)*(t2 - track%joints) >= 0.0_wp) &
+            .or. size(times_between(track%joints, track%longest, r%asked%extremes%run, t1, t2)) > 0
       end associate
       if (turned) return
       associate (e => r%s%list(1)%engine)
