@@ -58,7 +58,7 @@ modules := $(filter-out $(command),$(basename $(notdir $(sources)))) document_te
 vpath %.f90 $(sort $(dir $(sources) $(helpers)))
 vpath %.F90 $(sort $(dir $(sources)))
 
-.PHONY: all assembly-peers example pictures kinds run test check forms errors proofs fool-proofs kind-check quad-check single-check bench bench-short bench-against compare-against bench-peers hard hard-short circuits study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants sizes expected install install-kinds clean
+.PHONY: all assembly-peers example pictures kinds run test check forms errors proofs fool-proofs kind-check quad-check single-check bench bench-short bench-against compare-against bench-peers hard hard-short circuits dwells study study-short study-1987 digits fuzz fuzz-short fuzz-mechanisms fuzz-extremes relations tolerances mutants sizes expected install install-kinds clean
 all: $(BUILD)/kinmat
 
 # The paper's example at two instants.
@@ -230,6 +230,10 @@ hard-short: $(BUILD)/release/hard
 circuits: $(BUILD)/release/circuits_by_chance random_blocks
 	$<
 
+# Dwells of 6000 random mechanisms on their dead and change points, against closed forms.
+dwells: $(BUILD)/release/dwells_by_chance
+	$< 6000
+
 # Speed against error of six scenes: kinmat --study for each, times beside the closed forms where there are such, and
 # docs/speed_against_error.png and .svg drawn anew (gnuplot-nox).
 study: kinds $(BUILD)/timed/study_ratio
@@ -287,7 +291,7 @@ TEST_HELPERS := $(unit_helpers:%=$(BUILD)/debug/%.o)
 include tests/pfunit/tests.mk
 
 # What the parts of `make test` need is made beforehand, many at a time; the parts run one after another.
-checkers := check_forms error_estimates proof_bounds fool_proofs compare_digits hard matrix_1987 bench fuzz_mechanisms read_listing circuits_by_chance random_blocks
+checkers := check_forms error_estimates proof_bounds fool_proofs compare_digits hard matrix_1987 bench fuzz_mechanisms read_listing circuits_by_chance dwells_by_chance random_blocks
 test: $(addprefix $(BUILD)/,kinmat example debug/kinmat $(checkers:%=release/%) debug/fuzz kinmat-quad kinmat-single \
    quad/release/kind_errors single/release/kind_errors tests$(if $(PFUNIT_DIR),/pfunit)/unit) $(references)
 	BUILD=$(BUILD) MAKE='$(MAKE)' FC='$(FC)' tests/run.sh

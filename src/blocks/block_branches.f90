@@ -13,6 +13,7 @@ module block_branches
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_change, diagnostic_dead_end
    use convergence, only: convergence_t, is_solved, max_kantorovich_ratio
    use predictor, only: predict, is_even
+   use drives, only: law_t, drive_motion
    use block_state, only: unknown_t, set_values, values_of, largest_drive_rate
    use block_solver, only: solve_block
    use block_rank, only: min_direction, residual_of, gauss_newton_step
@@ -42,6 +43,8 @@ module block_branches
    !> this, half of what it may be.
    real(wp), parameter :: max_part_ratio = 0.05_wp
    integer, parameter :: max_parts = 64
+   !> The pivots at the ends of a substep tell where between them the change point is, but for this part.
+   real(wp), parameter :: not_told = 1.0e-3_wp
    !> The position found from the equations, and that extrapolated, are the same where they differ by less.
    real(wp), parameter :: same_place = 64.0_wp*sqrt(epsilon(1.0_wp))
 
@@ -114,17 +117,74 @@ contains
       is = is .and. correction <= min(right, max_wrong*e%change)
    end function is_short_and_right
 
-   !> Where block `i` has passed a change point before `t`: the least pivot goes through zero in proportion.
+   !> Where block `i` has passed a change point before `t`: the least pivot goes through zero in proportion to the
+   !> values of the drives.
    type(diagnostic_t) function change_point(e, i, t) result(r)
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: i
       real(wp), intent(in) :: t
 
       r = new_diagnostic(diagnostic_change, links_of(e, i))
-      associate (before => e%history%t(0), a => e%followed(i)%pivot, b => e%found(i)%pivot)
-         r%t = before + (t - before)*(a/(a + b))
-      end associate
+      r%t = time_of_values(e, t, e%followed(i)%pivot/(e%followed(i)%pivot + e%found(i)%pivot))
    end function change_point
+
+   !> The time at which the fastest drive has made this `part` of its way in the substep to `t`, by its law in the
+   !> deck. If it is so slow there that its value does not give the time, it is the one until which it slows down.
+   pure real(wp) function time_of_values(e, t, part) result(at)
+      type(block_engine_t), intent(in) :: e
+      real(wp), intent(in) :: t, part
+      type(law_t) :: law
+      real(wp) :: span(2), start(size(e%laws)), way(size(e%laws)), f(3), low, high
+      integer :: d
+
+      span = [e%history%t(0), t]
+      do d = 1, size(e%laws)
+         f = drive_motion(e%laws(d), span(1))
+         start(d) = f(1)
+         f = drive_motion(e%laws(d), span(2))
+         way(d) = f(1) - start(d)
+      end do
+      d = maxloc(abs(e%unit_of*way), dim=1)
+      law = e%laws(d)
+      if (allocated(e%timed)) then
+         law = e%timed(d)
+         span = e%timed_span
+      end if
+      low = first_time(span(1), span(2), start(d) + (part - not_told)*way(d))
+      high = first_time(span(1), span(2), start(d) + (part + not_told)*way(d))
+      at = first_time(span(1), span(2), start(d) + part*way(d))
+      if (slows_down(drive_motion(law, low)) .and. .not. slows_down(drive_motion(law, high))) at = first_time(low, high)
+
+   contains
+
+      !> The time between `from` and `to` at which the drive has come to the `value` or, without that, slows down no
+      !> more.
+      pure real(wp) function first_time(from, to, value) result(first)
+         real(wp), intent(in) :: from, to
+         real(wp), intent(in), optional :: value
+         real(wp) :: before, middle, f(3)
+         logical :: is_before
+         integer :: k
+
+         before = from
+         first = to
+         do k = 1, digits(1.0_wp)
+            middle = before + 0.5_wp*(first - before)
+            f = drive_motion(law, middle)
+            is_before = slows_down(f)
+            if (present(value)) is_before = (f(1) - value)*way(d) < 0.0_wp
+            if (is_before) before = middle
+            if (.not. is_before) first = middle
+         end do
+      end function first_time
+
+      !> The speed of the drive falls, by its motion `f`.
+      pure logical function slows_down(f)
+         real(wp), intent(in) :: f(3)
+
+         slows_down = f(2)*f(3)*(span(2) - span(1)) < 0.0_wp
+      end function slows_down
+   end function time_of_values
 
    !> Puts block `i` on its other branch, and what builds on it after it; `c`: how that ended, `found`: it is there. The
    !> motions before are no guide to what comes.

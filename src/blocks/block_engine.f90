@@ -24,7 +24,7 @@ module block_engine
    private
    public :: block_engine_t, engine_state_t, followed_t, positions_t
    public :: make_block_engine, renew_block_engine, put_mechanism, solve_blocks, solve_again, solve_each, &
-      begin_record, set_drive_values, accept, get_motion, mark_singular_links, get_driven_links, followed_state, &
+      begin_record, set_drive_values, stay, accept, get_motion, mark_singular_links, get_driven_links, followed_state, &
       follows_values, slide_units
 
    !> Positions of one block (unknowns, any number).
@@ -65,6 +65,8 @@ module block_engine
       type(chain_t) :: chain                            !< of the links that are asked for
       type(chain_t) :: whole                            !< of all links
       type(law_t), allocatable :: laws(:)               !< (drives)
+      type(law_t), allocatable :: timed(:)              !< (drives) the deck's, while others are followed; then
+      real(wp) :: timed_span(2) = 0.0_wp                !< the times between which those hold
       real(wp), allocatable :: unit_of(:)               !< (drives) of the value, in the deck's unit of length, or 1
       logical, allocatable :: is_angle(:)               !< (drives)
       integer, allocatable :: orientation_of(:)         !< (links)
@@ -266,6 +268,20 @@ contains
          s%drive_value(0:2, i) = f*e%unit_of(i)
       end do
    end subroutine find_drive_values
+
+   !> The position found last is that of `t`, too, at which the drives have the same values. Blocks without velocities
+   !> keep it as it is; the others find their velocities and accelerations.
+   subroutine stay(e, t, c)
+      type(block_engine_t), intent(inout) :: e
+      real(wp), intent(in) :: t
+      type(convergence_t), intent(out) :: c
+
+      e%t = t
+      call set_drive_values(e, t)
+      call begin_record(c)
+      call solve_each(e, pack(e%moving, .not. e%is_singular(e%moving)), .true., c)
+      c%singular = .true.
+   end subroutine stay
 
    !> Solves the moving blocks once more, from where they are now.
    subroutine solve_again(e, c)

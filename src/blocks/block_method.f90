@@ -1,7 +1,9 @@
 !> The block engine with a choice of the first assembly, and what the continuation and the error estimate ask of it.
 module block_method
+   use, intrinsic :: iso_fortran_env, only: dp => real64
    use kinds, only: wp
    use motion, only: motion_t
+   use drives, only: law_t, bounds_t, bounds_of, joints_of
    use convergence, only: convergence_t, is_solved, ended_inconsistent
    use block_engine, only: block_engine_t, solve_blocks, mark_singular_links
    use assembly_choice, only: solve_first
@@ -10,7 +12,8 @@ module block_method
    use block_diagnostics, only: singular_links
    implicit none
    private
-   public :: solve_instant, get_link_flags, measure_closure_error, max_rate, growth_of_roundings, growth_of_angles
+   public :: solve_instant, is_at_rest, get_link_flags, measure_closure_error, max_rate, growth_of_roundings, &
+      growth_of_angles
 
    !> With smaller pivots everything is in doubt.
    real(wp), parameter :: smallest_pivot = epsilon(1.0_wp)**2
@@ -18,6 +21,8 @@ module block_method
    real(wp), parameter :: rate_digits = 6.0_wp
    !> What a block knows may be so many times as large as its own vectors before its roundings count for more.
    real(wp), parameter :: usual_coarse = 16.0_wp
+   !> A time may be off a joint of a law by this part of the joints' times.
+   real(wp), parameter :: joint_part = 4096.0_wp*max(epsilon(1.0_wp), real(epsilon(1.0_dp), wp))
 
 contains
 
@@ -36,6 +41,22 @@ contains
          call solve_first(e, t, c)
       end if
    end subroutine solve_instant
+
+   !> The drive of `law` does not move between the times `t1` and `t2`, by the bounds of its rate; or, if they are
+   !> equal, from that time on. A time about at a joint counts as after the first joint and before the last.
+   elemental logical function is_at_rest(law, t1, t2)
+      type(law_t), intent(in) :: law
+      real(wp), intent(in) :: t1, t2
+      type(bounds_t) :: b
+      real(wp) :: width, from
+
+      ! A law without joints rests always or never.
+      width = joint_part*maxval(abs([t1, t2, joints_of(law%drive)]))
+      if (.not. width > 0.0_wp) width = 1.0_wp
+      from = min(t1, t2) + width
+      b = bounds_of(law, from, max(max(t1, t2) - width, from + width))
+      is_at_rest = b%low(1) >= 0.0_wp .and. b%high(1) <= 0.0_wp
+   end function is_at_rest
 
    !> Tells which links have velocities in the motion `found` last, where not all have, and what the singular position
    !> is. `all_at_once`: all equations are solved at once, and have one Jacobian.

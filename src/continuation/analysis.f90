@@ -13,13 +13,13 @@ module analysis
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, branch_none, branch_first, branch_same, &
       branch_crossed
    use convergence, only: convergence_t, closure_error_t, is_solved, ended_inconsistent, ended_unsought, ended_elsewhere
-   use block_engine, only: block_engine_t, get_blocks_motion => get_motion, get_driven_links
-   use block_method, only: measure_closure_error, get_link_flags
+   use block_engine, only: block_engine_t, get_blocks_motion => get_motion, get_driven_links, stay
+   use block_method, only: measure_closure_error, get_link_flags, is_at_rest
    use dense_method, only: dense_t, make_dense, for_blocks, solve_all_links
    use block_diagnostics, only: start_diagnostics, limit_diagnostic
-   use at_bifurcation, only: stand_on, pass_standstill
+   use at_bifurcation, only: stand_on, go_by_value
    use following, only: following_t, step_record_t, make_following, renew_following, continue_to, is_too_far, &
-      has_too_many_substeps, go_on_from, go_back, place_t, note_place, return_to, limits_t, note_limit, limit_before
+      go_on_from, go_back, place_t, note_place, return_to, limits_t, note_limit, limit_before
    implicit none
    private
    public :: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back, redundancy_error
@@ -31,7 +31,6 @@ module analysis
    type :: left_t
       logical :: is_left = .false.                         !< the motion followed is at another time
       type(place_t) :: place                               !< of the motion followed from that instant
-      type(convergence_t) :: convergence
       integer :: iterations = 0
    end type left_t
 
@@ -42,6 +41,8 @@ module analysis
       type(limits_t) :: limits                             !< of the motion that is followed
       logical :: has_begun = .false.                       !< a position was found
       logical :: is_lost = .false.                         !< at the last instant none was
+      logical :: stands = .false.                          !< the last instant has a singular position
+      real(wp) :: last = 0.0_wp                            !< time of the last instant
       type(dense_t), allocatable :: dense                  !< METHOD DENSE and MATRIX: what solves for the motion
       logical :: has_missed = .false.                      !< at the last instant it did not find the blocks' position
       real(wp) :: max_closure_error = 0.0_wp               !< of redundant equations, in characteristic lengths or rad
@@ -110,8 +111,7 @@ contains
          call pass_over(a, t, found)
          return
       end if
-      call continue_to(a%following_t, to, step)
-      if (.not. step%arrived) call pass_standstill(a%following_t, to, step, list)
+      call reach(a, to, step, list)
       if (step%arrived .and. is_over_pole) then
          call go_back(a%following_t, step)
          call end_at_pole(a)
@@ -126,7 +126,7 @@ contains
          end if
          call give_up(a, to, step, found)
       end if
-      goes_on = found%known == 2
+      goes_on = found%known == 2 .and. .not. found%rests
       if (allocated(a%dense)) then
          if (step%arrived) goes_on = .not. any(a%engine%is_singular(a%engine%needed))
          a%iterations = iterations
@@ -138,7 +138,31 @@ contains
          call go_back(a%following_t, step)
       end if
       a%is_lost = .not. step%arrived
+      a%stands = step%arrived .and. .not. goes_on
+      if (a%stands) a%stands = any(a%engine%is_singular(a%engine%needed))
+      a%last = t
    end subroutine advance
+
+   !> Continues the motion to `t`; `step`: how that went, `list`: what there is to say of it if it stands on a change
+   !> point. If no drive moves between the last instant and `t`, a singular position is that of the last instant.
+   subroutine reach(a, t, step, list)
+      type(analysis_t), intent(inout) :: a
+      real(wp), intent(in) :: t
+      type(step_record_t), intent(out) :: step
+      type(diagnostic_t), allocatable, intent(out) :: list(:)
+
+      step%rests = a%stands
+      if (step%rests) step%rests = all(is_at_rest(a%engine%laws, a%last, t))
+      if (step%rests) then
+         if (a%left%is_left) call return_to(a%following_t, a%left%place)
+         call stay(a%engine, t, a%convergence)
+         step%arrived = .true.
+         step%stands = .true.
+      else
+         call continue_to(a%following_t, t, step)
+         if (.not. step%arrived) call go_by_value(a%following_t, t, step, list)
+      end if
+   end subroutine reach
 
    !> The motion `found` at a time `t` that is no instant of the deck, by continuity from the last one, or from a time
    !> looked at before: of many times in a row each costs a short step. Nothing else changes; the engine stays at `t`
@@ -149,24 +173,24 @@ contains
       type(motion_t), intent(inout) :: found
       logical, intent(out) :: is_found
       type(step_record_t) :: step
+      type(diagnostic_t), allocatable :: list(:)
       logical :: finite
 
       is_found = .false.
       if (.not. a%follows .or. limit_before(a%limits, t) > 0) return
       if (.not. a%left%is_left) then
          call note_place(a%following_t, a%left%place)
-         a%left%convergence = a%convergence
          a%left%iterations = a%iterations
          a%left%is_left = .true.
       end if
-      call continue_to(a%following_t, t, step)
-      if (step%arrived .and. .not. (a%convergence%singular .or. a%convergence%rates_open)) then
+      call reach(a, t, step, list)
+      if (step%arrived .and. (step%rests .or. .not. (a%convergence%singular .or. a%convergence%rates_open))) then
          found%t = t
          call take_motion(a, found, finite)
-         call cut(found, 2, mark_none)
-         if (.not. finite) call look_for_overflow(found)
-         is_found = found%known == 2 .and. is_solved(a%convergence) .and. .not. a%convergence%singular
+         call find_what_exists(a, found, finite)
+         is_found = found%known == 2 .and. is_solved(a%convergence)
       end if
+      if (step%stands) return
       if (.not. is_found) then
          call go_back(a%following_t, step)
       else if (step%tries > 1) then
@@ -180,7 +204,6 @@ contains
 
       if (.not. a%left%is_left) return
       call return_to(a%following_t, a%left%place)
-      a%convergence = a%left%convergence
       a%iterations = a%left%iterations
       a%left%is_left = .false.
    end subroutine come_back
@@ -196,7 +219,7 @@ contains
       had_missed = a%has_missed
       if (a%convergence%singular .and. .not. step%stands) then
          call stand_on(a%following_t, found%t, step, list, step%stands)
-         if (.not. step%stands) call pass_standstill(a%following_t, found%t, step, list)
+         if (.not. step%stands) call go_by_value(a%following_t, found%t, step, list)
       end if
       call get_motion(a, found)
       if (allocated(step%passed)) call add_diagnostics(step%passed, found)
@@ -291,14 +314,14 @@ contains
 
       passed = 0
       if (allocated(step%passed)) passed = size(step%passed)
-      a%branch = step%branch
-      if (.not. a%follows) then
-         a%branch%kind = branch_first
-      else if (a%convergence%singular .and. .not. step%stands) then
-         a%branch%kind = branch_none
+      if (step%rests) then
+         a%branch = branch_t(kind=min(a%branch%kind, branch_same))
       else
+         a%branch = step%branch
          a%branch%kind = merge(branch_crossed, branch_same, passed > 0)
+         if (a%convergence%singular .and. .not. step%stands) a%branch%kind = branch_none
       end if
+      if (.not. a%follows) a%branch%kind = branch_first
       call count_in(a%certificate_counts, a%branch, passed)
    end subroutine judge_branch
 
@@ -331,12 +354,12 @@ contains
       else
          ahead = t
          ! To where a slide is infinite there are more substeps than are tried.
-         if (has_too_many_substeps(step)) &
+         if (step%gave_up) &
             ahead = a%t + sign(min(abs(t - a%t), almost_there*abs(a%t - a%place%t)), t - a%t)
-         list = limit_diagnostic(a%engine, ahead, has_too_many_substeps(step))
+         list = limit_diagnostic(a%engine, ahead, step%gave_up)
          if (size(list) == 0 .and. a%follows .and. step%blocked) list = [diagnostic_t(kind=diagnostic_close, t=a%t)]
       end if
-      if (has_too_many_substeps(step)) then
+      if (step%gave_up) then
          if (size(list) == 0) list = [diagnostic_t(kind=diagnostic_long, t=a%place%t)]
       else if (allocated(step%dead_end)) then
          if (size(step%dead_end) > 0) list = step%dead_end
@@ -373,13 +396,31 @@ contains
 
       call take_motion(a, found, finite)
       a%max_closure_error = max(a%max_closure_error, a%convergence%open%value)
-      call cut(found, 2, mark_none)
-      if (a%convergence%singular) call cut(found, 0, mark_singular)
-      if (a%convergence%rates_open) call cut(found, 0, mark_inconsistent)
-      ! Where rates contradict one another no link has any.
-      if (found%mark == mark_singular) call get_link_flags(a%engine, found, allocated(a%dense))
-      if (.not. finite) call look_for_overflow(found)
+      call find_what_exists(a, found, finite)
    end subroutine get_motion
+
+   !> Flags what does not exist of the motion `found` last; `finite`: no number is out of range. If all drives rest, a
+   !> motion that has come to a singular position rests there, too. A first position says less: undriven links may
+   !> move.
+   subroutine find_what_exists(a, found, finite)
+      type(analysis_t), intent(in) :: a
+      type(motion_t), intent(inout) :: found
+      logical, intent(in) :: finite
+
+      call cut(found, 2, mark_none)
+      found%rests = a%convergence%singular .and. a%follows
+      if (found%rests) found%rests = all(is_at_rest(a%engine%laws, found%t, found%t))
+      if (found%rests) then
+         found%velocity = 0.0_wp
+         found%acceleration = 0.0_wp
+      else
+         if (a%convergence%singular) call cut(found, 0, mark_singular)
+         if (a%convergence%rates_open) call cut(found, 0, mark_inconsistent)
+         ! Where rates contradict one another no link has any.
+         if (found%mark == mark_singular) call get_link_flags(a%engine, found, allocated(a%dense))
+      end if
+      if (.not. finite) call look_for_overflow(found)
+   end subroutine find_what_exists
 
    !> The motion at found%t, where the blocks have found one, by the method; `finite`: no number is out of range.
    subroutine take_motion(a, found, finite)

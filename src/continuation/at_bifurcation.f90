@@ -6,14 +6,13 @@ module at_bifurcation
    use drives, only: law_t, new_law, drive_motion, bounds_t, bounds_of
    use mechanism, only: drive_t
    use motion, only: diagnostic_t
-   use branch_requests, only: branch_requests_t
-   use convergence, only: convergence_t, is_solved
-   use block_method, only: solve_instant, max_rate
+   use convergence, only: is_solved
+   use block_method, only: solve_instant, max_rate, is_at_rest
    use block_branches, only: extrapolate
    use following, only: following_t, step_record_t, place_t, continue_to, go_on_from, go_back, note_place, return_to
    implicit none
    private
-   public :: stand_on, pass_standstill
+   public :: stand_on, go_by_value
 
    !> The steps before the change point, in radians and in the unit of length: the extrapolation leaves 0.0112 of
    !> their seventh power, and of the rounding ten times its part by a step.
@@ -35,23 +34,17 @@ contains
       type(diagnostic_t), allocatable, intent(out) :: list(:)
       logical, intent(out) :: stands
       type(place_t) :: before
-      type(branch_requests_t) :: branch_requests
-      type(convergence_t) :: found
 
       allocate (list(0))
       stands = .false.
       if (.not. f%follows) return
       call go_back(f, step)
       call note_place(f, before)
-      branch_requests = f%branch_requests
-      found = f%convergence
       call come_near(f, t, stands)
       if (stands) call extrapolate(f%engine, t, list)
       stands = size(list) > 0
-      f%convergence = found
-      if (stands) return
-      call return_to(f, before)
-      f%branch_requests = branch_requests
+      if (.not. stands) call return_to(f, before)
+      f%convergence = before%convergence
    end subroutine stand_on
 
    !> Follows the motion to three places at equal steps before `t`.
@@ -77,179 +70,163 @@ contains
    end subroutine come_near
 
    !> The `step` of the continuation to `t` has failed, or has ended at a position without velocities, since the one
-   !> drive that moves stops or turns about there: followed by time, the motion comes ever closer to a change point and
-   !> never across. So it is followed by the drive's value instead, at the values of equal steps of time: the position
-   !> is a function of that, on a branch that goes through the change point. Then `step`%arrived; where `t` itself is at
-   !> the change point, `step`%stands, and `list` says so as that of `stand_on`.
-   subroutine pass_standstill(f, t, step, list)
+   !> drive that moves stops or turns about there: followed by time, the motion comes ever closer to a singular position
+   !> and never across. So it is followed by the drive's value instead, from turn to turn: the position is a function of
+   !> that. Then `step`%arrived; where `t` itself is at a change point, `step`%stands, and `list` says so as that of
+   !> `stand_on`.
+   subroutine go_by_value(f, t, step, list)
       type(following_t), intent(inout) :: f
       real(wp), intent(in) :: t
       type(step_record_t), intent(inout) :: step
       type(diagnostic_t), allocatable, intent(out) :: list(:)
       type(place_t) :: before, reached
-      type(branch_requests_t) :: branch_requests
-      type(convergence_t) :: found
       type(drive_excursion_t) :: drives
-      type(law_t), allocatable :: laws(:)
-      real(wp) :: near
+      type(diagnostic_t), allocatable :: passed(:)
       integer :: drive
-      logical :: passed, stands
+      logical :: arrived, stands
 
       allocate (list(0))
       if (.not. f%follows) return
-      near = merge(t, f%t, step%arrived)
-      laws = f%engine%laws
-      drive = stopping_drive(laws, f%drives%first, f%drives%last, merge(f%place%t, f%t, step%tries > 1), near, t)
+      drive = stopping_drive(f, merge(f%place%t, f%t, step%tries > 1), merge(t, f%t, step%arrived), t)
       if (drive == 0) return
-      near = standstill(laws(drive), near, t)
       call note_place(f, reached)
       call go_back(f, step)
       call note_place(f, before)
-      branch_requests = f%branch_requests
-      found = f%convergence
       drives = f%drives
-      call follow_by_value(f, laws, drive, near, t, step, list, passed, stands)
-      f%drives = drives
-      f%engine%laws = laws
-      if (passed .and. .not. stands) call take_up(f, t, passed)
-      step%stands = passed .and. stands
-      step%arrived = passed .or. step%arrived
-      if (passed .and. .not. stands) return
-      f%t = merge(before%t, reached%t, passed)
-      if (passed) then
-         f%engine%followed_t = before%engine%followed_t
-         return
-      end if
-      ! As the step has ended: that tells where the limit is, and which.
-      f%engine%engine_state_t = reached%engine
-      f%place = before
-      deallocate (list)
-      allocate (list(0))
-      f%branch_requests = branch_requests
-      f%convergence = found
-   end subroutine pass_standstill
-
-   !> The only drive whose value changes between the times `from` and `t`, if it is almost at rest at the time `near`;
-   !> 0: none. `first`, `last`: all instants.
-   pure integer function stopping_drive(laws, first, last, from, near, t) result(drive)
-      type(law_t), intent(in) :: laws(:)
-      real(wp), intent(in) :: first, last, from, near, t
-      real(wp) :: f(3), rate
-      integer :: i
-
-      drive = 0
-      do i = 1, size(laws)
-         if (largest_rate_of(laws(i), from, t) <= 0.0_wp) cycle
-         f = drive_motion(laws(i), near)
-         rate = largest_rate_of(laws(i), min(first, near), max(last, near))
-         if (drive > 0 .or. abs(f(2)) > almost_at_rest*rate .or. rate >= huge(1.0_wp)) then
-            drive = 0
-            return
-         end if
-         drive = i
-      end do
-   end function stopping_drive
-
-   !> The first time from `near` to `t` at which `law` stands still or turns; `near` where there is none.
-   pure real(wp) function standstill(law, near, t) result(high)
-      type(law_t), intent(in) :: law
-      real(wp), intent(in) :: near, t
-      real(wp) :: f(3), low, middle, way
-      integer :: i
-
-      high = near
-      f = drive_motion(law, near)
-      way = f(2)
-      do i = 1, value_steps
-         low = high
-         high = near + (t - near)*i/value_steps
-         f = drive_motion(law, high)
-         if (f(2)*way <= 0.0_wp) exit
-      end do
-      if (f(2)*way > 0.0_wp .or. abs(way) <= 0.0_wp) high = near
-      if (abs(high - near) <= 0.0_wp) return
-      do i = 1, digits(1.0_wp)
-         middle = low + 0.5_wp*(high - low)
-         f = drive_motion(law, middle)
-         if (f(2)*way <= 0.0_wp) then
-            high = middle
-         else
-            low = middle
-         end if
-      end do
-   end function standstill
-
-   !> Follows the motion to the value of `drive` at `t`, the other drives held; times are counted as if it passed the
-   !> value that it has at `near` then, at its mean rate. `passed`: it came there; `stands`: at the change point itself.
-   subroutine follow_by_value(f, laws, drive, near, t, step, list, passed, stands)
-      type(following_t), intent(inout) :: f
-      type(law_t), intent(in) :: laws(:)
-      integer, intent(in) :: drive
-      real(wp), intent(in) :: near, t
-      type(step_record_t), intent(inout) :: step
-      type(diagnostic_t), allocatable, intent(inout) :: list(:)
-      logical, intent(out) :: passed, stands
-      type(law_t) :: held(size(laws))
-      type(step_record_t) :: one
-      real(wp) :: value(3), at_near(3), rate, from, v, at
-      integer :: i
-      logical :: turned
-
-      if (.not. allocated(step%passed)) allocate (step%passed(0))
-      from = f%t
-      at_near = drive_motion(laws(drive), near)
-      rate = largest_rate_of(laws(drive), from, t)
-      do i = 1, size(laws)
-         value = drive_motion(laws(i), from)
-         if (i == drive) v = near + (value(1) - at_near(1))/rate
-         held(i) = straight_law(laws(i), value(1), 0.0_wp)
-      end do
-      held(drive) = straight_law(laws(drive), at_near(1) - rate*near, rate)
-      f%engine%laws = held
-      f%drives%laws = held
+      f%engine%timed = f%engine%laws
       ! The bounds that it knows are those of the deck's laws.
       f%drives%first = huge(1.0_wp)
       f%drives%last = -huge(1.0_wp)
-      call take_up(f, v, passed)
-      stands = .false.
-      turned = .false.
-      do i = 1, value_steps
-         at = from + (t - from)*i/value_steps
-         ! A limit short of the value at which the drive turns is passed by none of the others.
-         if (.not. turned .and. (at - near)*(near - from) > 0.0_wp) then
-            turned = .true.
-            call go_to(near, .false.)
-         end if
-         call go_to(at, i == value_steps)
-         if (.not. passed) return
-      end do
+      call go_from_turn_to_turn(f, drive, t, passed, list, arrived, stands)
+      f%drives = drives
+      call move_alloc(f%engine%timed, f%engine%laws)
+      if (arrived .and. .not. stands) call take_up(f, t, arrived)
+      step%arrived = arrived .or. step%arrived
+      ! As the step has ended: that tells where the limit is, and which.
+      if (.not. arrived) call return_to(f, reached)
+      f%place = before
+      if (.not. arrived) return
+      if (size(passed) > 0) step%passed = passed
       if (.not. stands) return
-      call stand_on(f, v, one, list, passed)
-      list%t = t
+      step%stands = size(list) > 0
+      f%t = before%t
+      f%engine%followed_t = before%engine%followed_t
+   end subroutine go_by_value
+
+   !> Follows the motion to the value of `drive` at `t`, the other drives held, from one place at which it turns to the
+   !> next. It begins a little way back, since rates are uncertain close to a change point. `passed`: change points on
+   !> the way; `arrived`: it came there; `stands`: at a singular position, and `list` says which.
+   subroutine go_from_turn_to_turn(f, drive, t, passed, list, arrived, stands)
+      type(following_t), intent(inout) :: f
+      integer, intent(in) :: drive
+      real(wp), intent(in) :: t
+      type(diagnostic_t), allocatable, intent(out) :: passed(:)
+      type(diagnostic_t), allocatable, intent(inout) :: list(:)
+      logical, intent(out) :: arrived, stands
+      type(step_record_t) :: one
+      type(place_t) :: first
+      real(wp) :: f1(3), turn, next
+      integer :: i
+
+      do i = 1, size(f%engine%laws)
+         f1 = drive_motion(f%engine%timed(i), f%t)
+         f%engine%laws(i) = straight_law(f%engine%timed(i), f1(1), 0.0_wp)
+      end do
+      call note_place(f, first)
+      allocate (passed(0))
+      turn = f%t
+      next = next_turn(f%engine%timed(drive), turn, t)
+      call go_to(next, value_at(turn) - sign(short_step/f%drives%unit(drive), value_at(next) - value_at(turn)))
+      if (.not. arrived .or. stands .or. size(passed) > 0) call return_to(f, first)
+      passed = [diagnostic_t ::]
+      turn = first%t
+      do while (abs(t - turn) > 0.0_wp)
+         next = next_turn(f%engine%timed(drive), turn, t)
+         call go_to(next, value_at(next))
+         if (.not. arrived) return
+         turn = next
+         if (stands .and. abs(t - turn) > 0.0_wp) call go_back(f, one)
+      end do
+      if (stands) call stand_on(f, t, one, list, arrived)
+      arrived = .true.
 
    contains
 
-      !> Follows the motion to the value that the drive has `at` this time, the `last` or not.
-      subroutine go_to(at, last)
-         real(wp), intent(in) :: at
-         logical, intent(in) :: last
+      !> Follows the motion to this `value` of the drive, in as much time as from `turn` to the time `to`.
+      subroutine go_to(to, value)
+         real(wp), intent(in) :: to, value
+         real(wp) :: rate
 
-         if (.not. passed) return
-         value = drive_motion(laws(drive), at)
-         v = near + (value(1) - at_near(1))/rate
+         f1 = drive_motion(f%engine%laws(drive), f%t)
+         rate = (value - f1(1))/(to - turn)
+         f%engine%laws(drive) = straight_law(f%engine%timed(drive), f1(1) - rate*turn, rate)
+         f%drives%laws = f%engine%laws
+         f%engine%timed_span = [turn, to]
+         call take_up(f, turn, arrived)
          stands = .false.
-         if (abs(v - f%t) <= 0.0_wp) return
-         call continue_to(f, v, one)
-         passed = one%arrived
-         stands = passed .and. f%convergence%singular
-         if (allocated(one%passed)) step%passed = [step%passed, one%passed]
-         if (stands .and. .not. last) then
-            call go_back(f, one)
-         else if (passed .and. .not. stands) then
-            call go_on_from(f, v)
-         end if
+         if (.not. arrived) return
+         call continue_to(f, to, one)
+         arrived = one%arrived
+         if (allocated(one%passed)) passed = [passed, one%passed]
+         stands = arrived .and. f%convergence%singular
+         if (arrived .and. .not. stands) call go_on_from(f, to)
       end subroutine go_to
-   end subroutine follow_by_value
+
+      !> The drive's value at the time `t`.
+      pure real(wp) function value_at(t)
+         real(wp), intent(in) :: t
+         real(wp) :: f1(3)
+
+         f1 = drive_motion(f%engine%timed(drive), t)
+         value_at = f1(1)
+      end function value_at
+   end subroutine go_from_turn_to_turn
+
+   !> The only drive that moves between the times `from` and `t`, if it is almost at rest at the time `near`; 0: none.
+   pure integer function stopping_drive(f, from, near, t) result(drive)
+      type(following_t), intent(in) :: f
+      real(wp), intent(in) :: from, near, t
+      type(bounds_t) :: b
+      real(wp) :: now(3)
+      logical :: moves(size(f%engine%laws))
+
+      moves = .not. is_at_rest(f%engine%laws, from, t)
+      drive = 0
+      if (count(moves) /= 1) return
+      drive = findloc(moves, .true., dim=1)
+      now = drive_motion(f%engine%laws(drive), near)
+      b = bounds_of(f%engine%laws(drive), min(f%drives%first, near), max(f%drives%last, near))
+      if (abs(now(2)) > almost_at_rest*max(-b%low(1), b%high(1)) .or. any(b%high >= huge(1.0_wp))) drive = 0
+   end function stopping_drive
+
+   !> The first time after `from`, up to `t`, at which `law` turns back, or rests before it does; otherwise `t`.
+   pure real(wp) function next_turn(law, from, t) result(turn)
+      type(law_t), intent(in) :: law
+      real(wp), intent(in) :: from, t
+      real(wp) :: f(3), low, middle, way
+      integer :: i
+
+      way = 0.0_wp
+      turn = from
+      do i = 1, value_steps
+         low = turn
+         turn = from + (t - from)*i/value_steps
+         f = drive_motion(law, turn)
+         if (abs(way) <= 0.0_wp) way = f(2)
+         if (f(2)*way < 0.0_wp) exit
+      end do
+      turn = merge(turn, t, i <= value_steps)
+      if (i > value_steps) return
+      do i = 1, digits(1.0_wp)
+         middle = low + 0.5_wp*(turn - low)
+         f = drive_motion(law, middle)
+         if (f(2)*way > 0.0_wp) then
+            low = middle
+         else
+            turn = middle
+         end if
+      end do
+   end function next_turn
 
    !> The motion that is followed becomes that at the time `t`, where the drives have the same values. `passed`: so it
    !> does.
@@ -278,14 +255,4 @@ contains
       if (allocated(drive%terms)) deallocate (drive%terms)
       straight = new_law(drive)
    end function straight_law
-
-   !> Bounds the rate of `law` between the times `from` and `to`.
-   pure real(wp) function largest_rate_of(law, from, to) result(rate)
-      type(law_t), intent(in) :: law
-      real(wp), intent(in) :: from, to
-      type(bounds_t) :: b
-
-      b = bounds_of(law, from, to)
-      rate = max(-b%low(1), b%high(1))
-   end function largest_rate_of
 end module at_bifurcation

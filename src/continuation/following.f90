@@ -9,6 +9,7 @@ module following
    use branch_certificate, only: branch_t
    use drive_excursion, only: drive_excursion_t, new_drive_excursion, substep_allowed, likely_excursion, excursion, &
       steps_at_least
+   use drives, only: drive_motion
    use convergence, only: convergence_t, is_solved, max_kantorovich_ratio
    use branch_requests, only: branch_requests_t, new_branch_requests
    use block_engine, only: block_engine_t, engine_state_t, make_block_engine, renew_block_engine, accept, &
@@ -18,7 +19,7 @@ module following
    implicit none
    private
    public :: following_t, step_record_t, make_following, renew_following, continue_to, is_too_far, &
-      has_too_many_substeps, go_on_from, go_back, place_t, note_place, return_to
+      go_on_from, go_back, place_t, note_place, return_to
    public :: limits_t, note_limit, limit_before, largest_correction
 
    !> The largest correction, in the characteristic length and in radians, of a predicted position that still counts as
@@ -43,6 +44,8 @@ module following
    type :: place_t
       real(wp) :: t = 0.0_wp                     !< time
       type(engine_state_t) :: engine             !< the engine's part
+      type(branch_requests_t) :: branch_requests !< and how change points were passed
+      type(convergence_t) :: convergence         !< of the position solved for last
    end type place_t
 
    !> The engine, and how far it has come.
@@ -62,7 +65,9 @@ module following
       logical :: arrived = .false.               !< at the instant asked for
       logical :: blocked = .false.               !< at a place from which no substep could be made
       logical :: stands = .false.                !< on a change point, from shortly before which it is followed
+      logical :: rests = .false.                 !< at the singular position of the instant before
       integer :: tries = 0                       !< substeps tried
+      logical :: gave_up = .false.               !< after the largest number of them
       type(branch_t) :: branch                   !< what was verified of the substeps made
       type(diagnostic_t), allocatable :: passed(:), dead_end(:)   !< change points; not allocated: none
    end type step_record_t
@@ -148,6 +153,7 @@ contains
          step%blocked = abs(substep) <= min_substep*min(longest, abs(t - f%t))
          if (step%blocked .or. failures > max_failures) exit
       end do
+      step%gave_up = step%tries == max_substeps .and. .not. step%arrived
    end subroutine continue_to
 
    !> Solves for the motion at `t`; `accepted`: it is the continuation of the one that is followed, or the first.
@@ -176,16 +182,28 @@ contains
       step%branch%kantorovich_ratio = max(step%branch%kantorovich_ratio, f%convergence%kantorovich_ratio)
    end subroutine attempt
 
-   !> Adds to the Kantorovich ratio of the motion found last at `t` what the drives add by leaving their chords. A bound
-   !> at hardly any cost is enough mostly.
+   !> Adds to the Kantorovich ratio of the motion found last at `t` what the drives add by leaving their chords, or by
+   !> not going as they did: a position predicted from their rates is then near another branch, perhaps. A bound at
+   !> hardly any cost is enough mostly.
    subroutine add_excursion(f, t)
       type(following_t), intent(inout) :: f
       real(wp), intent(in) :: t
-      real(wp) :: ratio
+      real(wp) :: ratio, away, off, h, first(3), last(3)
+      integer :: i
 
-      associate (c => f%convergence)
+      associate (c => f%convergence, p => f%drives)
          ratio = c%kantorovich_ratio + c%growth*f%engine%state%excursion
-         if (ratio > max_kantorovich_ratio) ratio = c%kantorovich_ratio + c%growth*excursion(f%drives, f%t, t)
+         if (ratio > max_kantorovich_ratio) then
+            away = excursion(p, f%t, t)
+            h = t - f%t
+            do i = 1, size(p%laws)
+               first = drive_motion(p%laws(i), f%t)
+               last = drive_motion(p%laws(i), t)
+               off = last(1) - first(1) - h*(first(2) + 0.5_wp*h*first(3))
+               if (abs(off) > 0.5_wp*abs(last(1) - first(1))) away = max(away, p%unit(i)*abs(off))
+            end do
+            ratio = c%kantorovich_ratio + c%growth*away
+         end if
          c%kantorovich_ratio = ratio
       end associate
    end subroutine add_excursion
@@ -217,13 +235,6 @@ contains
       if (is_too_far) is_too_far = steps_at_least(f%drives, f%t, t) > real(max_substeps, wp)
    end function is_too_far
 
-   !> The step `step` was given up after the largest number of substeps.
-   pure logical function has_too_many_substeps(step)
-      type(step_record_t), intent(in) :: step
-
-      has_too_many_substeps = step%tries == max_substeps .and. .not. step%arrived
-   end function has_too_many_substeps
-
    !> The motion found last, at `t`, is now the one that is followed.
    subroutine go_on_from(f, t)
       type(following_t), intent(inout) :: f
@@ -253,6 +264,8 @@ contains
 
       p%t = f%t
       p%engine = f%engine%engine_state_t
+      p%branch_requests = f%branch_requests
+      p%convergence = f%convergence
    end subroutine note_place
 
    !> Follows the motion again from the place `p`, to which a later step can go back.
@@ -262,6 +275,8 @@ contains
 
       f%t = p%t
       f%engine%engine_state_t = p%engine
+      f%branch_requests = p%branch_requests
+      f%convergence = p%convergence
       call note_place(f, f%place)
    end subroutine return_to
 

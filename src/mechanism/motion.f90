@@ -6,11 +6,10 @@ module motion
    private
    public :: motion_t, new_motion, known_of, mark_of, forget_links, diagnostic_t, new_diagnostic, max_links
    public :: mark_none, mark_not_converged, mark_singular, mark_overflow, mark_inconsistent
-   public :: singular_unclear, singular_change, singular_dead
-   public :: diagnostic_inconsistent, diagnostic_limit, diagnostic_far_estimate, diagnostic_second, &
-      diagnostic_redundant, diagnostic_mobile, diagnostic_change, diagnostic_long, diagnostic_close, &
-      diagnostic_unused, diagnostic_dead_end, diagnostic_idle, diagnostic_repeated, diagnostic_method, &
-      diagnostic_singular, diagnostic_beyond, diagnostic_begins
+   public :: singular_unclear, singular_change, singular_dead, diagnostic_inconsistent, diagnostic_limit, &
+      diagnostic_far_estimate, diagnostic_second, diagnostic_redundant, diagnostic_mobile, diagnostic_change, &
+      diagnostic_long, diagnostic_close, diagnostic_unused, diagnostic_dead_end, diagnostic_idle, &
+      diagnostic_repeated, diagnostic_method, diagnostic_singular, diagnostic_beyond, diagnostic_begins
 
    !> The kinds of diagnostics, and the components that each uses.
    enum, bind(c)
@@ -77,6 +76,7 @@ module motion
       type(diagnostic_t) :: singular_links               !< and its links, where they are known
       integer :: known = -1  !< what exists: -1 nothing, 0 positions, 1 velocities too, 2 accelerations too
       type(diagnostic_t), allocatable :: diagnostics(:)  !< none: not allocated
+      logical :: rests = .false.   !< the position is singular, and all drives rest: nothing moves, to any rounding
       real(wp) :: origin(2) = 0.0_wp                     !< the place from which x and y of `position` are counted
       !> (3, links): x, y, phi, and their first and second derivatives with respect to time.
       real(wp), allocatable :: position(:, :), velocity(:, :), acceleration(:, :)

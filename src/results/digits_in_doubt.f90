@@ -92,7 +92,7 @@ contains
       law = s%law(0) + s%law(1)*abs(q%t)
       growth = merge(huge(growth), 0.0_wp, q%known >= 0 .and. .not. present(e))
       in_doubt = growth > 0.0_wp .or. law > safe_angle
-      if (q%known < 2) return
+      if (q%known < 2 .or. q%rests) return
       growth = huge(growth)
       in_doubt = .true.
       call find_largest(size(q%position, 2), q%position, x(:, 0))
