@@ -137,7 +137,7 @@ contains
    end subroutine prepare
 
    !> Gives the engine `e` the numbers of `m`, a mechanism with the links, points, pairs and drives of that for which it
-   !> was made; its state stays. `fits`: see `put_numbers`; otherwise `e` is of no use.
+   !> was made; its state stays. `fits`: see `put_numbers`.
    subroutine put_mechanism(e, m, fits)
       type(block_engine_t), intent(inout) :: e
       type(mechanism_t), intent(in) :: m
@@ -147,7 +147,6 @@ contains
       call move_alloc(e%blocks%numbers, x)
       call put_numbers(m, e%blocks, x, fits)
       call move_alloc(x, e%blocks%numbers)
-      if (.not. fits) return
       e%span = e%blocks%numbers%span
       e%length = e%blocks%numbers%equations%length
       associate (b => e%blocks, axes => e%blocks%numbers%equations%axes)

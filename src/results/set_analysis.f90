@@ -11,7 +11,7 @@ module set_analysis
    use digits_in_doubt, only: safe_growth
    use motion_proof, only: motion_prover_t, prove_motion
    use link_bounds, only: largest_bounds
-   use sensitivities, only: sensor_t, make_sensor, find_sensitivities
+   use sensitivities, only: find_sensitivities
    use set_motion, only: set_motion_t, new_set_motion
    use motion, only: diagnostic_t, diagnostic_unused, motion_t, new_motion
    use independent, only: request_of
@@ -29,7 +29,6 @@ module set_analysis
       type(analysis_t), allocatable :: list(:)              !< (parts)
       ! Of classes, so that the compiler calls what frees one, and does not write it out wherever a set is freed.
       class(estimator_t), allocatable :: estimators(:)      !< (parts)
-      class(sensor_t), allocatable :: sensors(:)            !< (parts)
       class(motion_prover_t), allocatable :: provers(:)     !< (parts)
       type(assemblies_t), allocatable :: assemblies(:)      !< (parts) at the first instant, where they are asked for
       type(certificate_counts_t) :: certificate_counts      !< of all instants
@@ -58,7 +57,6 @@ contains
       associate (n => s%now%count)
          allocate (s%list(n))
          allocate (estimator_t :: s%estimators(n))
-         allocate (sensor_t :: s%sensors(n))
          allocate (motion_prover_t :: s%provers(n))
       end associate
       if (s%now%assemblies) allocate (s%assemblies(s%now%count))
@@ -70,7 +68,6 @@ contains
             call make_analysis(s%list(c), s%now%parts(c))
          end if
          call make_estimator(s%estimators(c), s%now%parts(c))
-         call make_sensor(s%sensors(c), s%now%parts(c))
       end do
    end subroutine begin_analysis
 
@@ -160,7 +157,7 @@ contains
          if (present(growth)) growth = merge(safe_growth, estimate%growth, estimate%in_doubt)
          if (.not. estimate%taken) return
          do i = 1, size(list)
-            error(:, :, i) = estimate_of(rows(i), own, estimate, q, request_of(s%now, list(i)))
+            error(:, :, i) = estimate_of(rows(i), own, estimate, s%now%rows(list(i))%number)
          end do
       end associate
    end subroutine rows_at
@@ -174,7 +171,7 @@ contains
       do c = 1, size(s%list)
          associate (a => s%list(c))
             call estimate_errors(s%estimators(c), s%now%parts(c), a%engine, a%convergence%reciprocal_condition, &
-               s%now%motions(c), always, s%now%errors(c), for_tables=.true.)
+               s%now%motions(c), always, s%now%errors(c))
          end associate
       end do
    end subroutine sample_set
@@ -185,8 +182,8 @@ contains
       integer :: c
 
       do c = 1, size(s%list)
-         call find_sensitivities(s%sensors(c), s%now%parts(c), s%list(c)%engine, s%now%motions(c), &
-            s%now%errors(c)%taken .and. s%now%errors(c)%in_doubt, s%now%sensitivities(c))
+         call find_sensitivities(s%estimators(c)%perturbed, s%now%parts(c), s%list(c)%engine, s%now%motions(c), &
+            s%estimators(c)%sizes, s%now%errors(c), s%now%sensitivities(c))
       end do
    end subroutine sense_set
 

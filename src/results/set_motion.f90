@@ -125,7 +125,7 @@ contains
       error = 0.0_wp
       associate (c => s%rows(i)%part)
          if (s%errors(c)%taken .and. s%errors(c)%in_doubt) &
-            error = estimate_of(row, s%parts(c), s%errors(c), s%motions(c), request_of(s, i))
+            error = estimate_of(row, s%parts(c), s%errors(c), s%rows(i)%number)
       end associate
    end function doubt_in_set
 
@@ -160,7 +160,7 @@ contains
       real(wp) :: error(3, 0:2)
 
       associate (c => s%rows(i)%part)
-         error = row_error(s%parts(c), s%errors(c), s%motions(c), request_of(s, i))
+         error = row_error(s%parts(c), s%errors(c), s%motions(c), s%rows(i)%number)
       end associate
    end function error_in_set
 

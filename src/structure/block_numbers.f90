@@ -44,7 +44,7 @@ contains
 
    !> Gives `x` the numbers of `m`, a mechanism with the links, points, pairs and drives of that of which the blocks `b`
    !> were made; `x`: a copy of those of `b`, which stay as they are. `fits`: each equation has the unknowns, and each
-   !> loop the body vectors, that they have in `b`; otherwise `x` is of no use.
+   !> loop the body vectors, that they have in `b`; otherwise `x` leaves out what `b` does.
    subroutine put_numbers(m, b, x, fits)
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
@@ -54,8 +54,8 @@ contains
       x%span = solver_length(m)
       call put_equation_numbers(m, b%tree, power_of_two(x%span), b%equations, x%equations)
       fits = b%solvable
-      if (fits) fits = fit_equations(b%equations, x%equations)
       if (.not. fits) return
+      fits = fit_equations(b%equations, x%equations)
       call fill_numbers(b, x)
       call find_units(b, x)
    end subroutine put_numbers

@@ -103,7 +103,7 @@ contains
       do i = 1, size(m%requests)
          if (m%requests(i)%kind /= request_link) cycle
          link = findloc(exact%name == m%links(m%requests(i)%subject)%name, .true., dim=1)
-         told = row_error(m, doubt, q, m%requests(i))
+         told = row_error(m, doubt, q, i)
          true = away(q, m%requests(i)%subject, exact(link))
          tally%numbers = tally%numbers + 9
          if (any(true > told)) then

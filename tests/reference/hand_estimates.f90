@@ -1,10 +1,10 @@
 !> Tests. What rounding leaves open of the numbers of a deck next to a dead point, as docs/method.md defines it: by how much
-!> its closed form in real128 changes, to first order, where all numbers of its cards are off by a rounding, up or down,
-!> in eight ways, by a generator that is written down here again.
+!> its closed form in real128 changes, to first order, where all numbers of its cards are off by roundings times normal
+!> deviates, in eight ways, by a hash that is written down here again.
 module hand_estimates
    use, intrinsic :: iso_fortran_env, only: int64, real64
    use mechanism, only: mechanism_t, pair_prismatic
-   use quad_jet, only: qp
+   use quad_jet, only: qp, pi_q
    use closed_forms_hard, only: pushed_slider
    use hand_rows, only: hand_row_t, row_by_hand
    use hand_scales, only: length_by_hand
@@ -13,10 +13,8 @@ module hand_estimates
    public :: estimates_by_hand
 
    integer, parameter :: directions = 8
-   !> In the last of them all numbers of a kind are off alike.
-   integer, parameter :: apart = 6
    !> Of so few samples the largest may be too small; a sum is off by so many roundings of its largest number.
-   real(qp), parameter :: caution = 2.5_qp, sum_roundings = 1.5_qp
+   real(qp), parameter :: caution = 2.35_qp, sum_roundings = 1.5_qp
    real(qp), parameter :: rounding = real(epsilon(1.0_real64), qp)
    !> Small beside the distance from the dead point, large beside a rounding of real128.
    real(qp), parameter :: difference = 1.0e-19_qp
@@ -25,12 +23,11 @@ module hand_estimates
    !> the guide, the piston's value, rate and acceleration at t = 0, and the instant.
    integer, parameter :: number_count = 9
 
-   !> The generator: a table of numbers by chance, of so many rows; twelve directions in a row, of which four are not of
-   !> cards.
+   !> The hash: its multiplier and its modulus, and the kinds of numbers in their addresses. A guide's direction counts by
+   !> the orientation of its link, 0 for the ground's, and by what it is beyond quarter turns.
    integer(int64), parameter :: multiplier = 16807, modulus = 2147483647
-   integer, parameter :: rows = 251, row_length = 12
-   real(qp), parameter :: least = 0.4_qp, range = 0.8_qp
-   integer, parameter :: of_point = 0, of_pair = 31, of_drive = 62, of_time = 93
+   integer, parameter :: of_point = 2, of_pair = 4, of_drive = 5, of_time = 7, ground = 0
+   real(qp), parameter :: quarter = 2.0_qp**20
 
 contains
 
@@ -104,37 +101,56 @@ contains
       end do
    end function rows_of
 
-   !> The parts of a rounding by which the numbers are off in direction `k`: each by its kind, the number of its card
-   !> and its place on it.
+   !> The parts of a rounding by which the numbers are off in direction `k`: normal deviates, each by the address of its
+   !> number: kind, card, term of a law, and place on it.
    function parts_of(m, k) result(parts)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k
-      real(qp) :: parts(number_count)
+      real(qp) :: parts(number_count), alpha
       integer :: i
 
-      do i = 0, 1
-         parts(1 + i) = drawn(of_point, findloc(m%points%name == 'PIN-CR', .true., dim=1), i)
-         parts(3 + i) = drawn(of_point, findloc(m%points%name == 'EYE', .true., dim=1), i)
+      do i = 1, 2
+         parts(i) = deviate(of_point, findloc(m%points%name == 'PIN-CR', .true., dim=1), i)
+         parts(2 + i) = deviate(of_point, findloc(m%points%name == 'EYE', .true., dim=1), i)
       end do
-      parts(5) = drawn(of_pair, findloc(m%pairs%kind, pair_prismatic, dim=1), 2)
-      parts(6:8) = [(drawn(of_drive, 1, i), i=1, 3)]
-      parts(9) = drawn(of_time, 0, 0)
+      alpha = m%pairs(findloc(m%pairs%kind, pair_prismatic, dim=1))%alpha
+      i = modulo(nint(quarter*alpha/(pi_q/2.0_qp)), nint(quarter))
+      parts(5) = deviate(of_pair, ground, 1, i)
+      parts(6:8) = [(deviate(of_drive, 1, i), i=1, 3)]
+      parts(9) = deviate(of_time, 0, 0)
 
    contains
 
-      !> That of the number at `place` of card number `card` of the `kind`.
-      real(qp) function drawn(kind, card, place)
+      !> That of the number at `place` of card number `card` of the `kind`, in its law's `term`.
+      real(qp) function deviate(kind, card, place, term)
          integer, intent(in) :: kind, card, place
-         integer(int64) :: n, state
-         real(qp) :: chance
+         integer, intent(in), optional :: term
+         integer(int64) :: x
+         real(qp) :: u, v
 
-         n = kind + place
-         if (k <= apart) n = mod(n + 7*card, int(rows, int64))
-         n = n*row_length + k
-         state = mod(multiplier*mod(n*n*n, modulus), modulus)
-         chance = (2.0_qp*state - modulus)/modulus
-         drawn = sign(least + range*abs(chance), chance)
-      end function drawn
+         x = mixed(mixed(0_int64, kind), card)
+         if (present(term)) x = mixed(x, term)
+         if (.not. present(term)) x = mixed(x, 0)
+         x = mixed(x, place)
+         u = real(mixed(x, 2*k - 1), qp)/modulus
+         v = real(mixed(x, 2*k), qp)/modulus
+         deviate = sqrt(-2.0_qp*log(u))*cos(2.0_qp*pi_q*v)
+      end function deviate
+
+      !> The fifth power of a number made of `x` and `n`, modulo the prime; 1 for 0.
+      integer(int64) function mixed(x, n)
+         integer(int64), intent(in) :: x
+         integer, intent(in) :: n
+         integer(int64) :: base
+         integer :: i
+
+         base = mod(multiplier*x + n + 1, modulus)
+         mixed = 1
+         do i = 1, 5
+            mixed = mod(mixed*base, modulus)
+         end do
+         mixed = max(mixed, 1_int64)
+      end function mixed
    end function parts_of
 
    !> The rounding errors of the sums that rows are made of, as large as the largest number in any of them. A velocity

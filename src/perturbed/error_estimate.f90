@@ -1,0 +1,248 @@
+!> The error estimate: how far the numbers of a motion are known, by the rows of mechanisms whose numbers are off by
+!> roundings, at instants where digits of the tables could be in doubt or where the errors are asked for.
+module error_estimate
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, method_newton, request_t, request_link, request_pair, request_pole, request_links
+   use motion, only: motion_t
+   use points, only: row_t, row_of, difference, is_fixed
+   use sum_errors, only: errors_of_sums, error_of_sums, fixed_error, lost_numbers
+   use known_digits, only: nothing_known
+   use digits_in_doubt, only: sizes_t, sizes_of, find_growth
+   use block_engine, only: block_engine_t
+   use changed_rows, only: perturbed_t, begin_from, rows_with
+   use rounded_numbers, only: directions, caution, rounded_t, roundings_of, put_off, off_instant
+   implicit none
+   private
+   public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of, row_error, largest_errors
+
+   !> Numbers are off by so many roundings, beside which those of the calculation are small; 1E-12 from a dead point, or
+   !> where their changes have a larger Kantorovich ratio, by few: changes are of first order but for about that part.
+   real(wp), parameter :: many = 256.0_wp, few = 16.0_wp, small_ratio = 0.05_wp
+   !> Of so few repetitions the largest difference is multiplied by more.
+   integer, parameter :: repeats = 4
+   real(wp), parameter :: own_caution = 5.0_wp
+
+   !> How far the motion at one instant is known. It is `taken` where digits of the tables could be `in_doubt`, which
+   !> are masked then, or where the errors are `asked` for, if anything moves.
+   type :: error_estimate_t
+      logical :: taken = .false.             !< `changes` tell something
+      logical :: asked = .false.             !< --errors: wanted at every instant
+      real(wp) :: growth = 0.0_wp            !< of roundings at this instant; huge where numbers are large
+      type(sizes_t) :: sizes                 !< what numbers are compared with, where `taken`
+      logical :: in_doubt = .false.          !< it is so much that digits may be lost
+      !> (length, angle or slide, derivative) The rounding error of a sum of numbers as large as the largest of the
+      !> rows.
+      real(wp) :: of_sums(3, 0:2) = 0.0_wp
+      !> (3, 0:2, requests) What a rounding of all numbers changes at most; `nothing_known`, where it is so.
+      real(wp), allocatable :: changes(:, :, :)
+      type(row_t), allocatable :: solved(:)  !< (requests) the rows solved to the limit of rounding
+      !> (3, 0:2, requests) What the roundings of the calculation change, where errors are asked for.
+      real(wp), allocatable :: own(:, :, :)
+   end type error_estimate_t
+
+   !> What the estimates of a mechanism need.
+   type :: estimator_t
+      type(sizes_t) :: sizes
+      type(perturbed_t) :: perturbed
+      type(rounded_t), allocatable :: numbers(:)   !< once an estimate has been asked for
+   end type estimator_t
+
+contains
+
+   !> For the errors of `m`; the rest is made when it is first asked for.
+   subroutine make_estimator(s, m)
+      type(estimator_t), intent(out) :: s
+      type(mechanism_t), intent(in) :: m
+
+      s%sizes = sizes_of(m)
+   end subroutine make_estimator
+
+   !> How far the motion `q` of `m` is known, which the `engine` has found, by a matrix of the reciprocal condition
+   !> `rcond`. `always`: also where no digit of a table is in doubt.
+   subroutine estimate_errors(s, m, engine, rcond, q, always, found)
+      type(estimator_t), intent(inout) :: s
+      type(mechanism_t), intent(in) :: m
+      type(block_engine_t), intent(in) :: engine
+      real(wp), intent(in) :: rcond
+      type(motion_t), intent(in) :: q
+      logical, intent(in) :: always
+      type(error_estimate_t), intent(inout) :: found
+      logical :: is_small
+
+      found%taken = .false.
+      found%asked = always
+      if (m%method == method_newton) then
+         call find_growth(s%sizes, m, rcond, q, found%growth, found%in_doubt, engine)
+      else
+         call find_growth(s%sizes, m, rcond, q, found%growth, found%in_doubt)
+      end if
+      if (.not. (always .or. found%in_doubt)) return
+      if (q%known < 0 .and. .not. allocated(q%link_known)) return
+
+      call begin_from(s%perturbed, m, engine, q)
+      if (.not. allocated(s%numbers)) s%numbers = roundings_of(m)
+      if (.not. allocated(found%changes)) allocate (found%changes(3, 0:2, size(m%requests)), &
+         found%solved(size(m%requests)))
+      found%sizes = s%sizes
+      found%of_sums = errors_of_sums(m, q, s%sizes%length)
+      found%taken = .true.
+      call put_off(s%numbers, 0, many, s%perturbed%m)
+      s%perturbed%nudges = merge(0.0_wp, 1.0_wp, s%perturbed%is_singular)
+      call rows_with(s%perturbed, q%t, .true., found%solved)
+      s%perturbed%nudges = 1.0_wp
+      call find_changes(s, many, q%t, found, s%perturbed%is_singular, is_small)
+      if (.not. is_small) call find_changes(s, few, q%t, found, .true., is_small)
+      if (always) call find_own(s, q%t, found)
+   end subroutine estimate_errors
+
+   !> The changes of the rows at the time `t` by a rounding, from those by so many `roundings`. `is_small`: they are so
+   !> small that they are of first order, if not all of them are asked for `anyway`.
+   subroutine find_changes(s, roundings, t, found, anyway, is_small)
+      type(estimator_t), intent(inout) :: s
+      real(wp), intent(in) :: roundings, t
+      type(error_estimate_t), intent(inout) :: found
+      logical, intent(in) :: anyway
+      logical, intent(out) :: is_small
+      type(row_t), dimension(size(found%solved)) :: rows, other
+      real(wp) :: part, x(3, 0:2)
+      integer :: k, i
+
+      ! Where the Jacobian has no inverse a position changes with the root of what the deck changes by.
+      part = 1.0_wp/merge(sqrt(roundings), roundings, s%perturbed%is_singular)
+      found%changes = 0.0_wp
+      do k = 1, directions
+         call put_off(s%numbers, k, roundings, s%perturbed%m)
+         call rows_with(s%perturbed, off_instant(t, k, roundings), .true., rows)
+         is_small = anyway .or. s%perturbed%ratio <= small_ratio
+         if (.not. is_small) return
+         if (s%perturbed%is_singular .and. any(rows%known < 0)) then
+            ! On a dead point one of two opposite changes has a position.
+            call put_off(s%numbers, k, -roundings, s%perturbed%m)
+            call rows_with(s%perturbed, off_instant(t, k, -roundings), .true., other)
+            where (rows%known < 0) rows = other
+         end if
+         do i = 1, size(rows)
+            associate (one => rows(i), middle => found%solved(i), largest => found%changes(:, :, i))
+               x = part*difference(one, middle)
+               if (one%kind < request_pole) then
+                  x(:, one%known + 1:) = nothing_known
+               else
+                  x = merge(nothing_known, x, lost_numbers(one, middle))
+               end if
+               largest = max(largest, x)
+            end associate
+         end do
+      end do
+   end subroutine find_changes
+
+   !> How far the mean of two rows at the time `t`, with numbers off by a rounding to either side, is from those solved
+   !> first: the roundings of the calculation, which count by themselves where no number of the deck does, as in the
+   !> rates of links that turn as one. With the same numbers many of these roundings would be the same.
+   subroutine find_own(s, t, found)
+      type(estimator_t), intent(inout) :: s
+      real(wp), intent(in) :: t
+      type(error_estimate_t), intent(inout) :: found
+      type(row_t), dimension(size(found%solved)) :: up, down
+      integer :: k, i
+
+      if (.not. allocated(found%own)) allocate (found%own, mold=found%changes)
+      found%own = 0.0_wp
+      if (s%perturbed%is_singular) return
+      do k = 1, repeats
+         s%perturbed%nudges = real((-1)**k*(k + 1), wp)
+         call put_off(s%numbers, k, 1.0_wp, s%perturbed%m)
+         call rows_with(s%perturbed, off_instant(t, k, 1.0_wp), .true., up)
+         call put_off(s%numbers, k, -1.0_wp, s%perturbed%m)
+         call rows_with(s%perturbed, off_instant(t, k, -1.0_wp), .true., down)
+         do i = 1, size(up)
+            if (min(up(i)%known, down(i)%known, found%solved(i)%known) < 0) cycle
+            ! Centres may be at infinity, and their directions have no mean.
+            if (up(i)%kind < request_pole) up(i)%value = 0.5_wp*(up(i)%value + down(i)%value)
+            found%own(:, :, i) = max(found%own(:, :, i), difference(up(i), found%solved(i)))
+         end do
+      end do
+      s%perturbed%nudges = 1.0_wp
+   end subroutine find_own
+
+   !> What rounding of the deck's numbers leaves open (3, 0:2) of the `row` of request number `i` of `m`, in its units.
+   !> `nothing_known`, where it is so.
+   pure function estimate_of(row, m, s, i) result(error)
+      type(row_t), intent(in) :: row
+      type(mechanism_t), intent(in) :: m
+      type(error_estimate_t), intent(in) :: s
+      integer, intent(in) :: i
+      real(wp), dimension(3, 0:2) :: error
+      logical, dimension(3, 0:2) :: is_zero
+      integer :: k
+
+      error = 0.0_wp
+      associate (request => m%requests(i))
+         if (is_fixed(m, request)) then
+            error(:, 0) = fixed_error(m, request)
+            return
+         end if
+         if (s%asked) error = nothing_known
+         if (.not. s%taken) return
+         associate (largest => s%changes(:, :, i))
+            error = caution*largest + error_of_sums(s%of_sums, request, row)
+            ! A coordinate of what stands still is zero without a sum; an angle may be one that cancels.
+            is_zero = .not. (abs(row%value) > 0.0_wp .or. largest > 0.0_wp)
+            if (request%kind == request_link) is_zero(3, 0) = .false.
+            if (request%kind == request_pair .and. row%angular) is_zero(1, 0) = .false.
+            ! A rate that is no larger than its error is zero by chance only, and so is then the other one.
+            do k = 1, 2
+               is_zero(:, k) = is_zero(:, k) .and. .not. (abs(row%value(:, 3 - k)) > 0.0_wp &
+                  .and. abs(row%value(:, 3 - k)) <= error(:, 3 - k))
+            end do
+            where (is_zero) error = 0.0_wp
+            where (largest >= nothing_known) error = nothing_known
+         end associate
+         if (request%kind < request_pole) error(:, min(row%known, s%solved(i)%known) + 1:) = nothing_known
+      end associate
+   end function estimate_of
+
+   !> The estimated error (3, 0:2) of the row of the motion `q`: what rounding leaves open, and how far the row is from
+   !> that of the motion solved to the limit of rounding.
+   pure function row_error(m, s, q, i) result(error)
+      type(mechanism_t), intent(in) :: m
+      type(error_estimate_t), intent(in) :: s
+      type(motion_t), intent(in) :: q
+      integer, intent(in) :: i
+      real(wp) :: error(3, 0:2)
+      type(row_t) :: row
+
+      row = row_of(m, q, m%requests(i))
+      error = estimate_of(row, m, s, i)
+      if (.not. s%taken .or. is_fixed(m, m%requests(i))) return
+      where (error < nothing_known) error = max(error, own_caution*s%own(:, :, i)) + difference(row, s%solved(i))
+      if (m%requests(i)%kind >= request_pole) error = merge(nothing_known, error, lost_numbers(row, s%solved(i)))
+   end function row_error
+
+   !> The largest error (0:2) of a position, velocity and acceleration in any row of a link, point or pair;
+   !> `nothing_known`, where it is so. In parts of the characteristic `length` and `rate`.
+   pure function largest_errors(m, s, q, length, rate) result(largest)
+      type(mechanism_t), intent(in) :: m
+      type(error_estimate_t), intent(in) :: s
+      type(motion_t), intent(in) :: q
+      real(wp), intent(in) :: length, rate
+      real(wp) :: largest(0:2), error(3, 0:2), unit(3)
+      type(row_t) :: row
+      integer :: i, k
+
+      largest = 0.0_wp
+      do i = 1, size(m%requests)
+         if (m%requests(i)%kind >= request_pole) cycle
+         error = row_error(m, s, q, i)
+         unit = [length, length, 1.0_wp]
+         row = row_of(m, q, m%requests(i))
+         if (row%angular) unit(1) = 1.0_wp
+         do k = 0, 2
+            if (any(error(:, k) >= nothing_known)) then
+               largest(k) = nothing_known
+            else
+               largest(k) = max(largest(k), maxval(error(:, k)/(unit*rate**k)))
+            end if
+         end do
+      end do
+   end function largest_errors
+end module error_estimate

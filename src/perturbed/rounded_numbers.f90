@@ -1,0 +1,230 @@
+!> The roundings of the numbers of a deck, as directions in which all of them are off at once: each by a normal deviate
+!> times eps times its size. The deviates are a hash of the number's address: they are the same in millimetres and in
+!> kilometres, at any instant, and in any process.
+!>
+!> The factor by which the largest change of a row in these directions is multiplied. To first order the error of a row
+!> is a sum over many numbers, and its change in a direction is the sum of normal deviates, so normal, whatever the
+!> mechanism; its standard deviation is s. A real x rounded to nearest is off by eps x times a deviate whose variance is
+!> the mean of 1/(12 m**2) over mantissas m = 1 to 2, 0.045, if small mantissas are as frequent as in numbers by chance.
+!> A vector of length L that turns is rounded four times: on its card, in the sine and cosine, in their products, and in
+!> the sum of two of these. Each leaves 0.045 (eps L)**2 in both components together; the directions have 2 (eps L)**2.
+!> So the standard deviation of the error is s sqrt(4*0.045/2) = 0.30 s. (What is added up to rows is in `sum_errors`.)
+!> Of eight normal deviates the largest is below a ninth one over r in one of a million cases if r = 7.84; for sixteen
+!> directions r would be 4.07. The factor is 7.84*0.30 = 2.35.
+module rounded_numbers
+   use, intrinsic :: iso_fortran_env, only: int64
+   use kinds, only: wp
+   use planar, only: pi
+   use mechanism, only: mechanism_t, card_number_t, term_t, plane_origin, pair_prismatic, term_power, term_table, &
+      drive_relangle, number_link, number_point, number_pair, number_drive, number_time
+   use card_numbers, only: number_value, put_number
+   use links_tree, only: tree_t, axes_t, new_tree, axes_of
+   implicit none
+   private
+   public :: directions, caution, rounded_t, roundings_of, put_off, off_instant
+
+   integer, parameter :: directions = 8
+   real(wp), parameter :: caution = 2.35_wp
+
+   !> The hash: numbers modulo a prime, multiplied as in Park and Miller's generator.
+   integer(int64), parameter :: multiplier = 16807_int64, modulus = 2147483647_int64
+   !> Guides are parallel, or at right angles, where their directions differ by less than this part of a quarter turn.
+   integer, parameter :: quarter = 2**20
+
+   !> A number of the deck.
+   type :: rounded_t
+      type(card_number_t) :: number
+      real(wp) :: value = 0.0_wp                 !< on its card, in the units of `mechanism_t`
+      real(wp) :: by(0:directions) = 0.0_wp      !< it is off by so much, over eps; in direction 0 by nothing
+   end type rounded_t
+
+contains
+
+   !> The numbers of the cards of `m`, and by how much each is off. The time of a table, the exponent of a power, and
+   !> what an estimate says of moving links are as they stand.
+   function roundings_of(m) result(list)
+      type(mechanism_t), intent(in) :: m
+      type(rounded_t), allocatable :: list(:)
+      real(wp) :: origin(2), size_of
+      integer :: n, i, j
+
+      allocate (list(3*size(m%links) + 2*size(m%points) + 3*size(m%pairs) &
+         + sum([(drive_numbers(i), i=1, size(m%drives))])))
+      n = 0
+      do i = 1, size(m%links)
+         if (.not. m%links(i)%ground) cycle
+         do j = 1, 3
+            call add(number_link, i, 0, j, abs(m%links(i)%position(j)))
+         end do
+      end do
+      origin = plane_origin(m)
+      do i = 1, size(m%points)
+         associate (link => m%links(m%points(i)%link))
+            ! Along and across: an arm is turned by an angle that is rounded. A place on the ground is counted from the
+            ! origin of the plane.
+            size_of = norm2(m%points(i)%offset)
+            if (link%ground) size_of = max(size_of, norm2(link%position(:2) - origin))
+         end associate
+         call add(number_point, i, 0, 1, size_of)
+         call add(number_point, i, 0, 2, size_of)
+      end do
+      do i = 1, size(m%pairs)
+         if (m%pairs(i)%kind /= pair_prismatic) cycle
+         call add(number_pair, i, 0, 2, abs(m%pairs(i)%offset))
+         call add(number_pair, i, 0, 3, abs(m%pairs(i)%beta))
+      end do
+      if (any(m%pairs%kind == pair_prismatic)) call add_guides()
+      do i = 1, size(m%drives)
+         do j = 1, 3
+            size_of = abs(m%drives(i)%polynomial(j))
+            ! An angle counted from another link is added to that link's, and rounded with it.
+            if (j == 1 .and. m%drives(i)%kind == drive_relangle) size_of = max(size_of, 1.0_wp)
+            call add(number_drive, i, 0, j, size_of)
+         end do
+         if (.not. allocated(m%drives(i)%terms)) cycle
+         do j = 1, size(m%drives(i)%terms)
+            call add_term(m%drives(i)%terms(j), i, j)
+         end do
+      end do
+      list = list(:n)
+
+   contains
+
+      !> How many numbers the law of drive number `i` has.
+      pure integer function drive_numbers(i) result(count)
+         integer, intent(in) :: i
+         integer :: j
+
+         count = 3
+         if (.not. allocated(m%drives(i)%terms)) return
+         do j = 1, size(m%drives(i)%terms)
+            count = count + 3
+            if (allocated(m%drives(i)%terms(j)%values)) count = count + size(m%drives(i)%terms(j)%values)
+         end do
+      end function drive_numbers
+
+      !> Adds a number that is rounded by its size.
+      subroutine add(kind, subject, term, place, size_of)
+         integer, intent(in) :: kind, subject, term, place
+         real(wp), intent(in) :: size_of
+
+         if (.not. size_of > 0.0_wp) return
+         n = n + 1
+         list(n)%number = card_number_t(kind, subject, term, place)
+         list(n)%value = number_value(m, list(n)%number)
+         list(n)%by(1:) = size_of*deviates(list(n)%number)
+      end subroutine add
+
+      !> Adds the numbers of a term. A row of a table is off by the rounding of its time as well.
+      subroutine add_term(term, drive, j)
+         type(term_t), intent(in) :: term
+         integer, intent(in) :: drive, j
+         real(wp) :: slope
+         integer :: k
+
+         if (term%kind == term_table) then
+            associate (x => term%knots, y => term%values)
+               do k = 1, size(y)
+                  slope = 0.0_wp
+                  if (k > 1) slope = abs((y(k) - y(k - 1))/(x(k) - x(k - 1)))
+                  if (k < size(y)) slope = max(slope, abs((y(k + 1) - y(k))/(x(k + 1) - x(k))))
+                  call add(number_drive, drive, j, k, abs(y(k)) + abs(x(k))*slope)
+               end do
+            end associate
+         else
+            do k = 1, merge(1, 3, term%kind == term_power)
+               call add(number_drive, drive, j, k, abs(term%r(k)))
+            end do
+         end if
+      end subroutine add_term
+
+      !> Adds the directions of guides. Those that are parallel or at right angles by the cards of links that turn as
+      !> one stay so: they are off by the same part of a radian, whatever the angles are of which their directions are
+      !> sums.
+      subroutine add_guides()
+         type(mechanism_t) :: off
+         type(tree_t) :: t
+         type(axes_t) :: axes, turned
+         real(wp) :: by(0:directions, size(m%links)), largest
+         integer :: i, k
+
+         t = new_tree(m)
+         axes = axes_of(m, t)
+         off = m
+         do k = 0, directions
+            ! The angles of the axes are sums of angles of cards, and so are their changes.
+            off%links%position(3) = 0.0_wp
+            off%pairs%beta = 0.0_wp
+            do i = 1, n
+               if (list(i)%number%place == 3 .and. any(list(i)%number%kind == [number_link, number_pair])) &
+                  call put_number(off, list(i)%number, list(i)%by(k))
+            end do
+            turned = axes_of(off, t)
+            by(k, :) = turned%angle_offset
+         end do
+         largest = max(1.0_wp, maxval(abs(m%pairs%alpha)))
+         do i = 1, size(m%pairs)
+            if (m%pairs(i)%kind /= pair_prismatic) cycle
+            n = n + 1
+            associate (link => m%points(m%pairs(i)%point_i)%link)
+               k = int(modulo(nint((axes%angle_offset(link) + m%pairs(i)%alpha)*(2*quarter/pi), int64), &
+                  int(quarter, int64)))
+               list(n)%number = card_number_t(number_pair, i, 0, 1)
+               list(n)%value = m%pairs(i)%alpha
+               list(n)%by(1:) = largest*deviates(card_number_t(number_pair, t%orientation(link), k, 1)) - by(1:, link)
+            end associate
+         end do
+      end subroutine add_guides
+   end function roundings_of
+
+   !> Gives `m` the numbers of `list`, each off in direction `k` by so many `roundings`; 0: as they are.
+   subroutine put_off(list, k, roundings, m)
+      type(rounded_t), intent(in) :: list(:)
+      integer, intent(in) :: k
+      real(wp), intent(in) :: roundings
+      type(mechanism_t), intent(inout) :: m
+      integer :: i
+
+      do i = 1, size(list)
+         call put_number(m, list(i)%number, list(i)%value + roundings*epsilon(1.0_wp)*list(i)%by(k))
+      end do
+   end subroutine put_off
+
+   !> The instant `t`, off in direction `k` by so many `roundings`.
+   pure real(wp) function off_instant(t, k, roundings)
+      real(wp), intent(in) :: t, roundings
+      integer, intent(in) :: k
+      real(wp) :: deviate(0:directions)
+
+      deviate(0) = 0.0_wp
+      deviate(1:) = deviates(card_number_t(number_time, 0, 0, 0))
+      off_instant = t + roundings*epsilon(1.0_wp)*deviate(k)*t
+   end function off_instant
+
+   !> The normal deviates (directions) of the number with this address (Box and Muller).
+   pure function deviates(number) result(z)
+      type(card_number_t), intent(in) :: number
+      real(wp) :: z(directions), u, v
+      integer(int64) :: x
+      integer :: k
+
+      x = mixed(mixed(mixed(mixed(0_int64, number%kind), number%subject), number%term), number%place)
+      do k = 1, directions
+         u = real(mixed(x, 2*k - 1), wp)/real(modulus, wp)
+         v = real(mixed(x, 2*k), wp)/real(modulus, wp)
+         z(k) = sqrt(-2.0_wp*log(u))*cos(2.0_wp*pi*v)
+      end do
+   end function deviates
+
+   !> A number from 1 to the modulus less one that hangs on `x` and on `n`: the fifth power takes no value twice.
+   pure integer(int64) function mixed(x, n) result(y)
+      integer(int64), intent(in) :: x
+      integer, intent(in) :: n
+      integer(int64) :: square
+
+      y = mod(multiplier*x + n + 1, modulus)
+      square = mod(y*y, modulus)
+      y = mod(mod(square*square, modulus)*y, modulus)
+      y = max(y, 1_int64)
+   end function mixed
+end module rounded_numbers

@@ -1,0 +1,278 @@
+!> The sensitivities of the rows of a motion to the numbers that have tolerances, at one instant, and what the
+!> tolerances make of them: the worst case, the sum of |s| times the tolerance, and the root of the sum of squares.
+!> A sensitivity is the difference of two rows of the mechanism with one number a little above and below.
+module sensitivities
+   use kinds, only: wp
+   use mechanism, only: mechanism_t, tolerance_t, request_t, request_pair, number_drive, term_cycloid, term_cosine, &
+      term_parabola
+   use drives, only: joint_distance
+   use card_numbers, only: number_value, set_number
+   use known_digits, only: nothing_known
+   use motion, only: motion_t, new_motion
+   use points, only: row_t, row_of
+   use block_engine, only: block_engine_t
+   use digits_in_doubt, only: sizes_t, sizes_of
+   use rounded_numbers, only: caution
+   use error_estimate, only: error_estimate_t
+   use changed_rows, only: perturbed_t, begin_from, rows_with
+   implicit none
+   private
+   public :: sensitivities_t, find_sensitivities, has_tolerances, ground_sensitivities, worst_case, root_of_squares
+
+   !> At one instant, in the units of the rows (lengths, radians) and of the numbers on their cards.
+   type :: sensitivities_t
+      logical :: taken = .false.                     !< some number has a tolerance
+      real(wp), allocatable :: of(:, :, :, :)        !< (3, 0:2, numbers, requests)
+      real(wp), allocatable :: error(:, :, :, :)     !< likewise: what rounding leaves open of them
+      integer, allocatable :: known(:)               !< (requests) as of a row: -1 none of them exists
+      logical, allocatable :: jams(:)                !< (numbers) redundant equations do not allow it to change
+   end type sensitivities_t
+
+   !> A number is changed by about this part of its natural unit, the ninth root of a rounding: with three steps of
+   !> Richardson the error of the difference, the eighth power of the change, is about that which rounding leaves in it.
+   !> To one side it is the fifth root, with the fourth power.
+   real(wp), parameter :: usual_step = 0.5_wp*epsilon(1.0_wp)**(1.0_wp/9.0_wp)
+   real(wp), parameter :: step_to_one_side = 0.5_wp*epsilon(1.0_wp)**0.2_wp
+   !> The steps are this one, its half, and so on; so much of the slopes by each is taken.
+   integer, parameter :: halvings = 4
+   real(wp), parameter :: of_both_sides(halvings) = [-1.0_wp, 84.0_wp, -1344.0_wp, 4096.0_wp]/2835.0_wp
+   real(wp), parameter :: of_one_side(halvings) = [-1.0_wp, 14.0_wp, -56.0_wp, 64.0_wp]/21.0_wp
+   !> By less where an unknown would change by more (rad, unit of the block), or with a larger Kantorovich ratio r. At
+   !> the distance d from a dead point a change by h has r = h/(2 d), and the difference of accelerations, which are as
+   !> d**-2.5, has the relative error 0.6 r**8.
+   real(wp), parameter :: largest_change = 4.0_wp*usual_step, largest_ratio = 2.5e-2_wp
+   !> Places on the ground are turned by an angle at most: without Richardson's step the third root is best.
+   real(wp), parameter :: ground_step = epsilon(1.0_wp)**(1.0_wp/3.0_wp)
+   integer, parameter :: max_attempts = 12
+
+contains
+
+   !> The sensitivities of all requests of `m` at its motion `q`, which the engine `e` has found. `sizes`: those of `m`.
+   !> `estimate`: how far the motion is known.
+   subroutine find_sensitivities(p, m, e, q, sizes, estimate, found)
+      type(perturbed_t), intent(inout) :: p
+      type(mechanism_t), intent(in) :: m
+      type(block_engine_t), intent(in) :: e
+      type(motion_t), intent(in) :: q
+      type(sizes_t), intent(in) :: sizes
+      type(error_estimate_t), intent(in) :: estimate
+      type(sensitivities_t), intent(inout) :: found
+      type(row_t), dimension(size(m%requests)) :: middle, up, down
+      type(row_t) :: row
+      real(wp) :: step, h
+      integer :: i, d, k, side
+
+      found%taken = allocated(m%tolerances)
+      if (.not. found%taken) return
+      associate (numbers => size(m%tolerances), requests => size(m%requests))
+         if (.not. allocated(found%of)) allocate (found%of(3, 0:2, numbers, requests), &
+            found%error(3, 0:2, numbers, requests), found%known(requests), found%jams(numbers))
+      end associate
+      found%of = 0.0_wp
+      found%error = 0.0_wp
+      found%jams = .false.
+      call begin_from(p, m, e, q)
+      p%m = m
+      call rows_with(p, q%t, .false., middle)
+      do i = 1, size(m%requests)
+         row = row_of(m, q, m%requests(i))
+         found%known(i) = merge(2, -1, min(row%known, middle(i)%known) == 2 .and. has_tolerances(m, m%requests(i)))
+      end do
+      do d = 1, size(m%tolerances)
+         associate (one => m%tolerances(d))
+            side = side_of_joint(m, one, q%t, usual_step*natural_unit(one, sizes))
+            call find_step(one, side, step)
+            down = middle
+            do k = 1, halvings
+               h = step*0.5_wp**(k - 1)
+               if (k > 1) call change(one, h, up)
+               if (side == 0) call change(one, -h, down)
+               call note_slopes(merge(2.0_wp, 1.0_wp, side == 0)*h, merge(of_both_sides(k), of_one_side(k), side == 0))
+            end do
+            do i = 1, size(m%requests)
+               found%known(i) = min(found%known(i), smooth_order(m, one, q%t))
+               if (.not. (estimate%taken .and. estimate%in_doubt)) cycle
+               associate (error => found%error(:, :, d, i), rounding => estimate%changes(:, :, i))
+                  error = nothing_known
+                  where (rounding < nothing_known) error = caution*rounding*abs(one%unit/step)
+               end associate
+            end do
+            p%m = m
+         end associate
+      end do
+
+   contains
+
+      !> Adds to the sensitivities to number `d` this `part` of the slopes from the rows `down` to those `up`, whose
+      !> numbers are `apart`.
+      subroutine note_slopes(apart, part)
+         real(wp), intent(in) :: apart, part
+         integer :: i
+
+         do i = 1, size(m%requests)
+            if (min(up(i)%known, down(i)%known) < 2) found%known(i) = -1
+            if (found%known(i) < 0) cycle
+            found%of(:, :, d, i) = found%of(:, :, d, i) &
+               + (up(i)%value - down(i)%value)*(part*m%tolerances(d)%unit/apart)
+         end do
+      end subroutine note_slopes
+
+      !> Rows with the number of tolerance `one` changed by `by`.
+      subroutine change(one, by, rows)
+         type(tolerance_t), intent(in) :: one
+         real(wp), intent(in) :: by
+         type(row_t), intent(inout) :: rows(:)
+
+         p%m = m
+         call set_number(p%m, one%card_number_t, number_value(m, one%card_number_t) + by)
+         call rows_with(p, q%t, .false., rows)
+         found%jams(d) = found%jams(d) .or. p%jams
+      end subroutine change
+
+      !> The `step` by which the number of tolerance `one` is changed, above 0 if `side` is 0; `up`: the rows there.
+      subroutine find_step(one, side, step)
+         type(tolerance_t), intent(in) :: one
+         integer, intent(in) :: side
+         real(wp), intent(out) :: step
+         real(wp) :: too_far
+         integer :: k
+
+         step = merge(usual_step, step_to_one_side, side == 0)*natural_unit(one, sizes)
+         if (side < 0) step = -step
+         do k = 1, max_attempts
+            call change(one, step, up)
+            ! On a dead point there is nothing but what drives alone move, and no distance to it.
+            if (p%is_singular .or. k == max_attempts) exit
+            too_far = max(p%change/largest_change, p%ratio/largest_ratio)
+            if (too_far <= 1.0_wp .or. found%jams(d)) exit
+            step = step*max(0.5_wp/too_far, 1.0e-3_wp)
+         end do
+      end subroutine find_step
+   end subroutine find_sensitivities
+
+   !> A change of 1, as far as the motion of a mechanism of these `sizes` is concerned, of the number of tolerance
+   !> `one`, in the units of `mechanism_t`.
+   pure real(wp) function natural_unit(one, sizes)
+      type(tolerance_t), intent(in) :: one
+      type(sizes_t), intent(in) :: sizes
+
+      natural_unit = sizes%length**one%powers(1)*sizes%rate**(-one%powers(2))
+   end function natural_unit
+
+   !> What `request` asks for has sensitivities: some number of `m` has a tolerance, and it is no pole and no curve.
+   pure logical function has_tolerances(m, request)
+      type(mechanism_t), intent(in) :: m
+      type(request_t), intent(in) :: request
+
+      has_tolerances = allocated(m%tolerances) .and. request%kind <= request_pair
+   end function has_tolerances
+
+   !> The joint of the rise that has the number of tolerance `one` next to the time `t`: `ahead`, its place less that of
+   !> the instant, as a part of the duration. Huge where the number is of no rise, or moves no joint.
+   pure real(wp) function joint_ahead(m, one, t) result(ahead)
+      type(mechanism_t), intent(in) :: m
+      type(tolerance_t), intent(in) :: one
+      real(wp), intent(in) :: t
+      real(wp) :: joints(3)
+
+      ahead = huge(ahead)
+      if (one%kind /= number_drive .or. one%term == 0) return
+      associate (term => m%drives(one%subject)%terms(one%term))
+         if (term%kind < term_cycloid .or. one%place == 3) return
+         joints = [0.0_wp, 1.0_wp, merge(0.5_wp, 1.0_wp, term%kind == term_parabola)] - (t - term%r(1))/term%r(2)
+         ahead = joints(minloc(abs(joints), dim=1))
+      end associate
+   end function joint_ahead
+
+   !> To which side the number of tolerance `one` may change by a few times `step`: -1, 1, or 0: to both. A start or a
+   !> duration that grows moves the joints of a rise to later times.
+   pure integer function side_of_joint(m, one, t, step) result(side)
+      type(mechanism_t), intent(in) :: m
+      type(tolerance_t), intent(in) :: one
+      real(wp), intent(in) :: t, step
+      real(wp) :: ahead
+
+      side = 0
+      ahead = joint_ahead(m, one, t)
+      if (.not. ahead < huge(ahead)) return
+      associate (r => m%drives(one%subject)%terms(one%term)%r)
+         if (abs(ahead) > 2.0_wp*step/r(2)*max(1.0_wp, abs(t - r(1))/r(2))) return
+      end associate
+      ! At the joint itself the derivative is that from the right.
+      side = merge(1, -1, ahead > joint_distance(m%drives(one%subject)%terms(one%term)))
+   end function side_of_joint
+
+   !> The highest derivative with respect to time, 0 to 2, whose own derivative with respect to the number of tolerance
+   !> `one` exists at the time `t`. At a joint of a rise the third derivative jumps, or the second: if the joint moves,
+   !> the acceleration, or the velocity, of this instant has different derivatives to either side.
+   pure integer function smooth_order(m, one, t) result(order)
+      type(mechanism_t), intent(in) :: m
+      type(tolerance_t), intent(in) :: one
+      real(wp), intent(in) :: t
+      real(wp) :: ahead
+
+      order = 2
+      ahead = joint_ahead(m, one, t)
+      if (.not. ahead < huge(ahead)) return
+      associate (term => m%drives(one%subject)%terms(one%term))
+         if (abs(ahead) <= joint_distance(term)) order = merge(1, 0, term%kind < term_cosine)
+      end associate
+   end function smooth_order
+
+   !> The sensitivities (3, 0:2, numbers) of the row of the ground that `request` asks for.
+   function ground_sensitivities(m, request) result(s)
+      type(mechanism_t), intent(in) :: m
+      type(request_t), intent(in) :: request
+      real(wp), allocatable :: s(:, :, :)
+      type(mechanism_t) :: off
+      type(row_t) :: up, down
+      type(motion_t) :: rest
+      type(sizes_t) :: sizes
+      real(wp) :: step
+      integer :: d
+
+      allocate (s(3, 0:2, size(m%tolerances)))
+      rest = new_motion(size(m%links))
+      sizes = sizes_of(m)
+      do d = 1, size(m%tolerances)
+         associate (one => m%tolerances(d))
+            step = ground_step*natural_unit(one, sizes)
+            off = m
+            call set_number(off, one%card_number_t, number_value(m, one%card_number_t) + step)
+            up = row_of(off, rest, request)
+            off = m
+            call set_number(off, one%card_number_t, number_value(m, one%card_number_t) - step)
+            down = row_of(off, rest, request)
+            s(:, :, d) = (up%value - down%value)*(one%unit/(2.0_wp*step))
+         end associate
+      end do
+   end function ground_sensitivities
+
+   !> The largest change (3, 0:2) of a row with the sensitivities `s` (3, 0:2, numbers) that the `tolerances` (numbers)
+   !> allow.
+   pure function worst_case(tolerances, s) result(x)
+      type(tolerance_t), intent(in) :: tolerances(:)
+      real(wp), intent(in) :: s(:, 0:, :)
+      real(wp) :: x(3, 0:2)
+      integer :: d
+
+      x = 0.0_wp
+      do d = 1, size(tolerances)
+         x = x + abs(s(:, :, d))*tolerances(d)%size_of
+      end do
+   end function worst_case
+
+   !> The root (3, 0:2) of the sum of the squares of its changes by one tolerance at a time.
+   pure function root_of_squares(tolerances, s) result(x)
+      type(tolerance_t), intent(in) :: tolerances(:)
+      real(wp), intent(in) :: s(:, 0:, :)
+      real(wp) :: x(3, 0:2)
+      integer :: c, k
+
+      do k = 0, 2
+         do c = 1, 3
+            x(c, k) = norm2(s(c, k, :)*tolerances%size_of)
+         end do
+      end do
+   end function root_of_squares
+end module sensitivities
