@@ -134,10 +134,11 @@ contains
       allocate (e%laws(size(m%drives)), e%is_angle(size(m%drives)), e%unit_of(size(m%drives)))
       allocate (e%estimate(3, size(m%links)), e%estimated(0:e%blocks%unknowns))
       call put_estimate(e, m)
+      call put_laws(e, m)
    end subroutine prepare
 
    !> Gives the engine `e` the numbers of `m`, a mechanism with the links, points, pairs and drives of that for which it
-   !> was made; its state stays. `fits`: see `put_numbers`.
+   !> was made; its state stays, and its estimate. `fits`: see `put_numbers`.
    subroutine put_mechanism(e, m, fits)
       type(block_engine_t), intent(inout) :: e
       type(mechanism_t), intent(in) :: m
@@ -153,7 +154,7 @@ contains
          call put_chain(m, b%tree, axes, b%orientations, e%chain, b%numbers%unit)
          call put_chain(m, b%tree, axes, b%orientations, e%whole, b%numbers%unit)
       end associate
-      call put_estimate(e, m)
+      call put_laws(e, m)
    end subroutine put_mechanism
 
    !> Makes `e`, the engine of a variant of `m`, ready for the first instant of `m`, as `make_block_engine` makes it,
@@ -167,7 +168,9 @@ contains
       is_done = e%blocks%solvable
       if (is_done) is_done = all(e%blocks%list%shape%pattern == 0)
       if (is_done) call put_mechanism(e, m, is_done)
-      if (is_done) call forget_motions(e)
+      if (.not. is_done) return
+      call put_estimate(e, m)
+      call forget_motions(e)
    end subroutine renew_block_engine
 
    !> As if `e` had solved nothing yet; its workspace is scratch.
@@ -197,7 +200,8 @@ contains
       e%is_close = .false.
       e%is_singular = .false.
    end subroutine forget_motions
-   !> The estimate that `m` gives, the laws of its drives and the units of their values.
+
+   !> The estimate that `m` gives.
    subroutine put_estimate(e, m)
       type(block_engine_t), intent(inout) :: e
       type(mechanism_t), intent(in) :: m
@@ -209,6 +213,14 @@ contains
       ! As a section: a function's result would bring its own lower bound.
       e%estimated(:) = estimated_values(m, e%blocks%tree, e%blocks%numbers%equations%axes, e%length, &
          e%blocks%unknowns, e%span)/e%blocks%numbers%unit
+   end subroutine put_estimate
+
+   !> The laws of the drives of `m`, and the units of their values.
+   subroutine put_laws(e, m)
+      type(block_engine_t), intent(inout) :: e
+      type(mechanism_t), intent(in) :: m
+      integer :: i
+
       do i = 1, size(m%drives)
          e%laws(i) = new_law(m%drives(i))
          e%is_angle(i) = all(m%drives(i)%kind /= [drive_x, drive_y, drive_slide])
@@ -219,7 +231,7 @@ contains
             if (drive > 0) e%unit_of(drive) = e%unit_of(drive)/e%blocks%numbers%rows(i)%unit
          end associate
       end do
-   end subroutine put_estimate
+   end subroutine put_laws
 
    !> Solves for the motion at `t`, from the one accepted last (`follows`) or, each block nearest to it, from the deck's
    !> estimate. `c`: how that ended in the worst block, with the largest change of a predicted value.

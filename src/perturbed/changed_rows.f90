@@ -8,9 +8,12 @@ module changed_rows
    use blocks, only: largest_known
    use block_state, only: unknown_t
    use block_solver, only: solve_block
+   use block_matrix, only: solve_first, solve_again
+   use block_equations, only: assemble_block, right_hand_side
    use block_engine, only: block_engine_t, make_block_engine, put_mechanism, set_drive_values, get_motion, &
       slide_units
    use convergence, only: convergence_t, is_solved, ended_inconsistent
+   use rounded_numbers, only: put_loops_off
    use link_motion, only: mark_links, missing_nothing, missing_rates, missing_all
    implicit none
    private
@@ -24,8 +27,8 @@ module changed_rows
       type(unknown_t), allocatable :: start(:)   !< (0:unknowns) the position at hand, slides in the deck's unit
       logical :: only_driven = .false.           !< nothing is known of it but what drives alone move
       logical :: is_singular = .false.           !< it has no unique rates
-      !> A search begins so many nudges from it: rows of the same numbers then differ by roundings of the calculation.
-      real(wp) :: nudges = 1.0_wp
+      logical :: stays = .false.                 !< a search begins there, not a nudge away
+      integer :: direction = 0                   !< vectors of its loops are off by a rounding in it; 0: they are not
       !> Of the rows found last: the largest Kantorovich ratio of a block, the change of its position over the distance
       !> of the next one; the largest change (rad, unit of the block) of an unknown; whether equations contradict.
       real(wp) :: ratio = 0.0_wp, change = 0.0_wp
@@ -101,7 +104,6 @@ contains
       type(block_engine_t), intent(inout) :: e
       type(motion_t), intent(inout) :: q
       type(convergence_t) :: c
-      real(wp) :: off
       integer :: missing(0:ubound(p%start, 1)), k, lack
       logical :: finite
 
@@ -111,11 +113,11 @@ contains
       if (.not. e%blocks%solvable) return
       e%state%u(:) = p%start
       e%state%u%value = p%start%value/slide_units(e)
-      do k = 1, ubound(e%state%u, 1)
+      do k = 1, merge(0, ubound(e%state%u, 1), p%stays)
          ! On a dead point the Jacobian has an inverse only where links that are in line turn apart.
-         off = p%nudges*merge(singular_nudge*(-1)**k, nudge, p%is_singular)
-         e%state%u(k)%value = e%state%u(k)%value + off
+         e%state%u(k)%value = e%state%u(k)%value + merge(singular_nudge*(-1)**k, nudge, p%is_singular)
       end do
+      if (p%direction > 0) call put_loops_off(p%direction, e%blocks%numbers)
       call set_drive_values(e, q%t)
       missing = missing_nothing
       do k = 1, size(e%needed)
@@ -130,6 +132,7 @@ contains
                p%jams = p%jams .or. c%ended == ended_inconsistent .or. c%rates_open
                if (c%singular) lack = missing_rates
                if (.not. is_solved(c) .or. c%rates_open) lack = missing_all
+               if (block%shape%rows > block%shape%n .and. lack < missing_rates) call refine_rates(e, i)
                if (p%is_singular) then
                   if (c%change > singular_change) lack = missing_all
                else if (c%kantorovich_ratio > largest_ratio .and. .not. c%singular) then
@@ -142,4 +145,36 @@ contains
       call get_motion(e, q, finite)
       call mark_links(e%chain, missing, q)
    end subroutine solve_needed
+
+   !> The rates of block `i` of `e` again, by iterative refinement. Orthogonal factors, of equations that are too many,
+   !> leave errors by the largest of all rows; one pass leaves those of each row (Higham, Accuracy and Stability of
+   !> Numerical Algorithms, 2002, ch. 20).
+   subroutine refine_rates(e, i)
+      type(block_engine_t), intent(inout) :: e
+      integer, intent(in) :: i
+      real(wp), allocatable :: jacobian(:, :)
+      integer :: order, k, info
+
+      associate (block => e%blocks%list(i), shape => e%blocks%list(i)%shape, w => e%work)
+         call assemble_block(e%blocks, i, e%state, w%a, w%r)
+         jacobian = reshape(w%a(:shape%rows*shape%n), [shape%rows, shape%n])
+         call solve_first(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, w%r, info)
+         if (info > 0) return
+         do order = 1, 2
+            call right_hand_side(e%blocks, i, order, e%state, w%r)
+            do k = 1, shape%n
+               associate (u => e%state%u(e%blocks%unknown(block%first + k - 1)))
+                  w%r(:shape%rows) = w%r(:shape%rows) - merge(u%rate, u%acceleration, order == 1)*jacobian(:, k)
+               end associate
+            end do
+            call solve_again(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, w%r)
+            do k = 1, shape%n
+               associate (u => e%state%u(e%blocks%unknown(block%first + k - 1)))
+                  if (order == 1) u%rate = u%rate + w%r(k)
+                  if (order == 2) u%acceleration = u%acceleration + w%r(k)
+               end associate
+            end do
+         end do
+      end associate
+   end subroutine refine_rates
 end module changed_rows

@@ -18,9 +18,6 @@ module error_estimate
    !> Numbers are off by so many roundings, beside which those of the calculation are small; 1E-12 from a dead point, or
    !> where their changes have a larger Kantorovich ratio, by few: changes are of first order but for about that part.
    real(wp), parameter :: many = 256.0_wp, few = 16.0_wp, small_ratio = 0.05_wp
-   !> Of so few repetitions the largest difference is multiplied by more.
-   integer, parameter :: repeats = 4
-   real(wp), parameter :: own_caution = 5.0_wp
 
    !> How far the motion at one instant is known. It is `taken` where digits of the tables could be `in_doubt`, which
    !> are masked then, or where the errors are `asked` for, if anything moves.
@@ -87,9 +84,9 @@ contains
       found%of_sums = errors_of_sums(m, q, s%sizes%length)
       found%taken = .true.
       call put_off(s%numbers, 0, many, s%perturbed%m)
-      s%perturbed%nudges = merge(0.0_wp, 1.0_wp, s%perturbed%is_singular)
+      s%perturbed%stays = s%perturbed%is_singular
       call rows_with(s%perturbed, q%t, .true., found%solved)
-      s%perturbed%nudges = 1.0_wp
+      s%perturbed%stays = .false.
       call find_changes(s, many, q%t, found, s%perturbed%is_singular, is_small)
       if (.not. is_small) call find_changes(s, few, q%t, found, .true., is_small)
       if (always) call find_own(s, q%t, found)
@@ -135,33 +132,28 @@ contains
       end do
    end subroutine find_changes
 
-   !> How far the mean of two rows at the time `t`, with numbers off by a rounding to either side, is from those solved
-   !> first: the roundings of the calculation, which count by themselves where no number of the deck does, as in the
-   !> rates of links that turn as one. With the same numbers many of these roundings would be the same.
+   !> The changes of the rows at the time `t` by a rounding of each vector in each loop: those of the calculation, which
+   !> count by themselves where no number of the deck does, as in the rates of links that turn as one.
    subroutine find_own(s, t, found)
       type(estimator_t), intent(inout) :: s
       real(wp), intent(in) :: t
       type(error_estimate_t), intent(inout) :: found
-      type(row_t), dimension(size(found%solved)) :: up, down
+      type(row_t) :: rows(size(found%solved))
       integer :: k, i
 
       if (.not. allocated(found%own)) allocate (found%own, mold=found%changes)
       found%own = 0.0_wp
       if (s%perturbed%is_singular) return
-      do k = 1, repeats
-         s%perturbed%nudges = real((-1)**k*(k + 1), wp)
-         call put_off(s%numbers, k, 1.0_wp, s%perturbed%m)
-         call rows_with(s%perturbed, off_instant(t, k, 1.0_wp), .true., up)
-         call put_off(s%numbers, k, -1.0_wp, s%perturbed%m)
-         call rows_with(s%perturbed, off_instant(t, k, -1.0_wp), .true., down)
-         do i = 1, size(up)
-            if (min(up(i)%known, down(i)%known, found%solved(i)%known) < 0) cycle
-            ! Centres may be at infinity, and their directions have no mean.
-            if (up(i)%kind < request_pole) up(i)%value = 0.5_wp*(up(i)%value + down(i)%value)
-            found%own(:, :, i) = max(found%own(:, :, i), difference(up(i), found%solved(i)))
+      call put_off(s%numbers, 0, 1.0_wp, s%perturbed%m)
+      do k = 1, directions
+         s%perturbed%direction = k
+         call rows_with(s%perturbed, t, .true., rows)
+         do i = 1, size(rows)
+            if (min(rows(i)%known, found%solved(i)%known) < 0) cycle
+            found%own(:, :, i) = max(found%own(:, :, i), difference(rows(i), found%solved(i)))
          end do
       end do
-      s%perturbed%nudges = 1.0_wp
+      s%perturbed%direction = 0
    end subroutine find_own
 
    !> What rounding of the deck's numbers leaves open (3, 0:2) of the `row` of request number `i` of `m`, in its units.
@@ -214,7 +206,9 @@ contains
       row = row_of(m, q, m%requests(i))
       error = estimate_of(row, m, s, i)
       if (.not. s%taken .or. is_fixed(m, m%requests(i))) return
-      where (error < nothing_known) error = max(error, own_caution*s%own(:, :, i)) + difference(row, s%solved(i))
+      ! What is zero without a sum stays so.
+      where (error > 0.0_wp .and. error < nothing_known) error = max(error, caution*s%own(:, :, i))
+      where (error < nothing_known) error = error + difference(row, s%solved(i))
       if (m%requests(i)%kind >= request_pole) error = merge(nothing_known, error, lost_numbers(row, s%solved(i)))
    end function row_error
 

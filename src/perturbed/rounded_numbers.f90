@@ -19,9 +19,11 @@ module rounded_numbers
       drive_relangle, number_link, number_point, number_pair, number_drive, number_time
    use card_numbers, only: number_value, put_number
    use links_tree, only: tree_t, axes_t, new_tree, axes_of
+   use number_types, only: vector_t
+   use blocks, only: numbers_t
    implicit none
    private
-   public :: directions, caution, rounded_t, roundings_of, put_off, off_instant
+   public :: directions, caution, rounded_t, roundings_of, put_off, put_loops_off, off_instant
 
    integer, parameter :: directions = 8
    real(wp), parameter :: caution = 2.35_wp
@@ -30,6 +32,8 @@ module rounded_numbers
    integer(int64), parameter :: multiplier = 16807_int64, modulus = 2147483647_int64
    !> Guides are parallel, or at right angles, where their directions differ by less than this part of a quarter turn.
    integer, parameter :: quarter = 2**20
+   !> In the addresses of vectors of loops, where those of numbers have their kind.
+   integer, parameter :: of_loop = 0
 
    !> A number of the deck.
    type :: rounded_t
@@ -190,31 +194,66 @@ contains
       end do
    end subroutine put_off
 
+   !> Puts the vectors and guides of each vector loop in `x` off in direction `k` by a rounding. So much the products
+   !> may be off of which its sums are made, whatever the numbers of the deck are.
+   subroutine put_loops_off(k, x)
+      integer, intent(in) :: k
+      type(numbers_t), intent(inout) :: x
+      integer :: i
+
+      do i = 1, size(x%loops)
+         call round(x%loops(i)%ground, 1, i)
+      end do
+      do i = 1, size(x%d)
+         call round(x%d(i), 2, i)
+      end do
+      do i = 1, size(x%e)
+         call round(x%e(i), 3, i)
+      end do
+
+   contains
+
+      !> Puts vector number `i` of a list off.
+      subroutine round(vector, list, i)
+         type(vector_t), intent(inout) :: vector
+         integer, intent(in) :: list, i
+         real(wp) :: rounding
+
+         rounding = epsilon(1.0_wp)*hypot(vector%x, vector%y)
+         vector%x = vector%x + rounding*deviate(card_number_t(of_loop, i, list, 1), k)
+         vector%y = vector%y + rounding*deviate(card_number_t(of_loop, i, list, 2), k)
+      end subroutine round
+   end subroutine put_loops_off
+
    !> The instant `t`, off in direction `k` by so many `roundings`.
    pure real(wp) function off_instant(t, k, roundings)
       real(wp), intent(in) :: t, roundings
       integer, intent(in) :: k
-      real(wp) :: deviate(0:directions)
 
-      deviate(0) = 0.0_wp
-      deviate(1:) = deviates(card_number_t(number_time, 0, 0, 0))
-      off_instant = t + roundings*epsilon(1.0_wp)*deviate(k)*t
+      off_instant = t + roundings*epsilon(1.0_wp)*deviate(card_number_t(number_time, 0, 0, 0), k)*t
    end function off_instant
 
-   !> The normal deviates (directions) of the number with this address (Box and Muller).
+   !> The normal deviates (directions) of the number with this address.
    pure function deviates(number) result(z)
       type(card_number_t), intent(in) :: number
-      real(wp) :: z(directions), u, v
-      integer(int64) :: x
+      real(wp) :: z(directions)
       integer :: k
 
-      x = mixed(mixed(mixed(mixed(0_int64, number%kind), number%subject), number%term), number%place)
-      do k = 1, directions
-         u = real(mixed(x, 2*k - 1), wp)/real(modulus, wp)
-         v = real(mixed(x, 2*k), wp)/real(modulus, wp)
-         z(k) = sqrt(-2.0_wp*log(u))*cos(2.0_wp*pi*v)
-      end do
+      z = [(deviate(number, k), k=1, directions)]
    end function deviates
+
+   !> That in direction `k` (Box and Muller).
+   pure real(wp) function deviate(number, k) result(z)
+      type(card_number_t), intent(in) :: number
+      integer, intent(in) :: k
+      real(wp) :: u, v
+      integer(int64) :: x
+
+      x = mixed(mixed(mixed(mixed(0_int64, number%kind), number%subject), number%term), number%place)
+      u = real(mixed(x, 2*k - 1), wp)/real(modulus, wp)
+      v = real(mixed(x, 2*k), wp)/real(modulus, wp)
+      z = sqrt(-2.0_wp*log(u))*cos(2.0_wp*pi*v)
+   end function deviate
 
    !> A number from 1 to the modulus less one that hangs on `x` and on `n`: the fifth power takes no value twice.
    pure integer(int64) function mixed(x, n) result(y)

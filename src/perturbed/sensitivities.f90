@@ -37,12 +37,18 @@ module sensitivities
    integer, parameter :: halvings = 4
    real(wp), parameter :: of_both_sides(halvings) = [-1.0_wp, 84.0_wp, -1344.0_wp, 4096.0_wp]/2835.0_wp
    real(wp), parameter :: of_one_side(halvings) = [-1.0_wp, 14.0_wp, -56.0_wp, 64.0_wp]/21.0_wp
+   !> What rounding leaves open of rows grows by so much over the step: that of each row is another one.
+   real(wp), parameter :: growth_of_both = norm2(of_both_sides*[1.0_wp, 2.0_wp, 4.0_wp, 8.0_wp])/sqrt(2.0_wp)
+   real(wp), parameter :: growth_of_one = norm2(of_one_side*[1.0_wp, 2.0_wp, 4.0_wp, 8.0_wp])*sqrt(2.0_wp)
    !> By less where an unknown would change by more (rad, unit of the block), or with a larger Kantorovich ratio r. At
    !> the distance d from a dead point a change by h has r = h/(2 d), and the difference of accelerations, which are as
    !> d**-2.5, has the relative error 0.6 r**8.
-   real(wp), parameter :: largest_change = 4.0_wp*usual_step, largest_ratio = 2.5e-2_wp
+   real(wp), parameter :: largest_change = 4.0_wp*usual_step, largest_ratio = 6.0e-2_wp
    !> Places on the ground are turned by an angle at most: without Richardson's step the third root is best.
    real(wp), parameter :: ground_step = epsilon(1.0_wp)**(1.0_wp/3.0_wp)
+   !> A change that is too far, as a part of what it may be, is made shorter; one that is too near was made too short,
+   !> and leaves a larger rounding. Beyond the limit of a motion, where there is no root, it counts as so far at least.
+   real(wp), parameter :: too_near = 0.25_wp, no_root = 4.0_wp
    integer, parameter :: max_attempts = 12
 
 contains
@@ -62,8 +68,7 @@ contains
       real(wp) :: step, h
       integer :: i, d, k, side
 
-      found%taken = allocated(m%tolerances)
-      if (.not. found%taken) return
+      found%taken = .true.
       associate (numbers => size(m%tolerances), requests => size(m%requests))
          if (.not. allocated(found%of)) allocate (found%of(3, 0:2, numbers, requests), &
             found%error(3, 0:2, numbers, requests), found%known(requests), found%jams(numbers))
@@ -94,7 +99,8 @@ contains
                if (.not. (estimate%taken .and. estimate%in_doubt)) cycle
                associate (error => found%error(:, :, d, i), rounding => estimate%changes(:, :, i))
                   error = nothing_known
-                  where (rounding < nothing_known) error = caution*rounding*abs(one%unit/step)
+                  where (rounding < nothing_known) error = merge(growth_of_both, growth_of_one, side == 0) &
+                     *caution*rounding*abs(one%unit/step)
                end associate
             end do
             p%m = m
@@ -134,18 +140,19 @@ contains
          type(tolerance_t), intent(in) :: one
          integer, intent(in) :: side
          real(wp), intent(out) :: step
-         real(wp) :: too_far
+         real(wp) :: usual, too_far
          integer :: k
 
-         step = merge(usual_step, step_to_one_side, side == 0)*natural_unit(one, sizes)
-         if (side < 0) step = -step
+         usual = merge(usual_step, step_to_one_side, side == 0)*natural_unit(one, sizes)
+         step = merge(usual, -usual, side >= 0)
          do k = 1, max_attempts
             call change(one, step, up)
             ! On a dead point there is nothing but what drives alone move, and no distance to it.
-            if (p%is_singular .or. k == max_attempts) exit
-            too_far = max(p%change/largest_change, p%ratio/largest_ratio)
-            if (too_far <= 1.0_wp .or. found%jams(d)) exit
-            step = step*max(0.5_wp/too_far, 1.0e-3_wp)
+            if (p%is_singular .or. found%jams(d) .or. k == max_attempts) exit
+            too_far = max(p%change/largest_change, p%ratio/largest_ratio, too_near/2.0_wp)
+            if (any(up%known < middle%known)) too_far = max(too_far, no_root)
+            if (too_far <= 1.0_wp .and. (too_far >= too_near .or. .not. abs(step) < usual)) exit
+            step = sign(min(usual, abs(step)*max(0.5_wp/too_far, 1.0e-3_wp)), step)
          end do
       end subroutine find_step
    end subroutine find_sensitivities

@@ -182,6 +182,7 @@ contains
       integer :: c
 
       do c = 1, size(s%list)
+         if (.not. allocated(s%now%parts(c)%tolerances)) cycle
          call find_sensitivities(s%estimators(c)%perturbed, s%now%parts(c), s%list(c)%engine, s%now%motions(c), &
             s%estimators(c)%sizes, s%now%errors(c), s%now%sensitivities(c))
       end do
