@@ -111,8 +111,8 @@ $(foreach build,$(builds),$(eval $(call build_in,$(build))))
 # without the link; the rest and what tests/ has of its own are compiled with less optimization, in half the time.
 modules_in = $(notdir $(basename $(filter $(addsuffix /%,$(addprefix src/,$(1))),$(sources))))
 hot  := $(filter-out picture% animation canvas drawing outline plot_script svg,\
-   $(call modules_in,base linear mechanism blocks continuation perturbed $(if $(filter single,$(KIND)),,results)))
-warm := $(if $(filter double,$(KIND)),$(call modules_in,structure assemblies dense lanes proof))
+   $(call modules_in,base linear mechanism blocks continuation perturbed proof $(if $(filter single,$(KIND)),,results)))
+warm := $(if $(filter double,$(KIND)),$(call modules_in,structure assemblies dense lanes))
 less := $(patsubst -O2,-O1,$(patsubst -O1,-O0,$(filter -O%,$(RELEASE))))
 $(patsubst %,$(BUILD)/release/%.o,$(warm)): private release += $(no_lto)
 $(patsubst %,$(BUILD)/timed/%.o,$(warm)): private timed += $(no_lto)

@@ -9,7 +9,7 @@ module motion_proof
    use motion, only: motion_t
    use position_proof, only: prover_t, placed_t, make_prover, new_placed, prove_position, max_unknowns, take_state, &
       prove_block
-   use link_bounds, only: link_bounds_t, new_link_bounds, bound_links
+   use link_bounds, only: link_vectors_t, link_vectors, bound_links
    use drives, only: drive_motion
    use block_engine, only: block_engine_t
    use block_solver, only: workspace_t, make_workspace, solve_block
@@ -49,7 +49,7 @@ module motion_proof
       logical :: has_begun = .false.              !< a position is proved
       type(prover_t) :: prover
       type(step_prover_t) :: step_prover
-      type(link_bounds_t) :: links
+      type(link_vectors_t), allocatable :: links(:)
       type(placed_t) :: at(2)                     !< the last position that was proved, and the one at hand
       integer :: now = 1                          !< which of them is at hand
    end type motion_prover_t
@@ -87,7 +87,7 @@ contains
       if (.not. p%is_ready) then
          call make_prover(p%prover, m, e)
          call make_step_prover(p%step_prover, e)
-         p%links = new_link_bounds(m, e)
+         p%links = link_vectors(m, e)
          p%at(1) = new_placed(e%blocks, size(m%drives))
          p%at(2) = p%at(1)
          p%is_ready = .true.
@@ -98,7 +98,7 @@ contains
       call prove_position(p%prover, e, q%t, e%needed, p%at(p%now), found%is_proved, &
          merge(2, 0, bounded))
       if (found%is_proved) then
-         if (bounded) call bound_links(p%links, e, p%prover%jets, found%links)
+         if (bounded) call bound_links(p%links, e, p%prover%balls, q, found%links)
          found%gap = maxval(p%at(p%now)%gap(e%needed))
          found%has_step = p%has_begun
          if (found%has_step) &
@@ -145,7 +145,7 @@ contains
       type(block_engine_t), intent(in) :: e
 
       call make_workspace(s%work, e%blocks)
-      s%tube = new_tube(e%blocks)
+      s%tube = new_tube(e%blocks, size(e%laws))
    end subroutine make_step_prover
 
    !> Proves the motion of the blocks `list` between the proved positions `from` and `to`.

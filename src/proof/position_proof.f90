@@ -3,8 +3,8 @@
 !> Blocks are proved in solving order: what earlier ones leave open counts in later ones.
 !>
 !> With F(x*) = 0 and |1 - A J| <= k in a ball about x that holds x*, |x - x*| <= |A| |F(x)|/(1 - k). The rates v solve
-!> J(x*) v* = b(x*), so |v - v*| <= |A| |J(x*) v - b(x*)|/(1 - k); accelerations likewise. J(x*) v - b(x*) is what is
-!> computed at x, with a bound of how it changes from x to x*.
+!> J(x*) v* = b(x*), so |v - v*| <= |A| |J(x*) v - b(x*)|/(1 - k); accelerations likewise. F, J and b are what the
+!> equations are in balls: of the numbers, of what earlier blocks give, and of x.
 !>
 !> Where equations are too many, as many independent ones as there are unknowns are proved, and of the others it is
 !> bounded by how much they stay open.
@@ -13,42 +13,47 @@ module position_proof
    use mechanism, only: mechanism_t
    use drives, only: bounds_t, bounds_of
    use blocks, only: blocks_t
-   use block_state, only: state_t, new_state, set_direction
-   use block_equations, only: find_known_parts, assemble_dense, right_hand_side
+   use block_matrix, only: entries_of
+   use block_state, only: state_t, new_state
    use block_engine, only: block_engine_t
-   use proof_data, only: proof_data_t, new_proof_data, table_errors, rounding
-   use row_bounds, only: jets_t, new_jets, note_turn_error, bound_rows, bound_changes, bound_jacobian
-   use contraction, only: contraction_t, contract, radius_of, apply
+   use balls, only: ball_t, rounding, room, top, distance, operator(+), operator(-), operator(*)
+   use ball_equations, only: ball_numbers_t, ball_state_t, unknown_t, new_ball_state, set_ball, set_radius, &
+      assemble_balls, ball_accelerations
+   use ball_numbers, only: new_ball_numbers, table_errors
+   use contraction, only: bound_inverse, apply, radius_of, max_rate
    implicit none
    private
-   public :: prover_t, placed_t, make_prover, new_placed, take_state, prove_position, prove_block, contract_block
+   public :: prover_t, placed_t, make_prover, new_placed, take_state, prove_position, prove_block, contract, &
+      find_ball, subtract_product
 
    !> Times, too, are numbers of the deck.
    real(wp), parameter, public :: of_time = 4.0_wp*rounding
-   !> Enlarges a sum of a few numbers by more than its roundings.
-   real(wp), parameter, public :: room = 1.0_wp + 32.0_wp*rounding
    !> A block of more unknowns is not proved: all n^2 entries of its inverse take a tenth of a second for each part of a
    !> step, of which there may be a thousand.
    integer, parameter, public :: max_unknowns = 500
+   !> So many balls are tried at most. Each is larger by what the one before has shown of the change of the Jacobian.
+   integer, parameter :: max_tries = 8
 
    !> What the proof of a block computes; nothing is allocated of a direct block, or one that is too wide.
    type :: block_work_t
-      real(wp), allocatable :: a(:, :)            !< (rows, n) Jacobian
-      real(wp), allocatable :: r(:, :)            !< (rows, 0:2) what its equations and their derivatives leave
-      !> (rows) bounds of the equations, and see `bound_rows`, `bound_changes`, `bound_jacobian`
-      real(wp), allocatable, dimension(:) :: g, open, error, change, growth
-      real(wp), allocatable :: x(:)               !< (n) |A| g
-      real(wp) :: within = 0.0_wp                 !< the largest bound of the errors of its values
-      type(contraction_t) :: contraction
+      integer, allocatable :: row(:), column(:)   !< (entries) of its Jacobian
+      type(ball_t), allocatable :: j(:)           !< (entries) the Jacobian
+      type(ball_t), allocatable :: r(:), v(:)     !< (rows) residual, right-hand side for the derivatives
+      real(wp), allocatable :: a(:, :)            !< (rows, n) midpoints of the Jacobian
+      real(wp), allocatable :: inverse(:, :)      !< (n, rows) |A|
+      !> (n) Row sums of |1 - A J|: of the midpoints, at the centre of the ball, and in all of it.
+      real(wp), allocatable, dimension(:) :: of_midpoints, at_centre, off
+      real(wp), allocatable :: open(:)            !< (rows) bounds of the equations at the centre
+      real(wp), allocatable :: x(:)               !< (n) |A| times these
    end type block_work_t
 
    !> What the proofs of a mechanism need.
    type :: prover_t
-      type(proof_data_t) :: data
+      type(ball_numbers_t) :: numbers
       type(state_t) :: state                      !< the values of the proof at hand
-      type(jets_t) :: jets                        !< their bounds
+      type(ball_state_t) :: balls                 !< the exact ones lie in them
+      type(ball_state_t) :: curve                 !< the curves of a step, see `tube_proof`
       type(block_work_t), allocatable :: work(:)  !< (blocks)
-      integer, allocatable :: rows(:)             !< (unknowns) the independent equations of block 1, if it has too many
       real(wp), allocatable :: table_error(:, :)  !< (0:2, drives) of the splines of their tables, in block units
    end type prover_t
 
@@ -61,7 +66,6 @@ module position_proof
       real(wp), allocatable :: drive_error(:, :)  !< (0:2, 0:drives) those of their exact laws differ by no more
       real(wp), allocatable :: open(:, :)         !< (0:1, rows) |F| and |dF/dt| at these values of all unknowns
       real(wp), allocatable :: gap(:)             !< (blocks) by how much redundant equations stay open at most
-      real(wp), allocatable :: norm(:), z1(:)     !< (blocks) the largest row sum of |A|, and z1, of their contractions
       logical, allocatable :: is_proved(:)        !< (blocks)
    end type placed_t
 
@@ -74,22 +78,45 @@ contains
       type(block_engine_t), intent(in) :: e
       integer :: i
 
-      p%data = new_proof_data(m, e%blocks, e%length)
+      p%numbers = new_ball_numbers(m, e%blocks, e%length)
       p%state = new_state(e%blocks, size(m%drives))
-      p%jets = new_jets(e%blocks%unknowns, size(m%drives))
+      p%balls = new_ball_state(e%blocks, size(m%drives))
+      p%curve = p%balls
       allocate (p%table_error(0:2, size(m%drives)))
       do i = 1, size(m%drives)
          p%table_error(:, i) = table_errors(e%laws(i))*e%unit_of(i)
       end do
       allocate (p%work(size(e%blocks%list)))
       do i = 1, size(e%blocks%list)
-         associate (w => p%work(i), n => e%blocks%list(i)%shape%n, rows => e%blocks%list(i)%shape%rows)
-            if (e%blocks%list(i)%direct .or. n > max_unknowns) cycle
-            allocate (w%a(rows, n), w%r(rows, 0:2), w%g(rows), w%open(rows), w%error(rows), &
-               w%change(rows), w%growth(rows), w%x(n))
-         end associate
+         if (.not. e%blocks%list(i)%direct .and. e%blocks%list(i)%shape%n <= max_unknowns) &
+            call make_work(e%blocks, i, p%work(i))
       end do
    end subroutine make_prover
+
+   !> Room for the proof of block `i`, and where the entries of its Jacobian stand.
+   subroutine make_work(b, i, w)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      type(block_work_t), intent(out) :: w
+      integer :: k
+
+      associate (shape => b%list(i)%shape)
+         associate (rows => shape%rows, n => shape%n, entries => entries_of(shape))
+            allocate (w%row(entries), w%column(entries), w%j(entries), w%r(rows), w%v(rows), w%open(rows), &
+               w%a(rows, n), w%inverse(n, rows), w%of_midpoints(n), w%at_centre(n), w%off(n), w%x(n))
+            w%a = 0.0_wp
+            if (shape%pattern == 0) then
+               w%row(:) = [(1 + modulo(k - 1, rows), k=1, entries)]
+               w%column(:) = [(1 + (k - 1)/rows, k=1, entries)]
+            else
+               w%row(:) = b%patterns(shape%pattern)%row + 1
+               do k = 1, n
+                  w%column(b%patterns(shape%pattern)%first(k) + 1:b%patterns(shape%pattern)%first(k + 1)) = k
+               end do
+            end if
+         end associate
+      end associate
+   end subroutine make_work
 
    !> Room for a position of the blocks `b` with so many `drives`.
    pure function new_placed(b, drives) result(q)
@@ -98,14 +125,13 @@ contains
       type(placed_t) :: q
 
       allocate (q%x(0:2, 0:b%unknowns), q%error(0:2, 0:b%unknowns), q%drive(0:2, 0:drives), &
-         q%drive_error(0:2, 0:drives), q%open(0:1, size(b%rows)), q%gap(size(b%list)), q%norm(size(b%list)), &
-         q%z1(size(b%list)), source=0.0_wp)
+         q%drive_error(0:2, 0:drives), q%open(0:1, size(b%rows)), q%gap(size(b%list)), source=0.0_wp)
       allocate (q%is_proved(size(b%list)), source=.false.)
    end function new_placed
 
    !> Proves position, velocity and acceleration of the blocks `list`, in solving order, at the time `t` and the values
    !> that the engine `e` has found. `is_proved`: of all of them; the first that is not ends the proof. `order`: up to
-   !> this derivative alone, 0 to 2.
+   !> this derivative alone, 0 or 2.
    subroutine prove_position(p, e, t, list, q, is_proved, order)
       type(prover_t), intent(inout) :: p
       type(block_engine_t), intent(in) :: e
@@ -142,221 +168,207 @@ contains
 
       q%t = t
       q%is_proved = .false.
+      ! Nothing depends on unknowns of later blocks, but some cancel: they are exact, whatever their values.
+      p%balls%u(:) = unknown_t()
       do u = 0, e%blocks%unknowns
-         ! The solver may have turned a direction by a small angle; here its rounding counts.
-         call set_direction(e%blocks, u, p%state)
          q%x(:, u) = [p%state%u(u)%value, p%state%u(u)%rate, p%state%u(u)%acceleration]
       end do
       do i = 1, size(e%laws)
          q%drive(:, i) = p%state%drive_value(:, i)
          law = bounds_of(e%laws(i), t - of_time*abs(t), t + of_time*abs(t), one_instant=.true.)
-         p%jets%drive(:, i) = abs(q%drive(:, i))
-         p%jets%drive_error(:, i) = (max(law%high*e%unit_of(i) - q%drive(:, i), q%drive(:, i) - law%low*e%unit_of(i)) &
+         q%drive_error(:, i) = (max(law%high*e%unit_of(i) - q%drive(:, i), q%drive(:, i) - law%low*e%unit_of(i)) &
             + 4.0_wp*rounding*abs(q%drive(:, i)) + p%table_error(:, i))*room
-         q%drive_error(:, i) = p%jets%drive_error(:, i)
+         p%balls%drive(:, i)%mid = q%drive(:, i)
+         p%balls%drive(:, i)%radius = q%drive_error(:, i)
       end do
    end subroutine take_state
 
-   !> Proves block `i` at the values of p%state, whose earlier blocks `q` has proved: the values of its unknowns and,
-   !> up to `order` (0 to 2), their derivatives. Result: what `q` has of this block, `open` whatever the order.
+   !> Proves block `i` at the values of `q`, whose earlier blocks are proved: the values of its unknowns and, with
+   !> `order` 2 instead of 0, their derivatives. Result: what `q` has of this block, `open` whatever the order; and the
+   !> balls of p%balls.
    subroutine prove_block(p, b, i, order, q)
       type(prover_t), intent(inout) :: p
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, order
       type(placed_t), intent(inout) :: q
+      real(wp) :: radius
       integer :: k
 
-      associate (block => b%list(i), w => p%work(i))
-         do k = block%first, block%last
-            call bound_values(p%state, b%unknown(k), p%jets)
-            q%error(:, b%unknown(k)) = 0.0_wp
-         end do
+      associate (block => b%list(i), w => p%work(i), own => b%unknown(b%list(i)%first:b%list(i)%last))
          q%gap(i) = 0.0_wp
+         q%error(:, own) = 0.0_wp
          q%is_proved(i) = block%direct .or. allocated(w%a)
-         if (block%direct) call prove_direct()
-         if (block%direct .or. .not. q%is_proved(i)) return
-         call find_residuals(max(1, order), p%state, w%a, w%r)
-         do k = 0, max(1, order)
-            call bound_rows(p%data, b, i, p%jets, k, w%open)
-            w%g(:) = (abs(w%r(:, k)) + w%open)*room
-            if (k < 2) q%open(k, block%first_row:block%last_row) = w%g
-            if (k > order) exit
-            call bound_changes(p%data, b, i, p%jets, k, w%error)
-            w%g(:) = (w%g + w%error)*room
-            if (k == 0) call prove_values()
-            if (k > 0) call bound_derivatives(k)
-            if (.not. q%is_proved(i)) return
+         if (.not. q%is_proved(i)) return
+         do k = 1, size(own)
+            call set_ball(b, own(k), ball_t(q%x(0, own(k)), 0.0_wp), p%balls)
+            p%balls%u(own(k))%rate = ball_t(q%x(1, own(k)), 0.0_wp)
+            p%balls%u(own(k))%acceleration = ball_t(q%x(2, own(k)), 0.0_wp)
          end do
+         if (block%direct) then
+            call prove_direct(own(1), block%first_row)
+            return
+         end if
+
+         call contract(b, p%numbers, i, p%balls, w, q%is_proved(i))
+         if (.not. q%is_proved(i)) return
+         w%open(:) = top(w%r)
+         call subtract_product(1, p%balls%u(:), own, w)
+         q%open(0, block%first_row:block%last_row) = w%open
+         q%open(1, block%first_row:block%last_row) = top(w%v)
+         call find_ball(b, p%numbers, i, p%balls, w, radius)
+         q%is_proved(i) = radius >= 0.0_wp
+         if (.not. q%is_proved(i)) return
+         if (size(w%r) > size(own)) q%gap(i) = maxval(top(w%r))
+         do k = 1, size(own)
+            q%error(0, own(k)) = min(radius, (w%x(k) + 0.5_wp*(w%at_centre(k) + w%off(k))*radius)*room)
+            call set_radius(b, own(k), q%error(0, own(k)), p%balls)
+         end do
+
+         if (order == 0) return
+         call bound_derivatives(1, own, w)
+         p%balls%u(own)%rate%radius = q%error(1, own)
+         call ball_accelerations(b, i, p%balls, w%v)
+         call bound_derivatives(2, own, w)
+         p%balls%u(own)%acceleration%radius = q%error(2, own)
+         q%is_proved(i) = all(q%error(:, own) <= huge(1.0_wp))
       end associate
 
    contains
 
-      !> Bounds of the motion of unknown `u` as it is in `s`, without errors.
-      pure subroutine bound_values(s, u, j)
-         type(state_t), intent(in) :: s
-         integer, intent(in) :: u
-         type(jets_t), intent(inout) :: j
+      !> Unknown `u` of a direct block with the row `row` is another one and a drive.
+      subroutine prove_direct(u, row)
+         integer, intent(in) :: u, row
+         type(ball_t) :: x(0:2)
 
-         j%own(0, u) = abs(s%u(u)%value)
-         j%own(1, u) = abs(s%u(u)%rate)
-         j%own(2, u) = abs(s%u(u)%acceleration)
-         j%own_error(:2, u) = 0.0_wp
-         if (u > b%orientations) return
-         ! See `turn`.
-         j%turn(1, u) = j%own(1, u)
-         j%turn(2, u) = j%own(1, u)**2 + j%own(2, u)
-         j%turn_error(:2, u) = 0.0_wp
-      end subroutine bound_values
-
-      !> Derivative `order` of unknown `u` is off by no more than `error`.
-      subroutine note_error(u, order, error, j)
-         integer, intent(in) :: u, order
-         real(wp), intent(in) :: error
-         type(jets_t), intent(inout) :: j
-
-         q%error(order, u) = error
-         j%own_error(order, u) = error
-         if (u <= b%orientations) call note_turn_error(order, j%own(:, u), j%own_error(:, u), j%turn_error(:, u))
-      end subroutine note_error
-
-      !> Proves the direct block `i`: its unknown is another one and a drive.
-      subroutine prove_direct()
-         real(wp) :: x(0:2), given(0:2), known(0:2), size_of(0:2), r(0:2)
-         integer :: k
-
-         associate (row => b%rows(b%list(i)%first_row), constant => b%numbers%rows(b%list(i)%first_row)%constant, &
-                    u => b%unknown(b%list(i)%first))
-            x = [p%state%u(u)%value, p%state%u(u)%rate, p%state%u(u)%acceleration]
-            known = [p%state%u(row%other)%value, p%state%u(row%other)%rate, p%state%u(row%other)%acceleration]
-            given = p%state%drive_value(:, row%drive)
-            given(0) = given(0) + constant
-            size_of = abs(x) + abs(known) + p%jets%drive(:, row%drive) + abs(constant)*[1.0_wp, 0.0_wp, 0.0_wp]
-            r = abs(x - known - row%sign_of*given) + 4.0_wp*rounding*size_of
-            r(0) = r(0) + p%data%constant_weight(b%list(i)%first_row)
-            q%open(:, b%list(i)%first_row) = r(:1)*room
-            r = (r + p%jets%drive_error(:, row%drive) + q%error(:, row%other))*room
-            do k = 0, 2
-               call note_error(u, k, r(k), p%jets)
-            end do
+         associate (other => p%balls%u(b%rows(row)%other), drive => b%rows(row)%drive, &
+            sign_of => ball_t(real(b%rows(row)%sign_of, wp), 0.0_wp))
+            x = sign_of*p%balls%drive(:, drive)
+            x(0) = other%value + (sign_of*p%numbers%rows(row)%constant + x(0))
+            x(1) = other%rate + x(1)
+            x(2) = other%acceleration + x(2)
          end associate
+         q%error(:, u) = distance(x, q%x(:, u))
+         q%open(:, row) = q%error(:1, u)
+         call set_radius(b, u, q%error(0, u), p%balls)
+         p%balls%u(u)%rate%radius = q%error(1, u)
+         p%balls%u(u)%acceleration%radius = q%error(2, u)
       end subroutine prove_direct
 
-      !> Jacobian `a` (rows, n) of block `i` and what its equations and their derivatives up to `order` (1 or 2) leave,
-      !> `r` (rows, 0:2), at the state `s`.
-      subroutine find_residuals(order, s, a, r)
-         integer, intent(in) :: order
-         type(state_t), intent(inout) :: s
-         real(wp), intent(out) :: a(b%list(i)%shape%rows, *), r(b%list(i)%shape%rows, 0:2)
-         integer :: k
-
-         call find_known_parts(b, i, s)
-         call assemble_dense(b, i, s, a, r)
-         call right_hand_side(b, i, 1, s, r(:, 1))
-         if (order > 1) call right_hand_side(b, i, 2, s, r(:, 2))
-         do k = 1, b%list(i)%shape%n
-            associate (u => s%u(b%unknown(b%list(i)%first + k - 1)))
-               r(:, 1) = r(:, 1) - a(:, k)*u%rate
-               if (order > 1) r(:, 2) = r(:, 2) - a(:, k)*u%acceleration
-            end associate
-         end do
-      end subroutine find_residuals
-
-      !> Proves the values of block `i`, whose equations are no larger than its bounds g.
-      subroutine prove_values()
-         real(wp) :: radius, error
-         integer :: k
-
-         call contract_block(p, b, i, p%jets%own_error(0, :), radius, q%gap(i))
-         q%is_proved(i) = radius >= 0.0_wp
-         if (.not. q%is_proved(i)) return
-         associate (w => p%work(i), c => p%work(i)%contraction, own => b%unknown(b%list(i)%first:b%list(i)%last))
-            q%norm(i) = c%norm
-            q%z1(i) = c%z1
-            w%within = 0.0_wp
-            do k = 1, size(w%x)
-               error = min(radius, (w%x(k) + (c%off(k) + c%z2*radius)*radius)*room)
-               w%within = max(w%within, error)
-               call note_error(own(k), 0, error, p%jets)
-            end do
-         end associate
-      end subroutine prove_values
-
-      !> Bounds of the errors of the derivatives of one `order` of block `i`, whose equations leave its bounds g.
-      subroutine bound_derivatives(order)
-         integer, intent(in) :: order
+      !> Bounds of the errors of the derivatives of one `order` of the unknowns `own` of block `i`, whose right-hand
+      !> side is w%v.
+      subroutine bound_derivatives(order, own, w)
+         integer, intent(in) :: order, own(:)
+         type(block_work_t), intent(inout) :: w
          real(wp) :: largest
          integer :: k
 
-         associate (w => p%work(i), c => p%work(i)%contraction, own => b%unknown(b%list(i)%first:b%list(i)%last))
-            call apply_to_bounds(p%rows, w)
-            q%is_proved(i) = all(w%x <= huge(1.0_wp))
-            largest = max(0.0_wp, maxval(w%x))/(1.0_wp - c%z1 - c%z2*w%within)*room
-            do k = 1, size(w%x)
-               call note_error(own(k), order, (w%x(k) + (c%off(k) + c%z2*w%within)*largest)*room, p%jets)
-            end do
-         end associate
+         call subtract_product(order, p%balls%u(:), own, w)
+         w%open(:) = top(w%v)
+         call apply(size(w%r), size(own), w%inverse, w%open, w%x)
+         largest = maxval(w%x)/(1.0_wp - maxval(w%off))*room
+         do k = 1, size(own)
+            q%error(order, own(k)) = (w%x(k) + w%off(k)*largest)*room
+         end do
       end subroutine bound_derivatives
    end subroutine prove_block
 
-   !> The contraction of block `i`, whose Jacobian was computed at the place at hand and may be off as where unknowns
-   !> are `off` (0:unknowns) from there; its equations are no larger than its bounds g. `radius`: of the ball that holds
-   !> exactly one solution, -1 where none is proved; `gap`: by how much redundant equations stay open in it at most.
-   subroutine contract_block(p, b, i, off, radius, gap)
-      type(prover_t), intent(inout) :: p
+   !> Equations and Jacobian of block `i`, with the numbers `x`, at the state `s`, whose own unknowns are at the centre
+   !> of a ball, and about its inverse: all in `w`. `exists`: there is an inverse.
+   subroutine contract(b, x, i, s, w, exists)
       type(blocks_t), intent(in) :: b
+      type(ball_numbers_t), intent(in) :: x
       integer, intent(in) :: i
-      real(wp), intent(in) :: off(0:)
-      real(wp), intent(out) :: radius, gap
-
-      associate (w => p%work(i), c => p%work(i)%contraction, n => size(p%work(i)%x))
-         call bound_jacobian(p%data, b, i, p%jets, off, w%change, w%growth)
-         if (size(w%g) > n) then
-            call choose_rows(w%a, p%rows)
-            call contract(n, w%a(p%rows, :), w%change(p%rows), w%growth(p%rows), c)
-         else
-            call contract(n, w%a, w%change, w%growth, c)
-         end if
-         gap = 0.0_wp
-         radius = -1.0_wp
-         if (.not. c%exists) return
-         call apply_to_bounds(p%rows, w)
-         ! What is not a number lies in no ball.
-         if (all(w%x <= 1.0_wp)) radius = radius_of(c%z1, c%z2, max(0.0_wp, maxval(w%x)))
-         if (size(w%g) > n) gap = maxval((w%g + (sum(abs(w%a), dim=2) + w%change + w%growth*radius)*radius)*room)
-      end associate
-   end subroutine contract_block
-
-   !> `w%x` becomes |A| g, of the equations that are taken: all or `rows` (n).
-   pure subroutine apply_to_bounds(rows, w)
-      integer, allocatable, intent(in) :: rows(:)
+      type(ball_state_t), intent(inout) :: s
       type(block_work_t), intent(inout) :: w
+      logical, intent(out) :: exists
+      integer :: k
 
-      if (size(w%g) > size(w%x)) then
-         call apply(w%contraction, w%g(rows), w%x)
-      else
-         call apply(w%contraction, w%g, w%x)
-      end if
-   end subroutine apply_to_bounds
-
-   !> `rows` (n): of the equations with the Jacobian `a` (any number, n) those that Gauss' elimination takes, with the
-   !> largest pivots, in their order.
-   subroutine choose_rows(a, rows)
-      real(wp), intent(in) :: a(:, :)
-      integer, allocatable, intent(out) :: rows(:)
-      real(wp) :: left(size(a, 1), size(a, 2))
-      logical :: taken(size(a, 1))
-      integer :: k, i, pivot
-
-      left = a
-      taken = .false.
-      do k = 1, size(a, 2)
-         pivot = maxloc(abs(left(:, k)), dim=1, mask=.not. taken)
-         taken(pivot) = .true.
-         if (.not. abs(left(pivot, k)) > 0.0_wp) cycle
-         do i = 1, size(a, 1)
-            if (.not. taken(i)) left(i, k:) = left(i, k:) - left(i, k)/left(pivot, k)*left(pivot, k:)
-         end do
+      call assemble_balls(b, x, i, s, w%j, w%r, w%v)
+      do k = 1, size(w%j)
+         w%a(w%row(k), w%column(k)) = w%j(k)%mid
       end do
-      rows = pack([(i, i=1, size(a, 1))], taken)
-   end subroutine choose_rows
+      call bound_inverse(size(w%r), size(w%x), w%a, w%inverse, w%of_midpoints, exists)
+      if (exists) call find_off(w, w%at_centre)
+   end subroutine contract
+
+   !> `off` (n): the row sums of |1 - A J| of the Jacobian J at hand.
+   pure subroutine find_off(w, off)
+      type(block_work_t), intent(in) :: w
+      real(wp), intent(out) :: off(:)
+      real(wp) :: wide(size(w%r))
+      integer :: k
+
+      wide = 0.0_wp
+      do k = 1, size(w%j)
+         wide(w%row(k)) = wide(w%row(k)) + w%j(k)%radius
+      end do
+      call apply(size(wide), size(off), w%inverse, wide, off)
+      off = (w%of_midpoints + off)*(1.0_wp + (16 + size(w%x))*rounding)
+   end subroutine find_off
+
+   !> Finds the `radius` of a ball in which block `i`, with the numbers `x`, has exactly one solution: about the own
+   !> unknowns of the state `s`, where it was contracted and its equations are no larger than w%open. -1: none is
+   !> proved. These unknowns, and the equations in `w`, are then those in a ball that is no smaller. `others`: earlier
+   !> blocks are off by so much at most; w%v is then how much they change the equations.
+   subroutine find_ball(b, x, i, s, w, radius, others)
+      type(blocks_t), intent(in) :: b
+      type(ball_numbers_t), intent(in) :: x
+      integer, intent(in) :: i
+      type(ball_state_t), intent(inout) :: s
+      type(block_work_t), intent(inout) :: w
+      real(wp), intent(out) :: radius
+      real(wp), intent(in), optional :: others
+      real(wp) :: eta, z1, z2, rate, centre(size(w%x))
+      integer :: tries, k
+
+      radius = -1.0_wp
+      call apply(size(w%r), size(w%x), w%inverse, w%open, w%x)
+      ! What is not a number lies in no ball.
+      if (.not. (all(w%x <= 1.0_wp) .and. all(w%at_centre <= max_rate))) return
+      eta = max(0.0_wp, maxval(w%x))
+      if (present(others)) eta = eta + others
+      z1 = max(0.0_wp, maxval(w%at_centre))
+      z2 = 0.0_wp
+      do k = 1, size(w%x)
+         centre(k) = s%u(b%unknown(b%list(i)%first + k - 1))%value%radius
+      end do
+      do tries = 1, max_tries
+         radius = radius_of(z1, z2, eta)
+         if (radius < 0.0_wp) return
+         do k = 1, size(w%x)
+            call set_radius(b, b%unknown(b%list(i)%first + k - 1), (centre(k) + radius)*room, s)
+         end do
+         call assemble_balls(b, x, i, s, w%j, w%r, w%v)
+         call find_off(w, w%off)
+         if (.not. all(w%off <= max_rate)) exit
+         rate = max(0.0_wp, maxval(w%off))
+         if (present(others)) then
+            call apply(size(w%r), size(w%x), w%inverse, (w%open + top(w%v))*room, w%x)
+            if (.not. all(w%x <= 1.0_wp)) exit
+            eta = max(0.0_wp, maxval(w%x))
+         end if
+         ! Radii grow as polynomials without a negative coefficient: halfway the rate is no more than the mean.
+         if ((eta + 0.5_wp*(z1 + rate)*radius)*room <= radius) then
+            radius = min(radius, radius_of(rate, 0.0_wp, eta))
+            return
+         end if
+         z2 = max(0.0_wp, rate - z1)/radius
+      end do
+      radius = -1.0_wp
+   end subroutine find_ball
+
+   !> Subtracts from w%v the Jacobian times derivative number `order` (1 or 2) of the block's `own` unknowns among `u`.
+   pure subroutine subtract_product(order, u, own, w)
+      integer, intent(in) :: order, own(:)
+      type(unknown_t), intent(in) :: u(0:)
+      type(block_work_t), intent(inout) :: w
+      type(ball_t) :: x
+      integer :: k
+
+      do k = 1, size(w%j)
+         if (order == 1) x = u(own(w%column(k)))%rate
+         if (order == 2) x = u(own(w%column(k)))%acceleration
+         w%v(w%row(k)) = w%v(w%row(k)) - w%j(k)*x
+      end do
+   end subroutine subtract_product
 end module position_proof

@@ -1,102 +1,70 @@
-!> How exactly the numbers of the blocks are those of the mechanism: lengths of all vectors, and bounds of what the
-!> roundings of their sums, of sines and cosines, and of the deck's decimals make of them.
+!> What the numbers of the cards make of the blocks, in balls. A radius is what the roundings of sums and of the deck's
+!> decimals leave open.
 !>
 !> The exact mechanism is any whose numbers differ from those of `mechanism_t` by at most four roundings each: the
 !> deck's decimals are one. What the structure takes for zero (vectors that cancel but for rounding) is zero. Sines and
 !> cosines of the library are taken to be right within two units in the last place; all other operations round to
 !> nearest.
-module proof_data
+module ball_numbers
    use kinds, only: wp
-   use planar, only: length_of
+   use planar, only: length_of, real_vector_t => vector_t
    use mechanism, only: mechanism_t, pair_prismatic, plane_origin
    use drives, only: law_t
    use links_tree, only: tree_t
    use blocks, only: blocks_t, loop_angles
+   use balls, only: ball_t, rounding, room
+   use ball_equations, only: vector_t, ball_numbers_t
    implicit none
    private
-   public :: proof_data_t, new_proof_data, angle_errors, table_errors, rounding, of_number, of_vector
+   public :: new_ball_numbers, around, angle_errors, table_errors
 
-   !> One rounding error, with room: half of it is the bound of one operation.
-   real(wp), parameter :: rounding = epsilon(1.0_wp)
    !> Of a number of the deck: so many roundings, those of its decimals and units.
-   real(wp), parameter :: of_number = 4.0_wp*rounding
-   !> Of the components of a vector that turns, and of its derivatives: sine and cosine, products and their sum.
-   real(wp), parameter :: of_vector = 8.0_wp*rounding
-   !> Of a row: its sum with a drive and a constant, and its projection.
-   real(wp), parameter :: of_row = 4.0_wp*rounding
-
-   !> Weights bound errors of vectors, in the unit of their loop, as parts of the unit vectors that turn them.
-   type :: proof_data_t
-      real(wp), allocatable :: length(:), weight(:)                !< (body vectors)
-      real(wp), allocatable :: slide_length(:), slide_weight(:)    !< (slides) of their directions
-      real(wp), allocatable :: ground_length(:), ground_weight(:)  !< (loops) of what is fixed
-      real(wp), allocatable :: direction_length(:), direction_weight(:)   !< (loops) of that on which they are projected
-      real(wp), allocatable :: constant_weight(:)                  !< (rows)
-   end type proof_data_t
+   real(wp), parameter, public :: of_number = 4.0_wp*rounding
+   !> Of the components of a vector that the deck's angles turn: sine and cosine, products and their sum.
+   real(wp), parameter, public :: of_vector = 8.0_wp*rounding
 
 contains
 
    !> Those of the blocks `b` of `m`, whose unit of length is `length`.
-   function new_proof_data(m, b, length) result(d)
+   function new_ball_numbers(m, b, length) result(x)
       type(mechanism_t), intent(in) :: m
       type(blocks_t), intent(in) :: b
       real(wp), intent(in) :: length
-      type(proof_data_t) :: d
-      real(wp), allocatable :: angle(:), sums(:)
-      integer :: i, m1, k
+      type(ball_numbers_t) :: x
+      real(wp) :: angle(0:b%tree%orientations), sums(0:b%tree%orientations), of_direction
+      integer :: i, k
 
-      ! A function's result would bring its own lower bound.
-      allocate (angle(0:b%tree%orientations))
-      angle(:) = angle_errors(m, b%tree)
-      allocate (d%length(size(b%body_vectors)), d%weight(size(b%body_vectors)), d%slide_length(size(b%slides)), &
-         d%slide_weight(size(b%slides)), d%ground_length(size(b%loops)), d%ground_weight(size(b%loops)), &
-         d%direction_length(size(b%loops)), d%direction_weight(size(b%loops)), d%constant_weight(size(b%rows)), &
-         source=0.0_wp)
-      allocate (sums(0:b%tree%orientations), source=0.0_wp)
-      do i = 1, size(b%list)
-         do m1 = b%list(i)%first_loop, b%list(i)%last_loop
-            associate (g => b%loops(m1), own => b%numbers%loops(m1))
-               if (g%kind == loop_angles) cycle
-               call add_terms(m, b, g%vector_loop, angle, sums)
-               do k = g%first_vector, g%last_vector
-                  d%length(k) = up(hypot(b%numbers%d(k)%x, b%numbers%d(k)%y))
-                  d%weight(k) = up(terms_of(m1)*d%length(k) + sums(b%body_vectors(k)%orientation)/(length*own%unit))
-               end do
-               do k = g%first_slide, g%last_slide
-                  d%slide_length(k) = up(length_of(b%numbers%e(k)))
-                  d%slide_weight(k) = up((terms_of(m1) + of_vector + maxval(angle))*d%slide_length(k))
-               end do
-               d%ground_length(m1) = up(length_of(own%ground))
-               d%ground_weight(m1) = up(terms_of(m1)*d%ground_length(m1) + sums(0)/(length*own%unit))
-               d%direction_length(m1) = up(length_of(own%direction))
-               d%direction_weight(m1) = up((2.0_wp*of_vector + maxval(angle))*d%direction_length(m1))
-               sums = 0.0_wp
-            end associate
-         end do
-         do k = b%list(i)%first_row, b%list(i)%last_row
-            d%constant_weight(k) = up(2.0_wp*of_number*abs(b%numbers%rows(k)%constant))
-            if (b%rows(k)%angular) d%constant_weight(k) = d%constant_weight(k) + 2.0_wp*maxval(angle)
-         end do
-      end do
-
-   contains
-
-      !> Of a vector and its share in the sum of loop `m1`.
-      pure real(wp) function terms_of(m1)
-         integer, intent(in) :: m1
-
-         associate (g => b%loops(m1))
-            terms_of = of_vector + of_row + rounding*(2 + g%last_vector - g%first_vector + g%last_slide - g%first_slide)
+      angle = angle_errors(m, b%tree)
+      of_direction = 2.0_wp*of_vector + maxval(angle)
+      allocate (x%rows(size(b%rows)), x%loops(size(b%loops)), x%d(size(b%body_vectors)), x%e(size(b%slides)))
+      do i = 1, size(b%loops)
+         associate (g => b%loops(i), own => b%numbers%loops(i))
+            if (g%kind == loop_angles) cycle
+            sums = 0.0_wp
+            call add_terms(m, b, g%vector_loop, angle, sums)
+            sums = sums/(length*own%unit)*room
+            x%loops(i)%ground = around(own%ground, sums(0))
+            x%loops(i)%direction = around(own%direction, of_direction*length_of(own%direction))
+            do k = g%first_vector, g%last_vector
+               x%d(k) = around(b%numbers%d(k), sums(b%body_vectors(k)%orientation))
+            end do
+            do k = g%first_slide, g%last_slide
+               x%e(k) = around(b%numbers%e(k), of_direction*length_of(b%numbers%e(k)))
+            end do
          end associate
-      end function terms_of
-   end function new_proof_data
+      end do
+      x%rows%constant%mid = b%numbers%rows%constant
+      x%rows%constant%radius = (2.0_wp*of_number*abs(b%numbers%rows%constant) &
+         + merge(2.0_wp*maxval(angle), 0.0_wp, b%rows%angular))*room
+   end function new_ball_numbers
 
-   !> `x` rounded up.
-   elemental real(wp) function up(x)
-      real(wp), intent(in) :: x
+   !> The vector `d`, of which each component is known up to `radius`.
+   elemental type(vector_t) function around(d, radius)
+      type(real_vector_t), intent(in) :: d
+      real(wp), intent(in) :: radius
 
-      up = x*(1.0_wp + 16.0_wp*rounding)
-   end function up
+      around = vector_t(ball_t(d%x, radius*room), ball_t(d%y, radius*room))
+   end function around
 
    !> (0:orientations) Bounds of the errors of the angles of links against their orientations, sums of the deck's; and
    !> of the directions of guides.
@@ -174,6 +142,6 @@ contains
             error = error + of_m*[h(1)**2, h(1), 1.0_wp]
          end associate
       end do
-      error = up(error)
+      error = error*room
    end function table_errors
-end module proof_data
+end module ball_numbers
