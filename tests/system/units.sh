@@ -65,7 +65,7 @@ as_degrees() {
       { for (i = 1; i <= n; i++) {
          x = $i
          if (x ~ /^-?[0-9.E+-]+$/) {
-            if (head[i] ~ /(phi|theta|omega|alpha)([.](min|max))?$|ANGLE[.][A-Z0-9.-]*$/ && head[i] !~ /turns/ || i > 6 && $5 ~ /^PAIR/) x *= u
+            if (head[i] ~ /(phi|theta|omega|alpha)([.](min|max|stroke))?$|ANGLE[.][A-Z0-9.-]*$/ && head[i] !~ /turns/ || i > 6 && $5 ~ /^PAIR/) x *= u
             if (i > 6 && $5 ~ / PER (REL)?ANGLE/) x /= u
             x = sprintf("%.9f", x)
          }
