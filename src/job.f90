@@ -205,7 +205,8 @@ contains
             end if
             exit
          end if
-         if (o%asked(out_svg) .or. o%asked(out_animation)) call draw_set(sets(i), o%drawings(i), o%progress)
+         if (o%asked(out_svg) .or. o%asked(out_animation)) &
+            call draw_set(sets(i), size(o%drawings), o%drawings(i), o%progress)
          if (o%asked(out_circuits) .and. sets(i)%circuits) call draw_circuits(sets(i), page)
       end do
       ! Sets that were broken off are not drawn.
@@ -215,17 +216,18 @@ contains
       if (o%asked(out_circuits)) call put_circuit_page(o%files(out_circuits, 0), page)
    end subroutine run_sets
 
-   !> Records the drawing `d` of the film of `m`. It has an analysis of its own: a picture shows links that no table
+   !> Records the drawing `d` of the film of `m`, one of so many `sets` on a page. It has an analysis of its own: a picture shows links that no table
    !> asks for, and what is printed must not depend on it.
-   subroutine draw_set(m, d, progress)
+   subroutine draw_set(m, sets, d, progress)
       type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: sets
       type(drawing_t), intent(out) :: d
       type(progress_t), intent(inout) :: progress
       type(mechanism_t) :: film
       type(set_analysis_t) :: a
       integer :: every, k
 
-      call film_of(m, film, every)
+      call film_of(m, sets, film, every)
       d = new_drawing(film, every)
       call make_set_analysis(with_all_links(film), a)
       do k = 0, instant_count(film) - 1

@@ -20,6 +20,8 @@ module drawing
    !> Between the instants of a deck others are computed, so that the whole has at most this many intervals. Reason: at
    !> ten degrees a step a path would have corners, and an animation leaps.
    integer, parameter, public :: max_intervals = 360
+   !> All sets of a page have this many intervals, or those of the deck. Reason: a page of 1,000 sets would take 300 MB.
+   integer, parameter :: max_in_all = 18000
    !> There are at most this many frames, which hold at most this many positions of links, but two at least. Reason: a
    !> picture of 800 pixels shows no more, and memory does not grow with the run.
    integer, parameter :: max_frames = 1001, max_held = 200000
@@ -93,22 +95,25 @@ contains
 
    !> Makes the `film` of `m`: `m` at instants that are dense enough to be drawn, those of TIME and others between them,
    !> or without TIME others between the first and the last of AT; none at the pole of a law. `every`: each so many
-   !> instants of the film's TIME are the deck's; 0: none.
-   subroutine film_of(m, film, every)
+   !> instants of the film's TIME are the deck's; 0: none. `sets`: films that are kept until all of them are drawn.
+   subroutine film_of(m, sets, film, every)
       type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: sets
       type(mechanism_t), intent(out) :: film
       integer, intent(out) :: every
+      integer :: intervals
 
       film = m
       every = 1
+      intervals = max(1, min(max_intervals, max_in_all/sets))
       if (m%steps < 0) then
          film%t0 = minval(m%at)
          film%t1 = maxval(m%at)
-         film%steps = merge(max_intervals, 0, film%t1 > film%t0)
+         film%steps = merge(intervals, 0, film%t1 > film%t0)
          every = 0
          if (meets_pole(film)) film%steps = film%steps - 1
       else if (m%steps > 0) then
-         every = max(1, min(max_intervals, max_positions/size(m%links))/m%steps)
+         every = max(1, min(intervals, max_positions/size(m%links))/m%steps)
          film%steps = every*m%steps
          do while (every > 1 .and. meets_pole(film))
             every = every - 1
