@@ -5,7 +5,7 @@ module job
    use failures, only: failure_t, fail, status_rejected, status_solved, status_flagged, status_signal
    use mechanism, only: mechanism_t, instant_count, instant, with_all_links
    use structure, only: findings_t, check_structure, find_groups
-   use deck, only: read_deck, share_t, variants_before
+   use deck, only: read_deck, job_share_t, variants_before
    use progress, only: progress_t, start_progress, show_progress, end_progress
    use system_calls, only: watch_signals, signal_received, broken_pipe_kills, signal_pipe
    use listing, only: new_layout, listing_head
@@ -55,13 +55,13 @@ contains
       type(findings_t), allocatable, save :: findings(:)
       type(failure_t), allocatable :: failure
       type(writers_t) :: o
-      type(share_t) :: share
+      type(job_share_t) :: share
       type(share_of_job_t) :: own
       integer :: i
 
       status = status_solved
       call start_progress(o%progress, .not. options%quiet, any(to_standard_output(options%files)))
-      share = share_t(options%share, options%shares)
+      share = job_share_t(options%share, options%shares)
       call read_deck(options%deck, sets, message, failure, share, o%variations)
       o%varies = share%varies
       if (.not. allocated(failure) .and. o%varies) call check_variants(options, sets, failure)
@@ -216,8 +216,8 @@ contains
       if (o%asked(out_circuits)) call put_circuit_page(o%files(out_circuits, 0), page)
    end subroutine run_sets
 
-   !> Records the drawing `d` of the film of `m`, one of so many `sets` on a page. It has an analysis of its own: a picture shows links that no table
-   !> asks for, and what is printed must not depend on it.
+   !> Records the drawing `d` of the film of `m`, one of so many `sets` on a page. It has an analysis of its own: a
+   !> picture shows links that no table asks for, and what is printed must not depend on it.
    subroutine draw_set(m, sets, d, progress)
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: sets

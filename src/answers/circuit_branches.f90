@@ -9,7 +9,7 @@ module circuit_branches
    use circuit_trace, only: circuit_t, find_root, of_value, end_closed
    implicit none
    private
-   public :: circuits_t, branch_t, no_sign, dead_point_t, circuit_assembly_t, meeting_t
+   public :: circuits_t, circuit_branch_t, no_sign, dead_point_t, circuit_assembly_t, meeting_t
    public :: add_branches, add_assemblies, add_meetings, number_assemblies, turns_of, find_level, max_circuits
 
    real(wp), parameter :: turn = 2.0_wp*pi
@@ -23,14 +23,14 @@ module circuit_branches
    integer, parameter :: max_circuits = 1000
 
    !> A piece of a circuit between dead points.
-   type :: branch_t
+   type :: circuit_branch_t
       integer :: circuit = 0
       integer :: first = 0, last = 0           !< its first and last point on the circuit
       integer :: dead(2) = 0                   !< the dead points at its least and greatest value; 0: none
       real(wp) :: range(2) = 0.0_wp            !< the drive's least and greatest value on it (rad or deck's length)
       !> Of the Jacobian's determinant; 0: it changes, at change points; no_sign: there are too many equations.
       integer :: sign = 0
-   end type branch_t
+   end type circuit_branch_t
 
    type :: dead_point_t
       integer :: circuit = 0
@@ -60,7 +60,7 @@ module circuit_branches
       logical :: are_more = .false.            !< than max_circuits
       type(curve_t) :: curve
       type(circuit_t), allocatable :: list(:)
-      type(branch_t), allocatable :: branches(:)
+      type(circuit_branch_t), allocatable :: branches(:)
       type(dead_point_t), allocatable :: dead(:)
       type(circuit_assembly_t), allocatable :: assemblies(:)
       type(meeting_t), allocatable :: meetings(:)
@@ -72,7 +72,7 @@ contains
    subroutine add_branches(found, i)
       type(circuits_t), intent(inout) :: found
       integer, intent(in) :: i
-      type(branch_t) :: b
+      type(circuit_branch_t) :: b
       integer, allocatable :: ends(:), numbers(:)
       integer :: k, n, dead
 
@@ -93,7 +93,7 @@ contains
             numbers = [0, numbers, 0]
          end if
          do k = 2, size(ends)
-            b = branch_t(circuit=i, first=ends(k - 1), last=ends(k), dead=numbers(k - 1:k))
+            b = circuit_branch_t(circuit=i, first=ends(k - 1), last=ends(k), dead=numbers(k - 1:k))
             b%range = [value_at(points(b%first)), value_at(points(b%last))]
             if (b%range(1) > b%range(2)) then
                b%range = b%range(2:1:-1)

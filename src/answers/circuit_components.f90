@@ -11,7 +11,8 @@ module circuit_components
    use circuit_branches, only: circuits_t, find_level, turns_of
    implicit none
    private
-   public :: component_t, state_t, split, make_regular, positions_at, find_position, value_of_assembly, same_value
+   public :: component_t, circuit_position_t, split, make_regular, positions_at, find_position, &
+      value_of_assembly, same_value
 
    !> Values of the drive that differ by less are one, in rad and lengths.
    real(wp), parameter :: same_value = 64.0_wp*sqrt(epsilon(1.0_wp))
@@ -30,10 +31,10 @@ module circuit_components
    end type component_t
 
    !> A position: of each component its branch, and the value of the drive there.
-   type :: state_t
+   type :: circuit_position_t
       integer, allocatable :: branch(:)
       real(wp), allocatable :: value(:)
-   end type state_t
+   end type circuit_position_t
 
 contains
 
@@ -159,7 +160,7 @@ contains
       type(component_t), intent(in) :: c
       real(wp), intent(in) :: value
       logical, intent(in) :: turns
-      type(state_t) :: s
+      type(circuit_position_t) :: s
       real(wp) :: x
       integer :: b
 

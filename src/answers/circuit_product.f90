@@ -14,7 +14,8 @@ module circuit_product
    use circuit_curve, only: curve_point_t, start_point
    use circuit_trace, only: circuit_t, end_closed
    use circuit_branches, only: circuits_t, circuit_assembly_t, max_circuits, add_branches, number_assemblies
-   use circuit_components, only: component_t, state_t, positions_at, find_position, value_of_assembly, same_value
+   use circuit_components, only: component_t, circuit_position_t, positions_at, find_position, &
+      value_of_assembly, same_value
    use circuit_walk, only: leg_t, walk_t, walk, is_on
    implicit none
    private
@@ -70,7 +71,7 @@ contains
       !> Adds the circuit through the `position` (3, links) of the first instant.
       subroutine add_through(position)
          real(wp), intent(in) :: position(:, :)
-         type(state_t) :: s
+         type(circuit_position_t) :: s
          integer :: c, a, nearest
          real(wp) :: least, away
 
@@ -107,7 +108,7 @@ contains
 
       !> Adds the circuit through `s`, unless it is known.
       subroutine add(s)
-         type(state_t), intent(in) :: s
+         type(circuit_position_t), intent(in) :: s
          type(walk_t), allocatable :: more(:)
          integer :: i
 
@@ -132,7 +133,7 @@ contains
       subroutine add_at(value, sorted)
          real(wp), intent(in) :: value
          logical, intent(in) :: sorted
-         type(state_t) :: options(size(components)), s
+         type(circuit_position_t) :: options(size(components)), s
          real(wp), allocatable :: away(:)
          integer, allocatable :: order(:)
          integer :: sizes(size(components)), all_of_them, c, i, j, rest
@@ -177,7 +178,7 @@ contains
 
       !> Squares of how far all combinations of `options` are from the deck's estimate, as card ASSEMBLY measures it.
       function distances(options, sizes, all_of_them) result(away)
-         type(state_t), intent(in) :: options(:)
+         type(circuit_position_t), intent(in) :: options(:)
          integer, intent(in) :: sizes(:), all_of_them
          real(wp) :: away(all_of_them)
          real(wp), allocatable :: own(:), q(:, :)
@@ -337,7 +338,7 @@ contains
 
       !> The position `q` (3, links) of all components, `further` than `low` by so much of the drive's value.
       subroutine find_positions(low, further, q)
-         type(state_t), intent(in) :: low
+         type(circuit_position_t), intent(in) :: low
          real(wp), intent(in) :: further
          real(wp), allocatable, intent(inout) :: q(:, :)
          real(wp), allocatable :: own(:, :)

@@ -3,7 +3,7 @@
 module circuit_walk
    use kinds, only: wp
    use planar, only: pi
-   use circuit_components, only: component_t, state_t, same_value
+   use circuit_components, only: component_t, circuit_position_t, same_value
    use circuit_trace, only: end_closed
    implicit none
    private
@@ -14,7 +14,7 @@ module circuit_walk
 
    !> A piece of a circuit between two turns of the drive.
    type :: leg_t
-      type(state_t) :: low                       !< its end at the least value of the drive
+      type(circuit_position_t) :: low                       !< its end at the least value of the drive
       real(wp) :: length = 0.0_wp                !< of the drive's way
       integer :: way = 1                         !< the sense of the circuit: 1 upwards
       integer :: by(2) = 0                       !< the component that ends it at the least and the greatest value
@@ -30,10 +30,10 @@ contains
    !> The circuit `one` through `start`. `ok`: never do two components come to dead points together.
    subroutine walk(c, start, one, ok)
       type(component_t), intent(in) :: c(:)
-      type(state_t), intent(in) :: start
+      type(circuit_position_t), intent(in) :: start
       type(walk_t), intent(out) :: one
       logical, intent(out) :: ok
-      type(state_t) :: s, at_end
+      type(circuit_position_t) :: s, at_end
       type(walk_t) :: back
       integer :: way, by, first_by
 
@@ -62,10 +62,10 @@ contains
       !> The legs of `w` from the state `from` at the end of an upward one, which component `begun_by` has ended: beyond
       !> the dead point if `turn` is 1, back along that leg if it is 0. They end where the first begins, or at an end.
       subroutine go_on(from, turn, begun_by, w)
-         type(state_t), intent(in) :: from
+         type(circuit_position_t), intent(in) :: from
          integer, intent(in) :: turn, begun_by
          type(walk_t), intent(inout) :: w
-         type(state_t) :: s, first
+         type(circuit_position_t) :: s, first
          type(leg_t) :: leg
          integer :: way, side, by, ended_by
 
@@ -113,7 +113,7 @@ contains
    !> one does not end there too.
    subroutine run(c, s, way, by, ok)
       type(component_t), intent(in) :: c(:)
-      type(state_t), intent(inout) :: s
+      type(circuit_position_t), intent(inout) :: s
       integer, intent(in) :: way
       integer, intent(out) :: by
       logical, intent(out) :: ok
@@ -161,7 +161,7 @@ contains
    !> The states `a` and `b` are one.
    pure logical function is_same(c, a, b)
       type(component_t), intent(in) :: c(:)
-      type(state_t), intent(in) :: a, b
+      type(circuit_position_t), intent(in) :: a, b
 
       is_same = all(a%branch == b%branch)
       if (is_same) is_same = are_further(c, a, b, 0.0_wp)
@@ -170,7 +170,7 @@ contains
    !> Every value of `a` is that of `b`, on the same branches, and `further`.
    pure logical function are_further(c, a, b, further) result(are)
       type(component_t), intent(in) :: c(:)
-      type(state_t), intent(in) :: a, b
+      type(circuit_position_t), intent(in) :: a, b
       real(wp), intent(in) :: further
       real(wp) :: off
       integer :: i
@@ -190,7 +190,7 @@ contains
    pure logical function is_on(c, one, s)
       type(component_t), intent(in) :: c(:)
       type(walk_t), intent(in) :: one
-      type(state_t), intent(in) :: s
+      type(circuit_position_t), intent(in) :: s
       real(wp) :: further, step
       integer :: l
 

@@ -20,7 +20,7 @@ module circuits
    use circuit_trace, only: circuit_t, trace, come_near, least_step
    use circuit_crossing, only: other_circuit
    use circuit_branches, only: circuits_t, no_sign, max_circuits, add_branches, add_assemblies, add_meetings, &
-      number_assemblies, branch_t
+      number_assemblies, circuit_branch_t
    use circuit_components, only: component_t, split, make_regular
    use circuit_product, only: multiply
    use ranges, only: range_t, find_range, is_lost, held_at, low, high
@@ -343,7 +343,7 @@ contains
    !> Puts `middle` where the drive moves the fastest on branch `b`, with the drive of `held` there.
    subroutine set_middle(found, b, held, middle)
       type(circuits_t), intent(in) :: found
-      type(branch_t), intent(in) :: b
+      type(circuit_branch_t), intent(in) :: b
       type(mechanism_t), intent(inout) :: held
       type(motion_t), intent(inout) :: middle
       integer :: k

@@ -6,7 +6,7 @@ module circuits_table
    use set_analysis, only: set_analysis_t
    use independent, only: set_t
    use circuit_trace, only: circuit_t, end_closed, end_far, end_lost
-   use circuit_branches, only: circuits_t, branch_t, no_sign, max_circuits, turns_of
+   use circuit_branches, only: circuits_t, circuit_branch_t, no_sign, max_circuits, turns_of
    use circuits, only: find_circuits, free_drives
    use ranges, only: side_words
    use names, only: drive_name
@@ -154,7 +154,7 @@ contains
    function range_words(m, found, b) result(text)
       type(mechanism_t), intent(in) :: m
       type(circuits_t), intent(in) :: found
-      type(branch_t), intent(in) :: b
+      type(circuit_branch_t), intent(in) :: b
       character(:), allocatable :: text
       integer :: side
 
@@ -185,7 +185,7 @@ contains
 
       !> How `circuit` ends where its branch `b` has no dead point on a `side`.
       pure integer function end_of(b, circuit, side)
-         type(branch_t), intent(in) :: b
+         type(circuit_branch_t), intent(in) :: b
          type(circuit_t), intent(in) :: circuit
          integer, intent(in) :: side
          logical :: rises

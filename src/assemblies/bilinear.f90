@@ -5,7 +5,7 @@ module bilinear
    use kinds, only: wp
    implicit none
    private
-   public :: bilinear_t, end_t, ends_t, derivatives_at, solve_quadratic, path_count, &
+   public :: bilinear_t, path_end_t, ends_t, derivatives_at, solve_quadratic, path_count, &
       finiteness, infinity_level
 
    !> Solutions are at infinity where plane . x = 0, or the same of y with the conjugate of the plane.
@@ -16,17 +16,17 @@ module bilinear
    end type bilinear_t
 
    !> A solution, up to a factor of x and one of y.
-   type :: end_t
+   type :: path_end_t
       complex(wp), allocatable :: x(:), y(:)          !< (p + 1) the homogeneous one first
       logical :: is_singular = .false.                !< several solutions in one, or a point of a curve of solutions
-   end type end_t
+   end type path_end_t
 
    !> All solutions: paths = size(list) + infinite + failed, where singular ones count as often as paths lead to them.
    type :: ends_t
       integer :: paths = 0
       integer :: infinite = 0                         !< paths that lead to infinity
       integer :: failed = 0                           !< paths that could not be followed to their end
-      type(end_t), allocatable :: list(:)             !< finite ones
+      type(path_end_t), allocatable :: list(:)             !< finite ones
    end type ends_t
 
    !> A discriminant below this part of its terms is zero.
@@ -77,7 +77,7 @@ contains
       logical, intent(out) :: moves
       complex(wp) :: q(0:2), root, x(0:1), r(0:1, 2), y(0:1)
       real(wp) :: size_of
-      type(end_t) :: e
+      type(path_end_t) :: e
       integer :: k
 
       ends%paths = 2

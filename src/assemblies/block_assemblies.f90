@@ -8,7 +8,7 @@ module block_assemblies
    use block_state, only: state_t, set_values, values_of
    use block_solver, only: workspace_t, solve_block
    use block_rank, only: gauss_newton_step, moving_unknowns
-   use bilinear, only: end_t, ends_t, solve_quadratic
+   use bilinear, only: path_end_t, ends_t, solve_quadratic
    use homotopy, only: follow_paths
    use block_bilinear, only: block_form_t, make_form, solves_all, real_values
    implicit none
@@ -98,7 +98,7 @@ contains
 
       !> Adds the position of block `i` at the solution `e` to those `found`, if it is real and new.
       subroutine take_end(e)
-         type(end_t), intent(in) :: e
+         type(path_end_t), intent(in) :: e
          type(convergence_t) :: c
          real(wp) :: x(f%n), residual
          logical :: is_real

@@ -9,14 +9,14 @@ module block_bilinear
    use blocks, only: blocks_t, loop_projection, loop_angles
    use block_state, only: state_t
    use block_equations, only: find_known_parts
-   use isotropic, only: group_t, make_group, given, find_direction, linear_form, size_of_loop, i_unit
-   use bilinear, only: bilinear_t, end_t
+   use isotropic, only: equal_unknowns_t, make_group, given, find_direction, linear_form, size_of_loop, i_unit
+   use bilinear, only: bilinear_t, path_end_t
    implicit none
    private
    public :: block_form_t, make_form, solves_all, real_values
 
    !> The system of a block, from whose solutions its unknowns follow.
-   type, extends(group_t) :: block_form_t
+   type, extends(equal_unknowns_t) :: block_form_t
       complex(wp), allocatable :: basis(:, :)         !< (0:q, 0:p) of directions and slides from the system's unknowns
       logical :: is_lacking = .false.                 !< fewer equations than unknowns, where earlier blocks are now
       logical :: is_impossible = .false.              !< its linear equations contradict one another
@@ -62,7 +62,7 @@ contains
       integer :: m, rows
 
       call find_known_parts(b, i, s)
-      call make_group(b, i, s, f%group_t)
+      call make_group(b, i, s, f%equal_unknowns_t)
       rows = b%list(i)%shape%rows
       allocate (d%projections(0))
       allocate (d%a(0:f%q, rows), d%c(0:f%q, 0:f%q, rows + f%q), source=(0.0_wp, 0.0_wp))
@@ -85,11 +85,11 @@ contains
       type(projection_t) :: one
 
       allocate (one%l(f%q + 1))
-      one%l(:) = linear_form(b, m, s, f%group_t)
+      one%l(:) = linear_form(b, m, s, f%equal_unknowns_t)
       one%size_of = size_of_loop(b, m, s)
       associate (g => b%loops(m))
          if (g%kind == loop_projection) then
-            call find_direction(f%group_t, g%orientation_column, g%orientation, s, one%at, one%factor)
+            call find_direction(f%equal_unknowns_t, g%orientation_column, g%orientation, s, one%at, one%factor)
             one%factor = one%factor*cmplx(b%numbers%loops(m)%direction%x, b%numbers%loops(m)%direction%y, wp)
          end if
          if (g%row_x > 0) call add(g%row_x)
@@ -268,7 +268,7 @@ contains
    !> The solution `e` of the combinations that are solved is one of all equations.
    pure logical function solves_all(f, e)
       type(block_form_t), intent(in) :: f
-      type(end_t), intent(in) :: e
+      type(path_end_t), intent(in) :: e
       integer :: j
 
       solves_all = .true.
@@ -281,7 +281,7 @@ contains
    !> (n) The unknowns of the block at the solution `e`. `is_real`: x and y are conjugate, as far as rounding can tell.
    subroutine real_values(f, e, level, x, is_real)
       type(block_form_t), intent(in) :: f
-      type(end_t), intent(in) :: e
+      type(path_end_t), intent(in) :: e
       real(wp), intent(in) :: level
       real(wp), intent(out) :: x(:)
       logical, intent(out) :: is_real

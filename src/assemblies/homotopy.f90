@@ -11,7 +11,7 @@ module homotopy
    use kinds, only: wp
    use planar, only: pi
    use complex_lu, only: factor_complex, solve_complex
-   use bilinear, only: bilinear_t, end_t, ends_t, derivatives_at, path_count, finiteness, infinity_level
+   use bilinear, only: bilinear_t, path_end_t, ends_t, derivatives_at, path_count, finiteness, infinity_level
    implicit none
    private
    public :: follow_paths
@@ -85,7 +85,7 @@ contains
    !> A singular solution of `list` is that of `e`, as far as rounding leaves it known.
    logical function is_among(f, e, list)
       type(bilinear_t), intent(in) :: f
-      type(end_t), intent(in) :: e, list(:)
+      type(path_end_t), intent(in) :: e, list(:)
       complex(wp) :: x(f%p + 1), y(f%p + 1)
       integer :: k
 
@@ -136,7 +136,7 @@ contains
    subroutine follow_all(h, ends)
       type(paths_t), intent(in) :: h
       type(ends_t), intent(out) :: ends
-      type(end_t), allocatable :: list(:)
+      type(path_end_t), allocatable :: list(:)
       integer :: chosen(h%f%p), count_of, k, j
       complex(wp) :: z(2*h%f%p + 2)
       logical :: is_done, is_infinite, is_twin(path_count(h%f%p))
@@ -216,7 +216,7 @@ contains
    subroutine follow_path(h, z, e, is_infinite, is_done)
       type(paths_t), intent(in) :: h
       complex(wp), intent(inout) :: z(:)
-      type(end_t), intent(inout) :: e
+      type(path_end_t), intent(inout) :: e
       logical, intent(out) :: is_infinite, is_done
       complex(wp) :: last(size(z))
       real(wp) :: t, finite(0:max_tenths)

@@ -7,16 +7,16 @@ module isotropic
    use block_state, only: state_t
    implicit none
    private
-   public :: group_t, make_group, given, find_direction, linear_form, size_of_loop, i_unit
+   public :: equal_unknowns_t, make_group, given, find_direction, linear_form, size_of_loop, i_unit
 
    !> Unknown k of the block is unknown base(k) + offset(k); base 0 is none: the unknown is known.
-   type :: group_t
+   type :: equal_unknowns_t
       integer :: n = 0, q = 0                         !< unknowns of the block; directions and slides of one group
       integer, allocatable :: base(:)                 !< (n)
       real(wp), allocatable :: offset(:)              !< (n) in rad, or the unit of the slide
       integer, allocatable :: place(:)                !< (0:n) number of the direction or slide of a base in its group
       integer, allocatable :: turns(:)                !< (q) of a slide its direction, 0: a known one; of a direction -1
-   end type group_t
+   end type equal_unknowns_t
 
    complex(wp), parameter :: i_unit = (0.0_wp, 1.0_wp)
 
@@ -27,7 +27,7 @@ contains
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(state_t), intent(in) :: s
-      type(group_t), intent(out) :: f
+      type(equal_unknowns_t), intent(out) :: f
 
       call merge_angles(b, i, s, f)
       call number_places(b, i, f)
@@ -38,7 +38,7 @@ contains
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(state_t), intent(in) :: s
-      type(group_t), intent(inout) :: f
+      type(equal_unknowns_t), intent(inout) :: f
       integer :: m, k, first, second
       real(wp) :: apart, first_offset, second_offset
 
@@ -100,7 +100,7 @@ contains
    subroutine number_places(b, i, f)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
-      type(group_t), intent(inout) :: f
+      type(equal_unknowns_t), intent(inout) :: f
       integer :: k, m
 
       allocate (f%place(0:f%n), f%turns(f%n), source=0)
@@ -126,7 +126,7 @@ contains
    !> The direction of unknown number `u` of all, in column `column` of the block: `factor` times direction `at` of the
    !> group; 0: known.
    subroutine find_direction(f, column, u, s, at, factor)
-      type(group_t), intent(in) :: f
+      type(equal_unknowns_t), intent(in) :: f
       integer, intent(in) :: column, u
       type(state_t), intent(in) :: s
       integer, intent(out) :: at
@@ -144,7 +144,7 @@ contains
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: m
       type(state_t), intent(in) :: s
-      type(group_t), intent(in) :: f
+      type(equal_unknowns_t), intent(in) :: f
       complex(wp) :: l(0:f%q), factor
       integer :: k, at
       real(wp) :: value

@@ -8,7 +8,7 @@ module link_motion
    use planar, only: rotated, quarter_turn, add_rotating, direction
    use mechanism, only: mechanism_t
    use motion, only: motion_t, mark_none, mark_not_converged, mark_singular
-   use links_tree, only: tree_t, axes_t, place_t, place_on_tree
+   use links_tree, only: tree_t, axes_t, link_offset_t, place_on_tree
    use block_state, only: unknown_t, state_t
    implicit none
    private
@@ -26,7 +26,7 @@ module link_motion
       logical :: has_body_vector = .false.              !< its origin is not the point that joins it to the parent
       logical :: is_plain = .false.                     !< no body vector, no slide, no root
       real(wp) :: angle_offset = 0.0_wp                 !< of the link from its orientation, in rad
-      type(place_t) :: place                            !< r, d and e, in the deck's unit of length
+      type(link_offset_t) :: place                            !< r, d and e, in the deck's unit of length
    end type chain_link_t
 
    !> The links to be moved, parents first, and those that stay.

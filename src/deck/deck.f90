@@ -22,22 +22,22 @@ module deck
    use numerals, only: whole
    implicit none
    private
-   public :: read_deck, share_t, variants_before, build_variant
+   public :: read_deck, job_share_t, variants_before, build_variant
 
    !> The largest number of cards, with comments and blank cards.
    integer, parameter :: max_cards = 2000000
 
    !> A share of a deck's sets, or of its variants where the deck has VARY cards: the `number`-th of `count`. The shares
    !> one after another are all of them.
-   type :: share_t
+   type :: job_share_t
       integer :: number = 1, count = 1
       integer :: first = 1, last = 0              !< numbers of its sets or variants; set by `read_deck`
       integer :: sets = 0                         !< of the whole deck; the same
       logical :: varies = .false.                 !< it has VARY cards: all sets are read; the same
-   end type share_t
+   end type job_share_t
 
    !> What has been read so far.
-   type :: progress_t
+   type :: reading_t
       type(mechanism_t), allocatable :: sets(:)   !< (closed) and room for more
       type(variation_t), allocatable :: variations(:)   !< (1:varying and room) of the sets with VARY cards
       integer :: varying = 0                     !< sets with VARY cards
@@ -45,7 +45,7 @@ module deck
       integer :: passed = 0                       !< sets before the first of them
       type(card_set_t) :: set                     !< the open set, and the errors of the deck
       integer :: errors_before = 0                !< errors of the deck before the open set
-   end type progress_t
+   end type reading_t
 
 contains
 
@@ -58,9 +58,9 @@ contains
       type(mechanism_t), allocatable, intent(out) :: sets(:)
       character(:), allocatable, intent(out) :: report
       type(failure_t), allocatable, intent(out) :: failure
-      type(share_t), intent(inout), optional :: share
+      type(job_share_t), intent(inout), optional :: share
       type(variation_t), allocatable, intent(out), optional :: variations(:)
-      type(progress_t) :: progress
+      type(reading_t) :: progress
       type(source_t) :: source
       integer :: errors, first, last, from, to
 
@@ -107,7 +107,7 @@ contains
    !> nothing to choose. The last share reads to the end of the deck.
    subroutine find_share(path, share, first, last)
       character(*), intent(in) :: path
-      type(share_t), intent(inout) :: share
+      type(job_share_t), intent(inout) :: share
       integer, intent(inout) :: first, last
       type(source_t) :: source
       type(identity_t) :: id
@@ -127,7 +127,7 @@ contains
 
    !> The sets of `share` if the deck has so many `sets`.
    pure subroutine divide(share, sets)
-      type(share_t), intent(inout) :: share
+      type(job_share_t), intent(inout) :: share
       integer, intent(in) :: sets
 
       share%sets = sets
@@ -178,7 +178,7 @@ contains
    subroutine read_cards(source, last_set, progress, failure)
       type(source_t), intent(inout) :: source
       integer, intent(in) :: last_set
-      type(progress_t), intent(inout) :: progress
+      type(reading_t), intent(inout) :: progress
       type(failure_t), allocatable, intent(out) :: failure
       type(card_t) :: card, last
       logical :: found
@@ -207,7 +207,7 @@ contains
    !> Adds `card` to the open set, or closes the set.
    subroutine take_card(card, progress)
       type(card_t), intent(in) :: card
-      type(progress_t), intent(inout) :: progress
+      type(reading_t), intent(inout) :: progress
       type(parsed_card_t) :: parsed
 
       associate (set => progress%set)
@@ -237,7 +237,7 @@ contains
    !> Builds the mechanism of the open set from its cards, and opens the next set. Only a set without errors is checked
    !> for what nothing uses and for what looks wrong: a card with an error could make others look so.
    subroutine close_set(progress)
-      type(progress_t), intent(inout) :: progress
+      type(reading_t), intent(inout) :: progress
 
       associate (set => progress%set)
          call read_small_letters(set)
@@ -263,7 +263,7 @@ contains
    !> Appends the variation of the open set; where there is no room, it is doubled. In a deck with an error it is of no
    !> use.
    subroutine append_variation(progress)
-      type(progress_t), intent(inout) :: progress
+      type(reading_t), intent(inout) :: progress
       type(variation_t), allocatable :: larger(:)
 
       if (progress%varying == size(progress%variations)) then
@@ -319,7 +319,7 @@ contains
 
    !> Appends the mechanism of the open set to the closed ones.
    subroutine append_set(progress)
-      type(progress_t), intent(inout) :: progress
+      type(reading_t), intent(inout) :: progress
       type(mechanism_t), allocatable :: larger(:)
 
       if (progress%closed == size(progress%sets)) then

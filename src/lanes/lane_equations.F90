@@ -9,7 +9,7 @@
 #define TWO 2.0_wp
 module lane_equations
    use kinds, only: wp
-   use blocks, only: row_t, block_loop_t, body_vector_t, slide_t, loop_projection, loop_angles
+   use blocks, only: equation_row_t, block_loop_t, body_vector_t, slide_t, loop_projection, loop_angles
    use lane_sines, only: width, sines
    use lane_types, only: vector_t, unknown_t, row_numbers_t, loop_numbers_t, loop_state_t
    use lane_state, only: lanes_t

@@ -12,7 +12,7 @@
 module ball_equations
    use kinds, only: wp
    use block_matrix, only: entries_of
-   use blocks, only: blocks_t, row_t, block_loop_t, body_vector_t, slide_t, loop_projection, loop_angles
+   use blocks, only: blocks_t, equation_row_t, block_loop_t, body_vector_t, slide_t, loop_projection, loop_angles
    use balls, only: ball_t, rounding, up, operator(+), operator(-), operator(*)
    implicit none
    private

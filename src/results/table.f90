@@ -23,7 +23,7 @@ module table
    use numerals, only: put_full, full_length, whole
    implicit none
    private
-   public :: table_t, column_t, new_table, table_head, table_instant, drive_columns, dotted
+   public :: table_t, table_column_t, new_table, table_head, table_instant, drive_columns, dotted
 
    !> Characters of the name of a drive's column: RELANGLE.A.B, with a number of up to seven digits.
    integer, parameter :: drive_length = 3*label_length + 10
@@ -31,7 +31,7 @@ module table
    character(*), parameter :: missing = 'NaN'
 
    !> A column after those of time and drives.
-   type :: column_t
+   type :: table_column_t
       integer :: request = 0                        !< its number among those of the set
       !> The number of the request among those of which links, points and pairs are printed; 0: a pole or curve.
       integer :: row = 0
@@ -40,14 +40,14 @@ module table
       logical :: angular = .false.                  !< an angle or a derivative of one
       integer :: spread = 0                         !< by tolerances: 1 worst case, 2 root of squares; 0: none
       character(2*label_length + 12) :: name = ''   !< ROCKER.phi, TIP.vx, SLOT.v, POLE.BASE.COUPLER.x
-   end type column_t
+   end type table_column_t
 
    !> The columns of a set.
    type :: table_t
       type(law_t), allocatable :: laws(:)           !< (drives)
       character(drive_length), allocatable :: drives(:)   !< (drives) names: ANGLE.CRANK
       logical, allocatable :: angular(:)            !< (drives) the drive is an angle
-      type(column_t), allocatable :: columns(:)     !< the others, by derivative and request
+      type(table_column_t), allocatable :: columns(:)     !< the others, by derivative and request
    end type table_t
 
    !> What the columns of a derivative add to the name of a link or point, a prismatic pair, a revolute pair. Those of
@@ -130,7 +130,7 @@ contains
                   word = link_words(c, k)
                   if (request%kind == request_pair) word = merge(turn_words(k), slide_words(k), turns)
                   n = n + 1
-                  t%columns(n) = column_t(rows(i), merge(row, 0, spread == 0), k, c, c == 3 .or. turns, spread)
+                  t%columns(n) = table_column_t(rows(i), merge(row, 0, spread == 0), k, c, c == 3 .or. turns, spread)
                   t%columns(n)%name = name_of(own, request, links)//'.'//trim(word)//spread_words(spread)
                end do
             end associate
@@ -147,7 +147,7 @@ contains
             do c = 1, size(centre_numbers, 2)
                n = n + 1
                associate (number => centre_numbers(:, c, kind))
-                  t%columns(n) = column_t(rows(i), 0, number(2), number(1), number(1) == 3)
+                  t%columns(n) = table_column_t(rows(i), 0, number(2), number(1), number(1) == 3)
                end associate
                t%columns(n)%name = name_of(s%parts(s%rows(rows(i))%part), requests(rows(i)), links)//'.' &
                   //centre_words(c, kind)

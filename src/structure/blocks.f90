@@ -17,8 +17,8 @@ module blocks
    use loop_equations, only: equations_t, equation_numbers_t
    implicit none
    private
-   public :: blocks_t, block_t, row_t, block_loop_t, body_vector_t, slide_t, loop_components, loop_projection, &
-      loop_angles, numbers_t, block_numbers_t, row_numbers_t, loop_numbers_t
+   public :: blocks_t, block_t, equation_row_t, block_loop_t, body_vector_t, slide_t, loop_components, &
+      loop_projection, loop_angles, numbers_t, block_numbers_t, row_numbers_t, loop_numbers_t
    public :: needed_blocks, moving_blocks, iterated_unknowns, blocks_below, largest_known
 
    integer, parameter :: loop_components = 1  !< x and y of a vector loop, or one of them
@@ -36,13 +36,13 @@ module blocks
    end type block_t
 
    !> Row of an equation: = a constant + value of the drive; direct: unknown = other + sign_of (constant + value).
-   type :: row_t
+   type :: equation_row_t
       integer :: drive = 0                        !< whose value is added; 0: none
       integer :: other = 0                        !< direct: the unknown that is added; 0: the ground's angle
       integer :: pair = 0                         !< 0: a drive's equation
       logical :: angular = .false.                !< in radians, not lengths
       integer :: sign_of = 1                      !< 1 or -1
-   end type row_t
+   end type equation_row_t
 
    !> A vector loop as one block has it: rows (0: none), the known body vectors, then those of the block's own angles.
    type :: block_loop_t
@@ -96,7 +96,7 @@ module blocks
       type(block_t), allocatable :: list(:)
       integer, allocatable :: unknown(:)          !< by block
       integer, allocatable :: block_of(:)         !< (unknowns)
-      type(row_t), allocatable :: rows(:)
+      type(equation_row_t), allocatable :: rows(:)
       integer, allocatable :: equation(:)         !< (rows) its number among the equations
       type(block_loop_t), allocatable :: loops(:)
       type(body_vector_t), allocatable :: body_vectors(:)

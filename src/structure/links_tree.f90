@@ -11,7 +11,7 @@ module links_tree
    use mechanism, only: mechanism_t, pair_prismatic, pair_revolute, pair_links, plane_origin
    implicit none
    private
-   public :: tree_t, new_tree, axes_t, axes_of, put_axes, other_link, place_t, place_on_tree, point_in_drawing, &
+   public :: tree_t, new_tree, axes_t, axes_of, put_axes, other_link, link_offset_t, place_on_tree, point_in_drawing, &
       offset_in_drawing, ground_place, guide
 
    type :: tree_t
@@ -40,10 +40,10 @@ module links_tree
 
    !> Where a link is, seen from its parent: its origin is that of the parent + R(parent) (reach + s slide_body_vector)
    !> - R(own) body_vector, R of the orientations.
-   type :: place_t
+   type :: link_offset_t
       real(wp) :: reach(2) = 0.0_wp, body_vector(2) = 0.0_wp, slide_body_vector(2) = 0.0_wp
       integer :: slide = 0
-   end type place_t
+   end type link_offset_t
 
 contains
 
@@ -233,7 +233,7 @@ contains
       type(axes_t), intent(in) :: a
       real(wp), intent(in) :: length
       integer, intent(in) :: link
-      type(place_t) :: p
+      type(link_offset_t) :: p
       real(wp) :: sign_of
 
       associate (pair => m%pairs(t%parent_joint(link)))
