@@ -20,10 +20,10 @@ module study
    use reference_rows, only: reference_t, open_reference, read_reference, close_reference, no_number
    implicit none
    private
-   public :: run_study
+   public :: run_study, seconds, median
 
-   !> Measurements of a time, and the number of the one in the middle.
-   integer, parameter :: middle = 5, repeats = 2*middle - 1
+   !> Measurements of a time.
+   integer, parameter :: repeats = 9
    !> One way to solve a set, and what came of it.
    type :: trial_t
       integer :: method = method_newton
@@ -216,9 +216,9 @@ contains
       t%seconds = 0.0_dp
       call make_set_analysis(m, a)
       do k = 0, last
-         begun = seconds_now()
+         begun = seconds()
          call advance_set(a, instant(m, k))
-         t%seconds = t%seconds + (seconds_now() - begun)
+         t%seconds = t%seconds + (seconds() - begun)
          if (k == 0) at_first = iterations_of(a)
          if (is_flagged(a%now)) t%missed = t%missed + 1
          if (k < truth%compared) call compare()
@@ -383,31 +383,29 @@ contains
       do i = 1, passes
          call make_set_analysis(m, a)
          call advance_set(a, instants(0))
-         begun = seconds_now()
+         begun = seconds()
          do k = 1, steps
             call advance_set(a, instants(k))
          end do
-         time = time + (seconds_now() - begun)
+         time = time + (seconds() - begun)
       end do
       time = micro*time/(real(passes, dp)*steps)
    end function step_time
 
    !> Returns the clock (s), from some instant.
-   real(dp) function seconds_now()
+   real(dp) function seconds()
       integer(int64) :: ticks, per_second
 
       call system_clock(ticks, per_second)
-      seconds_now = real(ticks, dp)/real(per_second, dp)
-   end function seconds_now
+      seconds = real(ticks, dp)/real(per_second, dp)
+   end function seconds
 
-   !> Returns the median of the times `x`.
+   !> Returns the median of the sample `x`, which has one value at least.
    pure real(dp) function median(x)
-      real(dp), intent(in) :: x(repeats)
-      integer :: i
+      real(dp), intent(in) :: x(:)
+      integer :: twice(size(x)), i               ! twice the number of values that are no larger
 
-      do i = 1, repeats
-         median = x(i)
-         if (count(x < median) < middle .and. count(x <= median) >= middle) return
-      end do
+      twice = [(2*count(x <= x(i)), i=1, size(x))]
+      median = 0.5_dp*(minval(x, mask=twice >= size(x)) + minval(x, mask=twice > size(x)))
    end function median
 end module study

@@ -3,7 +3,7 @@
 module bench_elimination
    use kinds, only: wp
    use lapack, only: gesv
-   use trials, only: seconds
+   use study, only: seconds
    use dice, only: dice_t, new_dice, between, chance, throw
    use bench_tools, only: spread_t, spread_of, figure
    implicit none

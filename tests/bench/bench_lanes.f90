@@ -8,7 +8,7 @@ module bench_lanes
    use lane_runs, only: lane_run_t, begin_run, run_lanes, width
    use lane_state, only: lanes_t
    use lane_sines, only: max_angle
-   use trials, only: seconds
+   use study, only: seconds
    use sine_errors, only: largest_sine_error
    use bench_tools, only: spread_t, spread_of, figure
    use bench_scenes, only: scene_t, new_scene, chain_scene, by_closed_form, steps_of_turn

@@ -5,7 +5,7 @@ module bench_tables
    use mechanism, only: mechanism_t, method_newton, method_matrix, method_dense
    use analysis, only: analysis_t, make_analysis, advance
    use motion, only: motion_t, new_motion
-   use trials, only: seconds
+   use study, only: seconds
    use bench_tools, only: spread_t, spread_of, slope, figure
    use bench_scenes, only: scene_t, new_scene, chain_scene, gap_t, error_of, by_method, by_closed_form, steps_of_turn, &
       instant_of

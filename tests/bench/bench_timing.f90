@@ -5,7 +5,7 @@ module bench_timing
    use motion, only: motion_t, new_motion
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set
    use bench_scenes, only: scene_t, by_method, move_fast, instant_of, by_closed_form
-   use trials, only: seconds
+   use study, only: seconds
    implicit none
    private
    public :: job_t, measure

@@ -2,7 +2,7 @@
 module bench_tools
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp
-   use trials, only: median, seconds
+   use study, only: median, seconds
    implicit none
    private
    public :: spread_t, spread_of, slope, memory_peak, plain_reading, figure

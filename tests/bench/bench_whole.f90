@@ -7,7 +7,7 @@ module bench_whole
    use failures, only: failure_t
    use deck, only: read_deck
    use analysis, only: analysis_t, make_analysis, advance
-   use trials, only: seconds
+   use study, only: seconds
    use bench_tools, only: spread_t, spread_of, memory_peak, plain_reading, figure
    use bench_scenes, only: scene_t, new_scene, instant_of
    implicit none
