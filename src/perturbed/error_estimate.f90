@@ -55,8 +55,9 @@ contains
    end subroutine make_estimator
 
    !> How far the motion `q` of `m` is known, which the `engine` has found, by a matrix of the reciprocal condition
-   !> `rcond`. `always`: also where no digit of a table is in doubt.
-   subroutine estimate_errors(s, m, engine, rcond, q, always, found)
+   !> `rcond`. `always`: also where no digit of a table is in doubt; then with what `row_error` needs, unless
+   !> `without_own` says that `estimate_of` is enough.
+   subroutine estimate_errors(s, m, engine, rcond, q, always, found, without_own)
       type(estimator_t), intent(inout) :: s
       type(mechanism_t), intent(in) :: m
       type(block_engine_t), intent(in) :: engine
@@ -64,6 +65,7 @@ contains
       type(motion_t), intent(in) :: q
       logical, intent(in) :: always
       type(error_estimate_t), intent(inout) :: found
+      logical, intent(in), optional :: without_own
       logical :: is_small
 
       found%taken = .false.
@@ -89,7 +91,7 @@ contains
       s%perturbed%stays = .false.
       call find_changes(s, many, q%t, found, s%perturbed%is_singular, is_small)
       if (.not. is_small) call find_changes(s, few, q%t, found, .true., is_small)
-      if (always) call find_own(s, q%t, found)
+      if (always .and. .not. present(without_own)) call find_own(s, q%t, found)
    end subroutine estimate_errors
 
    !> The changes of the rows at the time `t` by a rounding, from those by so many `roundings`. `is_small`: they are so
