@@ -10,7 +10,6 @@ module ranges
    use drives, only: new_law, drive_motion
    use scales, only: is_length, characteristic_length
    use analysis, only: analysis_t, make_analysis, advance
-   use set_analysis, only: set_analysis_t
    use independent, only: set_t
    use names, only: drive_name
    use text_output, only: output_t, put
@@ -20,7 +19,7 @@ module ranges
    use phrases
    implicit none
    private
-   public :: range_t, find_range, find_ranges, is_lost, put_ranges, held_at, low, high, side_words
+   public :: range_t, find_range, is_lost, put_ranges, held_at, low, high, side_words
 
    !> Instants along the drive, in rad or characteristic lengths, and how far it is followed each way.
    real(wp), parameter :: step_of_angle = pi/36.0_wp, step_of_length = 0.05_wp
@@ -40,31 +39,13 @@ module ranges
       integer :: part = 1, drive = 0        !< the number of its independent mechanism, and its own there
       logical :: is_all = .false.           !< it turns fully, and the motion closes
       integer :: turns = 0                  !< after so many turns
+      logical :: is_of_branch = .false.     !< the first instant has no position: of a branch that CIRCUITS knows
       integer :: change_points = 0          !< passed on the smooth branch, both ways
       logical :: has_limit(2) = .false.     !< (low:high)
       type(diagnostic_t) :: limit(2)        !< (low:high) of the kind diagnostic_limit: links, the drive's value
    end type range_t
 
 contains
-
-   !> The ranges of all drives of the set that `s` analyses, at its first instant; none of a mechanism that has no
-   !> position there.
-   subroutine find_ranges(s, list)
-      type(set_analysis_t), intent(in) :: s
-      type(range_t), allocatable, intent(out) :: list(:)
-      type(range_t) :: r
-      integer :: c, i
-
-      allocate (list(0))
-      do c = 1, s%now%count
-         if (s%now%motions(c)%known < 0) cycle
-         do i = 1, size(s%now%parts(c)%drives)
-            call find_range(s%now%parts(c), s%now%motions(c), i, r)
-            r%part = c
-            list = [list, r]
-         end do
-      end do
-   end subroutine find_ranges
 
    !> The lines of `list` at the end of the set `s`.
    subroutine put_ranges(o, s, list)
@@ -79,7 +60,9 @@ contains
       if (size(list) == 0) call put(o, '   '//phrase(say_none, s%polish))
       do i = 1, size(list)
          associate (r => list(i), m => s%parts(list(i)%part))
-            call put(o, ' '//trim(drive_name(m, m%drives(r%drive))))
+            words = trim(drive_name(m, m%drives(r%drive)))
+            if (r%is_of_branch) words = words//'   '//phrase(say_range_of_branch, m%polish)
+            call put(o, ' '//words)
             if (r%is_all) then
                call put(o, '   '//full_turn_words(r%turns, m%polish))
             else

@@ -103,6 +103,8 @@ module phrases
       say_may_be_missed = phrase_t('EXTREMES MAY BE MISSED WITHIN T =', 'EKSTREMA MOGA BYC POMINIETE W T ='), &
       say_unbounded = phrase_t('UNBOUNDED', 'NIEOGRAN.'), &
       say_range = phrase_t('RANGES OF THE DRIVES (OTHER DRIVES HELD)', 'ZAKRESY NAPEDOW (INNE NAPEDY STALE)'), &
+      say_range_of_branch = phrase_t('FIRST INSTANT OUT OF REACH, RANGE OF A BRANCH', &
+         'PIERWSZA CHWILA POZA ZASIEGIEM, ZAKRES GALEZI'), &
       say_all = phrase_t('TURNS FULLY, CLOSES AFTER', 'PELNY OBROT, ZAMYKA SIE PO'), &
       say_turn = phrase_t('TURN', 'OBROCIE'), &
       say_turns = phrase_t('TURNS', 'OBROTACH'), &
