@@ -6,7 +6,7 @@ module analysis
    use kinds, only: wp
    use mechanism, only: mechanism_t, method_newton
    use structure, only: structure_t
-   use drive_excursion, only: has_pole_between, short_of_pole
+   use drive_excursion, only: has_pole_between, short_of_pole, largest_derivative
    use motion, only: motion_t, forget_links, known_of, mark_none, mark_not_converged, mark_singular, mark_overflow, &
       mark_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_limit, &
       diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins, diagnostic_method
@@ -26,6 +26,9 @@ module analysis
 
    !> A limit that the motion creeps up to is no further than this part of the way that it has come.
    real(wp), parameter :: almost_there = 1.0e-3_wp
+   !> Beside a first position that is singular the motion begins where no drive has gone further, in rad or
+   !> characteristic lengths.
+   real(wp), parameter :: beside_start = 1.0e-3_wp
 
    !> The last instant, while the motion at others is looked at.
    type :: left_t
@@ -40,6 +43,7 @@ module analysis
       type(certificate_counts_t) :: certificate_counts     !< of all instants
       type(limits_t) :: limits                             !< of the motion that is followed
       logical :: has_begun = .false.                       !< a position was found
+      logical :: begins = .false.                          !< at the last instant none was followed yet
       logical :: is_lost = .false.                         !< at the last instant none was
       logical :: stands = .false.                          !< the last instant has a singular position
       real(wp) :: last = 0.0_wp                            !< time of the last instant
@@ -159,10 +163,30 @@ contains
          step%arrived = .true.
          step%stands = .true.
       else
+         a%begins = .not. a%follows
+         if (a%begins .and. a%stands) call begin_beside(a, t)
          call continue_to(a%following_t, t, step)
          if (.not. step%arrived) call go_by_value(a%following_t, t, step, list)
       end if
    end subroutine reach
+
+   !> From a first position that is singular, more than one motion begins. The one to `t` begins in the assembly that is
+   !> the nearest close to that position: at `t` another one may be, if the step is wide.
+   subroutine begin_beside(a, t)
+      type(analysis_t), intent(inout) :: a
+      real(wp), intent(in) :: t
+      type(step_record_t) :: step
+      real(wp) :: beside
+
+      beside = t
+      do while (abs(beside - a%last)*largest_derivative(a%drives, 1, a%last, beside) > beside_start)
+         beside = a%last + 0.5_wp*(beside - a%last)
+         if (abs(beside - a%last) <= spacing(a%last)) return
+      end do
+      call continue_to(a%following_t, beside, step)
+      if (step%arrived .and. .not. (a%convergence%singular .or. a%convergence%rates_open)) &
+         call go_on_from(a%following_t, beside)
+   end subroutine begin_beside
 
    !> The motion `found` at a time `t` that is no instant of the deck, by continuity from the last one, or from a time
    !> looked at before: of many times in a row each costs a short step. Nothing else changes; the engine stays at `t`
@@ -229,7 +253,7 @@ contains
          return
       end if
       call judge_branch(a, step)
-      if (.not. a%has_begun .or. (.not. a%follows .and. found%known == 2)) call diagnose_start(a, found)
+      if (.not. a%has_begun .or. (a%begins .and. found%known == 2)) call diagnose_start(a, found)
    end subroutine arrive
 
    !> Tells that the blocks have found a position at the end of `step` and the method has not; once of instants in a row
@@ -321,11 +345,12 @@ contains
          a%branch%kind = merge(branch_crossed, branch_same, passed > 0)
          if (a%convergence%singular .and. .not. step%stands) a%branch%kind = branch_none
       end if
-      if (.not. a%follows) a%branch%kind = branch_first
+      if (a%begins) a%branch%kind = branch_first
       call count_in(a%certificate_counts, a%branch, passed)
    end subroutine judge_branch
 
-   !> What there is to say of the first position that was found, and of the first that a motion goes on from.
+   !> What there is to say of the first position that was found, and of the first that a motion goes on from. One that
+   !> began beside a singular position is no longer near the deck's estimate.
    subroutine diagnose_start(a, found)
       type(analysis_t), intent(inout) :: a
       type(motion_t), intent(inout) :: found
@@ -333,6 +358,7 @@ contains
 
       if (a%has_begun) call add_diagnostics([diagnostic_t(kind=diagnostic_begins)], found)
       a%has_begun = .true.
+      if (a%follows) return
       list = start_diagnostics(a%engine, found, a%convergence%singular)
       call add_diagnostics(list, found)
    end subroutine diagnose_start
