@@ -120,7 +120,7 @@ contains
       subroutine note_position(c)
          type(convergence_t), intent(in) :: c
          real(wp) :: x(size(start))
-         integer :: k
+         integer :: k, first
 
          if (.not. is_solved(c)) return
          x = values_of(b, i, s)
@@ -134,6 +134,10 @@ contains
          end do
          do k = 1, size(found, 2)
             if (norm2(x - start) < 0.999_wp*norm2(found(:, k) - start)) exit
+            ! Of two mirror images, as at a dead point, that with the greater first angle: rounding shall not choose.
+            if (norm2((x - start) + (found(:, k) - start)) > distinct*norm2(x - start)) cycle
+            first = findloc(abs(x - start) > distinct*norm2(x - start), .true., dim=1)
+            if (x(first) > found(first, k)) exit
          end do
          found = reshape([found(:, :k - 1), x, found(:, k:)], [size(x), size(found, 2) + 1])
       end subroutine note_position

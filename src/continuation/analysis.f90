@@ -176,16 +176,31 @@ contains
       type(analysis_t), intent(inout) :: a
       real(wp), intent(in) :: t
       type(step_record_t) :: step
-      real(wp) :: beside
+      real(wp) :: beside, high, middle
+      integer :: i
 
-      beside = t
-      do while (abs(beside - a%last)*largest_derivative(a%drives, 1, a%last, beside) > beside_start)
-         beside = a%last + 0.5_wp*(beside - a%last)
-         if (abs(beside - a%last) <= spacing(a%last)) return
+      beside = merge(t, a%last, is_near(t))
+      high = t
+      do i = 1, digits(1.0_wp)
+         middle = 0.5_wp*(beside + high)
+         if (is_near(middle)) then
+            beside = middle
+         else
+            high = middle
+         end if
       end do
       call continue_to(a%following_t, beside, step)
       if (step%arrived .and. .not. (a%convergence%singular .or. a%convergence%rates_open)) &
          call go_on_from(a%following_t, beside)
+
+   contains
+
+      !> No drive goes further than `beside_start` until `t`.
+      pure logical function is_near(t)
+         real(wp), intent(in) :: t
+
+         is_near = abs(t - a%last)*largest_derivative(a%drives, 1, a%last, t) <= beside_start
+      end function is_near
    end subroutine begin_beside
 
    !> The motion `found` at a time `t` that is no instant of the deck, by continuity from the last one, or from a time
