@@ -27,51 +27,41 @@ contains
       type(extremes_t), intent(in) :: x
       type(set_analysis_t), intent(inout) :: s
       type(dwell_t), allocatable, intent(out) :: list(:)
-      integer :: q, c
+      type(dwell_t) :: one
+      type(place_t), allocatable :: path(:)
+      logical, allocatable :: inside(:), before(:)
+      integer :: q, c, which, k
+      real(wp) :: stroke, level
+      logical :: is_cycle, found(2)
 
       allocate (list(0))
       if (.not. is_covered(x)) return
       do q = 1, size(x%asked)
          do c = 1, x%columns(q)
-            call find_two(dwell_t(q, c, distance=x%dwell(c, q)), x, s, list)
+            one = dwell_t(q, c, distance=x%dwell(c, q))
+            stroke = x%found(greatest, c, 0, q)%value - x%found(least, c, 0, q)%value
+            if (one%distance <= 0.0_wp .or. stroke <= one%distance) cycle
+            path = path_of(one, x)
+            ! A crank that has made whole turns is not where it was.
+            is_cycle = abs(path(size(path))%value - path(1)%value) < 0.5_wp*stroke .and. is_cyclic(x, q)
+
+            do which = least, greatest
+               one%which = which
+               level = x%found(which, c, 0, q)%value - outward(which)*one%distance
+               inside = (path%value - level)*outward(which) >= 0.0_wp
+               ! Each begins at a place inside after one outside; in a cycle the last place is before the first.
+               before = cshift(inside, -1)
+               before(1) = is_cycle .and. before(1)
+               do k = 1, size(path)
+                  if (.not. inside(k) .or. before(k)) cycle
+                  call find_end(one, path, level, k, x, s, -1, is_cycle, one%from, one%error(1), found(1))
+                  call find_end(one, path, level, k, x, s, 1, is_cycle, one%to, one%error(2), found(2))
+                  if (all(found)) list = [list, one]
+               end do
+            end do
          end do
       end do
    end subroutine find_dwells
-
-   !> Adds those of one coordinate, `wanted`, to the `list`.
-   subroutine find_two(wanted, x, s, list)
-      type(dwell_t), intent(in) :: wanted
-      type(extremes_t), intent(in) :: x
-      type(set_analysis_t), intent(inout) :: s
-      type(dwell_t), allocatable, intent(inout) :: list(:)
-      type(dwell_t) :: one
-      type(place_t), allocatable :: path(:)
-      logical, allocatable :: inside(:), before(:)
-      integer :: which, k
-      real(wp) :: stroke, level
-      logical :: is_cycle, found(2)
-
-      one = wanted
-      stroke = x%found(greatest, one%column, 0, one%asked)%value - x%found(least, one%column, 0, one%asked)%value
-      if (one%distance <= 0.0_wp .or. stroke <= one%distance) return
-      path = path_of(one, x)
-      ! A crank that has made whole turns is not where it was.
-      is_cycle = abs(path(size(path))%value - path(1)%value) < 0.5_wp*stroke .and. is_cyclic(x, one%asked)
-      do which = least, greatest
-         one%which = which
-         level = x%found(which, one%column, 0, one%asked)%value - outward(which)*one%distance
-         inside = (path%value - level)*outward(which) >= 0.0_wp
-         ! Each begins at a place inside after one outside; in a cycle the last place is before the first.
-         before = cshift(inside, -1)
-         before(1) = is_cycle .and. before(1)
-         do k = 1, size(path)
-            if (.not. inside(k) .or. before(k)) cycle
-            call find_end(one, path, level, k, x, s, -1, is_cycle, one%from, one%error(1), found(1))
-            call find_end(one, path, level, k, x, s, 1, is_cycle, one%to, one%error(2), found(2))
-            if (all(found)) list = [list, one]
-         end do
-      end do
-   end subroutine find_two
 
    !> The places (any number) of the coordinate `w`, along the run.
    pure function path_of(w, x) result(path)
@@ -105,7 +95,7 @@ contains
       found = .true.
       error = 0.0_wp
       associate (e => x%found(w%which, w%column, 0, w%asked), n => size(path))
-         inside = position_at(path(start)%t, path(start)%value)
+         inside = sample_t(path(start)%t, [path(start)%value, 0.0_wp, 0.0_wp], exists=.true.)
          k = start + way
          do passed = 1, n
             t = inside%t
@@ -114,7 +104,7 @@ contains
                ! On from the other end, in the same position.
                k = merge(1, n, way > 0)
             end if
-            outside = position_at(path(k)%t, path(k)%value)
+            outside = sample_t(path(k)%t, [path(k)%value, 0.0_wp, 0.0_wp], exists=.true.)
             if ((outside%f(0) - level)*outward(w%which) < 0.0_wp) exit
             inside = outside
             k = k + way
@@ -129,11 +119,4 @@ contains
       t = zero%t
       found = zero%exists
    end subroutine find_end
-
-   !> A coordinate alone.
-   pure type(sample_t) function position_at(t, value) result(sample)
-      real(wp), intent(in) :: t, value
-
-      sample = sample_t(t, [value, 0.0_wp, 0.0_wp], exists=.true.)
-   end function position_at
 end module dwells

@@ -3,10 +3,10 @@
 module extremes
    use kinds, only: wp
    use planar, only: pi, without_turns
-   use mechanism, only: mechanism_t, request_t, request_link, request_pair, pair_prismatic
+   use mechanism, only: mechanism_t, request_t, request_link, request_pair, pair_prismatic, term_harmonic
    use motion, only: motion_t
    use scales, only: characteristic_length, characteristic_rate
-   use drives, only: joints_of, shortest_period
+   use drives, only: joints_of
    use points, only: is_fixed, coordinates_of
    use digits_in_doubt, only: safe_growth
    use independent, only: set_t, request_of
@@ -16,7 +16,7 @@ module extremes
    private
    public :: extremes_t, extreme_t, track_t, gap_t, place_t, least, greatest, outward, extreme_words, rows_asked, &
       new_extremes, offer, offer_limits, note_velocity, note_end, note_interval, is_cyclic, is_covered, is_angle, &
-      column_of, strokes_t, strokes_of, stroke_of, ratio_decimals, closes_to, alike
+      column_of, strokes_t, strokes_of, ratio_decimals, closes_to, alike
 
    !> Values that differ by less, in characteristic lengths or rad and rates, are alike, since errors
    !> that no table shows may be as large: the earlier one counts.
@@ -87,6 +87,7 @@ module extremes
    !> The strokes of a coordinate: it reverses at the places of one period; two of them are the ends of both strokes,
    !> which take the `times` from the least value to the greatest and back. None: the motion is not cyclic.
    type :: strokes_t
+      type(extreme_t) :: length                        !< greatest minus least value, if both exist and differ
       integer :: in_run = 0                            !< reversals in the whole run
       type(place_t), allocatable :: reversals(:)
       real(wp) :: times(2) = 0.0_wp
@@ -134,7 +135,7 @@ contains
       class(set_t), intent(in) :: s
       type(extremes_t), intent(out) :: x
       type(request_t) :: request
-      real(wp) :: length, rate
+      real(wp) :: length, rate, fastest
       integer :: i, c, k, q, n
 
       x%asked = rows_asked(s)
@@ -156,15 +157,17 @@ contains
          associate (track => x%tracks(c), own => s%parts(c))
             track%rows = pack([(q, q=1, n)], x%part == c)
             allocate (track%joints(0))
+            fastest = 0.0_wp
             if (size(track%rows) == 0) cycle
             do i = 1, size(own%drives)
                track%joints = [track%joints, joints_of(own%drives(i))]
-               track%longest = min(track%longest, shortest_period(own%drives(i))/parts_of_turn)
+               if (allocated(own%drives(i)%terms)) fastest = max(fastest, maxval(abs(own%drives(i)%terms%r(2)), &
+                  mask=own%drives(i)%terms%kind == term_harmonic))
             end do
             track%joints = track%joints(order_along(track%joints, x%way))
             length = characteristic_length(own)
             rate = characteristic_rate(own, length)
-            track%longest = min(track%longest, 2.0_wp*pi/(parts_of_turn*rate))
+            track%longest = 2.0_wp*pi/(parts_of_turn*max(rate, fastest))
             do k = 0, 2
                x%size_of(:, k, track%rows) = merge(1.0_wp, length, x%is_angle(:, track%rows))*rate**k
             end do
@@ -365,6 +368,10 @@ contains
       real(wp) :: period, phase
       integer :: n, in_period
 
+      associate (e => x%found(:, c, 0, q))
+         strokes%length = extreme_t(value=e(greatest)%value - e(least)%value, error=sum(e%error), &
+            exists=all(e%exists .and. e%has_bound) .and. abs(e(greatest)%t - e(least)%t) > 0.0_wp)
+      end associate
       associate (list => x%reversals%list(:x%reversals%n))
          all_of = pack(list, list%asked == q .and. list%column == c)
       end associate
@@ -394,16 +401,4 @@ contains
          strokes%error = sum(e%t_error)*abs(period)/minval(strokes%times)**2
       end associate
    end function strokes_of
-
-   !> The difference of the greatest and the least value of column `c` of row `q`, if both exist and differ.
-   pure type(extreme_t) function stroke_of(x, q, c) result(stroke)
-      type(extremes_t), intent(in) :: x
-      integer, intent(in) :: q, c
-
-      associate (e => x%found(:, c, 0, q))
-         stroke%exists = all(e%exists .and. e%has_bound) .and. abs(e(greatest)%t - e(least)%t) > 0.0_wp
-         stroke%value = e(greatest)%value - e(least)%value
-         stroke%error = sum(e%error)
-      end associate
-   end function stroke_of
 end module extremes

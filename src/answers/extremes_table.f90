@@ -13,7 +13,7 @@ module extremes_table
    use numerals, only: numeral_length, rounded
    use known_digits, only: unknown_digit
    use extremes, only: extremes_t, extreme_t, gap_t, strokes_t, least, greatest, extreme_words, strokes_of, &
-      stroke_of, is_cyclic, is_covered, ratio_decimals, closes_to, column_of
+      is_cyclic, is_covered, ratio_decimals, closes_to, column_of
    use dwells, only: dwell_t
    use phrases
    implicit none
@@ -58,7 +58,11 @@ contains
             call put_subject(subject_name(own, request%kind, request%subject))
          end associate
          do k = 1, size(dwells)
-            if (dwells(k)%asked == q) call put_dwell(dwells(k))
+            associate (w => dwells(k))
+               if (w%asked == q) call put_at(phrase(say_dwell, s%polish)//'  '//column_name(w%column)//'  ' &
+                  //extreme_words(w%which)//' +- '//number_text(w%distance, 0.0_wp, x%is_angle(w%column, q), 0), &
+                  [w%from, w%to], w%error)
+            end associate
          end do
       end do
       if (.not. moves) call put(o, ' '//phrase(say_at_rest, s%polish))
@@ -66,7 +70,7 @@ contains
       call put_gaps(x%open, say_may_be_missed)
       call put_gaps(x%gaps, say_not_covered)
       do k = 1, size(x%tracks)
-         if (goes_on(k)) call put_closure(x%tracks(k)%closure)
+         if (goes_on(k) .and. all(x%tracks(k)%closure < huge(1.0_wp))) call put_closure(x%tracks(k)%closure)
       end do
 
    contains
@@ -141,27 +145,27 @@ contains
       !> both strokes and their ratio, or a line for each dead centre if there are more than two.
       subroutine put_strokes()
          character(numeral_length) :: text(3, 0:2)
-         type(extreme_t) :: stroke
-         type(strokes_t) :: strokes
+         type(strokes_t) :: strokes(x%columns(q))
          integer :: c, i
 
          text = ''
          do c = 1, x%columns(q)
-            stroke = stroke_of(x, q, c)
-            if (stroke%exists) text(c, 0) = number_text(stroke%value, stroke%error, x%is_angle(c, q), 0)
+            strokes(c) = strokes_of(x, q, c)
+            associate (length => strokes(c)%length)
+               if (length%exists) text(c, 0) = number_text(length%value, length%error, x%is_angle(c, q), 0)
+            end associate
          end do
          if (any(text /= '')) call put_fields(phrase(say_stroke, s%polish), text)
          do c = 1, x%columns(q)
             if (text(c, 0) == '') cycle
-            strokes = strokes_of(x, q, c)
-            if (strokes%ratio > 0.0_wp) call put_stroke_times(c, strokes)
-            if (strokes%in_run >= 2 .and. is_covered(x) .and. .not. is_cyclic(x, q)) goes_on(x%part(q)) = .true.
-            if (size(strokes%reversals) <= 2) cycle
-            do i = 1, size(strokes%reversals)
-               call put_at(phrase(say_dead_centre, s%polish)//'  '//column_name(c)//'  ' &
-                  //number_text(strokes%reversals(i)%value, 0.0_wp, x%is_angle(c, q), 0), [strokes%reversals(i)%t], &
-                  [0.0_wp])
-            end do
+            if (strokes(c)%ratio > 0.0_wp) call put_stroke_times(c, strokes(c))
+            if (strokes(c)%in_run >= 2 .and. is_covered(x) .and. .not. is_cyclic(x, q)) goes_on(x%part(q)) = .true.
+            associate (dead => strokes(c)%reversals)
+               do i = 1, merge(size(dead), 0, size(dead) > 2)
+                  call put_at(phrase(say_dead_centre, s%polish)//'  '//column_name(c)//'  ' &
+                     //number_text(dead(i)%value, 0.0_wp, x%is_angle(c, q), 0), [dead(i)%t], [0.0_wp])
+               end do
+            end associate
          end do
       end subroutine put_strokes
 
@@ -169,26 +173,17 @@ contains
       subroutine put_stroke_times(c, strokes)
          integer, intent(in) :: c
          type(strokes_t), intent(in) :: strokes
-         real(wp) :: error
          character(:), allocatable :: line
 
-         error = sum(x%found(:, c, 0, q)%t_error)
-         line = '  '//column_name(c)//'   '//phrase(say_forward, s%polish)//' ' &
-            //time_text(l, strokes%times(1), error)//l%behind_time//'   '//phrase(say_return, s%polish)//' ' &
-            //time_text(l, strokes%times(2), error)//l%behind_time//'   '//phrase(say_ratio, s%polish)//' ' &
-            //known_text(strokes%ratio, ratio_decimals, 0, strokes%error)
+         associate (error => sum(x%found(:, c, 0, q)%t_error))
+            line = '  '//column_name(c)//'   '//phrase(say_forward, s%polish)//' ' &
+               //time_text(l, strokes%times(1), error)//l%behind_time//'   '//phrase(say_return, s%polish)//' ' &
+               //time_text(l, strokes%times(2), error)//l%behind_time//'   '//phrase(say_ratio, s%polish)//' ' &
+               //known_text(strokes%ratio, ratio_decimals, 0, strokes%error)
+         end associate
          table%masked = table%masked .or. index(line, unknown_digit) > 0
          call put(o, line)
       end subroutine put_stroke_times
-
-      !> A line for a dwell: of which coordinate, within what distance of what, from when to when.
-      subroutine put_dwell(dwell)
-         type(dwell_t), intent(in) :: dwell
-
-         call put_at(phrase(say_dwell, s%polish)//'  '//column_name(dwell%column)//'  ' &
-            //extreme_words(dwell%which)//' +- ' &
-            //number_text(dwell%distance, 0.0_wp, x%is_angle(dwell%column, q), 0), [dwell%from, dwell%to], dwell%error)
-      end subroutine put_dwell
 
       !> A line that begins with `head`: at the times `t`, one or two, of which `error` is unknown, and at these values
       !> of the drive.
@@ -238,7 +233,6 @@ contains
          real(wp), intent(in) :: closure(3)
          character(:), allocatable :: line
 
-         if (any(closure >= huge(1.0_wp))) return
          line = ' --- '//phrase(say_no_period, s%polish)
          if (all(closure(:2) <= closes_to)) then
             line = line//' '//phrase(say_in_velocity, s%polish)

@@ -14,7 +14,7 @@ module variant_rows
    use csv, only: marks
    use table, only: table_t, new_table, drive_columns, dotted
    use extremes, only: extremes_t, extreme_t, strokes_t, least, greatest, outward, extreme_words, rows_asked, &
-      column_of, strokes_of, stroke_of, ratio_decimals
+      column_of, strokes_of, ratio_decimals
    use ranges, only: range_t, low, high
    use answers, only: answers_t
    use numerals, only: whole
@@ -372,14 +372,12 @@ contains
       type(extremes_t), intent(in) :: x
       integer, intent(in) :: q, c
       type(cell_t), intent(inout) :: cells(2)
-      type(extreme_t) :: stroke
       type(strokes_t) :: strokes
 
-      stroke = stroke_of(x, q, c)
-      ! It may be small: then the rounding of the difference counts.
-      if (stroke%exists) cells(1) = cell_t(cell_number, stroke%value, &
-         stroke%error + rounding*maxval(abs(x%found(:, c, 0, q)%value)))
       strokes = strokes_of(x, q, c)
+      ! It may be small: then the rounding of the difference counts.
+      if (strokes%length%exists) cells(1) = cell_t(cell_number, strokes%length%value, &
+         strokes%length%error + rounding*maxval(abs(x%found(:, c, 0, q)%value)))
       if (strokes%ratio > 0.0_wp) cells(2) = cell_t(cell_number, strokes%ratio, strokes%error)
    end subroutine take_strokes
 

@@ -20,7 +20,7 @@ module drives
    implicit none
    private
    public :: law_t, new_law, drive_motion, find_drive_motion, bounds_t, bounds_of, drive_rate, joints_of, pole_value
-   public :: shortest_period, monomial, rise_shape, joint_width, joint_distance
+   public :: monomial, rise_shape, joint_width, joint_distance
 
    !> A drive made ready for evaluation.
    type :: law_t
@@ -222,21 +222,6 @@ contains
          end associate
       end do
    end function joints_of
-
-   !> The shortest period of the harmonic terms of `drive`; the largest number if it has none.
-   pure real(wp) function shortest_period(drive) result(period)
-      type(drive_t), intent(in) :: drive
-      integer :: i
-
-      period = huge(1.0_wp)
-      if (.not. allocated(drive%terms)) return
-      do i = 1, size(drive%terms)
-         associate (term => drive%terms(i))
-            if (term%kind == term_harmonic .and. abs(term%r(2)) > 0.0_wp) &
-               period = min(period, 2.0_wp*pi/abs(term%r(2)))
-         end associate
-      end do
-   end function shortest_period
 
    !> The bounds of c1 + c2 t + c3 t^2/2: from its values at both ends, and where its rate is zero.
    pure function polynomial_bounds(c, from, to) result(b)
