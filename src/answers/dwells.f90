@@ -5,7 +5,7 @@ module dwells
    use set_analysis, only: set_analysis_t
    use nodes, only: order_along
    use zero_search, only: sample_t, column_t, find_zero, noise_part
-   use extremes, only: extremes_t, place_t, least, greatest, outward, is_cyclic, is_covered
+   use extremes, only: extremes_t, value_at_t, least, greatest, outward, is_cyclic, is_covered
    implicit none
    private
    public :: dwell_t, find_dwells
@@ -28,7 +28,7 @@ contains
       type(set_analysis_t), intent(inout) :: s
       type(dwell_t), allocatable, intent(out) :: list(:)
       type(dwell_t) :: one
-      type(place_t), allocatable :: path(:)
+      type(value_at_t), allocatable :: path(:)
       logical, allocatable :: inside(:), before(:)
       integer :: q, c, which, k
       real(wp) :: stroke, level
@@ -67,7 +67,7 @@ contains
    pure function path_of(w, x) result(path)
       type(dwell_t), intent(in) :: w
       type(extremes_t), intent(in) :: x
-      type(place_t), allocatable :: path(:)
+      type(value_at_t), allocatable :: path(:)
 
       associate (list => x%places%list(:x%places%n))
          path = pack(list, list%asked == w%asked .and. list%column == w%column)
@@ -81,7 +81,7 @@ contains
    !> is a cycle and goes on.
    subroutine find_end(w, path, level, start, x, s, way, is_cycle, t, error, found)
       type(dwell_t), intent(in) :: w
-      type(place_t), intent(in) :: path(:)
+      type(value_at_t), intent(in) :: path(:)
       real(wp), intent(in) :: level
       integer, intent(in) :: start, way
       type(extremes_t), intent(in) :: x

@@ -14,7 +14,7 @@ module extremes
    use zero_search, only: sample_t, noise_part
    implicit none
    private
-   public :: extremes_t, extreme_t, track_t, gap_t, place_t, least, greatest, outward, extreme_words, rows_asked, &
+   public :: extremes_t, extreme_t, track_t, gap_t, value_at_t, least, greatest, outward, extreme_words, rows_asked, &
       new_extremes, offer, offer_limits, note_velocity, note_end, note_interval, is_cyclic, is_covered, is_angle, &
       column_of, strokes_t, strokes_of, ratio_decimals, closes_to, alike
 
@@ -65,31 +65,31 @@ module extremes
    end type gap_t
 
    !> The coordinate `column` of the asked row number `asked` at the time `t`.
-   type :: place_t
+   type :: value_at_t
       integer :: asked = 0, column = 0
       real(wp) :: t = 0.0_wp, value = 0.0_wp
-   end type place_t
+   end type value_at_t
 
    !> Places (1:n and room).
    type :: place_list_t
-      type(place_t), allocatable :: list(:)
+      type(value_at_t), allocatable :: list(:)
       integer :: n = 0
    end type place_list_t
 
    !> How a coordinate has moved: the first sign of its velocity and the latest, 0 for none; where it was `slowest`
    !> since that, at this `speed`, and where it was before the first.
-   type :: progress_t
+   type :: reversals_t
       integer :: first_sign = 0, last_sign = 0
-      type(place_t) :: start, slowest
+      type(value_at_t) :: start, slowest
       real(wp) :: speed = huge(1.0_wp)
-   end type progress_t
+   end type reversals_t
 
    !> The strokes of a coordinate: it reverses at the places of one period; two of them are the ends of both strokes,
    !> which take the `times` from the least value to the greatest and back. None: the motion is not cyclic.
    type :: strokes_t
       type(extreme_t) :: length                        !< greatest minus least value, if both exist and differ
       integer :: in_run = 0                            !< reversals in the whole run
-      type(place_t), allocatable :: reversals(:)
+      type(value_at_t), allocatable :: reversals(:)
       real(wp) :: times(2) = 0.0_wp
       real(wp) :: ratio = 0.0_wp, error = 0.0_wp       !< the longer time over the shorter, and what is unknown of it
    end type strokes_t
@@ -102,7 +102,7 @@ module extremes
       real(wp), allocatable :: dwell(:, :)             !< (3, asked) its dwells within this distance; 0: not asked for
       real(wp), allocatable :: size_of(:, :, :)        !< (3, 0:2, asked) characteristic value of each number
       type(extreme_t), allocatable :: found(:, :, :, :) !< (least:greatest, 3, 0:2, asked)
-      type(progress_t), allocatable :: course(:, :)      !< (3, asked)
+      type(reversals_t), allocatable :: course(:, :)      !< (3, asked)
       type(place_list_t) :: reversals                      !< of all coordinates
       type(track_t), allocatable :: tracks(:)          !< (independent mechanisms)
       type(gap_t), allocatable :: gaps(:)              !< (any number) in which not all is known, in the run's order
@@ -224,13 +224,13 @@ contains
                value=sample%f(k), t_error=sample%t_error, error=sample%error(k))
          end associate
       end do
-      if (k == 0 .and. x%dwell(c, q) > 0.0_wp) call add_place(x%places, place_t(q, c, sample%t, sample%f(0)))
+      if (k == 0 .and. x%dwell(c, q) > 0.0_wp) call add_place(x%places, value_at_t(q, c, sample%t, sample%f(0)))
    end subroutine offer
 
    !> Adds `place` to `p`.
    pure subroutine add_place(p, place)
       type(place_list_t), intent(inout) :: p
-      type(place_t), intent(in) :: place
+      type(value_at_t), intent(in) :: place
 
       if (p%n == size(p%list)) p%list = [p%list, p%list]
       p%n = p%n + 1
@@ -280,7 +280,7 @@ contains
 
       speed = abs(sample%f(1))
       if (speed <= noise_part*x%size_of(c, 1, q)) speed = 0.0_wp
-      associate (course => x%course(c, q), place => place_t(q, c, sample%t, sample%f(0)))
+      associate (course => x%course(c, q), place => value_at_t(q, c, sample%t, sample%f(0)))
          if (speed < course%speed) then
             course%slowest = place
             course%speed = speed
@@ -363,7 +363,7 @@ contains
    pure type(strokes_t) function strokes_of(x, q, c) result(strokes)
       type(extremes_t), intent(in) :: x
       integer, intent(in) :: q, c
-      type(place_t), allocatable :: all_of(:)
+      type(value_at_t), allocatable :: all_of(:)
       real(wp), allocatable :: change(:)
       real(wp) :: period, phase
       integer :: n, in_period
