@@ -45,8 +45,9 @@ module block_branches
    integer, parameter :: max_parts = 64
    !> The pivots at the ends of a substep tell where between them the change point is, but for this part.
    real(wp), parameter :: not_told = 1.0e-3_wp
-   !> The position found from the equations, and that extrapolated, are the same where they differ by less.
-   real(wp), parameter :: same_place = 64.0_wp*sqrt(epsilon(1.0_wp))
+   !> The position found from the equations, and that extrapolated, are the same where they differ by less, and by less
+   !> than this part of the way there: from a place very near to a dead point all is as near as at a change point.
+   real(wp), parameter :: same_place = 64.0_wp*sqrt(epsilon(1.0_wp)), same_part = 0.05_wp
 
 contains
 
@@ -285,7 +286,7 @@ contains
             e%is_singular(i) = c%singular
             if (.not. c%singular) cycle
             singular(i) = .true.
-            smooth = maxval(abs(values_of(e%blocks, i, e%state) - x)) <= same_place
+            smooth = maxval(abs(values_of(e%blocks, i, e%state) - x)) <= min(same_place, same_part*change)
             ! Off the direction that the equations leave undetermined they are exact.
             call set_values(e%blocks, i, x, e%state)
             call gauss_newton_step(e%blocks, i, e%state, far)

@@ -257,8 +257,9 @@ contains
 
       had_missed = a%has_missed
       if (a%convergence%singular .and. .not. step%stands) then
-         call stand_on(a%following_t, found%t, step, list, step%stands)
-         if (.not. step%stands) call go_by_value(a%following_t, found%t, step, list)
+         call go_by_value(a%following_t, found%t, step, list)
+         if (a%convergence%singular .and. .not. allocated(list)) &
+            call stand_on(a%following_t, found%t, step, list, step%stands)
       end if
       call get_motion(a, found)
       if (allocated(step%passed)) call add_diagnostics(step%passed, found)

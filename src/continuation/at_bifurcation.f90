@@ -72,8 +72,8 @@ contains
    !> The `step` of the continuation to `t` has failed, or has ended at a position without velocities, since the one
    !> drive that moves stops or turns about there: followed by time, the motion comes ever closer to a singular position
    !> and never across. So it is followed by the drive's value instead, from turn to turn: the position is a function of
-   !> that. Then `step`%arrived; where `t` itself is at a change point, `step`%stands, and `list` says so as that of
-   !> `stand_on`.
+   !> that. Then `step`%arrived; where `t` itself is at a singular position, `list` says of it what that of `stand_on`
+   !> does, and of a change point `step`%stands. Otherwise `list` is not allocated.
    subroutine go_by_value(f, t, step, list)
       type(following_t), intent(inout) :: f
       real(wp), intent(in) :: t
@@ -85,7 +85,6 @@ contains
       integer :: drive
       logical :: arrived, stands
 
-      allocate (list(0))
       if (.not. f%follows) return
       drive = stopping_drive(f, merge(f%place%t, f%t, step%tries > 1), merge(t, f%t, step%arrived), t)
       if (drive == 0) return
@@ -106,7 +105,7 @@ contains
       if (.not. arrived) call return_to(f, reached)
       f%place = before
       if (.not. arrived) return
-      if (size(passed) > 0) step%passed = passed
+      step%passed = passed
       if (.not. stands) return
       step%stands = size(list) > 0
       f%t = before%t
@@ -121,7 +120,7 @@ contains
       integer, intent(in) :: drive
       real(wp), intent(in) :: t
       type(diagnostic_t), allocatable, intent(out) :: passed(:)
-      type(diagnostic_t), allocatable, intent(inout) :: list(:)
+      type(diagnostic_t), allocatable, intent(out) :: list(:)
       logical, intent(out) :: arrived, stands
       type(step_record_t) :: one
       type(place_t) :: first
@@ -206,7 +205,8 @@ contains
       real(wp) :: f(3), low, middle, way
       integer :: i
 
-      way = 0.0_wp
+      f = drive_motion(law, from)
+      way = f(2)
       turn = from
       do i = 1, value_steps
          low = turn
@@ -240,6 +240,8 @@ contains
       f%t = t
       call solve_instant(f%engine, t, .true., f%convergence)
       passed = f%convergence%keeps_signs .and. is_solved(f%convergence) .and. .not. f%convergence%singular
+      ! The rates remembered are those of another law.
+      f%engine%history%filled = 0
       if (passed) call go_on_from(f, t)
    end subroutine take_up
 
