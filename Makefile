@@ -222,6 +222,7 @@ study-1987: $(BUILD)/timed/matrix_1987
 # Accuracy where it is hard to have, in units of what the condition allows; hard-short in fewer instants.
 hard: $(BUILD)/release/hard
 	BUILD=$(BUILD) tests/oracle/hard.sh full
+	BUILD=$(BUILD) tests/system/answers.sh long
 
 hard-short: $(BUILD)/release/hard
 	BUILD=$(BUILD) tests/oracle/hard.sh short
@@ -284,7 +285,7 @@ sizes:
 
 TEST_LIB     := $(BUILD)/debug/libkinmat.a
 TEST_MODULES := $(BUILD)/debug
-# Without the tables of a debugger: the tests compile in six sevenths of the time, and a failure has its line all the same.
+# Without the tables of a debugger: a failure has its line all the same.
 TEST_FLAGS   := $(COMMON) $(filter-out -g,$(DEBUG))
 TEST_LIBS    := $(LIBS)
 TEST_HELPERS := $(unit_helpers:%=$(BUILD)/debug/%.o)

@@ -38,7 +38,7 @@ parts() {
    poles and curves|38|tests/system/centres.sh
    all assemblies|100|tests/system/assemblies.sh
    the digits|1|tests/system/digits.sh
-   decks made by chance|350|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 350
+   decks made by chance|250|FUZZ_BUILD=debug tests/fuzz/fuzz.sh 250
    relations between runs|220|tests/system/relations.sh --short
    assemblies and runs|450|tests/system/assembly_relations.sh
    mechanisms of a known motion|68|tests/fuzz/fuzz_mechanisms.sh 60
