@@ -10,6 +10,7 @@ module study
    use structure, only: findings_t, check_structure
    use deck, only: read_deck
    use points, only: row_t, has_number, is_due
+   use scales, only: characteristic_length, characteristic_rate
    use known_digits, only: nothing_known
    use set_motion, only: is_flagged, find_row_in_set, error_in_set
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set, sample_set, iterations_of
@@ -210,7 +211,10 @@ contains
       real(dp) :: begun, largest(2, 0:2), difference(2, 0:2)
       integer :: k, at_first, row
 
-      largest = 0.0_dp
+      ! Of what is zero but for rounding, as the acceleration of a link that turns evenly, the unit is characteristic.
+      associate (length => characteristic_length(m))
+         largest = reshape([(real([length, 1.0_wp]*characteristic_rate(m, length)**k, dp), k=0, 2)], [2, 3])
+      end associate
       difference = 0.0_dp
       row = 0
       t%seconds = 0.0_dp
@@ -226,8 +230,7 @@ contains
       end do
       t%iterations = real(iterations_of(a) - at_first, dp)/max(1, min(k, last))
       do k = 0, 2
-         where (largest(:, k) > 0.0_dp) difference(:, k) = difference(:, k)/largest(:, k)
-         t%error(k) = maxval(difference(:, k))
+         t%error(k) = maxval(difference(:, k)/largest(:, k))
       end do
 
    contains
@@ -250,16 +253,16 @@ contains
                do c = 1, 3
                   if (.not. has_number(r, c, d)) cycle
                   kind = merge(2, 1, c == 3 .or. r%angular)
-                  value = real(r%value(c, d), qp)
                   if (.not. truth%is_reference) then
                      difference(kind, d) = max(difference(kind, d), real(estimate(c, d), dp))
                   else if (truth%value(c, d, row) < no_number) then
-                     if (m%degrees .and. kind == 2) value = value*radian
-                     difference(kind, d) = max(difference(kind, d), real(abs(value - truth%value(c, d, row)), dp))
+                     value = truth%value(c, d, row)
+                     if (m%degrees .and. kind == 2) value = value/radian
+                     difference(kind, d) = max(difference(kind, d), real(abs(real(r%value(c, d), qp) - value), dp))
                   else
                      cycle
                   end if
-                  largest(kind, d) = max(largest(kind, d), real(abs(value), dp))
+                  largest(kind, d) = max(largest(kind, d), real(abs(r%value(c, d)), dp))
                end do
             end do
          end do
