@@ -337,7 +337,7 @@ contains
          //'   ACCELER.')
    end subroutine put_head
 
-   !> Prints the row of trial `t`. `unit`: microseconds of the default.
+   !> Prints the row of trial `t`. `unit`: microseconds of the default, 0 if that does not find every position.
    subroutine put_trial(o, t, unit)
       type(output_t), intent(inout) :: o
       type(trial_t), intent(in) :: t
@@ -353,8 +353,9 @@ contains
       if (t%missed > 0) then
          line(32:) = 'NOT SOLVED AT '//whole(t%missed)//' INSTANTS OR MORE'
       else
-         write (line(30:), '(3f10.3, f8.2, f7.2)') median(t%time), minval(t%time), maxval(t%time), &
-            median(t%time)/unit, t%iterations
+         write (line(30:), '(3f10.3)') median(t%time), minval(t%time), maxval(t%time)
+         if (unit > 0.0_dp) write (line(60:), '(f8.2)') median(t%time)/unit
+         write (line(68:), '(f7.2)') t%iterations
       end if
       do d = 0, 2
          if (t%missed > 0) cycle
