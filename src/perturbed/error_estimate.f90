@@ -24,6 +24,7 @@ module error_estimate
    type :: error_estimate_t
       logical :: taken = .false.             !< `changes` tell something
       logical :: asked = .false.             !< --errors: wanted at every instant
+      logical :: without_own = .false.       !< `own` is not wanted
       real(wp) :: growth = 0.0_wp            !< of roundings at this instant; huge where numbers are large
       type(sizes_t) :: sizes                 !< what numbers are compared with, where `taken`
       logical :: in_doubt = .false.          !< it is so much that digits may be lost
@@ -56,8 +57,8 @@ contains
 
    !> How far the motion `q` of `m` is known, which the `engine` has found, by a matrix of the reciprocal condition
    !> `rcond`. `always`: also where no digit of a table is in doubt; then with what `row_error` needs, unless
-   !> `without_own` says that `estimate_of` is enough.
-   subroutine estimate_errors(s, m, engine, rcond, q, always, found, without_own)
+   !> found%without_own says that `estimate_of` is enough.
+   subroutine estimate_errors(s, m, engine, rcond, q, always, found)
       type(estimator_t), intent(inout) :: s
       type(mechanism_t), intent(in) :: m
       type(block_engine_t), intent(in) :: engine
@@ -65,7 +66,6 @@ contains
       type(motion_t), intent(in) :: q
       logical, intent(in) :: always
       type(error_estimate_t), intent(inout) :: found
-      logical, intent(in), optional :: without_own
       logical :: is_small
 
       found%taken = .false.
@@ -91,7 +91,7 @@ contains
       s%perturbed%stays = .false.
       call find_changes(s, many, q%t, found, s%perturbed%is_singular, is_small)
       if (.not. is_small) call find_changes(s, few, q%t, found, .true., is_small)
-      if (always .and. .not. present(without_own)) call find_own(s, q%t, found)
+      if (always .and. .not. found%without_own) call find_own(s, q%t, found)
    end subroutine estimate_errors
 
    !> The changes of the rows at the time `t` by a rounding, from those by so many `roundings`. `is_small`: they are so

@@ -153,8 +153,8 @@ contains
             call find_row(own, q, request_of(s%now, list(i)), rows(i))
          end do
          if (.not. present(error)) return
-         call estimate_errors(s%estimators(c), own, a%engine, a%convergence%reciprocal_condition, q, always, estimate, &
-            without_own=.true.)
+         estimate%without_own = .true.
+         call estimate_errors(s%estimators(c), own, a%engine, a%convergence%reciprocal_condition, q, always, estimate)
          if (present(growth)) growth = merge(safe_growth, estimate%growth, estimate%in_doubt)
          if (.not. estimate%taken) return
          do i = 1, size(list)

@@ -291,7 +291,7 @@ contains
       integer :: i, k, count
 
       call make_set_analysis(m, a)
-      allocate (truth%value(3, 0:2, max_rows))
+      if (reference%is_there) allocate (truth%value(3, 0:2, max_rows))
       count = 0
       do k = 0, merge(last, -1, reference%is_there)
          if (count + size(a%now%rows) > max_rows) exit
