@@ -25,7 +25,7 @@ module block_engine
    public :: block_engine_t, engine_state_t, followed_t, positions_t
    public :: make_block_engine, renew_block_engine, put_mechanism, solve_blocks, solve_again, solve_each, &
       begin_record, set_drive_values, stay, accept, get_motion, mark_singular_links, get_driven_links, followed_state, &
-      follows_values, slide_units
+      follows_values, slide_unit
 
    !> Positions of one block (unknowns, any number).
    type :: positions_t
@@ -466,12 +466,12 @@ contains
          = max(own, largest_known(e%blocks, i, missing))
    end subroutine note_block
 
-   !> (0:unknowns) The unit of each slide in the deck's; 1 of an angle.
-   pure function slide_units(e) result(unit)
+   !> The unit of unknown number `k` in the deck's, if it is a slide; 1 of an angle.
+   pure real(wp) function slide_unit(e, k) result(unit)
       type(block_engine_t), intent(in) :: e
-      real(wp) :: unit(0:e%blocks%unknowns)
+      integer, intent(in) :: k
 
-      unit = e%blocks%numbers%unit
-      unit(e%blocks%orientations + 1:) = unit(e%blocks%orientations + 1:)*e%length
-   end function slide_units
+      unit = e%blocks%numbers%unit(k)
+      if (k > e%blocks%orientations) unit = unit*e%length
+   end function slide_unit
 end module block_engine

@@ -3,38 +3,49 @@
 module changed_rows
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use motion, only: motion_t, new_motion
+   use motion, only: motion_t, new_motion, forget_links
    use points, only: row_t, find_row
    use blocks, only: largest_known
    use block_state, only: unknown_t
    use block_solver, only: solve_block
    use block_matrix, only: solve_first, solve_again
    use block_equations, only: assemble_block, right_hand_side
+   use block_structure, only: structure_t
    use block_engine, only: block_engine_t, make_block_engine, put_mechanism, set_drive_values, get_motion, &
-      slide_units
+      slide_unit
    use convergence, only: convergence_t, is_solved, ended_inconsistent
-   use rounded_numbers, only: put_loops_off
+   use rounded_numbers, only: directions
    use link_motion, only: mark_links, missing_nothing, missing_rates, missing_all
    implicit none
    private
-   public :: perturbed_t, begin_from, rows_with
+   public :: perturbed_t, at_hand_t, find_place, make_ready, put_changes, rows_with
 
-   !> One spare set of numbers and one spare state, which serve for all changes of a mechanism.
+   !> A spare set of numbers and a spare state, which serve for any change of a mechanism.
    type :: perturbed_t
       type(mechanism_t) :: m                     !< with changed numbers; its links are where the cards put them
       type(block_engine_t) :: engine
-      logical :: is_ready = .false.
-      type(unknown_t), allocatable :: start(:)   !< (0:unknowns) the position at hand, slides in the deck's unit
+      type(motion_t) :: q                        !< found last
+      logical :: is_ready = .false.              !< made for this mechanism
+      logical :: fits = .true.                   !< the blocks of the engine serve for its numbers
+      integer :: direction = -1                  !< its numbers are off by `roundings` in this one; -1: they are others
+      real(wp) :: roundings = 0.0_wp, time_off = 0.0_wp   !< the instant is off by this part of it
+   end type perturbed_t
+
+   !> The position at hand, and what the rows show that were found last from it.
+   type :: at_hand_t
+      type(unknown_t), allocatable :: start(:)   !< (0:unknowns) slides in the deck's unit
       logical :: only_driven = .false.           !< nothing is known of it but what drives alone move
       logical :: is_singular = .false.           !< it has no unique rates
       logical :: stays = .false.                 !< a search begins there, not a nudge away
-      integer :: direction = 0                   !< vectors of its loops are off by a rounding in it; 0: they are not
-      !> Of the rows found last: the largest Kantorovich ratio of a block, the change of its position over the distance
-      !> of the next one; the largest change (rad, unit of the block) of an unknown; whether equations contradict.
+      !> Of the rows: the largest Kantorovich ratio of a block, the change of its position over the distance of the
+      !> next one; the largest change (rad, unit of the block) of an unknown; whether equations contradict.
       real(wp) :: ratio = 0.0_wp, change = 0.0_wp
       logical :: jams = .false.
-   end type perturbed_t
+   end type at_hand_t
 
+   !> Of a mechanism with so many links at most the changed ones are kept from instant to instant, each with its
+   !> numbers; a larger one has one spare set of numbers, and needs less memory.
+   integer, parameter :: most_links = 1000
    !> A search begins this far (rad, unit of the block) from the position at hand: there it would end at once, and show
    !> nothing of the residual that is left. On a dead point it begins where roundings may have moved it.
    real(wp), parameter :: nudge = sqrt(epsilon(1.0_wp))/1024.0_wp, singular_nudge = 16.0_wp*sqrt(epsilon(1.0_wp))
@@ -46,104 +57,135 @@ module changed_rows
 
 contains
 
-   !> From now on rows are solved from the motion `q` of `m`, which the engine `e` has found.
-   subroutine begin_from(p, m, e, q)
-      type(perturbed_t), intent(inout) :: p
-      type(mechanism_t), intent(in) :: m
+   !> Finds the place of the motion `q`, which the engine `e` has found: from now on rows are solved from it.
+   subroutine find_place(e, q, place)
       type(block_engine_t), intent(in) :: e
       type(motion_t), intent(in) :: q
+      type(at_hand_t), intent(inout) :: place
+      integer :: k
 
-      if (.not. p%is_ready) then
-         p%m = m
-         call make_block_engine(p%engine, m)
-         allocate (p%start(0:p%engine%blocks%unknowns))
+      place%only_driven = q%known < 0
+      place%is_singular = q%known == 0
+      if (.not. allocated(place%start)) allocate (place%start(0:e%blocks%unknowns))
+      place%start(:) = e%state%u
+      do k = 1, ubound(place%start, 1)
+         place%start(k)%value = place%start(k)%value*slide_unit(e, k)
+      end do
+   end subroutine find_place
+
+   !> Makes number `i` of `list` ready for direction `k` of changes of `m`, whose engine is `e`, if it is not yet; its
+   !> numbers are still others.
+   subroutine make_ready(list, k, m, e, i)
+      type(perturbed_t), allocatable, intent(inout) :: list(:)
+      integer, intent(in) :: k
+      type(mechanism_t), intent(in) :: m
+      type(block_engine_t), intent(in) :: e
+      integer, intent(out) :: i
+      type(structure_t) :: structure
+
+      if (.not. allocated(list)) allocate (list(0:merge(2*directions, 0, size(m%links) <= most_links)))
+      i = merge(k, 0, k <= ubound(list, 1))
+      associate (p => list(i))
+         if (p%is_ready) return
          p%is_ready = .true.
-      end if
-      p%only_driven = q%known < 0
-      p%is_singular = q%known == 0
-      p%start(:) = e%state%u
-      p%start%value = p%start%value*slide_units(e)
-   end subroutine begin_from
+         p%direction = -1
+         p%m = m
+         if (allocated(p%engine%blocks)) return
+         structure%blocks = e%blocks
+         call make_block_engine(p%engine, m, structure)
+         p%q = new_motion(size(m%links))
+         p%q%known = 2
+      end associate
+   end subroutine make_ready
 
-   !> The `rows` (requests) of p%m at the time `t`. `by_roundings`: its numbers are off by roundings alone, and what
-   !> cancels in the equations of `m` is zero: redundant equations stay so, and so do guides that are parallel.
-   subroutine rows_with(p, t, by_roundings, rows)
+   !> Gives the engine of `p` the numbers of p%m. `by_roundings`: they are off by roundings alone, and what cancels in
+   !> the equations is left out: redundant equations stay so, and so do guides that are parallel.
+   subroutine put_changes(p, by_roundings)
+      type(perturbed_t), intent(inout) :: p
+      logical, intent(in) :: by_roundings
+
+      call put_mechanism(p%engine, p%m, p%fits)
+      p%fits = p%fits .or. by_roundings
+   end subroutine put_changes
+
+   !> The `rows` (requests) of `p` at the time `t`, solved from `place`.
+   subroutine rows_with(p, t, place, rows)
       type(perturbed_t), intent(inout) :: p
       real(wp), intent(in) :: t
-      logical, intent(in) :: by_roundings
+      type(at_hand_t), intent(inout) :: place
       type(row_t), intent(inout) :: rows(:)
       type(block_engine_t), allocatable :: other
-      type(motion_t) :: q
-      logical :: fits
       integer :: i
 
-      q = new_motion(size(p%m%links))
-      q%t = t
-      q%known = 2
-      call put_mechanism(p%engine, p%m, fits)
-      if (fits .or. by_roundings) then
-         call solve_needed(p, p%engine, q)
+      p%q%t = t
+      if (p%fits) then
+         call solve_needed(p%engine, place, p%q)
       else
          allocate (other)
          call make_block_engine(other, p%m)
-         call solve_needed(p, other, q)
+         call solve_needed(other, place, p%q)
          if (.not. other%blocks%solvable .or. other%blocks%redundant /= p%engine%blocks%redundant) then
-            p%jams = .true.
-            q%link_known = spread(-1, 1, size(p%m%links))
+            place%jams = .true.
+            p%q%link_known = spread(-1, 1, size(p%m%links))
          end if
       end if
       do i = 1, size(rows)
-         call find_row(p%m, q, p%m%requests(i), rows(i))
+         call find_row(p%m, p%q, p%m%requests(i), rows(i))
       end do
    end subroutine rows_with
 
    !> Solves the blocks of `e` in turn, to the limit of rounding, for the motion `q` at its time. What is known of it
    !> may differ from link to link.
-   subroutine solve_needed(p, e, q)
-      type(perturbed_t), intent(inout) :: p
+   subroutine solve_needed(e, place, q)
       type(block_engine_t), intent(inout) :: e
+      type(at_hand_t), intent(inout) :: place
       type(motion_t), intent(inout) :: q
       type(convergence_t) :: c
-      integer :: missing(0:ubound(p%start, 1)), k, lack
+      integer :: missing(0:ubound(place%start, 1)), k, lack, worst
       logical :: finite
 
-      p%ratio = 0.0_wp
-      p%change = 0.0_wp
-      p%jams = .false.
+      place%ratio = 0.0_wp
+      place%change = 0.0_wp
+      place%jams = .false.
       if (.not. e%blocks%solvable) return
-      e%state%u(:) = p%start
-      e%state%u%value = p%start%value/slide_units(e)
-      do k = 1, merge(0, ubound(e%state%u, 1), p%stays)
-         ! On a dead point the Jacobian has an inverse only where links that are in line turn apart.
-         e%state%u(k)%value = e%state%u(k)%value + merge(singular_nudge*(-1)**k, nudge, p%is_singular)
+      e%state%u(:) = place%start
+      do k = 1, ubound(e%state%u, 1)
+         associate (x => e%state%u(k)%value)
+            x = x/slide_unit(e, k)
+            ! On a dead point the Jacobian has an inverse only where links that are in line turn apart.
+            if (.not. place%stays) x = x + merge(singular_nudge*(-1)**k, nudge, place%is_singular)
+         end associate
       end do
-      if (p%direction > 0) call put_loops_off(p%direction, e%blocks%numbers)
       call set_drive_values(e, q%t)
       missing = missing_nothing
+      worst = missing_nothing
       do k = 1, size(e%needed)
          associate (i => e%needed(k), block => e%blocks%list(e%needed(k)))
-            lack = largest_known(e%blocks, i, missing)
-            if (p%only_driven .and. .not. block%direct) lack = missing_all
+            lack = missing_nothing
+            if (worst > missing_nothing) lack = largest_known(e%blocks, i, missing)
+            if (place%only_driven .and. .not. block%direct) lack = missing_all
             if (lack < missing_all) then
                c = convergence_t()
                call solve_block(e%blocks, i, 0.0_wp, e%work, e%state, c)
-               p%ratio = max(p%ratio, c%kantorovich_ratio)
-               p%change = max(p%change, c%change)
-               p%jams = p%jams .or. c%ended == ended_inconsistent .or. c%rates_open
+               place%ratio = max(place%ratio, c%kantorovich_ratio)
+               place%change = max(place%change, c%change)
+               place%jams = place%jams .or. c%ended == ended_inconsistent .or. c%rates_open
                if (c%singular) lack = missing_rates
                if (.not. is_solved(c) .or. c%rates_open) lack = missing_all
                if (block%shape%rows > block%shape%n .and. lack < missing_rates) call refine_rates(e, i)
-               if (p%is_singular) then
+               if (place%is_singular) then
                   if (c%change > singular_change) lack = missing_all
                else if (c%kantorovich_ratio > largest_ratio .and. .not. c%singular) then
                   lack = missing_all
                end if
             end if
-            missing(e%blocks%unknown(block%first:block%last)) = lack
+            worst = max(worst, lack)
+            if (lack > missing_nothing) missing(e%blocks%unknown(block%first:block%last)) = lack
          end associate
       end do
       call get_motion(e, q, finite)
-      call mark_links(e%chain, missing, q)
+      call forget_links(q)
+      if (worst > missing_nothing) call mark_links(e%chain, missing, q)
    end subroutine solve_needed
 
    !> The rates of block `i` of `e` again, by iterative refinement. Orthogonal factors, of equations that are too many,

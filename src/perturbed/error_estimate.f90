@@ -9,8 +9,8 @@ module error_estimate
    use known_digits, only: nothing_known
    use digits_in_doubt, only: sizes_t, sizes_of, find_growth
    use block_engine, only: block_engine_t
-   use changed_rows, only: perturbed_t, begin_from, rows_with
-   use rounded_numbers, only: directions, caution, rounded_t, roundings_of, put_off, off_instant
+   use changed_rows, only: perturbed_t, at_hand_t, find_place, make_ready, put_changes, rows_with
+   use rounded_numbers, only: directions, caution, rounded_t, roundings_of, put_off, put_loops_off, part_off
    implicit none
    private
    public :: error_estimate_t, estimator_t, make_estimator, estimate_errors, estimate_of, row_error, largest_errors
@@ -18,7 +18,6 @@ module error_estimate
    !> Numbers are off by so many roundings, beside which those of the calculation are small; 1E-12 from a dead point, or
    !> where their changes have a larger Kantorovich ratio, by few: changes are of first order but for about that part.
    real(wp), parameter :: many = 256.0_wp, few = 16.0_wp, small_ratio = 0.05_wp
-
    !> How far the motion at one instant is known. It is `taken` where digits of the tables could be `in_doubt`, which
    !> are masked then, or where the errors are `asked` for, if anything moves.
    type :: error_estimate_t
@@ -41,18 +40,24 @@ module error_estimate
    !> What the estimates of a mechanism need.
    type :: estimator_t
       type(sizes_t) :: sizes
-      type(perturbed_t) :: perturbed
-      type(rounded_t), allocatable :: numbers(:)   !< once an estimate has been asked for
+      type(at_hand_t) :: place
+      ! Once an estimate has been asked for:
+      type(rounded_t), allocatable :: numbers(:)
+      !> (0:2*directions, or 0:0) As they stand; off in each direction by their roundings; by those of the calculation.
+      type(perturbed_t), allocatable :: perturbed(:)
    end type estimator_t
 
 contains
 
-   !> For the errors of `m`; the rest is made when it is first asked for.
+   !> For the errors of `m`, a variant of the mechanism before if there was one; the rest is made when it is first asked
+   !> for.
    subroutine make_estimator(s, m)
-      type(estimator_t), intent(out) :: s
+      type(estimator_t), intent(inout) :: s
       type(mechanism_t), intent(in) :: m
 
       s%sizes = sizes_of(m)
+      if (allocated(s%numbers)) deallocate (s%numbers)
+      if (allocated(s%perturbed)) s%perturbed%is_ready = .false.
    end subroutine make_estimator
 
    !> How far the motion `q` of `m` is known, which the `engine` has found, by a matrix of the reciprocal condition
@@ -78,26 +83,52 @@ contains
       if (.not. (always .or. found%in_doubt)) return
       if (q%known < 0 .and. .not. allocated(q%link_known)) return
 
-      call begin_from(s%perturbed, m, engine, q)
-      if (.not. allocated(s%numbers)) s%numbers = roundings_of(m)
       if (.not. allocated(found%changes)) allocate (found%changes(3, 0:2, size(m%requests)), &
          found%solved(size(m%requests)))
       found%sizes = s%sizes
       found%of_sums = errors_of_sums(m, q, s%sizes%length)
       found%taken = .true.
-      call put_off(s%numbers, 0, many, s%perturbed%m)
-      s%perturbed%stays = s%perturbed%is_singular
-      call rows_with(s%perturbed, q%t, .true., found%solved)
-      s%perturbed%stays = .false.
-      call find_changes(s, many, q%t, found, s%perturbed%is_singular, is_small)
-      if (.not. is_small) call find_changes(s, few, q%t, found, .true., is_small)
-      if (always .and. .not. found%without_own) call find_own(s, q%t, found)
+      call find_place(engine, q, s%place)
+      s%place%stays = s%place%is_singular
+      call find_changed(s, m, engine, 0, many, q%t, found%solved)
+      s%place%stays = .false.
+      call find_changes(s, m, engine, many, q%t, found, s%place%is_singular, is_small)
+      if (.not. is_small) call find_changes(s, m, engine, few, q%t, found, .true., is_small)
+      if (always .and. .not. found%without_own) call find_own(s, m, engine, q%t, found)
    end subroutine estimate_errors
+
+   !> The `rows` of `m`, which the `engine` has solved, near the time `t` with all numbers off by so many `roundings` in
+   !> direction `k`; 0: with none off; beyond the directions: with those of the calculation off.
+   subroutine find_changed(s, m, engine, k, roundings, t, rows)
+      type(estimator_t), intent(inout) :: s
+      type(mechanism_t), intent(in) :: m
+      type(block_engine_t), intent(in) :: engine
+      integer, intent(in) :: k
+      real(wp), intent(in) :: roundings, t
+      type(row_t), intent(inout) :: rows(:)
+      integer :: i
+
+      call make_ready(s%perturbed, k, m, engine, i)
+      if (.not. allocated(s%numbers)) s%numbers = roundings_of(m)
+      associate (p => s%perturbed(i))
+         if (p%direction /= k .or. abs(p%roundings - roundings) > 0.0_wp) then
+            call put_off(s%numbers, merge(k, 0, k <= directions), roundings, p%m)
+            call put_changes(p, by_roundings=.true.)
+            if (k > directions) call put_loops_off(k - directions, p%engine%blocks%numbers)
+            p%time_off = merge(roundings*part_off(k), 0.0_wp, k >= 1 .and. k <= directions)
+            p%direction = k
+            p%roundings = roundings
+         end if
+         call rows_with(p, t + p%time_off*t, s%place, rows)
+      end associate
+   end subroutine find_changed
 
    !> The changes of the rows at the time `t` by a rounding, from those by so many `roundings`. `is_small`: they are so
    !> small that they are of first order, if not all of them are asked for `anyway`.
-   subroutine find_changes(s, roundings, t, found, anyway, is_small)
+   subroutine find_changes(s, m, engine, roundings, t, found, anyway, is_small)
       type(estimator_t), intent(inout) :: s
+      type(mechanism_t), intent(in) :: m
+      type(block_engine_t), intent(in) :: engine
       real(wp), intent(in) :: roundings, t
       type(error_estimate_t), intent(inout) :: found
       logical, intent(in) :: anyway
@@ -107,17 +138,15 @@ contains
       integer :: k, i
 
       ! Where the Jacobian has no inverse a position changes with the root of what the deck changes by.
-      part = 1.0_wp/merge(sqrt(roundings), roundings, s%perturbed%is_singular)
+      part = 1.0_wp/merge(sqrt(roundings), roundings, s%place%is_singular)
       found%changes = 0.0_wp
       do k = 1, directions
-         call put_off(s%numbers, k, roundings, s%perturbed%m)
-         call rows_with(s%perturbed, off_instant(t, k, roundings), .true., rows)
-         is_small = anyway .or. s%perturbed%ratio <= small_ratio
+         call find_changed(s, m, engine, k, roundings, t, rows)
+         is_small = anyway .or. s%place%ratio <= small_ratio
          if (.not. is_small) return
-         if (s%perturbed%is_singular .and. any(rows%known < 0)) then
+         if (s%place%is_singular .and. any(rows%known < 0)) then
             ! On a dead point one of two opposite changes has a position.
-            call put_off(s%numbers, k, -roundings, s%perturbed%m)
-            call rows_with(s%perturbed, off_instant(t, k, -roundings), .true., other)
+            call find_changed(s, m, engine, k, -roundings, t, other)
             where (rows%known < 0) rows = other
          end if
          do i = 1, size(rows)
@@ -136,8 +165,10 @@ contains
 
    !> The changes of the rows at the time `t` by a rounding of each vector in each loop: those of the calculation, which
    !> count by themselves where no number of the deck does, as in the rates of links that turn as one.
-   subroutine find_own(s, t, found)
+   subroutine find_own(s, m, engine, t, found)
       type(estimator_t), intent(inout) :: s
+      type(mechanism_t), intent(in) :: m
+      type(block_engine_t), intent(in) :: engine
       real(wp), intent(in) :: t
       type(error_estimate_t), intent(inout) :: found
       type(row_t) :: rows(size(found%solved))
@@ -145,17 +176,14 @@ contains
 
       if (.not. allocated(found%own)) allocate (found%own, mold=found%changes)
       found%own = 0.0_wp
-      if (s%perturbed%is_singular) return
-      call put_off(s%numbers, 0, 1.0_wp, s%perturbed%m)
-      do k = 1, directions
-         s%perturbed%direction = k
-         call rows_with(s%perturbed, t, .true., rows)
+      if (s%place%is_singular) return
+      do k = directions + 1, 2*directions
+         call find_changed(s, m, engine, k, 1.0_wp, t, rows)
          do i = 1, size(rows)
             if (min(rows(i)%known, found%solved(i)%known) < 0) cycle
             found%own(:, :, i) = max(found%own(:, :, i), difference(rows(i), found%solved(i)))
          end do
       end do
-      s%perturbed%direction = 0
    end subroutine find_own
 
    !> What rounding of the deck's numbers leaves open (3, 0:2) of the `row` of request number `i` of `m`, in its units.

@@ -23,7 +23,7 @@ module rounded_numbers
    use blocks, only: numbers_t
    implicit none
    private
-   public :: directions, caution, rounded_t, roundings_of, put_off, put_loops_off, off_instant
+   public :: directions, caution, rounded_t, roundings_of, put_off, put_loops_off, part_off
 
    integer, parameter :: directions = 8
    real(wp), parameter :: caution = 2.35_wp
@@ -50,62 +50,56 @@ contains
       type(mechanism_t), intent(in) :: m
       type(rounded_t), allocatable :: list(:)
       real(wp) :: origin(2), size_of
-      integer :: n, i, j
+      integer :: n
 
-      allocate (list(3*size(m%links) + 2*size(m%points) + 3*size(m%pairs) &
-         + sum([(drive_numbers(i), i=1, size(m%drives))])))
-      n = 0
-      do i = 1, size(m%links)
-         if (.not. m%links(i)%ground) cycle
-         do j = 1, 3
-            call add(number_link, i, 0, j, abs(m%links(i)%position(j)))
-         end do
-      end do
-      origin = plane_origin(m)
-      do i = 1, size(m%points)
-         associate (link => m%links(m%points(i)%link))
-            ! Along and across: an arm is turned by an angle that is rounded. A place on the ground is counted from the
-            ! origin of the plane.
-            size_of = norm2(m%points(i)%offset)
-            if (link%ground) size_of = max(size_of, norm2(link%position(:2) - origin))
-         end associate
-         call add(number_point, i, 0, 1, size_of)
-         call add(number_point, i, 0, 2, size_of)
-      end do
-      do i = 1, size(m%pairs)
-         if (m%pairs(i)%kind /= pair_prismatic) cycle
-         call add(number_pair, i, 0, 2, abs(m%pairs(i)%offset))
-         call add(number_pair, i, 0, 3, abs(m%pairs(i)%beta))
-      end do
-      if (any(m%pairs%kind == pair_prismatic)) call add_guides()
-      do i = 1, size(m%drives)
-         do j = 1, 3
-            size_of = abs(m%drives(i)%polynomial(j))
-            ! An angle counted from another link is added to that link's, and rounded with it.
-            if (j == 1 .and. m%drives(i)%kind == drive_relangle) size_of = max(size_of, 1.0_wp)
-            call add(number_drive, i, 0, j, size_of)
-         end do
-         if (.not. allocated(m%drives(i)%terms)) cycle
-         do j = 1, size(m%drives(i)%terms)
-            call add_term(m%drives(i)%terms(j), i, j)
-         end do
-      end do
-      list = list(:n)
+      ! They are counted first: of a large mechanism many have no size.
+      call add_all()
+      allocate (list(n))
+      call add_all()
 
    contains
 
-      !> How many numbers the law of drive number `i` has.
-      pure integer function drive_numbers(i) result(count)
-         integer, intent(in) :: i
-         integer :: j
+      !> Adds all numbers to the list, or counts them where there is none yet.
+      subroutine add_all()
+         integer :: i, j
 
-         count = 3
-         if (.not. allocated(m%drives(i)%terms)) return
-         do j = 1, size(m%drives(i)%terms)
-            count = count + 3
-            if (allocated(m%drives(i)%terms(j)%values)) count = count + size(m%drives(i)%terms(j)%values)
+         n = 0
+         do i = 1, size(m%links)
+            if (.not. m%links(i)%ground) cycle
+            do j = 1, 3
+               call add(number_link, i, 0, j, abs(m%links(i)%position(j)))
+            end do
          end do
-      end function drive_numbers
+         origin = plane_origin(m)
+         do i = 1, size(m%points)
+            associate (link => m%links(m%points(i)%link))
+               ! Along and across: an arm is turned by an angle that is rounded. A place on the ground is counted from
+               ! the origin of the plane.
+               size_of = norm2(m%points(i)%offset)
+               if (link%ground) size_of = max(size_of, norm2(link%position(:2) - origin))
+            end associate
+            call add(number_point, i, 0, 1, size_of)
+            call add(number_point, i, 0, 2, size_of)
+         end do
+         do i = 1, size(m%pairs)
+            if (m%pairs(i)%kind /= pair_prismatic) cycle
+            call add(number_pair, i, 0, 2, abs(m%pairs(i)%offset))
+            call add(number_pair, i, 0, 3, abs(m%pairs(i)%beta))
+         end do
+         if (any(m%pairs%kind == pair_prismatic)) call add_guides()
+         do i = 1, size(m%drives)
+            do j = 1, 3
+               size_of = abs(m%drives(i)%polynomial(j))
+               ! An angle counted from another link is added to that link's, and rounded with it.
+               if (j == 1 .and. m%drives(i)%kind == drive_relangle) size_of = max(size_of, 1.0_wp)
+               call add(number_drive, i, 0, j, size_of)
+            end do
+            if (.not. allocated(m%drives(i)%terms)) cycle
+            do j = 1, size(m%drives(i)%terms)
+               call add_term(m%drives(i)%terms(j), i, j)
+            end do
+         end do
+      end subroutine add_all
 
       !> Adds a number that is rounded by its size.
       subroutine add(kind, subject, term, place, size_of)
@@ -114,6 +108,7 @@ contains
 
          if (.not. size_of > 0.0_wp) return
          n = n + 1
+         if (.not. allocated(list)) return
          list(n)%number = card_number_t(kind, subject, term, place)
          list(n)%value = number_value(m, list(n)%number)
          list(n)%by(1:) = size_of*deviates(list(n)%number)
@@ -152,6 +147,10 @@ contains
          real(wp) :: by(0:directions, size(m%links)), largest
          integer :: i, k
 
+         if (.not. allocated(list)) then
+            n = n + count(m%pairs%kind == pair_prismatic)
+            return
+         end if
          t = new_tree(m)
          axes = axes_of(m, t)
          off = m
@@ -225,13 +224,12 @@ contains
       end subroutine round
    end subroutine put_loops_off
 
-   !> The instant `t`, off in direction `k` by so many `roundings`.
-   pure real(wp) function off_instant(t, k, roundings)
-      real(wp), intent(in) :: t, roundings
+   !> By which part of it the instant is off in direction `k` by a rounding.
+   pure real(wp) function part_off(k)
       integer, intent(in) :: k
 
-      off_instant = t + roundings*epsilon(1.0_wp)*deviate(card_number_t(number_time, 0, 0, 0), k)*t
-   end function off_instant
+      part_off = epsilon(1.0_wp)*deviate(card_number_t(number_time, 0, 0, 0), k)
+   end function part_off
 
    !> The normal deviates (directions) of the number with this address.
    pure function deviates(number) result(z)

@@ -13,8 +13,8 @@ module sensitivities
    use block_engine, only: block_engine_t
    use digits_in_doubt, only: sizes_t, sizes_of
    use rounded_numbers, only: caution
-   use error_estimate, only: error_estimate_t
-   use changed_rows, only: perturbed_t, begin_from, rows_with
+   use error_estimate, only: error_estimate_t, estimator_t
+   use changed_rows, only: find_place, make_ready, put_changes, rows_with
    implicit none
    private
    public :: sensitivities_t, find_sensitivities, has_tolerances, ground_sensitivities, worst_case, root_of_squares
@@ -53,14 +53,13 @@ module sensitivities
 
 contains
 
-   !> The sensitivities of all requests of `m` at its motion `q`, which the engine `e` has found. `sizes`: those of `m`.
-   !> `estimate`: how far the motion is known.
-   subroutine find_sensitivities(p, m, e, q, sizes, estimate, found)
-      type(perturbed_t), intent(inout) :: p
+   !> The sensitivities of all requests of `m` at its motion `q`, which the engine `e` has found. `estimate`: how far
+   !> `s` has found the motion to be known.
+   subroutine find_sensitivities(s, m, e, q, estimate, found)
+      type(estimator_t), intent(inout) :: s
       type(mechanism_t), intent(in) :: m
       type(block_engine_t), intent(in) :: e
       type(motion_t), intent(in) :: q
-      type(sizes_t), intent(in) :: sizes
       type(error_estimate_t), intent(in) :: estimate
       type(sensitivities_t), intent(inout) :: found
       type(row_t), dimension(size(m%requests)) :: middle, up, down
@@ -76,22 +75,22 @@ contains
       found%of = 0.0_wp
       found%error = 0.0_wp
       found%jams = .false.
-      call begin_from(p, m, e, q)
-      p%m = m
-      call rows_with(p, q%t, .false., middle)
+      call find_place(e, q, s%place)
+      call make_ready(s%perturbed, 0, m, e, i)
+      call find_rows(middle)
       do i = 1, size(m%requests)
          row = row_of(m, q, m%requests(i))
          found%known(i) = merge(2, -1, min(row%known, middle(i)%known) == 2 .and. has_tolerances(m, m%requests(i)))
       end do
       do d = 1, size(m%tolerances)
          associate (one => m%tolerances(d))
-            side = side_of_joint(m, one, q%t, usual_step*natural_unit(one, sizes))
+            side = side_of_joint(m, one, q%t, usual_step*natural_unit(one, s%sizes))
             call find_step(one, side, step)
             down = middle
             do k = 1, halvings
                h = step*0.5_wp**(k - 1)
-               if (k > 1) call change(one, h, up)
-               if (side == 0) call change(one, -h, down)
+               if (k > 1) call find_rows(up, one, h)
+               if (side == 0) call find_rows(down, one, -h)
                call note_slopes(merge(2.0_wp, 1.0_wp, side == 0)*h, merge(of_both_sides(k), of_one_side(k), side == 0))
             end do
             do i = 1, size(m%requests)
@@ -103,9 +102,10 @@ contains
                      *caution*rounding*abs(one%unit/step)
                end associate
             end do
-            p%m = m
          end associate
       end do
+      ! Its numbers are those of no direction.
+      s%perturbed(0)%is_ready = .false.
 
    contains
 
@@ -123,17 +123,20 @@ contains
          end do
       end subroutine note_slopes
 
-      !> Rows with the number of tolerance `one` changed by `by`.
-      subroutine change(one, by, rows)
-         type(tolerance_t), intent(in) :: one
-         real(wp), intent(in) :: by
+      !> The `rows` with the number of tolerance `one`, if it is there, changed by `by`.
+      subroutine find_rows(rows, one, by)
          type(row_t), intent(inout) :: rows(:)
+         type(tolerance_t), intent(in), optional :: one
+         real(wp), intent(in), optional :: by
 
-         p%m = m
-         call set_number(p%m, one%card_number_t, number_value(m, one%card_number_t) + by)
-         call rows_with(p, q%t, .false., rows)
-         found%jams(d) = found%jams(d) .or. p%jams
-      end subroutine change
+         associate (p => s%perturbed(0))
+            p%m = m
+            if (present(one)) call set_number(p%m, one%card_number_t, number_value(m, one%card_number_t) + by)
+            call put_changes(p, by_roundings=.false.)
+            call rows_with(p, q%t, s%place, rows)
+         end associate
+         if (present(one)) found%jams(d) = found%jams(d) .or. s%place%jams
+      end subroutine find_rows
 
       !> The `step` by which the number of tolerance `one` is changed, above 0 if `side` is 0; `up`: the rows there.
       subroutine find_step(one, side, step)
@@ -143,13 +146,13 @@ contains
          real(wp) :: usual, too_far
          integer :: k
 
-         usual = merge(usual_step, step_to_one_side, side == 0)*natural_unit(one, sizes)
+         usual = merge(usual_step, step_to_one_side, side == 0)*natural_unit(one, s%sizes)
          step = merge(usual, -usual, side >= 0)
          do k = 1, max_attempts
-            call change(one, step, up)
+            call find_rows(up, one, step)
             ! On a dead point there is nothing but what drives alone move, and no distance to it.
-            if (p%is_singular .or. found%jams(d) .or. k == max_attempts) exit
-            too_far = max(p%change/largest_change, p%ratio/largest_ratio, too_near/2.0_wp)
+            if (s%place%is_singular .or. found%jams(d) .or. k == max_attempts) exit
+            too_far = max(s%place%change/largest_change, s%place%ratio/largest_ratio, too_near/2.0_wp)
             if (any(up%known < middle%known)) too_far = max(too_far, no_root)
             if (too_far <= 1.0_wp .and. (too_far >= too_near .or. .not. abs(step) < usual)) exit
             step = sign(min(usual, abs(step)*max(0.5_wp/too_far, 1.0e-3_wp)), step)

@@ -184,8 +184,8 @@ contains
 
       do c = 1, size(s%list)
          if (.not. allocated(s%now%parts(c)%tolerances)) cycle
-         call find_sensitivities(s%estimators(c)%perturbed, s%now%parts(c), s%list(c)%engine, s%now%motions(c), &
-            s%estimators(c)%sizes, s%now%errors(c), s%now%sensitivities(c))
+         call find_sensitivities(s%estimators(c), s%now%parts(c), s%list(c)%engine, s%now%motions(c), s%now%errors(c), &
+            s%now%sensitivities(c))
       end do
    end subroutine sense_set
 
