@@ -1,6 +1,5 @@
 # The texts of docs/messages.md and docs/cards.md as a Fortran module, for --explain and --ruler. Usage:
-# awk -f docs/texts.awk docs/messages.md docs/cards.md. Columns of a message: code, message, cause, cure; of a field of a
-# card: card, field, contents, type and range, default, unit. A message keeps the quotation marks ` of its alternatives.
+# awk -f docs/texts.awk docs/messages.md docs/cards.md.
 # plain(cell): the cell without the marks of Markdown
 function plain(cell,   link) {
    while (match(cell, /\[[^]]*\]\([^)]*\)/)) {
@@ -10,25 +9,65 @@ function plain(cell,   link) {
    gsub(bar, "|", cell)
    return cell
 }
-# keep(table, row, column, text): another cell, as a case of the table's function, in pieces that fit a line
-function keep(table, row, column, text,   lines) {
+# folded(head, text, indent): the text behind `head`, in lines of at most 80 columns, the further ones indented
+function folded(head, text, indent,   lines, before) {
+   lines = head
+   before = length(head)
+   while (length(text) > 80 - before && match(substr(text, 1, 81 - before), /.* /) && RLENGTH > 1) {
+      lines = lines substr(text, 1, RLENGTH - 1) "\n" sprintf("%" indent "s", "")
+      text = substr(text, RLENGTH + 1)
+      before = indent
+   }
+   return lines text
+}
+# padded(text, width): the text with blanks behind it, one at least; '' stays empty
+function padded(text, width) { return text == "" ? "" : sprintf("%-" width - 1 "s ", text) }
+# keep(table, key, text): a text, as a case of the table's function, in pieces that fit a line
+function keep(table, key, text,   lines, line, n, i) {
    if (text == "") return
    gsub(/\047/, "\047\047", text)
-   lines = "      case (" 10*row + column ")\n         text = \047"
-   while (length(text) > 80) {
-      if (!match(substr(text, 1, 80), /.* /)) break
-      lines = lines substr(text, 1, RLENGTH) "\047 &\n            //\047"
-      text = substr(text, RLENGTH + 1)
+   cases[table] = cases[table] "      case (" key ")\n         text = "
+   n = split(text, line, "\n")
+   for (i = 1; i <= n; i++) {
+      lines = lines (i > 1 ? "//nl// &\n            \047" : "\047")
+      while (length(line[i]) > 80 && match(substr(line[i], 1, 80), /.* /)) {
+         lines = lines substr(line[i], 1, RLENGTH) "\047 &\n            //\047"
+         line[i] = substr(line[i], RLENGTH + 1)
+      }
+      lines = lines line[i] "\047"
    }
-   cases[table] = cases[table] lines text "\047\n"
+   cases[table] = cases[table] lines "\n"
 }
-# write_table(name, purpose): the function of the table
-function write_table(name, purpose) {
-   print "\n   !> " purpose "\n   pure function " name "_cell(row, column) result(text)"
-   print "      integer, intent(in) :: row, column\n      character(:), allocatable :: text\n"
-   print "      select case (10*row + column)"
-   printf "%s", cases[name]
-   print "      case default\n         text = \047\047\n      end select\n   end function " name "_cell"
+# known_words(message): the words that a printed message always has, a mark ` between alternatives: those of the message
+# that stand between such marks, or all of it. Words with ... and single small letters stand for others.
+function known_words(message,   part, word, n, m, i, k, known) {
+   n = split(message, part, "`")
+   for (i = n > 1 ? 2 : 1; i <= n; i += 2) {
+      m = split(part[i], word, " ")
+      for (k = 1; k <= m; k++) if (word[k] !~ /[.][.][.]|^[a-z]$/) known = known (known ~ /[^`]$/ ? " " : "") word[k]
+      if (i + 2 <= n) known = known "`"
+   }
+   return toupper(known)
+}
+# keep_message(): the cells of the message at hand
+function keep_message(   codes, message, text) {
+   codes = at["Code"]
+   message = at["Message"]
+   messages++
+   keep("message", 10*messages + 1, codes)
+   keep("message", 10*messages + 2, known_words(message))
+   gsub(/`/, "", message)
+   keep("message", 10*messages + 3, toupper(message))
+   text = folded(padded(codes, 7), message, 7)
+   if (at["Cause"] != "") text = text "\n" folded("       CAUSE  ", at["Cause"], 14)
+   keep("message", 10*messages + 4, text "\n" folded("       CURE   ", at["Cure"], 14))
+}
+# write_table(name, arguments, key, otherwise): the function of the table
+function write_table(name, arguments, key, otherwise) {
+   print "   pure function " name " result(text)\n" arguments "      character(:), allocatable :: text\n"
+   print "      select case (" key ")"
+   printf "%s", cases[name ~ /^message/ ? "message" : "field"]
+   print "      case default\n         text = \047" otherwise "\047\n      end select\n   end function " substr(name, 1, index(name, "(") - 1)
 }
 BEGIN { bar = "\001" }
 FNR == 1 { cards = FILENAME ~ /cards[.]md$/ }
@@ -37,35 +76,40 @@ FNR == 1 { cards = FILENAME ~ /cards[.]md$/ }
    gsub(/\\[|]/, bar)
    cells = split($0, cell, / *[|] */)
    if (!table) {
-      # The head: the place of each column that is kept.
+      # The head: what each column is.
       table = !cards && /[|] Message [|]/ ? "message" : cards && /^[|] Field [|] Contents [|]/ ? "field" : "other"
-      split("", column)
-      for (i = 2; i < cells; i++) if (match(" Code Message Cause Cure ", " " cell[i] " ")) column[i] = cell[i]
+      for (i = 2; i < cells; i++) column[i] = cell[i]
       next
    }
    if (/^[|]-/) next
-   if (table == "message") {
-      messages++
-      for (i = 2; i < cells; i++) {
-         if (!(i in column)) continue
-         text = plain(cell[i])
-         if (column[i] != "Message") gsub(/`/, "", text)
-         keep(table, messages, column[i] == "Code" ? 1 : column[i] == "Message" ? 2 : column[i] == "Cause" ? 3 : 4, text)
-      }
-   } else if (table == "field") {
-      fields++
-      keep(table, fields, 1, card)
-      for (i = 2; i < cells; i++) { text = plain(cell[i]); gsub(/`/, "", text); keep(table, fields, i, text) }
+   split("", at)
+   for (i = 2; i < cells; i++) {
+      text = plain(cell[i])
+      if (column[i] != "Message") gsub(/`/, "", text)
+      at[column[i]] = text
+      at[i] = text
+   }
+   if (table == "message") keep_message()
+   else if (table == "field") {
+      if (!(card in fields)) names[++fielded] = card
+      # Field, contents, type and range, default, unit.
+      fields[card] = fields[card] (fields[card] == "" ? "" : "\n") folded(padded(toupper(at[2]), 9), at[3] ": " at[4] \
+         (at[5] == "required" ? "; required" : "; default: " at[5]) (at[6] == "" ? "" : "; unit: " at[6]), 9)
    }
    next
 }
 { table = "" }
 END {
+   for (i = 1; i <= fielded; i++) keep("field", "\047" names[i] "\047", fields[names[i]])
    print "!> Messages and fields of cards as the documents explain them: made by docs/texts.awk from docs/messages.md and"
    print "!> docs/cards.md."
-   print "module document_texts\n   implicit none\n   private\n   public :: message_cell, field_cell\n"
-   print "   integer, parameter, public :: message_count = " messages ", field_count = " fields "\n\ncontains"
-   write_table("message", "A cell of the tables of messages; columns: code, message, cause, cure.")
-   write_table("field", "A cell of the tables of cards; columns: card, field, contents, type and range, default, unit.")
+   print "module document_texts\n   implicit none\n   private\n   public :: message_cell, explained_fields\n"
+   print "   integer, parameter, public :: message_count = " messages
+   print "   character(1), parameter :: nl = new_line(\047a\047)\n\ncontains\n"
+   print "   !> A cell of the table of messages: 1 the codes; 2 the words of a printed message in capitals, a mark ` between"
+   print "   !> alternatives; 3 the message in capitals; 4 the lines that explain it."
+   write_table("message_cell(row, column)", "      integer, intent(in) :: row, column\n", "10*row + column", "")
+   print "\n   !> A line or more for each field of the cards of the name `card`, in capitals: contents, type, default, unit."
+   write_table("explained_fields(card)", "      character(*), intent(in) :: card\n", "card", "This card has no fields.")
    print "end module document_texts"
 }
