@@ -149,49 +149,21 @@ contains
       options%deck = ''
       options%show = ''
       has_deck = .false.
-      i = 1
-      do while (i <= size(words) .and. .not. allocated(failure))
-         do k = 1, out_last
-            if (file_options(k)%word == words(i)%text) exit
-         end do
-         if (k <= out_last) then
-            call take_file(options%files, failure)
-         else
-            call take_word(failure)
-         end if
+      i = 0
+      do while (i < size(words) .and. .not. allocated(failure))
          i = i + 1
-      end do
-      if (.not. allocated(failure)) call check_study(failure)
-      if (.not. allocated(failure)) call check_files(failure)
-      if (.not. allocated(failure) .and. options%show == 'RULER' .and. len(options%deck) > 0 .and. &
-          find_form(options%deck) == form_unknown) call fail(failure, status_rejected, &
-         'OPTION --ruler: NO CARD HAS THE NAME '//options%deck//'; CARDS ARE '//card_names())
-      if (.not. (options%no_listing .or. any(to_standard_output(options%files)) &
-         .or. allocated(options%files(out_listing)%text))) options%files(out_listing)%text = ''
-
-   contains
-
-      !> The names of all cards, with blanks between them.
-      pure function card_names() result(text)
-         character(:), allocatable :: text
-         integer :: form
-
-         text = ''
-         do form = 1, size(forms)
-            text = trim(text//' '//form_name(form))
-         end do
-         text = text(2:)
-      end function card_names
-
-      !> Takes word number `i` of those that name no file of an output.
-      subroutine take_word(failure)
-         type(failure_t), allocatable, intent(out) :: failure
-
+         k = findloc(file_options%word == words(i)%text, .true., dim=1)
+         if (k > 0) then
+            call take_file(options%files)
+            cycle
+         end if
          select case (words(i)%text)
          case ('--sets')
-            call take_share(failure)
+            call take_share()
          case ('--jobs')
-            call take_jobs(options%jobs, failure)
+            options%jobs = whole_of(next_word())
+            if (options%jobs < 1 .or. options%jobs > max_jobs) &
+               call reject('OPTION --jobs NEEDS A WHOLE NUMBER FROM 1 TO '//whole(max_jobs))
          case ('--errors')
             options%errors = .true.
          case ('--no-listing')
@@ -211,152 +183,156 @@ contains
          case ('--ruler')
             options%show = 'RULER'
          case ('--explain')
-            call take_message(options%deck, failure)
+            call take_message(options%deck)
             options%show = 'EXPLAIN'
          case default
-            call take_deck(words(i)%text, options%deck, failure)
+            call take_deck(words(i)%text)
          end select
-      end subroutine take_word
+      end do
+      if (.not. allocated(failure)) call check_study()
+      if (.not. allocated(failure)) call check_files()
+      if (.not. allocated(failure) .and. options%show == 'RULER' .and. len(options%deck) > 0 .and. &
+          find_form(options%deck) == form_unknown) call reject('OPTION --ruler: NO CARD HAS THE NAME ' &
+         //options%deck//'; CARDS ARE '//card_names())
+      if (.not. (options%no_listing .or. any(to_standard_output(options%files)) &
+         .or. allocated(options%files(out_listing)%text))) options%files(out_listing)%text = ''
+
+   contains
+
+      !> Makes `failure` hold the sentence `text`.
+      subroutine reject(text)
+         character(*), intent(in) :: text
+
+         call fail(failure, status_rejected, text)
+      end subroutine reject
+
+      !> The names of all cards, with blanks between them.
+      pure function card_names() result(text)
+         character(:), allocatable :: text
+         integer :: form
+
+         text = ''
+         do form = 1, size(forms)
+            text = trim(text//' '//form_name(form))
+         end do
+         text = text(2:)
+      end function card_names
 
       !> Two outputs on standard output could not be told apart; without motion there is nothing to draw.
-      subroutine check_files(failure)
-         type(failure_t), allocatable, intent(out) :: failure
-         integer :: k, first
+      subroutine check_files()
+         integer :: first
 
          if (options%no_listing .and. allocated(options%files(out_listing)%text)) &
-            call fail(failure, status_rejected, 'OPTIONS --no-listing AND -o EXCLUDE EACH OTHER')
+            call reject('OPTIONS --no-listing AND -o EXCLUDE EACH OTHER')
          first = findloc(to_standard_output(options%files), .true., dim=1)
          do k = 1, out_last
             if (to_standard_output(options%files(k)) .and. k > first) &
-               call fail(failure, status_rejected, 'ONLY ONE OUTPUT CAN GO TO STANDARD OUTPUT: ' &
-                  //trim(file_options(first)%word)//' OR '//trim(file_options(k)%word))
+               call reject('ONLY ONE OUTPUT CAN GO TO STANDARD OUTPUT: '//trim(file_options(first)%word)//' OR ' &
+                  //trim(file_options(k)%word))
             if (options%check .and. file_options(k)%needs_motion .and. allocated(options%files(k)%text)) &
-               call fail(failure, status_rejected, 'OPTION --check COMPUTES NO MOTION, WHICH ' &
-                  //trim(file_options(k)%word)//' NEEDS')
+               call reject('OPTION --check COMPUTES NO MOTION, WHICH '//trim(file_options(k)%word)//' NEEDS')
             if (allocated(failure)) return
          end do
       end subroutine check_files
 
       !> A study and times are no listing; a study reads its deck more than once.
-      subroutine check_study(failure)
-         type(failure_t), allocatable, intent(out) :: failure
-         integer :: k
-
+      subroutine check_study()
          if (.not. (options%study .or. options%time) .or. len(options%show) > 0) return
          if (any([(allocated(options%files(k)%text), k=out_listing + 1, out_last)]) .or. options%errors &
             .or. options%check .or. options%no_listing .or. options%shares > 1 .or. options%jobs > 0 &
             .or. (options%study .and. options%time)) then
-            call fail(failure, status_rejected, 'OPTION '//trim(merge('--study', '--time ', options%study)) &
+            call reject('OPTION '//trim(merge('--study', '--time ', options%study)) &
                //' CAN ONLY BE COMBINED WITH -o AND --quiet')
          else if (options%study .and. (len(options%deck) == 0 .or. options%deck == '/dev/stdin')) then
-            call fail(failure, status_rejected, 'OPTION --study NEEDS THE DECK AS A FILE')
+            call reject('OPTION --study NEEDS THE DECK AS A FILE')
          end if
       end subroutine check_study
 
       !> Takes `word` as the deck. Errors: a second deck, an empty word, an unknown option.
-      subroutine take_deck(word, deck, failure)
+      subroutine take_deck(word)
          character(*), intent(in) :: word
-         character(:), allocatable, intent(inout) :: deck
-         type(failure_t), allocatable, intent(out) :: failure
 
          if (len(word) == 0) then
-            call fail(failure, status_rejected, 'THE NAME OF THE DECK IS EMPTY')
+            call reject('THE NAME OF THE DECK IS EMPTY')
          else if (word(1:1) == '-' .and. word /= '-') then
-            call fail(failure, status_rejected, 'OPTION '//word//' IS UNKNOWN; SEE kinmat --help')
+            call reject('OPTION '//word//' IS UNKNOWN; SEE kinmat --help')
          else if (has_deck) then
-            call fail(failure, status_rejected, 'MORE THAN ONE DECK IS NAMED: '//deck//' AND '//word)
+            call reject('MORE THAN ONE DECK IS NAMED: '//options%deck//' AND '//word)
          else
-            deck = word
-            if (word == '-') deck = ''
+            options%deck = word
+            if (word == '-') options%deck = ''
             has_deck = .true.
          end if
       end subroutine take_deck
 
       !> The name after word number `i`, which is the option of output number `k`: of a file, `-` for standard output,
       !> or of a directory. All `files` of the option have it.
-      subroutine take_file(files, failure)
+      subroutine take_file(files)
          type(word_t), intent(inout) :: files(:)
-         type(failure_t), allocatable, intent(out) :: failure
-         character(:), allocatable :: path
+         character(:), allocatable :: option, path
          integer :: j
          logical :: of_file
 
+         option = words(i)%text
          of_file = len_trim(file_options(k)%in_directory) == 0
-         path = ''
-         if (i < size(words)) path = words(i + 1)%text
+         path = next_word()
          if (len(path) == 0 .or. (path == '-' .and. .not. of_file)) then
-            call fail(failure, status_rejected, 'OPTION '//words(i)%text//' NEEDS A ' &
-               //trim(merge('FILE NAME', 'DIRECTORY', of_file)))
+            call reject('OPTION '//option//' NEEDS A '//trim(merge('FILE NAME', 'DIRECTORY', of_file)))
          else if (allocated(files(k)%text)) then
-            call fail(failure, status_rejected, 'OPTION '//words(i)%text//' IS GIVEN TWICE')
+            call reject('OPTION '//option//' IS GIVEN TWICE')
          end if
          if (path == '-') path = ''
          do j = 1, out_last
-            if (file_options(j)%word == file_options(k)%word) files(j)%text = path
+            if (file_options(j)%word == option) files(j)%text = path
          end do
-         i = i + 1
       end subroutine take_file
 
       !> All words after option number `i`: the code of a message, or words of it.
-      subroutine take_message(message, failure)
+      subroutine take_message(message)
          character(:), allocatable, intent(out) :: message
-         type(failure_t), allocatable, intent(out) :: failure
-         integer :: k
 
          message = ''
-         do k = i + 1, size(words)
-            message = trim(message//' '//words(k)%text)
+         do while (i < size(words))
+            message = trim(message//' '//next_word())
          end do
          message = trim(adjustl(message))
          if (len(message) == 0) then
-            call fail(failure, status_rejected, 'OPTION --explain NEEDS A CODE SUCH AS E101, OR WORDS OF A MESSAGE')
+            call reject('OPTION --explain NEEDS A CODE SUCH AS E101, OR WORDS OF A MESSAGE')
          else if (len(explained(message)) == 0) then
-            call fail(failure, status_rejected, 'OPTION --explain: NO MESSAGE HAS THIS CODE OR THESE WORDS: '//message &
+            call reject('OPTION --explain: NO MESSAGE HAS THIS CODE OR THESE WORDS: '//message &
                //'; GIVE A CODE SUCH AS E101, OR WORDS OF A MESSAGE')
          end if
-         i = size(words)
       end subroutine take_message
 
       !> The K/N after option number `i`.
-      subroutine take_share(failure)
-         type(failure_t), allocatable, intent(out) :: failure
+      subroutine take_share()
          character(:), allocatable :: word
          integer :: slash
 
-         word = ''
-         if (i < size(words)) word = words(i + 1)%text
-         i = i + 1
+         word = next_word()
          slash = index(word, '/')
-         options%share = 0
-         if (is_whole(word(:max(0, slash - 1))) .and. is_whole(word(slash + 1:))) then
-            read (word(:slash - 1), *) options%share
-            read (word(slash + 1:), *) options%shares
-         end if
+         options%share = whole_of(word(:max(0, slash - 1)))
+         options%shares = whole_of(word(slash + 1:))
          if (options%share < 1 .or. options%share > options%shares) &
-            call fail(failure, status_rejected, 'OPTION --sets NEEDS K/N WITH 1 <= K <= N, SUCH AS 1/4')
+            call reject('OPTION --sets NEEDS K/N WITH 1 <= K <= N, SUCH AS 1/4')
       end subroutine take_share
 
-      !> The number after option number `i`.
-      subroutine take_jobs(jobs, failure)
-         integer, intent(out) :: jobs
-         type(failure_t), allocatable, intent(out) :: failure
+      !> The word after word number `i`, '' if there is none; that is number `i` then.
+      function next_word() result(word)
          character(:), allocatable :: word
 
-         word = ''
-         if (i < size(words)) word = words(i + 1)%text
          i = i + 1
-         jobs = 0
-         if (is_whole(word)) read (word, *) jobs
-         if (jobs < 1 .or. jobs > max_jobs) &
-            call fail(failure, status_rejected, 'OPTION --jobs NEEDS A WHOLE NUMBER FROM 1 TO '//whole(max_jobs))
-      end subroutine take_jobs
+         word = ''
+         if (i <= size(words)) word = words(i)%text
+      end function next_word
 
-      !> `word` is a whole number of at most 8 digits without a sign.
-      pure logical function is_whole(word)
+      !> The whole number `word`, of at most 8 digits without a sign; 0 if it is none.
+      pure integer function whole_of(word) result(number)
          character(*), intent(in) :: word
 
-         is_whole = len(word) > 0 .and. len(word) < 9 .and. verify(word, '0123456789') == 0
-      end function is_whole
+         number = 0
+         if (len(word) > 0 .and. len(word) < 9 .and. verify(word, '0123456789') == 0) read (word, *) number
+      end function whole_of
    end subroutine read_words
 
    !> Whether `file` is asked for, as standard output.
