@@ -1,6 +1,5 @@
 !> Angles, in degrees and without whole turns, and vectors of the plane, as x and y: rotation, quarter turn, cross
-!> product, a point that rotates with a link. Vectors (2, 0:2) and scalars (0:2) with their first two derivatives with
-!> respect to time, and how these change, to first order, with what they depend on.
+!> product, a point that rotates with a link.
 module planar
    use kinds, only: wp
    use number_types, only: vector_t
@@ -8,7 +7,6 @@ module planar
    private
    public :: pi, degree, in_degrees, without_turns
    public :: vector_t, xy, length_of, direction, rotated, quarter_turn, cross, point_of, add_rotating
-   public :: turning, turning_change, scaled, dotted, turned
 
    real(wp), parameter :: pi = 3.14159265358979323846264338327950288419716939937510_wp
    !> One degree in radians.
@@ -112,54 +110,4 @@ contains
       a(1) = a(1) - acceleration*y - square*x
       a(2) = a(2) + acceleration*x - square*y
    end subroutine add_rotating
-
-   !> The vector `w` (2), which turns with the angle `f` (0:2):  w,  f' w_t,  f'' w_t - f'^2 w,  w_t its quarter turn.
-   pure function turning(w, f) result(x)
-      real(wp), intent(in) :: w(2), f(0:2)
-      real(wp) :: x(2, 0:2)
-
-      x(:, 0) = w
-      x(:, 1) = f(1)*quarter_turn(w)
-      x(:, 2) = f(2)*quarter_turn(w) - f(1)**2*w
-   end function turning
-
-   !> Its change where its angle changes by `df` (0:2), and it by `dw` (2) beside that.
-   pure function turning_change(w, dw, f, df) result(dx)
-      real(wp), intent(in) :: w(2), dw(2), f(0:2), df(0:2)
-      real(wp) :: dx(2, 0:2), d(2)
-
-      d = dw + df(0)*quarter_turn(w)
-      dx = turning(d, f)
-      dx(:, 1) = dx(:, 1) + df(1)*quarter_turn(w)
-      dx(:, 2) = dx(:, 2) + df(2)*quarter_turn(w) - 2.0_wp*f(1)*df(1)*w
-   end function turning_change
-
-   !> The product s x.
-   pure function scaled(s, x) result(y)
-      real(wp), intent(in) :: s(0:2), x(2, 0:2)
-      real(wp) :: y(2, 0:2)
-
-      y(:, 0) = s(0)*x(:, 0)
-      y(:, 1) = s(1)*x(:, 0) + s(0)*x(:, 1)
-      y(:, 2) = s(2)*x(:, 0) + 2.0_wp*s(1)*x(:, 1) + s(0)*x(:, 2)
-   end function scaled
-
-   !> The product x . y.
-   pure function dotted(x, y) result(s)
-      real(wp), intent(in) :: x(2, 0:2), y(2, 0:2)
-      real(wp) :: s(0:2)
-
-      s(0) = dot_product(x(:, 0), y(:, 0))
-      s(1) = dot_product(x(:, 1), y(:, 0)) + dot_product(x(:, 0), y(:, 1))
-      s(2) = dot_product(x(:, 2), y(:, 0)) + 2.0_wp*dot_product(x(:, 1), y(:, 1)) + dot_product(x(:, 0), y(:, 2))
-   end function dotted
-
-   !> The quarter turn of `x`.
-   pure function turned(x) result(y)
-      real(wp), intent(in) :: x(2, 0:2)
-      real(wp) :: y(2, 0:2)
-
-      y(1, :) = -x(2, :)
-      y(2, :) = x(1, :)
-   end function turned
 end module planar

@@ -13,7 +13,7 @@ module set_motion
    use motion_proof, only: motion_proof_t
    implicit none
    private
-   public :: set_motion_t, new_set_motion, is_flagged, has_words, put_together, find_row_in_set
+   public :: set_motion_t, new_set_motion, is_flagged, has_words, find_row_in_set
    public :: doubt_in_set, known_numbers, error_in_set, spread_t, spread_in_set
 
    !> Of each part, as many as the set has.
@@ -84,25 +84,6 @@ contains
          has_words = has_words .or. allocated(s%motions(c)%diagnostics)
       end do
    end function has_words
-
-   !> The motion `q` of all links of the set, known as far as that of every part is; places are counted from where each
-   !> part counts them.
-   subroutine put_together(s, q)
-      type(set_motion_t), intent(in) :: s
-      type(motion_t), intent(inout) :: q
-      integer :: c
-
-      q%t = s%motions(1)%t
-      q%known = minval(s%motions(1:)%known)
-      q%mark = s%motions(minloc(s%motions(1:)%known, dim=1))%mark
-      do c = 1, s%count
-         associate (links => s%cards(c)%links)
-            q%position(:, links) = s%motions(c)%position
-            q%velocity(:, links) = s%motions(c)%velocity
-            q%acceleration(:, links) = s%motions(c)%acceleration
-         end associate
-      end do
-   end subroutine put_together
 
    !> The `row` of request number `i` of the set.
    pure subroutine find_row_in_set(s, i, row)
