@@ -4,12 +4,11 @@
 module csv
    use kinds, only: wp
    use planar, only: in_degrees
-   use mechanism, only: mechanism_t, request_t, request_pole, request_curve
+   use mechanism, only: request_t, request_pole, request_curve
    use motion, only: motion_t, new_motion
    use points, only: row_t, row_of, has_number, is_due
-   use assemblies, only: assemblies_t, assembly_t
+   use assemblies, only: assemblies_t
    use independent, only: request_of
-   use motion_proof, only: motion_proof_t
    use instant_centres, only: centre_finite, centre_resting
    use known_digits, only: nothing_known
    use sensitivities, only: has_tolerances, worst_case, root_of_squares
@@ -61,11 +60,13 @@ contains
       logical, intent(in), optional :: varies
       type(assemblies_t), intent(in), optional :: assemblies(:)
       character(:), allocatable :: start
-      type(row_t) :: row
+      type(row_t) :: row, other
+      type(request_t) :: request
+      type(spread_t) :: spread
+      type(motion_t) :: q
       real(wp) :: error(3, 0:2)
       logical :: known(3, 0:2), asked
-      type(request_t) :: request
-      integer :: i
+      integer :: i, k
 
       start = whole(s%set_number)//','
       if (present(varies)) then
@@ -85,11 +86,39 @@ contains
             cycle
          end if
          call add_row(kinds_of_row(row%kind), row, numbers_of(row), known, error, marks(row%mark))
+
          associate (c => s%rows(i)%part)
-            if (has_tolerances(s%parts(c), request)) call add_spreads(spread_in_set(s, i))
-            call add_bound(s%parts(c), s%motions(c), s%proofs(c))
-            if (present(assemblies) .and. step == 0 .and. c > 0) &
-               call add_assemblies(s%parts(c), s%motions(c)%origin, assemblies(c)%list)
+            other = row
+            ! What tolerances do to the row.
+            if (has_tolerances(s%parts(c), request)) then
+               spread = spread_in_set(s, i)
+               other%known = spread%known
+               other%value = worst_case(spread%tolerances, spread%of)
+               call add_other('WORST')
+               other%value = root_of_squares(spread%tolerances, spread%of)
+               call add_other('RSS')
+               do k = 1, size(spread%tolerances)
+                  other%value = spread%of(:, :, k)
+                  call add_other('PER '//trim(spread%tolerances(k)%name))
+               end do
+            end if
+            ! The bounds of its errors that are proved, if proofs are asked for.
+            if (s%proofs(c)%taken) then
+               other%known = merge(row%known, -1, s%proofs(c)%is_proved)
+               if (s%proofs(c)%is_proved) &
+                  other%value = row_bound(s%parts(c), s%motions(c), s%proofs(c)%links, request)
+               call add_other('BOUND')
+            end if
+            ! The row in each assembly at the first instant.
+            if (.not. present(assemblies) .or. step > 0 .or. c == 0) cycle
+            q = new_motion(size(s%parts(c)%links))
+            q%known = 0
+            q%origin = s%motions(c)%origin
+            do k = 1, size(assemblies(c)%list)
+               q%position = assemblies(c)%list(k)%position
+               other = row_of(s%parts(c), q, request)
+               call add_other('ASSEMBLY '//whole(k))
+            end do
          end associate
       end do
 
@@ -102,99 +131,78 @@ contains
          type(row_t), intent(in) :: row
          logical, intent(in) :: there(3, 0:2), known(3, 0:2)
          real(wp), intent(in) :: error(3, 0:2)
+         logical :: has_error(3, 0:2)
+         integer :: k
 
          call add(o, start)
          call add_name(o, kind(:len_trim(kind)))
          call add(o, ',')
          call add_name(o, row%name(:len_trim(row%name)))
-         call add_values(o, row, there .and. known, s%degrees)
+         call add_values(row%value, row%angular, there .and. known)
          call add(o, ',')
          if (mark == '' .and. any(there .and. .not. known)) then
             call add(o, mark_unknown)
          else
             call add(o, mark(:len_trim(mark)))
          end if
-         if (asked) call add_errors(o, row, there, error, s%degrees)
+         if (asked) then
+            ! A derivative has no error where no digit of the one before is known.
+            has_error = there
+            do k = 0, 2
+               if (any(has_error(:, k) .and. error(:, k) >= nothing_known)) has_error(:, k:) = .false.
+            end do
+            call add_values(error, row%angular, has_error)
+         end if
          call put(o, '')
       end subroutine add_row
 
+      !> Nine values (3, 0:2), a comma before each; empty where they are not `there`. `angular`: all of them are angles.
+      subroutine add_values(value, angular, there)
+         real(wp), intent(in) :: value(3, 0:2)
+         logical, intent(in) :: angular, there(3, 0:2)
+         character(9*(full_length + 1)) :: cells
+         real(wp) :: x
+         integer :: k, c, used, length
+
+         used = 0
+         do k = 0, 2
+            do c = 1, 3
+               used = used + 1
+               cells(used:used) = ','
+               if (there(c, k)) then
+                  x = value(c, k)
+                  if (s%degrees .and. (c == 3 .or. angular)) x = in_degrees(x)
+                  call put_full(x, cells(used + 1:used + full_length), length)
+                  used = used + length
+               end if
+            end do
+         end do
+         call add(o, cells(:used))
+      end subroutine add_values
+
       !> The three rows of a pole or curve: each has one third of the numbers under x, y, phi.
       subroutine add_centre()
-         type(row_t) :: third
          logical :: there(3, 0:2)
          character(12) :: mark
          integer :: k
 
          there = numbers_of(row)
+         other = row
          do k = 0, 2
-            third = row
-            third%value(:, 0) = row%value(:, k)
+            other%value(:, 0) = row%value(:, k)
             mark = marks(row%mark)
             if (mark == '' .and. .not. all(there(:, k))) mark = marks_of_centre(row%state)
-            call add_row(kinds_of_centre(k, row%kind), third, reshape(there(:, k), [3, 3], [.false.]), &
+            call add_row(kinds_of_centre(k, row%kind), other, reshape(there(:, k), [3, 3], [.false.]), &
                reshape(known(:, k), [3, 3], [.false.]), reshape(error(:, k), [3, 3], [0.0_wp]), mark)
          end do
       end subroutine add_centre
 
-      !> What tolerances do to the row, with its sensitivities `x`: its worst case, its root of the sum of squares, and
-      !> its sensitivity to each number.
-      subroutine add_spreads(x)
-         type(spread_t), intent(in) :: x
-         integer :: d
-
-         call add_other('WORST', x%known, worst_case(x%tolerances, x%of))
-         call add_other('RSS', x%known, root_of_squares(x%tolerances, x%of))
-         do d = 1, size(x%tolerances)
-            call add_other('PER '//trim(x%tolerances(d)%name), x%known, x%of(:, :, d))
-         end do
-      end subroutine add_spreads
-
-      !> The bounds of the errors of the row of the mechanism `own` that are proved, if proofs are asked for.
-      subroutine add_bound(own, q, proof)
-         type(mechanism_t), intent(in) :: own
-         type(motion_t), intent(in) :: q
-         type(motion_proof_t), intent(in) :: proof
-
-         if (.not. proof%taken) return
-         if (proof%is_proved) then
-            call add_other('BOUND', row%known, row_bound(own, q, proof%links, request))
-         else
-            call add_other('BOUND', -1, row%value)
-         end if
-      end subroutine add_bound
-
-      !> The row of the mechanism `own` in each assembly at the first instant, of which the `list` is; none has errors.
-      subroutine add_assemblies(own, origin, list)
-         type(mechanism_t), intent(in) :: own
-         real(wp), intent(in) :: origin(2)
-         type(assembly_t), intent(in) :: list(:)
-         type(motion_t) :: q
-         type(row_t) :: other
-         integer :: number
-
-         q = new_motion(size(own%links))
-         q%known = 0
-         q%origin = origin
-         do number = 1, size(list)
-            q%position = list(number)%position
-            other = row_of(own, q, request)
-            call add_row(trim(kinds_of_row(row%kind))//' ASSEMBLY '//whole(number), other, numbers_of(other), &
-               all_known, no_errors, '')
-         end do
-      end subroutine add_assemblies
-
-      !> What `word` says of the row: values (3, 0:2), as far as they are `known`; they have no errors.
-      subroutine add_other(word, known, value)
+      !> The row `other`, which is what `word` says of the row; it has no errors.
+      subroutine add_other(word)
          character(*), intent(in) :: word
-         integer, intent(in) :: known
-         real(wp), intent(in) :: value(:, :)
-         type(row_t) :: other
 
-         other = row
-         other%known = known
-         other%value = value
          call add_row(trim(kinds_of_row(row%kind))//' '//word, other, numbers_of(other), all_known, no_errors, &
-            marks(row%mark))
+            marks(other%mark))
       end subroutine add_other
    end subroutine csv_instant
 
@@ -204,56 +212,8 @@ contains
       logical :: there(3, 0:2)
       integer :: c, k
 
-      do k = 0, 2
-         do c = 1, 3
-            there(c, k) = has_number(row, c, k)
-         end do
-      end do
+      there = reshape([((has_number(row, c, k), c=1, 3), k=0, 2)], [3, 3])
    end function numbers_of
-
-   !> Nine values, a comma before each; empty where they are not `there` (3, 0:2).
-   subroutine add_values(o, row, there, degrees)
-      type(output_t), intent(inout) :: o
-      type(row_t), intent(in) :: row
-      logical, intent(in) :: there(3, 0:2), degrees
-      character(9*(full_length + 1)) :: cells
-      real(wp) :: value
-      integer :: k, c, used, length
-
-      used = 0
-      do k = 0, 2
-         do c = 1, 3
-            used = used + 1
-            cells(used:used) = ','
-            if (there(c, k)) then
-               value = row%value(c, k)
-               if (degrees .and. (c == 3 .or. row%angular)) value = in_degrees(value)
-               call put_full(value, cells(used + 1:used + full_length), length)
-               used = used + length
-            end if
-         end do
-      end do
-      call add(o, cells(:used))
-   end subroutine add_values
-
-   !> The nine errors (3, 0:2) of `row`, those of numbers that are `there` (3, 0:2); empty too where no digit is known.
-   subroutine add_errors(o, row, there, error, degrees)
-      type(output_t), intent(inout) :: o
-      type(row_t), intent(in) :: row
-      logical, intent(in) :: there(3, 0:2), degrees
-      real(wp), intent(in) :: error(3, 0:2)
-      type(row_t) :: errors
-      logical :: known(3, 0:2)
-      integer :: k
-
-      errors = row
-      errors%value = error
-      known = there
-      do k = 0, 2
-         if (any(known(:, k) .and. error(:, k) >= nothing_known)) known(:, k:) = .false.
-      end do
-      call add_values(o, errors, known, degrees)
-   end subroutine add_errors
 
    !> A name as a cell: in quotes where it holds a comma or a quote.
    subroutine add_name(o, name)

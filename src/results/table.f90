@@ -14,7 +14,7 @@ module table
    use drives, only: law_t, new_law, drive_motion
    use independent, only: set_t, request_of
    use name_table, only: name_table_t, put_name, find_name
-   use names, only: drive_name
+   use names, only: drive_name, subject_name
    use points, only: row_t, has_number, centre_numbers, coordinates_of
    use sensitivities, only: has_tolerances, worst_case, root_of_squares
    use set_motion, only: set_motion_t, find_row_in_set, known_numbers, spread_t, spread_in_set
@@ -72,7 +72,9 @@ contains
       type(name_table_t) :: links
       type(request_t), allocatable :: requests(:)
       integer, allocatable :: rows(:)
-      integer :: i, k, n, spread, last
+      integer :: i, k, n, c, row, kind, spread, last
+      logical :: turns
+      character(5) :: word
 
       allocate (t%laws(size(s%drives)), t%angular(size(s%drives)))
       do i = 1, size(s%drives)
@@ -104,84 +106,70 @@ contains
       n = 0
       do spread = 0, last
          do k = 0, 2
-            call add_rows(k, spread)
+            row = 0
+            do i = 1, size(rows)
+               associate (request => requests(rows(i)), own => s%parts(s%rows(rows(i))%part))
+                  if (request%kind >= request_pole) cycle
+                  row = row + 1
+                  turns = .false.
+                  if (request%kind == request_pair) turns = own%pairs(request%subject)%kind /= pair_prismatic
+                  do c = 1, coordinates_of(request%kind)
+                     word = link_words(c, k)
+                     if (request%kind == request_pair) word = merge(turn_words(k), slide_words(k), turns)
+                     call add_column(i, merge(row, 0, spread == 0), k, c, c == 3 .or. turns, &
+                        trim(word)//spread_words(spread))
+                  end do
+               end associate
+            end do
          end do
       end do
-      call add_centres(request_curve)
-      call add_centres(request_pole)
-
-   contains
-
-      !> The columns of derivative `k` of links, points and pairs, or what tolerances do to them (`spread`).
-      subroutine add_rows(k, spread)
-         integer, intent(in) :: k, spread
-         logical :: turns
-         character(5) :: word
-         integer :: i, c, row
-
-         row = 0
-         do i = 1, size(rows)
-            associate (request => requests(rows(i)), own => s%parts(s%rows(rows(i))%part))
-               if (request%kind >= request_pole) cycle
-               row = row + 1
-               turns = .false.
-               if (request%kind == request_pair) turns = own%pairs(request%subject)%kind /= pair_prismatic
-               do c = 1, coordinates_of(request%kind)
-                  word = link_words(c, k)
-                  if (request%kind == request_pair) word = merge(turn_words(k), slide_words(k), turns)
-                  n = n + 1
-                  t%columns(n) = table_column_t(rows(i), merge(row, 0, spread == 0), k, c, c == 3 .or. turns, spread)
-                  t%columns(n)%name = name_of(own, request, links)//'.'//trim(word)//spread_words(spread)
-               end do
-            end associate
-         end do
-      end subroutine add_rows
-
-      !> The columns of poles or curves, the requests of this `kind`.
-      subroutine add_centres(kind)
-         integer, intent(in) :: kind
-         integer :: i, c
-
+      spread = 0
+      do kind = request_curve, request_pole, -1
          do i = 1, size(rows)
             if (requests(rows(i))%kind /= kind) cycle
             do c = 1, size(centre_numbers, 2)
-               n = n + 1
                associate (number => centre_numbers(:, c, kind))
-                  t%columns(n) = table_column_t(rows(i), 0, number(2), number(1), number(1) == 3)
+                  call add_column(i, 0, number(2), number(1), number(1) == 3, centre_words(c, kind))
                end associate
-               t%columns(n)%name = name_of(s%parts(s%rows(rows(i))%part), requests(rows(i)), links)//'.' &
-                  //centre_words(c, kind)
             end do
          end do
-      end subroutine add_centres
+      end do
+
+   contains
+
+      !> Adds a column of row number `i` of the table, whose name ends with `word`; what it is: as in its type.
+      subroutine add_column(i, row, order, coordinate, angular, word)
+         integer, intent(in) :: i, row, order, coordinate
+         logical, intent(in) :: angular
+         character(*), intent(in) :: word
+
+         n = n + 1
+         t%columns(n) = table_column_t(rows(i), row, order, coordinate, angular, spread)
+         t%columns(n)%name = name_of(s%parts(s%rows(rows(i))%part), requests(rows(i)))//'.'//word
+      end subroutine add_column
+
+      !> What the names of the columns of `request` begin with. A point that has the name of one of the `links` in the
+      !> table has that of its own link before it.
+      function name_of(m, request) result(name)
+         type(mechanism_t), intent(in) :: m
+         type(request_t), intent(in) :: request
+         character(:), allocatable :: name
+
+         associate (subject => request%subject)
+            select case (request%kind)
+            case (request_pole)
+               name = 'POLE.'//trim(m%links(request%second)%name)//'.'//trim(m%links(subject)%name)
+            case (request_curve)
+               name = 'CURVE.'//trim(m%points(subject)%name)
+               if (request%second > 0) name = name//'.'//trim(m%links(request%second)%name)
+            case default
+               name = trim(subject_name(m, request%kind, subject))
+               if (request%kind /= request_point) return
+               if (find_name(links, name) > 0) name = trim(m%links(m%points(subject)%link)%name)//'.'//name
+            end select
+         end associate
+      end function name_of
    end function new_table
-
-   !> What the names of the columns of `request` begin with. A point that has the name of one of the `links` in the
-   !> table has that of its own link before it.
-   function name_of(m, request, links) result(name)
-      type(mechanism_t), intent(in) :: m
-      type(request_t), intent(in) :: request
-      type(name_table_t), intent(in) :: links
-      character(:), allocatable :: name
-
-      associate (subject => request%subject)
-         select case (request%kind)
-         case (request_link)
-            name = trim(m%links(subject)%name)
-         case (request_point)
-            name = trim(m%points(subject)%name)
-            if (find_name(links, m%points(subject)%name) > 0) &
-               name = trim(m%links(m%points(subject)%link)%name)//'.'//name
-         case (request_pair)
-            name = trim(m%pairs(subject)%name)
-         case (request_pole)
-            name = 'POLE.'//trim(m%links(request%second)%name)//'.'//trim(m%links(subject)%name)
-         case default
-            name = 'CURVE.'//trim(m%points(subject)%name)
-            if (request%second > 0) name = name//'.'//trim(m%links(request%second)%name)
-         end select
-      end associate
-   end function name_of
 
    !> The names of the columns of all drives of `s`. Of drives of one thing, the second has .2 after it, and so on:
    !> ANGLE.CRANK, ANGLE.CRANK.2.
@@ -245,10 +233,10 @@ contains
       real(wp) :: f(3)
       integer :: i
 
-      call add_cell(o, '', s%motions(1)%t, .false.)
+      call add_cell('', s%motions(1)%t, .false.)
       do i = 1, size(t%laws)
          f = drive_motion(t%laws(i), s%motions(1)%t)
-         call add_cell(o, ',', f(1), s%degrees .and. t%angular(i))
+         call add_cell(',', f(1), t%angular(i))
       end do
       allocate (rows(0:2, size(s%rows)))
       do i = 1, size(s%rows)
@@ -265,30 +253,30 @@ contains
       do i = 1, size(t%columns)
          associate (c => t%columns(i), row => rows(t%columns(i)%spread, t%columns(i)%request))
             if (known(c%coordinate, c%order, c%request) .and. has_number(row, c%coordinate, c%order)) then
-               call add_cell(o, ',', row%value(c%coordinate, c%order), s%degrees .and. c%angular)
+               call add_cell(',', row%value(c%coordinate, c%order), c%angular)
             else
                call add(o, ','//missing)
             end if
          end associate
       end do
       call put(o, '')
+
+   contains
+
+      !> A cell: `before`, then `value`; `angular`: an angle in radians, or a derivative of one.
+      subroutine add_cell(before, value, angular)
+         character(*), intent(in) :: before
+         real(wp), intent(in) :: value
+         logical, intent(in) :: angular
+         character(full_length) :: cell
+         real(wp) :: x
+         integer :: length
+
+         x = value
+         if (s%degrees .and. angular) x = in_degrees(x)
+         call put_full(x, cell, length)
+         call add(o, before)
+         call add(o, cell(:length))
+      end subroutine add_cell
    end subroutine table_instant
-
-   !> A cell: `before`, then `value`, an angle in radians in degrees where `degrees`.
-   subroutine add_cell(o, before, value, degrees)
-      type(output_t), intent(inout) :: o
-      character(*), intent(in) :: before
-      real(wp), intent(in) :: value
-      logical, intent(in) :: degrees
-      character(full_length) :: cell
-      integer :: length
-
-      if (degrees) then
-         call put_full(in_degrees(value), cell, length)
-      else
-         call put_full(value, cell, length)
-      end if
-      call add(o, before)
-      call add(o, cell(:length))
-   end subroutine add_cell
 end module table
