@@ -17,7 +17,7 @@ module animation
    use picture_frames, only: closes
    use picture_page, only: place_canvas, paths_of, put_flagged, put_ring, put_set_head, put_flags, put_scale, &
       flag_lines, fitted, width, line_height
-   use svg, only: svg_head, put_end, put_group, put_window, put_circle, put_line, put_words, put_values, pixels, &
+   use svg, only: svg_head, put_end, put_group, put_window, put_circle, put_line, put_words, put_columns, pixels, &
       attribute, translation
    use text_output, only: output_t
    use listing, only: words_of_mark
@@ -41,7 +41,7 @@ module animation
    real(wp), parameter :: pale = 0.2_wp
    !> What of a group is animated.
    character(*), parameter :: turn = 'animateTransform attributeName="transform" type="rotate"', &
-      shift = 'animateTransform attributeName="transform" type="translate"', opacity = 'animate attributeName="opacity"'
+      shift = 'animateTransform attributeName="transform" type="translate"'
 
    !> How the frames follow one another.
    type :: course_t
@@ -107,9 +107,9 @@ contains
       end if
       call put_group(c%o, 'class="film" data-frames="'//whole(course%frames)//'" data-keys="' &
          //whole(size(course%frame))//'" data-end="'//full(c%d%frame(c%d%films)%t)//'"', '')
-      call put_moving_links(c, course, list)
+      call put_moving_links()
       do i = 1, size(c%d%poles)
-         call put_moving_centre(c, course, i)
+         call put_moving_centre(i)
       end do
       call put_end(c%o, 'g')
       if (size(c%d%poles) > 0) then
@@ -120,11 +120,178 @@ contains
          if (is_fixed(i) .and. .not. list%list(i)%is_below) call put_shape(c, list%list(i))
       end do
 
-      call put_clock(c, course)
+      call put_clock()
       call put_flags(c)
-      call put_bar(c, course)
+      call put_bar()
       call put_scale(c)
       call put_end(c%o, 'g')
+
+   contains
+
+      !> Draws the moving links, each with its shapes in its own axes, later ones over earlier ones.
+      subroutine put_moving_links()
+         type(sorted_t) :: own
+         type(canvas_t) :: axes
+         integer :: order(size(c%m%links)), i, k
+
+         own = sorted(list%list(:list%count)%link, size(c%m%links))
+         order(c%d%rank) = [(i, i=1, size(order))]
+         call make_canvas(c%o, c%d, axes)
+         axes%scale = c%scale
+         axes%s%place = 0.0_wp
+         axes%s%known = .true.
+         axes%low = -real(width, wp)
+         axes%high = real(width, wp)
+         do i = 1, size(order)
+            associate (link => order(i))
+               if (c%m%links(link)%ground .or. size(c%d%outlines(link)%corner, 2) == 0) cycle
+               if (.not. any([(c%d%frame(course%frame(k))%known(link), k=1, course%frames)])) cycle
+               ! It turns about a corner of its own: its origin may be far away.
+               axes%shift = -c%scale*c%d%outlines(link)%corner(:, 1)*[1.0_wp, -1.0_wp]
+               call begin_link(link)
+               do k = own%first(link), own%first(link + 1) - 1
+                  call put_shape(axes, list%list(own%member(k)))
+               end do
+               call put_end(c%o, 'g')
+               call put_end(c%o, 'g')
+            end associate
+         end do
+      end subroutine put_moving_links
+
+      !> Begins the two groups that move and turn with `link`, about its first corner.
+      subroutine begin_link(link)
+         integer, intent(in) :: link
+         real(wp) :: place(2, size(course%frame)), angle(1, size(course%frame)), position(3), turned
+         logical :: known(size(course%frame))
+         integer :: k, last
+
+         known = [(c%d%frame(course%frame(k))%known(link), k=1, size(known))]
+         last = course%frame(findloc(known, .true., dim=1))
+         turned = 0.0_wp
+         do k = 1, size(known)
+            if (known(k)) last = course%frame(k)
+            position = c%d%frame(last)%place(:, link)
+            place(:, k) = to_pixels(c, point_of(position, c%d%outlines(link)%corner(:, 1)))
+            turned = turned + without_turns(position(3) - turned)
+            angle(1, k) = turned
+         end do
+         angle = -in_degrees(angle)
+         call begin_moving('class="link" '//attribute('data-link', trim(c%m%links(link)%name))//' ', &
+            trim(c%m%links(link)%name), place, known, pale)
+         call put_group(c%o, 'transform="rotate('//pixels(angle(1, 1))//')"', '')
+         call put_moving(turn, angle, course%smooth)
+      end subroutine begin_link
+
+      !> Draws a ring that moves with the instant centre of pole number `i`, none where this is at infinity or leaves
+      !> the picture.
+      subroutine put_moving_centre(i)
+         integer, intent(in) :: i
+         real(wp) :: place(2, 0:size(course%frame))
+         logical :: is_there(size(course%frame))
+         character(:), allocatable :: name
+         integer :: k
+
+         place(:, 0) = c%low
+         do k = 1, size(course%frame)
+            associate (s => c%d%frame(course%frame(k)))
+               place(:, k) = to_pixels(c, s%centre(:, i))
+               is_there(k) = s%has_centre(i) .and. all(place(:, k) >= c%low .and. place(:, k) <= c%high)
+            end associate
+            if (.not. is_there(k)) place(:, k) = place(:, k - 1)
+         end do
+         if (.not. any(is_there)) return
+         name = pole_name(c%m, c%d%poles(i))
+         call begin_moving(attribute('data-pole', name)//' ', name, place(:, 1:), is_there, 0.0_wp)
+         call put_ring(c, i, [0.0_wp, 0.0_wp])
+         call put_end(c%o, 'g')
+      end subroutine put_moving_centre
+
+      !> The time and the values of drives, in red with its words where the instant is flagged: a column of lines behind
+      !> a window of one line.
+      subroutine put_clock()
+         real(wp) :: up(2, size(course%frame)), value(min(max_drives, size(c%m%drives)), course%frames)
+         character(:), allocatable :: words
+         integer :: k, i, y
+
+         y = c%bottom - 16 - line_height*flag_lines(c%d)
+         value = drive_values(c%m, c%d%frame(course%frame(:course%frames))%t)
+         call put_window(c%o, real([14, y - line_height + 5], wp), real([width - 28, line_height], wp))
+         call put_group(c%o, 'class="clock"', '')
+         up(1, :) = 0.0_wp
+         up(2, :) = [(-real(line_height*(min(k, course%frames) - 1), wp), k=1, size(course%frame))]
+         call put_moving(shift, up, .false.)
+         do k = 1, course%frames
+            associate (s => c%d%frame(course%frame(k)))
+               words = 'T = '//fitted(s%t)//' '//trim(c%m%time_unit)
+               do i = 1, size(value, 1)
+                  words = words//', '//trim(drive_name(c%m, c%m%drives(i)))//' = '//fitted(value(i, k))
+               end do
+               if (s%mark /= mark_none) words = words//': '//words_of_mark(s%mark, s%singularity, c%m%polish)
+               call put_words(c%o, real([0, line_height*k - 5], wp), 'start', &
+                  trim(merge('class="time flag"', 'class="time"     ', s%mark /= mark_none)), words)
+            end associate
+         end do
+         call put_end(c%o, 'g')
+         call put_end(c%o, 'svg')
+      end subroutine put_clock
+
+      !> The bar on which the time passes, with red marks at flagged instants.
+      subroutine put_bar()
+         real(wp) :: x, y, last, first(2)
+         integer :: k
+
+         y = real(c%bottom, wp)
+         first = [bar_ends(1), y]
+         call put_line(c%o, 'polyline', reshape([first, bar_ends(2), y], [2, 2]), 'class="time"')
+         last = -1.0_wp
+         do k = 1, size(c%d%flagged_at)
+            x = along_bar(c%d%flagged_at(k))
+            if (abs(x - last) < 1.0_wp) cycle
+            last = x
+            call put_line(c%o, 'polyline', reshape([x, y - mark_height, x, y + mark_height], [2, 2]), 'class="mark"')
+         end do
+         call put_group(c%o, 'class="now"', '')
+         call put_moving(shift, reshape([(along_bar(c%d%frame(course%frame(k))%t) - first(1), 0.0_wp, &
+            k=1, size(course%frame))], [2, size(course%frame)]), course%smooth)
+         call put_circle(c%o, first, dot_radius, 'class="point"')
+         call put_end(c%o, 'g')
+      end subroutine put_bar
+
+      !> Where the time `t` is on the bar (pixel).
+      pure real(wp) function along_bar(t) result(x)
+         real(wp), intent(in) :: t
+         real(wp) :: part
+
+         part = 0.0_wp
+         associate (t0 => c%d%frame(1)%t, t1 => c%d%frame(c%d%frames)%t)
+            if (abs(t1 - t0) > 0.0_wp) part = min(1.0_wp, max(0.0_wp, (t - t0)/(t1 - t0)))
+         end associate
+         x = bar_ends(1) + part*(bar_ends(2) - bar_ends(1))
+      end function along_bar
+
+      !> Begins a group with the `attributes` and the `title` that moves through the places `place` (2, keys). It is
+      !> seen by the opacity `elsewhere` at other keys than those where it `is_there` (keys).
+      subroutine begin_moving(attributes, title, place, is_there, elsewhere)
+         character(*), intent(in) :: attributes, title
+         real(wp), intent(in) :: place(:, :), elsewhere
+         logical, intent(in) :: is_there(:)
+
+         call put_group(c%o, attributes//translation(place(:, 1)), title)
+         call put_moving(shift, place, course%smooth)
+         if (.not. all(is_there)) call put_moving('animate attributeName="opacity"', &
+            reshape(merge(1.0_wp, elsewhere, is_there), [1, size(is_there)]), .false.)
+      end subroutine begin_moving
+
+      !> An animated attribute: `values` (:, keys) in turn, with what is between them if `smooth`.
+      subroutine put_moving(element, values, smooth)
+         character(*), intent(in) :: element
+         real(wp), intent(in) :: values(:, :)
+         logical, intent(in) :: smooth
+
+         if (size(values, 2) < 2) return
+         call put_columns(c%o, element//' calcMode="'//trim(merge('linear  ', 'discrete', smooth))//'" dur="' &
+            //fitted(course%seconds)//'s" repeatCount="indefinite" values="', values, ' ', ';', '/>')
+      end subroutine put_moving
    end subroutine put_film
 
    !> The motion begins again after its end: at once where it has come back, otherwise after a pause. It is not shown
@@ -150,126 +317,6 @@ contains
       end do
    end function course_of
 
-   !> Draws the moving links, each with its shapes in its own axes, later ones over earlier ones.
-   subroutine put_moving_links(c, course, list)
-      type(canvas_t), intent(in) :: c
-      type(course_t), intent(in) :: course
-      type(shapes_t), intent(in) :: list
-      type(sorted_t) :: own
-      type(canvas_t) :: axes
-      integer :: order(size(c%m%links)), i, k
-
-      own = sorted(list%list(:list%count)%link, size(c%m%links))
-      order(c%d%rank) = [(i, i=1, size(order))]
-      call make_canvas(c%o, c%d, axes)
-      axes%scale = c%scale
-      axes%s%place = 0.0_wp
-      axes%s%known = .true.
-      axes%low = -real(width, wp)
-      axes%high = real(width, wp)
-      do i = 1, size(order)
-         associate (link => order(i))
-            if (c%m%links(link)%ground .or. size(c%d%outlines(link)%corner, 2) == 0) cycle
-            if (.not. any([(c%d%frame(course%frame(k))%known(link), k=1, course%frames)])) cycle
-            ! It turns about a corner of its own: its origin may be far away.
-            axes%shift = -c%scale*c%d%outlines(link)%corner(:, 1)*[1.0_wp, -1.0_wp]
-            call begin_link(c, course, link)
-            do k = own%first(link), own%first(link + 1) - 1
-               call put_shape(axes, list%list(own%member(k)))
-            end do
-            call put_end(c%o, 'g')
-            call put_end(c%o, 'g')
-         end associate
-      end do
-   end subroutine put_moving_links
-
-   !> Begins the two groups that move and turn with `link`, about its first corner.
-   subroutine begin_link(c, course, link)
-      type(canvas_t), intent(in) :: c
-      type(course_t), intent(in) :: course
-      integer, intent(in) :: link
-      real(wp) :: place(2, size(course%frame)), angle(1, size(course%frame)), position(3), turned
-      logical :: known(size(course%frame))
-      integer :: k, last
-
-      known = [(c%d%frame(course%frame(k))%known(link), k=1, size(known))]
-      last = course%frame(findloc(known, .true., dim=1))
-      turned = 0.0_wp
-      do k = 1, size(known)
-         if (known(k)) last = course%frame(k)
-         position = c%d%frame(last)%place(:, link)
-         place(:, k) = to_pixels(c, point_of(position, c%d%outlines(link)%corner(:, 1)))
-         turned = turned + without_turns(position(3) - turned)
-         angle(1, k) = turned
-      end do
-      angle = -in_degrees(angle)
-      call put_group(c%o, 'class="link" '//attribute('data-link', trim(c%m%links(link)%name))//' ' &
-         //translation(place(:, 1)), trim(c%m%links(link)%name))
-      call put_moving(c%o, course, shift, place, course%smooth)
-      call put_opacity(c%o, course, known, pale)
-      call put_group(c%o, 'transform="rotate('//pixels(angle(1, 1))//')"', '')
-      call put_moving(c%o, course, turn, angle, course%smooth)
-   end subroutine begin_link
-
-   !> Draws a ring that moves with the instant centre of pole number `i`, none where this is at infinity or leaves the
-   !> picture.
-   subroutine put_moving_centre(c, course, i)
-      type(canvas_t), intent(in) :: c
-      type(course_t), intent(in) :: course
-      integer, intent(in) :: i
-      real(wp) :: place(2, 0:size(course%frame))
-      logical :: is_there(size(course%frame))
-      character(:), allocatable :: name
-      integer :: k
-
-      place(:, 0) = c%low
-      do k = 1, size(course%frame)
-         associate (s => c%d%frame(course%frame(k)))
-            place(:, k) = to_pixels(c, s%centre(:, i))
-            is_there(k) = s%has_centre(i) .and. all(place(:, k) >= c%low .and. place(:, k) <= c%high)
-         end associate
-         if (.not. is_there(k)) place(:, k) = place(:, k - 1)
-      end do
-      if (.not. any(is_there)) return
-      name = pole_name(c%m, c%d%poles(i))
-      call put_group(c%o, attribute('data-pole', name)//' '//translation(place(:, 1)), name)
-      call put_moving(c%o, course, shift, place(:, 1:), course%smooth)
-      call put_opacity(c%o, course, is_there, 0.0_wp)
-      call put_ring(c, i, [0.0_wp, 0.0_wp])
-      call put_end(c%o, 'g')
-   end subroutine put_moving_centre
-
-   !> The time and the values of drives, in red with its words where the instant is flagged: a column of lines behind a
-   !> window of one line.
-   subroutine put_clock(c, course)
-      type(canvas_t), intent(in) :: c
-      type(course_t), intent(in) :: course
-      real(wp) :: up(2, size(course%frame)), value(min(max_drives, size(c%m%drives)), course%frames)
-      character(:), allocatable :: words
-      integer :: k, i, y
-
-      y = c%bottom - 16 - line_height*flag_lines(c%d)
-      value = drive_values(c%m, c%d%frame(course%frame(:course%frames))%t)
-      call put_window(c%o, real([14, y - line_height + 5], wp), real([width - 28, line_height], wp))
-      call put_group(c%o, 'class="clock"', '')
-      up(1, :) = 0.0_wp
-      up(2, :) = [(-real(line_height*(min(k, course%frames) - 1), wp), k=1, size(course%frame))]
-      call put_moving(c%o, course, shift, up, .false.)
-      do k = 1, course%frames
-         associate (s => c%d%frame(course%frame(k)))
-            words = 'T = '//fitted(s%t)//' '//trim(c%m%time_unit)
-            do i = 1, size(value, 1)
-               words = words//', '//trim(drive_name(c%m, c%m%drives(i)))//' = '//fitted(value(i, k))
-            end do
-            if (s%mark /= mark_none) words = words//': '//words_of_mark(s%mark, s%singularity, c%m%polish)
-            call put_words(c%o, real([0, line_height*k - 5], wp), 'start', &
-               trim(merge('class="time flag"', 'class="time"     ', s%mark /= mark_none)), words)
-         end associate
-      end do
-      call put_end(c%o, 'g')
-      call put_end(c%o, 'svg')
-   end subroutine put_clock
-
    !> The values of the first drives of `m` at the instants `t`, angles in the deck's unit. Rounding errors of a 0 are
    !> not shown.
    function drive_values(m, t) result(value)
@@ -291,68 +338,4 @@ contains
          where (abs(value(i, :)) < not_shown*maxval(abs(value(i, :)))) value(i, :) = 0.0_wp
       end do
    end function drive_values
-
-   !> The bar on which the time passes, with red marks at flagged instants.
-   subroutine put_bar(c, course)
-      type(canvas_t), intent(in) :: c
-      type(course_t), intent(in) :: course
-      real(wp) :: x, y, last, first(2)
-      integer :: k
-
-      y = real(c%bottom, wp)
-      first = [bar_ends(1), y]
-      call put_line(c%o, 'polyline', reshape([first, bar_ends(2), y], [2, 2]), 'class="time"')
-      last = -1.0_wp
-      do k = 1, size(c%d%flagged_at)
-         x = along_bar(c%d, c%d%flagged_at(k))
-         if (abs(x - last) < 1.0_wp) cycle
-         last = x
-         call put_line(c%o, 'polyline', reshape([x, y - mark_height, x, y + mark_height], [2, 2]), 'class="mark"')
-      end do
-      call put_group(c%o, 'class="now"', '')
-      call put_moving(c%o, course, shift, reshape([(along_bar(c%d, c%d%frame(course%frame(k))%t) - first(1), 0.0_wp, &
-         k=1, size(course%frame))], [2, size(course%frame)]), course%smooth)
-      call put_circle(c%o, first, dot_radius, 'class="point"')
-      call put_end(c%o, 'g')
-   end subroutine put_bar
-
-   !> Where the time `t` is on the bar (pixel).
-   pure real(wp) function along_bar(d, t) result(x)
-      type(drawing_t), intent(in) :: d
-      real(wp), intent(in) :: t
-      real(wp) :: part
-
-      part = 0.0_wp
-      associate (t0 => d%frame(1)%t, t1 => d%frame(d%frames)%t)
-         if (abs(t1 - t0) > 0.0_wp) part = min(1.0_wp, max(0.0_wp, (t - t0)/(t1 - t0)))
-      end associate
-      x = bar_ends(1) + part*(bar_ends(2) - bar_ends(1))
-   end function along_bar
-
-   !> An animated attribute: `values` (:, keys) in turn, with what is between them if `smooth`.
-   subroutine put_moving(o, course, element, values, smooth)
-      type(output_t), intent(inout) :: o
-      type(course_t), intent(in) :: course
-      character(*), intent(in) :: element
-      real(wp), intent(in) :: values(:, :)
-      logical, intent(in) :: smooth
-      character(:), allocatable :: mode
-
-      if (size(values, 2) < 2) return
-      mode = 'linear'
-      if (.not. smooth) mode = 'discrete'
-      call put_values(o, element//' calcMode="'//mode//'" dur="'//fitted(course%seconds) &
-         //'s" repeatCount="indefinite"', values)
-   end subroutine put_moving
-
-   !> Shows a group by this opacity `elsewhere` than at the keys where it `is_there` (keys).
-   subroutine put_opacity(o, course, is_there, elsewhere)
-      type(output_t), intent(inout) :: o
-      type(course_t), intent(in) :: course
-      logical, intent(in) :: is_there(:)
-      real(wp), intent(in) :: elsewhere
-
-      if (.not. all(is_there)) call put_moving(o, course, opacity, &
-         reshape(merge(1.0_wp, elsewhere, is_there), [1, size(is_there)]), .false.)
-   end subroutine put_opacity
 end module animation

@@ -3,14 +3,15 @@
 module canvas
    use kinds, only: wp
    use mechanism, only: mechanism_t
-   use planar, only: direction, quarter_turn, rotated
+   use planar, only: direction, rotated
    use drawing, only: drawing_t, snapshot_t, point_place, point_velocity
-   use shapes, only: element_t, color_of
-   use svg, only: put_words, put_circle, put_line, put_strokes, put_curve, put_group, put_end, attribute
+   use shapes, only: element_t, color_of, box
+   use svg, only: put_words, put_circle, put_line, put_hatch, hatch_length, put_curve, put_group, &
+      put_end, attribute
    use text_output, only: output_t
    implicit none
    private
-   public :: canvas_t, make_canvas, to_pixels, put_shape, put_path, add_line, add_box, put_name, cover_of
+   public :: canvas_t, make_canvas, to_pixels, put_shape, put_path, add_line, put_name, cover_of
 
    !> What a set is drawn on. A place p of the drawing is at shift + scale (x, -y) in pixels.
    type :: canvas_t
@@ -24,9 +25,9 @@ module canvas
       real(wp) :: scale = 1.0_wp             !< pixels in a unit of length
       real(wp) :: shift(2) = 0.0_wp
       real(wp) :: low(2) = 0.0_wp, high(2) = 0.0_wp   !< names stay between these
-      integer :: lines = 0, boxes = 0
-      real(wp), allocatable :: line(:, :)    !< (5, lines or more) x, y of both ends, weight
-      real(wp), allocatable :: box(:, :)     !< (4, boxes or more) x, y of the upper left and the lower right corner
+      integer :: lines = 0
+      !> (5, lines or more) x, y of both ends, weight; below 0 a box, of its upper left and its lower right corner
+      real(wp), allocatable :: line(:, :)
    end type canvas_t
 
    !> Size of the letters of a name: mean width and height of capitals, in pixels.
@@ -41,8 +42,6 @@ module canvas
    real(wp), parameter, public :: tie = 1.0e-6_wp
    !> Lines that are closer than this, in pixels, are hard to tell apart.
    real(wp), parameter :: near = 4.0_wp
-   !> Distance and length of the strokes of a hatch, in pixels.
-   real(wp), parameter :: hatch_step = 7.0_wp, hatch_length = 6.0_wp
    !> The control points of a cubic of a path are no farther from its ends than this part of the distance of its ends,
    !> as in half a turn of a circle. Farther ones would draw loops that are not there.
    real(wp), parameter :: max_control = 0.6_wp
@@ -102,60 +101,42 @@ contains
          call put_hatch(c%o, q(:, 1), q(:, 2), shape%attributes)
          q(2, 2) = q(2, 2) + hatch_length
       case ('cut')
-         call put_cut_line(c, q, shape)
+         call put_cut_line()
          return
       case default
          call put_line(c%o, shape%element, q, shape%attributes, shape%title)
       end select
       if (shape%weight < 0.0_wp) then
-         call add_box(c, minval(q, dim=2) - shape%radius, maxval(q, dim=2) + shape%radius)
+         call add_line(c, minval(q, dim=2) - shape%radius, maxval(q, dim=2) + shape%radius, box)
       else if (shape%weight > 0.0_wp) then
          do k = 1, merge(n, n - 1, shape%element == 'polygon')
             call add_line(c, q(:, k), q(:, 1 + modulo(k, n)), shape%weight)
          end do
       end if
+
+   contains
+
+      !> Draws the line through the pixels `q` as far as it is in the picture.
+      subroutine put_cut_line()
+         real(wp) :: line(2, n + 1), from, to
+         integer :: used
+
+         used = 0
+         do k = 1, n - 1
+            call find_inside(q(:, k), q(:, k + 1), c%low, c%high, from, to)
+            if (to > from) then
+               if (used == 0) line(:, 1) = q(:, k) + from*(q(:, k + 1) - q(:, k))
+               used = max(used, 1) + 1
+               line(:, used) = q(:, k) + to*(q(:, k + 1) - q(:, k))
+               call add_line(c, line(:, used - 1), line(:, used), shape%weight)
+            end if
+            if (used > 0 .and. (to < 1.0_wp .or. k == n - 1)) then
+               call put_line(c%o, 'polyline', line(:, :used), shape%attributes, shape%title)
+               used = 0
+            end if
+         end do
+      end subroutine put_cut_line
    end subroutine put_shape
-
-   !> Draws the hatch of the ground on the lower side of the line from `p` to `q` (2), in pixels.
-   subroutine put_hatch(o, p, q, attributes)
-      type(output_t), intent(inout) :: o
-      real(wp), intent(in) :: p(2), q(2)
-      character(*), intent(in) :: attributes
-      real(wp) :: e(2), length
-      integer :: k, n
-
-      length = norm2(q - p)
-      ! What is far out of the picture may have no length left.
-      if (length <= 0.0_wp) return
-      n = max(1, int(min(200.0_wp, length/hatch_step)))
-      e = (q - p)/length
-      call put_strokes(o, reshape([(p + real(k, wp)*(q - p)/real(n, wp), k=1, n)], [2, n]), &
-         hatch_length*(sign(1.0_wp, e(1))*quarter_turn(e) - e), attributes)
-   end subroutine put_hatch
-
-   !> Draws `shape`, the line through the pixels `p` (2, :), as far as it is in the picture.
-   subroutine put_cut_line(c, p, shape)
-      type(canvas_t), intent(inout) :: c
-      real(wp), intent(in) :: p(:, :)
-      type(element_t), intent(in) :: shape
-      real(wp) :: line(2, size(p, 2) + 1), from, to
-      integer :: k, n
-
-      n = 0
-      do k = 1, size(p, 2) - 1
-         call find_inside(p(:, k), p(:, k + 1), c%low, c%high, from, to)
-         if (to > from) then
-            if (n == 0) line(:, 1) = p(:, k) + from*(p(:, k + 1) - p(:, k))
-            n = max(n, 1) + 1
-            line(:, n) = p(:, k) + to*(p(:, k + 1) - p(:, k))
-            call add_line(c, line(:, n - 1), line(:, n), shape%weight)
-         end if
-         if (n > 0 .and. (to < 1.0_wp .or. k == size(p, 2) - 1)) then
-            call put_line(c%o, 'polyline', line(:, :n), shape%attributes, shape%title)
-            n = 0
-         end if
-      end do
-   end subroutine put_cut_line
 
    !> Draws the path of point number `i` through the frames, in pieces where its place is not known. Each piece is made
    !> of cubics with the velocities at their ends, over as many frames as come near enough.
@@ -234,38 +215,22 @@ contains
       end function comes_near
    end subroutine put_path
 
-   !> Notes a line from `p` to `q` (2), in pixels, that names should not cross; a lighter one has less `weight`.
+   !> Notes what names should keep clear of: a line from `p` to `q` (2), in pixels, that they should not cross; a
+   !> lighter one has less `weight`. A weight below 0: a box with the corners `p` and `q` that they should not cover.
    pure subroutine add_line(c, p, q, weight)
       type(canvas_t), intent(inout) :: c
       real(wp), intent(in) :: p(2), q(2), weight
-
-      call append(c%line, c%lines, [p, q, weight])
-   end subroutine add_line
-
-   !> Notes a box with the corners `low` and `high` (2), in pixels, that names should not cover.
-   pure subroutine add_box(c, low, high)
-      type(canvas_t), intent(inout) :: c
-      real(wp), intent(in) :: low(2), high(2)
-
-      call append(c%box, c%boxes, [low, high])
-   end subroutine add_box
-
-   !> Appends a column to the first `used` columns of `list`.
-   pure subroutine append(list, used, column)
-      real(wp), allocatable, intent(inout) :: list(:, :)
-      integer, intent(inout) :: used
-      real(wp), intent(in) :: column(:)
       real(wp), allocatable :: longer(:, :)
 
-      if (.not. allocated(list)) allocate (list(size(column), 64))
-      if (used == size(list, 2)) then
-         allocate (longer(size(column), 2*used))
-         longer(:, :used) = list
-         call move_alloc(longer, list)
+      if (.not. allocated(c%line)) allocate (c%line(5, 64))
+      if (c%lines == size(c%line, 2)) then
+         allocate (longer(5, 2*c%lines))
+         longer(:, :c%lines) = c%line
+         call move_alloc(longer, c%line)
       end if
-      used = used + 1
-      list(:, used) = column
-   end subroutine append
+      c%lines = c%lines + 1
+      c%line(:, c%lines) = [p, q, weight]
+   end subroutine add_line
 
    !> Writes the `name` of what is at one of the pixels `p` (2, :), where it covers the least of what is drawn, or is
    !> nearer to it than `clear` (pixels): of places to eight sides at several distances. It is noted as drawn.
@@ -297,7 +262,7 @@ contains
          end do
       end do
       call put_words(c%o, start, 'start', attributes, name)
-      call add_box(c, [start(1), start(2) - 2.0_wp*half(2)], [start(1) + 2.0_wp*half(1), start(2)])
+      call add_line(c, [start(1), start(2) - 2.0_wp*half(2)], [start(1) + 2.0_wp*half(1), start(2)], box)
    end subroutine put_name
 
    !> How much of what is drawn the line through the places `p` (2, :) would cover or come near.
@@ -321,13 +286,14 @@ contains
 
       cover = 0.0_wp
       if (any(low < c%low) .or. any(high > c%high)) cover = outside
-      do i = 1, c%boxes
-         if (all(c%box(:2, i) < high) .and. all(c%box(3:, i) > low)) cover = cover + over_name
-      end do
       do i = 1, c%lines
          associate (p => c%line(:2, i), q => c%line(3:4, i))
             ! Most lines are far away, and this is asked very often.
             if (any(max(p, q) < low) .or. any(min(p, q) > high)) cycle
+            if (c%line(5, i) < 0.0_wp) then
+               if (all(p < high) .and. all(q > low)) cover = cover + over_name
+               cycle
+            end if
             call find_inside(p, q, low, high, from, to)
             if (to > from) cover = cover + c%line(5, i)*((to - from)*norm2(q - p))
          end associate

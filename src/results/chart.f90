@@ -79,55 +79,52 @@ contains
       corner = [left, top + above]
       extent = [real(width, wp) - left - right, height]
       call put_group(o, attributes, c%axes(2)%name)
-      call put_ticks(o, c%axes(1), 1, corner, extent)
-      call put_ticks(o, c%axes(2), 2, corner, extent)
+      call put_ticks(c%axes(1), 1)
+      call put_ticks(c%axes(2), 2)
       call put_words(o, corner + [0.0_wp, -8.0_wp], 'start', 'class="time"', c%axes(2)%name)
       call put_words(o, corner + extent + [0.0_wp, 34.0_wp], 'end', 'class="time"', c%axes(1)%name)
       call put_window(o, corner, extent)
       do i = 1, size(c%curves)
          call put_group(o, 'class="circuit" data-circuit="'//whole(i)//'" style="stroke:'//color_of(i)//'"', &
             word//' '//whole(i))
-         call put_curve(o, c%axes, c%curves(i), color_of(i), extent)
+         call put_curve(c%curves(i), color_of(i))
          call put_end(o, 'g')
       end do
       call put_end(o, 'svg')
       call put_line(o, 'polygon', reshape([corner, corner(1) + extent(1), corner(2), corner + extent, corner(1), &
          corner(2) + extent(2)], [2, 4]), 'style="stroke:#222;stroke-width:1"')
       call put_end(o, 'g')
-   end subroutine put_chart
-
-   !> Writes `curve` in a window of `extent` (2) pixels: as many times, whole turns apart, as it enters the window.
-   subroutine put_curve(o, axes, curve, color, extent)
-      type(output_t), intent(inout) :: o
-      type(axis_t), intent(in) :: axes(2)
-      type(graph_t), intent(in) :: curve
-      character(*), intent(in) :: color
-      real(wp), intent(in) :: extent(2)
-      real(wp) :: q(2)
-      integer :: low(2), high(2), x, y, k
-
-      low = turns_of(minval(curve%p, dim=2))
-      high = turns_of(maxval(curve%p, dim=2))
-      do x = low(1), high(1)
-         do y = low(2), high(2)
-            call put_line(o, 'polyline', reshape([(pixel(curve%p(:, k), [x, y]), k=1, size(curve%p, 2))], &
-               shape(curve%p)), 'class="curve" style="stroke:'//color//'"')
-         end do
-      end do
-      do k = 1, size(curve%kind)
-         q = pixel(curve%mark(:, k), turns_of(curve%mark(:, k)))
-         select case (curve%kind(k))
-         case (mark_dot)
-            call put_circle(o, q, dot, 'class="dead" style="stroke:none;fill:'//color//'"')
-         case (mark_ring)
-            call put_circle(o, q, ring, 'class="change" style="fill:none;stroke:'//color//'"')
-         case default
-            call put_words(o, q + [0.0_wp, 4.0_wp], 'middle', 'class="assembly" style="fill:'//color//'"', &
-               whole(curve%kind(k)))
-         end select
-      end do
 
    contains
+
+      !> Writes `curve` in the window: as many times, whole turns apart, as it enters the window.
+      subroutine put_curve(curve, color)
+         type(graph_t), intent(in) :: curve
+         character(*), intent(in) :: color
+         real(wp) :: q(2)
+         integer :: low(2), high(2), x, y, k
+
+         low = turns_of(minval(curve%p, dim=2))
+         high = turns_of(maxval(curve%p, dim=2))
+         do x = low(1), high(1)
+            do y = low(2), high(2)
+               call put_line(o, 'polyline', reshape([(pixel(curve%p(:, k), [x, y]), k=1, size(curve%p, 2))], &
+                  shape(curve%p)), 'class="curve" style="stroke:'//color//'"')
+            end do
+         end do
+         do k = 1, size(curve%kind)
+            q = pixel(curve%mark(:, k), turns_of(curve%mark(:, k)))
+            select case (curve%kind(k))
+            case (mark_dot)
+               call put_circle(o, q, dot, 'class="dead" style="stroke:none;fill:'//color//'"')
+            case (mark_ring)
+               call put_circle(o, q, ring, 'class="change" style="fill:none;stroke:'//color//'"')
+            case default
+               call put_words(o, q + [0.0_wp, 4.0_wp], 'middle', 'class="assembly" style="fill:'//color//'"', &
+                  whole(curve%kind(k)))
+            end select
+         end do
+      end subroutine put_curve
 
       !> By how many turns the place `p` (2) is off the window.
       pure function turns_of(p) result(turns)
@@ -135,7 +132,7 @@ contains
          integer :: turns(2)
 
          turns = 0
-         where (axes%turn > 0.0_wp) turns = floor((p - axes%low)/axes%turn)
+         where (c%axes%turn > 0.0_wp) turns = floor((p - c%axes%low)/c%axes%turn)
       end function turns_of
 
       !> The pixel (2) of the place `p` (2), less so many `turns`.
@@ -144,32 +141,30 @@ contains
          integer, intent(in) :: turns(2)
          real(wp) :: q(2)
 
-         q = (p - turns*axes%turn - axes%low)/(axes%high - axes%low)
+         q = (p - turns*c%axes%turn - c%axes%low)/(c%axes%high - c%axes%low)
          q = [q(1), 1.0_wp - q(2)]*extent
       end function pixel
-   end subroutine put_curve
 
-   !> Writes ticks and numbers of `axis` on side `k`, 1 below, 2 on the left, of the diagram at `corner` of `extent`.
-   subroutine put_ticks(o, axis, k, corner, extent)
-      type(output_t), intent(inout) :: o
-      type(axis_t), intent(in) :: axis
-      integer, intent(in) :: k
-      real(wp), intent(in) :: corner(2), extent(2)
-      ! From the side to the end of a tick, and to its number.
-      real(wp), parameter :: to_end(2, 2) = reshape([0.0_wp, tick, -tick, 0.0_wp], [2, 2])
-      real(wp), parameter :: to_number(2, 2) = reshape([0.0_wp, tick + 13.0_wp, -tick - 4.0_wp, 4.0_wp], [2, 2])
-      character(6), parameter :: anchors(2) = ['middle', 'end   ']
-      real(wp) :: step, x, p(2)
-      integer(int64) :: i
+      !> Writes ticks and numbers of `axis` on side `k`, 1 below, 2 on the left,.
+      subroutine put_ticks(axis, k)
+         type(axis_t), intent(in) :: axis
+         integer, intent(in) :: k
+         ! From the side to the end of a tick, and to its number.
+         real(wp), parameter :: to_end(2, 2) = reshape([0.0_wp, tick, -tick, 0.0_wp], [2, 2])
+         real(wp), parameter :: to_number(2, 2) = reshape([0.0_wp, tick + 13.0_wp, -tick - 4.0_wp, 4.0_wp], [2, 2])
+         character(6), parameter :: anchors(2) = ['middle', 'end   ']
+         real(wp) :: step, x, p(2)
+         integer(int64) :: i
 
-      step = step_of(axis)
-      do i = ceiling(axis%low/step - 1.0e-6_wp, int64), floor(axis%high/step + 1.0e-6_wp, int64)
-         x = (real(i, wp)*step - axis%low)/(axis%high - axis%low)
-         p = corner + extent*merge([x, 1.0_wp], [0.0_wp, 1.0_wp - x], k == 1)
-         call put_line(o, 'polyline', reshape([p, p + to_end(:, k)], [2, 2]), 'style="stroke:#222;stroke-width:1"')
-         call put_words(o, p + to_number(:, k), trim(anchors(k)), 'class="between"', fitted(real(i, wp)*step))
-      end do
-   end subroutine put_ticks
+         step = step_of(axis)
+         do i = ceiling(axis%low/step - 1.0e-6_wp, int64), floor(axis%high/step + 1.0e-6_wp, int64)
+            x = (real(i, wp)*step - axis%low)/(axis%high - axis%low)
+            p = corner + extent*merge([x, 1.0_wp], [0.0_wp, 1.0_wp - x], k == 1)
+            call put_line(o, 'polyline', reshape([p, p + to_end(:, k)], [2, 2]), 'style="stroke:#222;stroke-width:1"')
+            call put_words(o, p + to_number(:, k), trim(anchors(k)), 'class="between"', fitted(real(i, wp)*step))
+         end do
+      end subroutine put_ticks
+   end subroutine put_chart
 
    !> The step between ticks of `axis`.
    pure real(wp) function step_of(axis) result(step)

@@ -140,7 +140,8 @@ contains
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: every
       type(drawing_t) :: d
-      integer :: i, most
+      type(sorted_t) :: by_corners
+      integer :: corners(size(m%links)), i, most
 
       d%m = m
       d%every = every
@@ -159,7 +160,14 @@ contains
       do i = 1, size(d%guides)
          d%guides(i) = guide_of(m, d%outlines, d%guides(i)%pair)
       end do
-      d%rank = ranks_of(d%outlines, d%guides)
+      ! First polygons are drawn, then bars and rods, then a single point, such as a block.
+      corners = [(min(3, size(d%outlines(i)%corner, 2)), i=1, size(m%links))]
+      do i = 1, size(d%guides)
+         corners(d%guides(i)%carrier) = max(2, corners(d%guides(i)%carrier))
+      end do
+      by_corners = sorted(4 - corners, 4)
+      allocate (d%rank(size(m%links)))
+      d%rank(by_corners%member) = [(i, i=1, size(m%links))]
       d%now = snapshot_of_ground(d)
 
       most = max(2, min(max_frames, max_held/size(m%links)))
@@ -177,22 +185,6 @@ contains
       if (k > d%m%steps) is_frame = d%every == 0 .and. (mod(k - d%m%steps - 1, d%stride_at) == 0 &
          .or. k == instant_count(d%m) - 1)
    end function is_frame
-
-   !> When each link is drawn (links): first polygons, then bars and rods, then a single point, such as a block.
-   pure function ranks_of(outlines, guides) result(rank)
-      type(outline_t), intent(in) :: outlines(:)
-      type(guide_t), intent(in) :: guides(:)
-      integer :: rank(size(outlines))
-      type(sorted_t) :: by_corners
-      integer :: corners(size(outlines)), i
-
-      corners = [(min(3, size(outlines(i)%corner, 2)), i=1, size(corners))]
-      do i = 1, size(guides)
-         corners(guides(i)%carrier) = max(2, corners(guides(i)%carrier))
-      end do
-      by_corners = sorted(4 - corners, 4)
-      rank(by_corners%member) = [(i, i=1, size(rank))]
-   end function ranks_of
 
    !> The ground links where the deck has them; the others are not known.
    pure function snapshot_of_ground(d) result(s)

@@ -91,9 +91,11 @@ contains
                next = i
                cycle
             end if
-            side = turn_of(p(:, last), p(:, next), p(:, i))
-            if (side < -same_place .or. (side <= same_place .and. &
-               norm2(p(:, i) - p(:, last)) > norm2(p(:, next) - p(:, last)))) next = i
+            ! The sine of the angle from the next place to this one.
+            associate (u => p(:, next) - p(:, last), v => p(:, i) - p(:, last))
+               side = cross(u/norm2(u), v/norm2(v))
+               if (side < -same_place .or. (side <= same_place .and. norm2(v) > norm2(u))) next = i
+            end associate
          end do
          if (next == 0 .or. n == size(p, 2)) exit
          if (is_same_place(p(:, next), p(:, start), extent)) exit
@@ -101,13 +103,6 @@ contains
       end do
       corners = p(:, order(:n))
    end function hull
-
-   !> The sine of the angle at `a` (2) from `b` (2) to `c` (2), which are other places.
-   pure real(wp) function turn_of(a, b, c)
-      real(wp), intent(in) :: a(2), b(2), c(2)
-
-      turn_of = cross((b - a)/norm2(b - a), (c - a)/norm2(c - a))
-   end function turn_of
 
    !> Whether `p` and `q` (2) are one place for the eye, where what is drawn has the given `extent`.
    pure logical function is_same_place(p, q, extent)

@@ -49,14 +49,21 @@ contains
    subroutine place_canvas(c, top)
       type(canvas_t), intent(inout) :: c
       integer, intent(in) :: top
-      real(wp) :: low(2), high(2), size_of_it(2), room
-      integer :: height
+      real(wp) :: low(2), high(2), size_of_it(2), room, power
+      integer :: height, e
 
       call find_extent(c, low, high)
       size_of_it = high - low
       room = real(width, wp) - 2.0_wp*margin
       c%scale = 1.0_wp
-      if (any(size_of_it > 0.0_wp)) c%scale = rounded_down(1.0_wp/max(size_of_it(1)/room, size_of_it(2)/max_height))
+      if (any(size_of_it > 0.0_wp)) then
+         c%scale = 1.0_wp/max(size_of_it(1)/room, size_of_it(2)/max_height)
+         e = 2 - floor(log10(c%scale))
+         power = 10.0_wp**abs(e)
+         c%scale = c%scale*(1.0_wp + tie)
+         if (e >= 0) c%scale = aint(c%scale*power)/power
+         if (e < 0) c%scale = aint(c%scale/power)*power
+      end if
       height = 2*ceiling(0.5_wp*max(min_height, c%scale*size_of_it(2)) + margin - tie)
       c%top = top
       c%bottom = top + above + height + below + line_height*flag_lines(c%d)
@@ -141,16 +148,6 @@ contains
          high = max(high, p)
       end subroutine widen
    end subroutine find_extent
-
-   !> `x` > 0 with three digits, not larger than it was but for `tie`.
-   pure real(wp) function rounded_down(x)
-      real(wp), intent(in) :: x
-      integer :: e
-
-      e = 2 - floor(log10(x))
-      if (e >= 0) rounded_down = aint(x*(1.0_wp + tie)*10.0_wp**e)/10.0_wp**e
-      if (e < 0) rounded_down = aint(x*(1.0_wp + tie)/10.0_wp**(-e))*10.0_wp**(-e)
-   end function rounded_down
 
    !> The points whose paths are drawn: those that move; of several with the same path the first.
    pure function paths_of(d) result(list)

@@ -8,7 +8,7 @@ module shapes
    use svg, only: attribute
    implicit none
    private
-   public :: element_t, shapes_t, shapes_of, color_of, link_color, pole_name, half_block
+   public :: element_t, shapes_t, shapes_of, color_of, link_color, pole_name, half_block, box
 
    !> One shape. Its places are `p` in the unit of length and further `add` in pixels, both in the axes of `link`.
    type :: element_t
@@ -59,26 +59,26 @@ contains
 
       allocate (s%list(64))
       do i = 1, size(d%m%pairs)
-         if (d%m%pairs(i)%kind == pair_revolute) call add_support(s, d, i)
+         if (d%m%pairs(i)%kind == pair_revolute) call add_support(i)
       end do
       do i = 1, size(d%guides)
-         if (d%guides(i)%high >= d%guides(i)%low) call add_guide(s, d%m, d%guides(i), scale)
+         if (d%guides(i)%high >= d%guides(i)%low) call add_guide(d%guides(i))
       end do
       do i = 1, size(d%poles)
          do k = 1, 2
-            call add_centrode(s, d, i, k, scale)
+            call add_centrode(i, k)
          end do
       end do
       s%list(:s%count)%is_below = .true.
       do i = 1, size(d%m%links)
-         if (.not. d%m%links(i)%ground) call add_body(s, d, i)
+         if (.not. d%m%links(i)%ground) call add_body(i)
       end do
       do i = 1, size(d%guides)
-         call add_block(s, d%m, d%guides(i))
+         call add_block(d%guides(i))
       end do
       do i = 1, size(d%m%pairs)
          point = joint_point(d, known, i)
-         if (d%m%pairs(i)%kind == pair_revolute .and. point > 0) call add_disk(s, d%m, point, joint_radius, &
+         if (d%m%pairs(i)%kind == pair_revolute .and. point > 0) call add_disk(point, joint_radius, &
             'class="joint" '//attribute('data-pair', trim(d%m%pairs(i)%name)))
       end do
       ! The points of moving links that no pair joins.
@@ -86,214 +86,185 @@ contains
       is_dot([d%m%pairs%point_i, d%m%pairs%point_j]) = .false.
       dots = pack([(i, i=1, size(is_dot))], is_dot)
       do i = 1, size(dots)
-         call add_disk(s, d%m, dots(i), point_radius, &
+         call add_disk(dots(i), point_radius, &
             'class="point" '//attribute('data-point', trim(d%m%points(dots(i))%name)))
       end do
-   end function shapes_of
-
-   !> Adds an `element` of SVG that moves with `link` to the shapes `s`.
-   subroutine add(s, link, element, attributes, p, pixels, weight, title, radius)
-      type(shapes_t), intent(inout) :: s
-      integer, intent(in) :: link
-      character(*), intent(in) :: element, attributes
-      real(wp), intent(in) :: p(:, :)
-      real(wp), intent(in), optional :: pixels(:, :), weight, radius
-      character(*), intent(in), optional :: title
-      type(shapes_t) :: longer
-
-      if (s%count == size(s%list)) then
-         allocate (longer%list(2*s%count))
-         longer%list(:s%count) = s%list
-         call move_alloc(longer%list, s%list)
-      end if
-      s%count = s%count + 1
-      associate (one => s%list(s%count))
-         one%link = link
-         one%element = element
-         one%attributes = attributes
-         one%title = ''
-         if (present(title)) one%title = title
-         one%p = p
-         one%add = 0.0_wp*p
-         if (present(pixels)) one%add = pixels
-         if (present(weight)) one%weight = weight
-         if (present(radius)) one%radius = radius
-      end associate
-   end subroutine add
-
-   !> Adds the support under the point of the ground that revolute pair number `i` joins, if there is one.
-   subroutine add_support(s, d, i)
-      type(shapes_t), intent(inout) :: s
-      type(drawing_t), intent(in) :: d
-      integer, intent(in) :: i
-      real(wp) :: place(2, 3)
-      integer :: ends(2), k
-
-      ends = [d%m%pairs(i)%point_i, d%m%pairs(i)%point_j]
-      k = findloc(d%m%links(d%m%points(ends)%link)%ground, .true., dim=1)
-      if (k == 0) return
-      associate (point => d%m%points(ends(k)))
-         associate (ground => d%m%links(point%link))
-            place = spread(ground%position(:2) - d%origin + rotated(point%offset, direction(ground%position(3))), 2, 3)
-            call add(s, 0, 'polygon', 'class="support"', place, support, box, trim(ground%name))
-            call add(s, 0, 'hatch', 'class="hatch"', place(:, :2), base, box)
-            call add(s, 0, 'polyline', 'class="support"', place(:, :2), base)
-         end associate
-      end associate
-   end subroutine add_support
-
-   !> Adds the guide `g`: a line over the range of the slide. The ground's has a hatch. That of a moving link is a rod
-   !> that begins where the perpendicular from its pivot meets it.
-   subroutine add_guide(s, m, g, scale)
-      type(shapes_t), intent(inout) :: s
-      type(mechanism_t), intent(in) :: m
-      type(guide_t), intent(in) :: g
-      real(wp), intent(in) :: scale
-      character(:), allocatable :: name
-      real(wp) :: e(2), ends(2, 2), pixels(2, 2), beside(2)
-
-      e = direction(g%angle)
-      name = trim(m%pairs(g%pair)%name)
-      if (m%links(g%carrier)%ground) then
-         ends = reshape([g%foot + g%low*e, g%foot + g%high*e], [2, 2])
-         pixels = reshape([-beyond*e, beyond*e], [2, 2])
-         call add(s, g%carrier, 'hatch', 'class="hatch"', ends, pixels)
-         call add(s, g%carrier, 'polyline', 'class="guide"', ends, pixels, line_weight, name)
-      else
-         beside = m%points(g%pivot)%offset - g%foot
-         ends = reshape([g%foot + min(g%low, 0.0_wp)*e, g%foot + max(g%high, 0.0_wp)*e], [2, 2])
-         pixels(:, 1) = min(scale*max(g%low, 0.0_wp) - rod_beyond, 0.0_wp)*e
-         pixels(:, 2) = max(scale*min(g%high, 0.0_wp) + rod_beyond, 0.0_wp)*e
-         call add_rod('class="rod" style="stroke:'//color_of(g%carrier)//'"', line_weight)
-         call add_rod('class="slot"', 0.0_wp)
-      end if
 
    contains
 
-      !> Adds the rod once, with the pivot's perpendicular if that can be seen.
-      subroutine add_rod(attributes, weight)
-         character(*), intent(in) :: attributes
-         real(wp), intent(in) :: weight
-         real(wp), parameter :: none(2) = 0.0_wp
+      !> Adds an `element` of SVG that moves with `link`.
+      subroutine add(link, element, attributes, p, pixels, weight, title, radius)
+         integer, intent(in) :: link
+         character(*), intent(in) :: element, attributes
+         real(wp), intent(in) :: p(:, :)
+         real(wp), intent(in), optional :: pixels(:, :), weight, radius
+         character(*), intent(in), optional :: title
+         type(shapes_t) :: longer
 
-         if (scale*norm2(beside) > 1.0_wp) then
-            call add(s, g%carrier, 'polyline', attributes, reshape([ends(:, 1), g%foot, g%foot + beside, g%foot, &
-               ends(:, 2)], [2, 5]), reshape([pixels(:, 1), none, none, none, pixels(:, 2)], [2, 5]), weight, name)
-         else
-            call add(s, g%carrier, 'polyline', attributes, ends, pixels, weight, name)
+         if (s%count == size(s%list)) then
+            allocate (longer%list(2*s%count))
+            longer%list(:s%count) = s%list
+            call move_alloc(longer%list, s%list)
          end if
-      end subroutine add_rod
-   end subroutine add_guide
+         s%count = s%count + 1
+         associate (one => s%list(s%count))
+            one%link = link
+            one%element = element
+            one%attributes = attributes
+            one%title = ''
+            if (present(title)) one%title = title
+            one%p = p
+            one%add = 0.0_wp*p
+            if (present(pixels)) one%add = pixels
+            if (present(weight)) one%weight = weight
+            if (present(radius)) one%radius = radius
+         end associate
+      end subroutine add
 
-   !> Adds the centrode of pole number `i` in its link number `side`, 1 or 2, as it lies in that link: the two touch at
-   !> the instant centre. It may run to infinity, and the picture cuts it. Where the sense of the relative turn changes,
-   !> the centre has passed through infinity.
-   subroutine add_centrode(s, d, i, side, scale)
-      type(shapes_t), intent(inout) :: s
-      type(drawing_t), intent(in) :: d
-      integer, intent(in) :: i, side
-      real(wp), intent(in) :: scale
-      character(:), allocatable :: attributes
-      real(wp) :: p(2, d%films), u(2), v(2)
-      logical :: goes_on(d%films), on_piece(d%films)   ! the next place is on the same piece; on one with another place
-      integer :: links(2), k, first, last
+      !> Adds the support under the point of the ground that revolute pair number `i` joins, if there is one.
+      subroutine add_support(i)
+         integer, intent(in) :: i
+         real(wp) :: place(2, 3)
+         integer :: ends(2), k
 
-      associate (pole => d%m%requests(d%poles(i)))
-         links = [pole%second, pole%subject]
-      end associate
-      goes_on = .false.
-      do k = 1, d%films
-         associate (now => d%frame(k))
-            associate (place => now%place(:, links(side)))
-               p(:, k) = rotated(now%centre(:, i) - place(:2), direction(-place(3)))
+         ends = [d%m%pairs(i)%point_i, d%m%pairs(i)%point_j]
+         k = findloc(d%m%links(d%m%points(ends)%link)%ground, .true., dim=1)
+         if (k == 0) return
+         associate (point => d%m%points(ends(k)))
+            associate (ground => d%m%links(point%link))
+               place = spread(ground%position(:2) - d%origin + rotated(point%offset, direction(ground%position(3))), &
+                  2, 3)
+               call add(0, 'polygon', 'class="support"', place, support, box, trim(ground%name))
+               call add(0, 'hatch', 'class="hatch"', place(:, :2), base, box)
+               call add(0, 'polyline', 'class="support"', place(:, :2), base)
             end associate
-            if (k < d%films) goes_on(k) = now%has_centre(i) .and. d%frame(k + 1)%has_centre(i) .and. &
-               (turn(now) > 0.0_wp .eqv. turn(d%frame(k + 1)) > 0.0_wp)
          end associate
-      end do
-      if (.not. any(goes_on)) return
-      ! The pole of two links that a joint holds together stays in both: rounding errors would decide all below.
-      on_piece = goes_on .or. eoshift(goes_on, -1)
-      if (all(scale*(maxval(p, 2, spread(on_piece, 1, 2)) - minval(p, 2, spread(on_piece, 1, 2))) < one_place)) return
-      ! It ends where it comes back to its first place and goes on as it began: drawn twice, dashes would fill the gaps.
-      do last = 3, d%films - 1
-         if (.not. (goes_on(1) .and. goes_on(last))) cycle
-         u = p(:, 2) - p(:, 1)
-         v = p(:, last + 1) - p(:, last)
-         if (norm2(p(:, last) - p(:, 1)) <= come_back*norm2(u) .and. dot_product(u, v) > 0.9_wp*norm2(u)*norm2(v)) &
-            goes_on(last:) = .false.
-      end do
+      end subroutine add_support
 
-      attributes = 'class="centrode" '//attribute('data-centrode', pole_name(d%m, d%poles(i)))//' '// &
-         attribute('data-link', trim(d%m%links(links(side))%name))//' style="stroke:' &
-         //link_color(d%m, links(side))//'"'
-      first = 1
-      do last = 1, d%films
-         if (goes_on(last)) cycle
-         if (last > first) call add(s, links(side), 'cut', attributes, p(:, first:last), weight=centrode_weight, &
-            title=pole_name(d%m, d%poles(i)))
-         first = last + 1
-      end do
+      !> Adds the guide `g`: a line over the range of the slide. The ground's has a hatch. That of a moving link is a
+      !> rod that begins where the perpendicular from its pivot meets it, if that can be seen.
+      subroutine add_guide(g)
+         type(guide_t), intent(in) :: g
+         character(:), allocatable :: name
+         real(wp), allocatable :: p(:, :), pixels(:, :)
+         real(wp) :: e(2), beside(2)
 
-   contains
-
-      !> The rate of the second link from the first.
-      pure real(wp) function turn(now)
-         use drawing, only: snapshot_t
-         type(snapshot_t), intent(in) :: now
-
-         turn = now%velocity(3, links(2)) - now%velocity(3, links(1))
-      end function turn
-   end subroutine add_centrode
-
-   !> Adds link number `i`, which moves: a bar, or a polygon.
-   subroutine add_body(s, d, i)
-      type(shapes_t), intent(inout) :: s
-      type(drawing_t), intent(in) :: d
-      integer, intent(in) :: i
-      character(:), allocatable :: stroke, name
-
-      stroke = 'style="stroke:'//color_of(i)
-      name = trim(d%m%links(i)%name)
-      associate (p => d%outlines(i)%corner)
-         if (size(p, 2) == 2) then
-            call add(s, i, 'polyline', 'class="bar" '//stroke//'"', p, weight=bar_weight, title=name)
-            call add(s, i, 'polyline', 'class="core"', p, title=name)
-         else if (size(p, 2) > 2) then
-            call add(s, i, 'polygon', 'class="body" '//stroke//';fill:'//color_of(i)//'"', p, weight=line_weight, &
-               title=name)
+         e = direction(g%angle)
+         name = trim(d%m%pairs(g%pair)%name)
+         if (d%m%links(g%carrier)%ground) then
+            p = reshape([g%foot + g%low*e, g%foot + g%high*e], [2, 2])
+            pixels = reshape([-beyond*e, beyond*e], [2, 2])
+            call add(g%carrier, 'hatch', 'class="hatch"', p, pixels)
+            call add(g%carrier, 'polyline', 'class="guide"', p, pixels, line_weight, name)
+         else
+            beside = d%m%points(g%pivot)%offset - g%foot
+            p = reshape([g%foot + min(g%low, 0.0_wp)*e, g%foot + max(g%high, 0.0_wp)*e], [2, 2])
+            pixels = reshape([min(scale*max(g%low, 0.0_wp) - rod_beyond, 0.0_wp)*e, &
+               max(scale*min(g%high, 0.0_wp) + rod_beyond, 0.0_wp)*e], [2, 2])
+            if (scale*norm2(beside) > 1.0_wp) then
+               p = reshape([p(:, 1), g%foot, g%foot + beside, g%foot, p(:, 2)], [2, 5])
+               pixels = reshape([pixels(:, 1), 0.0_wp*[beside, beside, beside], pixels(:, 2)], [2, 5])
+            end if
+            call add(g%carrier, 'polyline', 'class="rod" style="stroke:'//color_of(g%carrier)//'"', p, pixels, &
+               line_weight, name)
+            call add(g%carrier, 'polyline', 'class="slot"', p, pixels, 0.0_wp, name)
          end if
-      end associate
-   end subroutine add_body
+      end subroutine add_guide
 
-   !> Adds the block on the guide `g`.
-   subroutine add_block(s, m, g)
-      type(shapes_t), intent(inout) :: s
-      type(mechanism_t), intent(in) :: m
-      type(guide_t), intent(in) :: g
-      real(wp) :: u(2), v(2)
-      character(7) :: color
+      !> Adds the centrode of pole number `i` in its link number `side`, 1 or 2, as it lies in that link: the two touch
+      !> at the instant centre. It may run to infinity, and the picture cuts it. Where the sense of the relative turn
+      !> changes, the centre has passed through infinity.
+      subroutine add_centrode(i, side)
+         integer, intent(in) :: i, side
+         character(:), allocatable :: attributes
+         real(wp) :: p(2, d%films), u(2), v(2)
+         real(wp) :: turn(d%films)                        ! the rate of the second link from the first
+         ! The next place is on the same piece; it is on one with another place.
+         logical :: goes_on(d%films), on_piece(d%films)
+         integer :: links(2), k, first, last
 
-      u = half_block(1)*direction(g%block_angle)
-      v = half_block(2)*quarter_turn(direction(g%block_angle))
-      color = color_of(g%block)
-      if (m%links(g%block)%ground) color = ground_block
-      call add(s, g%block, 'polygon', 'class="block" style="fill:'//color//'"', &
-         spread(m%points(g%point)%offset, 2, 4), reshape([v - u, u + v, u - v, -u - v], [2, 4]), box, &
-         trim(m%pairs(g%pair)%name))
-   end subroutine add_block
+         associate (pole => d%m%requests(d%poles(i)))
+            links = [pole%second, pole%subject]
+         end associate
+         do k = 1, d%films
+            associate (now => d%frame(k), place => d%frame(k)%place(:, links(side)))
+               p(:, k) = rotated(now%centre(:, i) - place(:2), direction(-place(3)))
+               turn(k) = now%velocity(3, links(2)) - now%velocity(3, links(1))
+               goes_on(k) = now%has_centre(i)
+            end associate
+         end do
+         goes_on = goes_on .and. eoshift(goes_on, 1) .and. ((turn > 0.0_wp) .eqv. (eoshift(turn, 1) > 0.0_wp))
+         if (.not. any(goes_on)) return
+         ! The pole of two links that a joint holds together stays in both: rounding errors would decide all below.
+         on_piece = goes_on .or. eoshift(goes_on, -1)
+         associate (on => spread(on_piece, 1, 2))
+            if (all(scale*(maxval(p, 2, on) - minval(p, 2, on)) < one_place)) return
+         end associate
+         ! It ends where it comes back to its first place and goes on as it began: drawn twice, dashes would fill the
+         ! gaps.
+         do last = 3, d%films - 1
+            if (.not. (goes_on(1) .and. goes_on(last))) cycle
+            u = p(:, 2) - p(:, 1)
+            v = p(:, last + 1) - p(:, last)
+            if (norm2(p(:, last) - p(:, 1)) <= come_back*norm2(u) .and. dot_product(u, v) > 0.9_wp*norm2(u)*norm2(v)) &
+               goes_on(last:) = .false.
+         end do
 
-   !> Adds a disk at a `point`.
-   subroutine add_disk(s, m, point, radius, attributes)
-      type(shapes_t), intent(inout) :: s
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: point
-      real(wp), intent(in) :: radius
-      character(*), intent(in) :: attributes
+         attributes = 'class="centrode" '//attribute('data-centrode', pole_name(d%m, d%poles(i)))//' '// &
+            attribute('data-link', trim(d%m%links(links(side))%name))//' style="stroke:' &
+            //link_color(d%m, links(side))//'"'
+         first = 1
+         do last = 1, d%films
+            if (goes_on(last)) cycle
+            if (last > first) call add(links(side), 'cut', attributes, p(:, first:last), weight=centrode_weight, &
+               title=pole_name(d%m, d%poles(i)))
+            first = last + 1
+         end do
+      end subroutine add_centrode
 
-      call add(s, m%points(point)%link, 'circle', attributes, spread(m%points(point)%offset, 2, 1), weight=box, &
-         radius=radius)
-   end subroutine add_disk
+      !> Adds link number `i`, which moves: a bar, or a polygon.
+      subroutine add_body(i)
+         integer, intent(in) :: i
+         character(:), allocatable :: stroke, name
+
+         stroke = 'style="stroke:'//color_of(i)
+         name = trim(d%m%links(i)%name)
+         associate (p => d%outlines(i)%corner)
+            if (size(p, 2) == 2) then
+               call add(i, 'polyline', 'class="bar" '//stroke//'"', p, weight=bar_weight, title=name)
+               call add(i, 'polyline', 'class="core"', p, title=name)
+            else if (size(p, 2) > 2) then
+               call add(i, 'polygon', 'class="body" '//stroke//';fill:'//color_of(i)//'"', p, weight=line_weight, &
+                  title=name)
+            end if
+         end associate
+      end subroutine add_body
+
+      !> Adds the block on the guide `g`.
+      subroutine add_block(g)
+         type(guide_t), intent(in) :: g
+         real(wp) :: u(2), v(2)
+         character(7) :: color
+
+         u = half_block(1)*direction(g%block_angle)
+         v = half_block(2)*quarter_turn(direction(g%block_angle))
+         color = color_of(g%block)
+         if (d%m%links(g%block)%ground) color = ground_block
+         call add(g%block, 'polygon', 'class="block" style="fill:'//color//'"', &
+            spread(d%m%points(g%point)%offset, 2, 4), reshape([v - u, u + v, u - v, -u - v], [2, 4]), box, &
+            trim(d%m%pairs(g%pair)%name))
+      end subroutine add_block
+
+      !> Adds a disk at a `point`.
+      subroutine add_disk(point, radius, attributes)
+         integer, intent(in) :: point
+         real(wp), intent(in) :: radius
+         character(*), intent(in) :: attributes
+
+         call add(d%m%points(point)%link, 'circle', attributes, spread(d%m%points(point)%offset, 2, 1), weight=box, &
+            radius=radius)
+      end subroutine add_disk
+   end function shapes_of
 
    !> The color of link number `i`.
    pure function color_of(i) result(color)

@@ -2,12 +2,13 @@
 !> corner, y down. ASCII; numbers have at most two decimals, so that equal pictures are equal bytes.
 module svg
    use kinds, only: wp
+   use planar, only: quarter_turn
    use text_output, only: output_t, put, add
    use numerals, only: fixed, whole
    implicit none
    private
-   public :: svg_head, put_group, put_window, put_end, put_circle, put_line, put_strokes, put_curve, put_words, &
-      put_values, pixels, without_zeros, escaped, attribute, translation
+   public :: svg_head, put_group, put_window, put_end, put_circle, put_line, put_hatch, put_curve, put_words, &
+      put_columns, pixels, without_zeros, escaped, attribute, translation
 
    !> The classes of the elements. Widths and sizes are in pixels.
    character(*), parameter :: style(*) = [character(118) :: &
@@ -43,6 +44,9 @@ module svg
 
    !> More than rounding errors of a pixel's coordinate.
    real(wp), parameter :: tie = 1.0e-6_wp
+   !> Distance and length of the strokes of a hatch, in pixels.
+   real(wp), parameter, public :: hatch_length = 6.0_wp
+   real(wp), parameter :: hatch_step = 7.0_wp
 
 contains
 
@@ -104,19 +108,26 @@ contains
       call put_columns(o, element//' '//attributes//' points="', p, ',', ' ', ending)
    end subroutine put_line
 
-   !> Writes strokes that go from `p` (2, strokes) by `stroke` (2).
-   subroutine put_strokes(o, p, stroke, attributes)
+   !> Writes the hatch of the ground, strokes on the lower side of the line from `p` to `q` (2).
+   subroutine put_hatch(o, p, q, attributes)
       type(output_t), intent(inout) :: o
-      real(wp), intent(in) :: p(:, :), stroke(2)
+      real(wp), intent(in) :: p(2), q(2)
       character(*), intent(in) :: attributes
-      integer :: i
+      real(wp) :: e(2), length
+      integer :: k, n
 
+      length = norm2(q - p)
+      ! What is far out of the picture may have no length left.
+      if (length <= 0.0_wp) return
+      n = max(1, int(min(200.0_wp, length/hatch_step)))
+      e = (q - p)/length
       call add(o, '<path '//attributes//' d="')
-      do i = 1, size(p, 2)
-         call add(o, 'M'//place(p(:, i))//'l'//place(stroke))
+      do k = 1, n
+         call add(o, 'M'//place(p + real(k, wp)*(q - p)/real(n, wp)) &
+            //'l'//place(hatch_length*(sign(1.0_wp, e(1))*quarter_turn(e) - e)))
       end do
       call put(o, '"/>')
-   end subroutine put_strokes
+   end subroutine put_hatch
 
    !> Writes a curve of cubics from the place p(:, 1) (2, 3 n + 1) to every third one, with control points between them.
    subroutine put_curve(o, p, attributes)
@@ -142,15 +153,6 @@ contains
       call put(o, '<text x="'//pixels(p(1))//'" y="'//pixels(p(2))//'" text-anchor="'//anchor//'" '//attributes//'>' &
          //escaped(words)//'</text>')
    end subroutine put_words
-
-   !> An `element` with the attribute `values`: the columns of `values` (:, :) in turn.
-   subroutine put_values(o, element, values)
-      type(output_t), intent(inout) :: o
-      character(*), intent(in) :: element
-      real(wp), intent(in) :: values(:, :)
-
-      call put_columns(o, element//' values="', values, ' ', ';', '/>')
-   end subroutine put_values
 
    !> Writes an element that begins with `begins` and has the columns of `values` (:, :) in an attribute: `inside`
    !> stands between the numbers of a column, `between` between columns, `ending` after them.
