@@ -9,12 +9,11 @@ module block_engine
    use initial_estimate, only: estimated_values
    use drives, only: law_t, new_law, find_drive_motion
    use convergence, only: convergence_t, is_solved, gather, ended_converged, ended_singular
-   use predictor, only: history_t, new_history, forget, remember, predict, largest_change, uncertain_part
+   use predictor, only: history_t, new_history, remember, predict, largest_change, uncertain_part
    use blocks, only: blocks_t, numbers_t, moving_blocks, needed_blocks, iterated_unknowns, largest_known
    use block_numbers, only: put_numbers
-   use number_types, only: vector_t, unknown_t, loop_state_t
    use block_state, only: state_t, new_state, set_direction, set_values
-   use block_solver, only: workspace_t, make_workspace, solve_direct, solve_equations
+   use block_solver, only: workspace_t, new_workspace, solve_direct, solve_equations
    use first_position, only: solve_first_block, remove_turns
    use singular_place, only: settle
    use block_rank, only: jacobian_of, relative_sign
@@ -77,7 +76,6 @@ module block_engine
       type(positions_t), allocatable :: others(:)       !< (blocks) what else was found at first
       logical, allocatable :: is_close(:)               !< (blocks) another assembly is about as near to the estimate
       type(workspace_t) :: work
-      type(convergence_t) :: one                        !< how the block solved last ended
    end type block_engine_t
 
 contains
@@ -111,10 +109,7 @@ contains
 
       e%needed = needed_blocks(e%blocks, t, wanted_links(m))
       e%moving = pack(e%needed, moving_blocks(e%blocks, e%needed))
-      e%state = new_state(e%blocks, size(m%drives))
-      e%history = new_history(e%blocks%unknowns, iterated_unknowns(e%blocks, e%moving))
-      e%history%order = m%predictor
-      call make_workspace(e%work, e%blocks)
+      e%work = new_workspace(e%blocks)
       associate (axes => e%blocks%numbers%equations%axes, unit => e%blocks%numbers%unit)
          e%chain = new_chain(m, t, axes, wanted_links(m), e%blocks%orientations, unit)
          e%whole = new_chain(m, t, axes, spread(.true., 1, size(m%links)), e%blocks%orientations, unit)
@@ -127,14 +122,11 @@ contains
       allocate (e%joint(2, count(m%pairs%kind == pair_revolute)))
       e%joint(1, :) = m%points(pack(m%pairs%point_i, m%pairs%kind == pair_revolute))%link
       e%joint(2, :) = m%points(pack(m%pairs%point_j, m%pairs%kind == pair_revolute))%link
-      associate (n => size(e%blocks%list))
-         allocate (e%found(n), e%followed(n), e%others(n))
-         allocate (e%crossed(n), e%is_close(n), e%is_singular(n), source=.false.)
-      end associate
       allocate (e%laws(size(m%drives)), e%is_angle(size(m%drives)), e%unit_of(size(m%drives)))
       allocate (e%estimate(3, size(m%links)), e%estimated(0:e%blocks%unknowns))
       call put_estimate(e, m)
       call put_laws(e, m)
+      call begin_state(e, m)
    end subroutine prepare
 
    !> Gives the engine `e` the numbers of `m`, a mechanism with the links, points, pairs and drives of that for which it
@@ -158,48 +150,37 @@ contains
    end subroutine put_mechanism
 
    !> Makes `e`, the engine of a variant of `m`, ready for the first instant of `m`, as `make_block_engine` makes it,
-   !> with the blocks and the memory that it has. `is_done`: they fit; otherwise `e` is of no use. Not where a block has
-   !> factors of KLU: the pivots of one variant would be those of the next.
+   !> with the blocks and the memory that it has. `is_done`: they fit; otherwise `e` is of no use.
    subroutine renew_block_engine(e, m, is_done)
       type(block_engine_t), intent(inout) :: e
       type(mechanism_t), intent(in) :: m
       logical, intent(out) :: is_done
 
       is_done = e%blocks%solvable
-      if (is_done) is_done = all(e%blocks%list%shape%pattern == 0)
       if (is_done) call put_mechanism(e, m, is_done)
       if (.not. is_done) return
       call put_estimate(e, m)
-      call forget_motions(e)
+      call begin_state(e, m)
    end subroutine renew_block_engine
 
-   !> As if `e` had solved nothing yet; its workspace is scratch.
-   subroutine forget_motions(e)
+   !> Gives `e` the state in which nothing is solved for `m` yet.
+   subroutine begin_state(e, m)
       type(block_engine_t), intent(inout) :: e
-      integer :: i
+      type(mechanism_t), intent(in) :: m
+      type(engine_state_t) :: s
 
-      call forget(e%history)
-      e%state%u = unknown_t()
-      e%state%loop = loop_state_t()
-      e%state%own = vector_t()
-      e%state%guide = vector_t()
-      e%state%drive_value = 0.0_wp
-      e%state%excursion = 0.0_wp
-      e%t = 0.0_wp
-      e%change = 0.0_wp
-      e%one = convergence_t()
-      do i = 1, size(e%others)
-         if (allocated(e%others(i)%x)) deallocate (e%others(i)%x)
-      end do
-      if (allocated(e%jacobian)) deallocate (e%jacobian)
-      e%found%sign_of = 1
-      e%found%pivot = 1.0_wp
-      e%found%inverse = 0.0_wp
-      e%followed(:) = e%found
-      e%crossed = .false.
-      e%is_close = .false.
-      e%is_singular = .false.
-   end subroutine forget_motions
+      s%state = new_state(e%blocks, size(m%drives))
+      s%history = new_history(e%blocks%unknowns, iterated_unknowns(e%blocks, e%moving))
+      s%history%order = m%predictor
+      associate (n => size(e%blocks%list))
+         allocate (s%found(n), s%followed(n))
+         allocate (s%crossed(n), s%is_singular(n), source=.false.)
+         e%is_close = s%crossed
+         if (allocated(e%others)) deallocate (e%others)
+         allocate (e%others(n))
+      end associate
+      e%engine_state_t = s
+   end subroutine begin_state
 
    !> The estimate that `m` gives.
    subroutine put_estimate(e, m)
@@ -318,11 +299,12 @@ contains
       integer, intent(in), contiguous :: list(:)
       logical, intent(in) :: follows
       type(convergence_t), intent(inout) :: c
+      type(convergence_t) :: one
       integer :: k, i
 
       do k = 1, size(list)
          i = list(k)
-         associate (block => e%blocks%list(i), one => e%one)
+         associate (block => e%blocks%list(i))
             if (follows .and. block%direct) then
                call solve_direct(e%blocks, i, e%state)
                cycle

@@ -25,7 +25,7 @@ module block_solver
    use block_sizes, only: largest_rates, rounded_sizes, second_order_bounds
    implicit none
    private
-   public :: workspace_t, make_workspace, solve_block, solve_direct, solve_equations
+   public :: workspace_t, new_workspace, solve_block, solve_direct, solve_equations, solve_jacobian
    public :: closed_level, step_tolerance, suspicious_pivot
 
    !> Residuals relative to the largest value. Below the first there is nothing to correct; above the second,
@@ -50,32 +50,27 @@ module block_solver
    real(wp), parameter :: min_inverse = epsilon(1.0_wp)**2
 
    !> The Jacobian of a block, then its factors, or those of one beside it; two right-hand sides, one after the other,
-   !> and first values; room for the widest block. Never copied: see klu_t.
+   !> and first values; room for the widest block. Nothing in it outlives the solution of a block.
    type :: workspace_t
       real(wp), allocatable :: a(:), r(:), start(:), work(:)
       integer, allocatable :: pivots(:), iwork(:)
       type(nearby_t) :: near                      !< the Jacobian, where `a` holds the factors of one beside it
-      type(klu_t), allocatable :: sparse(:)       !< (0:patterns), 0 for dense blocks
    end type workspace_t
 
 contains
 
    !> Room for every block of `b`.
-   subroutine make_workspace(w, b)
-      type(workspace_t), intent(out) :: w
+   pure function new_workspace(b) result(w)
       type(blocks_t), intent(in) :: b
-      integer :: i, entries, rows, length
+      type(workspace_t) :: w
+      integer :: entries, rows, length
 
       entries = max(0, maxval(entries_of(b%list%shape)))
       rows = max(0, maxval(b%list%shape%rows))
       length = max(0, maxval(work_length(b%list%shape)))
       allocate (w%a(entries), w%r(2*rows), w%start(rows), w%work(length), source=0.0_wp)
       allocate (w%pivots(rows), w%iwork(rows), source=0)
-      allocate (w%sparse(0:size(b%patterns)))
-      do i = 1, size(b%patterns)
-         w%sparse(i)%pattern = b%patterns(i)
-      end do
-   end subroutine make_workspace
+   end function new_workspace
 
    !> Solves block `i` for value, rate and acceleration of its unknowns, the values starting from those of `s`.
    !> `c`: how it ended.
@@ -126,6 +121,7 @@ contains
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
+      type(klu_t), allocatable :: sparse
       real(wp) :: before, size_of
       integer :: info, iteration, second
       logical :: is_closed, is_right
@@ -147,7 +143,7 @@ contains
          c%residual = largest_size(block%shape%rows, w%r)
          if (block%shape%rows > block%shape%n) call note_closure_error(b, i, w%r, c)
          is_closed = c%residual <= closed_level*max(size_of, numbers%coarse)
-         call solve_first_side(block%shape, w, w%r(merge(second, 1, is_closed)), info)
+         call solve_first_side(b, block%shape, w, sparse, w%r(merge(second, 1, is_closed)), info)
          if (is_closed) then
             c%step = 0.0_wp
             c%ended = ended_converged
@@ -172,18 +168,20 @@ contains
             cycle
          end if
          call right_hand_side(b, i, 1, s, w%r(second))
-         call solve_next_side(block%shape, w, w%r(second))
+         call solve_next_side(block%shape, w, sparse, w%r(second))
          exit
       end do
       if (c%iterations > 1 .or. c%step > 0.0_wp) c%change = largest_change(b, block, s, w%start)
-      call finish(b, i, block, numbers, w, s, c)
+      call finish(b, i, block, numbers, w, sparse, s, c)
    end subroutine solve_equations
 
    !> Solves for `v` (rows) with the Jacobian just assembled, which is factored unless factors of one beside it serve;
    !> `info` > 0: it has no inverse. A dense block is solved without the questions that other shapes need.
-   subroutine solve_first_side(shape, w, v, info)
+   subroutine solve_first_side(b, shape, w, sparse, v, info)
+      type(blocks_t), intent(in) :: b
       type(shape_t), intent(in) :: shape
       type(workspace_t), intent(inout) :: w
+      type(klu_t), allocatable, intent(inout) :: sparse
       real(wp), intent(inout) :: v(*)
       integer, intent(out) :: info
 
@@ -193,14 +191,32 @@ contains
       else if (shape%pattern == 0 .and. shape%rows == shape%n .and. shape%n > 0) then
          call solve_dense(shape%n, w%a, w%pivots, v, info)
       else
-         call solve_first(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, v, info)
+         call solve_jacobian(b, shape, w, sparse, v, info)
       end if
    end subroutine solve_first_side
 
-   !> The same for another right-hand side, from the factors.
-   subroutine solve_next_side(shape, w, v)
+   !> Factors the Jacobian in w%a and solves for `v` (rows); `info` > 0: it has no inverse. The factors are in w%a or,
+   !> if a block of this `shape` is sparse, in `sparse`.
+   subroutine solve_jacobian(b, shape, w, sparse, v, info)
+      type(blocks_t), intent(in) :: b
       type(shape_t), intent(in) :: shape
       type(workspace_t), intent(inout) :: w
+      type(klu_t), allocatable, intent(inout) :: sparse
+      real(wp), intent(inout) :: v(*)
+      integer, intent(out) :: info
+
+      if (shape%pattern > 0 .and. .not. allocated(sparse)) then
+         allocate (sparse)
+         sparse%pattern = b%patterns(shape%pattern)
+      end if
+      call solve_first(shape, w%a, w%pivots, w%work, v, info, sparse)
+   end subroutine solve_jacobian
+
+   !> The same for another right-hand side, from the factors.
+   subroutine solve_next_side(shape, w, sparse, v)
+      type(shape_t), intent(in) :: shape
+      type(workspace_t), intent(inout) :: w
+      type(klu_t), allocatable, intent(inout) :: sparse
       real(wp), intent(inout) :: v(*)
 
       if (shape%n == 1 .and. shape%rows == 1) then
@@ -210,7 +226,7 @@ contains
       else if (shape%n == 2 .and. shape%rows == 2) then
          call substitute(w%a, w%pivots(1) == 2, v)
       else
-         call solve_again(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, v)
+         call solve_again(shape, w%a, w%pivots, w%work, v, sparse)
       end if
    end subroutine solve_next_side
 
@@ -303,12 +319,13 @@ contains
 
    !> Velocities and accelerations of a position, unless equations contradict one another or the Jacobian is near to
    !> having no inverse.
-   subroutine finish(b, i, block, numbers, w, s, c)
+   subroutine finish(b, i, block, numbers, w, sparse, s, c)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(block_t), intent(in) :: block
       type(block_numbers_t), intent(in) :: numbers
       type(workspace_t), intent(inout) :: w
+      type(klu_t), allocatable, intent(inout) :: sparse
       type(state_t), intent(inout) :: s
       type(convergence_t), intent(inout) :: c
       real(wp) :: rates(2)
@@ -316,12 +333,12 @@ contains
       if (.not. is_solved(c)) return
       if (block%shape%rows > block%shape%n .and. is_inconsistent(c)) c%ended = ended_inconsistent
       if (c%ended == ended_inconsistent) return
-      if (.not. c%singular) call judge(b, i, block, numbers, w, s, c)
+      if (.not. c%singular) call judge(b, i, block, numbers, w, sparse, s, c)
       if (c%singular) return
       associate (rows => block%shape%rows, n => block%shape%n)
          call set_rates(block%first, block%last, b%unknown, w%r(rows + 1), s%u)
          call right_hand_side(b, i, 2, s, w%r)
-         call solve_next_side(block%shape, w, w%r)
+         call solve_next_side(block%shape, w, sparse, w%r)
          call set_accelerations(block%first, block%last, b%unknown, w%r, s%u)
          if (rows == n) return
          rates = largest_rates(b, i, s)
@@ -334,12 +351,13 @@ contains
    !> leaves the velocities open: with B = |J^-1| and the residual known to h, the position is known to B h, the
    !> Jacobian to B h times its Lipschitz constant L, the velocities to B times that. Newton and Kantorovich: one root
    !> only where B L change is below 1/2.
-   subroutine judge(b, i, block, numbers, w, s, c)
+   subroutine judge(b, i, block, numbers, w, sparse, s, c)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(block_t), intent(in) :: block
       type(block_numbers_t), intent(in) :: numbers
       type(workspace_t), intent(inout) :: w
+      type(klu_t), allocatable, intent(inout) :: sparse
       type(state_t), intent(in) :: s
       type(convergence_t), intent(inout) :: c
       real(wp) :: least, largest, inverse, size_of
@@ -347,13 +365,12 @@ contains
       logical :: suspicious, is_single
 
       n = block%shape%n
-      k = block%shape%pattern
       is_single = n == 1 .and. block%shape%rows == 1
       if (is_single) then
          least = abs(w%a(1))
          c%determinant = merge(-1, 1, w%a(1) < 0.0_wp)
       else
-         call pivot_range(block%shape, w%a, w%sparse(k), w%pivots, least, largest, c%determinant)
+         call pivot_range(block%shape, w%a, w%pivots, least, largest, c%determinant, sparse)
       end if
       c%min_pivot = 1.0_wp
       c%reciprocal_condition = 1.0_wp
@@ -372,7 +389,7 @@ contains
       if (is_single) then
          inverse = 1.0_wp/least
       else
-         inverse = inverse_norm(block%shape, w%a, w%sparse(k), w%work, w%iwork)
+         inverse = inverse_norm(block%shape, w%a, w%work, w%iwork, sparse)
       end if
       c%inverse = min(inverse, 1.0_wp/min_inverse)
       c%kantorovich_ratio = c%change*numbers%lipschitz*inverse
@@ -383,21 +400,22 @@ contains
          size_of = max(size_of, abs(s%u(b%unknown(k))%value))
       end do
       c%singular = inverse*inverse*numbers%lipschitz*rounding_level*size_of >= largest_error
-      if (c%singular) c%singular = is_beyond_linear(b, i, n, w, s)
+      if (c%singular) c%singular = is_beyond_linear(b, i, n, w, sparse, s)
    end subroutine judge
 
    !> The same with all rows and unknowns in sizes of their own, for blocks of very different ones: what the rows hold
    !> beyond their linear part moves an unknown by a part of its uncertainty |J^-1| h that is too large.
-   logical function is_beyond_linear(b, i, n, w, s) result(is)
+   logical function is_beyond_linear(b, i, n, w, sparse, s) result(is)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i, n
       type(workspace_t), intent(inout) :: w
+      type(klu_t), allocatable, intent(inout) :: sparse
       type(state_t), intent(in) :: s
       real(wp) :: off(n), more(n)
 
-      associate (shape => b%list(i)%shape, k => b%list(i)%shape%pattern)
-         call spread_by_inverse(shape, w%a, w%sparse(k), w%pivots, w%work, rounding_level*rounded_sizes(b, i, s), off)
-         call spread_by_inverse(shape, w%a, w%sparse(k), w%pivots, w%work, second_order_bounds(b, i, s, off), more)
+      associate (shape => b%list(i)%shape)
+         call spread_by_inverse(shape, w%a, w%pivots, w%work, rounding_level*rounded_sizes(b, i, s), off, sparse)
+         call spread_by_inverse(shape, w%a, w%pivots, w%work, second_order_bounds(b, i, s, off), more, sparse)
       end associate
       is = .not. all(more < largest_error*off)
    end function is_beyond_linear

@@ -4,7 +4,6 @@
 module levenberg_marquardt
    use kinds, only: wp
    use block_matrix, only: shape_t, entries_of, work_length, solve_first
-   use klu, only: klu_t
    use convergence, only: convergence_t, note_closure_error
    use blocks, only: blocks_t
    use block_state, only: state_t, set_values, values_of
@@ -33,12 +32,11 @@ module levenberg_marquardt
    !> `levenberg_marquardt_held` is one method among several, and not worth minutes.
    integer, parameter :: max_held = 150
 
-   !> Room for one block. `shape`: of its Jacobian, `damped`: with a row more for each unknown. Never copied: see klu_t.
+   !> Room for one block. `shape`: of its Jacobian, `damped`: with a row more for each unknown.
    type :: room_t
       type(shape_t) :: shape, damped
       real(wp), allocatable :: a(:), b(:), r(:), d(:), work(:), x(:), best(:)
       integer, allocatable :: pivots(:)
-      type(klu_t) :: sparse                       !< unused: the matrices are dense
    end type room_t
 
 contains
@@ -184,7 +182,7 @@ contains
          end do
          w%d(:m) = w%r(:m)
          w%d(m + 1:) = sqrt(damping)*aim
-         call solve_first(w%damped, w%b, w%sparse, w%pivots, w%work, w%d, info)
+         call solve_first(w%damped, w%b, w%pivots, w%work, w%d, info)
          step = maxval(abs(w%d(:n)))
          if (step > longest_step) w%d(:n) = w%d(:n)*(longest_step/step)
       end associate

@@ -7,10 +7,11 @@
 module position_path
    use kinds, only: wp
    use blocks, only: blocks_t
-   use block_matrix, only: solve_first, solve_again
+   use klu, only: klu_t
+   use block_matrix, only: solve_again
    use block_state, only: state_t, set_values, values_of
    use block_equations, only: find_known_parts, assemble_block
-   use block_solver, only: workspace_t
+   use block_solver, only: workspace_t, solve_jacobian
    use levenberg_marquardt, only: golden_numbers
    implicit none
    private
@@ -38,6 +39,7 @@ contains
       integer, intent(in) :: i
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
+      type(klu_t), allocatable :: sparse
       real(wp), dimension(b%list(i)%shape%rows) :: first, tangent
       real(wp), dimension(b%list(i)%shape%n) :: x
       real(wp) :: p, share, length
@@ -51,7 +53,7 @@ contains
       share = 1.0_wp
       do step = 1, max_steps
          tangent = first
-         call solve(b, i, w, tangent, info)
+         call solve_jacobian(b, b%list(i)%shape, w, sparse, tangent, info)
          length = maxval(abs(tangent(:size(x))))
          if (info > 0 .or. .not. length <= huge(length)) return
          share = min(share, 1.0_wp - p, max_step/max(length, epsilon(length)))
@@ -78,6 +80,7 @@ contains
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       logical, intent(out) :: is_close
+      type(klu_t), allocatable :: sparse
       real(wp) :: d(size(aim)), before, now
       integer :: k, info
 
@@ -86,7 +89,7 @@ contains
       do k = 1, max_corrections
          call assemble_block(b, i, s, w%a, d)
          d = d - aim
-         call solve(b, i, w, d, info)
+         call solve_jacobian(b, b%list(i)%shape, w, sparse, d, info)
          if (info > 0) return
          associate (n => b%list(i)%shape%n)
             now = maxval(abs(d(:n)))
@@ -108,6 +111,7 @@ contains
       type(workspace_t), intent(inout) :: w
       type(state_t), intent(inout) :: s
       logical, intent(out) :: found
+      type(klu_t), allocatable :: sparse
       real(wp), dimension(b%list(i)%shape%rows) :: v, r, second, room
       real(wp) :: x(b%list(i)%shape%n), a
       integer :: info
@@ -120,7 +124,7 @@ contains
          ! Residuals first: the factors must be those of the position itself.
          call set_values(b, i, x, s)
          call assemble_block(b, i, s, w%a, r)
-         call solve(b, i, w, v, info)
+         call solve_jacobian(b, shape, w, sparse, v, info)
          if (info > 0) return
          v(:shape%n) = v(:shape%n)/norm2(v(:shape%n))
          call set_values(b, i, x + small*v(:shape%n), s)
@@ -128,7 +132,7 @@ contains
          call set_values(b, i, x - small*v(:shape%n), s)
          room = residual_of(b, i, s)
          second = (second - 2.0_wp*r + room)/small**2
-         call solve_again(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, second)
+         call solve_again(shape, w%a, w%pivots, w%work, second, sparse)
          a = dot_product(second(:shape%n), v(:shape%n))
          found = abs(a)*max_apart > 2.0_wp
          if (found) x = x - 2.0_wp/a*v(:shape%n)
@@ -147,17 +151,4 @@ contains
       allocate (a(max(b%list(i)%shape%entries, b%list(i)%shape%rows*b%list(i)%shape%n)))
       call assemble_block(b, i, s, a, r)
    end function residual_of
-
-   !> Factors the Jacobian in `w` and solves for `d` (rows); `info` > 0: it is singular.
-   subroutine solve(b, i, w, d, info)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      type(workspace_t), intent(inout) :: w
-      real(wp), intent(inout) :: d(:)
-      integer, intent(out) :: info
-
-      associate (shape => b%list(i)%shape)
-         call solve_first(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, d, info)
-      end associate
-   end subroutine solve
 end module position_path

@@ -20,7 +20,7 @@ module predictor
    use block_state, only: unknown_t, state_t, largest_drive_rate
    implicit none
    private
-   public :: history_t, new_history, forget, remember, predict, is_even, largest_change, order_weights, uncertain_part
+   public :: history_t, new_history, remember, predict, is_even, largest_change, order_weights, uncertain_part
 
    !> The largest predicted change, in radians and in the unit of length, that one step may have: beyond it a
    !> prediction that agrees with a position may do so by chance.
@@ -62,16 +62,6 @@ contains
       h%predicted = predicted
       allocate (h%past(0:n))
    end function new_history
-
-   !> No motion is remembered.
-   pure subroutine forget(h)
-      type(history_t), intent(inout) :: h
-
-      h%filled = 0
-      h%t = 0.0_wp
-      h%uncertain = 0.0_wp
-      h%past = past_t()
-   end subroutine forget
 
    !> Makes the motion `u` (0:unknowns) at `t` the latest. `uncertain`: its accelerations, in parts of velocities in a
    !> unit of time.

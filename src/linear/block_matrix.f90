@@ -5,11 +5,10 @@
 module block_matrix
    use kinds, only: wp
    use lapack, only: gesv, getrs, gecon, geqrf, ormqr, trtrs, trcon, lacn2
-   use klu, only: klu_t, klu_serves, factor, factor_likewise, solve, solve_transposed, pivots_of, multiply
+   use klu, only: klu_t, klu_serves, factor, solve, solve_transposed, pivots_of
    implicit none
    private
-   public :: shape_t, is_sparse_better, entries_of, solve_first, solve_again, solve_many, pivot_range, inverse_norm, &
-      work_length
+   public :: shape_t, is_sparse_better, entries_of, solve_first, solve_again, pivot_range, inverse_norm, work_length
    public :: solve_dense, substitute, inverse_norm_of_two, spread_by_inverse
 
    !> `pattern` = 0: dense, by columns. Otherwise sparse and square: the number of its pattern, and its entries, in the
@@ -20,9 +19,6 @@ module block_matrix
 
    !> From this many unknowns on KLU is not slower than DGESV (lattices, reference LAPACK and OpenBLAS).
    integer, parameter :: min_sparse = merge(12, huge(1), klu_serves)
-   !> A solution leaves this part of what its equations add up: more, and the pivots of the matrix before are no longer
-   !> good for this one.
-   real(wp), parameter :: stale = 128.0_wp*epsilon(1.0_wp)
    !> Columns that DGEQRF takes together.
    integer, parameter :: panel = 32
 
@@ -52,26 +48,27 @@ contains
    end function work_length
 
    !> Solves `a` x = `b` (rows); the first n of `b` become x, `a` its factors where it is dense. `info` > 0: exactly
-   !> singular. `k`: of its pattern, untouched where it is dense. `k`, `pivots` (n), `work` (work_length): to be kept
-   !> for the calls that follow.
-   subroutine solve_first(s, a, k, pivots, work, b, info)
+   !> singular. `pivots` (n), `work` (work_length), and `k`, of its pattern, where it is sparse: to be kept for the
+   !> calls that follow.
+   subroutine solve_first(s, a, pivots, work, b, info, k)
       type(shape_t), intent(in) :: s
       real(wp), intent(inout) :: a(*), work(*), b(*)
-      type(klu_t), intent(inout) :: k
       integer, intent(out) :: pivots(*), info
+      type(klu_t), intent(inout), optional :: k
       integer :: i
 
       info = 0
       if (s%n == 0) return
       if (s%pattern > 0) then
-         call solve_sparse(s%n, a, k, work, work(s%n + 1), work(2*s%n + 1), b, info)
+         call factor(k, a, info)
+         if (info == 0) call solve(k, b)
       else if (s%rows > s%n) then
          call geqrf(s%rows, s%n, a, s%rows, work, work(s%n + 1), s%n*panel, info)
          do i = s%n, 1, -1
             pivots(i) = i
             if (abs(a((i - 1)*s%rows + i)) <= 0.0_wp) info = i
          end do
-         if (info == 0) call solve_again(s, a, k, pivots, work, b)
+         if (info == 0) call solve_again(s, a, pivots, work, b)
       else
          call solve_dense(s%n, a, pivots, b, info)
       end if
@@ -92,33 +89,13 @@ contains
       end if
    end subroutine solve_dense
 
-   !> With the pivots of the matrix before, if these still serve. `right`, `left`, `size_of`: room.
-   subroutine solve_sparse(n, a, k, right, left, size_of, b, info)
-      integer, intent(in) :: n
-      real(wp), intent(in) :: a(*)
-      type(klu_t), intent(inout) :: k
-      real(wp), intent(inout) :: right(n), left(n), size_of(n), b(n)
-      integer, intent(out) :: info
-
-      call factor_likewise(k, a, info)
-      if (info == 0) then
-         right = b
-         call solve(k, b)
-         call multiply(k%pattern, a, b, left, size_of)
-         if (maxval(abs(left - right)) <= stale*maxval(size_of + abs(right))) return
-         b = right
-      end if
-      call factor(k, a, info)
-      if (info == 0) call solve(k, b)
-   end subroutine solve_sparse
-
    !> The same for another right-hand side, from the factors.
-   subroutine solve_again(s, a, k, pivots, work, b)
+   subroutine solve_again(s, a, pivots, work, b, k)
       type(shape_t), intent(in) :: s
       real(wp), intent(in) :: a(*)
-      type(klu_t), intent(inout) :: k
       integer, intent(in) :: pivots(*)
       real(wp), intent(inout) :: work(*), b(*)
+      type(klu_t), intent(inout), optional :: k
       integer :: info
 
       if (s%n == 0) return
@@ -136,58 +113,6 @@ contains
       end if
    end subroutine solve_again
 
-   !> The same for `lanes` right-hand sides `b` (lanes, rows): each step for all of them, where `a` is dense and square.
-   subroutine solve_many(s, a, k, pivots, work, lanes, b)
-      type(shape_t), intent(in) :: s
-      real(wp), intent(in) :: a(*)
-      type(klu_t), intent(inout) :: k
-      integer, intent(in) :: pivots(*), lanes
-      real(wp), intent(inout) :: work(*), b(lanes, s%rows)
-      real(wp), allocatable :: all_of_them(:, :)
-      integer :: i
-
-      if (s%pattern == 0 .and. s%rows == s%n) then
-         call substitute_many(s%n, a, pivots, lanes, b)
-         return
-      end if
-      all_of_them = transpose(b)
-      if (s%pattern > 0) then
-         call solve(k, all_of_them, lanes)
-      else
-         do i = 1, lanes
-            call solve_again(s, a, k, pivots, work, all_of_them(:, i))
-         end do
-      end if
-      b = transpose(all_of_them)
-   end subroutine solve_many
-
-   !> The substitutions of DGETRS, with the factors `a` and the `pivots` of DGETRF.
-   pure subroutine substitute_many(n, a, pivots, lanes, b)
-      integer, intent(in) :: n, pivots(n), lanes
-      real(wp), intent(in) :: a(n, n)
-      real(wp), intent(inout) :: b(lanes, n)
-      real(wp) :: row(lanes)
-      integer :: i, j
-
-      do i = 1, n
-         if (pivots(i) == i) cycle
-         row = b(:, i)
-         b(:, i) = b(:, pivots(i))
-         b(:, pivots(i)) = row
-      end do
-      do i = 1, n
-         do j = i + 1, n
-            b(:, j) = b(:, j) - a(j, i)*b(:, i)
-         end do
-      end do
-      do i = n, 1, -1
-         b(:, i) = b(:, i)/a(i, i)
-         do j = 1, i - 1
-            b(:, j) = b(:, j) - a(j, i)*b(:, i)
-         end do
-      end do
-   end subroutine substitute_many
-
    !> DGETRS for two unknowns and one right-hand side, in the order of its operations: the call itself takes many times
    !> as long. `exchanged`: the rows of the matrix were.
    pure subroutine substitute(a, exchanged, b)
@@ -204,13 +129,13 @@ contains
    end subroutine substitute
 
    !> From the factors: the smallest and the largest pivot, and the sign of the determinant (1 where there is none).
-   subroutine pivot_range(s, a, k, pivots, least, largest, sign_of)
+   subroutine pivot_range(s, a, pivots, least, largest, sign_of, k)
       type(shape_t), intent(in) :: s
       real(wp), intent(in) :: a(*)
-      type(klu_t), intent(in) :: k
       integer, intent(in) :: pivots(*)
       real(wp), intent(out) :: least, largest
       integer, intent(out) :: sign_of
+      type(klu_t), intent(in), optional :: k
       real(wp) :: pivot
       integer :: i
 
@@ -236,12 +161,12 @@ contains
 
    !> |A^-1| in the maximum norm, from the factors: exact for n <= 2, an estimate otherwise (DGECON, DLACN2, DTRCON);
    !> `iwork` (n). `work` keeps what the next solve_again needs.
-   real(wp) function inverse_norm(s, a, k, work, iwork)
+   real(wp) function inverse_norm(s, a, work, iwork, k)
       type(shape_t), intent(in) :: s
       real(wp), intent(in) :: a(*)
-      type(klu_t), intent(inout) :: k
       real(wp), intent(inout) :: work(*)
       integer, intent(inout) :: iwork(*)
+      type(klu_t), intent(inout), optional :: k
       real(wp) :: rcond
       integer :: info
 
@@ -307,14 +232,14 @@ contains
    end function triangle_norm
 
    !> |A^-1| h for the vector `h` (rows), as `spread` (n), from the factors, column by column.
-   subroutine spread_by_inverse(s, a, k, pivots, work, h, spread)
+   subroutine spread_by_inverse(s, a, pivots, work, h, spread, k)
       type(shape_t), intent(in) :: s
       real(wp), intent(in) :: a(*)
-      type(klu_t), intent(inout) :: k
       integer, intent(in) :: pivots(*)
       real(wp), intent(inout) :: work(*)
       real(wp), intent(in) :: h(:)
       real(wp), intent(out) :: spread(:)
+      type(klu_t), intent(inout), optional :: k
       real(wp) :: column(s%rows)
       integer :: j
 
@@ -322,7 +247,7 @@ contains
       do j = 1, s%rows
          column = 0.0_wp
          column(j) = h(j)
-         call solve_again(s, a, k, pivots, work, column)
+         call solve_again(s, a, pivots, work, column, k)
          spread = spread + abs(column(:s%n))
       end do
    end subroutine spread_by_inverse

@@ -10,14 +10,16 @@ module klu
    implicit none
    private
    public :: pattern_t, common_t, klu_t, klu_defaults, klu_serves
-   public :: factor, factor_likewise, solve, solve_transposed, pivots_of, multiply
+   public :: order_columns, factor, solve, solve_transposed, pivots_of
 
    !> KLU knows double precision only.
    logical, parameter :: klu_serves = kind(1.0_wp) == c_double
 
    !> The entries of column k are in the rows row(first(k) + 1), ..., row(first(k + 1)); rows and `first` count from 0.
+   !> `order`: the columns, from 0, in the order in which they are eliminated; of rows that serve as well the first in
+   !> this order is the pivot's.
    type :: pattern_t
-      integer(c_int), allocatable :: first(:), row(:)
+      integer(c_int), allocatable :: first(:), row(:), order(:)
    end type pattern_t
 
    !> klu_common of klu.h, with room for a longer one.
@@ -33,16 +35,22 @@ module klu
       integer(c_size_t) :: room(32) = 0
    end type common_t
 
+   !> How klu_symbolic of klu.h begins, up to the column order.
+   type, bind(c) :: symbolic_t
+      real(c_double) :: symmetry, est_flops, lnz, unz
+      type(c_ptr) :: lnz_of
+      integer(c_int) :: n, nz
+      type(c_ptr) :: p, q
+   end type symbolic_t
+
    !> How klu_numeric of klu.h begins, up to the diagonal of U.
    type, bind(c) :: numeric_t
       integer(c_int) :: n, nblocks, lnz, unz, max_lnz_block, max_unz_block
       type(c_ptr) :: pnum, pinv, lip, uip, llen, ulen, lubx, lusize, udiag
    end type numeric_t
 
-   !> A pattern and, from the first factorization on, the factors of the last matrix of that pattern, which it frees
-   !> when it ends. No object that holds one is ever copied, since both would free them: objects are made by subroutines
-   !> (tests/system/copies.awk looks for others). Rejected: an assignment of the type's own, which gfortran 12 does not
-   !> call for allocatable components.
+   !> A pattern and the factors of the last matrix of that pattern. They are freed when the variable ends: it is
+   !> declared where a block is solved, and a component of nothing.
    type :: klu_t
       type(pattern_t) :: pattern
       type(common_t) :: common
@@ -67,6 +75,13 @@ module klu
          integer(c_int), intent(in) :: ap(*), ai(*)
          type(common_t), intent(inout) :: common
       end function klu_analyze
+      !> Takes the rows and columns of the pattern in the orders `p` and `q`.
+      type(c_ptr) function klu_analyze_given(n, ap, ai, p, q, common) bind(c)
+         import :: c_int, c_ptr, common_t
+         integer(c_int), value :: n
+         integer(c_int), intent(in) :: ap(*), ai(*), p(*), q(*)
+         type(common_t), intent(inout) :: common
+      end function klu_analyze_given
       !> Factors with pivoting.
       type(c_ptr) function klu_factor(ap, ai, ax, symbolic, common) bind(c)
          import :: c_int, c_ptr, common_t
@@ -74,13 +89,6 @@ module klu
          type(c_ptr), value :: ax, symbolic
          type(common_t), intent(inout) :: common
       end function klu_factor
-      !> Factors with the pivots of the last klu_factor.
-      integer(c_int) function klu_refactor(ap, ai, ax, symbolic, numeric, common) bind(c)
-         import :: c_int, c_ptr, common_t
-         integer(c_int), intent(in) :: ap(*), ai(*)
-         type(c_ptr), value :: ax, symbolic, numeric
-         type(common_t), intent(inout) :: common
-      end function klu_refactor
       !> Solves A x = b in place.
       integer(c_int) function klu_solve(symbolic, numeric, ldim, nrhs, b, common) bind(c)
          import :: c_int, c_ptr, common_t
@@ -119,7 +127,40 @@ module klu
 
 contains
 
+   !> Finds the order of elimination of `p`: the columns in that of COLAMD, so that the factors fill up little.
+   subroutine order_columns(p)
+      type(pattern_t), intent(inout) :: p
+      type(common_t) :: common
+      type(c_ptr) :: symbolic
+      type(symbolic_t), pointer :: found
+      integer(c_int), pointer :: q(:)
+      integer(c_int) :: n, done
+
+      n = size(p%first, kind=c_int) - 1_c_int
+      call set_common(common)
+      symbolic = klu_analyze(n, p%first, p%row, common)
+      call c_f_pointer(symbolic, found)
+      call c_f_pointer(found%q, q, [n])
+      p%order = q
+      done = klu_free_symbolic(symbolic, common)
+   end subroutine order_columns
+
+   !> The settings: see the head of the module. The blocks of a mechanism have been found before.
+   subroutine set_common(common)
+      type(common_t), intent(inout) :: common
+      integer(c_int) :: done
+
+      done = klu_defaults(common)
+      common%ordering = colamd
+      common%tol = 1.0_c_double
+      common%scale = unscaled
+      common%btf = 0
+   end subroutine set_common
+
    !> Factors the matrix `a` (entries of the pattern, column by column). `info` > 0: exactly singular, no factors.
+   !>
+   !> Rejected: the pivots of the matrix before (klu_refactor), in a third of the time. They make what is told of a
+   !> position depend on the way there: the least pivot falls from 1E-2 to 1E-8 in 200 steps of a net of rods.
    subroutine factor(k, a, info)
       type(klu_t), intent(inout) :: k
       real(wp), intent(in), target :: a(*)
@@ -128,13 +169,10 @@ contains
 
       info = 1
       if (.not. c_associated(k%symbolic)) then
-         done = klu_defaults(k%common)
-         k%common%ordering = colamd
-         k%common%tol = 1.0_c_double
-         k%common%scale = unscaled
-         ! The blocks of a mechanism have been found before.
-         k%common%btf = 0
-         k%symbolic = klu_analyze(order_of(k), k%pattern%first, k%pattern%row, k%common)
+         call set_common(k%common)
+         associate (p => k%pattern)
+            k%symbolic = klu_analyze_given(order_of(k), p%first, p%row, p%order, p%order, k%common)
+         end associate
          if (.not. c_associated(k%symbolic)) return
       end if
       if (c_associated(k%numeric)) done = klu_free_numeric(k%numeric, k%common)
@@ -144,29 +182,13 @@ contains
       call note_exchanges(k)
    end subroutine factor
 
-   !> Factors `a` with the pivots that the matrix before had, in a third of the time. `info` > 0: there are no such
-   !> factors, or a pivot is zero now.
-   subroutine factor_likewise(k, a, info)
-      type(klu_t), intent(inout) :: k
-      real(wp), intent(in), target :: a(*)
-      integer, intent(out) :: info
-
-      info = 1
-      if (.not. c_associated(k%numeric)) return
-      if (klu_refactor(k%pattern%first, k%pattern%row, c_loc(a), k%symbolic, k%numeric, k%common) == 0) return
-      if (k%common%status == 0) info = 0
-   end subroutine factor_likewise
-
-   !> `b` (n): the right-hand side, then the solution; or so `many` of them (n, many).
-   subroutine solve(k, b, many)
+   !> `b` (n): the right-hand side, then the solution.
+   subroutine solve(k, b)
       type(klu_t), intent(inout) :: k
       real(wp), intent(inout), target :: b(*)
-      integer, intent(in), optional :: many
-      integer(c_int) :: count_of, done
+      integer(c_int) :: done
 
-      count_of = 1
-      if (present(many)) count_of = int(many, c_int)
-      done = klu_solve(k%symbolic, k%numeric, order_of(k), count_of, c_loc(b), k%common)
+      done = klu_solve(k%symbolic, k%numeric, order_of(k), 1_c_int, c_loc(b), k%common)
    end subroutine solve
 
    !> The same with the matrix transposed.
@@ -189,25 +211,6 @@ contains
       call c_f_pointer(numeric%udiag, u, [order_of(k)])
       diagonal = real(u, wp)
    end function pivots_of
-
-   !> `y` (n) = A `x`, and `size_of` (n) the sums of what it adds up, signs left aside.
-   pure subroutine multiply(p, a, x, y, size_of)
-      type(pattern_t), intent(in) :: p
-      real(wp), intent(in) :: a(*), x(*)
-      real(wp), intent(out) :: y(size(p%first) - 1), size_of(size(p%first) - 1)
-      real(wp) :: part
-      integer :: c, i
-
-      y = 0.0_wp
-      size_of = 0.0_wp
-      do c = 1, size(p%first) - 1
-         do i = p%first(c) + 1, p%first(c + 1)
-            part = a(i)*x(c)
-            y(p%row(i) + 1) = y(p%row(i) + 1) + part
-            size_of(p%row(i) + 1) = size_of(p%row(i) + 1) + abs(part)
-         end do
-      end do
-   end subroutine multiply
 
    !> The order of the matrix.
    pure integer(c_int) function order_of(k)

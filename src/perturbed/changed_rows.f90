@@ -200,7 +200,7 @@ contains
       associate (block => e%blocks%list(i), shape => e%blocks%list(i)%shape, w => e%work)
          call assemble_block(e%blocks, i, e%state, w%a, w%r)
          jacobian = reshape(w%a(:shape%rows*shape%n), [shape%rows, shape%n])
-         call solve_first(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, w%r, info)
+         call solve_first(shape, w%a, w%pivots, w%work, w%r, info)
          if (info > 0) return
          do order = 1, 2
             call right_hand_side(e%blocks, i, order, e%state, w%r)
@@ -209,7 +209,7 @@ contains
                   w%r(:shape%rows) = w%r(:shape%rows) - merge(u%rate, u%acceleration, order == 1)*jacobian(:, k)
                end associate
             end do
-            call solve_again(shape, w%a, w%sparse(shape%pattern), w%pivots, w%work, w%r)
+            call solve_again(shape, w%a, w%pivots, w%work, w%r)
             do k = 1, shape%n
                associate (u => e%state%u(e%blocks%unknown(block%first + k - 1)))
                   if (order == 1) u%rate = u%rate + w%r(k)

@@ -12,7 +12,7 @@ module motion_proof
    use link_bounds, only: link_vectors_t, link_vectors, bound_links
    use drives, only: drive_motion
    use block_engine, only: block_engine_t
-   use block_solver, only: workspace_t, make_workspace, solve_block
+   use block_solver, only: workspace_t, new_workspace, solve_block
    use convergence, only: convergence_t, is_solved
    use tube_proof, only: tube_t, new_tube, prove_tube
    implicit none
@@ -26,7 +26,7 @@ module motion_proof
    !> And fewer of wide blocks, whose inverses take about so many products: some seconds.
    real(wp), parameter :: max_products = 1.0e9_wp
 
-   !> What it needs beside the prover of positions. Never copied: see workspace_t.
+   !> What it needs beside the prover of positions.
    type :: step_prover_t
       type(workspace_t) :: work
       type(tube_t) :: tube
@@ -43,7 +43,7 @@ module motion_proof
       logical :: is_broken_off = .false.          !< blocks are too wide for more tries
    end type step_proof_t
 
-   !> What the proofs of a mechanism need and keep. Never copied: see step_prover_t.
+   !> What the proofs of a mechanism need and keep.
    type :: motion_prover_t
       logical :: is_ready = .false.
       logical :: has_begun = .false.              !< a position is proved
@@ -144,7 +144,7 @@ contains
       type(step_prover_t), intent(out) :: s
       type(block_engine_t), intent(in) :: e
 
-      call make_workspace(s%work, e%blocks)
+      s%work = new_workspace(e%blocks)
       s%tube = new_tube(e%blocks, size(e%laws))
    end subroutine make_step_prover
 

@@ -1,7 +1,7 @@
 !> The vector loops of each block, split into what it knows and what it solves for, and where each entry of the block's
 !> Jacobian stands: in a dense matrix by columns, or in the order of a sparse one's pattern, which is made here.
 module block_loops
-   use klu, only: pattern_t
+   use klu, only: pattern_t, order_columns
    use block_matrix, only: shape_t, is_sparse_better
    use vector_loops, only: vector_loops_t
    use loop_equations, only: equations_t, equation_t, equation_x, equation_y, equation_projection, equation_slide
@@ -147,7 +147,7 @@ contains
    end subroutine fill_block_loops
 
    !> The places of all entries of `b`, and the patterns of the blocks whose Jacobian is best sparse.
-   pure subroutine find_places(b)
+   subroutine find_places(b)
       type(blocks_t), intent(inout) :: b
       type(places_t) :: p
       integer :: i, patterns
@@ -160,6 +160,7 @@ contains
             call find_pattern(b, b%list(i), p)
             if (is_sparse_better(b%list(i)%shape%n, size(p%pattern%row))) then
                patterns = patterns + 1
+               call order_columns(p%pattern)
                b%patterns(patterns) = p%pattern
                b%list(i)%shape%pattern = patterns
                b%list(i)%shape%entries = size(p%pattern%row)

@@ -87,23 +87,6 @@ equal 'make V=1 prints whole commands' 1 \
 equal 'make below a directory with blanks: its object' yes "$([ -s "$blanks/built/debug/cards.o" ] && echo yes)"
 equal 'a build directory with blanks is refused' 1 "$(plain_make -n BUILD="$PWD/a b" all 2>&1 | grep -c ' holds blanks')"
 rm -rf "$blanks"
-all="$sources $(find src -name '*.inc') $(find tests -name '*.f90' -o -name '*.pf')"
-copy="$BUILD/order/copy.f90"
-printf '   subroutine copy(f, g)\n      type(following_t), intent(inout) :: f, g\n      f%%engine = g%%engine\n' > "$copy"
-equal 'copies of a class are found' "$copy:3: f%engine = g%engine" \
-   "$(awk -f tests/system/fortran.awk -f tests/system/copies.awk pass=1 $all "$copy" pass=2 $all "$copy" | grep -v '^holds: ' | tr -s ' ')"
-awk -f tests/system/fortran.awk -f tests/system/copies.awk pass=1 $all pass=2 $all | sort > "$BUILD/copies.txt"
-equal 'copies of objects that hold factors of KLU' '' "$(grep -v '^holds: ' "$BUILD/copies.txt")"
-equal 'types that hold factors of KLU' \
-   'analysis_t block_engine_t estimator_t following_t klu_t lane_run_t motion_prover_t perturbed_t room_t set_analysis_t step_prover_t tested_step_t workspace_t' \
-   "$(sed -n 's/^holds: //p' "$BUILD/copies.txt" | tr '\n' ' ' | sed 's/ $//')"
-lost="$BUILD/order/lost.f90"
-printf '   function new_drawing(m) result(d)\n      d%%curves = [d%%curves, snapshot_of_ground(d)]\n   end function new_drawing\n' > "$lost"
-equal 'what a constructed array would not free is found' "$lost:2: snapshot_of_ground" \
-   "$(awk -f tests/system/fortran.awk -f tests/system/constructors.awk pass=1 $sources "$lost" pass=2 $sources "$lost" | grep -v '^functions: ')"
-awk -f tests/system/fortran.awk -f tests/system/constructors.awk pass=1 $sources pass=2 $sources > "$BUILD/constructors.txt"
-equal 'what constructed arrays would not free' '' "$(grep -v '^functions: ' "$BUILD/constructors.txt")"
-equal 'functions whose results must be freed: some' yes "$(awk '/^functions: / && $2 > 50 { print "yes" }' "$BUILD/constructors.txt")"
 # make test: a part that looks at nothing, at too little, or ends without its counts, fails.
 cat > "$BUILD/some_parts.txt" <<'PARTS'
 good|2|echo '2 passed, 0 failed'
