@@ -252,7 +252,7 @@ contains
 
       call make_set_analysis(m, a)
       call advance_set(a, instant(m, 0))
-      call find_all_circuits(a, found, draws=.true.)
+      call find_all_circuits(a, found)
       call add_to_page(page, m, a, found)
    end subroutine draw_circuits
 

@@ -20,7 +20,7 @@ module circuit_branches
 
    integer, parameter :: no_sign = 2
    !> More circuits are not looked for.
-   integer, parameter :: max_circuits = 1000
+   integer, parameter :: max_circuits = 100
 
    !> A piece of a circuit between dead points.
    type :: circuit_branch_t

@@ -21,12 +21,10 @@ module circuits
    use circuit_crossing, only: other_circuit
    use circuit_branches, only: circuits_t, no_sign, max_circuits, add_branches, add_assemblies, add_meetings, &
       number_assemblies, circuit_branch_t
-   use circuit_components, only: component_t, split, make_regular
-   use circuit_product, only: multiply
    use ranges, only: range_t, find_range, is_lost, held_at, low, high
    implicit none
    private
-   public :: find_circuits, find_together, free_drives, name_limits
+   public :: find_circuits, free_drives, name_limits
 
    !> A limit found by both methods is one up to this difference, in rad and lengths.
    real(wp), parameter :: agrees = max(1.0e-6_wp, 1.0e3_wp*epsilon(1.0_wp))
@@ -39,121 +37,51 @@ module circuits
 
 contains
 
-   !> The circuits of `m`, one independent mechanism with the motion `start` at its first instant, known or not; drive
-   !> number `drive` is free, the others keep their values. `first`: the assemblies there, if they are known already.
-   !> `draws`: with points for a picture.
-   subroutine find_circuits(m, start, drive, found, first, draws)
+   !> Finds the circuits of `m`, one independent mechanism with the motion `start` at its first instant, known or not;
+   !> drive number `drive` is free, the others keep their values. `first`: the assemblies there, if they are known.
+   subroutine find_circuits(m, start, drive, found, first)
       type(mechanism_t), intent(in) :: m
       type(motion_t), intent(in) :: start
       integer, intent(in) :: drive
       type(circuits_t), intent(out) :: found
       type(assemblies_t), intent(in), optional :: first
-      logical, intent(in), optional :: draws
       type(assemblies_t) :: all_of_them
-      type(component_t), allocatable :: components(:)
-      logical :: with_points, ok
+      type(curve_point_t) :: p
+      logical :: ok
+      integer :: i
 
       if (present(first)) then
          all_of_them = first
       else
          call find_assemblies(m, start%t, all_of_them)
       end if
-      with_points = .false.
-      if (present(draws)) with_points = draws
-      call split(m, drive, components)
-      ok = size(components) > 1
-      if (ok) call find_by_components(m, start, drive, all_of_them, components, with_points, ok, found)
-      if (.not. ok) call find_together(m, start, drive, all_of_them, found)
-   end subroutine find_circuits
-
-   !> Finds the circuits of `m` from those of its `components`; `draws`: with points for a picture. `ok`: this was done.
-   subroutine find_by_components(m, start, drive, first, components, draws, ok, found)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: start
-      integer, intent(in) :: drive
-      type(assemblies_t), intent(in) :: first
-      type(component_t), intent(inout) :: components(:)
-      logical, intent(in) :: draws
-      logical, intent(out) :: ok
-      type(circuits_t), intent(out) :: found
-      type(assemblies_t) :: own
-      type(motion_t) :: begin
-      real(wp) :: from, range
-      real(wp), allocatable :: place(:, :)
-      integer :: c, k, n
-
-      call begin_circuits(m, start, drive, first, found)
-      do c = 1, size(components)
-         associate (one => components(c))
-            begin = new_motion(size(one%part%links))
-            begin%t = start%t
-            begin%known = start%known
-            begin%position = start%position(:, one%part%links)
-            call find_assemblies(one%m, start%t, own)
-            call find_together(one%m, begin, one%drive, own, one%found, found%curve%far*found%curve%closure%length)
-            call make_regular(one, found%curve%closure%length, ok)
-            if (.not. ok) return
-            found%is_complete = found%is_complete .and. one%found%is_complete
-         end associate
-      end do
-      call whole_range(m, found, from, range)
-      n = max(1, min(most_values, max_paths/max(1, sum(first%blocks%paths))))
-      allocate (place(3, 0))
-      if (start%known >= 0) place = start%position
-      call multiply(m, components, first, place, [(from + range*real(k, wp)/real(n, wp), k=0, n - 1)], draws, found, ok)
-   end subroutine find_by_components
-
-   !> Makes `found` ready for the circuits of `m`; `first`: the assemblies of the first instant.
-   subroutine begin_circuits(m, start, drive, first, found)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: start
-      integer, intent(in) :: drive
-      type(assemblies_t), intent(in) :: first
-      type(circuits_t), intent(out) :: found
-      integer :: i
-
       found%drive = drive
+      found%is_complete = all_of_them%is_known
       allocate (found%list(0), found%branches(0), found%dead(0), found%assemblies(0), found%meetings(0))
       call make_curve(found%curve, m, drive, start%t)
-      do i = 1, size(first%list)
-         associate (size_of => maxval(abs(first%list(i)%position(:2, :)))/found%curve%closure%length)
+      do i = 1, size(all_of_them%list)
+         associate (size_of => maxval(abs(all_of_them%list(i)%position(:2, :)))/found%curve%closure%length)
             found%curve%far = max(found%curve%far, beyond*size_of)
          end associate
       end do
-   end subroutine begin_circuits
 
-   !> Traces the circuits of `m`, all links together; `first`: the assemblies of the first instant. `far`: slides longer
-   !> than this, in the deck's unit, are followed no further.
-   subroutine find_together(m, start, drive, first, found, far)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: start
-      integer, intent(in) :: drive
-      type(assemblies_t), intent(in) :: first
-      type(circuits_t), intent(out) :: found
-      real(wp), intent(in), optional :: far
-      type(curve_point_t) :: p
-      logical :: ok
-      integer :: i
-
-      call begin_circuits(m, start, drive, first, found)
-      if (present(far)) found%curve%far = far/found%curve%closure%length
       if (start%known >= 0) then
          call start_point(found%curve, start%position, p, ok)
          if (ok) call add_circuits(found, p)
       end if
-      found%is_complete = first%is_known
-      call add_through(found, first)
-      call search_whole_range(m, start%t, found, first)
+      call add_through(found, all_of_them)
+      call search_whole_range(m, start%t, found, all_of_them)
+
       do i = 1, size(found%list)
          call add_branches(found, i)
          call add_assemblies(found, i)
          call add_meetings(found, i)
       end do
       found%is_held = found%curve%is_held .and. size(found%list) == 0
-      call number_assemblies(found, first%list)
+      call number_assemblies(found, all_of_them%list)
       if (is_redundant(found%curve)) found%branches%sign = no_sign
       call name_limits(m, start%t, found)
-   end subroutine find_together
+   end subroutine find_circuits
 
    !> Adds the circuits through assemblies.
    subroutine add_through(found, all_of_them)
@@ -164,7 +92,7 @@ contains
       logical :: ok
 
       do k = 1, size(all_of_them%list)
-         if (signal_received() > 0) return
+         if (found%are_more .or. signal_received() > 0) return
          call start_point(found%curve, all_of_them%list(k)%position, p, ok)
          if (ok) call add_circuits(found, p)
       end do
@@ -183,9 +111,13 @@ contains
       integer :: k
 
       held = held_at(m, t)
-      call whole_range(m, found, from, range)
+      from = found%curve%first
+      range = 2.0_wp*pi
+      if (.not. found%curve%is_angle) then
+         range = 2.0_wp*characteristic_length(m)*count(.not. m%links%ground)
+         from = from - 0.5_wp*(range/found%curve%closure%length)
+      end if
       from = drive_value(found%curve, from)
-      if (.not. found%curve%is_angle) range = range*found%curve%closure%length
       if (.not. any(first%blocks%is_wide)) call search(held, from, range, most_values, found)
       do k = 1, size(m%links)
          if (m%links(k)%ground) cycle
@@ -195,19 +127,6 @@ contains
          call search(held, from, 2.0_wp*pi, link_values, found)
       end do
    end subroutine search_whole_range
-
-   !> The whole `range` of the free drive of `m`, in rad and lengths of the curve, and where it begins.
-   subroutine whole_range(m, found, from, range)
-      type(mechanism_t), intent(in) :: m
-      type(circuits_t), intent(in) :: found
-      real(wp), intent(out) :: from, range
-
-      from = found%curve%first
-      range = 2.0_wp*pi
-      if (found%curve%is_angle) return
-      range = 2.0_wp*characteristic_length(m)*count(.not. m%links%ground)/found%curve%closure%length
-      from = from - 0.5_wp*range
-   end subroutine whole_range
 
    !> Adds the circuits through the assemblies of `m` at up to `most` values of the drive that is free in `found`, over
    !> a `range` that begins at `from`; fewer where that takes many paths.
@@ -221,7 +140,7 @@ contains
 
       n = most
       k = 0
-      do while (k < n .and. signal_received() == 0)
+      do while (k < n .and. .not. found%are_more .and. signal_received() == 0)
          m%drives(found%drive)%polynomial(1) = from + range*real(k, wp)/real(n, wp)
          call find_assemblies(m, 0.0_wp, more)
          call add_through(found, more)

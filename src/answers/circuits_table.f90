@@ -84,12 +84,10 @@ contains
       end do
    end subroutine add_branch_ranges
 
-   !> The circuits of each free drive of the set that `s` analyses, from its first instant. `draws`: with points for a
-   !> picture.
-   subroutine find_all_circuits(s, list, draws)
+   !> Finds the circuits of each free drive of the set that `s` analyses, from its first instant.
+   subroutine find_all_circuits(s, list)
       type(set_analysis_t), intent(in) :: s
       type(circuits_t), allocatable, intent(out) :: list(:)
-      logical, intent(in), optional :: draws
       integer, allocatable :: drives(:)
       integer :: c, i, n
 
@@ -100,9 +98,9 @@ contains
          do i = 1, size(drives)
             n = n + 1
             if (allocated(s%assemblies)) then
-               call find_circuits(s%now%parts(c), s%now%motions(c), drives(i), list(n), s%assemblies(c), draws)
+               call find_circuits(s%now%parts(c), s%now%motions(c), drives(i), list(n), s%assemblies(c))
             else
-               call find_circuits(s%now%parts(c), s%now%motions(c), drives(i), list(n), draws=draws)
+               call find_circuits(s%now%parts(c), s%now%motions(c), drives(i), list(n))
             end if
             list(n)%part = c
          end do
