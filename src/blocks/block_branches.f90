@@ -22,7 +22,7 @@ module block_branches
    use branch_requests, only: branch_requests_t, decide
    implicit none
    private
-   public :: pass, extrapolate, is_short_and_right
+   public :: pass, take_other_branch, extrapolate, is_short_and_right
 
    !> Over a substep this short, in radians and lengths, a determinant that changes its sign although the prediction
    !> was right to so small a part of the substep indicates a change point. Circuits that pass each other at the
@@ -187,8 +187,9 @@ contains
       end function slows_down
    end function time_of_values
 
-   !> Puts block `i` on its other branch, and what builds on it after it; `c`: how that ended, `found`: it is there. The
-   !> motions before are no guide to what comes.
+   !> Puts block `i` on its other branch, close to a change point or dead point, and what builds on it after it; `c`: how
+   !> that ended, `found`: it is there. On that branch the determinant has the other sign. The motions before are no
+   !> guide to what comes.
    subroutine take_other_branch(e, i, c, found)
       type(block_engine_t), intent(inout) :: e
       integer, intent(in) :: i
@@ -218,7 +219,7 @@ contains
       end if
       ! By the correction of this block alone: what builds on it moves by any multiple of that.
       correction = maxval(abs(values_of(e%blocks, i, e%state) - (x + away*direction)))
-      crossed(i) = .false.
+      crossed(i) = .not. crossed(i)
       same = .not. any(e%crossed .and. .not. crossed)
       found = is_solved(c) .and. same .and. .not. c%singular .and. correction <= 0.5_wp*abs(away) &
          .and. c%open%value <= max_closure_part*abs(curvature)*away**2

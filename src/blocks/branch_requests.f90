@@ -22,6 +22,7 @@ module branch_requests
       type(branch_request_t), allocatable :: cards(:)   !< in the deck's order
       logical, allocatable :: used(:)             !< (cards)
       type(branch_switch_t), allocatable :: branch_switches(:)
+      real(wp), allocatable :: stood_until        !< until then the motion stood on a singular position, the last time
    end type branch_requests_t
 
 contains
@@ -41,13 +42,14 @@ contains
    end function new_branch_requests
 
    !> Whether `block`, which moves the `links`, takes the `other` branch at its change point between the times `before`
-   !> and `t`, about at `at`.
+   !> and `t`, about at `at`. One on which the motion stood is at the time at which that ended.
    pure subroutine decide(c, block, links, before, t, at, other)
       type(branch_requests_t), intent(inout) :: c
       integer, intent(in) :: block
       logical, intent(in) :: links(:)
       real(wp), intent(in) :: before, t, at
       logical, intent(out) :: other
+      real(wp) :: way, here
       integer :: i
 
       do i = 1, size(c%branch_switches)
@@ -56,7 +58,10 @@ contains
             if (p%block == block .and. abs(p%t - at) <= p%width + abs(t - before)) return
          end associate
       end do
-      i = card_for(c, links, sign(1.0_wp, t - before), at, abs(t - before))
+      way = sign(1.0_wp, t - before)
+      here = at
+      if (allocated(c%stood_until)) here = way*max(way*at, way*c%stood_until)
+      i = card_for(c, links, way, here, abs(t - before))
       other = i > 0
       if (other) c%used(i) = .true.
       c%branch_switches = [c%branch_switches, branch_switch_t(block, at, abs(t - before), other)]

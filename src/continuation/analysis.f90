@@ -9,7 +9,7 @@ module analysis
    use drive_excursion, only: has_pole_between, short_of_pole, largest_derivative
    use motion, only: motion_t, forget_links, known_of, mark_none, mark_not_converged, mark_singular, mark_overflow, &
       mark_inconsistent, singular_unclear, diagnostic_t, diagnostic_inconsistent, diagnostic_limit, &
-      diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins, diagnostic_method
+      diagnostic_beyond, diagnostic_long, diagnostic_close, diagnostic_begins, diagnostic_method, diagnostic_dead_end
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, branch_none, branch_first, branch_same, &
       branch_crossed
    use convergence, only: convergence_t, closure_error_t, is_solved, ended_inconsistent, ended_unsought, ended_elsewhere
@@ -17,9 +17,9 @@ module analysis
    use block_method, only: measure_closure_error, get_link_flags, is_at_rest
    use dense_method, only: dense_t, make_dense, for_blocks, solve_all_links
    use block_diagnostics, only: start_diagnostics, limit_diagnostic
-   use at_bifurcation, only: stand_on, go_by_value
+   use at_bifurcation, only: stand_on, go_by_value, leave
    use following, only: following_t, step_record_t, make_following, renew_following, continue_to, is_too_far, &
-      go_on_from, go_back, place_t, note_place, return_to, limits_t, note_limit, limit_before
+      go_on_from, go_back, place_t, note_place, return_to, passed_of, limits_t, note_limit, limit_before
    implicit none
    private
    public :: analysis_t, make_analysis, renew_analysis, advance, look_at, come_back, redundancy_error
@@ -46,6 +46,7 @@ module analysis
       logical :: begins = .false.                          !< at the last instant none was followed yet
       logical :: is_lost = .false.                         !< at the last instant none was
       logical :: stands = .false.                          !< the last instant has a singular position
+      logical, allocatable :: singular(:)                  !< (blocks) if so, those that are singular there
       real(wp) :: last = 0.0_wp                            !< time of the last instant
       type(dense_t), allocatable :: dense                  !< METHOD DENSE and MATRIX: what solves for the motion
       logical :: has_missed = .false.                      !< at the last instant it did not find the blocks' position
@@ -124,10 +125,8 @@ contains
       else if (step%arrived) then
          call arrive(a, step, list, found)
       else
-         if (allocated(step%passed)) then
-            call add_diagnostics(step%passed, found)
-            a%certificate_counts%passed = a%certificate_counts%passed + size(step%passed)
-         end if
+         if (allocated(step%passed)) call add_diagnostics(step%passed, found)
+         a%certificate_counts%passed = a%certificate_counts%passed + passed_of(step)
          call give_up(a, to, step, found)
       end if
       goes_on = found%known == 2 .and. .not. found%rests
@@ -143,17 +142,22 @@ contains
       end if
       a%is_lost = .not. step%arrived
       a%stands = step%arrived .and. .not. goes_on
-      if (a%stands) a%stands = any(a%engine%is_singular(a%engine%needed))
+      if (a%stands) then
+         a%singular = a%engine%is_singular
+         a%stands = any(a%singular(a%engine%needed))
+      end if
       a%last = t
    end subroutine advance
 
    !> Continues the motion to `t`; `step`: how that went, `list`: what there is to say of it if it stands on a change
-   !> point. If no drive moves between the last instant and `t`, a singular position is that of the last instant.
+   !> point, or returns from a singular position. If no drive moves between the last instant and `t`, a singular
+   !> position is that of the last instant.
    subroutine reach(a, t, step, list)
       type(analysis_t), intent(inout) :: a
       real(wp), intent(in) :: t
       type(step_record_t), intent(out) :: step
       type(diagnostic_t), allocatable, intent(out) :: list(:)
+      type(diagnostic_t), allocatable :: returns(:)
 
       step%rests = a%stands
       if (step%rests) step%rests = all(is_at_rest(a%engine%laws, a%last, t))
@@ -162,12 +166,23 @@ contains
          call stay(a%engine, t, a%convergence)
          step%arrived = .true.
          step%stands = .true.
-      else
-         a%begins = .not. a%follows
-         if (a%begins .and. a%stands) call begin_beside(a, t)
-         call continue_to(a%following_t, t, step)
-         if (.not. step%arrived) call go_by_value(a%following_t, t, step, list)
+         return
       end if
+
+      a%begins = .not. a%follows
+      if (a%begins .and. a%stands) call begin_beside(a, t)
+      ! Back in time the motion is what it was.
+      if (a%stands .and. .not. a%begins .and. (a%t - a%last)*(t - a%last) < 0.0_wp) then
+         call leave(a%following_t, a%last, t, &
+            pack(a%engine%moving, a%singular(a%engine%moving)), returns)
+         step%dead_end = pack(returns, returns%kind == diagnostic_dead_end)
+         step%blocked = size(step%dead_end) > 0
+         if (step%blocked) return
+      end if
+      call continue_to(a%following_t, t, step)
+      if (.not. step%arrived) call go_by_value(a%following_t, t, step, list)
+      if (allocated(returns) .and. step%arrived .and. .not. (allocated(list) .or. passed_of(step) > 0 &
+         .or. a%convergence%singular)) call move_alloc(returns, list)
    end subroutine reach
 
    !> From a first position that is singular, more than one motion begins. The one to `t` begins in the assembly that is
@@ -253,7 +268,7 @@ contains
       type(step_record_t), intent(inout) :: step
       type(diagnostic_t), allocatable, intent(inout) :: list(:)
       type(motion_t), intent(inout) :: found
-      logical :: had_missed
+      logical :: had_missed, takes_other
 
       had_missed = a%has_missed
       if (a%convergence%singular .and. .not. step%stands) then
@@ -263,12 +278,16 @@ contains
       end if
       call get_motion(a, found)
       if (allocated(step%passed)) call add_diagnostics(step%passed, found)
-      if (allocated(list)) call add_diagnostics(list, found)
+      takes_other = .false.
+      if (allocated(list)) then
+         call add_diagnostics(list, found)
+         takes_other = any(list%other)
+      end if
       if (a%has_missed) then
          call miss(a, step, had_missed, found)
          return
       end if
-      call judge_branch(a, step)
+      call judge_branch(a, step, passed_of(step) > 0 .or. takes_other)
       if (.not. a%has_begun .or. (a%begins .and. found%known == 2)) call diagnose_start(a, found)
    end subroutine arrive
 
@@ -283,7 +302,7 @@ contains
       call cut(found, -1, mark_not_converged)
       call get_driven_links(a%engine, found%t, found)
       a%branch = branch_t()
-      if (allocated(step%passed)) a%certificate_counts%passed = a%certificate_counts%passed + size(step%passed)
+      a%certificate_counts%passed = a%certificate_counts%passed + passed_of(step)
       if (.not. is_known) call add_diagnostics([diagnostic_t(kind=diagnostic_method, &
          other=a%convergence%ended == ended_elsewhere)], found)
    end subroutine miss
@@ -346,23 +365,22 @@ contains
       a%is_lost = .true.
    end subroutine pass_over
 
-   !> What is verified of the instant found at the end of `step`.
-   subroutine judge_branch(a, step)
+   !> What is verified of the instant found at the end of `step`; `crosses`: by way of a change point, or on another
+   !> branch than before.
+   subroutine judge_branch(a, step, crosses)
       type(analysis_t), intent(inout) :: a
       type(step_record_t), intent(in) :: step
-      integer :: passed
+      logical, intent(in) :: crosses
 
-      passed = 0
-      if (allocated(step%passed)) passed = size(step%passed)
       if (step%rests) then
          a%branch = branch_t(kind=min(a%branch%kind, branch_same))
       else
          a%branch = step%branch
-         a%branch%kind = merge(branch_crossed, branch_same, passed > 0)
+         a%branch%kind = merge(branch_crossed, branch_same, crosses)
          if (a%convergence%singular .and. .not. step%stands) a%branch%kind = branch_none
       end if
       if (a%begins) a%branch%kind = branch_first
-      call count_in(a%certificate_counts, a%branch, passed)
+      call count_in(a%certificate_counts, a%branch, passed_of(step))
    end subroutine judge_branch
 
    !> What there is to say of the first position that was found, and of the first that a motion goes on from. One that

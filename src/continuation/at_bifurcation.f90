@@ -1,18 +1,22 @@
 !> An instant exactly at a change point: its position is known in full, its velocities are not unique, since each of
-!> the two branches has its own. And the passage through a change point at which the drive stops or turns.
+!> the two branches has its own. The way back from a dead point or change point, for which there are two branches, too.
+!> And the passage through a change point at which the drive stops or turns.
 module at_bifurcation
    use kinds, only: wp
    use drive_excursion, only: drive_excursion_t, largest_derivative
    use drives, only: law_t, new_law, drive_motion, bounds_t, bounds_of
    use mechanism, only: drive_t
-   use motion, only: diagnostic_t
+   use motion, only: diagnostic_t, new_diagnostic, diagnostic_change, diagnostic_dead_end
    use convergence, only: is_solved
    use block_method, only: solve_instant, max_rate, is_at_rest
-   use block_branches, only: extrapolate
-   use following, only: following_t, step_record_t, place_t, continue_to, go_on_from, go_back, note_place, return_to
+   use block_branches, only: extrapolate, take_other_branch
+   use block_diagnostics, only: links_of
+   use branch_requests, only: decide
+   use following, only: following_t, step_record_t, place_t, continue_to, go_on_from, go_back, note_place, return_to, &
+      passed_of
    implicit none
    private
-   public :: stand_on, go_by_value
+   public :: stand_on, leave, go_by_value
 
    !> The steps before the change point, in radians and in the unit of length: the extrapolation leaves 0.0112 of
    !> their seventh power, and of the rounding ten times its part by a step.
@@ -21,6 +25,9 @@ module at_bifurcation
    !> many equal steps of time.
    real(wp), parameter :: almost_at_rest = 0.1_wp
    integer, parameter :: value_steps = 64
+   !> After an instant at a singular position the motion takes the other branch where a drive has gone so far, in the
+   !> units of the blocks: the branches are still close there, and no longer singular.
+   real(wp), parameter :: leaving = 1.0e-5_wp
 
 contains
 
@@ -68,6 +75,66 @@ contains
          if (arrived) call go_on_from(f, t - k*h)
       end do
    end subroutine come_near
+
+   !> Leaves the singular position of the last instant, at the time `last`, at which the `blocks` stand, towards `t`. If
+   !> there are BRANCH cards and the motion goes back from there, it is then followed from shortly after on the branch
+   !> that they select. `list`: a diagnostic for each block, for a motion that goes back; diagnostic_dead_end: the branch
+   !> of a card is not found.
+   subroutine leave(f, last, t, blocks, list)
+      type(following_t), intent(inout) :: f
+      real(wp), intent(in) :: last, t
+      integer, intent(in) :: blocks(:)
+      type(diagnostic_t), allocatable, intent(out) :: list(:)
+      type(place_t) :: before
+      type(step_record_t) :: step
+      type(diagnostic_t), allocatable :: at_end(:)
+      real(wp) :: beside, high, middle
+      logical :: found
+      integer :: i, k
+
+      allocate (list(size(blocks)))
+      do k = 1, size(blocks)
+         list(k) = new_diagnostic(diagnostic_change, links_of(f%engine, blocks(k)))
+         list(k)%t = last
+         list(k)%here = .true.
+         list(k)%returns = .true.
+      end do
+      if (size(f%branch_requests%cards) == 0) return
+
+      beside = last
+      high = t
+      do i = 1, digits(1.0_wp)
+         middle = 0.5_wp*(beside + high)
+         if (all([(abs(value_at(f%engine%laws(k), middle) - value_at(f%engine%laws(k), last))*f%engine%unit_of(k), &
+            k=1, size(f%engine%laws))] <= leaving)) then
+            beside = middle
+         else
+            high = middle
+         end if
+      end do
+
+      f%branch_requests%stood_until = beside
+      call note_place(f, before)
+      call continue_to(f, beside, step)
+      if (.not. step%arrived) call go_by_value(f, beside, step, at_end)
+      if (.not. step%arrived .or. passed_of(step) > 0 .or. f%convergence%singular) then
+         call return_to(f, before)
+         return
+      end if
+      call go_on_from(f, beside)
+      do k = 1, size(blocks)
+         call decide(f%branch_requests, blocks(k), links_of(f%engine, blocks(k)), last, beside, last, list(k)%other)
+         if (.not. list(k)%other) cycle
+         call take_other_branch(f%engine, blocks(k), f%convergence, found)
+         if (found) then
+            call go_on_from(f, beside)
+         else
+            list(k)%kind = diagnostic_dead_end
+            f%place = before
+            return
+         end if
+      end do
+   end subroutine leave
 
    !> The `step` of the continuation to `t` has failed, or has ended at a position without velocities, since the one
    !> drive that moves stops or turns about there: followed by time, the motion comes ever closer to a singular position
@@ -135,13 +202,15 @@ contains
       allocate (passed(0))
       turn = f%t
       next = next_turn(f%engine%timed(drive), turn, t)
-      call go_to(next, value_at(turn) - sign(short_step/f%drives%unit(drive), value_at(next) - value_at(turn)))
+      associate (law => f%engine%timed(drive))
+         call go_to(next, value_at(law, turn) - sign(short_step/f%drives%unit(drive), value_at(law, next) - value_at(law, turn)))
+      end associate
       if (.not. arrived .or. stands .or. size(passed) > 0) call return_to(f, first)
       passed = [diagnostic_t ::]
       turn = first%t
       do while (abs(t - turn) > 0.0_wp)
          next = next_turn(f%engine%timed(drive), turn, t)
-         call go_to(next, value_at(next))
+         call go_to(next, value_at(f%engine%timed(drive), next))
          if (.not. arrived) return
          turn = next
          if (stands .and. abs(t - turn) > 0.0_wp) call go_back(f, one)
@@ -171,15 +240,17 @@ contains
          if (arrived .and. .not. stands) call go_on_from(f, to)
       end subroutine go_to
 
-      !> The drive's value at the time `t`.
-      pure real(wp) function value_at(t)
-         real(wp), intent(in) :: t
-         real(wp) :: f1(3)
-
-         f1 = drive_motion(f%engine%timed(drive), t)
-         value_at = f1(1)
-      end function value_at
    end subroutine go_from_turn_to_turn
+
+   !> The value of `law` at the time `t`.
+   pure real(wp) function value_at(law, t)
+      type(law_t), intent(in) :: law
+      real(wp), intent(in) :: t
+      real(wp) :: f(3)
+
+      f = drive_motion(law, t)
+      value_at = f(1)
+   end function value_at
 
    !> The only drive that moves between the times `from` and `t`, if it is almost at rest at the time `near`; 0: none.
    pure integer function stopping_drive(f, from, near, t) result(drive)

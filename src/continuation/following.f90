@@ -19,7 +19,7 @@ module following
    implicit none
    private
    public :: following_t, step_record_t, make_following, renew_following, continue_to, is_too_far, &
-      go_on_from, go_back, place_t, note_place, return_to
+      go_on_from, go_back, place_t, note_place, return_to, passed_of
    public :: limits_t, note_limit, limit_before, largest_correction
 
    !> The largest correction, in the characteristic length and in radians, of a predicted position that still counts as
@@ -214,7 +214,9 @@ contains
       real(wp), intent(in) :: t
       type(step_record_t), intent(inout) :: step
       type(diagnostic_t), allocatable :: list(:)
+      type(branch_requests_t) :: before
 
+      before = f%branch_requests
       call pass(f%engine, t, f%branch_requests, f%convergence, list)
       if (f%convergence%keeps_signs .and. f%convergence%kantorovich_ratio > max_kantorovich_ratio) then
          f%convergence%keeps_signs = .false.
@@ -224,7 +226,17 @@ contains
       else if (size(list) > 0) then
          step%dead_end = pack(list, list%kind == diagnostic_dead_end)
       end if
+      ! Close to a dead point it may only look like a change point: no card is used up there.
+      if (.not. f%convergence%keeps_signs) f%branch_requests = before
    end subroutine pass_change_points
+
+   !> How many change points were passed in the `step`.
+   pure integer function passed_of(step) result(passed)
+      type(step_record_t), intent(in) :: step
+
+      passed = 0
+      if (allocated(step%passed)) passed = size(step%passed)
+   end function passed_of
 
    !> The step to `t` would need more substeps than are tried.
    pure logical function is_too_far(f, t)
@@ -255,6 +267,7 @@ contains
       if (step%tries < 2) return
       f%t = f%place%t
       f%engine%followed_t = f%place%engine%followed_t
+      f%branch_requests = f%place%branch_requests
    end subroutine go_back
 
    !> Notes in `p` where the motion is followed.

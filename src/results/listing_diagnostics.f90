@@ -153,11 +153,10 @@ contains
          if (r%equations > 1) text = phrase(say_redundant_many, m%polish)//': '//whole(r%equations)//' ' &
             //phrase(say_of_pair, m%polish)//' '//trim(m%pairs(r%pair)%name)
       case (diagnostic_change)
-         text = phrase(say_change, m%polish)//' '//time(m, r%t)//', '//links(m, r)//': ' &
-            //phrase(merge(say_here, merge(say_other, say_smoothly, r%other), r%here), m%polish)
+         text = place_of(m, r)//phrase(merge(merge(say_returns_other, say_returns, r%other), &
+            merge(say_here, merge(say_other, say_smoothly, r%other), r%here), r%returns), m%polish)
       case (diagnostic_dead_end)
-         text = phrase(say_change, m%polish)//' '//time(m, r%t)//', '//links(m, r)//': ' &
-            //phrase(say_not_found, m%polish)
+         text = place_of(m, r)//phrase(say_not_found, m%polish)
       case (diagnostic_unused)
          text = 'BRANCH '
          if (r%links(1) > 0) text = text//trim(m%links(r%links(1))%name)//' '
@@ -178,6 +177,15 @@ contains
          text = links(m, r)//' '//phrase(say_mobile, m%polish)
       end select
    end function words_of
+
+   !> CHANGE POINT AT T = 16.000000 S, LINKS COUPLER, ROCKER:
+   function place_of(m, r) result(text)
+      type(mechanism_t), intent(in) :: m
+      type(diagnostic_t), intent(in) :: r
+      character(:), allocatable :: text
+
+      text = phrase(merge(say_singular_at, say_change, r%returns), m%polish)//' '//time(m, r%t)//', '//links(m, r)//': '
+   end function place_of
 
    !> Where a drive is at the limit `r` of its range, and which links are there.
    function limit_words(m, r) result(text)

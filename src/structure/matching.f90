@@ -69,75 +69,57 @@ contains
       !> after it, the last the free one.
       subroutine augment(start)
          integer, intent(in) :: start
-         integer :: depth, free
+         integer :: depth, e, u
 
          depth = 0
-         call visit(start, start, depth)
-         do while (depth > 0)
-            free = free_unknown(path(depth))
-            if (free > 0) exit
-            call go_deeper(start, depth)
-         end do
-         if (depth == 0) return
-         call join(path(depth), free)
-         do depth = depth - 1, 1, -1
-            call join(path(depth), g%unknown(next(depth) - 1))
+         e = start
+         do
+            if (e > 0) then
+               ! On to an equation that this search has not seen.
+               depth = depth + 1
+               path(depth) = e
+               next(depth) = g%first(e)
+               seen(e) = start
+               do while (look(e) < g%first(e + 1))
+                  u = g%unknown(look(e))
+                  look(e) = look(e) + 1
+                  if (equation_of(u) == 0) then
+                     call join(e, u)
+                     do depth = depth - 1, 1, -1
+                        call join(path(depth), g%unknown(next(depth) - 1))
+                     end do
+                     return
+                  end if
+               end do
+            else
+               depth = depth - 1
+               if (depth == 0) return
+            end if
+
+            e = 0
+            do while (next(depth) < g%first(path(depth) + 1) .and. e == 0)
+               e = equation_of(g%unknown(next(depth)))
+               next(depth) = next(depth) + 1
+               if (seen(e) == start) e = 0
+            end do
          end do
       end subroutine augment
-
-      !> The path of search `number` goes on to equation `e`.
-      subroutine visit(e, number, depth)
-         integer, intent(in) :: e, number
-         integer, intent(inout) :: depth
-
-         depth = depth + 1
-         path(depth) = e
-         next(depth) = g%first(e)
-         seen(e) = number
-      end subroutine visit
-
-      !> A free unknown of equation `e`, 0 for none.
-      integer function free_unknown(e) result(u)
-         integer, intent(in) :: e
-
-         do while (look(e) < g%first(e + 1))
-            u = g%unknown(look(e))
-            look(e) = look(e) + 1
-            if (equation_of(u) == 0) return
-         end do
-         u = 0
-      end function free_unknown
-
-      !> One step of search `number`: to an equation not yet seen, or back.
-      subroutine go_deeper(number, depth)
-         integer, intent(in) :: number
-         integer, intent(inout) :: depth
-         integer :: e
-
-         do while (next(depth) < g%first(path(depth) + 1))
-            e = equation_of(g%unknown(next(depth)))
-            next(depth) = next(depth) + 1
-            if (seen(e) == number) cycle
-            call visit(e, number, depth)
-            return
-         end do
-         depth = depth - 1
-      end subroutine go_deeper
    end subroutine match
 
    !> The blocks of a perfect matching: equations `member`(first(b)), ..., member(first(b + 1) - 1) are block b,
    !> solved for the unknowns matched with them. A block needs unknowns of earlier blocks only. No equation: no
-   !> block.
+   !> block. `skip` (equations): those that belong to no block.
    subroutine find_blocks(g, equation_of, first, member, skip)
       type(incidence_t), intent(in) :: g
       integer, intent(in) :: equation_of(:)
       integer, allocatable, intent(out) :: first(:), member(:)
       logical, intent(in), optional :: skip(:)
+      integer, parameter :: done = huge(1)
       integer :: number(g%equations), low(g%equations), path(g%equations), next(g%equations)
-      integer :: stack(g%equations), counter, depth, top, blocks, members, root, e, further
+      integer :: stack(g%equations), counter, depth, top, blocks, members, root, e, other
 
       number = 0
-      if (present(skip)) number = merge(huge(1), 0, skip)
+      if (present(skip)) number = merge(done, 0, skip)
       counter = 0
       top = 0
       blocks = 0
@@ -146,25 +128,37 @@ contains
       first(1) = 1
       do root = 1, g%equations
          if (number(root) > 0) cycle
-         depth = 1
-         path(1) = root
+         depth = 0
          call enter(root)
          do while (depth > 0)
             e = path(depth)
-            further = next_equation(e)
-            if (further > 0) then
-               if (number(further) == 0) then
-                  depth = depth + 1
-                  path(depth) = further
-                  call enter(further)
-               else if (number(further) > 0) then
-                  low(e) = min(low(e), number(further))
+
+            ! The next equation that `e` waits for and that belongs to no block yet.
+            if (next(e) < g%first(e + 1)) then
+               other = equation_of(g%unknown(next(e)))
+               next(e) = next(e) + 1
+               if (number(other) == 0) then
+                  call enter(other)
+               else if (number(other) < done) then
+                  low(e) = min(low(e), number(other))
                end if
-            else
-               depth = depth - 1
-               if (depth > 0) low(path(depth)) = min(low(path(depth)), low(e))
-               if (low(e) == number(e)) call close_block(e)
+               cycle
             end if
+
+            ! It waits for no more: all that stands on the stack down to it may be one block.
+            depth = depth - 1
+            if (depth > 0) low(path(depth)) = min(low(path(depth)), low(e))
+            if (low(e) < number(e)) cycle
+            do
+               other = stack(top)
+               top = top - 1
+               number(other) = done
+               members = members + 1
+               member(members) = other
+               if (other == e) exit
+            end do
+            blocks = blocks + 1
+            first(blocks + 1) = members + 1
          end do
       end do
       first = first(:blocks + 1)
@@ -176,6 +170,8 @@ contains
       subroutine enter(e)
          integer, intent(in) :: e
 
+         depth = depth + 1
+         path(depth) = e
          counter = counter + 1
          number(e) = counter
          low(e) = counter
@@ -183,35 +179,6 @@ contains
          top = top + 1
          stack(top) = e
       end subroutine enter
-
-      !> The next equation that `e` waits for and that belongs to no block yet, 0 for none.
-      integer function next_equation(e) result(other)
-         integer, intent(in) :: e
-
-         do while (next(e) < g%first(e + 1))
-            other = equation_of(g%unknown(next(e)))
-            next(e) = next(e) + 1
-            if (other /= e .and. number(other) < huge(1)) return
-         end do
-         other = 0
-      end function next_equation
-
-      !> All that stands on the stack down to `e` is one block.
-      subroutine close_block(e)
-         integer, intent(in) :: e
-         integer :: last
-
-         do
-            last = stack(top)
-            top = top - 1
-            number(last) = huge(1)
-            members = members + 1
-            member(members) = last
-            if (last == e) exit
-         end do
-         blocks = blocks + 1
-         first(blocks + 1) = members + 1
-      end subroutine close_block
    end subroutine find_blocks
 
    !> (equations) The part with too many equations, of a largest matching: those without an unknown, and all that

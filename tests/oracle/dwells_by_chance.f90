@@ -1,10 +1,11 @@
 !> Dwells on singular positions: random four-bars, crank-sliders, parallelograms and kites, which RISE drives onto a
-!> dead point or a change point, dwells there, and drives on or back, against the closure of their loops.
+!> dead point or a change point, dwells there, and drives on or back, against the closure of their loops; some with a
+!> BRANCH card.
 !> dwells_by_chance COUNT [FIRST SEED]; the last line is `N passed, N failed`.
 program dwells_by_chance
    use kinds, only: wp
    use planar, only: pi, without_turns
-   use mechanism, only: mechanism_t, term_t, term_cycloid, drive_x, instant
+   use mechanism, only: mechanism_t, branch_request_t, term_t, term_cycloid, drive_x, instant
    use drives, only: new_law, law_t, drive_motion
    use motion, only: motion_t, new_motion
    use analysis, only: analysis_t, make_analysis, advance
@@ -16,6 +17,10 @@ program dwells_by_chance
    !> Roundings of angles and lengths up to 10, over the sine of the angle between the two links of the dyad; on the
    !> singular position itself the closed form knows the root of them.
    real(wp), parameter :: rounding = 2.0e-13_wp, root = 2.0e-7_wp
+   !> An instant that is flagged so shortly after the dwell may be on either branch: so much are they apart there.
+   real(wp), parameter :: either = 4.0e-6_wp
+   !> An instant stands on a change point where the drive's value is so near to that; on a dead point at its square.
+   real(wp), parameter :: at_place = 1.0e-7_wp
    integer, parameter :: kinds_of = 6, kind_slider = 5, kind_piston = 6
 
    !> A mechanism and its closed form.
@@ -25,6 +30,7 @@ program dwells_by_chance
       real(wp) :: singular = 0.0_wp        !< the drive's value there
       real(wp) :: start = 0.0_wp           !< the drive's value at first
       logical :: goes_on = .false.         !< through it
+      logical :: has_card = .false.        !< a BRANCH card asks for the other branch after the dwell
       integer :: side = 1                  !< on which side of its line the dyad is, at first
       type(mechanism_t) :: m
    end type scene_t
@@ -115,6 +121,7 @@ contains
          if (dyad_sine(s, s%start) > 0.1_wp) exit
       end do
       s%goes_on = chance(d, 0.6_wp) .and. any(s%kind == [3, 4, kind_slider])
+      s%has_card = chance(d, 0.4_wp)
    end subroutine throw_scene
 
    !> The mechanism of `s`, drawn at its beginning, and its drive: a rise by one of the four laws, a dwell and another
@@ -153,6 +160,7 @@ contains
       s%m%drives(1)%polynomial = [s%start, 0.0_wp, 0.0_wp]
       s%m%drives(1)%terms = [term_t(kind=law, r=[times(1), times(2), lift]), term_t(kind=law, r=[times(3), times(4), &
          merge(lift, -lift, s%goes_on)*between(d, 0.4_wp, 0.9_wp)])]
+      if (s%has_card) s%m%branch_requests = [branch_request_t(t=times(merge(1, 3, chance(d, 0.5_wp)))*0.95_wp)]
       s%m%t0 = 0.0_wp
       s%m%t1 = 7.0_wp
       call find_links(s, s%start, s%side, s%m%links%position(1), s%m%links%position(2), s%m%links%position(3), finite)
@@ -167,22 +175,31 @@ contains
       type(law_t) :: law
       real(wp) :: x(4), y(4), phi(4), f(3), off, sine, allowed, t
       integer :: k, side
-      logical :: finite
+      logical :: finite, changes, stands
 
       is_followed = .true.
       call make_analysis(a, s%m)
       q = new_motion(4)
       law = new_law(s%m%drives(1))
       associate (rises => s%m%drives(1)%terms)
+         ! A card for the way back, or one whose time is in the dwell, needs an instant there.
+         changes = s%has_card
+         stands = .false.
+         do k = 0, merge(s%m%steps, -1, s%has_card)
+            f = drive_motion(law, instant(s%m, k))
+            stands = stands .or. abs(f(1) - s%singular) <= merge(at_place, at_place**2, any(s%kind == [3, 4, kind_slider]))
+         end do
+         if (changes) changes = stands .or. (s%goes_on .and. s%m%branch_requests(1)%t < rises(1)%r(1))
          do k = 0, s%m%steps
             t = instant(s%m, k)
             call advance(a, t, q)
             f = drive_motion(law, t)
             side = s%side
-            if (s%goes_on .and. t > rises(2)%r(1)) side = -side
+            if ((s%goes_on .neqv. changes) .and. t > rises(2)%r(1)) side = -side
             call find_links(s, f(1), side, x, y, phi, finite)
             sine = dyad_sine(s, f(1))
             allowed = min(root, rounding/max(sine, epsilon(sine)))
+            if (changes .and. q%known == 0 .and. t > rises(2)%r(1)) allowed = either
             off = max(maxval(abs(q%position(1, 2:) - x(2:))), maxval(abs(q%position(2, 2:) - y(2:))), &
                maxval(abs(without_turns(q%position(3, 2:) - phi(2:)))))
             is_followed = q%known >= 0 .and. off <= allowed
