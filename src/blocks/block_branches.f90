@@ -187,9 +187,9 @@ contains
       end function slows_down
    end function time_of_values
 
-   !> Puts block `i` on its other branch, close to a change point or dead point, and what builds on it after it; `c`: how
-   !> that ended, `found`: it is there. On that branch the determinant has the other sign. The motions before are no
-   !> guide to what comes.
+   !> Puts block `i` on its other branch, close to a change point or dead point, and what builds on it after it; `c`:
+   !> how that ended, `found`: it is there. On that branch the determinant has the other sign. The motions before are
+   !> no guide to what comes.
    subroutine take_other_branch(e, i, c, found)
       type(block_engine_t), intent(inout) :: e
       integer, intent(in) :: i

@@ -78,8 +78,8 @@ contains
 
    !> Leaves the singular position of the last instant, at the time `last`, at which the `blocks` stand, towards `t`. If
    !> there are BRANCH cards and the motion goes back from there, it is then followed from shortly after on the branch
-   !> that they select. `list`: a diagnostic for each block, for a motion that goes back; diagnostic_dead_end: the branch
-   !> of a card is not found.
+   !> that they select. `list`: a diagnostic for each block, for a motion that goes back; diagnostic_dead_end: the
+   !> branch of a card is not found.
    subroutine leave(f, last, t, blocks, list)
       type(following_t), intent(inout) :: f
       real(wp), intent(in) :: last, t
@@ -203,7 +203,8 @@ contains
       turn = f%t
       next = next_turn(f%engine%timed(drive), turn, t)
       associate (law => f%engine%timed(drive))
-         call go_to(next, value_at(law, turn) - sign(short_step/f%drives%unit(drive), value_at(law, next) - value_at(law, turn)))
+         call go_to(next, value_at(law, turn) - sign(short_step/f%drives%unit(drive), &
+            value_at(law, next) - value_at(law, turn)))
       end associate
       if (.not. arrived .or. stands .or. size(passed) > 0) call return_to(f, first)
       passed = [diagnostic_t ::]

@@ -72,7 +72,8 @@ module phrases
       say_singular_at = phrase_t('SINGULAR POSITION AT T =', 'POLOZENIE OSOBLIWE W CHWILI T ='), &
       say_returns = phrase_t('RETURNS ON ITS BRANCH, CARD BRANCH SELECTS THE OTHER ONE', &
          'RUCH WRACA SWOJA GALEZIA, DRUGA WYBIERA KARTA BRANCH'), &
-      say_returns_other = phrase_t('RETURNS ON THE OTHER BRANCH (CARD BRANCH)', 'RUCH WRACA DRUGA GALEZIA (KARTA BRANCH)'), &
+      say_returns_other = phrase_t('RETURNS ON THE OTHER BRANCH (CARD BRANCH)', &
+         'RUCH WRACA DRUGA GALEZIA (KARTA BRANCH)'), &
       say_smoothly = phrase_t('PASSED ON THE SMOOTH BRANCH', 'RUCH PRZECHODZI GLADKO'), &
       say_unknown = phrase_t('DIGITS LOST TO ROUNDING', 'CYFRY UTRACONE PRZEZ ZAOKRAGLENIE'), &
       say_way = phrase_t('THE MOTION FROM T =', 'DROGA OD CHWILI T ='), &
