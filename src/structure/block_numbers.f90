@@ -125,12 +125,14 @@ contains
    end subroutine find_units
 
    !> Unit of loop `m`: its largest own body vector. A slide is as long as what is known lets it be, and a projection
-   !> that turns with an orientation of the block turns the whole loop.
+   !> that turns with an orientation of the block turns the whole loop. Slides that nothing else balances may be long
+   !> where what is known is short, as the way to a point beside the origin.
    pure subroutine measure(b, m, x)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: m
       type(numbers_t), intent(inout) :: x
       real(wp) :: own, known
+      logical :: slides
       integer :: k
 
       associate (g => b%loops(m))
@@ -140,8 +142,10 @@ contains
          do k = g%first_slide, g%last_slide
             if (b%slides(k)%column == 0) known = max(known, x%unit(b%slides(k)%unknown))
          end do
-         if (own <= 0.0_wp .or. any(b%slides(g%first_slide:g%last_slide)%column > 0) .or. &
-            (g%kind == loop_projection .and. g%orientation_column > 0)) own = max(own, known)
+         slides = any(b%slides(g%first_slide:g%last_slide)%column > 0)
+         if (slides .and. own <= 0.0_wp .and. known > 0.0_wp) own = much_smaller
+         if (own <= 0.0_wp .or. slides .or. (g%kind == loop_projection .and. g%orientation_column > 0)) &
+            own = max(own, known)
          if (own > 0.0_wp) x%loops(m)%unit = power_of_two(own)
          x%loops(m)%coarse = known
       end associate
