@@ -5,7 +5,7 @@ module block_engine
    use mechanism, only: mechanism_t, wanted_links, pair_revolute, drive_x, drive_y, drive_slide
    use motion, only: motion_t
    use links_tree, only: tree_t
-   use structure, only: structure_t, new_structure
+   use structure, only: structure_t, make_structure
    use initial_estimate, only: estimated_values
    use drives, only: law_t, new_law, find_drive_motion
    use convergence, only: convergence_t, is_solved, gather, ended_converged, ended_singular
@@ -89,7 +89,7 @@ contains
       type(structure_t) :: own
 
       if (.not. present(structure)) then
-         own = new_structure(m)
+         call make_structure(m, own)
          call make_block_engine(e, m, own)
          return
       end if

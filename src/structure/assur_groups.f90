@@ -42,9 +42,18 @@ contains
    function new_closure(m) result(c)
       type(mechanism_t), intent(in) :: m
       type(closure_t) :: c
-      integer :: moving(size(m%links)), n, i, k
+      integer :: moving(size(m%links)), n, i, k          ! (links) number among the moving links, 0 for ground links
 
-      call number_links(m, moving, c)
+      n = 0
+      moving = 0
+      allocate (c%link_of(3*count(.not. m%links%ground)))
+      do i = 1, size(m%links)
+         if (m%links(i)%ground) cycle
+         n = n + 1
+         moving(i) = n
+         c%link_of(3*n - 2:3*n) = i
+      end do
+      c%incidence%unknowns = 3*n
       associate (equations => 2*size(m%pairs) + size(m%drives))
          allocate (c%incidence%first(equations + 1), c%incidence%unknown(6*equations))
          allocate (c%pair(equations), c%drive(equations), source=0)
@@ -140,25 +149,6 @@ contains
          c%incidence%first(k + 1) = n + 1
       end subroutine close_equation
    end function new_closure
-
-   !> `moving` (links): number among the moving links, 0 for ground links.
-   subroutine number_links(m, moving, c)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(out) :: moving(:)
-      type(closure_t), intent(inout) :: c
-      integer :: i, n
-
-      n = 0
-      moving = 0
-      allocate (c%link_of(3*count(.not. m%links%ground)))
-      do i = 1, size(m%links)
-         if (m%links(i)%ground) cycle
-         n = n + 1
-         moving(i) = n
-         c%link_of(3*n - 2:3*n) = i
-      end do
-      c%incidence%unknowns = 3*n
-   end subroutine number_links
 
    !> The groups of `m`, in whose closure `c` each unknown can have an equation. The links of the part with too many
    !> equations are one group.

@@ -34,9 +34,20 @@ contains
       integer, intent(in) :: member(:)
       type(blocks_t), intent(inout) :: b
       type(filling_t) :: f
-      integer :: i, k
+      integer :: body_vectors, slides, i, k
 
-      call reserve()
+      ! Room for all loops: a vector loop whose two components lie in different blocks is in both.
+      body_vectors = 0
+      slides = 0
+      do i = 1, e%count
+         associate (p => e%vector_loops, k => e%list(i)%vector_loop)
+            body_vectors = body_vectors + p%first_vector(k + 1) - p%first_vector(k)
+            slides = slides + p%first_slide(k + 1) - p%first_slide(k)
+         end associate
+      end do
+      allocate (b%loops(e%count), b%body_vectors(body_vectors), b%slides(slides))
+      allocate (f%column(0:b%unknowns), f%latest(0:e%vector_loops%count), source=0)
+
       do i = 1, size(b%list)
          associate (block => b%list(i))
             block%first_loop = f%loops + 1
@@ -128,22 +139,6 @@ contains
                column=f%column(p%vector_orientation(k)), source=k)
          end do
       end subroutine add_body_vectors
-
-      !> Room for all loops: a vector loop whose two components lie in different blocks is in both.
-      subroutine reserve()
-         integer :: body_vectors, slides, i
-
-         body_vectors = 0
-         slides = 0
-         do i = 1, e%count
-            associate (p => e%vector_loops, k => e%list(i)%vector_loop)
-               body_vectors = body_vectors + p%first_vector(k + 1) - p%first_vector(k)
-               slides = slides + p%first_slide(k + 1) - p%first_slide(k)
-            end associate
-         end do
-         allocate (b%loops(e%count), b%body_vectors(body_vectors), b%slides(slides))
-         allocate (f%column(0:b%unknowns), f%latest(0:e%vector_loops%count), source=0)
-      end subroutine reserve
    end subroutine fill_block_loops
 
    !> The places of all entries of `b`, and the patterns of the blocks whose Jacobian is best sparse.

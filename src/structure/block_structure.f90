@@ -10,7 +10,7 @@ module block_structure
    use block_partition, only: new_blocks
    implicit none
    private
-   public :: structure_t, new_structure, make_structure
+   public :: structure_t, make_structure
 
    !> Made once, and handed to the engine, which takes the blocks over.
    type :: structure_t
@@ -19,15 +19,8 @@ module block_structure
 
 contains
 
-   !> The structure of the independent mechanism `m`. Time and memory proportional to its links, pairs and drives.
-   function new_structure(m) result(s)
-      type(mechanism_t), intent(in) :: m
-      type(structure_t) :: s
-
-      call make_structure(m, s)
-   end function new_structure
-
-   !> The structure `s` of the independent mechanism `m`, in place.
+   !> Makes the structure `s` of the independent mechanism `m`, in place. Time and memory are proportional to its links,
+   !> pairs and drives.
    subroutine make_structure(m, s)
       type(mechanism_t), intent(in) :: m
       type(structure_t), intent(out) :: s

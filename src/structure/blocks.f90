@@ -109,51 +109,17 @@ module blocks
 
 contains
 
-   !> The blocks, in solving order, that the links `wanted` (links) need; equations that are too many are always
-   !> looked at.
+   !> The blocks, in solving order, that the links `wanted` (links) need, for their angles and slides and for those of
+   !> the links between them and the ground; equations that are too many are always looked at.
    function needed_blocks(b, t, wanted) result(list)
       type(blocks_t), intent(in) :: b
       type(tree_t), intent(in) :: t
       logical, intent(in) :: wanted(:)
       integer, allocatable :: list(:)
-      logical :: need(0:b%unknowns), needed(size(b%list))
-      integer :: i
-
-      need = .false.
-      call need_links(b, t, wanted, need)
-      do i = size(b%list), 1, -1
-         needed(i) = any(need(b%unknown(b%list(i)%first:b%list(i)%last))) &
-            .or. b%list(i)%shape%rows > b%list(i)%shape%n
-         if (needed(i)) call need_known(b, i, need)
-      end do
-      list = pack([(i, i=1, size(b%list))], needed)
-   end function needed_blocks
-
-   !> Block `i` and those that it builds on, in solving order.
-   function blocks_below(b, i) result(list)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      integer, allocatable :: list(:)
-      logical :: need(0:b%unknowns), below(i)
-      integer :: k
-
-      need = .false.
-      do k = i, 1, -1
-         below(k) = k == i .or. any(need(b%unknown(b%list(k)%first:b%list(k)%last)))
-         if (below(k)) call need_known(b, k, need)
-      end do
-      list = pack([(k, k=1, i)], below)
-   end function blocks_below
-
-   !> Angles and slides of the wanted links and of those between them and the ground.
-   subroutine need_links(b, t, wanted, need)
-      type(blocks_t), intent(in) :: b
-      type(tree_t), intent(in) :: t
-      logical, intent(in) :: wanted(:)
-      logical, intent(inout) :: need(0:)
-      logical :: chain(size(wanted))
+      logical :: need(0:b%unknowns), chain(size(wanted))
       integer :: i, link
 
+      need = .false.
       chain = wanted
       do i = size(t%order), 1, -1
          link = t%order(i)
@@ -166,7 +132,37 @@ contains
             need(b%orientations + t%slides + 2*t%root(link) - 1:b%orientations + t%slides + 2*t%root(link)) = .true.
          end if
       end do
-   end subroutine need_links
+      list = blocks_that_give(b, b%list%shape%rows > b%list%shape%n, need)
+   end function needed_blocks
+
+   !> Block `i` and those that it builds on, in solving order.
+   function blocks_below(b, i) result(list)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      integer, allocatable :: list(:)
+      logical :: need(0:b%unknowns)
+      integer :: k
+
+      need = .false.
+      list = blocks_that_give(b, [(k == i, k=1, size(b%list))], need)
+   end function blocks_below
+
+   !> The blocks, in solving order, that are `taken` (blocks), that give one of the unknowns of which there is `need`
+   !> (0:unknowns), or on which one of these builds.
+   function blocks_that_give(b, taken, need) result(list)
+      type(blocks_t), intent(in) :: b
+      logical, intent(in) :: taken(:)
+      logical, intent(inout) :: need(0:)
+      integer, allocatable :: list(:)
+      logical :: needed(size(taken))
+      integer :: i
+
+      do i = size(taken), 1, -1
+         needed(i) = taken(i) .or. any(need(b%unknown(b%list(i)%first:b%list(i)%last)))
+         if (needed(i)) call need_known(b, i, need)
+      end do
+      list = pack([(i, i=1, size(taken))], needed)
+   end function blocks_that_give
 
    !> What block `i` needs of the others.
    pure subroutine need_known(b, i, need)

@@ -11,7 +11,7 @@ module loop_equations
    use mechanism, only: mechanism_t, pair_t, pair_links, pair_revolute, drive_angle, drive_x, drive_y, drive_relangle, &
       drive_slide
    use links_tree, only: tree_t, axes_t, put_axes, guide
-   use vector_loops, only: search_t, new_search, find_path, find_path_down, close_pair, vector_loops_t, &
+   use vector_loops, only: search_t, new_search, find_path, find_path_down, vector_loops_t, &
       new_vector_loops, add_vector_loop, loop_sums_t, put_sums, vanishes
    use matching, only: incidence_t
    implicit none
@@ -70,7 +70,8 @@ contains
       pairs = closing_pairs()
       do i = 1, size(pairs)
          call add_pair(pairs(i))
-         call close_pair(m, pairs(i), s)
+         ! From now on paths lead through it.
+         s%open(pairs(i)) = m%pairs(pairs(i))%kind == pair_revolute
       end do
       do i = 1, size(t%surplus)
          call add(equation_t(equation_angle, pair=t%surplus(i)))
@@ -157,7 +158,7 @@ contains
       real(wp), intent(in) :: length
       type(equations_t), intent(inout) :: e
       type(equation_numbers_t) :: x
-      integer :: k
+      integer :: i, k
 
       associate (p => e%vector_loops)
          allocate (x%axes%angle_offset(size(m%links)), x%axes%turn(2, size(m%links)))
@@ -168,21 +169,12 @@ contains
          allocate (e%counts(2, p%slides), source=.false.)
       end associate
       do k = 1, e%count
-         call note_slides(e%list(k), k)
+         associate (q => e%list(k), p => e%vector_loops)
+            do i = p%first_slide(q%vector_loop), p%first_slide(q%vector_loop + 1) - 1
+               e%counts(side_of(q), i) = has_slide(q, x, k, p%slide_orientation(i), i)
+            end do
+         end associate
       end do
-
-   contains
-
-      !> Notes which slides count in equation `q`, number `k`.
-      subroutine note_slides(q, k)
-         type(equation_t), intent(in) :: q
-         integer, intent(in) :: k
-         integer :: i
-
-         do i = e%vector_loops%first_slide(q%vector_loop), e%vector_loops%first_slide(q%vector_loop + 1) - 1
-            e%counts(side_of(q), i) = has_slide(q, x, k, e%vector_loops%slide_orientation(i), i)
-         end do
-      end subroutine note_slides
    end function new_equation_numbers
 
    !> Gives the numbers `x` of the equations `e` those of `m`, whose tree is `t`.

@@ -15,10 +15,10 @@ module structure
    use assur_groups, only: closure_t, new_closure, group_t, groups_of
    use independent, only: set_t, divide, part_of_links
    use links_tree, only: tree_t
-   use block_structure, only: structure_t, new_structure, make_structure
+   use block_structure, only: structure_t, make_structure
    implicit none
    private
-   public :: structure_t, findings_t, group_t, underdetermined_t, new_structure, count_degrees_of_freedom, &
+   public :: structure_t, findings_t, group_t, underdetermined_t, make_structure, count_degrees_of_freedom, &
       find_structure, find_groups, check_structure, faults_text, spare_drives_text
 
    !> Links that still can move, and the drives that they lack.
@@ -113,7 +113,7 @@ contains
       if (f%solvable) then
          f%closure = c
       else
-         whole = new_structure(m)
+         call make_structure(m, whole)
          f%lacking = parts_on_tree(whole%blocks%tree, whole%blocks%free)
       end if
 
@@ -260,7 +260,7 @@ contains
       type(findings_t), intent(in) :: f
       integer, intent(in) :: set
       character(:), allocatable :: text
-      integer :: i
+      integer :: i, k
 
       text = ''
       if (size(f%lacking) == 0) then
@@ -275,8 +275,13 @@ contains
          text = text//new_line('a')//' LAYOUT    |'//trim(forms(form_ground)%layout)
       end if
       do i = 1, min(size(f%lacking), max_parts)
-         call add_line('E101  SET '//whole(set)//': '//lack(m, f%lacking(i)) &
-            //shared_joints(m, [(i, i=1, size(m%pairs))], f%lacking(i)%links))
+         associate (one => f%lacking(i))
+            call add_line('E101  SET '//whole(set)//': '//links_listed(m, one%links)//': ' &
+               //whole(one%degrees_of_freedom)//' ' &
+               //trim(merge('DEGREE OF FREEDOM NOT DRIVEN: ADD A DRIVE OR A PAIR', &
+               'DEGREES OF FREEDOM NOT DRIVEN: ADD DRIVES OR PAIRS ', one%degrees_of_freedom == 1)) &
+               //shared_joints(m, [(k, k=1, size(m%pairs))], one%links))
+         end associate
       end do
       if (size(f%lacking) > max_parts) call add_line('E101  SET '//whole(set)//': AND ' &
          //whole(size(f%lacking) - max_parts)//' MORE PARTS THAT CAN MOVE')
@@ -355,20 +360,6 @@ contains
       end do
       text = listed(drives, polish)
    end function drives_listed
-
-   !> LINKS A, B: 1 DEGREE OF FREEDOM NOT DRIVEN: ADD A DRIVE OR A PAIR
-   function lack(m, part) result(text)
-      type(mechanism_t), intent(in) :: m
-      type(underdetermined_t), intent(in) :: part
-      character(:), allocatable :: text
-
-      text = links_listed(m, part%links)//': '
-      if (part%degrees_of_freedom == 1) then
-         text = text//'1 DEGREE OF FREEDOM NOT DRIVEN: ADD A DRIVE OR A PAIR'
-      else
-         text = text//whole(part%degrees_of_freedom)//' DEGREES OF FREEDOM NOT DRIVEN: ADD DRIVES OR PAIRS'
-      end if
-   end function lack
 
    !> LINK A, or LINKS A, B: those with these numbers.
    function links_listed(m, numbers) result(text)

@@ -18,7 +18,7 @@ module vector_loops
    implicit none
    private
    public :: vector_loops_t, new_vector_loops, add_vector_loop, loop_sums_t, put_sums, vanishes
-   public :: search_t, new_search, find_path, find_path_down, close_pair
+   public :: search_t, new_search, find_path, find_path_down
 
    !> What a search needs; links are nodes, all ground links one, node 0.
    type :: search_t
@@ -91,7 +91,12 @@ contains
          call add_slide(loops, 0, t%slides + 2*t%root(link) - 1, 0)
          call add_slide(loops, 0, t%slides + 2*t%root(link), 0)
       end if
-      call close_loop(loops)
+
+      loops%vector_of(loops%vector_orientation(loops%first_vector(loops%count + 1):loops%vectors)) = 0
+      loops%count = loops%count + 1
+      loops%first_vector(loops%count + 1) = loops%vectors + 1
+      loops%first_slide(loops%count + 1) = loops%slides + 1
+      loops%first_term(loops%count + 1) = loops%term_count + 1
    end subroutine add_vector_loop
 
    !> Goes from a place of `link` through `pair` to the link at its other end, which becomes `link`. Ground
@@ -175,17 +180,6 @@ contains
       p%slide_number(p%slides) = slide
       p%slide_pair(p%slides) = pair
    end subroutine add_slide
-
-   !> Ends the loop in the making.
-   subroutine close_loop(p)
-      type(vector_loops_t), intent(inout) :: p
-
-      p%vector_of(p%vector_orientation(p%first_vector(p%count + 1):p%vectors)) = 0
-      p%count = p%count + 1
-      p%first_vector(p%count + 1) = p%vectors + 1
-      p%first_slide(p%count + 1) = p%slides + 1
-      p%first_term(p%count + 1) = p%term_count + 1
-   end subroutine close_loop
 
    !> Gives `x`, the sums of the loops `p`, the numbers of `m`, whose links stand in the axes `a` on the tree `t`;
    !> lengths in units of `length`.
@@ -272,15 +266,6 @@ contains
       allocate (s%queue(0:size(m%links), 2), s%pairs(size(m%links) + 1))
    end function new_search
 
-   !> From now on paths lead through revolute pair `k`.
-   subroutine close_pair(m, k, s)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: k
-      type(search_t), intent(inout) :: s
-
-      s%open(k) = m%pairs(k)%kind == pair_revolute
-   end subroutine close_pair
-
    !> `s%pairs`: the pairs down the tree from `link` to a ground link or a root.
    subroutine find_path_down(t, link, s)
       type(tree_t), intent(in) :: t
@@ -319,7 +304,10 @@ contains
             if (meeting < 0) call go_on(side)
          end do
       end do
-      call collect(m, i, j, meeting, s)
+
+      call collect(1, node(m, i))
+      s%pairs(:s%length) = s%pairs(s%length:1:-1)
+      call collect(2, node(m, j))
 
    contains
 
@@ -352,6 +340,22 @@ contains
          last(side) = last(side) + 1
          s%queue(last(side), side) = n
       end subroutine reach
+
+      !> Appends the pairs from the meeting node back to the node `goal`, where the search from `side` began.
+      subroutine collect(side, goal)
+         integer, intent(in) :: side, goal
+         integer :: n
+
+         n = meeting
+         do while (n /= goal)
+            s%length = s%length + 1
+            s%pairs(s%length) = s%via(2*n + side - 1)
+            ! The node at the other end.
+            associate (pair => m%pairs(s%pairs(s%length)))
+               n = node(m, m%points(pair%point_i)%link) + node(m, m%points(pair%point_j)%link) - n
+            end associate
+         end do
+      end subroutine collect
    end subroutine find_path
 
    !> The node of `link`: 0 for every ground link.
@@ -361,32 +365,4 @@ contains
 
       node = merge(0, link, m%links(link)%ground)
    end function node
-
-   !> The pairs from link `i` to node `meeting` and on to link `j`, from those by which the nodes were reached.
-   subroutine collect(m, i, j, meeting, s)
-      type(mechanism_t), intent(in) :: m
-      integer, intent(in) :: i, j, meeting
-      type(search_t), intent(inout) :: s
-
-      call go_back(1, node(m, i))
-      s%pairs(:s%length) = s%pairs(s%length:1:-1)
-      call go_back(2, node(m, j))
-
-   contains
-
-      !> Appends the pairs from the meeting node back to the node `goal`, where the search from `side` began.
-      subroutine go_back(side, goal)
-         integer, intent(in) :: side, goal
-         integer :: n, k
-
-         n = meeting
-         do while (n /= goal)
-            k = s%via(2*n + side - 1)
-            s%length = s%length + 1
-            s%pairs(s%length) = k
-            ! The node at the other end.
-            n = node(m, m%points(m%pairs(k)%point_i)%link) + node(m, m%points(m%pairs(k)%point_j)%link) - n
-         end do
-      end subroutine go_back
-   end subroutine collect
 end module vector_loops
