@@ -10,12 +10,12 @@
 module column_search
    use kinds, only: wp
    use set_analysis, only: set_analysis_t
-   use nodes, only: node_t, node_at, is_known, beside_joint
+   use nodes, only: node_t, find_node, move_node, is_known, beside_joint
    use zero_search, only: sample_t, column_t, find_zero, look, differ_in_sign, noise_part
    use extremes, only: extremes_t, offer, note_velocity, note_interval, alike
    implicit none
    private
-   public :: add_node, jerk_at_first, misses_by, overlooked
+   public :: add_node, search_waiting, jerk_at_first, misses_by, overlooked
 
    !> The step of the stencil at a zero, in steps of TIME; how much longer it may be in short steps, in rad or lengths;
    !> and the longest that it may be, as a part of the interval. Where it proves too long, `find_zero` shortens it.
@@ -37,29 +37,93 @@ module column_search
    !> Nor is one that is shorter than this part of the time.
    real(wp), parameter :: time_part = 1024.0_wp*epsilon(1.0_wp)
    integer, parameter :: max_halvings = 120
+   !> Lengths that differ by this part are one.
+   real(wp), parameter :: alike_part = 1.0e-9_wp
    !> Part of an interval that no table shows.
    real(wp), parameter :: beside_end = 1.0e-6_wp
 
-   !> What was found of a column: an extreme of its derivative number `order`.
-   type :: found_t
-      integer :: order = 0
-      type(sample_t) :: at
-   end type found_t
-
 contains
 
-   !> Takes `node` of mechanism `c`, and searches between it and the last one of which all is known.
+   !> Takes `node` of mechanism `c` away, and searches between it and the last one of which all is known. Two parts of
+   !> one length are searched together, if accelerations are simple there: the node between them is the one in the
+   !> middle, and no motion is looked for.
    subroutine add_node(x, s, c, node)
       type(extremes_t), intent(inout) :: x
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: c
+      type(node_t), intent(inout) :: node
+      real(wp) :: length
+      logical :: is_searched
+
+      associate (track => x%tracks(c), nodes => x%tracks(c)%nodes)
+         if (.not. is_known(node, track%rows)) then
+            call search_waiting(x, s, c)
+            call take_point(x, c, node)
+            return
+         end if
+         track%filled = track%filled + 1
+         call move_node(node, nodes(track%filled))
+         if (track%filled == 1) call take_point(x, c, nodes(1))
+         if (track%filled == 2 .and. .not. x%in_pairs) call search_waiting(x, s, c)
+         if (track%filled < 3) return
+         length = abs(nodes(3)%t - nodes(1)%t)
+         is_searched = length <= track%longest .and. 0.5_wp*length > shortest_of(x, c, nodes(1)%t, nodes(3)%t) &
+            .and. abs(nodes(3)%t - 2.0_wp*nodes(2)%t + nodes(1)%t) <= alike_part*length
+         if (is_searched) call search_three(x, s, c, nodes, .false., is_searched)
+         if (is_searched) then
+            call take_point(x, c, nodes(3))
+            call move_node(nodes(3), nodes(1))
+            track%filled = 1
+         else
+            call search_waiting(x, s, c)
+         end if
+      end associate
+   end subroutine add_node
+
+   !> Searches between the last node of mechanism `c` and the one that waits, if there is one; that is the last then.
+   subroutine search_waiting(x, s, c)
+      type(extremes_t), intent(inout) :: x
+      type(set_analysis_t), intent(inout) :: s
+      integer, intent(in) :: c
+      integer :: k
+
+      associate (track => x%tracks(c))
+         if (track%filled < 2) return
+         call search_part(x, s, c, track%nodes(1), track%nodes(2))
+         call take_point(x, c, track%nodes(2))
+         do k = 2, track%filled
+            call move_node(track%nodes(k), track%nodes(k - 1))
+         end do
+         track%filled = track%filled - 1
+      end associate
+   end subroutine search_waiting
+
+   !> Searches between the first and the last of three `nodes` of mechanism `c`, the ends and the middle of a part, if
+   !> its accelerations are `simple`, or `anyway`.
+   subroutine search_three(x, s, c, nodes, anyway, simple)
+      type(extremes_t), intent(inout) :: x
+      type(set_analysis_t), intent(inout) :: s
+      integer, intent(in) :: c
+      type(node_t), intent(in) :: nodes(3)
+      logical, intent(in) :: anyway
+      logical, intent(out) :: simple
+      real(wp) :: jerk(3, size(x%asked), 2)
+
+      jerk = jerks_of(x, c, nodes)
+      simple = are_simple(x, c, nodes, jerk)
+      if (.not. (simple .or. anyway)) return
+      call take_node(x, c, nodes(2))
+      call search_columns(x, s, c, nodes, jerk)
+   end subroutine search_three
+
+   !> The values of `node` of mechanism `c` may be extremes, and its velocities are the next ones along the run.
+   subroutine take_point(x, c, node)
+      type(extremes_t), intent(inout) :: x
+      integer, intent(in) :: c
       type(node_t), intent(in) :: node
       integer :: i, j
 
-      if (allocated(x%tracks(c)%last) .and. is_known(node, x%tracks(c)%rows)) &
-         call search_part(x, s, c, x%tracks(c)%last, node)
       call take_node(x, c, node)
-      if (is_known(node, x%tracks(c)%rows)) x%tracks(c)%last = node
       do i = 1, size(x%tracks(c)%rows)
          associate (q => x%tracks(c)%rows(i))
             if (node%known(q) < 2) cycle
@@ -68,7 +132,17 @@ contains
             end do
          end associate
       end do
-   end subroutine add_node
+   end subroutine take_point
+
+   !> A part of mechanism `c` from the time `a` to `b` that is no longer is not searched.
+   pure real(wp) function shortest_of(x, c, a, b) result(shortest)
+      type(extremes_t), intent(in) :: x
+      integer, intent(in) :: c
+      real(wp), intent(in) :: a, b
+
+      shortest = max(shortest_part*x%step, time_part*max(abs(a), abs(b)))
+      if (size(x%tracks(c)%joints) > 0) shortest = max(shortest, 2.0_wp*beside_joint(x%run, a))
+   end function shortest_of
 
    !> The values of `node` of mechanism `c` may be extremes.
    subroutine take_node(x, c, node)
@@ -97,37 +171,34 @@ contains
       integer, intent(in) :: c
       type(node_t), intent(in) :: a, b
       type(node_t) :: nodes(3)
-      real(wp) :: jerk(3, size(x%asked), 2)
       real(wp) :: shortest
-      logical :: simple
+      logical :: simple, is_last
 
       associate (track => x%tracks(c), length => abs(b%t - a%t))
-         shortest = max(shortest_part*x%step, time_part*max(abs(a%t), abs(b%t)))
-         if (size(track%joints) > 0) shortest = max(shortest, 2.0_wp*beside_joint(x%run, a%t))
+         shortest = shortest_of(x, c, a%t, b%t)
          if (length <= shortest) then
             ! Beside a joint there is nothing to be missed.
             if (length > 0.5_wp*x%step) call note_interval(x%open, x%way, a%t, b%t, shortest)
             return
          end if
          nodes(1) = a
-         nodes(2) = node_at(x%asked, s, c, a%t + 0.5_wp*(b%t - a%t), .false.)
+         call find_node(x%asked, s, c, a%t + 0.5_wp*(b%t - a%t), .false., nodes(2))
          nodes(3) = b
          if (.not. is_known(nodes(2), track%rows)) then
             call note_interval(x%open, x%way, a%t, b%t, shortest)
             return
          end if
-         jerk = jerks_of(x, c, nodes)
-         simple = are_simple(x, c, nodes, jerk)
-         if (.not. simple .and. track%halvings < max_halvings .and. length > 2.0_wp*shortest) then
+         is_last = track%halvings >= max_halvings .or. length <= 2.0_wp*shortest
+         call search_three(x, s, c, nodes, is_last, simple)
+         if (simple) return
+         if (is_last) then
+            call note_interval(x%open, x%way, a%t, b%t, shortest)
+         else
             track%halvings = track%halvings + 1
             call search_part(x, s, c, a, nodes(2))
             call take_node(x, c, nodes(2))
             call search_part(x, s, c, nodes(2), b)
-            return
          end if
-         if (.not. simple) call note_interval(x%open, x%way, a%t, b%t, shortest)
-         call take_node(x, c, nodes(2))
-         call search_columns(x, s, c, nodes, jerk)
       end associate
    end subroutine search_part
 
@@ -140,8 +211,7 @@ contains
       type(node_t), intent(in) :: nodes(:)
       real(wp), intent(in) :: jerk(:, :, :)
       type(sample_t) :: points(size(nodes))
-      type(sample_t), allocatable :: path(:)
-      type(found_t), allocatable :: found(:)
+      type(sample_t), allocatable :: path(:), found(:)
       type(column_t) :: column
       integer :: i, j, k
 
@@ -149,6 +219,12 @@ contains
          associate (q => x%tracks(c)%rows(i))
             do j = 1, x%columns(q)
                points = [(sample_of(nodes(k), q, j), k=1, size(nodes))]
+               if (.not. has_turned(points, jerk(j, q, :))) then
+                  do k = 1, size(points)
+                     call note_velocity(x, q, j, points(k))
+                  end do
+                  cycle
+               end if
                column = column_t(x%asked(q), j, step_of_stencil(x, q, j, abs(nodes(3)%t - nodes(1)%t)))
                do k = 0, 2
                   column%noise(k) = max(noise_part*x%size_of(j, k, q), maxval(points%error(k)))
@@ -156,7 +232,7 @@ contains
                column%flat = 2.0_wp*max(alike*x%size_of(j, 2, q), column%noise(2))
                call search_column(s, column, points, jerk(j, q, :), path, found)
                do k = 1, size(found)
-                  call offer(x, q, j, found(k)%order, found(k)%at, .true.)
+                  call offer(x, q, j, found(k)%order, found(k), .true.)
                end do
                do k = 1, size(path)
                   call note_velocity(x, q, j, path(k))
@@ -165,6 +241,18 @@ contains
          end associate
       end do
    end subroutine search_columns
+
+   !> A velocity, an acceleration or its derivative `jerk` at both ends has different signs at some of three `points`.
+   pure logical function has_turned(points, jerk)
+      type(sample_t), intent(in) :: points(3)
+      real(wp), intent(in) :: jerk(2)
+      integer :: order
+
+      has_turned = differ_in_sign(jerk(1), jerk(2))
+      do order = 1, 2
+         has_turned = has_turned .or. differ_in_sign(minval(points%f(order)), maxval(points%f(order)))
+      end do
+   end function has_turned
 
    !> Column `j` of row `q` of `node`.
    pure type(sample_t) function sample_of(node, q, j) result(sample)
@@ -183,7 +271,7 @@ contains
       type(sample_t), intent(in) :: points(3)
       real(wp), intent(in) :: jerk(2)
       type(sample_t), allocatable, intent(out) :: path(:)
-      type(found_t), allocatable, intent(out) :: found(:)
+      type(sample_t), allocatable, intent(out) :: found(:)
       type(sample_t) :: turn
       real(wp) :: length, open
       integer :: order, i, n
@@ -197,14 +285,15 @@ contains
       if (.not. turn%exists) call turn_by_ends(s, c, points, jerk, open, turn)
       if (turn%exists) then
          turn%error = max(turn%error, points(1)%error, points(3)%error)
-         found = [found_t(2, turn)]
+         turn%order = 2
+         found = [turn]
          call insert(turn, path)
       end if
       do order = 2, 1, -1
          n = size(found)
          call find_zeros(s, c, order, path, found)
          do i = n + 1, size(found)
-            call insert(found(i)%at, path)
+            call insert(found(i), path)
          end do
       end do
    end subroutine search_column
@@ -226,7 +315,7 @@ contains
       if (maxval(points%f(2)) - minval(points%f(2)) <= c%flat) return
       part = jerk(1)/(jerk(1) - jerk(2))
       length = points(3)%t - points(1)%t
-      call look(s, c, points(1)%t + part*length, turn, .true.)
+      call look(s, c, points(1)%t + part*length, turn, .false.)
       turn%t_error = abs(length)*min(2.0_wp, open/change)
       ! No parabola through values at equal distances gets above them by more than an eighth of their second difference.
       ! These are bounds, and masks allow for a hundred errors: a tenth of a bound is enough.
@@ -241,7 +330,7 @@ contains
       type(column_t), intent(in) :: c
       integer, intent(in) :: order
       type(sample_t), intent(in) :: path(:)
-      type(found_t), allocatable, intent(inout) :: found(:)
+      type(sample_t), allocatable, intent(inout) :: found(:)
       type(sample_t) :: zero
       integer :: i, last
 
@@ -249,8 +338,11 @@ contains
       do i = 1, size(path)
          if (abs(path(i)%f(order)) <= c%noise(order)) cycle
          if (last > 0) then
-            call find_zero(s, c, order, 0.0_wp, path(last), path(i), zero)
-            if (zero%exists) found = [found, found_t(order - 1, zero)]
+            if (differ_in_sign(path(last)%f(order), path(i)%f(order))) then
+               call find_zero(s, c, order, 0.0_wp, path(last), path(i), zero)
+               zero%order = order - 1
+               if (zero%exists) found = [found, zero]
+            end if
          end if
          last = i
       end do

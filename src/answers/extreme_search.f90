@@ -9,10 +9,10 @@ module extreme_search
    use mechanism, only: mechanism_t
    use motion, only: motion_t, singular_change, diagnostic_change, diagnostic_limit
    use set_analysis, only: set_analysis_t
-   use nodes, only: node_t, one_sided_t, node_at, is_known, times_between, beside_joint, limits_of, places, &
+   use nodes, only: node_t, one_sided_t, find_node, is_known, times_between, beside_joint, limits_of, places, &
       places_beside
    use extremes, only: extremes_t, offer_limits, note_end, note_interval
-   use column_search, only: add_node
+   use column_search, only: add_node, search_waiting
    implicit none
    private
    public :: note_instant, note_start
@@ -38,23 +38,29 @@ contains
       type(set_analysis_t), intent(inout) :: s
       integer, intent(in) :: k
       type(node_t) :: now
+      logical :: known, is_lost
       integer :: c
 
       if (k > s%now%steps) return
       do c = 1, size(x%tracks)
          associate (track => x%tracks(c))
             if (size(track%rows) == 0) cycle
-            now = node_at(x%asked, s, c, s%now%motions(c)%t, .false.)
+            call find_node(x%asked, s, c, s%now%motions(c)%t, .false., now)
+            known = is_known(now, track%rows)
+            is_lost = any(now%known(track%rows) < 0)
             if (k == 0) then
                track%start = s%now%motions(c)
             else
                call search_step()
             end if
             call add_node(x, s, c, now)
+            if (k == s%now%steps) call search_waiting(x, s, c)
             if (k == s%now%steps) call note_end(x, s%now%parts(c), c, s%now%motions(c))
-            track%instant = now
+            if (.not. known) call note_interval(x%gaps, x%way, now%t, now%t, 0.0_wp)
+            track%t = now%t
+            track%is_known = known
+            track%is_lost = is_lost
             track%at_change = s%now%motions(c)%singularity == singular_change
-            if (.not. is_known(now, track%rows)) call note_interval(x%gaps, x%way, now%t, now%t, 0.0_wp)
          end associate
       end do
 
@@ -67,17 +73,20 @@ contains
          logical :: is_open, is_change, is_limit, is_pole, to_open, to_change
          integer :: i
 
-         associate (track => x%tracks(c), t1 => x%tracks(c)%instant%t)
+         associate (track => x%tracks(c), t1 => x%tracks(c)%t)
+            track%halvings = 0
+            ! Most steps have no ends, and no nodes but their own.
+            if (known .and. track%is_known .and. .not. allocated(s%now%motions(c)%diagnostics) &
+               .and. size(track%joints) == 0 .and. abs(now%t - t1) <= track%longest) return
             call find_ends(s%now%motions(c), t1, x%way, ends, is_limit, is_pole)
             if (s%now%motions(c)%known >= 0) ends = [ends, now%t]
-            if (any(track%instant%known(track%rows) < 0)) ends = [real(wp) ::]
+            if (track%is_lost) ends = [real(wp) ::]
             times = times_between(track%joints, track%longest, x%run, t1, now%t)
             from = t1
-            track%halvings = 0
-            is_open = .not. is_known(track%instant, track%rows)
+            is_open = .not. track%is_known
             is_change = track%at_change
             do i = 1, size(ends)
-               to_open = i < size(ends) .or. is_limit .or. .not. is_known(now, track%rows)
+               to_open = i < size(ends) .or. is_limit .or. .not. known
                to_change = i < size(ends) .or. (s%now%motions(c)%singularity == singular_change .and. .not. is_limit)
                call search_piece(times, end_t(from, is_open, is_change), end_t(ends(i), to_open, to_change, &
                   is_pole .and. i == size(ends)))
@@ -128,11 +137,12 @@ contains
          low = from%t
          high = to%t
          if (from%is_open) then
-            if (allocated(x%tracks(c)%last)) deallocate (x%tracks(c)%last)
+            call search_waiting(x, s, c)
+            x%tracks(c)%filled = 0
             call take_limits(from, to%t, beside)
             low = beside(places)
             call look_at(beside(1), .true.)
-            call note_interval(x%open, x%way, from%t, merge(beside(1), to%t, allocated(x%tracks(c)%last)), 0.0_wp)
+            call note_interval(x%open, x%way, from%t, merge(beside(1), to%t, x%tracks(c)%filled > 0), 0.0_wp)
             call look_at(low, .true.)
          end if
          if (to%is_open) then
@@ -146,8 +156,9 @@ contains
          if (.not. to%is_open) return
          call look_at(high, .true.)
          call look_at(beside(1), .true.)
+         call search_waiting(x, s, c)
          low = from%t
-         if (allocated(x%tracks(c)%last)) low = x%tracks(c)%last%t
+         if (x%tracks(c)%filled > 0) low = x%tracks(c)%nodes(1)%t
          call note_interval(x%open, x%way, low, to%t, 0.0_wp)
       end subroutine search_piece
 
@@ -191,7 +202,7 @@ contains
          integer :: i
 
          do i = 1, places
-            near(i) = node_at(x%asked, s, c, times(i), .true.)
+            call find_node(x%asked, s, c, times(i), .true., near(i))
             if (.not. is_known(near(i), x%tracks(c)%rows)) return
          end do
          limits = limits_of(near, at%is_change, at%is_pole, x%size_of)
@@ -214,13 +225,13 @@ contains
          end do
       end function largest_error
 
-      !> Takes a node at the time `t`; `always`: see `node_at`.
+      !> Takes a node at the time `t`; `always`: see `find_node`.
       subroutine look_at(t, always)
          real(wp), intent(in) :: t
          logical, intent(in) :: always
          type(node_t) :: node
 
-         node = node_at(x%asked, s, c, t, always)
+         call find_node(x%asked, s, c, t, always, node)
          if (is_known(node, x%tracks(c)%rows)) then
             call add_node(x, s, c, node)
          else
@@ -240,11 +251,13 @@ contains
       do c = 1, size(x%tracks)
          associate (track => x%tracks(c))
             if (size(track%rows) == 0) cycle
-            if (allocated(track%last)) deallocate (track%last)
-            now = node_at(x%asked, s, c, s%now%motions(c)%t, .false.)
-            call add_node(x, s, c, now)
-            track%instant = now
+            track%filled = 0
+            call find_node(x%asked, s, c, s%now%motions(c)%t, .false., now)
+            track%t = now%t
+            track%is_known = is_known(now, track%rows)
+            track%is_lost = any(now%known(track%rows) < 0)
             track%at_change = .false.
+            call add_node(x, s, c, now)
          end associate
       end do
    end subroutine note_start

@@ -54,8 +54,12 @@ module extremes
       !> How far links end from where they began: lengths, angles, velocities, in characteristic ones.
       real(wp) :: closure(3) = huge(1.0_wp)
       logical :: at_change = .false.                   !< the last instant is at a change point
-      type(node_t) :: instant                          !< the node of the last instant
-      type(node_t), allocatable :: last                !< the last node with all of the motion, of this piece
+      real(wp) :: t = 0.0_wp                           !< the last instant
+      logical :: is_known = .false., is_lost = .false. !< all of the motion is known there; of some row nothing
+      !> The last node up to which this piece is searched, the next one, and one more while both parts are searched; so
+      !> many are `filled`.
+      type(node_t) :: nodes(3)
+      integer :: filled = 0
       integer :: halvings = 0                          !< of parts of this step
    end type track_t
 
@@ -111,6 +115,7 @@ module extremes
       real(wp) :: run = 0.0_wp                         !< the time of the run, below 0 backwards
       real(wp) :: way = 1.0_wp                         !< its sign
       real(wp) :: step = 0.0_wp                        !< a step of the TIME card
+      logical :: in_pairs = .true.                     !< two steps may be searched together
    end type extremes_t
 
 contains

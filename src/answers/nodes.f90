@@ -12,8 +12,8 @@ module nodes
    use set_analysis, only: set_analysis_t, rows_at
    implicit none
    private
-   public :: node_t, node_at, is_known, times_between, beside_joint, order_along, one_sided_t, limits_of, places, &
-      places_beside
+   public :: node_t, find_node, move_node, is_known, times_between, beside_joint, order_along, one_sided_t, limits_of, &
+      places, places_beside
 
    !> Just beside a joint, in parts of the time or of the run: `drives` takes what is nearer as the joint itself.
    real(wp), parameter :: joint_part = 65536.0_wp*epsilon(1.0_wp)
@@ -56,34 +56,46 @@ module nodes
 
 contains
 
-   !> The rows of those of the requests `asked` that are of mechanism `c`, at the last instant of `s` or a time `t`
-   !> between the instants. `always`: their errors too where no digit of a table is in doubt.
-   function node_at(asked, s, c, t, always) result(node)
+   !> Finds the rows of those of the requests `asked` that are of mechanism `c`, at the last instant of `s` or a time
+   !> `t` between the instants. `always`: their errors too where no digit of a table is in doubt.
+   subroutine find_node(asked, s, c, t, always, node)
       integer, intent(in) :: asked(:), c
       type(set_analysis_t), intent(inout) :: s
       real(wp), intent(in) :: t
       logical, intent(in) :: always
-      type(node_t) :: node
-      type(row_t), allocatable :: rows(:)
-      real(wp), allocatable :: error(:, :, :)
-      integer, allocatable :: these(:)
-      integer :: i
+      type(node_t), intent(out) :: node
+      type(row_t) :: rows(size(asked))
+      real(wp) :: error(3, 0:2, size(asked))
+      integer :: these(size(asked)), n, i
       logical :: is_found
 
       node%t = t
-      associate (n => size(asked))
-         allocate (node%known(n), source=-1)
-         allocate (node%value(3, 0:2, n), node%error(3, 0:2, n), source=0.0_wp)
-      end associate
-      these = pack([(i, i=1, size(asked))], s%now%rows(asked)%part == c)
-      allocate (rows(size(these)), error(3, 0:2, size(these)))
-      call rows_at(s, c, asked(these), t, rows, is_found, always, error, node%growth)
-      do i = 1, size(these)
-         node%known(these(i)) = rows(i)%known
+      allocate (node%known(size(asked)), source=-1)
+      allocate (node%value(3, 0:2, size(asked)), node%error(3, 0:2, size(asked)), source=0.0_wp)
+      n = 0
+      do i = 1, size(asked)
+         if (s%now%rows(asked(i))%part /= c) cycle
+         n = n + 1
+         these(n) = i
+      end do
+      call rows_at(s, c, asked(these(:n)), t, rows(:n), is_found, always, error(:, :, :n), node%growth)
+      node%known(these(:n)) = rows(:n)%known
+      do i = 1, n
          node%value(:, :, these(i)) = rows(i)%value
          node%error(:, :, these(i)) = error(:, :, i)
       end do
-   end function node_at
+   end subroutine find_node
+
+   !> Moves the node `from`, which is of no use then, `to` another place: nothing is allocated.
+   pure subroutine move_node(from, to)
+      type(node_t), intent(inout) :: from, to
+
+      to%t = from%t
+      to%growth = from%growth
+      call move_alloc(from%known, to%known)
+      call move_alloc(from%value, to%value)
+      call move_alloc(from%error, to%error)
+   end subroutine move_node
 
    !> All of the motion of the `rows` of `node` is known, and of no number all digits are open: such a one
    !> cannot be told to be an extreme, nor to be none.

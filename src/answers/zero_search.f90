@@ -21,6 +21,8 @@ module zero_search
    real(wp), parameter :: above_noise = 3.0_wp
    !> Errors are two roundings of the characteristic value at least, this part of the noise.
    real(wp), parameter :: rounding_part = 1.0_wp/32.0_wp
+   !> A time that is known to this part of it, by a bound of what rounding leaves open, needs no estimate of errors.
+   real(wp), parameter :: well_known = 4096.0_wp*epsilon(1.0_wp)
 
    !> A number of a row at one time, in the deck's units and rad.
    type :: sample_t
@@ -29,6 +31,8 @@ module zero_search
       real(wp) :: error(0:2) = 0.0_wp   !< of them, where it is asked for
       logical :: exists = .false.
       real(wp) :: t_error = 0.0_wp      !< of the time of a zero
+      real(wp) :: growth = 0.0_wp       !< of roundings, where errors are asked for
+      integer :: order = 0              !< of the derivative that has an extreme there
    end type sample_t
 
    !> Which number: its column (1 to 3) in the row of a request of the set; `step`: of the stencil that gives the third
@@ -42,7 +46,7 @@ module zero_search
 
 contains
 
-   !> The column `c` at the time `t`; `with_errors`: which are estimated.
+   !> The column `c` at the time `t`; `with_errors` (if present): they are estimated also where no digit is in doubt.
    subroutine look(s, c, t, sample, with_errors)
       type(set_analysis_t), intent(inout) :: s
       type(column_t), intent(in) :: c
@@ -55,7 +59,7 @@ contains
       sample%t = t
       associate (part => s%now%rows(c%request)%part)
          if (present(with_errors)) then
-            call rows_at(s, part, [c%request], t, row, sample%exists, with_errors, error)
+            call rows_at(s, part, [c%request], t, row, sample%exists, with_errors, error, sample%growth)
             sample%error = error(c%column, :, 1)
          else
             call rows_at(s, part, [c%request], t, row, sample%exists)
@@ -80,10 +84,10 @@ contains
       type(sample_t), intent(in) :: a, b
       type(sample_t), intent(out) :: zero
       real(wp), intent(in), optional :: ends(2)
-      real(wp) :: t, t_shorter, g, last_g, step, noise, width, slope
+      real(wp) :: t, t_shorter, g, last_g, step, noise, width, slope, open
       real(wp) :: times(max_iterations + 2), values(max_iterations + 2)
       integer :: n, i
-      logical :: is_found
+      logical :: is_found, estimated
 
       step = sign(c%step, b%t - a%t)
       do i = 1, max_shortenings
@@ -105,17 +109,25 @@ contains
          t = t_shorter
       end do
       if (order == 3) step = step/shorter
-      call look(s, c, t, zero, .true.)
       noise = c%noise(min(order, 2))
       if (order == 3) noise = noise_of_stencil()
       slope = slope_at(t)
-      zero%t_error = width + epsilon(1.0_wp)*max(abs(a%t), abs(b%t))
-      if (slope > 0.0_wp) then
-         zero%t_error = zero%t_error + (zero%error(min(order, 2))/merge(abs(step), 1.0_wp, order == 3) &
-            + rounding_part*noise)/slope
-      else
-         zero%t_error = abs(b%t - a%t)
-      end if
+      do i = 1, 2
+         ! An estimate takes nine solutions. A level that a coordinate passes has its error.
+         estimated = order == 0 .or. i == 2
+         call look(s, c, t, zero, estimated)
+         associate (k => min(order, 2))
+            open = zero%error(k)
+            if (.not. open > 0.0_wp) open = zero%growth*(epsilon(1.0_wp)/noise_part)*c%noise(k)
+         end associate
+         zero%t_error = width + epsilon(1.0_wp)*max(abs(a%t), abs(b%t))
+         if (slope > 0.0_wp) then
+            zero%t_error = zero%t_error + (open/merge(abs(step), 1.0_wp, order == 3) + rounding_part*noise)/slope
+         else
+            zero%t_error = abs(b%t - a%t)
+         end if
+         if (estimated .or. zero%t_error <= well_known*max(abs(a%t), abs(b%t))) exit
+      end do
 
    contains
 

@@ -133,34 +133,43 @@ contains
       logical, intent(in), optional :: always
       real(wp), intent(out), optional :: error(3, 0:2, size(list)), growth
       type(motion_t) :: q
-      type(error_estimate_t) :: estimate
-      integer :: i
 
-      associate (own => s%now%parts(c), a => s%list(c))
-         if (present(error)) error = 0.0_wp
-         if (present(growth)) growth = 0.0_wp
-         if (abs(t - s%now%motions(c)%t) > 0.0_wp) then
-            q = new_motion(size(own%links))
-            call look_at(a, t, q, is_found)
-            rows%known = -1
-            if (.not. is_found) return
-         else
-            call come_back(a)
-            q = s%now%motions(c)
-            is_found = q%known == 2
-         end if
-         do i = 1, size(list)
-            call find_row(own, q, request_of(s%now, list(i)), rows(i))
-         end do
-         if (.not. present(error)) return
-         estimate%without_own = .true.
-         call estimate_errors(s%estimators(c), own, a%engine, a%convergence%reciprocal_condition, q, always, estimate)
-         if (present(growth)) growth = merge(safe_growth, estimate%growth, estimate%in_doubt)
-         if (.not. estimate%taken) return
-         do i = 1, size(list)
-            error(:, :, i) = estimate_of(rows(i), own, estimate, s%now%rows(list(i))%number)
-         end do
-      end associate
+      if (present(error)) error = 0.0_wp
+      if (present(growth)) growth = 0.0_wp
+      if (abs(t - s%now%motions(c)%t) > 0.0_wp) then
+         q = new_motion(size(s%now%parts(c)%links))
+         call look_at(s%list(c), t, q, is_found)
+         rows%known = -1
+         if (is_found) call take(q)
+      else
+         call come_back(s%list(c))
+         is_found = s%now%motions(c)%known == 2
+         call take(s%now%motions(c))
+      end if
+
+   contains
+
+      !> Takes the rows of the motion `q`, and its errors.
+      subroutine take(q)
+         type(motion_t), intent(in) :: q
+         type(error_estimate_t) :: estimate
+         integer :: i
+
+         associate (own => s%now%parts(c), a => s%list(c))
+            do i = 1, size(list)
+               call find_row(own, q, request_of(s%now, list(i)), rows(i))
+            end do
+            if (.not. present(error)) return
+            estimate%without_own = .true.
+            call estimate_errors(s%estimators(c), own, a%engine, a%convergence%reciprocal_condition, q, always, &
+               estimate)
+            if (present(growth)) growth = merge(safe_growth, estimate%growth, estimate%in_doubt)
+            if (.not. estimate%taken) return
+            do i = 1, size(list)
+               error(:, :, i) = estimate_of(rows(i), own, estimate, s%now%rows(list(i))%number)
+            end do
+         end associate
+      end subroutine take
    end subroutine rows_at
 
    !> How far the motion found last is known. `always`: also where no digit of a table is in doubt.
