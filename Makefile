@@ -228,7 +228,7 @@ hard-short: $(BUILD)/release/hard
 	BUILD=$(BUILD) tests/oracle/hard.sh short
 
 # Circuits of 300 four-bars and crank-sliders made by chance against closed forms.
-circuits: $(BUILD)/release/circuits_by_chance random_blocks
+circuits: $(BUILD)/release/circuits_by_chance
 	$<
 
 # Dwells of 6000 random mechanisms on their dead and change points, against closed forms.

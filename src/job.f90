@@ -16,7 +16,7 @@ module job
    use drawing, only: drawing_t, film_of, new_drawing, record_instant
    use picture_page, only: picture_head
    use picture, only: put_pictures
-   use circuit_branches, only: circuits_t
+   use circuits, only: circuits_t
    use circuits_table, only: find_all_circuits
    use circuits_picture, only: circuit_page_t, add_to_page, put_circuit_page
    use animation, only: put_animations

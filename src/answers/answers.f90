@@ -12,7 +12,7 @@ module answers
    use tolerance_shares, only: shares_t, new_shares, note_tolerances, put_shares
    use ranges, only: range_t, put_ranges
    use assembly_table, only: put_assemblies
-   use circuit_branches, only: circuits_t
+   use circuits, only: circuits_t
    use circuits_table, only: find_ranges, find_all_circuits, put_circuits
    use proof_table, only: proof_table_t, new_proof_table, note_proof, put_proofs
    implicit none

@@ -132,6 +132,7 @@ contains
       type(mechanism_t), intent(in) :: m
       integer, intent(in) :: k
       type(assemblies_t), intent(in) :: a
+      character(1), parameter :: signs(-1:1) = ['-', '0', '+']
       character(:), allocatable :: text
       character(12) :: distance
       integer :: i
@@ -142,7 +143,8 @@ contains
             //trim(adjustl(distance))
          if (size(a%blocks) > 0) text = text//'   '//phrase(say_determinants, m%polish)//' '
          do i = 1, size(a%blocks)
-            text = text//sign_text(a%blocks(i), one%sign_of(a%blocks(i)%block))
+            ! 0: it is singular; a point: the block has more equations than unknowns.
+            text = text//merge('.', signs(one%sign_of(a%blocks(i)%block)), a%blocks(i)%is_redundant)
          end do
          text = text//'   '//phrase(merge(say_assembly_proved, say_assembly_open, one%is_proved), m%polish)
          if (k == a%chosen) text = text//'   '//phrase(say_chosen, m%polish)
@@ -166,7 +168,13 @@ contains
       logical :: is_joint(size(m%pairs))
       integer :: i, k, digits
 
-      position = deck_position(m, one)
+      do i = 1, size(m%links)
+         position(:, i) = one%position(:, i) + [plane_origin(m), 0.0_wp]
+         ! Angles within half a turn of the estimate: whatever rounding makes of half a turn, it is one forward.
+         associate (estimate => m%links(i)%position(3))
+            position(3, i) = estimate + without_turns(one%position(3, i) - estimate - small_angle) + small_angle
+         end associate
+      end do
       largest = max(characteristic_length(m), maxval(abs(position(:2, :))))
       ! Of all points only the two of a JOINT card have the same name.
       is_joint = m%points(m%pairs%point_i)%name == m%points(m%pairs%point_j)%name
@@ -236,22 +244,6 @@ contains
       end if
    end subroutine put_card
 
-   !> (3, links) Assembly `one` as cards of `m` have it: angles within half a turn of the estimate.
-   pure function deck_position(m, one) result(position)
-      type(mechanism_t), intent(in) :: m
-      type(assembly_t), intent(in) :: one
-      real(wp) :: position(3, size(m%links))
-      integer :: i
-
-      do i = 1, size(m%links)
-         position(:, i) = one%position(:, i) + [plane_origin(m), 0.0_wp]
-         ! Whatever rounding makes of half a turn, it is one forward.
-         associate (estimate => m%links(i)%position(3))
-            position(3, i) = estimate + without_turns(one%position(3, i) - estimate - small_angle) + small_angle
-         end associate
-      end do
-   end function deck_position
-
    !> So many digits a number as large as `largest` has that has `digits` where it is no larger than `usual`: as many as
    !> a card has columns for at most.
    pure integer function digits_of(digits, largest, usual)
@@ -260,15 +252,6 @@ contains
 
       digits_of = min(drawing_digits, digits + floor(log10(max(1.0_wp, largest/usual))))
    end function digits_of
-
-   !> The sign of the determinant of a block: 0 where it is singular, a point where it has more equations than unknowns.
-   pure character(1) function sign_text(block, sign_of) result(text)
-      type(assembly_block_t), intent(in) :: block
-      integer, intent(in) :: sign_of
-      character(1), parameter :: signs(-1:1) = ['-', '0', '+']
-
-      text = merge('.', signs(sign_of), block%is_redundant)
-   end function sign_text
 
    !> `x` in the columns of a * card, at the right: so many `digits` of `largest`, and none of rounding.
    function number_text(x, largest, digits) result(text)

@@ -1,4 +1,9 @@
-!> The curve of all positions of a mechanism whose one drive is set free: its points, and steps from one to another.
+!> The curve of all positions of a mechanism whose one drive is set free: its equations, its points, and steps from one
+!> to another.
+!>
+!> Its pairs and its other drives, at rest, are one equation less than it has coordinates. Of more, those that are most
+!> independent where the curve is at the moment are solved: every position of the curve satisfies them too, and what is
+!> unique by them is unique by all. The others are looked at. Lengths are those of METHOD DENSE's system.
 !>
 !> With the tangent t as one more row the Jacobian B = (F_q, t) of the equations is regular at dead points too; it is
 !> singular at change points alone. K of `root_distance`, taken from B, bounds how fast B^-1 B changes: along t, up to
@@ -8,15 +13,24 @@
 module circuit_curve
    use kinds, only: wp
    use planar, only: without_turns
-   use linear_solver, only: solve, determinant_sign
-   use pose, only: add_to_links
-   use closure_equations, only: drive_residual, drive_row, drive_remainder
-   use root_distance, only: kantorovich, distance, measure_slots
-   use curve_equations, only: curve_t, is_redundant, move_to, correct, factor_with, second_derivative, largest_change
+   use mechanism, only: mechanism_t, drive_x, drive_y
+   use scales, only: is_length
+   use linear_solver, only: factors_t, new_factors, factor, solve, determinant_sign
+   use pose, only: system_t, pose_t, new_system, new_pose, set_pose, add_to_links
+   use closure_equations, only: residual, jacobian, remainder, find_drive_values, drive_residual, drive_row, &
+      drive_remainder
+   use drives, only: law_t
+   use root_distance, only: coordinates_t, new_coordinates, kantorovich, distance, measure_slots
    implicit none
    private
-   public :: curve_point_t, start_point, find_point, step_along, step_between, lies_between, beside, offset_from, &
-      same_place
+   public :: curve_t, make_curve, is_redundant, drive_value, deck_position
+   public :: curve_point_t, start_point, step_along, step_between, lies_between, beside, offset_from, same_place
+
+   integer, parameter :: max_iterations = 12
+   !> A correction below this is rounding, and one that no longer shrinks is so below the second one.
+   real(wp), parameter :: converged = 16.0_wp*epsilon(1.0_wp), stalled = sqrt(epsilon(1.0_wp))
+   !> Equations that are too many hold to this, in rad and lengths: twice what the engine allows.
+   real(wp), parameter :: fits = max(2.0e-10_wp, 1.0e3_wp*epsilon(1.0_wp))
 
    !> u of above, less than 1/2: K of slides is taken at the start of a step, and they grow.
    real(wp), parameter :: certified = 0.25_wp
@@ -30,6 +44,21 @@ module circuit_curve
    !> Equations that are too many let the mechanism move where they change by less along the curve.
    real(wp), parameter :: moves = sqrt(same)
 
+   type :: curve_t
+      type(system_t) :: closure               !< all pairs, and the drives that are held
+      type(system_t) :: driven                !< with the one drive that is free
+      type(coordinates_t) :: free             !< in which the equations are not linear
+      real(wp), allocatable :: held(:)        !< (drives held) their values
+      integer, allocatable :: row(:)          !< (coordinates - 1) the equations that are solved
+      logical :: is_held = .false.            !< at some position its pairs and other drives let nothing move
+      logical :: is_angle = .true.            !< the free drive is that of an angle
+      real(wp) :: first = 0.0_wp              !< its value at the first instant
+      !> A slide is followed so many lengths, and farther only to assemblies of the first instant.
+      real(wp) :: far = 100.0_wp
+      type(pose_t) :: pose                    !< of the position found last
+      type(factors_t) :: factors
+   end type curve_t
+
    !> A position on the curve; derivatives are by its length, in rad and lengths.
    type :: curve_point_t
       real(wp), allocatable :: q(:, :)        !< (3, links) x, y, phi
@@ -42,6 +71,147 @@ module circuit_curve
    end type curve_point_t
 
 contains
+
+   !> The curve on which drive number `drive` of `m` is free; the other ones have their values of the time `t`.
+   subroutine make_curve(c, m, drive, t)
+      type(curve_t), intent(out) :: c
+      type(mechanism_t), intent(in) :: m
+      integer, intent(in) :: drive
+      real(wp), intent(in) :: t
+      real(wp) :: f(3, size(m%drives))
+      type(law_t), allocatable :: laws(:)
+      integer, allocatable :: others(:)
+      integer :: i
+
+      c%closure = new_system(m)
+      c%driven = c%closure
+      call find_drive_values(c%closure, t, f)
+      c%first = f(1, drive)
+      c%is_angle = .not. is_length(m%drives(drive))
+      others = pack([(i, i=1, size(m%drives))], [(i /= drive, i=1, size(m%drives))])
+      c%held = f(1, others)
+      laws = c%closure%laws
+      c%closure%laws = laws(others)
+      c%driven%laws = laws([drive])
+      c%free = new_coordinates(c%closure)
+      c%pose = new_pose(c%closure, m)
+      c%factors = new_factors(c%closure%n)
+      c%row = [(i, i=1, c%closure%n - 1)]
+   end subroutine make_curve
+
+   !> The equations: two of each pair, one of each drive that is held.
+   pure integer function equations_of(c)
+      type(curve_t), intent(in) :: c
+
+      equations_of = 2*size(c%closure%pairs) + size(c%closure%laws)
+   end function equations_of
+
+   !> Some equations are too many, by count.
+   pure logical function is_redundant(c)
+      type(curve_t), intent(in) :: c
+
+      is_redundant = equations_of(c) > c%closure%n - 1
+   end function is_redundant
+
+   !> Puts `c` at the position `q` (3, links), and chooses the equations that are solved there: of more than are needed,
+   !> one after another, that with the largest part across `border` (coordinates) and all those before it. `left`
+   !> (coordinates): the direction across all of them.
+   subroutine move_to(c, q, border, left)
+      type(curve_t), intent(inout) :: c
+      real(wp), intent(in) :: q(:, :), border(:)
+      real(wp), intent(out), optional :: left(:)
+      real(wp) :: a(equations_of(c) + c%closure%n, c%closure%n), across(c%closure%n)
+      real(wp) :: along(equations_of(c) + c%closure%n)
+      integer :: i, k, row
+
+      c%pose%q = q
+      call set_pose(c%closure, c%pose)
+      if (.not. (is_redundant(c) .or. present(left))) return
+      associate (m => equations_of(c))
+         a(m + 1:, :) = 0.0_wp
+         do i = 1, c%closure%n
+            a(m + i, i) = 1.0_wp
+         end do
+         call jacobian(c%closure, c%pose, a(:m, :))
+         across = border/max(tiny(1.0_wp), norm2(border))
+         do i = 0, size(c%row)
+            if (i > 0) across = a(row, :)/max(tiny(1.0_wp), norm2(a(row, :)))
+            along = matmul(a, across)
+            do k = 1, size(across)
+               a(:, k) = a(:, k) - along*across(k)
+            end do
+            if (i > 0 .and. is_redundant(c)) c%row(i) = row
+            row = maxloc(sum(a(:m, :)**2, dim=2), dim=1)
+         end do
+         row = m + maxloc(sum(a(m + 1:, :)**2, dim=2), dim=1)
+      end associate
+      if (present(left)) left = a(row, :)/max(tiny(1.0_wp), norm2(a(row, :)))
+   end subroutine move_to
+
+   !> Newton's method from `c%pose`, with the row `border` at rest.
+   subroutine correct(c, border, ok)
+      type(curve_t), intent(inout) :: c
+      real(wp), intent(in) :: border(:)
+      logical, intent(out) :: ok
+      real(wp) :: r(c%closure%n), all_of_them(equations_of(c)), change, before
+      integer :: i, info
+
+      before = huge(before)
+      do i = 1, max_iterations
+         call residual(c%closure, c%pose, c%held, all_of_them)
+         r = [all_of_them(c%row), 0.0_wp]
+         call factor_with(c, border, info)
+         ok = info == 0
+         if (.not. ok) return
+         call solve(c%factors, r)
+         change = maxval(abs(r))
+         ok = change <= 1.0_wp
+         if (.not. ok) return
+         call add_to_links(c%closure, -r, c%pose%q)
+         call set_pose(c%closure, c%pose)
+         ok = change <= converged*max(1.0_wp, maxval(abs(c%pose%q)))
+         if (.not. ok) ok = change <= stalled .and. change > 0.5_wp*before
+         if (ok) exit
+         before = change
+      end do
+      ok = change <= stalled
+      if (ok .and. is_redundant(c)) ok = maxval(abs(all_of_them)) <= fits
+   end subroutine correct
+
+   !> The factors of the equations' Jacobian with `border` as its last row.
+   subroutine factor_with(c, border, info)
+      type(curve_t), intent(inout) :: c
+      real(wp), intent(in) :: border(:)
+      integer, intent(out) :: info
+      real(wp) :: a(equations_of(c), c%closure%n)
+
+      call jacobian(c%closure, c%pose, a)
+      c%factors%a(:c%closure%n - 1, :) = a(c%row, :)
+      c%factors%a(c%closure%n, :) = border
+      call factor(c%factors, info)
+   end subroutine factor_with
+
+   !> The value `x` of the free drive in the deck's unit.
+   pure real(wp) function drive_value(c, x) result(value)
+      type(curve_t), intent(in) :: c
+      real(wp), intent(in) :: x
+
+      value = x
+      if (c%is_angle) return
+      value = x*c%closure%length
+      if (c%driven%laws(1)%drive%kind == drive_x) value = value + c%closure%origin(1)
+      if (c%driven%laws(1)%drive%kind == drive_y) value = value + c%closure%origin(2)
+   end function drive_value
+
+   !> The links' position (3, links) `q` in the deck's unit, counted from its origin.
+   pure function deck_position(c, q) result(position)
+      type(curve_t), intent(in) :: c
+      real(wp), intent(in) :: q(:, :)
+      real(wp) :: position(3, size(q, 2))
+
+      position = q
+      position(:2, :) = q(:2, :)*c%closure%length
+   end function deck_position
 
    !> The point `p` of the curve at the links' `position` (3, links), in the deck's unit and from its origin. Its
    !> tangent has the sense in which the drive grows, unless it is at rest. `ok`: it was found, and is regular.
@@ -141,22 +311,14 @@ contains
       real(wp), intent(in) :: q(:, :), border(:)
       type(curve_point_t), intent(out) :: p
       logical, intent(out) :: ok
+      real(wp) :: x(c%closure%n), row(1, c%closure%n), along(3, size(q, 2)), a(equations_of(c), c%closure%n), &
+         all_of_them(equations_of(c)), k, speed
+      integer :: info
 
       call move_to(c, q, border)
       call correct(c, border, ok)
       if (.not. ok) return
       p%q = c%pose%q
-      call take_derivatives(c, border, p, ok)
-   end subroutine find_point
-
-   !> Tangent, bend, the drive's derivatives, certified step and determinant at `c%pose`.
-   subroutine take_derivatives(c, border, p, ok)
-      type(curve_t), intent(inout) :: c
-      real(wp), intent(in) :: border(:)
-      type(curve_point_t), intent(inout) :: p
-      logical, intent(out) :: ok
-      real(wp) :: x(c%closure%n), row(1, c%closure%n), along(3, size(p%q, 2)), k, speed
-      integer :: info
 
       call factor_with(c, border, info)
       ok = info == 0
@@ -169,25 +331,31 @@ contains
       ok = info == 0
       if (.not. ok) return
       ! Equations that are too many may let nothing move.
-      if (is_redundant(c)) ok = .not. largest_change(c, p%tangent) > moves
+      if (is_redundant(c)) then
+         call jacobian(c%closure, c%pose, a)
+         ok = .not. maxval(abs(matmul(a, p%tangent))) > moves
+      end if
       c%is_held = c%is_held .or. .not. ok
       if (.not. ok) return
+
       along = 0.0_wp
       call add_to_links(c%closure, p%tangent, along)
-      call second_derivative(c, p%q, p%tangent, x)
-      x = -x
+      call remainder(c%closure, c%pose, along, all_of_them)
+      x = -[all_of_them(c%row), 0.0_wp]
       call solve(c%factors, x)
       p%bend = x
+
       row = 0.0_wp
       call drive_row(c%driven, c%pose, 1, row, 1)
       p%value(0) = drive_residual(c%driven, c%pose, 1, 0.0_wp)
       p%value(1) = dot_product(row(1, :), p%tangent)
       p%value(2) = dot_product(row(1, :), p%bend) + drive_remainder(c%driven, c%pose, along, 1)
+
       call measure_slots(c%closure, c%free, c%pose)
-      call kantorovich(c%closure, c%free, c%factors, c%pose, k, rows=c%row)
+      call kantorovich(c%closure, c%free, c%factors, c%pose, c%row, k)
       speed = distance(c%closure, c%free, 0.0_wp*along, along)
       p%reach = max_step
       if (speed > 0.0_wp) p%reach = min(certified/max(k, tiny(k)), max_step)/speed
       p%sign = determinant_sign(c%factors)
-   end subroutine take_derivatives
+   end subroutine find_point
 end module circuit_curve

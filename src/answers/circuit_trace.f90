@@ -4,12 +4,11 @@
 module circuit_trace
    use kinds, only: wp
    use system_calls, only: signal_received
-   use curve_equations, only: curve_t
-   use circuit_curve, only: curve_point_t, step_along, step_between, lies_between, offset_from
+   use circuit_curve, only: curve_t, curve_point_t, step_along, step_between, lies_between, offset_from
    use pose, only: add_to_links
    implicit none
    private
-   public :: circuit_t, change_point_t, trace, come_near, size_of, least_step, find_root, of_value, end_closed, &
+   public :: circuit_t, change_point_t, trace, size_of, least_step, find_root, of_value, end_closed, &
       end_far, end_lost
 
    !> A certified step below this means a change point: other positions are so near that rounding tells them apart no
@@ -34,9 +33,7 @@ module circuit_trace
 
    !> A position at which circuits meet, between two points of one of them.
    type :: change_point_t
-      integer :: after = 0                     !< the number of the point before it
       real(wp), allocatable :: q(:, :)         !< (3, links) its place
-      real(wp), allocatable :: tangent(:)      !< (coordinates) of the circuit
       real(wp) :: value = 0.0_wp               !< of the drive
    end type change_point_t
 
@@ -56,7 +53,8 @@ contains
       type(curve_point_t), intent(in) :: start
       type(circuit_t), intent(out) :: circuit
       type(circuit_t) :: back
-      integer :: n
+      type(curve_point_t), allocatable :: points(:)
+      integer :: n, i
 
       call follow(c, start, circuit)
       if (circuit%ends(2) == end_closed) then
@@ -68,7 +66,16 @@ contains
       else
          call follow(c, reversed(start), back)
          circuit%points(1)%is_dead = sense(circuit%points)*sense(back%points) > 0
-         call join(circuit, back)
+         ! What lies back from the first point comes before it.
+         n = size(back%points)
+         allocate (points(n - 1 + size(circuit%points)))
+         do i = 1, n - 1
+            points(i) = reversed(back%points(n + 1 - i))
+         end do
+         points(n:) = circuit%points
+         call move_alloc(points, circuit%points)
+         circuit%ends(1) = back%ends(2)
+         circuit%changes = [back%changes, circuit%changes]
       end if
       circuit%rests = .not. any(is_sure(circuit%points))
    end subroutine trace
@@ -84,31 +91,13 @@ contains
       r%sign = -p%sign
    end function reversed
 
-   !> Puts what lies `back` from the first point of `circuit` before it.
-   subroutine join(circuit, back)
-      type(circuit_t), intent(inout) :: circuit, back
-      type(curve_point_t), allocatable :: points(:)
-      integer :: n, i
-
-      n = size(back%points)
-      allocate (points(n - 1 + size(circuit%points)))
-      do i = 1, n - 1
-         points(i) = reversed(back%points(n + 1 - i))
-      end do
-      points(n:) = circuit%points
-      call move_alloc(points, circuit%points)
-      circuit%ends(1) = back%ends(2)
-      circuit%changes%after = circuit%changes%after + n - 1
-      back%changes%after = n - back%changes%after
-      circuit%changes = [back%changes, circuit%changes]
-   end subroutine join
-
    !> Follows the curve from `start` in the sense of its tangent to its end.
    subroutine follow(c, start, circuit)
       type(curve_t), intent(inout) :: c
       type(curve_point_t), intent(in) :: start
       type(circuit_t), intent(out) :: circuit
       type(curve_point_t) :: a, b, again
+      real(wp) :: h
       integer :: n, sure
       logical :: ok, closes, leaves
 
@@ -122,7 +111,13 @@ contains
       do while (n < max_points)
          leaves = leaves .and. a%reach < 2.0_wp*least_step
          if (a%reach >= least_step .or. leaves) then
-            call certified_step(c, a, b, ok)
+            ! The longest certified step that Newton's method takes.
+            h = a%reach
+            do
+               call step_along(c, a, h, b, ok)
+               if (ok .or. h < 0.1_wp*least_step) exit
+               h = 0.5_wp*h
+            end do
          else
             call pass_change_point(b)
             leaves = .true.
@@ -165,9 +160,7 @@ contains
             ok = b%reach < alike*a%reach .and. a%reach < alike*b%reach &
                .and. norm2(b%tangent - a%tangent) < straight
             if (.not. ok) return
-            change%after = n
             change%q = a%q
-            change%tangent = a%tangent
             call add_to_links(c%closure, 0.5_wp*offset_from(c, a%q, b%q, .false.), change%q)
             change%value = 0.5_wp*(a%value(0) + b%value(0))
          end associate
@@ -224,48 +217,6 @@ contains
          circuit%points(n) = p
       end subroutine append
    end subroutine follow
-
-   !> The longest certified step from `a` that Newton's method takes, to `b`.
-   subroutine certified_step(c, a, b, ok)
-      type(curve_t), intent(inout) :: c
-      type(curve_point_t), intent(in) :: a
-      type(curve_point_t), intent(out) :: b
-      logical, intent(out) :: ok
-      real(wp) :: h
-
-      h = a%reach
-      do
-         call step_along(c, a, h, b, ok)
-         if (ok .or. h < 0.1_wp*least_step) return
-         h = 0.5_wp*h
-      end do
-   end subroutine certified_step
-
-   !> Moves `p`, whose slides are too long, along its curve to where they are not. `ok`: it comes there before they grow
-   !> again.
-   subroutine come_near(c, p, ok)
-      type(curve_t), intent(inout) :: c
-      type(curve_point_t), intent(inout) :: p
-      logical, intent(out) :: ok
-      type(curve_point_t) :: a
-      real(wp) :: way(3, size(p%q, 2))
-      integer :: most(2)
-
-      ok = size_of(p) <= c%far
-      if (ok) return
-      way = 0.0_wp
-      call add_to_links(c%closure, p%tangent, way)
-      most = maxloc(abs(p%q(:2, :)))
-      if (way(most(1), most(2))*p%q(most(1), most(2)) > 0.0_wp) p = reversed(p)
-      do while (.not. ok .and. p%reach >= least_step)
-         a = p
-         call certified_step(c, a, p, ok)
-         if (.not. ok) return
-         ok = size_of(p) <= c%far
-         if (size_of(p) >= size_of(a)) exit
-      end do
-      if (p%value(1) < 0.0_wp) p = reversed(p)
-   end subroutine come_near
 
    !> The largest coordinate of `p`, in lengths.
    pure real(wp) function size_of(p)
@@ -368,8 +319,5 @@ contains
          end if
       end do
       call move_alloc(p, circuit%points)
-      do i = 1, size(circuit%changes)
-         circuit%changes(i)%after = modulo(circuit%changes(i)%after - first, n - 1) + 1
-      end do
    end subroutine begin_at_dead_point
 end module circuit_trace

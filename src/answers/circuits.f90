@@ -3,8 +3,8 @@
 !> reaches without being taken apart, the drive free to turn back at dead points; its branches lie between dead points.
 !>
 !> A circuit is traced from each assembly that is on none of those known: the deck's own, all others of the first
-!> instant, those of the crossings at change points, and all assemblies at values over the whole range of the drive, and
-!> at angles of each link: a circuit between all of these is not found.
+!> instant, and all assemblies at values over the whole range of the drive and at angles of each link: a circuit between
+!> all of these is not found.
 !>
 !> The links at dead points are those that card RANGE finds there, from the middle of each branch.
 module circuits
@@ -13,18 +13,65 @@ module circuits
    use planar, only: pi, without_turns
    use mechanism, only: mechanism_t, drive_t, drive_angle
    use scales, only: characteristic_length
-   use motion, only: motion_t, new_motion
-   use assemblies, only: assemblies_t, find_assemblies
-   use curve_equations, only: curve_t, make_curve, is_redundant, drive_value, deck_position
-   use circuit_curve, only: curve_point_t, start_point, step_between, lies_between, beside
-   use circuit_trace, only: circuit_t, trace, come_near, least_step
-   use circuit_crossing, only: other_circuit
-   use circuit_branches, only: circuits_t, no_sign, max_circuits, add_branches, add_assemblies, add_meetings, &
-      number_assemblies, circuit_branch_t
+   use motion, only: motion_t, new_motion, diagnostic_t, diagnostic_limit
+   use assemblies, only: assemblies_t, assembly_t, find_assemblies, number_of
+   use circuit_curve, only: curve_t, make_curve, is_redundant, drive_value, deck_position, curve_point_t, start_point, &
+      step_between, lies_between, beside, same_place
+   use circuit_trace, only: circuit_t, trace, size_of, least_step, find_root, of_value, end_closed
    use ranges, only: range_t, find_range, is_lost, held_at, low, high
    implicit none
    private
-   public :: find_circuits, free_drives, name_limits
+   public :: circuits_t, circuit_branch_t, find_circuits, free_drives, name_limits, number_assemblies, turns_of, &
+      no_sign, max_circuits
+
+   real(wp), parameter :: turn = 2.0_wp*pi
+   !> More than rounding of an angle in turns: ties between whole turns always fall on one side.
+   real(wp), parameter :: tie = 1.0e-6_wp
+   !> A drive's value is that of a point up to this difference, in rad and lengths.
+   real(wp), parameter :: rounding = 1.0e3_wp*epsilon(1.0_wp)
+
+   integer, parameter :: no_sign = 2
+   !> More circuits are not looked for.
+   integer, parameter :: max_circuits = 100
+
+   !> A piece of a circuit between dead points.
+   type :: circuit_branch_t
+      integer :: circuit = 0
+      integer :: first = 0, last = 0           !< its first and last point on the circuit
+      integer :: dead(2) = 0                   !< the dead points at its least and greatest value; 0: none
+      real(wp) :: range(2) = 0.0_wp            !< the drive's least and greatest value on it (rad or deck's length)
+      !> Of the Jacobian's determinant; 0: it changes, at change points; no_sign: there are too many equations.
+      integer :: sign = 0
+   end type circuit_branch_t
+
+   !> An assembly at the drive's value of the first instant.
+   type :: circuit_assembly_t
+      integer :: number = 0                    !< as of card ASSEMBLY
+      integer :: branch = 0
+      real(wp) :: value = 0.0_wp               !< the drive's value, with whole turns as on its branch
+      real(wp), allocatable :: q(:, :)         !< (3, links) in the curve's unit
+   end type circuit_assembly_t
+
+   !> A change point: circuits meet there, or one crosses itself.
+   type :: meeting_t
+      real(wp) :: value = 0.0_wp               !< the drive's
+      real(wp), allocatable :: q(:, :)         !< (3, links)
+      logical, allocatable :: circuits(:)      !< (circuits) which meet
+   end type meeting_t
+
+   type :: circuits_t
+      integer :: drive = 0                     !< the number of the free one
+      integer :: part = 1                      !< the number of its independent mechanism
+      logical :: is_held = .false.             !< its other drives let nothing move
+      logical :: is_complete = .true.          !< all assemblies of the first instant were known
+      logical :: are_more = .false.            !< than max_circuits
+      type(curve_t) :: curve
+      type(circuit_t), allocatable :: list(:)
+      type(circuit_branch_t), allocatable :: branches(:)
+      type(diagnostic_t), allocatable :: dead(:)   !< dead points: the drive's value, and the links where known
+      type(circuit_assembly_t), allocatable :: assemblies(:)
+      type(meeting_t), allocatable :: meetings(:)
+   end type circuits_t
 
    !> A limit found by both methods is one up to this difference, in rad and lengths.
    real(wp), parameter :: agrees = max(1.0e-6_wp, 1.0e3_wp*epsilon(1.0_wp))
@@ -67,7 +114,7 @@ contains
 
       if (start%known >= 0) then
          call start_point(found%curve, start%position, p, ok)
-         if (ok) call add_circuits(found, p)
+         if (ok) call add_circuit(found, p)
       end if
       call add_through(found, all_of_them)
       call search_whole_range(m, start%t, found, all_of_them)
@@ -94,7 +141,7 @@ contains
       do k = 1, size(all_of_them%list)
          if (found%are_more .or. signal_received() > 0) return
          call start_point(found%curve, all_of_them%list(k)%position, p, ok)
-         if (ok) call add_circuits(found, p)
+         if (ok) call add_circuit(found, p)
       end do
    end subroutine add_through
 
@@ -112,7 +159,7 @@ contains
 
       held = held_at(m, t)
       from = found%curve%first
-      range = 2.0_wp*pi
+      range = turn
       if (.not. found%curve%is_angle) then
          range = 2.0_wp*characteristic_length(m)*count(.not. m%links%ground)
          from = from - 0.5_wp*(range/found%curve%closure%length)
@@ -124,7 +171,7 @@ contains
          held%drives(found%drive) = drive_t(kind=drive_angle, subject=k)
          from = 0.0_wp
          if (size(found%list) > 0) from = found%list(1)%points(1)%q(3, k)
-         call search(held, from, 2.0_wp*pi, link_values, found)
+         call search(held, from, turn, link_values, found)
       end do
    end subroutine search_whole_range
 
@@ -165,70 +212,52 @@ contains
       if (size(list) == 0) list = [(i, i=1, size(m%drives))]
    end function free_drives
 
-   !> Adds the circuit through `p`, unless it is known, and those that it meets. From a change point the sense is not
-   !> known in which circuits go on: others are found from elsewhere.
-   recursive subroutine add_circuits(found, p)
+   !> Adds the circuit through `p`, unless it is known.
+   subroutine add_circuit(found, p)
       type(circuits_t), intent(inout) :: found
       type(curve_point_t), intent(in) :: p
       type(circuit_t), allocatable :: more(:)
-      type(curve_point_t) :: from, other
-      integer :: n, k
-      logical :: ok
+      integer :: n
 
       n = size(found%list) + 1
-      if (found%are_more .or. p%reach < least_step .or. signal_received() > 0) return
-      from = p
-      call come_near(found%curve, from, ok)
-      if (.not. ok) return
-      if (is_known(found, from)) return
+      if (found%are_more .or. p%reach < least_step .or. size_of(p) > found%curve%far .or. signal_received() > 0) return
+      if (is_known(found, p)) return
       found%are_more = n > max_circuits
       if (found%are_more) return
       allocate (more(n))
       more(:n - 1) = found%list
-      call trace(found%curve, from, more(n))
+      call trace(found%curve, p, more(n))
       call move_alloc(more, found%list)
-      do k = 1, size(found%list(n)%changes)
-         associate (circuit => found%list(n))
-            call other_circuit(found%curve, circuit%points(circuit%changes(k)%after), circuit%changes(k), other, ok)
-         end associate
-         if (ok) call add_circuits(found, other)
-      end do
-   end subroutine add_circuits
+   end subroutine add_circuit
 
    !> Whether some circuit goes through `p`.
    logical function is_known(found, p)
       type(circuits_t), intent(inout) :: found
       type(curve_point_t), intent(in) :: p
       type(curve_point_t) :: again
+      real(wp) :: least, greatest
+      logical :: passes
       integer :: i, k
 
       is_known = .false.
       do i = 1, size(found%list)
-         associate (points => found%list(i)%points)
-            do k = 1, size(points) - 1
-               if (.not. passes(found%curve, points(k), points(k + 1), p%value(0))) cycle
-               call lies_between(found%curve, points(k), step_between(found%curve, points(k), points(k + 1)), p%q, &
-                  again, is_known)
+         do k = 1, size(found%list(i)%points) - 1
+            associate (a => found%list(i)%points(k), b => found%list(i)%points(k + 1), value => p%value(0))
+               ! The drive has the value of `p`, but for whole turns, between these neighbours, or nearly there.
+               least = min(a%value(0), b%value(0)) - beside(a)
+               greatest = max(a%value(0), b%value(0)) + beside(a)
+               passes = value >= least .and. value <= greatest
+               if (found%curve%is_angle) passes = modulo(value - least, turn) <= greatest - least
+               if (.not. passes) cycle
+               call lies_between(found%curve, a, step_between(found%curve, a, b), p%q, again, is_known)
                if (is_known) return
-            end do
-         end associate
+            end associate
+         end do
       end do
    end function is_known
 
-   !> Whether the drive has the `value`, but for whole turns, between the neighbours `a` and `b`, or nearly there.
-   pure logical function passes(c, a, b, value)
-      type(curve_t), intent(in) :: c
-      type(curve_point_t), intent(in) :: a, b
-      real(wp), intent(in) :: value
-      real(wp) :: least, greatest
-
-      least = min(a%value(0), b%value(0)) - beside(a)
-      greatest = max(a%value(0), b%value(0)) + beside(a)
-      passes = value >= least .and. value <= greatest
-      if (c%is_angle) passes = modulo(value - least, 2.0_wp*pi) <= greatest - least
-   end function passes
-
-   !> Names the links at the dead points of `m`. Drives that are held have their values of the time `t`.
+   !> Names the links at the dead points of `m`: those at the limits of a motion from where the drive moves the fastest
+   !> on each branch. Drives that are held have their values of the time `t`.
    subroutine name_limits(m, t, found)
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: t
@@ -236,50 +265,221 @@ contains
       type(mechanism_t) :: held
       type(motion_t) :: middle
       type(range_t) :: r
-      integer :: b, side
+      real(wp) :: off
+      integer :: i, k, side
 
       held = held_at(m, t)
       middle = new_motion(size(m%links))
-      do b = 1, size(found%branches)
+      do i = 1, size(found%branches)
          if (signal_received() > 0) return
-         if (all(found%branches(b)%dead == 0) .or. found%list(found%branches(b)%circuit)%rests) cycle
-         if (all(found%dead(pack(found%branches(b)%dead, found%branches(b)%dead > 0))%limit%links(1) > 0)) cycle
-         call set_middle(found, found%branches(b), held, middle)
-         call find_range(held, middle, found%drive, r, limits_only=.true.)
-         ! Lost slowly, and so would the others be: their links stay without names.
-         if (is_lost(r, low) .or. is_lost(r, high)) return
-         do side = low, high
-            if (found%branches(b)%dead(side) == 0 .or. .not. r%has_limit(side)) cycle
-            associate (dead => found%dead(found%branches(b)%dead(side))%limit)
-               if (dead%links(1) > 0 .or. abs(off_by(found%curve, r%limit(side)%value - dead%value)) > agrees) cycle
-               r%limit(side)%value = dead%value
-               dead = r%limit(side)
-            end associate
-         end do
+         associate (b => found%branches(i), points => found%list(found%branches(i)%circuit)%points)
+            if (all(b%dead == 0) .or. found%list(b%circuit)%rests) cycle
+            if (all(found%dead(pack(b%dead, b%dead > 0))%links(1) > 0)) cycle
+            k = b%first - 1 + maxloc(abs(points(b%first:b%last)%value(1)), dim=1)
+            middle%position = deck_position(found%curve, points(k)%q)
+            held%drives(found%drive)%polynomial(1) = drive_value(found%curve, points(k)%value(0))
+            call find_range(held, middle, found%drive, r, limits_only=.true.)
+            ! Lost slowly, and so would the others be: their links stay without names.
+            if (is_lost(r, low) .or. is_lost(r, high)) return
+            do side = low, high
+               if (b%dead(side) == 0 .or. .not. r%has_limit(side)) cycle
+               associate (dead => found%dead(b%dead(side)))
+                  off = r%limit(side)%value - dead%value
+                  off = merge(without_turns(off), off/found%curve%closure%length, found%curve%is_angle)
+                  if (dead%links(1) > 0 .or. abs(off) > agrees) cycle
+                  r%limit(side)%value = dead%value
+                  dead = r%limit(side)
+               end associate
+            end do
+         end associate
       end do
    end subroutine name_limits
 
-   !> Puts `middle` where the drive moves the fastest on branch `b`, with the drive of `held` there.
-   subroutine set_middle(found, b, held, middle)
-      type(circuits_t), intent(in) :: found
-      type(circuit_branch_t), intent(in) :: b
-      type(mechanism_t), intent(inout) :: held
-      type(motion_t), intent(inout) :: middle
+   !> Adds the branches and dead points of circuit number `i`, and its shift.
+   subroutine add_branches(found, i)
+      type(circuits_t), intent(inout) :: found
+      integer, intent(in) :: i
+      type(circuit_branch_t) :: b
+      integer, allocatable :: ends(:), numbers(:), signs(:)
+      real(wp) :: middle
+      integer :: k, n, dead
+
+      middle = 0.5_wp*(minval(found%list(i)%points%value(0)) + maxval(found%list(i)%points%value(0)))
+      found%list(i)%shift = near_first(found%curve, middle) - middle
+      associate (points => found%list(i)%points)
+         n = size(points)
+         ends = pack([(k, k=1, n)], points%is_dead)
+         dead = size(found%dead)
+         numbers = [(dead + k, k=1, size(ends))]
+         ! A closed circuit with dead points begins and ends at its first one.
+         if (found%list(i)%ends(1) == end_closed .and. size(ends) > 1) numbers(size(ends)) = dead + 1
+         do k = 1, size(ends)
+            if (numbers(k) == dead + k) found%dead = [found%dead, diagnostic_t(kind=diagnostic_limit, &
+               drive=found%drive, is_angle=found%curve%is_angle, value=value_at(points(ends(k))))]
+         end do
+         if (found%list(i)%ends(1) /= end_closed .or. size(ends) == 0) then
+            ends = [1, ends, n]
+            numbers = [0, numbers, 0]
+         end if
+         do k = 2, size(ends)
+            b = circuit_branch_t(circuit=i, first=ends(k - 1), last=ends(k), dead=numbers(k - 1:k))
+            b%range = [value_at(points(b%first)), value_at(points(b%last))]
+            if (b%range(1) > b%range(2)) then
+               b%range = b%range(2:1:-1)
+               b%dead = b%dead(2:1:-1)
+            end if
+            ! The determinant with the drive's row is that with the tangent as its row times the drive's derivative.
+            associate (p => points(b%first:b%last))
+               signs = pack(p%sign*nint(sign(1.0_wp, p%value(1))), .not. p%is_dead)
+            end associate
+            b%sign = 0
+            if (size(signs) > 0) then
+               if (all(signs == signs(1))) b%sign = signs(1)
+            end if
+            found%branches = [found%branches, b]
+         end do
+      end associate
+
+   contains
+
+      !> The drive's value at `p`, in the deck's unit.
+      pure real(wp) function value_at(p)
+         type(curve_point_t), intent(in) :: p
+
+         value_at = drive_value(found%curve, p%value(0) + found%list(i)%shift)
+      end function value_at
+   end subroutine add_branches
+
+   !> Adds the assemblies on circuit number `i` at the drive's value of the first instant.
+   subroutine add_assemblies(found, i)
+      type(circuits_t), intent(inout) :: found
+      integer, intent(in) :: i
+      type(curve_point_t) :: p
+      real(wp) :: level, least, greatest
+      integer :: b, k, m
+      logical :: ok
+
+      do b = 1, size(found%branches)
+         if (found%branches(b)%circuit /= i .or. found%list(i)%rests) cycle
+         do k = found%branches(b)%first, found%branches(b)%last - 1
+            associate (from => found%list(i)%points(k), to => found%list(i)%points(k + 1))
+               least = min(from%value(0), to%value(0)) - rounding
+               greatest = max(from%value(0), to%value(0)) + rounding
+               level = found%curve%first
+               if (found%curve%is_angle) level = level + turn*ceiling((least - level)/turn)
+               do m = 0, merge(1, 0, found%curve%is_angle)
+                  if (level + m*turn < least .or. level + m*turn > greatest) cycle
+                  call find_level(found%curve, from, to, level + m*turn, p, ok)
+                  if (ok) call add_assembly(found, b, p)
+               end do
+            end associate
+         end do
+      end do
+   end subroutine add_assemblies
+
+   !> The point `p` between `from` and `to` at which the drive's value is `level`; that of the two that has it up to
+   !> rounding.
+   subroutine find_level(c, from, to, level, p, ok)
+      type(curve_t), intent(inout) :: c
+      type(curve_point_t), intent(in) :: from, to
+      real(wp), intent(in) :: level
+      type(curve_point_t), intent(out) :: p
+      logical, intent(out) :: ok
+      real(wp) :: off(2)
+
+      off = [from%value(0), to%value(0)] - level
+      ok = any(abs(off) <= rounding)
+      if (ok) then
+         if (abs(off(1)) <= abs(off(2))) then
+            p = from
+         else
+            p = to
+         end if
+      else if (off(1)*off(2) < 0.0_wp) then
+         call find_root(c, from, to, of_value, level, p, ok)
+      end if
+   end subroutine find_level
+
+   !> Adds the assembly `p` on branch number `b`, unless it is there.
+   subroutine add_assembly(found, b, p)
+      type(circuits_t), intent(inout) :: found
+      integer, intent(in) :: b
+      type(curve_point_t), intent(in) :: p
+      type(circuit_assembly_t) :: one
       integer :: k
 
-      associate (points => found%list(b%circuit)%points)
-         k = b%first - 1 + maxloc(abs(points(b%first:b%last)%value(1)), dim=1)
-         middle%position = deck_position(found%curve, points(k)%q)
-         held%drives(found%drive)%polynomial(1) = drive_value(found%curve, points(k)%value(0))
-      end associate
-   end subroutine set_middle
+      do k = 1, size(found%assemblies)
+         if (found%branches(found%assemblies(k)%branch)%circuit == found%branches(b)%circuit &
+            .and. same_place(found%curve, found%assemblies(k)%q, p%q)) return
+      end do
+      one%branch = b
+      one%value = drive_value(found%curve, p%value(0) + found%list(found%branches(b)%circuit)%shift)
+      one%q = p%q
+      found%assemblies = [found%assemblies, one]
+   end subroutine add_assembly
 
-   !> A difference `x` of the drive's values in rad, without whole turns, or in lengths of the curve.
-   pure real(wp) function off_by(c, x)
+   !> Adds the change points of circuit number `i`.
+   subroutine add_meetings(found, i)
+      type(circuits_t), intent(inout) :: found
+      integer, intent(in) :: i
+      type(meeting_t) :: one
+      integer :: k, j
+
+      do k = 1, size(found%list(i)%changes)
+         associate (change => found%list(i)%changes(k))
+            do j = 1, size(found%meetings)
+               if (same_place(found%curve, found%meetings(j)%q, change%q)) exit
+            end do
+            if (j > size(found%meetings)) then
+               one%q = change%q
+               one%value = change%value + found%list(i)%shift
+               if (.not. any(found%list(i)%points%is_dead)) one%value = near_first(found%curve, change%value)
+               one%value = drive_value(found%curve, one%value)
+               one%circuits = spread(.false., 1, size(found%list))
+               found%meetings = [found%meetings, one]
+            end if
+            found%meetings(j)%circuits(i) = .true.
+         end associate
+      end do
+   end subroutine add_meetings
+
+   !> Gives the assemblies their numbers in `list`, that of card ASSEMBLY; further ones follow. The determinant has the
+   !> sign of the product of its blocks'.
+   subroutine number_assemblies(found, list)
+      type(circuits_t), intent(inout) :: found
+      type(assembly_t), intent(in) :: list(:)
+      integer :: k, j, next, turn_round
+
+      turn_round = 0
+      next = size(list)
+      do k = 1, size(found%assemblies)
+         associate (one => found%assemblies(k))
+            j = number_of(deck_position(found%curve, one%q), list, found%curve%closure%length)
+            if (j == 0) then
+               next = next + 1
+               j = next
+            else if (turn_round == 0) then
+               turn_round = found%branches(one%branch)%sign*product(list(j)%sign_of)
+            end if
+            one%number = j
+         end associate
+      end do
+      if (turn_round < 0) found%branches%sign = -found%branches%sign
+   end subroutine number_assemblies
+
+   !> The value `x` of the free drive without whole turns: within half a turn of the first instant's.
+   pure real(wp) function near_first(c, x) result(value)
       type(curve_t), intent(in) :: c
       real(wp), intent(in) :: x
 
-      off_by = x/c%closure%length
-      if (c%is_angle) off_by = without_turns(x)
-   end function off_by
+      value = x
+      if (c%is_angle) value = x - turn*floor((x - c%first)/turn + 0.5_wp - tie)
+   end function near_first
+
+   !> The turns of the drive after which `circuit` closes.
+   pure integer function turns_of(circuit) result(turns)
+      type(circuit_t), intent(in) :: circuit
+
+      turns = nint(abs(circuit%points(size(circuit%points))%value(0) - circuit%points(1)%value(0))/turn)
+   end function turns_of
 end module circuits

@@ -12,9 +12,9 @@ module circuits_picture
    use set_analysis, only: set_analysis_t
    use listing_layout, only: angle_unit
    use extremes, only: is_angle
-   use curve_equations, only: deck_position, drive_value
+   use circuit_curve, only: deck_position, drive_value
    use circuit_trace, only: end_closed
-   use circuit_branches, only: circuits_t
+   use circuits, only: circuits_t
    use chart, only: chart_t, graph_t, new_axis, put_chart, chart_height, mark_dot, mark_ring
    use shapes, only: color_of
    use picture_page, only: width

@@ -5,9 +5,8 @@ module circuits_table
    use motion, only: diagnostic_t, diagnostic_limit
    use set_analysis, only: set_analysis_t
    use independent, only: set_t
-   use circuit_trace, only: circuit_t, end_closed, end_far, end_lost
-   use circuit_branches, only: circuits_t, circuit_branch_t, no_sign, max_circuits, turns_of
-   use circuits, only: find_circuits, free_drives
+   use circuit_trace, only: end_closed, end_far, end_lost
+   use circuits, only: circuits_t, circuit_branch_t, no_sign, max_circuits, turns_of, find_circuits, free_drives
    use ranges, only: range_t, find_range, side_words, low, high
    use names, only: drive_name
    use text_output, only: output_t, put
@@ -72,7 +71,7 @@ contains
             if (r%is_all) r%turns = turns_of(circuit)
             do side = low, high
                r%limit(side) = diagnostic_t(kind=diagnostic_limit, drive=found%drive, is_angle=found%curve%is_angle)
-               if (r%has_limit(side)) r%limit(side) = found%dead(b%dead(side))%limit
+               if (r%has_limit(side)) r%limit(side) = found%dead(b%dead(side))
                r%limit(side)%value = known(b%range(side), rounding)
             end do
          end associate
@@ -126,6 +125,9 @@ contains
       type(output_t), intent(inout) :: o
       type(mechanism_t), intent(in) :: m
       type(circuits_t), intent(in) :: found
+      type(diagnostic_t) :: limit
+      character(:), allocatable :: line
+      integer :: i, k
 
       call put(o, ' '//phrase(say_circuits, m%polish)//', '//phrase(say_drive, m%polish)//' ' &
          //trim(drive_name(m, m%drives(found%drive))))
@@ -137,8 +139,26 @@ contains
          call put(o, '   '//phrase(say_none, m%polish))
       else
          call put_branches()
-         call put_dead_points()
-         call put_change_points()
+
+         ! For each dead point the drive's value, links, and the branches that end there.
+         if (size(found%dead) > 0) call put(o, ' '//phrase(say_dead_points, m%polish))
+         do i = 1, size(found%dead)
+            limit = found%dead(i)
+            limit%value = known(limit%value, rounding)
+            line = meeting_words(say_branch, say_branches, pack([(k, k=1, size(found%branches))], &
+               [(any(found%branches(k)%dead == i), k=1, size(found%branches))]), m%polish)//' ' &
+               //measure(m, limit, value_digits)
+            if (limit%links(1) > 0) line = line//', '//at_limit(m, limit)
+            call put_folded(o, '   ', line, repeat(' ', 6))
+         end do
+
+         ! For each change point the circuits that meet there, and the drive's value.
+         if (size(found%meetings) > 0) call put(o, ' '//phrase(say_change_points, m%polish))
+         do i = 1, size(found%meetings)
+            call put(o, '   '//meeting_words(say_circuit, say_circuit_numbers, &
+               pack([(k, k=1, size(found%list))], found%meetings(i)%circuits), m%polish)//' ' &
+               //value_words(m, found, known(found%meetings(i)%value, sqrt(epsilon(1.0_wp))), meeting_digits))
+         end do
       end if
 
    contains
@@ -170,36 +190,6 @@ contains
             end associate
          end do
       end subroutine put_branches
-
-      !> A line for each dead point: the drive's value, links, and the branches that end there.
-      subroutine put_dead_points()
-         type(diagnostic_t) :: limit
-         character(:), allocatable :: line
-         integer :: d, k
-
-         if (size(found%dead) > 0) call put(o, ' '//phrase(say_dead_points, m%polish))
-         do d = 1, size(found%dead)
-            limit = found%dead(d)%limit
-            limit%value = known(limit%value, rounding)
-            line = meeting_words(say_branch, say_branches, pack([(k, k=1, size(found%branches))], &
-               [(any(found%branches(k)%dead == d), k=1, size(found%branches))]), m%polish)//' ' &
-               //measure(m, limit, value_digits)
-            if (limit%links(1) > 0) line = line//', '//at_limit(m, limit)
-            call put_folded(o, '   ', line, repeat(' ', 6))
-         end do
-      end subroutine put_dead_points
-
-      !> A line for each change point: the circuits that meet there, and the drive's value.
-      subroutine put_change_points()
-         integer :: i, k
-
-         if (size(found%meetings) > 0) call put(o, ' '//phrase(say_change_points, m%polish))
-         do i = 1, size(found%meetings)
-            call put(o, '   '//meeting_words(say_circuit, say_circuit_numbers, &
-               pack([(k, k=1, size(found%list))], found%meetings(i)%circuits), m%polish)//' ' &
-               //value_words(m, found, known(found%meetings(i)%value, sqrt(epsilon(1.0_wp))), meeting_digits))
-         end do
-      end subroutine put_change_points
    end subroutine put_circuits_of_drive
 
    !> The range of the drive on branch `b`.
@@ -208,6 +198,7 @@ contains
       type(circuits_t), intent(in) :: found
       type(circuit_branch_t), intent(in) :: b
       character(:), allocatable :: text
+      logical :: rises
       integer :: side
 
       associate (circuit => found%list(b%circuit))
@@ -217,9 +208,10 @@ contains
             text = full_turn_words(turns_of(circuit), m%polish)
          else
             text = without_unit(b%range(1))//' .. '//without_unit(b%range(2))
+            rises = circuit%points(b%first)%value(0) < circuit%points(b%last)%value(0)
             do side = 1, 2
                if (b%dead(side) == 0) text = text//'   '//side_words(side)//': ' &
-                  //phrase(end_words(end_of(b, circuit, side)), m%polish)
+                  //phrase(end_words(circuit%ends(merge(side, 3 - side, rises))), m%polish)
             end do
          end if
       end associate
@@ -234,17 +226,6 @@ contains
          words = value_words(m, found, known(x, rounding), value_digits)
          words = words(:index(words, ' ') - 1)
       end function without_unit
-
-      !> How `circuit` ends where its branch `b` has no dead point on a `side`.
-      pure integer function end_of(b, circuit, side)
-         type(circuit_branch_t), intent(in) :: b
-         type(circuit_t), intent(in) :: circuit
-         integer, intent(in) :: side
-         logical :: rises
-
-         rises = circuit%points(b%first)%value(0) < circuit%points(b%last)%value(0)
-         end_of = circuit%ends(merge(side, 3 - side, rises))
-      end function end_of
    end function range_words
 
    !> The value `x` (rad or length) of the free drive of `found`, with its unit.

@@ -122,7 +122,7 @@ contains
       type(layout_t), intent(in) :: l
       type(proof_table_t), intent(in) :: p
       class(settings_t), intent(in) :: m
-      character(:), allocatable :: gap
+      character(:), allocatable :: start, text, gap
       integer :: i
 
       call put(o, '')
@@ -131,10 +131,24 @@ contains
          //column(phrase(say_tube, m%polish))//column(phrase(say_position, m%polish)) &
          //column(phrase(say_velocity, m%polish))//'  '//column(phrase(say_acceleration, m%polish)))
       do i = 1, p%count
-         call put_line(o, l, p%lines(i), m)
+         associate (line => p%lines(i))
+            start = column(whole(line%step))//column(time_text(l, instant(m, line%step)))
+            if (line%is_proved) then
+               call put(o, start//column(whole(line%parts))//column(rounded_up(line%tube)) &
+                  //column(rounded_up(line%bounds(0)))//column(rounded_up(line%bounds(1))) &
+                  //'  '//column(rounded_up(line%bounds(2))))
+            else
+               call put(o, start//'   '//phrase(say_not_proved, m%polish))
+            end if
+         end associate
       end do
       do i = 1, size(p%reasons)
-         call put_reason(o, l, p%reasons(i), m)
+         associate (r => p%reasons(i))
+            text = phrase(say_instant, m%polish)//' '//whole(r%step)//', T = '//time_text(l, instant(m, r%step)) &
+               //': '//phrase(say_not_proved, m%polish)//': '//r%words
+            if (r%at_time) text = text//' '//time_text(l, r%t)
+         end associate
+         call put_folded(o, ' *** ', text)
       end do
       if (p%instants - p%proved > size(p%reasons)) call put(o, ' *** '//phrase(say_not_proved, m%polish) &
          //': '//whole(p%instants - p%proved))
@@ -144,38 +158,6 @@ contains
          //',  '//phrase(say_parts, m%polish)//' '//whole(sum(p%lines(:p%count)%parts)) &
          //',  '//phrase(say_tube, m%polish)//' '//rounded_up(maxval([0.0_wp, p%lines(:p%count)%tube]))//gap)
    end subroutine put_proofs
-
-   !> A line of the table.
-   subroutine put_line(o, l, line, m)
-      type(output_t), intent(inout) :: o
-      type(layout_t), intent(in) :: l
-      type(line_t), intent(in) :: line
-      class(settings_t), intent(in) :: m
-      character(:), allocatable :: start
-
-      start = column(whole(line%step))//column(time_text(l, instant(m, line%step)))
-      if (line%is_proved) then
-         call put(o, start//column(whole(line%parts))//column(rounded_up(line%tube)) &
-            //column(rounded_up(line%bounds(0)))//column(rounded_up(line%bounds(1))) &
-            //'  '//column(rounded_up(line%bounds(2))))
-      else
-         call put(o, start//'   '//phrase(say_not_proved, m%polish))
-      end if
-   end subroutine put_line
-
-   !> Why an instant is not proved.
-   subroutine put_reason(o, l, r, m)
-      type(output_t), intent(inout) :: o
-      type(layout_t), intent(in) :: l
-      type(reason_t), intent(in) :: r
-      class(settings_t), intent(in) :: m
-      character(:), allocatable :: text
-
-      text = phrase(say_instant, m%polish)//' '//whole(r%step)//', T = '//time_text(l, instant(m, r%step)) &
-         //': '//phrase(say_not_proved, m%polish)//': '//r%words
-      if (r%at_time) text = text//' '//time_text(l, r%t)
-      call put_folded(o, ' *** ', text)
-   end subroutine put_reason
 
    !> `text` at the right of a column.
    pure function column(text)

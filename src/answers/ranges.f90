@@ -89,20 +89,30 @@ contains
       integer, intent(in) :: drive
       type(range_t), intent(out) :: r
       logical, intent(in), optional :: limits_only
-      type(mechanism_t) :: held
-      real(wp) :: unit
-      integer :: side
+      type(mechanism_t) :: d
+      real(wp) :: value, unit
+      integer :: side, i
       logical :: only
 
       only = .false.
       if (present(limits_only)) only = limits_only
       r%drive = drive
-      held = held_at(m, start%t)
+      d = held_at(m, start%t)
+      d%method = method_newton
+      d%tolerance = 0.0_wp
+      d%requests = [(request_t(request_link, i), i=1, size(m%links))]
+      if (allocated(d%branch_requests)) deallocate (d%branch_requests)
+      call place_links(d, start%position)
+      d%steps = 1
+      d%t0 = 0.0_wp
+      d%t1 = merge(max_lengths, 2.0_wp*pi*max_turns, is_length(m%drives(drive)))
+      d%at = [real(wp) ::]
+      value = d%drives(drive)%polynomial(1)
       unit = 1.0_wp
       if (is_length(m%drives(drive))) unit = characteristic_length(m)
       do side = low, high
-         call follow(along(held, start, drive, merge(-unit, unit, side == low)), &
-            held%drives(drive)%polynomial(1), merge(-unit, unit, side == low), side, only, r)
+         d%drives(drive)%polynomial(2) = merge(-unit, unit, side == low)
+         call follow(d, value, merge(-unit, unit, side == low), side, only, r)
          if (r%is_all) return
          if (only .and. is_lost(r, side)) return
       end do
@@ -115,28 +125,6 @@ contains
 
       is_lost = r%has_limit(side) .and. r%limit(side)%links(1) == 0
    end function is_lost
-
-   !> `m`, whose drives are held, at `start`, with drive number `drive` at this `rate`.
-   function along(m, start, drive, rate) result(d)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: start
-      integer, intent(in) :: drive
-      real(wp), intent(in) :: rate
-      type(mechanism_t) :: d
-      integer :: i
-
-      d = m
-      d%method = method_newton
-      d%tolerance = 0.0_wp
-      d%requests = [(request_t(request_link, i), i=1, size(m%links))]
-      if (allocated(d%branch_requests)) deallocate (d%branch_requests)
-      call place_links(d, start%position)
-      d%drives(drive)%polynomial(2) = rate
-      d%steps = 1
-      d%t0 = 0.0_wp
-      d%t1 = merge(max_lengths, 2.0_wp*pi*max_turns, is_length(m%drives(drive)))
-      d%at = [real(wp) ::]
-   end function along
 
    !> `m` with all drives at rest at their values of the time `t`.
    function held_at(m, t) result(held)

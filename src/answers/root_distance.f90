@@ -148,59 +148,22 @@ contains
       end function slot_bound
    end function jacobian_lipschitz
 
-   !> K at pose `p`, from the factors `f` of the Jacobian there: no other root is within 2/K, by `distance`.
-   !> `rows`: those of the system that the first rows of the matrix are, the others are linear; by default they are the
-   !> same.
-   subroutine kantorovich(s, c, f, p, k, rows)
+   !> K at pose `p`, from the factors `f` of the Jacobian there: no other root is within 2/K, by `distance`. `rows`:
+   !> those of the system that the first rows of the matrix are; its others are linear.
+   subroutine kantorovich(s, c, f, p, rows, k)
       type(system_t), intent(in) :: s
       type(coordinates_t), intent(in) :: c
       type(factors_t), intent(in) :: f
       type(pose_t), intent(in) :: p
+      integer, intent(in) :: rows(:)
       real(wp), intent(out) :: k
-      integer, intent(in), optional :: rows(:)
       real(wp) :: g(s%n, size(c%angles) + 2*size(c%slots)), bound(max(s%n, 2*size(s%pairs) + size(s%laws))), &
          y(size(bound), size(g, 2))
+      integer :: m, axis
 
       k = 0.0_wp
       if (size(g) == 0) return
-      call set_coordinates(s, c, g)
-      call solve_transposed(f, g)
-      bound = jacobian_lipschitz(s, c, p)
-      if (present(rows)) then
-         y = 0.0_wp
-         y(rows, :) = g(:size(rows), :)
-         k = largest_sum(s, c, y, bound)
-      else
-         k = largest_sum(s, c, g, bound)
-      end if
-   end subroutine kantorovich
-
-   !> The largest over the coordinates of the sum over the rows of |y_k| L_k: `y` (n, angles + 2 slots) is J^-T g, the
-   !> rows' L_k are `bound` (n).
-   pure real(wp) function largest_sum(s, c, y, bound) result(largest)
-      type(system_t), intent(in) :: s
-      type(coordinates_t), intent(in) :: c
-      real(wp), intent(in) :: y(:, :), bound(:)
-      integer :: m, slot
-
-      largest = 0.0_wp
-      do m = 1, size(c%angles)
-         largest = max(largest, row_sum(s, y(:, m), bound))
-      end do
-      do slot = 1, size(c%slots)
-         m = size(c%angles) + 2*slot
-         largest = max(largest, &
-            hypot(row_sum(s, y(:, m - 1), bound), row_sum(s, y(:, m), bound))/c%unit(c%slots(slot)))
-      end do
-   end function largest_sum
-
-   !> The coordinates as columns `g` (n, angles + 2 slots): each is g . x.
-   pure subroutine set_coordinates(s, c, g)
-      type(system_t), intent(in) :: s
-      type(coordinates_t), intent(in) :: c
-      real(wp), intent(out) :: g(:, :)
-      integer :: m, k
-
+      ! The coordinates as columns: each is g . x.
       g = 0.0_wp
       do m = 1, size(c%angles)
          g(s%column(c%angles(m)) + 2, m) = 1.0_wp
@@ -208,13 +171,26 @@ contains
       do m = 1, size(c%slots)
          associate (i => s%column(s%link_of(s%pairs(c%slots(m))%point_i)), &
                     j => s%column(s%link_of(s%pairs(c%slots(m))%point_j)))
-            do k = 0, 1
-               if (i > 0) g(i + k, size(c%angles) + 2*m - 1 + k) = 1.0_wp
-               if (j > 0) g(j + k, size(c%angles) + 2*m - 1 + k) = -1.0_wp
+            do axis = 0, 1
+               if (i > 0) g(i + axis, size(c%angles) + 2*m - 1 + axis) = 1.0_wp
+               if (j > 0) g(j + axis, size(c%angles) + 2*m - 1 + axis) = -1.0_wp
             end do
          end associate
       end do
-   end subroutine set_coordinates
+      call solve_transposed(f, g)
+
+      bound = jacobian_lipschitz(s, c, p)
+      y = 0.0_wp
+      y(rows, :) = g(:size(rows), :)
+      do m = 1, size(c%angles)
+         k = max(k, row_sum(s, y(:, m), bound))
+      end do
+      do m = 1, size(c%slots)
+         associate (last => size(c%angles) + 2*m)
+            k = max(k, hypot(row_sum(s, y(:, last - 1), bound), row_sum(s, y(:, last), bound))/c%unit(c%slots(m)))
+         end associate
+      end do
+   end subroutine kantorovich
 
    !> The sum over the rows of |y_k| L_k, the two of a pair as one vector.
    pure real(wp) function row_sum(s, y, bound) result(total)

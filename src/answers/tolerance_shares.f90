@@ -57,42 +57,34 @@ contains
       type(set_motion_t), intent(in) :: s
       integer, intent(in) :: k
       type(request_t) :: request
-      integer :: i, n
+      type(spread_t) :: x
+      real(wp) :: root(3, 0:2), worst(3, 0:2)
+      integer :: i, n, column, order
 
       do i = 1, size(s%rows)
          request = request_of(s, i)
          associate (c => s%rows(i)%part)
             if (.not. is_listed(s, request, k) .or. .not. has_tolerances(s%parts(c), request)) cycle
-            call take_row(a%list(:, :, i), spread_in_set(s, i), s%motions(1)%t)
+            x = spread_in_set(s, i)
+            root = root_of_squares(x%tolerances, x%of)
+            worst = worst_case(x%tolerances, x%of)
+            do order = 0, x%known
+               do column = 1, 3
+                  associate (one => a%list(column, order, i))
+                     if (allocated(one%s) .and. root(column, order) <= one%root*(1.0_wp + alike)) cycle
+                     one%root = root(column, order)
+                     one%worst = worst(column, order)
+                     one%t = s%motions(1)%t
+                     one%s = x%of(column, lbound(x%of, 2) + order, :)
+                  end associate
+               end do
+            end do
             if (c == 0) cycle
             n = size(s%sensitivities(c)%jams)
             a%jams(:n, c) = a%jams(:n, c) .or. s%sensitivities(c)%jams
          end associate
       end do
    end subroutine note_tolerances
-
-   !> Takes the sensitivities `x` of a row at the time `t`.
-   pure subroutine take_row(list, x, t)
-      type(share_t), intent(inout) :: list(:, 0:)
-      type(spread_t), intent(in) :: x
-      real(wp), intent(in) :: t
-      real(wp) :: root(3, 0:2), worst(3, 0:2)
-      integer :: c, k
-
-      root = root_of_squares(x%tolerances, x%of)
-      worst = worst_case(x%tolerances, x%of)
-      do k = 0, x%known
-         do c = 1, 3
-            associate (one => list(c, k))
-               if (allocated(one%s) .and. root(c, k) <= one%root*(1.0_wp + alike)) cycle
-               one%root = root(c, k)
-               one%worst = worst(c, k)
-               one%t = t
-               one%s = x%of(c, lbound(x%of, 2) + k, :)
-            end associate
-         end do
-      end do
-   end subroutine take_row
 
    !> Writes the shares after the last instant of the set `s`.
    subroutine put_shares(o, l, a, s)
@@ -175,12 +167,19 @@ contains
       type(share_t), intent(in) :: share
       real(wp), intent(in) :: size_of
       real(wp) :: part(size(share%s))
-      integer :: order(size(share%s)), j
+      integer :: order(size(share%s)), i, j
       character(12) :: sensitivity
       character(max(number_name, len(m%tolerances%name))) :: name
 
       part = (share%s*m%tolerances%size_of/share%root)**2
-      order = in_order(part)
+      ! The largest first; of those that are alike the first one.
+      do i = 1, size(part)
+         do j = i - 1, 1, -1
+            if (part(order(j)) >= part(i)*(1.0_wp - alike)) exit
+            order(j + 1) = order(j)
+         end do
+         order(j + 1) = i
+      end do
       do j = 1, size(order)
          associate (one => m%tolerances(order(j)))
             if (part(order(j)) < least_share) exit
@@ -194,18 +193,4 @@ contains
       end do
       if (j <= size(order)) call put(o, '   '//phrase(say_small_shares, m%polish)//' '//whole(size(order) - j + 1))
    end subroutine put_numbers
-
-   !> The numbers of the elements of `x`, the largest first; of those that are alike the first one.
-   pure function in_order(x) result(order)
-      real(wp), intent(in) :: x(:)
-      integer :: order(size(x)), i, k
-
-      do i = 1, size(x)
-         do k = i - 1, 1, -1
-            if (x(order(k)) >= x(i)*(1.0_wp - alike)) exit
-            order(k + 1) = order(k)
-         end do
-         order(k + 1) = i
-      end do
-   end function in_order
 end module tolerance_shares

@@ -295,6 +295,7 @@ contains
       class(set_t), intent(in) :: set
       type(answers_t), intent(in) :: asked
       type(variant_row_t), intent(inout) :: r
+      type(strokes_t) :: strokes
       integer :: n, i, q, which
 
       n = s%numbers + 1
@@ -337,7 +338,11 @@ contains
                n = n + 3
             end do
             if (c%order > 0) cycle
-            call take_strokes(asked%extremes, q, c%coordinate, r%cells(n + 1:n + 2))
+            strokes = strokes_of(asked%extremes, q, c%coordinate)
+            ! It may be small: then the rounding of the difference counts.
+            if (strokes%length%exists) r%cells(n + 1) = cell_t(cell_number, strokes%length%value, strokes%length%error &
+               + rounding*maxval(abs(asked%extremes%found(:, c%coordinate, 0, q)%value)))
+            if (strokes%ratio > 0.0_wp) r%cells(n + 2) = cell_t(cell_number, strokes%ratio, strokes%error)
             n = n + 2
          end associate
       end do
@@ -366,20 +371,6 @@ contains
       cells(2) = cell_t(cell_number, e%t)
       cells(3) = drive_cell(set, d, e%t)
    end subroutine take_extreme
-
-   !> The stroke of coordinate `c` of row `q`, and the ratio of the times of its strokes.
-   subroutine take_strokes(x, q, c, cells)
-      type(extremes_t), intent(in) :: x
-      integer, intent(in) :: q, c
-      type(cell_t), intent(inout) :: cells(2)
-      type(strokes_t) :: strokes
-
-      strokes = strokes_of(x, q, c)
-      ! It may be small: then the rounding of the difference counts.
-      if (strokes%length%exists) cells(1) = cell_t(cell_number, strokes%length%value, &
-         strokes%length%error + rounding*maxval(abs(x%found(:, c, 0, q)%value)))
-      if (strokes%ratio > 0.0_wp) cells(2) = cell_t(cell_number, strokes%ratio, strokes%error)
-   end subroutine take_strokes
 
    !> The value of drive number `d` (0: none) at the time `t`.
    type(cell_t) function drive_cell(set, d, t) result(cell)

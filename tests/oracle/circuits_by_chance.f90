@@ -7,8 +7,7 @@ program circuits_by_chance
    use mechanism, only: mechanism_t, link_t, point_t, pair_t, request_t, request_link, pair_revolute
    use set_analysis, only: set_analysis_t, make_set_analysis, advance_set
    use circuit_trace, only: end_closed
-   use circuit_branches, only: circuits_t, turns_of
-   use circuits, only: find_circuits
+   use circuits, only: circuits_t, turns_of, find_circuits
    use sample_mechanisms, only: four_bar, crank_slider, angle_drive
    use dyad_circuits, only: six_bar_t, branches_t, find_branches, positions, is_assembled
    use dice, only: dice_t, new_dice, between, chance, throw
