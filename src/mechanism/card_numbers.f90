@@ -148,35 +148,26 @@ contains
          case default
             name = trim(drive_name(m, m%drives(k)))
          end select
-         if (n%term > 0) then
-            name = name//' '//term_name()
-         else
+         if (n%term == 0) then
             name = name//' '//trim(number_words(n%place, n%kind))
+            return
          end if
       end associate
-
-   contains
-
-      !> The word and the number of the term, and what its card calls the number.
-      pure function term_name() result(text)
-         character(:), allocatable :: text
-
-         associate (kind => m%drives(n%subject)%terms(n%term)%kind)
-            select case (kind)
-            case (term_table)
-               text = trim(merge('TIME', 'ROW ', n%kind == number_knot))//' '//whole(n%place)
-            case (term_harmonic)
-               text = trim(harmonic_words(n%place))
-            case (term_power)
-               text = trim(power_words(n%place))
-            case default
-               text = trim(rise_numbers(n%place))
-            end select
-            text = whole(n%term)//' '//text
-            if (kind < term_cycloid) text = trim(term_words(kind))//' '//text
-            if (kind >= term_cycloid) text = trim(rise_words(kind))//' '//text
-         end associate
-      end function term_name
+      ! The word and the number of the term, and what its card calls the number.
+      associate (kind => m%drives(n%subject)%terms(n%term)%kind)
+         if (kind < term_cycloid) name = name//' '//trim(term_words(kind))//' '//whole(n%term)
+         if (kind >= term_cycloid) name = name//' '//trim(rise_words(kind))//' '//whole(n%term)
+         select case (kind)
+         case (term_table)
+            name = name//' '//trim(merge('TIME', 'ROW ', n%kind == number_knot))//' '//whole(n%place)
+         case (term_harmonic)
+            name = name//' '//trim(harmonic_words(n%place))
+         case (term_power)
+            name = name//' '//trim(power_words(n%place))
+         case default
+            name = name//' '//trim(rise_numbers(n%place))
+         end select
+      end associate
    end function number_name
 
    !> The unit of number `n` of `m`.
@@ -193,39 +184,13 @@ contains
       case (number_pair)
          unit = unit_of(n%place /= 2)
       case (number_drive)
-         call take_law(m%drives(n%subject)%kind)
-      case default
-         unit = unit_t(powers=[0.0_wp, 1.0_wp], name=m%time_unit)
-      end select
-
-   contains
-
-      !> The unit of angles, or of lengths.
-      pure type(unit_t) function unit_of(is_angle) result(one)
-         logical, intent(in) :: is_angle
-
-         one = unit_t(name=m%length_unit)
-         if (is_angle) one = unit_t(angle_in_radians(m), [0.0_wp, 0.0_wp], merge('DEG', 'RAD', m%degrees))
-      end function unit_of
-
-      !> `n` is of the law of a drive of the kind `kind`.
-      subroutine take_law(kind)
-         integer, intent(in) :: kind
-         logical :: turns
-
-         unit = unit_of(driven_kinds(kind) == request_link)
-         if (n%term > 0) then
-            call take_term()
-         else if (n%place > 1) then
-            call divide(real(n%place - 1, wp), merge('**2', '   ', n%place == 3))
-            turns = n%place == 2 .and. m%drives(n%subject)%turns
-            if (turns) unit = unit_t(2.0_wp*pi/minute_in(m%time_unit), unit%powers, turns_a_minute)
+         unit = unit_of(driven_kinds(m%drives(n%subject)%kind) == request_link)
+         if (n%term == 0) then
+            if (n%place > 1) call divide(real(n%place - 1, wp), merge('**2', '   ', n%place == 3))
+            if (n%place == 2 .and. m%drives(n%subject)%turns) &
+               unit = unit_t(2.0_wp*pi/minute_in(m%time_unit), unit%powers, turns_a_minute)
+            return
          end if
-      end subroutine take_law
-
-      !> `n` is of a term.
-      subroutine take_term()
-
          associate (term => m%drives(n%subject)%terms(n%term))
             select case (term%kind)
             case (term_harmonic)
@@ -240,7 +205,19 @@ contains
                if (n%place < 3) unit = unit_t(powers=[0.0_wp, 1.0_wp], name=m%time_unit)
             end select
          end associate
-      end subroutine take_term
+      case default
+         unit = unit_t(powers=[0.0_wp, 1.0_wp], name=m%time_unit)
+      end select
+
+   contains
+
+      !> The unit of angles, or of lengths.
+      pure type(unit_t) function unit_of(is_angle) result(one)
+         logical, intent(in) :: is_angle
+
+         one = unit_t(name=m%length_unit)
+         if (is_angle) one = unit_t(angle_in_radians(m), [0.0_wp, 0.0_wp], merge('DEG', 'RAD', m%degrees))
+      end function unit_of
 
       !> Divides `unit` by the power `p` of the unit of time; `end_of_name`: the exponent, as text.
       subroutine divide(p, end_of_name)
@@ -305,10 +282,21 @@ contains
       type(mechanism_t), intent(inout) :: m
       type(card_number_t), intent(in) :: n
       real(wp), intent(in) :: value
+      real(wp) :: numbers(3)
+      integer :: i
 
       call put_number(m, n, value)
       if (n%kind > number_pair) return
-      call follow_drawing(m)
+      do i = 1, size(m%pairs)
+         if (.not. any(m%pairs(i)%drawn)) cycle
+         numbers = drawn_pair(m, m%pairs(i))
+         m%pairs(i)%alpha = numbers(1)
+         m%pairs(i)%offset = numbers(2)
+         m%pairs(i)%beta = numbers(3)
+      end do
+      do i = 1, size(m%drives)
+         if (m%drives(i)%drawn) m%drives(i)%polynomial(1) = drawn_drive(m, m%drives(i))
+      end do
       ! It may have been as drawn itself.
       if (n%kind == number_pair) call put_number(m, n, value)
    end subroutine set_number
@@ -334,25 +322,6 @@ contains
          m%points(i)%offset = m%points(i)%offset + rotated(way, direction(-m%links(m%points(i)%link)%position(3)))
       end do
    end subroutine put_number
-
-   !> Gives the pairs and drives of `m` that are as drawn the numbers of its drawing: its links are where the cards put
-   !> them.
-   pure subroutine follow_drawing(m)
-      type(mechanism_t), intent(inout) :: m
-      real(wp) :: numbers(3)
-      integer :: i
-
-      do i = 1, size(m%pairs)
-         if (.not. any(m%pairs(i)%drawn)) cycle
-         numbers = drawn_pair(m, m%pairs(i))
-         m%pairs(i)%alpha = numbers(1)
-         m%pairs(i)%offset = numbers(2)
-         m%pairs(i)%beta = numbers(3)
-      end do
-      do i = 1, size(m%drives)
-         if (m%drives(i)%drawn) m%drives(i)%polynomial(1) = drawn_drive(m, m%drives(i))
-      end do
-   end subroutine follow_drawing
 
    !> The unit of angles of `m`'s cards in radians.
    pure real(wp) function angle_in_radians(m)

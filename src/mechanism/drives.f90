@@ -9,6 +9,9 @@
 !> by the rounding errors of their own evaluation. For one polynomial, harmonic, power, table or rise they are its
 !> extremes; for a sum they are the sums of these bounds, which may lie outside its extremes.
 !>
+!> `growing_sizes` tells how large the numbers are that are added up to the law: its value and its rates may be small
+!> differences of large ones, and are known by so many fewer digits.
+!>
 !> All that is known of a kind of term stands together, kind by kind, below the laws.
 module drives
    use, intrinsic :: iso_fortran_env, only: dp => real64
@@ -20,7 +23,7 @@ module drives
    implicit none
    private
    public :: law_t, new_law, drive_motion, find_drive_motion, bounds_t, bounds_of, drive_rate, joints_of, pole_value
-   public :: monomial, rise_shape, joint_width, joint_distance
+   public :: joint_distance, growing_sizes
 
    !> A drive made ready for evaluation.
    type :: law_t
@@ -41,6 +44,8 @@ module drives
    real(wp), parameter :: joint_part = 1024.0_wp*max(epsilon(1.0_wp), real(epsilon(1.0_dp), wp))
    !> Rounding error of a value relative to the sum of the absolute values of its terms: some ten operations.
    real(wp), parameter :: margin = 16.0_wp*epsilon(1.0_wp)
+   !> The largest derivatives 0 to 3 of a rise of the lift 1 and the duration 1, whatever its law.
+   real(wp), parameter :: rise_most(0:3) = [1.0_wp, 2.0_wp, 6.3_wp, 60.0_wp]
 
 contains
 
@@ -74,6 +79,7 @@ contains
       type(law_t), intent(in) :: law
       real(wp), intent(in) :: t
       real(wp), intent(out) :: f(3)
+      real(wp) :: u
       integer :: i
 
       associate (c => law%drive%polynomial)
@@ -82,16 +88,22 @@ contains
          f(3) = c(3)
       end associate
       do i = 1, size(law%splines)
-         select case (law%drive%terms(i)%kind)
-         case (term_harmonic)
-            f = f + harmonic(law%drive%terms(i)%r, t)
-         case (term_power)
-            f = f + power(law%drive%terms(i)%r, t)
-         case (term_table)
-            f = f + spline_value(law%splines(i), t)
-         case (term_cycloid:term_parabola)
-            f = f + rise(law%drive%terms(i), t)
-         end select
+         associate (term => law%drive%terms(i), r => law%drive%terms(i)%r)
+            select case (term%kind)
+            case (term_harmonic)
+               u = r(2)*t + r(3)
+               f = f + r(1)*[sin(u), r(2)*cos(u), -r(2)**2*sin(u)]
+            case (term_power)
+               ! The deck reader has rejected powers that do not exist.
+               f = f + [monomial(r(1), r(2), t), monomial(r(1)*r(2), r(2) - 1.0_wp, t), &
+                  monomial(r(1)*r(2)*(r(2) - 1.0_wp), r(2) - 2.0_wp, t)]
+            case (term_table)
+               f = f + spline_value(law%splines(i), t)
+            case (term_cycloid:term_parabola)
+               u = (t - r(1))/r(2)
+               f = f + r(3)*rise_shape(term%kind, u, u + joint_width(term))/[1.0_wp, r(2), r(2)**2]
+            end select
+         end associate
       end do
    end subroutine find_drive_motion
 
@@ -104,7 +116,7 @@ contains
       logical, intent(in), optional :: one_instant
       type(bounds_t) :: b, of_term
       real(wp) :: from, to
-      integer :: i
+      integer :: i, k, first, last
 
       from = min(t1, t2)
       to = max(t1, t2)
@@ -115,9 +127,22 @@ contains
             case (term_harmonic)
                of_term = harmonic_bounds(term%r, from, to)
             case (term_power)
-               of_term = power_bounds(term%r, from, to)
+               ! On either side of t = 0 each derivative is monotonic.
+               of_term = bounds_t()
+               call widen_by_power(of_term, term%r, from)
+               call widen_by_power(of_term, term%r, to)
+               if (from < 0.0_wp .and. to > 0.0_wp) call widen_by_power(of_term, term%r, 0.0_wp)
             case (term_table)
-               of_term = table_bounds(law%splines(i), from, to)
+               ! Each piece in the interval is a cubic.
+               of_term = bounds_t()
+               associate (s => law%splines(i))
+                  first = piece_at(s, from)
+                  last = piece_at(s, to)
+                  do k = first, last
+                     call widen_by_piece(of_term, s, k, merge(from, s%x(k), k == first), &
+                        merge(to, s%x(k + 1), k == last))
+                  end do
+               end associate
             case default
                of_term = rise_bounds(term, from, to, one_instant)
             end select
@@ -245,15 +270,6 @@ contains
          [abs(c(1)) + abs(t)*(abs(c(2)) + abs(t*c(3))), abs(c(2)) + abs(t*c(3)), 0.0_wp])
    end subroutine widen_by_polynomial
 
-   !> r1 sin(r2 t + r3) and its derivatives.
-   pure function harmonic(r, t) result(f)
-      real(wp), intent(in) :: r(3), t
-      real(wp) :: f(3), argument
-
-      argument = r(2)*t + r(3)
-      f = r(1)*[sin(argument), r(2)*cos(argument), -r(2)**2*sin(argument)]
-   end function harmonic
-
    !> The bounds of r1 sin(r2 t + r3): each derivative is again a sine, with its phase advanced by a quarter turn. The
    !> extremes of each are at its ends and at whole numbers of quarter turns, of which four follow one another.
    pure function harmonic_bounds(r, from, to) result(b)
@@ -283,16 +299,6 @@ contains
       b%high = min(b%high, (1.0_wp + margin)*abs(amplitudes))
    end function harmonic_bounds
 
-   !> r1 t**r2 and its derivatives; the deck reader has rejected powers that do not exist.
-   pure function power(r, t) result(f)
-      real(wp), intent(in) :: r(3), t
-      real(wp) :: f(3)
-
-      f(1) = monomial(r(1), r(2), t)
-      f(2) = monomial(r(1)*r(2), r(2) - 1.0_wp, t)
-      f(3) = monomial(r(1)*r(2)*(r(2) - 1.0_wp), r(2) - 2.0_wp, t)
-   end function power
-
    !> c t**p; a whole number p is an integer exponent, so that t may be zero or negative.
    pure real(wp) function monomial(c, p, t)
       real(wp), intent(in) :: c, p, t
@@ -306,16 +312,6 @@ contains
          monomial = c*t**p
       end if
    end function monomial
-
-   !> The bounds of r1 t^r2. On either side of t = 0 each derivative is monotonic.
-   pure function power_bounds(r, from, to) result(b)
-      real(wp), intent(in) :: r(3), from, to
-      type(bounds_t) :: b
-
-      call widen_by_power(b, r, from)
-      call widen_by_power(b, r, to)
-      if (from < 0.0_wp .and. to > 0.0_wp) call widen_by_power(b, r, 0.0_wp)
-   end function power_bounds
 
    !> Widens `b` by r1 t^r2 at the time `t`.
    pure subroutine widen_by_power(b, r, t)
@@ -352,20 +348,6 @@ contains
          is_finite = p*log(abs(t)) + max(0.0_wp, log(abs(c))) < log(huge(1.0_wp)) - 1.0_wp
       end if
    end function is_finite
-
-   !> The bounds of the spline `s`: those of its pieces in the interval, each a cubic.
-   pure function table_bounds(s, from, to) result(b)
-      type(spline_t), intent(in) :: s
-      real(wp), intent(in) :: from, to
-      type(bounds_t) :: b
-      integer :: i, first, last
-
-      first = piece_at(s, from)
-      last = piece_at(s, to)
-      do i = first, last
-         call widen_by_piece(b, s, i, merge(from, s%x(i), i == first), merge(to, s%x(i + 1), i == last))
-      end do
-   end function table_bounds
 
    !> Widens `b` by piece `i` from `t1` to `t2`: by its values at both ends and where its second or first derivative is
    !> zero.
@@ -411,16 +393,6 @@ contains
       curve = abs(s%m(i)) + abs(s%m(i + 1))
       call widen(b, f, [(magnitude + curve*h**2)*away**3, (magnitude/h + curve*h)*away**2, curve*away])
    end subroutine widen_by_piece_at
-
-   !> A rise and its derivatives.
-   pure function rise(term, t) result(f)
-      type(term_t), intent(in) :: term
-      real(wp), intent(in) :: t
-      real(wp) :: f(3), u
-
-      u = (t - term%r(1))/term%r(2)
-      f = term%r(3)*rise_shape(term%kind, u, u + joint_width(term))/[1.0_wp, term%r(2), term%r(2)**2]
-   end function rise
 
    !> How far before a joint `term` has the acceleration from the right already, as a part of the rise's duration; 0
    !> where its law has a continuous acceleration.
@@ -503,4 +475,68 @@ contains
       if (u < -margin .or. u > 1.0_wp + margin) magnitudes = merge(0.0_wp, magnitudes, abs(s) <= 0.0_wp)
       call widen(b, factors*s, magnitudes)
    end subroutine widen_by_rise
+
+   !> Bounds, as (:, 0) + |t| (:, 1), of what a change of each number of `law`, or of the time, changes of value, rate
+   !> and acceleration (3) at each time t from -`last` to `last`, over the relative change; in the drive's unit (length
+   !> or rad) and the deck's unit of time. Of a power with a negative exponent at the time `last` alone: before, the law
+   !> itself is as large.
+   pure function growing_sizes(law, last) result(sizes)
+      type(law_t), intent(in) :: law
+      real(wp), intent(in) :: last
+      real(wp) :: sizes(3, 0:1)
+
+      sizes(:, 0) = sizes_at(law, 0.0_wp, last)
+      sizes(:, 1) = (sizes_at(law, last, last) - sizes(:, 0))/merge(last, 1.0_wp, last > 0.0_wp)
+   end function growing_sizes
+
+   !> The sizes (3) at the times -`t` and `t`. Between t = 0 and `last` none of them is above its chord.
+   pure function sizes_at(law, t, last) result(sizes)
+      type(law_t), intent(in) :: law
+      real(wp), intent(in) :: t, last
+      real(wp) :: sizes(3)
+      integer :: i
+
+      associate (c => abs(law%drive%polynomial))
+         sizes = [c(1) + t*(c(2) + t*c(3)), c(2) + t*c(3), c(3)]
+      end associate
+      do i = 1, size(law%drive%terms)
+         associate (term => law%drive%terms(i), r => abs(law%drive%terms(i)%r))
+            select case (term%kind)
+            case (term_harmonic)
+               sizes = sizes + (1.0_wp + r(2)*t + r(3))*r(1)*[1.0_wp, r(2), r(2)**2]
+            case (term_power)
+               sizes = sizes + (1.0_wp + r(2))*[power_size(r(1), term%r(2), t, last), &
+                  power_size(r(1)*r(2), term%r(2) - 1.0_wp, t, last), &
+                  power_size(r(1)*r(2)*abs(term%r(2) - 1.0_wp), term%r(2) - 2.0_wp, t, last)]
+            case (term_table)
+               sizes = sizes + table_sizes(law%splines(i), t)
+            case default
+               ! Beyond its end the time changes nothing.
+               sizes = sizes + r(3)*(rise_most(:2) + (2.0_wp*r(1)/r(2) + 1.0_wp)*rise_most(1:))/[1.0_wp, r(2), r(2)**2]
+            end select
+         end associate
+      end do
+   end function sizes_at
+
+   !> Of c t**p, c >= 0: its value, or that at the time `last` where it grows more slowly than the time.
+   pure real(wp) function power_size(c, p, t, last) result(size_of)
+      real(wp), intent(in) :: c, p, t, last
+      real(wp) :: time
+
+      time = merge(t, last, p >= 1.0_wp)
+      size_of = 0.0_wp
+      if (time > 0.0_wp) size_of = monomial(c, p, time)
+   end function power_size
+
+   !> The sizes of the spline `s`, from the differences of its rows.
+   pure function table_sizes(s, t) result(sizes)
+      type(spline_t), intent(in) :: s
+      real(wp), intent(in) :: t
+      real(wp) :: sizes(3), h(size(s%x) - 1), bend, slope
+
+      h = s%x(2:) - s%x(:size(h))
+      bend = maxval(abs(s%m))
+      slope = maxval(abs(s%y(2:) - s%y(:size(h)))/h) + bend*maxval(h)
+      sizes = [maxval(abs(s%y)) + t*slope, slope + t*bend, bend + t*maxval(abs(s%m(2:) - s%m(:size(h)))/h)]
+   end function table_sizes
 end module drives

@@ -10,7 +10,7 @@ module independent
    use scales, only: characteristic_length, characteristic_rate, relative_tolerance
    implicit none
    private
-   public :: set_t, member_t, part_t, divide, mechanism_of, part_of_links, &
+   public :: set_t, member_t, part_t, divide, part_of_links, &
       request_of, is_printed, first_drive
 
    !> A row or drive of a set: the number of its part, and its number there.
@@ -35,12 +35,10 @@ module independent
 contains
 
    !> Divides the set `m` into its parts: `s`. A part has the ground links, and their points, that its pairs, drives and
-   !> rows use. A BRANCH card without a link is for every part. Time and memory grow in proportion to the deck. `whole`:
-   !> all links are taken for one mechanism.
-   subroutine divide(m, s, whole)
+   !> rows use. A BRANCH card without a link is for every part. Time and memory grow in proportion to the deck.
+   subroutine divide(m, s)
       type(mechanism_t), intent(in) :: m
       type(set_t), intent(out) :: s
-      logical, intent(in), optional :: whole
       type(sorted_t) :: links, points, pairs, drives, rows
       type(part_t) :: place
       integer, allocatable :: pair_part(:), drive_part(:), row_part(:), user(:), used(:)
@@ -50,7 +48,6 @@ contains
       if (allocated(m%tolerances)) s%largest_tolerance = relative_tolerance(m)
       link_part = part_of_links(m)
       s%count = max(1, maxval([0, link_part]))
-      if (present(whole)) s%count = 1
       if (s%count == 1) link_part = 1
       ground = s%count + 1
       pair_part = [(part_of(pair_links(m, m%pairs(i))), i=1, size(m%pairs))]
@@ -76,7 +73,8 @@ contains
          allocate (s%parts(first:s%count), s%cards(first:s%count))
       end associate
       allocate (s%rows(size(m%requests)), s%drives(size(m%drives)))
-      place = no_places(m)
+      allocate (place%links(size(m%links)), place%points(size(m%points)), place%pairs(size(m%pairs)), &
+         place%drives(size(m%drives)), source=0)
       do c = 1, size(s%parts)
          call take_part(modulo(c, ground))
       end do
@@ -125,33 +123,14 @@ contains
       end associate
    end function part_of_links
 
-   !> The `part` of `m` as a mechanism of its own, without its cards.
-   function mechanism_of(m, part) result(own)
-      type(mechanism_t), intent(in) :: m
-      type(part_t), intent(in) :: part
-      type(mechanism_t) :: own
-      type(part_t) :: place
-
-      place = no_places(m)
-      call take_mechanism(m, part, place, own)
-   end function mechanism_of
-
-   !> Zeros, one for each link, point, pair and drive of `m`.
-   pure function no_places(m) result(place)
-      type(mechanism_t), intent(in) :: m
-      type(part_t) :: place
-
-      allocate (place%links(size(m%links)), place%points(size(m%points)), place%pairs(size(m%pairs)), &
-         place%drives(size(m%drives)), source=0)
-   end function no_places
-
-   !> As `mechanism_of`; `place` is what `no_places` has made, before and after. Reason: of many parts each takes the
-   !> time of its own size alone.
+   !> Takes the `part` of `m` as a mechanism of its own, without its cards: `own`. `place`: zeros, one for each link,
+   !> point, pair and drive of `m`, before and after. Reason: of many parts each takes the time of its own size alone.
    subroutine take_mechanism(m, part, place, own)
       type(mechanism_t), intent(in) :: m
       type(part_t), intent(in) :: part
       type(part_t), intent(inout) :: place
       type(mechanism_t), intent(out) :: own
+      integer, parameter :: kinds(number_link:number_pair) = [request_link, request_point, request_point, request_pair]
       integer :: i
 
       place%links(part%links) = [(i, i=1, size(part%links))]
@@ -189,7 +168,19 @@ contains
          end associate
       end do
 
-      if (allocated(m%tolerances)) call take_tolerances()
+      if (allocated(m%tolerances)) then
+         own%tolerances = m%tolerances
+         do i = 1, size(own%tolerances)
+            associate (one => own%tolerances(i))
+               if (one%kind > number_pair) then
+                  one%subject = place%drives(one%subject)
+               else
+                  one%subject = place_of(kinds(one%kind), one%subject)
+               end if
+            end associate
+         end do
+         own%tolerances = pack(own%tolerances, own%tolerances%subject > 0)
+      end if
       if (any(own%requests%kind >= request_pole)) then
          own%requests%length = characteristic_length(own)
          own%requests%rate = characteristic_rate(own, own%requests(1)%length)
@@ -214,24 +205,6 @@ contains
             place_of = place%pairs(i)
          end select
       end function place_of
-
-      !> The tolerances of numbers that are in the part.
-      subroutine take_tolerances()
-         integer, parameter :: kinds(number_link:number_pair) = [request_link, request_point, request_point, &
-            request_pair]
-
-         own%tolerances = m%tolerances
-         do i = 1, size(own%tolerances)
-            associate (one => own%tolerances(i))
-               if (one%kind > number_pair) then
-                  one%subject = place%drives(one%subject)
-               else
-                  one%subject = place_of(kinds(one%kind), one%subject)
-               end if
-            end associate
-         end do
-         own%tolerances = pack(own%tolerances, own%tolerances%subject > 0)
-      end subroutine take_tolerances
    end subroutine take_mechanism
 
    !> What row number `i` of `s` is asked for.

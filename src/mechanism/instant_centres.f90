@@ -6,7 +6,7 @@ module instant_centres
    use planar, only: pi, rotated, quarter_turn, cross
    implicit none
    private
-   public :: centre_t, pole_of, curve_of, seen_from, pole_rate
+   public :: centre_t, pole_of, curve_of, seen_from
    public :: centre_finite, centre_infinite, centre_starting, centre_resting
 
    !> What a centre is.
@@ -66,19 +66,6 @@ contains
       c%value(3, :) = [line_angle(quarter_turn(u)), line_angle(rotated(quarter_turn(u), to_i)), &
          line_angle(rotated(quarter_turn(u), to_j))]
    end function pole_of
-
-   !> The velocity (2) of that instant centre along the two centrodes, in the axes of link I; it is the same in those of
-   !> link J, since they roll. Accelerations exist, and the centre is finite. In the axes of link I, with a = u' and
-   !> b = w':  p' = u + R (a w - u b)/w**2.
-   pure function pole_rate(i, j) result(v)
-      real(wp), intent(in) :: i(3, 0:2), j(3, 0:2)
-      real(wp) :: v(2), r(2, 0:2), w, b
-
-      r = seen_from(i, j(:2, :))
-      w = j(3, 1) - i(3, 1)
-      b = j(3, 2) - i(3, 2)
-      v = r(:, 1) + quarter_turn(r(:, 2)*w - r(:, 1)*b)/w**2
-   end function pole_rate
 
    !> The place, velocity and acceleration (2, 0:2) of a point in the axes of a link that moves as `frame` (3, 0:2);
    !> `p` (2, 0:2): those in the fixed plane, counted as those of the link.

@@ -106,6 +106,7 @@ contains
       type(motion_t), intent(in) :: q
       type(request_t), intent(in) :: request
       type(row_t), intent(inout) :: row
+      real(wp) :: p(2, 0:2)
 
       associate (i => request%subject)
          select case (request%kind)
@@ -130,7 +131,11 @@ contains
             call take_centre(pole_of(link_motion(q, request%second), link_motion(q, i), &
                request%length, request%rate), row)
          case (request_curve)
-            call take_curve(m, q, request, row)
+            ! In the axes of the link from which it is seen, or in the fixed plane.
+            p = point_motion(m, q, i)
+            if (request%second > 0) p = seen_from(link_motion(q, request%second), p)
+            if (row%known < 2) p(:, max(0, row%known + 1):) = 0.0_wp
+            call take_centre(curve_of(p, request%length, request%rate), row)
             if (request%second > 0) return
             row%value(:2, 1) = row%value(:2, 1) + q%origin
          end select
@@ -154,21 +159,6 @@ contains
          name = subject_name(m, request%kind, request%subject)
       end select
    end function request_name
-
-   !> The numbers of the `row` of the path of a point, without the motion's origin: in the axes of the link from which
-   !> it is seen, or in the fixed plane.
-   pure subroutine take_curve(m, q, request, row)
-      type(mechanism_t), intent(in) :: m
-      type(motion_t), intent(in) :: q
-      type(request_t), intent(in) :: request
-      type(row_t), intent(inout) :: row
-      real(wp) :: p(2, 0:2)
-
-      p = point_motion(m, q, request%subject)
-      if (request%second > 0) p = seen_from(link_motion(q, request%second), p)
-      if (row%known < 2) p(:, max(0, row%known + 1):) = 0.0_wp
-      call take_centre(curve_of(p, request%length, request%rate), row)
-   end subroutine take_curve
 
    !> Puts the centre `c` into `row`.
    pure subroutine take_centre(c, row)

@@ -5,8 +5,7 @@ module digits_in_doubt
    use kinds, only: wp
    use mechanism, only: mechanism_t
    use motion, only: motion_t
-   use drives, only: new_law
-   use law_sizes, only: growing_sizes
+   use drives, only: new_law, growing_sizes
    use scales, only: characteristic_length, characteristic_rate, is_length, latest_time
    use sum_errors, only: growth_in_centres
    use block_engine, only: block_engine_t
@@ -46,8 +45,8 @@ contains
       s%law = largest_law(m, s%length, s%rate)
    end function sizes_of
 
-   !> The size of the largest law of a drive of `m` at t = 0, and by how much more it is, over |t|: see `law_sizes`. In
-   !> the characteristic `length` and `rate`.
+   !> The size of the largest law of a drive of `m` at t = 0, and by how much more it is, over |t|: see
+   !> `growing_sizes`. In the characteristic `length` and `rate`.
    function largest_law(m, length, rate) result(largest)
       type(mechanism_t), intent(in) :: m
       real(wp), intent(in) :: length, rate

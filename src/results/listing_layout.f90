@@ -10,9 +10,8 @@ module listing_layout
       request_curve, pair_prismatic
    use points, only: centre_numbers
    use independent, only: set_t, request_of
-   use drives, only: law_t, new_law, pole_value
+   use drives, only: law_t, new_law, pole_value, growing_sizes
    use names, only: drive_name, more
-   use law_sizes, only: growing_sizes
    use scales, only: characteristic_length, characteristic_rate, relative_tolerance, latest_time, is_length, &
       shortest_step
    use numerals, only: whole, numeral_length, max_decimals
@@ -58,7 +57,7 @@ module listing_layout
       type(law_t) :: law
       character(:), allocatable :: infinite   !< the words for its value at the pole of its law, where that has one
       real(wp) :: unit = 1.0_wp            !< length or radians in the unit in which it is printed
-      real(wp) :: size_of(0:1) = 0.0_wp    !< of what is added up to its value, (0) + (1) |t|: see `law_sizes`
+      real(wp) :: size_of(0:1) = 0.0_wp    !< of what is added up to its value, (0) + (1) |t|: see `growing_sizes`
       integer :: decimals = digits_after_first, power = 0   !< as in `digits_t`
    end type head_drive_t
 
