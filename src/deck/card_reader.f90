@@ -35,6 +35,7 @@ module card_reader
       integer :: subject = 0
       !> Of a card of a drive's law the numbers of term and row of its table; of the DRIVE card 0.
       integer :: term = 0, row = 0
+      integer :: below = 0                      !< of a TOLER or VARY card: the number of the card above it; 0: none
    end type parsed_card_t
 
    !> Bounds of lengths, angles and times. Numbers beyond them have no use, and their squares would leave the range of
@@ -173,6 +174,7 @@ contains
       type(input_errors_t), intent(inout) :: errors
       type(error_code_t) :: code
       type(field_t) :: field
+      character(:), allocatable :: word
       integer :: column, last
 
       has_small = .false.
@@ -185,9 +187,13 @@ contains
       clean = column > last
       has_small = has_small .or. .not. clean
       if (clean) then
-         if (card%overrun > 0) &
-            call add_error(errors, past_last_column, card, field_t('PAST-80', 81, 81), card%overrun, card%beyond, &
-               trim(adjustl(longer_number(card, last_word(card)))))
+         if (card%overrun == 0) return
+         ! The word that crosses the last column, as far as it is known.
+         word = ''
+         if (card%overrun == card_columns + 1 .and. card%text(card_columns:) /= ' ') &
+            word = card%text(index(card%text, ' ', back=.true.) + 1:)//card%beyond(:index(card%beyond//' ', ' ') - 1)
+         call add_error(errors, past_last_column, card, field_t('PAST-80', 81, 81), card%overrun, card%beyond, &
+            trim(adjustl(longer_number(card, word))))
          return
       end if
       code = control_character
@@ -196,16 +202,6 @@ contains
       field = card_fields(findloc(card_fields%last >= column, .true., dim=1))
       call add_error(errors, code, card, field, column, field_text(card, field))
    end subroutine check_characters
-
-   !> The word that crosses the last column of `card`, as far as it is known; '' if none does.
-   pure function last_word(card) result(word)
-      type(card_t), intent(in) :: card
-      character(:), allocatable :: word
-
-      word = ''
-      if (card%overrun /= card_columns + 1 .or. card%text(card_columns:) == ' ') return
-      word = card%text(index(card%text, ' ', back=.true.) + 1:)//card%beyond(:index(card%beyond//' ', ' ') - 1)
-   end function last_word
 
    !> Adds the error of a card name that does not exist. `form`: the form that was probably meant, or form_unknown.
    subroutine guess_form(card, form, errors)

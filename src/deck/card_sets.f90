@@ -21,7 +21,7 @@ module card_sets
    private
    public :: card_set_t, begin_set, begin_mechanism, append_card, set_apart
    public :: read_small_letters, build_bodies, has_drawing, look_up, match_word
-   public :: add_card_error, add_apart_error, add_card_remark, real_text
+   public :: add_card_error, add_card_remark, real_text
 
    !> The links, the points or the pairs of a set.
    type :: named_t
@@ -29,18 +29,12 @@ module card_sets
       type(name_table_t) :: table                   !< from their names to their places in `card`
    end type named_t
 
-   !> A TOLER or VARY card, and the number of the card to whose numbers it belongs.
-   type :: apart_card_t
-      type(parsed_card_t) :: card
-      integer :: below = 0                          !< 0: no card is above it
-   end type apart_card_t
-
    type :: card_set_t
       integer :: count = 0                          !< cards so far
       type(parsed_card_t), allocatable :: cards(:)  !< (count) and room for more
       integer :: number_of(0:form_end) = 0          !< cards of each form
       logical :: names_certain = .true.             !< of every card: no unknown name can be one that was misread
-      type(apart_card_t), allocatable :: apart(:)   !< the TOLER and VARY cards, once they are apart from the others
+      integer :: apart = 0                          !< TOLER and VARY cards, behind the others in `cards` once set apart
       type(card_t) :: small                         !< the first card with small letters; its number is 0: none
       type(named_t) :: named(request_link:request_pair)
       type(mechanism_t) :: mechanism
@@ -61,7 +55,7 @@ contains
       integer, intent(in) :: number
 
       set%count = 0
-      if (allocated(set%apart)) deallocate (set%apart)
+      set%apart = 0
       set%number_of = 0
       set%names_certain = .true.
       set%small = card_t()
@@ -101,24 +95,22 @@ contains
       set%names_certain = set%names_certain .and. card%names_certain
    end subroutine append_card
 
-   !> Takes the TOLER and VARY cards of `set` out of its cards, so that these are what they would be without them.
+   !> Puts the TOLER and VARY cards of `set` behind its other cards, so that these are what they would be without them.
    subroutine set_apart(set)
       type(card_set_t), intent(inout) :: set
-      integer :: k, n, kept
+      type(parsed_card_t), allocatable :: ordered(:)
+      logical :: is_apart(set%count)
+      integer :: k
 
-      allocate (set%apart(sum(set%number_of([form_toler, form_vary]))))
-      n = 0
-      kept = 0
+      set%apart = sum(set%number_of([form_toler, form_vary]))
+      if (set%apart == 0) return
+      is_apart = [(any(set%cards(k)%form == [form_toler, form_vary]), k=1, set%count)]
       do k = 1, set%count
-         if (any(set%cards(k)%form == [form_toler, form_vary])) then
-            n = n + 1
-            set%apart(n) = apart_card_t(set%cards(k), kept)
-         else
-            kept = kept + 1
-            if (kept < k) set%cards(kept) = set%cards(k)
-         end if
+         set%cards(k)%below = count(.not. is_apart(:k))
       end do
-      set%count = kept
+      ordered = set%cards([pack([(k, k=1, set%count)], .not. is_apart), pack([(k, k=1, set%count)], is_apart)])
+      call move_alloc(ordered, set%cards)
+      set%count = set%count - set%apart
    end subroutine set_apart
 
    !> Reads the labels of the cards of `set` as capitals, a remark about the first of them: unless two names of a kind
@@ -174,7 +166,11 @@ contains
       allocate (set%mechanism%points(size(set%named(request_point)%card)))
       allocate (set%mechanism%pairs(size(set%named(request_pair)%card)))
       do n = 1, size(set%mechanism%links)
-         call build_link()
+         associate (card => set%cards(set%named(request_link)%card(n)))
+            set%mechanism%links(n) = link_t(name=card%label(label_a), ground=card%form == form_ground, &
+               position=card%real*[1.0_wp, 1.0_wp, unit])
+         end associate
+         call define_name(request_link, label_a)
       end do
       do n = 1, size(set%mechanism%points)
          call build_point()
@@ -184,16 +180,6 @@ contains
       end do
 
    contains
-
-      !> Link number `n`, of a GROUND or LINK card.
-      subroutine build_link()
-
-         associate (card => set%cards(set%named(request_link)%card(n)))
-            set%mechanism%links(n) = link_t(name=card%label(label_a), ground=card%form == form_ground, &
-               position=card%real*[1.0_wp, 1.0_wp, unit])
-         end associate
-         call define_name(request_link, label_a)
-      end subroutine build_link
 
       !> Point number `n`, of a POINT card. The links are there.
       subroutine build_point()
@@ -266,23 +252,17 @@ contains
          else if (set%mechanism%links(i)%ground .and. set%mechanism%links(j)%ground) then
             call add_card_error(set, pair_grounds, k, label_c)
          else if (any(set%mechanism%pairs(n)%drawn)) then
-            call take_drawing()
+            ! It has those numbers as drawn. The points of a cylinder must lie apart.
+            associate (pair => set%mechanism%pairs(n))
+               numbers = drawn_pair(set%mechanism, pair)
+               pair%alpha = numbers(1)
+               pair%offset = numbers(2)
+               pair%beta = numbers(3)
+               if (pair%drawn(1) .and. coincides(set%mechanism, pair)) &
+                  call add_card_error(set, cylinder_points, k, label_b)
+            end associate
          end if
       end subroutine build_pair
-
-      !> Gives pair number `n` those numbers that it has as drawn. The points of a cylinder must lie apart.
-      subroutine take_drawing()
-         real(wp) :: numbers(3)
-
-         associate (pair => set%mechanism%pairs(n))
-            numbers = drawn_pair(set%mechanism, pair)
-            pair%alpha = numbers(1)
-            pair%offset = numbers(2)
-            pair%beta = numbers(3)
-            if (pair%drawn(1) .and. coincides(set%mechanism, pair)) &
-               call add_card_error(set, cylinder_points, set%named(request_pair)%card(n), label_b)
-         end associate
-      end subroutine take_drawing
 
       !> The numbers of all cards of the forms `forms_asked`, in the order of the deck; twice those of a form that is
       !> there twice.
@@ -402,34 +382,12 @@ contains
       type(error_code_t), intent(in) :: code
       integer, intent(in) :: k, field
       character(*), intent(in), optional :: more
-
-      call add_parsed_error(set%errors, code, set%cards(k), field, more)
-   end subroutine add_card_error
-
-   !> Adds the error `code` about `field` of the TOLER or VARY card set%apart(`i`). `more` ends the sentence.
-   subroutine add_apart_error(set, code, i, field, more)
-      type(card_set_t), intent(inout) :: set
-      type(error_code_t), intent(in) :: code
-      integer, intent(in) :: i, field
-      character(*), intent(in), optional :: more
-
-      call add_parsed_error(set%errors, code, set%apart(i)%card, field, more)
-   end subroutine add_apart_error
-
-   !> Adds the error `code` about `field` of `card` to `errors`.
-   subroutine add_parsed_error(errors, code, card, field, more)
-      type(input_errors_t), intent(inout) :: errors
-      type(error_code_t), intent(in) :: code
-      type(parsed_card_t), intent(in) :: card
-      integer, intent(in) :: field
-      character(*), intent(in), optional :: more
-
       type(card_t) :: on
       type(field_t) :: at
 
-      call find_field(card, field, on, at)
-      call add_field_error(errors, code, on, at, more)
-   end subroutine add_parsed_error
+      call find_field(set%cards(k), field, on, at)
+      call add_field_error(set%errors, code, on, at, more)
+   end subroutine add_card_error
 
    !> The text of real number `i` of `card`.
    pure function real_text(card, i) result(text)

@@ -6,14 +6,12 @@ module deck
    use mechanism, only: mechanism_t
    use card_reader, only: parsed_card_t, read_card, read_star
    use card_sets, only: card_set_t, begin_set, append_card, set_apart, read_small_letters, build_bodies
-   use deck_variants, only: variation_t, build_variation, take_values, change_numbers
+   use deck_variants, only: variation_t, build_tolerances, build_variation, take_values, change_numbers
    use cards, only: card_t, card_fields, card_name, small_field, is_passed_over, find_form, form_link, form_time, &
       form_at, form_vary, form_end
    use deck_drives, only: build_drives, check_terms
    use deck_options, only: build_options, build_requests, build_branches, build_centres, check_centres
-   use deck_tolerances, only: build_tolerances
-   use deck_remarks, only: check_unused, check_angles, check_guides, build_echo
-   use drawing_remarks, only: check_drawing
+   use deck_remarks, only: check_unused, check_angles, check_guides, check_drawing, build_echo
    use deck_source, only: source_t, open_source, next_card, close_source
    use system_calls, only: identity_t, identity_of_path
    use failures, only: failure_t, fail, status_rejected
@@ -228,7 +226,11 @@ contains
          else if (set%count == 0) then
             call add_field_error(set%errors, set_empty, card, card_fields(card_name))
          else
-            call check_missing(set, card)
+            ! A card that was not understood may be the missing one.
+            if (set%names_certain .and. set%number_of(form_link) == 0) &
+               call add_field_error(set%errors, link_missing, card, card_fields(card_name))
+            if (set%names_certain .and. sum(set%number_of([form_time, form_at])) == 0) &
+               call add_field_error(set%errors, time_missing, card, card_fields(card_name))
             call close_set(progress)
          end if
       end associate
@@ -330,16 +332,4 @@ contains
       progress%closed = progress%closed + 1
       progress%sets(progress%closed) = progress%set%mechanism
    end subroutine append_set
-
-   !> Adds an error at the END card `closing` of a set without a LINK card or without an instant, unless a card that was
-   !> not understood may be the missing one.
-   subroutine check_missing(set, closing)
-      type(card_set_t), intent(inout) :: set
-      type(card_t), intent(in) :: closing
-
-      if (.not. set%names_certain) return
-      if (set%number_of(form_link) == 0) call add_field_error(set%errors, link_missing, closing, card_fields(card_name))
-      if (sum(set%number_of([form_time, form_at])) == 0) &
-         call add_field_error(set%errors, time_missing, closing, card_fields(card_name))
-   end subroutine check_missing
 end module deck

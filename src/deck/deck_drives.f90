@@ -38,7 +38,11 @@ contains
             n = n + 1
             call build_drive(drive)
             call build_terms(n)
-            if (.not. set%cards(k)%given(1) .and. has_drawing(set)) call take_drawing(drive)
+            ! Without a value at t = 0 it has that of the drawing; the values of a table are absolute. In a deck with
+            ! errors what the drive names may not be there.
+            drive%drawn = .not. set%cards(k)%given(1) .and. has_drawing(set) .and. error_count(set%errors) == 0 &
+               .and. .not. any(drive%terms%kind == term_table)
+            if (drive%drawn) drive%polynomial(1) = drawn_drive(set%mechanism, drive)
             set%mechanism%drives(n) = drive
          else if (is_term(k)) then
             ! A card with a wrong name may have been a DRIVE card.
@@ -53,6 +57,7 @@ contains
       !> The `drive` of the DRIVE card `k`: its kind, what it drives, and its polynomial.
       subroutine build_drive(drive)
          type(drive_t), intent(out) :: drive
+         real(wp) :: minute
          integer :: kind
 
          associate (card => set%cards(k))
@@ -61,7 +66,10 @@ contains
             drive%kind = kind
             drive%polynomial = card%real*unit_of(drive)
             if (kind == drive_angle .and. card%label(label_c) == turns_a_minute) then
-               call take_turns(drive)
+               minute = minute_in(set%mechanism%time_unit)
+               drive%turns = minute > 0.0_wp
+               if (drive%turns) drive%polynomial(2) = card%real(2)*(2.0_wp*pi/minute)
+               if (.not. drive%turns) call add_card_error(set, rpm_unit, k, label_c)
             else if (kind /= drive_relangle .and. card%label(label_c) /= '' .and. card%valid) then
                call add_card_error(set, field_unused, k, label_c)
             end if
@@ -73,17 +81,6 @@ contains
          end associate
          call check_subject(drive)
       end subroutine build_drive
-
-      !> Gives `drive` the rate of the DRIVE card `k`, which is in turns a minute.
-      subroutine take_turns(drive)
-         type(drive_t), intent(inout) :: drive
-         real(wp) :: minute
-
-         minute = minute_in(set%mechanism%time_unit)
-         drive%turns = minute > 0.0_wp
-         if (drive%turns) drive%polynomial(2) = set%cards(k)%real(2)*(2.0_wp*pi/minute)
-         if (.not. drive%turns) call add_card_error(set, rpm_unit, k, label_c)
-      end subroutine take_turns
 
       !> Adds an error if what the DRIVE card `k` drives cannot be driven, as far as it is known.
       subroutine check_subject(drive)
@@ -106,16 +103,6 @@ contains
          end if
       end subroutine check_subject
 
-      !> Gives `drive`, whose card has no value at t = 0, the value of the drawing; the values of a table are absolute.
-      !> Nothing in a deck with errors: what the drive names may not be there.
-      subroutine take_drawing(drive)
-         type(drive_t), intent(inout) :: drive
-
-         if (any(drive%terms%kind == term_table) .or. error_count(set%errors) > 0) return
-         drive%drawn = .true.
-         drive%polynomial(1) = drawn_drive(set%mechanism, drive)
-      end subroutine take_drawing
-
       !> The unit of the coordinate of `drive`: the deck's unit of angles in radians, or 1 for lengths.
       pure real(wp) function unit_of(drive) result(unit)
          type(drive_t), intent(in) :: drive
@@ -133,7 +120,7 @@ contains
       !> The terms of drive number `d`, from the ADD and RISE cards that follow its card `k`.
       subroutine build_terms(d)
          integer, intent(in) :: d
-         integer :: i, n, row, last
+         integer :: i, n, row, last, kind
 
          set%cards(k)%subject = d
          n = 0
@@ -154,12 +141,25 @@ contains
             if (set%cards(i)%row > 1) cycle
             associate (term => drive%terms(set%cards(i)%term))
                if (set%cards(i)%form == form_rise) then
-                  call build_rise(i, unit_of(drive), term)
+                  call match_word(set, i, rise_words, rise_law, kind)
+                  term%kind = term_cycloid + max(kind, 1) - 1
+                  term%r = set%cards(i)%real*[1.0_wp, 1.0_wp, unit_of(drive)]
+                  if (set%cards(i)%valid .and. set%cards(i)%real(2) <= 0.0_wp) &
+                     call add_card_error(set, rise_duration, i, real_2)
+                  if (term%kind >= term_cosine) call add_card_remark(set, remark_jumps, i, label_a)
                else if (is_row(set%cards(i))) then
                   call build_table(pack([(row, row=i, last)], set%cards(i:last)%term == set%cards(i)%term), &
                      unit_of(drive), term)
                else
-                  call build_term(i, unit_of(drive), term)
+                  call match_word(set, i, term_words, add_kind, kind)
+                  if (kind == term_harmonic) &
+                     term%r = set%cards(i)%real*[unit_of(drive), spread(angle_in_radians(set%mechanism), 1, 2)]
+                  if (kind == term_power) then
+                     term%kind = term_power
+                     term%r = set%cards(i)%real*[unit_of(drive), 1.0_wp, 1.0_wp]
+                  end if
+                  if (set%cards(i)%valid .and. .not. any(set%cards(i)%given)) &
+                     call add_card_error(set, add_blank, i, card_name)
                end if
             end associate
          end do
@@ -171,42 +171,6 @@ contains
 
          is_row = card%form == form_add .and. card%label(label_a) == term_words(term_table)
       end function is_row
-
-      !> The `term` that begins with the ADD card `k`. `unit`: that of the driven coordinate.
-      subroutine build_term(k, unit, term)
-         integer, intent(in) :: k
-         real(wp), intent(in) :: unit
-         type(term_t), intent(inout) :: term
-         integer :: kind
-
-         call match_word(set, k, term_words, add_kind, kind)
-         associate (card => set%cards(k))
-            select case (kind)
-            case (term_harmonic)
-               term%r = card%real*[unit, spread(angle_in_radians(set%mechanism), 1, 2)]
-            case (term_power)
-               term%kind = term_power
-               term%r = card%real*[unit, 1.0_wp, 1.0_wp]
-            end select
-            if (card%valid .and. .not. any(card%given)) call add_card_error(set, add_blank, k, card_name)
-         end associate
-      end subroutine build_term
-
-      !> The rise of the RISE card `k`, as `term`. `unit`: that of its lift.
-      subroutine build_rise(k, unit, term)
-         integer, intent(in) :: k
-         real(wp), intent(in) :: unit
-         type(term_t), intent(inout) :: term
-         integer :: law
-
-         call match_word(set, k, rise_words, rise_law, law)
-         associate (card => set%cards(k))
-            term%kind = term_cycloid + max(law, 1) - 1
-            term%r = card%real*[1.0_wp, 1.0_wp, unit]
-            if (card%valid .and. card%real(2) <= 0.0_wp) call add_card_error(set, rise_duration, k, real_2)
-            if (term%kind >= term_cosine) call add_card_remark(set, remark_jumps, k, label_a)
-         end associate
-      end subroutine build_rise
 
       !> The table on the ADD cards `rows`, as `term`. `unit`: that of its values.
       subroutine build_table(rows, unit, term)

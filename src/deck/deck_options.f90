@@ -36,21 +36,46 @@ contains
    !> range are errors.
    subroutine build_options(set)
       type(card_set_t), intent(inout) :: set
-      integer :: k, place
+      real(wp) :: instants(3*set%number_of(form_at))
+      integer :: first(size(forms)), k, i, n, place
 
-      call check_repeats()
+      first = 0
+      n = 0
       do k = 1, set%count
-         associate (card => set%cards(k), m => set%mechanism)
+         associate (card => set%cards(k))
+            if (card%form == form_unknown) cycle
+            if (first(card%form) == 0) first(card%form) = k
+            if (forms(card%form)%once .and. first(card%form) < k) &
+               call add_card_error(set, card_repeated, k, card_name, whole(set%cards(first(card%form))%card%number))
+         end associate
+      end do
+
+      do k = 1, set%count
+         associate (card => set%cards(k), label => set%cards(k)%label, m => set%mechanism)
             select case (card%form)
             case (form_title)
                m%title = card%card%text(title_field%first:title_field%last)
             case (form_units)
-               call read_units()
+               if (label(label_a) /= '') m%length_unit = label(label_a)
+               if (label(label_c) /= '') m%time_unit = label(label_c)
+               m%degrees = label(label_b) == 'DEG'
+               if (.not. card%valid) cycle
+               ! DEG as the unit of length would leave all angles in radians.
+               do i = label_a, label_c, 2
+                  if (any(label(i) == angle_words)) call add_card_error(set, units_place, k, i)
+               end do
+               if (all(label(label_b) /= ['   ', 'RAD', 'DEG'])) call add_card_error(set, units_angle, k, label_b)
             case (form_lang)
                call match_word(set, k, ['EN', 'PL'], lang_kind, place)
                m%polish = place == 2
             case (form_method)
-               call read_method()
+               if (.not. card%valid) cycle
+               call match_word(set, k, method_words, method_kind, place)
+               if (place > 0) m%method = place
+               m%tolerance = card%real(1)
+               if (m%tolerance < 0.0_wp .or. m%tolerance > max_tolerance .or. &
+                   (m%tolerance > 0.0_wp .and. m%tolerance <= min_tolerance)) &
+                  call add_card_error(set, tolerance_range, k, real_1)
             case (form_range)
                m%ranges = .true.
             case (form_assembly)
@@ -60,99 +85,36 @@ contains
             case (form_prove)
                m%proves = .true.
             case (form_time)
-               if (card%valid) call read_time()
+               if (.not. card%valid) cycle
+               if (card%whole < 1 .or. card%whole > max_steps) then
+                  call add_card_error(set, number_range, k, label_a, '1 TO '//whole(max_steps))
+               else if (.not. any(card%given(1:2))) then
+                  call add_card_error(set, field_blank, k, real_2)
+               else if (.not. abs(card%real(2) - card%real(1)) > 0.0_wp) then
+                  call add_card_error(set, time_point, k, real_2)
+               else
+                  m%steps = card%whole
+                  m%t0 = card%real(1)
+                  m%t1 = card%real(2)
+               end if
             end select
          end associate
       end do
-      call read_instants()
+
+      ! The instants of the AT cards, in their order, and the method of PROVE.
+      do k = 1, set%count
+         if (set%cards(k)%form /= form_at) cycle
+         associate (card => set%cards(k), more => count(set%cards(k)%given))
+            if (card%valid .and. more == 0) call add_card_error(set, field_blank, k, real_1)
+            instants(n + 1:n + more) = pack(card%real, card%given)
+            n = n + more
+         end associate
+      end do
+      set%mechanism%at = instants(:n)
       do k = 1, set%count
          if (set%cards(k)%form == form_prove .and. set%mechanism%method /= method_newton) &
             call add_card_error(set, newton_needed, k, card_name)
       end do
-
-   contains
-
-      !> Adds an error for each repetition of a card that is allowed once in a set.
-      subroutine check_repeats()
-         integer :: first(size(forms)), form, k
-
-         first = 0
-         do k = 1, set%count
-            form = set%cards(k)%form
-            if (form == form_unknown) cycle
-            if (.not. forms(form)%once) cycle
-            if (first(form) == 0) first(form) = k
-            if (first(form) < k) &
-               call add_card_error(set, card_repeated, k, card_name, whole(set%cards(first(form))%card%number))
-         end do
-      end subroutine check_repeats
-
-      !> The UNITS card `k`.
-      subroutine read_units()
-         integer :: i
-
-         associate (label => set%cards(k)%label, m => set%mechanism)
-            if (label(label_a) /= '') m%length_unit = label(label_a)
-            if (label(label_c) /= '') m%time_unit = label(label_c)
-            m%degrees = label(label_b) == 'DEG'
-            if (.not. set%cards(k)%valid) return
-            ! DEG as the unit of length would leave all angles in radians.
-            do i = label_a, label_c, 2
-               if (any(label(i) == angle_words)) call add_card_error(set, units_place, k, i)
-            end do
-            if (all(label(label_b) /= ['   ', 'RAD', 'DEG'])) call add_card_error(set, units_angle, k, label_b)
-         end associate
-      end subroutine read_units
-
-      !> The METHOD card `k`.
-      subroutine read_method()
-         integer :: method
-
-         if (.not. set%cards(k)%valid) return
-         call match_word(set, k, method_words, method_kind, method)
-         if (method > 0) set%mechanism%method = method
-         associate (tolerance => set%cards(k)%real(1))
-            set%mechanism%tolerance = tolerance
-            if (tolerance < 0.0_wp .or. tolerance > max_tolerance .or. &
-                (tolerance > 0.0_wp .and. tolerance <= min_tolerance)) call add_card_error(set, tolerance_range, k, &
-                   real_1)
-         end associate
-      end subroutine read_method
-
-      !> The TIME card `k`.
-      subroutine read_time()
-
-         associate (card => set%cards(k), m => set%mechanism)
-            if (card%whole < 1 .or. card%whole > max_steps) then
-               call add_card_error(set, number_range, k, label_a, '1 TO '//whole(max_steps))
-            else if (.not. any(card%given(1:2))) then
-               call add_card_error(set, field_blank, k, real_2)
-            else if (.not. abs(card%real(2) - card%real(1)) > 0.0_wp) then
-               call add_card_error(set, time_point, k, real_2)
-            else
-               m%steps = card%whole
-               m%t0 = card%real(1)
-               m%t1 = card%real(2)
-            end if
-         end associate
-      end subroutine read_time
-
-      !> The instants of the AT cards, in their order.
-      subroutine read_instants()
-         real(wp) :: instants(3*set%number_of(form_at))
-         integer :: k, n
-
-         n = 0
-         do k = 1, set%count
-            if (set%cards(k)%form /= form_at) cycle
-            associate (card => set%cards(k), more => count(set%cards(k)%given))
-               if (card%valid .and. more == 0) call add_card_error(set, field_blank, k, real_1)
-               instants(n + 1:n + more) = pack(card%real, card%given)
-               n = n + more
-            end associate
-         end do
-         set%mechanism%at = instants(:n)
-      end subroutine read_instants
    end subroutine build_options
 
    !> Builds `set`%mechanism%requests from the PRINT cards, in their order, and from the EXTREMES cards. For a subject
@@ -224,7 +186,7 @@ contains
          integer, intent(in) :: k
          type(request_t), intent(in) :: request
          type(request_t) :: one
-         integer :: earlier, place
+         integer :: earlier, place, link
 
          call match_word(set, k, print_words, print_kind, place)
          if (place == 0) return
@@ -248,22 +210,16 @@ contains
             else
                call look_up(set, one%kind, k, label_b, one%subject)
                if (one%subject == 0) return
-               if (one%extremes .and. is_fixed(one)) call add_card_error(set, extremes_ground, k, label_b)
+               link = 0
+               if (one%kind == request_link) link = one%subject
+               if (one%kind == request_point) link = set%mechanism%points(one%subject)%link
+               if (one%extremes .and. link > 0) then
+                  if (set%mechanism%links(link)%ground) call add_card_error(set, extremes_ground, k, label_b)
+               end if
                call add_request(one)
             end if
          end associate
       end subroutine read_subjects
-
-      !> The subject of `request` belongs to the ground.
-      pure logical function is_fixed(request)
-         type(request_t), intent(in) :: request
-         integer :: link
-
-         link = request%subject
-         is_fixed = .false.
-         if (request%kind == request_point) link = set%mechanism%points(request%subject)%link
-         if (request%kind /= request_pair .and. link > 0) is_fixed = set%mechanism%links(link)%ground
-      end function is_fixed
 
       !> Asks what `request` does about all links, points or pairs (its kind), but no ground links.
       subroutine request_all(request)
@@ -313,28 +269,21 @@ contains
          if (set%cards(k)%form /= form_branch .or. .not. set%cards(k)%valid) cycle
          n = n + 1
          card_of(n) = k
-         call read_branch(set, k, requests(n))
+         associate (request => requests(n))
+            if (set%mechanism%method /= method_newton) call add_card_error(set, newton_needed, k, card_name)
+            call look_up(set, request_link, k, label_a, request%link)
+            if (request%link > 0) then
+               if (set%mechanism%links(request%link)%ground) call add_card_error(set, branch_ground, k, label_a)
+            end if
+            if (.not. set%cards(k)%given(1)) call add_card_error(set, field_blank, k, real_1)
+            request%t = set%cards(k)%real(1)
+         end associate
          i = findloc(requests(:n - 1)%link == requests(n)%link &
             .and. .not. abs(requests(:n - 1)%t - requests(n)%t) > 0.0_wp, .true., dim=1)
          if (i > 0) call add_card_error(set, branch_repeated, k, card_name, whole(set%cards(card_of(i))%card%number))
       end do
       set%mechanism%branch_requests = requests(:n)
    end subroutine build_branches
-
-   !> The BRANCH card `k`.
-   subroutine read_branch(set, k, request)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: k
-      type(branch_request_t), intent(out) :: request
-
-      if (set%mechanism%method /= method_newton) call add_card_error(set, newton_needed, k, card_name)
-      call look_up(set, request_link, k, label_a, request%link)
-      if (request%link > 0) then
-         if (set%mechanism%links(request%link)%ground) call add_card_error(set, branch_ground, k, label_a)
-      end if
-      if (.not. set%cards(k)%given(1)) call add_card_error(set, field_blank, k, real_1)
-      request%t = set%cards(k)%real(1)
-   end subroutine read_branch
 
    !> Adds to `set`%mechanism%requests what the POLE cards ask for, then what the CURVE cards do, both in their order.
    !> Unknown names and repeated cards are errors.

@@ -1,25 +1,30 @@
 !> What the listing has of a set without errors: its echo, the cards as they were understood with the values in use; and
 !> remarks on what is harmless or likely not what was meant: names that nothing uses, degrees for radians, a guide that
-!> is off by a right angle.
+!> is off by a right angle. Of a deck with JOINT cards, whose drawing is the mechanism: numbers that are as drawn,
+!> numbers that contradict the drawing, and joints that may be meant as one point.
 module deck_remarks
    use kinds, only: wp, label_length
-   use planar, only: pi, in_degrees
-   use mechanism, only: remark_link_unused, remark_point_unused, remark_radians, remark_guide, mechanism_t, &
-      pair_t, card_number_t, drive_links, used_points, pair_prismatic, drive_words, driven_kinds, drive_angle, &
+   use planar, only: pi, in_degrees, without_turns, direction
+   use mechanism, only: remark_link_unused, remark_point_unused, remark_radians, remark_guide, remark_drawn_value, &
+      remark_drawn_offset, remark_open, remark_off_drawing, remark_near_joints, mechanism_t, pair_t, card_number_t, &
+      drive_links, pair_links, used_points, instant, pair_prismatic, drive_words, driven_kinds, drive_angle, &
       drive_relangle, request_link, request_point, request_pair, request_curve, method_words, method_newton
+   use drives, only: new_law, drive_motion
    use card_numbers, only: unit_t, number_unit, number_value, is_as_drawn
-   use drawn_values, only: drawn_way, drawn_opening
+   use drawn_values, only: drawn_way, drawn_opening, drawn_drive
    use scales, only: solver_length
-   use deck_tolerances, only: number_on_card
-   use card_sets, only: card_set_t, add_card_error, add_card_remark, real_text
-   use cards, only: label_a, label_c, real_1, form_ground, form_link, form_prism, form_drive, form_rise, form_name, &
-      reals_of, form_title, form_units, form_at, form_method, form_print, form_pole, form_curve, form_vary
-   use drawing_remarks, only: drawn_text
+   use grouping, only: sorted_t, sorted, members
+   use numerals, only: rounded
+   use deck_variants, only: number_on_card
+   use card_sets, only: card_set_t, has_drawing, add_card_error, add_card_remark, real_text
+   use cards, only: label_a, label_b, label_c, real_1, form_ground, form_link, form_prism, form_joint, form_drive, &
+      form_rise, form_name, reals_of, form_title, form_units, form_at, form_method, form_print, form_pole, form_curve, &
+      form_vary
    use input_errors, only: link_unused
    use card_reader, only: parsed_card_t
    implicit none
    private
-   public :: check_unused, check_angles, check_guides, build_echo
+   public :: check_unused, check_angles, check_guides, check_drawing, build_echo
 
    !> The echo: its characters in a line, and in a real.
    integer, parameter :: line_length = 119, real_width = 25
@@ -35,6 +40,17 @@ module deck_remarks
    real(wp), parameter :: closed = 0.05_wp, open = 0.3_wp
    !> Angles beyond this are no degrees that someone has read from a drawing.
    real(wp), parameter :: max_degrees = 720.0_wp
+   !> Digits of a number as drawn, as far as its kind has them.
+   integer, parameter :: drawn_text_digits = min(9, precision(1.0_wp))
+
+   !> Coordinates measured in a drawing have some four digits: a closure error below this, in rad or in parts of the
+   !> characteristic length, contradicts nothing.
+   real(wp), parameter :: drawn_digits = 1.0e-4_wp
+   !> Two joints of a link that are nearer than this part of the greatest distance of joints may be meant as one point.
+   real(wp), parameter :: near = 0.03_wp
+   !> So many such remarks are enough. Of more joints than some thousand of one link many are near one another: the
+   !> search then ends early.
+   integer, parameter :: max_near = 50
 
 contains
 
@@ -134,26 +150,32 @@ contains
    !> TITLE, and one for each default that no card replaces.
    subroutine build_echo(set)
       type(card_set_t), intent(inout) :: set
+      character(:), allocatable :: text
       integer :: k, n, i, line(set%count)
 
       line = 0
       associate (m => set%mechanism)
-         allocate (m%echo(set%count + size(set%apart) + 4))
+         allocate (m%echo(set%count + set%apart + 4))
          n = 0
-         i = 1
+         i = set%count + 1
          do k = 1, set%count
             if (set%cards(k)%form /= form_title) call add_line(set%cards(k))
             line(k) = n
-            do i = i, size(set%apart)
-               if (set%apart(i)%below > k) exit
-               call add_line(set%apart(i)%card)
+            do i = i, set%count + set%apart
+               if (set%cards(i)%below > k) exit
+               call add_line(set%cards(i))
             end do
          end do
          call add_drawn()
          call add_default(form_units, [m%length_unit, 'RAD     ', m%time_unit])
          call add_default(form_method, [character(label_length) :: method_words(method_newton), '', ''])
          if (m%variants == 0) call add_default(form_print, [character(label_length) :: 'LINKS', '', '1'])
-         if (any(m%requests%angle_alone)) call note_angles(m%requests%angle_alone .or. m%requests%kind /= request_link)
+         if (any(m%requests%angle_alone)) then
+            ! Of the links printed by default, the angles alone are: of all of them or of some.
+            text = angles
+            if (.not. all(m%requests%angle_alone .or. m%requests%kind /= request_link)) text = angles//of_some
+            m%echo(n)(real_column:real_column + len(text) - 1) = text
+         end if
          if (any(m%requests%listed)) call add_default(form_print, [character(label_length) :: 'POINTS', '', '1'])
          m%echo = m%echo(1:n)
       end associate
@@ -171,6 +193,8 @@ contains
       !> Puts the numbers that are as drawn into the lines of their cards.
       subroutine add_drawn()
          type(card_number_t) :: number
+         type(unit_t) :: unit
+         real(wp) :: x
          integer :: k, i, column
 
          do k = 1, set%count
@@ -178,24 +202,15 @@ contains
             do i = 1, 3
                number = number_on_card(set, k, i)
                if (.not. is_as_drawn(set%mechanism, number)) cycle
+               x = number_value(set%mechanism, number)
+               unit = number_unit(set%mechanism, number)
+               if (unit%name == 'DEG') x = in_degrees(x)
                column = real_column + (i - 1)*real_width
-               set%mechanism%echo(line(k))(column:column + real_width - 1) = value_of(number)//' ' &
+               set%mechanism%echo(line(k))(column:column + real_width - 1) = drawn_text(x)//' ' &
                   //drawn_marks(merge(2, 1, set%mechanism%polish))
             end do
          end do
       end subroutine add_drawn
-
-      !> The value of `number`, as a drive or a pair has it, in the deck's units.
-      function value_of(number) result(text)
-         type(card_number_t), intent(in) :: number
-         character(:), allocatable :: text
-         type(unit_t) :: unit
-         real(wp) :: x
-
-         x = number_value(set%mechanism, number)
-         unit = number_unit(set%mechanism, number)
-         text = drawn_text(merge(in_degrees(x), x, unit%name == 'DEG'))
-      end function value_of
 
       !> Adds the line of a form that has no card in the set: its defaults.
       subroutine add_default(form, labels)
@@ -207,16 +222,6 @@ contains
          call write_head(form, labels, set%mechanism%echo(n))
          set%mechanism%echo(n)(line_length - len(default_mark) + 1:) = default_mark
       end subroutine add_default
-
-      !> Adds to the line of the links printed by default that their angles alone are, of `all` of them or of some.
-      subroutine note_angles(all_of_them)
-         logical, intent(in) :: all_of_them(:)
-
-         associate (line => set%mechanism%echo(n)(real_column:))
-            line(:len(angles)) = angles
-            if (.not. all(all_of_them)) line(len(angles) + 1:len(angles//of_some)) = of_some
-         end associate
-      end subroutine note_angles
    end subroutine build_echo
 
    !> The `line` of one card. A blank real is shown as 0.0, its value; a blank field of AT has none.
@@ -258,4 +263,172 @@ contains
          line(column:column + label_length - 1) = labels(i)
       end do
    end subroutine write_head
+
+   !> Remarks on the drawing of `set`, if it is one. The set has no errors.
+   subroutine check_drawing(set)
+      type(card_set_t), intent(inout) :: set
+      real(wp) :: length
+      integer :: i
+
+      if (.not. has_drawing(set)) return
+      length = solver_length(set%mechanism)
+      do i = 1, size(set%mechanism%pairs)
+         call check_pair(set, i, length)
+      end do
+      do i = 1, set%count
+         if (set%cards(i)%form == form_drive) call check_drive(set, i, length)
+      end do
+      call check_joints(set)
+   end subroutine check_drawing
+
+   !> Remarks on pair number `i`: an h as drawn of points that are not along the guide, and numbers or points that leave
+   !> a closure error in the drawing. `length`: the characteristic one.
+   subroutine check_pair(set, i, length)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: i
+      real(wp), intent(in) :: length
+      real(wp) :: x, turn
+
+      associate (m => set%mechanism, pair => set%mechanism%pairs(i))
+         turn = 0.0_wp
+         if (pair%kind /= pair_prismatic) then
+            x = norm2(drawn_way(m, pair))
+         else
+            x = drawn_opening(m, pair)
+            if (.not. pair%drawn(3)) then
+               associate (phi => m%links(pair_links(m, pair))%position(3))
+                  turn = without_turns(phi(2) - phi(1) - pair%beta)
+               end associate
+            end if
+            if (pair%drawn(2) .and. abs(pair%offset) > drawn_digits*length) &
+               call remark_on_pair(remark_drawn_offset, with_unit(m, pair%offset, .false.))
+         end if
+         if (abs(x) > drawn_digits*length) call remark_on_pair(remark_open, with_unit(m, x, .false.))
+         if (abs(turn) > drawn_digits) call remark_on_pair(remark_open, with_unit(m, turn, .true.))
+      end associate
+
+   contains
+
+      !> Adds the remark `kind` about the pair.
+      subroutine remark_on_pair(kind, value)
+         integer, intent(in) :: kind
+         character(*), intent(in) :: value
+
+         associate (k => set%named(request_pair)%card(i))
+            call add_card_remark(set, kind, k, merge(label_a, label_c, set%cards(k)%form == form_joint), value)
+         end associate
+      end subroutine remark_on_pair
+   end subroutine check_pair
+
+   !> Remarks on the drive of card `k`: its value as drawn, if it is not 0, and by how much the motion begins off the
+   !> drawing at the first instant, whole turns left out. `length`: the characteristic one.
+   subroutine check_drive(set, k, length)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: k
+      real(wp), intent(in) :: length
+      real(wp) :: f(3), off
+      logical :: is_angle
+
+      associate (m => set%mechanism, drive => set%mechanism%drives(set%cards(k)%subject))
+         is_angle = driven_kinds(drive%kind) == request_link
+         if (drive%drawn .and. abs(drive%polynomial(1)) > 0.0_wp) &
+            call add_card_remark(set, remark_drawn_value, k, label_b, with_unit(m, drive%polynomial(1), is_angle))
+         f = drive_motion(new_law(drive), instant(m, 0))
+         off = f(1) - drawn_drive(m, drive)
+         if (is_angle) off = without_turns(off)
+         if (abs(off) > drawn_digits*merge(1.0_wp, length, is_angle)) &
+            call add_card_remark(set, remark_off_drawing, k, label_b, with_unit(m, off, is_angle))
+      end associate
+   end subroutine check_drive
+
+   !> A remark on each JOINT card whose place is very near that of another one of the same link, but not at it. Three
+   !> links at one point, with two cards of the same place, are as they should be.
+   subroutine check_joints(set)
+      type(card_set_t), intent(inout) :: set
+      type(sorted_t) :: joints_of
+      real(wp), allocatable :: place(:, :)
+      logical, allocatable :: is_remarked(:)
+      integer, allocatable :: cards(:), list(:)
+      real(wp) :: limit, distance
+      integer :: i, j, k, link, found
+
+      cards = pack([(k, k=1, set%count)], set%cards(:set%count)%form == form_joint)
+      allocate (place(2, size(cards)), is_remarked(size(cards)))
+      do i = 1, size(cards)
+         place(:, i) = set%cards(cards(i))%real(1:2)
+      end do
+      is_remarked = .false.
+      found = 0
+      limit = near*extent(place)
+      associate (m => set%mechanism)
+         joints_of = sorted([m%points(set%cards(cards)%subject)%link, m%points(set%cards(cards)%subject + 1)%link], &
+            size(m%links))
+      end associate
+      do link = 1, size(set%mechanism%links)
+         list = modulo(members(joints_of, link) - 1, size(cards)) + 1
+         do i = 2, size(list)
+            do j = 1, i - 1
+               distance = norm2(place(:, list(i)) - place(:, list(j)))
+               if (distance >= limit .or. .not. distance > 0.0_wp) cycle
+               k = max(list(i), list(j))
+               if (is_remarked(k)) exit
+               is_remarked(k) = .true.
+               found = found + 1
+               call add_card_remark(set, remark_near_joints, cards(k), label_a, &
+                  with_unit(set%mechanism, distance, .false.) &
+                  //' ('//trim(set%cards(cards(min(list(i), list(j))))%label(label_a))//')')
+               exit
+            end do
+            if (found == max_near) return
+         end do
+      end do
+   end subroutine check_joints
+
+   !> The greatest distance of the places `p` (2, :), some per thousand too small at most: the greatest extent of all of
+   !> them in one of 32 directions.
+   pure real(wp) function extent(p)
+      real(wp), intent(in) :: p(:, :)
+      integer, parameter :: directions = 32
+      real(wp) :: along(size(p, 2))
+      integer :: i
+
+      extent = 0.0_wp
+      do i = 1, directions
+         along = matmul(direction(acos(-1.0_wp)*real(i, wp)/real(directions, wp)), p)
+         extent = max(extent, maxval(along) - minval(along))
+      end do
+   end function extent
+
+   !> The length or angle `x` (rad) of `m`, with its unit.
+   pure function with_unit(m, x, is_angle) result(text)
+      type(mechanism_t), intent(in) :: m
+      real(wp), intent(in) :: x
+      logical, intent(in) :: is_angle
+      character(:), allocatable :: text
+
+      if (.not. is_angle) then
+         text = drawn_text(x)//' '//trim(m%length_unit)
+      else if (m%degrees) then
+         text = drawn_text(in_degrees(x))//' DEG'
+      else
+         text = drawn_text(x)//' RAD'
+      end if
+   end function with_unit
+
+   !> `x` with its digits, zeros at the end left out but for one behind the point; a very small or large one with an
+   !> exponent, and two digits fewer.
+   pure function drawn_text(x) result(text)
+      real(wp), intent(in) :: x
+      character(:), allocatable :: text
+      real(wp), parameter :: small = 1.0e-3_wp, smallest = 1.0e-2_wp, largest = 1.0e8_wp
+
+      if (abs(x) > 0.0_wp .and. (abs(x) < small .or. abs(x) >= largest)) then
+         text = rounded(x, drawn_text_digits - 2, small, largest)
+      else
+         ! At most ten decimals.
+         text = rounded(x, drawn_text_digits - merge(1, 0, abs(x) < smallest), small, largest)
+         text = text(:verify(text, '0', back=.true.))
+         if (text(len(text):) == '.') text = text//'0'
+      end if
+   end function drawn_text
 end module deck_remarks

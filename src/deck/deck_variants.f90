@@ -1,25 +1,28 @@
-!> The VARY cards of a set: each gives a range or a list of values to a number of the card above it. A variant is the
-!> set's cards with other numbers, built like those of any set: so the pairs of a drawing, turns a minute, degrees and
-!> all checks are right by themselves. Numbers that do not run together make a grid; the last runs fastest.
+!> The TOLER and VARY cards of a set: each gives tolerances, or a range or a list of values, to numbers of the card
+!> above it. A variant is the set's cards with other numbers, built like those of any set: so the pairs of a drawing,
+!> turns a minute, degrees and all checks are right by themselves. Numbers that do not run together make a grid; the
+!> last runs fastest.
 module deck_variants
    use, intrinsic :: iso_fortran_env, only: int64
    use kinds, only: wp, label_length
-   use mechanism, only: mechanism_t, card_number_t
-   use card_numbers, only: unit_t, number_name, number_unit, put_number
-   use card_sets, only: card_set_t, begin_mechanism, has_drawing, add_apart_error
+   use mechanism, only: mechanism_t, card_number_t, tolerance_t, term_table, number_link, number_point, number_joint, &
+      number_pair, number_drive, number_knot, number_time
+   use card_numbers, only: unit_t, takes_tolerance, number_name, number_unit, put_number
+   use card_sets, only: card_set_t, begin_mechanism, has_drawing, add_card_error, real_text
    use card_reader, only: parsed_card_t
    use cards, only: card_name, label_a, label_b, label_c, real_1, real_2, real_3, form_unknown, form_ground, &
-      form_link, form_point, form_prism, form_joint, form_drive, form_add, form_rise, form_time, &
-      form_vary, reals_of, card_fields
-   use deck_tolerances, only: number_on_card
+      form_link, form_point, form_prism, form_joint, form_drive, form_add, form_rise, form_time, form_toler, &
+      form_vary, forms, reals_of, card_fields
    use failures, only: capitals
    use input_errors, only: input_errors_t, error_code_t, error_count, vary_alone, vary_number, vary_count, vary_equal, &
-      vary_one, vary_twice, vary_tie, vary_many, field_blank, field_unused, add_blank, whole_long
+      vary_one, vary_twice, vary_tie, vary_many, field_blank, field_unused, add_blank, whole_long, toler_alone, &
+      toler_none, toler_second, toler_blank, number_range
    use numbers, only: read_whole
    use numerals, only: whole
    implicit none
    private
-   public :: variation_t, varied_t, build_variation, take_values, change_numbers, values_of_variant
+   public :: build_tolerances, number_on_card, variation_t, varied_t, build_variation, take_values, change_numbers, &
+      values_of_variant
 
    !> The largest number of variants of a set.
    integer, parameter :: max_variants = 10000000
@@ -32,7 +35,7 @@ module deck_variants
    !> A number that varies.
    type :: varied_t
       integer :: card = 0, place = 0                !< its card in the set, and which of its three reals it is
-      integer :: vary = 0                           !< its first VARY card, in set%apart
+      integer :: vary = 0                           !< its first VARY card, in set%cards
       integer :: axis = 0                           !< the axis of the grid along which it runs
       integer :: count = 0                          !< number of its values
       real(wp) :: first = 0.0_wp, last = 0.0_wp     !< of a range, in the deck's units
@@ -56,6 +59,99 @@ module deck_variants
 
 contains
 
+   !> Builds `set`%mechanism%tolerances from the TOLER cards, in their order; the bodies and drives are there. A card
+   !> that stands below no card with numbers, a number that takes no tolerance, and a tolerance below zero are errors.
+   subroutine build_tolerances(set)
+      type(card_set_t), intent(inout) :: set
+      type(tolerance_t) :: list(3*set%number_of(form_toler))
+      integer :: i, n
+
+      n = 0
+      do i = set%count + 1, set%count + set%apart
+         if (set%cards(i)%form == form_toler .and. set%cards(i)%valid) call read_tolerances(set, i, list, n)
+      end do
+      if (n > 0) set%mechanism%tolerances = list(:n)
+   end subroutine build_tolerances
+
+   !> Appends the tolerances of the TOLER card `k` to the `n` in `list`.
+   subroutine read_tolerances(set, k, list, n)
+      type(card_set_t), intent(inout) :: set
+      integer, intent(in) :: k
+      type(tolerance_t), intent(inout) :: list(:)
+      integer, intent(inout) :: n
+      type(card_number_t) :: number
+      type(unit_t) :: unit
+      integer :: above, taken, i
+
+      above = set%cards(k)%below
+      taken = 0
+      if (above > 0) then
+         if (set%cards(above)%form == form_unknown) return
+         taken = forms(set%cards(above)%form)%reals
+      end if
+      associate (card => set%cards(k), before => set%cards(set%count + 1:k - 1))
+         if (taken == 0) then
+            call add_card_error(set, toler_alone, k, card_name)
+         else if (any(before%below == above .and. before%form == form_toler)) then
+            call add_card_error(set, toler_second, k, card_name)
+         else if (.not. any(card%given)) then
+            call add_card_error(set, toler_blank, k, card_name)
+         else
+            do i = 1, 3
+               if (.not. card%given(i)) cycle
+               number = number_on_card(set, above, i)
+               if (.not. takes_tolerance(set%mechanism, number)) then
+                  call add_card_error(set, toler_none, k, real_1 + i - 1)
+               else if (card%real(i) < 0.0_wp) then
+                  call add_card_error(set, number_range, k, real_1 + i - 1, '0.0 AND UP')
+               else if (card%real(i) > 0.0_wp .and. error_count(set%errors) == 0) then
+                  n = n + 1
+                  unit = number_unit(set%mechanism, number)
+                  list(n)%card_number_t = number
+                  list(n)%size_of = card%real(i)
+                  list(n)%text = real_text(card, i)
+                  list(n)%name = number_name(set%mechanism, number)
+                  list(n)%unit = unit%factor
+                  list(n)%powers = unit%powers
+                  list(n)%unit_name = unit%name
+               end if
+            end do
+         end if
+      end associate
+
+   end subroutine read_tolerances
+
+   !> Number `i` of card `k` of any form; its kind is 0 if no number of the mechanism is there.
+   pure function number_on_card(set, k, i) result(number)
+      type(card_set_t), intent(in) :: set
+      integer, intent(in) :: k, i
+      type(card_number_t) :: number
+
+      associate (card => set%cards(k))
+         number = card_number_t(0, card%subject, card%term, i)
+         if (i > reals_of(card%form, card%label(label_a))) return
+         select case (card%form)
+         case (form_ground, form_link)
+            number%kind = number_link
+         case (form_point)
+            number%kind = number_point
+         case (form_joint)
+            number%kind = number_joint
+         case (form_prism)
+            number%kind = number_pair
+         case (form_time)
+            number%kind = number_time
+         case (form_drive, form_add, form_rise)
+            if (card%subject == 0) return
+            number%kind = number_drive
+            if (card%term == 0) return
+            if (set%mechanism%drives(card%subject)%terms(card%term)%kind /= term_table) return
+            number%place = card%row
+            if (i == 1) number%kind = number_knot
+         end select
+      end associate
+   end function number_on_card
+
    !> Builds `v` from the VARY cards of `set`, whose mechanism is there, and sets set%mechanism%variants; nothing
    !> without such cards. Errors: those of the cards. Where the set has an error, `v` is of no use.
    subroutine build_variation(set, v)
@@ -65,8 +161,8 @@ contains
 
       if (set%number_of(form_vary) == 0) return
       allocate (v%numbers(0), v%counts(0))
-      do i = 1, size(set%apart)
-         if (set%apart(i)%card%form == form_vary .and. set%apart(i)%card%valid) call take_card(set, i, v)
+      do i = set%count + 1, set%count + set%apart
+         if (set%cards(i)%form == form_vary .and. set%cards(i)%valid) call take_card(set, i, v)
       end do
       call count_variants(set, v)
       set%mechanism%variants = max(1, v%total)
@@ -74,57 +170,61 @@ contains
       v%set = set
    end subroutine build_variation
 
-   !> Takes the VARY card set%apart(`i`): a number that varies, or more values of the list above it.
+   !> Takes the VARY card `i`: a number that varies, or more values of the list above it.
    subroutine take_card(set, i, v)
       type(card_set_t), intent(inout) :: set
       integer, intent(in) :: i
       type(variation_t), intent(inout) :: v
       type(varied_t) :: one
-      integer :: n
+      logical :: continues
+      integer :: n, k
 
-      associate (card => set%apart(i)%card, above => one%card)
-         one%card = set%apart(i)%below
+      associate (card => set%cards(i), above => one%card)
+         one%card = card%below
          one%vary = i
          one%place = findloc(number_words, capitals(card%label(label_a)(:3)), dim=1)
          if (above == 0) then
-            call add_apart_error(set, vary_alone, i, card_name)
+            call add_card_error(set, vary_alone, i, card_name)
             return
          end if
          if (set%cards(above)%form == form_unknown) return
          if (all(set%cards(above)%form /= varied_forms)) then
-            call add_apart_error(set, vary_alone, i, card_name)
+            call add_card_error(set, vary_alone, i, card_name)
             return
          end if
          if (one%place == 0 .or. one%place > reals_of(set%cards(above)%form, set%cards(above)%label(label_a))) then
-            call add_apart_error(set, vary_number, i, label_a)
+            call add_card_error(set, vary_number, i, label_a)
             return
          end if
          call read_values(card)
          if (one%count == 0) return
          n = findloc(v%numbers%card == above .and. v%numbers%place == one%place, .true., dim=1)
+         ! More values of the list on the VARY card above it.
+         continues = i > set%count + 1
+         if (continues) continues = card%below == set%cards(i - 1)%below &
+            .and. all(capitals(card%label) == capitals(set%cards(i - 1)%label))
          if (n == 0) then
             call name_number()
-            call find_axis()
+            ! The axis along which it runs: that of the first number with the same name of a tie, or its own.
+            do k = 1, size(v%numbers)
+               if (card%label(label_c) /= '' .and. &
+                   capitals(set%cards(v%numbers(k)%vary)%label(label_c)) == capitals(card%label(label_c))) &
+                  one%axis = v%numbers(k)%axis
+            end do
+            if (one%axis == 0) then
+               v%counts = [v%counts, 0]
+               one%axis = size(v%counts)
+            end if
             v%numbers = [v%numbers, one]
-         else if (continues() .and. allocated(one%list)) then
+         else if (continues .and. allocated(one%list)) then
             v%numbers(n)%list = [v%numbers(n)%list, one%list]
             v%numbers(n)%count = size(v%numbers(n)%list)
          else
-            call add_apart_error(set, vary_twice, i, label_a, whole(set%apart(v%numbers(n)%vary)%card%card%number))
+            call add_card_error(set, vary_twice, i, label_a, whole(set%cards(v%numbers(n)%vary)%card%number))
          end if
       end associate
 
    contains
-
-      !> The VARY card gives more values of the list on the one above it.
-      pure logical function continues()
-
-         continues = .false.
-         if (i == 1) return
-         associate (now => set%apart(i), before => set%apart(i - 1))
-            continues = now%below == before%below .and. all(capitals(now%card%label) == capitals(before%card%label))
-         end associate
-      end function continues
 
       !> The values on the VARY `card`, as those of `one`; its count stays 0 where there is an error.
       subroutine read_values(card)
@@ -135,45 +235,30 @@ contains
          if (capitals(card%label(label_b)) == list_word) then
             one%list = pack(card%real, card%given)
             one%count = size(one%list)
-            if (one%count == 0) call add_apart_error(set, add_blank, i, card_name)
+            if (one%count == 0) call add_card_error(set, add_blank, i, card_name)
             return
          end if
          call read_whole(trim(card%label(label_b)), count_given, error, place)
          ! The name of a tie does not begin with a digit behind a full count: that count is longer than its field.
          if (error%number == 0 .and. verify(card%card%text(card_fields(label_b)%last:card_fields(label_c)%first), &
             '0123456789') == 0) then
-            call add_apart_error(set, whole_long, i, label_b)
+            call add_card_error(set, whole_long, i, label_b)
          else if (error%number > 0 .or. count_given < 1 .or. count_given > max_variants) then
-            call add_apart_error(set, vary_count, i, label_b, whole(max_variants))
+            call add_card_error(set, vary_count, i, label_b, whole(max_variants))
          else if (card%given(3)) then
-            call add_apart_error(set, field_unused, i, real_3)
+            call add_card_error(set, field_unused, i, real_3)
          else if (.not. any(card%given(1:2))) then
-            call add_apart_error(set, field_blank, i, real_1)
+            call add_card_error(set, field_blank, i, real_1)
          else if (count_given == 1 .and. card%given(2)) then
-            call add_apart_error(set, vary_one, i, real_2)
+            call add_card_error(set, vary_one, i, real_2)
          else if (count_given > 1 .and. .not. abs(card%real(2) - card%real(1)) > 0.0_wp) then
-            call add_apart_error(set, vary_equal, i, real_2)
+            call add_card_error(set, vary_equal, i, real_2)
          else
             one%count = count_given
             one%first = card%real(1)
             one%last = card%real(2)
          end if
       end subroutine read_values
-
-      !> The axis along which `one` runs: of its own, or that of the first number with the same name of a tie.
-      subroutine find_axis()
-         integer :: i
-
-         associate (tie => set%apart(one%vary)%card%label(label_c))
-            do i = 1, size(v%numbers)
-               if (tie /= '' .and. capitals(set%apart(v%numbers(i)%vary)%card%label(label_c)) == capitals(tie)) &
-                  one%axis = v%numbers(i)%axis
-            end do
-         end associate
-         if (one%axis > 0) return
-         v%counts = [v%counts, 0]
-         one%axis = size(v%counts)
-      end subroutine find_axis
 
       !> The name and the unit of `one`.
       subroutine name_number()
@@ -223,14 +308,14 @@ contains
          associate (one => v%numbers(i))
             first = findloc(v%numbers%axis, one%axis, dim=1)
             if (first < i) then
-               if (one%count /= v%numbers(first)%count) call add_apart_error(set, vary_tie, one%vary, label_c, &
-                  whole(set%apart(v%numbers(first)%vary)%card%card%number))
+               if (one%count /= v%numbers(first)%count) call add_card_error(set, vary_tie, one%vary, label_c, &
+                  whole(set%cards(v%numbers(first)%vary)%card%number))
                cycle
             end if
             v%counts(one%axis) = one%count
             total = total*one%count
             if (total > max_variants) then
-               call add_apart_error(set, vary_many, one%vary, label_b, whole(max_variants))
+               call add_card_error(set, vary_many, one%vary, label_b, whole(max_variants))
                return
             end if
          end associate
