@@ -13,7 +13,6 @@ module deck
    use deck_options, only: build_options, build_requests, build_branches, build_centres, check_centres
    use deck_remarks, only: check_unused, check_angles, check_guides, check_drawing, build_echo
    use deck_source, only: source_t, open_source, next_card, close_source
-   use system_calls, only: identity_t, identity_of_path
    use failures, only: failure_t, fail, status_rejected
    use input_errors, only: add_field_error, add_deck_error, error_count, error_report, take_remarks, &
       deck_empty, deck_long, end_missing, set_empty, star_first, link_missing, time_missing
@@ -31,7 +30,7 @@ module deck
       integer :: number = 1, count = 1
       integer :: first = 1, last = 0              !< numbers of its sets or variants; set by `read_deck`
       integer :: sets = 0                         !< of the whole deck; the same
-      logical :: varies = .false.                 !< it has VARY cards: all sets are read; the same
+      logical :: varies = .false.                 !< it has VARY cards: all sets are kept; the same
    end type job_share_t
 
    !> What has been read so far.
@@ -40,7 +39,6 @@ module deck
       type(variation_t), allocatable :: variations(:)   !< (1:varying and room) of the sets with VARY cards
       integer :: varying = 0                     !< sets with VARY cards
       integer :: closed = 0                       !< number of those that have their END
-      integer :: passed = 0                       !< sets before the first of them
       type(card_set_t) :: set                     !< the open set, and the errors of the deck
       integer :: errors_before = 0                !< errors of the deck before the open set
    end type reading_t
@@ -49,8 +47,8 @@ contains
 
    !> Reads the deck in the file `path` ('' or '-': standard input). `sets` (number of sets): of size 0 on any failure.
    !> `report`: all error messages, lines joined by new_line('a'); '' if there are none. Errors: status_rejected
-   !> (`report` says why) or status_system. `share`: only its sets are wanted. Of a file only they are read: errors of
-   !> other sets are not found. A pipe is read wholly. `variations`: of the sets that have VARY cards.
+   !> (`report` says why) or status_system. `share`: only its sets are wanted, or of a deck with VARY cards its
+   !> variants, for which all sets are. `variations`: of the sets that have VARY cards.
    subroutine read_deck(path, sets, report, failure, share, variations)
       character(*), intent(in) :: path
       type(mechanism_t), allocatable, intent(out) :: sets(:)
@@ -60,18 +58,14 @@ contains
       type(variation_t), allocatable, intent(out), optional :: variations(:)
       type(reading_t) :: progress
       type(source_t) :: source
-      integer :: errors, first, last, from, to
+      integer :: errors, from, to
+      integer(int64) :: n
 
-      first = 1
-      last = huge(last)
-      if (present(share)) call find_share(path, share, first, last)
       allocate (progress%sets(4), progress%variations(0))
-      progress%passed = first - 1
-      call begin_set(progress%set, first)
+      call begin_set(progress%set, 1)
       call open_source(source, path, failure)
       if (.not. allocated(failure)) then
-         call pass_sets(source, first - 1, failure)
-         if (.not. allocated(failure)) call read_cards(source, last, progress, failure)
+         call read_cards(source, progress, failure)
          call close_source(source)
       end if
       report = error_report(progress%set%errors)
@@ -79,19 +73,20 @@ contains
       if (.not. allocated(failure) .and. errors > 0) &
          call fail(failure, status_rejected, 'THE DECK IS REJECTED, ERRORS: '//whole(errors))
       if (allocated(failure)) progress%closed = 0
-      if (present(share)) share%varies = share%varies .or. progress%varying > 0
       if (present(variations)) variations = progress%variations(:progress%varying)
+
       from = 1
       to = progress%closed
       if (present(share)) then
-         if (share%sets == 0) call divide(share, progress%closed)
-         if (share%varies) then
-            call divide(share, variants_before(progress%sets(:progress%closed), progress%closed + 1))
-            share%sets = progress%closed
-         else
-            ! Of a pipe all sets are there.
-            from = share%first - progress%passed
-            to = min(to, share%last - progress%passed)
+         share%varies = progress%varying > 0
+         share%sets = progress%closed
+         n = share%sets
+         if (share%varies) n = variants_before(progress%sets, share%sets + 1)
+         share%first = int(n*(share%number - 1)/share%count) + 1
+         share%last = int(n*share%number/share%count)
+         if (.not. share%varies) then
+            from = share%first
+            to = share%last
          end if
       end if
       if (to - from + 1 == size(progress%sets)) then
@@ -101,38 +96,6 @@ contains
       end if
    end subroutine read_deck
 
-   !> The sets `first` to `last` of the file `path` are those to be read for `share`: all, if it is no file or there is
-   !> nothing to choose. The last share reads to the end of the deck.
-   subroutine find_share(path, share, first, last)
-      character(*), intent(in) :: path
-      type(job_share_t), intent(inout) :: share
-      integer, intent(inout) :: first, last
-      type(source_t) :: source
-      type(identity_t) :: id
-      type(failure_t), allocatable :: failure
-      integer :: passed
-
-      id = identity_of_path(path)
-      if (share%count == 1 .or. .not. id%regular) return
-      call open_source(source, path, failure)
-      if (.not. allocated(failure)) call pass_sets(source, huge(passed), failure, passed, share%varies)
-      call close_source(source)
-      if (allocated(failure) .or. passed == 0 .or. share%varies) return
-      call divide(share, passed)
-      first = share%first
-      if (share%last < passed) last = share%last
-   end subroutine find_share
-
-   !> The sets of `share` if the deck has so many `sets`.
-   pure subroutine divide(share, sets)
-      type(job_share_t), intent(inout) :: share
-      integer, intent(in) :: sets
-
-      share%sets = sets
-      share%first = share_end(sets, share%number - 1, share%count) + 1
-      share%last = share_end(sets, share%number, share%count)
-   end subroutine divide
-
    !> The number of variants of `sets` before set number `i`; a set without VARY cards counts as one.
    pure integer function variants_before(sets, i) result(n)
       type(mechanism_t), intent(in) :: sets(:)
@@ -141,47 +104,15 @@ contains
       n = sum(max(1, sets(:i - 1)%variants))
    end function variants_before
 
-   !> The last set of share `k` of `n` shares of `count` sets.
-   pure integer function share_end(count, k, n)
-      integer, intent(in) :: count, k, n
-
-      share_end = int(int(count, int64)*k/n)
-   end function share_end
-
-   !> Passes over the next `count` sets, or as many as there are: `passed`. `varies` becomes true at a VARY card.
-   !> Errors: status_system.
-   subroutine pass_sets(source, count, failure, passed, varies)
+   !> Reads all cards of the deck. Errors: status_system.
+   subroutine read_cards(source, progress, failure)
       type(source_t), intent(inout) :: source
-      integer, intent(in) :: count
-      type(failure_t), allocatable, intent(out) :: failure
-      integer, intent(out), optional :: passed
-      logical, intent(inout), optional :: varies
-      type(card_t) :: card
-      integer :: n, form
-      logical :: found
-
-      n = 0
-      do while (n < count)
-         call next_card(source, card, found, failure)
-         if (.not. found .or. card%number > max_cards) exit
-         if (is_passed_over(card)) cycle
-         form = find_form(card%text(:label_length))
-         if (form == form_end) n = n + 1
-         if (present(varies)) varies = varies .or. form == form_vary
-      end do
-      if (present(passed)) passed = n
-   end subroutine pass_sets
-
-   !> Reads all cards of the deck, or those up to the end of set number `last_set`. Errors: status_system.
-   subroutine read_cards(source, last_set, progress, failure)
-      type(source_t), intent(inout) :: source
-      integer, intent(in) :: last_set
       type(reading_t), intent(inout) :: progress
       type(failure_t), allocatable, intent(out) :: failure
       type(card_t) :: card, last
       logical :: found
 
-      do while (progress%passed + progress%closed < last_set)
+      do
          call next_card(source, card, found, failure)
          if (allocated(failure)) return
          if (.not. found) exit
@@ -193,7 +124,7 @@ contains
          last = card
          call take_card(card, progress)
       end do
-      if (last%number == 0 .and. progress%passed == 0 .and. last_set > 0) then
+      if (last%number == 0) then
          call add_deck_error(progress%set%errors, deck_empty)
       else if (progress%set%count > 0) then
          call add_field_error(progress%set%errors, end_missing, last, card_fields(card_name))
@@ -240,12 +171,22 @@ contains
    !> for what nothing uses and for what looks wrong: a card with an error could make others look so.
    subroutine close_set(progress)
       type(reading_t), intent(inout) :: progress
+      type(mechanism_t), allocatable :: larger(:)
+      type(variation_t), allocatable :: more(:)
 
       associate (set => progress%set)
          call read_small_letters(set)
          call set_apart(set)
          call build_mechanism(set)
-         if (set%number_of(form_vary) > 0) call append_variation(progress)
+         if (set%number_of(form_vary) > 0) then
+            if (progress%varying == size(progress%variations)) then
+               allocate (more(max(4, 2*progress%varying)))
+               more(:progress%varying) = progress%variations
+               call move_alloc(more, progress%variations)
+            end if
+            progress%varying = progress%varying + 1
+            call build_variation(set, progress%variations(progress%varying))
+         end if
          if (error_count(set%errors) == progress%errors_before) then
             call check_terms(set)
             call check_unused(set)
@@ -258,24 +199,15 @@ contains
          call take_remarks(set%errors, set%mechanism%remarks)
          progress%errors_before = error_count(set%errors)
       end associate
-      call append_set(progress)
-      call begin_set(progress%set, progress%passed + progress%closed + 1)
-   end subroutine close_set
-
-   !> Appends the variation of the open set; where there is no room, it is doubled. In a deck with an error it is of no
-   !> use.
-   subroutine append_variation(progress)
-      type(reading_t), intent(inout) :: progress
-      type(variation_t), allocatable :: larger(:)
-
-      if (progress%varying == size(progress%variations)) then
-         allocate (larger(max(4, 2*progress%varying)))
-         larger(:progress%varying) = progress%variations
-         call move_alloc(larger, progress%variations)
+      if (progress%closed == size(progress%sets)) then
+         allocate (larger(2*progress%closed))
+         larger(1:progress%closed) = progress%sets
+         call move_alloc(larger, progress%sets)
       end if
-      progress%varying = progress%varying + 1
-      call build_variation(progress%set, progress%variations(progress%varying))
-   end subroutine append_variation
+      progress%closed = progress%closed + 1
+      progress%sets(progress%closed) = progress%set%mechanism
+      call begin_set(progress%set, progress%closed + 1)
+   end subroutine close_set
 
    !> Builds the mechanism of `set` from its cards.
    subroutine build_mechanism(set)
@@ -318,18 +250,4 @@ contains
       m%variants = v%total
       m%variant = merge(n, 0, message == '')
    end subroutine build_variant
-
-   !> Appends the mechanism of the open set to the closed ones.
-   subroutine append_set(progress)
-      type(reading_t), intent(inout) :: progress
-      type(mechanism_t), allocatable :: larger(:)
-
-      if (progress%closed == size(progress%sets)) then
-         allocate (larger(2*progress%closed))
-         larger(1:progress%closed) = progress%sets
-         call move_alloc(larger, progress%sets)
-      end if
-      progress%closed = progress%closed + 1
-      progress%sets(progress%closed) = progress%set%mechanism
-   end subroutine append_set
 end module deck

@@ -274,10 +274,10 @@ for jobs in 0 x 1025 -1 1.5 ''; do
 done
 rejected '--study with --jobs' 1 ' *** OPTION --study CAN ONLY BE COMBINED WITH -o AND --quiet' "$w/m.deck" --study --jobs 2
 
-# A share of a file reads no other sets; a pipe is read wholly.
+# A share reads the whole deck, and a wrong set rejects each of them.
 { cat "$w/m.deck"; echo 'WRONG'; echo END; } > "$w/wrong.deck"
 "$kinmat" "$w/wrong.deck" --sets 1/9 > "$w/out" 2>&1
-equal 'a share beside a wrong set' 0 $?
+equal 'a share beside a wrong set' 1 $?
 "$kinmat" --sets 1/9 < "$w/wrong.deck" > "$w/out" 2> "$w/err"
 equal 'a share of a pipe with a wrong set' 1 $?
 "$kinmat" "$w/wrong.deck" --sets 9/9 > "$w/out" 2> "$w/err"
