@@ -143,8 +143,8 @@ contains
       type(card_t), intent(in) :: card
       type(parsed_card_t), intent(inout) :: above
       type(input_errors_t), intent(inout) :: errors
-      integer :: before
-      logical :: clean, has_small
+      integer :: before, i
+      logical :: clean, has_small, cut(3)
 
       before = error_count(errors)
       call check_characters(card, clean, has_small, errors)
@@ -158,8 +158,19 @@ contains
          continue
       else if (reals_of(above%form, above%label(label_a)) == 0) then
          call add_field_error(errors, star_no_reals, card, card_fields(card_name))
+      else if (card%text(wide_fields(1)%first:) == '') then
+         call add_field_error(errors, star_blank, card, card_fields(card_name))
       else
-         call read_wide_fields(card, above, errors)
+         call find_cuts(card, wide_fields, '---', cut, errors)
+         do i = 1, 3
+            if (cut(i) .or. field_text(card, wide_fields(i)) == '') cycle
+            if (above%given(i)) then
+               call add_field_error(errors, star_twice, card, wide_fields(i))
+            else
+               above%on_star(i) = .true.
+               call read_real_field(above, card, wide_fields(i), i, errors)
+            end if
+         end do
       end if
       if (allocated(above%star)) return
       above%star = card
@@ -357,30 +368,6 @@ contains
          end if
       end associate
    end subroutine refuse_field
-
-   !> Reads the reals of the `*` card `card` to the card `above` it.
-   subroutine read_wide_fields(card, above, errors)
-      type(card_t), intent(in) :: card
-      type(parsed_card_t), intent(inout) :: above
-      type(input_errors_t), intent(inout) :: errors
-      logical :: cut(3)
-      integer :: i
-
-      if (card%text(wide_fields(1)%first:) == '') then
-         call add_field_error(errors, star_blank, card, card_fields(card_name))
-         return
-      end if
-      call find_cuts(card, wide_fields, '---', cut, errors)
-      do i = 1, 3
-         if (cut(i) .or. field_text(card, wide_fields(i)) == '') cycle
-         if (above%given(i)) then
-            call add_field_error(errors, star_twice, card, wide_fields(i))
-         else
-            above%on_star(i) = .true.
-            call read_real_field(above, card, wide_fields(i), i, errors)
-         end if
-      end do
-   end subroutine read_wide_fields
 
    !> Reads real number `i` of `parsed` from `field` of `card`, which is its own card or the `*` card below it.
    subroutine read_real_field(parsed, card, field, i, errors)

@@ -181,28 +181,20 @@ contains
 
    contains
 
-      !> Point number `n`, of a POINT card. The links are there.
+      !> Point number `n`, of a POINT card, or one of the two of a JOINT card, which gives their place in the drawing:
+      !> its place in the axes of its link follows from where the link's card puts these. Both have the name of the
+      !> card; it stands for the point of the first link that is not ground. The links are there.
       subroutine build_point()
-         integer :: k, link
-
-         k = set%named(request_point)%card(n)
-         if (set%cards(k)%form == form_joint) then
-            call build_joint_point()
-            return
-         end if
-         call define_name(request_point, label_a)
-         call look_up(set, request_link, k, label_b, link)
-         set%mechanism%points(n) = point_t(name=set%cards(k)%label(label_a), link=link, offset=set%cards(k)%real(1:2))
-      end subroutine build_point
-
-      !> Point number `n`, one of the two of a JOINT card, which gives their place in the drawing: its place in the axes
-      !> of its link follows from where the link's card puts these. Both have the name of the card; it stands for the
-      !> point of the first link that is not ground.
-      subroutine build_joint_point()
          integer :: k, link
          logical :: is_first, is_ground
 
          k = set%named(request_point)%card(n)
+         if (set%cards(k)%form /= form_joint) then
+            call define_name(request_point, label_a)
+            call look_up(set, request_link, k, label_b, link)
+            set%mechanism%points(n) = point_t(set%cards(k)%label(label_a), link, set%cards(k)%real(1:2))
+            return
+         end if
          is_first = set%cards(k)%subject == 0
          if (is_first) set%cards(k)%subject = n
          call look_up(set, request_link, k, merge(label_b, label_c, is_first), link)
@@ -215,7 +207,7 @@ contains
             if (link > 0) is_ground = m%links(link)%ground
          end associate
          if (is_first .neqv. is_ground) call define_name(request_point, label_a)
-      end subroutine build_joint_point
+      end subroutine build_point
 
       !> Pair number `n`, of a REVOLUTE, PRISM, CYLINDER or JOINT card. The points are there. It must join two links,
       !> not both of them ground.

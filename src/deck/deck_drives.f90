@@ -57,8 +57,10 @@ contains
       !> The `drive` of the DRIVE card `k`: its kind, what it drives, and its polynomial.
       subroutine build_drive(drive)
          type(drive_t), intent(out) :: drive
+         type(error_code_t), parameter :: ground_errors(drive_angle:drive_relangle) = &
+            [drive_ground, drive_ground_point, drive_ground_point, drive_grounds]
          real(wp) :: minute
-         integer :: kind
+         integer :: kind, links(3), label
 
          associate (card => set%cards(k))
             call match_word(set, k, drive_words, drive_kind, kind)
@@ -79,29 +81,21 @@ contains
                if (card%label(label_c) == '' .and. card%valid) call add_card_error(set, field_blank, k, label_c)
             end if
          end associate
-         call check_subject(drive)
-      end subroutine build_drive
 
-      !> Adds an error if what the DRIVE card `k` drives cannot be driven, as far as it is known.
-      subroutine check_subject(drive)
-         type(drive_t), intent(in) :: drive
-         type(error_code_t), parameter :: ground_errors(drive_angle:drive_relangle) = &
-            [drive_ground, drive_ground_point, drive_ground_point, drive_grounds]
-         integer :: links(3), label
-
+         ! What it drives must be something that can be driven, as far as it is known.
          if (drive%subject == 0) return
-         label = merge(label_c, label_b, drive%kind == drive_relangle)
-         if (drive%kind == drive_slide) then
+         label = merge(label_c, label_b, kind == drive_relangle)
+         if (kind == drive_slide) then
             if (set%mechanism%pairs(drive%subject)%kind == pair_revolute) &
                call add_card_error(set, drive_revolute, k, label)
          else if (drive%second == drive%subject) then
             call add_card_error(set, drive_one_link, k, label)
          else
             links = drive_links(set%mechanism, drive)
-            if (any(links == 0) .or. (drive%kind == drive_relangle .and. drive%second == 0)) return
-            if (all(set%mechanism%links(links)%ground)) call add_card_error(set, ground_errors(drive%kind), k, label)
+            if (any(links == 0) .or. (kind == drive_relangle .and. drive%second == 0)) return
+            if (all(set%mechanism%links(links)%ground)) call add_card_error(set, ground_errors(kind), k, label)
          end if
-      end subroutine check_subject
+      end subroutine build_drive
 
       !> The unit of the coordinate of `drive`: the deck's unit of angles in radians, or 1 for lengths.
       pure real(wp) function unit_of(drive) result(unit)

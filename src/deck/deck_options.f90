@@ -126,14 +126,25 @@ contains
       type(name_table_t) :: seen(0:3)               ! for each word, the names on earlier cards of the same form
       type(request_t), allocatable :: requests(:)
       integer, allocatable :: number(:, :)          ! (number, kind) its request, 0: none yet
-      integer :: k, n, every
+      integer :: k, n, i, every
 
       associate (sizes => [size(set%mechanism%links), size(set%mechanism%points), size(set%mechanism%pairs)])
          allocate (requests(sum(sizes)))
          allocate (number(maxval(sizes), request_link:request_pair), source=0)
       end associate
       n = 0
-      if (set%number_of(form_print) == 0) call request_defaults()
+      if (set%number_of(form_print) == 0) then
+         call request_all(request_t(request_link, every=merge(0, 1, set%number_of(form_vary) > 0)))
+         if (set%number_of(form_joint) > 0 .and. set%number_of(form_vary) == 0) then
+            ! The places of a link whose axes are those of a drawing are those of the drawing's origin, carried along:
+            ! the listing has the points instead.
+            do i = 1, n
+               requests(i)%angle_alone = &
+                  .not. any(set%cards(set%named(request_link)%card(requests(i)%subject))%given)
+            end do
+            call request_all(request_t(request_point, every=0, listed=.true.))
+         end if
+      end if
       do k = 1, set%count
          if (set%cards(k)%form /= form_print .or. .not. set%cards(k)%valid) cycle
          every = merge(set%cards(k)%whole, 1, set%cards(k)%whole_given)
@@ -142,34 +153,7 @@ contains
       end do
       seen = name_table_t()
       do k = 1, set%count
-         if (set%cards(k)%form == form_extremes .and. set%cards(k)%valid) call read_extremes(k)
-      end do
-      set%mechanism%requests = requests(:n)
-
-   contains
-
-      !> Asks what is printed without a PRINT card. The places of a link whose axes are those of a drawing are those of
-      !> the drawing's origin, carried along: the listing has the points instead.
-      subroutine request_defaults()
-         logical :: varies, drawn
-         integer :: i
-
-         varies = set%number_of(form_vary) > 0
-         drawn = set%number_of(form_joint) > 0 .and. .not. varies
-         call request_all(request_t(request_link, every=merge(0, 1, varies)))
-         if (.not. drawn) return
-         do i = 1, n
-            requests(i)%angle_alone = &
-               .not. any(set%cards(set%named(request_link)%card(requests(i)%subject))%given)
-         end do
-         call request_all(request_t(request_point, every=0, listed=.true.))
-      end subroutine request_defaults
-
-      !> The EXTREMES card `k`.
-      subroutine read_extremes(k)
-         integer, intent(in) :: k
-         integer :: i
-
+         if (set%cards(k)%form /= form_extremes .or. .not. set%cards(k)%valid) cycle
          if (set%mechanism%steps < 0 .and. set%number_of(form_time) == 0) &
             call add_card_error(set, extremes_time, k, card_name)
          associate (dwell => set%cards(k)%real(1:2))
@@ -179,7 +163,10 @@ contains
             call read_subjects(k, request_t(every=0, extremes=.true., &
                dwell=dwell*[1.0_wp, angle_in_radians(set%mechanism)]))
          end associate
-      end subroutine read_extremes
+      end do
+      set%mechanism%requests = requests(:n)
+
+   contains
 
       !> Asks what `request` does about the subjects of card `k`.
       subroutine read_subjects(k, request)

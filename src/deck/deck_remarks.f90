@@ -267,79 +267,53 @@ contains
    !> Remarks on the drawing of `set`, if it is one. The set has no errors.
    subroutine check_drawing(set)
       type(card_set_t), intent(inout) :: set
-      real(wp) :: length
-      integer :: i
+      real(wp) :: length, x, turn, f(3)
+      logical :: is_angle
+      integer :: i, k, label
 
       if (.not. has_drawing(set)) return
       length = solver_length(set%mechanism)
+      ! An h as drawn of points that are not along the guide, and numbers or points that leave a closure error.
       do i = 1, size(set%mechanism%pairs)
-         call check_pair(set, i, length)
+         k = set%named(request_pair)%card(i)
+         label = merge(label_a, label_c, set%cards(k)%form == form_joint)
+         associate (m => set%mechanism, pair => set%mechanism%pairs(i))
+            turn = 0.0_wp
+            if (pair%kind /= pair_prismatic) then
+               x = norm2(drawn_way(m, pair))
+            else
+               x = drawn_opening(m, pair)
+               if (.not. pair%drawn(3)) then
+                  associate (phi => m%links(pair_links(m, pair))%position(3))
+                     turn = without_turns(phi(2) - phi(1) - pair%beta)
+                  end associate
+               end if
+               if (pair%drawn(2) .and. abs(pair%offset) > drawn_digits*length) &
+                  call add_card_remark(set, remark_drawn_offset, k, label, with_unit(m, pair%offset, .false.))
+            end if
+            if (abs(x) > drawn_digits*length) &
+               call add_card_remark(set, remark_open, k, label, with_unit(m, x, .false.))
+            if (abs(turn) > drawn_digits) call add_card_remark(set, remark_open, k, label, with_unit(m, turn, .true.))
+         end associate
       end do
-      do i = 1, set%count
-         if (set%cards(i)%form == form_drive) call check_drive(set, i, length)
+
+      ! The value of a drive as drawn, if it is not 0, and by how much the motion begins off the drawing at the first
+      ! instant, whole turns left out.
+      do k = 1, set%count
+         if (set%cards(k)%form /= form_drive) cycle
+         associate (m => set%mechanism, drive => set%mechanism%drives(set%cards(k)%subject))
+            is_angle = driven_kinds(drive%kind) == request_link
+            if (drive%drawn .and. abs(drive%polynomial(1)) > 0.0_wp) &
+               call add_card_remark(set, remark_drawn_value, k, label_b, with_unit(m, drive%polynomial(1), is_angle))
+            f = drive_motion(new_law(drive), instant(m, 0))
+            x = f(1) - drawn_drive(m, drive)
+            if (is_angle) x = without_turns(x)
+            if (abs(x) > drawn_digits*merge(1.0_wp, length, is_angle)) &
+               call add_card_remark(set, remark_off_drawing, k, label_b, with_unit(m, x, is_angle))
+         end associate
       end do
       call check_joints(set)
    end subroutine check_drawing
-
-   !> Remarks on pair number `i`: an h as drawn of points that are not along the guide, and numbers or points that leave
-   !> a closure error in the drawing. `length`: the characteristic one.
-   subroutine check_pair(set, i, length)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: i
-      real(wp), intent(in) :: length
-      real(wp) :: x, turn
-
-      associate (m => set%mechanism, pair => set%mechanism%pairs(i))
-         turn = 0.0_wp
-         if (pair%kind /= pair_prismatic) then
-            x = norm2(drawn_way(m, pair))
-         else
-            x = drawn_opening(m, pair)
-            if (.not. pair%drawn(3)) then
-               associate (phi => m%links(pair_links(m, pair))%position(3))
-                  turn = without_turns(phi(2) - phi(1) - pair%beta)
-               end associate
-            end if
-            if (pair%drawn(2) .and. abs(pair%offset) > drawn_digits*length) &
-               call remark_on_pair(remark_drawn_offset, with_unit(m, pair%offset, .false.))
-         end if
-         if (abs(x) > drawn_digits*length) call remark_on_pair(remark_open, with_unit(m, x, .false.))
-         if (abs(turn) > drawn_digits) call remark_on_pair(remark_open, with_unit(m, turn, .true.))
-      end associate
-
-   contains
-
-      !> Adds the remark `kind` about the pair.
-      subroutine remark_on_pair(kind, value)
-         integer, intent(in) :: kind
-         character(*), intent(in) :: value
-
-         associate (k => set%named(request_pair)%card(i))
-            call add_card_remark(set, kind, k, merge(label_a, label_c, set%cards(k)%form == form_joint), value)
-         end associate
-      end subroutine remark_on_pair
-   end subroutine check_pair
-
-   !> Remarks on the drive of card `k`: its value as drawn, if it is not 0, and by how much the motion begins off the
-   !> drawing at the first instant, whole turns left out. `length`: the characteristic one.
-   subroutine check_drive(set, k, length)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: k
-      real(wp), intent(in) :: length
-      real(wp) :: f(3), off
-      logical :: is_angle
-
-      associate (m => set%mechanism, drive => set%mechanism%drives(set%cards(k)%subject))
-         is_angle = driven_kinds(drive%kind) == request_link
-         if (drive%drawn .and. abs(drive%polynomial(1)) > 0.0_wp) &
-            call add_card_remark(set, remark_drawn_value, k, label_b, with_unit(m, drive%polynomial(1), is_angle))
-         f = drive_motion(new_law(drive), instant(m, 0))
-         off = f(1) - drawn_drive(m, drive)
-         if (is_angle) off = without_turns(off)
-         if (abs(off) > drawn_digits*merge(1.0_wp, length, is_angle)) &
-            call add_card_remark(set, remark_off_drawing, k, label_b, with_unit(m, off, is_angle))
-      end associate
-   end subroutine check_drive
 
    !> A remark on each JOINT card whose place is very near that of another one of the same link, but not at it. Three
    !> links at one point, with two cards of the same place, are as they should be.

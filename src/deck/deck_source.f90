@@ -67,7 +67,7 @@ contains
       type(card_t), intent(out) :: card
       logical, intent(out) :: found
       type(failure_t), allocatable, intent(out) :: failure
-      integer :: length
+      integer :: length, i
 
       found = .false.
       if (source%after_return) then
@@ -94,25 +94,17 @@ contains
       if (.not. found) return
       source%lines = source%lines + 1
       card%number = source%lines
-      call take_line(card, source%buffer(source%at:source%at + length - 1))
+      associate (line => source%buffer(source%at:source%at + length - 1))
+         card%text = line(:min(length, card_columns))
+         i = 0
+         if (length > card_columns) i = verify(line(card_columns + 1:), ' ')
+         if (i > 0) card%overrun = card_columns + i
+         if (i > 0) card%beyond = line(card%overrun:)
+      end associate
       source%at = source%at + length + 1
       if (source%at - 1 <= source%filled) &
          source%after_return = source%buffer(source%at - 1:source%at - 1) == carriage_return
    end subroutine next_card
-
-   !> Gives `card` the columns of `line` and, of what is beyond them, the beginning.
-   pure subroutine take_line(card, line)
-      type(card_t), intent(inout) :: card
-      character(*), intent(in) :: line
-      integer :: i
-
-      card%text = line(:min(len(line), card_columns))
-      if (len(line) <= card_columns) return
-      i = verify(line(card_columns + 1:), ' ')
-      if (i == 0) return
-      card%overrun = card_columns + i
-      card%beyond = line(card%overrun:)
-   end subroutine take_line
 
    !> The number of characters of `text` before the end of a line; all of them, if it has none.
    pure integer function line_length(text) result(length)

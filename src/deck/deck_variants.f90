@@ -64,62 +64,50 @@ contains
    subroutine build_tolerances(set)
       type(card_set_t), intent(inout) :: set
       type(tolerance_t) :: list(3*set%number_of(form_toler))
-      integer :: i, n
+      type(card_number_t) :: number
+      type(unit_t) :: unit
+      integer :: k, i, n, taken
 
       n = 0
-      do i = set%count + 1, set%count + set%apart
-         if (set%cards(i)%form == form_toler .and. set%cards(i)%valid) call read_tolerances(set, i, list, n)
+      do k = set%count + 1, set%count + set%apart
+         if (set%cards(k)%form /= form_toler .or. .not. set%cards(k)%valid) cycle
+         associate (card => set%cards(k), above => set%cards(k)%below, before => set%cards(set%count + 1:k - 1))
+            taken = 0
+            if (above > 0) then
+               if (set%cards(above)%form == form_unknown) cycle
+               taken = forms(set%cards(above)%form)%reals
+            end if
+            if (taken == 0) then
+               call add_card_error(set, toler_alone, k, card_name)
+            else if (any(before%below == above .and. before%form == form_toler)) then
+               call add_card_error(set, toler_second, k, card_name)
+            else if (.not. any(card%given)) then
+               call add_card_error(set, toler_blank, k, card_name)
+            else
+               do i = 1, 3
+                  if (.not. card%given(i)) cycle
+                  number = number_on_card(set, above, i)
+                  if (.not. takes_tolerance(set%mechanism, number)) then
+                     call add_card_error(set, toler_none, k, real_1 + i - 1)
+                  else if (card%real(i) < 0.0_wp) then
+                     call add_card_error(set, number_range, k, real_1 + i - 1, '0.0 AND UP')
+                  else if (card%real(i) > 0.0_wp .and. error_count(set%errors) == 0) then
+                     n = n + 1
+                     unit = number_unit(set%mechanism, number)
+                     list(n)%card_number_t = number
+                     list(n)%size_of = card%real(i)
+                     list(n)%text = real_text(card, i)
+                     list(n)%name = number_name(set%mechanism, number)
+                     list(n)%unit = unit%factor
+                     list(n)%powers = unit%powers
+                     list(n)%unit_name = unit%name
+                  end if
+               end do
+            end if
+         end associate
       end do
       if (n > 0) set%mechanism%tolerances = list(:n)
    end subroutine build_tolerances
-
-   !> Appends the tolerances of the TOLER card `k` to the `n` in `list`.
-   subroutine read_tolerances(set, k, list, n)
-      type(card_set_t), intent(inout) :: set
-      integer, intent(in) :: k
-      type(tolerance_t), intent(inout) :: list(:)
-      integer, intent(inout) :: n
-      type(card_number_t) :: number
-      type(unit_t) :: unit
-      integer :: above, taken, i
-
-      above = set%cards(k)%below
-      taken = 0
-      if (above > 0) then
-         if (set%cards(above)%form == form_unknown) return
-         taken = forms(set%cards(above)%form)%reals
-      end if
-      associate (card => set%cards(k), before => set%cards(set%count + 1:k - 1))
-         if (taken == 0) then
-            call add_card_error(set, toler_alone, k, card_name)
-         else if (any(before%below == above .and. before%form == form_toler)) then
-            call add_card_error(set, toler_second, k, card_name)
-         else if (.not. any(card%given)) then
-            call add_card_error(set, toler_blank, k, card_name)
-         else
-            do i = 1, 3
-               if (.not. card%given(i)) cycle
-               number = number_on_card(set, above, i)
-               if (.not. takes_tolerance(set%mechanism, number)) then
-                  call add_card_error(set, toler_none, k, real_1 + i - 1)
-               else if (card%real(i) < 0.0_wp) then
-                  call add_card_error(set, number_range, k, real_1 + i - 1, '0.0 AND UP')
-               else if (card%real(i) > 0.0_wp .and. error_count(set%errors) == 0) then
-                  n = n + 1
-                  unit = number_unit(set%mechanism, number)
-                  list(n)%card_number_t = number
-                  list(n)%size_of = card%real(i)
-                  list(n)%text = real_text(card, i)
-                  list(n)%name = number_name(set%mechanism, number)
-                  list(n)%unit = unit%factor
-                  list(n)%powers = unit%powers
-                  list(n)%unit_name = unit%name
-               end if
-            end do
-         end if
-      end associate
-
-   end subroutine read_tolerances
 
    !> Number `i` of card `k` of any form; its kind is 0 if no number of the mechanism is there.
    pure function number_on_card(set, k, i) result(number)
@@ -176,8 +164,10 @@ contains
       integer, intent(in) :: i
       type(variation_t), intent(inout) :: v
       type(varied_t) :: one
+      type(unit_t) :: unit
+      character(:), allocatable :: name
       logical :: continues
-      integer :: n, k
+      integer :: n, k, border
 
       associate (card => set%cards(i), above => one%card)
          one%card = card%below
@@ -204,7 +194,17 @@ contains
          if (continues) continues = card%below == set%cards(i - 1)%below &
             .and. all(capitals(card%label) == capitals(set%cards(i - 1)%label))
          if (n == 0) then
-            call name_number()
+            if (error_count(set%errors) == 0) then
+               one%number = number_on_card(set, one%card, one%place)
+               name = number_name(set%mechanism, one%number)
+               border = index(name, ' ', back=.true.)
+               one%owner = name(:border - 1)
+               one%word = name(border + 1:)
+               unit = number_unit(set%mechanism, one%number)
+               one%unit = unit%name
+               one%factor = unit%factor
+               one%stands_alone = stands_alone(set, set%cards(one%card)%form)
+            end if
             ! The axis along which it runs: that of the first number with the same name of a tie, or its own.
             do k = 1, size(v%numbers)
                if (card%label(label_c) /= '' .and. &
@@ -259,24 +259,6 @@ contains
             one%last = card%real(2)
          end if
       end subroutine read_values
-
-      !> The name and the unit of `one`.
-      subroutine name_number()
-         type(unit_t) :: unit
-         character(:), allocatable :: name
-         integer :: border
-
-         if (error_count(set%errors) > 0) return
-         one%number = number_on_card(set, one%card, one%place)
-         name = number_name(set%mechanism, one%number)
-         border = index(name, ' ', back=.true.)
-         one%owner = name(:border - 1)
-         one%word = name(border + 1:)
-         unit = number_unit(set%mechanism, one%number)
-         one%unit = unit%name
-         one%factor = unit%factor
-         one%stands_alone = stands_alone(set, set%cards(one%card)%form)
-      end subroutine name_number
    end subroutine take_card
 
    !> Whether nothing but the number itself depends on a number of a card of `form`. In a drawing, points of JOINT cards

@@ -115,12 +115,20 @@ contains
       real(wp), intent(in) :: t1, t2
       logical, intent(in), optional :: one_instant
       type(bounds_t) :: b, of_term
-      real(wp) :: from, to
+      real(wp) :: from, to, t
       integer :: i, k, first, last
 
       from = min(t1, t2)
       to = max(t1, t2)
-      b = polynomial_bounds(law%drive%polynomial, from, to)
+      ! Of the polynomial: from its values at both ends, and where its rate is zero.
+      associate (c => law%drive%polynomial)
+         call widen_by_polynomial(b, c, from)
+         call widen_by_polynomial(b, c, to)
+         if (abs(c(3)) > 0.0_wp) then
+            t = -c(2)/c(3)
+            if (t > from .and. t < to) call widen_by_polynomial(b, c, t)
+         end if
+      end associate
       do i = 1, size(law%splines)
          associate (term => law%drive%terms(i))
             select case (term%kind)
@@ -247,19 +255,6 @@ contains
          end associate
       end do
    end function joints_of
-
-   !> The bounds of c1 + c2 t + c3 t^2/2: from its values at both ends, and where its rate is zero.
-   pure function polynomial_bounds(c, from, to) result(b)
-      real(wp), intent(in) :: c(3), from, to
-      type(bounds_t) :: b
-      real(wp) :: t
-
-      call widen_by_polynomial(b, c, from)
-      call widen_by_polynomial(b, c, to)
-      if (abs(c(3)) <= 0.0_wp) return
-      t = -c(2)/c(3)
-      if (t > from .and. t < to) call widen_by_polynomial(b, c, t)
-   end function polynomial_bounds
 
    !> Widens `b` by the polynomial `c` at the time `t`.
    pure subroutine widen_by_polynomial(b, c, t)

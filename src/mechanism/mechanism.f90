@@ -15,7 +15,7 @@ module mechanism
    public :: method_newton, method_matrix, method_dense, method_words, own_predictor
    public :: instant_count, instant, find_instants, pair_links, drive_links, request_links, wanted_links, &
       is_listed_alone, used_points
-   public :: with_all_links, plane_origin, place_links
+   public :: with_all_links, plane_origin
    public :: remark_t, remark_small_letters, remark_title_long, remark_title_letters, remark_touching, &
       remark_link_unused, remark_point_unused, remark_radians, remark_guide, remark_jumps, &
       remark_drawn_value, remark_drawn_offset, remark_open, remark_off_drawing, remark_near_joints, remark_more
@@ -257,19 +257,6 @@ contains
          return
       end do
    end function plane_origin
-
-   !> Puts the moving links at `position` (3, links), where places are counted from `plane_origin`.
-   pure subroutine place_links(m, position)
-      type(mechanism_t), intent(inout) :: m
-      real(wp), intent(in) :: position(:, :)
-      real(wp) :: origin(3)
-      integer :: i
-
-      origin = [plane_origin(m), 0.0_wp]
-      do i = 1, size(m%links)
-         if (.not. m%links(i)%ground) m%links(i)%position = position(:, i) + origin
-      end do
-   end subroutine place_links
 
    !> The links i and j of `pair`.
    pure function pair_links(m, pair) result(links)

@@ -95,7 +95,15 @@ contains
 
       row = new_row
       row%kind = request%kind
-      row%name = request_name(m, request)
+      select case (request%kind)
+      case (request_pole)
+         row%name = trim(m%links(request%second)%name)//' '//m%links(request%subject)%name
+      case (request_curve)
+         row%name = m%points(request%subject)%name
+         if (request%second > 0) row%name = trim(row%name)//' '//m%links(request%second)%name
+      case default
+         row%name = subject_name(m, request%kind, request%subject)
+      end select
       call note_known(m, q, request, row)
       call set_values(m, q, request, row)
    end subroutine find_row
@@ -142,23 +150,6 @@ contains
          row%value(:2, 0) = row%value(:2, 0) + q%origin
       end associate
    end subroutine set_values
-
-   !> The name of the link, point or pair that `request` is about; of a pole or curve both names.
-   pure function request_name(m, request) result(name)
-      type(mechanism_t), intent(in) :: m
-      type(request_t), intent(in) :: request
-      character(2*label_length + 1) :: name
-
-      select case (request%kind)
-      case (request_pole)
-         name = trim(m%links(request%second)%name)//' '//m%links(request%subject)%name
-      case (request_curve)
-         name = m%points(request%subject)%name
-         if (request%second > 0) name = trim(name)//' '//m%links(request%second)%name
-      case default
-         name = subject_name(m, request%kind, request%subject)
-      end select
-   end function request_name
 
    !> Puts the centre `c` into `row`.
    pure subroutine take_centre(c, row)
