@@ -18,7 +18,7 @@ module job
    use picture, only: put_pictures
    use circuits, only: circuits_t
    use circuits_table, only: find_all_circuits
-   use circuits_picture, only: circuit_page_t, add_to_page, put_circuit_page
+   use circuits_picture, only: diagrams_t, add_to_page, put_circuit_page
    use animation, only: put_animations
    use solver_log, only: log_head
    use answers, only: answers_t
@@ -176,7 +176,7 @@ contains
       type(mechanism_t), intent(in) :: sets(o%first:)
       type(findings_t), intent(inout) :: findings(o%first:)
       integer, intent(inout) :: status
-      type(circuit_page_t) :: page
+      type(diagrams_t), allocatable :: page(:)
       integer :: i, before, varied
 
       if (o%asked(out_csv) .and. options%share == 1 .and. o%own_first == 1) &
@@ -246,7 +246,7 @@ contains
    !> Adds the circuits of `m` to `page`. As a picture it has an analysis of its own.
    subroutine draw_circuits(m, page)
       type(mechanism_t), intent(in) :: m
-      type(circuit_page_t), intent(inout) :: page
+      type(diagrams_t), allocatable, intent(inout) :: page(:)
       type(set_analysis_t) :: a
       type(circuits_t), allocatable :: found(:)
 

@@ -355,8 +355,8 @@ contains
       type(circuits_t), intent(inout) :: found
       integer, intent(in) :: i
       type(curve_point_t) :: p
-      real(wp) :: level, least, greatest
-      integer :: b, k, m
+      real(wp) :: level, least, greatest, off(2)
+      integer :: b, k, m, j
       logical :: ok
 
       do b = 1, size(found%branches)
@@ -365,58 +365,32 @@ contains
             associate (from => found%list(i)%points(k), to => found%list(i)%points(k + 1))
                least = min(from%value(0), to%value(0)) - rounding
                greatest = max(from%value(0), to%value(0)) + rounding
-               level = found%curve%first
-               if (found%curve%is_angle) level = level + turn*ceiling((least - level)/turn)
                do m = 0, merge(1, 0, found%curve%is_angle)
-                  if (level + m*turn < least .or. level + m*turn > greatest) cycle
-                  call find_level(found%curve, from, to, level + m*turn, p, ok)
-                  if (ok) call add_assembly(found, b, p)
+                  level = found%curve%first
+                  if (found%curve%is_angle) level = level + turn*ceiling((least - level)/turn)
+                  level = level + m*turn
+                  if (level < least .or. level > greatest) cycle
+                  ! One of the two has it up to rounding, or it is between them.
+                  off = [from%value(0), to%value(0)] - level
+                  ok = any(abs(off) <= rounding)
+                  if (ok) then
+                     p = from
+                     if (abs(off(2)) < abs(off(1))) p = to
+                  else if (off(1)*off(2) < 0.0_wp) then
+                     call find_root(found%curve, from, to, of_value, level, p, ok)
+                  end if
+                  if (.not. ok) cycle
+                  do j = 1, size(found%assemblies)
+                     if (found%branches(found%assemblies(j)%branch)%circuit == i &
+                        .and. same_place(found%curve, found%assemblies(j)%q, p%q)) exit
+                  end do
+                  if (j > size(found%assemblies)) found%assemblies = [found%assemblies, circuit_assembly_t(branch=b, &
+                     value=drive_value(found%curve, p%value(0) + found%list(i)%shift), q=p%q)]
                end do
             end associate
          end do
       end do
    end subroutine add_assemblies
-
-   !> The point `p` between `from` and `to` at which the drive's value is `level`; that of the two that has it up to
-   !> rounding.
-   subroutine find_level(c, from, to, level, p, ok)
-      type(curve_t), intent(inout) :: c
-      type(curve_point_t), intent(in) :: from, to
-      real(wp), intent(in) :: level
-      type(curve_point_t), intent(out) :: p
-      logical, intent(out) :: ok
-      real(wp) :: off(2)
-
-      off = [from%value(0), to%value(0)] - level
-      ok = any(abs(off) <= rounding)
-      if (ok) then
-         if (abs(off(1)) <= abs(off(2))) then
-            p = from
-         else
-            p = to
-         end if
-      else if (off(1)*off(2) < 0.0_wp) then
-         call find_root(c, from, to, of_value, level, p, ok)
-      end if
-   end subroutine find_level
-
-   !> Adds the assembly `p` on branch number `b`, unless it is there.
-   subroutine add_assembly(found, b, p)
-      type(circuits_t), intent(inout) :: found
-      integer, intent(in) :: b
-      type(curve_point_t), intent(in) :: p
-      type(circuit_assembly_t) :: one
-      integer :: k
-
-      do k = 1, size(found%assemblies)
-         if (found%branches(found%assemblies(k)%branch)%circuit == found%branches(b)%circuit &
-            .and. same_place(found%curve, found%assemblies(k)%q, p%q)) return
-      end do
-      one%branch = b
-      one%value = drive_value(found%curve, p%value(0) + found%list(found%branches(b)%circuit)%shift)
-      one%q = p%q
-      found%assemblies = [found%assemblies, one]
-   end subroutine add_assembly
 
    !> Adds the change points of circuit number `i`.
    subroutine add_meetings(found, i)

@@ -23,18 +23,13 @@ module circuits_picture
    use phrases
    implicit none
    private
-   public :: circuit_page_t, diagrams_t, add_to_page, put_circuit_page
+   public :: diagrams_t, add_to_page, put_circuit_page
 
    !> The diagrams of one drive, and their words.
    type :: diagrams_t
       character(:), allocatable :: title, drive, circuit
       type(chart_t), allocatable :: charts(:)
    end type diagrams_t
-
-   !> All diagrams of a page.
-   type :: circuit_page_t
-      type(diagrams_t), allocatable :: list(:)
-   end type circuit_page_t
 
    !> A number varies if it does so by more than this, in rad or in lengths of the curve.
    real(wp), parameter :: varies = 1.0e-6_wp
@@ -45,7 +40,7 @@ contains
 
    !> Adds the diagrams of the circuits `found` of the set `m`, which `s` analyses, to `page`.
    subroutine add_to_page(page, m, s, found)
-      type(circuit_page_t), intent(inout) :: page
+      type(diagrams_t), allocatable, intent(inout) :: page(:)
       type(mechanism_t), intent(in) :: m
       type(set_analysis_t), intent(in) :: s
       type(circuits_t), intent(in) :: found(:)
@@ -53,9 +48,9 @@ contains
       integer :: i, n
 
       n = 0
-      if (allocated(page%list)) n = size(page%list)
+      if (allocated(page)) n = size(page)
       allocate (more(n + size(found)))
-      if (n > 0) more(:n) = page%list
+      if (n > 0) more(:n) = page
       do i = 1, size(found)
          associate (d => more(n + i), own => s%now%parts(found(i)%part))
             d%title = trim(whole(m%set_number)//'.  '//m%title)
@@ -65,7 +60,7 @@ contains
             if (size(found(i)%list) > 0) call add_charts(s, found(i), d)
          end associate
       end do
-      call move_alloc(more, page%list)
+      call move_alloc(more, page)
    end subroutine add_to_page
 
    !> Adds a chart to `d` for each number of the circuits `found` that PRINT asks for and that varies, not driven.
@@ -199,19 +194,19 @@ contains
    !> the diagrams.
    subroutine put_circuit_page(o, page)
       type(output_t), intent(inout) :: o
-      type(circuit_page_t), intent(inout) :: page
+      type(diagrams_t), allocatable, intent(inout) :: page(:)
       real(wp) :: top
       integer :: i, k
 
-      if (.not. allocated(page%list)) allocate (page%list(0))
+      if (.not. allocated(page)) allocate (page(0))
       top = 0.0_wp
-      do i = 1, size(page%list)
-         top = top + head + size(page%list(i)%charts)*chart_height
+      do i = 1, size(page)
+         top = top + head + size(page(i)%charts)*chart_height
       end do
       call svg_head(o, width, max(1, nint(top)))
       top = 0.0_wp
-      do i = 1, size(page%list)
-         associate (d => page%list(i))
+      do i = 1, size(page)
+         associate (d => page(i))
             call put_words(o, [14.0_wp, top + 24.0_wp], 'start', 'class="title"', d%title)
             if (size(d%charts) > 0) then
                do k = 1, min(size(d%charts(1)%curves), int((real(width, wp) - 20.0_wp)/room))

@@ -5,7 +5,7 @@ module ranges
    use kinds, only: wp
    use system_calls, only: signal_received
    use planar, only: pi, without_turns
-   use mechanism, only: mechanism_t, request_t, request_link, method_newton, place_links
+   use mechanism, only: mechanism_t, request_t, request_link, method_newton, plane_origin
    use motion, only: motion_t, new_motion, diagnostic_t, diagnostic_limit, diagnostic_change
    use drives, only: new_law, drive_motion
    use scales, only: is_length, characteristic_length
@@ -102,7 +102,9 @@ contains
       d%tolerance = 0.0_wp
       d%requests = [(request_t(request_link, i), i=1, size(m%links))]
       if (allocated(d%branch_requests)) deallocate (d%branch_requests)
-      call place_links(d, start%position)
+      do i = 1, size(m%links)
+         if (.not. m%links(i)%ground) d%links(i)%position = start%position(:, i) + [plane_origin(m), 0.0_wp]
+      end do
       d%steps = 1
       d%t0 = 0.0_wp
       d%t1 = merge(max_lengths, 2.0_wp*pi*max_turns, is_length(m%drives(drive)))
@@ -152,8 +154,8 @@ contains
       type(range_t), intent(inout) :: r
       type(analysis_t) :: a
       type(motion_t) :: first, now
-      real(wp) :: t, step
-      integer :: k, steps_a_turn, begin
+      real(wp) :: t, step, part, off(3, size(d%links))
+      integer :: i, k, steps_a_turn, begin
       logical :: is_angle
 
       is_angle = .not. is_length(d%drives(r%drive))
@@ -175,8 +177,24 @@ contains
             + count(now%diagnostics%kind == diagnostic_change .and. .not. now%diagnostics%here)
          if (now%known < 0) then
             t = a%t
-            if (.not. limits_only) call close_in()
-            call take_limit()
+            ! It was found at this time, and not a step later. Where no limit is told, as so close to a change point
+            ! that rounding leaves none, the last time is looked for at which there is a motion.
+            part = step
+            do while (.not. limits_only .and. limit_in(now) == 0 .and. part > closest .and. signal_received() == 0)
+               part = 0.5_wp*part
+               call advance(a, t + part, now)
+               if (now%known >= 0) t = t + part
+            end do
+            r%has_limit(side) = .true.
+            r%limit(side)%value = value + rate*t
+            i = limit_in(now)
+            if (i == 0) return
+            associate (found => r%limit(side), told => now%diagnostics(i))
+               found%links = told%links
+               found%more = told%more
+               found%in_line = told%in_line
+               found%value = value + rate*told%t
+            end associate
             return
          end if
          if (.not. is_angle .or. now%known < 2) cycle
@@ -186,63 +204,21 @@ contains
             cycle
          end if
          if (mod(k - begin, steps_a_turn) /= 0) cycle
-         r%is_all = is_closed(d)
+         off = now%position - first%position
+         off(:2, :) = off(:2, :)/characteristic_length(d)
+         off(3, :) = without_turns(off(3, :))
+         r%is_all = all(abs(off) <= closes_to)
          r%turns = (k - begin)/steps_a_turn
          if (r%is_all) return
       end do
       r%limit(side)%value = value + rate*t
-
-   contains
-
-      !> The motion was found at the time `t`, and not a `step` later. Where no limit is told, as so close to a change
-      !> point that rounding leaves none, the last time is looked for at which there is a motion: `t`, and `now` after
-      !> it.
-      subroutine close_in()
-         real(wp) :: part
-
-         part = step
-         do while (.not. tells_limit(now) .and. part > closest .and. signal_received() == 0)
-            part = 0.5_wp*part
-            call advance(a, t + part, now)
-            if (now%known >= 0) t = t + part
-         end do
-      end subroutine close_in
-
-      !> Some diagnostic of `q` is a limit.
-      pure logical function tells_limit(q) result(tells)
-         type(motion_t), intent(in) :: q
-
-         tells = .false.
-         if (allocated(q%diagnostics)) tells = any(q%diagnostics%kind == diagnostic_limit)
-      end function tells_limit
-
-      !> The motion ends before that asked for in `now`, shortly after `t`.
-      subroutine take_limit()
-         integer :: i
-
-         r%has_limit(side) = .true.
-         r%limit(side)%value = value + rate*t
-         if (.not. allocated(now%diagnostics)) return
-         do i = 1, size(now%diagnostics)
-            if (now%diagnostics(i)%kind /= diagnostic_limit) cycle
-            associate (found => r%limit(side))
-               found%links = now%diagnostics(i)%links
-               found%more = now%diagnostics(i)%more
-               found%in_line = now%diagnostics(i)%in_line
-               found%value = value + rate*now%diagnostics(i)%t
-            end associate
-         end do
-      end subroutine take_limit
-
-      !> Every link of `m` is in the same place in both motions, but for whole turns.
-      pure logical function is_closed(m)
-         type(mechanism_t), intent(in) :: m
-         real(wp) :: d(3, size(m%links))
-
-         d = now%position - first%position
-         d(:2, :) = d(:2, :)/characteristic_length(m)
-         d(3, :) = without_turns(d(3, :))
-         is_closed = all(abs(d) <= closes_to)
-      end function is_closed
    end subroutine follow
+
+   !> The number of the last diagnostic of `q` that is a limit; 0: none is.
+   pure integer function limit_in(q) result(i)
+      type(motion_t), intent(in) :: q
+
+      i = 0
+      if (allocated(q%diagnostics)) i = findloc(q%diagnostics%kind, diagnostic_limit, dim=1, back=.true.)
+   end function limit_in
 end module ranges

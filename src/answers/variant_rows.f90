@@ -79,7 +79,7 @@ contains
       type(layout_t), intent(in) :: l
       type(variation_t), intent(in) :: v
       type(summary_t) :: s
-      character(:), allocatable :: drives(:)
+      character(:), allocatable :: drives(:), name
       integer :: i
 
       s%numbers = size(v%numbers)
@@ -98,7 +98,14 @@ contains
       call add_column(summary_column_t('limit.t'))
       call add_column(summary_column_t('limit.drive'))
       call add_column(summary_column_t('limit.value'))
-      if (set%ranges) call add_ranges()
+      do i = 1, merge(size(set%drives), 0, set%ranges)
+         associate (own => set%parts(set%drives(i)%part))
+            name = drive_name(own, own%drives(set%drives(i)%number))
+         end associate
+         call add_drive(i, 'range.min', heads_of(name, phrase(say_one_range, set%polish)//' MIN'))
+         call add_drive(i, 'range.max', heads_of(name, phrase(say_one_range, set%polish)//' MAX'))
+         call add_headed('range.turns.'//trim(drives(i)), name, phrase(say_whole_turns, set%polish))
+      end do
       if (set%assemblies) call add_headed('assemblies', phrase(say_assemblies, set%polish), '')
       if (set%proves) call add_headed('unproved', phrase(say_instants, set%polish), phrase(say_not_proved, set%polish))
       call add_extremes()
@@ -226,22 +233,6 @@ contains
             c%power = d%power(dimension_of(place), k)
          end associate
       end function extreme_column
-
-      !> Adds the columns of the ranges of all drives.
-      subroutine add_ranges()
-         character(:), allocatable :: word, name
-         integer :: d
-
-         word = phrase(say_one_range, set%polish)
-         do d = 1, size(set%drives)
-            associate (own => set%parts(set%drives(d)%part))
-               name = drive_name(own, own%drives(set%drives(d)%number))
-            end associate
-            call add_drive(d, 'range.min', heads_of(name, word//' MIN'))
-            call add_drive(d, 'range.max', heads_of(name, word//' MAX'))
-            call add_headed('range.turns.'//trim(drives(d)), name, phrase(say_whole_turns, set%polish))
-         end do
-      end subroutine add_ranges
    end function new_summary
 
    !> The row of variant `n` of `v`, with its values alone.
@@ -323,7 +314,16 @@ contains
       n = n + 3
       if (r%rejected /= '') return
       if (set%ranges) then
-         call take_ranges(set, asked%ranges, r%cells(n + 1:n + 3*size(set%drives)))
+         ! Three for each drive: the limits, and the turns after which the motion closes.
+         do i = 1, size(asked%ranges)
+            associate (one => asked%ranges(i), d => n + 3*(findloc(set%drives%part == asked%ranges(i)%part &
+                       .and. set%drives%number == asked%ranges(i)%drive, .true., dim=1) - 1))
+               do which = low, high
+                  if (one%has_limit(which)) r%cells(d + which) = cell_t(cell_number, one%limit(which)%value)
+               end do
+               r%cells(d + 3) = cell_t(cell_count, real(merge(one%turns, 0, one%is_all), wp))
+            end associate
+         end do
          n = n + 3*size(set%drives)
       end if
       if (set%assemblies) call next(cell_t(merge(cell_none, cell_count, asked%assemblies < 0), &
@@ -333,8 +333,14 @@ contains
          associate (c => s%extremes%columns(i))
             q = findloc(asked%extremes%asked, c%request, dim=1)
             do which = least, greatest
-               call take_extreme(set, asked%extremes%found(which, c%coordinate, c%order, q), which, &
-                  first_drive(set, c%request), r%cells(n + 1:n + 3))
+               associate (e => asked%extremes%found(which, c%coordinate, c%order, q))
+                  if (e%exists) then
+                     r%cells(n + 1) = cell_t(cell_number, e%value, e%error)
+                     if (.not. e%has_bound) r%cells(n + 1) = cell_t(cell_unbounded, outward(which))
+                     r%cells(n + 2) = cell_t(cell_number, e%t)
+                     r%cells(n + 3) = drive_cell(set, first_drive(set, c%request), e%t)
+                  end if
+               end associate
                n = n + 3
             end do
             if (c%order > 0) cycle
@@ -358,20 +364,6 @@ contains
       end subroutine next
    end subroutine fill_row
 
-   !> The cells of the extreme `e`: value, time, and the value of drive number `d` there.
-   subroutine take_extreme(set, e, which, d, cells)
-      class(set_t), intent(in) :: set
-      type(extreme_t), intent(in) :: e
-      integer, intent(in) :: which, d
-      type(cell_t), intent(inout) :: cells(3)
-
-      if (.not. e%exists) return
-      cells(1) = cell_t(cell_number, e%value, e%error)
-      if (.not. e%has_bound) cells(1) = cell_t(cell_unbounded, outward(which))
-      cells(2) = cell_t(cell_number, e%t)
-      cells(3) = drive_cell(set, d, e%t)
-   end subroutine take_extreme
-
    !> The value of drive number `d` (0: none) at the time `t`.
    type(cell_t) function drive_cell(set, d, t) result(cell)
       class(set_t), intent(in) :: set
@@ -387,22 +379,4 @@ contains
          cell = cell_t(cell_number, f(1))
       end associate
    end function drive_cell
-
-   !> The cells of all ranges, three for each drive of `set`: limits, and the turns after which the motion closes.
-   subroutine take_ranges(set, list, cells)
-      class(set_t), intent(in) :: set
-      type(range_t), intent(in) :: list(:)
-      type(cell_t), intent(inout) :: cells(:)
-      integer :: i, side
-
-      do i = 1, size(list)
-         associate (n => 3*(findloc(set%drives%part == list(i)%part .and. set%drives%number == list(i)%drive, .true., &
-                                    dim=1) - 1))
-            do side = low, high
-               if (list(i)%has_limit(side)) cells(n + side) = cell_t(cell_number, list(i)%limit(side)%value)
-            end do
-            cells(n + 3) = cell_t(cell_count, real(merge(list(i)%turns, 0, list(i)%is_all), wp))
-         end associate
-      end do
-   end subroutine take_ranges
 end module variant_rows
