@@ -16,7 +16,7 @@ module block_branches
    use drives, only: law_t, drive_motion
    use block_state, only: unknown_t, set_values, values_of, largest_drive_rate
    use block_solver, only: solve_block
-   use block_rank, only: min_direction, residual_of, gauss_newton_step
+   use block_rank, only: values_t, decomposed, curvature_of, gauss_newton_step
    use block_engine, only: block_engine_t, solve_again, set_drive_values
    use block_diagnostics, only: links_of
    use branch_requests, only: branch_requests_t, decide
@@ -35,8 +35,8 @@ module block_branches
    !> do not meet, of lengths that are off by 1E-13, would be taken for crossing ones.
    real(wp), parameter :: short_pivots = 0.02_wp*short_step
    real(wp), parameter :: rounding = 500.0_wp*epsilon(1.0_wp)
-   !> The step of the second difference, and the largest distance at which the other branch is looked for.
-   real(wp), parameter :: trial = max(1.0e-4_wp, sqrt(sqrt(epsilon(1.0_wp)))), furthest = 0.05_wp
+   !> The largest distance at which the other branch is looked for.
+   real(wp), parameter :: furthest = 0.05_wp
    !> Redundant equations are satisfied there to more than the second order in the distance.
    real(wp), parameter :: max_closure_part = 0.01_wp
    !> What builds on a block follows it to its other branch in so many parts that Kantorovich's ratio of each is about
@@ -195,19 +195,21 @@ contains
       integer, intent(in) :: i
       type(convergence_t), intent(inout) :: c
       logical, intent(out) :: found
-      real(wp) :: direction(e%blocks%list(i)%shape%n), left(e%blocks%list(i)%shape%rows), x(e%blocks%list(i)%shape%n)
-      real(wp) :: y(e%blocks%list(i)%shape%n), least, curvature, away, correction
+      type(values_t) :: v
+      real(wp), dimension(e%blocks%list(i)%shape%n) :: direction, x, y
+      real(wp) :: curvature, away, correction
       type(unknown_t) :: before(lbound(e%state%u, 1):ubound(e%state%u, 1))
       logical :: same, crossed(size(e%crossed))
 
       crossed = e%crossed
       before = e%state%u
       x = values_of(e%blocks, i, e%state)
-      call min_direction(e%blocks, i, e%state, least, left, direction)
-      curvature = second_difference()
-      found = abs(curvature)*furthest > 2.0_wp*least
+      v = decomposed(e%blocks, i, e%state)
+      direction = v%right(v%n, :)
+      curvature = curvature_of(e%blocks, i, x, v%left(:, v%n), direction, e%state)
+      found = abs(curvature)*furthest > 2.0_wp*v%s(v%n)
       if (.not. found) return
-      away = -2.0_wp*least/curvature
+      away = -2.0_wp*v%s(v%n)/curvature
       call set_values(e%blocks, i, x + away*direction, e%state)
       call solve_again(e, c)
       if (is_solved(c) .and. c%kantorovich_ratio > max_kantorovich_ratio) then
@@ -246,16 +248,6 @@ contains
             end do
          end do
       end subroutine go_in_parts
-
-      !> w . r''[k, k]
-      real(wp) function second_difference() result(second)
-         real(wp), dimension(e%blocks%list(i)%shape%rows) :: ahead, here, behind
-
-         here = residual_of(e%blocks, i, x, e%state)
-         ahead = residual_of(e%blocks, i, x + trial*direction, e%state)
-         behind = residual_of(e%blocks, i, x - trial*direction, e%state)
-         second = dot_product(left, ahead - here + (behind - here))/trial**2
-      end function second_difference
    end subroutine take_other_branch
 
    !> The position at the change point `t`: singular blocks are extrapolated from three motions at equal steps before

@@ -5,7 +5,7 @@ module block_diagnostics
    use motion, only: diagnostic_t, new_diagnostic, diagnostic_limit, diagnostic_second, diagnostic_redundant, &
       diagnostic_mobile, diagnostic_idle, diagnostic_repeated, diagnostic_far_estimate, diagnostic_singular, motion_t
    use planar, only: without_turns
-   use blocks, only: largest_known, blocks_below
+   use blocks, only: blocks_below
    use block_rank, only: redundant_rows, moving_unknowns, judge_drives
    use block_state, only: state_t, largest_drive_rate
    use first_position, only: has_second_position
@@ -245,14 +245,24 @@ contains
          end do
       end function time_to_infinity
 
-      !> The first drive that moves block `i` at r%t; where all stand still, the first that could.
+      !> The first drive that moves block `i` at r%t, itself or through what the block builds on; where all stand still,
+      !> the first that could.
       subroutine name_drive(i)
          integer, intent(in) :: i
          real(wp) :: f(3)
-         integer :: d
+         logical :: moves(0:size(e%laws))
+         integer :: d, k
 
+         moves = .false.
+         associate (below => blocks_below(e%blocks, i))
+            do k = 1, size(below)
+               associate (block => e%blocks%list(below(k)))
+                  moves(e%blocks%rows(block%first_row:block%last_row)%drive) = .true.
+               end associate
+            end do
+         end associate
          do d = 1, size(e%laws)
-            if (.not. is_moved_by(i, d)) cycle
+            if (.not. moves(d)) cycle
             f = drive_motion(e%laws(d), r%t)
             if (r%drive > 0 .and. abs(f(2)) <= 0.0_wp) cycle
             r%drive = d
@@ -261,23 +271,6 @@ contains
             if (abs(f(2)) > 0.0_wp) return
          end do
       end subroutine name_drive
-
-      !> Drive `d` is in block `i` or in one that it builds on.
-      pure logical function is_moved_by(i, d)
-         integer, intent(in) :: i, d
-         integer :: mark(0:e%blocks%unknowns), k
-
-         mark = 0
-         is_moved_by = .false.
-         do k = 1, size(e%moving)
-            associate (block => e%blocks%list(e%moving(k)))
-               is_moved_by = any(e%blocks%rows(block%first_row:block%last_row)%drive == d) &
-                  .or. largest_known(e%blocks, e%moving(k), mark) > 0
-               if (e%moving(k) == i) return
-               mark(e%blocks%unknown(block%first:block%last)) = merge(1, 0, is_moved_by)
-            end associate
-         end do
-      end function is_moved_by
    end function limit_diagnostic
 
    !> The links of block `i`, which is singular at the position found last, and whether they are in line.

@@ -11,14 +11,16 @@ module block_rank
    use block_equations, only: find_known_parts, assemble_dense, right_hand_side
    implicit none
    private
-   public :: values_t, decomposed, redundant_rows, moving_unknowns, jacobian_of, relative_sign, min_direction, &
-      residual_of, gauss_newton_step, judge_drives
+   public :: values_t, decomposed, redundant_rows, moving_unknowns, jacobian_of, relative_sign, residual_of, &
+      curvature_of, gauss_newton_step, judge_drives
 
    !> Singular values below this part of the largest count as zero: the root of the rounding, since a position at which
    !> they vanish is itself known to no more.
    real(wp), parameter :: zero_level = max(1.0e-7_wp, 4.0_wp*sqrt(epsilon(1.0_wp)))
    !> A mechanism with a degree of freedom left is moved by this to see whether it follows.
    real(wp), parameter :: trial = 1.0e-3_wp
+   !> The step of second differences.
+   real(wp), parameter, public :: difference = max(1.0e-4_wp, sqrt(sqrt(epsilon(1.0_wp))))
    !> A residual below the first leaves nothing to correct; below the second it is that of a position.
    real(wp), parameter :: closed = max(1.0e-14_wp, 32.0_wp*epsilon(1.0_wp)), near = max(1.0e-12_wp, 100.0_wp*closed)
    !> The decompositions take the cube of these numbers of operations: of a block, and of blocks with all they need.
@@ -44,24 +46,16 @@ contains
       type(state_t), intent(inout) :: s
       integer, allocatable :: list(:)
       type(values_t) :: v
-      real(wp), allocatable :: null(:, :)
-      integer, allocatable :: order(:)
-      integer :: k, c, at
+      integer, allocatable :: order(:), pivot(:)
 
       allocate (list(0))
       if (b%list(i)%shape%rows > max_rows) return
       v = decomposed(b, i, s)
-      null = v%left(:, v%rank + 1:)
       order = row_order(b, i)
-      do k = 1, size(order)
-         if (size(list) == size(null, 2)) exit
-         c = size(list) + 1
-         at = c - 1 + maxloc(abs(null(order(k), c:)), dim=1)
-         if (abs(null(order(k), at)) <= zero_level) cycle
-         null(:, [c, at]) = null(:, [at, c])
-         call clear_row(null, order(k), c)
-         list = [list, b%list(i)%first_row + order(k) - 1]
-      end do
+      associate (null => v%left(:, v%rank + 1:))
+         call find_pivots(order, null, pivot)
+      end associate
+      list = pack(b%list(i)%first_row + order - 1, pivot(order) > 0)
    end function redundant_rows
 
    !> Rows from the last pair of the deck to the first, then the drives likewise.
@@ -82,16 +76,31 @@ contains
       end associate
    end function row_order
 
-   !> Makes entry `row` of all columns after `c` zero, by column `c`.
-   pure subroutine clear_row(a, row, c)
-      real(wp), intent(inout) :: a(:, :)
-      integer, intent(in) :: row, c
-      integer :: k
+   !> Gauss's elimination of the columns of `y` (rows, any number), the rows taken in the `order`: `pivot` (rows) is the
+   !> column that has a row as its pivot, with 1 where all others have 0; 0 of rows that are no pivot.
+   subroutine find_pivots(order, y, pivot)
+      integer, intent(in) :: order(:)
+      real(wp), intent(inout) :: y(:, :)
+      integer, allocatable, intent(out) :: pivot(:)
+      integer :: c, i, k, at
 
-      do k = c + 1, size(a, 2)
-         a(:, k) = a(:, k) - a(:, c)*(a(row, k)/a(row, c))
+      allocate (pivot(size(y, 1)), source=0)
+      c = 1
+      do i = 1, size(order)
+         if (c > size(y, 2)) return
+         associate (row => order(i))
+            at = c - 1 + maxloc(abs(y(row, c:)), dim=1)
+            if (abs(y(row, at)) <= zero_level) cycle
+            pivot(row) = c
+            y(:, [c, at]) = y(:, [at, c])
+            y(:, c) = y(:, c)/y(row, c)
+            do k = 1, size(y, 2)
+               if (k /= c) y(:, k) = y(:, k) - y(:, c)*y(row, k)
+            end do
+         end associate
+         c = c + 1
       end do
-   end subroutine clear_row
+   end subroutine find_pivots
 
    !> (unknowns of block `i`) Those that can move although everything the block builds on stands still. The block is
    !> moved a little along a direction that the Jacobian leaves open, and its equations are solved again: at a dead
@@ -198,20 +207,6 @@ contains
       end do
    end subroutine find_determinant
 
-   !> The least singular value of the Jacobian of block `i` with its vectors `left` (rows) and `right` (n).
-   subroutine min_direction(b, i, s, least, left, right)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      type(state_t), intent(inout) :: s
-      real(wp), intent(out) :: least, left(:), right(:)
-      type(values_t) :: v
-
-      v = decomposed(b, i, s)
-      least = v%s(v%n)
-      left = v%left(:, v%n)
-      right = v%right(v%n, :)
-   end subroutine min_direction
-
    !> (rows) What the equations of block `i` leave with the values `x` (n), which `s` has from then on.
    function residual_of(b, i, x, s) result(r)
       type(blocks_t), intent(in) :: b
@@ -223,6 +218,21 @@ contains
       call set_values(b, i, x, s)
       call assemble_dense(b, i, s, a, r)
    end function residual_of
+
+   !> w . r''[k, k] of the equations r of block `i` at the values `x` (n), which `s` has from then on, by a second
+   !> difference; w = `left` (rows), k = `right` (n).
+   real(wp) function curvature_of(b, i, x, left, right, s) result(curvature)
+      type(blocks_t), intent(in) :: b
+      integer, intent(in) :: i
+      real(wp), intent(in) :: x(:), left(:), right(:)
+      type(state_t), intent(inout) :: s
+      real(wp) :: ahead, behind, here
+
+      ahead = dot_product(left, residual_of(b, i, x + difference*right, s))
+      behind = dot_product(left, residual_of(b, i, x - difference*right, s))
+      here = dot_product(left, residual_of(b, i, x, s))
+      curvature = (ahead - here + (behind - here))/difference**2
+   end function curvature_of
 
    !> One step of least length towards the equations of block `i` (Gauss and Newton), none along a direction that the
    !> Jacobian leaves open; `residual`: the largest before it.
@@ -290,20 +300,14 @@ contains
       type(state_t), intent(in) :: s
       logical, intent(out) :: idle(:), repeated(:)
       real(wp), allocatable :: y(:, :)
-      integer :: d, k, pivot(size(idle))
+      integer, allocatable :: pivot(:)
+      integer :: d
 
       idle = .false.
       repeated = .false.
-      pivot = 0
       if (sum(b%list(list)%last - b%list(list)%first + 1) > max_unknowns) return
       y = null_drives(size(idle))
-      do d = size(idle), 1, -1
-         k = count(pivot > 0)
-         if (k == size(y, 2)) exit
-         if (maxval(abs(y(d, k + 1:))) <= zero_level) cycle
-         pivot(d) = k + 1
-         call eliminate(k + 1)
-      end do
+      call find_pivots([(d, d=size(idle), 1, -1)], y, pivot)
       do d = 1, size(idle)
          if (pivot(d) == 0) cycle
          repeated(d) = count(abs(y(:, pivot(d))) > zero_level) > 1
@@ -382,18 +386,5 @@ contains
             end associate
          end do
       end subroutine fill
-
-      !> Makes entry `d` of column `c` of `y` 1, that of all others 0; the columns from `c` on may change places.
-      subroutine eliminate(c)
-         integer, intent(in) :: c
-         integer :: at, k
-
-         at = c - 1 + maxloc(abs(y(d, c:)), dim=1)
-         y(:, [c, at]) = y(:, [at, c])
-         y(:, c) = y(:, c)/y(d, c)
-         do k = 1, size(y, 2)
-            if (k /= c) y(:, k) = y(:, k) - y(:, c)*y(d, k)
-         end do
-      end subroutine eliminate
    end subroutine judge_drives
 end module block_rank

@@ -2,11 +2,11 @@
 module block_sizes
    use kinds, only: wp
    use planar, only: length_of
-   use blocks, only: blocks_t, block_loop_t, loop_projection, loop_angles
-   use block_state, only: state_t, unknown_t
+   use blocks, only: blocks_t, loop_projection
+   use block_state, only: state_t
    implicit none
    private
-   public :: largest_rates, rounded_sizes, second_order_bounds, drive_speed, driven_angle
+   public :: largest_rates, rounded_sizes, second_order_bounds, find_driven
 
    !> A drive whose speed takes it no further than this before it turns, in rad or lengths, is at rest.
    real(wp), parameter :: standstill = 64.0_wp*epsilon(1.0_wp)
@@ -114,55 +114,50 @@ contains
       end do
    end function second_order_bounds
 
-   !> The largest speed, in lengths of its loop or rad by time, that drives and earlier blocks give to block `i`.
-   pure real(wp) function drive_speed(b, i, s) result(speed)
+   !> The largest `speed`, in lengths of its loop or rad by time, and the largest `angle` (rad) that drives and earlier
+   !> blocks give to block `i`.
+   subroutine find_driven(b, i, s, speed, angle)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i
       type(state_t), intent(in) :: s
+      real(wp), intent(out) :: speed, angle
       integer :: k, m
 
       speed = 0.0_wp
+      angle = 0.0_wp
       do k = b%list(i)%first_row, b%list(i)%last_row
          associate (d => b%rows(k)%drive)
             speed = max(speed, speed_of(s%drive_value(1, d), s%drive_value(2, d)))
+            if (b%rows(k)%angular) angle = max(angle, abs(s%drive_value(0, d)))
          end associate
       end do
       do m = b%list(i)%first_loop, b%list(i)%last_loop
-         speed = max(speed, loop_speed(b, b%loops(m), s))
-      end do
-   end function drive_speed
-
-   !> The largest speed that earlier blocks give to loop `g`.
-   pure real(wp) function loop_speed(b, g, s) result(speed)
-      type(blocks_t), intent(in) :: b
-      type(block_loop_t), intent(in) :: g
-      type(state_t), intent(in) :: s
-      integer :: k
-
-      speed = 0.0_wp
-      do k = g%first_vector, g%first_own - 1
-         associate (d => b%numbers%d(k))
-            speed = max(speed, hypot(d%x, d%y)*rate_of(s%u(b%body_vectors(k)%orientation)))
+         associate (g => b%loops(m))
+            do k = g%first_vector, g%first_own - 1
+               call take(b%body_vectors(k)%orientation, hypot(b%numbers%d(k)%x, b%numbers%d(k)%y))
+            end do
+            do k = g%first_slide, g%last_slide
+               associate (slide => b%slides(k), u => s%u(b%slides(k)%unknown))
+                  if (slide%column == 0) speed = max(speed, speed_of(u%rate, u%acceleration))
+                  if (slide%orientation_column == 0) call take(slide%orientation, abs(u%value))
+               end associate
+            end do
+            if (g%orientation_column == 0) call take(g%orientation, 1.0_wp)
+            if (g%less_column == 0) call take(g%less, 1.0_wp)
          end associate
       end do
-      do k = g%first_slide, g%last_slide
-         associate (slide => b%slides(k), u => s%u(b%slides(k)%unknown))
-            if (slide%column == 0) speed = max(speed, rate_of(u))
-            if (slide%orientation_column == 0) speed = max(speed, abs(u%value)*rate_of(s%u(slide%orientation)))
-         end associate
-      end do
-      if (g%kind == loop_projection .or. g%kind == loop_angles) then
-         if (g%orientation_column == 0) speed = max(speed, rate_of(s%u(g%orientation)))
-      end if
-      if (g%kind == loop_angles .and. g%less_column == 0) speed = max(speed, rate_of(s%u(g%less)))
-   end function loop_speed
 
-   !> The speed of an unknown of an earlier block.
-   pure real(wp) function rate_of(u)
-      type(unknown_t), intent(in) :: u
+   contains
 
-      rate_of = speed_of(u%rate, u%acceleration)
-   end function rate_of
+      !> Angle number `u` of an earlier block, which turns an arm of this length.
+      subroutine take(u, arm)
+         integer, intent(in) :: u
+         real(wp), intent(in) :: arm
+
+         speed = max(speed, arm*speed_of(s%u(u)%rate, s%u(u)%acceleration))
+         angle = max(angle, abs(s%u(u)%value))
+      end subroutine take
+   end subroutine find_driven
 
    !> The amount of `rate`; 0 at rest, and where rounding alone tells it from the turning point of a motion with this
    !> `acceleration`: it has rate**2/(2 acceleration) to go to that.
@@ -172,29 +167,4 @@ contains
       speed = 0.0_wp
       if (rate**2 > standstill*abs(acceleration)) speed = abs(rate)
    end function speed_of
-
-   !> The largest angle, in rad, that drives and earlier blocks give to block `i`.
-   pure real(wp) function driven_angle(b, i, s) result(angle)
-      type(blocks_t), intent(in) :: b
-      integer, intent(in) :: i
-      type(state_t), intent(in) :: s
-      integer :: k, m
-
-      angle = 0.0_wp
-      do k = b%list(i)%first_row, b%list(i)%last_row
-         if (b%rows(k)%angular) angle = max(angle, abs(s%drive_value(0, b%rows(k)%drive)))
-      end do
-      do m = b%list(i)%first_loop, b%list(i)%last_loop
-         associate (g => b%loops(m))
-            do k = g%first_vector, g%first_own - 1
-               angle = max(angle, abs(s%u(b%body_vectors(k)%orientation)%value))
-            end do
-            do k = g%first_slide, g%last_slide
-               if (b%slides(k)%orientation_column == 0) angle = max(angle, abs(s%u(b%slides(k)%orientation)%value))
-            end do
-            if (g%orientation_column == 0) angle = max(angle, abs(s%u(g%orientation)%value))
-            if (g%less_column == 0) angle = max(angle, abs(s%u(g%less)%value))
-         end associate
-      end do
-   end function driven_angle
 end module block_sizes

@@ -371,6 +371,8 @@ contains
          c%determinant = merge(-1, 1, w%a(1) < 0.0_wp)
       else
          call pivot_range(block%shape, w%a, w%pivots, least, largest, c%determinant, sparse)
+         ! Of a wide block no pivot tells how near the Jacobian is to having no inverse.
+         if (block%shape%pattern > 0) least = min(least, 1.0_wp/inverse_norm(block%shape, w%a, w%work, w%iwork, sparse))
       end if
       c%min_pivot = 1.0_wp
       c%reciprocal_condition = 1.0_wp

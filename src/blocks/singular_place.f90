@@ -10,8 +10,8 @@ module singular_place
    use blocks, only: blocks_t
    use block_state, only: state_t, set_values, values_of
    use block_equations, only: right_hand_side
-   use block_sizes, only: drive_speed, driven_angle
-   use block_rank, only: values_t, decomposed, residual_of, gauss_newton_step
+   use block_sizes, only: find_driven
+   use block_rank, only: values_t, decomposed, residual_of, curvature_of, difference, gauss_newton_step
    implicit none
    private
    public :: settle
@@ -19,15 +19,14 @@ module singular_place
    !> Of larger blocks it is not asked where they are singular, nor how: twenty decompositions take a second for these.
    integer, parameter, public :: max_rows = 300
 
-   !> The step of the second difference, and the largest distance of the place, over the root of that.
-   real(wp), parameter :: trial = max(1.0e-4_wp, sqrt(sqrt(epsilon(1.0_wp))))
+   !> The largest distance of the place, over the root of the second derivative.
    real(wp), parameter :: furthest = 64.0_wp*sqrt(epsilon(1.0_wp))
    !> What the equations may leave open, of the largest value, of a sum of lengths, which counts as so many, or of what
    !> drives and earlier blocks have rounded: less is nothing but rounding, more would be no position.
    real(wp), parameter :: closed = 1.5_wp*epsilon(1.0_wp), near = 12.0_wp*epsilon(1.0_wp), sum_size = 3.0_wp
    !> Part of the Lipschitz constant below which the second derivative counts as zero, as it is but for the rounding of
    !> the difference along a motion with the drives held.
-   real(wp), parameter :: least_curvature = 512.0_wp*epsilon(1.0_wp)/trial**2
+   real(wp), parameter :: least_curvature = 512.0_wp*epsilon(1.0_wp)/difference**2
 
 contains
 
@@ -44,8 +43,7 @@ contains
       x = values_of(b, i, s)
       v = decomposed(b, i, s)
       level = max(sum_size, maxval(abs(x)), b%numbers%blocks(i)%coarse, size_of_driven())
-      q = curvature()
-      call set_values(b, i, x, s)
+      q = curvature_of(b, i, x, v%left(:, v%n), v%right(v%n, :), s)
       if (v%rank < v%n - 1 .or. abs(q) <= least_curvature*b%numbers%blocks(i)%lipschitz) return
       associate (left => v%left(:, v%n), k => v%right(v%n, :))
          call go_to(x - (v%s(v%n)/q)*k)
@@ -71,26 +69,13 @@ contains
       !> The largest angle that drives and earlier blocks give, as far as a rounding of it counts along w: at a dead
       !> point in full, at a change point, which such an angle leaves as it is to the first order, not at all.
       real(wp) function size_of_driven()
-         real(wp) :: r(b%list(i)%shape%rows)
+         real(wp) :: r(b%list(i)%shape%rows), speed, angle
 
          size_of_driven = 0.0_wp
-         associate (speed => drive_speed(b, i, s))
-            if (.not. speed > 0.0_wp) return
-            call right_hand_side(b, i, 1, s, r)
-            size_of_driven = driven_angle(b, i, s)*abs(dot_product(v%left(:, v%n), r))/speed
-         end associate
+         call find_driven(b, i, s, speed, angle)
+         if (.not. speed > 0.0_wp) return
+         call right_hand_side(b, i, 1, s, r)
+         size_of_driven = angle*abs(dot_product(v%left(:, v%n), r))/speed
       end function size_of_driven
-
-      !> q of the module's head, by a second difference of the equations.
-      real(wp) function curvature()
-         real(wp) :: ahead, behind, here
-
-         associate (left => v%left(:, v%n), k => v%right(v%n, :))
-            ahead = dot_product(left, residual_of(b, i, x + trial*k, s))
-            behind = dot_product(left, residual_of(b, i, x - trial*k, s))
-            here = dot_product(left, residual_of(b, i, x, s))
-         end associate
-         curvature = (ahead - here + (behind - here))/trial**2
-      end function curvature
    end subroutine settle
 end module singular_place

@@ -9,7 +9,7 @@ module singularity
    use blocks, only: blocks_t, largest_known
    use block_state, only: state_t
    use block_equations, only: find_known_parts, right_hand_side
-   use block_sizes, only: drive_speed
+   use block_sizes, only: find_driven
    use block_rank, only: values_t, decomposed, moving_unknowns
    use singular_place, only: max_rows
    use block_engine, only: block_engine_t
@@ -55,13 +55,13 @@ contains
       integer, intent(in) :: i
       type(state_t), intent(in) :: s
       type(state_t) :: aside
-      real(wp) :: speed
+      real(wp) :: speed, angle
       logical :: agrees, crosses, agrees_aside
 
       found = singular_unclear
       if (b%list(i)%shape%rows > max_rows) return
       aside = s
-      speed = drive_speed(b, i, s)
+      call find_driven(b, i, s, speed, angle)
       if (speed <= 0.0_wp) return
       call judge(b, i, speed, aside, agrees, crosses)
       if (agrees .and. .not. crosses) return
@@ -74,7 +74,7 @@ contains
 
    !> `agrees`: the equations of block `i` for the velocities have solutions at `s`, whose Jacobian has no inverse;
    !> `crosses`: two of them are those of branches. Of several null vectors that is not asked: they are taken to cross.
-   !> `speed`: see `drive_speed`. The rates of the block in `s` are overwritten.
+   !> `speed`: see `find_driven`. The rates of the block in `s` are overwritten.
    subroutine judge(b, i, speed, s, agrees, crosses)
       type(blocks_t), intent(in) :: b
       integer, intent(in) :: i

@@ -13,12 +13,12 @@ module analysis
    use branch_certificate, only: branch_t, certificate_counts_t, count_in, branch_none, branch_first, branch_same, &
       branch_crossed
    use convergence, only: convergence_t, closure_error_t, is_solved, ended_inconsistent, ended_unsought, ended_elsewhere
-   use block_engine, only: block_engine_t, get_blocks_motion => get_motion, get_driven_links, stay
+   use block_engine, only: block_engine_t, renew_block_engine, get_blocks_motion => get_motion, get_driven_links, stay
    use block_method, only: measure_closure_error, get_link_flags, is_at_rest
    use dense_method, only: dense_t, make_dense, for_blocks, solve_all_links
    use block_diagnostics, only: start_diagnostics, limit_diagnostic
    use at_bifurcation, only: stand_on, go_by_value, leave
-   use following, only: following_t, step_record_t, make_following, renew_following, continue_to, is_too_far, &
+   use following, only: following_t, step_record_t, make_following, begin_following, continue_to, is_too_far, &
       go_on_from, go_back, place_t, note_place, return_to, passed_of, limits_t, note_limit, limit_before
    implicit none
    private
@@ -81,16 +81,10 @@ contains
       type(block_engine_t), allocatable :: engine
 
       call move_alloc(a%engine, engine)
-      call begin_again(a)
-
-   contains
-
-      !> Nothing is known of any instant.
-      subroutine begin_again(a)
-         type(analysis_t), intent(out) :: a
-
-         call renew_following(a%following_t, m, engine, is_done)
-      end subroutine begin_again
+      call renew_block_engine(engine, m, is_done)
+      if (.not. is_done) return
+      a = analysis_t()
+      call begin_following(a%following_t, m, engine)
    end subroutine renew_analysis
 
    !> Solves for the instant `t`; `found` is its motion in the deck's units, with what could not be found flagged. Links

@@ -12,13 +12,13 @@ module following
    use drives, only: drive_motion
    use convergence, only: convergence_t, is_solved, max_kantorovich_ratio
    use branch_requests, only: branch_requests_t, new_branch_requests
-   use block_engine, only: block_engine_t, engine_state_t, make_block_engine, renew_block_engine, accept, &
+   use block_engine, only: block_engine_t, engine_state_t, make_block_engine, accept, &
       follows_values
    use block_method, only: solve_instant
    use block_branches, only: pass
    implicit none
    private
-   public :: following_t, step_record_t, make_following, renew_following, continue_to, is_too_far, &
+   public :: following_t, step_record_t, make_following, begin_following, continue_to, is_too_far, &
       go_on_from, go_back, place_t, note_place, return_to, passed_of
    public :: limits_t, note_limit, limit_before, largest_correction
 
@@ -92,27 +92,23 @@ contains
       type(following_t), intent(out) :: f
       type(mechanism_t), intent(in) :: m
       type(structure_t), intent(inout), optional :: structure
+      type(block_engine_t), allocatable :: engine
 
-      allocate (f%engine)
-      call make_block_engine(f%engine, m, structure)
-      f%branch_requests = new_branch_requests(m)
-      f%drives = new_drive_excursion(m, follows_values(f%engine))
+      allocate (engine)
+      call make_block_engine(engine, m, structure)
+      call begin_following(f, m, engine)
    end subroutine make_following
 
-   !> Ready for the first instant of `m` with the `engine` of a variant of `m`, which is taken over. `is_done`: that
-   !> fits; otherwise `f` is of no use.
-   subroutine renew_following(f, m, engine, is_done)
+   !> The same with the `engine` of `m`, which is taken over.
+   subroutine begin_following(f, m, engine)
       type(following_t), intent(out) :: f
       type(mechanism_t), intent(in) :: m
       type(block_engine_t), allocatable, intent(inout) :: engine
-      logical, intent(out) :: is_done
 
       call move_alloc(engine, f%engine)
-      call renew_block_engine(f%engine, m, is_done)
-      if (.not. is_done) return
       f%branch_requests = new_branch_requests(m)
       f%drives = new_drive_excursion(m, follows_values(f%engine))
-   end subroutine renew_following
+   end subroutine begin_following
 
    !> Follows the motion to `t`, or finds the first; `step`: how that went.
    subroutine continue_to(f, t, step)

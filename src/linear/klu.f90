@@ -159,8 +159,8 @@ contains
 
    !> Factors the matrix `a` (entries of the pattern, column by column). `info` > 0: exactly singular, no factors.
    !>
-   !> Rejected: the pivots of the matrix before (klu_refactor), in a third of the time. They make what is told of a
-   !> position depend on the way there: the least pivot falls from 1E-2 to 1E-8 in 200 steps of a net of rods.
+   !> Rejected: the pivots of the matrix before (klu_refactor), in less than half the time. They make what is told of a
+   !> position depend on the way there, and nets of rods were lost at change points.
    subroutine factor(k, a, info)
       type(klu_t), intent(inout) :: k
       real(wp), intent(in), target :: a(*)

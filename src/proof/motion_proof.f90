@@ -17,20 +17,13 @@ module motion_proof
    use tube_proof, only: tube_t, new_tube, prove_tube
    implicit none
    private
-   public :: motion_prover_t, motion_proof_t, prove_motion, holds, step_prover_t, step_proof_t, make_step_prover, &
-      prove_step
+   public :: motion_prover_t, motion_proof_t, prove_motion, holds, step_proof_t, prove_step
 
    !> So many tubes are tried of a step at most, none shorter than this part of it.
    integer, parameter :: max_tries = 1024
    real(wp), parameter :: min_part = 1.0e-6_wp
    !> And fewer of wide blocks, whose inverses take about so many products: some seconds.
    real(wp), parameter :: max_products = 1.0e9_wp
-
-   !> What it needs beside the prover of positions.
-   type :: step_prover_t
-      type(workspace_t) :: work
-      type(tube_t) :: tube
-   end type step_prover_t
 
    !> What is proved of a step.
    type :: step_proof_t
@@ -48,7 +41,6 @@ module motion_proof
       logical :: is_ready = .false.
       logical :: has_begun = .false.              !< a position is proved
       type(prover_t) :: prover
-      type(step_prover_t) :: step_prover
       type(link_vectors_t), allocatable :: links(:)
       type(placed_t) :: at(2)                     !< the last position that was proved, and the one at hand
       integer :: now = 1                          !< which of them is at hand
@@ -86,7 +78,6 @@ contains
       found%step = step_proof_t()
       if (.not. p%is_ready) then
          call make_prover(p%prover, m, e)
-         call make_step_prover(p%step_prover, e)
          p%links = link_vectors(m, e)
          p%at(1) = new_placed(e%blocks, size(m%drives))
          p%at(2) = p%at(1)
@@ -102,8 +93,7 @@ contains
          found%gap = maxval(p%at(p%now)%gap(e%needed))
          found%has_step = p%has_begun
          if (found%has_step) &
-            call prove_step(p%prover, p%step_prover, e, e%needed, p%at(3 - p%now), p%at(p%now), &
-            found%step)
+            call prove_step(p%prover, e, e%needed, p%at(3 - p%now), p%at(p%now), found%step)
          p%now = 3 - p%now
          p%has_begun = .true.
          if (.not. found%has_step .or. found%step%is_proved) return
@@ -139,24 +129,18 @@ contains
       links = pack([(i, i=1, size(of_block))], of_block)
    end function links_of_block
 
-   !> Ready for the steps of the engine `e`.
-   subroutine make_step_prover(s, e)
-      type(step_prover_t), intent(out) :: s
-      type(block_engine_t), intent(in) :: e
-
-      s%work = new_workspace(e%blocks)
-      s%tube = new_tube(e%blocks, size(e%laws))
-   end subroutine make_step_prover
-
    !> Proves the motion of the blocks `list` between the proved positions `from` and `to`.
-   subroutine prove_step(p, s, e, list, from, to, proof)
+   subroutine prove_step(p, e, list, from, to, proof)
       type(prover_t), intent(inout) :: p
-      type(step_prover_t), intent(inout) :: s
       type(block_engine_t), intent(in) :: e
       integer, intent(in) :: list(:)
       type(placed_t), intent(in) :: from, to
       type(step_proof_t), intent(out) :: proof
+      type(tube_t) :: tube
+      type(workspace_t) :: work
 
+      tube = new_tube(e%blocks, size(e%laws))
+      work = new_workspace(e%blocks)
       proof%is_proved = .true.
       call prove_part(from, to, min_part*abs(to%t - from%t))
 
@@ -170,13 +154,13 @@ contains
          logical :: is_found
 
          proof%tries = proof%tries + 1
-         call prove_tube(p, e, list, from, to, s%tube)
-         if (s%tube%is_proved) then
+         call prove_tube(p, e, list, from, to, tube)
+         if (tube%is_proved) then
             proof%parts = proof%parts + 1
-            proof%radius = max(proof%radius, maxval(s%tube%radius))
+            proof%radius = max(proof%radius, maxval(tube%radius))
             return
          end if
-         proof%block = s%tube%block
+         proof%block = tube%block
          proof%t = 0.5_wp*(from%t + to%t)
          proof%is_broken_off = proof%tries >= max_products/sum(real(e%blocks%list(list)%shape%n, wp)**3)
          proof%is_proved = abs(to%t - from%t) > shortest .and. proof%tries < max_tries .and. .not. proof%is_broken_off
@@ -203,7 +187,7 @@ contains
          is_found = .false.
          do k = 1, size(list)
             c = convergence_t()
-            call solve_block(e%blocks, list(k), e%tolerance, s%work, p%state, c)
+            call solve_block(e%blocks, list(k), e%tolerance, work, p%state, c)
             if (.not. is_solved(c) .or. c%singular .or. c%rates_open) return
          end do
          call take_state(p, e, t, middle)

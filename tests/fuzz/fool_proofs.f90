@@ -11,7 +11,7 @@ program fool_proofs
    use block_engine, only: block_engine_t, make_block_engine, set_drive_values
    use mechanism, only: mechanism_t
    use position_proof, only: prover_t, placed_t, make_prover, new_placed, prove_position
-   use motion_proof, only: step_prover_t, step_proof_t, make_step_prover, prove_step
+   use motion_proof, only: step_proof_t, prove_step
    use block_solver, only: solve_block
    use convergence, only: convergence_t
    use fool_scenes, only: fool_t, new_mechanism, find_unknowns, place_at, scene_four_bar, scene_inverted, scene_slider, &
@@ -52,7 +52,6 @@ contains
       type(mechanism_t) :: m
       type(block_engine_t), allocatable :: e
       type(prover_t) :: p
-      type(step_prover_t), allocatable :: s
       type(placed_t) :: q(2)
       type(step_proof_t) :: proof
       real(wp) :: t(2)
@@ -76,15 +75,14 @@ contains
       sign_of = merge(1, -1, chance(dice, 0.5_wp))
       if (chance(dice, 0.25_wp)) sign_of(2) = -sign_of(2)
       m = new_mechanism(f)
-      allocate (e, s)
+      allocate (e)
       call make_block_engine(e, m)
       call make_prover(p, m, e)
-      call make_step_prover(s, e)
       call find_unknowns(m, e, f)
       wrong = .false.
       do k = 1, 2
          q(k) = new_placed(e%blocks, size(m%drives))
-         call put_there(f, e, s, t(k), sign_of(k))
+         call put_there(f, e, t(k), sign_of(k))
          call prove_position(p, e, t(k), e%needed, q(k), is_proved(k))
          if (.not. is_proved(k)) cycle
          positions = positions + 1
@@ -94,7 +92,7 @@ contains
          end if
       end do
       if (all(is_proved)) then
-         call prove_step(p, s, e, e%needed, q(1), q(2), proof)
+         call prove_step(p, e, e%needed, q(1), q(2), proof)
          if (proof%is_proved) steps = steps + 1
          if (proof%is_proved .and. (sign_of(1) /= sign_of(2) .or. .not. exists_between(f, t, sign_of(1)))) then
             print '(a,i0,a,i0)', ' ATTEMPT ', i, ': A FALSE STEP IS PROVED, SCENE ', f%scene
@@ -148,10 +146,9 @@ contains
    end function some_mechanism
 
    !> Puts the engine where the assembly `s` is at `t`; `s` becomes 0 where that is wrong by more than a little.
-   subroutine put_there(f, e, prover, t, s)
+   subroutine put_there(f, e, t, s)
       type(fool_t), intent(in) :: f
       type(block_engine_t), intent(inout) :: e
-      type(step_prover_t), intent(inout) :: prover
       real(wp), intent(in) :: t
       integer, intent(inout) :: s
       type(convergence_t) :: c
@@ -161,7 +158,7 @@ contains
 
       call set_drive_values(e, t)
       do k = 1, size(e%blocks%list)
-         if (e%blocks%list(k)%direct) call solve_block(e%blocks, k, e%tolerance, prover%work, e%state, c)
+         if (e%blocks%list(k)%direct) call solve_block(e%blocks, k, e%tolerance, e%work, e%state, c)
       end do
       h = small/max(1.0_wp, f%frequency)
       do k = -1, 1
